@@ -1,0 +1,24 @@
+//! The figures that a tool shows live: plain numbers, filled by whoever measured them.
+
+/// Live figures of one frame. `None` means not measured, never zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Figures {
+    /// Size of one shadow texel across the light, in metres, along u and v.
+    pub texel_size: Option<[f32; 2]>,
+    /// Extent of the map along the light, in metres.
+    pub depth_range: Option<f32>,
+    /// Smallest depth difference that the map's format resolves at its far end, in metres.
+    pub depth_step: Option<f32>,
+    /// Screen pixels per shadow texel along the worse axis at the picture's centre.
+    pub pixels_per_texel: Option<f32>,
+    /// Time of a whole frame, in milliseconds.
+    pub frame_ms: Option<f32>,
+    /// GPU time of the shadow pass, in milliseconds.
+    pub shadow_pass_ms: Option<f32>,
+    /// GPU time of the scene pass, in milliseconds.
+    pub scene_pass_ms: Option<f32>,
+    /// Draw calls of the shadow pass.
+    pub shadow_draws: Option<u32>,
+    /// Triangles drawn into the shadow map.
+    pub shadow_triangles: Option<u64>,
+}

@@ -1,0 +1,172 @@
+//! Plain settings of a directional shadow and of the tools that tune it.
+//!
+//! Every field is public, has a default, and (when it is a knob that a person turns) a row in
+//! [`crate::params`], from which panels, command lines and saved files are made.
+
+use glam::UVec2;
+
+use crate::DepthConvention;
+
+/// Which rule fits the shadow map to the camera frustum.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FitKind {
+    /// The XNA Shadow Mapping sample's `CreateLightViewProjectionMatrix` (Microsoft, 2008), exact:
+    /// tight across the light, twice the depth that is needed, no caster policy.
+    XnaSample,
+    /// Axis-aligned box of the camera frustum in the light's axes, with tight depth and the near
+    /// plane moved toward the light by [`FitSettings::caster_extension`].
+    #[default]
+    FrustumAabb,
+}
+
+/// How the light's view-projection is fitted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FitSettings {
+    /// The rule of the fit.
+    pub kind: FitKind,
+    /// Shadows end at this view depth, in metres; the camera's far plane when that is nearer.
+    pub max_distance: f32,
+    /// Enlarges the light's box on all six sides, in metres: the sample's own imperfect cure for
+    /// clipped casters.
+    pub margin: f32,
+    /// Moves the near plane toward the light, in metres, so that casters between the light and the
+    /// frustum are kept. [`FitKind::XnaSample`] ignores it: the sample has none.
+    pub caster_extension: f32,
+    /// Width and height of the map, in texels.
+    pub resolution: UVec2,
+    /// Depth convention of the fitted clip space.
+    pub depth: DepthConvention,
+}
+
+impl Default for FitSettings {
+    fn default() -> Self {
+        Self {
+            kind: FitKind::FrustumAabb,
+            max_distance: 60.0,
+            margin: 0.0,
+            caster_extension: 50.0,
+            resolution: UVec2::splat(2048),
+            depth: DepthConvention::ZeroToOne,
+        }
+    }
+}
+
+/// Biases that keep a surface from shadowing itself, in texels of the map.
+///
+/// They are converted to depth and metres in one place, [`crate::bias`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BiasSettings {
+    /// Depth bias that does not depend on the slope, in texel sizes along the light.
+    pub constant: f32,
+    /// Depth bias times the tangent of the angle between the surface normal and the light, in
+    /// texel sizes.
+    pub slope: f32,
+    /// Offset of the sampled point along the geometric normal times the sine of that angle, in
+    /// texel sizes.
+    pub normal_offset: f32,
+}
+
+impl Default for BiasSettings {
+    fn default() -> Self {
+        Self { constant: 0.1, slope: 0.0, normal_offset: 2.0 }
+    }
+}
+
+/// How the stored depths are turned into a shadow factor.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FilterKind {
+    /// One comparison with the nearest texel.
+    Point,
+    /// Four comparisons, weighted bilinearly (the hardware's 2×2 percentage-closer filter).
+    #[default]
+    Hardware2x2,
+}
+
+/// Texture format that stores the depths.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MapFormat {
+    /// 32-bit float depth attachment, compared by the sampler.
+    #[default]
+    Depth32Float,
+    /// One 32-bit float colour channel with a depth buffer of its own, compared by hand (the XNA
+    /// sample's form).
+    R32Float,
+}
+
+/// The sun.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightSettings {
+    /// Compass angle of the point that the light comes from, in radians from +z toward +x.
+    pub azimuth: f32,
+    /// Angle of the sun above the horizon, in radians.
+    pub elevation: f32,
+    /// Whether the sun circles the vertical.
+    pub animate: bool,
+    /// Speed of that circle, in radians a second.
+    pub animate_speed: f32,
+}
+
+impl Default for LightSettings {
+    fn default() -> Self {
+        Self { azimuth: 0.6, elevation: 0.75, animate: false, animate_speed: 0.1 }
+    }
+}
+
+/// Lens and speed of the free-flying camera. Where it stands is not a setting.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraSettings {
+    /// Vertical field of view, in radians.
+    pub fov_y: f32,
+    /// Distance of the near plane, in metres.
+    pub near: f32,
+    /// Distance of the far plane, in metres.
+    pub far: f32,
+    /// Flying speed, in metres a second.
+    pub speed: f32,
+}
+
+impl Default for CameraSettings {
+    fn default() -> Self {
+        Self { fov_y: core::f32::consts::FRAC_PI_4, near: 0.1, far: 200.0, speed: 5.0 }
+    }
+}
+
+/// What a tool draws over or instead of the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewSettings {
+    /// Whether shadows are drawn at all.
+    pub shadows: bool,
+    /// Shows the shadow map in a corner.
+    pub inset: bool,
+    /// Looks at the camera from outside, with its frustum and the light's box drawn.
+    pub outside: bool,
+    /// Keeps the current fit while the camera flies on.
+    pub freeze_fit: bool,
+    /// Plays the scene's animation.
+    pub play: bool,
+}
+
+impl Default for ViewSettings {
+    fn default() -> Self {
+        Self { shadows: true, inset: true, outside: false, freeze_fit: false, play: true }
+    }
+}
+
+/// Everything that the tuning panel edits.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Settings {
+    /// How the map is fitted.
+    pub fit: FitSettings,
+    /// Biases against self-shadowing.
+    pub bias: BiasSettings,
+    /// Filter of the shadow look-up.
+    pub filter: FilterKind,
+    /// Storage of the map.
+    pub format: MapFormat,
+    /// The sun.
+    pub light: LightSettings,
+    /// Lens and speed of the camera.
+    pub camera: CameraSettings,
+    /// What is drawn.
+    pub view: ViewSettings,
+}
