@@ -1,0 +1,77 @@
+//! World-space bounds of posed scenes, exact to the vertex: what fits enclose and cameras frame.
+
+use glam::{Mat4, Vec3};
+
+use crate::{Instance, Pose, Scene};
+
+/// An axis-aligned box; corners in the space of the points it was made from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// Corner with the smallest coordinates.
+    pub min: Vec3,
+    /// Corner with the greatest coordinates.
+    pub max: Vec3,
+}
+
+impl Aabb {
+    /// The smallest box around `points`; `None` without points.
+    pub fn from_points(points: impl IntoIterator<Item = Vec3>) -> Option<Self> {
+        let mut points = points.into_iter();
+        let first = points.next()?;
+        let start = Self { min: first, max: first };
+        Some(points.fold(start, |b, p| Self { min: b.min.min(p), max: b.max.max(p) }))
+    }
+
+    /// The smallest box around both.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// The middle.
+    pub fn center(self) -> Vec3 {
+        self.min + (self.max - self.min) * 0.5
+    }
+
+    /// Edge lengths.
+    pub fn size(self) -> Vec3 {
+        self.max - self.min
+    }
+}
+
+impl Scene {
+    /// World-space bounds of everything drawn, deformed as in `pose`; `None` if nothing is drawn.
+    pub fn bounds(&self, pose: &Pose) -> Option<Aabb> {
+        self.bounds_where(pose, |_| true)
+    }
+
+    /// World-space bounds of what `root` and its descendants draw, deformed as in `pose`; `None` if
+    /// they draw nothing.
+    pub fn node_bounds(&self, pose: &Pose, root: usize) -> Option<Aabb> {
+        self.bounds_where(pose, |node| self.is_descendant(node, root))
+    }
+
+    fn bounds_where(&self, pose: &Pose, wanted: impl Fn(usize) -> bool) -> Option<Aabb> {
+        self.instances()
+            .iter()
+            .filter(|instance| wanted(instance.node))
+            .filter_map(|instance| self.instance_bounds(pose, instance))
+            .reduce(Aabb::union)
+    }
+
+    /// World-space bounds of one instance, deformed as in `pose`; `None` if it has no triangles.
+    pub fn instance_bounds(&self, pose: &Pose, instance: &Instance) -> Option<Aabb> {
+        let primitive = self.meshes.get(instance.mesh)?.primitives.get(instance.primitive)?;
+        let world_from_local = pose.world_from_instance(self, instance);
+        match pose.deform(self, instance) {
+            Some(deformed) => used_bounds(&deformed.positions, &primitive.indices, world_from_local),
+            None => used_bounds(&primitive.positions, &primitive.indices, world_from_local),
+        }
+    }
+}
+
+/// Bounds of the indexed vertices only: files may carry vertices that no triangle uses.
+fn used_bounds(positions: &[Vec3], indices: &[u32], world_from_local: Mat4) -> Option<Aabb> {
+    let used = indices.iter().filter_map(|&i| positions.get(i as usize));
+    Aabb::from_points(used.map(|&p| world_from_local.transform_point3(p)))
+}

@@ -1,0 +1,111 @@
+//! Morph targets and linear blend skinning on the CPU, as the glTF 2.0 specification defines them
+//! (sections 3.7.2.2 and 3.7.3): morph first, then skin; a skinned mesh ignores its node's transform.
+
+use glam::{Mat3, Mat4, Vec3, Vec4};
+
+use crate::{Instance, Pose, Primitive, Scene, Skin};
+
+/// Vertices of an instance after morphing and skinning, parallel to the primitive's own.
+///
+/// Morphed only: in the mesh's space, like the primitive's. Skinned: in world space.
+#[derive(Clone, Debug, Default)]
+pub struct Deformed {
+    /// Positions, in metres.
+    pub positions: Vec<Vec3>,
+    /// Unit normals.
+    pub normals: Vec<Vec3>,
+    /// Unit tangents with the bitangent's sign in w; empty where the primitive has none.
+    pub tangents: Vec<Vec4>,
+}
+
+impl Pose {
+    /// Vertices of a morphed or skinned instance; `None` for rigid ones, whose vertices are the
+    /// primitive's own.
+    pub fn deform(&self, scene: &Scene, instance: &Instance) -> Option<Deformed> {
+        let primitive = scene.meshes.get(instance.mesh)?.primitives.get(instance.primitive)?;
+        let skin = scene.instance_skin(instance);
+        if skin.is_none() && primitive.morphs.is_empty() {
+            return None;
+        }
+        let mut deformed = Deformed {
+            positions: primitive.positions.clone(),
+            normals: primitive.normals.clone(),
+            tangents: primitive.tangents.clone(),
+        };
+        if let Some(weights) = self.morph_weights.get(instance.node) {
+            morph(&mut deformed, primitive, weights);
+        }
+        if let Some(skin) = skin {
+            skin_vertices(&mut deformed, primitive, &self.world_from_mesh_by_joint(skin));
+        }
+        Some(deformed)
+    }
+
+    /// One matrix a joint: where it carries the mesh's vertices in the world.
+    pub fn world_from_mesh_by_joint(&self, skin: &Skin) -> Vec<Mat4> {
+        let joints = skin.joints.iter().zip(&skin.joint_from_mesh);
+        joints.map(|(&node, &joint_from_mesh)| self.world_from(node) * joint_from_mesh).collect()
+    }
+}
+
+impl Scene {
+    /// The skin that deforms the instance, if its primitive carries joints.
+    pub fn instance_skin(&self, instance: &Instance) -> Option<&Skin> {
+        let primitive = self.meshes.get(instance.mesh)?.primitives.get(instance.primitive)?;
+        let skin = self.skins.get(self.nodes.get(instance.node)?.skin?)?;
+        (!primitive.joints.is_empty()).then_some(skin)
+    }
+}
+
+fn morph(deformed: &mut Deformed, primitive: &Primitive, weights: &[f32]) {
+    for (target, &weight) in primitive.morphs.iter().zip(weights) {
+        if weight == 0.0 {
+            continue;
+        }
+        for (position, &offset) in deformed.positions.iter_mut().zip(&target.positions) {
+            *position += offset * weight;
+        }
+        for (normal, &offset) in deformed.normals.iter_mut().zip(&target.normals) {
+            *normal += offset * weight;
+        }
+    }
+    for normal in &mut deformed.normals {
+        *normal = normal.normalize_or(Vec3::Y);
+    }
+}
+
+fn skin_vertices(deformed: &mut Deformed, primitive: &Primitive, world_from_mesh: &[Mat4]) {
+    let influences = primitive.joints.iter().zip(&primitive.weights);
+    for (i, (joints, weights)) in influences.enumerate() {
+        let matrix = blend(world_from_mesh, *joints, *weights);
+        if let Some(position) = deformed.positions.get_mut(i) {
+            *position = matrix.transform_point3(*position);
+        }
+        if let Some(normal) = deformed.normals.get_mut(i) {
+            *normal = (normal_matrix(matrix) * *normal).normalize_or(Vec3::Y);
+        }
+        if let Some(tangent) = deformed.tangents.get_mut(i) {
+            let direction = matrix.transform_vector3(tangent.truncate()).normalize_or(Vec3::X);
+            *tangent = direction.extend(tangent.w);
+        }
+    }
+}
+
+fn blend(matrices: &[Mat4], joints: [u16; 4], weights: Vec4) -> Mat4 {
+    let mut sum = Mat4::ZERO;
+    for (joint, weight) in joints.into_iter().zip(weights.to_array()) {
+        if weight != 0.0 {
+            sum += matrices.get(joint as usize).copied().unwrap_or(Mat4::IDENTITY) * weight;
+        }
+    }
+    sum
+}
+
+/// The inverse transpose up to a positive factor, defined for singular matrices too: the cofactors,
+/// with the sign of the determinant.
+fn normal_matrix(matrix: Mat4) -> Mat3 {
+    let m = Mat3::from_mat4(matrix);
+    let (x, y, z) = (m.x_axis, m.y_axis, m.z_axis);
+    let cofactors = Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+    if x.dot(cofactors.x_axis) < 0.0 { cofactors * -1.0 } else { cofactors }
+}

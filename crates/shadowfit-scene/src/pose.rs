@@ -1,0 +1,184 @@
+//! A scene at a moment: world transforms, morph weights, and the triangles that follow.
+
+use glam::{Mat4, Vec3};
+
+use crate::sample::{Sample, sample};
+use crate::{Node, Scene, Transform};
+
+/// One primitive drawn at one node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Instance {
+    /// Index into [`Scene::nodes`].
+    pub node: usize,
+    /// Index into [`Scene::meshes`].
+    pub mesh: usize,
+    /// Index into [`crate::Mesh::primitives`].
+    pub primitive: usize,
+}
+
+/// Where everything is at a moment.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pose {
+    /// World from node, one a node.
+    pub world_from_node: Vec<Mat4>,
+    /// Morph weights, one list a node: one weight a target of its mesh, empty where it has none.
+    pub morph_weights: Vec<Vec<f32>>,
+}
+
+/// A triangle in world space; its vertices wind counter-clockwise seen from outside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Triangle {
+    /// Corners, in metres.
+    pub vertices: [Vec3; 3],
+    /// Index into [`Scene::instances`].
+    pub instance: u32,
+    /// Number of the triangle within its primitive: it uses indices `3 * index ..`.
+    pub index: u32,
+}
+
+impl Transform {
+    /// Parent space from this node's space.
+    pub fn matrix(&self) -> Mat4 {
+        self.matrix
+            .unwrap_or_else(|| Mat4::from_scale_rotation_translation(self.scale, self.rotation, self.translation))
+    }
+}
+
+impl Scene {
+    /// Everything drawn, ordered by node, then by primitive; the same for every pose.
+    pub fn instances(&self) -> Vec<Instance> {
+        let mut instances = Vec::new();
+        for (node, data) in self.nodes.iter().enumerate() {
+            let Some((mesh, drawn)) = data.mesh.and_then(|m| Some((m, self.meshes.get(m)?))) else {
+                continue;
+            };
+            let primitives = 0..drawn.primitives.len();
+            instances.extend(primitives.map(|primitive| Instance { node, mesh, primitive }));
+        }
+        instances
+    }
+
+    /// The scene at `seconds` into an animation, which loops over its duration; at rest for `None`
+    /// and for an animation that does not exist.
+    pub fn pose(&self, animation: Option<usize>, seconds: f32) -> Pose {
+        let mut locals: Vec<Transform> = self.nodes.iter().map(|node| node.rest).collect();
+        let mut morph_weights: Vec<_> = self.nodes.iter().map(|n| self.rest_weights(n)).collect();
+        if let Some(animation) = animation.and_then(|index| self.animations.get(index)) {
+            let time = looped(seconds, animation.duration);
+            for channel in &animation.channels {
+                let Some(local) = locals.get_mut(channel.node) else { continue };
+                match sample(channel, time) {
+                    Some(Sample::Translation(translation)) => local.translation = translation,
+                    Some(Sample::Rotation(rotation)) => local.rotation = rotation,
+                    Some(Sample::Scale(scale)) => local.scale = scale,
+                    Some(Sample::MorphWeights(weights)) => {
+                        overwrite(&mut morph_weights[channel.node], &weights);
+                    }
+                    None => {}
+                }
+            }
+        }
+        Pose { world_from_node: self.compose(&locals), morph_weights }
+    }
+
+    /// Whether `node` is `root` or lies below it.
+    pub fn is_descendant(&self, node: usize, root: usize) -> bool {
+        let parent_of = |&index: &usize| self.nodes.get(index).and_then(|n| n.parent);
+        // Parents have smaller indices, so the search ends at or before the root's.
+        std::iter::successors(Some(node), parent_of)
+            .take_while(|&ancestor| ancestor >= root)
+            .any(|ancestor| ancestor == root)
+    }
+
+    /// One weight a morph target of the node's mesh: the node's, else the mesh's, else 0.
+    fn rest_weights(&self, node: &Node) -> Vec<f32> {
+        let Some(mesh) = node.mesh.and_then(|index| self.meshes.get(index)) else {
+            return Vec::new();
+        };
+        let targets = mesh.primitives.iter().map(|p| p.morphs.len()).max().unwrap_or(0);
+        let own = !node.morph_weights.is_empty();
+        let mut weights = vec![0.0; targets];
+        overwrite(&mut weights, if own { &node.morph_weights } else { &mesh.morph_weights });
+        weights
+    }
+
+    fn compose(&self, locals: &[Transform]) -> Vec<Mat4> {
+        let mut world_from_node: Vec<Mat4> = Vec::with_capacity(locals.len());
+        for (node, local) in self.nodes.iter().zip(locals) {
+            let parent = node.parent.and_then(|index| world_from_node.get(index));
+            let world_from_parent = parent.copied().unwrap_or(Mat4::IDENTITY);
+            world_from_node.push(world_from_parent * local.matrix());
+        }
+        world_from_node
+    }
+}
+
+impl Pose {
+    /// World from the space of the instance's vertices (those of [`Pose::deform`] where it gives
+    /// some): the node's matrix, or the identity for skinned instances.
+    pub fn world_from_instance(&self, scene: &Scene, instance: &Instance) -> Mat4 {
+        match scene.instance_skin(instance) {
+            Some(_) => Mat4::IDENTITY,
+            None => self.world_from(instance.node),
+        }
+    }
+
+    /// Whether the instance is mirrored, so that its triangles wind clockwise seen from outside:
+    /// renderers swap their front face for it, [`Pose::triangles`] swaps two corners. It is the sign
+    /// of the node's determinant, or of the first joint's for skinned instances.
+    pub fn is_mirrored(&self, scene: &Scene, instance: &Instance) -> bool {
+        let matrix = match scene.instance_skin(instance) {
+            Some(skin) => match (skin.joints.first(), skin.joint_from_mesh.first()) {
+                (Some(&joint), Some(&joint_from_mesh)) => self.world_from(joint) * joint_from_mesh,
+                _ => Mat4::IDENTITY,
+            },
+            None => self.world_from(instance.node),
+        };
+        glam::Mat3::from_mat4(matrix).determinant() < 0.0
+    }
+
+    /// Every triangle of every instance, in instance order, deformed and in world space.
+    ///
+    /// Mirrored instances ([`Pose::is_mirrored`]) have their second and third corner swapped, so
+    /// that all geometric normals point outward.
+    pub fn triangles(&self, scene: &Scene) -> Vec<Triangle> {
+        let instances = scene.instances();
+        let count = |i: &Instance| scene.meshes[i.mesh].primitives[i.primitive].indices.len() / 3;
+        let mut triangles = Vec::with_capacity(instances.iter().map(count).sum());
+        for (number, instance) in instances.iter().enumerate() {
+            self.instance_triangles(scene, instance, number as u32, &mut triangles);
+        }
+        triangles
+    }
+
+    fn instance_triangles(&self, scene: &Scene, instance: &Instance, number: u32, triangles: &mut Vec<Triangle>) {
+        let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
+        let world_from_local = self.world_from_instance(scene, instance);
+        let deformed = self.deform(scene, instance);
+        let local = deformed.as_ref().map_or(&primitive.positions, |d| &d.positions);
+        let world: Vec<Vec3> = local.iter().map(|&p| world_from_local.transform_point3(p)).collect();
+        let mirrored = self.is_mirrored(scene, instance);
+        for (index, corners) in primitive.indices.chunks_exact(3).enumerate() {
+            let [a, b, c] = [corners[0], corners[1], corners[2]].map(|i| world[i as usize]);
+            let vertices = if mirrored { [a, c, b] } else { [a, b, c] };
+            triangles.push(Triangle { vertices, instance: number, index: index as u32 });
+        }
+    }
+
+    /// World from a node, or the identity for one that does not exist.
+    pub(crate) fn world_from(&self, node: usize) -> Mat4 {
+        self.world_from_node.get(node).copied().unwrap_or(Mat4::IDENTITY)
+    }
+}
+
+/// Time within a loop of `duration`; 0 for times and durations that are not finite or positive.
+fn looped(seconds: f32, duration: f32) -> f32 {
+    if seconds.is_finite() && duration.is_finite() && duration > 0.0 { seconds.rem_euclid(duration) } else { 0.0 }
+}
+
+/// Copies as many values as both have.
+fn overwrite(target: &mut [f32], source: &[f32]) {
+    for (to, &from) in target.iter_mut().zip(source) {
+        *to = from;
+    }
+}
