@@ -1,20 +1,67 @@
 //! Fits a directional light's orthographic view-projection to a camera frustum.
+//!
+//! Camera and light in, matrices out:
+//!
+//! ```
+//! use shadowfit::glam::{DVec3, Vec3};
+//! use shadowfit::{FitSettings, PerspectiveCamera, fit};
+//!
+//! let camera = PerspectiveCamera {
+//!     eye: DVec3::new(0.0, 1.7, 5.0),
+//!     forward: Vec3::NEG_Z,
+//!     up: Vec3::Y,
+//!     fov_y: 0.8,
+//!     aspect: 16.0 / 9.0,
+//!     near: 0.1,
+//!     far: 200.0,
+//! };
+//! let direction = Vec3::new(0.3, -0.8, 0.2); // the way the light travels
+//! let light = fit(&camera.frustum()?, direction, &FitSettings::default())?;
+//!
+//! // What the shadow pass and the shader need. Positions are relative to the eye.
+//! let (clip_from_world, uv_from_world) = (light.clip_from_world, light.uv_from_world);
+//! # let _ = (clip_from_world, uv_from_world);
+//! # Ok::<(), shadowfit::FitError>(())
+//! ```
+//!
+//! # Conventions
+//!
+//! - Right-handed world, y up, metres, radians, column vectors; clip space x right, y up, with the
+//!   depth range that a [`DepthConvention`] names; texture space u right, v down.
+//! - Matrices are named `dst_from_src`. Their world inputs are **relative to an origin** in f64,
+//!   the eye unless moved: [`LightFit::relative_to`] and [`LightFit::world_matrices`] convert.
+//! - A light is its **direction of travel**. Where a source speaks of the direction toward the
+//!   light, `to_light = -direction`.
+//! - Nothing panics and nothing allocates; every bad input is a [`FitError`] with its value.
+//! - Transcendental functions come from `libm`, everything else is `+ - × ÷ √` on scalars, so the
+//!   same input gives the same bits on every target.
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod bias;
+pub mod diagnostics;
 pub mod figures;
+pub mod fits;
 pub mod settings;
 
-pub use glam;
+mod axes;
+mod camera;
+mod caster;
+mod checks;
+mod depth;
+mod error;
+mod frustum;
+mod light_fit;
 
-/// Depth range of a clip space.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum DepthConvention {
-    /// Near is 0, far is 1 (wgpu, Direct3D, Vulkan, Metal).
-    #[default]
-    ZeroToOne,
-    /// Near is 1, far is 0: the same range reversed, for float precision.
-    Reversed,
-    /// Near is -1, far is 1 (OpenGL).
-    NegativeOneToOne,
-}
+pub use bias::Bias;
+pub use camera::PerspectiveCamera;
+pub use caster::CasterVolume;
+pub use depth::DepthConvention;
+pub use error::FitError;
+pub use fits::fit;
+pub use frustum::ViewFrustum;
+pub use glam;
+pub use light_fit::{LightFit, WorldMatrices};
+pub use settings::{
+    BiasSettings, CameraSettings, FilterKind, FitKind, FitSettings, LightSettings, MapFormat, Settings, ViewSettings,
+};

@@ -3,9 +3,25 @@
 //! Every field is public, has a default, and (when it is a knob that a person turns) a row in
 //! [`crate::params`], from which panels, command lines and saved files are made.
 
-use glam::UVec2;
+use glam::{UVec2, Vec3};
 
-use crate::DepthConvention;
+use crate::{DepthConvention, FitError, checks};
+
+/// Writes one `with_*` method per field of a settings struct.
+macro_rules! setters {
+    ($settings:ty { $($method:ident $field:ident: $value:ty),+ $(,)? }) => {
+        impl $settings {
+            $(
+                #[doc = concat!("These settings with another [`", stringify!($field), "`](Self::", stringify!($field), ").")]
+                #[must_use]
+                pub const fn $method(mut self, $field: $value) -> Self {
+                    self.$field = $field;
+                    self
+                }
+            )+
+        }
+    };
+}
 
 /// Which rule fits the shadow map to the camera frustum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -133,6 +149,7 @@ impl Default for CameraSettings {
 
 /// What a tool draws over or instead of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent switch of the panel")]
 pub struct ViewSettings {
     /// Whether shadows are drawn at all.
     pub shadows: bool,
@@ -169,4 +186,79 @@ pub struct Settings {
     pub camera: CameraSettings,
     /// What is drawn.
     pub view: ViewSettings,
+}
+
+setters!(FitSettings {
+    with_kind kind: FitKind,
+    with_max_distance max_distance: f32,
+    with_margin margin: f32,
+    with_caster_extension caster_extension: f32,
+    with_resolution resolution: UVec2,
+    with_depth depth: DepthConvention,
+});
+
+setters!(BiasSettings {
+    with_constant constant: f32,
+    with_slope slope: f32,
+    with_normal_offset normal_offset: f32,
+});
+
+setters!(LightSettings {
+    with_azimuth azimuth: f32,
+    with_elevation elevation: f32,
+    with_animate animate: bool,
+    with_animate_speed animate_speed: f32,
+});
+
+setters!(CameraSettings {
+    with_fov_y fov_y: f32,
+    with_near near: f32,
+    with_far far: f32,
+    with_speed speed: f32,
+});
+
+setters!(ViewSettings {
+    with_shadows shadows: bool,
+    with_inset inset: bool,
+    with_outside outside: bool,
+    with_freeze_fit freeze_fit: bool,
+    with_play play: bool,
+});
+
+setters!(Settings {
+    with_fit fit: FitSettings,
+    with_bias bias: BiasSettings,
+    with_filter filter: FilterKind,
+    with_format format: MapFormat,
+    with_light light: LightSettings,
+    with_camera camera: CameraSettings,
+    with_view view: ViewSettings,
+});
+
+impl LightSettings {
+    /// Unit **direction of travel** of the light in the right-handed, y-up world: away from the
+    /// sun, so the negative of the direction toward the light. Angles that are not finite give a
+    /// vector that every fit refuses.
+    pub fn direction(&self) -> Vec3 {
+        let (sin_azimuth, cos_azimuth) = libm::sincos(f64::from(self.azimuth));
+        let (sin_elevation, cos_elevation) = libm::sincos(f64::from(self.elevation));
+        Vec3::new((-cos_elevation * sin_azimuth) as f32, -sin_elevation as f32, (-cos_elevation * cos_azimuth) as f32)
+    }
+
+    /// The settings of a light that travels in `direction` (world axes, any length): azimuth in
+    /// -π..=π, elevation in -π/2..=π/2, the rest as by default. A vertical light has azimuth 0.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::NotFinite`] and [`FitError::BadDirection`].
+    pub fn from_direction(direction: Vec3) -> Result<Self, FitError> {
+        // Adding +0 turns the negative zeros of the negation positive, which atan2 tells apart.
+        let to_light = -checks::unit("the light's direction", direction)? + 0.0;
+        let horizontal = libm::sqrt(to_light.x * to_light.x + to_light.z * to_light.z);
+        Ok(Self {
+            azimuth: libm::atan2(to_light.x, to_light.z) as f32,
+            elevation: libm::atan2(to_light.y, horizontal) as f32,
+            ..Self::default()
+        })
+    }
 }

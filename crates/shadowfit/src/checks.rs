@@ -1,0 +1,51 @@
+//! Checks of numbers that come from outside, and the limits that they use.
+//!
+//! They stand in one place so that every input is refused by the same rule and with its name.
+
+use glam::{DVec3, Vec3};
+
+use crate::FitError;
+
+/// Shortest length that is accepted, in metres (or of a direction): its square is still a normal
+/// f32, so neither this crate's matrices nor a shader that squares it loses all digits.
+pub(crate) const MIN_LENGTH: f64 = 1e-18;
+
+/// Greatest length or coordinate that is accepted, in metres: its square still fits f32.
+pub(crate) const MAX_LENGTH: f64 = 1e18;
+
+/// Refuses NaN and infinity.
+pub(crate) fn finite(input: &'static str, value: f64) -> Result<f64, FitError> {
+    if value.is_finite() { Ok(value) } else { Err(FitError::NotFinite { input, value }) }
+}
+
+/// Refuses what is not finite or outside `min..=max`.
+pub(crate) fn within(input: &'static str, value: f64, min: f64, max: f64) -> Result<f64, FitError> {
+    finite(input, value)?;
+    if (min..=max).contains(&value) { Ok(value) } else { Err(FitError::OutOfRange { input, value, min, max }) }
+}
+
+/// Refuses a point with a coordinate that is not finite or beyond [`MAX_LENGTH`].
+pub(crate) fn point(input: &'static str, value: DVec3) -> Result<DVec3, FitError> {
+    for coordinate in value.to_array() {
+        within(input, coordinate, -MAX_LENGTH, MAX_LENGTH)?;
+    }
+    Ok(value)
+}
+
+/// The unit vector along `value`, in f64.
+pub(crate) fn unit(input: &'static str, value: Vec3) -> Result<DVec3, FitError> {
+    for component in value.to_array() {
+        finite(input, f64::from(component))?;
+    }
+    let length = length(value.as_dvec3());
+    if (MIN_LENGTH..=MAX_LENGTH).contains(&length) {
+        Ok(value.as_dvec3() / length)
+    } else {
+        Err(FitError::BadDirection { input, length })
+    }
+}
+
+/// Length of a vector; the square root is libm's, the same on every target.
+pub(crate) fn length(v: DVec3) -> f64 {
+    libm::sqrt(v.dot(v))
+}

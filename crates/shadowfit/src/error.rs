@@ -1,0 +1,113 @@
+//! The one error type of the fits.
+//!
+//! Every variant carries the offending value and says what to do, since the value that breaks a
+//! fit was usually computed far from the call that reports it.
+
+use core::fmt;
+
+use glam::{UVec2, Vec3};
+
+/// Why a frustum or a fit could not be made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum FitError {
+    /// An input is NaN or infinite.
+    NotFinite {
+        /// Name of the input.
+        input: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A number lies outside what the input can mean, or what f32 matrices can hold.
+    OutOfRange {
+        /// Name of the input.
+        input: &'static str,
+        /// Its value.
+        value: f64,
+        /// Least value accepted.
+        min: f64,
+        /// Greatest value accepted.
+        max: f64,
+    },
+    /// A direction is zero, so short that its digits are lost, or so long that its square
+    /// overflows f32.
+    BadDirection {
+        /// Name of the direction.
+        input: &'static str,
+        /// Its length.
+        length: f64,
+    },
+    /// The camera's `up` is parallel to its `forward`, which leaves its roll undefined.
+    ParallelUp {
+        /// The camera's forward direction.
+        forward: Vec3,
+        /// The camera's up direction.
+        up: Vec3,
+    },
+    /// A `world_from_clip` matrix cannot be divided by w at one of the clip corners, or folds two
+    /// of them together.
+    SingularMatrix {
+        /// Index of the corner in [`ViewFrustum::corners`](crate::ViewFrustum::corners).
+        corner: usize,
+        /// The w that the matrix gives there.
+        w: f64,
+    },
+    /// The frustum has no volume, or its box in the light's axes has no extent.
+    EmptyFrustum {
+        /// Extent of the frustum's box, in metres: in the light's axes when a fit reports it, in
+        /// the world's axes when a frustum does.
+        size: Vec3,
+    },
+    /// The near distance is not below the far distance; for a fit, the far distance is the nearer
+    /// of the frustum's far plane and the maximum shadow distance.
+    NearNotBelowFar {
+        /// Near distance, in metres.
+        near: f32,
+        /// Far distance, in metres.
+        far: f32,
+    },
+    /// The shadow map has no texels.
+    ZeroResolution {
+        /// The resolution asked for, in texels.
+        resolution: UVec2,
+    },
+}
+
+impl core::error::Error for FitError {}
+
+impl fmt::Display for FitError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::NotFinite { input, value } => {
+                write!(f, "{input} is {value}; give a finite number")
+            }
+            Self::OutOfRange { input, value, min, max } => {
+                write!(f, "{input} is {value:e}; give a value from {min:e} to {max:e}")
+            }
+            Self::BadDirection { input, length } => {
+                write!(f, "{input} has length {length:e}; give a vector of about unit length")
+            }
+            Self::ParallelUp { forward, up } => {
+                write!(f, "the camera's up {up} is parallel to its forward {forward}; tilt one of them")
+            }
+            Self::SingularMatrix { corner, w } => write!(
+                f,
+                "world_from_clip gives w = {w:e} at clip corner {corner}; pass the inverse of \
+                 clip_from_world, with the depth convention that it was made for"
+            ),
+            Self::EmptyFrustum { size } => write!(
+                f,
+                "the frustum is empty: its box is {size} m; check the field of view, the aspect \
+                 ratio and the corners"
+            ),
+            Self::NearNotBelowFar { near, far } => write!(
+                f,
+                "near {near} m is not below far {far} m; raise the far plane or the maximum \
+                 shadow distance, or lower the near plane"
+            ),
+            Self::ZeroResolution { resolution } => {
+                write!(f, "the map's resolution is {resolution}; give at least one texel each way")
+            }
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! The fit of the XNA "Shadow Mapping" sample (Microsoft, XNA Creators Club, 2008):
+//! `CreateLightViewProjectionMatrix`, kept exact so that its pictures and flaws can be reproduced.
+//! Tight across the light, twice the depth it needs, and blind to casters outside the frustum.
+//!
+//! The light stands at the centre of the box's x and y at its *minimum* z, which is the face
+//! **away** from where the light comes from, since view space looks along -z; the projection then
+//! runs from -depth to +depth:
+//!
+//! ```text
+//!   toward the light
+//!         ▲ z
+//!   max.z ┼───────┐  near plane, depth 0
+//!         │frustum│
+//!   min.z ┼───●───┤  the light, depth 0.5
+//!         │ empty │
+//!         └───────┘  far plane, depth 1
+//! ```
+//!
+//! Deviations from the source, none of which changes a number of its own scene: corners are
+//! relative to the eye and the box is measured in f64 (the source rounds world coordinates to
+//! f32), a vertical light takes another up axis (the source divides by zero), reversed and -1..1
+//! depth are offered, and `margin` is the cure that the source's text suggests.
+
+use glam::Vec3;
+
+use super::{Volume, bounds, prepare};
+use crate::axes::LightAxes;
+use crate::settings::FitSettings;
+use crate::{FitError, LightFit, ViewFrustum};
+
+/// Fits as the XNA sample does; see the [module](self). `direction` is the light's direction of
+/// travel in world axes; [`FitSettings::caster_extension`] is checked, but not used.
+///
+/// # Errors
+///
+/// As [`fits::fit`](super::fit).
+pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightFit, FitError> {
+    let (frustum, direction) = prepare(frustum, direction, settings)?;
+    let axes = LightAxes::look_at(direction);
+    let (min, max) = bounds(&frustum, &axes, settings.margin)?;
+    let depth = max.z - min.z;
+    let volume = Volume { axes, min, max, light_z: min.z, depth_range: 2.0 * depth };
+    LightFit::from_volume(frustum.origin, &volume, settings)
+}

@@ -1,0 +1,305 @@
+//! The part of the world that a camera sees, as eight corners relative to the eye.
+//!
+//! Fits need nothing else of a camera. The corners are relative because world coordinates rounded
+//! to f32 lose 1e-4 of a fit already a few hundred metres from the origin.
+
+use glam::{DMat4, DVec3, DVec4, Mat4, Vec3};
+
+use crate::checks::{self, MAX_LENGTH, MIN_LENGTH};
+use crate::{DepthConvention, FitError, PerspectiveCamera};
+
+/// A convex view volume with four edges that run from a near rectangle to a parallel far one:
+/// perspective, orthographic, off-axis or mirrored.
+///
+/// ```text
+///      0───────1        4─────────────5     each rectangle: left-top, right-top,
+///      │ near  │        │     far     │     right-bottom, left-bottom of the picture
+///      3───────2        │             │     (clip x = -1, y = +1 first)
+///                       7─────────────6
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewFrustum {
+    /// Position of the eye in world space, in metres. The corners are relative to it.
+    pub origin: DVec3,
+    /// Corners in world axes relative to [`Self::origin`], in metres: four near, then four far.
+    pub corners: [Vec3; 8],
+    /// View depth of the near corners, in metres along [`Self::forward`] from the origin.
+    pub near: f32,
+    /// View depth of the far corners, in metres along [`Self::forward`] from the origin.
+    pub far: f32,
+    /// Unit direction of view in world axes, perpendicular to both rectangles.
+    pub forward: Vec3,
+}
+
+/// Clip x and y of the corners, in their order.
+const CORNERS_XY: [(f64, f64); 4] = [(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)];
+
+/// Below this share of its terms the w of a far corner is rounding of an f32 matrix, and the far
+/// plane counts as infinite. It is a few times 2⁻²⁴.
+const INFINITE_W_F32: f64 = 1.0 / 4_194_304.0;
+
+/// The same for f64 matrices: a few times 2⁻⁵³.
+const INFINITE_W_F64: f64 = 1.0 / 2_251_799_813_685_248.0;
+
+impl ViewFrustum {
+    /// The frustum of a perspective camera. Exact to f32 rounding of each corner (6e-8 of its
+    /// distance from the eye), wherever the eye is.
+    ///
+    /// # Errors
+    ///
+    /// Every parameter that is NaN, infinite, zero, or too small or large for f32 arithmetic;
+    /// [`FitError::OutOfRange`] for a field of view outside 0..π, [`FitError::ParallelUp`] for a
+    /// roll that is undefined, [`FitError::NearNotBelowFar`].
+    pub fn from_camera(camera: &PerspectiveCamera) -> Result<Self, FitError> {
+        checks::point("the camera's eye", camera.eye)?;
+        let axes = camera.axes()?;
+        let fov_y = f64::from(camera.fov_y);
+        checks::within("the camera's fov_y", fov_y, MIN_LENGTH, core::f64::consts::PI)?;
+        let aspect = f64::from(camera.aspect);
+        checks::within("the camera's aspect", aspect, MIN_LENGTH, MAX_LENGTH)?;
+        let near = f64::from(camera.near);
+        checks::within("the camera's near distance", near, MIN_LENGTH, MAX_LENGTH)?;
+        let far = f64::from(camera.far);
+        checks::within("the camera's far distance", far, MIN_LENGTH, MAX_LENGTH)?;
+        let up = axes.up * camera.tangent_y();
+        let right = axes.right * camera.tangent_y() * aspect;
+        let mut corners = [Vec3::ZERO; 8];
+        for (i, (x, y)) in CORNERS_XY.into_iter().enumerate() {
+            let ray = axes.forward + right * x + up * y;
+            corners[i] = (ray * near).as_vec3();
+            corners[i + 4] = (ray * far).as_vec3();
+        }
+        Self { origin: camera.eye, corners, near: camera.near, far: camera.far, forward: axes.forward.as_vec3() }
+            .checked()
+    }
+
+    /// The frustum behind an f32 matrix from clip space to **absolute** world space, with the
+    /// camera's position and the matrix's depth range.
+    ///
+    /// A far plane beyond `max_distance` (view depth in metres), an infinite one included, is
+    /// brought to it. Give `f32::MAX` to keep any finite far plane.
+    ///
+    /// # Precision
+    ///
+    /// An f32 matrix rounds each element by up to ε = 2⁻²⁴ of itself, and w is a difference of
+    /// two elements that nearly cancel. A corner c (relative to the eye) then moves by no more
+    /// than 4 ε r (|c| + |eye|), with r = far / near for near at 0 or -1, and for reversed depth
+    /// r = 1 at the far corners and 4 ε (|c| + |eye|) · (far + near) / far at the near ones. A
+    /// matrix that was also *inverted* in f32 is worse by its condition. Prefer
+    /// [`Self::from_camera`], or [`Self::from_eye_from_clip`] with a matrix relative to the eye.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::from_world_from_clip_f64`].
+    pub fn from_world_from_clip(
+        world_from_clip: &Mat4,
+        eye: DVec3,
+        depth: DepthConvention,
+        max_distance: f32,
+    ) -> Result<Self, FitError> {
+        let matrix = world_from_clip.as_dmat4();
+        Unprojection { matrix, eye, offset: eye, depth, infinite_w: INFINITE_W_F32 }.frustum(max_distance)
+    }
+
+    /// The frustum behind an f32 matrix from clip space to world axes **relative to the eye**
+    /// (the inverse of a projection times a rotation), and the eye's position.
+    ///
+    /// As [`Self::from_world_from_clip`] otherwise; the distance from the world's origin falls out
+    /// of its error bound.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::from_world_from_clip_f64`].
+    pub fn from_eye_from_clip(
+        eye_from_clip: &Mat4,
+        eye: DVec3,
+        depth: DepthConvention,
+        max_distance: f32,
+    ) -> Result<Self, FitError> {
+        let matrix = eye_from_clip.as_dmat4();
+        Unprojection { matrix, eye, offset: DVec3::ZERO, depth, infinite_w: INFINITE_W_F32 }.frustum(max_distance)
+    }
+
+    /// [`Self::from_world_from_clip`] for an f64 matrix, without its loss of precision.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the matrix, the eye and
+    /// `max_distance`; [`FitError::SingularMatrix`] where w is zero, changes its sign between near
+    /// and far, or corners coincide; [`FitError::NearNotBelowFar`] when nothing lies between the
+    /// near plane and `max_distance`; [`FitError::EmptyFrustum`].
+    pub fn from_world_from_clip_f64(
+        world_from_clip: &DMat4,
+        eye: DVec3,
+        depth: DepthConvention,
+        max_distance: f32,
+    ) -> Result<Self, FitError> {
+        let matrix = *world_from_clip;
+        Unprojection { matrix, eye, offset: eye, depth, infinite_w: INFINITE_W_F64 }.frustum(max_distance)
+    }
+
+    /// The part between two view depths, in metres along [`Self::forward`] from the eye. Depths
+    /// outside the frustum are moved to its planes, so a slice is never larger than the whole.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::NotFinite`] for a depth; [`FitError::NearNotBelowFar`] when no part of the
+    /// frustum lies between them.
+    pub fn slice(&self, near: f32, far: f32) -> Result<Self, FitError> {
+        checks::finite("the slice's near distance", f64::from(near))?;
+        checks::finite("the slice's far distance", f64::from(far))?;
+        let whole = self.checked()?;
+        let near = near.max(whole.near);
+        let far = far.min(whole.far);
+        if near >= far {
+            return Err(FitError::NearNotBelowFar { near, far });
+        }
+        let mut corners = whole.corners;
+        for i in 0..4 {
+            let (start, end) = (whole.corners[i].as_dvec3(), whole.corners[i + 4].as_dvec3());
+            corners[i] = whole.at_depth(start, end, near);
+            corners[i + 4] = whole.at_depth(start, end, far);
+        }
+        Self { corners, near, far, ..whole }.checked()
+    }
+
+    /// The point of an edge at a view depth; exact at both of its ends.
+    fn at_depth(&self, start: DVec3, end: DVec3, depth: f32) -> Vec3 {
+        let (near, far) = (f64::from(self.near), f64::from(self.far));
+        let t = (f64::from(depth) - near) / (far - near);
+        (start * (1.0 - t) + end * t).as_vec3()
+    }
+
+    /// The frustum itself, if a fit can use it: the fields are public, so anyone may fill them.
+    pub(crate) fn checked(self) -> Result<Self, FitError> {
+        checks::point("the frustum's origin", self.origin)?;
+        for corner in self.corners {
+            checks::point("a corner of the frustum", corner.as_dvec3())?;
+        }
+        let (near, far) = (self.near, self.far);
+        let limit = MAX_LENGTH;
+        checks::within("the frustum's near distance", f64::from(near), -limit, limit)?;
+        checks::within("the frustum's far distance", f64::from(far), -limit, limit)?;
+        if near >= far {
+            return Err(FitError::NearNotBelowFar { near, far });
+        }
+        if self.volume() > 0.0 {
+            Ok(self)
+        } else {
+            let min = self.corners.into_iter().fold(Vec3::MAX, Vec3::min);
+            let max = self.corners.into_iter().fold(Vec3::MIN, Vec3::max);
+            Err(FitError::EmptyFrustum { size: max - min })
+        }
+    }
+
+    /// Volume of the box spanned by the far rectangle and the near-to-far axis, in m³ (not the
+    /// frustum's own volume, but zero exactly when that is).
+    fn volume(&self) -> f64 {
+        let c = self.corners.map(Vec3::as_dvec3);
+        let across = (c[5] - c[4]).cross(c[7] - c[4]);
+        let axis = (c[4] + c[6]) - (c[0] + c[2]);
+        let volume = across.dot(axis);
+        if volume < 0.0 { -volume } else { volume }
+    }
+}
+
+/// What turns clip corners into world positions relative to the eye.
+struct Unprojection {
+    matrix: DMat4,
+    eye: DVec3,
+    /// What to subtract from the matrix's output: the eye, or zero where it is relative already.
+    offset: DVec3,
+    depth: DepthConvention,
+    infinite_w: f64,
+}
+
+impl Unprojection {
+    fn frustum(&self, max_distance: f32) -> Result<ViewFrustum, FitError> {
+        checks::point("the camera's eye", self.eye)?;
+        checks::finite("the maximum shadow distance", f64::from(max_distance))?;
+        for element in self.matrix.to_cols_array() {
+            checks::finite("an element of world_from_clip", element)?;
+        }
+        let forward = self.forward()?;
+        let limit = f64::from(max_distance);
+        let mut corners = [Vec3::ZERO; 8];
+        let (mut near_sum, mut far_sum) = (0.0, 0.0);
+        for i in 0..4 {
+            let edge = self.edge(i)?;
+            let near = edge.near.dot(forward);
+            let far = match edge.far {
+                Some(far) if far.dot(forward) <= limit => far,
+                _ => edge.near + edge.toward * ((limit - near) / edge.toward.dot(forward)),
+            };
+            corners[i] = edge.near.as_vec3();
+            corners[i + 4] = far.as_vec3();
+            near_sum += near;
+            far_sum += far.dot(forward);
+        }
+        let (near, far) = ((near_sum * 0.25) as f32, (far_sum * 0.25) as f32);
+        ViewFrustum { origin: self.eye, corners, near, far, forward: forward.as_vec3() }.checked()
+    }
+
+    /// A homogeneous clip position in world axes relative to the eye, still homogeneous.
+    fn homogeneous(&self, x: f64, y: f64, z: f64, w: f64) -> (DVec3, f64) {
+        let p: DVec4 = self.matrix.mul_vec4(DVec4::new(x, y, z, w));
+        (p.truncate() - self.offset * p.w, p.w)
+    }
+
+    /// Unit normal of the near plane, away from the eye.
+    ///
+    /// It comes from the matrix's columns and not from the near corners, which lie so close
+    /// together that far from the origin their differences are mostly rounding.
+    fn forward(&self) -> Result<DVec3, FitError> {
+        let (centre, w) = self.homogeneous(0.0, 0.0, f64::from(self.depth.near()), 1.0);
+        let across = |x: f64, y: f64| {
+            let (column, column_w) = self.homogeneous(x, y, 0.0, 0.0);
+            column * w - centre * column_w
+        };
+        let normal = across(1.0, 0.0).cross(across(0.0, 1.0));
+        let length = checks::length(normal);
+        let toward = self.edge(0)?.toward + self.edge(2)?.toward;
+        let along = normal.dot(toward);
+        if !(length > 0.0 && length.is_finite()) || along == 0.0 {
+            return Err(FitError::SingularMatrix { corner: 0, w });
+        }
+        Ok(normal / if along < 0.0 { -length } else { length })
+    }
+
+    /// The view ray through one picture corner.
+    fn edge(&self, i: usize) -> Result<Edge, FitError> {
+        let (x, y) = CORNERS_XY[i];
+        let near_z = f64::from(self.depth.near());
+        let far_z = f64::from(self.depth.far());
+        let (mut near, mut near_w) = self.homogeneous(x, y, near_z, 1.0);
+        let (mut far, mut far_w) = self.homogeneous(x, y, far_z, 1.0);
+        if near_w < 0.0 {
+            (near, near_w, far, far_w) = (-near, -near_w, -far, -far_w);
+        }
+        let row = self.matrix.row(3);
+        let terms = (row.x * x).abs() + (row.y * y).abs() + (row.z * far_z).abs() + row.w.abs();
+        let infinite = far_w.abs() <= self.infinite_w * terms;
+        if near_w == 0.0 || (far_w < 0.0 && !infinite) {
+            let (corner, w) = if near_w == 0.0 { (i, near_w) } else { (i + 4, far_w) };
+            return Err(FitError::SingularMatrix { corner, w });
+        }
+        // Along the clip line p(s) = (near + s (far - near)) / (its w); this is its derivative,
+        // up to a positive factor, and stays finite where the far point does not.
+        let toward = far * near_w - near * far_w;
+        let length = checks::length(toward);
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(FitError::SingularMatrix { corner: i + 4, w: far_w });
+        }
+        let far = if infinite { None } else { Some(far / far_w) };
+        Ok(Edge { near: near / near_w, far, toward: toward / length })
+    }
+}
+
+/// One of the four edges that run from the near plane to the far one, relative to the eye.
+struct Edge {
+    near: DVec3,
+    /// `None` where the far plane is at infinity.
+    far: Option<DVec3>,
+    /// Unit direction from near to far.
+    toward: DVec3,
+}

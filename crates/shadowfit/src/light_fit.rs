@@ -1,0 +1,249 @@
+//! What every fit returns: the light's matrices and the box they store.
+//!
+//! All maps take positions relative to an origin in f64, so that they stay exact far from the
+//! world's own; [`LightFit::relative_to`] moves that origin.
+
+use glam::{DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
+
+use crate::axes::LightAxes;
+use crate::checks::{MAX_LENGTH, MIN_LENGTH};
+use crate::fits::Volume;
+use crate::settings::FitSettings;
+use crate::{CasterVolume, DepthConvention, FitError, checks};
+
+/// An orthographic view-projection of a directional light.
+///
+/// *Light space* is right-handed with x right and y up in the map, in metres; the light stands at
+/// its origin and looks along -z. Clip space has x right, y up and the depth range
+/// [`Self::depth`]. Texture space has u right, v **down** (row 0 on top, as wgpu, Direct3D, Vulkan
+/// and Metal have it; OpenGL users flip v), both 0..1 over the map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightFit {
+    /// World position that all inputs of the matrices are relative to, in metres: the eye of the
+    /// frustum, until [`Self::relative_to`] moves it.
+    pub origin: DVec3,
+    /// Unit direction of travel of the light in world axes.
+    pub direction: Vec3,
+    /// Light space from world positions relative to [`Self::origin`], in metres.
+    pub light_from_world: Mat4,
+    /// Clip space from light space.
+    pub clip_from_light: Mat4,
+    /// Clip space from world positions relative to [`Self::origin`], in metres.
+    pub clip_from_world: Mat4,
+    /// Texture space (u, v) and stored depth from world positions relative to [`Self::origin`].
+    /// The stored depth is the clip depth, and for -1..1 half of it plus one half, as a depth
+    /// attachment holds it.
+    pub uv_from_world: Mat4,
+    /// Least corner of the fitted box in light space, in metres.
+    pub box_min: Vec3,
+    /// Greatest corner of the fitted box in light space, in metres. Its z is the near plane of
+    /// the map. The box fills the map but in the XNA fit, whose far plane lies one more box depth
+    /// beyond `box_min`.
+    pub box_max: Vec3,
+    /// Size of one texel across the light, along u and v, in metres.
+    pub texel_size: Vec2,
+    /// Distance between the near and the far plane, in metres.
+    pub depth_range: f32,
+    /// Width and height of the map, in texels.
+    pub resolution: UVec2,
+    /// Depth range of the clip space.
+    pub depth: DepthConvention,
+}
+
+/// Matrices that take plain f32 world positions, for engines without a camera-relative path.
+///
+/// World coordinates rounded to f32 cost about 6e-8 of their distance from the world's origin:
+/// a centimetre at 100 km.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorldMatrices {
+    /// Light space from world space, in metres.
+    pub light_from_world: Mat4,
+    /// Clip space from light space.
+    pub clip_from_light: Mat4,
+    /// Clip space from world space.
+    pub clip_from_world: Mat4,
+}
+
+/// Share of the map's extent by which [`LightFit::covers`] lets a point lie outside: the rounding
+/// of f32 texture coordinates, so that the frustum's own corners count as covered.
+const COVER_SLACK: f64 = 1e-6;
+
+impl LightFit {
+    /// Turns a fit's decision into matrices; refuses boxes that f32 matrices cannot hold.
+    pub(crate) fn from_volume(origin: DVec3, volume: &Volume, settings: &FitSettings) -> Result<Self, FitError> {
+        let size = volume.max - volume.min;
+        for extent in [size.x, size.y, volume.depth_range] {
+            checks::within("an extent of the light's box", extent, MIN_LENGTH, MAX_LENGTH)?;
+        }
+        let centre = (volume.min + volume.max) * 0.5;
+        let light = DVec3::new(centre.x, centre.y, volume.light_z);
+        let LightAxes { x, y, z } = volume.axes;
+        let t = (-light).as_vec3();
+        let (scale, offset) = projection(size, volume, settings.depth);
+        let box_max = DVec3::new(size.x * 0.5, size.y * 0.5, volume.max.z - volume.light_z);
+        let mut fit = Self {
+            origin,
+            direction: -z,
+            light_from_world: Mat4::from_cols(
+                Vec4::new(x.x, y.x, z.x, 0.0),
+                Vec4::new(x.y, y.y, z.y, 0.0),
+                Vec4::new(x.z, y.z, z.z, 0.0),
+                Vec4::new(t.x, t.y, t.z, 1.0),
+            ),
+            clip_from_light: Mat4::from_cols(
+                Vec4::new(scale.x as f32, 0.0, 0.0, 0.0),
+                Vec4::new(0.0, scale.y as f32, 0.0, 0.0),
+                Vec4::new(0.0, 0.0, scale.z as f32, 0.0),
+                Vec4::new(0.0, 0.0, offset as f32, 1.0),
+            ),
+            clip_from_world: Mat4::IDENTITY,
+            uv_from_world: Mat4::IDENTITY,
+            box_min: (box_max - size).as_vec3(),
+            box_max: box_max.as_vec3(),
+            texel_size: Vec2::new(
+                (size.x / f64::from(settings.resolution.x)) as f32,
+                (size.y / f64::from(settings.resolution.y)) as f32,
+            ),
+            depth_range: volume.depth_range as f32,
+            resolution: settings.resolution,
+            depth: settings.depth,
+        };
+        fit.compose();
+        Ok(fit)
+    }
+
+    /// Fills the products of `light_from_world` and `clip_from_light`, in f64.
+    fn compose(&mut self) {
+        let clip = self.clip_from_light;
+        let scale = DVec3::new(f64::from(clip.x_axis.x), f64::from(clip.y_axis.y), f64::from(clip.z_axis.z));
+        let offset = clip.w_axis.truncate().as_dvec3();
+        self.clip_from_world = scaled(&self.light_from_world, scale, offset);
+        let (mut uv_scale, mut uv_offset) = (DVec3::new(0.5, -0.5, 1.0), DVec3::new(0.5, 0.5, 0.0));
+        if self.depth == DepthConvention::NegativeOneToOne {
+            (uv_scale.z, uv_offset.z) = (0.5, 0.5);
+        }
+        self.uv_from_world = scaled(&self.light_from_world, scale * uv_scale, offset * uv_scale + uv_offset);
+    }
+
+    /// The same map with its inputs relative to another world position, in metres. The
+    /// translation is made in f64 and rounded once.
+    #[must_use]
+    pub fn relative_to(&self, new_origin: DVec3) -> Self {
+        let moved = self.project(new_origin).as_vec3();
+        let mut fit = *self;
+        fit.origin = new_origin;
+        fit.light_from_world.w_axis = moved.extend(1.0);
+        fit.compose();
+        fit
+    }
+
+    /// World position of the light space's origin, in metres. A directional light has no
+    /// position; this is where the light's view matrix stands: the middle of the near plane, but
+    /// in the XNA fit the middle of the box's face away from the light.
+    pub fn light_position(&self) -> DVec3 {
+        self.origin + self.unproject(DVec3::ZERO)
+    }
+
+    /// The matrices for plain f32 world positions.
+    pub fn world_matrices(&self) -> WorldMatrices {
+        let Self { light_from_world, clip_from_light, clip_from_world, .. } = self.relative_to(DVec3::ZERO);
+        WorldMatrices { light_from_world, clip_from_light, clip_from_world }
+    }
+
+    /// Whether a world position, in metres, lies inside what the map stores, to 1e-6 of the map's
+    /// extent. In the XNA fit that includes its empty farther half.
+    pub fn covers(&self, point: DVec3) -> bool {
+        let p = self.project(point);
+        let (min, max) = self.clip_box();
+        let slack = (max - min) * COVER_SLACK;
+        p.cmpge(min - slack).all() && p.cmple(max + slack).all()
+    }
+
+    /// The volume that holds the map's casters.
+    ///
+    /// For now it is the map's own box: casters nearer to the light than its near plane are lost,
+    /// which is why [`FitSettings::caster_extension`] moves that plane.
+    pub fn caster_volume(&self) -> CasterVolume {
+        let (min, max) = self.clip_box();
+        let rows = self.light_from_world.transpose();
+        let t = self.light_from_world.w_axis.truncate().as_dvec3();
+        let axes = [rows.x_axis, rows.y_axis, rows.z_axis].map(Vec4::truncate);
+        let mut planes = [Vec4::ZERO; 6];
+        for i in 0..3 {
+            planes[2 * i] = axes[i].extend((t[i] - min[i]) as f32);
+            planes[2 * i + 1] = (-axes[i]).extend((max[i] - t[i]) as f32);
+        }
+        CasterVolume { planes }
+    }
+
+    /// Corners of the box that the map stores, in world axes relative to [`Self::origin`], in
+    /// metres: near face, then far face, each left-top, right-top, right-bottom, left-bottom of
+    /// the map.
+    pub fn corners(&self) -> [Vec3; 8] {
+        let (min, max) = self.clip_box();
+        [
+            (min.x, max.y, max.z),
+            (max.x, max.y, max.z),
+            (max.x, min.y, max.z),
+            (min.x, min.y, max.z),
+            (min.x, max.y, min.z),
+            (max.x, max.y, min.z),
+            (max.x, min.y, min.z),
+            (min.x, min.y, min.z),
+        ]
+        .map(|(x, y, z)| self.unproject(DVec3::new(x, y, z)).as_vec3())
+    }
+
+    /// Box between the near and the far plane, in light space.
+    fn clip_box(&self) -> (DVec3, DVec3) {
+        let (mut min, max) = (self.box_min.as_dvec3(), self.box_max.as_dvec3());
+        min.z = max.z - f64::from(self.depth_range);
+        (min, max)
+    }
+
+    /// Light space from an absolute world position, in f64.
+    fn project(&self, point: DVec3) -> DVec3 {
+        let m = &self.light_from_world;
+        let p = point - self.origin;
+        m.x_axis.truncate().as_dvec3() * p.x
+            + m.y_axis.truncate().as_dvec3() * p.y
+            + m.z_axis.truncate().as_dvec3() * p.z
+            + m.w_axis.truncate().as_dvec3()
+    }
+
+    /// World axes relative to the origin from light space, in f64; the rotation's transpose is
+    /// its inverse to f32 rounding.
+    fn unproject(&self, point: DVec3) -> DVec3 {
+        let m = &self.light_from_world;
+        let p = point - m.w_axis.truncate().as_dvec3();
+        DVec3::new(
+            m.x_axis.truncate().as_dvec3().dot(p),
+            m.y_axis.truncate().as_dvec3().dot(p),
+            m.z_axis.truncate().as_dvec3().dot(p),
+        )
+    }
+}
+
+/// Scale of x, y, z and offset of z from light space to clip space.
+fn projection(size: DVec3, volume: &Volume, depth: DepthConvention) -> (DVec3, f64) {
+    let near = (volume.max.z - volume.light_z) / volume.depth_range;
+    let per_metre = 1.0 / volume.depth_range;
+    // Distance behind the near plane, as a share of the range, is near - per_metre z.
+    let (scale, offset) = match depth {
+        DepthConvention::ZeroToOne => (-per_metre, near),
+        DepthConvention::Reversed => (per_metre, 1.0 - near),
+        DepthConvention::NegativeOneToOne => (-2.0 * per_metre, 2.0 * near - 1.0),
+    };
+    (DVec3::new(2.0 / size.x, 2.0 / size.y, scale), offset)
+}
+
+/// `scale · (matrix p) + offset` as one affine matrix, computed in f64.
+fn scaled(matrix: &Mat4, scale: DVec3, offset: DVec3) -> Mat4 {
+    let column = |c: Vec4| c.truncate().as_dvec3() * scale;
+    Mat4::from_cols(
+        column(matrix.x_axis).as_vec3().extend(0.0),
+        column(matrix.y_axis).as_vec3().extend(0.0),
+        column(matrix.z_axis).as_vec3().extend(0.0),
+        (column(matrix.w_axis) + offset).as_vec3().extend(1.0),
+    )
+}
