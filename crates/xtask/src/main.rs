@@ -1,2 +1,81 @@
-//! x
-fn main(){}
+//! Development tasks of the workspace: `cargo xtask run` and `cargo xtask test` are the README's two commands, the
+//! others are what a contributor and the continuous integration call. Each task first looks at what the machine has
+//! and, on Debian and its kin, installs what is missing.
+
+mod ci;
+mod gallery;
+mod machine;
+mod process;
+mod run;
+mod setup;
+mod test;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Development tasks of the shadowfit workspace.
+#[derive(Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+struct Cli {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Fly through a scene in the viewer; without a display, render its set of pictures instead.
+    Run {
+        /// Arguments of the viewer, for example a path to a .glb file; `--help` lists them.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        args: Vec<String>,
+    },
+    /// Run every test of the workspace: unit, property, golden-image, window and doc tests.
+    Test {
+        /// Arguments of the test runner, for example part of a test's name; doc tests are then left out.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        args: Vec<String>,
+    },
+    /// Run every check that comes before the tests: format, lints, docs, MSRV, `no_std`, dependencies, examples.
+    Ci,
+    /// Render the pictures of the README and the docs again.
+    Gallery,
+    /// Rewrite the golden images of the tests from what is rendered now; look at the diff before committing it.
+    Golden,
+}
+
+fn main() -> ExitCode {
+    let result = match Cli::parse().task {
+        Task::Run { args } => run::run(&args),
+        Task::Test { args } => test::test(&args),
+        Task::Ci => ci::ci(),
+        Task::Gallery => gallery::gallery(),
+        Task::Golden => test::golden(),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(process::exit_code_of(&error))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::{CommandFactory, Parser};
+
+    use super::{Cli, Task};
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn flags_after_run_reach_the_viewer() {
+        let cli = Cli::try_parse_from(["xtask", "run", "--size", "640x360", "--help"]).unwrap();
+        let Task::Run { args } = cli.task else { panic!("not the run task") };
+        assert_eq!(args, ["--size", "640x360", "--help"]);
+    }
+}

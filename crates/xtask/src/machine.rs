@@ -1,0 +1,251 @@
+//! What this machine has of the things that the tasks need: probed by looking for the things themselves, not by asking
+//! the package manager, so that a driver or a tool installed in any other way counts too.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::process;
+
+/// A thing that some task needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Part {
+    /// `libvulkan.so.1`, through which every Vulkan driver is reached.
+    VulkanLoader,
+    /// A Vulkan driver's manifest, of whatever kind.
+    VulkanDriver,
+    /// The manifest of Mesa's software driver (lavapipe); the golden images are rendered on it.
+    SoftwareDriver,
+    /// One of [`WINDOW_LIBRARIES`].
+    WindowLibrary(&'static str),
+    /// The virtual X server.
+    Xvfb,
+    /// The tool that presses keys in tests.
+    Xdotool,
+    /// `ImageMagick`'s screenshot tool, `import`.
+    Import,
+    /// `pkg-config`, and libudev's development files through it: what the gamepad feature is built with.
+    Libudev,
+}
+
+/// What was found.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Machine {
+    /// What is there.
+    pub(crate) parts: BTreeSet<Part>,
+    /// Where a window could be opened.
+    pub(crate) display: Display,
+}
+
+/// Where a window could be opened.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Display {
+    /// Nowhere.
+    #[default]
+    None,
+    /// On the X server that `DISPLAY` names.
+    X11,
+    /// On the compositor that `WAYLAND_DISPLAY` names.
+    Wayland,
+    /// On the desktop of a system that always has one.
+    Desktop,
+}
+
+/// The shared libraries that winit opens at run time for a window on X11, with the Debian package of each.
+pub(crate) const WINDOW_LIBRARIES: [(&str, &str); 5] = [
+    ("libX11.so.6", "libx11-6"),
+    ("libX11-xcb.so.1", "libx11-xcb1"),
+    ("libXcursor.so.1", "libxcursor1"),
+    ("libXi.so.6", "libxi6"),
+    ("libxkbcommon-x11.so.0", "libxkbcommon-x11-0"),
+];
+
+impl Machine {
+    /// Looks at this machine.
+    pub(crate) fn probe() -> Self {
+        let display = display_from(
+            std::env::consts::OS,
+            std::env::var("WAYLAND_DISPLAY").ok().as_deref(),
+            std::env::var("DISPLAY").ok().as_deref(),
+        );
+        if std::env::consts::OS != "linux" {
+            return Self::complete(display);
+        }
+        let libraries = LoaderCache::read();
+        let drivers = vulkan_manifests();
+        let is_there = |part: &Part| match *part {
+            Part::VulkanLoader => libraries.has("libvulkan.so.1"),
+            Part::VulkanDriver => !drivers.is_empty(),
+            Part::SoftwareDriver => drivers.iter().any(|name| is_software_driver(name)),
+            Part::WindowLibrary(name) => libraries.has(name),
+            Part::Xvfb => in_path("Xvfb"),
+            Part::Xdotool => in_path("xdotool"),
+            Part::Import => in_path("import"),
+            Part::Libudev => process::succeeds(Command::new("pkg-config").args(["--exists", "libudev"])),
+        };
+        Self { parts: all_parts().filter(is_there).collect(), display }
+    }
+
+    /// A machine that lacks nothing: what systems other than Linux, with drivers and windows of their own, count as.
+    pub(crate) fn complete(display: Display) -> Self {
+        Self { parts: all_parts().collect(), display }
+    }
+
+    /// Whether `part` is there.
+    pub(crate) fn has(&self, part: Part) -> bool {
+        self.parts.contains(&part)
+    }
+
+    /// Whether anything can be rendered at all.
+    pub(crate) fn can_render(&self) -> bool {
+        self.has(Part::VulkanLoader) && self.has(Part::VulkanDriver)
+    }
+
+    /// Whether the window test has its tools.
+    pub(crate) fn can_test_window(&self) -> bool {
+        let mut window_tools = [Part::Xvfb, Part::Xdotool, Part::Import].into_iter().chain(window_libraries());
+        self.can_render() && window_tools.all(|part| self.has(part))
+    }
+}
+
+fn window_libraries() -> impl Iterator<Item = Part> {
+    WINDOW_LIBRARIES.iter().map(|&(library, _)| Part::WindowLibrary(library))
+}
+
+fn all_parts() -> impl Iterator<Item = Part> {
+    [
+        Part::VulkanLoader,
+        Part::VulkanDriver,
+        Part::SoftwareDriver,
+        Part::Xvfb,
+        Part::Xdotool,
+        Part::Import,
+        Part::Libudev,
+    ]
+    .into_iter()
+    .chain(window_libraries())
+}
+
+/// Where a window could be opened, from the system's name and the two environment variables (empty counts as unset).
+fn display_from(os: &str, wayland: Option<&str>, x11: Option<&str>) -> Display {
+    let set = |value: Option<&str>| value.is_some_and(|text| !text.is_empty());
+    if os == "macos" || os == "windows" {
+        Display::Desktop
+    } else if set(wayland) {
+        Display::Wayland
+    } else if set(x11) {
+        Display::X11
+    } else {
+        Display::None
+    }
+}
+
+/// The shared libraries that the dynamic loader finds.
+struct LoaderCache {
+    listing: String,
+}
+
+impl LoaderCache {
+    fn read() -> Self {
+        // Not every user has /sbin in the path.
+        let listing = ["ldconfig", "/sbin/ldconfig", "/usr/sbin/ldconfig"]
+            .iter()
+            .find_map(|program| process::output_of(Command::new(program).arg("-p")));
+        Self { listing: listing.unwrap_or_default() }
+    }
+
+    fn has(&self, soname: &str) -> bool {
+        listed(&self.listing, soname) || {
+            let extra = std::env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
+            std::env::split_paths(&extra)
+                .chain(["/usr/lib", "/usr/lib64", "/usr/local/lib"].map(PathBuf::from))
+                .any(|folder| folder.join(soname).exists())
+        }
+    }
+}
+
+/// Whether the listing of `ldconfig -p` names `soname`, as the whole first word of a line.
+fn listed(listing: &str, soname: &str) -> bool {
+    listing.lines().any(|line| line.split_whitespace().next() == Some(soname))
+}
+
+/// The file names of the Vulkan drivers' manifests that the loader would read.
+fn vulkan_manifests() -> Vec<String> {
+    for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
+        if let Some(files) = std::env::var_os(variable).filter(|value| !value.is_empty()) {
+            return std::env::split_paths(&files).filter(|file| file.exists()).filter_map(|f| name_of(&f)).collect();
+        }
+    }
+    // Khronos' "Vulkan-Loader: driver interface", section "Driver discovery on Linux": the system's folders of it.
+    ["/etc/vulkan/icd.d", "/usr/local/etc/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "/usr/share/vulkan/icd.d"]
+        .iter()
+        .filter_map(|folder| std::fs::read_dir(folder).ok())
+        .flat_map(Iterator::flatten)
+        .filter_map(|entry| name_of(&entry.path()))
+        .filter(|name| Path::new(name).extension().is_some_and(|extension| extension == "json"))
+        .collect()
+}
+
+fn name_of(path: &Path) -> Option<String> {
+    path.file_name().map(|name| name.to_string_lossy().into_owned())
+}
+
+/// Whether a driver manifest's file name is that of Mesa's lavapipe, "lvp" for short.
+fn is_software_driver(manifest: &str) -> bool {
+    manifest.starts_with("lvp_icd")
+}
+
+fn in_path(program: &str) -> bool {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&path).any(|folder| folder.join(program).is_file())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_display_is_found_through_its_variable_and_an_empty_one_is_none() {
+        let cases = [
+            ("linux", None, None, Display::None),
+            ("linux", None, Some(""), Display::None),
+            ("linux", Some(""), Some(":0"), Display::X11),
+            ("linux", Some("wayland-0"), Some(":0"), Display::Wayland),
+            ("freebsd", None, Some(":0"), Display::X11),
+            ("macos", None, None, Display::Desktop),
+            ("windows", None, None, Display::Desktop),
+        ];
+        for (os, wayland, x11, expected) in cases {
+            assert_eq!(display_from(os, wayland, x11), expected, "{os} {wayland:?} {x11:?}");
+        }
+    }
+
+    #[test]
+    fn a_library_is_listed_by_its_whole_name_only() {
+        let listing = "312 libs found in cache `/etc/ld.so.cache'\n\
+                       \tlibvulkan.so.1 (libc6,x86-64) => /lib/x86_64-linux-gnu/libvulkan.so.1\n\
+                       \tlibXi.so.6 (libc6,x86-64) => /lib/x86_64-linux-gnu/libXi.so.6\n";
+        assert!(listed(listing, "libvulkan.so.1"));
+        assert!(!listed(listing, "libvulkan.so"));
+        assert!(!listed(listing, "libX11.so.6"));
+        assert!(!listed("", "libXi.so.6"));
+    }
+
+    #[test]
+    fn only_lavapipe_is_the_software_driver() {
+        assert!(is_software_driver("lvp_icd.x86_64.json"));
+        assert!(is_software_driver("lvp_icd.json"));
+        assert!(!is_software_driver("radeon_icd.x86_64.json"));
+        assert!(!is_software_driver("nvidia_icd.json"));
+    }
+
+    #[test]
+    fn a_window_test_needs_every_tool_and_library() {
+        assert!(Machine::complete(Display::None).can_test_window());
+        for part in all_parts().filter(|part| !matches!(part, Part::SoftwareDriver | Part::Libudev)) {
+            let mut machine = Machine::complete(Display::None);
+            machine.parts.remove(&part);
+            assert!(!machine.can_test_window(), "{part:?}");
+        }
+    }
+}

@@ -1,0 +1,219 @@
+//! Installs what a task needs and the machine lacks: at once on Debian and its kin as root; elsewhere it says what is
+//! missing and goes on, because what is missing may turn out not to matter.
+
+use std::process::Command;
+
+use anyhow::{Result, bail};
+
+use crate::machine::{Display, Machine, Part, WINDOW_LIBRARIES};
+use crate::process;
+
+/// What the machine is made ready for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// Running the viewer: some Vulkan driver, gamepads, and a window where there is a display.
+    Run,
+    /// Running the tests: as above, the software driver of the golden images, and the tools of the window test.
+    Test,
+}
+
+/// The environment variable with which an automatic run says that nothing may be skipped for want of a GPU.
+pub(crate) const REQUIRE_GPU: &str = "SHADOWFIT_REQUIRE_GPU";
+
+/// Whether [`REQUIRE_GPU`] is set.
+pub(crate) fn gpu_is_required() -> bool {
+    std::env::var(REQUIRE_GPU).is_ok_and(|value| !value.is_empty() && value != "0")
+}
+
+/// Makes the machine ready for `purpose` as far as it can, and says what is there afterwards.
+///
+/// # Errors
+/// Only where [`REQUIRE_GPU`] is set and something is still missing: there a gap must not pass unseen.
+pub(crate) fn prepare(purpose: Purpose) -> Result<Machine> {
+    let machine = Machine::probe();
+    let packages = missing_packages(purpose, &machine);
+    if packages.is_empty() {
+        return Ok(machine);
+    }
+    let release = std::fs::read_to_string("/etc/os-release").unwrap_or_default();
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    match remedy(is_debian_like(&release), effective_uid(&status) == Some(0), &packages) {
+        Remedy::Install => install(&packages),
+        Remedy::Say(text) => eprintln!("{text}"),
+    }
+    let machine = Machine::probe();
+    let still_missing = missing_packages(purpose, &machine);
+    if gpu_is_required() && !still_missing.is_empty() {
+        bail!("still missing after the installation: {} ({REQUIRE_GPU} is set)", still_missing.join(" "));
+    }
+    Ok(machine)
+}
+
+/// The root package's features that can be built here. Every task uses these, so that all share one build.
+pub(crate) fn features(machine: &Machine) -> &'static [&'static str] {
+    if machine.has(Part::Libudev) {
+        return &["--features", "gamepad"];
+    }
+    eprintln!("no gamepad support in this build: libudev's development files and pkg-config are missing");
+    &[]
+}
+
+/// The Debian packages that bring what `purpose` needs and `machine` lacks, in a fixed order.
+fn missing_packages(purpose: Purpose, machine: &Machine) -> Vec<&'static str> {
+    let testing = purpose == Purpose::Test;
+    // A machine with a driver of its own keeps it for flying; the golden images come from the software driver alone.
+    let driver = if testing { Part::SoftwareDriver } else { Part::VulkanDriver };
+    let mut needs = vec![(Part::VulkanLoader, "libvulkan1"), (driver, "mesa-vulkan-drivers")];
+    if testing || machine.display == Display::X11 {
+        needs.extend(WINDOW_LIBRARIES.map(|(library, package)| (Part::WindowLibrary(library), package)));
+    }
+    if testing {
+        needs.extend([(Part::Xvfb, "xvfb"), (Part::Xdotool, "xdotool"), (Part::Import, "imagemagick")]);
+    }
+    needs.extend([(Part::Libudev, "libudev-dev"), (Part::Libudev, "pkg-config")]);
+    needs.into_iter().filter(|&(part, _)| !machine.has(part)).map(|(_, package)| package).collect()
+}
+
+#[derive(Debug, PartialEq, Eq)]
+enum Remedy {
+    /// Install the packages now.
+    Install,
+    /// Say this.
+    Say(String),
+}
+
+/// What to do about missing `packages`, named as Debian names them.
+fn remedy(debian_like: bool, is_root: bool, packages: &[&str]) -> Remedy {
+    let names = packages.join(" ");
+    match (debian_like, is_root) {
+        (true, true) => Remedy::Install,
+        (true, false) => Remedy::Say(format!("sudo apt-get install --no-install-recommends {names}")),
+        (false, _) => Remedy::Say(format!("missing here, as Debian names it (other systems differ): {names}")),
+    }
+}
+
+/// Installs `packages`; a failure is shown and not final, since the task may do without.
+fn install(packages: &[&str]) {
+    let apt = |arguments: &[&str]| {
+        process::run(
+            Command::new("apt-get").env("DEBIAN_FRONTEND", "noninteractive").args(["-q", "-y"]).args(arguments),
+        )
+    };
+    let mut arguments = vec!["install", "--no-install-recommends"];
+    arguments.extend_from_slice(packages);
+    // A list of packages that is old may still do where the network is away, so the second step is tried regardless.
+    for result in [apt(&["update"]), apt(&arguments)] {
+        if let Err(error) = result {
+            eprintln!("{error:#}; going on without");
+        }
+    }
+}
+
+/// Whether the text of `/etc/os-release` is that of Debian or of a system derived from it.
+fn is_debian_like(os_release: &str) -> bool {
+    os_release
+        .lines()
+        .filter_map(|line| line.split_once('='))
+        .filter(|(key, _)| matches!(key.trim(), "ID" | "ID_LIKE"))
+        .flat_map(|(_, value)| value.trim().trim_matches(['"', '\'']).split_whitespace())
+        .any(|id| matches!(id, "debian" | "ubuntu"))
+}
+
+/// The effective user id from the text of `/proc/self/status`, where the line holds real, effective, saved and file
+/// system id in this order.
+fn effective_uid(status: &str) -> Option<u32> {
+    let line = status.lines().find_map(|line| line.strip_prefix("Uid:"))?;
+    line.split_whitespace().nth(1)?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bare_machine_gets_a_driver_and_gamepads_to_run_headless() {
+        let packages = missing_packages(Purpose::Run, &Machine::default());
+        assert_eq!(packages, ["libvulkan1", "mesa-vulkan-drivers", "libudev-dev", "pkg-config"]);
+    }
+
+    #[test]
+    fn a_bare_machine_with_a_display_gets_the_window_libraries_too() {
+        let machine = Machine { display: Display::X11, ..Machine::default() };
+        let packages = missing_packages(Purpose::Run, &machine);
+        for (_, package) in WINDOW_LIBRARIES {
+            assert!(packages.contains(&package), "{package} is not in {packages:?}");
+        }
+        assert!(!packages.contains(&"xvfb"));
+    }
+
+    #[test]
+    fn a_bare_machine_gets_the_window_test_tools_to_test() {
+        let packages = missing_packages(Purpose::Test, &Machine::default());
+        for package in ["libvulkan1", "mesa-vulkan-drivers", "libxkbcommon-x11-0", "xvfb", "xdotool", "imagemagick"] {
+            assert!(packages.contains(&package), "{package} is not in {packages:?}");
+        }
+    }
+
+    #[test]
+    fn a_driver_that_is_there_is_kept_for_running_and_the_software_one_is_added_for_testing() {
+        let mut machine = Machine::complete(Display::X11);
+        machine.parts.remove(&Part::SoftwareDriver);
+        assert!(missing_packages(Purpose::Run, &machine).is_empty());
+        assert_eq!(missing_packages(Purpose::Test, &machine), ["mesa-vulkan-drivers"]);
+    }
+
+    #[test]
+    fn a_complete_machine_gets_nothing() {
+        for display in [Display::None, Display::X11, Display::Wayland, Display::Desktop] {
+            for purpose in [Purpose::Run, Purpose::Test] {
+                assert!(missing_packages(purpose, &Machine::complete(display)).is_empty());
+            }
+        }
+    }
+
+    #[test]
+    fn one_missing_library_brings_one_package() {
+        let mut machine = Machine::complete(Display::X11);
+        machine.parts.remove(&Part::WindowLibrary("libXi.so.6"));
+        assert_eq!(missing_packages(Purpose::Run, &machine), ["libxi6"]);
+    }
+
+    #[test]
+    fn only_root_on_debian_installs_and_others_get_one_line() {
+        let packages = ["libvulkan1", "xvfb"];
+        assert_eq!(remedy(true, true, &packages), Remedy::Install);
+        assert_eq!(
+            remedy(true, false, &packages),
+            Remedy::Say("sudo apt-get install --no-install-recommends libvulkan1 xvfb".into())
+        );
+        for is_root in [false, true] {
+            let Remedy::Say(text) = remedy(false, is_root, &packages) else { panic!("installed off Debian") };
+            assert!(text.ends_with("libvulkan1 xvfb") && !text.contains('\n'));
+        }
+    }
+
+    #[test]
+    fn debian_and_its_kin_are_told_from_others() {
+        let cases = [
+            ("PRETTY_NAME=\"Debian GNU/Linux 12 (bookworm)\"\nID=debian\n", true),
+            ("ID=ubuntu\nID_LIKE=debian\n", true),
+            ("ID=linuxmint\nID_LIKE=\"ubuntu debian\"\n", true),
+            ("ID=\"pop\"\nID_LIKE='ubuntu debian'\n", true),
+            ("NAME=\"Arch, not debian\"\nID=arch\n", false),
+            ("ID=fedora\nVERSION_ID=40\n", false),
+            ("ID=debianish\n", false),
+            ("", false),
+        ];
+        for (text, expected) in cases {
+            assert_eq!(is_debian_like(text), expected, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn the_effective_user_id_is_the_second_number() {
+        assert_eq!(effective_uid("Name:\tx\nUid:\t1000\t0\t1000\t1000\nGid:\t7\n"), Some(0));
+        assert_eq!(effective_uid("Uid:\t1000\t1000\t1000\t1000\n"), Some(1000));
+        assert_eq!(effective_uid("Uid:\n"), None);
+        assert_eq!(effective_uid(""), None);
+    }
+}
