@@ -1,1 +1,27 @@
-//! Placeholder.
+//! The renderer of the shadowfit samples: uploads a CPU scene, draws its casters into a
+//! [`shadowfit_wgpu::ShadowMap`], shades it under a sun and a sky, and reads pictures back. It
+//! needs no window; the viewer, the tests and the report tool all draw with it.
+//!
+//! Everything on the GPU is relative to the camera's eye, so that pictures stay steady far from
+//! the world's origin. Right-handed, y up, metres; the camera's depth is reversed (near 1, far 0).
+
+pub mod camera;
+mod gpu;
+mod lines;
+mod material;
+mod picture;
+mod pipelines;
+mod probe;
+mod renderer;
+mod scene;
+pub mod shaders;
+mod uniform;
+
+pub use camera::{FlyCamera, FlyInput};
+pub use gpu::{AdapterChoice, Gpu, GpuError};
+pub use lines::{Line, box_lines};
+pub use picture::Picture;
+pub use probe::{Probe, ProbePixel};
+pub use renderer::{Frame, Inset, Renderer, Statistics};
+pub use scene::GpuScene;
+pub use uniform::{Atmosphere, FrameUniform, InsetUniform, InstanceData, LineVertex, MaterialUniform};

@@ -1,0 +1,117 @@
+//! Opening a GPU: any adapter for people, the software adapter for pictures that must be the same
+//! everywhere.
+
+use core::fmt;
+
+/// Which adapter to open.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AdapterChoice {
+    /// The fastest one.
+    #[default]
+    Any,
+    /// A software rasteriser (Mesa lavapipe, WARP), whatever GPU is present.
+    Software,
+}
+
+/// An opened device with all that is needed to draw.
+#[derive(Clone, Debug)]
+pub struct Gpu {
+    /// Adapter that the device belongs to.
+    pub adapter: wgpu::Adapter,
+    /// Device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+}
+
+/// Why no GPU could be opened, with what to do about it.
+#[derive(Debug)]
+pub enum GpuError {
+    /// No adapter, hardware or software.
+    NoAdapter(String),
+    /// No software adapter.
+    NoSoftwareAdapter,
+    /// The adapter refused to open a device.
+    Device(wgpu::RequestDeviceError),
+}
+
+impl fmt::Display for GpuError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let hint = "On Debian or Ubuntu `apt-get install mesa-vulkan-drivers libvulkan1` brings a software one.";
+        match self {
+            Self::NoAdapter(reason) => write!(f, "no graphics adapter was found ({reason}). {hint}"),
+            Self::NoSoftwareAdapter => write!(f, "no software graphics adapter was found. {hint}"),
+            Self::Device(error) => write!(f, "the graphics adapter could not be opened: {error}"),
+        }
+    }
+}
+
+impl core::error::Error for GpuError {}
+
+impl Gpu {
+    /// Opens an adapter without a window.
+    ///
+    /// # Errors
+    ///
+    /// [`GpuError`] if there is no such adapter or it cannot be opened.
+    pub async fn headless(choice: AdapterChoice) -> Result<Self, GpuError> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let adapter = match choice {
+            AdapterChoice::Any => any_adapter(&instance, None).await?,
+            AdapterChoice::Software => instance
+                .enumerate_adapters(wgpu::Backends::all())
+                .await
+                .into_iter()
+                .find(|adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu)
+                .ok_or(GpuError::NoSoftwareAdapter)?,
+        };
+        Self::open(adapter).await
+    }
+
+    /// Opens an adapter that can draw to `surface`.
+    ///
+    /// # Errors
+    ///
+    /// [`GpuError`] if there is no such adapter or it cannot be opened.
+    pub async fn for_surface(instance: &wgpu::Instance, surface: &wgpu::Surface<'_>) -> Result<Self, GpuError> {
+        Self::open(any_adapter(instance, Some(surface)).await?).await
+    }
+
+    async fn open(adapter: wgpu::Adapter) -> Result<Self, GpuError> {
+        let wanted = wgpu::Features::TIMESTAMP_QUERY;
+        let (device, queue) = adapter
+            .request_device(&wgpu::DeviceDescriptor {
+                label: Some("shadowfit"),
+                required_features: adapter.features() & wanted,
+                required_limits: wgpu::Limits::default().using_resolution(adapter.limits()),
+                ..Default::default()
+            })
+            .await
+            .map_err(GpuError::Device)?;
+        Ok(Self { adapter, device, queue })
+    }
+
+    /// Name of the adapter, for titles and reports.
+    pub fn name(&self) -> String {
+        self.adapter.get_info().name
+    }
+
+    /// Whether pictures are drawn by the processor.
+    pub fn is_software(&self) -> bool {
+        self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
+    }
+}
+
+async fn any_adapter(
+    instance: &wgpu::Instance,
+    surface: Option<&wgpu::Surface<'_>>,
+) -> Result<wgpu::Adapter, GpuError> {
+    instance
+        .request_adapter(&wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            compatible_surface: surface,
+            ..Default::default()
+        })
+        .await
+        .map_err(|error| GpuError::NoAdapter(error.to_string()))
+}

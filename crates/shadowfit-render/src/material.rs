@@ -1,0 +1,264 @@
+//! Materials on the GPU: uniforms, textures with all their levels, samplers, one bind group each.
+
+use std::collections::HashMap;
+
+use shadowfit_scene::{Image, Material, Scene, Texture, Wrap};
+
+use crate::Gpu;
+use crate::shaders;
+use crate::uniform::MaterialUniform;
+
+/// Anisotropy of the texture filter: floors seen at a grazing angle stay sharp.
+const ANISOTROPY: u16 = 8;
+
+/// Layout of a material's bind group, the same in the shaded and the shadow pass.
+pub(crate) fn material_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let entry =
+        |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
+    let texture = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: true },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+    let uniform = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("material"),
+        entries: &[entry(0, uniform), entry(1, texture), entry(2, sampler), entry(3, texture), entry(4, sampler)],
+    })
+}
+
+/// Makes the bind group of every material of a scene.
+pub(crate) fn upload_materials(gpu: &Gpu, layout: &wgpu::BindGroupLayout, scene: &Scene) -> Vec<wgpu::BindGroup> {
+    let mut uploader = Uploader::new(gpu, scene);
+    scene.materials.iter().map(|material| uploader.material(layout, material)).collect()
+}
+
+struct Uploader<'a> {
+    gpu: &'a Gpu,
+    scene: &'a Scene,
+    levels: LevelMaker,
+    views: HashMap<(usize, bool), wgpu::TextureView>,
+    white: wgpu::TextureView,
+}
+
+impl<'a> Uploader<'a> {
+    fn new(gpu: &'a Gpu, scene: &'a Scene) -> Self {
+        let levels = LevelMaker::new(&gpu.device);
+        let pixel = Image { name: String::new(), width: 1, height: 1, rgba: vec![255; 4] };
+        let white = upload_image(gpu, &levels, &pixel, false);
+        Self { gpu, scene, levels, views: HashMap::new(), white }
+    }
+
+    /// The view of a texture's image; white where there is none.
+    fn view(&mut self, texture: Option<Texture>, srgb: bool) -> wgpu::TextureView {
+        let Some((index, image)) = texture.and_then(|t| Some((t.image, self.scene.images.get(t.image)?))) else {
+            return self.white.clone();
+        };
+        let (gpu, levels) = (self.gpu, &self.levels);
+        self.views.entry((index, srgb)).or_insert_with(|| upload_image(gpu, levels, image, srgb)).clone()
+    }
+
+    fn material(&mut self, layout: &wgpu::BindGroupLayout, material: &Material) -> wgpu::BindGroup {
+        let device = &self.gpu.device;
+        let uniform = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("material"),
+            size: size_of::<MaterialUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        self.gpu.queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&MaterialUniform::new(material)));
+        let base = self.view(material.base_color_texture, true);
+        let normal = self.view(material.normal_texture, false);
+        let samplers = [material.base_color_texture, material.normal_texture].map(|t| sampler(device, t));
+        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(&material.name),
+            layout,
+            entries: &[
+                entry(0, uniform.as_entire_binding()),
+                entry(1, wgpu::BindingResource::TextureView(&base)),
+                entry(2, wgpu::BindingResource::Sampler(&samplers[0])),
+                entry(3, wgpu::BindingResource::TextureView(&normal)),
+                entry(4, wgpu::BindingResource::Sampler(&samplers[1])),
+            ],
+        })
+    }
+}
+
+fn sampler(device: &wgpu::Device, texture: Option<Texture>) -> wgpu::Sampler {
+    let wrap = texture.map_or([Wrap::Repeat; 2], |t| t.wrap).map(|wrap| match wrap {
+        Wrap::Repeat => wgpu::AddressMode::Repeat,
+        Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
+        Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
+    });
+    let nearest = texture.is_some_and(|t| t.nearest);
+    // Anisotropy asks for linear filters throughout.
+    device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("material"),
+        address_mode_u: wrap[0],
+        address_mode_v: wrap[1],
+        mag_filter: if nearest { wgpu::FilterMode::Nearest } else { wgpu::FilterMode::Linear },
+        min_filter: wgpu::FilterMode::Linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        anisotropy_clamp: if nearest { 1 } else { ANISOTROPY },
+        ..Default::default()
+    })
+}
+
+/// Uploads an image with all its levels. Images larger than the device allows keep only what fits
+/// after halving.
+fn upload_image(gpu: &Gpu, levels: &LevelMaker, image: &Image, srgb: bool) -> wgpu::TextureView {
+    let image = &halved_to_fit(image, gpu.device.limits().max_texture_dimension_2d);
+    let format = if srgb { wgpu::TextureFormat::Rgba8UnormSrgb } else { wgpu::TextureFormat::Rgba8Unorm };
+    let size = wgpu::Extent3d { width: image.width, height: image.height, depth_or_array_layers: 1 };
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(&image.name),
+        size,
+        mip_level_count: size.max_mips(wgpu::TextureDimension::D2),
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_DST
+            | wgpu::TextureUsages::RENDER_ATTACHMENT,
+        view_formats: &[],
+    });
+    gpu.queue.write_texture(
+        texture.as_image_copy(),
+        &image.rgba,
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(image.width * 4), rows_per_image: None },
+        size,
+    );
+    levels.fill(gpu, &texture);
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+fn halved_to_fit(image: &Image, limit: u32) -> Image {
+    let mut image = image.clone();
+    while image.width > limit || image.height > limit {
+        let (width, height) = (image.width.div_ceil(2), image.height.div_ceil(2));
+        let rgba = (0..height)
+            .flat_map(|y| (0..width).map(move |x| (x, y)))
+            .flat_map(|(x, y)| {
+                let at = ((y * 2 * image.width + x * 2) * 4) as usize;
+                [image.rgba[at], image.rgba[at + 1], image.rgba[at + 2], image.rgba[at + 3]]
+            })
+            .collect();
+        image = Image { name: image.name, width, height, rgba };
+    }
+    image
+}
+
+/// Draws each level of a texture from the one above it.
+struct LevelMaker {
+    sampler: wgpu::Sampler,
+    pipelines: [(wgpu::TextureFormat, wgpu::RenderPipeline); 2],
+}
+
+impl LevelMaker {
+    fn new(device: &wgpu::Device) -> Self {
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("texture levels"),
+            source: wgpu::ShaderSource::Wgsl(shaders::mip().into()),
+        });
+        let pipeline = |format: wgpu::TextureFormat| {
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some("texture levels"),
+                layout: None,
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some("vs_mip"),
+                    compilation_options: Default::default(),
+                    buffers: &[],
+                },
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some("fs_mip"),
+                    compilation_options: Default::default(),
+                    targets: &[Some(format.into())],
+                }),
+                primitive: wgpu::PrimitiveState::default(),
+                depth_stencil: None,
+                multisample: wgpu::MultisampleState::default(),
+                multiview_mask: None,
+                cache: None,
+            })
+        };
+        let formats = [wgpu::TextureFormat::Rgba8UnormSrgb, wgpu::TextureFormat::Rgba8Unorm];
+        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        Self { sampler, pipelines: formats.map(|format| (format, pipeline(format))) }
+    }
+
+    fn fill(&self, gpu: &Gpu, texture: &wgpu::Texture) {
+        let Some((_, pipeline)) = self.pipelines.iter().find(|(format, _)| *format == texture.format()) else {
+            return;
+        };
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        for level in 1..texture.mip_level_count() {
+            self.draw_level(gpu, pipeline, texture, level, &mut encoder);
+        }
+        gpu.queue.submit([encoder.finish()]);
+    }
+
+    fn draw_level(
+        &self,
+        gpu: &Gpu,
+        pipeline: &wgpu::RenderPipeline,
+        texture: &wgpu::Texture,
+        level: u32,
+        encoder: &mut wgpu::CommandEncoder,
+    ) {
+        let view = |base_mip_level| {
+            texture.create_view(&wgpu::TextureViewDescriptor {
+                base_mip_level,
+                mip_level_count: Some(1),
+                ..Default::default()
+            })
+        };
+        let source = view(level - 1);
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&source) },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&self.sampler) },
+            ],
+        });
+        let target = view(level);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("texture level"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &target,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_image_above_the_limit_is_halved_until_it_fits() {
+        let image = Image { name: String::new(), width: 5, height: 2, rgba: (0..40).collect() };
+        let fitted = halved_to_fit(&image, 3);
+        assert_eq!((fitted.width, fitted.height, fitted.rgba.len()), (3, 1, 12));
+        assert_eq!(fitted.rgba[4..8], [8, 9, 10, 11]);
+    }
+}

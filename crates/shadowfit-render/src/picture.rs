@@ -1,0 +1,97 @@
+//! A picture to draw into: colour (resolved to one sample), depth, and the way back to the
+//! processor.
+
+use crate::Gpu;
+
+/// Colour format of pictures, as the renderer writes it.
+pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+/// The same bytes without the sRGB decoding, for user interfaces that blend encoded colours.
+pub(crate) const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// Depth format of the camera.
+pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// Textures of one picture.
+#[derive(Debug)]
+pub struct Picture {
+    /// Width and height, in pixels.
+    pub size: [u32; 2],
+    color: wgpu::Texture,
+    pub(crate) color_view: wgpu::TextureView,
+    pub(crate) multisampled: Option<wgpu::TextureView>,
+    pub(crate) depth_view: wgpu::TextureView,
+}
+
+impl Picture {
+    /// Makes a picture of at least 1×1 pixels with `samples` per pixel (1 or 4).
+    pub fn new(device: &wgpu::Device, size: [u32; 2], samples: u32) -> Self {
+        let limit = device.limits().max_texture_dimension_2d;
+        let size = size.map(|side| side.clamp(1, limit));
+        let color = attachment(device, size, COLOR_FORMAT, 1);
+        let multisampled =
+            (samples > 1).then(|| attachment(device, size, COLOR_FORMAT, samples).create_view(&Default::default()));
+        let depth_view = attachment(device, size, DEPTH_FORMAT, samples).create_view(&Default::default());
+        let color_view = color.create_view(&Default::default());
+        Self { size, color, color_view, multisampled, depth_view }
+    }
+
+    /// A view of the encoded bytes, for user interfaces.
+    pub fn encoded_view(&self) -> wgpu::TextureView {
+        self.color.create_view(&wgpu::TextureViewDescriptor { format: Some(ENCODED_FORMAT), ..Default::default() })
+    }
+
+    /// Waits for the picture and returns its sRGB pixels, four bytes each, rows from the top.
+    pub fn read(&self, gpu: &Gpu) -> Vec<u8> {
+        read_texture(gpu, &self.color, self.size, 4)
+    }
+}
+
+fn attachment(device: &wgpu::Device, size: [u32; 2], format: wgpu::TextureFormat, samples: u32) -> wgpu::Texture {
+    let readable = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("picture"),
+        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: samples,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+            | if samples == 1 { readable } else { wgpu::TextureUsages::empty() },
+        view_formats: if format == COLOR_FORMAT { &[ENCODED_FORMAT] } else { &[] },
+    })
+}
+
+/// Copies a texture to the processor, without the row padding; waits for the GPU.
+pub(crate) fn read_texture(gpu: &Gpu, texture: &wgpu::Texture, size: [u32; 2], bytes_per_pixel: u32) -> Vec<u8> {
+    let row = size[0] * bytes_per_pixel;
+    let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("read back"),
+        size: u64::from(padded) * u64::from(size[1]),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
+        },
+        wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+    );
+    gpu.queue.submit([encoder.finish()]);
+    buffer.slice(..).map_async(wgpu::MapMode::Read, |_| {});
+    // A lost device leaves the buffer unmapped: the picture is then black, and the device's own
+    // callback has told why.
+    let waited = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+    let mut pixels = Vec::with_capacity((row * size[1]) as usize);
+    match (waited, buffer.slice(..).get_mapped_range()) {
+        (Ok(_), Ok(mapped)) => {
+            for line in mapped.chunks(padded as usize) {
+                pixels.extend_from_slice(&line[..row as usize]);
+            }
+        }
+        _ => pixels.resize((row * size[1]) as usize, 0),
+    }
+    pixels
+}

@@ -1,0 +1,355 @@
+//! One frame: shadow pass, shaded pass, sky, lines and inset.
+
+use glam::{DVec3, Mat4};
+use shadowfit::settings::BiasSettings;
+use shadowfit::{LightFit, PerspectiveCamera};
+use shadowfit_wgpu::{ShadowMap, ShadowMapDescriptor, ShadowMapError};
+
+use crate::picture::Picture;
+use crate::pipelines::{Layouts, Pipelines};
+use crate::probe::{Probe, ProbeTargets};
+use crate::scene::{Draw, GpuScene, Part, in_frustum, in_volume};
+use crate::uniform::{Atmosphere, FrameUniform, InsetUniform, LineVertex};
+use crate::{Gpu, Line};
+
+/// What a frame shows.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<'a> {
+    /// Eye and lens that the picture is seen through.
+    pub camera: &'a PerspectiveCamera,
+    /// Unit direction of travel of the light.
+    pub direction: glam::Vec3,
+    /// Fits of the shadow maps, nearest first; empty where there is nothing to fit.
+    pub fits: &'a [LightFit],
+    /// Biases of the look-up.
+    pub bias: &'a BiasSettings,
+    /// Whether shadows are drawn.
+    pub shadows: bool,
+    /// Colours of sun and sky.
+    pub atmosphere: &'a Atmosphere,
+    /// Lines drawn over the scene.
+    pub lines: &'a [Line],
+    /// Shadow map shown in a corner.
+    pub inset: Option<Inset>,
+}
+
+/// Where and how the shadow map is shown in the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inset {
+    /// Left, top, width and height, in pixels.
+    pub rectangle: [f32; 4],
+    /// Stored depths shown as black and white.
+    pub depth_range: [f32; 2],
+    /// Which map.
+    pub map: u32,
+}
+
+/// What a frame drew.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Statistics {
+    /// Draw calls of the shadow pass.
+    pub shadow_draws: u32,
+    /// Triangles of the shadow pass.
+    pub shadow_triangles: u64,
+    /// Draw calls of the shaded pass.
+    pub scene_draws: u32,
+    /// Triangles of the shaded pass.
+    pub scene_triangles: u64,
+}
+
+/// Draws scenes; owns the shadow map and every pipeline.
+#[derive(Debug)]
+pub struct Renderer {
+    layouts: Layouts,
+    pipelines: Pipelines,
+    shadow_map: ShadowMap,
+    samples: u32,
+    frame_uniform: wgpu::Buffer,
+    frame_group: wgpu::BindGroup,
+    inset_uniform: wgpu::Buffer,
+    inset_group: wgpu::BindGroup,
+    line_buffer: wgpu::Buffer,
+}
+
+/// The draws of a frame's passes.
+struct Plan {
+    shadow: Vec<Vec<Draw>>,
+    opaque: Vec<Draw>,
+    blended: Vec<Draw>,
+}
+
+impl Renderer {
+    /// A renderer for pictures of `samples` per pixel (1 or 4).
+    ///
+    /// # Errors
+    ///
+    /// [`ShadowMapError`] if the shadow map cannot be made.
+    pub fn new(gpu: &Gpu, shadow_map: &ShadowMapDescriptor, samples: u32) -> Result<Self, ShadowMapError> {
+        let device = &gpu.device;
+        let layouts = Layouts::new(device);
+        let shadow_map = ShadowMap::new(device, shadow_map)?;
+        let pipelines = Pipelines::new(device, &layouts, &shadow_map, samples);
+        let (frame_uniform, frame_group) = uniform(device, &layouts.frame, size_of::<FrameUniform>());
+        let (inset_uniform, inset_group) = uniform(device, &layouts.inset, size_of::<InsetUniform>());
+        let line_buffer = line_buffer(device, 64);
+        Ok(Self {
+            layouts,
+            pipelines,
+            shadow_map,
+            samples,
+            frame_uniform,
+            frame_group,
+            inset_uniform,
+            inset_group,
+            line_buffer,
+        })
+    }
+
+    /// Layout of the scene's materials, for [`GpuScene::new`].
+    pub fn material_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.layouts.material
+    }
+
+    /// The shadow map as it is.
+    pub fn shadow_map(&self) -> &ShadowMap {
+        &self.shadow_map
+    }
+
+    /// Makes the shadow map anew if it is to be another one. On an error the old one stays.
+    ///
+    /// # Errors
+    ///
+    /// [`ShadowMapError`] if the new one cannot be made.
+    pub fn set_shadow_map(&mut self, gpu: &Gpu, descriptor: &ShadowMapDescriptor) -> Result<(), ShadowMapError> {
+        let old = *self.shadow_map.descriptor();
+        if old == *descriptor {
+            return Ok(());
+        }
+        self.shadow_map = ShadowMap::new(&gpu.device, descriptor)?;
+        let same_shaders = ShadowMapDescriptor { resolution: descriptor.resolution, ..old } == *descriptor;
+        if !same_shaders {
+            self.pipelines = Pipelines::new(&gpu.device, &self.layouts, &self.shadow_map, self.samples);
+        }
+        Ok(())
+    }
+
+    /// A picture that this renderer can draw into.
+    pub fn picture(&self, gpu: &Gpu, size: [u32; 2]) -> Picture {
+        Picture::new(&gpu.device, size, self.samples)
+    }
+
+    /// Draws a frame into a picture and submits it.
+    pub fn draw(&mut self, gpu: &Gpu, scene: &mut GpuScene, frame: &Frame<'_>, picture: &Picture) -> Statistics {
+        let plan = self.prepare(gpu, scene, frame, picture.size);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        self.shadow_passes(&mut encoder, scene, &plan);
+        self.scene_pass(&mut encoder, scene, &plan, picture, frame.lines.len() as u32);
+        if frame.inset.is_some() && !frame.fits.is_empty() {
+            self.inset_pass(&mut encoder, picture);
+        }
+        gpu.queue.submit([encoder.finish()]);
+        statistics(scene, &plan)
+    }
+
+    /// Draws a frame's shadow decisions and reads them back.
+    pub fn probe(&mut self, gpu: &Gpu, scene: &mut GpuScene, frame: &Frame<'_>, size: [u32; 2]) -> Probe {
+        let plan = self.prepare(gpu, scene, frame, size);
+        let targets = ProbeTargets::new(&gpu.device, size);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        self.shadow_passes(&mut encoder, scene, &plan);
+        {
+            let color = |view| color_attachment(view, None, wgpu::Color::TRANSPARENT);
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("probe"),
+                color_attachments: &[color(&targets.views[0]), color(&targets.views[1])],
+                depth_stencil_attachment: Some(depth_attachment(&targets.depth)),
+                ..Default::default()
+            });
+            self.draw_scene(&mut pass, scene, &plan.opaque, |part| self.pipelines.probe(part));
+        }
+        gpu.queue.submit([encoder.finish()]);
+        targets.read(gpu)
+    }
+
+    /// Culls, and writes every buffer of the frame.
+    fn prepare(&mut self, gpu: &Gpu, scene: &mut GpuScene, frame: &Frame<'_>, size: [u32; 2]) -> Plan {
+        let eye = frame.camera.eye;
+        self.shadow_map.prepare(&gpu.queue, eye, frame.fits, frame.bias);
+        let uniform = FrameUniform::new(frame.camera, -frame.direction, frame.shadows, frame.atmosphere, size);
+        gpu.queue.write_buffer(&self.frame_uniform, 0, bytemuck::bytes_of(&uniform));
+        if let Some(inset) = frame.inset {
+            let uniform =
+                InsetUniform { rectangle: inset.rectangle, depth_range: inset.depth_range, map: inset.map, padding: 0 };
+            gpu.queue.write_buffer(&self.inset_uniform, 0, bytemuck::bytes_of(&uniform));
+        }
+        self.write_lines(gpu, eye, frame.lines);
+        plan(gpu, scene, frame, &uniform)
+    }
+
+    fn write_lines(&mut self, gpu: &Gpu, eye: DVec3, lines: &[Line]) {
+        let vertices: Vec<[LineVertex; 2]> = lines.iter().map(|line| line.vertices(eye)).collect();
+        let bytes: &[u8] = bytemuck::cast_slice(&vertices);
+        if bytes.len() as u64 > self.line_buffer.size() {
+            self.line_buffer = line_buffer(&gpu.device, lines.len().next_power_of_two());
+        }
+        gpu.queue.write_buffer(&self.line_buffer, 0, bytes);
+    }
+
+    fn shadow_passes(&self, encoder: &mut wgpu::CommandEncoder, scene: &GpuScene, plan: &Plan) {
+        self.shadow_map.render(encoder, |pass, map, _volume| {
+            for draw in &plan.shadow[map] {
+                let part = &scene.parts[draw.part];
+                pass.set_pipeline(self.pipelines.caster(part));
+                draw_part(pass, scene, draw, 1);
+            }
+        });
+    }
+
+    fn scene_pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &GpuScene,
+        plan: &Plan,
+        picture: &Picture,
+        lines: u32,
+    ) {
+        let color = match &picture.multisampled {
+            Some(view) => color_attachment(view, Some(&picture.color_view), wgpu::Color::BLACK),
+            None => color_attachment(&picture.color_view, None, wgpu::Color::BLACK),
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("scene"),
+            color_attachments: &[color],
+            depth_stencil_attachment: Some(depth_attachment(&picture.depth_view)),
+            ..Default::default()
+        });
+        self.draw_scene(&mut pass, scene, &plan.opaque, |part| self.pipelines.scene(part));
+        pass.set_pipeline(&self.pipelines.sky);
+        pass.draw(0..3, 0..1);
+        self.draw_scene(&mut pass, scene, &plan.blended, |part| self.pipelines.scene(part));
+        if lines > 0 {
+            pass.set_pipeline(&self.pipelines.lines);
+            pass.set_vertex_buffer(0, self.line_buffer.slice(..));
+            pass.draw(0..6, 0..lines);
+        }
+    }
+
+    fn draw_scene<'a>(
+        &'a self,
+        pass: &mut wgpu::RenderPass<'_>,
+        scene: &GpuScene,
+        draws: &[Draw],
+        pipeline: impl Fn(&Part) -> &'a wgpu::RenderPipeline,
+    ) {
+        pass.set_bind_group(0, &self.frame_group, &[]);
+        pass.set_bind_group(1, self.shadow_map.receiver_group(), &[]);
+        for draw in draws {
+            pass.set_pipeline(pipeline(&scene.parts[draw.part]));
+            draw_part(pass, scene, draw, 2);
+        }
+    }
+
+    fn inset_pass(&self, encoder: &mut wgpu::CommandEncoder, picture: &Picture) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("inset"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &picture.color_view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipelines.inset);
+        pass.set_bind_group(0, &self.frame_group, &[]);
+        pass.set_bind_group(1, self.shadow_map.receiver_group(), &[]);
+        pass.set_bind_group(2, &self.inset_group, &[]);
+        pass.draw(0..4, 0..1);
+    }
+}
+
+/// Decides what each pass draws and uploads the instances.
+fn plan(gpu: &Gpu, scene: &mut GpuScene, frame: &Frame<'_>, uniform: &FrameUniform) -> Plan {
+    let eye = frame.camera.eye;
+    scene.begin_frame();
+    let shadow = frame
+        .fits
+        .iter()
+        .map(|fit| scene.visible(eye, in_volume(&fit.relative_to(eye).caster_volume()), Part::casts))
+        .collect();
+    let seen = in_frustum(Mat4::from_cols_array_2d(&uniform.clip_from_world));
+    let opaque = scene.visible(eye, &seen, Part::casts);
+    let mut blended = scene.visible(eye, &seen, |part| !part.casts());
+    blended.sort_by(|a, b| b.distance.total_cmp(&a.distance));
+    scene.end_frame(gpu);
+    Plan { shadow, opaque, blended }
+}
+
+fn draw_part(pass: &mut wgpu::RenderPass<'_>, scene: &GpuScene, draw: &Draw, material_group: u32) {
+    let part = &scene.parts[draw.part];
+    pass.set_bind_group(material_group, &scene.materials[part.material], &[]);
+    pass.set_vertex_buffer(0, part.motion.slice(..));
+    pass.set_vertex_buffer(1, part.surface.slice(..));
+    pass.set_vertex_buffer(2, scene.instance_buffer.slice(..));
+    pass.set_index_buffer(part.indices.slice(..), wgpu::IndexFormat::Uint32);
+    pass.draw_indexed(0..part.index_count, 0, draw.instances.clone());
+}
+
+fn statistics(scene: &GpuScene, plan: &Plan) -> Statistics {
+    let triangles = |draws: &mut dyn Iterator<Item = &Draw>| -> (u32, u64) {
+        draws.fold((0, 0), |(count, triangles), draw| {
+            let per_instance = u64::from(scene.parts[draw.part].index_count / 3);
+            (count + 1, triangles + per_instance * draw.instances.len() as u64)
+        })
+    };
+    let (shadow_draws, shadow_triangles) = triangles(&mut plan.shadow.iter().flatten());
+    let (scene_draws, scene_triangles) = triangles(&mut plan.opaque.iter().chain(&plan.blended));
+    Statistics { shadow_draws, shadow_triangles, scene_draws, scene_triangles }
+}
+
+fn color_attachment<'a>(
+    view: &'a wgpu::TextureView,
+    resolve_target: Option<&'a wgpu::TextureView>,
+    clear: wgpu::Color,
+) -> Option<wgpu::RenderPassColorAttachment<'a>> {
+    let store = if resolve_target.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
+    Some(wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target,
+        ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store },
+    })
+}
+
+/// The camera's depth, reversed: cleared to the far value 0.
+fn depth_attachment(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    wgpu::RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+        stencil_ops: None,
+    }
+}
+
+fn uniform(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, size: usize) -> (wgpu::Buffer, wgpu::BindGroup) {
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: size as u64,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout,
+        entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
+    });
+    (buffer, group)
+}
+
+fn line_buffer(device: &wgpu::Device, lines: usize) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("lines"),
+        size: (lines * 2 * size_of::<LineVertex>()) as u64,
+        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}

@@ -1,0 +1,309 @@
+//! A scene on the GPU: vertex and index buffers, materials, and per frame the instances that each
+//! pass sees. Deformed primitives (skins, morph targets) are deformed on the processor, so that
+//! ray tracers see the very same triangles.
+
+use glam::{DVec3, Mat4, Vec3, Vec4};
+use shadowfit::CasterVolume;
+use shadowfit_scene::{Aabb, AlphaMode, Instance, Pose, Primitive, Scene};
+
+use crate::Gpu;
+use crate::material::upload_materials;
+use crate::uniform::InstanceData;
+
+/// A scene that can be drawn.
+#[derive(Debug)]
+pub struct GpuScene {
+    pub(crate) parts: Vec<Part>,
+    pub(crate) materials: Vec<wgpu::BindGroup>,
+    instances: Vec<SceneInstance>,
+    data: Vec<InstanceData>,
+    pub(crate) instance_buffer: wgpu::Buffer,
+}
+
+/// One primitive with all its instances (a deformed one has a part of its own per instance).
+#[derive(Debug)]
+pub(crate) struct Part {
+    pub(crate) motion: wgpu::Buffer,
+    pub(crate) surface: wgpu::Buffer,
+    pub(crate) indices: wgpu::Buffer,
+    pub(crate) index_count: u32,
+    pub(crate) material: usize,
+    pub(crate) alpha: AlphaMode,
+    pub(crate) double_sided: bool,
+    pub(crate) mirrored: bool,
+    local_bounds: Option<Aabb>,
+    members: Vec<usize>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct SceneInstance {
+    instance: Instance,
+    world_from_mesh: Mat4,
+    bounds: Aabb,
+}
+
+/// A draw call: a part and a range of the instance buffer.
+#[derive(Clone, Debug)]
+pub(crate) struct Draw {
+    pub(crate) part: usize,
+    pub(crate) instances: core::ops::Range<u32>,
+    /// Distance from the eye to the nearest instance's centre, for the order of blended parts.
+    pub(crate) distance: f32,
+}
+
+/// Position, normal and tangent: what deforms.
+const MOTION_FLOATS: usize = 10;
+/// Texture coordinates and colour: what does not.
+const SURFACE_FLOATS: usize = 6;
+
+impl GpuScene {
+    /// Uploads a scene in a pose. `layout` comes from [`crate::Renderer::material_layout`].
+    pub fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, scene: &Scene, pose: &Pose) -> Self {
+        let instances: Vec<Instance> = scene.instances();
+        let mut parts: Vec<Part> = Vec::new();
+        let mut shared = std::collections::HashMap::new();
+        for (index, instance) in instances.iter().enumerate() {
+            let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
+            let mirrored = pose.is_mirrored(scene, instance);
+            let deforms = is_deformed(scene, instance);
+            let key = (instance.mesh, instance.primitive, mirrored, if deforms { index } else { usize::MAX });
+            let part = *shared.entry(key).or_insert_with(|| {
+                parts.push(Part::new(gpu, scene, primitive, mirrored));
+                parts.len() - 1
+            });
+            parts[part].members.push(index);
+        }
+        let count = instances.len();
+        let mut gpu_scene = Self {
+            parts,
+            materials: upload_materials(gpu, layout, scene),
+            instances: instances
+                .into_iter()
+                .map(|instance| SceneInstance { instance, world_from_mesh: Mat4::IDENTITY, bounds: EMPTY })
+                .collect(),
+            data: Vec::new(),
+            instance_buffer: instance_buffer(&gpu.device, count.max(1)),
+        };
+        gpu_scene.set_pose(gpu, scene, pose);
+        gpu_scene
+    }
+
+    /// Moves everything to a pose of the same scene.
+    pub fn set_pose(&mut self, gpu: &Gpu, scene: &Scene, pose: &Pose) {
+        for part in &self.parts {
+            for &member in &part.members {
+                let entry = &mut self.instances[member];
+                entry.world_from_mesh = pose.world_from_instance(scene, &entry.instance);
+                let local = match pose.deform(scene, &entry.instance) {
+                    Some(deformed) => {
+                        let motion = interleave_motion(&deformed.positions, &deformed.normals, &deformed.tangents);
+                        gpu.queue.write_buffer(&part.motion, 0, bytemuck::cast_slice(&motion));
+                        point_bounds(&deformed.positions)
+                    }
+                    None => part.local_bounds,
+                };
+                entry.bounds = local.map_or(EMPTY, |local| transformed(&local, &entry.world_from_mesh));
+            }
+        }
+    }
+
+    /// Starts a frame's instance list.
+    pub(crate) fn begin_frame(&mut self) {
+        self.data.clear();
+    }
+
+    /// Adds the instances that a pass sees, and returns its draws. `keep` is asked with the
+    /// instance's bounds relative to `eye`.
+    pub(crate) fn visible(
+        &mut self,
+        eye: DVec3,
+        mut keep: impl FnMut(Vec3, Vec3) -> bool,
+        mut takes: impl FnMut(&Part) -> bool,
+    ) -> Vec<Draw> {
+        let mut draws = Vec::new();
+        for (part_index, part) in self.parts.iter().enumerate().filter(|(_, part)| takes(part)) {
+            let start = self.data.len() as u32;
+            let mut distance = f32::INFINITY;
+            for &member in &part.members {
+                let instance = &self.instances[member];
+                let [min, max] = [instance.bounds.min, instance.bounds.max].map(|p| (p.as_dvec3() - eye).as_vec3());
+                if min.cmple(max).all() && keep(min, max) {
+                    distance = distance.min(((min + max) * 0.5).length());
+                    self.data.push(instance_data(&instance.world_from_mesh, eye, member));
+                }
+            }
+            let instances = start..self.data.len() as u32;
+            if !instances.is_empty() {
+                draws.push(Draw { part: part_index, instances, distance });
+            }
+        }
+        draws
+    }
+
+    /// Uploads the frame's instance list.
+    pub(crate) fn end_frame(&mut self, gpu: &Gpu) {
+        let bytes: &[u8] = bytemuck::cast_slice(&self.data);
+        if bytes.len() as u64 > self.instance_buffer.size() {
+            self.instance_buffer = instance_buffer(&gpu.device, self.data.len().next_power_of_two());
+        }
+        gpu.queue.write_buffer(&self.instance_buffer, 0, bytes);
+    }
+
+    /// World bounds of everything that casts, in metres; `None` for an empty scene.
+    pub fn bounds(&self) -> Option<Aabb> {
+        let join = |a: Aabb, b: Aabb| Aabb { min: a.min.min(b.min), max: a.max.max(b.max) };
+        let all = self.instances.iter().map(|instance| instance.bounds).fold(EMPTY, join);
+        all.min.cmple(all.max).all().then_some(all)
+    }
+}
+
+impl Part {
+    fn new(gpu: &Gpu, scene: &Scene, primitive: &Primitive, mirrored: bool) -> Self {
+        let material = &scene.materials[primitive.material];
+        let motion = interleave_motion(&primitive.positions, &primitive.normals, &primitive.tangents);
+        let mut surface = Vec::with_capacity(primitive.positions.len() * SURFACE_FLOATS);
+        for index in 0..primitive.positions.len() {
+            let color = primitive.colors.get(index).copied().unwrap_or(Vec4::ONE);
+            surface.extend(primitive.uvs[index].to_array());
+            surface.extend(color.to_array());
+        }
+        let vertex = wgpu::BufferUsages::VERTEX;
+        Self {
+            motion: filled_buffer(gpu, vertex, bytemuck::cast_slice(&motion)),
+            surface: filled_buffer(gpu, vertex, bytemuck::cast_slice(&surface)),
+            indices: filled_buffer(gpu, wgpu::BufferUsages::INDEX, bytemuck::cast_slice(&primitive.indices)),
+            index_count: primitive.indices.len() as u32,
+            material: primitive.material,
+            alpha: material.alpha,
+            double_sided: material.double_sided,
+            mirrored,
+            local_bounds: point_bounds(&primitive.positions),
+            members: Vec::new(),
+        }
+    }
+
+    /// Whether the caster rule lets the part cast: blended surfaces cast nothing.
+    pub(crate) fn casts(&self) -> bool {
+        self.alpha != AlphaMode::Blend
+    }
+}
+
+/// Whether a box relative to the eye is in a map's volume.
+pub(crate) fn in_volume(volume: &CasterVolume) -> impl Fn(Vec3, Vec3) -> bool + '_ {
+    |min, max| volume.intersects_aabb(min, max)
+}
+
+/// Whether a box relative to the eye may be seen: not wholly outside one of the six clip planes
+/// (Gribb and Hartmann, 2001).
+pub(crate) fn in_frustum(clip_from_world: Mat4) -> impl Fn(Vec3, Vec3) -> bool {
+    let row = |index| clip_from_world.row(index);
+    let planes = [row(3) + row(0), row(3) - row(0), row(3) + row(1), row(3) - row(1), row(2), row(3) - row(2)];
+    move |min, max| {
+        planes.iter().all(|plane| {
+            let normal = plane.truncate();
+            let farthest = Vec3::select(normal.cmpge(Vec3::ZERO), max, min);
+            normal.dot(farthest) + plane.w >= 0.0
+        })
+    }
+}
+
+const EMPTY: Aabb = Aabb { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+
+fn is_deformed(scene: &Scene, instance: &Instance) -> bool {
+    let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
+    scene.instance_skin(instance).is_some() || !primitive.morphs.is_empty()
+}
+
+fn interleave_motion(positions: &[Vec3], normals: &[Vec3], tangents: &[Vec4]) -> Vec<f32> {
+    let mut motion = Vec::with_capacity(positions.len() * MOTION_FLOATS);
+    for (index, position) in positions.iter().enumerate() {
+        motion.extend(position.to_array());
+        motion.extend(normals[index].to_array());
+        motion.extend(tangents.get(index).copied().unwrap_or(Vec4::ZERO).to_array());
+    }
+    motion
+}
+
+fn point_bounds(points: &[Vec3]) -> Option<Aabb> {
+    let first = *points.first()?;
+    let grow = |bounds: Aabb, p: &Vec3| Aabb { min: bounds.min.min(*p), max: bounds.max.max(*p) };
+    Some(points.iter().fold(Aabb { min: first, max: first }, grow))
+}
+
+fn transformed(bounds: &Aabb, matrix: &Mat4) -> Aabb {
+    let center = matrix.transform_point3((bounds.min + bounds.max) * 0.5);
+    let half = (bounds.max - bounds.min) * 0.5;
+    let axis = |column: Vec4| column.truncate().abs();
+    let reach = axis(matrix.x_axis) * half.x + axis(matrix.y_axis) * half.y + axis(matrix.z_axis) * half.z;
+    Aabb { min: center - reach, max: center + reach }
+}
+
+fn instance_data(world_from_mesh: &Mat4, eye: DVec3, id: usize) -> InstanceData {
+    let translation = (world_from_mesh.w_axis.truncate().as_dvec3() - eye).as_vec3();
+    let relative = Mat4 { w_axis: translation.extend(1.0), ..*world_from_mesh };
+    InstanceData {
+        rows: [relative.row(0).to_array(), relative.row(1).to_array(), relative.row(2).to_array()],
+        id: id as u32,
+        padding: [0; 3],
+    }
+}
+
+fn instance_buffer(device: &wgpu::Device, count: usize) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("instances"),
+        size: (count * size_of::<InstanceData>()) as u64,
+        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+fn filled_buffer(gpu: &Gpu, usage: wgpu::BufferUsages, bytes: &[u8]) -> wgpu::Buffer {
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("primitive"),
+        size: (bytes.len() as u64).max(4),
+        usage: usage | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    gpu.queue.write_buffer(&buffer, 0, bytes);
+    buffer
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shadowfit::PerspectiveCamera;
+
+    fn keeps(center: Vec3) -> bool {
+        let camera = PerspectiveCamera {
+            eye: DVec3::ZERO,
+            forward: Vec3::NEG_Z,
+            up: Vec3::Y,
+            fov_y: 1.0,
+            aspect: 1.0,
+            near: 0.1,
+            far: 100.0,
+        };
+        let keep = in_frustum(camera.clip_from_world(shadowfit::DepthConvention::Reversed));
+        keep(center - 0.5, center + 0.5)
+    }
+
+    #[test]
+    fn the_frustum_keeps_what_is_ahead_and_drops_the_rest() {
+        assert!(keeps(Vec3::new(0.0, 0.0, -10.0)));
+        assert!(keeps(Vec3::new(0.0, 0.0, -100.2)), "across the far plane");
+        for outside in [Vec3::Z * 10.0, Vec3::NEG_Z * 101.0, Vec3::new(20.0, 0.0, -10.0), Vec3::new(0.0, -20.0, -10.0)]
+        {
+            assert!(!keeps(outside), "{outside}");
+        }
+    }
+
+    #[test]
+    fn bounds_follow_a_mirrored_and_turned_transform() {
+        let matrix = Mat4::from_translation(Vec3::X * 5.0)
+            * Mat4::from_rotation_y(core::f32::consts::FRAC_PI_2)
+            * Mat4::from_scale(Vec3::new(-1.0, 2.0, 3.0));
+        let bounds = transformed(&Aabb { min: Vec3::ZERO, max: Vec3::ONE }, &matrix);
+        assert!((bounds.min - Vec3::new(5.0, 0.0, 0.0)).length() < 1e-5, "{bounds:?}");
+        assert!((bounds.max - Vec3::new(8.0, 2.0, 1.0)).length() < 1e-5, "{bounds:?}");
+    }
+}

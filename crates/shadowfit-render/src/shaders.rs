@@ -1,0 +1,52 @@
+//! The shader modules, put together from the pieces in `shaders/` and the shadow map's own WGSL.
+
+use shadowfit_wgpu::{ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
+
+/// Bind group of the shadow map in the shaded pass.
+pub const SHADOW_GROUP: u32 = 1;
+
+const FRAME: &str = include_str!("shaders/frame.wgsl");
+const MATERIAL: &str = include_str!("shaders/material.wgsl");
+
+/// The pieces as they lie in the folder, for tests that look for files which no module uses.
+pub const PIECES: [(&str, &str); 8] = [
+    ("frame.wgsl", FRAME),
+    ("material.wgsl", MATERIAL),
+    ("sky.wgsl", include_str!("shaders/sky.wgsl")),
+    ("caster.wgsl", include_str!("shaders/caster.wgsl")),
+    ("scene.wgsl", include_str!("shaders/scene.wgsl")),
+    ("lines.wgsl", include_str!("shaders/lines.wgsl")),
+    ("inset.wgsl", include_str!("shaders/inset.wgsl")),
+    ("mip.wgsl", include_str!("shaders/mip.wgsl")),
+];
+
+/// The sky.
+pub fn sky() -> String {
+    [FRAME, include_str!("shaders/sky.wgsl")].concat()
+}
+
+/// The shadow pass: group 0 is the shadow map's, group 1 the material's.
+pub fn caster() -> String {
+    [caster_wgsl(0), MATERIAL.replace("MATERIAL_GROUP", "1"), include_str!("shaders/caster.wgsl").to_owned()].concat()
+}
+
+/// The shaded and the probe pass: frame, shadow map and material are groups 0, 1 and 2.
+pub fn scene(shadow_map: &ShadowMapDescriptor) -> String {
+    let material = MATERIAL.replace("MATERIAL_GROUP", "2");
+    [FRAME, &receiver_wgsl(shadow_map, SHADOW_GROUP), &material, include_str!("shaders/scene.wgsl")].concat()
+}
+
+/// Lines of the world.
+pub fn lines() -> String {
+    [FRAME, include_str!("shaders/lines.wgsl")].concat()
+}
+
+/// The shadow map's inset: frame, shadow map and inset are groups 0, 1 and 2.
+pub fn inset(shadow_map: &ShadowMapDescriptor) -> String {
+    [FRAME, &receiver_wgsl(shadow_map, SHADOW_GROUP), include_str!("shaders/inset.wgsl")].concat()
+}
+
+/// Texture levels.
+pub fn mip() -> String {
+    include_str!("shaders/mip.wgsl").to_owned()
+}

@@ -1,0 +1,57 @@
+// What every shader of a frame shares: the uniform, the sky's colour and the tone curve.
+
+struct Frame {
+    clip_from_world: mat4x4<f32>,
+    ray_right: vec4<f32>,
+    ray_up: vec4<f32>,
+    ray_forward: vec4<f32>,
+    to_light: vec3<f32>,
+    shadows: f32,
+    sun: vec3<f32>,
+    haze_per_metre: f32,
+    zenith: vec4<f32>,
+    horizon: vec4<f32>,
+    ground: vec4<f32>,
+    viewport: vec2<f32>,
+    padding: vec2<f32>,
+}
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+
+// Linear radiance of the sky along a unit direction, without the sun's disc.
+fn sky_radiance(direction: vec3<f32>) -> vec3<f32> {
+    let height = direction.y;
+    let above = mix(frame.horizon.rgb, frame.zenith.rgb, 1.0 - pow(1.0 - saturate(height), 3.0));
+    let below = mix(frame.horizon.rgb, frame.ground.rgb, saturate(-height * 4.0));
+    let toward_sun = saturate(dot(direction, frame.to_light));
+    let glow = frame.sun * (0.10 * pow(toward_sun, 8.0) + 0.12 * pow(toward_sun, 64.0));
+    return select(below, above, height > 0.0) + glow * saturate(1.0 + height * 4.0);
+}
+
+// Distant surfaces fade into the sky behind them.
+fn with_haze(radiance: vec3<f32>, position: vec3<f32>) -> vec3<f32> {
+    let distance = length(position);
+    let direction = position / max(distance, 1e-6);
+    let level = normalize(vec3<f32>(direction.x, max(direction.y, 0.0) + 0.02, direction.z));
+    let haze = 1.0 - exp(-distance * frame.haze_per_metre);
+    return mix(radiance, sky_radiance(level), haze * haze);
+}
+
+// Tone curve: Khronos PBR Neutral (Khronos Group, 2024), which keeps base colours as they are and
+// rolls off only what is brighter than the display.
+fn tone_map(radiance: vec3<f32>) -> vec3<f32> {
+    let start = 0.8 - 0.04;
+    let desaturation = 0.15;
+    let low = min(radiance.r, min(radiance.g, radiance.b));
+    let offset = select(0.04, low - 6.25 * low * low, low < 0.08);
+    let color = radiance - offset;
+    let peak = max(color.r, max(color.g, color.b));
+    if peak < start {
+        return color;
+    }
+    let room = 1.0 - start;
+    let new_peak = 1.0 - room * room / (peak + room - start);
+    let scaled = color * (new_peak / peak);
+    let gray = 1.0 - 1.0 / (desaturation * (peak - new_peak) + 1.0);
+    return mix(scaled, vec3<f32>(new_peak), gray);
+}

@@ -1,0 +1,29 @@
+// Materials, shared by the shaded and the shadow pass.
+
+struct Material {
+    base_color: vec4<f32>,
+    base_uv: array<vec4<f32>, 2>,
+    normal_uv: array<vec4<f32>, 2>,
+    emissive: vec3<f32>,
+    alpha_cutoff: f32,
+    metallic: f32,
+    roughness: f32,
+    normal_scale: f32,
+    blended: f32,
+}
+
+@group(MATERIAL_GROUP) @binding(0) var<uniform> material: Material;
+@group(MATERIAL_GROUP) @binding(1) var base_texture: texture_2d<f32>;
+@group(MATERIAL_GROUP) @binding(2) var base_sampler: sampler;
+@group(MATERIAL_GROUP) @binding(3) var normal_texture: texture_2d<f32>;
+@group(MATERIAL_GROUP) @binding(4) var normal_sampler: sampler;
+
+fn transformed_uv(rows: array<vec4<f32>, 2>, uv: vec2<f32>) -> vec2<f32> {
+    let at = vec3<f32>(uv, 1.0);
+    return vec2<f32>(dot(rows[0].xyz, at), dot(rows[1].xyz, at));
+}
+
+// Base colour and alpha before vertex colours.
+fn base_color(uv: vec2<f32>) -> vec4<f32> {
+    return material.base_color * textureSample(base_texture, base_sampler, transformed_uv(material.base_uv, uv));
+}

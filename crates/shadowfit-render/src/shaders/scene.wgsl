@@ -1,0 +1,140 @@
+// The shaded pass: sun with shadow, sky and ground light, tone curve; and the probe pass, which
+// writes what the shading knew about each pixel.
+
+struct SceneIn {
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) tangent: vec4<f32>,
+    @location(3) uv: vec2<f32>,
+    @location(4) color: vec4<f32>,
+    @location(5) row0: vec4<f32>,
+    @location(6) row1: vec4<f32>,
+    @location(7) row2: vec4<f32>,
+    @location(8) id: u32,
+}
+
+struct SceneOut {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) tangent: vec4<f32>,
+    @location(3) uv: vec2<f32>,
+    @location(4) color: vec4<f32>,
+    @location(5) @interpolate(flat) id: u32,
+}
+
+@vertex
+fn vs_scene(in: SceneIn) -> SceneOut {
+    let local = vec4<f32>(in.position, 1.0);
+    let position = vec3<f32>(dot(in.row0, local), dot(in.row1, local), dot(in.row2, local));
+    // Normals follow the cofactors of the transform, which also serve uneven and mirrored scales.
+    let a = in.row0.xyz;
+    let b = in.row1.xyz;
+    let c = in.row2.xyz;
+    let cofactors = mat3x3<f32>(cross(b, c), cross(c, a), cross(a, b));
+    let mirror = sign(dot(a, cofactors[0]));
+    let normal = vec3<f32>(
+        dot(cofactors[0], in.normal), dot(cofactors[1], in.normal), dot(cofactors[2], in.normal)) * mirror;
+    let tangent = vec3<f32>(dot(a, in.tangent.xyz), dot(b, in.tangent.xyz), dot(c, in.tangent.xyz));
+    var out: SceneOut;
+    out.clip = frame.clip_from_world * vec4<f32>(position, 1.0);
+    out.position = position;
+    out.normal = normal;
+    out.tangent = vec4<f32>(tangent, in.tangent.w * mirror);
+    out.uv = in.uv;
+    out.color = in.color;
+    out.id = in.id;
+    return out;
+}
+
+// Unit normal of the triangle itself, on the side that the eye sees. `dx`, `dy`: the derivatives
+// of the position, taken where control flow is uniform.
+fn geometric_normal(position: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>) -> vec3<f32> {
+    let normal = normalize(cross(dy, dx));
+    return select(normal, -normal, dot(normal, position) > 0.0);
+}
+
+// Interpolated normal, bent by the normal map, on the side of the geometric one.
+fn shading_normal(in: SceneOut, geometric: vec3<f32>, texel: vec3<f32>) -> vec3<f32> {
+    let length_squared = dot(in.normal, in.normal);
+    var normal = select(geometric, in.normal * inverseSqrt(max(length_squared, 1e-30)), length_squared > 1e-20);
+    normal = select(normal, -normal, dot(normal, geometric) < 0.0);
+    let tangent = in.tangent.xyz - normal * dot(in.tangent.xyz, normal);
+    let tangent_squared = dot(tangent, tangent);
+    if material.normal_scale > 0.0 && tangent_squared > 1e-12 {
+        let t = tangent * inverseSqrt(tangent_squared);
+        let b = cross(normal, t) * in.tangent.w;
+        let bend = (texel * 2.0 - 1.0) * vec3<f32>(material.normal_scale, material.normal_scale, 1.0);
+        normal = normalize(t * bend.x + b * bend.y + normal * max(bend.z, 1e-3));
+    }
+    return normal;
+}
+
+// Reflected sunlight per unit of irradiance: Lambert plus GGX (Walter et al., 2007) with the
+// visibility term of Hammon (2017) and Schlick's Fresnel (1994).
+fn reflectance(base: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>, to_light: vec3<f32>) -> vec3<f32> {
+    let halfway = normalize(to_eye + to_light);
+    let n_l = saturate(dot(normal, to_light));
+    let n_v = max(dot(normal, to_eye), 1e-3);
+    let n_h = saturate(dot(normal, halfway));
+    let roughness = clamp(material.roughness * material.roughness, 0.03, 1.0);
+    let a2 = roughness * roughness;
+    let denominator = n_h * n_h * (a2 - 1.0) + 1.0;
+    let distribution = a2 / (3.14159265 * denominator * denominator);
+    let visibility = 0.5 / max(mix(2.0 * n_l * n_v, n_l + n_v, roughness), 1e-4);
+    let f0 = mix(vec3<f32>(0.04), base, material.metallic);
+    let fresnel = f0 + (1.0 - f0) * pow(1.0 - saturate(dot(to_eye, halfway)), 5.0);
+    let diffuse = base * (1.0 - material.metallic) * (1.0 - fresnel) / 3.14159265;
+    return (diffuse + fresnel * distribution * visibility) * n_l * 3.14159265;
+}
+
+// Light of sky and ground on a surface.
+fn ambient(base: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
+    let up = normal.y * 0.5 + 0.5;
+    let sky = mix(frame.zenith.rgb, frame.horizon.rgb, 0.55);
+    let light = mix(frame.ground.rgb * 0.75, sky * 0.85, up);
+    let f0 = mix(vec3<f32>(0.04), base, material.metallic);
+    let gloss = (1.0 - material.roughness) * (1.0 - material.roughness);
+    let grazing = pow(1.0 - saturate(dot(normal, to_eye)), 5.0);
+    let mirrored = sky_radiance(reflect(-to_eye, normal)) * (f0 + (1.0 - f0) * grazing) * gloss;
+    return base * light * (1.0 - material.metallic * 0.6) + mirrored;
+}
+
+@fragment
+fn fs_scene(in: SceneOut) -> @location(0) vec4<f32> {
+    let texel = textureSample(normal_texture, normal_sampler, transformed_uv(material.normal_uv, in.uv)).xyz;
+    let base = base_color(in.uv) * in.color;
+    let geometric = geometric_normal(in.position, dpdx(in.position), dpdy(in.position));
+    if base.a < material.alpha_cutoff {
+        discard;
+    }
+    let normal = shading_normal(in, geometric, texel);
+    let to_eye = -normalize(in.position);
+    let factor = mix(1.0, shadowfit_factor(in.position, geometric), frame.shadows);
+    // A surface that faces away from the sun is dark whatever its interpolated normal says.
+    let facing = smoothstep(0.0, 0.08, dot(geometric, frame.to_light));
+    let sunlight = frame.sun * (factor * facing);
+    let radiance = reflectance(base.rgb, normal, to_eye, frame.to_light) * sunlight
+        + ambient(base.rgb, normal, to_eye)
+        + material.emissive;
+    let color = tone_map(with_haze(radiance, in.position));
+    return vec4<f32>(color, mix(1.0, base.a, material.blended));
+}
+
+struct Probe {
+    // Position relative to the eye, and the shadow factor.
+    @location(0) position_factor: vec4<f32>,
+    // Geometric normal toward the eye, and the instance's index plus one.
+    @location(1) normal_id: vec4<f32>,
+}
+
+@fragment
+fn fs_probe(in: SceneOut) -> Probe {
+    let base = base_color(in.uv) * in.color;
+    let geometric = geometric_normal(in.position, dpdx(in.position), dpdy(in.position));
+    if base.a < material.alpha_cutoff {
+        discard;
+    }
+    let factor = shadowfit_factor(in.position, geometric);
+    return Probe(vec4<f32>(in.position, factor), vec4<f32>(geometric, f32(in.id + 1u)));
+}

@@ -1,0 +1,178 @@
+//! The structs that the shaders of this crate read. Their layout is compared with naga's
+//! reflection in the tests.
+
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+use shadowfit::{DepthConvention, PerspectiveCamera};
+use shadowfit_scene::{Material, Texture};
+
+/// Colours of sun and sky, linear.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Atmosphere {
+    /// Sunlight that a surface facing the sun receives.
+    pub sun: Vec3,
+    /// Sky overhead.
+    pub zenith: Vec3,
+    /// Sky at the horizon, which distant things fade into.
+    pub horizon: Vec3,
+    /// Light that the ground throws back.
+    pub ground: Vec3,
+    /// Share of the haze that is gained per metre.
+    pub haze_per_metre: f32,
+}
+
+impl Default for Atmosphere {
+    fn default() -> Self {
+        Self {
+            sun: Vec3::new(3.3, 2.9, 2.35),
+            zenith: Vec3::new(0.16, 0.33, 0.72),
+            horizon: Vec3::new(0.62, 0.74, 0.88),
+            ground: Vec3::new(0.30, 0.26, 0.21),
+            haze_per_metre: 0.0035,
+        }
+    }
+}
+
+/// What every shader of a frame reads: `Frame` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct FrameUniform {
+    /// Clip space (reversed depth) from world positions relative to the eye.
+    pub clip_from_world: [[f32; 4]; 4],
+    /// Ray of a pixel = `ray_right * ndc.x + ray_up * ndc.y + ray_forward`, relative to the eye.
+    pub ray_right: [f32; 4],
+    /// See `ray_right`.
+    pub ray_up: [f32; 4],
+    /// See `ray_right`.
+    pub ray_forward: [f32; 4],
+    /// Unit direction toward the light.
+    pub to_light: [f32; 3],
+    /// 1 where shadows are drawn, 0 where everything is lit.
+    pub shadows: f32,
+    /// [`Atmosphere::sun`].
+    pub sun: [f32; 3],
+    /// [`Atmosphere::haze_per_metre`].
+    pub haze_per_metre: f32,
+    /// [`Atmosphere::zenith`].
+    pub zenith: [f32; 4],
+    /// [`Atmosphere::horizon`].
+    pub horizon: [f32; 4],
+    /// [`Atmosphere::ground`].
+    pub ground: [f32; 4],
+    /// Width and height of the picture, in pixels.
+    pub viewport: [f32; 2],
+    /// Keeps the struct a multiple of 16 bytes.
+    pub padding: [f32; 2],
+}
+
+impl FrameUniform {
+    /// The uniform of a frame; `to_light` is unit, `viewport` in pixels.
+    pub fn new(
+        camera: &PerspectiveCamera,
+        to_light: Vec3,
+        shadows: bool,
+        sky: &Atmosphere,
+        viewport: [u32; 2],
+    ) -> Self {
+        let view = camera.view_from_world();
+        let half_height = (camera.fov_y * 0.5).tan();
+        Self {
+            clip_from_world: camera.clip_from_world(DepthConvention::Reversed).to_cols_array_2d(),
+            ray_right: (view.row(0) * (half_height * camera.aspect)).to_array(),
+            ray_up: (view.row(1) * half_height).to_array(),
+            ray_forward: (-view.row(2)).to_array(),
+            to_light: to_light.to_array(),
+            shadows: if shadows { 1.0 } else { 0.0 },
+            sun: sky.sun.to_array(),
+            haze_per_metre: sky.haze_per_metre,
+            zenith: sky.zenith.extend(0.0).to_array(),
+            horizon: sky.horizon.extend(0.0).to_array(),
+            ground: sky.ground.extend(0.0).to_array(),
+            viewport: viewport.map(|side| side as f32),
+            padding: [0.0; 2],
+        }
+    }
+}
+
+/// What the shaders read of a material: `Material` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct MaterialUniform {
+    /// Linear base colour and alpha.
+    pub base_color: [f32; 4],
+    /// Rows of the base colour's texture transform.
+    pub base_uv: [[f32; 4]; 2],
+    /// Rows of the normal map's texture transform.
+    pub normal_uv: [[f32; 4]; 2],
+    /// Linear emitted radiance.
+    pub emissive: [f32; 3],
+    /// Fragments with less alpha are absent; 0 for unmasked materials.
+    pub alpha_cutoff: f32,
+    /// Metalness, 0..=1.
+    pub metallic: f32,
+    /// Roughness, 0..=1.
+    pub roughness: f32,
+    /// Scale of the normal map's x and y; 0 without a map.
+    pub normal_scale: f32,
+    /// 1 where alpha is blended, 0 where the surface is opaque.
+    pub blended: f32,
+}
+
+impl MaterialUniform {
+    /// The uniform of a material.
+    pub fn new(material: &Material) -> Self {
+        use shadowfit_scene::AlphaMode;
+        let rows = |texture: Option<Texture>| {
+            texture.map_or([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0]], |texture| {
+                texture.uv_from_texcoord.map(|row| row.extend(0.0).to_array())
+            })
+        };
+        Self {
+            base_color: material.base_color.to_array(),
+            base_uv: rows(material.base_color_texture),
+            normal_uv: rows(material.normal_texture),
+            emissive: material.emissive.to_array(),
+            alpha_cutoff: if let AlphaMode::Mask { cutoff } = material.alpha { cutoff } else { 0.0 },
+            metallic: material.metallic,
+            roughness: material.roughness,
+            normal_scale: if material.normal_texture.is_some() { material.normal_scale } else { 0.0 },
+            blended: if material.alpha == AlphaMode::Blend { 1.0 } else { 0.0 },
+        }
+    }
+}
+
+/// One instance in a vertex buffer.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct InstanceData {
+    /// Rows of the affine transform: world relative to the eye from mesh.
+    pub rows: [[f32; 4]; 3],
+    /// Index of the instance in the scene, for probes.
+    pub id: u32,
+    /// Keeps the struct a multiple of 16 bytes.
+    pub padding: [u32; 3],
+}
+
+/// One end of a line, relative to the eye, with linear colour.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct LineVertex {
+    /// Position relative to the eye, in metres.
+    pub position: [f32; 3],
+    /// Linear colour and alpha.
+    pub color: [f32; 4],
+}
+
+/// What the shadow-map inset reads: `Inset` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct InsetUniform {
+    /// Left, top, width and height of the inset in the picture, in pixels.
+    pub rectangle: [f32; 4],
+    /// Stored depths shown as black and as white.
+    pub depth_range: [f32; 2],
+    /// Which map is shown.
+    pub map: u32,
+    /// Keeps the struct a multiple of 16 bytes.
+    pub padding: u32,
+}

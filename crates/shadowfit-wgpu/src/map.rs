@@ -1,0 +1,415 @@
+//! The shadow map as a GPU resource: textures, clears, bind groups, and one pass per map.
+
+use core::fmt;
+
+use shadowfit::glam::DVec3;
+use shadowfit::settings::{BiasSettings, FilterKind, MapFormat};
+use shadowfit::{CasterVolume, DepthConvention, LightFit};
+
+use crate::uniform::{CasterUniform, ReceiverUniform};
+
+/// Most maps (array layers) that one [`ShadowMap`] holds.
+pub const MAX_MAPS: usize = 8;
+
+/// Widths and heights that a map may have, in texels.
+pub const RESOLUTIONS: core::ops::RangeInclusive<u32> = 256..=8192;
+
+/// What a [`ShadowMap`] is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShadowMapDescriptor {
+    /// Width and height of each map, in texels, within [`RESOLUTIONS`].
+    pub resolution: [u32; 2],
+    /// Number of maps, 1..=[`MAX_MAPS`].
+    pub maps: u32,
+    /// Storage of the depths.
+    pub format: MapFormat,
+    /// Filter of the look-up.
+    pub filter: FilterKind,
+    /// Depth convention of the fits: 0..1, plain or reversed; wgpu has no -1..1.
+    pub depth: DepthConvention,
+}
+
+impl Default for ShadowMapDescriptor {
+    fn default() -> Self {
+        Self {
+            resolution: [2048; 2],
+            maps: 1,
+            format: MapFormat::Depth32Float,
+            filter: FilterKind::Hardware2x2,
+            depth: DepthConvention::ZeroToOne,
+        }
+    }
+}
+
+/// Why a [`ShadowMap`] could not be made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShadowMapError {
+    /// Width or height outside [`RESOLUTIONS`] or above the device's limit, which is given.
+    Resolution {
+        /// The resolution asked for, in texels.
+        resolution: [u32; 2],
+        /// The device's greatest texture width and height, in texels.
+        device_limit: u32,
+    },
+    /// Number of maps outside 1..=[`MAX_MAPS`].
+    Maps(u32),
+    /// A depth convention that wgpu's clip space does not have.
+    Depth(DepthConvention),
+}
+
+impl fmt::Display for ShadowMapError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Resolution { resolution: [width, height], device_limit } => write!(
+                f,
+                "shadow map of {width} × {height} texels: each side must be {} to {} texels, and this device allows \
+                 at most {device_limit}",
+                RESOLUTIONS.start(),
+                RESOLUTIONS.end(),
+            ),
+            Self::Maps(maps) => write!(f, "{maps} shadow maps: between 1 and {MAX_MAPS} are possible"),
+            Self::Depth(depth) => {
+                write!(f, "depth convention {depth:?}: wgpu's clip space has 0..1, plain or reversed")
+            }
+        }
+    }
+}
+
+impl core::error::Error for ShadowMapError {}
+
+/// Shadow maps of one light: equal layers of one texture array, their passes and bind groups.
+#[derive(Debug)]
+pub struct ShadowMap {
+    descriptor: ShadowMapDescriptor,
+    layers: Vec<Layer>,
+    view: wgpu::TextureView,
+    caster_layout: wgpu::BindGroupLayout,
+    receiver_layout: wgpu::BindGroupLayout,
+    receiver_group: wgpu::BindGroup,
+    receiver_uniform: wgpu::Buffer,
+    volumes: Vec<CasterVolume>,
+}
+
+/// One map of the array.
+#[derive(Debug)]
+struct Layer {
+    /// Depth attachment: the map itself, or the depth buffer beside a colour map.
+    depth: wgpu::TextureView,
+    /// Colour attachment of colour formats.
+    color: Option<wgpu::TextureView>,
+    caster_uniform: wgpu::Buffer,
+    caster_group: wgpu::BindGroup,
+}
+
+impl ShadowMap {
+    /// Makes the textures and bind groups.
+    ///
+    /// # Errors
+    ///
+    /// [`ShadowMapError`] if the resolution, the number of maps or the depth convention is not
+    /// possible.
+    pub fn new(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> Result<Self, ShadowMapError> {
+        check(descriptor, device.limits().max_texture_dimension_2d)?;
+        let caster_layout = caster_layout(device);
+        let receiver_layout = receiver_layout(device, descriptor);
+        let depth_texture = texture(device, descriptor, wgpu::TextureFormat::Depth32Float);
+        let color_texture = (descriptor.format == MapFormat::R32Float)
+            .then(|| texture(device, descriptor, wgpu::TextureFormat::R32Float));
+        let layers = (0..descriptor.maps)
+            .map(|index| Layer::new(device, &caster_layout, &depth_texture, color_texture.as_ref(), index))
+            .collect();
+        let view = color_texture.as_ref().unwrap_or(&depth_texture).create_view(&wgpu::TextureViewDescriptor {
+            label: Some("shadowfit map"),
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..Default::default()
+        });
+        let receiver_uniform = uniform_buffer(device, size_of::<ReceiverUniform>());
+        let sampler = comparison_sampler(device, descriptor);
+        let receiver_group = receiver_group(device, descriptor, &receiver_layout, &receiver_uniform, &view, &sampler);
+        Ok(Self {
+            descriptor: *descriptor,
+            layers,
+            view,
+            caster_layout,
+            receiver_layout,
+            receiver_group,
+            receiver_uniform,
+            volumes: Vec::new(),
+        })
+    }
+
+    /// What the map was made of.
+    pub fn descriptor(&self) -> &ShadowMapDescriptor {
+        &self.descriptor
+    }
+
+    /// View of all maps as an array, for looking at them.
+    pub fn view(&self) -> &wgpu::TextureView {
+        &self.view
+    }
+
+    /// Layout of the bind group that [`crate::caster_wgsl`] reads.
+    pub fn caster_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.caster_layout
+    }
+
+    /// Layout of the bind group that [`crate::receiver_wgsl`] reads.
+    pub fn receiver_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.receiver_layout
+    }
+
+    /// The bind group that [`crate::receiver_wgsl`] reads.
+    pub fn receiver_group(&self) -> &wgpu::BindGroup {
+        &self.receiver_group
+    }
+
+    /// Depth state of the engine's caster pipelines. No hardware bias: biases are applied in
+    /// texels where the map is read, alike for every format.
+    pub fn depth_stencil_state(&self) -> wgpu::DepthStencilState {
+        wgpu::DepthStencilState {
+            format: wgpu::TextureFormat::Depth32Float,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(match self.descriptor.depth {
+                DepthConvention::Reversed => wgpu::CompareFunction::GreaterEqual,
+                _ => wgpu::CompareFunction::LessEqual,
+            }),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }
+    }
+
+    /// Colour target of the engine's caster pipelines, if the format has one. Their fragment
+    /// shader then writes `@builtin(position).z` to location 0.
+    pub fn color_target(&self) -> Option<wgpu::ColorTargetState> {
+        (self.descriptor.format == MapFormat::R32Float).then(|| wgpu::TextureFormat::R32Float.into())
+    }
+
+    /// Depth of the far plane, to which the maps are cleared.
+    pub fn far_depth(&self) -> f32 {
+        if self.descriptor.depth == DepthConvention::Reversed { 0.0 } else { 1.0 }
+    }
+
+    /// Writes the uniforms for this frame's fits, one a map, nearest first. Positions in the
+    /// shaders are relative to `origin` (world space, metres). Fits past the number of maps are
+    /// left out; a map without a fit is neither drawn nor read.
+    pub fn prepare(&mut self, queue: &wgpu::Queue, origin: DVec3, fits: &[LightFit], bias: &BiasSettings) {
+        let fits = &fits[..fits.len().min(self.layers.len())];
+        for (layer, fit) in self.layers.iter().zip(fits) {
+            let uniform = CasterUniform::new(fit, origin);
+            queue.write_buffer(&layer.caster_uniform, 0, bytemuck::bytes_of(&uniform));
+        }
+        let uniform = ReceiverUniform::new(fits, origin, bias);
+        queue.write_buffer(&self.receiver_uniform, 0, bytemuck::bytes_of(&uniform));
+        self.volumes.clear();
+        self.volumes.extend(fits.iter().map(|fit| fit.relative_to(origin).caster_volume()));
+    }
+
+    /// Records one pass a prepared map: cleared to the far value, group 0 set to the map's caster
+    /// uniform, then `draw(pass, map index, volume)`, which draws every caster that the volume
+    /// (relative to the origin) keeps.
+    pub fn render(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        mut draw: impl FnMut(&mut wgpu::RenderPass<'_>, usize, &CasterVolume),
+    ) {
+        for (index, volume) in self.volumes.iter().enumerate() {
+            let mut pass = self.begin_pass(encoder, index, None);
+            draw(&mut pass, index, volume);
+        }
+    }
+
+    /// Opens the pass of one map, for engines that schedule passes themselves: cleared, with
+    /// group 0 set. `index` is below the descriptor's number of maps.
+    pub fn begin_pass<'encoder>(
+        &self,
+        encoder: &'encoder mut wgpu::CommandEncoder,
+        index: usize,
+        timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) -> wgpu::RenderPass<'encoder> {
+        let layer = &self.layers[index];
+        let far = self.far_depth();
+        let color = layer.color.as_ref().map(|view| wgpu::RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color { r: far.into(), g: 0.0, b: 0.0, a: 1.0 }),
+                store: wgpu::StoreOp::Store,
+            },
+        });
+        let has_color = color.is_some();
+        let color_attachments = [color];
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("shadowfit map"),
+            color_attachments: &color_attachments[..usize::from(has_color)],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &layer.depth,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(far),
+                    store: if has_color { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store },
+                }),
+                stencil_ops: None,
+            }),
+            timestamp_writes: timestamps,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        pass.set_bind_group(0, &layer.caster_group, &[]);
+        pass
+    }
+}
+
+impl Layer {
+    fn new(
+        device: &wgpu::Device,
+        layout: &wgpu::BindGroupLayout,
+        depth: &wgpu::Texture,
+        color: Option<&wgpu::Texture>,
+        index: u32,
+    ) -> Self {
+        let view = |texture: &wgpu::Texture| {
+            texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2),
+                base_array_layer: index,
+                array_layer_count: Some(1),
+                ..Default::default()
+            })
+        };
+        let caster_uniform = uniform_buffer(device, size_of::<CasterUniform>());
+        let caster_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("shadowfit caster"),
+            layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: caster_uniform.as_entire_binding() }],
+        });
+        Self { depth: view(depth), color: color.map(view), caster_uniform, caster_group }
+    }
+}
+
+fn check(descriptor: &ShadowMapDescriptor, device_limit: u32) -> Result<(), ShadowMapError> {
+    let resolution = descriptor.resolution;
+    if resolution.iter().any(|side| !RESOLUTIONS.contains(side) || *side > device_limit) {
+        return Err(ShadowMapError::Resolution { resolution, device_limit });
+    }
+    if !(1..=MAX_MAPS as u32).contains(&descriptor.maps) {
+        return Err(ShadowMapError::Maps(descriptor.maps));
+    }
+    if descriptor.depth == DepthConvention::NegativeOneToOne {
+        return Err(ShadowMapError::Depth(descriptor.depth));
+    }
+    Ok(())
+}
+
+fn texture(device: &wgpu::Device, descriptor: &ShadowMapDescriptor, format: wgpu::TextureFormat) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("shadowfit map"),
+        size: wgpu::Extent3d {
+            width: descriptor.resolution[0],
+            height: descriptor.resolution[1],
+            depth_or_array_layers: descriptor.maps,
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    })
+}
+
+fn uniform_buffer(device: &wgpu::Device, size: usize) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("shadowfit uniform"),
+        size: size as u64,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+fn comparison_sampler(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> wgpu::Sampler {
+    let filter = match descriptor.filter {
+        FilterKind::Point => wgpu::FilterMode::Nearest,
+        FilterKind::Hardware2x2 => wgpu::FilterMode::Linear,
+    };
+    device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("shadowfit comparison"),
+        mag_filter: filter,
+        min_filter: filter,
+        compare: Some(match descriptor.depth {
+            DepthConvention::Reversed => wgpu::CompareFunction::GreaterEqual,
+            _ => wgpu::CompareFunction::LessEqual,
+        }),
+        ..Default::default()
+    })
+}
+
+fn uniform_entry(visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding: 0,
+        visibility,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    }
+}
+
+fn caster_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("shadowfit caster"),
+        entries: &[uniform_entry(wgpu::ShaderStages::VERTEX)],
+    })
+}
+
+fn receiver_layout(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> wgpu::BindGroupLayout {
+    let is_depth = descriptor.format == MapFormat::Depth32Float;
+    let texture = wgpu::BindGroupLayoutEntry {
+        binding: 1,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty: wgpu::BindingType::Texture {
+            sample_type: if is_depth {
+                wgpu::TextureSampleType::Depth
+            } else {
+                wgpu::TextureSampleType::Float { filterable: false }
+            },
+            view_dimension: wgpu::TextureViewDimension::D2Array,
+            multisampled: false,
+        },
+        count: None,
+    };
+    let sampler = wgpu::BindGroupLayoutEntry {
+        binding: 2,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
+        count: None,
+    };
+    let entries = [uniform_entry(wgpu::ShaderStages::FRAGMENT), texture, sampler];
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("shadowfit receiver"),
+        entries: &entries[..if is_depth { 3 } else { 2 }],
+    })
+}
+
+fn receiver_group(
+    device: &wgpu::Device,
+    descriptor: &ShadowMapDescriptor,
+    layout: &wgpu::BindGroupLayout,
+    uniform: &wgpu::Buffer,
+    view: &wgpu::TextureView,
+    sampler: &wgpu::Sampler,
+) -> wgpu::BindGroup {
+    let entries = [
+        wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
+        wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(view) },
+        wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(sampler) },
+    ];
+    let used = if descriptor.format == MapFormat::Depth32Float { 3 } else { 2 };
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("shadowfit receiver"),
+        layout,
+        entries: &entries[..used],
+    })
+}

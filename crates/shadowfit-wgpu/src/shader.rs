@@ -1,0 +1,39 @@
+//! The WGSL of casters and receivers, put together from the pieces in `shaders/`. Every name
+//! starts with `shadowfit_`, so that the text can stand in any shader.
+
+use shadowfit::DepthConvention;
+use shadowfit::settings::{FilterKind, MapFormat};
+
+use crate::{MAX_MAPS, ShadowMapDescriptor};
+
+/// WGSL for vertex shaders of the shadow pass: `shadowfit_caster_position(position) -> vec4<f32>`,
+/// where `position` is in world space, metres, relative to the origin of
+/// [`crate::ShadowMap::prepare`].
+///
+/// It reads binding 0 of `group`; [`crate::ShadowMap::render`] sets group 0.
+pub fn caster_wgsl(group: u32) -> String {
+    include_str!("shaders/caster.wgsl").replace("GROUP", &group.to_string())
+}
+
+/// WGSL for fragment shaders that receive shadows: `shadowfit_factor(position, normal) -> f32`.
+///
+/// `position` is in world space, metres, relative to the origin of [`crate::ShadowMap::prepare`];
+/// `normal` is the unit geometric normal on the side that is seen. The result is 1 where lit and
+/// outside every map. Reads bindings 0, 1 and, for depth formats, 2 of `group`; no derivatives.
+pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, group: u32) -> String {
+    let compare = match (descriptor.format, descriptor.filter) {
+        (MapFormat::Depth32Float, _) => include_str!("shaders/compare_depth.wgsl").to_owned(),
+        (MapFormat::R32Float, FilterKind::Point) => {
+            [include_str!("shaders/compare_float.wgsl"), include_str!("shaders/compare_float_point.wgsl")].concat()
+        }
+        (MapFormat::R32Float, FilterKind::Hardware2x2) => {
+            [include_str!("shaders/compare_float.wgsl"), include_str!("shaders/compare_float_2x2.wgsl")].concat()
+        }
+    };
+    let closer = if descriptor.depth == DepthConvention::Reversed { ">=" } else { "<=" };
+    [include_str!("shaders/receiver.wgsl"), &compare]
+        .concat()
+        .replace("GROUP", &group.to_string())
+        .replace("MAX_MAPS", &MAX_MAPS.to_string())
+        .replace("COMPARE", closer)
+}
