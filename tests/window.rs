@@ -1,0 +1,134 @@
+//! The viewer in a real window, driven as a person would drive it: an X server without a screen (Xvfb), keys pressed
+//! by xdotool, screenshots by `ImageMagick`. There is no window manager, which an empty X server does without: the test
+//! gives the window its focus, moves and resizes it, and "minimises" by unmapping it, which is what iconifying does to
+//! an X11 window. What is asserted is that pictures change, come back or stay; every wait is for something to be seen,
+//! with a generous limit, never for a time to pass.
+
+mod desktop;
+mod shot;
+
+use std::time::Duration;
+
+use desktop::{Desktop, Viewer, missing_tools};
+use shot::{Area, Shot};
+
+/// Size of the window at the start, in pixels; smaller than the [`desktop::SCREEN`] so that a resize can grow it.
+const SIZE: (u32, u32) = (960, 600);
+
+/// What the viewer is started with: a scene that stands still, and its progress told on the standard error.
+const ARGUMENTS: [&str; 4] = ["--size", "960x600", "--no-play", "--log-frames"];
+
+/// The part of the window that shows the scene whatever the panel beside it does.
+const PICTURE: Area = Area { x: 24, y: 120, width: 500, height: 380 };
+
+/// Mean difference, in levels of 255, from which on a picture counts as another one. A software driver draws a scene
+/// that stands still to the same bits each time, and a move of a few pixels shifts every edge of the picture by far
+/// more than this.
+const CHANGED: f32 = 1.0;
+
+/// Mean difference, in levels of 255, up to which two pictures count as the same.
+const SAME: f32 = 0.1;
+
+/// How long a frame, or a change that takes some frames, may take: a software driver, two cores, a cold shader cache.
+const PATIENCE: Duration = Duration::from_mins(1);
+
+#[test]
+fn the_real_window_flies_shows_the_artefacts_resizes_hides_and_quits() {
+    let missing = missing_tools();
+    if !missing.is_empty() {
+        let reason = format!("{} not found (cargo xtask test installs them on Debian)", missing.join(", "));
+        assert!(std::env::var_os("SHADOWFIT_REQUIRE_GPU").is_none(), "the window test cannot run: {reason}");
+        println!("SKIPPED: {reason}");
+        return;
+    }
+    let desktop = Desktop::start();
+    let mut viewer = Viewer::start(&desktop, &ARGUMENTS);
+    viewer.wait_for_line("ready", PATIENCE);
+    viewer.focus();
+
+    let start = settled(&desktop, "start");
+    assert!(start.spread(PICTURE) > 5.0, "the picture is one flat colour: {}", start.file());
+    every_fly_key_moves_the_picture(&desktop, &viewer);
+    every_artefact_has_a_picture_of_its_own(&desktop, &viewer);
+    a_resized_window_is_filled_and_still_flies(&desktop, &viewer);
+    a_hidden_window_comes_back_unchanged(&desktop, &mut viewer);
+
+    viewer.press("Escape");
+    assert_eq!(viewer.exit_code(PATIENCE), Some(0), "Escape must end the viewer with success\n{}", viewer.log());
+}
+
+/// Holds each key until the picture changes.
+fn every_fly_key_moves_the_picture(desktop: &Desktop, viewer: &Viewer) {
+    // In pairs that undo each other, so that the camera stays where there is something to see.
+    for key in ["w", "s", "a", "d", "Left", "Right", "Up", "Down"] {
+        let before = settled(desktop, &format!("before-{key}"));
+        viewer.hold(key);
+        let moved = desktop.wait_for(PATIENCE, |shot| shot.difference(&before, PICTURE) > CHANGED);
+        viewer.release(key);
+        let Some(_) = moved else {
+            panic!("holding {key} changes nothing: compare {} and {}", before.file(), desktop.shoot(key).file());
+        };
+    }
+}
+
+/// Presses each artefact's key, then the key that fixes it.
+fn every_artefact_has_a_picture_of_its_own(desktop: &Desktop, viewer: &Viewer) {
+    let mut previous = settled(desktop, "before-artefacts");
+    for (key, name) in [("1", "acne"), ("2", "aliasing"), ("3", "hole")] {
+        for (key, name) in [(key, name.to_owned()), ("f", format!("{name}-fixed"))] {
+            viewer.press(key);
+            let shown = desktop.wait_for(PATIENCE, |shot| shot.difference(&previous, PICTURE) > SAME);
+            assert!(shown.is_some(), "{key} ({name}) changes nothing since {}", previous.file());
+            previous = settled(desktop, &name);
+        }
+    }
+}
+
+/// Makes the window smaller, tiny, and larger than it was.
+fn a_resized_window_is_filled_and_still_flies(desktop: &Desktop, viewer: &Viewer) {
+    for size in [(700, 460), (1, 1), (1120, 700)] {
+        viewer.resize(size);
+        let name = format!("resized-{}x{}", size.0, size.1);
+        if size.0 < PICTURE.x + PICTURE.width {
+            continue;
+        }
+        // The right edge and the lower edge: where a surface that kept its old size leaves the window unpainted.
+        let (right, below) = (Area::new(size.0 - 12, 40, 8, size.1 - 80), Area::new(40, size.1 - 12, 200, 8));
+        let filled = desktop.wait_for(PATIENCE, |shot| shot.is_painted(right) && shot.is_painted(below));
+        assert!(filled.is_some(), "a window of {size:?} is not filled: {}", desktop.shoot(&name).file());
+        let outside = Area::new(size.0 + 4, 0, 40, size.1);
+        let shot = settled(desktop, &name);
+        assert!(!shot.is_painted(outside), "the window is larger than {size:?}: {}", shot.file());
+    }
+    viewer.resize(SIZE);
+    let before = settled(desktop, "resized-back");
+    viewer.hold("Left");
+    let moved = desktop.wait_for(PATIENCE, |shot| shot.difference(&before, PICTURE) > CHANGED);
+    viewer.release("Left");
+    assert!(moved.is_some(), "after a resize the viewer no longer turns: {}", before.file());
+}
+
+/// Takes the window off the screen and brings it back.
+fn a_hidden_window_comes_back_unchanged(desktop: &Desktop, viewer: &mut Viewer) {
+    let before = settled(desktop, "before-hiding");
+    viewer.hide();
+    let gone = desktop.wait_for(PATIENCE, |shot| !shot.is_painted(PICTURE));
+    assert!(gone.is_some(), "the window does not go away");
+    viewer.show();
+    let back = desktop.wait_for(PATIENCE, |shot| shot.difference(&before, PICTURE) <= SAME);
+    let now = desktop.shoot("after-hiding");
+    assert!(back.is_some(), "the picture does not come back: compare {} and {}", before.file(), now.file());
+    assert!(viewer.is_running(), "the viewer ended while its window was hidden\n{}", viewer.log());
+}
+
+/// A screenshot that no longer changes.
+fn settled(desktop: &Desktop, name: &str) -> Shot {
+    let mut last = desktop.shoot(name);
+    let still = desktop.wait_for(PATIENCE, |shot| {
+        let same = shot.difference(&last, PICTURE) <= SAME;
+        last = shot.clone();
+        same
+    });
+    let Some(shot) = still else { panic!("the picture never stands still: {}", last.file()) };
+    desktop.keep(shot, name)
+}
