@@ -42,6 +42,7 @@ pub mod bias;
 pub mod diagnostics;
 pub mod figures;
 pub mod fits;
+pub mod params;
 pub mod settings;
 
 mod axes;

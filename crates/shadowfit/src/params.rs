@@ -1,0 +1,245 @@
+//! Every knob of [`Settings`] as plain data: name, unit, range, help and access.
+//!
+//! Panels, command lines, saved files and code export are made from this one table, so that a knob
+//! is added, renamed or re-ranged in one place.
+//!
+//! ```
+//! use shadowfit::params::{self, Kind};
+//! use shadowfit::Settings;
+//!
+//! let mut settings = Settings::default();
+//! params::set_from_str(&mut settings, "light.elevation", "30").unwrap();
+//! assert!(params::set_from_str(&mut settings, "map.resolution", "2000").is_err());
+//! for parameter in params::PARAMETERS {
+//!     if let Kind::Toggle(toggle) = &parameter.kind {
+//!         toggle.set(&mut settings, false);
+//!     }
+//! }
+//! ```
+//!
+//! Angles are degrees here and radians in [`Settings`]; lengths are metres and biases texels in
+//! both.
+
+mod table;
+mod text;
+
+use crate::Settings;
+
+pub use table::PARAMETERS;
+pub use text::{ParameterError, format_value, set_from_str};
+
+/// The far plane and the shadow distance are kept at this many times the near distance or more:
+/// the setting that is changed wins and moves the others.
+///
+/// Two, because it is exact in binary, so that a saved file reads back the same bits, and because
+/// no view of a scene has less depth than that.
+pub const MIN_FAR_PER_NEAR: f32 = 2.0;
+
+/// One knob of [`Settings`].
+#[derive(Clone, Copy, Debug)]
+pub struct Parameter {
+    /// Stable name for files and command lines: the group's id, a dot, and the knob's own name.
+    pub id: &'static str,
+    /// Where it is shown.
+    pub group: Group,
+    /// Name for people, without its unit.
+    pub label: &'static str,
+    /// Unit of the value as shown ("texels", "m", "deg"); empty when it has none.
+    pub unit: &'static str,
+    /// What it does to the picture and when to turn it, in a sentence or two.
+    pub help: &'static str,
+    /// Range or options, and access to the value.
+    pub kind: Kind,
+    /// Why the knob has no effect under these settings, or `None` when it has one.
+    pub inert: fn(&Settings) -> Option<&'static str>,
+}
+
+impl Parameter {
+    /// Whether the knob has the same value in both settings.
+    pub fn is_equal(&self, a: &Settings, b: &Settings) -> bool {
+        match &self.kind {
+            Kind::Number(number) => number.get(a) == number.get(b),
+            Kind::Choice(choice) => choice.get(a) == choice.get(b),
+            Kind::Toggle(toggle) => toggle.get(a) == toggle.get(b),
+        }
+    }
+
+    /// Gives the knob the value that it has in `from`, by the rules of its kind.
+    pub fn copy(&self, settings: &mut Settings, from: &Settings) {
+        match &self.kind {
+            Kind::Number(number) => number.set(settings, number.get(from)),
+            Kind::Choice(choice) => choice.set(settings, choice.get(from)),
+            Kind::Toggle(toggle) => toggle.set(settings, toggle.get(from)),
+        }
+    }
+}
+
+/// What values a knob takes.
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    /// A number in a range.
+    Number(Number),
+    /// One of a few named options.
+    Choice(Choice),
+    /// On or off.
+    Toggle(Toggle),
+}
+
+/// A number in a range, in the unit of its [`Parameter`].
+#[derive(Clone, Copy, Debug)]
+pub struct Number {
+    /// Least value.
+    pub min: f64,
+    /// Greatest value.
+    pub max: f64,
+    /// A fine step for keys and dragging; not a grid, values between steps are kept.
+    pub step: f64,
+    /// Whether a slider over the range should be logarithmic.
+    pub logarithmic: bool,
+    /// Decimals worth showing.
+    pub decimals: usize,
+    read: fn(&Settings) -> f64,
+    write: fn(&mut Settings, f64),
+}
+
+impl Number {
+    /// The value, as it stands: settings that were filled by hand may lie outside the range.
+    pub fn get(&self, settings: &Settings) -> f64 {
+        (self.read)(settings)
+    }
+
+    /// Sets the value, clamped to the range; NaN and infinity are ignored.
+    ///
+    /// The near and far planes and the shadow distance move each other, see
+    /// [`MIN_FAR_PER_NEAR`].
+    pub fn set(&self, settings: &mut Settings, value: f64) {
+        if value.is_finite() {
+            (self.write)(settings, value.max(self.min).min(self.max));
+        }
+    }
+}
+
+/// One of a few named options.
+#[derive(Clone, Copy, Debug)]
+pub struct Choice {
+    /// The options, in the order that they are shown.
+    pub options: &'static [ChoiceOption],
+    read: fn(&Settings) -> usize,
+    write: fn(&mut Settings, usize),
+}
+
+impl Choice {
+    /// Index of the current option. Settings that were filled by hand may hold a resolution that
+    /// is none of the options: the largest that the map's longer side reaches stands for it.
+    pub fn get(&self, settings: &Settings) -> usize {
+        (self.read)(settings)
+    }
+
+    /// Sets the option; an index beyond the last is ignored.
+    pub fn set(&self, settings: &mut Settings, index: usize) {
+        if index < self.options.len() {
+            (self.write)(settings, index);
+        }
+    }
+}
+
+/// An option of a [`Choice`].
+#[derive(Clone, Copy, Debug)]
+pub struct ChoiceOption {
+    /// Stable name for files and command lines.
+    pub id: &'static str,
+    /// Name for people.
+    pub label: &'static str,
+    /// What it does to the picture.
+    pub help: &'static str,
+}
+
+/// On or off.
+#[derive(Clone, Copy, Debug)]
+pub struct Toggle {
+    read: fn(&Settings) -> bool,
+    write: fn(&mut Settings, bool),
+}
+
+impl Toggle {
+    /// Whether it is on.
+    pub fn get(&self, settings: &Settings) -> bool {
+        (self.read)(settings)
+    }
+
+    /// Turns it on or off.
+    pub fn set(&self, settings: &mut Settings, on: bool) {
+        (self.write)(settings, on);
+    }
+}
+
+/// A heading over some knobs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Group {
+    /// Where the shadow map looks.
+    Fit,
+    /// What the shadow map stores and how it is read.
+    Map,
+    /// Biases against self-shadowing.
+    Bias,
+    /// The sun.
+    Light,
+    /// Lens and speed of the camera.
+    Camera,
+    /// What is drawn.
+    View,
+}
+
+impl Group {
+    /// All groups, in the order that they are shown.
+    pub const ALL: [Self; 6] = [Self::Fit, Self::Map, Self::Bias, Self::Light, Self::Camera, Self::View];
+
+    /// Stable name; the ids of the group's parameters begin with it and a dot.
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::Fit => "fit",
+            Self::Map => "map",
+            Self::Bias => "bias",
+            Self::Light => "light",
+            Self::Camera => "camera",
+            Self::View => "view",
+        }
+    }
+
+    /// Name for people.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Fit => "Fit",
+            Self::Map => "Shadow map",
+            Self::Bias => "Bias",
+            Self::Light => "Light",
+            Self::Camera => "Camera",
+            Self::View => "View",
+        }
+    }
+
+    /// What the group's knobs have in common, in a sentence.
+    pub const fn help(self) -> &'static str {
+        match self {
+            Self::Fit => "Which part of the scene the shadow map covers.",
+            Self::Map => "How large the shadow map is, what it stores and how it is read.",
+            Self::Bias => {
+                "How far the comparison is moved so that a surface does not shadow itself. Too little leaves \
+                 acne, too much detaches shadows from their casters."
+            }
+            Self::Light => "Where the sun stands.",
+            Self::Camera => "The lens and the speed of the camera.",
+            Self::View => "What is drawn over or instead of the picture.",
+        }
+    }
+
+    /// The parameters of this group, in the order that they are shown.
+    pub fn parameters(self) -> impl Iterator<Item = &'static Parameter> {
+        PARAMETERS.iter().filter(move |parameter| parameter.group == self)
+    }
+}
+
+/// The parameter of that id, or `None` when there is none.
+pub fn parameter(id: &str) -> Option<&'static Parameter> {
+    PARAMETERS.iter().find(|parameter| parameter.id == id)
+}

@@ -1,0 +1,180 @@
+//! Parameter values as text, for command lines and saved files.
+
+use core::fmt;
+
+use super::{Kind, Number, PARAMETERS, Parameter, parameter};
+use crate::Settings;
+
+/// Sets one parameter from text: a number in the parameter's unit, an option's id, or `true`,
+/// `on`, `false`, `off`. Spaces around the value are ignored.
+///
+/// Unlike [`Number::set`], a number outside its range is an error, since a file or command line
+/// has no slider that would show the clamped value.
+///
+/// # Errors
+///
+/// [`ParameterError`], with `settings` untouched: the id is unknown, or the value is not one that
+/// the parameter takes.
+pub fn set_from_str<'a>(settings: &mut Settings, id: &'a str, value: &'a str) -> Result<(), ParameterError<'a>> {
+    let parameter = parameter(id).ok_or(ParameterError::UnknownId { id })?;
+    let value = value.trim();
+    match &parameter.kind {
+        Kind::Number(number) => {
+            let parsed: f64 = value.parse().map_err(|_| ParameterError::NotANumber { parameter, value })?;
+            if !(number.min..=number.max).contains(&parsed) {
+                return Err(ParameterError::OutOfRange { parameter, value });
+            }
+            number.set(settings, parsed);
+        }
+        Kind::Choice(choice) => {
+            let index = choice.options.iter().position(|option| option.id == value);
+            choice.set(settings, index.ok_or(ParameterError::UnknownOption { parameter, value })?);
+        }
+        Kind::Toggle(toggle) => match value {
+            "true" | "on" => toggle.set(settings, true),
+            "false" | "off" => toggle.set(settings, false),
+            _ => return Err(ParameterError::UnknownOption { parameter, value }),
+        },
+    }
+    Ok(())
+}
+
+/// Writes a parameter's value as [`set_from_str`] reads it, without its unit.
+///
+/// A number gets the fewest decimals that restore the setting to the bit; one outside its range,
+/// which no text restores, is written with all its digits.
+///
+/// # Errors
+///
+/// Only those of `out`.
+pub fn format_value(settings: &Settings, parameter: &Parameter, out: &mut dyn fmt::Write) -> fmt::Result {
+    match &parameter.kind {
+        Kind::Number(number) => write_number(settings, number, out),
+        Kind::Choice(choice) => out.write_str(choice.options.get(choice.get(settings)).map_or("", |option| option.id)),
+        Kind::Toggle(toggle) => out.write_str(if toggle.get(settings) { "true" } else { "false" }),
+    }
+}
+
+fn write_number(settings: &Settings, number: &Number, out: &mut dyn fmt::Write) -> fmt::Result {
+    /// More than any value in any range needs: f32 has 9 significant decimal digits, and the least
+    /// positive values of the ranges are hundredths.
+    const MOST_DECIMALS: usize = 17;
+    let value = number.get(settings);
+    for decimals in 0..=MOST_DECIMALS {
+        let mut text = ShortText::default();
+        if fmt::Write::write_fmt(&mut text, format_args!("{value:.decimals$}")).is_err() {
+            break;
+        }
+        let mut restored = *settings;
+        if let Ok(parsed) = text.as_str().parse() {
+            number.set(&mut restored, parsed);
+            if number.get(&restored) == value && !value.is_nan() && (number.min..=number.max).contains(&parsed) {
+                return out.write_str(text.as_str());
+            }
+        }
+    }
+    write!(out, "{value}")
+}
+
+/// Text on the stack: five digits, a point and 17 decimals fit.
+#[derive(Default)]
+struct ShortText {
+    bytes: [u8; 32],
+    len: usize,
+}
+
+impl ShortText {
+    fn as_str(&self) -> &str {
+        self.bytes.get(..self.len).and_then(|bytes| core::str::from_utf8(bytes).ok()).unwrap_or("")
+    }
+}
+
+impl fmt::Write for ShortText {
+    fn write_str(&mut self, s: &str) -> fmt::Result {
+        let end = self.len + s.len();
+        self.bytes.get_mut(self.len..end).ok_or(fmt::Error)?.copy_from_slice(s.as_bytes());
+        self.len = end;
+        Ok(())
+    }
+}
+
+/// Why a parameter could not be set from text.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub enum ParameterError<'a> {
+    /// No parameter has that id.
+    UnknownId {
+        /// The id that was asked for.
+        id: &'a str,
+    },
+    /// The value is not a number.
+    NotANumber {
+        /// The parameter.
+        parameter: &'static Parameter,
+        /// What was given.
+        value: &'a str,
+    },
+    /// The number lies outside the parameter's range, or is NaN.
+    OutOfRange {
+        /// The parameter.
+        parameter: &'static Parameter,
+        /// What was given.
+        value: &'a str,
+    },
+    /// The value is none of the parameter's options.
+    UnknownOption {
+        /// The parameter.
+        parameter: &'static Parameter,
+        /// What was given.
+        value: &'a str,
+    },
+}
+
+impl core::error::Error for ParameterError<'_> {}
+
+impl fmt::Display for ParameterError<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::UnknownId { id } => {
+                write!(f, "there is no parameter {id:?}; there are ")?;
+                list(f, PARAMETERS.iter().map(|parameter| parameter.id))
+            }
+            Self::NotANumber { parameter, value } => {
+                write!(f, "{} is {value:?}, which is not a number; give ", parameter.id)?;
+                allowed(f, parameter)
+            }
+            Self::OutOfRange { parameter, value } => {
+                write!(f, "{} is {value}, which is out of range; give ", parameter.id)?;
+                allowed(f, parameter)
+            }
+            Self::UnknownOption { parameter, value } => {
+                write!(f, "{} is {value:?}, which is none of its options; give ", parameter.id)?;
+                allowed(f, parameter)
+            }
+        }
+    }
+}
+
+fn allowed(f: &mut fmt::Formatter<'_>, parameter: &Parameter) -> fmt::Result {
+    match &parameter.kind {
+        Kind::Number(Number { min, max, .. }) => {
+            write!(f, "a number from {min} to {max}")?;
+            if parameter.unit.is_empty() { Ok(()) } else { write!(f, " {}", parameter.unit) }
+        }
+        Kind::Choice(choice) => {
+            f.write_str("one of ")?;
+            list(f, choice.options.iter().map(|option| option.id))
+        }
+        Kind::Toggle(_) => f.write_str("true or false"),
+    }
+}
+
+fn list(f: &mut fmt::Formatter<'_>, words: impl Iterator<Item = &'static str>) -> fmt::Result {
+    for (index, word) in words.enumerate() {
+        if index > 0 {
+            f.write_str(", ")?;
+        }
+        f.write_str(word)?;
+    }
+    Ok(())
+}
