@@ -1,0 +1,112 @@
+//! Errors of scene import, written for people: which file, which element, why, and what to do.
+
+use std::path::{Path, PathBuf};
+
+/// Why a scene file was refused. Nothing of the file is kept then.
+#[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// The file itself cannot be read.
+    #[error("{}: cannot be read: {reason}. {hint}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What went wrong.
+        reason: String,
+        /// What to do about it.
+        hint: &'static str,
+    },
+    /// The file is not glTF 2.0: truncated, not JSON, or of another version.
+    #[error("{}: is not valid glTF 2.0: {element}: {reason}. {hint}", path.display())]
+    Malformed {
+        /// The file.
+        path: PathBuf,
+        /// The part of the file.
+        element: String,
+        /// What is wrong with it.
+        reason: String,
+        /// What to do about it.
+        hint: &'static str,
+    },
+    /// The file requires an extension that import does not support.
+    #[error("{}: {element} requires {name}, which import does not support. {hint}", path.display())]
+    Extension {
+        /// The file.
+        path: PathBuf,
+        /// The entry that asks for it.
+        element: String,
+        /// Name of the extension.
+        name: String,
+        /// What to do about it.
+        hint: &'static str,
+    },
+    /// One element of the file is wrong.
+    #[error("{}: {element}: {reason}. {hint}", path.display())]
+    Element {
+        /// The file.
+        path: PathBuf,
+        /// The element, such as `meshes[3].primitives[0].attributes.POSITION, accessor 7`.
+        element: String,
+        /// What is wrong with it.
+        reason: String,
+        /// What to do about it.
+        hint: &'static str,
+    },
+    /// The file holds nothing that could be drawn.
+    #[error("{}: nothing to draw: {reason}. {hint}", path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
+        /// What is missing.
+        reason: String,
+        /// What to do about it.
+        hint: &'static str,
+    },
+}
+
+impl SceneError {
+    /// The file that was refused.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Unreadable { path, .. }
+            | Self::Malformed { path, .. }
+            | Self::Extension { path, .. }
+            | Self::Element { path, .. }
+            | Self::Empty { path, .. } => path,
+        }
+    }
+}
+
+/// A wrong element, before the file's name is known.
+#[derive(Clone, Debug)]
+pub(crate) struct Problem {
+    element: String,
+    reason: String,
+    hint: &'static str,
+}
+
+/// What to do about data that contradicts the specification.
+const RE_EXPORT: &str = "Export the file again, or look at it with the Khronos glTF validator";
+
+impl Problem {
+    /// A problem that a correct export does not have.
+    pub(crate) fn new(element: impl Into<String>, reason: impl Into<String>) -> Self {
+        Self { element: element.into(), reason: reason.into(), hint: RE_EXPORT }
+    }
+
+    /// The same problem with better advice.
+    pub(crate) fn hint(self, hint: &'static str) -> Self {
+        Self { hint, ..self }
+    }
+
+    /// Reason alone, for problems that become notes.
+    pub(crate) fn reason(&self) -> &str {
+        &self.reason
+    }
+
+    /// Names the file.
+    pub(crate) fn at(self, path: &Path) -> SceneError {
+        let Self { element, reason, hint } = self;
+        SceneError::Element { path: path.to_owned(), element, reason, hint }
+    }
+}

@@ -1,0 +1,286 @@
+//! Typed reads from buffers, every range checked before anything is allocated or read.
+
+use std::cell::Cell;
+use std::path::Path;
+
+use gltf::json::accessor::{Accessor, ComponentType, sparse::Sparse};
+use gltf::json::validation::Checked;
+use gltf::json::{Index, Root, buffer};
+
+use super::container::MAX_FILE_BYTES;
+use super::uri::read_uri;
+use crate::error::Problem;
+
+/// Elements that one import may decode. Files can refer to the same data many times, so that their
+/// size alone does not bound the memory; this many 16-byte elements fit in 2 GiB.
+const MAX_ELEMENTS: u64 = 1 << 27;
+
+/// Elements of an accessor that has no data of its own (all zero, or sparse over zero): its count is
+/// not bounded by the size of any buffer.
+const MAX_UNBACKED_ELEMENTS: usize = 1 << 20;
+
+/// How integer components become floats.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Integers {
+    /// As the accessor's `normalized` says.
+    AsDeclared,
+    /// Always normalised: the attribute allows nothing else.
+    Normalized,
+}
+
+/// Reads accessors of one file.
+pub(crate) struct Reader<'a> {
+    root: &'a Root,
+    buffers: Vec<Result<Vec<u8>, Problem>>,
+    elements_left: Cell<u64>,
+}
+
+/// The checked place of an accessor's data.
+struct Layout<'a> {
+    /// From the first element on; `None` where all elements are zero.
+    bytes: Option<&'a [u8]>,
+    stride: usize,
+    count: usize,
+    component: ComponentType,
+    normalized: bool,
+}
+
+impl<'a> Reader<'a> {
+    /// Loads the buffers. One that cannot be loaded is a problem only for what reads it.
+    pub(crate) fn new(root: &'a Root, mut binary: Option<Vec<u8>>, folder: &Path) -> Self {
+        let mut bytes_left = MAX_FILE_BYTES;
+        let mut buffers = Vec::with_capacity(root.buffers.len());
+        for (index, buffer) in root.buffers.iter().enumerate() {
+            let loaded = load_buffer(index, buffer, &mut binary, folder, bytes_left);
+            bytes_left -= loaded.as_ref().map_or(0, |bytes| bytes.len() as u64).min(bytes_left);
+            buffers.push(loaded);
+        }
+        Self { root, buffers, elements_left: Cell::new(MAX_ELEMENTS) }
+    }
+
+    /// Number of elements that an accessor declares.
+    pub(crate) fn count(&self, index: Index<Accessor>, element: &str) -> Result<usize, Problem> {
+        let accessor = self.accessor(index, element)?;
+        let too_many = |_| Problem::new(named(element, index), "its count is too large");
+        usize::try_from(accessor.count.0).map_err(too_many)
+    }
+
+    /// Number of components of an accessor's elements, 1 to 16; 0 where its type is invalid.
+    pub(crate) fn components(&self, index: Index<Accessor>) -> usize {
+        match self.root.accessors.get(index.value()).map(|accessor| accessor.type_) {
+            Some(Checked::Valid(kind)) => kind.multiplicity(),
+            _ => 0,
+        }
+    }
+
+    /// All elements as floats.
+    pub(crate) fn floats<const N: usize>(
+        &self,
+        index: Index<Accessor>,
+        element: &str,
+        integers: Integers,
+    ) -> Result<Vec<[f32; N]>, Problem> {
+        let always = integers == Integers::Normalized;
+        self.read(index, element, |bytes, component, normalized| float(bytes, component, normalized || always))
+    }
+
+    /// All elements as unsigned integers.
+    pub(crate) fn integers<const N: usize>(
+        &self,
+        index: Index<Accessor>,
+        element: &str,
+    ) -> Result<Vec<[u32; N]>, Problem> {
+        use ComponentType::{U8, U16, U32};
+        let accessor = self.accessor(index, element)?;
+        if !matches!(accessor.component_type, Checked::Valid(kind) if matches!(kind.0, U8 | U16 | U32)) {
+            return Err(Problem::new(named(element, index), "its components are not unsigned integers"));
+        }
+        self.read(index, element, |bytes, component, _| unsigned(bytes, component))
+    }
+
+    /// The bytes of a buffer view.
+    pub(crate) fn view(&self, index: Index<buffer::View>, element: &str) -> Result<&[u8], Problem> {
+        let name = format!("{element}, bufferView {index}");
+        let view = self.root.buffer_views.get(index.value());
+        let view = view.ok_or_else(|| Problem::new(name.clone(), "there is no such buffer view"))?;
+        let buffer = self.buffers.get(view.buffer.value());
+        let buffer =
+            buffer.ok_or_else(|| Problem::new(name.clone(), format!("its buffer {} does not exist", view.buffer)))?;
+        let bytes = buffer.as_ref().map_err(Clone::clone)?;
+        let offset = view.byte_offset.map_or(0, |offset| offset.0);
+        range(bytes, offset, view.byte_length.0).ok_or_else(|| {
+            let length = view.byte_length.0;
+            let has = bytes.len();
+            Problem::new(
+                name,
+                format!("{length} bytes from offset {offset} exceed buffer {}, which has {has}", view.buffer),
+            )
+        })
+    }
+
+    fn accessor(&self, index: Index<Accessor>, element: &str) -> Result<&'a Accessor, Problem> {
+        let accessor = self.root.accessors.get(index.value());
+        accessor.ok_or_else(|| Problem::new(named(element, index), "there is no such accessor"))
+    }
+
+    fn read<T: Copy + Default, const N: usize>(
+        &self,
+        index: Index<Accessor>,
+        element: &str,
+        convert: impl Fn(&[u8], ComponentType, bool) -> T,
+    ) -> Result<Vec<[T; N]>, Problem> {
+        let name = named(element, index);
+        let accessor = self.accessor(index, element)?;
+        let layout = self.layout(accessor, N, &name)?;
+        self.spend(layout.count, &name)?;
+        let size = layout.component.size();
+        let decode = |bytes: &[u8]| -> [T; N] {
+            std::array::from_fn(|c| convert(&bytes[c * size..], layout.component, layout.normalized))
+        };
+        let mut values = match layout.bytes {
+            Some(bytes) => (0..layout.count).map(|i| decode(&bytes[i * layout.stride..])).collect(),
+            None => vec![[T::default(); N]; layout.count],
+        };
+        if let Some(sparse) = &accessor.sparse {
+            self.overlay(sparse, &mut values, size * N, &name, decode)?;
+        }
+        Ok(values)
+    }
+
+    fn layout(&self, accessor: &Accessor, components: usize, name: &str) -> Result<Layout<'_>, Problem> {
+        let wrong = |reason: String| Problem::new(name, reason);
+        let has = match accessor.type_ {
+            Checked::Valid(kind) => kind.multiplicity(),
+            Checked::Invalid => return Err(wrong("its type is unknown".to_owned())),
+        };
+        if has != components {
+            return Err(wrong(format!("it has {has} components instead of {components}")));
+        }
+        let Checked::Valid(component) = accessor.component_type else {
+            return Err(wrong("its component type is unknown".to_owned()));
+        };
+        let component = component.0;
+        let size = component.size() * components;
+        let count = usize::try_from(accessor.count.0).unwrap_or(usize::MAX);
+        let normalized = accessor.normalized;
+        let Some(view) = accessor.buffer_view else {
+            if count > MAX_UNBACKED_ELEMENTS {
+                return Err(wrong(format!("it declares {count} elements and has no data for them")));
+            }
+            return Ok(Layout { bytes: None, stride: size, count, component, normalized });
+        };
+        let bytes = self.view(view, name)?;
+        let declared = self.root.buffer_views[view.value()].byte_stride;
+        let stride = declared.map_or(size, |stride| stride.0);
+        if stride < size {
+            return Err(wrong(format!("its stride of {stride} bytes is smaller than its elements of {size}")));
+        }
+        let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
+        let needed = (count as u128).saturating_sub(1) * stride as u128 + size as u128;
+        let needed = if count == 0 { 0 } else { needed };
+        let length = u64::try_from(needed).unwrap_or(u64::MAX);
+        let bytes = range(bytes, offset, length).ok_or_else(|| {
+            wrong(format!(
+                "its {count} elements need {needed} bytes from offset {offset}, buffer view {view} has {}",
+                bytes.len()
+            ))
+        })?;
+        Ok(Layout { bytes: Some(bytes), stride, count, component, normalized })
+    }
+
+    /// Replaces the elements that a sparse accessor lists.
+    fn overlay<T: Copy>(
+        &self,
+        sparse: &Sparse,
+        values: &mut [T],
+        size: usize,
+        name: &str,
+        decode: impl Fn(&[u8]) -> T,
+    ) -> Result<(), Problem> {
+        let name = format!("{name}, sparse");
+        let wrong = |reason: &str| Problem::new(name.clone(), reason);
+        let Checked::Valid(component) = sparse.indices.component_type else {
+            return Err(wrong("the component type of its indices is unknown"));
+        };
+        let component = component.0;
+        let count = sparse.count.0;
+        if count > values.len() as u64 {
+            return Err(wrong("it replaces more elements than there are"));
+        }
+        let place = |view, offset: u64, size: usize| -> Result<&[u8], Problem> {
+            let bytes = self.view(view, &name)?;
+            range(bytes, offset, count * size as u64).ok_or_else(|| wrong("it exceeds its buffer view"))
+        };
+        let indices = place(sparse.indices.buffer_view, sparse.indices.byte_offset.0, component.size())?;
+        let replacements = place(sparse.values.buffer_view, sparse.values.byte_offset.0, size)?;
+        let indices = indices.chunks_exact(component.size());
+        for (index, replacement) in indices.zip(replacements.chunks_exact(size)) {
+            let index = unsigned(index, component) as usize;
+            let value = values.get_mut(index).ok_or_else(|| wrong("one of its indices is out of range"))?;
+            *value = decode(replacement);
+        }
+        Ok(())
+    }
+
+    fn spend(&self, count: usize, name: &str) -> Result<(), Problem> {
+        let left = self.elements_left.get().checked_sub(count as u64).ok_or_else(|| {
+            Problem::new(name, format!("the file decodes to more than {MAX_ELEMENTS} elements"))
+                .hint("Split or simplify the scene")
+        })?;
+        self.elements_left.set(left);
+        Ok(())
+    }
+}
+
+fn load_buffer(
+    index: usize,
+    buffer: &buffer::Buffer,
+    binary: &mut Option<Vec<u8>>,
+    folder: &Path,
+    max_bytes: u64,
+) -> Result<Vec<u8>, Problem> {
+    const HINT: &str = "Keep the files that belong to the scene beside it, as they were exported";
+    let wrong = |reason: String| Problem::new(format!("buffers[{index}]"), reason);
+    let bytes = match &buffer.uri {
+        Some(uri) => read_uri(folder, uri, max_bytes).map_err(|reason| wrong(reason).hint(HINT))?,
+        None => binary.take().ok_or_else(|| wrong("it has neither a URI nor a binary chunk".to_owned()))?,
+    };
+    let claimed = buffer.byte_length.0;
+    if claimed > bytes.len() as u64 {
+        let reason = format!("it claims {claimed} bytes, its data has {}", bytes.len());
+        return Err(wrong(reason).hint(HINT));
+    }
+    Ok(bytes)
+}
+
+/// `bytes[offset..offset + length]`, if that exists.
+fn range(bytes: &[u8], offset: u64, length: u64) -> Option<&[u8]> {
+    let start = usize::try_from(offset).ok()?;
+    let end = usize::try_from(offset.checked_add(length)?).ok()?;
+    bytes.get(start..end)
+}
+
+fn named(element: &str, index: Index<Accessor>) -> String {
+    format!("{element}, accessor {index}")
+}
+
+fn float(bytes: &[u8], component: ComponentType, normalized: bool) -> f32 {
+    let (value, greatest) = match component {
+        ComponentType::F32 => return f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]),
+        ComponentType::I8 => (f32::from(bytes[0].cast_signed()), 127.0),
+        ComponentType::U8 => (f32::from(bytes[0]), 255.0),
+        ComponentType::I16 => (f32::from(i16::from_le_bytes([bytes[0], bytes[1]])), 32_767.0),
+        ComponentType::U16 => (f32::from(u16::from_le_bytes([bytes[0], bytes[1]])), 65_535.0),
+        ComponentType::U32 => return unsigned(bytes, component) as f32,
+    };
+    if normalized { (value / greatest).max(-1.0) } else { value }
+}
+
+/// The caller has made sure that the component is unsigned.
+fn unsigned(bytes: &[u8], component: ComponentType) -> u32 {
+    match component.size() {
+        1 => u32::from(bytes[0]),
+        2 => u32::from(u16::from_le_bytes([bytes[0], bytes[1]])),
+        _ => u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]),
+    }
+}

@@ -1,0 +1,94 @@
+//! Joint influences of vertices: the four strongest of all sets, normalised.
+
+use glam::Vec4;
+use gltf::json::mesh::{self, Semantic};
+use gltf::json::validation::Checked;
+
+use super::accessor::{Integers, Reader};
+use crate::error::Problem;
+
+/// Sets of four influences read at most; files in the wild have one or two.
+const MAX_SETS: u32 = 8;
+
+type Influences = (Vec<[u16; 4]>, Vec<Vec4>);
+
+/// Loads joints and weights of `count` vertices; both empty where the primitive has none.
+pub(crate) fn load(
+    reader: &Reader,
+    json: &mesh::Primitive,
+    element: &str,
+    count: usize,
+) -> Result<Influences, Problem> {
+    let mut strongest: Vec<[(u16, f32); 4]> = Vec::new();
+    for set in 0..MAX_SETS {
+        let find = |semantic| json.attributes.get(&Checked::Valid(semantic)).copied();
+        let (joints, weights) = match (find(Semantic::Joints(set)), find(Semantic::Weights(set))) {
+            (Some(joints), Some(weights)) => (joints, weights),
+            (None, None) => break,
+            _ => {
+                let element = format!("{element}.attributes");
+                return Err(Problem::new(element, format!("JOINTS_{set} and WEIGHTS_{set} must come together")));
+            }
+        };
+        for (name, index) in [("JOINTS", joints), ("WEIGHTS", weights)] {
+            let element = format!("{element}.attributes.{name}_{set}");
+            let has = reader.count(index, &element)?;
+            if has != count {
+                let reason = format!("it has {has} elements for {count} positions");
+                return Err(Problem::new(format!("{element}, accessor {index}"), reason));
+            }
+        }
+        let joints = reader.integers::<4>(joints, &format!("{element}.attributes.JOINTS_{set}"))?;
+        let name = format!("{element}.attributes.WEIGHTS_{set}");
+        let weights = reader.floats::<4>(weights, &name, Integers::Normalized)?;
+        strongest.resize(count, [(0, 0.0); 4]);
+        for (slots, (joints, weights)) in strongest.iter_mut().zip(joints.into_iter().zip(weights)) {
+            for (joint, weight) in joints.into_iter().zip(weights) {
+                insert(slots, joint, weight);
+            }
+        }
+    }
+    Ok(strongest.into_iter().map(normalized).unzip())
+}
+
+/// Keeps the four greatest weights in descending order; what is not positive and finite is no
+/// influence, and its joint is not even looked at.
+fn insert(slots: &mut [(u16, f32); 4], joint: u32, weight: f32) {
+    if !(weight > 0.0 && weight.is_finite()) {
+        return;
+    }
+    let Some(place) = slots.iter().position(|&(_, other)| weight > other) else { return };
+    slots[place..].rotate_right(1);
+    // Joints are u8 or u16 by the specification; a greater one is out of range in every skin.
+    slots[place] = (u16::try_from(joint).unwrap_or(u16::MAX), weight);
+}
+
+/// A vertex without influences hangs on the first joint.
+fn normalized(slots: [(u16, f32); 4]) -> ([u16; 4], Vec4) {
+    let weights = Vec4::from_array(slots.map(|(_, weight)| weight));
+    let sum = weights.element_sum();
+    let weights = if sum > 0.0 && sum.is_finite() { weights / sum } else { Vec4::X };
+    (slots.map(|(joint, _)| joint), weights)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_four_strongest_influences_are_kept_and_sum_to_one() {
+        let mut slots = [(0, 0.0); 4];
+        let given = [(7, 0.1), (3, 0.4), (9, f32::NAN), (5, 0.2), (6, 0.4), (8, 0.05), (2, -1.0)];
+        for (joint, weight) in given {
+            insert(&mut slots, joint, weight);
+        }
+        let (joints, weights) = normalized(slots);
+        assert_eq!(joints, [3, 6, 5, 7]);
+        assert!((weights.element_sum() - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_vertex_without_weights_hangs_on_the_first_joint() {
+        assert_eq!(normalized([(0, 0.0); 4]), ([0; 4], Vec4::X));
+    }
+}

@@ -1,0 +1,235 @@
+//! Materials and the textures they use.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use glam::{Vec3, Vec4};
+use gltf::json::extensions::texture::TextureTransform;
+use gltf::json::material::{self as json, AlphaMode as JsonAlpha};
+use gltf::json::texture::{self, MagFilter, WrappingMode};
+use gltf::json::validation::Checked;
+use gltf::json::{Index, Root, deserialize};
+
+use super::accessor::Reader;
+use super::image::Images;
+use super::notes::Notes;
+use crate::error::Problem;
+use crate::{AlphaMode, Image, Material, Texture, Wrap};
+
+/// Greatest emitted radiance kept; beyond it, sums of light would overflow half floats.
+const MAX_EMISSIVE: f32 = 65_504.0;
+
+/// What a primitive needs to know of its material.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Look {
+    /// Index into the scene's materials.
+    pub(crate) material: usize,
+    /// Set of texture coordinates that the textures read.
+    pub(crate) uv_set: u32,
+    /// Texture transform of the normal map, if there is one.
+    pub(crate) uv_from_texcoord: Option<[Vec3; 2]>,
+}
+
+/// Loads each material at most once, and only those that a primitive uses.
+pub(crate) struct Materials<'a> {
+    root: &'a Root,
+    reader: &'a Reader<'a>,
+    images: Images<'a>,
+    looks: HashMap<usize, Look>,
+    materials: Vec<Material>,
+}
+
+/// A reference to a texture from a material.
+struct Use<'a> {
+    element: String,
+    texture: Index<texture::Texture>,
+    uv_set: u32,
+    transform: Option<&'a TextureTransform>,
+}
+
+impl<'a> Materials<'a> {
+    /// Holds the default material only.
+    pub(crate) fn new(root: &'a Root, reader: &'a Reader<'a>, folder: &'a Path) -> Self {
+        let images = Images::new(root, folder);
+        Self { root, reader, images, looks: HashMap::new(), materials: vec![Material::default()] }
+    }
+
+    /// The look of a primitive's material, loaded if need be.
+    pub(crate) fn look(
+        &mut self,
+        material: Option<Index<json::Material>>,
+        element: &str,
+        notes: &mut Notes,
+    ) -> Result<Look, Problem> {
+        let Some(index) = material else { return Ok(Look::default()) };
+        if let Some(&look) = self.looks.get(&index.value()) {
+            return Ok(look);
+        }
+        let json = self
+            .root
+            .materials
+            .get(index.value())
+            .ok_or_else(|| Problem::new(format!("{element}.material"), format!("there is no material {index}")))?;
+        let look = self.load(json, &format!("materials[{index}]"), notes)?;
+        self.looks.insert(index.value(), look);
+        Ok(look)
+    }
+
+    /// The materials and images for the scene.
+    pub(crate) fn finish(self) -> (Vec<Material>, Vec<Image>) {
+        (self.materials, self.images.finish())
+    }
+
+    fn load(&mut self, json: &json::Material, element: &str, notes: &mut Notes) -> Result<Look, Problem> {
+        let base = base_color_use(json, element);
+        let transform = json.normal_texture.as_ref().and_then(normal_transform);
+        let normal = json.normal_texture.as_ref().map(|info| Use {
+            element: format!("{element}.normalTexture"),
+            texture: info.index,
+            uv_set: transform.as_ref().and_then(|t| t.tex_coord).unwrap_or(info.tex_coord),
+            transform: transform.as_ref(),
+        });
+        let uv_set = base.as_ref().or(normal.as_ref()).map_or(0, |used| used.uv_set);
+        let base_color_texture = match &base {
+            Some(used) => Some(self.texture(used, notes)?.unwrap_or_else(|| self.blank())),
+            None => None,
+        };
+        let mut normal_texture = match &normal {
+            Some(used) => self.texture(used, notes)?,
+            None => None,
+        };
+        if normal.is_some_and(|used| used.uv_set != uv_set) {
+            notes.add(format!(
+                "{element}.normalTexture: left out: it uses other texture coordinates than the base colour"
+            ));
+            normal_texture = None;
+        }
+        let mut material = plain(json, element, notes);
+        material.base_color_texture = base_color_texture;
+        material.normal_texture = normal_texture;
+        self.materials.push(material);
+        let uv_from_texcoord = normal_texture.map(|texture| texture.uv_from_texcoord);
+        Ok(Look { material: self.materials.len() - 1, uv_set, uv_from_texcoord })
+    }
+
+    /// A texture; `None` where its image cannot be used.
+    fn texture(&mut self, used: &Use, notes: &mut Notes) -> Result<Option<Texture>, Problem> {
+        let texture = self
+            .root
+            .textures
+            .get(used.texture.value())
+            .ok_or_else(|| Problem::new(used.element.as_str(), format!("there is no texture {}", used.texture)))?;
+        let element = format!("textures[{}]", used.texture);
+        // What the crate gives for a texture without a source of its own.
+        let absent = u32::MAX as usize;
+        let source = texture.source.value();
+        let image = if source == absent {
+            notes.add(format!("{element}: replaced by a placeholder: it has no PNG or JPEG image"));
+            None
+        } else if source >= self.root.images.len() {
+            return Err(Problem::new(element, format!("there is no image {source}")));
+        } else {
+            self.images.load(source, self.reader, notes)
+        };
+        let Some(image) = image else { return Ok(None) };
+        let mut loaded = Texture { image, ..blank() };
+        if let Some(index) = texture.sampler {
+            let sampler = self.root.samplers.get(index.value());
+            let sampler = sampler.ok_or_else(|| Problem::new(element, format!("there is no sampler {index}")))?;
+            loaded.wrap = [wrap(sampler.wrap_s), wrap(sampler.wrap_t)];
+            loaded.nearest = matches!(sampler.mag_filter, Some(Checked::Valid(MagFilter::Nearest)));
+        }
+        if let Some(transform) = used.transform {
+            loaded.uv_from_texcoord = rows(transform);
+        }
+        Ok(Some(loaded))
+    }
+
+    fn blank(&mut self) -> Texture {
+        Texture { image: self.images.placeholder(), ..blank() }
+    }
+}
+
+fn base_color_use<'a>(json: &'a json::Material, element: &str) -> Option<Use<'a>> {
+    let info = json.pbr_metallic_roughness.base_color_texture.as_ref()?;
+    let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref());
+    Some(Use {
+        element: format!("{element}.pbrMetallicRoughness.baseColorTexture"),
+        texture: info.index,
+        uv_set: transform.and_then(|t| t.tex_coord).unwrap_or(info.tex_coord),
+        transform,
+    })
+}
+
+/// The gltf crate leaves this extension of normal textures unparsed.
+fn normal_transform(info: &json::NormalTexture) -> Option<TextureTransform> {
+    let value = info.extensions.as_ref()?.others.get("KHR_texture_transform")?;
+    deserialize::from_value(value.clone()).ok()
+}
+
+/// The material without its textures.
+fn plain(json: &json::Material, element: &str, notes: &mut Notes) -> Material {
+    let pbr = &json.pbr_metallic_roughness;
+    let mut metallic = unit(pbr.metallic_factor.0);
+    if pbr.metallic_roughness_texture.is_some() {
+        // The factors only scale that texture; 1, their default, would make everything a mirror.
+        notes.add("metallic-roughness textures are not read: their materials count as not metallic");
+        metallic = 0.0;
+    }
+    let strength = json.extensions.as_ref().and_then(|e| e.emissive_strength.as_ref());
+    let strength = strength.map_or(1.0, |e| e.emissive_strength.0);
+    let emissive = json.emissive_factor.0.map(|c| (c * strength).max(0.0).min(MAX_EMISSIVE));
+    let normal_scale = json.normal_texture.as_ref().map_or(1.0, |normal| normal.scale);
+    Material {
+        name: json.name.clone().unwrap_or_default(),
+        base_color: Vec4::from_array(pbr.base_color_factor.0.map(unit)),
+        normal_scale: if normal_scale.is_finite() { normal_scale } else { 1.0 },
+        metallic,
+        roughness: unit(pbr.roughness_factor.0),
+        emissive: Vec3::from_array(emissive),
+        alpha: alpha(json, element, notes),
+        double_sided: json.double_sided,
+        ..Material::default()
+    }
+}
+
+fn alpha(json: &json::Material, element: &str, notes: &mut Notes) -> AlphaMode {
+    match json.alpha_mode {
+        Checked::Valid(JsonAlpha::Opaque) => AlphaMode::Opaque,
+        Checked::Valid(JsonAlpha::Mask) => {
+            AlphaMode::Mask { cutoff: json.alpha_cutoff.map_or(0.5, |cutoff| unit(cutoff.0)) }
+        }
+        Checked::Valid(JsonAlpha::Blend) => AlphaMode::Blend,
+        Checked::Invalid => {
+            notes.add(format!("{element}.alphaMode: unknown, taken as OPAQUE"));
+            AlphaMode::Opaque
+        }
+    }
+}
+
+/// Clamped to 0..=1, NaN to 0.
+fn unit(value: f32) -> f32 {
+    value.max(0.0).min(1.0)
+}
+
+/// Repeats, is filtered and not transformed.
+fn blank() -> Texture {
+    Texture { image: 0, wrap: [Wrap::Repeat; 2], nearest: false, uv_from_texcoord: [Vec3::X, Vec3::Y] }
+}
+
+fn wrap(mode: Checked<WrappingMode>) -> Wrap {
+    match mode {
+        Checked::Valid(WrappingMode::ClampToEdge) => Wrap::Clamp,
+        Checked::Valid(WrappingMode::MirroredRepeat) => Wrap::Mirror,
+        Checked::Valid(WrappingMode::Repeat) | Checked::Invalid => Wrap::Repeat,
+    }
+}
+
+/// Translation * rotation * scale of `KHR_texture_transform`. Positive angles turn texture coordinates
+/// counter-clockwise as seen in the image, whose v points down.
+fn rows(transform: &TextureTransform) -> [Vec3; 2] {
+    let ([x, y], [scale_u, scale_v]) = (transform.offset.0, transform.scale.0);
+    let (sin, cos) = transform.rotation.0.sin_cos();
+    let rows = [Vec3::new(cos * scale_u, sin * scale_v, x), Vec3::new(-sin * scale_u, cos * scale_v, y)];
+    if rows.iter().all(|row| row.is_finite()) { rows } else { [Vec3::X, Vec3::Y] }
+}

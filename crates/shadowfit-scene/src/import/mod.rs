@@ -1,0 +1,200 @@
+//! Import of glTF 2.0 scenes, for files that nobody vouches for.
+//!
+//! The gltf crate parses the JSON; everything behind it (GLB chunks, URIs, accessors, indices of any
+//! kind) is checked here before it is used, because the crate's own readers may panic on bad data.
+//! A file loads completely or is refused with a [`SceneError`]; repairs end up in [`Scene::notes`].
+
+mod accessor;
+mod animation;
+mod container;
+mod image;
+mod influence;
+mod material;
+mod mesh;
+mod nodes;
+mod notes;
+mod skin;
+mod surface;
+mod topology;
+mod uri;
+mod view;
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use glam::{Mat4, Vec3};
+use gltf::json::Root;
+
+use self::accessor::Reader;
+use self::animation::Animations;
+use self::container::Source;
+use self::material::Materials;
+use self::mesh::MAX_COORDINATE;
+use self::nodes::Tree;
+use self::notes::Notes;
+use crate::error::Problem;
+use crate::{Aabb, Mesh, Node, Pose, Primitive, Scene, SceneError, Skin};
+
+/// Triangles that a scene may draw: nodes may share meshes, so that a small file can ask for any
+/// number of them.
+const MAX_DRAWN_TRIANGLES: usize = 1 << 26;
+
+/// Loads the default scene of a `.gltf` or `.glb` file, or its first where none is the default.
+///
+/// # Errors
+/// Every way in which the file can be wrong, by file, element and reason; see [`SceneError`].
+pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
+    load_gltf_scene(path, None)
+}
+
+/// Loads scene number `scene` of a file, counted from 0; `None` is the default one.
+///
+/// # Errors
+/// As [`load_gltf`], and where the file has no such scene.
+pub fn load_gltf_scene(path: &Path, scene: Option<usize>) -> Result<Scene, SceneError> {
+    let mut source = container::read(path)?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let binary = source.binary.take();
+    let tree = nodes::collect(&source.root, scene).map_err(|problem| problem.at(path))?;
+    check_not_empty(&source.root, &tree, path)?;
+    let reader = Reader::new(&source.root, binary, folder);
+    let mut imported = import(&source, &reader, tree, folder).map_err(|problem| problem.at(path))?;
+    imported.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(imported)
+}
+
+fn check_not_empty(root: &Root, tree: &Tree, path: &Path) -> Result<(), SceneError> {
+    let drawn = tree.file_index.iter().any(|&index| root.nodes[index].mesh.is_some());
+    if drawn {
+        return Ok(());
+    }
+    let reason = if root.meshes.is_empty() { "the file has no meshes" } else { "no node of the scene has a mesh" };
+    let hint = "Choose a file or scene that draws triangles";
+    Err(SceneError::Empty { path: path.to_owned(), reason: reason.to_owned(), hint })
+}
+
+fn import(source: &Source, reader: &Reader, mut tree: Tree, folder: &Path) -> Result<Scene, Problem> {
+    let root = &source.root;
+    let mut notes = Notes::default();
+    if !source.ignored_extensions.is_empty() {
+        notes.add(format!("extensions ignored: {}", source.ignored_extensions.join(", ")));
+    }
+    let mut nodes = std::mem::take(&mut tree.nodes);
+    let (meshes, materials) = meshes(root, reader, &tree, &mut nodes, folder, &mut notes)?;
+    let skins = skins(root, reader, &tree, &mut nodes, &meshes)?;
+    tree.nodes = nodes;
+    let animations = Animations { root, reader, tree: &tree, nodes: &tree.nodes, meshes: &meshes };
+    let animations = animations.load(&mut notes)?;
+    let cameras = view::cameras(root, &tree, &mut notes)?;
+    let (materials, images) = materials.finish();
+    let nodes = std::mem::take(&mut tree.nodes);
+    let mut scene = Scene { nodes, meshes, materials, images, skins, animations, cameras, ..Scene::default() };
+    let rest = scene.pose(None, 0.0);
+    check_extent(&scene, &rest, &tree)?;
+    scene.sun = view::sun(root, &tree, &rest, &mut notes)?;
+    scene.notes = notes.finish();
+    Ok(scene)
+}
+
+/// Loads the meshes that nodes draw, and enters them at the nodes.
+fn meshes<'a>(
+    root: &'a Root,
+    reader: &'a Reader<'a>,
+    tree: &Tree,
+    nodes: &mut [Node],
+    folder: &'a Path,
+    notes: &mut Notes,
+) -> Result<(Vec<Mesh>, Materials<'a>), Problem> {
+    let mut materials = Materials::new(root, reader, folder);
+    let mut meshes = Vec::new();
+    let mut loaded = HashMap::new();
+    for (node, &index) in nodes.iter_mut().zip(&tree.file_index) {
+        let Some(mesh) = root.nodes[index].mesh else { continue };
+        if !loaded.contains_key(&mesh.value()) {
+            let json = root.meshes.get(mesh.value());
+            let json =
+                json.ok_or_else(|| Problem::new(format!("nodes[{index}].mesh"), format!("there is no mesh {mesh}")))?;
+            let element = format!("meshes[{mesh}]");
+            meshes.push(load_mesh(json, &element, reader, &mut materials, notes)?);
+            loaded.insert(mesh.value(), meshes.len() - 1);
+        }
+        node.mesh = loaded.get(&mesh.value()).copied();
+    }
+    Ok((meshes, materials))
+}
+
+fn load_mesh(
+    json: &gltf::json::Mesh,
+    element: &str,
+    reader: &Reader,
+    materials: &mut Materials,
+    notes: &mut Notes,
+) -> Result<Mesh, Problem> {
+    let morph_weights = json.weights.clone().unwrap_or_default();
+    if !morph_weights.iter().all(|weight| weight.is_finite()) {
+        return Err(Problem::new(format!("{element}.weights"), "a morph weight is not finite"));
+    }
+    let mut primitives = Vec::new();
+    for (index, primitive) in json.primitives.iter().enumerate() {
+        let element = format!("{element}.primitives[{index}]");
+        let look = materials.look(primitive.material, &element, notes)?;
+        primitives.extend(mesh::load(reader, primitive, &element, &look, notes)?);
+    }
+    Ok(Mesh { name: json.name.clone().unwrap_or_default(), primitives, morph_weights })
+}
+
+/// Loads the skins that deform a mesh, and enters them at the nodes.
+fn skins(root: &Root, reader: &Reader, tree: &Tree, nodes: &mut [Node], meshes: &[Mesh]) -> Result<Vec<Skin>, Problem> {
+    let mut skins: Vec<Skin> = Vec::new();
+    let mut loaded = HashMap::new();
+    for (node, &index) in nodes.iter_mut().zip(&tree.file_index) {
+        let (Some(skin), Some(mesh)) = (root.nodes[index].skin, node.mesh) else { continue };
+        if !loaded.contains_key(&skin.value()) {
+            skins.push(skin::load(reader, root, tree, skin.value())?);
+            loaded.insert(skin.value(), skins.len() - 1);
+        }
+        node.skin = loaded.get(&skin.value()).copied();
+        if let Some(own) = node.skin {
+            skin::check_joints(&meshes[mesh], &skins[own], &format!("nodes[{index}].skin"))?;
+        }
+    }
+    Ok(skins)
+}
+
+/// Checks that the scene at rest stays within what f32 can compute with, from the corners of its
+/// primitives: no vertex is visited per node, so that sharing a mesh stays cheap.
+fn check_extent(scene: &Scene, rest: &Pose, tree: &Tree) -> Result<(), Problem> {
+    let boxes: Vec<Vec<Option<Aabb>>> = scene
+        .meshes
+        .iter()
+        .map(|mesh| mesh.primitives.iter().map(|p| Aabb::from_points(p.positions.iter().copied())).collect())
+        .collect();
+    let mut triangles = 0;
+    for instance in scene.instances() {
+        let element = format!("nodes[{}]", tree.file_index[instance.node]);
+        let primitive: &Primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
+        triangles += primitive.indices.len() / 3;
+        if triangles > MAX_DRAWN_TRIANGLES {
+            let reason = format!("with it the scene draws more than {MAX_DRAWN_TRIANGLES} triangles");
+            return Err(Problem::new(element, reason).hint("Split or simplify the scene"));
+        }
+        let Some(bounds) = boxes[instance.mesh][instance.primitive] else { continue };
+        let matrices = match scene.instance_skin(&instance) {
+            Some(skin) => rest.world_from_mesh_by_joint(skin),
+            None => vec![rest.world_from(instance.node)],
+        };
+        if !matrices.iter().all(|&matrix| reaches_acceptable(bounds, matrix)) {
+            let reason = format!("it puts geometry beyond {MAX_COORDINATE:e} m");
+            return Err(Problem::new(element, reason).hint("Scale the scene down"));
+        }
+    }
+    Ok(())
+}
+
+fn reaches_acceptable(bounds: Aabb, world_from_local: Mat4) -> bool {
+    (0..8).all(|corner| {
+        let pick = |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
+        let world = world_from_local.transform_point3(Vec3::new(pick(0), pick(1), pick(2)));
+        world.is_finite() && world.abs().max_element() <= MAX_COORDINATE
+    })
+}

@@ -1,0 +1,92 @@
+//! The nodes of one scene, parents first, walked without recursion so that deep chains are harmless.
+
+use glam::{Mat4, Quat, Vec3};
+use gltf::json::{Index, Root, scene};
+
+use crate::error::Problem;
+use crate::{Node, Transform};
+
+/// Nodes that belong to the chosen scene.
+pub(crate) struct Tree {
+    /// The nodes, every parent before its children, meshes and skins not yet filled in.
+    pub(crate) nodes: Vec<Node>,
+    /// Index in the file of each node.
+    pub(crate) file_index: Vec<usize>,
+    /// Index into `nodes` of each node of the file; `None` where it is not part of the scene.
+    pub(crate) scene_index: Vec<Option<usize>>,
+}
+
+/// Collects the nodes of a scene: the given one, else the default one, else the first; in a file
+/// without scenes all nodes that are nobody's child.
+pub(crate) fn collect(root: &Root, scene: Option<usize>) -> Result<Tree, Problem> {
+    let (element, roots) = roots(root, scene)?;
+    let mut tree = Tree { nodes: Vec::new(), file_index: Vec::new(), scene_index: vec![None; root.nodes.len()] };
+    let mut pending: Vec<_> = roots.iter().rev().map(|&index| (index, None)).collect();
+    while let Some((index, parent)) = pending.pop() {
+        let place = || match parent {
+            Some(parent) => format!("nodes[{}].children", tree.file_index[parent]),
+            None => element.clone(),
+        };
+        let json = root.nodes.get(index.value());
+        let json = json.ok_or_else(|| Problem::new(place(), format!("there is no node {index}")))?;
+        if tree.scene_index[index.value()].is_some() {
+            let reason = format!("node {index} is reached twice: it has two parents or is its own ancestor");
+            return Err(Problem::new(place(), reason));
+        }
+        let own = tree.nodes.len();
+        tree.scene_index[index.value()] = Some(own);
+        tree.file_index.push(index.value());
+        tree.nodes.push(node(index.value(), json, parent)?);
+        let children = json.children.iter().flatten().rev();
+        pending.extend(children.map(|&child| (child, Some(own))));
+    }
+    Ok(tree)
+}
+
+type Roots = (String, Vec<Index<scene::Node>>);
+
+/// The element that lists the root nodes, and those.
+fn roots(root: &Root, scene: Option<usize>) -> Result<Roots, Problem> {
+    let default = root.scene.map(|index| index.value());
+    if let Some(index) = scene.or(default).or((!root.scenes.is_empty()).then_some(0)) {
+        let element = format!("scenes[{index}]");
+        return match root.scenes.get(index) {
+            Some(scene) => Ok((format!("{element}.nodes"), scene.nodes.clone())),
+            None => Err(Problem::new(element, format!("the file has {} scenes", root.scenes.len()))
+                .hint("Ask for a scene that the file has, counted from 0")),
+        };
+    }
+    let mut is_child = vec![false; root.nodes.len()];
+    for child in root.nodes.iter().flat_map(|node| node.children.iter().flatten()) {
+        if let Some(flag) = is_child.get_mut(child.value()) {
+            *flag = true;
+        }
+    }
+    let all = (0..root.nodes.len() as u32).map(Index::new);
+    Ok(("nodes".to_owned(), all.filter(|index| !is_child[index.value()]).collect()))
+}
+
+fn node(index: usize, json: &scene::Node, parent: Option<usize>) -> Result<Node, Problem> {
+    let rest = transform(json);
+    if !rest.matrix().is_finite() {
+        return Err(Problem::new(format!("nodes[{index}]"), "its transform is not finite"));
+    }
+    let weights = json.weights.clone().unwrap_or_default();
+    if !weights.iter().all(|weight| weight.is_finite()) {
+        return Err(Problem::new(format!("nodes[{index}].weights"), "a morph weight is not finite"));
+    }
+    let name = json.name.clone().unwrap_or_default();
+    Ok(Node { name, parent, rest, mesh: None, skin: None, morph_weights: weights })
+}
+
+fn transform(json: &scene::Node) -> Transform {
+    let matrix = json.matrix.map(|m| Mat4::from_cols_array(&m)).filter(|&m| m != Mat4::IDENTITY);
+    let rotation = json.rotation.map_or(Quat::IDENTITY, |r| Quat::from_array(r.0));
+    let length = rotation.length();
+    Transform {
+        translation: json.translation.map_or(Vec3::ZERO, Vec3::from_array),
+        rotation: if length > 0.0 { rotation * (1.0 / length) } else { Quat::IDENTITY },
+        scale: json.scale.map_or(Vec3::ONE, Vec3::from_array),
+        matrix,
+    }
+}

@@ -1,0 +1,67 @@
+//! Notes for people about what import skipped, replaced or repaired.
+
+use std::collections::BTreeMap;
+
+/// Notes kept one by one; more are only counted, so that a broken file cannot fill the memory.
+const MAX_NOTES: usize = 64;
+
+/// What can happen to many elements and is told as one sum.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Tally {
+    /// Triangles without area.
+    ZeroAreaTriangles,
+    /// Normals that were zero or not finite.
+    RepairedNormals,
+    /// Texture coordinates that were not finite.
+    RepairedUvs,
+    /// Primitives without normals.
+    ComputedNormals,
+}
+
+impl Tally {
+    fn sentence(self, count: usize) -> String {
+        match self {
+            Self::ZeroAreaTriangles => format!("{count} triangles without area dropped"),
+            Self::RepairedNormals => format!("{count} unusable normals computed anew"),
+            Self::RepairedUvs => format!("{count} texture coordinates that are not finite set to 0"),
+            Self::ComputedNormals => format!("flat normals computed for {count} primitives that have none"),
+        }
+    }
+}
+
+/// Collects notes.
+#[derive(Default)]
+pub(crate) struct Notes {
+    lines: Vec<String>,
+    left_out: usize,
+    tallies: BTreeMap<Tally, usize>,
+}
+
+impl Notes {
+    /// Adds a note once.
+    pub(crate) fn add(&mut self, note: impl Into<String>) {
+        let note = note.into();
+        if self.lines.len() >= MAX_NOTES {
+            self.left_out += 1;
+        } else if !self.lines.contains(&note) {
+            self.lines.push(note);
+        }
+    }
+
+    /// Adds to a sum.
+    pub(crate) fn count(&mut self, tally: Tally, count: usize) {
+        if count > 0 {
+            *self.tallies.entry(tally).or_default() += count;
+        }
+    }
+
+    /// All notes, sums last.
+    pub(crate) fn finish(self) -> Vec<String> {
+        let mut lines = self.lines;
+        if self.left_out > 0 {
+            lines.push(format!("{} more notes left out", self.left_out));
+        }
+        lines.extend(self.tallies.into_iter().map(|(tally, count)| tally.sentence(count)));
+        lines
+    }
+}

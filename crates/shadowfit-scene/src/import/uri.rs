@@ -1,0 +1,121 @@
+//! Bytes behind a URI: data URIs, and files inside the folder of the glTF file. Nothing else is
+//! ever opened, whatever the file asks for.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Component, Path, PathBuf};
+
+use base64::Engine;
+use base64::alphabet::STANDARD;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use percent_encoding::percent_decode_str;
+
+/// Padding is optional: exporters disagree about it.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &STANDARD,
+    GeneralPurposeConfig::new()
+        .with_decode_padding_mode(DecodePaddingMode::Indifferent)
+        .with_decode_allow_trailing_bits(true),
+);
+
+/// Reads what `uri` refers to from `folder`; the error is a reason for people.
+pub(crate) fn read_uri(folder: &Path, uri: &str, max_bytes: u64) -> Result<Vec<u8>, String> {
+    if let Some(data) = uri.strip_prefix("data:") {
+        return decode_data(data);
+    }
+    if has_scheme(uri) {
+        return Err(format!("the URI {} is neither a data URI nor a relative path", quoted(uri)));
+    }
+    let file = locate(folder, uri)?;
+    read_file(&file, max_bytes).map_err(|reason| format!("{} cannot be read: {reason}", quoted(uri)))
+}
+
+/// Reads a regular file of at most `max_bytes`; the error is a reason for people.
+pub(crate) fn read_file(path: &Path, max_bytes: u64) -> Result<Vec<u8>, String> {
+    let metadata = std::fs::metadata(path).map_err(|error| error.to_string())?;
+    if !metadata.is_file() {
+        return Err("it is not a regular file".to_owned());
+    }
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(|error| error.to_string())?;
+    file.take(max_bytes + 1).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+    if bytes.len() as u64 > max_bytes {
+        return Err(format!("it is larger than the limit of {max_bytes} bytes"));
+    }
+    Ok(bytes)
+}
+
+fn decode_data(data: &str) -> Result<Vec<u8>, String> {
+    let (head, payload) = data.split_once(',').ok_or("the data URI has no comma before its data")?;
+    if head.ends_with(";base64") {
+        BASE64.decode(payload).map_err(|error| format!("the data URI is not valid base64: {error}"))
+    } else {
+        Ok(percent_decode_str(payload).collect())
+    }
+}
+
+/// Whether the URI starts with a scheme (RFC 3986); this covers Windows drive letters.
+fn has_scheme(uri: &str) -> bool {
+    let Some((scheme, _)) = uri.split_once(':') else { return false };
+    let allowed = |c: char| c.is_ascii_alphanumeric() || "+-.".contains(c);
+    scheme.starts_with(|c: char| c.is_ascii_alphabetic()) && scheme.chars().all(allowed)
+}
+
+/// The file that a relative URI names: percent-decoded, or as written where only that exists.
+fn locate(folder: &Path, uri: &str) -> Result<PathBuf, String> {
+    let decoded = percent_decode_str(uri).decode_utf8();
+    let decoded = decoded.map_err(|_| format!("the URI {} is not UTF-8", quoted(uri)))?;
+    let decoded = inside(folder, uri, &decoded);
+    if decoded.is_err() && uri.contains('%') {
+        return inside(folder, uri, uri).or(decoded);
+    }
+    decoded
+}
+
+/// Joins and resolves, and refuses whatever is not below `folder` afterwards, links included.
+fn inside(folder: &Path, uri: &str, relative: &str) -> Result<PathBuf, String> {
+    let outside = || format!("the URI {} leads out of the file's folder", quoted(uri));
+    let relative = Path::new(relative);
+    if relative.components().any(|part| !matches!(part, Component::Normal(_) | Component::CurDir)) {
+        return Err(outside());
+    }
+    let missing = |error: std::io::Error| format!("{} cannot be read: {error}", quoted(uri));
+    let folder = folder.canonicalize().map_err(missing)?;
+    let file = folder.join(relative).canonicalize().map_err(missing)?;
+    if file.starts_with(&folder) { Ok(file) } else { Err(outside()) }
+}
+
+/// The URI in quotes, shortened for messages.
+fn quoted(uri: &str) -> String {
+    const LONGEST: usize = 80;
+    if uri.chars().count() <= LONGEST {
+        return format!("{uri:?}");
+    }
+    let start: String = uri.chars().take(LONGEST).collect();
+    format!("{:?}", format!("{start}…"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn data_uris_are_decoded_with_and_without_padding() {
+        let folder = Path::new(".");
+        assert_eq!(read_uri(folder, "data:;base64,AQI=", 9).unwrap(), [1, 2]);
+        assert_eq!(read_uri(folder, "data:application/octet-stream;base64,AQI", 9).unwrap(), [1, 2]);
+        assert_eq!(read_uri(folder, "data:text/plain,a%20b", 9).unwrap(), b"a b");
+        assert!(read_uri(folder, "data:;base64,???", 9).unwrap_err().contains("base64"));
+    }
+
+    #[test]
+    fn uris_that_leave_the_folder_or_have_a_scheme_are_refused() {
+        let folder = Path::new(".");
+        for uri in ["../a.bin", "a/../../b", "/etc/hostname", "%2e%2e/a", "..%2Fa"] {
+            assert!(read_uri(folder, uri, 9).unwrap_err().contains("leads out"), "{uri}");
+        }
+        for uri in ["file:///etc/hostname", "http://example.com/a", "C:/a"] {
+            assert!(read_uri(folder, uri, 9).unwrap_err().contains("neither"), "{uri}");
+        }
+    }
+}
