@@ -4,12 +4,17 @@
 //! touches a GPU.
 
 mod bounds;
+pub mod builtin;
 mod deform;
+mod error;
+mod import;
 mod pose;
 mod sample;
 mod scene;
 
 pub use bounds::Aabb;
 pub use deform::Deformed;
+pub use error::SceneError;
+pub use import::{load_gltf, load_gltf_scene};
 pub use pose::{Instance, Pose, Triangle};
 pub use scene::*;

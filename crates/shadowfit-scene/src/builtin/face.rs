@@ -1,0 +1,201 @@
+//! The wanderer's head: skull, brow, nose, jaw, eyes, ears, hair and cap.
+//!
+//! The head is one smooth surface: bodies blended by the polynomial smooth minimum of Inigo Quilez
+//! ("smooth minimum", 2013), met along rays from inside. Left and right are mirror images.
+
+use std::f32::consts::{PI, TAU};
+
+use glam::{Affine3A, Quat, Vec2, Vec3};
+
+use super::body::Part;
+use super::build::SMOOTH;
+use super::character::Joint;
+use super::palette::Paint;
+use super::shapes::{capsule, ellipsoid, loft, section, torus, tube};
+use super::solid::Solid;
+
+/// Point that the rays start from, in the head's axes: between the temples.
+const CENTRE: Vec3 = Vec3::new(0.0, 0.14, 0.0);
+/// Vertices around the head; even, so that it can be mirrored.
+const AROUND: usize = 112;
+/// Rings from chin to crown.
+const RINGS: usize = 72;
+/// Centre of the left eye.
+const EYE: Vec3 = Vec3::new(0.0375, 0.125, 0.0735);
+/// Radius of the eyes.
+const EYE_RADIUS: f32 = 0.0215;
+
+/// The head with all that is fixed to it.
+pub(super) fn mesh() -> Part {
+    let piece = |solid: &Solid, paint: Paint| solid.primitive(paint.index(), SMOOTH);
+    let primitives = vec![
+        piece(&head().with(ears()), Paint::Skin),
+        piece(&eyes(), Paint::EyeWhite),
+        piece(&irises(), Paint::Iris),
+        piece(&hair(), Paint::Hair),
+        piece(&mouth(), Paint::Lip),
+        piece(&cap(), Paint::Wool),
+    ];
+    (&[Joint::Head], "head", primitives)
+}
+
+/// Smooth minimum: blends two distances over `k` metres.
+fn blend(a: f32, b: f32, k: f32) -> f32 {
+    let h = (k - (a - b).abs()).max(0.0) / k;
+    a.min(b) - h * h * k * 0.25
+}
+
+/// Cuts the inside of `b` out of `a`, rounded over `k` metres.
+fn carve(a: f32, b: f32, k: f32) -> f32 {
+    -blend(-a, b, k)
+}
+
+/// Distance to a ball.
+fn ball(p: Vec3, centre: Vec3, radius: f32) -> f32 {
+    p.distance(centre) - radius
+}
+
+/// Approximate distance to an ellipsoid.
+fn egg(p: Vec3, centre: Vec3, radii: Vec3) -> f32 {
+    let q = (p - centre) / radii;
+    let length = q.length();
+    length * (length - 1.0) / (q / radii).length().max(1e-6)
+}
+
+/// Distance to a round cone from `a` to `b`, without its end corrections.
+fn cone(p: Vec3, a: Vec3, ra: f32, b: Vec3, rb: f32) -> f32 {
+    let t = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+    p.distance(a.lerp(b, t)) - (ra + (rb - ra) * t)
+}
+
+/// Distance-like field of the head: negative inside. `p.x` must not be negative.
+fn field(p: Vec3) -> f32 {
+    let skull = egg(p, Vec3::new(0.0, 0.168, -0.014), Vec3::new(0.097, 0.112, 0.115));
+    let jaw = egg(p, Vec3::new(0.0, 0.072, 0.028), Vec3::new(0.074, 0.088, 0.074));
+    let mut d = blend(skull, jaw, 0.05);
+    d = blend(d, ball(p, Vec3::new(0.0, 0.008, 0.071), 0.0265), 0.035);
+    d = blend(d, ball(p, Vec3::new(0.047, 0.082, 0.058), 0.031), 0.03);
+    // Sockets first, then the brow above them and the nose between.
+    d = carve(d, ball(p, Vec3::new(0.039, 0.122, 0.112), 0.030), 0.022);
+    let brow = cone(p, Vec3::new(0.012, 0.153, 0.094), 0.015, Vec3::new(0.062, 0.150, 0.068), 0.011);
+    d = blend(d, brow, 0.016);
+    let bridge = cone(p, Vec3::new(0.0, 0.142, 0.088), 0.011, Vec3::new(0.0, 0.094, 0.129), 0.0165);
+    d = blend(d, bridge, 0.014);
+    d = blend(d, ball(p, Vec3::new(0.015, 0.087, 0.109), 0.0115), 0.010);
+    // Lips stand out a little around the mouth line.
+    let lips = cone(p, Vec3::new(0.0, 0.051, 0.088), 0.013, Vec3::new(0.02, 0.051, 0.080), 0.007);
+    blend(d, lips, 0.014)
+}
+
+/// Distance from the centre to the surface along `direction`: Illinois regula falsi.
+fn reach(direction: Vec3) -> f32 {
+    let at = |r: f32| field(CENTRE + direction * r);
+    let (mut low, mut high) = (0.05, 0.21);
+    let (mut at_low, mut at_high) = (at(low), at(high));
+    for _ in 0..12 {
+        let middle = (low * at_high - high * at_low) / (at_high - at_low);
+        let at_middle = at(middle);
+        if at_middle.abs() < 2e-5 {
+            return middle;
+        }
+        if at_middle > 0.0 {
+            (high, at_high) = (middle, at_middle);
+            at_low *= 0.5;
+        } else {
+            (low, at_low) = (middle, at_middle);
+            at_high *= 0.5;
+        }
+    }
+    (low + high) / 2.0
+}
+
+/// The skin of the head: rings about y, denser over the face than behind.
+fn head() -> Solid {
+    let half = AROUND / 2;
+    let ring = |ring: usize| {
+        let height = ring as f32 / RINGS as f32;
+        // Denser where brow, eyes and nose are: a little below the horizon of the centre.
+        let height = height + 0.055 * (TAU * height).sin() * 0.9;
+        let (up, flat) = (-(PI * height).cos(), (PI * height).sin());
+        let point = |place: usize| {
+            let turn = place as f32 / half as f32;
+            let turn = PI * (turn - 0.12 * (PI * turn).sin());
+            let direction = Vec3::new(flat * turn.sin(), up, flat * turn.cos());
+            let direction = if place == half { Vec3::new(0.0, up, -flat) } else { direction };
+            CENTRE + direction * reach(direction)
+        };
+        let left: Vec<Vec3> = (0..=half).map(point).collect();
+        let right = left[1..half].iter().rev().map(|p| Vec3::new(-p.x, p.y, p.z));
+        left.iter().copied().chain(right).collect::<Vec<_>>()
+    };
+    let rings: Vec<_> = (1..RINGS).map(ring).collect();
+    let pole = |direction: Vec3| CENTRE + direction * reach(direction);
+    tube(&rings, pole(Vec3::NEG_Y), pole(Vec3::Y))
+}
+
+fn eyes() -> Solid {
+    ellipsoid(Vec3::splat(EYE_RADIUS), 28, 18).moved(EYE).and_mirrored()
+}
+
+/// Irises: flat lenses on the eyeballs, looking ahead.
+fn irises() -> Solid {
+    let lens = ellipsoid(Vec3::new(0.0105, 0.012, 0.004), 24, 12);
+    lens.moved(EYE + Vec3::new(-0.001, -0.001, EYE_RADIUS - 0.0022)).and_mirrored()
+}
+
+/// Ears: cups leaning forward from the head.
+fn ears() -> Solid {
+    let rim = torus(0.021, 0.0065, 0.008, 28, 12).transformed(Affine3A::from_scale(Vec3::new(0.8, 1.0, 1.25)));
+    let bowl = ellipsoid(Vec3::new(0.017, 0.006, 0.024), 24, 10);
+    let turn = Quat::from_rotation_y(0.45) * Quat::from_rotation_x(-0.12) * Quat::from_rotation_z(-PI / 2.0);
+    let turn = turn * Quat::from_rotation_y(PI / 2.0);
+    let flat = Affine3A::from_rotation_translation(turn, Vec3::new(0.094, 0.118, -0.004));
+    rim.with(bowl).transformed(flat).and_mirrored()
+}
+
+/// Hair around the back and the temples, and the eyebrows.
+fn hair() -> Solid {
+    let sections = [
+        section(0.062, 0.072, 0.062, -0.058),
+        section(0.10, 0.091, 0.094, -0.034),
+        section(0.16, 0.101, 0.111, -0.022),
+        section(0.215, 0.097, 0.108, -0.016),
+    ];
+    let inner = Vec3::new(0.014, 0.1625, 0.1045);
+    let outer = Vec3::new(0.056, 0.1655, 0.0835);
+    let brow = capsule(inner, 0.0062, outer, 0.004, 12).and_mirrored();
+    loft(&sections, 2.1, 4, 44).with(brow)
+}
+
+/// The line of the mouth.
+fn mouth() -> Solid {
+    let corner = |x: f32| Vec3::new(x, 0.0505 + 0.16 * x * x / 0.03 * 0.2, 0.1015 - 9.0 * x * x);
+    let mut mouth = Solid::default();
+    for step in 0..3 {
+        let x = step as f32 * 0.0085;
+        let piece = capsule(corner(x), 0.0034, corner(x + 0.0085), 0.0034 - 0.0004 * step as f32, 10);
+        mouth = mouth.with(piece);
+    }
+    mouth.and_mirrored()
+}
+
+/// A knitted cap: ribbed crown, rolled rim and bobble.
+fn cap() -> Solid {
+    let sections = [
+        section(0.195, 0.101, 0.115, -0.012),
+        section(0.235, 0.096, 0.109, -0.016),
+        section(0.272, 0.073, 0.084, -0.022),
+        section(0.296, 0.04, 0.046, -0.03),
+    ];
+    let mut crown = loft(&sections, 2.0, 4, 96);
+    for position in &mut crown.positions {
+        let flat = Vec2::new(position.x, position.z + 0.015);
+        let rib = 1.0 + 0.010 * (24.0 * flat.x.atan2(flat.y)).cos();
+        (position.x, position.z) = (flat.x * rib, flat.y * rib - 0.015);
+    }
+    let tilt = Affine3A::from_rotation_translation(Quat::from_rotation_x(-0.14), Vec3::new(0.0, 0.197, -0.013));
+    let stretch = Affine3A::from_scale(Vec3::new(1.0, 1.0, 1.14));
+    let rim = torus(0.0985, 0.0135, 0.0225, 96, 16).transformed(tilt * stretch);
+    let bobble = ellipsoid(Vec3::splat(0.033), 24, 16).moved(Vec3::new(0.0, 0.325, -0.036));
+    crown.with(rim).with(bobble)
+}

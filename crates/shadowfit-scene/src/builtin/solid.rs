@@ -1,0 +1,169 @@
+//! Closed triangle meshes with shared vertices, and their conversion to drawable primitives.
+//!
+//! Generators only place vertices; normals follow here from the faces, split where two faces meet
+//! at more than a crease angle. So shading and winding cannot disagree.
+
+use std::ops::Range;
+
+use glam::{Affine3A, Vec2, Vec3};
+
+use crate::Primitive;
+
+/// A closed surface: every edge belongs to two triangles, which are counter-clockwise from outside.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Solid {
+    /// Vertices, shared between the faces that meet there.
+    pub(super) positions: Vec<Vec3>,
+    /// Vertex indices.
+    pub(super) triangles: Vec<[u32; 3]>,
+}
+
+impl Solid {
+    /// Moved, turned or scaled; a mirroring transform also turns the winding.
+    pub(super) fn transformed(mut self, transform: Affine3A) -> Self {
+        for position in &mut self.positions {
+            *position = transform.transform_point3(*position);
+        }
+        if transform.matrix3.determinant() < 0.0 {
+            for triangle in &mut self.triangles {
+                triangle.swap(1, 2);
+            }
+        }
+        self
+    }
+
+    /// Moved by `offset`.
+    pub(super) fn moved(self, offset: Vec3) -> Self {
+        self.transformed(Affine3A::from_translation(offset))
+    }
+
+    /// Mirrored in the plane x = 0: left for right.
+    pub(super) fn mirrored(self) -> Self {
+        self.transformed(Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0)))
+    }
+
+    /// Together with another solid; the two may overlap but keep their own surfaces.
+    pub(super) fn with(mut self, other: Self) -> Self {
+        let first = self.positions.len() as u32;
+        self.positions.extend(other.positions);
+        self.triangles.extend(other.triangles.iter().map(|t| t.map(|index| index + first)));
+        self
+    }
+
+    /// Together with its own mirror image in x = 0.
+    pub(super) fn and_mirrored(self) -> Self {
+        let mirror = self.clone().mirrored();
+        self.with(mirror)
+    }
+
+    /// Drawable form: faces that meet at less than `crease` radians (below π/2) share a smooth
+    /// normal. Texture coordinates are metres, projected along the normal's greatest axis.
+    pub(super) fn primitive(&self, material: usize, crease: f32) -> Primitive {
+        let corners = Corners::new(self);
+        let threshold = crease.cos();
+        let mut primitive = Primitive { material, ..Primitive::default() };
+        primitive.indices = vec![0; self.triangles.len() * 3];
+        for vertex in 0..self.positions.len() {
+            let mut groups: Vec<(u64, u32)> = Vec::with_capacity(2);
+            for &corner in corners.around(vertex) {
+                let mask = corners.smooth_mask(vertex, corner as usize / 3, threshold);
+                let known = groups.iter().find(|group| group.0 == mask).map(|group| group.1);
+                let index = known.unwrap_or_else(|| {
+                    let normal = corners.normal(vertex, mask);
+                    push_vertex(&mut primitive, self.positions[vertex], normal)
+                });
+                if known.is_none() {
+                    groups.push((mask, index));
+                }
+                primitive.indices[corner as usize] = index;
+            }
+        }
+        primitive
+    }
+}
+
+/// Appends a vertex whose texture coordinates are projected along the normal's greatest axis.
+fn push_vertex(primitive: &mut Primitive, position: Vec3, normal: Vec3) -> u32 {
+    let size = normal.abs();
+    let uv = if size.y >= size.x && size.y >= size.z {
+        Vec2::new(position.x, position.z)
+    } else if size.x >= size.z {
+        Vec2::new(position.z, -position.y)
+    } else {
+        Vec2::new(position.x, -position.y)
+    };
+    primitive.positions.push(position);
+    primitive.normals.push(normal);
+    primitive.uvs.push(uv);
+    primitive.positions.len() as u32 - 1
+}
+
+/// The triangle corners at each vertex, and the area vectors of the faces.
+struct Corners {
+    /// Twice each face's area along its outward normal.
+    areas: Vec<Vec3>,
+    /// Unit face normals.
+    normals: Vec<Vec3>,
+    /// Corner numbers (3 · face + place), grouped by vertex.
+    corners: Vec<u32>,
+    /// Start of each vertex's group, and the end of the last.
+    starts: Vec<usize>,
+}
+
+impl Corners {
+    /// Sorts the corners of a solid by vertex.
+    fn new(solid: &Solid) -> Self {
+        let area = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|index| solid.positions[index as usize]);
+            (b - a).cross(c - a)
+        };
+        let areas: Vec<Vec3> = solid.triangles.iter().map(area).collect();
+        let normals = areas.iter().map(|area| area.normalize_or_zero()).collect();
+        let mut starts = vec![0; solid.positions.len() + 1];
+        for &index in solid.triangles.iter().flatten() {
+            starts[index as usize + 1] += 1;
+        }
+        for vertex in 1..starts.len() {
+            starts[vertex] += starts[vertex - 1];
+        }
+        let mut next = starts.clone();
+        let mut corners = vec![0; solid.triangles.len() * 3];
+        for (corner, &index) in solid.triangles.iter().flatten().enumerate() {
+            corners[next[index as usize]] = corner as u32;
+            next[index as usize] += 1;
+        }
+        Self { areas, normals, corners, starts }
+    }
+
+    /// Places of a vertex's corners in `corners`.
+    fn range(&self, vertex: usize) -> Range<usize> {
+        self.starts[vertex]..self.starts[vertex + 1]
+    }
+
+    /// Corners at a vertex.
+    fn around(&self, vertex: usize) -> &[u32] {
+        &self.corners[self.range(vertex)]
+    }
+
+    /// Which of the faces around a vertex are smooth with `face`, a bit each. Poles with more faces
+    /// than bits are smooth all around.
+    fn smooth_mask(&self, vertex: usize, face: usize, threshold: f32) -> u64 {
+        let around = self.around(vertex);
+        if around.len() > 64 {
+            return u64::MAX;
+        }
+        around.iter().enumerate().fold(0, |mask, (bit, &corner)| {
+            let smooth = self.normals[corner as usize / 3].dot(self.normals[face]) >= threshold;
+            mask | (u64::from(smooth) << bit)
+        })
+    }
+
+    /// Mean normal of the masked faces around a vertex, weighted by area.
+    fn normal(&self, vertex: usize, mask: u64) -> Vec3 {
+        let around = self.around(vertex);
+        let chosen = |bit: usize| around.len() > 64 || mask >> bit & 1 == 1;
+        let sum: Vec3 =
+            (0..around.len()).filter(|&bit| chosen(bit)).map(|bit| self.areas[around[bit] as usize / 3]).sum();
+        sum.normalize_or(Vec3::Y)
+    }
+}

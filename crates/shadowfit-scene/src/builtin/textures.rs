@@ -1,0 +1,149 @@
+//! Images of the built-in scene: paving with a metre grid, wall blocks, a lattice with holes.
+//!
+//! All repeat without a seam and are drawn from a fixed hash, so that they are the same everywhere.
+
+use crate::Image;
+
+/// Index of the paving among the scene's images.
+pub(super) const PAVING: usize = 0;
+/// Index of the wall blocks.
+pub(super) const BLOCKS: usize = 1;
+/// Index of the lattice.
+pub(super) const LATTICE: usize = 2;
+
+/// Metres that the paving image spans: five tiles of a metre, with a stronger line around them.
+pub(super) const PAVING_METRES: f32 = 5.0;
+/// Metres that the wall image spans.
+pub(super) const BLOCKS_METRES: f32 = 2.4;
+/// Metres that the lattice image spans: one hole and the slats around it.
+pub(super) const LATTICE_METRES: f32 = 0.15;
+
+/// Pixels along a side of the paving image.
+const PAVING_SIZE: u32 = 1024;
+/// Pixels along a side of the wall image.
+const BLOCKS_SIZE: u32 = 512;
+/// Pixels along a side of the lattice image.
+const LATTICE_SIZE: u32 = 64;
+/// Cells along a side of the noise, a power of two.
+const NOISE_CELLS: u32 = 64;
+
+/// All images, in the order of their indices.
+pub(super) fn images() -> Vec<Image> {
+    vec![paving(), blocks(), lattice()]
+}
+
+/// A fixed pseudo-random value in 0..1 for a lattice point.
+pub(super) fn hash(x: u32, y: u32) -> f32 {
+    let mut h = x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77);
+    h = (h ^ (h >> 15)).wrapping_mul(0x2C1B_3C6D);
+    h = (h ^ (h >> 12)).wrapping_mul(0x297A_2D39);
+    ((h ^ (h >> 15)) >> 8) as f32 / 16_777_216.0
+}
+
+/// Smooth tileable noise in -1..1, from a table of hashed values.
+struct Noise(Vec<f32>);
+
+impl Noise {
+    /// Fills the table.
+    fn new() -> Self {
+        let cells = 0..NOISE_CELLS * NOISE_CELLS;
+        Self(cells.map(|cell| hash(cell, 17) * 2.0 - 1.0).collect())
+    }
+
+    /// Value at a place in cells.
+    fn at(&self, x: f32, y: f32) -> f32 {
+        let (column, row) = (x as u32, y as u32);
+        let (fx, fy) = (x - column as f32, y - row as f32);
+        let mask = NOISE_CELLS - 1;
+        let row_at = |row: u32| {
+            let start = (row & mask) * NOISE_CELLS;
+            let left = self.0[(start + (column & mask)) as usize];
+            let right = self.0[(start + ((column + 1) & mask)) as usize];
+            left + (right - left) * fx
+        };
+        let top = row_at(row);
+        top + (row_at(row + 1) - top) * fy
+    }
+}
+
+/// Draws a square image of `size` pixels from a colour in sRGB 0..255 and an alpha per pixel.
+fn draw(name: &str, size: u32, pixel: impl Fn(u32, u32) -> [f32; 4]) -> Image {
+    let mut rgba = Vec::with_capacity((size * size * 4) as usize);
+    for y in 0..size {
+        for x in 0..size {
+            rgba.extend(pixel(x, y).map(|value| value as u8));
+        }
+    }
+    Image { name: name.to_owned(), width: size, height: size, rgba }
+}
+
+/// `color` made lighter or darker by `light` of 0..255.
+fn shade([r, g, b]: [f32; 3], light: f32) -> [f32; 4] {
+    [r + light, g + light * 0.97, b + light * 0.9, 255.0]
+}
+
+/// Warm stone tiles of a metre with joints, faint quarter-metre lines and a red line every 5 m.
+fn paving() -> Image {
+    let noise = Noise::new();
+    let metre = PAVING_SIZE as f32 / PAVING_METRES;
+    let cell = NOISE_CELLS as f32 / PAVING_SIZE as f32;
+    // Distance to the nearest multiple of `step` pixels.
+    let near = |at: f32, step: f32| {
+        let rest = at % step;
+        rest.min(step - rest)
+    };
+    draw("paving", PAVING_SIZE, |x, y| {
+        let (px, py) = (x as f32 + 0.5, y as f32 + 0.5);
+        let edge = |step: f32| near(px, step).min(near(py, step)) / metre;
+        if edge(metre * PAVING_METRES) < 0.035 {
+            return shade([150.0, 84.0, 62.0], 6.0 * noise.at(px * cell * 4.0, py * cell * 4.0));
+        }
+        let joint = edge(metre);
+        let grain = noise.at(px * cell * 8.0, py * cell * 8.0);
+        if joint < 0.011 {
+            return shade([124.0, 109.0, 90.0], 6.0 * grain);
+        }
+        let tile = hash((px / metre) as u32, 5 + (py / metre) as u32) - 0.5;
+        let cloud = noise.at(px * cell, py * cell);
+        let rim = if joint < 0.02 { -8.0 } else { 0.0 };
+        let fine = if edge(metre / 4.0) < 0.005 { -11.0 } else { 0.0 };
+        shade([196.0, 180.0, 155.0], 16.0 * tile + 4.0 * cloud + 4.0 * grain + rim + fine)
+    })
+}
+
+/// Courses of plastered blocks, each of its own tint, in half bond.
+fn blocks() -> Image {
+    let noise = Noise::new();
+    let cell = NOISE_CELLS as f32 / BLOCKS_SIZE as f32;
+    // Six courses of three blocks.
+    let course = BLOCKS_SIZE as f32 / 6.0;
+    let length = BLOCKS_SIZE as f32 / 3.0;
+    let joint = 0.012 * BLOCKS_SIZE as f32 / BLOCKS_METRES;
+    draw("blocks", BLOCKS_SIZE, |x, y| {
+        let (px, py) = (x as f32 + 0.5, y as f32 + 0.5);
+        let row = (py / course) as u32;
+        let along = px + if row % 2 == 1 { length / 2.0 } else { 0.0 };
+        let column = (along / length) as u32 % 3;
+        let (dx, dy) = (along % length, py % course);
+        let edge = dx.min(length - dx).min(dy).min(course - dy);
+        let grain = noise.at(px * cell * 4.0, py * cell * 4.0);
+        if edge < joint {
+            return shade([188.0, 172.0, 148.0], 5.0 * grain);
+        }
+        let tint = hash(column, 40 + row) - 0.5;
+        shade([222.0, 208.0, 184.0], 13.0 * tint + 5.0 * noise.at(px * cell, py * cell) + 3.0 * grain)
+    })
+}
+
+/// White slats around a square hole, which is transparent.
+fn lattice() -> Image {
+    let slat = LATTICE_SIZE as f32 * 0.16;
+    let size = LATTICE_SIZE as f32;
+    draw("lattice", LATTICE_SIZE, |x, y| {
+        let (px, py) = (x as f32 + 0.5, y as f32 + 0.5);
+        let edge = px.min(size - px).min(py).min(size - py);
+        // Alpha passes one half where the slat ends, so that filtered cut-outs keep their size.
+        let alpha = (127.5 + (slat - edge) * 40.0).clamp(0.0, 255.0);
+        [235.0, 235.0, 235.0, alpha]
+    })
+}

@@ -1,0 +1,321 @@
+//! How the wanderer stands, walks and turns.
+//!
+//! The walk starts from the feet: each is planted at a fixed place on a circular path and rolls
+//! from heel to toe there, so that it cannot slide; thighs and shins follow by two-bone inverse
+//! kinematics. Hips, shoulders and arms swing by sines in step with the feet.
+
+use std::f32::consts::TAU;
+
+use glam::{EulerRot, Mat3, Quat, Vec3};
+
+use super::character::{ANKLE, FOREARM, HIP, JOINTS, Joint, Joints, RIG, SHIN, SHOULDER, Side, THIGH, TOE, UPPER_ARM};
+use crate::{Animation, Channel, ChannelValues, Interpolation, Transform};
+
+/// Radius of the path, in metres.
+const PATH_RADIUS: f32 = 2.0;
+/// Strides (two steps) a lap.
+const STRIDES: usize = 11;
+/// Length of a stride along the path, in metres.
+const STRIDE: f32 = TAU * PATH_RADIUS / STRIDES as f32;
+/// Time of a stride, in seconds.
+const STRIDE_TIME: f32 = 1.08;
+/// Keyframes a stride.
+const STRIDE_KEYS: usize = 36;
+/// Share of a stride for which a foot is on the ground.
+const STANCE: f32 = 0.62;
+/// Half of the distance between the feet's tracks, in metres.
+const TRACK: f32 = 0.075;
+/// How far behind the body's centre a planted foot is at the middle of its stance, in metres.
+const LAG: f32 = 0.035;
+/// Angle by which the feet point outwards, in radians.
+const TOE_OUT: f32 = 0.1;
+/// Point that the heel rolls over, from the ankle.
+const HEEL: Vec3 = Vec3::new(0.0, -ANKLE, -0.055);
+/// Time of a turn in place, in seconds.
+const TURN_TIME: f32 = 12.0;
+/// Keyframes of a turn in place.
+const TURN_KEYS: usize = 72;
+
+/// A pose: where root and hips are, and how every joint is turned.
+#[derive(Clone, Debug)]
+pub(super) struct Posture {
+    root: Vec3,
+    hips: Vec3,
+    rotations: [Quat; JOINTS],
+}
+
+impl Posture {
+    /// Rest transforms of the joints, relative to their parents.
+    pub(super) fn transforms(&self) -> [Transform; JOINTS] {
+        let mut transforms = [Transform::default(); JOINTS];
+        for (joint, bone) in RIG.iter().enumerate() {
+            transforms[joint].translation = bone.offset;
+            transforms[joint].rotation = self.rotations[joint];
+        }
+        transforms[Joint::Root as usize].translation = self.root;
+        transforms[Joint::Hips as usize].translation = self.hips;
+        transforms
+    }
+
+    /// Turns a joint by pitch (about x), yaw (about y) and roll (about z), in radians.
+    fn turn(&mut self, joint: Joint, pitch: f32, yaw: f32, roll: f32) {
+        self.rotations[joint as usize] = Quat::from_euler(EulerRot::YXZ, yaw, pitch, roll);
+    }
+
+    /// Place and orientation of a joint relative to the root.
+    fn frame(&self, joint: Joint) -> (Vec3, Quat) {
+        match RIG[joint as usize].parent {
+            None => (Vec3::ZERO, Quat::IDENTITY),
+            Some(parent) => {
+                let (at, turn) = self.frame(parent);
+                let offset = if joint == Joint::Hips { self.hips } else { RIG[joint as usize].offset };
+                (at + turn * offset, turn * self.rotations[joint as usize])
+            }
+        }
+    }
+
+    /// Sets a leg so that its ankle is at `ankle` and its foot turned by `foot`, in the root's
+    /// axes; the knee points where the foot does.
+    fn reach_foot(&mut self, side: Side, ankle: Vec3, foot: Quat, toes: f32) {
+        let (hips, hips_turn) = self.frame(Joint::Hips);
+        let start = hips + hips_turn * side.mirror(HIP);
+        let [thigh_turn, shin_turn] = two_bones(ankle - start, THIGH, SHIN, foot * Vec3::Z);
+        let [thigh, shin, ankle_joint, toe] = side.leg();
+        self.rotations[thigh as usize] = hips_turn.inverse() * thigh_turn;
+        self.rotations[shin as usize] = thigh_turn.inverse() * shin_turn;
+        self.rotations[ankle_joint as usize] = shin_turn.inverse() * foot;
+        self.turn(toe, toes, 0.0, 0.0);
+    }
+
+    /// Sets an arm so that its wrist is at `wrist`, in the chest's axes, with the elbow toward
+    /// `elbow`.
+    fn reach_hand(&mut self, side: Side, wrist: Vec3, elbow: Vec3) {
+        // The elbow bends the other way round than the knee: its hollow faces ahead.
+        let [upper, lower] = two_bones(wrist - side.mirror(SHOULDER), UPPER_ARM, FOREARM, elbow);
+        let flip = Quat::from_rotation_y(std::f32::consts::PI);
+        let [arm, forearm, _] = side.arm();
+        self.rotations[arm as usize] = upper * flip;
+        self.rotations[forearm as usize] = (upper * flip).inverse() * lower * flip;
+    }
+}
+
+/// Orientations of two bones that hang along -y, so that their end is at `reach` from their start,
+/// as far as they are long enough; the joint between them is pushed toward `pole`, which becomes
+/// their +z.
+fn two_bones(reach: Vec3, upper: f32, lower: f32, pole: Vec3) -> [Quat; 2] {
+    let distance = reach.length().clamp(0.05, (upper + lower) * 0.9995);
+    let along = reach.normalize();
+    let aside = (pole - along * pole.dot(along)).normalize();
+    let cos = (upper * upper + distance * distance - lower * lower) / (2.0 * upper * distance);
+    let middle = (along * cos + aside * (1.0 - cos * cos).max(0.0).sqrt()) * upper;
+    let hang = |bone: Vec3| {
+        let y = -bone.normalize();
+        let x = y.cross(aside).normalize();
+        Quat::from_mat3(&Mat3::from_cols(x, y, x.cross(y)))
+    };
+    [hang(middle), hang(along * distance - middle)]
+}
+
+/// Standing at ease: weight on the left leg, a hand on the hip, the head turned aside.
+pub(super) fn standing() -> Posture {
+    let mut posture =
+        Posture { root: Vec3::ZERO, hips: Vec3::new(0.035, 0.925, 0.0), rotations: [Quat::IDENTITY; JOINTS] };
+    posture.turn(Joint::Hips, 0.0, 0.08, 0.075);
+    posture.turn(Joint::Spine, -0.02, 0.0, -0.07);
+    posture.turn(Joint::Chest, -0.03, -0.12, -0.06);
+    posture.turn(Joint::Neck, 0.05, -0.12, 0.02);
+    posture.turn(Joint::Head, 0.0, -0.28, 0.05);
+    posture.turn(Joint::TailA, 0.10, 0.0, 0.04);
+    posture.turn(Joint::TailB, 0.06, 0.0, 0.0);
+    posture.turn(Joint::TailC, -0.06, 0.0, 0.0);
+    posture.reach_foot(Side::Left, Vec3::new(0.07, ANKLE, -0.03), Quat::from_rotation_y(0.15), 0.0);
+    posture.reach_foot(Side::Right, Vec3::new(-0.15, ANKLE, 0.11), Quat::from_rotation_y(-0.42), 0.0);
+    posture.turn(Joint::ArmL, 0.06, 0.0, 0.16);
+    posture.turn(Joint::ForearmL, -0.32, 0.0, 0.0);
+    posture.turn(Joint::HandL, -0.1, 0.2, 0.0);
+    posture.reach_hand(Side::Right, Vec3::new(-0.205, -0.17, 0.06), Vec3::new(-1.0, 0.0, -0.75));
+    posture.turn(Joint::HandR, 0.15, 0.0, 0.75);
+    posture
+}
+
+/// Both animations: "walk" and "turn".
+pub(super) fn animations(joints: &Joints) -> Vec<Animation> {
+    let stride: Vec<Posture> = (0..STRIDE_KEYS).map(|key| walking(key as f32 / STRIDE_KEYS as f32)).collect();
+    let lap = (0..=STRIDES * STRIDE_KEYS).map(|key| {
+        let mut posture = stride[key % STRIDE_KEYS].clone();
+        let (at, turn) = path(key as f32 / STRIDE_KEYS as f32);
+        posture.root = at;
+        posture.rotations[Joint::Root as usize] = turn;
+        posture
+    });
+    let around = (0..=TURN_KEYS).map(|key| {
+        let mut posture = standing();
+        let turn = key as f32 / TURN_KEYS as f32 * TAU;
+        posture.turn(Joint::Root, 0.0, turn, 0.0);
+        breathe(&mut posture, turn * 3.0);
+        posture
+    });
+    vec![
+        animation("walk", STRIDES as f32 * STRIDE_TIME, &lap.collect::<Vec<_>>(), joints),
+        animation("turn", TURN_TIME, &around.collect::<Vec<_>>(), joints),
+    ]
+}
+
+/// Lifts and lowers chest and head a little with the breath.
+fn breathe(posture: &mut Posture, phase: f32) {
+    let breath = Quat::from_rotation_x(0.012 * phase.sin());
+    for joint in [Joint::Chest, Joint::TailB] {
+        posture.rotations[joint as usize] *= breath;
+    }
+    posture.rotations[Joint::Neck as usize] *= breath.inverse();
+}
+
+/// Root's place and heading after `strides` strides: a circle through the origin, to the left.
+fn path(strides: f32) -> (Vec3, Quat) {
+    path_at(strides * STRIDE)
+}
+
+/// Root's place and heading after `length` metres of path.
+fn path_at(length: f32) -> (Vec3, Quat) {
+    let angle = length / PATH_RADIUS;
+    let (sin, cos) = angle.sin_cos();
+    (Vec3::new(1.0 - cos, 0.0, sin) * PATH_RADIUS, Quat::from_rotation_y(angle))
+}
+
+/// Where a foot is: ankle, orientation, bend of the toes.
+#[derive(Clone, Copy)]
+struct Foot {
+    ankle: Vec3,
+    turn: Quat,
+    toes: f32,
+}
+
+/// Smooth step from 0 to 1 as `x` goes from `from` to `to`.
+fn ease(x: f32, from: f32, to: f32) -> f32 {
+    let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// Ankle and pitch of a foot planted at the origin, `stance` from heel strike (0) to toe-off (1).
+fn roll(stance: f32) -> (Vec3, f32, f32) {
+    let strike = -0.34 * (1.0 - ease(stance, -0.12, 0.2));
+    if strike < 0.0 {
+        let pitch = Quat::from_rotation_x(strike);
+        return (Vec3::new(0.0, ANKLE, 0.0) + HEEL - pitch * HEEL, strike, 0.0);
+    }
+    // Above a half, so that the heel leaves fastest at toe-off.
+    let lift = 0.80 * ease(stance, 0.45, 1.25);
+    let pitch = Quat::from_rotation_x(lift);
+    (Vec3::new(0.0, ANKLE, 0.0) + TOE - pitch * TOE, lift, -lift)
+}
+
+/// The foot of a side when planted for the `step`-th time, in the axes of the scene.
+fn planted(side: Side, step: f32, stance: f32) -> (Foot, f32) {
+    let (at, heading) = path_at((step + 0.5 * STANCE) * STRIDE - LAG);
+    let turn = heading * Quat::from_rotation_y(side.sign() * TOE_OUT);
+    let (ankle, pitch, toes) = roll(stance);
+    let at = at + heading * Vec3::new(side.sign() * TRACK, 0.0, 0.0);
+    (Foot { ankle: at + turn * ankle, turn: turn * Quat::from_rotation_x(pitch), toes }, pitch)
+}
+
+/// The foot of a side after `strides` strides, in the axes of the scene.
+fn foot(side: Side, strides: f32) -> Foot {
+    let shift = if side == Side::Left { 0.0 } else { 0.5 };
+    let step = (strides - shift).floor() + shift;
+    let phase = strides - step;
+    if phase < STANCE {
+        return planted(side, step, phase / STANCE).0;
+    }
+    let swing = (phase - STANCE) / (1.0 - STANCE);
+    let ((from, pitch_from), (to, pitch_to)) = (planted(side, step, 1.0), planted(side, step + 1.0, 0.0));
+    // The ankle leaves and arrives with the speed that it has on the ground (per unit of swing).
+    let rate = 0.01 * STANCE / (1.0 - STANCE);
+    let leave = (from.ankle - planted(side, step, 0.99).0.ankle) / rate;
+    let arrive = (planted(side, step + 1.0, 0.01).0.ankle - to.ankle) / rate;
+    let lift = Vec3::Y * 0.035 * (swing * TAU / 2.0).sin().powi(2);
+    let ankle = hermite([from.ankle, leave, to.ankle, arrive], swing) + lift;
+    let (heading_from, heading_to) =
+        (from.turn * Quat::from_rotation_x(-pitch_from), to.turn * Quat::from_rotation_x(-pitch_to));
+    // The foot hangs for a moment, then the toes are drawn up for the next heel strike.
+    let hang = pitch_from + 0.12 * (swing / 0.3).min(1.0) * (1.0 - ease(swing, 0.1, 0.5));
+    let pitch = hang * (1.0 - ease(swing, 0.05, 0.62)) + pitch_to * ease(swing, 0.5, 1.0);
+    let turn = heading_from.slerp(heading_to, swing) * Quat::from_rotation_x(pitch);
+    Foot { ankle, turn, toes: from.toes * (1.0 - ease(swing, 0.0, 0.35)) }
+}
+
+/// Cubic Hermite curve from value and slope at its start, value and slope at its end.
+fn hermite([a, slope_a, b, slope_b]: [Vec3; 4], t: f32) -> Vec3 {
+    let (t2, t3) = (t * t, t * t * t);
+    a * (2.0 * t3 - 3.0 * t2 + 1.0) + slope_a * (t3 - 2.0 * t2 + t) + b * (3.0 * t2 - 2.0 * t3) + slope_b * (t3 - t2)
+}
+
+/// The figure after `phase` of a stride; the left heel strikes at 0.
+fn walking(phase: f32) -> Posture {
+    let mut posture = Posture { root: Vec3::ZERO, hips: Vec3::ZERO, rotations: [Quat::IDENTITY; JOINTS] };
+    let turn = TAU * phase;
+    // Middle of the left stance: the body is over the left foot and at its highest.
+    let over = TAU * (phase - 0.5 * STANCE);
+    posture.hips = Vec3::new(0.02 * over.cos(), 0.912 + 0.017 * (2.0 * over).cos(), 0.0);
+    posture.turn(Joint::Hips, 0.05, -0.13 * turn.cos(), 0.05 * over.cos());
+    posture.turn(Joint::Spine, 0.01, 0.10 * turn.cos(), -0.03 * over.cos());
+    posture.turn(Joint::Chest, 0.0, 0.16 * turn.cos() + 0.05, -0.03 * over.cos() + 0.02);
+    posture.turn(Joint::Neck, 0.02, -0.07 * turn.cos(), 0.0);
+    posture.turn(Joint::Head, -0.06 + 0.02 * (2.0 * over).sin(), -0.06 * turn.cos() + 0.08, 0.012 * over.cos());
+    swing_arms(&mut posture, turn);
+    swing_scarf(&mut posture, turn);
+    let (at, heading) = path(phase);
+    let back = heading.inverse();
+    for side in [Side::Left, Side::Right] {
+        let foot = foot(side, phase);
+        posture.reach_foot(side, back * (foot.ankle - at), back * foot.turn, foot.toes);
+    }
+    posture
+}
+
+/// Swings the arms against the legs, elbows bending as the hands come forward.
+fn swing_arms(posture: &mut Posture, turn: f32) {
+    for side in [Side::Left, Side::Right] {
+        let [arm, forearm, hand] = side.arm();
+        let back = side.sign() * (turn - 0.15).cos();
+        let late = side.sign() * (turn - 0.6).cos();
+        posture.turn(arm, 0.02 + 0.46 * back, 0.0, side.sign() * 0.13);
+        posture.turn(forearm, -0.42 + 0.24 * late, 0.0, 0.0);
+        posture.turn(hand, -0.08 + 0.1 * late, side.sign() * 0.15, 0.0);
+    }
+}
+
+/// Lets the end of the scarf trail behind, each piece later than the one above.
+fn swing_scarf(posture: &mut Posture, turn: f32) {
+    for (place, joint) in [Joint::TailA, Joint::TailB, Joint::TailC].into_iter().enumerate() {
+        let late = place as f32 * 0.9;
+        let pitch = [0.30, 0.12, -0.05][place] + [0.07, 0.10, 0.14][place] * (2.0 * turn - late).sin();
+        let roll = [0.05, 0.06, 0.10][place] * (turn - late).sin();
+        posture.turn(joint, pitch, 0.0, roll);
+    }
+}
+
+/// Channels for every joint that moves, from poses at even times.
+fn animation(name: &str, duration: f32, poses: &[Posture], joints: &Joints) -> Animation {
+    let last = (poses.len() - 1) as f32;
+    let times: Vec<f32> = (0..poses.len()).map(|key| key as f32 / last * duration).collect();
+    let channel = |joint: Joint, values: ChannelValues| Channel {
+        node: joints.node(joint),
+        times: times.clone(),
+        interpolation: Interpolation::Linear,
+        values,
+    };
+    let place = |get: fn(&Posture) -> Vec3| ChannelValues::Translation(poses.iter().map(get).collect());
+    let mut channels =
+        vec![channel(Joint::Root, place(|pose| pose.root)), channel(Joint::Hips, place(|pose| pose.hips))];
+    for joint in Joint::ALL {
+        let mut turns: Vec<Quat> = poses.iter().map(|pose| pose.rotations[joint as usize]).collect();
+        // The same rotation has two signs; neighbours take the nearer one.
+        for key in 1..turns.len() {
+            if turns[key].dot(turns[key - 1]) < 0.0 {
+                turns[key] = -turns[key];
+            }
+        }
+        channels.push(channel(joint, ChannelValues::Rotation(turns)));
+    }
+    Animation { name: name.to_owned(), duration, channels }
+}
