@@ -1,0 +1,138 @@
+//! The three artefacts of shadow maps: what they are called, why they happen and what cures them;
+//! and the part of the panel that shows and fixes them.
+
+use egui::text::LayoutJob;
+use egui::{Align, Button, Color32, Frame, RichText, Role, Stroke, TextFormat, TextStyle, Ui, WidgetInfo};
+
+use crate::Action;
+
+/// What can be wrong with a shadow-mapped picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Artefact {
+    /// False shadow on surfaces that shadow themselves.
+    Acne,
+    /// Jagged edges, where a texel covers many pixels.
+    Aliasing,
+    /// Missing shadows of casters that the map does not cover.
+    ClippingHole,
+}
+
+impl Artefact {
+    /// All artefacts, in the order of their keys.
+    pub const ALL: [Self; 3] = [Self::Acne, Self::Aliasing, Self::ClippingHole];
+
+    /// Name for people.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Acne => "Acne",
+            Self::Aliasing => "Aliasing",
+            Self::ClippingHole => "Clipping hole",
+        }
+    }
+
+    /// Key that shows it, see [`KEYS`](crate::KEYS).
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Acne => "1",
+            Self::Aliasing => "2",
+            Self::ClippingHole => "3",
+        }
+    }
+
+    /// What is seen and why it happens, in a paragraph.
+    pub const fn explanation(self) -> &'static str {
+        match self {
+            Self::Acne => {
+                "Lit surfaces are covered with dark stripes or dots. The map stores one depth per texel, but a \
+                 texel covers a patch of a sloped surface: half of the patch lies behind its stored depth and \
+                 so takes the surface itself for a caster. Rounding of the stored depths does the same on \
+                 surfaces that face the light."
+            }
+            Self::Aliasing => {
+                "Shadow edges near the camera are staircases. One map is spread evenly over the whole shadow \
+                 distance, while the camera magnifies what is near, so one texel there covers many pixels. \
+                 The figure 'pixels per texel' says how many."
+            }
+            Self::ClippingHole => {
+                "A shadow that should be there is missing or cut off. The map's box is fitted to what the camera \
+                 sees; a caster between the light and that box is outside it, is never drawn into the map, and \
+                 so throws no shadow into the view."
+            }
+        }
+    }
+
+    /// What the cure does, in a paragraph.
+    pub const fn cure(self) -> &'static str {
+        match self {
+            Self::Acne => {
+                "The shadow is looked up a little above the surface, along its normal. The normal offset is \
+                 sized to the filter's reach in texels, which is the least that clears a plane at any slope; \
+                 more would detach shadows from their casters."
+            }
+            Self::Aliasing => {
+                "The shadow distance is shortened, so that the map's texels are spent near the camera, the map \
+                 is larger, and the filter blends neighbouring texels. What is farther away than the shadow \
+                 distance has no shadow now."
+            }
+            Self::ClippingHole => {
+                "The near plane of the map is pulled toward the light by the caster extension, so that casters \
+                 outside the view are drawn into it. The size of the texels stays; only the depth range grows."
+            }
+        }
+    }
+}
+
+/// The buttons, and the card of the artefact that is shown.
+pub(crate) fn show(ui: &mut Ui, shown: Option<Artefact>, fixed: bool, action: &mut Option<Action>) {
+    ui.label(RichText::new("Show an artefact").strong());
+    ui.columns_const(|columns: &mut [Ui; 3]| {
+        for (ui, artefact) in columns.iter_mut().zip(Artefact::ALL) {
+            if button(ui, artefact, shown == Some(artefact)) {
+                *action = Some(Action::ShowArtefact(artefact));
+            }
+        }
+    });
+    if let Some(artefact) = shown {
+        ui.add_space(2.0);
+        card(ui, artefact, fixed, action);
+    }
+    ui.add_space(4.0);
+}
+
+fn button(ui: &mut Ui, artefact: Artefact, selected: bool) -> bool {
+    let font = TextStyle::Button.resolve(ui.style());
+    let small = TextStyle::Small.resolve(ui.style());
+    let mut text = LayoutJob { halign: Align::Center, ..LayoutJob::default() };
+    text.append(artefact.label(), 0.0, TextFormat::simple(font, Color32::PLACEHOLDER));
+    let key = format!("\nkey {}", artefact.key());
+    text.append(&key, 0.0, TextFormat::simple(small, ui.visuals().weak_text_color()));
+    let size = egui::vec2(ui.available_width(), 40.0);
+    let response = ui.add_sized(size, Button::selectable(selected, text).frame_when_inactive(true));
+    let name = format!("Show {}", artefact.label().to_lowercase());
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, selected, &name));
+    response.on_hover_text(artefact.explanation()).clicked()
+}
+
+fn card(ui: &mut Ui, artefact: Artefact, fixed: bool, action: &mut Option<Action>) {
+    let accent = if fixed { Color32::from_rgb(88, 166, 104) } else { Color32::from_rgb(214, 131, 56) };
+    Frame::group(ui.style()).stroke(Stroke::new(1.5, accent)).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        let title = if fixed { format!("{}: fixed", artefact.label()) } else { artefact.label().to_owned() };
+        ui.label(RichText::new(title).strong().color(accent));
+        let text = if fixed { artefact.cure() } else { artefact.explanation() };
+        ui.add(egui::Label::new(text).wrap());
+        ui.add_space(2.0);
+        let size = egui::vec2(ui.available_width(), 30.0);
+        if fixed {
+            if ui.add_sized(size, Button::new("Show again")).clicked() {
+                *action = Some(Action::ShowArtefact(artefact));
+            }
+        } else {
+            let text = RichText::new("Fix").strong().color(Color32::WHITE);
+            let fix = Button::new(text).fill(Color32::from_rgb(46, 112, 66)).shortcut_text("F");
+            if ui.add_sized(size, fix).on_hover_text(artefact.cure()).clicked() {
+                *action = Some(Action::FixArtefact(artefact));
+            }
+        }
+    });
+}
