@@ -6,8 +6,8 @@
 
 use core::f32::consts::SQRT_2;
 
-use crate::LightFit;
 use crate::settings::{BiasSettings, FilterKind};
+use crate::{LightFit, checks};
 
 /// Biases ready for a shader. With θ the angle between the geometric normal and the direction
 /// toward the light, a receiver is looked up at `p + normal · normal_offset · sin θ`, and its
@@ -22,15 +22,17 @@ pub struct Bias {
     pub normal_offset: f32,
 }
 
-/// Depth steps of f32 (2⁻²⁴ of the range each) that separate a stored from a compared depth at
-/// most: one each for the matrix, for the two transforms and for the interpolation.
-const PRECISION_STEPS: f32 = 4.0;
+/// Roundings of 2⁻²⁴ that can part the depth stored for a point from the depth compared with it,
+/// as a multiple of the farthest distance from the origin in the map's box: four operations a
+/// term, in each of two transforms, on terms that sum to at most twice that distance.
+const PRECISION_ROUNDINGS: f32 = 16.0;
 
-/// One step of an f32 depth in 0.5..1, as a share of the range.
-pub(crate) const DEPTH_STEP: f32 = 1.0 / 16_777_216.0;
+/// Relative rounding of f32, 2⁻²⁴.
+const ROUNDING: f32 = 1.0 / 16_777_216.0;
 
-/// Constant bias of [`BiasSettings::automatic`], in texels: it covers [`PRECISION_STEPS`] while
-/// the depth range is below 262144 texel sizes, 128 times the width of a 2048² map.
+/// Constant bias of [`BiasSettings::automatic`], in texels: it covers [`PRECISION_ROUNDINGS`]
+/// while no corner of the map's box is farther than 65536 texel sizes from the origin, 32 times
+/// the width of a 2048² map.
 const PRECISION_TEXELS: f32 = 1.0 / 16.0;
 
 impl Bias {
@@ -46,12 +48,14 @@ impl Bias {
     }
 
     /// The smallest bias that clears self-shadowing on a plane whatever its slope's azimuth, for
-    /// a filter of the given [`reach`] in texels: [`automatic_normal_offset`] plus the depth
-    /// precision of this very fit. It holds for geometric normals, not for interpolated or
-    /// normal-mapped ones.
+    /// a filter of the given [`reach`] in texels: [`automatic_normal_offset`], plus what f32
+    /// rounding can do to the depths of this very fit at its origin. It holds for geometric
+    /// normals, not for interpolated or normal-mapped ones.
     pub fn automatic(reach: f32, fit: &LightFit) -> Self {
+        let corners = fit.corners().map(|corner| checks::length(corner.as_dvec3()) as f32);
+        let farthest = corners.into_iter().fold(0.0, f32::max);
         Self {
-            constant_depth: PRECISION_STEPS * DEPTH_STEP,
+            constant_depth: PRECISION_ROUNDINGS * ROUNDING * farthest / fit.depth_range,
             slope_depth: 0.0,
             normal_offset: automatic_normal_offset(reach) * longer_side(fit),
         }
@@ -59,9 +63,9 @@ impl Bias {
 }
 
 impl BiasSettings {
-    /// Biases in texels that clear self-shadowing on planes for a filter, at any fit whose depth
-    /// range is below 262144 of its texel sizes; [`Bias::automatic`] has no such limit. Geometric
-    /// normals are assumed.
+    /// Biases in texels that clear self-shadowing on planes for a filter, at any fit whose box
+    /// stays within 65536 texel sizes of the origin; [`Bias::automatic`] has no such limit.
+    /// Geometric normals are assumed.
     pub fn automatic(filter: FilterKind) -> Self {
         Self { constant: PRECISION_TEXELS, slope: 0.0, normal_offset: automatic_normal_offset(reach(filter)) }
     }

@@ -5,7 +5,6 @@
 
 use glam::{DVec2, DVec3, Mat4, UVec2, Vec3};
 
-use crate::bias::DEPTH_STEP;
 use crate::settings::MapFormat;
 use crate::{FitError, LightFit, checks};
 
@@ -72,6 +71,9 @@ pub fn depth_step(format: MapFormat, depth_range: f32) -> f32 {
         MapFormat::Depth32Float | MapFormat::R32Float => DEPTH_STEP * depth_range,
     }
 }
+
+/// One step of an f32 depth in 0.5..1, as a share of the range: 2⁻²⁴.
+const DEPTH_STEP: f32 = 1.0 / 16_777_216.0;
 
 /// Below this cosine between normal and light a surface is edge-on to the light: it is the
 /// rounding of f32 axes.

@@ -81,12 +81,14 @@ impl ViewFrustum {
     ///
     /// # Precision
     ///
-    /// An f32 matrix rounds each element by up to ε = 2⁻²⁴ of itself, and w is a difference of
-    /// two elements that nearly cancel. A corner c (relative to the eye) then moves by no more
-    /// than 4 ε r (|c| + |eye|), with r = far / near for near at 0 or -1, and for reversed depth
-    /// r = 1 at the far corners and 4 ε (|c| + |eye|) · (far + near) / far at the near ones. A
-    /// matrix that was also *inverted* in f32 is worse by its condition. Prefer
-    /// [`Self::from_camera`], or [`Self::from_eye_from_clip`] with a matrix relative to the eye.
+    /// An f32 matrix rounds each element by up to ε = 2⁻²⁴ of itself. At the far plane w = 1/far
+    /// is then the difference of two elements near 1/near (unless depth is reversed, where it is
+    /// one element by itself). A corner c relative to the eye moves by no more than
+    /// 4 ε r (|c| + |eye|), to first order in ε r, with r = far/near at the far corners and 1 at
+    /// the near ones, and with reversed depth r = 1 at all of them; an extent of a fitted box
+    /// moves by twice the worst of that. A matrix that was also *inverted* in f32 is worse by its
+    /// condition. Prefer [`Self::from_camera`], or [`Self::from_eye_from_clip`], for which |eye|
+    /// drops out.
     ///
     /// # Errors
     ///
@@ -192,8 +194,8 @@ impl ViewFrustum {
         }
     }
 
-    /// Volume of the box spanned by the far rectangle and the near-to-far axis, in m³ (not the
-    /// frustum's own volume, but zero exactly when that is).
+    /// Volume of the box spanned by the far rectangle, which is never the smaller one of a view,
+    /// and the near-to-far axis, in m³: zero where the frustum is flat.
     fn volume(&self) -> f64 {
         let c = self.corners.map(Vec3::as_dvec3);
         let across = (c[5] - c[4]).cross(c[7] - c[4]);
@@ -227,6 +229,9 @@ impl Unprojection {
         for i in 0..4 {
             let edge = self.edge(i)?;
             let near = edge.near.dot(forward);
+            if near >= limit {
+                return Err(FitError::NearNotBelowFar { near: near as f32, far: max_distance });
+            }
             let far = match edge.far {
                 Some(far) if far.dot(forward) <= limit => far,
                 _ => edge.near + edge.toward * ((limit - near) / edge.toward.dot(forward)),

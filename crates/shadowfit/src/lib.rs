@@ -66,3 +66,8 @@ pub use light_fit::{LightFit, WorldMatrices};
 pub use settings::{
     BiasSettings, CameraSettings, FilterKind, FitKind, FitSettings, LightSettings, MapFormat, Settings, ViewSettings,
 };
+
+/// Runs the example of the README as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExample;

@@ -1,0 +1,71 @@
+//! The sun's angles and the settings' `with_*` methods.
+
+use proptest::prelude::*;
+use shadowfit::glam::Vec3;
+use shadowfit::{BiasSettings, CameraSettings, FilterKind, LightSettings, MapFormat, Settings, ViewSettings};
+
+use crate::support::any_direction;
+
+fn light(azimuth: f32, elevation: f32) -> Vec3 {
+    LightSettings::default().with_azimuth(azimuth).with_elevation(elevation).direction()
+}
+
+#[test]
+fn azimuth_is_counted_from_plus_z_toward_plus_x_and_the_light_travels_away() {
+    let quarter = std::f32::consts::FRAC_PI_2;
+    let table = [
+        (0.0, 0.0, Vec3::NEG_Z),
+        (quarter, 0.0, Vec3::NEG_X),
+        (2.0 * quarter, 0.0, Vec3::Z),
+        (-quarter, 0.0, Vec3::X),
+        (0.3, quarter, Vec3::NEG_Y),
+        (0.3, -quarter, Vec3::Y),
+    ];
+    for (azimuth, elevation, expected) in table {
+        let direction = light(azimuth, elevation);
+        // π/2 rounded to f32 is off by 4e-8.
+        assert!(direction.abs_diff_eq(expected, 2e-7), "{azimuth}, {elevation}: {direction}");
+    }
+}
+
+#[test]
+fn a_vertical_light_has_azimuth_zero() {
+    for direction in [Vec3::NEG_Y, Vec3::Y, Vec3::new(-0.0, -1.0, -0.0), Vec3::new(0.0, -2.0, -0.0)] {
+        assert_eq!(LightSettings::from_direction(direction).unwrap().azimuth, 0.0);
+    }
+}
+
+#[test]
+fn angles_that_are_not_finite_give_a_direction_that_is_not() {
+    for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        assert!(!light(value, 0.5).is_finite());
+        assert!(!light(0.5, value).is_finite());
+    }
+}
+
+proptest! {
+    /// Two angles rounded to f32: up to 1.2e-7 rad at π.
+    #[test]
+    fn angles_and_direction_convert_back_and_forth(direction in any_direction()) {
+        let settings = LightSettings::from_direction(direction * 3.0).unwrap();
+        prop_assert!(settings.direction().abs_diff_eq(direction, 1e-6), "{settings:?}");
+    }
+}
+
+#[test]
+fn with_methods_change_their_field_only() {
+    let bias = BiasSettings::default().with_constant(1.0).with_slope(2.0).with_normal_offset(3.0);
+    assert_eq!(bias, BiasSettings { constant: 1.0, slope: 2.0, normal_offset: 3.0 });
+    let camera = CameraSettings::default().with_near(1.0);
+    assert_eq!(camera, CameraSettings { near: 1.0, ..CameraSettings::default() });
+    let view = ViewSettings::default().with_inset(false);
+    let settings = Settings::default()
+        .with_bias(bias)
+        .with_camera(camera)
+        .with_view(view)
+        .with_filter(FilterKind::Point)
+        .with_format(MapFormat::R32Float);
+    let expected =
+        Settings { bias, camera, view, filter: FilterKind::Point, format: MapFormat::R32Float, ..Settings::default() };
+    assert_eq!(settings, expected);
+}
