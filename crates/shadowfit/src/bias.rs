@@ -47,9 +47,9 @@ impl Bias {
         }
     }
 
-    /// The smallest bias that clears self-shadowing on a plane whatever its slope's azimuth, for
-    /// a filter of the given [`reach`] in texels: [`automatic_normal_offset`], plus what f32
-    /// rounding can do to the depths of this very fit at its origin. It holds for geometric
+    /// A bias that clears self-shadowing on a plane whatever its slope's azimuth, for a filter of
+    /// the given [`reach`] in texels: [`automatic_normal_offset`], the least that does, plus what
+    /// f32 rounding can do to the depths of this very fit at its origin. It holds for geometric
     /// normals, not for interpolated or normal-mapped ones.
     pub fn automatic(reach: f32, fit: &LightFit) -> Self {
         let corners = fit.corners().map(|corner| checks::length(corner.as_dvec3()) as f32);

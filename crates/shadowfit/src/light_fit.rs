@@ -126,7 +126,8 @@ impl LightFit {
     }
 
     /// The same map with its inputs relative to another world position, in metres. The
-    /// translation is made in f64 and rounded once.
+    /// translation is made in f64 and rounded once. An origin that is not finite gives matrices
+    /// that are not.
     #[must_use]
     pub fn relative_to(&self, new_origin: DVec3) -> Self {
         let moved = self.project(new_origin).as_vec3();

@@ -16,7 +16,8 @@ use crate::{FitError, LightFit, ViewFrustum};
 /// Fits the light's orthographic view-projection to a camera frustum, by the rule that
 /// [`FitSettings::kind`] names.
 ///
-/// The frustum is cut at [`FitSettings::max_distance`] first. `direction` is the light's
+/// The frustum is cut at [`FitSettings::max_distance`] first (`f32::MAX` leaves it whole; infinity
+/// is refused like every number that is not finite). `direction` is the light's
 /// **direction of travel** in world axes (right-handed); sources that speak of the direction
 /// toward the light use the opposite sign. Its length is of no account.
 ///
