@@ -73,9 +73,9 @@ impl Desktop {
         until(limit, || Some(self.capture(&latest)).filter(|shot| accept(shot)))
     }
 
-    /// Keeps `shot` under a numbered name that holds `name`.
-    pub(super) fn keep(&self, shot: Shot, name: &str) -> Shot {
-        shot.saved_as(self.next_file(name))
+    /// Keeps `shot`, or a new one where it is `None`, under a numbered name that holds `name`.
+    pub(super) fn keep(&self, shot: Option<&Shot>, name: &str) -> Shot {
+        shot.map_or_else(|| self.shoot(name), |shot| shot.clone().saved_as(self.next_file(name)))
     }
 
     fn next_file(&self, name: &str) -> PathBuf {

@@ -31,6 +31,8 @@ pub(crate) fn test(args: &[String]) -> Result<()> {
         bail!("{} is set, and {}", setup::REQUIRE_GPU, left_out[0].reason);
     }
     let features = setup::features(&machine);
+    // The window test starts the viewer, which a run of chosen tests would otherwise leave as it was.
+    process::run(process::cargo("build").args(["--workspace", "--examples"]).args(features))?;
     if !args.is_empty() {
         return process::run(runner(features, &left_out).args(args));
     }
@@ -101,7 +103,7 @@ fn runner(features: &[&str], left_out: &[LeftOut]) -> Command {
     }
     eprintln!("cargo-nextest is not installed: running `cargo test` instead");
     let mut command = process::cargo("test");
-    command.args(["--workspace", "--all-targets", "--no-fail-fast"]).args(features);
+    command.args(["--workspace", "--lib", "--bins", "--tests", "--no-fail-fast"]).args(features);
     if !left_out.is_empty() {
         command.arg("--").args(left_out.iter().flat_map(|tests| ["--skip", tests.name_part]));
     }
