@@ -87,7 +87,9 @@ fn remedy(debian_like: bool, is_root: bool, packages: &[&str]) -> Remedy {
     let names = packages.join(" ");
     match (debian_like, is_root) {
         (true, true) => Remedy::Install,
-        (true, false) => Remedy::Say(format!("sudo apt-get install --no-install-recommends {names}")),
+        (true, false) => {
+            Remedy::Say(format!("to install what is missing: sudo apt-get install --no-install-recommends {names}"))
+        }
         (false, _) => Remedy::Say(format!("missing here, as Debian names it (other systems differ): {names}")),
     }
 }
@@ -184,7 +186,9 @@ mod tests {
         assert_eq!(remedy(true, true, &packages), Remedy::Install);
         assert_eq!(
             remedy(true, false, &packages),
-            Remedy::Say("sudo apt-get install --no-install-recommends libvulkan1 xvfb".into())
+            Remedy::Say(
+                "to install what is missing: sudo apt-get install --no-install-recommends libvulkan1 xvfb".into()
+            )
         );
         for is_root in [false, true] {
             let Remedy::Say(text) = remedy(false, is_root, &packages) else { panic!("installed off Debian") };
