@@ -9,12 +9,10 @@
 //! use shadowfit::figures::Figures;
 //! use shadowfit_egui::{PANEL_WIDTH, Panel, PanelInput, SceneLine};
 //!
-//! # let ctx = egui::Context::default();
-//! # let (mut panel, mut settings) = (Panel::new(), Settings::default());
-//! # let output = ctx.run_ui(egui::RawInput::default(), |ui| {
+//! # fn host(ui: &mut egui::Ui, panel: &mut Panel, settings: &mut Settings) {
 //! egui::Panel::right("shadows").exact_size(PANEL_WIDTH).show(ui, |ui| {
 //!     let input = PanelInput {
-//!         settings: &mut settings,
+//!         settings,
 //!         figures: &Figures::default(),
 //!         scene: SceneLine { name: "Courtyard", triangles: 262_144, notes: &[] },
 //!         artefact: None,
@@ -25,8 +23,7 @@
 //!         println!("{action:?}");
 //!     }
 //! });
-//! # });
-//! # let _ = output;
+//! # }
 //! ```
 
 #![forbid(unsafe_code)]

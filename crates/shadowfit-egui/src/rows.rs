@@ -1,7 +1,12 @@
 //! One control per parameter: label, slider or list or check box, unit, and a reset button when the
 //! value is not the default.
 
-use egui::{Align, Button, Checkbox, ComboBox, Label, Layout, Response, Sense, Slider, SliderClamping, Ui};
+use std::f32::consts::TAU;
+
+use egui::{
+    Align, Checkbox, Color32, ComboBox, Label, Layout, Pos2, Response, Role, Sense, Shape, Slider, SliderClamping,
+    Stroke, Ui, Vec2, WidgetInfo,
+};
 use shadowfit::Settings;
 use shadowfit::params::{Choice, Kind, Number, Parameter, Toggle};
 
@@ -12,11 +17,12 @@ const VALUE_WIDTH: f32 = 82.0;
 /// Width kept free for the reset button, in points, so that controls do not jump.
 const RESET_WIDTH: f32 = 20.0;
 
-/// The row of a parameter. A double click on its label resets it, as the button does.
+/// The row of a parameter. A double click on its label resets it, as the button does; a number that
+/// is NaN, which no slider can show, resets itself.
 pub(crate) fn show(ui: &mut Ui, parameter: &Parameter, settings: &mut Settings, defaults: &Settings) {
     let help = help(parameter, defaults);
     let reason = (parameter.inert)(settings);
-    let mut reset = false;
+    let mut reset = matches!(parameter.kind, Kind::Number(number) if number.get(settings).is_nan());
     ui.push_id(parameter.id, |ui| {
         ui.horizontal(|ui| {
             ui.add_enabled_ui(reason.is_none(), |ui| match &parameter.kind {
@@ -57,11 +63,10 @@ fn number_row(
         slider = slider.suffix(format!(" {}", parameter.unit));
     }
     let response = ui.add(slider).labelled_by(label.id);
-    let changed = response.changed();
-    explain(response, help, reason);
-    if changed {
+    if response.changed() {
         number.set(settings, value);
     }
+    explain(response, help, reason);
     label.double_clicked()
 }
 
@@ -108,7 +113,7 @@ fn toggle_row(
 }
 
 fn label(ui: &mut Ui, parameter: &Parameter, help: &str, reason: Option<&str>) -> Response {
-    let size = egui::vec2(LABEL_WIDTH, ui.spacing().interact_size.y);
+    let size = Vec2::new(LABEL_WIDTH, ui.spacing().interact_size.y);
     let layout = Layout::left_to_right(Align::Center);
     let response = ui
         .allocate_ui_with_layout(size, layout, |ui| {
@@ -120,14 +125,30 @@ fn label(ui: &mut Ui, parameter: &Parameter, help: &str, reason: Option<&str>) -
 }
 
 fn reset_button(ui: &mut Ui, parameter: &Parameter) -> bool {
-    let layout = Layout::right_to_left(Align::Center);
-    ui.with_layout(layout, |ui| {
-        let response = ui.add(Button::new("↺").small().frame(false));
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        let (rect, response) = ui.allocate_exact_size(Vec2::splat(RESET_WIDTH), Sense::click());
         let name = format!("Reset {}", parameter.label);
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+        if ui.is_rect_visible(rect) {
+            paint_reset_icon(ui, rect.center(), ui.style().interact(&response).fg_stroke.color);
+        }
         response.on_hover_text("Back to the default").clicked()
     })
     .inner
+}
+
+/// An arrow that turns back anticlockwise. It is painted because egui's default fonts have no such
+/// glyph.
+fn paint_reset_icon(ui: &Ui, center: Pos2, colour: Color32) {
+    const RADIUS: f32 = 5.0;
+    const SEGMENTS: u8 = 16;
+    // From the arrow's head at the upper left, clockwise over the top, most of the way round;
+    // y points down.
+    let at = |turn: f32, radius: f32| center + radius * Vec2::angled(TAU * turn);
+    let arc = (0..=SEGMENTS).map(|step| at(-0.4 + 0.75 * f32::from(step) / f32::from(SEGMENTS), RADIUS)).collect();
+    ui.painter().line(arc, Stroke::new(1.5, colour));
+    let head = [at(-0.4, RADIUS + 3.0), at(-0.4, RADIUS - 3.0), at(-0.5, RADIUS + 0.5)];
+    ui.painter().add(Shape::convex_polygon(head.into(), colour, Stroke::NONE));
 }
 
 fn explain(response: Response, help: &str, reason: Option<&str>) -> Response {
