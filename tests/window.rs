@@ -15,8 +15,9 @@ use shot::{Area, Shot};
 /// Size of the window at the start, in pixels; smaller than the [`desktop::SCREEN`] so that a resize can grow it.
 const SIZE: (u32, u32) = (960, 600);
 
-/// What the viewer is started with: a scene that stands still, and its progress told on the standard error.
-const ARGUMENTS: [&str; 4] = ["--size", "960x600", "--no-play", "--log-frames"];
+/// What the viewer is started with: the driver that every machine has, a scene that stands still, and its progress told
+/// on the standard error.
+const ARGUMENTS: [&str; 5] = ["--size", "960x600", "--software", "--no-play", "--log-frames"];
 
 /// The part of the window that shows the scene whatever the panel beside it does.
 const PICTURE: Area = Area { x: 24, y: 120, width: 500, height: 380 };

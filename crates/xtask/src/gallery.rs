@@ -1,4 +1,5 @@
-//! `cargo xtask gallery`: renders the pictures that the README and the docs show.
+//! `cargo xtask gallery`: renders the pictures that the README and the docs show, on the software driver, so that they
+//! change with the code and not with the machine.
 
 use anyhow::Result;
 
@@ -17,9 +18,9 @@ const SIZE: &str = "960x540";
 /// # Errors
 /// When the viewer cannot be built, or ends with an error.
 pub(crate) fn gallery() -> Result<()> {
-    let machine = setup::prepare(Purpose::Run)?;
+    let machine = setup::prepare(Purpose::Test)?;
     let images = process::root().join(IMAGES);
-    process::run(run::viewer(&machine).arg("--headless").arg(&images).args(["--size", SIZE]))?;
+    process::run(run::viewer(&machine).arg("--headless").arg(&images).args(["--size", SIZE, "--software"]))?;
     run::say_where(&images);
     Ok(())
 }

@@ -49,7 +49,8 @@ pub(crate) fn say_where(folder: &Path) {
 /// Whether the viewer's arguments already ask for something that opens no window.
 fn needs_no_display(args: &[String]) -> bool {
     args.iter().any(|arg| {
-        matches!(arg.as_str(), "--headless" | "--help" | "-h" | "--version" | "-V") || arg.starts_with("--headless=")
+        matches!(arg.as_str(), "--headless" | "--parameters" | "--help" | "-h" | "--version" | "-V")
+            || arg.starts_with("--headless=")
     })
 }
 
