@@ -18,3 +18,8 @@ pub use error::SceneError;
 pub use import::{load_gltf, load_gltf_scene};
 pub use pose::{Instance, Pose, Triangle};
 pub use scene::*;
+
+/// Compiles the examples of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadMe;

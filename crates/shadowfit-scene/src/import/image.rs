@@ -29,7 +29,7 @@ pub(crate) struct Images<'a> {
     folder: &'a Path,
     /// By index in the file; `None` where it could not be used.
     loaded: HashMap<usize, Option<usize>>,
-    images: Vec<Image>,
+    decoded: Vec<Image>,
     placeholder: Option<usize>,
     bytes_left: u64,
 }
@@ -37,8 +37,8 @@ pub(crate) struct Images<'a> {
 impl<'a> Images<'a> {
     /// Loads nothing yet.
     pub(crate) fn new(root: &'a Root, folder: &'a Path) -> Self {
-        let (loaded, images) = (HashMap::new(), Vec::new());
-        Self { root, folder, loaded, images, placeholder: None, bytes_left: MAX_TOTAL_BYTES }
+        let (loaded, decoded) = (HashMap::new(), Vec::new());
+        Self { root, folder, loaded, decoded, placeholder: None, bytes_left: MAX_TOTAL_BYTES }
     }
 
     /// Index of an image in the scene; `None` where it cannot be used, which the notes tell.
@@ -50,8 +50,8 @@ impl<'a> Images<'a> {
         let loaded = match result {
             Ok(image) => {
                 self.bytes_left -= image.rgba.len() as u64;
-                self.images.push(image);
-                Some(self.images.len() - 1)
+                self.decoded.push(image);
+                Some(self.decoded.len() - 1)
             }
             Err(reason) => {
                 notes.add(format!("images[{index}]: replaced by a placeholder: {reason}"));
@@ -66,14 +66,14 @@ impl<'a> Images<'a> {
     pub(crate) fn placeholder(&mut self) -> usize {
         *self.placeholder.get_or_insert_with(|| {
             let name = "placeholder".to_owned();
-            self.images.push(Image { name, width: 1, height: 1, rgba: vec![255; 4] });
-            self.images.len() - 1
+            self.decoded.push(Image { name, width: 1, height: 1, rgba: vec![255; 4] });
+            self.decoded.len() - 1
         })
     }
 
     /// The images for the scene.
     pub(crate) fn finish(self) -> Vec<Image> {
-        self.images
+        self.decoded
     }
 
     fn try_load(&self, index: usize, reader: &Reader) -> Result<Image, String> {

@@ -36,7 +36,7 @@ pub(crate) struct Materials<'a> {
     reader: &'a Reader<'a>,
     images: Images<'a>,
     looks: HashMap<usize, Look>,
-    materials: Vec<Material>,
+    loaded: Vec<Material>,
 }
 
 /// A reference to a texture from a material.
@@ -51,7 +51,7 @@ impl<'a> Materials<'a> {
     /// Holds the default material only.
     pub(crate) fn new(root: &'a Root, reader: &'a Reader<'a>, folder: &'a Path) -> Self {
         let images = Images::new(root, folder);
-        Self { root, reader, images, looks: HashMap::new(), materials: vec![Material::default()] }
+        Self { root, reader, images, looks: HashMap::new(), loaded: vec![Material::default()] }
     }
 
     /// The look of a primitive's material, loaded if need be.
@@ -77,7 +77,7 @@ impl<'a> Materials<'a> {
 
     /// The materials and images for the scene.
     pub(crate) fn finish(self) -> (Vec<Material>, Vec<Image>) {
-        (self.materials, self.images.finish())
+        (self.loaded, self.images.finish())
     }
 
     fn load(&mut self, json: &json::Material, element: &str, notes: &mut Notes) -> Result<Look, Problem> {
@@ -107,9 +107,9 @@ impl<'a> Materials<'a> {
         let mut material = plain(json, element, notes);
         material.base_color_texture = base_color_texture;
         material.normal_texture = normal_texture;
-        self.materials.push(material);
+        self.loaded.push(material);
         let uv_from_texcoord = normal_texture.map(|texture| texture.uv_from_texcoord);
-        Ok(Look { material: self.materials.len() - 1, uv_set, uv_from_texcoord })
+        Ok(Look { material: self.loaded.len() - 1, uv_set, uv_from_texcoord })
     }
 
     /// A texture; `None` where its image cannot be used.
@@ -178,7 +178,7 @@ fn plain(json: &json::Material, element: &str, notes: &mut Notes) -> Material {
     }
     let strength = json.extensions.as_ref().and_then(|e| e.emissive_strength.as_ref());
     let strength = strength.map_or(1.0, |e| e.emissive_strength.0);
-    let emissive = json.emissive_factor.0.map(|c| (c * strength).max(0.0).min(MAX_EMISSIVE));
+    let emissive = json.emissive_factor.0.map(|c| clamped(c * strength, MAX_EMISSIVE));
     let normal_scale = json.normal_texture.as_ref().map_or(1.0, |normal| normal.scale);
     Material {
         name: json.name.clone().unwrap_or_default(),
@@ -208,8 +208,13 @@ fn alpha(json: &json::Material, element: &str, notes: &mut Notes) -> AlphaMode {
 }
 
 /// Clamped to 0..=1, NaN to 0.
-fn unit(value: f32) -> f32 {
-    value.max(0.0).min(1.0)
+pub(crate) fn unit(value: f32) -> f32 {
+    clamped(value, 1.0)
+}
+
+/// Clamped to 0..=`max`, NaN to 0.
+fn clamped(value: f32, max: f32) -> f32 {
+    if value.is_nan() { 0.0 } else { value.clamp(0.0, max) }
 }
 
 /// Repeats, is filtered and not transformed.

@@ -8,7 +8,7 @@ use gltf::json::{Index, mesh::MorphTarget as JsonTarget};
 
 use super::accessor::{Integers, Reader};
 use super::influence;
-use super::material::Look;
+use super::material::{Look, unit};
 use super::notes::{Notes, Tally};
 use super::surface;
 use super::topology::{triangle_list, without_triangles};
@@ -121,7 +121,7 @@ impl Attributes<'_> {
     fn positions(&self, index: Index<Accessor>, element: &str) -> Result<Vec<Vec3>, Problem> {
         let values = self.elements(index, element, Integers::AsDeclared)?;
         let values: Vec<Vec3> = values.into_iter().map(Vec3::from_array).collect();
-        let wrong = values.iter().position(|v| !(v.abs().max_element() <= MAX_COORDINATE) || !v.is_finite());
+        let wrong = values.iter().position(|v| !v.is_finite() || v.abs().max_element() > MAX_COORDINATE);
         let Some(vertex) = wrong else { return Ok(values) };
         let name = format!("{element}, accessor {index}");
         let [x, y, z] = values[vertex].to_array();
@@ -159,8 +159,7 @@ impl Attributes<'_> {
             values.into_iter().map(Vec4::from_array).collect()
         };
         for color in &mut colors {
-            // NaN becomes 0 here as well.
-            *color = Vec4::from_array(color.to_array().map(|c| c.max(0.0).min(1.0)));
+            *color = Vec4::from_array(color.to_array().map(unit));
         }
         Ok(colors)
     }

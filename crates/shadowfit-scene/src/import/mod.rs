@@ -20,6 +20,7 @@ mod uri;
 mod view;
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::path::Path;
 
 use glam::{Mat4, Vec3};
@@ -110,15 +111,15 @@ fn meshes<'a>(
     let mut loaded = HashMap::new();
     for (node, &index) in nodes.iter_mut().zip(&tree.file_index) {
         let Some(mesh) = root.nodes[index].mesh else { continue };
-        if !loaded.contains_key(&mesh.value()) {
-            let json = root.meshes.get(mesh.value());
-            let json =
-                json.ok_or_else(|| Problem::new(format!("nodes[{index}].mesh"), format!("there is no mesh {mesh}")))?;
-            let element = format!("meshes[{mesh}]");
-            meshes.push(load_mesh(json, &element, reader, &mut materials, notes)?);
-            loaded.insert(mesh.value(), meshes.len() - 1);
-        }
-        node.mesh = loaded.get(&mesh.value()).copied();
+        node.mesh = match loaded.entry(mesh.value()) {
+            Entry::Occupied(known) => Some(*known.get()),
+            Entry::Vacant(new) => {
+                let missing = || Problem::new(format!("nodes[{index}].mesh"), format!("there is no mesh {mesh}"));
+                let json = root.meshes.get(mesh.value()).ok_or_else(missing)?;
+                meshes.push(load_mesh(json, &format!("meshes[{mesh}]"), reader, &mut materials, notes)?);
+                Some(*new.insert(meshes.len() - 1))
+            }
+        };
     }
     Ok((meshes, materials))
 }
@@ -149,14 +150,15 @@ fn skins(root: &Root, reader: &Reader, tree: &Tree, nodes: &mut [Node], meshes: 
     let mut loaded = HashMap::new();
     for (node, &index) in nodes.iter_mut().zip(&tree.file_index) {
         let (Some(skin), Some(mesh)) = (root.nodes[index].skin, node.mesh) else { continue };
-        if !loaded.contains_key(&skin.value()) {
-            skins.push(skin::load(reader, root, tree, skin.value())?);
-            loaded.insert(skin.value(), skins.len() - 1);
-        }
-        node.skin = loaded.get(&skin.value()).copied();
-        if let Some(own) = node.skin {
-            skin::check_joints(&meshes[mesh], &skins[own], &format!("nodes[{index}].skin"))?;
-        }
+        let own = match loaded.entry(skin.value()) {
+            Entry::Occupied(known) => *known.get(),
+            Entry::Vacant(new) => {
+                skins.push(skin::load(reader, root, tree, skin.value())?);
+                *new.insert(skins.len() - 1)
+            }
+        };
+        node.skin = Some(own);
+        skin::check_joints(&meshes[mesh], &skins[own], &format!("nodes[{index}].skin"))?;
     }
     Ok(skins)
 }

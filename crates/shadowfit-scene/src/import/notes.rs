@@ -20,12 +20,13 @@ pub(crate) enum Tally {
 
 impl Tally {
     fn sentence(self, count: usize) -> String {
-        match self {
-            Self::ZeroAreaTriangles => format!("{count} triangles without area dropped"),
-            Self::RepairedNormals => format!("{count} unusable normals computed anew"),
-            Self::RepairedUvs => format!("{count} texture coordinates that are not finite set to 0"),
-            Self::ComputedNormals => format!("flat normals computed for {count} primitives that have none"),
-        }
+        let what = match self {
+            Self::ZeroAreaTriangles => "triangles without area dropped",
+            Self::RepairedNormals => "unusable normals computed anew",
+            Self::RepairedUvs => "texture coordinates that are not finite set to 0",
+            Self::ComputedNormals => "primitives without normals given flat ones",
+        };
+        format!("{what}: {count}")
     }
 }
 

@@ -1,0 +1,11 @@
+//! Tests of import, pose and bounds through the public interface.
+//!
+//! `small_*` make their files themselves. `assets` and `hostile` load a collection of real, odd and
+//! broken files from `../shared/assets` beside the workspace, and say so where it is not there.
+
+mod assets;
+mod build;
+mod hostile;
+mod small_broken;
+mod small_motion;
+mod small_surface;
