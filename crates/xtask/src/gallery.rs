@@ -18,7 +18,7 @@ const SIZE: &str = "960x540";
 /// # Errors
 /// When the viewer cannot be built, or ends with an error.
 pub(crate) fn gallery() -> Result<()> {
-    let machine = setup::prepare(Purpose::Test)?;
+    let machine = setup::prepare(Purpose::Pictures)?;
     let images = process::root().join(IMAGES);
     process::run(run::viewer(&machine).arg("--headless").arg(&images).args(["--size", SIZE, "--software"]))?;
     run::say_where(&images);

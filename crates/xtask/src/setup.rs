@@ -13,7 +13,9 @@ use crate::process;
 pub(crate) enum Purpose {
     /// Running the viewer: some Vulkan driver, gamepads, and a window where there is a display.
     Run,
-    /// Running the tests: as above, the software driver of the golden images, and the tools of the window test.
+    /// Rendering pictures that must be the same everywhere: the software driver.
+    Pictures,
+    /// Running the tests: as for running, the software driver of the golden images, and the tools of the window test.
     Test,
 }
 
@@ -62,7 +64,7 @@ pub(crate) fn features(machine: &Machine) -> &'static [&'static str] {
 fn missing_packages(purpose: Purpose, machine: &Machine) -> Vec<&'static str> {
     let testing = purpose == Purpose::Test;
     // A machine with a driver of its own keeps it for flying; the golden images come from the software driver alone.
-    let driver = if testing { Part::SoftwareDriver } else { Part::VulkanDriver };
+    let driver = if purpose == Purpose::Run { Part::VulkanDriver } else { Part::SoftwareDriver };
     let mut needs = vec![(Part::VulkanLoader, "libvulkan1"), (driver, "mesa-vulkan-drivers")];
     if testing || machine.display == Display::X11 {
         needs.extend(WINDOW_LIBRARIES.map(|(library, package)| (Part::WindowLibrary(library), package)));
@@ -157,17 +159,19 @@ mod tests {
     }
 
     #[test]
-    fn a_driver_that_is_there_is_kept_for_running_and_the_software_one_is_added_for_testing() {
+    fn a_driver_that_is_there_is_kept_for_running_and_the_software_one_is_added_for_pictures() {
         let mut machine = Machine::complete(Display::X11);
         machine.parts.remove(&Part::SoftwareDriver);
         assert!(missing_packages(Purpose::Run, &machine).is_empty());
-        assert_eq!(missing_packages(Purpose::Test, &machine), ["mesa-vulkan-drivers"]);
+        for purpose in [Purpose::Pictures, Purpose::Test] {
+            assert_eq!(missing_packages(purpose, &machine), ["mesa-vulkan-drivers"]);
+        }
     }
 
     #[test]
     fn a_complete_machine_gets_nothing() {
         for display in [Display::None, Display::X11, Display::Wayland, Display::Desktop] {
-            for purpose in [Purpose::Run, Purpose::Test] {
+            for purpose in [Purpose::Run, Purpose::Pictures, Purpose::Test] {
                 assert!(missing_packages(purpose, &Machine::complete(display)).is_empty());
             }
         }
