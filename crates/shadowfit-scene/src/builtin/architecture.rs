@@ -17,7 +17,7 @@ const FLOOR_QUADS: usize = 24;
 /// Height of the loggia's platform above the floor.
 const PLATFORM: f32 = 0.45;
 /// Height of a column with base and capital.
-pub(super) const COLUMN: f32 = 3.0;
+pub(super) const COLUMN: f32 = 3.5;
 /// Middle of the loggia along x.
 const MIDDLE: f32 = 1.0;
 /// Half of the platform's width.
@@ -25,7 +25,7 @@ const HALF_WIDTH: f32 = 8.2;
 /// Where the row of columns stands along z.
 const ROW: f32 = -6.4;
 /// Where the middle of the rear wall stands along z.
-const WALL: f32 = -9.4;
+const WALL: f32 = -8.2;
 /// Slope of the roof, in radians.
 const PITCH: f32 = 0.245;
 
@@ -64,20 +64,20 @@ fn floor() -> Primitive {
 
 /// A box between two corners with slightly rounded edges.
 pub(super) fn block(low: Vec3, high: Vec3, edge: f32) -> Solid {
-    rounded_box((high - low) / 2.0, edge, 2).moved((low + high) / 2.0)
+    rounded_box((high - low) / 2.0, edge, 1).moved((low + high) / 2.0)
 }
 
 /// A fluted column on a square foot, with a square slab above its capital.
 fn column(builder: &mut Builder) -> usize {
-    let shaft: Vec<(f32, f32)> = (0..=8)
+    let shaft: Vec<(f32, f32)> = (0..=5)
         .map(|step| {
-            let t = step as f32 / 8.0;
+            let t = step as f32 / 5.0;
             // Entasis: the outline swells by a centimetre below the middle.
-            (0.19 - 0.035 * t + 0.010 * (t * TAU / 2.0).sin(), 0.2 + 2.48 * t)
+            (0.19 - 0.035 * t + 0.010 * (t * TAU / 2.0).sin(), 0.2 + 2.98 * t)
         })
         .collect();
     let flute = |turn: f32, _: f32| 1.0 - 0.085 * (turn * 10.0).sin().abs().sqrt();
-    let shaft = modulated_lathe(&shaft, 120, flute);
+    let shaft = modulated_lathe(&shaft, 80, flute);
     let base = [
         (0.245, 0.07),
         (0.262, 0.085),
@@ -108,8 +108,8 @@ fn column(builder: &mut Builder) -> usize {
         (0.235, 2.892),
     ];
     let foot = block(Vec3::new(-0.28, -0.01, -0.28), Vec3::new(0.28, 0.08, 0.28), 0.008);
-    let slab = block(Vec3::new(-0.27, 2.885, -0.27), Vec3::new(0.27, COLUMN + 0.01, 0.27), 0.008);
-    let round = lathe(&base, 48).with(lathe(&capital, 48)).with(foot).with(slab);
+    let slab = block(Vec3::new(-0.27, 3.385, -0.27), Vec3::new(0.27, COLUMN + 0.01, 0.27), 0.008);
+    let round = lathe(&base, 28).with(lathe(&capital, 28).moved(Vec3::Y * (COLUMN - 3.0))).with(foot).with(slab);
     let primitives = vec![shaft.primitive(Paint::Marble.index(), CRISP), round.primitive(Paint::Marble.index(), 0.75)];
     builder.mesh("column", primitives)
 }
@@ -120,7 +120,7 @@ fn loggia(builder: &mut Builder, column: usize) {
     let mut platform = Solid::default();
     for step in 0..3 {
         let rise = step as f32;
-        let low = Vec3::new(-HALF_WIDTH + 0.3 * rise, 0.1 * rise - 0.02, -10.3 + 0.1 * rise);
+        let low = Vec3::new(-HALF_WIDTH + 0.3 * rise, 0.1 * rise - 0.02, -9.1 + 0.1 * rise);
         let high = Vec3::new(HALF_WIDTH - 0.3 * rise, 0.15 * (rise + 1.0), -4.95 - 0.34 * rise);
         platform = platform.with(block(low, high, 0.014));
     }
@@ -139,7 +139,7 @@ fn rear_wall(builder: &mut Builder, group: usize) {
     let door = Arch { width: 2.4, height: 4.15, depth: 0.52, radius: 0.75, spring: 2.0 };
     let door = builder.solid("doorway", &door.solid(24), Paint::Stone, CRISP);
     builder.place(group, door, Vec3::new(1.0, PLATFORM - 0.01, WALL), 0.0);
-    let top = 4.62;
+    let top = 4.80;
     let part =
         |from: f32, to: f32, low: f32| block(Vec3::new(from, low, WALL - 0.18), Vec3::new(to, top, WALL + 0.18), 0.01);
     let wall = part(-7.55, -0.1, PLATFORM - 0.01).with(part(2.1, 7.55, PLATFORM - 0.01)).with(part(-0.15, 2.15, 4.3));
@@ -166,29 +166,29 @@ fn roof(builder: &mut Builder, group: usize) {
         ..Transform::default()
     };
     let slope = builder.node("roof", Some(group), tilt, None);
-    let rafter = block(Vec3::new(-0.05, 0.0, -3.75), Vec3::new(0.05, 0.15, 1.05), 0.008);
+    let rafter = block(Vec3::new(-0.05, 0.0, -2.55), Vec3::new(0.05, 0.15, 0.72), 0.008);
     let rafter = builder.solid("rafter", &rafter, Paint::Timber, CRISP);
     for place in 0..31 {
         builder.place(slope, rafter, Vec3::new(-7.5 + 0.5 * place as f32, 0.0, 0.0), 0.0);
     }
-    let boards = block(Vec3::new(-7.95, 0.14, -3.9), Vec3::new(7.95, 0.19, 1.15), 0.006);
+    let boards = block(Vec3::new(-7.95, 0.14, -2.7), Vec3::new(7.95, 0.19, 0.80), 0.006);
     let boards = builder.solid("roof boards", &boards, Paint::Roof, CRISP);
     builder.place(slope, boards, Vec3::ZERO, 0.0);
     let tile = tile_row();
     let tile = builder.solid("tile row", &tile, Paint::Roof, SMOOTH);
     for place in 0..63 {
-        builder.place(slope, tile, Vec3::new(-7.75 + 0.25 * place as f32, 0.185, 1.2), 0.0);
+        builder.place(slope, tile, Vec3::new(-7.75 + 0.25 * place as f32, 0.185, 0.86), 0.0);
     }
 }
 
 /// A row of overlapping round tiles along -z, each wider at its lower end.
 fn tile_row() -> Solid {
     let mut profile = vec![(0.05, 0.0)];
-    for tile in 0..10 {
+    for tile in 0..7 {
         let start = 0.515 * tile as f32;
         profile.extend([(0.085, start + 0.001), (0.07, start + 0.51)]);
     }
-    lathe(&profile, 14).transformed(glam::Affine3A::from_rotation_x(-TAU / 4.0))
+    lathe(&profile, 10).transformed(glam::Affine3A::from_rotation_x(-TAU / 4.0))
 }
 
 /// Columns without a roof: two whole ones with a bronze ball, one broken off.
@@ -196,7 +196,7 @@ fn free_columns(builder: &mut Builder, column: usize) {
     let group = builder.group("free columns", Vec3::ZERO, 0.0);
     let stand = block(Vec3::new(-0.42, -0.01, -0.42), Vec3::new(0.42, 0.3, 0.42), 0.012);
     let stand = builder.solid("pedestal", &stand, Paint::Stone, CRISP);
-    let ball = super::shapes::ellipsoid(Vec3::splat(0.3), 48, 28);
+    let ball = super::shapes::ellipsoid(Vec3::splat(0.3), 36, 22);
     let ball = builder.solid("ball", &ball, Paint::Bronze, SMOOTH);
     for at in [Vec3::new(-5.2, 0.0, -1.2), Vec3::new(8.6, 0.0, -1.6)] {
         builder.place(group, stand, at, 0.0);
@@ -212,12 +212,17 @@ fn arcade(builder: &mut Builder) {
     let cornice = block(Vec3::new(-2.04, 6.05, -0.7), Vec3::new(2.04, 6.45, 0.7), 0.03);
     let arch = arch.solid(24).moved(Vec3::Y * -0.02).with(cornice);
     let arch = builder.solid("arch", &arch, Paint::Stone, CRISP);
-    for place in 0..14 {
-        // Every second one is turned and a touch deeper set, so that no faces coincide.
-        let x = -24.0 + 4.1 * place as f32;
-        let z = -34.0 - 0.02 * (place % 2) as f32;
-        let node = builder.place(group, arch, Vec3::new(x, -0.01 * (place % 2) as f32, z), 0.0);
-        builder.scene.nodes[node].rest.scale.z = 1.0 - 0.02 * (place % 2) as f32;
+    // Along the far side, then toward the eye on the right; neighbours overlap, so every second
+    // one is a little thinner and lower, lest faces coincide.
+    for place in 0..24 {
+        let (at, yaw) = if place < 15 {
+            (Vec3::new(-24.0 + 4.1 * place as f32, 0.0, -34.0), 0.0)
+        } else {
+            (Vec3::new(36.0, 0.0, -31.0 + 4.1 * (place - 15) as f32), TAU / 4.0)
+        };
+        let odd = (place % 2) as f32;
+        let node = builder.place(group, arch, at - Vec3::Y * 0.01 * odd, yaw);
+        builder.scene.nodes[node].rest.scale.z = 1.0 - 0.02 * odd;
     }
     let shaft = [(0.78, 0.55), (0.46, 9.4), (0.0, 10.3)];
     let foot = block(Vec3::new(-0.9, -0.02, -0.9), Vec3::new(0.9, 0.6, 0.9), 0.02);

@@ -43,7 +43,7 @@ fn smooth(solid: &Solid, paint: Paint) -> Primitive {
 /// An elliptical ring about y at `height`: a hem, belt or cuff.
 fn band(height: f32, rx: f32, rz: f32, thick: f32, tall: f32) -> Solid {
     let scale = Affine3A::from_scale(Vec3::new(rx, 1.0, rz));
-    let ring = torus(1.0, thick / rx.min(rz), tall, 48, 8);
+    let ring = torus(1.0, thick / rx.min(rz), tall, 28, 6);
     ring.transformed(scale).moved(Vec3::Y * height)
 }
 
@@ -52,16 +52,17 @@ fn hips() -> Vec<Primitive> {
     let seat =
         [section(-0.10, 0.115, 0.085, 0.0), section(-0.03, 0.158, 0.108, -0.004), section(0.06, 0.148, 0.1, 0.0)];
     let skirt = [
-        section(-0.045, 0.176, 0.126, -0.002),
-        section(0.0, 0.172, 0.12, -0.002),
+        section(-0.085, 0.187, 0.142, 0.0),
+        section(-0.045, 0.181, 0.133, 0.0),
+        section(0.0, 0.171, 0.119, 0.0),
         section(0.06, 0.153, 0.107, 0.0),
         section(0.12, 0.146, 0.101, 0.0),
         section(0.20, 0.146, 0.101, 0.0),
     ];
     let buckle = rounded_box(Vec3::new(0.026, 0.021, 0.008), 0.006, 2).moved(Vec3::new(0.0, 0.075, 0.116));
-    let skirt = loft(&skirt, 2.3, 4, 48).with(band(-0.05, 0.168, 0.118, 0.012, 0.012));
+    let skirt = loft(&skirt, 2.3, 3, 40).with(band(-0.087, 0.182, 0.137, 0.011, 0.012));
     vec![
-        smooth(&loft(&seat, 2.3, 4, 40), Paint::Trousers),
+        smooth(&loft(&seat, 2.3, 3, 32), Paint::Trousers),
         smooth(&skirt, Paint::Jacket),
         smooth(&band(0.075, 0.147, 0.101, 0.011, 0.022), Paint::Leather),
         smooth(&buckle, Paint::Bronze),
@@ -75,21 +76,21 @@ fn chest() -> Vec<Primitive> {
         section(-0.07, 0.152, 0.105, 0.002),
         section(0.02, 0.172, 0.117, 0.006),
         section(0.10, 0.184, 0.119, 0.004),
-        section(0.155, 0.166, 0.104, 0.0),
-        section(0.195, 0.112, 0.083, -0.004),
-        section(0.225, 0.07, 0.065, -0.006),
+        section(0.150, 0.172, 0.104, -0.002),
+        section(0.182, 0.135, 0.086, -0.006),
+        section(0.222, 0.07, 0.065, -0.006),
     ];
-    let button = |y: f32, z: f32| ellipsoid(Vec3::new(0.012, 0.012, 0.006), 16, 8).moved(Vec3::new(0.0, y, z));
+    let button = |y: f32, z: f32| ellipsoid(Vec3::new(0.012, 0.012, 0.006), 14, 6).moved(Vec3::new(0.0, y, z));
     let buttons = button(-0.10, 0.104).with(button(-0.025, 0.114)).with(button(0.05, 0.124));
     let wrap = |radius: f32, y: f32, z: f32, pitch: f32, roll: f32| {
         let turn = Quat::from_rotation_x(pitch) * Quat::from_rotation_z(roll);
         let place = Affine3A::from_rotation_translation(turn, Vec3::new(0.0, y, z));
-        torus(radius, 0.036, 0.034, 56, 16).transformed(place)
+        torus(radius, 0.036, 0.034, 36, 12).transformed(place)
     };
     let knot = ellipsoid(Vec3::new(0.036, 0.042, 0.03), 20, 12).moved(Vec3::new(0.062, 0.20, -0.085));
     let scarf = wrap(0.084, 0.205, 0.004, 0.24, 0.06).with(wrap(0.073, 0.248, 0.004, 0.12, -0.10)).with(knot);
     vec![
-        smooth(&loft(&jacket, 2.35, 4, 56), Paint::Jacket),
+        smooth(&loft(&jacket, 2.35, 3, 44), Paint::Jacket),
         smooth(&buttons, Paint::Bronze),
         smooth(&scarf, Paint::Scarf),
     ]
@@ -98,22 +99,22 @@ fn chest() -> Vec<Primitive> {
 fn neck() -> Solid {
     let sections =
         [section(-0.04, 0.056, 0.058, -0.002), section(0.03, 0.05, 0.053, 0.004), section(0.11, 0.055, 0.06, 0.012)];
-    loft(&sections, 2.0, 3, 32)
+    loft(&sections, 2.0, 2, 28)
 }
 
 /// A third of the hanging end of the scarf.
 fn scarf_end() -> Solid {
-    rounded_box(Vec3::new(0.046, 0.083, 0.010), 0.0095, 3).moved(Vec3::new(0.0, -0.072, 0.0))
+    rounded_box(Vec3::new(0.046, 0.083, 0.010), 0.0095, 2).moved(Vec3::new(0.0, -0.072, 0.0))
 }
 
 fn upper_arm() -> Solid {
-    limb(0.27, &[0.064, 0.061, 0.055, 0.05, 0.05], 28)
+    limb(0.27, &[0.066, 0.061, 0.055, 0.05, 0.05], 24)
 }
 
 /// Sleeve with its cuff, and the wrist.
 fn forearm() -> Vec<Primitive> {
-    let sleeve = limb(0.215, &[0.051, 0.05, 0.045, 0.041], 28).with(band(-0.215, 0.037, 0.037, 0.012, 0.018));
-    vec![smooth(&sleeve, Paint::Jacket), smooth(&limb(0.25, &[0.03, 0.028, 0.027], 20), Paint::Skin)]
+    let sleeve = limb(0.215, &[0.051, 0.05, 0.045, 0.041], 24).with(band(-0.215, 0.037, 0.037, 0.012, 0.018));
+    vec![smooth(&sleeve, Paint::Jacket), smooth(&limb(0.25, &[0.03, 0.028, 0.027], 16), Paint::Skin)]
 }
 
 /// The left hand, hanging at ease: palm toward the body (-x), thumb ahead (+z).
@@ -124,23 +125,23 @@ fn hand() -> Solid {
         section(-0.02, 0.021, 0.033, 0.002),
         section(0.005, 0.022, 0.026, 0.0),
     ];
-    let mut hand = loft(&palm, 2.5, 3, 28);
+    let mut hand = loft(&palm, 2.5, 2, 24);
     for (z, length, radius) in
         [(0.033, 0.066, 0.0115), (0.012, 0.076, 0.012), (-0.009, 0.071, 0.0115), (-0.028, 0.056, 0.0105)]
     {
         let root = Vec3::new(0.001, -0.092, z);
         let knuckle = root + Vec3::new(-0.16, -0.98, 0.05 * z.signum()) * length * 0.55;
         let tip = knuckle + Vec3::new(-0.55, -0.83, 0.0) * length * 0.45;
-        hand = hand.with(capsule(root, radius, knuckle, radius * 0.97, 14));
-        hand = hand.with(capsule(knuckle, radius * 0.97, tip, radius * 0.85, 14));
+        hand = hand.with(capsule(root, radius, knuckle, radius * 0.97, 12));
+        hand = hand.with(capsule(knuckle, radius * 0.97, tip, radius * 0.85, 12));
     }
     let [base, joint, tip] =
         [Vec3::new(-0.004, -0.03, 0.026), Vec3::new(-0.012, -0.066, 0.052), Vec3::new(-0.02, -0.096, 0.056)];
-    hand.with(capsule(base, 0.017, joint, 0.0135, 14)).with(capsule(joint, 0.0135, tip, 0.011, 14))
+    hand.with(capsule(base, 0.017, joint, 0.0135, 12)).with(capsule(joint, 0.0135, tip, 0.011, 12))
 }
 
 fn thigh() -> Solid {
-    limb(0.43, &[0.09, 0.09, 0.081, 0.069, 0.062], 32)
+    limb(0.43, &[0.080, 0.088, 0.081, 0.069, 0.062], 26)
 }
 
 /// Trousers to below the knee and the boot's shaft with its turned-down top.
@@ -153,14 +154,14 @@ fn shin() -> Vec<Primitive> {
     ];
     let top = band(-0.205, 0.062, 0.065, 0.012, 0.024).moved(Vec3::new(0.0, 0.0, -0.004));
     vec![
-        smooth(&limb(0.26, &[0.061, 0.068, 0.066, 0.058], 32), Paint::Trousers),
-        smooth(&loft(&shaft, 2.0, 4, 32).with(top), Paint::Leather),
+        smooth(&limb(0.26, &[0.061, 0.068, 0.066, 0.058], 26), Paint::Trousers),
+        smooth(&loft(&shaft, 2.0, 3, 26).with(top), Paint::Leather),
     ]
 }
 
 /// A loft along +z instead of +y; its sections' `cz` is the depth of the centre below the joint.
 fn along_z(sections: &[super::shapes::Section], floor: f32) -> Solid {
-    let mut solid = loft(sections, 2.3, 4, 32).transformed(Affine3A::from_rotation_x(FRAC_PI_2));
+    let mut solid = loft(sections, 2.3, 3, 28).transformed(Affine3A::from_rotation_x(FRAC_PI_2));
     for position in &mut solid.positions {
         position.y = position.y.max(floor);
     }
@@ -169,15 +170,15 @@ fn along_z(sections: &[super::shapes::Section], floor: f32) -> Solid {
 
 /// A sole between two heights, from `back` to `front` along z, `half` wide, wider ahead by `flare`.
 fn sole([low, high]: [f32; 2], [back, front]: [f32; 2], half: f32, flare: f32) -> Solid {
-    let (middle, reach) = ((back + front) / 2.0, (front - back) / 2.0);
+    let (middle, reach) = (f32::midpoint(back, front), (front - back) / 2.0);
     let ring = |y: f32, inset: f32| {
         let point = |place: usize| {
-            let (sin, cos) = (place as f32 / 40.0 * TAU).sin_cos();
+            let (sin, cos) = (place as f32 / 32.0 * TAU).sin_cos();
             let squarer = |v: f32| v.signum() * v.abs().powf(0.75);
             let width = half + flare * cos;
             Vec3::new(squarer(sin) * (width - inset), y, middle + squarer(cos) * (reach - inset))
         };
-        (0..40).map(point).collect::<Vec<_>>()
+        (0..32).map(point).collect::<Vec<_>>()
     };
     let edge = 0.004;
     let rings = [ring(low, edge), ring(low + edge, 0.0), ring(high - edge, 0.0), ring(high, edge)];

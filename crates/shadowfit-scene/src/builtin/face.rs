@@ -17,9 +17,9 @@ use super::solid::Solid;
 /// Point that the rays start from, in the head's axes: between the temples.
 const CENTRE: Vec3 = Vec3::new(0.0, 0.14, 0.0);
 /// Vertices around the head; even, so that it can be mirrored.
-const AROUND: usize = 112;
+const AROUND: usize = 80;
 /// Rings from chin to crown.
-const RINGS: usize = 72;
+const RINGS: usize = 52;
 /// Centre of the left eye.
 const EYE: Vec3 = Vec3::new(0.0375, 0.125, 0.0735);
 /// Radius of the eyes.
@@ -29,7 +29,7 @@ const EYE_RADIUS: f32 = 0.0215;
 pub(super) fn mesh() -> Part {
     let piece = |solid: &Solid, paint: Paint| solid.primitive(paint.index(), SMOOTH);
     let primitives = vec![
-        piece(&head().with(ears()), Paint::Skin),
+        piece(&head().with(ears()).with(lids()), Paint::Skin),
         piece(&eyes(), Paint::EyeWhite),
         piece(&irises(), Paint::Iris),
         piece(&hair(), Paint::Hair),
@@ -106,7 +106,17 @@ fn reach(direction: Vec3) -> f32 {
             at_high *= 0.5;
         }
     }
-    (low + high) / 2.0
+    f32::midpoint(low, high)
+}
+
+/// Point of the face at `x` and `y`, seen from the front.
+fn on_face(x: f32, y: f32) -> Vec3 {
+    let (mut inside, mut outside) = (0.03, 0.18);
+    for _ in 0..16 {
+        let middle = f32::midpoint(inside, outside);
+        if field(Vec3::new(x, y, middle)) < 0.0 { inside = middle } else { outside = middle }
+    }
+    Vec3::new(x, y, inside)
 }
 
 /// The skin of the head: rings about y, denser over the face than behind.
@@ -134,7 +144,13 @@ fn head() -> Solid {
 }
 
 fn eyes() -> Solid {
-    ellipsoid(Vec3::splat(EYE_RADIUS), 28, 18).moved(EYE).and_mirrored()
+    ellipsoid(Vec3::splat(EYE_RADIUS), 24, 14).moved(EYE).and_mirrored()
+}
+
+/// Upper lids: balls a little larger than the eyes, higher and farther back.
+fn lids() -> Solid {
+    let lid = ellipsoid(Vec3::splat(EYE_RADIUS + 0.0012), 22, 12);
+    lid.moved(EYE + Vec3::new(0.0005, 0.0105, -0.0015)).and_mirrored()
 }
 
 /// Irises: flat lenses on the eyeballs, looking ahead.
@@ -145,7 +161,7 @@ fn irises() -> Solid {
 
 /// Ears: cups leaning forward from the head.
 fn ears() -> Solid {
-    let rim = torus(0.021, 0.0065, 0.008, 28, 12).transformed(Affine3A::from_scale(Vec3::new(0.8, 1.0, 1.25)));
+    let rim = torus(0.021, 0.0065, 0.008, 22, 8).transformed(Affine3A::from_scale(Vec3::new(0.8, 1.0, 1.25)));
     let bowl = ellipsoid(Vec3::new(0.017, 0.006, 0.024), 24, 10);
     let turn = Quat::from_rotation_y(0.45) * Quat::from_rotation_x(-0.12) * Quat::from_rotation_z(-PI / 2.0);
     let turn = turn * Quat::from_rotation_y(PI / 2.0);
@@ -161,15 +177,16 @@ fn hair() -> Solid {
         section(0.16, 0.101, 0.111, -0.022),
         section(0.215, 0.097, 0.108, -0.016),
     ];
-    let inner = Vec3::new(0.014, 0.1625, 0.1045);
-    let outer = Vec3::new(0.056, 0.1655, 0.0835);
-    let brow = capsule(inner, 0.0062, outer, 0.004, 12).and_mirrored();
-    loft(&sections, 2.1, 4, 44).with(brow)
+    let places = [(0.015, 0.163, 0.0045), (0.034, 0.1675, 0.0062), (0.059, 0.1605, 0.0035)];
+    let [inner, middle, outer] = places.map(|(x, y, _)| on_face(x, y));
+    let brow = capsule(inner, places[0].2, middle, places[1].2, 12);
+    let brow = brow.with(capsule(middle, places[1].2, outer, places[2].2, 12)).and_mirrored();
+    loft(&sections, 2.1, 3, 36).with(brow)
 }
 
 /// The line of the mouth.
 fn mouth() -> Solid {
-    let corner = |x: f32| Vec3::new(x, 0.0505 + 0.16 * x * x / 0.03 * 0.2, 0.1015 - 9.0 * x * x);
+    let corner = |x: f32| on_face(x, 0.0485 + 7.0 * x * x);
     let mut mouth = Solid::default();
     for step in 0..3 {
         let x = step as f32 * 0.0085;
@@ -182,20 +199,21 @@ fn mouth() -> Solid {
 /// A knitted cap: ribbed crown, rolled rim and bobble.
 fn cap() -> Solid {
     let sections = [
-        section(0.195, 0.101, 0.115, -0.012),
-        section(0.235, 0.096, 0.109, -0.016),
-        section(0.272, 0.073, 0.084, -0.022),
-        section(0.296, 0.04, 0.046, -0.03),
+        section(0.205, 0.088, 0.100, -0.013),
+        section(0.222, 0.099, 0.113, -0.014),
+        section(0.25, 0.090, 0.102, -0.017),
+        section(0.279, 0.066, 0.076, -0.023),
+        section(0.296, 0.04, 0.046, -0.028),
     ];
-    let mut crown = loft(&sections, 2.0, 4, 96);
+    let mut crown = loft(&sections, 2.0, 2, 72);
     for position in &mut crown.positions {
         let flat = Vec2::new(position.x, position.z + 0.015);
-        let rib = 1.0 + 0.010 * (24.0 * flat.x.atan2(flat.y)).cos();
+        let rib = 1.0 + 0.013 * (18.0 * flat.x.atan2(flat.y)).cos();
         (position.x, position.z) = (flat.x * rib, flat.y * rib - 0.015);
     }
     let tilt = Affine3A::from_rotation_translation(Quat::from_rotation_x(-0.14), Vec3::new(0.0, 0.197, -0.013));
     let stretch = Affine3A::from_scale(Vec3::new(1.0, 1.0, 1.14));
-    let rim = torus(0.0985, 0.0135, 0.0225, 96, 16).transformed(tilt * stretch);
-    let bobble = ellipsoid(Vec3::splat(0.033), 24, 16).moved(Vec3::new(0.0, 0.325, -0.036));
+    let rim = torus(0.0985, 0.0135, 0.0225, 44, 12).transformed(tilt * stretch);
+    let bobble = ellipsoid(Vec3::splat(0.033), 20, 12).moved(Vec3::new(0.0, 0.325, -0.036));
     crown.with(rim).with(bobble)
 }

@@ -29,7 +29,7 @@ pub(super) fn build(builder: &mut Builder) {
 /// A fence of thin round posts between two rails, along z.
 fn fence(builder: &mut Builder, group: usize) {
     let post = [(0.02, -0.01), (0.02, 1.2), (0.013, 1.225), (0.021, 1.24), (0.026, 1.26), (0.021, 1.28), (0.0, 1.305)];
-    let post = builder.solid("fence post", &lathe(&post, 14), Paint::Iron, 0.9);
+    let post = builder.solid("fence post", &lathe(&post, 10), Paint::Iron, 0.9);
     for place in 0..34 {
         let z = 2.3 - 0.2 * place as f32;
         if place % 11 != 0 {
@@ -38,7 +38,7 @@ fn fence(builder: &mut Builder, group: usize) {
     }
     let stout = block(Vec3::new(-0.07, -0.01, -0.07), Vec3::new(0.07, 1.3, 0.07), 0.006)
         .with(block(Vec3::new(-0.095, 1.295, -0.095), Vec3::new(0.095, 1.34, 0.095), 0.008))
-        .with(ellipsoid(Vec3::splat(0.07), 24, 14).moved(Vec3::Y * 1.395));
+        .with(ellipsoid(Vec3::splat(0.07), 18, 10).moved(Vec3::Y * 1.395));
     let stout = builder.solid("fence pier", &stout, Paint::Timber, 0.75);
     for place in 0..4 {
         builder.place(group, stout, Vec3::new(FENCE_X, 0.0, 2.3 - 2.2 * place as f32), 0.0);
@@ -54,15 +54,15 @@ fn fence(builder: &mut Builder, group: usize) {
 fn pole(builder: &mut Builder, group: usize) {
     let mast = [(0.055, 0.1), (0.05, 2.5), (0.032, 7.0)];
     let foot = [(0.3, -0.01), (0.3, 0.14), (0.28, 0.16), (0.2, 0.17), (0.18, 0.2), (0.17, 0.34), (0.14, 0.37)];
-    let ball = ellipsoid(Vec3::splat(0.09), 24, 14).moved(Vec3::Y * 7.05);
-    let collar = torus(0.06, 0.018, 0.02, 24, 8).moved(Vec3::Y * 0.42);
+    let ball = ellipsoid(Vec3::splat(0.09), 18, 10).moved(Vec3::Y * 7.05);
+    let collar = torus(0.06, 0.018, 0.02, 16, 6).moved(Vec3::Y * 0.42);
     let primitives = vec![
         lathe(&mast, 20).primitive(Paint::Timber.index(), 0.9),
         lathe(&foot, 36).primitive(Paint::Stone.index(), CRISP),
         ball.with(collar).primitive(Paint::Bronze.index(), SMOOTH),
     ];
     let pole = builder.mesh("mast", primitives);
-    builder.place(group, pole, Vec3::new(6.0, 0.0, 1.6), 0.0);
+    builder.place(group, pole, Vec3::new(3.5, 0.0, 3.3), 0.0);
 }
 
 /// Framed lattices whose holes are cut by a texture: one free, two between columns of the loggia.
@@ -78,7 +78,7 @@ fn lattices(builder: &mut Builder, group: usize) {
         vec![sheet.primitive(Paint::Lattice.index(), CRISP), frame.primitive(Paint::Timber.index(), CRISP)];
     let lattice = builder.mesh("lattice", primitives);
     for (at, yaw) in
-        [(Vec3::new(-3.9, 0.0, -2.9), 0.75), (Vec3::new(5.0, 0.45, -6.4), 0.0), (Vec3::new(-3.0, 0.45, -6.4), 0.0)]
+        [(Vec3::new(2.35, 0.0, -2.95), 0.4), (Vec3::new(5.0, 0.45, -6.4), 0.0), (Vec3::new(-3.0, 0.45, -6.4), 0.0)]
     {
         builder.place(group, lattice, at, yaw);
     }
@@ -107,9 +107,9 @@ fn jars(builder: &mut Builder, group: usize) {
         (0.07, 0.74),
         (0.0, 0.72),
     ];
-    let handle = torus(0.075, 0.016, 0.014, 24, 10)
+    let handle = torus(0.075, 0.016, 0.014, 18, 8)
         .transformed(Affine3A::from_rotation_translation(Quat::from_rotation_x(TAU / 4.0), Vec3::new(0.15, 0.68, 0.0)));
-    let jar = lathe(&profile, 48).with(handle.and_mirrored());
+    let jar = lathe(&profile, 32).with(handle.and_mirrored());
     let jar = builder.solid("jar", &jar, Paint::Clay, 0.9);
     for (x, y, z, size, yaw) in [
         (-1.15, 0.0, -3.9, 1.0, 0.4),
@@ -151,11 +151,11 @@ fn crates(builder: &mut Builder, group: usize) {
 
 /// Cypresses: a dense row behind the loggia and some farther off.
 fn cypresses(builder: &mut Builder, group: usize) {
-    let outline: Vec<(f32, f32)> = (0..=26)
+    let outline: Vec<(f32, f32)> = (0..=15)
         .map(|step| {
-            let t = step as f32 / 26.0;
+            let t = step as f32 / 15.0;
             let girth = (t * (1.0 - t).powf(0.75)).max(0.0) * 1.75 + 0.12 * (1.0 - t);
-            (if step == 26 { 0.0 } else { 0.85 * girth }, 0.35 + 6.4 * t)
+            (if step == 15 { 0.0 } else { 0.85 * girth }, 0.35 + 6.4 * t)
         })
         .collect();
     // Lumps that wind around the tree.
@@ -163,7 +163,7 @@ fn cypresses(builder: &mut Builder, group: usize) {
         1.0 + 0.10 * (5.0 * turn + 3.1 * y).sin() * (2.3 * y).cos() + 0.06 * (9.0 * turn - 4.7 * y).sin()
     };
     let primitives = vec![
-        modulated_lathe(&outline, 36, lump).primitive(Paint::Cypress.index(), SMOOTH),
+        modulated_lathe(&outline, 22, lump).primitive(Paint::Cypress.index(), SMOOTH),
         lathe(&[(0.13, -0.02), (0.10, 0.8)], 14).primitive(Paint::Bark.index(), CRISP),
     ];
     let tree = builder.mesh("cypress", primitives);

@@ -51,7 +51,7 @@ pub fn default_scene() -> Scene {
 /// Where to stand and what to look at for a first picture of [`default_scene`]: eye and target, in
 /// metres.
 pub fn default_camera() -> (Vec3, Vec3) {
-    (Vec3::new(-3.1, 1.75, 5.6), Vec3::new(0.55, 1.15, -0.6))
+    (Vec3::new(-2.1, 1.6, 4.5), Vec3::new(1.3, 1.3, -1.0))
 }
 
 /// Unit vector toward the default sun.

@@ -9,10 +9,9 @@ use crate::{AlphaMode, Material, Texture, Wrap};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(usize)]
 pub(super) enum Paint {
-    /// Index 0, the default material.
-    Plain,
-    Paving,
+    /// Index 0, and so the default material too.
     Stone,
+    Paving,
     Marble,
     Plaster,
     Roof,
@@ -44,10 +43,9 @@ impl Paint {
 }
 
 /// Name, linear colour, roughness and metalness, in the order of [`Paint`].
-const COLORS: [(&str, [f32; 3], f32, f32); 24] = [
-    ("plain", [0.6, 0.6, 0.6], 0.8, 0.0),
-    ("paving", [1.0, 1.0, 1.0], 0.85, 0.0),
+const COLORS: [(&str, [f32; 3], f32, f32); 23] = [
     ("stone", [0.56, 0.49, 0.40], 0.9, 0.0),
+    ("paving", [1.0, 1.0, 1.0], 0.85, 0.0),
     ("marble", [0.74, 0.70, 0.62], 0.55, 0.0),
     ("plaster", [1.0, 1.0, 1.0], 0.95, 0.0),
     ("roof tile", [0.50, 0.17, 0.085], 0.8, 0.0),

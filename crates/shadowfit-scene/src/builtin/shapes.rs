@@ -137,6 +137,9 @@ pub(super) fn loft(sections: &[Section], power: f32, steps: usize, segments: usi
     tube(&rings, pole(path[0], -1.0), pole(path[path.len() - 1], 1.0))
 }
 
+/// Rings of the dome that closes a loft, with its pole.
+const DOME: usize = 3;
+
 /// Height of the dome that closes a loft.
 fn dome_height(end: Section) -> f32 {
     0.6 * end.rx.min(end.rz)
@@ -145,11 +148,11 @@ fn dome_height(end: Section) -> f32 {
 /// Sections of a dome on `end`, outwards, without its pole.
 fn dome(end: Section, up: f32) -> Vec<Section> {
     let at = |step: usize| {
-        let (sin, cos) = (step as f32 / 4.0 * FRAC_PI_2).sin_cos();
+        let (sin, cos) = (step as f32 / DOME as f32 * FRAC_PI_2).sin_cos();
         let y = end.y + up * sin * dome_height(end);
         Section { y, rx: end.rx * cos, rz: end.rz * cos, ..end }
     };
-    (1..4).map(at).collect()
+    (1..DOME).map(at).collect()
 }
 
 /// A limb hanging from the origin along -y: radii at evenly spaced places, top first.
@@ -160,7 +163,7 @@ pub(super) fn limb(length: f32, radii: &[f32], segments: usize) -> Solid {
         section(-length * (last - place) as f32 / last as f32, radius, radius, 0.0)
     };
     let sections: Vec<_> = (0..=last).map(at).collect();
-    loft(&sections, 2.0, 4, segments)
+    loft(&sections, 2.0, 2, segments)
 }
 
 /// A tapered capsule from `a` (radius `ra`) to `b` (radius `rb`).

@@ -3,8 +3,6 @@
 //! Generators only place vertices; normals follow here from the faces, split where two faces meet
 //! at more than a crease angle. So shading and winding cannot disagree.
 
-use std::ops::Range;
-
 use glam::{Affine3A, Vec2, Vec3};
 
 use crate::Primitive;
@@ -105,8 +103,8 @@ struct Corners {
     /// Unit face normals.
     normals: Vec<Vec3>,
     /// Corner numbers (3 · face + place), grouped by vertex.
-    corners: Vec<u32>,
-    /// Start of each vertex's group, and the end of the last.
+    by_vertex: Vec<u32>,
+    /// Start of each vertex's group in `by_vertex`, and the end of the last.
     starts: Vec<usize>,
 }
 
@@ -132,17 +130,12 @@ impl Corners {
             corners[next[index as usize]] = corner as u32;
             next[index as usize] += 1;
         }
-        Self { areas, normals, corners, starts }
-    }
-
-    /// Places of a vertex's corners in `corners`.
-    fn range(&self, vertex: usize) -> Range<usize> {
-        self.starts[vertex]..self.starts[vertex + 1]
+        Self { areas, normals, by_vertex: corners, starts }
     }
 
     /// Corners at a vertex.
     fn around(&self, vertex: usize) -> &[u32] {
-        &self.corners[self.range(vertex)]
+        &self.by_vertex[self.starts[vertex]..self.starts[vertex + 1]]
     }
 
     /// Which of the faces around a vertex are smooth with `face`, a bit each. Poles with more faces

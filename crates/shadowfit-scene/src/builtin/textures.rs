@@ -96,18 +96,18 @@ fn paving() -> Image {
         let (px, py) = (x as f32 + 0.5, y as f32 + 0.5);
         let edge = |step: f32| near(px, step).min(near(py, step)) / metre;
         if edge(metre * PAVING_METRES) < 0.035 {
-            return shade([150.0, 84.0, 62.0], 6.0 * noise.at(px * cell * 4.0, py * cell * 4.0));
+            return shade([138.0, 72.0, 52.0], 6.0 * noise.at(px * cell * 4.0, py * cell * 4.0));
         }
         let joint = edge(metre);
         let grain = noise.at(px * cell * 8.0, py * cell * 8.0);
         if joint < 0.011 {
-            return shade([124.0, 109.0, 90.0], 6.0 * grain);
+            return shade([108.0, 93.0, 75.0], 6.0 * grain);
         }
         let tile = hash((px / metre) as u32, 5 + (py / metre) as u32) - 0.5;
         let cloud = noise.at(px * cell, py * cell);
         let rim = if joint < 0.02 { -8.0 } else { 0.0 };
         let fine = if edge(metre / 4.0) < 0.005 { -11.0 } else { 0.0 };
-        shade([196.0, 180.0, 155.0], 16.0 * tile + 4.0 * cloud + 4.0 * grain + rim + fine)
+        shade([178.0, 160.0, 133.0], 20.0 * tile + 5.0 * cloud + 4.0 * grain + rim + fine)
     })
 }
 

@@ -255,7 +255,7 @@ fn walking(phase: f32) -> Posture {
     let turn = TAU * phase;
     // Middle of the left stance: the body is over the left foot and at its highest.
     let over = TAU * (phase - 0.5 * STANCE);
-    posture.hips = Vec3::new(0.02 * over.cos(), 0.912 + 0.017 * (2.0 * over).cos(), 0.0);
+    posture.hips = Vec3::new(0.02 * over.cos(), 0.926 + 0.016 * (2.0 * over).cos(), 0.0);
     posture.turn(Joint::Hips, 0.05, -0.13 * turn.cos(), 0.05 * over.cos());
     posture.turn(Joint::Spine, 0.01, 0.10 * turn.cos(), -0.03 * over.cos());
     posture.turn(Joint::Chest, 0.0, 0.16 * turn.cos() + 0.05, -0.03 * over.cos() + 0.02);
