@@ -1,8 +1,9 @@
 //! The three artefacts of shadow maps: what they are called, why they happen and what cures them;
 //! and the part of the panel that shows and fixes them.
 
-use egui::text::LayoutJob;
-use egui::{Align, Button, Color32, Frame, RichText, Role, Stroke, TextFormat, TextStyle, Ui, WidgetInfo};
+use egui::{
+    Align2, Button, Color32, Frame, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, Vec2, WidgetInfo,
+};
 
 use crate::Action;
 
@@ -99,17 +100,23 @@ pub(crate) fn show(ui: &mut Ui, shown: Option<Artefact>, fixed: bool, action: &m
     ui.add_space(4.0);
 }
 
+/// A button with its key under its name: painted here, since egui's buttons hold one line of one
+/// size.
 fn button(ui: &mut Ui, artefact: Artefact, selected: bool) -> bool {
-    let font = TextStyle::Button.resolve(ui.style());
-    let small = TextStyle::Small.resolve(ui.style());
-    let mut text = LayoutJob { halign: Align::Center, ..LayoutJob::default() };
-    text.append(artefact.label(), 0.0, TextFormat::simple(font, Color32::PLACEHOLDER));
-    let key = format!("\nkey {}", artefact.key());
-    text.append(&key, 0.0, TextFormat::simple(small, ui.visuals().weak_text_color()));
-    let size = egui::vec2(ui.available_width(), 40.0);
-    let response = ui.add_sized(size, Button::selectable(selected, text).frame_when_inactive(true));
+    let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 42.0), Sense::click());
     let name = format!("Show {}", artefact.label().to_lowercase());
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, selected, &name));
+    if ui.is_rect_visible(rect) {
+        let visuals = ui.style().interact_selectable(&response, selected);
+        let (fill, stroke) = (visuals.weak_bg_fill, visuals.bg_stroke);
+        ui.painter().rect(rect, visuals.corner_radius, fill, stroke, StrokeKind::Inside);
+        let line = |offset: f32, text: &str, style: TextStyle| {
+            let at = rect.center() + Vec2::new(0.0, offset);
+            ui.painter().text(at, Align2::CENTER_CENTER, text, style.resolve(ui.style()), visuals.text_color());
+        };
+        line(-8.0, artefact.label(), TextStyle::Button);
+        line(10.0, artefact.key(), TextStyle::Small);
+    }
     response.on_hover_text(artefact.explanation()).clicked()
 }
 
@@ -122,14 +129,14 @@ fn card(ui: &mut Ui, artefact: Artefact, fixed: bool, action: &mut Option<Action
         let text = if fixed { artefact.cure() } else { artefact.explanation() };
         ui.add(egui::Label::new(text).wrap());
         ui.add_space(2.0);
-        let size = egui::vec2(ui.available_width(), 30.0);
+        let size = Vec2::new(ui.available_width(), 30.0);
         if fixed {
             if ui.add_sized(size, Button::new("Show again")).clicked() {
                 *action = Some(Action::ShowArtefact(artefact));
             }
         } else {
-            let text = RichText::new("Fix").strong().color(Color32::WHITE);
-            let fix = Button::new(text).fill(Color32::from_rgb(46, 112, 66)).shortcut_text("F");
+            let text = RichText::new("Fix (F)").strong().color(Color32::WHITE);
+            let fix = Button::new(text).fill(Color32::from_rgb(46, 112, 66));
             if ui.add_sized(size, fix).on_hover_text(artefact.cure()).clicked() {
                 *action = Some(Action::FixArtefact(artefact));
             }

@@ -86,7 +86,9 @@ fn lines(figures: &Figures) -> [(&'static str, Option<String>, &'static str); 9]
 }
 
 pub(crate) fn show(ui: &mut Ui, figures: &Figures) {
-    Grid::new("figures").num_columns(2).spacing([16.0, 3.0]).striped(true).show(ui, |ui| {
+    let gap = 12.0;
+    let half = 0.5 * (ui.available_width() - gap);
+    Grid::new("figures").num_columns(2).min_col_width(half).spacing([gap, 3.0]).striped(true).show(ui, |ui| {
         for (name, value, help) in lines(figures) {
             ui.label(name).on_hover_text(help);
             let value = value.map_or_else(|| RichText::new("—").weak(), |value| RichText::new(value).strong());

@@ -41,6 +41,12 @@ pub const KEYS: &[KeyHelp] = &[
     key("Back", "quit (gamepad)"),
 ];
 
+/// Width of the table, in points.
+const WIDTH: f32 = 300.0;
+
+/// More than the title bar of the table and its margins take, in points.
+const TITLE_HEIGHT: f32 = 64.0;
+
 /// Shows the table of the keys over everything else while `open`, and clears `open` when it is
 /// closed.
 pub fn help_overlay(ctx: &Context, open: &mut bool) {
@@ -50,10 +56,13 @@ pub fn help_overlay(ctx: &Context, open: &mut bool) {
         .resizable(false)
         .collapsible(false)
         .vscroll(true)
-        .auto_sized()
-        .max_height(ctx.content_rect().height() - 64.0)
+        .default_width(WIDTH)
+        .default_height(ctx.content_rect().height())
+        .max_height(ctx.content_rect().height() - TITLE_HEIGHT)
         .show(ctx, |ui| {
-            Grid::new("keys").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
+            let gap = 24.0;
+            let half = 0.5 * (ui.available_width() - gap);
+            Grid::new("keys").num_columns(2).min_col_width(half).spacing([gap, 2.0]).striped(true).show(ui, |ui| {
                 for line in KEYS {
                     ui.label(RichText::new(line.keys).strong());
                     ui.label(line.does);

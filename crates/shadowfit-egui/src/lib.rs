@@ -36,7 +36,7 @@ mod style;
 
 use std::collections::BTreeSet;
 
-use egui::{RichText, ScrollArea, Ui};
+use egui::{RichText, ScrollArea, Sense, TextStyle, Ui, Vec2};
 use shadowfit::Settings;
 use shadowfit::figures::Figures;
 use shadowfit::params::Group;
@@ -131,6 +131,7 @@ impl Panel {
         let mut action = None;
         self.frame_times.push(figures.frame_ms);
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.visuals_mut().collapsing_header_frame = true;
             header(ui, &scene, message, &mut action);
             ui.separator();
             artefact::show(ui, artefact, artefact_fixed, &mut action);
@@ -161,6 +162,7 @@ impl Panel {
 }
 
 fn section(ui: &mut Ui, title: &str, open: bool, contents: impl FnOnce(&mut Ui)) -> egui::Response {
+    ui.add_space(2.0);
     egui::CollapsingHeader::new(RichText::new(title).strong())
         .default_open(open)
         .show_unindented(ui, contents)
@@ -186,7 +188,9 @@ fn header(ui: &mut Ui, scene: &SceneLine<'_>, message: Option<&str>, action: &mu
             }
         }
     });
-    if let Some(message) = message {
-        ui.add(egui::Label::new(RichText::new(message).color(ui.visuals().hyperlink_color)).wrap());
-    }
+    match message {
+        Some(message) => ui.add(egui::Label::new(RichText::new(message).color(ui.visuals().hyperlink_color)).wrap()),
+        // The line stays free, so that a message does not push what is below it.
+        None => ui.allocate_response(Vec2::new(0.0, ui.text_style_height(&TextStyle::Body)), Sense::hover()),
+    };
 }

@@ -178,7 +178,7 @@ fn the_card_explains_then_fixes_then_shows_again() {
     for artefact in Artefact::ALL {
         let mut harness = harness(Host { artefact: Some(artefact), ..Host::default() });
         harness.get_by_label(artefact.explanation());
-        harness.get_by_role_and_label(Role::Button, "Fix F").click();
+        harness.get_by_role_and_label(Role::Button, "Fix (F)").click();
         harness.run();
         assert_eq!(harness.state().actions, [Action::FixArtefact(artefact)]);
 
@@ -289,8 +289,7 @@ fn a_host_has_defaults_and_hidden_rows_of_its_own() {
     host.panel.defaults.camera.speed = 100.0;
     host.settings.camera.speed = 7.0;
     let mut harness = open_harness(host);
-    assert!(harness.query_by_label("Depth range").is_some(), "the figure of that name stays");
-    assert!(harness.query_by_role_and_label(Role::ComboBox, "Depth range").is_none());
+    assert!(harness.query_by_role_and_label(Role::ComboBox, "Depth convention").is_none());
     harness.get_by_label("Reset Flying speed").click();
     harness.run();
     assert_eq!(harness.state().settings.camera.speed, 100.0);
@@ -354,6 +353,17 @@ fn the_help_lists_every_key_and_closes() {
     harness.run();
     assert!(!*harness.state());
     assert!(harness.query_by_label(KEYS[0].keys).is_none());
+}
+
+#[test]
+fn the_help_fits_a_low_screen_and_scrolls() {
+    let harness = Harness::builder()
+        .with_size(Vec2::new(400.0, 300.0))
+        .build_ui_state(|ui, open: &mut bool| help_overlay(ui.ctx(), open), true);
+    let title = harness.get_by_role_and_label(Role::Button, "Close window").rect();
+    assert!(title.top() >= 0.0, "the title bar is cut off: {title:?}");
+    let last = harness.get_by_label(KEYS[KEYS.len() - 1].does).rect();
+    assert!(last.top() > 300.0, "the last line should wait to be scrolled to: {last:?}");
 }
 
 #[test]

@@ -221,7 +221,7 @@ const FILTER: Parameter = Parameter {
 const DEPTH: Parameter = Parameter {
     id: "map.depth",
     group: Group::Map,
-    label: "Depth range",
+    label: "Depth convention",
     unit: "",
     help: "Which depths the near and far planes of the map get. The picture stays the same; choose what your \
            graphics API and depth comparison expect.",
@@ -402,7 +402,7 @@ const NEAR: Parameter = Parameter {
         max: 100.0,
         step: 0.01,
         logarithmic: true,
-        decimals: 2,
+        decimals: 3,
         read: |s| f64::from(s.camera.near),
         write: |s, value| {
             s.camera.near = value as f32;
