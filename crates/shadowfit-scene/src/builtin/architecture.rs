@@ -109,7 +109,7 @@ fn column(builder: &mut Builder) -> usize {
     ];
     let foot = block(Vec3::new(-0.28, -0.01, -0.28), Vec3::new(0.28, 0.08, 0.28), 0.008);
     let slab = block(Vec3::new(-0.27, 3.385, -0.27), Vec3::new(0.27, COLUMN + 0.01, 0.27), 0.008);
-    let round = lathe(&base, 28).with(lathe(&capital, 28).moved(Vec3::Y * (COLUMN - 3.0))).with(foot).with(slab);
+    let round = lathe(&base, 26).with(lathe(&capital, 26).moved(Vec3::Y * (COLUMN - 3.0))).with(foot).with(slab);
     let primitives = vec![shaft.primitive(Paint::Marble.index(), CRISP), round.primitive(Paint::Marble.index(), 0.75)];
     builder.mesh("column", primitives)
 }
@@ -188,7 +188,7 @@ fn tile_row() -> Solid {
         let start = 0.515 * tile as f32;
         profile.extend([(0.085, start + 0.001), (0.07, start + 0.51)]);
     }
-    lathe(&profile, 10).transformed(glam::Affine3A::from_rotation_x(-TAU / 4.0))
+    lathe(&profile, 8).transformed(glam::Affine3A::from_rotation_x(-TAU / 4.0))
 }
 
 /// Columns without a roof: two whole ones with a bronze ball, one broken off.

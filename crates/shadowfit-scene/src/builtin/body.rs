@@ -47,7 +47,7 @@ fn band(height: f32, rx: f32, rz: f32, thick: f32, tall: f32) -> Solid {
     ring.transformed(scale).moved(Vec3::Y * height)
 }
 
-/// Trousers' seat, the jacket's skirt and the belt.
+/// Trousers' seat, the jacket's skirt, the belt and its pouch.
 fn hips() -> Vec<Primitive> {
     let seat =
         [section(-0.10, 0.115, 0.085, 0.0), section(-0.03, 0.158, 0.108, -0.004), section(0.06, 0.148, 0.1, 0.0)];
@@ -59,12 +59,16 @@ fn hips() -> Vec<Primitive> {
         section(0.12, 0.146, 0.101, 0.0),
         section(0.20, 0.146, 0.101, 0.0),
     ];
-    let buckle = rounded_box(Vec3::new(0.026, 0.021, 0.008), 0.006, 2).moved(Vec3::new(0.0, 0.075, 0.116));
+    let buckle = rounded_box(Vec3::new(0.026, 0.021, 0.008), 0.005, 1).moved(Vec3::new(0.0, 0.075, 0.116));
+    let pouch = rounded_box(Vec3::new(0.042, 0.036, 0.021), 0.010, 1)
+        .with(rounded_box(Vec3::new(0.044, 0.016, 0.009), 0.006, 1).moved(Vec3::new(0.0, 0.022, 0.015)));
+    let pouch = pouch
+        .transformed(Affine3A::from_rotation_translation(Quat::from_rotation_y(0.55), Vec3::new(0.096, 0.026, 0.117)));
     let skirt = loft(&skirt, 2.3, 3, 40).with(band(-0.087, 0.182, 0.137, 0.011, 0.012));
     vec![
         smooth(&loft(&seat, 2.3, 3, 32), Paint::Trousers),
         smooth(&skirt, Paint::Jacket),
-        smooth(&band(0.075, 0.147, 0.101, 0.011, 0.022), Paint::Leather),
+        smooth(&band(0.075, 0.147, 0.101, 0.011, 0.022).with(pouch), Paint::Leather),
         smooth(&buckle, Paint::Bronze),
     ]
 }
@@ -76,8 +80,8 @@ fn chest() -> Vec<Primitive> {
         section(-0.07, 0.152, 0.105, 0.002),
         section(0.02, 0.172, 0.117, 0.006),
         section(0.10, 0.184, 0.119, 0.004),
-        section(0.150, 0.172, 0.104, -0.002),
-        section(0.182, 0.135, 0.086, -0.006),
+        section(0.145, 0.178, 0.106, -0.002),
+        section(0.186, 0.140, 0.084, -0.006),
         section(0.222, 0.07, 0.065, -0.006),
     ];
     let button = |y: f32, z: f32| ellipsoid(Vec3::new(0.012, 0.012, 0.006), 14, 6).moved(Vec3::new(0.0, y, z));
@@ -85,12 +89,12 @@ fn chest() -> Vec<Primitive> {
     let wrap = |radius: f32, y: f32, z: f32, pitch: f32, roll: f32| {
         let turn = Quat::from_rotation_x(pitch) * Quat::from_rotation_z(roll);
         let place = Affine3A::from_rotation_translation(turn, Vec3::new(0.0, y, z));
-        torus(radius, 0.036, 0.034, 36, 12).transformed(place)
+        torus(radius, 0.036, 0.034, 32, 10).transformed(place)
     };
     let knot = ellipsoid(Vec3::new(0.036, 0.042, 0.03), 20, 12).moved(Vec3::new(0.062, 0.20, -0.085));
     let scarf = wrap(0.084, 0.205, 0.004, 0.24, 0.06).with(wrap(0.073, 0.248, 0.004, 0.12, -0.10)).with(knot);
     vec![
-        smooth(&loft(&jacket, 2.35, 3, 44), Paint::Jacket),
+        smooth(&loft(&jacket, 2.35, 3, 40), Paint::Jacket),
         smooth(&buttons, Paint::Bronze),
         smooth(&scarf, Paint::Scarf),
     ]
@@ -108,7 +112,7 @@ fn scarf_end() -> Solid {
 }
 
 fn upper_arm() -> Solid {
-    limb(0.27, &[0.066, 0.061, 0.055, 0.05, 0.05], 24)
+    limb(0.27, &[0.060, 0.060, 0.055, 0.05, 0.05], 24)
 }
 
 /// Sleeve with its cuff, and the wrist.

@@ -23,7 +23,7 @@ pub(super) const TOE: Vec3 = Vec3::new(0.0, -0.055, 0.115);
 /// Place of a hip joint from the hips' node, for the left side.
 pub(super) const HIP: Vec3 = Vec3::new(0.092, -0.02, 0.0);
 /// Place of a shoulder from the chest's node, for the left side.
-pub(super) const SHOULDER: Vec3 = Vec3::new(0.170, 0.142, -0.008);
+pub(super) const SHOULDER: Vec3 = Vec3::new(0.160, 0.136, -0.008);
 
 /// A joint of the figure; its number is its place in [`RIG`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -17,9 +17,9 @@ use super::solid::Solid;
 /// Point that the rays start from, in the head's axes: between the temples.
 const CENTRE: Vec3 = Vec3::new(0.0, 0.14, 0.0);
 /// Vertices around the head; even, so that it can be mirrored.
-const AROUND: usize = 80;
+const AROUND: usize = 76;
 /// Rings from chin to crown.
-const RINGS: usize = 52;
+const RINGS: usize = 50;
 /// Centre of the left eye.
 const EYE: Vec3 = Vec3::new(0.0375, 0.125, 0.0735);
 /// Radius of the eyes.
@@ -199,8 +199,8 @@ fn mouth() -> Solid {
 /// A knitted cap: ribbed crown, rolled rim and bobble.
 fn cap() -> Solid {
     let sections = [
-        section(0.205, 0.088, 0.100, -0.013),
-        section(0.222, 0.099, 0.113, -0.014),
+        section(0.197, 0.091, 0.104, -0.013),
+        section(0.217, 0.1, 0.114, -0.014),
         section(0.25, 0.090, 0.102, -0.017),
         section(0.279, 0.066, 0.076, -0.023),
         section(0.296, 0.04, 0.046, -0.028),
@@ -211,7 +211,7 @@ fn cap() -> Solid {
         let rib = 1.0 + 0.013 * (18.0 * flat.x.atan2(flat.y)).cos();
         (position.x, position.z) = (flat.x * rib, flat.y * rib - 0.015);
     }
-    let tilt = Affine3A::from_rotation_translation(Quat::from_rotation_x(-0.14), Vec3::new(0.0, 0.197, -0.013));
+    let tilt = Affine3A::from_rotation_translation(Quat::from_rotation_x(-0.08), Vec3::new(0.0, 0.197, -0.013));
     let stretch = Affine3A::from_scale(Vec3::new(1.0, 1.0, 1.14));
     let rim = torus(0.0985, 0.0135, 0.0225, 44, 12).transformed(tilt * stretch);
     let bobble = ellipsoid(Vec3::splat(0.033), 20, 12).moved(Vec3::new(0.0, 0.325, -0.036));

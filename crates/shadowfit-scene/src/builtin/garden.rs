@@ -65,7 +65,7 @@ fn pole(builder: &mut Builder, group: usize) {
     builder.place(group, pole, Vec3::new(3.5, 0.0, 3.3), 0.0);
 }
 
-/// Framed lattices whose holes are cut by a texture: one free, two between columns of the loggia.
+/// Framed lattices whose holes are cut by a texture: one by the path, two between columns of the loggia.
 fn lattices(builder: &mut Builder, group: usize) {
     let (w, h) = (0.75, 2.1);
     let sheet = rounded_box(Vec3::new(w, h / 2.0 - 0.075, 0.006), 0.002, 1).moved(Vec3::Y * (h / 2.0 + 0.03));
@@ -78,7 +78,7 @@ fn lattices(builder: &mut Builder, group: usize) {
         vec![sheet.primitive(Paint::Lattice.index(), CRISP), frame.primitive(Paint::Timber.index(), CRISP)];
     let lattice = builder.mesh("lattice", primitives);
     for (at, yaw) in
-        [(Vec3::new(2.35, 0.0, -2.95), 0.4), (Vec3::new(5.0, 0.45, -6.4), 0.0), (Vec3::new(-3.0, 0.45, -6.4), 0.0)]
+        [(Vec3::new(4.15, 0.0, 1.95), 0.55), (Vec3::new(5.0, 0.45, -6.4), 0.0), (Vec3::new(-3.0, 0.45, -6.4), 0.0)]
     {
         builder.place(group, lattice, at, yaw);
     }
@@ -151,11 +151,11 @@ fn crates(builder: &mut Builder, group: usize) {
 
 /// Cypresses: a dense row behind the loggia and some farther off.
 fn cypresses(builder: &mut Builder, group: usize) {
-    let outline: Vec<(f32, f32)> = (0..=15)
+    let outline: Vec<(f32, f32)> = (0..=17)
         .map(|step| {
-            let t = step as f32 / 15.0;
+            let t = step as f32 / 17.0;
             let girth = (t * (1.0 - t).powf(0.75)).max(0.0) * 1.75 + 0.12 * (1.0 - t);
-            (if step == 15 { 0.0 } else { 0.85 * girth }, 0.35 + 6.4 * t)
+            (if step == 17 { 0.0 } else { 0.85 * girth }, 0.35 + 6.4 * t)
         })
         .collect();
     // Lumps that wind around the tree.
@@ -163,7 +163,7 @@ fn cypresses(builder: &mut Builder, group: usize) {
         1.0 + 0.10 * (5.0 * turn + 3.1 * y).sin() * (2.3 * y).cos() + 0.06 * (9.0 * turn - 4.7 * y).sin()
     };
     let primitives = vec![
-        modulated_lathe(&outline, 22, lump).primitive(Paint::Cypress.index(), SMOOTH),
+        modulated_lathe(&outline, 24, lump).primitive(Paint::Cypress.index(), SMOOTH),
         lathe(&[(0.13, -0.02), (0.10, 0.8)], 14).primitive(Paint::Bark.index(), CRISP),
     ];
     let tree = builder.mesh("cypress", primitives);

@@ -50,28 +50,39 @@ impl Noise {
         Self(cells.map(|cell| hash(cell, 17) * 2.0 - 1.0).collect())
     }
 
-    /// Value at a place in cells.
-    fn at(&self, x: f32, y: f32) -> f32 {
-        let (column, row) = (x as u32, y as u32);
-        let (fx, fy) = (x - column as f32, y - row as f32);
-        let mask = NOISE_CELLS - 1;
-        let row_at = |row: u32| {
-            let start = (row & mask) * NOISE_CELLS;
-            let left = self.0[(start + (column & mask)) as usize];
-            let right = self.0[(start + ((column + 1) & mask)) as usize];
-            left + (right - left) * fx
+    /// Values along x at a height `y` in cells.
+    fn row(&self, y: f32) -> NoiseRow {
+        let top = y as u32;
+        let values = |row: u32| {
+            let start = ((row % NOISE_CELLS) * NOISE_CELLS) as usize;
+            &self.0[start..start + NOISE_CELLS as usize]
         };
-        let top = row_at(row);
-        top + (row_at(row + 1) - top) * fy
+        let mix = |(a, b): (&f32, &f32)| a + (b - a) * (y - top as f32);
+        NoiseRow(values(top).iter().zip(values(top + 1)).map(mix).collect())
     }
 }
 
-/// Draws a square image of `size` pixels from a colour in sRGB 0..255 and an alpha per pixel.
-fn draw(name: &str, size: u32, pixel: impl Fn(u32, u32) -> [f32; 4]) -> Image {
+/// A row of [`Noise`].
+struct NoiseRow(Vec<f32>);
+
+impl NoiseRow {
+    /// Value at a place in cells.
+    fn at(&self, x: f32) -> f32 {
+        let column = x as u32;
+        let left = self.0[(column % NOISE_CELLS) as usize];
+        let right = self.0[((column + 1) % NOISE_CELLS) as usize];
+        left + (right - left) * (x - column as f32)
+    }
+}
+
+/// Draws a square image of `size` pixels; `row` gives for each y what gives for each x a colour in
+/// sRGB and an alpha, 0..255.
+fn draw<Row: Fn(u32) -> [f32; 4]>(name: &str, size: u32, row: impl Fn(u32) -> Row) -> Image {
     let mut rgba = Vec::with_capacity((size * size * 4) as usize);
     for y in 0..size {
+        let pixel = row(y);
         for x in 0..size {
-            rgba.extend(pixel(x, y).map(|value| value as u8));
+            rgba.extend_from_slice(&pixel(x).map(|value| value as u8));
         }
     }
     Image { name: name.to_owned(), width: size, height: size, rgba }
@@ -87,63 +98,75 @@ fn paving() -> Image {
     let noise = Noise::new();
     let metre = PAVING_SIZE as f32 / PAVING_METRES;
     let cell = NOISE_CELLS as f32 / PAVING_SIZE as f32;
-    // Distance to the nearest multiple of `step` pixels.
-    let near = |at: f32, step: f32| {
-        let rest = at % step;
-        rest.min(step - rest)
+    // Distance in metres to the nearest multiple of `step` metres, for each row or column.
+    let lines = |step: f32| -> Vec<f32> {
+        let rest = |pixel: u32| ((pixel as f32 + 0.5) / metre).rem_euclid(step);
+        (0..PAVING_SIZE).map(|pixel| rest(pixel).min(step - rest(pixel))).collect()
     };
-    draw("paving", PAVING_SIZE, |x, y| {
-        let (px, py) = (x as f32 + 0.5, y as f32 + 0.5);
-        let edge = |step: f32| near(px, step).min(near(py, step)) / metre;
-        if edge(metre * PAVING_METRES) < 0.035 {
-            return shade([138.0, 72.0, 52.0], 6.0 * noise.at(px * cell * 4.0, py * cell * 4.0));
+    let [coarse, joints, fine] = &[PAVING_METRES, 1.0, 0.25].map(lines);
+    let noise = &noise;
+    draw("paving", PAVING_SIZE, |y| {
+        let py = y as f32 + 0.5;
+        let (clouds, grains) = (noise.row(py * cell), noise.row(py * cell * 8.0));
+        move |x| {
+            let px = x as f32 + 0.5;
+            let edge = |lines: &[f32]| lines[x as usize].min(lines[y as usize]);
+            let grain = grains.at(px * cell * 8.0);
+            if edge(coarse) < 0.035 {
+                return shade([138.0, 72.0, 52.0], 6.0 * grain);
+            }
+            let joint = edge(joints);
+            if joint < 0.011 {
+                return shade([108.0, 93.0, 75.0], 6.0 * grain);
+            }
+            let tile = hash((px / metre) as u32, 5 + (py / metre) as u32) - 0.5;
+            let rim = if joint < 0.02 { -8.0 } else { 0.0 };
+            let scratch = if edge(fine) < 0.005 { -11.0 } else { 0.0 };
+            let light = 20.0 * tile + 5.0 * clouds.at(px * cell) + 4.0 * grain + rim + scratch;
+            shade([178.0, 160.0, 133.0], light)
         }
-        let joint = edge(metre);
-        let grain = noise.at(px * cell * 8.0, py * cell * 8.0);
-        if joint < 0.011 {
-            return shade([108.0, 93.0, 75.0], 6.0 * grain);
-        }
-        let tile = hash((px / metre) as u32, 5 + (py / metre) as u32) - 0.5;
-        let cloud = noise.at(px * cell, py * cell);
-        let rim = if joint < 0.02 { -8.0 } else { 0.0 };
-        let fine = if edge(metre / 4.0) < 0.005 { -11.0 } else { 0.0 };
-        shade([178.0, 160.0, 133.0], 20.0 * tile + 5.0 * cloud + 4.0 * grain + rim + fine)
     })
 }
 
 /// Courses of plastered blocks, each of its own tint, in half bond.
 fn blocks() -> Image {
-    let noise = Noise::new();
+    let noise = &Noise::new();
     let cell = NOISE_CELLS as f32 / BLOCKS_SIZE as f32;
     // Six courses of three blocks.
     let course = BLOCKS_SIZE as f32 / 6.0;
     let length = BLOCKS_SIZE as f32 / 3.0;
     let joint = 0.012 * BLOCKS_SIZE as f32 / BLOCKS_METRES;
-    draw("blocks", BLOCKS_SIZE, |x, y| {
-        let (px, py) = (x as f32 + 0.5, y as f32 + 0.5);
+    draw("blocks", BLOCKS_SIZE, |y| {
+        let py = y as f32 + 0.5;
+        let (clouds, grains) = (noise.row(py * cell), noise.row(py * cell * 4.0));
         let row = (py / course) as u32;
-        let along = px + if row % 2 == 1 { length / 2.0 } else { 0.0 };
-        let column = (along / length) as u32 % 3;
-        let (dx, dy) = (along % length, py % course);
-        let edge = dx.min(length - dx).min(dy).min(course - dy);
-        let grain = noise.at(px * cell * 4.0, py * cell * 4.0);
-        if edge < joint {
-            return shade([188.0, 172.0, 148.0], 5.0 * grain);
+        let dy = (py % course).min(course - py % course);
+        move |x| {
+            let px = x as f32 + 0.5;
+            let along = px / length + if row % 2 == 1 { 0.5 } else { 0.0 };
+            let across = (along - along.floor()) * length;
+            let grain = grains.at(px * cell * 4.0);
+            if across.min(length - across).min(dy) < joint {
+                return shade([188.0, 172.0, 148.0], 5.0 * grain);
+            }
+            let tint = hash(along as u32 % 3, 40 + row) - 0.5;
+            shade([222.0, 208.0, 184.0], 13.0 * tint + 5.0 * clouds.at(px * cell) + 3.0 * grain)
         }
-        let tint = hash(column, 40 + row) - 0.5;
-        shade([222.0, 208.0, 184.0], 13.0 * tint + 5.0 * noise.at(px * cell, py * cell) + 3.0 * grain)
     })
 }
 
 /// White slats around a square hole, which is transparent.
 fn lattice() -> Image {
-    let slat = LATTICE_SIZE as f32 * 0.16;
     let size = LATTICE_SIZE as f32;
-    draw("lattice", LATTICE_SIZE, |x, y| {
-        let (px, py) = (x as f32 + 0.5, y as f32 + 0.5);
-        let edge = px.min(size - px).min(py).min(size - py);
-        // Alpha passes one half where the slat ends, so that filtered cut-outs keep their size.
-        let alpha = (127.5 + (slat - edge) * 40.0).clamp(0.0, 255.0);
-        [235.0, 235.0, 235.0, alpha]
+    let slat = size * 0.16;
+    draw("lattice", LATTICE_SIZE, |y| {
+        let py = y as f32 + 0.5;
+        move |x| {
+            let px = x as f32 + 0.5;
+            let edge = px.min(size - px).min(py).min(size - py);
+            // Alpha passes one half where the slat ends, so that filtered cut-outs keep their size.
+            let alpha = (127.5 + (slat - edge) * 40.0).clamp(0.0, 255.0);
+            [235.0, 235.0, 235.0, alpha]
+        }
     })
 }
