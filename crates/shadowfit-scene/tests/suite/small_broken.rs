@@ -205,7 +205,7 @@ fn missing_buffers_and_paths_out_of_the_folder_are_refused() {
 
 #[test]
 fn a_small_file_cannot_ask_for_endless_geometry() {
-    // A thousand nodes draw a mesh of a thousand primitives, which share one buffer of a megabyte.
+    // Three thousand nodes draw the same hundred thousand vertices.
     let mut build = Build::default();
     let count = 100_000;
     let positions: Vec<f32> = (0..count * 3).map(|i| (i % 7) as f32).collect();
