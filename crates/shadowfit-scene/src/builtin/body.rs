@@ -158,7 +158,7 @@ fn shin() -> Vec<Primitive> {
     ];
     let top = band(-0.205, 0.062, 0.065, 0.012, 0.024).moved(Vec3::new(0.0, 0.0, -0.004));
     vec![
-        smooth(&limb(0.26, &[0.061, 0.068, 0.066, 0.058], 26), Paint::Trousers),
+        smooth(&limb(0.26, &[0.061, 0.068, 0.063, 0.046], 26), Paint::Trousers),
         smooth(&loft(&shaft, 2.0, 3, 26).with(top), Paint::Leather),
     ]
 }

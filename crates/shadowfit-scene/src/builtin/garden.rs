@@ -68,7 +68,7 @@ fn pole(builder: &mut Builder, group: usize) {
 /// Framed lattices whose holes are cut by a texture: one by the path, two between columns of the loggia.
 fn lattices(builder: &mut Builder, group: usize) {
     let (w, h) = (0.75, 2.1);
-    let sheet = rounded_box(Vec3::new(w, h / 2.0 - 0.075, 0.006), 0.002, 1).moved(Vec3::Y * (h / 2.0 + 0.03));
+    let sheet = rounded_box(Vec3::new(w, h / 2.0 - 0.05, 0.006), 0.002, 1).moved(Vec3::Y * (h / 2.0 + 0.04));
     let bar = |low: Vec3, high: Vec3| block(low, high, 0.006);
     let frame = bar(Vec3::new(-w - 0.06, -0.01, -0.035), Vec3::new(-w + 0.02, h + 0.09, 0.035))
         .with(bar(Vec3::new(w - 0.02, -0.01, -0.035), Vec3::new(w + 0.06, h + 0.09, 0.035)))

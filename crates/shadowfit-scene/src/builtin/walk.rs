@@ -119,7 +119,7 @@ fn two_bones(reach: Vec3, upper: f32, lower: f32, pole: Vec3) -> [Quat; 2] {
 /// Standing at ease: weight on the left leg, a hand on the hip, the head turned aside.
 pub(super) fn standing() -> Posture {
     let mut posture =
-        Posture { root: Vec3::ZERO, hips: Vec3::new(0.035, 0.925, 0.0), rotations: [Quat::IDENTITY; JOINTS] };
+        Posture { root: Vec3::ZERO, hips: Vec3::new(0.035, 0.938, 0.0), rotations: [Quat::IDENTITY; JOINTS] };
     posture.turn(Joint::Hips, 0.0, 0.08, 0.075);
     posture.turn(Joint::Spine, -0.02, 0.0, -0.07);
     posture.turn(Joint::Chest, -0.03, -0.12, -0.06);
@@ -128,7 +128,7 @@ pub(super) fn standing() -> Posture {
     posture.turn(Joint::TailA, 0.10, 0.0, 0.04);
     posture.turn(Joint::TailB, 0.06, 0.0, 0.0);
     posture.turn(Joint::TailC, -0.06, 0.0, 0.0);
-    posture.reach_foot(Side::Left, Vec3::new(0.07, ANKLE, -0.03), Quat::from_rotation_y(0.15), 0.0);
+    posture.reach_foot(Side::Left, Vec3::new(0.07, ANKLE, -0.015), Quat::from_rotation_y(0.15), 0.0);
     posture.reach_foot(Side::Right, Vec3::new(-0.15, ANKLE, 0.11), Quat::from_rotation_y(-0.42), 0.0);
     posture.turn(Joint::ArmL, 0.06, 0.0, 0.16);
     posture.turn(Joint::ForearmL, -0.32, 0.0, 0.0);
