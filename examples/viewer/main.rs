@@ -1,1 +1,13 @@
-fn main(){}
+//! The viewer: fly through a scene under one sun, and show, mark and cure shadow artefacts.
+//!
+//! ```sh
+//! cargo run --release --example viewer                     # the built-in courtyard
+//! cargo run --release --example viewer -- path/to/scene.glb
+//! cargo run --release --example viewer -- --headless out   # the same views as PNG files
+//! ```
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    shadowfit_viewer::main()
+}

@@ -58,12 +58,7 @@ impl Gpu {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
         let adapter = match choice {
             AdapterChoice::Any => any_adapter(&instance, None).await?,
-            AdapterChoice::Software => instance
-                .enumerate_adapters(wgpu::Backends::all())
-                .await
-                .into_iter()
-                .find(|adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu)
-                .ok_or(GpuError::NoSoftwareAdapter)?,
+            AdapterChoice::Software => software_adapter(&instance, None).await?,
         };
         Self::open(adapter).await
     }
@@ -73,8 +68,16 @@ impl Gpu {
     /// # Errors
     ///
     /// [`GpuError`] if there is no such adapter or it cannot be opened.
-    pub async fn for_surface(instance: &wgpu::Instance, surface: &wgpu::Surface<'_>) -> Result<Self, GpuError> {
-        Self::open(any_adapter(instance, Some(surface)).await?).await
+    pub async fn for_surface(
+        choice: AdapterChoice,
+        instance: &wgpu::Instance,
+        surface: &wgpu::Surface<'_>,
+    ) -> Result<Self, GpuError> {
+        Self::open(match choice {
+            AdapterChoice::Any => any_adapter(instance, Some(surface)).await?,
+            AdapterChoice::Software => software_adapter(instance, Some(surface)).await?,
+        })
+        .await
     }
 
     async fn open(adapter: wgpu::Adapter) -> Result<Self, GpuError> {
@@ -114,4 +117,16 @@ async fn any_adapter(
         })
         .await
         .map_err(|error| GpuError::NoAdapter(error.to_string()))
+}
+
+async fn software_adapter(
+    instance: &wgpu::Instance,
+    surface: Option<&wgpu::Surface<'_>>,
+) -> Result<wgpu::Adapter, GpuError> {
+    let adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
+    let fits = |adapter: &wgpu::Adapter| {
+        adapter.get_info().device_type == wgpu::DeviceType::Cpu
+            && surface.is_none_or(|surface| adapter.is_surface_supported(surface))
+    };
+    adapters.into_iter().find(fits).ok_or(GpuError::NoSoftwareAdapter)
 }

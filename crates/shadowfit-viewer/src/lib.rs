@@ -1,1 +1,42 @@
-//! Placeholder.
+//! The shadowfit viewer as a library: a [`Stage`] that holds scene, camera, settings and renderer;
+//! the artefact demonstrations; a window around it, and a headless mode that renders the same
+//! views to files. `examples/viewer` is its thin main.
+
+mod artefact;
+mod cli;
+mod files;
+#[cfg(feature = "gamepad")]
+mod gamepad;
+mod headless;
+mod input;
+mod interface;
+mod outside;
+mod rays;
+mod scout;
+mod stage;
+mod window;
+
+use std::process::ExitCode;
+
+pub use cli::Arguments;
+pub use headless::render_pictures;
+pub use rays::SceneRays;
+pub use shadowfit_egui::Artefact;
+pub use stage::{Shown, Stage, StageError};
+
+/// Runs the viewer with the process's arguments: the window, or with `--headless` the pictures.
+/// Errors are told on the standard error with exit code 2.
+pub fn main() -> ExitCode {
+    let arguments = cli::parse();
+    let result = match &arguments.headless {
+        Some(folder) => headless::run(&arguments, folder),
+        None => window::run(&arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(2)
+        }
+    }
+}

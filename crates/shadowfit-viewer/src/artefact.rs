@@ -1,0 +1,294 @@
+//! The three demonstrations: where to stand and what to set so that an artefact is unmistakable in
+//! the scene at hand, and the setting that cures it.
+
+use core::f32::consts::{PI, TAU};
+
+use glam::{UVec2, Vec3};
+use shadowfit::PerspectiveCamera;
+use shadowfit::settings::{BiasSettings, FilterKind, FitKind, FitSettings, Settings};
+use shadowfit_egui::Artefact;
+use shadowfit_render::FlyCamera;
+use shadowfit_scene::Aabb;
+
+use crate::scout::{GRID, Scout, Seen, Shadow, aimed};
+use crate::stage::Stage;
+
+/// Height of a shadow texel on screen when acne is shown, in parts of the picture's height: a few
+/// pixels, so that its stripes can be told apart.
+const ACNE_TEXEL: f32 = 1.0 / 210.0;
+/// The same when aliasing is shown: dozens of pixels.
+const ALIASING_TEXEL: f32 = 1.0 / 15.0;
+/// Length of the shadowed frustum when the hole is shown, in radii of the subject.
+const HOLE_DISTANCE: f32 = 4.0;
+/// Resolution of the map after aliasing is fixed, in texels.
+const FIXED_RESOLUTION: u32 = 4096;
+/// Aspect that candidates are judged with.
+const ASPECT: f32 = 16.0 / 9.0;
+
+/// Moves camera and settings to show an artefact.
+pub(crate) fn show(stage: &mut Stage, artefact: Artefact) {
+    stage.settings.view.play = false;
+    stage.settings.view.outside = false;
+    stage.settings.view.freeze_fit = false;
+    stage.settings.view.shadows = true;
+    stage.settings.light.animate = false;
+    let place = Place::of(stage);
+    let light = stage.settings.light.direction();
+    let bounds = stage.bounds();
+    let mut settings = stage.settings;
+    let scout = Scout::new(stage.rays(), light, &bounds);
+    let camera = match artefact {
+        Artefact::Acne => show_acne(&scout, &place, light, &mut settings),
+        Artefact::Aliasing => show_aliasing(&scout, &place, light, &mut settings),
+        Artefact::ClippingHole => show_hole(&scout, &place, light, &mut settings),
+    };
+    stage.settings = settings;
+    stage.camera = camera;
+}
+
+/// Applies the cure of an artefact on show.
+pub(crate) fn fix(stage: &mut Stage, artefact: Artefact) {
+    let bounds = stage.bounds();
+    match artefact {
+        // Enough offset for the filter's reach, and nothing else changed.
+        Artefact::Acne => stage.settings.bias = BiasSettings::automatic(stage.settings.filter),
+        // Spend the map on what is seen, make it larger, and smooth what is left.
+        Artefact::Aliasing => {
+            let seen = farthest_seen(stage);
+            let settings = &mut stage.settings;
+            settings.fit.max_distance = seen.unwrap_or(settings.fit.max_distance);
+            settings.fit.resolution = UVec2::splat(FIXED_RESOLUTION);
+            settings.filter = FilterKind::Hardware2x2;
+            settings.bias = BiasSettings::automatic(settings.filter);
+        }
+        // Take in every caster between the light and the view.
+        Artefact::ClippingHole => {
+            stage.settings.fit.kind = FitKind::FrustumAabb;
+            stage.settings.fit.caster_extension = (bounds.max - bounds.min).length();
+        }
+    }
+}
+
+/// What the demonstrations are about: the scene's subject, or the whole scene.
+struct Place {
+    bounds: Aabb,
+    center: Vec3,
+    radius: f32,
+    lens: PerspectiveCamera,
+}
+
+impl Place {
+    fn of(stage: &Stage) -> Self {
+        let bounds = stage.subject_bounds();
+        Self {
+            bounds,
+            center: (bounds.min + bounds.max) * 0.5,
+            radius: ((bounds.max - bounds.min).length() * 0.5).max(1e-3),
+            lens: PerspectiveCamera { aspect: ASPECT, ..stage.perspective([1, 1]) },
+        }
+    }
+
+    fn contains(&self, point: Vec3) -> bool {
+        let slack = Vec3::splat(self.radius * 0.01);
+        point.cmpge(self.bounds.min - slack).all() && point.cmple(self.bounds.max + slack).all()
+    }
+
+    /// Height of the picture, in metres, at a distance from the eye.
+    fn picture_height(&self, distance: f32) -> f32 {
+        2.0 * (self.lens.fov_y * 0.5).tan() * distance
+    }
+}
+
+/// The subject's upper part close up from the lit side, without any bias: every slope shadows
+/// itself.
+fn show_acne(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut Settings) -> FlyCamera {
+    let target = place.center + Vec3::Y * (place.bounds.max.y - place.bounds.min.y) * 0.25;
+    let distances = [1.5, 1.8].map(|radii| radii * place.radius);
+    let candidates = around(target, -light, &[0.3, 0.6, 0.9, -0.3, -0.6, -0.9], &[0.0, 0.15], &distances);
+    let score = |camera: &PerspectiveCamera| {
+        let shows = |seen: &Seen| {
+            let slope = scout.facing(seen);
+            place.contains(seen.position) && (0.1..0.9).contains(&slope) && !scout.is_shadowed(seen)
+        };
+        let pixels = scout.look(camera);
+        if is_blocked(&pixels, place.radius * 0.3) {
+            0
+        } else {
+            pixels.iter().flatten().filter(|seen| shows(seen)).count()
+        }
+    };
+    let camera = best(&place.lens, candidates, |camera| score(camera) as f32);
+    let distance = camera.eye.as_vec3().distance(place.center);
+    settings.bias = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0 };
+    settings.filter = FilterKind::Point;
+    settings.fit.kind = FitKind::XnaSample;
+    settings.fit.margin = 0.0;
+    let texel = place.picture_height(distance) * ACNE_TEXEL;
+    stretch_to_texel(&camera, light, settings, distance + place.radius, texel);
+    fly(&camera)
+}
+
+/// The edge of the subject's shadow close up, in a map that has to cover far too much.
+fn show_aliasing(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut Settings) -> FlyCamera {
+    let shadows = scout.shadows(&place.bounds);
+    let targets = spread(&shadows, 5);
+    let height = place.radius;
+    let candidates = targets.iter().flat_map(|shadow| {
+        around(shadow.receiver, -light, &[-2.2, -1.4, -0.7, 0.7, 1.4, 2.2], &[0.5, 0.8], &[height * 1.5, height * 2.2])
+    });
+    let score = |camera: &PerspectiveCamera| {
+        let pixels = scout.look(camera);
+        if is_blocked(&pixels, place.radius * 0.3) {
+            return 0.0;
+        }
+        let shadowed: Vec<Option<bool>> = pixels
+            .iter()
+            .map(|seen| seen.filter(|seen| scout.facing(seen) > 0.2).map(|seen| scout.is_shadowed(&seen)))
+            .collect();
+        let share = shadowed.iter().filter(|pixel| **pixel == Some(true)).count() as f32 / shadowed.len() as f32;
+        // The most edge, with about as much shadow as light.
+        edges(&shadowed) as f32 * (1.0 - (share - 0.4).abs())
+    };
+    let camera = best(&place.lens, candidates, score);
+    let distance =
+        scout.look(&camera)[(GRID[0] * GRID[1] / 2 + GRID[0] / 2) as usize].map_or(height * 2.0, |seen| seen.distance);
+    settings.filter = FilterKind::Point;
+    settings.bias = BiasSettings::automatic(FilterKind::Point);
+    settings.fit.kind = FitKind::FrustumAabb;
+    settings.fit.resolution = UVec2::splat(2048);
+    let texel = place.picture_height(distance) * ALIASING_TEXEL;
+    stretch_to_texel(&camera, light, settings, distance * 2.0, texel);
+    fly(&camera)
+}
+
+/// Between the subject and its shadow: the shadow is in view, what throws it is not in the map.
+fn show_hole(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut Settings) -> FlyCamera {
+    settings.fit.kind = FitKind::XnaSample;
+    settings.fit.margin = 0.0;
+    let shadows = scout.shadows(&place.bounds);
+    let targets = spread(&shadows, 4);
+    let candidates = targets.iter().flat_map(|shadow| {
+        let reach = shadow.reach;
+        around(shadow.receiver, -light, &around_the_clock(), &[0.35, 0.6], &[reach * 0.5, reach * 0.8])
+    });
+    let fit_at = |camera: &PerspectiveCamera| {
+        let distance = place.radius * HOLE_DISTANCE;
+        let frustum = camera.frustum().ok()?;
+        let fit_settings = FitSettings { max_distance: distance, ..settings.fit };
+        shadowfit::fit(&frustum, light, &fit_settings).ok()
+    };
+    let score = |camera: &PerspectiveCamera| {
+        let (pixels, Some(fit)) = (scout.look(camera), fit_at(camera)) else { return 0.0 };
+        if is_blocked(&pixels, place.radius * 0.1) {
+            return 0.0;
+        }
+        let shadowed = || pixels.iter().flatten().filter(|seen| scout.facing(seen) > 0.0 && scout.is_shadowed(seen));
+        let holes = shadowed().filter(|seen| scout.is_hole(seen, &fit)).count();
+        // A shadow that breaks off says more than one that is missing whole.
+        let kept = shadowed().count() - holes;
+        (holes as f32 * (kept as f32 + 0.5)).sqrt()
+    };
+    let camera = best(&place.lens, candidates, score);
+    settings.fit.max_distance = place.radius * HOLE_DISTANCE;
+    settings.bias = BiasSettings::automatic(settings.filter);
+    fly(&camera)
+}
+
+/// Candidate eyes around a target, each with the target: turned from the light's side by
+/// `azimuths`, raised by `elevations` (radians), at `distances` (metres).
+fn around(target: Vec3, to_light: Vec3, azimuths: &[f32], elevations: &[f32], distances: &[f32]) -> Vec<[Vec3; 2]> {
+    let toward = to_light.x.atan2(to_light.z);
+    let mut eyes = Vec::new();
+    for azimuth in azimuths {
+        for elevation in elevations {
+            for distance in distances {
+                let (sin, cos) = (toward + azimuth).sin_cos();
+                let away = Vec3::new(sin * elevation.cos(), elevation.sin(), cos * elevation.cos());
+                eyes.push([target + away * *distance, target]);
+            }
+        }
+    }
+    eyes
+}
+
+/// Twelve directions around the vertical.
+fn around_the_clock() -> [f32; 12] {
+    core::array::from_fn(|hour| hour as f32 / 12.0 * TAU - PI)
+}
+
+/// The candidate with the greatest score; the first one where all are equal.
+fn best(
+    lens: &PerspectiveCamera,
+    candidates: impl IntoIterator<Item = [Vec3; 2]>,
+    score: impl Fn(&PerspectiveCamera) -> f32,
+) -> PerspectiveCamera {
+    let mut best = (f32::NEG_INFINITY, *lens);
+    for [eye, target] in candidates {
+        let camera = aimed(lens, eye, target);
+        let score = score(&camera);
+        if score > best.0 {
+            best = (score, camera);
+        }
+    }
+    best.1
+}
+
+/// Whether something stands right before the eye.
+fn is_blocked(pixels: &[Option<Seen>], nearest: f32) -> bool {
+    let close = pixels.iter().flatten().filter(|seen| seen.distance < nearest).count();
+    close * 12 > pixels.len()
+}
+
+/// Number of neighbouring pixels of which one is in shadow and the other is not.
+fn edges(shadowed: &[Option<bool>]) -> usize {
+    let width = GRID[0] as usize;
+    let differ = |a: usize, b: usize| matches!((shadowed[a], shadowed[b]), (Some(a), Some(b)) if a != b);
+    (0..shadowed.len())
+        .map(|index| {
+            let right = (index + 1) % width != 0 && differ(index, index + 1);
+            let below = index + width < shadowed.len() && differ(index, index + width);
+            usize::from(right) + usize::from(below)
+        })
+        .sum()
+}
+
+/// A few shadows, evenly picked in order of their reach.
+fn spread(shadows: &[Shadow], count: usize) -> Vec<Shadow> {
+    let mut sorted = shadows.to_vec();
+    sorted.sort_by(|a, b| a.reach.total_cmp(&b.reach));
+    let count = count.min(sorted.len());
+    (0..count).map(|index| sorted[(2 * index + 1) * sorted.len() / (2 * count)]).collect()
+}
+
+/// Lengthens the shadow distance until a texel has the wanted size, in metres: texels grow with
+/// the frustum that the map has to hold.
+fn stretch_to_texel(camera: &PerspectiveCamera, light: Vec3, settings: &mut Settings, least: f32, texel: f32) {
+    let size_at = |distance: f32| {
+        let camera = PerspectiveCamera { far: camera.far.max(distance), ..*camera };
+        let fit_settings = FitSettings { max_distance: distance, ..settings.fit };
+        let fit = camera.frustum().and_then(|frustum| shadowfit::fit(&frustum, light, &fit_settings));
+        fit.map_or(f32::INFINITY, |fit| fit.texel_size.max_element())
+    };
+    let (mut low, mut high) = (least, least * 1e4);
+    for _ in 0..40 {
+        let middle = (low * high).sqrt();
+        if size_at(middle) < texel { low = middle } else { high = middle }
+    }
+    settings.fit.max_distance = low;
+    settings.camera.far = settings.camera.far.max(low);
+}
+
+/// Distance beyond which next to nothing is seen, in metres.
+fn farthest_seen(stage: &mut Stage) -> Option<f32> {
+    let camera = PerspectiveCamera { aspect: ASPECT, ..stage.perspective([1, 1]) };
+    let (light, bounds) = (stage.settings.light.direction(), stage.bounds());
+    let pixels = Scout::new(stage.rays(), light, &bounds).look(&camera);
+    let mut distances: Vec<f32> = pixels.iter().flatten().map(|seen| seen.distance).collect();
+    distances.sort_by(f32::total_cmp);
+    let index = (distances.len() as f32 * 0.98) as usize;
+    Some(distances.get(index)? * 1.1)
+}
+
+fn fly(camera: &PerspectiveCamera) -> FlyCamera {
+    FlyCamera::look_at(camera.eye, camera.eye + camera.forward.as_dvec3())
+}

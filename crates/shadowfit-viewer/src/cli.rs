@@ -1,0 +1,161 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, anyhow};
+use clap::Parser;
+use shadowfit::params;
+use shadowfit::settings::Settings;
+use shadowfit_render::AdapterChoice;
+use shadowfit_scene::Scene;
+
+/// Fly through a scene under one sun, and show, measure and cure shadow acne, aliasing and
+/// clipping holes.
+#[derive(Clone, Debug, Parser)]
+#[command(name = "viewer", version, after_help = "Press H in the window for its keys.")]
+pub struct Arguments {
+    /// glTF scene (.gltf or .glb); without one, the built-in courtyard.
+    pub scene: Option<PathBuf>,
+
+    /// Which of the file's scenes; its default one if not given.
+    #[arg(long, value_name = "INDEX")]
+    pub scene_index: Option<usize>,
+
+    /// Which of the scene's animations plays.
+    #[arg(long, value_name = "INDEX", default_value_t = 0)]
+    pub animation: usize,
+
+    /// Renders the picture set into this folder instead of opening a window.
+    #[arg(long, value_name = "DIR")]
+    pub headless: Option<PathBuf>,
+
+    /// Size of the window or of the pictures, in pixels.
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1280x720", value_parser = parse_size)]
+    pub size: [u32; 2],
+
+    /// Sets a parameter, e.g. `--set bias.normal_offset=1.5`; `--parameters` lists them.
+    #[arg(long = "set", value_name = "ID=VALUE")]
+    pub set: Vec<String>,
+
+    /// Lists every parameter with its range and default, and ends.
+    #[arg(long)]
+    pub parameters: bool,
+
+    /// Starts with the animation stopped.
+    #[arg(long)]
+    pub no_play: bool,
+
+    /// Draws with the software adapter even if there is a GPU.
+    #[arg(long)]
+    pub software: bool,
+
+    /// Tells on the standard error when the window is ready, and the frame time now and then.
+    #[arg(long)]
+    pub log_frames: bool,
+}
+
+/// Parses the process's arguments; help, version, the parameter list and misuse end it here.
+pub(crate) fn parse() -> Arguments {
+    let arguments = Arguments::parse();
+    if arguments.parameters {
+        print!("{}", parameter_list());
+        std::process::exit(0);
+    }
+    arguments
+}
+
+impl Arguments {
+    /// Loads the scene that the arguments name.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be loaded.
+    pub fn load_scene(&self) -> Result<Scene> {
+        match &self.scene {
+            Some(path) => Ok(shadowfit_scene::load_gltf_scene(path, self.scene_index)?),
+            None => Ok(shadowfit_scene::builtin::default_scene()),
+        }
+    }
+
+    /// The adapter that the arguments ask for.
+    pub fn adapter(&self) -> AdapterChoice {
+        if self.software { AdapterChoice::Software } else { AdapterChoice::Any }
+    }
+
+    /// Applies the `--set` and `--no-play` arguments.
+    ///
+    /// # Errors
+    ///
+    /// If a parameter is not known or a value not possible.
+    pub fn apply(&self, settings: &mut Settings) -> Result<()> {
+        for assignment in &self.set {
+            let (id, value) = assignment
+                .split_once('=')
+                .ok_or_else(|| anyhow!("--set {assignment}: expected ID=VALUE, e.g. bias.normal_offset=1.5"))?;
+            params::set_from_str(settings, id.trim(), value.trim())
+                .map_err(|error| anyhow!("{error}"))
+                .with_context(|| format!("--set {assignment}"))?;
+        }
+        if self.no_play {
+            settings.view.play = false;
+        }
+        Ok(())
+    }
+}
+
+fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+    sides
+        .filter(|sides: &[u32; 2]| sides.iter().all(|side| (16..=8192).contains(side)))
+        .ok_or_else(|| "expected WIDTHxHEIGHT with sides of 16 to 8192 pixels, e.g. 1280x720".to_owned())
+}
+
+fn parameter_list() -> String {
+    use std::fmt::Write;
+    let defaults = Settings::default();
+    let mut list = String::new();
+    for parameter in params::PARAMETERS {
+        let mut value = String::new();
+        // Writing to a String cannot fail.
+        let _ = params::format_value(&defaults, parameter, &mut value);
+        let range = match &parameter.kind {
+            params::Kind::Number(number) => format!("{}..{} {}", number.min, number.max, parameter.unit),
+            params::Kind::Choice(choice) => choice.options.iter().map(|option| option.id).collect::<Vec<_>>().join("|"),
+            params::Kind::Toggle(_) => "on|off".to_owned(),
+        };
+        let _ = writeln!(list, "{}={value}  ({range})\n    {}", parameter.id, parameter.help);
+    }
+    list
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read_and_absurd_ones_refused() {
+        assert_eq!(parse_size("640x360"), Ok([640, 360]));
+        for bad in ["", "640", "640x", "x360", "0x0", "-5x10", "99999x100", "640x360x2", "axb", "8x8"] {
+            assert!(parse_size(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn assignments_are_applied_and_bad_ones_name_themselves() {
+        let mut settings = Settings::default();
+        let arguments = Arguments::parse_from(["viewer", "--set", "bias.constant=0.5", "--no-play"]);
+        arguments.apply(&mut settings).expect("a good assignment");
+        assert_eq!(settings.bias.constant, 0.5);
+        assert!(!settings.view.play);
+        for bad in ["bias.constant", "bias.constant=x", "no.such=1", "bias.constant=1e9"] {
+            let error = Arguments::parse_from(["viewer", "--set", bad]).apply(&mut settings).expect_err(bad);
+            assert!(format!("{error:#}").contains(bad.split('=').next().unwrap_or(bad)), "{error:#}");
+        }
+    }
+
+    #[test]
+    fn every_parameter_is_listed() {
+        let list = parameter_list();
+        assert!(params::PARAMETERS.iter().all(|parameter| list.contains(parameter.id)));
+    }
+}

@@ -1,0 +1,52 @@
+//! Gamepads: the left stick moves, the right stick looks, BACK quits.
+
+use gilrs::{Axis, Button, EventType, Gilrs};
+use glam::{Vec2, Vec3};
+
+/// Stick travel that counts as rest.
+const DEAD_ZONE: f32 = 0.12;
+
+/// Every connected gamepad.
+pub(crate) struct Gamepads {
+    gilrs: Option<Gilrs>,
+}
+
+impl Gamepads {
+    /// Opens them; a machine without support has none.
+    pub(crate) fn new() -> Self {
+        Self { gilrs: Gilrs::new().ok() }
+    }
+
+    /// Movement and turn by the sticks, and whether BACK was pressed.
+    pub(crate) fn poll(&mut self) -> ((Vec3, Vec2), bool) {
+        let Some(gilrs) = &mut self.gilrs else { return Default::default() };
+        let mut quits = false;
+        while let Some(event) = gilrs.next_event() {
+            quits |= matches!(event.event, EventType::ButtonPressed(Button::Select, _));
+        }
+        let mut sticks = (Vec3::ZERO, Vec2::ZERO);
+        for (_, gamepad) in gilrs.gamepads() {
+            let value = |axis| beyond_dead_zone(gamepad.value(axis));
+            sticks.0 += Vec3::new(value(Axis::LeftStickX), 0.0, value(Axis::LeftStickY));
+            sticks.1 += Vec2::new(value(Axis::RightStickX), value(Axis::RightStickY));
+        }
+        (sticks, quits)
+    }
+}
+
+/// Travel beyond the dead zone, stretched so that a full push is still 1.
+fn beyond_dead_zone(value: f32) -> f32 {
+    value.signum() * ((value.abs() - DEAD_ZONE) / (1.0 - DEAD_ZONE)).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::beyond_dead_zone;
+
+    #[test]
+    fn sticks_rest_in_the_dead_zone_and_reach_one() {
+        assert_eq!(beyond_dead_zone(0.1), 0.0);
+        assert_eq!(beyond_dead_zone(-1.0), -1.0);
+        assert!((beyond_dead_zone(0.56) - 0.5).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,124 @@
+//! Looks for places: casts coarse pictures of rays from candidate cameras, to find where an
+//! artefact shows.
+
+use glam::{DVec3, Vec3};
+use shadowfit::{LightFit, PerspectiveCamera};
+use shadowfit_scene::Aabb;
+
+use crate::rays::SceneRays;
+
+/// Columns and rows of a candidate's coarse picture.
+pub(crate) const GRID: [u32; 2] = [32, 18];
+/// Light rays along each side of the square that is searched for shadows.
+const LIGHT_GRID: i32 = 24;
+/// Offset of shadow rays along the normal, in parts of the scene's size.
+const RAY_OFFSET: f32 = 1e-4;
+
+/// What one coarse pixel sees.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen {
+    /// Visible point, world space, metres.
+    pub(crate) position: Vec3,
+    /// Unit geometric normal toward the eye.
+    pub(crate) normal: Vec3,
+    /// Distance from the eye, in metres.
+    pub(crate) distance: f32,
+}
+
+/// A point in shadow and what throws it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shadow {
+    /// The point in shadow, world space, metres.
+    pub(crate) receiver: Vec3,
+    /// How far toward the light the caster is, in metres.
+    pub(crate) reach: f32,
+}
+
+/// Rays of a scene under one light.
+pub(crate) struct Scout<'a> {
+    rays: &'a SceneRays,
+    to_light: Vec3,
+    offset: f32,
+}
+
+impl<'a> Scout<'a> {
+    pub(crate) fn new(rays: &'a SceneRays, direction: Vec3, bounds: &Aabb) -> Self {
+        Self { rays, to_light: -direction, offset: (bounds.max - bounds.min).length() * RAY_OFFSET }
+    }
+
+    /// The coarse picture of a camera, rows from the top.
+    pub(crate) fn look(&self, camera: &PerspectiveCamera) -> Vec<Option<Seen>> {
+        let right = camera.forward.cross(Vec3::Y).normalize_or(Vec3::X);
+        let up = right.cross(camera.forward);
+        let half_height = (camera.fov_y * 0.5).tan();
+        let eye = camera.eye.as_vec3();
+        (0..GRID[0] * GRID[1])
+            .map(|index| {
+                let x = ((index % GRID[0]) as f32 + 0.5) / GRID[0] as f32 * 2.0 - 1.0;
+                let y = 1.0 - ((index / GRID[0]) as f32 + 0.5) / GRID[1] as f32 * 2.0;
+                let ray = camera.forward + right * (x * half_height * camera.aspect) + up * (y * half_height);
+                let ray = ray.normalize();
+                let hit = self.rays.tracer.first_hit(eye, ray)?;
+                let normal = self.rays.tracer.normal(hit.triangle);
+                Some(Seen {
+                    position: eye + ray * hit.distance,
+                    normal: if normal.dot(ray) > 0.0 { -normal } else { normal },
+                    distance: hit.distance,
+                })
+            })
+            .collect()
+    }
+
+    /// Cosine between a seen surface and the light.
+    pub(crate) fn facing(&self, seen: &Seen) -> f32 {
+        seen.normal.dot(self.to_light)
+    }
+
+    /// Whether a seen point is in shadow.
+    pub(crate) fn is_shadowed(&self, seen: &Seen) -> bool {
+        self.rays.tracer.is_occluded(seen.position + seen.normal * self.offset, self.to_light)
+    }
+
+    /// Whether a seen point is in shadow by casters that are all outside the fitted map.
+    pub(crate) fn is_hole(&self, seen: &Seen, fit: &LightFit) -> bool {
+        let origin = seen.position + seen.normal * self.offset;
+        let hits = self.rays.tracer.all_hits(origin, self.to_light);
+        let inside = |distance: f32| fit.covers((origin + self.to_light * distance).as_dvec3());
+        !hits.is_empty() && !hits.iter().any(|hit| inside(hit.distance))
+    }
+
+    /// Shadows that the things inside `bounds` throw on something that faces the light, in the
+    /// order of the search.
+    pub(crate) fn shadows(&self, bounds: &Aabb) -> Vec<Shadow> {
+        let center = (bounds.min + bounds.max) * 0.5;
+        let radius = (bounds.max - bounds.min).length() * 0.5;
+        let [u, v] =
+            [self.to_light.any_orthonormal_vector(), self.to_light.cross(self.to_light.any_orthonormal_vector())];
+        let step = |index: i32| (index as f32 + 0.5) / LIGHT_GRID as f32 * 2.0 - 1.0;
+        (0..LIGHT_GRID * LIGHT_GRID)
+            .filter_map(|index| {
+                let across = u * step(index % LIGHT_GRID) + v * step(index / LIGHT_GRID);
+                self.shadow_along(center + across * radius, radius)
+            })
+            .collect()
+    }
+
+    /// The shadow that a caster within `radius` of `middle` throws on the next surface behind it
+    /// that faces the light.
+    fn shadow_along(&self, middle: Vec3, radius: f32) -> Option<Shadow> {
+        let start = middle + self.to_light * radius;
+        let mut hits = self.rays.tracer.all_hits(start, -self.to_light);
+        hits.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let caster = hits.first().filter(|hit| hit.distance < radius * 2.0)?;
+        let faces = |triangle| self.rays.tracer.normal(triangle).dot(self.to_light) > 0.3;
+        let receiver =
+            hits[1..].iter().rfind(|hit| hit.distance > caster.distance + radius * 0.2 && faces(hit.triangle))?;
+        Some(Shadow { receiver: start - self.to_light * receiver.distance, reach: receiver.distance - caster.distance })
+    }
+}
+
+/// A camera at `eye` that looks at `target`, with the lens of another.
+pub(crate) fn aimed(lens: &PerspectiveCamera, eye: Vec3, target: Vec3) -> PerspectiveCamera {
+    let forward = (target - eye).normalize_or(Vec3::NEG_Z);
+    PerspectiveCamera { eye: DVec3::from(eye), forward, ..*lens }
+}
