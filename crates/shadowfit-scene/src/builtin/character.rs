@@ -1,4 +1,4 @@
-//! The wanderer: a jointed figure 1.8 m tall, its skeleton and its node tree.
+//! The wanderer: a jointed figure about 1.8 m tall, its skeleton and its node tree.
 //!
 //! At rest every bone hangs or stands straight in its parent's axes: x to the figure's left, y up,
 //! z ahead. Poses come from [`super::walk`], meshes from [`super::body`] and [`super::face`].

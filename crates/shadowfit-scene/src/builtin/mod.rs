@@ -32,7 +32,7 @@ const FOV_Y: f32 = 0.785;
 
 /// The built-in scene, "courtyard": right-handed, y up, metres, at rest around the origin.
 ///
-/// [`Scene::subject`] is the root of a jointed figure 1.8 m tall that stands at the origin and
+/// [`Scene::subject`] is the root of a jointed figure about 1.8 m tall that stands at the origin and
 /// faces +z; animation 0, "walk", leads it around a circle, and animation 1, "turn", turns it in
 /// place. The same call always gives the same scene.
 pub fn default_scene() -> Scene {

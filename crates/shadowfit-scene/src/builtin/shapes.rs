@@ -286,10 +286,12 @@ impl Arch {
     /// The wall as a solid. Its front is a fan for each pier and a quad for each arch segment:
     ///
     /// ```text
-    ///   +--+-+-+-+--+
-    ///   |  |/ \ / \|  |
-    ///   |  +       +  |  spring
-    ///   +--+       +--+
+    ///   +----+-+-+-+----+  height
+    ///   |   /| |_|_| |\   |
+    ///   |  / |/     \| \  |
+    ///   | /  +       +  \ |  spring
+    ///   |/   |       |   \|
+    ///   +----+       +----+
     /// ```
     pub(super) fn solid(self, segments: usize) -> Solid {
         let (w, h) = (self.width / 2.0, self.height);
@@ -299,8 +301,7 @@ impl Arch {
                 (-cos * self.radius, self.spring + sin.max(0.0) * self.radius)
             })
             .collect();
-        // The outline, counter-clockwise from +z: under the left pier, up the arch from right to
-        // left would be clockwise, so it goes left foot, arch, right foot, right side, top, left.
+        // Counter-clockwise from +z: left foot, over the arch, right foot, right side, top, left side.
         let mut outline = vec![(-w, 0.0), (-self.radius, 0.0)];
         outline.extend(&curve);
         outline.extend([(self.radius, 0.0), (w, 0.0), (w, h)]);
