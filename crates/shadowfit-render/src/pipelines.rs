@@ -23,6 +23,7 @@ pub(crate) struct Layouts {
 
 /// What decides on a part's pipeline, in every pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent property of the part")]
 pub(crate) struct PartKey {
     masked: bool,
     blended: bool,

@@ -158,7 +158,7 @@ impl Renderer {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.shadow_passes(&mut encoder, scene, &plan);
         {
-            let color = |view| color_attachment(view, None, wgpu::Color::TRANSPARENT);
+            let color = |view| Some(color_attachment(view, None, wgpu::Color::TRANSPARENT));
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("probe"),
                 color_attachments: &[color(&targets.views[0]), color(&targets.views[1])],
@@ -219,7 +219,7 @@ impl Renderer {
         };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
-            color_attachments: &[color],
+            color_attachments: &[Some(color)],
             depth_stencil_attachment: Some(depth_attachment(&picture.depth_view)),
             ..Default::default()
         });
@@ -311,14 +311,14 @@ fn color_attachment<'a>(
     view: &'a wgpu::TextureView,
     resolve_target: Option<&'a wgpu::TextureView>,
     clear: wgpu::Color,
-) -> Option<wgpu::RenderPassColorAttachment<'a>> {
+) -> wgpu::RenderPassColorAttachment<'a> {
     let store = if resolve_target.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
-    Some(wgpu::RenderPassColorAttachment {
+    wgpu::RenderPassColorAttachment {
         view,
         depth_slice: None,
         resolve_target,
         ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store },
-    })
+    }
 }
 
 /// The camera's depth, reversed: cleared to the far value 0.

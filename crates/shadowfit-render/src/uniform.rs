@@ -24,10 +24,10 @@ pub struct Atmosphere {
 impl Default for Atmosphere {
     fn default() -> Self {
         Self {
-            sun: Vec3::new(3.3, 2.9, 2.35),
-            zenith: Vec3::new(0.16, 0.33, 0.72),
+            sun: Vec3::new(2.75, 2.42, 1.98),
+            zenith: Vec3::new(0.15, 0.32, 0.72),
             horizon: Vec3::new(0.62, 0.74, 0.88),
-            ground: Vec3::new(0.30, 0.26, 0.21),
+            ground: Vec3::new(0.34, 0.29, 0.23),
             haze_per_metre: 0.0035,
         }
     }

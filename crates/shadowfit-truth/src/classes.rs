@@ -74,6 +74,9 @@ pub struct Judged {
     pub classes: Vec<Class>,
     /// Whether the light reaches the point in truth; `None` where not judged.
     pub truth: Vec<Option<bool>>,
+    /// Distance from the pixel's centre to the nearest change of the true shadow, in pixels;
+    /// infinite where the picture has none.
+    pub edge_distance: Vec<f32>,
     /// Whether the pixel lies in the edge zone.
     pub edge_zone: Vec<bool>,
     /// Shares of the facing pixels that count.
@@ -126,11 +129,11 @@ pub fn judge(
             Some(!tracer.is_occluded(ray_origin(surface), to_light))
         })
         .collect();
-    let distances = distance_to_transition(size, &truth);
+    let edge_distance = distance_to_transition(size, &truth);
     let width = settings.edge_width();
     let edge_zone: Vec<bool> = surfaces
         .iter()
-        .zip(&distances)
+        .zip(&edge_distance)
         .map(|(surface, distance)| surface.is_some_and(|s| *distance <= width * s.pixels_per_texel.max(1.0)))
         .collect();
     let classes = (0..surfaces.len())
@@ -143,7 +146,7 @@ pub fn judge(
         })
         .collect::<Vec<_>>();
     let shares = shares(surfaces, &truth, &classes, &edge_zone);
-    Judged { classes, truth, edge_zone, shares }
+    Judged { classes, truth, edge_distance, edge_zone, shares }
 }
 
 fn classify(surface: &Surface, lit: bool, in_edge_zone: bool, is_hole: impl FnOnce() -> bool) -> Class {

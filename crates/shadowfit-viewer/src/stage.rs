@@ -8,7 +8,7 @@ use shadowfit::settings::{LightSettings, Settings};
 use shadowfit::{DepthConvention, FitError, LightFit, PerspectiveCamera, ViewFrustum, bias, diagnostics};
 use shadowfit_egui::Artefact;
 use shadowfit_render::{
-    Atmosphere, FlyCamera, FlyInput, Frame, Gpu, GpuScene, Inset, Line, Picture, Renderer, Statistics,
+    Atmosphere, FlyCamera, FlyInput, Frame, Gpu, GpuScene, Inset, Line, Picture, ProbePixel, Renderer, Statistics,
 };
 use shadowfit_scene::{Aabb, Lens, Pose, Scene};
 use shadowfit_truth::{JudgeSettings, Judged, Surface, judge};
@@ -368,38 +368,46 @@ impl Stage {
     /// Draws the present view's shadow decisions at the given size and judges them against rays.
     /// With `subject_only`, only pixels of the scene's subject count in the shares.
     pub fn judge(&mut self, size: [u32; 2], subject_only: bool) -> Judged {
+        self.judged_surfaces(size, subject_only).0
+    }
+
+    /// Pixels per texel along the worse axis at each pixel of the present view, at the given size,
+    /// that borders on a change of the true shadow.
+    pub fn pixels_per_texel_at_edges(&mut self, size: [u32; 2]) -> Vec<f32> {
+        let (judged, surfaces) = self.judged_surfaces(size, false);
+        let at_edge = |index: &usize| judged.edge_distance[*index] <= 0.5;
+        (0..surfaces.len()).filter(at_edge).filter_map(|index| Some(surfaces[index]?.pixels_per_texel)).collect()
+    }
+
+    fn judged_surfaces(&mut self, size: [u32; 2], subject_only: bool) -> (Judged, Vec<Option<Surface>>) {
         self.update_shadow_map();
         let fits = self.fits(size);
         let camera = self.perspective(size);
         let atmosphere = Atmosphere::default();
         let frame = frame(&self.settings, &camera, &fits, &atmosphere, &[], None);
         let probe = self.renderer.probe(&self.gpu, &mut self.gpu_scene, &frame, size);
-        let counts: Vec<bool> = self
-            .scene
-            .instances()
-            .iter()
-            .map(|instance| {
-                !subject_only || self.scene.subject.is_none_or(|root| self.scene.is_descendant(instance.node, root))
-            })
-            .collect();
-        let surfaces: Vec<Option<Surface>> = probe
-            .pixels
-            .iter()
-            .map(|pixel| {
-                pixel.map(|pixel| Surface {
-                    position: (camera.eye + pixel.position.as_dvec3()).as_vec3(),
-                    normal: pixel.normal,
-                    factor: pixel.factor,
-                    pixels_per_texel: fits
-                        .first()
-                        .and_then(|fit| pixels_per_texel(fit, &camera, size, pixel.position, pixel.normal))
-                        .unwrap_or(f32::INFINITY),
-                    counts: counts[pixel.instance],
-                })
-            })
-            .collect();
+        let counts = self.counted_instances(subject_only);
+        let surface = |pixel: ProbePixel| Surface {
+            position: (camera.eye + pixel.position.as_dvec3()).as_vec3(),
+            normal: pixel.normal,
+            factor: pixel.factor,
+            pixels_per_texel: fits
+                .first()
+                .and_then(|fit| pixels_per_texel(fit, &camera, size, pixel.position, pixel.normal))
+                .unwrap_or(f32::INFINITY),
+            counts: counts[pixel.instance],
+        };
+        let surfaces: Vec<Option<Surface>> = probe.pixels.into_iter().map(|pixel| pixel.map(surface)).collect();
         let settings = JudgeSettings::new(self.settings.light.direction(), bias::reach(self.settings.filter));
-        judge(&self.rays().tracer, &fits, &settings, size.map(|side| side as usize), &surfaces)
+        let judged = judge(&self.rays().tracer, &fits, &settings, size.map(|side| side as usize), &surfaces);
+        (judged, surfaces)
+    }
+
+    /// Which instances count in the shares.
+    fn counted_instances(&self, subject_only: bool) -> Vec<bool> {
+        let root = self.scene.subject.filter(|_| subject_only);
+        let counts = |node| root.is_none_or(|root| self.scene.is_descendant(node, root));
+        self.scene.instances().iter().map(|instance| counts(instance.node)).collect()
     }
 }
 

@@ -58,7 +58,7 @@ impl Default for FitSettings {
     fn default() -> Self {
         Self {
             kind: FitKind::FrustumAabb,
-            max_distance: 60.0,
+            max_distance: 40.0,
             margin: 0.0,
             caster_extension: 50.0,
             resolution: UVec2::splat(2048),
@@ -84,7 +84,7 @@ pub struct BiasSettings {
 
 impl Default for BiasSettings {
     fn default() -> Self {
-        Self { constant: 0.1, slope: 0.0, normal_offset: 2.0 }
+        Self { constant: 0.5, slope: 0.0, normal_offset: core::f32::consts::SQRT_2 }
     }
 }
 

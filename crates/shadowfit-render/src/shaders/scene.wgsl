@@ -92,7 +92,7 @@ fn reflectance(base: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>, to_light: 
 fn ambient(base: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     let up = normal.y * 0.5 + 0.5;
     let sky = mix(frame.zenith.rgb, frame.horizon.rgb, 0.55);
-    let light = mix(frame.ground.rgb * 0.75, sky * 0.85, up);
+    let light = mix(frame.ground.rgb, sky, up);
     let f0 = mix(vec3<f32>(0.04), base, material.metallic);
     let gloss = (1.0 - material.roughness) * (1.0 - material.roughness);
     let grazing = pow(1.0 - saturate(dot(normal, to_eye)), 5.0);
