@@ -12,6 +12,7 @@ use shadowfit_scene::Scene;
 /// Fly through a scene under one sun, and show, measure and cure shadow acne, aliasing and
 /// clipping holes.
 #[derive(Clone, Debug, Parser)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of the command line")]
 #[command(name = "viewer", version, after_help = "Press H in the window for its keys.")]
 pub struct Arguments {
     /// glTF scene (.gltf or .glb); without one, the built-in courtyard.

@@ -65,7 +65,7 @@ struct Running {
 
 /// The surface that frames are presented on.
 struct Surface {
-    surface: wgpu::Surface<'static>,
+    handle: wgpu::Surface<'static>,
     configuration: wgpu::SurfaceConfiguration,
     /// Whether the window has an area to draw on.
     has_area: bool,
@@ -323,7 +323,7 @@ impl Surface {
         configuration.format = configuration.format.remove_srgb_suffix();
         configuration.present_mode = wgpu::PresentMode::AutoVsync;
         surface.configure(&gpu.device, &configuration);
-        Ok(Self { surface, configuration, has_area: size.width > 0 && size.height > 0 })
+        Ok(Self { handle: surface, configuration, has_area: size.width > 0 && size.height > 0 })
     }
 
     fn resize(&mut self, gpu: &Gpu, size: PhysicalSize<u32>) {
@@ -332,7 +332,7 @@ impl Surface {
             let limit = gpu.device.limits().max_texture_dimension_2d;
             self.configuration.width = size.width.min(limit);
             self.configuration.height = size.height.min(limit);
-            self.surface.configure(&gpu.device, &self.configuration);
+            self.handle.configure(&gpu.device, &self.configuration);
         }
     }
 
@@ -342,7 +342,7 @@ impl Surface {
         if !self.has_area {
             return Ok(None);
         }
-        match self.surface.get_current_texture() {
+        match self.handle.get_current_texture() {
             Current::Success(texture) => Ok(Some(texture)),
             Current::Suboptimal(texture) => {
                 // It can still be shown; the next one will fit again.
