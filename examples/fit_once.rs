@@ -18,7 +18,7 @@ fn main() -> Result<(), FitError> {
         far: 200.0,
     };
     let direction = Vec3::new(0.3, -0.8, 0.2); // the way the light travels
-    let settings = FitSettings::default().with_max_distance(40.0);
+    let settings = FitSettings::default().with_max_distance(30.0);
     let light = fit(&camera.frustum()?, direction, &settings)?;
     let bias = Bias::from_texels(&BiasSettings::automatic(FilterKind::Hardware2x2), &light);
 
