@@ -1,1 +1,12 @@
-//! Workspace-level tests.
+//! Workspace-level tests: what no crate can prove alone.
+//!
+//! Tests that need a graphics device have `gpu` or `golden` in their path, by which `cargo xtask test` leaves them out
+//! where there is none.
+
+mod artefacts;
+mod conventions;
+mod golden;
+mod robustness;
+mod shaders;
+mod support;
+mod window;

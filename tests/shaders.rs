@@ -1,0 +1,194 @@
+//! The WGSL of the workspace: every file is used and valid, names and features stay within what engines can paste, and
+//! the uniforms lie in memory as the shaders read them. What the shaders compute is compared in [`parity_gpu`].
+
+mod exact_counts_gpu;
+mod harness;
+mod layout;
+mod parity_gpu;
+
+use std::path::PathBuf;
+
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::{Module, ShaderStage};
+use shadowfit::DepthConvention;
+use shadowfit::settings::{FilterKind, MapFormat};
+use shadowfit_render::shaders;
+use shadowfit_wgpu::{MAX_MAPS, ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
+
+use crate::support::workspace;
+
+/// Every shadow map that the look-up's WGSL differs for.
+fn descriptors() -> Vec<ShadowMapDescriptor> {
+    let mut all = Vec::new();
+    for format in [MapFormat::Depth32Float, MapFormat::R32Float] {
+        for filter in [FilterKind::Point, FilterKind::Hardware2x2] {
+            for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
+                all.push(ShadowMapDescriptor { format, filter, depth, ..Default::default() });
+            }
+        }
+    }
+    all
+}
+
+/// Every module that is handed to a device, and the pieces for engines, with names.
+fn modules() -> Vec<(String, String)> {
+    let mut all = vec![
+        ("sky".to_owned(), shaders::sky()),
+        ("caster".to_owned(), shaders::caster()),
+        ("lines".to_owned(), shaders::lines()),
+        ("mip".to_owned(), shaders::mip()),
+        ("caster piece".to_owned(), caster_wgsl(0)),
+    ];
+    for map in descriptors() {
+        let kind = format!("{:?} {:?} {:?}", map.format, map.filter, map.depth);
+        all.push((format!("scene, {kind}"), shaders::scene(&map)));
+        all.push((format!("inset, {kind}"), shaders::inset(&map)));
+        all.push((format!("receiver piece, {kind}"), receiver_wgsl(&map, 1)));
+    }
+    all
+}
+
+/// Every WGSL file below the crates, with its text.
+fn files() -> Vec<(PathBuf, String)> {
+    let crates = std::fs::read_dir(workspace().join("crates")).expect("the crates' folder");
+    let mut files = Vec::new();
+    for folder in crates.map(|entry| entry.expect("a crate's folder").path().join("src/shaders")) {
+        for entry in std::fs::read_dir(folder).into_iter().flatten() {
+            let path = entry.expect("a shader file").path();
+            if path.extension().is_some_and(|extension| extension == "wgsl") {
+                let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+                files.push((path, text));
+            }
+        }
+    }
+    files
+}
+
+fn parse(name: &str, source: &str) -> Module {
+    naga::front::wgsl::parse_str(source).unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(source)))
+}
+
+/// A file's text with its placeholders filled in, in every way that a module may.
+fn filled(text: &str) -> Vec<String> {
+    let mut all = Vec::new();
+    for group in ["0", "1", "2"] {
+        for closer in ["<=", ">="] {
+            all.push(
+                text.replace("MATERIAL_GROUP", group)
+                    .replace("GROUP", group)
+                    .replace("MAX_MAPS", &MAX_MAPS.to_string())
+                    .replace("COMPARE", closer),
+            );
+        }
+    }
+    all
+}
+
+#[test]
+fn every_wgsl_file_stands_whole_in_some_module() {
+    let files = files();
+    assert!(!files.is_empty(), "no WGSL file was found: the folder that this test walks has moved");
+    let modules = modules();
+    for (path, text) in files {
+        let used = filled(&text).iter().any(|text| modules.iter().any(|(_, module)| module.contains(text.as_str())));
+        assert!(used, "{} is part of no module that this test knows", path.display());
+    }
+}
+
+#[test]
+fn the_renderer_lists_exactly_the_files_of_its_folder() {
+    let mut listed: Vec<&str> = shaders::PIECES.map(|(name, _)| name).to_vec();
+    listed.sort_unstable();
+    let folder = workspace().join("crates/shadowfit-render/src/shaders");
+    let of_folder = files().into_iter().filter(|(path, _)| path.starts_with(&folder));
+    let mut present: Vec<String> =
+        of_folder.map(|(path, _)| path.file_name().expect("a name").to_string_lossy().into_owned()).collect();
+    present.sort();
+    assert_eq!(listed, present);
+}
+
+#[test]
+fn every_module_is_valid_without_any_optional_capability() {
+    for (name, source) in modules() {
+        let module = parse(&name, &source);
+        let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+        if let Err(error) = validator.validate(&module) {
+            panic!("{name}: {}", error.emit_to_string(&source));
+        }
+    }
+}
+
+#[test]
+fn every_module_has_the_entry_points_of_its_passes() {
+    let both = [ShaderStage::Vertex, ShaderStage::Fragment];
+    for (name, source) in modules().iter().filter(|(name, _)| !name.contains("piece")) {
+        let module = parse(name, source);
+        for stage in both {
+            assert!(module.entry_points.iter().any(|entry| entry.stage == stage), "{name} has no {stage:?} stage");
+        }
+    }
+}
+
+#[test]
+fn the_pieces_for_engines_name_nothing_without_their_prefix() {
+    for (name, source) in modules().iter().filter(|(name, _)| name.contains("piece")) {
+        let module = parse(name, source);
+        let types = module.types.iter().filter_map(|(_, ty)| ty.name.clone());
+        let globals = module.global_variables.iter().filter_map(|(_, global)| global.name.clone());
+        let functions = module.functions.iter().filter_map(|(_, function)| function.name.clone());
+        let constants = module.constants.iter().filter_map(|(_, constant)| constant.name.clone());
+        let names: Vec<String> = types.chain(globals).chain(functions).chain(constants).collect();
+        assert!(names.len() >= 3, "{name}: {names:?}");
+        for global in names {
+            let prefixed = global.starts_with("shadowfit_") || global.starts_with("SHADOWFIT_");
+            assert!(prefixed, "{name}: `{global}` may meet a name of the engine's");
+        }
+        assert!(module.entry_points.is_empty() && module.overrides.is_empty(), "{name}");
+    }
+}
+
+#[test]
+fn the_look_up_needs_uniforms_and_sampled_textures_only_and_no_derivatives() {
+    for map in descriptors() {
+        let source = receiver_wgsl(&map, 1);
+        let module = parse("receiver", &source);
+        for (_, global) in module.global_variables.iter() {
+            let allowed = matches!(global.space, naga::AddressSpace::Uniform | naga::AddressSpace::Handle);
+            assert!(allowed, "{map:?}: {:?} is in {:?}", global.name, global.space);
+            let inner = &module.types[global.ty].inner;
+            let storage = matches!(inner, naga::TypeInner::Image { class: naga::ImageClass::Storage { .. }, .. });
+            assert!(!storage, "{map:?}: {:?} is a storage texture", global.name);
+        }
+        for (_, function) in module.functions.iter() {
+            for (_, expression) in function.expressions.iter() {
+                // Sampling without an explicit level takes derivatives too.
+                let derives = match expression {
+                    naga::Expression::Derivative { .. } => true,
+                    naga::Expression::ImageSample { level, .. } => {
+                        !matches!(level, naga::SampleLevel::Zero | naga::SampleLevel::Exact(_))
+                    }
+                    _ => false,
+                };
+                assert!(!derives, "{map:?}: {:?} takes derivatives", function.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_look_up_reads_the_bind_group_that_it_is_told_to() {
+    for map in descriptors() {
+        for group in [0, 1, 3] {
+            let module = parse("receiver", &receiver_wgsl(&map, group));
+            let mut bindings: Vec<u32> = Vec::new();
+            for (_, global) in module.global_variables.iter() {
+                let binding = global.binding.as_ref().expect("every global is bound");
+                assert_eq!(binding.group, group);
+                bindings.push(binding.binding);
+            }
+            bindings.sort_unstable();
+            let expected: &[u32] = if map.format == MapFormat::Depth32Float { &[0, 1, 2] } else { &[0, 1] };
+            assert_eq!(bindings, expected, "{map:?}");
+        }
+    }
+}

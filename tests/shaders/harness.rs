@@ -1,0 +1,274 @@
+//! A renderer of a few lines around `shadowfit-wgpu` alone, as an engine would write it: it draws casters into a shadow
+//! map, and reads back what the receiver's WGSL computes at given points.
+
+use shadowfit::LightFit;
+use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::settings::BiasSettings;
+use shadowfit_render::Gpu;
+use shadowfit_wgpu::{ShadowMap, ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
+
+/// A point that is asked about: position relative to the origin, in metres, and unit normal.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct Point {
+    pub(super) position: [f32; 3],
+    pub(super) normal: [f32; 3],
+}
+
+/// What the WGSL makes of a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Answer {
+    /// `shadowfit_project` in the map asked for.
+    pub(super) projected: Vec3,
+    /// `shadowfit_factor` over all maps.
+    pub(super) factor: f32,
+    /// `shadowfit_stored` at the texel of the point's index: x runs over a row.
+    pub(super) stored: f32,
+}
+
+/// Points in a row of the picture of answers; a power of two keeps the pixels' centres exact.
+pub(super) const ROW: u32 = 256;
+
+/// Format of a picture of answers.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
+/// Casters at plain positions, and the depth again as colour for the formats that need it.
+const CASTER: &str = "
+@vertex fn vs(@location(0) position: vec3<f32>) -> @builtin(position) vec4<f32> {
+    return shadowfit_caster_position(position);
+}
+@fragment fn fs(@builtin(position) position: vec4<f32>) -> @location(0) f32 {
+    return position.z;
+}
+";
+
+/// One pixel a point; its index is the instance's.
+const RECEIVER: &str = "
+struct Varying {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) @interpolate(flat) position: vec3<f32>,
+    @location(1) @interpolate(flat) normal: vec3<f32>,
+}
+struct Answer {
+    @location(0) projected_factor: vec4<f32>,
+    @location(1) stored: vec4<f32>,
+}
+@vertex fn vs(
+    @builtin(instance_index) index: u32, @location(0) position: vec3<f32>, @location(1) normal: vec3<f32>,
+) -> Varying {
+    let pixel = vec2<f32>(f32(index % ROW), f32(index / ROW)) + 0.5;
+    let ndc = pixel / vec2<f32>(ROW, ROWS) * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0);
+    return Varying(vec4<f32>(ndc, 0.0, 1.0), position, normal);
+}
+@fragment fn fs(in: Varying) -> Answer {
+    let projected = shadowfit_project(MAP, in.position, in.normal);
+    let stored = shadowfit_stored(MAP, vec2<i32>(in.clip.xy));
+    return Answer(vec4<f32>(projected, shadowfit_factor(in.position, in.normal)), vec4<f32>(stored));
+}
+";
+
+/// A shadow map with its casters drawn.
+pub(super) struct Harness<'a> {
+    gpu: &'a Gpu,
+    map: ShadowMap,
+}
+
+impl<'a> Harness<'a> {
+    /// Draws `casters`, triangles relative to `origin`, into every map; `casters[i]` into map i.
+    pub(super) fn new(
+        gpu: &'a Gpu,
+        descriptor: &ShadowMapDescriptor,
+        origin: DVec3,
+        fits: &[LightFit],
+        bias: &BiasSettings,
+        casters: &[Vec<Vec3>],
+    ) -> Self {
+        let mut map = ShadowMap::new(&gpu.device, descriptor).expect("a possible shadow map");
+        map.prepare(&gpu.queue, origin, fits, bias);
+        let pipeline = caster_pipeline(gpu, &map);
+        let buffers: Vec<wgpu::Buffer> =
+            casters.iter().map(|corners| vertex_buffer(gpu, &positions(corners))).collect();
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        map.render(&mut encoder, |pass, index, _volume| {
+            if casters[index].is_empty() {
+                return;
+            }
+            pass.set_pipeline(&pipeline);
+            pass.set_vertex_buffer(0, buffers[index].slice(..));
+            pass.draw(0..casters[index].len() as u32, 0..1);
+        });
+        gpu.queue.submit([encoder.finish()]);
+        Self { gpu, map }
+    }
+
+    /// Asks the WGSL about points, at most [`ROW`]² of them; projections are those of map `index`.
+    pub(super) fn ask(&self, index: u32, points: &[Point]) -> Vec<Answer> {
+        let rows = (points.len() as u32).div_ceil(ROW);
+        let source = RECEIVER
+            .replace("ROWS", &format!("{rows}.0"))
+            .replace("vec2<f32>(ROW", &format!("vec2<f32>({ROW}.0"))
+            .replace("ROW", &format!("{ROW}u"))
+            .replace("MAP", &format!("{index}u"));
+        let module = module(self.gpu, receiver_wgsl(self.map.descriptor(), 0) + &source);
+        let pipeline = receiver_pipeline(self.gpu, self.map.receiver_layout(), &module);
+        let targets = [(); 2].map(|()| target(self.gpu, rows));
+        let views = [0, 1].map(|index: usize| targets[index].create_view(&wgpu::TextureViewDescriptor::default()));
+        let points_buffer = vertex_buffer(self.gpu, bytemuck::cast_slice(points));
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let attachments = views.each_ref().map(|view| {
+                Some(wgpu::RenderPassColorAttachment {
+                    view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })
+            });
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                color_attachments: &attachments,
+                ..Default::default()
+            });
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, self.map.receiver_group(), &[]);
+            pass.set_vertex_buffer(0, points_buffer.slice(..));
+            pass.draw(0..1, 0..points.len() as u32);
+        }
+        self.gpu.queue.submit([encoder.finish()]);
+        let [projected, stored] = targets.each_ref().map(|texture| read(self.gpu, texture, rows));
+        let answer = |(p, s): (&[f32; 4], &[f32; 4])| Answer {
+            projected: Vec3::new(p[0], p[1], p[2]),
+            factor: p[3],
+            stored: s[0],
+        };
+        projected.iter().zip(&stored).take(points.len()).map(answer).collect()
+    }
+}
+
+fn positions(corners: &[Vec3]) -> Vec<f32> {
+    corners.iter().flat_map(Vec3::to_array).collect()
+}
+
+fn module(gpu: &Gpu, source: String) -> wgpu::ShaderModule {
+    gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: None,
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    })
+}
+
+fn layout(gpu: &Gpu, group: &wgpu::BindGroupLayout) -> wgpu::PipelineLayout {
+    gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: &[Some(group)],
+        immediate_size: 0,
+    })
+}
+
+fn caster_pipeline(gpu: &Gpu, map: &ShadowMap) -> wgpu::RenderPipeline {
+    let module = module(gpu, caster_wgsl(0) + CASTER);
+    let color = [map.color_target()];
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: None,
+        layout: Some(&layout(gpu, map.caster_layout())),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("vs"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[Some(wgpu::VertexBufferLayout {
+                array_stride: 12,
+                step_mode: wgpu::VertexStepMode::Vertex,
+                attributes: &wgpu::vertex_attr_array![0 => Float32x3],
+            })],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: Some(map.depth_stencil_state()),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: color[0].is_some().then(|| wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("fs"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &color,
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+fn receiver_pipeline(gpu: &Gpu, group: &wgpu::BindGroupLayout, module: &wgpu::ShaderModule) -> wgpu::RenderPipeline {
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: None,
+        layout: Some(&layout(gpu, group)),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("vs"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[Some(wgpu::VertexBufferLayout {
+                array_stride: size_of::<Point>() as u64,
+                step_mode: wgpu::VertexStepMode::Instance,
+                attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3],
+            })],
+        },
+        primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::PointList, ..Default::default() },
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some("fs"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(FORMAT.into()), Some(FORMAT.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+fn vertex_buffer(gpu: &Gpu, floats: &[f32]) -> wgpu::Buffer {
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        // A buffer of no size cannot be bound.
+        size: (size_of_val(floats) as u64).max(4),
+        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(floats));
+    buffer
+}
+
+fn target(gpu: &Gpu, rows: u32) -> wgpu::Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: ROW, height: rows, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    })
+}
+
+/// Waits for a picture of answers. A row of [`ROW`] pixels of 16 bytes needs no padding.
+fn read(gpu: &Gpu, texture: &wgpu::Texture, rows: u32) -> Vec<[f32; 4]> {
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: u64::from(ROW * 16 * rows),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(ROW * 16), rows_per_image: None },
+        },
+        texture.size(),
+    );
+    gpu.queue.submit([encoder.finish()]);
+    buffer.slice(..).map_async(wgpu::MapMode::Read, |result| result.expect("the answers can be read"));
+    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
+    let mapped = buffer.slice(..).get_mapped_range().expect("the answers are mapped");
+    bytemuck::pod_collect_to_vec(&mapped)
+}

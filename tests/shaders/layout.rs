@@ -1,0 +1,169 @@
+//! Rust structs against naga's reflection of the WGSL that reads them: size, and every field's offset by its name.
+
+use core::mem::offset_of;
+
+use naga::{Binding, Module, StructMember, TypeInner};
+use shadowfit_render::{FrameUniform, InsetUniform, InstanceData, LineVertex, MaterialUniform, shaders};
+use shadowfit_wgpu::{CasterUniform, MAX_MAPS, MapUniform, ReceiverUniform, ShadowMapDescriptor};
+
+use super::parse;
+
+/// A Rust struct: its name in WGSL, its size, and its fields' names and offsets, in bytes.
+struct Layout {
+    wgsl: &'static str,
+    size: usize,
+    fields: Vec<(&'static str, usize)>,
+}
+
+/// The layout of a struct. A field that is missing in the list is an error of the compiler's.
+macro_rules! layout {
+    ($wgsl:literal = $rust:ident { $($field:ident),+ $(,)? }) => {{
+        // A pattern without `..` has to name every field.
+        let _ = |value: $rust| { let $rust { $($field: _),+ } = value; };
+        Layout { wgsl: $wgsl, size: size_of::<$rust>(), fields: vec![$((stringify!($field), offset_of!($rust, $field))),+] }
+    }};
+}
+
+/// Members and size of a struct of a module.
+fn reflected<'a>(module: &'a Module, name: &str) -> (&'a [StructMember], u32) {
+    let found = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name));
+    let Some((_, ty)) = found else { panic!("no type `{name}`") };
+    let TypeInner::Struct { members, span } = &ty.inner else { panic!("`{name}` is no struct") };
+    (members, *span)
+}
+
+fn size_of_member(module: &Module, member: &StructMember) -> usize {
+    module.types[member.ty].inner.size(module.to_ctx()) as usize
+}
+
+/// Compares a struct with the reflection of a module that reads it.
+fn assert_same(module: &Module, layout: &Layout) {
+    let Layout { wgsl, size, fields } = layout;
+    let (members, span) = reflected(module, wgsl);
+    assert_eq!(*size, span as usize, "size of {wgsl}");
+    let reflected: Vec<(&str, usize)> =
+        members.iter().map(|member| (member.name.as_deref().unwrap_or(""), member.offset as usize)).collect();
+    assert_eq!(*fields, reflected, "fields of {wgsl}");
+}
+
+#[test]
+fn every_uniform_has_the_size_and_offsets_of_its_wgsl_struct() {
+    let map = ShadowMapDescriptor::default();
+    let caster = parse("caster", &shaders::caster());
+    let scene = parse("scene", &shaders::scene(&map));
+    let inset = parse("inset", &shaders::inset(&map));
+    let material = layout!(
+        "Material" = MaterialUniform {
+            base_color,
+            base_uv,
+            normal_uv,
+            emissive,
+            alpha_cutoff,
+            metallic,
+            roughness,
+            normal_scale,
+            blended,
+        }
+    );
+    let frame = layout!(
+        "Frame" = FrameUniform {
+            clip_from_world,
+            ray_right,
+            ray_up,
+            ray_forward,
+            to_light,
+            shadows,
+            sun,
+            haze_per_metre,
+            zenith,
+            horizon,
+            ground,
+            viewport,
+            padding,
+        }
+    );
+    assert_same(&caster, &layout!("shadowfit_Caster" = CasterUniform { clip_from_world }));
+    assert_same(&caster, &material);
+    assert_same(&scene, &material);
+    assert_same(&scene, &frame);
+    assert_same(
+        &scene,
+        &layout!("shadowfit_Map" = MapUniform { uv_from_world, constant_depth, slope_depth, normal_offset, padding }),
+    );
+    assert_same(&scene, &layout!("shadowfit_Receiver" = ReceiverUniform { to_light, map_count, maps }));
+    assert_same(&inset, &layout!("Inset" = InsetUniform { rectangle, depth_range, map, padding }));
+}
+
+#[test]
+fn the_maps_of_the_receiver_uniform_are_as_many_and_as_far_apart_in_both_languages() {
+    let module = parse("scene", &shaders::scene(&ShadowMapDescriptor::default()));
+    let (members, _) = reflected(&module, "shadowfit_Receiver");
+    let maps = members.last().expect("the maps");
+    let TypeInner::Array { size, stride, .. } = module.types[maps.ty].inner else { panic!("maps are an array") };
+    let naga::ArraySize::Constant(count) = size else { panic!("maps are a fixed number") };
+    assert_eq!((count.get() as usize, stride as usize), (MAX_MAPS, size_of::<MapUniform>()));
+}
+
+#[test]
+fn every_uniform_of_every_module_is_one_whose_layout_is_compared() {
+    let compared = ["shadowfit_Caster", "shadowfit_Receiver", "Frame", "Material", "Inset"];
+    for (name, source) in super::modules() {
+        let module = parse(&name, &source);
+        let uniforms = module.global_variables.iter().filter(|(_, global)| global.space == naga::AddressSpace::Uniform);
+        for (_, global) in uniforms {
+            let ty = module.types[global.ty].name.as_deref().unwrap_or("a type without a name");
+            assert!(compared.contains(&ty), "{name} reads the uniform {ty}, which no test compares");
+        }
+    }
+}
+
+/// The members of a vertex shader's input that come from vertex buffers at the given locations, in that order.
+fn at_locations<'a>(module: &'a Module, input: &str, locations: &[u32]) -> Vec<&'a StructMember> {
+    let (members, _) = reflected(module, input);
+    let at = |wanted: u32| {
+        let is_it = |member: &&StructMember| matches!(member.binding, Some(Binding::Location { location, .. }) if location == wanted);
+        members.iter().find(is_it).unwrap_or_else(|| panic!("{input} has no location {wanted}"))
+    };
+    locations.iter().map(|location| at(*location)).collect()
+}
+
+/// Offsets of packed attributes, and where the last one ends.
+fn packed(module: &Module, members: &[&StructMember]) -> Vec<usize> {
+    let mut offsets = vec![0];
+    for member in members {
+        offsets.push(offsets[offsets.len() - 1] + size_of_member(module, member));
+    }
+    offsets
+}
+
+#[test]
+fn instances_in_the_buffer_are_what_the_vertex_shaders_read() {
+    let scene = parse("scene", &shaders::scene(&ShadowMapDescriptor::default()));
+    let rows = offset_of!(InstanceData, rows);
+    let ends = [rows, rows + 16, rows + 32, offset_of!(InstanceData, id), offset_of!(InstanceData, padding)];
+    assert_eq!(packed(&scene, &at_locations(&scene, "SceneIn", &[5, 6, 7, 8])), ends);
+    let caster = parse("caster", &shaders::caster());
+    assert_eq!(packed(&caster, &at_locations(&caster, "CasterIn", &[5, 6, 7])), ends[..4]);
+    assert_eq!(size_of::<InstanceData>() % 16, 0);
+}
+
+#[test]
+fn casters_read_each_location_with_the_type_that_the_scene_reads_there() {
+    let scene = parse("scene", &shaders::scene(&ShadowMapDescriptor::default()));
+    let caster = parse("caster", &shaders::caster());
+    for member in reflected(&caster, "CasterIn").0 {
+        let Some(Binding::Location { location, .. }) = member.binding else { continue };
+        let other = at_locations(&scene, "SceneIn", &[location])[0];
+        assert_eq!(member.name, other.name, "location {location}");
+        assert_eq!(caster.types[member.ty].inner, scene.types[other.ty].inner, "location {location}");
+    }
+}
+
+#[test]
+fn the_two_ends_of_a_line_are_what_the_vertex_shader_reads() {
+    let module = parse("lines", &shaders::lines());
+    let (position, color, size) =
+        (offset_of!(LineVertex, position), offset_of!(LineVertex, color), size_of::<LineVertex>());
+    let ends = [position, color, size, size + color, 2 * size];
+    assert_eq!(packed(&module, &at_locations(&module, "LineIn", &[0, 1, 2, 3])), ends);
+}

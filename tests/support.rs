@@ -1,0 +1,62 @@
+//! What several of these tests need: the software adapter, the viewer as a program, the collection of scenes.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use shadowfit_render::{AdapterChoice, Gpu};
+
+/// The software adapter, whatever GPU is present: its pictures are nearly the same on every machine. Tests that the
+/// machine cannot run are left out by name before they start, so that here its absence is a failure.
+pub(crate) fn software_gpu() -> Gpu {
+    pollster::block_on(Gpu::headless(AdapterChoice::Software))
+        .unwrap_or_else(|error| panic!("this test draws, and {error}"))
+}
+
+/// The folder of the workspace.
+pub(crate) fn workspace() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The collection of scenes beside the workspace, or `None` with a word about it.
+pub(crate) fn assets() -> Option<PathBuf> {
+    let folder = workspace().join("../shared/assets");
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    println!("SKIPPED: {} does not exist", folder.display());
+    None
+}
+
+/// Every file below a folder, sorted.
+pub(crate) fn files_below(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let mut files = Vec::new();
+    for entry in entries {
+        let path = entry.unwrap_or_else(|error| panic!("{}: {error}", folder.display())).path();
+        if path.is_dir() { files.extend(files_below(&path)) } else { files.push(path) }
+    }
+    files.sort();
+    files
+}
+
+/// The folder of this build's profile, such as `target/debug`: this test runs from its `deps`.
+fn profile_folder() -> PathBuf {
+    let test = std::env::current_exe().expect("the test knows its own path");
+    test.ancestors().nth(2).expect("the test lies in target/<profile>/deps").to_owned()
+}
+
+/// The viewer beside this test; `cargo test` builds examples, but a filtered run may have left it out.
+pub(crate) fn viewer_program() -> PathBuf {
+    let program = profile_folder().join("examples").join(format!("viewer{}", std::env::consts::EXE_SUFFIX));
+    if !program.is_file() {
+        let mut build = Command::new(env!("CARGO"));
+        build.args(["build", "--example", "viewer"]).current_dir(workspace());
+        build.env("CARGO_TARGET_DIR", profile_folder().parent().expect("a profile lies in the target folder"));
+        if profile_folder().ends_with("release") {
+            build.arg("--release");
+        }
+        let status = build.status().expect("cargo starts");
+        assert!(status.success(), "the viewer does not build");
+    }
+    program
+}
