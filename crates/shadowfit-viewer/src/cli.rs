@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result, anyhow, bail};
 use clap::Parser;
 use shadowfit::params;
 use shadowfit::settings::Settings;
@@ -70,12 +70,21 @@ impl Arguments {
     ///
     /// # Errors
     ///
-    /// If the file cannot be loaded.
+    /// If the file cannot be loaded, or has no scene or animation of the index asked for.
     pub fn load_scene(&self) -> Result<Scene> {
-        match &self.scene {
-            Some(path) => Ok(shadowfit_scene::load_gltf_scene(path, self.scene_index)?),
-            None => Ok(shadowfit_scene::builtin::default_scene()),
+        let scene = match (&self.scene, self.scene_index) {
+            (Some(path), index) => shadowfit_scene::load_gltf_scene(path, index)?,
+            (None, None | Some(0)) => shadowfit_scene::builtin::default_scene(),
+            (None, Some(index)) => bail!("--scene-index {index}: the built-in scene is the only one; name a file"),
+        };
+        let animations = scene.animations.len();
+        // Index 0 is the default, which a scene without animations has to bear.
+        if self.animation >= animations.max(1) {
+            let there =
+                if animations == 1 { "is 1 animation".to_owned() } else { format!("are {animations} animations") };
+            bail!("--animation {}: there {there} in {}, counted from 0", self.animation, scene.name);
         }
+        Ok(scene)
     }
 
     /// The adapter that the arguments ask for.
