@@ -1,0 +1,6 @@
+//! What people can throw at the viewer: real scenes, broken files, absurd flags and absurd settings. Everything ends in
+//! a picture or in words, never in a panic.
+
+mod command_line_gpu;
+mod scenes_gpu;
+mod settings_gpu;

@@ -1,0 +1,171 @@
+//! The viewer as a program: what it says and how it ends when it is given nonsense.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use crate::support::{assets, files_below, viewer_program};
+
+/// The exit code of every refusal.
+const REFUSED: i32 = 2;
+
+/// Files that cannot be shown, and a word of the reason that must be told.
+const BROKEN_FILES: [(&str, &str); 14] = [
+    ("edge_shared/refuse/arch_gate_draco.glb", "KHR_draco_mesh_compression"),
+    ("edge_shared/refuse/tree_dead_large_meshopt.glb", "EXT_meshopt_compression"),
+    ("hostile_shared/synthetic/accessor_count_u32max.gltf", "accessor 0"),
+    ("hostile_shared/synthetic/buffer_claims_1TiB.gltf", "buffers[0]"),
+    ("hostile_shared/synthetic/cycle_two_nodes.gltf", "reached twice"),
+    ("hostile_shared/synthetic/glb_json_len_u32max.glb", "GLB"),
+    ("hostile_shared/synthetic/huge_extent_1e30.gltf", "vertex 1"),
+    ("hostile_shared/synthetic/index_u32max.gltf", "3 vertices"),
+    ("hostile_shared/synthetic/nan_positions.gltf", "not finite"),
+    ("hostile_shared/synthetic/unknown_required_extension.gltf", "ACME_made_up"),
+    ("hostile_shared/synthetic/uri_path_traversal.gltf", "leads out"),
+    ("hostile_shared/assimp/gltf1_TwoBoxes.gltf", "version"),
+    ("hostile_shared/tinygltf/invalid-buffer-index.gltf", "buffer"),
+    ("hostile_shared/validator/base__data__root__valid.gltf", "no meshes"),
+];
+
+/// Folder of one test's files, empty at the start and removed at the end.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str) -> Self {
+        let folder = std::env::temp_dir().join(format!("shadowfit-{name}-{}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&folder);
+        std::fs::create_dir_all(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+        Self(folder)
+    }
+
+    fn file(&self, name: &str, bytes: &[u8]) -> PathBuf {
+        let path = self.0.join(name);
+        std::fs::write(&path, bytes).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        path
+    }
+
+    /// Every file in it.
+    fn files(&self) -> Vec<PathBuf> {
+        files_below(&self.0)
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Runs the viewer in `folder` with small pictures.
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(viewer_program());
+    command.current_dir(folder).args(["--software", "--size", "80x45"]).args(arguments);
+    command.output().expect("the viewer starts")
+}
+
+/// Runs the viewer, which must refuse and say every one of `words`. Nothing may be written into `scratch`.
+fn assert_refused(scratch: &Scratch, arguments: &[&str], words: &[&str]) {
+    let before = scratch.files();
+    let output = run(&scratch.0, arguments);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(REFUSED), "{arguments:?}: {message}");
+    assert!(!message.contains("panicked"), "{arguments:?}: {message}");
+    for word in words {
+        assert!(message.contains(word), "{arguments:?}: \"{word}\" is missing in: {message}");
+    }
+    assert_eq!(scratch.files(), before, "{arguments:?} leaves files behind");
+}
+
+#[test]
+fn broken_files_end_in_exit_code_2_with_their_name_and_the_reason() {
+    let Some(folder) = assets() else { return };
+    let scratch = Scratch::new("broken");
+    for (file, reason) in BROKEN_FILES {
+        let path = folder.join(file);
+        let name = path.file_name().expect("a file's name").to_string_lossy();
+        let path = path.to_str().expect("a path in UTF-8");
+        assert_refused(&scratch, &[path, "--headless", "out"], &[&name, reason]);
+    }
+}
+
+#[test]
+fn missing_empty_and_foreign_files_end_in_exit_code_2_with_their_name() {
+    let scratch = Scratch::new("foreign");
+    scratch.file("empty.glb", b"");
+    scratch.file("empty.gltf", b"");
+    scratch.file("words.gltf", b"these are words");
+    scratch.file("picture.png", b"\x89PNG\r\n\x1a\n");
+    scratch.file("cut.glb", b"glTF\x02\x00\x00\x00\xff\x00\x00\x00");
+    std::fs::create_dir(scratch.0.join("folder.gltf")).expect("a new folder");
+    let files = ["missing.glb", "empty.glb", "empty.gltf", "words.gltf", "picture.png", "cut.glb", "folder.gltf"];
+    for file in files {
+        assert_refused(&scratch, &[file, "--headless", "out"], &["error", file]);
+    }
+}
+
+#[test]
+fn absurd_flags_end_in_exit_code_2_and_name_themselves() {
+    let scratch = Scratch::new("flags");
+    let cases: [(&[&str], &str); 10] = [
+        (&["--no-such-flag"], "--no-such-flag"),
+        (&["--set", "no.such=1"], "no.such"),
+        (&["--set", "bias.constant"], "ID=VALUE"),
+        (&["--set", "bias.constant=much"], "bias.constant"),
+        (&["--set", "bias.constant=nan"], "bias.constant"),
+        (&["--set", "map.resolution=2000"], "map.resolution"),
+        (&["--set", "camera.far=1e99"], "camera.far"),
+        (&["--animation", "-1"], "-1"),
+        (&["--scene-index", "first"], "first"),
+        (&["one.glb", "two.glb"], "two.glb"),
+    ];
+    for (arguments, word) in cases {
+        assert_refused(&scratch, &[arguments, &["--headless", "out"]].concat(), &[word]);
+    }
+    for size in ["0x0", "64", "axb", "99999x10", "-5x9"] {
+        let output = Command::new(viewer_program())
+            .current_dir(&scratch.0)
+            .args(["--software", "--headless", "out", &format!("--size={size}")])
+            .output()
+            .expect("the viewer starts");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(REFUSED), "{size}: {message}");
+        assert!(message.contains(size) && message.contains("1280x720"), "{size}: {message}");
+    }
+    assert!(scratch.files().is_empty());
+}
+
+#[test]
+fn a_scene_that_the_file_does_not_have_is_named_with_the_number_there_are() {
+    let Some(folder) = assets() else { return };
+    let scratch = Scratch::new("scene-index");
+    let file = folder.join("edge_shared/khronos_embedded/MultipleScenes.gltf");
+    let path = file.to_str().expect("a path in UTF-8");
+    assert_refused(&scratch, &[path, "--scene-index", "99", "--headless", "out"], &["MultipleScenes.gltf", "99"]);
+    assert_refused(&scratch, &["--scene-index", "99", "--headless", "out"], &["99"]);
+    assert_refused(&scratch, &["--animation", "99", "--headless", "out"], &["99"]);
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_named_and_left_as_it_was() {
+    let scratch = Scratch::new("folder");
+    scratch.file("occupied", b"a file, not a folder");
+    assert_refused(&scratch, &["--headless", "occupied"], &["occupied"]);
+    assert_refused(&scratch, &["--headless", "occupied/below"], &["occupied/below"]);
+    // A name that a picture needs is taken by a folder.
+    std::fs::create_dir_all(scratch.0.join("taken/final.png/inside")).expect("new folders");
+    let output = run(&scratch.0, &["--headless", "taken"]);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(REFUSED), "{message}");
+    assert!(message.contains("final.png"), "{message}");
+    let names: Vec<_> = scratch.files().iter().map(|path| path.display().to_string()).collect();
+    assert!(names.iter().all(|name| name.ends_with("occupied")), "half-written files: {names:?}");
+}
+
+#[test]
+fn help_version_and_parameters_end_with_success() {
+    let scratch = Scratch::new("help");
+    for (flag, word) in [("--help", "--headless"), ("--version", "viewer"), ("--parameters", "bias.normal_offset")] {
+        let output = run(&scratch.0, &[flag]);
+        assert_eq!(output.status.code(), Some(0), "{flag}");
+        assert!(String::from_utf8_lossy(&output.stdout).contains(word), "{flag}");
+    }
+}

@@ -1,0 +1,114 @@
+//! Every scene of the collection beside the workspace: loaded, drawn, judged, its artefacts shown and fixed.
+
+use std::path::{Path, PathBuf};
+
+use shadowfit_scene::{Scene, SceneError, load_gltf};
+use shadowfit_truth::Shares;
+use shadowfit_viewer::{Artefact, Stage, StageError};
+
+use crate::support::{assets, files_below, software_gpu};
+
+/// Size of the pictures, in pixels: small, since the driver draws on the processor, but not 64×36, which Mesa 22's lavapipe
+/// draws fifty times slower than 62×36 or 66×36.
+const SIZE: [u32; 2] = [96, 54];
+
+/// Scenes that have all three artefacts shown and fixed: one textured and animated, one of many nodes, one with
+/// cut-outs, one in a size of its own, one that morphs.
+const WITH_ARTEFACTS: [&str; 5] = [
+    "fox/Fox.glb",
+    "kenney_city/building-garage.glb",
+    "mask_fence/mask_fence.glb",
+    "truck_vehicles/meshes.glb",
+    "edge_shared/simple_morph/glTF/SimpleMorph.gltf",
+];
+
+/// Every glTF file that is meant to load; those that are meant to be refused lie in folders of their own.
+fn scenes(folder: &Path) -> Vec<PathBuf> {
+    let is_scene = |path: &PathBuf| {
+        let is_gltf = path.extension().is_some_and(|extension| extension == "glb" || extension == "gltf");
+        let refused = path.iter().any(|part| part == "hostile_shared" || part == "refuse");
+        is_gltf && !refused
+    };
+    files_below(folder).into_iter().filter(is_scene).collect()
+}
+
+fn load(path: &Path) -> Scene {
+    load_gltf(path).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn is_finite_share(shares: &Shares) -> bool {
+    let all = [
+        shares.wrong,
+        shares.false_shadow,
+        shares.false_light,
+        shares.hole,
+        shares.edge,
+        shares.edge_zone,
+        shares.mean_error,
+    ];
+    all.iter().all(|share| (0.0..=1.0).contains(share)) && shares.facing <= shares.counted
+}
+
+/// Draws and judges the present view.
+fn draw_and_judge(stage: &mut Stage, name: &str) {
+    let picture = stage.picture(SIZE);
+    stage.draw(&picture);
+    assert_eq!(stage.problem(), None, "{name}");
+    let pixels = picture.read(stage.gpu());
+    let first = &pixels[..4];
+    assert!(pixels.chunks_exact(4).any(|pixel| pixel != first), "{name}: the picture is one flat colour");
+    let judged = stage.judge(SIZE, false);
+    assert!(is_finite_share(&judged.shares), "{name}: {:?}", judged.shares);
+    assert!(judged.shares.counted > 0, "{name}: nothing of the scene is in its own first view");
+}
+
+#[test]
+fn every_scene_of_the_collection_is_drawn_and_judged() {
+    let Some(folder) = assets() else { return };
+    let files = scenes(&folder);
+    assert!(files.len() > 40, "{} scenes", files.len());
+    let mut stage = Stage::new(software_gpu(), load(&folder.join(WITH_ARTEFACTS[0])), 1).expect("a scene");
+    let (mut drawn, mut empty) = (0, Vec::new());
+    for file in files {
+        let name = file.strip_prefix(&folder).unwrap_or(&file).display().to_string();
+        let scene = match load_gltf(&file) {
+            Ok(scene) => scene,
+            // Files that hold a light, points or lines only.
+            Err(SceneError::Empty { .. }) => {
+                empty.push(name);
+                continue;
+            }
+            Err(error) => panic!("{error}"),
+        };
+        match stage.set_scene(scene) {
+            Ok(()) => {
+                stage.settings.view.inset = false;
+                draw_and_judge(&mut stage, &name);
+                drawn += 1;
+            }
+            Err(StageError::NothingToDraw(_)) => empty.push(name),
+            Err(error) => panic!("{name}: {error}"),
+        }
+    }
+    println!("{drawn} scenes drawn; nothing to draw in {empty:?}");
+    assert!(empty.iter().all(|name| name.starts_with("edge_shared")), "no triangles in {empty:?}");
+}
+
+#[test]
+fn artefacts_of_real_scenes_are_shown_and_fixed_without_a_problem() {
+    let Some(folder) = assets() else { return };
+    let mut stage = Stage::new(software_gpu(), load(&folder.join(WITH_ARTEFACTS[0])), 1).expect("a scene");
+    for name in WITH_ARTEFACTS {
+        stage.set_scene(load(&folder.join(name))).unwrap_or_else(|error| panic!("{name}: {error}"));
+        // Animations move on before anything is shown.
+        stage.set_time(0.3);
+        for artefact in [Artefact::Acne, Artefact::Aliasing, Artefact::ClippingHole] {
+            stage.show_artefact(artefact);
+            draw_and_judge(&mut stage, &format!("{name}, {artefact:?}"));
+            stage.fix_artefact(artefact);
+            draw_and_judge(&mut stage, &format!("{name}, {artefact:?} fixed"));
+        }
+        stage.reset();
+        assert_eq!(stage.shown(), None, "{name}");
+    }
+}

@@ -1,0 +1,189 @@
+//! Settings that no panel would allow: every number in turn NaN, infinite, zero, negative, tiny and huge.
+
+use shadowfit::glam::{DVec3, UVec2};
+use shadowfit::settings::Settings;
+use shadowfit::{DepthConvention, FitKind};
+use shadowfit_render::FlyInput;
+use shadowfit_scene::builtin::default_scene;
+use shadowfit_scene::{Mesh, Scene};
+use shadowfit_viewer::{Artefact, Stage};
+
+use crate::support::software_gpu;
+
+/// Size of the pictures, in pixels.
+const SIZE: [u32; 2] = [80, 45];
+
+/// Most triangles of a mesh that is drawn.
+const MOST_TRIANGLES: usize = 300;
+
+/// What each number becomes.
+const ABSURD: [f32; 9] =
+    [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -1.0, f32::MIN_POSITIVE, f32::MAX, f32::MIN, 1e-20];
+
+/// Name of a number of the settings, and what writes it.
+type Field = (&'static str, fn(&mut Settings, f32));
+
+/// Every number that is a float.
+const FIELDS: [Field; 14] = [
+    ("fit.max_distance", |s, x| s.fit.max_distance = x),
+    ("fit.margin", |s, x| s.fit.margin = x),
+    ("fit.caster_extension", |s, x| s.fit.caster_extension = x),
+    ("bias.constant", |s, x| s.bias.constant = x),
+    ("bias.slope", |s, x| s.bias.slope = x),
+    ("bias.normal_offset", |s, x| s.bias.normal_offset = x),
+    ("light.azimuth", |s, x| s.light.azimuth = x),
+    ("light.elevation", |s, x| s.light.elevation = x),
+    ("light.animate_speed", |s, x| s.light.animate_speed = x),
+    ("camera.fov_y", |s, x| s.camera.fov_y = x),
+    ("camera.near", |s, x| s.camera.near = x),
+    ("camera.far", |s, x| s.camera.far = x),
+    ("camera.speed", |s, x| s.camera.speed = x),
+    // Both at once, so that the fit is refused whichever it looks at first.
+    ("camera.near and far", |s, x| (s.camera.near, s.camera.far) = (x, x)),
+];
+
+/// The fields for which NaN cannot be fitted, so that the stage has to say so.
+const FITTED: [&str; 9] = [
+    "fit.max_distance",
+    "fit.margin",
+    "fit.caster_extension",
+    "light.azimuth",
+    "light.elevation",
+    "camera.fov_y",
+    "camera.near",
+    "camera.far",
+    "camera.near and far",
+];
+
+/// The default scene without what has many triangles: hundreds of frames are drawn here.
+fn light_scene() -> Scene {
+    let mut scene = default_scene();
+    let triangles = |mesh: &Mesh| mesh.primitives.iter().map(|primitive| primitive.indices.len() / 3).sum::<usize>();
+    let is_light: Vec<bool> = scene.meshes.iter().map(|mesh| triangles(mesh) <= MOST_TRIANGLES).collect();
+    for node in &mut scene.nodes {
+        node.mesh = node.mesh.filter(|mesh| is_light[*mesh]);
+    }
+    scene
+}
+
+fn stage() -> Stage {
+    let mut stage = Stage::new(software_gpu(), light_scene(), 1).expect("the default scene");
+    // Small maps: what is tested here does not depend on their size.
+    stage.settings.fit.resolution = UVec2::splat(256);
+    stage.set_home();
+    stage
+}
+
+/// Draws, and everything else that a frame of the window does.
+fn frame(stage: &mut Stage) {
+    let picture = stage.picture(SIZE);
+    stage.draw(&picture);
+    let _ = stage.figures(SIZE);
+    stage.update(&FlyInput::default(), 0.016);
+}
+
+#[test]
+fn every_absurd_number_is_drawn_without_a_panic_and_refused_fits_are_told() {
+    let mut stage = stage();
+    for outside in [false, true] {
+        for (name, write) in FIELDS {
+            for value in ABSURD {
+                stage.reset();
+                stage.settings.view.outside = outside;
+                stage.settings.light.animate = true;
+                write(&mut stage.settings, value);
+                let picture = stage.picture(SIZE);
+                stage.draw(&picture);
+                let problem = stage.problem().map(str::to_owned);
+                if !value.is_finite() && FITTED.contains(&name) {
+                    let problem = problem.unwrap_or_else(|| panic!("{name} = {value}: no word about it"));
+                    assert!(problem.len() > 20, "{name} = {value}: {problem}");
+                }
+                let _ = stage.figures(SIZE);
+                stage.update(&FlyInput::default(), 0.016);
+            }
+        }
+    }
+    stage.reset();
+    frame(&mut stage);
+    assert_eq!(stage.problem(), None, "after all that a reset brings the picture back");
+}
+
+#[test]
+fn absurd_numbers_are_judged_and_demonstrated_without_a_panic() {
+    let mut stage = stage();
+    for (name, write) in FIELDS {
+        for value in [f32::NAN, f32::INFINITY, 0.0, f32::MAX] {
+            stage.reset();
+            write(&mut stage.settings, value);
+            let shares = stage.judge([16, 9], false).shares;
+            assert!((0.0..=1.0).contains(&shares.wrong), "{name} = {value}: {shares:?}");
+        }
+    }
+    for (name, write) in FIELDS {
+        stage.reset();
+        write(&mut stage.settings, f32::NAN);
+        stage.fix_artefact(Artefact::ClippingHole);
+        let picture = stage.picture([16, 9]);
+        stage.draw(&picture);
+        println!("{name}: {:?}", stage.problem());
+    }
+}
+
+#[test]
+fn impossible_maps_keep_the_old_one_and_say_why() {
+    let mut stage = stage();
+    for resolution in [UVec2::ZERO, UVec2::new(0, 2048), UVec2::ONE, UVec2::new(100_000, 512), UVec2::MAX] {
+        stage.reset();
+        stage.settings.fit.resolution = resolution;
+        frame(&mut stage);
+        let problem = stage.problem().unwrap_or_else(|| panic!("{resolution}: no word about it"));
+        assert!(problem.contains("texel") || problem.contains("resolution"), "{resolution}: {problem}");
+    }
+    stage.reset();
+    stage.settings.fit.depth = DepthConvention::NegativeOneToOne;
+    frame(&mut stage);
+    assert!(stage.problem().is_some_and(|problem| problem.contains("OpenGL")), "{:?}", stage.problem());
+}
+
+#[test]
+fn absurd_places_of_the_eye_are_drawn_without_a_panic() {
+    let mut stage = stage();
+    let places = [f64::NAN, f64::INFINITY, 1e300, 1e30, 1e15, -1e7].map(DVec3::splat);
+    for kind in [FitKind::FrustumAabb, FitKind::XnaSample] {
+        for eye in places {
+            for angle in [f32::NAN, f32::INFINITY, 0.0, 1e30] {
+                stage.reset();
+                stage.settings.fit.kind = kind;
+                stage.camera.position = eye;
+                (stage.camera.yaw, stage.camera.pitch) = (angle, angle);
+                frame(&mut stage);
+            }
+        }
+    }
+}
+
+#[test]
+fn absurd_times_and_animations_are_posed_without_a_panic() {
+    let mut stage = stage();
+    for animation in [0, 1, usize::MAX] {
+        stage.animation = animation;
+        for seconds in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -3.0, 1e30, 0.5] {
+            stage.set_time(seconds);
+            frame(&mut stage);
+            assert!(stage.bounds().min.is_finite() && stage.bounds().max.is_finite(), "{animation} at {seconds} s");
+        }
+    }
+}
+
+#[test]
+fn pictures_of_one_pixel_and_of_odd_sizes_are_drawn() {
+    let mut stage = stage();
+    for size in [[1, 1], [0, 0], [1, 500], [700, 3], [33, 17]] {
+        let picture = stage.picture(size);
+        stage.draw(&picture);
+        let [width, height] = picture.size;
+        assert_eq!(picture.read(stage.gpu()).len(), (width * height * 4) as usize, "{size:?}");
+        assert!(width >= 1 && height >= 1, "{size:?}");
+    }
+}
