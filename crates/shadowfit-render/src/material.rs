@@ -8,7 +8,8 @@ use crate::Gpu;
 use crate::shaders;
 use crate::uniform::MaterialUniform;
 
-/// Anisotropy of the texture filter: floors seen at a grazing angle stay sharp.
+/// Anisotropy of the texture filter: floors seen at a grazing angle stay sharp. Software adapters do without: the one of
+/// Mesa walks over every texel in the footprint of a pixel, which takes seconds for a single sliver seen edge-on.
 const ANISOTROPY: u16 = 8;
 
 /// Layout of a material's bind group, the same in the shaded and the shadow pass.
@@ -74,7 +75,7 @@ impl<'a> Uploader<'a> {
         self.gpu.queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&MaterialUniform::new(material)));
         let base = self.view(material.base_color_texture, true);
         let normal = self.view(material.normal_texture, false);
-        let samplers = [material.base_color_texture, material.normal_texture].map(|t| sampler(device, t));
+        let samplers = [material.base_color_texture, material.normal_texture].map(|t| sampler(self.gpu, t));
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some(&material.name),
@@ -90,7 +91,7 @@ impl<'a> Uploader<'a> {
     }
 }
 
-fn sampler(device: &wgpu::Device, texture: Option<Texture>) -> wgpu::Sampler {
+fn sampler(gpu: &Gpu, texture: Option<Texture>) -> wgpu::Sampler {
     let wrap = texture.map_or([Wrap::Repeat; 2], |t| t.wrap).map(|wrap| match wrap {
         Wrap::Repeat => wgpu::AddressMode::Repeat,
         Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
@@ -98,14 +99,15 @@ fn sampler(device: &wgpu::Device, texture: Option<Texture>) -> wgpu::Sampler {
     });
     let nearest = texture.is_some_and(|t| t.nearest);
     // Anisotropy asks for linear filters throughout.
-    device.create_sampler(&wgpu::SamplerDescriptor {
+    let anisotropy_clamp = if nearest || gpu.is_software() { 1 } else { ANISOTROPY };
+    gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("material"),
         address_mode_u: wrap[0],
         address_mode_v: wrap[1],
         mag_filter: if nearest { wgpu::FilterMode::Nearest } else { wgpu::FilterMode::Linear },
         min_filter: wgpu::FilterMode::Linear,
         mipmap_filter: wgpu::MipmapFilterMode::Linear,
-        anisotropy_clamp: if nearest { 1 } else { ANISOTROPY },
+        anisotropy_clamp,
         ..Default::default()
     })
 }
