@@ -58,7 +58,7 @@ impl Drop for Scratch {
 /// Runs the viewer in `folder` with small pictures.
 fn run(folder: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(viewer_program());
-    command.current_dir(folder).args(["--software", "--size", "80x45"]).args(arguments);
+    command.current_dir(folder).args(["--software", "--size", "64x36"]).args(arguments);
     command.output().expect("the viewer starts")
 }
 

@@ -8,9 +8,8 @@ use shadowfit_viewer::{Artefact, Stage, StageError};
 
 use crate::support::{assets, files_below, software_gpu};
 
-/// Size of the pictures, in pixels: small, since the driver draws on the processor, but not 64×36, which Mesa 22's lavapipe
-/// draws fifty times slower than 62×36 or 66×36.
-const SIZE: [u32; 2] = [96, 54];
+/// Size of the pictures, in pixels: small, since the driver draws on the processor.
+const SIZE: [u32; 2] = [64, 36];
 
 /// Scenes that have all three artefacts shown and fixed: one textured and animated, one of many nodes, one with
 /// cut-outs, one in a size of its own, one that morphs.

@@ -11,7 +11,7 @@ use shadowfit_viewer::{Artefact, Stage};
 use crate::support::software_gpu;
 
 /// Size of the pictures, in pixels.
-const SIZE: [u32; 2] = [80, 45];
+const SIZE: [u32; 2] = [64, 36];
 
 /// Most triangles of a mesh that is drawn.
 const MOST_TRIANGLES: usize = 300;

@@ -1,0 +1,211 @@
+//! Golden pictures: the default scene's views at 320×180, drawn by the software adapter whatever GPU is present.
+//!
+//! A missing or mis-sized golden fails. `cargo xtask golden` (`SHADOWFIT_UPDATE_GOLDENS=1`) writes them anew. On a
+//! failure `NAME.actual.png` and `NAME.diff.png` (the difference, amplified) lie beside `NAME.png`.
+
+use std::path::{Path, PathBuf};
+
+use image::RgbImage;
+use shadowfit_scene::builtin::default_scene;
+use shadowfit_viewer::{Artefact, Stage};
+
+use crate::support::{software_gpu, workspace};
+
+/// Size of every golden, in pixels.
+const SIZE: [u32; 2] = [320, 180];
+
+/// Most bytes that a golden may have.
+const MAX_BYTES: u64 = 128 * 1024;
+
+/// Samples per pixel, as the headless mode has them.
+const SAMPLES: u32 = 4;
+
+/// Every golden.
+const NAMES: [&str; 9] =
+    ["final", "inset", "outside", "acne", "acne-fixed", "aliasing", "aliasing-fixed", "hole", "hole-fixed"];
+
+/// Mean difference allowed, in levels of 255 over all channels. The same driver draws the same bits; another version of
+/// it may round a shaded value the other way, which is one level, in some pixels.
+const MEAN: f64 = 0.5;
+
+/// A pixel counts as different from this many levels on: an edge or a texel that fell to the other side, not rounding.
+const DIFFERENT: u8 = 24;
+
+/// Share of pixels that may be different: along edges another rounding of coverage moves single pixels. The least
+/// artefact that a golden shows covers several times as many.
+const DIFFERENT_SHARE: f64 = 0.005;
+
+/// Factor by which the difference picture is amplified, so that one level can be seen.
+const AMPLIFIED: u8 = 8;
+
+#[test]
+fn final_inset_and_outside_view_are_as_they_were() {
+    let mut stage = stage();
+    stage.settings.view.inset = false;
+    check(&mut stage, "final");
+    stage.settings.view.inset = true;
+    check(&mut stage, "inset");
+    stage.settings.view.outside = true;
+    check(&mut stage, "outside");
+}
+
+#[test]
+fn acne_and_its_fix_are_as_they_were() {
+    check_artefact(Artefact::Acne, ["acne", "acne-fixed"]);
+}
+
+#[test]
+fn aliasing_and_its_fix_are_as_they_were() {
+    check_artefact(Artefact::Aliasing, ["aliasing", "aliasing-fixed"]);
+}
+
+#[test]
+fn the_hole_and_its_fix_are_as_they_were() {
+    check_artefact(Artefact::ClippingHole, ["hole", "hole-fixed"]);
+}
+
+#[test]
+fn the_folder_holds_exactly_these_goldens_and_each_is_small() {
+    if updates() {
+        println!("SKIPPED: other tests are writing the goldens now; run the tests again without updating");
+        return;
+    }
+    let mut present: Vec<String> = crate::support::files_below(&folder())
+        .iter()
+        .map(|path| path.file_name().expect("a file's name").to_string_lossy().into_owned())
+        .filter(|name| !name.ends_with(".actual.png") && !name.ends_with(".diff.png"))
+        .collect();
+    present.sort();
+    let mut expected = NAMES.map(|name| format!("{name}.png"));
+    expected.sort();
+    assert_eq!(present, expected, "goldens in {}; `cargo xtask golden` writes missing ones", folder().display());
+    for name in expected {
+        let path = folder().join(name);
+        let bytes = std::fs::metadata(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display())).len();
+        assert!(bytes <= MAX_BYTES, "{} has {bytes} bytes", path.display());
+        let size = image::image_dimensions(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        assert_eq!(size, SIZE.into(), "{}", path.display());
+    }
+}
+
+#[test]
+fn the_comparison_sees_a_missing_shadow_and_forgives_rounding() {
+    let plain = RgbImage::from_fn(SIZE[0], SIZE[1], |x, y| image::Rgb([(x % 200) as u8, (y % 200) as u8, 90]));
+    let mut rounded = plain.clone();
+    rounded.pixels_mut().step_by(2).for_each(|pixel| pixel.0[1] += 1);
+    assert_eq!(Difference::between(&plain, &rounded).verdict(), Ok(()));
+    let mut changed = plain.clone();
+    // One pixel more than the share that is allowed.
+    let allowed = (f64::from(SIZE[0] * SIZE[1]) * DIFFERENT_SHARE) as usize;
+    changed.pixels_mut().take(allowed + 1).for_each(|pixel| pixel.0[2] += DIFFERENT);
+    assert!(Difference::between(&plain, &changed).verdict().is_err());
+    let mut darker = plain.clone();
+    darker.pixels_mut().for_each(|pixel| pixel.0[2] -= 2);
+    assert!(Difference::between(&plain, &darker).verdict().is_err());
+}
+
+fn stage() -> Stage {
+    let mut stage = Stage::new(software_gpu(), default_scene(), SAMPLES).expect("the default scene can be shown");
+    stage.settings.view.play = false;
+    stage.set_home();
+    stage
+}
+
+fn check_artefact(artefact: Artefact, [shown, fixed]: [&str; 2]) {
+    let mut stage = stage();
+    stage.show_artefact(artefact);
+    stage.settings.view.inset = false;
+    check(&mut stage, shown);
+    stage.fix_artefact(artefact);
+    stage.settings.view.inset = false;
+    check(&mut stage, fixed);
+}
+
+/// Whether this run writes the goldens.
+fn updates() -> bool {
+    std::env::var_os("SHADOWFIT_UPDATE_GOLDENS").is_some_and(|value| value != "0")
+}
+
+fn folder() -> PathBuf {
+    workspace().join("tests/golden")
+}
+
+/// Draws the stage and compares it with its golden, or writes the golden.
+fn check(stage: &mut Stage, name: &str) {
+    assert!(NAMES.contains(&name), "{name} is missing in the list of goldens");
+    let picture = stage.picture(SIZE);
+    stage.draw(&picture);
+    assert_eq!(stage.problem(), None, "{name}");
+    let rgb: Vec<u8> =
+        picture.read(stage.gpu()).chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+    let actual = RgbImage::from_raw(SIZE[0], SIZE[1], rgb).expect("as many bytes as pixels");
+    let golden = folder().join(name).with_extension("png");
+    if updates() {
+        save(&actual, &golden);
+        return;
+    }
+    if let Err(reason) = compare(&actual, &golden) {
+        let beside = golden.with_extension("actual.png");
+        save(&actual, &beside);
+        panic!("{name}: {reason}; the picture drawn now is {}", beside.display());
+    }
+}
+
+fn compare(actual: &RgbImage, golden: &Path) -> Result<(), String> {
+    let rewrite = "`cargo xtask golden` writes the goldens; look at the pictures before committing them";
+    if !golden.is_file() {
+        return Err(format!("the golden {} is missing. {rewrite}", golden.display()));
+    }
+    let expected = image::open(golden).map_err(|error| format!("{}: {error}", golden.display()))?.to_rgb8();
+    if expected.dimensions() != actual.dimensions() {
+        let (is, must) = (expected.dimensions(), actual.dimensions());
+        return Err(format!("the golden {} is {is:?} pixels, not {must:?}. {rewrite}", golden.display()));
+    }
+    let difference = Difference::between(&expected, actual);
+    difference.verdict().map_err(|reason| {
+        let beside = golden.with_extension("diff.png");
+        save(&difference.picture(), &beside);
+        format!("{reason}; the difference, times {AMPLIFIED}, is {}. {rewrite}", beside.display())
+    })
+}
+
+fn save(picture: &RgbImage, path: &Path) {
+    picture.save(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+}
+
+/// Absolute difference of two pictures of one size, by channel.
+struct Difference(RgbImage);
+
+impl Difference {
+    fn between(a: &RgbImage, b: &RgbImage) -> Self {
+        let mut difference = a.clone();
+        for (pixel, other) in difference.pixels_mut().zip(b.pixels()) {
+            for (channel, other) in pixel.0.iter_mut().zip(other.0) {
+                *channel = channel.abs_diff(other);
+            }
+        }
+        Self(difference)
+    }
+
+    fn verdict(&self) -> Result<(), String> {
+        let channels = self.0.as_raw();
+        let mean = channels.iter().map(|channel| f64::from(*channel)).sum::<f64>() / channels.len() as f64;
+        let different = self.0.pixels().filter(|pixel| pixel.0.iter().any(|channel| *channel >= DIFFERENT)).count();
+        let share = different as f64 / f64::from(self.0.width() * self.0.height());
+        if mean <= MEAN && share <= DIFFERENT_SHARE {
+            return Ok(());
+        }
+        Err(format!(
+            "mean difference {mean:.3} of 255 (allowed {MEAN}), {:.2}% of pixels differ by {DIFFERENT} or more \
+             (allowed {:.2}%)",
+            share * 100.0,
+            DIFFERENT_SHARE * 100.0
+        ))
+    }
+
+    fn picture(&self) -> RgbImage {
+        let mut picture = self.0.clone();
+        picture.iter_mut().for_each(|channel| *channel = channel.saturating_mul(AMPLIFIED));
+        picture
+    }
+}
