@@ -55,12 +55,19 @@ impl Gpu {
     ///
     /// [`GpuError`] if there is no such adapter or it cannot be opened.
     pub async fn headless(choice: AdapterChoice) -> Result<Self, GpuError> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let instance = Self::instance();
         let adapter = match choice {
             AdapterChoice::Any => any_adapter(&instance, None).await?,
             AdapterChoice::Software => software_adapter(&instance, None).await?,
         };
         Self::open(adapter).await
+    }
+
+    /// The graphics instance: Vulkan, Metal or Direct3D 12, unless `WGPU_BACKEND` names others.
+    pub fn instance() -> wgpu::Instance {
+        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+        descriptor.backends = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY);
+        wgpu::Instance::new(descriptor)
     }
 
     /// Opens an adapter that can draw to `surface`.

@@ -15,6 +15,7 @@ mod probe;
 mod renderer;
 mod scene;
 pub mod shaders;
+mod timer;
 mod uniform;
 
 pub use camera::{FlyCamera, FlyInput};
@@ -24,4 +25,5 @@ pub use picture::Picture;
 pub use probe::{Probe, ProbePixel};
 pub use renderer::{Frame, Inset, Renderer, Statistics};
 pub use scene::GpuScene;
+pub use timer::PassTimes;
 pub use uniform::{Atmosphere, FrameUniform, InsetUniform, InstanceData, LineVertex, MaterialUniform};

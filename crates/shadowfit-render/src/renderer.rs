@@ -9,6 +9,7 @@ use crate::picture::Picture;
 use crate::pipelines::{Layouts, Pipelines};
 use crate::probe::{Probe, ProbeTargets};
 use crate::scene::{Draw, GpuScene, Part, in_frustum, in_volume};
+use crate::timer::{Pass, PassTimer, PassTimes};
 use crate::uniform::{Atmosphere, FrameUniform, InsetUniform, LineVertex};
 use crate::{Gpu, Line};
 
@@ -69,6 +70,7 @@ pub struct Renderer {
     inset_uniform: wgpu::Buffer,
     inset_group: wgpu::BindGroup,
     line_buffer: wgpu::Buffer,
+    timer: PassTimer,
 }
 
 /// The draws of a frame's passes.
@@ -102,6 +104,7 @@ impl Renderer {
             inset_uniform,
             inset_group,
             line_buffer,
+            timer: PassTimer::new(device),
         })
     }
 
@@ -133,6 +136,11 @@ impl Renderer {
         Ok(())
     }
 
+    /// Times of the passes, a few frames late.
+    pub fn pass_times(&self) -> PassTimes {
+        self.timer.times
+    }
+
     /// A picture that this renderer can draw into.
     pub fn picture(&self, gpu: &Gpu, size: [u32; 2]) -> Picture {
         Picture::new(&gpu.device, size, self.samples)
@@ -147,7 +155,9 @@ impl Renderer {
         if frame.inset.is_some() && !frame.fits.is_empty() {
             self.inset_pass(&mut encoder, picture);
         }
+        self.timer.resolve(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
+        self.timer.end_frame(gpu);
         statistics(scene, &plan)
     }
 
@@ -167,7 +177,9 @@ impl Renderer {
             });
             self.draw_scene(&mut pass, scene, &plan.opaque, |part| self.pipelines.probe(part));
         }
+        self.timer.resolve(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
+        self.timer.end_frame(gpu);
         targets.read(gpu)
     }
 
@@ -183,7 +195,7 @@ impl Renderer {
             gpu.queue.write_buffer(&self.inset_uniform, 0, bytemuck::bytes_of(&uniform));
         }
         self.write_lines(gpu, eye, frame.lines);
-        plan(gpu, scene, frame, &uniform)
+        plan(gpu, scene, frame, &uniform, self.shadow_map.descriptor().maps as usize)
     }
 
     fn write_lines(&mut self, gpu: &Gpu, eye: DVec3, lines: &[Line]) {
@@ -196,13 +208,18 @@ impl Renderer {
     }
 
     fn shadow_passes(&self, encoder: &mut wgpu::CommandEncoder, scene: &GpuScene, plan: &Plan) {
-        self.shadow_map.render(encoder, |pass, map, _volume| {
-            for draw in &plan.shadow[map] {
+        for (map, draws) in plan.shadow.iter().enumerate() {
+            let query = self.timer.begin(Pass::Shadow, encoder);
+            let timestamps = query.as_ref().and_then(wgpu_profiler::GpuProfilerQuery::render_pass_timestamp_writes);
+            let mut pass = self.shadow_map.begin_pass(encoder, map, timestamps);
+            for draw in draws {
                 let part = &scene.parts[draw.part];
                 pass.set_pipeline(self.pipelines.caster(part));
-                draw_part(pass, scene, draw, 1);
+                draw_part(&mut pass, scene, draw, 1);
             }
-        });
+            drop(pass);
+            self.timer.end(query, encoder);
+        }
     }
 
     fn scene_pass(
@@ -213,6 +230,7 @@ impl Renderer {
         picture: &Picture,
         lines: u32,
     ) {
+        let query = self.timer.begin(Pass::Scene, encoder);
         let color = match &picture.multisampled {
             Some(view) => color_attachment(view, Some(&picture.color_view), wgpu::Color::BLACK),
             None => color_attachment(&picture.color_view, None, wgpu::Color::BLACK),
@@ -221,6 +239,7 @@ impl Renderer {
             label: Some("scene"),
             color_attachments: &[Some(color)],
             depth_stencil_attachment: Some(depth_attachment(&picture.depth_view)),
+            timestamp_writes: query.as_ref().and_then(wgpu_profiler::GpuProfilerQuery::render_pass_timestamp_writes),
             ..Default::default()
         });
         self.draw_scene(&mut pass, scene, &plan.opaque, |part| self.pipelines.scene(part));
@@ -232,6 +251,8 @@ impl Renderer {
             pass.set_vertex_buffer(0, self.line_buffer.slice(..));
             pass.draw(0..6, 0..lines);
         }
+        drop(pass);
+        self.timer.end(query, encoder);
     }
 
     fn draw_scene<'a>(
@@ -269,16 +290,17 @@ impl Renderer {
 }
 
 /// Decides what each pass draws and uploads the instances.
-fn plan(gpu: &Gpu, scene: &mut GpuScene, frame: &Frame<'_>, uniform: &FrameUniform) -> Plan {
+fn plan(gpu: &Gpu, scene: &mut GpuScene, frame: &Frame<'_>, uniform: &FrameUniform, maps: usize) -> Plan {
     let eye = frame.camera.eye;
     scene.begin_frame();
-    let shadow = frame
-        .fits
+    let shadow = frame.fits[..frame.fits.len().min(maps)]
         .iter()
         .map(|fit| scene.visible(eye, in_volume(&fit.relative_to(eye).caster_volume()), Part::casts))
         .collect();
     let seen = in_frustum(Mat4::from_cols_array_2d(&uniform.clip_from_world));
-    let opaque = scene.visible(eye, &seen, Part::casts);
+    let mut opaque = scene.visible(eye, &seen, Part::casts);
+    // Near things first, so that what they hide is never shaded.
+    opaque.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     let mut blended = scene.visible(eye, &seen, |part| !part.casts());
     blended.sort_by(|a, b| b.distance.total_cmp(&a.distance));
     scene.end_frame(gpu);

@@ -337,8 +337,10 @@ impl Stage {
 
     /// The live figures of the last frame, for a picture of the given size.
     pub fn figures(&mut self, size: [u32; 2]) -> Figures {
-        let statistics = self.statistics;
+        let (statistics, times) = (self.statistics, self.renderer.pass_times());
         let mut figures = Figures {
+            shadow_pass_ms: times.shadow_ms,
+            scene_pass_ms: times.scene_ms,
             shadow_draws: Some(statistics.shadow_draws),
             shadow_triangles: Some(statistics.shadow_triangles),
             ..Figures::default()

@@ -116,7 +116,7 @@ impl Running {
     fn start(event_loop: &ActiveEventLoop, arguments: &Arguments) -> Result<Self> {
         let scene = arguments.load_scene()?;
         let window = open_window(event_loop, arguments.size)?;
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let instance = Gpu::instance();
         let surface = instance.create_surface(window.clone()).context("the window cannot be drawn on")?;
         let gpu = pollster::block_on(Gpu::for_surface(arguments.adapter(), &instance, &surface))?;
         let device_lost = watch_device(&gpu);
