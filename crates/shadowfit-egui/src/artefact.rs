@@ -67,8 +67,9 @@ impl Artefact {
         match self {
             Self::Acne => {
                 "The shadow is looked up a little above the surface, along its normal. The normal offset is \
-                 sized to the filter's reach in texels, which is the least that clears a plane at any slope; \
-                 more would detach shadows from their casters."
+                 sized to the filter's reach in texels, which is the least that clears a plane at any slope, and \
+                 a constant bias of one texel clears the creases of curved things; more would detach shadows \
+                 from their casters."
             }
             Self::Aliasing => {
                 "The shadow distance is shortened, so that the map's texels are spent near the camera, the map \

@@ -24,10 +24,10 @@ pub struct Atmosphere {
 impl Default for Atmosphere {
     fn default() -> Self {
         Self {
-            sun: Vec3::new(2.75, 2.42, 1.98),
-            zenith: Vec3::new(0.15, 0.32, 0.72),
-            horizon: Vec3::new(0.62, 0.74, 0.88),
-            ground: Vec3::new(0.34, 0.29, 0.23),
+            sun: Vec3::new(2.1, 1.85, 1.5),
+            zenith: Vec3::new(0.12, 0.27, 0.62),
+            horizon: Vec3::new(0.55, 0.67, 0.80),
+            ground: Vec3::new(0.28, 0.24, 0.19),
             haze_per_metre: 0.0035,
         }
     }

@@ -25,6 +25,8 @@ const ALIASING_TEXEL: f32 = 1.0 / 15.0;
 const CREASE_BIAS: f32 = 1.0;
 /// Length of the shadowed frustum when the hole is shown, in radii of the subject.
 const HOLE_DISTANCE: f32 = 4.0;
+/// Reach of a long shadow, in radii of the scene, from which on the scene is shown as a whole.
+const LARGE_REACH: f32 = 0.3;
 /// Share of the picture that should still show a shadow when the hole is shown.
 const KEPT_SHADOW: f32 = 0.1;
 /// Resolution of the map after aliasing is fixed, in texels.
@@ -32,25 +34,28 @@ const FIXED_RESOLUTION: u32 = 4096;
 /// Aspect that candidates are judged with.
 const ASPECT: f32 = 16.0 / 9.0;
 
-/// Moves camera and settings to show an artefact.
-pub(crate) fn show(stage: &mut Stage, artefact: Artefact) {
+/// Moves camera and settings to show an artefact; `false` where the scene has no place for it.
+pub(crate) fn show(stage: &mut Stage, artefact: Artefact) -> bool {
     stage.settings.view.play = false;
     stage.settings.view.outside = false;
     stage.settings.view.freeze_fit = false;
     stage.settings.view.shadows = true;
     stage.settings.light.animate = false;
-    let place = Place::of(stage);
     let light = stage.settings.light.direction();
-    let bounds = stage.bounds();
+    let (bounds, subject) = (stage.bounds(), stage.subject_bounds());
+    let has_subject = stage.scene().subject.is_some();
+    let lens = PerspectiveCamera { aspect: ASPECT, ..stage.perspective([1, 1]) };
     let mut settings = stage.settings;
     let scout = Scout::new(stage.rays(), light, &bounds);
-    let camera = match artefact {
+    let place = Place::new(&scout, light, subject, has_subject, lens);
+    let (camera, found) = match artefact {
         Artefact::Acne => show_acne(&scout, &place, light, &mut settings),
         Artefact::Aliasing => show_aliasing(&scout, &place, light, &mut settings),
         Artefact::ClippingHole => show_hole(&scout, &place, light, &mut settings),
     };
     stage.settings = settings;
     stage.camera = camera;
+    found
 }
 
 /// Applies the cure of an artefact on show.
@@ -81,23 +86,33 @@ fn clearing_bias(filter: FilterKind) -> BiasSettings {
     BiasSettings { constant: CREASE_BIAS, ..BiasSettings::automatic(filter) }
 }
 
-/// What the demonstrations are about: the scene's subject, or the whole scene.
+/// What the demonstrations are about: the scene's subject, or its most telling part.
 struct Place {
     bounds: Aabb,
     center: Vec3,
     radius: f32,
     lens: PerspectiveCamera,
+    /// Shadows that it throws, in order of their reach.
+    shadows: Vec<Shadow>,
 }
 
 impl Place {
-    fn of(stage: &Stage) -> Self {
-        let bounds = stage.subject_bounds();
-        Self {
-            bounds,
-            center: (bounds.min + bounds.max) * 0.5,
-            radius: ((bounds.max - bounds.min).length() * 0.5).max(1e-3),
-            lens: PerspectiveCamera { aspect: ASPECT, ..stage.perspective([1, 1]) },
+    fn new(scout: &Scout<'_>, light: Vec3, bounds: Aabb, has_subject: bool, lens: PerspectiveCamera) -> Self {
+        let mut shadows = scout.shadows(&bounds);
+        shadows.sort_by(|a, b| a.reach.total_cmp(&b.reach));
+        let radius = ((bounds.max - bounds.min).length() * 0.5).max(1e-3);
+        let whole = Self { bounds, center: (bounds.min + bounds.max) * 0.5, radius, lens, shadows };
+        let Some(long) = whole.shadows.get(whole.shadows.len() * 3 / 4).copied() else { return whole };
+        if has_subject || long.reach > radius * LARGE_REACH {
+            return whole;
         }
+        // A scene far larger than its shadows, such as a town: go to one of its casters.
+        let center = long.receiver - light * (long.reach * 0.5);
+        let radius = long.reach;
+        let bounds = Aabb { min: center - radius, max: center + radius };
+        let mut shadows = scout.shadows(&bounds);
+        shadows.sort_by(|a, b| a.reach.total_cmp(&b.reach));
+        Self { bounds, center, radius, lens, shadows }
     }
 
     fn contains(&self, point: Vec3) -> bool {
@@ -113,7 +128,7 @@ impl Place {
 
 /// The subject's upper part close up from the lit side, without any bias: every slope shadows
 /// itself.
-fn show_acne(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut Settings) -> FlyCamera {
+fn show_acne(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut Settings) -> (FlyCamera, bool) {
     let target = place.center + Vec3::Y * (place.bounds.max.y - place.bounds.min.y) * 0.25;
     let distances = [1.5, 1.8].map(|radii| radii * place.radius);
     let candidates = around(target, -light, &[0.3, 0.6, 0.9, -0.3, -0.6, -0.9], &[0.0, 0.15], &distances);
@@ -129,7 +144,7 @@ fn show_acne(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut Setti
             pixels.iter().flatten().filter(|seen| shows(seen)).count()
         }
     };
-    let camera = best(&place.lens, candidates, |camera| score(camera) as f32);
+    let (camera, found) = best(&place.lens, candidates, |camera| score(camera) as f32);
     let distance = camera.eye.as_vec3().distance(place.center);
     settings.bias = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0 };
     settings.filter = FilterKind::Point;
@@ -137,13 +152,12 @@ fn show_acne(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut Setti
     settings.fit.margin = 0.0;
     let texel = place.picture_height(distance) * ACNE_TEXEL;
     stretch_to_texel(&camera, light, settings, distance + place.radius, texel);
-    fly(&camera)
+    (fly(&camera), found)
 }
 
 /// The edge of the subject's shadow close up, in a map that has to cover far too much.
-fn show_aliasing(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut Settings) -> FlyCamera {
-    let shadows = scout.shadows(&place.bounds);
-    let targets = spread(&shadows, 5);
+fn show_aliasing(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut Settings) -> (FlyCamera, bool) {
+    let targets = spread(&place.shadows, 5);
     let height = place.radius;
     let candidates = targets.iter().flat_map(|shadow| {
         around(shadow.receiver, -light, &[-2.2, -1.4, -0.7, 0.7, 1.4, 2.2], &[0.5, 0.8], &[height * 1.5, height * 2.2])
@@ -161,7 +175,7 @@ fn show_aliasing(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut S
         // The most edge, with about as much shadow as light.
         edges(&shadowed) as f32 * (1.0 - (share - 0.4).abs())
     };
-    let camera = best(&place.lens, candidates, score);
+    let (camera, found) = best(&place.lens, candidates, score);
     let distance =
         scout.look(&camera)[(GRID[0] * GRID[1] / 2 + GRID[0] / 2) as usize].map_or(height * 2.0, |seen| seen.distance);
     settings.filter = FilterKind::Point;
@@ -170,15 +184,14 @@ fn show_aliasing(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut S
     settings.fit.resolution = UVec2::splat(2048);
     let texel = place.picture_height(distance) * ALIASING_TEXEL;
     stretch_to_texel(&camera, light, settings, distance * 2.0, texel);
-    fly(&camera)
+    (fly(&camera), found)
 }
 
 /// Between the subject and its shadow: the shadow is in view, what throws it is not in the map.
-fn show_hole(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut Settings) -> FlyCamera {
+fn show_hole(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut Settings) -> (FlyCamera, bool) {
     settings.fit.kind = FitKind::XnaSample;
     settings.fit.margin = 0.0;
-    let shadows = scout.shadows(&place.bounds);
-    let targets = spread(&shadows, 4);
+    let targets = spread(&place.shadows, 4);
     let candidates = targets.iter().flat_map(|shadow| {
         let reach = shadow.reach;
         around(shadow.receiver, -light, &around_the_clock(), &[0.4, 0.7], &[reach * 0.7, reach, reach * 1.3])
@@ -200,10 +213,10 @@ fn show_hole(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut Setti
         let kept = (shadowed().count() - holes) as f32 / (pixels.len() as f32 * KEPT_SHADOW);
         holes as f32 * (0.2 + 0.8 * kept.min(1.0))
     };
-    let camera = best(&place.lens, candidates, score);
+    let (camera, found) = best(&place.lens, candidates, score);
     settings.fit.max_distance = place.radius * HOLE_DISTANCE;
     settings.bias = clearing_bias(settings.filter);
-    fly(&camera)
+    (fly(&camera), found)
 }
 
 /// Candidate eyes around a target, each with the target: turned from the light's side by
@@ -228,13 +241,13 @@ fn around_the_clock() -> [f32; 12] {
     core::array::from_fn(|hour| hour as f32 / 12.0 * TAU - PI)
 }
 
-/// The candidate with the greatest score; the first one where all are equal.
+/// The candidate with the greatest score, or the lens as it stands where none has any.
 fn best(
     lens: &PerspectiveCamera,
     candidates: impl IntoIterator<Item = [Vec3; 2]>,
     score: impl Fn(&PerspectiveCamera) -> f32,
-) -> PerspectiveCamera {
-    let mut best = (f32::NEG_INFINITY, *lens);
+) -> (PerspectiveCamera, bool) {
+    let mut best = (0.0, *lens);
     for [eye, target] in candidates {
         let camera = aimed(lens, eye, target);
         let score = score(&camera);
@@ -242,7 +255,7 @@ fn best(
             best = (score, camera);
         }
     }
-    best.1
+    (best.1, best.0 > 0.0)
 }
 
 /// Whether something stands right before the eye.
@@ -264,10 +277,8 @@ fn edges(shadowed: &[Option<bool>]) -> usize {
         .sum()
 }
 
-/// A few shadows, evenly picked in order of their reach.
-fn spread(shadows: &[Shadow], count: usize) -> Vec<Shadow> {
-    let mut sorted = shadows.to_vec();
-    sorted.sort_by(|a, b| a.reach.total_cmp(&b.reach));
+/// A few of the shadows, evenly picked from their order.
+fn spread(sorted: &[Shadow], count: usize) -> Vec<Shadow> {
     let count = count.min(sorted.len());
     (0..count).map(|index| sorted[(2 * index + 1) * sorted.len() / (2 * count)]).collect()
 }

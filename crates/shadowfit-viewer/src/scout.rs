@@ -11,6 +11,8 @@ use crate::rays::SceneRays;
 pub(crate) const GRID: [u32; 2] = [32, 18];
 /// Light rays along each side of the square that is searched for shadows.
 const LIGHT_GRID: i32 = 24;
+/// Shortest throw of a shadow that is worth showing, in radii of the searched bounds.
+const LEAST_REACH: f32 = 0.02;
 /// Offset of shadow rays along the normal, in parts of the scene's size.
 const RAY_OFFSET: f32 = 1e-4;
 
@@ -111,8 +113,8 @@ impl<'a> Scout<'a> {
         hits.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let caster = hits.first().filter(|hit| hit.distance < radius * 2.0)?;
         let faces = |triangle| self.rays.tracer.normal(triangle).dot(self.to_light) > 0.3;
-        let receiver =
-            hits[1..].iter().rfind(|hit| hit.distance > caster.distance + radius * 0.2 && faces(hit.triangle))?;
+        let least = caster.distance + radius * LEAST_REACH;
+        let receiver = hits[1..].iter().rfind(|hit| hit.distance > least && faces(hit.triangle))?;
         Some(Shadow { receiver: start - self.to_light * receiver.distance, reach: receiver.distance - caster.distance })
     }
 }

@@ -25,6 +25,10 @@ const INSET_SIZE: [f32; 2] = [300.0, 200.0];
 /// Distance of the inset from the picture's corner, in pixels, at full size.
 const INSET_MARGIN: f32 = 12.0;
 
+/// Told when a scene has no place that shows an artefact.
+const NOT_FOUND: &str =
+    "No place in this scene shows this well: nothing throws a shadow on a surface that faces the light.";
+
 /// The artefact on show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shown {
@@ -76,6 +80,7 @@ pub struct Stage {
     shown: Option<Shown>,
     frozen: Option<Fitted>,
     problem: Option<String>,
+    notice: Option<&'static str>,
     rays: Option<SceneRays>,
     statistics: Statistics,
 }
@@ -115,6 +120,7 @@ impl Stage {
             shown: None,
             frozen: None,
             problem: None,
+            notice: None,
             rays: None,
             statistics: Statistics::default(),
         })
@@ -135,6 +141,7 @@ impl Stage {
         self.bounds = loaded.bounds;
         self.triangles = loaded.triangles;
         (self.seconds, self.rays, self.shown, self.before_artefact, self.frozen) = (0.0, None, None, None, None);
+        self.notice = None;
         Ok(())
     }
 
@@ -170,7 +177,7 @@ impl Stage {
 
     /// What keeps the settings from being shown as they are, for people.
     pub fn problem(&self) -> Option<&str> {
-        self.problem.as_deref()
+        self.problem.as_deref().or(self.notice)
     }
 
     /// Moves camera, sun and animation on by `seconds`.
@@ -199,7 +206,7 @@ impl Stage {
     /// Back to the settings and the view that the scene was opened with.
     pub fn reset(&mut self) {
         (self.settings, self.camera) = self.home;
-        (self.shown, self.before_artefact, self.frozen) = (None, None, None);
+        (self.shown, self.before_artefact, self.frozen, self.notice) = (None, None, None, None);
     }
 
     /// Back to the view that the scene was opened with; settings stay.
@@ -218,7 +225,7 @@ impl Stage {
         self.before_artefact = Some(before);
         (self.settings, self.camera) = before;
         self.frozen = None;
-        artefact::show(self, artefact);
+        self.notice = (!artefact::show(self, artefact)).then_some(NOT_FOUND);
         self.shown = Some(Shown { artefact, fixed: false });
     }
 
@@ -525,7 +532,7 @@ fn home(scene: &Scene, pose: &Pose, bounds: &Aabb) -> (Settings, FlyCamera) {
 /// The scene's first perspective camera.
 fn own_camera(scene: &Scene, pose: &Pose, settings: &mut Settings) -> Option<FlyCamera> {
     scene.cameras.iter().find_map(|camera| {
-        let Lens::Perspective { fov_y, .. } = camera.lens else { return None };
+        let Lens::Perspective { fov_y, near, far } = camera.lens else { return None };
         let world: &Mat4 = pose.world_from_node.get(camera.node)?;
         let eye = world.w_axis.truncate();
         let forward = -world.z_axis.truncate();
@@ -533,6 +540,12 @@ fn own_camera(scene: &Scene, pose: &Pose, settings: &mut Settings) -> Option<Fly
             return None;
         }
         settings.camera.fov_y = fov_y.clamp(0.1, 2.5);
+        if near > 0.0 && near < settings.camera.far {
+            settings.camera.near = near;
+        }
+        if let Some(far) = far.filter(|far| *far > settings.camera.near * 2.0) {
+            settings.camera.far = far;
+        }
         let mut fly = FlyCamera { position: eye.as_dvec3(), yaw: 0.0, pitch: 0.0 };
         fly.look_along(forward);
         Some(fly)
@@ -546,7 +559,7 @@ fn overview(bounds: &Aabb, radius: f32, settings: &Settings) -> FlyCamera {
     let level = Vec3::new(to_light.x, 0.0, to_light.z).normalize_or(Vec3::Z);
     let side = level.cross(Vec3::Y);
     let away = (level * 0.75 + side * 0.65 + Vec3::Y * 0.5).normalize();
-    let distance = radius / (settings.camera.fov_y * 0.5).sin() * 0.9;
+    let distance = radius / (settings.camera.fov_y * 0.5).sin() * 0.75;
     let eye: DVec3 = (center + away * distance).as_dvec3();
     FlyCamera::look_at(eye, center.as_dvec3())
 }

@@ -24,7 +24,7 @@ fn vs_caster(in: CasterIn) -> CasterOut {
 
 @fragment
 fn fs_caster_masked(in: CasterOut) {
-    if base_color(in.uv).a * in.alpha < material.alpha_cutoff {
+    if is_cut_out(in.uv, in.alpha) {
         discard;
     }
 }
@@ -36,7 +36,7 @@ fn fs_caster_depth(in: CasterOut) -> @location(0) f32 {
 
 @fragment
 fn fs_caster_masked_depth(in: CasterOut) -> @location(0) f32 {
-    if base_color(in.uv).a * in.alpha < material.alpha_cutoff {
+    if is_cut_out(in.uv, in.alpha) {
         discard;
     }
     return in.clip.z;

@@ -105,7 +105,7 @@ fn fs_scene(in: SceneOut) -> @location(0) vec4<f32> {
     let texel = textureSample(normal_texture, normal_sampler, transformed_uv(material.normal_uv, in.uv)).xyz;
     let base = base_color(in.uv) * in.color;
     let geometric = geometric_normal(in.position, dpdx(in.position), dpdy(in.position));
-    if base.a < material.alpha_cutoff {
+    if is_cut_out(in.uv, in.color.a) {
         discard;
     }
     let normal = shading_normal(in, geometric, texel);
@@ -130,9 +130,8 @@ struct Probe {
 
 @fragment
 fn fs_probe(in: SceneOut) -> Probe {
-    let base = base_color(in.uv) * in.color;
     let geometric = geometric_normal(in.position, dpdx(in.position), dpdy(in.position));
-    if base.a < material.alpha_cutoff {
+    if is_cut_out(in.uv, in.color.a) {
         discard;
     }
     let factor = shadowfit_factor(in.position, geometric);
