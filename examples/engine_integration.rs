@@ -187,7 +187,7 @@ impl Engine {
         let settings = FitSettings::default().with_max_distance(50.0);
         let light = fit(&camera.frustum()?, DIRECTION, &settings)?;
         let bias = BiasSettings::automatic(self.shadow_map.descriptor().filter);
-        self.shadow_map.prepare(&self.queue, camera.eye, &[light], &bias);
+        self.shadow_map.prepare(&self.queue, camera.eye, &[light], &bias)?;
 
         let clip_from_world = camera.clip_from_world(DepthConvention::ZeroToOne).to_cols_array();
         let to_light = (-light.direction).extend(0.0).to_array();

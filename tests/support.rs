@@ -45,13 +45,18 @@ fn profile_folder() -> PathBuf {
     test.ancestors().nth(2).expect("the test lies in target/<profile>/deps").to_owned()
 }
 
+/// Where cargo builds.
+pub(crate) fn target_folder() -> PathBuf {
+    profile_folder().parent().expect("the profile's folder lies in the target folder").to_owned()
+}
+
 /// The viewer beside this test; `cargo test` builds examples, but a filtered run may have left it out.
 pub(crate) fn viewer_program() -> PathBuf {
     let program = profile_folder().join("examples").join(format!("viewer{}", std::env::consts::EXE_SUFFIX));
     if !program.is_file() {
         let mut build = Command::new(env!("CARGO"));
         build.args(["build", "--example", "viewer"]).current_dir(workspace());
-        build.env("CARGO_TARGET_DIR", profile_folder().parent().expect("a profile lies in the target folder"));
+        build.env("CARGO_TARGET_DIR", target_folder());
         if profile_folder().ends_with("release") {
             build.arg("--release");
         }

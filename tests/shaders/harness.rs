@@ -84,7 +84,7 @@ impl<'a> Harness<'a> {
         casters: &[Vec<Vec3>],
     ) -> Self {
         let mut map = ShadowMap::new(&gpu.device, descriptor).expect("a possible shadow map");
-        map.prepare(&gpu.queue, origin, fits, bias);
+        map.prepare(&gpu.queue, origin, fits, bias).expect("fits of this map");
         let pipeline = caster_pipeline(gpu, &map);
         let buffers: Vec<wgpu::Buffer> =
             casters.iter().map(|corners| vertex_buffer(gpu, &positions(corners))).collect();

@@ -10,6 +10,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use super::shot::Shot;
+use crate::support::{target_folder, viewer_program};
 
 /// Width, height and depth of the screen.
 pub(super) const SCREEN: &str = "1280x800x24";
@@ -227,30 +228,4 @@ fn collect_lines(source: ChildStderr) -> Arc<Mutex<Vec<String>>> {
         }
     });
     lines
-}
-
-/// The folder of this build's profile, such as `target/debug`: this test runs from its `deps`.
-fn profile_folder() -> PathBuf {
-    let test = std::env::current_exe().expect("the test knows its own path");
-    test.ancestors().nth(2).expect("the test lies in target/<profile>/deps").to_owned()
-}
-
-fn target_folder() -> PathBuf {
-    profile_folder().parent().expect("the profile's folder lies in the target folder").to_owned()
-}
-
-/// The viewer beside this test; `cargo test` builds examples, but a filtered run may have left it out.
-fn viewer_program() -> PathBuf {
-    let program = profile_folder().join("examples/viewer");
-    if !program.is_file() {
-        let mut build = Command::new(env!("CARGO"));
-        build.args(["build", "--example", "viewer"]).current_dir(env!("CARGO_MANIFEST_DIR"));
-        build.env("CARGO_TARGET_DIR", target_folder());
-        if profile_folder().ends_with("release") {
-            build.arg("--release");
-        }
-        let status = build.status().expect("cargo starts");
-        assert!(status.success(), "the viewer does not build");
-    }
-    program
 }

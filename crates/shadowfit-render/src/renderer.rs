@@ -147,8 +147,18 @@ impl Renderer {
     }
 
     /// Draws a frame into a picture and submits it.
-    pub fn draw(&mut self, gpu: &Gpu, scene: &mut GpuScene, frame: &Frame<'_>, picture: &Picture) -> Statistics {
-        let plan = self.prepare(gpu, scene, frame, picture.size);
+    ///
+    /// # Errors
+    ///
+    /// [`ShadowMapError::Fit`] if a fit was made for another map; nothing is drawn then.
+    pub fn draw(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut GpuScene,
+        frame: &Frame<'_>,
+        picture: &Picture,
+    ) -> Result<Statistics, ShadowMapError> {
+        let plan = self.prepare(gpu, scene, frame, picture.size)?;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.shadow_passes(&mut encoder, scene, &plan);
         self.scene_pass(&mut encoder, scene, &plan, picture, frame.lines.len() as u32);
@@ -158,12 +168,22 @@ impl Renderer {
         self.timer.resolve(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
         self.timer.end_frame(gpu);
-        statistics(scene, &plan)
+        Ok(statistics(scene, &plan))
     }
 
     /// Draws a frame's shadow decisions and reads them back.
-    pub fn probe(&mut self, gpu: &Gpu, scene: &mut GpuScene, frame: &Frame<'_>, size: [u32; 2]) -> Probe {
-        let plan = self.prepare(gpu, scene, frame, size);
+    ///
+    /// # Errors
+    ///
+    /// [`ShadowMapError::Fit`] if a fit was made for another map.
+    pub fn probe(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut GpuScene,
+        frame: &Frame<'_>,
+        size: [u32; 2],
+    ) -> Result<Probe, ShadowMapError> {
+        let plan = self.prepare(gpu, scene, frame, size)?;
         let targets = ProbeTargets::new(&gpu.device, size);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.shadow_passes(&mut encoder, scene, &plan);
@@ -180,13 +200,19 @@ impl Renderer {
         self.timer.resolve(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
         self.timer.end_frame(gpu);
-        targets.read(gpu)
+        Ok(targets.read(gpu))
     }
 
     /// Culls, and writes every buffer of the frame.
-    fn prepare(&mut self, gpu: &Gpu, scene: &mut GpuScene, frame: &Frame<'_>, size: [u32; 2]) -> Plan {
+    fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut GpuScene,
+        frame: &Frame<'_>,
+        size: [u32; 2],
+    ) -> Result<Plan, ShadowMapError> {
         let eye = frame.camera.eye;
-        self.shadow_map.prepare(&gpu.queue, eye, frame.fits, frame.bias);
+        self.shadow_map.prepare(&gpu.queue, eye, frame.fits, frame.bias)?;
         let uniform = FrameUniform::new(frame.camera, -frame.direction, frame.shadows, frame.atmosphere, size);
         gpu.queue.write_buffer(&self.frame_uniform, 0, bytemuck::bytes_of(&uniform));
         if let Some(inset) = frame.inset {
@@ -195,7 +221,7 @@ impl Renderer {
             gpu.queue.write_buffer(&self.inset_uniform, 0, bytemuck::bytes_of(&uniform));
         }
         self.write_lines(gpu, eye, frame.lines);
-        plan(gpu, scene, frame, &uniform, self.shadow_map.descriptor().maps as usize)
+        Ok(plan(gpu, scene, frame, &uniform, self.shadow_map.descriptor().maps as usize))
     }
 
     fn write_lines(&mut self, gpu: &Gpu, eye: DVec3, lines: &[Line]) {

@@ -4,7 +4,7 @@ use core::fmt;
 
 use glam::{DVec3, Mat4, Vec3};
 use shadowfit::figures::Figures;
-use shadowfit::settings::{LightSettings, Settings};
+use shadowfit::settings::{FitSettings, LightSettings, Settings};
 use shadowfit::{DepthConvention, FitError, LightFit, PerspectiveCamera, ViewFrustum, bias, diagnostics};
 use shadowfit_egui::Artefact;
 use shadowfit_render::{
@@ -260,8 +260,11 @@ impl Stage {
     }
 
     fn fitted(&mut self, size: [u32; 2]) -> Fitted {
+        let map = self.renderer.shadow_map().descriptor();
+        let suits = |fit: &LightFit| fit.resolution.to_array() == map.resolution && fit.depth == map.depth;
         if self.settings.view.freeze_fit
             && let Some(frozen) = &self.frozen
+            && frozen.fits.iter().all(suits)
         {
             return frozen.clone();
         }
@@ -278,8 +281,9 @@ impl Stage {
 
     fn fit_now(&self, size: [u32; 2]) -> Result<Fitted, FitError> {
         let frustum = self.perspective(size).frustum()?;
-        let mut fit_settings = self.settings.fit;
-        fit_settings.depth = drawable_depth(&self.settings);
+        // The map as it is, should the one that the settings ask for not be possible.
+        let map = self.renderer.shadow_map().descriptor();
+        let fit_settings = FitSettings { resolution: map.resolution.into(), depth: map.depth, ..self.settings.fit };
         let fit = shadowfit::fit(&frustum, self.settings.light.direction(), &fit_settings)?;
         let camera = &self.settings.camera;
         let shadowed = frustum.slice(camera.near, camera.far.min(fit_settings.max_distance)).ok();
@@ -303,7 +307,10 @@ impl Stage {
         let inset = fitted.fits.first().filter(|_| self.settings.view.inset).map(|fit| self.inset(fit, picture.size));
         let atmosphere = self.atmosphere(&camera);
         let frame = frame(&self.settings, &camera, &fitted.fits, &atmosphere, &lines, inset);
-        self.statistics = self.renderer.draw(&self.gpu, &mut self.gpu_scene, &frame, picture);
+        match self.renderer.draw(&self.gpu, &mut self.gpu_scene, &frame, picture) {
+            Ok(statistics) => self.statistics = statistics,
+            Err(error) => self.problem = Some(error.to_string()),
+        }
     }
 
     /// Haze suits the size of what is seen, so that a chair is not lost in it nor a town without.
@@ -394,7 +401,13 @@ impl Stage {
         let camera = self.perspective(size);
         let atmosphere = Atmosphere::default();
         let frame = frame(&self.settings, &camera, &fits, &atmosphere, &[], None);
-        let probe = self.renderer.probe(&self.gpu, &mut self.gpu_scene, &frame, size);
+        let pixels = match self.renderer.probe(&self.gpu, &mut self.gpu_scene, &frame, size) {
+            Ok(probe) => probe.pixels,
+            Err(error) => {
+                self.problem = Some(error.to_string());
+                vec![None; (size[0] * size[1]) as usize]
+            }
+        };
         let counts = self.counted_instances(subject_only);
         let surface = |pixel: ProbePixel| Surface {
             position: (camera.eye + pixel.position.as_dvec3()).as_vec3(),
@@ -406,7 +419,7 @@ impl Stage {
                 .unwrap_or(f32::INFINITY),
             counts: counts[pixel.instance],
         };
-        let surfaces: Vec<Option<Surface>> = probe.pixels.into_iter().map(|pixel| pixel.map(surface)).collect();
+        let surfaces: Vec<Option<Surface>> = pixels.into_iter().map(|pixel| pixel.map(surface)).collect();
         let settings = JudgeSettings::new(self.settings.light.direction(), bias::reach(self.settings.filter));
         let judged = judge(&self.rays().tracer, &fits, &settings, size.map(|side| side as usize), &surfaces);
         (judged, surfaces)
@@ -454,22 +467,13 @@ fn frame<'a>(
     }
 }
 
-/// The depth convention that is drawn: wgpu has no -1..1.
-fn drawable_depth(settings: &Settings) -> DepthConvention {
-    match settings.fit.depth {
-        DepthConvention::Reversed => DepthConvention::Reversed,
-        _ => DepthConvention::ZeroToOne,
-    }
-}
-
+/// The map that the settings ask for, with depths that wgpu can draw: it has no -1..1.
 fn map_descriptor(settings: &Settings) -> ShadowMapDescriptor {
-    ShadowMapDescriptor {
-        resolution: settings.fit.resolution.to_array(),
-        maps: 1,
-        format: settings.format,
-        filter: settings.filter,
-        depth: drawable_depth(settings),
+    let mut descriptor = ShadowMapDescriptor::from(settings);
+    if descriptor.depth == DepthConvention::NegativeOneToOne {
+        descriptor.depth = DepthConvention::ZeroToOne;
     }
+    descriptor
 }
 
 fn corners(bounds: &Aabb) -> [Vec3; 8] {

@@ -11,7 +11,7 @@
 //! let wgsl = receiver_wgsl(map.descriptor(), 1); // goes into the engine's own shader, as @group(1)
 //!
 //! // Each frame: positions in the engine's shaders are relative to `origin`, here the camera.
-//! map.prepare(queue, fit.origin, &[fit], &shadowfit::settings::BiasSettings::default());
+//! map.prepare(queue, fit.origin, &[fit], &shadowfit::settings::BiasSettings::default())?;
 //! map.render(encoder, |pass, _map_index, _volume| {
 //!     // Group 0 is set to the caster uniform; draw every caster that the volume keeps.
 //!     pass.draw(0..3, 0..1);

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use shadowfit::glam::DVec3;
-use shadowfit::settings::{BiasSettings, FilterKind, MapFormat};
+use shadowfit::settings::{BiasSettings, FilterKind, MapFormat, Settings};
 use shadowfit::{CasterVolume, DepthConvention, LightFit};
 
 use crate::uniform::{CasterUniform, ReceiverUniform};
@@ -55,6 +55,29 @@ pub enum ShadowMapError {
     Maps(u32),
     /// A depth convention that wgpu's clip space does not have.
     Depth(DepthConvention),
+    /// A fit was made for another resolution or depth convention than the map has: biases and
+    /// comparisons would be wrong.
+    Fit {
+        /// Index of the fit.
+        index: usize,
+        /// Its resolution, in texels, and depth convention.
+        fit: ([u32; 2], DepthConvention),
+        /// Those of the map.
+        map: ([u32; 2], DepthConvention),
+    },
+}
+
+impl From<&Settings> for ShadowMapDescriptor {
+    /// One map that the settings' fits match.
+    fn from(settings: &Settings) -> Self {
+        Self {
+            resolution: settings.fit.resolution.to_array(),
+            maps: 1,
+            format: settings.format,
+            filter: settings.filter,
+            depth: settings.fit.depth,
+        }
+    }
 }
 
 impl fmt::Display for ShadowMapError {
@@ -71,6 +94,12 @@ impl fmt::Display for ShadowMapError {
             Self::Depth(depth) => {
                 write!(f, "depth convention {depth:?}: wgpu's clip space has 0..1, plain or reversed")
             }
+            Self::Fit { index, fit, map } => write!(
+                f,
+                "fit {index} was made for {:?} texels and depth {:?}, the shadow map has {:?} and {:?}: give both the \
+                 same settings",
+                fit.0, fit.1, map.0, map.1,
+            ),
         }
     }
 }
@@ -192,7 +221,19 @@ impl ShadowMap {
     /// Writes the uniforms for this frame's fits, one a map, nearest first. Positions in the
     /// shaders are relative to `origin` (world space, metres). Fits past the number of maps are
     /// left out; a map without a fit is neither drawn nor read.
-    pub fn prepare(&mut self, queue: &wgpu::Queue, origin: DVec3, fits: &[LightFit], bias: &BiasSettings) {
+    ///
+    /// # Errors
+    ///
+    /// [`ShadowMapError::Fit`] if a fit is for another resolution or depth convention; nothing is
+    /// written then.
+    pub fn prepare(
+        &mut self,
+        queue: &wgpu::Queue,
+        origin: DVec3,
+        fits: &[LightFit],
+        bias: &BiasSettings,
+    ) -> Result<(), ShadowMapError> {
+        self.check_fits(fits)?;
         let fits = &fits[..fits.len().min(self.layers.len())];
         for (layer, fit) in self.layers.iter().zip(fits) {
             let uniform = CasterUniform::new(fit, origin);
@@ -202,6 +243,16 @@ impl ShadowMap {
         queue.write_buffer(&self.receiver_uniform, 0, bytemuck::bytes_of(&uniform));
         self.volumes.clear();
         self.volumes.extend(fits.iter().map(|fit| fit.relative_to(origin).caster_volume()));
+        Ok(())
+    }
+
+    fn check_fits(&self, fits: &[LightFit]) -> Result<(), ShadowMapError> {
+        let map = (self.descriptor.resolution, self.descriptor.depth);
+        let mut made_for = fits.iter().map(|fit| (fit.resolution.to_array(), fit.depth)).enumerate();
+        match made_for.find(|(_, fit)| *fit != map) {
+            Some((index, fit)) => Err(ShadowMapError::Fit { index, fit, map }),
+            None => Ok(()),
+        }
     }
 
     /// Records one pass a prepared map: cleared to the far value, group 0 set to the map's caster
@@ -219,7 +270,11 @@ impl ShadowMap {
     }
 
     /// Opens the pass of one map, for engines that schedule passes themselves: cleared, with
-    /// group 0 set. `index` is below the descriptor's number of maps.
+    /// group 0 set.
+    ///
+    /// # Panics
+    ///
+    /// If `index` is not below the descriptor's number of maps.
     pub fn begin_pass<'encoder>(
         &self,
         encoder: &'encoder mut wgpu::CommandEncoder,

@@ -25,6 +25,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Task {
     /// Fly through a scene in the viewer; without a display, render its set of pictures instead.
+    #[command(disable_help_flag = true)]
     Run {
         /// Arguments of the viewer, for example a path to a .glb file; `--help` lists them.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
@@ -74,8 +75,10 @@ mod tests {
 
     #[test]
     fn flags_after_run_reach_the_viewer() {
-        let cli = Cli::try_parse_from(["xtask", "run", "--size", "640x360", "--help"]).unwrap();
-        let Task::Run { args } = cli.task else { panic!("not the run task") };
-        assert_eq!(args, ["--size", "640x360", "--help"]);
+        for flags in [&["--size", "640x360", "--help"][..], &["--help"]] {
+            let cli = Cli::try_parse_from(["xtask", "run"].iter().chain(flags)).unwrap();
+            let Task::Run { args } = cli.task else { panic!("not the run task") };
+            assert_eq!(args, flags);
+        }
     }
 }
