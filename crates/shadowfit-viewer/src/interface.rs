@@ -133,7 +133,7 @@ impl Interface {
         let shown = stage.shown();
         let name = stage.scene().name.clone();
         let notes = stage.scene().notes.clone();
-        let message = stage.problem().map(str::to_owned).or_else(|| self.message.clone());
+        let message = stage.problem().or(stage.notice()).map(str::to_owned).or_else(|| self.message.clone());
         let input = PanelInput {
             figures: &figures,
             scene: SceneLine { name: &name, triangles: stage.triangles(), notes: &notes },

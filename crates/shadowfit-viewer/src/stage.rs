@@ -177,7 +177,12 @@ impl Stage {
 
     /// What keeps the settings from being shown as they are, for people.
     pub fn problem(&self) -> Option<&str> {
-        self.problem.as_deref().or(self.notice)
+        self.problem.as_deref()
+    }
+
+    /// What people should know about what is shown, such as that the scene has no place for it.
+    pub fn notice(&self) -> Option<&str> {
+        self.notice
     }
 
     /// Moves camera, sun and animation on by `seconds`.

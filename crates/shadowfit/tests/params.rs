@@ -170,7 +170,7 @@ fn numbers_are_written_short() {
         ("light.azimuth", "360"),
         ("camera.fov_y", "45"),
         ("camera.near", "0.1"),
-        ("fit.max_distance", "60"),
+        ("fit.max_distance", "40"),
         ("map.resolution", "2048"),
         ("view.inset", "true"),
     ] {
