@@ -111,3 +111,38 @@ fn artefacts_of_real_scenes_are_shown_and_fixed_without_a_problem() {
         assert_eq!(stage.shown(), None, "{name}");
     }
 }
+
+/// Whether the picture of a time of the animation differs from that of its start.
+fn moves(stage: &mut Stage, seconds: f32) -> bool {
+    stage.settings.view.inset = false;
+    let picture = stage.picture(SIZE);
+    let mut draw_at = |time| {
+        stage.set_time(time);
+        stage.draw(&picture);
+        picture.read(stage.gpu())
+    };
+    draw_at(0.0) != draw_at(seconds)
+}
+
+#[test]
+fn the_default_scene_walks_and_stands_still_when_stopped() {
+    let mut stage = Stage::new(software_gpu(), shadowfit_scene::builtin::default_scene(), 1).expect("a scene");
+    assert!(moves(&mut stage, 1.0) && !moves(&mut stage, 0.0));
+    stage.animation = usize::MAX;
+    assert!(!moves(&mut stage, 1.0), "an animation that the scene lacks moves it");
+}
+
+#[test]
+fn skins_and_morph_targets_of_real_scenes_move_the_picture() {
+    let Some(folder) = assets() else { return };
+    let mut stage = Stage::new(software_gpu(), load(&folder.join(WITH_ARTEFACTS[0])), 1).expect("a scene");
+    for (name, seconds) in [
+        ("fox/Fox.glb", 0.3),
+        ("morph_stress/MorphStressTest.gltf", 0.7),
+        ("edge_shared/simple_skin/SimpleSkin.gltf", 1.5),
+        ("edge_shared/simple_morph/glTF/SimpleMorph.gltf", 1.5),
+    ] {
+        stage.set_scene(load(&folder.join(name))).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert!(moves(&mut stage, seconds), "{name}");
+    }
+}

@@ -32,7 +32,10 @@ const FRAME_TIME_WEIGHT: f32 = 0.1;
 /// Runs the viewer in a window until it is closed.
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let event_loop = EventLoop::new().map_err(|error| {
-        anyhow!("no window can be opened: {error}. Without a display, `--headless DIR` renders the same views to files")
+        anyhow!(
+            "no window can be opened: {error}. Start the viewer in a graphical session, or under `xvfb-run` for a \
+             virtual one; `--headless DIR` renders the same views to files without any"
+        )
     })?;
     event_loop.set_control_flow(ControlFlow::Poll);
     let mut app = App { arguments: arguments.clone(), running: None, result: Ok(()) };
