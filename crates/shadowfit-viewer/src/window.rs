@@ -68,7 +68,11 @@ struct Running {
 
 /// The surface that frames are presented on.
 struct Surface {
+    instance: wgpu::Instance,
+    window: Arc<Window>,
     handle: wgpu::Surface<'static>,
+    /// Whether the surface should be configured anew before the next frame.
+    is_stale: bool,
     configuration: wgpu::SurfaceConfiguration,
     /// Whether the window has an area to draw on.
     has_area: bool,
@@ -123,7 +127,7 @@ impl Running {
         let surface = instance.create_surface(window.clone()).context("the window cannot be drawn on")?;
         let gpu = pollster::block_on(Gpu::for_surface(arguments.adapter(), &instance, &surface))?;
         let device_lost = watch_device(&gpu);
-        let surface = Surface::new(surface, &gpu, window.inner_size())?;
+        let surface = Surface::new(instance, window.clone(), surface, &gpu)?;
         let samples = if gpu.is_software() { SOFTWARE_SAMPLES } else { GPU_SAMPLES };
         let mut stage = Stage::new(gpu, scene, samples)?;
         arguments.apply(&mut stage.settings)?;
@@ -283,7 +287,7 @@ impl Running {
                 return Ok(Some(()));
             }
         }
-        let Some(texture) = self.surface.acquire(self.stage.gpu(), self.window.inner_size())? else {
+        let Some(texture) = self.surface.acquire(self.stage.gpu())? else {
             return Ok(None);
         };
         let view = texture.texture.create_view(&Default::default());
@@ -318,15 +322,17 @@ impl Running {
 }
 
 impl Surface {
-    fn new(surface: wgpu::Surface<'static>, gpu: &Gpu, size: PhysicalSize<u32>) -> Result<Self> {
-        let mut configuration = surface
+    fn new(instance: wgpu::Instance, window: Arc<Window>, handle: wgpu::Surface<'static>, gpu: &Gpu) -> Result<Self> {
+        let size = window.inner_size();
+        let mut configuration = handle
             .get_default_config(&gpu.adapter, size.width.max(1), size.height.max(1))
             .ok_or_else(|| anyhow!("{} cannot draw on this window", gpu.name()))?;
         // The interface blends encoded colours, so the surface must not encode them again.
         configuration.format = configuration.format.remove_srgb_suffix();
         configuration.present_mode = wgpu::PresentMode::AutoVsync;
-        surface.configure(&gpu.device, &configuration);
-        Ok(Self { handle: surface, configuration, has_area: size.width > 0 && size.height > 0 })
+        handle.configure(&gpu.device, &configuration);
+        let has_area = size.width > 0 && size.height > 0;
+        Ok(Self { instance, window, handle, is_stale: false, configuration, has_area })
     }
 
     fn resize(&mut self, gpu: &Gpu, size: PhysicalSize<u32>) {
@@ -336,25 +342,34 @@ impl Surface {
             self.configuration.width = size.width.min(limit);
             self.configuration.height = size.height.min(limit);
             self.handle.configure(&gpu.device, &self.configuration);
+            self.is_stale = false;
         }
     }
 
     /// The next frame's texture; `None` while there is nothing to draw on.
-    fn acquire(&mut self, gpu: &Gpu, size: PhysicalSize<u32>) -> Result<Option<wgpu::SurfaceTexture>> {
+    fn acquire(&mut self, gpu: &Gpu) -> Result<Option<wgpu::SurfaceTexture>> {
         use wgpu::CurrentSurfaceTexture as Current;
+        if self.is_stale {
+            self.resize(gpu, self.window.inner_size());
+        }
         if !self.has_area {
             return Ok(None);
         }
         match self.handle.get_current_texture() {
             Current::Success(texture) => Ok(Some(texture)),
             Current::Suboptimal(texture) => {
-                // It can still be shown; the next one will fit again.
-                drop(texture);
-                self.resize(gpu, size);
+                // It can still be shown; the next one should fit again.
+                self.is_stale = true;
+                Ok(Some(texture))
+            }
+            Current::Outdated => {
+                self.is_stale = true;
                 Ok(None)
             }
-            Current::Outdated | Current::Lost => {
-                self.resize(gpu, size);
+            Current::Lost => {
+                self.handle =
+                    self.instance.create_surface(self.window.clone()).context("the window's surface was lost")?;
+                self.is_stale = true;
                 Ok(None)
             }
             Current::Timeout | Current::Occluded => Ok(None),
