@@ -35,6 +35,10 @@ pub(crate) fn viewer(machine: &Machine) -> Command {
     let mut command = process::cargo_here("run");
     command.arg("--manifest-path").arg(process::root().join("Cargo.toml"));
     command.args(["--release", "--example", "viewer"]).args(setup::features(machine)).arg("--");
+    // Without a login session Mesa would complain of a missing folder that the viewer has no use for.
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        command.env("XDG_RUNTIME_DIR", std::env::temp_dir());
+    }
     command
 }
 
