@@ -61,7 +61,7 @@ struct Answer {
     return Varying(vec4<f32>(ndc, 0.0, 1.0), position, normal);
 }
 @fragment fn fs(in: Varying) -> Answer {
-    let projected = shadowfit_project(MAP, in.position, in.normal);
+    let projected = shadowfit_project(shadowfit_receiver.maps[MAP], in.position, in.normal);
     let stored = shadowfit_stored(MAP, vec2<i32>(in.clip.xy));
     return Answer(vec4<f32>(projected, shadowfit_factor(in.position, in.normal)), vec4<f32>(stored));
 }

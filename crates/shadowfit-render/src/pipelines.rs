@@ -244,7 +244,7 @@ impl Maker<'_> {
             label: "scene",
             layout,
             module,
-            entries: ["vs_scene", "fs_scene"],
+            entries: ["vs_scene", if key.masked { "fs_scene_masked" } else { "fs_scene" }],
             buffers: &part_buffers(),
             targets: &[Some(wgpu::ColorTargetState {
                 format: COLOR_FORMAT,
@@ -263,7 +263,7 @@ impl Maker<'_> {
             label: "probe",
             layout,
             module,
-            entries: ["vs_scene", "fs_probe"],
+            entries: ["vs_scene", if key.masked { "fs_probe_masked" } else { "fs_probe" }],
             buffers: &part_buffers(),
             targets: &[Some(PROBE_FORMAT.into()), Some(PROBE_FORMAT.into())],
             topology: wgpu::PrimitiveTopology::TriangleList,

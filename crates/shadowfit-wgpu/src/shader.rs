@@ -31,9 +31,31 @@ pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, group: u32) -> String {
         }
     };
     let closer = if descriptor.depth == DepthConvention::Reversed { ">=" } else { "<=" };
-    [include_str!("shaders/receiver.wgsl"), &compare]
+    [include_str!("shaders/receiver.wgsl"), &compare, &factor(descriptor.maps)]
         .concat()
         .replace("GROUP", &group.to_string())
         .replace("MAX_MAPS", &MAX_MAPS.to_string())
         .replace("COMPARE", closer)
+}
+
+/// The look-up in the first map that covers the point, one branch a map: software rasterisers take twenty times as long
+/// for a loop over an array of uniforms.
+fn factor(maps: u32) -> String {
+    let branch = |map: u32| {
+        format!(
+            "    if shadowfit_covers({map}u, shadowfit_receiver.maps[{map}], position) {{
+        return shadowfit_compare({map}u, shadowfit_project(shadowfit_receiver.maps[{map}], position, normal));
+    }}
+"
+        )
+    };
+    let branches: String = (0..maps.min(MAX_MAPS as u32)).map(branch).collect();
+    format!(
+        "
+// Share of the light that reaches a point: 1 lit, 0 in shadow, 1 outside every map.
+fn shadowfit_factor(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
+{branches}    return 1.0;
+}}
+"
+    )
 }

@@ -18,13 +18,26 @@ struct Frame {
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 
+// Powers by squaring: the general pow is the dearest thing in these shaders.
+fn pow5(x: f32) -> f32 {
+    let square = x * x;
+    return square * square * x;
+}
+
+fn pow8(x: f32) -> f32 {
+    let square = x * x;
+    let fourth = square * square;
+    return fourth * fourth;
+}
+
 // Linear radiance of the sky along a unit direction, without the sun's disc.
 fn sky_radiance(direction: vec3<f32>) -> vec3<f32> {
     let height = direction.y;
-    let above = mix(frame.horizon.rgb, frame.zenith.rgb, 1.0 - pow(1.0 - saturate(height), 3.0));
+    let depth = 1.0 - saturate(height);
+    let above = mix(frame.horizon.rgb, frame.zenith.rgb, 1.0 - depth * depth * depth);
     let below = mix(frame.horizon.rgb, frame.ground.rgb, saturate(-height * 4.0));
-    let toward_sun = saturate(dot(direction, frame.to_light));
-    let glow = frame.sun * (0.10 * pow(toward_sun, 8.0) + 0.12 * pow(toward_sun, 64.0));
+    let toward_sun = pow8(saturate(dot(direction, frame.to_light)));
+    let glow = frame.sun * (0.10 * toward_sun + 0.12 * pow8(toward_sun));
     return select(below, above, height > 0.0) + glow * saturate(1.0 + height * 4.0);
 }
 

@@ -83,7 +83,7 @@ fn reflectance(base: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>, to_light: 
     let distribution = a2 / (3.14159265 * denominator * denominator);
     let visibility = 0.5 / max(mix(2.0 * n_l * n_v, n_l + n_v, roughness), 1e-4);
     let f0 = mix(vec3<f32>(0.04), base, material.metallic);
-    let fresnel = f0 + (1.0 - f0) * pow(1.0 - saturate(dot(to_eye, halfway)), 5.0);
+    let fresnel = f0 + (1.0 - f0) * pow5(1.0 - saturate(dot(to_eye, halfway)));
     let diffuse = base * (1.0 - material.metallic) * (1.0 - fresnel) / 3.14159265;
     return (diffuse + fresnel * distribution * visibility) * n_l * 3.14159265;
 }
@@ -95,19 +95,16 @@ fn ambient(base: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     let light = mix(frame.ground.rgb, sky, up);
     let f0 = mix(vec3<f32>(0.04), base, material.metallic);
     let gloss = (1.0 - material.roughness) * (1.0 - material.roughness);
-    let grazing = pow(1.0 - saturate(dot(normal, to_eye)), 5.0);
+    let grazing = pow5(1.0 - saturate(dot(normal, to_eye)));
     let mirrored = sky_radiance(reflect(-to_eye, normal)) * (f0 + (1.0 - f0) * grazing) * gloss;
     return base * light * (1.0 - material.metallic * 0.6) + mirrored;
 }
 
-@fragment
-fn fs_scene(in: SceneOut) -> @location(0) vec4<f32> {
+// Colour of a visible point. Called where control flow is uniform: it takes derivatives.
+fn shaded(in: SceneOut) -> vec4<f32> {
     let texel = textureSample(normal_texture, normal_sampler, transformed_uv(material.normal_uv, in.uv)).xyz;
     let base = base_color(in.uv) * in.color;
     let geometric = geometric_normal(in.position, dpdx(in.position), dpdy(in.position));
-    if is_cut_out(in.uv, in.color.a) {
-        discard;
-    }
     let normal = shading_normal(in, geometric, texel);
     let to_eye = -normalize(in.position);
     let factor = mix(1.0, shadowfit_factor(in.position, geometric), frame.shadows);
@@ -121,6 +118,21 @@ fn fs_scene(in: SceneOut) -> @location(0) vec4<f32> {
     return vec4<f32>(color, mix(1.0, base.a, material.blended));
 }
 
+// Cut-outs have entry points of their own: a shader that may discard is run before the depth test.
+@fragment
+fn fs_scene(in: SceneOut) -> @location(0) vec4<f32> {
+    return shaded(in);
+}
+
+@fragment
+fn fs_scene_masked(in: SceneOut) -> @location(0) vec4<f32> {
+    let color = shaded(in);
+    if is_cut_out(in.uv, in.color.a) {
+        discard;
+    }
+    return color;
+}
+
 struct Probe {
     // Position relative to the eye, and the shadow factor.
     @location(0) position_factor: vec4<f32>,
@@ -128,12 +140,22 @@ struct Probe {
     @location(1) normal_id: vec4<f32>,
 }
 
+fn probed(in: SceneOut) -> Probe {
+    let geometric = geometric_normal(in.position, dpdx(in.position), dpdy(in.position));
+    let factor = shadowfit_factor(in.position, geometric);
+    return Probe(vec4<f32>(in.position, factor), vec4<f32>(geometric, f32(in.id + 1u)));
+}
+
 @fragment
 fn fs_probe(in: SceneOut) -> Probe {
-    let geometric = geometric_normal(in.position, dpdx(in.position), dpdy(in.position));
+    return probed(in);
+}
+
+@fragment
+fn fs_probe_masked(in: SceneOut) -> Probe {
+    let probe = probed(in);
     if is_cut_out(in.uv, in.color.a) {
         discard;
     }
-    let factor = shadowfit_factor(in.position, geometric);
-    return Probe(vec4<f32>(in.position, factor), vec4<f32>(geometric, f32(in.id + 1u)));
+    return probe;
 }

@@ -27,23 +27,16 @@ fn shadowfit_inside(uv: vec3<f32>) -> bool {
 
 // Texture coordinates (x right, y down) and biased depth of a point in one map.
 // position: world space relative to the origin, metres. normal: unit, geometric.
-fn shadowfit_project(map: u32, position: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+fn shadowfit_project(map: shadowfit_Map, position: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     let cosine = clamp(dot(normal, shadowfit_receiver.to_light), SHADOWFIT_MIN_COSINE, 1.0);
     let sine = sqrt(1.0 - cosine * cosine);
-    let offset = normal * (shadowfit_receiver.maps[map].normal_offset * sine);
-    let uv = (shadowfit_receiver.maps[map].uv_from_world * vec4<f32>(position + offset, 1.0)).xyz;
-    let bias = shadowfit_receiver.maps[map].constant_depth
-        + shadowfit_receiver.maps[map].slope_depth * sine / cosine;
-    return vec3<f32>(uv.xy, uv.z + bias);
+    let offset = normal * (map.normal_offset * sine);
+    let uv = (map.uv_from_world * vec4<f32>(position + offset, 1.0)).xyz;
+    return vec3<f32>(uv.xy, uv.z + map.constant_depth + map.slope_depth * sine / cosine);
 }
 
-// Share of the light that reaches a point: 1 lit, 0 in shadow, 1 outside every map.
-fn shadowfit_factor(position: vec3<f32>, normal: vec3<f32>) -> f32 {
-    for (var map = 0u; map < shadowfit_receiver.map_count; map++) {
-        let unbiased = shadowfit_receiver.maps[map].uv_from_world * vec4<f32>(position, 1.0);
-        if shadowfit_inside(unbiased.xyz) {
-            return shadowfit_compare(map, shadowfit_project(map, position, normal));
-        }
-    }
-    return 1.0;
+// Whether a map is in use and covers a point.
+fn shadowfit_covers(index: u32, map: shadowfit_Map, position: vec3<f32>) -> bool {
+    let uv = (map.uv_from_world * vec4<f32>(position, 1.0)).xyz;
+    return index < shadowfit_receiver.map_count && shadowfit_inside(uv);
 }
