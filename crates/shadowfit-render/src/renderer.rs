@@ -2,13 +2,13 @@
 
 use glam::{DVec3, Mat4};
 use shadowfit::settings::BiasSettings;
-use shadowfit::{LightFit, PerspectiveCamera};
+use shadowfit::{CasterVolume, LightFit, PerspectiveCamera};
 use shadowfit_wgpu::{ShadowMap, ShadowMapDescriptor, ShadowMapError};
 
 use crate::picture::Picture;
 use crate::pipelines::{Layouts, Pipelines};
 use crate::probe::{Probe, ProbeTargets};
-use crate::scene::{Draw, GpuScene, Part, in_frustum, in_volume};
+use crate::scene::{Draw, GpuScene, Part, in_frustum};
 use crate::timer::{Pass, PassTimer, PassTimes};
 use crate::uniform::{Atmosphere, FrameUniform, InsetUniform, LineVertex};
 use crate::{Gpu, Line};
@@ -221,7 +221,7 @@ impl Renderer {
             gpu.queue.write_buffer(&self.inset_uniform, 0, bytemuck::bytes_of(&uniform));
         }
         self.write_lines(gpu, eye, frame.lines);
-        Ok(plan(gpu, scene, frame, &uniform, self.shadow_map.descriptor().maps as usize))
+        Ok(plan(gpu, scene, frame, &uniform, self.shadow_map.volumes()))
     }
 
     fn write_lines(&mut self, gpu: &Gpu, eye: DVec3, lines: &[Line]) {
@@ -316,12 +316,12 @@ impl Renderer {
 }
 
 /// Decides what each pass draws and uploads the instances.
-fn plan(gpu: &Gpu, scene: &mut GpuScene, frame: &Frame<'_>, uniform: &FrameUniform, maps: usize) -> Plan {
+fn plan(gpu: &Gpu, scene: &mut GpuScene, frame: &Frame<'_>, uniform: &FrameUniform, volumes: &[CasterVolume]) -> Plan {
     let eye = frame.camera.eye;
     scene.begin_frame();
-    let shadow = frame.fits[..frame.fits.len().min(maps)]
+    let shadow = volumes
         .iter()
-        .map(|fit| scene.visible(eye, in_volume(&fit.relative_to(eye).caster_volume()), Part::casts))
+        .map(|volume| scene.visible(eye, |min, max| volume.intersects_aabb(min, max), Part::casts))
         .collect();
     let seen = in_frustum(Mat4::from_cols_array_2d(&uniform.clip_from_world));
     let mut opaque = scene.visible(eye, &seen, Part::casts);

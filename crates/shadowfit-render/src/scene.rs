@@ -3,7 +3,6 @@
 //! ray tracers see the very same triangles.
 
 use glam::{DVec3, Mat4, Vec3, Vec4};
-use shadowfit::CasterVolume;
 use shadowfit_scene::{Aabb, AlphaMode, Instance, Pose, Primitive, Scene};
 
 use crate::Gpu;
@@ -186,11 +185,6 @@ impl Part {
     pub(crate) fn casts(&self) -> bool {
         self.alpha != AlphaMode::Blend
     }
-}
-
-/// Whether a box relative to the eye is in a map's volume.
-pub(crate) fn in_volume(volume: &CasterVolume) -> impl Fn(Vec3, Vec3) -> bool + '_ {
-    |min, max| volume.intersects_aabb(min, max)
 }
 
 /// Whether a box relative to the eye may be seen: not wholly outside one of the six clip planes

@@ -213,6 +213,11 @@ impl ShadowMap {
         (self.descriptor.format == MapFormat::R32Float).then(|| wgpu::TextureFormat::R32Float.into())
     }
 
+    /// Volumes of the prepared maps' casters, relative to the origin of [`Self::prepare`].
+    pub fn volumes(&self) -> &[CasterVolume] {
+        &self.volumes
+    }
+
     /// Depth of the far plane, to which the maps are cleared.
     pub fn far_depth(&self) -> f32 {
         if self.descriptor.depth == DepthConvention::Reversed { 0.0 } else { 1.0 }
