@@ -92,9 +92,11 @@ impl Build {
     }
 }
 
-/// Writes a file into a folder of its own and returns its path.
+/// Writes a file into the folder `name` of the running test and returns its path. Tests run side by side, each on a
+/// thread that has its name; where they share one thread they run one after the other.
 pub(crate) fn write(name: &str, file: &str, content: &[u8]) -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let test = std::thread::current().name().unwrap_or("test").replace("::", "-");
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(test).join(name);
     std::fs::create_dir_all(&folder).unwrap();
     let path = folder.join(file);
     std::fs::write(&path, content).unwrap();
