@@ -46,6 +46,7 @@ pub mod params;
 pub mod settings;
 
 mod axes;
+mod bounds;
 mod camera;
 mod caster;
 mod checks;
@@ -55,6 +56,7 @@ mod frustum;
 mod light_fit;
 
 pub use bias::Bias;
+pub use bounds::{Aabb, Boxes};
 pub use camera::PerspectiveCamera;
 pub use caster::CasterVolume;
 pub use depth::DepthConvention;
