@@ -3,7 +3,7 @@
 //! A direction leaves the rotation about itself open. Which one a fit picks decides whether the
 //! map turns smoothly with the sun and where it flips.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 
 use crate::checks;
 
@@ -24,37 +24,44 @@ pub(crate) struct LightAxes {
 const VERTICAL_SINE: f64 = 1e-6;
 
 impl LightAxes {
-    /// Look-at axes with up +y, as the XNA sample has them: `x = direction × up`.
+    /// Look-at axes as the XNA sample has them: `x = direction × up`; `up` is a unit vector (the
+    /// sample's is +y).
     ///
-    /// Within 1e-6 radians of the vertical, where the sample divides by zero, up is -z. The roll
-    /// flips there: it follows the azimuth on every side, so no choice at the pole is continuous.
-    pub(crate) fn look_at(direction: DVec3) -> Self {
-        let mut right = direction.cross(DVec3::Y);
+    /// Within 1e-6 radians of the vertical, where the sample divides by zero, the map's top is
+    /// where a plan's would be (-z for +y up). The roll flips there: it follows the azimuth on
+    /// every side, so no choice at the pole is continuous.
+    pub(crate) fn look_at(direction: DVec3, up: DVec3) -> Self {
+        let mut right = direction.cross(up);
         if checks::length(right) < VERTICAL_SINE {
-            right = direction.cross(DVec3::NEG_Z);
+            right = direction.cross(plan(up).1);
         }
         let right = right / checks::length(right);
         Self::from_f64(right, right.cross(direction), -direction)
     }
 
-    /// The axes of a light straight down (x = +x, y = -z, so that the map reads like a plan with
-    /// -z at its top), turned by the shortest arc from straight down to `direction`.
+    /// The axes of a light straight down (for +y up: x = +x, y = -z, so that the map reads like a
+    /// plan with -z at its top), turned by the shortest arc from straight down to `direction`.
     ///
-    /// ```text
-    ///   down d₀ = (0,-1,0)  ──k = d₀ × d──▶  d       R v = v + k × v + k × (k × v) / (1 + d₀·d)
-    /// ```
-    ///
-    /// Continuous everywhere but for light straight up, where the arc's axis is fixed as +x.
-    pub(crate) fn shortest_arc(direction: DVec3) -> Self {
-        let k = DVec3::NEG_Y.cross(direction);
-        let horizontal = direction.x * direction.x + direction.z * direction.z;
-        // 1 + d₀·d = 1 - d.y, which cancels for light from below; this form does not.
-        let one_plus_cos = if direction.y > 0.0 { horizontal / (1.0 + direction.y) } else { 1.0 - direction.y };
-        if one_plus_cos <= 0.0 {
-            return Self { x: Vec3::X, y: Vec3::Z, z: Vec3::NEG_Y };
+    /// Continuous everywhere but for light straight up, where the arc's axis is the plan's x.
+    pub(crate) fn shortest_arc(direction: DVec3, up: DVec3) -> Self {
+        let (x, y) = plan(up);
+        match arc(-up, direction) {
+            Some(turn) => Self::from_f64(turn(x), turn(y), -direction),
+            None => Self::from_f64(x, -y, -direction),
         }
-        let turn = |v: DVec3| v + k.cross(v) + k.cross(k.cross(v)) / one_plus_cos;
-        Self::from_f64(turn(DVec3::X), turn(DVec3::NEG_Z), -direction)
+    }
+
+    /// These axes turned about the light so that x points along a unit direction of its plane.
+    pub(crate) fn turned(&self, direction: DVec2) -> Self {
+        if direction == DVec2::X {
+            return *self;
+        }
+        let (x, y) = (self.x.as_dvec3(), self.y.as_dvec3());
+        Self {
+            x: (x * direction.x + y * direction.y).as_vec3(),
+            y: (y * direction.x - x * direction.y).as_vec3(),
+            z: self.z,
+        }
     }
 
     fn from_f64(x: DVec3, y: DVec3, z: DVec3) -> Self {
@@ -66,4 +73,30 @@ impl LightAxes {
         let (x, y, z) = (self.x.as_dvec3(), self.y.as_dvec3(), self.z.as_dvec3());
         DVec3::new(x.dot(v), y.dot(v), z.dot(v))
     }
+}
+
+/// The plan's axes x and y, as they appear to a light straight down: +x and -z, turned by the
+/// shortest arc from +y to `up`.
+fn plan(up: DVec3) -> (DVec3, DVec3) {
+    match arc(DVec3::Y, up) {
+        Some(turn) => (turn(DVec3::X), turn(DVec3::NEG_Z)),
+        None => (DVec3::X, DVec3::Z),
+    }
+}
+
+/// The rotation that takes one unit vector to another along the shortest arc; `None` where they
+/// are opposite and no arc is the shortest.
+///
+/// ```text
+///   from ──k = from × to──▶ to       R v = v + k × v + k × (k × v) / (1 + from·to)
+/// ```
+fn arc(from: DVec3, to: DVec3) -> Option<impl Fn(DVec3) -> DVec3> {
+    let k = from.cross(to);
+    let cos = from.dot(to);
+    // 1 + cos cancels near -1; sin² / (1 - cos) does not.
+    let one_plus_cos = if cos < 0.0 { k.dot(k) / (1.0 - cos) } else { 1.0 + cos };
+    if one_plus_cos <= 0.0 {
+        return None;
+    }
+    Some(move |v: DVec3| v + k.cross(v) + k.cross(k.cross(v)) / one_plus_cos)
 }

@@ -66,6 +66,16 @@ pub enum FitError {
         /// Far distance, in metres.
         far: f32,
     },
+    /// There is no view to fit to.
+    NoView,
+    /// The caller's storage is too small; [`Workspace::required`](crate::Workspace::required) says
+    /// what is enough.
+    WorkspaceTooSmall {
+        /// Number of elements given.
+        given: usize,
+        /// Number of elements that the call needs at least.
+        required: usize,
+    },
     /// The shadow map has no texels.
     ZeroResolution {
         /// The resolution asked for, in texels.
@@ -105,6 +115,10 @@ impl fmt::Display for FitError {
                 "near {near} m is not below far {far} m; raise the far plane or the maximum \
                  shadow distance, or lower the near plane"
             ),
+            Self::NoView => write!(f, "there is no view to fit to; give at least one frustum"),
+            Self::WorkspaceTooSmall { given, required } => {
+                write!(f, "the workspace has {given} elements and needs {required}; see Workspace::required")
+            }
             Self::ZeroResolution { resolution } => {
                 write!(f, "the map's resolution is {resolution}; give at least one texel each way")
             }

@@ -53,7 +53,12 @@ mod checks;
 mod depth;
 mod error;
 mod frustum;
+mod grid;
+mod hull;
+mod input;
 mod light_fit;
+mod rectangle;
+mod view;
 
 pub use bias::Bias;
 pub use bounds::{Aabb, Boxes};
@@ -61,12 +66,14 @@ pub use camera::PerspectiveCamera;
 pub use caster::CasterVolume;
 pub use depth::DepthConvention;
 pub use error::FitError;
-pub use fits::fit;
+pub use fits::{fit, fit_scene};
 pub use frustum::ViewFrustum;
 pub use glam;
-pub use light_fit::{LightFit, WorldMatrices};
+pub use input::{FitInput, Workspace};
+pub use light_fit::{Constraint, LightFit, WorldMatrices};
 pub use settings::{
-    BiasSettings, CameraSettings, FilterKind, FitKind, FitSettings, LightSettings, MapFormat, Settings, ViewSettings,
+    BiasSettings, CameraSettings, CasterPolicy, FilterKind, FitKind, FitSettings, LightSettings, MapFormat,
+    RectangleKind, Settings, ViewSettings,
 };
 
 /// Runs the example of the README as a test.

@@ -48,6 +48,30 @@ pub struct LightFit {
     pub resolution: UVec2,
     /// Depth range of the clip space.
     pub depth: DepthConvention,
+    /// What set the planes -x, +x, -y, +y, far and near of the box, in the map's axes.
+    pub set_by: [Constraint; 6],
+    /// Whether no receiver is in view, so that the view itself stands in and the shadow pass may
+    /// be left out. Never so for fits that know no receivers.
+    pub is_empty: bool,
+}
+
+/// What set a plane of a fitted box: where to turn for a tighter fit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Constraint {
+    /// The view frustum, cut at the shadow distance or by the splits.
+    #[default]
+    View,
+    /// The box of a receiver.
+    Receivers,
+    /// The box of a caster that stands before what is covered.
+    Casters,
+    /// [`FitSettings::caster_extension`].
+    CasterExtension,
+    /// The enclosing sphere of the [stable fit](crate::fits::sphere).
+    Sphere,
+    /// A fit that is held from an earlier frame.
+    Held,
 }
 
 /// Matrices that take plain f32 world positions, for engines without a camera-relative path.
@@ -107,6 +131,8 @@ impl LightFit {
             depth_range: volume.depth_range as f32,
             resolution: settings.resolution,
             depth: settings.depth,
+            set_by: volume.set_by,
+            is_empty: volume.is_empty,
         };
         fit.compose();
         Ok(fit)

@@ -33,6 +33,45 @@ pub enum FitKind {
     /// plane moved toward the light by [`FitSettings::caster_extension`].
     #[default]
     FrustumAabb,
+    /// Least rectangle of the camera frustum as seen from the light, turned about it as
+    /// [`FitSettings::rectangle`] says. The tightest without knowledge of the scene.
+    Oriented,
+    /// Minimal enclosing sphere of the camera frustum, on a grid of whole texels that is fixed to
+    /// the world: neither moving nor turning the camera makes shadows crawl.
+    Sphere,
+    /// Least rectangle of what the camera can see of the receivers' boxes, turned as
+    /// [`FitSettings::rectangle`] says. Without boxes it is [`Self::Oriented`].
+    Focused,
+}
+
+/// How [`FitKind::Oriented`] and [`FitKind::Focused`] lay a rectangle around what they cover.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RectangleKind {
+    /// Along the light's own axes, never turned.
+    AxisAligned,
+    /// Of least area.
+    #[default]
+    MinimumArea,
+    /// With the least longer side, made square: equal texels both ways on a square map.
+    MinimumSquare,
+}
+
+/// Where the near plane stands, so that casters between the light and the receivers are kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CasterPolicy {
+    /// At what is covered: casters before it are lost, as in the sample.
+    None,
+    /// Moved toward the light by [`FitSettings::caster_extension`].
+    #[default]
+    Extend,
+    /// At the one box around all casters, clipped to the volume that can throw shadows into view.
+    SceneBounds,
+    /// At the first caster that can throw a shadow into view: each box is clipped to that volume.
+    List,
+    /// At what is covered, with the pipeline's depth clamp holding casters before it
+    /// ("pancaking"). Culling still uses the unclamped volume, and filters that need the distance
+    /// to the caster cannot have it.
+    DepthClamp,
 }
 
 /// How the light's view-projection is fitted.
@@ -40,14 +79,22 @@ pub enum FitKind {
 pub struct FitSettings {
     /// The rule of the fit.
     pub kind: FitKind,
+    /// Rectangle of the fits that may turn.
+    pub rectangle: RectangleKind,
     /// Shadows end at this view depth, in metres; the camera's far plane when that is nearer.
     pub max_distance: f32,
     /// Enlarges the light's box on all six sides, in metres: the sample's own imperfect cure for
     /// clipped casters.
     pub margin: f32,
-    /// Moves the near plane toward the light, in metres, so that casters between the light and the
-    /// frustum are kept. [`FitKind::XnaSample`] ignores it: the sample has none.
+    /// Free texels between what is covered and the map's border, for the filter: its
+    /// [reach](crate::bias::reach) and the normal offset. [`FitKind::XnaSample`] ignores it.
+    pub kernel_margin: f32,
+    /// What places the near plane. [`FitKind::XnaSample`] ignores it: the sample has none.
+    pub casters: CasterPolicy,
+    /// How far [`CasterPolicy::Extend`] moves the near plane toward the light, in metres.
     pub caster_extension: f32,
+    /// Direction in world axes that is up, which a vertical light's axes follow: any length.
+    pub up: Vec3,
     /// Width and height of the map, in texels.
     pub resolution: UVec2,
     /// Depth convention of the fitted clip space.
@@ -59,8 +106,12 @@ impl Default for FitSettings {
         Self {
             kind: FitKind::FrustumAabb,
             max_distance: 40.0,
+            rectangle: RectangleKind::MinimumArea,
             margin: 0.0,
+            kernel_margin: 0.0,
+            casters: CasterPolicy::Extend,
             caster_extension: 50.0,
+            up: Vec3::Y,
             resolution: UVec2::splat(2048),
             depth: DepthConvention::ZeroToOne,
         }
@@ -191,7 +242,11 @@ pub struct Settings {
 setters!(FitSettings {
     with_kind kind: FitKind,
     with_max_distance max_distance: f32,
+    with_rectangle rectangle: RectangleKind,
     with_margin margin: f32,
+    with_kernel_margin kernel_margin: f32,
+    with_casters casters: CasterPolicy,
+    with_up up: Vec3,
     with_caster_extension caster_extension: f32,
     with_resolution resolution: UVec2,
     with_depth depth: DepthConvention,

@@ -52,7 +52,7 @@ fn every_field_is_reached_by_a_row() {
     // Without `..`, so that a new field does not compile until it is looked at here.
     let Settings { fit, bias, filter, format, light, camera, view } = all;
     let old = Settings::default();
-    let FitSettings { kind, max_distance, margin, caster_extension, resolution, depth } = fit;
+    let FitSettings { kind, max_distance, margin, caster_extension, resolution, depth, .. } = fit;
     assert!(kind != old.fit.kind && depth != old.fit.depth && resolution.x == resolution.y);
     assert!(resolution != old.fit.resolution && max_distance != old.fit.max_distance);
     assert!(margin != old.fit.margin && caster_extension != old.fit.caster_extension);

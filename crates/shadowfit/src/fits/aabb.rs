@@ -15,11 +15,10 @@
 //! The roll about the light comes from the shortest arc from straight down, so the map turns
 //! continuously with the sun.
 
-use glam::Vec3;
+use glam::{DVec2, Vec3};
 
-use super::{Volume, bounds, prepare};
-use crate::axes::LightAxes;
-use crate::settings::FitSettings;
+use super::{Content, Footprint, Light, Range, Volume, fit_as};
+use crate::settings::{FitKind, FitSettings};
 use crate::{FitError, LightFit, ViewFrustum};
 
 /// Fits the frustum's box in the light's axes; see the [module](self). `direction` is the light's
@@ -29,10 +28,16 @@ use crate::{FitError, LightFit, ViewFrustum};
 ///
 /// As [`fits::fit`](super::fit).
 pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightFit, FitError> {
-    let (frustum, direction) = prepare(frustum, direction, settings)?;
-    let axes = LightAxes::shortest_arc(direction);
-    let (min, mut max) = bounds(&frustum, &axes, settings.margin)?;
-    max.z += f64::from(settings.caster_extension);
-    let volume = Volume { axes, min, max, light_z: max.z, depth_range: max.z - min.z };
-    LightFit::from_volume(frustum.origin, &volume, settings)
+    fit_as(FitKind::FrustumAabb, frustum, direction, settings)
+}
+
+pub(crate) fn volume(
+    content: &Content,
+    light: &Light,
+    settings: &FitSettings,
+    range: Range,
+    points: &mut [DVec2],
+) -> Result<Volume, FitError> {
+    let footprint = Footprint::of_views(content, light.axes(), range, points)?;
+    Ok(Volume::around(&footprint, content, settings, range))
 }

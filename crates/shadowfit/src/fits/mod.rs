@@ -1,17 +1,28 @@
 //! The family of fits, one file per algorithm, and what they share.
 //!
-//! A fit measures the camera frustum in the light's axes and decides which box of them the shadow
-//! map stores. [`fit`] takes the rule from the settings.
+//! Every fit decides which box along the light's axes the shadow map stores: a [`Footprint`] says
+//! what must be inside, a rectangle lies around it, and the caster policy places the near plane.
+//! [`fit`] and [`fit_scene`] take the rule from the settings.
 
 pub mod aabb;
+pub mod focused;
+pub mod oriented;
+pub mod sphere;
 pub mod xna;
 
-use glam::{DVec3, Vec3};
+mod footprint;
+mod near_plane;
+mod volume;
+
+use glam::{DVec2, DVec3, Vec3};
 
 use crate::axes::LightAxes;
-use crate::checks::{self, MAX_LENGTH, MIN_LENGTH};
-use crate::settings::{FitKind, FitSettings};
-use crate::{FitError, LightFit, ViewFrustum};
+use crate::checks::{self, MAX_LENGTH};
+use crate::settings::{FitKind, FitSettings, RectangleKind};
+use crate::{FitError, FitInput, LightFit, ViewFrustum, Workspace};
+
+pub(crate) use footprint::{Content, Footprint};
+pub(crate) use volume::{ROUNDING, Volume};
 
 /// Fits the light's orthographic view-projection to a camera frustum, by the rule that
 /// [`FitSettings::kind`] names.
@@ -19,7 +30,9 @@ use crate::{FitError, LightFit, ViewFrustum};
 /// The frustum is cut at [`FitSettings::max_distance`] first (`f32::MAX` leaves it whole; infinity
 /// is refused like every number that is not finite). `direction` is the light's
 /// **direction of travel** in world axes (right-handed); sources that speak of the direction
-/// toward the light use the opposite sign. Its length is of no account.
+/// toward the light use the opposite sign. Its length is of no account. Nothing is known of the
+/// scene here: [`fit_scene`] takes boxes, [`CascadeFitter`](crate::CascadeFitter) makes several
+/// maps and keeps them still.
 ///
 /// # Errors
 ///
@@ -27,57 +40,108 @@ use crate::{FitError, LightFit, ViewFrustum};
 /// [`FitError::NearNotBelowFar`] when the maximum distance ends before the near plane, and
 /// [`FitError::EmptyFrustum`].
 pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightFit, FitError> {
-    match settings.kind {
-        FitKind::XnaSample => xna::fit(frustum, direction, settings),
-        FitKind::FrustumAabb => aabb::fit(frustum, direction, settings),
+    let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+    let views = [*frustum];
+    fit_scene(&FitInput::new(&views, direction), settings, &mut Workspace::new(&mut storage))
+}
+
+/// Fits one map around what the views see of the scene, by the rule that [`FitSettings::kind`]
+/// names. As [`fit`], with the boxes of receivers and casters.
+///
+/// Where no receiver's box is in view the fit is that of the view alone, and
+/// [`LightFit::is_empty`] says so.
+///
+/// # Errors
+///
+/// As [`fit`]; [`FitError::NoView`] without a view; [`FitError::WorkspaceTooSmall`], see
+/// [`Workspace::required`].
+pub fn fit_scene(input: &FitInput, settings: &FitSettings, workspace: &mut Workspace) -> Result<LightFit, FitError> {
+    let (light, distance) = prepare(input, settings)?;
+    let (boxes, points) = Content::new(input, workspace)?;
+    let volume = fit_slice(&boxes, &light, settings, Range { near: f32::MIN, far: distance }, points)?;
+    LightFit::from_volume(input.views[0].origin, &volume, settings)
+}
+
+/// A range of view depths, in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Range {
+    pub(crate) near: f32,
+    pub(crate) far: f32,
+}
+
+/// The light of one frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Light {
+    /// Unit direction of travel.
+    pub(crate) direction: DVec3,
+    /// Unit direction that is up.
+    pub(crate) up: DVec3,
+}
+
+impl Light {
+    /// Axes that turn continuously with the light.
+    pub(crate) fn axes(&self) -> LightAxes {
+        LightAxes::shortest_arc(self.direction, self.up)
     }
 }
 
-/// A fit's decision: a box along the light's axes and how it is stored.
-pub(crate) struct Volume {
-    pub(crate) axes: LightAxes,
-    /// Corner of the fitted box with the least coordinates, along the light's axes and relative
-    /// to the frustum's origin, in metres.
-    pub(crate) min: DVec3,
-    /// The opposite corner; its z is the map's near plane.
-    pub(crate) max: DVec3,
-    /// Coordinate of the light along its z axis.
-    pub(crate) light_z: f64,
-    /// Distance between near and far plane, in metres.
-    pub(crate) depth_range: f64,
+/// One map around a range of view depths.
+pub(crate) fn fit_slice(
+    content: &Content,
+    light: &Light,
+    settings: &FitSettings,
+    range: Range,
+    points: &mut [DVec2],
+) -> Result<Volume, FitError> {
+    match settings.kind {
+        FitKind::XnaSample => xna::volume(content, light, settings, range),
+        FitKind::FrustumAabb => aabb::volume(content, light, settings, range, points),
+        FitKind::Oriented => oriented::volume(content, light, settings, range, points),
+        FitKind::Sphere => sphere::volume(content, light, settings, range),
+        FitKind::Focused => focused::volume(content, light, settings, range, points),
+    }
 }
 
-/// Checks what all fits take, and cuts the frustum at the shadows' end.
-pub(crate) fn prepare(
+/// Fits a single frustum by one kind, whatever the settings name.
+pub(crate) fn fit_as(
+    kind: FitKind,
     frustum: &ViewFrustum,
     direction: Vec3,
     settings: &FitSettings,
-) -> Result<(ViewFrustum, DVec3), FitError> {
-    let direction = checks::unit("the light's direction", direction)?;
+) -> Result<LightFit, FitError> {
+    fit(frustum, direction, &FitSettings { kind, ..*settings })
+}
+
+/// Checks what all fits take; gives the light and the view depth at which shadows end.
+pub(crate) fn prepare(input: &FitInput, settings: &FitSettings) -> Result<(Light, f32), FitError> {
+    if input.views.is_empty() {
+        return Err(FitError::NoView);
+    }
+    for view in input.views {
+        view.checked()?;
+    }
+    let direction = checks::unit("the light's direction", input.direction)?;
+    let up = checks::unit("the up direction", settings.up)?;
     checks::within("the fit's margin", f64::from(settings.margin), 0.0, MAX_LENGTH)?;
     let extension = f64::from(settings.caster_extension);
     checks::within("the fit's caster extension", extension, 0.0, MAX_LENGTH)?;
     if settings.resolution.x == 0 || settings.resolution.y == 0 {
         return Err(FitError::ZeroResolution { resolution: settings.resolution });
     }
+    let widest = f64::from(settings.resolution.min_element()) * 0.25;
+    checks::within("the fit's kernel margin", f64::from(settings.kernel_margin), 0.0, widest)?;
     checks::finite("the maximum shadow distance", f64::from(settings.max_distance))?;
-    Ok((frustum.slice(frustum.near, settings.max_distance)?, direction))
+    let near = input.views.iter().map(|view| view.near).fold(f32::MAX, f32::min);
+    if near >= settings.max_distance {
+        return Err(FitError::NearNotBelowFar { near, far: settings.max_distance });
+    }
+    Ok((Light { direction, up }, settings.max_distance))
 }
 
-/// The box of the frustum's corners along the light's axes, with `margin` metres added on all
-/// six sides.
-pub(crate) fn bounds(frustum: &ViewFrustum, axes: &LightAxes, margin: f32) -> Result<(DVec3, DVec3), FitError> {
-    let mut min = DVec3::MAX;
-    let mut max = DVec3::MIN;
-    for corner in frustum.corners {
-        let p = axes.project(corner.as_dvec3());
-        min = min.min(p);
-        max = max.max(p);
+/// The rectangle kind that a fit's settings stand for.
+pub(crate) fn rectangle_kind(settings: &FitSettings) -> RectangleKind {
+    match settings.kind {
+        FitKind::Oriented | FitKind::Focused => settings.rectangle,
+        FitKind::XnaSample | FitKind::FrustumAabb | FitKind::Sphere => RectangleKind::AxisAligned,
     }
-    let size = max - min;
-    if size.min_element() < MIN_LENGTH {
-        return Err(FitError::EmptyFrustum { size: size.as_vec3() });
-    }
-    let margin = DVec3::splat(f64::from(margin));
-    Ok((min - margin, max + margin))
 }

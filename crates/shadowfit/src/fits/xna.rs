@@ -21,24 +21,45 @@
 //! f32), a vertical light takes another up axis (the source divides by zero), reversed and -1..1
 //! depth are offered, and `margin` is the cure that the source's text suggests.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
-use super::{Volume, bounds, prepare};
+use super::{Content, Light, Range, Volume, fit_as};
 use crate::axes::LightAxes;
-use crate::settings::FitSettings;
+use crate::checks::MIN_LENGTH;
+use crate::light_fit::Constraint;
+use crate::settings::{FitKind, FitSettings};
 use crate::{FitError, LightFit, ViewFrustum};
 
 /// Fits as the XNA sample does; see the [module](self). `direction` is the light's direction of
-/// travel in world axes; [`FitSettings::caster_extension`] is checked, but not used.
+/// travel in world axes. Of the settings the caster policy, the rectangle and the kernel margin
+/// are not used.
 ///
 /// # Errors
 ///
 /// As [`fits::fit`](super::fit).
 pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightFit, FitError> {
-    let (frustum, direction) = prepare(frustum, direction, settings)?;
-    let axes = LightAxes::look_at(direction);
-    let (min, max) = bounds(&frustum, &axes, settings.margin)?;
-    let depth = max.z - min.z;
-    let volume = Volume { axes, min, max, light_z: min.z, depth_range: 2.0 * depth };
-    LightFit::from_volume(frustum.origin, &volume, settings)
+    fit_as(FitKind::XnaSample, frustum, direction, settings)
+}
+
+pub(crate) fn volume(
+    content: &Content,
+    light: &Light,
+    settings: &FitSettings,
+    range: Range,
+) -> Result<Volume, FitError> {
+    let axes = LightAxes::look_at(light.direction, light.up);
+    let (mut min, mut max) = (DVec3::MAX, DVec3::MIN);
+    for corner in content.corners(range) {
+        let p = axes.project(corner);
+        (min, max) = (min.min(p), max.max(p));
+    }
+    let size = max - min;
+    if size.min_element() < MIN_LENGTH {
+        return Err(FitError::EmptyFrustum { size: size.as_vec3() });
+    }
+    let margin = DVec3::splat(f64::from(settings.margin));
+    let (min, max) = (min - margin, max + margin);
+    let depth_range = 2.0 * (max.z - min.z);
+    let set_by = [Constraint::View; 6];
+    Ok(Volume { axes, min, max, light_z: min.z, depth_range, set_by, is_empty: false })
 }

@@ -33,6 +33,10 @@ pub static PARAMETERS: &[Parameter] = &[
     PLAY,
 ];
 
+/// The fits in the order of their options.
+const FIT_KINDS: [FitKind; 5] =
+    [FitKind::FrustumAabb, FitKind::XnaSample, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
+
 const FIT_KIND: Parameter = Parameter {
     id: "fit.kind",
     group: Group::Fit,
@@ -54,12 +58,25 @@ const FIT_KIND: Parameter = Parameter {
                 help: "The box of Microsoft's XNA Shadow Mapping sample (2008), with twice the depth that is \
                        needed and no thought for casters outside the view.",
             },
+            ChoiceOption {
+                id: "oriented",
+                label: "Oriented rectangle",
+                help: "The least rectangle around the camera frustum as the light sees it, turned with it.",
+            },
+            ChoiceOption {
+                id: "sphere",
+                label: "Stable sphere",
+                help: "The sphere around the camera frustum on a fixed grid of texels: coarser, but no edge crawls \
+                       when the camera moves or turns.",
+            },
+            ChoiceOption {
+                id: "focused",
+                label: "Focused on the scene",
+                help: "The least rectangle around what the camera sees of the scene's objects: the finest texels.",
+            },
         ],
-        read: |s| match s.fit.kind {
-            FitKind::FrustumAabb => 0,
-            FitKind::XnaSample => 1,
-        },
-        write: |s, index| s.fit.kind = if index == 0 { FitKind::FrustumAabb } else { FitKind::XnaSample },
+        read: |s| FIT_KINDS.iter().position(|kind| *kind == s.fit.kind).unwrap_or(0),
+        write: |s, index| s.fit.kind = FIT_KINDS[index],
     }),
     inert: always_active,
 };

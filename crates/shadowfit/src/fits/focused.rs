@@ -1,0 +1,35 @@
+//! The least rectangle around what the camera can see of the receivers' boxes.
+//!
+//! Most of a frustum is empty air. Each receiver's box is clipped to the frustum and seen from the
+//! light; the rectangle lies around the outlines of all of them, and depth ends at the lowest one.
+//! No pixel of a receiver lies outside its box, so none is missed; the narrower the boxes hug
+//! the surfaces, the finer the texels, which is why a large mesh is worth cutting into clusters
+//! (`Clusters`, with the feature `alloc`).
+
+use glam::{DVec2, Vec3};
+
+use super::{Content, Footprint, Light, Range, Volume, fit_as};
+use crate::settings::{FitKind, FitSettings};
+use crate::{FitError, LightFit, ViewFrustum};
+
+/// Fits a frustum of whose receivers nothing is known, which is the [oriented](super::oriented)
+/// fit; [`fit_scene`](crate::fit_scene) takes boxes. `direction` is the light's direction of
+/// travel in world axes.
+///
+/// # Errors
+///
+/// As [`fits::fit`](super::fit).
+pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightFit, FitError> {
+    fit_as(FitKind::Focused, frustum, direction, settings)
+}
+
+pub(crate) fn volume(
+    content: &Content,
+    light: &Light,
+    settings: &FitSettings,
+    range: Range,
+    points: &mut [DVec2],
+) -> Result<Volume, FitError> {
+    let footprint = Footprint::of_receivers(content, light.axes(), range, points)?;
+    Ok(Volume::around(&footprint, content, settings, range))
+}

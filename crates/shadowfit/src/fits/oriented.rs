@@ -1,0 +1,33 @@
+//! The least rectangle around the camera frustum as seen from the light, turned about it: by area,
+//! or made square. It is the tightest a fit can be without knowing the scene.
+//!
+//! The frustum's outline has four to eight corners; [`crate::rectangle`] says how the rectangle is
+//! found. It turns and changes its size with every movement of the camera, so shadow edges crawl
+//! unless the fit is [held](crate::Stabilise::Hysteresis).
+
+use glam::{DVec2, Vec3};
+
+use super::{Content, Footprint, Light, Range, Volume, fit_as};
+use crate::settings::{FitKind, FitSettings};
+use crate::{FitError, LightFit, ViewFrustum};
+
+/// Fits the least rectangle of the frustum; see the [module](self). `direction` is the light's
+/// direction of travel in world axes.
+///
+/// # Errors
+///
+/// As [`fits::fit`](super::fit).
+pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightFit, FitError> {
+    fit_as(FitKind::Oriented, frustum, direction, settings)
+}
+
+pub(crate) fn volume(
+    content: &Content,
+    light: &Light,
+    settings: &FitSettings,
+    range: Range,
+    points: &mut [DVec2],
+) -> Result<Volume, FitError> {
+    let footprint = Footprint::of_views(content, light.axes(), range, points)?;
+    Ok(Volume::around(&footprint, content, settings, range))
+}

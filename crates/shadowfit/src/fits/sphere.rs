@@ -1,0 +1,196 @@
+//! The stable fit: the minimal enclosing sphere of the view, seen from the light.
+//!
+//! A sphere looks the same from every side, so turning the camera does not change the map's
+//! extent; the map's texels lie on a grid that is fixed to the world, so moving it shifts the map
+//! by whole texels. Shadow edges stand perfectly still, at the price of a map that is mostly
+//! outside the view.
+//!
+//! For a symmetric frustum the sphere's centre lies on the axis. With half diagonals r₀ at the
+//! near and r₁ at the far rectangle, L apart, and x from the near one:
+//!
+//! ```text
+//!          ____
+//!        ╱   ╱│╲         x² + r₀² = (L - x)² + r₁²
+//!       │  ╱  │ │        x = (L² + r₁² - r₀²) / 2L, at most L
+//!      ┌│╱    │r₁        r = √((L - x)² + r₁²)
+//!    r₀├┼──●──┤ │
+//!       ╲  x  │╱
+//! ```
+//!
+//! Any other view, and several together, get the sphere by incremental construction from at most
+//! four points of support, as E. Welzl has it ("Smallest enclosing disks (balls and ellipsoids)",
+//! 1991). The stable map with a bounding sphere and whole texels is M. Valient's ("Stable
+//! rendering of cascaded shadow maps", ShaderX6, 2008); here the extent is rounded up to eighths
+//! of an octave instead of a world unit, and the grid is kept in f64.
+
+use glam::{DVec2, DVec3, Vec3};
+
+use super::{Content, Light, Range, Volume, fit_as, near_plane};
+use crate::grid;
+use crate::light_fit::Constraint;
+use crate::settings::{FitKind, FitSettings};
+use crate::{FitError, LightFit, ViewFrustum, checks};
+
+/// Fits the frustum's enclosing sphere; see the [module](self). `direction` is the light's
+/// direction of travel in world axes.
+///
+/// # Errors
+///
+/// As [`fits::fit`](super::fit).
+pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightFit, FitError> {
+    fit_as(FitKind::Sphere, frustum, direction, settings)
+}
+
+/// A sphere, in metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sphere {
+    /// Its centre, in world axes relative to the first view's eye.
+    pub centre: DVec3,
+    /// Its radius.
+    pub radius: f64,
+}
+
+/// The minimal sphere around a frustum's corners; exact to 1e-9 of its radius for what the
+/// corners, in f32, say.
+///
+/// # Errors
+///
+/// As [`ViewFrustum::slice`] for frusta that no fit can use.
+pub fn enclosing_sphere(frustum: &ViewFrustum) -> Result<Sphere, FitError> {
+    let corners = frustum.checked()?.corners.map(Vec3::as_dvec3);
+    Ok(on_axis(&corners).unwrap_or_else(|| minimal(&corners)))
+}
+
+pub(crate) fn volume(
+    content: &Content,
+    light: &Light,
+    settings: &FitSettings,
+    range: Range,
+) -> Result<Volume, FitError> {
+    let sphere = around(content, range)?;
+    let axes = light.axes();
+    let centre = axes.project(sphere.centre);
+    let pad = f64::from(settings.margin) + grid::ROUNDING * (sphere.radius + checks::length(sphere.centre));
+    let extent = DVec3::splat(2.0 * (sphere.radius + pad));
+    let mut volume = Volume {
+        axes,
+        min: centre - extent * 0.5,
+        max: centre + extent * 0.5,
+        light_z: 0.0,
+        depth_range: 0.0,
+        set_by: [Constraint::Sphere; 6],
+        is_empty: false,
+    };
+    grid::snap(&mut volume, content.origin, settings);
+    // The whole map is swept toward the light, so that turning the camera moves no plane.
+    let outline = [
+        (volume.min.x, volume.min.y),
+        (volume.max.x, volume.min.y),
+        (volume.max.x, volume.max.y),
+        (volume.min.x, volume.max.y),
+    ]
+    .map(|(x, y)| DVec2::new(x, y));
+    let near = near_plane::place(volume.max.z, &axes, &outline, content, settings, 0.0);
+    (volume.max.z, volume.set_by[5]) = (near.z, near.set_by.unwrap_or(Constraint::Sphere));
+    volume.light_at_near_plane();
+    Ok(volume)
+}
+
+/// The minimal sphere around all views' slices.
+fn around(content: &Content, range: Range) -> Result<Sphere, FitError> {
+    let mut corners = [DVec3::ZERO; 8 * MAX_VIEWS];
+    let mut len = 0;
+    for corner in content.corners(range) {
+        if len == corners.len() {
+            let (value, max) = (content.views.len() as f64, MAX_VIEWS as f64);
+            return Err(FitError::OutOfRange { input: "the number of views of a stable fit", value, min: 1.0, max });
+        }
+        corners[len] = corner;
+        len += 1;
+    }
+    let corners = &corners[..len];
+    if len == 0 {
+        return Err(FitError::NearNotBelowFar { near: range.near, far: range.far });
+    }
+    let analytic = corners.first_chunk::<8>().filter(|_| len == 8).and_then(on_axis);
+    Ok(analytic.unwrap_or_else(|| minimal(corners)))
+}
+
+/// Most views that share a stable map.
+pub const MAX_VIEWS: usize = 8;
+
+/// Share of a half diagonal by which the four may differ for the centre to lie on the axis: a few
+/// roundings of f32 corners.
+const SYMMETRY: f64 = 1e-6;
+
+/// The sphere of a symmetric frustum.
+fn on_axis(corners: &[DVec3; 8]) -> Option<Sphere> {
+    let centre = |c: &[DVec3]| (c[0] + c[1] + c[2] + c[3]) * 0.25;
+    let (near, far) = (centre(&corners[..4]), centre(&corners[4..]));
+    let axis = far - near;
+    let length = checks::length(axis);
+    let squared = |c: DVec3, middle: DVec3| (c - middle).dot(c - middle);
+    let (r0, r1) = (squared(corners[0], near), squared(corners[4], far));
+    // Round rectangles about the same axis, upright to it.
+    let is_round = (0..4).all(|i| {
+        (squared(corners[i + 4], far) - r1).abs() <= 2.0 * SYMMETRY * r1
+            && (corners[i + 4] - far).dot(axis).abs() <= SYMMETRY * length * libm::sqrt(r1)
+    });
+    if !is_round || length <= 0.0 {
+        return None;
+    }
+    let x = ((length * length + r1 - r0) / (2.0 * length)).min(length);
+    let radius = libm::sqrt((length - x) * (length - x) + r1);
+    Some(Sphere { centre: near + axis * (x / length), radius })
+}
+
+/// Share of a squared radius by which a point may lie outside and still count as inside.
+const INSIDE: f64 = 1e-12;
+
+/// Least sphere around points: any sphere that leaves a point out is made anew with that point on
+/// its surface, up to four of which fix it.
+fn minimal(points: &[DVec3]) -> Sphere {
+    let mut support = [DVec3::ZERO; 4];
+    grow(points, &mut support, 0)
+}
+
+fn grow(points: &[DVec3], support: &mut [DVec3; 4], fixed: usize) -> Sphere {
+    let mut sphere = through(&support[..fixed]);
+    if fixed == 4 {
+        return sphere;
+    }
+    for (i, p) in points.iter().enumerate() {
+        let d = *p - sphere.centre;
+        if sphere.radius < 0.0 || d.dot(d) > sphere.radius * sphere.radius * (1.0 + INSIDE) {
+            support[fixed] = *p;
+            sphere = grow(&points[..i], support, fixed + 1);
+        }
+    }
+    sphere
+}
+
+/// The least sphere with up to four points on its surface; of negative radius for none.
+fn through(points: &[DVec3]) -> Sphere {
+    let Some(first) = points.first() else { return Sphere { centre: DVec3::ZERO, radius: -1.0 } };
+    // The centre is first + Σ λᵢ eᵢ with 2 eᵢ·(Σ λⱼ eⱼ) = eᵢ·eᵢ, solved by Gram-Schmidt: each new
+    // point moves the centre along the part of its edge that is across the earlier ones.
+    let mut centre = *first;
+    let mut across = [DVec3::ZERO; 3];
+    for (k, p) in points[1..].iter().enumerate() {
+        let edge = *p - *first;
+        let mut u = edge;
+        for v in &across[..k] {
+            let vv = v.dot(*v);
+            if vv > 0.0 {
+                u -= *v * (u.dot(*v) / vv);
+            }
+        }
+        across[k] = u;
+        let uu = u.dot(u);
+        if uu > INSIDE * edge.dot(edge) {
+            let (to_point, to_first) = (*p - centre, *first - centre);
+            centre += u * ((to_point.dot(to_point) - to_first.dot(to_first)) / (2.0 * u.dot(edge)));
+        }
+    }
+    Sphere { centre, radius: checks::length(*first - centre) }
+}

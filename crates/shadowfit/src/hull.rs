@@ -1,0 +1,177 @@
+//! Convex hull of points in the light's plane: what decides a rectangle, and nothing else does.
+//!
+//! The hull is A. M. Andrew's monotone chain ("Another efficient algorithm for convex hulls in two
+//! dimensions", 1979). Points stream in; most fall inside the octagon of the extreme points seen
+//! so far and are dropped at once, as S. G. Akl and G. T. Toussaint proposed ("A fast convex hull
+//! algorithm", 1978).
+
+use glam::DVec2;
+
+use crate::FitError;
+
+/// Directions in which the extreme points are kept: the axes and their diagonals, anticlockwise.
+const DIRECTIONS: [DVec2; 8] = [
+    DVec2::new(1.0, 0.0),
+    DVec2::new(1.0, 1.0),
+    DVec2::new(0.0, 1.0),
+    DVec2::new(-1.0, 1.0),
+    DVec2::new(-1.0, 0.0),
+    DVec2::new(-1.0, -1.0),
+    DVec2::new(0.0, -1.0),
+    DVec2::new(1.0, -1.0),
+];
+
+/// Collects points in caller-owned storage and turns them into their hull.
+pub(crate) struct HullBuilder<'a> {
+    points: &'a mut [DVec2],
+    len: usize,
+    /// The most extreme point in each of [`DIRECTIONS`]; the same corner twice is ordinary.
+    extremes: [DVec2; 8],
+    reach: [f64; 8],
+}
+
+impl<'a> HullBuilder<'a> {
+    /// Points that the storage needs beyond those of the final hull, twice over.
+    pub(crate) const SLACK: usize = 64;
+
+    pub(crate) fn new(points: &'a mut [DVec2]) -> Self {
+        Self { points, len: 0, extremes: [DVec2::ZERO; 8], reach: [f64::MIN; 8] }
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Whether a point lies inside the octagon of the extreme points so far, so that it cannot
+    /// change the hull.
+    pub(crate) fn holds(&self, p: DVec2) -> bool {
+        if self.len == 0 {
+            return false;
+        }
+        (0..8).all(|i| {
+            let (a, b) = (self.extremes[i], self.extremes[(i + 1) % 8]);
+            // Coinciding extremes span no edge and say nothing.
+            (b - a).perp_dot(p - a) >= 0.0
+        }) && (0..8).all(|i| p.dot(DIRECTIONS[i]) <= self.reach[i])
+    }
+
+    /// Adds a point.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::WorkspaceTooSmall`] when the hull itself does not fit the storage.
+    pub(crate) fn push(&mut self, p: DVec2) -> Result<(), FitError> {
+        if self.holds(p) {
+            return Ok(());
+        }
+        for (i, direction) in DIRECTIONS.into_iter().enumerate() {
+            let reach = p.dot(direction);
+            if reach > self.reach[i] {
+                self.reach[i] = reach;
+                self.extremes[i] = p;
+            }
+        }
+        // The chain needs room for a copy and one more, so half of the storage is collected at most.
+        if 2 * (self.len + 1) + 1 > self.points.len() {
+            self.compact();
+            if 2 * (self.len + 1) + 1 > self.points.len() {
+                return Err(FitError::WorkspaceTooSmall { given: self.points.len(), required: 2 * (self.len + 1) + 1 });
+            }
+        }
+        self.points[self.len] = p;
+        self.len += 1;
+        Ok(())
+    }
+
+    fn compact(&mut self) {
+        let (points, scratch) = self.points.split_at_mut(self.len);
+        self.len = hull(points, scratch);
+    }
+
+    /// The storage, to begin anew.
+    pub(crate) fn into_storage(self) -> &'a mut [DVec2] {
+        self.points
+    }
+
+    /// The hull's corners, anticlockwise and without collinear ones.
+    pub(crate) fn finish(mut self) -> &'a mut [DVec2] {
+        self.compact();
+        &mut self.points[..self.len]
+    }
+}
+
+/// Replaces points by their hull, anticlockwise from the least x; gives the number of corners.
+/// `scratch` is as long as `points` or longer.
+fn hull(points: &mut [DVec2], scratch: &mut [DVec2]) -> usize {
+    points.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    let n = points.len();
+    if n < 3 {
+        return if n == 2 && points[0] == points[1] { 1 } else { n };
+    }
+    // The lower chain grows in `scratch`; the upper one follows it there, back to the first point.
+    let mut len = chain(points.iter().copied(), scratch, 0);
+    let lower = len - 1;
+    len = chain(points.iter().rev().copied(), scratch, lower);
+    // The last point of the upper chain is the first of the lower one.
+    let corners = (len - 1).max(1);
+    points[..corners].copy_from_slice(&scratch[..corners]);
+    corners
+}
+
+/// Adds a chain of left turns from `start` on and gives the new length.
+fn chain(points: impl Iterator<Item = DVec2>, out: &mut [DVec2], start: usize) -> usize {
+    let mut len = start;
+    for p in points {
+        while len >= start + 2 && (out[len - 1] - out[len - 2]).perp_dot(p - out[len - 2]) <= 0.0 {
+            len -= 1;
+        }
+        // A chain of n sorted points never outgrows n + 1 places with the other chain's corners.
+        if len < out.len() {
+            out[len] = p;
+            len += 1;
+        }
+    }
+    len
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hull_of(points: &[DVec2], storage: &mut [DVec2]) -> usize {
+        let mut builder = HullBuilder::new(storage);
+        for p in points {
+            builder.push(*p).unwrap();
+        }
+        builder.finish().len()
+    }
+
+    #[test]
+    fn a_grid_has_four_corners() {
+        let mut points = [DVec2::ZERO; 100];
+        for (i, p) in points.iter_mut().enumerate() {
+            *p = DVec2::new((i % 10) as f64, (i / 10) as f64);
+        }
+        let mut storage = [DVec2::ZERO; HullBuilder::SLACK];
+        assert_eq!(hull_of(&points, &mut storage), 4);
+        assert_eq!(&storage[..4], &[(0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0)].map(|(x, y)| DVec2::new(x, y)));
+    }
+
+    #[test]
+    fn points_that_coincide_or_line_up_are_no_trouble() {
+        let mut storage = [DVec2::ZERO; HullBuilder::SLACK];
+        assert_eq!(hull_of(&[DVec2::ONE; 5], &mut storage), 1);
+        let line = [0.0, 3.0, 1.0, 2.0, 3.0].map(|t| DVec2::new(t, 2.0 * t));
+        assert_eq!(hull_of(&line, &mut storage), 2);
+        assert_eq!(hull_of(&[], &mut storage), 0);
+    }
+
+    #[test]
+    fn a_circle_larger_than_the_storage_is_an_error() {
+        let mut storage = [DVec2::ZERO; 16];
+        let mut builder = HullBuilder::new(&mut storage);
+        let pushed = (0..64).map(|i| f64::from(i) * 0.098).map(|a| DVec2::new(libm::cos(a), libm::sin(a)));
+        let result: Result<(), FitError> = pushed.into_iter().try_for_each(|p| builder.push(p));
+        assert!(matches!(result, Err(FitError::WorkspaceTooSmall { given: 16, .. })));
+    }
+}

@@ -1,0 +1,80 @@
+//! What a fit is told besides its settings: views, light, and boxes of the scene.
+
+use glam::{DVec2, Vec3};
+
+use crate::{Boxes, ViewFrustum};
+
+/// Everything that changes from frame to frame.
+///
+/// ```
+/// use shadowfit::glam::{DVec3, Vec3};
+/// use shadowfit::{Aabb, Boxes, CasterPolicy, FitInput, FitKind, FitSettings, PerspectiveCamera, Workspace};
+///
+/// let camera = PerspectiveCamera {
+///     eye: DVec3::new(0.0, 1.7, 5.0),
+///     forward: Vec3::NEG_Z,
+///     up: Vec3::Y,
+///     fov_y: 0.8,
+///     aspect: 16.0 / 9.0,
+///     near: 0.1,
+///     far: 200.0,
+/// };
+/// let view = [camera.frustum()?];
+/// let objects = [
+///     Aabb::new(Vec3::new(-20.0, -0.1, -40.0), Vec3::new(20.0, 0.0, 10.0)), // ground
+///     Aabb::new(Vec3::new(-2.0, 0.0, -12.0), Vec3::new(2.0, 6.0, -8.0)),    // house
+/// ];
+/// let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
+/// let input = FitInput { receivers: Some(boxes), casters: boxes, ..FitInput::new(&view, Vec3::new(0.3, -0.8, 0.2)) };
+/// let settings = FitSettings::default().with_kind(FitKind::Focused).with_casters(CasterPolicy::List);
+/// let mut storage = [Default::default(); Workspace::required(2, 1)];
+/// let map = shadowfit::fit_scene(&input, &settings, &mut Workspace::new(&mut storage))?;
+/// assert!(map.texel_size.x < 0.03); // the frustum alone gives ten times that
+/// # Ok::<(), shadowfit::FitError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FitInput<'a> {
+    /// What is to be shadowed: one view, or several that share the maps (both eyes of a headset,
+    /// split screen). The first one's eye becomes the origin of the fit.
+    pub views: &'a [ViewFrustum],
+    /// **Direction of travel** of the light in world axes, of any length: the negative of the
+    /// direction toward the light.
+    pub direction: Vec3,
+    /// Boxes around everything that shows shadows, for [`FitKind::Focused`](crate::FitKind) and
+    /// for splits that look at the content. `None` when they are not known: everything in view
+    /// counts then. An empty slice means that nothing receives.
+    pub receivers: Option<Boxes<'a>>,
+    /// Boxes around everything that throws shadows, for the caster policies that use them.
+    pub casters: Boxes<'a>,
+}
+
+impl<'a> FitInput<'a> {
+    /// Views and light alone, `direction` being the light's direction of travel in world axes.
+    pub fn new(views: &'a [ViewFrustum], direction: Vec3) -> Self {
+        Self { views, direction, receivers: None, casters: Boxes::default() }
+    }
+}
+
+/// Storage that fits work in, owned by the caller, so that nothing allocates.
+#[derive(Debug)]
+pub struct Workspace<'a> {
+    pub(crate) storage: &'a mut [DVec2],
+}
+
+/// Corners that one box clipped to a view has at most: a convex body with six and six faces has no
+/// more than 2 · 12 - 4.
+const CORNERS_PER_BOX: usize = 20;
+
+impl<'a> Workspace<'a> {
+    /// Elements that are enough for any fit of so many boxes (receivers or casters, whichever are
+    /// more) in so many views. Far less is used as a rule, since few boxes make the outline.
+    pub const fn required(boxes: usize, views: usize) -> usize {
+        let pairs = boxes.saturating_mul(views);
+        pairs.saturating_mul(1 + 2 * CORNERS_PER_BOX).saturating_add(views.saturating_mul(16)).saturating_add(64)
+    }
+
+    /// A workspace over storage whose content is of no account.
+    pub fn new(storage: &'a mut [DVec2]) -> Self {
+        Self { storage }
+    }
+}

@@ -1,0 +1,211 @@
+//! The least rectangle around a convex polygon: what turns the map about the light.
+//!
+//! One side of the least-area rectangle lies along an edge of the polygon (H. Freeman and
+//! R. Shapira, "Determining the minimum-area encasing rectangle for an arbitrary closed curve",
+//! 1975), so only the edges' directions are tried, with four calipers that turn with them
+//! (G. T. Toussaint, "Solving geometric problems with the rotating calipers", 1983). For the least
+//! square this is not enough: between two edges' directions the calipers' corners stay, both
+//! sides are sinusoids of the angle (concave there), and the longer one is least where the two are
+//! equal or at an end.
+
+use glam::DVec2;
+
+/// A rectangle that may be turned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Rectangle {
+    /// Unit direction of its first side; the second one is a quarter turn to the left.
+    pub(crate) axis: DVec2,
+    /// Least coordinates along the two sides.
+    pub(crate) min: DVec2,
+    /// Greatest coordinates along the two sides.
+    pub(crate) max: DVec2,
+}
+
+impl Rectangle {
+    /// Around points, with sides along `axis` (of unit length) and across it.
+    pub(crate) fn around(points: &[DVec2], axis: DVec2) -> Self {
+        let across = axis.perp();
+        let (mut min, mut max) = (DVec2::MAX, DVec2::MIN);
+        for p in points {
+            let q = DVec2::new(p.dot(axis), p.dot(across));
+            min = min.min(q);
+            max = max.max(q);
+        }
+        Self { axis, min, max }
+    }
+
+    pub(crate) fn size(&self) -> DVec2 {
+        self.max - self.min
+    }
+}
+
+/// Relative gain below which two rectangles count as equally good: rounding must not decide.
+const TIE: f64 = 1e-9;
+
+/// The rectangle of least area around a convex polygon (anticlockwise corners), its first side
+/// within 45 degrees of +x. Of equal ones the least turned.
+pub(crate) fn min_area(hull: &[DVec2]) -> Rectangle {
+    let area = |r: &Rectangle| r.size().x * r.size().y;
+    let mut best = Rectangle::around(hull, DVec2::X);
+    Calipers::turn(hull, |calipers| keep_better(&mut best, calipers.rectangle(), area));
+    upright(best)
+}
+
+/// The rectangle with the least longer side around a convex polygon, which makes the least square.
+pub(crate) fn min_square(hull: &[DVec2]) -> Rectangle {
+    let longer = |r: &Rectangle| r.size().max_element();
+    let mut best = Rectangle::around(hull, DVec2::X);
+    Calipers::turn(hull, |calipers| {
+        keep_better(&mut best, calipers.rectangle(), longer);
+        if let Some(axis) = calipers.balanced() {
+            keep_better(&mut best, Rectangle::around(hull, axis), longer);
+        }
+    });
+    upright(best)
+}
+
+fn keep_better(best: &mut Rectangle, candidate: Rectangle, cost: impl Fn(&Rectangle) -> f64) {
+    if cost(&candidate) < cost(best) * (1.0 - TIE) {
+        *best = candidate;
+    }
+}
+
+/// Four lines that touch a convex polygon from all sides, one of them along an edge.
+struct Calipers<'a> {
+    hull: &'a [DVec2],
+    /// Unit direction of the edge that the lower line lies along.
+    axis: DVec2,
+    /// The corners that the lines touch when they turn on: lower (the edge's end), right, upper, left.
+    touched: [usize; 4],
+}
+
+impl<'a> Calipers<'a> {
+    /// Turns the lines once around the polygon, stopping at each edge.
+    fn turn(hull: &'a [DVec2], mut stop: impl FnMut(&Self)) {
+        let n = hull.len();
+        let mut calipers = Calipers { hull, axis: DVec2::X, touched: [0; 4] };
+        let mut is_first = true;
+        for i in 0..n {
+            let end = (i + 1) % n;
+            let edge = hull[end] - hull[i];
+            let length = libm::sqrt(edge.dot(edge));
+            if !(length > 0.0) {
+                continue;
+            }
+            calipers.axis = edge / length;
+            calipers.touched[0] = end;
+            let directions = [calipers.axis, calipers.axis.perp(), -calipers.axis];
+            for (side, direction) in directions.into_iter().enumerate() {
+                // Each line touches at the corner of the one before it or further on.
+                let first = calipers.touched[side];
+                let behind = if is_first { 0 } else { (calipers.touched[side + 1] + n - first) % n };
+                calipers.touched[side + 1] = calipers.advance(first, behind, direction);
+            }
+            is_first = false;
+            stop(&calipers);
+        }
+    }
+
+    /// The farthest corner along `direction`, from corner `first` on; the search may skip `known`
+    /// corners that an earlier, less turned line passed already.
+    fn advance(&self, first: usize, known: usize, direction: DVec2) -> usize {
+        let n = self.hull.len();
+        let at = |k: usize| self.hull[(first + k) % n].dot(direction);
+        let mut k = if at(known) > at(0) { known } else { 0 };
+        while k + 1 < n && at(k + 1) >= at(k) {
+            k += 1;
+        }
+        (first + k) % n
+    }
+
+    fn rectangle(&self) -> Rectangle {
+        let across = self.axis.perp();
+        let [lower, right, upper, left] = self.touched.map(|i| self.hull[i]);
+        Rectangle {
+            axis: self.axis,
+            min: DVec2::new(left.dot(self.axis), lower.dot(across)),
+            max: DVec2::new(right.dot(self.axis), upper.dot(across)),
+        }
+    }
+
+    /// The direction at which both sides are equal while the lines go on touching these corners.
+    ///
+    /// The side along a unit axis a is (right - left)·a, the other one (upper - lower)·perp(a):
+    /// their difference is linear in a and zero across d below.
+    fn balanced(&self) -> Option<DVec2> {
+        let [lower, right, upper, left] = self.touched.map(|i| self.hull[i]);
+        let (along, across) = (right - left, upper - lower);
+        let d = DVec2::new(along.x - across.y, along.y + across.x);
+        let length = libm::sqrt(d.dot(d));
+        if length > 0.0 { Some(d.perp() / length) } else { None }
+    }
+}
+
+/// The same rectangle named by the side that is nearest to +x.
+fn upright(r: Rectangle) -> Rectangle {
+    let DVec2 { x, y } = r.axis;
+    let turns = if x.abs() >= y.abs() {
+        if x > 0.0 { 0 } else { 2 }
+    } else if y > 0.0 {
+        3
+    } else {
+        1
+    };
+    let mut r = r;
+    for _ in 0..turns {
+        // A quarter turn to the left: the old second side becomes the first.
+        r = Rectangle { axis: r.axis.perp(), min: DVec2::new(r.min.y, -r.max.x), max: DVec2::new(r.max.y, -r.min.x) };
+    }
+    r
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A convex polygon on an ellipse, from angles.
+    fn polygon(turns: &[f64]) -> impl Iterator<Item = DVec2> + '_ {
+        turns.iter().map(|t| DVec2::new(3.0 * libm::cos(*t), libm::sin(*t)) + DVec2::new(10.0, -4.0))
+    }
+
+    fn search(hull: &[DVec2], cost: impl Fn(DVec2) -> f64) -> f64 {
+        let steps = 20_000;
+        let angle = |i: i32| f64::from(i) / f64::from(steps) * core::f64::consts::FRAC_PI_2;
+        (0..steps)
+            .map(|i| cost(Rectangle::around(hull, DVec2::new(libm::cos(angle(i)), libm::sin(angle(i)))).size()))
+            .fold(f64::MAX, f64::min)
+    }
+
+    #[test]
+    fn no_angle_gives_less_than_the_calipers() {
+        for turns in
+            [&[0.1, 0.4, 2.0, 3.0, 4.1, 5.9][..], &[0.0, 1.1, 2.2], &[0.3, 0.35, 0.4, 3.3], &[1.0, 2.0, 2.5, 4.0, 4.2]]
+        {
+            let mut hull = [DVec2::ZERO; 8];
+            for (p, q) in hull.iter_mut().zip(polygon(turns)) {
+                *p = q;
+            }
+            let hull = &hull[..turns.len()];
+            let area = min_area(hull).size();
+            let least = search(hull, |size| size.x * size.y);
+            assert!((area.x * area.y - least) / least < 1e-6, "{turns:?}: {area} and {least}");
+            let square = min_square(hull).size().max_element();
+            let least = search(hull, DVec2::max_element);
+            assert!((square - least) / least < 1e-6, "{turns:?}: {square} and {least}");
+            for r in [min_area(hull), min_square(hull)] {
+                let around = Rectangle::around(hull, r.axis);
+                assert!((r.min - around.min).abs().max_element() < 1e-12, "{r:?}");
+                assert!((r.max - around.max).abs().max_element() < 1e-12, "{r:?}");
+                assert!(r.axis.x >= 0.7071 && r.axis.y.abs() <= 0.7072, "{r:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_point_and_a_line_have_rectangles() {
+        assert_eq!(min_area(&[DVec2::ONE]).size(), DVec2::ZERO);
+        let line = [DVec2::ZERO, DVec2::new(3.0, 3.0)];
+        assert!(min_area(&line).size().y.abs() < 1e-12);
+        assert!((min_square(&line).size().max_element() - 3.0).abs() < 1e-12);
+    }
+}
