@@ -72,6 +72,12 @@ impl Tracer {
         self.triangles.is_empty()
     }
 
+    /// Corners of a triangle, world space, metres; all zero for one that was not finite.
+    pub fn corners(&self, triangle: u32) -> [Vec3; 3] {
+        let Triangle { v0, v1, v2 } = self.triangles[triangle as usize];
+        [v0, v1, v2].map(Vec3::from)
+    }
+
     /// Unit normal of a triangle by its winding, counter-clockwise seen from the front; zero for
     /// one without area.
     pub fn normal(&self, triangle: u32) -> Vec3 {
@@ -96,16 +102,20 @@ impl Tracer {
     /// Every triangle along a ray (world space, metres), in no order.
     pub fn all_hits(&self, origin: Vec3, direction: Vec3) -> Vec<Hit> {
         let mut hits = Vec::new();
-        if let Some((bvh, ray)) = self.ray(origin, direction) {
-            bvh.ray_traverse_anyhit(ray, |ray, slot| {
-                let triangle = bvh.primitive_indices[slot];
-                let distance = self.meet(ray, triangle);
-                if distance.is_finite() {
-                    hits.push(Hit { distance, triangle });
-                }
-            });
-        }
+        self.for_each_hit(origin, direction, |hit| hits.push(hit));
         hits
+    }
+
+    /// Calls `visit` with every triangle along a ray (world space, metres), in no order.
+    pub fn for_each_hit(&self, origin: Vec3, direction: Vec3, mut visit: impl FnMut(Hit)) {
+        let Some((bvh, ray)) = self.ray(origin, direction) else { return };
+        bvh.ray_traverse_anyhit(ray, |ray, slot| {
+            let triangle = bvh.primitive_indices[slot];
+            let distance = self.meet(ray, triangle);
+            if distance.is_finite() {
+                visit(Hit { distance, triangle });
+            }
+        });
     }
 
     fn ray(&self, origin: Vec3, direction: Vec3) -> Option<(&Bvh2, Ray)> {

@@ -1,0 +1,60 @@
+//! Files that cannot be used, told for people: which file, which part of it, and why.
+
+use std::path::{Path, PathBuf};
+
+use serde::de::DeserializeOwned;
+
+/// Why a file of scenarios or fits was refused.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}: {element}: {reason}", file.display())]
+pub struct PeersError {
+    /// The file.
+    pub file: PathBuf,
+    /// The part of it, such as `frames[3].maps[0].view_proj`, or `file` for the whole.
+    pub element: String,
+    /// What is wrong with it.
+    pub reason: String,
+}
+
+/// A wrong element, before the file's name is known.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Problem {
+    element: String,
+    reason: String,
+}
+
+impl Problem {
+    /// `element` is wrong because of `reason`.
+    pub(crate) fn new(element: impl Into<String>, reason: impl Into<String>) -> Self {
+        Self { element: element.into(), reason: reason.into() }
+    }
+
+    /// Names the file.
+    pub(crate) fn at(self, file: &Path) -> PeersError {
+        PeersError { file: file.to_owned(), element: self.element, reason: self.reason }
+    }
+}
+
+/// Reads a JSON file.
+pub(crate) fn read_json<T: DeserializeOwned>(file: &Path) -> Result<T, PeersError> {
+    let text =
+        std::fs::read(file).map_err(|error| Problem::new("file", format!("cannot be read: {error}")).at(file))?;
+    parse_json(&text).map_err(|problem| problem.at(file))
+}
+
+/// Parses JSON; the element of a problem is its path, such as `frames[3].view`.
+pub(crate) fn parse_json<T: DeserializeOwned>(text: &[u8]) -> Result<T, Problem> {
+    let mut json = serde_json::Deserializer::from_slice(text);
+    let value = serde_path_to_error::deserialize(&mut json)
+        .map_err(|error| Problem::new(error.path().to_string(), error.inner().to_string()))?;
+    json.end().map_err(|error| Problem::new("file", error.to_string()))?;
+    Ok(value)
+}
+
+/// A problem unless all `values` are finite.
+pub(crate) fn check_finite(element: impl Fn() -> String, values: &[f64]) -> Result<(), Problem> {
+    match values.iter().find(|value| !value.is_finite()) {
+        Some(value) => Err(Problem::new(element(), format!("{value} is not finite"))),
+        None => Ok(()),
+    }
+}

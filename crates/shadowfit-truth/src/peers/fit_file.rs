@@ -1,0 +1,155 @@
+//! What a fit answered for each frame: the files `fits/<peer>.json`.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use glam::{DMat4, DVec2};
+use serde::{Deserialize, Serialize};
+
+use super::Scenarios;
+use super::error::{PeersError, Problem, check_finite, read_json};
+
+/// The content of a fit file.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FitFile {
+    /// Name.
+    pub peer: String,
+    /// Language of the code that ran.
+    #[serde(default)]
+    pub language: String,
+    /// Version of the code that ran.
+    #[serde(default)]
+    pub version: String,
+    /// Remarks.
+    #[serde(default)]
+    pub note: String,
+    /// Whether the renderer clamps depth, so that casters before the near plane still shade.
+    #[serde(default)]
+    pub pancake: bool,
+    /// Median time of one frame's fit, in nanoseconds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ns_per_fit: Option<f64>,
+    /// Median over frames of each frame's fastest batch, in nanoseconds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ns_quiet: Option<f64>,
+    /// Every frame of the scenarios once, in any order.
+    pub frames: Vec<FitFrame>,
+}
+
+/// The maps of a frame.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FitFrame {
+    /// [`super::Frame::id`].
+    pub id: String,
+    /// Maps, in order of `split_far`.
+    pub maps: Vec<FitMap>,
+}
+
+/// A shadow map.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FitMap {
+    /// Clip from world, column-major: x and y in -1..=1 (y up), depth 0..=1 after division by w,
+    /// plain or reversed. Perspective is allowed.
+    pub view_proj: [f64; 16],
+    /// Texels a side of a square map.
+    #[serde(default)]
+    pub resolution: u32,
+    /// Width and height, in texels, of a map that is not square; replaces `resolution`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub resolution_xy: Option<[u32; 2]>,
+    /// View depth where the map begins, in metres; for information, nothing is measured with it.
+    #[serde(default)]
+    pub split_near: f64,
+    /// View depth below which the map is the first choice, in metres; large for no end.
+    pub split_far: f64,
+}
+
+impl FitMap {
+    /// Width and height, in texels.
+    pub fn size(&self) -> DVec2 {
+        let [width, height] = self.resolution_xy.unwrap_or([self.resolution; 2]);
+        DVec2::new(f64::from(width), f64::from(height))
+    }
+
+    /// Clip from world.
+    pub fn clip_from_world(&self) -> DMat4 {
+        DMat4::from_cols_array(&self.view_proj)
+    }
+}
+
+impl FitFile {
+    /// Reads and checks a file.
+    ///
+    /// # Errors
+    ///
+    /// When it cannot be read, is not of this format, or an element makes no sense.
+    pub fn read(file: &Path) -> Result<Self, PeersError> {
+        let fit: Self = read_json(file)?;
+        fit.check().map_err(|problem| problem.at(file))?;
+        Ok(fit)
+    }
+
+    /// Writes a file that [`FitFile::read`] reads back without loss.
+    ///
+    /// # Errors
+    ///
+    /// When it cannot be written, or an element makes no sense.
+    pub fn write(&self, file: &Path) -> Result<(), PeersError> {
+        self.check().map_err(|problem| problem.at(file))?;
+        let failed = |reason: String| Problem::new("file", format!("cannot be written: {reason}")).at(file);
+        let text = serde_json::to_string(self).map_err(|error| failed(error.to_string()))?;
+        std::fs::write(file, text + "\n").map_err(|error| failed(error.to_string()))
+    }
+
+    /// The maps of each frame, in the order of the scenarios' frames. `file` is named in errors.
+    ///
+    /// # Errors
+    ///
+    /// When a frame is missing, unknown or there twice.
+    pub fn maps_in_order(&self, scenarios: &Scenarios, file: &Path) -> Result<Vec<&[FitMap]>, PeersError> {
+        let problem = |index: usize, reason: String| Problem::new(format!("frames[{index}].id"), reason).at(file);
+        let places: HashMap<&str, usize> =
+            scenarios.frames.iter().enumerate().map(|(place, frame)| (frame.id.as_str(), place)).collect();
+        let mut maps: Vec<Option<&[FitMap]>> = vec![None; scenarios.frames.len()];
+        for (index, frame) in self.frames.iter().enumerate() {
+            let Some(&place) = places.get(frame.id.as_str()) else {
+                return Err(problem(index, format!("the scenarios have no frame \"{}\"", frame.id)));
+            };
+            if maps[place].replace(&frame.maps).is_some() {
+                return Err(problem(index, format!("frame \"{}\" is there twice", frame.id)));
+            }
+        }
+        let missing = |place: usize| format!("frame \"{}\" of the scenarios is missing", scenarios.frames[place].id);
+        maps.iter()
+            .enumerate()
+            .map(|(place, maps)| maps.ok_or_else(|| Problem::new("frames", missing(place)).at(file)))
+            .collect()
+    }
+
+    fn check(&self) -> Result<(), Problem> {
+        for (index, frame) in self.frames.iter().enumerate() {
+            for (number, map) in frame.maps.iter().enumerate() {
+                map.check(&|field| format!("frames[{index}] (\"{}\").maps[{number}].{field}", frame.id))?;
+            }
+            if let Some(number) = frame.maps.windows(2).position(|pair| pair[0].split_far > pair[1].split_far) {
+                let element = format!("frames[{index}] (\"{}\").maps[{}].split_far", frame.id, number + 1);
+                return Err(Problem::new(element, "the maps are not in order of split_far"));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl FitMap {
+    fn check(&self, element: &impl Fn(&str) -> String) -> Result<(), Problem> {
+        check_finite(|| element("view_proj"), &self.view_proj)?;
+        check_finite(|| element("split_far"), &[self.split_far])?;
+        if !self.clip_from_world().inverse().is_finite() {
+            return Err(Problem::new(element("view_proj"), "the matrix has no inverse"));
+        }
+        if self.size().min_element() < 1.0 {
+            return Err(Problem::new(element("resolution"), "the map has no texels"));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,164 @@
+//! Scenes, cameras and lights on which fits are compared: the file `scenarios.json`.
+//!
+//! World: right-handed, y up, metres. Matrices: 16 numbers, column-major, for column vectors.
+
+use std::path::Path;
+
+use glam::{DMat4, DVec3};
+use serde::{Deserialize, Serialize};
+
+use super::error::{PeersError, Problem, check_finite, read_json};
+
+/// The content of `scenarios.json`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Scenarios {
+    /// Scenes.
+    pub scenes: Vec<Scene>,
+    /// Frames; those of one path (same scene and light) are consecutive and in order.
+    pub frames: Vec<Frame>,
+}
+
+/// A scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scene {
+    /// Name, the first part of its frames' ids.
+    pub name: String,
+    /// glTF file, relative to the folder of assets.
+    pub file: String,
+    /// Metres in a unit of the file: multiplies world coordinates, after the nodes' transforms.
+    pub scale: f64,
+    /// Extra ground, the last object.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ground: Option<Ground>,
+    /// Number of triangles, ground included.
+    pub triangles: usize,
+    /// World boxes of the objects, min x, y, z, max x, y, z, metres: one for each node with a mesh,
+    /// depth first, then the ground.
+    pub objects: Vec<[f64; 6]>,
+    /// World box of all objects.
+    pub aabb: [f64; 6],
+}
+
+/// A horizontal square centred on x = z = 0: two triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ground {
+    /// Length of a side, in metres.
+    pub size: f64,
+    /// Height, in metres.
+    pub y: f64,
+}
+
+/// A camera and a light.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Frame {
+    /// `scene/elevation/frame`, for example `town/45/7`.
+    pub id: String,
+    /// Index into [`Scenarios::scenes`].
+    pub scene: usize,
+    /// Elevation of the light over the horizon, in degrees.
+    pub elevation_deg: f64,
+    /// Number along the path.
+    pub frame: u32,
+    /// View from world; the camera looks down -z.
+    pub view: [f64; 16],
+    /// Vertical field of view, in degrees.
+    pub fov_y_deg: f64,
+    /// Width of the picture over its height.
+    pub aspect: f64,
+    /// Near distance along the view, in metres.
+    pub near: f64,
+    /// Far distance along the view, in metres.
+    pub far: f64,
+    /// Unit direction of travel of the light, world axes.
+    pub light_dir: [f64; 3],
+}
+
+impl Scenarios {
+    /// Reads and checks a file.
+    ///
+    /// # Errors
+    ///
+    /// When it cannot be read, is not of this format, or an element makes no sense.
+    pub fn read(file: &Path) -> Result<Self, PeersError> {
+        let scenarios: Self = read_json(file)?;
+        scenarios.check().map_err(|problem| problem.at(file))?;
+        Ok(scenarios)
+    }
+
+    /// Name of the group that a frame belongs to, its scene under its light: `town/45`.
+    ///
+    /// # Panics
+    ///
+    /// If the frame's scene is not one of these.
+    pub fn group(&self, frame: &Frame) -> String {
+        format!("{}/{}", self.scenes[frame.scene].name, frame.elevation_deg)
+    }
+
+    /// Index of the frame before `index` on the same path.
+    pub fn previous(&self, index: usize) -> Option<usize> {
+        let (now, before) = (&self.frames[index], index.checked_sub(1)?);
+        let then = &self.frames[before];
+        let follows = then.scene == now.scene && then.elevation_deg == now.elevation_deg && then.frame + 1 == now.frame;
+        follows.then_some(before)
+    }
+
+    fn check(&self) -> Result<(), Problem> {
+        for (index, scene) in self.scenes.iter().enumerate() {
+            if !(scene.scale.is_finite() && scene.scale > 0.0) {
+                return Err(Problem::new(format!("scenes[{index}].scale"), format!("{} is not above 0", scene.scale)));
+            }
+        }
+        let mut ids = std::collections::HashSet::new();
+        for (index, frame) in self.frames.iter().enumerate() {
+            let element = |field: &str| format!("frames[{index}].{field}");
+            if frame.scene >= self.scenes.len() {
+                let reason = format!("there is no scene {}, the file has {}", frame.scene, self.scenes.len());
+                return Err(Problem::new(element("scene"), reason));
+            }
+            if !ids.insert(&frame.id) {
+                return Err(Problem::new(element("id"), format!("\"{}\" is the id of two frames", frame.id)));
+            }
+            frame.check(&element)?;
+        }
+        Ok(())
+    }
+}
+
+impl Frame {
+    /// View from world.
+    pub fn view_from_world(&self) -> DMat4 {
+        DMat4::from_cols_array(&self.view)
+    }
+
+    /// Unit direction toward the light, world axes.
+    pub fn to_light(&self) -> DVec3 {
+        -DVec3::from_array(self.light_dir)
+    }
+
+    /// Tangent of half of the vertical field of view.
+    pub fn tan_half_fov(&self) -> f64 {
+        (self.fov_y_deg.to_radians() * 0.5).tan()
+    }
+
+    fn check(&self, element: &impl Fn(&str) -> String) -> Result<(), Problem> {
+        let bad = |field: &str, reason: String| Err(Problem::new(element(field), reason));
+        check_finite(|| element("view"), &self.view)?;
+        if !self.view_from_world().inverse().is_finite() {
+            return bad("view", "the matrix has no inverse".to_owned());
+        }
+        if !(self.fov_y_deg > 0.0 && self.fov_y_deg < 180.0) {
+            return bad("fov_y_deg", format!("{} is not between 0 and 180", self.fov_y_deg));
+        }
+        if !(self.aspect.is_finite() && self.aspect > 0.0) {
+            return bad("aspect", format!("{} is not above 0", self.aspect));
+        }
+        if !(self.near >= 0.0 && self.near < self.far && self.far.is_finite()) {
+            return bad("far", format!("the range from near {} to far {} is empty", self.near, self.far));
+        }
+        let length = self.to_light().length();
+        if (length - 1.0).abs() > 1e-6 || length.is_nan() {
+            return bad("light_dir", format!("its length is {length}, not 1"));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,238 @@
+//! The columns of a fit, pooled over all frames, over a scene's and over those of a scene under one light.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+
+use super::tally::Tally;
+
+/// Units of depth that a 24-bit map tells apart.
+const DEPTH_STEPS: f64 = (1u64 << 24) as f64;
+/// Share of the points that the critical resolution serves.
+const CRITICAL_QUANTILE: f64 = 0.95;
+
+/// The measures of a fit over a set of frames. A value is not a number where nothing was there to
+/// be measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// Maps a frame.
+    pub maps: f64,
+    /// Percentage of the facing points that no map holds; they are left out of all that follows.
+    pub uncovered: f64,
+    /// Percentage of the covered shadowed points whose occluders the renderer loses.
+    pub lost: f64,
+    /// Percentage of the covered shadowed points whose occluders are outside the map's volume.
+    pub lost_unclamped: f64,
+    /// Quantiles 50%, 95% and 99% of log2 of pixels per texel along the worse axis.
+    pub error: [f64; 3],
+    /// Percentage of points with more than a pixel per texel.
+    pub under: f64,
+    /// Critical resolution, in texels.
+    pub critical: f64,
+    /// Geometric mean of the groups' critical resolutions, in texels.
+    pub critical_mean: f64,
+    /// Percentage of a map's area that visible points need.
+    pub used: f64,
+    /// Crawl between frames, in texels.
+    pub shimmer: f64,
+    /// Percentage of points that stand still.
+    pub still: f64,
+    /// Relative change of a texel's size between frames, in percent.
+    pub scale: f64,
+    /// Depth step of a 24-bit map, in micrometres.
+    pub depth: f64,
+}
+
+/// The sums of a scene under one light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroupTally {
+    /// Name of the scene.
+    pub scene: String,
+    /// Name of the group, such as `town/45`.
+    pub group: String,
+    /// Its sums.
+    pub tally: Tally,
+}
+
+/// All rows of a fit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FitTable {
+    /// Name of the fit.
+    pub peer: String,
+    /// Time of one frame's fit, in nanoseconds, as its file says.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ns_per_fit: Option<f64>,
+    /// Everything pooled.
+    pub overall: Row,
+    /// A row for each scene, in the order measured.
+    #[serde(serialize_with = "as_map")]
+    pub scenes: Vec<(String, Row)>,
+    /// A row for each scene under one light, in the order measured.
+    #[serde(serialize_with = "as_map")]
+    pub groups: Vec<(String, Row)>,
+}
+
+impl Row {
+    /// The row of groups pooled together.
+    pub fn pooled<'a>(groups: impl Iterator<Item = &'a Tally>) -> Self {
+        let mut pool = Tally::default();
+        let mut log2_criticals = Vec::new();
+        for tally in groups {
+            pool.merge(tally);
+            log2_criticals.push(log2_critical(tally));
+        }
+        let mean = log2_criticals.iter().sum::<f64>() / log2_criticals.len() as f64;
+        Self { critical_mean: mean.exp2(), ..Self::of(&pool) }
+    }
+
+    /// The row of one group.
+    pub fn of(tally: &Tally) -> Self {
+        let ratio = |part: f64, whole: u64| part / whole as f64;
+        let percentage = |part: u64, whole: u64| 100.0 * ratio(part as f64, whole);
+        let critical = log2_critical(tally).exp2();
+        Self {
+            maps: ratio(tally.maps as f64, tally.frames),
+            uncovered: percentage(tally.uncovered, tally.facing),
+            lost: percentage(tally.lost, tally.shadowed),
+            lost_unclamped: percentage(tally.lost_unclamped, tally.shadowed),
+            error: [0.5, 0.95, 0.99].map(|q| tally.error.log2_quantile(q).unwrap_or(f64::NAN)),
+            under: percentage(tally.under, tally.error.total()),
+            critical,
+            critical_mean: critical,
+            used: 100.0 * ratio(tally.used, tally.maps),
+            shimmer: ratio(tally.shimmer.moved, tally.shimmer.points),
+            still: percentage(tally.shimmer.still, tally.shimmer.points),
+            scale: 100.0 * ratio(tally.shimmer.scaled, tally.shimmer.points),
+            depth: 1e6 * ratio(tally.depth_range, tally.covered()) / DEPTH_STEPS,
+        }
+    }
+
+    /// Names of the columns, and their values.
+    pub fn columns(&self) -> [(&'static str, f64); 15] {
+        [
+            ("maps", self.maps),
+            ("uncov %", self.uncovered),
+            ("lost %", self.lost),
+            ("lost unclamped %", self.lost_unclamped),
+            ("err p50", self.error[0]),
+            ("p95", self.error[1]),
+            ("p99", self.error[2]),
+            ("under %", self.under),
+            ("crit res", self.critical),
+            ("crit gm", self.critical_mean),
+            ("used %", self.used),
+            ("shimmer tx", self.shimmer),
+            ("still %", self.still),
+            ("scale %", self.scale),
+            ("depth um", self.depth),
+        ]
+    }
+}
+
+impl Serialize for Row {
+    /// A map from column names to values, `null` for what is not finite.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let columns = self.columns();
+        let mut map = serializer.serialize_map(Some(columns.len()))?;
+        for (name, value) in columns {
+            map.serialize_entry(name, &value)?;
+        }
+        map.end()
+    }
+}
+
+impl FitTable {
+    /// The rows that follow from the sums of groups.
+    pub fn new(peer: &str, ns_per_fit: Option<f64>, groups: &[GroupTally]) -> Self {
+        let mut scenes: Vec<(String, Row)> = Vec::new();
+        for GroupTally { scene, .. } in groups {
+            if scenes.iter().all(|(known, _)| known != scene) {
+                let own = groups.iter().filter(|group| group.scene == *scene);
+                scenes.push((scene.clone(), Row::pooled(own.map(|group| &group.tally))));
+            }
+        }
+        Self {
+            peer: peer.to_owned(),
+            ns_per_fit,
+            overall: Row::pooled(groups.iter().map(|group| &group.tally)),
+            scenes,
+            groups: groups.iter().map(|group| (group.group.clone(), Row::of(&group.tally))).collect(),
+        }
+    }
+}
+
+/// Tables of fits as JSON: `{"fits": [{"peer": .., "overall": {column: value}, "scenes": {..}, "groups": {..}}]}`.
+///
+/// # Panics
+///
+/// Never: numbers and names can always be written.
+pub fn to_json(tables: &[FitTable]) -> String {
+    let root = BTreeMap::from([("fits", tables)]);
+    serde_json::to_string_pretty(&root).expect("numbers and names can be written") + "\n"
+}
+
+/// Tables of fits as Markdown: all frames, each scene, and critical resolutions of the groups.
+pub fn to_markdown(tables: &[FitTable]) -> String {
+    let mut text = format!("## Overall\n\n{}", overall_markdown(tables));
+    for (scene, _) in tables.iter().flat_map(|table| &table.scenes).take(tables.first().map_or(0, |t| t.scenes.len())) {
+        let rows = tables.iter().filter_map(|table| Some((table.peer.clone(), *find(&table.scenes, scene)?)));
+        let _ = write!(text, "\n## {scene}\n\n{}", rows_markdown(rows.collect()));
+    }
+    let _ = write!(text, "\n## Critical resolution per scene and light elevation\n\n{}", groups_markdown(tables));
+    text
+}
+
+/// The rows over all frames as a Markdown table.
+pub fn overall_markdown(tables: &[FitTable]) -> String {
+    rows_markdown(tables.iter().map(|table| (table.peer.clone(), table.overall)).collect())
+}
+
+fn rows_markdown(rows: Vec<(String, Row)>) -> String {
+    let Some((_, first)) = rows.first() else { return String::new() };
+    let names = first.columns().map(|(name, _)| name.to_owned());
+    let cells = |row: Row| row.columns().map(|(name, value)| cell(name, value)).to_vec();
+    markdown(&names, rows.into_iter().map(|(peer, row)| (peer, cells(row))))
+}
+
+fn groups_markdown(tables: &[FitTable]) -> String {
+    let Some(first) = tables.first() else { return String::new() };
+    let names: Vec<String> = first.groups.iter().map(|(name, _)| name.clone()).collect();
+    let cells = |table: &FitTable| table.groups.iter().map(|(_, row)| cell("crit res", row.critical)).collect();
+    markdown(&names, tables.iter().map(|table| (table.peer.clone(), cells(table))))
+}
+
+fn markdown(names: &[String], rows: impl Iterator<Item = (String, Vec<String>)>) -> String {
+    let mut text = format!("| peer | {} |\n|---|{}\n", names.join(" | "), "---:|".repeat(names.len()));
+    for (peer, cells) in rows {
+        let _ = writeln!(text, "| {peer} | {} |", cells.join(" | "));
+    }
+    text
+}
+
+/// A number as people read it: whole texels, else three digits and at most four decimals.
+fn cell(column: &str, value: f64) -> String {
+    if !value.is_finite() {
+        return if value.is_nan() { "-".to_owned() } else { value.to_string() };
+    }
+    if column.starts_with("crit") {
+        return format!("{value:.0}");
+    }
+    let digits_before = if value == 0.0 { 1 } else { value.abs().log10().floor() as i32 + 1 };
+    let decimals = (3 - digits_before).clamp(0, 4) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+fn find<'a>(rows: &'a [(String, Row)], name: &str) -> Option<&'a Row> {
+    rows.iter().find(|(known, _)| known == name).map(|(_, row)| row)
+}
+
+fn log2_critical(tally: &Tally) -> f64 {
+    tally.critical.log2_quantile(CRITICAL_QUANTILE).unwrap_or(f64::NAN)
+}
+
+fn as_map<S: Serializer>(rows: &[(String, Row)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(rows.iter().map(|(name, row)| (name, row)))
+}
