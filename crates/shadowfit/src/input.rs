@@ -2,7 +2,7 @@
 
 use glam::{DVec2, Vec3};
 
-use crate::{Boxes, ViewFrustum};
+use crate::{Boxes, DepthHistogram, ViewFrustum};
 
 /// Everything that changes from frame to frame.
 ///
@@ -46,12 +46,15 @@ pub struct FitInput<'a> {
     pub receivers: Option<Boxes<'a>>,
     /// Boxes around everything that throws shadows, for the caster policies that use them.
     pub casters: Boxes<'a>,
+    /// What depths the last frame showed, for
+    /// [`SplitScheme::FromHistogram`](crate::SplitScheme::FromHistogram).
+    pub histogram: Option<DepthHistogram<'a>>,
 }
 
 impl<'a> FitInput<'a> {
     /// Views and light alone, `direction` being the light's direction of travel in world axes.
     pub fn new(views: &'a [ViewFrustum], direction: Vec3) -> Self {
-        Self { views, direction, receivers: None, casters: Boxes::default() }
+        Self { views, direction, receivers: None, casters: Boxes::default(), histogram: None }
     }
 }
 

@@ -32,11 +32,15 @@
 //!   the eye unless moved: [`LightFit::relative_to`] and [`LightFit::world_matrices`] convert.
 //! - A light is its **direction of travel**. Where a source speaks of the direction toward the
 //!   light, `to_light = -direction`.
-//! - Nothing panics and nothing allocates; every bad input is a [`FitError`] with its value.
+//! - Nothing panics; every bad input is a [`FitError`] with its value. Nothing allocates, except
+//!   `Clusters`, which needs the feature `alloc`.
 //! - Transcendental functions come from `libm`, everything else is `+ - × ÷ √` on scalars, so the
 //!   same input gives the same bits on every target.
 #![no_std]
 #![forbid(unsafe_code)]
+
+#[cfg(feature = "alloc")]
+extern crate alloc;
 
 pub mod bias;
 pub mod diagnostics;
@@ -48,8 +52,11 @@ pub mod settings;
 mod axes;
 mod bounds;
 mod camera;
+mod cascades;
 mod caster;
 mod checks;
+#[cfg(feature = "alloc")]
+mod clusters;
 mod depth;
 mod error;
 mod frustum;
@@ -57,13 +64,18 @@ mod grid;
 mod hull;
 mod input;
 mod light_fit;
+mod motion;
 mod rectangle;
+mod splits;
 mod view;
 
 pub use bias::Bias;
 pub use bounds::{Aabb, Boxes};
 pub use camera::PerspectiveCamera;
+pub use cascades::{CascadeFitter, CascadeMap, Cascades};
 pub use caster::CasterVolume;
+#[cfg(feature = "alloc")]
+pub use clusters::{Clusters, NormalCone};
 pub use depth::DepthConvention;
 pub use error::FitError;
 pub use fits::{fit, fit_scene};
@@ -72,9 +84,10 @@ pub use glam;
 pub use input::{FitInput, Workspace};
 pub use light_fit::{Constraint, LightFit, WorldMatrices};
 pub use settings::{
-    BiasSettings, CameraSettings, CasterPolicy, FilterKind, FitKind, FitSettings, LightSettings, MapFormat,
-    RectangleKind, Settings, ViewSettings,
+    BiasSettings, CameraSettings, CascadeSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings,
+    LightSettings, MAX_CASCADES, MapFormat, MapOverride, RectangleKind, Settings, SplitScheme, Stabilise, ViewSettings,
 };
+pub use splits::DepthHistogram;
 
 /// Runs the example of the README as a test.
 #[cfg(doctest)]

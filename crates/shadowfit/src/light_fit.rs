@@ -17,7 +17,7 @@ use crate::{CasterVolume, DepthConvention, FitError, checks};
 /// its origin and looks along -z. Clip space has x right, y up and the depth range
 /// [`Self::depth`]. Texture space has u right, v **down** (row 0 on top, as wgpu, Direct3D, Vulkan
 /// and Metal have it; OpenGL users flip v), both 0..1 over the map.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightFit {
     /// World position that all inputs of the matrices are relative to, in metres: the eye of the
     /// frustum, until [`Self::relative_to`] moves it.

@@ -118,6 +118,113 @@ impl Default for FitSettings {
     }
 }
 
+/// Most maps that share a view.
+pub const MAX_CASCADES: usize = 8;
+
+/// Where one map ends and the next begins, in view depth.
+///
+/// Where the receivers' boxes are known, all schemes but the manual one are spread over their
+/// depths in view instead of the whole frustum's.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum SplitScheme {
+    /// Ranges of equal length.
+    Uniform,
+    /// Ranges of equal ratio, as perspective would have it. Spends most maps close to the eye.
+    Logarithmic,
+    /// Between both: this share of the logarithmic cuts and the rest of the uniform ones (the
+    /// parallel-split scheme), 0..=1.
+    Practical(f32),
+    /// View depths in metres at which the maps end, ascending; the last map ends with the shadows.
+    Manual([f32; MAX_CASCADES - 1]),
+    /// The cuts with the least 95% quantile of pixels per texel, by what the receivers' boxes tell
+    /// of what is visible.
+    #[default]
+    FromBoxes,
+    /// The same by the histogram of visible depth that the engine hands in; without one as
+    /// [`Self::FromBoxes`].
+    FromHistogram,
+}
+
+/// Whether and how maps are kept from changing while the camera moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stabilise {
+    /// Every frame is fitted anew: the finest texels, and shadow edges that crawl.
+    Off,
+    /// Extents are rounded up to eighths of an octave and the map moves by whole texels of a grid
+    /// that is fixed to the world. With [`FitKind::Sphere`] edges stand perfectly still; other fits
+    /// still change when the camera turns.
+    #[default]
+    Snap,
+    /// A map is kept, its angle included, and moved by whole texels while it covers what it must
+    /// and wastes no more than [`HoldSettings::waste`]. Made anew, it is large enough for the
+    /// movement to come.
+    Hysteresis,
+}
+
+/// When [`Stabilise::Hysteresis`] keeps a map and how much room a new one gets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HoldSettings {
+    /// Free border of a new map, as a share of its extent.
+    pub margin: f32,
+    /// A new map also covers what the camera will see if it goes on moving as it did, for as many
+    /// frames as make the map at most so many times as wide.
+    pub growth: f32,
+    /// A map is made anew when its texels are so many times as wide as they had to be; likewise
+    /// the cuts.
+    pub waste: f32,
+    /// Most frames that are looked ahead.
+    pub horizon: u32,
+}
+
+impl Default for HoldSettings {
+    fn default() -> Self {
+        Self { margin: 0.02, growth: 1.4, waste: 1.8, horizon: 32 }
+    }
+}
+
+/// What one of several maps has of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MapOverride {
+    /// The rule of its fit.
+    pub kind: FitKind,
+    /// Its width and height, in texels.
+    pub resolution: UVec2,
+}
+
+/// How several maps share a view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CascadeSettings {
+    /// The fit of all maps.
+    pub fit: FitSettings,
+    /// Number of maps, 1..=8.
+    pub count: u32,
+    /// Where one ends and the next begins.
+    pub splits: SplitScheme,
+    /// Share of a map's range of view depths that the next map covers too, for a blend between
+    /// them, 0..=1.
+    pub overlap: f32,
+    /// What keeps the maps still.
+    pub stabilise: Stabilise,
+    /// Details of [`Stabilise::Hysteresis`], and when held cuts are given up.
+    pub hold: HoldSettings,
+    /// Maps that differ from `fit`, the nearest first.
+    pub overrides: [Option<MapOverride>; MAX_CASCADES],
+}
+
+impl Default for CascadeSettings {
+    fn default() -> Self {
+        Self {
+            fit: FitSettings { kind: FitKind::Focused, ..FitSettings::default() },
+            count: 4,
+            splits: SplitScheme::default(),
+            overlap: 0.0,
+            stabilise: Stabilise::default(),
+            hold: HoldSettings::default(),
+            overrides: [None; MAX_CASCADES],
+        }
+    }
+}
+
 /// Biases that keep a surface from shadowing itself, in texels of the map.
 ///
 /// They are converted to depth and metres in one place, [`crate::bias`].
@@ -250,6 +357,23 @@ setters!(FitSettings {
     with_caster_extension caster_extension: f32,
     with_resolution resolution: UVec2,
     with_depth depth: DepthConvention,
+});
+
+setters!(HoldSettings {
+    with_margin margin: f32,
+    with_growth growth: f32,
+    with_waste waste: f32,
+    with_horizon horizon: u32,
+});
+
+setters!(CascadeSettings {
+    with_fit fit: FitSettings,
+    with_count count: u32,
+    with_splits splits: SplitScheme,
+    with_overlap overlap: f32,
+    with_stabilise stabilise: Stabilise,
+    with_hold hold: HoldSettings,
+    with_overrides overrides: [Option<MapOverride>; MAX_CASCADES],
 });
 
 setters!(BiasSettings {

@@ -65,6 +65,19 @@ impl View {
         Self { corners, near, far, depth, sides }
     }
 
+    /// Place of a point in the picture: 0..1 from left to right and from top to bottom. The point
+    /// is not before the near plane.
+    pub(crate) fn picture_position(&self, p: DVec3) -> [f64; 2] {
+        // Sides 0 to 3 are top, right, bottom, left; each is measured in what the opposite end of
+        // the far rectangle has.
+        let share = |one: usize, other: usize, at_other: usize, at_one: usize| {
+            let a = self.sides[one].distance(p) / self.sides[one].distance(self.corners[at_other]);
+            let b = self.sides[other].distance(p) / self.sides[other].distance(self.corners[at_one]);
+            a / (a + b)
+        };
+        [share(3, 1, 5, 4), share(0, 2, 7, 4)]
+    }
+
     /// Corners of the rectangle at a view depth.
     fn rectangle(&self, depth: f64) -> [DVec3; 4] {
         let t = (depth - self.near) / (self.far - self.near);

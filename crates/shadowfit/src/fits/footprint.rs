@@ -102,6 +102,17 @@ impl<'a> Content<'a> {
         Ok(())
     }
 
+    /// Gives each receiver's box that reaches into one of the views.
+    pub(crate) fn each_receiver(&self, view: usize, mut visit: impl FnMut(DVec3, DVec3)) {
+        let Some(receivers) = &self.receivers else { return };
+        let offset = receivers.origin - self.origin;
+        let depths = self.depths.chunks(receivers.boxes.len().max(1)).nth(view).unwrap_or_default();
+        for (aabb, _) in receivers.boxes.iter().zip(depths).filter(|(_, depths)| depths.x <= depths.y) {
+            let (min, max) = moved(aabb, offset);
+            visit(min, max);
+        }
+    }
+
     /// Corners of the views' slices.
     pub(crate) fn corners(&self, range: Range) -> impl Iterator<Item = DVec3> {
         self.views().flat_map(move |view| {

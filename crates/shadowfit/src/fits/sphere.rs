@@ -97,7 +97,7 @@ pub(crate) fn volume(
 }
 
 /// The minimal sphere around all views' slices.
-fn around(content: &Content, range: Range) -> Result<Sphere, FitError> {
+pub(crate) fn around(content: &Content, range: Range) -> Result<Sphere, FitError> {
     let mut corners = [DVec3::ZERO; 8 * MAX_VIEWS];
     let mut len = 0;
     for corner in content.corners(range) {

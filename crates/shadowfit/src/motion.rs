@@ -1,0 +1,81 @@
+//! Where the camera will be if it goes on as it does.
+//!
+//! A map that is to be kept for a while has to cover what comes into view meanwhile. The last two
+//! frames' views tell how the camera turns and moves; steady motion is the best guess.
+
+use glam::{DVec3, Vec3};
+
+use crate::{ViewFrustum, checks};
+
+/// The step of a view from one frame to the next.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Motion {
+    /// Rotation about the eye, as the world axes' images.
+    turn: [DVec3; 3],
+    /// Movement of the eye, in metres.
+    step: DVec3,
+}
+
+/// Difference of two views' corners, as a share of their distance, above which the lens has
+/// changed and nothing is foretold.
+const SAME_LENS: f64 = 1e-4;
+
+/// Orthonormal axes of a view; `None` for a view without them.
+fn axes(view: &ViewFrustum) -> Option<[DVec3; 3]> {
+    let forward = view.forward.as_dvec3();
+    let right = (view.corners[5] - view.corners[4]).as_dvec3();
+    let up = right.cross(forward);
+    let right = forward.cross(up);
+    let (r, u, f) = (checks::length(right), checks::length(up), checks::length(forward));
+    if r > 0.0 && u > 0.0 && f > 0.0 { Some([right / r, up / u, forward / f]) } else { None }
+}
+
+impl Motion {
+    /// The step between two views, if they look through the same lens.
+    pub(crate) fn between(before: &ViewFrustum, now: &ViewFrustum) -> Option<Self> {
+        let (a, b) = (axes(before)?, axes(now)?);
+        // Σ bᵢ aᵢᵀ takes one view's axes to the other's.
+        let image = |v: DVec3| b[0] * a[0].dot(v) + b[1] * a[1].dot(v) + b[2] * a[2].dot(v);
+        let motion =
+            Self { turn: [image(DVec3::X), image(DVec3::Y), image(DVec3::Z)], step: now.origin - before.origin };
+        let expected = motion.after(before, 1);
+        let apart = |i: usize| checks::length((expected.corners[i] - now.corners[i]).as_dvec3());
+        let far = checks::length(now.corners[4].as_dvec3());
+        if (0..8).all(|i| apart(i) <= SAME_LENS * far) { Some(motion) } else { None }
+    }
+
+    /// Whether the view stands still.
+    pub(crate) fn is_still(&self) -> bool {
+        let turn = self.turn;
+        let turned = (turn[0] - DVec3::X).abs().max((turn[1] - DVec3::Y).abs()).max((turn[2] - DVec3::Z).abs());
+        self.step == DVec3::ZERO && turned.max_element() < STILL
+    }
+
+    /// A view after so many more frames of the same motion.
+    pub(crate) fn after(&self, view: &ViewFrustum, frames: u32) -> ViewFrustum {
+        let mut turn = [DVec3::X, DVec3::Y, DVec3::Z];
+        let mut power = self.turn;
+        let mut left = frames;
+        while left > 0 {
+            if left & 1 == 1 {
+                turn = turn.map(|v| apply(&power, v));
+            }
+            power = power.map(|v| apply(&power, v));
+            left >>= 1;
+        }
+        let turned = |v: Vec3| apply(&turn, v.as_dvec3()).as_vec3();
+        ViewFrustum {
+            origin: view.origin + self.step * f64::from(frames),
+            corners: view.corners.map(turned),
+            forward: turned(view.forward),
+            ..*view
+        }
+    }
+}
+
+/// Turn below which a view counts as still, in radians: the rounding of f32 corners.
+const STILL: f64 = 1e-6;
+
+fn apply(matrix: &[DVec3; 3], v: DVec3) -> DVec3 {
+    matrix[0] * v.x + matrix[1] * v.y + matrix[2] * v.z
+}

@@ -1,0 +1,145 @@
+//! How large the map of any run of depth bins would be.
+//!
+//! Each bin keeps the extent of what it holds along fixed directions in the light's plane; a run's
+//! extent is the greatest of its bins', and the best of the rectangles that stand on those
+//! directions tells how large its map will be, without fitting it.
+
+use glam::{DVec2, DVec3};
+
+use super::{BINS, Bins, Chooser};
+use crate::axes::LightAxes;
+use crate::fits::{Range, rectangle_kind, sphere};
+use crate::grid;
+use crate::settings::{FitKind, RectangleKind, Stabilise};
+
+/// Directions over half a turn; the one a quarter turn further on is the other side's.
+const DIRECTIONS: usize = 32;
+
+/// Estimated texel size of the map of each run of bins, in map widths (metres per map).
+pub(super) struct Sizes {
+    /// By first bin and number of bins less one; log2 of metres.
+    log: [[f32; BINS]; BINS],
+}
+
+impl Sizes {
+    pub(super) fn new(chooser: &Chooser, bins: &Bins) -> Self {
+        match chooser.fit.kind {
+            FitKind::Sphere => Self::of_spheres(chooser, bins),
+            _ => Self::of_rectangles(chooser, bins),
+        }
+    }
+
+    /// log2 of the extent of the bins `first..end`, in metres.
+    pub(super) fn log_extent(&self, first: usize, end: usize) -> f32 {
+        self.log[first][end - first - 1]
+    }
+
+    fn fill(mut extent: impl FnMut(usize, usize) -> f64) -> Self {
+        let mut log = [[f32::MIN; BINS]; BINS];
+        for (first, row) in log.iter_mut().enumerate() {
+            for end in first + 1..=BINS {
+                row[end - first - 1] = libm::log2(extent(first, end)) as f32;
+            }
+        }
+        Self { log }
+    }
+
+    fn of_spheres(chooser: &Chooser, bins: &Bins) -> Self {
+        let starts: [f64; BINS + 1] = core::array::from_fn(|bin| bins.start(bin));
+        Self::fill(|first, end| {
+            // The first map reaches to the near plane.
+            let near = if first == 0 { f64::from(chooser.range.near) } else { starts[first] };
+            let range = Range { near: near as f32, far: starts[end] as f32 };
+            let radius = sphere::around(chooser.content, range).map_or(starts[end], |sphere| sphere.radius);
+            grid::quantised(2.0 * radius)
+        })
+    }
+
+    fn of_rectangles(chooser: &Chooser, bins: &Bins) -> Self {
+        let axes = chooser.light.axes();
+        let mut extents = [Dop::EMPTY; BINS];
+        for (bin, dop) in extents.iter_mut().enumerate() {
+            let range = Range { near: bins.start(bin) as f32, far: bins.start(bin + 1) as f32 };
+            dop.collect(chooser, &axes, range);
+        }
+        let kind = rectangle_kind(&chooser.fit);
+        let is_snapped = chooser.settings.stabilise == Stabilise::Snap;
+        let mut run = Dop::EMPTY;
+        Self::fill(|first, end| {
+            if end == first + 1 {
+                run = Dop::EMPTY;
+            }
+            run = run.union(&extents[end - 1]);
+            let size = run.size(kind);
+            if is_snapped { grid::quantised(size) } else { size }
+        })
+    }
+}
+
+/// Least and greatest coordinates along the fixed directions.
+#[derive(Clone, Copy)]
+struct Dop {
+    min: [f32; DIRECTIONS],
+    max: [f32; DIRECTIONS],
+}
+
+impl Dop {
+    const EMPTY: Self = Self { min: [f32::MAX; DIRECTIONS], max: [f32::MIN; DIRECTIONS] };
+
+    fn union(&self, other: &Self) -> Self {
+        Self {
+            min: core::array::from_fn(|i| self.min[i].min(other.min[i])),
+            max: core::array::from_fn(|i| self.max[i].max(other.max[i])),
+        }
+    }
+
+    fn push(&mut self, directions: &[DVec2; DIRECTIONS], p: DVec2) {
+        for (i, direction) in directions.iter().enumerate() {
+            let along = p.dot(*direction) as f32;
+            self.min[i] = self.min[i].min(along);
+            self.max[i] = self.max[i].max(along);
+        }
+    }
+
+    /// Collects what a map of a range would hold.
+    fn collect(&mut self, chooser: &Chooser, axes: &LightAxes, range: Range) {
+        let directions = directions();
+        let mut push = |p: DVec3| {
+            self.push(&directions, axes.project(p).truncate());
+            Ok::<(), core::convert::Infallible>(())
+        };
+        let content = chooser.content;
+        let Ok(()) = if chooser.fit.kind == FitKind::Focused && content.receivers.is_some() {
+            content.receivers_in(range, |_, slice, min, max| slice.clip(min, max, &mut push))
+        } else {
+            content.corners(range).try_for_each(push)
+        };
+    }
+
+    /// Longer side of the rectangle around this extent, in metres; tiny where there is none.
+    fn size(&self, kind: RectangleKind) -> f64 {
+        const QUARTER: usize = DIRECTIONS / 2;
+        let length = |i: usize| f64::from(self.max[i]) - f64::from(self.min[i]);
+        let mut best = (f64::MAX, 0.0);
+        let last = if kind == RectangleKind::AxisAligned { 1 } else { QUARTER };
+        for i in 0..last {
+            let (a, b) = (length(i), length(i + QUARTER));
+            let cost = if kind == RectangleKind::MinimumSquare { a.max(b) } else { a * b };
+            if cost < best.0 {
+                best = (cost, a.max(b));
+            }
+        }
+        best.1.max(SMALLEST)
+    }
+}
+
+/// Extent that stands for an empty run, in metres.
+const SMALLEST: f64 = 1e-6;
+
+/// Unit vectors at even angles over half a turn.
+fn directions() -> [DVec2; DIRECTIONS] {
+    core::array::from_fn(|i| {
+        let (sin, cos) = libm::sincos(core::f64::consts::PI * i as f64 / DIRECTIONS as f64);
+        DVec2::new(cos, sin)
+    })
+}

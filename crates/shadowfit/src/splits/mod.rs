@@ -1,0 +1,198 @@
+//! Where one map ends and the next begins.
+//!
+//! Cascades give each range of view depths a map of its own. Fixed schemes place the cuts by depth
+//! alone; the ones that look at the content place them where the most visible pixels gain.
+
+mod extents;
+mod histogram;
+mod optimise;
+mod visible;
+
+use crate::checks;
+use crate::fits::{Content, Light, Range};
+use crate::settings::{CascadeSettings, FitKind, FitSettings, SplitScheme};
+use crate::{FitError, MAX_CASCADES};
+
+use extents::Sizes;
+pub use histogram::DepthHistogram;
+use optimise::{Cuts as BinCuts, least_quantile, quantile};
+
+/// Cuts of all maps, in metres of view depth: map i covers `cuts[i]..cuts[i + 1]`.
+pub(crate) type Cuts = [f32; MAX_CASCADES + 1];
+
+/// Bins of log view depth that the content is sorted into.
+pub(crate) const BINS: usize = 64;
+
+/// Bins at even steps of log view depth.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bins {
+    near: f64,
+    far: f64,
+    log_near: f64,
+    log_step: f64,
+}
+
+impl Bins {
+    fn new(near: f64, far: f64) -> Self {
+        let (log_near, log_far) = (libm::log2(near), libm::log2(far));
+        Self { near, far, log_near, log_step: (log_far - log_near) / BINS as f64 }
+    }
+
+    /// View depth at which a bin begins, in metres.
+    fn start(&self, bin: usize) -> f64 {
+        match bin {
+            0 => self.near,
+            BINS => self.far,
+            _ => libm::exp2(self.log_near + self.log_step * bin as f64),
+        }
+    }
+
+    /// The bin whose beginning is nearest to a view depth.
+    fn nearest(&self, depth: f64) -> usize {
+        let place = (libm::log2(depth.max(self.near)) - self.log_near) / self.log_step;
+        (libm::round(place) as usize).min(BINS)
+    }
+
+    /// The bin of a view depth; depths outside go to the first or the last.
+    fn of(&self, depth: f64) -> usize {
+        let bin = (libm::log2(depth.max(self.near)) - self.log_near) / self.log_step;
+        (bin as usize).min(BINS - 1)
+    }
+}
+
+/// Shares of the visible points in each bin.
+pub(crate) type Weights = [f64; BINS];
+
+/// The cuts of a fixed scheme over a range of view depths: `count` maps.
+///
+/// Uniform and logarithmic cuts are the two ends between which the practical scheme of parallel-split shadow
+/// maps lies (F. Zhang, H. Sun, L. Xu, L. K. Lun, "Parallel-split shadow maps for large-scale
+/// virtual environments", 2006): `λ log + (1 - λ) uniform`.
+pub(crate) fn practical(near: f64, far: f64, count: usize, lambda: f64) -> Cuts {
+    let mut cuts = [far as f32; MAX_CASCADES + 1];
+    for (i, cut) in cuts.iter_mut().enumerate().take(count) {
+        let share = i as f64 / count as f64;
+        let uniform = near + (far - near) * share;
+        let logarithmic = near * libm::exp2(libm::log2(far / near) * share);
+        *cut = (lambda * logarithmic + (1.0 - lambda) * uniform) as f32;
+    }
+    cuts
+}
+
+/// Where the maps' ranges begin and end by the settings, and how good the content's cuts are: the
+/// 95% quantile of texel size per view depth that they are expected to give.
+pub(crate) struct Choice {
+    pub(crate) cuts: Cuts,
+    pub(crate) quality: f64,
+}
+
+/// Everything a choice of cuts depends on.
+pub(crate) struct Chooser<'a, 'b> {
+    pub(crate) content: &'a Content<'b>,
+    pub(crate) light: Light,
+    pub(crate) fit: FitSettings,
+    pub(crate) settings: &'a CascadeSettings,
+    pub(crate) histogram: Option<DepthHistogram<'b>>,
+    /// What is shadowed at all.
+    pub(crate) range: Range,
+}
+
+impl Chooser<'_, '_> {
+    /// The depths between which the maps are spread: those of the receivers in view, if known.
+    pub(crate) fn spread(&self) -> (f64, f64) {
+        let (near, far) = (f64::from(self.range.near), f64::from(self.range.far));
+        let (near, far) = match self.content.depth_range() {
+            Some((first, last)) => (first.max(near), last.min(far)),
+            None => (near, far),
+        };
+        // Logarithms need a positive near end; no view of a scene has more octaves than this.
+        let near = near.max(far * NEAREST);
+        if near < far { (near, far) } else { (far * 0.5, far) }
+    }
+
+    /// The cuts by the settings' scheme over the given depths.
+    pub(crate) fn choose(&self, spread: (f64, f64)) -> Result<Choice, FitError> {
+        let count = self.settings.count as usize;
+        let (near, far) = spread;
+        let cuts = match self.settings.splits {
+            SplitScheme::Uniform => practical(near, far, count, 0.0),
+            SplitScheme::Logarithmic => practical(near, far, count, 1.0),
+            SplitScheme::Practical(lambda) => {
+                let lambda = checks::within("the splits' lambda", f64::from(lambda), 0.0, 1.0)?;
+                practical(near, far, count, lambda)
+            }
+            SplitScheme::Manual(cuts) => manual(&cuts, count, self.range)?,
+            SplitScheme::FromBoxes | SplitScheme::FromHistogram => return Ok(self.by_content(spread)),
+        };
+        Ok(Choice { cuts: self.whole(cuts, far), quality: 0.0 })
+    }
+
+    /// The same cuts, ascending, from the near end of what is shadowed to the far end of the
+    /// receivers; where those are clipped to the view anyway, to the far end of what is shadowed.
+    fn whole(&self, mut cuts: Cuts, far: f64) -> Cuts {
+        let count = self.settings.count as usize;
+        let end = if self.fit.kind == FitKind::Focused { self.range.far } else { far as f32 };
+        cuts[0] = self.range.near;
+        for i in 1..=MAX_CASCADES {
+            cuts[i] = if i >= count { end } else { cuts[i].max(cuts[i - 1]).min(end) };
+        }
+        cuts
+    }
+
+    /// The cuts that suit what is visible.
+    fn by_content(&self, spread: (f64, f64)) -> Choice {
+        let bins = Bins::new(spread.0, spread.1);
+        let (weights, sizes) = (self.weights(&bins), Sizes::new(self, &bins));
+        let BinCuts { bins: chosen, quality } = least_quantile(&bins, &weights, &sizes, self.settings.count as usize);
+        let mut cuts = [0.0; MAX_CASCADES + 1];
+        for (cut, bin) in cuts.iter_mut().zip(chosen) {
+            *cut = bins.start(bin) as f32;
+        }
+        Choice { cuts: self.whole(cuts, spread.1), quality }
+    }
+
+    /// Whether cuts of an earlier frame still do for this one's depths.
+    pub(crate) fn serves(&self, cuts: &Cuts, held: (f64, f64), now: (f64, f64)) -> bool {
+        let count = self.settings.count as usize;
+        let waste = f64::from(self.settings.hold.waste);
+        let reaches = f64::from(cuts[count]) >= now.1.min(f64::from(self.range.far));
+        if !reaches || f64::from(cuts[0]) != f64::from(self.range.near) || now.1 * waste < held.1 {
+            return false;
+        }
+        if !matches!(self.settings.splits, SplitScheme::FromBoxes | SplitScheme::FromHistogram) {
+            return now.0 >= held.0 / waste && now.0 <= held.0 * waste;
+        }
+        let bins = Bins::new(now.0, now.1);
+        let (weights, sizes) = (self.weights(&bins), Sizes::new(self, &bins));
+        let best = least_quantile(&bins, &weights, &sizes, count);
+        let mut chosen = [BINS; MAX_CASCADES + 1];
+        for (bin, cut) in chosen.iter_mut().zip(cuts).take(count) {
+            *bin = bins.nearest(f64::from(*cut));
+        }
+        quantile(&bins, &weights, &sizes, &chosen[..=count]) <= best.quality + libm::log2(waste)
+    }
+
+    fn weights(&self, bins: &Bins) -> Weights {
+        match (self.settings.splits, &self.histogram) {
+            (SplitScheme::FromHistogram, Some(histogram)) if !histogram.is_empty() => histogram.weights(bins),
+            _ => visible::weights(self.content, bins),
+        }
+    }
+}
+
+/// Nearest view depth that maps are spread from, as a share of the farthest.
+const NEAREST: f64 = 1.0 / 65_536.0;
+
+/// Cuts given by hand.
+fn manual(given: &[f32; MAX_CASCADES - 1], count: usize, range: Range) -> Result<Cuts, FitError> {
+    let mut cuts = [range.far; MAX_CASCADES + 1];
+    cuts[0] = range.near;
+    for i in 1..count {
+        let cut = checks::finite("a manual cut", f64::from(given[i - 1]))? as f32;
+        if cut <= cuts[i - 1] {
+            return Err(FitError::NearNotBelowFar { near: cuts[i - 1], far: cut });
+        }
+        cuts[i] = cut;
+    }
+    Ok(cuts)
+}

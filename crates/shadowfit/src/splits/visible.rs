@@ -1,0 +1,117 @@
+//! Which depths are visible, by what the boxes alone tell: the nearest box along each ray of a
+//! coarse grid.
+//!
+//! A box is not its surface, so this is a guess; where it errs, maps are less sharp than they
+//! could be, and nothing else.
+
+use glam::DVec3;
+
+use super::{BINS, Bins, Weights};
+use crate::fits::Content;
+use crate::view::{View, box_corners};
+
+/// Rays across the picture.
+const COLUMNS: usize = 48;
+/// Rays down the picture.
+const ROWS: usize = 27;
+
+/// Shares of the rays that first meet a box in each bin; even ones where no box is known.
+pub(super) fn weights(content: &Content, bins: &Bins) -> Weights {
+    let mut weights = [0.0; BINS];
+    let mut total = 0.0;
+    for (view_index, view) in content.views().enumerate() {
+        let mut depths = [f32::MAX; COLUMNS * ROWS];
+        let grid = Grid::new(&view);
+        content.each_receiver(view_index, |min, max| grid.meet(&view, min, max, &mut depths));
+        for depth in depths.into_iter().filter(|depth| *depth < f32::MAX) {
+            weights[bins.of(f64::from(depth))] += 1.0;
+            total += 1.0;
+        }
+    }
+    if total == 0.0 {
+        return [1.0 / BINS as f64; BINS];
+    }
+    weights.map(|weight| weight / total)
+}
+
+/// Rays through a picture, from its near to its far rectangle.
+struct Grid {
+    start: [DVec3; 4],
+    end: [DVec3; 4],
+}
+
+impl Grid {
+    fn new(view: &View) -> Self {
+        let whole = view.slice(view.near, view.far);
+        let corners = |i: usize| [whole.corners[i], whole.corners[i + 1], whole.corners[i + 2], whole.corners[i + 3]];
+        Self { start: corners(0), end: corners(4) }
+    }
+
+    /// Ends of a ray.
+    fn ray(&self, column: usize, row: usize) -> (DVec3, DVec3) {
+        let (x, y) = ((column as f64 + 0.5) / COLUMNS as f64, (row as f64 + 0.5) / ROWS as f64);
+        // Left-top, right-top, right-bottom, left-bottom.
+        let at = |c: &[DVec3; 4]| (c[0] * (1.0 - x) + c[1] * x) * (1.0 - y) + (c[3] * (1.0 - x) + c[2] * x) * y;
+        (at(&self.start), at(&self.end))
+    }
+
+    /// Lets all rays meet a box.
+    fn meet(&self, view: &View, min: DVec3, max: DVec3, depths: &mut [f32; COLUMNS * ROWS]) {
+        let Some((columns, rows)) = covered(view, min, max) else { return };
+        for row in rows {
+            for column in columns.clone() {
+                let (start, end) = self.ray(column, row);
+                if let Some(t) = first_meeting(start, end, min, max) {
+                    let depth = (view.near + (view.far - view.near) * t) as f32;
+                    let nearest = &mut depths[row * COLUMNS + column];
+                    *nearest = nearest.min(depth);
+                }
+            }
+        }
+    }
+}
+
+/// Columns and rows of rays that may meet a box; all of them where it reaches before the picture.
+fn covered(view: &View, min: DVec3, max: DVec3) -> Option<(core::ops::Range<usize>, core::ops::Range<usize>)> {
+    let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
+    for corner in box_corners(min, max) {
+        if view.depth.distance(corner) < view.near {
+            return Some((0..COLUMNS, 0..ROWS));
+        }
+        let position = view.picture_position(corner);
+        for axis in 0..2 {
+            low[axis] = low[axis].min(position[axis]);
+            high[axis] = high[axis].max(position[axis]);
+        }
+    }
+    let range = |axis: usize, count: usize| {
+        let first = libm::ceil(low[axis] * count as f64 - 0.5).max(0.0);
+        let last = libm::floor(high[axis] * count as f64 - 0.5).min(count as f64 - 1.0);
+        if first > last { None } else { Some(first as usize..last as usize + 1) }
+    };
+    Some((range(0, COLUMNS)?, range(1, ROWS)?))
+}
+
+/// Share of a ray at which it enters a box; for one that begins inside, where it leaves.
+fn first_meeting(start: DVec3, end: DVec3, min: DVec3, max: DVec3) -> Option<f64> {
+    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+    for axis in 0..3 {
+        let along = end[axis] - start[axis];
+        if along == 0.0 {
+            if start[axis] < min[axis] || start[axis] > max[axis] {
+                return None;
+            }
+            continue;
+        }
+        let (a, b) = ((min[axis] - start[axis]) / along, (max[axis] - start[axis]) / along);
+        enter = enter.max(a.min(b));
+        leave = leave.min(a.max(b));
+    }
+    if enter > leave {
+        None
+    } else if enter > 0.0 {
+        Some(enter)
+    } else {
+        Some(leave)
+    }
+}
