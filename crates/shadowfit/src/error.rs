@@ -76,6 +76,15 @@ pub enum FitError {
         /// Number of elements that the call needs at least.
         required: usize,
     },
+    /// The input has another number of elements than what it is to go with.
+    CountMismatch {
+        /// Name of the number.
+        input: &'static str,
+        /// Its value.
+        given: usize,
+        /// The value that would go.
+        expected: usize,
+    },
     /// The shadow map has no texels.
     ZeroResolution {
         /// The resolution asked for, in texels.
@@ -118,6 +127,9 @@ impl fmt::Display for FitError {
             Self::NoView => write!(f, "there is no view to fit to; give at least one frustum"),
             Self::WorkspaceTooSmall { given, required } => {
                 write!(f, "the workspace has {given} elements and needs {required}; see Workspace::required")
+            }
+            Self::CountMismatch { input, given, expected } => {
+                write!(f, "{input} is {given}; give {expected} as before, or build anew")
             }
             Self::ZeroResolution { resolution } => {
                 write!(f, "the map's resolution is {resolution}; give at least one texel each way")

@@ -3,6 +3,7 @@
 mod bad_input;
 mod bias;
 mod caster;
+mod clusters;
 mod conventions;
 mod diagnostics;
 mod frustum;

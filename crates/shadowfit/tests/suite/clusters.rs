@@ -1,0 +1,228 @@
+//! Clusters hold their triangles, keep their limit and tell of their normals nothing that is untrue.
+
+use proptest::collection::vec;
+use proptest::prelude::*;
+use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::{Aabb, Clusters, FitError, NormalCone};
+
+use crate::support::{any_direction, double, float};
+
+type Triangle = [Vec3; 3];
+
+fn point(reach: f64) -> impl Strategy<Value = Vec3> {
+    (float(-reach, reach), float(-reach, reach), float(-reach, reach)).prop_map(|(x, y, z)| Vec3::new(x, y, z))
+}
+
+/// Triangles of all sizes, some of them flat in an axis or without area.
+fn triangle() -> impl Strategy<Value = Triangle> {
+    let size = prop_oneof![Just(0.0_f32), Just(1e-3), Just(1.0), Just(30.0)];
+    let flat = prop_oneof![Just(Vec3::ONE), Just(Vec3::new(1.0, 0.0, 1.0)), Just(Vec3::ZERO.with_y(1.0))];
+    (point(20.0), size, flat, [point(1.0), point(1.0), point(1.0)])
+        .prop_map(|(middle, size, flat, corners)| corners.map(|corner| middle + corner * flat * size))
+}
+
+/// Up to six objects of up to 60 triangles each, some without any.
+fn objects() -> impl Strategy<Value = Vec<Vec<Triangle>>> {
+    vec(vec(triangle(), 0..60), 0..6)
+}
+
+fn slices(objects: &[Vec<Triangle>]) -> Vec<&[Triangle]> {
+    objects.iter().map(Vec::as_slice).collect()
+}
+
+/// A bowl of `n` by `n` quads, one metre each.
+fn bowl(n: usize) -> Vec<Triangle> {
+    let at = |x: usize, z: usize| Vec3::new(x as f32, (x * x + z * z) as f32 * 0.05, z as f32);
+    let quad = |x, z| {
+        let (a, b, c, d) = (at(x, z), at(x, z + 1), at(x + 1, z + 1), at(x + 1, z));
+        [[a, b, c], [a, c, d]]
+    };
+    (0..n * n).flat_map(|i| quad(i % n, i / n)).collect()
+}
+
+fn holds(aabb: &Aabb, p: Vec3) -> bool {
+    p.cmpge(aabb.min).all() && p.cmple(aabb.max).all()
+}
+
+/// Vectors to compare bit by bit.
+fn bits(clusters: &Clusters) -> Vec<u32> {
+    let boxes = clusters.boxes().iter().flat_map(|b| [b.min.to_array(), b.max.to_array()]).flatten();
+    let cones = clusters.cones().iter().flat_map(|c| c.axis.extend(c.cos_half_angle).to_array());
+    boxes.chain(cones).map(f32::to_bits).collect()
+}
+
+/// Cubic metres in all boxes.
+fn volume(clusters: &Clusters) -> f32 {
+    clusters.boxes().iter().map(|b| (b.max - b.min).element_product()).sum()
+}
+
+proptest! {
+    #[test]
+    fn every_point_of_every_triangle_lies_in_a_box_of_its_clusters(
+        objects in objects(), limit in 1_usize..200, (u, v) in (double(0.0, 1.0), double(0.0, 1.0)),
+    ) {
+        let clusters = Clusters::build(&slices(&objects), limit).unwrap();
+        let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+        for (o, triangles) in (0..).zip(&objects) {
+            for (t, [a, b, c]) in (0..).zip(triangles) {
+                let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
+                let mut own = (0..clusters.boxes().len()).filter(|&i| clusters.triangles(i).any(|key| key == (o, t)));
+                let p = a + (b - a) * u + (c - a) * v;
+                // The f32 next to the point may lie outside by half a step of its coordinates.
+                let grown = |b: &Aabb| Aabb { min: b.min - 4e-6, max: b.max + 4e-6 };
+                prop_assert!(own.any(|i| holds(&grown(&clusters.boxes()[i]), p.as_vec3())));
+            }
+        }
+    }
+
+    #[test]
+    fn the_limit_holds_and_objects_are_not_mixed(objects in objects(), limit in 1_usize..200) {
+        let clusters = Clusters::build(&slices(&objects), limit).unwrap();
+        let filled = objects.iter().filter(|triangles| !triangles.is_empty()).count();
+        prop_assert!(clusters.boxes().len() <= limit.max(filled));
+        prop_assert_eq!(clusters.boxes().len(), clusters.cones().len());
+        let mut last = 0;
+        for (i, aabb) in clusters.boxes().iter().enumerate() {
+            prop_assert!(!aabb.is_empty());
+            let object = clusters.triangles(i).next().unwrap().0;
+            prop_assert!(object >= last, "objects follow one another");
+            prop_assert!(clusters.triangles(i).all(|(o, _)| o == object));
+            last = object;
+        }
+        prop_assert_eq!(clusters.triangles(clusters.boxes().len()).len(), 0);
+        prop_assert_eq!(clusters.triangles(usize::MAX).len(), 0);
+    }
+
+    #[test]
+    fn the_same_triangles_give_the_same_bits(objects in objects(), limit in 1_usize..200) {
+        let build = || Clusters::build(&slices(&objects), limit).unwrap();
+        prop_assert_eq!(bits(&build()), bits(&build()));
+    }
+
+    #[test]
+    fn refitted_to_the_same_places_nothing_changes(objects in objects(), limit in 1_usize..200) {
+        let clusters = Clusters::build(&slices(&objects), limit).unwrap();
+        let mut again = clusters.clone();
+        again.refit(&slices(&objects)).unwrap();
+        prop_assert_eq!(bits(&clusters), bits(&again));
+    }
+
+    #[test]
+    fn what_faces_away_has_no_lit_side_that_the_eye_sees(
+        triangles in vec(triangle(), 1..4),
+        lift in float(-3.0, 30.0),
+        (eye, to_light) in (point(60.0), any_direction()),
+        picks in vec((double(0.0, 1.0), double(0.0, 1.0), double(0.0, 1.0)), 20),
+    ) {
+        let clusters = Clusters::build(&[&triangles], 1).unwrap();
+        let (bounds, cone) = (clusters.boxes()[0], clusters.cones()[0]);
+        let eye = eye + cone.axis * lift;
+        if cone.faces_away(&bounds, eye, to_light) {
+            for [a, b, c] in triangles.iter().map(|triangle| triangle.map(Vec3::as_dvec3)) {
+                let n = (b - a).cross(c - a).normalize_or_zero();
+                for (x, y, z) in &picks {
+                    let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+                    let p = min + (max - min) * DVec3::new(*x, *y, *z);
+                    prop_assert!(n.dot(eye.as_dvec3() - p) * n.dot(to_light.as_dvec3()) <= 0.0);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_moved_object_refits_to_the_boxes_of_a_fresh_build() {
+    let there = bowl(12);
+    // Powers of two, so that no coordinate is rounded on the way.
+    let here: Vec<Triangle> =
+        there.iter().map(|corners| corners.map(|p| (p * 8.0).round() / 8.0 + Vec3::new(64.0, -32.0, 8.0))).collect();
+    let there: Vec<Triangle> = there.iter().map(|corners| corners.map(|p| (p * 8.0).round() / 8.0)).collect();
+    let mut moved = Clusters::build(&[&there], 40).unwrap();
+    moved.refit(&[&here]).unwrap();
+    assert_eq!(bits(&moved), bits(&Clusters::build(&[&here], 40).unwrap()));
+}
+
+#[test]
+fn each_object_has_a_box_even_beyond_the_limit() {
+    let objects: Vec<Vec<Triangle>> = (0..5).map(|i| vec![[Vec3::splat(i as f32), Vec3::X, Vec3::Y]]).collect();
+    assert_eq!(Clusters::build(&slices(&objects), 2).unwrap().boxes().len(), 5);
+}
+
+#[test]
+fn more_clusters_hold_less_air() {
+    let triangles = bowl(20);
+    let mut before = f32::MAX;
+    for limit in [1, 4, 16, 64, 256] {
+        let air = volume(&Clusters::build(&[&triangles], limit).unwrap());
+        assert!(air < before, "{limit} clusters: {air} after {before}");
+        before = air;
+    }
+}
+
+#[test]
+fn triangles_in_one_place_make_one_cluster() {
+    let same = vec![[Vec3::ZERO, Vec3::X, Vec3::Y]; 100];
+    let points = vec![[Vec3::ONE; 3]; 100];
+    let clusters = Clusters::build(&[&same, &points], usize::MAX).unwrap();
+    assert_eq!(clusters.cones()[1], NormalCone::ALL);
+    assert_eq!(clusters.boxes().last(), Some(&Aabb::new(Vec3::ONE, Vec3::ONE)));
+    for clusters in [Clusters::build(&[], 1), Clusters::build(&[&[], &[]], usize::MAX)] {
+        assert!(clusters.unwrap().boxes().is_empty());
+    }
+}
+
+#[test]
+fn extreme_coordinates_are_kept() {
+    for scale in [1e-45_f32, 1e-30, 1.0, 1e18] {
+        let triangles: Vec<Triangle> = [Vec3::ZERO, Vec3::X, Vec3::NEG_Y, Vec3::ONE]
+            .map(|p| [p * scale, (p * 0.5 + Vec3::Z * 0.25) * scale, p * 0.1 * scale])
+            .to_vec();
+        let clusters = Clusters::build(&[&triangles], 4).unwrap();
+        for i in 0..clusters.boxes().len() {
+            assert!(clusters.boxes()[i].min.is_finite() && clusters.boxes()[i].max.is_finite());
+            assert!(clusters.cones()[i].axis.is_finite());
+        }
+    }
+}
+
+#[test]
+fn ground_lit_from_below_faces_away_from_the_light() {
+    let ground = [[Vec3::new(-9.0, 0.0, -9.0), Vec3::new(0.0, 0.0, 9.0), Vec3::new(9.0, 0.0, -9.0)]];
+    let clusters = Clusters::build(&[&ground], 1).unwrap();
+    let (bounds, cone) = (clusters.boxes()[0], clusters.cones()[0]);
+    let (above, below) = (Vec3::new(3.0, 0.1, 3.0), Vec3::new(3.0, -0.1, 3.0));
+    let (up, down) = (Vec3::new(0.1, 0.2, 0.3), Vec3::new(0.1, -0.2, 0.3));
+    assert!(cone.faces_away(&bounds, above, down) && cone.faces_away(&bounds, below, up));
+    assert!(!cone.faces_away(&bounds, above, up) && !cone.faces_away(&bounds, below, down));
+    assert!(!cone.faces_away(&bounds, Vec3::ZERO, up), "an eye in the ground sees both sides");
+    assert!(!NormalCone::ALL.faces_away(&bounds, above, down));
+    for bad in [f32::NAN, f32::INFINITY] {
+        let far = Vec3::splat(bad);
+        assert!(!cone.faces_away(&bounds, far, down) && !cone.faces_away(&bounds, above, far));
+        assert!(!NormalCone { axis: far, ..cone }.faces_away(&bounds, above, down));
+        assert!(!NormalCone { cos_half_angle: -bad, ..cone }.faces_away(&bounds, above, down));
+    }
+    assert!(!cone.faces_away(&Aabb::EMPTY, above, down));
+}
+
+#[test]
+fn bad_positions_limits_and_counts_are_refused() {
+    let good = [[Vec3::ZERO, Vec3::X, Vec3::Y]];
+    let mut clusters = Clusters::build(&[&good, &good], 8).unwrap();
+    let before = clusters.clone();
+    for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 2e18, f32::MIN] {
+        for corner in 0..3 {
+            let mut bad = good;
+            bad[0][corner].y = value;
+            let error = Clusters::build(&[&good, &bad], 8).unwrap_err();
+            assert!(matches!(error, FitError::NotFinite { .. } | FitError::OutOfRange { .. }), "{value}: {error}");
+            assert!(clusters.refit(&[&good, &bad]).is_err());
+        }
+    }
+    assert!(matches!(Clusters::build(&[&good], 0), Err(FitError::OutOfRange { value: 0.0, .. })));
+    let error = clusters.refit(&[&good]).unwrap_err();
+    assert!(matches!(error, FitError::CountMismatch { given: 1, expected: 2, .. }));
+    let error = clusters.refit(&[&good, &[]]).unwrap_err();
+    assert!(matches!(error, FitError::CountMismatch { given: 0, expected: 1, .. }), "{error}");
+    assert_eq!(clusters, before);
+}
