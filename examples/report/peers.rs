@@ -11,19 +11,14 @@ use shadowfit_truth::peers::{FitFile, Scenarios, Study, overall_markdown, to_jso
 use crate::geometry::Source;
 
 #[derive(clap::Args)]
-#[command(group = clap::ArgGroup::new("geometry").required(true))]
 pub(crate) struct Args {
     /// Scenes, cameras and lights
     scenarios: PathBuf,
     /// Maps that a fit made for each frame
     #[arg(required = true)]
     fits: Vec<PathBuf>,
-    /// Folder that the scenes' glTF files are in
-    #[arg(long, group = "geometry", value_name = "DIR")]
-    assets: Option<PathBuf>,
-    /// Folder with <scene>.f32 for each scene: 9 little-endian f32 a triangle, world space, metres
-    #[arg(long, group = "geometry", value_name = "DIR")]
-    triangles: Option<PathBuf>,
+    #[command(flatten)]
+    geometry: Source,
     /// Take every Nth ray across and down: a quick look, its figures are approximate
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=180))]
     stride: u32,
@@ -38,7 +33,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     for file in &args.fits {
         study.add(&FitFile::read(file)?, file)?;
     }
-    measure(&mut study, &source(args), args.stride)?;
+    measure(&mut study, &args.geometry, args.stride)?;
     let tables = study.tables();
     fs::create_dir_all(&args.out).with_context(|| format!("{}: cannot be made", args.out.display()))?;
     write(&args.out.join("table.json"), &to_json(&tables))?;
@@ -57,14 +52,6 @@ fn measure(study: &mut Study, source: &Source, stride: u32) -> Result<()> {
     }
     progress.finish_and_clear();
     Ok(())
-}
-
-fn source(args: &Args) -> Source {
-    match (&args.assets, &args.triangles) {
-        (Some(folder), _) => Source::Assets(folder.clone()),
-        (None, Some(folder)) => Source::Triangles(folder.clone()),
-        (None, None) => unreachable!("clap asks for one of them"),
-    }
 }
 
 fn write(file: &Path, text: &str) -> Result<()> {

@@ -1,4 +1,5 @@
 //! Triangles of the scenes that fits are compared on: from their glTF files, or from plain files of triangles.
+//! Examples include this file, with the arguments that say where the triangles are, as a module.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +8,7 @@ use glam::{DVec3, Vec3};
 use shadowfit_scene::load_gltf;
 use shadowfit_truth::peers::{Ground, Scene};
 
-/// Boxes and corners may differ by this share of the scene's size: transforms are composed in f32.
+/// Boxes may differ by this share of the scene's size: transforms are composed in f32.
 const TOLERANCE: f64 = 1e-6;
 /// Bytes of a triangle in a plain file: nine little-endian f32.
 const TRIANGLE_BYTES: usize = 36;
@@ -15,13 +16,16 @@ const TRIANGLE_BYTES: usize = 36;
 /// Corners, world space, metres.
 pub(crate) type Corners = [Vec3; 3];
 
-/// Where the triangles come from.
-#[derive(Clone, Debug)]
-pub(crate) enum Source {
-    /// The folder of assets that the scenes' glTF files are in.
-    Assets(PathBuf),
-    /// A folder with `<scene>.f32` for each scene: 9 little-endian f32 a triangle, world space, metres.
-    Triangles(PathBuf),
+/// Where the triangles come from: one of these two.
+#[derive(Clone, Debug, clap::Args)]
+#[group(required = true, multiple = false)]
+pub(crate) struct Source {
+    /// Folder that the scenes' glTF files are in
+    #[arg(long, value_name = "DIR")]
+    assets: Option<PathBuf>,
+    /// Folder with <scene>.f32 for each scene: 9 little-endian f32 a triangle, world space, metres
+    #[arg(long, value_name = "DIR")]
+    triangles: Option<PathBuf>,
 }
 
 impl Source {
@@ -32,19 +36,17 @@ impl Source {
     ///
     /// When a file cannot be read, or its triangles are not those that the scenarios speak of.
     pub(crate) fn read(&self, scene: &Scene) -> Result<Vec<Vec<Corners>>> {
-        let (file, objects) = match self {
-            Self::Assets(folder) => {
-                let file = folder.join(&scene.file);
-                let objects = read_gltf(&file, scene)?;
-                (file, objects)
-            }
-            Self::Triangles(folder) => {
-                let file = folder.join(format!("{}.f32", scene.name));
-                let triangles = read_plain(&file)?;
-                (file, vec![triangles])
-            }
-        };
-        check(scene, &objects).with_context(|| format!("{}: scene \"{}\"", file.display(), scene.name))?;
+        let at = |file: &Path| format!("{}: scene \"{}\"", file.display(), scene.name);
+        if let Some(folder) = &self.assets {
+            let file = folder.join(&scene.file);
+            let objects = read_gltf(&file, scene)?;
+            check_whole(scene, &objects).and_then(|()| check_objects(scene, &objects)).with_context(|| at(&file))?;
+            return Ok(objects);
+        }
+        let folder = self.triangles.as_ref().context("neither assets nor triangles are given")?;
+        let file = folder.join(format!("{}.f32", scene.name));
+        let objects = vec![read_plain(&file)?];
+        check_whole(scene, &objects).with_context(|| at(&file))?;
         Ok(objects)
     }
 }
@@ -86,23 +88,28 @@ fn read_plain(file: &Path) -> Result<Vec<Corners>> {
     Ok((0..length / TRIANGLE_BYTES).map(|triangle| [0, 3, 6].map(|offset| corner(triangle * 9 + offset))).collect())
 }
 
-/// Compares with what the scenarios say of the scene.
-fn check(scene: &Scene, objects: &[Vec<Corners>]) -> Result<()> {
+/// Compares with what the scenarios say of the scene as a whole.
+fn check_whole(scene: &Scene, objects: &[Vec<Corners>]) -> Result<()> {
     // Import leaves out triangles without area, which no ray meets.
     let triangles: usize = objects.iter().map(Vec::len).sum();
     ensure!(triangles <= scene.triangles, "{triangles} triangles, but the scenarios say {}", scene.triangles);
-    let [low, high] = corners_of(&scene.aabb);
-    let tolerance = (high - low).length() * TOLERANCE;
-    compare(objects.iter().flatten(), &scene.aabb, tolerance).context("aabb")?;
-    if objects.len() == 1 && scene.objects.len() != 1 {
-        return Ok(());
-    }
+    compare(objects.iter().flatten(), &scene.aabb, tolerance(scene)).context("aabb")
+}
+
+/// Compares with what the scenarios say of each object.
+fn check_objects(scene: &Scene, objects: &[Vec<Corners>]) -> Result<()> {
     let count = objects.len();
     ensure!(count == scene.objects.len(), "{count} objects, but the scenarios say {}", scene.objects.len());
     for (index, (object, wanted)) in objects.iter().zip(&scene.objects).enumerate() {
-        compare(object.iter(), wanted, tolerance).with_context(|| format!("objects[{index}]"))?;
+        compare(object.iter(), wanted, tolerance(scene)).with_context(|| format!("objects[{index}]"))?;
     }
     Ok(())
+}
+
+/// How far boxes may differ, in metres.
+fn tolerance(scene: &Scene) -> f64 {
+    let [low, high] = corners_of(&scene.aabb);
+    (high - low).length() * TOLERANCE
 }
 
 fn compare<'a>(triangles: impl Iterator<Item = &'a Corners>, wanted: &[f64; 6], tolerance: f64) -> Result<()> {

@@ -62,3 +62,43 @@ fn samples(side: DVec2) -> u32 {
 fn place(index: u32, samples: u32) -> f64 {
     (f64::from(index) + 0.5) / f64::from(samples) - 0.5
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Marked cells for a footprint of so many cells, in a map of 512 by 1024 texels, around (100, 100).
+    fn marked(across: DVec2, down: DVec2) -> usize {
+        let mut cells = Cells::default();
+        let texels_per_cell = DVec2::new(2.0, 4.0);
+        let centre = DVec2::splat(100.0) * texels_per_cell;
+        cells.mark(DVec2::new(512.0, 1024.0), centre, [across * texels_per_cell, down * texels_per_cell]);
+        (cells.share() * (CELLS * CELLS) as f64).round() as usize
+    }
+
+    #[test]
+    fn a_footprint_marks_the_cells_it_covers() {
+        assert_eq!(marked(DVec2::ZERO, DVec2::ZERO), 1);
+        assert_eq!(marked(DVec2::new(4.0, 0.0), DVec2::new(0.0, 6.0)), 24);
+        // A square that stands on its corner covers no less than its area.
+        let tilted = marked(DVec2::new(5.0, 5.0), DVec2::new(-5.0, 5.0));
+        assert!((50..=72).contains(&tilted), "{tilted}");
+    }
+
+    #[test]
+    fn sides_are_cut_to_16_cells() {
+        assert_eq!(marked(DVec2::new(90.0, 0.0), DVec2::ZERO), 16);
+    }
+
+    #[test]
+    fn what_lies_outside_or_is_not_finite_marks_nothing() {
+        let mut cells = Cells::default();
+        let size = DVec2::splat(256.0);
+        let side = [DVec2::X, DVec2::Y];
+        for centre in [DVec2::splat(-0.1), DVec2::splat(256.0), DVec2::splat(f64::NAN), DVec2::splat(f64::INFINITY)] {
+            cells.mark(size, centre, side.map(|side| side * 0.1));
+        }
+        cells.mark(size, DVec2::splat(9.0), [DVec2::splat(f64::INFINITY), DVec2::Y]);
+        assert_eq!(cells.share(), 0.0);
+    }
+}

@@ -46,9 +46,14 @@ pub(crate) fn read_json<T: DeserializeOwned>(file: &Path) -> Result<T, PeersErro
 pub(crate) fn parse_json<T: DeserializeOwned>(text: &[u8]) -> Result<T, Problem> {
     let mut json = serde_json::Deserializer::from_slice(text);
     let value = serde_path_to_error::deserialize(&mut json)
-        .map_err(|error| Problem::new(error.path().to_string(), error.inner().to_string()))?;
+        .map_err(|error| Problem::new(element(&error.path().to_string()), error.inner().to_string()))?;
     json.end().map_err(|error| Problem::new("file", error.to_string()))?;
     Ok(value)
+}
+
+/// Name for people of a path in JSON; that of the whole is "." or, where nothing was read, "?".
+fn element(path: &str) -> &str {
+    if matches!(path, "." | "?") { "file" } else { path }
 }
 
 /// A problem unless all `values` are finite.

@@ -153,3 +153,89 @@ impl FitMap {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::peers::closed_form::{Room, scenarios};
+    use crate::peers::error::parse_json;
+
+    fn fit() -> FitFile {
+        let maps = vec![Room::map(), FitMap { split_far: 1e9, resolution_xy: Some([64, 32]), ..Room::map() }];
+        let frame = |id: &str| FitFrame { id: id.to_owned(), maps: maps.clone() };
+        let frames = vec![frame("room/90/1"), frame("room/90/0")];
+        FitFile { peer: "tested".to_owned(), pancake: true, ns_per_fit: Some(0.1), frames, ..FitFile::default() }
+    }
+
+    fn file() -> &'static Path {
+        Path::new("fits/tested.json")
+    }
+
+    #[test]
+    fn a_written_file_reads_back_the_same() {
+        let folder = std::env::temp_dir().join(format!("shadowfit-fit-file-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a new folder");
+        let file = folder.join("fit.json");
+        let mut fit = fit();
+        fit.frames[0].maps[0].view_proj[5] = 0.1 + 0.2;
+        fit.write(&file).expect("written");
+        let read = FitFile::read(&file);
+        std::fs::remove_dir_all(&folder).expect("removed");
+        assert_eq!(read, Ok(fit));
+    }
+
+    #[test]
+    fn frames_in_any_order_are_put_in_that_of_the_scenarios() {
+        let mut fit = fit();
+        fit.frames[1].maps.pop();
+        let scenarios = scenarios(2);
+        let maps = fit.maps_in_order(&scenarios, file()).expect("all frames");
+        assert_eq!(maps.iter().map(|maps| maps.len()).collect::<Vec<_>>(), [1, 2]);
+    }
+
+    #[test]
+    fn a_frame_that_is_missing_unknown_or_there_twice_is_named() {
+        let scenarios = scenarios(2);
+        let refused = |ids: &[&str]| {
+            let frames = ids.iter().map(|id| FitFrame { id: (*id).to_owned(), maps: Vec::new() }).collect();
+            let fit = FitFile { frames, ..FitFile::default() };
+            fit.maps_in_order(&scenarios, file()).expect_err("refused").to_string()
+        };
+        let missing = "fits/tested.json: frames: frame \"room/90/1\" of the scenarios is missing";
+        assert_eq!(refused(&["room/90/0"]), missing);
+        let twice = "fits/tested.json: frames[1].id: frame \"room/90/0\" is there twice";
+        assert_eq!(refused(&["room/90/0", "room/90/0"]), twice);
+        let unknown = "fits/tested.json: frames[0].id: the scenarios have no frame \"hall/1/0\"";
+        assert_eq!(refused(&["hall/1/0"]), unknown);
+    }
+
+    #[test]
+    fn maps_that_make_no_sense_are_refused_by_element_and_reason() {
+        let refused = |change: fn(&mut FitMap)| {
+            let mut fit = fit();
+            change(&mut fit.frames[0].maps[1]);
+            fit.check().expect_err("refused").at(file()).to_string()
+        };
+        let place = "fits/tested.json: frames[0] (\"room/90/1\").maps[1]";
+        assert_eq!(refused(|map| map.view_proj[3] = f64::NAN), format!("{place}.view_proj: NaN is not finite"));
+        assert_eq!(refused(|map| map.view_proj = [0.0; 16]), format!("{place}.view_proj: the matrix has no inverse"));
+        assert_eq!(
+            refused(|map| map.resolution_xy = Some([0, 1])),
+            format!("{place}.resolution: the map has no texels")
+        );
+        assert_eq!(
+            refused(|map| map.split_far = 0.0),
+            format!("{place}.split_far: the maps are not in order of split_far")
+        );
+        assert!(refused(|map| map.split_far = f64::INFINITY).ends_with("split_far: inf is not finite"));
+    }
+
+    #[test]
+    fn json_of_another_shape_is_refused_by_its_path() {
+        let problem = |text: &str| parse_json::<FitFile>(text.as_bytes()).expect_err("refused").at(file()).to_string();
+        let map = r#"{"peer": "a", "frames": [{"id": "b", "maps": [{"view_proj": [1, 2], "split_far": 1}]}]}"#;
+        assert!(problem(map).starts_with("fits/tested.json: frames[0].maps[0].view_proj"), "{}", problem(map));
+        assert!(problem("{").starts_with("fits/tested.json: file: EOF"), "{}", problem("{"));
+        assert!(problem("{\"peer\": \"a\", \"frames\": []} x").contains("trailing"));
+    }
+}

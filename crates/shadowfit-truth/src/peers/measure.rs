@@ -9,8 +9,6 @@ use super::visible::{VisiblePoint, VisiblePoints};
 
 /// Points with a smaller cosine toward the light have no say in the texel errors.
 const LEAST_FACING: f64 = 0.05;
-/// Side of the footprint of a ray, in pixels.
-const FOOTPRINT: f64 = 6.0;
 /// An occluder is in the map up to this depth behind the receiver, and before the near plane.
 const OCCLUDER_DEPTH_TOLERANCE: f64 = 1e-6;
 /// Every so many visible points one is followed into the frame before.
@@ -54,7 +52,7 @@ pub fn measure(visible: &VisiblePoints, frame: &FrameMaps) -> Tally {
         let jacobian = [point.pixel_right, point.pixel_down]
             .map(|pixel| DVec2::new(choice.gradients.u.dot(pixel), choice.gradients.v.dot(pixel)));
         add_error(&mut tally, point, &choice, jacobian);
-        let footprint = jacobian.map(|column| column * FOOTPRINT);
+        let footprint = jacobian.map(|column| column * visible.pixels_per_ray);
         cells[choice.index].get_or_insert_default().mark(choice.map.size, choice.place.texel, footprint);
         if point.number.is_multiple_of(SHIMMER_STEP) {
             add_shimmer(&mut tally.shimmer, point, &choice, frame.previous);

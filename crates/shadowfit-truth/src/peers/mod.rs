@@ -6,6 +6,8 @@
 //! right-handed, y up, metres.
 
 mod cells;
+#[cfg(test)]
+mod closed_form;
 mod error;
 mod fit_file;
 mod measure;

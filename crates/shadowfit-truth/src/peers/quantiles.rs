@@ -69,3 +69,62 @@ impl Histogram {
         &mut self.counts[place]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Values in many octaves, in an order that makes room at both ends.
+    fn values() -> Vec<f64> {
+        (0..2000u32).map(|i| (f64::from((i * 787) % 2000) - 900.5) / 100.0).map(f64::exp2).collect()
+    }
+
+    fn counted(values: &[f64]) -> Histogram {
+        let mut histogram = Histogram::default();
+        for value in values {
+            histogram.add(*value);
+        }
+        histogram
+    }
+
+    #[test]
+    fn quantiles_are_the_sorted_values_to_half_a_bin() {
+        let values = values();
+        let mut sorted: Vec<f64> = values.iter().map(|value| value.log2()).collect();
+        sorted.sort_by(f64::total_cmp);
+        let histogram = counted(&values);
+        for q in [0.0, 0.001, 0.5, 0.95, 0.99, 1.0] {
+            let wanted = sorted[((q * 2000.0) as usize).max(1) - 1];
+            let found = histogram.log2_quantile(q).expect("values");
+            assert!((found - wanted).abs() <= 0.5 / BINS_PER_OCTAVE + 1e-12, "{q}: {found}, not {wanted}");
+        }
+    }
+
+    #[test]
+    fn a_quantile_is_the_middle_of_its_bin() {
+        assert_eq!(counted(&[1.0, 4.0]).log2_quantile(0.5), Some(0.5 / 128.0));
+        assert_eq!(counted(&[1.0, 4.0]).log2_quantile(0.51), Some(2.0 + 0.5 / 128.0));
+        assert_eq!(counted(&[0.999]).log2_quantile(0.5), Some(-0.5 / 128.0));
+    }
+
+    #[test]
+    fn merged_counts_equal_counts_of_all() {
+        let values = values();
+        let mut merged = counted(&values[..700]);
+        merged.merge(&counted(&values[700..]));
+        merged.merge(&Histogram::default());
+        let all = counted(&values);
+        assert_eq!(merged.total(), all.total());
+        for q in 0..=100 {
+            assert_eq!(merged.log2_quantile(f64::from(q) / 100.0), all.log2_quantile(f64::from(q) / 100.0));
+        }
+    }
+
+    #[test]
+    fn values_without_a_logarithm_are_counted_at_the_ends() {
+        let histogram = counted(&[f64::INFINITY, f64::NAN, 1.0, 0.0]);
+        assert_eq!(histogram.log2_quantile(0.25), Some(-128.0 + 0.5 / 128.0));
+        assert_eq!(histogram.log2_quantile(0.75), Some(f64::INFINITY));
+        assert_eq!(Histogram::default().log2_quantile(0.5), None);
+    }
+}

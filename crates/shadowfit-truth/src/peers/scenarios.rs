@@ -104,6 +104,10 @@ impl Scenarios {
 
     fn check(&self) -> Result<(), Problem> {
         for (index, scene) in self.scenes.iter().enumerate() {
+            if self.scenes[..index].iter().any(|other| other.name == scene.name) {
+                let reason = format!("\"{}\" is the name of two scenes", scene.name);
+                return Err(Problem::new(format!("scenes[{index}].name"), reason));
+            }
             if !(scene.scale.is_finite() && scene.scale > 0.0) {
                 return Err(Problem::new(format!("scenes[{index}].scale"), format!("{} is not above 0", scene.scale)));
             }
@@ -160,5 +164,47 @@ impl Frame {
             return bad("light_dir", format!("its length is {length}, not 1"));
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::peers::closed_form::scenarios;
+
+    #[test]
+    fn the_frame_before_is_that_of_the_same_path() {
+        let mut scenarios = scenarios(3);
+        assert_eq!([0, 1, 2].map(|index| scenarios.previous(index)), [None, Some(0), Some(1)]);
+        scenarios.frames[1].elevation_deg = 45.0;
+        assert_eq!([0, 1, 2].map(|index| scenarios.previous(index)), [None, None, None]);
+        assert_eq!(scenarios.group(&scenarios.frames[1]), "room/45");
+    }
+
+    /// What spoils the scenarios, and the message that says so.
+    type Case = (fn(&mut Scenarios), &'static str);
+
+    #[test]
+    fn frames_that_make_no_sense_are_refused_by_element() {
+        let refused = |change: fn(&mut Scenarios)| {
+            let mut scenarios = scenarios(2);
+            change(&mut scenarios);
+            scenarios.check().expect_err("refused").at(Path::new("scenarios.json")).to_string()
+        };
+        assert_eq!(scenarios(2).check(), Ok(()));
+        let cases: [Case; 9] = [
+            (|s| s.frames[1].view[7] = f64::NAN, "frames[1].view: NaN is not finite"),
+            (|s| s.frames[1].view = [0.0; 16], "frames[1].view: the matrix has no inverse"),
+            (|s| s.frames[1].fov_y_deg = 180.0, "frames[1].fov_y_deg: 180 is not between 0 and 180"),
+            (|s| s.frames[1].aspect = -1.0, "frames[1].aspect: -1 is not above 0"),
+            (|s| s.frames[1].far = f64::NAN, "frames[1].far: the range from near 0.1 to far NaN is empty"),
+            (|s| s.frames[1].light_dir = [0.0; 3], "frames[1].light_dir: its length is 0, not 1"),
+            (|s| s.frames[1].scene = 4, "frames[1].scene: there is no scene 4, the file has 1"),
+            (|s| s.frames[1].id = s.frames[0].id.clone(), "frames[1].id: \"room/90/0\" is the id of two frames"),
+            (|s| s.scenes[0].scale = 0.0, "scenes[0].scale: 0 is not above 0"),
+        ];
+        for (change, message) in cases {
+            assert_eq!(refused(change), format!("scenarios.json: {message}"));
+        }
     }
 }

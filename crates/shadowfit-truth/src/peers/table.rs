@@ -236,3 +236,63 @@ fn log2_critical(tally: &Tally) -> f64 {
 fn as_map<S: Serializer>(rows: &[(String, Row)], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(rows.iter().map(|(name, row)| (name, row)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A group with one error of `octaves` over a map of a texel.
+    fn group(scene: &str, group: &str, octaves: i32) -> GroupTally {
+        let mut tally = Tally { frames: 1, maps: 1, facing: 4, uncovered: 1, ..Tally::default() };
+        tally.error.add(f64::from(octaves).exp2());
+        tally.critical.add(f64::from(octaves).exp2());
+        GroupTally { scene: scene.to_owned(), group: group.to_owned(), tally }
+    }
+
+    #[test]
+    fn numbers_have_three_digits_and_at_most_four_decimals() {
+        let cases = [(0.0, "0"), (0.00094, "0.0009"), (0.0392, "0.0392"), (-0.2461, "-0.246"), (2.5, "2.5")];
+        let more = [(9.004, "9"), (40.66, "40.7"), (99.96, "100"), (119.2, "119"), (1234.5, "1234")];
+        for (value, text) in cases.into_iter().chain(more) {
+            assert_eq!(cell("used %", value), text, "{value}");
+        }
+        assert_eq!(cell("crit gm", 460_308.4), "460308");
+        assert_eq!(cell("crit res", f64::INFINITY), "inf");
+        assert_eq!(cell("still %", f64::NAN), "-");
+    }
+
+    #[test]
+    fn rows_pool_points_and_only_the_geometric_mean_is_over_groups() {
+        let table = FitTable::new("a", None, &[group("x", "x/1", 2), group("x", "x/2", 4), group("y", "y/1", 9)]);
+        let middle = 0.5 / 128.0;
+        let log2 = |value: f64| value.log2() - middle;
+        assert!(
+            (log2(table.overall.critical) - 9.0).abs() < 1e-12
+                && (log2(table.overall.critical_mean) - 5.0).abs() < 1e-12
+        );
+        assert_eq!(table.overall.error, [4.0 + middle, 9.0 + middle, 9.0 + middle]);
+        assert_eq!((table.overall.uncovered, table.overall.maps), (25.0, 1.0));
+        assert!((log2(table.scenes[0].1.critical_mean) - 3.0).abs() < 1e-12);
+        assert_eq!(table.scenes.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["x", "y"]);
+    }
+
+    #[test]
+    fn json_has_the_names_of_the_columns_and_null_for_what_was_not_there() {
+        let json = to_json(&[FitTable::new("a", Some(3.0), &[group("x", "x/1", 2)])]);
+        let value: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+        let row = &value["fits"][0]["groups"]["x/1"];
+        assert_eq!((row["uncov %"].as_f64(), row["maps"].as_f64()), (Some(25.0), Some(1.0)));
+        assert!(row["shimmer tx"].is_null() && row["lost %"].is_null());
+        assert_eq!(value["fits"][0]["ns_per_fit"].as_f64(), Some(3.0));
+    }
+
+    #[test]
+    fn markdown_has_a_table_for_all_for_each_scene_and_for_the_groups() {
+        let groups = [group("x", "x/1", 2), group("y", "y/1", 3)];
+        let text = to_markdown(&[FitTable::new("a", None, &groups), FitTable::new("b", None, &groups)]);
+        let headings: Vec<_> = text.lines().filter(|line| line.starts_with("##")).collect();
+        assert_eq!(headings, ["## Overall", "## x", "## y", "## Critical resolution per scene and light elevation"]);
+        assert!(text.ends_with("| peer | x/1 | y/1 |\n|---|---:|---:|\n| a | 4 | 8 |\n| b | 4 | 8 |\n"), "{text}");
+        assert_eq!(to_markdown(&[]).lines().filter(|line| line.starts_with('|')).count(), 0);
+    }
+}

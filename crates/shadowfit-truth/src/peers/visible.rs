@@ -11,7 +11,7 @@ use crate::Tracer;
 
 /// Rays across and down a frame.
 pub const RAYS: [u32; 2] = [320, 180];
-/// Height of the screen whose pixels are meant, so that a ray stands for 6×6 of them.
+/// Height of the screen whose pixels are meant.
 const SCREEN_HEIGHT: f64 = 1080.0;
 /// Start of shadow rays above the surface, in metres.
 const RAY_OFFSET: f64 = 1e-3;
@@ -25,6 +25,8 @@ pub struct VisiblePoints {
     pub visible: u32,
     /// Unit direction toward the light, world axes.
     pub to_light: DVec3,
+    /// Side of the square of pixels that a ray stands for: 6 where every ray is traced.
+    pub pixels_per_ray: f64,
     /// Distances of the occluders along `to_light`, in metres: each point has a range of it.
     pub occluders: Vec<f64>,
 }
@@ -55,8 +57,10 @@ impl VisiblePoints {
     /// more is a quick look), with the triangles of the frame's scene.
     pub fn trace(tracer: &Tracer, frame: &Frame, stride: u32) -> Self {
         let camera = RayCamera::new(frame);
-        let mut visible = Self { to_light: frame.to_light(), ..Self::default() };
-        let step = stride.max(1) as usize;
+        let stride = stride.max(1);
+        let pixels_per_ray = SCREEN_HEIGHT / f64::from(RAYS[1]) * f64::from(stride);
+        let mut visible = Self { to_light: frame.to_light(), pixels_per_ray, ..Self::default() };
+        let step = stride as usize;
         for y in (0..RAYS[1]).step_by(step) {
             for x in (0..RAYS[0]).step_by(step) {
                 visible.add(tracer, &camera, camera.direction(x, y));
