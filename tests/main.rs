@@ -6,6 +6,7 @@
 mod artefacts;
 mod conventions;
 mod golden;
+mod peers;
 mod robustness;
 mod shaders;
 mod support;

@@ -27,6 +27,16 @@ pub(crate) fn assets() -> Option<PathBuf> {
     None
 }
 
+/// The fits of other code beside the workspace, with their scenarios, or `None` with a word about it.
+pub(crate) fn peers() -> Option<PathBuf> {
+    let folder = workspace().join("../shared/peers");
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    println!("SKIPPED: {} does not exist", folder.display());
+    None
+}
+
 /// Every file below a folder, sorted.
 pub(crate) fn files_below(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
@@ -50,18 +60,23 @@ pub(crate) fn target_folder() -> PathBuf {
     profile_folder().parent().expect("the profile's folder lies in the target folder").to_owned()
 }
 
-/// The viewer beside this test; `cargo test` builds examples, but a filtered run may have left it out.
+/// The viewer beside this test.
 pub(crate) fn viewer_program() -> PathBuf {
-    let program = profile_folder().join("examples").join(format!("viewer{}", std::env::consts::EXE_SUFFIX));
+    example_program("viewer")
+}
+
+/// An example beside this test; `cargo test` builds examples, but a filtered run may have left it out.
+pub(crate) fn example_program(name: &str) -> PathBuf {
+    let program = profile_folder().join("examples").join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
     if !program.is_file() {
         let mut build = Command::new(env!("CARGO"));
-        build.args(["build", "--example", "viewer"]).current_dir(workspace());
+        build.args(["build", "--example", name]).current_dir(workspace());
         build.env("CARGO_TARGET_DIR", target_folder());
         if profile_folder().ends_with("release") {
             build.arg("--release");
         }
         let status = build.status().expect("cargo starts");
-        assert!(status.success(), "the viewer does not build");
+        assert!(status.success(), "the example {name} does not build");
     }
     program
 }

@@ -22,10 +22,10 @@ pub(crate) type Corners = [Vec3; 3];
 pub(crate) struct Source {
     /// Folder that the scenes' glTF files are in
     #[arg(long, value_name = "DIR")]
-    assets: Option<PathBuf>,
+    pub(crate) assets: Option<PathBuf>,
     /// Folder with <scene>.f32 for each scene: 9 little-endian f32 a triangle, world space, metres
     #[arg(long, value_name = "DIR")]
-    triangles: Option<PathBuf>,
+    pub(crate) triangles: Option<PathBuf>,
 }
 
 impl Source {

@@ -1,0 +1,125 @@
+//! `report peers` as a program: what it writes, and how it ends when it is given nonsense.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use shadowfit_truth::peers::{FitFile, FitFrame, FitMap};
+
+use crate::support::example_program;
+
+/// The exit code of every refusal.
+const REFUSED: i32 = 2;
+
+/// A camera 4 m over a floor of one triangle, looking down, and a light straight down.
+const SCENARIOS: &str = r#"{
+    "scenes": [{
+        "name": "floor", "file": "floor.glb", "scale": 1, "triangles": 1,
+        "objects": [[-50, 0, -50, 150, 0, 150]], "aabb": [-50, 0, -50, 150, 0, 150]
+    }],
+    "frames": [{
+        "id": "floor/90/0", "scene": 0, "elevation_deg": 90, "frame": 0,
+        "view": [1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, -4, 1],
+        "fov_y_deg": 60, "aspect": 1.7777777777777777, "near": 0.1, "far": 100, "light_dir": [0, -1, 0]
+    }]
+}"#;
+
+/// The floor's corners.
+const FLOOR: [f32; 9] = [-50.0, 0.0, -50.0, -50.0, 0.0, 150.0, 150.0, 0.0, -50.0];
+
+/// Folder with the files of one test, removed at the end.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str) -> Self {
+        let folder = std::env::temp_dir().join(format!("shadowfit-report-{name}-{}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&folder);
+        std::fs::create_dir_all(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+        let scratch = Self(folder);
+        scratch.file("scenarios.json", SCENARIOS.as_bytes());
+        scratch.file("floor.f32", &FLOOR.map(f32::to_le_bytes).concat());
+        fit("floor/90/0").write(&scratch.0.join("fit.json")).expect("a fit file");
+        scratch
+    }
+
+    fn file(&self, name: &str, bytes: &[u8]) {
+        let path = self.0.join(name);
+        let folder = path.parent().expect("a folder");
+        std::fs::create_dir_all(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+        std::fs::write(&path, bytes).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    }
+
+    fn report(&self, arguments: &[&str]) -> Output {
+        let mut command = Command::new(example_program("report"));
+        command.current_dir(&self.0).arg("peers").args(arguments).output().expect("the report starts")
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// A map of 20 m around the camera.
+fn fit(id: &str) -> FitFile {
+    let view_proj = [0.1, 0.0, 0.0, 0.0, 0.0, 0.0, -0.05, 0.0, 0.0, -0.1, 0.0, 0.0, 0.0, 0.0, 0.5, 1.0];
+    let map = FitMap { view_proj, resolution: 1000, resolution_xy: None, split_near: 0.1, split_far: 100.0 };
+    FitFile {
+        peer: "plain".to_owned(),
+        frames: vec![FitFrame { id: id.to_owned(), maps: vec![map] }],
+        ..FitFile::default()
+    }
+}
+
+fn text(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+#[test]
+fn a_report_holds_the_same_row_on_screen_for_people_and_for_programs() {
+    let scratch = Scratch::new("whole");
+    let output = scratch.report(&["scenarios.json", "fit.json", "--triangles", ".", "-o", "out/tables"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    // A texel of 2 cm, a pixel of 4.2767 mm: 4.677 pixels, 2.225 octaves, in the bin around 2.223; 4677 of them in 20 m.
+    let row = "| plain | 1 | 0 | - | - | 2.22 | 2.22 | 2.22 | 100 | 4677 | 4677 |";
+    let screen = String::from_utf8_lossy(&output.stdout);
+    assert!(screen.contains(row), "{screen}");
+    let markdown = text(&scratch.0.join("out/tables/table.md"));
+    assert!(markdown.starts_with("## Overall\n") && markdown.contains(row) && markdown.contains("| floor/90 |"));
+    let json = text(&scratch.0.join("out/tables/table.json"));
+    assert!(
+        json.contains("\"peer\": \"plain\"") && json.contains("\"floor/90\": {") && json.contains("\"lost %\": null")
+    );
+}
+
+#[test]
+fn bad_input_is_refused_by_file_element_and_reason() {
+    let scratch = Scratch::new("refused");
+    scratch.file("broken.json", b"{\"peer\": 3}");
+    scratch.file("short/floor.f32", &[0; 35]);
+    scratch.file("moved/floor.f32", &FLOOR.map(|number| (number + 1.0).to_le_bytes()).concat());
+    fit("floor/90/1").write(&scratch.0.join("other.json")).expect("a fit file");
+    let triangles = ["--triangles", "."];
+    let cases: [(&str, &str, [&str; 2], &str); 8] = [
+        ("nowhere.json", "fit.json", triangles, "nowhere.json: file: cannot be read"),
+        ("fit.json", "fit.json", triangles, "fit.json: "),
+        ("scenarios.json", "broken.json", triangles, "broken.json: peer: invalid type"),
+        (
+            "scenarios.json",
+            "other.json",
+            triangles,
+            "other.json: frames[0].id: the scenarios have no frame \"floor/90/1\"",
+        ),
+        ("scenarios.json", "fit.json", ["--assets", "."], "floor.glb: cannot be read"),
+        ("scenarios.json", "fit.json", ["--triangles", "nowhere"], "floor.f32: cannot be read"),
+        ("scenarios.json", "fit.json", ["--triangles", "short"], "floor.f32: 35 bytes are not whole triangles"),
+        ("scenarios.json", "fit.json", ["--triangles", "moved"], "floor.f32: scene \"floor\": aabb: the box is"),
+    ];
+    for (scenarios, fit, geometry, words) in cases {
+        let output = scratch.report(&[scenarios, fit, geometry[0], geometry[1], "-o", "out"]);
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(REFUSED), "{scenarios} {fit} {geometry:?}: {message}");
+        assert!(message.contains(words), "\"{words}\" is missing in: {message}");
+        assert!(!scratch.0.join("out").exists(), "{scenarios} {fit} {geometry:?} leaves files behind");
+    }
+}
