@@ -80,7 +80,7 @@ fn a_report_holds_the_same_row_on_screen_for_people_and_for_programs() {
     let scratch = Scratch::new("whole");
     let output = scratch.report(&["scenarios.json", "fit.json", "--triangles", ".", "-o", "out/tables"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    // A texel of 2 cm, a pixel of 4.2767 mm: 4.677 pixels, 2.225 octaves, in the bin around 2.223; 4677 of them in 20 m.
+    // A texel of 2 cm, a pixel of 4.2767 mm: 4.677 pixels, 2.225 octaves, in the bin around 2.223; 4677 in 20 m.
     let row = "| plain | 1 | 0 | - | - | 2.22 | 2.22 | 2.22 | 100 | 4677 | 4677 |";
     let screen = String::from_utf8_lossy(&output.stdout);
     assert!(screen.contains(row), "{screen}");
