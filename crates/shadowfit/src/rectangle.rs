@@ -48,7 +48,7 @@ pub(crate) fn min_area(hull: &[DVec2]) -> Rectangle {
     let area = |r: &Rectangle| r.size().x * r.size().y;
     let mut best = Rectangle::around(hull, DVec2::X);
     Calipers::turn(hull, |calipers| keep_better(&mut best, calipers.rectangle(), area));
-    upright(best)
+    upright(Rectangle::around(hull, best.axis))
 }
 
 /// The rectangle with the least longer side around a convex polygon, which makes the least square.
@@ -61,7 +61,7 @@ pub(crate) fn min_square(hull: &[DVec2]) -> Rectangle {
             keep_better(&mut best, Rectangle::around(hull, axis), longer);
         }
     });
-    upright(best)
+    upright(Rectangle::around(hull, best.axis))
 }
 
 fn keep_better(best: &mut Rectangle, candidate: Rectangle, cost: impl Fn(&Rectangle) -> f64) {
@@ -77,13 +77,19 @@ struct Calipers<'a> {
     axis: DVec2,
     /// The corners that the lines touch when they turn on: lower (the edge's end), right, upper, left.
     touched: [usize; 4],
+    /// Distance that rounding may make of none.
+    noise: f64,
 }
+
+/// Share of a polygon's extent that is taken for rounding.
+const NOISE: f64 = 1e-10;
 
 impl<'a> Calipers<'a> {
     /// Turns the lines once around the polygon, stopping at each edge.
     fn turn(hull: &'a [DVec2], mut stop: impl FnMut(&Self)) {
         let n = hull.len();
-        let mut calipers = Calipers { hull, axis: DVec2::X, touched: [0; 4] };
+        let noise = Rectangle::around(hull, DVec2::X).size().max_element() * NOISE;
+        let mut calipers = Calipers { hull, axis: DVec2::X, touched: [0; 4], noise };
         let mut is_first = true;
         for i in 0..n {
             let end = (i + 1) % n;
@@ -112,8 +118,13 @@ impl<'a> Calipers<'a> {
         let n = self.hull.len();
         let at = |k: usize| self.hull[(first + k) % n].dot(direction);
         let mut k = if at(known) > at(0) { known } else { 0 };
-        while k + 1 < n && at(k + 1) >= at(k) {
-            k += 1;
+        let mut next = k + 1;
+        // Corners that coincide but for rounding may step back by it.
+        while next < n && at(next) >= at(k) - self.noise {
+            if at(next) >= at(k) {
+                k = next;
+            }
+            next += 1;
         }
         (first + k) % n
     }
@@ -199,6 +210,14 @@ mod tests {
                 assert!(r.axis.x >= 0.7071 && r.axis.y.abs() <= 0.7072, "{r:?}");
             }
         }
+    }
+
+    #[test]
+    fn corners_that_coincide_but_for_rounding_do_not_stop_the_calipers() {
+        let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1e-17), (1.0, 0.5), (1.0 - 1e-16, 0.5 + 1e-16), (1.0, 1.0), (0.0, 1.0)];
+        let hull = square.map(|(x, y)| DVec2::new(x, y));
+        assert!((min_area(&hull).size() - DVec2::ONE).abs().max_element() < 1e-12);
+        assert!((min_square(&hull).size() - DVec2::ONE).abs().max_element() < 1e-12);
     }
 
     #[test]

@@ -131,7 +131,8 @@ impl Chooser<'_, '_> {
     /// receivers; where those are clipped to the view anyway, to the far end of what is shadowed.
     fn whole(&self, mut cuts: Cuts, far: f64) -> Cuts {
         let count = self.settings.count as usize;
-        let end = if self.fit.kind == FitKind::Focused { self.range.far } else { far as f32 };
+        let is_whole = matches!(self.fit.kind, FitKind::Focused | FitKind::XnaSample);
+        let end = if is_whole { self.range.far } else { far as f32 };
         cuts[0] = self.range.near;
         for i in 1..=MAX_CASCADES {
             cuts[i] = if i >= count { end } else { cuts[i].max(cuts[i - 1]).min(end) };

@@ -112,6 +112,6 @@ fn first_meeting(start: DVec3, end: DVec3, min: DVec3, max: DVec3) -> Option<f64
     } else if enter > 0.0 {
         Some(enter)
     } else {
-        Some(leave)
+        None
     }
 }

@@ -1,0 +1,176 @@
+//! Fits all frames, several times over for the clock.
+
+use std::time::Instant;
+
+use anyhow::{Context, Result};
+use glam::{DMat4, DVec2, DVec3, Vec3};
+use shadowfit::{
+    Aabb, Boxes, CascadeFitter, CascadeSettings, Cascades, Clusters, DepthHistogram, FitInput, PerspectiveCamera,
+    ViewFrustum, Workspace,
+};
+use shadowfit_truth::Tracer;
+use shadowfit_truth::peers::{FitFile, FitFrame, FitMap, Frame, Scenarios, Scene};
+
+use crate::configurations::{Configuration, Knowledge};
+use crate::geometry::Source;
+use crate::histogram;
+
+/// Times that all frames are fitted for the clock, after once to warm up.
+const BATCHES: usize = 7;
+
+/// What is known of a scene.
+struct Known {
+    boxes: Vec<Aabb>,
+    tracer: Option<Tracer>,
+}
+
+/// A frame ready to be fitted.
+struct Prepared {
+    view: ViewFrustum,
+    direction: Vec3,
+    scene: usize,
+    /// Whether the fitter has to forget what was before.
+    is_first: bool,
+    histogram: Option<Vec<u32>>,
+    near: f32,
+    far: f32,
+}
+
+/// Fits every frame of the scenarios.
+pub(crate) fn run(
+    scenarios: &Scenarios,
+    configuration: &Configuration,
+    resolution: u32,
+    source: Option<&Source>,
+) -> Result<FitFile> {
+    let known: Vec<Known> =
+        scenarios.scenes.iter().map(|scene| know(scene, configuration, source)).collect::<Result<_>>()?;
+    let frames: Vec<Prepared> =
+        (0..scenarios.frames.len()).map(|index| prepare(scenarios, index, &known)).collect::<Result<_>>()?;
+    let settings = configuration.settings(resolution);
+    let mut times = vec![Vec::with_capacity(BATCHES); frames.len()];
+    let mut maps = Vec::new();
+    for batch in 0..=BATCHES {
+        let fitted = fit_all(&frames, &known, &settings)?;
+        if batch > 0 {
+            for (times, (_, time)) in times.iter_mut().zip(&fitted) {
+                times.push(*time);
+            }
+        }
+        maps = fitted;
+    }
+    let fitted = scenarios.frames.iter().zip(&maps).map(|(frame, (cascades, _))| FitFrame {
+        id: frame.id.clone(),
+        maps: cascades.iter().map(|map| fit_map(map, resolution)).collect(),
+    });
+    let all: Vec<f64> = times.iter().flatten().copied().collect();
+    let fastest: Vec<f64> = times.iter().map(|times| times.iter().copied().fold(f64::MAX, f64::min)).collect();
+    Ok(FitFile {
+        peer: format!("shadowfit {}", configuration.name),
+        language: "Rust".to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        note: configuration.what.to_owned(),
+        pancake: false,
+        ns_per_fit: Some(median(all)),
+        ns_quiet: Some(median(fastest)),
+        frames: fitted.collect(),
+    })
+}
+
+fn know(scene: &Scene, configuration: &Configuration, source: Option<&Source>) -> Result<Known> {
+    let triangles = source.map(|source| source.read(scene)).transpose()?;
+    let boxes = match (configuration.receivers, &triangles) {
+        (Knowledge::Clusters, Some(objects)) => {
+            let objects: Vec<&[[Vec3; 3]]> = objects.iter().map(Vec::as_slice).collect();
+            let clusters = Clusters::build(&objects, Clusters::DEFAULT_LIMIT).context(scene.name.clone())?;
+            clusters.boxes().to_vec()
+        }
+        _ => scene.objects.iter().map(outward).collect(),
+    };
+    let tracer = triangles.filter(|_| configuration.uses_histogram());
+    Ok(Known { boxes, tracer: tracer.map(|objects| Tracer::new(objects.into_iter().flatten())) })
+}
+
+/// A box rounded to f32 so that it loses nothing.
+fn outward(bounds: &[f64; 6]) -> Aabb {
+    let [a, b, c, d, e, f] = *bounds;
+    let down = |v: f64| if f64::from(v as f32) > v { (v as f32).next_down() } else { v as f32 };
+    let up = |v: f64| if f64::from(v as f32) < v { (v as f32).next_up() } else { v as f32 };
+    Aabb::new(Vec3::new(down(a), down(b), down(c)), Vec3::new(up(d), up(e), up(f)))
+}
+
+fn prepare(scenarios: &Scenarios, index: usize, known: &[Known]) -> Result<Prepared> {
+    let frame = &scenarios.frames[index];
+    let before = scenarios.previous(index).map(|before| &scenarios.frames[before]);
+    let tracer = known[frame.scene].tracer.as_ref();
+    let view = camera(frame).frustum().with_context(|| frame.id.clone())?;
+    Ok(Prepared {
+        view,
+        direction: DVec3::from_array(frame.light_dir).as_vec3(),
+        scene: frame.scene,
+        is_first: before.is_none(),
+        histogram: before.zip(tracer).map(|(before, tracer)| histogram::of_frame(before, tracer)),
+        near: frame.near as f32,
+        far: frame.far as f32,
+    })
+}
+
+fn camera(frame: &Frame) -> PerspectiveCamera {
+    let world_from_view = frame.view_from_world().inverse();
+    PerspectiveCamera {
+        eye: world_from_view.col(3).truncate(),
+        forward: -world_from_view.col(2).truncate().as_vec3(),
+        up: world_from_view.col(1).truncate().as_vec3(),
+        fov_y: frame.fov_y_deg.to_radians() as f32,
+        aspect: frame.aspect as f32,
+        near: frame.near as f32,
+        far: frame.far as f32,
+    }
+}
+
+/// The maps of all frames, and the nanoseconds that each took.
+fn fit_all(frames: &[Prepared], known: &[Known], settings: &CascadeSettings) -> Result<Vec<(Cascades, f64)>> {
+    let most = known.iter().map(|known| known.boxes.len()).max().unwrap_or(0);
+    // Held maps are fitted to the views of two frames ahead as well.
+    let mut storage = vec![DVec2::ZERO; Workspace::required(most, 3)];
+    let mut fitter = CascadeFitter::new();
+    frames
+        .iter()
+        .map(|frame| {
+            if frame.is_first {
+                fitter.reset();
+            }
+            let boxes = Boxes { origin: DVec3::ZERO, boxes: &known[frame.scene].boxes };
+            let bins = frame.histogram.as_deref();
+            let input = FitInput {
+                views: &[frame.view],
+                direction: frame.direction,
+                receivers: Some(boxes),
+                casters: boxes,
+                histogram: bins.map(|bins| DepthHistogram { near: frame.near, far: frame.far, bins }),
+            };
+            let start = Instant::now();
+            let cascades = fitter.fit(&input, settings, &mut Workspace::new(&mut storage))?;
+            Ok((cascades, start.elapsed().as_nanos() as f64))
+        })
+        .collect()
+}
+
+/// A map as the fit file has it: the f32 matrix that a renderer gets, made absolute in f64.
+fn fit_map(map: &shadowfit::CascadeMap, resolution: u32) -> FitMap {
+    /// Stands for no end.
+    const NO_END: f64 = 1e9;
+    let clip_from_world = map.fit.clip_from_world.as_dmat4() * DMat4::from_translation(-map.fit.origin);
+    FitMap {
+        view_proj: clip_from_world.to_cols_array(),
+        resolution,
+        resolution_xy: None,
+        split_near: f64::from(map.near),
+        split_far: f64::from(map.far).min(NO_END),
+    }
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
