@@ -3,15 +3,46 @@
 //! A map stores one depth per texel, but a slanted plane has many. A bias covers the difference
 //! between the texel's centre and the sampled point; it is proportional to the texel, so it is
 //! set in texels and converted here for each fit.
+//!
+//! # What a plane needs
+//!
+//! Let n be the plane's unit normal on the light's side, x and y the map's axes in the world (the
+//! first two rows of `light_from_world`), tx and ty the texel's sides and E the filter's
+//! [`Reach`]. A point lifted by h along n has no texel centre in reach whose stored plane depth is
+//! nearer to the light exactly when
+//!
+//! ```text
+//!   h ≥ E · (tx·|n·x| + ty·|n·y|)  =  texel · E · sin θ · (|cos φ| + |sin φ|)  for square texels
+//! ```
+//!
+//! with θ the angle between n and the light, φ the slope's azimuth in the map. Proof: a texel
+//! centre (dx, dy) beside the *lifted* point lies on the plane at a height dz over it with
+//! n·(dx, dy, dz) = -h, so dz ≤ 0 means h ≥ -(dx n·x + dy n·y), and |dx| ≤ E tx, |dy| ≤ E ty.
+//! The same clearance as depth, without moving the point, is h / cos θ: the receiver-plane form
+//! `E · (|∂z/∂u| + |∂z/∂v|)` with the plane's depth gradient per texel.
+//!
+//! All of this holds for the **geometric** normal of the surface that is stored. With normals that
+//! are interpolated or come from a normal map nothing is guaranteed.
+
+mod classic;
+mod reach;
 
 use core::f32::consts::SQRT_2;
 
+use glam::{DVec3, Vec2, Vec3, Vec4};
+
+pub use self::classic::{ACOS_BIAS_LIMIT, XNA_DEPTH_BIAS, acos_bias, acos_epsilon};
+pub use self::reach::{HARDWARE_SNAP, Reach, reach};
+use crate::diagnostics::{DepthStorage, depth_step};
 use crate::settings::{BiasSettings, FilterKind};
-use crate::{LightFit, checks};
+use crate::{DepthConvention, FitError, LightFit, checks};
 
 /// Biases ready for a shader. With θ the angle between the geometric normal and the direction
 /// toward the light, a receiver is looked up at `p + normal · normal_offset · sin θ`, and its
-/// depth is moved toward the light by `constant_depth + slope_depth · tan θ`.
+/// depth is moved toward the light by
+/// `constant_depth + slope_depth · tan θ + receiver_plane · (|∂z/∂u| + |∂z/∂v|)`.
+///
+/// cos θ is held at [`MIN_COSINE`] or above, so that a grazing surface gets a finite bias.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bias {
     /// Depth bias, in units of the stored depth (0..1 over the fit's depth range).
@@ -20,45 +51,140 @@ pub struct Bias {
     pub slope_depth: f32,
     /// Offset along the geometric normal to be multiplied by sin θ, in metres.
     pub normal_offset: f32,
+    /// Depth bias to be multiplied by `|∂z/∂u| + |∂z/∂v|`, the [`depth_gradient`] of the
+    /// receiver's plane per texel: in texels. Nothing of [`BiasSettings`] sets it.
+    pub receiver_plane: f32,
 }
 
-/// Roundings of 2⁻²⁴ that can part the depth stored for a point from the depth compared with it,
-/// as a multiple of the farthest distance from the origin in the map's box: four operations a
-/// term, in each of two transforms, on terms that sum to at most twice that distance.
-const PRECISION_ROUNDINGS: f32 = 16.0;
+/// What a [`Bias`] amounts to on a plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PlaneBias {
+    /// Offset of the looked-up point along the normal that faces the light, in metres.
+    pub offset: f32,
+    /// How far its depth is moved toward the light, in units of the stored depth.
+    pub depth: f32,
+}
 
-/// Relative rounding of f32, 2⁻²⁴.
-const ROUNDING: f32 = 1.0 / 16_777_216.0;
+/// Below this cosine between normal and light (89.4°) a depth bias grows no more: such a surface
+/// receives next to no light. Normal offsets need no such limit.
+pub const MIN_COSINE: f32 = 0.01;
 
-/// Constant bias of [`BiasSettings::automatic`], in texels: it covers [`PRECISION_ROUNDINGS`]
-/// while no corner of the map's box is farther than 65536 texel sizes from the origin, 32 times
-/// the width of a 2048² map.
+/// Constant bias of [`BiasSettings::automatic`], in texels: it covers the rounding of f32 while no
+/// corner of the map's box is farther than 65536 texel sizes from the origin, 32 times the width
+/// of a 2048² map.
 const PRECISION_TEXELS: f32 = 1.0 / 16.0;
+
+/// What a sine loses that comes from a rounded cosine: √(1 - c²) is 0 where two roundings of
+/// 2⁻²⁴ make c 1, at √(4 · 2⁻²⁴).
+const SINE_ROUNDING: f64 = 1.0 / 2048.0;
 
 impl Bias {
     /// Converts biases in texels for one fit. Texels that are not square count by their longer
-    /// side, which is on the safe side of acne.
+    /// side, which is on the safe side of acne. Settings that are not finite give biases that are
+    /// not.
     pub fn from_texels(settings: &BiasSettings, fit: &LightFit) -> Self {
-        let texel = longer_side(fit);
+        let texel = fit.texel_size.x.max(fit.texel_size.y);
         Self {
             constant_depth: settings.constant * texel / fit.depth_range,
             slope_depth: settings.slope * texel / fit.depth_range,
             normal_offset: settings.normal_offset * texel,
+            receiver_plane: 0.0,
         }
     }
 
-    /// A bias that clears self-shadowing on a plane whatever its slope's azimuth, for a filter of
-    /// the given [`reach`] in texels: [`automatic_normal_offset`], the least that does, plus what
-    /// f32 rounding can do to the depths of this very fit at its origin. It holds for geometric
-    /// normals, not for interpolated or normal-mapped ones.
-    pub fn automatic(reach: f32, fit: &LightFit) -> Self {
-        let corners = fit.corners().map(|corner| checks::length(corner.as_dvec3()) as f32);
-        let farthest = corners.into_iter().fold(0.0, f32::max);
-        Self {
-            constant_depth: PRECISION_ROUNDINGS * ROUNDING * farthest / fit.depth_range,
-            slope_depth: 0.0,
-            normal_offset: automatic_normal_offset(reach) * longer_side(fit),
+    /// A fixed number of the stored depth, whatever the slope: the classic form, such as
+    /// [`XNA_DEPTH_BIAS`]. Its metres change with every fit's depth range. A negative one moves
+    /// the receiver away from the light, as maps of back faces may want it.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::NotFinite`], and [`FitError::OutOfRange`] beyond the whole range of depths.
+    pub fn fixed(depth: f32) -> Result<Self, FitError> {
+        checks::within("the fixed depth bias", f64::from(depth), -1.0, 1.0)?;
+        Ok(Self { constant_depth: depth, ..Self::default() })
+    }
+
+    /// The least bias that clears self-shadowing on a plane whatever its slope's azimuth: a normal
+    /// offset for the filter's reach [on hardware](Reach::on_hardware), at the worst azimuth
+    /// `E · √(tx² + ty²)`, and a constant for the [`depth_precision`] and for a sine that a shader
+    /// takes from an f32 cosine. Where a shader knows the azimuth, [`normal_offset`] needs up to
+    /// √2 less. Geometric normals are assumed.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the reach, or for a fit that was
+    /// filled by hand with what is not finite.
+    pub fn automatic(
+        reach: impl Into<Reach>,
+        storage: impl Into<DepthStorage>,
+        fit: &LightFit,
+    ) -> Result<Self, FitError> {
+        let reach = reach.into().checked()?.on_hardware(fit);
+        let (x, y) = (f64::from(fit.texel_size.x), f64::from(fit.texel_size.y));
+        // Greatest over all azimuths of the box's part and of the ellipse's, which may differ.
+        let taps = f64::from(reach.taps) * libm::sqrt(x * x + y * y);
+        let disc = (f64::from(reach.disc.x) * x).max(f64::from(reach.disc.y) * y);
+        let sine = SINE_ROUNDING * (taps + disc) / f64::from(fit.depth_range);
+        let bias = Self {
+            constant_depth: depth_precision(fit, storage) + sine as f32,
+            normal_offset: (taps + disc) as f32,
+            ..Self::default()
+        };
+        bias.finite()
+    }
+
+    /// The same by depth alone, for shaders that do not move the looked-up point: the receiver
+    /// plane's gradient over the filter's reach on hardware. It clears planes up to
+    /// [`MIN_COSINE`], and grows without measure toward it.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::automatic`].
+    pub fn automatic_receiver_plane(
+        reach: impl Into<Reach>,
+        storage: impl Into<DepthStorage>,
+        fit: &LightFit,
+    ) -> Result<Self, FitError> {
+        let reach = reach.into().checked()?.on_hardware(fit);
+        let constant_depth = depth_precision(fit, storage);
+        Self { constant_depth, receiver_plane: reach.per_axis(), ..Self::default() }.finite()
+    }
+
+    /// What this bias amounts to on a plane with the given geometric normal (world axes, any
+    /// length, turned toward the light), as a shader computes it.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::NotFinite`] and [`FitError::BadDirection`] for the normal, and the former for a
+    /// bias that is not finite.
+    pub fn on_plane(&self, fit: &LightFit, normal: Vec3) -> Result<PlaneBias, FitError> {
+        let bias = self.finite()?;
+        let plane = Slope::of(fit, normal)?;
+        let cosine = plane.cosine.max(f64::from(MIN_COSINE));
+        let sine = libm::sqrt((1.0 - cosine * cosine).max(0.0));
+        let gradient = plane.gradient(fit);
+        let depth = f64::from(bias.constant_depth)
+            + f64::from(bias.slope_depth) * sine / cosine
+            + f64::from(bias.receiver_plane) * (gradient[0].abs() + gradient[1].abs());
+        let offset = f64::from(bias.normal_offset) * sine;
+        Ok(PlaneBias {
+            offset: checks::rounded("the offset on a plane", offset)?,
+            depth: checks::rounded("the depth bias on a plane", depth)?,
+        })
+    }
+
+    /// Refuses numbers that are not finite.
+    fn finite(self) -> Result<Self, FitError> {
+        let Self { constant_depth, slope_depth, normal_offset, receiver_plane } = self;
+        for (input, value) in [
+            ("the constant depth bias", constant_depth),
+            ("the slope-scaled depth bias", slope_depth),
+            ("the normal offset", normal_offset),
+            ("the receiver-plane bias", receiver_plane),
+        ] {
+            checks::finite(input, f64::from(value))?;
         }
+        Ok(self)
     }
 }
 
@@ -71,21 +197,60 @@ impl BiasSettings {
     }
 }
 
-/// Reach E of a filter: the greatest distance along one axis from the sampled point to a texel
-/// centre of non-zero weight, in texels.
-pub const fn reach(filter: FilterKind) -> f32 {
-    match filter {
-        FilterKind::Point => 0.5,
-        FilterKind::Hardware2x2 => 1.0,
-    }
+/// Normal offset that a plane needs, in metres along its normal on the light's side (sin θ is
+/// in it): `E · (tx·|n·x| + ty·|n·y|)`, and for a disc the ellipse's own part,
+/// `√((rx tx n·x)² + (ry ty n·y)²)`, as the [module](self) derives it.
+///
+/// `normal` is the geometric one, in world axes, of any length and on either side. It is the least
+/// offset in exact arithmetic; [`Reach::on_hardware`] and [`depth_precision`] add what a GPU needs.
+///
+/// # Errors
+///
+/// [`FitError::NotFinite`], [`FitError::OutOfRange`] for the reach and [`FitError::BadDirection`]
+/// for the normal.
+pub fn normal_offset(fit: &LightFit, reach: impl Into<Reach>, normal: Vec3) -> Result<f32, FitError> {
+    let reach = reach.into().checked()?;
+    let plane = Slope::of(fit, normal)?;
+    checks::rounded("the plane's normal offset", reach.rise(plane.u, plane.v))
+}
+
+/// Depth bias that a plane needs, in units of the stored depth toward the light:
+/// `E · (|∂z/∂u| + |∂z/∂v|)` with the [`depth_gradient`] per texel, and for a disc the ellipse's
+/// own part. It is [`normal_offset`] / cos θ in units of depth, with cos θ held at [`MIN_COSINE`].
+///
+/// # Errors
+///
+/// As [`normal_offset`].
+pub fn receiver_plane_depth(fit: &LightFit, reach: impl Into<Reach>, normal: Vec3) -> Result<f32, FitError> {
+    let reach = reach.into().checked()?;
+    let [u, v] = Slope::of(fit, normal)?.gradient(fit);
+    checks::rounded("the plane's depth bias", reach.rise(u, v))
+}
+
+/// Change of the stored depth of a plane over one texel along u and along v (∂z/∂u, ∂z/∂v), with
+/// cos θ held at [`MIN_COSINE`]. A filter that adds `gradient · (tap - centre)`, in texels, to the
+/// depth that each tap is compared with has the plane's own depth there: only the reach of one
+/// look-up is left, [`Reach::POINT`] or [`Reach::HARDWARE_2X2`].
+///
+/// # Errors
+///
+/// As [`normal_offset`].
+pub fn depth_gradient(fit: &LightFit, normal: Vec3) -> Result<Vec2, FitError> {
+    let [u, v] = Slope::of(fit, normal)?.gradient(fit);
+    let rounded = |gradient| checks::rounded("the plane's depth gradient", gradient);
+    Ok(Vec2::new(rounded(u)?, rounded(v)?))
+}
+
+/// Depth bias that rounding needs, in units of the stored depth: what f32 can do to the stored and
+/// the compared depth of one point at this fit's origin, and one step of the format where it is
+/// coarsest (half for storing a depth, half where hardware rounds the compared one too).
+pub fn depth_precision(fit: &LightFit, storage: impl Into<DepthStorage>) -> f32 {
+    (reach::rounding(fit) / f64::from(fit.depth_range)) as f32 + depth_step(storage, 1.0)
 }
 
 /// Normal offset, in texels and to be multiplied by sin θ, that clears self-shadowing on a plane
-/// whose slope runs at azimuth φ in the map's axes: `E · (|cos φ| + |sin φ|)`.
-///
-/// Within the reach E the plane's depth differs from that of the sampled point by up to
-/// `tan θ · E · (|cos φ| + |sin φ|)`; a point that is lifted by h along the normal gains
-/// `h / cos θ` of depth over the plane below it. Equate the two.
+/// whose slope runs at azimuth φ in the map's axes: `E · (|cos φ| + |sin φ|)`. Square texels are
+/// assumed; [`normal_offset`] takes any.
 pub fn plane_normal_offset(reach: f32, azimuth: f32) -> f32 {
     reach * (libm::cosf(azimuth).abs() + libm::sinf(azimuth).abs())
 }
@@ -95,6 +260,38 @@ pub const fn automatic_normal_offset(reach: f32) -> f32 {
     SQRT_2 * reach
 }
 
-fn longer_side(fit: &LightFit) -> f32 {
-    fit.texel_size.x.max(fit.texel_size.y)
+/// A plane as the map's texels see it.
+pub(crate) struct Slope {
+    /// Share of one texel's side, along the map's x (u) and y (against v), that lies along the
+    /// normal on the light's side, in metres.
+    pub(crate) u: f64,
+    pub(crate) v: f64,
+    /// Cosine of the angle between that normal and the direction toward the light: 0..=1.
+    pub(crate) cosine: f64,
+}
+
+impl Slope {
+    pub(crate) fn of(fit: &LightFit, normal: Vec3) -> Result<Self, FitError> {
+        let normal = checks::unit("the surface normal", normal)?;
+        let along = |row: fn(Vec4) -> f32| {
+            let m = &fit.light_from_world;
+            let axis = [m.x_axis, m.y_axis, m.z_axis].map(|column| f64::from(row(column)));
+            DVec3::from_array(axis).dot(normal)
+        };
+        let (x, y, z) = (along(|c| c.x), along(|c| c.y), along(|c| c.z));
+        let side = if z < 0.0 { -1.0 } else { 1.0 };
+        let (u, v) = (side * x * f64::from(fit.texel_size.x), side * y * f64::from(fit.texel_size.y));
+        for share in [u, v, z] {
+            checks::finite("the plane's slope in the fit", share)?;
+        }
+        Ok(Self { u, v, cosine: z.abs().min(1.0) })
+    }
+
+    /// Change of the stored depth over one texel along u and v: height falls by n·x / n·z along
+    /// x, and v runs against y.
+    pub(crate) fn gradient(&self, fit: &LightFit) -> [f64; 2] {
+        let sign = if fit.depth == DepthConvention::Reversed { -1.0 } else { 1.0 };
+        let per_metre = sign / (self.cosine.max(f64::from(MIN_COSINE)) * f64::from(fit.depth_range));
+        [self.u * per_metre, -self.v * per_metre]
+    }
 }

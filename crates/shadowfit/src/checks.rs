@@ -18,6 +18,12 @@ pub(crate) fn finite(input: &'static str, value: f64) -> Result<f64, FitError> {
     if value.is_finite() { Ok(value) } else { Err(FitError::NotFinite { input, value }) }
 }
 
+/// A result rounded to f32; refuses what is not finite there.
+pub(crate) fn rounded(output: &'static str, value: f64) -> Result<f32, FitError> {
+    let rounded = value as f32;
+    finite(output, f64::from(rounded)).map(|_| rounded)
+}
+
 /// Refuses what is not finite or outside `min..=max`.
 pub(crate) fn within(input: &'static str, value: f64, min: f64, max: f64) -> Result<f64, FitError> {
     finite(input, value)?;

@@ -1,11 +1,18 @@
-//! How good a fit is at a point, as numbers that any engine can compute.
+//! How good a fit is, as numbers that any engine can compute: pure functions of it.
 //!
-//! The measure is *screen pixels per shadow texel along the worse axis*: above one, the map's
-//! texels show as jagged edges there.
+//! What a map blurs is measured in *screen pixels per shadow texel along the worse axis*: above
+//! one, its texels show as jagged edges. Beside it stand what the map covers, how much of it is
+//! used, how finely it stores depth and how far a bias is from acne.
+
+mod acne;
+mod coverage;
+mod storage;
 
 use glam::{DVec2, DVec3, Mat4, UVec2, Vec3};
 
-use crate::settings::MapFormat;
+pub use self::acne::{AcneMargin, acne_margin};
+pub use self::coverage::{Coverage, coverage, share_of_map};
+pub use self::storage::{DepthStorage, depth_step, depth_step_at};
 use crate::{FitError, LightFit, checks};
 
 /// Screen pixels that one shadow texel covers on a surface.
@@ -62,18 +69,6 @@ pub fn pixels_per_texel(
     let area = (along_u.x * along_v.y - along_v.x * along_u.y).abs();
     Ok(Some(PixelsPerTexel { worse_axis: greatest_singular_value(along_u, along_v) as f32, area: area as f32 }))
 }
-
-/// Smallest depth difference, in metres, that a map of the format resolves everywhere in its
-/// range of `depth_range` metres. It is the step at the end of the range where floats are
-/// coarsest: the far end, and with reversed depth the near end.
-pub fn depth_step(format: MapFormat, depth_range: f32) -> f32 {
-    match format {
-        MapFormat::Depth32Float | MapFormat::R32Float => DEPTH_STEP * depth_range,
-    }
-}
-
-/// One step of an f32 depth in 0.5..1, as a share of the range: 2⁻²⁴.
-const DEPTH_STEP: f32 = 1.0 / 16_777_216.0;
 
 /// Below this cosine between normal and light a surface is edge-on to the light: it is the
 /// rounding of f32 axes.

@@ -46,6 +46,7 @@ pub mod bias;
 pub mod diagnostics;
 pub mod figures;
 pub mod fits;
+pub mod light_steps;
 pub mod params;
 pub mod settings;
 
@@ -83,6 +84,7 @@ pub use frustum::ViewFrustum;
 pub use glam;
 pub use input::{FitInput, Workspace};
 pub use light_fit::{Constraint, LightFit, WorldMatrices};
+pub use light_steps::{LightStep, LightStepSettings, LightSteps};
 pub use settings::{
     BiasSettings, CameraSettings, CascadeSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings,
     LightSettings, MAX_CASCADES, MapFormat, MapOverride, RectangleKind, Settings, SplitScheme, Stabilise, ViewSettings,

@@ -1,10 +1,15 @@
 //! The automatic bias clears planes, and no less would.
 
 use proptest::prelude::*;
-use shadowfit::bias::{automatic_normal_offset, plane_normal_offset, reach};
-use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::{Bias, BiasSettings, FilterKind, FitKind, LightFit};
+use shadowfit::bias::{
+    ACOS_BIAS_LIMIT, MIN_COSINE, Reach, XNA_DEPTH_BIAS, acos_bias, acos_epsilon, automatic_normal_offset,
+    depth_gradient, depth_precision, plane_normal_offset, reach,
+};
+use shadowfit::diagnostics::DepthStorage;
+use shadowfit::glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
+use shadowfit::{Bias, BiasSettings, FilterKind, FitKind, LightFit, MapFormat};
 
+use crate::filters::filters;
 use crate::support::{DIRECTION, any_camera, any_direction, any_kind, apply, camera, double, exact, fitted, float};
 
 /// A plane z = slope · (x, y) in light space, metres, and its geometry.
@@ -80,7 +85,7 @@ proptest! {
         let point = corners[0] + (corners[1] - corners[0]) * a + (corners[3] - corners[0]) * b + (corners[4] - corners[0]) * c;
         let exact = (fit.uv_from_world.as_dmat4() * point.as_dvec3().extend(1.0)).z;
         let rounded = f64::from(apply(&fit.uv_from_world, point).z);
-        let allowed = f64::from(Bias::automatic(0.5, &fit).constant_depth);
+        let allowed = f64::from(Bias::automatic(0.5, DepthStorage::Float32, &fit).unwrap().constant_depth);
         prop_assert!(2.0 * (exact - rounded).abs() <= allowed, "{:e} of {allowed:e}", 2.0 * (exact - rounded).abs());
     }
 }
@@ -124,8 +129,78 @@ fn automatic_settings_follow_the_filter_s_reach() {
         assert_eq!(settings.slope, 0.0);
         // The constant covers the precision of an ordinary fit.
         let fit = fitted(&camera(), DIRECTION, &exact(FitKind::FrustumAabb).with_caster_extension(1000.0));
-        let (settings, exact) = (Bias::from_texels(&settings, &fit), Bias::automatic(e, &fit));
-        assert!(settings.constant_depth >= exact.constant_depth);
-        assert_eq!(settings.normal_offset, exact.normal_offset);
+        let settings = Bias::from_texels(&settings, &fit);
+        assert!(settings.constant_depth >= Bias::automatic(filter, MapFormat::default(), &fit).unwrap().constant_depth);
     }
+}
+
+#[test]
+fn the_automatic_bias_is_the_worst_azimuth_s_on_hardware() {
+    let settings = exact(FitKind::FrustumAabb).with_resolution(UVec2::new(512, 2048));
+    let fit: LightFit = fitted(&camera(), DIRECTION, &settings);
+    let reach = Reach::kernel(3);
+    let bias = Bias::automatic(reach, DepthStorage::Unorm16, &fit).unwrap();
+    let needed = f64::from(reach.on_hardware(&fit).taps) * fit.texel_size.as_dvec2().length();
+    assert!((f64::from(bias.normal_offset) / needed - 1.0).abs() < 1e-6, "{bias:?} for {needed}");
+    // Less than a percent of it is hardware's, and less than half a step of the constant that of f32.
+    assert!(needed < 1.01 * 2.0 * fit.texel_size.as_dvec2().length());
+    assert!(bias.constant_depth > 1.0 / 65_535.0 && bias.constant_depth < 1.5 / 65_535.0, "{bias:?}");
+    let plane = Bias::automatic_receiver_plane(reach, DepthStorage::Float32, &fit).unwrap();
+    assert_eq!(plane.receiver_plane, reach.on_hardware(&fit).taps);
+    assert_eq!(plane.constant_depth, depth_precision(&fit, DepthStorage::Float32));
+}
+
+#[test]
+fn reaches_are_what_their_filters_read() {
+    for filter in filters() {
+        let mut greatest = 0.0_f64;
+        for i in 0..4000 {
+            let at = DVec2::new(0.754_877_666, 0.569_840_291) * f64::from(i);
+            greatest = filter.texels(at).fold(greatest, |m, centre| m.max((centre - at).abs().max_element()));
+        }
+        let reach = f64::from(filter.reach.per_axis());
+        assert!(greatest <= reach && greatest > 0.97 * reach, "{}: {greatest} of {reach}", filter.name);
+    }
+    assert_eq!([1, 3, 5, 7].map(|taps| Reach::kernel(taps).per_axis()), [1.0, 2.0, 3.0, 4.0]);
+    assert_eq!([FilterKind::Point, FilterKind::Hardware2x2].map(Reach::from), [Reach::POINT, Reach::HARDWARE_2X2]);
+    let fit =
+        LightFit { texel_size: Vec2::new(0.5, 0.25), ..fitted(&camera(), DIRECTION, &exact(FitKind::FrustumAabb)) };
+    assert_eq!(Reach::POINT.over_metres(1.0, &fit).disc, Vec2::new(2.0, 4.0));
+}
+
+#[test]
+fn a_bias_on_a_plane_is_the_sum_of_its_forms() {
+    let fit: LightFit = fitted(&camera(), DIRECTION, &exact(FitKind::FrustumAabb));
+    let bias = Bias { constant_depth: 0.001, slope_depth: 0.002, normal_offset: 0.3, receiver_plane: 1.5 };
+    let to_light = -fit.direction;
+    let across = to_light.any_orthonormal_vector();
+    for degrees in [0.0_f32, 20.0, 60.0, 85.0] {
+        let (sine, cosine) = degrees.to_radians().sin_cos();
+        let normal = to_light * cosine + across * sine;
+        let on_plane = bias.on_plane(&fit, normal).unwrap();
+        assert!((on_plane.offset - 0.3 * sine).abs() < 1e-6, "{degrees}: {on_plane:?}");
+        let gradient = depth_gradient(&fit, normal).unwrap().abs();
+        let depth = 0.001 + 0.002 * sine / cosine + 1.5 * (gradient.x + gradient.y);
+        assert!((on_plane.depth / depth - 1.0).abs() < 1e-4, "{degrees}: {on_plane:?} for {depth}");
+        let turned = bias.on_plane(&fit, -normal * 7.0).unwrap();
+        assert!((turned.depth / on_plane.depth - 1.0).abs() < 1e-4, "the side and length of a normal do not matter");
+    }
+    // Edge-on every part is held at the least cosine.
+    let grazing = bias.on_plane(&fit, across).unwrap();
+    assert!(grazing.depth < 0.001 + (0.002 + 1.5) / MIN_COSINE && grazing.depth.is_finite(), "{grazing:?}");
+    assert_eq!(Bias::fixed(XNA_DEPTH_BIAS).unwrap(), Bias { constant_depth: 0.001, ..Bias::default() });
+}
+
+#[test]
+fn epsilon_over_acos_is_largest_head_on_and_least_at_grazing_light() {
+    let at = |radians: f32| acos_bias(acos_epsilon(FilterKind::Point), radians.cos()).unwrap();
+    assert_eq!(at(0.0), ACOS_BIAS_LIMIT);
+    assert!((at(0.1) / 0.01 - 1.0).abs() < 1e-4, "{}", at(0.1));
+    assert!((at(std::f32::consts::FRAC_PI_2) - 0.000_637).abs() < 1e-6);
+    assert!((0..90).map(|i| (i as f32).to_radians()).all(|a| at(a) >= at(a + 0.01)), "it falls with the angle");
+    // Saturated on both sides, and half with linear filtering.
+    assert_eq!(acos_bias(0.001, 2.0).unwrap(), ACOS_BIAS_LIMIT);
+    assert_eq!(acos_bias(0.001, -0.7).unwrap(), acos_bias(0.001, 0.0).unwrap());
+    assert_eq!(acos_epsilon(FilterKind::Hardware2x2), 0.0005);
+    assert_eq!(acos_bias(0.0, 1.0).unwrap(), 0.0);
 }

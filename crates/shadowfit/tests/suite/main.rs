@@ -1,13 +1,18 @@
 //! Facts that the core keeps, by subject. Tolerances are relative and justified where they stand.
 
+mod automatic_bias;
 mod bad_input;
+mod bad_input_figures;
 mod bias;
 mod caster;
 mod clusters;
 mod conventions;
 mod diagnostics;
+mod filters;
 mod frustum;
 mod invariance;
+mod light_steps;
+mod self_shadowing;
 mod settings;
 mod support;
 mod tightness;

@@ -1,0 +1,126 @@
+//! How far a filter reads from the point that it is asked for: what every bias is proportional to.
+
+use glam::Vec2;
+
+use crate::settings::FilterKind;
+use crate::{FitError, LightFit, checks};
+
+/// Reach of a filter, in texels: which texel centres have a weight that is not zero.
+///
+/// They lie within [`Self::taps`] per axis of a look-up, and the look-ups within the ellipse
+/// [`Self::disc`] around the sampled point. A number converts to the reach with these taps and no
+/// disc, a [`FilterKind`] to its [`reach`].
+///
+/// ```text
+///   ┌───────┐  taps = E      ╭───────╮  disc = r, and each of the look-ups
+///   │   ·───┤  each way      │   ·───┤  in it has taps of its own around it
+///   └───────┘                ╰───────╯
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reach {
+    /// Greatest distance along one axis from a look-up to a texel centre that it reads: E.
+    pub taps: f32,
+    /// Radii along u and v of the ellipse that the look-ups are spread over; zero for one look-up.
+    pub disc: Vec2,
+}
+
+/// What hardware adds to every reach, in texels: the rasteriser snaps vertices, and the sampler
+/// texture coordinates, to the nearest 1/256 of a texel.
+pub const HARDWARE_SNAP: f32 = 1.0 / 256.0;
+
+/// Roundings of 2⁻²⁴ that can part what a map stores for a point from what it is compared with,
+/// as a multiple of the farthest distance from the origin in the map's box: four operations a
+/// term, in each of two transforms, on terms that sum to at most twice that distance.
+const PRECISION_ROUNDINGS: f64 = 16.0;
+
+/// Relative rounding of f32, 2⁻²⁴.
+const ROUNDING: f64 = 1.0 / 16_777_216.0;
+
+impl Reach {
+    /// One comparison with the nearest texel: E = 0.5.
+    pub const POINT: Self = Self::taps(0.5);
+
+    /// The hardware's four comparisons, weighted bilinearly: E = 1.
+    pub const HARDWARE_2X2: Self = Self::taps(1.0);
+
+    /// Taps that reach `taps` texels per axis.
+    pub const fn taps(taps: f32) -> Self {
+        Self { taps, disc: Vec2::ZERO }
+    }
+
+    /// `taps` × `taps` hardware 2×2 look-ups one texel apart, centred on the sampled point:
+    /// E = (taps + 1) / 2.
+    pub const fn kernel(taps: u32) -> Self {
+        Self::taps((taps as f32 + 1.0) * 0.5)
+    }
+
+    /// This reach with its look-ups spread over a disc (Poisson, Vogel, jittered) of `radius`
+    /// texels: `Reach::POINT.over_disc(r)` compares with nearest texels, E = r + 0.5 per axis.
+    #[must_use]
+    pub const fn over_disc(self, radius: f32) -> Self {
+        Self { disc: Vec2::splat(radius), ..self }
+    }
+
+    /// [`Self::over_disc`] for a disc of `radius` metres across the light.
+    #[must_use]
+    pub fn over_metres(self, radius: f32, fit: &LightFit) -> Self {
+        Self { disc: Vec2::new(radius / fit.texel_size.x, radius / fit.texel_size.y), ..self }
+    }
+
+    /// Greatest distance per axis, E: the taps and the longer radius of the disc.
+    pub fn per_axis(self) -> f32 {
+        self.taps + self.disc.x.max(self.disc.y)
+    }
+
+    /// This reach with what is lost on the way through a GPU: [`HARDWARE_SNAP`] and the rounding
+    /// of f32 texture coordinates at this fit's farthest corner from its origin. With exact
+    /// arithmetic (a ray tracer, a test in f64) the plain reach is enough.
+    #[must_use]
+    pub fn on_hardware(self, fit: &LightFit) -> Self {
+        let texel = f64::from(fit.texel_size.x.min(fit.texel_size.y));
+        Self { taps: self.taps + HARDWARE_SNAP + (rounding(fit) / texel) as f32, ..self }
+    }
+
+    /// Refuses what is negative or not finite.
+    pub(crate) fn checked(self) -> Result<Self, FitError> {
+        checks::within("the reach of the filter's taps", f64::from(self.taps), 0.0, checks::MAX_LENGTH)?;
+        for radius in self.disc.to_array() {
+            checks::within("the radius of the filter's disc", f64::from(radius), 0.0, checks::MAX_LENGTH)?;
+        }
+        Ok(self)
+    }
+
+    /// Greatest rise over the texels in reach of a plane that rises by `a` over a texel along u
+    /// and by `b` along v, in the unit of `a` and `b`: a box's and an ellipse's support function.
+    pub(crate) fn rise(self, a: f64, b: f64) -> f64 {
+        let (x, y) = (f64::from(self.disc.x) * a, f64::from(self.disc.y) * b);
+        f64::from(self.taps) * (a.abs() + b.abs()) + libm::sqrt(x * x + y * y)
+    }
+}
+
+impl From<f32> for Reach {
+    fn from(taps: f32) -> Self {
+        Self::taps(taps)
+    }
+}
+
+impl From<FilterKind> for Reach {
+    fn from(filter: FilterKind) -> Self {
+        Self::taps(reach(filter))
+    }
+}
+
+/// Reach E of a filter: the greatest distance along one axis from the sampled point to a texel
+/// centre of non-zero weight, in texels.
+pub const fn reach(filter: FilterKind) -> f32 {
+    match filter {
+        FilterKind::Point => Reach::POINT.taps,
+        FilterKind::Hardware2x2 => Reach::HARDWARE_2X2.taps,
+    }
+}
+
+/// What f32 rounding can do to a position in the map's box, in metres.
+pub(crate) fn rounding(fit: &LightFit) -> f64 {
+    let distances = fit.corners().map(|corner| checks::length(corner.as_dvec3()));
+    PRECISION_ROUNDINGS * ROUNDING * distances.into_iter().fold(0.0, f64::max)
+}

@@ -1,0 +1,82 @@
+//! Filters as the texels that they read, simulated from their definitions.
+
+use shadowfit::bias::Reach;
+use shadowfit::glam::DVec2;
+
+/// What one look-up of a filter reads.
+#[derive(Clone, Copy)]
+pub(crate) enum LookUp {
+    /// The nearest texel.
+    Nearest,
+    /// The four around, those of zero weight left out.
+    Bilinear,
+}
+
+impl LookUp {
+    /// Texels whose centres have a weight at a position in texels.
+    pub(crate) fn texels(self, at: DVec2) -> impl Iterator<Item = DVec2> {
+        let first = match self {
+            Self::Nearest => at.floor(),
+            Self::Bilinear => (at - 0.5).floor(),
+        };
+        let weight = at - 0.5 - first;
+        let corners = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
+        corners
+            .into_iter()
+            .filter(move |c| match self {
+                Self::Nearest => *c == DVec2::ZERO,
+                Self::Bilinear => (c.x == 0.0 || weight.x > 0.0) && (c.y == 0.0 || weight.y > 0.0),
+            })
+            .map(move |c| first + c + 0.5)
+    }
+}
+
+/// A filter: where it looks, relative to the sampled point in texels, and the reach that it has.
+pub(crate) struct Filter {
+    pub(crate) name: &'static str,
+    pub(crate) reach: Reach,
+    pub(crate) look_up: LookUp,
+    pub(crate) offsets: Vec<DVec2>,
+}
+
+impl Filter {
+    /// Centres of all texels that it reads around a position, all in texels.
+    pub(crate) fn texels(&self, at: DVec2) -> impl Iterator<Item = DVec2> {
+        self.offsets.iter().flat_map(move |offset| self.look_up.texels(at + *offset))
+    }
+
+    fn kernel(name: &'static str, taps: u32) -> Self {
+        let side = || (0..taps).map(|i| f64::from(i) - f64::from(taps - 1) * 0.5);
+        let offsets = side().flat_map(|x| side().map(move |y| DVec2::new(x, y))).collect();
+        Self { name, reach: Reach::kernel(taps), look_up: LookUp::Bilinear, offsets }
+    }
+
+    /// A disc: its rim, and as many look-ups inside.
+    fn disc(name: &'static str, reach: Reach, look_up: LookUp) -> Self {
+        let radii = reach.disc.as_dvec2();
+        let offsets = (0..64)
+            .map(|i| {
+                DVec2::from_angle(f64::from(i) * 2.399_963)
+                    * if i % 2 == 0 { 1.0 } else { (f64::from(i) / 64.0).sqrt() }
+            })
+            .map(|offset| offset * radii)
+            .collect();
+        Self { name, reach, look_up, offsets }
+    }
+}
+
+/// Every kind of filter, with reaches from half a texel to four.
+pub(crate) fn filters() -> Vec<Filter> {
+    let one = |name, reach, look_up| Filter { name, reach, look_up, offsets: vec![DVec2::ZERO] };
+    let ellipse = Reach { disc: shadowfit::glam::Vec2::new(3.5, 1.2), ..Reach::POINT };
+    vec![
+        one("point", Reach::POINT, LookUp::Nearest),
+        one("2x2", Reach::HARDWARE_2X2, LookUp::Bilinear),
+        Filter::kernel("3x3", 3),
+        Filter::kernel("5x5", 5),
+        Filter::kernel("7x7", 7),
+        Filter::disc("disc of nearest texels", Reach::POINT.over_disc(2.5), LookUp::Nearest),
+        Filter::disc("disc of 2x2", Reach::HARDWARE_2X2.over_disc(2.5), LookUp::Bilinear),
+        Filter::disc("ellipse of nearest texels", ellipse, LookUp::Nearest),
+    ]
+}
