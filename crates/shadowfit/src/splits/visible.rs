@@ -15,24 +15,67 @@ const COLUMNS: usize = 48;
 /// Rays down the picture.
 const ROWS: usize = 27;
 
+const P: f64 = 0.8;
+/// Boxes kept along each ray.
+const LAYERS: usize = 4;
+
 /// Shares of the rays that first meet a box in each bin; even ones where no box is known.
 pub(super) fn weights(content: &Content, bins: &Bins) -> Weights {
-    let mut weights = [0.0; BINS];
-    let mut total = 0.0;
+    let mut spread = Spread { bins, weights: [0.0; BINS] };
     for (view_index, view) in content.views().enumerate() {
-        let mut depths = [f32::MAX; COLUMNS * ROWS];
+        let mut rays = [Ray::NOTHING; COLUMNS * ROWS];
         let grid = Grid::new(&view);
-        content.each_receiver(view_index, |min, max| grid.meet(&view, min, max, &mut depths));
-        for depth in depths.into_iter().filter(|depth| *depth < f32::MAX) {
-            weights[bins.of(f64::from(depth))] += 1.0;
-            total += 1.0;
+        content.each_receiver(view_index, |min, max| grid.meet(&view, min, max, &mut rays));
+        for ray in rays {
+            let mut weight = 1.0;
+            for (enter, leave) in ray.layers.into_iter().filter(|layer| layer.0 < f32::MAX) {
+                spread.add(enter, leave, weight);
+                weight *= P;
+            }
+            if ray.around > 0.0 {
+                spread.add(view.near as f32, ray.around, weight * Q);
+            }
         }
     }
+    let total: f64 = spread.weights.iter().sum();
     if total == 0.0 {
         return [1.0 / BINS as f64; BINS];
     }
-    weights.map(|weight| weight / total)
+    spread.weights.map(|weight| weight / total)
 }
+const Q: f64 = 0.1;
+
+/// What a ray meets.
+#[derive(Clone, Copy)]
+struct Ray {
+    /// View depths at which it enters and leaves the nearest boxes.
+    layers: [(f32, f32); LAYERS],
+    /// View depth at which it leaves the boxes that it begins in.
+    around: f32,
+}
+
+impl Ray {
+    const NOTHING: Self = Self { layers: [(f32::MAX, f32::MAX); LAYERS], around: 0.0 };
+}
+
+/// Weights spread over bins.
+struct Spread<'a> {
+    bins: &'a Bins,
+    weights: Weights,
+}
+
+impl Spread<'_> {
+    /// Adds a weight, evenly over the log depths of a range.
+    fn add(&mut self, near: f32, far: f32, weight: f64) {
+        let (first, last) = (self.bins.of(f64::from(near)), self.bins.of(f64::from(far)));
+        let last = if SPREAD { last } else { first };
+        let share = weight / (last - first + 1) as f64;
+        for bin in &mut self.weights[first..=last] {
+            *bin += share;
+        }
+    }
+}
+const SPREAD: bool = true;
 
 /// Rays through a picture, from its near to its far rectangle.
 struct Grid {
@@ -56,15 +99,23 @@ impl Grid {
     }
 
     /// Lets all rays meet a box.
-    fn meet(&self, view: &View, min: DVec3, max: DVec3, depths: &mut [f32; COLUMNS * ROWS]) {
+    fn meet(&self, view: &View, min: DVec3, max: DVec3, rays: &mut [Ray; COLUMNS * ROWS]) {
         let Some((columns, rows)) = covered(view, min, max) else { return };
         for row in rows {
             for column in columns.clone() {
                 let (start, end) = self.ray(column, row);
-                if let Some(t) = first_meeting(start, end, min, max) {
-                    let depth = (view.near + (view.far - view.near) * t) as f32;
-                    let nearest = &mut depths[row * COLUMNS + column];
-                    *nearest = nearest.min(depth);
+                let Some((enter, leave)) = crossing(start, end, min, max) else { continue };
+                let depth = |t: f64| (view.near + (view.far - view.near) * t) as f32;
+                let ray = &mut rays[row * COLUMNS + column];
+                let mut layer = (depth(enter), depth(leave));
+                if enter <= 0.0 {
+                    ray.around = ray.around.max(layer.1);
+                    continue;
+                }
+                for kept in &mut ray.layers {
+                    if layer.0 < kept.0 {
+                        core::mem::swap(&mut layer, kept);
+                    }
                 }
             }
         }
@@ -92,8 +143,8 @@ fn covered(view: &View, min: DVec3, max: DVec3) -> Option<(core::ops::Range<usiz
     Some((range(0, COLUMNS)?, range(1, ROWS)?))
 }
 
-/// Share of a ray at which it enters a box; for one that begins inside, where it leaves.
-fn first_meeting(start: DVec3, end: DVec3, min: DVec3, max: DVec3) -> Option<f64> {
+/// Shares of a ray at which it enters and leaves a box.
+fn crossing(start: DVec3, end: DVec3, min: DVec3, max: DVec3) -> Option<(f64, f64)> {
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
     for axis in 0..3 {
         let along = end[axis] - start[axis];
@@ -107,11 +158,5 @@ fn first_meeting(start: DVec3, end: DVec3, min: DVec3, max: DVec3) -> Option<f64
         enter = enter.max(a.min(b));
         leave = leave.min(a.max(b));
     }
-    if enter > leave {
-        None
-    } else if enter > 0.0 {
-        Some(enter)
-    } else {
-        None
-    }
+    if enter > leave { None } else { Some((enter, leave)) }
 }
