@@ -5,7 +5,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use glam::{DMat4, DVec2, DVec3, Vec3};
 use shadowfit::{
-    Aabb, Boxes, CascadeFitter, CascadeSettings, Cascades, Clusters, DepthHistogram, FitInput, PerspectiveCamera,
+    Aabb, Boxes, CascadeFitter, CascadeSettings, Cascades, Clusters, DepthHistogram, FitInput, NormalCone, PerspectiveCamera,
     ViewFrustum, Workspace,
 };
 use shadowfit_truth::Tracer;
@@ -21,6 +21,8 @@ const BATCHES: usize = 7;
 /// What is known of a scene.
 struct Known {
     boxes: Vec<Aabb>,
+    /// Cones around the normals in the boxes, if known.
+    cones: Vec<NormalCone>,
     tracer: Option<Tracer>,
 }
 
@@ -79,16 +81,16 @@ pub(crate) fn run(
 
 fn know(scene: &Scene, configuration: &Configuration, source: Option<&Source>) -> Result<Known> {
     let triangles = source.map(|source| source.read(scene)).transpose()?;
-    let boxes = match (configuration.receivers, &triangles) {
+    let (boxes, cones) = match (configuration.receivers, &triangles) {
         (Knowledge::Clusters, Some(objects)) => {
             let objects: Vec<&[[Vec3; 3]]> = objects.iter().map(Vec::as_slice).collect();
             let clusters = Clusters::build(&objects, Clusters::DEFAULT_LIMIT).context(scene.name.clone())?;
-            clusters.boxes().to_vec()
+            (clusters.boxes().to_vec(), clusters.cones().to_vec())
         }
-        _ => scene.objects.iter().map(outward).collect(),
+        _ => (scene.objects.iter().map(outward).collect(), Vec::new()),
     };
     let tracer = triangles.filter(|_| configuration.uses_histogram());
-    Ok(Known { boxes, tracer: tracer.map(|objects| Tracer::new(objects.into_iter().flatten())) })
+    Ok(Known { boxes, cones, tracer: tracer.map(|objects| Tracer::new(objects.into_iter().flatten())) })
 }
 
 /// A box rounded to f32 so that it loses nothing.
@@ -146,6 +148,7 @@ fn fit_all(frames: &[Prepared], known: &[Known], settings: &CascadeSettings) -> 
                 views: &[frame.view],
                 direction: frame.direction,
                 receivers: Some(boxes),
+                receiver_cones: &known[frame.scene].cones,
                 casters: boxes,
                 histogram: bins.map(|bins| DepthHistogram { near: frame.near, far: frame.far, bins }),
             };

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, Vec3};
 
-use crate::{Boxes, DepthHistogram, ViewFrustum};
+use crate::{Boxes, DepthHistogram, NormalCone, ViewFrustum};
 
 /// Everything that changes from frame to frame.
 ///
@@ -44,6 +44,10 @@ pub struct FitInput<'a> {
     /// for splits that look at the content. `None` when they are not known: everything in view
     /// counts then. An empty slice means that nothing receives.
     pub receivers: Option<Boxes<'a>>,
+    /// Cones around the normals of each receiver's surfaces, or an empty slice when they are not
+    /// known: those that turn away from the light where the camera sees them are dark without a
+    /// map, so [`FitKind::Focused`](crate::FitKind) passes them over.
+    pub receiver_cones: &'a [NormalCone],
     /// Boxes around everything that throws shadows, for the caster policies that use them.
     pub casters: Boxes<'a>,
     /// What depths the last frame showed, for
@@ -54,7 +58,7 @@ pub struct FitInput<'a> {
 impl<'a> FitInput<'a> {
     /// Views and light alone, `direction` being the light's direction of travel in world axes.
     pub fn new(views: &'a [ViewFrustum], direction: Vec3) -> Self {
-        Self { views, direction, receivers: None, casters: Boxes::default(), histogram: None }
+        Self { views, direction, receivers: None, receiver_cones: &[], casters: Boxes::default(), histogram: None }
     }
 }
 

@@ -46,10 +46,14 @@ impl<'a> Content<'a> {
         if let Some(receivers) = &input.receivers {
             let offset = receivers.origin - origin;
             for (view, depths) in input.views.iter().zip(depths.chunks_mut(count.max(1))) {
+                let eye = view.origin;
                 let view = View::new(view, origin);
-                for (aabb, depths) in receivers.boxes.iter().zip(depths) {
+                let eye = (eye - receivers.origin).as_vec3();
+                for (i, (aabb, depths)) in receivers.boxes.iter().zip(depths).enumerate() {
                     let (min, max) = moved(aabb, offset);
-                    let seen = if aabb.is_empty() { None } else { view.depths(min, max) };
+                    let faces_away = |cone: &crate::NormalCone| cone.faces_away(aabb, eye, -input.direction);
+                    let is_dark = input.receiver_cones.get(i).is_some_and(faces_away);
+                    let seen = if aabb.is_empty() || is_dark { None } else { view.depths(min, max) };
                     *depths = seen.map_or(OUT_OF_VIEW, |(near, far)| DVec2::new(near, far));
                 }
             }
