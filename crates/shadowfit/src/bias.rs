@@ -74,14 +74,16 @@ pub const MIN_COSINE: f32 = 0.01;
 /// of a 2048² map.
 const PRECISION_TEXELS: f32 = 1.0 / 16.0;
 
-/// What a sine loses that comes from a rounded cosine: √(1 - c²) is 0 where two roundings of
-/// 2⁻²⁴ make c 1, at √(4 · 2⁻²⁴).
-const SINE_ROUNDING: f64 = 1.0 / 2048.0;
+/// What the square of a sine loses that a shader takes from an f32 cosine: four roundings of 2⁻²⁴.
+pub(crate) const SQUARED_SINE_ROUNDING: f64 = 4.0 / 16_777_216.0;
+
+/// What the sine itself loses at most, where that leaves nothing of it: the root, 2⁻¹¹, rounded up.
+const SINE_ROUNDING: f64 = 5e-4;
 
 impl Bias {
     /// Converts biases in texels for one fit. Texels that are not square count by their longer
     /// side, which is on the safe side of acne. Settings that are not finite give biases that are
-    /// not.
+    /// not; [`Self::checked`] refuses those.
     pub fn from_texels(settings: &BiasSettings, fit: &LightFit) -> Self {
         let texel = fit.texel_size.x.max(fit.texel_size.y);
         Self {
@@ -130,7 +132,7 @@ impl Bias {
             normal_offset: (taps + disc) as f32,
             ..Self::default()
         };
-        bias.finite()
+        bias.checked()
     }
 
     /// The same by depth alone, for shaders that do not move the looked-up point: the receiver
@@ -147,7 +149,7 @@ impl Bias {
     ) -> Result<Self, FitError> {
         let reach = reach.into().checked()?.on_hardware(fit);
         let constant_depth = depth_precision(fit, storage);
-        Self { constant_depth, receiver_plane: reach.per_axis(), ..Self::default() }.finite()
+        Self { constant_depth, receiver_plane: reach.per_axis(), ..Self::default() }.checked()
     }
 
     /// What this bias amounts to on a plane with the given geometric normal (world axes, any
@@ -158,7 +160,7 @@ impl Bias {
     /// [`FitError::NotFinite`] and [`FitError::BadDirection`] for the normal, and the former for a
     /// bias that is not finite.
     pub fn on_plane(&self, fit: &LightFit, normal: Vec3) -> Result<PlaneBias, FitError> {
-        let bias = self.finite()?;
+        let bias = self.checked()?;
         let plane = Slope::of(fit, normal)?;
         let cosine = plane.cosine.max(f64::from(MIN_COSINE));
         let sine = libm::sqrt((1.0 - cosine * cosine).max(0.0));
@@ -173,8 +175,13 @@ impl Bias {
         })
     }
 
-    /// Refuses numbers that are not finite.
-    fn finite(self) -> Result<Self, FitError> {
+    /// This bias, if all its numbers are finite: for what [`Self::from_texels`] makes of settings
+    /// that come from outside.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::NotFinite`] with the first that is not.
+    pub fn checked(self) -> Result<Self, FitError> {
         let Self { constant_depth, slope_depth, normal_offset, receiver_plane } = self;
         for (input, value) in [
             ("the constant depth bias", constant_depth),

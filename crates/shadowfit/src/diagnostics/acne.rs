@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::{DepthStorage, coverage};
-use crate::bias::{Bias, Reach, Slope, depth_precision};
+use crate::bias::{Bias, Reach, SQUARED_SINE_ROUNDING, Slope, depth_precision};
 use crate::{FitError, LightFit, checks};
 
 /// What is left of a bias once a plane has taken what it needs; negative is what is missing, and
@@ -44,9 +44,13 @@ pub fn acne_margin(
     if !coverage(fit, reach, point)?.is_inside() {
         return Ok(None);
     }
+    // The sine that a shader takes from an f32 cosine may be less than the one of `on_plane`.
+    let squared_sine = 1.0 - plane.cosine * plane.cosine;
+    let sine = libm::sqrt((squared_sine - SQUARED_SINE_ROUNDING).max(0.0));
+    let offset = f64::from(given.offset).min(f64::from(bias.normal_offset) * sine);
     let depth = f64::from(given.depth) - f64::from(depth_precision(fit, storage));
     let along_normal = depth * f64::from(fit.depth_range) * plane.cosine;
-    let metres = f64::from(given.offset) + along_normal - reach.on_hardware(fit).rise(plane.u, plane.v);
+    let metres = offset + along_normal - reach.on_hardware(fit).rise(plane.u, plane.v);
     let texel = f64::from(fit.texel_size.x.max(fit.texel_size.y));
     let rounded = |margin| checks::rounded("the acne margin", margin);
     Ok(Some(AcneMargin { metres: rounded(metres)?, texels: rounded(metres / texel)? }))

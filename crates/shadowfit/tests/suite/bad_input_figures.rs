@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use shadowfit::bias::{Reach, acos_bias, depth_gradient, normal_offset, receiver_plane_depth};
 use shadowfit::diagnostics::{DepthStorage, acne_margin, coverage, depth_step_at, share_of_map};
 use shadowfit::glam::{DVec3, Vec2, Vec3};
-use shadowfit::{Bias, FitError, FitKind, LightFit, LightStepSettings, LightSteps};
+use shadowfit::{Bias, BiasSettings, FitError, FitKind, LightFit, LightStepSettings, LightSteps};
 
 use crate::support::{DIRECTION, camera, exact, fitted};
 
@@ -166,6 +166,23 @@ fn values_without_meaning_are_refused() {
             set(&mut inputs, *value);
             assert!(figures(&fit(), &inputs).is_err(), "{name} = {value:e}");
         }
+    }
+}
+
+#[test]
+fn bias_settings_that_are_not_finite_are_refused_once_converted() {
+    let sets: [fn(BiasSettings, f32) -> BiasSettings; 3] =
+        [BiasSettings::with_constant, BiasSettings::with_slope, BiasSettings::with_normal_offset];
+    for set in sets {
+        let bias = |value| Bias::from_texels(&set(BiasSettings::default(), value), &fit());
+        for value in NOT_FINITE {
+            assert!(matches!(bias(value).checked(), Err(FitError::NotFinite { .. })), "{value}");
+        }
+        for value in ODD {
+            let made = bias(value);
+            assert!(made.checked().is_err() || made.on_plane(&fit(), Vec3::Y).is_ok_and(|b| b.depth.is_finite()));
+        }
+        assert_eq!(bias(1.0).checked(), Ok(bias(1.0)));
     }
 }
 
