@@ -150,7 +150,12 @@ fn fit_all(frames: &[Prepared], known: &[Known], settings: &CascadeSettings) -> 
                 receivers: Some(boxes),
                 receiver_cones: &known[frame.scene].cones,
                 casters: boxes,
-                histogram: bins.map(|bins| DepthHistogram { near: frame.near, far: frame.far, bins }),
+                histogram: bins.map(|bins| DepthHistogram {
+                    near: frame.near,
+                    far: frame.far,
+                    bins,
+                    classes: histogram::CLASSES,
+                }),
             };
             let start = Instant::now();
             let cascades = fitter.fit(&input, settings, &mut Workspace::new(&mut storage))?;

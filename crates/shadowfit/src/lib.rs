@@ -89,7 +89,7 @@ pub use settings::{
     BiasSettings, CameraSettings, CascadeSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings,
     LightSettings, MAX_CASCADES, MapFormat, MapOverride, RectangleKind, Settings, SplitScheme, Stabilise, ViewSettings,
 };
-pub use splits::DepthHistogram;
+pub use splits::{DepthHistogram, needed_texel};
 
 /// Runs the example of the README as a test.
 #[cfg(doctest)]

@@ -1,45 +1,84 @@
 //! How deep the picture is: a histogram that the engine takes from its last depth buffer.
 
-use super::{BINS, Bins, Weights};
+use glam::Vec3;
 
-/// Counts of visible pixels in bins at even steps of log view depth.
+use super::{BINS, Bins, CLASSES, Weights};
+
+/// Counts of visible points that face the light, in bins at even steps of log view depth, and
+/// optionally by how much finer texels they need than their depth alone says.
 ///
-/// Fill it from a depth buffer of the frame before, as coarsely as you like (64 × 36 samples
-/// serve): `bin = floor(bins.len() · log(depth / near) / log(far / near))`, depth being the view
-/// depth in metres; leave out the sky. It only chooses where the maps are cut: a late or wrong
-/// histogram costs sharpness, never coverage.
+/// Fill it from the depth buffer of the frame before, as coarsely as you like (64 × 36 samples
+/// serve), leaving out the sky: [`Self::bin`] says where a point counts. It only chooses where the
+/// maps are cut: a late or wrong histogram costs sharpness, never coverage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthHistogram<'a> {
     /// View depth at which the first bin begins, in metres; positive.
     pub near: f32,
     /// View depth at which the last bin ends, in metres.
     pub far: f32,
-    /// Counts.
+    /// Counts: all depths of the first class, then all of the next.
     pub bins: &'a [u32],
+    /// Number of classes of foreshortening, an octave each; 1 for depths alone.
+    pub classes: usize,
+}
+
+/// Widest texel, in metres across the light, with which a point shows no more than one pixel per
+/// texel: the least singular value of the pixel's outline on the surface as the light sees it.
+///
+/// `right` and `down` are the surface's movements in the world, in metres, for one pixel to the
+/// right and one down; `direction` is the light's direction of travel, of unit length. The
+/// foreshortening class of a point is `log2(depth · pixel / texel)`, `pixel` being the width that
+/// one pixel has at a view depth of one metre.
+pub fn needed_texel(right: Vec3, down: Vec3, direction: Vec3) -> f32 {
+    let along = direction.as_dvec3();
+    let seen = |v: Vec3| v.as_dvec3() - along * v.as_dvec3().dot(along);
+    let (a, b) = (seen(right), seen(down));
+    // σ² of the 3 × 2 matrix (a b) are the eigenvalues of its 2 × 2 Gram matrix.
+    let (aa, bb, ab) = (a.dot(a), b.dot(b), a.dot(b));
+    let (half, det) = ((aa + bb) * 0.5, aa * bb - ab * ab);
+    let greatest = half + libm::sqrt((half * half - det).max(0.0));
+    if greatest > 0.0 { libm::sqrt((det / greatest).max(0.0)) as f32 } else { 0.0 }
 }
 
 impl DepthHistogram<'_> {
+    /// Index into [`Self::bins`] for a visible point, `None` for one outside of the depths: its
+    /// view depth in metres and its class, `log2(depth · pixel / needed_texel)`, 0 if unknown.
+    pub fn bin(near: f32, far: f32, depth_bins: usize, classes: usize, depth: f32, class: f32) -> Option<usize> {
+        if !(depth >= near && depth < far && near > 0.0) || depth_bins == 0 || classes == 0 {
+            return None;
+        }
+        let share = libm::log2(f64::from(depth / near)) / libm::log2(f64::from(far / near));
+        let depth_bin = ((share * depth_bins as f64) as usize).min(depth_bins - 1);
+        // NaN and negative numbers count as the first class.
+        let class = (libm::round(f64::from(class.max(0.0))) as usize).min(classes - 1);
+        Some(class * depth_bins + depth_bin)
+    }
+
     /// Whether nothing was counted, or the depths make no sense: cuts come from boxes then.
     pub fn is_empty(&self) -> bool {
         let is_valid = self.near > 0.0 && self.near < self.far && self.far.is_finite();
-        !is_valid || self.bins.iter().all(|count| *count == 0)
+        let is_whole = self.classes > 0 && self.bins.len().is_multiple_of(self.classes);
+        !is_valid || !is_whole || self.bins.iter().all(|count| *count == 0)
     }
 
     /// The counts as shares, spread over other bins.
     pub(super) fn weights(&self, bins: &Bins) -> Weights {
-        let mut weights = [0.0; BINS];
+        let mut weights = [[0.0; CLASSES]; BINS];
         let (near, far) = (f64::from(self.near), f64::from(self.far));
-        let step = libm::log2(far / near) / self.bins.len() as f64;
+        let depths = self.bins.len() / self.classes;
+        let step = libm::log2(far / near) / depths as f64;
         let total: f64 = self.bins.iter().map(|count| f64::from(*count)).sum();
-        /// Parts that each bin is cut in, to be spread.
-        const PARTS: usize = 4;
         for (i, count) in self.bins.iter().enumerate().filter(|(_, count)| **count > 0) {
+            let class = (i / depths).min(CLASSES - 1);
             for part in 0..PARTS {
-                let middle = i as f64 + (part as f64 + 0.5) / PARTS as f64;
+                let middle = (i % depths) as f64 + (f64::from(part) + 0.5) / f64::from(PARTS);
                 let depth = near * libm::exp2(step * middle);
-                weights[bins.of(depth)] += f64::from(*count) / (total * PARTS as f64);
+                weights[bins.of(depth)][class] += f64::from(*count) / (total * f64::from(PARTS));
             }
         }
         weights
     }
 }
+
+/// Parts that each bin is cut in, to be spread.
+const PARTS: u32 = 4;

@@ -14,7 +14,7 @@ use crate::settings::{CascadeSettings, FitKind, FitSettings, SplitScheme};
 use crate::{FitError, MAX_CASCADES};
 
 use extents::Sizes;
-pub use histogram::DepthHistogram;
+pub use histogram::{DepthHistogram, needed_texel};
 use optimise::{Cuts as BinCuts, least_quantile, quantile};
 
 /// Cuts of all maps, in metres of view depth: map i covers `cuts[i]..cuts[i + 1]`.
@@ -60,8 +60,12 @@ impl Bins {
     }
 }
 
-/// Shares of the visible points in each bin.
-pub(crate) type Weights = [f64; BINS];
+/// Classes of foreshortening, an octave each: the first holds surfaces that face both the eye and
+/// the light, the others those that need texels half as wide, a quarter, and so on.
+pub(crate) const CLASSES: usize = 6;
+
+/// Shares of the visible points in each bin and class.
+pub(crate) type Weights = [[f64; CLASSES]; BINS];
 
 /// The cuts of a fixed scheme over a range of view depths: `count` maps.
 ///
@@ -175,7 +179,10 @@ impl Chooser<'_, '_> {
 
     fn weights(&self, bins: &Bins) -> Weights {
         match (self.settings.splits, &self.histogram) {
-            (SplitScheme::FromHistogram, Some(histogram)) if !histogram.is_empty() => histogram.weights(bins),
+            (SplitScheme::FromHistogram, Some(histogram)) if !histogram.is_empty() => {
+                let (seen, guess) = (histogram.weights(bins), visible::weights(self.content, bins));
+                core::array::from_fn(|i| core::array::from_fn(|c| seen[i][c] * (1.0 - MIX) + guess[i][c] * MIX))
+            }
             _ => visible::weights(self.content, bins),
         }
     }
@@ -197,3 +204,4 @@ fn manual(given: &[f32; MAX_CASCADES - 1], count: usize, range: Range) -> Result
     }
     Ok(cuts)
 }
+const MIX: f64 = 0.3;

@@ -7,7 +7,7 @@
 //! programming", 1961); the least T that leaves 5% at most by bisection.
 
 use super::extents::Sizes;
-use super::{BINS, Bins, Weights};
+use super::{BINS, Bins, CLASSES, Weights};
 use crate::MAX_CASCADES;
 
 /// Share of the points that may lie over the bound.
@@ -59,19 +59,23 @@ pub(super) fn quantile(bins: &Bins, weights: &Weights, sizes: &Sizes, cuts: &[us
 struct Search<'a> {
     bins: &'a Bins,
     sizes: &'a Sizes,
-    /// Weight of all bins before each.
-    before: [f64; BINS + 1],
-    /// Weight times log2 of the depth of all bins before each.
-    log_before: [f64; BINS + 1],
+    /// Weight of all bins before each, by class.
+    before: [[f64; CLASSES]; BINS + 1],
+    /// Weight of all bins before each, and weight times log2 of the depth that needs such texels.
+    log_before: [[f64; 2]; BINS + 1],
 }
 
 impl<'a> Search<'a> {
     fn new(bins: &'a Bins, weights: &Weights, sizes: &'a Sizes) -> Self {
-        let (mut before, mut log_before) = ([0.0; BINS + 1], [0.0; BINS + 1]);
-        for (i, weight) in weights.iter().enumerate() {
-            before[i + 1] = before[i] + weight;
+        let (mut before, mut log_before) = ([[0.0; CLASSES]; BINS + 1], [[0.0; 2]; BINS + 1]);
+        for (i, classes) in weights.iter().enumerate() {
             let log_depth = bins.log_near + bins.log_step * (i as f64 + 0.5);
-            log_before[i + 1] = log_before[i] + weight * log_depth;
+            log_before[i + 1] = log_before[i];
+            for (class, weight) in classes.iter().enumerate() {
+                before[i + 1][class] = before[i][class] + weight;
+                log_before[i + 1][0] += weight;
+                log_before[i + 1][1] += weight * (log_depth - class as f64);
+            }
         }
         Self { bins, sizes, before, log_before }
     }
@@ -79,16 +83,17 @@ impl<'a> Search<'a> {
     /// Weight of the points of a run that lie over the bound, and `mean` times their log2 error.
     fn cost(&self, first: usize, end: usize, bound: f64, mean: f64) -> f64 {
         let log_size = f64::from(self.sizes.log_extent(first, end));
-        // Points nearer than this, in bins, are over the bound.
+        // Points nearer than this, in bins, are over the bound; those of later classes farther out.
         let over = (log_size - bound - self.bins.log_near) / self.bins.log_step;
-        let over = over.max(first as f64).min(end as f64);
-        let whole = over as usize;
-        let rest = over - whole as f64;
-        let next = self.before[(whole + 1).min(BINS)];
-        let weight = self.before[whole] + (next - self.before[whole]) * rest - self.before[first];
-        let error =
-            log_size * (self.before[end] - self.before[first]) - (self.log_before[end] - self.log_before[first]);
-        weight + mean * error
+        let mut weight = 0.0;
+        for class in 0..CLASSES {
+            let over = (over + class as f64 / self.bins.log_step).max(first as f64).min(end as f64);
+            let whole = over as usize;
+            let (at, next) = (self.before[whole][class], self.before[(whole + 1).min(BINS)][class]);
+            weight += at + (next - at) * (over - whole as f64) - self.before[first][class];
+        }
+        let [[w0, d0], [w1, d1]] = [self.log_before[first], self.log_before[end]];
+        weight + mean * (log_size * (w1 - w0) - (d1 - d0))
     }
 
     /// The cuts of least cost, and that cost.

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::{BINS, Bins, Weights};
+use super::{BINS, Bins, CLASSES, Weights};
 use crate::fits::Content;
 use crate::view::{View, box_corners};
 
@@ -21,7 +21,7 @@ const LAYERS: usize = 4;
 
 /// Shares of the rays that first meet a box in each bin; even ones where no box is known.
 pub(super) fn weights(content: &Content, bins: &Bins) -> Weights {
-    let mut spread = Spread { bins, weights: [0.0; BINS] };
+    let mut spread = Spread { bins, weights: [[0.0; CLASSES]; BINS] };
     for (view_index, view) in content.views().enumerate() {
         let mut rays = [Ray::NOTHING; COLUMNS * ROWS];
         let grid = Grid::new(&view);
@@ -37,11 +37,11 @@ pub(super) fn weights(content: &Content, bins: &Bins) -> Weights {
             }
         }
     }
-    let total: f64 = spread.weights.iter().sum();
+    let total: f64 = spread.weights.iter().flatten().sum();
     if total == 0.0 {
-        return [1.0 / BINS as f64; BINS];
+        return [[1.0 / (BINS * CLASSES) as f64; CLASSES]; BINS];
     }
-    spread.weights.map(|weight| weight / total)
+    spread.weights.map(|classes| classes.map(|weight| weight / total))
 }
 const Q: f64 = 0.1;
 
@@ -71,11 +71,14 @@ impl Spread<'_> {
         let last = if SPREAD { last } else { first };
         let share = weight / (last - first + 1) as f64;
         for bin in &mut self.weights[first..=last] {
-            *bin += share;
+            for (class, part) in bin.iter_mut().zip(TYPICAL) {
+                *class += share * part;
+            }
         }
     }
 }
 const SPREAD: bool = true;
+const TYPICAL: [f64; CLASSES] = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
 
 /// Rays through a picture, from its near to its far rectangle.
 struct Grid {
