@@ -74,7 +74,7 @@ pub use bias::Bias;
 pub use bounds::{Aabb, Boxes};
 pub use camera::PerspectiveCamera;
 pub use cascades::{CascadeFitter, CascadeMap, Cascades};
-pub use caster::CasterVolume;
+pub use caster::{Bounds, CasterVolume, OrientedBox, Sphere, Sweep, cull};
 #[cfg(feature = "alloc")]
 pub use clusters::{Clusters, NormalCone};
 pub use depth::DepthConvention;

@@ -8,7 +8,7 @@ use glam::{DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
 use crate::axes::LightAxes;
 use crate::checks::{MAX_LENGTH, MIN_LENGTH};
 use crate::fits::Volume;
-use crate::settings::FitSettings;
+use crate::settings::{CasterPolicy, FitSettings};
 use crate::{CasterVolume, DepthConvention, FitError, checks};
 
 /// An orthographic view-projection of a directional light.
@@ -186,21 +186,12 @@ impl LightFit {
         p.cmpge(min - slack).all() && p.cmple(max + slack).all()
     }
 
-    /// The volume that holds the map's casters.
-    ///
-    /// For now it is the map's own box: casters nearer to the light than its near plane are lost,
-    /// which is why [`FitSettings::caster_extension`] moves that plane.
+    /// Every caster that the map can store: its own box, relative to [`Self::origin`]. Casters
+    /// nearer to the light than its near plane are not among them; with depth clamp they are, see
+    /// [`CasterVolume::of_map`]. [`CasterVolume::swept`] holds only those that can throw a shadow
+    /// into view.
     pub fn caster_volume(&self) -> CasterVolume {
-        let (min, max) = self.clip_box();
-        let rows = self.light_from_world.transpose();
-        let t = self.light_from_world.w_axis.truncate().as_dvec3();
-        let axes = [rows.x_axis, rows.y_axis, rows.z_axis].map(Vec4::truncate);
-        let mut planes = [Vec4::ZERO; 6];
-        for i in 0..3 {
-            planes[2 * i] = axes[i].extend((t[i] - min[i]) as f32);
-            planes[2 * i + 1] = (-axes[i]).extend((max[i] - t[i]) as f32);
-        }
-        CasterVolume { planes }
+        CasterVolume::of_map(self, CasterPolicy::None)
     }
 
     /// Corners of the box that the map stores, in world axes relative to [`Self::origin`], in
@@ -222,7 +213,7 @@ impl LightFit {
     }
 
     /// Box between the near and the far plane, in light space.
-    fn clip_box(&self) -> (DVec3, DVec3) {
+    pub(crate) fn clip_box(&self) -> (DVec3, DVec3) {
         let (mut min, max) = (self.box_min.as_dvec3(), self.box_max.as_dvec3());
         min.z = max.z - f64::from(self.depth_range);
         (min, max)

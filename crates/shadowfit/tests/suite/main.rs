@@ -3,6 +3,7 @@
 mod automatic_bias;
 mod bad_input;
 mod bad_input_figures;
+mod batched_culling;
 mod bias;
 mod caster;
 mod clusters;
@@ -15,6 +16,7 @@ mod light_steps;
 mod self_shadowing;
 mod settings;
 mod support;
+mod sweep;
 mod tightness;
 mod unprojection;
 mod xna_cases;

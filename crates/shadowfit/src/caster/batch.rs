@@ -1,0 +1,271 @@
+//! Many shapes against several volumes at once.
+//!
+//! Shapes go in lanes, number by number, so that the compiler turns every loop over them into
+//! vector instructions, on any target. How far a shape reaches along a normal does not depend on
+//! where a plane stands, and the cascades of one light share most of their normals: it is worked
+//! out once for each normal. Most shapes lie outside of all volumes, so that a few planes around
+//! all volumes come first, the *screen*, and what passes it is collected until the lanes are full.
+//!
+//! ```text
+//!    shapes ──▶ lanes ──▶ screen ──few──▶ collected ──▶ lanes ──▶ planes of each volume ──▶ masks
+//!                           └────────────────many─────────────────────▲
+//! ```
+
+use glam::{DVec3, Vec3, Vec4};
+
+use super::shapes::{Lane, Lanes};
+use super::{Bounds, CasterVolume, widened};
+
+/// Shapes that are tested together. Loops this long are not unrolled, which keeps them simple
+/// enough for every compiler to vectorise, and all lanes stay in the innermost cache.
+pub(super) const LANES: usize = 64;
+
+/// Most volumes that one call tests: the bits of a mask.
+const MAX_VOLUMES: usize = 8;
+
+/// Most planes of all volumes together.
+const MAX_PLANES: usize = MAX_VOLUMES * CasterVolume::MAX_PLANES;
+
+/// Most planes of the screen: a silhouette has no more edges.
+const MAX_SCREEN: usize = 6;
+
+/// Tests shapes against up to eight volumes: bit i of a shape's mask says whether it may throw a
+/// shadow into map i, exactly as the tests of `volumes[i].relative_to(origin)` answer.
+///
+/// `shapes` are in world axes, in metres, relative to `origin` (for
+/// [`Boxes`](crate::Boxes): `cull(volumes, boxes.origin, boxes.boxes, masks)`). Nothing is done for
+/// shapes past the length of `masks` and for volumes past the eighth; masks past the number of
+/// shapes are left as they are.
+///
+/// A call has a fixed cost of about a microsecond for four volumes: give it all shapes at once.
+pub fn cull<S: Bounds>(volumes: &[CasterVolume], origin: DVec3, shapes: &[S], masks: &mut [u8]) {
+    let plan = Plan::new(volumes, origin);
+    let count = shapes.len().min(masks.len());
+    let Some(first) = shapes.first() else { return };
+    let mut block = Block::<S>::new(&plan);
+    let mut waiting = Waiting { shapes: [*first; LANES], places: [0; LANES], count: 0 };
+    let (chunks, rest) = shapes[..count].as_chunks();
+    for (chunk, start) in chunks.iter().zip((0..).step_by(LANES)) {
+        waiting.pass(&mut block, chunk, start, masks);
+    }
+    // What is left over goes through the screen as well, with shapes behind it that no one asks for.
+    waiting.flush(&mut block, masks);
+    let start = count - rest.len();
+    waiting.shapes[..rest.len()].copy_from_slice(rest);
+    for (place, index) in waiting.places.iter_mut().zip(start..count) {
+        *place = index;
+    }
+    waiting.count = rest.len();
+    waiting.flush(&mut block, masks);
+}
+
+/// Shapes that passed the screen, and where their masks go.
+struct Waiting<S> {
+    shapes: [S; LANES],
+    places: [usize; LANES],
+    count: usize,
+}
+
+impl<S: Bounds> Waiting<S> {
+    /// Screens a chunk whose masks begin at `start`: tests it at once or takes what passes.
+    fn pass(&mut self, block: &mut Block<S>, chunk: &[S; LANES], start: usize, masks: &mut [u8]) {
+        block.load(chunk);
+        let passed = block.screen();
+        let masks_of_chunk = &mut masks[start..start + LANES];
+        if passed.count > LANES / 2 {
+            block.test();
+            masks_of_chunk.copy_from_slice(&block.results());
+            return;
+        }
+        masks_of_chunk.fill(0);
+        if self.count + passed.count > LANES {
+            self.flush(block, masks);
+        }
+        for i in passed.lanes[..passed.count].iter().map(|i| usize::from(*i)) {
+            self.shapes[self.count] = chunk[i];
+            self.places[self.count] = start + i;
+            self.count += 1;
+        }
+    }
+
+    /// Tests what waits.
+    fn flush(&mut self, block: &mut Block<S>, masks: &mut [u8]) {
+        if self.count > 0 {
+            block.load(&self.shapes);
+            block.test();
+            for (place, mask) in self.places[..self.count].iter().zip(block.results()) {
+                masks[*place] = mask;
+            }
+            self.count = 0;
+        }
+    }
+}
+
+/// The lanes that pass the screen.
+struct Passed {
+    lanes: [u8; LANES],
+    count: usize,
+}
+
+/// Shapes in lanes, and what is known of them.
+struct Block<'a, S: Bounds> {
+    plan: &'a Plan,
+    lanes: S::Lanes,
+    slack: Lane,
+    reach: Lane,
+    /// Least distance to the planes of each volume.
+    least: [Lane; MAX_VOLUMES],
+}
+
+impl<'a, S: Bounds> Block<'a, S> {
+    fn new(plan: &'a Plan) -> Self {
+        let (slack, reach) = ([0.0; LANES], [0.0; LANES]);
+        Self { plan, lanes: S::Lanes::default(), slack, reach, least: [[0.0; LANES]; MAX_VOLUMES] }
+    }
+
+    /// Puts shapes into the lanes.
+    fn load(&mut self, shapes: &[S; LANES]) {
+        gather::<S>(shapes, &mut self.lanes);
+        slacks::<S>(&self.lanes, &mut self.slack);
+    }
+
+    /// The lanes that are inside of the screen.
+    fn screen(&mut self) -> Passed {
+        let least = &mut self.least[0];
+        least.fill(f32::MAX);
+        for plane in &self.plan.screen[..self.plan.screen_count] {
+            narrow::<S>(&self.lanes, *plane, least);
+        }
+        let mut bits = [0; LANES];
+        mark(least, &self.slack, 1, &mut bits);
+        let mut passed = Passed { lanes: [0; LANES], count: 0 };
+        for (lane, bit) in bits.iter().enumerate() {
+            // Written in any case, to be written over: branches would be taken at random.
+            passed.lanes[passed.count] = lane as u8;
+            passed.count += usize::from(*bit);
+        }
+        passed
+    }
+
+    /// Measures all lanes against the planes of all volumes.
+    fn test(&mut self) {
+        let Self { plan, lanes, reach, least, .. } = self;
+        let volumes = &mut least[..plan.volume_count];
+        volumes.fill([f32::MAX; LANES]);
+        for (normal, offsets) in plan.normals[..plan.normal_count].iter().zip(&plan.offsets) {
+            reaches::<S>(lanes, *normal, reach);
+            for (least, d) in volumes.iter_mut().zip(offsets) {
+                if *d < f32::INFINITY {
+                    nearer(reach, *d, least);
+                }
+            }
+        }
+    }
+
+    /// The masks of all lanes.
+    fn results(&self) -> [u8; LANES] {
+        let mut bits = [0; LANES];
+        for (volume, least) in self.least[..self.plan.volume_count].iter().enumerate() {
+            mark(least, &self.slack, 1 << volume, &mut bits);
+        }
+        bits
+    }
+}
+
+// The loops over the lanes. Each is a function of its own: inlined into each other they are taken
+// apart number by number.
+
+#[inline(never)]
+fn gather<S: Bounds>(shapes: &[S; LANES], lanes: &mut S::Lanes) {
+    lanes.gather(shapes);
+}
+
+#[inline(never)]
+fn slacks<S: Bounds>(lanes: &S::Lanes, slack: &mut Lane) {
+    lanes.slack(|i, value| slack[i] = value);
+}
+
+#[inline(never)]
+fn reaches<S: Bounds>(lanes: &S::Lanes, normal: Vec3, reach: &mut Lane) {
+    lanes.support(normal, |i, value| reach[i] = value);
+}
+
+#[inline(never)]
+fn narrow<S: Bounds>(lanes: &S::Lanes, plane: Vec4, least: &mut Lane) {
+    lanes.support(plane.truncate(), |i, value| least[i] = lesser(least[i], value + plane.w));
+}
+
+#[inline(never)]
+fn nearer(reach: &Lane, d: f32, least: &mut Lane) {
+    for (least, reach) in least.iter_mut().zip(reach) {
+        *least = lesser(*least, *reach + d);
+    }
+}
+
+/// Sets a bit where a lane is not behind a plane.
+#[inline(never)]
+fn mark(least: &Lane, slack: &Lane, bit: u8, bits: &mut [u8; LANES]) {
+    for ((bits, least), slack) in bits.iter_mut().zip(least).zip(slack) {
+        *bits |= if *least < -*slack { 0 } else { bit };
+    }
+}
+
+/// The lesser of two distances. NaN changes nothing: such a shape counts as touching.
+fn lesser(least: f32, distance: f32) -> f32 {
+    if distance < least { distance } else { least }
+}
+
+/// The planes of all volumes, by their normals.
+struct Plan {
+    normals: [Vec3; MAX_PLANES],
+    normal_count: usize,
+    /// The planes' d for each normal and volume; infinite where a volume has no such plane.
+    offsets: [[f32; MAX_VOLUMES]; MAX_PLANES],
+    volume_count: usize,
+    /// Planes that hold all volumes.
+    screen: [Vec4; MAX_SCREEN],
+    screen_count: usize,
+}
+
+impl Plan {
+    fn new(volumes: &[CasterVolume], origin: DVec3) -> Self {
+        let mut plan = Self {
+            normals: [Vec3::ZERO; MAX_PLANES],
+            normal_count: 0,
+            offsets: [[f32::INFINITY; MAX_VOLUMES]; MAX_PLANES],
+            volume_count: volumes.len().min(MAX_VOLUMES),
+            screen: [Vec4::ZERO; MAX_SCREEN],
+            screen_count: 0,
+        };
+        for (i, volume) in volumes.iter().take(MAX_VOLUMES).enumerate() {
+            for plane in volume.relative_to(origin).active_planes() {
+                let normal = plan.normal_index(plane.truncate());
+                let d = &mut plan.offsets[normal][i];
+                *d = lesser(*d, widened(plane.w));
+            }
+        }
+        plan.find_screen();
+        plan
+    }
+
+    /// Where a normal stands in the list, added to it if it is new.
+    fn normal_index(&mut self, normal: Vec3) -> usize {
+        let known = self.normals[..self.normal_count].iter().position(|known| *known == normal);
+        known.unwrap_or_else(|| {
+            self.normals[self.normal_count] = normal;
+            self.normal_count += 1;
+            self.normal_count - 1
+        })
+    }
+
+    /// Takes the first normals that all volumes have.
+    fn find_screen(&mut self) {
+        for (normal, offsets) in self.normals[..self.normal_count].iter().zip(&self.offsets) {
+            let farthest = offsets[..self.volume_count].iter().fold(f32::MIN, |d, other| d.max(*other));
+            if farthest < f32::INFINITY && self.screen_count < MAX_SCREEN {
+                self.screen[self.screen_count] = normal.extend(farthest);
+                self.screen_count += 1;
+            }
+        }
+    }
+}

@@ -1,0 +1,310 @@
+//! The volume that can throw shadows into a slice of the view: the slice swept toward the light.
+//!
+//! It is bounded by the slice's planes that face away from the light, and by one plane along the
+//! light through each edge of the slice's outline as the light sees it (its silhouette). Nothing
+//! bounds it toward the light.
+//!
+//! ```text
+//!      │ toward the light │
+//!      │        ▲         │
+//!      ●───────────●      │   ● silhouette edges, each with a plane along the light
+//!       ╲  facing   ╲     │
+//!        ╲ the light ╲    │
+//!         ╲           ╲   │
+//!          ●───────────────●
+//!            facing away: these planes bound the volume below
+//! ```
+//!
+//! Which normals are taken decides only how tight the volume is: every plane is then moved out
+//! until all corners of the slices are inside, and beyond by the reach of the filter.
+
+use glam::{DVec2, DVec3, Vec3};
+
+use super::{CasterVolume, map_planes};
+use crate::bias::Reach;
+use crate::checks::{self, MAX_LENGTH};
+use crate::fits::ROUNDING;
+use crate::hull::HullBuilder;
+use crate::view::{Slice, View};
+use crate::{FitError, LightFit, ViewFrustum};
+
+/// Which receivers read a map, and how far around them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sweep<'a> {
+    /// The views that read the map.
+    pub views: &'a [ViewFrustum],
+    /// View depth from which they read it, in metres.
+    pub near: f32,
+    /// View depth up to which they read it, in metres.
+    pub far: f32,
+    /// Reach of the filter. A penumbra search counts as a disc, see [`Reach::over_metres`]; the
+    /// texel that a caster's edge is rasterised to is added to it.
+    pub reach: Reach,
+    /// How far off the receiver, in any direction, the place that is looked up may lie, in metres:
+    /// [`Bias::normal_offset`](crate::Bias::normal_offset), and whatever else moves it.
+    pub normal_offset: f32,
+}
+
+impl<'a> Sweep<'a> {
+    /// Views that read the map at every depth with the hardware's 2×2 filter and without a normal
+    /// offset.
+    pub const fn new(views: &'a [ViewFrustum]) -> Self {
+        Self { views, near: f32::MIN, far: f32::MAX, reach: Reach::HARDWARE_2X2, normal_offset: 0.0 }
+    }
+
+    /// Refuses what makes no sense.
+    fn checked(&self) -> Result<(), FitError> {
+        let Self { near, far, .. } = *self;
+        checks::finite("the sweep's near distance", f64::from(near))?;
+        checks::finite("the sweep's far distance", f64::from(far))?;
+        if near >= far {
+            return Err(FitError::NearNotBelowFar { near, far });
+        }
+        self.reach.checked()?;
+        checks::within("the sweep's normal offset", f64::from(self.normal_offset), 0.0, MAX_LENGTH)?;
+        if self.views.is_empty() {
+            return Err(FitError::NoView);
+        }
+        self.views.iter().try_for_each(|view| view.checked().map(|_| ()))
+    }
+}
+
+/// What the texel that a caster's edge is rasterised to adds to the filter's reach, in texels.
+const RASTER_TEXELS: f32 = 1.0;
+
+/// Edges of the outline that are kept of several views; that of one view has no more.
+const MAX_OUTLINE: usize = 6;
+
+/// Storage for the outline of several views: enough for any 15 of them.
+const OUTLINE_STORAGE: usize = 256;
+
+impl CasterVolume {
+    /// Every caster that can throw a shadow through a map on what views see of it, relative to the
+    /// fit's origin.
+    ///
+    /// ```
+    /// # use shadowfit::glam::{DVec2, DVec3, Vec3};
+    /// # use shadowfit::*;
+    /// # let (bias, filter) = (Bias::default(), FilterKind::default());
+    /// # let camera = PerspectiveCamera {
+    /// #     eye: DVec3::new(0.0, 1.7, 5.0),
+    /// #     forward: Vec3::NEG_Z,
+    /// #     up: Vec3::Y,
+    /// #     fov_y: 0.8,
+    /// #     aspect: 16.0 / 9.0,
+    /// #     near: 0.1,
+    /// #     far: 200.0,
+    /// # };
+    /// # let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+    /// # let workspace = &mut Workspace::new(&mut storage);
+    /// let views = [camera.frustum()?];
+    /// let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
+    /// let cascades = CascadeFitter::new().fit(&input, &CascadeSettings::default(), workspace)?;
+    /// let mut volumes = [CasterVolume::everywhere(views[0].origin); MAX_CASCADES];
+    /// for (volume, map) in volumes.iter_mut().zip(cascades.iter()) {
+    ///     let sweep = Sweep {
+    ///         near: map.covered_near,
+    ///         far: map.far,
+    ///         reach: filter.into(),
+    ///         normal_offset: bias.normal_offset,
+    ///         ..Sweep::new(&views)
+    ///     };
+    ///     *volume = CasterVolume::swept(&map.fit, &sweep)?;
+    /// }
+    ///
+    /// let boxes = [Aabb::new(Vec3::new(-2.0, 0.0, -12.0), Vec3::new(2.0, 6.0, -8.0))];
+    /// let mut masks = [0; 1]; // bit i: draw into map i
+    /// shadowfit::cull(&volumes[..cascades.len()], DVec3::ZERO, &boxes, &mut masks);
+    /// # assert_ne!(masks[0], 0);
+    /// # Ok::<(), FitError>(())
+    /// ```
+    ///
+    /// The depths of the sweep must be those at which the shader reads this map: by view depth as
+    /// above, or, where the first map that covers a point is read, whatever the map may serve, in
+    /// doubt everything.
+    ///
+    /// The planes are those of the view's slice that face away from the light, its silhouette
+    /// edges swept along the light, the map's far plane and its four sides. For one view that is
+    /// the exact sweep, widened by the reach; several views share an outline of at most six edges
+    /// around them all. No plane bounds the volume toward the light, so that it serves maps with
+    /// depth clamp too; [`Self::cut_at_near_plane`] adds the map's own.
+    ///
+    /// A range of depths that no view has a part in gives the volume that holds nothing.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::NoView`]; [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the depths,
+    /// the reach and the offset; [`FitError::NearNotBelowFar`]; those of a frustum that makes no
+    /// sense.
+    pub fn swept(fit: &LightFit, sweep: &Sweep) -> Result<Self, FitError> {
+        sweep.checked()?;
+        Ok(Planes { fit, sweep }.volume())
+    }
+}
+
+/// Finds the planes of a sweep.
+struct Planes<'a> {
+    fit: &'a LightFit,
+    sweep: &'a Sweep<'a>,
+}
+
+impl Planes<'_> {
+    fn volume(&self) -> CasterVolume {
+        let mut volume = CasterVolume::everywhere(self.fit.origin);
+        let Some(first) = self.slices().next() else {
+            return CasterVolume::nowhere(self.fit.origin);
+        };
+        let (sides, [far, _]) = map_planes(self.fit);
+        let to_light = -self.fit.direction.as_dvec3();
+        if self.sweep.views.len() == 1 {
+            // The whole view has the same normals as its slices, to the last bit: cascades share
+            // them, and `cull` works them out once.
+            let whole = self.view(&self.sweep.views[0]).slice(f64::MIN, f64::MAX);
+            silhouette(&whole, to_light, |normal| self.push(&mut volume, normal));
+        } else {
+            self.outline(|normal| self.push(&mut volume, normal));
+        }
+        for plane in first.planes {
+            if plane.normal.dot(to_light) > 0.0 {
+                self.push(&mut volume, plane.normal);
+            }
+        }
+        volume.push(far);
+        for plane in sides {
+            volume.push(plane);
+        }
+        volume
+    }
+
+    fn view(&self, frustum: &ViewFrustum) -> View {
+        View::new(frustum, self.fit.origin)
+    }
+
+    /// The parts of the views in the range.
+    fn slices(&self) -> impl Iterator<Item = Slice> {
+        let (near, far) = (f64::from(self.sweep.near), f64::from(self.sweep.far));
+        let slices = self.sweep.views.iter().map(move |view| self.view(view).slice(near, far));
+        slices.filter(|slice| slice.near < slice.far)
+    }
+
+    /// Adds the plane with a normal (pointing inward) that holds all slices and the reach around them.
+    fn push(&self, volume: &mut CasterVolume, normal: DVec3) {
+        // The rounded normal is what the plane is made of, so it is what the corners are measured by.
+        let rounded = normal.as_vec3();
+        let normal = rounded.as_dvec3();
+        let (mut least, mut farthest) = (f64::MAX, 0.0_f64);
+        for corner in self.slices().flat_map(|slice| slice.corners) {
+            least = least.min(normal.dot(corner));
+            farthest = farthest.max(corner.dot(corner));
+        }
+        let pad = libm::sqrt(farthest) * ROUNDING;
+        volume.push(rounded.extend((self.reach_along(rounded) + pad - least) as f32));
+    }
+
+    /// How far the filter reads along a direction, in metres.
+    fn reach_along(&self, normal: Vec3) -> f64 {
+        let reach = Reach { taps: self.sweep.reach.taps + RASTER_TEXELS, ..self.sweep.reach };
+        let texel = self.fit.texel_size.as_dvec2();
+        let [x, y] = self.map_axes();
+        let normal = normal.as_dvec3();
+        reach.rise(normal.dot(x) * texel.x, normal.dot(y) * texel.y) + f64::from(self.sweep.normal_offset)
+    }
+
+    /// The map's axes in world space.
+    fn map_axes(&self) -> [DVec3; 2] {
+        let rows = self.fit.light_from_world.transpose();
+        [rows.x_axis, rows.y_axis].map(|row| row.truncate().as_dvec3())
+    }
+
+    /// Gives the normals of the outline of all slices in the light's plane, simplified to few.
+    fn outline(&self, mut emit: impl FnMut(DVec3)) {
+        let [x, y] = self.map_axes();
+        let mut storage = [DVec2::ZERO; OUTLINE_STORAGE];
+        let mut hull = HullBuilder::new(&mut storage);
+        for corner in self.slices().flat_map(|slice| slice.corners) {
+            if hull.push(DVec2::new(x.dot(corner), y.dot(corner))).is_err() {
+                // More corners than there is room for: the map's own sides have to do.
+                return;
+            }
+        }
+        let corners = hull.finish();
+        let count = simplify(corners, MAX_OUTLINE);
+        for i in 0..count {
+            let edge = corners[(i + 1) % count] - corners[i];
+            let inward = x * -edge.y + y * edge.x;
+            if let Some(normal) = unit(inward) {
+                emit(normal);
+            }
+        }
+    }
+}
+
+/// Gives the inward normals of the planes along the light through the edges between faces toward
+/// it and faces away from it.
+///
+/// ```text
+///      0───────1      side i joins the edges from corner i to i + 4 and from i + 1 to i + 5;
+///      │       │      faces 4 and 5 are the near and the far rectangle
+///      3───────2
+/// ```
+fn silhouette(view: &Slice, to_light: DVec3, mut emit: impl FnMut(DVec3)) {
+    let faces_away = view.planes.map(|plane| plane.normal.dot(to_light) > 0.0);
+    let centre = view.corners.iter().copied().sum::<DVec3>() * 0.125;
+    let mut edge = |one: usize, other: usize, corner: usize, along: DVec3| {
+        if faces_away[one] != faces_away[other]
+            && let Some(normal) = unit(along.cross(to_light))
+        {
+            let is_inward = normal.dot(centre - view.corners[corner]) >= 0.0;
+            emit(if is_inward { normal } else { -normal });
+        }
+    };
+    for i in 0..4 {
+        // Near and far edges are parallel; the far one is never the shorter.
+        let across = view.corners[(i + 1) % 4 + 4] - view.corners[i + 4];
+        edge(i, 4, i, across);
+        edge(i, 5, i + 4, across);
+        edge((i + 3) % 4, i, i, view.corners[i + 4] - view.corners[i]);
+    }
+}
+
+/// Cuts a convex polygon (anticlockwise corners) down to a number of edges by dropping edges one
+/// by one, each time the one whose neighbours, drawn out until they meet, add the least area; what
+/// was inside stays inside. Gives the number of corners left.
+///
+/// ```text
+///             X
+///            ╱ ╲        edge i from a to b goes, its neighbours meet at X
+///           a───b
+///          ╱     ╲
+/// ```
+fn simplify(corners: &mut [DVec2], most: usize) -> usize {
+    let mut count = corners.len();
+    while count > most.max(4) {
+        let mut best = None;
+        for i in 0..count {
+            let [before, a, b, after] = [i + count - 1, i, i + 1, i + 2].map(|k| corners[k % count]);
+            let (first, second) = (a - before, after - b);
+            let turn = first.perp_dot(second);
+            // Neighbours that turn by half a circle or more never meet.
+            if turn > 0.0 {
+                let meeting = a + first * ((b - a).perp_dot(second) / turn);
+                let area = (b - a).perp_dot(b - meeting);
+                if best.is_none_or(|(_, _, least)| area < least) {
+                    best = Some((i, meeting, area));
+                }
+            }
+        }
+        let Some((i, meeting, _)) = best else { break };
+        corners[i] = meeting;
+        let gone = (i + 1) % count;
+        corners.copy_within(gone + 1..count, gone);
+        count -= 1;
+    }
+    count
+}
+
+/// A vector's direction, if it has one.
+fn unit(v: DVec3) -> Option<DVec3> {
+    let length = checks::length(v);
+    if length > 0.0 { Some(v / length) } else { None }
+}
