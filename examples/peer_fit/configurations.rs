@@ -1,7 +1,7 @@
 //! The fits that can be asked for by name.
 
 use glam::UVec2;
-use shadowfit::{CascadeSettings, CasterPolicy, FitKind, FitSettings, SplitScheme, Stabilise};
+use shadowfit::{CascadeSettings, CasterPolicy, FitKind, FitSettings, HoldSettings, SplitScheme, Stabilise};
 
 /// What a fit is told of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,9 +68,12 @@ pub(crate) const CONFIGURATIONS: [Configuration; 10] = [
     },
     Configuration {
         name: "stable-4",
-        what: "4 maps around spheres on a fixed grid of texels, cuts from the objects' boxes and held",
-        receivers: Knowledge::Objects,
-        settings: || several(FitKind::Sphere, SplitScheme::FromBoxes, Stabilise::Snap),
+        what: "4 maps around spheres on a fixed grid of texels, cuts from the clusters' boxes and held",
+        receivers: Knowledge::Clusters,
+        settings: || {
+            let settings = several(FitKind::Sphere, SplitScheme::FromBoxes, Stabilise::Snap);
+            settings.with_hold(HoldSettings::default().with_waste(4.0))
+        },
     },
     Configuration {
         name: "focused-4",

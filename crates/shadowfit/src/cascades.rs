@@ -63,9 +63,6 @@ struct HeldCuts {
     spread: (f64, f64),
 }
 
-/// Room beyond the farthest receiver that held cuts leave, as a share of its depth.
-const FAR_SLACK: f64 = 0.1;
-
 impl CascadeFitter {
     /// A fitter that remembers nothing.
     pub fn new() -> Self {
@@ -147,9 +144,6 @@ impl CascadeFitter {
         {
             return Ok(held.cuts);
         }
-        let room = if is_held { FAR_SLACK } else { 0.0 };
-        let far = (spread.1 * (1.0 + room)).min(f64::from(chooser.range.far));
-        let spread = (spread.0, far);
         let choice = chooser.choose(spread)?;
         self.cuts = Some(HeldCuts { cuts: choice.cuts, spread });
         Ok(choice.cuts)

@@ -81,6 +81,22 @@ impl<'a> Content<'a> {
         if range.x < range.y { Some((range.x, range.y)) } else { None }
     }
 
+    /// Greatest distance of any receiver from an eye, in view or not: no turn of the camera makes
+    /// a view depth exceed it. `None` when no receiver is known.
+    pub(crate) fn farthest(&self) -> Option<f64> {
+        let receivers = self.receivers.as_ref()?;
+        let mut squared = None;
+        for view in self.views {
+            let offset = receivers.origin - view.origin;
+            for aabb in receivers.boxes.iter().filter(|aabb| !aabb.is_empty()) {
+                let (min, max) = moved(aabb, offset);
+                let corner = min.abs().max(max.abs());
+                squared = Some(corner.dot(corner).max(squared.unwrap_or(0.0)));
+            }
+        }
+        squared.map(libm::sqrt)
+    }
+
     /// Gives each receiver's box that may reach into a range of view depths, with the slice of
     /// the view that it may meet, in coordinates relative to the origin.
     pub(crate) fn receivers_in<E>(

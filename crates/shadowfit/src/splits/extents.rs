@@ -45,12 +45,14 @@ impl Sizes {
     }
 
     fn of_spheres(chooser: &Chooser, bins: &Bins) -> Self {
+        let last = chooser.end((bins.start(0), bins.start(BINS)));
         let starts: [f64; BINS + 1] = core::array::from_fn(|bin| bins.start(bin));
         Self::fill(|first, end| {
             // The first map reaches to the near plane.
             let near = if first == 0 { f64::from(chooser.range.near) } else { starts[first] };
-            let range = Range { near: near as f32, far: starts[end] as f32 };
-            let radius = sphere::around(chooser.content, range).map_or(starts[end], |sphere| sphere.radius);
+            let far = if end == BINS { last } else { starts[end] };
+            let range = Range { near: near as f32, far: far as f32 };
+            let radius = sphere::around(chooser.content, range).map_or(far, |sphere| sphere.radius);
             grid::quantised(2.0 * radius)
         })
     }

@@ -10,7 +10,7 @@ mod visible;
 
 use crate::checks;
 use crate::fits::{Content, Light, Range};
-use crate::settings::{CascadeSettings, FitKind, FitSettings, SplitScheme};
+use crate::settings::{CascadeSettings, FitKind, FitSettings, SplitScheme, Stabilise};
 use crate::{FitError, MAX_CASCADES};
 
 use extents::Sizes;
@@ -114,6 +114,19 @@ impl Chooser<'_, '_> {
         if near < far { (near, far) } else { (far * 0.5, far) }
     }
 
+    /// View depth to which the last map reaches: that of what is shadowed where fits clip the
+    /// receivers to their slice, else that of the receivers. If it is to be held, no turn of the
+    /// camera may exceed it, and there is room for some movement.
+    fn end(&self, spread: (f64, f64)) -> f64 {
+        let far = f64::from(self.range.far);
+        if matches!(self.fit.kind, FitKind::Focused | FitKind::XnaSample) {
+            return far;
+        }
+        let is_held = self.settings.stabilise != Stabilise::Off;
+        let end = if is_held { self.content.farthest().map(|far| far * (1.0 + FAR_SLACK)) } else { None };
+        end.unwrap_or(spread.1).min(far)
+    }
+
     /// The cuts by the settings' scheme over the given depths.
     pub(crate) fn choose(&self, spread: (f64, f64)) -> Result<Choice, FitError> {
         let count = self.settings.count as usize;
@@ -128,15 +141,14 @@ impl Chooser<'_, '_> {
             SplitScheme::Manual(cuts) => manual(&cuts, count, self.range)?,
             SplitScheme::FromBoxes | SplitScheme::FromHistogram => return Ok(self.by_content(spread)),
         };
-        Ok(Choice { cuts: self.whole(cuts, far), quality: 0.0 })
+        Ok(Choice { cuts: self.whole(cuts, spread), quality: 0.0 })
     }
 
     /// The same cuts, ascending, from the near end of what is shadowed to the far end of the
     /// receivers; where those are clipped to the view anyway, to the far end of what is shadowed.
-    fn whole(&self, mut cuts: Cuts, far: f64) -> Cuts {
+    fn whole(&self, mut cuts: Cuts, spread: (f64, f64)) -> Cuts {
         let count = self.settings.count as usize;
-        let is_whole = matches!(self.fit.kind, FitKind::Focused | FitKind::XnaSample);
-        let end = if is_whole { self.range.far } else { far as f32 };
+        let end = self.end(spread) as f32;
         cuts[0] = self.range.near;
         for i in 1..=MAX_CASCADES {
             cuts[i] = if i >= count { end } else { cuts[i].max(cuts[i - 1]).min(end) };
@@ -153,7 +165,7 @@ impl Chooser<'_, '_> {
         for (cut, bin) in cuts.iter_mut().zip(chosen) {
             *cut = bins.start(bin) as f32;
         }
-        Choice { cuts: self.whole(cuts, spread.1), quality }
+        Choice { cuts: self.whole(cuts, spread), quality }
     }
 
     /// Whether cuts of an earlier frame still do for this one's depths.
@@ -161,7 +173,8 @@ impl Chooser<'_, '_> {
         let count = self.settings.count as usize;
         let waste = f64::from(self.settings.hold.waste);
         let reaches = f64::from(cuts[count]) >= now.1.min(f64::from(self.range.far));
-        if !reaches || f64::from(cuts[0]) != f64::from(self.range.near) || now.1 * waste < held.1 {
+        let is_wasteful = f64::from(cuts[count]) > self.end(now) * waste;
+        if !reaches || is_wasteful || cuts[0] != self.range.near {
             return false;
         }
         if !matches!(self.settings.splits, SplitScheme::FromBoxes | SplitScheme::FromHistogram) {
@@ -181,12 +194,19 @@ impl Chooser<'_, '_> {
         match (self.settings.splits, &self.histogram) {
             (SplitScheme::FromHistogram, Some(histogram)) if !histogram.is_empty() => {
                 let (seen, guess) = (histogram.weights(bins), visible::weights(self.content, bins));
-                core::array::from_fn(|i| core::array::from_fn(|c| seen[i][c] * (1.0 - MIX) + guess[i][c] * MIX))
+                core::array::from_fn(|i| core::array::from_fn(|c| seen[i][c] * (1.0 - GUESS) + guess[i][c] * GUESS))
             }
             _ => visible::weights(self.content, bins),
         }
     }
 }
+
+/// Share of the boxes' guess beside a histogram: what came into view since, and what few samples
+/// missed. Chosen on real scenes, where 0 and 0.6 are both worse by 2%.
+const GUESS: f64 = 0.3;
+
+/// Room beyond the farthest receiver that held cuts leave, as a share of its distance.
+const FAR_SLACK: f64 = 0.1;
 
 /// Nearest view depth that maps are spread from, as a share of the farthest.
 const NEAREST: f64 = 1.0 / 65_536.0;
@@ -204,4 +224,3 @@ fn manual(given: &[f32; MAX_CASCADES - 1], count: usize, range: Range) -> Result
     }
     Ok(cuts)
 }
-const MIX: f64 = 0.3;
