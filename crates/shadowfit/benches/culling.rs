@@ -1,0 +1,144 @@
+//! Culling boxes against the volumes of four cascades: one by one, as an engine would write it by hand, and batched.
+//!
+//! Each call gets other boxes than the one before, as each frame does: over the same 1,000 boxes again and again a
+//! branch predictor learns every outcome, which no frame of an engine sees. The last group shows what that is worth.
+
+use std::hint::black_box;
+
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use shadowfit::glam::{DVec2, DVec3, Vec3, Vec4};
+use shadowfit::{
+    Aabb, CascadeFitter, CascadeSettings, Cascades, CasterVolume, FitInput, PerspectiveCamera, Sweep, ViewFrustum,
+    Workspace, cull,
+};
+
+/// Boxes that are at hand; calls go around in them.
+const POOL: usize = 1 << 20;
+
+/// Planes of a box, which hand-written loops have.
+const SIX: usize = 6;
+
+fn views() -> [ViewFrustum; 1] {
+    let camera = PerspectiveCamera {
+        eye: DVec3::ZERO,
+        forward: Vec3::new(0.3, -0.1, -1.0),
+        up: Vec3::Y,
+        fov_y: 0.9,
+        aspect: 16.0 / 9.0,
+        near: 0.1,
+        far: 200.0,
+    };
+    [camera.frustum().expect("a good camera")]
+}
+
+fn cascades() -> Cascades {
+    let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+    let settings = CascadeSettings { count: 4, ..CascadeSettings::default() };
+    let settings = CascadeSettings { fit: settings.fit.with_max_distance(200.0), ..settings };
+    let (views, direction) = (views(), Vec3::new(0.4, -0.8, 0.3));
+    let input = FitInput::new(&views, direction);
+    CascadeFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("a good view")
+}
+
+fn swept(cascades: &Cascades) -> Vec<CasterVolume> {
+    let views = views();
+    let sweep = |near, far| Sweep { near, far, ..Sweep::new(&views) };
+    let volumes = cascades.iter().map(|map| CasterVolume::swept(&map.fit, &sweep(map.covered_near, map.far)));
+    volumes.collect::<Result<_, _>>().expect("good sweeps")
+}
+
+/// Boxes of up to 10 m, evenly spread over a square of so many metres around the camera.
+fn boxes(side: f32) -> Vec<Aabb> {
+    let at = |i: usize, step: f64| ((i as f64 + 1.0) * step).fract() as f32;
+    (0..POOL)
+        .map(|i| {
+            let share = Vec3::new(at(i, 0.819_172_5), at(i, 0.671_043_6), at(i, 0.549_700_5)) - 0.5;
+            let half = Vec3::new(at(i, 0.618_034), at(i, 0.414_213_6), at(i, 0.732_050_8)) * 5.0 + 0.1;
+            let centre = share * Vec3::new(side, 60.0, side);
+            Aabb::new(centre - half, centre + half)
+        })
+        .collect()
+}
+
+/// What an engine would write: each box against each volume, plane by plane, until one culls it.
+fn by_hand(volumes: &[[Vec4; SIX]], boxes: &[Aabb], masks: &mut [u8]) {
+    for (b, mask) in boxes.iter().zip(masks) {
+        *mask = 0;
+        for (i, planes) in volumes.iter().enumerate() {
+            let is_behind = |plane: &Vec4| {
+                let x = if plane.x < 0.0 { b.min.x } else { b.max.x };
+                let y = if plane.y < 0.0 { b.min.y } else { b.max.y };
+                let z = if plane.z < 0.0 { b.min.z } else { b.max.z };
+                plane.x * x + plane.y * y + plane.z * z + plane.w < 0.0
+            };
+            if !planes.iter().any(is_behind) {
+                *mask |= 1 << i;
+            }
+        }
+    }
+}
+
+/// The single test in a loop.
+fn one_by_one(volumes: &[CasterVolume], boxes: &[Aabb], masks: &mut [u8]) {
+    for (b, mask) in boxes.iter().zip(masks) {
+        *mask = 0;
+        for (i, volume) in volumes.iter().enumerate() {
+            *mask |= u8::from(volume.intersects_aabb(b.min, b.max)) << i;
+        }
+    }
+}
+
+/// Measures one way to cull, over boxes that change from call to call or stay the same.
+fn measure(
+    group: &mut BenchmarkGroup<WallTime>,
+    name: &str,
+    boxes: &[Aabb],
+    (count, changes): (usize, bool),
+    mut cull: impl FnMut(&[Aabb], &mut [u8]),
+) {
+    let (mut masks, mut start) = (vec![0; count], 0);
+    group.throughput(Throughput::Elements(count as u64));
+    group.bench_function(BenchmarkId::new(name, count), |bencher| {
+        bencher.iter(|| {
+            cull(black_box(&boxes[start..start + count]), black_box(&mut masks));
+            start = if changes && start + 2 * count <= POOL { start + count } else { 0 };
+        });
+    });
+}
+
+fn compare(criterion: &mut Criterion, name: &str, side: f32, counts: &[usize], changes: bool) {
+    let cascades = cascades();
+    let maps: Vec<_> = cascades.iter().map(|map| map.fit.caster_volume()).collect();
+    let swept = swept(&cascades);
+    let six: Vec<[Vec4; SIX]> = maps.iter().map(|volume| std::array::from_fn(|i| volume.planes[i])).collect();
+    let boxes = boxes(side);
+    let mut group = criterion.benchmark_group(name);
+    for count in counts {
+        let each = (*count, changes);
+        measure(&mut group, "by hand, six planes", &boxes, each, |boxes, masks| by_hand(&six, boxes, masks));
+        measure(&mut group, "one by one, swept", &boxes, each, |boxes, masks| one_by_one(&swept, boxes, masks));
+        measure(&mut group, "batched, six planes", &boxes, each, |boxes, masks| {
+            cull(&maps, DVec3::ZERO, boxes, masks);
+        });
+        measure(&mut group, "batched, swept", &boxes, each, |boxes, masks| cull(&swept, DVec3::ZERO, boxes, masks));
+    }
+    group.finish();
+}
+
+fn culling(criterion: &mut Criterion) {
+    let counts = [1_000, 10_000, 100_000, 1_000_000];
+    compare(criterion, "boxes around the view", 400.0, &counts, true);
+    compare(criterion, "boxes of a large world", 4000.0, &[100_000], true);
+    compare(criterion, "the same boxes each time", 400.0, &counts[..2], false);
+}
+
+fn sweeping(criterion: &mut Criterion) {
+    let (cascades, views) = (cascades(), views());
+    criterion.bench_function("sweep of one map", |bencher| {
+        bencher.iter(|| CasterVolume::swept(black_box(&cascades[0].fit), &Sweep::new(black_box(&views))));
+    });
+}
+
+criterion_group!(benches, culling, sweeping);
+criterion_main!(benches);

@@ -1,0 +1,121 @@
+//! Nothing that runs every frame allocates: a global allocator counts.
+
+use allocation_counter::measure;
+use shadowfit::glam::{DVec2, DVec3, Vec3};
+use shadowfit::{
+    Aabb, Boxes, CascadeFitter, CascadeSettings, CasterPolicy, CasterVolume, FitInput, FitKind, FitSettings,
+    MAX_CASCADES, OrientedBox, PerspectiveCamera, RectangleKind, Sphere, SplitScheme, Stabilise, Sweep, ViewFrustum,
+    Workspace, cull, fit, fit_scene,
+};
+
+const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.4);
+
+const KINDS: [FitKind; 5] =
+    [FitKind::XnaSample, FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
+
+const POLICIES: [CasterPolicy; 5] =
+    [CasterPolicy::None, CasterPolicy::Extend, CasterPolicy::SceneBounds, CasterPolicy::List, CasterPolicy::DepthClamp];
+
+fn camera() -> PerspectiveCamera {
+    PerspectiveCamera {
+        eye: DVec3::new(0.0, 1.7, 5.0),
+        forward: Vec3::new(0.1, -0.1, -1.0),
+        up: Vec3::Y,
+        fov_y: 0.8,
+        aspect: 16.0 / 9.0,
+        near: 0.1,
+        far: 200.0,
+    }
+}
+
+fn views() -> [ViewFrustum; 2] {
+    let frustum = camera().frustum().expect("a good camera");
+    [frustum, ViewFrustum { origin: frustum.origin + DVec3::X * 0.065, ..frustum }]
+}
+
+/// Boxes on a square of ground.
+fn objects() -> Vec<Aabb> {
+    let corner = |i: u16| Vec3::new(f32::from(i % 40) * 5.0 - 100.0, 0.0, -f32::from(i / 40) * 5.0);
+    (0..1600).map(corner).map(|low| Aabb::new(low, low + Vec3::new(2.0, 5.0, 3.0))).collect()
+}
+
+/// Runs something, fails if it allocated, and gives its result.
+fn without_allocation<T>(what: &str, run: impl FnOnce() -> T) -> T {
+    let mut result = None;
+    let allocations = measure(|| result = Some(run()));
+    assert_eq!(allocations.count_total, 0, "{what}: {allocations:?}");
+    result.expect("it ran")
+}
+
+#[test]
+fn the_counter_counts() {
+    let mut vector = Vec::new();
+    let allocations = measure(|| vector.push(1));
+    assert_eq!((allocations.count_total, vector.len()), (1, 1));
+}
+
+#[test]
+fn no_fit_allocates() {
+    let (views, objects) = (views(), objects());
+    let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
+    let input = FitInput { receivers: Some(boxes), casters: boxes, ..FitInput::new(&views, DIRECTION) };
+    let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), views.len())];
+    for kind in KINDS {
+        for rectangle in [RectangleKind::AxisAligned, RectangleKind::MinimumArea, RectangleKind::MinimumSquare] {
+            for casters in POLICIES {
+                let settings = FitSettings::default().with_kind(kind).with_rectangle(rectangle).with_casters(casters);
+                let what = format!("{settings:?}");
+                without_allocation(&what, || fit(&views[0], DIRECTION, &settings)).expect("a good frustum");
+                let mut workspace = Workspace::new(&mut storage);
+                without_allocation(&what, || fit_scene(&input, &settings, &mut workspace)).expect("a good scene");
+            }
+        }
+    }
+}
+
+#[test]
+fn no_cascade_fit_allocates() {
+    let (views, objects) = (views(), objects());
+    let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
+    let input = FitInput { receivers: Some(boxes), casters: boxes, ..FitInput::new(&views, DIRECTION) };
+    let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), views.len())];
+    for kind in KINDS {
+        for stabilise in [Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis] {
+            for splits in [SplitScheme::Logarithmic, SplitScheme::Practical(0.5), SplitScheme::FromBoxes] {
+                let fit = FitSettings::default().with_kind(kind).with_casters(CasterPolicy::List);
+                let settings = CascadeSettings { count: 4, stabilise, splits, fit, ..CascadeSettings::default() };
+                let (what, mut fitter) = (format!("{settings:?}"), CascadeFitter::new());
+                for _ in 0..2 {
+                    let mut workspace = Workspace::new(&mut storage);
+                    let maps = without_allocation(&what, || fitter.fit(&input, &settings, &mut workspace));
+                    assert_eq!(maps.expect("a good scene").len(), 4);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn no_culling_allocates() {
+    let (views, boxes) = (views(), objects());
+    let mut storage = [DVec2::ZERO; Workspace::required(0, 2)];
+    let settings = CascadeSettings { count: 4, ..CascadeSettings::default() };
+    let input = FitInput::new(&views, DIRECTION);
+    let maps = CascadeFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("good views");
+    let mut volumes = [CasterVolume::everywhere(DVec3::ZERO); MAX_CASCADES];
+    for count in [1, 2] {
+        for (volume, map) in volumes.iter_mut().zip(maps.iter()) {
+            let sweep = Sweep { near: map.covered_near, far: map.far, ..Sweep::new(&views[..count]) };
+            *volume = without_allocation("sweep", || CasterVolume::swept(&map.fit, &sweep)).expect("a good sweep");
+        }
+    }
+    let volumes = &volumes[..maps.len()];
+    let spheres: Vec<_> = boxes.iter().map(|b| Sphere { centre: (b.min + b.max) * 0.5, radius: 3.0 }).collect();
+    let half_axes = [Vec3::X, Vec3::Y, Vec3::Z];
+    let oriented: Vec<_> = spheres.iter().map(|s| OrientedBox { centre: s.centre, half_axes }).collect();
+    let mut masks = vec![0; boxes.len()];
+    without_allocation("boxes", || cull(volumes, DVec3::ZERO, &boxes, &mut masks));
+    assert!(masks.iter().any(|mask| *mask == 0) && masks.iter().any(|mask| *mask != 0));
+    without_allocation("spheres", || cull(volumes, DVec3::ZERO, &spheres, &mut masks));
+    without_allocation("oriented boxes", || cull(volumes, DVec3::ZERO, &oriented, &mut masks));
+}
