@@ -144,9 +144,9 @@ impl CascadeFitter {
         {
             return Ok(held.cuts);
         }
-        let choice = chooser.choose(spread)?;
-        self.cuts = Some(HeldCuts { cuts: choice.cuts, spread });
-        Ok(choice.cuts)
+        let cuts = chooser.choose(spread)?;
+        self.cuts = Some(HeldCuts { cuts, spread });
+        Ok(cuts)
     }
 }
 

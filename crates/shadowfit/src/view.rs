@@ -172,7 +172,7 @@ impl Slice {
             return corners.into_iter().try_for_each(emit);
         }
         for (i, j) in EDGES {
-            if let Some((a, b)) = self.clip_segment(corners[i], corners[j], &crossed) {
+            if let Some((a, b)) = self.clip_segment(corners[i], corners[j], crossed) {
                 emit(a)?;
                 emit(b)?;
             }
@@ -187,9 +187,9 @@ impl Slice {
     }
 
     /// The part of a segment inside those planes that the box crosses.
-    fn clip_segment(&self, a: DVec3, b: DVec3, crossed: &[bool; 6]) -> Option<(DVec3, DVec3)> {
+    fn clip_segment(&self, a: DVec3, b: DVec3, crossed: [bool; 6]) -> Option<(DVec3, DVec3)> {
         let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
-        for (plane, _) in self.planes.iter().zip(crossed).filter(|(_, crossed)| **crossed) {
+        for (plane, _) in self.planes.iter().zip(crossed).filter(|(_, crossed)| *crossed) {
             let (da, db) = (plane.distance(a), plane.distance(b));
             if da < 0.0 && db < 0.0 {
                 return None;

@@ -20,7 +20,7 @@
 //! Any other view, and several together, get the sphere by incremental construction from at most
 //! four points of support, as E. Welzl has it ("Smallest enclosing disks (balls and ellipsoids)",
 //! 1991). The stable map with a bounding sphere and whole texels is M. Valient's ("Stable
-//! rendering of cascaded shadow maps", ShaderX6, 2008); here the extent is rounded up to eighths
+//! rendering of cascaded shadow maps", `ShaderX6`, 2008); here the extent is rounded up to eighths
 //! of an octave instead of a world unit, and the grid is kept in f64.
 
 use glam::{DVec2, DVec3, Vec3};

@@ -83,13 +83,6 @@ pub(crate) fn practical(near: f64, far: f64, count: usize, lambda: f64) -> Cuts 
     cuts
 }
 
-/// Where the maps' ranges begin and end by the settings, and how good the content's cuts are: the
-/// 95% quantile of texel size per view depth that they are expected to give.
-pub(crate) struct Choice {
-    pub(crate) cuts: Cuts,
-    pub(crate) quality: f64,
-}
-
 /// Everything a choice of cuts depends on.
 pub(crate) struct Chooser<'a, 'b> {
     pub(crate) content: &'a Content<'b>,
@@ -128,7 +121,7 @@ impl Chooser<'_, '_> {
     }
 
     /// The cuts by the settings' scheme over the given depths.
-    pub(crate) fn choose(&self, spread: (f64, f64)) -> Result<Choice, FitError> {
+    pub(crate) fn choose(&self, spread: (f64, f64)) -> Result<Cuts, FitError> {
         let count = self.settings.count as usize;
         let (near, far) = spread;
         let cuts = match self.settings.splits {
@@ -141,7 +134,7 @@ impl Chooser<'_, '_> {
             SplitScheme::Manual(cuts) => manual(&cuts, count, self.range)?,
             SplitScheme::FromBoxes | SplitScheme::FromHistogram => return Ok(self.by_content(spread)),
         };
-        Ok(Choice { cuts: self.whole(cuts, spread), quality: 0.0 })
+        Ok(self.whole(cuts, spread))
     }
 
     /// The same cuts, ascending, from the near end of what is shadowed to the far end of the
@@ -157,15 +150,15 @@ impl Chooser<'_, '_> {
     }
 
     /// The cuts that suit what is visible.
-    fn by_content(&self, spread: (f64, f64)) -> Choice {
+    fn by_content(&self, spread: (f64, f64)) -> Cuts {
         let bins = Bins::new(spread.0, spread.1);
         let (weights, sizes) = (self.weights(&bins), Sizes::new(self, &bins));
-        let BinCuts { bins: chosen, quality } = least_quantile(&bins, &weights, &sizes, self.settings.count as usize);
+        let BinCuts { bins: chosen, .. } = least_quantile(&bins, &weights, &sizes, self.settings.count as usize);
         let mut cuts = [0.0; MAX_CASCADES + 1];
         for (cut, bin) in cuts.iter_mut().zip(chosen) {
             *cut = bins.start(bin) as f32;
         }
-        Choice { cuts: self.whole(cuts, spread), quality }
+        self.whole(cuts, spread)
     }
 
     /// Whether cuts of an earlier frame still do for this one's depths.

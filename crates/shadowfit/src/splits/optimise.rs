@@ -13,8 +13,12 @@ use crate::MAX_CASCADES;
 /// Share of the points that may lie over the bound.
 const OVER: f64 = 0.05;
 
-/// Bisection steps, each halving the 24 octaves that are searched.
-const STEPS: usize = 14;
+/// Octaves below the bound of logarithmic cuts that are searched for a better one: none has been
+/// seen to be so much better.
+const OCTAVES: f64 = 4.0;
+
+/// Bisection steps, each halving what is searched.
+const STEPS: usize = 9;
 
 /// How much a point's log2 error counts beside its being over the bound or not: enough to choose
 /// between cuts that leave equally many over it.
@@ -30,28 +34,24 @@ pub(super) struct Cuts {
 /// The best cuts into `count` maps.
 pub(super) fn least_quantile(bins: &Bins, weights: &Weights, sizes: &Sizes, count: usize) -> Cuts {
     let search = Search::new(bins, weights, sizes);
-    let (mut low, mut high) = (-12.0, 12.0);
-    for _ in 0..STEPS {
-        let bound = (low + high) * 0.5;
-        if search.best(count, bound, 0.0).1 <= OVER {
-            high = bound;
-        } else {
-            low = bound;
-        }
-    }
-    Cuts { bins: search.best(count, high, MEAN).0, quality: high }
+    let even: [usize; MAX_CASCADES + 1] = core::array::from_fn(|i| BINS * i.min(count) / count);
+    let known = search.quantile(&even[..=count]);
+    let bound = bisect(known - OCTAVES, known, |bound| search.is_feasible(count, bound));
+    Cuts { bins: search.best(count, bound), quality: bound }
 }
 
 /// The bound that given cuts reach.
 pub(super) fn quantile(bins: &Bins, weights: &Weights, sizes: &Sizes, cuts: &[usize]) -> f64 {
-    let search = Search::new(bins, weights, sizes);
-    let over = |bound: f64| -> f64 {
-        cuts.windows(2).filter(|run| run[0] < run[1]).map(|run| search.cost(run[0], run[1], bound, 0.0)).sum()
-    };
-    let (mut low, mut high) = (-12.0, 12.0);
+    Search::new(bins, weights, sizes).quantile(cuts)
+}
+
+/// The least number above which a condition holds, between one where it may not and one where it
+/// does.
+fn bisect(low: f64, high: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    let (mut low, mut high) = (low, high);
     for _ in 0..STEPS {
-        let bound = (low + high) * 0.5;
-        if over(bound) <= OVER { high = bound } else { low = bound }
+        let middle = (low + high) * 0.5;
+        if holds(middle) { high = middle } else { low = middle }
     }
     high
 }
@@ -63,6 +63,8 @@ struct Search<'a> {
     before: [[f64; CLASSES]; BINS + 1],
     /// Weight of all bins before each, and weight times log2 of the depth that needs such texels.
     log_before: [[f64; 2]; BINS + 1],
+    /// Number of classes that hold anything.
+    classes: usize,
 }
 
 impl<'a> Search<'a> {
@@ -77,43 +79,79 @@ impl<'a> Search<'a> {
                 log_before[i + 1][1] += weight * (log_depth - class as f64);
             }
         }
-        Self { bins, sizes, before, log_before }
+        let classes = (0..CLASSES).rev().find(|class| before[BINS][*class] > 0.0).map_or(0, |last| last + 1);
+        Self { bins, sizes, before, log_before, classes }
     }
 
-    /// Weight of the points of a run that lie over the bound, and `mean` times their log2 error.
-    fn cost(&self, first: usize, end: usize, bound: f64, mean: f64) -> f64 {
+    /// The bound that given cuts reach.
+    fn quantile(&self, cuts: &[usize]) -> f64 {
+        let runs = || cuts.windows(2).filter(|run| run[0] < run[1]).map(|run| (run[0], run[1]));
+        // With the largest map at the nearest depth of the last class all points are within it.
+        let largest = runs().map(|(first, end)| self.sizes.log_extent(first, end)).fold(f32::MIN, f32::max);
+        let high = f64::from(largest) - self.bins.log_near + CLASSES as f64;
+        let over = |bound: f64| runs().map(|(first, end)| self.over(first, end, bound)).sum::<f64>();
+        // One more octave for each halving keeps the same precision as the search's.
+        let coarse = bisect(high - WIDEST, high, |bound| over(bound) <= OVER);
+        bisect(coarse - WIDEST / f64::from(1_u32 << STEPS), coarse, |bound| over(bound) <= OVER)
+    }
+
+    /// Weight of the points of a run that lie over the bound. It grows with the run.
+    fn over(&self, first: usize, end: usize, bound: f64) -> f64 {
         let log_size = f64::from(self.sizes.log_extent(first, end));
         // Points nearer than this, in bins, are over the bound; those of later classes farther out.
         let over = (log_size - bound - self.bins.log_near) / self.bins.log_step;
         let mut weight = 0.0;
-        for class in 0..CLASSES {
+        for class in 0..self.classes {
             let over = (over + class as f64 / self.bins.log_step).max(first as f64).min(end as f64);
             let whole = over as usize;
             let (at, next) = (self.before[whole][class], self.before[(whole + 1).min(BINS)][class]);
             weight += at + (next - at) * (over - whole as f64) - self.before[first][class];
         }
-        let [[w0, d0], [w1, d1]] = [self.log_before[first], self.log_before[end]];
-        weight + mean * (log_size * (w1 - w0) - (d1 - d0))
+        weight
     }
 
-    /// The cuts of least cost, and that cost.
-    fn best(&self, count: usize, bound: f64, mean: f64) -> ([usize; MAX_CASCADES + 1], f64) {
-        let mut cost = [f64::MAX; BINS + 1];
-        cost[0] = 0.0;
+    /// Weight of a run's points times their log2 of pixels per texel, but for a constant.
+    fn error(&self, first: usize, end: usize) -> f64 {
+        let [[w0, d0], [w1, d1]] = [self.log_before[first], self.log_before[end]];
+        f64::from(self.sizes.log_extent(first, end)) * (w1 - w0) - (d1 - d0)
+    }
+
+    /// Whether any cuts leave no more than the allowed share over a bound.
+    fn is_feasible(&self, count: usize, bound: f64) -> bool {
+        let mut least = [f64::MAX; BINS + 1];
+        least[0] = 0.0;
+        for map in 0..count {
+            let mut next = [f64::MAX; BINS + 1];
+            for (first, before) in least.iter().enumerate().take(BINS).skip(map).filter(|(_, before)| **before <= OVER) {
+                for (end, next) in next.iter_mut().enumerate().skip(first + 1) {
+                    let total = before + self.over(first, end, bound);
+                    if total > OVER {
+                        break;
+                    }
+                    *next = next.min(total);
+                }
+            }
+            least = next;
+        }
+        least[BINS] <= OVER
+    }
+
+    /// The cuts that leave the least over the bound and, of those, see the least error.
+    fn best(&self, count: usize, bound: f64) -> [usize; MAX_CASCADES + 1] {
+        let mut least = [f64::MAX; BINS + 1];
+        least[0] = 0.0;
         let mut from = [[0_u8; BINS + 1]; MAX_CASCADES];
         for (map, from) in from.iter_mut().enumerate().take(count) {
             let mut next = [f64::MAX; BINS + 1];
-            for end in map + 1..=BINS {
-                for first in map..end {
-                    if cost[first] < f64::MAX {
-                        let total = cost[first] + self.cost(first, end, bound, mean);
-                        if total < next[end] {
-                            (next[end], from[end]) = (total, first as u8);
-                        }
+            for (first, before) in least.iter().enumerate().take(BINS).skip(map).filter(|(_, before)| **before < f64::MAX) {
+                for end in first + 1..=BINS {
+                    let total = before + self.over(first, end, bound) + MEAN * self.error(first, end);
+                    if total < next[end] {
+                        (next[end], from[end]) = (total, first as u8);
                     }
                 }
             }
-            cost = next;
+            least = next;
         }
         let mut cuts = [BINS; MAX_CASCADES + 1];
         let mut end = BINS;
@@ -121,6 +159,9 @@ impl<'a> Search<'a> {
             end = usize::from(from[map][end]);
             cuts[map] = end;
         }
-        (cuts, cost[BINS])
+        cuts
     }
 }
+
+/// Octaves that the bound of given cuts is searched in.
+const WIDEST: f64 = 64.0;
