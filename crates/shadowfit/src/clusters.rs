@@ -12,8 +12,7 @@ use alloc::vec::Vec;
 use glam::Vec3;
 
 use crate::checks::{self, MAX_LENGTH};
-use crate::{Aabb, FitError};
-pub use cone::NormalCone;
+use crate::{Aabb, FitError, NormalCone};
 use split::Reference;
 
 /// Boxes around small groups of triangles, for [`Boxes::boxes`](crate::Boxes::boxes): together

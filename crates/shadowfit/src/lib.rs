@@ -66,6 +66,7 @@ mod hull;
 mod input;
 mod light_fit;
 mod motion;
+mod normal_cone;
 mod rectangle;
 mod splits;
 mod view;
@@ -76,7 +77,7 @@ pub use camera::PerspectiveCamera;
 pub use cascades::{CascadeFitter, CascadeMap, Cascades};
 pub use caster::{Bounds, CasterVolume, OrientedBox, Sphere, Sweep, cull};
 #[cfg(feature = "alloc")]
-pub use clusters::{Clusters, NormalCone};
+pub use clusters::Clusters;
 pub use depth::DepthConvention;
 pub use error::FitError;
 pub use fits::{fit, fit_scene};
@@ -85,6 +86,7 @@ pub use glam;
 pub use input::{FitInput, Workspace};
 pub use light_fit::{Constraint, LightFit, WorldMatrices};
 pub use light_steps::{LightStep, LightStepSettings, LightSteps};
+pub use normal_cone::NormalCone;
 pub use settings::{
     BiasSettings, CameraSettings, CascadeSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings,
     LightSettings, MAX_CASCADES, MapFormat, MapOverride, RectangleKind, Settings, SplitScheme, Stabilise, ViewSettings,

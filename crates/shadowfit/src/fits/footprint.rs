@@ -7,7 +7,7 @@ use crate::checks::MIN_LENGTH;
 use crate::fits::Range;
 use crate::hull::HullBuilder;
 use crate::view::{Slice, View, box_corners, moved};
-use crate::{Boxes, FitError, FitInput, ViewFrustum, Workspace, checks};
+use crate::{Boxes, FitError, FitInput, NormalCone, ViewFrustum, Workspace, checks};
 
 /// The views and boxes of one frame, with the view depths of each box worked out once.
 pub(crate) struct Content<'a> {
@@ -48,10 +48,11 @@ impl<'a> Content<'a> {
             for (view, depths) in input.views.iter().zip(depths.chunks_mut(count.max(1))) {
                 let eye = view.origin;
                 let view = View::new(view, origin);
-                let eye = (eye - receivers.origin).as_vec3();
+                let eye = eye - receivers.origin;
                 for (i, (aabb, depths)) in receivers.boxes.iter().zip(depths).enumerate() {
                     let (min, max) = moved(aabb, offset);
-                    let faces_away = |cone: &crate::NormalCone| cone.faces_away(aabb, eye, -input.direction);
+                    let to_light = -input.direction.as_dvec3();
+                    let faces_away = |cone: &NormalCone| cone.faces_away_from(aabb, eye, to_light);
                     let is_dark = input.receiver_cones.get(i).is_some_and(faces_away);
                     let seen = if aabb.is_empty() || is_dark { None } else { view.depths(min, max) };
                     *depths = seen.map_or(OUT_OF_VIEW, |(near, far)| DVec2::new(near, far));
