@@ -2,8 +2,9 @@
 
 use shadowfit::params::{self, Group, Kind, PARAMETERS, Parameter, format_value, set_from_str};
 use shadowfit::{
-    BiasSettings, CameraSettings, DepthConvention, FilterKind, FitKind, FitSettings, LightSettings, MapFormat,
-    Settings, ViewSettings, glam::UVec2,
+    Aabb, BiasSettings, Boxes, CameraSettings, CasterPolicy, DepthConvention, FilterKind, FitInput, FitKind,
+    FitSettings, LightSettings, MapFormat, PerspectiveCamera, RectangleKind, Settings, ViewSettings, Workspace,
+    glam::{DVec3, UVec2, Vec3},
 };
 
 fn written(settings: &Settings, parameter: &Parameter) -> String {
@@ -52,10 +53,23 @@ fn every_field_is_reached_by_a_row() {
     // Without `..`, so that a new field does not compile until it is looked at here.
     let Settings { fit, bias, filter, format, light, camera, view } = all;
     let old = Settings::default();
-    let FitSettings { kind, max_distance, margin, caster_extension, resolution, depth, .. } = fit;
+    let FitSettings {
+        kind,
+        rectangle,
+        max_distance,
+        margin,
+        kernel_margin,
+        casters,
+        caster_extension,
+        up,
+        resolution,
+        depth,
+    } = fit;
     assert!(kind != old.fit.kind && depth != old.fit.depth && resolution.x == resolution.y);
     assert!(resolution != old.fit.resolution && max_distance != old.fit.max_distance);
     assert!(margin != old.fit.margin && caster_extension != old.fit.caster_extension);
+    assert!(rectangle != old.fit.rectangle && casters != old.fit.casters && kernel_margin != old.fit.kernel_margin);
+    assert_eq!(up, old.fit.up, "which way is up belongs to the world, and no person tunes it");
     let BiasSettings { constant, slope, normal_offset } = bias;
     assert!(constant != old.bias.constant && slope != old.bias.slope && normal_offset != old.bias.normal_offset);
     assert!(filter != old.filter && format != old.format);
@@ -79,6 +93,17 @@ fn options_reach_every_variant_and_resolution() {
     };
     assert_eq!(reached("fit.kind", "xna_sample").fit.kind, FitKind::XnaSample);
     assert_eq!(reached("fit.kind", "frustum_aabb").fit.kind, FitKind::FrustumAabb);
+    assert_eq!(reached("fit.kind", "oriented").fit.kind, FitKind::Oriented);
+    assert_eq!(reached("fit.kind", "sphere").fit.kind, FitKind::Sphere);
+    assert_eq!(reached("fit.kind", "focused").fit.kind, FitKind::Focused);
+    assert_eq!(reached("fit.rectangle", "minimum_area").fit.rectangle, RectangleKind::MinimumArea);
+    assert_eq!(reached("fit.rectangle", "minimum_square").fit.rectangle, RectangleKind::MinimumSquare);
+    assert_eq!(reached("fit.rectangle", "axis_aligned").fit.rectangle, RectangleKind::AxisAligned);
+    assert_eq!(reached("fit.casters", "none").fit.casters, CasterPolicy::None);
+    assert_eq!(reached("fit.casters", "extend").fit.casters, CasterPolicy::Extend);
+    assert_eq!(reached("fit.casters", "scene_bounds").fit.casters, CasterPolicy::SceneBounds);
+    assert_eq!(reached("fit.casters", "list").fit.casters, CasterPolicy::List);
+    assert_eq!(reached("fit.casters", "depth_clamp").fit.casters, CasterPolicy::DepthClamp);
     assert_eq!(reached("map.format", "r32float").format, MapFormat::R32Float);
     assert_eq!(reached("map.format", "depth32float").format, MapFormat::Depth32Float);
     assert_eq!(reached("map.filter", "point").filter, FilterKind::Point);
@@ -238,12 +263,63 @@ fn an_azimuth_that_kept_counting_reads_as_a_compass_angle() {
 }
 
 #[test]
-fn the_caster_extension_says_why_the_xna_fit_ignores_it() {
-    let mut settings = Settings::default();
-    let extension = params::parameter("fit.caster_extension").expect("a row");
-    assert_eq!((extension.inert)(&settings), None);
-    settings.fit.kind = FitKind::XnaSample;
-    assert!((extension.inert)(&settings).is_some_and(|reason| reason.contains("XNA")));
+fn knobs_of_the_fit_say_where_they_have_no_effect() {
+    // Knob, a setting that leaves it without effect, and a word of the reason.
+    for (id, other, option, word) in [
+        ("fit.rectangle", "fit.kind", "xna_sample", "focused"),
+        ("fit.rectangle", "fit.kind", "frustum_aabb", "focused"),
+        ("fit.rectangle", "fit.kind", "sphere", "focused"),
+        ("fit.casters", "fit.kind", "xna_sample", "XNA"),
+        ("fit.kernel_margin", "fit.kind", "xna_sample", "XNA"),
+        ("fit.caster_extension", "fit.kind", "xna_sample", "XNA"),
+        ("fit.caster_extension", "fit.casters", "none", "By extension"),
+        ("fit.caster_extension", "fit.casters", "scene_bounds", "By extension"),
+        ("fit.caster_extension", "fit.casters", "list", "By extension"),
+        ("fit.caster_extension", "fit.casters", "depth_clamp", "By extension"),
+    ] {
+        let mut settings = Settings::default();
+        set_from_str(&mut settings, "fit.kind", "focused").expect("a fit");
+        let inert = |settings: &Settings| (params::parameter(id).expect("a row").inert)(settings);
+        assert_eq!(inert(&settings), None, "{id}");
+        set_from_str(&mut settings, other, option).expect("an option");
+        assert!(inert(&settings).is_some_and(|reason| reason.contains(word)), "{id} with {other}={option}");
+    }
+}
+
+#[test]
+fn a_knob_that_says_it_has_no_effect_has_none_and_the_others_have_one() {
+    let view = PerspectiveCamera {
+        eye: DVec3::ZERO,
+        forward: Vec3::new(0.3, -0.2, -0.9),
+        up: Vec3::Y,
+        fov_y: 0.8,
+        aspect: 1.6,
+        near: 0.1,
+        far: 100.0,
+    };
+    let views = [view.frustum().expect("a frustum")];
+    let objects = [
+        Aabb::new(Vec3::new(-60.0, -3.0, -120.0), Vec3::new(15.0, -2.0, 5.0)),
+        Aabb::new(Vec3::new(-9.0, 12.0, -25.0), Vec3::new(9.0, 14.0, -8.0)),
+        Aabb::new(Vec3::new(30.0, 30.0, 30.0), Vec3::new(31.0, 31.0, 31.0)),
+    ];
+    let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
+    let input = FitInput { receivers: Some(boxes), casters: boxes, ..FitInput::new(&views, Vec3::new(0.4, -0.7, 0.3)) };
+    let map = |settings: &Settings| {
+        let mut storage = [Default::default(); Workspace::required(3, 1)];
+        shadowfit::fit_scene(&input, &settings.fit, &mut Workspace::new(&mut storage)).expect("a fit")
+    };
+    let Kind::Choice(kinds) = &params::parameter("fit.kind").expect("a row").kind else { panic!("fits are options") };
+    for kind in kinds.options {
+        for parameter in Group::Fit.parameters().filter(|parameter| parameter.id != "fit.kind") {
+            let mut settings = Settings::default();
+            set_from_str(&mut settings, "fit.kind", kind.id).expect("an option");
+            let before = map(&settings);
+            let reason = (parameter.inert)(&settings);
+            change(&mut settings, parameter);
+            assert_eq!(map(&settings) == before, reason.is_some(), "{} with {}: {reason:?}", parameter.id, kind.id);
+        }
+    }
 }
 
 #[test]

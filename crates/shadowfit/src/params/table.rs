@@ -1,16 +1,21 @@
 //! The rows of the parameter table, in the order that they are shown.
 
+mod fit;
+
 use glam::UVec2;
 
 use super::{Choice, ChoiceOption, Group, Kind, MIN_FAR_PER_NEAR, Number, Parameter, Toggle};
-use crate::{DepthConvention, FilterKind, FitKind, MapFormat, Settings};
+use crate::{DepthConvention, FilterKind, MapFormat, Settings};
 
 /// Every knob of [`Settings`].
 pub static PARAMETERS: &[Parameter] = &[
-    FIT_KIND,
-    MAX_DISTANCE,
-    CASTER_EXTENSION,
-    MARGIN,
+    fit::KIND,
+    fit::RECTANGLE,
+    fit::MAX_DISTANCE,
+    fit::CASTERS,
+    fit::CASTER_EXTENSION,
+    fit::KERNEL_MARGIN,
+    fit::MARGIN,
     RESOLUTION,
     FORMAT,
     FILTER,
@@ -32,118 +37,6 @@ pub static PARAMETERS: &[Parameter] = &[
     FREEZE_FIT,
     PLAY,
 ];
-
-/// The fits in the order of their options.
-const FIT_KINDS: [FitKind; 5] =
-    [FitKind::FrustumAabb, FitKind::XnaSample, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
-
-const FIT_KIND: Parameter = Parameter {
-    id: "fit.kind",
-    group: Group::Fit,
-    label: "Fit",
-    unit: "",
-    help: "The rule that decides where the shadow map looks. The frustum box keeps casters that stand between \
-           the light and the view; the XNA sample's rule loses them and wastes half of the depth.",
-    kind: Kind::Choice(Choice {
-        options: &[
-            ChoiceOption {
-                id: "frustum_aabb",
-                label: "Frustum box",
-                help: "The box of the camera frustum in the light's axes, its near plane moved toward the light \
-                       by the caster extension.",
-            },
-            ChoiceOption {
-                id: "xna_sample",
-                label: "XNA sample",
-                help: "The box of Microsoft's XNA Shadow Mapping sample (2008), with twice the depth that is \
-                       needed and no thought for casters outside the view.",
-            },
-            ChoiceOption {
-                id: "oriented",
-                label: "Oriented rectangle",
-                help: "The least rectangle around the camera frustum as the light sees it, turned with it.",
-            },
-            ChoiceOption {
-                id: "sphere",
-                label: "Stable sphere",
-                help: "The sphere around the camera frustum on a fixed grid of texels: coarser, but no edge crawls \
-                       when the camera moves or turns.",
-            },
-            ChoiceOption {
-                id: "focused",
-                label: "Focused on the scene",
-                help: "The least rectangle around what the camera sees of the scene's objects: the finest texels.",
-            },
-        ],
-        read: |s| FIT_KINDS.iter().position(|kind| *kind == s.fit.kind).unwrap_or(0),
-        write: |s, index| s.fit.kind = FIT_KINDS[index],
-    }),
-    inert: always_active,
-};
-
-const MAX_DISTANCE: Parameter = Parameter {
-    id: "fit.max_distance",
-    group: Group::Fit,
-    label: "Shadow distance",
-    unit: "m",
-    help: "Shadows end at this distance from the camera. Lower it to spend the map's texels near the camera, \
-           which sharpens shadows there; raise it when shadows vanish too close.",
-    kind: Kind::Number(Number {
-        min: 1.0,
-        max: 10_000.0,
-        step: 1.0,
-        logarithmic: true,
-        decimals: 1,
-        read: |s| f64::from(s.fit.max_distance),
-        write: |s, value| {
-            s.fit.max_distance = value as f32;
-            pull_near(s, value as f32);
-        },
-    }),
-    inert: always_active,
-};
-
-const CASTER_EXTENSION: Parameter = Parameter {
-    id: "fit.caster_extension",
-    group: Group::Fit,
-    label: "Caster extension",
-    unit: "m",
-    help: "Moves the map's near plane toward the light, so that casters outside the view still throw their \
-           shadows into it. Raise it when shadows of tall or off-screen objects are missing; a long range \
-           costs depth precision.",
-    kind: Kind::Number(Number {
-        min: 0.0,
-        max: 10_000.0,
-        step: 1.0,
-        logarithmic: true,
-        decimals: 1,
-        read: |s| f64::from(s.fit.caster_extension),
-        write: |s, value| s.fit.caster_extension = value as f32,
-    }),
-    inert: |s| {
-        (s.fit.kind == FitKind::XnaSample)
-            .then_some("The XNA sample's fit has no caster extension; choose another fit.")
-    },
-};
-
-const MARGIN: Parameter = Parameter {
-    id: "fit.margin",
-    group: Group::Fit,
-    label: "Box margin",
-    unit: "m",
-    help: "Enlarges the light's box on all six sides: the XNA sample's own cure for missing casters. It spreads \
-           the same texels over more ground, so prefer the caster extension where there is one.",
-    kind: Kind::Number(Number {
-        min: 0.0,
-        max: 1_000.0,
-        step: 0.1,
-        logarithmic: true,
-        decimals: 1,
-        read: |s| f64::from(s.fit.margin),
-        write: |s, value| s.fit.margin = value as f32,
-    }),
-    inert: always_active,
-};
 
 const SIDES: [u32; 6] = [256, 512, 1024, 2048, 4096, 8192];
 

@@ -1,0 +1,227 @@
+//! The rows of the fit: where the shadow map looks.
+
+use super::{always_active, pull_near};
+use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Parameter};
+use crate::{CasterPolicy, FitKind, RectangleKind};
+
+/// The fits in the order of their options.
+const FIT_KINDS: [FitKind; 5] =
+    [FitKind::FrustumAabb, FitKind::XnaSample, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
+
+pub(super) const KIND: Parameter = Parameter {
+    id: "fit.kind",
+    group: Group::Fit,
+    label: "Fit",
+    unit: "",
+    help: "The rule that decides where the shadow map looks. Focused has the finest texels, the sphere the calmest \
+           edges; the frustum box is what most engines use. The XNA sample's rule loses casters outside the view.",
+    kind: Kind::Choice(Choice {
+        options: &[
+            ChoiceOption {
+                id: "frustum_aabb",
+                label: "Frustum box",
+                help: "The box of the camera frustum in the light's axes, whether there is anything to see in it or \
+                       only air.",
+            },
+            ChoiceOption {
+                id: "xna_sample",
+                label: "XNA sample",
+                help: "The box of Microsoft's XNA Shadow Mapping sample (2008), with twice the depth that is \
+                       needed and no thought for casters outside the view.",
+            },
+            ChoiceOption {
+                id: "oriented",
+                label: "Oriented rectangle",
+                help: "The least rectangle around the camera frustum as the light sees it, turned with it.",
+            },
+            ChoiceOption {
+                id: "sphere",
+                label: "Stable sphere",
+                help: "The sphere around the camera frustum on a fixed grid of texels: coarser, but no edge crawls \
+                       when the camera moves or turns.",
+            },
+            ChoiceOption {
+                id: "focused",
+                label: "Focused on the scene",
+                help: "The least rectangle around what the camera sees of the scene's objects: the finest texels.",
+            },
+        ],
+        read: |s| FIT_KINDS.iter().position(|kind| *kind == s.fit.kind).unwrap_or(0),
+        write: |s, index| s.fit.kind = FIT_KINDS[index],
+    }),
+    inert: always_active,
+};
+
+/// The rectangles in the order of their options.
+const RECTANGLES: [RectangleKind; 3] =
+    [RectangleKind::MinimumArea, RectangleKind::MinimumSquare, RectangleKind::AxisAligned];
+
+pub(super) const RECTANGLE: Parameter = Parameter {
+    id: "fit.rectangle",
+    group: Group::Fit,
+    label: "Rectangle",
+    unit: "",
+    help: "How the oriented and the focused fit lay their rectangle around what they cover. The least area has the \
+           finest texels; a square has equal ones both ways.",
+    kind: Kind::Choice(Choice {
+        options: &[
+            ChoiceOption { id: "minimum_area", label: "Least area", help: "Turned so that its area is least." },
+            ChoiceOption {
+                id: "minimum_square",
+                label: "Least square",
+                help: "The least square: texels are as wide as they are high.",
+            },
+            ChoiceOption {
+                id: "axis_aligned",
+                label: "Not turned",
+                help: "Along the light's own axes: larger, but it turns only when the light does.",
+            },
+        ],
+        read: |s| RECTANGLES.iter().position(|kind| *kind == s.fit.rectangle).unwrap_or(0),
+        write: |s, index| s.fit.rectangle = RECTANGLES[index],
+    }),
+    inert: |s| {
+        (!matches!(s.fit.kind, FitKind::Oriented | FitKind::Focused))
+            .then_some("Only the oriented and the focused fit can turn; choose one of them.")
+    },
+};
+
+pub(super) const MAX_DISTANCE: Parameter = Parameter {
+    id: "fit.max_distance",
+    group: Group::Fit,
+    label: "Shadow distance",
+    unit: "m",
+    help: "Shadows end at this distance from the camera. Lower it to spend the map's texels near the camera, \
+           which sharpens shadows there; raise it when shadows vanish too close.",
+    kind: Kind::Number(Number {
+        min: 1.0,
+        max: 10_000.0,
+        step: 1.0,
+        logarithmic: true,
+        decimals: 1,
+        read: |s| f64::from(s.fit.max_distance),
+        write: |s, value| {
+            s.fit.max_distance = value as f32;
+            pull_near(s, value as f32);
+        },
+    }),
+    inert: always_active,
+};
+
+/// The caster policies in the order of their options.
+const CASTER_POLICIES: [CasterPolicy; 5] =
+    [CasterPolicy::Extend, CasterPolicy::List, CasterPolicy::SceneBounds, CasterPolicy::DepthClamp, CasterPolicy::None];
+
+pub(super) const CASTERS: Parameter = Parameter {
+    id: "fit.casters",
+    group: Group::Fit,
+    label: "Casters",
+    unit: "",
+    help: "What places the map's near plane, before which casters are lost. The objects themselves place it best; the \
+           extension needs no knowledge of them.",
+    kind: Kind::Choice(Choice {
+        options: &[
+            ChoiceOption {
+                id: "extend",
+                label: "By extension",
+                help: "The near plane moves toward the light by the caster extension.",
+            },
+            ChoiceOption {
+                id: "list",
+                label: "By objects",
+                help: "At the first object that can throw a shadow into view: none is lost, no depth is wasted.",
+            },
+            ChoiceOption {
+                id: "scene_bounds",
+                label: "By scene box",
+                help: "At the one box around all objects: none is lost, but depth is wasted under its empty corners.",
+            },
+            ChoiceOption {
+                id: "depth_clamp",
+                label: "Depth clamp",
+                help: "At what is covered: the GPU flattens casters before it onto the near plane (pancaking). The \
+                       finest depth steps, and no casters are lost.",
+            },
+            ChoiceOption {
+                id: "none",
+                label: "None",
+                help: "At what is covered: casters before it are lost, which leaves holes, as in the XNA sample.",
+            },
+        ],
+        read: |s| CASTER_POLICIES.iter().position(|policy| *policy == s.fit.casters).unwrap_or(0),
+        write: |s, index| s.fit.casters = CASTER_POLICIES[index],
+    }),
+    inert: |s| {
+        (s.fit.kind == FitKind::XnaSample)
+            .then_some("The XNA sample's fit has no thought for casters; choose another fit.")
+    },
+};
+
+pub(super) const CASTER_EXTENSION: Parameter = Parameter {
+    id: "fit.caster_extension",
+    group: Group::Fit,
+    label: "Caster extension",
+    unit: "m",
+    help: "Moves the map's near plane toward the light, so that casters outside the view still throw their \
+           shadows into it. Raise it when shadows of tall or off-screen objects are missing; a long range \
+           costs depth precision.",
+    kind: Kind::Number(Number {
+        min: 0.0,
+        max: 10_000.0,
+        step: 1.0,
+        logarithmic: true,
+        decimals: 1,
+        read: |s| f64::from(s.fit.caster_extension),
+        write: |s, value| s.fit.caster_extension = value as f32,
+    }),
+    inert: |s| match (s.fit.kind, s.fit.casters) {
+        (FitKind::XnaSample, _) => Some("The XNA sample's fit has no caster extension; choose another fit."),
+        (_, CasterPolicy::Extend) => None,
+        _ => Some("The near plane is placed by something else; set Casters to By extension."),
+    },
+};
+
+/// Widest kernel margin, in texels: more than any filter of the map reaches, and less than the quarter of the smallest
+/// map that a fit accepts.
+const WIDEST_KERNEL_MARGIN: f64 = 32.0;
+
+pub(super) const KERNEL_MARGIN: Parameter = Parameter {
+    id: "fit.kernel_margin",
+    group: Group::Fit,
+    label: "Filter margin",
+    unit: "texels",
+    help: "Keeps so many texels free between what is covered and the map's border, so that filter and normal offset \
+           find depths there. Raise it to their reach where shadows break off at the border.",
+    kind: Kind::Number(Number {
+        min: 0.0,
+        max: WIDEST_KERNEL_MARGIN,
+        step: 0.5,
+        logarithmic: false,
+        decimals: 1,
+        read: |s| f64::from(s.fit.kernel_margin),
+        write: |s, value| s.fit.kernel_margin = value as f32,
+    }),
+    inert: |s| {
+        (s.fit.kind == FitKind::XnaSample)
+            .then_some("The XNA sample's fit keeps no texels free; choose another fit, or use the box margin.")
+    },
+};
+
+pub(super) const MARGIN: Parameter = Parameter {
+    id: "fit.margin",
+    group: Group::Fit,
+    label: "Box margin",
+    unit: "m",
+    help: "Enlarges the light's box on all six sides: the XNA sample's own cure for missing casters. It spreads \
+           the same texels over more ground, so prefer the choice of casters where there is one.",
+    kind: Kind::Number(Number {
+        min: 0.0,
+        max: 1_000.0,
+        step: 0.1,
+        logarithmic: true,
+        decimals: 1,
+        read: |s| f64::from(s.fit.margin),
+        write: |s, value| s.fit.margin = value as f32,
+    }),
+    inert: always_active,
+};
