@@ -61,7 +61,13 @@ struct HeldCuts {
     cuts: Cuts,
     /// Depths over which they were spread, in metres.
     spread: (f64, f64),
+    /// Frames since they were last compared with what would be best.
+    age: u32,
 }
+
+/// Frames between two comparisons of held cuts with what would be best, which costs most of a
+/// frame's fit. Whether they reach as far as they must is looked at in each.
+const COMPARE_EVERY: u32 = 8;
 
 impl CascadeFitter {
     /// A fitter that remembers nothing.
@@ -106,23 +112,23 @@ impl CascadeFitter {
         distance: f32,
     ) -> Result<Cascades, FitError> {
         let mut cascades = Cascades { count: settings.count as usize, ..Cascades::default() };
-        let (content, _) = Content::new(input, workspace)?;
+        let (content, points) = Content::new(input, workspace)?;
         let range = whole_range(input, distance);
         let chooser =
             Chooser { content: &content, light, fit: settings.fit, settings, histogram: input.histogram, range };
         let cuts = self.choose_cuts(&chooser)?;
         let motion = self.last_view.and_then(|before| Motion::between(&before, &input.views[0]));
-        let frame = hold::Frame { input, light, motion, hold: settings.hold };
+        let frame = hold::Frame { input, content: &content, light, motion, hold: settings.hold };
         for (i, map) in cascades.maps[..cascades.count].iter_mut().enumerate() {
             let fit_settings = map_settings(settings, i);
             let slice = slice_range(&cuts, i, settings, range);
             let volume = match settings.stabilise {
                 Stabilise::Hysteresis if fit_settings.kind != FitKind::XnaSample => {
-                    let held = frame.place(self.maps[i], &fit_settings, slice, workspace)?;
+                    let held = frame.place(self.maps[i], &fit_settings, slice, points)?;
                     self.maps[i] = Some(held);
                     hold::volume(&held, input.views[0].origin)
                 }
-                stabilise => fit_anew(input, &light, &fit_settings, stabilise, slice, workspace)?,
+                stabilise => fit_anew(&content, &light, &fit_settings, stabilise, slice, points)?,
             };
             let far = if i + 1 == settings.count as usize { f32::MAX } else { cuts[i + 1] };
             *map = CascadeMap {
@@ -139,33 +145,37 @@ impl CascadeFitter {
     fn choose_cuts(&mut self, chooser: &Chooser) -> Result<Cuts, FitError> {
         let is_held = chooser.settings.stabilise != Stabilise::Off;
         let spread = chooser.spread();
-        if let Some(held) = self.cuts.filter(|_| is_held)
-            && chooser.serves(&held.cuts, held.spread, spread)
+        if let Some(mut held) = self.cuts.filter(|_| is_held)
+            && chooser.reaches(&held.cuts, spread)
         {
-            return Ok(held.cuts);
+            let is_young = held.age + 1 < COMPARE_EVERY;
+            if is_young || chooser.serves(&held.cuts, held.spread, spread) {
+                held.age = if is_young { held.age + 1 } else { 0 };
+                self.cuts = Some(held);
+                return Ok(held.cuts);
+            }
         }
         let cuts = chooser.choose(spread)?;
-        self.cuts = Some(HeldCuts { cuts, spread });
+        self.cuts = Some(HeldCuts { cuts, spread, age: 0 });
         Ok(cuts)
     }
 }
 
 /// One map of this frame alone.
 fn fit_anew(
-    input: &FitInput,
+    content: &Content,
     light: &Light,
     settings: &FitSettings,
     stabilise: Stabilise,
     slice: Range,
-    workspace: &mut Workspace,
+    points: &mut [DVec2],
 ) -> Result<Volume, FitError> {
-    let (content, points): (Content, &mut [DVec2]) = Content::new(input, workspace)?;
     let is_snapped = stabilise == Stabilise::Snap && !matches!(settings.kind, FitKind::Sphere | FitKind::XnaSample);
     if !is_snapped {
-        return fits::fit_slice(&content, light, settings, slice, points);
+        return fits::fit_slice(content, light, settings, slice, points);
     }
     // Margins and the kernel's texels are added once, by the grid.
-    let mut volume = fits::fit_slice(&content, light, &FitSettings { kernel_margin: 0.0, ..*settings }, slice, points)?;
+    let mut volume = fits::fit_slice(content, light, &FitSettings { kernel_margin: 0.0, ..*settings }, slice, points)?;
     grid::snap(&mut volume, content.origin, settings);
     volume.light_at_near_plane();
     Ok(volume)

@@ -42,6 +42,7 @@ pub(crate) struct HeldMap {
 /// One frame's input to the holding of maps.
 pub(crate) struct Frame<'a, 'b> {
     pub(crate) input: &'a FitInput<'b>,
+    pub(crate) content: &'a Content<'a>,
     pub(crate) light: Light,
     pub(crate) motion: Option<Motion>,
     pub(crate) hold: HoldSettings,
@@ -72,24 +73,24 @@ impl Frame<'_, '_> {
         held: Option<HeldMap>,
         settings: &FitSettings,
         slice: Range,
-        workspace: &mut Workspace,
+        points: &mut [DVec2],
     ) -> Result<HeldMap, FitError> {
-        let fresh = self.fit(&[], settings, slice, workspace)?;
+        let fresh = fits::fit_slice(self.content, &self.light, settings, slice, points)?;
         if let Some(held) = held.filter(|held| held.is_of(&fresh, settings))
-            && let Some(kept) = self.keep(&held, &fresh, settings, slice, workspace)?
+            && let Some(kept) = self.keep(&held, &fresh, settings, slice, points)?
         {
             return Ok(kept);
         }
-        self.make(&fresh, settings, slice, workspace)
+        self.make(&fresh, settings, slice, points)
     }
 
-    /// A plain fit around what the views see, and around what they will see in some frames.
-    fn fit(
+    /// A plain fit around what the views see and what they will see in some frames.
+    fn fit_ahead(
         &self,
         ahead: &[ViewFrustum],
         settings: &FitSettings,
         slice: Range,
-        workspace: &mut Workspace,
+        points: &mut [DVec2],
     ) -> Result<Volume, FitError> {
         let mut views = [self.input.views[0]; MAX_VIEWS];
         let now = self.input.views.len();
@@ -100,7 +101,8 @@ impl Frame<'_, '_> {
         views[..now].copy_from_slice(self.input.views);
         views[now..now + ahead.len()].copy_from_slice(ahead);
         let input = FitInput { views: &views[..now + ahead.len()], ..*self.input };
-        let (content, points) = Content::new(&input, workspace)?;
+        let mut workspace = Workspace::new(points);
+        let (content, points) = Content::new(&input, &mut workspace)?;
         fits::fit_slice(&content, &self.light, settings, slice, points)
     }
 
@@ -112,9 +114,9 @@ impl Frame<'_, '_> {
         fresh: &Volume,
         settings: &FitSettings,
         slice: Range,
-        workspace: &mut Workspace,
+        points: &mut [DVec2],
     ) -> Result<Option<HeldMap>, FitError> {
-        let needed = self.needed(held, settings, slice, workspace)?;
+        let needed = self.needed(held, settings, slice, points)?;
         let size = fresh.max - fresh.min;
         let held_size = held.texel * held.resolution;
         let waste = f64::from(self.hold.waste);
@@ -141,12 +143,11 @@ impl Frame<'_, '_> {
         held: &HeldMap,
         settings: &FitSettings,
         slice: Range,
-        workspace: &mut Workspace,
+        points: &mut [DVec2],
     ) -> Result<Rectangle, FitError> {
-        let (content, points) = Content::new(self.input, workspace)?;
         let footprint = match settings.kind {
-            FitKind::Focused => Footprint::of_receivers(&content, held.axes, slice, points)?,
-            _ => Footprint::of_views(&content, held.axes, slice, points)?,
+            FitKind::Focused => Footprint::of_receivers(self.content, held.axes, slice, points)?,
+            _ => Footprint::of_views(self.content, held.axes, slice, points)?,
         };
         let pad = footprint.reach * grid::ROUNDING + f64::from(settings.margin);
         let kernel = held.texel * f64::from(settings.kernel_margin);
@@ -162,13 +163,13 @@ impl Frame<'_, '_> {
         fresh: &Volume,
         settings: &FitSettings,
         slice: Range,
-        workspace: &mut Workspace,
+        points: &mut [DVec2],
     ) -> Result<HeldMap, FitError> {
         let mut volume = *fresh;
         let mut frames = self.hold.horizon;
         while let Some(motion) = self.motion.filter(|motion| frames > 0 && !motion.is_still()) {
             let ahead = [motion.after(&self.input.views[0], frames / 2), motion.after(&self.input.views[0], frames)];
-            let larger = self.fit(&ahead, settings, slice, workspace)?;
+            let larger = self.fit_ahead(&ahead, settings, slice, points)?;
             let (size, old) = (larger.max - larger.min, fresh.max - fresh.min);
             let growth = f64::from(self.hold.growth);
             if size.x * size.y <= old.x * old.y * growth * growth {

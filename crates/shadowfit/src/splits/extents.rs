@@ -4,7 +4,7 @@
 //! extent is the greatest of its bins', and the best of the rectangles that stand on those
 //! directions tells how large its map will be, without fitting it.
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 
 use super::{BINS, Bins, Chooser};
 use crate::axes::LightAxes;
@@ -58,11 +58,11 @@ impl Sizes {
     }
 
     fn of_rectangles(chooser: &Chooser, bins: &Bins) -> Self {
-        let axes = chooser.light.axes();
+        let directions = Directions::new(&chooser.light.axes());
         let mut extents = [Dop::EMPTY; BINS];
         for (bin, dop) in extents.iter_mut().enumerate() {
             let range = Range { near: bins.start(bin) as f32, far: bins.start(bin + 1) as f32 };
-            dop.collect(chooser, &axes, range);
+            dop.collect(chooser, &directions, range);
         }
         let kind = rectangle_kind(&chooser.fit);
         let is_snapped = chooser.settings.stabilise == Stabilise::Snap;
@@ -95,26 +95,43 @@ impl Dop {
         }
     }
 
-    fn push(&mut self, directions: &[DVec2; DIRECTIONS], p: DVec2) {
-        for (i, direction) in directions.iter().enumerate() {
-            let along = p.dot(*direction) as f32;
+    fn push(&mut self, directions: &Directions, p: DVec3) {
+        let p = p.as_vec3();
+        for (i, direction) in directions.world.iter().enumerate() {
+            let along = direction.x * p.x + direction.y * p.y + direction.z * p.z;
             self.min[i] = self.min[i].min(along);
             self.max[i] = self.max[i].max(along);
         }
     }
 
+    /// Whether a box cannot widen this extent.
+    fn holds(&self, directions: &Directions, min: DVec3, max: DVec3) -> bool {
+        let (centre, half) = (((min + max) * 0.5).as_vec3(), ((max - min) * 0.5).as_vec3());
+        let mut is_inside = true;
+        for (i, direction) in directions.world.iter().enumerate() {
+            let along = direction.x * centre.x + direction.y * centre.y + direction.z * centre.z;
+            let reach = direction.x.abs() * half.x + direction.y.abs() * half.y + direction.z.abs() * half.z;
+            is_inside &= along + reach <= self.max[i] && along - reach >= self.min[i];
+        }
+        is_inside
+    }
+
     /// Collects what a map of a range would hold.
-    fn collect(&mut self, chooser: &Chooser, axes: &LightAxes, range: Range) {
-        let directions = directions();
-        let mut push = |p: DVec3| {
-            self.push(&directions, axes.project(p).truncate());
-            Ok::<(), core::convert::Infallible>(())
-        };
+    fn collect(&mut self, chooser: &Chooser, directions: &Directions, range: Range) {
         let content = chooser.content;
         let Ok(()) = if chooser.fit.kind == FitKind::Focused && content.receivers.is_some() {
-            content.receivers_in(range, |_, slice, min, max| slice.clip(min, max, &mut push))
+            content.receivers_in(range, |_, slice, min, max| {
+                if self.holds(directions, min, max) {
+                    return Ok(());
+                }
+                slice.clip(min, max, &mut |p| {
+                    self.push(directions, p);
+                    Ok::<(), core::convert::Infallible>(())
+                })
+            })
         } else {
-            content.corners(range).try_for_each(push)
+            content.corners(range).for_each(|p| self.push(directions, p));
+            Ok(())
         };
     }
 
@@ -138,10 +155,22 @@ impl Dop {
 /// Extent that stands for an empty run, in metres.
 const SMALLEST: f64 = 1e-6;
 
-/// Unit vectors at even angles over half a turn.
-fn directions() -> [DVec2; DIRECTIONS] {
-    core::array::from_fn(|i| {
-        let (sin, cos) = libm::sincos(core::f64::consts::PI * i as f64 / DIRECTIONS as f64);
-        DVec2::new(cos, sin)
-    })
+/// Unit vectors across the light at even angles over half a turn.
+struct Directions {
+    world: [Vec3; DIRECTIONS],
+}
+
+impl Directions {
+    fn new(axes: &LightAxes) -> Self {
+        let (x, y) = (axes.x.as_dvec3(), axes.y.as_dvec3());
+        // Turned step by step: two sines for all of them.
+        let (sin, cos) = libm::sincos(core::f64::consts::PI / DIRECTIONS as f64);
+        let mut turned = DVec2::X;
+        let world = core::array::from_fn(|_| {
+            let direction = x * turned.x + y * turned.y;
+            turned = DVec2::new(turned.x * cos - turned.y * sin, turned.x * sin + turned.y * cos);
+            direction.as_vec3()
+        });
+        Self { world }
+    }
 }

@@ -161,15 +161,17 @@ impl Chooser<'_, '_> {
         self.whole(cuts, spread)
     }
 
-    /// Whether cuts of an earlier frame still do for this one's depths.
+    /// Whether cuts of an earlier frame hold all of this one's depths, and not far more.
+    pub(crate) fn reaches(&self, cuts: &Cuts, now: (f64, f64)) -> bool {
+        let end = f64::from(cuts[self.settings.count as usize]);
+        let is_wasteful = end > self.end(now) * f64::from(self.settings.hold.waste);
+        end >= now.1.min(f64::from(self.range.far)) && !is_wasteful && cuts[0] == self.range.near
+    }
+
+    /// Whether cuts of an earlier frame still do for this one, beside what would be best.
     pub(crate) fn serves(&self, cuts: &Cuts, held: (f64, f64), now: (f64, f64)) -> bool {
         let count = self.settings.count as usize;
         let waste = f64::from(self.settings.hold.waste);
-        let reaches = f64::from(cuts[count]) >= now.1.min(f64::from(self.range.far));
-        let is_wasteful = f64::from(cuts[count]) > self.end(now) * waste;
-        if !reaches || is_wasteful || cuts[0] != self.range.near {
-            return false;
-        }
         if !matches!(self.settings.splits, SplitScheme::FromBoxes | SplitScheme::FromHistogram) {
             return now.0 >= held.0 / waste && now.0 <= held.0 * waste;
         }

@@ -122,7 +122,8 @@ impl<'a> Search<'a> {
         least[0] = 0.0;
         for map in 0..count {
             let mut next = [f64::MAX; BINS + 1];
-            for (first, before) in least.iter().enumerate().take(BINS).skip(map).filter(|(_, before)| **before <= OVER) {
+            for (first, before) in least.iter().enumerate().take(BINS).skip(map).filter(|(_, before)| **before <= OVER)
+            {
                 for (end, next) in next.iter_mut().enumerate().skip(first + 1) {
                     let total = before + self.over(first, end, bound);
                     if total > OVER {
@@ -143,7 +144,9 @@ impl<'a> Search<'a> {
         let mut from = [[0_u8; BINS + 1]; MAX_CASCADES];
         for (map, from) in from.iter_mut().enumerate().take(count) {
             let mut next = [f64::MAX; BINS + 1];
-            for (first, before) in least.iter().enumerate().take(BINS).skip(map).filter(|(_, before)| **before < f64::MAX) {
+            for (first, before) in
+                least.iter().enumerate().take(BINS).skip(map).filter(|(_, before)| **before < f64::MAX)
+            {
                 for end in first + 1..=BINS {
                     let total = before + self.over(first, end, bound) + MEAN * self.error(first, end);
                     if total < next[end] {

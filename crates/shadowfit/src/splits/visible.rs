@@ -11,9 +11,9 @@ use crate::fits::Content;
 use crate::view::{View, box_corners};
 
 /// Rays across the picture.
-const COLUMNS: usize = 48;
+const COLUMNS: usize = 40;
 /// Rays down the picture.
-const ROWS: usize = 27;
+const ROWS: usize = 22;
 
 /// Boxes kept along each ray. A box is mostly air, so what is behind the first one may be seen.
 const LAYERS: usize = 4;
@@ -94,20 +94,30 @@ impl Grid {
         Self { start: corners(0), end: corners(4) }
     }
 
-    /// Ends of a ray.
-    fn ray(&self, column: usize, row: usize) -> (DVec3, DVec3) {
-        let (x, y) = ((column as f64 + 0.5) / COLUMNS as f64, (row as f64 + 0.5) / ROWS as f64);
+    /// The first and the last ray of a row, each from its start to its end.
+    fn row(&self, row: usize) -> [(DVec3, DVec3); 2] {
+        let y = (row as f64 + 0.5) / ROWS as f64;
         // Left-top, right-top, right-bottom, left-bottom.
-        let at = |c: &[DVec3; 4]| (c[0] * (1.0 - x) + c[1] * x) * (1.0 - y) + (c[3] * (1.0 - x) + c[2] * x) * y;
-        (at(&self.start), at(&self.end))
+        let at = |top: usize, bottom: usize| {
+            let lerp = |c: &[DVec3; 4]| c[top] * (1.0 - y) + c[bottom] * y;
+            (lerp(&self.start), lerp(&self.end))
+        };
+        let (left, right) = (at(0, 3), at(1, 2));
+        let half = 0.5 / COLUMNS as f64;
+        let between = |x: f64| (left.0 * (1.0 - x) + right.0 * x, left.1 * (1.0 - x) + right.1 * x);
+        [between(half), between(1.0 - half)]
     }
 
     /// Lets all rays meet a box.
     fn meet(&self, view: &View, min: DVec3, max: DVec3, rays: &mut [Ray; COLUMNS * ROWS]) {
         let Some((columns, rows)) = covered(view, min, max) else { return };
         for row in rows {
+            let [first, last] = self.row(row);
+            let step = 1.0 / (COLUMNS - 1) as f64;
+            let (start_step, end_step) = ((last.0 - first.0) * step, (last.1 - first.1) * step);
             for column in columns.clone() {
-                let (start, end) = self.ray(column, row);
+                let x = column as f64;
+                let (start, end) = (first.0 + start_step * x, first.1 + end_step * x);
                 let Some((enter, leave)) = crossing(start, end, min, max) else { continue };
                 let depth = |t: f64| (view.near + (view.far - view.near) * t) as f32;
                 let ray = &mut rays[row * COLUMNS + column];
