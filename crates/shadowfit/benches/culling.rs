@@ -48,17 +48,36 @@ fn swept(cascades: &Cascades) -> Vec<CasterVolume> {
     volumes.collect::<Result<_, _>>().expect("good sweeps")
 }
 
-/// Boxes of up to 10 m, evenly spread over a square of so many metres around the camera.
-fn boxes(side: f32) -> Vec<Aabb> {
-    let at = |i: usize, step: f64| ((i as f64 + 1.0) * step).fract() as f32;
-    (0..POOL)
-        .map(|i| {
-            let share = Vec3::new(at(i, 0.819_172_5), at(i, 0.671_043_6), at(i, 0.549_700_5)) - 0.5;
-            let half = Vec3::new(at(i, 0.618_034), at(i, 0.414_213_6), at(i, 0.732_050_8)) * 5.0 + 0.1;
-            let centre = share * Vec3::new(side, 60.0, side);
+/// In which order boxes come.
+#[derive(Clone, Copy, PartialEq)]
+enum Order {
+    Random,
+    /// Neighbours in the list are neighbours in the world, as in a scene that is split into cells.
+    ByPlace,
+}
+
+/// Boxes of up to 10 m, at random in a square of so many metres around the camera.
+fn boxes(side: f32, order: Order) -> Vec<Aabb> {
+    // G. Marsaglia, "Xorshift RNGs", 2003.
+    let mut state = 0x2545_f491_4f6c_dd1d_u64;
+    let mut share = || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 40) as f32 / (1 << 24) as f32
+    };
+    let mut vector = || Vec3::new(share(), share(), share());
+    let mut boxes: Vec<_> = (0..POOL)
+        .map(|_| {
+            let (centre, half) = ((vector() - 0.5) * Vec3::new(side, 60.0, side), vector() * 5.0 + 0.1);
             Aabb::new(centre - half, centre + half)
         })
-        .collect()
+        .collect();
+    if order == Order::ByPlace {
+        let cell = |v: f32| ((v / side + 0.5) * 64.0) as i32;
+        boxes.sort_by_cached_key(|b| (cell(b.min.x), cell(b.min.z)));
+    }
+    boxes
 }
 
 /// What an engine would write: each box against each volume, plane by plane, until one culls it.
@@ -107,30 +126,32 @@ fn measure(
     });
 }
 
-fn compare(criterion: &mut Criterion, name: &str, side: f32, counts: &[usize], changes: bool) {
+fn compare(criterion: &mut Criterion, name: &str, boxes: &[Aabb], counts: &[usize], changes: bool) {
     let cascades = cascades();
     let maps: Vec<_> = cascades.iter().map(|map| map.fit.caster_volume()).collect();
     let swept = swept(&cascades);
     let six: Vec<[Vec4; SIX]> = maps.iter().map(|volume| std::array::from_fn(|i| volume.planes[i])).collect();
-    let boxes = boxes(side);
     let mut group = criterion.benchmark_group(name);
     for count in counts {
         let each = (*count, changes);
-        measure(&mut group, "by hand, six planes", &boxes, each, |boxes, masks| by_hand(&six, boxes, masks));
-        measure(&mut group, "one by one, swept", &boxes, each, |boxes, masks| one_by_one(&swept, boxes, masks));
-        measure(&mut group, "batched, six planes", &boxes, each, |boxes, masks| {
+        measure(&mut group, "by hand, six planes", boxes, each, |boxes, masks| by_hand(&six, boxes, masks));
+        measure(&mut group, "one by one, swept", boxes, each, |boxes, masks| one_by_one(&swept, boxes, masks));
+        measure(&mut group, "batched, six planes", boxes, each, |boxes, masks| {
             cull(&maps, DVec3::ZERO, boxes, masks);
         });
-        measure(&mut group, "batched, swept", &boxes, each, |boxes, masks| cull(&swept, DVec3::ZERO, boxes, masks));
+        measure(&mut group, "batched, swept", boxes, each, |boxes, masks| cull(&swept, DVec3::ZERO, boxes, masks));
     }
     group.finish();
 }
 
 fn culling(criterion: &mut Criterion) {
     let counts = [1_000, 10_000, 100_000, 1_000_000];
-    compare(criterion, "boxes around the view", 400.0, &counts, true);
-    compare(criterion, "boxes of a large world", 4000.0, &[100_000], true);
-    compare(criterion, "the same boxes each time", 400.0, &counts[..2], false);
+    let around = boxes(400.0, Order::Random);
+    compare(criterion, "boxes around the view", &around, &counts, true);
+    compare(criterion, "boxes by place", &boxes(400.0, Order::ByPlace), &counts[2..3], true);
+    compare(criterion, "boxes of a large world", &boxes(4000.0, Order::Random), &counts[2..3], true);
+    compare(criterion, "boxes of a large world by place", &boxes(4000.0, Order::ByPlace), &counts[2..3], true);
+    compare(criterion, "the same boxes each time", &around, &counts[..2], false);
 }
 
 fn sweeping(criterion: &mut Criterion) {

@@ -115,12 +115,17 @@ struct Block<'a, S: Bounds> {
     reach: Lane,
     /// Least distance to the planes of each volume.
     least: [Lane; MAX_VOLUMES],
+    /// Whether no lane of the last block was inside of the screen.
+    was_outside: bool,
+    /// Plane of the screen to begin with.
+    first_plane: usize,
 }
 
 impl<'a, S: Bounds> Block<'a, S> {
     fn new(plan: &'a Plan) -> Self {
         let (slack, reach) = ([0.0; LANES], [0.0; LANES]);
-        Self { plan, lanes: S::Lanes::default(), slack, reach, least: [[0.0; LANES]; MAX_VOLUMES] }
+        let (lanes, least) = (S::Lanes::default(), [[0.0; LANES]; MAX_VOLUMES]);
+        Self { plan, lanes, slack, reach, least, was_outside: false, first_plane: 0 }
     }
 
     /// Puts shapes into the lanes.
@@ -130,11 +135,20 @@ impl<'a, S: Bounds> Block<'a, S> {
     }
 
     /// The lanes that are inside of the screen.
+    ///
+    /// Neighbours in a list are often neighbours in the world. Where one block was all outside,
+    /// the next one is given up as soon as it is, beginning with the plane that decided the last.
     fn screen(&mut self) -> Passed {
+        let screen = &self.plan.screen[..self.plan.screen_count];
         let least = &mut self.least[0];
         least.fill(f32::MAX);
-        for plane in &self.plan.screen[..self.plan.screen_count] {
+        let (before, after) = screen.split_at(self.first_plane.min(screen.len()));
+        for (i, plane) in after.iter().chain(before).enumerate() {
             narrow::<S>(&self.lanes, *plane, least);
+            if self.was_outside && are_behind(least, &self.slack) {
+                self.first_plane = (self.first_plane + i) % screen.len();
+                return Passed { lanes: [0; LANES], count: 0 };
+            }
         }
         let mut bits = [0; LANES];
         mark(least, &self.slack, 1, &mut bits);
@@ -144,6 +158,7 @@ impl<'a, S: Bounds> Block<'a, S> {
             passed.lanes[passed.count] = lane as u8;
             passed.count += usize::from(*bit);
         }
+        self.was_outside = passed.count == 0;
         passed
     }
 
@@ -208,6 +223,13 @@ fn mark(least: &Lane, slack: &Lane, bit: u8, bits: &mut [u8; LANES]) {
     for ((bits, least), slack) in bits.iter_mut().zip(least).zip(slack) {
         *bits |= if *least < -*slack { 0 } else { bit };
     }
+}
+
+/// Whether all lanes are behind a plane.
+#[inline(never)]
+fn are_behind(least: &Lane, slack: &Lane) -> bool {
+    // Counted to the end: leaving at the first one that is not would keep the loop from being vectorised.
+    least.iter().zip(slack).map(|(least, slack)| u32::from(*least < -*slack)).sum::<u32>() == LANES as u32
 }
 
 /// The lesser of two distances. NaN changes nothing: such a shape counts as touching.
