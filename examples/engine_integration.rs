@@ -311,7 +311,7 @@ fn caster_pipeline(device: &wgpu::Device, map: &ShadowMap) -> wgpu::RenderPipeli
             compilation_options: Default::default(),
             buffers: &vertex_buffers(),
         },
-        primitive: wgpu::PrimitiveState::default(),
+        primitive: map.primitive_state(),
         depth_stencil: Some(map.depth_stencil_state()),
         multisample: wgpu::MultisampleState::default(),
         fragment: None, // The default format is a depth texture: nothing but depth is written.

@@ -38,7 +38,7 @@ const CASTER: &str = "
     return shadowfit_caster_position(position);
 }
 @fragment fn fs(@builtin(position) position: vec4<f32>) -> @location(0) f32 {
-    return position.z;
+    return saturate(position.z);
 }
 ";
 
@@ -182,7 +182,7 @@ fn caster_pipeline(gpu: &Gpu, map: &ShadowMap) -> wgpu::RenderPipeline {
                 attributes: &wgpu::vertex_attr_array![0 => Float32x3],
             })],
         },
-        primitive: wgpu::PrimitiveState::default(),
+        primitive: map.primitive_state(),
         depth_stencil: Some(map.depth_stencil_state()),
         multisample: wgpu::MultisampleState::default(),
         fragment: color[0].is_some().then(|| wgpu::FragmentState {

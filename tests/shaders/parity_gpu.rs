@@ -118,6 +118,7 @@ fn cases() -> impl Iterator<Item = ShadowMapDescriptor> {
         format,
         filter: FilterKind::Point,
         depth,
+        depth_clamp: false,
     })
 }
 

@@ -88,7 +88,7 @@ impl Gpu {
     }
 
     async fn open(adapter: wgpu::Adapter) -> Result<Self, GpuError> {
-        let wanted = wgpu::Features::TIMESTAMP_QUERY;
+        let wanted = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::DEPTH_CLIP_CONTROL;
         let (device, queue) = adapter
             .request_device(&wgpu::DeviceDescriptor {
                 label: Some("shadowfit"),
@@ -104,6 +104,11 @@ impl Gpu {
     /// Name of the adapter, for titles and reports.
     pub fn name(&self) -> String {
         self.adapter.get_info().name
+    }
+
+    /// Whether shadow maps can clamp depth, see [`shadowfit_wgpu::ShadowMapDescriptor::depth_clamp`].
+    pub fn has_depth_clamp(&self) -> bool {
+        self.device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL)
     }
 
     /// Whether pictures are drawn by the processor.

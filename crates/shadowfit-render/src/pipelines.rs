@@ -104,13 +104,11 @@ impl Pipelines {
         let scene = maker.module("scene", shaders::scene(map.descriptor()));
         let caster_layout = maker.layout(&[map.caster_layout(), &layouts.material]);
         let scene_layout = maker.layout(&[&layouts.frame, map.receiver_layout(), &layouts.material]);
-        let color = map.color_target();
-        let [plain_entry, masked_entry] = match color {
+        let [plain_entry, masked_entry] = match map.color_target() {
             Some(_) => [Some("fs_caster_depth"), Some("fs_caster_masked_depth")],
             None => [None, Some("fs_caster_masked")],
         };
-        let caster_pipeline =
-            |entry| maker.caster(&caster_layout, &caster, entry, color.as_ref(), map.depth_stencil_state());
+        let caster_pipeline = |entry| maker.caster(&caster_layout, &caster, entry, map);
         Self {
             sky: maker.sky(layouts),
             lines: maker.lines(layouts),
@@ -213,9 +211,9 @@ impl Maker<'_> {
         layout: &wgpu::PipelineLayout,
         module: &wgpu::ShaderModule,
         entry: Option<&str>,
-        color: Option<&wgpu::ColorTargetState>,
-        depth: wgpu::DepthStencilState,
+        map: &ShadowMap,
     ) -> wgpu::RenderPipeline {
+        let color = [map.color_target()];
         self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("caster"),
             layout: Some(layout),
@@ -225,14 +223,14 @@ impl Maker<'_> {
                 compilation_options: Default::default(),
                 buffers: &part_buffers(),
             },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: Some(depth),
+            primitive: map.primitive_state(),
+            depth_stencil: Some(map.depth_stencil_state()),
             multisample: wgpu::MultisampleState::default(),
             fragment: entry.map(|entry| wgpu::FragmentState {
                 module,
                 entry_point: Some(entry),
                 compilation_options: Default::default(),
-                targets: if color.is_some() { std::slice::from_ref(&COLOR_OF_CASTERS) } else { &[] },
+                targets: if color[0].is_some() { &color } else { &[] },
             }),
             multiview_mask: None,
             cache: None,
@@ -326,12 +324,6 @@ impl Maker<'_> {
         })
     }
 }
-
-const COLOR_OF_CASTERS: Option<wgpu::ColorTargetState> = Some(wgpu::ColorTargetState {
-    format: wgpu::TextureFormat::R32Float,
-    blend: None,
-    write_mask: wgpu::ColorWrites::ALL,
-});
 
 /// The three vertex streams of a part: what deforms, what does not, and the instances.
 fn part_buffers() -> [Option<wgpu::VertexBufferLayout<'static>>; 3] {

@@ -4,7 +4,7 @@ use core::fmt;
 
 use shadowfit::glam::DVec3;
 use shadowfit::settings::{BiasSettings, FilterKind, MapFormat, Settings};
-use shadowfit::{CasterVolume, DepthConvention, LightFit};
+use shadowfit::{CasterPolicy, CasterVolume, DepthConvention, FitKind, LightFit};
 
 use crate::uniform::{CasterUniform, ReceiverUniform};
 
@@ -27,6 +27,10 @@ pub struct ShadowMapDescriptor {
     pub filter: FilterKind,
     /// Depth convention of the fits: 0..1, plain or reversed; wgpu has no -1..1.
     pub depth: DepthConvention,
+    /// Whether casters before the near plane are kept, flattened onto it ("pancaking"), as fits with
+    /// [`CasterPolicy::DepthClamp`] need it. The device needs
+    /// [`wgpu::Features::DEPTH_CLIP_CONTROL`].
+    pub depth_clamp: bool,
 }
 
 impl Default for ShadowMapDescriptor {
@@ -37,6 +41,7 @@ impl Default for ShadowMapDescriptor {
             format: MapFormat::Depth32Float,
             filter: FilterKind::Hardware2x2,
             depth: DepthConvention::ZeroToOne,
+            depth_clamp: false,
         }
     }
 }
@@ -55,6 +60,8 @@ pub enum ShadowMapError {
     Maps(u32),
     /// A depth convention that wgpu's clip space does not have.
     Depth(DepthConvention),
+    /// Depth clamp on a device without [`wgpu::Features::DEPTH_CLIP_CONTROL`].
+    DepthClamp,
     /// A fit was made for another resolution or depth convention than the map has: biases and
     /// comparisons would be wrong.
     Fit {
@@ -76,6 +83,8 @@ impl From<&Settings> for ShadowMapDescriptor {
             format: settings.format,
             filter: settings.filter,
             depth: settings.fit.depth,
+            // The XNA sample's fit has no caster policy.
+            depth_clamp: settings.fit.casters == CasterPolicy::DepthClamp && settings.fit.kind != FitKind::XnaSample,
         }
     }
 }
@@ -94,6 +103,11 @@ impl fmt::Display for ShadowMapError {
             Self::Depth(depth) => {
                 write!(f, "depth convention {depth:?}: wgpu's clip space has 0..1, plain or reversed")
             }
+            Self::DepthClamp => write!(
+                f,
+                "depth clamp: this device has no DEPTH_CLIP_CONTROL; let the fit place its near plane by another caster \
+                 policy"
+            ),
             Self::Fit { index, fit, map } => write!(
                 f,
                 "fit {index} was made for {:?} texels and depth {:?}, the shadow map has {:?} and {:?}: give both the \
@@ -135,10 +149,13 @@ impl ShadowMap {
     ///
     /// # Errors
     ///
-    /// [`ShadowMapError`] if the resolution, the number of maps or the depth convention is not
-    /// possible.
+    /// [`ShadowMapError`] if the resolution, the number of maps, the depth convention or depth clamp
+    /// is not possible.
     pub fn new(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> Result<Self, ShadowMapError> {
         check(descriptor, device.limits().max_texture_dimension_2d)?;
+        if descriptor.depth_clamp && !device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL) {
+            return Err(ShadowMapError::DepthClamp);
+        }
         let caster_layout = caster_layout(device);
         let receiver_layout = receiver_layout(device, descriptor);
         let depth_texture = texture(device, descriptor, wgpu::TextureFormat::Depth32Float);
@@ -207,8 +224,15 @@ impl ShadowMap {
         }
     }
 
+    /// Primitive state of the engine's caster pipelines, of triangle lists: both sides are drawn, and
+    /// depth is clamped where the descriptor says so.
+    pub fn primitive_state(&self) -> wgpu::PrimitiveState {
+        wgpu::PrimitiveState { unclipped_depth: self.descriptor.depth_clamp, ..Default::default() }
+    }
+
     /// Colour target of the engine's caster pipelines, if the format has one. Their fragment
-    /// shader then writes `@builtin(position).z` to location 0.
+    /// shader then writes `saturate(@builtin(position).z)` to location 0: depth clamp leaves that
+    /// value as it is, outside 0..1 for casters before the near plane.
     pub fn color_target(&self) -> Option<wgpu::ColorTargetState> {
         (self.descriptor.format == MapFormat::R32Float).then(|| wgpu::TextureFormat::R32Float.into())
     }
@@ -246,8 +270,9 @@ impl ShadowMap {
         }
         let uniform = ReceiverUniform::new(fits, origin, bias);
         queue.write_buffer(&self.receiver_uniform, 0, bytemuck::bytes_of(&uniform));
+        let casters = if self.descriptor.depth_clamp { CasterPolicy::DepthClamp } else { CasterPolicy::None };
         self.volumes.clear();
-        self.volumes.extend(fits.iter().map(|fit| fit.relative_to(origin).caster_volume()));
+        self.volumes.extend(fits.iter().map(|fit| CasterVolume::of_map(&fit.relative_to(origin), casters)));
         Ok(())
     }
 

@@ -29,9 +29,10 @@ fn fs_caster_masked(in: CasterOut) {
     }
 }
 
+// Depth clamp holds the depth buffer's depth within 0..1, but not the position's that a shader reads.
 @fragment
 fn fs_caster_depth(in: CasterOut) -> @location(0) f32 {
-    return in.clip.z;
+    return saturate(in.clip.z);
 }
 
 @fragment
@@ -39,5 +40,5 @@ fn fs_caster_masked_depth(in: CasterOut) -> @location(0) f32 {
     if is_cut_out(in.uv, in.alpha) {
         discard;
     }
-    return in.clip.z;
+    return saturate(in.clip.z);
 }
