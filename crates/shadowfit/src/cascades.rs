@@ -23,7 +23,9 @@ pub struct CascadeMap {
     pub fit: LightFit,
     /// View depth from which points choose this map, in metres.
     pub near: f32,
-    /// View depth up to which points choose this map, in metres. The last map has no end.
+    /// View depth up to which points choose this map, in metres: they take the first map that ends
+    /// beyond them. The last one has no end. Where cuts coincide there is no range: such maps end at
+    /// `f32::MIN` before all others, and begin at `f32::MAX` after them.
     pub far: f32,
     /// View depth from which this map covers what is seen, in metres: before `near` where the
     /// maps overlap.
@@ -87,7 +89,8 @@ impl CascadeFitter {
     /// As [`fit_scene`](crate::fit_scene), for the settings of each map;
     /// [`FitError::OutOfRange`] for a number of maps outside 1..=8, an overlap or λ outside 0..=1
     /// and hold settings that make no sense; [`FitError::NearNotBelowFar`] for manual cuts that
-    /// do not ascend. An error leaves the fitter as it was.
+    /// do not ascend. Manual cuts before or beyond what is shadowed are no error: a map without a
+    /// range [is empty](LightFit::is_empty). An error leaves the fitter as it was.
     pub fn fit(
         &mut self,
         input: &FitInput,
@@ -95,69 +98,136 @@ impl CascadeFitter {
         workspace: &mut Workspace,
     ) -> Result<Cascades, FitError> {
         let (light, distance) = check(input, settings)?;
-        let mut next = if self.settings.as_ref() == Some(settings) { *self } else { Self::default() };
-        next.settings = Some(*settings);
-        let cascades = next.fit_checked(input, settings, workspace, light, distance)?;
-        next.last_view = Some(input.views[0]);
-        *self = next;
-        Ok(cascades)
-    }
-
-    fn fit_checked(
-        &mut self,
-        input: &FitInput,
-        settings: &CascadeSettings,
-        workspace: &mut Workspace,
-        light: Light,
-        distance: f32,
-    ) -> Result<Cascades, FitError> {
-        let mut cascades = Cascades { count: settings.count as usize, ..Cascades::default() };
+        let is_continued = self.settings.as_ref() == Some(settings);
+        let nothing = Self::default();
+        let before = if is_continued { &*self } else { &nothing };
         let (content, points) = Content::new(input, workspace)?;
         let range = whole_range(input, distance);
         let chooser =
             Chooser { content: &content, light, fit: settings.fit, settings, histogram: input.histogram, range };
-        let cuts = self.choose_cuts(&chooser)?;
-        let motion = self.last_view.and_then(|before| Motion::between(&before, &input.views[0]));
-        let frame = hold::Frame { input, content: &content, light, motion, hold: settings.hold };
-        for (i, map) in cascades.maps[..cascades.count].iter_mut().enumerate() {
-            let fit_settings = map_settings(settings, i);
-            let slice = slice_range(&cuts, i, settings, range);
-            let volume = match settings.stabilise {
-                Stabilise::Hysteresis if fit_settings.kind != FitKind::XnaSample => {
-                    let held = frame.place(self.maps[i], &fit_settings, slice, points)?;
-                    self.maps[i] = Some(held);
-                    hold::volume(&held, input.views[0].origin)
-                }
-                stabilise => fit_anew(&content, &light, &fit_settings, stabilise, slice, points)?,
-            };
-            let far = if i + 1 == settings.count as usize { f32::MAX } else { cuts[i + 1] };
-            *map = CascadeMap {
-                fit: LightFit::from_volume(input.views[0].origin, &volume, &fit_settings)?,
-                near: cuts[i],
-                far,
-                covered_near: slice.near,
-            };
+        let cuts = choose_cuts(before.cuts, &chooser)?;
+        let mut cascades = Cascades { count: settings.count as usize, ..Cascades::default() };
+        let mut held = None;
+        let mut places = Places { content: &content, settings, light, range, points };
+        if settings.stabilise == Stabilise::Hysteresis {
+            held = Some(places.hold(input, before, &cuts.cuts, &mut cascades)?);
+        } else {
+            places.fit(&cuts.cuts, &mut cascades)?;
+        }
+        part_voids(&mut cascades.maps[..cascades.count]);
+        self.cuts = Some(cuts);
+        self.last_view = Some(input.views[0]);
+        if !is_continued {
+            (self.settings, self.maps) = (Some(*settings), [None; MAX_CASCADES]);
+        }
+        if let Some(held) = held {
+            self.maps = held;
         }
         Ok(cascades)
     }
+}
 
-    /// This frame's cuts: held ones while they serve.
-    fn choose_cuts(&mut self, chooser: &Chooser) -> Result<Cuts, FitError> {
-        let is_held = chooser.settings.stabilise != Stabilise::Off;
-        let spread = chooser.spread();
-        if let Some(mut held) = self.cuts.filter(|_| is_held)
-            && chooser.reaches(&held.cuts, spread)
-        {
-            let is_young = held.age + 1 < COMPARE_EVERY;
-            if is_young || chooser.serves(&held.cuts, held.spread, spread) {
-                held.age = if is_young { held.age + 1 } else { 0 };
-                self.cuts = Some(held);
-                return Ok(held.cuts);
-            }
+/// This frame's cuts: held ones while they serve.
+fn choose_cuts(held: Option<HeldCuts>, chooser: &Chooser) -> Result<HeldCuts, FitError> {
+    let is_held = chooser.settings.stabilise != Stabilise::Off;
+    let spread = chooser.spread();
+    if let Some(held) = held.filter(|_| is_held)
+        && chooser.reaches(&held.cuts, spread)
+    {
+        let is_young = held.age + 1 < COMPARE_EVERY;
+        if is_young || chooser.serves(&held.cuts, held.spread, spread) {
+            return Ok(HeldCuts { age: if is_young { held.age + 1 } else { 0 }, ..held });
         }
-        let cuts = chooser.choose(spread)?;
-        self.cuts = Some(HeldCuts { cuts, spread, age: 0 });
-        Ok(cuts)
+    }
+    Ok(HeldCuts { cuts: chooser.choose(spread)?, spread, age: 0 })
+}
+
+/// What all maps of a frame are fitted with.
+struct Places<'a, 'b> {
+    content: &'a Content<'b>,
+    settings: &'a CascadeSettings,
+    light: Light,
+    range: Range,
+    points: &'a mut [DVec2],
+}
+
+impl Places<'_, '_> {
+    /// All maps of this frame alone.
+    fn fit(&mut self, cuts: &Cuts, cascades: &mut Cascades) -> Result<(), FitError> {
+        for i in 0..cascades.count {
+            let (slice, is_void) = self.slice(cuts, i);
+            let settings = map_settings(self.settings, i);
+            let volume = fit_anew(self.content, &self.light, &settings, self.settings.stabilise, slice, self.points)?;
+            cascades.maps[i] = self.map(&volume, &settings, cuts, i, is_void)?;
+        }
+        Ok(())
+    }
+
+    /// All maps, held ones while they serve.
+    fn hold(
+        &mut self,
+        input: &FitInput,
+        before: &CascadeFitter,
+        cuts: &Cuts,
+        cascades: &mut Cascades,
+    ) -> Result<[Option<HeldMap>; MAX_CASCADES], FitError> {
+        let motion = before.last_view.and_then(|before| Motion::between(&before, &input.views[0]));
+        let frame = hold::Frame { input, content: self.content, light: self.light, motion, hold: self.settings.hold };
+        let mut maps = [None; MAX_CASCADES];
+        for i in 0..cascades.count {
+            let (slice, is_void) = self.slice(cuts, i);
+            let settings = map_settings(self.settings, i);
+            let volume = if settings.kind == FitKind::XnaSample {
+                fits::fit_slice(self.content, &self.light, &settings, slice, self.points)?
+            } else {
+                let held = frame.place(before.maps[i], &settings, slice, self.points)?;
+                maps[i] = Some(held);
+                hold::volume(&held, self.content.origin)
+            };
+            cascades.maps[i] = self.map(&volume, &settings, cuts, i, is_void)?;
+        }
+        Ok(maps)
+    }
+
+    /// The view depths that a map covers; those of all maps where it has none, which is told.
+    fn slice(&self, cuts: &Cuts, map: usize) -> (Range, bool) {
+        let slice = slice_range(cuts, map, self.settings, self.range);
+        if is_void(self.content.views, slice) { (self.range, true) } else { (slice, false) }
+    }
+
+    fn map(
+        &self,
+        volume: &Volume,
+        settings: &FitSettings,
+        cuts: &Cuts,
+        map: usize,
+        is_void: bool,
+    ) -> Result<CascadeMap, FitError> {
+        let mut fit = LightFit::from_volume(self.content.origin, volume, settings)?;
+        fit.is_empty |= is_void;
+        let slice = slice_range(cuts, map, self.settings, self.range);
+        let covered_near = if is_void { cuts[map] } else { slice.near };
+        Ok(CascadeMap { fit, near: cuts[map], far: cuts[map + 1], covered_near })
+    }
+}
+
+/// Whether no view has a part between two view depths, so that a map would have nothing to hold.
+fn is_void(views: &[ViewFrustum], slice: Range) -> bool {
+    views.iter().all(|view| slice.near.max(view.near) >= slice.far.min(view.far))
+}
+
+/// Keeps maps without a range from being chosen, by rounded depths too: those before all others end
+/// nowhere, those after them begin nowhere, and the last one with a range has no end.
+fn part_voids(maps: &mut [CascadeMap]) {
+    for map in maps.iter_mut().take_while(|map| map.near >= map.far) {
+        map.far = f32::MIN;
+    }
+    for map in maps.iter_mut().rev() {
+        if map.near < map.far {
+            map.far = f32::MAX;
+            break;
+        }
+        (map.near, map.covered_near) = (f32::MAX, f32::MAX);
     }
 }
 
@@ -209,9 +279,9 @@ fn check(input: &FitInput, settings: &CascadeSettings) -> Result<(Light, f32), F
     checks::within("the hold's margin", f64::from(hold.margin), 0.0, 10.0)?;
     checks::within("the hold's growth", f64::from(hold.growth), 1.0, 100.0)?;
     checks::within("the hold's waste", f64::from(hold.waste), 1.0, 100.0)?;
-    let mut checked = fits::prepare(input, &settings.fit)?;
-    for map in 0..settings.count as usize {
-        checked = fits::prepare(input, &map_settings(settings, map))?;
+    let prepared = fits::prepare(input, &settings.fit)?;
+    for map in (0..settings.count as usize).filter(|map| settings.overrides[*map].is_some()) {
+        fits::check(&map_settings(settings, map))?;
     }
-    Ok(checked)
+    Ok(prepared)
 }

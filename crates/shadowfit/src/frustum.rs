@@ -172,11 +172,20 @@ impl ViewFrustum {
         (start * (1.0 - t) + end * t).as_vec3()
     }
 
-    /// The frustum itself, if a fit can use it: the fields are public, so anyone may fill them.
+    /// The frustum itself, if a fit can use it.
     pub(crate) fn checked(self) -> Result<Self, FitError> {
+        self.check().map(|()| self)
+    }
+
+    /// Whether a fit can use the frustum: the fields are public, so anyone may fill them.
+    pub(crate) fn check(&self) -> Result<(), FitError> {
         checks::point("the frustum's origin", self.origin)?;
-        for corner in self.corners {
-            checks::point("a corner of the frustum", corner.as_dvec3())?;
+        // One pass that tells good corners, another only to name a bad one.
+        let is_good = |corner: &Vec3| corner.abs().cmple(Vec3::splat(MAX_LENGTH as f32)).all();
+        if !self.corners.iter().fold(true, |all, corner| all & is_good(corner)) {
+            for corner in self.corners {
+                checks::point("a corner of the frustum", corner.as_dvec3())?;
+            }
         }
         let (near, far) = (self.near, self.far);
         let limit = MAX_LENGTH;
@@ -186,7 +195,7 @@ impl ViewFrustum {
             return Err(FitError::NearNotBelowFar { near, far });
         }
         if self.volume() > 0.0 {
-            Ok(self)
+            Ok(())
         } else {
             let min = self.corners.into_iter().fold(Vec3::MAX, Vec3::min);
             let max = self.corners.into_iter().fold(Vec3::MIN, Vec3::max);

@@ -13,18 +13,30 @@ use crate::settings::FitSettings;
 
 pub(crate) use crate::fits::ROUNDING;
 
-/// Steps of an extent in each octave.
-pub(crate) const STEPS: f64 = 8.0;
+/// What an extent may lie above a step and still be rounded down to it, as a share of it: the noise
+/// of f32 corners must not choose between two steps.
+const NOISE: f64 = 1e-5;
 
-/// What an extent may lie above a step and still be rounded down to it, as a share of a step: the
-/// noise of f32 corners must not choose between two steps.
-const NOISE: f64 = 1e-4;
+/// 2^(k/8) for the steps of one octave and the next one's first.
+const OCTAVE: [f64; 9] = [
+    1.0,
+    1.090_507_732_665_257_7,
+    1.189_207_115_002_721,
+    1.296_839_554_651_009_6,
+    core::f64::consts::SQRT_2,
+    1.542_210_825_407_940_7,
+    1.681_792_830_507_429,
+    1.834_008_086_409_342_4,
+    2.0,
+];
 
-/// The least of the extents 2^(k/8) that holds a length, and up to 1e-5 of it less; the lengths
-/// are metres and positive.
+/// The least of the extents 2^(k/8) that holds a length, or up to 1e-5 of it less, and 1e-5 more;
+/// the lengths are metres, positive and normal.
 pub(crate) fn quantised(length: f64) -> f64 {
-    let steps = libm::ceil(libm::log2(length) * STEPS - NOISE);
-    libm::exp2(steps / STEPS) * (1.0 + NOISE / STEPS)
+    let (mantissa, exponent) = libm::frexp(length);
+    let least = 2.0 * mantissa * (1.0 - NOISE);
+    let step = OCTAVE.into_iter().find(|step| *step >= least).unwrap_or(2.0);
+    libm::ldexp(step * (1.0 + NOISE), exponent - 1)
 }
 
 /// World position along the light's axes, in metres, in f64.
@@ -45,10 +57,13 @@ pub(crate) fn snap(volume: &mut Volume, origin: DVec3, settings: &FitSettings) {
     // One texel is lost to the shift onto the grid.
     let usable = resolution - (2.0 * kernel + 1.0);
     let size = volume.max - volume.min;
-    let texel = DVec2::new(quantised(size.x), quantised(size.y)) / usable;
+    // The three extents of a sphere are one.
+    let width = quantised(size.x);
+    let like_x = |length: f64| if length == size.x { width } else { quantised(length) };
+    let texel = DVec2::new(width, like_x(size.y)) / usable;
     let first = first_line(volume.min.truncate() + anchor.truncate(), texel, kernel);
     let min = first * texel - anchor.truncate();
-    let depth = quantised(size.z);
+    let depth = like_x(size.z);
     let step = depth / DEPTH_STEPS;
     let z = libm::floor((volume.min.z + anchor.z) / step) * step - anchor.z;
     (volume.min, volume.max) = (min.extend(z), (min + texel * resolution).extend(z + depth + step));

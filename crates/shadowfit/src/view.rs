@@ -16,6 +16,25 @@ use glam::{DVec3, Vec3};
 
 use crate::{Aabb, ViewFrustum, checks};
 
+/// Corners of the part of a frustum between two view depths, relative to an origin; `None` where
+/// they leave nothing of it.
+pub(crate) fn slice_corners(frustum: &ViewFrustum, origin: DVec3, near: f32, far: f32) -> Option<[DVec3; 8]> {
+    let (near, far) = (near.max(frustum.near), far.min(frustum.far));
+    if near >= far {
+        return None;
+    }
+    let offset = frustum.origin - origin;
+    let corners = frustum.corners.map(|c| c.as_dvec3() + offset);
+    if near == frustum.near && far == frustum.far {
+        return Some(corners);
+    }
+    let per_metre = 1.0 / (f64::from(frustum.far) - f64::from(frustum.near));
+    let share = |depth: f32| (f64::from(depth) - f64::from(frustum.near)) * per_metre;
+    let (t0, t1) = (share(near), share(far));
+    let lerp = |i: usize, t: f64| corners[i] * (1.0 - t) + corners[i + 4] * t;
+    Some(core::array::from_fn(|i| lerp(i % 4, if i < 4 { t0 } else { t1 })))
+}
+
 /// A plane (n, d) with unit normal; a point is inside where n·p + d >= 0.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plane {

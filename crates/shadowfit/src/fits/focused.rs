@@ -30,6 +30,6 @@ pub(crate) fn volume(
     range: Range,
     points: &mut [DVec2],
 ) -> Result<Volume, FitError> {
-    let footprint = Footprint::of_receivers(content, light.axes(), range, points)?;
+    let footprint = Footprint::of_receivers(content, light.axes, range, points)?;
     Ok(Volume::around(&footprint, content, settings, range))
 }

@@ -6,7 +6,7 @@ use crate::axes::LightAxes;
 use crate::checks::MIN_LENGTH;
 use crate::fits::Range;
 use crate::hull::HullBuilder;
-use crate::view::{Slice, View, box_corners, moved};
+use crate::view::{Slice, View, box_corners, moved, slice_corners};
 use crate::{Boxes, FitError, FitInput, NormalCone, ViewFrustum, Workspace, checks};
 
 /// The views and boxes of one frame, with the view depths of each box worked out once.
@@ -136,11 +136,12 @@ impl<'a> Content<'a> {
 
     /// Corners of the views' slices.
     pub(crate) fn corners(&self, range: Range) -> impl Iterator<Item = DVec3> {
-        self.views().flat_map(move |view| {
-            let slice = view.slice(f64::from(range.near), f64::from(range.far));
-            let used = if slice.near < slice.far { 8 } else { 0 };
-            slice.corners.into_iter().take(used)
-        })
+        self.slices(range).flatten()
+    }
+
+    /// Corners of each view's slice that is not empty.
+    pub(crate) fn slices(&self, range: Range) -> impl Iterator<Item = [DVec3; 8]> {
+        self.views.iter().filter_map(move |view| slice_corners(view, self.origin, range.near, range.far))
     }
 }
 

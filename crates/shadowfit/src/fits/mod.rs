@@ -12,6 +12,7 @@ pub mod xna;
 
 mod footprint;
 mod near_plane;
+mod outline;
 mod volume;
 
 use glam::{DVec2, DVec3, Vec3};
@@ -22,6 +23,7 @@ use crate::settings::{FitKind, FitSettings, RectangleKind};
 use crate::{FitError, FitInput, LightFit, ViewFrustum, Workspace};
 
 pub(crate) use footprint::{Content, Footprint};
+pub(crate) use outline::{Outline, Scratch};
 pub(crate) use volume::{ROUNDING, Volume};
 
 /// Fits the light's orthographic view-projection to a camera frustum, by the rule that
@@ -76,13 +78,8 @@ pub(crate) struct Light {
     pub(crate) direction: DVec3,
     /// Unit direction that is up.
     pub(crate) up: DVec3,
-}
-
-impl Light {
     /// Axes that turn continuously with the light.
-    pub(crate) fn axes(&self) -> LightAxes {
-        LightAxes::shortest_arc(self.direction, self.up)
-    }
+    pub(crate) axes: LightAxes,
 }
 
 /// One map around a range of view depths.
@@ -118,10 +115,21 @@ pub(crate) fn prepare(input: &FitInput, settings: &FitSettings) -> Result<(Light
         return Err(FitError::NoView);
     }
     for view in input.views {
-        view.checked()?;
+        view.check()?;
     }
+    check(settings)?;
     let direction = checks::unit("the light's direction", input.direction)?;
     let up = checks::unit("the up direction", settings.up)?;
+    let near = input.views.iter().map(|view| view.near).fold(f32::MAX, f32::min);
+    if near >= settings.max_distance {
+        return Err(FitError::NearNotBelowFar { near, far: settings.max_distance });
+    }
+    let light = Light { direction, up, axes: LightAxes::shortest_arc(direction, up) };
+    Ok((light, settings.max_distance))
+}
+
+/// Checks the numbers of a fit's settings.
+pub(crate) fn check(settings: &FitSettings) -> Result<(), FitError> {
     checks::within("the fit's margin", f64::from(settings.margin), 0.0, MAX_LENGTH)?;
     let extension = f64::from(settings.caster_extension);
     checks::within("the fit's caster extension", extension, 0.0, MAX_LENGTH)?;
@@ -131,11 +139,7 @@ pub(crate) fn prepare(input: &FitInput, settings: &FitSettings) -> Result<(Light
     let widest = f64::from(settings.resolution.min_element()) * 0.25;
     checks::within("the fit's kernel margin", f64::from(settings.kernel_margin), 0.0, widest)?;
     checks::finite("the maximum shadow distance", f64::from(settings.max_distance))?;
-    let near = input.views.iter().map(|view| view.near).fold(f32::MAX, f32::min);
-    if near >= settings.max_distance {
-        return Err(FitError::NearNotBelowFar { near, far: settings.max_distance });
-    }
-    Ok((Light { direction, up }, settings.max_distance))
+    Ok(())
 }
 
 /// The rectangle kind that a fit's settings stand for.

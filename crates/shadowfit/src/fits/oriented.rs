@@ -28,6 +28,6 @@ pub(crate) fn volume(
     range: Range,
     points: &mut [DVec2],
 ) -> Result<Volume, FitError> {
-    let footprint = Footprint::of_views(content, light.axes(), range, points)?;
+    let footprint = Footprint::of_views(content, light.axes, range, points)?;
     Ok(Volume::around(&footprint, content, settings, range))
 }

@@ -68,7 +68,7 @@ pub(crate) fn volume(
     range: Range,
 ) -> Result<Volume, FitError> {
     let sphere = around(content, range)?;
-    let axes = light.axes();
+    let axes = light.axes;
     let centre = axes.project(sphere.centre);
     let pad = f64::from(settings.margin) + grid::ROUNDING * (sphere.radius + checks::length(sphere.centre));
     let extent = DVec3::splat(2.0 * (sphere.radius + pad));
@@ -98,22 +98,24 @@ pub(crate) fn volume(
 
 /// The minimal sphere around all views' slices.
 pub(crate) fn around(content: &Content, range: Range) -> Result<Sphere, FitError> {
+    let mut slices = content.slices(range);
+    let Some(first) = slices.next() else {
+        return Err(FitError::NearNotBelowFar { near: range.near, far: range.far });
+    };
+    let Some(second) = slices.next() else {
+        return Ok(on_axis(&first).unwrap_or_else(|| minimal(&first)));
+    };
     let mut corners = [DVec3::ZERO; 8 * MAX_VIEWS];
-    let mut len = 0;
-    for corner in content.corners(range) {
-        if len == corners.len() {
+    let mut count = 0;
+    for slice in [first, second].into_iter().chain(slices) {
+        let Some(place) = corners.get_mut(8 * count..8 * count + 8) else {
             let (value, max) = (content.views.len() as f64, MAX_VIEWS as f64);
             return Err(FitError::OutOfRange { input: "the number of views of a stable fit", value, min: 1.0, max });
-        }
-        corners[len] = corner;
-        len += 1;
+        };
+        place.copy_from_slice(&slice);
+        count += 1;
     }
-    let corners = &corners[..len];
-    if len == 0 {
-        return Err(FitError::NearNotBelowFar { near: range.near, far: range.far });
-    }
-    let analytic = corners.first_chunk::<8>().filter(|_| len == 8).and_then(on_axis);
-    Ok(analytic.unwrap_or_else(|| minimal(corners)))
+    Ok(minimal(&corners[..8 * count]))
 }
 
 /// Most views that share a stable map.

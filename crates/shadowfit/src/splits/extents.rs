@@ -58,7 +58,7 @@ impl Sizes {
     }
 
     fn of_rectangles(chooser: &Chooser, bins: &Bins) -> Self {
-        let directions = Directions::new(&chooser.light.axes());
+        let directions = Directions::new(&chooser.light.axes);
         let mut extents = [Dop::EMPTY; BINS];
         for (bin, dop) in extents.iter_mut().enumerate() {
             let range = Range { near: bins.start(bin) as f32, far: bins.start(bin + 1) as f32 };

@@ -210,12 +210,13 @@ const NEAREST: f64 = 1.0 / 65_536.0;
 fn manual(given: &[f32; MAX_CASCADES - 1], count: usize, range: Range) -> Result<Cuts, FitError> {
     let mut cuts = [range.far; MAX_CASCADES + 1];
     cuts[0] = range.near;
+    let mut last = f32::MIN;
     for i in 1..count {
         let cut = checks::finite("a manual cut", f64::from(given[i - 1]))? as f32;
-        if cut <= cuts[i - 1] {
-            return Err(FitError::NearNotBelowFar { near: cuts[i - 1], far: cut });
+        if cut <= last {
+            return Err(FitError::NearNotBelowFar { near: last, far: cut });
         }
-        cuts[i] = cut;
+        (cuts[i], last) = (cut, cut);
     }
     Ok(cuts)
 }

@@ -1,0 +1,284 @@
+//! The fits, beside plain transcriptions of the two best-known ones: the XNA sample's steps and Bevy's cascades.
+//!
+//! Transcriptions take the shortest way that glam offers in f32, as their sources do. All start from camera parameters
+//! and a light direction and end with the matrices that a renderer uploads.
+
+use std::hint::black_box;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use shadowfit::glam::{DVec2, DVec3, Mat4, Vec2, Vec3, Vec3Swizzles, Vec4};
+use shadowfit::{
+    Aabb, Boxes, CascadeFitter, CascadeSettings, CasterPolicy, Clusters, FitInput, FitKind, FitSettings,
+    PerspectiveCamera, SplitScheme, Stabilise, Workspace, fit,
+};
+
+/// A camera that turns a little with each call, so that no result can be kept.
+fn camera(turn: &mut f32) -> PerspectiveCamera {
+    *turn = (*turn + 0.001) % 1.0;
+    PerspectiveCamera {
+        eye: DVec3::new(f64::from(*turn), 1.7, 5.0),
+        forward: Vec3::new(*turn, -0.2, -1.0),
+        up: Vec3::Y,
+        fov_y: 0.9,
+        aspect: 16.0 / 9.0,
+        near: 0.1,
+        far: 100.0,
+    }
+}
+
+const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.2);
+
+mod xna {
+    //! The sample's `CreateLightViewProjectionMatrix`, with the frustum that XNA's `BoundingFrustum` makes of the
+    //! camera's matrix.
+
+    use super::*;
+
+    pub(super) fn fit(camera: &PerspectiveCamera, direction: Vec3) -> Mat4 {
+        let eye = camera.eye.as_vec3();
+        let view = look_at(eye, eye + camera.forward, camera.up);
+        let frustum = corners(perspective(camera) * view);
+        let light_rotation = look_at(Vec3::ZERO, direction, Vec3::Y);
+        let (mut min, mut max) = (Vec3::MAX, Vec3::MIN);
+        for corner in frustum {
+            let corner = light_rotation.transform_point3(corner);
+            (min, max) = (min.min(corner), max.max(corner));
+        }
+        let size = max - min;
+        let half = size * 0.5;
+        let mut position = min + half;
+        position.z = min.z;
+        let position = light_rotation.inverse().transform_point3(position);
+        let light_view = look_at(position, position + direction, Vec3::Y);
+        orthographic(size.xy(), -size.z, size.z) * light_view
+    }
+
+    /// Corners where three planes of a clip space meet, as `BoundingFrustum` finds them.
+    fn corners(clip_from_world: Mat4) -> [Vec3; 8] {
+        let m = clip_from_world.transpose();
+        let plane = |p: Vec4| p / p.truncate().length();
+        let [near, far] = [plane(m.z_axis), plane(m.w_axis - m.z_axis)];
+        let [left, right] = [plane(m.w_axis + m.x_axis), plane(m.w_axis - m.x_axis)];
+        let [bottom, top] = [plane(m.w_axis + m.y_axis), plane(m.w_axis - m.y_axis)];
+        let meet = |a: Vec4, b: Vec4, c: Vec4| {
+            let (n, o, p) = (a.truncate(), b.truncate(), c.truncate());
+            -(o.cross(p) * a.w + p.cross(n) * b.w + n.cross(o) * c.w) / n.dot(o.cross(p))
+        };
+        let face = |z: Vec4| [meet(z, left, top), meet(z, right, top), meet(z, right, bottom), meet(z, left, bottom)];
+        let ([a, b, c, d], [e, f, g, h]) = (face(near), face(far));
+        [a, b, c, d, e, f, g, h]
+    }
+}
+
+fn look_at(eye: Vec3, target: Vec3, up: Vec3) -> Mat4 {
+    let back = (eye - target).normalize();
+    let right = up.cross(back).normalize();
+    let up = back.cross(right);
+    let rotation = Mat4::from_cols(right.extend(0.0), up.extend(0.0), back.extend(0.0), Vec4::W).transpose();
+    rotation * Mat4::from_translation(-eye)
+}
+
+fn perspective(camera: &PerspectiveCamera) -> Mat4 {
+    let h = 1.0 / (camera.fov_y * 0.5).tan();
+    let r = camera.far / (camera.near - camera.far);
+    Mat4::from_cols(
+        Vec4::new(h / camera.aspect, 0.0, 0.0, 0.0),
+        Vec4::new(0.0, h, 0.0, 0.0),
+        Vec4::new(0.0, 0.0, r, -1.0),
+        Vec4::new(0.0, 0.0, r * camera.near, 0.0),
+    )
+}
+
+fn orthographic(size: Vec2, near: f32, far: f32) -> Mat4 {
+    let r = 1.0 / (near - far);
+    Mat4::from_cols(
+        Vec4::new(2.0 / size.x, 0.0, 0.0, 0.0),
+        Vec4::new(0.0, 2.0 / size.y, 0.0, 0.0),
+        Vec4::new(0.0, 0.0, r, 0.0),
+        Vec4::new(0.0, 0.0, r * near, 1.0),
+    )
+}
+
+mod bevy {
+    //! Bevy's cascades: a cube of the slice's diagonal, rounded up to a metre, on a grid of texels.
+
+    use super::*;
+
+    /// What Bevy keeps of each cascade.
+    pub(super) struct Cascade {
+        pub(super) world_from_cascade: Mat4,
+        pub(super) clip_from_cascade: Mat4,
+        pub(super) clip_from_world: Mat4,
+        pub(super) texel_size: f32,
+    }
+
+    pub(super) fn cascades(camera: &PerspectiveCamera, direction: Vec3, bounds: [f32; 4]) -> [Cascade; 4] {
+        let eye = camera.eye.as_vec3();
+        let world_from_view = look_at(eye, eye + camera.forward, camera.up).inverse();
+        let world_from_light = look_at(Vec3::ZERO, direction, Vec3::Y).inverse();
+        let light_from_world = world_from_light.inverse();
+        let light_from_view = light_from_world * world_from_view;
+        let view_from_clip = perspective(camera).inverse();
+        let mut near = camera.near;
+        bounds.map(|far| {
+            let corners = slice_corners(view_from_clip, near, far);
+            near = far;
+            cascade(corners, light_from_view, light_from_world)
+        })
+    }
+
+    fn slice_corners(view_from_clip: Mat4, near: f32, far: f32) -> [Vec3; 8] {
+        let ray = |x: f32, y: f32| {
+            let p = view_from_clip.project_point3(Vec3::new(x, y, 0.5));
+            p / -p.z
+        };
+        let rays = [ray(1.0, -1.0), ray(1.0, 1.0), ray(-1.0, 1.0), ray(-1.0, -1.0)];
+        let [a, b, c, d] = rays.map(|r| r * near);
+        let [e, f, g, h] = rays.map(|r| r * far);
+        [a, b, c, d, e, f, g, h]
+    }
+
+    fn cascade(corners: [Vec3; 8], light_from_view: Mat4, light_from_world: Mat4) -> Cascade {
+        let (mut min, mut max) = (Vec3::MAX, Vec3::MIN);
+        for corner in corners {
+            let corner = light_from_view.transform_point3(corner);
+            (min, max) = (min.min(corner), max.max(corner));
+        }
+        let body = (corners[0] - corners[6]).length();
+        let face = (corners[4] - corners[6]).length();
+        let diameter = body.max(face).ceil();
+        let texel_size = diameter / 2048.0;
+        let centre = (min.xy() + max.xy()) * 0.5;
+        let snapped = (centre / texel_size).floor() * texel_size;
+        let near_centre = snapped.extend(max.z);
+        let cascade_from_world = Mat4::from_translation(-near_centre) * light_from_world;
+        let depth = 1.0 / (max.z - min.z);
+        let clip_from_cascade = Mat4::from_cols(
+            Vec4::new(2.0 / diameter, 0.0, 0.0, 0.0),
+            Vec4::new(0.0, 2.0 / diameter, 0.0, 0.0),
+            Vec4::new(0.0, 0.0, depth, 0.0),
+            Vec4::new(0.0, 0.0, 1.0, 1.0),
+        );
+        Cascade {
+            world_from_cascade: cascade_from_world.inverse(),
+            clip_from_cascade,
+            clip_from_world: clip_from_cascade * cascade_from_world,
+            texel_size,
+        }
+    }
+}
+
+fn against_xna(c: &mut Criterion) {
+    let mut group = c.benchmark_group("one map by the XNA sample's rule");
+    let settings = FitSettings::default().with_kind(FitKind::XnaSample).with_max_distance(f32::MAX);
+    let mut turn = 0.0;
+    group.bench_function("shadowfit", |b| {
+        b.iter(|| {
+            let view = camera(&mut turn).frustum().expect("a good camera");
+            fit(black_box(&view), black_box(DIRECTION), black_box(&settings)).expect("a good fit")
+        });
+    });
+    group.bench_function("transcription", |b| {
+        b.iter(|| xna::fit(black_box(&camera(&mut turn)), black_box(DIRECTION)));
+    });
+    group.finish();
+}
+
+fn against_bevy(c: &mut Criterion) {
+    let mut group = c.benchmark_group("4 stable cascades");
+    let bounds = [10.0, 21.5, 46.4, 100.0];
+    let mut splits = [0.0; 7];
+    splits[..3].copy_from_slice(&bounds[..3]);
+    let settings = settings(FitKind::Sphere, SplitScheme::Manual(splits), Stabilise::Snap);
+    let settings = CascadeSettings { fit: settings.fit.with_casters(CasterPolicy::Extend), ..settings };
+    let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+    let mut fitter = CascadeFitter::new();
+    let mut turn = 0.0;
+    group.bench_function("shadowfit", |b| {
+        b.iter(|| {
+            let views = [camera(&mut turn).frustum().expect("a good camera")];
+            let input = FitInput::new(black_box(&views), black_box(DIRECTION));
+            fitter.fit(&input, black_box(&settings), &mut Workspace::new(&mut storage)).expect("a good fit")
+        });
+    });
+    group.bench_function("transcription", |b| {
+        b.iter(|| {
+            let cascades = bevy::cascades(black_box(&camera(&mut turn)), black_box(DIRECTION), black_box(bounds));
+            cascades.map(|c| (c.world_from_cascade, c.clip_from_cascade, c.clip_from_world, c.texel_size))
+        });
+    });
+    group.finish();
+}
+
+fn settings(kind: FitKind, splits: SplitScheme, stabilise: Stabilise) -> CascadeSettings {
+    let fit = FitSettings { kind, casters: CasterPolicy::List, max_distance: f32::MAX, ..FitSettings::default() };
+    CascadeSettings { fit, splits, stabilise, ..CascadeSettings::default() }
+}
+
+/// Boxes of 2 to 6 m on a plain of 120 m around the camera.
+fn objects(count: usize) -> Vec<Aabb> {
+    let side = (count as f32).sqrt().ceil() as usize;
+    let step = 120.0 / side as f32;
+    (0..count)
+        .map(|i| {
+            let (x, z) = ((i % side) as f32 * step - 60.0, (i / side) as f32 * step - 60.0);
+            let size = 2.0 + (i % 5) as f32;
+            Aabb::new(Vec3::new(x, 0.0, z), Vec3::new(x + size, size * 0.7, z + size))
+        })
+        .collect()
+}
+
+fn focused(c: &mut Criterion) {
+    let mut group = c.benchmark_group("4 focused maps");
+    for (count, name) in [(200, "200 boxes"), (1024, "1024 boxes")] {
+        let boxes = objects(count);
+        let mut storage = vec![DVec2::ZERO; Workspace::required(count, 4)];
+        for (splits, stabilise, kind) in [
+            (SplitScheme::Logarithmic, Stabilise::Off, "logarithmic cuts"),
+            (SplitScheme::FromBoxes, Stabilise::Off, "cuts from boxes each frame"),
+            (SplitScheme::FromBoxes, Stabilise::Hysteresis, "held"),
+        ] {
+            let settings = settings(FitKind::Focused, splits, stabilise);
+            let mut fitter = CascadeFitter::new();
+            let mut turn = 0.0;
+            group.bench_function(format!("{name}, {kind}"), |b| {
+                b.iter(|| {
+                    let views = [camera(&mut turn).frustum().expect("a good camera")];
+                    let boxes = Boxes { origin: DVec3::ZERO, boxes: &boxes };
+                    let input = FitInput { receivers: Some(boxes), casters: boxes, ..FitInput::new(&views, DIRECTION) };
+                    fitter.fit(&input, black_box(&settings), &mut Workspace::new(&mut storage)).expect("a good fit")
+                });
+            });
+        }
+    }
+    group.finish();
+}
+
+/// A wavy plain of 2 · n² triangles.
+fn terrain(n: usize) -> Vec<[Vec3; 3]> {
+    let at = |i: usize, j: usize| {
+        let (x, z) = (i as f32, j as f32);
+        Vec3::new(x, (x * 0.21).sin() * 3.0 + (z * 0.17).cos() * 2.0, z)
+    };
+    let cell = |k: usize| {
+        let (i, j) = (k % n, k / n);
+        [[at(i, j), at(i, j + 1), at(i + 1, j)], [at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)]]
+    };
+    (0..n * n).flat_map(cell).collect()
+}
+
+fn clusters(c: &mut Criterion) {
+    let mut group = c.benchmark_group("1,024 clusters");
+    group.sample_size(10);
+    let triangles = terrain(387);
+    let objects: [&[[Vec3; 3]]; 1] = [&triangles];
+    group.bench_function("build from 300,000 triangles", |b| {
+        b.iter(|| Clusters::build(black_box(&objects), Clusters::DEFAULT_LIMIT).expect("good triangles"));
+    });
+    let mut built = Clusters::build(&objects, Clusters::DEFAULT_LIMIT).expect("good triangles");
+    group.bench_function("refit", |b| b.iter(|| built.refit(black_box(&objects)).expect("the same triangles")));
+    group.finish();
+}
+
+criterion_group!(benches, against_xna, against_bevy, focused, clusters);
+criterion_main!(benches);
