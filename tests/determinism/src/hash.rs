@@ -1,0 +1,33 @@
+//! One number for all that fits say.
+
+use std::fmt::{Debug, Write};
+
+/// FNV-1a over what values print as (G. Fowler, L. C. Noll, K.-P. Vo: "The FNV non-cryptographic hash algorithm").
+///
+/// Rust prints the shortest decimal that reads back as the same float, and the sign of zero, so two texts are equal
+/// only if all bits are; it prints every field, those to come and private ones included.
+pub(crate) struct Hash(u64);
+
+impl Hash {
+    pub(crate) fn new() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+
+    pub(crate) fn add(&mut self, value: &impl Debug) {
+        // Writing to a number cannot fail.
+        let _ = write!(self, "{value:?};");
+    }
+
+    pub(crate) fn value(&self) -> u64 {
+        self.0
+    }
+}
+
+impl Write for Hash {
+    fn write_str(&mut self, text: &str) -> std::fmt::Result {
+        for byte in text.bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+        Ok(())
+    }
+}

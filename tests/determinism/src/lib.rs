@@ -1,0 +1,47 @@
+//! 10,000 fits of every kind, and one hash over every number that they and what follows from them say: biases, culling,
+//! diagnostics.
+//!
+//! The hash is the same on every target: x86-64 with SIMD, glam's scalar maths, a browser. `cargo xtask ci` runs it on
+//! these three.
+
+mod hash;
+mod inputs;
+mod random;
+mod run;
+
+/// Number of fits.
+pub const FITS: u32 = 10_000;
+
+/// The hash of all fits. A change of what a fit computes changes it on purpose, and on all targets alike:
+/// `cargo test -p shadowfit-determinism` prints the new one.
+pub const HASH: u64 = 0x7ccb_3358_62c9_e06e;
+
+/// What 10,000 fits came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// Hash over all output.
+    pub hash: u64,
+    /// Fits that succeeded.
+    pub fits: u32,
+    /// Inputs that were refused.
+    pub refused: u32,
+}
+
+/// Runs all fits.
+pub fn outcome() -> Outcome {
+    run::run(FITS)
+}
+
+/// The hash of all fits, for a host without Rust: WebAssembly is given no name but a fixed one.
+#[expect(unsafe_code, reason = "a fixed name is all that it says; no other function of this program has it")]
+#[unsafe(no_mangle)]
+pub extern "C" fn shadowfit_hash() -> u64 {
+    outcome().hash
+}
+
+/// The hash that [`shadowfit_hash`] should have.
+#[expect(unsafe_code, reason = "as above")]
+#[unsafe(no_mangle)]
+pub extern "C" fn shadowfit_expected_hash() -> u64 {
+    HASH
+}

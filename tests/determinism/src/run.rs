@@ -1,0 +1,146 @@
+//! Runs fits, and all that engines ask of them.
+
+use shadowfit::bias::{Reach, normal_offset, receiver_plane_depth};
+use shadowfit::diagnostics::{DepthStorage, acne_margin, coverage, depth_step_at, pixels_per_texel, share_of_map};
+use shadowfit::fits::sphere::enclosing_sphere;
+use shadowfit::glam::{DVec2, UVec2, Vec3};
+use shadowfit::{
+    Bias, BiasSettings, CascadeFitter, CasterPolicy, CasterVolume, DepthHistogram, FilterKind, FitError, LightFit,
+    LightSettings, LightStepSettings, LightSteps, OrientedBox, Sphere, Sweep, Workspace, cull, fit_scene, needed_texel,
+};
+
+use crate::Outcome;
+use crate::hash::Hash;
+use crate::inputs::{Scene, cascade_settings, fit_settings};
+use crate::random::Random;
+
+/// Frames of a camera's flight.
+const FRAMES: u32 = 4;
+
+pub(crate) fn run(fits: u32) -> Outcome {
+    let mut run = Run {
+        random: Random::new(1),
+        hash: Hash::new(),
+        storage: vec![DVec2::ZERO; Workspace::required(64, 8)],
+        light: LightSteps::default(),
+        fits: 0,
+        refused: 0,
+    };
+    while run.fits < fits {
+        if let Err(error) = run.scene() {
+            run.hash.add(&error);
+            run.refused += 1;
+        }
+    }
+    Outcome { hash: run.hash.value(), fits: run.fits, refused: run.refused }
+}
+
+struct Run {
+    random: Random,
+    hash: Hash,
+    storage: Vec<DVec2>,
+    light: LightSteps,
+    fits: u32,
+    refused: u32,
+}
+
+impl Run {
+    fn scene(&mut self) -> Result<(), FitError> {
+        let mut scene = Scene::new(&mut self.random)?;
+        self.lights(&scene)?;
+        if !self.random.once_in(8) {
+            let settings = fit_settings(&mut self.random, &scene.camera);
+            let fit = fit_scene(&scene.input(), &settings, &mut Workspace::new(&mut self.storage))?;
+            self.fits += 1;
+            return self.follow(&scene, &fit, settings.casters);
+        }
+        let settings = cascade_settings(&mut self.random, &scene.camera);
+        let mut fitter = CascadeFitter::new();
+        for _ in 0..FRAMES {
+            let cascades = fitter.fit(&scene.input(), &settings, &mut Workspace::new(&mut self.storage))?;
+            self.hash.add(&cascades);
+            self.hash.add(&fitter);
+            self.fits += 1;
+            scene.advance(&mut self.random)?;
+        }
+        Ok(())
+    }
+
+    /// What is asked of cameras and lights before any fit.
+    fn lights(&mut self, scene: &Scene) -> Result<(), FitError> {
+        let sun = LightSettings::from_direction(scene.direction)?;
+        let settings = LightStepSettings::default().with_texels(100.0).with_fade(0.5);
+        let step = self.light.update(scene.direction, &settings, self.random.between(0.0, 0.4))?;
+        let (right, down) = (self.random.vector(), self.random.vector());
+        let texel = needed_texel(right, down, sun.direction());
+        let bin = DepthHistogram::bin(0.1, 100.0, 64, 4, self.random.scale(-4, 7), self.random.between(0.0, 4.0));
+        let view = (scene.camera.view_from_world(), scene.views[0], enclosing_sphere(&scene.views[0])?);
+        self.hash.add(&(sun, sun.direction(), step, texel, bin, view));
+        Ok(())
+    }
+
+    /// What an engine does with a fit.
+    fn follow(&mut self, scene: &Scene, fit: &LightFit, casters: CasterPolicy) -> Result<(), FitError> {
+        let random = &mut self.random;
+        let moved = fit.relative_to(fit.origin + random.place(100.0));
+        self.hash.add(&(fit, moved, fit.world_matrices(), fit.corners(), fit.light_position()));
+
+        let filter = random.pick(&[FilterKind::Point, FilterKind::Hardware2x2]);
+        let reach = random.pick(&[
+            filter.into(),
+            Reach::kernel(5),
+            Reach::POINT.over_disc(3.0),
+            Reach::POINT.over_metres(0.5, fit),
+        ]);
+        let storage = random.pick(&[DepthStorage::Unorm16, DepthStorage::Float16, DepthStorage::Float32]);
+        let settings =
+            BiasSettings { constant: random.scale(-2, 1), slope: random.between(0.0, 3.0), ..Default::default() };
+        let bias = Bias::automatic(reach, storage, fit)?;
+        let biases = (Bias::from_texels(&settings, fit), bias, Bias::automatic_receiver_plane(reach, storage, fit)?);
+        let normal = random.vector();
+        self.hash.add(&(biases, biases.0.on_plane(fit, normal)?, biases.2.on_plane(fit, normal)?));
+        self.hash.add(&(normal_offset(fit, reach, normal)?, receiver_plane_depth(fit, reach, normal)?));
+
+        let corners = scene.views[0].corners;
+        let near_view = (corners[0] + corners[6]).as_dvec3() * 0.25;
+        let point = scene.views[0].origin + near_view + random.place(f64::from(scene.camera.far) * 0.1);
+        let clip_from_world = scene.camera.clip_from_world(fit.depth);
+        let density = pixels_per_texel(fit, &clip_from_world, UVec2::new(1280, 720), near_view.as_vec3(), normal);
+        self.hash.add(&(
+            coverage(fit, reach, point)?,
+            acne_margin(fit, &bias, reach, storage, point, normal)?,
+            density,
+        ));
+        self.hash.add(&(share_of_map(fit, &corners)?, depth_step_at(storage, fit.depth_range, 0.3)?));
+        self.volumes(scene, fit, reach, bias.normal_offset, casters)
+    }
+
+    /// Culling.
+    fn volumes(
+        &mut self,
+        scene: &Scene,
+        fit: &LightFit,
+        reach: Reach,
+        normal_offset: f32,
+        casters: CasterPolicy,
+    ) -> Result<(), FitError> {
+        let far = scene.camera.far * self.random.between(0.3, 1.0);
+        let swept = CasterVolume::swept(fit, &Sweep { far, reach, normal_offset, ..Sweep::new(&scene.views) })?;
+        let volumes = [swept, swept.cut_at_near_plane(fit), CasterVolume::of_map(fit, casters), fit.caster_volume()];
+        let mut masks = [[0; 24]; 3];
+        cull(&volumes, scene.origin, &scene.casters, &mut masks[0]);
+        let half = |aabb: &shadowfit::Aabb| (aabb.max - aabb.min) * 0.5;
+        let spheres: Vec<Sphere> =
+            scene.casters.iter().map(|b| Sphere { centre: (b.min + b.max) * 0.5, radius: half(b).x }).collect();
+        cull(&volumes, scene.origin, &spheres, &mut masks[1]);
+        let turned = |aabb: &shadowfit::Aabb| {
+            let (centre, half) = ((aabb.min + aabb.max) * 0.5, half(aabb));
+            let axes = [Vec3::new(half.x, half.x, 0.0), Vec3::new(-half.y, half.y, 0.0), Vec3::new(0.0, 0.0, half.z)];
+            OrientedBox { centre, half_axes: axes }
+        };
+        let oriented: Vec<OrientedBox> = scene.casters.iter().map(turned).collect();
+        cull(&volumes, scene.origin, &oriented, &mut masks[2]);
+        self.hash.add(&(volumes, masks));
+        Ok(())
+    }
+}

@@ -1,0 +1,11 @@
+//! The hash over all fits on the machine that runs the tests.
+
+use shadowfit_determinism::{FITS, HASH, Outcome, outcome};
+
+#[test]
+fn ten_thousand_fits_have_the_same_bits_as_everywhere_else() {
+    let Outcome { hash, fits, refused } = outcome();
+    assert!(fits >= FITS, "{fits} fits");
+    assert!(refused < FITS / 20, "{refused} inputs were refused: they say little");
+    assert_eq!(hash, HASH, "the fits' hash is {hash:#018x}; pin it if fits were changed on purpose");
+}
