@@ -1,6 +1,8 @@
 //! The WGSL of the workspace: every file is used and valid, names and features stay within what engines can paste, and
-//! the uniforms lie in memory as the shaders read them. What the shaders compute is compared in [`parity_gpu`].
+//! the uniforms lie in memory as the shaders read them. What the shaders compute is compared in [`parity_gpu`]
+//! and [`culling_gpu`].
 
+mod culling_gpu;
 mod exact_counts_gpu;
 mod harness;
 mod layout;
@@ -10,10 +12,10 @@ use std::path::PathBuf;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
-use shadowfit::DepthConvention;
 use shadowfit::settings::{FilterKind, MapFormat};
+use shadowfit::{CasterVolume, DepthConvention};
 use shadowfit_render::shaders;
-use shadowfit_wgpu::{MAX_MAPS, ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
+use shadowfit_wgpu::{MAX_MAPS, ShadowMapDescriptor, caster_wgsl, culling_wgsl, receiver_wgsl};
 
 use crate::support::workspace;
 
@@ -38,6 +40,7 @@ fn modules() -> Vec<(String, String)> {
         ("lines".to_owned(), shaders::lines()),
         ("mip".to_owned(), shaders::mip()),
         ("caster piece".to_owned(), caster_wgsl(0)),
+        ("culling piece".to_owned(), culling_wgsl(0)),
     ];
     for map in descriptors() {
         let kind = format!("{:?} {:?} {:?}", map.format, map.filter, map.depth);
@@ -77,6 +80,7 @@ fn filled(text: &str) -> Vec<String> {
                 text.replace("MATERIAL_GROUP", group)
                     .replace("GROUP", group)
                     .replace("MAX_MAPS", &MAX_MAPS.to_string())
+                    .replace("MAX_PLANES", &CasterVolume::MAX_PLANES.to_string())
                     .replace("COMPARE", closer),
             );
         }

@@ -4,7 +4,10 @@ use core::mem::offset_of;
 
 use naga::{Binding, Module, StructMember, TypeInner};
 use shadowfit_render::{FrameUniform, InsetUniform, InstanceData, LineVertex, MaterialUniform, shaders};
-use shadowfit_wgpu::{CasterUniform, MAX_MAPS, MapUniform, ReceiverUniform, ShadowMapDescriptor};
+use shadowfit_wgpu::{
+    CasterUniform, CullingUniform, MAX_MAPS, MapUniform, ReceiverUniform, ShadowMapDescriptor, VolumeUniform,
+    culling_wgsl,
+};
 
 use super::parse;
 
@@ -95,6 +98,19 @@ fn every_uniform_has_the_size_and_offsets_of_its_wgsl_struct() {
 }
 
 #[test]
+fn the_volumes_of_the_culling_uniform_lie_as_in_wgsl() {
+    let culling = parse("culling", &culling_wgsl(0));
+    assert_same(
+        &culling,
+        &layout!("shadowfit_CasterVolume" = VolumeUniform { planes, count, padding_0, padding_1, padding_2 }),
+    );
+    assert_same(
+        &culling,
+        &layout!("shadowfit_Culling" = CullingUniform { volume_count, padding_0, padding_1, padding_2, volumes }),
+    );
+}
+
+#[test]
 fn the_maps_of_the_receiver_uniform_are_as_many_and_as_far_apart_in_both_languages() {
     let module = parse("scene", &shaders::scene(&ShadowMapDescriptor::default()));
     let (members, _) = reflected(&module, "shadowfit_Receiver");
@@ -106,7 +122,7 @@ fn the_maps_of_the_receiver_uniform_are_as_many_and_as_far_apart_in_both_languag
 
 #[test]
 fn every_uniform_of_every_module_is_one_whose_layout_is_compared() {
-    let compared = ["shadowfit_Caster", "shadowfit_Receiver", "Frame", "Material", "Inset"];
+    let compared = ["shadowfit_Caster", "shadowfit_Culling", "shadowfit_Receiver", "Frame", "Material", "Inset"];
     for (name, source) in super::modules() {
         let module = parse(&name, &source);
         let uniforms = module.global_variables.iter().filter(|(_, global)| global.space == naga::AddressSpace::Uniform);

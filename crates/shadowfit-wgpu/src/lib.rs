@@ -24,5 +24,5 @@ mod shader;
 mod uniform;
 
 pub use map::{MAX_MAPS, RESOLUTIONS, ShadowMap, ShadowMapDescriptor, ShadowMapError};
-pub use shader::{caster_wgsl, receiver_wgsl};
-pub use uniform::{CasterUniform, MapUniform, ReceiverUniform};
+pub use shader::{caster_wgsl, culling_wgsl, receiver_wgsl};
+pub use uniform::{CasterUniform, CullingUniform, MapUniform, ReceiverUniform, VolumeUniform};

@@ -1,8 +1,8 @@
 //! The WGSL of casters and receivers, put together from the pieces in `shaders/`. Every name
 //! starts with `shadowfit_`, so that the text can stand in any shader.
 
-use shadowfit::DepthConvention;
 use shadowfit::settings::{FilterKind, MapFormat};
+use shadowfit::{CasterVolume, DepthConvention};
 
 use crate::{MAX_MAPS, ShadowMapDescriptor};
 
@@ -13,6 +13,18 @@ use crate::{MAX_MAPS, ShadowMapDescriptor};
 /// It reads binding 0 of `group`; [`crate::ShadowMap::render`] sets group 0.
 pub fn caster_wgsl(group: u32) -> String {
     include_str!("shaders/caster.wgsl").replace("GROUP", &group.to_string())
+}
+
+/// WGSL for shaders that cull casters: `shadowfit_cull_box(min, max) -> u32`, whose bit i says whether the box may throw
+/// a shadow into map i, and `shadowfit_touches_box`, `_sphere` and `_oriented_box` for one map. They are the twins of
+/// [`shadowfit::cull`] and of the tests of [`shadowfit::CasterVolume`].
+///
+/// Reads a [`crate::CullingUniform`] at binding 0 of `group`.
+pub fn culling_wgsl(group: u32) -> String {
+    include_str!("shaders/culling.wgsl")
+        .replace("GROUP", &group.to_string())
+        .replace("MAX_MAPS", &MAX_MAPS.to_string())
+        .replace("MAX_PLANES", &CasterVolume::MAX_PLANES.to_string())
 }
 
 /// WGSL for fragment shaders that receive shadows: `shadowfit_factor(position, normal) -> f32`.

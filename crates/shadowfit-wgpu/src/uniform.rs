@@ -4,7 +4,7 @@
 use bytemuck::{Pod, Zeroable};
 use shadowfit::glam::DVec3;
 use shadowfit::settings::BiasSettings;
-use shadowfit::{DepthConvention, LightFit, bias::Bias};
+use shadowfit::{CasterVolume, DepthConvention, LightFit, bias::Bias};
 
 use crate::MAX_MAPS;
 
@@ -44,6 +44,53 @@ pub struct ReceiverUniform {
     pub map_count: u32,
     /// The maps, nearest first; the first one that covers a point is read.
     pub maps: [MapUniform; MAX_MAPS],
+}
+
+/// A caster volume as [`crate::culling_wgsl`] reads it: `shadowfit_CasterVolume` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct VolumeUniform {
+    /// Planes (n, d) with unit normals that point inward.
+    pub planes: [[f32; 4]; CasterVolume::MAX_PLANES],
+    /// Number of planes in use.
+    pub count: u32,
+    /// Keeps the struct a multiple of 16 bytes.
+    pub padding_0: u32,
+    /// As above.
+    pub padding_1: u32,
+    /// As above.
+    pub padding_2: u32,
+}
+
+/// What [`crate::culling_wgsl`] reads: `shadowfit_Culling` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct CullingUniform {
+    /// How many of `volumes` are in use.
+    pub volume_count: u32,
+    /// Puts the volumes at a multiple of 16 bytes.
+    pub padding_0: u32,
+    /// As above.
+    pub padding_1: u32,
+    /// As above.
+    pub padding_2: u32,
+    /// The volumes of the maps.
+    pub volumes: [VolumeUniform; MAX_MAPS],
+}
+
+impl CullingUniform {
+    /// The uniform for volumes of the maps, with shapes relative to `origin` (world space, metres). Volumes past
+    /// [`MAX_MAPS`] are left out.
+    pub fn new(volumes: &[CasterVolume], origin: DVec3) -> Self {
+        let mut uniform = Self::default();
+        for (slot, volume) in uniform.volumes.iter_mut().zip(volumes) {
+            let volume = volume.relative_to(origin);
+            slot.planes = volume.planes.map(|plane| plane.to_array());
+            slot.count = volume.active_planes().len() as u32;
+        }
+        uniform.volume_count = volumes.len().min(MAX_MAPS) as u32;
+        uniform
+    }
 }
 
 impl CasterUniform {

@@ -1,0 +1,195 @@
+//! Culling in WGSL against its twin in Rust: the same masks for boxes, and the same answers for spheres and oriented
+//! boxes, but where a shape lies within rounding of a plane.
+
+use shadowfit::glam::{DVec2, DVec3, Mat3, Vec3};
+use shadowfit::{
+    Aabb, CascadeFitter, CascadeSettings, CasterVolume, FitInput, OrientedBox, PerspectiveCamera, Sphere, Sweep,
+    Workspace, cull,
+};
+use shadowfit_render::Gpu;
+use shadowfit_wgpu::{CullingUniform, culling_wgsl};
+use wgpu::util::DeviceExt;
+
+use crate::support::software_gpu;
+
+/// Shapes that are compared; a multiple of the workgroup's size.
+const SHAPES: usize = 4096;
+
+/// Share of a shape's coordinates within which it may be on either side of a plane: the order of f32 operations is
+/// not prescribed in WGSL. Both sides count a shape as touching from 1e-6 of them on.
+const ROUNDING: f32 = 2e-6;
+
+/// A shape as the shader gets it: an oriented box, whose first half axis also gives the sphere's radius.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct Shape {
+    centre: [f32; 4],
+    half_axes: [[f32; 4]; 3],
+    low: [f32; 4],
+    high: [f32; 4],
+}
+
+const SHADER: &str = "
+struct Shape {
+    centre: vec4<f32>,
+    half_axes: array<vec4<f32>, 3>,
+    low: vec4<f32>,
+    high: vec4<f32>,
+}
+@group(1) @binding(0) var<storage, read> shapes: array<Shape>;
+@group(1) @binding(1) var<storage, read_write> masks: array<vec4<u32>>;
+@compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    let shape = shapes[id.x];
+    let axes = mat3x3<f32>(shape.half_axes[0].xyz, shape.half_axes[1].xyz, shape.half_axes[2].xyz);
+    var spheres = 0u;
+    var boxes = 0u;
+    for (var map = 0u; map < shadowfit_culling.volume_count; map += 1u) {
+        spheres |= select(0u, 1u << map, shadowfit_touches_sphere(map, shape.centre.xyz, shape.half_axes[0].w));
+        boxes |= select(0u, 1u << map, shadowfit_touches_oriented_box(map, shape.centre.xyz, axes));
+    }
+    masks[id.x] = vec4<u32>(shadowfit_cull_box(shape.low.xyz, shape.high.xyz), spheres, boxes, 0u);
+}
+";
+
+/// Where the eye stands; shapes are relative to another place.
+const EYE: DVec3 = DVec3::new(1000.0, 20.0, -3000.0);
+
+/// Swept and whole volumes of two cascades.
+fn volumes() -> Vec<CasterVolume> {
+    let camera = PerspectiveCamera {
+        eye: EYE,
+        forward: Vec3::new(0.3, -0.2, -1.0),
+        up: Vec3::Y,
+        fov_y: 0.9,
+        aspect: 1.6,
+        near: 0.1,
+        far: 100.0,
+    };
+    let views = [camera.frustum().expect("a good camera")];
+    let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+    let settings = CascadeSettings { count: 2, ..CascadeSettings::default() };
+    let input = FitInput::new(&views, Vec3::new(0.4, -0.8, 0.3));
+    let maps = CascadeFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("a good view");
+    let sweep = |near, far| Sweep { near, far, ..Sweep::new(&views) };
+    let swept = maps.iter().map(|map| CasterVolume::swept(&map.fit, &sweep(map.covered_near, map.far)));
+    let swept = swept.map(|volume| volume.expect("a good sweep"));
+    swept.chain(maps.iter().map(|map| map.fit.caster_volume())).collect()
+}
+
+/// Numbers in 0..1 that fill the cube evenly.
+fn evenly(index: usize, axis: i32) -> f32 {
+    (0.5 + (index as f64 + 1.0) * 1.167_303_978_261_418_7_f64.powi(-axis)).fract() as f32
+}
+
+/// Shapes in and around the view, small and large, and some empty boxes.
+fn shapes() -> Vec<Shape> {
+    (0..SHAPES)
+        .map(|i| {
+            let [x, y, z, a, b, c] = [1, 2, 3, 4, 5, 6].map(|axis| evenly(i, axis));
+            let centre = (Vec3::new(x, y, z) - 0.5) * Vec3::new(200.0, 80.0, 200.0);
+            let half = Vec3::new(a, b, c) * if i % 3 == 0 { 20.0 } else { 2.0 };
+            let turned = Mat3::from_axis_angle(Vec3::new(a, b, 1.0).normalize(), c * 3.0) * Mat3::from_diagonal(half);
+            let high = if i % 50 == 0 { centre - half * 0.1 } else { centre + half };
+            Shape {
+                centre: centre.extend(0.0).to_array(),
+                half_axes: [0, 1, 2].map(|axis| turned.col(axis).extend(half.min_element()).to_array()),
+                low: (centre - half).extend(0.0).to_array(),
+                high: high.extend(0.0).to_array(),
+            }
+        })
+        .collect()
+}
+
+/// The three masks of each shape, as the shader finds them.
+fn ask(gpu: &Gpu, uniform: &CullingUniform, shapes: &[Shape]) -> Vec<[u32; 4]> {
+    let device = &gpu.device;
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: None,
+        source: wgpu::ShaderSource::Wgsl((culling_wgsl(0) + SHADER).into()),
+    });
+    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: None,
+        layout: None,
+        module: &module,
+        entry_point: Some("main"),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    });
+    let filled = |contents: &[u8], usage| {
+        device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+    };
+    let uniform = filled(bytemuck::bytes_of(uniform), wgpu::BufferUsages::UNIFORM);
+    let shapes_buffer = filled(bytemuck::cast_slice(shapes), wgpu::BufferUsages::STORAGE);
+    let size = size_of::<[u32; 4]>() * shapes.len();
+    let empty = vec![0; size];
+    let masks = filled(&empty, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
+    let read = filled(&empty, wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
+    let group = |index: u32, buffers: &[&wgpu::Buffer]| {
+        let bindings = buffers.iter().enumerate();
+        let entries: Vec<_> = bindings
+            .map(|(i, buffer)| wgpu::BindGroupEntry { binding: i as u32, resource: buffer.as_entire_binding() })
+            .collect();
+        let layout = &pipeline.get_bind_group_layout(index);
+        device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+    };
+    let groups = [group(0, &[&uniform]), group(1, &[&shapes_buffer, &masks])];
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&pipeline);
+        for (index, group) in groups.iter().enumerate() {
+            pass.set_bind_group(index as u32, group, &[]);
+        }
+        pass.dispatch_workgroups((shapes.len() / 64) as u32, 1, 1);
+    }
+    encoder.copy_buffer_to_buffer(&masks, 0, &read, 0, size as u64);
+    gpu.queue.submit([encoder.finish()]);
+    read.slice(..).map_async(wgpu::MapMode::Read, |result| result.expect("the masks can be read"));
+    device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
+    let mapped = read.slice(..).get_mapped_range().expect("the masks are mapped");
+    bytemuck::pod_collect_to_vec(&mapped)
+}
+
+/// The shape enlarged (or made smaller) by a length, as a sphere and as boxes.
+fn resized(shape: &Shape, by: f32) -> (Aabb, Sphere, OrientedBox) {
+    let vector = |v: [f32; 4]| Vec3::new(v[0], v[1], v[2]);
+    let half_axes = shape.half_axes.map(|axis| {
+        let axis = vector(axis);
+        axis + axis.normalize_or_zero() * by
+    });
+    let centre = vector(shape.centre);
+    (
+        Aabb::new(vector(shape.low) - by, vector(shape.high) + by),
+        Sphere { centre, radius: shape.half_axes[0][3] + by },
+        OrientedBox { centre, half_axes },
+    )
+}
+
+#[test]
+fn wgsl_culls_what_rust_culls() {
+    let (gpu, volumes, shapes) = (software_gpu(), volumes(), shapes());
+    let origin = EYE + DVec3::new(4.0, -2.0, -2.0);
+    let answers = ask(&gpu, &CullingUniform::new(&volumes, origin), &shapes);
+    let masks_of = |by: f32| {
+        let mut masks = [vec![0_u8; SHAPES], vec![0_u8; SHAPES], vec![0_u8; SHAPES]];
+        let resized: Vec<_> = shapes.iter().map(|shape| resized(shape, by)).collect();
+        cull(&volumes, origin, &resized.iter().map(|shape| shape.0).collect::<Vec<_>>(), &mut masks[0]);
+        cull(&volumes, origin, &resized.iter().map(|shape| shape.1).collect::<Vec<_>>(), &mut masks[1]);
+        cull(&volumes, origin, &resized.iter().map(|shape| shape.2).collect::<Vec<_>>(), &mut masks[2]);
+        masks
+    };
+    // Coordinates sum to 500 m at most.
+    let [exact, smaller, larger] = [0.0, -500.0 * ROUNDING, 500.0 * ROUNDING].map(masks_of);
+    for kind in 0..3 {
+        let (mut same, mut kept) = (0, 0);
+        for i in 0..SHAPES {
+            let answer = answers[i][kind] as u8;
+            let (least, most) = (smaller[kind][i], larger[kind][i]);
+            assert!(answer & !most == 0 && least & !answer == 0, "shape {i} of kind {kind}: {answer:04b}");
+            same += usize::from(answer == exact[kind][i]);
+            kept += answer.count_ones();
+        }
+        println!("kind {kind}: {same} of {SHAPES} masks are the same, {kept} bits are set");
+        assert!(same + 8 >= SHAPES && kept > 200 && (kept as usize) < SHAPES * 2, "kind {kind}: {same}, {kept}");
+    }
+}
