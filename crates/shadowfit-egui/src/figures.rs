@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 
 use egui::{Grid, RichText, Ui};
 use egui_plot::{HLine, Line, Plot, PlotPoints};
+use shadowfit::Constraint;
 use shadowfit::figures::Figures;
 
 /// Frames that the plot looks back.
@@ -58,7 +59,7 @@ impl History {
 }
 
 /// The figures as name, value and help.
-fn lines(figures: &Figures) -> [(&'static str, Option<String>, &'static str); 9] {
+fn lines(figures: &Figures) -> [(&'static str, Option<String>, &'static str); 11] {
     [
         ("Texel size", figures.texel_size.map(size), "Width and height of one shadow texel across the light."),
         (
@@ -72,6 +73,19 @@ fn lines(figures: &Figures) -> [(&'static str, Option<String>, &'static str); 9]
             "Depth step",
             figures.depth_step.map(length),
             "Smallest depth difference that the map's format resolves at its far end.",
+        ),
+        (
+            "Sides set by",
+            figures.set_by.map(|set_by| {
+                if figures.is_empty == Some(true) { "no receiver in view".into() } else { sides(set_by) }
+            }),
+            "What set the four sides of the map's box: the view, the boxes of the scene that receive shadows, the \
+             stable sphere, or an earlier frame. Where it is the view, a shorter shadow distance has finer texels.",
+        ),
+        (
+            "Near, far set by",
+            figures.set_by.map(|[.., far, near]| format!("{}, {}", name(near), name(far))),
+            "What set the map's near plane, which is the one toward the light, and its far plane.",
         ),
         (
             "Frame",
@@ -96,6 +110,27 @@ pub(crate) fn show(ui: &mut Ui, figures: &Figures) {
             ui.end_row();
         }
     });
+}
+
+/// What set the four sides, each named once.
+fn sides(set_by: [Constraint; 6]) -> String {
+    let mut names: Vec<&str> = set_by[..4].iter().map(|constraint| name(*constraint)).collect();
+    names.sort_unstable();
+    names.dedup();
+    names.join(", ")
+}
+
+/// One word for what set a plane.
+fn name(constraint: Constraint) -> &'static str {
+    match constraint {
+        Constraint::View => "view",
+        Constraint::Receivers => "scene",
+        Constraint::Casters => "casters",
+        Constraint::CasterExtension => "extension",
+        Constraint::Sphere => "sphere",
+        Constraint::Held => "held",
+        _ => "other",
+    }
 }
 
 fn time(ms: f32) -> String {
@@ -146,6 +181,13 @@ mod tests {
         for (count, text) in [(0, "0"), (999, "999"), (1000, "1 000"), (262_144, "262 144"), (1_000_000, "1 000 000")] {
             assert_eq!(grouped(count).replace('\u{a0}', " "), text);
         }
+    }
+
+    #[test]
+    fn what_set_the_sides_is_named_once_each() {
+        let (view, scene) = (Constraint::View, Constraint::Receivers);
+        assert_eq!(sides([view, scene, view, scene, Constraint::Held, Constraint::Casters]), "scene, view");
+        assert_eq!(sides([Constraint::Sphere; 6]), "sphere");
     }
 
     #[test]

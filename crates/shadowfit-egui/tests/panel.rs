@@ -7,7 +7,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 use shadowfit::figures::Figures;
 use shadowfit::params::{Group, Kind, PARAMETERS, Parameter, parameter};
-use shadowfit::{FitKind, Settings};
+use shadowfit::{Constraint, FitKind, Settings};
 use shadowfit_egui::{Action, Artefact, KEYS, PANEL_WIDTH, Panel, PanelInput, SceneLine, apply_style, help_overlay};
 
 /// Higher than all that the panel holds, so that nothing is scrolled out of view.
@@ -107,6 +107,8 @@ fn everything_fits_the_panel_width() {
     host.notes = vec!["The texture 'bark.ktx2' has a compression that is not supported; it is drawn grey.".into()];
     host.message = Some("Saved the picture as shadowfit-2026-07-02-12-30-00.png in the current folder.");
     host.figures = Figures {
+        set_by: Some([Constraint::CasterExtension; 6]),
+        is_empty: Some(true),
         texel_size: Some([0.029, 0.031]),
         depth_range: Some(110.0),
         depth_step: Some(0.000_013),
@@ -245,6 +247,10 @@ fn dragged_sliders_set_and_clamp_every_number() {
 fn check_boxes_and_lists_set_their_parameters() {
     let mut harness = open_harness(Host::default());
     for parameter in PARAMETERS {
+        // The focused fit, with which every list of its group has an effect.
+        harness.state_mut().settings = Settings::default();
+        harness.state_mut().settings.fit.kind = FitKind::Focused;
+        harness.run();
         let before = harness.state().settings;
         match &parameter.kind {
             Kind::Number(_) => continue,
@@ -322,11 +328,11 @@ fn hovering_a_control_shows_help_range_and_default() {
 #[test]
 fn figures_that_were_not_measured_are_dashes() {
     let mut harness = harness(Host::default());
-    assert_eq!(harness.query_all_by_label("—").count(), 9);
+    assert_eq!(harness.query_all_by_label("—").count(), 11);
     harness.state_mut().figures.shadow_triangles = Some(1_234_567);
     harness.state_mut().figures.frame_ms = Some(5.0);
     harness.run();
-    assert_eq!(harness.query_all_by_label("—").count(), 7);
+    assert_eq!(harness.query_all_by_label("—").count(), 9);
     harness.get_by_label("1\u{a0}234\u{a0}567");
     harness.get_by_label("5.00 ms, 200 Hz");
 }

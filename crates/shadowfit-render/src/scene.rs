@@ -148,6 +148,14 @@ impl GpuScene {
         gpu.queue.write_buffer(&self.instance_buffer, 0, bytes);
     }
 
+    /// World bounds of an instance in its present pose, in metres, by its index in the scene's
+    /// instances; `None` where it has no vertices. Those of a turned instance lie around its turned
+    /// box.
+    pub fn instance_bounds(&self, index: usize) -> Option<Aabb> {
+        let bounds = self.instances.get(index)?.bounds;
+        bounds.min.cmple(bounds.max).all().then_some(bounds)
+    }
+
     /// World bounds of everything that casts, in metres; `None` for an empty scene.
     pub fn bounds(&self) -> Option<Aabb> {
         let join = |a: Aabb, b: Aabb| Aabb { min: a.min.min(b.min), max: a.max.max(b.max) };

@@ -5,7 +5,7 @@ use core::f32::consts::{PI, TAU};
 
 use glam::{UVec2, Vec3};
 use shadowfit::PerspectiveCamera;
-use shadowfit::settings::{BiasSettings, FilterKind, FitKind, FitSettings, Settings};
+use shadowfit::settings::{BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, Settings};
 use shadowfit_egui::Artefact;
 use shadowfit_render::FlyCamera;
 use shadowfit_scene::Aabb;
@@ -76,6 +76,7 @@ pub(crate) fn fix(stage: &mut Stage, artefact: Artefact) {
         // Take in every caster between the light and the view.
         Artefact::ClippingHole => {
             stage.settings.fit.kind = FitKind::FrustumAabb;
+            stage.settings.fit.casters = CasterPolicy::Extend;
             stage.settings.fit.caster_extension = (bounds.max - bounds.min).length();
         }
     }

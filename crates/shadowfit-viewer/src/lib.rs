@@ -3,6 +3,7 @@
 //! views to files. `examples/viewer` is its thin main.
 
 mod artefact;
+mod boxes;
 mod cli;
 mod files;
 #[cfg(feature = "gamepad")]

@@ -4,7 +4,7 @@ use core::fmt;
 
 use glam::{DVec3, Mat4, Vec3};
 use shadowfit::figures::Figures;
-use shadowfit::settings::{FitSettings, LightSettings, Settings};
+use shadowfit::settings::{CasterPolicy, FitSettings, LightSettings, Settings};
 use shadowfit::{DepthConvention, FitError, LightFit, PerspectiveCamera, ViewFrustum, bias, diagnostics};
 use shadowfit_egui::Artefact;
 use shadowfit_render::{
@@ -14,6 +14,7 @@ use shadowfit_scene::{Aabb, Lens, Pose, Scene};
 use shadowfit_truth::{JudgeSettings, Judged, Surface, judge};
 use shadowfit_wgpu::{ShadowMapDescriptor, ShadowMapError};
 
+use crate::boxes::SceneBoxes;
 use crate::rays::SceneRays;
 use crate::{artefact, outside};
 
@@ -28,6 +29,9 @@ const INSET_MARGIN: f32 = 12.0;
 /// Told when a scene has no place that shows an artefact.
 const NOT_FOUND: &str =
     "No place in this scene shows this well: nothing throws a shadow on a surface that faces the light.";
+
+/// Told when the GPU lacks what a caster policy needs.
+const NO_DEPTH_CLAMP: &str = "this GPU has no depth clamp: the objects place the map's near plane instead";
 
 /// The artefact on show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,6 +78,7 @@ pub struct Stage {
     pose: Pose,
     seconds: f32,
     bounds: Aabb,
+    boxes: SceneBoxes,
     triangles: u64,
     home: (Settings, FlyCamera),
     before_artefact: Option<(Settings, FlyCamera)>,
@@ -114,6 +119,7 @@ impl Stage {
             pose: loaded.pose,
             seconds: 0.0,
             bounds: loaded.bounds,
+            boxes: loaded.boxes,
             triangles: loaded.triangles,
             home: loaded.home,
             before_artefact: None,
@@ -139,6 +145,7 @@ impl Stage {
         self.gpu_scene = loaded.gpu_scene;
         self.pose = loaded.pose;
         self.bounds = loaded.bounds;
+        self.boxes = loaded.boxes;
         self.triangles = loaded.triangles;
         (self.seconds, self.rays, self.shown, self.before_artefact, self.frozen) = (0.0, None, None, None, None);
         self.notice = None;
@@ -205,6 +212,7 @@ impl Stage {
         self.pose = self.scene.pose(animation, seconds);
         self.gpu_scene.set_pose(&self.gpu, &self.scene, &self.pose);
         self.bounds = self.gpu_scene.bounds().unwrap_or(self.bounds);
+        self.boxes.set_pose(|index| self.gpu_scene.instance_bounds(index));
         self.rays = None;
     }
 
@@ -284,12 +292,17 @@ impl Stage {
         fitted
     }
 
-    fn fit_now(&self, size: [u32; 2]) -> Result<Fitted, FitError> {
+    fn fit_now(&mut self, size: [u32; 2]) -> Result<Fitted, FitError> {
         let frustum = self.perspective(size).frustum()?;
         // The map as it is, should the one that the settings ask for not be possible.
         let map = self.renderer.shadow_map().descriptor();
-        let fit_settings = FitSettings { resolution: map.resolution.into(), depth: map.depth, ..self.settings.fit };
-        let fit = shadowfit::fit(&frustum, self.settings.light.direction(), &fit_settings)?;
+        let casters = match self.settings.fit.casters {
+            CasterPolicy::DepthClamp if !map.depth_clamp => CasterPolicy::List,
+            casters => casters,
+        };
+        let fit_settings =
+            FitSettings { resolution: map.resolution.into(), depth: map.depth, casters, ..self.settings.fit };
+        let fit = self.boxes.fit(&frustum, self.settings.light.direction(), &fit_settings)?;
         let camera = &self.settings.camera;
         let shadowed = frustum.slice(camera.near, camera.far.min(fit_settings.max_distance)).ok();
         Ok(Fitted { frustum: shadowed, fits: vec![fit] })
@@ -332,7 +345,12 @@ impl Stage {
         if self.settings.fit.depth == DepthConvention::NegativeOneToOne {
             self.problem = Some("depth -1 to 1 is OpenGL's: wgpu draws the map with 0 to 1 instead".to_owned());
         }
-        if let Err(error) = self.renderer.set_shadow_map(&self.gpu, &map_descriptor(&self.settings)) {
+        let mut descriptor = map_descriptor(&self.settings);
+        if descriptor.depth_clamp && !self.gpu.has_depth_clamp() {
+            descriptor.depth_clamp = false;
+            self.problem = Some(NO_DEPTH_CLAMP.to_owned());
+        }
+        if let Err(error) = self.renderer.set_shadow_map(&self.gpu, &descriptor) {
             self.problem = Some(error.to_string());
         }
     }
@@ -365,6 +383,8 @@ impl Stage {
             ..Figures::default()
         };
         if let Some(fit) = self.fitted(size).fits.first() {
+            figures.set_by = Some(fit.set_by);
+            figures.is_empty = Some(fit.is_empty);
             figures.texel_size = Some(fit.texel_size.to_array());
             figures.depth_range = Some(fit.depth_range);
             figures.depth_step = Some(diagnostics::depth_step(self.settings.format, fit.depth_range));
@@ -498,6 +518,7 @@ struct Loaded {
     gpu_scene: GpuScene,
     pose: Pose,
     bounds: Aabb,
+    boxes: SceneBoxes,
     triangles: u64,
     home: (Settings, FlyCamera),
 }
@@ -509,13 +530,15 @@ impl Loaded {
             return Err(StageError::NothingToDraw(scene.name));
         };
         let gpu_scene = GpuScene::new(gpu, renderer.material_layout(), &scene, &pose);
+        let mut boxes = SceneBoxes::new(&scene, &pose);
+        boxes.set_pose(|index| gpu_scene.instance_bounds(index));
         let home = home(&scene, &pose, &bounds);
         let triangles = scene
             .instances()
             .iter()
             .map(|instance| scene.meshes[instance.mesh].primitives[instance.primitive].indices.len() as u64 / 3)
             .sum();
-        Ok(Self { scene, gpu_scene, pose, bounds, triangles, home })
+        Ok(Self { scene, gpu_scene, pose, bounds, boxes, triangles, home })
     }
 }
 

@@ -1,8 +1,15 @@
 //! The figures that a tool shows live: plain numbers, filled by whoever measured them.
 
+use crate::Constraint;
+
 /// Live figures of one frame. `None` means not measured, never zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Figures {
+    /// What set the planes -x, +x, -y, +y, far and near of the map's box, see
+    /// [`LightFit::set_by`](crate::LightFit::set_by).
+    pub set_by: Option<[Constraint; 6]>,
+    /// Whether no receiver is in view, see [`LightFit::is_empty`](crate::LightFit::is_empty).
+    pub is_empty: Option<bool>,
     /// Size of one shadow texel across the light, in metres, along u and v.
     pub texel_size: Option<[f32; 2]>,
     /// Extent of the map along the light, in metres.

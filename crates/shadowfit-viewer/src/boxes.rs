@@ -1,0 +1,193 @@
+//! What fits know of the scene: boxes around what shows shadows and what throws them.
+//!
+//! What never moves is cut once into clusters that hug its surface, since a level that is one mesh has a box that tells
+//! nothing. What an animation moves has one box an instance, made anew with every pose.
+
+use glam::{DVec2, DVec3, Vec3};
+use shadowfit::settings::FitSettings;
+use shadowfit::{Aabb, Boxes, Clusters, FitError, FitInput, LightFit, ViewFrustum, Workspace};
+use shadowfit_scene::{AlphaMode, Instance, Pose, Scene};
+
+/// Triangles from which on nothing is cut into clusters: at a fifth of a microsecond each it would hold up the opening
+/// of a scene by more than a second.
+const MOST_TRIANGLES: usize = 6_000_000;
+
+/// Greatest coordinate of a box that fits take, in metres; a box beyond it is left out.
+const FARTHEST: f32 = 1e18;
+
+/// Boxes of a scene in its present pose, in world space, and what fits need to work with them.
+#[derive(Debug, Default)]
+pub(crate) struct SceneBoxes {
+    /// Of all that is drawn: that of the clusters, then one an instance that moves.
+    receivers: Vec<Aabb>,
+    /// The same of what casts.
+    casters: Vec<Aabb>,
+    /// How many of the receivers and of the casters never move.
+    still: [usize; 2],
+    /// Index of each instance that has a box of its own, and whether it casts.
+    moving: Vec<(usize, bool)>,
+    /// Storage that fits work in.
+    storage: Vec<DVec2>,
+}
+
+impl SceneBoxes {
+    /// Cuts what never moves into clusters. [`Self::set_pose`] has to follow, for the rest.
+    pub(crate) fn new(scene: &Scene, pose: &Pose) -> Self {
+        let instances = scene.instances();
+        let casts: Vec<bool> = instances.iter().map(|instance| casts(scene, instance)).collect();
+        let mut moves = moving_instances(scene, &instances);
+        let clusters = clusters(scene, pose, &instances, &moves).unwrap_or_else(|| {
+            moves.fill(true);
+            Clusters::default()
+        });
+        let receivers = clusters.boxes().to_vec();
+        let of_casters = (0..receivers.len())
+            .filter(|cluster| clusters.triangles(*cluster).next().is_some_and(|(object, _)| casts[object as usize]));
+        let casters: Vec<Aabb> = of_casters.map(|cluster| receivers[cluster]).collect();
+        let still = [receivers.len(), casters.len()];
+        let moving = (0..instances.len()).filter(|index| moves[*index]).map(|index| (index, casts[index])).collect();
+        Self { receivers, casters, still, moving, storage: Vec::new() }
+    }
+
+    /// Takes the boxes of what moves: `bounds` gives that of an instance by its index, in world space.
+    pub(crate) fn set_pose(&mut self, bounds: impl Fn(usize) -> Option<shadowfit_scene::Aabb>) {
+        self.receivers.truncate(self.still[0]);
+        self.casters.truncate(self.still[1]);
+        for &(index, casts) in &self.moving {
+            let is_near = |corner: Vec3| corner.abs().cmple(Vec3::splat(FARTHEST)).all();
+            let Some(bounds) = bounds(index).filter(|bounds| is_near(bounds.min) && is_near(bounds.max)) else {
+                continue;
+            };
+            let aabb = Aabb::new(bounds.min, bounds.max);
+            self.receivers.push(aabb);
+            if casts {
+                self.casters.push(aabb);
+            }
+        }
+        let most = self.receivers.len().max(self.casters.len());
+        self.storage.resize(Workspace::required(most, 1), DVec2::ZERO);
+    }
+
+    /// Fits one map to what a view sees of the scene. `direction` is the light's direction of travel in world axes.
+    ///
+    /// # Errors
+    ///
+    /// As [`shadowfit::fit_scene`].
+    pub(crate) fn fit(
+        &mut self,
+        view: &ViewFrustum,
+        direction: Vec3,
+        settings: &FitSettings,
+    ) -> Result<LightFit, FitError> {
+        let views = [*view];
+        let input = FitInput {
+            receivers: Some(Boxes { origin: DVec3::ZERO, boxes: &self.receivers }),
+            casters: Boxes { origin: DVec3::ZERO, boxes: &self.casters },
+            ..FitInput::new(&views, direction)
+        };
+        shadowfit::fit_scene(&input, settings, &mut Workspace::new(&mut self.storage))
+    }
+}
+
+/// Whether the caster rule lets an instance cast: blended surfaces cast nothing.
+fn casts(scene: &Scene, instance: &Instance) -> bool {
+    let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
+    scene.materials[primitive.material].alpha != AlphaMode::Blend
+}
+
+/// Which instances some animation moves or deforms.
+fn moving_instances(scene: &Scene, instances: &[Instance]) -> Vec<bool> {
+    let mut moves = vec![false; scene.nodes.len()];
+    for channel in scene.animations.iter().flat_map(|animation| &animation.channels) {
+        if let Some(moves) = moves.get_mut(channel.node) {
+            *moves = true;
+        }
+    }
+    // Parents stand before their children.
+    for node in 0..moves.len() {
+        moves[node] |= scene.nodes[node].parent.is_some_and(|parent| moves[parent]);
+    }
+    let skin_moves = |instance: &Instance| {
+        let joints = scene.instance_skin(instance).map_or(&[][..], |skin| &skin.joints);
+        joints.iter().any(|joint| moves.get(*joint).is_none_or(|moves| *moves))
+    };
+    instances.iter().map(|instance| moves[instance.node] || skin_moves(instance)).collect()
+}
+
+/// Clusters of the instances that do not move, each an object; `None` where there are too many triangles, or some that
+/// no fit can take.
+fn clusters(scene: &Scene, pose: &Pose, instances: &[Instance], moves: &[bool]) -> Option<Clusters> {
+    let count = |instance: &Instance| scene.meshes[instance.mesh].primitives[instance.primitive].indices.len() / 3;
+    if instances.iter().map(count).sum::<usize>() > MOST_TRIANGLES {
+        return None;
+    }
+    let mut objects: Vec<Vec<[Vec3; 3]>> = vec![Vec::new(); instances.len()];
+    for triangle in pose.triangles(scene) {
+        let index = triangle.instance as usize;
+        if !moves[index] {
+            objects[index].push(triangle.vertices);
+        }
+    }
+    let objects: Vec<&[[Vec3; 3]]> = objects.iter().map(Vec::as_slice).collect();
+    Clusters::build(&objects, Clusters::DEFAULT_LIMIT).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shadowfit_scene::builtin::default_scene;
+
+    fn boxes(scene: &Scene, pose: &Pose) -> SceneBoxes {
+        let mut boxes = SceneBoxes::new(scene, pose);
+        let instances = scene.instances();
+        boxes.set_pose(|index| scene.instance_bounds(pose, &instances[index]));
+        boxes
+    }
+
+    #[test]
+    fn every_triangle_is_in_a_box_at_any_time_of_the_animation() {
+        let scene = default_scene();
+        let mut boxes = boxes(&scene, &scene.pose(None, 0.0));
+        assert!(
+            !boxes.moving.is_empty() && boxes.still[0] > boxes.moving.len(),
+            "the figure moves, the court does not"
+        );
+        let instances = scene.instances();
+        for seconds in [0.0, 0.37, 5.1] {
+            let pose = scene.pose(Some(0), seconds);
+            boxes.set_pose(|index| scene.instance_bounds(&pose, &instances[index]));
+            for triangle in pose.triangles(&scene) {
+                let [low, high] =
+                    [Vec3::min, Vec3::max].map(|pick| triangle.vertices.into_iter().reduce(pick).unwrap());
+                let holds = |aabb: &Aabb| aabb.min.cmple(low).all() && aabb.max.cmpge(high).all();
+                assert!(boxes.receivers.iter().any(holds), "{triangle:?} at {seconds} s");
+            }
+        }
+    }
+
+    #[test]
+    fn blended_surfaces_receive_and_do_not_cast() {
+        let mut scene = default_scene();
+        let pose = scene.pose(None, 0.0);
+        let all = boxes(&scene, &pose);
+        assert_eq!(all.receivers.len(), all.casters.len());
+        for material in &mut scene.materials {
+            material.alpha = AlphaMode::Blend;
+        }
+        let blended = boxes(&scene, &pose);
+        assert_eq!(blended.receivers, all.receivers);
+        assert!(blended.casters.is_empty());
+    }
+
+    #[test]
+    fn children_and_skins_of_what_is_animated_move_too() {
+        let scene = default_scene();
+        let moves = moving_instances(&scene, &scene.instances());
+        let rest = scene.pose(None, 0.0);
+        let later = scene.pose(Some(0), 0.8);
+        for (instance, moves) in scene.instances().iter().zip(moves) {
+            let bounds = [&rest, &later].map(|pose| scene.instance_bounds(pose, instance));
+            assert!(moves || bounds[0] == bounds[1], "{instance:?} stands still and moved");
+        }
+    }
+}
