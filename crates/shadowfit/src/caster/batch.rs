@@ -48,8 +48,8 @@ pub fn cull<S: Bounds>(volumes: &[CasterVolume], origin: DVec3, shapes: &[S], ma
     for (chunk, start) in chunks.iter().zip((0..).step_by(LANES)) {
         waiting.pass(&mut block, chunk, start, masks);
     }
-    // What is left over goes through the screen as well, with shapes behind it that no one asks for.
     waiting.flush(&mut block, masks);
+    // What does not fill the lanes is tested at once; no one asks for the lanes behind it.
     let start = count - rest.len();
     waiting.shapes[..rest.len()].copy_from_slice(rest);
     for (place, index) in waiting.places.iter_mut().zip(start..count) {
