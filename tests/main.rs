@@ -5,6 +5,7 @@
 
 mod artefacts;
 mod conventions;
+mod fits;
 mod golden;
 mod peers;
 mod robustness;

@@ -269,6 +269,7 @@ impl Stage {
     /// The fits of the present view and settings, nearest map first; empty where there is nothing
     /// to fit, with the reason as [`Self::problem`].
     pub fn fits(&mut self, size: [u32; 2]) -> Vec<LightFit> {
+        self.update_shadow_map();
         self.fitted(size).fits
     }
 
@@ -421,7 +422,6 @@ impl Stage {
     }
 
     fn judged_surfaces(&mut self, size: [u32; 2], subject_only: bool) -> (Judged, Vec<Option<Surface>>) {
-        self.update_shadow_map();
         let fits = self.fits(size);
         let camera = self.perspective(size);
         let atmosphere = Atmosphere::default();

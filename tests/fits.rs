@@ -1,0 +1,73 @@
+//! The fits in the viewer, on the default scene: whichever is chosen, no shadow has a hole once the casters have a
+//! place in the map, and knowing the scene makes texels finer. Judged against rays, which need no shadow map.
+
+use shadowfit::{CasterPolicy, FitKind};
+use shadowfit_scene::builtin::default_scene;
+use shadowfit_truth::Class;
+use shadowfit_viewer::{Artefact, Stage};
+
+use crate::support::software_gpu;
+
+/// Size of the judged pictures, in pixels.
+const SIZE: [u32; 2] = [320, 180];
+
+/// Share of the picture's pixels that may be wrong: single ones along edges.
+const STRAY: f32 = 0.001;
+
+const KINDS: [FitKind; 4] = [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
+
+/// The default scene where a caster stands between the sun and the view.
+fn stage() -> Stage {
+    let mut stage = Stage::new(software_gpu(), default_scene(), 1).expect("the default scene");
+    stage.show_artefact(Artefact::ClippingHole);
+    stage
+}
+
+/// Shares of the picture that are holes, and that are wrong in the midst of light or shadow.
+fn wrong(stage: &mut Stage) -> [f32; 2] {
+    let classes = stage.judge(SIZE, false).classes;
+    assert_eq!(stage.problem(), None);
+    let share =
+        |wanted: &[Class]| classes.iter().filter(|class| wanted.contains(class)).count() as f32 / classes.len() as f32;
+    [share(&[Class::Hole]), share(&[Class::FalseLight, Class::FalseShadow])]
+}
+
+#[test]
+fn gpu_every_policy_that_thinks_of_casters_closes_the_holes_of_every_fit() {
+    let mut stage = stage();
+    for kind in KINDS {
+        for casters in [CasterPolicy::Extend, CasterPolicy::List, CasterPolicy::SceneBounds, CasterPolicy::DepthClamp] {
+            stage.settings.fit = stage.settings.fit.with_kind(kind).with_casters(casters);
+            let [hole, other] = wrong(&mut stage);
+            let fit = stage.fits(SIZE)[0];
+            println!("{kind:?} {casters:?}: hole {hole}, false {other}, {} {}", fit.texel_size, fit.depth_range);
+            assert!(hole < STRAY && other < STRAY, "{kind:?} {casters:?}: hole {hole}, false light or shadow {other}");
+        }
+    }
+}
+
+#[test]
+fn gpu_without_a_thought_for_casters_the_tight_fits_leave_holes() {
+    let mut stage = stage();
+    for kind in [FitKind::XnaSample, FitKind::FrustumAabb, FitKind::Focused] {
+        stage.settings.fit = stage.settings.fit.with_kind(kind).with_casters(CasterPolicy::None);
+        let [hole, _] = wrong(&mut stage);
+        println!("{kind:?}: hole {hole}");
+        assert!(hole > 10.0 * STRAY, "{kind:?}: {hole}");
+    }
+}
+
+#[test]
+fn gpu_texels_are_finest_with_the_focused_fit_and_depth_is_shortest_with_depth_clamp() {
+    let mut stage = stage();
+    let mut fit = |kind, casters| {
+        stage.settings.fit = stage.settings.fit.with_kind(kind).with_casters(casters);
+        let fit = stage.fits(SIZE)[0];
+        (fit.texel_size.x * fit.texel_size.y, fit.depth_range)
+    };
+    let [boxed, oriented, sphere, focused] = KINDS.map(|kind| fit(kind, CasterPolicy::List).0);
+    assert!(focused < oriented && oriented < boxed && boxed < sphere, "{focused} {oriented} {boxed} {sphere}");
+    let policies = [CasterPolicy::DepthClamp, CasterPolicy::List, CasterPolicy::SceneBounds, CasterPolicy::Extend];
+    let [clamped, list, bounds, extended] = policies.map(|casters| fit(FitKind::Focused, casters).1);
+    assert!(clamped < list && list <= bounds && bounds < extended, "{clamped} {list} {bounds} {extended}");
+}
