@@ -73,6 +73,18 @@ impl LightAxes {
         let (x, y, z) = (self.x.as_dvec3(), self.y.as_dvec3(), self.z.as_dvec3());
         DVec3::new(x.dot(v), y.dot(v), z.dot(v))
     }
+
+    /// Of the matrix with these rows: 1 but for rounding.
+    pub(crate) fn determinant(&self) -> f64 {
+        self.x.as_dvec3().dot(self.y.as_dvec3().cross(self.z.as_dvec3()))
+    }
+
+    /// World axes from light axes, the inverse of [`Self::project`] to f64 rounding: the rounded
+    /// axes are not quite orthonormal, so their transpose would be off by 1e-7 of the distance.
+    pub(crate) fn unproject(&self, v: DVec3) -> DVec3 {
+        let (x, y, z) = (self.x.as_dvec3(), self.y.as_dvec3(), self.z.as_dvec3());
+        (y.cross(z) * v.x + z.cross(x) * v.y + x.cross(y) * v.z) / self.determinant()
+    }
 }
 
 /// The plan's axes x and y, as they appear to a light straight down: +x and -z, turned by the

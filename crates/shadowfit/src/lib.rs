@@ -49,6 +49,7 @@ pub mod fits;
 pub mod light_steps;
 pub mod params;
 pub mod settings;
+pub mod verify;
 
 mod axes;
 mod bounds;

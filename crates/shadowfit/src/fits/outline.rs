@@ -1,0 +1,137 @@
+//! What of a caster's box stands over a convex outline in the light's plane.
+//!
+//! A box reaches highest over the outline at a corner of (outline ∩ one of the box's faces as the
+//! light sees them), so each of the faces that look toward the light is clipped to the outline as
+//! a polygon, with the height of each corner carried along.
+
+use glam::{DVec2, DVec3};
+
+use crate::axes::LightAxes;
+use crate::view::box_corners;
+
+/// A convex outline with its bounds, widened.
+pub(crate) struct Outline<'a> {
+    pub(crate) axes: LightAxes,
+    /// Anticlockwise, in the plane of the axes' x and y.
+    corners: &'a [DVec2],
+    min: DVec2,
+    max: DVec2,
+    /// What the outline is widened by on all sides, in metres.
+    pad: f64,
+}
+
+/// Most corners of a clipped face that are kept. Each edge of the outline adds one at most; edges
+/// for which there is no room are left out, which is on the safe side.
+const MAX_CORNERS: usize = 96;
+
+/// A clipped face: a convex polygon in the light's plane with the height of each corner.
+#[derive(Clone, Copy)]
+struct Face {
+    corners: [DVec3; MAX_CORNERS],
+    len: usize,
+}
+
+impl Face {
+    const EMPTY: Self = Self { corners: [DVec3::ZERO; MAX_CORNERS], len: 0 };
+
+    /// Adds a corner, if there is room for it.
+    fn push(&mut self, corner: DVec3) -> bool {
+        if self.len == MAX_CORNERS {
+            return false;
+        }
+        self.corners[self.len] = corner;
+        self.len += 1;
+        true
+    }
+}
+
+/// Room to clip faces in.
+pub(crate) struct Scratch([Face; 2]);
+
+impl Scratch {
+    pub(crate) const fn new() -> Self {
+        Self([Face::EMPTY; 2])
+    }
+}
+
+impl<'a> Outline<'a> {
+    /// An outline in the plane of `axes` (anticlockwise), widened by `pad` metres on all sides:
+    /// as far as a square with sides of 2 `pad` along the axes reaches.
+    pub(crate) fn new(axes: &LightAxes, corners: &'a [DVec2], pad: f64) -> Self {
+        let (mut min, mut max) = (DVec2::MAX, DVec2::MIN);
+        for p in corners {
+            (min, max) = (min.min(*p), max.max(*p));
+        }
+        Self { axes: *axes, corners, min: min - pad, max: max + pad, pad }
+    }
+
+    /// Gives all corners of those faces of a box that look toward the light, clipped to the
+    /// outline, along the light's axes; nothing if no part of the box is over the outline or if
+    /// none reaches above `floor`.
+    pub(crate) fn parts_over(
+        &self,
+        min: DVec3,
+        max: DVec3,
+        floor: f64,
+        scratch: &mut Scratch,
+        mut emit: impl FnMut(DVec3),
+    ) {
+        let axes = &self.axes;
+        let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
+        let (x, y, z) = (axes.x.as_dvec3(), axes.y.as_dvec3(), axes.z.as_dvec3());
+        let centre = axes.project(centre);
+        let reach = DVec3::new(x.abs().dot(half), y.abs().dot(half), z.abs().dot(half));
+        let (low, high) = (centre - reach, centre + reach);
+        if high.z <= floor || low.x > self.max.x || low.y > self.max.y || high.x < self.min.x || high.y < self.min.y {
+            return;
+        }
+        let corners = box_corners(min, max).map(|corner| axes.project(corner));
+        for (face, inward) in FACES.into_iter().zip([z.x, -z.x, z.y, -z.y, z.z, -z.z]) {
+            // Faces that look away from the light lie below the others.
+            if inward <= 0.0 {
+                let clipped = self.clip(face.map(|i| corners[i]), scratch);
+                clipped.corners[..clipped.len].iter().for_each(|corner| emit(*corner));
+            }
+        }
+    }
+
+    /// A face cut by all edges of the outline moved outward by the pad.
+    fn clip<'s>(&self, face: [DVec3; 4], scratch: &'s mut Scratch) -> &'s Face {
+        let [polygon, other] = &mut scratch.0;
+        let (mut polygon, mut other) = (polygon, other);
+        polygon.corners[..4].copy_from_slice(&face);
+        polygon.len = 4;
+        let n = self.corners.len();
+        for i in 0..if n < 3 { 0 } else { n } {
+            let (a, b) = (self.corners[i], self.corners[(i + 1) % n]);
+            let edge = b - a;
+            let slack = self.pad * (edge.x.abs() + edge.y.abs());
+            if cut(polygon, other, |p| edge.perp_dot(p.truncate() - a) + slack) {
+                core::mem::swap(&mut polygon, &mut other);
+            }
+        }
+        polygon
+    }
+}
+
+/// Puts the part of a polygon where a linear function is not negative into `out` (I. Sutherland
+/// and G. Hodgman, "Reentrant polygon clipping", 1974). Whether there was room for it.
+fn cut(polygon: &Face, out: &mut Face, inside: impl Fn(DVec3) -> f64) -> bool {
+    out.len = 0;
+    let mut fits = true;
+    for i in 0..polygon.len {
+        let (a, b) = (polygon.corners[i], polygon.corners[(i + 1) % polygon.len]);
+        let (da, db) = (inside(a), inside(b));
+        if da >= 0.0 {
+            fits &= out.push(a);
+        }
+        if (da >= 0.0) != (db >= 0.0) {
+            let t = da / (da - db);
+            fits &= out.push(a * (1.0 - t) + b * t);
+        }
+    }
+    fits
+}
+
+/// Corners of a box's faces -x, +x, -y, +y, -z, +z, by the order of [`box_corners`].
+const FACES: [[usize; 4]; 6] = [[0, 3, 7, 4], [1, 2, 6, 5], [0, 1, 5, 4], [3, 2, 6, 7], [0, 1, 2, 3], [4, 5, 6, 7]];

@@ -1,0 +1,332 @@
+//! A certificate that a map has no holes: every receiver lies in it, and no caster is lost.
+//!
+//! [`verify`] looks at a fit's matrices alone and not at how they came about, so it holds for fits
+//! that were held, moved to another origin, stored or changed. It proves for **all** points of the
+//! receivers what it says, by the corners of each box clipped to the view; the rounding of f32
+//! positions, matrices and shader arithmetic is bounded and must be left free.
+//!
+//! ```text
+//!     toward the light
+//!   ┌────────▲─────────┐ near plane: no part of a caster over the receivers' outline,
+//!   │     ┌──┴──┐      │ widened by the filter's reach, may lie before it
+//!   │     │     │      │
+//!   │ r ┌─┴─────┴─┐ r  │ receivers' boxes ∩ view, the filter's reach r from the sides
+//!   │   └─────────┘    │
+//!   └──────────────────┘ far plane
+//! ```
+
+mod half_space;
+
+use glam::DVec3;
+
+use crate::axes::LightAxes;
+use crate::bias::{HARDWARE_SNAP, Reach};
+use crate::fits::{Content, Footprint, Outline, Range, Scratch};
+use crate::view::{Slice, box_corners, moved};
+use crate::{CascadeMap, CascadeSettings, CasterPolicy, FitError, FitInput, FitSettings, LightFit, Workspace, checks};
+use half_space::{HalfSpaces, ROUNDING};
+
+/// What is claimed of a map: which receivers read it, how far around them, and whether casters
+/// before the near plane are clipped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Claim {
+    /// View depth from which receivers read the map, in metres.
+    pub near: f32,
+    /// View depth up to which receivers read the map, in metres.
+    pub far: f32,
+    /// Reach of the filter: of all texels that it reads, the centres must lie in the map. What a
+    /// sampler loses by [rounding texture coordinates](HARDWARE_SNAP) shifts weights by no more
+    /// than that, so it counts only where [`Reach::on_hardware`] has put it in.
+    pub reach: Reach,
+    /// How far across the light the place that is looked up may lie off the receiver, in metres:
+    /// [`Bias::normal_offset`](crate::Bias::normal_offset). Along the light it needs no room: what
+    /// is looked up before the near plane is lit, as it should be where no caster is lost.
+    pub normal_offset: f32,
+    /// How casters before the near plane are treated: [`CasterPolicy::DepthClamp`] loses none.
+    /// The other policies are alike here.
+    pub casters: CasterPolicy,
+}
+
+impl Claim {
+    /// What a single map of [`fit_scene`](crate::fit_scene) is made for: all receivers up to the
+    /// shadow distance.
+    pub const fn of_fit(settings: &FitSettings, reach: Reach) -> Self {
+        let (near, far) = (f32::MIN, settings.max_distance);
+        Self { near, far, reach, normal_offset: 0.0, casters: settings.casters }
+    }
+
+    /// What one of several maps is made for: the receivers from [`CascadeMap::covered_near`] to
+    /// [`CascadeMap::far`] or the shadow distance.
+    pub const fn of_map(map: &CascadeMap, settings: &CascadeSettings, reach: Reach) -> Self {
+        let far = map.far.min(settings.fit.max_distance);
+        Self { near: map.covered_near.min(far), far, reach, normal_offset: 0.0, casters: settings.fit.casters }
+    }
+
+    /// This claim with another [`normal_offset`](Self::normal_offset).
+    #[must_use]
+    pub const fn with_normal_offset(mut self, normal_offset: f32) -> Self {
+        self.normal_offset = normal_offset;
+        self
+    }
+
+    fn checked(&self) -> Result<Range, FitError> {
+        checks::finite("the claim's near distance", f64::from(self.near))?;
+        checks::finite("the claim's far distance", f64::from(self.far))?;
+        checks::within("the claim's normal offset", f64::from(self.normal_offset), 0.0, checks::MAX_LENGTH)?;
+        self.reach.checked()?;
+        if self.near > self.far {
+            return Err(FitError::NearNotBelowFar { near: self.near, far: self.far });
+        }
+        Ok(Range { near: self.near, far: self.far })
+    }
+}
+
+/// A side of the box that a map stores, in light space: -x, +x, -y, +y, far, near.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MapPlane {
+    /// Texture coordinate u = 0.
+    Left,
+    /// Texture coordinate u = 1.
+    Right,
+    /// Texture coordinate v = 1.
+    Bottom,
+    /// Texture coordinate v = 0.
+    Top,
+    /// Away from the light.
+    Far,
+    /// Toward the light.
+    Near,
+}
+
+impl MapPlane {
+    /// All planes, in the order of [`LightFit::set_by`].
+    pub const ALL: [Self; 6] = [Self::Left, Self::Right, Self::Bottom, Self::Top, Self::Far, Self::Near];
+}
+
+/// What [`verify`] found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use = "a certificate says whether the map has holes"]
+pub enum Certificate {
+    /// There are no holes: all receivers are inside with all that the filter reads, and none of
+    /// the given casters is lost.
+    Proven(Slack),
+    /// A receiver is outside, or cannot be proven to be inside.
+    Uncovered {
+        /// The plane of the map that it lies beyond.
+        plane: MapPlane,
+        /// The farthest point beyond it, in world space.
+        point: DVec3,
+        /// How much is missing: texels for the planes across the light, metres for near and far.
+        /// It includes the filter's reach and the bound of the rounding.
+        by: f32,
+    },
+    /// A receiver is seen although the fit [says](LightFit::is_empty) that none is, so that its
+    /// shadow pass may be left out.
+    LeftOut {
+        /// A point of it, in world space.
+        point: DVec3,
+    },
+    /// A part of a caster that can throw a shadow into view lies before the near plane, or cannot
+    /// be proven to lie behind it.
+    CasterLost {
+        /// The part farthest toward the light, in world space.
+        point: DVec3,
+        /// Its distance before the near plane, in metres, with the bound of the rounding.
+        by: f32,
+    },
+}
+
+impl Certificate {
+    /// Whether the map has no holes.
+    pub const fn is_proven(&self) -> bool {
+        matches!(self, Self::Proven(_))
+    }
+}
+
+/// What is left free beyond all that is required. Infinite where there was nothing to require.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slack {
+    /// At each of [`MapPlane::ALL`]: texels for the planes across the light, metres for far and
+    /// near.
+    pub planes: [f32; 6],
+    /// Between the near plane and the first of the casters over the receivers, in metres; with
+    /// depth clamp none is required.
+    pub casters: f32,
+}
+
+/// Proves that a map has no holes, or finds one.
+///
+/// - **Receivers** are `input.receivers` clipped to the views' slices between `claim.near` and
+///   `claim.far`; the slices themselves where the boxes are not known. Boxes whose
+///   [cone](FitInput::receiver_cones) turns away from the light are passed over as the fits do. A
+///   frustum ends where its corners say; a camera matrix that is rounded otherwise may show a
+///   sliver beyond.
+/// - **Casters** are `input.casters`, whatever policy the fit was made by: those parts that stand
+///   over the receivers' outline, widened by the filter's reach, the rasteriser's snap and the
+///   normal offset. Nothing is claimed of casters that are not given.
+/// - **Rounding**: positions are taken as f32 relative to [`LightFit::origin`], multiplied by
+///   `uv_from_world` and `clip_from_world` in f32 in any order of operations. Positions relative
+///   to another origin need [`LightFit::relative_to`] first, and a certificate of that.
+///
+/// World positions are f64, in metres. The fit of the XNA sample has no caster policy, and where
+/// a caster stands before the frustum the certificate says so.
+///
+/// # Errors
+///
+/// Those of the views, the light's direction and the boxes as of
+/// [`fit_scene`](crate::fit_scene); [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the
+/// claim and for a fit whose matrices are no light's; [`FitError::ZeroResolution`];
+/// [`FitError::NearNotBelowFar`] for a claim whose near is above its far (equal ones claim
+/// nothing); [`FitError::WorkspaceTooSmall`].
+pub fn verify(
+    input: &FitInput,
+    fit: &LightFit,
+    claim: &Claim,
+    workspace: &mut Workspace,
+) -> Result<Certificate, FitError> {
+    let range = claim.checked()?;
+    if input.views.is_empty() {
+        return Err(FitError::NoView);
+    }
+    for view in input.views {
+        view.checked()?;
+    }
+    checks::unit("the light's direction", input.direction)?;
+    checks::point("the fit's origin", fit.origin)?;
+    let half_spaces = HalfSpaces::new(fit, claim)?;
+    let axes = axes_of(fit)?;
+    let (content, points) = Content::new(input, workspace)?;
+    let offset = content.origin - fit.origin;
+    let mut receivers = Worst::new(&half_spaces, offset);
+    receivers.add_all(&content, range);
+    if let Some(certificate) = receivers.failure(fit) {
+        return Ok(certificate);
+    }
+    let mut slack = Slack { planes: receivers.least.map(|(margin, _)| margin as f32), casters: f32::INFINITY };
+    if receivers.any.is_some() && claim.casters != CasterPolicy::DepthClamp && !content.casters.boxes.is_empty() {
+        let footprint = Footprint::of_receivers(&content, axes, range, points)?;
+        let pad = caster_reach(fit, claim, footprint.reach);
+        let (by, point) = nearest_caster(&content, &Outline::new(&axes, footprint.outline, pad), &half_spaces, offset);
+        if by < 0.0 {
+            return Ok(Certificate::CasterLost { point: fit.origin + point, by: -by as f32 });
+        }
+        slack.casters = by as f32;
+    }
+    Ok(Certificate::Proven(slack))
+}
+
+/// The light's axes as the matrix has them.
+fn axes_of(fit: &LightFit) -> Result<LightAxes, FitError> {
+    let rows = fit.light_from_world.transpose();
+    let axes = LightAxes { x: rows.x_axis.truncate(), y: rows.y_axis.truncate(), z: rows.z_axis.truncate() };
+    checks::within("the determinant of light_from_world", axes.determinant(), 1.0 - ORTHONORMAL, 1.0 + ORTHONORMAL)?;
+    Ok(axes)
+}
+
+/// How far the determinant of a light's axes may be from 1: far more than f32 rounding.
+const ORTHONORMAL: f64 = 1e-3;
+
+/// How far around the outline casters are read, in metres: the reach of the filter with the
+/// rasteriser's snap, the normal offset, and what rounding may shift both receivers and casters.
+fn caster_reach(fit: &LightFit, claim: &Claim, distance: f64) -> f64 {
+    let size = (fit.box_max - fit.box_min).as_dvec3().truncate();
+    let texel = size / fit.resolution.as_dvec2();
+    let reach = claim.reach.disc.as_dvec2() + f64::from(claim.reach.taps + HARDWARE_SNAP);
+    let rounding = SHIFT_ROUNDINGS * ROUNDING * (distance + size.max_element());
+    (reach * texel).max_element() + f64::from(claim.normal_offset) + rounding
+}
+
+/// Roundings that shift a receiver and a caster against each other across the light, as multiples
+/// of 2⁻²⁴ of the distance and the map's extent: ten in each term of either.
+const SHIFT_ROUNDINGS: f64 = 32.0;
+
+/// The casters' least distance behind the near plane, in metres, and where.
+fn nearest_caster(content: &Content, over: &Outline, half_spaces: &HalfSpaces, offset: DVec3) -> (f64, DVec3) {
+    let (moved_by, mut scratch) = (content.casters.origin - content.origin, Scratch::new());
+    let mut least = (f64::INFINITY, DVec3::ZERO);
+    for aabb in content.casters.boxes.iter().filter(|aabb| !aabb.is_empty()) {
+        let (min, max) = moved(aabb, moved_by);
+        over.parts_over(min, max, f64::MIN, &mut scratch, |corner| {
+            let p = over.axes.unproject(corner) + offset;
+            let margin = half_spaces.near().into_iter().map(|near| near.margin(p)).fold(f64::INFINITY, f64::min);
+            if margin < least.0 {
+                least = (margin, p);
+            }
+        });
+    }
+    least
+}
+
+/// The points that are least inside.
+struct Worst<'a> {
+    half_spaces: &'a HalfSpaces,
+    /// From the content's origin to the fit's.
+    offset: DVec3,
+    /// Least margin at each plane, and the point that has it, relative to the fit's origin.
+    least: [(f64, DVec3); 6],
+    any: Option<DVec3>,
+}
+
+impl<'a> Worst<'a> {
+    fn new(half_spaces: &'a HalfSpaces, offset: DVec3) -> Self {
+        Self { half_spaces, offset, least: [(f64::INFINITY, DVec3::ZERO); 6], any: None }
+    }
+
+    /// Takes all that the views see between two depths.
+    fn add_all(&mut self, content: &Content, range: Range) {
+        if content.receivers.is_none() {
+            content.corners(range).for_each(|corner| self.add(corner));
+            return;
+        }
+        let all = content.receivers_in(range, |_, slice, min, max| self.add_box(slice, min, max));
+        let Ok(()): Result<(), core::convert::Infallible> = all;
+    }
+
+    /// Takes a receiver's box clipped to a slice.
+    fn add_box(&mut self, slice: &Slice, min: DVec3, max: DVec3) -> Result<(), core::convert::Infallible> {
+        // No part of a box is less inside than its corners.
+        let corners = box_corners(min, max);
+        if self.any.is_some() && corners.into_iter().all(|corner| !self.is_worse(corner)) {
+            return Ok(());
+        }
+        slice.clip(min, max, &mut |p| {
+            self.add(p);
+            Ok(())
+        })
+    }
+
+    /// Whether a point changes anything.
+    fn is_worse(&self, p: DVec3) -> bool {
+        let p = p + self.offset;
+        self.half_spaces.all.iter().any(|half_space| half_space.margin(p) < self.least[half_space.plane as usize].0)
+    }
+
+    fn add(&mut self, p: DVec3) {
+        let p = p + self.offset;
+        self.any = Some(p);
+        for half_space in &self.half_spaces.all {
+            let (margin, least) = (half_space.margin(p), &mut self.least[half_space.plane as usize]);
+            if margin < least.0 {
+                *least = (margin, p);
+            }
+        }
+    }
+
+    /// What is wrong, if anything: the plane that most of the map's extent is missing at.
+    fn failure(&self, fit: &LightFit) -> Option<Certificate> {
+        let point = self.any?;
+        if fit.is_empty {
+            return Some(Certificate::LeftOut { point: fit.origin + point });
+        }
+        let (across, along) = (fit.resolution.as_dvec2(), f64::from(fit.depth_range));
+        let extents = [across.x, across.x, across.y, across.y, along, along];
+        let mut worst = (0.0, None);
+        for ((plane, (margin, p)), extent) in MapPlane::ALL.into_iter().zip(self.least).zip(extents) {
+            if margin / extent < worst.0 {
+                let by = -margin as f32;
+                worst = (margin / extent, Some(Certificate::Uncovered { plane, point: fit.origin + p, by }));
+            }
+        }
+        worst.1
+    }
+}
