@@ -1,195 +1,209 @@
-//! Parts triangles, again and again where the largest box stands.
-//!
-//! Binned splits by surface area (Wald, Ingo: "On fast construction of SAH-based bounding volume
-//! hierarchies", 2007), with two differences: no tree is kept, and a half costs its box's area
-//! alone, not times its triangles, because a fit looks at each box once, whatever is in it.
+//! Cuts groups of pieces in two, again and again where the most air is left.
 
 use alloc::collections::BinaryHeap;
+use alloc::vec;
 use alloc::vec::Vec;
 use core::cmp::Ordering;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
+use super::Triangle;
+use super::piece::{Corners, Piece};
+use super::slabs::{Slabs, sides};
 use crate::Aabb;
 
-/// Slabs that a box is cut into along each axis; a split is tried between each two.
-const BINS: usize = 32;
+/// Pieces of a group that decide where it is cut. A quarter of a thousand serves as well as all.
+const SAMPLE: usize = 256;
 
-/// A triangle, known by its box.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Reference {
-    aabb: Aabb,
+/// Depth in shares of a box's longest side by which the unfilled part of its sides counts as air.
+const SILHOUETTE_WEIGHT: f64 = 0.1;
+
+/// Share of a side that may be missing by rounding.
+const FILLED: f64 = 1.0 - 1e-3;
+
+/// Corners of cut pieces that may be kept, for each triangle and for each cluster: ten times what
+/// ordinary scenes use. Where large triangles pierce one another everywhere, later cuts leave
+/// pieces whole instead, and the boxes overlap.
+const CORNERS_PER_TRIANGLE: usize = 16;
+const CORNERS_PER_CLUSTER: usize = 64;
+
+/// Pieces of one object that share a box.
+pub(super) struct Group {
     pub(super) object: u32,
-    pub(super) triangle: u32,
+    pub(super) pieces: Vec<Piece>,
+    aabb: Aabb,
+    /// About how much air is in the box, in m³.
+    air: f64,
+    /// Its place in [`Splitter::next`], which also decides between equals.
+    slot: usize,
 }
 
-impl Reference {
-    pub(super) fn new(object: u32, triangle: u32, [a, b, c]: &[Vec3; 3]) -> Self {
-        Self { aabb: Aabb { min: a.min(*b).min(*c), max: a.max(*b).max(*c) }, object, triangle }
+impl Group {
+    fn new(object: u32, pieces: Vec<Piece>, slot: usize) -> Self {
+        let mut aabb = Aabb::EMPTY;
+        let (mut front, mut back) = (Vec3::ZERO, Vec3::ZERO);
+        for piece in &pieces {
+            aabb = aabb.union(piece.aabb);
+            front += piece.area.max(Vec3::ZERO);
+            back += (-piece.area).max(Vec3::ZERO);
+        }
+        Self { object, air: air(&aabb, front.max(back)), aabb, pieces, slot }
     }
 
-    /// Twice the middle of its box.
-    fn centre(&self) -> Vec3 {
-        self.aabb.min + self.aabb.max
+    /// The axis and coordinate to cut at; `None` for a point.
+    fn cut(&self, triangles: &[Triangle], corners: &Corners, buffer: &mut Vec<Vec3>) -> Option<(usize, f32)> {
+        let mut slabs = [0, 1, 2].map(|axis| Slabs::new(axis, &self.aabb));
+        for piece in self.pieces.iter().step_by(self.pieces.len().div_ceil(SAMPLE).max(1)) {
+            corners.copy(piece.outline, &triangles[piece.outline.triangle as usize], buffer);
+            for slabs in &mut slabs {
+                slabs.add(&piece.aabb, buffer);
+            }
+        }
+        let mut best: Option<(f64, usize, f32)> = None;
+        for (axis, slabs) in slabs.iter().enumerate() {
+            if let Some((cost, cut)) = slabs.best()
+                && best.is_none_or(|(least, ..)| cost < least)
+            {
+                best = Some((cost, axis, cut));
+            }
+        }
+        best.map(|(_, axis, cut)| (axis, cut)).or_else(|| self.middle())
+    }
+
+    /// The middle of the longest side.
+    fn middle(&self) -> Option<(usize, f32)> {
+        let size = self.aabb.max - self.aabb.min;
+        let axis = size.max_position();
+        (size[axis] > 0.0).then(|| (axis, self.aabb.min[axis] + size[axis] * 0.5))
     }
 }
 
-/// References `start..end` of one object that may be split further.
-#[derive(Clone, Copy, Debug)]
-struct Node {
-    start: usize,
-    end: usize,
-    /// Half the surface of the box.
-    area: f32,
-}
-
-impl Node {
-    fn new(start: usize, end: usize, aabb: &Aabb) -> Self {
-        Self { start, end, area: half_area(aabb) }
-    }
-}
-
-impl Ord for Node {
-    /// The larger area is greater; of equal ones that which comes first.
+impl Ord for Group {
+    /// More air is greater; of equal ones that with the lesser slot.
     fn cmp(&self, other: &Self) -> Ordering {
-        self.area.total_cmp(&other.area).then(other.start.cmp(&self.start))
+        self.air.total_cmp(&other.air).then(other.slot.cmp(&self.slot))
     }
 }
 
-impl PartialOrd for Node {
+impl PartialOrd for Group {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Node {
+impl PartialEq for Group {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Node {}
+impl Eq for Group {}
 
-/// Sorts references, given object by object, into groups: at most `limit` of them, or one for each
-/// object. Gives where each group ends.
-pub(super) fn split(references: &mut [Reference], limit: usize) -> Vec<usize> {
+/// About how much air a box holds beside surfaces of so much area across x, y and z, in m³.
+///
+/// Its volume, for surfaces are thin; and where they leave parts of its silhouettes open, as much
+/// more as if the box were a tenth as deep as long. A flat box that is full has none.
+fn air(aabb: &Aabb, area: Vec3) -> f64 {
+    let size = (aabb.max - aabb.min).as_dvec3();
+    let open = (sides(size) * FILLED - area.as_dvec3()).max(DVec3::ZERO);
+    size.element_product() + SILHOUETTE_WEIGHT * open.element_sum() * size.max_element()
+}
+
+/// Cuts objects into groups: at most `limit` of them, or one for each object that has triangles.
+/// Those of an object follow one another, and halves of a half do.
+pub(super) fn split(objects: &[&[Triangle]], limit: usize) -> (Vec<Group>, Corners) {
+    let mut splitter = Splitter::new(objects, limit);
     let mut open = BinaryHeap::new();
-    let mut start = 0;
-    for object in references.chunk_by(|a, b| a.object == b.object) {
-        let aabb = object.iter().fold(Aabb::EMPTY, |aabb, reference| aabb.union(reference.aabb));
-        open.push(Node::new(start, start + object.len(), &aabb));
-        start += object.len();
+    for (object, triangles) in (0..).zip(objects).filter(|(_, triangles)| !triangles.is_empty()) {
+        let pieces = (0..).zip(*triangles).map(|(i, triangle)| Piece::whole(i, triangle)).collect();
+        splitter.next.push(open.len() + 1);
+        open.push(Group::new(object, pieces, open.len()));
     }
-    let mut ends = Vec::with_capacity(limit.min(references.len()));
-    while open.len() + ends.len() < limit {
-        let Some(node) = open.pop() else { break };
-        match Bins::fill(&node, references).best() {
-            Some(plane) => open.extend(part(&node, &plane, references)),
-            None => ends.push(node.end),
+    let mut done = Vec::new();
+    while open.len() + done.len() < limit {
+        let Some(group) = open.pop() else { break };
+        match splitter.halves(group) {
+            Ok(halves) => open.extend(halves),
+            Err(group) => done.push(group),
         }
     }
-    ends.extend(open.into_iter().map(|node| node.end));
-    ends.sort_unstable();
-    ends
+    done.extend(open);
+    let ranks = splitter.ranks();
+    done.sort_unstable_by_key(|group| ranks[group.slot]);
+    (done, splitter.corners)
 }
 
-/// A place to part a node: by the slabs of one axis.
-#[derive(Clone, Copy, Debug)]
-struct Plane {
-    axis: usize,
-    /// Centres in slabs below this one go to the first half.
-    slab: usize,
-    slabs: Slabs,
+struct Splitter<'a> {
+    objects: &'a [&'a [Triangle]],
+    corners: Corners,
+    /// How many corners may be kept.
+    room: usize,
+    /// The groups' order: the slot that follows each slot. The last one's is no slot.
+    next: Vec<usize>,
+    /// For the corners of one piece.
+    buffer: Vec<Vec3>,
 }
 
-/// How centres are sorted into slabs.
-#[derive(Clone, Copy, Debug)]
-struct Slabs {
-    min: Vec3,
-    per_unit: Vec3,
-}
-
-impl Slabs {
-    fn of(&self, centre: Vec3) -> [usize; 3] {
-        // Not a number, from zero times infinity where the extent is tiny, becomes slab 0.
-        ((centre - self.min) * self.per_unit).to_array().map(|slab| (slab as usize).min(BINS - 1))
+impl<'a> Splitter<'a> {
+    fn new(objects: &'a [&'a [Triangle]], limit: usize) -> Self {
+        let triangles = objects.iter().map(|triangles| triangles.len()).fold(0, usize::saturating_add);
+        let room = triangles.saturating_mul(CORNERS_PER_TRIANGLE);
+        let room = room.saturating_add(limit.saturating_mul(CORNERS_PER_CLUSTER)).min(u32::MAX as usize);
+        Self { objects, corners: Corners::default(), room, next: Vec::new(), buffer: Vec::new() }
     }
-}
 
-/// Number and box of the references in each slab.
-struct Bins {
-    slabs: Slabs,
-    is_used: [bool; 3],
-    counts: [[usize; BINS]; 3],
-    boxes: [[Aabb; BINS]; 3],
-}
+    /// A new slot that follows another one.
+    fn slot_after(&mut self, slot: usize) -> usize {
+        self.next.push(self.next[slot]);
+        self.next[slot] = self.next.len() - 1;
+        self.next[slot]
+    }
 
-impl Bins {
-    fn fill(node: &Node, references: &[Reference]) -> Self {
-        let references = &references[node.start..node.end];
-        let centres = references.iter().fold(Aabb::EMPTY, |aabb, reference| aabb.with_point(reference.centre()));
-        let slabs = Slabs { min: centres.min, per_unit: BINS as f32 / (centres.max - centres.min) };
-        let is_used = (centres.max - centres.min).to_array().map(|extent| extent > 0.0);
-        let mut bins = Self { slabs, is_used, counts: [[0; BINS]; 3], boxes: [[Aabb::EMPTY; BINS]; 3] };
-        for reference in references {
-            for (axis, slab) in slabs.of(reference.centre()).into_iter().enumerate() {
-                bins.counts[axis][slab] += 1;
-                bins.boxes[axis][slab] = bins.boxes[axis][slab].union(reference.aabb);
-            }
+    /// Each slot's place in the order.
+    fn ranks(&self) -> Vec<usize> {
+        let mut ranks = vec![0; self.next.len()];
+        let mut slot = 0;
+        for rank in 0..self.next.len() {
+            ranks[slot] = rank;
+            slot = self.next[slot];
         }
-        bins
+        ranks
     }
 
-    /// The plane with the least sum of the halves' areas, `None` where all centres are one.
-    fn best(&self) -> Option<Plane> {
-        let mut best: Option<(f32, Plane)> = None;
-        for axis in (0..3).filter(|&axis| self.is_used[axis]) {
-            let mut above = [Aabb::EMPTY; BINS];
-            let mut aabb = Aabb::EMPTY;
-            for slab in (0..BINS).rev() {
-                aabb = aabb.union(self.boxes[axis][slab]);
-                above[slab] = aabb;
+    /// Both halves of a group, or the group when it holds no air or cannot be cut.
+    fn halves(&mut self, mut group: Group) -> Result<[Group; 2], Group> {
+        let triangles = self.objects[group.object as usize];
+        let cut = if group.air > 0.0 { group.cut(triangles, &self.corners, &mut self.buffer) } else { None };
+        let Some((axis, cut)) = cut else { return Err(group) };
+        let mut above = Vec::new();
+        group.pieces.retain_mut(|piece| {
+            if piece.aabb.max[axis] <= cut {
+                return true;
             }
-            let mut below = Aabb::EMPTY;
-            for (slab, above) in above.iter().enumerate().skip(1) {
-                below = below.union(self.boxes[axis][slab - 1]);
-                if self.counts[axis][slab - 1] == 0 {
-                    continue; // the same halves as one slab before
+            if piece.aabb.min[axis] >= cut {
+                above.push(*piece);
+                return false;
+            }
+            if self.corners.len() + self.corners.needed_to_cut(piece.outline) > self.room {
+                let is_below = (piece.aabb.min[axis] + piece.aabb.max[axis]) * 0.5 < cut;
+                if !is_below {
+                    above.push(*piece);
                 }
-                let cost = half_area(&below) + half_area(above);
-                if best.is_none_or(|(least, _)| cost < least) {
-                    best = Some((cost, Plane { axis, slab, slabs: self.slabs }));
-                }
+                return is_below;
             }
+            let parts = self.corners.cut(piece, &triangles[piece.outline.triangle as usize], axis, cut);
+            above.extend(parts[1]);
+            if let Some(below) = parts[0] {
+                *piece = below;
+            }
+            parts[0].is_some()
+        });
+        if group.pieces.is_empty() || above.is_empty() {
+            group.pieces.append(&mut above);
+            return Err(group);
         }
-        best.map(|(_, plane)| plane)
+        group.pieces.shrink_to_fit();
+        let slot = self.slot_after(group.slot);
+        Ok([Group::new(group.object, group.pieces, group.slot), Group::new(group.object, above, slot)])
     }
-}
-
-/// Sorts the references of a node to both sides of a plane.
-fn part(node: &Node, plane: &Plane, references: &mut [Reference]) -> [Node; 2] {
-    let references = &mut references[node.start..node.end];
-    let mut halves = [Aabb::EMPTY; 2];
-    let mut middle = 0;
-    for i in 0..references.len() {
-        let reference = references[i];
-        let is_first = plane.slabs.of(reference.centre())[plane.axis] < plane.slab;
-        let half = &mut halves[usize::from(!is_first)];
-        *half = half.union(reference.aabb);
-        if is_first {
-            references.swap(i, middle);
-            middle += 1;
-        }
-    }
-    let middle = node.start + middle;
-    [Node::new(node.start, middle, &halves[0]), Node::new(middle, node.end, &halves[1])]
-}
-
-/// Half the surface of a box, zero for an empty one.
-fn half_area(aabb: &Aabb) -> f32 {
-    if aabb.is_empty() {
-        return 0.0;
-    }
-    let size = aabb.max - aabb.min;
-    size.x * size.y + size.y * size.z + size.z * size.x
 }

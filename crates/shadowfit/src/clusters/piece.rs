@@ -1,0 +1,178 @@
+//! Pieces of triangles, cut by planes.
+//!
+//! A corner of a piece is kept as its place in the triangle, (u, v) for a + u (b - a) + v (c - a),
+//! so that the piece follows when the triangle moves, however it is deformed:
+//!
+//! ```text
+//!    c                 c
+//!    | \               | \
+//!    |   \       =>    |   *       *  \         each part keeps the corners on its side
+//!    |     \           |   |       |    \       and gets the two new ones (*)
+//!    a ---- b          a --*       * --- b
+//! ```
+
+use alloc::vec::Vec;
+
+use glam::{DVec2, DVec3, Vec3};
+
+use super::Triangle;
+use crate::Aabb;
+
+/// Corners of a whole triangle.
+const WHOLE: [DVec2; 3] = [DVec2::ZERO, DVec2::X, DVec2::Y];
+
+/// A triangle or a part of one, in an object that its user knows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece {
+    pub(super) aabb: Aabb,
+    /// Area vector: along the normal by the right-hand rule, as long as the area, in m².
+    pub(super) area: Vec3,
+    pub(super) outline: Outline,
+}
+
+/// Which triangle of an object, and which part of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Outline {
+    pub(super) triangle: u32,
+    /// First of its corners among [`Corners`].
+    first: u32,
+    /// Number of its corners; 0 for the whole triangle.
+    count: u32,
+}
+
+impl Piece {
+    /// A whole triangle.
+    pub(super) fn whole(index: u32, triangle: &Triangle) -> Self {
+        let aabb = triangle.iter().fold(Aabb::EMPTY, |aabb, &corner| aabb.with_point(corner));
+        let outline = Outline { triangle: index, first: 0, count: 0 };
+        Self { aabb, area: area(triangle).as_vec3(), outline }
+    }
+}
+
+/// Corners of the pieces that are not whole, by their place in their triangle.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Corners {
+    places: Vec<DVec2>,
+}
+
+impl Corners {
+    pub(super) fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Puts the corners of a piece into `out`, in order around it, rounded.
+    pub(super) fn copy(&self, outline: Outline, triangle: &Triangle, out: &mut Vec<Vec3>) {
+        out.clear();
+        match outline.count {
+            0 => out.extend(triangle),
+            _ => out.extend(self.places(outline).iter().map(|&place| at(triangle, place).as_vec3())),
+        }
+    }
+
+    /// The least box in f32 around a piece.
+    pub(super) fn bounds(&self, outline: Outline, triangle: &Triangle) -> Aabb {
+        if outline.count == 0 {
+            return triangle.iter().fold(Aabb::EMPTY, |aabb, &corner| aabb.with_point(corner));
+        }
+        let corners = self.places(outline).iter().map(|&place| at(triangle, place));
+        corners.fold(Aabb::EMPTY, |aabb, p| aabb.union(rounded_out(p)))
+    }
+
+    /// Takes over the corners of a piece from `other`, to leave out those of no piece.
+    pub(super) fn adopt(&mut self, outline: Outline, other: &Self) -> Outline {
+        if outline.count == 0 {
+            return outline;
+        }
+        let first = self.places.len() as u32;
+        self.places.extend_from_slice(other.places(outline));
+        Outline { first, ..outline }
+    }
+
+    /// How many corners both parts of a piece have at most.
+    pub(super) fn needed_to_cut(&self, outline: Outline) -> usize {
+        // Each part has the corners on its side, and each corner and each edge may give one more.
+        4 * self.places(outline).len()
+    }
+
+    /// The parts of a piece below and above a coordinate along an axis. `None` for a part without
+    /// extent; never both.
+    pub(super) fn cut(&mut self, piece: &Piece, triangle: &Triangle, axis: usize, cut: f32) -> [Option<Piece>; 2] {
+        let mut parts = [1.0, -1.0].map(|side| self.part(piece, triangle, axis, cut, side));
+        match &mut parts {
+            [None, None] => parts[0] = Some(*piece), // only by rounding: a piece as flat as the plane
+            [Some(below), above] => {
+                below.aabb.max[axis] = below.aabb.max[axis].min(cut);
+                if let Some(above) = above {
+                    above.aabb.min[axis] = above.aabb.min[axis].max(cut);
+                }
+            }
+            [None, Some(above)] => above.aabb.min[axis] = above.aabb.min[axis].max(cut),
+        }
+        parts
+    }
+
+    /// The part of a piece on one side of a plane: below for `side` 1, above for -1.
+    fn part(&mut self, piece: &Piece, triangle: &Triangle, axis: usize, cut: f32, side: f64) -> Option<Piece> {
+        let first = self.places.len();
+        let count = self.places(piece.outline).len();
+        let place = |corners: &Self, i: usize| match piece.outline.count {
+            0 => WHOLE[i],
+            _ => corners.places[piece.outline.first as usize + i],
+        };
+        let height = |place: DVec2| (at(triangle, place)[axis] - f64::from(cut)) * side;
+        let mut before = place(self, count - 1);
+        for i in 0..count {
+            let corner = place(self, i);
+            let (a, b) = (height(before), height(corner));
+            if a * b < 0.0 {
+                self.places.push(before + (corner - before) * (a / (a - b)));
+            }
+            if b <= 0.0 {
+                self.places.push(corner);
+            }
+            before = corner;
+        }
+        let count = self.places.len() - first;
+        if count < 3 {
+            self.places.truncate(first);
+            return None;
+        }
+        let outline = Outline { first: first as u32, count: count as u32, ..piece.outline };
+        let bounds = self.bounds(outline, triangle);
+        let aabb = Aabb { min: bounds.min.max(piece.aabb.min), max: bounds.max.min(piece.aabb.max) };
+        let share = share(&self.places[first..]);
+        Some(Piece { aabb, area: (area(triangle) * share).as_vec3(), outline })
+    }
+
+    fn places(&self, outline: Outline) -> &[DVec2] {
+        if outline.count == 0 { &WHOLE } else { &self.places[outline.first as usize..][..outline.count as usize] }
+    }
+}
+
+/// The point of a triangle at a place (u, v). Exact at a flat triangle's common coordinate.
+fn at(triangle: &Triangle, place: DVec2) -> DVec3 {
+    let [a, b, c] = triangle.map(Vec3::as_dvec3);
+    a + (b - a) * place.x + (c - a) * place.y
+}
+
+fn area(triangle: &Triangle) -> DVec3 {
+    let [a, b, c] = triangle.map(Vec3::as_dvec3);
+    (b - a).cross(c - a) * 0.5
+}
+
+/// Area of a convex polygon of places, as a share of the triangle's.
+fn share(places: &[DVec2]) -> f64 {
+    let fan = places.windows(2).map(|edge| (edge[0] - places[0]).perp_dot(edge[1] - places[0]));
+    fan.sum::<f64>().abs()
+}
+
+/// The least box in f32 that holds a point.
+fn rounded_out(p: DVec3) -> Aabb {
+    let nearest = p.as_vec3();
+    let down = |v: f64, r: f32| if f64::from(r) > v { r.next_down() } else { r };
+    let up = |v: f64, r: f32| if f64::from(r) < v { r.next_up() } else { r };
+    Aabb {
+        min: Vec3::new(down(p.x, nearest.x), down(p.y, nearest.y), down(p.z, nearest.z)),
+        max: Vec3::new(up(p.x, nearest.x), up(p.y, nearest.y), up(p.z, nearest.z)),
+    }
+}
