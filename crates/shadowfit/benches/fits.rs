@@ -8,7 +8,7 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec2, Vec3, Vec3Swizzles, Vec4};
 use shadowfit::{
-    Aabb, Boxes, CascadeFitter, CascadeSettings, CasterPolicy, Clusters, FitInput, FitKind, FitSettings,
+    Aabb, Boxes, CascadeFitter, CascadeSettings, Cascades, CasterPolicy, Clusters, FitInput, FitKind, FitSettings,
     PerspectiveCamera, SplitScheme, Stabilise, Workspace, fit,
 };
 
@@ -192,13 +192,15 @@ fn against_bevy(c: &mut Criterion) {
     let settings = settings(FitKind::Sphere, SplitScheme::Manual(splits), Stabilise::Snap);
     let settings = CascadeSettings { fit: settings.fit.with_casters(CasterPolicy::Extend), ..settings };
     let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-    let mut fitter = CascadeFitter::new();
+    let (mut fitter, mut cascades) = (CascadeFitter::new(), Cascades::default());
     let mut turn = 0.0;
     group.bench_function("shadowfit", |b| {
         b.iter(|| {
             let views = [camera(&mut turn).frustum().expect("a good camera")];
             let input = FitInput::new(black_box(&views), black_box(DIRECTION));
-            fitter.fit(&input, black_box(&settings), &mut Workspace::new(&mut storage)).expect("a good fit")
+            let mut workspace = Workspace::new(&mut storage);
+            fitter.fit_into(&input, black_box(&settings), &mut workspace, &mut cascades).expect("a good fit");
+            black_box(&cascades);
         });
     });
     group.bench_function("transcription", |b| {

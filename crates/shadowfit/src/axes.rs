@@ -13,6 +13,7 @@ use crate::checks;
 /// The axes are rounded to f32 here, once: boxes are measured along the very numbers that the
 /// matrices hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct LightAxes {
     pub(crate) x: Vec3,
     pub(crate) y: Vec3,
@@ -90,6 +91,9 @@ impl LightAxes {
 /// The plan's axes x and y, as they appear to a light straight down: +x and -z, turned by the
 /// shortest arc from +y to `up`.
 fn plan(up: DVec3) -> (DVec3, DVec3) {
+    if up == DVec3::Y {
+        return (DVec3::X, DVec3::NEG_Z);
+    }
     match arc(DVec3::Y, up) {
         Some(turn) => (turn(DVec3::X), turn(DVec3::NEG_Z)),
         None => (DVec3::X, DVec3::Z),

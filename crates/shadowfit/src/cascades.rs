@@ -18,6 +18,7 @@ use hold::HeldMap;
 
 /// One of several maps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CascadeMap {
     /// The map's matrices and box.
     pub fit: LightFit,
@@ -34,6 +35,7 @@ pub struct CascadeMap {
 
 /// The maps of one frame, nearest first.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Cascades {
     maps: [CascadeMap; MAX_CASCADES],
     count: usize,
@@ -43,12 +45,14 @@ impl Deref for Cascades {
     type Target = [CascadeMap];
 
     fn deref(&self) -> &[CascadeMap] {
-        &self.maps[..self.count]
+        // A number that was read from a file may be any.
+        &self.maps[..self.count.min(MAX_CASCADES)]
     }
 }
 
 /// Fits several maps frame by frame.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CascadeFitter {
     cuts: Option<HeldCuts>,
     maps: [Option<HeldMap>; MAX_CASCADES],
@@ -59,6 +63,7 @@ pub struct CascadeFitter {
 
 /// Cuts of an earlier frame.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct HeldCuts {
     cuts: Cuts,
     /// Depths over which they were spread, in metres.
@@ -97,22 +102,38 @@ impl CascadeFitter {
         settings: &CascadeSettings,
         workspace: &mut Workspace,
     ) -> Result<Cascades, FitError> {
+        let mut cascades = Cascades::default();
+        self.fit_into(input, settings, workspace, &mut cascades)?;
+        Ok(cascades)
+    }
+
+    /// [`Self::fit`] into maps that are at hand, such as the last frame's, which saves copies.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::fit`]. After an error the maps are of no use.
+    pub fn fit_into(
+        &mut self,
+        input: &FitInput,
+        settings: &CascadeSettings,
+        workspace: &mut Workspace,
+        cascades: &mut Cascades,
+    ) -> Result<(), FitError> {
         let (light, distance) = check(input, settings)?;
         let is_continued = self.settings.as_ref() == Some(settings);
-        let nothing = Self::default();
-        let before = if is_continued { &*self } else { &nothing };
+        let before = if is_continued { Some(&*self) } else { None };
         let (content, points) = Content::new(input, workspace)?;
         let range = whole_range(input, distance);
         let chooser =
             Chooser { content: &content, light, fit: settings.fit, settings, histogram: input.histogram, range };
-        let cuts = choose_cuts(before.cuts, &chooser)?;
-        let mut cascades = Cascades { count: settings.count as usize, ..Cascades::default() };
+        let cuts = choose_cuts(before.and_then(|before| before.cuts), &chooser)?;
+        cascades.count = settings.count as usize;
         let mut held = None;
         let mut places = Places { content: &content, settings, light, range, points };
         if settings.stabilise == Stabilise::Hysteresis {
-            held = Some(places.hold(input, before, &cuts.cuts, &mut cascades)?);
+            held = Some(places.hold(input, before, &cuts.cuts, cascades)?);
         } else {
-            places.fit(&cuts.cuts, &mut cascades)?;
+            places.fit(&cuts.cuts, cascades)?;
         }
         part_voids(&mut cascades.maps[..cascades.count]);
         self.cuts = Some(cuts);
@@ -123,7 +144,7 @@ impl CascadeFitter {
         if let Some(held) = held {
             self.maps = held;
         }
-        Ok(cascades)
+        Ok(())
     }
 }
 
@@ -134,9 +155,10 @@ fn choose_cuts(held: Option<HeldCuts>, chooser: &Chooser) -> Result<HeldCuts, Fi
     if let Some(held) = held.filter(|_| is_held)
         && chooser.reaches(&held.cuts, spread)
     {
-        let is_young = held.age + 1 < COMPARE_EVERY;
+        let age = held.age.saturating_add(1);
+        let is_young = age < COMPARE_EVERY;
         if is_young || chooser.serves(&held.cuts, held.spread, spread) {
-            return Ok(HeldCuts { age: if is_young { held.age + 1 } else { 0 }, ..held });
+            return Ok(HeldCuts { age: if is_young { age } else { 0 }, ..held });
         }
     }
     Ok(HeldCuts { cuts: chooser.choose(spread)?, spread, age: 0 })
@@ -167,26 +189,32 @@ impl Places<'_, '_> {
     fn hold(
         &mut self,
         input: &FitInput,
-        before: &CascadeFitter,
+        before: Option<&CascadeFitter>,
         cuts: &Cuts,
         cascades: &mut Cascades,
     ) -> Result<[Option<HeldMap>; MAX_CASCADES], FitError> {
-        let motion = before.last_view.and_then(|before| Motion::between(&before, &input.views[0]));
+        let last_view = before.and_then(|before| before.last_view);
+        let motion = last_view.and_then(|last| Motion::between(&last, &input.views[0]));
         let frame = hold::Frame { input, content: self.content, light: self.light, motion, hold: self.settings.hold };
         let mut maps = [None; MAX_CASCADES];
-        for i in 0..cascades.count {
+        for (i, map) in maps.iter_mut().enumerate().take(cascades.count) {
             let (slice, is_void) = self.slice(cuts, i);
             let settings = map_settings(self.settings, i);
             let volume = if settings.kind == FitKind::XnaSample {
-                fits::fit_slice(self.content, &self.light, &settings, slice, self.points)?
+                fits::fit_slice(self.content, &self.light(&settings), &settings, slice, self.points)?
             } else {
-                let held = frame.place(before.maps[i], &settings, slice, self.points)?;
-                maps[i] = Some(held);
+                let held = frame.place(before.and_then(|before| before.maps[i]), &settings, slice, self.points)?;
+                *map = Some(held);
                 hold::volume(&held, self.content.origin)
             };
             cascades.maps[i] = self.map(&volume, &settings, cuts, i, is_void)?;
         }
         Ok(maps)
+    }
+
+    /// The light for a map, which may be of another kind than most.
+    fn light(&self, settings: &FitSettings) -> Light {
+        if settings.kind == self.settings.fit.kind { self.light } else { self.light.of_kind(settings.kind) }
     }
 
     /// The view depths that a map covers; those of all maps where it has none, which is told.

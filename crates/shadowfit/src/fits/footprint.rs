@@ -1,10 +1,13 @@
 //! What a map must hold, as seen from the light: an outline in its plane and a range along it.
 
-use glam::{DVec2, DVec3};
+use core::cell::OnceCell;
+
+use glam::{DVec2, DVec3, Vec3};
 
 use crate::axes::LightAxes;
 use crate::checks::MIN_LENGTH;
 use crate::fits::Range;
+use crate::fits::sphere::Round;
 use crate::hull::HullBuilder;
 use crate::view::{Slice, View, box_corners, moved, slice_corners};
 use crate::{Boxes, FitError, FitInput, NormalCone, ViewFrustum, Workspace, checks};
@@ -18,6 +21,7 @@ pub(crate) struct Content<'a> {
     /// Least and greatest view depth of each receiver, view by view; the least is above the
     /// greatest where the box is out of view.
     depths: &'a [DVec2],
+    round: OnceCell<Option<Round>>,
 }
 
 /// Depths of a box that is out of view.
@@ -59,9 +63,20 @@ impl<'a> Content<'a> {
                 }
             }
         }
-        let content =
-            Content { views: input.views, origin, receivers: input.receivers, casters: input.casters, depths };
+        let content = Content {
+            views: input.views,
+            origin,
+            receivers: input.receivers,
+            casters: input.casters,
+            depths,
+            round: OnceCell::new(),
+        };
         Ok((content, points))
+    }
+
+    /// The first view, if its spheres are those of a symmetric frustum.
+    pub(crate) fn round(&self) -> Option<&Round> {
+        self.round.get_or_init(|| Round::new(&self.views[0].corners.map(Vec3::as_dvec3))).as_ref()
     }
 
     /// The views as fits use them.

@@ -78,8 +78,23 @@ pub(crate) struct Light {
     pub(crate) direction: DVec3,
     /// Unit direction that is up.
     pub(crate) up: DVec3,
-    /// Axes that turn continuously with the light.
+    /// Axes of the kind of fit that it was made for.
     pub(crate) axes: LightAxes,
+}
+
+impl Light {
+    fn new(direction: DVec3, up: DVec3, kind: FitKind) -> Self {
+        let axes = match kind {
+            FitKind::XnaSample => LightAxes::look_at(direction, up),
+            _ => LightAxes::shortest_arc(direction, up),
+        };
+        Self { direction, up, axes }
+    }
+
+    /// The same light for another kind of fit.
+    pub(crate) fn of_kind(&self, kind: FitKind) -> Self {
+        Self::new(self.direction, self.up, kind)
+    }
 }
 
 /// One map around a range of view depths.
@@ -124,8 +139,7 @@ pub(crate) fn prepare(input: &FitInput, settings: &FitSettings) -> Result<(Light
     if near >= settings.max_distance {
         return Err(FitError::NearNotBelowFar { near, far: settings.max_distance });
     }
-    let light = Light { direction, up, axes: LightAxes::shortest_arc(direction, up) };
-    Ok((light, settings.max_distance))
+    Ok((Light::new(direction, up, settings.kind), settings.max_distance))
 }
 
 /// Checks the numbers of a fit's settings.

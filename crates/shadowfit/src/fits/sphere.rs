@@ -43,6 +43,7 @@ pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Re
 
 /// A sphere, in metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sphere {
     /// Its centre, in world axes relative to the first view's eye.
     pub centre: DVec3,
@@ -58,7 +59,7 @@ pub struct Sphere {
 /// As [`ViewFrustum::slice`] for frusta that no fit can use.
 pub fn enclosing_sphere(frustum: &ViewFrustum) -> Result<Sphere, FitError> {
     let corners = frustum.checked()?.corners.map(Vec3::as_dvec3);
-    Ok(on_axis(&corners).unwrap_or_else(|| minimal(&corners)))
+    Ok(Round::new(&corners).map_or_else(|| minimal(&corners), |round| round.sphere(0.0, 1.0)))
 }
 
 pub(crate) fn volume(
@@ -98,22 +99,28 @@ pub(crate) fn volume(
 
 /// The minimal sphere around all views' slices.
 pub(crate) fn around(content: &Content, range: Range) -> Result<Sphere, FitError> {
-    let mut slices = content.slices(range);
-    let Some(first) = slices.next() else {
-        return Err(FitError::NearNotBelowFar { near: range.near, far: range.far });
-    };
-    let Some(second) = slices.next() else {
-        return Ok(on_axis(&first).unwrap_or_else(|| minimal(&first)));
-    };
+    let (near, far) = (range.near, range.far);
+    if let ([view], Some(round)) = (content.views, content.round()) {
+        let (near, far) = (near.max(view.near), far.min(view.far));
+        if near >= far {
+            return Err(FitError::NearNotBelowFar { near, far });
+        }
+        let per_metre = 1.0 / (f64::from(view.far) - f64::from(view.near));
+        let share = |depth: f32| (f64::from(depth) - f64::from(view.near)) * per_metre;
+        return Ok(round.sphere(share(near), share(far)));
+    }
     let mut corners = [DVec3::ZERO; 8 * MAX_VIEWS];
     let mut count = 0;
-    for slice in [first, second].into_iter().chain(slices) {
+    for slice in content.slices(range) {
         let Some(place) = corners.get_mut(8 * count..8 * count + 8) else {
             let (value, max) = (content.views.len() as f64, MAX_VIEWS as f64);
             return Err(FitError::OutOfRange { input: "the number of views of a stable fit", value, min: 1.0, max });
         };
         place.copy_from_slice(&slice);
         count += 1;
+    }
+    if count == 0 {
+        return Err(FitError::NearNotBelowFar { near, far });
     }
     Ok(minimal(&corners[..8 * count]))
 }
@@ -125,25 +132,45 @@ pub const MAX_VIEWS: usize = 8;
 /// roundings of f32 corners.
 const SYMMETRY: f64 = 1e-6;
 
-/// The sphere of a symmetric frustum.
-fn on_axis(corners: &[DVec3; 8]) -> Option<Sphere> {
-    let centre = |c: &[DVec3]| (c[0] + c[1] + c[2] + c[3]) * 0.25;
-    let (near, far) = (centre(&corners[..4]), centre(&corners[4..]));
-    let axis = far - near;
-    let length = checks::length(axis);
-    let squared = |c: DVec3, middle: DVec3| (c - middle).dot(c - middle);
-    let (r0, r1) = (squared(corners[0], near), squared(corners[4], far));
-    // Round rectangles about the same axis, upright to it.
-    let is_round = (0..4).all(|i| {
-        (squared(corners[i + 4], far) - r1).abs() <= 2.0 * SYMMETRY * r1
-            && (corners[i + 4] - far).dot(axis).abs() <= SYMMETRY * length * libm::sqrt(r1)
-    });
-    if !is_round || length <= 0.0 {
-        return None;
+/// A frustum whose rectangles are round about one axis, upright to it, so that the spheres of its
+/// slices follow from their depths.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Round {
+    /// Middle of the near rectangle.
+    near: DVec3,
+    /// From there to the middle of the far one.
+    axis: DVec3,
+    length: f64,
+    /// Half diagonals of the near and the far rectangle.
+    radii: (f64, f64),
+}
+
+impl Round {
+    /// `None` for frusta that are not symmetric.
+    pub(crate) fn new(corners: &[DVec3; 8]) -> Option<Self> {
+        let centre = |c: &[DVec3]| (c[0] + c[1] + c[2] + c[3]) * 0.25;
+        let (near, far) = (centre(&corners[..4]), centre(&corners[4..]));
+        let axis = far - near;
+        let length = checks::length(axis);
+        let squared = |c: DVec3, middle: DVec3| (c - middle).dot(c - middle);
+        let (r0, r1) = (libm::sqrt(squared(corners[0], near)), libm::sqrt(squared(corners[4], far)));
+        let is_round = corners[4..].iter().all(|corner| {
+            let from_axis = *corner - far;
+            (from_axis.dot(from_axis) - r1 * r1).abs() <= 2.0 * SYMMETRY * r1 * r1
+                && from_axis.dot(axis).abs() <= SYMMETRY * length * r1
+        });
+        if is_round && length > 0.0 { Some(Self { near, axis, length, radii: (r0, r1) }) } else { None }
     }
-    let x = ((length * length + r1 - r0) / (2.0 * length)).min(length);
-    let radius = libm::sqrt((length - x) * (length - x) + r1);
-    Some(Sphere { centre: near + axis * (x / length), radius })
+
+    /// The sphere of the part between two shares of the axis.
+    fn sphere(&self, from: f64, to: f64) -> Sphere {
+        let radius = |t: f64| self.radii.0 * (1.0 - t) + self.radii.1 * t;
+        // Which end is the wider one does not matter to the formula.
+        let (r0, r1, length) = (radius(from), radius(to), self.length * (to - from));
+        let x = ((length * length + r1 * r1 - r0 * r0) / (2.0 * length)).min(length);
+        let radius = libm::sqrt((length - x) * (length - x) + r1 * r1);
+        Sphere { centre: self.near + self.axis * (from + x / self.length), radius }
+    }
 }
 
 /// Share of a squared radius by which a point may lie outside and still count as inside.

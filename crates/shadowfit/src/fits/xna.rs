@@ -24,7 +24,6 @@
 use glam::{DVec3, Vec3};
 
 use super::{Content, Light, Range, Volume, fit_as};
-use crate::axes::LightAxes;
 use crate::checks::MIN_LENGTH;
 use crate::light_fit::Constraint;
 use crate::settings::{FitKind, FitSettings};
@@ -47,7 +46,7 @@ pub(crate) fn volume(
     settings: &FitSettings,
     range: Range,
 ) -> Result<Volume, FitError> {
-    let axes = LightAxes::look_at(light.direction, light.up);
+    let axes = light.axes;
     let (mut min, mut max) = (DVec3::MAX, DVec3::MIN);
     for corner in content.corners(range) {
         let p = axes.project(corner);
