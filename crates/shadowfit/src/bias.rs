@@ -44,6 +44,9 @@ use crate::{DepthConvention, FitError, LightFit, checks};
 ///
 /// cos θ is held at [`MIN_COSINE`] or above, so that a grazing surface gets a finite bias.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[repr(C)]
 pub struct Bias {
     /// Depth bias, in units of the stored depth (0..1 over the fit's depth range).
     pub constant_depth: f32,
@@ -58,6 +61,7 @@ pub struct Bias {
 
 /// What a [`Bias`] amounts to on a plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PlaneBias {
     /// Offset of the looked-up point along the normal that faces the light, in metres.
     pub offset: f32,

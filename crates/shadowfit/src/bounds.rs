@@ -4,6 +4,8 @@ use glam::{DVec3, Vec3};
 
 /// An axis-aligned box in world axes, in metres, relative to an origin that its user states.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct Aabb {
     /// Corner with the least coordinates.

@@ -9,6 +9,7 @@ use crate::{DepthConvention, FitError, ViewFrustum, checks};
 
 /// A symmetric perspective camera in a right-handed world; its view space looks along -z.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PerspectiveCamera {
     /// Position of the eye in world space, in metres.
     pub eye: DVec3,

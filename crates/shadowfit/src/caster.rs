@@ -5,6 +5,7 @@
 //! that throws no visible shadow, but never cull one that does.
 
 mod batch;
+mod planes;
 mod shapes;
 mod sweep;
 
@@ -14,6 +15,7 @@ use crate::settings::CasterPolicy;
 use crate::{Aabb, LightFit};
 
 pub use batch::cull;
+pub use planes::CasterPlanes;
 pub use shapes::{Bounds, OrientedBox, Sphere};
 pub use sweep::Sweep;
 
@@ -33,6 +35,7 @@ pub use sweep::Sweep;
 /// of the view's, and at most 25 when they are up to its half. The map's own box keeps more than
 /// three times as many.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CasterVolume {
     /// World position that the planes, and all shapes tested one by one, are relative to, in
     /// metres.

@@ -5,6 +5,7 @@
 
 /// Depth range of a clip space.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum DepthConvention {
     /// Near is 0, far is 1 (wgpu, Direct3D, Vulkan, Metal).
     #[default]

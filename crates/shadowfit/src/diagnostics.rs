@@ -17,6 +17,7 @@ use crate::{FitError, LightFit, checks};
 
 /// Screen pixels that one shadow texel covers on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PixelsPerTexel {
     /// Along the worse axis: pixels per texel in the direction in which texels look longest.
     pub worse_axis: f32,

@@ -4,6 +4,7 @@ use crate::Constraint;
 
 /// Live figures of one frame. `None` means not measured, never zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Figures {
     /// What set the planes -x, +x, -y, +y, far and near of the map's box, see
     /// [`LightFit::set_by`](crate::LightFit::set_by).

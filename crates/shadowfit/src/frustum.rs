@@ -18,6 +18,7 @@ use crate::{DepthConvention, FitError, PerspectiveCamera};
 ///                       7─────────────6
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ViewFrustum {
     /// Position of the eye in world space, in metres. The corners are relative to it.
     pub origin: DVec3,

@@ -36,6 +36,18 @@
 //!   `Clusters`, which needs the feature `alloc`.
 //! - Transcendental functions come from `libm`, everything else is `+ - × ÷ √` on scalars, so the
 //!   same input gives the same bits on every target.
+//!
+//! # Features
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `std` (default) | `alloc`, and glam with the standard library |
+//! | `alloc` | `Clusters`, for which an allocator is enough |
+//! | `serde` | `Serialize` and `Deserialize` for all settings, inputs and outputs that own their data, and for the state between frames; `Clusters` have theirs in [`Aabb`] and [`NormalCone`] |
+//! | `bytemuck` | `Pod` and `Zeroable` for [`Aabb`], [`Sphere`], [`OrientedBox`], [`NormalCone`], [`Bias`] and [`CasterPlanes`] |
+//! | `mint` | the module `mint`: conversions from and to the types of other maths crates |
+//!
+//! This crate's vectors are those of the [`glam`] that it re-exports, 0.33 (from 0.33.2) or 0.34.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -66,6 +78,8 @@ mod grid;
 mod hull;
 mod input;
 mod light_fit;
+#[cfg(feature = "mint")]
+pub mod mint;
 mod motion;
 mod normal_cone;
 mod rectangle;
@@ -76,7 +90,7 @@ pub use bias::Bias;
 pub use bounds::{Aabb, Boxes};
 pub use camera::PerspectiveCamera;
 pub use cascades::{CascadeFitter, CascadeMap, Cascades};
-pub use caster::{Bounds, CasterVolume, OrientedBox, Sphere, Sweep, cull};
+pub use caster::{Bounds, CasterPlanes, CasterVolume, OrientedBox, Sphere, Sweep, cull};
 #[cfg(feature = "alloc")]
 pub use clusters::Clusters;
 pub use depth::DepthConvention;

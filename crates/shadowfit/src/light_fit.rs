@@ -18,6 +18,7 @@ use crate::{CasterVolume, DepthConvention, FitError, checks};
 /// [`Self::depth`]. Texture space has u right, v **down** (row 0 on top, as wgpu, Direct3D, Vulkan
 /// and Metal have it; OpenGL users flip v), both 0..1 over the map.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LightFit {
     /// World position that all inputs of the matrices are relative to, in metres: the eye of the
     /// frustum, until [`Self::relative_to`] moves it.
@@ -57,6 +58,7 @@ pub struct LightFit {
 
 /// What set a plane of a fitted box: where to turn for a tighter fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Constraint {
     /// The view frustum, cut at the shadow distance or by the splits.
@@ -79,6 +81,7 @@ pub enum Constraint {
 /// World coordinates rounded to f32 cost about 6e-8 of their distance from the world's origin:
 /// a centimetre at 100 km.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WorldMatrices {
     /// Light space from world space, in metres.
     pub light_from_world: Mat4,

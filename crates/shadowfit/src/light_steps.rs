@@ -29,6 +29,7 @@ use crate::{FitError, LightFit, checks};
 
 /// When a held light steps, and how.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct LightStepSettings {
     /// Greatest movement at the map's edge that is left out, in texels. 0 follows every change.
     pub texels: f32,
@@ -91,6 +92,7 @@ impl LightStepSettings {
 
 /// State of a held light: plain data, that of a light not yet seen by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LightSteps {
     /// The light's direction of travel that is held, a unit vector in world axes.
     pub held: Option<Vec3>,
@@ -103,6 +105,7 @@ pub struct LightSteps {
 
 /// Directions to fit and shade with in one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LightStep {
     /// The light's direction of travel to fit to, a unit vector in world axes: the same bits until
     /// it steps.

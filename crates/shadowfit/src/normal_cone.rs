@@ -12,6 +12,8 @@ use crate::checks::length;
 ///
 /// Zero-area triangles have no normal and are not drawn; they count for nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct NormalCone {
     /// Middle of the cone, a unit vector in the axes of the triangles.

@@ -25,6 +25,7 @@ macro_rules! setters {
 
 /// Which rule fits the shadow map to the camera frustum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum FitKind {
     /// The XNA Shadow Mapping sample's `CreateLightViewProjectionMatrix` (Microsoft, 2008), exact:
     /// tight across the light, twice the depth that is needed, no caster policy.
@@ -46,6 +47,7 @@ pub enum FitKind {
 
 /// How [`FitKind::Oriented`] and [`FitKind::Focused`] lay a rectangle around what they cover.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum RectangleKind {
     /// Along the light's own axes, never turned.
     AxisAligned,
@@ -58,6 +60,7 @@ pub enum RectangleKind {
 
 /// Where the near plane stands, so that casters between the light and the receivers are kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum CasterPolicy {
     /// At what is covered: casters before it are lost, as in the sample.
     None,
@@ -76,6 +79,7 @@ pub enum CasterPolicy {
 
 /// How the light's view-projection is fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct FitSettings {
     /// The rule of the fit.
     pub kind: FitKind,
@@ -126,6 +130,7 @@ pub const MAX_CASCADES: usize = 8;
 /// Where the receivers' boxes are known, all schemes but the manual one are spread over their
 /// depths in view instead of the whole frustum's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SplitScheme {
     /// Ranges of equal length.
     Uniform,
@@ -147,6 +152,7 @@ pub enum SplitScheme {
 
 /// Whether and how maps are kept from changing while the camera moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Stabilise {
     /// Every frame is fitted anew: the finest texels, and shadow edges that crawl.
     Off,
@@ -163,6 +169,7 @@ pub enum Stabilise {
 
 /// When [`Stabilise::Hysteresis`] keeps a map and how much room a new one gets.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct HoldSettings {
     /// Free border of a new map, as a share of its extent.
     pub margin: f32,
@@ -184,6 +191,7 @@ impl Default for HoldSettings {
 
 /// What one of several maps has of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MapOverride {
     /// The rule of its fit.
     pub kind: FitKind,
@@ -193,6 +201,7 @@ pub struct MapOverride {
 
 /// How several maps share a view.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct CascadeSettings {
     /// The fit of all maps.
     pub fit: FitSettings,
@@ -229,6 +238,7 @@ impl Default for CascadeSettings {
 ///
 /// They are converted to depth and metres in one place, [`crate::bias`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct BiasSettings {
     /// Depth bias that does not depend on the slope, in texel sizes along the light.
     pub constant: f32,
@@ -248,6 +258,7 @@ impl Default for BiasSettings {
 
 /// How the stored depths are turned into a shadow factor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum FilterKind {
     /// One comparison with the nearest texel.
     Point,
@@ -258,6 +269,7 @@ pub enum FilterKind {
 
 /// Texture format that stores the depths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum MapFormat {
     /// 32-bit float depth attachment, compared by the sampler.
     #[default]
@@ -269,6 +281,7 @@ pub enum MapFormat {
 
 /// The sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct LightSettings {
     /// Compass angle of the point that the light comes from, in radians from +z toward +x.
     pub azimuth: f32,
@@ -288,6 +301,7 @@ impl Default for LightSettings {
 
 /// Lens and speed of the free-flying camera. Where it stands is not a setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct CameraSettings {
     /// Vertical field of view, in radians.
     pub fov_y: f32,
@@ -307,6 +321,7 @@ impl Default for CameraSettings {
 
 /// What a tool draws over or instead of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent switch of the panel")]
 pub struct ViewSettings {
     /// Whether shadows are drawn at all.
@@ -329,6 +344,7 @@ impl Default for ViewSettings {
 
 /// Everything that the tuning panel edits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Settings {
     /// How the map is fitted.
     pub fit: FitSettings,

@@ -17,6 +17,7 @@ use crate::{FitError, LightFit, checks};
 ///   └───────┘                ╰───────╯
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Reach {
     /// Greatest distance along one axis from a look-up to a texel centre that it reads: E.
     pub taps: f32,

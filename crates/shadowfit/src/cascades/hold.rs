@@ -25,6 +25,7 @@ use crate::{FitError, FitInput, ViewFrustum, Workspace, grid};
 
 /// A map of an earlier frame, in the world's own coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct HeldMap {
     /// The light's axes, turned.
     axes: LightAxes,

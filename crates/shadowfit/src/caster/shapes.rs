@@ -11,6 +11,8 @@ use crate::Aabb;
 
 /// A sphere around a caster, relative to an origin that its user states.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct Sphere {
     /// Centre in world axes, in metres.
@@ -22,6 +24,8 @@ pub struct Sphere {
 /// A box around a caster that may be turned (or sheared), relative to an origin that its user
 /// states.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct OrientedBox {
     /// Centre in world axes, in metres.

@@ -9,6 +9,7 @@ use crate::{FitError, LightFit, checks};
 /// What is left of a bias once a plane has taken what it needs; negative is what is missing, and
 /// the plane shadows itself in stripes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AcneMargin {
     /// In metres along the normal: by so much the point could sink into its surface.
     pub metres: f32,

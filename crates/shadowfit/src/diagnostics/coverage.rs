@@ -7,6 +7,7 @@ use crate::{DepthConvention, FitError, LightFit, checks};
 
 /// Where a point lies in a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Coverage {
     /// Inside, with every texel that the filter reads.
     Covered,

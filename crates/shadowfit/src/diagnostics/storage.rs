@@ -5,6 +5,7 @@ use crate::{FitError, checks};
 
 /// How a map stores its depths of 0..=1, whatever the format is called.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum DepthStorage {
     /// 8 bits, as one channel of an ordinary colour target (the naïve grey map).
     Unorm8,

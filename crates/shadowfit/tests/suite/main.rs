@@ -5,6 +5,8 @@ mod bad_input;
 mod bad_input_figures;
 mod batched_culling;
 mod bias;
+#[cfg(feature = "bytemuck")]
+mod bytemuck;
 mod caster;
 mod clusters;
 mod conventions;
@@ -13,7 +15,11 @@ mod filters;
 mod frustum;
 mod invariance;
 mod light_steps;
+#[cfg(feature = "mint")]
+mod mint;
 mod self_shadowing;
+#[cfg(feature = "serde")]
+mod serde;
 mod settings;
 mod support;
 mod sweep;

@@ -1,0 +1,125 @@
+//! Feature `serde`: what was saved is read back bit by bit, and a fitter goes on as if it had never been away.
+
+use std::fmt::Debug;
+
+use serde::{Serialize, de::DeserializeOwned};
+use shadowfit::bias::Reach;
+use shadowfit::diagnostics::{AcneMargin, Coverage, DepthStorage, PixelsPerTexel};
+use shadowfit::figures::Figures;
+use shadowfit::fits::sphere::enclosing_sphere;
+use shadowfit::glam::{DVec2, UVec2, Vec2, Vec3};
+use shadowfit::{
+    Aabb, Bias, BiasSettings, CascadeFitter, CascadeSettings, CasterPlanes, CasterPolicy, DepthConvention, FitInput,
+    FitKind, FitSettings, LightStepSettings, LightSteps, MapOverride, NormalCone, OrientedBox, RectangleKind, Settings,
+    Sphere, SplitScheme, Stabilise, ViewFrustum, Workspace,
+};
+
+use crate::support::{DIRECTION, camera, fitted};
+
+fn read_back<T: Serialize + DeserializeOwned>(value: &T) -> T {
+    serde_json::from_str(&serde_json::to_string(value).unwrap()).unwrap()
+}
+
+/// Checks by what a value prints as, which tells all bits apart.
+fn survives<T: Serialize + DeserializeOwned + Debug>(value: &T) {
+    assert_eq!(format!("{value:?}"), format!("{:?}", read_back(value)));
+}
+
+#[test]
+fn settings_survive() {
+    let fit = FitSettings::default()
+        .with_kind(FitKind::Oriented)
+        .with_rectangle(RectangleKind::MinimumSquare)
+        .with_casters(CasterPolicy::DepthClamp)
+        .with_depth(DepthConvention::NegativeOneToOne)
+        .with_max_distance(f32::MAX)
+        .with_margin(0.1);
+    survives(&Settings::default().with_fit(fit));
+    let mut cascades = CascadeSettings::default()
+        .with_fit(fit)
+        .with_splits(SplitScheme::Manual([1.0, 2.5, 0.1, 1e-7, 3e9, 0.3, 7.0]))
+        .with_stabilise(Stabilise::Hysteresis);
+    cascades.overrides[2] = Some(MapOverride { kind: FitKind::Sphere, resolution: UVec2::new(512, 1024) });
+    survives(&cascades);
+    survives(&cascades.with_splits(SplitScheme::Practical(0.7)));
+    survives(&LightStepSettings::default());
+}
+
+#[test]
+fn settings_that_a_file_does_not_name_have_their_defaults() {
+    let settings: Settings = serde_json::from_str(r#"{"bias": {"slope": 2.0}}"#).unwrap();
+    assert_eq!(settings, Settings::default().with_bias(BiasSettings::default().with_slope(2.0)));
+}
+
+#[test]
+fn inputs_survive() {
+    let camera = camera();
+    survives(&camera);
+    survives(&camera.frustum().unwrap());
+    survives(&Aabb::EMPTY);
+    survives(&Sphere { centre: DIRECTION, radius: 0.1 });
+    survives(&OrientedBox { centre: DIRECTION, half_axes: [Vec3::X, Vec3::Y, DIRECTION] });
+    survives(&NormalCone { axis: DIRECTION, cos_half_angle: 0.3 });
+    survives(&enclosing_sphere(&camera.frustum().unwrap()).unwrap());
+}
+
+#[test]
+fn outputs_survive() {
+    let fit = fitted(&camera(), DIRECTION, &FitSettings::default());
+    survives(&fit);
+    survives(&fit.world_matrices());
+    survives(&fit.caster_volume());
+    survives(&CasterPlanes::from(&fit.caster_volume()));
+    let bias = Bias::automatic(Reach::POINT, DepthStorage::Float16, &fit).unwrap();
+    survives(&bias);
+    survives(&bias.on_plane(&fit, Vec3::Y).unwrap());
+    survives(&Reach::HARDWARE_2X2.over_disc(3.0));
+    survives(&Coverage::BeforeNear);
+    survives(&AcneMargin { metres: 0.1, texels: -0.3 });
+    survives(&PixelsPerTexel { worse_axis: 0.1, area: 0.7 });
+    survives(&Figures { texel_size: Some(Vec2::splat(0.1).to_array()), ..Figures::default() });
+}
+
+#[test]
+fn lights_that_step_go_on() {
+    let settings = LightStepSettings::default().with_fade(1.0);
+    let mut steps = LightSteps::default();
+    steps.update(DIRECTION, &settings, 0.1).unwrap();
+    steps.update(Vec3::NEG_Y, &settings, 0.1).unwrap();
+    let mut other = read_back(&steps);
+    assert_eq!(steps.update(Vec3::NEG_Y, &settings, 0.3), other.update(Vec3::NEG_Y, &settings, 0.3));
+}
+
+#[test]
+fn a_fitter_that_was_saved_goes_on_as_the_one_that_was_not() {
+    let settings = CascadeSettings::default().with_stabilise(Stabilise::Hysteresis);
+    let mut storage = [DVec2::ZERO; Workspace::required(0, 4)];
+    let mut fit = |fitter: &mut CascadeFitter, frame: u8| {
+        let mut camera = camera();
+        camera.eye.x += f64::from(frame) * 0.3;
+        let views: [ViewFrustum; 1] = [camera.frustum().unwrap()];
+        fitter.fit(&FitInput::new(&views, DIRECTION), &settings, &mut Workspace::new(&mut storage)).unwrap()
+    };
+    let mut fitter = CascadeFitter::new();
+    for frame in 0..3 {
+        survives(&fit(&mut fitter, frame));
+    }
+    let mut other = read_back(&fitter);
+    for frame in 3..12 {
+        assert_eq!(fit(&mut fitter, frame), fit(&mut other, frame), "frame {frame}");
+    }
+    assert_ne!(fit(&mut CascadeFitter::new(), 11), fit(&mut fitter, 11), "the state matters");
+}
+
+#[test]
+fn a_damaged_number_of_cascades_is_no_trouble() {
+    let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+    let views = [camera().frustum().unwrap()];
+    let cascades = CascadeFitter::new()
+        .fit(&FitInput::new(&views, DIRECTION), &CascadeSettings::default(), &mut Workspace::new(&mut storage))
+        .unwrap();
+    let mut json = serde_json::to_value(cascades).unwrap();
+    json["count"] = 1000.into();
+    let damaged: shadowfit::Cascades = serde_json::from_value(json).unwrap();
+    assert_eq!(damaged.len(), shadowfit::MAX_CASCADES);
+}
