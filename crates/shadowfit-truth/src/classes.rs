@@ -34,12 +34,15 @@ pub struct JudgeSettings {
     /// Reach of the filter: greatest distance per axis, in texels, from the sample point to the
     /// centre of a texel of non-zero weight (0.5 point, 1 hardware 2×2).
     pub reach: f32,
+    /// Whether the maps were drawn with depth clamp, so that they also hold what stands before
+    /// their near plane.
+    pub depth_clamp: bool,
 }
 
 impl JudgeSettings {
-    /// The settings of a light and filter, with rays offset by a millimetre.
+    /// The settings of a light and filter, with rays offset by a millimetre and no depth clamp.
     pub fn new(direction: Vec3, reach: f32) -> Self {
-        Self { direction, ray_offset: 1e-3, reach }
+        Self { direction, ray_offset: 1e-3, reach, depth_clamp: false }
     }
 
     /// Width of the edge zone, in pixels or in shadow texels, whichever is more on screen.
@@ -140,7 +143,7 @@ pub fn judge(
         .into_par_iter()
         .map(|index| match (&surfaces[index], truth[index]) {
             (Some(surface), Some(lit)) => classify(surface, lit, edge_zone[index], || {
-                is_hole(tracer, fits, surface, ray_origin(surface), to_light)
+                is_hole(tracer, fits, settings, surface, ray_origin(surface))
             }),
             _ => Class::NotJudged,
         })
@@ -161,10 +164,15 @@ fn classify(surface: &Surface, lit: bool, in_edge_zone: bool, is_hole: impl FnOn
 }
 
 /// Whether no occluder of the point is inside the map that is read for it.
-fn is_hole(tracer: &Tracer, fits: &[LightFit], surface: &Surface, origin: Vec3, to_light: Vec3) -> bool {
+fn is_hole(tracer: &Tracer, fits: &[LightFit], settings: &JudgeSettings, surface: &Surface, origin: Vec3) -> bool {
+    let to_light = -settings.direction;
     let Some(fit) = fits.iter().find(|fit| fit.covers(surface.position.as_dvec3())) else {
         return true;
     };
+    if settings.depth_clamp {
+        // All that stands toward the light from a covered point is.
+        return false;
+    }
     let inside = |distance: f32| fit.covers(origin.as_dvec3() + to_light.as_dvec3() * f64::from(distance));
     !tracer.all_hits(origin, to_light).iter().any(|hit| inside(hit.distance))
 }
@@ -291,6 +299,14 @@ mod tests {
     fn a_roof_outside_the_map_is_a_hole_and_nothing_else() {
         let shares = shares_of(|_| 1.0, 1.0, 0.0);
         assert_eq!((shares.hole, shares.false_light, shares.edge, shares.wrong), (0.5, 0.0, 0.0, 0.5));
+    }
+
+    #[test]
+    fn depth_clamp_leaves_no_hole_since_the_map_holds_what_stands_before_it() {
+        let (size, surfaces) = floor(|_| 1.0, 1.0);
+        let settings = JudgeSettings { depth_clamp: true, ..JudgeSettings::new(Vec3::NEG_Y, 0.5) };
+        let shares = judge(&roof(), &[map(0.0)], &settings, size, &surfaces).shares;
+        assert_eq!((shares.hole, shares.false_light, shares.edge), (0.0, 18.0 / 40.0, 2.0 / 40.0));
     }
 
     #[test]

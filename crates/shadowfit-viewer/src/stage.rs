@@ -445,7 +445,10 @@ impl Stage {
             counts: counts[pixel.instance],
         };
         let surfaces: Vec<Option<Surface>> = pixels.into_iter().map(|pixel| pixel.map(surface)).collect();
-        let settings = JudgeSettings::new(self.settings.light.direction(), bias::reach(self.settings.filter));
+        let settings = JudgeSettings {
+            depth_clamp: self.renderer.shadow_map().descriptor().depth_clamp,
+            ..JudgeSettings::new(self.settings.light.direction(), bias::reach(self.settings.filter))
+        };
         let judged = judge(&self.rays().tracer, &fits, &settings, size.map(|side| side as usize), &surfaces);
         (judged, surfaces)
     }
