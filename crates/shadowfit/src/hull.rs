@@ -109,20 +109,29 @@ fn hull(points: &mut [DVec2], scratch: &mut [DVec2]) -> usize {
         return if n == 2 && points[0] == points[1] { 1 } else { n };
     }
     // The lower chain grows in `scratch`; the upper one follows it there, back to the first point.
-    let mut len = chain(points.iter().copied(), scratch, 0);
-    let lower = len - 1;
-    len = chain(points.iter().rev().copied(), scratch, lower);
+    // In a sliver rounding may put a point on both: the upper one leaves out what the lower one has.
+    let order = |a: DVec2, b: DVec2| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y));
+    let lower = chain(points.iter().copied(), scratch) - 1;
+    let (low, up) = scratch.split_at_mut(lower);
+    let mut met = lower;
+    let is_free = |p: &DVec2| {
+        while met > 1 && order(*p, low[met - 1]).is_lt() {
+            met -= 1;
+        }
+        met <= 1 || *p != low[met - 1]
+    };
+    let upper = chain(points.iter().rev().copied().filter(is_free), up);
     // The last point of the upper chain is the first of the lower one.
-    let corners = (len - 1).max(1);
+    let corners = (lower + upper - 1).max(1);
     points[..corners].copy_from_slice(&scratch[..corners]);
     corners
 }
 
-/// Adds a chain of left turns from `start` on and gives the new length.
-fn chain(points: impl Iterator<Item = DVec2>, out: &mut [DVec2], start: usize) -> usize {
-    let mut len = start;
+/// Writes a chain of left turns and gives its length.
+fn chain(points: impl Iterator<Item = DVec2>, out: &mut [DVec2]) -> usize {
+    let mut len = 0;
     for p in points {
-        while len >= start + 2 && (out[len - 1] - out[len - 2]).perp_dot(p - out[len - 2]) <= 0.0 {
+        while len >= 2 && (out[len - 1] - out[len - 2]).perp_dot(p - out[len - 2]) <= 0.0 {
             len -= 1;
         }
         // A chain of n sorted points never outgrows n + 1 places with the other chain's corners.
@@ -164,6 +173,26 @@ mod tests {
         let line = [0.0, 3.0, 1.0, 2.0, 3.0].map(|t| DVec2::new(t, 2.0 * t));
         assert_eq!(hull_of(&line, &mut storage), 2);
         assert_eq!(hull_of(&[], &mut storage), 0);
+    }
+
+    /// Points on a line but for the last bits of their coordinates, by a linear congruence.
+    #[test]
+    fn slivers_as_thin_as_rounding_have_no_more_corners_than_points() {
+        let mut state = 1_u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        for _ in 0..20_000 {
+            let (slope, offset) = (random() - 0.5, random() * 100.0);
+            let mut points = [DVec2::ZERO; 7];
+            for p in &mut points {
+                let x = libm::floor(random() * 6.0) * 0.1 + offset;
+                *p = DVec2::new(x, x * slope);
+            }
+            let mut storage = [DVec2::ZERO; HullBuilder::SLACK];
+            assert!(hull_of(&points, &mut storage) <= points.len());
+        }
     }
 
     #[test]

@@ -77,7 +77,11 @@ impl<'a> Workspace<'a> {
     /// more) in so many views. Far less is used as a rule, since few boxes make the outline.
     pub const fn required(boxes: usize, views: usize) -> usize {
         let pairs = boxes.saturating_mul(views);
-        pairs.saturating_mul(1 + 2 * CORNERS_PER_BOX).saturating_add(views.saturating_mul(16)).saturating_add(64)
+        pairs
+            .saturating_mul(1 + 2 * CORNERS_PER_BOX)
+            .saturating_add(boxes.saturating_mul(2))
+            .saturating_add(views.saturating_add(2).saturating_mul(16))
+            .saturating_add(64)
     }
 
     /// A workspace over storage whose content is of no account.

@@ -166,12 +166,20 @@ impl Frame<'_, '_> {
         slice: Range,
         points: &mut [DVec2],
     ) -> Result<HeldMap, FitError> {
-        let mut volume = *fresh;
+        // Margins in texels are added by the grid, whose texels are larger than a fresh fit's.
+        let plain = FitSettings { kernel_margin: 0.0, ..*settings };
+        let now = if settings.kernel_margin > 0.0 {
+            fits::fit_slice(self.content, &self.light, &plain, slice, points)?
+        } else {
+            *fresh
+        };
+        let mut volume = now;
         let mut frames = self.hold.horizon;
         while let Some(motion) = self.motion.filter(|motion| frames > 0 && !motion.is_still()) {
             let ahead = [motion.after(&self.input.views[0], frames / 2), motion.after(&self.input.views[0], frames)];
-            let larger = self.fit_ahead(&ahead, settings, slice, points)?;
-            let (size, old) = (larger.max - larger.min, fresh.max - fresh.min);
+            // Without storage or view to spare nothing is looked ahead: the map serves now all the same.
+            let Ok(larger) = self.fit_ahead(&ahead, &plain, slice, points) else { break };
+            let (size, old) = (larger.max - larger.min, now.max - now.min);
             let growth = f64::from(self.hold.growth);
             if size.x * size.y <= old.x * old.y * growth * growth {
                 volume = larger;
@@ -182,7 +190,7 @@ impl Frame<'_, '_> {
         let room = (volume.max - volume.min).truncate() * (0.5 * f64::from(self.hold.margin));
         volume.min -= room.extend(0.0);
         volume.max += room.extend(0.0);
-        grid::snap(&mut volume, self.input.views[0].origin, &FitSettings { kernel_margin: 0.0, ..*settings });
+        grid::snap(&mut volume, self.input.views[0].origin, settings);
         Ok(HeldMap::new(&volume, self.input.views[0].origin, settings, fresh))
     }
 }
