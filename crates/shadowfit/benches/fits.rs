@@ -178,7 +178,7 @@ fn against_xna(c: &mut Criterion) {
             fit(black_box(&view), black_box(DIRECTION), black_box(&settings)).expect("a good fit")
         });
     });
-    group.bench_function("transcription", |b| {
+    group.bench_function("by hand", |b| {
         b.iter(|| xna::fit(black_box(&camera(&mut turn)), black_box(DIRECTION)));
     });
     group.finish();
@@ -203,7 +203,7 @@ fn against_bevy(c: &mut Criterion) {
             black_box(&cascades);
         });
     });
-    group.bench_function("transcription", |b| {
+    group.bench_function("by hand", |b| {
         b.iter(|| {
             let cascades = bevy::cascades(black_box(&camera(&mut turn)), black_box(DIRECTION), black_box(bounds));
             cascades.map(|c| (c.world_from_cascade, c.clip_from_cascade, c.clip_from_world, c.texel_size))

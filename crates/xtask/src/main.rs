@@ -2,9 +2,11 @@
 //! others are what a contributor and the continuous integration call. Each task first looks at what the machine has
 //! and, on Debian and its kin, installs what is missing.
 
+mod bench;
 mod ci;
 mod gallery;
 mod machine;
+mod maths;
 mod process;
 mod run;
 mod setup;
@@ -41,6 +43,15 @@ enum Task {
     Ci,
     /// Render the pictures of the README and the docs again.
     Gallery,
+    /// Draw the pictures of docs/MATHS.md again, with the fits of the core crate.
+    Maths,
+    /// Measure the core crate and write the times and ratios into docs/BENCHMARKS.md.
+    #[command(disable_help_flag = true)]
+    Bench {
+        /// Arguments of the benches, for example part of a name or `--quick`.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        args: Vec<String>,
+    },
     /// Rewrite the golden images of the tests from what is rendered now; look at the diff before committing it.
     Golden,
 }
@@ -51,6 +62,8 @@ fn main() -> ExitCode {
         Task::Test { args } => test::test(&args),
         Task::Ci => ci::ci(),
         Task::Gallery => gallery::gallery(),
+        Task::Maths => maths::maths(),
+        Task::Bench { args } => bench::bench(&args),
         Task::Golden => test::golden(),
     };
     match result {
