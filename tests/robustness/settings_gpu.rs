@@ -2,7 +2,7 @@
 
 use shadowfit::glam::{DVec3, UVec2};
 use shadowfit::settings::Settings;
-use shadowfit::{DepthConvention, FitKind};
+use shadowfit::{CasterPolicy, DepthConvention, FitKind};
 use shadowfit_render::FlyInput;
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_scene::{Mesh, Scene};
@@ -24,9 +24,10 @@ const ABSURD: [f32; 9] =
 type Field = (&'static str, fn(&mut Settings, f32));
 
 /// Every number that is a float.
-const FIELDS: [Field; 14] = [
+const FIELDS: [Field; 15] = [
     ("fit.max_distance", |s, x| s.fit.max_distance = x),
     ("fit.margin", |s, x| s.fit.margin = x),
+    ("fit.kernel_margin", |s, x| s.fit.kernel_margin = x),
     ("fit.caster_extension", |s, x| s.fit.caster_extension = x),
     ("bias.constant", |s, x| s.bias.constant = x),
     ("bias.slope", |s, x| s.bias.slope = x),
@@ -43,9 +44,10 @@ const FIELDS: [Field; 14] = [
 ];
 
 /// The fields for which NaN cannot be fitted, so that the stage has to say so.
-const FITTED: [&str; 9] = [
+const FITTED: [&str; 10] = [
     "fit.max_distance",
     "fit.margin",
+    "fit.kernel_margin",
     "fit.caster_extension",
     "light.azimuth",
     "light.elevation",
@@ -150,11 +152,11 @@ fn impossible_maps_keep_the_old_one_and_say_why() {
 fn absurd_places_of_the_eye_are_drawn_without_a_panic() {
     let mut stage = stage();
     let places = [f64::NAN, f64::INFINITY, 1e300, 1e30, 1e15, -1e7].map(DVec3::splat);
-    for kind in [FitKind::FrustumAabb, FitKind::XnaSample] {
+    for kind in [FitKind::FrustumAabb, FitKind::XnaSample, FitKind::Oriented, FitKind::Sphere, FitKind::Focused] {
         for eye in places {
             for angle in [f32::NAN, f32::INFINITY, 0.0, 1e30] {
                 stage.reset();
-                stage.settings.fit.kind = kind;
+                stage.settings.fit = stage.settings.fit.with_kind(kind).with_casters(CasterPolicy::List);
                 stage.camera.position = eye;
                 (stage.camera.yaw, stage.camera.pitch) = (angle, angle);
                 frame(&mut stage);
