@@ -1,0 +1,265 @@
+//! Drawing: a light panel with lines, areas and labels, written by the `svg` crate.
+//!
+//! Page coordinates are pixels at a width of 720, y down. A [`Frame`] takes plot coordinates (y up) to them.
+
+use shadowfit::glam::DVec2;
+use svg::Document;
+use svg::node::Node;
+use svg::node::element::{Circle, Line, Polygon, Polyline, Rectangle, Text as TextElement, Title};
+
+/// Width of every picture, in pixels: that of a page's text on GitHub, nearly.
+pub(super) const WIDTH: f64 = 720.0;
+
+/// The colours, chosen to be told apart by colour-blind readers as well (M. Okabe and K. Ito's set).
+pub(super) const INK: &str = "#2b2b2b";
+pub(super) const GREY: &str = "#8a8a8a";
+pub(super) const PALE: &str = "#d9d6cf";
+pub(super) const BLUE: &str = "#0072b2";
+pub(super) const SKY: &str = "#56b4e9";
+pub(super) const RED: &str = "#d55e00";
+pub(super) const YELLOW: &str = "#e69f00";
+pub(super) const GREEN: &str = "#009e73";
+pub(super) const PURPLE: &str = "#a5488a";
+
+/// Size of labels, in pixels.
+const LABEL: f64 = 14.0;
+
+/// How a shape is painted.
+#[derive(Clone, Copy)]
+pub(super) struct Paint {
+    fill: Option<(&'static str, f64)>,
+    stroke: Option<(&'static str, f64)>,
+    dash: Option<&'static str>,
+}
+
+/// An area without an outline.
+pub(super) const fn fill(colour: &'static str, opacity: f64) -> Paint {
+    Paint { fill: Some((colour, opacity)), stroke: None, dash: None }
+}
+
+/// A line of a width in pixels.
+pub(super) const fn stroke(colour: &'static str, width: f64) -> Paint {
+    Paint { fill: None, stroke: Some((colour, width)), dash: None }
+}
+
+impl Paint {
+    /// The same with its area filled.
+    pub(super) const fn filled(self, colour: &'static str, opacity: f64) -> Self {
+        Self { fill: Some((colour, opacity)), ..self }
+    }
+
+    /// The same with a dashed line.
+    pub(super) const fn dashed(self) -> Self {
+        Self { dash: Some("5 4"), ..self }
+    }
+
+    fn put(self, node: &mut impl Node) {
+        let (colour, opacity) = self.fill.unwrap_or(("none", 1.0));
+        node.assign("fill", colour);
+        if opacity < 1.0 {
+            node.assign("fill-opacity", opacity);
+        }
+        if let Some((colour, width)) = self.stroke {
+            node.assign("stroke", colour);
+            node.assign("stroke-width", width);
+            node.assign("stroke-linejoin", "round");
+            node.assign("stroke-linecap", "round");
+        }
+        if let Some(dash) = self.dash {
+            node.assign("stroke-dasharray", dash);
+        }
+    }
+}
+
+/// Where a label stands beside its point.
+#[derive(Clone, Copy)]
+pub(super) enum Side {
+    /// Ends at it.
+    Left,
+    /// Is centred on it.
+    Middle,
+    /// Begins at it.
+    Right,
+}
+
+/// A picture in the making.
+pub(super) struct Canvas {
+    document: Document,
+}
+
+impl Canvas {
+    /// A light panel of the usual width, in pixels, with a title that screen readers say.
+    pub(super) fn new(height: f64, title: &str) -> Self {
+        let panel = Rectangle::new()
+            .set("x", 0.5)
+            .set("y", 0.5)
+            .set("width", WIDTH - 1.0)
+            .set("height", height - 1.0)
+            .set("rx", 8)
+            .set("fill", "#fbfaf7")
+            .set("stroke", PALE);
+        let document = Document::new()
+            .set("viewBox", (0, 0, WIDTH, height))
+            .set("width", WIDTH)
+            .set("height", height)
+            .set("font-family", "Verdana, DejaVu Sans, Helvetica, Arial, sans-serif")
+            .add(Title::new(title))
+            .add(panel);
+        Self { document }
+    }
+
+    pub(super) fn finish(self) -> String {
+        format!("{}\n", self.document)
+    }
+
+    /// A label in plain ink.
+    pub(super) fn label(&mut self, at: DVec2, side: Side, text: &str) {
+        self.text(at, side, INK, text);
+    }
+
+    /// A label in a colour. Its baseline lies at the point.
+    pub(super) fn text(&mut self, at: DVec2, side: Side, colour: &str, text: &str) {
+        self.write(at, side, colour, LABEL, false, text);
+    }
+
+    /// A label in bold.
+    pub(super) fn bold(&mut self, at: DVec2, side: Side, colour: &str, text: &str) {
+        self.write(at, side, colour, LABEL, true, text);
+    }
+
+    /// A smaller label, for axes.
+    pub(super) fn small(&mut self, at: DVec2, side: Side, colour: &str, text: &str) {
+        self.write(at, side, colour, LABEL - 2.0, false, text);
+    }
+
+    fn write(&mut self, at: DVec2, side: Side, colour: &str, size: f64, is_bold: bool, text: &str) {
+        let anchor = match side {
+            Side::Left => "end",
+            Side::Middle => "middle",
+            Side::Right => "start",
+        };
+        let mut node = TextElement::new(text)
+            .set("x", rounded(at.x))
+            .set("y", rounded(at.y))
+            .set("font-size", size)
+            .set("text-anchor", anchor)
+            .set("fill", colour);
+        if is_bold {
+            node.assign("font-weight", "bold");
+        }
+        self.document.append(node);
+    }
+
+    pub(super) fn polygon(&mut self, points: impl IntoIterator<Item = DVec2>, paint: Paint) {
+        let mut node = Polygon::new().set("points", joined(points));
+        paint.put(&mut node);
+        self.document.append(node);
+    }
+
+    pub(super) fn path(&mut self, points: impl IntoIterator<Item = DVec2>, paint: Paint) {
+        let mut node = Polyline::new().set("points", joined(points));
+        paint.put(&mut node);
+        self.document.append(node);
+    }
+
+    pub(super) fn line(&mut self, from: DVec2, to: DVec2, paint: Paint) {
+        let mut node = Line::new()
+            .set("x1", rounded(from.x))
+            .set("y1", rounded(from.y))
+            .set("x2", rounded(to.x))
+            .set("y2", rounded(to.y));
+        paint.put(&mut node);
+        self.document.append(node);
+    }
+
+    /// A line with a head at its end.
+    pub(super) fn arrow(&mut self, from: DVec2, to: DVec2, colour: &'static str, width: f64) {
+        let along = unit(to - from);
+        let (head, half) = (4.0 + 2.5 * width, 2.0 + 1.5 * width);
+        let neck = to - along * head;
+        self.line(from, neck, stroke(colour, width));
+        self.polygon([to, neck + along.perp() * half, neck - along.perp() * half], fill(colour, 1.0));
+    }
+
+    /// An arrow with a head at both ends.
+    pub(super) fn measure(&mut self, from: DVec2, to: DVec2, colour: &'static str) {
+        let middle = (from + to) * 0.5;
+        self.arrow(middle, from, colour, 1.2);
+        self.arrow(middle, to, colour, 1.2);
+    }
+
+    pub(super) fn circle(&mut self, centre: DVec2, radius: f64, paint: Paint) {
+        let mut node =
+            Circle::new().set("cx", rounded(centre.x)).set("cy", rounded(centre.y)).set("r", rounded(radius));
+        paint.put(&mut node);
+        self.document.append(node);
+    }
+
+    pub(super) fn dot(&mut self, centre: DVec2, colour: &'static str) {
+        self.circle(centre, 4.0, fill(colour, 1.0));
+    }
+
+    /// A rectangle from two opposite corners.
+    pub(super) fn rectangle(&mut self, a: DVec2, b: DVec2, paint: Paint) {
+        self.polygon([a, DVec2::new(b.x, a.y), b, DVec2::new(a.x, b.y)], paint);
+    }
+}
+
+/// The direction of a vector; that of x for none.
+pub(super) fn unit(v: DVec2) -> DVec2 {
+    let length = libm::sqrt(v.dot(v));
+    if length > 0.0 { v / length } else { DVec2::X }
+}
+
+/// A tenth of a pixel is finer than anyone sees. Adding +0 makes -0 positive.
+fn rounded(v: f64) -> f64 {
+    libm::round(v * 10.0) / 10.0 + 0.0
+}
+
+fn joined(points: impl IntoIterator<Item = DVec2>) -> String {
+    let points: Vec<String> = points.into_iter().map(|p| format!("{},{}", rounded(p.x), rounded(p.y))).collect();
+    points.join(" ")
+}
+
+/// Takes plot coordinates, y up, to the page.
+#[derive(Clone, Copy)]
+pub(super) struct Frame {
+    scale: DVec2,
+    offset: DVec2,
+}
+
+impl Frame {
+    /// Takes the range `low..high` to the rectangle of the page with the corners `min` and `max`; both axes on their
+    /// own.
+    pub(super) fn stretched(low: DVec2, high: DVec2, min: DVec2, max: DVec2) -> Self {
+        let scale = DVec2::new(max.x - min.x, min.y - max.y) / (high - low);
+        Self { scale, offset: DVec2::new(min.x, max.y) - low * scale }
+    }
+
+    /// Puts a point in the middle of a place on the page, at a scale in pixels per unit.
+    pub(super) fn scaled(centre: DVec2, middle: DVec2, scale: f64) -> Self {
+        let scale = DVec2::new(scale, -scale);
+        Self { scale, offset: middle - centre * scale }
+    }
+
+    /// Puts points into a rectangle of the page at one scale for both axes, as large as they fit.
+    pub(super) fn around(points: impl IntoIterator<Item = DVec2>, min: DVec2, max: DVec2) -> Self {
+        let (low, high) = bounds(points);
+        let scale = ((max - min) / (high - low)).min_element();
+        Self::scaled((low + high) * 0.5, (min + max) * 0.5, scale)
+    }
+
+    pub(super) fn at(&self, p: DVec2) -> DVec2 {
+        p * self.scale + self.offset
+    }
+
+    /// Pixels per unit along x.
+    pub(super) fn scale(&self) -> f64 {
+        self.scale.x
+    }
+}
+
+/// Least and greatest coordinates.
+pub(super) fn bounds(points: impl IntoIterator<Item = DVec2>) -> (DVec2, DVec2) {
+    points.into_iter().fold((DVec2::MAX, DVec2::MIN), |(low, high), p| (low.min(p), high.max(p)))
+}
