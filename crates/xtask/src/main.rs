@@ -4,6 +4,8 @@
 
 mod bench;
 mod ci;
+#[cfg(test)]
+mod docs;
 mod gallery;
 mod machine;
 mod maths;
