@@ -70,6 +70,7 @@ impl LightAxes {
     }
 
     /// World axes to light axes, both from the same origin.
+    #[inline]
     pub(crate) fn project(&self, v: DVec3) -> DVec3 {
         let (x, y, z) = (self.x.as_dvec3(), self.y.as_dvec3(), self.z.as_dvec3());
         DVec3::new(x.dot(v), y.dot(v), z.dot(v))

@@ -14,23 +14,27 @@ pub(crate) const MIN_LENGTH: f64 = 1e-18;
 pub(crate) const MAX_LENGTH: f64 = 1e18;
 
 /// Refuses NaN and infinity.
+#[inline]
 pub(crate) fn finite(input: &'static str, value: f64) -> Result<f64, FitError> {
     if value.is_finite() { Ok(value) } else { Err(FitError::NotFinite { input, value }) }
 }
 
 /// A result rounded to f32; refuses what is not finite there.
+#[inline]
 pub(crate) fn rounded(output: &'static str, value: f64) -> Result<f32, FitError> {
     let rounded = value as f32;
     finite(output, f64::from(rounded)).map(|_| rounded)
 }
 
 /// Refuses what is not finite or outside `min..=max`.
+#[inline]
 pub(crate) fn within(input: &'static str, value: f64, min: f64, max: f64) -> Result<f64, FitError> {
     finite(input, value)?;
     if (min..=max).contains(&value) { Ok(value) } else { Err(FitError::OutOfRange { input, value, min, max }) }
 }
 
 /// Refuses a point with a coordinate that is not finite or beyond [`MAX_LENGTH`].
+#[inline]
 pub(crate) fn point(input: &'static str, value: DVec3) -> Result<DVec3, FitError> {
     for coordinate in value.to_array() {
         within(input, coordinate, -MAX_LENGTH, MAX_LENGTH)?;
@@ -39,6 +43,7 @@ pub(crate) fn point(input: &'static str, value: DVec3) -> Result<DVec3, FitError
 }
 
 /// The unit vector along `value`, in f64.
+#[inline]
 pub(crate) fn unit(input: &'static str, value: Vec3) -> Result<DVec3, FitError> {
     for component in value.to_array() {
         finite(input, f64::from(component))?;
@@ -52,6 +57,7 @@ pub(crate) fn unit(input: &'static str, value: Vec3) -> Result<DVec3, FitError> 
 }
 
 /// Length of a vector; the square root is libm's, the same on every target.
+#[inline]
 pub(crate) fn length(v: DVec3) -> f64 {
     libm::sqrt(v.dot(v))
 }

@@ -182,16 +182,16 @@ impl ViewFrustum {
     pub(crate) fn check(&self) -> Result<(), FitError> {
         checks::point("the frustum's origin", self.origin)?;
         // One pass that tells good corners, another only to name a bad one.
-        let is_good = |corner: &Vec3| corner.abs().cmple(Vec3::splat(MAX_LENGTH as f32)).all();
+        let limit = MAX_LENGTH as f32;
+        let is_good = |c: &Vec3| (c.x.abs() <= limit) & (c.y.abs() <= limit) & (c.z.abs() <= limit);
         if !self.corners.iter().fold(true, |all, corner| all & is_good(corner)) {
             for corner in self.corners {
                 checks::point("a corner of the frustum", corner.as_dvec3())?;
             }
         }
         let (near, far) = (self.near, self.far);
-        let limit = MAX_LENGTH;
-        checks::within("the frustum's near distance", f64::from(near), -limit, limit)?;
-        checks::within("the frustum's far distance", f64::from(far), -limit, limit)?;
+        checks::within("the frustum's near distance", f64::from(near), -MAX_LENGTH, MAX_LENGTH)?;
+        checks::within("the frustum's far distance", f64::from(far), -MAX_LENGTH, MAX_LENGTH)?;
         if near >= far {
             return Err(FitError::NearNotBelowFar { near, far });
         }

@@ -20,6 +20,7 @@ use glam::{DVec2, DVec3, Vec3};
 use crate::axes::LightAxes;
 use crate::checks::{self, MAX_LENGTH};
 use crate::settings::{FitKind, FitSettings, RectangleKind};
+use crate::view::slice_corners;
 use crate::{FitError, FitInput, LightFit, ViewFrustum, Workspace};
 
 pub(crate) use footprint::{Content, Footprint};
@@ -42,9 +43,16 @@ pub(crate) use volume::{ROUNDING, Volume};
 /// [`FitError::NearNotBelowFar`] when the maximum distance ends before the near plane, and
 /// [`FitError::EmptyFrustum`].
 pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightFit, FitError> {
+    let input = FitInput::new(core::slice::from_ref(frustum), direction);
+    if settings.kind == FitKind::XnaSample {
+        // It looks at nothing but the corners, and is as cheap as the sample's own only without storage.
+        let (light, distance) = prepare(&input, settings)?;
+        let corners = slice_corners(frustum, frustum.origin, frustum.near, distance);
+        let volume = xna::around(corners.iter().flatten().copied(), &light, settings)?;
+        return LightFit::from_volume(frustum.origin, &volume, settings);
+    }
     let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-    let views = [*frustum];
-    fit_scene(&FitInput::new(&views, direction), settings, &mut Workspace::new(&mut storage))
+    fit_scene(&input, settings, &mut Workspace::new(&mut storage))
 }
 
 /// Fits one map around what the views see of the scene, by the rule that [`FitSettings::kind`]

@@ -46,9 +46,18 @@ pub(crate) fn volume(
     settings: &FitSettings,
     range: Range,
 ) -> Result<Volume, FitError> {
+    around(content.corners(range), light, settings)
+}
+
+/// The sample's box around corners of a view.
+pub(crate) fn around(
+    corners: impl Iterator<Item = DVec3>,
+    light: &Light,
+    settings: &FitSettings,
+) -> Result<Volume, FitError> {
     let axes = light.axes;
     let (mut min, mut max) = (DVec3::MAX, DVec3::MIN);
-    for corner in content.corners(range) {
+    for corner in corners {
         let p = axes.project(corner);
         (min, max) = (min.min(p), max.max(p));
     }

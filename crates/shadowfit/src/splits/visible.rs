@@ -11,12 +11,12 @@ use crate::fits::Content;
 use crate::view::{View, box_corners};
 
 /// Rays across the picture.
-const COLUMNS: usize = 40;
+const COLUMNS: usize = 32;
 /// Rays down the picture.
-const ROWS: usize = 22;
+const ROWS: usize = 18;
 
 /// Boxes kept along each ray. A box is mostly air, so what is behind the first one may be seen.
-const LAYERS: usize = 4;
+const LAYERS: usize = 3;
 
 /// How much less each further box counts. Chosen with the two weights below on real scenes:
 /// counting the first box alone misjudges cuts where boxes are loose.
