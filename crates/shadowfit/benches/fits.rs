@@ -32,7 +32,7 @@ mod xna {
     //! The sample's `CreateLightViewProjectionMatrix`, with the frustum that XNA's `BoundingFrustum` makes of the
     //! camera's matrix.
 
-    use super::*;
+    use super::{Mat4, PerspectiveCamera, Vec3, Vec3Swizzles, Vec4, look_at, orthographic, perspective};
 
     pub(super) fn fit(camera: &PerspectiveCamera, direction: Vec3) -> Mat4 {
         let eye = camera.eye.as_vec3();
@@ -102,17 +102,17 @@ fn orthographic(size: Vec2, near: f32, far: f32) -> Mat4 {
 mod bevy {
     //! Bevy's cascades: a cube of the slice's diagonal, rounded up to a metre, on a grid of texels.
 
-    use super::*;
+    use super::{Mat4, PerspectiveCamera, Vec3, Vec3Swizzles, Vec4, look_at, perspective};
 
     /// What Bevy keeps of each cascade.
-    pub(super) struct Cascade {
-        pub(super) world_from_cascade: Mat4,
-        pub(super) clip_from_cascade: Mat4,
+    pub(super) struct Map {
+        pub(super) world_from_light_clip: Mat4,
+        pub(super) clip_from_light_space: Mat4,
         pub(super) clip_from_world: Mat4,
         pub(super) texel_size: f32,
     }
 
-    pub(super) fn cascades(camera: &PerspectiveCamera, direction: Vec3, bounds: [f32; 4]) -> [Cascade; 4] {
+    pub(super) fn cascades(camera: &PerspectiveCamera, direction: Vec3, bounds: [f32; 4]) -> [Map; 4] {
         let eye = camera.eye.as_vec3();
         let world_from_view = look_at(eye, eye + camera.forward, camera.up).inverse();
         let world_from_light = look_at(Vec3::ZERO, direction, Vec3::Y).inverse();
@@ -138,7 +138,7 @@ mod bevy {
         [a, b, c, d, e, f, g, h]
     }
 
-    fn cascade(corners: [Vec3; 8], light_from_view: Mat4, light_from_world: Mat4) -> Cascade {
+    fn cascade(corners: [Vec3; 8], light_from_view: Mat4, light_from_world: Mat4) -> Map {
         let (mut min, mut max) = (Vec3::MAX, Vec3::MIN);
         for corner in corners {
             let corner = light_from_view.transform_point3(corner);
@@ -159,9 +159,9 @@ mod bevy {
             Vec4::new(0.0, 0.0, depth, 0.0),
             Vec4::new(0.0, 0.0, 1.0, 1.0),
         );
-        Cascade {
-            world_from_cascade: cascade_from_world.inverse(),
-            clip_from_cascade,
+        Map {
+            world_from_light_clip: cascade_from_world.inverse(),
+            clip_from_light_space: clip_from_cascade,
             clip_from_world: clip_from_cascade * cascade_from_world,
             texel_size,
         }
@@ -206,7 +206,7 @@ fn against_bevy(c: &mut Criterion) {
     group.bench_function("by hand", |b| {
         b.iter(|| {
             let cascades = bevy::cascades(black_box(&camera(&mut turn)), black_box(DIRECTION), black_box(bounds));
-            cascades.map(|c| (c.world_from_cascade, c.clip_from_cascade, c.clip_from_world, c.texel_size))
+            cascades.map(|c| (c.world_from_light_clip, c.clip_from_light_space, c.clip_from_world, c.texel_size))
         });
     });
     group.finish();
