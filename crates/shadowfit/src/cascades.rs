@@ -177,10 +177,10 @@ impl Places<'_, '_> {
     /// All maps of this frame alone.
     fn fit(&mut self, cuts: &Cuts, cascades: &mut Cascades) -> Result<(), FitError> {
         for i in 0..cascades.count {
-            let (slice, is_void) = self.slice(cuts, i);
+            let slice = self.slice(cuts, i);
             let settings = map_settings(self.settings, i);
             let volume = fit_anew(self.content, &self.light, &settings, self.settings.stabilise, slice, self.points)?;
-            cascades.maps[i] = self.map(&volume, &settings, cuts, i, is_void)?;
+            self.write(&mut cascades.maps[i], &volume, &settings, cuts, i)?;
         }
         Ok(())
     }
@@ -198,7 +198,7 @@ impl Places<'_, '_> {
         let frame = hold::Frame { input, content: self.content, light: self.light, motion, hold: self.settings.hold };
         let mut maps = [None; MAX_CASCADES];
         for (i, map) in maps.iter_mut().enumerate().take(cascades.count) {
-            let (slice, is_void) = self.slice(cuts, i);
+            let slice = self.slice(cuts, i);
             let settings = map_settings(self.settings, i);
             let volume = if settings.kind == FitKind::XnaSample {
                 fits::fit_slice(self.content, &self.light(&settings), &settings, slice, self.points)?
@@ -207,7 +207,7 @@ impl Places<'_, '_> {
                 *map = Some(held);
                 hold::volume(&held, self.content.origin)
             };
-            cascades.maps[i] = self.map(&volume, &settings, cuts, i, is_void)?;
+            self.write(&mut cascades.maps[i], &volume, &settings, cuts, i)?;
         }
         Ok(maps)
     }
@@ -217,25 +217,28 @@ impl Places<'_, '_> {
         if settings.kind == self.settings.fit.kind { self.light } else { self.light.of_kind(settings.kind) }
     }
 
-    /// The view depths that a map covers; those of all maps where it has none, which is told.
-    fn slice(&self, cuts: &Cuts, map: usize) -> (Range, bool) {
+    /// The view depths that a map covers; those of all maps where it has none.
+    fn slice(&self, cuts: &Cuts, map: usize) -> Range {
         let slice = slice_range(cuts, map, self.settings, self.range);
-        if is_void(self.content.views, slice) { (self.range, true) } else { (slice, false) }
+        if is_void(self.content.views, slice) { self.range } else { slice }
     }
 
-    fn map(
+    /// Writes a map where it stands, since it is large.
+    fn write(
         &self,
+        map: &mut CascadeMap,
         volume: &Volume,
         settings: &FitSettings,
         cuts: &Cuts,
-        map: usize,
-        is_void: bool,
-    ) -> Result<CascadeMap, FitError> {
-        let mut fit = LightFit::from_volume(self.content.origin, volume, settings)?;
-        fit.is_empty |= is_void;
-        let slice = slice_range(cuts, map, self.settings, self.range);
-        let covered_near = if is_void { cuts[map] } else { slice.near };
-        Ok(CascadeMap { fit, near: cuts[map], far: cuts[map + 1], covered_near })
+        i: usize,
+    ) -> Result<(), FitError> {
+        let slice = slice_range(cuts, i, self.settings, self.range);
+        let is_void = is_void(self.content.views, slice);
+        map.fit.set_volume(self.content.origin, volume, settings)?;
+        map.fit.is_empty |= is_void;
+        (map.near, map.far) = (cuts[i], cuts[i + 1]);
+        map.covered_near = if is_void { cuts[i] } else { slice.near };
+        Ok(())
     }
 }
 

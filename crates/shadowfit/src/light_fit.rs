@@ -52,7 +52,7 @@ pub struct LightFit {
     /// What set the planes -x, +x, -y, +y, far and near of the box, in the map's axes.
     pub set_by: [Constraint; 6],
     /// Whether no receiver is in view, so that the view itself stands in and the shadow pass may
-    /// be left out. Never so for fits that know no receivers.
+    /// be left out. Of fits that know no receivers, only cascades without a part of the view are.
     pub is_empty: bool,
 }
 
@@ -98,6 +98,18 @@ const COVER_SLACK: f64 = 1e-6;
 impl LightFit {
     /// Turns a fit's decision into matrices; refuses boxes that f32 matrices cannot hold.
     pub(crate) fn from_volume(origin: DVec3, volume: &Volume, settings: &FitSettings) -> Result<Self, FitError> {
+        let mut fit = Self::default();
+        fit.set_volume(origin, volume, settings)?;
+        Ok(fit)
+    }
+
+    /// [`Self::from_volume`] where the fit stands. An error changes nothing.
+    pub(crate) fn set_volume(
+        &mut self,
+        origin: DVec3,
+        volume: &Volume,
+        settings: &FitSettings,
+    ) -> Result<(), FitError> {
         let size = volume.max - volume.min;
         for extent in [size.x, size.y, volume.depth_range] {
             checks::within("an extent of the light's box", extent, MIN_LENGTH, MAX_LENGTH)?;
@@ -108,37 +120,28 @@ impl LightFit {
         let t = (-light).as_vec3();
         let (scale, offset) = projection(size, volume, settings.depth);
         let box_max = DVec3::new(size.x * 0.5, size.y * 0.5, volume.max.z - volume.light_z);
-        let mut fit = Self {
-            origin,
-            direction: -z,
-            light_from_world: Mat4::from_cols(
-                Vec4::new(x.x, y.x, z.x, 0.0),
-                Vec4::new(x.y, y.y, z.y, 0.0),
-                Vec4::new(x.z, y.z, z.z, 0.0),
-                Vec4::new(t.x, t.y, t.z, 1.0),
-            ),
-            clip_from_light: Mat4::from_cols(
-                Vec4::new(scale.x as f32, 0.0, 0.0, 0.0),
-                Vec4::new(0.0, scale.y as f32, 0.0, 0.0),
-                Vec4::new(0.0, 0.0, scale.z as f32, 0.0),
-                Vec4::new(0.0, 0.0, offset as f32, 1.0),
-            ),
-            clip_from_world: Mat4::IDENTITY,
-            uv_from_world: Mat4::IDENTITY,
-            box_min: (box_max - size).as_vec3(),
-            box_max: box_max.as_vec3(),
-            texel_size: Vec2::new(
-                (size.x / f64::from(settings.resolution.x)) as f32,
-                (size.y / f64::from(settings.resolution.y)) as f32,
-            ),
-            depth_range: volume.depth_range as f32,
-            resolution: settings.resolution,
-            depth: settings.depth,
-            set_by: volume.set_by,
-            is_empty: volume.is_empty,
-        };
-        fit.compose();
-        Ok(fit)
+        self.origin = origin;
+        self.direction = -z;
+        self.light_from_world = Mat4::from_cols(
+            Vec4::new(x.x, y.x, z.x, 0.0),
+            Vec4::new(x.y, y.y, z.y, 0.0),
+            Vec4::new(x.z, y.z, z.z, 0.0),
+            Vec4::new(t.x, t.y, t.z, 1.0),
+        );
+        self.clip_from_light = Mat4::from_cols(
+            Vec4::new(scale.x as f32, 0.0, 0.0, 0.0),
+            Vec4::new(0.0, scale.y as f32, 0.0, 0.0),
+            Vec4::new(0.0, 0.0, scale.z as f32, 0.0),
+            Vec4::new(0.0, 0.0, offset as f32, 1.0),
+        );
+        self.box_min = (box_max - size).as_vec3();
+        self.box_max = box_max.as_vec3();
+        self.texel_size = (size.truncate() / settings.resolution.as_dvec2()).as_vec2();
+        self.depth_range = volume.depth_range as f32;
+        (self.resolution, self.depth) = (settings.resolution, settings.depth);
+        (self.set_by, self.is_empty) = (volume.set_by, volume.is_empty);
+        self.compose();
+        Ok(())
     }
 
     /// Fills the products of `light_from_world` and `clip_from_light`, in f64.
