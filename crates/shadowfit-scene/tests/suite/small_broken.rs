@@ -140,7 +140,11 @@ fn positions_that_are_not_finite_or_absurd_are_refused_by_vertex() {
         assert!(message.contains("attributes.POSITION, accessor 0") && message.contains(words), "{message}");
     }
     refused(r#"{"mesh":0}"#, r#"{"mesh":0,"scale":[1e30,1,1]}"#, &["nodes[0]", "beyond"]);
-    refused(r#"{"mesh":0}"#, r#"{"mesh":0,"translation":[1e39,0,0]}"#, &["nodes[0]", "not finite"]);
+    // The exact reading of floats, which another crate of the build may ask of serde_json, refuses it before we can.
+    let text = triangle().json().replacen(r#"{"mesh":0}"#, r#"{"mesh":0,"translation":[1e39,0,0]}"#, 1);
+    let message = refusal(load_text("infinite", &text));
+    let ours = message.contains("nodes[0]") && message.contains("not finite");
+    assert!(ours || message.contains("number out of range"), "{message}");
 }
 
 #[test]
