@@ -71,8 +71,11 @@ impl Clusters {
     /// Groups of triangles are cut in two by planes, again and again where the most air is left in
     /// the box, and not where none is: a flat box that is full stays whole. A triangle that a plane
     /// passes through is in the groups on both sides, each with the part of it there, so large
-    /// slanted ones get small boxes too. Takes about 0.3 µs a triangle for 1,024 clusters of one
-    /// object.
+    /// slanted ones get small boxes too. Where large triangles pierce one another everywhere, later
+    /// ones stay whole, and boxes overlap.
+    ///
+    /// Takes about 0.25 µs a triangle and 20 µs a cluster: 100 ms for 1,024 clusters of an object of
+    /// 300,000 triangles.
     ///
     /// Sources: Wald, Ingo: "On fast construction of SAH-based bounding volume hierarchies", 2007;
     /// Stich, Martin, Heiko Friedrich and Andreas Dietrich: "Spatial splits in bounding volume
@@ -110,7 +113,7 @@ impl Clusters {
     /// `objects` are those of [`build`](Self::build) in the same order, each with as many triangles
     /// as then; metres, relative to one origin. Parts of triangles go with them, however they are
     /// deformed. Boxes grow where neighbours part, so build again when an object has changed beyond
-    /// recognition. Takes about 0.05 µs a triangle.
+    /// recognition. Takes about 0.06 µs a triangle.
     ///
     /// # Errors
     ///

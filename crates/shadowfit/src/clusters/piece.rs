@@ -47,6 +47,11 @@ impl Piece {
         let outline = Outline { triangle: index, first: 0, count: 0 };
         Self { aabb, area: area(triangle).as_vec3(), outline }
     }
+
+    /// The middle of its box.
+    pub(super) fn middle(&self) -> Vec3 {
+        (self.aabb.min + self.aabb.max) * 0.5
+    }
 }
 
 /// Corners of the pieces that are not whole, by their place in their triangle.
@@ -75,7 +80,8 @@ impl Corners {
             return triangle.iter().fold(Aabb::EMPTY, |aabb, &corner| aabb.with_point(corner));
         }
         let corners = self.places(outline).iter().map(|&place| at(triangle, place));
-        corners.fold(Aabb::EMPTY, |aabb, p| aabb.union(rounded_out(p)))
+        let (min, max) = corners.fold((DVec3::MAX, DVec3::MIN), |(min, max), p| (min.min(p), max.max(p)));
+        rounded_out(min, max)
     }
 
     /// Takes over the corners of a piece from `other`, to leave out those of no piece.
@@ -166,13 +172,13 @@ fn share(places: &[DVec2]) -> f64 {
     fan.sum::<f64>().abs()
 }
 
-/// The least box in f32 that holds a point.
-fn rounded_out(p: DVec3) -> Aabb {
-    let nearest = p.as_vec3();
+/// The least box in f32 that holds one in f64.
+fn rounded_out(min: DVec3, max: DVec3) -> Aabb {
     let down = |v: f64, r: f32| if f64::from(r) > v { r.next_down() } else { r };
     let up = |v: f64, r: f32| if f64::from(r) < v { r.next_up() } else { r };
+    let (low, high) = (min.as_vec3(), max.as_vec3());
     Aabb {
-        min: Vec3::new(down(p.x, nearest.x), down(p.y, nearest.y), down(p.z, nearest.z)),
-        max: Vec3::new(up(p.x, nearest.x), up(p.y, nearest.y), up(p.z, nearest.z)),
+        min: Vec3::new(down(min.x, low.x), down(min.y, low.y), down(min.z, low.z)),
+        max: Vec3::new(up(max.x, high.x), up(max.y, high.y), up(max.z, high.z)),
     }
 }

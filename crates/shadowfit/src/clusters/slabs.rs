@@ -22,6 +22,8 @@ pub(super) struct Slabs {
     axis: usize,
     min: f32,
     size: f32,
+    /// Slabs in a metre.
+    density: f32,
     boxes: [Aabb; SLABS],
 }
 
@@ -29,7 +31,8 @@ impl Slabs {
     /// Empty slabs along an axis of a box.
     pub(super) fn new(axis: usize, aabb: &Aabb) -> Self {
         let min = aabb.min[axis];
-        Self { axis, min, size: aabb.max[axis] - min, boxes: [Aabb::EMPTY; SLABS] }
+        let size = aabb.max[axis] - min;
+        Self { axis, min, size, density: SLABS as f32 / size, boxes: [Aabb::EMPTY; SLABS] }
     }
 
     /// Adds a piece with its box and its corners, in order around it, to the slabs that it passes
@@ -86,8 +89,8 @@ impl Slabs {
     }
 
     fn slab(&self, coordinate: f32) -> usize {
-        // Negative numbers and NaN, from no extent at all, become slab 0.
-        (((coordinate - self.min) / self.size * SLABS as f32) as usize).min(SLABS - 1)
+        // Negative numbers and NaN, from zero times infinity without extent, become slab 0.
+        (((coordinate - self.min) * self.density) as usize).min(SLABS - 1)
     }
 
     fn plane(&self, slab: usize) -> f32 {

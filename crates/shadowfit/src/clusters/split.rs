@@ -12,8 +12,8 @@ use super::piece::{Corners, Piece};
 use super::slabs::{Slabs, sides};
 use crate::Aabb;
 
-/// Pieces of a group that decide where it is cut. A quarter of a thousand serves as well as all.
-const SAMPLE: usize = 256;
+/// Pieces of a group that decide where it is cut. So many serve as well as all.
+const SAMPLE: usize = 128;
 
 /// Depth in shares of a box's longest side by which the unfilled part of its sides counts as air.
 const SILHOUETTE_WEIGHT: f64 = 0.1;
@@ -67,15 +67,21 @@ impl Group {
                 best = Some((cost, axis, cut));
             }
         }
-        best.map(|(_, axis, cut)| (axis, cut)).or_else(|| self.middle())
+        best.map(|(_, axis, cut)| (axis, cut)).or_else(|| middle(&self.aabb))
     }
 
-    /// The middle of the longest side.
-    fn middle(&self) -> Option<(usize, f32)> {
-        let size = self.aabb.max - self.aabb.min;
-        let axis = size.max_position();
-        (size[axis] > 0.0).then(|| (axis, self.aabb.min[axis] + size[axis] * 0.5))
+    /// The axis along which the pieces' middles spread most, and half way there; `None` if they are
+    /// all in one place.
+    fn middle_of_middles(&self) -> Option<(usize, f32)> {
+        middle(&self.pieces.iter().fold(Aabb::EMPTY, |aabb, piece| aabb.with_point(piece.middle())))
     }
+}
+
+/// The axis of a box's longest side and the middle of that; `None` for a point.
+fn middle(aabb: &Aabb) -> Option<(usize, f32)> {
+    let size = aabb.max - aabb.min;
+    let axis = size.max_position();
+    (size[axis] > 0.0).then(|| (axis, aabb.min[axis] + size[axis] * 0.5))
 }
 
 impl Ord for Group {
@@ -138,6 +144,8 @@ struct Splitter<'a> {
     corners: Corners,
     /// How many corners may be kept.
     room: usize,
+    /// Whether they have been, so that pieces are cut no more.
+    is_full: bool,
     /// The groups' order: the slot that follows each slot. The last one's is no slot.
     next: Vec<usize>,
     /// For the corners of one piece.
@@ -149,7 +157,7 @@ impl<'a> Splitter<'a> {
         let triangles = objects.iter().map(|triangles| triangles.len()).fold(0, usize::saturating_add);
         let room = triangles.saturating_mul(CORNERS_PER_TRIANGLE);
         let room = room.saturating_add(limit.saturating_mul(CORNERS_PER_CLUSTER)).min(u32::MAX as usize);
-        Self { objects, corners: Corners::default(), room, next: Vec::new(), buffer: Vec::new() }
+        Self { objects, corners: Corners::default(), room, is_full: false, next: Vec::new(), buffer: Vec::new() }
     }
 
     /// A new slot that follows another one.
@@ -173,30 +181,24 @@ impl<'a> Splitter<'a> {
     /// Both halves of a group, or the group when it holds no air or cannot be cut.
     fn halves(&mut self, mut group: Group) -> Result<[Group; 2], Group> {
         let triangles = self.objects[group.object as usize];
-        let cut = if group.air > 0.0 { group.cut(triangles, &self.corners, &mut self.buffer) } else { None };
+        let cut = match self.is_full {
+            _ if group.air <= 0.0 => None,
+            true => group.middle_of_middles(),
+            false => group.cut(triangles, &self.corners, &mut self.buffer),
+        };
         let Some((axis, cut)) = cut else { return Err(group) };
         let mut above = Vec::new();
         group.pieces.retain_mut(|piece| {
-            if piece.aabb.max[axis] <= cut {
-                return true;
-            }
-            if piece.aabb.min[axis] >= cut {
-                above.push(*piece);
-                return false;
-            }
-            if self.corners.len() + self.corners.needed_to_cut(piece.outline) > self.room {
-                let is_below = (piece.aabb.min[axis] + piece.aabb.max[axis]) * 0.5 < cut;
-                if !is_below {
-                    above.push(*piece);
-                }
+            self.is_full |= self.corners.len() + self.corners.needed_to_cut(piece.outline) > self.room;
+            let is_below = if self.is_full { piece.middle()[axis] < cut } else { piece.aabb.max[axis] <= cut };
+            if is_below || self.is_full || piece.aabb.min[axis] >= cut {
+                above.extend((!is_below).then_some(*piece));
                 return is_below;
             }
-            let parts = self.corners.cut(piece, &triangles[piece.outline.triangle as usize], axis, cut);
-            above.extend(parts[1]);
-            if let Some(below) = parts[0] {
-                *piece = below;
-            }
-            parts[0].is_some()
+            let [below, part_above] = self.corners.cut(piece, &triangles[piece.outline.triangle as usize], axis, cut);
+            above.extend(part_above);
+            *piece = below.unwrap_or(*piece);
+            below.is_some()
         });
         if group.pieces.is_empty() || above.is_empty() {
             group.pieces.append(&mut above);
