@@ -45,21 +45,18 @@ pub(super) fn draw() -> Result<String> {
         canvas.polygon(map[..4].iter().map(|p| frame.at(*p)), stroke(colour, 2.5).filled(colour, 0.08));
         let below = middle + DVec2::new(0.0, 122.0);
         canvas.bold(below, Side::Middle, INK, name);
-        canvas.label(below + DVec2::new(0.0, 18.0), Side::Middle, &texels(&fits[i]));
+        canvas.label(below + DVec2::new(0.0, 18.0), Side::Middle, &texels(&fits[i], &fits[1]));
     }
-    let note = DVec2::new(360.0, 2.0 * ROW + 24.0);
-    canvas.circle(note - DVec2::new(236.0, 5.0), 6.0, fill("#f4e3b2", 1.0));
-    canvas.text(
-        note + DVec2::new(6.0, 0.0),
-        Side::Middle,
-        GREY,
-        "what the camera sees, and houses; sizes are of one texel of 2048²",
-    );
+    let note = DVec2::new(64.0, 2.0 * ROW + 24.0);
+    canvas.circle(note - DVec2::new(14.0, 5.0), 6.0, fill("#f4e3b2", 1.0));
+    let text = "what the camera sees, and houses; one texel of 2048², its area beside the AABB's";
+    canvas.text(note, Side::Right, GREY, text);
     Ok(canvas.finish())
 }
 
-/// Size of a fit's texels.
-fn texels(fit: &LightFit) -> String {
-    let size = fit.texel_size * 100.0;
-    format!("{:.2} × {:.2} cm", size.x, size.y)
+/// Size of a fit's texels, and their area beside another fit's.
+fn texels(fit: &LightFit, other: &LightFit) -> String {
+    let (size, other) = (fit.texel_size * 100.0, other.texel_size * 100.0);
+    let share = 100.0 * size.x * size.y / (other.x * other.y);
+    format!("{:.2} × {:.2} cm, {share:.0}%", size.x, size.y)
 }
