@@ -1,4 +1,4 @@
-//! Conversions from and to the types of the [mint](::mint) crate, which most maths crates convert
+//! Conversions from and to the types of the [mint](https://docs.rs/mint) crate, which most maths crates convert
 //! to and from (feature `mint`).
 //!
 //! They are written against mint itself, so that they do not depend on how a release of glam calls

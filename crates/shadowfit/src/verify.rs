@@ -29,6 +29,7 @@ use half_space::{HalfSpaces, ROUNDING};
 /// What is claimed of a map: which receivers read it, how far around them, and whether casters
 /// before the near plane are clipped.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Claim {
     /// View depth from which receivers read the map, in metres.
     pub near: f32,
@@ -83,6 +84,7 @@ impl Claim {
 
 /// A side of the box that a map stores, in light space: -x, +x, -y, +y, far, near.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum MapPlane {
     /// Texture coordinate u = 0.
     Left,
@@ -105,6 +107,7 @@ impl MapPlane {
 
 /// What [`verify`] found.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[must_use = "a certificate says whether the map has holes"]
 pub enum Certificate {
     /// There are no holes: all receivers are inside with all that the filter reads, and none of
@@ -145,6 +148,7 @@ impl Certificate {
 
 /// What is left free beyond all that is required. Infinite where there was nothing to require.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Slack {
     /// At each of [`MapPlane::ALL`]: texels for the planes across the light, metres for far and
     /// near.

@@ -1,6 +1,8 @@
 //! `cargo xtask ci`: every check that comes before the tests, in the order in which a mistake shows soonest, stopping
 //! at the first failure. `.ci/run` calls this and then `cargo xtask test`.
 
+mod portability;
+
 use std::process::Command;
 use std::time::{Duration, Instant};
 
@@ -10,23 +12,22 @@ use crate::machine::Machine;
 use crate::process;
 use crate::setup::{self, Purpose};
 
-/// Targets on which the core is built without the standard library: a microcontroller that has none at all, which is
-/// the proof, and the browser.
-const BARE_TARGETS: [&str; 2] = ["thumbv7em-none-eabi", "wasm32-unknown-unknown"];
-
 /// One named check.
 struct Step {
     name: &'static str,
     check: fn(&Machine) -> Result<()>,
 }
 
-const STEPS: [Step; 7] = [
+const STEPS: [Step; 10] = [
     Step { name: "format", check: format },
     Step { name: "dependencies", check: dependencies },
-    Step { name: "no_std build of the core", check: no_std },
+    Step { name: "no_std build of the core", check: portability::no_std },
     Step { name: "lints", check: lints },
     Step { name: "docs", check: docs },
     Step { name: "minimum supported Rust version", check: msrv },
+    Step { name: "the core's own minimum Rust version", check: portability::msrv },
+    Step { name: "same bits without SIMD and in WebAssembly", check: portability::determinism },
+    Step { name: "the core with the oldest glam", check: portability::oldest_glam },
     Step { name: "examples", check: examples },
 ];
 
@@ -71,28 +72,6 @@ fn dependencies(_: &Machine) -> Result<()> {
         "licenses",
         "sources",
     ]))
-}
-
-fn no_std(_: &Machine) -> Result<()> {
-    let core = || {
-        let mut command = process::cargo("build");
-        command.args(["--package", "shadowfit", "--no-default-features"]);
-        command
-    };
-    let mut built = Vec::new();
-    for target in BARE_TARGETS {
-        if process::succeeds(Command::new("rustup").args(["target", "add", target])) {
-            process::run(core().args(["--target", target]))?;
-            built.push(target);
-        }
-    }
-    if built.is_empty() {
-        process::run(&mut core())?;
-        println!("built without features for this machine only: rustup could not add {}", BARE_TARGETS.join(" or "));
-    } else {
-        println!("built without features for {}", built.join(" and "));
-    }
-    Ok(())
 }
 
 fn lints(machine: &Machine) -> Result<()> {

@@ -1,6 +1,6 @@
 //! The family of fits, one file per algorithm, and what they share.
 //!
-//! Every fit decides which box along the light's axes the shadow map stores: a [`Footprint`] says
+//! Every fit decides which box along the light's axes the shadow map stores: a footprint says
 //! what must be inside, a rectangle lies around it, and the caster policy places the near plane.
 //! [`fit`] and [`fit_scene`] take the rule from the settings.
 

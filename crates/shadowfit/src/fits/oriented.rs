@@ -1,9 +1,9 @@
 //! The least rectangle around the camera frustum as seen from the light, turned about it: by area,
 //! or made square. It is the tightest a fit can be without knowing the scene.
 //!
-//! The frustum's outline has four to eight corners; [`crate::rectangle`] says how the rectangle is
-//! found. It turns and changes its size with every movement of the camera, so shadow edges crawl
-//! unless the fit is [held](crate::Stabilise::Hysteresis).
+//! The frustum's outline has four to eight corners, along whose edges the rectangle is sought. It
+//! turns and changes its size with every movement of the camera, so shadow edges crawl unless the
+//! fit is [held](crate::Stabilise::Hysteresis).
 
 use glam::{DVec2, Vec3};
 

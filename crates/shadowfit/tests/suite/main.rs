@@ -11,6 +11,7 @@ mod caster;
 mod clusters;
 mod conventions;
 mod diagnostics;
+mod f64_reference;
 mod filters;
 mod frustum;
 mod invariance;

@@ -7,7 +7,8 @@ use shadowfit::bias::Reach;
 use shadowfit::diagnostics::{AcneMargin, Coverage, DepthStorage, PixelsPerTexel};
 use shadowfit::figures::Figures;
 use shadowfit::fits::sphere::enclosing_sphere;
-use shadowfit::glam::{DVec2, UVec2, Vec2, Vec3};
+use shadowfit::glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
+use shadowfit::verify::{Certificate, Claim, MapPlane, Slack};
 use shadowfit::{
     Aabb, Bias, BiasSettings, CascadeFitter, CascadeSettings, CasterPlanes, CasterPolicy, DepthConvention, FitInput,
     FitKind, FitSettings, LightStepSettings, LightSteps, MapOverride, NormalCone, OrientedBox, RectangleKind, Settings,
@@ -75,6 +76,9 @@ fn outputs_survive() {
     survives(&bias.on_plane(&fit, Vec3::Y).unwrap());
     survives(&Reach::HARDWARE_2X2.over_disc(3.0));
     survives(&Coverage::BeforeNear);
+    survives(&Claim::of_fit(&FitSettings::default(), Reach::POINT));
+    survives(&Certificate::Uncovered { plane: MapPlane::Far, point: DVec3::splat(0.1), by: 0.3 });
+    survives(&Certificate::Proven(Slack { planes: [0.1; 6], casters: 2.5 }));
     survives(&AcneMargin { metres: 0.1, texels: -0.3 });
     survives(&PixelsPerTexel { worse_axis: 0.1, area: 0.7 });
     survives(&Figures { texel_size: Some(Vec2::splat(0.1).to_array()), ..Figures::default() });

@@ -1,0 +1,212 @@
+//! What the core crate promises beyond this machine: targets without a standard library, each feature alone, the same
+//! bits everywhere, both ends of the range of glam, and a Rust of its own.
+//!
+//! Where a target, a toolchain or a runtime cannot be had, the check says what it did not do.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result};
+
+use super::{is_release, rust_version};
+use crate::machine::Machine;
+use crate::process;
+
+/// A microcontroller that has no standard library at all, which is the proof that the core needs none.
+const BARE_TARGET: &str = "thumbv7em-none-eabi";
+
+/// The browser.
+const WASM_TARGET: &str = "wasm32-unknown-unknown";
+
+/// Features that have to build without the standard library, each alone and all together.
+const FEATURES: [&str; 6] = ["", "alloc", "serde", "bytemuck", "mint", "alloc,serde,bytemuck,mint"];
+
+/// The package that hashes fits.
+const DETERMINISM: &str = "shadowfit-determinism";
+
+/// Builds the core without the standard library.
+pub(super) fn no_std(_: &Machine) -> Result<()> {
+    let target = has_target(BARE_TARGET);
+    for features in FEATURES {
+        let mut command = process::cargo("check");
+        command.args(["--package", "shadowfit", "--no-default-features", "--features", features]);
+        if target {
+            command.args(["--target", BARE_TARGET]);
+        }
+        process::run(&mut command)?;
+    }
+    if target {
+        println!("checked with no feature, each alone and all together, for {BARE_TARGET}");
+    } else {
+        println!(
+            "built with no feature, each alone and all together, for this machine only: rustup has no {BARE_TARGET}"
+        );
+    }
+    Ok(())
+}
+
+/// Compares the hash of the fits without SIMD and in WebAssembly with the pinned one; the ordinary tests do so on this
+/// machine as it is.
+pub(super) fn determinism(_: &Machine) -> Result<()> {
+    process::run(process::cargo("test").args(["--package", DETERMINISM, "--features", "scalar-math"]))?;
+    if !has_target(WASM_TARGET) {
+        println!("same bits without SIMD; not built for WebAssembly: rustup has no {WASM_TARGET}");
+        return Ok(());
+    }
+    process::run(process::cargo("build").args(["--package", DETERMINISM, "--target", WASM_TARGET]))?;
+    if !process::succeeds(Command::new("node").arg("--version")) {
+        println!("same bits without SIMD; built for WebAssembly, but not run there: node is missing");
+        return Ok(());
+    }
+    let module = target_folder().join(WASM_TARGET).join("debug/shadowfit_determinism.wasm");
+    let host = process::root().join("tests/determinism/hash.mjs");
+    process::run(Command::new("node").arg(host).arg(module))
+}
+
+/// Tests the core with the oldest glam of its range. The lock file holds the newest, with which all else is built.
+pub(super) fn oldest_glam(_: &Machine) -> Result<()> {
+    let manifest = fs::read_to_string(process::root().join("Cargo.toml"))?;
+    let oldest = oldest_version(&manifest, "glam").context("the workspace's Cargo.toml states no range of glam")?;
+    let folder = target_folder().join("oldest-glam");
+    copy_of_the_core(&folder, &manifest).with_context(|| format!("cannot write {}", folder.display()))?;
+    let update = |mode: &[&str]| {
+        let mut command = process::cargo_here("update");
+        command.args(["--package", "glam", "--precise", oldest]).args(mode).current_dir(&folder);
+        command
+    };
+    // Without a network the crate may still be in cargo's cache.
+    process::run(&mut update(&[])).or_else(|_| process::run(&mut update(&["--offline"])))?;
+    process::run(
+        process::cargo_here("test")
+            .args(["--package", "shadowfit", "--package", DETERMINISM, "--all-features", "--lib", "--tests"])
+            .current_dir(&folder)
+            .env("CARGO_TARGET_DIR", target_folder()),
+    )?;
+    println!("the core's tests passed with glam {oldest}, with the same bits");
+    Ok(())
+}
+
+/// Checks the core with the oldest Rust that it promises, which is older than the workspace's.
+pub(super) fn msrv(_: &Machine) -> Result<()> {
+    let manifest = fs::read_to_string(process::root().join("crates/shadowfit/Cargo.toml"))?;
+    let promised = rust_version(&manifest).context("the core's Cargo.toml states no rust-version")?;
+    let installed = || {
+        let list = process::output_of(Command::new("rustup").args(["toolchain", "list"]))?;
+        list.lines()
+            .filter_map(|line| line.split_whitespace().next())
+            .find(|name| names(name, promised))
+            .map(String::from)
+    };
+    let toolchain = installed().or_else(|| {
+        let _ = process::run(Command::new("rustup").args(["toolchain", "install", promised, "--profile", "minimal"]));
+        installed()
+    });
+    let Some(toolchain) = toolchain else {
+        println!("the core promises Rust {promised}, which is NOT CHECKED here: rustup cannot install it");
+        return Ok(());
+    };
+    process::run(
+        Command::new("rustup")
+            .args(["run", &toolchain, "cargo", "check", "--package", "shadowfit", "--all-features"])
+            .current_dir(process::root())
+            .env("CARGO_TARGET_DIR", target_folder().join("msrv")),
+    )
+}
+
+/// Whether rustup has a target for the Rust in use, or can add it.
+fn has_target(target: &str) -> bool {
+    process::succeeds(Command::new("rustup").args(["target", "add", target]))
+}
+
+fn target_folder() -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| process::root().join("target"), PathBuf::from)
+}
+
+/// Whether a toolchain, as rustup lists it, is of a release.
+fn names(toolchain: &str, version: &str) -> bool {
+    let number = toolchain.split('-').next().unwrap_or_default();
+    is_release(&format!("rustc {number}"), version)
+}
+
+/// The least version of a dependency in the workspace's manifest that states a range.
+fn oldest_version<'a>(manifest: &'a str, dependency: &str) -> Option<&'a str> {
+    let line = manifest.lines().find(|line| line.split('=').next().is_some_and(|name| name.trim() == dependency))?;
+    let range = &line[line.find(">=")? + 2..];
+    range.split([',', '"']).next().map(str::trim)
+}
+
+/// Writes a workspace of the core and its hash alone, so that its lock file can differ.
+fn copy_of_the_core(folder: &Path, manifest: &str) -> Result<()> {
+    let _ = fs::remove_dir_all(folder);
+    let root = process::root();
+    for part in ["crates/shadowfit", "tests/determinism"] {
+        copy_folder(&root.join(part), &folder.join(part))?;
+    }
+    fs::copy(root.join("Cargo.lock"), folder.join("Cargo.lock"))?;
+    let workspace = sections(manifest, |header| header.starts_with("[workspace") || header.starts_with("[profile"));
+    fs::write(folder.join("Cargo.toml"), workspace)?;
+    // Benchmarks have nothing to say here, and take the longest to build.
+    let core = folder.join("crates/shadowfit/Cargo.toml");
+    let without_benches = sections(&fs::read_to_string(&core)?, |header| header != "[[bench]]");
+    let lines: Vec<&str> = without_benches.lines().filter(|line| !line.starts_with("criterion")).collect();
+    fs::write(core, lines.join("\n") + "\n")?;
+    fs::remove_dir_all(folder.join("crates/shadowfit/benches"))?;
+    Ok(())
+}
+
+fn copy_folder(from: &Path, to: &Path) -> Result<()> {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from)? {
+        let entry = entry?;
+        let place = to.join(entry.file_name());
+        if entry.file_type()?.is_dir() {
+            copy_folder(&entry.path(), &place)?;
+        } else {
+            fs::copy(entry.path(), place)?;
+        }
+    }
+    Ok(())
+}
+
+/// The sections of a manifest whose header is kept.
+fn sections(manifest: &str, keep: impl Fn(&str) -> bool) -> String {
+    let mut is_kept = false;
+    let mut kept = String::new();
+    for line in manifest.lines() {
+        if line.starts_with('[') {
+            is_kept = keep(line.trim());
+        }
+        if is_kept {
+            kept.push_str(line);
+            kept.push('\n');
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_version_of_a_range_is_read() {
+        let manifest = "[x]\nglam-extra = \"1\"\nglam = { version = \">=0.33.2, <0.35\", default-features = false }\n";
+        assert_eq!(oldest_version(manifest, "glam"), Some("0.33.2"));
+        assert_eq!(oldest_version(manifest, "glam-extra"), None);
+    }
+
+    #[test]
+    fn sections_are_kept_whole() {
+        let manifest = "[a]\nx = [1]\n[[bench]]\nname = \"b\"\n[a.b]\ny = 2\n";
+        assert_eq!(sections(manifest, |header| header != "[[bench]]"), "[a]\nx = [1]\n[a.b]\ny = 2\n");
+    }
+
+    #[test]
+    fn a_toolchain_is_known_by_its_release() {
+        assert!(names("1.88.0-x86_64-unknown-linux-gnu", "1.88"));
+        assert!(names("1.88-x86_64-unknown-linux-gnu", "1.88"));
+        assert!(!names("1.87.0-x86_64-unknown-linux-gnu", "1.88"));
+        assert!(!names("stable-x86_64-unknown-linux-gnu", "1.88"));
+    }
+}
