@@ -16,30 +16,30 @@ const COLUMNS: usize = 32;
 const ROWS: usize = 18;
 
 /// Boxes kept along each ray. A box is mostly air, so what is behind the first one may be seen.
-const LAYERS: usize = 3;
+const LAYERS: usize = 6;
 
 /// How much less each further box counts. Chosen with the two weights below on real scenes:
 /// counting the first box alone misjudges cuts where boxes are loose.
-const FURTHER: f64 = 0.8;
+const FURTHER: f64 = 0.85;
 
 /// What a ray counts for the boxes that it begins in, which may hold anything up to their ends.
 const AROUND: f64 = 0.1;
 
 /// Shares of the rays that first meet a box in each bin; even ones where no box is known.
 pub(super) fn weights(content: &Content, bins: &Bins) -> Weights {
-    let mut spread = Spread { bins, weights: [[0.0; CLASSES]; BINS] };
+    let mut spread = Spread { weights: [[0.0; CLASSES]; BINS] };
     for (view_index, view) in content.views().enumerate() {
         let mut rays = [Ray::NOTHING; COLUMNS * ROWS];
         let grid = Grid::new(&view);
-        content.each_receiver(view_index, |min, max| grid.meet(&view, min, max, &mut rays));
+        content.each_receiver(view_index, |min, max| grid.meet(&view, bins, min, max, &mut rays));
         for ray in rays {
             let mut weight = 1.0;
-            for (enter, leave) in ray.layers.into_iter().filter(|layer| layer.0 < f32::MAX) {
+            for (enter, leave) in ray.layers.into_iter().filter(|layer| layer.0 < NOWHERE) {
                 spread.add(enter, leave, weight);
                 weight *= FURTHER;
             }
-            if ray.around > 0.0 {
-                spread.add(view.near as f32, ray.around, weight * AROUND);
+            if ray.around < NOWHERE {
+                spread.add(0, ray.around, weight * AROUND);
             }
         }
     }
@@ -50,29 +50,31 @@ pub(super) fn weights(content: &Content, bins: &Bins) -> Weights {
     spread.weights.map(|classes| classes.map(|weight| weight / total))
 }
 
+/// Stands for no bin.
+const NOWHERE: u8 = u8::MAX;
+
 /// What a ray meets.
 #[derive(Clone, Copy)]
 struct Ray {
-    /// View depths at which it enters and leaves the nearest boxes.
-    layers: [(f32, f32); LAYERS],
-    /// View depth at which it leaves the boxes that it begins in.
-    around: f32,
+    /// Bins of the view depths at which it enters and leaves the nearest boxes.
+    layers: [(u8, u8); LAYERS],
+    /// Bin of the view depth at which it leaves the boxes that it begins in.
+    around: u8,
 }
 
 impl Ray {
-    const NOTHING: Self = Self { layers: [(f32::MAX, f32::MAX); LAYERS], around: 0.0 };
+    const NOTHING: Self = Self { layers: [(NOWHERE, NOWHERE); LAYERS], around: NOWHERE };
 }
 
 /// Weights spread over bins.
-struct Spread<'a> {
-    bins: &'a Bins,
+struct Spread {
     weights: Weights,
 }
 
-impl Spread<'_> {
-    /// Adds a weight, evenly over the log depths of a range.
-    fn add(&mut self, near: f32, far: f32, weight: f64) {
-        let (first, last) = (self.bins.of(f64::from(near)), self.bins.of(f64::from(far)));
+impl Spread {
+    /// Adds a weight, evenly over the bins of a range.
+    fn add(&mut self, first: u8, last: u8, weight: f64) {
+        let (first, last) = (usize::from(first), usize::from(last));
         let share = weight / (last - first + 1) as f64;
         for bin in &mut self.weights[first..=last] {
             // Boxes tell nothing of slopes.
@@ -109,7 +111,7 @@ impl Grid {
     }
 
     /// Lets all rays meet a box.
-    fn meet(&self, view: &View, min: DVec3, max: DVec3, rays: &mut [Ray; COLUMNS * ROWS]) {
+    fn meet(&self, view: &View, bins: &Bins, min: DVec3, max: DVec3, rays: &mut [Ray; COLUMNS * ROWS]) {
         let Some((columns, rows)) = covered(view, min, max) else { return };
         for row in rows {
             let [first, last] = self.row(row);
@@ -119,11 +121,12 @@ impl Grid {
                 let x = column as f64;
                 let (start, end) = (first.0 + start_step * x, first.1 + end_step * x);
                 let Some((enter, leave)) = crossing(start, end, min, max) else { continue };
-                let depth = |t: f64| (view.near + (view.far - view.near) * t) as f32;
+                let bin = |t: f64| bins.of(view.near + (view.far - view.near) * t) as u8;
                 let ray = &mut rays[row * COLUMNS + column];
-                let mut layer = (depth(enter), depth(leave));
+                let mut layer = (bin(enter), bin(leave));
                 if enter <= 0.0 {
-                    ray.around = ray.around.max(layer.1);
+                    // The farther of two ends; there is none yet at first.
+                    ray.around = if ray.around == NOWHERE { layer.1 } else { ray.around.max(layer.1) };
                     continue;
                 }
                 for kept in &mut ray.layers {
