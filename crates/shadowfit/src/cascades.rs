@@ -7,9 +7,9 @@ mod hold;
 
 use core::ops::Deref;
 
-use glam::DVec2;
+use glam::{DVec2, Vec3};
 
-use crate::fits::{self, Content, Light, Range, Volume};
+use crate::fits::{self, Content, Light, Placing, Range, Volume};
 use crate::motion::Motion;
 use crate::settings::{CascadeSettings, FitKind, FitSettings, MAX_CASCADES, Stabilise};
 use crate::splits::{Chooser, Cuts};
@@ -56,6 +56,7 @@ impl Deref for Cascades {
 pub struct CascadeFitter {
     cuts: Option<HeldCuts>,
     maps: [Option<HeldMap>; MAX_CASCADES],
+    depths: [Option<HeldDepth>; MAX_CASCADES],
     last_view: Option<ViewFrustum>,
     /// What the state was made with; any change begins anew.
     settings: Option<CascadeSettings>,
@@ -70,6 +71,16 @@ struct HeldCuts {
     spread: (f64, f64),
     /// Frames since they were last compared with what would be best.
     age: u32,
+}
+
+/// Depth range of an earlier frame's map that is not held itself.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct HeldDepth {
+    /// Direction toward the light.
+    to_light: Vec3,
+    /// Far and near plane along it from the world's origin, in metres.
+    z: (f64, f64),
 }
 
 /// Frames between two comparisons of held cuts with what would be best, which costs most of a
@@ -129,14 +140,16 @@ impl CascadeFitter {
         let cuts = choose_cuts(before.and_then(|before| before.cuts), &chooser)?;
         cascades.count = settings.count as usize;
         let mut held = None;
-        let mut places = Places { content: &content, settings, light, range, points };
+        let depths = before.map_or([None; MAX_CASCADES], |before| before.depths);
+        let mut places = Places { content: &content, settings, light, range, depths, points };
         if settings.stabilise == Stabilise::Hysteresis {
             held = Some(places.hold(input, before, &cuts.cuts, cascades)?);
         } else {
             places.fit(&cuts.cuts, cascades)?;
         }
+        let depths = places.depths;
         part_voids(&mut cascades.maps[..cascades.count]);
-        self.cuts = Some(cuts);
+        (self.cuts, self.depths) = (Some(cuts), depths);
         self.last_view = Some(input.views[0]);
         if !is_continued {
             (self.settings, self.maps) = (Some(*settings), [None; MAX_CASCADES]);
@@ -170,6 +183,8 @@ struct Places<'a, 'b> {
     settings: &'a CascadeSettings,
     light: Light,
     range: Range,
+    /// Depth ranges of the last frame, then of this one.
+    depths: [Option<HeldDepth>; MAX_CASCADES],
     points: &'a mut [DVec2],
 }
 
@@ -179,10 +194,22 @@ impl Places<'_, '_> {
         for i in 0..cascades.count {
             let slice = self.slice(cuts, i);
             let settings = map_settings(self.settings, i);
-            let volume = fit_anew(self.content, &self.light, &settings, self.settings.stabilise, slice, self.points)?;
+            let volume = self.fit_anew(i, &settings, slice)?;
             self.write(&mut cascades.maps[i], &volume, &settings, cuts, i)?;
         }
         Ok(())
+    }
+
+    /// One map of this frame alone, but for its depth range.
+    fn fit_anew(&mut self, map: usize, settings: &FitSettings, slice: Range) -> Result<Volume, FitError> {
+        let placing = if self.settings.stabilise == Stabilise::Snap { Placing::OnGrid } else { Placing::Tight };
+        let light = self.light(settings);
+        let mut volume = fits::fit_slice(self.content, &light, settings, slice, placing, self.points)?;
+        let to_light = volume.axes.z;
+        let held = self.depths[map].filter(|held| held.to_light == to_light).map(|held| held.z);
+        grid::steady(&mut volume, self.content.origin, held, f64::from(self.settings.hold.waste));
+        self.depths[map] = volume.grid.map(|grid| HeldDepth { to_light, z: grid.z });
+        Ok(volume)
     }
 
     /// All maps, held ones while they serve.
@@ -201,7 +228,7 @@ impl Places<'_, '_> {
             let slice = self.slice(cuts, i);
             let settings = map_settings(self.settings, i);
             let volume = if settings.kind == FitKind::XnaSample {
-                fits::fit_slice(self.content, &self.light(&settings), &settings, slice, self.points)?
+                fits::fit_slice(self.content, &self.light(&settings), &settings, slice, Placing::Tight, self.points)?
             } else {
                 let held = frame.place(before.and_then(|before| before.maps[i]), &settings, slice, self.points)?;
                 *map = Some(held);
@@ -220,7 +247,7 @@ impl Places<'_, '_> {
     /// The view depths that a map covers; those of all maps where it has none.
     fn slice(&self, cuts: &Cuts, map: usize) -> Range {
         let slice = slice_range(cuts, map, self.settings, self.range);
-        if is_void(self.content.views, slice) { self.range } else { slice }
+        if is_void(self.content.views, slice) { self.range } else { widened(slice) }
     }
 
     /// Writes a map where it stands, since it is large.
@@ -262,26 +289,6 @@ fn part_voids(maps: &mut [CascadeMap]) {
     }
 }
 
-/// One map of this frame alone.
-fn fit_anew(
-    content: &Content,
-    light: &Light,
-    settings: &FitSettings,
-    stabilise: Stabilise,
-    slice: Range,
-    points: &mut [DVec2],
-) -> Result<Volume, FitError> {
-    let is_snapped = stabilise == Stabilise::Snap && !matches!(settings.kind, FitKind::Sphere | FitKind::XnaSample);
-    if !is_snapped {
-        return fits::fit_slice(content, light, settings, slice, points);
-    }
-    // Margins and the kernel's texels are added once, by the grid.
-    let mut volume = fits::fit_slice(content, light, &FitSettings { kernel_margin: 0.0, ..*settings }, slice, points)?;
-    grid::snap(&mut volume, content.origin, settings);
-    volume.light_at_near_plane();
-    Ok(volume)
-}
-
 /// The settings of one of the maps.
 fn map_settings(settings: &CascadeSettings, map: usize) -> FitSettings {
     let fit = settings.fit;
@@ -300,6 +307,17 @@ fn slice_range(cuts: &Cuts, map: usize, settings: &CascadeSettings, whole: Range
     let near = if map == 0 { whole.near } else { cuts[map] - settings.overlap * (cuts[map] - cuts[map - 1]) };
     Range { near, far: cuts[map + 1] }
 }
+
+/// The view depths that a map is fitted to: a shader's rounded view depth may put a point into the
+/// map beside the one that it belongs to.
+fn widened(slice: Range) -> Range {
+    let rounding = slice.far.abs() * DEPTH_ROUNDING;
+    Range { near: slice.near - rounding, far: slice.far + rounding }
+}
+
+/// Rounding of a view depth, as a share of it: nine times 2⁻²⁴ of a point's distance, which in the
+/// corner of a wide view is up to seven times its depth.
+const DEPTH_ROUNDING: f32 = 64.0 / 16_777_216.0;
 
 /// Checks what is new beside a single fit's settings.
 fn check(input: &FitInput, settings: &CascadeSettings) -> Result<(Light, f32), FitError> {

@@ -44,33 +44,79 @@ pub(crate) fn anchor(axes: &LightAxes, origin: DVec3) -> DVec3 {
     axes.project(origin)
 }
 
-/// Depth steps of a snapped map in its range: near and far plane stay where they are until what is
-/// covered has moved by one of them.
-pub(crate) const DEPTH_STEPS: f64 = 16.0;
+/// Where a map lies on the world's grid. Lines are counted from the world's origin along the map's
+/// axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Grid {
+    /// Grid line of the map's least corner.
+    pub(crate) first: DVec2,
+    /// Size of a texel, in metres.
+    pub(crate) texel: DVec2,
+    /// Far and near plane along the light's z from the world's origin, in metres; in steps once it
+    /// has been [`steadied`].
+    pub(crate) z: (f64, f64),
+}
 
-/// Rounds a volume's extents up and moves it to the world's grid, so that it still holds what it
-/// held. The near plane is left for the caster policy to place.
+/// Steps of a map's depth range in its length: near and far plane stay where they are until what
+/// they hold has moved by about one of them.
+const DEPTH_STEPS: f64 = 16.0;
+
+/// Rounds a volume's extents across the light up and moves it to the world's grid, so that it still
+/// holds what it held, with the kernel's texels around it.
 pub(crate) fn snap(volume: &mut Volume, origin: DVec3, settings: &FitSettings) {
+    volume.grid = Some(snapped(volume, origin, settings));
+}
+
+/// Texels that are left for what a map on the grid must hold.
+pub(crate) fn usable(settings: &FitSettings) -> DVec2 {
+    // One texel is lost to the shift onto the grid.
+    settings.resolution.as_dvec2() - (2.0 * f64::from(settings.kernel_margin) + 1.0)
+}
+
+/// As [`snap`], and gives where the volume came to lie.
+pub(crate) fn snapped(volume: &mut Volume, origin: DVec3, settings: &FitSettings) -> Grid {
     let anchor = anchor(&volume.axes, origin);
     let resolution = settings.resolution.as_dvec2();
     let kernel = f64::from(settings.kernel_margin);
-    // One texel is lost to the shift onto the grid.
-    let usable = resolution - (2.0 * kernel + 1.0);
-    let size = volume.max - volume.min;
-    // The three extents of a sphere are one.
+    let usable = usable(settings);
+    // The rounding of a map that is larger than what it holds is that of its own extent.
+    let size = (volume.max - volume.min).truncate();
+    let pad = ROUNDING * (size * resolution / usable).max_element();
+    let size = size + 2.0 * pad;
     let width = quantised(size.x);
-    let like_x = |length: f64| if length == size.x { width } else { quantised(length) };
-    let texel = DVec2::new(width, like_x(size.y)) / usable;
-    let first = first_line(volume.min.truncate() + anchor.truncate(), texel, kernel);
+    let texel = DVec2::new(width, if size.y == size.x { width } else { quantised(size.y) }) / usable;
+    let line = (volume.min.truncate() - pad + anchor.truncate()) / texel - kernel;
+    let first = DVec2::new(libm::floor(line.x), libm::floor(line.y));
     let min = first * texel - anchor.truncate();
-    let depth = like_x(size.z);
-    let step = depth / DEPTH_STEPS;
-    let z = libm::floor((volume.min.z + anchor.z) / step) * step - anchor.z;
-    (volume.min, volume.max) = (min.extend(z), (min + texel * resolution).extend(z + depth + step));
+    let z = (volume.min.z, volume.max.z);
+    (volume.min, volume.max) = (min.extend(z.0), (min + texel * resolution).extend(z.1));
+    Grid { first, texel, z: (z.0 + anchor.z, z.1 + anchor.z) }
 }
 
-/// The last grid line before a position that leaves the kernel's texels free.
-fn first_line(position: DVec2, texel: DVec2, kernel: f64) -> DVec2 {
-    let line = position / texel - kernel;
-    DVec2::new(libm::floor(line.x), libm::floor(line.y))
+/// Puts the near and far plane of a volume on the grid to a range that holds them: one that is held
+/// from an earlier frame, while it does and is no more than `waste` times as long as a new one.
+pub(crate) fn steady(volume: &mut Volume, origin: DVec3, held: Option<(f64, f64)>, waste: f64) {
+    let anchor = anchor(&volume.axes, origin).z;
+    if let Some(grid) = &mut volume.grid {
+        grid.z = steadied(held, (volume.min.z + anchor, volume.max.z + anchor), waste);
+        (volume.min.z, volume.max.z) = (grid.z.0 - anchor, grid.z.1 - anchor);
+        volume.light_at_near_plane();
+    }
+}
+
+/// A depth range that holds another, both along the light's z from the world's origin, in metres:
+/// the held one, or a new one in steps of its length.
+pub(crate) fn steadied(held: Option<(f64, f64)>, (low, high): (f64, f64), waste: f64) -> (f64, f64) {
+    // A larger range rounds more.
+    let pad = 2.0 * ROUNDING * (high - low);
+    let depth = quantised(high - low + 2.0 * pad);
+    if let Some(held) = held {
+        let (pad, length) = (ROUNDING * (held.1 - held.0), held.1 - held.0);
+        if held.0 <= low - pad && held.1 >= high + pad && length <= (depth + depth / DEPTH_STEPS) * waste {
+            return held;
+        }
+    }
+    let step = depth / DEPTH_STEPS;
+    let start = libm::floor((low - pad) / step) * step;
+    (start, start + depth + step)
 }

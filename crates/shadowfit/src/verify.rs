@@ -237,7 +237,8 @@ fn caster_reach(fit: &LightFit, claim: &Claim, distance: f64) -> f64 {
     let texel = size / fit.resolution.as_dvec2();
     let reach = claim.reach.disc.as_dvec2() + f64::from(claim.reach.taps + HARDWARE_SNAP);
     let rounding = SHIFT_ROUNDINGS * ROUNDING * (distance + size.max_element());
-    (reach * texel).max_element() + f64::from(claim.normal_offset) + rounding
+    let texels = reach * texel;
+    libm::sqrt(texels.dot(texels)) + f64::from(claim.normal_offset) + rounding
 }
 
 /// Roundings that shift a receiver and a caster against each other across the light, as multiples

@@ -16,12 +16,13 @@
 use glam::{DVec2, DVec3};
 
 use crate::axes::LightAxes;
-use crate::fits::{self, Content, Footprint, Light, Range, Volume};
+use crate::fits::{self, Content, Footprint, Light, Placing, Range, Volume};
+use crate::grid::{self, Grid};
 use crate::light_fit::Constraint;
 use crate::motion::Motion;
 use crate::rectangle::Rectangle;
-use crate::settings::{FitKind, FitSettings, HoldSettings};
-use crate::{FitError, FitInput, ViewFrustum, Workspace, grid};
+use crate::settings::{CasterPolicy, FitKind, FitSettings, HoldSettings};
+use crate::{FitError, FitInput, ViewFrustum, Workspace};
 
 /// A map of an earlier frame, in the world's own coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +63,7 @@ pub(crate) fn volume(held: &HeldMap, origin: DVec3) -> Volume {
         depth_range: 0.0,
         set_by: held.set_by,
         is_empty: held.is_empty,
+        grid: Some(Grid { first: held.first, texel: held.texel, z: held.z }),
     };
     volume.light_at_near_plane();
     volume
@@ -76,7 +78,9 @@ impl Frame<'_, '_> {
         slice: Range,
         points: &mut [DVec2],
     ) -> Result<HeldMap, FitError> {
-        let fresh = fits::fit_slice(self.content, &self.light, settings, slice, points)?;
+        // Margins in texels and the near plane depend on the texels of the map that is kept or made.
+        let plain = FitSettings { kernel_margin: 0.0, casters: CasterPolicy::None, ..*settings };
+        let fresh = fits::fit_slice(self.content, &self.light, &plain, slice, Placing::Tight, points)?;
         if let Some(held) = held.filter(|held| held.is_of(&fresh, settings))
             && let Some(kept) = self.keep(&held, &fresh, settings, slice, points)?
         {
@@ -104,7 +108,7 @@ impl Frame<'_, '_> {
         let input = FitInput { views: &views[..now + ahead.len()], ..*self.input };
         let mut workspace = Workspace::new(points);
         let (content, points) = Content::new(&input, &mut workspace)?;
-        fits::fit_slice(&content, &self.light, settings, slice, points)
+        fits::fit_slice(&content, &self.light, settings, slice, Placing::Tight, points)
     }
 
     /// The held map moved by whole texels, if what must be covered fits into it and it is not too
@@ -119,43 +123,48 @@ impl Frame<'_, '_> {
     ) -> Result<Option<HeldMap>, FitError> {
         let needed = self.needed(held, settings, slice, points)?;
         let size = fresh.max - fresh.min;
-        let held_size = held.texel * held.resolution;
+        let held_size = held.texel * grid::usable(settings);
         let waste = f64::from(self.hold.waste);
         if held_size.x * held_size.y > size.x * size.y * waste * waste {
             return Ok(None);
         }
         let anchor = grid::anchor(&held.axes, self.input.views[0].origin);
-        let low = floor((needed.min + anchor.truncate()) / held.texel);
-        let high = -floor(-((needed.max + anchor.truncate()) / held.texel)) - held.resolution;
+        let low = floor((needed.across.min + anchor.truncate()) / held.texel);
+        let high = -floor(-((needed.across.max + anchor.truncate()) / held.texel)) - held.resolution;
         if high.x > low.x || high.y > low.y {
             return Ok(None);
         }
         let mut kept = *held;
         kept.first = held.first.min(low).max(high);
-        kept.cover_depth(fresh, anchor.z);
+        kept.z = grid::steadied(Some(held.z), (needed.z.0 + anchor.z, needed.z.1 + anchor.z), waste);
         kept.is_empty = fresh.is_empty;
         kept.set_by = [Constraint::Held; 6];
         Ok(Some(kept))
     }
 
-    /// What must be covered, along the held axes.
+    /// What must be covered and where the near plane must be, along the held axes.
     fn needed(
         &self,
         held: &HeldMap,
         settings: &FitSettings,
         slice: Range,
         points: &mut [DVec2],
-    ) -> Result<Rectangle, FitError> {
+    ) -> Result<Needed, FitError> {
         let footprint = match settings.kind {
             FitKind::Focused => Footprint::of_receivers(self.content, held.axes, slice, points)?,
             _ => Footprint::of_views(self.content, held.axes, slice, points)?,
         };
-        let pad = footprint.reach * grid::ROUNDING + f64::from(settings.margin);
+        let extent = (held.texel * held.resolution).max_element();
+        let rounding = (footprint.reach + extent) * grid::ROUNDING;
+        let pad = rounding + f64::from(settings.margin);
         let kernel = held.texel * f64::from(settings.kernel_margin);
-        let mut needed = Rectangle::around(footprint.outline, DVec2::X);
-        needed.min -= kernel + pad;
-        needed.max += kernel + pad;
-        Ok(needed)
+        let mut across = Rectangle::around(footprint.outline, DVec2::X);
+        across.min -= kernel + pad;
+        across.max += kernel + pad;
+        let reach = fits::filter_reach(held.texel, settings, rounding);
+        let (low, high) = (footprint.z.0 - pad, footprint.z.1 + pad);
+        let near = fits::place_near(high, &held.axes, footprint.outline, self.content, settings, reach);
+        Ok(Needed { across, z: (low, near.z), near_set_by: near.set_by })
     }
 
     /// A new map with room for the motion to come.
@@ -166,20 +175,14 @@ impl Frame<'_, '_> {
         slice: Range,
         points: &mut [DVec2],
     ) -> Result<HeldMap, FitError> {
-        // Margins in texels are added by the grid, whose texels are larger than a fresh fit's.
+        let mut volume = *fresh;
         let plain = FitSettings { kernel_margin: 0.0, ..*settings };
-        let now = if settings.kernel_margin > 0.0 {
-            fits::fit_slice(self.content, &self.light, &plain, slice, points)?
-        } else {
-            *fresh
-        };
-        let mut volume = now;
         let mut frames = self.hold.horizon;
         while let Some(motion) = self.motion.filter(|motion| frames > 0 && !motion.is_still()) {
             let ahead = [motion.after(&self.input.views[0], frames / 2), motion.after(&self.input.views[0], frames)];
             // Without storage or view to spare nothing is looked ahead: the map serves now all the same.
             let Ok(larger) = self.fit_ahead(&ahead, &plain, slice, points) else { break };
-            let (size, old) = (larger.max - larger.min, now.max - now.min);
+            let (size, old) = (larger.max - larger.min, fresh.max - fresh.min);
             let growth = f64::from(self.hold.growth);
             if size.x * size.y <= old.x * old.y * growth * growth {
                 volume = larger;
@@ -190,26 +193,36 @@ impl Frame<'_, '_> {
         let room = (volume.max - volume.min).truncate() * (0.5 * f64::from(self.hold.margin));
         volume.min -= room.extend(0.0);
         volume.max += room.extend(0.0);
-        grid::snap(&mut volume, self.input.views[0].origin, settings);
-        Ok(HeldMap::new(&volume, self.input.views[0].origin, settings, fresh))
+        let origin = self.input.views[0].origin;
+        let grid = grid::snapped(&mut volume, origin, settings);
+        let mut map = HeldMap::new(&volume, grid, settings, fresh);
+        let needed = self.needed(&map, settings, slice, points)?;
+        let anchor = grid::anchor(&map.axes, origin).z;
+        let z = (grid.z.0.min(needed.z.0 + anchor), grid.z.1.max(needed.z.1 + anchor));
+        map.z = grid::steadied(None, z, 1.0);
+        map.set_by[5] = needed.near_set_by.unwrap_or(map.set_by[5]);
+        Ok(map)
     }
+}
+
+/// What a map must hold in this frame, along its axes and relative to the origin.
+struct Needed {
+    across: Rectangle,
+    z: (f64, f64),
+    near_set_by: Option<Constraint>,
 }
 
 /// Most views that held maps are fitted to, those looked ahead included.
 const MAX_VIEWS: usize = 10;
 
 impl HeldMap {
-    fn new(volume: &Volume, origin: DVec3, settings: &FitSettings, fresh: &Volume) -> Self {
-        let anchor = grid::anchor(&volume.axes, origin);
-        let resolution = settings.resolution.as_dvec2();
-        let texel = (volume.max - volume.min).truncate() / resolution;
-        let line = (volume.min + anchor).truncate() / texel;
+    fn new(volume: &Volume, grid: Grid, settings: &FitSettings, fresh: &Volume) -> Self {
         Self {
             axes: volume.axes,
-            texel,
-            first: DVec2::new(libm::round(line.x), libm::round(line.y)),
-            resolution,
-            z: (volume.min.z + anchor.z, volume.max.z + anchor.z),
+            texel: grid.texel,
+            first: grid.first,
+            resolution: settings.resolution.as_dvec2(),
+            z: grid.z,
             is_empty: fresh.is_empty,
             set_by: fresh.set_by,
         }
@@ -218,18 +231,6 @@ impl HeldMap {
     /// Whether the map is of the same light and resolution.
     fn is_of(&self, fresh: &Volume, settings: &FitSettings) -> bool {
         self.axes.z == fresh.axes.z && self.resolution == settings.resolution.as_dvec2()
-    }
-
-    /// Makes the depth range hold a fresh fit's, in steps of its own.
-    fn cover_depth(&mut self, fresh: &Volume, anchor: f64) {
-        let (low, high) = (fresh.min.z + anchor, fresh.max.z + anchor);
-        if low >= self.z.0 && high <= self.z.1 {
-            return;
-        }
-        let depth = grid::quantised((high - low).max(self.z.1 - self.z.0));
-        let step = depth / grid::DEPTH_STEPS;
-        let start = libm::floor(low / step) * step;
-        self.z = (start, start + depth + step);
     }
 }
 

@@ -21,11 +21,12 @@ use crate::axes::LightAxes;
 use crate::checks::{self, MAX_LENGTH};
 use crate::settings::{FitKind, FitSettings, RectangleKind};
 use crate::view::slice_corners;
-use crate::{FitError, FitInput, LightFit, ViewFrustum, Workspace};
+use crate::{FitError, FitInput, LightFit, ViewFrustum, Workspace, grid};
 
 pub(crate) use footprint::{Content, Footprint};
+pub(crate) use near_plane::{filter_reach, place as place_near};
 pub(crate) use outline::{Outline, Scratch};
-pub(crate) use volume::{ROUNDING, Volume};
+pub(crate) use volume::{Placing, ROUNDING, Volume};
 
 /// Fits the light's orthographic view-projection to a camera frustum, by the rule that
 /// [`FitSettings::kind`] names.
@@ -68,7 +69,9 @@ pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Re
 pub fn fit_scene(input: &FitInput, settings: &FitSettings, workspace: &mut Workspace) -> Result<LightFit, FitError> {
     let (light, distance) = prepare(input, settings)?;
     let (boxes, points) = Content::new(input, workspace)?;
-    let volume = fit_slice(&boxes, &light, settings, Range { near: f32::MIN, far: distance }, points)?;
+    let range = Range { near: f32::MIN, far: distance };
+    let mut volume = fit_slice(&boxes, &light, settings, range, Placing::Tight, points)?;
+    grid::steady(&mut volume, boxes.origin, None, 1.0);
     LightFit::from_volume(input.views[0].origin, &volume, settings)
 }
 
@@ -105,20 +108,21 @@ impl Light {
     }
 }
 
-/// One map around a range of view depths.
+/// One map around a range of view depths. The sphere's is always on the grid, the XNA sample's never.
 pub(crate) fn fit_slice(
     content: &Content,
     light: &Light,
     settings: &FitSettings,
     range: Range,
+    placing: Placing,
     points: &mut [DVec2],
 ) -> Result<Volume, FitError> {
     match settings.kind {
         FitKind::XnaSample => xna::volume(content, light, settings, range),
-        FitKind::FrustumAabb => aabb::volume(content, light, settings, range, points),
-        FitKind::Oriented => oriented::volume(content, light, settings, range, points),
+        FitKind::FrustumAabb => aabb::volume(content, light, settings, range, placing, points),
+        FitKind::Oriented => oriented::volume(content, light, settings, range, placing, points),
         FitKind::Sphere => sphere::volume(content, light, settings, range),
-        FitKind::Focused => focused::volume(content, light, settings, range, points),
+        FitKind::Focused => focused::volume(content, light, settings, range, placing, points),
     }
 }
 

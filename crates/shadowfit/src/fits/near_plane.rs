@@ -15,6 +15,7 @@ use glam::{DVec2, DVec3};
 
 use super::Content;
 use super::outline::{Outline, Scratch};
+use super::volume::ROUNDING;
 use crate::axes::LightAxes;
 use crate::light_fit::Constraint;
 use crate::settings::{CasterPolicy, FitSettings};
@@ -29,25 +30,26 @@ pub(crate) struct NearPlane {
 
 /// Places the near plane of a volume that so far ends at `covered` along the light's z.
 ///
-/// `outline` is the convex outline of what is covered, anticlockwise, in the plane of `axes`.
+/// `outline` is the convex outline of what is covered, anticlockwise, in the plane of `axes`;
+/// casters that stand no farther beside it than `reach` (in metres) count too.
 pub(crate) fn place(
     covered: f64,
     axes: &LightAxes,
     outline: &[DVec2],
     content: &Content,
     settings: &FitSettings,
-    pad: f64,
+    reach: f64,
 ) -> NearPlane {
-    let over = Outline::new(axes, outline, pad);
+    let over = Outline::new(axes, outline, reach);
     let z = match settings.casters {
         CasterPolicy::None | CasterPolicy::DepthClamp => covered,
         CasterPolicy::Extend => covered + f64::from(settings.caster_extension),
         CasterPolicy::SceneBounds => {
             let all = content.casters.boxes.iter().filter(|b| !b.is_empty()).fold(Aabb::EMPTY, |a, b| a.union(*b));
             let all = [all];
-            highest(&over, &Boxes { boxes: &all, ..content.casters }, content.origin, covered, pad)
+            highest(&over, &Boxes { boxes: &all, ..content.casters }, content.origin, covered)
         }
-        CasterPolicy::List => highest(&over, &content.casters, content.origin, covered, pad),
+        CasterPolicy::List => highest(&over, &content.casters, content.origin, covered),
     };
     let moved = match settings.casters {
         CasterPolicy::Extend => Constraint::CasterExtension,
@@ -57,13 +59,28 @@ pub(crate) fn place(
 }
 
 /// The greatest z of all casters over the outline, or `covered` where none reaches higher.
-fn highest(over: &Outline, casters: &Boxes, origin: DVec3, covered: f64, pad: f64) -> f64 {
+fn highest(over: &Outline, casters: &Boxes, origin: DVec3, covered: f64) -> f64 {
     let (offset, mut scratch) = (casters.origin - origin, Scratch::new());
     let mut z = covered;
     for aabb in casters.boxes.iter().filter(|aabb| !aabb.is_empty()) {
         let (min, max) = moved(aabb, offset);
-        let floor = z - pad;
-        over.parts_over(min, max, floor, &mut scratch, |corner| z = z.max(corner.z + pad));
+        let farthest = min.abs().max(max.abs()).element_sum();
+        let floor = z - farthest * ROUNDING;
+        over.parts_over(min, max, floor, &mut scratch, |corner| {
+            z = z.max(corner.z + corner.abs().element_sum() * ROUNDING);
+        });
     }
     z
 }
+
+/// How far beside the outline casters are read by a filter that the kernel's margin is enough for,
+/// in metres: a filter of reach E needs E - 1/2 texels of margin, and half a texel more is for the
+/// rasteriser. `rounding` is what receivers and casters may be shifted by, each.
+pub(crate) fn filter_reach(texel: DVec2, settings: &FitSettings, rounding: f64) -> f64 {
+    let texels = (f64::from(settings.kernel_margin) + 1.0) * texel.max_element();
+    (texels + 2.0 * rounding) * ANY_AXES + f64::from(settings.margin)
+}
+
+/// How far an outline must be [widened](Outline) to hold it widened by the diagonal of a unit
+/// square, whatever is held beyond that: √2 each.
+const ANY_AXES: f64 = 2.0;

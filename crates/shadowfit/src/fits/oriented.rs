@@ -7,7 +7,7 @@
 
 use glam::{DVec2, Vec3};
 
-use super::{Content, Footprint, Light, Range, Volume, fit_as};
+use super::{Content, Footprint, Light, Placing, Range, Volume, fit_as};
 use crate::settings::{FitKind, FitSettings};
 use crate::{FitError, LightFit, ViewFrustum};
 
@@ -26,8 +26,9 @@ pub(crate) fn volume(
     light: &Light,
     settings: &FitSettings,
     range: Range,
+    placing: Placing,
     points: &mut [DVec2],
 ) -> Result<Volume, FitError> {
     let footprint = Footprint::of_views(content, light.axes, range, points)?;
-    Ok(Volume::around(&footprint, content, settings, range))
+    Ok(Volume::around(&footprint, content, settings, range, placing))
 }

@@ -55,8 +55,8 @@ impl Scratch {
 }
 
 impl<'a> Outline<'a> {
-    /// An outline in the plane of `axes` (anticlockwise), widened by `pad` metres on all sides:
-    /// as far as a square with sides of 2 `pad` along the axes reaches.
+    /// An outline in the plane of `axes` (anticlockwise), widened by `pad` metres on all sides: it
+    /// then holds all that is as near to it, and nothing that is √2 times as far away.
     pub(crate) fn new(axes: &LightAxes, corners: &'a [DVec2], pad: f64) -> Self {
         let (mut min, mut max) = (DVec2::MAX, DVec2::MIN);
         for p in corners {
@@ -95,28 +95,61 @@ impl<'a> Outline<'a> {
         }
     }
 
-    /// A face cut by all edges of the outline moved outward by the pad.
+    /// A face cut by all edges of the outline moved outward by the pad, and across its sharp
+    /// corners, where those meet far outside:
+    ///
+    /// ```text
+    ///   ─────────────╮ cut across
+    ///     ╶────────● │
+    ///   ─────────────╯
+    /// ```
     fn clip<'s>(&self, face: [DVec3; 4], scratch: &'s mut Scratch) -> &'s Face {
         let [polygon, other] = &mut scratch.0;
-        let (mut polygon, mut other) = (polygon, other);
         polygon.corners[..4].copy_from_slice(&face);
         polygon.len = 4;
-        let n = self.corners.len();
-        for i in 0..if n < 3 { 0 } else { n } {
-            let (a, b) = (self.corners[i], self.corners[(i + 1) % n]);
-            let edge = b - a;
-            let slack = self.pad * (edge.x.abs() + edge.y.abs());
-            if cut(polygon, other, |p| edge.perp_dot(p.truncate() - a) + slack) {
+        let (mut polygon, mut other) = (polygon, other);
+        let mut cut_at = |corner: DVec2, outward: DVec2| {
+            if cut(polygon, other, |p| self.pad - outward.dot(p.truncate() - corner)) {
                 core::mem::swap(&mut polygon, &mut other);
             }
+        };
+        let n = self.corners.len();
+        let edges = || (0..n).filter_map(|i| direction(self.corners[i], self.corners[(i + 1) % n]));
+        let Some(mut before) = edges().next_back() else {
+            let [low, high] = [self.min + self.pad, self.max - self.pad];
+            for (corner, outward) in [(low, DVec2::NEG_X), (low, DVec2::NEG_Y), (high, DVec2::X), (high, DVec2::Y)] {
+                cut_at(corner, outward);
+            }
+            return polygon;
+        };
+        for i in 0..n {
+            let Some(edge) = direction(self.corners[i], self.corners[(i + 1) % n]) else { continue };
+            cut_at(self.corners[i], -edge.perp());
+            if edge.dot(before) < 0.0
+                && let Some(across) = direction(edge, before)
+            {
+                cut_at(self.corners[i], across);
+            }
+            before = edge;
         }
         polygon
     }
 }
 
+/// Unit vector from one point to another, if they are apart.
+fn direction(from: DVec2, to: DVec2) -> Option<DVec2> {
+    let d = to - from;
+    let length = libm::sqrt(d.dot(d));
+    if length > 0.0 { Some(d / length) } else { None }
+}
+
 /// Puts the part of a polygon where a linear function is not negative into `out` (I. Sutherland
-/// and G. Hodgman, "Reentrant polygon clipping", 1974). Whether there was room for it.
+/// and G. Hodgman, "Reentrant polygon clipping", 1974), if it is less than all and there is room
+/// for it, which is told.
 fn cut(polygon: &Face, out: &mut Face, inside: impl Fn(DVec3) -> f64) -> bool {
+    if polygon.corners[..polygon.len].iter().all(|corner| inside(*corner) >= 0.0) {
+        return false;
+    }
     out.len = 0;
     let mut fits = true;
     for i in 0..polygon.len {

@@ -71,7 +71,8 @@ pub(crate) fn volume(
     let sphere = around(content, range)?;
     let axes = light.axes;
     let centre = axes.project(sphere.centre);
-    let pad = f64::from(settings.margin) + grid::ROUNDING * (sphere.radius + checks::length(sphere.centre));
+    let rounding = grid::ROUNDING * (3.0 * sphere.radius + checks::length(sphere.centre));
+    let pad = f64::from(settings.margin) + rounding + 2.0 * SYMMETRY * sphere.radius;
     let extent = DVec3::splat(2.0 * (sphere.radius + pad));
     let mut volume = Volume {
         axes,
@@ -81,6 +82,7 @@ pub(crate) fn volume(
         depth_range: 0.0,
         set_by: [Constraint::Sphere; 6],
         is_empty: false,
+        grid: None,
     };
     grid::snap(&mut volume, content.origin, settings);
     // The whole map is swept toward the light, so that turning the camera moves no plane.
@@ -91,7 +93,9 @@ pub(crate) fn volume(
         (volume.min.x, volume.max.y),
     ]
     .map(|(x, y)| DVec2::new(x, y));
-    let near = near_plane::place(volume.max.z, &axes, &outline, content, settings, 0.0);
+    let texel = (volume.max - volume.min).truncate() / settings.resolution.as_dvec2();
+    let reach = 2.0 * rounding + texel.max_element();
+    let near = near_plane::place(volume.max.z, &axes, &outline, content, settings, reach);
     (volume.max.z, volume.set_by[5]) = (near.z, near.set_by.unwrap_or(Constraint::Sphere));
     volume.light_at_near_plane();
     Ok(volume)

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::{Content, Footprint, Range, near_plane, rectangle_kind};
 use crate::axes::LightAxes;
+use crate::grid::{self, Grid};
 use crate::light_fit::Constraint;
 use crate::rectangle::{self, Rectangle};
 use crate::settings::{FitSettings, RectangleKind};
@@ -24,12 +25,28 @@ pub(crate) struct Volume {
     /// What set the planes -x, +x, -y, +y, far, near.
     pub(crate) set_by: [Constraint; 6],
     pub(crate) is_empty: bool,
+    /// Where it lies on the world's grid, if it does.
+    pub(crate) grid: Option<Grid>,
 }
 
-/// What a box is enlarged by on each side, as a share of the greatest distance from the origin:
-/// the rounding of f32 positions, axes and translations, three times 2⁻²⁴, each of which may round
-/// the same way.
-pub(crate) const ROUNDING: f64 = 4.0 / 16_777_216.0;
+/// What a box is enlarged by on each side, as a share of the greatest distance from the origin and
+/// the box's own extent together.
+///
+/// A shader's f32 matrix times an f32 position is off by ten times 2⁻²⁴ of the sum of its terms,
+/// as [`verify`](crate::verify) counts, the matrix's elements by two and the frustum's corners by
+/// two more. The terms of the position sum to no more than its distance d, the translation is no
+/// more than d and half the extent e, and an offset of the texture or clip coordinates adds another
+/// half: 14 d + 12 (d + e), which 28 times 2⁻²⁴ of d + e is more than.
+pub(crate) const ROUNDING: f64 = 28.0 / 16_777_216.0;
+
+/// Whether a fit lies where it is tightest or on the world's grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Placing {
+    Tight,
+    /// With extents and place across the light [on the grid](grid::snap); the depth range is left
+    /// for [`grid::steady`].
+    OnGrid,
+}
 
 /// Extents below this share of a map's longer side, or of its distance from the origin, are
 /// widened to it: a flat wall seen edge-on from the light needs no width, but a matrix does.
@@ -37,13 +54,19 @@ const THINNEST: f64 = 1e-5;
 
 impl Volume {
     /// The box around a footprint by the settings' rectangle, margins and caster policy.
-    pub(crate) fn around(footprint: &Footprint, content: &Content, settings: &FitSettings, range: Range) -> Self {
+    pub(crate) fn around(
+        footprint: &Footprint,
+        content: &Content,
+        settings: &FitSettings,
+        range: Range,
+        placing: Placing,
+    ) -> Self {
         let rectangle = match rectangle_kind(settings) {
             RectangleKind::AxisAligned => Rectangle::around(footprint.outline, DVec2::X),
             RectangleKind::MinimumArea => rectangle::min_area(footprint.outline),
             RectangleKind::MinimumSquare => square(rectangle::min_square(footprint.outline)),
         };
-        Self::from_rectangle(&rectangle, footprint, content, settings, range)
+        Self::from_rectangle(&rectangle, footprint, content, settings, range, placing)
     }
 
     /// The box around a footprint across the light by a given rectangle.
@@ -53,13 +76,20 @@ impl Volume {
         content: &Content,
         settings: &FitSettings,
         range: Range,
+        placing: Placing,
     ) -> Self {
         let axes = footprint.axes.turned(rectangle.axis);
-        let pad = footprint.reach * ROUNDING + f64::from(settings.margin);
-        let thinnest = (rectangle.size().max_element()).max(footprint.reach) * THINNEST;
+        let longest = rectangle.size().max_element();
+        // That of the map, which the kernel's texels widen.
+        let resolution = settings.resolution.as_dvec2();
+        let widening = resolution / (resolution - 2.0 * f64::from(settings.kernel_margin));
+        let rounding = (rectangle.size() * widening + footprint.reach) * ROUNDING;
+        let pad = rounding + f64::from(settings.margin);
+        let thinnest = longest.max(footprint.reach) * THINNEST;
         let (min, max) = widened(rectangle.min - pad, rectangle.max + pad, thinnest);
-        let (min, max) = with_kernel(min, max, settings);
-        let (z_min, z_max) = widened(DVec2::splat(footprint.z.0 - pad), DVec2::splat(footprint.z.1 + pad), thinnest);
+        let z_pad = (footprint.z.1 - footprint.z.0 + footprint.reach) * ROUNDING + f64::from(settings.margin);
+        let (z_min, z_max) =
+            widened(DVec2::splat(footprint.z.0 - z_pad), DVec2::splat(footprint.z.1 + z_pad), thinnest);
         let mut volume = Self {
             axes,
             min: min.extend(z_min.x),
@@ -68,9 +98,19 @@ impl Volume {
             depth_range: 0.0,
             set_by: constraints(rectangle, footprint, content, range),
             is_empty: footprint.is_empty,
+            grid: None,
         };
-        let near = near_plane::place(volume.max.z, &footprint.axes, footprint.outline, content, settings, pad);
+        match placing {
+            Placing::Tight => (volume.min, volume.max) = with_kernel(volume.min, volume.max, settings),
+            Placing::OnGrid => grid::snap(&mut volume, content.origin, settings),
+        }
+        let texel = (volume.max - volume.min).truncate() / settings.resolution.as_dvec2();
+        let reach = near_plane::filter_reach(texel, settings, rounding.max_element());
+        let near = near_plane::place(volume.max.z, &footprint.axes, footprint.outline, content, settings, reach);
         (volume.max.z, volume.set_by[5]) = (near.z, near.set_by.unwrap_or(volume.set_by[5]));
+        // The rounding of the depth range, which casters may make far longer than what is covered.
+        let depth = (volume.max.z - volume.min.z) * ROUNDING;
+        (volume.min.z, volume.max.z) = (volume.min.z - depth, volume.max.z + depth);
         volume.light_at_near_plane();
         volume
     }
@@ -95,11 +135,11 @@ fn widened(min: DVec2, max: DVec2, thinnest: f64) -> (DVec2, DVec2) {
 }
 
 /// Leaves the kernel margin free on all sides.
-fn with_kernel(min: DVec2, max: DVec2, settings: &FitSettings) -> (DVec2, DVec2) {
+fn with_kernel(min: DVec3, max: DVec3, settings: &FitSettings) -> (DVec3, DVec3) {
     let resolution = settings.resolution.as_dvec2();
     let kernel = DVec2::splat(f64::from(settings.kernel_margin));
-    let margin = (max - min) / (resolution - kernel * 2.0) * kernel;
-    (min - margin, max + margin)
+    let margin = (max - min).truncate() / (resolution - kernel * 2.0) * kernel;
+    (min - margin.extend(0.0), max + margin.extend(0.0))
 }
 
 /// Share of a box's longest side within which its planes count as the view's own.

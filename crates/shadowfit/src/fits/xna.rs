@@ -69,5 +69,5 @@ pub(crate) fn around(
     let (min, max) = (min - margin, max + margin);
     let depth_range = 2.0 * (max.z - min.z);
     let set_by = [Constraint::View; 6];
-    Ok(Volume { axes, min, max, light_z: min.z, depth_range, set_by, is_empty: false })
+    Ok(Volume { axes, min, max, light_z: min.z, depth_range, set_by, is_empty: false, grid: None })
 }

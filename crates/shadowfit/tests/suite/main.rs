@@ -26,4 +26,5 @@ mod support;
 mod sweep;
 mod tightness;
 mod unprojection;
+mod verify;
 mod xna_cases;

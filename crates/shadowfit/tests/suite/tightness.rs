@@ -11,15 +11,20 @@ use crate::support::{KINDS, any_camera, any_direction, any_kind, apply, camera, 
 /// and 6e-6 in clip space, which is two wide.
 const TOLERANCE: f32 = 1e-5;
 
+/// The fits that promise no holes leave room for the worst rounding: 28 times 2⁻²⁴ of the distance
+/// and the extent, which with twelve short sides to the farthest corner is 2.2e-5 of a side, and
+/// 4.4e-5 in clip space.
+const ROOM: f32 = 6e-5;
+
 fn clip_bounds(fit: &LightFit, frustum: &ViewFrustum) -> (Vec3, Vec3) {
     let clip = frustum.corners.map(|c| apply(&fit.clip_from_world, c));
     (clip.into_iter().fold(Vec3::MAX, Vec3::min), clip.into_iter().fold(Vec3::MIN, Vec3::max))
 }
 
-fn assert_bounds(fit: &LightFit, frustum: &ViewFrustum, min: Vec3, max: Vec3) {
+fn assert_bounds(fit: &LightFit, frustum: &ViewFrustum, min: Vec3, max: Vec3, tolerance: f32) {
     let (low, high) = clip_bounds(fit, frustum);
     let error = (low - min).abs().max((high - max).abs()).max_element();
-    assert!(error <= TOLERANCE, "{low}..{high} instead of {min}..{max}");
+    assert!(error <= tolerance, "{low}..{high} instead of {min}..{max}");
 }
 
 fn fit_in(camera: &PerspectiveCamera, direction: Vec3, kind: FitKind, depth: DepthConvention) -> LightFit {
@@ -36,7 +41,7 @@ proptest! {
             (DepthConvention::NegativeOneToOne, -1.0),
         ] {
             let fit = fit_in(&camera, direction, FitKind::FrustumAabb, depth);
-            assert_bounds(&fit, &frustum, Vec3::new(-1.0, -1.0, z), Vec3::ONE);
+            assert_bounds(&fit, &frustum, Vec3::new(-1.0, -1.0, z), Vec3::ONE, ROOM);
         }
     }
 
@@ -51,7 +56,7 @@ proptest! {
             (DepthConvention::NegativeOneToOne, -1.0, 0.0),
         ] {
             let fit = fit_in(&camera, direction, FitKind::XnaSample, depth);
-            assert_bounds(&fit, &frustum, Vec3::new(-1.0, -1.0, from), Vec3::new(1.0, 1.0, to));
+            assert_bounds(&fit, &frustum, Vec3::new(-1.0, -1.0, from), Vec3::new(1.0, 1.0, to), TOLERANCE);
         }
     }
 
