@@ -82,6 +82,11 @@ fn run(args: &Args) -> Result<()> {
     let source = args.geometry.as_ref().filter(|_| needs);
     let file = runner::run(&scenarios, configuration, args.resolution, source)?;
     file.write(out)?;
-    println!("{}: {} frames, {:.1} µs a frame", out.display(), file.frames.len(), file.ns_per_fit.unwrap_or(0.0) * 1e-3);
+    println!(
+        "{}: {} frames, {:.1} µs a frame",
+        out.display(),
+        file.frames.len(),
+        file.ns_per_fit.unwrap_or(0.0) * 1e-3
+    );
     Ok(())
 }

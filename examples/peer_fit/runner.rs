@@ -5,8 +5,8 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use glam::{DMat4, DVec2, DVec3, Vec3};
 use shadowfit::{
-    Aabb, Boxes, CascadeFitter, CascadeSettings, Cascades, Clusters, DepthHistogram, FitInput, NormalCone, PerspectiveCamera,
-    ViewFrustum, Workspace,
+    Aabb, Boxes, CascadeFitter, CascadeSettings, Cascades, Clusters, DepthHistogram, FitInput, NormalCone,
+    PerspectiveCamera, ViewFrustum, Workspace,
 };
 use shadowfit_truth::Tracer;
 use shadowfit_truth::peers::{FitFile, FitFrame, FitMap, Frame, Scenarios, Scene};
