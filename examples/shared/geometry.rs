@@ -16,9 +16,9 @@ const TRIANGLE_BYTES: usize = 36;
 /// Corners, world space, metres.
 pub(crate) type Corners = [Vec3; 3];
 
-/// Where the triangles come from: one of these two.
+/// Where the triangles come from: one of these two, if they are needed.
 #[derive(Clone, Debug, clap::Args)]
-#[group(required = true, multiple = false)]
+#[group(required = false, multiple = false)]
 pub(crate) struct Source {
     /// Folder that the scenes' glTF files are in
     #[arg(long, value_name = "DIR")]
@@ -43,7 +43,7 @@ impl Source {
             check_whole(scene, &objects).and_then(|()| check_objects(scene, &objects)).with_context(|| at(&file))?;
             return Ok(objects);
         }
-        let folder = self.triangles.as_ref().context("neither assets nor triangles are given")?;
+        let folder = self.triangles.as_ref().context("give the scenes' files with --assets DIR or --triangles DIR")?;
         let file = folder.join(format!("{}.f32", scene.name));
         let objects = vec![read_plain(&file)?];
         check_whole(scene, &objects).with_context(|| at(&file))?;
