@@ -108,10 +108,12 @@ fn hull(points: &mut [DVec2], scratch: &mut [DVec2]) -> usize {
     if n < 3 {
         return if n == 2 && points[0] == points[1] { 1 } else { n };
     }
+    let reach = points.iter().fold(0.0_f64, |most, p| most.max(p.abs().max_element()));
+    let same = reach * SAME_PLACE;
     // The lower chain grows in `scratch`; the upper one follows it there, back to the first point.
     // In a sliver rounding may put a point on both: the upper one leaves out what the lower one has.
     let order = |a: DVec2, b: DVec2| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y));
-    let lower = chain(points.iter().copied(), scratch) - 1;
+    let lower = chain(points.iter().copied(), scratch, same) - 1;
     let (low, up) = scratch.split_at_mut(lower);
     let mut met = lower;
     let is_free = |p: &DVec2| {
@@ -120,22 +122,33 @@ fn hull(points: &mut [DVec2], scratch: &mut [DVec2]) -> usize {
         }
         met <= 1 || *p != low[met - 1]
     };
-    let upper = chain(points.iter().rev().copied().filter(is_free), up);
+    let upper = chain(points.iter().rev().copied().filter(is_free), up, same);
     // The last point of the upper chain is the first of the lower one.
     let corners = (lower + upper - 1).max(1);
     points[..corners].copy_from_slice(&scratch[..corners]);
     corners
 }
 
-/// Writes a chain of left turns and gives its length.
-fn chain(points: impl Iterator<Item = DVec2>, out: &mut [DVec2]) -> usize {
+/// Distance within which two points are one, as a share of the greatest coordinate. The direction
+/// of a shorter edge is rounding, by which a chain cannot tell left from right: it would keep
+/// corners far inside of the next ones. What is lost is a small part of the room that fits leave
+/// for rounding.
+const SAME_PLACE: f64 = 1.0 / 1_073_741_824.0;
+
+/// Writes a chain of left turns, from the first to the last of the points, and gives its length.
+fn chain(points: impl Iterator<Item = DVec2>, out: &mut [DVec2], same: f64) -> usize {
     let mut len = 0;
-    for p in points {
-        while len >= 2 && (out[len - 1] - out[len - 2]).perp_dot(p - out[len - 2]) <= 0.0 {
+    let mut points = points.peekable();
+    while let Some(p) = points.next() {
+        let is_same = |other: DVec2| (p - other).abs().max_element() <= same;
+        if len > 0 && is_same(out[len - 1]) && points.peek().is_some() {
+            continue;
+        }
+        while len >= 2 && (is_same(out[len - 1]) || (out[len - 1] - out[len - 2]).perp_dot(p - out[len - 2]) <= 0.0) {
             len -= 1;
         }
         // A chain of n sorted points never outgrows n + 1 places with the other chain's corners.
-        if len < out.len() {
+        if len < out.len() && !(len == 1 && is_same(out[0])) {
             out[len] = p;
             len += 1;
         }
@@ -192,6 +205,28 @@ mod tests {
             }
             let mut storage = [DVec2::ZERO; HullBuilder::SLACK];
             assert!(hull_of(&points, &mut storage) <= points.len());
+        }
+    }
+
+    /// Both ends of two edges of a quadrilateral come twice, apart by rounding, as clipping gives them.
+    #[test]
+    fn corners_that_come_twice_but_for_rounding_hide_no_others() {
+        let corners = [(-405.085, 288.375), (-384.280, 257.947), (-33.662, 29.217), (-24.330, 15.568)];
+        for noise in 0..256_i32 {
+            let mut points = [DVec2::ZERO; 8];
+            for (i, p) in points.iter_mut().enumerate() {
+                let bit = f64::from((noise >> i) & 1) * 1e-14;
+                *p = DVec2::new(corners[i / 2].0 + bit, corners[i / 2].1 - 0.7 * bit);
+            }
+            let mut storage = [DVec2::ZERO; HullBuilder::SLACK];
+            let n = hull_of(&points, &mut storage);
+            for i in 0..n {
+                let (a, b) = (storage[i], storage[(i + 1) % n]);
+                for p in &storage[..n] {
+                    let left = (b - a).perp_dot(*p - a);
+                    assert!(left >= -1e-9, "{noise}: {p} is right of {a} to {b}");
+                }
+            }
         }
     }
 

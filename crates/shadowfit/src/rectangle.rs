@@ -45,28 +45,56 @@ const TIE: f64 = 1e-9;
 /// The rectangle of least area around a convex polygon (anticlockwise corners), its first side
 /// within 45 degrees of +x. Of equal ones the least turned.
 pub(crate) fn min_area(hull: &[DVec2]) -> Rectangle {
-    let area = |r: &Rectangle| r.size().x * r.size().y;
-    let mut best = Rectangle::around(hull, DVec2::X);
-    Calipers::turn(hull, |calipers| keep_better(&mut best, calipers.rectangle(), area));
-    upright(Rectangle::around(hull, best.axis))
+    let mut best = Best::new(hull, |r| r.size().x * r.size().y);
+    let mut longest = (0.0, DVec2::X);
+    Calipers::turn(hull, |calipers| {
+        calipers.keep_longest(&mut longest);
+        best.keep(&calipers.rectangle());
+    });
+    best.keep(&Rectangle::around(hull, longest.1));
+    upright(best.rectangle)
 }
 
 /// The rectangle with the least longer side around a convex polygon, which makes the least square.
 pub(crate) fn min_square(hull: &[DVec2]) -> Rectangle {
-    let longer = |r: &Rectangle| r.size().max_element();
-    let mut best = Rectangle::around(hull, DVec2::X);
+    let mut best = Best::new(hull, |r| r.size().max_element());
+    let mut longest = (0.0, DVec2::X);
     Calipers::turn(hull, |calipers| {
-        keep_better(&mut best, calipers.rectangle(), longer);
+        calipers.keep_longest(&mut longest);
+        best.keep(&calipers.rectangle());
         if let Some(axis) = calipers.balanced() {
-            keep_better(&mut best, Rectangle::around(hull, axis), longer);
+            best.keep(&Rectangle::around(hull, axis));
         }
     });
-    upright(Rectangle::around(hull, best.axis))
+    let diagonal = (longest.1 + longest.1.perp()) * core::f64::consts::FRAC_1_SQRT_2;
+    best.keep(&Rectangle::around(hull, diagonal));
+    upright(best.rectangle)
 }
 
-fn keep_better(best: &mut Rectangle, candidate: Rectangle, cost: impl Fn(&Rectangle) -> f64) {
-    if cost(&candidate) < cost(best) * (1.0 - TIE) {
-        *best = candidate;
+/// The best rectangle so far.
+///
+/// Of a sliver as thin as rounding the calipers cannot tell which corners they touch, so what they
+/// say is measured before it is believed; and since such a sliver is a line, rectangles along its
+/// longest edge, or about it as the diagonal of a square, are tried besides.
+struct Best<'a, C> {
+    hull: &'a [DVec2],
+    cost: C,
+    rectangle: Rectangle,
+}
+
+impl<'a, C: Fn(&Rectangle) -> f64> Best<'a, C> {
+    fn new(hull: &'a [DVec2], cost: C) -> Self {
+        Self { hull, cost, rectangle: Rectangle::around(hull, DVec2::X) }
+    }
+
+    fn keep(&mut self, candidate: &Rectangle) {
+        let bound = (self.cost)(&self.rectangle) * (1.0 - TIE);
+        if (self.cost)(candidate) < bound {
+            let measured = Rectangle::around(self.hull, candidate.axis);
+            if (self.cost)(&measured) < bound {
+                self.rectangle = measured;
+            }
+        }
     }
 }
 
@@ -75,6 +103,8 @@ struct Calipers<'a> {
     hull: &'a [DVec2],
     /// Unit direction of the edge that the lower line lies along.
     axis: DVec2,
+    /// Length of that edge.
+    length: f64,
     /// The corners that the lines touch when they turn on: lower (the edge's end), right, upper, left.
     touched: [usize; 4],
     /// Distance that rounding may make of none.
@@ -89,7 +119,7 @@ impl<'a> Calipers<'a> {
     fn turn(hull: &'a [DVec2], mut stop: impl FnMut(&Self)) {
         let n = hull.len();
         let noise = Rectangle::around(hull, DVec2::X).size().max_element() * NOISE;
-        let mut calipers = Calipers { hull, axis: DVec2::X, touched: [0; 4], noise };
+        let mut calipers = Calipers { hull, axis: DVec2::X, length: 0.0, touched: [0; 4], noise };
         let mut is_first = true;
         for i in 0..n {
             let end = (i + 1) % n;
@@ -98,7 +128,7 @@ impl<'a> Calipers<'a> {
             if length.is_nan() || length <= 0.0 {
                 continue;
             }
-            calipers.axis = edge / length;
+            (calipers.axis, calipers.length) = (edge / length, length);
             calipers.touched[0] = end;
             let directions = [calipers.axis, calipers.axis.perp(), -calipers.axis];
             for (side, direction) in directions.into_iter().enumerate() {
@@ -117,16 +147,21 @@ impl<'a> Calipers<'a> {
     fn advance(&self, first: usize, known: usize, direction: DVec2) -> usize {
         let n = self.hull.len();
         let at = |k: usize| self.hull[(first + k) % n].dot(direction);
-        let mut k = if at(known) > at(0) { known } else { 0 };
+        let (mut k, mut most) = if at(known) > at(0) { (known, at(known)) } else { (0, at(0)) };
         let mut next = k + 1;
-        // Corners that coincide but for rounding may step back by it.
-        while next < n && at(next) >= at(k) - self.noise {
-            if at(next) >= at(k) {
-                k = next;
-            }
+        // Of corners as far but for rounding the last one counts: it is touched when the line turns
+        // on. Outlines of views have parallel sides, so this is no rare case.
+        while next < n && at(next) >= most - self.noise {
+            (k, most) = (next, most.max(at(next)));
             next += 1;
         }
         (first + k) % n
+    }
+
+    fn keep_longest(&self, longest: &mut (f64, DVec2)) {
+        if self.length > longest.0 {
+            *longest = (self.length, self.axis);
+        }
     }
 
     fn rectangle(&self) -> Rectangle {
@@ -219,6 +254,16 @@ mod tests {
         let hull = square.map(|(x, y)| DVec2::new(x, y));
         assert!((min_area(&hull).size() - DVec2::ONE).abs().max_element() < 1e-12);
         assert!((min_square(&hull).size() - DVec2::ONE).abs().max_element() < 1e-12);
+    }
+
+    /// A wall seen edge-on: as thin as rounding makes it, in any order of the corners at its ends.
+    #[test]
+    fn slivers_have_the_least_square_of_their_line() {
+        for noise in [[0.0, 1e-17, 3e-17, 1e-17], [1e-16, 0.0, 1e-17, 2e-16], [0.0, 0.0, 1e-13, 1e-13]] {
+            let hull = [(0.0, noise[0]), (3.0, noise[1]), (3.0, noise[2]), (0.0, noise[3])];
+            let side = min_square(&hull.map(|(x, y)| DVec2::new(x, y))).size().max_element();
+            assert!((side * core::f64::consts::SQRT_2 / 3.0 - 1.0).abs() < 1e-9, "{noise:?}: {side}");
+        }
     }
 
     #[test]

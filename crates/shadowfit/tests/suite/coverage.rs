@@ -5,16 +5,16 @@
 //! that rounding.
 
 use proptest::prelude::*;
-use shadowfit::glam::{DQuat, DVec2, DVec3, Vec3};
+use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::{
     Aabb, Boxes, CascadeFitter, CascadeMap, CascadeSettings, DepthHistogram, FitInput, FitKind, LightFit, ViewFrustum,
     Workspace,
 };
 
 use crate::scenes::{
-    BoxPlan, SceneView, any_box, any_cascades, any_covering_fit, any_light, any_view, of_camera, share,
+    BoxPlan, SceneView, any_box, any_cascades, any_covering_fit, any_light, any_view, any_walk, of_camera, share,
 };
-use crate::support::{any_camera, any_direction, apply, double};
+use crate::support::{any_camera, apply};
 
 /// A point of a view: place in the picture and share of the depth, and whether that is of log
 /// depth.
@@ -79,37 +79,6 @@ fn chosen(maps: &[CascadeMap], depth: f32) -> impl Iterator<Item = &CascadeMap> 
     let first = maps.iter().position(|map| depth < map.far).unwrap_or(maps.len() - 1);
     let next = maps.get(first + 1).filter(move |next| depth >= next.covered_near);
     [Some(&maps[first]), next].into_iter().flatten()
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Walk {
-    step: DVec3,
-    axis: DVec3,
-    turn: f64,
-}
-
-impl Walk {
-    fn moved(&self, view: &SceneView) -> SceneView {
-        let turn = DQuat::from_axis_angle(self.axis, self.turn);
-        let turned = |v: Vec3| (turn * v.as_dvec3()).as_vec3();
-        SceneView {
-            eye: view.eye + self.step * view.lens.far,
-            forward: turned(view.forward),
-            up: turned(view.up),
-            ..*view
-        }
-    }
-}
-
-/// Standing still, walking, turning, both, and leaps.
-fn any_walk() -> impl Strategy<Value = Walk> {
-    let step = prop_oneof![1 => Just(0.0), 3 => double(0.0, 0.01), 1 => double(0.0, 0.3)];
-    let turn = prop_oneof![1 => Just(0.0), 3 => double(0.0, 0.02), 1 => double(0.0, 1.0)];
-    (any_direction(), step, any_direction(), turn).prop_map(|(d, step, axis, turn)| Walk {
-        step: d.as_dvec3() * step,
-        axis: axis.as_dvec3().normalize(),
-        turn,
-    })
 }
 
 /// None, no, one or many boxes, relative to the world's origin or to a place near the eye.

@@ -10,20 +10,25 @@ mod bytemuck;
 mod caster;
 mod clusters;
 mod conventions;
+mod coverage;
 mod diagnostics;
 mod f64_reference;
 mod filters;
 mod frustum;
 mod invariance;
 mod light_steps;
+mod metamorphic;
 #[cfg(feature = "mint")]
 mod mint;
+mod optimality;
+mod scenes;
 mod self_shadowing;
 #[cfg(feature = "serde")]
 mod serde;
 mod settings;
 mod support;
 mod sweep;
+mod texel_phase;
 mod tightness;
 mod unprojection;
 mod verify;

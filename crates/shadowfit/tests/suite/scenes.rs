@@ -4,7 +4,7 @@
 //! camera, and as a [`Lens`] with the camera's axes, from which visible points are sampled.
 
 use proptest::prelude::*;
-use shadowfit::glam::{DMat4, DVec3, DVec4, UVec2, Vec3};
+use shadowfit::glam::{DMat4, DQuat, DVec3, DVec4, UVec2, Vec3};
 use shadowfit::{
     Aabb, CascadeSettings, CasterPolicy, DepthConvention, FitKind, FitSettings, PerspectiveCamera, RectangleKind,
     SplitScheme, Stabilise, ViewFrustum,
@@ -236,7 +236,8 @@ pub(crate) fn any_splits() -> impl Strategy<Value = SplitScheme> {
         Just(SplitScheme::Logarithmic),
         float(0.0, 1.0).prop_map(SplitScheme::Practical),
         // Ascending, and for most views in part beyond their end.
-        float(0.5, 20.0).prop_map(|a| SplitScheme::Manual(std::array::from_fn(|i| a * 1.7_f32.powi(i as i32)))),
+        float(0.5, 20.0)
+            .prop_map(|a| SplitScheme::Manual([0.0_f32, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(|i| a * 1.7_f32.powf(i)))),
         Just(SplitScheme::FromBoxes),
         Just(SplitScheme::FromHistogram),
     ]
@@ -274,4 +275,38 @@ pub(crate) fn of_camera(camera: &PerspectiveCamera) -> SceneView {
         depth: DepthConvention::ZeroToOne,
     };
     SceneView { lens, eye: camera.eye, forward: camera.forward, up: camera.up }
+}
+
+/// A step of a view from one frame to the next.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Walk {
+    /// Of the eye, as a share of the view's depth.
+    pub(crate) step: DVec3,
+    pub(crate) axis: DVec3,
+    /// About the axis, in radians.
+    pub(crate) turn: f64,
+}
+
+impl Walk {
+    pub(crate) fn moved(&self, view: &SceneView) -> SceneView {
+        let turn = DQuat::from_axis_angle(self.axis, self.turn);
+        let turned = |v: Vec3| (turn * v.as_dvec3()).as_vec3();
+        SceneView {
+            eye: view.eye + self.step * view.lens.far,
+            forward: turned(view.forward),
+            up: turned(view.up),
+            ..*view
+        }
+    }
+}
+
+/// Standing still, walking, turning, both, and leaps.
+pub(crate) fn any_walk() -> impl Strategy<Value = Walk> {
+    let step = prop_oneof![1 => Just(0.0), 3 => double(0.0, 0.01), 1 => double(0.0, 0.3)];
+    let turn = prop_oneof![1 => Just(0.0), 3 => double(0.0, 0.02), 1 => double(0.0, 1.0)];
+    (any_direction(), step, any_direction(), turn).prop_map(|(d, step, axis, turn)| Walk {
+        step: d.as_dvec3() * step,
+        axis: axis.as_dvec3().normalize(),
+        turn,
+    })
 }

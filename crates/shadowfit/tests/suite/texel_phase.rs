@@ -1,0 +1,194 @@
+//! Shadow edges that stand still: where in its texel a fixed point of the world lies.
+//!
+//! Each look-up is made in f32, as a shader makes it, and compared with the frame before (0.005
+//! texel) and with a chain in f64 from the world's own origin (0.02 texel), 0, 1, 10 and 100 km
+//! from there.
+
+use proptest::prelude::*;
+use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
+use shadowfit::{
+    CascadeFitter, CascadeMap, CascadeSettings, Cascades, Constraint, FitInput, FitKind, FitSettings, LightFit,
+    RectangleKind, SplitScheme, Stabilise, ViewFrustum, Workspace,
+};
+
+use crate::scenes::{COVERING, SceneView, Walk, any_light, any_view, any_walk};
+use crate::support::{apply, double};
+
+/// Room above each step of extents, as a share of it.
+const STEP_ROOM: f64 = 1e-5;
+
+/// The exact texel size: extents are eighths of an octave over the texels that the grid leaves.
+pub(crate) fn exact_texel(fit: &LightFit, kernel: f32) -> DVec2 {
+    let usable = fit.resolution.as_dvec2() - (2.0 * f64::from(kernel) + 1.0);
+    let exact = |rounded: f32, usable: f64| {
+        let steps = (8.0 * (f64::from(rounded) * usable / (1.0 + STEP_ROOM)).log2()).round();
+        let exact = (steps / 8.0).exp2() * (1.0 + STEP_ROOM) / usable;
+        assert!((exact / f64::from(rounded) - 1.0).abs() < 1e-6, "{rounded} is no step: {exact}");
+        exact
+    };
+    DVec2::new(exact(fit.texel_size.x, usable.x), exact(fit.texel_size.y, usable.y))
+}
+
+/// Place of a world point on the map's grid, in texels right and down from the world's origin,
+/// all in f64 but for the light's axes, which are f32 by definition.
+fn grid_place(fit: &LightFit, texel: DVec2, point: DVec3) -> DVec2 {
+    let [x, y] = [fit.light_from_world.row(0), fit.light_from_world.row(1)].map(|row| row.truncate().as_dvec3());
+    DVec2::new(x.dot(point) / texel.x, -y.dot(point) / texel.y)
+}
+
+/// Place in the map, in texels, as a shader finds it.
+fn shader_place(fit: &LightFit, point: DVec3) -> DVec2 {
+    let uv = apply(&fit.uv_from_world, (point - fit.origin).as_vec3());
+    (uv.truncate() * fit.resolution.as_vec2()).as_dvec2()
+}
+
+/// Difference of two places within their texels, in texels.
+fn apart(a: DVec2, b: DVec2) -> f64 {
+    let d = a - b;
+    (d - d.round()).abs().max_element()
+}
+
+fn settings(kind: FitKind, stabilise: Stabilise, count: u32, resolution: u32, kernel: f32) -> CascadeSettings {
+    let fit = FitSettings {
+        kind,
+        rectangle: RectangleKind::MinimumArea,
+        kernel_margin: kernel,
+        max_distance: f32::MAX,
+        resolution: UVec2::splat(resolution),
+        ..FitSettings::default()
+    };
+    let splits = SplitScheme::Practical(0.7);
+    CascadeSettings { fit, count, splits, stabilise, ..CascadeSettings::default() }
+}
+
+fn frame(fitter: &mut CascadeFitter, view: &SceneView, direction: Vec3, settings: &CascadeSettings) -> Cascades {
+    let views: [ViewFrustum; 1] = [view.frustum()];
+    let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+    fitter.fit(&FitInput::new(&views, direction), settings, &mut Workspace::new(&mut storage)).unwrap()
+}
+
+/// Points that the first frame sees in one of its maps.
+fn points_in(map: &CascadeMap, view: &SceneView, places: &[[f64; 3]]) -> Vec<DVec3> {
+    let (near, far) = (f64::from(map.near), f64::from(map.far).min(view.lens.far));
+    places.iter().map(|[x, y, z]| view.eye + view.point(*x, *y, near + (far - near) * z)).collect()
+}
+
+/// Walks on and compares each frame's maps with those before; `is_kept` says which of them
+/// promise to stand still, given the frame before. Gives how many of them did.
+fn walk(
+    view: SceneView,
+    step: Walk,
+    direction: Vec3,
+    settings: &CascadeSettings,
+    places: &[[f64; 3]],
+    is_kept: impl Fn(&LightFit) -> bool,
+) -> usize {
+    let mut fitter = CascadeFitter::new();
+    let mut before = frame(&mut fitter, &view, direction, settings);
+    let points: Vec<Vec<DVec3>> = before.iter().map(|map| points_in(map, &view, places)).collect();
+    let (mut view, mut kept) = (view, 0);
+    for _ in 0..6 {
+        view = step.moved(&view);
+        let now = frame(&mut fitter, &view, direction, settings);
+        for ((map, old), points) in now.iter().zip(before.iter()).zip(&points) {
+            let is_kept = is_kept(&map.fit);
+            kept += usize::from(is_kept);
+            assert!(
+                !is_kept || map.fit.texel_size == old.fit.texel_size,
+                "{} {}",
+                map.fit.texel_size,
+                old.fit.texel_size
+            );
+            let texel = exact_texel(&map.fit, settings.fit.kernel_margin);
+            // Leaps take the camera to where the points are in no map, which rounds them the more.
+            for point in points.iter().filter(|point| map.fit.covers(**point) && old.fit.covers(**point)) {
+                let place = shader_place(&map.fit, *point);
+                let by_grid = apart(place, grid_place(&map.fit, texel, *point));
+                assert!(by_grid <= 0.02, "{by_grid} texels from the f64 chain at {point}");
+                let crawl = if is_kept { apart(place, shader_place(&old.fit, *point)) } else { 0.0 };
+                assert!(crawl <= 0.005, "{crawl} texels of crawl at {point}");
+            }
+        }
+        before = now;
+    }
+    kept
+}
+
+/// Whether a frustum's sphere is so near to a step of extents that the 1e-7 by which its corners
+/// are rounded, other ones in each frame, may choose between two steps.
+fn is_on_a_step(view: &SceneView, maps: &Cascades, radius: impl Fn(&CascadeMap) -> f64) -> bool {
+    let far = view.lens.far;
+    maps.iter().filter(|map| f64::from(map.near) < far).any(|map| {
+        let steps = 8.0 * (2.0 * radius(map) * (1.0 - STEP_ROOM)).log2();
+        (steps - steps.round()).abs() < 1e-4
+    })
+}
+
+fn sphere_radius(view: &SceneView, map: &CascadeMap) -> f64 {
+    let slice = view.frustum().slice(map.near, map.far.min(f32::MAX)).unwrap();
+    shadowfit::fits::sphere::enclosing_sphere(&slice).unwrap().radius
+}
+
+fn any_places() -> impl Strategy<Value = Vec<[f64; 3]>> {
+    prop::collection::vec([double(0.0, 1.0), double(0.0, 1.0), double(0.0, 1.0)], 4)
+}
+
+fn any_setup() -> impl Strategy<Value = (u32, u32, f32)> {
+    (1..=4_u32, prop::sample::select(vec![256_u32, 1024, 2048]), prop::sample::select(vec![0.0_f32, 1.5, 3.0]))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    /// Neither movement nor turning changes texel size or phase of a stable map.
+    #[test]
+    fn spheres_stand_still_while_the_camera_moves_and_turns(
+        view in any_view(), step in any_walk(), direction in any_light(), (count, size, kernel) in any_setup(),
+        places in any_places(),
+    ) {
+        let settings = settings(FitKind::Sphere, Stabilise::Snap, count, size, kernel);
+        let maps = frame(&mut CascadeFitter::new(), &view, direction, &settings);
+        prop_assume!(!is_on_a_step(&view, &maps, |map| sphere_radius(&view, map)));
+        walk(view, step, direction, &settings, &places, |_| true);
+    }
+
+    /// The corners relative to the eye are the same bits while the camera does not turn, so all
+    /// snapped maps stand still.
+    #[test]
+    fn snapped_boxes_stand_still_while_the_camera_moves(
+        view in any_view(), step in any_walk(), direction in any_light(), (count, size, kernel) in any_setup(),
+        kind in prop::sample::select(vec![FitKind::FrustumAabb, FitKind::Oriented]), places in any_places(),
+    ) {
+        let settings = settings(kind, Stabilise::Snap, count, size, kernel);
+        let step = Walk { turn: 0.0, ..step };
+        // An f64 matrix is rounded by 2e-16 of the eye's place, which may turn a corner's last bit.
+        let same = std::iter::successors(Some(view), |view| Some(step.moved(view))).take(7);
+        prop_assume!(same.into_iter().all(|later| later.frustum().corners == view.frustum().corners));
+        walk(view, step, direction, &settings, &places, |_| true);
+    }
+
+    /// Held maps stand still while they are held, whatever the camera does.
+    #[test]
+    fn held_maps_stand_still_while_the_camera_moves_and_turns(
+        view in any_view(), step in any_walk(), direction in any_light(), (count, size, kernel) in any_setup(),
+        kind in prop::sample::select(COVERING.to_vec()), places in any_places(),
+    ) {
+        let settings = settings(kind, Stabilise::Hysteresis, count, size, kernel);
+        walk(view, step, direction, &settings, &places, |fit| fit.set_by == [Constraint::Held; 6]);
+    }
+}
+
+/// A walk and a slow look around hold every map most of the time, so that the proof above is of
+/// something.
+#[test]
+fn maps_are_held_on_a_walk() {
+    let view = crate::scenes::of_camera(&crate::support::camera());
+    let walk_on = Walk { step: DVec3::X * 0.0005, axis: DVec3::Y, turn: 0.002 };
+    for kind in COVERING {
+        let settings = settings(kind, Stabilise::Hysteresis, 4, 1024, 1.5);
+        let kept = walk(view, walk_on, Vec3::new(0.3, -0.8, 0.4), &settings, &[[0.5; 3]], |fit| {
+            fit.set_by == [Constraint::Held; 6]
+        });
+        assert!(kept >= 16, "{kind:?}: {kept} of 24 maps were held");
+    }
+}
