@@ -3,9 +3,9 @@
 //! A direction leaves the rotation about itself open. Which one a fit picks decides whether the
 //! map turns smoothly with the sun and where it flips.
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3, Mat4, Vec3};
 
-use crate::checks;
+use crate::{FitError, checks};
 
 /// Right-handed orthonormal axes of a light in world space. The light looks along -z, so `z` is
 /// the direction *toward* the light.
@@ -23,6 +23,9 @@ pub(crate) struct LightAxes {
 /// Sine of the angle to the vertical below which the look-at roll is taken from a fixed axis: an
 /// f32 unit vector's own rounding is 1e-7, so its azimuth is noise there.
 const VERTICAL_SINE: f64 = 1e-6;
+
+/// How far the determinant of a light's axes may be from 1: far more than f32 rounding.
+const ORTHONORMAL: f64 = 1e-3;
 
 impl LightAxes {
     /// Look-at axes as the XNA sample has them: `x = direction × up`; `up` is a unit vector (the
@@ -74,6 +77,15 @@ impl LightAxes {
     pub(crate) fn project(&self, v: DVec3) -> DVec3 {
         let (x, y, z) = (self.x.as_dvec3(), self.y.as_dvec3(), self.z.as_dvec3());
         DVec3::new(x.dot(v), y.dot(v), z.dot(v))
+    }
+
+    /// Those of a `light_from_world`; refuses what is no rotation.
+    pub(crate) fn of_matrix(light_from_world: &Mat4) -> Result<Self, FitError> {
+        let rows = light_from_world.transpose();
+        let axes = Self { x: rows.x_axis.truncate(), y: rows.y_axis.truncate(), z: rows.z_axis.truncate() };
+        let (least, most) = (1.0 - ORTHONORMAL, 1.0 + ORTHONORMAL);
+        checks::within("the determinant of light_from_world", axes.determinant(), least, most)?;
+        Ok(axes)
     }
 
     /// Of the matrix with these rows: 1 but for rounding.

@@ -13,7 +13,7 @@ use crate::fits::{self, Content, Light, Placing, Range, Volume};
 use crate::motion::Motion;
 use crate::settings::{CascadeSettings, FitKind, FitSettings, MAX_CASCADES, Stabilise};
 use crate::splits::{Chooser, Cuts};
-use crate::{FitError, FitInput, LightFit, ViewFrustum, Workspace, checks, grid};
+use crate::{FitError, FitInput, GridAnchor, LightFit, ViewFrustum, Workspace, checks, grid};
 use hold::HeldMap;
 
 /// One of several maps.
@@ -31,6 +31,9 @@ pub struct CascadeMap {
     /// View depth from which this map covers what is seen, in metres: before `near` where the
     /// maps overlap.
     pub covered_near: f32,
+    /// Where the map lies on the world's grid, if it does: what [`Scroll`](crate::Scroll) and
+    /// [tiles](crate::scroll::tiles) are made from.
+    pub anchor: Option<GridAnchor>,
 }
 
 /// The maps of one frame, nearest first.
@@ -263,6 +266,7 @@ impl Places<'_, '_> {
         let is_void = is_void(self.content.views, slice);
         map.fit.set_volume(self.content.origin, volume, settings)?;
         map.fit.is_empty |= is_void;
+        map.anchor = volume.grid.as_ref().and_then(GridAnchor::of);
         (map.near, map.far) = (cuts[i], cuts[i + 1]);
         map.covered_near = if is_void { cuts[i] } else { slice.near };
         Ok(())

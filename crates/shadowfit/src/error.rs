@@ -85,6 +85,8 @@ pub enum FitError {
         /// The value that would go.
         expected: usize,
     },
+    /// The map does not lie on the world's texel grid.
+    NotOnGrid,
     /// The shadow map has no texels.
     ZeroResolution {
         /// The resolution asked for, in texels.
@@ -130,6 +132,9 @@ impl fmt::Display for FitError {
             }
             Self::CountMismatch { input, given, expected } => {
                 write!(f, "{input} is {given}; give {expected} as before, or build anew")
+            }
+            Self::NotOnGrid => {
+                write!(f, "the map is on no grid; stabilise it by snapping or hysteresis, or take the sphere")
             }
             Self::ZeroResolution { resolution } => {
                 write!(f, "the map's resolution is {resolution}; give at least one texel each way")

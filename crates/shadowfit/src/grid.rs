@@ -105,18 +105,27 @@ pub(crate) fn steady(volume: &mut Volume, origin: DVec3, held: Option<(f64, f64)
 }
 
 /// A depth range that holds another, both along the light's z from the world's origin, in metres:
-/// the held one, or a new one in steps of its length.
+/// the held one, or a new one in steps of its length. One that takes a held one's place has room for
+/// more of what made it necessary.
 pub(crate) fn steadied(held: Option<(f64, f64)>, (low, high): (f64, f64), waste: f64) -> (f64, f64) {
+    let length = high - low;
     // A larger range rounds more.
-    let pad = 2.0 * ROUNDING * (high - low);
-    let depth = quantised(high - low + 2.0 * pad);
-    if let Some(held) = held {
-        let (pad, length) = (ROUNDING * (held.1 - held.0), held.1 - held.0);
-        if held.0 <= low - pad && held.1 >= high + pad && length <= (depth + depth / DEPTH_STEPS) * waste {
-            return held;
-        }
-    }
-    let step = depth / DEPTH_STEPS;
-    let start = libm::floor((low - pad) / step) * step;
-    (start, start + depth + step)
+    let rounding = 2.0 * ROUNDING * length;
+    let around = |pad: f64| {
+        let depth = quantised(length + 2.0 * pad);
+        let step = depth / DEPTH_STEPS;
+        let start = libm::floor((low - pad) / step) * step;
+        (start, start + depth + step)
+    };
+    let Some(held) = held else { return around(rounding) };
+    let renewed = around(rounding + length * ROOM);
+    let held_length = held.1 - held.0;
+    let rounding = ROUNDING * held_length;
+    let is_enough = held.0 <= low - rounding && held.1 >= high + rounding;
+    let is_wasteful = held_length > (renewed.1 - renewed.0) * waste * (1.0 + NOISE);
+    if is_enough && !is_wasteful { held } else { renewed }
 }
+
+/// Free space on either side of a renewed depth range, as a share of what it must hold: about a
+/// third of a bit of depth.
+const ROOM: f64 = 0.125;

@@ -68,6 +68,7 @@ pub mod figures;
 pub mod fits;
 pub mod light_steps;
 pub mod params;
+pub mod scroll;
 pub mod settings;
 pub mod verify;
 
@@ -110,6 +111,7 @@ pub use input::{FitInput, Workspace};
 pub use light_fit::{Constraint, LightFit, WorldMatrices};
 pub use light_steps::{LightStep, LightStepSettings, LightSteps};
 pub use normal_cone::NormalCone;
+pub use scroll::{GridAnchor, Scroll};
 pub use settings::{
     BiasSettings, CameraSettings, CascadeSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings,
     LightSettings, MAX_CASCADES, MapFormat, MapOverride, RectangleKind, Settings, SplitScheme, Stabilise, ViewSettings,

@@ -175,6 +175,39 @@ pub struct Slack {
 /// World positions are f64, in metres. The fit of the XNA sample has no caster policy, and where
 /// a caster stands before the frustum the certificate says so.
 ///
+/// ```
+/// use shadowfit::bias::Reach;
+/// use shadowfit::glam::{DVec2, DVec3, Vec3};
+/// use shadowfit::verify::{Certificate, Claim, MapPlane, verify};
+/// use shadowfit::{FitInput, FitSettings, PerspectiveCamera, Workspace};
+///
+/// let camera = PerspectiveCamera {
+///     eye: DVec3::new(0.0, 1.7, 5.0),
+///     forward: Vec3::NEG_Z,
+///     up: Vec3::Y,
+///     fov_y: 0.8,
+///     aspect: 16.0 / 9.0,
+///     near: 0.1,
+///     far: 200.0,
+/// };
+/// let views = [camera.frustum()?];
+/// let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
+/// let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+/// let mut workspace = Workspace::new(&mut storage);
+///
+/// // Hardware 2×2 samples read texels up to one away: half a texel must be left free for them.
+/// let settings = FitSettings::default().with_kernel_margin(0.5);
+/// let claim = Claim::of_fit(&settings, Reach::HARDWARE_2X2);
+/// let map = shadowfit::fit_scene(&input, &settings, &mut workspace)?;
+/// assert!(verify(&input, &map, &claim, &mut workspace)?.is_proven());
+///
+/// // Without them there is a hole, and the certificate says where.
+/// let map = shadowfit::fit_scene(&input, &settings.with_kernel_margin(0.0), &mut workspace)?;
+/// let Certificate::Uncovered { plane, by, .. } = verify(&input, &map, &claim, &mut workspace)? else { panic!() };
+/// assert!(plane != MapPlane::Near && by > 0.49 && by < 0.51);
+/// # Ok::<(), shadowfit::FitError>(())
+/// ```
+///
 /// # Errors
 ///
 /// Those of the views, the light's direction and the boxes as of
@@ -198,7 +231,7 @@ pub fn verify(
     checks::unit("the light's direction", input.direction)?;
     checks::point("the fit's origin", fit.origin)?;
     let half_spaces = HalfSpaces::new(fit, claim)?;
-    let axes = axes_of(fit)?;
+    let axes = LightAxes::of_matrix(&fit.light_from_world)?;
     let (content, points) = Content::new(input, workspace)?;
     let offset = content.origin - fit.origin;
     let mut receivers = Worst::new(&half_spaces, offset);
@@ -218,17 +251,6 @@ pub fn verify(
     }
     Ok(Certificate::Proven(slack))
 }
-
-/// The light's axes as the matrix has them.
-fn axes_of(fit: &LightFit) -> Result<LightAxes, FitError> {
-    let rows = fit.light_from_world.transpose();
-    let axes = LightAxes { x: rows.x_axis.truncate(), y: rows.y_axis.truncate(), z: rows.z_axis.truncate() };
-    checks::within("the determinant of light_from_world", axes.determinant(), 1.0 - ORTHONORMAL, 1.0 + ORTHONORMAL)?;
-    Ok(axes)
-}
-
-/// How far the determinant of a light's axes may be from 1: far more than f32 rounding.
-const ORTHONORMAL: f64 = 1e-3;
 
 /// How far around the outline casters are read, in metres: the reach of the filter with the
 /// rasteriser's snap, the normal offset, and what rounding may shift both receivers and casters.

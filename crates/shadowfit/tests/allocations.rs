@@ -1,11 +1,14 @@
 //! Nothing that runs every frame allocates: a global allocator counts.
 
 use allocation_counter::measure;
+use shadowfit::bias::Reach;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
+use shadowfit::scroll::tiles;
+use shadowfit::verify::{Claim, verify};
 use shadowfit::{
     Aabb, Boxes, CascadeFitter, CascadeSettings, CasterPolicy, CasterVolume, FitInput, FitKind, FitSettings,
-    MAX_CASCADES, OrientedBox, PerspectiveCamera, RectangleKind, Sphere, SplitScheme, Stabilise, Sweep, ViewFrustum,
-    Workspace, cull, fit, fit_scene,
+    MAX_CASCADES, OrientedBox, PerspectiveCamera, RectangleKind, Scroll, Sphere, SplitScheme, Stabilise, Sweep,
+    ViewFrustum, Workspace, cull, fit, fit_scene,
 };
 
 const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.4);
@@ -92,6 +95,29 @@ fn no_cascade_fit_allocates() {
                 }
             }
         }
+    }
+}
+
+#[test]
+fn no_certificate_and_no_scrolling_allocates() {
+    let (views, objects) = (views(), objects());
+    let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
+    let input = FitInput { receivers: Some(boxes), casters: boxes, ..FitInput::new(&views, DIRECTION) };
+    let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), views.len())];
+    let mut workspace = Workspace::new(&mut storage);
+    let fit = FitSettings::default().with_kind(FitKind::Sphere).with_casters(CasterPolicy::List);
+    let settings = CascadeSettings { fit, ..CascadeSettings::default() };
+    let mut fitter = CascadeFitter::new();
+    let before = fitter.fit(&input, &settings, &mut workspace).expect("a good scene");
+    let now = fitter.fit(&input, &settings, &mut workspace).expect("a good scene");
+    for (before, map) in before.iter().zip(now.iter()) {
+        let claim = Claim::of_map(map, &settings, Reach::POINT);
+        let verified = without_allocation("verify", || verify(&input, &map.fit, &claim, &mut workspace));
+        assert!(verified.expect("a good map").is_proven());
+        let scroll = without_allocation("scroll", || Scroll::between(before, map));
+        assert!(!scroll.is_redraw());
+        let count = without_allocation("tiles", || tiles(map, 256).expect("a map on the grid").count());
+        assert!(count >= 64);
     }
 }
 

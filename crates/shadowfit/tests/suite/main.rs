@@ -22,6 +22,7 @@ mod metamorphic;
 mod mint;
 mod optimality;
 mod scenes;
+mod scroll;
 mod self_shadowing;
 #[cfg(feature = "serde")]
 mod serde;

@@ -2,14 +2,15 @@
 
 use proptest::prelude::*;
 use shadowfit::bias::Reach;
-use shadowfit::glam::{DQuat, DVec2, DVec3, UVec2, Vec3};
-use shadowfit::verify::{Certificate, Claim, verify};
+use shadowfit::glam::{DQuat, DVec2, DVec3, Mat4, UVec2, Vec3};
+use shadowfit::verify::{Certificate, Claim, MapPlane, verify};
 use shadowfit::{
-    Aabb, Boxes, CascadeFitter, CascadeSettings, CasterPolicy, DepthConvention, FitInput, FitKind, FitSettings,
-    HoldSettings, PerspectiveCamera, RectangleKind, SplitScheme, Stabilise, ViewFrustum, Workspace,
+    Aabb, Boxes, CascadeFitter, CascadeSettings, CasterPolicy, DepthConvention, FitError, FitInput, FitKind,
+    FitSettings, HoldSettings, LightFit, PerspectiveCamera, RectangleKind, SplitScheme, Stabilise, ViewFrustum,
+    Workspace,
 };
 
-use crate::support::{any_camera, any_direction, double, float};
+use crate::support::{DIRECTION, any_camera, any_direction, apply, camera, double, float};
 
 const COVERING: [FitKind; 4] = [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
 
@@ -180,6 +181,38 @@ proptest! {
         prop_assert!(certificate.is_proven(), "{certificate:?}");
     }
 
+    /// What is proven holds for points that no clipping has found: f32 matrix times f32 position.
+    #[test]
+    fn whatever_is_seen_of_a_proven_box_is_inside(
+        camera in any_camera(), plans in any_plans(), direction in any_direction(), fit in any_fit(),
+        margin in double(-0.1, 0.1), places in prop::collection::vec((double(0.0, 1.0), double(0.0, 1.0), double(0.0, 1.0)), 16),
+    ) {
+        prop_assume!(camera.near < fit.max_distance);
+        let scene = scene(&plans, &camera);
+        let views = [camera.frustum().unwrap()];
+        let input = scene.input(&views, direction);
+        let mut storage = storage(scene.len());
+        let mut workspace = Workspace::new(&mut storage);
+        let mut map = shadowfit::fit_scene(&input, &fit, &mut workspace).unwrap();
+        // Shift the map by up to a tenth: most of these have holes, and the others must have none.
+        let shift = map.light_from_world.x_axis.truncate() * (map.box_max.x - map.box_min.x) * margin as f32;
+        map.origin += shift.as_dvec3();
+        let claim = Claim { near: f32::MIN, far: f32::MAX, ..Claim::of_fit(&fit, reach_of(&fit)) };
+        let Certificate::Proven(_) = verify(&input, &map, &claim, &mut workspace).unwrap() else { return Ok(()) };
+        let corner = |i: usize| views[0].corners[i].as_dvec3();
+        for (x, y, z) in places {
+            let at = |t: f64, a: DVec3, b: DVec3| a * (1.0 - t) + b * t;
+            let rectangle = |i: usize| at(y, at(x, corner(i), corner(i + 1)), at(x, corner(i + 3), corner(i + 2)));
+            let point = views[0].origin + at(z, rectangle(0), rectangle(4));
+            let is_received = scene.receivers.as_ref().is_none_or(|boxes| boxes.iter().any(|b| {
+                let p = point - scene.origin;
+                p.cmpge(b.min.as_dvec3()).all() && p.cmple(b.max.as_dvec3()).all()
+            }));
+            let uv = looked_up(&map, point);
+            prop_assert!(!is_received || (uv.cmpge(Vec3::ZERO).all() && uv.cmple(Vec3::ONE).all()), "{point}: {uv}");
+        }
+    }
+
     #[test]
     fn cascades_have_no_holes_while_the_camera_walks_and_turns(
         camera in any_camera(), plans in any_plans(), direction in any_direction(), settings in any_cascades(),
@@ -204,9 +237,284 @@ proptest! {
     }
 }
 
-/// Keeps the names in use while the fits are under test.
+/// What a shader computes for a world position, in f32.
+fn looked_up(fit: &LightFit, point: DVec3) -> Vec3 {
+    apply(&fit.uv_from_world, (point - fit.origin).as_vec3())
+}
+
+/// An orthographic view from above: 8 m wide, 4 m high, from 1 m to 3 m below the eye.
+fn from_above() -> ViewFrustum {
+    let corner = |x: f32, z: f32, depth: f32| Vec3::new(x * 4.0, -depth, z * 2.0);
+    let rectangle = |depth| {
+        [corner(-1.0, -1.0, depth), corner(1.0, -1.0, depth), corner(1.0, 1.0, depth), corner(-1.0, 1.0, depth)]
+    };
+    let (near, far) = (rectangle(1.0), rectangle(3.0));
+    ViewFrustum {
+        origin: DVec3::new(100.0, 50.0, -30.0),
+        corners: [near[0], near[1], near[2], near[3], far[0], far[1], far[2], far[3]],
+        near: 1.0,
+        far: 3.0,
+        forward: Vec3::NEG_Y,
+    }
+}
+
+fn plain() -> FitSettings {
+    FitSettings {
+        kind: FitKind::FrustumAabb,
+        casters: CasterPolicy::None,
+        resolution: UVec2::new(800, 400),
+        ..FitSettings::default()
+    }
+}
+
+fn certificate(input: &FitInput, fit: &LightFit, claim: &Claim) -> Certificate {
+    let mut storage = storage(input.casters.boxes.len().max(1));
+    verify(input, fit, claim, &mut Workspace::new(&mut storage)).unwrap()
+}
+
+/// A box with its middle over the view's, relative to the eye.
+fn over(x: f32, y: f32, half: f32) -> Aabb {
+    Aabb::new(Vec3::new(x - half, y - half, -half), Vec3::new(x + half, y + half, half))
+}
+
 #[test]
-fn certificate_says_when_it_is_not_proven() {
-    let point = DVec3::ZERO;
-    assert!(!Certificate::LeftOut { point }.is_proven());
+fn slack_is_what_margins_add() {
+    let views = [from_above()];
+    // 9 m by 5 m in 800 by 400 texels, and half a metre of depth on either side.
+    let settings = plain().with_margin(0.5);
+    let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &settings).unwrap();
+    let casters = [over(0.0, -0.75, 0.125)];
+    let input =
+        FitInput { casters: Boxes { origin: views[0].origin, boxes: &casters }, ..FitInput::new(&views, Vec3::NEG_Y) };
+    let Certificate::Proven(slack) = certificate(&input, &fit, &Claim::of_fit(&settings, Reach::POINT)) else {
+        panic!("{fit:?}");
+    };
+    let expected = [800.0 / 9.0 * 0.5, 800.0 / 9.0 * 0.5, 400.0 / 5.0 * 0.5, 400.0 / 5.0 * 0.5, 0.5, 0.5];
+    for (slack, expected) in slack.planes.into_iter().zip(expected) {
+        assert!((slack / expected - 1.0).abs() < 1e-4, "{slack} {expected}");
+    }
+    // The caster's top is 0.625 m below the eye, the near plane 0.5 m.
+    assert!((slack.casters - 0.125).abs() < 1e-4, "{}", slack.casters);
+    // The filter takes its reach, from half a texel on, and the normal offset what it is long.
+    let claim = Claim::of_fit(&settings, Reach::POINT.over_disc(3.0)).with_normal_offset(0.1);
+    let Certificate::Proven(wide) = certificate(&input, &fit, &claim) else { panic!("{fit:?}") };
+    for (i, per_metre) in [800.0 / 9.0, 800.0 / 9.0, 80.0, 80.0].into_iter().enumerate() {
+        assert!((slack.planes[i] - wide.planes[i] - 3.0 - 0.1 * per_metre).abs() < 1e-3);
+    }
+    assert_eq!(slack.planes[4..], wide.planes[4..]);
+}
+
+#[test]
+fn a_shrunken_box_is_refused_with_its_plane_and_a_point_outside() {
+    let views = [from_above()];
+    let input = FitInput::new(&views, Vec3::NEG_Y);
+    let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &plain()).unwrap();
+    let claim = Claim::of_fit(&plain(), Reach::POINT);
+    assert!(certificate(&input, &fit, &claim).is_proven());
+    for (i, plane) in MapPlane::ALL.into_iter().enumerate() {
+        let mut small = fit;
+        // One side of the box moves in by 1% of its extent, in all that the fit says.
+        let (axis, is_high) = (i / 2, i % 2 == 1);
+        let extent = (fit.box_max - fit.box_min)[axis];
+        let (low, high) = if is_high { (0.0, 0.01) } else { (0.01, 0.0) };
+        small.box_min[axis] += extent * low;
+        small.box_max[axis] -= extent * high;
+        if axis == 2 {
+            small.depth_range *= 0.99;
+        }
+        squeeze(&mut small.clip_from_world, axis, if axis == 2 { (0.0, 1.0) } else { (-1.0, 1.0) }, is_high);
+        // v and depth run against the light's y and z.
+        squeeze(&mut small.uv_from_world, axis, (0.0, 1.0), is_high);
+        if axis == 1 {
+            small.uv_from_world = fit.uv_from_world;
+            squeeze(&mut small.uv_from_world, axis, (0.0, 1.0), !is_high);
+        }
+        if axis == 2 {
+            (small.clip_from_world, small.uv_from_world) = (fit.clip_from_world, fit.uv_from_world);
+            squeeze(&mut small.clip_from_world, axis, (0.0, 1.0), !is_high);
+            squeeze(&mut small.uv_from_world, axis, (0.0, 1.0), !is_high);
+        }
+        let Certificate::Uncovered { plane: found, point, by } = certificate(&input, &small, &claim) else {
+            panic!("{plane:?} of {small:?}");
+        };
+        assert_eq!(found, plane);
+        let missing = if axis == 2 { 0.01 * extent } else { 0.01 / 0.99 * fit.resolution.as_vec2()[axis] };
+        assert!((by / missing - 1.0).abs() < 0.02, "{plane:?}: {by} instead of {missing}");
+        let uv = looked_up(&small, point);
+        assert!(uv.cmplt(Vec3::ZERO).any() || uv.cmpgt(Vec3::ONE).any(), "{plane:?}: {point} is at {uv}");
+        assert!(!small.covers(point) && fit.covers(point));
+    }
+}
+
+/// Moves the lower or upper end of the range that a row of a matrix maps to inward by 1% of it.
+fn squeeze(matrix: &mut Mat4, row: usize, (low, high): (f32, f32), is_high: bool) {
+    let fixed = if is_high { low } else { high };
+    for column in [&mut matrix.x_axis, &mut matrix.y_axis, &mut matrix.z_axis, &mut matrix.w_axis] {
+        column[row] /= 0.99;
+    }
+    matrix.w_axis[row] += fixed - fixed / 0.99;
+}
+
+#[test]
+fn each_of_the_matrices_counts_by_itself() {
+    let views = [from_above()];
+    let input = FitInput::new(&views, Vec3::NEG_Y);
+    let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &plain()).unwrap();
+    let claim = Claim::of_fit(&plain(), Reach::POINT);
+    let refused = |fit: &LightFit| {
+        matches!(certificate(&input, fit, &claim), Certificate::Uncovered { plane: MapPlane::Right, .. })
+    };
+    let mut small = fit;
+    squeeze(&mut small.clip_from_world, 0, (-1.0, 1.0), true);
+    assert!(refused(&small));
+    let mut small = fit;
+    squeeze(&mut small.uv_from_world, 0, (0.0, 1.0), true);
+    assert!(refused(&small));
+    let mut small = fit;
+    small.box_max.x *= 0.99;
+    assert!(refused(&small));
+}
+
+#[test]
+fn a_near_plane_behind_a_caster_loses_it() {
+    let views = [from_above()];
+    let origin = views[0].origin;
+    let settings = plain();
+    let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &settings).unwrap();
+    let claim = Claim::of_fit(&settings, Reach::HARDWARE_2X2);
+    let check = |caster: Aabb, claim: &Claim| {
+        let casters = [over(0.0, -2.0, 0.5), caster];
+        let casters = Boxes { origin, boxes: &casters };
+        let claim = Claim { reach: Reach::POINT, ..*claim };
+        certificate(&FitInput { casters, ..FitInput::new(&views, Vec3::NEG_Y) }, &fit, &claim)
+    };
+    // 5 m above the eye; the near plane is 1 m below it.
+    let Certificate::CasterLost { point, by } = check(over(3.0, 4.0, 1.0), &claim) else { panic!("not lost") };
+    assert!((by - 6.0).abs() < 1e-3 && (point.y - origin.y - 5.0).abs() < 1e-9, "{point} by {by}");
+    assert!(looked_up(&fit, point).z < 0.0);
+    // Beside the view nothing throws a shadow into it, nor from below.
+    assert!(check(over(5.1, 4.0, 1.0), &claim).is_proven());
+    assert!(check(over(0.0, -9.0, 1.0), &claim).is_proven());
+    // A part over the view counts, and with depth clamp nothing.
+    assert!(!check(over(4.9, 4.0, 1.0), &claim).is_proven());
+    assert!(check(over(0.0, 4.0, 1.0), &Claim { casters: CasterPolicy::DepthClamp, ..claim }).is_proven());
+    // A texel has 1 cm: what stands 1.5 cm beside the view is read by a filter of reach 2 only.
+    let beside = over(5.015, 4.0, 1.0);
+    assert!(check(beside, &claim).is_proven());
+    let casters = [beside];
+    let input = FitInput { casters: Boxes { origin, boxes: &casters }, ..FitInput::new(&views, Vec3::NEG_Y) };
+    let settings = settings.with_kernel_margin(1.5);
+    let wide = shadowfit::fit(&views[0], Vec3::NEG_Y, &settings).unwrap();
+    let certificate = certificate(&input, &wide, &Claim::of_fit(&settings, Reach::taps(2.0)));
+    assert!(matches!(certificate, Certificate::CasterLost { .. }), "{certificate:?}");
+}
+
+#[test]
+fn the_xna_fit_covers_the_view_but_loses_casters_before_it() {
+    let views = [PerspectiveCamera { far: 20.0, ..camera() }.frustum().unwrap()];
+    let settings = plain().with_kind(FitKind::XnaSample).with_margin(0.01);
+    let fit = shadowfit::fit(&views[0], DIRECTION, &settings).unwrap();
+    let claim = Claim::of_fit(&settings, Reach::POINT);
+    let input = FitInput::new(&views, DIRECTION);
+    assert!(certificate(&input, &fit, &claim).is_proven());
+    let middle = (fit.corners()[0] + fit.corners()[2]) * 0.5 - fit.direction * 10.0;
+    let casters = [Aabb::new(middle - 1.0, middle + 1.0)];
+    let input = FitInput { casters: Boxes { origin: fit.origin, boxes: &casters }, ..input };
+    let Certificate::CasterLost { point, by } = certificate(&input, &fit, &claim) else { panic!("not lost") };
+    assert!(by > 10.0 && by < 12.0 && !fit.covers(point), "{point} by {by}");
+    // Its corners stand in its planes: without a margin, rounding may put them beyond.
+    let exact = shadowfit::fit(&views[0], DIRECTION, &settings.with_margin(0.0)).unwrap();
+    let Certificate::Uncovered { by, .. } = certificate(&FitInput::new(&views, DIRECTION), &exact, &claim) else {
+        panic!("proven")
+    };
+    assert!(by < 0.01, "{by}");
+}
+
+#[test]
+fn receivers_of_a_map_that_nobody_draws_are_found() {
+    let views = [from_above()];
+    let receivers = [over(1.0, -2.0, 0.25)];
+    let boxes = Boxes { origin: views[0].origin, boxes: &receivers };
+    let input = FitInput { receivers: Some(boxes), ..FitInput::new(&views, Vec3::NEG_Y) };
+    let fit = LightFit { is_empty: true, ..shadowfit::fit(&views[0], Vec3::NEG_Y, &plain()).unwrap() };
+    let claim = Claim::of_fit(&plain(), Reach::POINT);
+    assert!(matches!(certificate(&input, &fit, &claim), Certificate::LeftOut { .. }));
+    // Nothing is required where nothing receives, in the range or at all.
+    for (boxes, far) in [(&receivers[..], 1.5), (&receivers[..0], 3.0)] {
+        let boxes = Boxes { origin: views[0].origin, boxes };
+        let input = FitInput { receivers: Some(boxes), ..input };
+        let Certificate::Proven(slack) = certificate(&input, &fit, &Claim { far, ..claim }) else { panic!("{far}") };
+        assert_eq!(slack.planes, [f32::INFINITY; 6]);
+    }
+}
+
+#[test]
+fn another_origin_far_away_is_refused_for_its_rounding() {
+    let views = [from_above()];
+    let input = FitInput::new(&views, Vec3::NEG_Y);
+    let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &plain().with_margin(0.001)).unwrap();
+    let claim = Claim::of_fit(&plain(), Reach::POINT);
+    assert!(certificate(&input, &fit, &claim).is_proven());
+    let near = fit.relative_to(fit.origin + DVec3::new(10.0, 0.0, 10.0));
+    assert!(certificate(&input, &near, &claim).is_proven());
+    // At 10 km f32 has steps of a millimetre.
+    let far = fit.relative_to(fit.origin + DVec3::new(1e4, 0.0, 1e4));
+    assert!(!certificate(&input, &far, &claim).is_proven());
+}
+
+#[test]
+fn bad_numbers_are_errors() {
+    let views = [from_above()];
+    let input = FitInput::new(&views, Vec3::NEG_Y);
+    let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &plain()).unwrap();
+    let claim = Claim::of_fit(&plain(), Reach::POINT);
+    let mut storage = storage(1);
+    let mut error = |input: &FitInput, fit: &LightFit, claim: &Claim| {
+        verify(input, fit, claim, &mut Workspace::new(&mut storage)).unwrap_err()
+    };
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        let is_bad = |e: FitError| matches!(e, FitError::NotFinite { .. });
+        for claim in [
+            Claim { near: bad, ..claim },
+            Claim { far: bad, ..claim },
+            Claim { normal_offset: bad, ..claim },
+            Claim { reach: Reach::taps(bad), ..claim },
+            Claim { reach: Reach::POINT.over_disc(bad), ..claim },
+        ] {
+            assert!(is_bad(error(&input, &fit, &claim)), "{claim:?}");
+        }
+        for i in 0..16 {
+            let with = |matrix: Mat4| {
+                let mut elements = matrix.to_cols_array();
+                elements[i] = bad;
+                Mat4::from_cols_array(&elements)
+            };
+            for fit in [
+                LightFit { light_from_world: with(fit.light_from_world), ..fit },
+                LightFit { clip_from_world: with(fit.clip_from_world), ..fit },
+                LightFit { uv_from_world: with(fit.uv_from_world), ..fit },
+            ] {
+                assert!(is_bad(error(&input, &fit, &claim)), "element {i}");
+            }
+        }
+        for fit in [
+            LightFit { box_min: Vec3::splat(bad), ..fit },
+            LightFit { box_max: Vec3::splat(bad), ..fit },
+            LightFit { depth_range: bad, ..fit },
+            LightFit { origin: DVec3::splat(f64::from(bad)), ..fit },
+        ] {
+            assert!(is_bad(error(&input, &fit, &claim)));
+        }
+        assert!(is_bad(error(&FitInput { direction: Vec3::splat(bad), ..input }, &fit, &claim)));
+    }
+    let range = Claim { near: 2.0, far: 1.0, ..claim };
+    assert_eq!(error(&input, &fit, &range), FitError::NearNotBelowFar { near: 2.0, far: 1.0 });
+    assert_eq!(error(&FitInput { views: &[], ..input }, &fit, &claim), FitError::NoView);
+    let resolution = UVec2::new(0, 4);
+    assert_eq!(error(&input, &LightFit { resolution, ..fit }, &claim), FitError::ZeroResolution { resolution });
+    assert!(matches!(error(&input, &LightFit::default(), &claim), FitError::ZeroResolution { .. }));
+    let flat = LightFit { clip_from_world: Mat4::ZERO, ..fit };
+    assert!(matches!(error(&input, &flat, &claim), FitError::OutOfRange { .. }));
+    let small = verify(&input, &fit, &claim, &mut Workspace::new(&mut []));
+    assert!(matches!(small, Err(FitError::WorkspaceTooSmall { .. })));
 }

@@ -1,0 +1,299 @@
+//! What of a map can be kept from the last frame, so that static casters are drawn only where the
+//! map is new.
+//!
+//! A map on the world's grid ([snapped or held](crate::Stabilise), or the
+//! [stable sphere](crate::fits::sphere)) moves by whole texels. [`Scroll::between`] says by how
+//! many, which strips came into the map, and whether anything else changed:
+//!
+//! ```text
+//!   ┌───────────┬──┐  the map now
+//!   │           │▒▒│
+//!   │   kept    │▒▒│  ▒ exposed: two rectangles at most
+//!   ├───────────┤▒▒│
+//!   │▒▒▒▒▒▒▒▒▒▒▒│▒▒│
+//!   └───────────┴──┘
+//! ```
+//!
+//! A shifted raster is not bit-equal to a fresh one: the map's translation is rounded to f32 anew
+//! in each frame, which moves edges by up to 0.005 of a texel. Where that matters, [`Tiles`] are
+//! drawn instead: each has one projection for ever, relative to an origin of its own, and covers a
+//! square of the same grid.
+//!
+//! Kept texels must have been drawn with all casters over the map
+//! ([`CasterVolume::of_map`](crate::CasterVolume::of_map)): a swept volume leaves out those that
+//! throw no shadow into the view of **that** frame.
+
+use core::ops::Range;
+
+use glam::{DVec2, DVec3, IVec2, UVec2};
+
+use crate::axes::LightAxes;
+use crate::fits::Volume;
+use crate::grid::Grid;
+use crate::light_fit::Constraint;
+use crate::{CascadeMap, FitError, FitSettings, LightFit, checks};
+
+/// Where a map lies on the world's texel grid.
+///
+/// Its lines run along the map's x and y axis (the rows of
+/// [`light_from_world`](LightFit::light_from_world)) and are counted from the world's origin.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct GridAnchor {
+    /// Grid lines of the map's left and bottom side: the world's origin lies so many texels to the
+    /// left of and below them.
+    pub first: [i64; 2],
+    /// Exact size of a texel along x and y, in metres; [`LightFit::texel_size`] is this in f32.
+    pub texel: DVec2,
+    /// Far and near plane of the map along the direction **toward** the light, from the world's
+    /// origin, in metres.
+    pub depth: [f64; 2],
+}
+
+/// Grid lines beyond this are not whole numbers in f64 any more.
+const MAX_LINE: f64 = 4_503_599_627_370_496.0;
+
+impl GridAnchor {
+    /// Of a map on the grid, if its place can be counted.
+    pub(crate) fn of(grid: &Grid) -> Option<Self> {
+        let DVec2 { x, y } = grid.first;
+        let is_whole = x.abs() < MAX_LINE && y.abs() < MAX_LINE;
+        is_whole.then_some(Self { first: [x as i64, y as i64], texel: grid.texel, depth: [grid.z.0, grid.z.1] })
+    }
+}
+
+/// A rectangle of texels. Texture rows count downward from the top, as in
+/// [`uv_from_world`](LightFit::uv_from_world).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TexelRect {
+    /// Its left top texel.
+    pub min: UVec2,
+    /// Its width and height, in texels.
+    pub size: UVec2,
+}
+
+/// How a map came about from the one before it.
+///
+/// ```
+/// # use shadowfit::{CascadeMap, Scroll};
+/// # fn draw_all() {} fn copy_within_the_map(_: i32, _: i32) {} fn draw_in(_: u32, _: u32, _: u32, _: u32) {}
+/// fn draw_static_casters(before: &CascadeMap, now: &CascadeMap) {
+///     let scroll = Scroll::between(before, now);
+///     if scroll.is_redraw() {
+///         return draw_all();
+///     }
+///     copy_within_the_map(scroll.shift.x, scroll.shift.y);
+///     for strip in scroll.exposed() {
+///         draw_in(strip.min.x, strip.min.y, strip.size.x, strip.size.y); // a scissor rectangle
+///     }
+/// }
+/// # draw_static_casters(&CascadeMap::default(), &CascadeMap::default());
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Scroll {
+    /// Whether nothing of the old map is of use: the light, the map's angle, texel size or
+    /// resolution changed, no texel is in both, the old one was
+    /// [empty](LightFit::is_empty), or one of them lies on no grid.
+    pub is_new: bool,
+    /// Whether the near or the far plane moved, so that the old map's depths mean other distances
+    /// now. They stay while they serve, see [`Stabilise`](crate::Stabilise).
+    pub depth_changed: bool,
+    /// What is at texel t now was at texel t + `shift` before, right and down.
+    pub shift: IVec2,
+    exposed: [TexelRect; 2],
+}
+
+impl Scroll {
+    /// How a map came about from the same map of an earlier frame.
+    pub fn between(before: &CascadeMap, now: &CascadeMap) -> Self {
+        shift(before, now).map_or_else(
+            || Self::new_map(now.fit.resolution),
+            |(by, depth_changed)| Self {
+                is_new: false,
+                depth_changed,
+                shift: by,
+                exposed: exposed(by, now.fit.resolution),
+            },
+        )
+    }
+
+    /// Whether all of the map must be drawn. Otherwise [`Self::exposed`] is enough for casters that
+    /// stand still.
+    pub const fn is_redraw(&self) -> bool {
+        self.is_new || self.depth_changed
+    }
+
+    /// What was not in the old map: no, one or two rectangles that do not overlap; the whole of a
+    /// new map. A changed depth range does not count here.
+    pub fn exposed(&self) -> impl Iterator<Item = TexelRect> {
+        self.exposed.into_iter().filter(|rect| rect.size.min_element() > 0)
+    }
+
+    fn new_map(resolution: UVec2) -> Self {
+        let all = TexelRect { min: UVec2::ZERO, size: resolution };
+        Self { is_new: true, depth_changed: true, shift: IVec2::ZERO, exposed: [all, TexelRect::default()] }
+    }
+}
+
+/// Texels from a map to an earlier one and whether the depth range changed, if they share any.
+fn shift(before: &CascadeMap, now: &CascadeMap) -> Option<(IVec2, bool)> {
+    let (old, new) = (before.anchor?, now.anchor?);
+    let axes = |fit: &LightFit| [0, 1, 2].map(|i| fit.light_from_world.col(i));
+    let is_same = axes(&before.fit) == axes(&now.fit)
+        && old.texel == new.texel
+        && before.fit.resolution == now.fit.resolution
+        && before.fit.depth == now.fit.depth;
+    if !is_same || before.fit.is_empty {
+        return None;
+    }
+    let right = new.first[0].saturating_sub(old.first[0]);
+    // Grid lines count upward, texture rows downward.
+    let down = old.first[1].saturating_sub(new.first[1]);
+    let resolution = now.fit.resolution;
+    if right.unsigned_abs() >= u64::from(resolution.x) || down.unsigned_abs() >= u64::from(resolution.y) {
+        return None;
+    }
+    let by = IVec2::new(i32::try_from(right).ok()?, i32::try_from(down).ok()?);
+    Some((by, old.depth != new.depth))
+}
+
+/// The columns, then the rows beside them, that a shift brings into a map.
+fn exposed(by: IVec2, resolution: UVec2) -> [TexelRect; 2] {
+    let count = UVec2::new(by.x.unsigned_abs(), by.y.unsigned_abs()).min(resolution);
+    let kept = resolution - count;
+    let first = |by: i32, kept: u32| if by > 0 { kept } else { 0 };
+    let columns = TexelRect { min: UVec2::new(first(by.x, kept.x), 0), size: UVec2::new(count.x, resolution.y) };
+    let left = if by.x > 0 { 0 } else { count.x };
+    let rows = TexelRect { min: UVec2::new(left, first(by.y, kept.y)), size: UVec2::new(kept.x, count.y) };
+    [columns, rows]
+}
+
+/// A square of the world's texel grid with a projection that no camera changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tile {
+    /// Which square it is: columns to the right and rows upward along the map's axes, counted from
+    /// the world's origin.
+    pub index: [i64; 2],
+    /// Its projection, of `size` × `size` texels. [`LightFit::origin`] is the tile's own, in the
+    /// middle of its near plane: what is drawn into it must be relative to that. All matrices have
+    /// the same bits for all tiles, and the origin for the same index, as long as the light, the
+    /// map's angle, the texel size and the depth range stay as they are.
+    pub fit: LightFit,
+    /// Where it goes in the map: the part of it that is inside.
+    pub map: TexelRect,
+    /// The tile's own texel that goes to the left top of that part.
+    pub from: UVec2,
+}
+
+/// The tiles that cover a map, row by row from below; see [`tiles`].
+#[derive(Clone, Debug)]
+pub struct Tiles {
+    anchor: GridAnchor,
+    resolution: UVec2,
+    size: u32,
+    axes: LightAxes,
+    /// The projection of all tiles.
+    fit: LightFit,
+    columns: Range<i64>,
+    rows: Range<i64>,
+    next: [i64; 2],
+}
+
+/// The world-anchored tiles of `size` × `size` texels that cover a map on the grid.
+///
+/// Tiles are drawn and kept by their index and copied into the map, or looked up themselves. A tile
+/// that is drawn again has the same bits, wherever the camera is, if what it shows has. Its depths
+/// are those of the map.
+///
+/// # Errors
+///
+/// [`FitError::NotOnGrid`] for a map that is neither snapped nor held nor a sphere's;
+/// [`FitError::OutOfRange`] for a size of 0 or above 65 536 texels, and for an anchor or a fit that
+/// make no sense.
+pub fn tiles(map: &CascadeMap, size: u32) -> Result<Tiles, FitError> {
+    checks::within("the size of a tile", f64::from(size), 1.0, f64::from(MAX_TILE))?;
+    let anchor = map.anchor.ok_or(FitError::NotOnGrid)?;
+    let axes = LightAxes::of_matrix(&map.fit.light_from_world)?;
+    for line in anchor.first {
+        checks::within("a grid line of the map", line as f64, -MAX_LINE, MAX_LINE)?;
+    }
+    let side = i64::from(size);
+    let cover = |first: i64, texels: u32| {
+        first.div_euclid(side)..(first + i64::from(texels) - 1).div_euclid(side).saturating_add(1)
+    };
+    let (columns, rows) = (cover(anchor.first[0], map.fit.resolution.x), cover(anchor.first[1], map.fit.resolution.y));
+    let next = [columns.start, rows.start];
+    let fit = tile_fit(&axes, &anchor, size, map)?;
+    Ok(Tiles { anchor, resolution: map.fit.resolution, size, axes, fit, columns, rows, next })
+}
+
+/// Largest tile, in texels: no texture is larger.
+const MAX_TILE: u32 = 65_536;
+
+/// The projection of a tile whose origin is in the middle of its near plane.
+fn tile_fit(axes: &LightAxes, anchor: &GridAnchor, size: u32, map: &CascadeMap) -> Result<LightFit, FitError> {
+    let half = anchor.texel * (f64::from(size) * 0.5);
+    let depth_range = anchor.depth[1] - anchor.depth[0];
+    let volume = Volume {
+        axes: *axes,
+        min: (-half).extend(-depth_range),
+        max: half.extend(0.0),
+        light_z: 0.0,
+        depth_range,
+        set_by: [Constraint::Held; 6],
+        is_empty: false,
+        grid: None,
+    };
+    let settings = FitSettings { resolution: UVec2::splat(size), depth: map.fit.depth, ..FitSettings::default() };
+    let mut fit = LightFit::default();
+    fit.set_volume(DVec3::ZERO, &volume, &settings)?;
+    Ok(fit)
+}
+
+impl Tiles {
+    fn tile(&self, index: [i64; 2]) -> Tile {
+        let side = i64::from(self.size);
+        let middle = [0, 1].map(|i| (index[i] as f64 + 0.5) * f64::from(self.size) * self.anchor.texel[i]);
+        let origin = self.axes.unproject(DVec3::new(middle[0], middle[1], self.anchor.depth[1]));
+        // Left top of the tile in the map; rows count downward there.
+        let left = index[0] * side - self.anchor.first[0];
+        let top = self.anchor.first[1] + i64::from(self.resolution.y) - (index[1] + 1) * side;
+        let ([x, width, from_x], [y, height, from_y]) =
+            (overlap(left, side, self.resolution.x), overlap(top, side, self.resolution.y));
+        Tile {
+            index,
+            fit: LightFit { origin, ..self.fit },
+            map: TexelRect { min: UVec2::new(x, y), size: UVec2::new(width, height) },
+            from: UVec2::new(from_x, from_y),
+        }
+    }
+}
+
+/// Start and length of the part of a run of texels inside a map, and where that part begins in the
+/// run.
+fn overlap(start: i64, length: i64, resolution: u32) -> [u32; 3] {
+    let (first, end) = (start.max(0), (start + length).min(i64::from(resolution)));
+    [first, (end - first).max(0), first - start].map(|texels| texels as u32)
+}
+
+impl Iterator for Tiles {
+    type Item = Tile;
+
+    fn next(&mut self) -> Option<Tile> {
+        let [column, row] = self.next;
+        if row >= self.rows.end {
+            return None;
+        }
+        self.next = if column + 1 < self.columns.end { [column + 1, row] } else { [self.columns.start, row + 1] };
+        Some(self.tile([column, row]))
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        let width = self.columns.end - self.columns.start;
+        let passed = (self.next[1] - self.rows.start) * width + self.next[0] - self.columns.start;
+        let left = (self.rows.end - self.rows.start) * width - passed;
+        (left as usize, Some(left as usize))
+    }
+}
+
+impl ExactSizeIterator for Tiles {}

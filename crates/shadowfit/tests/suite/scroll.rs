@@ -1,0 +1,310 @@
+//! Maps on the world's grid: what is kept from frame to frame, and tiles that never change.
+
+use std::collections::HashMap;
+
+use proptest::prelude::*;
+use shadowfit::glam::{DQuat, DVec2, DVec3, UVec2, Vec3};
+use shadowfit::scroll::{TexelRect, Tile, tiles};
+use shadowfit::{
+    Aabb, Boxes, CascadeFitter, CascadeMap, CascadeSettings, Cascades, CasterPolicy, DepthConvention, FitError,
+    FitInput, FitKind, FitSettings, GridAnchor, LightFit, PerspectiveCamera, RectangleKind, Scroll, SplitScheme,
+    Stabilise, Workspace,
+};
+
+use crate::support::{DIRECTION, any_direction, camera, double};
+
+fn settings(kind: FitKind, stabilise: Stabilise, resolution: u32) -> CascadeSettings {
+    let fit = FitSettings {
+        kind,
+        rectangle: RectangleKind::AxisAligned,
+        casters: CasterPolicy::List,
+        resolution: UVec2::new(resolution, resolution * 3 / 4),
+        ..FitSettings::default()
+    };
+    CascadeSettings {
+        fit,
+        count: 3,
+        stabilise,
+        splits: SplitScheme::Manual([8.0, 18.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        ..CascadeSettings::default()
+    }
+}
+
+/// Houses on a square of ground around the tests' camera, relative to the world's origin.
+fn town() -> Vec<Aabb> {
+    let ground = Aabb::new(Vec3::new(-200.0, -1.0, -240.0), Vec3::new(200.0, 0.0, 160.0));
+    let house = |i: u16| {
+        let (x, z) = (f32::from(i % 20) * 20.0 - 200.0, f32::from(i / 20) * 20.0 - 240.0);
+        let height = 3.0 + f32::from(i * 37 % 11);
+        Aabb::new(Vec3::new(x, 0.0, z), Vec3::new(x + 7.0, height, z + 9.0))
+    };
+    std::iter::once(ground).chain((0..400).map(house)).collect()
+}
+
+fn frame(
+    fitter: &mut CascadeFitter,
+    camera: &PerspectiveCamera,
+    direction: Vec3,
+    settings: &CascadeSettings,
+    boxes: &[Aabb],
+) -> Cascades {
+    let views = [camera.frustum().unwrap()];
+    let boxes = Boxes { origin: DVec3::ZERO, boxes };
+    let input = FitInput { receivers: Some(boxes), casters: boxes, ..FitInput::new(&views, direction) };
+    let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.boxes.len(), 3)];
+    fitter.fit(&input, settings, &mut Workspace::new(&mut storage)).unwrap()
+}
+
+/// A map of 2 m texels straight below the light, whose left bottom corner is at a grid line.
+fn plain_map(first: [i64; 2], resolution: UVec2) -> CascadeMap {
+    let anchor = GridAnchor { first, texel: DVec2::splat(2.0), depth: [-10.0, 30.0] };
+    CascadeMap { fit: LightFit { resolution, ..LightFit::default() }, anchor: Some(anchor), ..CascadeMap::default() }
+}
+
+/// World column and row, counted upward, of a texel of a map.
+fn world_texel(anchor: &GridAnchor, resolution: UVec2, x: u32, y: u32) -> (i64, i64) {
+    (anchor.first[0] + i64::from(x), anchor.first[1] + i64::from(resolution.y - 1 - y))
+}
+
+fn is_in(rect: &TexelRect, x: u32, y: u32) -> bool {
+    (rect.min.x..rect.min.x + rect.size.x).contains(&x) && (rect.min.y..rect.min.y + rect.size.y).contains(&y)
+}
+
+proptest! {
+    /// By brute force: each texel is either kept, and then the shift leads to the one that held the
+    /// same place of the world, or in exactly one strip.
+    #[test]
+    fn shift_and_strips_are_exactly_what_moved_and_what_is_new(
+        (x, y) in (-40_i64..40, -40_i64..40), (dx, dy) in (-14_i64..14, -14_i64..14), (w, h) in (1_u32..12, 1_u32..12),
+    ) {
+        let resolution = UVec2::new(w, h);
+        let (before, now) = (plain_map([x, y], resolution), plain_map([x + dx, y + dy], resolution));
+        let (old, new) = (before.anchor.unwrap(), now.anchor.unwrap());
+        let held: HashMap<_, _> = (0..w).flat_map(|x| (0..h).map(move |y| (x, y)))
+            .map(|(x, y)| (world_texel(&old, resolution, x, y), (x, y))).collect();
+        let scroll = Scroll::between(&before, &now);
+        prop_assert_eq!(scroll.is_new, dx.unsigned_abs() >= u64::from(w) || dy.unsigned_abs() >= u64::from(h));
+        for (x, y) in (0..w).flat_map(|x| (0..h).map(move |y| (x, y))) {
+            let strips = scroll.exposed().filter(|rect| is_in(rect, x, y)).count();
+            if let Some((ox, oy)) = held.get(&world_texel(&new, resolution, x, y)) {
+                prop_assert_eq!(strips, 0);
+                let from = (i64::from(x) + i64::from(scroll.shift.x), i64::from(y) + i64::from(scroll.shift.y));
+                prop_assert_eq!(from, (i64::from(*ox), i64::from(*oy)));
+            } else {
+                prop_assert_eq!(strips, 1);
+            }
+        }
+        for rect in scroll.exposed() {
+            prop_assert!(rect.min.x + rect.size.x <= w && rect.min.y + rect.size.y <= h);
+        }
+    }
+
+    #[test]
+    fn points_of_the_world_keep_their_texel_after_the_shift(
+        direction in any_direction(), (x, y, z) in (double(-3.0, 3.0), double(-3.0, 3.0), double(-3.0, 3.0)),
+        kind in prop::sample::select(vec![FitKind::Sphere, FitKind::FrustumAabb, FitKind::Focused]),
+        stabilise in prop::sample::select(vec![Stabilise::Snap, Stabilise::Hysteresis]),
+        far_out in prop::sample::select(vec![0.0, 1e3, 1e5]), turn in double(0.0, 0.05),
+    ) {
+        let (settings, town, mut fitter) = (settings(kind, stabilise, 512), town(), CascadeFitter::new());
+        let mut camera = camera();
+        camera.eye += DVec3::new(far_out, 0.0, -far_out);
+        let town: Vec<Aabb> = town.iter().map(|b| {
+            let shift = DVec3::new(far_out, 0.0, -far_out).as_vec3();
+            Aabb::new(b.min + shift, b.max + shift)
+        }).collect();
+        let before = frame(&mut fitter, &camera, direction, &settings, &town);
+        camera.eye += DVec3::new(x, y, z);
+        camera.forward = (DQuat::from_axis_angle(DVec3::Y, turn) * camera.forward.as_dvec3()).as_vec3();
+        let now = frame(&mut fitter, &camera, direction, &settings, &town);
+        for (before, now) in before.iter().zip(now.iter()) {
+            let scroll = Scroll::between(before, now);
+            if scroll.is_new {
+                continue;
+            }
+            let centre = now.fit.corners().map(Vec3::as_dvec3).into_iter().sum::<DVec3>() / 8.0 + now.fit.origin;
+            let apart = texel(&before.fit, centre) - texel(&now.fit, centre) - scroll.shift.as_dvec2();
+            prop_assert!(apart.abs().max_element() < 0.02, "{apart} texels");
+            prop_assert!(scroll.depth_changed || (before.fit.depth_range - now.fit.depth_range).abs() < 1e-6 * now.fit.depth_range);
+            let depth = |fit: &LightFit| place(fit, centre).z;
+            prop_assert!(scroll.depth_changed || (depth(&before.fit) - depth(&now.fit)).abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn tiles_cover_a_map_once_and_agree_with_it(
+        direction in any_direction(), size in 1_u32..300, (a, b) in (double(0.0, 1.0), double(0.0, 1.0)),
+        far_out in prop::sample::select(vec![0.0, 1e3, 1e5]), depth in prop::sample::select(vec![
+            DepthConvention::ZeroToOne, DepthConvention::Reversed, DepthConvention::NegativeOneToOne,
+        ]),
+    ) {
+        let mut settings = settings(FitKind::Sphere, Stabilise::Snap, 256);
+        settings.fit.depth = depth;
+        let mut camera = camera();
+        camera.eye += DVec3::splat(far_out);
+        let maps = frame(&mut CascadeFitter::new(), &camera, direction, &settings, &[]);
+        let map = &maps[1];
+        let (min, max) = (map.fit.box_min.as_dvec3(), map.fit.box_max.as_dvec3());
+        let inside = |x: f64, y: f64, z: f64| {
+            let m = &map.fit.light_from_world;
+            let p = min + (max - min) * DVec3::new(x, y, z) - m.w_axis.truncate().as_dvec3();
+            let rows = m.transpose();
+            map.fit.origin + rows.x_axis.truncate().as_dvec3() * p.x + rows.y_axis.truncate().as_dvec3() * p.y
+                + rows.z_axis.truncate().as_dvec3() * p.z
+        };
+        let point = inside(a, b, 0.5);
+        let all: Vec<Tile> = tiles(map, size).unwrap().collect();
+        prop_assert_eq!(all.len(), tiles(map, size).unwrap().len());
+        let area: u32 = all.iter().map(|tile| tile.map.size.x * tile.map.size.y).sum();
+        prop_assert_eq!(area, map.fit.resolution.x * map.fit.resolution.y);
+        let at = texel(&map.fit, point);
+        let (x, y) = (at.x as u32, at.y as u32);
+        let owners: Vec<&Tile> = all.iter().filter(|tile| is_in(&tile.map, x, y)).collect();
+        prop_assert_eq!(owners.len(), 1);
+        let tile = owners[0];
+        let expected = at - tile.map.min.as_dvec2() + tile.from.as_dvec2();
+        prop_assert!((texel(&tile.fit, point) - expected).abs().max_element() < 0.02);
+        prop_assert!((place(&tile.fit, point).z - place(&map.fit, point).z).abs() < 1e-5);
+        prop_assert!(tile.fit.direction == map.fit.direction && tile.fit.depth == depth);
+    }
+}
+
+/// Texture coordinates and depth of a world position, in f64.
+fn place(fit: &LightFit, point: DVec3) -> DVec3 {
+    let m = fit.uv_from_world.as_dmat4();
+    let p = point - fit.origin;
+    (m.x_axis * p.x + m.y_axis * p.y + m.z_axis * p.z + m.w_axis).truncate()
+}
+
+fn texel(fit: &LightFit, point: DVec3) -> DVec2 {
+    place(fit, point).truncate() * fit.resolution.as_dvec2()
+}
+
+#[test]
+fn tiles_have_the_same_bits_wherever_the_camera_is() {
+    let settings = settings(FitKind::Sphere, Stabilise::Snap, 512);
+    let (town, mut fitter, mut camera) = (town(), CascadeFitter::new(), camera());
+    let mut known: HashMap<(usize, [i64; 2], [u64; 2]), LightFit> = HashMap::new();
+    let (mut again, mut levels) = (0, std::collections::HashSet::new());
+    for _ in 0..60 {
+        for (level, map) in frame(&mut fitter, &camera, DIRECTION, &settings, &town).iter().enumerate() {
+            let depth = map.anchor.unwrap().depth.map(f64::to_bits);
+            for tile in tiles(map, 64).unwrap() {
+                levels.insert((level, depth));
+                let first = *known.entry((level, tile.index, depth)).or_insert(tile.fit);
+                assert_eq!(first, tile.fit);
+                again += 1;
+            }
+        }
+        camera.eye += DVec3::new(0.37, 0.01, -0.73);
+        camera.forward = (DQuat::from_axis_angle(DVec3::Y, 0.02) * camera.forward.as_dvec3()).as_vec3();
+    }
+    let tiles: usize = known.len();
+    println!("{again} uses of {tiles} tiles, {} levels", levels.len());
+    assert!(again > 10 * tiles, "{again} uses of {tiles} tiles");
+}
+
+/// How often maps must be drawn whole while a camera walks at a jogger's pace and looks around.
+#[test]
+fn depth_ranges_hold_while_a_camera_walks() {
+    let town = town();
+    for (kind, stabilise) in [
+        (FitKind::Sphere, Stabilise::Snap),
+        (FitKind::FrustumAabb, Stabilise::Snap),
+        (FitKind::Focused, Stabilise::Snap),
+        (FitKind::FrustumAabb, Stabilise::Hysteresis),
+        (FitKind::Focused, Stabilise::Hysteresis),
+    ] {
+        let settings = settings(kind, stabilise, 1024);
+        let (mut fitter, mut camera) = (CascadeFitter::new(), camera());
+        let mut before = frame(&mut fitter, &camera, DIRECTION, &settings, &town);
+        let (mut depth_changes, mut new, mut shifts, frames) = (0, 0, 0, 600);
+        for i in 0..frames {
+            camera.eye += DVec3::new(0.03, 0.0, -0.05);
+            let turn = 0.01 * f64::sin(f64::from(i) * 0.02);
+            camera.forward = (DQuat::from_axis_angle(DVec3::Y, turn) * camera.forward.as_dvec3()).as_vec3();
+            let now = frame(&mut fitter, &camera, DIRECTION, &settings, &town);
+            for (before, now) in before.iter().zip(now.iter()) {
+                let scroll = Scroll::between(before, now);
+                new += i32::from(scroll.is_new);
+                depth_changes += i32::from(!scroll.is_new && scroll.depth_changed);
+                shifts += i32::from(!scroll.is_redraw() && scroll.exposed().count() > 0);
+            }
+            before = now;
+        }
+        let maps = frames * 3;
+        println!("{kind:?} {stabilise:?}: of {maps} maps {new} new, {depth_changes} with new depths, {shifts} shifted");
+        assert!(depth_changes * 100 < maps, "{kind:?} {stabilise:?}: {depth_changes} of {maps}");
+        if kind == FitKind::Sphere || stabilise == Stabilise::Hysteresis {
+            assert!(new * 20 < maps, "{kind:?} {stabilise:?}: {new} of {maps}");
+        }
+    }
+}
+
+#[test]
+fn what_changes_the_projection_makes_a_new_map() {
+    let resolution = UVec2::splat(8);
+    let before = plain_map([3, 4], resolution);
+    let same = Scroll::between(&before, &before);
+    assert!(!same.is_redraw() && same.exposed().count() == 0);
+    let anchor = before.anchor.unwrap();
+    let with = |anchor: GridAnchor| CascadeMap { anchor: Some(anchor), ..before };
+    let with_fit = |fit: LightFit| CascadeMap { fit, ..before };
+    let depth = Scroll::between(&before, &with(GridAnchor { depth: [-10.0, 31.0], ..anchor }));
+    assert!(!depth.is_new && depth.depth_changed && depth.is_redraw() && depth.exposed().count() == 0);
+    let mut turned = before.fit;
+    turned.light_from_world.x_axis.y = 1e-7;
+    for other in [
+        with(GridAnchor { texel: DVec2::new(2.0, 2.000_001), ..anchor }),
+        with(GridAnchor { first: [i64::MAX, i64::MIN], ..anchor }),
+        with_fit(LightFit { resolution: UVec2::new(8, 9), ..before.fit }),
+        with_fit(LightFit { depth: DepthConvention::Reversed, ..before.fit }),
+        with_fit(turned),
+        CascadeMap { anchor: None, ..before },
+    ] {
+        for scroll in [Scroll::between(&before, &other), Scroll::between(&other, &before)] {
+            assert!(scroll.is_new && scroll.is_redraw(), "{other:?}");
+        }
+        let all: Vec<TexelRect> = Scroll::between(&before, &other).exposed().collect();
+        assert_eq!(all, [TexelRect { min: UVec2::ZERO, size: other.fit.resolution }]);
+    }
+    // Nothing was drawn into an empty map.
+    assert!(Scroll::between(&with_fit(LightFit { is_empty: true, ..before.fit }), &before).is_new);
+    assert!(!Scroll::between(&before, &with_fit(LightFit { is_empty: true, ..before.fit })).is_new);
+}
+
+#[test]
+fn maps_on_no_grid_have_no_tiles_and_bad_ones_are_errors() {
+    let free = frame(
+        &mut CascadeFitter::new(),
+        &camera(),
+        DIRECTION,
+        &settings(FitKind::Oriented, Stabilise::Off, 64),
+        &town(),
+    );
+    assert!(free[0].anchor.is_none());
+    assert_eq!(tiles(&free[0], 64).unwrap_err(), FitError::NotOnGrid);
+    let good = frame(
+        &mut CascadeFitter::new(),
+        &camera(),
+        DIRECTION,
+        &settings(FitKind::Oriented, Stabilise::Snap, 64),
+        &town(),
+    )[0];
+    assert!(tiles(&good, 64).is_ok());
+    let anchor = good.anchor.unwrap();
+    for size in [0, 65_537, u32::MAX] {
+        assert!(matches!(tiles(&good, size), Err(FitError::OutOfRange { .. })), "{size}");
+    }
+    for bad in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
+        let with = |anchor: GridAnchor| CascadeMap { anchor: Some(anchor), ..good };
+        assert!(tiles(&with(GridAnchor { texel: DVec2::new(bad, 1.0), ..anchor }), 64).is_err(), "{bad}");
+        assert!(tiles(&with(GridAnchor { depth: [0.0, bad], ..anchor }), 64).is_err(), "{bad}");
+        let mut fit = good.fit;
+        fit.light_from_world.y_axis.y = bad as f32;
+        fit.light_from_world.z_axis.y = bad as f32;
+        assert!(tiles(&CascadeMap { fit, ..good }, 64).is_err(), "{bad}");
+    }
+    let far = GridAnchor { first: [i64::MIN, i64::MAX], ..anchor };
+    assert!(tiles(&CascadeMap { anchor: Some(far), ..good }, 64).is_err());
+}
