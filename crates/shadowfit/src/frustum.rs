@@ -189,6 +189,7 @@ impl ViewFrustum {
                 checks::point("a corner of the frustum", corner.as_dvec3())?;
             }
         }
+        checks::unit("the frustum's forward direction", self.forward)?;
         let (near, far) = (self.near, self.far);
         checks::within("the frustum's near distance", f64::from(near), -MAX_LENGTH, MAX_LENGTH)?;
         checks::within("the frustum's far distance", f64::from(far), -MAX_LENGTH, MAX_LENGTH)?;

@@ -198,8 +198,10 @@ impl Frame<'_, '_> {
         let mut map = HeldMap::new(&volume, grid, settings, fresh);
         let needed = self.needed(&map, settings, slice, points)?;
         let anchor = grid::anchor(&map.axes, origin).z;
-        let z = (grid.z.0.min(needed.z.0 + anchor), grid.z.1.max(needed.z.1 + anchor));
-        map.z = grid::steadied(None, z, 1.0);
+        let now = (needed.z.0 + anchor, needed.z.1 + anchor);
+        let ahead = grid::steadied(None, (grid.z.0.min(now.0), grid.z.1.max(now.1)), 1.0);
+        // What the next frame would give up is not begun with.
+        map.z = grid::steadied(Some(ahead), now, f64::from(self.hold.waste));
         map.set_by[5] = needed.near_set_by.unwrap_or(map.set_by[5]);
         Ok(map)
     }

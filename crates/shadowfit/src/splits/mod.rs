@@ -189,7 +189,8 @@ impl Chooser<'_, '_> {
         match (self.settings.splits, &self.histogram) {
             (SplitScheme::FromHistogram, Some(histogram)) if !histogram.is_empty() => {
                 let (seen, guess) = (histogram.weights(bins), visible::weights(self.content, bins));
-                core::array::from_fn(|i| core::array::from_fn(|c| seen[i][c] * (1.0 - GUESS) + guess[i][c] * GUESS))
+                let share = if self.content.receivers.is_some() { GUESS } else { BLIND_GUESS };
+                core::array::from_fn(|i| core::array::from_fn(|c| seen[i][c] * (1.0 - share) + guess[i][c] * share))
             }
             _ => visible::weights(self.content, bins),
         }
@@ -199,6 +200,10 @@ impl Chooser<'_, '_> {
 /// Share of the boxes' guess beside a histogram: what came into view since, and what few samples
 /// missed. Chosen on real scenes, where 0 and 0.6 are both worse by 2%.
 const GUESS: f64 = 0.3;
+
+/// The same where no boxes are known and all depths are guessed alike: less than what a quantile
+/// leaves out, so that it only decides where the histogram does not.
+const BLIND_GUESS: f64 = 0.02;
 
 /// Room beyond the farthest receiver that held cuts leave, as a share of its distance.
 const FAR_SLACK: f64 = 0.1;

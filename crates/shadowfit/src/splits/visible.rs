@@ -45,7 +45,8 @@ pub(super) fn weights(content: &Content, bins: &Bins) -> Weights {
     }
     let total: f64 = spread.weights.iter().flatten().sum();
     if total == 0.0 {
-        return [[1.0 / (BINS * CLASSES) as f64; CLASSES]; BINS];
+        // Each depth alike; of slopes nothing is known.
+        return core::array::from_fn(|_| core::array::from_fn(|c| if c == 0 { 1.0 / BINS as f64 } else { 0.0 }));
     }
     spread.weights.map(|classes| classes.map(|weight| weight / total))
 }

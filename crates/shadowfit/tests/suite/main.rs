@@ -3,11 +3,14 @@
 mod automatic_bias;
 mod bad_input;
 mod bad_input_figures;
+mod bad_scenes;
 mod batched_culling;
 mod bias;
 #[cfg(feature = "bytemuck")]
 mod bytemuck;
+mod cascades;
 mod caster;
+mod caster_depth;
 mod clusters;
 mod conventions;
 mod coverage;

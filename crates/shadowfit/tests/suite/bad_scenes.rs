@@ -1,0 +1,373 @@
+//! Bad numbers in everything that whole scenes are made of: an error or finite maps, never a
+//! panic, and a fitter that an error leaves as it was.
+
+use proptest::prelude::*;
+use shadowfit::glam::{DVec2, DVec3, Mat4, UVec2, Vec3};
+use shadowfit::{
+    Aabb, Boxes, CascadeFitter, CascadeSettings, Cascades, CasterPolicy, DepthHistogram, FitError, FitInput, FitKind,
+    FitSettings, LightFit, MapOverride, NormalCone, RectangleKind, SplitScheme, Stabilise, ViewFrustum, Workspace,
+};
+
+use crate::support::{DIRECTION, camera};
+
+/// Everything that a fit of a scene is given.
+#[derive(Clone, Debug)]
+struct Inputs {
+    views: Vec<ViewFrustum>,
+    direction: Vec3,
+    origins: [DVec3; 2],
+    receivers: Vec<Aabb>,
+    cones: Vec<NormalCone>,
+    casters: Vec<Aabb>,
+    near: f32,
+    far: f32,
+    bins: Vec<u32>,
+    classes: usize,
+    settings: CascadeSettings,
+    storage: usize,
+}
+
+fn good() -> Inputs {
+    let eye = camera().eye.as_vec3();
+    let around = |offset: Vec3, half: f32| Aabb::new(eye + offset - half, eye + offset + half);
+    Inputs {
+        views: vec![camera().frustum().unwrap(), camera().frustum().unwrap()],
+        direction: DIRECTION,
+        origins: [DVec3::ZERO; 2],
+        receivers: vec![around(Vec3::new(3.0, -4.0, -8.0), 5.0), around(Vec3::new(12.0, -16.0, -32.0), 9.0)],
+        cones: vec![NormalCone::ALL; 2],
+        casters: vec![around(Vec3::new(1.0, 9.0, -3.0), 3.0), around(Vec3::new(3.0, 30.0, -8.0), 2.0)],
+        near: 0.5,
+        far: 60.0,
+        bins: vec![1, 5, 9, 2, 0, 3],
+        classes: 2,
+        settings: CascadeSettings { count: 3, ..CascadeSettings::default() },
+        storage: Workspace::required(2, 2),
+    }
+}
+
+impl Inputs {
+    fn with<T>(&self, run: impl FnOnce(&FitInput, &mut Workspace) -> T) -> T {
+        let histogram = DepthHistogram { near: self.near, far: self.far, bins: &self.bins, classes: self.classes };
+        let input = FitInput {
+            receivers: Some(Boxes { origin: self.origins[0], boxes: &self.receivers }),
+            receiver_cones: &self.cones,
+            casters: Boxes { origin: self.origins[1], boxes: &self.casters },
+            histogram: Some(histogram),
+            ..FitInput::new(&self.views, self.direction)
+        };
+        let mut storage = vec![DVec2::NAN; self.storage];
+        run(&input, &mut Workspace::new(&mut storage))
+    }
+
+    fn fit(&self, fitter: &mut CascadeFitter) -> Result<Cascades, FitError> {
+        self.with(|input, workspace| fitter.fit(input, &self.settings, workspace))
+    }
+
+    fn single(&self) -> Result<LightFit, FitError> {
+        self.with(|input, workspace| shadowfit::fit_scene(input, &self.settings.fit, workspace))
+    }
+
+    /// Fits twice, so that what is kept from the first frame is used by the second.
+    fn check(&self, name: &str) {
+        let mut fitter = CascadeFitter::new();
+        for _ in 0..2 {
+            for map in self.fit(&mut fitter).iter().flat_map(|maps| maps.iter()) {
+                assert!(is_finite(&map.fit), "{name}: {map:?}");
+                assert!(!map.near.is_nan() && !map.far.is_nan() && !map.covered_near.is_nan(), "{name}: {map:?}");
+            }
+        }
+        if let Ok(fit) = self.single() {
+            assert!(is_finite(&fit), "{name}: {fit:?}");
+        }
+    }
+}
+
+fn is_finite(fit: &LightFit) -> bool {
+    [fit.light_from_world, fit.clip_from_light, fit.clip_from_world, fit.uv_from_world].iter().all(Mat4::is_finite)
+        && fit.texel_size.is_finite()
+        && fit.texel_size.min_element() > 0.0
+        && fit.depth_range.is_finite()
+        && fit.depth_range > 0.0
+        && fit.box_min.is_finite()
+        && fit.box_max.is_finite()
+}
+
+/// A number of the input, by name.
+type Setter = (&'static str, fn(&mut Inputs, f64));
+
+/// Every float but those of the camera, which have tests of their own.
+const SETTERS: [Setter; 42] = [
+    ("view origin x", |i, v| i.views[0].origin.x = v),
+    ("view origin y", |i, v| i.views[1].origin.y = v),
+    ("near corner", |i, v| i.views[0].corners[1].x = v as f32),
+    ("far corner", |i, v| i.views[0].corners[6].y = v as f32),
+    ("other corner", |i, v| i.views[1].corners[4].z = v as f32),
+    ("view near", |i, v| i.views[0].near = v as f32),
+    ("view far", |i, v| i.views[0].far = v as f32),
+    ("other near", |i, v| i.views[1].near = v as f32),
+    ("other far", |i, v| i.views[1].far = v as f32),
+    ("forward x", |i, v| i.views[0].forward.x = v as f32),
+    ("forward", |i, v| i.views[0].forward = Vec3::splat(v as f32)),
+    ("direction x", |i, v| i.direction.x = v as f32),
+    ("direction", |i, v| i.direction = Vec3::splat(v as f32)),
+    ("receivers' origin", |i, v| i.origins[0].y = v),
+    ("casters' origin", |i, v| i.origins[1].z = v),
+    ("receiver min", |i, v| i.receivers[0].min.x = v as f32),
+    ("receiver max", |i, v| i.receivers[1].max.y = v as f32),
+    ("caster min", |i, v| i.casters[0].min.z = v as f32),
+    ("caster max", |i, v| i.casters[1].max.x = v as f32),
+    ("cone axis", |i, v| i.cones[0].axis.x = v as f32),
+    ("cone angle", |i, v| i.cones[0].cos_half_angle = v as f32),
+    ("histogram near", |i, v| i.near = v as f32),
+    ("histogram far", |i, v| i.far = v as f32),
+    ("histogram bin", |i, v| i.bins.iter_mut().take(1).for_each(|bin| *bin = v as u32)),
+    ("histogram bins", |i, v| i.bins.truncate(v as usize % 9)),
+    ("histogram classes", |i, v| i.classes = v as usize),
+    ("max distance", |i, v| i.settings.fit.max_distance = v as f32),
+    ("margin", |i, v| i.settings.fit.margin = v as f32),
+    ("kernel margin", |i, v| i.settings.fit.kernel_margin = v as f32),
+    ("extension", |i, v| i.settings.fit.caster_extension = v as f32),
+    ("up x", |i, v| i.settings.fit.up.x = v as f32),
+    ("up", |i, v| i.settings.fit.up = Vec3::splat(v as f32)),
+    ("resolution", |i, v| i.settings.fit.resolution = UVec2::new(v as u32, 512)),
+    ("count", |i, v| i.settings.count = v as u32),
+    ("lambda", |i, v| i.settings.splits = SplitScheme::Practical(v as f32)),
+    ("first manual cut", |i, v| i.settings.splits = SplitScheme::Manual([v as f32, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0])),
+    ("second manual cut", |i, v| {
+        i.settings.splits = SplitScheme::Manual([2.0, v as f32, 10.0, 11.0, 12.0, 13.0, 14.0]);
+    }),
+    ("overlap", |i, v| i.settings.overlap = v as f32),
+    ("hold margin", |i, v| i.settings.hold.margin = v as f32),
+    ("hold growth", |i, v| i.settings.hold.growth = v as f32),
+    ("hold waste", |i, v| i.settings.hold.waste = v as f32),
+    ("hold horizon", |i, v| i.settings.hold.horizon = v as u32),
+];
+
+const VALUES: [f64; 22] = [
+    f64::NAN,
+    f64::INFINITY,
+    f64::NEG_INFINITY,
+    0.0,
+    -0.0,
+    1e-45,
+    -1e-45,
+    f32::MIN_POSITIVE as f64,
+    1e-20,
+    1e-10,
+    1.0,
+    -1.0,
+    2.0,
+    9.0,
+    1e6,
+    -1e6,
+    1e10,
+    1e18,
+    1e20,
+    -1e20,
+    f32::MAX as f64,
+    f32::MIN as f64,
+];
+
+const KINDS: [FitKind; 5] =
+    [FitKind::XnaSample, FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
+
+const STABILISE: [Stabilise; 3] = [Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis];
+
+#[test]
+fn each_bad_number_in_each_fit_gives_an_error_or_finite_maps() {
+    for kind in KINDS {
+        for stabilise in STABILISE {
+            for (name, set) in SETTERS {
+                for value in VALUES {
+                    let mut inputs = good();
+                    inputs.settings.fit.kind = kind;
+                    inputs.settings.fit.casters = CasterPolicy::List;
+                    inputs.settings.stabilise = stabilise;
+                    set(&mut inputs, value);
+                    inputs.check(name);
+                }
+            }
+        }
+    }
+}
+
+/// Numbers that stand for lengths, places and directions: NaN and infinity are refused, wherever
+/// they stand.
+#[test]
+fn what_is_not_finite_is_refused_and_leaves_the_fitter_as_it_was() {
+    let harmless = ["cone axis", "cone angle", "histogram near", "histogram far", "histogram bin", "histogram bins"];
+    let integers = ["histogram classes", "resolution", "count", "hold horizon"];
+    for stabilise in STABILISE {
+        for (name, set) in SETTERS.into_iter().filter(|(name, _)| !harmless.contains(name) && !integers.contains(name))
+        {
+            for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                let mut before = good();
+                before.settings.stabilise = stabilise;
+                let mut bad = before.clone();
+                set(&mut bad, value);
+                // An infinite corner makes a box that holds nothing, which is allowed.
+                let is_emptied = matches!(name, "receiver min" | "caster min") && value == f64::INFINITY
+                    || matches!(name, "receiver max" | "caster max") && value == f64::NEG_INFINITY;
+                let mut fitter = CascadeFitter::new();
+                before.fit(&mut fitter).unwrap();
+                let result = bad.fit(&mut fitter);
+                if !is_emptied {
+                    assert!(matches!(result, Err(FitError::NotFinite { .. })), "{name} = {value}: {result:?}");
+                    let mut undisturbed = CascadeFitter::new();
+                    before.fit(&mut undisturbed).unwrap();
+                    assert_eq!(before.fit(&mut fitter), before.fit(&mut undisturbed), "{name} = {value}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn counts_outside_of_one_to_eight_are_refused() {
+    for count in [0, 9, u32::MAX] {
+        let mut inputs = good();
+        inputs.settings.count = count;
+        let result = inputs.fit(&mut CascadeFitter::new());
+        assert!(matches!(result, Err(FitError::OutOfRange { value, .. }) if value == f64::from(count)), "{result:?}");
+    }
+}
+
+#[test]
+fn settings_without_meaning_are_refused() {
+    let refused: [Setter; 12] = [
+        ("lambda above", |i, _| i.settings.splits = SplitScheme::Practical(1.1)),
+        ("lambda below", |i, _| i.settings.splits = SplitScheme::Practical(-0.1)),
+        ("cuts that fall", |i, _| i.settings.splits = SplitScheme::Manual([5.0, 4.0, 6.0, 7.0, 8.0, 9.0, 10.0])),
+        ("cuts that stay", |i, _| i.settings.splits = SplitScheme::Manual([5.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0])),
+        ("overlap above", |i, _| i.settings.overlap = 1.1),
+        ("overlap below", |i, _| i.settings.overlap = -0.1),
+        ("waste", |i, _| i.settings.hold.waste = 0.9),
+        ("growth", |i, _| i.settings.hold.growth = 0.9),
+        ("hold margin", |i, _| i.settings.hold.margin = -0.1),
+        ("kernel as wide as the map", |i, _| i.settings.fit.kernel_margin = 1e4),
+        ("an override without texels", |i, _| {
+            i.settings.overrides[1] = Some(MapOverride { kind: FitKind::Sphere, resolution: UVec2::new(0, 8) });
+        }),
+        ("no view", |i, _| i.views.clear()),
+    ];
+    for (name, set) in refused {
+        let mut inputs = good();
+        set(&mut inputs, 0.0);
+        assert!(inputs.fit(&mut CascadeFitter::new()).is_err(), "{name}");
+    }
+}
+
+#[test]
+fn any_number_of_views_is_an_error_or_is_fitted() {
+    for kind in KINDS {
+        for stabilise in STABILISE {
+            for count in [1, 2, 8, 9, 10, 11, 40] {
+                let mut inputs = good();
+                inputs.views = vec![inputs.views[0]; count];
+                inputs.settings.fit.kind = kind;
+                inputs.settings.stabilise = stabilise;
+                inputs.storage = Workspace::required(2, count);
+                inputs.check("views");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_workspace_of_any_length_is_too_small_or_enough() {
+    let mut was_small = 0;
+    for kind in KINDS {
+        for stabilise in STABILISE {
+            for storage in 0..=Workspace::required(2, 2) {
+                let mut inputs = good();
+                inputs.settings = CascadeSettings { stabilise, splits: SplitScheme::Uniform, ..inputs.settings };
+                inputs.settings.fit.kind = kind;
+                inputs.storage = storage;
+                let results = [inputs.single().map(|_| ()), inputs.fit(&mut CascadeFitter::new()).map(|_| ())];
+                for result in results {
+                    match result {
+                        Ok(()) => {}
+                        Err(FitError::WorkspaceTooSmall { given, required }) => {
+                            assert!(given < required && given <= storage, "{given} {required}");
+                            was_small += 1;
+                        }
+                        Err(error) => panic!("{storage}: {error}"),
+                    }
+                }
+            }
+        }
+    }
+    assert!(was_small > 0);
+}
+
+/// Small boxes on a circle across the light: each adds corners to the outline, and none hides
+/// another.
+#[test]
+fn the_required_workspace_is_enough_for_boxes_on_a_circle() {
+    let view = ViewFrustum { ..camera().frustum().unwrap() };
+    let middle = (view.corners[4..].iter().sum::<Vec3>() * 0.125).as_dvec3();
+    for count in [1, 3, 50, 400] {
+        let boxes: Vec<Aabb> = (0..count)
+            .map(|i| {
+                let angle = f64::from(i) / f64::from(count) * std::f64::consts::TAU;
+                let centre = middle + DVec3::new(angle.cos(), 0.0, angle.sin()) * 8.0;
+                Aabb::new((centre - 1e-4).as_vec3(), (centre + 1e-4).as_vec3())
+            })
+            .collect();
+        for stabilise in STABILISE {
+            for rectangle in [RectangleKind::AxisAligned, RectangleKind::MinimumArea, RectangleKind::MinimumSquare] {
+                let inputs = Inputs {
+                    views: vec![view],
+                    direction: Vec3::NEG_Y,
+                    origins: [view.origin; 2],
+                    receivers: boxes.clone(),
+                    casters: boxes.clone(),
+                    cones: Vec::new(),
+                    settings: CascadeSettings {
+                        fit: FitSettings {
+                            kind: FitKind::Focused,
+                            rectangle,
+                            casters: CasterPolicy::List,
+                            ..FitSettings::default()
+                        },
+                        count: 2,
+                        splits: SplitScheme::Uniform,
+                        stabilise,
+                        ..CascadeSettings::default()
+                    },
+                    storage: Workspace::required(boxes.len(), 1),
+                    ..good()
+                };
+                inputs.single().unwrap();
+                let mut fitter = CascadeFitter::new();
+                inputs.fit(&mut fitter).unwrap();
+                inputs.fit(&mut fitter).unwrap();
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(3000))]
+
+    /// Several numbers at once, any bit pattern among them.
+    #[test]
+    fn no_bit_patterns_panic_and_every_map_that_is_made_is_finite(
+        bits in prop::collection::vec((0..SETTERS.len(), any::<u32>(), any::<bool>()), 1..6),
+        kind in prop::sample::select(KINDS.to_vec()), stabilise in prop::sample::select(STABILISE.to_vec()),
+        policy in prop::sample::select(vec![CasterPolicy::None, CasterPolicy::Extend, CasterPolicy::SceneBounds, CasterPolicy::List]),
+        splits in crate::scenes::any_splits(),
+    ) {
+        let mut inputs = good();
+        inputs.settings.fit.kind = kind;
+        inputs.settings.fit.casters = policy;
+        inputs.settings.stabilise = stabilise;
+        inputs.settings.splits = splits;
+        for (i, bits, is_raw) in bits {
+            let value = if is_raw { f64::from(f32::from_bits(bits)) } else { VALUES[bits as usize % VALUES.len()] };
+            SETTERS[i].1(&mut inputs, value);
+        }
+        inputs.check("several");
+    }
+}

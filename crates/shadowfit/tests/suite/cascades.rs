@@ -1,0 +1,327 @@
+//! Several maps for one view: where they are cut, what they say of themselves, what is held.
+
+use proptest::prelude::*;
+use shadowfit::glam::{DVec2, DVec3, Vec3};
+use shadowfit::{
+    Aabb, Boxes, CascadeFitter, CascadeMap, CascadeSettings, Cascades, CasterPolicy, Constraint, DepthHistogram,
+    FitInput, FitKind, FitSettings, PerspectiveCamera, RectangleKind, SplitScheme, Stabilise, ViewFrustum, Workspace,
+};
+
+use crate::scenes::{COVERING, any_cascades, any_light, any_view};
+use crate::support::{DIRECTION, any_camera, any_direction, camera};
+
+fn fit_with(fitter: &mut CascadeFitter, input: &FitInput, settings: &CascadeSettings) -> Cascades {
+    let boxes = input.receivers.map_or(0, |boxes| boxes.boxes.len()).max(input.casters.boxes.len());
+    let mut storage = vec![DVec2::ZERO; Workspace::required(boxes, input.views.len())];
+    fitter.fit(input, settings, &mut Workspace::new(&mut storage)).unwrap()
+}
+
+fn fit_once(input: &FitInput, settings: &CascadeSettings) -> Cascades {
+    fit_with(&mut CascadeFitter::new(), input, settings)
+}
+
+fn settings(kind: FitKind, splits: SplitScheme, count: u32) -> CascadeSettings {
+    let fit = FitSettings { kind, max_distance: f32::MAX, casters: CasterPolicy::None, ..FitSettings::default() };
+    CascadeSettings { fit, count, splits, stabilise: Stabilise::Off, ..CascadeSettings::default() }
+}
+
+/// Ends of all maps but the last.
+fn cuts(maps: &[CascadeMap]) -> Vec<f64> {
+    maps[..maps.len() - 1].iter().map(|map| f64::from(map.far)).collect()
+}
+
+fn assert_cuts(maps: &[CascadeMap], expected: impl Fn(f64) -> f64) {
+    let count = maps.len() as f64;
+    for (i, cut) in cuts(maps).into_iter().enumerate() {
+        let wanted = expected((i + 1) as f64 / count);
+        // One rounding to f32.
+        assert!((cut / wanted - 1.0).abs() < 1e-6, "cut {i} at {cut} instead of {wanted}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    /// Maps follow each other without a gap, reach from the near plane without an end, and begin
+    /// to cover before their range by the overlap's share of the range before.
+    #[test]
+    fn ranges_of_maps_ascend_without_gaps(view in any_view(), direction in any_light(), settings in any_cascades()) {
+        prop_assume!(view.lens.near < f64::from(settings.fit.max_distance));
+        let views = [view.frustum()];
+        let maps = fit_once(&FitInput::new(&views, direction), &settings);
+        prop_assert_eq!(maps.len(), settings.count as usize);
+        let ranged: Vec<&CascadeMap> = maps.iter().filter(|map| map.near < map.far).collect();
+        prop_assert_eq!(ranged[0].near, views[0].near);
+        prop_assert_eq!(ranged[ranged.len() - 1].far, f32::MAX);
+        for pair in ranged.windows(2) {
+            prop_assert_eq!(pair[0].far, pair[1].near);
+            let before = pair[1].near - settings.overlap * (pair[0].far - pair[0].near);
+            prop_assert!(pair[1].fit.is_empty || (pair[1].covered_near - before).abs() <= 1e-6 * before.abs());
+        }
+        // Maps without a range are chosen by no depth.
+        for depth in [views[0].near, views[0].far, 0.5 * (views[0].near + views[0].far)] {
+            let chosen = maps.iter().find(|map| depth < map.far).unwrap();
+            prop_assert!(chosen.near < chosen.far);
+        }
+    }
+
+    #[test]
+    fn fixed_schemes_cut_by_their_definitions(camera in any_camera(), direction in any_direction(), count in 1..=8_u32, lambda in crate::support::float(0.0, 1.0)) {
+        let views = [camera.frustum().unwrap()];
+        let input = FitInput::new(&views, direction);
+        let (near, far) = (f64::from(camera.near), f64::from(camera.far));
+        let uniform = |s: f64| near + (far - near) * s;
+        let logarithmic = |s: f64| near * (far / near).powf(s);
+        let at = |splits| fit_once(&input, &settings(FitKind::FrustumAabb, splits, count));
+        assert_cuts(&at(SplitScheme::Uniform), uniform);
+        assert_cuts(&at(SplitScheme::Logarithmic), logarithmic);
+        let l = f64::from(lambda);
+        assert_cuts(&at(SplitScheme::Practical(lambda)), |s| l * logarithmic(s) + (1.0 - l) * uniform(s));
+    }
+
+    /// The first map of a scheme around boxes still begins at the near plane, and the cuts are
+    /// spread over what is seen of the boxes.
+    #[test]
+    fn cuts_are_spread_over_the_depths_of_receivers(count in 2..=8_u32, near in crate::support::float(5.0, 20.0)) {
+        let views = [ahead()];
+        let boxes = [Aabb::new(Vec3::new(-1.0, -1.0, -60.0), Vec3::new(1.0, 1.0, -near))];
+        let input = FitInput { receivers: Some(Boxes { origin: DVec3::ZERO, boxes: &boxes }), ..FitInput::new(&views, DIRECTION) };
+        let maps = fit_once(&input, &settings(FitKind::FrustumAabb, SplitScheme::Uniform, count));
+        let near = f64::from(near);
+        assert_cuts(&maps, |s| near + (60.0 - near) * s);
+        prop_assert_eq!(maps[0].near, views[0].near);
+    }
+
+    #[test]
+    fn reset_equals_a_new_fitter(
+        view in any_view(), other in any_view(), direction in any_light(), settings in any_cascades(),
+    ) {
+        prop_assume!(view.lens.near.max(other.lens.near) < f64::from(settings.fit.max_distance));
+        let (views, others) = ([view.frustum()], [other.frustum()]);
+        let mut fitter = CascadeFitter::new();
+        fit_with(&mut fitter, &FitInput::new(&others, direction), &settings);
+        fitter.reset();
+        let input = FitInput::new(&views, direction);
+        let mut new = CascadeFitter::new();
+        for _ in 0..2 {
+            prop_assert_eq!(fit_with(&mut fitter, &input, &settings), fit_with(&mut new, &input, &settings));
+        }
+    }
+
+    /// While nothing moves nothing changes, but that a held map says so.
+    #[test]
+    fn maps_stay_bit_for_bit_while_nothing_moves(
+        view in any_view(), direction in any_light(), settings in any_cascades(),
+    ) {
+        prop_assume!(view.lens.near < f64::from(settings.fit.max_distance));
+        let views = [view.frustum()];
+        let input = FitInput::new(&views, direction);
+        let mut fitter = CascadeFitter::new();
+        let first = fit_with(&mut fitter, &input, &settings);
+        let second = fit_with(&mut fitter, &input, &settings);
+        for (a, b) in first.iter().zip(second.iter()) {
+            prop_assert_eq!(a.fit.uv_from_world, b.fit.uv_from_world);
+            prop_assert_eq!((a.near, a.far, a.covered_near), (b.near, b.far, b.covered_near));
+        }
+        for _ in 0..3 {
+            prop_assert_eq!(fit_with(&mut fitter, &input, &settings), second);
+        }
+    }
+
+    /// By what they model, cuts from boxes are no worse than logarithmic ones. Nothing is known of
+    /// receivers here, so every octave of depth counts alike. Cuts stand on 64 bins, each of which
+    /// may cost its own width, and extents are estimated from 32 directions, which may cost 5%.
+    #[test]
+    fn cuts_by_content_are_no_worse_than_logarithmic_ones(
+        camera in any_camera(), direction in any_direction(), count in 1..=6_u32,
+        kind in prop::sample::select(COVERING.to_vec()),
+    ) {
+        let views = [camera.frustum().unwrap()];
+        let input = FitInput::new(&views, direction);
+        // Of rectangles of least area the longer side, which counts here, is what it happens to be.
+        let square = |splits| {
+            let plain = settings(kind, splits, count);
+            CascadeSettings { fit: plain.fit.with_rectangle(RectangleKind::MinimumSquare), ..plain }
+        };
+        let measure = |splits| quantile(&fit_once(&input, &square(splits)), &views[0]);
+        let (chosen, logarithmic) = (measure(SplitScheme::FromBoxes), measure(SplitScheme::Logarithmic));
+        let bin = f64::from(camera.far / camera.near).powf(1.0 / 64.0);
+        prop_assert!(chosen <= logarithmic * bin * 1.05, "{chosen} and {logarithmic}");
+    }
+}
+
+/// 95% quantile of the wider texel side per view depth, over depths at even steps of their log.
+fn quantile(maps: &[CascadeMap], view: &ViewFrustum) -> f64 {
+    let (near, far) = (f64::from(view.near).max(f64::from(view.far) / 65_536.0), f64::from(view.far));
+    let mut errors: Vec<f64> = (0..1000)
+        .map(|i| {
+            let depth = near * (far / near).powf((f64::from(i) + 0.5) / 1000.0);
+            let map = maps.iter().find(|map| depth < f64::from(map.far)).unwrap();
+            f64::from(map.fit.texel_size.max_element()) / depth
+        })
+        .collect();
+    errors.sort_by(f64::total_cmp);
+    errors[950]
+}
+
+/// A view from the origin along -z, 0.1 to 100 m.
+fn ahead() -> ViewFrustum {
+    PerspectiveCamera {
+        eye: DVec3::ZERO,
+        forward: Vec3::NEG_Z,
+        up: Vec3::Y,
+        fov_y: 1.0,
+        aspect: 1.5,
+        near: 0.1,
+        far: 100.0,
+    }
+    .frustum()
+    .unwrap()
+}
+
+#[test]
+fn manual_cuts_are_taken_as_they_are() {
+    let views = [ahead()];
+    let given = [1.0, 5.0, 20.0, 50.0, 60.0, 70.0, 80.0];
+    for kind in COVERING {
+        let maps = fit_once(&FitInput::new(&views, DIRECTION), &settings(kind, SplitScheme::Manual(given), 4));
+        assert_eq!(cuts(&maps), [1.0, 5.0, 20.0]);
+    }
+}
+
+#[test]
+fn manual_cuts_outside_of_what_is_shadowed_leave_maps_empty() {
+    let views = [ahead()];
+    let given = [0.01, 0.05, 20.0, 50.0, 150.0, 200.0, 300.0];
+    for kind in COVERING {
+        for stabilise in [Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis] {
+            let settings = CascadeSettings { stabilise, ..settings(kind, SplitScheme::Manual(given), 8) };
+            let maps = fit_once(&FitInput::new(&views, DIRECTION), &settings);
+            let empty: Vec<bool> = maps.iter().map(|map| map.fit.is_empty).collect();
+            assert_eq!(empty, [true, true, false, false, false, true, true, true], "{kind:?}");
+            assert_eq!((maps[2].near, maps[4].far), (0.1, f32::MAX));
+        }
+    }
+}
+
+/// A histogram of a narrow band: nearly all pixels see it, so the map that they choose is made for
+/// them, and finer than by logarithmic cuts.
+#[test]
+fn a_histogram_with_one_narrow_band_cuts_around_it() {
+    let views = [ahead()];
+    let mut bins = vec![0_u32; 64];
+    for depth in 0..100 {
+        let depth = 18.0 + 2.0 * depth as f32 / 100.0;
+        bins[DepthHistogram::bin(0.1, 100.0, 64, 1, depth, 0.0).unwrap()] += 1;
+    }
+    let histogram = Some(DepthHistogram { near: 0.1, far: 100.0, bins: &bins, classes: 1 });
+    let input = FitInput { histogram, ..FitInput::new(&views, DIRECTION) };
+    for kind in [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere] {
+        let at = |splits| {
+            let maps = fit_once(&input, &settings(kind, splits, 3));
+            let map = *maps.iter().find(|map| 19.0 < map.far).unwrap();
+            (map.fit.texel_size.max_element(), map)
+        };
+        let (chosen, map) = at(SplitScheme::FromHistogram);
+        let (logarithmic, _) = at(SplitScheme::Logarithmic);
+        assert!(chosen < logarithmic, "{kind:?}: {chosen} and {logarithmic}");
+        // It ends with the band, but for the few points that may be left out.
+        assert!(map.far > 18.0 && map.far < 25.0, "{kind:?}: {}..{}", map.near, map.far);
+    }
+}
+
+/// Boxes at two depths: what lies between and beyond them gets no maps of its own.
+#[test]
+fn cuts_from_boxes_are_finer_where_boxes_are() {
+    let views = [ahead()];
+    let boxes = [
+        Aabb::new(Vec3::new(-40.0, -40.0, -22.0), Vec3::new(40.0, 40.0, -20.0)),
+        Aabb::new(Vec3::new(-1.0, -1.0, -3.0), Vec3::new(1.0, 1.0, -2.0)),
+    ];
+    let receivers = Some(Boxes { origin: DVec3::ZERO, boxes: &boxes });
+    let input = FitInput { receivers, ..FitInput::new(&views, DIRECTION) };
+    for kind in [FitKind::FrustumAabb, FitKind::Focused, FitKind::Sphere] {
+        let texel = |splits, depth: f32| {
+            let maps = fit_once(&input, &settings(kind, splits, 2));
+            maps.iter().find(|map| depth < map.far).unwrap().fit.texel_size.max_element() / depth
+        };
+        let worst = |splits| texel(splits, 2.5).max(texel(splits, 21.0));
+        let (chosen, logarithmic) = (worst(SplitScheme::FromBoxes), worst(SplitScheme::Logarithmic));
+        assert!(chosen <= logarithmic * 1.01, "{kind:?}: {chosen} and {logarithmic}");
+    }
+}
+
+#[test]
+fn no_receivers_give_empty_maps_and_no_error() {
+    let views = [ahead()];
+    let receivers = Some(Boxes::default());
+    let input = FitInput { receivers, ..FitInput::new(&views, DIRECTION) };
+    for stabilise in [Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis] {
+        for splits in
+            [SplitScheme::Uniform, SplitScheme::Logarithmic, SplitScheme::FromBoxes, SplitScheme::FromHistogram]
+        {
+            let settings = CascadeSettings { stabilise, ..settings(FitKind::Focused, splits, 3) };
+            let mut fitter = CascadeFitter::new();
+            for _ in 0..2 {
+                let maps = fit_with(&mut fitter, &input, &settings);
+                assert!(maps.len() == 3 && maps.iter().all(|map| map.fit.is_empty), "{settings:?}");
+            }
+        }
+    }
+}
+
+/// The lens zooms out of reach of held cuts, and in again.
+#[test]
+fn a_far_plane_that_comes_nearer_leaves_held_cuts_without_error() {
+    for kind in COVERING {
+        for stabilise in [Stabilise::Snap, Stabilise::Hysteresis] {
+            for splits in [SplitScheme::Uniform, SplitScheme::FromBoxes] {
+                let settings = CascadeSettings { stabilise, ..settings(kind, splits, 4) };
+                let mut fitter = CascadeFitter::new();
+                for far in [80.0, 60.0, 50.0, 46.0, 79.0] {
+                    let views = [PerspectiveCamera { far, ..camera() }.frustum().unwrap()];
+                    let maps = fit_with(&mut fitter, &FitInput::new(&views, DIRECTION), &settings);
+                    let last = maps.iter().find(|map| far * 0.999 < map.far).unwrap();
+                    assert!(!last.fit.is_empty, "{kind:?} {far}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_set_each_plane_is_named() {
+    use Constraint::{CasterExtension, Casters, Held, Receivers, Sphere, View};
+    let views = [ahead()];
+    let input = FitInput::new(&views, Vec3::NEG_Y);
+    let set_by = |input: &FitInput, kind, casters| {
+        let fit = FitSettings { kind, casters, caster_extension: 5.0, ..FitSettings::default() };
+        let mut storage = [DVec2::ZERO; Workspace::required(2, 1)];
+        shadowfit::fit_scene(input, &fit, &mut Workspace::new(&mut storage)).unwrap().set_by
+    };
+    for kind in [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Focused] {
+        assert_eq!(set_by(&input, kind, CasterPolicy::None), [View; 6]);
+        assert_eq!(set_by(&input, kind, CasterPolicy::Extend), [View, View, View, View, View, CasterExtension]);
+    }
+    assert_eq!(set_by(&input, FitKind::Sphere, CasterPolicy::None), [Sphere; 6]);
+    let ball = [Aabb::new(Vec3::new(-1.0, -1.0, -21.0), Vec3::new(1.0, 1.0, -19.0))];
+    let above = [Aabb::new(Vec3::new(-1.0, 5.0, -21.0), Vec3::new(1.0, 6.0, -19.0))];
+    let receivers = Some(Boxes { origin: DVec3::ZERO, boxes: &ball });
+    let casters = Boxes { origin: DVec3::ZERO, boxes: &above };
+    let boxed = FitInput { receivers, casters, ..input };
+    assert_eq!(set_by(&boxed, FitKind::Focused, CasterPolicy::None), [Receivers; 6]);
+    for casters in [CasterPolicy::List, CasterPolicy::SceneBounds] {
+        let expected = [Receivers, Receivers, Receivers, Receivers, Receivers, Casters];
+        assert_eq!(set_by(&boxed, FitKind::Focused, casters), expected);
+    }
+    // A floor under all that is seen: the view ends it to the sides, the floor itself below.
+    let floor = [Aabb::new(Vec3::new(-500.0, -2.0, -500.0), Vec3::new(500.0, -1.0, 500.0))];
+    let floored = FitInput { receivers: Some(Boxes { origin: DVec3::ZERO, boxes: &floor }), ..input };
+    let by = set_by(&floored, FitKind::Focused, CasterPolicy::None);
+    assert_eq!((by[3], by[4], by[5]), (View, Receivers, Receivers));
+    let mut fitter = CascadeFitter::new();
+    let held =
+        CascadeSettings { stabilise: Stabilise::Hysteresis, ..settings(FitKind::Focused, SplitScheme::Uniform, 1) };
+    assert_eq!(fit_with(&mut fitter, &boxed, &held)[0].fit.set_by, [Receivers; 6]);
+    assert_eq!(fit_with(&mut fitter, &boxed, &held)[0].fit.set_by, [Held; 6]);
+}
