@@ -94,7 +94,7 @@ pub(crate) fn volume(
     ]
     .map(|(x, y)| DVec2::new(x, y));
     let texel = (volume.max - volume.min).truncate() / settings.resolution.as_dvec2();
-    let reach = 2.0 * rounding + texel.max_element();
+    let reach = near_plane::filter_reach(texel, settings, rounding);
     let near = near_plane::place(volume.max.z, &axes, &outline, content, settings, reach);
     (volume.max.z, volume.set_by[5]) = (near.z, near.set_by.unwrap_or(Constraint::Sphere));
     volume.light_at_near_plane();

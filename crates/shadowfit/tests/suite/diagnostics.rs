@@ -38,6 +38,8 @@ fn greatest_stretch(matrix: DMat2) -> f64 {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { max_global_rejects: u32::MAX, ..ProptestConfig::default() })]
+
     /// Central differences over a thousandth of the distance err by its square, 1e-6, and the
     /// search for the worse axis by 4e-7 (of the axis itself): 1e-4 leaves room for surfaces that
     /// are nearly edge-on.

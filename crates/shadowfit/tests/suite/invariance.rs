@@ -21,6 +21,8 @@ fn turned(camera: &PerspectiveCamera, turn: impl Fn(Vec3) -> Vec3) -> Perspectiv
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { max_global_rejects: u32::MAX, ..ProptestConfig::default() })]
+
     /// Bit for bit: everything is relative to the eye.
     #[test]
     fn translation_changes_no_bit_of_the_texture_matrix(
