@@ -14,7 +14,7 @@ use shadowfit::glam::{DMat3, DVec2, DVec3, UVec2, Vec3};
 use shadowfit::{Bias, DepthConvention, FitKind, LightFit};
 
 use crate::filters::{Filter, filters};
-use crate::support::{any_camera, any_direction, apply, exact, fitted, float};
+use crate::support::{any_camera, any_direction, apply, cases, exact, fitted, float};
 
 const STORAGES: [DepthStorage; 5] =
     [DepthStorage::Unorm8, DepthStorage::Unorm16, DepthStorage::Unorm24, DepthStorage::Float16, DepthStorage::Float32];
@@ -160,7 +160,7 @@ fn any_case() -> impl Strategy<Value = Case> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(cases(400))]
 
     #[test]
     fn the_automatic_biases_clear_planes_in_f32_in_every_format(case in any_case()) {

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use shadowfit::glam::{DMat4, DVec3, Mat4, UVec2, Vec3};
 use shadowfit::{DepthConvention, FitError, FitSettings, LightFit, LightSettings, PerspectiveCamera, ViewFrustum};
 
-use crate::support::{DIRECTION, KINDS, any_kind, camera, exact, fitted};
+use crate::support::{DIRECTION, KINDS, any_kind, camera, cases, exact, fitted};
 
 const NOT_FINITE: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
 
@@ -280,7 +280,7 @@ fn every_error_says_the_value_and_what_to_do() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(cases(2000))]
 
     /// All floats at once, from any bit pattern.
     #[test]

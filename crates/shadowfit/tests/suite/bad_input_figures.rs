@@ -7,7 +7,7 @@ use shadowfit::diagnostics::{DepthStorage, acne_margin, coverage, depth_step_at,
 use shadowfit::glam::{DVec3, Vec2, Vec3};
 use shadowfit::{Bias, BiasSettings, FitError, FitKind, LightFit, LightStepSettings, LightSteps};
 
-use crate::support::{DIRECTION, camera, exact, fitted};
+use crate::support::{DIRECTION, camera, cases, exact, fitted};
 
 const NOT_FINITE: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
 
@@ -208,7 +208,7 @@ fn a_fit_filled_with_bad_numbers_by_hand_gives_an_error_or_finite_figures() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(cases(2000))]
 
     #[test]
     fn no_bit_pattern_panics_and_every_figure_is_finite(bits in prop::array::uniform29(any::<u32>()), replaced in any::<u32>()) {

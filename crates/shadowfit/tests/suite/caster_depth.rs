@@ -11,7 +11,7 @@ use shadowfit::{
 use crate::scenes::{
     BoxPlan, SceneView, Walk, any_box, any_cascades, any_covering_fit, any_light, any_view, any_walk, share,
 };
-use crate::support::{apply, double};
+use crate::support::{apply, cases, double};
 
 /// A box around a point on the way from the light to what is seen.
 #[derive(Clone, Copy, Debug)]
@@ -139,7 +139,7 @@ fn solid_boxes() -> impl Strategy<Value = Vec<BoxPlan>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { max_global_rejects: u32::MAX, ..ProptestConfig::with_cases(2000) })]
+    #![proptest_config(cases(2000))]
 
     #[test]
     fn a_single_map_keeps_all_casters_that_shade_what_is_seen(

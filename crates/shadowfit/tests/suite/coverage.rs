@@ -14,7 +14,7 @@ use shadowfit::{
 use crate::scenes::{
     BoxPlan, SceneView, any_box, any_cascades, any_covering_fit, any_light, any_view, any_walk, of_camera, share,
 };
-use crate::support::{any_camera, apply};
+use crate::support::{any_camera, apply, cases};
 
 /// A point of a view: place in the picture and share of the depth, and whether that is of log
 /// depth.
@@ -142,7 +142,7 @@ fn check_frame(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(cases(2000))]
 
     #[test]
     fn a_single_map_stores_what_any_view_sees_of_receivers(

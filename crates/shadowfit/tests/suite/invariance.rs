@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use shadowfit::glam::{DQuat, DVec3, Vec3};
 use shadowfit::{FitKind, PerspectiveCamera};
 
-use crate::support::{KINDS, any_camera, any_direction, any_kind, apply, camera, double, exact, fitted, float};
+use crate::support::{KINDS, any_camera, any_direction, any_kind, apply, camera, cases, double, exact, fitted, float};
 
 /// Texture coordinates of the frustum's own corners.
 fn corner_uvs(camera: &PerspectiveCamera, direction: Vec3, kind: FitKind) -> [Vec3; 8] {
@@ -21,7 +21,7 @@ fn turned(camera: &PerspectiveCamera, turn: impl Fn(Vec3) -> Vec3) -> Perspectiv
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { max_global_rejects: u32::MAX, ..ProptestConfig::default() })]
+    #![proptest_config(cases(256))]
 
     /// Bit for bit: everything is relative to the eye.
     #[test]

@@ -12,7 +12,7 @@ use shadowfit::{
 };
 
 use crate::scenes::{BoxPlan, COVERING, SceneView, any_box, any_light, any_view};
-use crate::support::{any_direction, apply, double};
+use crate::support::{any_direction, apply, cases, double};
 use crate::texel_phase::exact_texel;
 
 /// A scene in plain numbers, relative to the eye.
@@ -182,7 +182,7 @@ fn any_quarter_turn() -> impl Strategy<Value = DMat3> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(cases(2000))]
 
     /// Rectangles that turn about the light know nothing of the world's axes.
     #[test]

@@ -7,7 +7,7 @@ use shadowfit::glam::{DVec2, DVec3, Mat3, UVec2, Vec3};
 use shadowfit::{CasterPolicy, FitKind, FitSettings, LightFit, RectangleKind, ViewFrustum};
 
 use crate::scenes::{any_light, any_view, of_camera};
-use crate::support::{any_camera, any_direction};
+use crate::support::{any_camera, any_direction, cases};
 
 /// Extents of points along a direction of the plane and across it.
 fn extents(points: &[DVec2], angle: f64) -> DVec2 {
@@ -123,7 +123,7 @@ fn assert_least_sphere(frustum: &ViewFrustum) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(500))]
+    #![proptest_config(cases(500))]
 
     #[test]
     fn no_angle_gives_a_rectangle_or_square_that_is_less(view in any_view(), direction in any_light()) {

@@ -29,6 +29,12 @@ pub(crate) fn camera() -> PerspectiveCamera {
 /// A plain light.
 pub(crate) const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.4);
 
+/// So many cases for each property unless `PROPTEST_CASES` says otherwise; scenes that a property
+/// does not speak of are passed over, however many.
+pub(crate) fn cases(count: u32) -> ProptestConfig {
+    ProptestConfig { max_global_rejects: u32::MAX, ..ProptestConfig::with_cases(count) }
+}
+
 /// Numbers between two bounds, in steps of 2⁻²⁴ of their distance.
 ///
 /// Proptest's own f32 ranges fail an assertion of their sampler about once in a million draws.

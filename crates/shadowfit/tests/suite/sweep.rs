@@ -8,7 +8,7 @@ use shadowfit::{
     fit_scene,
 };
 
-use crate::support::{DIRECTION, any_direction, camera, double, exact, fitted, float};
+use crate::support::{DIRECTION, any_direction, camera, cases, double, exact, fitted, float};
 
 const ALL_KINDS: [FitKind; 5] =
     [FitKind::XnaSample, FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
@@ -148,7 +148,7 @@ fn any_sample() -> impl Strategy<Value = Sample> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 2000, max_global_rejects: 1_000_000, ..ProptestConfig::default() })]
+    #![proptest_config(cases(2000))]
 
     /// Every receiver, moved by the normal offset, read by the filter: the caster over what is read is kept.
     #[test]

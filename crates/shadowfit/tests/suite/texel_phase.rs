@@ -12,7 +12,7 @@ use shadowfit::{
 };
 
 use crate::scenes::{COVERING, SceneView, Walk, any_light, any_view, any_walk};
-use crate::support::{apply, double};
+use crate::support::{apply, cases, double};
 
 /// Room above each step of extents, as a share of it.
 const STEP_ROOM: f64 = 1e-5;
@@ -138,7 +138,7 @@ fn any_setup() -> impl Strategy<Value = (u32, u32, f32)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(cases(2000))]
 
     /// Neither movement nor turning changes texel size or phase of a stable map.
     #[test]
