@@ -79,10 +79,13 @@ impl<'a> Outline<'a> {
         let axes = &self.axes;
         let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
         let (x, y, z) = (axes.x.as_dvec3(), axes.y.as_dvec3(), axes.z.as_dvec3());
-        let centre = axes.project(centre);
-        let reach = DVec3::new(x.abs().dot(half), y.abs().dot(half), z.abs().dot(half));
-        let (low, high) = (centre - reach, centre + reach);
-        if high.z <= floor || low.x > self.max.x || low.y > self.max.y || high.x < self.min.x || high.y < self.min.y {
+        // Most casters lie lower than one that is known already.
+        if z.dot(centre) + z.abs().dot(half) <= floor {
+            return;
+        }
+        let centre = DVec2::new(x.dot(centre), y.dot(centre));
+        let reach = DVec2::new(x.abs().dot(half), y.abs().dot(half));
+        if (centre - reach).cmpgt(self.max).any() || (centre + reach).cmplt(self.min).any() {
             return;
         }
         let corners = box_corners(min, max).map(|corner| axes.project(corner));
