@@ -34,12 +34,15 @@ impl LightAxes {
     /// Within 1e-6 radians of the vertical, where the sample divides by zero, the map's top is
     /// where a plan's would be (-z for +y up). The roll flips there: it follows the azimuth on
     /// every side, so no choice at the pole is continuous.
+    #[inline(always)]
     pub(crate) fn look_at(direction: DVec3, up: DVec3) -> Self {
         let mut right = direction.cross(up);
-        if checks::length(right) < VERTICAL_SINE {
+        let mut length = checks::length(right);
+        if length < VERTICAL_SINE {
             right = direction.cross(plan(up).1);
+            length = checks::length(right);
         }
-        let right = right / checks::length(right);
+        let right = right / length;
         Self::from_f64(right, right.cross(direction), -direction)
     }
 

@@ -103,7 +103,8 @@ impl LightFit {
         Ok(fit)
     }
 
-    /// [`Self::from_volume`] where the fit stands. An error changes nothing.
+    /// [`Self::from_volume`] where the fit stands, which saves a copy. An error changes nothing.
+    #[inline(always)]
     pub(crate) fn set_volume(
         &mut self,
         origin: DVec3,
@@ -120,41 +121,36 @@ impl LightFit {
         let t = (-light).as_vec3();
         let (scale, offset) = projection(size, volume, settings.depth);
         let box_max = DVec3::new(size.x * 0.5, size.y * 0.5, volume.max.z - volume.light_z);
-        self.origin = origin;
-        self.direction = -z;
-        self.light_from_world = Mat4::from_cols(
+        let light_from_world = Mat4::from_cols(
             Vec4::new(x.x, y.x, z.x, 0.0),
             Vec4::new(x.y, y.y, z.y, 0.0),
             Vec4::new(x.z, y.z, z.z, 0.0),
             Vec4::new(t.x, t.y, t.z, 1.0),
         );
-        self.clip_from_light = Mat4::from_cols(
+        let clip_from_light = Mat4::from_cols(
             Vec4::new(scale.x as f32, 0.0, 0.0, 0.0),
             Vec4::new(0.0, scale.y as f32, 0.0, 0.0),
             Vec4::new(0.0, 0.0, scale.z as f32, 0.0),
             Vec4::new(0.0, 0.0, offset as f32, 1.0),
         );
-        self.box_min = (box_max - size).as_vec3();
-        self.box_max = box_max.as_vec3();
-        self.texel_size = (size.truncate() / settings.resolution.as_dvec2()).as_vec2();
-        self.depth_range = volume.depth_range as f32;
-        (self.resolution, self.depth) = (settings.resolution, settings.depth);
-        (self.set_by, self.is_empty) = (volume.set_by, volume.is_empty);
-        self.compose();
+        let (clip_from_world, uv_from_world) = products(&light_from_world, &clip_from_light, settings.depth);
+        *self = Self {
+            origin,
+            direction: -z,
+            light_from_world,
+            clip_from_light,
+            clip_from_world,
+            uv_from_world,
+            box_min: (box_max - size).as_vec3(),
+            box_max: box_max.as_vec3(),
+            texel_size: (size.truncate() / settings.resolution.as_dvec2()).as_vec2(),
+            depth_range: volume.depth_range as f32,
+            resolution: settings.resolution,
+            depth: settings.depth,
+            set_by: volume.set_by,
+            is_empty: volume.is_empty,
+        };
         Ok(())
-    }
-
-    /// Fills the products of `light_from_world` and `clip_from_light`, in f64.
-    fn compose(&mut self) {
-        let clip = self.clip_from_light;
-        let scale = DVec3::new(f64::from(clip.x_axis.x), f64::from(clip.y_axis.y), f64::from(clip.z_axis.z));
-        let offset = clip.w_axis.truncate().as_dvec3();
-        self.clip_from_world = scaled(&self.light_from_world, scale, offset);
-        let (mut uv_scale, mut uv_offset) = (DVec3::new(0.5, -0.5, 1.0), DVec3::new(0.5, 0.5, 0.0));
-        if self.depth == DepthConvention::NegativeOneToOne {
-            (uv_scale.z, uv_offset.z) = (0.5, 0.5);
-        }
-        self.uv_from_world = scaled(&self.light_from_world, scale * uv_scale, offset * uv_scale + uv_offset);
     }
 
     /// The same map with its inputs relative to another world position, in metres. The
@@ -166,7 +162,7 @@ impl LightFit {
         let mut fit = *self;
         fit.origin = new_origin;
         fit.light_from_world.w_axis = moved.extend(1.0);
-        fit.compose();
+        (fit.clip_from_world, fit.uv_from_world) = products(&fit.light_from_world, &fit.clip_from_light, fit.depth);
         fit
     }
 
@@ -259,6 +255,20 @@ fn projection(size: DVec3, volume: &Volume, depth: DepthConvention) -> (DVec3, f
         DepthConvention::NegativeOneToOne => (-2.0 * per_metre, 2.0 * near - 1.0),
     };
     (DVec3::new(2.0 / size.x, 2.0 / size.y, scale), offset)
+}
+
+/// `clip_from_world` and `uv_from_world`, computed in f64.
+#[inline]
+fn products(light_from_world: &Mat4, clip_from_light: &Mat4, depth: DepthConvention) -> (Mat4, Mat4) {
+    let clip = clip_from_light;
+    let scale = DVec3::new(f64::from(clip.x_axis.x), f64::from(clip.y_axis.y), f64::from(clip.z_axis.z));
+    let offset = clip.w_axis.truncate().as_dvec3();
+    let (mut uv_scale, mut uv_offset) = (DVec3::new(0.5, -0.5, 1.0), DVec3::new(0.5, 0.5, 0.0));
+    if depth == DepthConvention::NegativeOneToOne {
+        (uv_scale.z, uv_offset.z) = (0.5, 0.5);
+    }
+    let uv_from_world = scaled(light_from_world, scale * uv_scale, offset * uv_scale + uv_offset);
+    (scaled(light_from_world, scale, offset), uv_from_world)
 }
 
 /// `scale · (matrix p) + offset` as one affine matrix, computed in f64.

@@ -20,7 +20,6 @@ use glam::{DVec2, DVec3, Vec3};
 use crate::axes::LightAxes;
 use crate::checks::{self, MAX_LENGTH};
 use crate::settings::{FitKind, FitSettings, RectangleKind};
-use crate::view::slice_corners;
 use crate::{FitError, FitInput, LightFit, ViewFrustum, Workspace, grid};
 
 pub(crate) use footprint::{Content, Footprint};
@@ -47,10 +46,7 @@ pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Re
     let input = FitInput::new(core::slice::from_ref(frustum), direction);
     if settings.kind == FitKind::XnaSample {
         // It looks at nothing but the corners, and is as cheap as the sample's own only without storage.
-        let (light, distance) = prepare(&input, settings)?;
-        let corners = slice_corners(frustum, frustum.origin, frustum.near, distance);
-        let volume = xna::around(corners.iter().flatten().copied(), &light, settings)?;
-        return LightFit::from_volume(frustum.origin, &volume, settings);
+        return xna::of_view(&input, settings);
     }
     let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
     fit_scene(&input, settings, &mut Workspace::new(&mut storage))
@@ -94,6 +90,7 @@ pub(crate) struct Light {
 }
 
 impl Light {
+    #[inline(always)]
     fn new(direction: DVec3, up: DVec3, kind: FitKind) -> Self {
         let axes = match kind {
             FitKind::XnaSample => LightAxes::look_at(direction, up),
@@ -137,6 +134,7 @@ pub(crate) fn fit_as(
 }
 
 /// Checks what all fits take; gives the light and the view depth at which shadows end.
+#[inline(always)]
 pub(crate) fn prepare(input: &FitInput, settings: &FitSettings) -> Result<(Light, f32), FitError> {
     if input.views.is_empty() {
         return Err(FitError::NoView);
