@@ -18,7 +18,7 @@ use crate::{Aabb, ViewFrustum, checks};
 
 /// Corners of the part of a frustum between two view depths, relative to an origin; `None` where
 /// they leave nothing of it.
-#[inline]
+#[inline(always)]
 pub(crate) fn slice_corners(frustum: &ViewFrustum, origin: DVec3, near: f32, far: f32) -> Option<[DVec3; 8]> {
     let (near, far) = (near.max(frustum.near), far.min(frustum.far));
     if near >= far {
