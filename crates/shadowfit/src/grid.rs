@@ -32,11 +32,30 @@ const OCTAVE: [f64; 9] = [
 
 /// The least of the extents 2^(k/8) that holds a length, or up to 1e-5 of it less, and 1e-5 more;
 /// the lengths are metres, positive and normal.
+#[inline]
 pub(crate) fn quantised(length: f64) -> f64 {
-    let (mantissa, exponent) = libm::frexp(length);
-    let least = 2.0 * mantissa * (1.0 - NOISE);
-    let step = OCTAVE.into_iter().find(|step| *step >= least).unwrap_or(2.0);
-    libm::ldexp(step * (1.0 + NOISE), exponent - 1)
+    // The power of two below it, and what it is a multiple of that.
+    let octave = f64::from_bits(length.to_bits() & EXPONENT);
+    let least = f64::from_bits(length.to_bits() & !EXPONENT | 1.0_f64.to_bits()) * (1.0 - NOISE);
+    let shorter = OCTAVE[..8].iter().filter(|step| **step < least).count();
+    OCTAVE[shorter] * (1.0 + NOISE) * octave
+}
+
+/// The bits of an f64's exponent.
+const EXPONENT: u64 = f64::INFINITY.to_bits();
+
+/// The greatest whole number that is no greater; the same bits as libm's, without a call where it matters.
+#[inline]
+pub(crate) fn floor(x: f64) -> f64 {
+    // Beyond this all numbers are whole, and those below it lose their fraction when it is added.
+    const WHOLE: f64 = 4_503_599_627_370_496.0;
+    if x.abs() < WHOLE {
+        let near = if x < 0.0 { x - WHOLE + WHOLE } else { x + WHOLE - WHOLE };
+        let floor = if near > x { near - 1.0 } else { near };
+        floor.copysign(x)
+    } else {
+        x
+    }
 }
 
 /// World position along the light's axes, in metres, in f64.
@@ -63,6 +82,7 @@ const DEPTH_STEPS: f64 = 16.0;
 
 /// Rounds a volume's extents across the light up and moves it to the world's grid, so that it still
 /// holds what it held, with the kernel's texels around it.
+#[inline(always)]
 pub(crate) fn snap(volume: &mut Volume, origin: DVec3, settings: &FitSettings) {
     volume.grid = Some(snapped(volume, origin, settings));
 }
@@ -74,6 +94,7 @@ pub(crate) fn usable(settings: &FitSettings) -> DVec2 {
 }
 
 /// As [`snap`], and gives where the volume came to lie.
+#[inline(always)]
 pub(crate) fn snapped(volume: &mut Volume, origin: DVec3, settings: &FitSettings) -> Grid {
     let anchor = anchor(&volume.axes, origin);
     let resolution = settings.resolution.as_dvec2();
@@ -86,7 +107,7 @@ pub(crate) fn snapped(volume: &mut Volume, origin: DVec3, settings: &FitSettings
     let width = quantised(size.x);
     let texel = DVec2::new(width, if size.y == size.x { width } else { quantised(size.y) }) / usable;
     let line = (volume.min.truncate() - pad + anchor.truncate()) / texel - kernel;
-    let first = DVec2::new(libm::floor(line.x), libm::floor(line.y));
+    let first = DVec2::new(floor(line.x), floor(line.y));
     let min = first * texel - anchor.truncate();
     let z = (volume.min.z, volume.max.z);
     (volume.min, volume.max) = (min.extend(z.0), (min + texel * resolution).extend(z.1));
@@ -95,6 +116,7 @@ pub(crate) fn snapped(volume: &mut Volume, origin: DVec3, settings: &FitSettings
 
 /// Puts the near and far plane of a volume on the grid to a range that holds them: one that is held
 /// from an earlier frame, while it does and is no more than `waste` times as long as a new one.
+#[inline(always)]
 pub(crate) fn steady(volume: &mut Volume, origin: DVec3, held: Option<(f64, f64)>, waste: f64) {
     let anchor = anchor(&volume.axes, origin).z;
     if let Some(grid) = &mut volume.grid {
@@ -114,14 +136,18 @@ pub(crate) fn steadied(held: Option<(f64, f64)>, (low, high): (f64, f64), waste:
     let around = |pad: f64| {
         let depth = quantised(length + 2.0 * pad);
         let step = depth / DEPTH_STEPS;
-        let start = libm::floor((low - pad) / step) * step;
+        let start = floor((low - pad) / step) * step;
         (start, start + depth + step)
     };
     let Some(held) = held else { return around(rounding) };
-    let renewed = around(rounding + length * ROOM);
     let held_length = held.1 - held.0;
-    let rounding = ROUNDING * held_length;
-    let is_enough = held.0 <= low - rounding && held.1 >= high + rounding;
+    let held_rounding = ROUNDING * held_length;
+    let is_enough = held.0 <= low - held_rounding && held.1 >= high + held_rounding;
+    // A new range would be longer than what it holds, so that it need not even be made here.
+    if is_enough && held_length <= length * waste {
+        return held;
+    }
+    let renewed = around(rounding + length * ROOM);
     let is_wasteful = held_length > (renewed.1 - renewed.0) * waste * (1.0 + NOISE);
     if is_enough && !is_wasteful { held } else { renewed }
 }

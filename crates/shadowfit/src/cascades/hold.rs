@@ -237,5 +237,5 @@ impl HeldMap {
 }
 
 fn floor(v: DVec2) -> DVec2 {
-    DVec2::new(libm::floor(v.x), libm::floor(v.y))
+    DVec2::new(grid::floor(v.x), grid::floor(v.y))
 }
