@@ -204,6 +204,7 @@ impl Places<'_, '_> {
     }
 
     /// One map of this frame alone, but for its depth range.
+    #[inline(always)]
     fn fit_anew(&mut self, map: usize, settings: &FitSettings, slice: Range) -> Result<Volume, FitError> {
         let placing = if self.settings.stabilise == Stabilise::Snap { Placing::OnGrid } else { Placing::Tight };
         let light = self.light(settings);

@@ -106,6 +106,7 @@ impl Light {
 }
 
 /// One map around a range of view depths. The sphere's is always on the grid, the XNA sample's never.
+#[inline(always)]
 pub(crate) fn fit_slice(
     content: &Content,
     light: &Light,
