@@ -194,26 +194,24 @@ struct Places<'a, 'b> {
 impl Places<'_, '_> {
     /// All maps of this frame alone.
     fn fit(&mut self, cuts: &Cuts, cascades: &mut Cascades) -> Result<(), FitError> {
+        let placing = if self.settings.stabilise == Stabilise::Snap { Placing::OnGrid } else { Placing::Tight };
         for i in 0..cascades.count {
             let slice = self.slice(cuts, i);
             let settings = map_settings(self.settings, i);
-            let volume = self.fit_anew(i, &settings, slice)?;
+            let mut volume = fits::fit_slice(self.content, &self.light(&settings), &settings, slice, placing, self.points)?;
+            self.steady(i, &mut volume);
             self.write(&mut cascades.maps[i], &volume, &settings, cuts, i)?;
         }
         Ok(())
     }
 
-    /// One map of this frame alone, but for its depth range.
+    /// Keeps a map's depth range from the last frame while it serves.
     #[inline(always)]
-    fn fit_anew(&mut self, map: usize, settings: &FitSettings, slice: Range) -> Result<Volume, FitError> {
-        let placing = if self.settings.stabilise == Stabilise::Snap { Placing::OnGrid } else { Placing::Tight };
-        let light = self.light(settings);
-        let mut volume = fits::fit_slice(self.content, &light, settings, slice, placing, self.points)?;
+    fn steady(&mut self, map: usize, volume: &mut Volume) {
         let to_light = volume.axes.z;
         let held = self.depths[map].filter(|held| held.to_light == to_light).map(|held| held.z);
-        grid::steady(&mut volume, self.content.origin, held, f64::from(self.settings.hold.waste));
+        grid::steady(volume, self.content.origin, held, f64::from(self.settings.hold.waste));
         self.depths[map] = volume.grid.map(|grid| HeldDepth { to_light, z: grid.z });
-        Ok(volume)
     }
 
     /// All maps, held ones while they serve.

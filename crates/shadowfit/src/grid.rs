@@ -49,13 +49,11 @@ const EXPONENT: u64 = f64::INFINITY.to_bits();
 pub(crate) fn floor(x: f64) -> f64 {
     // Beyond this all numbers are whole, and those below it lose their fraction when it is added.
     const WHOLE: f64 = 4_503_599_627_370_496.0;
-    if x.abs() < WHOLE {
-        let near = if x < 0.0 { x - WHOLE + WHOLE } else { x + WHOLE - WHOLE };
-        let floor = if near > x { near - 1.0 } else { near };
-        floor.copysign(x)
-    } else {
-        x
-    }
+    let whole = WHOLE.copysign(x);
+    let near = x + whole - whole;
+    // No branch: which way a number is rounded cannot be predicted.
+    let floor = near - f64::from(u8::from(near > x));
+    if x.abs() < WHOLE { floor.copysign(x) } else { x }
 }
 
 /// World position along the light's axes, in metres, in f64.
@@ -82,9 +80,10 @@ const DEPTH_STEPS: f64 = 16.0;
 
 /// Rounds a volume's extents across the light up and moves it to the world's grid, so that it still
 /// holds what it held, with the kernel's texels around it.
-#[inline(always)]
-pub(crate) fn snap(volume: &mut Volume, origin: DVec3, settings: &FitSettings) {
-    volume.grid = Some(snapped(volume, origin, settings));
+pub(crate) fn snap(volume: &mut Volume, origin: DVec3, settings: &FitSettings) -> Grid {
+    let (grid, min, max) = snapped(&volume.axes, volume.min, volume.max, origin, settings);
+    (volume.min, volume.max, volume.grid) = (min, max, Some(grid));
+    grid
 }
 
 /// Texels that are left for what a map on the grid must hold.
@@ -93,25 +92,30 @@ pub(crate) fn usable(settings: &FitSettings) -> DVec2 {
     settings.resolution.as_dvec2() - (2.0 * f64::from(settings.kernel_margin) + 1.0)
 }
 
-/// As [`snap`], and gives where the volume came to lie.
+/// As [`snap`], for the corners of a box alone: gives where it came to lie, and its new corners.
 #[inline(always)]
-pub(crate) fn snapped(volume: &mut Volume, origin: DVec3, settings: &FitSettings) -> Grid {
-    let anchor = anchor(&volume.axes, origin);
+pub(crate) fn snapped(
+    axes: &LightAxes,
+    min: DVec3,
+    max: DVec3,
+    origin: DVec3,
+    settings: &FitSettings,
+) -> (Grid, DVec3, DVec3) {
+    let anchor = anchor(axes, origin);
     let resolution = settings.resolution.as_dvec2();
     let kernel = f64::from(settings.kernel_margin);
     let usable = usable(settings);
     // The rounding of a map that is larger than what it holds is that of its own extent.
-    let size = (volume.max - volume.min).truncate();
+    let size = (max - min).truncate();
     let pad = ROUNDING * (size * resolution / usable).max_element();
     let size = size + 2.0 * pad;
     let width = quantised(size.x);
     let texel = DVec2::new(width, if size.y == size.x { width } else { quantised(size.y) }) / usable;
-    let line = (volume.min.truncate() - pad + anchor.truncate()) / texel - kernel;
+    let line = (min.truncate() - pad + anchor.truncate()) / texel - kernel;
     let first = DVec2::new(floor(line.x), floor(line.y));
-    let min = first * texel - anchor.truncate();
-    let z = (volume.min.z, volume.max.z);
-    (volume.min, volume.max) = (min.extend(z.0), (min + texel * resolution).extend(z.1));
-    Grid { first, texel, z: (z.0 + anchor.z, z.1 + anchor.z) }
+    let corner = first * texel - anchor.truncate();
+    let grid = Grid { first, texel, z: (min.z + anchor.z, max.z + anchor.z) };
+    (grid, corner.extend(min.z), (corner + texel * resolution).extend(max.z))
 }
 
 /// Puts the near and far plane of a volume on the grid to a range that holds them: one that is held
