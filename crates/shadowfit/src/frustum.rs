@@ -230,9 +230,9 @@ fn empty(corners: [Vec3; 8]) -> FitError {
 /// and the near-to-far axis, in m³: zero where the frustum is flat.
 #[inline]
 fn volume(corners: &[Vec3; 8]) -> f64 {
-    let c = corners.map(Vec3::as_dvec3);
-    let across = (c[5] - c[4]).cross(c[7] - c[4]);
-    let axis = (c[4] + c[6]) - (c[0] + c[2]);
+    let c = |i: usize| corners[i].as_dvec3();
+    let across = (c(5) - c(4)).cross(c(7) - c(4));
+    let axis = (c(4) + c(6)) - (c(0) + c(2));
     across.dot(axis).abs()
 }
 
