@@ -194,14 +194,24 @@ struct Places<'a, 'b> {
 impl Places<'_, '_> {
     /// All maps of this frame alone.
     fn fit(&mut self, cuts: &Cuts, cascades: &mut Cascades) -> Result<(), FitError> {
-        let placing = if self.settings.stabilise == Stabilise::Snap { Placing::OnGrid } else { Placing::Tight };
-        for i in 0..cascades.count {
-            let slice = self.slice(cuts, i);
-            let settings = map_settings(self.settings, i);
-            let mut volume = fits::fit_slice(self.content, &self.light(&settings), &settings, slice, placing, self.points)?;
-            self.steady(i, &mut volume);
-            self.write(&mut cascades.maps[i], &volume, &settings, cuts, i)?;
+        // Each step of one map waits for the step before it; those of several maps side by side do not.
+        let mut volumes = [None; MAX_CASCADES];
+        for (i, volume) in volumes.iter_mut().enumerate().take(cascades.count) {
+            self.fit_anew(cuts, i, volume)?;
         }
+        for (i, volume) in volumes.iter_mut().flatten().enumerate() {
+            self.steady(i, volume);
+            self.write(&mut cascades.maps[i], volume, &map_settings(self.settings, i), cuts, i)?;
+        }
+        Ok(())
+    }
+
+    /// What one map holds in this frame alone, written where it stands, since it is large.
+    fn fit_anew(&mut self, cuts: &Cuts, map: usize, volume: &mut Option<Volume>) -> Result<(), FitError> {
+        let placing = if self.settings.stabilise == Stabilise::Snap { Placing::OnGrid } else { Placing::Tight };
+        let settings = map_settings(self.settings, map);
+        let (light, slice) = (self.light(&settings), self.slice(cuts, map));
+        *volume = Some(fits::fit_slice(self.content, &light, &settings, slice, placing, self.points)?);
         Ok(())
     }
 
@@ -242,6 +252,7 @@ impl Places<'_, '_> {
     }
 
     /// The light for a map, which may be of another kind than most.
+    #[inline]
     fn light(&self, settings: &FitSettings) -> Light {
         if settings.kind == self.settings.fit.kind { self.light } else { self.light.of_kind(settings.kind) }
     }

@@ -57,6 +57,7 @@ pub(crate) fn floor(x: f64) -> f64 {
 }
 
 /// World position along the light's axes, in metres, in f64.
+#[inline]
 pub(crate) fn anchor(axes: &LightAxes, origin: DVec3) -> DVec3 {
     axes.project(origin)
 }

@@ -62,6 +62,7 @@ pub fn enclosing_sphere(frustum: &ViewFrustum) -> Result<Sphere, FitError> {
     Ok(Round::new(&corners).map_or_else(|| minimal(&corners), |round| round.sphere(0.0, 1.0)))
 }
 
+#[inline(always)]
 pub(crate) fn volume(
     content: &Content,
     light: &Light,
@@ -77,8 +78,7 @@ pub(crate) fn volume(
     let (min, max) = (centre - extent * 0.5, centre + extent * 0.5);
     let (grid, min, max) = grid::snapped(&axes, min, max, content.origin, settings);
     // The whole map is swept toward the light, so that turning the camera moves no plane.
-    let outline =
-        [(min.x, min.y), (max.x, min.y), (max.x, max.y), (min.x, max.y)].map(|(x, y)| DVec2::new(x, y));
+    let outline = [(min.x, min.y), (max.x, min.y), (max.x, max.y), (min.x, max.y)].map(|(x, y)| DVec2::new(x, y));
     let texel = (max - min).truncate() / settings.resolution.as_dvec2();
     let reach = 2.0 * rounding + texel.max_element();
     let near = near_plane::place(max.z, &axes, &outline, content, settings, reach);
