@@ -201,7 +201,8 @@ impl Places<'_, '_> {
         }
         for (i, volume) in volumes.iter_mut().flatten().enumerate() {
             self.steady(i, volume);
-            self.write(&mut cascades.maps[i], volume, &map_settings(self.settings, i), cuts, i)?;
+            let own = own_settings(self.settings, i);
+            self.write(&mut cascades.maps[i], volume, own.as_ref().unwrap_or(&self.settings.fit), cuts, i)?;
         }
         Ok(())
     }
@@ -209,9 +210,12 @@ impl Places<'_, '_> {
     /// What one map holds in this frame alone, written where it stands, since it is large.
     fn fit_anew(&mut self, cuts: &Cuts, map: usize, volume: &mut Option<Volume>) -> Result<(), FitError> {
         let placing = if self.settings.stabilise == Stabilise::Snap { Placing::OnGrid } else { Placing::Tight };
-        let settings = map_settings(self.settings, map);
-        let (light, slice) = (self.light(&settings), self.slice(cuts, map));
-        *volume = Some(fits::fit_slice(self.content, &light, &settings, slice, placing, self.points)?);
+        let own = own_settings(self.settings, map);
+        let settings = own.as_ref().unwrap_or(&self.settings.fit);
+        let own_light = self.own_light(settings);
+        let light = own_light.as_ref().unwrap_or(&self.light);
+        let slice = self.slice(cuts, map);
+        *volume = Some(fits::fit_slice(self.content, light, settings, slice, placing, self.points)?);
         Ok(())
     }
 
@@ -238,23 +242,25 @@ impl Places<'_, '_> {
         let mut maps = [None; MAX_CASCADES];
         for (i, map) in maps.iter_mut().enumerate().take(cascades.count) {
             let slice = self.slice(cuts, i);
-            let settings = map_settings(self.settings, i);
+            let own = own_settings(self.settings, i);
+            let settings = own.as_ref().unwrap_or(&self.settings.fit);
             let volume = if settings.kind == FitKind::XnaSample {
-                fits::fit_slice(self.content, &self.light(&settings), &settings, slice, Placing::Tight, self.points)?
+                let light = self.own_light(settings).unwrap_or(self.light);
+                fits::fit_slice(self.content, &light, settings, slice, Placing::Tight, self.points)?
             } else {
-                let held = frame.place(before.and_then(|before| before.maps[i]), &settings, slice, self.points)?;
+                let held = frame.place(before.and_then(|before| before.maps[i]), settings, slice, self.points)?;
                 *map = Some(held);
                 hold::volume(&held, self.content.origin)
             };
-            self.write(&mut cascades.maps[i], &volume, &settings, cuts, i)?;
+            self.write(&mut cascades.maps[i], &volume, settings, cuts, i)?;
         }
         Ok(maps)
     }
 
-    /// The light for a map, which may be of another kind than most.
+    /// The light for a map of another kind than most.
     #[inline]
-    fn light(&self, settings: &FitSettings) -> Light {
-        if settings.kind == self.settings.fit.kind { self.light } else { self.light.of_kind(settings.kind) }
+    fn own_light(&self, settings: &FitSettings) -> Option<Light> {
+        (settings.kind != self.settings.fit.kind).then(|| self.light.of_kind(settings.kind))
     }
 
     /// The view depths that a map covers; those of all maps where it has none.
@@ -303,10 +309,9 @@ fn part_voids(maps: &mut [CascadeMap]) {
     }
 }
 
-/// The settings of one of the maps.
-fn map_settings(settings: &CascadeSettings, map: usize) -> FitSettings {
-    let fit = settings.fit;
-    settings.overrides[map].map_or(fit, |own| FitSettings { kind: own.kind, resolution: own.resolution, ..fit })
+/// The settings of a map that differs from the others.
+fn own_settings(settings: &CascadeSettings, map: usize) -> Option<FitSettings> {
+    settings.overrides[map].map(|own| FitSettings { kind: own.kind, resolution: own.resolution, ..settings.fit })
 }
 
 /// Everything that is shadowed.
@@ -343,8 +348,8 @@ fn check(input: &FitInput, settings: &CascadeSettings) -> Result<(Light, f32), F
     checks::within("the hold's growth", f64::from(hold.growth), 1.0, 100.0)?;
     checks::within("the hold's waste", f64::from(hold.waste), 1.0, 100.0)?;
     let prepared = fits::prepare(input, &settings.fit)?;
-    for map in (0..settings.count as usize).filter(|map| settings.overrides[*map].is_some()) {
-        fits::check(&map_settings(settings, map))?;
+    for own in (0..settings.count as usize).filter_map(|map| own_settings(settings, map)) {
+        fits::check(&own)?;
     }
     Ok(prepared)
 }
