@@ -150,9 +150,8 @@ impl CascadeFitter {
         } else {
             places.fit(&cuts.cuts, cascades)?;
         }
-        let depths = places.depths;
         part_voids(&mut cascades.maps[..cascades.count]);
-        (self.cuts, self.depths) = (Some(cuts), depths);
+        (self.cuts, self.depths) = (Some(cuts), places.depths);
         self.last_view = Some(input.views[0]);
         if !is_continued {
             (self.settings, self.maps) = (Some(*settings), [None; MAX_CASCADES]);

@@ -245,6 +245,7 @@ impl LightFit {
 }
 
 /// Scale of x, y, z and offset of z from light space to clip space.
+#[inline(always)]
 fn projection(size: DVec3, volume: &Volume, depth: DepthConvention) -> (DVec3, f64) {
     let near = (volume.max.z - volume.light_z) / volume.depth_range;
     let per_metre = 1.0 / volume.depth_range;
@@ -258,7 +259,7 @@ fn projection(size: DVec3, volume: &Volume, depth: DepthConvention) -> (DVec3, f
 }
 
 /// `clip_from_world` and `uv_from_world`, computed in f64.
-#[inline]
+#[inline(always)]
 fn products(light_from_world: &Mat4, clip_from_light: &Mat4, depth: DepthConvention) -> (Mat4, Mat4) {
     let clip = clip_from_light;
     let scale = DVec3::new(f64::from(clip.x_axis.x), f64::from(clip.y_axis.y), f64::from(clip.z_axis.z));
@@ -272,6 +273,7 @@ fn products(light_from_world: &Mat4, clip_from_light: &Mat4, depth: DepthConvent
 }
 
 /// `scale · (matrix p) + offset` as one affine matrix, computed in f64.
+#[inline(always)]
 fn scaled(matrix: &Mat4, scale: DVec3, offset: DVec3) -> Mat4 {
     let column = |c: Vec4| c.truncate().as_dvec3() * scale;
     Mat4::from_cols(

@@ -137,6 +137,13 @@ pub(crate) fn fit_as(
 /// Checks what all fits take; gives the light and the view depth at which shadows end.
 #[inline(always)]
 pub(crate) fn prepare(input: &FitInput, settings: &FitSettings) -> Result<(Light, f32), FitError> {
+    let (direction, up) = checked(input, settings)?;
+    Ok((Light::new(direction, up, settings.kind), settings.max_distance))
+}
+
+/// Checks what all fits take; gives the unit directions of the light's travel and of up.
+#[inline(always)]
+fn checked(input: &FitInput, settings: &FitSettings) -> Result<(DVec3, DVec3), FitError> {
     if input.views.is_empty() {
         return Err(FitError::NoView);
     }
@@ -150,7 +157,7 @@ pub(crate) fn prepare(input: &FitInput, settings: &FitSettings) -> Result<(Light
     if near >= settings.max_distance {
         return Err(FitError::NearNotBelowFar { near, far: settings.max_distance });
     }
-    Ok((Light::new(direction, up, settings.kind), settings.max_distance))
+    Ok((direction, up))
 }
 
 /// Checks the numbers of a fit's settings.

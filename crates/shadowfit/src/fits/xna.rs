@@ -23,7 +23,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::{Content, Light, Range, Volume, fit_as, prepare};
+use super::{Content, Light, Range, Volume, checked, fit_as};
 use crate::checks::MIN_LENGTH;
 use crate::light_fit::Constraint;
 use crate::settings::{FitKind, FitSettings};
@@ -52,9 +52,10 @@ pub(crate) fn volume(
 
 /// The map around the only view of an input.
 pub(crate) fn of_view(input: &FitInput, settings: &FitSettings) -> Result<LightFit, FitError> {
-    let (light, distance) = prepare(input, settings)?;
+    let (direction, up) = checked(input, settings)?;
+    let light = Light::new(direction, up, FitKind::XnaSample);
     let view = &input.views[0];
-    let corners = slice_corners(view, view.origin, view.near, distance);
+    let corners = slice_corners(view, view.origin, view.near, settings.max_distance);
     let volume = around(corners.into_iter(), &light, settings)?;
     let mut fit = LightFit::default();
     fit.set_volume(view.origin, &volume, settings)?;
