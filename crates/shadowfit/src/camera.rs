@@ -83,6 +83,7 @@ impl PerspectiveCamera {
     /// # Errors
     ///
     /// As [`ViewFrustum::from_camera`].
+    #[inline(always)]
     pub fn frustum(&self) -> Result<ViewFrustum, FitError> {
         ViewFrustum::from_camera(self)
     }

@@ -51,6 +51,7 @@ impl ViewFrustum {
     /// Every parameter that is NaN, infinite, zero, or too small or large for f32 arithmetic;
     /// [`FitError::OutOfRange`] for a field of view outside 0..π, [`FitError::ParallelUp`] for a
     /// roll that is undefined, [`FitError::NearNotBelowFar`].
+    #[inline(always)]
     pub fn from_camera(camera: &PerspectiveCamera) -> Result<Self, FitError> {
         // First, since a call makes everything that is known by then go to memory.
         let tangent = camera.tangent_y();
