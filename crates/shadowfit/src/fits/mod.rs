@@ -115,13 +115,13 @@ pub(crate) fn fit_slice(
     placing: Placing,
     points: &mut [DVec2],
 ) -> Result<Volume, FitError> {
-    match settings.kind {
-        FitKind::XnaSample => xna::volume(content, light, settings, range),
-        FitKind::FrustumAabb => aabb::volume(content, light, settings, range, placing, points),
-        FitKind::Oriented => oriented::volume(content, light, settings, range, placing, points),
-        FitKind::Sphere => sphere::volume(content, light, settings, range),
-        FitKind::Focused => focused::volume(content, light, settings, range, placing, points),
-    }
+    Ok(match settings.kind {
+        FitKind::XnaSample => xna::volume(content, light, settings, range)?,
+        FitKind::FrustumAabb => aabb::volume(content, light, settings, range, placing, points)?,
+        FitKind::Oriented => oriented::volume(content, light, settings, range, placing, points)?,
+        FitKind::Sphere => sphere::volume(content, light, settings, range)?,
+        FitKind::Focused => focused::volume(content, light, settings, range, placing, points)?,
+    })
 }
 
 /// Fits a single frustum by one kind, whatever the settings name.
