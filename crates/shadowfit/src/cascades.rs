@@ -279,7 +279,7 @@ impl Places<'_, '_> {
     ) -> Result<(), FitError> {
         let slice = slice_range(cuts, i, self.settings, self.range);
         let is_void = is_void(self.content.views, slice);
-        map.fit.set_volume(self.content.origin, volume, settings)?;
+        map.fit = LightFit::from_volume(self.content.origin, volume, settings)?;
         map.fit.is_empty |= is_void;
         map.anchor = volume.grid.as_ref().and_then(GridAnchor::of);
         (map.near, map.far) = (cuts[i], cuts[i + 1]);

@@ -97,20 +97,8 @@ const COVER_SLACK: f64 = 1e-6;
 
 impl LightFit {
     /// Turns a fit's decision into matrices; refuses boxes that f32 matrices cannot hold.
-    pub(crate) fn from_volume(origin: DVec3, volume: &Volume, settings: &FitSettings) -> Result<Self, FitError> {
-        let mut fit = Self::default();
-        fit.set_volume(origin, volume, settings)?;
-        Ok(fit)
-    }
-
-    /// [`Self::from_volume`] where the fit stands, which saves a copy. An error changes nothing.
     #[inline(always)]
-    pub(crate) fn set_volume(
-        &mut self,
-        origin: DVec3,
-        volume: &Volume,
-        settings: &FitSettings,
-    ) -> Result<(), FitError> {
+    pub(crate) fn from_volume(origin: DVec3, volume: &Volume, settings: &FitSettings) -> Result<Self, FitError> {
         let size = volume.max - volume.min;
         for extent in [size.x, size.y, volume.depth_range] {
             checks::within("an extent of the light's box", extent, MIN_LENGTH, MAX_LENGTH)?;
@@ -134,7 +122,7 @@ impl LightFit {
             Vec4::new(0.0, 0.0, offset as f32, 1.0),
         );
         let (clip_from_world, uv_from_world) = products(&light_from_world, &clip_from_light, settings.depth);
-        *self = Self {
+        Ok(Self {
             origin,
             direction: -z,
             light_from_world,
@@ -149,8 +137,7 @@ impl LightFit {
             depth: settings.depth,
             set_by: volume.set_by,
             is_empty: volume.is_empty,
-        };
-        Ok(())
+        })
     }
 
     /// The same map with its inputs relative to another world position, in metres. The

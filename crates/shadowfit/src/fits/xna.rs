@@ -57,9 +57,7 @@ pub(crate) fn of_view(input: &FitInput, settings: &FitSettings) -> Result<LightF
     let view = &input.views[0];
     let corners = slice_corners(view, view.origin, view.near, settings.max_distance);
     let volume = around(corners.into_iter(), &light, settings)?;
-    let mut fit = LightFit::default();
-    fit.set_volume(view.origin, &volume, settings)?;
-    Ok(fit)
+    LightFit::from_volume(view.origin, &volume, settings)
 }
 
 /// The sample's box around the corners of views' slices.
