@@ -151,6 +151,7 @@ pub(crate) struct Round {
 
 impl Round {
     /// `None` for frusta that are not symmetric.
+    #[inline(always)]
     pub(crate) fn new(corners: &[DVec3; 8]) -> Option<Self> {
         let centre = |c: &[DVec3]| (c[0] + c[1] + c[2] + c[3]) * 0.25;
         let (near, far) = (centre(&corners[..4]), centre(&corners[4..]));
