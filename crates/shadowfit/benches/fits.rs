@@ -174,7 +174,7 @@ fn against_xna(c: &mut Criterion) {
     let mut turn = 0.0;
     group.bench_function("shadowfit", |b| {
         b.iter(|| {
-            let view = camera(&mut turn).frustum().expect("a good camera");
+            let view = black_box(&camera(&mut turn)).frustum().expect("a good camera");
             fit(black_box(&view), black_box(DIRECTION), black_box(&settings)).expect("a good fit")
         });
     });
@@ -196,7 +196,7 @@ fn against_bevy(c: &mut Criterion) {
     let mut turn = 0.0;
     group.bench_function("shadowfit", |b| {
         b.iter(|| {
-            let views = [camera(&mut turn).frustum().expect("a good camera")];
+            let views = [black_box(&camera(&mut turn)).frustum().expect("a good camera")];
             let input = FitInput::new(black_box(&views), black_box(DIRECTION));
             let mut workspace = Workspace::new(&mut storage);
             fitter.fit_into(&input, black_box(&settings), &mut workspace, &mut cascades).expect("a good fit");

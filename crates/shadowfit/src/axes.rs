@@ -34,12 +34,15 @@ impl LightAxes {
     /// Within 1e-6 radians of the vertical, where the sample divides by zero, the map's top is
     /// where a plan's would be (-z for +y up). The roll flips there: it follows the azimuth on
     /// every side, so no choice at the pole is continuous.
+    #[inline(always)]
     pub(crate) fn look_at(direction: DVec3, up: DVec3) -> Self {
         let mut right = direction.cross(up);
-        if checks::length(right) < VERTICAL_SINE {
+        let mut length = checks::length(right);
+        if length < VERTICAL_SINE {
             right = direction.cross(plan(up).1);
+            length = checks::length(right);
         }
-        let right = right / checks::length(right);
+        let right = right / length;
         Self::from_f64(right, right.cross(direction), -direction)
     }
 
@@ -47,6 +50,7 @@ impl LightAxes {
     /// plan with -z at its top), turned by the shortest arc from straight down to `direction`.
     ///
     /// Continuous everywhere but for light straight up, where the arc's axis is the plan's x.
+    #[inline(always)]
     pub(crate) fn shortest_arc(direction: DVec3, up: DVec3) -> Self {
         let (x, y) = plan(up);
         match arc(-up, direction) {
@@ -103,10 +107,13 @@ impl LightAxes {
 
 /// The plan's axes x and y, as they appear to a light straight down: +x and -z, turned by the
 /// shortest arc from +y to `up`.
+#[inline(always)]
 fn plan(up: DVec3) -> (DVec3, DVec3) {
-    if up == DVec3::Y {
-        return (DVec3::X, DVec3::NEG_Z);
-    }
+    if up == DVec3::Y { (DVec3::X, DVec3::NEG_Z) } else { tilted_plan(up) }
+}
+
+/// The same for any direction that is up.
+fn tilted_plan(up: DVec3) -> (DVec3, DVec3) {
     match arc(DVec3::Y, up) {
         Some(turn) => (turn(DVec3::X), turn(DVec3::NEG_Z)),
         None => (DVec3::X, DVec3::Z),

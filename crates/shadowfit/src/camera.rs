@@ -83,6 +83,7 @@ impl PerspectiveCamera {
     /// # Errors
     ///
     /// As [`ViewFrustum::from_camera`].
+    #[inline(always)]
     pub fn frustum(&self) -> Result<ViewFrustum, FitError> {
         ViewFrustum::from_camera(self)
     }
@@ -92,6 +93,7 @@ impl PerspectiveCamera {
         libm::tan(f64::from(self.fov_y) * 0.5)
     }
 
+    #[inline(always)]
     pub(crate) fn axes(&self) -> Result<CameraAxes, FitError> {
         let forward = checks::unit("the camera's forward direction", self.forward)?;
         let up = checks::unit("the camera's up direction", self.up)?;

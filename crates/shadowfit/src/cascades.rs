@@ -150,9 +150,8 @@ impl CascadeFitter {
         } else {
             places.fit(&cuts.cuts, cascades)?;
         }
-        let depths = places.depths;
         part_voids(&mut cascades.maps[..cascades.count]);
-        (self.cuts, self.depths) = (Some(cuts), depths);
+        (self.cuts, self.depths) = (Some(cuts), places.depths);
         self.last_view = Some(input.views[0]);
         if !is_continued {
             (self.settings, self.maps) = (Some(*settings), [None; MAX_CASCADES]);
@@ -194,25 +193,38 @@ struct Places<'a, 'b> {
 impl Places<'_, '_> {
     /// All maps of this frame alone.
     fn fit(&mut self, cuts: &Cuts, cascades: &mut Cascades) -> Result<(), FitError> {
-        for i in 0..cascades.count {
-            let slice = self.slice(cuts, i);
-            let settings = map_settings(self.settings, i);
-            let volume = self.fit_anew(i, &settings, slice)?;
-            self.write(&mut cascades.maps[i], &volume, &settings, cuts, i)?;
+        // Each step of one map waits for the step before it; those of several maps side by side do not.
+        let mut volumes = [None; MAX_CASCADES];
+        for (i, volume) in volumes.iter_mut().enumerate().take(cascades.count) {
+            self.fit_anew(cuts, i, volume)?;
+        }
+        for (i, volume) in volumes.iter_mut().flatten().enumerate() {
+            self.steady(i, volume);
+            let own = own_settings(self.settings, i);
+            self.write(&mut cascades.maps[i], volume, own.as_ref().unwrap_or(&self.settings.fit), cuts, i)?;
         }
         Ok(())
     }
 
-    /// One map of this frame alone, but for its depth range.
-    fn fit_anew(&mut self, map: usize, settings: &FitSettings, slice: Range) -> Result<Volume, FitError> {
+    /// What one map holds in this frame alone, written where it stands, since it is large.
+    fn fit_anew(&mut self, cuts: &Cuts, map: usize, volume: &mut Option<Volume>) -> Result<(), FitError> {
         let placing = if self.settings.stabilise == Stabilise::Snap { Placing::OnGrid } else { Placing::Tight };
-        let light = self.light(settings);
-        let mut volume = fits::fit_slice(self.content, &light, settings, slice, placing, self.points)?;
+        let own = own_settings(self.settings, map);
+        let settings = own.as_ref().unwrap_or(&self.settings.fit);
+        let own_light = self.own_light(settings);
+        let light = own_light.as_ref().unwrap_or(&self.light);
+        let slice = self.slice(cuts, map);
+        *volume = Some(fits::fit_slice(self.content, light, settings, slice, placing, self.points)?);
+        Ok(())
+    }
+
+    /// Keeps a map's depth range from the last frame while it serves.
+    #[inline(always)]
+    fn steady(&mut self, map: usize, volume: &mut Volume) {
         let to_light = volume.axes.z;
         let held = self.depths[map].filter(|held| held.to_light == to_light).map(|held| held.z);
-        grid::steady(&mut volume, self.content.origin, held, f64::from(self.settings.hold.waste));
+        grid::steady(volume, self.content.origin, held, f64::from(self.settings.hold.waste));
         self.depths[map] = volume.grid.map(|grid| HeldDepth { to_light, z: grid.z });
-        Ok(volume)
     }
 
     /// All maps, held ones while they serve.
@@ -229,22 +241,25 @@ impl Places<'_, '_> {
         let mut maps = [None; MAX_CASCADES];
         for (i, map) in maps.iter_mut().enumerate().take(cascades.count) {
             let slice = self.slice(cuts, i);
-            let settings = map_settings(self.settings, i);
+            let own = own_settings(self.settings, i);
+            let settings = own.as_ref().unwrap_or(&self.settings.fit);
             let volume = if settings.kind == FitKind::XnaSample {
-                fits::fit_slice(self.content, &self.light(&settings), &settings, slice, Placing::Tight, self.points)?
+                let light = self.own_light(settings).unwrap_or(self.light);
+                fits::fit_slice(self.content, &light, settings, slice, Placing::Tight, self.points)?
             } else {
-                let held = frame.place(before.and_then(|before| before.maps[i]), &settings, slice, self.points)?;
+                let held = frame.place(before.and_then(|before| before.maps[i]), settings, slice, self.points)?;
                 *map = Some(held);
                 hold::volume(&held, self.content.origin)
             };
-            self.write(&mut cascades.maps[i], &volume, &settings, cuts, i)?;
+            self.write(&mut cascades.maps[i], &volume, settings, cuts, i)?;
         }
         Ok(maps)
     }
 
-    /// The light for a map, which may be of another kind than most.
-    fn light(&self, settings: &FitSettings) -> Light {
-        if settings.kind == self.settings.fit.kind { self.light } else { self.light.of_kind(settings.kind) }
+    /// The light for a map of another kind than most.
+    #[inline]
+    fn own_light(&self, settings: &FitSettings) -> Option<Light> {
+        (settings.kind != self.settings.fit.kind).then(|| self.light.of_kind(settings.kind))
     }
 
     /// The view depths that a map covers; those of all maps where it has none.
@@ -264,7 +279,7 @@ impl Places<'_, '_> {
     ) -> Result<(), FitError> {
         let slice = slice_range(cuts, i, self.settings, self.range);
         let is_void = is_void(self.content.views, slice);
-        map.fit.set_volume(self.content.origin, volume, settings)?;
+        map.fit = LightFit::from_volume(self.content.origin, volume, settings)?;
         map.fit.is_empty |= is_void;
         map.anchor = volume.grid.as_ref().and_then(GridAnchor::of);
         (map.near, map.far) = (cuts[i], cuts[i + 1]);
@@ -293,10 +308,9 @@ fn part_voids(maps: &mut [CascadeMap]) {
     }
 }
 
-/// The settings of one of the maps.
-fn map_settings(settings: &CascadeSettings, map: usize) -> FitSettings {
-    let fit = settings.fit;
-    settings.overrides[map].map_or(fit, |own| FitSettings { kind: own.kind, resolution: own.resolution, ..fit })
+/// The settings of a map that differs from the others.
+fn own_settings(settings: &CascadeSettings, map: usize) -> Option<FitSettings> {
+    settings.overrides[map].map(|own| FitSettings { kind: own.kind, resolution: own.resolution, ..settings.fit })
 }
 
 /// Everything that is shadowed.
@@ -333,8 +347,8 @@ fn check(input: &FitInput, settings: &CascadeSettings) -> Result<(Light, f32), F
     checks::within("the hold's growth", f64::from(hold.growth), 1.0, 100.0)?;
     checks::within("the hold's waste", f64::from(hold.waste), 1.0, 100.0)?;
     let prepared = fits::prepare(input, &settings.fit)?;
-    for map in (0..settings.count as usize).filter(|map| settings.overrides[*map].is_some()) {
-        fits::check(&map_settings(settings, map))?;
+    for own in (0..settings.count as usize).filter_map(|map| own_settings(settings, map)) {
+        fits::check(&own)?;
     }
     Ok(prepared)
 }

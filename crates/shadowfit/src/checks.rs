@@ -16,7 +16,7 @@ pub(crate) const MAX_LENGTH: f64 = 1e18;
 /// Refuses NaN and infinity.
 #[inline]
 pub(crate) fn finite(input: &'static str, value: f64) -> Result<f64, FitError> {
-    if value.is_finite() { Ok(value) } else { Err(FitError::NotFinite { input, value }) }
+    within(input, value, f64::MIN, f64::MAX)
 }
 
 /// A result rounded to f32; refuses what is not finite there.
@@ -29,8 +29,18 @@ pub(crate) fn rounded(output: &'static str, value: f64) -> Result<f32, FitError>
 /// Refuses what is not finite or outside `min..=max`.
 #[inline]
 pub(crate) fn within(input: &'static str, value: f64, min: f64, max: f64) -> Result<f64, FitError> {
-    finite(input, value)?;
-    if (min..=max).contains(&value) { Ok(value) } else { Err(FitError::OutOfRange { input, value, min, max }) }
+    if (min..=max).contains(&value) { Ok(value) } else { Err(refusal(input, value, min, max)) }
+}
+
+/// What is said of a value outside `min..=max`. Apart from the checks themselves, so that these are a
+/// comparison and no more where they are called.
+#[cold]
+fn refusal(input: &'static str, value: f64, min: f64, max: f64) -> FitError {
+    if value.is_finite() {
+        FitError::OutOfRange { input, value, min, max }
+    } else {
+        FitError::NotFinite { input, value }
+    }
 }
 
 /// Refuses a point with a coordinate that is not finite or beyond [`MAX_LENGTH`].
@@ -45,15 +55,19 @@ pub(crate) fn point(input: &'static str, value: DVec3) -> Result<DVec3, FitError
 /// The unit vector along `value`, in f64.
 #[inline]
 pub(crate) fn unit(input: &'static str, value: Vec3) -> Result<DVec3, FitError> {
-    for component in value.to_array() {
-        finite(input, f64::from(component))?;
-    }
     let length = length(value.as_dvec3());
     if (MIN_LENGTH..=MAX_LENGTH).contains(&length) {
         Ok(value.as_dvec3() / length)
     } else {
-        Err(FitError::BadDirection { input, length })
+        Err(bad_direction(input, value, length))
     }
+}
+
+/// What is said of a direction that is no number or of no use as one.
+#[cold]
+fn bad_direction(input: &'static str, value: Vec3, length: f64) -> FitError {
+    let bad = value.to_array().into_iter().find(|component| !component.is_finite());
+    bad.map_or(FitError::BadDirection { input, length }, |bad| FitError::NotFinite { input, value: f64::from(bad) })
 }
 
 /// Length of a vector; the square root is libm's, the same on every target.

@@ -51,7 +51,10 @@ impl ViewFrustum {
     /// Every parameter that is NaN, infinite, zero, or too small or large for f32 arithmetic;
     /// [`FitError::OutOfRange`] for a field of view outside 0..π, [`FitError::ParallelUp`] for a
     /// roll that is undefined, [`FitError::NearNotBelowFar`].
+    #[inline(always)]
     pub fn from_camera(camera: &PerspectiveCamera) -> Result<Self, FitError> {
+        // First, since a call makes everything that is known by then go to memory.
+        let tangent = camera.tangent_y();
         checks::point("the camera's eye", camera.eye)?;
         let axes = camera.axes()?;
         let fov_y = f64::from(camera.fov_y);
@@ -62,16 +65,16 @@ impl ViewFrustum {
         checks::within("the camera's near distance", near, MIN_LENGTH, MAX_LENGTH)?;
         let far = f64::from(camera.far);
         checks::within("the camera's far distance", far, MIN_LENGTH, MAX_LENGTH)?;
-        let up = axes.up * camera.tangent_y();
-        let right = axes.right * camera.tangent_y() * aspect;
+        let (right, up) = (axes.right * tangent * aspect, axes.up * tangent);
         let mut corners = [Vec3::ZERO; 8];
         for (i, (x, y)) in CORNERS_XY.into_iter().enumerate() {
             let ray = axes.forward + right * x + up * y;
             corners[i] = (ray * near).as_vec3();
             corners[i + 4] = (ray * far).as_vec3();
         }
-        Self { origin: camera.eye, corners, near: camera.near, far: camera.far, forward: axes.forward.as_vec3() }
-            .checked()
+        check_corners(&corners)?;
+        check_extent(&corners, camera.near, camera.far)?;
+        Ok(Self { origin: camera.eye, corners, near: camera.near, far: camera.far, forward: axes.forward.as_vec3() })
     }
 
     /// The frustum behind an f32 matrix from clip space to **absolute** world space, with the
@@ -181,39 +184,57 @@ impl ViewFrustum {
     /// Whether a fit can use the frustum: the fields are public, so anyone may fill them.
     pub(crate) fn check(&self) -> Result<(), FitError> {
         checks::point("the frustum's origin", self.origin)?;
-        // One pass that tells good corners, another only to name a bad one.
-        let limit = MAX_LENGTH as f32;
-        let is_good = |c: &Vec3| (c.x.abs() <= limit) & (c.y.abs() <= limit) & (c.z.abs() <= limit);
-        if !self.corners.iter().fold(true, |all, corner| all & is_good(corner)) {
-            for corner in self.corners {
-                checks::point("a corner of the frustum", corner.as_dvec3())?;
-            }
-        }
+        check_corners(&self.corners)?;
         checks::unit("the frustum's forward direction", self.forward)?;
         let (near, far) = (self.near, self.far);
         checks::within("the frustum's near distance", f64::from(near), -MAX_LENGTH, MAX_LENGTH)?;
         checks::within("the frustum's far distance", f64::from(far), -MAX_LENGTH, MAX_LENGTH)?;
-        if near >= far {
-            return Err(FitError::NearNotBelowFar { near, far });
-        }
-        if self.volume() > 0.0 {
-            Ok(())
-        } else {
-            let min = self.corners.into_iter().fold(Vec3::MAX, Vec3::min);
-            let max = self.corners.into_iter().fold(Vec3::MIN, Vec3::max);
-            Err(FitError::EmptyFrustum { size: max - min })
-        }
+        check_extent(&self.corners, near, far)
     }
+}
 
-    /// Volume of the box spanned by the far rectangle, which is never the smaller one of a view,
-    /// and the near-to-far axis, in m³: zero where the frustum is flat.
-    fn volume(&self) -> f64 {
-        let c = self.corners.map(Vec3::as_dvec3);
-        let across = (c[5] - c[4]).cross(c[7] - c[4]);
-        let axis = (c[4] + c[6]) - (c[0] + c[2]);
-        let volume = across.dot(axis);
-        if volume < 0.0 { -volume } else { volume }
+/// Refuses corners that are not finite or too far away.
+#[inline(always)]
+fn check_corners(corners: &[Vec3; 8]) -> Result<(), FitError> {
+    // One pass that tells good corners, another only to name a bad one.
+    let limit = MAX_LENGTH as f32;
+    let is_good = |c: &Vec3| (c.x.abs() <= limit) & (c.y.abs() <= limit) & (c.z.abs() <= limit);
+    if corners.iter().fold(true, |all, corner| all & is_good(corner)) { Ok(()) } else { name_bad(*corners) }
+}
+
+/// Names the corner that is no good.
+#[cold]
+#[inline(never)]
+fn name_bad(corners: [Vec3; 8]) -> Result<(), FitError> {
+    corners.into_iter().try_for_each(|corner| checks::point("a corner of the frustum", corner.as_dvec3()).map(|_| ()))
+}
+
+/// Refuses a frustum with nothing between near and far or between its sides.
+#[inline]
+fn check_extent(corners: &[Vec3; 8], near: f32, far: f32) -> Result<(), FitError> {
+    if near >= far {
+        return Err(FitError::NearNotBelowFar { near, far });
     }
+    if volume(corners) > 0.0 { Ok(()) } else { Err(empty(*corners)) }
+}
+
+/// What is said of corners without a volume.
+#[cold]
+#[inline(never)]
+fn empty(corners: [Vec3; 8]) -> FitError {
+    let min = corners.into_iter().fold(Vec3::MAX, Vec3::min);
+    let max = corners.into_iter().fold(Vec3::MIN, Vec3::max);
+    FitError::EmptyFrustum { size: max - min }
+}
+
+/// Volume of the box spanned by the far rectangle, which is never the smaller one of a view,
+/// and the near-to-far axis, in m³: zero where the frustum is flat.
+#[inline]
+fn volume(corners: &[Vec3; 8]) -> f64 {
+    let c = |i: usize| corners[i].as_dvec3();
+    let across = (c(5) - c(4)).cross(c(7) - c(4));
+    let axis = (c(4) + c(6)) - (c(0) + c(2));
+    across.dot(axis).abs()
 }
 
 /// What turns clip corners into world positions relative to the eye.

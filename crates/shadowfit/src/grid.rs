@@ -32,14 +32,33 @@ const OCTAVE: [f64; 9] = [
 
 /// The least of the extents 2^(k/8) that holds a length, or up to 1e-5 of it less, and 1e-5 more;
 /// the lengths are metres, positive and normal.
+#[inline]
 pub(crate) fn quantised(length: f64) -> f64 {
-    let (mantissa, exponent) = libm::frexp(length);
-    let least = 2.0 * mantissa * (1.0 - NOISE);
-    let step = OCTAVE.into_iter().find(|step| *step >= least).unwrap_or(2.0);
-    libm::ldexp(step * (1.0 + NOISE), exponent - 1)
+    // The power of two below it, and what it is a multiple of that.
+    let octave = f64::from_bits(length.to_bits() & EXPONENT);
+    let least = f64::from_bits(length.to_bits() & !EXPONENT | 1.0_f64.to_bits()) * (1.0 - NOISE);
+    // The bits of positive numbers have their order, and are compared faster.
+    let shorter = OCTAVE[..8].iter().filter(|step| step.to_bits() < least.to_bits()).count();
+    OCTAVE[shorter] * (1.0 + NOISE) * octave
+}
+
+/// The bits of an f64's exponent.
+const EXPONENT: u64 = f64::INFINITY.to_bits();
+
+/// The greatest whole number that is no greater; the same bits as libm's, without a call where it matters.
+#[inline]
+pub(crate) fn floor(x: f64) -> f64 {
+    // Beyond this all numbers are whole, and those below it lose their fraction when it is added.
+    const WHOLE: f64 = 4_503_599_627_370_496.0;
+    let whole = WHOLE.copysign(x);
+    let near = x + whole - whole;
+    // No branch: which way a number is rounded cannot be predicted.
+    let floor = near - f64::from(u8::from(near > x));
+    if x.abs() < WHOLE { floor.copysign(x) } else { x }
 }
 
 /// World position along the light's axes, in metres, in f64.
+#[inline]
 pub(crate) fn anchor(axes: &LightAxes, origin: DVec3) -> DVec3 {
     axes.project(origin)
 }
@@ -63,8 +82,10 @@ const DEPTH_STEPS: f64 = 16.0;
 
 /// Rounds a volume's extents across the light up and moves it to the world's grid, so that it still
 /// holds what it held, with the kernel's texels around it.
-pub(crate) fn snap(volume: &mut Volume, origin: DVec3, settings: &FitSettings) {
-    volume.grid = Some(snapped(volume, origin, settings));
+pub(crate) fn snap(volume: &mut Volume, origin: DVec3, settings: &FitSettings) -> Grid {
+    let (grid, min, max) = snapped(&volume.axes, volume.min, volume.max, origin, settings);
+    (volume.min, volume.max, volume.grid) = (min, max, Some(grid));
+    grid
 }
 
 /// Texels that are left for what a map on the grid must hold.
@@ -73,28 +94,35 @@ pub(crate) fn usable(settings: &FitSettings) -> DVec2 {
     settings.resolution.as_dvec2() - (2.0 * f64::from(settings.kernel_margin) + 1.0)
 }
 
-/// As [`snap`], and gives where the volume came to lie.
-pub(crate) fn snapped(volume: &mut Volume, origin: DVec3, settings: &FitSettings) -> Grid {
-    let anchor = anchor(&volume.axes, origin);
+/// As [`snap`], for the corners of a box alone: gives where it came to lie, and its new corners.
+#[inline(always)]
+pub(crate) fn snapped(
+    axes: &LightAxes,
+    min: DVec3,
+    max: DVec3,
+    origin: DVec3,
+    settings: &FitSettings,
+) -> (Grid, DVec3, DVec3) {
+    let anchor = anchor(axes, origin);
     let resolution = settings.resolution.as_dvec2();
     let kernel = f64::from(settings.kernel_margin);
     let usable = usable(settings);
     // The rounding of a map that is larger than what it holds is that of its own extent.
-    let size = (volume.max - volume.min).truncate();
+    let size = (max - min).truncate();
     let pad = ROUNDING * (size * resolution / usable).max_element();
     let size = size + 2.0 * pad;
     let width = quantised(size.x);
     let texel = DVec2::new(width, if size.y == size.x { width } else { quantised(size.y) }) / usable;
-    let line = (volume.min.truncate() - pad + anchor.truncate()) / texel - kernel;
-    let first = DVec2::new(libm::floor(line.x), libm::floor(line.y));
-    let min = first * texel - anchor.truncate();
-    let z = (volume.min.z, volume.max.z);
-    (volume.min, volume.max) = (min.extend(z.0), (min + texel * resolution).extend(z.1));
-    Grid { first, texel, z: (z.0 + anchor.z, z.1 + anchor.z) }
+    let line = (min.truncate() - pad + anchor.truncate()) / texel - kernel;
+    let first = DVec2::new(floor(line.x), floor(line.y));
+    let corner = first * texel - anchor.truncate();
+    let grid = Grid { first, texel, z: (min.z + anchor.z, max.z + anchor.z) };
+    (grid, corner.extend(min.z), (corner + texel * resolution).extend(max.z))
 }
 
 /// Puts the near and far plane of a volume on the grid to a range that holds them: one that is held
 /// from an earlier frame, while it does and is no more than `waste` times as long as a new one.
+#[inline(always)]
 pub(crate) fn steady(volume: &mut Volume, origin: DVec3, held: Option<(f64, f64)>, waste: f64) {
     let anchor = anchor(&volume.axes, origin).z;
     if let Some(grid) = &mut volume.grid {
@@ -114,14 +142,18 @@ pub(crate) fn steadied(held: Option<(f64, f64)>, (low, high): (f64, f64), waste:
     let around = |pad: f64| {
         let depth = quantised(length + 2.0 * pad);
         let step = depth / DEPTH_STEPS;
-        let start = libm::floor((low - pad) / step) * step;
+        let start = floor((low - pad) / step) * step;
         (start, start + depth + step)
     };
     let Some(held) = held else { return around(rounding) };
-    let renewed = around(rounding + length * ROOM);
     let held_length = held.1 - held.0;
-    let rounding = ROUNDING * held_length;
-    let is_enough = held.0 <= low - rounding && held.1 >= high + rounding;
+    let held_rounding = ROUNDING * held_length;
+    let is_enough = held.0 <= low - held_rounding && held.1 >= high + held_rounding;
+    // A new range would be longer than what it holds, so that it need not even be made here.
+    if is_enough && held_length <= length * waste {
+        return held;
+    }
+    let renewed = around(rounding + length * ROOM);
     let is_wasteful = held_length > (renewed.1 - renewed.0) * waste * (1.0 + NOISE);
     if is_enough && !is_wasteful { held } else { renewed }
 }

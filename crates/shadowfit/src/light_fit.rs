@@ -97,19 +97,8 @@ const COVER_SLACK: f64 = 1e-6;
 
 impl LightFit {
     /// Turns a fit's decision into matrices; refuses boxes that f32 matrices cannot hold.
+    #[inline(always)]
     pub(crate) fn from_volume(origin: DVec3, volume: &Volume, settings: &FitSettings) -> Result<Self, FitError> {
-        let mut fit = Self::default();
-        fit.set_volume(origin, volume, settings)?;
-        Ok(fit)
-    }
-
-    /// [`Self::from_volume`] where the fit stands. An error changes nothing.
-    pub(crate) fn set_volume(
-        &mut self,
-        origin: DVec3,
-        volume: &Volume,
-        settings: &FitSettings,
-    ) -> Result<(), FitError> {
         let size = volume.max - volume.min;
         for extent in [size.x, size.y, volume.depth_range] {
             checks::within("an extent of the light's box", extent, MIN_LENGTH, MAX_LENGTH)?;
@@ -120,41 +109,35 @@ impl LightFit {
         let t = (-light).as_vec3();
         let (scale, offset) = projection(size, volume, settings.depth);
         let box_max = DVec3::new(size.x * 0.5, size.y * 0.5, volume.max.z - volume.light_z);
-        self.origin = origin;
-        self.direction = -z;
-        self.light_from_world = Mat4::from_cols(
+        let light_from_world = Mat4::from_cols(
             Vec4::new(x.x, y.x, z.x, 0.0),
             Vec4::new(x.y, y.y, z.y, 0.0),
             Vec4::new(x.z, y.z, z.z, 0.0),
             Vec4::new(t.x, t.y, t.z, 1.0),
         );
-        self.clip_from_light = Mat4::from_cols(
+        let clip_from_light = Mat4::from_cols(
             Vec4::new(scale.x as f32, 0.0, 0.0, 0.0),
             Vec4::new(0.0, scale.y as f32, 0.0, 0.0),
             Vec4::new(0.0, 0.0, scale.z as f32, 0.0),
             Vec4::new(0.0, 0.0, offset as f32, 1.0),
         );
-        self.box_min = (box_max - size).as_vec3();
-        self.box_max = box_max.as_vec3();
-        self.texel_size = (size.truncate() / settings.resolution.as_dvec2()).as_vec2();
-        self.depth_range = volume.depth_range as f32;
-        (self.resolution, self.depth) = (settings.resolution, settings.depth);
-        (self.set_by, self.is_empty) = (volume.set_by, volume.is_empty);
-        self.compose();
-        Ok(())
-    }
-
-    /// Fills the products of `light_from_world` and `clip_from_light`, in f64.
-    fn compose(&mut self) {
-        let clip = self.clip_from_light;
-        let scale = DVec3::new(f64::from(clip.x_axis.x), f64::from(clip.y_axis.y), f64::from(clip.z_axis.z));
-        let offset = clip.w_axis.truncate().as_dvec3();
-        self.clip_from_world = scaled(&self.light_from_world, scale, offset);
-        let (mut uv_scale, mut uv_offset) = (DVec3::new(0.5, -0.5, 1.0), DVec3::new(0.5, 0.5, 0.0));
-        if self.depth == DepthConvention::NegativeOneToOne {
-            (uv_scale.z, uv_offset.z) = (0.5, 0.5);
-        }
-        self.uv_from_world = scaled(&self.light_from_world, scale * uv_scale, offset * uv_scale + uv_offset);
+        let (clip_from_world, uv_from_world) = products(&light_from_world, &clip_from_light, settings.depth);
+        Ok(Self {
+            origin,
+            direction: -z,
+            light_from_world,
+            clip_from_light,
+            clip_from_world,
+            uv_from_world,
+            box_min: (box_max - size).as_vec3(),
+            box_max: box_max.as_vec3(),
+            texel_size: (size.truncate() / settings.resolution.as_dvec2()).as_vec2(),
+            depth_range: volume.depth_range as f32,
+            resolution: settings.resolution,
+            depth: settings.depth,
+            set_by: volume.set_by,
+            is_empty: volume.is_empty,
+        })
     }
 
     /// The same map with its inputs relative to another world position, in metres. The
@@ -166,7 +149,7 @@ impl LightFit {
         let mut fit = *self;
         fit.origin = new_origin;
         fit.light_from_world.w_axis = moved.extend(1.0);
-        fit.compose();
+        (fit.clip_from_world, fit.uv_from_world) = products(&fit.light_from_world, &fit.clip_from_light, fit.depth);
         fit
     }
 
@@ -249,6 +232,7 @@ impl LightFit {
 }
 
 /// Scale of x, y, z and offset of z from light space to clip space.
+#[inline(always)]
 fn projection(size: DVec3, volume: &Volume, depth: DepthConvention) -> (DVec3, f64) {
     let near = (volume.max.z - volume.light_z) / volume.depth_range;
     let per_metre = 1.0 / volume.depth_range;
@@ -261,7 +245,22 @@ fn projection(size: DVec3, volume: &Volume, depth: DepthConvention) -> (DVec3, f
     (DVec3::new(2.0 / size.x, 2.0 / size.y, scale), offset)
 }
 
+/// `clip_from_world` and `uv_from_world`, computed in f64.
+#[inline(always)]
+fn products(light_from_world: &Mat4, clip_from_light: &Mat4, depth: DepthConvention) -> (Mat4, Mat4) {
+    let clip = clip_from_light;
+    let scale = DVec3::new(f64::from(clip.x_axis.x), f64::from(clip.y_axis.y), f64::from(clip.z_axis.z));
+    let offset = clip.w_axis.truncate().as_dvec3();
+    let (mut uv_scale, mut uv_offset) = (DVec3::new(0.5, -0.5, 1.0), DVec3::new(0.5, 0.5, 0.0));
+    if depth == DepthConvention::NegativeOneToOne {
+        (uv_scale.z, uv_offset.z) = (0.5, 0.5);
+    }
+    let uv_from_world = scaled(light_from_world, scale * uv_scale, offset * uv_scale + uv_offset);
+    (scaled(light_from_world, scale, offset), uv_from_world)
+}
+
 /// `scale · (matrix p) + offset` as one affine matrix, computed in f64.
+#[inline(always)]
 fn scaled(matrix: &Mat4, scale: DVec3, offset: DVec3) -> Mat4 {
     let column = |c: Vec4| c.truncate().as_dvec3() * scale;
     Mat4::from_cols(

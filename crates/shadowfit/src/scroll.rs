@@ -245,9 +245,7 @@ fn tile_fit(axes: &LightAxes, anchor: &GridAnchor, size: u32, map: &CascadeMap) 
         grid: None,
     };
     let settings = FitSettings { resolution: UVec2::splat(size), depth: map.fit.depth, ..FitSettings::default() };
-    let mut fit = LightFit::default();
-    fit.set_volume(DVec3::ZERO, &volume, &settings)?;
-    Ok(fit)
+    LightFit::from_volume(DVec3::ZERO, &volume, &settings)
 }
 
 impl Tiles {

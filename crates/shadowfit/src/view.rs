@@ -18,21 +18,29 @@ use crate::{Aabb, ViewFrustum, checks};
 
 /// Corners of the part of a frustum between two view depths, relative to an origin; `None` where
 /// they leave nothing of it.
+#[inline(always)]
 pub(crate) fn slice_corners(frustum: &ViewFrustum, origin: DVec3, near: f32, far: f32) -> Option<[DVec3; 8]> {
     let (near, far) = (near.max(frustum.near), far.min(frustum.far));
     if near >= far {
         return None;
     }
     let offset = frustum.origin - origin;
-    let corners = frustum.corners.map(|c| c.as_dvec3() + offset);
+    let mut corners = [DVec3::ZERO; 8];
+    for (corner, relative_to_eye) in corners.iter_mut().zip(&frustum.corners) {
+        *corner = relative_to_eye.as_dvec3() + offset;
+    }
     if near == frustum.near && far == frustum.far {
         return Some(corners);
     }
     let per_metre = 1.0 / (f64::from(frustum.far) - f64::from(frustum.near));
     let share = |depth: f32| (f64::from(depth) - f64::from(frustum.near)) * per_metre;
     let (t0, t1) = (share(near), share(far));
-    let lerp = |i: usize, t: f64| corners[i] * (1.0 - t) + corners[i + 4] * t;
-    Some(core::array::from_fn(|i| lerp(i % 4, if i < 4 { t0 } else { t1 })))
+    for i in 0..4 {
+        let (start, end) = (corners[i], corners[i + 4]);
+        corners[i] = start * (1.0 - t0) + end * t0;
+        corners[i + 4] = start * (1.0 - t1) + end * t1;
+    }
+    Some(corners)
 }
 
 /// A plane (n, d) with unit normal; a point is inside where n·p + d >= 0.

@@ -194,7 +194,7 @@ impl Frame<'_, '_> {
         volume.min -= room.extend(0.0);
         volume.max += room.extend(0.0);
         let origin = self.input.views[0].origin;
-        let grid = grid::snapped(&mut volume, origin, settings);
+        let grid = grid::snap(&mut volume, origin, settings);
         let mut map = HeldMap::new(&volume, grid, settings, fresh);
         let needed = self.needed(&map, settings, slice, points)?;
         let anchor = grid::anchor(&map.axes, origin).z;
@@ -237,5 +237,5 @@ impl HeldMap {
 }
 
 fn floor(v: DVec2) -> DVec2 {
-    DVec2::new(libm::floor(v.x), libm::floor(v.y))
+    DVec2::new(grid::floor(v.x), grid::floor(v.y))
 }

@@ -20,7 +20,6 @@ use glam::{DVec2, DVec3, Vec3};
 use crate::axes::LightAxes;
 use crate::checks::{self, MAX_LENGTH};
 use crate::settings::{FitKind, FitSettings, RectangleKind};
-use crate::view::slice_corners;
 use crate::{FitError, FitInput, LightFit, ViewFrustum, Workspace, grid};
 
 pub(crate) use footprint::{Content, Footprint};
@@ -47,10 +46,7 @@ pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Re
     let input = FitInput::new(core::slice::from_ref(frustum), direction);
     if settings.kind == FitKind::XnaSample {
         // It looks at nothing but the corners, and is as cheap as the sample's own only without storage.
-        let (light, distance) = prepare(&input, settings)?;
-        let corners = slice_corners(frustum, frustum.origin, frustum.near, distance);
-        let volume = xna::around(corners.iter().flatten().copied(), &light, settings)?;
-        return LightFit::from_volume(frustum.origin, &volume, settings);
+        return xna::of_view(&input, settings);
     }
     let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
     fit_scene(&input, settings, &mut Workspace::new(&mut storage))
@@ -94,6 +90,7 @@ pub(crate) struct Light {
 }
 
 impl Light {
+    #[inline(always)]
     fn new(direction: DVec3, up: DVec3, kind: FitKind) -> Self {
         let axes = match kind {
             FitKind::XnaSample => LightAxes::look_at(direction, up),
@@ -109,6 +106,7 @@ impl Light {
 }
 
 /// One map around a range of view depths. The sphere's is always on the grid, the XNA sample's never.
+#[inline(always)]
 pub(crate) fn fit_slice(
     content: &Content,
     light: &Light,
@@ -117,13 +115,13 @@ pub(crate) fn fit_slice(
     placing: Placing,
     points: &mut [DVec2],
 ) -> Result<Volume, FitError> {
-    match settings.kind {
-        FitKind::XnaSample => xna::volume(content, light, settings, range),
-        FitKind::FrustumAabb => aabb::volume(content, light, settings, range, placing, points),
-        FitKind::Oriented => oriented::volume(content, light, settings, range, placing, points),
-        FitKind::Sphere => sphere::volume(content, light, settings, range),
-        FitKind::Focused => focused::volume(content, light, settings, range, placing, points),
-    }
+    Ok(match settings.kind {
+        FitKind::XnaSample => xna::volume(content, light, settings, range)?,
+        FitKind::FrustumAabb => aabb::volume(content, light, settings, range, placing, points)?,
+        FitKind::Oriented => oriented::volume(content, light, settings, range, placing, points)?,
+        FitKind::Sphere => sphere::volume(content, light, settings, range)?,
+        FitKind::Focused => focused::volume(content, light, settings, range, placing, points)?,
+    })
 }
 
 /// Fits a single frustum by one kind, whatever the settings name.
@@ -137,7 +135,15 @@ pub(crate) fn fit_as(
 }
 
 /// Checks what all fits take; gives the light and the view depth at which shadows end.
+#[inline(always)]
 pub(crate) fn prepare(input: &FitInput, settings: &FitSettings) -> Result<(Light, f32), FitError> {
+    let (direction, up) = checked(input, settings)?;
+    Ok((Light::new(direction, up, settings.kind), settings.max_distance))
+}
+
+/// Checks what all fits take; gives the unit directions of the light's travel and of up.
+#[inline(always)]
+fn checked(input: &FitInput, settings: &FitSettings) -> Result<(DVec3, DVec3), FitError> {
     if input.views.is_empty() {
         return Err(FitError::NoView);
     }
@@ -151,7 +157,7 @@ pub(crate) fn prepare(input: &FitInput, settings: &FitSettings) -> Result<(Light
     if near >= settings.max_distance {
         return Err(FitError::NearNotBelowFar { near, far: settings.max_distance });
     }
-    Ok((Light::new(direction, up, settings.kind), settings.max_distance))
+    Ok((direction, up))
 }
 
 /// Checks the numbers of a fit's settings.

@@ -32,6 +32,7 @@ pub(crate) struct NearPlane {
 ///
 /// `outline` is the convex outline of what is covered, anticlockwise, in the plane of `axes`;
 /// casters that stand no farther beside it than `reach` (in metres) count too.
+#[inline(always)]
 pub(crate) fn place(
     covered: f64,
     axes: &LightAxes,
@@ -40,16 +41,16 @@ pub(crate) fn place(
     settings: &FitSettings,
     reach: f64,
 ) -> NearPlane {
-    let over = Outline::new(axes, outline, reach);
+    let over = || Outline::new(axes, outline, reach);
     let z = match settings.casters {
         CasterPolicy::None | CasterPolicy::DepthClamp => covered,
         CasterPolicy::Extend => covered + f64::from(settings.caster_extension),
         CasterPolicy::SceneBounds => {
             let all = content.casters.boxes.iter().filter(|b| !b.is_empty()).fold(Aabb::EMPTY, |a, b| a.union(*b));
             let all = [all];
-            highest(&over, &Boxes { boxes: &all, ..content.casters }, content.origin, covered)
+            highest(&over(), &Boxes { boxes: &all, ..content.casters }, content.origin, covered)
         }
-        CasterPolicy::List => highest(&over, &content.casters, content.origin, covered),
+        CasterPolicy::List => highest(&over(), &content.casters, content.origin, covered),
     };
     let moved = match settings.casters {
         CasterPolicy::Extend => Constraint::CasterExtension,

@@ -62,6 +62,7 @@ pub fn enclosing_sphere(frustum: &ViewFrustum) -> Result<Sphere, FitError> {
     Ok(Round::new(&corners).map_or_else(|| minimal(&corners), |round| round.sphere(0.0, 1.0)))
 }
 
+#[inline(always)]
 pub(crate) fn volume(
     content: &Content,
     light: &Light,
@@ -74,38 +75,31 @@ pub(crate) fn volume(
     let rounding = grid::ROUNDING * (3.0 * sphere.radius + checks::length(sphere.centre));
     let pad = f64::from(settings.margin) + rounding + 2.0 * SYMMETRY * sphere.radius;
     let extent = DVec3::splat(2.0 * (sphere.radius + pad));
-    let mut volume = Volume {
-        axes,
-        min: centre - extent * 0.5,
-        max: centre + extent * 0.5,
-        light_z: 0.0,
-        depth_range: 0.0,
-        set_by: [Constraint::Sphere; 6],
-        is_empty: false,
-        grid: None,
-    };
-    grid::snap(&mut volume, content.origin, settings);
+    let (min, max) = (centre - extent * 0.5, centre + extent * 0.5);
+    let (grid, min, max) = grid::snapped(&axes, min, max, content.origin, settings);
     // The whole map is swept toward the light, so that turning the camera moves no plane.
-    let outline = [
-        (volume.min.x, volume.min.y),
-        (volume.max.x, volume.min.y),
-        (volume.max.x, volume.max.y),
-        (volume.min.x, volume.max.y),
-    ]
-    .map(|(x, y)| DVec2::new(x, y));
-    let texel = (volume.max - volume.min).truncate() / settings.resolution.as_dvec2();
+    let outline = [(min.x, min.y), (max.x, min.y), (max.x, max.y), (min.x, max.y)].map(|(x, y)| DVec2::new(x, y));
+    let texel = (max - min).truncate() / settings.resolution.as_dvec2();
     let reach = near_plane::filter_reach(texel, settings, rounding);
-    let near = near_plane::place(volume.max.z, &axes, &outline, content, settings, reach);
-    (volume.max.z, volume.set_by[5]) = (near.z, near.set_by.unwrap_or(Constraint::Sphere));
-    volume.light_at_near_plane();
-    Ok(volume)
+    let near = near_plane::place(max.z, &axes, &outline, content, settings, reach);
+    let sphere = Constraint::Sphere;
+    Ok(Volume {
+        axes,
+        min,
+        max: max.with_z(near.z),
+        light_z: near.z,
+        depth_range: near.z - min.z,
+        set_by: [sphere, sphere, sphere, sphere, sphere, near.set_by.unwrap_or(sphere)],
+        is_empty: false,
+        grid: Some(grid),
+    })
 }
 
 /// The minimal sphere around all views' slices.
+#[inline(always)]
 pub(crate) fn around(content: &Content, range: Range) -> Result<Sphere, FitError> {
-    let (near, far) = (range.near, range.far);
     if let ([view], Some(round)) = (content.views, content.round()) {
-        let (near, far) = (near.max(view.near), far.min(view.far));
+        let (near, far) = (range.near.max(view.near), range.far.min(view.far));
         if near >= far {
             return Err(FitError::NearNotBelowFar { near, far });
         }
@@ -113,6 +107,12 @@ pub(crate) fn around(content: &Content, range: Range) -> Result<Sphere, FitError
         let share = |depth: f32| (f64::from(depth) - f64::from(view.near)) * per_metre;
         return Ok(round.sphere(share(near), share(far)));
     }
+    around_any(content, range)
+}
+
+/// The same for views that are several or not symmetric.
+#[inline(never)]
+fn around_any(content: &Content, range: Range) -> Result<Sphere, FitError> {
     let mut corners = [DVec3::ZERO; 8 * MAX_VIEWS];
     let mut count = 0;
     for slice in content.slices(range) {
@@ -124,7 +124,7 @@ pub(crate) fn around(content: &Content, range: Range) -> Result<Sphere, FitError
         count += 1;
     }
     if count == 0 {
-        return Err(FitError::NearNotBelowFar { near, far });
+        return Err(FitError::NearNotBelowFar { near: range.near, far: range.far });
     }
     Ok(minimal(&corners[..8 * count]))
 }
@@ -151,6 +151,7 @@ pub(crate) struct Round {
 
 impl Round {
     /// `None` for frusta that are not symmetric.
+    #[inline(always)]
     pub(crate) fn new(corners: &[DVec3; 8]) -> Option<Self> {
         let centre = |c: &[DVec3]| (c[0] + c[1] + c[2] + c[3]) * 0.25;
         let (near, far) = (centre(&corners[..4]), centre(&corners[4..]));

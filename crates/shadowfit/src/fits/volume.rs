@@ -102,7 +102,7 @@ impl Volume {
         };
         match placing {
             Placing::Tight => (volume.min, volume.max) = with_kernel(volume.min, volume.max, settings),
-            Placing::OnGrid => grid::snap(&mut volume, content.origin, settings),
+            Placing::OnGrid => _ = grid::snap(&mut volume, content.origin, settings),
         }
         let texel = (volume.max - volume.min).truncate() / settings.resolution.as_dvec2();
         let reach = near_plane::filter_reach(texel, settings, rounding.max_element());

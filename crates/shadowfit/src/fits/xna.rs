@@ -23,11 +23,12 @@
 
 use glam::{DVec3, Vec3};
 
-use super::{Content, Light, Range, Volume, fit_as};
+use super::{Content, Light, Range, Volume, checked, fit_as};
 use crate::checks::MIN_LENGTH;
 use crate::light_fit::Constraint;
 use crate::settings::{FitKind, FitSettings};
-use crate::{FitError, LightFit, ViewFrustum};
+use crate::view::slice_corners;
+use crate::{FitError, FitInput, LightFit, ViewFrustum};
 
 /// Fits as the XNA sample does; see the [module](self). `direction` is the light's direction of
 /// travel in world axes. Of the settings the caster policy, the rectangle and the kernel margin
@@ -46,20 +47,33 @@ pub(crate) fn volume(
     settings: &FitSettings,
     range: Range,
 ) -> Result<Volume, FitError> {
-    around(content.corners(range), light, settings)
+    around(content.slices(range), light, settings)
 }
 
-/// The sample's box around corners of a view.
+/// The map around the only view of an input.
+pub(crate) fn of_view(input: &FitInput, settings: &FitSettings) -> Result<LightFit, FitError> {
+    let (direction, up) = checked(input, settings)?;
+    let light = Light::new(direction, up, FitKind::XnaSample);
+    let view = &input.views[0];
+    let corners = slice_corners(view, view.origin, view.near, settings.max_distance);
+    let volume = around(corners.into_iter(), &light, settings)?;
+    LightFit::from_volume(view.origin, &volume, settings)
+}
+
+/// The sample's box around the corners of views' slices.
+#[inline(always)]
 pub(crate) fn around(
-    corners: impl Iterator<Item = DVec3>,
+    slices: impl Iterator<Item = [DVec3; 8]>,
     light: &Light,
     settings: &FitSettings,
 ) -> Result<Volume, FitError> {
     let axes = light.axes;
     let (mut min, mut max) = (DVec3::MAX, DVec3::MIN);
-    for corner in corners {
-        let p = axes.project(corner);
-        (min, max) = (min.min(p), max.max(p));
+    for slice in slices {
+        for corner in slice {
+            let p = axes.project(corner);
+            (min, max) = (min.min(p), max.max(p));
+        }
     }
     let size = max - min;
     if size.min_element() < MIN_LENGTH {
