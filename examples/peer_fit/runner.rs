@@ -23,8 +23,6 @@ struct Known {
     boxes: Vec<Aabb>,
     /// Cones around the normals in the boxes, if known.
     cones: Vec<NormalCone>,
-    /// How much the boxes hide, if known.
-    opacities: Vec<Vec3>,
     tracer: Option<Tracer>,
 }
 
@@ -83,16 +81,16 @@ pub(crate) fn run(
 
 fn know(scene: &Scene, configuration: &Configuration, source: Option<&Source>) -> Result<Known> {
     let triangles = source.map(|source| source.read(scene)).transpose()?;
-    let (boxes, cones, opacities) = match (configuration.receivers, &triangles) {
+    let (boxes, cones) = match (configuration.receivers, &triangles) {
         (Knowledge::Clusters, Some(objects)) => {
             let objects: Vec<&[[Vec3; 3]]> = objects.iter().map(Vec::as_slice).collect();
             let clusters = Clusters::build(&objects, Clusters::DEFAULT_LIMIT).context(scene.name.clone())?;
-            (clusters.boxes().to_vec(), clusters.cones().to_vec(), clusters.opacities().to_vec())
+            (clusters.boxes().to_vec(), clusters.cones().to_vec())
         }
-        _ => (scene.objects.iter().map(outward).collect(), Vec::new(), Vec::new()),
+        _ => (scene.objects.iter().map(outward).collect(), Vec::new()),
     };
     let tracer = triangles.filter(|_| configuration.uses_histogram());
-    Ok(Known { boxes, cones, opacities, tracer: tracer.map(|objects| Tracer::new(objects.into_iter().flatten())) })
+    Ok(Known { boxes, cones, tracer: tracer.map(|objects| Tracer::new(objects.into_iter().flatten())) })
 }
 
 /// A box rounded to f32 so that it loses nothing.
@@ -151,7 +149,6 @@ fn fit_all(frames: &[Prepared], known: &[Known], settings: &CascadeSettings) -> 
                 direction: frame.direction,
                 receivers: Some(boxes),
                 receiver_cones: &known[frame.scene].cones,
-                receiver_opacities: &known[frame.scene].opacities,
                 casters: boxes,
                 histogram: bins.map(|bins| DepthHistogram {
                     near: frame.near,

@@ -11,7 +11,7 @@ mod split;
 
 use alloc::vec::Vec;
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 use crate::checks::{self, MAX_LENGTH};
 use crate::{Aabb, FitError, NormalCone};
@@ -50,7 +50,6 @@ pub struct Clusters {
     ends: Vec<(u32, usize)>,
     boxes: Vec<Aabb>,
     cones: Vec<NormalCone>,
-    opacities: Vec<Vec3>,
 }
 
 impl Clusters {
@@ -109,7 +108,7 @@ impl Clusters {
         Ok(clusters)
     }
 
-    /// Makes boxes, cones and opacities anew for triangles that have moved, keeping the clusters.
+    /// Makes boxes and cones anew for triangles that have moved, keeping the clusters.
     ///
     /// `objects` are those of [`build`](Self::build) in the same order, each with as many triangles
     /// as then; metres, relative to one origin. Parts of triangles go with them, however they are
@@ -146,13 +145,6 @@ impl Clusters {
         &self.cones
     }
 
-    /// How much of what lies behind each cluster it hides, seen along the x, y and z axis, from 0
-    /// for nothing to 1 for all, one for each of the [`boxes`](Self::boxes): the areas of its
-    /// surfaces as seen from there, as if no two lay behind one another, to the box's.
-    pub fn opacities(&self) -> &[Vec3] {
-        &self.opacities
-    }
-
     /// Object and index within the object of each triangle that is in a cluster with all or part of
     /// its area; none if there is no such cluster.
     pub fn triangles(&self, cluster: usize) -> impl ExactSizeIterator<Item = (u32, u32)> {
@@ -168,33 +160,20 @@ impl Clusters {
         }
     }
 
-    /// Makes the boxes, cones and opacities of all clusters.
+    /// Makes the boxes and cones of all clusters.
     fn measure(&mut self, objects: &[&[Triangle]]) {
         self.boxes.clear();
         self.cones.clear();
-        self.opacities.clear();
         for (cluster, &(object, _)) in self.ends.iter().enumerate() {
             let triangles = objects[object as usize];
             let outlines = self.outlines(cluster);
             let bounds = |outline: &Outline| self.corners.bounds(*outline, &triangles[outline.triangle as usize]);
             let aabb = outlines.iter().map(bounds).fold(Aabb::EMPTY, Aabb::union);
             let cone = NormalCone::around(|| outlines.iter().map(|outline| &triangles[outline.triangle as usize]));
-            let areas =
-                |outline: &Outline| self.corners.projected_areas(*outline, &triangles[outline.triangle as usize]);
-            self.opacities.push(opacity(&aabb, outlines.iter().map(areas).sum()));
             self.boxes.push(aabb);
             self.cones.push(cone);
         }
     }
-}
-
-/// Shares of a box's faces upright to each axis that surfaces of the given areas cover, seen along
-/// the axis.
-fn opacity(aabb: &Aabb, areas: DVec3) -> Vec3 {
-    let size = aabb.max.as_dvec3() - aabb.min.as_dvec3();
-    let faces = [size.y * size.z, size.z * size.x, size.x * size.y];
-    let share = |axis: usize| if faces[axis] > 0.0 { (areas[axis] / faces[axis]).min(1.0) as f32 } else { 0.0 };
-    Vec3::new(share(0), share(1), share(2))
 }
 
 /// Refuses positions that are not finite or too far out.

@@ -48,10 +48,6 @@ pub struct FitInput<'a> {
     /// known: those that turn away from the light where the camera sees them are dark without a
     /// map, so [`FitKind::Focused`](crate::FitKind) passes them over.
     pub receiver_cones: &'a [NormalCone],
-    /// How much of what lies behind each receiver it hides, seen along the x, y and z axis: 0 for
-    /// nothing, 1 for all. Or an empty slice when that is not known. Splits that look at the
-    /// boxes guess by it what is visible; coverage never depends on it.
-    pub receiver_opacities: &'a [Vec3],
     /// Boxes around everything that throws shadows, for the caster policies that use them.
     pub casters: Boxes<'a>,
     /// What depths the last frame showed, for
@@ -62,15 +58,7 @@ pub struct FitInput<'a> {
 impl<'a> FitInput<'a> {
     /// Views and light alone, `direction` being the light's direction of travel in world axes.
     pub fn new(views: &'a [ViewFrustum], direction: Vec3) -> Self {
-        Self {
-            views,
-            direction,
-            receivers: None,
-            receiver_cones: &[],
-            receiver_opacities: &[],
-            casters: Boxes::default(),
-            histogram: None,
-        }
+        Self { views, direction, receivers: None, receiver_cones: &[], casters: Boxes::default(), histogram: None }
     }
 }
 

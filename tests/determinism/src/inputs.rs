@@ -20,7 +20,6 @@ pub(crate) struct Scene {
     pub(crate) origin: DVec3,
     pub(crate) receivers: Option<Vec<Aabb>>,
     pub(crate) cones: Vec<NormalCone>,
-    pub(crate) opacities: Vec<Vec3>,
     pub(crate) casters: Vec<Aabb>,
     pub(crate) histogram: Option<Vec<u32>>,
 }
@@ -53,15 +52,13 @@ impl Scene {
         };
         let (receivers, casters, other) = (boxes(24), boxes(24), boxes(3));
         let (mut receivers, mut cones) = (Some(receivers).filter(|_| other.len() < 2), Vec::new());
-        let mut opacities = Vec::new();
         if random.once_in(16) {
             let clusters = clusters(random, centre, size)?;
             (receivers, cones) = (Some(clusters.boxes().to_vec()), clusters.cones().to_vec());
-            opacities = clusters.opacities().to_vec();
         }
         let direction = random.vector() * random.scale(-2, 2);
         let bins = random.once_in(3).then(|| (0..2 * BINS).map(|_| random.below(100)).collect());
-        Ok(Self { camera, views, direction, origin, receivers, cones, opacities, casters, histogram: bins })
+        Ok(Self { camera, views, direction, origin, receivers, cones, casters, histogram: bins })
     }
 
     pub(crate) fn input(&self) -> FitInput<'_> {
@@ -69,7 +66,6 @@ impl Scene {
         FitInput {
             receivers: self.receivers.as_deref().map(boxes),
             receiver_cones: &self.cones,
-            receiver_opacities: &self.opacities,
             casters: boxes(&self.casters),
             histogram: self.histogram.as_deref().map(|bins| DepthHistogram {
                 near: self.camera.near,

@@ -74,12 +74,6 @@ impl Corners {
         }
     }
 
-    /// Areas of a piece as seen along each axis, in m².
-    pub(super) fn projected_areas(&self, outline: Outline, triangle: &Triangle) -> DVec3 {
-        let share = if outline.count == 0 { 1.0 } else { share(self.places(outline)) };
-        area(triangle).abs() * share
-    }
-
     /// The least box in f32 around a piece.
     pub(super) fn bounds(&self, outline: Outline, triangle: &Triangle) -> Aabb {
         if outline.count == 0 {

@@ -21,7 +21,6 @@ pub(crate) struct Content<'a> {
     /// Least and greatest view depth of each receiver, view by view; the least is above the
     /// greatest where the box is out of view.
     depths: &'a [DVec2],
-    opacities: &'a [Vec3],
     round: OnceCell<Option<Round>>,
 }
 
@@ -47,9 +46,6 @@ impl<'a> Content<'a> {
         for boxes in input.receivers.iter().chain([&input.casters]) {
             check(boxes)?;
         }
-        for opacity in input.receiver_opacities.iter().flat_map(Vec3::to_array) {
-            checks::within("an opacity of a receiver", f64::from(opacity), 0.0, 1.0)?;
-        }
         let (depths, points) = workspace.storage.split_at_mut(needed);
         if let Some(receivers) = &input.receivers {
             let offset = receivers.origin - origin;
@@ -73,7 +69,6 @@ impl<'a> Content<'a> {
             receivers: input.receivers,
             casters: input.casters,
             depths,
-            opacities: input.receiver_opacities,
             round: OnceCell::new(),
         };
         Ok((content, points))
@@ -143,16 +138,14 @@ impl<'a> Content<'a> {
         Ok(())
     }
 
-    /// Gives each receiver's box that reaches into one of the views, with its opacity if known.
-    pub(crate) fn each_receiver(&self, view: usize, mut visit: impl FnMut(DVec3, DVec3, Option<Vec3>)) {
+    /// Gives each receiver's box that reaches into one of the views.
+    pub(crate) fn each_receiver(&self, view: usize, mut visit: impl FnMut(DVec3, DVec3)) {
         let Some(receivers) = &self.receivers else { return };
         let offset = receivers.origin - self.origin;
         let depths = self.depths.chunks(receivers.boxes.len().max(1)).nth(view).unwrap_or_default();
-        for (i, (aabb, depths)) in receivers.boxes.iter().zip(depths).enumerate() {
-            if depths.x <= depths.y {
-                let (min, max) = moved(aabb, offset);
-                visit(min, max, self.opacities.get(i).copied());
-            }
+        for (aabb, _) in receivers.boxes.iter().zip(depths).filter(|(_, depths)| depths.x <= depths.y) {
+            let (min, max) = moved(aabb, offset);
+            visit(min, max);
         }
     }
 

@@ -188,11 +188,11 @@ impl Chooser<'_, '_> {
     fn weights(&self, bins: &Bins) -> Weights {
         match (self.settings.splits, &self.histogram) {
             (SplitScheme::FromHistogram, Some(histogram)) if !histogram.is_empty() => {
-                let (seen, guess) = (histogram.weights(bins), visible::weights(self.content, self.light.axes.z, bins));
+                let (seen, guess) = (histogram.weights(bins), visible::weights(self.content, bins));
                 let share = if self.content.receivers.is_some() { GUESS } else { BLIND_GUESS };
                 core::array::from_fn(|i| core::array::from_fn(|c| seen[i][c] * (1.0 - share) + guess[i][c] * share))
             }
-            _ => visible::weights(self.content, self.light.axes.z, bins),
+            _ => visible::weights(self.content, bins),
         }
     }
 }

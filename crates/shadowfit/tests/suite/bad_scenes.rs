@@ -18,7 +18,6 @@ struct Inputs {
     origins: [DVec3; 2],
     receivers: Vec<Aabb>,
     cones: Vec<NormalCone>,
-    opacities: Vec<Vec3>,
     casters: Vec<Aabb>,
     near: f32,
     far: f32,
@@ -37,7 +36,6 @@ fn good() -> Inputs {
         origins: [DVec3::ZERO; 2],
         receivers: vec![around(Vec3::new(3.0, -4.0, -8.0), 5.0), around(Vec3::new(12.0, -16.0, -32.0), 9.0)],
         cones: vec![NormalCone::ALL; 2],
-        opacities: vec![Vec3::new(0.0, 0.5, 1.0); 2],
         casters: vec![around(Vec3::new(1.0, 9.0, -3.0), 3.0), around(Vec3::new(3.0, 30.0, -8.0), 2.0)],
         near: 0.5,
         far: 60.0,
@@ -54,7 +52,6 @@ impl Inputs {
         let input = FitInput {
             receivers: Some(Boxes { origin: self.origins[0], boxes: &self.receivers }),
             receiver_cones: &self.cones,
-            receiver_opacities: &self.opacities,
             casters: Boxes { origin: self.origins[1], boxes: &self.casters },
             histogram: Some(histogram),
             ..FitInput::new(&self.views, self.direction)
@@ -100,7 +97,7 @@ fn is_finite(fit: &LightFit) -> bool {
 type Setter = (&'static str, fn(&mut Inputs, f64));
 
 /// Every float but those of the camera, which have tests of their own.
-const SETTERS: [Setter; 43] = [
+const SETTERS: [Setter; 42] = [
     ("view origin x", |i, v| i.views[0].origin.x = v),
     ("view origin y", |i, v| i.views[1].origin.y = v),
     ("near corner", |i, v| i.views[0].corners[1].x = v as f32),
@@ -121,7 +118,6 @@ const SETTERS: [Setter; 43] = [
     ("caster min", |i, v| i.casters[0].min.z = v as f32),
     ("caster max", |i, v| i.casters[1].max.x = v as f32),
     ("cone axis", |i, v| i.cones[0].axis.x = v as f32),
-    ("opacity", |i, v| i.opacities[1].y = v as f32),
     ("cone angle", |i, v| i.cones[0].cos_half_angle = v as f32),
     ("histogram near", |i, v| i.near = v as f32),
     ("histogram far", |i, v| i.far = v as f32),
@@ -328,7 +324,6 @@ fn the_required_workspace_is_enough_for_boxes_on_a_circle() {
                     receivers: boxes.clone(),
                     casters: boxes.clone(),
                     cones: Vec::new(),
-                    opacities: Vec::new(),
                     settings: CascadeSettings {
                         fit: FitSettings {
                             kind: FitKind::Focused,

@@ -251,32 +251,6 @@ fn cuts_from_boxes_are_finer_where_boxes_are() {
     }
 }
 
-/// A wall over the whole picture before a row of boxes: where the maps go depends on what the wall hides.
-#[test]
-fn cuts_from_boxes_leave_out_what_opaque_boxes_hide() {
-    let views = [ahead()];
-    let across = |near: f32, far: f32| Aabb::new(Vec3::new(-90.0, -90.0, -far), Vec3::new(90.0, 90.0, -near));
-    let boxes: Vec<Aabb> = core::iter::once(across(5.0, 6.0))
-        .chain((2..9).map(|i| across(i as f32 * 10.0, i as f32 * 10.0 + 2.0)))
-        .collect();
-    // Seen from +z; the first light shines on that side, the other on the back.
-    let (on_front, on_back) = (Vec3::new(0.3, -0.8, -0.4), Vec3::new(0.3, -0.8, 0.4));
-    let second_map_at = |wall: f32, direction| {
-        let mut opacities = vec![Vec3::ONE; boxes.len()];
-        opacities[0] = Vec3::splat(wall);
-        let receivers = Some(Boxes { origin: DVec3::ZERO, boxes: &boxes });
-        let input = FitInput { receivers, receiver_opacities: &opacities, ..FitInput::new(&views, direction) };
-        fit_once(&input, &settings(FitKind::Focused, SplitScheme::FromBoxes, 2))[1].near
-    };
-    let (brick, lattice, glass) =
-        (second_map_at(1.0, on_front), second_map_at(0.5, on_front), second_map_at(0.0, on_front));
-    assert!(brick <= 6.5, "all at the wall: {brick}");
-    // Cuts stand on bins of 5% of the depth.
-    assert!(lattice > 10.0 && lattice < 21.0, "half at the wall, half behind the cut: {lattice}");
-    assert!(glass > 21.0 && glass < 23.0, "all at the first box, and what is behind it is hidden: {glass}");
-    assert!(second_map_at(1.0, on_back).is_finite(), "dark all over: any cuts will do");
-}
-
 #[test]
 fn no_receivers_give_empty_maps_and_no_error() {
     let views = [ahead()];

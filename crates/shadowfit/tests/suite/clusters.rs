@@ -46,8 +46,7 @@ fn bowl(n: usize) -> Vec<Triangle> {
 fn bits(clusters: &Clusters) -> Vec<u32> {
     let boxes = clusters.boxes().iter().flat_map(|b| [b.min.to_array(), b.max.to_array()]).flatten();
     let cones = clusters.cones().iter().flat_map(|c| c.axis.extend(c.cos_half_angle).to_array());
-    let opacities = clusters.opacities().iter().flat_map(Vec3::to_array);
-    boxes.chain(cones).chain(opacities).map(f32::to_bits).collect()
+    boxes.chain(cones).map(f32::to_bits).collect()
 }
 
 /// Cubic metres in all boxes.
@@ -289,25 +288,6 @@ fn ground_lit_from_below_faces_away_from_the_light() {
         assert!(!NormalCone { cos_half_angle: -bad, ..cone }.faces_away(&bounds, above, down));
     }
     assert!(!cone.faces_away(&Aabb::EMPTY, above, down));
-}
-
-#[test]
-fn a_cluster_hides_what_its_surfaces_cover_of_its_box() {
-    let at = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
-    let wall = [[at(0., 0., 0.), at(4., 0., 0.), at(4., 2., 0.)], [at(0., 0., 0.), at(4., 2., 0.), at(0., 2., 0.)]];
-    let one = |triangles: &[Triangle]| Clusters::build(&[triangles], 1).unwrap().opacities().to_vec();
-    assert_eq!(one(&wall), [Vec3::Z], "a full wall hides all behind it, and edge-on nothing");
-    assert_eq!(one(&wall[..1]), [Vec3::Z * 0.5], "half of it half");
-    let leaning = wall.map(|triangle| triangle.map(|p| p.with_z(p.y * 0.5)));
-    assert_eq!(one(&leaning), [at(0.0, 1.0, 1.0)], "leaning, from above too");
-    let twice: Vec<Triangle> = wall.iter().chain(&wall).copied().collect();
-    assert_eq!(one(&twice), [Vec3::Z], "two layers are no more than all");
-    // Cut into parts, each has its own share, and moved they follow.
-    let mut parts = Clusters::build(&[&bowl(12)], 40).unwrap();
-    assert!(parts.opacities().iter().all(|o| o.y > 0.999 && o.x < 1.0001), "from above a bowl has no gaps");
-    let flat: Vec<Triangle> = bowl(12).iter().map(|triangle| triangle.map(|p| p.with_y(0.0))).collect();
-    parts.refit(&[&flat]).unwrap();
-    assert!(parts.opacities().iter().all(|o| o.x == 0.0 && o.z == 0.0 && o.y > 0.999));
 }
 
 #[test]

@@ -57,8 +57,8 @@ fn oriented(frustum: &ViewFrustum, direction: Vec3, rectangle: RectangleKind) ->
     shadowfit::fit(frustum, direction, &settings).unwrap()
 }
 
-/// A fit may exceed the least by its room for rounding, 2⁻²² of the reach on each side; a narrow
-/// view seen end-on is 1e-2 of its reach wide, so that this is 5e-5 of its width.
+/// A fit may exceed the least by its room for rounding, 28 · 2⁻²⁴ of the reach on each side; a narrow
+/// view seen end-on is 1e-2 of its reach wide, so that this is 3e-4 of its width.
 const TOLERANCE: f64 = 1e-3;
 
 fn assert_least_rectangles(frustum: &ViewFrustum, direction: Vec3) {
