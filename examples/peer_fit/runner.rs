@@ -156,6 +156,7 @@ fn fit_all(frames: &[Prepared], known: &[Known], settings: &CascadeSettings) -> 
                     bins,
                     classes: histogram::CLASSES,
                 }),
+                ..FitInput::new(&[], frame.direction)
             };
             let start = Instant::now();
             let cascades = fitter.fit(&input, settings, &mut Workspace::new(&mut storage))?;

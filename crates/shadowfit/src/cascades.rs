@@ -13,7 +13,7 @@ use crate::fits::{self, Content, Light, Placing, Range, Volume};
 use crate::motion::Motion;
 use crate::settings::{CascadeSettings, FitKind, FitSettings, MAX_CASCADES, Stabilise};
 use crate::splits::{Chooser, Cuts};
-use crate::{FitError, FitInput, GridAnchor, LightFit, ViewFrustum, Workspace, checks, grid};
+use crate::{DepthBounds, FitError, FitInput, GridAnchor, LightFit, ViewFrustum, Workspace, checks, grid};
 use hold::HeldMap;
 
 /// One of several maps.
@@ -138,8 +138,7 @@ impl CascadeFitter {
         let before = if is_continued { Some(&*self) } else { None };
         let (content, points) = Content::new(input, workspace)?;
         let range = whole_range(input, distance);
-        let chooser =
-            Chooser { content: &content, light, fit: settings.fit, settings, histogram: input.histogram, range };
+        let chooser = Chooser { content: &content, light, settings, input, range };
         let cuts = choose_cuts(before.and_then(|before| before.cuts), &chooser)?;
         cascades.count = settings.count as usize;
         let mut held = None;
@@ -163,6 +162,30 @@ impl CascadeFitter {
     }
 }
 
+/// The fewest maps that do: the least count, up to that of the settings, with which the best cuts leave
+/// a 95% quantile of pixels per texel at most `waste` times that of the settings' count.
+///
+/// What is visible is told by the histogram where the settings' splits use one, else by the boxes;
+/// other splits are taken for [`SplitScheme::FromBoxes`](crate::SplitScheme::FromBoxes) here. Costs
+/// about as much as choosing the cuts of one frame: ask when a level begins, or now and then, and
+/// set [`CascadeSettings::count`] by it.
+///
+/// # Errors
+///
+/// As [`CascadeFitter::fit`], and [`FitError::OutOfRange`] for a waste outside 1..=100.
+pub fn fewest_maps(
+    input: &FitInput,
+    settings: &CascadeSettings,
+    waste: f32,
+    workspace: &mut Workspace,
+) -> Result<u32, FitError> {
+    let waste = checks::within("the waste of fewer maps", f64::from(waste), 1.0, 100.0)?;
+    let (light, distance) = check(input, settings)?;
+    let (content, _) = Content::new(input, workspace)?;
+    let chooser = Chooser { content: &content, light, settings, input, range: whole_range(input, distance) };
+    Ok(chooser.fewest(waste))
+}
+
 /// This frame's cuts: held ones while they serve.
 fn choose_cuts(held: Option<HeldCuts>, chooser: &Chooser) -> Result<HeldCuts, FitError> {
     let is_held = chooser.settings.stabilise != Stabilise::Off;
@@ -176,7 +199,7 @@ fn choose_cuts(held: Option<HeldCuts>, chooser: &Chooser) -> Result<HeldCuts, Fi
             return Ok(HeldCuts { age: if is_young { age } else { 0 }, ..held });
         }
     }
-    Ok(HeldCuts { cuts: chooser.choose(spread)?, spread, age: 0 })
+    Ok(HeldCuts { cuts: chooser.choose(spread)?, spread: chooser.bounded(spread), age: 0 })
 }
 
 /// What all maps of a frame are fitted with.
@@ -346,6 +369,14 @@ fn check(input: &FitInput, settings: &CascadeSettings) -> Result<(Light, f32), F
     checks::within("the hold's margin", f64::from(hold.margin), 0.0, 10.0)?;
     checks::within("the hold's growth", f64::from(hold.growth), 1.0, 100.0)?;
     checks::within("the hold's waste", f64::from(hold.waste), 1.0, 100.0)?;
+    if let Some(DepthBounds { near, far }) = input.depth_bounds {
+        for bound in [near, far] {
+            checks::finite("a depth bound", f64::from(bound))?;
+        }
+        if near > far {
+            return Err(FitError::NearNotBelowFar { near, far });
+        }
+    }
     let prepared = fits::prepare(input, &settings.fit)?;
     for own in (0..settings.count as usize).filter_map(|map| own_settings(settings, map)) {
         fits::check(&own)?;

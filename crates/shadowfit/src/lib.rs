@@ -98,7 +98,7 @@ mod view;
 pub use bias::Bias;
 pub use bounds::{Aabb, Boxes};
 pub use camera::PerspectiveCamera;
-pub use cascades::{CascadeFitter, CascadeMap, Cascades};
+pub use cascades::{CascadeFitter, CascadeMap, Cascades, fewest_maps};
 pub use caster::{Bounds, CasterPlanes, CasterVolume, OrientedBox, Sphere, Sweep, cull};
 #[cfg(feature = "alloc")]
 pub use clusters::Clusters;
@@ -107,7 +107,7 @@ pub use error::FitError;
 pub use fits::{fit, fit_scene};
 pub use frustum::ViewFrustum;
 pub use glam;
-pub use input::{FitInput, Workspace};
+pub use input::{DepthBounds, FitInput, Workspace};
 pub use light_fit::{Constraint, LightFit, WorldMatrices};
 pub use light_steps::{LightStep, LightStepSettings, LightSteps};
 pub use normal_cone::NormalCone;

@@ -132,7 +132,8 @@ pub const MAX_CASCADES: usize = 8;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SplitScheme {
-    /// Ranges of equal length.
+    /// Ranges of equal length, over what is in view or between the
+    /// [bounds of what is visible](crate::FitInput::depth_bounds) if those are known; so are the next two.
     Uniform,
     /// Ranges of equal ratio, as perspective would have it. Spends most maps close to the eye.
     Logarithmic,

@@ -23,7 +23,7 @@ pub(super) struct Sizes {
 
 impl Sizes {
     pub(super) fn new(chooser: &Chooser, bins: &Bins) -> Self {
-        match chooser.fit.kind {
+        match chooser.settings.fit.kind {
             FitKind::Sphere => Self::of_spheres(chooser, bins),
             _ => Self::of_rectangles(chooser, bins),
         }
@@ -64,7 +64,7 @@ impl Sizes {
             let range = Range { near: bins.start(bin) as f32, far: bins.start(bin + 1) as f32 };
             dop.collect(chooser, &directions, range);
         }
-        let kind = rectangle_kind(&chooser.fit);
+        let kind = rectangle_kind(&chooser.settings.fit);
         let is_snapped = chooser.settings.stabilise == Stabilise::Snap;
         let mut run = Dop::EMPTY;
         Self::fill(|first, end| {
@@ -119,7 +119,7 @@ impl Dop {
     /// Collects what a map of a range would hold.
     fn collect(&mut self, chooser: &Chooser, directions: &Directions, range: Range) {
         let content = chooser.content;
-        let Ok(()) = if chooser.fit.kind == FitKind::Focused && content.receivers.is_some() {
+        let Ok(()) = if chooser.settings.fit.kind == FitKind::Focused && content.receivers.is_some() {
             content.receivers_in(range, |_, slice, min, max| {
                 if self.holds(directions, min, max) {
                     return Ok(());

@@ -10,8 +10,8 @@ mod visible;
 
 use crate::checks;
 use crate::fits::{Content, Light, Range};
-use crate::settings::{CascadeSettings, FitKind, FitSettings, SplitScheme, Stabilise};
-use crate::{FitError, MAX_CASCADES};
+use crate::settings::{CascadeSettings, FitKind, SplitScheme, Stabilise};
+use crate::{FitError, FitInput, MAX_CASCADES};
 
 use extents::Sizes;
 pub use histogram::{DepthHistogram, needed_texel};
@@ -87,9 +87,8 @@ pub(crate) fn practical(near: f64, far: f64, count: usize, lambda: f64) -> Cuts 
 pub(crate) struct Chooser<'a, 'b> {
     pub(crate) content: &'a Content<'b>,
     pub(crate) light: Light,
-    pub(crate) fit: FitSettings,
     pub(crate) settings: &'a CascadeSettings,
-    pub(crate) histogram: Option<DepthHistogram<'b>>,
+    pub(crate) input: &'a FitInput<'b>,
     /// What is shadowed at all.
     pub(crate) range: Range,
 }
@@ -107,12 +106,21 @@ impl Chooser<'_, '_> {
         if near < far { (near, far) } else { (far * 0.5, far) }
     }
 
+    /// The same within the bounds of what is visible, if they are known and the scheme does not
+    /// look at the content by itself.
+    pub(crate) fn bounded(&self, (near, far): (f64, f64)) -> (f64, f64) {
+        let is_fixed = !matches!(self.settings.splits, SplitScheme::FromBoxes | SplitScheme::FromHistogram);
+        let Some(bounds) = self.input.depth_bounds.filter(|_| is_fixed) else { return (near, far) };
+        let within = |bound: f32| f64::from(bound).max(near).min(far);
+        (within(bounds.near), within(bounds.far))
+    }
+
     /// View depth to which the last map reaches: that of what is shadowed where fits clip the
     /// receivers to their slice, else that of the receivers. If it is to be held, no turn of the
     /// camera may exceed it, and there is room for some movement.
     fn end(&self, spread: (f64, f64)) -> f64 {
         let far = f64::from(self.range.far);
-        if matches!(self.fit.kind, FitKind::Focused | FitKind::XnaSample) {
+        if matches!(self.settings.fit.kind, FitKind::Focused | FitKind::XnaSample) {
             return far;
         }
         let is_held = self.settings.stabilise != Stabilise::Off;
@@ -123,7 +131,7 @@ impl Chooser<'_, '_> {
     /// The cuts by the settings' scheme over the given depths.
     pub(crate) fn choose(&self, spread: (f64, f64)) -> Result<Cuts, FitError> {
         let count = self.settings.count as usize;
-        let (near, far) = spread;
+        let (near, far) = self.bounded(spread);
         let cuts = match self.settings.splits {
             SplitScheme::Uniform => practical(near, far, count, 0.0),
             SplitScheme::Logarithmic => practical(near, far, count, 1.0),
@@ -173,7 +181,10 @@ impl Chooser<'_, '_> {
         let count = self.settings.count as usize;
         let waste = f64::from(self.settings.hold.waste);
         if !matches!(self.settings.splits, SplitScheme::FromBoxes | SplitScheme::FromHistogram) {
-            return now.0 >= held.0 / waste && now.0 <= held.0 * waste;
+            let is_near = |now: f64, held: f64| now >= held / waste && now <= held * waste;
+            let bounded = self.bounded(now);
+            // Without bounds the far end is what the cuts have to reach.
+            return is_near(bounded.0, held.0) && (bounded == now || is_near(bounded.1, held.1));
         }
         let bins = Bins::new(now.0, now.1);
         let (weights, sizes) = (self.weights(&bins), Sizes::new(self, &bins));
@@ -185,8 +196,16 @@ impl Chooser<'_, '_> {
         quantile(&bins, &weights, &sizes, &chosen[..=count]) <= best.quality + libm::log2(waste)
     }
 
+    /// The fewest maps whose best cuts reach a bound that is so many times that of all.
+    pub(crate) fn fewest(&self, waste: f64) -> u32 {
+        let (near, far) = self.spread();
+        let bins = Bins::new(near, far);
+        optimise::fewest(&bins, &self.weights(&bins), &Sizes::new(self, &bins), self.settings.count as usize, waste)
+            as u32
+    }
+
     fn weights(&self, bins: &Bins) -> Weights {
-        match (self.settings.splits, &self.histogram) {
+        match (self.settings.splits, &self.input.histogram) {
             (SplitScheme::FromHistogram, Some(histogram)) if !histogram.is_empty() => {
                 let (seen, guess) = (histogram.weights(bins), visible::weights(self.content, bins));
                 let share = if self.content.receivers.is_some() { GUESS } else { BLIND_GUESS };

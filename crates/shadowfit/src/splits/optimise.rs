@@ -50,6 +50,13 @@ pub(super) fn quantile(bins: &Bins, weights: &Weights, sizes: &Sizes, cuts: &[us
     Search::new(bins, weights, sizes).quantile(cuts)
 }
 
+/// The fewest maps whose best cuts reach a bound `waste` times that of `count` maps.
+pub(super) fn fewest(bins: &Bins, weights: &Weights, sizes: &Sizes, count: usize, waste: f64) -> usize {
+    let bound = least_quantile(bins, weights, sizes, count).quality + libm::log2(waste);
+    let search = Search::new(bins, weights, sizes);
+    (1..count).find(|fewer| search.is_feasible(*fewer, bound)).unwrap_or(count)
+}
+
 /// The least number above which a condition holds, between one where it may not and one where it
 /// does.
 fn bisect(low: f64, high: f64, holds: impl Fn(f64) -> bool) -> f64 {

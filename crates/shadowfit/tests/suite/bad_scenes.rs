@@ -4,8 +4,9 @@
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Mat4, UVec2, Vec3};
 use shadowfit::{
-    Aabb, Boxes, CascadeFitter, CascadeSettings, Cascades, CasterPolicy, DepthHistogram, FitError, FitInput, FitKind,
-    FitSettings, LightFit, MapOverride, NormalCone, RectangleKind, SplitScheme, Stabilise, ViewFrustum, Workspace,
+    Aabb, Boxes, CascadeFitter, CascadeSettings, Cascades, CasterPolicy, DepthBounds, DepthHistogram, FitError,
+    FitInput, FitKind, FitSettings, LightFit, MapOverride, NormalCone, RectangleKind, SplitScheme, Stabilise,
+    ViewFrustum, Workspace,
 };
 
 use crate::support::{DIRECTION, camera, cases};
@@ -21,6 +22,7 @@ struct Inputs {
     casters: Vec<Aabb>,
     near: f32,
     far: f32,
+    bounds: DepthBounds,
     bins: Vec<u32>,
     classes: usize,
     settings: CascadeSettings,
@@ -39,6 +41,7 @@ fn good() -> Inputs {
         casters: vec![around(Vec3::new(1.0, 9.0, -3.0), 3.0), around(Vec3::new(3.0, 30.0, -8.0), 2.0)],
         near: 0.5,
         far: 60.0,
+        bounds: DepthBounds { near: 1.0, far: 50.0 },
         bins: vec![1, 5, 9, 2, 0, 3],
         classes: 2,
         settings: CascadeSettings { count: 3, ..CascadeSettings::default() },
@@ -54,6 +57,7 @@ impl Inputs {
             receiver_cones: &self.cones,
             casters: Boxes { origin: self.origins[1], boxes: &self.casters },
             histogram: Some(histogram),
+            depth_bounds: Some(self.bounds),
             ..FitInput::new(&self.views, self.direction)
         };
         let mut storage = vec![DVec2::NAN; self.storage];
@@ -97,7 +101,7 @@ fn is_finite(fit: &LightFit) -> bool {
 type Setter = (&'static str, fn(&mut Inputs, f64));
 
 /// Every float but those of the camera, which have tests of their own.
-const SETTERS: [Setter; 42] = [
+const SETTERS: [Setter; 44] = [
     ("view origin x", |i, v| i.views[0].origin.x = v),
     ("view origin y", |i, v| i.views[1].origin.y = v),
     ("near corner", |i, v| i.views[0].corners[1].x = v as f32),
@@ -119,6 +123,8 @@ const SETTERS: [Setter; 42] = [
     ("caster max", |i, v| i.casters[1].max.x = v as f32),
     ("cone axis", |i, v| i.cones[0].axis.x = v as f32),
     ("cone angle", |i, v| i.cones[0].cos_half_angle = v as f32),
+    ("depth bound near", |i, v| i.bounds.near = v as f32),
+    ("depth bound far", |i, v| i.bounds.far = v as f32),
     ("histogram near", |i, v| i.near = v as f32),
     ("histogram far", |i, v| i.far = v as f32),
     ("histogram bin", |i, v| i.bins.iter_mut().take(1).for_each(|bin| *bin = v as u32)),

@@ -3,8 +3,9 @@
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::{
-    Aabb, Boxes, CascadeFitter, CascadeMap, CascadeSettings, Cascades, CasterPolicy, Constraint, DepthHistogram,
-    FitInput, FitKind, FitSettings, PerspectiveCamera, RectangleKind, SplitScheme, Stabilise, ViewFrustum, Workspace,
+    Aabb, Boxes, CascadeFitter, CascadeMap, CascadeSettings, Cascades, CasterPolicy, Constraint, DepthBounds,
+    DepthHistogram, FitInput, FitKind, FitSettings, PerspectiveCamera, RectangleKind, SplitScheme, Stabilise,
+    ViewFrustum, Workspace,
 };
 
 use crate::scenes::{COVERING, any_cascades, any_light, any_view};
@@ -150,6 +151,13 @@ proptest! {
     }
 }
 
+/// The quantile with another number of maps.
+fn error_of(input: &FitInput, settings: &CascadeSettings, count: u32) -> f64 {
+    let mut settings = *settings;
+    settings.count = count;
+    quantile(&fit_once(input, &settings), &input.views[0])
+}
+
 /// 95% quantile of the wider texel side per view depth, over depths at even steps of their log.
 fn quantile(maps: &[CascadeMap], view: &ViewFrustum) -> f64 {
     let (near, far) = (f64::from(view.near).max(f64::from(view.far) / 65_536.0), f64::from(view.far));
@@ -248,6 +256,86 @@ fn cuts_from_boxes_are_finer_where_boxes_are() {
         let worst = |splits| texel(splits, 2.5).max(texel(splits, 21.0));
         let (chosen, logarithmic) = (worst(SplitScheme::FromBoxes), worst(SplitScheme::Logarithmic));
         assert!(chosen <= logarithmic * 1.01, "{kind:?}: {chosen} and {logarithmic}");
+    }
+}
+
+/// Visible from 2 to 20 m only, in a view from 0.1 to 100 m.
+#[test]
+fn fixed_cuts_are_spread_between_the_depth_bounds_and_lose_nothing_outside() {
+    let views = [ahead()];
+    let bounds =
+        |near, far| FitInput { depth_bounds: Some(DepthBounds { near, far }), ..FitInput::new(&views, DIRECTION) };
+    for kind in COVERING {
+        let cuts = |splits, near, far| {
+            let maps = fit_once(&bounds(near, far), &settings(kind, splits, 3));
+            assert!(maps[0].near <= 0.1 && maps[0].covered_near <= 0.1, "{kind:?}");
+            let last = maps.iter().rfind(|map| map.near < map.far).unwrap();
+            assert!(last.far >= 100.0 && !last.fit.is_empty, "{kind:?}");
+            [maps[1].near, maps[2].near]
+        };
+        let is_near = |[a, b]: [f32; 2], [c, d]: [f32; 2]| (a / c - 1.0).abs() < 1e-5 && (b / d - 1.0).abs() < 1e-5;
+        let third = 10.0_f32.cbrt();
+        assert!(is_near(cuts(SplitScheme::Logarithmic, 2.0, 20.0), [2.0 * third, 2.0 * third * third]), "{kind:?}");
+        assert!(is_near(cuts(SplitScheme::Uniform, 2.0, 20.0), [8.0, 14.0]), "{kind:?}");
+        // Bounds beyond the view are the view's own.
+        let whole = fit_once(&FitInput::new(&views, DIRECTION), &settings(kind, SplitScheme::Logarithmic, 3));
+        assert!(is_near(cuts(SplitScheme::Logarithmic, 0.0, 1e9), [whole[1].near, whole[2].near]), "{kind:?}");
+        // A wall that is one depth all over.
+        let flat = fit_once(&bounds(5.0, 5.0), &settings(kind, SplitScheme::Logarithmic, 3));
+        assert!(flat.iter().any(|map| map.near <= 4.9 && map.far > 4.9) && flat.iter().any(|map| map.far >= 100.0));
+    }
+    for (near, far) in [(f32::NAN, 5.0), (1.0, f32::INFINITY), (6.0, 5.0)] {
+        let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+        let result = CascadeFitter::new().fit(
+            &bounds(near, far),
+            &CascadeSettings::default(),
+            &mut Workspace::new(&mut storage),
+        );
+        assert!(result.is_err(), "{near} {far}");
+    }
+}
+
+/// Held cuts are made anew when the bounds have left them, and not before.
+#[test]
+fn held_cuts_follow_depth_bounds_that_leave_them() {
+    let views = [ahead()];
+    let settings =
+        CascadeSettings { stabilise: Stabilise::Snap, ..settings(FitKind::Sphere, SplitScheme::Logarithmic, 3) };
+    let mut fitter = CascadeFitter::new();
+    let mut cut = |near, far| {
+        let input = FitInput { depth_bounds: Some(DepthBounds { near, far }), ..FitInput::new(&views, DIRECTION) };
+        // Held cuts are compared every few frames.
+        (0..16).map(|_| fit_with(&mut fitter, &input, &settings)[1].near).last().unwrap()
+    };
+    let first = cut(2.0, 20.0);
+    assert_eq!(cut(2.2, 22.0), first);
+    assert!(cut(2.2, 90.0) > first * 1.2, "the far end has left them");
+    assert!(cut(0.3, 90.0) < first, "the near end has left them");
+}
+
+proptest! {
+    #![proptest_config(cases(200))]
+
+    /// Nothing is known of receivers, so every octave of depth counts alike, as in [`quantile`].
+    #[test]
+    fn the_fewest_maps_waste_no_more_than_they_may(
+        camera in any_camera(), direction in any_direction(), count in 1..=6_u32, waste in 1.0_f32..8.0,
+        kind in prop::sample::select(COVERING.to_vec()),
+    ) {
+        let views = [camera.frustum().unwrap()];
+        let input = FitInput::new(&views, direction);
+        let plain = settings(kind, SplitScheme::FromBoxes, count);
+        let settings = CascadeSettings { fit: plain.fit.with_rectangle(RectangleKind::MinimumSquare), ..plain };
+        let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+        let mut fewest = |waste| shadowfit::fewest_maps(&input, &settings, waste, &mut Workspace::new(&mut storage)).unwrap();
+        let found = fewest(waste);
+        prop_assert!((1..=count).contains(&found) && fewest(1.0) >= found && fewest(100.0) <= found);
+        // Bins and directions are as coarse as for the cuts, in both.
+        let bin = f64::from(camera.far / camera.near).powf(1.0 / 64.0);
+        prop_assert!(error_of(&input, &settings, found) <= error_of(&input, &settings, count) * f64::from(waste) * bin * bin * 1.1, "{found} of {count}");
+        if found > 1 {
+            prop_assert!(error_of(&input, &settings, found - 1) * bin * bin * 1.1 >= error_of(&input, &settings, count) * f64::from(waste), "{} would do", found - 1);
+        }
     }
 }
 
