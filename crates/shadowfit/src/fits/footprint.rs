@@ -86,12 +86,21 @@ impl<'a> Content<'a> {
 
     /// Least and greatest view depth of what the views see of the receivers, `None` when nothing.
     pub(crate) fn depth_range(&self) -> Option<(f64, f64)> {
+        let receivers = self.receivers.as_ref()?;
+        let offset = receivers.origin - self.origin;
         let mut range = OUT_OF_VIEW;
-        let count = self.receivers.map_or(0, |receivers| receivers.boxes.len()).max(1);
-        for (view, depths) in self.views.iter().zip(self.depths.chunks(count)) {
-            for depths in depths.iter().filter(|depths| depths.x <= depths.y) {
-                range.x = range.x.min(depths.x.max(f64::from(view.near)));
-                range.y = range.y.max(depths.y.min(f64::from(view.far)));
+        for (view, depths) in self.views().zip(self.depths.chunks(receivers.boxes.len().max(1))) {
+            let whole = view.slice(view.near, view.far);
+            for (aabb, depths) in receivers.boxes.iter().zip(depths).filter(|(_, depths)| depths.x <= depths.y) {
+                range.y = range.y.max(depths.y.min(view.far));
+                // The part of a box that is in view may begin much farther out than the box.
+                if depths.x < range.x {
+                    let (min, max) = moved(aabb, offset);
+                    let Ok(()) = whole.clip(min, max, &mut |p| {
+                        range.x = range.x.min(view.depth.distance(p).max(view.near));
+                        Ok::<(), core::convert::Infallible>(())
+                    });
+                }
             }
         }
         if range.x < range.y { Some((range.x, range.y)) } else { None }
