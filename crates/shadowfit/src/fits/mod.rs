@@ -115,6 +115,7 @@ pub(crate) fn fit_slice(
     placing: Placing,
     points: &mut [DVec2],
 ) -> Result<Volume, FitError> {
+    // Errors are handed on arm by arm, so that the volume, which is large, is written once.
     Ok(match settings.kind {
         FitKind::XnaSample => xna::volume(content, light, settings, range)?,
         FitKind::FrustumAabb => aabb::volume(content, light, settings, range, placing, points)?,
