@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 
 use super::{is_release, rust_version};
 use crate::machine::Machine;
@@ -64,12 +64,15 @@ pub(super) fn determinism(_: &Machine) -> Result<()> {
     process::run(Command::new("node").arg(host).arg(module))
 }
 
-/// Tests the core with the oldest glam of its range. The lock file holds the newest, with which all else is built.
+/// Tests the core with the oldest glam of its range, and builds and runs an engine that pins it and hands its own
+/// vectors to the core. The lock file holds the newest, with which all else is built.
 pub(super) fn oldest_glam(_: &Machine) -> Result<()> {
     let manifest = fs::read_to_string(process::root().join("Cargo.toml"))?;
     let oldest = oldest_version(&manifest, "glam").context("the workspace's Cargo.toml states no range of glam")?;
     let folder = target_folder().join("oldest-glam");
-    copy_of_the_core(&folder, &manifest).with_context(|| format!("cannot write {}", folder.display()))?;
+    copy_of_the_core(&folder, &manifest)
+        .and_then(|()| engine_with(oldest, &folder.join("crates/engine")))
+        .with_context(|| format!("cannot write {}", folder.display()))?;
     let update = |mode: &[&str]| {
         let mut command = process::cargo_here("update");
         command.args(["--package", "glam", "--precise", oldest]).args(mode).current_dir(&folder);
@@ -83,7 +86,13 @@ pub(super) fn oldest_glam(_: &Machine) -> Result<()> {
             .current_dir(&folder)
             .env("CARGO_TARGET_DIR", target_folder()),
     )?;
-    println!("the core's tests passed with glam {oldest}, with the same bits");
+    process::run(
+        process::cargo_here("run")
+            .args(["--package", "engine"])
+            .current_dir(&folder)
+            .env("CARGO_TARGET_DIR", target_folder()),
+    )?;
+    println!("the core's tests passed with glam {oldest}, with the same bits, and an engine that pins it was built");
     Ok(())
 }
 
@@ -152,6 +161,21 @@ fn copy_of_the_core(folder: &Path, manifest: &str) -> Result<()> {
     let lines: Vec<&str> = without_benches.lines().filter(|line| !line.starts_with("criterion")).collect();
     fs::write(core, lines.join("\n") + "\n")?;
     fs::remove_dir_all(folder.join("crates/shadowfit/benches"))?;
+    Ok(())
+}
+
+/// Writes a crate beside the core that is the first example, but with a glam of its own.
+fn engine_with(glam: &str, folder: &Path) -> Result<()> {
+    let example = fs::read_to_string(process::root().join("examples/fit_once.rs"))?;
+    let main = example.replace("use shadowfit::glam::", "use glam::");
+    ensure!(main != example, "examples/fit_once.rs no longer takes its vectors from shadowfit::glam");
+    let manifest = format!(
+        "[package]\nname = \"engine\"\nedition = \"2024\"\n\n\
+         [dependencies]\nglam = \"={glam}\"\nshadowfit = {{ path = \"../shadowfit\" }}\n"
+    );
+    fs::create_dir_all(folder.join("src"))?;
+    fs::write(folder.join("Cargo.toml"), manifest)?;
+    fs::write(folder.join("src/main.rs"), main)?;
     Ok(())
 }
 
