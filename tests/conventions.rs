@@ -7,7 +7,7 @@ use shadowfit::{DepthConvention, FitSettings, LightFit, PerspectiveCamera, fit};
 use shadowfit_render::{Atmosphere, FlyCamera, FrameUniform, Line, box_lines};
 use shadowfit_scene::builtin;
 use shadowfit_truth::{JudgeSettings, Tracer};
-use shadowfit_wgpu::{CasterUniform, MAX_MAPS, RESOLUTIONS, ReceiverUniform, ShadowMapDescriptor};
+use shadowfit_wgpu::{CasterUniform, MAX_MAPS, RESOLUTIONS, MapView, ReceiverUniform, ShadowMapDescriptor};
 
 /// The depth conventions that wgpu draws.
 const DRAWABLE: [DepthConvention; 2] = [DepthConvention::ZeroToOne, DepthConvention::Reversed];
@@ -58,7 +58,7 @@ fn settings_uniforms_and_pictures_all_point_to_the_same_sun() {
         let to_light = -light.direction();
         assert!(to_light.y > 0.0, "a sun above the horizon shines from above");
         let fit = fitted(&light, DepthConvention::ZeroToOne);
-        let receiver = ReceiverUniform::new(&[fit], fit.origin, &BiasSettings::default());
+        let receiver = ReceiverUniform::new(&[fit.into()], &MapView::from_eye(fit.origin, Vec3::NEG_Z), &BiasSettings::default());
         let frame = FrameUniform::new(&camera(), to_light, true, &Atmosphere::default(), [16, 9]);
         assert!(Vec3::from(receiver.to_light).abs_diff_eq(to_light, CLOSE), "{light:?}: {:?}", receiver.to_light);
         assert_eq!(frame.to_light, to_light.to_array(), "{light:?}");
@@ -70,10 +70,10 @@ fn settings_uniforms_and_pictures_all_point_to_the_same_sun() {
 
 #[test]
 fn biases_move_the_receiver_toward_the_light_in_both_depth_conventions() {
-    let bias = BiasSettings { constant: 1.0, slope: 2.0, normal_offset: 3.0 };
+    let bias = BiasSettings { constant: 1.0, slope: 2.0, normal_offset: 3.0, receiver_plane: 4.0 };
     for (depth, toward_light) in [(DepthConvention::ZeroToOne, -1.0), (DepthConvention::Reversed, 1.0)] {
         let fit = fitted(&LightSettings::default(), depth);
-        let map = ReceiverUniform::new(&[fit], fit.origin, &bias).maps[0];
+        let map = ReceiverUniform::new(&[fit.into()], &MapView::from_eye(fit.origin, Vec3::NEG_Z), &bias).maps[0];
         let depth_of = |point: Vec3| matrix(map.uv_from_world).transform_point3(point).z;
         let lifted = depth_of(-fit.direction) - depth_of(Vec3::ZERO);
         assert!(lifted * toward_light > 0.0, "{depth:?}");

@@ -88,12 +88,20 @@ impl Gpu {
     }
 
     async fn open(adapter: wgpu::Adapter) -> Result<Self, GpuError> {
-        let wanted = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::DEPTH_CLIP_CONTROL;
+        let wanted = wgpu::Features::TIMESTAMP_QUERY
+            | wgpu::Features::DEPTH_CLIP_CONTROL
+            | wgpu::Features::PRIMITIVE_INDEX;
+        let limits = adapter.limits();
         let (device, queue) = adapter
             .request_device(&wgpu::DeviceDescriptor {
                 label: Some("shadowfit"),
                 required_features: adapter.features() & wanted,
-                required_limits: wgpu::Limits::default().using_resolution(adapter.limits()),
+                required_limits: wgpu::Limits {
+                    // Scenes of millions of triangles go to the GPU whole, where they are traced.
+                    max_buffer_size: limits.max_buffer_size,
+                    max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
+                    ..wgpu::Limits::default().using_resolution(limits)
+                },
                 ..Default::default()
             })
             .await

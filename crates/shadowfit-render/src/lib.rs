@@ -22,7 +22,7 @@ pub use camera::{FlyCamera, FlyInput};
 pub use gpu::{AdapterChoice, Gpu, GpuError};
 pub use lines::{Line, box_lines};
 pub use picture::Picture;
-pub use probe::{Probe, ProbePixel};
+pub use probe::{Probe, ProbeError, ProbePixel, ProbeTargets};
 pub use renderer::{Frame, Inset, Renderer, Statistics};
 pub use scene::GpuScene;
 pub use timer::PassTimes;

@@ -116,7 +116,7 @@ impl Pipelines {
             caster: caster_pipeline(plain_entry),
             caster_masked: caster_pipeline(masked_entry),
             scene: PartKey::all().map(|key| (key, maker.scene(&scene_layout, &scene, key))).collect(),
-            probe: PartKey::all().map(|key| (key, maker.probe(&scene_layout, &scene, key))).collect(),
+            probe: maker.probes(&scene_layout, map),
         }
     }
 
@@ -130,7 +130,12 @@ impl Pipelines {
         &self.scene[&PartKey::of(part)]
     }
 
-    /// Pipeline of the probe pass.
+    /// Whether the device can draw the probe pass.
+    pub(crate) fn can_probe(&self) -> bool {
+        !self.probe.is_empty()
+    }
+
+    /// Pipeline of the probe pass, where there is one.
     pub(crate) fn probe(&self, part: &Part) -> &wgpu::RenderPipeline {
         &self.probe[&PartKey::of(part)]
     }
@@ -256,6 +261,19 @@ impl Maker<'_> {
         })
     }
 
+    /// Pipelines of the probe pass; none where the device does not know the index of a primitive.
+    fn probes(
+        &self,
+        layout: &wgpu::PipelineLayout,
+        map: &ShadowMap,
+    ) -> HashMap<PartKey, wgpu::RenderPipeline> {
+        if !self.device.features().contains(wgpu::Features::PRIMITIVE_INDEX) {
+            return HashMap::new();
+        }
+        let module = self.module("probe", shaders::probe(map.descriptor()));
+        PartKey::all().map(|key| (key, self.probe(layout, &module, key))).collect()
+    }
+
     fn probe(&self, layout: &wgpu::PipelineLayout, module: &wgpu::ShaderModule, key: PartKey) -> wgpu::RenderPipeline {
         self.pipeline(&Shape {
             label: "probe",
@@ -263,7 +281,7 @@ impl Maker<'_> {
             module,
             entries: ["vs_scene", if key.masked { "fs_probe_masked" } else { "fs_probe" }],
             buffers: &part_buffers(),
-            targets: &[Some(PROBE_FORMAT.into()), Some(PROBE_FORMAT.into())],
+            targets: &[Some(PROBE_FORMAT.into())],
             topology: wgpu::PrimitiveTopology::TriangleList,
             cull_mode: key.cull_mode(),
             depth: Some((true, wgpu::CompareFunction::GreaterEqual)),

@@ -1,23 +1,22 @@
-//! What the renderer itself knew about each pixel: the visible point, its geometric normal, the
-//! instance, and the shadow factor that it used. Measures judge these, not guesses from colours.
+//! What the renderer itself knew about each pixel: which triangle it saw, and the shadow factor that it used. Measures
+//! judge these, not guesses from colours; where exactly the pixel lies follows from the triangle.
 
-use glam::Vec3;
+use core::fmt;
+
+use shadowfit_wgpu::ShadowMapError;
 
 use crate::Gpu;
 use crate::picture::{DEPTH_FORMAT, read_texture};
 
-/// Format of both probe targets.
-pub(crate) const PROBE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+/// Format of the probe's target: the triangle's number plus one (0 is the sky), and the bits of the factor.
+pub(crate) const PROBE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 
 /// One pixel of a [`Probe`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProbePixel {
-    /// Visible point, relative to the eye, in metres.
-    pub position: Vec3,
-    /// Unit normal of the visible triangle, on the side of the eye, world axes.
-    pub normal: Vec3,
-    /// Index into the scene's instances.
-    pub instance: usize,
+    /// The visible triangle: its number in the scene's [`triangles`](shadowfit_scene::Pose::triangles), those of
+    /// blended surfaces left out.
+    pub triangle: u32,
     /// Filtered share of the light, 0..=1, as shaded.
     pub factor: f32,
 }
@@ -32,17 +31,52 @@ pub struct Probe {
     pub pixels: Vec<Option<ProbePixel>>,
 }
 
+/// Why a frame could not be probed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ProbeError {
+    /// A fit does not suit the shadow map.
+    ShadowMap(ShadowMapError),
+    /// The device has no [`wgpu::Features::PRIMITIVE_INDEX`].
+    NoPrimitiveIndex,
+}
+
+impl From<ShadowMapError> for ProbeError {
+    fn from(error: ShadowMapError) -> Self {
+        Self::ShadowMap(error)
+    }
+}
+
+impl fmt::Display for ProbeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::ShadowMap(error) => error.fmt(f),
+            Self::NoPrimitiveIndex => write!(
+                f,
+                "this graphics adapter cannot tell which triangle a pixel shows (no PRIMITIVE_INDEX), so that its \
+                 pictures cannot be judged; take the software adapter"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for ProbeError {}
+
 /// Textures that a probe is drawn into.
 #[derive(Debug)]
-pub(crate) struct ProbeTargets {
-    size: [u32; 2],
-    textures: [wgpu::Texture; 2],
-    pub(crate) views: [wgpu::TextureView; 2],
+pub struct ProbeTargets {
+    /// Width and height, in pixels.
+    pub size: [u32; 2],
+    texture: wgpu::Texture,
+    /// The pixels: x is the triangle's number plus one (0 is the sky), y the bits of the f32 factor.
+    pub view: wgpu::TextureView,
     pub(crate) depth: wgpu::TextureView,
 }
 
 impl ProbeTargets {
-    pub(crate) fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
+    /// Makes targets of at least 1×1 pixels.
+    pub fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
+        let limit = device.limits().max_texture_dimension_2d;
+        let size = size.map(|side| side.clamp(1, limit));
         let texture = |format, usage| {
             device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("probe"),
@@ -55,24 +89,18 @@ impl ProbeTargets {
                 view_formats: &[],
             })
         };
-        let textures = [(); 2].map(|()| texture(PROBE_FORMAT, wgpu::TextureUsages::COPY_SRC));
-        let views = [0, 1].map(|index: usize| textures[index].create_view(&Default::default()));
+        let readable = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
+        let pixels = texture(PROBE_FORMAT, readable);
+        let view = pixels.create_view(&Default::default());
         let depth = texture(DEPTH_FORMAT, wgpu::TextureUsages::empty()).create_view(&Default::default());
-        Self { size, textures, views, depth }
+        Self { size, texture: pixels, view, depth }
     }
 
-    pub(crate) fn read(&self, gpu: &Gpu) -> Probe {
-        let [points, normals] = [0, 1].map(|index: usize| {
-            let bytes = read_texture(gpu, &self.textures[index], self.size, 16);
-            bytemuck::pod_collect_to_vec::<u8, [f32; 4]>(&bytes)
-        });
-        let pixels = points.iter().zip(&normals).map(|(point, normal)| {
-            (normal[3] > 0.0).then(|| ProbePixel {
-                position: Vec3::new(point[0], point[1], point[2]),
-                normal: Vec3::new(normal[0], normal[1], normal[2]),
-                instance: normal[3] as usize - 1,
-                factor: point[3],
-            })
+    /// Waits for the probe and reads it.
+    pub fn read(&self, gpu: &Gpu) -> Probe {
+        let bytes = read_texture(gpu, &self.texture, self.size, 8);
+        let pixels = bytemuck::pod_collect_to_vec::<u8, [u32; 2]>(&bytes).into_iter().map(|[triangle, factor]| {
+            Some(ProbePixel { triangle: triangle.checked_sub(1)?, factor: f32::from_bits(factor) })
         });
         Probe { size: self.size, pixels: pixels.collect() }
     }

@@ -1,13 +1,13 @@
 //! One frame: shadow pass, shaded pass, sky, lines and inset.
 
-use glam::{DVec3, Mat4};
+use glam::{DVec3, Mat4, Vec3};
 use shadowfit::settings::BiasSettings;
-use shadowfit::{CasterVolume, LightFit, PerspectiveCamera};
-use shadowfit_wgpu::{ShadowMap, ShadowMapDescriptor, ShadowMapError};
+use shadowfit::{CasterVolume, PerspectiveCamera};
+use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError};
 
 use crate::picture::Picture;
 use crate::pipelines::{Layouts, Pipelines};
-use crate::probe::{Probe, ProbeTargets};
+use crate::probe::{Probe, ProbeError, ProbeTargets};
 use crate::scene::{Draw, GpuScene, Part, in_frustum};
 use crate::timer::{Pass, PassTimer, PassTimes};
 use crate::uniform::{Atmosphere, FrameUniform, InsetUniform, LineVertex};
@@ -20,8 +20,11 @@ pub struct Frame<'a> {
     pub camera: &'a PerspectiveCamera,
     /// Unit direction of travel of the light.
     pub direction: glam::Vec3,
-    /// Fits of the shadow maps, nearest first; empty where there is nothing to fit.
-    pub fits: &'a [LightFit],
+    /// The shadow maps, in order of their `far`; empty where there is nothing to fit.
+    pub maps: &'a [MapFit],
+    /// Eye and unit forward direction (world space, metres) whose view depths choose the map; the
+    /// camera's own where `None`.
+    pub choice: Option<(DVec3, Vec3)>,
     /// Biases of the look-up.
     pub bias: &'a BiasSettings,
     /// Whether shadows are drawn.
@@ -162,7 +165,7 @@ impl Renderer {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.shadow_passes(&mut encoder, scene, &plan);
         self.scene_pass(&mut encoder, scene, &plan, picture, frame.lines.len() as u32);
-        if frame.inset.is_some() && !frame.fits.is_empty() {
+        if frame.inset.is_some() && !frame.maps.is_empty() {
             self.inset_pass(&mut encoder, picture);
         }
         self.timer.resolve(&mut encoder);
@@ -175,23 +178,40 @@ impl Renderer {
     ///
     /// # Errors
     ///
-    /// [`ShadowMapError::Fit`] if a fit was made for another map.
+    /// [`ProbeError`] if a fit was made for another map, or the device cannot tell triangles apart.
     pub fn probe(
         &mut self,
         gpu: &Gpu,
         scene: &mut GpuScene,
         frame: &Frame<'_>,
-        size: [u32; 2],
-    ) -> Result<Probe, ShadowMapError> {
-        let plan = self.prepare(gpu, scene, frame, size)?;
-        let targets = ProbeTargets::new(&gpu.device, size);
+        targets: &ProbeTargets,
+    ) -> Result<Probe, ProbeError> {
+        self.draw_probe(gpu, scene, frame, targets)?;
+        Ok(targets.read(gpu))
+    }
+
+    /// Draws a frame's shadow decisions, to be read on the GPU.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::probe`].
+    pub fn draw_probe(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut GpuScene,
+        frame: &Frame<'_>,
+        targets: &ProbeTargets,
+    ) -> Result<(), ProbeError> {
+        if !self.pipelines.can_probe() {
+            return Err(ProbeError::NoPrimitiveIndex);
+        }
+        let plan = self.prepare(gpu, scene, frame, targets.size)?;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.shadow_passes(&mut encoder, scene, &plan);
         {
-            let color = |view| Some(color_attachment(view, None, wgpu::Color::TRANSPARENT));
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("probe"),
-                color_attachments: &[color(&targets.views[0]), color(&targets.views[1])],
+                color_attachments: &[Some(color_attachment(&targets.view, None, wgpu::Color::TRANSPARENT))],
                 depth_stencil_attachment: Some(depth_attachment(&targets.depth)),
                 ..Default::default()
             });
@@ -200,7 +220,7 @@ impl Renderer {
         self.timer.resolve(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
         self.timer.end_frame(gpu);
-        Ok(targets.read(gpu))
+        Ok(())
     }
 
     /// Culls, and writes every buffer of the frame.
@@ -211,8 +231,10 @@ impl Renderer {
         frame: &Frame<'_>,
         size: [u32; 2],
     ) -> Result<Plan, ShadowMapError> {
-        let eye = frame.camera.eye;
-        self.shadow_map.prepare(&gpu.queue, eye, frame.fits, frame.bias)?;
+        let origin = frame.camera.eye;
+        let (eye, forward) = frame.choice.unwrap_or((origin, frame.camera.forward.normalize()));
+        let view = MapView { origin, eye, forward };
+        self.shadow_map.prepare(&gpu.queue, &view, frame.maps, frame.bias)?;
         let uniform = FrameUniform::new(frame.camera, -frame.direction, frame.shadows, frame.atmosphere, size);
         gpu.queue.write_buffer(&self.frame_uniform, 0, bytemuck::bytes_of(&uniform));
         if let Some(inset) = frame.inset {
@@ -220,7 +242,7 @@ impl Renderer {
                 InsetUniform { rectangle: inset.rectangle, depth_range: inset.depth_range, map: inset.map, padding: 0 };
             gpu.queue.write_buffer(&self.inset_uniform, 0, bytemuck::bytes_of(&uniform));
         }
-        self.write_lines(gpu, eye, frame.lines);
+        self.write_lines(gpu, origin, frame.lines);
         Ok(plan(gpu, scene, frame, &uniform, self.shadow_map.volumes()))
     }
 

@@ -37,6 +37,8 @@ pub(crate) struct Part {
 #[derive(Clone, Copy, Debug)]
 struct SceneInstance {
     instance: Instance,
+    /// Number of its first triangle, those of blended surfaces left out.
+    first_triangle: u32,
     world_from_mesh: Mat4,
     bounds: Aabb,
 }
@@ -76,10 +78,7 @@ impl GpuScene {
         let mut gpu_scene = Self {
             parts,
             materials: upload_materials(gpu, layout, scene),
-            instances: instances
-                .into_iter()
-                .map(|instance| SceneInstance { instance, world_from_mesh: Mat4::IDENTITY, bounds: EMPTY })
-                .collect(),
+            instances: numbered(scene, instances),
             data: Vec::new(),
             instance_buffer: instance_buffer(&gpu.device, count.max(1)),
         };
@@ -128,7 +127,7 @@ impl GpuScene {
                 let [min, max] = [instance.bounds.min, instance.bounds.max].map(|p| (p.as_dvec3() - eye).as_vec3());
                 if min.cmple(max).all() && keep(min, max) {
                     distance = distance.min(((min + max) * 0.5).length());
-                    self.data.push(instance_data(&instance.world_from_mesh, eye, member));
+                    self.data.push(instance_data(&instance.world_from_mesh, eye, instance.first_triangle));
                 }
             }
             let instances = start..self.data.len() as u32;
@@ -211,6 +210,20 @@ pub(crate) fn in_frustum(clip_from_world: Mat4) -> impl Fn(Vec3, Vec3) -> bool {
 
 const EMPTY: Aabb = Aabb { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
+/// Instances with the numbers of their first triangles.
+fn numbered(scene: &Scene, instances: Vec<Instance>) -> Vec<SceneInstance> {
+    let mut triangles = 0;
+    let number = |instance: Instance| {
+        let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
+        let first_triangle = triangles;
+        if scene.materials[primitive.material].alpha != AlphaMode::Blend {
+            triangles += primitive.indices.len() as u32 / 3;
+        }
+        SceneInstance { instance, first_triangle, world_from_mesh: Mat4::IDENTITY, bounds: EMPTY }
+    };
+    instances.into_iter().map(number).collect()
+}
+
 fn is_deformed(scene: &Scene, instance: &Instance) -> bool {
     let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
     scene.instance_skin(instance).is_some() || !primitive.morphs.is_empty()
@@ -240,12 +253,12 @@ fn transformed(bounds: &Aabb, matrix: &Mat4) -> Aabb {
     Aabb { min: center - reach, max: center + reach }
 }
 
-fn instance_data(world_from_mesh: &Mat4, eye: DVec3, id: usize) -> InstanceData {
+fn instance_data(world_from_mesh: &Mat4, eye: DVec3, first_triangle: u32) -> InstanceData {
     let translation = (world_from_mesh.w_axis.truncate().as_dvec3() - eye).as_vec3();
     let relative = Mat4 { w_axis: translation.extend(1.0), ..*world_from_mesh };
     InstanceData {
         rows: [relative.row(0).to_array(), relative.row(1).to_array(), relative.row(2).to_array()],
-        id: id as u32,
+        first_triangle,
         padding: [0; 3],
     }
 }

@@ -9,12 +9,13 @@ const FRAME: &str = include_str!("shaders/frame.wgsl");
 const MATERIAL: &str = include_str!("shaders/material.wgsl");
 
 /// The pieces as they lie in the folder, for tests that look for files which no module uses.
-pub const PIECES: [(&str, &str); 8] = [
+pub const PIECES: [(&str, &str); 9] = [
     ("frame.wgsl", FRAME),
     ("material.wgsl", MATERIAL),
     ("sky.wgsl", include_str!("shaders/sky.wgsl")),
     ("caster.wgsl", include_str!("shaders/caster.wgsl")),
     ("scene.wgsl", include_str!("shaders/scene.wgsl")),
+    ("probe.wgsl", include_str!("shaders/probe.wgsl")),
     ("lines.wgsl", include_str!("shaders/lines.wgsl")),
     ("inset.wgsl", include_str!("shaders/inset.wgsl")),
     ("mip.wgsl", include_str!("shaders/mip.wgsl")),
@@ -30,10 +31,16 @@ pub fn caster() -> String {
     [caster_wgsl(0), MATERIAL.replace("MATERIAL_GROUP", "1"), include_str!("shaders/caster.wgsl").to_owned()].concat()
 }
 
-/// The shaded and the probe pass: frame, shadow map and material are groups 0, 1 and 2.
+/// The shaded pass: frame, shadow map and material are groups 0, 1 and 2.
 pub fn scene(shadow_map: &ShadowMapDescriptor) -> String {
     let material = MATERIAL.replace("MATERIAL_GROUP", "2");
     [FRAME, &receiver_wgsl(shadow_map, SHADOW_GROUP), &material, include_str!("shaders/scene.wgsl")].concat()
+}
+
+/// The probe pass, with the groups of the shaded one; it needs to know the index of a primitive. The directive that
+/// turns that on stands before all else.
+pub fn probe(shadow_map: &ShadowMapDescriptor) -> String {
+    ["enable primitive_index;\n", &scene(shadow_map), include_str!("shaders/probe.wgsl")].concat()
 }
 
 /// Lines of the world.

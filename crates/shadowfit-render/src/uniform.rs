@@ -147,8 +147,8 @@ impl MaterialUniform {
 pub struct InstanceData {
     /// Rows of the affine transform: world relative to the eye from mesh.
     pub rows: [[f32; 4]; 3],
-    /// Index of the instance in the scene, for probes.
-    pub id: u32,
+    /// Number of the instance's first triangle in the scene, for probes.
+    pub first_triangle: u32,
     /// Keeps the struct a multiple of 16 bytes.
     pub padding: [u32; 3],
 }

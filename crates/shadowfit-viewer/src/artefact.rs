@@ -147,7 +147,7 @@ fn show_acne(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut Setti
     };
     let (camera, found) = best(&place.lens, candidates, |camera| score(camera) as f32);
     let distance = camera.eye.as_vec3().distance(place.center);
-    settings.bias = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0 };
+    settings.bias = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0 };
     settings.filter = FilterKind::Point;
     settings.fit.kind = FitKind::XnaSample;
     settings.fit.margin = 0.0;

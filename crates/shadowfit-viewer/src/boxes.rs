@@ -5,7 +5,7 @@
 
 use glam::{DVec2, DVec3, Vec3};
 use shadowfit::settings::FitSettings;
-use shadowfit::{Aabb, Boxes, Clusters, FitError, FitInput, LightFit, ViewFrustum, Workspace};
+use shadowfit::{Aabb, Boxes, Clusters, FitError, FitInput, LightFit, NormalCone, ViewFrustum, Workspace};
 use shadowfit_scene::{AlphaMode, Instance, Pose, Scene};
 
 /// Triangles from which on nothing is cut into clusters: at a fifth of a microsecond each it would hold up the opening
@@ -20,6 +20,8 @@ const FARTHEST: f32 = 1e18;
 pub(crate) struct SceneBoxes {
     /// Of all that is drawn: that of the clusters, then one an instance that moves.
     receivers: Vec<Aabb>,
+    /// Cones around the normals in them.
+    cones: Vec<NormalCone>,
     /// The same of what casts.
     casters: Vec<Aabb>,
     /// How many of the receivers and of the casters never move.
@@ -46,12 +48,36 @@ impl SceneBoxes {
         let casters: Vec<Aabb> = of_casters.map(|cluster| receivers[cluster]).collect();
         let still = [receivers.len(), casters.len()];
         let moving = (0..instances.len()).filter(|index| moves[*index]).map(|index| (index, casts[index])).collect();
-        Self { receivers, casters, still, moving, storage: Vec::new() }
+        let cones = clusters.cones().to_vec();
+        Self { receivers, cones, casters, still, moving, storage: Vec::new() }
+    }
+
+    /// One box an instance, whether it moves or not. [`Self::set_pose`] has to follow.
+    pub(crate) fn of_instances(scene: &Scene) -> Self {
+        let instances = scene.instances();
+        let moving = instances.iter().enumerate().map(|(index, instance)| (index, casts(scene, instance))).collect();
+        Self { moving, ..Self::default() }
+    }
+
+    /// What fits are told of the scene, for a light that travels in `direction` (world axes).
+    pub(crate) fn input<'a>(&'a self, views: &'a [ViewFrustum], direction: Vec3) -> FitInput<'a> {
+        FitInput {
+            receivers: Some(Boxes { origin: DVec3::ZERO, boxes: &self.receivers }),
+            receiver_cones: &self.cones,
+            casters: Boxes { origin: DVec3::ZERO, boxes: &self.casters },
+            ..FitInput::new(views, direction)
+        }
+    }
+
+    /// Elements of storage that fits to so many views need.
+    pub(crate) fn required(&self, views: usize) -> usize {
+        Workspace::required(self.receivers.len().max(self.casters.len()), views)
     }
 
     /// Takes the boxes of what moves: `bounds` gives that of an instance by its index, in world space.
     pub(crate) fn set_pose(&mut self, bounds: impl Fn(usize) -> Option<shadowfit_scene::Aabb>) {
         self.receivers.truncate(self.still[0]);
+        self.cones.truncate(self.still[0]);
         self.casters.truncate(self.still[1]);
         for &(index, casts) in &self.moving {
             let is_near = |corner: Vec3| corner.abs().cmple(Vec3::splat(FARTHEST)).all();
@@ -60,12 +86,12 @@ impl SceneBoxes {
             };
             let aabb = Aabb::new(bounds.min, bounds.max);
             self.receivers.push(aabb);
+            self.cones.push(NormalCone::ALL);
             if casts {
                 self.casters.push(aabb);
             }
         }
-        let most = self.receivers.len().max(self.casters.len());
-        self.storage.resize(Workspace::required(most, 1), DVec2::ZERO);
+        self.storage.resize(self.required(1), DVec2::ZERO);
     }
 
     /// Fits one map to what a view sees of the scene. `direction` is the light's direction of travel in world axes.
@@ -79,13 +105,10 @@ impl SceneBoxes {
         direction: Vec3,
         settings: &FitSettings,
     ) -> Result<LightFit, FitError> {
-        let views = [*view];
-        let input = FitInput {
-            receivers: Some(Boxes { origin: DVec3::ZERO, boxes: &self.receivers }),
-            casters: Boxes { origin: DVec3::ZERO, boxes: &self.casters },
-            ..FitInput::new(&views, direction)
-        };
-        shadowfit::fit_scene(&input, settings, &mut Workspace::new(&mut self.storage))
+        let mut storage = core::mem::take(&mut self.storage);
+        let fit = shadowfit::fit_scene(&self.input(&[*view], direction), settings, &mut Workspace::new(&mut storage));
+        self.storage = storage;
+        fit
     }
 }
 

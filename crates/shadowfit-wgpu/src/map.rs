@@ -2,9 +2,9 @@
 
 use core::fmt;
 
-use shadowfit::glam::DVec3;
+use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::{BiasSettings, FilterKind, MapFormat, Settings};
-use shadowfit::{CasterPolicy, CasterVolume, DepthConvention, FitKind, LightFit};
+use shadowfit::{CascadeMap, CasterPolicy, CasterVolume, DepthConvention, FitKind, LightFit};
 
 use crate::uniform::{CasterUniform, ReceiverUniform};
 
@@ -46,6 +46,47 @@ impl Default for ShadowMapDescriptor {
     }
 }
 
+/// A fitted map, and the points that choose it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapFit {
+    /// Where it lies.
+    pub fit: LightFit,
+    /// View depth, in metres, below which the map is a choice: a point reads the first map for
+    /// which that holds and which covers it. `f32::MAX` for no end.
+    pub far: f32,
+}
+
+impl From<LightFit> for MapFit {
+    /// A single map, for all view depths.
+    fn from(fit: LightFit) -> Self {
+        Self { fit, far: f32::MAX }
+    }
+}
+
+impl From<&CascadeMap> for MapFit {
+    fn from(map: &CascadeMap) -> Self {
+        Self { fit: map.fit, far: map.far }
+    }
+}
+
+/// From where the maps are looked up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapView {
+    /// World position that all positions in the shaders are relative to, in metres.
+    pub origin: DVec3,
+    /// World position of the eye that view depths are counted from, in metres.
+    pub eye: DVec3,
+    /// Unit direction in which that eye looks, world axes.
+    pub forward: Vec3,
+}
+
+impl MapView {
+    /// Everything relative to an eye that looks along `forward` (unit, world axes).
+    pub fn from_eye(eye: DVec3, forward: Vec3) -> Self {
+        Self { origin: eye, eye, forward }
+    }
+}
+
 /// Why a [`ShadowMap`] could not be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShadowMapError {
@@ -62,14 +103,14 @@ pub enum ShadowMapError {
     Depth(DepthConvention),
     /// Depth clamp on a device without [`wgpu::Features::DEPTH_CLIP_CONTROL`].
     DepthClamp,
-    /// A fit was made for another resolution or depth convention than the map has: biases and
-    /// comparisons would be wrong.
+    /// A fit has more texels than a layer, or another depth convention: biases and comparisons
+    /// would be wrong.
     Fit {
         /// Index of the fit.
         index: usize,
         /// Its resolution, in texels, and depth convention.
         fit: ([u32; 2], DepthConvention),
-        /// Those of the map.
+        /// Those of the layers.
         map: ([u32; 2], DepthConvention),
     },
 }
@@ -111,7 +152,7 @@ impl fmt::Display for ShadowMapError {
             Self::Fit { index, fit, map } => write!(
                 f,
                 "fit {index} was made for {:?} texels and depth {:?}, the shadow map has {:?} and {:?}: give both the \
-                 same settings",
+                 same depth, and the map no fewer texels",
                 fit.0, fit.1, map.0, map.1,
             ),
         }
@@ -142,6 +183,8 @@ struct Layer {
     color: Option<wgpu::TextureView>,
     caster_uniform: wgpu::Buffer,
     caster_group: wgpu::BindGroup,
+    /// Width and height of the corner that the present map uses, in texels.
+    used: [u32; 2],
 }
 
 impl ShadowMap {
@@ -247,39 +290,44 @@ impl ShadowMap {
         if self.descriptor.depth == DepthConvention::Reversed { 0.0 } else { 1.0 }
     }
 
-    /// Writes the uniforms for this frame's fits, one a map, nearest first. Positions in the
-    /// shaders are relative to `origin` (world space, metres). Fits past the number of maps are
-    /// left out; a map without a fit is neither drawn nor read.
+    /// Writes the uniforms for this frame's maps, in order of their `far`. Positions in the shaders
+    /// are relative to the view's origin. A fit with fewer texels than a layer uses the corner of
+    /// it. Maps past the number of layers are left out; a layer without a map is neither drawn nor
+    /// read.
     ///
     /// # Errors
     ///
-    /// [`ShadowMapError::Fit`] if a fit is for another resolution or depth convention; nothing is
-    /// written then.
+    /// [`ShadowMapError::Fit`] if a fit has more texels than a layer or another depth convention;
+    /// nothing is written then.
     pub fn prepare(
         &mut self,
         queue: &wgpu::Queue,
-        origin: DVec3,
-        fits: &[LightFit],
+        view: &MapView,
+        maps: &[MapFit],
         bias: &BiasSettings,
     ) -> Result<(), ShadowMapError> {
-        self.check_fits(fits)?;
-        let fits = &fits[..fits.len().min(self.layers.len())];
-        for (layer, fit) in self.layers.iter().zip(fits) {
-            let uniform = CasterUniform::new(fit, origin);
+        self.check_fits(maps)?;
+        let maps = &maps[..maps.len().min(self.layers.len())];
+        for (layer, map) in self.layers.iter_mut().zip(maps) {
+            let uniform = CasterUniform::new(&map.fit, view.origin);
             queue.write_buffer(&layer.caster_uniform, 0, bytemuck::bytes_of(&uniform));
+            layer.used = map.fit.resolution.to_array();
         }
-        let uniform = ReceiverUniform::new(fits, origin, bias);
+        let uniform = ReceiverUniform::new(maps, view, bias);
         queue.write_buffer(&self.receiver_uniform, 0, bytemuck::bytes_of(&uniform));
         let casters = if self.descriptor.depth_clamp { CasterPolicy::DepthClamp } else { CasterPolicy::None };
         self.volumes.clear();
-        self.volumes.extend(fits.iter().map(|fit| CasterVolume::of_map(&fit.relative_to(origin), casters)));
+        self.volumes.extend(maps.iter().map(|map| CasterVolume::of_map(&map.fit.relative_to(view.origin), casters)));
         Ok(())
     }
 
-    fn check_fits(&self, fits: &[LightFit]) -> Result<(), ShadowMapError> {
+    fn check_fits(&self, maps: &[MapFit]) -> Result<(), ShadowMapError> {
         let map = (self.descriptor.resolution, self.descriptor.depth);
-        let mut made_for = fits.iter().map(|fit| (fit.resolution.to_array(), fit.depth)).enumerate();
-        match made_for.find(|(_, fit)| *fit != map) {
+        let suits = |fit: &([u32; 2], DepthConvention)| {
+            fit.1 == map.1 && fit.0.iter().zip(&map.0).all(|(fit, layer)| (1..=*layer).contains(fit))
+        };
+        let mut made_for = maps.iter().map(|map| (map.fit.resolution.to_array(), map.fit.depth)).enumerate();
+        match made_for.find(|(_, fit)| !suits(fit)) {
             Some((index, fit)) => Err(ShadowMapError::Fit { index, fit, map }),
             None => Ok(()),
         }
@@ -300,7 +348,7 @@ impl ShadowMap {
     }
 
     /// Opens the pass of one map, for engines that schedule passes themselves: cleared, with
-    /// group 0 set.
+    /// group 0 and the viewport set.
     ///
     /// # Panics
     ///
@@ -340,6 +388,8 @@ impl ShadowMap {
             multiview_mask: None,
         });
         pass.set_bind_group(0, &layer.caster_group, &[]);
+        let [width, height] = layer.used;
+        pass.set_viewport(0.0, 0.0, width as f32, height as f32, 0.0, 1.0);
         pass
     }
 }
@@ -366,7 +416,8 @@ impl Layer {
             layout,
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: caster_uniform.as_entire_binding() }],
         });
-        Self { depth: view(depth), color: color.map(view), caster_uniform, caster_group }
+        let used = [depth.width(), depth.height()];
+        Self { depth: view(depth), color: color.map(view), caster_uniform, caster_group, used }
     }
 }
 
@@ -415,7 +466,7 @@ fn uniform_buffer(device: &wgpu::Device, size: usize) -> wgpu::Buffer {
 fn comparison_sampler(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> wgpu::Sampler {
     let filter = match descriptor.filter {
         FilterKind::Point => wgpu::FilterMode::Nearest,
-        FilterKind::Hardware2x2 => wgpu::FilterMode::Linear,
+        FilterKind::Hardware2x2 | FilterKind::Pcf3x3 | FilterKind::Pcf5x5 => wgpu::FilterMode::Linear,
     };
     device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("shadowfit comparison"),

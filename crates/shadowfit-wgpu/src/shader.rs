@@ -33,30 +33,37 @@ pub fn culling_wgsl(group: u32) -> String {
 /// `normal` is the unit geometric normal on the side that is seen. The result is 1 where lit and
 /// outside every map. Reads bindings 0, 1 and, for depth formats, 2 of `group`; no derivatives.
 pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, group: u32) -> String {
-    let compare = match (descriptor.format, descriptor.filter) {
+    let look_up = match (descriptor.format, descriptor.filter) {
         (MapFormat::Depth32Float, _) => include_str!("shaders/compare_depth.wgsl").to_owned(),
         (MapFormat::R32Float, FilterKind::Point) => {
             [include_str!("shaders/compare_float.wgsl"), include_str!("shaders/compare_float_point.wgsl")].concat()
         }
-        (MapFormat::R32Float, FilterKind::Hardware2x2) => {
+        (MapFormat::R32Float, _) => {
             [include_str!("shaders/compare_float.wgsl"), include_str!("shaders/compare_float_2x2.wgsl")].concat()
         }
     };
+    let filter = match descriptor.filter {
+        FilterKind::Point | FilterKind::Hardware2x2 => include_str!("shaders/filter_single.wgsl"),
+        FilterKind::Pcf3x3 => include_str!("shaders/filter_tent_3x3.wgsl"),
+        FilterKind::Pcf5x5 => include_str!("shaders/filter_tent_5x5.wgsl"),
+    };
     let closer = if descriptor.depth == DepthConvention::Reversed { ">=" } else { "<=" };
-    [include_str!("shaders/receiver.wgsl"), &compare, &factor(descriptor.maps)]
+    [include_str!("shaders/receiver.wgsl"), &look_up, filter, &factor(descriptor.maps)]
         .concat()
         .replace("GROUP", &group.to_string())
         .replace("MAX_MAPS", &MAX_MAPS.to_string())
         .replace("COMPARE", closer)
 }
 
-/// The look-up in the first map that covers the point, one branch a map: software rasterisers take twenty times as long
-/// for a loop over an array of uniforms.
+/// The look-up in the first map whose view depths reach as far as the point, or the next later one that holds it: one
+/// branch a map, since software rasterisers take twenty times as long for a loop over an array of uniforms.
 fn factor(maps: u32) -> String {
     let branch = |map: u32| {
         format!(
-            "    if shadowfit_covers({map}u, shadowfit_receiver.maps[{map}], position) {{
-        return shadowfit_compare({map}u, shadowfit_project(shadowfit_receiver.maps[{map}], position, normal));
+            "    if view_depth < shadowfit_receiver.maps[{map}].far
+        && shadowfit_covers({map}u, shadowfit_receiver.maps[{map}], position) {{
+        return shadowfit_compare({map}u, shadowfit_receiver.maps[{map}].size,
+            shadowfit_project(shadowfit_receiver.maps[{map}], position, normal));
     }}
 "
         )
@@ -66,6 +73,7 @@ fn factor(maps: u32) -> String {
         "
 // Share of the light that reaches a point: 1 lit, 0 in shadow, 1 outside every map.
 fn shadowfit_factor(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
+    let view_depth = shadowfit_view_depth(position);
 {branches}    return 1.0;
 }}
 "

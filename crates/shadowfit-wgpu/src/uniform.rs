@@ -2,11 +2,11 @@
 //! shaders in the tests, so that the two cannot drift apart.
 
 use bytemuck::{Pod, Zeroable};
-use shadowfit::glam::DVec3;
+use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::BiasSettings;
 use shadowfit::{CasterVolume, DepthConvention, LightFit, bias::Bias};
 
-use crate::MAX_MAPS;
+use crate::{MAX_MAPS, MapFit, MapView};
 
 /// What the shadow pass's vertex shader reads: `shadowfit_Caster` in WGSL.
 #[repr(C)]
@@ -23,15 +23,26 @@ pub struct MapUniform {
     /// Texture coordinates (x right, y down, z the stored depth) from world positions relative to
     /// the origin.
     pub uv_from_world: [[f32; 4]; 4],
+    /// The depth of a plane changes by `dot(this, normal) / cos θ` over one texel along u, for its
+    /// unit normal; zero without receiver-plane bias.
+    pub depth_per_texel_u: [f32; 3],
     /// Depth bias that does not depend on the slope, signed so that adding it moves the receiver
     /// toward the light.
     pub constant_depth: f32,
+    /// As `depth_per_texel_u`, along v.
+    pub depth_per_texel_v: [f32; 3],
     /// Depth bias times tan θ, signed likewise.
     pub slope_depth: f32,
+    /// Width and height in use, from the corner of the layer, in texels.
+    pub size: [f32; 2],
     /// Offset along the normal times sin θ, in metres.
     pub normal_offset: f32,
+    /// Depth bias times the plane's rise over a texel, in texels, signed likewise.
+    pub receiver_plane: f32,
+    /// View depth from which on the map is no choice, in metres.
+    pub far: f32,
     /// Keeps the struct a multiple of 16 bytes.
-    pub padding: f32,
+    pub padding: [f32; 3],
 }
 
 /// What the look-up reads: `shadowfit_Receiver` in WGSL.
@@ -42,7 +53,10 @@ pub struct ReceiverUniform {
     pub to_light: [f32; 3],
     /// How many of `maps` are in use.
     pub map_count: u32,
-    /// The maps, nearest first; the first one that covers a point is read.
+    /// View depth of a position relative to the origin, in metres, is `dot(xyz, position) + w`.
+    pub view: [f32; 4],
+    /// The maps, in order of their `far`; the first one that reaches as far as a point and covers
+    /// it is read.
     pub maps: [MapUniform; MAX_MAPS],
 }
 
@@ -100,24 +114,50 @@ impl CasterUniform {
     }
 }
 
-impl ReceiverUniform {
-    /// The uniform for fits of one light, with positions relative to `origin` (world space,
-    /// metres). Fits past [`MAX_MAPS`] are left out; without any, everything is lit.
-    pub fn new(fits: &[LightFit], origin: DVec3, bias: &BiasSettings) -> Self {
-        let mut uniform = Self::default();
-        for (slot, fit) in uniform.maps.iter_mut().zip(fits) {
-            let bias = Bias::from_texels(bias, fit);
-            let toward_light = if fit.depth == DepthConvention::Reversed { 1.0 } else { -1.0 };
-            *slot = MapUniform {
-                uv_from_world: fit.relative_to(origin).uv_from_world.to_cols_array_2d(),
-                constant_depth: toward_light * bias.constant_depth,
-                slope_depth: toward_light * bias.slope_depth,
-                normal_offset: bias.normal_offset,
-                padding: 0.0,
-            };
+impl MapUniform {
+    /// The uniform for a map, with positions relative to `origin` (world space, metres).
+    pub fn new(map: &MapFit, origin: DVec3, settings: &BiasSettings) -> Self {
+        let fit = map.fit.relative_to(origin);
+        let bias = Bias::from_texels(settings, &fit);
+        let toward_light = if fit.depth == DepthConvention::Reversed { 1.0 } else { -1.0 };
+        let [u, v] = if bias.receiver_plane == 0.0 { [Vec3::ZERO; 2] } else { depth_per_texel(&fit) };
+        Self {
+            uv_from_world: fit.uv_from_world.to_cols_array_2d(),
+            depth_per_texel_u: u.to_array(),
+            constant_depth: toward_light * bias.constant_depth,
+            depth_per_texel_v: v.to_array(),
+            slope_depth: toward_light * bias.slope_depth,
+            size: fit.resolution.as_vec2().to_array(),
+            normal_offset: bias.normal_offset,
+            receiver_plane: toward_light * bias.receiver_plane,
+            far: map.far,
+            padding: [0.0; 3],
         }
-        uniform.map_count = fits.len().min(MAX_MAPS) as u32;
-        uniform.to_light = fits.first().map_or([0.0, 1.0, 0.0], |fit| (-fit.direction).to_array());
+    }
+}
+
+/// What gives the change of a plane's depth over one texel along u and v when multiplied with its unit normal n: the
+/// plane's height falls by n·x / n·z along the map's x, and v runs against its y. It is
+/// [`shadowfit::bias::depth_gradient`] but for the division by n·z, the cosine.
+fn depth_per_texel(fit: &LightFit) -> [Vec3; 2] {
+    let away_from_light = if fit.depth == DepthConvention::Reversed { -1.0 } else { 1.0 };
+    let scale = fit.texel_size * (away_from_light / fit.depth_range);
+    let row = |index: usize| fit.light_from_world.row(index).truncate();
+    [row(0) * scale.x, row(1) * -scale.y]
+}
+
+impl ReceiverUniform {
+    /// The uniform for maps of one light, in order of their `far`, with positions relative to the view's origin. Maps
+    /// past [`MAX_MAPS`] are left out; without any, everything is lit.
+    pub fn new(maps: &[MapFit], view: &MapView, bias: &BiasSettings) -> Self {
+        let mut uniform = Self::default();
+        for (slot, map) in uniform.maps.iter_mut().zip(maps) {
+            *slot = MapUniform::new(map, view.origin, bias);
+        }
+        uniform.map_count = maps.len().min(MAX_MAPS) as u32;
+        uniform.to_light = maps.first().map_or([0.0, 1.0, 0.0], |map| (-map.fit.direction).to_array());
+        let at_origin = view.forward.as_dvec3().dot(view.origin - view.eye) as f32;
+        uniform.view = view.forward.extend(at_origin).to_array();
         uniform
     }
 }

@@ -55,7 +55,8 @@ pub struct Bias {
     /// Offset along the geometric normal to be multiplied by sin θ, in metres.
     pub normal_offset: f32,
     /// Depth bias to be multiplied by `|∂z/∂u| + |∂z/∂v|`, the [`depth_gradient`] of the
-    /// receiver's plane per texel: in texels. Nothing of [`BiasSettings`] sets it.
+    /// receiver's plane per texel: in texels. Where it is not 0, each comparison of a filter is made
+    /// with the plane's own depth where it reads.
     pub receiver_plane: f32,
 }
 
@@ -94,7 +95,7 @@ impl Bias {
             constant_depth: settings.constant * texel / fit.depth_range,
             slope_depth: settings.slope * texel / fit.depth_range,
             normal_offset: settings.normal_offset * texel,
-            receiver_plane: 0.0,
+            receiver_plane: settings.receiver_plane,
         }
     }
 
@@ -204,7 +205,12 @@ impl BiasSettings {
     /// stays within 65536 texel sizes of the origin; [`Bias::automatic`] has no such limit.
     /// Geometric normals are assumed.
     pub fn automatic(filter: FilterKind) -> Self {
-        Self { constant: PRECISION_TEXELS, slope: 0.0, normal_offset: automatic_normal_offset(reach(filter)) }
+        Self {
+            constant: PRECISION_TEXELS,
+            slope: 0.0,
+            normal_offset: automatic_normal_offset(reach(filter)),
+            receiver_plane: 0.0,
+        }
     }
 }
 

@@ -85,6 +85,11 @@ pub enum FitError {
         /// The value that would go.
         expected: usize,
     },
+    /// A matrix is not an orthographic view-projection of the light that it is said to be of.
+    NotOrthographic {
+        /// What is wrong with it.
+        why: &'static str,
+    },
     /// The map does not lie on the world's texel grid.
     NotOnGrid,
     /// The shadow map has no texels.
@@ -132,6 +137,9 @@ impl fmt::Display for FitError {
             }
             Self::CountMismatch { input, given, expected } => {
                 write!(f, "{input} is {given}; give {expected} as before, or build anew")
+            }
+            Self::NotOrthographic { why } => {
+                write!(f, "the matrix is no orthographic view-projection of this light: {why}")
             }
             Self::NotOnGrid => {
                 write!(f, "the map is on no grid; stabilise it by snapping or hysteresis, or take the sphere")

@@ -3,6 +3,8 @@
 //! All maps take positions relative to an origin in f64, so that they stay exact far from the
 //! world's own; [`LightFit::relative_to`] moves that origin.
 
+mod matrix;
+
 use glam::{DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use crate::axes::LightAxes;

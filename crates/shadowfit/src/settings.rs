@@ -249,11 +249,17 @@ pub struct BiasSettings {
     /// Offset of the sampled point along the geometric normal times the sine of that angle, in
     /// texel sizes.
     pub normal_offset: f32,
+    /// Receiver-plane bias: each comparison of the filter is made with the depth of the receiver's
+    /// own plane where it reads, moved toward the light by the plane's rise over so many texels
+    /// (J. Isidoro, "Shadow mapping: GPU-based tips and techniques", 2006). The reach of one
+    /// comparison clears a plane: 0.5 for a single texel, 1 for the hardware's 2×2 and all filters
+    /// made of it. 0 turns it off.
+    pub receiver_plane: f32,
 }
 
 impl Default for BiasSettings {
     fn default() -> Self {
-        Self { constant: 0.5, slope: 0.0, normal_offset: core::f32::consts::SQRT_2 }
+        Self { constant: 0.5, slope: 0.0, normal_offset: core::f32::consts::SQRT_2, receiver_plane: 0.0 }
     }
 }
 
@@ -266,6 +272,15 @@ pub enum FilterKind {
     /// Four comparisons, weighted bilinearly (the hardware's 2×2 percentage-closer filter).
     #[default]
     Hardware2x2,
+    /// Tent of 3×3 hardware look-ups (16 texels), by four of them.
+    Pcf3x3,
+    /// Tent of 5×5 hardware look-ups (36 texels), by nine of them.
+    Pcf5x5,
+}
+
+impl FilterKind {
+    /// All filters, the narrowest first.
+    pub const ALL: [Self; 4] = [Self::Point, Self::Hardware2x2, Self::Pcf3x3, Self::Pcf5x5];
 }
 
 /// Texture format that stores the depths.
@@ -397,6 +412,7 @@ setters!(BiasSettings {
     with_constant constant: f32,
     with_slope slope: f32,
     with_normal_offset normal_offset: f32,
+    with_receiver_plane receiver_plane: f32,
 });
 
 setters!(LightSettings {

@@ -70,8 +70,9 @@ fn every_field_is_reached_by_a_row() {
     assert!(margin != old.fit.margin && caster_extension != old.fit.caster_extension);
     assert!(rectangle != old.fit.rectangle && casters != old.fit.casters && kernel_margin != old.fit.kernel_margin);
     assert_eq!(up, old.fit.up, "which way is up belongs to the world, and no person tunes it");
-    let BiasSettings { constant, slope, normal_offset } = bias;
+    let BiasSettings { constant, slope, normal_offset, receiver_plane } = bias;
     assert!(constant != old.bias.constant && slope != old.bias.slope && normal_offset != old.bias.normal_offset);
+    assert!(receiver_plane != old.bias.receiver_plane);
     assert!(filter != old.filter && format != old.format);
     let LightSettings { azimuth, elevation, animate, animate_speed } = light;
     assert!(azimuth != old.light.azimuth && elevation != old.light.elevation);
@@ -108,6 +109,8 @@ fn options_reach_every_variant_and_resolution() {
     assert_eq!(reached("map.format", "depth32float").format, MapFormat::Depth32Float);
     assert_eq!(reached("map.filter", "point").filter, FilterKind::Point);
     assert_eq!(reached("map.filter", "hardware_2x2").filter, FilterKind::Hardware2x2);
+    assert_eq!(reached("map.filter", "pcf_3x3").filter, FilterKind::Pcf3x3);
+    assert_eq!(reached("map.filter", "pcf_5x5").filter, FilterKind::Pcf5x5);
     assert_eq!(reached("map.depth", "zero_to_one").fit.depth, DepthConvention::ZeroToOne);
     assert_eq!(reached("map.depth", "reversed").fit.depth, DepthConvention::Reversed);
     assert_eq!(reached("map.depth", "negative_one_to_one").fit.depth, DepthConvention::NegativeOneToOne);

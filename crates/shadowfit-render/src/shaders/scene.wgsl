@@ -1,5 +1,4 @@
-// The shaded pass: sun with shadow, sky and ground light, tone curve; and the probe pass, which
-// writes what the shading knew about each pixel.
+// The shaded pass: sun with shadow, sky and ground light, tone curve.
 
 struct SceneIn {
     @location(0) position: vec3<f32>,
@@ -10,7 +9,7 @@ struct SceneIn {
     @location(5) row0: vec4<f32>,
     @location(6) row1: vec4<f32>,
     @location(7) row2: vec4<f32>,
-    @location(8) id: u32,
+    @location(8) first_triangle: u32,
 }
 
 struct SceneOut {
@@ -20,7 +19,7 @@ struct SceneOut {
     @location(2) tangent: vec4<f32>,
     @location(3) uv: vec2<f32>,
     @location(4) color: vec4<f32>,
-    @location(5) @interpolate(flat) id: u32,
+    @location(5) @interpolate(flat) first_triangle: u32,
 }
 
 @vertex
@@ -43,7 +42,7 @@ fn vs_scene(in: SceneIn) -> SceneOut {
     out.tangent = vec4<f32>(tangent, in.tangent.w * mirror);
     out.uv = in.uv;
     out.color = in.color;
-    out.id = in.id;
+    out.first_triangle = in.first_triangle;
     return out;
 }
 
@@ -131,31 +130,4 @@ fn fs_scene_masked(in: SceneOut) -> @location(0) vec4<f32> {
         discard;
     }
     return color;
-}
-
-struct Probe {
-    // Position relative to the eye, and the shadow factor.
-    @location(0) position_factor: vec4<f32>,
-    // Geometric normal toward the eye, and the instance's index plus one.
-    @location(1) normal_id: vec4<f32>,
-}
-
-fn probed(in: SceneOut) -> Probe {
-    let geometric = geometric_normal(in.position, dpdx(in.position), dpdy(in.position));
-    let factor = shadowfit_factor(in.position, geometric);
-    return Probe(vec4<f32>(in.position, factor), vec4<f32>(geometric, f32(in.id + 1u)));
-}
-
-@fragment
-fn fs_probe(in: SceneOut) -> Probe {
-    return probed(in);
-}
-
-@fragment
-fn fs_probe_masked(in: SceneOut) -> Probe {
-    let probe = probed(in);
-    if is_cut_out(in.uv, in.color.a) {
-        discard;
-    }
-    return probe;
 }

@@ -3,9 +3,13 @@
 @group(GROUP) @binding(1) var shadowfit_texture: texture_depth_2d_array;
 @group(GROUP) @binding(2) var shadowfit_sampler: sampler_comparison;
 
-fn shadowfit_compare(map: u32, uv: vec3<f32>) -> f32 {
-    return textureSampleCompareLevel(
-        shadowfit_texture, shadowfit_sampler, uv.xy, i32(map), saturate(uv.z));
+// One look-up at a place of a map of the given size, in texels, with the depth of the point's plane there.
+fn shadowfit_look_up(map: u32, size: vec2<f32>, texel: vec2<f32>, place: shadowfit_Place) -> f32 {
+    // Not nearer to the border of what is in use than half a texel: the sampler would read beyond it.
+    let inside = clamp(texel, vec2<f32>(0.5), size - vec2<f32>(0.5));
+    let depth = place.depth + dot(place.gradient, inside - place.texel);
+    let uv = inside / vec2<f32>(textureDimensions(shadowfit_texture));
+    return textureSampleCompareLevel(shadowfit_texture, shadowfit_sampler, uv, i32(map), saturate(depth));
 }
 
 // The stored depth of a texel, for views of the map.

@@ -1,13 +1,15 @@
-// The four nearest texels, each compared, then weighted bilinearly: what a linear comparison
-// sampler does.
-fn shadowfit_compare(map: u32, uv: vec3<f32>) -> f32 {
-    let at = uv.xy * vec2<f32>(textureDimensions(shadowfit_texture)) - vec2<f32>(0.5);
-    let corner = vec2<i32>(floor(at));
-    let weight = fract(at);
+// One look-up at a place of a map of the given size, in texels, with the depth of the point's plane there: the four
+// nearest texels, each compared, then weighted bilinearly, as a linear comparison sampler does.
+fn shadowfit_look_up(map: u32, size: vec2<f32>, texel: vec2<f32>, place: shadowfit_Place) -> f32 {
+    let inside = clamp(texel, vec2<f32>(0.5), size - vec2<f32>(0.5));
+    let depth = place.depth + dot(place.gradient, inside - place.texel);
+    let corner = floor(inside - vec2<f32>(0.5));
+    let weight = inside - vec2<f32>(0.5) - corner;
     let top = mix(
-        shadowfit_lit(map, corner, uv.z), shadowfit_lit(map, corner + vec2<i32>(1, 0), uv.z), weight.x);
-    let bottom = mix(
-        shadowfit_lit(map, corner + vec2<i32>(0, 1), uv.z), shadowfit_lit(map, corner + vec2<i32>(1, 1), uv.z),
+        shadowfit_lit(map, size, corner, depth), shadowfit_lit(map, size, corner + vec2<f32>(1.0, 0.0), depth),
         weight.x);
+    let bottom = mix(
+        shadowfit_lit(map, size, corner + vec2<f32>(0.0, 1.0), depth),
+        shadowfit_lit(map, size, corner + vec2<f32>(1.0, 1.0), depth), weight.x);
     return mix(top, bottom, weight.y);
 }

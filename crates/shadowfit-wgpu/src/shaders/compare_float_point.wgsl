@@ -1,5 +1,4 @@
 // The nearest texel alone.
-fn shadowfit_compare(map: u32, uv: vec3<f32>) -> f32 {
-    let size = vec2<f32>(textureDimensions(shadowfit_texture));
-    return shadowfit_lit(map, vec2<i32>(floor(uv.xy * size)), uv.z);
+fn shadowfit_look_up(map: u32, size: vec2<f32>, texel: vec2<f32>, place: shadowfit_Place) -> f32 {
+    return shadowfit_lit(map, size, floor(texel), place.depth + dot(place.gradient, texel - place.texel));
 }

@@ -2,15 +2,28 @@
 
 struct shadowfit_Map {
     uv_from_world: mat4x4<f32>,
+    // Depth of a plane changes by dot(this, its normal) / cosine over one texel along u; zero without receiver-plane bias.
+    depth_per_texel_u: vec3<f32>,
     constant_depth: f32,
+    // The same along v.
+    depth_per_texel_v: vec3<f32>,
     slope_depth: f32,
+    // Texels in use, from the corner of the layer.
+    size: vec2<f32>,
     normal_offset: f32,
-    padding: f32,
+    receiver_plane: f32,
+    // View depth from which on the map is no choice.
+    far: f32,
+    padding_0: f32,
+    padding_1: f32,
+    padding_2: f32,
 }
 
 struct shadowfit_Receiver {
     to_light: vec3<f32>,
     map_count: u32,
+    // View depth is dot(xyz, position) + w.
+    view: vec4<f32>,
     maps: array<shadowfit_Map, MAX_MAPS>,
 }
 
@@ -20,22 +33,40 @@ struct shadowfit_Receiver {
 // surface gets a finite bias; it receives next to no light anyway.
 const SHADOWFIT_MIN_COSINE: f32 = 0.01;
 
+// Where a point is looked up.
+struct shadowfit_Place {
+    // Texels from the map's left and top.
+    texel: vec2<f32>,
+    // Biased depth.
+    depth: f32,
+    // Change of the depth of the point's plane over one texel along u and v.
+    gradient: vec2<f32>,
+}
+
 // Whether texture coordinates and depth lie inside the map.
 fn shadowfit_inside(uv: vec3<f32>) -> bool {
     return all(uv >= vec3<f32>(0.0)) && all(uv <= vec3<f32>(1.0));
 }
 
-// Texture coordinates (x right, y down) and biased depth of a point in one map.
+// Where a point is looked up in one map.
 // position: world space relative to the origin, metres. normal: unit, geometric.
-fn shadowfit_project(map: shadowfit_Map, position: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+fn shadowfit_project(map: shadowfit_Map, position: vec3<f32>, normal: vec3<f32>) -> shadowfit_Place {
     let cosine = clamp(dot(normal, shadowfit_receiver.to_light), SHADOWFIT_MIN_COSINE, 1.0);
     let sine = sqrt(1.0 - cosine * cosine);
     let offset = normal * (map.normal_offset * sine);
     let uv = (map.uv_from_world * vec4<f32>(position + offset, 1.0)).xyz;
-    return vec3<f32>(uv.xy, uv.z + map.constant_depth + map.slope_depth * sine / cosine);
+    let gradient = vec2<f32>(dot(map.depth_per_texel_u, normal), dot(map.depth_per_texel_v, normal)) / cosine;
+    let rise = map.receiver_plane * (abs(gradient.x) + abs(gradient.y));
+    let depth = uv.z + map.constant_depth + map.slope_depth * sine / cosine + rise;
+    return shadowfit_Place(uv.xy * map.size, depth, gradient);
 }
 
-// Whether a map is in use and covers a point.
+// Distance from the eye along the view's axis, in metres.
+fn shadowfit_view_depth(position: vec3<f32>) -> f32 {
+    return dot(shadowfit_receiver.view.xyz, position) + shadowfit_receiver.view.w;
+}
+
+// Whether a map is in use, and holds a point.
 fn shadowfit_covers(index: u32, map: shadowfit_Map, position: vec3<f32>) -> bool {
     let uv = (map.uv_from_world * vec4<f32>(position, 1.0)).xyz;
     return index < shadowfit_receiver.map_count && shadowfit_inside(uv);

@@ -117,6 +117,8 @@ pub const fn reach(filter: FilterKind) -> f32 {
     match filter {
         FilterKind::Point => Reach::POINT.taps,
         FilterKind::Hardware2x2 => Reach::HARDWARE_2X2.taps,
+        FilterKind::Pcf3x3 => Reach::kernel(3).taps,
+        FilterKind::Pcf5x5 => Reach::kernel(5).taps,
     }
 }
 

@@ -23,6 +23,7 @@ pub static PARAMETERS: &[Parameter] = &[
     BIAS_CONSTANT,
     BIAS_SLOPE,
     NORMAL_OFFSET,
+    RECEIVER_PLANE,
     AZIMUTH,
     ELEVATION,
     ANIMATE,
@@ -118,12 +119,20 @@ const FILTER: Parameter = Parameter {
                 label: "2×2 comparison",
                 help: "Four comparisons, weighted bilinearly: percentage-closer filtering by the sampler.",
             },
+            ChoiceOption {
+                id: "pcf_3x3",
+                label: "PCF 3×3",
+                help: "A tent over 16 texels, in four hardware look-ups: soft edges about two texels wide.",
+            },
+            ChoiceOption {
+                id: "pcf_5x5",
+                label: "PCF 5×5",
+                help: "A tent over 36 texels, in nine hardware look-ups: jaggies are gone, and so is what is thinner \
+                       than two texels.",
+            },
         ],
-        read: |s| match s.filter {
-            FilterKind::Point => 0,
-            FilterKind::Hardware2x2 => 1,
-        },
-        write: |s, index| s.filter = if index == 0 { FilterKind::Point } else { FilterKind::Hardware2x2 },
+        read: |s| FilterKind::ALL.iter().position(|filter| *filter == s.filter).unwrap_or(0),
+        write: |s, index| s.filter = FilterKind::ALL.get(index).copied().unwrap_or_default(),
     }),
     inert: always_active,
 };
@@ -214,6 +223,26 @@ const NORMAL_OFFSET: Parameter = Parameter {
         decimals: 2,
         read: |s| f64::from(s.bias.normal_offset),
         write: |s, value| s.bias.normal_offset = value as f32,
+    }),
+    inert: always_active,
+};
+
+const RECEIVER_PLANE: Parameter = Parameter {
+    id: "bias.receiver_plane",
+    group: Group::Bias,
+    label: "Receiver plane",
+    unit: "texels",
+    help: "Compares each texel with the depth of the lit surface's own plane there, and moves that toward the light by \
+           the plane's rise over so many texels. Clears any slope with far less leaking than the others: 0.5 is enough \
+           for the point filter and 1 for the rest. 0 turns it off.",
+    kind: Kind::Number(Number {
+        min: 0.0,
+        max: 16.0,
+        step: 0.05,
+        logarithmic: true,
+        decimals: 2,
+        read: |s| f64::from(s.bias.receiver_plane),
+        write: |s, value| s.bias.receiver_plane = value as f32,
     }),
     inert: always_active,
 };

@@ -38,18 +38,17 @@ impl Plane {
         let (normal, sine) = self.normal();
         let lifted = at.extend(self.height(at)) + normal * (offset * sine);
         let texels = lifted.truncate() / texel;
-        let centres: &[DVec2] = match filter {
-            FilterKind::Point => &[texels.floor() + 0.5],
-            FilterKind::Hardware2x2 => {
-                let first = (texels - 0.5).floor() + 0.5;
-                &[first, first + DVec2::X, first + DVec2::Y, first + 1.0]
-            }
+        // Texel centres that the filter reads, each way from the first.
+        let (first, count) = match filter {
+            FilterKind::Point => (texels.floor() + 0.5, 1),
+            FilterKind::Hardware2x2 => ((texels - 0.5).floor() + 0.5, 2),
+            FilterKind::Pcf3x3 => ((texels - 0.5).floor() - 0.5, 4),
+            FilterKind::Pcf5x5 => ((texels - 0.5).floor() - 1.5, 6),
         };
-        centres.iter().map(|c| lifted.z - self.height(*c * texel)).fold(f64::INFINITY, f64::min)
+        let centres = (0..count * count).map(|i| first + DVec2::new(f64::from(i % count), f64::from(i / count)));
+        centres.map(|c| lifted.z - self.height(c * texel)).fold(f64::INFINITY, f64::min)
     }
 }
-
-const FILTERS: [FilterKind; 2] = [FilterKind::Point, FilterKind::Hardware2x2];
 
 proptest! {
     /// In f64, so 1e-9 of a texel is rounding.
@@ -58,7 +57,7 @@ proptest! {
         theta in double(0.0, 1.5), azimuth in double(0.0, 6.3), texel in double(0.01, 10.0), (x, y) in (double(-100.0, 100.0), double(-100.0, 100.0)),
     ) {
         let plane = Plane::new(theta, azimuth);
-        for filter in FILTERS {
+        for filter in FilterKind::ALL {
             let texels = f64::from(plane_normal_offset(reach(filter), azimuth as f32));
             // The offset itself is f32.
             let least = plane.clearance(DVec2::new(x, y), texel, texels * texel * (1.0 + 1e-6), filter);
@@ -92,7 +91,7 @@ proptest! {
 
 #[test]
 fn five_percent_less_than_the_plane_offset_leaves_acne() {
-    for filter in FILTERS {
+    for filter in FilterKind::ALL {
         for azimuth in [0.0, 0.3, 0.785, 1.2, 2.5, 4.0, 5.5] {
             let plane = Plane::new(1.2, azimuth);
             let offset = 0.95 * f64::from(plane_normal_offset(reach(filter), azimuth as f32));
@@ -111,10 +110,11 @@ fn texels_become_depth_and_metres_by_the_longer_side() {
     let fit: LightFit = fitted(&camera(), DIRECTION, &settings);
     let texel = fit.texel_size.max_element();
     assert!(fit.texel_size.min_element() < texel);
-    let bias = Bias::from_texels(&BiasSettings { constant: 0.5, slope: 2.0, normal_offset: 3.0 }, &fit);
+    let bias = Bias::from_texels(&BiasSettings { constant: 0.5, slope: 2.0, normal_offset: 3.0, receiver_plane: 0.7 }, &fit);
     assert_eq!(bias.constant_depth, 0.5 * texel / fit.depth_range);
     assert_eq!(bias.slope_depth, 2.0 * texel / fit.depth_range);
     assert_eq!(bias.normal_offset, 3.0 * texel);
+    assert_eq!(bias.receiver_plane, 0.7);
     // A depth bias is as many metres along the light as it is texels.
     let lifted = -fit.direction * (0.5 * texel);
     let moved = apply(&fit.uv_from_world, Vec3::ZERO).z - apply(&fit.uv_from_world, lifted).z;
@@ -162,7 +162,8 @@ fn reaches_are_what_their_filters_read() {
         assert!(greatest <= reach && greatest > 0.97 * reach, "{}: {greatest} of {reach}", filter.name);
     }
     assert_eq!([1, 3, 5, 7].map(|taps| Reach::kernel(taps).per_axis()), [1.0, 2.0, 3.0, 4.0]);
-    assert_eq!([FilterKind::Point, FilterKind::Hardware2x2].map(Reach::from), [Reach::POINT, Reach::HARDWARE_2X2]);
+    let of_kinds = [Reach::POINT, Reach::HARDWARE_2X2, Reach::kernel(3), Reach::kernel(5)];
+    assert_eq!(FilterKind::ALL.map(Reach::from), of_kinds);
     let fit =
         LightFit { texel_size: Vec2::new(0.5, 0.25), ..fitted(&camera(), DIRECTION, &exact(FitKind::FrustumAabb)) };
     assert_eq!(Reach::POINT.over_metres(1.0, &fit).disc, Vec2::new(2.0, 4.0));

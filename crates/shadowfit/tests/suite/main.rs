@@ -24,6 +24,7 @@ mod metamorphic;
 #[cfg(feature = "mint")]
 mod mint;
 mod optimality;
+mod other_matrices;
 mod scenes;
 mod scroll;
 mod self_shadowing;

@@ -1,0 +1,54 @@
+//! Scenes of plain triangles, as measurements have them: no file, no materials.
+
+use glam::{Vec2, Vec3};
+
+use crate::{Material, Mesh, Node, Primitive, Scene, Transform};
+
+impl Scene {
+    /// A scene of plain triangles (world space, metres), one node for each object. They are opaque from both sides.
+    pub fn from_objects(name: &str, objects: &[Vec<[Vec3; 3]>]) -> Self {
+        let material = Material { double_sided: true, ..Material::default() };
+        Self {
+            name: name.to_owned(),
+            nodes: (0..objects.len()).map(node).collect(),
+            meshes: objects.iter().map(|triangles| mesh(triangles)).collect(),
+            materials: vec![material],
+            ..Self::default()
+        }
+    }
+}
+
+fn node(index: usize) -> Node {
+    Node { name: format!("object {index}"), rest: Transform::default(), mesh: Some(index), ..Node::default() }
+}
+
+/// Flat normals, no vertex shared.
+fn mesh(triangles: &[[Vec3; 3]]) -> Mesh {
+    let normal = |[a, b, c]: &[Vec3; 3]| (*b - *a).cross(*c - *a).normalize_or(Vec3::Y);
+    let positions: Vec<Vec3> = triangles.iter().flatten().copied().collect();
+    let primitive = Primitive {
+        normals: triangles.iter().flat_map(|triangle| [normal(triangle); 3]).collect(),
+        uvs: vec![Vec2::ZERO; positions.len()],
+        indices: (0..positions.len() as u32).collect(),
+        positions,
+        ..Primitive::default()
+    };
+    Mesh { primitives: vec![primitive], ..Mesh::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_triangles_of_a_plain_scene_are_those_it_was_made_of() {
+        let triangle = |x: f32| [Vec3::new(x, 0.0, 0.0), Vec3::new(x + 1.0, 0.0, 0.0), Vec3::new(x, 0.0, -1.0)];
+        let objects = [vec![triangle(0.0), triangle(2.0)], Vec::new(), vec![triangle(5.0)]];
+        let scene = Scene::from_objects("plain", &objects);
+        let found: Vec<_> = scene.pose(None, 0.0).triangles(&scene);
+        let vertices: Vec<_> = found.iter().map(|triangle| triangle.vertices).collect();
+        assert_eq!(vertices, objects.concat());
+        assert_eq!(found.iter().map(|triangle| triangle.instance).collect::<Vec<_>>(), [0, 0, 2]);
+        assert_eq!(scene.meshes[0].primitives[0].normals[0], Vec3::Y);
+    }
+}

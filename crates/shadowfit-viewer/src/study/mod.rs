@@ -1,0 +1,14 @@
+//! Techniques compared on the same frames: each is fitted, drawn by the samples' renderer, and judged against rays.
+//!
+//! A [`Subject`] is the scene, a [`Shot`] a camera and a light. A [`Technique`] is all that decides how shadows come
+//! out; its [`Fitter`] makes the maps of a shot, and a [`Contender`] draws and judges them.
+
+mod contender;
+mod histogram;
+mod subject;
+mod technique;
+
+pub use contender::{Contender, Fitter, Judging, SharedTruth, Shot, fit_map};
+pub use histogram::SeenDepths;
+pub use subject::Subject;
+pub use technique::{DEFAULT_TECHNIQUE, Knowledge, Technique};

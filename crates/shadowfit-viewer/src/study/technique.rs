@@ -1,0 +1,257 @@
+//! Techniques: all that decides how a picture's shadows come out, by name or from a file.
+
+use std::path::Path;
+
+use anyhow::{Context, Result, ensure};
+use glam::UVec2;
+use serde::{Deserialize, Serialize};
+use shadowfit::settings::{BiasSettings, FilterKind, MapFormat};
+use shadowfit::{
+    CascadeSettings, CasterPolicy, DepthConvention, FitKind, FitSettings, HoldSettings, SplitScheme, Stabilise,
+};
+use shadowfit_wgpu::{MAX_MAPS, RESOLUTIONS, ShadowMapDescriptor};
+
+/// What a fit is told of the scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Knowledge {
+    /// The boxes of its objects.
+    Objects,
+    /// The boxes of clusters of its triangles.
+    #[default]
+    Clusters,
+}
+
+/// A fit with the filter and the biases that read its maps.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Technique {
+    /// Name, for tables.
+    #[serde(default)]
+    pub name: String,
+    /// What it is, in a few words.
+    #[serde(default)]
+    pub what: String,
+    /// What the fit is told of the scene.
+    #[serde(default)]
+    pub receivers: Knowledge,
+    /// The maps and how they are fitted.
+    #[serde(default)]
+    pub maps: CascadeSettings,
+    /// Biases of the look-up.
+    #[serde(default)]
+    pub bias: BiasSettings,
+    /// Filter of the look-up.
+    #[serde(default)]
+    pub filter: FilterKind,
+    /// Storage of the maps.
+    #[serde(default)]
+    pub format: MapFormat,
+}
+
+/// A technique by name.
+struct Named {
+    name: &'static str,
+    what: &'static str,
+    receivers: Knowledge,
+    maps: fn() -> CascadeSettings,
+}
+
+/// Name of the technique that is best, all in all.
+pub const DEFAULT_TECHNIQUE: &str = "histogram-4";
+
+const NAMED: [Named; 10] = [
+    Named {
+        name: "xna-1",
+        what: "one map by the XNA sample's rule",
+        receivers: Knowledge::Objects,
+        maps: || single(FitKind::XnaSample),
+    },
+    Named {
+        name: "aabb-1",
+        what: "one map, box of the frustum in the light's axes",
+        receivers: Knowledge::Objects,
+        maps: || single(FitKind::FrustumAabb),
+    },
+    Named {
+        name: "oriented-1",
+        what: "one map, least rectangle around the frustum",
+        receivers: Knowledge::Objects,
+        maps: || single(FitKind::Oriented),
+    },
+    Named {
+        name: "focused-1",
+        what: "one map, least rectangle around the objects' boxes in view",
+        receivers: Knowledge::Objects,
+        maps: || single(FitKind::Focused),
+    },
+    Named {
+        name: "clusters-1",
+        what: "one map, least rectangle around the triangle clusters' boxes in view",
+        receivers: Knowledge::Clusters,
+        maps: || single(FitKind::Focused),
+    },
+    Named {
+        name: "stable-4",
+        what: "4 maps around spheres on a fixed grid of texels, cuts from the clusters' boxes and held",
+        receivers: Knowledge::Clusters,
+        maps: || {
+            let settings = several(FitKind::Sphere, SplitScheme::FromBoxes, Stabilise::Snap);
+            settings.with_hold(HoldSettings::default().with_waste(4.0))
+        },
+    },
+    Named {
+        name: "focused-4",
+        what: "4 maps, least rectangles around the objects' boxes in view, cuts from the boxes",
+        receivers: Knowledge::Objects,
+        maps: || several(FitKind::Focused, SplitScheme::FromBoxes, Stabilise::Off),
+    },
+    Named {
+        name: "clusters-4",
+        what: "the same with the boxes of triangle clusters",
+        receivers: Knowledge::Clusters,
+        maps: || several(FitKind::Focused, SplitScheme::FromBoxes, Stabilise::Off),
+    },
+    Named {
+        name: "histogram-4",
+        what: "the same, cuts from a histogram of the visible depth of the frame before",
+        receivers: Knowledge::Clusters,
+        maps: || several(FitKind::Focused, SplitScheme::FromHistogram, Stabilise::Off),
+    },
+    Named {
+        name: "calm-4",
+        what: "the same, maps held while they serve and moved by whole texels",
+        receivers: Knowledge::Clusters,
+        maps: || several(FitKind::Focused, SplitScheme::FromHistogram, Stabilise::Hysteresis),
+    },
+];
+
+fn single(kind: FitKind) -> CascadeSettings {
+    CascadeSettings { count: 1, ..several(kind, SplitScheme::Logarithmic, Stabilise::Off) }
+}
+
+fn several(kind: FitKind, splits: SplitScheme, stabilise: Stabilise) -> CascadeSettings {
+    let fit = FitSettings { kind, casters: CasterPolicy::List, max_distance: f32::MAX, ..FitSettings::default() };
+    CascadeSettings { fit, splits, stabilise, ..CascadeSettings::default() }
+}
+
+impl Default for Technique {
+    fn default() -> Self {
+        Self::named(DEFAULT_TECHNIQUE).unwrap_or_else(|| Self::of(&NAMED[0]))
+    }
+}
+
+impl Technique {
+    /// Names of all techniques that can be asked for, and what they are.
+    pub fn names() -> impl Iterator<Item = (&'static str, &'static str)> {
+        NAMED.iter().map(|named| (named.name, named.what))
+    }
+
+    /// The technique of a name, with the filter and the bias that measure best.
+    pub fn named(name: &str) -> Option<Self> {
+        NAMED.iter().find(|named| named.name == name).map(Self::of)
+    }
+
+    fn of(named: &Named) -> Self {
+        let filter = FilterKind::Pcf5x5;
+        Self {
+            name: named.name.to_owned(),
+            what: named.what.to_owned(),
+            receivers: named.receivers,
+            maps: (named.maps)(),
+            bias: BiasSettings::automatic(filter),
+            filter,
+            format: MapFormat::default(),
+        }
+    }
+
+    /// This technique with maps of another width and height, in texels.
+    #[must_use]
+    pub fn with_resolution(mut self, texels: u32) -> Self {
+        self.maps.fit.resolution = UVec2::splat(texels);
+        self
+    }
+
+    /// The technique of a name, or of a TOML file where the text ends in `.toml`.
+    ///
+    /// # Errors
+    ///
+    /// When there is no such name, or the file cannot be read or makes no sense.
+    pub fn find(text: &str) -> Result<Self> {
+        let file = Path::new(text);
+        if file.extension().is_some_and(|extension| extension == "toml") {
+            return Self::read(file);
+        }
+        let names: Vec<&str> = Self::names().map(|(name, _)| name).collect();
+        let known = names.join(", ");
+        Self::named(text).with_context(|| format!("there is no technique \"{text}\"; give a .toml file or one of {known}"))
+    }
+
+    /// Reads a technique from a TOML file; one without a name gets the file's.
+    ///
+    /// # Errors
+    ///
+    /// When it cannot be read or makes no sense.
+    pub fn read(file: &Path) -> Result<Self> {
+        let at = || file.display().to_string();
+        let text = std::fs::read_to_string(file).with_context(at)?;
+        let mut technique: Self = toml::from_str(&text).with_context(at)?;
+        if technique.name.is_empty() {
+            technique.name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        }
+        technique.check().with_context(at)?;
+        Ok(technique)
+    }
+
+    /// The technique as [`Self::read`] reads it.
+    ///
+    /// # Errors
+    ///
+    /// When a number cannot be written, such as one that is not finite.
+    pub fn to_toml(&self) -> Result<String> {
+        Ok(toml::to_string(self)?)
+    }
+
+    /// Refuses what no renderer can draw.
+    fn check(&self) -> Result<()> {
+        let resolution = self.maps.fit.resolution;
+        for side in resolution.to_array() {
+            ensure!(
+                RESOLUTIONS.contains(&side),
+                "maps.fit.resolution: {side} texels; give {} to {}",
+                RESOLUTIONS.start(),
+                RESOLUTIONS.end()
+            );
+        }
+        ensure!(
+            (1..=MAX_MAPS as u32).contains(&self.maps.count),
+            "maps.count: {}; give 1 to {MAX_MAPS}",
+            self.maps.count
+        );
+        ensure!(
+            self.maps.fit.depth != DepthConvention::NegativeOneToOne,
+            "maps.fit.depth: -1 to 1 is OpenGL's; give ZeroToOne or Reversed"
+        );
+        let BiasSettings { constant, slope, normal_offset, receiver_plane } = self.bias;
+        for (name, value) in [
+            ("constant", constant),
+            ("slope", slope),
+            ("normal_offset", normal_offset),
+            ("receiver_plane", receiver_plane),
+        ] {
+            ensure!(value.is_finite(), "bias.{name}: {value} is not finite");
+        }
+        Ok(())
+    }
+
+    /// The shadow map that this technique draws.
+    pub fn descriptor(&self) -> ShadowMapDescriptor {
+        ShadowMapDescriptor {
+            resolution: self.maps.fit.resolution.to_array(),
+            maps: self.maps.count,
+            format: self.format,
+            filter: self.filter,
+            depth: self.maps.fit.depth,
+            depth_clamp: self.maps.fit.casters == CasterPolicy::DepthClamp,
+        }
+    }
+}

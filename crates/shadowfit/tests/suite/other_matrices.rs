@@ -1,0 +1,67 @@
+//! Matrices of other code, taken as fits.
+
+use shadowfit::glam::{DMat4, DVec3, Mat4, UVec2, Vec3};
+use shadowfit::{DepthConvention, FitError, FitKind, FitSettings, LightFit, PerspectiveCamera, fit};
+
+const DIRECTION: Vec3 = Vec3::new(0.4, -0.8, 0.3);
+
+fn known(kind: FitKind, depth: DepthConvention) -> LightFit {
+    let camera = PerspectiveCamera {
+        eye: DVec3::new(120.0, 30.0, -75.0),
+        forward: Vec3::new(0.3, -0.2, -1.0),
+        up: Vec3::Y,
+        fov_y: 0.9,
+        aspect: 1.6,
+        near: 0.1,
+        far: 100.0,
+    };
+    let settings = FitSettings::default().with_kind(kind).with_depth(depth).with_resolution(UVec2::new(1024, 512));
+    fit(&camera.frustum().unwrap(), DIRECTION, &settings).unwrap()
+}
+
+/// Clip space from world space, in f64.
+fn world_matrix(fit: &LightFit) -> DMat4 {
+    fit.clip_from_world.as_dmat4() * DMat4::from_translation(-fit.origin)
+}
+
+#[test]
+fn the_matrix_of_a_fit_gives_the_fit_back() {
+    for kind in [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere] {
+        for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
+            let known = known(kind, depth);
+            let again =
+                LightFit::from_clip_from_world(&world_matrix(&known), DIRECTION, known.resolution, known.origin).unwrap();
+            assert_eq!((again.depth, again.resolution, again.origin), (depth, known.resolution, known.origin));
+            // Rows are normalised once more: a few roundings of the extent, of some 100 m.
+            assert!(again.clip_from_world.abs_diff_eq(known.clip_from_world, 4e-6), "{again:?}\n{known:?}");
+            assert!(again.uv_from_world.abs_diff_eq(known.uv_from_world, 4e-6));
+            assert!(again.texel_size.abs_diff_eq(known.texel_size, 1e-6));
+            assert!((again.depth_range - known.depth_range).abs() < 1e-3, "{kind:?} {depth:?}");
+            assert!((again.direction - known.direction).length() < 1e-6);
+            assert!((again.box_max - known.box_max).length() < 1e-3, "{:?} {:?}", again.box_max, known.box_max);
+        }
+    }
+}
+
+#[test]
+fn what_is_no_orthographic_view_projection_of_the_light_is_refused() {
+    let known = known(FitKind::Oriented, DepthConvention::ZeroToOne);
+    let good = world_matrix(&known);
+    let why = |matrix: DMat4, direction: Vec3| {
+        match LightFit::from_clip_from_world(&matrix, direction, UVec2::splat(64), known.origin) {
+            Err(FitError::NotOrthographic { why }) => why.to_owned(),
+            other => format!("{other:?}"),
+        }
+    };
+    let perspective = shadowfit::glam::camera::rh::proj::directx::perspective(1.0, 1.0, 0.1, 10.0).as_dmat4();
+    assert_eq!(why(perspective, Vec3::NEG_Z), "it is a perspective");
+    assert_eq!(why(good, Vec3::X), "its depth does not run along the light's direction");
+    let sheared = Mat4::from_cols_array(&[1.0, 0.3, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+    assert_eq!(why(sheared.as_dmat4() * good, DIRECTION), "its axes are not perpendicular");
+    assert_eq!(why(DMat4::from_scale(DVec3::new(0.0, 1.0, 1.0)) * good, DIRECTION), "it is flat");
+    let mut broken = good;
+    broken.w_axis.x = f64::NAN;
+    assert!(why(broken, DIRECTION).contains("NotFinite"));
+    assert!(LightFit::from_clip_from_world(&good, Vec3::ZERO, UVec2::ONE, DVec3::ZERO).is_err());
+    assert!(LightFit::from_clip_from_world(&good, DIRECTION, UVec2::ZERO, DVec3::ZERO).is_err());
+}
