@@ -5,10 +5,12 @@
 //! right ones and the named kinds of wrong ones, and [`peers`] ranks fits by what their maps give to
 //! many frames.
 
+mod camera;
 mod classes;
 mod edges;
 pub mod peers;
 mod tracer;
 
+pub use camera::PixelCamera;
 pub use classes::{Class, JudgeSettings, Judged, Shares, Surface, judge};
 pub use tracer::{Hit, Tracer};
