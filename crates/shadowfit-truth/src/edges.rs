@@ -1,56 +1,75 @@
-//! How far each pixel is from a change of the true shadow.
+//! How far each pixel is from the nearest marked one, exactly: squares of whole pixels.
+//!
+//! A. Meijster, J. Roerdink, W. Hesselink, "A general algorithm for computing distance transforms in
+//! linear time", 2000: distances along the rows, then the lower envelope of parabolas down each
+//! column. Integers throughout, so that masks made of it are the same everywhere.
 
-/// Distance, in pixels, from each pixel's centre to the nearest boundary between two neighbouring
-/// pixels whose truths differ; infinite where there is none. `truth` holds rows from the top;
-/// `None` (sky, or facing away) has no boundary with anything.
-pub(crate) fn distance_to_transition(size: [usize; 2], truth: &[Option<bool>]) -> Vec<f32> {
+use rayon::prelude::*;
+
+/// Square of a distance where nothing is marked.
+pub(crate) const NOWHERE: u32 = u32::MAX;
+
+/// Square of the distance, in pixels, from each pixel's centre to that of the nearest marked one;
+/// [`NOWHERE`] without any. Rows from the top.
+pub(crate) fn squared_distances(size: [usize; 2], is_marked: impl Fn(usize, usize) -> bool + Sync) -> Vec<u32> {
     let [width, height] = size;
-    let transition = |x: usize, y: usize| {
-        let here = truth[y * width + x];
-        let differs = |x: usize, y: usize| here.is_some() && truth[y * width + x].is_some_and(|t| Some(t) != here);
-        (x > 0 && differs(x - 1, y))
-            || (x + 1 < width && differs(x + 1, y))
-            || (y > 0 && differs(x, y - 1))
-            || (y + 1 < height && differs(x, y + 1))
-    };
-    let mut along_row = vec![f32::INFINITY; width * height];
-    for y in 0..height {
-        let row = &mut along_row[y * width..(y + 1) * width];
-        let mut last = f32::INFINITY;
-        for (x, distance) in row.iter_mut().enumerate() {
-            last = if transition(x, y) { 0.0 } else { last + 1.0 };
-            *distance = last;
-        }
-        last = f32::INFINITY;
-        for distance in row.iter_mut().rev() {
-            last = (last + 1.0).min(*distance);
-            *distance = last;
-        }
+    if width == 0 || height == 0 {
+        return Vec::new();
     }
-    columns(size, &along_row)
+    let mut along_row = vec![NOWHERE; width * height];
+    along_row.par_chunks_mut(width).enumerate().for_each(|(y, row)| sweep_row(row, |x| is_marked(x, y)));
+    let columns: Vec<Vec<u32>> = (0..width)
+        .into_par_iter()
+        .map(|x| column(&(0..height).map(|y| along_row[y * width + x]).collect::<Vec<_>>()))
+        .collect();
+    along_row.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        for (distance, column) in row.iter_mut().zip(&columns) {
+            *distance = column[y];
+        }
+    });
+    along_row
 }
 
-/// Second pass of the exact Euclidean transform: the least of horizontal² + vertical² over a
-/// column, plus the half pixel from a centre to its boundary.
-fn columns([width, height]: [usize; 2], along_row: &[f32]) -> Vec<f32> {
-    use rayon::prelude::*;
-    (0..width * height)
-        .into_par_iter()
-        .map(|index| {
-            let (x, y) = (index % width, index / width);
-            let mut best = f32::INFINITY;
-            // Rows in order of their distance, until they cannot do better.
-            for step in 0..height {
-                let vertical = (step * step) as f32;
-                if vertical >= best {
-                    break;
-                }
-                for row in [y.checked_sub(step), Some(y + step).filter(|row| *row < height)].into_iter().flatten() {
-                    let horizontal = along_row[row * width + x];
-                    best = best.min(horizontal * horizontal + vertical);
-                }
+/// Distance along a row to the nearest marked pixel of that row.
+fn sweep_row(row: &mut [u32], is_marked: impl Fn(usize) -> bool) {
+    let mut last = NOWHERE;
+    for (x, distance) in row.iter_mut().enumerate() {
+        last = if is_marked(x) { 0 } else { last.saturating_add(1) };
+        *distance = last;
+    }
+    last = NOWHERE;
+    for distance in row.iter_mut().rev() {
+        last = last.saturating_add(1).min(*distance);
+        *distance = last;
+    }
+}
+
+/// Squares of distances down a column, from its pixels' distances along their rows.
+fn column(along_row: &[u32]) -> Vec<u32> {
+    let value = |row: usize, y: usize| {
+        let (across, down) = (i64::from(along_row[row]), row as i64 - y as i64);
+        across * across + down * down
+    };
+    // The last row in which row `upper` is no worse than the later row `lower`.
+    let last_of = |upper: usize, lower: usize| (value(lower, 0) - value(upper, 0)).div_euclid(2 * (lower - upper) as i64);
+    // Rows of the lower envelope, and where each begins.
+    let mut envelope: Vec<(usize, i64)> = Vec::new();
+    for row in (0..along_row.len()).filter(|row| along_row[*row] != NOWHERE) {
+        while envelope.last().is_some_and(|(top, start)| last_of(*top, row) < *start) {
+            envelope.pop();
+        }
+        let start = envelope.last().map_or(0, |(top, _)| last_of(*top, row) + 1);
+        if start < along_row.len() as i64 {
+            envelope.push((row, start));
+        }
+    }
+    let mut place = 0;
+    (0..along_row.len())
+        .map(|y| {
+            while envelope.get(place + 1).is_some_and(|(_, start)| *start <= y as i64) {
+                place += 1;
             }
-            best.sqrt() + 0.5
+            envelope.get(place).map_or(NOWHERE, |(row, _)| u32::try_from(value(*row, y)).unwrap_or(NOWHERE - 1))
         })
         .collect()
 }
@@ -61,39 +80,25 @@ mod tests {
 
     #[test]
     fn distances_equal_a_search_of_every_pixel() {
-        let size = [17, 11];
-        let truth: Vec<Option<bool>> = (0..17 * 11u64)
-            .map(|i| {
-                let hash = i.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 59;
-                if hash < 4 { None } else { Some(hash == 5) }
-            })
-            .collect();
-        let distances = distance_to_transition(size, &truth);
-        let at = |x: i32, y: i32| {
-            ((0..17).contains(&x) && (0..11).contains(&y)).then(|| truth[(y * 17 + x) as usize]).flatten()
-        };
-        for y in 0..11 {
-            for x in 0..17 {
-                let mut best = f32::INFINITY;
-                for v in 0..11 {
-                    for u in 0..17 {
-                        let here = at(u, v);
-                        let is_transition = [(1, 0), (-1, 0), (0, 1), (0, -1)]
-                            .iter()
-                            .any(|(dx, dy)| matches!((here, at(u + dx, v + dy)), (Some(a), Some(b)) if a != b));
-                        if is_transition {
-                            best = best.min((((u - x).pow(2) + (v - y).pow(2)) as f32).sqrt() + 0.5);
-                        }
-                    }
-                }
-                assert_eq!(distances[(y * 17 + x) as usize], best, "pixel {x}, {y}");
+        let hash = |i: u64| i.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 54;
+        for (size, one_in) in [([17, 11], 10), ([40, 3], 30), ([5, 60], 50), ([23, 23], 3), ([1, 9], 4)] {
+            let is_marked = |x: usize, y: usize| hash((y * size[0] + x) as u64 + 7).is_multiple_of(one_in);
+            let found = squared_distances(size, is_marked);
+            for (index, found) in found.into_iter().enumerate() {
+                let (x, y) = (index % size[0], index / size[0]);
+                let every = (0..size[0] * size[1]).map(|i| (i % size[0], i / size[0]));
+                let wanted = every
+                    .filter(|(u, v)| is_marked(*u, *v))
+                    .map(|(u, v)| (u.abs_diff(x).pow(2) + v.abs_diff(y).pow(2)) as u32)
+                    .min();
+                assert_eq!(found, wanted.unwrap_or(NOWHERE), "pixel {x}, {y} of {size:?}");
             }
         }
     }
 
     #[test]
-    fn without_a_transition_every_distance_is_infinite() {
-        let distances = distance_to_transition([3, 2], &[Some(true); 6]);
-        assert!(distances.iter().all(|distance| distance.is_infinite()));
+    fn without_a_mark_every_distance_is_nowhere() {
+        assert!(squared_distances([3, 2], |_, _| false).iter().all(|square| *square == NOWHERE));
+        assert!(squared_distances([0, 2], |_, _| true).is_empty());
     }
 }

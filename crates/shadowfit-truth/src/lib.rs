@@ -1,14 +1,25 @@
 //! Ray-traced reference shadows, and the errors of a shadow map judged against them.
 //!
-//! It takes plain triangle slices (world space, right-handed, metres) and an alpha test, so that
-//! any engine can be judged: [`Tracer`] answers rays, [`judge`] sorts the pixels of a picture into
-//! right ones and the named kinds of wrong ones, and [`peers`] ranks fits by what their maps give to
-//! many frames.
+//! It takes plain triangle slices (world space, right-handed, metres) and cut-outs, so that any
+//! engine can be judged: [`Tracer`] answers rays, [`Truth`] says what the light does at each pixel,
+//! [`judge()`] sorts the pixels of a picture into right ones and the named kinds of wrong ones, and
+//! [`peers`] ranks fits by what their maps give to many frames.
 
-mod classes;
+mod camera;
+mod crawl;
+mod displacement;
 mod edges;
+mod judge;
 pub mod peers;
+mod sun;
+mod tally;
 mod tracer;
+mod truth;
 
-pub use classes::{Class, JudgeSettings, Judged, Shares, Surface, judge};
+pub use camera::PixelCamera;
+pub use crawl::{MapsBefore, crawl};
+pub use displacement::GREATEST_DISPLACEMENT;
+pub use judge::{Class, Judged, MapsSeen, judge};
+pub use tally::{GrazingTally, PictureTally};
 pub use tracer::{Hit, Tracer};
+pub use truth::{Truth, TruthPoint, TruthSettings};

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::Duration;
 
-use glam::{Vec3, Vec3A};
+use glam::{DVec3, Vec3, Vec3A};
 use obvhs::bvh2::{Bvh2, builder::build_bvh2_from_tris};
 use obvhs::ray::{Ray, RayHit};
 use obvhs::{BvhBuildParams, triangle::Triangle};
@@ -82,6 +82,20 @@ impl Tracer {
     /// one without area.
     pub fn normal(&self, triangle: u32) -> Vec3 {
         self.triangles[triangle as usize].compute_normal().into()
+    }
+
+    /// Unit normal of a triangle's plane by its winding, in f64; zero for one without area.
+    pub(crate) fn plane_normal(&self, triangle: u32) -> DVec3 {
+        let [a, b, c] = self.corners(triangle).map(Vec3::as_dvec3);
+        (b - a).cross(c - a).normalize_or_zero()
+    }
+
+    /// Distance along a ray to the plane of the triangle that was hit, in f64; the one that f32
+    /// found if that is not finite.
+    pub(crate) fn refine(&self, hit: Hit, normal: DVec3, origin: DVec3, direction: DVec3) -> f64 {
+        let corner = self.corners(hit.triangle)[0].as_dvec3();
+        let distance = normal.dot(corner - origin) / normal.dot(direction);
+        if distance.is_finite() { distance } else { f64::from(hit.distance) }
     }
 
     /// The nearest triangle along a ray (world space, metres; any length of direction).

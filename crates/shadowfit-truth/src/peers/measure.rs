@@ -3,14 +3,11 @@
 use glam::{DVec2, DVec3};
 
 use super::cells::Cells;
-use super::shadow_map::{Gradients, Place, ShadowMap};
+use super::choice::{Choice, LEAST_FACING, Occluder, choose, pixels_per_texel};
+use super::shadow_map::{Gradients, ShadowMap};
 use super::tally::{Shimmer, Tally};
 use super::visible::{VisiblePoint, VisiblePoints};
 
-/// Points with a smaller cosine toward the light have no say in the texel errors.
-const LEAST_FACING: f64 = 0.05;
-/// An occluder is in the map up to this depth behind the receiver, and before the near plane.
-const OCCLUDER_DEPTH_TOLERANCE: f64 = 1e-6;
 /// Every so many visible points one is followed into the frame before.
 const SHIMMER_STEP: u32 = 23;
 /// Points that move by less, in texels, stand still.
@@ -29,14 +26,6 @@ pub struct FrameMaps<'a> {
     pub pancake: bool,
 }
 
-/// The map that a point reads.
-struct Choice<'a> {
-    index: usize,
-    map: &'a ShadowMap,
-    place: Place,
-    gradients: Gradients,
-}
-
 /// Measures one frame's maps.
 pub fn measure(visible: &VisiblePoints, frame: &FrameMaps) -> Tally {
     let maps = frame.maps;
@@ -44,31 +33,23 @@ pub fn measure(visible: &VisiblePoints, frame: &FrameMaps) -> Tally {
         Tally { frames: 1, maps: maps.len() as u64, facing: visible.points.len() as u64, ..Tally::default() };
     let mut cells: Vec<Option<Cells>> = vec![None; maps.len()];
     for point in &visible.points {
-        let Some(choice) = choose(maps, point) else {
+        let Some(choice) = choose(maps, point.view_depth, point.position) else {
             tally.uncovered += 1;
             continue;
         };
+        let gradients = choice.map.gradients(&choice.place);
         add_occluders(&mut tally, visible, frame, point, &choice);
-        let jacobian = [point.pixel_right, point.pixel_down]
-            .map(|pixel| DVec2::new(choice.gradients.u.dot(pixel), choice.gradients.v.dot(pixel)));
+        let jacobian = gradients.texels_per_step([point.pixel_right, point.pixel_down]);
         add_error(&mut tally, point, &choice, jacobian);
         let footprint = jacobian.map(|column| column * visible.pixels_per_ray);
         cells[choice.index].get_or_insert_default().mark(choice.map.size, choice.place.texel, footprint);
         if point.number.is_multiple_of(SHIMMER_STEP) {
-            add_shimmer(&mut tally.shimmer, point, &choice, frame.previous);
+            add_shimmer(&mut tally.shimmer, point, (&choice, &gradients), frame.previous);
         }
-        tally.depth_range += 1.0 / choice.gradients.depth.dot(visible.to_light).abs();
+        tally.depth_range += 1.0 / gradients.depth.dot(visible.to_light).abs();
     }
     tally.used = cells.iter().flatten().map(Cells::share).sum();
     tally
-}
-
-/// The first map whose split is beyond the point, or the next later one that holds it.
-fn choose<'a>(maps: &'a [ShadowMap], point: &VisiblePoint) -> Option<Choice<'a>> {
-    maps.iter().enumerate().skip_while(|(_, map)| point.view_depth >= map.split_far).find_map(|(index, map)| {
-        let place = map.place(point.position);
-        map.is_inside(&place).then(|| Choice { index, map, place, gradients: map.gradients(&place) })
-    })
 }
 
 fn add_occluders(tally: &mut Tally, visible: &VisiblePoints, frame: &FrameMaps, point: &VisiblePoint, choice: &Choice) {
@@ -79,11 +60,11 @@ fn add_occluders(tally: &mut Tally, visible: &VisiblePoints, frame: &FrameMaps, 
     // Whether any occluder can be drawn, and whether any is behind the near plane.
     let (mut is_drawn, mut is_in) = (false, false);
     for occluder in visible.occluders_of(point) {
-        let place = choice.map.place(occluder);
-        if choice.map.is_within_sides(&place) && place.depth <= choice.place.depth + OCCLUDER_DEPTH_TOLERANCE {
-            is_drawn = true;
-            is_in |= place.depth >= -OCCLUDER_DEPTH_TOLERANCE;
-            if is_in {
+        match choice.occluder(occluder) {
+            Occluder::Out => {}
+            Occluder::BeforeNear => is_drawn = true,
+            Occluder::In => {
+                (is_drawn, is_in) = (true, true);
                 break;
             }
         }
@@ -103,17 +84,12 @@ fn add_error(tally: &mut Tally, point: &VisiblePoint, choice: &Choice, jacobian:
     tally.critical.add(error * (choice.map.size.x * choice.map.size.y).sqrt());
 }
 
-/// Pixels per texel along the worse axis: one over the smaller singular value of the matrix with
-/// these columns, texels a pixel. Infinite or not a number where that is 0.
-fn pixels_per_texel([right, down]: [DVec2; 2]) -> f64 {
-    // The singular values are half of the sum and the difference of these lengths, and their product
-    // is the determinant, which keeps its digits where the difference loses them.
-    let sum = DVec2::new(right.x + down.y, right.y - down.x).length();
-    let difference = DVec2::new(right.x - down.y, right.y + down.x).length();
-    0.5 * (sum + difference) / right.perp_dot(down).abs()
-}
-
-fn add_shimmer(shimmer: &mut Shimmer, point: &VisiblePoint, choice: &Choice, previous: Option<&[ShadowMap]>) {
+fn add_shimmer(
+    shimmer: &mut Shimmer,
+    point: &VisiblePoint,
+    (choice, gradients): (&Choice, &Gradients),
+    previous: Option<&[ShadowMap]>,
+) {
     let Some(then) = previous.and_then(|maps| maps.get(choice.index)) else { return };
     let place = then.place(point.position);
     if !then.is_inside(&place) {
@@ -122,7 +98,7 @@ fn add_shimmer(shimmer: &mut Shimmer, point: &VisiblePoint, choice: &Choice, pre
     let moved = choice.place.texel - place.texel;
     let crawl = (moved - moved.round()).length();
     let texels = |gradients: &Gradients| texel_density(gradients.u, gradients.v);
-    let change = ((texels(&choice.gradients) / texels(&then.gradients(&place))).sqrt() - 1.0).abs();
+    let change = ((texels(gradients) / texels(&then.gradients(&place))).sqrt() - 1.0).abs();
     shimmer.points += 1;
     shimmer.moved += crawl;
     shimmer.still += u64::from(crawl < STILL_MOVE && change < STILL_SCALE);

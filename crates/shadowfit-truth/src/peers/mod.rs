@@ -6,6 +6,7 @@
 //! right-handed, y up, metres.
 
 mod cells;
+pub(crate) mod choice;
 #[cfg(test)]
 mod closed_form;
 mod error;

@@ -48,12 +48,25 @@ pub struct Gradients {
     pub depth: DVec3,
 }
 
+impl Gradients {
+    /// Texels right and down for steps in the world.
+    pub(crate) fn texels_per_step(&self, steps: [DVec3; 2]) -> [DVec2; 2] {
+        steps.map(|step| DVec2::new(self.u.dot(step), self.v.dot(step)))
+    }
+}
+
 impl ShadowMap {
     /// Prepares a map for a light; `to_light` is the unit direction toward it, world axes.
     pub fn new(map: &FitMap, to_light: DVec3) -> Self {
         let clip_from_world = map.clip_from_world();
         let rows = [0, 1, 2, 3].map(|row| clip_from_world.row(row));
         Self { rows, size: map.size(), split_far: map.split_far, is_reversed: is_reversed(&clip_from_world, to_light) }
+    }
+
+    /// Rows of clip from positions relative to a point of the world.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn rows_from(&self, origin: DVec3) -> [DVec4; 4] {
+        self.rows.map(|row| row.truncate().extend(row.truncate().dot(origin) + row.w))
     }
 
     /// Where a point of the world lies.

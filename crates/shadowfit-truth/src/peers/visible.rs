@@ -4,10 +4,11 @@
 
 use std::ops::Range;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::Frame;
 use crate::Tracer;
+use crate::camera::{PixelCamera, slide};
 
 /// Rays across and down a frame.
 pub const RAYS: [u32; 2] = [320, 180];
@@ -56,14 +57,14 @@ impl VisiblePoints {
     /// Traces every `stride`th ray across and down of the frame (1 for what the measures define;
     /// more is a quick look), with the triangles of the frame's scene.
     pub fn trace(tracer: &Tracer, frame: &Frame, stride: u32) -> Self {
-        let camera = RayCamera::new(frame);
+        let camera = ray_camera(frame);
         let stride = stride.max(1);
         let pixels_per_ray = SCREEN_HEIGHT / f64::from(RAYS[1]) * f64::from(stride);
         let mut visible = Self { to_light: frame.to_light(), pixels_per_ray, ..Self::default() };
         let step = stride as usize;
         for y in (0..RAYS[1]).step_by(step) {
             for x in (0..RAYS[0]).step_by(step) {
-                visible.add(tracer, &camera, camera.direction(x, y));
+                visible.add(tracer, &camera, camera.ray(x, y));
             }
         }
         visible
@@ -76,10 +77,10 @@ impl VisiblePoints {
     }
 
     /// Follows one ray, and counts and keeps what it meets.
-    fn add(&mut self, tracer: &Tracer, camera: &RayCamera, direction: DVec3) {
+    fn add(&mut self, tracer: &Tracer, camera: &PixelCamera, direction: DVec3) {
         let Some(hit) = tracer.first_hit(camera.eye.as_vec3(), direction.as_vec3()) else { return };
-        let mut normal = plane_normal(tracer, hit.triangle);
-        let view_depth = refine(tracer, hit.triangle, normal, camera.eye, direction, hit.distance);
+        let mut normal = tracer.plane_normal(hit.triangle);
+        let view_depth = tracer.refine(hit, normal, camera.eye, direction);
         if view_depth > camera.far || view_depth < camera.near {
             return;
         }
@@ -93,8 +94,8 @@ impl VisiblePoints {
             return;
         }
         let position = camera.eye + direction * view_depth;
-        // Moves on the tangent plane along which the ray through the neighbouring pixel is met.
-        let slide = |across: DVec3| (across - direction * (across.dot(normal) / direction.dot(normal))) * view_depth;
+        let pixel = 2.0 * camera.tan_half_fov.y / SCREEN_HEIGHT;
+        let step = |across: DVec3| slide(across * pixel, direction, normal, view_depth);
         let occluders = self.add_occluders(tracer, position + normal * RAY_OFFSET);
         self.points.push(VisiblePoint {
             number,
@@ -102,8 +103,8 @@ impl VisiblePoints {
             normal,
             facing,
             view_depth,
-            pixel_right: slide(camera.right * camera.pixel),
-            pixel_down: slide(-camera.up * camera.pixel),
+            pixel_right: step(camera.right),
+            pixel_down: step(-camera.up),
             occluders,
         });
     }
@@ -113,8 +114,8 @@ impl VisiblePoints {
         let first = self.occluders.len();
         let to_light = self.to_light;
         tracer.for_each_hit(origin.as_vec3(), to_light.as_vec3(), |hit| {
-            let normal = plane_normal(tracer, hit.triangle);
-            let distance = refine(tracer, hit.triangle, normal, origin, to_light, hit.distance);
+            let normal = tracer.plane_normal(hit.triangle);
+            let distance = tracer.refine(hit, normal, origin, to_light);
             if distance > 0.0 {
                 self.occluders.push(distance);
             }
@@ -123,54 +124,19 @@ impl VisiblePoints {
     }
 }
 
-/// The camera of a frame as its rays need it: world space, metres.
-struct RayCamera {
-    eye: DVec3,
-    right: DVec3,
-    up: DVec3,
-    forward: DVec3,
-    /// Half of the picture's width and height at view depth 1.
-    half: [f64; 2],
-    /// Side of a pixel at view depth 1.
-    pixel: f64,
-    near: f64,
-    far: f64,
-}
-
-impl RayCamera {
-    fn new(frame: &Frame) -> Self {
-        let view = frame.view_from_world();
-        let axis = |row: usize| view.row(row).truncate();
-        let tan = frame.tan_half_fov();
-        Self {
-            eye: view.inverse().w_axis.truncate(),
-            right: axis(0),
-            up: axis(1),
-            forward: -axis(2),
-            half: [tan * frame.aspect, tan],
-            pixel: 2.0 * tan / SCREEN_HEIGHT,
-            near: frame.near,
-            far: frame.far,
-        }
+/// The camera of a frame and its rays; the distance along one is view depth.
+fn ray_camera(frame: &Frame) -> PixelCamera {
+    let view = frame.view_from_world();
+    let axis = |row: usize| view.row(row).truncate();
+    let tan = frame.tan_half_fov();
+    PixelCamera {
+        eye: view.inverse().w_axis.truncate(),
+        right: axis(0),
+        up: axis(1),
+        forward: -axis(2),
+        tan_half_fov: DVec2::new(tan * frame.aspect, tan),
+        size: RAYS,
+        near: frame.near,
+        far: frame.far,
     }
-
-    /// Direction through the middle of a part of the picture; the distance along it is view depth.
-    fn direction(&self, x: u32, y: u32) -> DVec3 {
-        let across = (2.0 * (f64::from(x) + 0.5) / f64::from(RAYS[0]) - 1.0) * self.half[0];
-        let upward = (1.0 - 2.0 * (f64::from(y) + 0.5) / f64::from(RAYS[1])) * self.half[1];
-        self.right * across + self.up * upward + self.forward
-    }
-}
-
-/// Unit normal of a triangle's plane, by its winding.
-fn plane_normal(tracer: &Tracer, triangle: u32) -> DVec3 {
-    let [a, b, c] = tracer.corners(triangle).map(glam::Vec3::as_dvec3);
-    (b - a).cross(c - a).normalize_or_zero()
-}
-
-/// Distance along a ray to a triangle's plane; the one that f32 found if that is not finite.
-fn refine(tracer: &Tracer, triangle: u32, normal: DVec3, origin: DVec3, direction: DVec3, found: f32) -> f64 {
-    let corner = tracer.corners(triangle)[0].as_dvec3();
-    let distance = normal.dot(corner - origin) / normal.dot(direction);
-    if distance.is_finite() { distance } else { f64::from(found) }
 }

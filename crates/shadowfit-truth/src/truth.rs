@@ -1,0 +1,227 @@
+//! What the light really does at each pixel of a picture.
+//!
+//! It follows from the scene, the camera and the light alone, so that it is traced once and any
+//! number of shadow maps are judged against it.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::edges::{NOWHERE, squared_distances};
+use crate::sun::Sun;
+use crate::{Hit, PixelCamera, Tracer};
+
+/// How truth is traced. World space, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TruthSettings {
+    /// Unit direction toward the light, world axes.
+    pub to_light: DVec3,
+    /// Shadow rays start this far along the geometric normal, in metres.
+    pub ray_offset: f64,
+    /// Angular radius of the sun, in radians; 0 for hard shadows.
+    pub sun_radius: f64,
+    /// Rays in the sun's cone when it has a radius.
+    pub sun_rays: u32,
+    /// Greatest view depth that is judged: the shadow distance, in metres.
+    pub max_distance: f64,
+}
+
+impl TruthSettings {
+    /// A hard sun, rays that start a millimetre above the surface, and no end of the shadows.
+    pub fn new(to_light: DVec3) -> Self {
+        Self { to_light, ray_offset: 1e-3, sun_radius: 0.0, sun_rays: 64, max_distance: f64::INFINITY }
+    }
+}
+
+/// What is seen at a pixel's centre. World space, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TruthPoint {
+    /// The point, on its triangle's plane.
+    pub position: DVec3,
+    /// Unit geometric normal on the side of the eye.
+    pub normal: DVec3,
+    /// Cosine of the angle between the normal and the direction toward the light.
+    pub facing: f64,
+    /// Distance from the eye along the view, in metres.
+    pub view_depth: f64,
+    /// Share of the rays that reach the light, 0..=1; 0 where the point is not judged.
+    pub lit: f32,
+    /// Index of the triangle.
+    pub triangle: u32,
+    /// Whether the point is judged: it faces the light and is within the shadow distance.
+    pub is_judged: bool,
+}
+
+impl TruthPoint {
+    /// Whether at least half of the light arrives; `None` where the point is not judged.
+    pub fn verdict(&self) -> Option<bool> {
+        self.is_judged.then_some(self.lit >= 0.5)
+    }
+}
+
+/// The truth of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Truth {
+    /// Camera of the picture.
+    pub camera: PixelCamera,
+    /// How it was traced.
+    pub settings: TruthSettings,
+    /// What is seen at each pixel, rows from the top; `None` for the sky.
+    pub points: Vec<Option<TruthPoint>>,
+    /// Squares of the distances to the nearest transition pixel.
+    transition_squares: Vec<u32>,
+}
+
+impl Truth {
+    /// Traces the truth of a picture. `seen` is the triangle (index into the tracer's) that the
+    /// renderer's rasteriser drew at each pixel, rows from the top, `None` for the sky; an index
+    /// beyond the tracer's triangles counts as sky.
+    ///
+    /// The visible point is where the ray through the pixel's centre meets the triangle's plane. Its
+    /// view depth is held within that of the corners, since a sliver that is seen edge-on would be
+    /// met anywhere.
+    ///
+    /// # Panics
+    ///
+    /// If `seen` does not have an element a pixel.
+    pub fn trace(tracer: &Tracer, camera: &PixelCamera, settings: &TruthSettings, seen: &[Option<u32>]) -> Self {
+        assert_eq!(seen.len(), camera.pixels(), "as many triangles as pixels");
+        let sun = Sun::new(settings.to_light, settings.sun_radius, settings.sun_rays);
+        let points: Vec<Option<TruthPoint>> = seen
+            .par_iter()
+            .enumerate()
+            .map(|(pixel, seen)| {
+                let triangle = seen.filter(|triangle| (*triangle as usize) < tracer.len())?;
+                let mut point = visible_point(tracer, camera, settings, pixel, triangle);
+                if point.is_judged {
+                    point.lit = lit_share(tracer, settings, &sun, pixel, &point);
+                }
+                Some(point)
+            })
+            .collect();
+        let mut truth = Self { camera: *camera, settings: *settings, points, transition_squares: Vec::new() };
+        let size = camera.size.map(|side| side as usize);
+        truth.transition_squares = squared_distances(size, |x, y| truth.is_transition([x, y]));
+        truth
+    }
+
+    /// The nearest triangle at each pixel between the near and the far plane, by rays, for pictures
+    /// without a rasteriser. A ray whose nearest triangle is out of that range sees the sky.
+    pub fn seen_by_rays(tracer: &Tracer, camera: &PixelCamera) -> Vec<Option<u32>> {
+        let see = |pixel| {
+            let ray = camera.ray_of(pixel);
+            let hit = tracer.first_hit(camera.eye.as_vec3(), ray.as_vec3())?;
+            let depth = tracer.refine(hit, tracer.plane_normal(hit.triangle), camera.eye, ray);
+            (camera.near..=camera.far).contains(&depth).then_some(hit.triangle)
+        };
+        (0..camera.pixels()).into_par_iter().map(see).collect()
+    }
+
+    /// Whether the light reaches a pixel (its place among the rows from the top); `None` where it is
+    /// not judged.
+    pub fn verdict(&self, pixel: usize) -> Option<bool> {
+        self.points[pixel].as_ref()?.verdict()
+    }
+
+    /// Distance, in pixels, from a pixel's centre to the nearest border between two neighbouring
+    /// judged pixels (of four neighbours) whose verdicts differ, by the nearest pixel that has such a
+    /// border: half a pixel more than the distance to its centre. Infinite where there is none.
+    pub fn transition_distance(&self, pixel: usize) -> f32 {
+        match self.transition_squares[pixel] {
+            NOWHERE => f32::INFINITY,
+            square => (square as f32).sqrt() + 0.5,
+        }
+    }
+
+    /// Whether the distance to a transition is at most `width`, in pixels.
+    ///
+    /// In f32, without a root: a whole square against that of `width` less half a pixel, so that
+    /// another implementation, such as the GPU's, finds the very same pixels.
+    pub(crate) fn is_near_transition(&self, pixel: usize, width: f32) -> bool {
+        let square = self.transition_squares[pixel];
+        let reach = width - 0.5;
+        square != NOWHERE && square as f32 <= reach * reach
+    }
+
+    /// What blocks a judged point: the ray toward the sun's middle, or the first one that is blocked
+    /// when that one is free.
+    pub(crate) fn blocked_ray(&self, tracer: &Tracer, pixel: usize, point: &TruthPoint) -> DVec3 {
+        let settings = &self.settings;
+        let sun = Sun::new(settings.to_light, settings.sun_radius, settings.sun_rays);
+        let origin = ray_origin(settings, point).as_vec3();
+        let is_blocked = |direction: &DVec3| tracer.is_occluded(origin, direction.as_vec3());
+        let centre = sun.centre();
+        if sun.rays() == 1 || is_blocked(&centre) {
+            return centre;
+        }
+        sun.directions(pixel).find(is_blocked).unwrap_or(centre)
+    }
+
+    /// Calls `visit` with every occluder of a judged point along a ray, world space, metres.
+    pub(crate) fn for_each_occluder(
+        &self,
+        tracer: &Tracer,
+        point: &TruthPoint,
+        direction: DVec3,
+        mut visit: impl FnMut(DVec3),
+    ) {
+        let origin = ray_origin(&self.settings, point);
+        tracer.for_each_hit(origin.as_vec3(), direction.as_vec3(), |hit: Hit| {
+            let distance = tracer.refine(hit, tracer.plane_normal(hit.triangle), origin, direction);
+            visit(point.position + direction * distance);
+        });
+    }
+
+    fn is_transition(&self, [x, y]: [usize; 2]) -> bool {
+        let [width, height] = self.camera.size.map(|side| side as usize);
+        let here = self.verdict(y * width + x);
+        let differs = |x: usize, y: usize| {
+            matches!((here, self.verdict(y * width + x)), (Some(here), Some(there)) if here != there)
+        };
+        here.is_some()
+            && ((x > 0 && differs(x - 1, y))
+                || (x + 1 < width && differs(x + 1, y))
+                || (y > 0 && differs(x, y - 1))
+                || (y + 1 < height && differs(x, y + 1)))
+    }
+}
+
+/// What the ray through a pixel's centre meets of the plane of the triangle that is seen there.
+fn visible_point(
+    tracer: &Tracer,
+    camera: &PixelCamera,
+    settings: &TruthSettings,
+    pixel: usize,
+    triangle: u32,
+) -> TruthPoint {
+    let ray = camera.ray_of(pixel);
+    let normal = tracer.plane_normal(triangle);
+    let corners = tracer.corners(triangle).map(glam::Vec3::as_dvec3);
+    let depths = corners.map(|corner| camera.view_depth(corner));
+    let nearest = depths.into_iter().fold(f64::INFINITY, f64::min).max(camera.near);
+    let farthest = depths.into_iter().fold(f64::NEG_INFINITY, f64::max).min(camera.far);
+    // `max` and `min` drop what is not a number: a ray within the plane.
+    let view_depth = (normal.dot(corners[0] - camera.eye) / normal.dot(ray)).max(nearest).min(farthest);
+    let normal = if normal.dot(ray) > 0.0 { -normal } else { normal };
+    let facing = normal.dot(settings.to_light);
+    TruthPoint {
+        position: camera.eye + ray * view_depth,
+        normal,
+        facing,
+        view_depth,
+        lit: 0.0,
+        triangle,
+        is_judged: facing > 0.0 && view_depth <= settings.max_distance,
+    }
+}
+
+/// Where the shadow rays of a point start.
+fn ray_origin(settings: &TruthSettings, point: &TruthPoint) -> DVec3 {
+    point.position + point.normal * settings.ray_offset
+}
+
+/// Share of a point's rays that reach the sun.
+fn lit_share(tracer: &Tracer, settings: &TruthSettings, sun: &Sun, pixel: usize, point: &TruthPoint) -> f32 {
+    let origin = ray_origin(settings, point).as_vec3();
+    let free = sun.directions(pixel).filter(|direction| !tracer.is_occluded(origin, direction.as_vec3())).count();
+    free as f32 / sun.rays() as f32
+}
