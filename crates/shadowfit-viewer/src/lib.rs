@@ -15,6 +15,7 @@ mod outside;
 mod rays;
 mod scout;
 mod stage;
+pub mod study;
 mod window;
 
 use std::process::ExitCode;

@@ -16,6 +16,11 @@ pub struct SceneRays {
 }
 
 impl SceneRays {
+    /// Moves everything to another pose of the same scene.
+    pub fn set_pose(&mut self, scene: &Scene, pose: &Pose) {
+        *self = Self::new(scene, pose);
+    }
+
     /// Builds the rays' view of a scene in a pose.
     pub fn new(scene: &Scene, pose: &Pose) -> Self {
         let instances = scene.instances();

@@ -8,15 +8,15 @@ use shadowfit::settings::{CasterPolicy, FitSettings, LightSettings, Settings};
 use shadowfit::{DepthConvention, FitError, LightFit, PerspectiveCamera, ViewFrustum, bias, diagnostics};
 use shadowfit_egui::Artefact;
 use shadowfit_render::{
-    Atmosphere, FlyCamera, FlyInput, Frame, Gpu, GpuScene, Inset, Line, Picture, ProbePixel, Renderer, Statistics,
+    Atmosphere, FlyCamera, FlyInput, Frame, Gpu, GpuScene, Inset, Line, Picture, ProbeTargets, Renderer, Statistics,
 };
 use shadowfit_scene::{Aabb, Lens, Pose, Scene};
-use shadowfit_truth::{JudgeSettings, Judged, Surface, judge};
-use shadowfit_wgpu::{ShadowMapDescriptor, ShadowMapError};
+use shadowfit_truth::{Judged, MapsSeen, PixelCamera, Truth, TruthSettings, judge};
+use shadowfit_wgpu::{MapFit, ShadowMapDescriptor, ShadowMapError};
 
 use crate::boxes::SceneBoxes;
 use crate::rays::SceneRays;
-use crate::{artefact, outside};
+use crate::{artefact, outside, study};
 
 /// Width of a picture, in pixels, from which on the inset has its full 300×200; smaller pictures
 /// have a smaller one.
@@ -325,7 +325,8 @@ impl Stage {
         };
         let inset = fitted.fits.first().filter(|_| self.settings.view.inset).map(|fit| self.inset(fit, picture.size));
         let atmosphere = self.atmosphere(&camera);
-        let frame = frame(&self.settings, &camera, &fitted.fits, &atmosphere, &lines, inset);
+        let maps = map_fits(&fitted.fits);
+        let frame = frame(&self.settings, &camera, &maps, &atmosphere, &lines, inset);
         match self.renderer.draw(&self.gpu, &mut self.gpu_scene, &frame, picture) {
             Ok(statistics) => self.statistics = statistics,
             Err(error) => self.problem = Some(error.to_string()),
@@ -408,49 +409,47 @@ impl Stage {
     }
 
     /// Draws the present view's shadow decisions at the given size and judges them against rays.
-    /// With `subject_only`, only pixels of the scene's subject count in the shares.
-    pub fn judge(&mut self, size: [u32; 2], subject_only: bool) -> Judged {
-        self.judged_surfaces(size, subject_only).0
+    /// With `subject_only`, only pixels of the scene's subject count in the sums. `None` where the
+    /// GPU cannot tell triangles apart, with the reason as [`Self::problem`].
+    pub fn judge(&mut self, size: [u32; 2], subject_only: bool) -> Option<Judged> {
+        Some(self.judge_with_truth(size, subject_only)?.1)
     }
 
     /// Pixels per texel along the worse axis at each pixel of the present view, at the given size,
     /// that borders on a change of the true shadow.
     pub fn pixels_per_texel_at_edges(&mut self, size: [u32; 2]) -> Vec<f32> {
-        let (judged, surfaces) = self.judged_surfaces(size, false);
-        let at_edge = |index: &usize| judged.edge_distance[*index] <= 0.5;
-        (0..surfaces.len()).filter(at_edge).filter_map(|index| Some(surfaces[index]?.pixels_per_texel)).collect()
+        let Some((truth, judged)) = self.judge_with_truth(size, false) else { return Vec::new() };
+        let at_edge = |pixel: &usize| truth.transition_distance(*pixel) <= 0.5 && judged.counted[*pixel];
+        (0..truth.points.len()).filter(at_edge).map(|pixel| judged.pixels_per_texel[pixel]).collect()
     }
 
-    fn judged_surfaces(&mut self, size: [u32; 2], subject_only: bool) -> (Judged, Vec<Option<Surface>>) {
-        let fits = self.fits(size);
+    fn judge_with_truth(&mut self, size: [u32; 2], subject_only: bool) -> Option<(Truth, Judged)> {
+        let maps = map_fits(&self.fits(size));
         let camera = self.perspective(size);
         let atmosphere = Atmosphere::default();
-        let frame = frame(&self.settings, &camera, &fits, &atmosphere, &[], None);
-        let pixels = match self.renderer.probe(&self.gpu, &mut self.gpu_scene, &frame, size) {
+        let frame = frame(&self.settings, &camera, &maps, &atmosphere, &[], None);
+        let targets = ProbeTargets::new(&self.gpu.device, size);
+        let pixels = match self.renderer.probe(&self.gpu, &mut self.gpu_scene, &frame, &targets) {
             Ok(probe) => probe.pixels,
             Err(error) => {
                 self.problem = Some(error.to_string());
-                vec![None; (size[0] * size[1]) as usize]
+                return None;
             }
         };
-        let counts = self.counted_instances(subject_only);
-        let surface = |pixel: ProbePixel| Surface {
-            position: (camera.eye + pixel.position.as_dvec3()).as_vec3(),
-            normal: pixel.normal,
-            factor: pixel.factor,
-            pixels_per_texel: fits
-                .first()
-                .and_then(|fit| pixels_per_texel(fit, &camera, size, pixel.position, pixel.normal))
-                .unwrap_or(f32::INFINITY),
-            counts: counts[pixel.instance],
-        };
-        let surfaces: Vec<Option<Surface>> = pixels.into_iter().map(|pixel| pixel.map(surface)).collect();
-        let settings = JudgeSettings {
-            depth_clamp: self.renderer.shadow_map().descriptor().depth_clamp,
-            ..JudgeSettings::new(self.settings.light.direction(), bias::reach(self.settings.filter))
-        };
-        let judged = judge(&self.rays().tracer, &fits, &settings, size.map(|side| side as usize), &surfaces);
-        (judged, surfaces)
+        let descriptor = *self.renderer.shadow_map().descriptor();
+        let instance_counts = self.counted_instances(subject_only);
+        let direction = self.settings.light.direction();
+        let rays = self.rays();
+        let seen: Vec<Option<u32>> = pixels.iter().map(|pixel| Some(pixel.as_ref()?.triangle)).collect();
+        let truth_settings = TruthSettings::new(-direction.as_dvec3().normalize());
+        let truth = Truth::trace(&rays.tracer, &PixelCamera::new(&camera, size), &truth_settings, &seen);
+        let factors: Vec<f32> = pixels.iter().map(|pixel| pixel.map_or(1.0, |pixel| pixel.factor)).collect();
+        let measured = study::measured(&maps, direction);
+        let seen =
+            MapsSeen { maps: &measured, reach: bias::reach(descriptor.filter), depth_clamp: descriptor.depth_clamp };
+        let counts = |triangle: u32| instance_counts[rays.triangles[triangle as usize].instance as usize];
+        let judged = judge(&rays.tracer, &truth, &seen, &factors, counts);
+        Some((truth, judged))
     }
 
     /// Which instances count in the shares.
@@ -478,7 +477,7 @@ fn pixels_per_texel(
 fn frame<'a>(
     settings: &'a Settings,
     camera: &'a PerspectiveCamera,
-    fits: &'a [LightFit],
+    maps: &'a [MapFit],
     atmosphere: &'a Atmosphere,
     lines: &'a [Line],
     inset: Option<Inset>,
@@ -486,13 +485,18 @@ fn frame<'a>(
     Frame {
         camera,
         direction: settings.light.direction(),
-        fits,
+        maps,
+        choice: None,
         bias: &settings.bias,
         shadows: settings.view.shadows,
         atmosphere,
         lines,
         inset,
     }
+}
+
+fn map_fits(fits: &[LightFit]) -> Vec<MapFit> {
+    fits.iter().map(|fit| MapFit::from(*fit)).collect()
 }
 
 /// The map that the settings ask for, with depths that wgpu can draw: it has no -1..1.

@@ -128,8 +128,7 @@ impl Contender {
                 factors: &factors_before,
             };
             let (different, compared) = crawl(truth, &judged, &factors, &before);
-            judged.tally.crawl_different += different;
-            judged.tally.crawl_compared += compared;
+            judged.tally.add_crawl((different, compared));
         }
         self.before = Some(Before { maps: maps.to_vec(), eye: shot.camera.eye, forward });
         Ok(judged)
@@ -209,7 +208,7 @@ fn trace(subject: &Subject, shot: &Shot, judging: &Judging, pixels: &[Option<Pro
 }
 
 /// The maps as the measures take them.
-fn measured(maps: &[MapFit], direction: Vec3) -> Vec<ShadowMap> {
+pub(crate) fn measured(maps: &[MapFit], direction: Vec3) -> Vec<ShadowMap> {
     maps.iter().map(|map| ShadowMap::new(&fit_map(map), -direction.as_dvec3())).collect()
 }
 

@@ -8,6 +8,7 @@ mod histogram;
 mod subject;
 mod technique;
 
+pub(crate) use contender::measured;
 pub use contender::{Contender, Fitter, Judging, SharedTruth, Shot, fit_map};
 pub use histogram::SeenDepths;
 pub use subject::Subject;
