@@ -11,6 +11,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+mod drawing;
 #[path = "../shared/geometry.rs"]
 mod geometry;
 mod peers;

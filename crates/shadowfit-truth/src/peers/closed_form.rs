@@ -283,7 +283,7 @@ fn the_depth_range_is_the_maps_depth_plain_or_reversed() {
     for map in [Room::map(), reversed(&Room::map())] {
         let tally = tally(&[], &[map], false);
         assert!(close(tally.depth_range / POINTS as f64, 16.0));
-        assert!(close(Row::of(&tally).depth, 16e6 / f64::from(1 << 24)));
+        assert!(close(Row::of(&tally, &crate::PictureTally::default()).depth, 16e6 / f64::from(1 << 24)));
     }
 }
 

@@ -11,7 +11,7 @@ use super::table::{FitTable, GroupTally};
 use super::tally::Tally;
 use super::visible::VisiblePoints;
 use super::{FitFile, Scenarios};
-use crate::Tracer;
+use crate::{PictureTally, Tracer};
 
 /// Fits that are measured side by side, so that each frame is traced once.
 #[derive(Clone, Debug)]
@@ -80,9 +80,17 @@ impl Study {
             let frame = &self.scenarios.frames[*frame];
             let (scene, group) = (&self.scenarios.scenes[frame.scene].name, self.scenarios.group(frame));
             for (fit, tally) in self.fits.iter_mut().zip(&tallies) {
-                fit.group(scene, &group).merge(tally);
+                fit.group(scene, &group).tally.merge(tally);
             }
         }
+    }
+
+    /// Adds the sums of a judged picture: of a fit, by the order in which fits were added, at a frame. Pictures are
+    /// summed in the order in which they are added.
+    pub fn add_picture(&mut self, fit: usize, frame: usize, pictures: &PictureTally) {
+        let frame = &self.scenarios.frames[frame];
+        let (scene, group) = (&self.scenarios.scenes[frame.scene].name, self.scenarios.group(frame));
+        self.fits[fit].group(scene, &group).pictures.merge(pictures);
     }
 
     /// The tables of the fits, in the order in which they were added, over all scenes measured so far.
@@ -108,11 +116,16 @@ impl Study {
 
 impl Fit {
     /// The sums of a group, made when it is new.
-    fn group(&mut self, scene: &str, group: &str) -> &mut Tally {
+    fn group(&mut self, scene: &str, group: &str) -> &mut GroupTally {
         let place = self.groups.iter().position(|known| known.group == group).unwrap_or_else(|| {
-            self.groups.push(GroupTally { scene: scene.to_owned(), group: group.to_owned(), tally: Tally::default() });
+            self.groups.push(GroupTally {
+                scene: scene.to_owned(),
+                group: group.to_owned(),
+                tally: Tally::default(),
+                pictures: PictureTally::default(),
+            });
             self.groups.len() - 1
         });
-        &mut self.groups[place].tally
+        &mut self.groups[place]
     }
 }

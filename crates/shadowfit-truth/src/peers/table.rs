@@ -7,6 +7,7 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 use super::tally::Tally;
+use crate::PictureTally;
 
 /// Units of depth that a 24-bit map tells apart.
 const DEPTH_STEPS: f64 = (1u64 << 24) as f64;
@@ -15,7 +16,7 @@ const CRITICAL_QUANTILE: f64 = 0.95;
 
 /// The measures of a fit over a set of frames. A value is not a number where nothing was there to
 /// be measured.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// Maps a frame.
     pub maps: f64,
@@ -43,6 +44,8 @@ pub struct Row {
     pub scale: f64,
     /// Depth step of a 24-bit map, in micrometres.
     pub depth: f64,
+    /// Further columns of judged pictures: names and values. Empty where none were drawn.
+    pub pictures: Vec<(&'static str, f64)>,
 }
 
 /// The sums of a scene under one light.
@@ -54,6 +57,8 @@ pub struct GroupTally {
     pub group: String,
     /// Its sums.
     pub tally: Tally,
+    /// The sums of its judged pictures.
+    pub pictures: PictureTally,
 }
 
 /// All rows of a fit.
@@ -76,19 +81,20 @@ pub struct FitTable {
 
 impl Row {
     /// The row of groups pooled together.
-    pub fn pooled<'a>(groups: impl Iterator<Item = &'a Tally>) -> Self {
-        let mut pool = Tally::default();
+    pub fn pooled<'a>(groups: impl Iterator<Item = &'a GroupTally>) -> Self {
+        let (mut pool, mut pictures) = (Tally::default(), PictureTally::default());
         let mut log2_criticals = Vec::new();
-        for tally in groups {
-            pool.merge(tally);
-            log2_criticals.push(log2_critical(tally));
+        for group in groups {
+            pool.merge(&group.tally);
+            pictures.merge(&group.pictures);
+            log2_criticals.push(log2_critical(&group.tally));
         }
         let mean = log2_criticals.iter().sum::<f64>() / log2_criticals.len() as f64;
-        Self { critical_mean: mean.exp2(), ..Self::of(&pool) }
+        Self { critical_mean: mean.exp2(), ..Self::of(&pool, &pictures) }
     }
 
     /// The row of one group.
-    pub fn of(tally: &Tally) -> Self {
+    pub fn of(tally: &Tally, pictures: &PictureTally) -> Self {
         let ratio = |part: f64, whole: u64| part / whole as f64;
         let percentage = |part: u64, whole: u64| 100.0 * ratio(part as f64, whole);
         let critical = log2_critical(tally).exp2();
@@ -106,12 +112,13 @@ impl Row {
             still: percentage(tally.shimmer.still, tally.shimmer.points),
             scale: 100.0 * ratio(tally.shimmer.scaled, tally.shimmer.points),
             depth: 1e6 * ratio(tally.depth_range, tally.covered()) / DEPTH_STEPS,
+            pictures: picture_columns(pictures),
         }
     }
 
     /// Names of the columns, and their values.
-    pub fn columns(&self) -> [(&'static str, f64); 15] {
-        [
+    pub fn columns(&self) -> Vec<(&'static str, f64)> {
+        let mut columns = vec![
             ("maps", self.maps),
             ("uncov %", self.uncovered),
             ("lost %", self.lost),
@@ -127,8 +134,18 @@ impl Row {
             ("still %", self.still),
             ("scale %", self.scale),
             ("depth um", self.depth),
-        ]
+        ];
+        columns.extend(&self.pictures);
+        columns
     }
+}
+
+/// The columns of judged pictures that stand beside those of a fit, which has one of uncovered points of its own.
+fn picture_columns(pictures: &PictureTally) -> Vec<(&'static str, f64)> {
+    if pictures.frames == 0 {
+        return Vec::new();
+    }
+    pictures.columns().into_iter().filter(|(name, _)| *name != "uncov %").collect()
 }
 
 impl Serialize for Row {
@@ -150,15 +167,15 @@ impl FitTable {
         for GroupTally { scene, .. } in groups {
             if scenes.iter().all(|(known, _)| known != scene) {
                 let own = groups.iter().filter(|group| group.scene == *scene);
-                scenes.push((scene.clone(), Row::pooled(own.map(|group| &group.tally))));
+                scenes.push((scene.clone(), Row::pooled(own)));
             }
         }
         Self {
             peer: peer.to_owned(),
             ns_per_fit,
-            overall: Row::pooled(groups.iter().map(|group| &group.tally)),
+            overall: Row::pooled(groups.iter()),
             scenes,
-            groups: groups.iter().map(|group| (group.group.clone(), Row::of(&group.tally))).collect(),
+            groups: groups.iter().map(|group| (group.group.clone(), Row::of(&group.tally, &group.pictures))).collect(),
         }
     }
 }
@@ -177,7 +194,7 @@ pub fn to_json(tables: &[FitTable]) -> String {
 pub fn to_markdown(tables: &[FitTable]) -> String {
     let mut text = format!("## Overall\n\n{}", overall_markdown(tables));
     for (scene, _) in tables.iter().flat_map(|table| &table.scenes).take(tables.first().map_or(0, |t| t.scenes.len())) {
-        let rows = tables.iter().filter_map(|table| Some((table.peer.clone(), *find(&table.scenes, scene)?)));
+        let rows = tables.iter().filter_map(|table| Some((table.peer.clone(), find(&table.scenes, scene)?.clone())));
         let _ = write!(text, "\n## {scene}\n\n{}", rows_markdown(rows.collect()));
     }
     let _ = write!(text, "\n## Critical resolution per scene and light elevation\n\n{}", groups_markdown(tables));
@@ -186,13 +203,13 @@ pub fn to_markdown(tables: &[FitTable]) -> String {
 
 /// The rows over all frames as a Markdown table.
 pub fn overall_markdown(tables: &[FitTable]) -> String {
-    rows_markdown(tables.iter().map(|table| (table.peer.clone(), table.overall)).collect())
+    rows_markdown(tables.iter().map(|table| (table.peer.clone(), table.overall.clone())).collect())
 }
 
 fn rows_markdown(rows: Vec<(String, Row)>) -> String {
     let Some((_, first)) = rows.first() else { return String::new() };
-    let names = first.columns().map(|(name, _)| name.to_owned());
-    let cells = |row: Row| row.columns().map(|(name, value)| cell(name, value)).to_vec();
+    let names: Vec<String> = first.columns().into_iter().map(|(name, _)| name.to_owned()).collect();
+    let cells = |row: Row| row.columns().into_iter().map(|(name, value)| cell(name, value)).collect();
     markdown(&names, rows.into_iter().map(|(peer, row)| (peer, cells(row))))
 }
 
@@ -246,7 +263,7 @@ mod tests {
         let mut tally = Tally { frames: 1, maps: 1, facing: 4, uncovered: 1, ..Tally::default() };
         tally.error.add(f64::from(octaves).exp2());
         tally.critical.add(f64::from(octaves).exp2());
-        GroupTally { scene: scene.to_owned(), group: group.to_owned(), tally }
+        GroupTally { scene: scene.to_owned(), group: group.to_owned(), tally, pictures: PictureTally::default() }
     }
 
     #[test]

@@ -1,0 +1,97 @@
+//! How pictures are drawn and judged: the arguments that all kinds of reports share.
+
+use anyhow::{Context, Result, bail};
+use shadowfit::params;
+use shadowfit::settings::{BiasSettings, FilterKind, MapFormat, Settings};
+use shadowfit_render::{AdapterChoice, Gpu};
+use shadowfit_viewer::study::Judging;
+
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct Drawing {
+    /// Width and height of the judged pictures, in pixels
+    #[arg(long, default_value = "1280x720", value_name = "WxH", value_parser = size)]
+    size: [u32; 2],
+    /// Filter of the look-up: point, hardware_2x2, pcf_3x3 or pcf_5x5 [default: pcf_5x5]
+    #[arg(long, value_name = "NAME", value_parser = filter)]
+    filter: Option<FilterKind>,
+    /// Biases in texels, such as "normal_offset=1.5,constant=0.1": what is not named is 0 [default: what clears
+    /// planes with the filter]
+    #[arg(long, value_name = "NAME=TEXELS,...")]
+    bias: Option<String>,
+    /// Store depths in a colour texture of 32-bit floats, compared by hand
+    #[arg(long)]
+    color_format: bool,
+    /// Length of the scene's unit in metres is 1 / this: shadow rays start a thousandth of a metre over the surface
+    #[arg(long, default_value_t = 1.0, value_name = "N")]
+    units_per_metre: f64,
+    /// Angular radius of the sun, in degrees (the real one's is 0.27): truth becomes a mean of many rays
+    #[arg(long, default_value_t = 0.0, value_name = "DEG")]
+    sun_radius: f64,
+    /// Rays to a sun that is no point
+    #[arg(long, default_value_t = 64, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    sun_rays: u32,
+    /// Leave crawl out, which draws each frame a second time
+    #[arg(long)]
+    no_crawl: bool,
+    /// Draw on the software adapter, whatever GPU there is
+    #[arg(long)]
+    software: bool,
+}
+
+impl Drawing {
+    pub(crate) fn gpu(&self) -> Result<Gpu> {
+        let choice = if self.software { AdapterChoice::Software } else { AdapterChoice::Any };
+        Ok(pollster::block_on(Gpu::headless(choice))?)
+    }
+
+    pub(crate) fn judging(&self) -> Judging {
+        Judging {
+            size: self.size,
+            ray_offset: 1e-3 * self.units_per_metre,
+            sun_radius: self.sun_radius.to_radians(),
+            sun_rays: self.sun_rays,
+            crawl: !self.no_crawl,
+        }
+    }
+
+    pub(crate) fn filter(&self) -> FilterKind {
+        self.filter.unwrap_or(FilterKind::Pcf5x5)
+    }
+
+    pub(crate) fn format(&self) -> MapFormat {
+        if self.color_format { MapFormat::R32Float } else { MapFormat::Depth32Float }
+    }
+
+    /// The biases asked for, or those that clear planes with a filter.
+    pub(crate) fn bias(&self, filter: FilterKind) -> Result<BiasSettings> {
+        let Some(text) = &self.bias else { return Ok(BiasSettings::automatic(filter)) };
+        let zero = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0 };
+        let mut settings = Settings { bias: zero, ..Settings::default() };
+        for part in text.split(',').filter(|part| !part.is_empty()) {
+            let (name, value) = part.split_once('=').with_context(|| format!("--bias: \"{part}\" is not NAME=TEXELS"))?;
+            let id = format!("bias.{}", name.trim());
+            if let Err(error) = params::set_from_str(&mut settings, &id, value) {
+                bail!("--bias: {error}");
+            }
+        }
+        Ok(settings.bias)
+    }
+}
+
+fn size(text: &str) -> Result<[u32; 2]> {
+    let sides = text.split_once('x').with_context(|| format!("\"{text}\" is not WxH, such as 1280x720"))?;
+    let side = |text: &str| -> Result<u32> {
+        let side: u32 = text.parse().with_context(|| format!("\"{text}\" is no number of pixels"))?;
+        if !(1..=8192).contains(&side) {
+            bail!("{side} pixels; give 1 to 8192");
+        }
+        Ok(side)
+    };
+    Ok([side(sides.0)?, side(sides.1)?])
+}
+
+fn filter(text: &str) -> Result<FilterKind> {
+    let mut settings = Settings::default();
+    params::set_from_str(&mut settings, "map.filter", text).map_err(|error| anyhow::anyhow!("{error}"))?;
+    Ok(settings.filter)
+}
