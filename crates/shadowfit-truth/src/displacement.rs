@@ -60,7 +60,10 @@ mod tests {
 
     const SIZE: [usize; 2] = [50, 20];
 
-    fn of(truth: impl Fn(i32, i32) -> Option<bool> + Sync, map: impl Fn(i32, i32) -> Option<bool> + Sync) -> Displacement {
+    fn of(
+        truth: impl Fn(i32, i32) -> Option<bool> + Sync,
+        map: impl Fn(i32, i32) -> Option<bool> + Sync,
+    ) -> Displacement {
         let place = |index: usize| ((index % SIZE[0]) as i32, (index / SIZE[0]) as i32);
         displacement(
             SIZE,

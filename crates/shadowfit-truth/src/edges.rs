@@ -51,7 +51,8 @@ fn column(along_row: &[u32]) -> Vec<u32> {
         across * across + down * down
     };
     // The last row in which row `upper` is no worse than the later row `lower`.
-    let last_of = |upper: usize, lower: usize| (value(lower, 0) - value(upper, 0)).div_euclid(2 * (lower - upper) as i64);
+    let last_of =
+        |upper: usize, lower: usize| (value(lower, 0) - value(upper, 0)).div_euclid(2 * (lower - upper) as i64);
     // Rows of the lower envelope, and where each begins.
     let mut envelope: Vec<(usize, i64)> = Vec::new();
     for row in (0..along_row.len()).filter(|row| along_row[*row] != NOWHERE) {

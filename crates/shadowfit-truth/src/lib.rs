@@ -7,6 +7,7 @@
 
 mod camera;
 mod crawl;
+mod cut_out;
 mod displacement;
 mod edges;
 mod judge;
@@ -18,6 +19,7 @@ mod truth;
 
 pub use camera::PixelCamera;
 pub use crawl::{MapsBefore, crawl};
+pub use cut_out::{AlphaImage, CutOut, CutOuts, Wrap};
 pub use displacement::GREATEST_DISPLACEMENT;
 pub use judge::{Class, Judged, MapsSeen, judge};
 pub use tally::{GrazingTally, PictureTally};
