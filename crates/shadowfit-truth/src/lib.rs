@@ -10,6 +10,8 @@ mod crawl;
 mod cut_out;
 mod displacement;
 mod edges;
+#[cfg(feature = "gpu")]
+pub mod gpu;
 mod judge;
 pub mod peers;
 mod sun;

@@ -79,6 +79,18 @@ impl Tracer {
         &self.cut_outs
     }
 
+    /// Whether there is an alpha test that only the processor can run.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn has_alpha_test(&self) -> bool {
+        self.alpha_test.is_some()
+    }
+
+    /// The hierarchy; none without triangles.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn bvh(&self) -> Option<&Bvh2> {
+        self.bvh.as_ref()
+    }
+
     /// Number of triangles.
     pub fn len(&self) -> usize {
         self.triangles.len()
