@@ -10,7 +10,7 @@ use crate::Class;
 /// | 3 | the light arrives in truth |
 /// | 4 | in the edge zone |
 /// | 8 to 11 | the map that is read, plus 1; 0 for none |
-/// | 16 to 31 | pixels per texel along the worse axis, a half float; 65504 for more, and where no map is read |
+/// | 16 to 31 | log2 of pixels per texel along the worse axis, times 256, plus 32768; 65535 where no map is read |
 ///
 /// All bits of a pixel that is not judged are 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +23,8 @@ pub struct GpuPixel {
     pub is_in_edge_zone: bool,
     /// The map that is read: its place among the maps.
     pub choice: Option<u8>,
-    /// Pixels per texel along the worse axis, 65504 at most.
+    /// Pixels per texel along the worse axis, to 0.14%; infinite where none is read or from 2^127 on,
+    /// and not a number where the pixel is not judged.
     pub pixels_per_texel: f32,
 }
 
@@ -43,15 +44,22 @@ impl GpuPixel {
             is_lit: bits & 8 != 0,
             is_in_edge_zone: bits & 16 != 0,
             choice: ((bits >> 8 & 15) as u8).checked_sub(1),
-            pixels_per_texel: half((bits >> 16) as u16),
+            pixels_per_texel: if class == Class::NotJudged { f32::NAN } else { footprint((bits >> 16) as u16) },
         }
     }
 }
 
-/// The value of a half float that is neither negative nor infinite.
-fn half(bits: u16) -> f32 {
-    let (exponent, fraction) = (i32::from(bits >> 10 & 31), f32::from(bits & 1023));
-    if exponent == 0 { fraction * (-24f32).exp2() } else { (1024.0 + fraction) * ((exponent - 25) as f32).exp2() }
+/// Steps of an octave in the texture.
+const OCTAVE: f32 = 256.0;
+/// The step that stands for one pixel per texel.
+const ONE: f32 = 32768.0;
+/// The last octave: no more than f32 holds.
+const MOST_OCTAVE: f32 = 127.0;
+
+/// Pixels per texel from their bits.
+fn footprint(bits: u16) -> f32 {
+    let octaves = (f32::from(bits) - ONE) / OCTAVE;
+    if octaves >= MOST_OCTAVE { f32::INFINITY } else { octaves.exp2() }
 }
 
 #[cfg(test)]
@@ -60,24 +68,25 @@ mod tests {
 
     #[test]
     fn bits_are_taken_apart_as_documented() {
-        let pixel = GpuPixel::from_bits(4 | 16 | (3 << 8) | (0x3E00 << 16));
+        let pixel = GpuPixel::from_bits(4 | 16 | (3 << 8) | ((32768 + 512) << 16));
         let wanted = GpuPixel {
             class: Class::Hole,
             is_lit: false,
             is_in_edge_zone: true,
             choice: Some(2),
-            pixels_per_texel: 1.5,
+            pixels_per_texel: 4.0,
         };
         assert_eq!(pixel, wanted);
         let nothing = GpuPixel::from_bits(0);
-        assert_eq!((nothing.class, nothing.choice, nothing.pixels_per_texel), (Class::NotJudged, None, 0.0));
+        assert_eq!((nothing.class, nothing.choice), (Class::NotJudged, None));
+        assert!(nothing.pixels_per_texel.is_nan());
         for class in [Class::Right, Class::FalseShadow, Class::FalseLight, Class::Hole, Class::Edge] {
             assert_eq!(GpuPixel::from_bits(class as u32 | 8).class, class);
         }
     }
 
     #[test]
-    fn halves_have_their_values() {
-        assert_eq!([0x3C00, 0x7BFF, 0x0001, 0x3555].map(half), [1.0, 65504.0, 5.960_464_5e-8, 0.333_251_95]);
+    fn footprints_are_octaves_from_their_middle() {
+        assert_eq!([32768, 33024, 32640, 65535].map(footprint), [1.0, 2.0, 0.5f32.sqrt(), f32::INFINITY]);
     }
 }

@@ -6,8 +6,14 @@ const FALSE_LIGHT: u32 = 3u;
 const HOLE: u32 = 4u;
 const EDGE: u32 = 5u;
 
-// Greatest half float.
-const MOST_FOOTPRINT: f32 = 65504.0;
+// Logarithms of footprints in the texture: steps of an octave, and the step that stands for 1.
+const OCTAVE: f32 = 256.0;
+const ONE: f32 = 32768.0;
+const MOST: f32 = 65535.0;
+
+fn footprint_bits(footprint: f32) -> u32 {
+    return u32(clamp(round(log2(footprint) * OCTAVE) + ONE, 0.0, MOST));
+}
 
 fn is_row_near(pixel: vec2<u32>, step: u32, square: f32) -> bool {
     let along = pixels[pixel_index(pixel)].along_row;
@@ -73,7 +79,7 @@ fn class_of(pixel: vec2<u32>, flags: u32, is_in_edge_zone: bool) -> u32 {
             | select(0u, 8u, (pixel.flags & LIT) != 0u)
             | select(0u, 16u, is_in_edge_zone)
             | (choice << 8u)
-            | (pack2x16float(vec2<f32>(min(pixel.footprint, MOST_FOOTPRINT), 0.0)) << 16u);
+            | (select(u32(MOST), footprint_bits(pixel.footprint), choice != 0u) << 16u);
     }
     textureStore(classes, id.xy, vec4<u32>(bits, 0u, 0u, 0u));
 }
