@@ -60,12 +60,15 @@ mod tests {
 
     const SIZE: [usize; 2] = [50, 20];
 
-    fn of(truth: impl Fn(i32, i32) -> Option<bool> + Sync, map: impl Fn(i32, i32) -> Option<bool> + Sync) -> Displacement {
-        let place = |index: usize| ((index % SIZE[0]) as i32, (index / SIZE[0]) as i32);
+    fn of(
+        truth: impl Fn(i32, i32) -> Option<bool> + Sync,
+        map: impl Fn(i32, i32) -> Option<bool> + Sync,
+    ) -> Displacement {
+        let place = |index: usize| [index % SIZE[0], index / SIZE[0]].map(|index| i32::try_from(index).expect("small"));
         displacement(
             SIZE,
-            &|index| truth(place(index).0, place(index).1),
-            &|index| map(place(index).0, place(index).1),
+            &|index| truth(place(index)[0], place(index)[1]),
+            &|index| map(place(index)[0], place(index)[1]),
             |_| true,
         )
     }
@@ -101,7 +104,7 @@ mod tests {
         let random = |seed: i32| {
             move |x: i32, y: i32| {
                 let hash = ((y * 50 + x + seed) as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 58;
-                (hash > 2).then_some(hash < 30 + (x as u64 % 30))
+                (hash > 2).then_some(hash < 30 + u64::from(x.unsigned_abs() % 30))
             }
         };
         let (truth, map) = (random(3), random(400));
@@ -111,10 +114,11 @@ mod tests {
                 let (x, y) = (index % 50, index / 50);
                 for (dx, dy) in [(1, 0), (0, 1)] {
                     let is_in = x + dx < 50 && y + dy < 20;
-                    if let (true, Some(a), Some(b)) = (is_in, verdict(x, y), verdict(x + dx, y + dy)) {
-                        if a != b {
-                            borders.push((x, y, dx, b));
-                        }
+                    if is_in
+                        && let (Some(a), Some(b)) = (verdict(x, y), verdict(x + dx, y + dy))
+                        && a != b
+                    {
+                        borders.push((x, y, dx, b));
                     }
                 }
             }

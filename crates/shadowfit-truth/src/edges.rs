@@ -46,27 +46,28 @@ fn sweep_row(row: &mut [u32], is_marked: impl Fn(usize) -> bool) {
 
 /// Squares of distances down a column, from its pixels' distances along their rows.
 fn column(along_row: &[u32]) -> Vec<u32> {
-    let value = |row: usize, y: usize| {
-        let (across, down) = (i64::from(along_row[row]), row as i64 - y as i64);
+    let rows = along_row.len() as u32;
+    let value = |row: u32, y: u32| {
+        let (across, down) = (i64::from(along_row[row as usize]), i64::from(row) - i64::from(y));
         across * across + down * down
     };
     // The last row in which row `upper` is no worse than the later row `lower`.
-    let last_of = |upper: usize, lower: usize| (value(lower, 0) - value(upper, 0)).div_euclid(2 * (lower - upper) as i64);
+    let last_of = |upper: u32, lower: u32| (value(lower, 0) - value(upper, 0)).div_euclid(2 * i64::from(lower - upper));
     // Rows of the lower envelope, and where each begins.
-    let mut envelope: Vec<(usize, i64)> = Vec::new();
-    for row in (0..along_row.len()).filter(|row| along_row[*row] != NOWHERE) {
+    let mut envelope: Vec<(u32, i64)> = Vec::new();
+    for row in (0..rows).filter(|row| along_row[*row as usize] != NOWHERE) {
         while envelope.last().is_some_and(|(top, start)| last_of(*top, row) < *start) {
             envelope.pop();
         }
         let start = envelope.last().map_or(0, |(top, _)| last_of(*top, row) + 1);
-        if start < along_row.len() as i64 {
+        if start < i64::from(rows) {
             envelope.push((row, start));
         }
     }
     let mut place = 0;
-    (0..along_row.len())
+    (0..rows)
         .map(|y| {
-            while envelope.get(place + 1).is_some_and(|(_, start)| *start <= y as i64) {
+            while envelope.get(place + 1).is_some_and(|(_, start)| *start <= i64::from(y)) {
                 place += 1;
             }
             envelope.get(place).map_or(NOWHERE, |(row, _)| u32::try_from(value(*row, y)).unwrap_or(NOWHERE - 1))

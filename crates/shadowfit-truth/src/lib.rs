@@ -7,8 +7,11 @@
 
 mod camera;
 mod crawl;
+mod cut_out;
 mod displacement;
 mod edges;
+#[cfg(feature = "gpu")]
+pub mod gpu;
 mod judge;
 pub mod peers;
 mod sun;
@@ -18,6 +21,7 @@ mod truth;
 
 pub use camera::PixelCamera;
 pub use crawl::{MapsBefore, crawl};
+pub use cut_out::{AlphaImage, CutOut, CutOuts, Wrap};
 pub use displacement::GREATEST_DISPLACEMENT;
 pub use judge::{Class, Judged, MapsSeen, judge};
 pub use tally::{GrazingTally, PictureTally};

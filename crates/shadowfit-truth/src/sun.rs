@@ -86,7 +86,7 @@ mod tests {
         let sun = Sun::new(DVec3::Y, 0.2, 400);
         let within = |angle: f64| sun.directions(0).filter(|d| d.angle_between(DVec3::Y) < angle).count();
         // Half of the cap's area lies within about its radius over the square root of 2.
-        assert!((within(0.2 / 2.0f64.sqrt()) as i32 - 200).abs() <= 1);
+        assert!(within(0.2 / 2.0f64.sqrt()).abs_diff(200) <= 1);
     }
 
     #[test]

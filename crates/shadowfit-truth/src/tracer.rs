@@ -8,6 +8,8 @@ use obvhs::bvh2::{Bvh2, builder::build_bvh2_from_tris};
 use obvhs::ray::{Ray, RayHit};
 use obvhs::{BvhBuildParams, triangle::Triangle};
 
+use crate::CutOuts;
+
 /// Says whether a triangle is there at a point: its index, and the weights of its second and third
 /// corner. Cut-outs answer `false`.
 type AlphaTest = Box<dyn Fn(u32, [f32; 2]) -> bool + Send + Sync>;
@@ -17,6 +19,7 @@ pub struct Tracer {
     triangles: Vec<Triangle>,
     bvh: Option<Bvh2>,
     alpha_test: Option<AlphaTest>,
+    cut_outs: CutOuts,
 }
 
 /// Where a ray met a triangle.
@@ -33,6 +36,7 @@ impl fmt::Debug for Tracer {
         f.debug_struct("Tracer")
             .field("triangles", &self.triangles.len())
             .field("alpha_test", &self.alpha_test.is_some())
+            .field("cut_outs", &self.cut_outs.cut_outs().len())
             .finish_non_exhaustive()
     }
 }
@@ -51,7 +55,7 @@ impl Tracer {
             .collect();
         let bvh = (!triangles.is_empty())
             .then(|| build_bvh2_from_tris(&triangles, BvhBuildParams::medium_build(), &mut Duration::default()));
-        Self { triangles, bvh, alpha_test: None }
+        Self { triangles, bvh, alpha_test: None, cut_outs: CutOuts::default() }
     }
 
     /// Adds an alpha test: `is_there(triangle, weights)`, with the weights of the triangle's second
@@ -60,6 +64,31 @@ impl Tracer {
     pub fn with_alpha_test(mut self, is_there: impl Fn(u32, [f32; 2]) -> bool + Send + Sync + 'static) -> Self {
         self.alpha_test = Some(Box::new(is_there));
         self
+    }
+
+    /// Adds triangles with holes, in place of those added before. What also has an alpha test must
+    /// pass both.
+    #[must_use]
+    pub fn with_cut_outs(mut self, cut_outs: CutOuts) -> Self {
+        self.cut_outs = cut_outs;
+        self
+    }
+
+    /// The triangles with holes.
+    pub fn cut_outs(&self) -> &CutOuts {
+        &self.cut_outs
+    }
+
+    /// Whether there is an alpha test that only the processor can run.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn has_alpha_test(&self) -> bool {
+        self.alpha_test.is_some()
+    }
+
+    /// The hierarchy; none without triangles.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn bvh(&self) -> Option<&Bvh2> {
+        self.bvh.as_ref()
     }
 
     /// Number of triangles.
@@ -142,12 +171,13 @@ impl Tracer {
     fn meet(&self, ray: &Ray, index: u32) -> f32 {
         let triangle = &self.triangles[index as usize];
         let distance = triangle.intersect(ray);
-        match &self.alpha_test {
-            Some(is_there) if distance.is_finite() && !is_there(index, weights(triangle, ray, distance)) => {
-                f32::INFINITY
-            }
-            _ => distance,
+        let is_opaque = self.alpha_test.is_none() && self.cut_outs.is_empty();
+        if is_opaque || !distance.is_finite() {
+            return distance;
         }
+        let weights = weights(triangle, ray, distance);
+        let passes = self.alpha_test.as_ref().is_none_or(|is_there| is_there(index, weights));
+        if passes && self.cut_outs.is_there(index, weights) { distance } else { f32::INFINITY }
     }
 }
 

@@ -174,9 +174,7 @@ impl Truth {
     fn is_transition(&self, [x, y]: [usize; 2]) -> bool {
         let [width, height] = self.camera.size.map(|side| side as usize);
         let here = self.verdict(y * width + x);
-        let differs = |x: usize, y: usize| {
-            matches!((here, self.verdict(y * width + x)), (Some(here), Some(there)) if here != there)
-        };
+        let differs = |x: usize, y: usize| matches!((here, self.verdict(y * width + x)), (Some(here), Some(there)) if here != there);
         here.is_some()
             && ((x > 0 && differs(x - 1, y))
                 || (x + 1 < width && differs(x + 1, y))

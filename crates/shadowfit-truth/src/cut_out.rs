@@ -1,0 +1,224 @@
+//! Triangles with holes, as plain data: the processor and the GPU answer alike.
+//!
+//! A triangle is there where base alpha × vertex alpha × image alpha reaches a cutoff, with the
+//! image sampled at its finest level, between texel centres or at the nearest one.
+
+use std::collections::HashMap;
+
+use glam::{Vec2, Vec3};
+
+/// Texels from an image's left and top edge are cut to ± this before they are wrapped: whole numbers
+/// of this size and their neighbours fit i32, and f32 has no fractions there.
+pub(crate) const FARTHEST_TEXEL: f32 = 1_073_741_824.0;
+
+/// How an image goes on beyond its edges along an axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Wrap {
+    /// Again and again.
+    #[default]
+    Repeat = 0,
+    /// With the texels of its edge.
+    Clamp = 1,
+    /// Again and again, every second time mirrored.
+    Mirror = 2,
+}
+
+/// The alpha of an image, at least one texel.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AlphaImage {
+    width: u32,
+    height: u32,
+    alpha: Vec<u8>,
+}
+
+impl AlphaImage {
+    /// An image from its alpha in rows from the top, 255 opaque. `None` without texels, when they are
+    /// not `width * height`, or when a side is beyond 2^24 texels.
+    pub fn new(width: u32, height: u32, alpha: Vec<u8>) -> Option<Self> {
+        let texels = (width as usize).checked_mul(height as usize)?;
+        let fits = texels > 0 && texels == alpha.len() && width.max(height) <= 1 << 24;
+        fits.then_some(Self { width, height, alpha })
+    }
+
+    /// Width and height, in texels.
+    pub fn size(&self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
+    /// Alpha in rows from the top, 255 opaque.
+    pub fn alpha(&self) -> &[u8] {
+        &self.alpha
+    }
+
+    fn at(&self, x: i32, y: i32) -> f32 {
+        f32::from(self.alpha[y as usize * self.width as usize + x as usize]) / 255.0
+    }
+}
+
+/// A triangle with holes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CutOut {
+    /// Texture coordinates of the corners, 0..=1 over the image from its top left, the image's own
+    /// transform applied.
+    pub uvs: [Vec2; 3],
+    /// Alpha of the corners, 0..=1.
+    pub alphas: [f32; 3],
+    /// Alpha of the material, 0..=1.
+    pub base_alpha: f32,
+    /// Least alpha that is there.
+    pub cutoff: f32,
+    /// Place of the image among [`CutOuts::images`]; one that is not there is opaque.
+    pub image: Option<u32>,
+    /// How the image goes on to the right and down.
+    pub wrap: [Wrap; 2],
+    /// Whether the nearest texel is taken instead of a mean of four.
+    pub nearest: bool,
+}
+
+/// The triangles with holes of a scene, and their images.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CutOuts {
+    places: HashMap<u32, u32>,
+    all: Vec<CutOut>,
+    images: Vec<AlphaImage>,
+}
+
+impl CutOuts {
+    /// Cut-outs by the tracer's index of their triangle; the last one given for a triangle is taken.
+    pub fn new(images: Vec<AlphaImage>, cut_outs: impl IntoIterator<Item = (u32, CutOut)>) -> Self {
+        let mut made = Self { images, ..Self::default() };
+        for (triangle, cut_out) in cut_outs {
+            made.places.insert(triangle, made.all.len() as u32);
+            made.all.push(cut_out);
+        }
+        made
+    }
+
+    /// Whether no triangle has holes.
+    pub fn is_empty(&self) -> bool {
+        self.places.is_empty()
+    }
+
+    /// All cut-outs, in the order in which they were given.
+    pub fn cut_outs(&self) -> &[CutOut] {
+        &self.all
+    }
+
+    /// The images.
+    pub fn images(&self) -> &[AlphaImage] {
+        &self.images
+    }
+
+    /// Place of a triangle's cut-out among [`Self::cut_outs`].
+    pub fn place(&self, triangle: u32) -> Option<u32> {
+        self.places.get(&triangle).copied()
+    }
+
+    /// Whether a triangle is there at a point with these weights of its second and third corner.
+    /// Triangles without a cut-out are there everywhere.
+    pub fn is_there(&self, triangle: u32, [second, third]: [f32; 2]) -> bool {
+        let Some(place) = self.place(triangle) else { return true };
+        let cut_out = &self.all[place as usize];
+        let weights = Vec3::new(1.0 - second - third, second, third);
+        let [a, b, c] = cut_out.uvs;
+        let uv = a * weights.x + b * weights.y + c * weights.z;
+        let vertex_alpha = Vec3::from(cut_out.alphas).dot(weights);
+        let image = cut_out.image.and_then(|image| self.images.get(image as usize));
+        let image_alpha = image.map_or(1.0, |image| sample(image, cut_out, uv));
+        cut_out.base_alpha * vertex_alpha * image_alpha >= cut_out.cutoff
+    }
+}
+
+/// Alpha of an image at texture coordinates, 0..=1.
+fn sample(image: &AlphaImage, cut_out: &CutOut, uv: Vec2) -> f32 {
+    let size = image.size().map(u32::cast_signed);
+    let farthest = Vec2::splat(FARTHEST_TEXEL);
+    let position = (uv * Vec2::new(size[0] as f32, size[1] as f32) - 0.5).clamp(-farthest, farthest);
+    let (corner, weight) = (position.floor(), position - position.floor());
+    let alpha = |right: i32, down: i32| {
+        let x = wrapped(corner.x as i32 + right, size[0], cut_out.wrap[0]);
+        image.at(x, wrapped(corner.y as i32 + down, size[1], cut_out.wrap[1]))
+    };
+    if cut_out.nearest {
+        return alpha((weight.x >= 0.5).into(), (weight.y >= 0.5).into());
+    }
+    let row = |down| alpha(0, down) * (1.0 - weight.x) + alpha(1, down) * weight.x;
+    row(0) * (1.0 - weight.y) + row(1) * weight.y
+}
+
+/// The texel of a row of `size` that stands at `index`.
+fn wrapped(index: i32, size: i32, wrap: Wrap) -> i32 {
+    match wrap {
+        Wrap::Repeat => index.rem_euclid(size),
+        Wrap::Clamp => index.clamp(0, size - 1),
+        Wrap::Mirror => {
+            let folded = index.rem_euclid(size * 2);
+            folded.min(size * 2 - 1 - folded)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A triangle over the first half of a row of two texels, transparent and opaque.
+    fn row(wrap: Wrap, nearest: bool) -> (AlphaImage, CutOut) {
+        let image = AlphaImage::new(2, 1, vec![0, 255]).expect("two texels");
+        let uvs = [Vec2::ZERO, Vec2::X, Vec2::Y];
+        let cut_out =
+            CutOut { uvs, alphas: [1.0; 3], base_alpha: 1.0, cutoff: 0.5, image: Some(0), wrap: [wrap; 2], nearest };
+        (image, cut_out)
+    }
+
+    #[test]
+    fn wrapping_repeats_mirrors_and_clamps() {
+        let row = |wrap| (-3..6).map(|index| wrapped(index, 3, wrap)).collect::<Vec<_>>();
+        assert_eq!(row(Wrap::Repeat), [0, 1, 2, 0, 1, 2, 0, 1, 2]);
+        assert_eq!(row(Wrap::Clamp), [0, 0, 0, 0, 1, 2, 2, 2, 2]);
+        assert_eq!(row(Wrap::Mirror), [2, 1, 0, 0, 1, 2, 2, 1, 0]);
+    }
+
+    #[test]
+    fn alpha_is_interpolated_between_texel_centres_or_taken_from_the_nearest() {
+        let at = |wrap, nearest, u| {
+            let (image, cut_out) = row(wrap, nearest);
+            sample(&image, &cut_out, Vec2::new(u, 0.5))
+        };
+        for (u, expected) in [(0.25, 0.0), (0.5, 0.5), (0.75, 1.0), (9.0, 1.0), (-9.0, 0.0)] {
+            assert!((at(Wrap::Clamp, false, u) - expected).abs() < 1e-6, "{u}");
+        }
+        for (u, expected) in [(0.1, 0.0), (0.49, 0.0), (0.51, 1.0), (0.99, 1.0), (1.01, 0.0), (7.6, 1.0)] {
+            assert_eq!(at(Wrap::Repeat, true, u), expected, "{u}");
+        }
+        for u in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30] {
+            let alpha = at(Wrap::Mirror, false, u);
+            assert!(alpha.is_nan() || alpha <= 1.0, "{u}");
+        }
+    }
+
+    #[test]
+    fn base_vertex_and_image_alpha_are_multiplied_and_reach_the_cutoff() {
+        let (image, cut_out) = row(Wrap::Clamp, false);
+        let there = |change: fn(&mut CutOut), weights| {
+            let mut cut_out = cut_out;
+            change(&mut cut_out);
+            CutOuts::new(vec![image.clone()], [(3, cut_out)]).is_there(3, weights)
+        };
+        assert!(!there(|_| (), [0.2, 0.5]) && there(|_| (), [0.51, 0.4]));
+        assert!(!there(|cut_out| cut_out.base_alpha = 0.4, [0.8, 0.0]));
+        // Only the second corner is opaque.
+        assert!(!there(|cut_out| cut_out.alphas = [0.0, 1.0, 0.0], [0.49, 0.5]));
+        assert!(there(|cut_out| cut_out.alphas = [0.0, 1.0, 0.0], [0.8, 0.0]));
+        // Without its image the triangle has no holes, and other triangles never had.
+        assert!(there(|cut_out| cut_out.image = Some(9), [0.1, 0.1]));
+        assert!(CutOuts::new(vec![image.clone()], [(3, cut_out)]).is_there(2, [0.1, 0.1]));
+    }
+
+    #[test]
+    fn images_without_texels_or_with_too_few_are_refused() {
+        assert!(AlphaImage::new(0, 4, Vec::new()).is_none() && AlphaImage::new(2, 2, vec![0; 3]).is_none());
+        assert!(AlphaImage::new(1, 2, vec![0; 2]).is_some());
+    }
+}

@@ -1,0 +1,58 @@
+//! Why a picture cannot be judged on the GPU, with what to do about it.
+
+use thiserror::Error;
+
+/// Why a picture cannot be judged on the GPU.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum GpuTruthError {
+    /// The tracer's alpha test is a function of the processor.
+    #[error(
+        "the tracer has an alpha test that only the processor can run: give its holes as plain data, \
+         with `Tracer::with_cut_outs`"
+    )]
+    AlphaTest,
+    /// A buffer would be larger than the device allows.
+    #[error(
+        "{what} need {bytes} bytes in one buffer, and the device allows {limit}: use fewer of them, or ask the \
+         adapter for a device with higher `max_storage_buffer_binding_size` and `max_buffer_size`"
+    )]
+    TooLarge {
+        /// What would be in the buffer.
+        what: &'static str,
+        /// Bytes that it needs.
+        bytes: u64,
+        /// Bytes that one buffer may have.
+        limit: u64,
+    },
+    /// The hierarchy is deeper than the shader's stack.
+    #[error(
+        "the triangles' hierarchy has {depth} levels, and the shader can follow {most}: leave out triangles that \
+         coincide or have extreme sizes"
+    )]
+    TooDeep {
+        /// Levels of the hierarchy.
+        depth: usize,
+        /// Levels that the shader can follow.
+        most: usize,
+    },
+    /// More maps than the uniform holds.
+    #[error("the picture has {0} shadow maps, and the shader reads at most 8: judge it on the processor")]
+    TooManyMaps(usize),
+    /// Truth is a mean over many rays.
+    #[error("the sun has a radius, and the GPU traces hard shadows only: set `sun_radius` to 0")]
+    SoftSun,
+    /// The picture of triangles and the camera have different sizes.
+    #[error(
+        "the texture of seen triangles has {}×{} pixels and the camera {}×{}: give the camera of that picture",
+        seen[0], seen[1], camera[0], camera[1]
+    )]
+    Size {
+        /// Size of the texture, in pixels.
+        seen: [u32; 2],
+        /// Size of the camera's picture, in pixels.
+        camera: [u32; 2],
+    },
+    /// The classes cannot be read back.
+    #[error("the classes cannot be read back from the device, which was lost or ran out of memory: open it again")]
+    Read,
+}

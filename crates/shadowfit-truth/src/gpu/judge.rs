@@ -1,0 +1,234 @@
+//! The three passes that judge a picture, and the texture that they fill.
+
+use super::tracer::scene_layout;
+use super::uniform::JudgeUniform;
+use super::{GpuPixel, GpuTracer, GpuTruthError, shader};
+use crate::{MapsSeen, PixelCamera, TruthSettings};
+
+/// Bytes of a pixel between the passes: flags, footprint, distance along the row.
+const PIXEL_BYTES: u64 = 12;
+/// Pixels a side of a workgroup's square.
+const SQUARE: u32 = 8;
+/// A texture's rows begin at multiples of this in a buffer, in bytes; wgpu demands it.
+const ROW_ALIGNMENT: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
+
+/// A picture to judge.
+#[derive(Clone, Copy, Debug)]
+pub struct GpuJudgeInput<'a> {
+    /// Camera of the picture.
+    pub camera: &'a PixelCamera,
+    /// How truth is traced; the sun must be hard.
+    pub settings: &'a TruthSettings,
+    /// The maps, at most [`super::MAX_MAPS`].
+    pub maps: &'a MapsSeen<'a>,
+}
+
+/// Judges pictures on the GPU.
+#[derive(Debug)]
+pub struct GpuJudge {
+    layout: wgpu::BindGroupLayout,
+    pipelines: [wgpu::ComputePipeline; 3],
+    uniform: wgpu::Buffer,
+    target: Option<Target>,
+}
+
+/// What has the size of the picture.
+#[derive(Debug)]
+struct Target {
+    size: [u32; 2],
+    pixels: wgpu::Buffer,
+    classes: wgpu::Texture,
+    view: wgpu::TextureView,
+}
+
+impl GpuJudge {
+    /// Makes the pipelines.
+    pub fn new(device: &wgpu::Device) -> Self {
+        let layout = judge_layout(device);
+        let scene = scene_layout(device);
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("truth"),
+            bind_group_layouts: &[Some(&scene), Some(&layout)],
+            immediate_size: 0,
+        });
+        let passes = [("trace", shader::truth()), ("rows", shader::rows()), ("classify", shader::classes())];
+        let pipelines = passes.map(|(entry, source)| {
+            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(entry),
+                source: wgpu::ShaderSource::Wgsl(source.into()),
+            });
+            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(entry),
+                layout: Some(&pipeline_layout),
+                module: &module,
+                entry_point: Some(entry),
+                compilation_options: Default::default(),
+                cache: None,
+            })
+        });
+        let uniform = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("judge"),
+            size: size_of::<JudgeUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        Self { layout, pipelines, uniform, target: None }
+    }
+
+    /// Records the passes that judge a picture, and returns the texture that they fill (see
+    /// [`GpuPixel`]); it is another one only when the size has changed. `seen` is an `Rg32Uint` of the
+    /// camera's size: the tracer's triangle plus 1 (0 sky), and the bits of the filtered factor.
+    ///
+    /// Submit the encoder before the next picture is recorded, which takes the place of this one.
+    ///
+    /// # Errors
+    ///
+    /// When the sizes differ, the picture is too large for the device, has too many maps, or a sun
+    /// with a radius.
+    pub fn judge(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        encoder: &mut wgpu::CommandEncoder,
+        tracer: &GpuTracer,
+        seen: &wgpu::TextureView,
+        input: &GpuJudgeInput,
+    ) -> Result<&wgpu::Texture, GpuTruthError> {
+        let size = input.camera.size;
+        let texture = seen.texture();
+        if [texture.width(), texture.height()] != size {
+            return Err(GpuTruthError::Size { seen: [texture.width(), texture.height()], camera: size });
+        }
+        let uniform = JudgeUniform::new(input, tracer.origin(), tracer.triangles())?;
+        let target = match self.target.take() {
+            Some(target) if target.size == size => target,
+            _ => Target::new(device, size)?,
+        };
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
+        let group = judge_group(device, &self.layout, &self.uniform, seen, &target);
+        let squares = size.map(|side| side.div_ceil(SQUARE));
+        let [trace, rows, classify] = &self.pipelines;
+        for (pipeline, [x, y]) in [(trace, squares), (rows, [size[1], 1]), (classify, squares)] {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, tracer.group(), &[]);
+            pass.set_bind_group(1, &group, &[]);
+            pass.dispatch_workgroups(x, y, 1);
+        }
+        Ok(&self.target.insert(target).classes)
+    }
+
+    /// The texture of the last picture's classes.
+    pub fn classes(&self) -> Option<&wgpu::Texture> {
+        self.target.as_ref().map(|target| &target.classes)
+    }
+
+    /// Reads the last picture's classes back, rows from the top, and waits for the device. Empty
+    /// before the first picture.
+    ///
+    /// # Errors
+    ///
+    /// When the device is lost or has no memory left.
+    pub fn read(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<GpuPixel>, GpuTruthError> {
+        let Some(target) = &self.target else { return Ok(Vec::new()) };
+        let [width, height] = target.size;
+        let row = (width * 4).next_multiple_of(ROW_ALIGNMENT);
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("classes"),
+            size: u64::from(row) * u64::from(height),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
+        encoder.copy_texture_to_buffer(
+            target.classes.as_image_copy(),
+            wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
+            target.classes.size(),
+        );
+        queue.submit([encoder.finish()]);
+        // Whether it was mapped is asked below.
+        buffer.slice(..).map_async(wgpu::MapMode::Read, |_| ());
+        device.poll(wgpu::PollType::wait_indefinitely()).map_err(|_| GpuTruthError::Read)?;
+        let mapped = buffer.slice(..).get_mapped_range().map_err(|_| GpuTruthError::Read)?;
+        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&mapped);
+        let rows = words.chunks_exact(row as usize / 4);
+        Ok(rows.flat_map(|row| &row[..width as usize]).map(|bits| GpuPixel::from_bits(*bits)).collect())
+    }
+}
+
+impl Target {
+    fn new(device: &wgpu::Device, size: [u32; 2]) -> Result<Self, GpuTruthError> {
+        let [width, height] = size;
+        let bytes = u64::from(width) * u64::from(height) * PIXEL_BYTES;
+        let limits = device.limits();
+        let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        if bytes > limit {
+            return Err(GpuTruthError::TooLarge { what: "pixels", bytes, limit });
+        }
+        let pixels = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("judged pixels"),
+            size: bytes,
+            usage: wgpu::BufferUsages::STORAGE,
+            mapped_at_creation: false,
+        });
+        let classes = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("classes"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::R32Uint,
+            usage: wgpu::TextureUsages::STORAGE_BINDING
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let view = classes.create_view(&wgpu::TextureViewDescriptor::default());
+        Ok(Self { size, pixels, classes, view })
+    }
+}
+
+/// Layout of a picture's bind group.
+fn judge_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let entry =
+        |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None };
+    let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    let seen = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Uint,
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    let classes = wgpu::BindingType::StorageTexture {
+        access: wgpu::StorageTextureAccess::WriteOnly,
+        format: wgpu::TextureFormat::R32Uint,
+        view_dimension: wgpu::TextureViewDimension::D2,
+    };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("judged picture"),
+        entries: &[
+            entry(0, buffer(wgpu::BufferBindingType::Uniform)),
+            entry(1, seen),
+            entry(2, buffer(wgpu::BufferBindingType::Storage { read_only: false })),
+            entry(3, classes),
+        ],
+    })
+}
+
+fn judge_group(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    uniform: &wgpu::Buffer,
+    seen: &wgpu::TextureView,
+    target: &Target,
+) -> wgpu::BindGroup {
+    let resources = [
+        uniform.as_entire_binding(),
+        wgpu::BindingResource::TextureView(seen),
+        target.pixels.as_entire_binding(),
+        wgpu::BindingResource::TextureView(&target.view),
+    ];
+    let entries: Vec<_> =
+        (0u32..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+    device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("judged picture"), layout, entries: &entries })
+}

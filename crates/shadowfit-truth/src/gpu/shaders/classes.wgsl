@@ -1,0 +1,85 @@
+// Third pass: the edge zone, from the rows' distances, and the class of each pixel.
+
+const RIGHT: u32 = 1u;
+const FALSE_SHADOW: u32 = 2u;
+const FALSE_LIGHT: u32 = 3u;
+const HOLE: u32 = 4u;
+const EDGE: u32 = 5u;
+
+// Logarithms of footprints in the texture: steps of an octave, and the step that stands for 1.
+const OCTAVE: f32 = 256.0;
+const ONE: f32 = 32768.0;
+const MOST: f32 = 65535.0;
+
+fn footprint_bits(footprint: f32) -> u32 {
+    return u32(clamp(round(log2(footprint) * OCTAVE) + ONE, 0.0, MOST));
+}
+
+fn is_row_near(pixel: vec2<u32>, step: u32, square: f32) -> bool {
+    let along = pixels[pixel_index(pixel)].along_row;
+    return along != NOWHERE && f32(along * along + step * step) <= square;
+}
+
+// Whether a transition lies within a number of pixels: squares of whole pixels against that of the width less half a
+// pixel, as the processor compares them.
+fn is_near_transition(pixel: vec2<u32>, width: f32) -> bool {
+    // Beyond the largest picture's diagonal all is near.
+    let reach = min(width - 0.5, 65536.0);
+    let square = reach * reach;
+    for (var step = 0u; step < judge.size.y && f32(step * step) <= square; step++) {
+        if step <= pixel.y && is_row_near(pixel - vec2<u32>(0u, step), step, square) {
+            return true;
+        }
+        if pixel.y + step < judge.size.y && is_row_near(pixel + vec2<u32>(0u, step), step, square) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Whether the map that is read holds none of the point's occluders, or none is read.
+fn is_hole(pixel: vec2<u32>, choice: u32) -> bool {
+    if choice == 0u {
+        return true;
+    }
+    let drawn = textureLoad(seen, pixel, 0);
+    let surface = surface_of(pixel, triangles[slots[drawn.x - 1u]]);
+    let place = place_in(judge.maps[choice - 1u], surface.position);
+    let receiver = Receiver(choice - 1u, surface.position, place.depth);
+    return !is_occluded(ray_origin(surface), judge.to_light, receiver);
+}
+
+fn class_of(pixel: vec2<u32>, flags: u32, is_in_edge_zone: bool) -> u32 {
+    let is_lit = (flags & LIT) != 0u;
+    let seems_lit = (flags & SEEMS_LIT) != 0u;
+    if is_lit == seems_lit {
+        return RIGHT;
+    }
+    if !is_lit && is_hole(pixel, flags >> CHOICE_SHIFT) {
+        return HOLE;
+    }
+    if is_in_edge_zone {
+        return EDGE;
+    }
+    return select(FALSE_LIGHT, FALSE_SHADOW, is_lit);
+}
+
+@compute @workgroup_size(8, 8) fn classify(@builtin(global_invocation_id) id: vec3<u32>) {
+    if any(id.xy >= judge.size) {
+        return;
+    }
+    let pixel = pixels[pixel_index(id.xy)];
+    var bits = 0u;
+    if (pixel.flags & JUDGED) != 0u {
+        let choice = pixel.flags >> CHOICE_SHIFT;
+        // Without a map no texel is read, and only the pixels are meant.
+        let footprint = select(1.0, max(pixel.footprint, 1.0), choice != 0u);
+        let is_in_edge_zone = is_near_transition(id.xy, judge.edge_width * min(footprint, 1e9));
+        bits = class_of(id.xy, pixel.flags, is_in_edge_zone)
+            | select(0u, 8u, (pixel.flags & LIT) != 0u)
+            | select(0u, 16u, is_in_edge_zone)
+            | (choice << 8u)
+            | (select(u32(MOST), footprint_bits(pixel.footprint), choice != 0u) << 16u);
+    }
+    textureStore(classes, id.xy, vec4<u32>(bits, 0u, 0u, 0u));
+}

@@ -1,0 +1,108 @@
+// The visible point of a pixel, and where points lie in shadow maps. Positions are relative to the eye.
+
+struct Surface {
+    position: vec3<f32>,
+    // Unit geometric normal on the side of the eye.
+    normal: vec3<f32>,
+    // Through the pixel's centre; its part along the view is 1.
+    ray: vec3<f32>,
+    facing: f32,
+    view_depth: f32,
+}
+
+struct Place {
+    texel: vec2<f32>,
+    // 0 nearest to the light.
+    depth: f32,
+    ndc: vec3<f32>,
+    w: f32,
+}
+
+fn ray_of(pixel: vec2<u32>) -> vec3<f32> {
+    let share = (2.0 * (vec2<f32>(pixel) + 0.5) / vec2<f32>(judge.size) - 1.0) * judge.tan_half_fov;
+    return judge.right * share.x - judge.up * share.y + judge.forward;
+}
+
+// The point of a triangle's plane on the pixel's ray, its view depth held within that of the corners.
+fn surface_of(pixel: vec2<u32>, triangle: Triangle) -> Surface {
+    let ray = ray_of(pixel);
+    let area = cross(triangle.b - triangle.a, triangle.c - triangle.a);
+    // Scaled first: the squares of small triangles' areas are below what f32 can hold.
+    let largest = max(max(abs(area.x), abs(area.y)), abs(area.z));
+    var normal = vec3<f32>(0.0);
+    if largest > 0.0 {
+        normal = normalize(area / largest);
+    }
+    let corner = triangle.a - judge.eye;
+    let depths = vec3<f32>(
+        dot(corner, judge.forward),
+        dot(triangle.b - judge.eye, judge.forward),
+        dot(triangle.c - judge.eye, judge.forward),
+    );
+    let nearest = max(min(min(depths.x, depths.y), depths.z), judge.near);
+    let farthest = min(max(max(depths.x, depths.y), depths.z), judge.far);
+    let along = dot(normal, ray);
+    var view_depth = nearest;
+    if along != 0.0 {
+        view_depth = min(max(dot(normal, corner) / along, nearest), farthest);
+    }
+    let position = ray * view_depth;
+    if along > 0.0 {
+        normal = -normal;
+    }
+    return Surface(position, normal, ray, dot(normal, judge.to_light), view_depth);
+}
+
+fn place_in(map: Map, position: vec3<f32>) -> Place {
+    let point = vec4<f32>(position, 1.0);
+    let w = dot(map.row_w, point);
+    let ndc = vec3<f32>(dot(map.row_x, point), dot(map.row_y, point), dot(map.row_z, point)) / w;
+    let texel = (0.5 + ndc.xy * vec2<f32>(0.5, -0.5)) * map.size;
+    return Place(texel, select(ndc.z, 1.0 - ndc.z, map.is_reversed != 0u), ndc, w);
+}
+
+fn is_within_sides(map: Map, place: Place) -> bool {
+    let slack = map.size * 1e-5;
+    return place.w > 0.0 && all(place.texel >= -slack) && all(place.texel <= map.size + slack);
+}
+
+fn is_inside(map: Map, place: Place) -> bool {
+    return is_within_sides(map, place) && place.depth >= -1e-5 && place.depth <= 1.0 + 1e-5;
+}
+
+// The first map whose split is beyond the point, or the next later one that holds it; NOWHERE without one.
+fn choose(surface: Surface) -> u32 {
+    var is_reached = false;
+    for (var index = 0u; index < judge.map_count; index++) {
+        is_reached = is_reached || surface.view_depth < judge.maps[index].split_far;
+        if is_reached && is_inside(judge.maps[index], place_in(judge.maps[index], surface.position)) {
+            return index;
+        }
+    }
+    return NOWHERE;
+}
+
+// How far a point moves on its tangent plane when its ray is moved by `across` at view depth 1.
+fn slide(surface: Surface, across: vec3<f32>) -> vec3<f32> {
+    let along = dot(across, surface.normal) / dot(surface.ray, surface.normal);
+    return (across - surface.ray * along) * surface.view_depth;
+}
+
+// Pixels per texel along the worse axis: one over the smaller singular value of texels a pixel.
+fn pixels_per_texel(surface: Surface, map: Map) -> f32 {
+    let place = place_in(map, surface.position);
+    let u = (map.row_x.xyz - map.row_w.xyz * place.ndc.x) * (0.5 * map.size.x / place.w);
+    let v = (map.row_y.xyz - map.row_w.xyz * place.ndc.y) * (-0.5 * map.size.y / place.w);
+    let pixel = 2.0 * judge.tan_half_fov / vec2<f32>(judge.size);
+    let to_right = slide(surface, judge.right * pixel.x);
+    let to_down = slide(surface, -judge.up * pixel.y);
+    let right = vec2<f32>(dot(u, to_right), dot(v, to_right));
+    let down = vec2<f32>(dot(u, to_down), dot(v, to_down));
+    let sum = length(vec2<f32>(right.x + down.y, right.y - down.x));
+    let difference = length(vec2<f32>(right.x - down.y, right.y + down.x));
+    let area = abs(right.x * down.y - right.y * down.x);
+    if !(area > 0.0) {
+        return FAR;
+    }
+    return min(0.5 * (sum + difference) / area, FAR);
+}

@@ -1,0 +1,113 @@
+// What the passes share: the scene's triangles, the picture's camera, light and maps, and the pixels.
+
+struct Node {
+    least: vec3<f32>,
+    // Triangles of a leaf, 0 for an inner node.
+    count: u32,
+    most: vec3<f32>,
+    // A leaf's first triangle, or the first of an inner node's two children, which stand side by side.
+    first: u32,
+}
+
+// Corners relative to the origin, in leaf order.
+struct Triangle {
+    a: vec3<f32>,
+    // Place of its cut-out plus 1, 0 for none.
+    cut_out: u32,
+    b: vec3<f32>,
+    padding_0: u32,
+    c: vec3<f32>,
+    padding_1: u32,
+}
+
+struct CutOut {
+    uv_a: vec2<f32>,
+    uv_b: vec2<f32>,
+    uv_c: vec2<f32>,
+    base_alpha: f32,
+    cutoff: f32,
+    alphas: vec3<f32>,
+    // Place of its image plus 1, 0 for none.
+    image: u32,
+    wrap: vec2<u32>,
+    nearest: u32,
+    padding: u32,
+}
+
+struct Image {
+    // Its first byte among all alphas.
+    first: u32,
+    width: i32,
+    height: i32,
+    padding: u32,
+}
+
+struct Map {
+    // Rows of clip from positions relative to the eye.
+    row_x: vec4<f32>,
+    row_y: vec4<f32>,
+    row_z: vec4<f32>,
+    row_w: vec4<f32>,
+    size: vec2<f32>,
+    split_far: f32,
+    is_reversed: u32,
+}
+
+struct Judge {
+    // Relative to the origin.
+    eye: vec3<f32>,
+    near: f32,
+    right: vec3<f32>,
+    far: f32,
+    up: vec3<f32>,
+    ray_offset: f32,
+    forward: vec3<f32>,
+    max_distance: f32,
+    to_light: vec3<f32>,
+    // Pixels, or texels' footprints if those are more.
+    edge_width: f32,
+    tan_half_fov: vec2<f32>,
+    size: vec2<u32>,
+    map_count: u32,
+    depth_clamp: u32,
+    triangles: u32,
+    padding: u32,
+    maps: array<Map, 8>,
+}
+
+struct Pixel {
+    flags: u32,
+    // Pixels per texel along the worse axis.
+    footprint: f32,
+    // Distance along the row to the nearest transition, in pixels.
+    along_row: u32,
+}
+
+// Bits of Pixel.flags; the map that is read, plus 1, stands above them.
+const JUDGED: u32 = 1u;
+const LIT: u32 = 2u;
+const SEEMS_LIT: u32 = 4u;
+const CHOICE_SHIFT: u32 = 4u;
+
+// More than any finite footprint or distance that matters, where the processor's twin has infinity.
+const FAR: f32 = 3.0e38;
+const NOWHERE: u32 = 0xffffffffu;
+
+@group(0) @binding(0) var<storage, read> nodes: array<Node>;
+@group(0) @binding(1) var<storage, read> triangles: array<Triangle>;
+// Leaf-order place of each triangle by its own number.
+@group(0) @binding(2) var<storage, read> slots: array<u32>;
+@group(0) @binding(3) var<storage, read> cut_outs: array<CutOut>;
+@group(0) @binding(4) var<storage, read> images: array<Image>;
+// Four bytes each, the first one lowest.
+@group(0) @binding(5) var<storage, read> alphas: array<u32>;
+
+@group(1) @binding(0) var<uniform> judge: Judge;
+// Triangle's number plus 1 (0 sky), and the bits of the filtered factor.
+@group(1) @binding(1) var seen: texture_2d<u32>;
+@group(1) @binding(2) var<storage, read_write> pixels: array<Pixel>;
+@group(1) @binding(3) var classes: texture_storage_2d<r32uint, write>;
+
+fn pixel_index(pixel: vec2<u32>) -> u32 {
+    return pixel.y * judge.size.x + pixel.x;
+}

@@ -1,0 +1,372 @@
+//! The GPU's classes against the processor's, on scenes with every kind of error in them.
+//!
+//! The two differ only by rounding: at pixels whose shadow ray passes within micrometres of an edge.
+
+use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
+use shadowfit_truth::gpu::{GpuJudge, GpuJudgeInput, GpuPixel, GpuTracer, GpuTruthError};
+use shadowfit_truth::peers::{FitMap, ShadowMap};
+use shadowfit_truth::{
+    AlphaImage, Class, CutOut, CutOuts, Judged, MapsSeen, PixelCamera, Tracer, Truth, TruthSettings, Wrap, judge,
+};
+
+use super::scenes::{Triangles, cuboid, level, looking_at, map_around, quad, sphere};
+
+/// The software adapter, so that the numbers are the same on every machine.
+fn device() -> (wgpu::Device, wgpu::Queue) {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+    descriptor.backends = wgpu::Backends::PRIMARY;
+    let instance = wgpu::Instance::new(descriptor);
+    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+    let is_software = |adapter: &wgpu::Adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+    let adapter = adapters.into_iter().find(is_software).expect("a software adapter, such as Mesa's lavapipe");
+    let descriptor = wgpu::DeviceDescriptor { required_limits: wgpu::Limits::default(), ..Default::default() };
+    pollster::block_on(adapter.request_device(&descriptor)).expect("a device with the default limits")
+}
+
+/// What is judged.
+struct Picture {
+    tracer: Tracer,
+    camera: PixelCamera,
+    settings: TruthSettings,
+    maps: Vec<FitMap>,
+    depth_clamp: bool,
+    /// What the GPU's triangles are relative to.
+    origin: DVec3,
+}
+
+/// What both found.
+struct Both {
+    truth: Truth,
+    judged: Judged,
+    gpu: Vec<GpuPixel>,
+    edge_width: f32,
+}
+
+impl Picture {
+    /// A scene under a light, with a near and a far map of 128 texels.
+    fn new(triangles: Triangles, eye: DVec3, to_light: DVec3) -> Self {
+        let near = FitMap { split_far: 6.0, ..map_around(DVec3::ZERO, to_light, 6.0, 4.0, 512) };
+        Self {
+            tracer: Tracer::new(triangles),
+            camera: looking_at(eye, DVec3::Y * 0.4, [200, 120]),
+            settings: TruthSettings { max_distance: 30.0, ..TruthSettings::new(to_light) },
+            maps: vec![near, map_around(DVec3::ZERO, to_light, 24.0, 3.0, 512)],
+            depth_clamp: false,
+            origin: DVec3::ZERO,
+        }
+    }
+
+    /// Judges the picture twice. Its factors are those of maps that hold the nearest triangle at
+    /// each texel's centre, with a bias of a centimetre on the left and of 3 m on the right:
+    /// acne, leaks, holes and jagged edges.
+    fn judge(&self) -> Both {
+        let maps: Vec<ShadowMap> = self.maps.iter().map(|map| ShadowMap::new(map, self.settings.to_light)).collect();
+        let seen = Truth::seen_by_rays(&self.tracer, &self.camera);
+        let truth = Truth::trace(&self.tracer, &self.camera, &self.settings, &seen);
+        let factors: Vec<f32> =
+            truth.points.iter().map(|point| point.as_ref().map_or(1.0, |point| self.factor(&maps, point))).collect();
+        let maps = MapsSeen { maps: &maps, reach: 1.0, depth_clamp: self.depth_clamp };
+        let judged = judge(&self.tracer, &truth, &maps, &factors, |_| true);
+        let gpu = self.judge_on_gpu(&maps, &seen, &factors).expect("a picture that the GPU can judge");
+        Both { truth, judged, gpu, edge_width: maps.edge_width() }
+    }
+
+    fn factor(&self, maps: &[ShadowMap], point: &shadowfit_truth::TruthPoint) -> f32 {
+        let is_read = |map: &&ShadowMap| point.view_depth < map.split_far && map.is_inside(&map.place(point.position));
+        let Some(index) = maps.iter().position(|map| is_read(&map)) else { return 1.0 };
+        let (map, clip_from_world) = (&maps[index], DMat4::from_cols_array(&self.maps[index].view_proj));
+        let texel = map.place(point.position).texel.floor() + 0.5;
+        let ndc = (texel / map.size - 0.5) * DVec2::new(2.0, -2.0);
+        let depth = clip_from_world.project_point3(point.position).z;
+        let centre = clip_from_world.inverse().project_point3(ndc.extend(depth));
+        let to_light = self.settings.to_light;
+        let bias = if point.position.x < 0.0 { 0.01 } else { 3.0 };
+        let mut factor = 1.0;
+        self.tracer.for_each_hit((centre + to_light * bias).as_vec3(), to_light.as_vec3(), |hit| {
+            let is_drawn = map.place(centre + to_light * (f64::from(hit.distance) + bias)).depth >= 0.0;
+            if is_drawn || self.depth_clamp {
+                factor = 0.0;
+            }
+        });
+        factor
+    }
+
+    fn judge_on_gpu(
+        &self,
+        maps: &MapsSeen,
+        seen: &[Option<u32>],
+        factors: &[f32],
+    ) -> Result<Vec<GpuPixel>, GpuTruthError> {
+        let (device, queue) = device();
+        let tracer = GpuTracer::new(&device, &queue, &self.tracer, self.origin)?;
+        let texture = seen_texture(&device, &queue, self.camera.size, seen, factors);
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let mut gpu = GpuJudge::new(&device);
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let input = GpuJudgeInput { camera: &self.camera, settings: &self.settings, maps };
+        gpu.judge(&device, &queue, &mut encoder, &tracer, &view, &input)?;
+        queue.submit([encoder.finish()]);
+        gpu.read(&device, &queue)
+    }
+}
+
+/// The picture of triangles and factors that a renderer would have drawn.
+fn seen_texture(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    [width, height]: [u32; 2],
+    seen: &[Option<u32>],
+    factors: &[f32],
+) -> wgpu::Texture {
+    let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rg32Uint,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let texels: Vec<[u32; 2]> = seen
+        .iter()
+        .zip(factors)
+        .map(|(seen, factor)| [seen.map_or(0, |triangle| triangle + 1), factor.to_bits()])
+        .collect();
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(width * 8), rows_per_image: None };
+    queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(&texels), layout, size);
+    texture
+}
+
+impl Both {
+    /// Asserts that at least 99.9% of the facing pixels off the edge zone, and 99.5% of all of them,
+    /// have the same class; that the map read is the same for 99.9%, and pixels per texel within 0.2%
+    /// for as many; and that edge zones are the very same wherever truth is, as far as a pixel's zone
+    /// reaches. Returns the processor's number of pixels of each class.
+    fn assert_agreement(&self, name: &str) -> [usize; 6] {
+        let pixels = || (0..self.gpu.len()).filter(|pixel| self.truth.verdict(*pixel).is_some());
+        let same = |pixel: &usize| self.judged.classes[*pixel] == self.gpu[*pixel].class;
+        let share = |of: Vec<usize>, is_same: &dyn Fn(&usize) -> bool| {
+            of.iter().filter(|pixel| is_same(pixel)).count() as f64 / of.len().max(1) as f64
+        };
+        let off_edges: Vec<usize> = pixels().filter(|pixel| !self.judged.edge_zone[*pixel]).collect();
+        let classes = [share(off_edges, &same), share(pixels().collect(), &same)];
+        let choices = share(pixels().collect(), &|pixel| self.judged.choice[*pixel] == self.gpu[*pixel].choice);
+        // The texture has 256 steps an octave: half a step is 0.14%.
+        let footprints = share(pixels().collect(), &|pixel| {
+            let (found, wanted) = (self.gpu[*pixel].pixels_per_texel, self.judged.pixels_per_texel[*pixel]);
+            found == wanted || (found / wanted - 1.0).abs() <= 0.002
+        });
+        println!("{name}: classes {classes:?}, choices {choices}, footprints {footprints}");
+        assert!(classes[0] >= 0.999 && classes[1] >= 0.995, "{name}: classes {classes:?}");
+        assert!(choices >= 0.999 && footprints >= 0.999, "{name}: choices {choices}, footprints {footprints}");
+        self.assert_edge_zones(name);
+        let mut counts = [0; 6];
+        self.judged.classes.iter().for_each(|class| counts[*class as usize] += 1);
+        counts
+    }
+
+    /// Every pixel whose edge zone differs has a pixel of differing truth as near as its zone reaches,
+    /// or a transition exactly at the end of its reach, to 0.1%.
+    fn assert_edge_zones(&self, name: &str) {
+        let width = self.truth.camera.size[0] as usize;
+        let place = |pixel: usize| DVec2::new((pixel % width) as f64, (pixel / width) as f64);
+        let truth_differs = |pixel: &usize| {
+            let gpu = self.gpu[*pixel];
+            self.truth.verdict(*pixel) != (gpu.class != Class::NotJudged).then_some(gpu.is_lit)
+        };
+        let differing: Vec<usize> = (0..self.gpu.len()).filter(truth_differs).collect();
+        for pixel in (0..self.gpu.len()).filter(|pixel| self.truth.verdict(*pixel).is_some()) {
+            if self.judged.edge_zone[pixel] == self.gpu[pixel].is_in_edge_zone {
+                continue;
+            }
+            let footprint = self.judged.choice[pixel].map_or(1.0, |_| self.judged.pixels_per_texel[pixel].max(1.0));
+            let reach = f64::from(self.edge_width * footprint);
+            let is_near = |other: &usize| place(*other).distance(place(pixel)) <= reach * 1.01 + 1.5;
+            let is_tie = (f64::from(self.truth.transition_distance(pixel)) / reach - 1.0).abs() < 1e-3;
+            assert!(is_tie || differing.iter().any(is_near), "{name}: the edge zone differs at {}", place(pixel));
+        }
+    }
+}
+
+fn sun() -> DVec3 {
+    DVec3::new(0.5, 0.7, 0.3).normalize()
+}
+
+fn boxes() -> Triangles {
+    let ground = level(0.0, [-15.0, -15.0], [15.0, 16.1]);
+    let boxes = (0..12u32).flat_map(|index| {
+        let angle = index as f32 * 2.4;
+        let centre = Vec3::new(angle.cos(), 0.0, angle.sin()) * (0.5 + 0.4 * index as f32);
+        let half = Vec3::new(0.2, 0.3 + 0.15 * (index % 5) as f32, 0.25);
+        cuboid(centre + Vec3::Y * 0.02 - half * Vec3::new(1.0, 0.0, 1.0), centre + half * Vec3::new(1.0, 2.0, 1.0))
+    });
+    // A roof above the far map's near plane, so that there are holes.
+    let roof = level(5.0, [2.0, -6.0], [7.0, 3.0]);
+    ground.into_iter().chain(boxes).chain(sphere(Vec3::new(-1.5, 1.0, 1.5), 0.6, 24)).chain(roof).collect()
+}
+
+/// Numbers from 0 to 1 that look random and are the same everywhere.
+fn random() -> impl FnMut() -> f32 {
+    let mut state = 0x9E37_79B9_7F4A_7C15u64;
+    move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 40) as f32 / (1u64 << 24) as f32
+    }
+}
+
+#[test]
+fn boxes_and_a_sphere_are_judged_alike_with_every_kind_of_error() {
+    let mut picture = Picture::new(boxes(), DVec3::new(-4.0, 3.0, 5.0), sun());
+    let counts = picture.judge().assert_agreement("boxes");
+    assert!(counts.iter().all(|count| *count >= 20), "{counts:?}");
+    picture.depth_clamp = true;
+    let clamped = picture.judge().assert_agreement("boxes, clamped");
+    assert!(clamped[Class::Hole as usize] < counts[Class::Hole as usize], "{clamped:?} {counts:?}");
+}
+
+#[test]
+fn triangles_relative_to_another_origin_far_from_the_worlds_are_judged_alike() {
+    let away = Vec3::new(1000.0, 50.0, -2000.0);
+    let moved = boxes().into_iter().map(|corners| corners.map(|corner| corner + away)).collect();
+    let mut picture = Picture::new(moved, DVec3::new(-4.0, 3.0, 5.0), sun());
+    picture.camera.eye += away.as_dvec3();
+    picture.origin = away.as_dvec3() + DVec3::new(0.3, 0.1, -0.2);
+    let moved_map = |map: &FitMap| {
+        let clip_from_world = DMat4::from_cols_array(&map.view_proj) * DMat4::from_translation(-away.as_dvec3());
+        FitMap { view_proj: clip_from_world.to_cols_array(), ..map.clone() }
+    };
+    picture.maps = picture.maps.iter().map(moved_map).collect();
+    picture.judge().assert_agreement("away");
+}
+
+#[test]
+fn maps_of_reversed_depth_are_read_alike() {
+    let mut picture = Picture::new(boxes(), DVec3::new(-4.0, 3.0, 5.0), sun());
+    let turn = DMat4::from_translation(DVec3::Z) * DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0));
+    for map in &mut picture.maps {
+        map.view_proj = (turn * map.clip_from_world()).to_cols_array();
+    }
+    let counts = picture.judge().assert_agreement("reversed");
+    assert!(counts[Class::Hole as usize] >= 20, "{counts:?}");
+}
+
+#[test]
+fn grazing_light_is_judged_alike() {
+    let to_light = DVec3::new(1.0, 0.04, 0.4).normalize();
+    Picture::new(boxes(), DVec3::new(-4.0, 3.0, 5.0), to_light).judge().assert_agreement("grazing");
+}
+
+#[test]
+fn cut_outs_are_judged_alike_whatever_their_wrapping_and_filtering() {
+    let ground = level(0.0, [-15.0, -15.0], [15.0, 16.1]);
+    let kinds = [(Wrap::Repeat, true), (Wrap::Mirror, false), (Wrap::Clamp, false), (Wrap::Mirror, true)];
+    let mut random = random();
+    let image = AlphaImage::new(5, 3, (0..15).map(|_| (random() * 255.0) as u8).collect()).expect("15 texels");
+    let picket = AlphaImage::new(2, 1, vec![255, 0]).expect("2 texels");
+    let mut triangles = ground;
+    let mut cut_outs = Vec::new();
+    for (index, (wrap, nearest)) in (0u8..).zip(kinds) {
+        let x = f32::from(index) * 0.8 - 1.5;
+        let at = |y: f32, z: f32| Vec3::new(x, y, z);
+        for corners in quad([at(0.0, -2.0), at(0.0, 2.0), at(1.2, 2.0), at(1.2, -2.0)]) {
+            let cut_out = CutOut {
+                uvs: corners.map(|corner| Vec2::new(corner.z * 1.3 - 0.2, 0.9 - corner.y * 1.7)),
+                alphas: [1.0, 0.9, 1.0],
+                base_alpha: 0.95,
+                cutoff: 0.4,
+                image: (index < 3).then_some(u32::from(index % 2)),
+                wrap: [wrap, Wrap::Repeat],
+                nearest,
+            };
+            cut_outs.push((triangles.len() as u32, cut_out));
+            triangles.push(corners);
+        }
+    }
+    let mut picture = Picture::new(triangles, DVec3::new(-4.0, 3.0, 2.0), sun());
+    picture.tracer = picture.tracer.with_cut_outs(CutOuts::new(vec![picket, image], cut_outs));
+    let counts = picture.judge().assert_agreement("cut-outs");
+    assert!(counts[Class::Edge as usize] >= 20, "{counts:?}");
+}
+
+#[test]
+fn thousands_of_random_triangles_are_judged_alike() {
+    let mut random = random();
+    let mut point = |size: f32| Vec3::new(random() - 0.5, random() - 0.5, random() - 0.5) * size;
+    let random = (0..6000).map(|_| {
+        let centre = point(6.0) + Vec3::Y * 2.8;
+        [centre + point(0.3), centre + point(0.3), centre + point(0.3)]
+    });
+    let triangles: Triangles = level(0.0, [-15.0, -15.0], [15.0, 16.1]).into_iter().chain(random).collect();
+    Picture::new(triangles, DVec3::new(-5.0, 4.0, 6.0), sun()).judge().assert_agreement("random");
+}
+
+#[test]
+fn moved_triangles_are_uploaded_again_and_the_texture_stays() {
+    let (device, queue) = device();
+    let mut picture = Picture::new(boxes(), DVec3::new(-4.0, 3.0, 5.0), sun());
+    let mut tracer = GpuTracer::new(&device, &queue, &picture.tracer, DVec3::ZERO).expect("a scene that fits");
+    let mut gpu = GpuJudge::new(&device);
+    let mut pictures = Vec::new();
+    let mut textures = Vec::new();
+    for raised in [0.0, 1.5] {
+        let moved: Triangles = boxes().iter().map(|corners| corners.map(|corner| corner * (1.0 + raised))).collect();
+        picture.tracer = Tracer::new(moved);
+        tracer.update(&device, &queue, &picture.tracer).expect("a scene that fits");
+        let seen = Truth::seen_by_rays(&picture.tracer, &picture.camera);
+        let maps = [ShadowMap::new(&picture.maps[1], sun())];
+        let maps = MapsSeen { maps: &maps, reach: 0.5, depth_clamp: true };
+        let texture = seen_texture(&device, &queue, picture.camera.size, &seen, &vec![1.0; seen.len()]);
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let input = GpuJudgeInput { camera: &picture.camera, settings: &picture.settings, maps: &maps };
+        let classes = gpu.judge(&device, &queue, &mut encoder, &tracer, &view, &input).expect("a picture");
+        textures.push(classes.clone());
+        queue.submit([encoder.finish()]);
+        let found = gpu.read(&device, &queue).expect("the classes");
+        let truth = Truth::trace(&picture.tracer, &picture.camera, &picture.settings, &seen);
+        let differ = (0..found.len())
+            .filter(|pixel| truth.verdict(*pixel).is_some_and(|is_lit| is_lit != found[*pixel].is_lit))
+            .count();
+        assert!(differ * 1000 <= found.len(), "{differ}");
+        pictures.push(found);
+    }
+    assert!(textures[0] == textures[1] && pictures[0] != pictures[1]);
+}
+
+#[test]
+fn a_gpu_judges_an_empty_scene_as_nothing() {
+    let mut picture = Picture::new(Vec::new(), DVec3::new(-4.0, 3.0, 5.0), sun());
+    picture.maps.clear();
+    let both = picture.judge();
+    assert!(both.gpu.iter().all(|pixel| pixel.class == Class::NotJudged) && both.gpu.len() == 200 * 120);
+}
+
+#[test]
+fn what_the_gpu_cannot_judge_is_refused_by_its_reason() {
+    let (device, queue) = device();
+    let tracer = || Tracer::new(boxes());
+    let refused = GpuTracer::new(&device, &queue, &tracer().with_alpha_test(|_, _| true), DVec3::ZERO);
+    assert_eq!(refused.err(), Some(GpuTruthError::AlphaTest));
+    let picture = Picture::new(boxes(), DVec3::new(-4.0, 3.0, 5.0), sun());
+    let map = ShadowMap::new(&picture.maps[0], sun());
+    let judge = |change: &dyn Fn(&mut TruthSettings), maps: usize, size: [u32; 2]| {
+        let mut settings = picture.settings;
+        change(&mut settings);
+        let camera = PixelCamera { size, ..picture.camera };
+        let maps = MapsSeen { maps: &vec![map; maps], reach: 0.5, depth_clamp: false };
+        let gpu_tracer = GpuTracer::new(&device, &queue, &picture.tracer, DVec3::ZERO).expect("a scene that fits");
+        let texture = seen_texture(&device, &queue, [8, 8], &[None; 64], &[1.0; 64]);
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let input = GpuJudgeInput { camera: &camera, settings: &settings, maps: &maps };
+        GpuJudge::new(&device).judge(&device, &queue, &mut encoder, &gpu_tracer, &view, &input).err()
+    };
+    assert_eq!(judge(&|_| (), 8, [8, 8]), None);
+    assert_eq!(judge(&|_| (), 9, [8, 8]), Some(GpuTruthError::TooManyMaps(9)));
+    assert_eq!(judge(&|settings| settings.sun_radius = 0.1, 1, [8, 8]), Some(GpuTruthError::SoftSun));
+    assert_eq!(judge(&|_| (), 1, [9, 8]), Some(GpuTruthError::Size { seen: [8, 8], camera: [9, 8] }));
+}

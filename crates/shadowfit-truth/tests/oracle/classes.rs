@@ -1,0 +1,224 @@
+//! Shares of made-up shadow factors: a floor under half a roof, judged to the pixel.
+
+use glam::DVec3;
+use shadowfit_truth::peers::ShadowMap;
+use shadowfit_truth::{Class, Judged, MapsBefore, MapsSeen, PictureTally, Tracer, Truth, TruthSettings, crawl, judge};
+
+use super::scenes::{level, looking_down, map_around, shadow_map};
+
+/// 40 by 10 pixels of a decimetre on the floor, seen from below the roof, which covers its left
+/// half (x < 0) at a height of 2 m; the light falls straight down.
+struct Room {
+    tracer: Tracer,
+    truth: Truth,
+}
+
+const PIXELS: usize = 400;
+
+impl Room {
+    fn new() -> Self {
+        Self::lit_from(DVec3::Y, |_| ())
+    }
+
+    fn lit_from(to_light: DVec3, change: impl Fn(&mut TruthSettings)) -> Self {
+        let floor = level(0.0, [-9.0, -9.0], [9.0, 9.7]);
+        let roof = level(2.0, [-9.0, -9.0], [0.0, 9.7]);
+        let tracer = Tracer::new([floor, roof].concat());
+        let camera = looking_down(1.0, 0.1, [40, 10]);
+        let seen = Truth::seen_by_rays(&tracer, &camera);
+        let mut settings = TruthSettings::new(to_light);
+        change(&mut settings);
+        let truth = Truth::trace(&tracer, &camera, &settings, &seen);
+        Self { tracer, truth }
+    }
+
+    /// Judges factors by column.
+    fn judge(&self, factor: impl Fn(usize) -> f32, map: ShadowMap, depth_clamp: bool) -> Judged {
+        self.judge_counting(factor, map, depth_clamp, |_| true)
+    }
+
+    fn judge_counting(
+        &self,
+        factor: impl Fn(usize) -> f32,
+        map: ShadowMap,
+        depth_clamp: bool,
+        counts: impl Fn(u32) -> bool + Sync,
+    ) -> Judged {
+        let factors: Vec<f32> = (0..PIXELS).map(|pixel| factor(pixel % 40)).collect();
+        let maps = MapsSeen { maps: &[map], reach: 0.5, depth_clamp };
+        judge(&self.tracer, &self.truth, &maps, &factors, counts)
+    }
+}
+
+/// A map 8 m wide around the floor with texels of so many pixels, from `top` metres over the floor.
+fn map(pixels_per_texel: u32, top: f64) -> ShadowMap {
+    shadow_map(DVec3::ZERO, DVec3::Y, 8.0, top, 80 / pixels_per_texel)
+}
+
+/// False shadow, false light, hole, edge and wrong, in columns of 40.
+fn columns(tally: &PictureTally) -> [u64; 5] {
+    [tally.false_shadow, tally.false_light, tally.hole, tally.edge, tally.wrong].map(|count| {
+        assert!(count.is_multiple_of(10), "whole columns");
+        count / 10
+    })
+}
+
+fn right_factor(column: usize) -> f32 {
+    if column < 20 { 0.0 } else { 1.0 }
+}
+
+#[test]
+fn a_perfect_map_has_no_wrong_pixel() {
+    let tally = Room::new().judge(right_factor, map(1, 9.0), false).tally;
+    assert_eq!((tally.frames, tally.facing, tally.wrong, tally.error, tally.displacement), (1, 400, 0, 0.0, 0.0));
+    assert_eq!((tally.transitions, tally.edge_zone, tally.uncovered, tally.grazing.facing), (10, 40, 0, 0));
+}
+
+#[test]
+fn a_map_that_shadows_everything_is_false_shadow_but_for_the_edge_zone() {
+    // Half of 40 columns is wrong; the edge zone of 1.5 pixels takes the first (0.5 from the
+    // border) and the second (1.5).
+    let tally = Room::new().judge(|_| 0.0, map(1, 9.0), false).tally;
+    assert_eq!((columns(&tally), tally.error), ([18, 0, 0, 2, 20], 200.0));
+    // No edge in the map: every true one is 32 pixels off.
+    assert_eq!((tally.transitions, tally.displacement), (10, 320.0));
+}
+
+#[test]
+fn coarse_texels_widen_the_edge_zone_by_their_footprint() {
+    // 1.5 texels of 4 pixels: columns up to 6 pixels from the border.
+    let judged = Room::new().judge(|_| 0.0, map(4, 9.0), false);
+    assert_eq!(columns(&judged.tally), [14, 0, 0, 6, 20]);
+    assert!(judged.pixels_per_texel.iter().all(|pixels| (pixels - 4.0).abs() < 1e-4));
+    assert_eq!((judged.tally.texels.total(), judged.tally.under), (400, 400));
+}
+
+#[test]
+fn a_roof_inside_the_map_that_casts_nothing_is_false_light() {
+    assert_eq!(columns(&Room::new().judge(|_| 1.0, map(1, 9.0), false).tally), [0, 18, 0, 2, 20]);
+}
+
+#[test]
+fn a_roof_outside_the_map_is_a_hole_and_nothing_else() {
+    assert_eq!(columns(&Room::new().judge(|_| 1.0, map(1, 1.0), false).tally), [0, 0, 20, 0, 20]);
+}
+
+#[test]
+fn depth_clamp_leaves_no_hole_since_the_map_holds_what_stands_before_it() {
+    assert_eq!(columns(&Room::new().judge(|_| 1.0, map(1, 1.0), true).tally), [0, 18, 0, 2, 20]);
+}
+
+#[test]
+fn points_outside_every_map_are_uncovered_and_holes_where_they_are_shadowed() {
+    let beside = shadow_map(DVec3::X * 50.0, DVec3::Y, 8.0, 9.0, 80);
+    let judged = Room::new().judge(|_| 1.0, beside, true);
+    assert_eq!((columns(&judged.tally), judged.tally.uncovered), ([0, 0, 20, 0, 20], 400));
+    assert!(judged.choice.iter().all(Option::is_none) && judged.pixels_per_texel.iter().all(|p| p.is_infinite()));
+    assert_eq!((judged.tally.edge_zone, judged.tally.texels.total()), (40, 0));
+}
+
+#[test]
+fn points_read_the_first_map_beyond_their_depth_and_classes_name_it() {
+    let room = Room::new();
+    let far = map_around(DVec3::ZERO, DVec3::Y, 8.0, 9.0, 80);
+    let maps = [
+        shadowfit_truth::peers::FitMap { split_far: 0.5, ..far.clone() },
+        map_around(DVec3::X * 4.0, DVec3::Y, 8.0, 9.0, 80),
+        far,
+    ]
+    .map(|map| ShadowMap::new(&map, DVec3::Y));
+    let seen = MapsSeen { maps: &maps, reach: 0.5, depth_clamp: false };
+    let judged = judge(&room.tracer, &room.truth, &seen, &[1.0; PIXELS], |_| true);
+    for (pixel, choice) in judged.choice.iter().enumerate() {
+        assert_eq!(*choice, Some(if pixel % 40 < 20 { 2 } else { 1 }));
+    }
+}
+
+#[test]
+fn surfaces_that_face_away_or_lie_beyond_the_shadow_distance_are_not_judged() {
+    let below = Room::lit_from(DVec3::NEG_Y, |_| ()).judge(|_| 0.0, map(1, 9.0), false);
+    let beyond = Room::lit_from(DVec3::Y, |settings| settings.max_distance = 0.9).judge(|_| 0.0, map(1, 9.0), false);
+    for judged in [below, beyond] {
+        assert!(judged.classes.iter().all(|class| *class == Class::NotJudged));
+        assert!(judged.pixels_per_texel.iter().all(|pixels| pixels.is_nan()));
+        assert_eq!(judged.tally, PictureTally { frames: 1, ..PictureTally::default() });
+        assert!(judged.tally.columns().iter().all(|(_, value)| *value == 0.0));
+    }
+}
+
+#[test]
+fn triangles_that_do_not_count_are_judged_and_in_no_sum() {
+    let room = Room::new();
+    let one = room.truth.points[0].expect("the floor").triangle;
+    let counted = room.judge_counting(|_| 0.0, map(1, 9.0), false, |triangle| triangle == one);
+    let all = room.judge(|_| 0.0, map(1, 9.0), false);
+    assert_eq!(counted.classes, all.classes);
+    let of_triangle = room.truth.points.iter().flatten().filter(|point| point.triangle == one).count();
+    assert!((1..400).contains(&of_triangle));
+    assert_eq!(counted.tally.facing, of_triangle as u64);
+}
+
+#[test]
+fn grazing_pixels_count_in_all_and_are_listed_apart_but_have_no_texels() {
+    let to_light = DVec3::new(1.0, 0.04, 0.0).normalize();
+    let room = Room::lit_from(to_light, |_| ());
+    let map = shadow_map(DVec3::ZERO, to_light, 16.0, 20.0, 64);
+    let tally = room.judge(|_| 0.0, map, false).tally;
+    assert_eq!((tally.facing, tally.grazing.facing, tally.texels.total()), (400, 400, 0));
+    assert!(tally.wrong > 0 && tally.grazing.wrong == tally.wrong);
+    assert_eq!(tally.grazing.false_shadow, tally.false_shadow);
+}
+
+#[test]
+fn an_edge_that_is_shifted_by_three_pixels_is_displaced_by_three() {
+    let shifted = |column: usize| if column < 23 { 0.0 } else { 1.0 };
+    let tally = Room::new().judge(shifted, map(1, 9.0), false).tally;
+    assert_eq!((tally.displacement, tally.transitions, tally.wrong), (30.0, 10, 30));
+    let column = |name| tally.columns().into_iter().find(|(known, _)| *known == name).map(|(_, value)| value);
+    assert_eq!((column("edge px"), column("wrong %"), column("crawl %")), (Some(3.0), Some(7.5), Some(0.0)));
+}
+
+#[test]
+fn soft_truth_counts_as_it_is_and_is_lit_from_one_half_on() {
+    let room = Room::lit_from(DVec3::Y, |settings| (settings.sun_radius, settings.sun_rays) = (0.2, 64));
+    let factors: Vec<f32> = room.truth.points.iter().map(|point| point.expect("the floor").lit).collect();
+    assert!(factors.iter().any(|factor| (0.1..0.9).contains(factor)));
+    let maps = MapsSeen { maps: &[map(1, 9.0)], reach: 0.5, depth_clamp: false };
+    let tally = judge(&room.tracer, &room.truth, &maps, &factors, |_| true).tally;
+    assert_eq!((tally.wrong, tally.error), (0, 0.0));
+    // A hole is one also where only some of the rays are blocked.
+    let low = MapsSeen { maps: &[map(1, 1.0)], ..maps };
+    let judged = judge(&room.tracer, &room.truth, &low, &[1.0; PIXELS], |_| true);
+    assert_eq!((judged.tally.hole, judged.tally.wrong), (200, 200));
+}
+
+#[test]
+fn merged_tallies_are_those_of_both_pictures() {
+    let room = Room::new();
+    let mut merged = room.judge(|_| 0.0, map(1, 9.0), false).tally;
+    merged.merge(&room.judge(|_| 1.0, map(4, 1.0), false).tally);
+    merged.add_crawl((3, 12));
+    assert_eq!((merged.frames, merged.facing, merged.wrong, merged.hole, merged.false_shadow), (2, 800, 400, 200, 180));
+    let value = |name| merged.columns().into_iter().find(|(known, _)| *known == name).expect("a column").1;
+    assert_eq!((value("wrong %"), value("hole %"), value("crawl %"), value("edge px")), (50.0, 25.0, 25.0, 32.0));
+    assert!((value("ppt p95") - 4.0).abs() < 4.0 * 0.005 && (value("ppt p50") - 1.0).abs() < 0.005);
+}
+
+#[test]
+fn crawl_compares_edge_pixels_that_the_maps_of_both_frames_hold() {
+    let room = Room::new();
+    let judged = room.judge(right_factor, map(1, 9.0), false);
+    let now: Vec<f32> = (0..PIXELS).map(|pixel| right_factor(pixel % 40)).collect();
+    // One column of the four in the edge zone was lit, and so was one far from it.
+    let then: Vec<f32> = (0..PIXELS).map(|p| if [19, 3].contains(&(p % 40)) { 1.0 } else { now[p] }).collect();
+    let maps = [map(1, 9.0)];
+    let before = MapsBefore { maps: &maps, eye: DVec3::Y * 2.0, forward: DVec3::NEG_Y, factors: &then };
+    assert_eq!(crawl(&room.truth, &judged, &now, &before), (10, 40));
+    // Two of its columns are beside the maps of the frame before.
+    let beside = [shadow_map(DVec3::X * -4.0, DVec3::Y, 8.0, 9.0, 80)];
+    assert_eq!(crawl(&room.truth, &judged, &now, &MapsBefore { maps: &beside, ..before }), (10, 20));
+    // Or beyond its last split.
+    let short = shadowfit_truth::peers::FitMap { split_far: 1.9, ..map_around(DVec3::ZERO, DVec3::Y, 8.0, 9.0, 80) };
+    let short = [ShadowMap::new(&short, DVec3::Y)];
+    assert_eq!(crawl(&room.truth, &judged, &now, &MapsBefore { maps: &short, ..before }), (0, 0));
+}

@@ -1,0 +1,105 @@
+//! Scenes whose shadows follow from a drawing, and cameras and maps to look at them with.
+
+use glam::dcamera::rh::{proj::directx::orthographic, view::look_to_mat4};
+use glam::{DMat4, DVec2, DVec3, Vec3};
+use shadowfit_truth::PixelCamera;
+use shadowfit_truth::peers::{FitMap, ShadowMap};
+
+pub(crate) type Triangles = Vec<[Vec3; 3]>;
+
+/// Two triangles with these corners in turn.
+pub(crate) fn quad([a, b, c, d]: [Vec3; 4]) -> Triangles {
+    vec![[a, b, c], [a, c, d]]
+}
+
+/// A horizontal rectangle from (x, z) to (x, z).
+pub(crate) fn level(height: f32, from: [f32; 2], to: [f32; 2]) -> Triangles {
+    let at = |x, z| Vec3::new(x, height, z);
+    quad([at(from[0], from[1]), at(from[0], to[1]), at(to[0], to[1]), at(to[0], from[1])])
+}
+
+/// The six sides of a box.
+pub(crate) fn cuboid(min: Vec3, max: Vec3) -> Triangles {
+    let at = |x: f32, y: f32, z: f32| min + (max - min) * Vec3::new(x, y, z);
+    let side = |u: Vec3, v: Vec3, base: Vec3| {
+        quad([base, base + u, base + u + v, base + v].map(|corner| at(corner.x, corner.y, corner.z)))
+    };
+    [
+        side(Vec3::X, Vec3::Y, Vec3::ZERO),
+        side(Vec3::X, Vec3::Y, Vec3::Z),
+        side(Vec3::Y, Vec3::Z, Vec3::ZERO),
+        side(Vec3::Y, Vec3::Z, Vec3::X),
+        side(Vec3::Z, Vec3::X, Vec3::ZERO),
+        side(Vec3::Z, Vec3::X, Vec3::Y),
+    ]
+    .concat()
+}
+
+/// A sphere of `rings` rings of twice as many quads, with all corners on it.
+pub(crate) fn sphere(centre: Vec3, radius: f32, rings: u32) -> Triangles {
+    let step = core::f32::consts::PI / rings as f32;
+    let at = |ring: u32, slice: u32| {
+        let ((sin, cos), (east, north)) = ((ring as f32 * step).sin_cos(), (slice as f32 * step).sin_cos());
+        centre + Vec3::new(sin * north, cos, sin * east) * radius
+    };
+    (0..rings)
+        .flat_map(|ring| (0..2 * rings).map(move |slice| (ring, slice)))
+        .flat_map(|(ring, slice)| {
+            quad([at(ring, slice), at(ring + 1, slice), at(ring + 1, slice + 1), at(ring, slice + 1)])
+        })
+        .collect()
+}
+
+/// A camera at `eye` that looks at `target`, 60 degrees high.
+pub(crate) fn looking_at(eye: DVec3, target: DVec3, size: [u32; 2]) -> PixelCamera {
+    let forward = (target - eye).normalize();
+    let right = forward.cross(DVec3::Y).normalize();
+    let tangent = (0.5f64 * 60f64.to_radians()).tan();
+    let aspect = f64::from(size[0]) / f64::from(size[1]);
+    PixelCamera {
+        eye,
+        right,
+        up: right.cross(forward),
+        forward,
+        tan_half_fov: DVec2::new(tangent * aspect, tangent),
+        size,
+        near: 0.1,
+        far: 100.0,
+    }
+}
+
+/// A camera `height` metres over the origin that looks straight down, with z downward in the picture,
+/// and sees pixels of `pixel` metres on the ground.
+pub(crate) fn looking_down(height: f64, pixel: f64, size: [u32; 2]) -> PixelCamera {
+    PixelCamera {
+        eye: DVec3::Y * height,
+        right: DVec3::X,
+        up: DVec3::NEG_Z,
+        forward: DVec3::NEG_Y,
+        tan_half_fov: DVec2::new(size[0].into(), size[1].into()) * (0.5 * pixel / height),
+        size,
+        near: 0.1,
+        far: 100.0,
+    }
+}
+
+/// A square orthographic map around `centre`: `width` metres wide, from `before` metres before it to
+/// as many behind it.
+pub(crate) fn map_around(centre: DVec3, to_light: DVec3, width: f64, before: f64, texels: u32) -> FitMap {
+    let up = if to_light.y.abs() > 0.9 { DVec3::NEG_Z } else { DVec3::Y };
+    let light_from_world: DMat4 = look_to_mat4(centre + to_light * before, -to_light, up);
+    let half = width * 0.5;
+    let view_proj = orthographic(-half, half, -half, half, 0.0, 2.0 * before) * light_from_world;
+    FitMap {
+        view_proj: view_proj.to_cols_array(),
+        resolution: texels,
+        resolution_xy: None,
+        split_near: 0.0,
+        split_far: 1e9,
+    }
+}
+
+/// The same, made ready.
+pub(crate) fn shadow_map(centre: DVec3, to_light: DVec3, width: f64, before: f64, texels: u32) -> ShadowMap {
+    ShadowMap::new(&map_around(centre, to_light, width, before, texels), to_light)
+}
