@@ -15,7 +15,7 @@ use anyhow::{Context, Result};
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::BiasSettings;
 use shadowfit::{DepthConvention, FitSettings, PerspectiveCamera, fit};
-use shadowfit_wgpu::{ShadowMap, ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
+use shadowfit_wgpu::{MapView, ShadowMap, ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
 use wgpu::util::DeviceExt;
 
 /// Size of the picture, in pixels; rows of a multiple of 64 pixels are read back without padding.
@@ -187,7 +187,8 @@ impl Engine {
         let settings = FitSettings::default().with_max_distance(50.0);
         let light = fit(&camera.frustum()?, DIRECTION, &settings)?;
         let bias = BiasSettings::automatic(self.shadow_map.descriptor().filter);
-        self.shadow_map.prepare(&self.queue, camera.eye, &[light], &bias)?;
+        let view = MapView::from_eye(camera.eye, camera.forward);
+        self.shadow_map.prepare(&self.queue, &view, &[light.into()], &bias)?;
 
         let clip_from_world = camera.clip_from_world(DepthConvention::ZeroToOne).to_cols_array();
         let to_light = (-light.direction).extend(0.0).to_array();

@@ -10,29 +10,44 @@ use shadowfit_viewer::{Artefact, Stage};
 const SIZE: [u32; 2] = [640, 360];
 
 /// Share of what is left after a cure, of the base that the artefact was measured on.
-const CURED: f32 = 0.001;
+const CURED: f64 = 0.001;
 
 fn stage() -> Stage {
     let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
     Stage::new(gpu, default_scene(), 1).expect("the default scene")
 }
 
+fn judged(stage: &mut Stage, subject_only: bool) -> Judged {
+    stage.judge(SIZE, subject_only).expect("an adapter that tells triangles apart")
+}
+
+/// Share of the facing pixels that are wrong.
+fn wrong(stage: &mut Stage) -> f64 {
+    let tally = judged(stage, false).tally;
+    tally.share(tally.wrong)
+}
+
 /// Share of all pixels, sky included.
-fn share_of_picture(judged: &Judged, class: Class) -> f32 {
-    judged.classes.iter().filter(|other| **other == class).count() as f32 / judged.classes.len() as f32
+fn share_of_picture(judged: &Judged, class: Class) -> f64 {
+    judged.classes.iter().filter(|other| **other == class).count() as f64 / judged.classes.len() as f64
 }
 
 #[test]
 fn gpu_acne_covers_the_character_and_its_fix_clears_it() {
     let mut stage = stage();
     stage.show_artefact(Artefact::Acne);
-    let shown = stage.judge(SIZE, true).shares;
+    let shown = judged(&mut stage, true).tally;
     stage.fix_artefact(Artefact::Acne);
-    let fixed = stage.judge(SIZE, true).shares;
-    println!("acne shown: {shown:?}\nacne fixed: {fixed:?}");
-    assert!(shown.counted as f32 > 0.1 * (SIZE[0] * SIZE[1]) as f32, "the character fills the picture: {shown:?}");
-    assert!(shown.false_shadow >= 0.15, "false shadow on the character: {shown:?}");
-    assert!(fixed.false_shadow < CURED, "false shadow after the fix: {fixed:?}");
+    let fixed = judged(&mut stage, true).tally;
+    let [acne, acne_fixed] = [&shown, &fixed].map(|tally| tally.share(tally.false_shadow));
+    println!("acne shown: {acne}, fixed: {acne_fixed}");
+    assert!(
+        shown.facing as f32 > 0.1 * (SIZE[0] * SIZE[1]) as f32,
+        "the character fills the picture: {}",
+        shown.facing
+    );
+    assert!(acne >= 0.15, "false shadow on the character: {acne}");
+    assert!(acne_fixed < CURED, "false shadow after the fix: {acne_fixed}");
     assert_eq!(shown.facing, fixed.facing, "the same pixels are judged");
 }
 
@@ -40,13 +55,15 @@ fn gpu_acne_covers_the_character_and_its_fix_clears_it() {
 fn gpu_a_clipping_hole_shows_and_its_fix_closes_it() {
     let mut stage = stage();
     stage.show_artefact(Artefact::ClippingHole);
-    let shown = stage.judge(SIZE, false);
+    let shown = judged(&mut stage, false);
     stage.fix_artefact(Artefact::ClippingHole);
-    let fixed = stage.judge(SIZE, false);
-    println!("hole shown: {:?}\nhole fixed: {:?}", shown.shares, fixed.shares);
-    assert!(share_of_picture(&shown, Class::Hole) >= 0.02, "hole in the picture: {:?}", shown.shares);
-    assert!(share_of_picture(&fixed, Class::Hole) < CURED, "hole after the fix: {:?}", fixed.shares);
-    assert!(fixed.shares.false_shadow < CURED, "the fix brings no acne: {:?}", fixed.shares);
+    let fixed = judged(&mut stage, false);
+    let [hole, hole_fixed] = [&shown, &fixed].map(|judged| share_of_picture(judged, Class::Hole));
+    let acne = fixed.tally.share(fixed.tally.false_shadow);
+    println!("hole shown: {hole}, fixed: {hole_fixed}; false shadow {acne}");
+    assert!(hole >= 0.02, "hole in the picture: {hole}");
+    assert!(hole_fixed < CURED, "hole after the fix: {hole_fixed}");
+    assert!(acne < CURED, "the fix brings no acne: {acne}");
 }
 
 #[test]
@@ -54,10 +71,10 @@ fn gpu_aliasing_magnifies_the_shadow_edge_and_its_fix_sharpens_it() {
     let mut stage = stage();
     stage.show_artefact(Artefact::Aliasing);
     let shown = median_at_edges(&mut stage);
-    let wrong = stage.judge(SIZE, false).shares.wrong;
+    let wrong = wrong(&mut stage);
     stage.fix_artefact(Artefact::Aliasing);
     let fixed = median_at_edges(&mut stage);
-    let wrong_fixed = stage.judge(SIZE, false).shares.wrong;
+    let wrong_fixed = self::wrong(&mut stage);
     println!("pixels per texel at the edge: {shown} shown, {fixed} fixed; wrong {wrong} and {wrong_fixed}");
     assert!(shown >= 8.0, "median pixels per texel at the shadow's edge: {shown}");
     assert!(fixed < 2.0, "after the fix: {fixed}");

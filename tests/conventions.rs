@@ -6,8 +6,8 @@ use shadowfit::settings::{BiasSettings, CameraSettings, FilterKind, LightSetting
 use shadowfit::{DepthConvention, FitSettings, LightFit, PerspectiveCamera, fit};
 use shadowfit_render::{Atmosphere, FlyCamera, FrameUniform, Line, box_lines};
 use shadowfit_scene::builtin;
-use shadowfit_truth::{JudgeSettings, Tracer};
-use shadowfit_wgpu::{CasterUniform, MAX_MAPS, RESOLUTIONS, MapView, ReceiverUniform, ShadowMapDescriptor};
+use shadowfit_truth::{Tracer, TruthSettings};
+use shadowfit_wgpu::{CasterUniform, MAX_MAPS, MapView, RESOLUTIONS, ReceiverUniform, ShadowMapDescriptor};
 
 /// The depth conventions that wgpu draws.
 const DRAWABLE: [DepthConvention; 2] = [DepthConvention::ZeroToOne, DepthConvention::Reversed];
@@ -38,7 +38,8 @@ fn the_caster_and_the_receiver_uniform_of_a_fit_meet_in_the_same_texel_and_depth
     for depth in DRAWABLE {
         let fit = fitted(&LightSettings::default(), depth);
         let clip_from_world = matrix(CasterUniform::new(&fit, origin).clip_from_world);
-        let receiver = ReceiverUniform::new(&[fit], origin, &BiasSettings::default());
+        let receiver =
+            ReceiverUniform::new(&[fit.into()], &MapView::from_eye(origin, Vec3::NEG_Z), &BiasSettings::default());
         let uv_from_world = matrix(receiver.maps[0].uv_from_world);
         for corner in fit.corners() {
             let point = (fit.origin + corner.as_dvec3() - origin).as_vec3();
@@ -58,7 +59,8 @@ fn settings_uniforms_and_pictures_all_point_to_the_same_sun() {
         let to_light = -light.direction();
         assert!(to_light.y > 0.0, "a sun above the horizon shines from above");
         let fit = fitted(&light, DepthConvention::ZeroToOne);
-        let receiver = ReceiverUniform::new(&[fit.into()], &MapView::from_eye(fit.origin, Vec3::NEG_Z), &BiasSettings::default());
+        let receiver =
+            ReceiverUniform::new(&[fit.into()], &MapView::from_eye(fit.origin, Vec3::NEG_Z), &BiasSettings::default());
         let frame = FrameUniform::new(&camera(), to_light, true, &Atmosphere::default(), [16, 9]);
         assert!(Vec3::from(receiver.to_light).abs_diff_eq(to_light, CLOSE), "{light:?}: {:?}", receiver.to_light);
         assert_eq!(frame.to_light, to_light.to_array(), "{light:?}");
@@ -105,11 +107,15 @@ fn the_camera_s_uniform_has_reversed_depth_and_rays_through_its_pixels() {
 
 #[test]
 fn without_a_fit_everything_is_lit_and_surplus_fits_are_left_out() {
-    let none = ReceiverUniform::new(&[], DVec3::ZERO, &BiasSettings::default());
+    let none = ReceiverUniform::new(&[], &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z), &BiasSettings::default());
     assert_eq!(none.map_count, 0);
     assert_eq!(Vec3::from(none.to_light).length(), 1.0, "a direction that can be used");
     let fit = fitted(&LightSettings::default(), DepthConvention::ZeroToOne);
-    let many = ReceiverUniform::new(&[fit; MAX_MAPS + 3], DVec3::ZERO, &BiasSettings::default());
+    let many = ReceiverUniform::new(
+        &[fit.into(); MAX_MAPS + 3],
+        &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z),
+        &BiasSettings::default(),
+    );
     assert_eq!(many.map_count as usize, MAX_MAPS);
 }
 
@@ -118,7 +124,7 @@ fn the_core_and_the_map_agree_on_defaults() {
     let (settings, map) = (Settings::default(), ShadowMapDescriptor::default());
     assert_eq!(settings.fit.resolution, UVec2::from(map.resolution));
     assert_eq!((settings.format, settings.filter, settings.fit.depth), (map.format, map.filter, map.depth));
-    assert_eq!((map.format, map.filter), (MapFormat::Depth32Float, FilterKind::Hardware2x2));
+    assert_eq!((map.format, map.filter), (MapFormat::Depth32Float, FilterKind::Pcf5x5));
     assert!(map.resolution.iter().all(|side| RESOLUTIONS.contains(side)));
 }
 
@@ -152,12 +158,16 @@ fn rays_and_the_map_put_a_shadow_on_the_same_side() {
         elevation: core::f32::consts::FRAC_PI_4,
         ..Default::default()
     };
-    let settings = JudgeSettings::new(light.direction(), 0.5);
+    let settings = TruthSettings::new(-light.direction().as_dvec3());
     let fit = fitted(&light, DepthConvention::ZeroToOne).relative_to(DVec3::ZERO);
     let center = fit.uv_from_world.transform_point3(Vec3::new(0.0, 2.0, 0.0));
     for (x, shadowed) in [(-2.0, true), (0.0, false), (2.0, false)] {
         let floor = Vec3::new(x, 0.0, 0.0);
-        assert_eq!(tracer.is_occluded(floor + Vec3::Y * settings.ray_offset, -settings.direction), shadowed, "x = {x}");
+        assert_eq!(
+            tracer.is_occluded(floor + Vec3::Y * settings.ray_offset as f32, settings.to_light.as_vec3()),
+            shadowed,
+            "x = {x}"
+        );
         let uv = fit.uv_from_world.transform_point3(floor);
         let same_texel = (uv - center).truncate().length() < CLOSE;
         assert_eq!(same_texel && uv.z > center.z, shadowed, "x = {x}: {uv} against {center}");

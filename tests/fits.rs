@@ -25,7 +25,7 @@ fn stage() -> Stage {
 
 /// Shares of the picture that are holes, and that are wrong in the midst of light or shadow.
 fn wrong(stage: &mut Stage) -> [f32; 2] {
-    let classes = stage.judge(SIZE, false).classes;
+    let classes = stage.judge(SIZE, false).expect("an adapter that tells triangles apart").classes;
     assert_eq!(stage.problem(), None);
     let share =
         |wanted: &[Class]| classes.iter().filter(|class| wanted.contains(class)).count() as f32 / classes.len() as f32;

@@ -23,7 +23,7 @@ use crate::support::workspace;
 fn descriptors() -> Vec<ShadowMapDescriptor> {
     let mut all = Vec::new();
     for format in [MapFormat::Depth32Float, MapFormat::R32Float] {
-        for filter in [FilterKind::Point, FilterKind::Hardware2x2] {
+        for filter in FilterKind::ALL {
             for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
                 all.push(ShadowMapDescriptor { format, filter, depth, ..Default::default() });
             }
@@ -45,6 +45,7 @@ fn modules() -> Vec<(String, String)> {
     for map in descriptors() {
         let kind = format!("{:?} {:?} {:?}", map.format, map.filter, map.depth);
         all.push((format!("scene, {kind}"), shaders::scene(&map)));
+        all.push((format!("probe, {kind}"), shaders::probe(&map)));
         all.push((format!("inset, {kind}"), shaders::inset(&map)));
         all.push((format!("receiver piece, {kind}"), receiver_wgsl(&map, 1)));
     }
@@ -112,10 +113,11 @@ fn the_renderer_lists_exactly_the_files_of_its_folder() {
 }
 
 #[test]
-fn every_module_is_valid_without_any_optional_capability() {
+fn every_module_is_valid_and_probes_alone_need_an_optional_capability() {
     for (name, source) in modules() {
         let module = parse(&name, &source);
-        let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+        let needed = if name.starts_with("probe") { Capabilities::PRIMITIVE_INDEX } else { Capabilities::empty() };
+        let mut validator = Validator::new(ValidationFlags::all(), needed);
         if let Err(error) = validator.validate(&module) {
             panic!("{name}: {}", error.emit_to_string(&source));
         }

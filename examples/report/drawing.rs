@@ -68,7 +68,8 @@ impl Drawing {
         let zero = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0 };
         let mut settings = Settings { bias: zero, ..Settings::default() };
         for part in text.split(',').filter(|part| !part.is_empty()) {
-            let (name, value) = part.split_once('=').with_context(|| format!("--bias: \"{part}\" is not NAME=TEXELS"))?;
+            let (name, value) =
+                part.split_once('=').with_context(|| format!("--bias: \"{part}\" is not NAME=TEXELS"))?;
             let id = format!("bias.{}", name.trim());
             if let Err(error) = params::set_from_str(&mut settings, &id, value) {
                 bail!("--bias: {error}");

@@ -86,7 +86,6 @@ fn measure(study: &mut Study, args: &Args, mut pictures: Option<&mut Pictures>) 
 /// What draws all fits.
 struct Pictures {
     gpu: Gpu,
-    judging: Judging,
     every: u32,
     fits: Vec<Drawn>,
 }
@@ -115,7 +114,7 @@ impl Pictures {
             Ok(Drawn { name: file.peer.clone(), contender, maps })
         });
         let fits = fits.collect::<Result<Vec<_>>>()?;
-        Ok(Self { gpu, judging, every: args.every, fits })
+        Ok(Self { gpu, every: args.every, fits })
     }
 
     /// Whether a frame is drawn. Those of quick looks are not neighbours, so that they have no crawl.
@@ -157,12 +156,7 @@ impl Pictures {
     }
 }
 
-fn contender(
-    gpu: &Gpu,
-    descriptor: &ShadowMapDescriptor,
-    bias: BiasSettings,
-    judging: Judging,
-) -> Result<Contender> {
+fn contender(gpu: &Gpu, descriptor: &ShadowMapDescriptor, bias: BiasSettings, judging: Judging) -> Result<Contender> {
     if descriptor.depth_clamp && !gpu.has_depth_clamp() {
         anyhow::bail!("its casters are clamped to the near plane, and this graphics adapter cannot do that");
     }
@@ -188,14 +182,7 @@ fn descriptor(
         Some((map, frame)) => light_fit(map, &shot(frame, true))?.depth,
         None => shadowfit::DepthConvention::ZeroToOne,
     };
-    Ok(ShadowMapDescriptor {
-        resolution,
-        maps: most.max(1) as u32,
-        format,
-        filter,
-        depth,
-        depth_clamp: file.pancake,
-    })
+    Ok(ShadowMapDescriptor { resolution, maps: most.max(1) as u32, format, filter, depth, depth_clamp: file.pancake })
 }
 
 fn shot(frame: &Frame, is_first: bool) -> Shot {

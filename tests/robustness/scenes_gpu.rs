@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use shadowfit_scene::{Scene, SceneError, load_gltf};
-use shadowfit_truth::Shares;
+use shadowfit_truth::PictureTally;
 use shadowfit_viewer::{Artefact, Stage, StageError};
 
 use crate::support::{assets, files_below, software_gpu};
@@ -35,17 +35,10 @@ fn load(path: &Path) -> Scene {
     load_gltf(path).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn is_finite_share(shares: &Shares) -> bool {
-    let all = [
-        shares.wrong,
-        shares.false_shadow,
-        shares.false_light,
-        shares.hole,
-        shares.edge,
-        shares.edge_zone,
-        shares.mean_error,
-    ];
-    all.iter().all(|share| (0.0..=1.0).contains(share)) && shares.facing <= shares.counted
+fn is_sound(tally: &PictureTally) -> bool {
+    let classes = tally.false_shadow + tally.false_light + tally.hole + tally.edge;
+    let finite = tally.columns().iter().all(|(_, value)| value.is_finite() && *value >= 0.0);
+    finite && classes == tally.wrong && tally.wrong <= tally.facing && tally.error <= tally.facing as f64
 }
 
 /// Draws and judges the present view.
@@ -56,9 +49,9 @@ fn draw_and_judge(stage: &mut Stage, name: &str) {
     let pixels = picture.read(stage.gpu());
     let first = &pixels[..4];
     assert!(pixels.chunks_exact(4).any(|pixel| pixel != first), "{name}: the picture is one flat colour");
-    let judged = stage.judge(SIZE, false);
-    assert!(is_finite_share(&judged.shares), "{name}: {:?}", judged.shares);
-    assert!(judged.shares.counted > 0, "{name}: nothing of the scene is in its own first view");
+    let judged = stage.judge(SIZE, false).unwrap_or_else(|| panic!("{name}: {:?}", stage.problem()));
+    assert!(is_sound(&judged.tally), "{name}: {:?}", judged.tally.columns());
+    assert!(judged.tally.facing > 0, "{name}: nothing that the light reaches is in its own first view");
 }
 
 #[test]

@@ -2,10 +2,10 @@
 //! map, and reads back what the receiver's WGSL computes at given points.
 
 use shadowfit::LightFit;
-use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::glam::{DVec3, Vec2, Vec3};
 use shadowfit::settings::BiasSettings;
 use shadowfit_render::Gpu;
-use shadowfit_wgpu::{ShadowMap, ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
+use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
 
 /// A point that is asked about: position relative to the origin, in metres, and unit normal.
 #[repr(C)]
@@ -18,8 +18,10 @@ pub(super) struct Point {
 /// What the WGSL makes of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Answer {
-    /// `shadowfit_project` in the map asked for.
+    /// Texture coordinates and depth by `shadowfit_project` in the map asked for.
     pub(super) projected: Vec3,
+    /// The plane's change of depth over a texel.
+    pub(super) gradient: Vec2,
     /// `shadowfit_factor` over all maps.
     pub(super) factor: f32,
     /// `shadowfit_stored` at the texel of the point's index: x runs over a row.
@@ -61,9 +63,11 @@ struct Answer {
     return Varying(vec4<f32>(ndc, 0.0, 1.0), position, normal);
 }
 @fragment fn fs(in: Varying) -> Answer {
-    let projected = shadowfit_project(shadowfit_receiver.maps[MAP], in.position, in.normal);
+    let place = shadowfit_project(shadowfit_receiver.maps[MAP], in.position, in.normal);
+    let projected = vec3<f32>(place.texel / shadowfit_receiver.maps[MAP].size, place.depth);
+    let gradient = place.gradient;
     let stored = shadowfit_stored(MAP, vec2<i32>(in.clip.xy));
-    return Answer(vec4<f32>(projected, shadowfit_factor(in.position, in.normal)), vec4<f32>(stored));
+    return Answer(vec4<f32>(projected, shadowfit_factor(in.position, in.normal)), vec4<f32>(stored, gradient, 0.0));
 }
 ";
 
@@ -84,7 +88,9 @@ impl<'a> Harness<'a> {
         casters: &[Vec<Vec3>],
     ) -> Self {
         let mut map = ShadowMap::new(&gpu.device, descriptor).expect("a possible shadow map");
-        map.prepare(&gpu.queue, origin, fits, bias).expect("fits of this map");
+        let maps: Vec<MapFit> = fits.iter().map(|fit| MapFit::from(*fit)).collect();
+        let view = MapView::from_eye(origin, Vec3::NEG_Z);
+        map.prepare(&gpu.queue, &view, &maps, bias).expect("fits of this map");
         let pipeline = caster_pipeline(gpu, &map);
         let buffers: Vec<wgpu::Buffer> =
             casters.iter().map(|corners| vertex_buffer(gpu, &positions(corners))).collect();
@@ -140,6 +146,7 @@ impl<'a> Harness<'a> {
         let [projected, stored] = targets.each_ref().map(|texture| read(self.gpu, texture, rows));
         let answer = |(p, s): (&[f32; 4], &[f32; 4])| Answer {
             projected: Vec3::new(p[0], p[1], p[2]),
+            gradient: Vec2::new(s[1], s[2]),
             factor: p[3],
             stored: s[0],
         };

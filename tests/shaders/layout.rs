@@ -91,9 +91,24 @@ fn every_uniform_has_the_size_and_offsets_of_its_wgsl_struct() {
     assert_same(&scene, &frame);
     assert_same(
         &scene,
-        &layout!("shadowfit_Map" = MapUniform { uv_from_world, constant_depth, slope_depth, normal_offset, padding }),
+        &layout!(
+            "shadowfit_Map" = MapUniform {
+                uv_from_world,
+                depth_per_texel_u,
+                constant_depth,
+                depth_per_texel_v,
+                slope_depth,
+                size,
+                normal_offset,
+                receiver_plane,
+                far,
+                padding_0,
+                padding_1,
+                padding_2,
+            }
+        ),
     );
-    assert_same(&scene, &layout!("shadowfit_Receiver" = ReceiverUniform { to_light, map_count, maps }));
+    assert_same(&scene, &layout!("shadowfit_Receiver" = ReceiverUniform { to_light, map_count, view, maps }));
     assert_same(&inset, &layout!("Inset" = InsetUniform { rectangle, depth_range, map, padding }));
 }
 
@@ -156,7 +171,8 @@ fn packed(module: &Module, members: &[&StructMember]) -> Vec<usize> {
 fn instances_in_the_buffer_are_what_the_vertex_shaders_read() {
     let scene = parse("scene", &shaders::scene(&ShadowMapDescriptor::default()));
     let rows = offset_of!(InstanceData, rows);
-    let ends = [rows, rows + 16, rows + 32, offset_of!(InstanceData, id), offset_of!(InstanceData, padding)];
+    let ends =
+        [rows, rows + 16, rows + 32, offset_of!(InstanceData, first_triangle), offset_of!(InstanceData, padding)];
     assert_eq!(packed(&scene, &at_locations(&scene, "SceneIn", &[5, 6, 7, 8])), ends);
     let caster = parse("caster", &shaders::caster());
     assert_eq!(packed(&caster, &at_locations(&caster, "CasterIn", &[5, 6, 7])), ends[..4]);

@@ -1,6 +1,6 @@
 //! The look-up's formulas in WGSL against their twins in Rust: projection, biases, choice of the map, comparison.
 
-use shadowfit::glam::{DVec3, UVec2, Vec3};
+use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::settings::{BiasSettings, FilterKind, FitSettings, MapFormat};
 use shadowfit::{Bias, DepthConvention, LightFit, PerspectiveCamera, fit};
 use shadowfit_wgpu::ShadowMapDescriptor;
@@ -85,9 +85,19 @@ fn projected(fit: &LightFit, point: &Point) -> DVec3 {
     let cosine = normal.dot(-fit.direction.as_dvec3()).clamp(MIN_COSINE, 1.0);
     let sine = (1.0 - cosine * cosine).sqrt();
     let at = uv(fit, position + normal * f64::from(bias.normal_offset) * sine);
-    let toward_light = f64::from(bias.constant_depth) + f64::from(bias.slope_depth) * sine / cosine;
+    let gradient = gradient(fit, normal, cosine);
+    let rise = f64::from(bias.receiver_plane) * (gradient.x.abs() + gradient.y.abs());
+    let toward_light = f64::from(bias.constant_depth) + f64::from(bias.slope_depth) * sine / cosine + rise;
     let sign = if fit.depth == DepthConvention::Reversed { 1.0 } else { -1.0 };
     at + DVec3::Z * sign * toward_light
+}
+
+/// Change of a plane's depth over a texel along u and v: its height falls by n·x / n·z along x, and v runs against y.
+fn gradient(fit: &LightFit, normal: DVec3, cosine: f64) -> DVec2 {
+    let along = |row: usize| fit.light_from_world.row(row).truncate().as_dvec3().dot(normal);
+    let away_from_light = if fit.depth == DepthConvention::Reversed { -1.0 } else { 1.0 };
+    let texel = fit.texel_size.as_dvec2();
+    DVec2::new(along(0) * texel.x, -along(1) * texel.y) * (away_from_light / (cosine * f64::from(fit.depth_range)))
 }
 
 fn is_inside(uv: DVec3) -> bool {
@@ -143,6 +153,10 @@ fn projection_and_biases_are_the_same_in_wgsl_and_rust() {
                 // Far outside the near map coordinates are large, and so is their rounding; slopes likewise.
                 let scale = expected.abs().max_element().max(1.0);
                 let error = (answer.projected.as_dvec3() - expected).abs().max_element();
+                let normal = Vec3::from(point.normal).as_dvec3();
+                let cosine = normal.dot(-fit.direction.as_dvec3()).clamp(MIN_COSINE, 1.0);
+                let slope = (answer.gradient.as_dvec2() - gradient(fit, normal, cosine)).abs().max_element();
+                assert!(slope <= TOLERANCE, "{descriptor:?}, map {index}, {point:?}: {answer:?}, off by {slope}");
                 assert!(
                     error <= TOLERANCE * scale,
                     "{descriptor:?}, map {index}, {point:?}: {answer:?}, not {expected}"

@@ -88,9 +88,8 @@ impl Gpu {
     }
 
     async fn open(adapter: wgpu::Adapter) -> Result<Self, GpuError> {
-        let wanted = wgpu::Features::TIMESTAMP_QUERY
-            | wgpu::Features::DEPTH_CLIP_CONTROL
-            | wgpu::Features::PRIMITIVE_INDEX;
+        let wanted =
+            wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::DEPTH_CLIP_CONTROL | wgpu::Features::PRIMITIVE_INDEX;
         let limits = adapter.limits();
         let (device, queue) = adapter
             .request_device(&wgpu::DeviceDescriptor {

@@ -262,11 +262,7 @@ impl Maker<'_> {
     }
 
     /// Pipelines of the probe pass; none where the device does not know the index of a primitive.
-    fn probes(
-        &self,
-        layout: &wgpu::PipelineLayout,
-        map: &ShadowMap,
-    ) -> HashMap<PartKey, wgpu::RenderPipeline> {
+    fn probes(&self, layout: &wgpu::PipelineLayout, map: &ShadowMap) -> HashMap<PartKey, wgpu::RenderPipeline> {
         if !self.device.features().contains(wgpu::Features::PRIMITIVE_INDEX) {
             return HashMap::new();
         }

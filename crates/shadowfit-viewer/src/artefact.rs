@@ -18,11 +18,6 @@ use crate::stage::Stage;
 const ACNE_TEXEL: f32 = 1.0 / 210.0;
 /// The same when aliasing is shown: dozens of pixels.
 const ALIASING_TEXEL: f32 = 1.0 / 15.0;
-/// Constant bias of the cures, in texels. The automatic normal offset clears every plane; where
-/// surfaces meet in a crease, a texel stores the neighbour, which stands a part of a texel higher.
-/// On the default scene's character this leaves a third of the false shadow that the offset alone
-/// leaves, and no false light.
-const CREASE_BIAS: f32 = 1.0;
 /// Length of the shadowed frustum when the hole is shown, in radii of the subject.
 const HOLE_DISTANCE: f32 = 4.0;
 /// Reach of a long shadow, in radii of the scene, from which on the scene is shown as a whole.
@@ -63,15 +58,15 @@ pub(crate) fn fix(stage: &mut Stage, artefact: Artefact) {
     let bounds = stage.bounds();
     match artefact {
         // Enough for the filter's reach, and nothing else changed.
-        Artefact::Acne => stage.settings.bias = clearing_bias(stage.settings.filter),
+        Artefact::Acne => stage.settings.bias = BiasSettings::automatic(stage.settings.filter),
         // Spend the map on what is seen, make it larger, and smooth what is left.
         Artefact::Aliasing => {
             let seen = farthest_seen(stage);
             let settings = &mut stage.settings;
             settings.fit.max_distance = seen.unwrap_or(settings.fit.max_distance);
             settings.fit.resolution = UVec2::splat(FIXED_RESOLUTION);
-            settings.filter = FilterKind::Hardware2x2;
-            settings.bias = clearing_bias(settings.filter);
+            settings.filter = FilterKind::Pcf5x5;
+            settings.bias = BiasSettings::automatic(settings.filter);
         }
         // Take in every caster between the light and the view.
         Artefact::ClippingHole => {
@@ -80,11 +75,6 @@ pub(crate) fn fix(stage: &mut Stage, artefact: Artefact) {
             stage.settings.fit.caster_extension = (bounds.max - bounds.min).length();
         }
     }
-}
-
-/// The bias that clears a plane under the filter, and the creases of curved things besides.
-fn clearing_bias(filter: FilterKind) -> BiasSettings {
-    BiasSettings { constant: CREASE_BIAS, ..BiasSettings::automatic(filter) }
 }
 
 /// What the demonstrations are about: the scene's subject, or its most telling part.
@@ -180,7 +170,7 @@ fn show_aliasing(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut S
     let distance =
         scout.look(&camera)[(GRID[0] * GRID[1] / 2 + GRID[0] / 2) as usize].map_or(height * 2.0, |seen| seen.distance);
     settings.filter = FilterKind::Point;
-    settings.bias = clearing_bias(FilterKind::Point);
+    settings.bias = BiasSettings::automatic(FilterKind::Point);
     settings.fit.kind = FitKind::FrustumAabb;
     settings.fit.resolution = UVec2::splat(2048);
     let texel = place.picture_height(distance) * ALIASING_TEXEL;
@@ -216,7 +206,7 @@ fn show_hole(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut Setti
     };
     let (camera, found) = best(&place.lens, candidates, score);
     settings.fit.max_distance = place.radius * HOLE_DISTANCE;
-    settings.bias = clearing_bias(settings.filter);
+    settings.bias = BiasSettings::automatic(settings.filter);
     (fly(&camera), found)
 }
 

@@ -39,7 +39,7 @@ impl Default for ShadowMapDescriptor {
             resolution: [2048; 2],
             maps: 1,
             format: MapFormat::Depth32Float,
-            filter: FilterKind::Hardware2x2,
+            filter: FilterKind::default(),
             depth: DepthConvention::ZeroToOne,
             depth_clamp: false,
         }

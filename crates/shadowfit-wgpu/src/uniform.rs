@@ -42,7 +42,11 @@ pub struct MapUniform {
     /// View depth from which on the map is no choice, in metres.
     pub far: f32,
     /// Keeps the struct a multiple of 16 bytes.
-    pub padding: [f32; 3],
+    pub padding_0: f32,
+    /// As above.
+    pub padding_1: f32,
+    /// As above.
+    pub padding_2: f32,
 }
 
 /// What the look-up reads: `shadowfit_Receiver` in WGSL.
@@ -131,7 +135,7 @@ impl MapUniform {
             normal_offset: bias.normal_offset,
             receiver_plane: toward_light * bias.receiver_plane,
             far: map.far,
-            padding: [0.0; 3],
+            ..Self::default()
         }
     }
 }

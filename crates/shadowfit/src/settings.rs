@@ -258,8 +258,9 @@ pub struct BiasSettings {
 }
 
 impl Default for BiasSettings {
+    /// [`Self::automatic`] for the default filter.
     fn default() -> Self {
-        Self { constant: 0.5, slope: 0.0, normal_offset: core::f32::consts::SQRT_2, receiver_plane: 0.0 }
+        Self::automatic(FilterKind::default())
     }
 }
 
@@ -270,11 +271,11 @@ pub enum FilterKind {
     /// One comparison with the nearest texel.
     Point,
     /// Four comparisons, weighted bilinearly (the hardware's 2×2 percentage-closer filter).
-    #[default]
     Hardware2x2,
     /// Tent of 3×3 hardware look-ups (16 texels), by four of them.
     Pcf3x3,
     /// Tent of 5×5 hardware look-ups (36 texels), by nine of them.
+    #[default]
     Pcf5x5,
 }
 

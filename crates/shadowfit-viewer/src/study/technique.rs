@@ -183,7 +183,8 @@ impl Technique {
         }
         let names: Vec<&str> = Self::names().map(|(name, _)| name).collect();
         let known = names.join(", ");
-        Self::named(text).with_context(|| format!("there is no technique \"{text}\"; give a .toml file or one of {known}"))
+        Self::named(text)
+            .with_context(|| format!("there is no technique \"{text}\"; give a .toml file or one of {known}"))
     }
 
     /// Reads a technique from a TOML file; one without a name gets the file's.

@@ -65,10 +65,8 @@ impl Rows {
             return Err(FitError::NotOrthographic { why: "it is a perspective" });
         }
         let offset = |row: DVec3, at_zero: f64| (row.dot(origin) + at_zero) / w0;
-        let rows = Self {
-            axes: [x / w0, y / w0, z / w0],
-            offsets: DVec3::new(offset(x, x0), offset(y, y0), offset(z, z0)),
-        };
+        let rows =
+            Self { axes: [x / w0, y / w0, z / w0], offsets: DVec3::new(offset(x, x0), offset(y, y0), offset(z, z0)) };
         if rows.axes.iter().any(|row| checks::length(*row) == 0.0) {
             return Err(FitError::NotOrthographic { why: "it is flat" });
         }

@@ -2,8 +2,8 @@
 
 use proptest::prelude::*;
 use shadowfit::bias::{
-    ACOS_BIAS_LIMIT, MIN_COSINE, Reach, XNA_DEPTH_BIAS, acos_bias, acos_epsilon, automatic_normal_offset,
-    depth_gradient, depth_precision, plane_normal_offset, reach,
+    ACOS_BIAS_LIMIT, HARDWARE_SNAP, MIN_COSINE, Reach, XNA_DEPTH_BIAS, acos_bias, acos_epsilon,
+    automatic_normal_offset, depth_gradient, depth_precision, plane_normal_offset, reach,
 };
 use shadowfit::diagnostics::DepthStorage;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
@@ -110,7 +110,8 @@ fn texels_become_depth_and_metres_by_the_longer_side() {
     let fit: LightFit = fitted(&camera(), DIRECTION, &settings);
     let texel = fit.texel_size.max_element();
     assert!(fit.texel_size.min_element() < texel);
-    let bias = Bias::from_texels(&BiasSettings { constant: 0.5, slope: 2.0, normal_offset: 3.0, receiver_plane: 0.7 }, &fit);
+    let bias =
+        Bias::from_texels(&BiasSettings { constant: 0.5, slope: 2.0, normal_offset: 3.0, receiver_plane: 0.7 }, &fit);
     assert_eq!(bias.constant_depth, 0.5 * texel / fit.depth_range);
     assert_eq!(bias.slope_depth, 2.0 * texel / fit.depth_range);
     assert_eq!(bias.normal_offset, 3.0 * texel);
@@ -123,10 +124,13 @@ fn texels_become_depth_and_metres_by_the_longer_side() {
 
 #[test]
 fn automatic_settings_follow_the_filter_s_reach() {
-    for (filter, e) in [(FilterKind::Point, 0.5), (FilterKind::Hardware2x2, 1.0)] {
+    for (filter, e) in FilterKind::ALL.into_iter().zip([0.5, 1.0, 2.0, 3.0]) {
+        let offset = BiasSettings::automatic_normal_offset(filter);
+        assert_eq!((offset.normal_offset, offset.receiver_plane), (std::f32::consts::SQRT_2 * e, 0.0));
         let settings = BiasSettings::automatic(filter);
-        assert_eq!(settings.normal_offset, std::f32::consts::SQRT_2 * e);
-        assert_eq!(settings.slope, 0.0);
+        // One comparison alone is left to clear, whatever the filter is made of.
+        assert_eq!(settings.receiver_plane, if filter == FilterKind::Point { 0.5 } else { 1.0 } + HARDWARE_SNAP);
+        assert_eq!((settings.slope, settings.normal_offset, settings.constant), (0.0, 0.0, offset.constant));
         // The constant covers the precision of an ordinary fit.
         let fit = fitted(&camera(), DIRECTION, &exact(FitKind::FrustumAabb).with_caster_extension(1000.0));
         let settings = Bias::from_texels(&settings, &fit);

@@ -30,7 +30,8 @@ fn the_matrix_of_a_fit_gives_the_fit_back() {
         for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
             let known = known(kind, depth);
             let again =
-                LightFit::from_clip_from_world(&world_matrix(&known), DIRECTION, known.resolution, known.origin).unwrap();
+                LightFit::from_clip_from_world(&world_matrix(&known), DIRECTION, known.resolution, known.origin)
+                    .unwrap();
             assert_eq!((again.depth, again.resolution, again.origin), (depth, known.resolution, known.origin));
             // Rows are normalised once more: a few roundings of the extent, of some 100 m.
             assert!(again.clip_from_world.abs_diff_eq(known.clip_from_world, 4e-6), "{again:?}\n{known:?}");
@@ -47,16 +48,20 @@ fn the_matrix_of_a_fit_gives_the_fit_back() {
 fn what_is_no_orthographic_view_projection_of_the_light_is_refused() {
     let known = known(FitKind::Oriented, DepthConvention::ZeroToOne);
     let good = world_matrix(&known);
-    let why = |matrix: DMat4, direction: Vec3| {
-        match LightFit::from_clip_from_world(&matrix, direction, UVec2::splat(64), known.origin) {
-            Err(FitError::NotOrthographic { why }) => why.to_owned(),
-            other => format!("{other:?}"),
-        }
+    let why = |matrix: DMat4, direction: Vec3| match LightFit::from_clip_from_world(
+        &matrix,
+        direction,
+        UVec2::splat(64),
+        known.origin,
+    ) {
+        Err(FitError::NotOrthographic { why }) => why.to_owned(),
+        other => format!("{other:?}"),
     };
     let perspective = shadowfit::glam::camera::rh::proj::directx::perspective(1.0, 1.0, 0.1, 10.0).as_dmat4();
     assert_eq!(why(perspective, Vec3::NEG_Z), "it is a perspective");
     assert_eq!(why(good, Vec3::X), "its depth does not run along the light's direction");
-    let sheared = Mat4::from_cols_array(&[1.0, 0.3, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+    let sheared =
+        Mat4::from_cols_array(&[1.0, 0.3, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
     assert_eq!(why(sheared.as_dmat4() * good, DIRECTION), "its axes are not perpendicular");
     assert_eq!(why(DMat4::from_scale(DVec3::new(0.0, 1.0, 1.0)) * good, DIRECTION), "it is flat");
     let mut broken = good;

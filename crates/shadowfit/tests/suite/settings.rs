@@ -54,7 +54,8 @@ proptest! {
 
 #[test]
 fn with_methods_change_their_field_only() {
-    let bias = BiasSettings::default().with_constant(1.0).with_slope(2.0).with_normal_offset(3.0).with_receiver_plane(4.0);
+    let bias =
+        BiasSettings::default().with_constant(1.0).with_slope(2.0).with_normal_offset(3.0).with_receiver_plane(4.0);
     assert_eq!(bias, BiasSettings { constant: 1.0, slope: 2.0, normal_offset: 3.0, receiver_plane: 4.0 });
     let camera = CameraSettings::default().with_near(1.0);
     assert_eq!(camera, CameraSettings { near: 1.0, ..CameraSettings::default() });
