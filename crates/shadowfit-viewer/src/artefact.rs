@@ -18,6 +18,9 @@ use crate::stage::Stage;
 const ACNE_TEXEL: f32 = 1.0 / 210.0;
 /// The same when aliasing is shown: dozens of pixels.
 const ALIASING_TEXEL: f32 = 1.0 / 15.0;
+/// Constant bias of acne's cure, in texels. The automatic bias clears every plane; where surfaces meet in a crease, a
+/// texel stores the neighbour, which stands a part of a texel higher, and one comparison has no others to outvote it.
+const CREASE_BIAS: f32 = 1.0;
 /// Length of the shadowed frustum when the hole is shown, in radii of the subject.
 const HOLE_DISTANCE: f32 = 4.0;
 /// Reach of a long shadow, in radii of the scene, from which on the scene is shown as a whole.
@@ -57,8 +60,11 @@ pub(crate) fn show(stage: &mut Stage, artefact: Artefact) -> bool {
 pub(crate) fn fix(stage: &mut Stage, artefact: Artefact) {
     let bounds = stage.bounds();
     match artefact {
-        // Enough for the filter's reach, and nothing else changed.
-        Artefact::Acne => stage.settings.bias = BiasSettings::automatic(stage.settings.filter),
+        // Enough for planes and creases, and nothing else changed.
+        Artefact::Acne => {
+            let automatic = BiasSettings::automatic(stage.settings.filter);
+            stage.settings.bias = BiasSettings { constant: CREASE_BIAS, ..automatic };
+        },
         // Spend the map on what is seen, make it larger, and smooth what is left.
         Artefact::Aliasing => {
             let seen = farthest_seen(stage);
