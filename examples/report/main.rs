@@ -13,6 +13,7 @@ use clap::{Parser, Subcommand};
 
 #[path = "../shared/geometry.rs"]
 mod geometry;
+mod path;
 mod peers;
 
 /// What bad input ends with, as clap's own complaints do.
