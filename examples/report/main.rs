@@ -14,6 +14,7 @@ use clap::{Parser, Subcommand};
 mod drawing;
 #[path = "../shared/geometry.rs"]
 mod geometry;
+mod path;
 mod peers;
 
 /// What bad input ends with, as clap's own complaints do.

@@ -1,0 +1,311 @@
+//! A path for a scene that comes without one: an orbit around it and a flight through it.
+//!
+//! Both follow the scene's bounds alone, so that a helmet and a landscape are served alike, and both are found with
+//! rays: no camera stands inside geometry, and a camera in the scene has most of its picture filled by it.
+
+use anyhow::{Result, ensure};
+use glam::Vec3;
+use shadowfit::PerspectiveCamera;
+use shadowfit_truth::Tracer;
+
+use super::probe::Probe;
+use super::route::{Places, Route};
+use super::{CameraPath, PathFrame};
+
+/// Frames of the orbit and of the flight.
+const FRAMES: usize = 16;
+/// Vertical field of view, in degrees: that of path files without one.
+const FOV: f32 = 60.0;
+/// Elevation of the orbit's eye, in degrees: high enough to see the ground between things.
+const ORBIT_ELEVATION: f32 = 22.0;
+/// Part of the picture's half that the scene's box may fill in the orbit.
+const ORBIT_FILL: f32 = 0.95;
+/// Distance that cameras keep from triangles, as a share of the scene's radius.
+const CLEARANCE: f32 = 0.005;
+/// Share of the clearance that the near plane's corners lie at.
+const NEAR_SHARE: f32 = 0.9;
+/// Room behind the farthest corner of the scene.
+const FAR_MARGIN: f32 = 1.02;
+/// Height of a person's eyes, in metres.
+const EYE_HEIGHT: f32 = 1.7;
+/// Bounds of the height of the eyes, as shares of the scene's radius: for scenes of another size than people's.
+const HEIGHT_SHARES: [f32; 2] = [0.01, 0.4];
+/// Factors of the height that are tried: as it is, lower for models that are small beside it, and raised over rough
+/// ground.
+const RAISES: [f32; 5] = [1.0, 0.4, 2.0, 4.0, 8.0];
+/// Shares of the way that are tried where the whole does not serve.
+const SHARES: [f32; 7] = [1.0, 0.85, 0.7, 0.55, 0.4, 0.28, 0.16];
+/// Angles below the horizon that the flight looks at, in degrees; the first that serves.
+const PITCHES: [f32; 4] = [6.0, 14.0, 22.0, 32.0];
+/// Least share of a view's rays that meet the scene.
+const FILLED: f32 = 0.6;
+/// Least median distance of what a view meets, in clearances: less is a wall before the nose.
+const ROOM: f32 = 10.0;
+/// Least length of a flight, as a share of the scene's radius.
+const LEAST_LENGTH: f32 = 0.1;
+/// Frames ahead that a camera looks: its turns begin before the way's.
+const AHEAD: usize = 3;
+/// How often corners of the way are smoothed.
+const SMOOTHINGS: usize = 6;
+/// Shifts that are tried where a place is too close to something, in clearances.
+const SHIFTS: [f32; 4] = [1.0, 2.0, 4.0, 8.0];
+
+/// A path, and what to say about how it was found.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Found {
+    pub(crate) path: CameraPath,
+    /// Whole sentences; none where all is as wanted.
+    pub(crate) notes: Vec<String>,
+}
+
+/// Finds an orbit and a flight for the scene of `tracer`, whose triangles are within `bounds` (lowest and highest
+/// corner, world space, y up, metres), for pictures of `aspect`. The same scene gives the same path. Where no flight
+/// serves, there is the orbit alone, and a note.
+///
+/// # Errors
+///
+/// When the scene is empty, or its bounds have no size.
+pub(crate) fn find(tracer: &Tracer, bounds: [Vec3; 2], aspect: f32) -> Result<Found> {
+    let [low, high] = bounds;
+    ensure!(!tracer.is_empty(), "the scene has no triangles, so there is nothing to look at; give another scene");
+    let radius = (high - low).length() * 0.5;
+    let sane = radius.is_finite() && radius > 0.0 && low.cmple(high).all();
+    ensure!(sane, "the scene reaches from {low} to {high}, which is no size to look at; give a camera path for it");
+    ensure!(aspect.is_finite() && aspect > 0.0, "pictures {aspect} times as wide as high cannot be looked at");
+    let probe = Probe::new(tracer, radius * CLEARANCE);
+    let lens = lens(radius, aspect);
+    let mut frames = frames("orbit", orbit(bounds, lens));
+    let mut notes = Vec::new();
+    match flight(&probe, bounds, lens) {
+        Some(cameras) => frames.extend(self::frames("fly-through", cameras)),
+        None => notes.push(
+            "No flight through the scene was found whose views are filled by it, so the path is the orbit alone; \
+             write a camera path to look at the scene from inside."
+                .to_owned(),
+        ),
+    }
+    let farthest = |camera: &PerspectiveCamera| {
+        box_corners(bounds).map(|corner| corner.distance(camera.eye.as_vec3())).into_iter().fold(0.0, f32::max)
+    };
+    let far = frames.iter().map(|frame| farthest(&frame.camera)).fold(0.0, f32::max) * FAR_MARGIN;
+    for frame in &mut frames {
+        frame.camera.far = far;
+        frame.camera.frustum()?;
+    }
+    Ok(Found { path: CameraPath { frames, light: None }, notes })
+}
+
+fn frames(group: &str, cameras: Vec<PerspectiveCamera>) -> Vec<PathFrame> {
+    cameras.into_iter().map(|camera| PathFrame { camera, group: group.to_owned() }).collect()
+}
+
+/// A camera at the origin whose near plane's corners stay within the clearance. Its far plane is set last.
+fn lens(radius: f32, aspect: f32) -> PerspectiveCamera {
+    let fov_y = FOV.to_radians();
+    let corner = Vec3::new(aspect * (fov_y * 0.5).tan(), (fov_y * 0.5).tan(), 1.0).length();
+    let near = radius * CLEARANCE * NEAR_SHARE / corner;
+    let far = radius;
+    PerspectiveCamera { eye: glam::DVec3::ZERO, forward: Vec3::NEG_Z, up: Vec3::Y, fov_y, aspect, near, far }
+}
+
+/// Cameras on a circle around the scene, at the least distance from which all of them see all of its box.
+fn orbit(bounds: [Vec3; 2], lens: PerspectiveCamera) -> Vec<PerspectiveCamera> {
+    let middle = (bounds[0] + bounds[1]) * 0.5;
+    let (sin, cos) = ORBIT_ELEVATION.to_radians().sin_cos();
+    let outward: Vec<Vec3> = (0..FRAMES)
+        .map(|frame| (frame as f32 / FRAMES as f32 * std::f32::consts::TAU).sin_cos())
+        .map(|(azimuth_sin, azimuth_cos)| Vec3::new(cos * azimuth_sin, sin, cos * azimuth_cos))
+        .collect();
+    let distance = outward.iter().map(|&outward| whole_box_distance(bounds, outward, &lens)).fold(0.0, f32::max);
+    let camera = |&outward: &Vec3| {
+        let eye = (middle + outward * distance).as_dvec3();
+        PerspectiveCamera { eye, forward: -outward, ..lens }
+    };
+    outward.iter().map(camera).collect()
+}
+
+/// Least distance from the box's middle at which a camera that looks back at it along `outward` sees all of it.
+fn whole_box_distance(bounds: [Vec3; 2], outward: Vec3, lens: &PerspectiveCamera) -> f32 {
+    let middle = (bounds[0] + bounds[1]) * 0.5;
+    let right = Vec3::Y.cross(outward).normalize();
+    let up = outward.cross(right);
+    let tangent = (lens.fov_y * 0.5).tan() * ORBIT_FILL;
+    let distance = |corner: Vec3| {
+        let corner = corner - middle;
+        let needed = (corner.dot(right).abs() / lens.aspect).max(corner.dot(up).abs()) / tangent;
+        corner.dot(outward) + needed.max(lens.near)
+    };
+    box_corners(bounds).map(distance).into_iter().fold(0.0, f32::max)
+}
+
+fn box_corners([low, high]: [Vec3; 2]) -> [Vec3; 8] {
+    let pick = |bit: bool, low: f32, high: f32| if bit { high } else { low };
+    [0, 1, 2, 3, 4, 5, 6, 7].map(|index| {
+        let bit = |place: u32| index >> place & 1 == 1;
+        Vec3::new(pick(bit(0), low.x, high.x), pick(bit(1), low.y, high.y), pick(bit(2), low.z, high.z))
+    })
+}
+
+/// Cameras through the scene: lowered, raised and shortened until they serve.
+fn flight(probe: &Probe, bounds: [Vec3; 2], lens: PerspectiveCamera) -> Option<Vec<PerspectiveCamera>> {
+    let radius = probe.clearance / CLEARANCE;
+    let height = EYE_HEIGHT.clamp(HEIGHT_SHARES[0] * radius, HEIGHT_SHARES[1] * radius);
+    let middle = (bounds[0] + bounds[1]) * 0.5;
+    RAISES.iter().find_map(|raise| {
+        let route = Places::new(probe, bounds, height * raise).route(middle)?;
+        SHARES.iter().find_map(|&share| {
+            let long_enough = route.length() * share >= LEAST_LENGTH * radius;
+            long_enough.then(|| fly(probe, &route, share, lens)).flatten()
+        })
+    })
+}
+
+/// Cameras along a part of a route, there or back.
+fn fly(probe: &Probe, route: &Route, share: f32, lens: PerspectiveCamera) -> Option<Vec<PerspectiveCamera>> {
+    let mut eyes = smooth(probe, route.samples(FRAMES, share));
+    for eye in &mut eyes {
+        *eye = free(probe, *eye)?;
+    }
+    [false, true].into_iter().find_map(|back| {
+        if back {
+            eyes.reverse();
+        }
+        PITCHES.iter().find_map(|pitch| serving(probe, &eyes, pitch.to_radians(), lens))
+    })
+}
+
+/// The place, or one nearby, that is outside solids and away from every triangle.
+fn free(probe: &Probe, eye: Vec3) -> Option<Vec3> {
+    let aside = [Vec3::Y, Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z];
+    let shifts = SHIFTS.iter().flat_map(|shift| aside.map(|aside| aside * shift * probe.clearance));
+    let mut places = std::iter::once(eye).chain(shifts.map(|shift| eye + shift));
+    places.find(|&place| probe.is_open(place) && probe.is_clear(place))
+}
+
+/// Takes the corners out of a way, where it stays open and as high above the ground.
+fn smooth(probe: &Probe, mut eyes: Vec<Vec3>) -> Vec<Vec3> {
+    for _ in 0..SMOOTHINGS {
+        for index in 1..eyes.len() - 1 {
+            let (before, eye, after) = (eyes[index - 1], eyes[index], eyes[index + 1]);
+            let smoothed = eye.lerp((before + after) * 0.5, 0.5);
+            let is_high = || probe.height(smoothed) >= 0.7 * probe.height(eye).min(f32::MAX);
+            let is_way = || probe.is_way(before, smoothed) && probe.is_way(smoothed, after);
+            if is_high() && is_way() && probe.is_open(smoothed) {
+                eyes[index] = smoothed;
+            }
+        }
+    }
+    eyes
+}
+
+/// Cameras that look ahead and down by an angle in radians, if each has its picture filled.
+fn serving(probe: &Probe, eyes: &[Vec3], pitch: f32, lens: PerspectiveCamera) -> Option<Vec<PerspectiveCamera>> {
+    let last = eyes.len() - 1;
+    let camera = |index: usize| {
+        let from = eyes[index.min(last - AHEAD)];
+        let ahead = (eyes[(index + AHEAD).min(last)] - from).with_y(0.0).try_normalize()?;
+        let forward = ahead * pitch.cos() - Vec3::Y * pitch.sin();
+        let camera = PerspectiveCamera { eye: eyes[index].as_dvec3(), forward, ..lens };
+        let seen = probe.look(&camera);
+        (seen.share >= FILLED && seen.distance >= ROOM * probe.clearance).then_some(camera)
+    };
+    (0..eyes.len()).map(camera).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::scenes::{Corners, bounds, hills, object_on_floor, room};
+    use super::*;
+
+    const ASPECT: f32 = 16.0 / 9.0;
+
+    fn scaled(triangles: &[Corners], scale: f32) -> Vec<Corners> {
+        triangles.iter().map(|corners| corners.map(|corner| corner * scale)).collect()
+    }
+
+    fn found(triangles: &[Corners]) -> Found {
+        find(&Tracer::new(triangles.iter().copied()), bounds(triangles), ASPECT).expect("a path")
+    }
+
+    fn cameras<'a>(found: &'a Found, group: &'a str) -> Vec<&'a PerspectiveCamera> {
+        found.path.frames.iter().filter(|frame| frame.group == group).map(|frame| &frame.camera).collect()
+    }
+
+    /// Whether all promises of a found path hold, both parts of it there.
+    fn assert_serves(name: &str, triangles: &[Corners]) -> Found {
+        let found = found(triangles);
+        let [low, high] = bounds(triangles);
+        let tracer = Tracer::new(triangles.iter().copied());
+        let probe = Probe::new(&tracer, (high - low).length() * 0.5 * CLEARANCE);
+        assert_eq!(found.path.frames.len(), 2 * FRAMES, "{name}: {:?}", found.notes);
+        for frame in &found.path.frames {
+            let (camera, eye) = (&frame.camera, frame.camera.eye.as_vec3());
+            assert!(probe.is_clear(eye), "{name}: {} at {eye}", frame.group);
+            camera.frustum().expect("a frustum");
+            for corner in box_corners([low, high]) {
+                assert!((corner - eye).dot(camera.forward) < camera.far, "{name}: {corner}");
+            }
+        }
+        for camera in cameras(&found, "fly-through") {
+            assert!(probe.is_open(camera.eye.as_vec3()) && probe.look(camera).share >= FILLED, "{name}: {camera:?}");
+        }
+        found
+    }
+
+    #[test]
+    fn rooms_hills_and_floors_of_any_unit_get_an_orbit_and_a_flight() {
+        for (name, triangles) in [("room", room()), ("hills", hills()), ("object", object_on_floor())] {
+            for scale in [0.04, 1.0, 30.0] {
+                assert_serves(&format!("{name} x {scale}"), &scaled(&triangles, scale));
+            }
+        }
+    }
+
+    #[test]
+    fn the_flight_through_a_room_stays_in_it_and_moves() {
+        let found = assert_serves("room", &room());
+        let eyes: Vec<Vec3> = cameras(&found, "fly-through").iter().map(|camera| camera.eye.as_vec3()).collect();
+        assert!(eyes.iter().all(|eye| eye.abs().cmplt(Vec3::new(4.0, 3.0, 3.0)).all() && eye.y > 0.5), "{eyes:?}");
+        assert!(eyes[0].distance(eyes[FRAMES - 1]) > 2.0, "{eyes:?}");
+    }
+
+    #[test]
+    fn the_orbit_sees_the_whole_box_and_fills_the_picture_with_it() {
+        let triangles = object_on_floor();
+        let found = found(&triangles);
+        let mut fullest = 0f32;
+        for camera in cameras(&found, "orbit") {
+            let clip = camera.clip_from_world(shadowfit::DepthConvention::ZeroToOne);
+            for corner in box_corners(bounds(&triangles)) {
+                let point = clip * (corner - camera.eye.as_vec3()).extend(1.0);
+                let across = (point.x.abs() / point.w).max(point.y.abs() / point.w);
+                assert!(point.w > 0.0 && across < 1.0, "{corner}: {point}");
+                fullest = fullest.max(across);
+            }
+        }
+        assert!((fullest - ORBIT_FILL).abs() < 1e-3, "{fullest}");
+    }
+
+    #[test]
+    fn the_same_scene_gives_the_same_path() {
+        assert_eq!(found(&room()), found(&room()));
+    }
+
+    #[test]
+    fn a_scene_that_cannot_be_flown_through_gets_the_orbit_and_a_note() {
+        let wall = [[Vec3::ZERO, Vec3::X, Vec3::Y]];
+        let found = found(&wall);
+        assert!(found.path.frames.iter().all(|frame| frame.group == "orbit"));
+        assert!(found.notes[0].contains("the orbit alone"), "{:?}", found.notes);
+    }
+
+    #[test]
+    fn scenes_without_anything_or_any_size_are_refused() {
+        let refused = |tracer: &Tracer, bounds| find(tracer, bounds, ASPECT).expect_err("refused").to_string();
+        assert!(refused(&Tracer::new([]), [Vec3::ZERO, Vec3::ONE]).contains("no triangles"));
+        let point = Tracer::new([[Vec3::ONE; 3]]);
+        for bad in [[Vec3::ONE; 2], [Vec3::NAN; 2], [Vec3::INFINITY, Vec3::NEG_INFINITY], [Vec3::ONE, Vec3::ZERO]] {
+            assert!(refused(&point, bad).contains("no size"), "{bad:?}");
+        }
+    }
+}

@@ -1,0 +1,260 @@
+//! A way through a scene: places where a camera can stand, which of them it can fly between, and the longest way
+//! through the middle of those that hang together.
+
+use std::cmp::{Ordering, Reverse};
+use std::collections::{BinaryHeap, HashMap};
+
+use glam::{Vec2, Vec3, Vec3Swizzles};
+use rayon::prelude::*;
+
+use super::probe::Probe;
+
+/// Columns of places along each horizontal side of the scene: fine enough for doors and streets.
+const COLUMNS: usize = 28;
+/// Share of the scene's sides that places are looked for in; what is at the very border sees mostly sky.
+const CENTRAL: f32 = 0.9;
+/// Where in its cell a column stands; off the middle, so that rays straight down miss the edges of regular models.
+const OFF_MIDDLE: f32 = 0.537;
+/// Floors of a column that are tried, from the highest; deeper ones are cellars of cellars.
+const FLOORS: usize = 8;
+/// Cosine of the slope up to which a surface counts as a floor, 60°.
+const FLOOR_COSINE: f32 = 0.5;
+/// Highest place in the gap below a ceiling.
+const GAP_SHARE: f32 = 0.6;
+/// Rise for a metre forward that a flight from column to column may have.
+const RISE: f32 = 1.2;
+
+/// Places that a camera can fly between.
+pub(super) struct Places {
+    eyes: Vec<Vec3>,
+    /// For each place those that it can fly to, and how far that is, in metres.
+    links: Vec<Vec<(usize, f32)>>,
+}
+
+/// A way from place to place, and how far along it the place nearest the middle is.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Route {
+    /// World space, metres.
+    pub(super) points: Vec<Vec3>,
+    /// In metres from the first point.
+    pub(super) middle: f32,
+}
+
+impl Places {
+    /// Places at `height` above floors within `bounds` (metres), lower under low ceilings.
+    pub(super) fn new(probe: &Probe, bounds: [Vec3; 2], height: f32) -> Self {
+        let columns: Vec<Vec<Vec3>> =
+            (0..COLUMNS * COLUMNS).into_par_iter().map(|column| column_eyes(probe, bounds, height, column)).collect();
+        let mut eyes = Vec::new();
+        let mut of_column: HashMap<usize, Vec<usize>> = HashMap::new();
+        for (column, own) in columns.into_iter().enumerate() {
+            of_column.insert(column, (eyes.len()..eyes.len() + own.len()).collect());
+            eyes.extend(own);
+        }
+        let ways: Vec<(usize, usize)> = neighbours()
+            .flat_map(|(from, to)| {
+                of_column[&from].iter().flat_map(|&a| of_column[&to].iter().map(move |&b| (a, b))).collect::<Vec<_>>()
+            })
+            .collect();
+        let open: Vec<_> = ways.into_par_iter().filter(|&(a, b)| is_link(probe, eyes[a], eyes[b])).collect();
+        let mut links = vec![Vec::new(); eyes.len()];
+        for (a, b) in open {
+            let length = eyes[a].distance(eyes[b]);
+            links[a].push((b, length));
+            links[b].push((a, length));
+        }
+        Self { eyes, links }
+    }
+
+    /// The way between two far ends of the largest set of places that hang together, past the place nearest `middle`.
+    pub(super) fn route(&self, middle: Vec3) -> Option<Route> {
+        let largest = self.largest();
+        let to_middle = |place: usize| (self.eyes[place].xz() - middle.xz()).length();
+        let start = largest.iter().copied().min_by(|&a, &b| to_middle(a).total_cmp(&to_middle(b)))?;
+        let (distance, parent) = self.distances(start);
+        let farthest =
+            |score: &dyn Fn(usize) -> f32| largest.iter().copied().max_by(|&a, &b| score(a).total_cmp(&score(b)));
+        let first = farthest(&|place| distance[place])?;
+        let direction = |place: usize| (self.eyes[place] - self.eyes[start]).normalize_or_zero();
+        // The other end is far as well, and on the other side.
+        let last = farthest(&|place| distance[place] * (1.0 - direction(place).dot(direction(first))))?;
+        let ancestors = |place: usize| std::iter::successors(Some(place), |&place| parent[place]).collect::<Vec<_>>();
+        let (mut there, mut back) = (ancestors(first), ancestors(last));
+        // What both ways share is a dead end.
+        while there.len() > 1 && back.len() > 1 && there[there.len() - 2] == back[back.len() - 2] {
+            there.pop();
+            back.pop();
+        }
+        back.pop();
+        let middle = distance[first] - distance[*there.last()?];
+        let points = there.into_iter().chain(back.into_iter().rev()).map(|place| self.eyes[place]).collect();
+        Some(Route { points, middle })
+    }
+
+    /// The largest set of places that hang together; the first of several.
+    fn largest(&self) -> Vec<usize> {
+        let mut seen = vec![false; self.eyes.len()];
+        let mut largest = Vec::new();
+        for start in 0..self.eyes.len() {
+            let mut set = Vec::new();
+            let mut waiting = vec![start];
+            while let Some(place) = waiting.pop() {
+                if !std::mem::replace(&mut seen[place], true) {
+                    set.push(place);
+                    waiting.extend(self.links[place].iter().map(|(next, _)| next));
+                }
+            }
+            if set.len() > largest.len() {
+                largest = set;
+            }
+        }
+        largest.sort_unstable();
+        largest
+    }
+
+    /// Lengths of the shortest ways from a place, and the place before each on its way (Dijkstra 1959).
+    fn distances(&self, start: usize) -> (Vec<f32>, Vec<Option<usize>>) {
+        let mut distance = vec![f32::INFINITY; self.eyes.len()];
+        let mut parent = vec![None; self.eyes.len()];
+        distance[start] = 0.0;
+        let mut waiting = BinaryHeap::from([Reverse(Reached { distance: 0.0, place: start })]);
+        while let Some(Reverse(Reached { distance: so_far, place })) = waiting.pop() {
+            if so_far > distance[place] {
+                continue;
+            }
+            for &(next, length) in &self.links[place] {
+                let there = so_far + length;
+                if there < distance[next] {
+                    (distance[next], parent[next]) = (there, Some(place));
+                    waiting.push(Reverse(Reached { distance: there, place: next }));
+                }
+            }
+        }
+        (distance, parent)
+    }
+}
+
+/// A place on the heap, the nearest first.
+#[derive(Clone, Copy, PartialEq)]
+struct Reached {
+    distance: f32,
+    place: usize,
+}
+
+impl Eq for Reached {}
+
+impl Ord for Reached {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.distance.total_cmp(&other.distance).then(self.place.cmp(&other.place))
+    }
+}
+
+impl PartialOrd for Reached {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Route {
+    pub(super) fn length(&self) -> f32 {
+        self.points.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
+    }
+
+    /// `count` points evenly along the part of the route around its middle that is `share` of its length.
+    pub(super) fn samples(&self, count: usize, share: f32) -> Vec<Vec3> {
+        let length = self.length();
+        let start = (self.middle - 0.5 * share * length).clamp(0.0, (1.0 - share) * length);
+        let place = |index: usize| start + share * length * index as f32 / (count - 1) as f32;
+        (0..count).map(|index| self.at(place(index))).collect()
+    }
+
+    /// The point at a distance along the route, in metres.
+    fn at(&self, mut distance: f32) -> Vec3 {
+        for pair in self.points.windows(2) {
+            let step = pair[0].distance(pair[1]);
+            if distance <= step {
+                return pair[0].lerp(pair[1], distance / step);
+            }
+            distance -= step;
+        }
+        *self.points.last().expect("a route has points")
+    }
+}
+
+/// Pairs of columns beside each other, diagonals included, each pair once.
+fn neighbours() -> impl Iterator<Item = (usize, usize)> {
+    let steps = [(1, 0), (0, 1), (1, 1), (1, -1)];
+    (0..COLUMNS * COLUMNS).flat_map(move |column| {
+        let (x, z) = (column % COLUMNS, (column / COLUMNS) as isize);
+        let beside = steps.map(|(dx, dz)| (x + dx, z + dz));
+        let inside = beside.into_iter().filter(|&(x, z)| x < COLUMNS && (0..COLUMNS as isize).contains(&z));
+        inside.map(move |(x, z)| (column, z as usize * COLUMNS + x))
+    })
+}
+
+fn is_link(probe: &Probe, from: Vec3, to: Vec3) -> bool {
+    let across = from.xz().distance(to.xz());
+    (from.y - to.y).abs() <= RISE * across && probe.is_way(from, to)
+}
+
+/// Places above the floors of a column, highest first.
+fn column_eyes(probe: &Probe, [low, high]: [Vec3; 2], height: f32, column: usize) -> Vec<Vec3> {
+    let share = |index: usize| 0.5 + CENTRAL * ((index as f32 + OFF_MIDDLE) / COLUMNS as f32 - 0.5);
+    let shares = Vec2::new(share(column % COLUMNS), share(column / COLUMNS));
+    let foot = low.xz() + (high - low).xz() * shares;
+    let top = high.y + height.max(high.y - low.y);
+    let mut surfaces: Vec<(f32, bool)> = Vec::new();
+    probe.tracer.for_each_hit(Vec3::new(foot.x, top, foot.y), Vec3::NEG_Y, |hit| {
+        surfaces.push((top - hit.distance, probe.tracer.normal(hit.triangle).y >= FLOOR_COSINE));
+    });
+    surfaces.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let is_thick = |&(above, _): &&(f32, bool), floor: f32| above - floor > probe.clearance;
+    let eye = |(index, &(floor, _)): (usize, &(f32, bool))| {
+        let ceiling =
+            surfaces[..index].iter().rev().find(|above| is_thick(above, floor)).map_or(f32::INFINITY, |s| s.0);
+        let rise = height.min((ceiling - floor) * GAP_SHARE);
+        let eye = Vec3::new(foot.x, floor + rise, foot.y);
+        (rise > 2.0 * probe.clearance && probe.is_open(eye)).then_some(eye)
+    };
+    surfaces.iter().enumerate().filter(|(_, surface)| surface.1).take(FLOORS).filter_map(eye).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Places in a row with a branch at the second.
+    fn branched() -> Places {
+        let eyes = vec![Vec3::ZERO, Vec3::X, Vec3::X * 2.0, Vec3::X * 3.0, Vec3::new(1.0, 0.0, 0.5), Vec3::splat(9.0)];
+        let mut links = vec![Vec::new(); eyes.len()];
+        for (a, b) in [(0, 1), (1, 2), (2, 3), (1, 4)] {
+            links[a].push((b, 1.0));
+            links[b].push((a, 1.0));
+        }
+        Places { eyes, links }
+    }
+
+    #[test]
+    fn a_route_joins_far_ends_past_the_middle_without_its_dead_end() {
+        let route = branched().route(Vec3::new(1.0, 0.0, 0.6)).expect("a route");
+        assert_eq!(route.points, [Vec3::X * 3.0, Vec3::X * 2.0, Vec3::X, Vec3::ZERO]);
+        assert_eq!((route.length(), route.middle), (3.0, 2.0));
+        assert!(Places { eyes: Vec::new(), links: Vec::new() }.route(Vec3::ZERO).is_none());
+    }
+
+    #[test]
+    fn samples_are_even_and_stay_around_the_middle_within_the_route() {
+        let route = Route { points: vec![Vec3::ZERO, Vec3::X, Vec3::X * 4.0], middle: 1.0 };
+        let xs = |share: f32| route.samples(3, share).iter().map(|point| point.x).collect::<Vec<_>>();
+        assert_eq!((xs(1.0), xs(0.5), xs(0.25)), (vec![0.0, 2.0, 4.0], vec![0.0, 1.0, 2.0], vec![0.5, 1.0, 1.5]));
+    }
+
+    #[test]
+    fn every_pair_of_columns_side_by_side_is_there_once() {
+        let mut pairs: Vec<_> = neighbours().map(|(a, b)| (a.min(b), a.max(b))).collect();
+        let count = pairs.len();
+        pairs.sort_unstable();
+        pairs.dedup();
+        assert_eq!((pairs.len(), count), (2 * COLUMNS * (COLUMNS - 1) + 2 * (COLUMNS - 1) * (COLUMNS - 1), count));
+    }
+}
