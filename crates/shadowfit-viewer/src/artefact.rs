@@ -64,7 +64,7 @@ pub(crate) fn fix(stage: &mut Stage, artefact: Artefact) {
         Artefact::Acne => {
             let automatic = BiasSettings::automatic(stage.settings.filter);
             stage.settings.bias = BiasSettings { constant: CREASE_BIAS, ..automatic };
-        },
+        }
         // Spend the map on what is seen, make it larger, and smooth what is left.
         Artefact::Aliasing => {
             let seen = farthest_seen(stage);

@@ -1,0 +1,336 @@
+//! The search for the technique with the least error in a scene, within a budget of maps and texels.
+//!
+//! One thing is changed at a time, in a fixed order, and kept when it helps: the same scene, path and GPU always give
+//! the same answer, and what each change bought can be said.
+
+use anyhow::{Context, Result, ensure};
+use glam::UVec2;
+use shadowfit::settings::{BiasSettings, FilterKind};
+use shadowfit::{
+    CascadeSettings, CasterPolicy, FitKind, FitSettings, HoldSettings, RectangleKind, SplitScheme, Stabilise,
+};
+use shadowfit_truth::PictureTally;
+
+use crate::study::{Comparison, Knowledge, SharedTruth, Shot, Technique};
+
+/// What is counted against a technique: weights of shares in per cent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weights {
+    /// Of all wrong pixels.
+    pub wrong: f64,
+    /// Of false shadow, again: acne is seen at once.
+    pub false_shadow: f64,
+    /// Of false light, again.
+    pub false_light: f64,
+    /// Of holes, again.
+    pub hole: f64,
+    /// Of the mean difference between the filtered factor and the truth.
+    pub mean_error: f64,
+    /// Of edge pixels that change from frame to frame.
+    pub crawl: f64,
+}
+
+impl Default for Weights {
+    fn default() -> Self {
+        Self { wrong: 1.0, false_shadow: 10.0, false_light: 2.0, hole: 10.0, mean_error: 0.0, crawl: 0.01 }
+    }
+}
+
+impl Weights {
+    /// The weighted error of a tally.
+    pub fn error(&self, tally: &PictureTally) -> f64 {
+        let column =
+            |name: &str| tally.columns().iter().find(|(known, _)| *known == name).map_or(0.0, |(_, value)| *value);
+        self.wrong * column("wrong %")
+            + self.false_shadow * column("false shadow %")
+            + self.false_light * column("false light %")
+            + self.hole * column("hole %")
+            + self.mean_error * column("mean error %")
+            + self.crawl * column("crawl %")
+    }
+}
+
+/// What may be spent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Budget {
+    /// Most maps.
+    pub maps: u32,
+    /// Width and height of each, in texels.
+    pub resolution: u32,
+}
+
+/// A change that was tried.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// What was changed.
+    pub what: String,
+    /// Weighted error with it.
+    pub error: f64,
+    /// Sums over all frames with it.
+    pub tally: PictureTally,
+    /// Whether it was kept.
+    pub is_kept: bool,
+}
+
+/// The outcome of a search.
+#[derive(Clone, Debug)]
+pub struct Tuned {
+    /// The best technique found.
+    pub technique: Technique,
+    /// Its sums over all frames.
+    pub tally: PictureTally,
+    /// All that was tried, in order; the first is the start.
+    pub steps: Vec<Step>,
+    /// Whether the search was stopped before its end.
+    pub stopped_early: bool,
+}
+
+/// A change that may help.
+struct Change {
+    what: String,
+    apply: Box<dyn Fn(&mut Technique)>,
+}
+
+impl Change {
+    fn new(what: impl Into<String>, apply: impl Fn(&mut Technique) + 'static) -> Self {
+        Self { what: what.into(), apply: Box::new(apply) }
+    }
+}
+
+/// Searches. `progress(tried, at most)` is called after each candidate, and stops the search when it answers `false`.
+///
+/// # Errors
+///
+/// When there are no frames, or one cannot be drawn.
+pub fn tune(
+    comparison: &mut Comparison,
+    shots: &[Shot],
+    budget: Budget,
+    weights: &Weights,
+    progress: &mut dyn FnMut(usize, usize) -> bool,
+) -> Result<Tuned> {
+    ensure!(!shots.is_empty(), "there is no frame to tune for");
+    let mut truths: Vec<SharedTruth> = shots.iter().map(|_| SharedTruth::default()).collect();
+    let rounds = rounds(budget);
+    let most = 1 + rounds.iter().map(Vec::len).sum::<usize>();
+    let mut best = start(budget);
+    let mut tally = measure(comparison, shots, &mut truths, &best)?;
+    let mut error = weights.error(&tally);
+    let mut tried = vec![best.clone()];
+    let mut steps = vec![Step { what: "the start".to_owned(), error, tally: tally.clone(), is_kept: true }];
+    let mut goes_on = progress(1, most);
+    for changes in rounds {
+        // The best of each round is kept.
+        let from = best.clone();
+        let mut kept = None;
+        for change in changes {
+            let mut candidate = from.clone();
+            (change.apply)(&mut candidate);
+            if !goes_on || tried.contains(&candidate) {
+                continue;
+            }
+            tried.push(candidate.clone());
+            let found = measure(comparison, shots, &mut truths, &candidate).with_context(|| change.what.clone())?;
+            let new_error = weights.error(&found);
+            steps.push(Step { what: change.what, error: new_error, tally: found.clone(), is_kept: false });
+            if new_error < error {
+                (error, tally, best, kept) = (new_error, found, candidate, Some(steps.len() - 1));
+            }
+            goes_on = progress(steps.len(), most);
+        }
+        if let Some(kept) = kept {
+            steps[kept].is_kept = true;
+        }
+    }
+    best.name = "tuned".to_owned();
+    best.what = format!("the least error found with {} maps of {} texels", budget.maps, budget.resolution);
+    Ok(Tuned { technique: best, tally, steps, stopped_early: !goes_on })
+}
+
+/// What many renderers do: boxes of the frustum's slices, a tent of 3×3 and an offset along the normal.
+fn start(budget: Budget) -> Technique {
+    let fit = FitSettings {
+        kind: FitKind::FrustumAabb,
+        casters: CasterPolicy::List,
+        max_distance: f32::MAX,
+        resolution: UVec2::splat(budget.resolution),
+        ..FitSettings::default()
+    };
+    let filter = FilterKind::Pcf3x3;
+    Technique {
+        name: "start".to_owned(),
+        what: String::new(),
+        receivers: Knowledge::Objects,
+        maps: CascadeSettings {
+            fit,
+            count: budget.maps,
+            splits: SplitScheme::Practical(0.5),
+            stabilise: Stabilise::Off,
+            ..CascadeSettings::default()
+        },
+        bias: BiasSettings::automatic_normal_offset(filter),
+        filter,
+        ..Technique::default()
+    }
+}
+
+/// The changes that are tried, round by round: what matters most comes first.
+fn rounds(budget: Budget) -> Vec<Vec<Change>> {
+    let mut rounds = vec![fits(), biases(), filters()];
+    if budget.maps > 1 {
+        rounds.push(splits());
+        rounds.push(counts(budget.maps));
+    }
+    rounds.extend([stillness(), rectangles(), fine_biases(), filters()]);
+    rounds
+}
+
+fn fits() -> Vec<Change> {
+    let kinds = [
+        ("least rectangles of the frustum", FitKind::Oriented, Knowledge::Objects),
+        ("spheres around the frustum's slices", FitKind::Sphere, Knowledge::Objects),
+        ("least rectangles around the objects in view", FitKind::Focused, Knowledge::Objects),
+        ("least rectangles around the triangle clusters in view", FitKind::Focused, Knowledge::Clusters),
+    ];
+    let change = |(what, kind, receivers)| {
+        Change::new(what, move |technique: &mut Technique| {
+            technique.maps.fit.kind = kind;
+            technique.receivers = receivers;
+        })
+    };
+    kinds.into_iter().map(change).collect()
+}
+
+fn biases() -> Vec<Change> {
+    vec![
+        Change::new("receiver-plane bias", |technique| technique.bias = BiasSettings::automatic(technique.filter)),
+        Change::new("no bias", |technique| {
+            technique.bias = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0 };
+        }),
+    ]
+}
+
+/// Filters, each with the bias of the present kind that it needs.
+fn filters() -> Vec<Change> {
+    let names = ["one comparison", "2×2 comparison", "a tent of 3×3", "a tent of 5×5"];
+    let change = |(what, filter): (&str, FilterKind)| {
+        Change::new(what, move |technique: &mut Technique| {
+            if technique.bias == BiasSettings::automatic(technique.filter) {
+                technique.bias = BiasSettings::automatic(filter);
+            } else if technique.bias == BiasSettings::automatic_normal_offset(technique.filter) {
+                technique.bias = BiasSettings::automatic_normal_offset(filter);
+            }
+            technique.filter = filter;
+        })
+    };
+    names.into_iter().zip(FilterKind::ALL).map(change).collect()
+}
+
+fn splits() -> Vec<Change> {
+    let schemes = [
+        ("uniform cuts", SplitScheme::Uniform),
+        ("practical cuts, 0.8", SplitScheme::Practical(0.8)),
+        ("logarithmic cuts", SplitScheme::Logarithmic),
+        ("cuts from the boxes", SplitScheme::FromBoxes),
+        ("cuts from a histogram of visible depth", SplitScheme::FromHistogram),
+    ];
+    let change = |(what, splits)| Change::new(what, move |technique: &mut Technique| technique.maps.splits = splits);
+    schemes.into_iter().map(change).collect()
+}
+
+fn counts(maps: u32) -> Vec<Change> {
+    let fewer = (1..maps).rev().take(2);
+    let change = |count| {
+        Change::new(format!("{count} maps only"), move |technique: &mut Technique| technique.maps.count = count)
+    };
+    fewer.map(change).collect()
+}
+
+fn stillness() -> Vec<Change> {
+    vec![
+        Change::new("maps on a grid of whole texels", |technique| technique.maps.stabilise = Stabilise::Snap),
+        Change::new("maps held while they serve", |technique| technique.maps.stabilise = Stabilise::Hysteresis),
+        Change::new("maps held longer", |technique| {
+            technique.maps.stabilise = Stabilise::Hysteresis;
+            technique.maps.hold = HoldSettings::default().with_waste(3.0);
+        }),
+    ]
+}
+
+fn rectangles() -> Vec<Change> {
+    let kinds = [
+        ("rectangles along the light's axes", RectangleKind::AxisAligned),
+        ("least squares instead of rectangles", RectangleKind::MinimumSquare),
+    ];
+    let change = |(what, kind)| Change::new(what, move |technique: &mut Technique| technique.maps.fit.rectangle = kind);
+    kinds.into_iter().map(change).collect()
+}
+
+/// Small moves away from the bias that is provably enough.
+fn fine_biases() -> Vec<Change> {
+    let scaled = |what: &str, scale: f32| {
+        Change::new(what, move |technique: &mut Technique| {
+            technique.bias.receiver_plane *= scale;
+            technique.bias.normal_offset *= scale;
+        })
+    };
+    vec![
+        scaled("half the bias", 0.5),
+        scaled("three quarters of the bias", 0.75),
+        scaled("one and a half times the bias", 1.5),
+        Change::new("a constant bias of half a texel", |technique| technique.bias.constant = 0.5),
+    ]
+}
+
+/// Sums over all frames.
+fn measure(
+    comparison: &mut Comparison,
+    shots: &[Shot],
+    truths: &mut [SharedTruth],
+    technique: &Technique,
+) -> Result<PictureTally> {
+    comparison.clear();
+    comparison.add(technique.clone())?;
+    let mut tally = PictureTally::default();
+    for (shot, truth) in shots.iter().zip(truths) {
+        for outcome in comparison.frame(shot, truth)? {
+            tally.merge(&outcome.judged.tally);
+        }
+    }
+    comparison.clear();
+    Ok(tally)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_change_but_those_to_what_is_already_so_makes_another_technique() {
+        let start = start(Budget { maps: 4, resolution: 1024 });
+        let changes: Vec<Change> = rounds(Budget { maps: 4, resolution: 1024 }).into_iter().flatten().collect();
+        assert!(changes.len() > 20, "{}", changes.len());
+        for change in changes {
+            let mut changed = start.clone();
+            (change.apply)(&mut changed);
+            assert!(changed != start || change.what == "a tent of 3×3", "{}", change.what);
+        }
+    }
+
+    #[test]
+    fn a_change_of_the_filter_takes_the_bias_along() {
+        let mut technique = Technique {
+            bias: BiasSettings::automatic(FilterKind::Pcf3x3),
+            ..start(Budget { maps: 1, resolution: 512 })
+        };
+        (filters()[0].apply)(&mut technique);
+        assert_eq!((technique.filter, technique.bias), (FilterKind::Point, BiasSettings::automatic(FilterKind::Point)));
+    }
+
+    #[test]
+    fn the_error_is_the_weighted_sum_of_the_columns() {
+        let tally = PictureTally { frames: 1, facing: 100, wrong: 10, hole: 5, ..PictureTally::default() };
+        let weights = Weights { wrong: 1.0, hole: 2.0, ..Weights::default() };
+        assert!((weights.error(&tally) - 20.0).abs() < 1e-9);
+    }
+}

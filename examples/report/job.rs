@@ -1,0 +1,167 @@
+//! What is looked at: a scene, a path through it, and a light.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, bail, ensure};
+use shadowfit::settings::LightSettings;
+use shadowfit_scene::builtin::default_scene;
+use shadowfit_scene::{Scene, load_gltf};
+use shadowfit_truth::Tracer;
+use shadowfit_viewer::study::{Comparison, Judging, Shot};
+
+use crate::drawing::Drawing;
+use crate::path::{CameraPath, find};
+
+/// Name of the built-in scene.
+const BUILT_IN: &str = "courtyard";
+/// Bytes of a GiB.
+const GIB: f64 = (1u64 << 30) as f64;
+/// Triangles from which on people are told of the memory that they take.
+const MANY_TRIANGLES: usize = 1_000_000;
+
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct Job {
+    /// glTF file, or "courtyard" for the built-in scene
+    scene: PathBuf,
+    /// Camera path, TOML or JSON [default: an orbit and a flight that are found in the scene]
+    #[arg(long, value_name = "FILE")]
+    path: Option<PathBuf>,
+    /// Direction toward the sun: azimuth from +z toward +x and elevation, in degrees [default: the path's, else the
+    /// scene's]
+    #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = light, allow_hyphen_values = true)]
+    light: Option<LightSettings>,
+    /// Play the scene's first animation, so many frames of the path a second
+    #[arg(long, value_name = "FPS")]
+    play: Option<f32>,
+    /// Refuse scenes that need more memory for their rays than this, in GiB
+    #[arg(long, default_value_t = 8.0, value_name = "GIB")]
+    max_memory: f64,
+    #[command(flatten)]
+    pub(crate) drawing: Drawing,
+}
+
+/// A frame of the path.
+#[derive(Clone, Debug)]
+pub(crate) struct JobFrame {
+    /// Such as `orbit/3`.
+    pub(crate) name: String,
+    /// Such as `orbit`.
+    pub(crate) group: String,
+    pub(crate) shot: Shot,
+    /// Time of the animation, in seconds, if it plays.
+    pub(crate) seconds: Option<f32>,
+}
+
+/// A job that can begin.
+pub(crate) struct Prepared {
+    pub(crate) comparison: Comparison,
+    pub(crate) judging: Judging,
+    pub(crate) path: CameraPath,
+    pub(crate) light: LightSettings,
+    pub(crate) frames: Vec<JobFrame>,
+    /// What people should know, whole sentences.
+    pub(crate) notes: Vec<String>,
+}
+
+impl Job {
+    /// Loads the scene, opens the GPU, and finds the frames.
+    pub(crate) fn prepare(&self) -> Result<Prepared> {
+        let scene = self.load()?;
+        let triangles = self.check_memory(&scene)?;
+        let sun = scene.sun.and_then(|sun| LightSettings::from_direction(sun.direction).ok());
+        let animates = !scene.animations.is_empty();
+        ensure!(
+            self.play.is_none() || animates,
+            "--play: {} has no animation; leave the option out",
+            self.scene.display()
+        );
+        ensure!(
+            self.play.is_none_or(|fps| fps.is_finite() && fps > 0.0),
+            "--play: give a number of frames a second above 0"
+        );
+        let mut notes = scene.notes.clone();
+        let judging = self.drawing.judging();
+        let comparison = Comparison::new(self.drawing.gpu()?, scene, judging)?;
+        let aspect = judging.size[0] as f32 / judging.size[1] as f32;
+        let path = match &self.path {
+            Some(file) => CameraPath::read(file, aspect)?,
+            None => {
+                let subject = comparison.subject();
+                let found = find(&subject.rays.tracer, subject.bounds(), aspect).with_context(|| self.title())?;
+                notes.extend(found.notes);
+                found.path
+            }
+        };
+        let light = self.light.or(path.light).or(sun).unwrap_or_default();
+        let frames = self.frames(&path, &light);
+        if triangles >= MANY_TRIANGLES {
+            notes.push(format!("The scene has {triangles} triangles."));
+        }
+        Ok(Prepared { comparison, judging, path, light, frames, notes })
+    }
+
+    /// The scene's name for people.
+    pub(crate) fn title(&self) -> String {
+        self.scene.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    fn load(&self) -> Result<Scene> {
+        if self.scene.as_os_str() == BUILT_IN && !self.scene.exists() {
+            return Ok(default_scene());
+        }
+        Ok(load_gltf(&self.scene)?)
+    }
+
+    /// Says what a large scene will take before it takes it, and refuses one that would take too much.
+    fn check_memory(&self, scene: &Scene) -> Result<usize> {
+        let of_instance = |instance: &shadowfit_scene::Instance| {
+            scene.meshes[instance.mesh].primitives[instance.primitive].indices.len() / 3
+        };
+        let triangles: usize = scene.instances().iter().map(of_instance).sum();
+        let memory = Tracer::memory(triangles);
+        let (building, kept) = (memory.building as f64 / GIB, memory.kept as f64 / GIB);
+        if triangles >= MANY_TRIANGLES {
+            eprintln!(
+                "{triangles} triangles: rays need {building:.1} GiB while their hierarchy is built and {kept:.1} GiB \
+                 afterwards"
+            );
+        }
+        if building > self.max_memory {
+            bail!(
+                "{}: its {triangles} triangles need {building:.1} GiB of memory for rays, more than --max-memory {}",
+                self.scene.display(),
+                self.max_memory
+            );
+        }
+        Ok(triangles)
+    }
+
+    fn frames(&self, path: &CameraPath, light: &LightSettings) -> Vec<JobFrame> {
+        let direction = light.direction();
+        let names = path.names();
+        let frames = path.frames.iter().zip(names).enumerate().map(|(index, (frame, name))| JobFrame {
+            name,
+            group: frame.group.clone(),
+            shot: Shot {
+                camera: frame.camera,
+                direction,
+                is_first: index == 0 || path.frames[index - 1].group != frame.group,
+            },
+            seconds: self.play.map(|fps| index as f32 / fps),
+        });
+        frames.collect()
+    }
+}
+
+fn light(text: &str) -> Result<LightSettings> {
+    let (azimuth, elevation) =
+        text.split_once(',').with_context(|| format!("\"{text}\" is not AZIMUTH,ELEVATION, such as 37,45"))?;
+    let degrees = |text: &str| -> Result<f32> {
+        let degrees: f32 = text.trim().parse().with_context(|| format!("\"{text}\" is no number of degrees"))?;
+        ensure!(degrees.is_finite(), "{degrees} is not finite");
+        Ok(degrees.to_radians())
+    };
+    let (azimuth, elevation) = (degrees(azimuth)?, degrees(elevation)?);
+    ensure!(elevation > 0.0, "the sun's elevation is not above 0");
+    Ok(LightSettings { azimuth, elevation, ..LightSettings::default() })
+}

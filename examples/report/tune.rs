@@ -1,0 +1,126 @@
+//! `report tune`: the technique with the least error in a scene, within a budget.
+
+use std::fs;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, ensure};
+use indicatif::{ProgressBar, ProgressStyle};
+use shadowfit_viewer::study::{Budget, Shot, Tuned, Weights, tune};
+
+use crate::interrupt::Interrupt;
+use crate::job::Job;
+
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    job: Job,
+    /// Most maps
+    #[arg(long, default_value_t = 4, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8))]
+    maps: u32,
+    /// Width and height of each map, in texels
+    #[arg(long, default_value_t = 2048, value_name = "N", value_parser = clap::value_parser!(u32).range(256..=8192))]
+    resolution: u32,
+    /// Frames of the path that are measured, evenly picked
+    #[arg(long, default_value_t = 12, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    frames: u32,
+    /// What counts against a technique, such as "wrong=1,hole=20": names are wrong, false_shadow, false_light, hole,
+    /// mean_error and crawl, all shares in per cent
+    #[arg(long, value_name = "NAME=WEIGHT,...", value_parser = weights, default_value = "")]
+    weights: Weights,
+    /// Folder for technique.toml, technique.rs and steps.md
+    #[arg(short, value_name = "DIR")]
+    out: PathBuf,
+}
+
+/// Searches, and writes what was found and what each change bought.
+pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
+    ensure!(
+        !args.job.drawing.sets_look_up(),
+        "report tune searches the filter and the bias itself; leave --filter, --bias and --color-format out"
+    );
+    let mut job = args.job.prepare()?;
+    let shots = picked(&job.frames.iter().map(|frame| frame.shot).collect::<Vec<_>>(), args.frames as usize);
+    let budget = Budget { maps: args.maps, resolution: args.resolution };
+    let progress = ProgressBar::new(0);
+    progress.set_style(ProgressStyle::with_template("{wide_bar} {pos}/{len} tried, {eta} left")?);
+    let tuned = tune(&mut job.comparison, &shots, budget, &args.weights, &mut |tried, most| {
+        progress.set_length(most as u64);
+        progress.set_position(tried as u64);
+        !interrupt.is_set()
+    })?;
+    progress.finish_and_clear();
+    fs::create_dir_all(&args.out).with_context(|| format!("{}: cannot be made", args.out.display()))?;
+    let steps = steps(&tuned);
+    for (name, text) in
+        [("technique.toml", tuned.technique.to_toml()?), ("technique.rs", tuned.technique.to_rust()), ("steps.md", steps.clone())]
+    {
+        let file = args.out.join(name);
+        fs::write(&file, text).with_context(|| format!("{}: cannot be written", file.display()))?;
+    }
+    print!("{steps}\n{}", tuned.technique.to_rust());
+    println!("\n{}: technique.toml (for --config), technique.rs, steps.md", args.out.display());
+    Ok(())
+}
+
+/// So many of the frames, evenly spread; they are not neighbours then, so that each begins a path of its own.
+fn picked(shots: &[Shot], count: usize) -> Vec<Shot> {
+    let count = count.min(shots.len());
+    let all = count == shots.len();
+    (0..count)
+        .map(|index| shots[(2 * index + 1) * shots.len() / (2 * count)])
+        .map(|shot| Shot { is_first: shot.is_first || !all, ..shot })
+        .collect()
+}
+
+/// All that was tried, as Markdown.
+fn steps(tuned: &Tuned) -> String {
+    let mut text = String::from("| change | error | wrong % | false shadow % | false light % | hole % | bought |\n");
+    text += "|---|---:|---:|---:|---:|---:|---|\n";
+    let mut best = f64::NAN;
+    for step in &tuned.steps {
+        let percent = |count: u64| 100.0 * step.tally.share(count);
+        let bought = if step.is_kept && best.is_finite() {
+            format!("{:.1}%", 100.0 * (best - step.error) / best)
+        } else if step.is_kept {
+            "the start".to_owned()
+        } else {
+            "-".to_owned()
+        };
+        text += &format!(
+            "| {} | {:.4} | {:.4} | {:.4} | {:.4} | {:.4} | {bought} |\n",
+            step.what,
+            step.error,
+            percent(step.tally.wrong),
+            percent(step.tally.false_shadow),
+            percent(step.tally.false_light),
+            percent(step.tally.hole),
+        );
+        if step.is_kept {
+            best = step.error;
+        }
+    }
+    if tuned.stopped_early {
+        text += "\nStopped before all was tried.\n";
+    }
+    text
+}
+
+fn weights(text: &str) -> Result<Weights> {
+    let mut weights = Weights::default();
+    for part in text.split(',').filter(|part| !part.is_empty()) {
+        let (name, value) = part.split_once('=').with_context(|| format!("\"{part}\" is not NAME=WEIGHT"))?;
+        let value: f64 = value.trim().parse().with_context(|| format!("\"{value}\" is no number"))?;
+        ensure!(value.is_finite() && value >= 0.0, "{name}: {value} is no weight; give 0 or more");
+        let weight = match name.trim() {
+            "wrong" => &mut weights.wrong,
+            "false_shadow" => &mut weights.false_shadow,
+            "false_light" => &mut weights.false_light,
+            "hole" => &mut weights.hole,
+            "mean_error" => &mut weights.mean_error,
+            "crawl" => &mut weights.crawl,
+            other => anyhow::bail!("there is no weight \"{other}\""),
+        };
+        *weight = value;
+    }
+    Ok(weights)
+}
