@@ -13,6 +13,7 @@ mod edges;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 mod judge;
+mod memory;
 pub mod peers;
 mod sun;
 mod tally;
@@ -24,6 +25,7 @@ pub use crawl::{MapsBefore, crawl};
 pub use cut_out::{AlphaImage, CutOut, CutOuts, Wrap};
 pub use displacement::GREATEST_DISPLACEMENT;
 pub use judge::{Class, Judged, MapsSeen, judge};
+pub use memory::TracerMemory;
 pub use tally::{GrazingTally, PictureTally};
-pub use tracer::{Hit, Tracer};
+pub use tracer::{Hit, Tracer, TriangleCountError};
 pub use truth::{Truth, TruthPoint, TruthSettings};

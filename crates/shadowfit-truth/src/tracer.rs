@@ -4,20 +4,28 @@ use std::fmt;
 use std::time::Duration;
 
 use glam::{DVec3, Vec3, Vec3A};
+use obvhs::aabb::Aabb;
 use obvhs::bvh2::{Bvh2, builder::build_bvh2_from_tris};
 use obvhs::ray::{Ray, RayHit};
 use obvhs::{BvhBuildParams, triangle::Triangle};
 
-use crate::CutOuts;
+use crate::{CutOuts, TracerMemory};
 
 /// Says whether a triangle is there at a point: its index, and the weights of its second and third
 /// corner. Cut-outs answer `false`.
 type AlphaTest = Box<dyn Fn(u32, [f32; 2]) -> bool + Send + Sync>;
 
+/// A refitted hierarchy is built anew when its cost has grown by more than this factor since it was
+/// built: rays take about as much longer as the cost grows, and a build takes as long as many
+/// thousands of them.
+const MOST_COST_GROWTH: f32 = 1.5;
+
 /// Triangles that can be asked for rays.
 pub struct Tracer {
     triangles: Vec<Triangle>,
     bvh: Option<Bvh2>,
+    /// Cost of a ray when the hierarchy was built.
+    built_cost: f32,
     alpha_test: Option<AlphaTest>,
     cut_outs: CutOuts,
 }
@@ -29,6 +37,16 @@ pub struct Hit {
     pub distance: f32,
     /// Index of the triangle.
     pub triangle: u32,
+}
+
+/// Moved triangles are not as many as were there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the tracer has {wanted} triangles and was given {given} moved ones: give every triangle, in the same order")]
+pub struct TriangleCountError {
+    /// Triangles of the tracer.
+    pub wanted: usize,
+    /// Triangles that were given.
+    pub given: usize,
 }
 
 impl fmt::Debug for Tracer {
@@ -45,17 +63,39 @@ impl Tracer {
     /// Builds the hierarchy. Vertices in world space, metres; triangles with non-finite vertices
     /// are never met.
     pub fn new(triangles: impl IntoIterator<Item = [Vec3; 3]>) -> Self {
-        let triangles: Vec<Triangle> = triangles
-            .into_iter()
-            .map(|vertices| {
-                let finite = vertices.iter().all(|vertex| vertex.is_finite());
-                let [v0, v1, v2] = if finite { vertices.map(Vec3A::from) } else { [Vec3A::ZERO; 3] };
-                Triangle { v0, v1, v2 }
-            })
-            .collect();
-        let bvh = (!triangles.is_empty())
-            .then(|| build_bvh2_from_tris(&triangles, BvhBuildParams::medium_build(), &mut Duration::default()));
-        Self { triangles, bvh, alpha_test: None, cut_outs: CutOuts::default() }
+        let triangles: Vec<Triangle> = triangles.into_iter().map(triangle).collect();
+        let bvh = build(&triangles);
+        let built_cost = bvh.as_ref().map_or(0.0, cost);
+        Self { triangles, bvh, built_cost, alpha_test: None, cut_outs: CutOuts::default() }
+    }
+
+    /// Moves the triangles, in their order (world space, metres): for scenes that are animated. The
+    /// hierarchy is refitted, or built anew when that has made it half as slow again.
+    ///
+    /// # Errors
+    ///
+    /// When they are not as many as there are; nothing is changed then.
+    pub fn set_triangles(&mut self, moved: impl IntoIterator<Item = [Vec3; 3]>) -> Result<(), TriangleCountError> {
+        let moved: Vec<Triangle> = moved.into_iter().map(triangle).collect();
+        if moved.len() != self.triangles.len() {
+            return Err(TriangleCountError { wanted: self.triangles.len(), given: moved.len() });
+        }
+        self.triangles = moved;
+        let Some(bvh) = &mut self.bvh else { return Ok(()) };
+        refit(bvh, &self.triangles);
+        // Costs that are not numbers are built anew as well.
+        let is_good = cost(bvh) <= self.built_cost * MOST_COST_GROWTH;
+        if !is_good {
+            self.bvh = build(&self.triangles);
+            self.built_cost = self.bvh.as_ref().map_or(0.0, cost);
+        }
+        Ok(())
+    }
+
+    /// What a tracer of so many triangles will need, to a factor of 1.5 for thousands of triangles
+    /// that come from an iterator that knows their number.
+    pub fn memory(triangles: usize) -> TracerMemory {
+        TracerMemory::of(triangles)
     }
 
     /// Adds an alpha test: `is_there(triangle, weights)`, with the weights of the triangle's second
@@ -181,6 +221,43 @@ impl Tracer {
     }
 }
 
+/// A triangle, all zero if it is not finite.
+fn triangle(vertices: [Vec3; 3]) -> Triangle {
+    let finite = vertices.iter().all(|vertex| vertex.is_finite());
+    let [v0, v1, v2] = if finite { vertices.map(Vec3A::from) } else { [Vec3A::ZERO; 3] };
+    Triangle { v0, v1, v2 }
+}
+
+fn build(triangles: &[Triangle]) -> Option<Bvh2> {
+    let params = BvhBuildParams::medium_build();
+    let mut bvh = (!triangles.is_empty()).then(|| build_bvh2_from_tris(triangles, params, &mut Duration::default()))?;
+    // What only the builder needs, and the room that its first nodes took.
+    bvh.parents = Vec::new();
+    bvh.primitives_to_nodes = Vec::new();
+    bvh.nodes.shrink_to_fit();
+    Some(bvh)
+}
+
+/// Makes the boxes those of triangles that have moved.
+fn refit(bvh: &mut Bvh2, triangles: &[Triangle]) {
+    for node in bvh.nodes.iter_mut().filter(|node| node.is_leaf()) {
+        let slots = node.first_index as usize..(node.first_index + node.prim_count) as usize;
+        let boxes = bvh.primitive_indices[slots].iter().map(|index| triangles[*index as usize].aabb());
+        node.set_aabb(boxes.fold(Aabb::empty(), |all, one| all.union(&one)));
+    }
+    bvh.refit_all();
+}
+
+/// Cost of a ray through the hierarchy by the surface area heuristic: boxes and triangles that a ray
+/// through the whole is expected to meet.
+fn cost(bvh: &Bvh2) -> f32 {
+    let area = |node: &obvhs::bvh2::node::Bvh2Node| f64::from(node.aabb().half_area());
+    let sum: f64 = bvh.nodes.iter().map(|node| area(node) * f64::from(node.prim_count.max(1))).sum();
+    let whole = area(&bvh.nodes[0]);
+    // Nothing has an area: all hierarchies are alike.
+    if whole == 0.0 { 0.0 } else { (sum / whole) as f32 }
+}
+
 /// Weights of the second and third corner at a hit, by areas.
 fn weights(triangle: &Triangle, ray: &Ray, distance: f32) -> [f32; 2] {
     let point = ray.origin + ray.direction * distance;
@@ -220,6 +297,52 @@ mod tests {
         let tracer = Tracer::new(square_at(1.0)).with_alpha_test(|_, [second, third]| second + third < 0.5);
         assert!(tracer.is_occluded(Vec3::new(-0.9, 0.0, -0.8), Vec3::Y));
         assert!(!tracer.is_occluded(Vec3::new(0.9, 0.0, 0.8), Vec3::Y));
+    }
+
+    /// Small triangles in a row, a metre apart, in the order of `place`.
+    fn row(place: impl Fn(u32) -> u32) -> Vec<[Vec3; 3]> {
+        let at = |index: u32| Vec3::X * place(index) as f32;
+        (0..500).map(|index| [Vec3::ZERO, Vec3::X * 0.5, Vec3::Y * 0.5].map(|corner| at(index) + corner)).collect()
+    }
+
+    fn boxes_hold_their_triangles(tracer: &Tracer) -> bool {
+        let bvh = tracer.bvh.as_ref().expect("triangles");
+        bvh.validate(&tracer.triangles, false, true);
+        let met = |index: u32| {
+            let [a, b, c] = tracer.corners(index);
+            let middle = (a + b + c) / 3.0;
+            tracer.first_hit(middle + Vec3::Z, Vec3::NEG_Z).is_some_and(|hit| hit.triangle == index)
+        };
+        (0..tracer.len() as u32).all(met)
+    }
+
+    #[test]
+    fn moved_triangles_are_met_where_they_are() {
+        let mut tracer = Tracer::new(row(|index| index));
+        let slow_before = tracer.built_cost;
+        tracer
+            .set_triangles(row(|index| index).into_iter().map(|t| t.map(|v| v + Vec3::Y * v.x * 0.1)))
+            .expect("as many");
+        assert!(boxes_hold_their_triangles(&tracer));
+        assert_eq!(tracer.built_cost, slow_before, "a small motion is refitted");
+        // Shuffled, neighbours of the hierarchy lie far apart: it is built anew.
+        tracer.set_triangles(row(|index| index * 211 % 500)).expect("as many");
+        let cost_now = cost(tracer.bvh.as_ref().expect("triangles"));
+        assert!(boxes_hold_their_triangles(&tracer) && cost_now < slow_before * MOST_COST_GROWTH, "{cost_now}");
+        // Gone mad, and back.
+        tracer.set_triangles(vec![[Vec3::NAN; 3]; 500]).expect("as many");
+        assert!(!tracer.is_occluded(Vec3::new(0.1, 0.1, 1.0), Vec3::NEG_Z));
+        tracer.set_triangles(row(|index| index)).expect("as many");
+        assert!(boxes_hold_their_triangles(&tracer));
+    }
+
+    #[test]
+    fn more_or_fewer_triangles_are_refused_and_nothing_moves() {
+        let mut tracer = Tracer::new(square_at(1.0));
+        let refused = tracer.set_triangles([square_at(2.0), square_at(3.0)].concat());
+        assert_eq!(refused, Err(TriangleCountError { wanted: 2, given: 4 }));
+        assert_eq!(tracer.first_hit(Vec3::new(0.3, 0.0, 0.1), Vec3::Y).map(|hit| hit.distance), Some(1.0));
+        assert_eq!(Tracer::new([]).set_triangles([]), Ok(()));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 #[cfg(feature = "gpu")]
 mod agreement_gpu;
 mod classes;
+mod metamorphic;
 mod scenes;
 #[cfg(feature = "gpu")]
 mod shaders;

@@ -1,0 +1,56 @@
+//! A tracer's memory, told in advance, against the allocator. A program of its own: it replaces the
+//! allocator.
+
+use allocation_counter::measure;
+use glam::Vec3;
+use shadowfit_truth::Tracer;
+
+/// Right triangles a metre wide.
+fn at(corner: Vec3) -> [Vec3; 3] {
+    [corner, corner + Vec3::X, corner + Vec3::Z]
+}
+
+/// A hilly ground of `count` triangles side by side.
+fn ground(count: u32) -> impl ExactSizeIterator<Item = [Vec3; 3]> {
+    let side = f64::from(count).sqrt().ceil() as u32;
+    (0..count).map(move |index| {
+        let [x, z] = [index % side, index / side].map(|place| place as f32);
+        at(Vec3::new(x, (x * 0.1).sin() + (z * 0.13).cos(), z))
+    })
+}
+
+/// `count` triangles anywhere in a cube of a kilometre.
+fn soup(count: u32) -> impl ExactSizeIterator<Item = [Vec3; 3]> {
+    (0..count).map(|index| {
+        let hash = index.wrapping_mul(2_654_435_761);
+        at(Vec3::from([hash, hash >> 10, hash >> 20].map(|bits| (bits & 1023) as f32)))
+    })
+}
+
+/// Bytes at most, and afterwards.
+fn measured(triangles: impl Iterator<Item = [Vec3; 3]>) -> [f64; 2] {
+    let mut tracer = None;
+    let counted = measure(|| tracer = Some(Tracer::new(triangles)));
+    [counted.bytes_max as f64, counted.bytes_current as f64]
+}
+
+#[test]
+fn memory_is_told_in_advance_within_a_factor_of_one_and_a_half() {
+    for count in [1_000, 30_000] {
+        let told = Tracer::memory(count as usize);
+        let told = [told.building, told.kept].map(|bytes| bytes as f64);
+        for (name, found) in [("ground", measured(ground(count))), ("soup", measured(soup(count)))] {
+            for (told, found) in told.into_iter().zip(found) {
+                let ratio = found / told;
+                assert!((1.0 / 1.5..=1.5).contains(&ratio), "{name} of {count}: {found} bytes, {told} were told");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_tracer_without_triangles_needs_nothing() {
+    let memory = Tracer::memory(0);
+    assert_eq!((memory.building, memory.kept), (0, 0));
+    assert_eq!(measured(std::iter::empty()), [0.0, 0.0]);
+}

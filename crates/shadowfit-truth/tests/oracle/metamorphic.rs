@@ -1,0 +1,87 @@
+//! What a picture's figures must not depend on: where the world's origin and axes are, and its unit.
+
+use glam::{DAffine3, DMat4, DQuat, DVec3, Vec3};
+use shadowfit_truth::peers::{FitMap, ShadowMap};
+use shadowfit_truth::{MapsSeen, PictureTally, PixelCamera, Tracer, Truth, TruthSettings, judge};
+
+use super::scenes::{cuboid, level, looking_at, map_around, sphere};
+
+/// Judges a scene after its whole world was transformed by a motion and a scale.
+fn tally(motion: DAffine3, scale: f64) -> PictureTally {
+    let to_light = DVec3::new(0.5, 0.7, 0.3).normalize();
+    let world = DAffine3::from_scale(DVec3::splat(scale)) * motion;
+    let turned = |direction: DVec3| motion.transform_vector3(direction);
+    let ground = level(0.0, [-15.0, -15.0], [15.0, 16.1]);
+    let tower = cuboid(Vec3::new(-0.5, 0.02, -0.4), Vec3::new(0.3, 2.0, 0.5));
+    // Before the map: its shadow is a hole.
+    let roof = level(5.0, [2.0, -6.0], [7.0, 3.0]);
+    let triangles = [ground, tower, roof, sphere(Vec3::new(1.5, 1.0, 1.5), 0.6, 24)].concat();
+    let moved = triangles.iter().map(|t| t.map(|corner| world.transform_point3(corner.as_dvec3()).as_vec3()));
+    let tracer = Tracer::new(moved);
+    let camera = looking_at(DVec3::new(-4.0, 3.0, 5.0), DVec3::Y * 0.5, [240, 160]);
+    let camera = PixelCamera {
+        eye: world.transform_point3(camera.eye),
+        right: turned(camera.right),
+        up: turned(camera.up),
+        forward: turned(camera.forward),
+        near: camera.near * scale,
+        far: camera.far * scale,
+        ..camera
+    };
+    let settings = TruthSettings { ray_offset: 1e-3 * scale, ..TruthSettings::new(turned(to_light)) };
+    let truth = Truth::trace(&tracer, &camera, &settings, &Truth::seen_by_rays(&tracer, &camera));
+    let map = map_around(DVec3::ZERO, to_light, 16.0, 3.0, 1024);
+    let clip_from_world = DMat4::from_cols_array(&map.view_proj) * DMat4::from(world.inverse());
+    let map = ShadowMap::new(&FitMap { view_proj: clip_from_world.to_cols_array(), ..map }, settings.to_light);
+    // Shadows that are shifted in the picture, with stripes: wrong in every way.
+    let factors: Vec<f32> = (0..camera.pixels())
+        .map(|pixel| {
+            let shifted = truth.verdict(pixel.saturating_sub(12)).unwrap_or(true);
+            f32::from(u8::from(shifted != (pixel % 31 == 0)))
+        })
+        .collect();
+    let maps = MapsSeen { maps: &[map], reach: 0.5, depth_clamp: false };
+    judge(&tracer, &truth, &maps, &factors, |_| true).tally
+}
+
+/// Asserts that every column is the same to `tolerance` per cent of the picture (or per cent of its
+/// own value, where it is no share).
+fn assert_same(name: &str, wanted: &PictureTally, found: &PictureTally, tolerance: f64) {
+    for ((column, wanted), (_, found)) in wanted.columns().into_iter().zip(found.columns()) {
+        let unit = if column.ends_with('%') { 1.0 } else { wanted.abs() / 100.0 };
+        assert!((found - wanted).abs() <= tolerance * unit, "{name}: {column} is {found}, not {wanted}");
+    }
+}
+
+fn plain() -> PictureTally {
+    let plain = tally(DAffine3::IDENTITY, 1.0);
+    for count in [plain.false_shadow, plain.false_light, plain.hole, plain.edge] {
+        assert!(count > 50, "{:?}", plain.columns());
+    }
+    plain
+}
+
+#[test]
+fn a_unit_that_is_a_power_of_two_changes_no_pixel() {
+    for scale in [0.125, 64.0] {
+        assert_same("scaled", &plain(), &tally(DAffine3::IDENTITY, scale), 0.0);
+    }
+}
+
+#[test]
+fn a_unit_of_centimetres_or_kilometres_changes_figures_by_rounding_alone() {
+    // Pixels on edges of shadows and triangles: less than one in a thousand. Quantiles are in bins
+    // of half a per cent.
+    for scale in [0.01, 100.0, 1000.0] {
+        assert_same("scaled", &plain(), &tally(DAffine3::IDENTITY, scale), 0.6);
+    }
+}
+
+#[test]
+fn a_world_that_is_turned_and_moved_has_the_same_figures() {
+    let turn = DQuat::from_axis_angle(DVec3::new(0.3, 0.8, -0.4).normalize(), 2.0);
+    let motion = DAffine3::from_rotation_translation(turn, DVec3::new(30.0, -12.0, 50.0));
+    assert_same("moved", &plain(), &tally(motion, 1.0), 0.6);
+    // A left-handed world: everything mirrored, the winding with it.
+    assert_same("mirrored", &plain(), &tally(DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0)), 1.0), 0.6);
+}
