@@ -4,7 +4,7 @@ use anyhow::{Context, Result, bail};
 use shadowfit::params;
 use shadowfit::settings::{BiasSettings, FilterKind, MapFormat, Settings};
 use shadowfit_render::{AdapterChoice, Gpu};
-use shadowfit_viewer::study::Judging;
+use shadowfit_viewer::study::{Judging, Technique};
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct Drawing {
@@ -52,6 +52,23 @@ impl Drawing {
             sun_rays: self.sun_rays,
             crawl: !self.no_crawl,
         }
+    }
+
+    /// Whether the filter, the bias or the format is asked for.
+    pub(crate) fn sets_look_up(&self) -> bool {
+        self.filter.is_some() || self.bias.is_some() || self.color_format
+    }
+
+    /// A technique with the filter, bias and format that are asked for.
+    pub(crate) fn changed(&self, mut technique: Technique) -> Result<Technique> {
+        technique.filter = self.filter.unwrap_or(technique.filter);
+        if self.bias.is_some() || self.filter.is_some() {
+            technique.bias = self.bias(technique.filter)?;
+        }
+        if self.color_format {
+            technique.format = MapFormat::R32Float;
+        }
+        Ok(technique)
     }
 
     pub(crate) fn filter(&self) -> FilterKind {

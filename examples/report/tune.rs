@@ -46,7 +46,7 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     let tuned = tune(&mut job.comparison, &shots, budget, &args.weights, &mut |tried, most| {
         progress.set_length(most as u64);
         progress.set_position(tried as u64);
-        !interrupt.is_set()
+        !interrupt.is_requested()
     })?;
     progress.finish_and_clear();
     fs::create_dir_all(&args.out).with_context(|| format!("{}: cannot be made", args.out.display()))?;
@@ -62,14 +62,20 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     Ok(())
 }
 
-/// So many of the frames, evenly spread; they are not neighbours then, so that each begins a path of its own.
+/// So many of the frames, in pairs of neighbours that are evenly spread: what a fit knows of the frame before counts,
+/// and so does crawl.
 fn picked(shots: &[Shot], count: usize) -> Vec<Shot> {
-    let count = count.min(shots.len());
-    let all = count == shots.len();
-    (0..count)
-        .map(|index| shots[(2 * index + 1) * shots.len() / (2 * count)])
-        .map(|shot| Shot { is_first: shot.is_first || !all, ..shot })
-        .collect()
+    if count >= shots.len() {
+        return shots.to_vec();
+    }
+    let pairs = count.div_ceil(2);
+    let begin = |pair: usize| (2 * pair + 1) * shots.len() / (2 * pairs);
+    let pair = |pair: usize| {
+        let first = begin(pair).min(shots.len().saturating_sub(2));
+        let first = if shots.get(first + 1).is_some_and(|shot| shot.is_first) { first.saturating_sub(1) } else { first };
+        [Shot { is_first: true, ..shots[first] }, shots[first + 1]]
+    };
+    (0..pairs).flat_map(pair).take(count).collect()
 }
 
 /// All that was tried, as Markdown.

@@ -18,19 +18,29 @@ pub struct SceneRays {
 impl SceneRays {
     /// Moves everything to another pose of the same scene.
     pub fn set_pose(&mut self, scene: &Scene, pose: &Pose) {
-        *self = Self::new(scene, pose);
+        let triangles = casters(scene, &scene.instances(), pose);
+        if self.tracer.set_triangles(triangles.iter().map(|triangle| triangle.vertices)).is_err() {
+            // Another scene after all.
+            *self = Self::new(scene, pose);
+            return;
+        }
+        self.triangles = triangles;
     }
 
     /// Builds the rays' view of a scene in a pose.
     pub fn new(scene: &Scene, pose: &Pose) -> Self {
         let instances = scene.instances();
-        let alpha_of = |triangle: &Triangle| material(scene, &instances, triangle).alpha;
-        let triangles: Vec<Triangle> =
-            pose.triangles(scene).into_iter().filter(|triangle| alpha_of(triangle) != AlphaMode::Blend).collect();
+        let triangles = casters(scene, &instances, pose);
         let tracer = Tracer::new(triangles.iter().map(|triangle| triangle.vertices))
             .with_cut_outs(cut_outs(scene, &instances, &triangles));
         Self { tracer, triangles }
     }
+}
+
+/// The triangles that cast, in the order of the renderer's numbers.
+fn casters(scene: &Scene, instances: &[Instance], pose: &Pose) -> Vec<Triangle> {
+    let alpha_of = |triangle: &Triangle| material(scene, instances, triangle).alpha;
+    pose.triangles(scene).into_iter().filter(|triangle| alpha_of(triangle) != AlphaMode::Blend).collect()
 }
 
 fn primitive<'a>(scene: &'a Scene, instances: &[Instance], triangle: &Triangle) -> &'a Primitive {

@@ -102,6 +102,11 @@ impl Comparison {
         Ok(outcomes)
     }
 
+    /// A technique's contender and the scene, to judge frames live.
+    pub fn contender(&mut self, technique: usize) -> (&Gpu, &mut Contender, &mut Subject) {
+        (&self.gpu, &mut self.entries[technique].contender, &mut self.subject)
+    }
+
     /// The shaded picture of a frame by a technique, with maps that [`Self::frame`] gave: sRGB pixels, four bytes
     /// each, rows from the top; and the same judged anew.
     ///

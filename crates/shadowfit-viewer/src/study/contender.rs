@@ -5,10 +5,12 @@ use glam::{DMat4, DVec2, DVec3, Vec3};
 use shadowfit::settings::BiasSettings;
 use shadowfit::{CascadeFitter, PerspectiveCamera, SplitScheme, Workspace, bias};
 use shadowfit_render::{Atmosphere, Frame, Gpu, Picture, ProbePixel, ProbeTargets, Renderer};
+use shadowfit_truth::gpu::GpuPixel;
 use shadowfit_truth::peers::{FitMap, ShadowMap};
 use shadowfit_truth::{Judged, MapsBefore, MapsSeen, PixelCamera, Truth, TruthSettings, crawl, judge};
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
 
+use crate::study::live::{LiveInput, LiveTruth};
 use crate::study::{SeenDepths, Subject, Technique};
 
 /// Stands for no end of a map's view depths.
@@ -113,10 +115,7 @@ impl Contender {
         let truth = truth.0.get_or_insert_with(|| trace(subject, shot, &self.judging, &pixels));
         let factors = factors(&pixels);
         let measured = measured(maps, shot.direction);
-        let descriptor = self.renderer.shadow_map().descriptor();
-        let seen =
-            MapsSeen { maps: &measured, reach: bias::reach(descriptor.filter), depth_clamp: descriptor.depth_clamp };
-        let mut judged = judge(&subject.rays.tracer, truth, &seen, &factors, |_| true);
+        let mut judged = judge(&subject.rays.tracer, truth, &self.seen(&measured), &factors, |_| true);
         let forward = shot.camera.forward.normalize();
         if let Some(before) = self.before.take().filter(|_| self.judging.crawl) {
             let pixels = self.probe(gpu, subject, shot, &before.maps, Some((before.eye, before.forward)))?;
@@ -148,6 +147,63 @@ impl Contender {
         self.picture = Some(picture);
         drawn?;
         Ok(pixels)
+    }
+
+    /// Draws a frame and judges it on the GPU.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::judge`], and when the sun is no point.
+    pub fn judge_live(
+        &mut self,
+        gpu: &Gpu,
+        subject: &mut Subject,
+        shot: &Shot,
+        maps: &[MapFit],
+        live: &mut LiveTruth,
+    ) -> Result<Vec<GpuPixel>> {
+        self.with_live_input(gpu, subject, shot, maps, |input| live.judge(gpu, input))
+    }
+
+    /// Mean time of judging a frame on the GPU, drawing aside, in milliseconds.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::judge_live`].
+    pub fn time_live(
+        &mut self,
+        gpu: &Gpu,
+        subject: &mut Subject,
+        shot: &Shot,
+        maps: &[MapFit],
+        (live, repeats): (&mut LiveTruth, u32),
+    ) -> Result<f64> {
+        self.with_live_input(gpu, subject, shot, maps, |input| live.time(gpu, input, repeats))
+    }
+
+    fn with_live_input<T>(
+        &mut self,
+        gpu: &Gpu,
+        subject: &mut Subject,
+        shot: &Shot,
+        maps: &[MapFit],
+        judge: impl FnOnce(&LiveInput<'_>) -> Result<T>,
+    ) -> Result<T> {
+        let atmosphere = Atmosphere::default();
+        let frame = frame(shot, maps, &self.bias, &atmosphere, None);
+        self.renderer.draw_probe(gpu, &mut subject.gpu_scene, &frame, &self.targets)?;
+        let measured = measured(maps, shot.direction);
+        judge(&LiveInput {
+            camera: PixelCamera::new(&shot.camera, self.judging.size),
+            settings: truth_settings(shot, &self.judging),
+            maps: self.seen(&measured),
+            seen: &self.targets.view,
+        })
+    }
+
+    fn seen<'a>(&self, maps: &'a [ShadowMap]) -> MapsSeen<'a> {
+        let descriptor = self.renderer.shadow_map().descriptor();
+        MapsSeen { maps, reach: bias::reach(descriptor.filter), depth_clamp: descriptor.depth_clamp }
     }
 
     fn probe(
@@ -196,15 +252,19 @@ fn factors(pixels: &[Option<ProbePixel>]) -> Vec<f32> {
 }
 
 fn trace(subject: &Subject, shot: &Shot, judging: &Judging, pixels: &[Option<ProbePixel>]) -> Truth {
-    let settings = TruthSettings {
+    let settings = truth_settings(shot, judging);
+    let seen: Vec<Option<u32>> = pixels.iter().map(|pixel| pixel.map(|pixel| pixel.triangle)).collect();
+    Truth::trace(&subject.rays.tracer, &PixelCamera::new(&shot.camera, judging.size), &settings, &seen)
+}
+
+fn truth_settings(shot: &Shot, judging: &Judging) -> TruthSettings {
+    TruthSettings {
         to_light: -shot.direction.as_dvec3().normalize(),
         ray_offset: judging.ray_offset,
         sun_radius: judging.sun_radius,
         sun_rays: judging.sun_rays,
         max_distance: f64::from(shot.camera.far),
-    };
-    let seen: Vec<Option<u32>> = pixels.iter().map(|pixel| pixel.map(|pixel| pixel.triangle)).collect();
-    Truth::trace(&subject.rays.tracer, &PixelCamera::new(&shot.camera, judging.size), &settings, &seen)
+    }
 }
 
 /// The maps as the measures take them.
@@ -236,7 +296,11 @@ pub struct Fitter {
 impl Fitter {
     /// A fitter that knows no frame yet.
     pub fn new(technique: &Technique) -> Self {
-        Self { technique: technique.clone(), fitter: CascadeFitter::new(), depths: None, storage: Vec::new() }
+        let mut technique = technique.clone();
+        // Room for all that the filter reads beside a point.
+        let fit = &mut technique.maps.fit;
+        fit.kernel_margin = fit.kernel_margin.max(bias::reach(technique.filter));
+        Self { technique, fitter: CascadeFitter::new(), depths: None, storage: Vec::new() }
     }
 
     /// The maps of a frame, in order of their `far`.

@@ -7,6 +7,7 @@
 mod comparison;
 mod contender;
 mod histogram;
+mod live;
 mod rust_code;
 mod subject;
 mod technique;
@@ -16,6 +17,7 @@ pub use comparison::{Comparison, Outcome};
 pub(crate) use contender::measured;
 pub use contender::{Contender, Fitter, Judging, SharedTruth, Shot, fit_map};
 pub use histogram::SeenDepths;
+pub use live::LiveTruth;
 pub use subject::Subject;
 pub use technique::{DEFAULT_TECHNIQUE, Knowledge, Technique};
 pub use tune::{Budget, Step, Tuned, Weights, tune};

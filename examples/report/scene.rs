@@ -1,0 +1,203 @@
+//! `report SCENE`: techniques over a camera path through a scene, as tables, plots, pictures and a page.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use image::RgbaImage;
+use indicatif::{ProgressBar, ProgressStyle};
+use shadowfit_truth::PictureTally;
+use shadowfit_viewer::study::{SharedTruth, Technique};
+use shadowfit_wgpu::MapFit;
+
+use crate::data::{Columns, FrameInfo, FramePictures, Run, TechniqueRun};
+use crate::heat::heat;
+use crate::interrupt::Interrupt;
+use crate::job::{Job, JobFrame, Prepared};
+use crate::overlay::overlay;
+use crate::write::Output;
+
+/// Techniques that are compared when none is named: the sample's, and this project's own from stable to sharp.
+const DEFAULT_TECHNIQUES: [&str; 4] = ["xna-1", "stable-4", "clusters-4", "histogram-4"];
+
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    job: Job,
+    /// Technique, by name or as a TOML file; give it once for each [default: xna-1, stable-4, clusters-4, histogram-4]
+    #[arg(long = "config", value_name = "NAME|FILE.toml")]
+    configs: Vec<String>,
+    /// Width and height of all maps, in texels [default: what the techniques say]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(256..=8192))]
+    resolution: Option<u32>,
+    /// Folder for the report
+    #[arg(short, value_name = "DIR")]
+    out: PathBuf,
+}
+
+/// What was measured of one technique so far.
+#[derive(Default)]
+struct Measured {
+    tallies: Vec<PictureTally>,
+    maps: Vec<Vec<MapFit>>,
+}
+
+/// Measures, writes the report, and says where it is. Whether all frames were measured.
+pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<bool> {
+    let techniques = techniques(args)?;
+    let output = Output::create(&args.out)?;
+    let mut job = args.job.prepare()?;
+    for technique in &techniques {
+        job.comparison.add(technique.clone())?;
+    }
+    let mut measured: Vec<Measured> = techniques.iter().map(|_| Measured::default()).collect();
+    let progress = ProgressBar::new(job.frames.len() as u64);
+    progress.set_style(ProgressStyle::with_template("{msg:16} {wide_bar} {pos}/{len} frames, {eta} left")?);
+    for index in 0..job.frames.len() {
+        if interrupt.is_requested() {
+            break;
+        }
+        progress.set_message(job.frames[index].name.clone());
+        measure(&mut job, index, &mut measured)?;
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    let mut run = report(args, &job, &techniques, &measured);
+    // The tables first: pictures take a while, and may fail for want of room.
+    output.write_report(&run, &job.path)?;
+    draw_pictures(&mut job, &measured, &output, &mut run)?;
+    output.write_report(&run, &job.path)?;
+    print!("{}", crate::tables::to_markdown(&run));
+    println!("\n{}: index.html, report.md, report.json, pictures and plots", args.out.display());
+    Ok(run.finished)
+}
+
+fn techniques(args: &Args) -> Result<Vec<Technique>> {
+    let names: Vec<&str> = if args.configs.is_empty() {
+        DEFAULT_TECHNIQUES.to_vec()
+    } else {
+        args.configs.iter().map(String::as_str).collect()
+    };
+    let drawing = &args.job.drawing;
+    names
+        .into_iter()
+        .map(|name| {
+            let technique = drawing.changed(Technique::find(name)?)?;
+            Ok(match args.resolution {
+                Some(texels) => technique.with_resolution(texels),
+                None => technique,
+            })
+        })
+        .collect()
+}
+
+fn pose(job: &mut Prepared, index: usize) {
+    if let Some(seconds) = job.frames[index].seconds {
+        job.comparison.set_time(0, seconds);
+    }
+}
+
+fn measure(job: &mut Prepared, index: usize, measured: &mut [Measured]) -> Result<()> {
+    pose(job, index);
+    let JobFrame { name, shot, .. } = &job.frames[index];
+    let outcomes = job.comparison.frame(shot, &mut SharedTruth::default()).with_context(|| format!("frame {name}"))?;
+    for (measured, outcome) in measured.iter_mut().zip(outcomes) {
+        measured.tallies.push(outcome.judged.tally);
+        measured.maps.push(outcome.maps);
+    }
+    Ok(())
+}
+
+/// Everything but the pictures.
+fn report(args: &Args, job: &Prepared, techniques: &[Technique], measured: &[Measured]) -> Run {
+    let done = measured.first().map_or(0, |measured| measured.tallies.len());
+    let frames = &job.frames[..done];
+    let of_technique = |(technique, measured): (&Technique, &Measured)| TechniqueRun {
+        name: technique.name.clone(),
+        what: technique.what.clone(),
+        settings: technique.to_toml().unwrap_or_else(|error| format!("# cannot be written: {error}")),
+        overall: columns(measured.tallies.iter()),
+        groups: groups(frames)
+            .into_iter()
+            .map(|group| {
+                let own = frames.iter().zip(&measured.tallies).filter(|(frame, _)| frame.group == group);
+                let columns = columns(own.map(|(_, tally)| tally));
+                (group, columns)
+            })
+            .collect(),
+        frames: measured.tallies.iter().map(|tally| columns([tally].into_iter())).collect(),
+        pictures: Vec::new(),
+    };
+    Run {
+        title: format!("Shadows of {}", args.job.title()),
+        scene: args.job.title(),
+        triangles: job.comparison.subject().triangles() as u64,
+        size: job.judging.size,
+        adapter: job.comparison.gpu().name(),
+        light: job.light,
+        notes: job.notes.clone(),
+        frames: frames.iter().map(|frame| FrameInfo { name: frame.name.clone(), group: frame.group.clone() }).collect(),
+        techniques: techniques.iter().zip(measured).map(of_technique).collect(),
+        finished: done == job.frames.len(),
+    }
+}
+
+/// Names of the groups, in order.
+fn groups(frames: &[JobFrame]) -> Vec<String> {
+    let mut groups: Vec<String> = Vec::new();
+    for frame in frames {
+        if !groups.contains(&frame.group) {
+            groups.push(frame.group.clone());
+        }
+    }
+    groups
+}
+
+fn columns<'a>(tallies: impl Iterator<Item = &'a PictureTally>) -> Columns {
+    let mut pool = PictureTally::default();
+    for tally in tallies {
+        pool.merge(tally);
+    }
+    pool.columns().into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+}
+
+/// Draws the worst, a middling and the best frame with every technique, from the maps that they had then.
+fn draw_pictures(job: &mut Prepared, measured: &[Measured], output: &Output, run: &mut Run) -> Result<()> {
+    for index in telling_frames(run) {
+        pose(job, index);
+        let frame = job.frames[index].clone();
+        let mut truth = SharedTruth::default();
+        for (number, technique) in run.techniques.iter_mut().enumerate() {
+            let maps = &measured[number].maps[index];
+            let (pixels, judged) = job.comparison.picture(number, &frame.shot, maps, &mut truth)?;
+            let [width, height] = job.judging.size;
+            let picture = RgbaImage::from_raw(width, height, pixels).context("a picture of another size")?;
+            let place = (number, technique.name.as_str());
+            let pictures = FramePictures {
+                frame: index,
+                overlay: output.write_picture(place, &frame.name, "overlay", &overlay(&picture, &judged.classes)?)?,
+                heat: output.write_picture(
+                    place,
+                    &frame.name,
+                    "heat",
+                    &heat(job.judging.size, &judged.pixels_per_texel)?,
+                )?,
+                picture: output.write_picture(place, &frame.name, "picture", &picture)?,
+            };
+            technique.pictures.push(pictures);
+        }
+    }
+    Ok(())
+}
+
+/// The frames with the most, a median and the least wrong pixels, over all techniques.
+fn telling_frames(run: &Run) -> Vec<usize> {
+    let mut frames: Vec<(usize, f64)> =
+        (0..run.frames.len()).filter_map(|frame| Some((frame, crate::data::wrong_at(run, frame)?))).collect();
+    frames.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut telling: Vec<usize> = [0, frames.len() / 2, frames.len().saturating_sub(1)]
+        .into_iter()
+        .filter_map(|place| frames.get(place).map(|(frame, _)| *frame))
+        .collect();
+    telling.dedup();
+    telling
+}
