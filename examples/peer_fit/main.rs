@@ -11,15 +11,15 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, ensure};
 use clap::Parser;
+use glam::UVec2;
+use shadowfit::SplitScheme;
 use shadowfit_truth::peers::Scenarios;
+use shadowfit_viewer::study::{Knowledge, Technique};
 
-mod configurations;
 #[path = "../shared/geometry.rs"]
 mod geometry;
-mod histogram;
 mod runner;
 
-use configurations::{CONFIGURATIONS, Configuration};
 use geometry::Source;
 
 /// What bad input ends with, as clap's own complaints do.
@@ -31,7 +31,7 @@ struct Args {
     /// Scenes, cameras and lights
     #[arg(value_name = "SCENARIOS.json")]
     scenarios: Option<PathBuf>,
-    /// Name of a configuration, or "list" for all of them
+    /// Name of a technique, or "list" for all of them
     #[arg(long, value_name = "NAME|list")]
     fit: String,
     /// Width and height of the maps, in texels
@@ -62,25 +62,26 @@ fn main() -> ExitCode {
 }
 
 fn list() {
-    for Configuration { name, what, .. } in &CONFIGURATIONS {
+    for (name, what) in Technique::names() {
         println!("{name:12} {what}");
     }
 }
 
 fn run(args: &Args) -> Result<()> {
-    let known = || format!("--fit {}: there is no such configuration; --fit list names them", args.fit);
-    let configuration = CONFIGURATIONS.iter().find(|c| c.name == args.fit).with_context(known)?;
+    let known = || format!("--fit {}: there is no such technique; --fit list names them", args.fit);
+    let mut technique = Technique::named(&args.fit).with_context(known)?;
+    technique.maps.fit.resolution = UVec2::splat(args.resolution);
     let scenarios = args.scenarios.as_ref().context("give the file of scenarios")?;
     let out = args.out.as_ref().context("give the file to write with -o OUT.json")?;
     let scenarios = Scenarios::read(scenarios)?;
-    let needs = configuration.needs_triangles();
+    let needs = technique.receivers == Knowledge::Clusters || technique.maps.splits == SplitScheme::FromHistogram;
     ensure!(
         !needs || args.geometry.is_some(),
         "--fit {} needs the scenes' triangles: give --assets DIR or --triangles DIR",
         args.fit
     );
     let source = args.geometry.as_ref().filter(|_| needs);
-    let file = runner::run(&scenarios, configuration, args.resolution, source)?;
+    let file = runner::run(&scenarios, &technique, source)?;
     file.write(out)?;
     println!(
         "{}: {} frames, {:.1} µs a frame",

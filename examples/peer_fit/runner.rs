@@ -3,17 +3,17 @@
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use glam::{DMat4, DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use shadowfit::{
-    Aabb, Boxes, CascadeFitter, CascadeSettings, Cascades, Clusters, DepthHistogram, FitInput, NormalCone,
-    PerspectiveCamera, ViewFrustum, Workspace,
+    Aabb, Boxes, CascadeFitter, CascadeMap, CascadeSettings, Cascades, Clusters, FitInput, NormalCone,
+    PerspectiveCamera, SplitScheme, ViewFrustum, Workspace,
 };
 use shadowfit_truth::Tracer;
 use shadowfit_truth::peers::{FitFile, FitFrame, FitMap, Frame, Scenarios, Scene};
+use shadowfit_viewer::study::{Knowledge, SeenDepths, Technique, fit_map};
+use shadowfit_wgpu::MapFit;
 
-use crate::configurations::{Configuration, Knowledge};
 use crate::geometry::Source;
-use crate::histogram;
 
 /// Times that all frames are fitted for the clock, after once to warm up.
 const BATCHES: usize = 7;
@@ -33,27 +33,19 @@ struct Prepared {
     scene: usize,
     /// Whether the fitter has to forget what was before.
     is_first: bool,
-    histogram: Option<Vec<u32>>,
-    near: f32,
-    far: f32,
+    depths: Option<SeenDepths>,
 }
 
 /// Fits every frame of the scenarios.
-pub(crate) fn run(
-    scenarios: &Scenarios,
-    configuration: &Configuration,
-    resolution: u32,
-    source: Option<&Source>,
-) -> Result<FitFile> {
+pub(crate) fn run(scenarios: &Scenarios, technique: &Technique, source: Option<&Source>) -> Result<FitFile> {
     let known: Vec<Known> =
-        scenarios.scenes.iter().map(|scene| know(scene, configuration, source)).collect::<Result<_>>()?;
+        scenarios.scenes.iter().map(|scene| know(scene, technique, source)).collect::<Result<_>>()?;
     let frames: Vec<Prepared> =
         (0..scenarios.frames.len()).map(|index| prepare(scenarios, index, &known)).collect::<Result<_>>()?;
-    let settings = configuration.settings(resolution);
     let mut times = vec![Vec::with_capacity(BATCHES); frames.len()];
     let mut maps = Vec::new();
     for batch in 0..=BATCHES {
-        let fitted = fit_all(&frames, &known, &settings)?;
+        let fitted = fit_all(&frames, &known, &technique.maps)?;
         if batch > 0 {
             for (times, (_, time)) in times.iter_mut().zip(&fitted) {
                 times.push(*time);
@@ -63,15 +55,15 @@ pub(crate) fn run(
     }
     let fitted = scenarios.frames.iter().zip(&maps).map(|(frame, (cascades, _))| FitFrame {
         id: frame.id.clone(),
-        maps: cascades.iter().map(|map| fit_map(map, resolution)).collect(),
+        maps: cascades.iter().map(fit_map_of).collect(),
     });
     let all: Vec<f64> = times.iter().flatten().copied().collect();
     let fastest: Vec<f64> = times.iter().map(|times| times.iter().copied().fold(f64::MAX, f64::min)).collect();
     Ok(FitFile {
-        peer: format!("shadowfit {}", configuration.name),
+        peer: format!("shadowfit {}", technique.name),
         language: "Rust".to_owned(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
-        note: configuration.what.to_owned(),
+        note: technique.what.clone(),
         pancake: false,
         ns_per_fit: Some(median(all)),
         ns_quiet: Some(median(fastest)),
@@ -79,9 +71,9 @@ pub(crate) fn run(
     })
 }
 
-fn know(scene: &Scene, configuration: &Configuration, source: Option<&Source>) -> Result<Known> {
+fn know(scene: &Scene, technique: &Technique, source: Option<&Source>) -> Result<Known> {
     let triangles = source.map(|source| source.read(scene)).transpose()?;
-    let (boxes, cones) = match (configuration.receivers, &triangles) {
+    let (boxes, cones) = match (technique.receivers, &triangles) {
         (Knowledge::Clusters, Some(objects)) => {
             let objects: Vec<&[[Vec3; 3]]> = objects.iter().map(Vec::as_slice).collect();
             let clusters = Clusters::build(&objects, Clusters::DEFAULT_LIMIT).context(scene.name.clone())?;
@@ -89,7 +81,7 @@ fn know(scene: &Scene, configuration: &Configuration, source: Option<&Source>) -
         }
         _ => (scene.objects.iter().map(outward).collect(), Vec::new()),
     };
-    let tracer = triangles.filter(|_| configuration.uses_histogram());
+    let tracer = triangles.filter(|_| technique.maps.splits == SplitScheme::FromHistogram);
     Ok(Known { boxes, cones, tracer: tracer.map(|objects| Tracer::new(objects.into_iter().flatten())) })
 }
 
@@ -105,15 +97,14 @@ fn prepare(scenarios: &Scenarios, index: usize, known: &[Known]) -> Result<Prepa
     let frame = &scenarios.frames[index];
     let before = scenarios.previous(index).map(|before| &scenarios.frames[before]);
     let tracer = known[frame.scene].tracer.as_ref();
+    let direction = DVec3::from_array(frame.light_dir).as_vec3();
     let view = camera(frame).frustum().with_context(|| frame.id.clone())?;
     Ok(Prepared {
         view,
-        direction: DVec3::from_array(frame.light_dir).as_vec3(),
+        direction,
         scene: frame.scene,
         is_first: before.is_none(),
-        histogram: before.zip(tracer).map(|(before, tracer)| histogram::of_frame(before, tracer)),
-        near: frame.near as f32,
-        far: frame.far as f32,
+        depths: before.zip(tracer).map(|(before, tracer)| SeenDepths::trace(tracer, &camera(before), direction)),
     })
 }
 
@@ -143,19 +134,13 @@ fn fit_all(frames: &[Prepared], known: &[Known], settings: &CascadeSettings) -> 
                 fitter.reset();
             }
             let boxes = Boxes { origin: DVec3::ZERO, boxes: &known[frame.scene].boxes };
-            let bins = frame.histogram.as_deref();
             let input = FitInput {
                 views: &[frame.view],
                 direction: frame.direction,
                 receivers: Some(boxes),
                 receiver_cones: &known[frame.scene].cones,
                 casters: boxes,
-                histogram: bins.map(|bins| DepthHistogram {
-                    near: frame.near,
-                    far: frame.far,
-                    bins,
-                    classes: histogram::CLASSES,
-                }),
+                histogram: frame.depths.as_ref().map(SeenDepths::histogram),
                 ..FitInput::new(&[], frame.direction)
             };
             let start = Instant::now();
@@ -165,18 +150,9 @@ fn fit_all(frames: &[Prepared], known: &[Known], settings: &CascadeSettings) -> 
         .collect()
 }
 
-/// A map as the fit file has it: the f32 matrix that a renderer gets, made absolute in f64.
-fn fit_map(map: &shadowfit::CascadeMap, resolution: u32) -> FitMap {
-    /// Stands for no end.
-    const NO_END: f64 = 1e9;
-    let clip_from_world = map.fit.clip_from_world.as_dmat4() * DMat4::from_translation(-map.fit.origin);
-    FitMap {
-        view_proj: clip_from_world.to_cols_array(),
-        resolution,
-        resolution_xy: None,
-        split_near: f64::from(map.near),
-        split_far: f64::from(map.far).min(NO_END),
-    }
+/// A map as the fit file has it.
+fn fit_map_of(map: &CascadeMap) -> FitMap {
+    FitMap { split_near: f64::from(map.near), ..fit_map(&MapFit::from(map)) }
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

@@ -18,6 +18,7 @@ use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
 
 use crate::drawing::Drawing;
 use crate::geometry::{Corners, Source};
+use crate::interrupt::Interrupt;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
@@ -45,7 +46,7 @@ pub(crate) struct Args {
 }
 
 /// Measures, writes both tables, and prints the rows over all frames.
-pub(crate) fn run(args: &Args) -> Result<()> {
+pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     let mut study = Study::new(Scenarios::read(&args.scenarios)?);
     let mut files = Vec::new();
     for path in &args.fits {
@@ -55,14 +56,14 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     }
     let mut pictures = if args.no_render { None } else { Some(Pictures::new(&study, &files, args)?) };
     fs::create_dir_all(&args.out).with_context(|| format!("{}: cannot be made", args.out.display()))?;
-    measure(&mut study, args, pictures.as_mut())?;
+    measure(&mut study, args, pictures.as_mut(), interrupt)?;
     let tables = study.tables();
     print!("{}", overall_markdown(&tables));
     Ok(())
 }
 
 /// Measures scene after scene; both tables are written after each, so that what is finished can be read.
-fn measure(study: &mut Study, args: &Args, mut pictures: Option<&mut Pictures>) -> Result<()> {
+fn measure(study: &mut Study, args: &Args, mut pictures: Option<&mut Pictures>, interrupt: &Interrupt) -> Result<()> {
     let scenarios = study.scenarios().clone();
     let drawn = pictures.as_ref().map_or(0, |pictures| pictures.count(&scenarios));
     let progress = ProgressBar::new((scenarios.frames.len() + drawn) as u64);
@@ -73,11 +74,14 @@ fn measure(study: &mut Study, args: &Args, mut pictures: Option<&mut Pictures>) 
         let tracer = Tracer::new(objects.iter().flatten().copied());
         study.measure_scene(index, &tracer, args.stride, &|| progress.inc(1));
         if let Some(pictures) = &mut pictures {
-            pictures.draw_scene(study, index, &objects, &progress)?;
+            pictures.draw_scene(study, index, &objects, (&progress, interrupt))?;
         }
         let tables = study.tables();
         write(&args.out.join("table.json"), &to_json(&tables))?;
         write(&args.out.join("table.md"), &to_markdown(&tables))?;
+        if interrupt.is_requested() {
+            break;
+        }
     }
     progress.finish_and_clear();
     Ok(())
@@ -131,7 +135,7 @@ impl Pictures {
         study: &mut Study,
         scene: usize,
         objects: &[Vec<Corners>],
-        progress: &ProgressBar,
+        (progress, interrupt): (&ProgressBar, &Interrupt),
     ) -> Result<()> {
         let scenarios = study.scenarios().clone();
         let Some(first) = self.fits.first() else { return Ok(()) };
@@ -140,6 +144,9 @@ impl Pictures {
         for (index, frame) in scenarios.frames.iter().enumerate() {
             if frame.scene != scene || !self.takes(frame) {
                 continue;
+            }
+            if interrupt.is_requested() {
+                break;
             }
             let is_first = self.every > 1 || scenarios.previous(index).is_none();
             let shot = shot(frame, is_first);
