@@ -11,10 +11,19 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+mod data;
 #[path = "../shared/geometry.rs"]
 mod geometry;
+mod heat;
+mod interrupt;
+mod overlay;
+mod page;
 mod path;
 mod peers;
+mod plots;
+mod tables;
+mod text;
+mod write;
 
 /// What bad input ends with, as clap's own complaints do.
 const BAD_INPUT: u8 = 2;
