@@ -13,7 +13,7 @@ mod scenes;
 use shadowfit::PerspectiveCamera;
 use shadowfit::settings::LightSettings;
 
-pub(crate) use find::{Found, find};
+pub(crate) use find::find;
 
 /// Cameras in the order in which they are rendered.
 #[derive(Clone, Debug, PartialEq)]

@@ -51,9 +51,11 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     progress.finish_and_clear();
     fs::create_dir_all(&args.out).with_context(|| format!("{}: cannot be made", args.out.display()))?;
     let steps = steps(&tuned);
-    for (name, text) in
-        [("technique.toml", tuned.technique.to_toml()?), ("technique.rs", tuned.technique.to_rust()), ("steps.md", steps.clone())]
-    {
+    for (name, text) in [
+        ("technique.toml", tuned.technique.to_toml()?),
+        ("technique.rs", tuned.technique.to_rust()),
+        ("steps.md", steps.clone()),
+    ] {
         let file = args.out.join(name);
         fs::write(&file, text).with_context(|| format!("{}: cannot be written", file.display()))?;
     }
@@ -72,7 +74,8 @@ fn picked(shots: &[Shot], count: usize) -> Vec<Shot> {
     let begin = |pair: usize| (2 * pair + 1) * shots.len() / (2 * pairs);
     let pair = |pair: usize| {
         let first = begin(pair).min(shots.len().saturating_sub(2));
-        let first = if shots.get(first + 1).is_some_and(|shot| shot.is_first) { first.saturating_sub(1) } else { first };
+        let first =
+            if shots.get(first + 1).is_some_and(|shot| shot.is_first) { first.saturating_sub(1) } else { first };
         [Shot { is_first: true, ..shots[first] }, shots[first + 1]]
     };
     (0..pairs).flat_map(pair).take(count).collect()

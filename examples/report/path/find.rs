@@ -5,10 +5,11 @@
 
 use anyhow::{Result, ensure};
 use glam::Vec3;
+use rayon::prelude::*;
 use shadowfit::PerspectiveCamera;
 use shadowfit_truth::Tracer;
 
-use super::probe::Probe;
+use super::probe::{Probe, is_a_point};
 use super::route::{Places, Route};
 use super::{CameraPath, PathFrame};
 
@@ -18,7 +19,7 @@ const FRAMES: usize = 16;
 const FOV: f32 = 60.0;
 /// Elevation of the orbit's eye, in degrees: high enough to see the ground between things.
 const ORBIT_ELEVATION: f32 = 22.0;
-/// Part of the picture's half that the scene's box may fill in the orbit.
+/// Part of the picture's half that the scene may fill in the orbit.
 const ORBIT_FILL: f32 = 0.95;
 /// Distance that cameras keep from triangles, as a share of the scene's radius.
 const CLEARANCE: f32 = 0.005;
@@ -74,7 +75,7 @@ pub(crate) fn find(tracer: &Tracer, bounds: [Vec3; 2], aspect: f32) -> Result<Fo
     ensure!(aspect.is_finite() && aspect > 0.0, "pictures {aspect} times as wide as high cannot be looked at");
     let probe = Probe::new(tracer, radius * CLEARANCE);
     let lens = lens(radius, aspect);
-    let mut frames = frames("orbit", orbit(bounds, lens));
+    let mut frames = frames("orbit", orbit(&probe, bounds, lens));
     let mut notes = Vec::new();
     match flight(&probe, bounds, lens) {
         Some(cameras) => frames.extend(self::frames("fly-through", cameras)),
@@ -108,34 +109,69 @@ fn lens(radius: f32, aspect: f32) -> PerspectiveCamera {
     PerspectiveCamera { eye: glam::DVec3::ZERO, forward: Vec3::NEG_Z, up: Vec3::Y, fov_y, aspect, near, far }
 }
 
-/// Cameras on a circle around the scene, at the least distance from which all of them see all of its box.
-fn orbit(bounds: [Vec3; 2], lens: PerspectiveCamera) -> Vec<PerspectiveCamera> {
+/// Cameras on a circle around the scene, at the least distance from which all of them see all of it. They look at a
+/// point of the vertical through its middle that lets them come nearest.
+fn orbit(probe: &Probe, bounds: [Vec3; 2], lens: PerspectiveCamera) -> Vec<PerspectiveCamera> {
     let middle = (bounds[0] + bounds[1]) * 0.5;
     let (sin, cos) = ORBIT_ELEVATION.to_radians().sin_cos();
     let outward: Vec<Vec3> = (0..FRAMES)
         .map(|frame| (frame as f32 / FRAMES as f32 * std::f32::consts::TAU).sin_cos())
         .map(|(azimuth_sin, azimuth_cos)| Vec3::new(cos * azimuth_sin, sin, cos * azimuth_cos))
         .collect();
-    let distance = outward.iter().map(|&outward| whole_box_distance(bounds, outward, &lens)).fold(0.0, f32::max);
+    let needs = outward.par_iter().map(|&outward| Needs::of(probe.tracer, middle, outward, &lens));
+    let needs = needs.reduce(Needs::default, Needs::max);
+    // Raising what is looked at by r brings the eye r sin nearer, and moves the scene down by r cos in the picture; it
+    // helps until top and bottom need the same, or no more than the sides.
+    let steepness = cos / (lens.fov_y * 0.5).tan() / ORBIT_FILL;
+    let level = (0.5 * (needs.top + needs.bottom)).max(needs.sides);
+    let raise = ((needs.top - level).max(0.0) - (needs.bottom - level).max(0.0)) / steepness;
+    let [top, bottom] = [needs.top - raise * steepness, needs.bottom + raise * steepness];
+    let distance = top.max(bottom).max(needs.sides).max(needs.depth + 2.0 * probe.clearance) - raise * sin;
     let camera = |&outward: &Vec3| {
-        let eye = (middle + outward * distance).as_dvec3();
+        let eye = (middle + Vec3::Y * raise + outward * distance).as_dvec3();
         PerspectiveCamera { eye, forward: -outward, ..lens }
     };
     outward.iter().map(camera).collect()
 }
 
-/// Least distance from the box's middle at which a camera that looks back at it along `outward` sees all of it.
-fn whole_box_distance(bounds: [Vec3; 2], outward: Vec3, lens: &PerspectiveCamera) -> f32 {
-    let middle = (bounds[0] + bounds[1]) * 0.5;
-    let right = Vec3::Y.cross(outward).normalize();
-    let up = outward.cross(right);
-    let tangent = (lens.fov_y * 0.5).tan() * ORBIT_FILL;
-    let distance = |corner: Vec3| {
-        let corner = corner - middle;
-        let needed = (corner.dot(right).abs() / lens.aspect).max(corner.dot(up).abs()) / tangent;
-        corner.dot(outward) + needed.max(lens.near)
-    };
-    box_corners(bounds).map(distance).into_iter().fold(0.0, f32::max)
+/// Least distances from a point at which a camera that looks at it has the whole scene below the top of its picture,
+/// above its bottom, between its sides, and before it. In metres.
+#[derive(Clone, Copy, Debug)]
+struct Needs {
+    top: f32,
+    bottom: f32,
+    sides: f32,
+    depth: f32,
+}
+
+impl Default for Needs {
+    fn default() -> Self {
+        Self { top: f32::MIN, bottom: f32::MIN, sides: f32::MIN, depth: f32::MIN }
+    }
+}
+
+impl Needs {
+    fn of(tracer: &Tracer, point: Vec3, outward: Vec3, lens: &PerspectiveCamera) -> Self {
+        let right = Vec3::Y.cross(outward).normalize();
+        let up = outward.cross(right);
+        let tangent = (lens.fov_y * 0.5).tan() * ORBIT_FILL;
+        let triangles = (0..tracer.len() as u32).map(|triangle| tracer.corners(triangle));
+        triangles.filter(|corners| !is_a_point(corners)).flatten().fold(Self::default(), |needs, corner| {
+            let corner = corner - point;
+            let (depth, rise) = (corner.dot(outward), corner.dot(up) / tangent);
+            let sides = depth + corner.dot(right).abs() / (tangent * lens.aspect);
+            needs.max(Self { top: depth + rise, bottom: depth - rise, sides, depth })
+        })
+    }
+
+    fn max(self, other: Self) -> Self {
+        Self {
+            top: self.top.max(other.top),
+            bottom: self.bottom.max(other.bottom),
+            sides: self.sides.max(other.sides),
+            depth: self.depth.max(other.depth),
+        }
+    }
 }
 
 fn box_corners([low, high]: [Vec3; 2]) -> [Vec3; 8] {
@@ -214,7 +250,7 @@ fn serving(probe: &Probe, eyes: &[Vec3], pitch: f32, lens: PerspectiveCamera) ->
 
 #[cfg(test)]
 mod tests {
-    use super::super::scenes::{Corners, bounds, hills, object_on_floor, room};
+    use super::super::scenes::{Corners, bounds, cuboid, hills, object_on_floor, room};
     use super::*;
 
     const ASPECT: f32 = 16.0 / 9.0;
@@ -270,20 +306,22 @@ mod tests {
     }
 
     #[test]
-    fn the_orbit_sees_the_whole_box_and_fills_the_picture_with_it() {
-        let triangles = object_on_floor();
-        let found = found(&triangles);
-        let mut fullest = 0f32;
-        for camera in cameras(&found, "orbit") {
-            let clip = camera.clip_from_world(shadowfit::DepthConvention::ZeroToOne);
-            for corner in box_corners(bounds(&triangles)) {
-                let point = clip * (corner - camera.eye.as_vec3()).extend(1.0);
-                let across = (point.x.abs() / point.w).max(point.y.abs() / point.w);
-                assert!(point.w > 0.0 && across < 1.0, "{corner}: {point}");
-                fullest = fullest.max(across);
+    fn the_orbit_sees_the_whole_scene_and_fills_the_picture_with_it() {
+        let pole = cuboid(Vec3::ZERO, Vec3::new(0.1, 9.0, 0.1));
+        for triangles in [object_on_floor(), room(), hills(), pole] {
+            let found = found(&triangles);
+            let mut fullest = 0f32;
+            for camera in cameras(&found, "orbit") {
+                let clip = camera.clip_from_world(shadowfit::DepthConvention::ZeroToOne);
+                for corner in triangles.iter().flatten().copied() {
+                    let point = clip * (corner - camera.eye.as_vec3()).extend(1.0);
+                    let across = (point.x.abs() / point.w).max(point.y.abs() / point.w);
+                    assert!(point.w > 0.0 && across < 1.0, "{corner}: {point}");
+                    fullest = fullest.max(across);
+                }
             }
+            assert!((fullest - ORBIT_FILL).abs() < 1e-3, "{fullest}");
         }
-        assert!((fullest - ORBIT_FILL).abs() < 1e-3, "{fullest}");
     }
 
     #[test]

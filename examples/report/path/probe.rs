@@ -104,7 +104,7 @@ fn direction(index: usize) -> Vec3 {
 }
 
 /// What a tracer says of triangles that were not finite, and what nobody can see.
-fn is_a_point(corners: &[Vec3; 3]) -> bool {
+pub(super) fn is_a_point(corners: &[Vec3; 3]) -> bool {
     corners[0] == corners[1] && corners[1] == corners[2]
 }
 

@@ -1,0 +1,200 @@
+//! What a finished run is, as plain data.
+//!
+//! Whoever renders and measures fills it; tables, plots and the page are made from it alone, so that they can be made
+//! again from a `report.json`, and tested without a GPU.
+
+use std::path::PathBuf;
+
+use serde::{Serialize, Serializer};
+use shadowfit::settings::LightSettings;
+
+/// Names of columns, such as `wrong %`, and their values; not a number where nothing was there to be measured.
+pub(crate) type Columns = Vec<(String, f64)>;
+
+/// The column that techniques are ranked by.
+pub(crate) const WRONG: &str = "wrong %";
+
+/// Techniques compared over the frames of a path.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Run {
+    pub(crate) title: String,
+    /// Name or file of the scene.
+    pub(crate) scene: String,
+    pub(crate) triangles: u64,
+    /// Width and height of the pictures, in pixels.
+    pub(crate) size: [u32; 2],
+    /// The graphics adapter that rendered.
+    pub(crate) adapter: String,
+    pub(crate) light: LightSettings,
+    /// Whole sentences for the reader.
+    pub(crate) notes: Vec<String>,
+    /// Frames that were measured, in their order.
+    pub(crate) frames: Vec<FrameInfo>,
+    pub(crate) techniques: Vec<TechniqueRun>,
+    /// Not so when it was stopped early.
+    pub(crate) finished: bool,
+}
+
+/// A frame of the path.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct FrameInfo {
+    /// Such as `orbit/3`.
+    pub(crate) name: String,
+    pub(crate) group: String,
+}
+
+/// What was measured of one technique. All lists of columns have the same names in the same order.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct TechniqueRun {
+    pub(crate) name: String,
+    /// What it is, in a sentence.
+    pub(crate) what: String,
+    /// TOML to show.
+    pub(crate) settings: String,
+    /// All frames pooled.
+    #[serde(serialize_with = "as_map")]
+    pub(crate) overall: Columns,
+    /// The frames of each group pooled.
+    #[serde(serialize_with = "as_map_of_maps")]
+    pub(crate) groups: Vec<(String, Columns)>,
+    /// Each frame, in the order of [`Run::frames`].
+    #[serde(serialize_with = "as_maps")]
+    pub(crate) frames: Vec<Columns>,
+    pub(crate) pictures: Vec<FramePictures>,
+}
+
+/// Pictures of a frame, PNG files relative to the output folder.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct FramePictures {
+    /// Place in [`Run::frames`].
+    pub(crate) frame: usize,
+    /// Wrong pixels marked.
+    pub(crate) overlay: PathBuf,
+    /// Pixels per texel.
+    pub(crate) heat: PathBuf,
+    /// As rendered.
+    pub(crate) picture: PathBuf,
+}
+
+/// Which values of a column are the good ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Better {
+    Lower,
+    Higher,
+    /// It describes, and says nothing of quality.
+    Neither,
+}
+
+/// The value of a column, if it is there and a number.
+pub(crate) fn value(columns: &Columns, name: &str) -> Option<f64> {
+    columns.iter().find(|(known, _)| known == name).map(|(_, value)| *value).filter(|value| !value.is_nan())
+}
+
+/// Which values of a column are the good ones: errors, sizes and times are low in a good technique.
+pub(crate) fn better(column: &str) -> Better {
+    match column {
+        "used %" | "still %" => Better::Higher,
+        "maps" | "frames" | "facing" | "edge zone %" | "texels" => Better::Neither,
+        _ => Better::Lower,
+    }
+}
+
+/// What a column means, for people; `None` for one that is not known here.
+pub(crate) fn meaning(column: &str) -> Option<&'static str> {
+    Some(match column {
+        "wrong %" => "Pixels that face the light and whose verdict, lit or shadowed, differs from the ray-traced truth",
+        "false shadow %" => "Lit in truth, shadowed by the map, away from shadow edges: acne",
+        "false light %" => "Shadowed in truth, lit by the map though an occluder is in it: peter-panning, leaks",
+        "hole %" => "Shadowed in truth, lit because no occluder is in the map, or no map covers the point",
+        "edge %" => "Wrong within the reach of the filter or a texel from a true shadow edge: aliasing",
+        "edge zone %" => "Pixels near a true shadow edge, right or wrong",
+        "edge px" => "Mean distance from true shadow edges to those of the map, in pixels, at most 32",
+        "mean error" => "Mean difference between the filtered factor and the truth, 0 to 1",
+        "ppt p50" => "Screen pixels per shadow texel along the worse axis, median",
+        "ppt p95" => "Screen pixels per shadow texel along the worse axis, 95% quantile; 1 or less is sharp",
+        "ppt p99" => "Screen pixels per shadow texel along the worse axis, 99% quantile",
+        "under %" => "Points with more than a pixel per texel, where texels show",
+        "crawl %" => "Edge points whose verdict changes though only the camera moved: shimmering",
+        "uncov %" => "Points that face the light and that no map holds",
+        "crit res" => "Side of a map, in texels, that would give 95% of the points a texel per pixel",
+        "crit gm" => "Geometric mean of the groups' critical resolutions, in texels",
+        "used %" => "Share of the maps' area that visible points need",
+        _ => return None,
+    })
+}
+
+/// The value that tables order and frames are picked by: the mean of wrong % over the techniques at a frame.
+pub(crate) fn wrong_at(run: &Run, frame: usize) -> Option<f64> {
+    let values: Vec<f64> =
+        run.techniques.iter().filter_map(|technique| value(technique.frames.get(frame)?, WRONG)).collect();
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}
+
+/// A map in the order of the columns, `null` for what is not a number.
+struct Map<'a>(&'a Columns);
+
+impl Serialize for Map<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        as_map(self.0, serializer)
+    }
+}
+
+fn as_map<S: Serializer>(columns: &Columns, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(columns.iter().map(|(name, value)| (name, value)))
+}
+
+fn as_map_of_maps<S: Serializer>(groups: &[(String, Columns)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(groups.iter().map(|(name, columns)| (name, Map(columns))))
+}
+
+fn as_maps<S: Serializer>(frames: &[Columns], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(frames.iter().map(Map))
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// Two techniques over an orbit of three frames and a flight of two; the second is better but for its false light.
+    pub(crate) fn run() -> Run {
+        let frame = |name: &str| FrameInfo { name: name.into(), group: name.split('/').next().unwrap_or(name).into() };
+        Run {
+            title: "Courtyard <1>".into(),
+            scene: "courtyard.glb".into(),
+            triangles: 1_234_567,
+            size: [64, 36],
+            adapter: "software".into(),
+            light: LightSettings::default(),
+            notes: vec!["A note & more.".into()],
+            frames: ["orbit/0", "orbit/1", "orbit/2", "fly-through/0", "fly-through/1"].map(frame).into(),
+            techniques: vec![technique("xna", 4.0), technique("focused | best", 1.0)],
+            finished: true,
+        }
+    }
+
+    fn technique(name: &str, factor: f64) -> TechniqueRun {
+        let columns = |wrong: f64| -> Columns {
+            let values =
+                [("wrong %", wrong * factor), ("false light %", 1.0 / factor), ("maps", factor), ("crawl %", f64::NAN)];
+            values.map(|(name, value)| (name.to_owned(), value)).into()
+        };
+        TechniqueRun {
+            name: name.into(),
+            what: format!("The {name} fit."),
+            settings: "kind = \"Sphere\"\nmargin = 0.1\n".into(),
+            overall: columns(3.0),
+            groups: vec![("orbit".into(), columns(2.0)), ("fly-through".into(), columns(4.5))],
+            frames: [1.0, 2.0, 3.0, 4.0, 5.0].map(columns).into(),
+            pictures: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn values_that_are_not_numbers_are_not_there() {
+        let run = run();
+        assert_eq!(value(&run.techniques[0].overall, "wrong %"), Some(12.0));
+        assert_eq!(value(&run.techniques[0].overall, "crawl %"), None);
+        assert_eq!(value(&run.techniques[0].overall, "nothing"), None);
+        assert_eq!((wrong_at(&run, 1), wrong_at(&run, 9)), (Some(5.0), None));
+    }
+}

@@ -1,0 +1,249 @@
+//! The tables of a run: Markdown for people and JSON for programs.
+//!
+//! Techniques are rows, and the best value of each column is bold, so that a reader finds the trade-offs at a glance.
+
+use std::fmt::Write;
+
+use anyhow::Result;
+
+use crate::data::{Better, Columns, Run, better};
+
+/// Unequal numbers that read the same are equally good.
+type Cell = (String, bool);
+
+/// A table of techniques.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Table {
+    pub(crate) title: String,
+    pub(crate) columns: Vec<String>,
+    /// Name of a technique and its values as text, with whether each is the best of its column.
+    pub(crate) rows: Vec<(String, Vec<Cell>)>,
+}
+
+/// The tables of a run: all frames, then each group.
+pub(crate) fn tables(run: &Run) -> Vec<Table> {
+    let overall = run.techniques.iter().map(|technique| (technique.name.as_str(), Some(&technique.overall)));
+    let mut tables = vec![table("All frames", overall.collect())];
+    let mut groups: Vec<&String> = Vec::new();
+    for (group, _) in run.techniques.iter().flat_map(|technique| &technique.groups) {
+        if !groups.contains(&group) {
+            groups.push(group);
+        }
+    }
+    for group in groups {
+        let rows = run.techniques.iter().map(|technique| {
+            let columns = technique.groups.iter().find(|(known, _)| known == group).map(|(_, columns)| columns);
+            (technique.name.as_str(), columns)
+        });
+        tables.push(table(group, rows.collect()));
+    }
+    tables
+}
+
+/// All data of a run, keys in the order of the fields and columns; `null` for what is not a number.
+pub(crate) fn to_json(run: &Run) -> Result<String> {
+    Ok(serde_json::to_string_pretty(run)? + "\n")
+}
+
+/// The run's facts and tables.
+pub(crate) fn to_markdown(run: &Run) -> String {
+    let mut text = format!("# {}\n\n", escape(&run.title));
+    if !run.finished {
+        let _ = writeln!(text, "**Stopped early:** {}\n", stopped(run));
+    }
+    for (name, value) in facts(run) {
+        let _ = writeln!(text, "- {name}: {}", escape(&value));
+    }
+    for note in &run.notes {
+        let _ = writeln!(text, "- {}", escape(note));
+    }
+    for table in tables(run) {
+        let _ = write!(text, "\n## {}\n\n{}", escape(&table.title), markdown(&table));
+    }
+    text.push_str("\n## Techniques\n");
+    for technique in &run.techniques {
+        let (name, what) = (escape(&technique.name), escape(&technique.what));
+        let fence = "`".repeat(longest_fence(&technique.settings).max(2) + 1);
+        let _ = write!(text, "\n### {name}\n\n{what}\n\n{fence}toml\n{}\n{fence}\n", technique.settings.trim_end());
+    }
+    text
+}
+
+/// What a reader should know of a run before its numbers.
+pub(crate) fn facts(run: &Run) -> Vec<(&'static str, String)> {
+    let [azimuth, elevation] = [run.light.azimuth, run.light.elevation].map(f32::to_degrees);
+    vec![
+        ("Scene", format!("{}, {} triangles", run.scene, grouped(run.triangles))),
+        ("Pictures", format!("{} frames of {} × {} pixels", run.frames.len(), run.size[0], run.size[1])),
+        ("Sun", format!("{elevation:.0}° above the horizon, from {azimuth:.0}°")),
+        ("Adapter", run.adapter.clone()),
+    ]
+}
+
+/// What a run that was stopped early lacks.
+pub(crate) fn stopped(run: &Run) -> String {
+    format!("the figures are of the {} frames that were measured until then.", run.frames.len())
+}
+
+fn table(title: &str, rows: Vec<(&str, Option<&Columns>)>) -> Table {
+    let mut columns: Vec<String> = Vec::new();
+    for (name, _) in rows.iter().filter_map(|(_, columns)| *columns).flatten() {
+        if !columns.contains(name) {
+            columns.push(name.clone());
+        }
+    }
+    let value = |row: Option<&Columns>, name: &String| {
+        row.and_then(|row| row.iter().find(|(known, _)| known == name)).map_or(f64::NAN, |(_, value)| *value)
+    };
+    let best: Vec<Option<String>> =
+        columns.iter().map(|name| best(name, rows.iter().map(|(_, row)| value(*row, name)))).collect();
+    let cells = |row: Option<&Columns>| {
+        let cell = |(name, best): (&String, &Option<String>)| {
+            let text = number(value(row, name));
+            let is_best = best.as_ref() == Some(&text);
+            (text, is_best)
+        };
+        columns.iter().zip(&best).map(cell).collect()
+    };
+    let rows = rows.iter().map(|(name, row)| ((*name).to_owned(), cells(*row))).collect();
+    Table { title: title.to_owned(), columns, rows }
+}
+
+/// The text of a column's best value; `None` where there is nothing to choose from.
+fn best(column: &str, values: impl Iterator<Item = f64>) -> Option<String> {
+    let mut values: Vec<f64> = values.filter(|value| !value.is_nan()).collect();
+    values.sort_by(f64::total_cmp);
+    let (first, last) = (number(*values.first()?), number(*values.last()?));
+    match better(column) {
+        _ if first == last => None,
+        Better::Lower => Some(first),
+        Better::Higher => Some(last),
+        Better::Neither => None,
+    }
+}
+
+fn markdown(table: &Table) -> String {
+    let names: Vec<String> = table.columns.iter().map(|name| escape(name)).collect();
+    let mut text = format!("| technique | {} |\n|---|{}\n", names.join(" | "), "---:|".repeat(names.len()));
+    for (name, cells) in &table.rows {
+        let cell = |(text, best): &Cell| if *best { format!("**{text}**") } else { text.clone() };
+        let cells: Vec<String> = cells.iter().map(cell).collect();
+        let _ = writeln!(text, "| {} | {} |", escape(name), cells.join(" | "));
+    }
+    text
+}
+
+/// A number as people read it: three digits and at most four decimals; a dash where there is none.
+pub(crate) fn number(value: f64) -> String {
+    if !value.is_finite() {
+        return if value.is_nan() { "-".to_owned() } else { value.to_string() };
+    }
+    let digits_before = if value == 0.0 { 1 } else { value.abs().log10().floor() as i32 + 1 };
+    let decimals = (3 - digits_before).clamp(0, 4) as usize;
+    let text = format!("{value:.decimals$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+/// A whole number with spaces between its thousands.
+fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let first = digits.len() % 3;
+    let rest = digits.as_bytes()[first..].chunks(3).map(|chunk| String::from_utf8_lossy(chunk).into_owned());
+    let head = (first > 0).then(|| digits[..first].to_owned());
+    head.into_iter().chain(rest).collect::<Vec<_>>().join(" ")
+}
+
+/// Text that Markdown shows as it is, in one line.
+fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>' | '|' | '#' => escaped.extend(['\\', character]),
+            '&' => escaped.push_str("&amp;"),
+            '\n' | '\r' => escaped.push(' '),
+            _ => escaped.push(character),
+        }
+    }
+    escaped
+}
+
+/// Length of the longest run of backticks, which a fence around the text must exceed.
+fn longest_fence(text: &str) -> usize {
+    text.split(|character| character != '`').map(str::len).max().unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::tests::run;
+
+    #[test]
+    fn numbers_have_three_digits_and_at_most_four_decimals() {
+        let cases =
+            [(0.0, "0"), (-0.0, "0"), (-1e-9, "0"), (0.00094, "0.0009"), (0.0392, "0.0392"), (-0.2461, "-0.246")];
+        let more = [(2.5, "2.5"), (9.004, "9"), (40.66, "40.7"), (99.96, "100"), (460_308.4, "460308")];
+        for (value, text) in cases.into_iter().chain(more) {
+            assert_eq!(number(value), text, "{value}");
+        }
+        assert_eq!([number(f64::NAN), number(f64::INFINITY)], ["-", "inf"]);
+    }
+
+    #[test]
+    fn the_best_value_of_a_column_is_bold_where_there_is_a_difference_that_matters() {
+        let text = to_markdown(&run());
+        let rows: Vec<_> = text.lines().filter(|line| line.starts_with('|')).take(4).collect();
+        assert_eq!(
+            rows,
+            [
+                "| technique | wrong % | false light % | maps | crawl % |",
+                "|---|---:|---:|---:|---:|",
+                "| xna | 12 | **0.25** | 4 | - |",
+                "| focused \\| best | **3** | 1 | 1 | - |",
+            ]
+        );
+    }
+
+    #[test]
+    fn markdown_has_a_table_for_all_and_for_each_group_and_the_settings() {
+        let text = to_markdown(&run());
+        let headings: Vec<_> = text.lines().filter(|line| line.starts_with('#')).collect();
+        let techniques = ["## Techniques", "### xna", "### focused \\| best"];
+        assert_eq!(
+            headings,
+            [&["# Courtyard \\<1\\>", "## All frames", "## orbit", "## fly-through"], &techniques[..]].concat()
+        );
+        assert!(text.contains("1 234 567 triangles") && text.contains("A note &amp; more."), "{text}");
+        assert!(
+            text.contains("```toml\nkind = \"Sphere\"\nmargin = 0.1\n```\n") && !text.contains("Stopped"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn a_run_that_was_stopped_says_so_first() {
+        let text = to_markdown(&Run { finished: false, ..run() });
+        assert!(
+            text.starts_with("# Courtyard \\<1\\>\n\n**Stopped early:** the figures are of the 5 frames"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn json_holds_all_data_with_columns_in_order_and_null_for_what_is_not_there() {
+        let json = to_json(&run()).expect("JSON");
+        let value: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+        let technique = &value["techniques"][1];
+        assert_eq!(technique["frames"][2]["wrong %"], 3.0);
+        assert!(technique["groups"]["fly-through"]["crawl %"].is_null());
+        let places = ["\"wrong %\"", "\"false light %\"", "\"maps\"", "\"crawl %\""].map(|key| json.find(key));
+        assert!(places.is_sorted() && places[0].is_some(), "{json}");
+    }
+
+    #[test]
+    fn runs_without_techniques_or_groups_have_empty_tables() {
+        let empty = Run { techniques: Vec::new(), frames: Vec::new(), ..run() };
+        assert_eq!(tables(&empty).len(), 1);
+        assert!(to_markdown(&empty).contains("## All frames") && to_json(&empty).is_ok());
+    }
+}

@@ -1,0 +1,124 @@
+//! Text and boxes in pictures, in a font that comes along, so that every system draws the same.
+//!
+//! Pictures get a strip below with their legend, so that they can be read wherever they end up.
+
+use std::sync::Once;
+
+use anyhow::{Result, anyhow};
+use image::{Rgba, RgbaImage, imageops};
+use plotters::prelude::{BitMapBackend, DrawingBackend, FontStyle, IntoFont, RGBColor, TextStyle};
+use plotters::style::register_font;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// The family that the font is known by; SVG files name it too, and browsers have one of that kind.
+pub(crate) const FAMILY: &str = "sans-serif";
+/// Colour of the legends' ground.
+const GROUND: RGBColor = RGBColor(24, 26, 30);
+/// Colour of the legends' text.
+const INK: RGBColor = RGBColor(232, 234, 238);
+/// Height of a legend's line at scale 1, in pixels.
+const LINE: u32 = 22;
+/// Height of its text at scale 1, in pixels.
+const TEXT: u32 = 14;
+/// Width of pictures that legends of scale 1 suit, in pixels.
+const WIDTH: u32 = 720;
+
+/// A strip that a legend is drawn on.
+pub(crate) struct Strip {
+    pixels: Vec<u8>,
+    size: [u32; 2],
+    /// Size of its text against that of a picture of [`WIDTH`] pixels.
+    pub(crate) scale: f32,
+}
+
+/// Makes the font known to plotters, once.
+pub(crate) fn register() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        // The font is known to be one: a test draws with it.
+        let _ = register_font(FAMILY, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
+    });
+}
+
+/// Size of legends for a picture of a width in pixels: never so small that its text cannot be read.
+pub(crate) fn scale(width: u32) -> f32 {
+    (width as f32 / WIDTH as f32).clamp(0.85, 3.0)
+}
+
+/// Width of a text in pixels, at a scale.
+pub(crate) fn width(text: &str, scale: f32) -> f32 {
+    register();
+    let style = (FAMILY, f64::from(TEXT as f32 * scale)).into_font();
+    style.box_size(text).map_or(0.0, |(width, _)| width as f32)
+}
+
+fn undrawn(error: impl std::error::Error) -> anyhow::Error {
+    anyhow!("a legend cannot be drawn: {error}")
+}
+
+impl Strip {
+    /// A strip of `width` pixels with room for some lines.
+    pub(crate) fn new(width: u32, lines: u32) -> Self {
+        register();
+        let scale = scale(width);
+        let size = [width, ((lines * LINE + LINE / 2) as f32 * scale) as u32];
+        let pixels = [GROUND.0, GROUND.1, GROUND.2].repeat((size[0] * size[1]) as usize);
+        Self { pixels, size, scale }
+    }
+
+    /// Fills a box: its left and right edge in pixels, its top and bottom in lines.
+    pub(crate) fn fill(&mut self, [left, right]: [f32; 2], [top, bottom]: [f32; 2], colour: [u8; 3]) -> Result<()> {
+        let [top, bottom] = [self.line(top), self.line(bottom)];
+        let colour = RGBColor(colour[0], colour[1], colour[2]);
+        let corners = [(left.round() as i32, top), (right.round() as i32 - 1, bottom - 1)];
+        self.backend().draw_rect(corners[0], corners[1], &colour, true).map_err(undrawn)
+    }
+
+    /// Writes text with its middle at a line; `x` in pixels is its left edge, middle, or right edge.
+    pub(crate) fn write(&mut self, text: &str, x: f32, line: f32, align: HPos) -> Result<()> {
+        let size = f64::from(TEXT as f32 * self.scale);
+        let style = TextStyle::from((FAMILY, size).into_font()).color(&INK).pos(Pos::new(align, VPos::Center));
+        let place = (x.round() as i32, self.line(line));
+        self.backend().draw_text(text, &style, place).map_err(undrawn)
+    }
+
+    /// The picture with the strip below it.
+    pub(crate) fn below(self, picture: &RgbaImage) -> RgbaImage {
+        let [width, height] = self.size;
+        let rgba = self.pixels.chunks_exact(3).flat_map(|rgb| [rgb[0], rgb[1], rgb[2], u8::MAX]).collect();
+        let mut whole = RgbaImage::from_pixel(width, picture.height() + height, Rgba([0, 0, 0, u8::MAX]));
+        imageops::replace(&mut whole, picture, 0, 0);
+        if let Some(strip) = RgbaImage::from_raw(width, height, rgba) {
+            imageops::replace(&mut whole, &strip, 0, i64::from(picture.height()));
+        }
+        whole
+    }
+
+    /// Pixels from the top of a line, the first being 0; lines need not be whole.
+    fn line(&self, line: f32) -> i32 {
+        ((line * LINE as f32 + LINE as f32 / 4.0) * self.scale).round() as i32
+    }
+
+    fn backend(&mut self) -> BitMapBackend<'_> {
+        BitMapBackend::with_buffer(&mut self.pixels, (self.size[0], self.size[1]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_is_drawn_where_it_was_asked_for_below_the_picture() {
+        let mut strip = Strip::new(200, 1);
+        strip.write("Wrong pixels", 100.0, 0.5, HPos::Left).expect("drawn");
+        strip.fill([0.0, 50.0], [0.0, 1.0], [255, 0, 0]).expect("drawn");
+        let whole = strip.below(&RgbaImage::from_pixel(200, 10, Rgba([9, 9, 9, 255])));
+        let bright = |from: u32, to: u32| {
+            whole.enumerate_pixels().filter(|(x, _, pixel)| (from..to).contains(x) && pixel[1] > 120).count()
+        };
+        assert!(bright(100, 200) > 60 && bright(0, 100) == 0, "{} {}", bright(100, 200), bright(0, 100));
+        assert_eq!((whole.get_pixel(0, 0)[0], whole.get_pixel(25, 20).0), (9, [255, 0, 0, 255]));
+        assert!(width("Wrong pixels", 2.0) > 1.8 * width("Wrong pixels", 1.0));
+    }
+}
