@@ -3,7 +3,8 @@
 //! It takes plain triangle slices (world space, right-handed, metres) and cut-outs, so that any
 //! engine can be judged: [`Tracer`] answers rays, [`Truth`] says what the light does at each pixel,
 //! [`judge()`] sorts the pixels of a picture into right ones and the named kinds of wrong ones, and
-//! [`peers`] ranks fits by what their maps give to many frames.
+//! [`peers`] ranks fits by what their maps give to many frames. With the feature `gpu`, compute
+//! passes fill a texture with the same classes.
 
 mod camera;
 mod crawl;

@@ -43,12 +43,13 @@ struct Both {
 }
 
 impl Picture {
-    /// A scene under a light, with a near and a far map of 128 texels.
+    /// A scene under a light, with a near and a far map of 512 texels. No side of the picture is a whole
+    /// number of workgroups.
     fn new(triangles: Triangles, eye: DVec3, to_light: DVec3) -> Self {
         let near = FitMap { split_far: 6.0, ..map_around(DVec3::ZERO, to_light, 6.0, 4.0, 512) };
         Self {
             tracer: Tracer::new(triangles),
-            camera: looking_at(eye, DVec3::Y * 0.4, [200, 120]),
+            camera: looking_at(eye, DVec3::Y * 0.4, [203, 117]),
             settings: TruthSettings { max_distance: 30.0, ..TruthSettings::new(to_light) },
             maps: vec![near, map_around(DVec3::ZERO, to_light, 24.0, 3.0, 512)],
             depth_clamp: false,
@@ -342,7 +343,7 @@ fn a_gpu_judges_an_empty_scene_as_nothing() {
     let mut picture = Picture::new(Vec::new(), DVec3::new(-4.0, 3.0, 5.0), sun());
     picture.maps.clear();
     let both = picture.judge();
-    assert!(both.gpu.iter().all(|pixel| pixel.class == Class::NotJudged) && both.gpu.len() == 200 * 120);
+    assert!(both.gpu.iter().all(|pixel| pixel.class == Class::NotJudged) && both.gpu.len() == 203 * 117);
 }
 
 #[test]
