@@ -12,10 +12,11 @@
 //! cargo run --release --example report -- live town.glb
 //! ```
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 mod data;
 mod drawing;
@@ -42,20 +43,16 @@ use interrupt::{INTERRUPTED, Interrupt};
 const BAD_INPUT: u8 = 2;
 
 #[derive(Parser)]
-#[command(
-    about = "Measures how wrong shadows are, against ray-traced truth",
-    args_conflicts_with_subcommands = true,
-    subcommand_negates_reqs = true
-)]
+#[command(about = "Measures how wrong shadows are, against ray-traced truth")]
 struct Cli {
     #[command(subcommand)]
-    command: Option<Command>,
-    #[command(flatten)]
-    scene: Option<scene::Args>,
+    command: Command,
 }
 
 #[derive(Subcommand)]
 enum Command {
+    /// Compare techniques over a camera path; what is meant when no command is named
+    Scene(Box<scene::Args>),
     /// Measure fit files on the frames of a file of scenarios
     Peers(Box<peers::Args>),
     /// Search the technique with the least error
@@ -64,8 +61,22 @@ enum Command {
     Live(Box<live::Args>),
 }
 
+/// The arguments, with the command that is meant when none is named.
+fn arguments(given: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    let mut arguments: Vec<OsString> = given.into_iter().collect();
+    let command = Cli::command();
+    let is_command = |word: &OsString| {
+        let named = command.get_subcommands().any(|known| known.get_name() == word);
+        named || ["help", "--help", "-h"].iter().any(|help| help == word)
+    };
+    if arguments.get(1).is_some_and(|first| !is_command(first)) {
+        arguments.insert(1, "scene".into());
+    }
+    arguments
+}
+
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = Cli::parse_from(arguments(std::env::args_os()));
     match run(cli) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(INTERRUPTED),
@@ -79,12 +90,11 @@ fn main() -> ExitCode {
 /// Whether all was done, Ctrl-C aside.
 fn run(cli: Cli) -> Result<bool> {
     let interrupt = Interrupt::install()?;
-    match (cli.command, cli.scene) {
-        (Some(Command::Peers(args)), _) => peers::run(&args, &interrupt)?,
-        (Some(Command::Tune(args)), _) => tune::run(&args, &interrupt)?,
-        (Some(Command::Live(args)), _) => live::run(&args, &interrupt)?,
-        (None, Some(args)) => return scene::run(&args, &interrupt),
-        (None, None) => anyhow::bail!("give a scene; --help says how"),
+    match cli.command {
+        Command::Scene(args) => return scene::run(&args, &interrupt),
+        Command::Peers(args) => peers::run(&args, &interrupt)?,
+        Command::Tune(args) => tune::run(&args, &interrupt)?,
+        Command::Live(args) => live::run(&args, &interrupt)?,
     }
     Ok(!interrupt.is_requested())
 }

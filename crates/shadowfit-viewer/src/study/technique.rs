@@ -4,7 +4,8 @@ use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 use glam::UVec2;
-use serde::{Deserialize, Serialize};
+use serde::ser::Error as _;
+use serde::{Deserialize, Serialize, Serializer};
 use shadowfit::settings::{BiasSettings, FilterKind, MapFormat};
 use shadowfit::{
     CascadeSettings, CasterPolicy, DepthConvention, FitKind, FitSettings, HoldSettings, SplitScheme, Stabilise,
@@ -35,7 +36,7 @@ pub struct Technique {
     #[serde(default)]
     pub receivers: Knowledge,
     /// The maps and how they are fitted.
-    #[serde(default)]
+    #[serde(default, serialize_with = "without_overrides")]
     pub maps: CascadeSettings,
     /// Biases of the look-up.
     #[serde(default)]
@@ -46,6 +47,25 @@ pub struct Technique {
     /// Storage of the maps.
     #[serde(default)]
     pub format: MapFormat,
+}
+
+/// All fields but the overrides of single maps, which TOML has no way to leave out one by one.
+#[derive(Serialize)]
+struct PlainMaps {
+    count: u32,
+    overlap: f32,
+    stabilise: Stabilise,
+    splits: SplitScheme,
+    fit: FitSettings,
+    hold: HoldSettings,
+}
+
+fn without_overrides<S: Serializer>(maps: &CascadeSettings, serializer: S) -> Result<S::Ok, S::Error> {
+    let CascadeSettings { fit, count, splits, overlap, stabilise, hold, overrides } = *maps;
+    if overrides.iter().any(Option::is_some) {
+        return Err(S::Error::custom("maps.overrides cannot be written to a file"));
+    }
+    PlainMaps { count, overlap, stabilise, splits, fit, hold }.serialize(serializer)
 }
 
 /// A technique by name.
@@ -254,5 +274,50 @@ impl Technique {
             depth: self.maps.fit.depth,
             depth_clamp: self.maps.fit.casters == CasterPolicy::DepthClamp,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_named_technique_is_written_and_read_back_the_same() {
+        let folder = std::env::temp_dir().join(format!("shadowfit-techniques-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder");
+        for (name, _) in Technique::names() {
+            let technique = Technique::named(name).expect("a known name");
+            let file = folder.join(format!("{name}.toml"));
+            std::fs::write(&file, technique.to_toml().expect("text")).expect("written");
+            assert_eq!(Technique::find(&file.to_string_lossy()).expect("read back"), technique);
+        }
+        std::fs::remove_dir_all(&folder).expect("removed");
+    }
+
+    #[test]
+    fn files_that_make_no_sense_are_refused_by_name_and_reason() {
+        let folder = std::env::temp_dir().join(format!("shadowfit-bad-techniques-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let refused = |text: &str| {
+            let file = folder.join("bad.toml");
+            std::fs::write(&file, text).expect("written");
+            format!("{:#}", Technique::find(&file.to_string_lossy()).expect_err(text))
+        };
+        for (text, reason) in [
+            ("maps = 3", "maps"),
+            ("[maps]\ncount = 9", "maps.count: 9; give 1 to 8"),
+            ("[maps]\ncount = -1", "count"),
+            ("[maps.fit]\nresolution = [64, 64]", "maps.fit.resolution: 64 texels"),
+            ("[bias]\nslope = nan", "bias.slope: NaN is not finite"),
+            ("filter = \"Blur\"", "Blur"),
+            ("colour = 1", "colour"),
+            ("[maps", "bad.toml"),
+        ] {
+            let error = refused(text);
+            assert!(error.contains(reason) && error.contains("bad.toml"), "{text}: {error}");
+        }
+        std::fs::remove_dir_all(&folder).expect("removed");
+        assert!(format!("{:#}", Technique::find("none").expect_err("unknown")).contains("histogram-4"));
+        assert!(Technique::find("/nowhere/x.toml").is_err());
     }
 }
