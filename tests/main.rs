@@ -11,4 +11,5 @@ mod peers;
 mod robustness;
 mod shaders;
 mod support;
+mod truth;
 mod window;

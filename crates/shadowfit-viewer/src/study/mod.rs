@@ -17,7 +17,7 @@ pub use comparison::{Comparison, Outcome};
 pub(crate) use contender::measured;
 pub use contender::{Contender, Fitter, Judging, SharedTruth, Shot, fit_map};
 pub use histogram::SeenDepths;
-pub use live::LiveTruth;
+pub use live::{Agreement, LiveTruth};
 pub use subject::Subject;
 pub use technique::{DEFAULT_TECHNIQUE, Knowledge, Technique};
 pub use tune::{Budget, Step, Tuned, Weights, tune};

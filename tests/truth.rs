@@ -1,0 +1,6 @@
+//! Rendered pictures judged against rays: artefacts that are made on purpose are found and named, and the GPU's verdicts
+//! are those of the processor.
+
+mod agreement_gpu;
+mod artefacts_gpu;
+mod shapes;

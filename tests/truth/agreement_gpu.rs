@@ -1,0 +1,92 @@
+//! The GPU's classes against the processor's, on the built-in scene and on every scene of the collection.
+
+use std::path::Path;
+
+use shadowfit::PerspectiveCamera;
+use shadowfit::glam::Vec3;
+use shadowfit_scene::builtin::default_scene;
+use shadowfit_scene::{Scene, load_gltf};
+use shadowfit_viewer::study::{Agreement, Comparison, Judging, LiveTruth, SharedTruth, Shot, Technique};
+
+use super::shapes::NO_BIAS;
+use crate::support::{assets, software_gpu};
+
+/// Size of the judged pictures, in pixels.
+const SIZE: [u32; 2] = [320, 180];
+/// Shares of pixels of the same class that the two promise: off edges, and of all that face the light.
+const PROMISED: [f64; 2] = [0.999, 0.995];
+/// The collection's scenes.
+const SCENES: [&str; 11] = [
+    "zdm2/zdm2.glb",
+    "dutch_ship/dutch_ship_medium_1k.gltf",
+    "kaykit_graveyard/kaykit_graveyard.glb",
+    "mask_fence/mask_fence.glb",
+    "fox/Fox.glb",
+    "flight_helmet/FlightHelmet.gltf",
+    "plastic_chair/plastic_monobloc_chair_01_1k.gltf",
+    "morph_stress/MorphStressTest.gltf",
+    "truck_vehicles/meshes.glb",
+    "kenney_town/kenney_town.glb",
+    "bevy_terrain/Mountains.gltf",
+];
+
+/// Views of the middle of a scene from two sides.
+fn shots([low, high]: [Vec3; 2]) -> [Shot; 2] {
+    let (centre, radius) = ((low + high) * 0.5, ((high - low).length() * 0.5).max(1e-3));
+    [Vec3::new(0.6, 0.5, 0.7), Vec3::new(-0.5, 0.25, 0.4)].map(|away| {
+        let eye = centre + away * radius;
+        let camera = PerspectiveCamera {
+            eye: eye.as_dvec3(),
+            forward: (centre - eye).normalize(),
+            up: Vec3::Y,
+            fov_y: 1.0,
+            aspect: SIZE[0] as f32 / SIZE[1] as f32,
+            near: radius * 1e-3,
+            far: radius * 6.0,
+        };
+        Shot { camera, direction: Vec3::new(-0.5, -0.7, -0.4).normalize(), is_first: true }
+    })
+}
+
+/// A technique with few errors, and one with all kinds of them.
+fn techniques() -> [Technique; 2] {
+    let good = Technique::named("focused-4").expect("a known name").with_resolution(512);
+    let poor = Technique { bias: NO_BIAS, ..Technique::named("xna-1").expect("a known name").with_resolution(512) };
+    [good, poor]
+}
+
+fn assert_agreement(scene: Scene) {
+    let name = scene.name.clone();
+    let judging = Judging { size: SIZE, crawl: false, ..Judging::default() };
+    let mut comparison = Comparison::new(software_gpu(), scene, judging).expect("a scene");
+    for technique in techniques() {
+        comparison.add(technique).expect("a technique");
+    }
+    let mut live = LiveTruth::new(comparison.gpu(), comparison.subject()).expect("a scene that fits");
+    let mut agreement = Agreement::default();
+    for shot in shots(comparison.subject().bounds()) {
+        let outcomes = comparison.frame(&shot, &mut SharedTruth::default()).expect("a frame");
+        for (number, outcome) in outcomes.iter().enumerate() {
+            let (gpu, contender, subject) = comparison.contender(number);
+            let pixels = contender.judge_live(gpu, subject, &shot, &outcome.maps, &mut live).expect("judged");
+            agreement.add(&outcome.judged, &pixels);
+        }
+    }
+    println!("{name}: {} pixels, {} off edges, {} of all", agreement.pixels(), agreement.off_edges(), agreement.all());
+    assert!(agreement.pixels() > 1000, "{name}: {} pixels", agreement.pixels());
+    assert!(agreement.off_edges() >= PROMISED[0] && agreement.all() >= PROMISED[1], "{name}: {agreement:?}");
+    assert!(agreement.edge_zone() >= PROMISED[0], "{name}: {agreement:?}");
+}
+
+#[test]
+fn the_built_in_scene_is_judged_alike() {
+    assert_agreement(default_scene());
+}
+
+#[test]
+fn every_scene_of_the_collection_is_judged_alike() {
+    let Some(folder) = assets() else { return };
+    for file in SCENES {
+        assert_agreement(load_gltf(&folder.join(Path::new(file))).unwrap_or_else(|error| panic!("{error}")));
+    }
+}

@@ -1,0 +1,82 @@
+//! Each artefact alone, made on purpose: it is counted as what it is, and its cure brings the count to nothing.
+
+use shadowfit::FitKind;
+use shadowfit::glam::{Affine3A, Quat, Vec3};
+use shadowfit::settings::{BiasSettings, FilterKind};
+use shadowfit_truth::PictureTally;
+
+use super::shapes::{NO_BIAS, View, floor, single, solid};
+
+/// A box on a floor, from above and aside.
+fn box_on_a_floor() -> View {
+    let objects = vec![floor(8.0), solid(Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 2.0, 1.0))];
+    View::new(objects, Vec3::new(4.0, 4.5, 6.0), Vec3::new(-0.5, 0.5, 0.0), Vec3::new(-0.5, -0.7, -0.3))
+}
+
+fn shares(tally: &PictureTally) -> [f64; 4] {
+    [tally.false_shadow, tally.false_light, tally.hole, tally.edge].map(|count| tally.share(count))
+}
+
+#[test]
+fn acne_without_a_bias_is_false_shadow_and_the_automatic_bias_leaves_none() {
+    for filter in FilterKind::ALL {
+        let bare = box_on_a_floor().judged(single(FitKind::Focused, filter, NO_BIAS));
+        let [acne, ..] = shares(&bare);
+        let cured = box_on_a_floor().judged(single(FitKind::Focused, filter, BiasSettings::automatic(filter)));
+        println!("{filter:?}: {:?} without a bias, {:?} with the automatic one", shares(&bare), shares(&cured));
+        assert!(acne > 0.1, "{filter:?}: {acne}");
+        assert_eq!((cured.false_shadow, cured.false_light, cured.hole), (0, 0, 0), "{filter:?}");
+        // By the normal offset as well: it clears planes too.
+        let offset = BiasSettings::automatic_normal_offset(filter);
+        let offset = box_on_a_floor().judged(single(FitKind::Focused, filter, offset));
+        assert_eq!(offset.false_shadow, 0, "{filter:?}");
+    }
+}
+
+#[test]
+fn a_bias_ten_times_too_large_is_false_light() {
+    for filter in FilterKind::ALL {
+        let BiasSettings { constant, receiver_plane, .. } = BiasSettings::automatic(filter);
+        let bias = BiasSettings { constant: constant * 10.0, receiver_plane: receiver_plane * 10.0, ..NO_BIAS };
+        let tally = box_on_a_floor().judged(single(FitKind::Focused, filter, bias));
+        println!("{filter:?}: {:?}", shares(&tally));
+        assert!(shares(&tally)[1] > 0.002, "{filter:?}: {:?}", shares(&tally));
+        assert_eq!((tally.false_shadow, tally.hole), (0, 0), "{filter:?}");
+    }
+}
+
+#[test]
+fn the_hole_of_the_xna_sample_is_a_hole_and_nothing_else() {
+    // The tower stands behind the camera: the sample's box, which holds the view alone, cuts it off.
+    let objects = vec![floor(40.0), solid(Vec3::new(-1.0, 0.0, 8.0), Vec3::new(1.0, 12.0, 10.0))];
+    let view = View::new(objects, Vec3::new(0.0, 2.0, 4.0), Vec3::new(0.0, 0.0, -3.0), Vec3::new(0.02, -0.6, -0.8));
+    let filter = FilterKind::Hardware2x2;
+    let holed = view.judged(single(FitKind::XnaSample, filter, BiasSettings::automatic(filter)));
+    println!("{:?} of {} pixels", shares(&holed), holed.facing);
+    assert!(holed.share(holed.hole) > 0.05, "{:?}", shares(&holed));
+    assert_eq!((holed.wrong, holed.false_shadow, holed.false_light, holed.edge), (holed.hole, 0, 0, 0));
+    let cured = view.judged(single(FitKind::Focused, filter, BiasSettings::automatic(filter)));
+    assert_eq!((cured.hole, cured.false_shadow, cured.false_light), (0, 0, 0), "{:?}", shares(&cured));
+}
+
+#[test]
+fn the_figures_are_those_of_the_same_scene_turned_moved_and_in_another_unit() {
+    let filter = FilterKind::Pcf3x3;
+    let technique = || single(FitKind::Focused, filter, BiasSettings::automatic(filter));
+    let plain = box_on_a_floor().judged(technique()).columns();
+    let turn = Affine3A::from_rotation_translation(Quat::from_rotation_y(1.1), Vec3::new(30.0, -4.0, 12.0));
+    let roll = Affine3A::from_quat(Quat::from_axis_angle(Vec3::new(1.0, 2.0, 0.5).normalize(), 0.7));
+    for (what, motion, scale) in [
+        ("turned", turn, 1.0),
+        ("rolled", roll, 1.0),
+        ("in centimetres", Affine3A::IDENTITY, 100.0),
+        ("both", turn, 0.01),
+    ] {
+        let moved = box_on_a_floor().moved(&motion, scale).judged(technique()).columns();
+        for ((name, plain), (_, moved)) in plain.iter().zip(&moved) {
+            // The map's rectangle is found again but for rounding, so that texels at edges may fall otherwise.
+            let allowed = if name.ends_with('%') { 0.1 } else { 0.03 * plain.abs().max(0.1) };
+            assert!((plain - moved).abs() <= allowed, "{what}: {name} {plain} became {moved}");
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Scenes whose shadows are known, and the pictures of them.
+
+use shadowfit::glam::{Affine3A, DVec3, Vec3};
+use shadowfit::settings::{BiasSettings, FilterKind};
+use shadowfit::{CascadeSettings, CasterPolicy, FitKind, FitSettings, PerspectiveCamera, SplitScheme, Stabilise};
+use shadowfit_scene::Scene;
+use shadowfit_truth::PictureTally;
+use shadowfit_viewer::study::{Comparison, Judging, Knowledge, SharedTruth, Shot, Technique};
+
+use crate::support::software_gpu;
+
+/// Size of the judged pictures, in pixels.
+pub(super) const SIZE: [u32; 2] = [480, 270];
+
+/// A triangle, world space, metres.
+pub(super) type Corners = [Vec3; 3];
+
+/// An axis-aligned box.
+pub(super) fn solid(min: Vec3, max: Vec3) -> Vec<Corners> {
+    let corner = |index: usize| {
+        let pick = |bit: usize, low: f32, high: f32| if index >> bit & 1 == 0 { low } else { high };
+        Vec3::new(pick(0, min.x, max.x), pick(1, min.y, max.y), pick(2, min.z, max.z))
+    };
+    let faces = [[0, 2, 6, 4], [1, 5, 7, 3], [0, 4, 5, 1], [2, 3, 7, 6], [0, 1, 3, 2], [4, 6, 7, 5]];
+    faces.into_iter().flat_map(|face| quad(face.map(corner))).collect()
+}
+
+/// A level square around the origin.
+pub(super) fn floor(half: f32) -> Vec<Corners> {
+    let corner = |x: f32, z: f32| Vec3::new(x * half, 0.0, z * half);
+    quad([corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)])
+}
+
+fn quad([a, b, c, d]: [Vec3; 4]) -> Vec<Corners> {
+    vec![[a, b, c], [a, c, d]]
+}
+
+/// A view of a scene.
+#[derive(Clone)]
+pub(super) struct View {
+    pub(super) objects: Vec<Vec<Corners>>,
+    pub(super) camera: PerspectiveCamera,
+    pub(super) direction: Vec3,
+    pub(super) ray_offset: f64,
+}
+
+impl View {
+    /// Seen from `eye` toward `target`, with the light travelling in `direction`.
+    pub(super) fn new(objects: Vec<Vec<Corners>>, eye: Vec3, target: Vec3, direction: Vec3) -> Self {
+        let camera = PerspectiveCamera {
+            eye: eye.as_dvec3(),
+            forward: (target - eye).normalize(),
+            up: Vec3::Y,
+            fov_y: 0.9,
+            aspect: SIZE[0] as f32 / SIZE[1] as f32,
+            near: 0.1,
+            far: 60.0,
+        };
+        Self { objects, camera, direction: direction.normalize(), ray_offset: 1e-3 }
+    }
+
+    /// The same turned, moved, and in another unit.
+    pub(super) fn moved(&self, motion: &Affine3A, scale: f32) -> Self {
+        let point = |point: Vec3| motion.transform_point3(point) * scale;
+        let camera = PerspectiveCamera {
+            eye: DVec3::from(point(self.camera.eye.as_vec3())),
+            forward: motion.transform_vector3(self.camera.forward),
+            up: motion.transform_vector3(self.camera.up),
+            near: self.camera.near * scale,
+            far: self.camera.far * scale,
+            ..self.camera
+        };
+        let moved = |triangles: &Vec<Corners>| triangles.iter().map(|corners| corners.map(point)).collect();
+        Self {
+            objects: self.objects.iter().map(moved).collect(),
+            camera,
+            direction: motion.transform_vector3(self.direction),
+            ray_offset: self.ray_offset * f64::from(scale),
+        }
+    }
+
+    /// Sums over the picture with a technique.
+    pub(super) fn judged(&self, technique: Technique) -> PictureTally {
+        let judging = Judging { size: SIZE, ray_offset: self.ray_offset, ..Judging::default() };
+        let scene = Scene::from_objects("shapes", &self.objects);
+        let mut comparison = Comparison::new(software_gpu(), scene, judging).expect("a scene");
+        comparison.add(technique).expect("a technique");
+        let shot = Shot { camera: self.camera, direction: self.direction, is_first: true };
+        let outcomes = comparison.frame(&shot, &mut SharedTruth::default()).expect("a frame");
+        outcomes[0].judged.tally.clone()
+    }
+}
+
+/// One map of 512 texels around what is seen, with a filter and a bias.
+pub(super) fn single(kind: FitKind, filter: FilterKind, bias: BiasSettings) -> Technique {
+    let fit = FitSettings {
+        kind,
+        casters: CasterPolicy::List,
+        max_distance: f32::MAX,
+        resolution: shadowfit::glam::UVec2::splat(512),
+        ..FitSettings::default()
+    };
+    let maps = CascadeSettings {
+        fit,
+        count: 1,
+        splits: SplitScheme::Logarithmic,
+        stabilise: Stabilise::Off,
+        ..CascadeSettings::default()
+    };
+    Technique { receivers: Knowledge::Objects, maps, bias, filter, ..Technique::default() }
+}
+
+/// No bias at all.
+pub(super) const NO_BIAS: BiasSettings =
+    BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0 };
