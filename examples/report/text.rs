@@ -18,6 +18,8 @@ const GROUND: RGBColor = RGBColor(24, 26, 30);
 const INK: RGBColor = RGBColor(232, 234, 238);
 /// Height of a legend's line at scale 1, in pixels.
 const LINE: u32 = 22;
+/// Text is placed by the middle of its box, which lies above that of its letters by this share of a line.
+const BELOW_MIDDLE: f32 = 0.07;
 /// Height of its text at scale 1, in pixels.
 const TEXT: u32 = 14;
 /// Width of pictures that legends of scale 1 suit, in pixels.
@@ -76,7 +78,7 @@ impl Strip {
     pub(crate) fn write(&mut self, text: &str, x: f32, line: f32, align: HPos) -> Result<()> {
         let size = f64::from(TEXT as f32 * self.scale);
         let style = TextStyle::from((FAMILY, size).into_font()).color(&INK).pos(Pos::new(align, VPos::Center));
-        let place = (x.round() as i32, self.line(line));
+        let place = (x.round() as i32, self.line(line + BELOW_MIDDLE));
         let mut backend = BitMapBackend::with_buffer(&mut self.pixels, (self.size[0], self.size[1]));
         backend.draw_text(text, &style, place).map_err(|error| anyhow!("a legend cannot be written: {error}"))
     }
