@@ -1,7 +1,7 @@
 //! What a finished run is, as plain data.
 //!
-//! Whoever renders and measures fills it; tables, plots and the page are made from it alone, so that they can be made
-//! again from a `report.json`, and tested without a GPU.
+//! Whoever renders and measures fills it; tables, plots and the page are made from it alone, so that they can be
+//! tested without a GPU.
 
 use std::path::PathBuf;
 

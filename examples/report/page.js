@@ -33,6 +33,7 @@
   group("Frame", frames.map((frame, place) => [place, frame.querySelector("h3").textContent]), "frame");
   group("Kind", kinds.map((kind) => [kind, names[kind]]), "kind");
   frames[0].before(controls);
+  section.querySelector(".lead").append(" Choose a picture to see it large.");
   show();
 
   // A picture large, and its neighbours in the same place: differences show when they are flicked through.

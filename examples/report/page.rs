@@ -77,7 +77,7 @@ fn table_section(run: &Run) -> String {
                     value of a column is bold.</p>\n"
             .to_owned();
     let (overall, groups) = tables.split_first().map_or((None, &[][..]), |(first, rest)| (Some(first), rest));
-    for table in overall {
+    if let Some(table) = overall {
         text.push_str(&table_html(table));
     }
     for table in groups {
@@ -85,11 +85,11 @@ fn table_section(run: &Run) -> String {
         let _ = write!(text, "<details>\n<summary>{title}</summary>\n{}</details>\n", table_html(table));
     }
     let known = overall.map(|table| table.columns.as_slice()).unwrap_or_default();
-    let meanings = known.iter().filter_map(|column| Some((column, meaning(column)?)));
-    let items: String =
-        meanings.map(|(column, text)| format!("<div><dt>{}</dt><dd>{text}</dd></div>\n", escape(column))).collect();
-    let _ =
-        write!(text, "<details>\n<summary>What the columns mean</summary>\n<dl class=\"meanings\">\n{items}</dl>\n");
+    text.push_str("<details>\n<summary>What the columns mean</summary>\n<dl class=\"meanings\">\n");
+    for (column, meaning) in known.iter().filter_map(|column| Some((column, meaning(column)?))) {
+        let _ = writeln!(text, "<div><dt>{}</dt><dd>{}</dd></div>", escape(column), escape(meaning));
+    }
+    text.push_str("</dl>\n");
     text.push_str("</details>\n</section>\n");
     text
 }
@@ -124,14 +124,13 @@ fn plot_section(plots: &[Plot]) -> String {
     if plots.is_empty() {
         return String::new();
     }
-    let figures: String = plots
-        .iter()
-        .map(|plot| {
-            let label = escape(&format!("{} over the camera path", plot.column));
-            format!("<figure class=\"plot\" role=\"img\" aria-label=\"{label}\">{}</figure>\n", scalable(&plot.svg))
-        })
-        .collect();
-    format!("<section>\n<h2>Over the camera path</h2>\n{figures}</section>\n")
+    let mut text = "<section>\n<h2>Over the camera path</h2>\n<div class=\"plots\">\n".to_owned();
+    for plot in plots {
+        let label = escape(&format!("{} over the camera path", plot.column));
+        let svg = scalable(&plot.svg);
+        let _ = writeln!(text, "<figure class=\"plot\" role=\"img\" aria-label=\"{label}\">{svg}</figure>");
+    }
+    text + "</div>\n</section>\n"
 }
 
 /// SVG that takes the width of its place.
@@ -162,7 +161,7 @@ fn picture_section(run: &Run, folder: &Path) -> Result<String> {
     if text.is_empty() {
         return Ok(text);
     }
-    let lead = "Frames are picked by the mean of wrong % over the techniques. Choose a picture to see it large.";
+    let lead = "Frames are picked by the mean of wrong % over the techniques.";
     Ok(format!("<section id=\"pictures\">\n<h2>Pictures</h2>\n<p class=\"lead\">{lead}</p>\n{text}</section>\n"))
 }
 

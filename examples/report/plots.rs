@@ -14,13 +14,20 @@ use crate::text::{FAMILY, register};
 
 /// Columns that are plotted where the run has them.
 const COLUMNS: [&str; 6] = ["wrong %", "false shadow %", "false light %", "hole %", "ppt p95", "crawl %"];
-/// Width and height, in pixels; the browser scales them.
-const SIZE: (u32, u32) = (920, 300);
+/// Width and least height, in pixels; the browser scales them. Long legends make a plot higher.
+const SIZE: (u32, u32) = (780, 300);
 /// Width of the legend beside the plot, in pixels, and how many characters of a name fit in it.
-const LEGEND: u32 = 190;
-const NAME_LENGTH: usize = 22;
+const LEGEND: u32 = 215;
+const NAME_LENGTH: usize = 23;
+/// Sizes of text and titles, in plotters' units of 0.8 pixels.
+const TEXT: u32 = 16;
+const TITLE: u32 = 20;
 /// Height of a line of the legend, in pixels.
 const LEGEND_LINE: i32 = 20;
+/// Middle of its first line, in pixels.
+const LEGEND_TOP: i32 = 50;
+/// Names of groups stand this far below the axis, under its numbers, in pixels.
+const BELOW_AXIS: i32 = 35;
 /// Greatest ratio of values that an even axis shows well.
 const EVEN_RATIO: f64 = 100.0;
 /// Colours by which the page's style knows what is what, so that it can turn them dark.
@@ -72,8 +79,9 @@ pub(crate) fn plots(run: &Run) -> Result<Vec<Plot>> {
 
 fn plot(run: &Run, column: &str) -> Result<Plot> {
     let mut svg = String::new();
+    let legend_height = LEGEND_TOP as u32 + LEGEND_LINE as u32 * run.techniques.len() as u32;
     {
-        let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
+        let area = SVGBackend::with_string(&mut svg, (SIZE.0, SIZE.1.max(legend_height))).into_drawing_area();
         draw(run, column, &area).map_err(|error| anyhow!("the plot of {column} cannot be drawn: {error}"))?;
         area.present().map_err(|error| anyhow!("the plot of {column} cannot be drawn: {error}"))?;
     }
@@ -108,10 +116,10 @@ where
 {
     let groups = groups(run);
     let mut chart = ChartBuilder::on(area)
-        .caption(column, (FAMILY, 17).into_font().color(&INK))
         .margin(8)
-        .x_label_area_size(38)
-        .y_label_area_size(52)
+        .margin_top(40)
+        .x_label_area_size(44)
+        .y_label_area_size(58)
         .build_cartesian_2d(-0.5..run.frames.len() as f64 - 0.5, range)?;
     let place_in_group = |x: &f64| {
         let frame = x.round().max(0.0) as usize;
@@ -128,18 +136,21 @@ where
         .y_labels(6)
         .x_label_formatter(&place_in_group)
         .y_label_formatter(&|value| number(*value))
-        .label_style((FAMILY, 13).into_font().color(&INK))
-        .x_desc(groups.iter().map(|group| group.name).collect::<Vec<_>>().join("  |  "))
-        .axis_desc_style((FAMILY, 13).into_font().color(&INK))
+        .label_style((FAMILY, TEXT).into_font().color(&INK))
         .draw()?;
+    area.draw(&Text::new(column.to_owned(), (10, 20), text_style(TITLE, HPos::Left)))?;
     let bottom_and_top = chart.y_range();
-    for group in &groups[1..] {
+    for group in &groups {
+        let middle = (group.frames[0] + group.frames[1]) as f64 * 0.5 - 0.5;
+        let (x, y) = chart.plotting_area().map_coordinate(&(middle, bottom_and_top.start));
+        area.draw(&Text::new(group.name.to_owned(), (x, y + BELOW_AXIS), text_style(TEXT, HPos::Center)))?;
+    }
+    for group in groups.iter().skip(1) {
         let x = group.frames[0] as f64 - 0.5;
         chart.draw_series(LineSeries::new([(x, bottom_and_top.start), (x, bottom_and_top.end)], RULE))?;
     }
     for (place, technique) in run.techniques.iter().enumerate() {
-        let [style, is_hollow] = [COLOURS[place % COLOURS.len()].stroke_width(2), COLOURS[0].stroke_width(0)];
-        let _ = is_hollow;
+        let style = COLOURS[place % COLOURS.len()].stroke_width(2);
         for line in groups.iter().flat_map(|group| lines(technique, column, group)) {
             chart.draw_series(LineSeries::new(line.iter().copied(), style))?;
             chart.draw_series(line.into_iter().map(|point| Circle::new(point, 3, mark(place))))?;
@@ -168,14 +179,16 @@ fn mark(place: usize) -> ShapeStyle {
     if place < COLOURS.len() { colour.filled() } else { colour.stroke_width(1) }
 }
 
+fn text_style(size: u32, align: HPos) -> TextStyle<'static> {
+    TextStyle::from((FAMILY, size).into_font()).color(&INK).pos(Pos::new(align, VPos::Center))
+}
+
 fn legend<'a>(run: &Run, area: &Area<'a>) -> Drawn<'a> {
-    let style = TextStyle::from((FAMILY, 13).into_font()).color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
-    for (place, technique) in run.techniques.iter().enumerate() {
-        let y = 44 + LEGEND_LINE * place as i32;
-        let line = [(4, y), (24, y)];
-        area.draw(&PathElement::new(line, COLOURS[place % COLOURS.len()].stroke_width(2)))?;
+    for ((place, technique), line) in run.techniques.iter().enumerate().zip(0..) {
+        let y = LEGEND_TOP + LEGEND_LINE * line;
+        area.draw(&PathElement::new([(4, y), (24, y)], COLOURS[place % COLOURS.len()].stroke_width(2)))?;
         area.draw(&Circle::new((14, y), 3, mark(place)))?;
-        area.draw(&Text::new(short(&technique.name), (32, y), style.clone()))?;
+        area.draw(&Text::new(short(&technique.name), (32, y), text_style(TEXT, HPos::Left)))?;
     }
     Ok(())
 }

@@ -8,7 +8,7 @@ use anyhow::Result;
 
 use crate::data::{Better, Columns, Run, better};
 
-/// Unequal numbers that read the same are equally good.
+/// Text of a value, and whether it is the best of its column; unequal numbers that read the same are equally good.
 type Cell = (String, bool);
 
 /// A table of techniques.
@@ -23,7 +23,7 @@ pub(crate) struct Table {
 /// The tables of a run: all frames, then each group.
 pub(crate) fn tables(run: &Run) -> Vec<Table> {
     let overall = run.techniques.iter().map(|technique| (technique.name.as_str(), Some(&technique.overall)));
-    let mut tables = vec![table("All frames", overall.collect())];
+    let mut tables = vec![table("All frames", &overall.collect::<Vec<_>>())];
     let mut groups: Vec<&String> = Vec::new();
     for (group, _) in run.techniques.iter().flat_map(|technique| &technique.groups) {
         if !groups.contains(&group) {
@@ -35,7 +35,7 @@ pub(crate) fn tables(run: &Run) -> Vec<Table> {
             let columns = technique.groups.iter().find(|(known, _)| known == group).map(|(_, columns)| columns);
             (technique.name.as_str(), columns)
         });
-        tables.push(table(group, rows.collect()));
+        tables.push(table(group, &rows.collect::<Vec<_>>()));
     }
     tables
 }
@@ -85,7 +85,7 @@ pub(crate) fn stopped(run: &Run) -> String {
     format!("the figures are of the {} frames that were measured until then.", run.frames.len())
 }
 
-fn table(title: &str, rows: Vec<(&str, Option<&Columns>)>) -> Table {
+fn table(title: &str, rows: &[(&str, Option<&Columns>)]) -> Table {
     let mut columns: Vec<String> = Vec::new();
     for (name, _) in rows.iter().filter_map(|(_, columns)| *columns).flatten() {
         if !columns.contains(name) {

@@ -18,6 +18,8 @@ const GROUND: RGBColor = RGBColor(24, 26, 30);
 const INK: RGBColor = RGBColor(232, 234, 238);
 /// Height of a legend's line at scale 1, in pixels.
 const LINE: u32 = 22;
+/// Text is placed by the middle of its box, which lies above that of its letters by this share of a line.
+const BELOW_MIDDLE: f32 = 0.07;
 /// Height of its text at scale 1, in pixels.
 const TEXT: u32 = 14;
 /// Width of pictures that legends of scale 1 suit, in pixels.
@@ -52,10 +54,6 @@ pub(crate) fn width(text: &str, scale: f32) -> f32 {
     style.box_size(text).map_or(0.0, |(width, _)| width as f32)
 }
 
-fn undrawn(error: impl std::error::Error) -> anyhow::Error {
-    anyhow!("a legend cannot be drawn: {error}")
-}
-
 impl Strip {
     /// A strip of `width` pixels with room for some lines.
     pub(crate) fn new(width: u32, lines: u32) -> Self {
@@ -67,19 +65,22 @@ impl Strip {
     }
 
     /// Fills a box: its left and right edge in pixels, its top and bottom in lines.
-    pub(crate) fn fill(&mut self, [left, right]: [f32; 2], [top, bottom]: [f32; 2], colour: [u8; 3]) -> Result<()> {
-        let [top, bottom] = [self.line(top), self.line(bottom)];
-        let colour = RGBColor(colour[0], colour[1], colour[2]);
-        let corners = [(left.round() as i32, top), (right.round() as i32 - 1, bottom - 1)];
-        self.backend().draw_rect(corners[0], corners[1], &colour, true).map_err(undrawn)
+    pub(crate) fn fill(&mut self, edges: [f32; 2], lines: [f32; 2], colour: [u8; 3]) {
+        let [width, height] = self.size.map(|length| length as usize);
+        let [left, right] = edges.map(|edge| (edge.round().max(0.0) as usize).min(width));
+        let [top, bottom] = lines.map(|line| (self.line(line).max(0) as usize).min(height));
+        for pixel in (top..bottom).flat_map(|row| row * width + left..row * width + right) {
+            self.pixels[pixel * 3..pixel * 3 + 3].copy_from_slice(&colour);
+        }
     }
 
     /// Writes text with its middle at a line; `x` in pixels is its left edge, middle, or right edge.
     pub(crate) fn write(&mut self, text: &str, x: f32, line: f32, align: HPos) -> Result<()> {
         let size = f64::from(TEXT as f32 * self.scale);
         let style = TextStyle::from((FAMILY, size).into_font()).color(&INK).pos(Pos::new(align, VPos::Center));
-        let place = (x.round() as i32, self.line(line));
-        self.backend().draw_text(text, &style, place).map_err(undrawn)
+        let place = (x.round() as i32, self.line(line + BELOW_MIDDLE));
+        let mut backend = BitMapBackend::with_buffer(&mut self.pixels, (self.size[0], self.size[1]));
+        backend.draw_text(text, &style, place).map_err(|error| anyhow!("a legend cannot be written: {error}"))
     }
 
     /// The picture with the strip below it.
@@ -98,10 +99,6 @@ impl Strip {
     fn line(&self, line: f32) -> i32 {
         ((line * LINE as f32 + LINE as f32 / 4.0) * self.scale).round() as i32
     }
-
-    fn backend(&mut self) -> BitMapBackend<'_> {
-        BitMapBackend::with_buffer(&mut self.pixels, (self.size[0], self.size[1]))
-    }
 }
 
 #[cfg(test)]
@@ -112,7 +109,7 @@ mod tests {
     fn text_is_drawn_where_it_was_asked_for_below_the_picture() {
         let mut strip = Strip::new(200, 1);
         strip.write("Wrong pixels", 100.0, 0.5, HPos::Left).expect("drawn");
-        strip.fill([0.0, 50.0], [0.0, 1.0], [255, 0, 0]).expect("drawn");
+        strip.fill([0.0, 50.0], [0.0, 1.0], [255, 0, 0]);
         let whole = strip.below(&RgbaImage::from_pixel(200, 10, Rgba([9, 9, 9, 255])));
         let bright = |from: u32, to: u32| {
             whole.enumerate_pixels().filter(|(x, _, pixel)| (from..to).contains(x) && pixel[1] > 120).count()

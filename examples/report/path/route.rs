@@ -183,12 +183,14 @@ impl Route {
 
 /// Pairs of columns beside each other, diagonals included, each pair once.
 fn neighbours() -> impl Iterator<Item = (usize, usize)> {
-    let steps = [(1, 0), (0, 1), (1, 1), (1, -1)];
+    // To the right, and down, straight and slanting: the others are these seen from the other side.
+    let steps = [(1, 1), (0, 2), (1, 2), (1, 0)];
     (0..COLUMNS * COLUMNS).flat_map(move |column| {
-        let (x, z) = (column % COLUMNS, (column / COLUMNS) as isize);
-        let beside = steps.map(|(dx, dz)| (x + dx, z + dz));
-        let inside = beside.into_iter().filter(|&(x, z)| x < COLUMNS && (0..COLUMNS as isize).contains(&z));
-        inside.map(move |(x, z)| (column, z as usize * COLUMNS + x))
+        let (x, z) = (column % COLUMNS, column / COLUMNS);
+        // Steps down are counted from the row above, so that none is negative.
+        let beside = steps.map(|(dx, dz)| (x + dx, (z + dz).wrapping_sub(1)));
+        let inside = beside.into_iter().filter(|&(x, z)| x < COLUMNS && z < COLUMNS);
+        inside.map(move |(x, z)| (column, z * COLUMNS + x))
     })
 }
 
