@@ -13,6 +13,13 @@ fn box_on_a_floor() -> View {
     View::new(objects, Vec3::new(4.0, 4.5, 6.0), Vec3::new(-0.5, 0.5, 0.0), Vec3::new(-0.5, -0.7, -0.3))
 }
 
+/// A thin wall on a floor, from its dark side: what stands before a point at its foot is no farther than the point
+/// from the wall.
+fn wall_on_a_floor() -> View {
+    let objects = vec![floor(8.0), solid(Vec3::new(-2.0, 0.0, -0.01), Vec3::new(2.0, 2.0, 0.01))];
+    View::new(objects, Vec3::new(-1.0, 4.0, -6.0), Vec3::new(-0.5, 0.5, -1.0), Vec3::new(-0.2, -0.7, -0.5))
+}
+
 fn shares(tally: &PictureTally) -> [f64; 4] {
     [tally.false_shadow, tally.false_light, tally.hole, tally.edge].map(|count| tally.share(count))
 }
@@ -26,10 +33,10 @@ fn acne_without_a_bias_is_false_shadow_and_the_automatic_bias_leaves_none() {
         println!("{filter:?}: {:?} without a bias, {:?} with the automatic one", shares(&bare), shares(&cured));
         assert!(acne > 0.1, "{filter:?}: {acne}");
         assert_eq!((cured.false_shadow, cured.false_light, cured.hole), (0, 0, 0), "{filter:?}");
-        // By the normal offset as well: it clears planes too.
+        // By the normal offset as well, but where it moves a point beside an edge to the other side of it.
         let offset = BiasSettings::automatic_normal_offset(filter);
         let offset = box_on_a_floor().judged(single(FitKind::Focused, filter, offset));
-        assert_eq!(offset.false_shadow, 0, "{filter:?}");
+        assert!(shares(&offset)[0] < 0.001, "{filter:?}: {:?}", shares(&offset));
     }
 }
 
@@ -38,9 +45,11 @@ fn a_bias_ten_times_too_large_is_false_light() {
     for filter in FilterKind::ALL {
         let BiasSettings { constant, receiver_plane, .. } = BiasSettings::automatic(filter);
         let bias = BiasSettings { constant: constant * 10.0, receiver_plane: receiver_plane * 10.0, ..NO_BIAS };
-        let tally = box_on_a_floor().judged(single(FitKind::Focused, filter, bias));
-        println!("{filter:?}: {:?}", shares(&tally));
-        assert!(shares(&tally)[1] > 0.002, "{filter:?}: {:?}", shares(&tally));
+        let tally = wall_on_a_floor().judged(single(FitKind::Focused, filter, bias));
+        let cured = wall_on_a_floor().judged(single(FitKind::Focused, filter, BiasSettings::automatic(filter)));
+        println!("{filter:?}: {:?}, {:?} with a tenth of it", shares(&tally), shares(&cured));
+        assert!(shares(&cured)[1] < 0.0002, "{filter:?}: {:?}", shares(&cured));
+        assert!(shares(&tally)[1] > 0.001, "{filter:?}: {:?}", shares(&tally));
         assert_eq!((tally.false_shadow, tally.hole), (0, 0), "{filter:?}");
     }
 }
@@ -62,10 +71,14 @@ fn the_hole_of_the_xna_sample_is_a_hole_and_nothing_else() {
 #[test]
 fn the_figures_are_those_of_the_same_scene_turned_moved_and_in_another_unit() {
     let filter = FilterKind::Pcf3x3;
+    // By right angles: those of objects turned otherwise have other boxes around them.
     let technique = || single(FitKind::Focused, filter, BiasSettings::automatic(filter));
     let plain = box_on_a_floor().judged(technique()).columns();
-    let turn = Affine3A::from_rotation_translation(Quat::from_rotation_y(1.1), Vec3::new(30.0, -4.0, 12.0));
-    let roll = Affine3A::from_quat(Quat::from_axis_angle(Vec3::new(1.0, 2.0, 0.5).normalize(), 0.7));
+    let turn = Affine3A::from_rotation_translation(
+        Quat::from_rotation_y(std::f32::consts::FRAC_PI_2),
+        Vec3::new(30.0, -4.0, 12.0),
+    );
+    let roll = Affine3A::from_quat(Quat::from_rotation_x(std::f32::consts::FRAC_PI_2));
     for (what, motion, scale) in [
         ("turned", turn, 1.0),
         ("rolled", roll, 1.0),
