@@ -8,6 +8,7 @@ mod conventions;
 mod fits;
 mod golden;
 mod peers;
+mod reports_gpu;
 mod robustness;
 mod shaders;
 mod support;

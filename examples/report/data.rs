@@ -94,7 +94,7 @@ pub(crate) fn value(columns: &Columns, name: &str) -> Option<f64> {
 pub(crate) fn better(column: &str) -> Better {
     match column {
         "used %" | "still %" => Better::Higher,
-        "maps" | "frames" | "facing" | "edge zone %" | "texels" => Better::Neither,
+        "maps" | "frames" | "facing" | "edge zone %" | "grazing %" | "texels" => Better::Neither,
         _ => Better::Lower,
     }
 }
@@ -109,11 +109,13 @@ pub(crate) fn meaning(column: &str) -> Option<&'static str> {
         "edge %" => "Wrong within the reach of the filter or a texel from a true shadow edge: aliasing",
         "edge zone %" => "Pixels near a true shadow edge, right or wrong",
         "edge px" => "Mean distance from true shadow edges to those of the map, in pixels, at most 32",
-        "mean error" => "Mean difference between the filtered factor and the truth, 0 to 1",
+        "mean error %" => "Mean difference between the filtered factor and the truth",
+        "grazing %" => "Pixels that the light barely grazes (cosine below 0.05); they count in all but the ppt columns",
+        "grazing wrong %" => "Wrong pixels among those, of all that face the light",
         "ppt p50" => "Screen pixels per shadow texel along the worse axis, median",
         "ppt p95" => "Screen pixels per shadow texel along the worse axis, 95% quantile; 1 or less is sharp",
         "ppt p99" => "Screen pixels per shadow texel along the worse axis, 99% quantile",
-        "under %" => "Points with more than a pixel per texel, where texels show",
+        "ppt > 1 %" => "Pixels with more than a pixel per texel, where texels show",
         "crawl %" => "Edge points whose verdict changes though only the camera moved: shimmering",
         "uncov %" => "Points that face the light and that no map holds",
         "crit res" => "Side of a map, in texels, that would give 95% of the points a texel per pixel",
@@ -196,5 +198,12 @@ pub(crate) mod tests {
         assert_eq!(value(&run.techniques[0].overall, "crawl %"), None);
         assert_eq!(value(&run.techniques[0].overall, "nothing"), None);
         assert_eq!((wrong_at(&run, 1), wrong_at(&run, 9)), (Some(5.0), None));
+    }
+
+    #[test]
+    fn every_column_of_a_picture_is_explained() {
+        for (column, _) in shadowfit_truth::PictureTally::default().columns() {
+            assert!(meaning(column).is_some(), "{column}");
+        }
     }
 }

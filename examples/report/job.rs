@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail, ensure};
+use glam::Vec3;
 use shadowfit::settings::LightSettings;
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_scene::{Scene, load_gltf};
@@ -16,6 +17,8 @@ use crate::path::{CameraPath, find};
 const BUILT_IN: &str = "courtyard";
 /// Bytes of a GiB.
 const GIB: f64 = (1u64 << 30) as f64;
+/// Share of a scene's size from which on the offset of shadow rays is coarse.
+const COARSE_OFFSET: f64 = 5e-4;
 /// Triangles from which on people are told of the memory that they take.
 const MANY_TRIANGLES: usize = 1_000_000;
 
@@ -67,7 +70,7 @@ impl Job {
     /// Loads the scene, opens the GPU, and finds the frames.
     pub(crate) fn prepare(&self) -> Result<Prepared> {
         let scene = self.load()?;
-        let triangles = self.check_memory(&scene)?;
+        self.check_memory(&scene)?;
         let sun = scene.sun.and_then(|sun| LightSettings::from_direction(sun.direction).ok());
         let animates = !scene.animations.is_empty();
         ensure!(
@@ -94,9 +97,7 @@ impl Job {
         };
         let light = self.light.or(path.light).or(sun).unwrap_or_default();
         let frames = self.frames(&path, &light);
-        if triangles >= MANY_TRIANGLES {
-            notes.push(format!("The scene has {triangles} triangles."));
-        }
+        notes.extend(ray_offset_note(comparison.subject().bounds(), judging.ray_offset));
         Ok(Prepared { comparison, judging, path, light, frames, notes })
     }
 
@@ -113,7 +114,7 @@ impl Job {
     }
 
     /// Says what a large scene will take before it takes it, and refuses one that would take too much.
-    fn check_memory(&self, scene: &Scene) -> Result<usize> {
+    fn check_memory(&self, scene: &Scene) -> Result<()> {
         let of_instance = |instance: &shadowfit_scene::Instance| {
             scene.meshes[instance.mesh].primitives[instance.primitive].indices.len() / 3
         };
@@ -133,7 +134,7 @@ impl Job {
                 self.max_memory
             );
         }
-        Ok(triangles)
+        Ok(())
     }
 
     fn frames(&self, path: &CameraPath, light: &LightSettings) -> Vec<JobFrame> {
@@ -151,6 +152,19 @@ impl Job {
         });
         frames.collect()
     }
+}
+
+/// Says when shadow rays start so far over the surfaces that they pass over what lies close together.
+fn ray_offset_note([low, high]: [Vec3; 2], offset: f64) -> Option<String> {
+    let size = f64::from((high - low).length());
+    (offset > size * COARSE_OFFSET).then(|| {
+        format!(
+            "Shadow rays start {:.3} mm over the surfaces, which is much for a scene {size:.2} m across: where \
+             surfaces lie closer together, truth takes them for lit and the map for shadowed (false shadow). \
+             --units-per-metre 0.1 measures ten times finer.",
+            offset * 1e3
+        )
+    })
 }
 
 fn light(text: &str) -> Result<LightSettings> {

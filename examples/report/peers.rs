@@ -55,7 +55,6 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
         files.push(file);
     }
     let mut pictures = if args.no_render { None } else { Some(Pictures::new(&study, &files, args)?) };
-    fs::create_dir_all(&args.out).with_context(|| format!("{}: cannot be made", args.out.display()))?;
     measure(&mut study, args, pictures.as_mut(), interrupt)?;
     let tables = study.tables();
     print!("{}", overall_markdown(&tables));
@@ -77,6 +76,7 @@ fn measure(study: &mut Study, args: &Args, mut pictures: Option<&mut Pictures>, 
             pictures.draw_scene(study, index, &objects, (&progress, interrupt))?;
         }
         let tables = study.tables();
+        fs::create_dir_all(&args.out).with_context(|| format!("{}: cannot be made", args.out.display()))?;
         write(&args.out.join("table.json"), &to_json(&tables))?;
         write(&args.out.join("table.md"), &to_markdown(&tables))?;
         if interrupt.is_requested() {

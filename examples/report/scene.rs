@@ -44,11 +44,12 @@ struct Measured {
 /// Measures, writes the report, and says where it is. Whether all frames were measured.
 pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<bool> {
     let techniques = techniques(args)?;
-    let output = Output::create(&args.out)?;
     let mut job = args.job.prepare()?;
     for technique in &techniques {
         job.comparison.add(technique.clone())?;
     }
+    // Nothing is written before all input has been read.
+    let output = Output::create(&args.out)?;
     let mut measured: Vec<Measured> = techniques.iter().map(|_| Measured::default()).collect();
     let progress = ProgressBar::new(job.frames.len() as u64);
     progress.set_style(ProgressStyle::with_template("{msg:16} {wide_bar} {pos}/{len} frames, {eta} left")?);

@@ -78,7 +78,7 @@ fn text(path: &Path) -> String {
 #[test]
 fn a_report_holds_the_same_row_on_screen_for_people_and_for_programs() {
     let scratch = Scratch::new("whole");
-    let output = scratch.report(&["scenarios.json", "fit.json", "--triangles", ".", "-o", "out/tables"]);
+    let output = scratch.report(&["scenarios.json", "fit.json", "--triangles", ".", "--no-render", "-o", "out/tables"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     // A texel of 2 cm, a pixel of 4.2767 mm: 4.677 pixels, 2.225 octaves, in the bin around 2.223; 4677 in 20 m.
     let row = "| plain | 1 | 0 | - | - | 2.22 | 2.22 | 2.22 | 100 | 4677 | 4677 |";
@@ -116,10 +116,44 @@ fn bad_input_is_refused_by_file_element_and_reason() {
         ("scenarios.json", "fit.json", ["--triangles", "moved"], "floor.f32: scene \"floor\": aabb: the box is"),
     ];
     for (scenarios, fit, geometry, words) in cases {
-        let output = scratch.report(&[scenarios, fit, geometry[0], geometry[1], "-o", "out"]);
+        let output = scratch.report(&[scenarios, fit, geometry[0], geometry[1], "--no-render", "-o", "out"]);
         let message = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(REFUSED), "{scenarios} {fit} {geometry:?}: {message}");
         assert!(message.contains(words), "\"{words}\" is missing in: {message}");
         assert!(!scratch.0.join("out").exists(), "{scenarios} {fit} {geometry:?} leaves files behind");
     }
+}
+
+#[test]
+fn gpu_fits_are_drawn_and_their_pictures_stand_in_the_same_rows() {
+    let scratch = Scratch::new("drawn");
+    let small = ["--software", "--size", "160x90"];
+    let mut arguments = vec!["scenarios.json", "fit.json", "--triangles", ".", "-o", "out"];
+    arguments.extend(small);
+    let output = scratch.report(&arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let json: serde_json::Value = serde_json::from_str(&text(&scratch.0.join("out/table.json"))).expect("JSON");
+    let row = &json["fits"][0]["groups"]["floor/90"];
+    // A plain floor under a vertical sun: nothing can go wrong.
+    for column in ["wrong %", "false shadow %", "false light %", "hole %", "edge %"] {
+        assert_eq!(row[column].as_f64(), Some(0.0), "{column}");
+    }
+    // 0.5 m on a screen of 90 pixels over 4 m: 51.3 mm a pixel, 20 mm a texel.
+    let texels = row["ppt p50"].as_f64().expect("a number");
+    assert!((texels / 0.3898 - 1.0).abs() < 0.01, "{texels} pixels per texel");
+    assert!(row["crit gm"].as_f64().is_some(), "the figures of the fit are there too");
+}
+
+#[test]
+fn gpu_a_perspective_map_is_measured_and_its_picture_refused_with_the_reason() {
+    let scratch = Scratch::new("warped");
+    let mut warped = fit("floor/90/0");
+    warped.frames[0].maps[0].view_proj[3] = 0.001;
+    warped.write(&scratch.0.join("fit.json")).expect("a fit file");
+    let arguments = ["scenarios.json", "fit.json", "--triangles", ".", "-o", "out"];
+    let refused = scratch.report(&[&arguments[..], &["--software"]].concat());
+    let message = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(REFUSED), "{message}");
+    assert!(message.contains("fit.json: cannot be drawn") && message.contains("perspective"), "{message}");
+    assert!(scratch.report(&[&arguments[..], &["--no-render"]].concat()).status.success());
 }

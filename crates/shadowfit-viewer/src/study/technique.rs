@@ -127,19 +127,19 @@ const NAMED: [Named; 10] = [
     },
     Named {
         name: "clusters-4",
-        what: "the same with the boxes of triangle clusters",
+        what: "4 maps, least rectangles around the triangle clusters' boxes in view, cuts from the boxes",
         receivers: Knowledge::Clusters,
         maps: || several(FitKind::Focused, SplitScheme::FromBoxes, Stabilise::Off),
     },
     Named {
         name: "histogram-4",
-        what: "the same, cuts from a histogram of the visible depth of the frame before",
+        what: "as clusters-4, cuts from a histogram of the visible depth of the frame before",
         receivers: Knowledge::Clusters,
         maps: || several(FitKind::Focused, SplitScheme::FromHistogram, Stabilise::Off),
     },
     Named {
         name: "calm-4",
-        what: "the same, maps held while they serve and moved by whole texels",
+        what: "as histogram-4, maps held while they serve and moved by whole texels",
         receivers: Knowledge::Clusters,
         maps: || several(FitKind::Focused, SplitScheme::FromHistogram, Stabilise::Hysteresis),
     },

@@ -1,0 +1,211 @@
+//! `report` as a program: reports of scenes, tuning, and how it ends when it is given nonsense.
+
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+
+use crate::support::example_program;
+
+/// The exit code of every refusal.
+const REFUSED: i32 = 2;
+/// The exit code after Ctrl-C.
+const INTERRUPTED: i32 = 130;
+/// A look at the courtyard's middle from two places.
+const PATH: &str = "near = 0.1\nfar = 60.0\nlight = { azimuth_deg = 40.0, elevation_deg = 45.0 }\n\
+    [[keys]]\neye = [5.0, 3.0, 6.0]\ntarget = [0.0, 1.0, 0.0]\n\
+    [[keys]]\neye = [4.0, 3.0, 6.5]\ntarget = [0.0, 1.0, 0.0]\n";
+/// Small pictures on the software adapter.
+const SMALL: [&str; 3] = ["--software", "--size", "96x54"];
+
+/// Folder with the files of one test, removed at the end.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str) -> Self {
+        let folder = std::env::temp_dir().join(format!("shadowfit-reports-{name}-{}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&folder);
+        std::fs::create_dir_all(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+        let scratch = Self(folder);
+        scratch.file("path.toml", PATH);
+        scratch
+    }
+
+    fn file(&self, name: &str, text: &str) {
+        std::fs::write(self.0.join(name), text).unwrap_or_else(|error| panic!("{name}: {error}"));
+    }
+
+    fn text(&self, name: &str) -> String {
+        std::fs::read_to_string(self.0.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(example_program("report"));
+        command.current_dir(&self.0).args(arguments);
+        command
+    }
+
+    fn report(&self, arguments: &[&str]) -> Output {
+        self.command(&[arguments, &SMALL].concat()).output().expect("the report starts")
+    }
+
+    fn json(&self, name: &str) -> serde_json::Value {
+        serde_json::from_str(&self.text(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn succeeded(output: &Output) {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn a_report_has_tables_plots_pictures_and_a_page_that_needs_nothing_else() {
+    let scratch = Scratch::new("whole");
+    succeeded(&scratch.report(&[
+        "courtyard",
+        "--path",
+        "path.toml",
+        "--config",
+        "xna-1",
+        "--config",
+        "clusters-4",
+        "--resolution",
+        "512",
+        "-o",
+        "out",
+    ]));
+    let report = scratch.json("out/report.json");
+    let techniques = report["techniques"].as_array().expect("a list");
+    let wrong: Vec<f64> = techniques.iter().map(|t| t["overall"]["wrong %"].as_f64().expect("a number")).collect();
+    assert!(wrong.len() == 2 && wrong[0] > 2.0 * wrong[1] && wrong[1] > 0.0, "{wrong:?}");
+    assert_eq!((report["finished"].as_bool(), report["frames"].as_array().map(Vec::len)), (Some(true), Some(2)));
+    let page = scratch.text("out/index.html");
+    assert!(page.contains("data:image/png;base64,") && page.contains("<svg"), "the page holds pictures and plots");
+    for outside in ["src=\"http", "href=\"http", "url(http", "@import"] {
+        assert!(!page.contains(outside), "the page asks for {outside}");
+    }
+    assert!(scratch.text("out/report.md").contains("| clusters-4 |"));
+    for kind in ["overlay", "heat", "picture"] {
+        let pictures = std::fs::read_dir(scratch.0.join("out/pictures")).expect("pictures");
+        let found = pictures.filter(|entry| {
+            entry.as_ref().is_ok_and(|entry| entry.file_name().to_string_lossy().ends_with(&format!("{kind}.png")))
+        });
+        assert_eq!(found.count(), 4, "{kind}s: two frames by two techniques");
+    }
+    assert!(scratch.text("out/plots/wrong.svg").contains("<svg"));
+    // What was looked at can be looked at again.
+    succeeded(&scratch.report(&["courtyard", "--path", "out/path.toml", "--config", "xna-1", "-o", "again"]));
+}
+
+#[test]
+fn a_moving_scene_and_a_sun_with_a_radius_are_judged_too() {
+    let scratch = Scratch::new("moving");
+    let arguments = ["courtyard", "--path", "path.toml", "--config", "focused-4", "--resolution", "512"];
+    let judged = |more: &[&str], out: &str| {
+        succeeded(&scratch.report(&[&arguments, more, &["-o", out]].concat()));
+        scratch.json(&format!("{out}/report.json"))["techniques"][0]["overall"].clone()
+    };
+    let still = judged(&[], "still");
+    let moving = judged(&["--play", "2"], "moving");
+    assert_ne!(still, moving, "the figure walks");
+    let soft = judged(&["--sun-radius", "3", "--sun-rays", "16"], "soft");
+    let error = |columns: &serde_json::Value| columns["mean error %"].as_f64().expect("a number");
+    assert!(error(&soft) > error(&still), "hard shadows are farther from a soft truth");
+}
+
+#[test]
+fn a_camera_that_sees_nothing_gives_a_report_of_zeros() {
+    let scratch = Scratch::new("sky");
+    scratch.file("sky.toml", "near = 0.1\nfar = 9.0\n[[keys]]\neye = [0.0, 50.0, 0.0]\nforward = [0.0, 0.9, 1.0]\n");
+    succeeded(&scratch.report(&["courtyard", "--path", "sky.toml", "--config", "clusters-4", "-o", "out"]));
+    let columns = scratch.json("out/report.json")["techniques"][0]["overall"].clone();
+    for (name, value) in columns.as_object().expect("columns") {
+        assert_eq!(value.as_f64(), Some(0.0), "{name}");
+    }
+}
+
+#[test]
+fn bad_input_is_refused_by_file_and_reason_and_nothing_is_written() {
+    let scratch = Scratch::new("refused");
+    scratch.file("broken.toml", "near = 0.1\nfar = ");
+    scratch.file("backwards.toml", &PATH.replace("far = 60.0", "far = 0.01"));
+    scratch.file("empty.gltf", r#"{"asset": {"version": "2.0"}, "scenes": [{"nodes": []}], "scene": 0}"#);
+    scratch.file("technique.toml", "[maps]\ncount = 9\n");
+    let cases: [(&[&str], &str); 9] = [
+        (&["courtyard", "--path", "broken.toml"], "broken.toml"),
+        (&["courtyard", "--path", "backwards.toml"], "backwards.toml"),
+        (&["courtyard", "--path", "nowhere.toml"], "nowhere.toml"),
+        (&["empty.gltf"], "empty"),
+        (&["nowhere.glb"], "nowhere.glb"),
+        (&["courtyard", "--config", "technique.toml"], "technique.toml: maps.count: 9"),
+        (&["courtyard", "--config", "best"], "there is no technique \"best\""),
+        (&["courtyard", "--max-memory", "0.001"], "GiB of memory for rays, more than --max-memory 0.001"),
+        (&["courtyard", "--light", "30"], "AZIMUTH,ELEVATION"),
+    ];
+    for (arguments, words) in cases {
+        let output = scratch.report(&[arguments, &["-o", "out"]].concat());
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(REFUSED), "{arguments:?}: {message}");
+        assert!(message.contains(words), "{arguments:?}: \"{words}\" is missing in: {message}");
+        assert!(!scratch.0.join("out").exists(), "{arguments:?} leaves files behind");
+    }
+}
+
+#[test]
+fn tuning_finds_the_same_technique_twice_and_says_what_each_change_bought() {
+    let scratch = Scratch::new("tuned");
+    let tuned = |out: &str| {
+        let budget = ["--maps", "2", "--resolution", "256", "--frames", "2"];
+        let whole = [&["tune", "courtyard", "--path", "path.toml"][..], &budget, &["-o", out]].concat();
+        succeeded(&scratch.report(&whole));
+        ["technique.toml", "technique.rs", "steps.md"].map(|file| scratch.text(&format!("{out}/{file}")))
+    };
+    let [technique, code, steps] = tuned("a");
+    assert_eq!(tuned("b"), [technique.clone(), code.clone(), steps.clone()]);
+    assert!(technique.contains("name = \"tuned\"") && code.starts_with("let maps = CascadeSettings"));
+    let bought = steps.lines().filter(|line| line.ends_with("% |")).count();
+    assert!(bought >= 2, "changes that helped:\n{steps}");
+    // The file is a technique that reports take.
+    let arguments = ["courtyard", "--path", "path.toml", "--config", "a/technique.toml", "--config", "xna-1"];
+    succeeded(&scratch.report(&[&arguments[..], &["--resolution", "256", "-o", "out"]].concat()));
+    let report = scratch.json("out/report.json");
+    let wrong = |index: usize| report["techniques"][index]["overall"]["wrong %"].as_f64().expect("a number");
+    assert!(wrong(0) < wrong(1), "{} and {}", wrong(0), wrong(1));
+}
+
+#[test]
+fn the_gpus_classes_are_compared_and_timed() {
+    let scratch = Scratch::new("live");
+    let output = scratch.report(&["live", "courtyard", "--path", "path.toml", "--config", "focused-4"]);
+    succeeded(&output);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.contains("judging takes") && text.contains("the processor agrees on"), "{text}");
+}
+
+#[cfg(unix)]
+#[test]
+fn what_is_finished_at_ctrl_c_is_written_and_said_to_be_a_part() {
+    let scratch = Scratch::new("stopped");
+    scratch.file("long.toml", &format!("frames_per_key = 3000\n{PATH}"));
+    let arguments = ["courtyard", "--path", "long.toml", "--config", "xna-1", "--resolution", "256", "-o", "out"];
+    let mut command = scratch.command(&[&arguments[..], &SMALL].concat());
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the report starts");
+    // The folder is made when the first frame is about to be measured.
+    while !scratch.0.join("out/pictures").is_dir() {
+        assert_eq!(child.try_wait().expect("a child"), None, "it ended before it began");
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    let stopped = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill starts");
+    assert!(stopped.success());
+    assert_eq!(child.wait().expect("a child").code(), Some(INTERRUPTED));
+    let report = scratch.json("out/report.json");
+    let frames = report["frames"].as_array().map_or(0, Vec::len);
+    assert!((1..3000).contains(&frames), "{frames} frames");
+    assert_eq!(report["finished"].as_bool(), Some(false));
+    assert!(scratch.text("out/report.md").contains("Stopped early"));
+}
