@@ -14,7 +14,7 @@ pub const FITS: u32 = 10_000;
 
 /// The hash of all fits. A change of what a fit computes changes it on purpose, and on all targets alike:
 /// `cargo test -p shadowfit-determinism` prints the new one.
-pub const HASH: u64 = 0x31c5_3b89_767f_a50d;
+pub const HASH: u64 = 0x0ce3_83d5_423d_3c8d;
 
 /// What 10,000 fits came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
