@@ -11,12 +11,19 @@ pub(crate) struct Drawing {
     /// Width and height of the judged pictures, in pixels
     #[arg(long, default_value = "1280x720", value_name = "WxH", value_parser = size)]
     size: [u32; 2],
-    /// Filter of the look-up: point, hardware_2x2, pcf_3x3 or pcf_5x5 [default: pcf_5x5]
-    #[arg(long, value_name = "NAME", value_parser = filter)]
+    #[arg(
+        long,
+        value_name = "NAME",
+        value_parser = filter,
+        help = "Filter of the look-up: point, hardware_2x2, pcf_3x3 or pcf_5x5 [default: the technique's, or pcf_5x5]"
+    )]
     filter: Option<FilterKind>,
-    /// Biases in texels, such as "normal_offset=1.5,constant=0.1": what is not named is 0 [default: what clears
-    /// planes with the filter]
-    #[arg(long, value_name = "NAME=TEXELS,...")]
+    #[arg(
+        long,
+        value_name = "NAME=TEXELS,...",
+        help = "Biases in texels, such as \"normal_offset=1.5,constant=0.1\": what is not named is 0 [default: what \
+                clears planes with the filter]"
+    )]
     bias: Option<String>,
     /// Store depths in a colour texture of 32-bit floats, compared by hand
     #[arg(long)]

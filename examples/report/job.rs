@@ -86,14 +86,13 @@ impl Job {
         let judging = self.drawing.judging();
         let comparison = Comparison::new(self.drawing.gpu()?, scene, judging)?;
         let aspect = judging.size[0] as f32 / judging.size[1] as f32;
-        let path = match &self.path {
-            Some(file) => CameraPath::read(file, aspect)?,
-            None => {
-                let subject = comparison.subject();
-                let found = find(&subject.rays.tracer, subject.bounds(), aspect).with_context(|| self.title())?;
-                notes.extend(found.notes);
-                found.path
-            }
+        let path = if let Some(file) = &self.path {
+            CameraPath::read(file, aspect)?
+        } else {
+            let subject = comparison.subject();
+            let found = find(&subject.rays.tracer, subject.bounds(), aspect).with_context(|| self.title())?;
+            notes.extend(found.notes);
+            found.path
         };
         let light = self.light.or(path.light).or(sun).unwrap_or_default();
         let frames = self.frames(&path, &light);

@@ -123,7 +123,7 @@ impl Pictures {
 
     /// Whether a frame is drawn. Those of quick looks are not neighbours, so that they have no crawl.
     fn takes(&self, frame: &Frame) -> bool {
-        (frame.frame as u32).is_multiple_of(self.every)
+        frame.frame.is_multiple_of(self.every)
     }
 
     fn count(&self, scenarios: &Scenarios) -> usize {

@@ -1,5 +1,6 @@
 //! `report tune`: the technique with the least error in a scene, within a budget.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
 
@@ -23,9 +24,15 @@ pub(crate) struct Args {
     /// Frames of the path that are measured, evenly picked
     #[arg(long, default_value_t = 12, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     frames: u32,
-    /// What counts against a technique, such as "wrong=1,hole=20": names are wrong, false_shadow, false_light, hole,
-    /// mean_error and crawl, all shares in per cent
-    #[arg(long, value_name = "NAME=WEIGHT,...", value_parser = weights, default_value = "")]
+    #[arg(
+        long,
+        value_name = "NAME=WEIGHT,...",
+        value_parser = weights,
+        default_value = "",
+        hide_default_value = true,
+        help = "What counts against a technique, such as \"wrong=1,hole=20\": wrong, false_shadow, false_light, hole, \
+                mean_error and crawl, all shares in per cent"
+    )]
     weights: Weights,
     /// Folder for technique.toml, technique.rs and steps.md
     #[arg(short, value_name = "DIR")]
@@ -95,8 +102,9 @@ fn steps(tuned: &Tuned) -> String {
         } else {
             "-".to_owned()
         };
-        text += &format!(
-            "| {} | {:.4} | {:.4} | {:.4} | {:.4} | {:.4} | {bought} |\n",
+        let _ = writeln!(
+            text,
+            "| {} | {:.4} | {:.4} | {:.4} | {:.4} | {:.4} | {bought} |",
             step.what,
             step.error,
             percent(step.tally.wrong),

@@ -288,7 +288,7 @@ pub fn fit_map(map: &MapFit) -> FitMap {
 #[derive(Debug)]
 pub struct Fitter {
     technique: Technique,
-    fitter: CascadeFitter,
+    cascades: CascadeFitter,
     depths: Option<SeenDepths>,
     storage: Vec<DVec2>,
 }
@@ -300,7 +300,7 @@ impl Fitter {
         // Room for all that the filter reads beside a point.
         let fit = &mut technique.maps.fit;
         fit.kernel_margin = fit.kernel_margin.max(bias::reach(technique.filter));
-        Self { technique, fitter: CascadeFitter::new(), depths: None, storage: Vec::new() }
+        Self { technique, cascades: CascadeFitter::new(), depths: None, storage: Vec::new() }
     }
 
     /// The maps of a frame, in order of their `far`.
@@ -310,7 +310,7 @@ impl Fitter {
     /// When the camera or the settings make no sense.
     pub fn fit(&mut self, subject: &Subject, shot: &Shot) -> Result<Vec<MapFit>> {
         if shot.is_first {
-            self.fitter.reset();
+            self.cascades.reset();
             self.depths = None;
         }
         let boxes = subject.boxes(self.technique.receivers);
@@ -319,8 +319,8 @@ impl Fitter {
         let views = [shot.camera.frustum().context("the camera")?];
         let mut input = boxes.input(&views, shot.direction);
         input.histogram = self.depths.as_ref().map(SeenDepths::histogram);
-        let cascades = self.fitter.fit(&input, &self.technique.maps, &mut Workspace::new(&mut self.storage));
-        let maps = cascades.with_context(|| format!("technique {}", self.technique.name))?;
+        let fitted = self.cascades.fit(&input, &self.technique.maps, &mut Workspace::new(&mut self.storage));
+        let maps = fitted.with_context(|| format!("technique {}", self.technique.name))?;
         if self.technique.maps.splits == SplitScheme::FromHistogram {
             self.depths = Some(SeenDepths::trace(&subject.rays.tracer, &shot.camera, shot.direction));
         }

@@ -58,7 +58,7 @@ fn literal(name: &str, fields: &str) -> String {
 }
 
 /// A field that is a plain variant of an enum.
-fn differs<T: PartialEq + std::fmt::Debug>(field: &str, value: T, default: T, ty: &str) -> Option<String> {
+fn differs<T: Copy + PartialEq + std::fmt::Debug>(field: &str, value: T, default: T, ty: &str) -> Option<String> {
     (value != default).then(|| format!("{field}: {ty}::{value:?}"))
 }
 
@@ -112,7 +112,7 @@ mod tests {
             splits: SplitScheme::Practical(0.8),
             overlap: 0.1,
             stabilise: Stabilise::Hysteresis,
-            hold: HoldSettings { margin: 0.5, growth: 2.0, waste: 3.0, horizon: 9 },
+            hold: HoldSettings { margin: 0.5, waste: 3.0, horizon: 9, ..HoldSettings::default() },
             ..CascadeSettings::default()
         };
         let bias = BiasSettings { constant: 0.1, slope: 0.2, normal_offset: 0.3, receiver_plane: 1.5 };

@@ -142,9 +142,9 @@ pub fn tune(
             steps[kept].is_kept = true;
         }
     }
-    best.name = "tuned".to_owned();
-    best.what = format!("the least error found with {} maps of {} texels", budget.maps, budget.resolution);
-    Ok(Tuned { technique: best, tally, steps, stopped_early: !goes_on })
+    let what = format!("the least error found with {} maps of {} texels", budget.maps, budget.resolution);
+    let technique = Technique { name: "tuned".to_owned(), what, ..best };
+    Ok(Tuned { technique, tally, steps, stopped_early: !goes_on })
 }
 
 /// What many renderers do: boxes of the frustum's slices, a tent of 3×3 and an offset along the normal.
