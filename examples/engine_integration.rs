@@ -156,7 +156,7 @@ impl Engine {
         let adapter = instance.request_adapter(&wgpu::RequestAdapterOptions::default()).await?;
         let (device, queue) = adapter.request_device(&wgpu::DeviceDescriptor::default()).await?;
 
-        // STEP 1: make the shadow map. 2048² texels, 32-bit depth, hardware 2×2 filter unless told otherwise.
+        // STEP 1: make the shadow map. 2048² texels, 32-bit depth, a tent of 5×5 unless told otherwise.
         let shadow_map = ShadowMap::new(&device, &ShadowMapDescriptor::default())?;
 
         let camera_uniform = device.create_buffer(&wgpu::BufferDescriptor {

@@ -20,7 +20,7 @@ fn main() -> Result<(), FitError> {
     let direction = Vec3::new(0.3, -0.8, 0.2); // the way the light travels
     let settings = FitSettings::default().with_max_distance(30.0);
     let light = fit(&camera.frustum()?, direction, &settings)?;
-    let bias = Bias::from_texels(&BiasSettings::automatic(FilterKind::default()), &light);
+    let bias = Bias::from_texels(&BiasSettings::automatic_normal_offset(FilterKind::Hardware2x2), &light);
 
     println!("positions are relative to the eye at {}", light.origin);
     println!("draw the map with clip_from_world {}", light.clip_from_world);

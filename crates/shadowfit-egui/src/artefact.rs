@@ -66,10 +66,10 @@ impl Artefact {
     pub const fn cure(self) -> &'static str {
         match self {
             Self::Acne => {
-                "The shadow is looked up a little above the surface, along its normal. The normal offset is \
-                 sized to the filter's reach in texels, which is the least that clears a plane at any slope, and \
-                 a constant bias of one texel clears the creases of curved things; more would detach shadows \
-                 from their casters."
+                "Each texel is compared with the depth that the lit surface's own plane has there, moved toward \
+                 the light by the plane's rise over the reach of one comparison: the least that clears a plane at \
+                 any slope. A constant bias of one texel clears the creases of curved things; more would detach \
+                 shadows from their casters."
             }
             Self::Aliasing => {
                 "The shadow distance is shortened, so that the map's texels are spent near the camera, the map \

@@ -105,8 +105,8 @@ const FILTER: Parameter = Parameter {
     group: Group::Map,
     label: "Filter",
     unit: "",
-    help: "How the stored depths become a shadow factor. A wider filter softens jaggies and needs more normal \
-           offset, since it reaches farther along the surface.",
+    help: "How the stored depths become a shadow factor. A wider filter softens jaggies, and loses what is \
+           thinner than it; by the normal offset alone it needs more bias, since it reaches farther.",
     kind: Kind::Choice(Choice {
         options: &[
             ChoiceOption {
@@ -213,8 +213,9 @@ const NORMAL_OFFSET: Parameter = Parameter {
     group: Group::Bias,
     label: "Normal offset",
     unit: "texels",
-    help: "Looks the shadow up a little above the surface, along its normal and more at grazing light. The best \
-           cure for acne: about 0.71 texels clear the point filter and 1.42 the 2×2 one, on any slope.",
+    help: "Looks the shadow up a little above the surface, along its normal and more at grazing light. The cure for \
+           acne where shaders know no receiver plane: 0.71 texels clear the point filter, 1.42 the 2×2 one, 2.83 and \
+           4.24 those of 3×3 and 5×5, on any slope.",
     kind: Kind::Number(Number {
         min: 0.0,
         max: 16.0,
