@@ -7,6 +7,8 @@ mod exact_counts_gpu;
 mod harness;
 mod layout;
 mod parity_gpu;
+mod several_maps_gpu;
+mod tents_gpu;
 
 use std::path::PathBuf;
 

@@ -78,7 +78,8 @@ pub(super) struct Harness<'a> {
 }
 
 impl<'a> Harness<'a> {
-    /// Draws `casters`, triangles relative to `origin`, into every map; `casters[i]` into map i.
+    /// Draws `casters`, triangles relative to `origin`, into every map; `casters[i]` into map i. Each map is a choice
+    /// at all view depths.
     pub(super) fn new(
         gpu: &'a Gpu,
         descriptor: &ShadowMapDescriptor,
@@ -87,10 +88,21 @@ impl<'a> Harness<'a> {
         bias: &BiasSettings,
         casters: &[Vec<Vec3>],
     ) -> Self {
-        let mut map = ShadowMap::new(&gpu.device, descriptor).expect("a possible shadow map");
         let maps: Vec<MapFit> = fits.iter().map(|fit| MapFit::from(*fit)).collect();
-        let view = MapView::from_eye(origin, Vec3::NEG_Z);
-        map.prepare(&gpu.queue, &view, &maps, bias).expect("fits of this map");
+        Self::with_maps(gpu, descriptor, &MapView::from_eye(origin, Vec3::NEG_Z), &maps, bias, casters)
+    }
+
+    /// The same for maps that are chosen by view depth.
+    pub(super) fn with_maps(
+        gpu: &'a Gpu,
+        descriptor: &ShadowMapDescriptor,
+        view: &MapView,
+        maps: &[MapFit],
+        bias: &BiasSettings,
+        casters: &[Vec<Vec3>],
+    ) -> Self {
+        let mut map = ShadowMap::new(&gpu.device, descriptor).expect("a possible shadow map");
+        map.prepare(&gpu.queue, view, maps, bias).expect("fits of this map");
         let pipeline = caster_pipeline(gpu, &map);
         let buffers: Vec<wgpu::Buffer> =
             casters.iter().map(|corners| vertex_buffer(gpu, &positions(corners))).collect();
