@@ -205,9 +205,9 @@ impl BiasSettings {
     /// stays within 65536 texel sizes of the origin; [`Bias::automatic`] has no such limit.
     /// Geometric normals are assumed.
     ///
-    /// It is the receiver-plane form, for the reach of one comparison alone: judged against rays it
-    /// leaves a tenth of the wrong pixels that the [normal offset](Self::automatic_normal_offset)
-    /// does.
+    /// It is the receiver-plane form, for the reach of one comparison alone: judged against rays with
+    /// [`FilterKind::Pcf5x5`] it leaves a tenth (fine texels) to two fifths (coarse ones) of the wrong
+    /// pixels that the [normal offset](Self::automatic_normal_offset) does.
     pub fn automatic(filter: FilterKind) -> Self {
         let one_comparison = if filter == FilterKind::Point { Reach::POINT } else { Reach::HARDWARE_2X2 };
         Self {
