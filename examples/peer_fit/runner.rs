@@ -5,11 +5,11 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use glam::{DVec2, DVec3, Vec3};
 use shadowfit::{
-    Aabb, Boxes, CascadeFitter, CascadeMap, CascadeSettings, Cascades, Clusters, FitInput, NormalCone,
-    PerspectiveCamera, SplitScheme, ViewFrustum, Workspace,
+    Aabb, Boxes, CascadeFitter, CascadeMap, CascadeSettings, Cascades, Clusters, FitInput, NormalCone, SplitScheme,
+    ViewFrustum, Workspace,
 };
 use shadowfit_truth::Tracer;
-use shadowfit_truth::peers::{FitFile, FitFrame, FitMap, Frame, Scenarios, Scene};
+use shadowfit_truth::peers::{FitFile, FitFrame, FitMap, Scenarios, Scene};
 use shadowfit_viewer::study::{Knowledge, SeenDepths, Technique, fit_map};
 use shadowfit_wgpu::MapFit;
 
@@ -98,27 +98,14 @@ fn prepare(scenarios: &Scenarios, index: usize, known: &[Known]) -> Result<Prepa
     let before = scenarios.previous(index).map(|before| &scenarios.frames[before]);
     let tracer = known[frame.scene].tracer.as_ref();
     let direction = DVec3::from_array(frame.light_dir).as_vec3();
-    let view = camera(frame).frustum().with_context(|| frame.id.clone())?;
+    let view = frame.camera().frustum().with_context(|| frame.id.clone())?;
     Ok(Prepared {
         view,
         direction,
         scene: frame.scene,
         is_first: before.is_none(),
-        depths: before.zip(tracer).map(|(before, tracer)| SeenDepths::trace(tracer, &camera(before), direction)),
+        depths: before.zip(tracer).map(|(before, tracer)| SeenDepths::trace(tracer, &before.camera(), direction)),
     })
-}
-
-fn camera(frame: &Frame) -> PerspectiveCamera {
-    let world_from_view = frame.view_from_world().inverse();
-    PerspectiveCamera {
-        eye: world_from_view.col(3).truncate(),
-        forward: -world_from_view.col(2).truncate().as_vec3(),
-        up: world_from_view.col(1).truncate().as_vec3(),
-        fov_y: frame.fov_y_deg.to_radians() as f32,
-        aspect: frame.aspect as f32,
-        near: frame.near as f32,
-        far: frame.far as f32,
-    }
 }
 
 /// The maps of all frames, and the nanoseconds that each took.

@@ -7,8 +7,8 @@ use image::{Rgba, RgbaImage};
 use plotters::style::text_anchor::HPos;
 use shadowfit_truth::Class;
 
-use crate::tables::number;
 use crate::text::{Strip, scale, width};
+use shadowfit_truth::peers::readable;
 
 /// The kinds of wrong pixels, their names and colours (sRGB).
 const KINDS: [(Class, &str, [u8; 3]); 4] = [
@@ -61,7 +61,7 @@ fn texts(classes: &[Class]) -> Vec<(String, [u8; 3])> {
     let judged = classes.iter().filter(|class| **class != Class::NotJudged).count();
     let share = |kind: Class| {
         let count = classes.iter().filter(|class| **class == kind).count();
-        if judged == 0 { "-".to_owned() } else { format!("{} %", number(100.0 * count as f64 / judged as f64)) }
+        if judged == 0 { "-".to_owned() } else { format!("{} %", readable(100.0 * count as f64 / judged as f64)) }
     };
     KINDS.iter().map(|(kind, name, colour)| (format!("{name} {}", share(*kind)), *colour)).collect()
 }

@@ -14,8 +14,9 @@ use image::imageops::{FilterType, resize};
 
 use crate::data::{FramePictures, Run, TechniqueRun, meaning, value, wrong_at};
 use crate::plots::{Plot, colour};
-use crate::tables::{Table, facts, number, stopped, tables};
+use crate::tables::{Table, facts, stopped, tables};
 use crate::write::png;
+use shadowfit_truth::peers::readable;
 
 /// Widest picture of the page, in pixels; wider ones are scaled down, so that it can be sent.
 const MAX_WIDTH: u32 = 1280;
@@ -197,7 +198,7 @@ fn figure(
     };
     let name = escape(&technique.name);
     let wrong = technique.frames.get(pictures.frame).and_then(|columns| value(columns, crate::data::WRONG));
-    let wrong = wrong.map(|wrong| format!(" <span>{} % wrong</span>", number(wrong))).unwrap_or_default();
+    let wrong = wrong.map(|wrong| format!(" <span>{} % wrong</span>", readable(wrong))).unwrap_or_default();
     let source = data_uri(&folder.join(file))?;
     Ok(format!(
         "<figure><img src=\"{source}\" alt=\"{name}, {kind}\" loading=\"lazy\">\

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use glam::{DVec3, UVec2};
 use indicatif::{ProgressBar, ProgressStyle};
+use shadowfit::LightFit;
 use shadowfit::settings::{BiasSettings, FilterKind, MapFormat};
-use shadowfit::{LightFit, PerspectiveCamera};
 use shadowfit_render::Gpu;
 use shadowfit_scene::Scene;
 use shadowfit_truth::Tracer;
@@ -194,20 +194,7 @@ fn descriptor(
 
 fn shot(frame: &Frame, is_first: bool) -> Shot {
     let direction = DVec3::from_array(frame.light_dir).as_vec3();
-    Shot { camera: camera(frame), direction, is_first }
-}
-
-pub(crate) fn camera(frame: &Frame) -> PerspectiveCamera {
-    let world_from_view = frame.view_from_world().inverse();
-    PerspectiveCamera {
-        eye: world_from_view.col(3).truncate(),
-        forward: -world_from_view.col(2).truncate().as_vec3(),
-        up: world_from_view.col(1).truncate().as_vec3(),
-        fov_y: frame.fov_y_deg.to_radians() as f32,
-        aspect: frame.aspect as f32,
-        near: frame.near as f32,
-        far: frame.far as f32,
-    }
+    Shot { camera: frame.camera(), direction, is_first }
 }
 
 fn map_fits(maps: &[FitMap], shot: &Shot) -> Result<Vec<MapFit>> {

@@ -9,8 +9,8 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::data::{Run, TechniqueRun, value};
-use crate::tables::number;
 use crate::text::{FAMILY, register};
+use shadowfit_truth::peers::readable;
 
 /// Columns that are plotted where the run has them.
 const COLUMNS: [&str; 6] = ["wrong %", "false shadow %", "false light %", "hole %", "ppt p95", "crawl %"];
@@ -135,7 +135,7 @@ where
         .x_labels(run.frames.len().min(16))
         .y_labels(6)
         .x_label_formatter(&place_in_group)
-        .y_label_formatter(&|value| number(*value))
+        .y_label_formatter(&|value| readable(*value))
         .label_style((FAMILY, TEXT).into_font().color(&INK))
         .draw()?;
     area.draw(&Text::new(column.to_owned(), (10, 20), text_style(TITLE, HPos::Left)))?;

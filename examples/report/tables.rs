@@ -5,6 +5,7 @@
 use std::fmt::Write;
 
 use anyhow::Result;
+use shadowfit_truth::peers::readable;
 
 use crate::data::{Better, Columns, Run, better};
 
@@ -99,7 +100,7 @@ fn table(title: &str, rows: &[(&str, Option<&Columns>)]) -> Table {
         columns.iter().map(|name| best(name, rows.iter().map(|(_, row)| value(*row, name)))).collect();
     let cells = |row: Option<&Columns>| {
         let cell = |(name, best): (&String, &Option<String>)| {
-            let text = number(value(row, name));
+            let text = readable(value(row, name));
             let is_best = best.as_ref() == Some(&text);
             (text, is_best)
         };
@@ -113,7 +114,7 @@ fn table(title: &str, rows: &[(&str, Option<&Columns>)]) -> Table {
 fn best(column: &str, values: impl Iterator<Item = f64>) -> Option<String> {
     let mut values: Vec<f64> = values.filter(|value| !value.is_nan()).collect();
     values.sort_by(f64::total_cmp);
-    let (first, last) = (number(*values.first()?), number(*values.last()?));
+    let (first, last) = (readable(*values.first()?), readable(*values.last()?));
     match better(column) {
         _ if first == last => None,
         Better::Lower => Some(first),
@@ -131,18 +132,6 @@ fn markdown(table: &Table) -> String {
         let _ = writeln!(text, "| {} | {} |", escape(name), cells.join(" | "));
     }
     text
-}
-
-/// A number as people read it: three digits and at most four decimals; a dash where there is none.
-pub(crate) fn number(value: f64) -> String {
-    if !value.is_finite() {
-        return if value.is_nan() { "-".to_owned() } else { value.to_string() };
-    }
-    let digits_before = if value == 0.0 { 1 } else { value.abs().log10().floor() as i32 + 1 };
-    let decimals = (3 - digits_before).clamp(0, 4) as usize;
-    let text = format!("{value:.decimals$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
 /// A whole number with spaces between its thousands.
@@ -177,17 +166,6 @@ fn longest_fence(text: &str) -> usize {
 mod tests {
     use super::*;
     use crate::data::tests::run;
-
-    #[test]
-    fn numbers_have_three_digits_and_at_most_four_decimals() {
-        let cases =
-            [(0.0, "0"), (-0.0, "0"), (-1e-9, "0"), (0.00094, "0.0009"), (0.0392, "0.0392"), (-0.2461, "-0.246")];
-        let more = [(2.5, "2.5"), (9.004, "9"), (40.66, "40.7"), (99.96, "100"), (460_308.4, "460308")];
-        for (value, text) in cases.into_iter().chain(more) {
-            assert_eq!(number(value), text, "{value}");
-        }
-        assert_eq!([number(f64::NAN), number(f64::INFINITY)], ["-", "inf"]);
-    }
 
     #[test]
     fn the_best_value_of_a_column_is_bold_where_there_is_a_difference_that_matters() {

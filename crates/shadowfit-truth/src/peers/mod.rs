@@ -27,6 +27,6 @@ pub use quantiles::Histogram;
 pub use scenarios::{Frame, Ground, Scenarios, Scene};
 pub use shadow_map::{Gradients, Place, ShadowMap};
 pub use study::Study;
-pub use table::{FitTable, GroupTally, Row, overall_markdown, to_json, to_markdown};
+pub use table::{FitTable, GroupTally, Row, overall_markdown, readable, to_json, to_markdown};
 pub use tally::{Shimmer, Tally};
 pub use visible::{RAYS, VisiblePoint, VisiblePoints};

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use glam::{DMat4, DVec3};
 use serde::{Deserialize, Serialize};
+use shadowfit::PerspectiveCamera;
 
 use super::error::{PeersError, Problem, check_finite, read_json};
 
@@ -142,6 +143,20 @@ impl Frame {
     /// Tangent of half of the vertical field of view.
     pub fn tan_half_fov(&self) -> f64 {
         (self.fov_y_deg.to_radians() * 0.5).tan()
+    }
+
+    /// The camera: its eye in f64, the rest rounded to f32.
+    pub fn camera(&self) -> PerspectiveCamera {
+        let world_from_view = self.view_from_world().inverse();
+        PerspectiveCamera {
+            eye: world_from_view.col(3).truncate(),
+            forward: -world_from_view.col(2).truncate().as_vec3(),
+            up: world_from_view.col(1).truncate().as_vec3(),
+            fov_y: self.fov_y_deg.to_radians() as f32,
+            aspect: self.aspect as f32,
+            near: self.near as f32,
+            far: self.far as f32,
+        }
     }
 
     fn check(&self, element: &impl Fn(&str) -> String) -> Result<(), Problem> {

@@ -228,18 +228,21 @@ fn markdown(names: &[String], rows: impl Iterator<Item = (String, Vec<String>)>)
     text
 }
 
-/// A number as people read it: whole texels, else three digits and at most four decimals.
+/// A number as people read it: whole texels, else as [`readable`].
 fn cell(column: &str, value: f64) -> String {
+    if column.starts_with("crit") && value.is_finite() { format!("{value:.0}") } else { readable(value) }
+}
+
+/// A number as people read it: three digits and at most four decimals; a dash for what is not a number.
+pub fn readable(value: f64) -> String {
     if !value.is_finite() {
         return if value.is_nan() { "-".to_owned() } else { value.to_string() };
-    }
-    if column.starts_with("crit") {
-        return format!("{value:.0}");
     }
     let digits_before = if value == 0.0 { 1 } else { value.abs().log10().floor() as i32 + 1 };
     let decimals = (3 - digits_before).clamp(0, 4) as usize;
     let text = format!("{value:.decimals$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
 fn find<'a>(rows: &'a [(String, Row)], name: &str) -> Option<&'a Row> {
@@ -268,7 +271,15 @@ mod tests {
 
     #[test]
     fn numbers_have_three_digits_and_at_most_four_decimals() {
-        let cases = [(0.0, "0"), (0.00094, "0.0009"), (0.0392, "0.0392"), (-0.2461, "-0.246"), (2.5, "2.5")];
+        let cases = [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (-1e-9, "0"),
+            (0.00094, "0.0009"),
+            (0.0392, "0.0392"),
+            (-0.2461, "-0.246"),
+            (2.5, "2.5"),
+        ];
         let more = [(9.004, "9"), (40.66, "40.7"), (99.96, "100"), (119.2, "119"), (1234.5, "1234")];
         for (value, text) in cases.into_iter().chain(more) {
             assert_eq!(cell("used %", value), text, "{value}");
