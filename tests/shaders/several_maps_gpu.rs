@@ -112,7 +112,7 @@ fn a_map_in_the_corner_of_a_larger_layer_is_read_like_one_that_fills_it() {
     for filter in FilterKind::ALL {
         let answers = [[256, 256], [512, 1024]].map(|resolution| {
             let descriptor = ShadowMapDescriptor { resolution, filter, ..ShadowMapDescriptor::default() };
-            let harness = Harness::new(&gpu, &descriptor, DVec3::ZERO, &[fit], &NO_BIAS, &[half.clone()]);
+            let harness = Harness::new(&gpu, &descriptor, DVec3::ZERO, &[fit], &NO_BIAS, std::slice::from_ref(&half));
             harness.ask(0, &points).iter().map(|answer| answer.factor).collect::<Vec<f32>>()
         });
         let shadowed = answers[0].iter().filter(|factor| **factor < 0.5).count();
