@@ -134,7 +134,7 @@ fn bad_input_is_refused_by_file_and_reason_and_nothing_is_written() {
     scratch.file("backwards.toml", &PATH.replace("far = 60.0", "far = 0.01"));
     scratch.file("empty.gltf", r#"{"asset": {"version": "2.0"}, "scenes": [{"nodes": []}], "scene": 0}"#);
     scratch.file("technique.toml", "[maps]\ncount = 9\n");
-    let cases: [(&[&str], &str); 9] = [
+    let cases: [(&[&str], &str); 12] = [
         (&["courtyard", "--path", "broken.toml"], "broken.toml"),
         (&["courtyard", "--path", "backwards.toml"], "backwards.toml"),
         (&["courtyard", "--path", "nowhere.toml"], "nowhere.toml"),
@@ -142,8 +142,11 @@ fn bad_input_is_refused_by_file_and_reason_and_nothing_is_written() {
         (&["nowhere.glb"], "nowhere.glb"),
         (&["courtyard", "--config", "technique.toml"], "technique.toml: maps.count: 9"),
         (&["courtyard", "--config", "best"], "there is no technique \"best\""),
-        (&["courtyard", "--max-memory", "0.001"], "GiB of memory for rays, more than --max-memory 0.001"),
+        (&["courtyard", "--max-memory", "0.001"], "GiB of memory, more than --max-memory 0.001"),
         (&["courtyard", "--light", "30"], "AZIMUTH,ELEVATION"),
+        (&["courtyard", "--units-per-metre", "0"], "0 is not a number above 0"),
+        (&["courtyard", "--sun-radius", "NaN"], "NaN degrees; give 0 to 45"),
+        (&["courtyard", "--bias", "normal_offset"], "\"normal_offset\" is not NAME=TEXELS"),
     ];
     for (arguments, words) in cases {
         let output = scratch.report(&[arguments, &["-o", "out"]].concat());

@@ -1,6 +1,6 @@
 //! How pictures are drawn and judged: the arguments that all kinds of reports share.
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use shadowfit::params;
 use shadowfit::settings::{BiasSettings, FilterKind, MapFormat, Settings};
 use shadowfit_render::{AdapterChoice, Gpu};
@@ -28,11 +28,11 @@ pub(crate) struct Drawing {
     /// Store depths in a colour texture of 32-bit floats, compared by hand
     #[arg(long)]
     color_format: bool,
-    /// Length of the scene's unit in metres is 1 / this: shadow rays start a thousandth of a metre over the surface
-    #[arg(long, default_value_t = 1.0, value_name = "N")]
+    /// Units of the scene to a metre: shadow rays start a thousandth of a metre over the surface
+    #[arg(long, default_value_t = 1.0, value_name = "N", value_parser = positive)]
     units_per_metre: f64,
     /// Angular radius of the sun, in degrees (the real one's is 0.27): truth becomes a mean of many rays
-    #[arg(long, default_value_t = 0.0, value_name = "DEG")]
+    #[arg(long, default_value_t = 0.0, value_name = "DEG", value_parser = radius)]
     sun_radius: f64,
     /// Rays to a sun that is no point
     #[arg(long, default_value_t = 64, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
@@ -101,6 +101,20 @@ impl Drawing {
         }
         Ok(settings.bias)
     }
+}
+
+/// A number above 0.
+pub(crate) fn positive(text: &str) -> Result<f64> {
+    let value: f64 = text.parse().with_context(|| format!("\"{text}\" is no number"))?;
+    ensure!(value.is_finite() && value > 0.0, "{value} is not a number above 0");
+    Ok(value)
+}
+
+/// Angular radius of a sun, in degrees.
+fn radius(text: &str) -> Result<f64> {
+    let value: f64 = text.parse().with_context(|| format!("\"{text}\" is no number"))?;
+    ensure!((0.0..=45.0).contains(&value), "{value} degrees; give 0 to 45");
+    Ok(value)
 }
 
 fn size(text: &str) -> Result<[u32; 2]> {
