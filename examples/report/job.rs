@@ -95,7 +95,10 @@ impl Job {
             CameraPath::read(file, aspect)?
         } else {
             let subject = comparison.subject();
-            let found = find(&subject.rays.tracer, subject.bounds(), aspect).with_context(|| self.title())?;
+            let origin = subject.rays.origin;
+            let bounds = subject.bounds().map(|corner| (corner.as_dvec3() - origin).as_vec3());
+            let mut found = find(&subject.rays.tracer, bounds, aspect).with_context(|| self.title())?;
+            found.path.frames.iter_mut().for_each(|frame| frame.camera.eye += origin);
             notes.extend(found.notes);
             found.path
         };

@@ -93,3 +93,18 @@ fn the_figures_are_those_of_the_same_scene_turned_moved_and_in_another_unit() {
         }
     }
 }
+
+#[test]
+fn a_scene_a_hundred_kilometres_from_the_origin_is_judged_as_at_home() {
+    let filter = FilterKind::Pcf3x3;
+    let technique = || single(FitKind::Focused, filter, BiasSettings::automatic(filter));
+    let home = box_on_a_floor().judged(technique());
+    // Whole metres, which f32 holds exactly there.
+    let away = box_on_a_floor().judged_away(technique(), Vec3::new(100_000.0, 500.0, -75_000.0));
+    let [home_shares, away_shares] = [&home, &away].map(shares);
+    println!("{home_shares:?} at home, {away_shares:?} away");
+    assert!(home.facing.abs_diff(away.facing) * 1000 <= home.facing, "{} and {}", home.facing, away.facing);
+    for (home, away) in home_shares.iter().zip(away_shares) {
+        assert!((home - away).abs() < 0.001, "{home_shares:?} at home, {away_shares:?} away");
+    }
+}

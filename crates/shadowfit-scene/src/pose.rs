@@ -1,6 +1,6 @@
 //! A scene at a moment: world transforms, morph weights, and the triangles that follow.
 
-use glam::{Mat4, Vec3};
+use glam::{DVec3, Mat4, Vec3};
 
 use crate::sample::{Sample, sample};
 use crate::{Node, Scene, Transform};
@@ -142,18 +142,32 @@ impl Pose {
     /// Mirrored instances ([`Pose::is_mirrored`]) have their second and third corner swapped, so
     /// that all geometric normals point outward.
     pub fn triangles(&self, scene: &Scene) -> Vec<Triangle> {
+        self.triangles_from(scene, DVec3::ZERO)
+    }
+
+    /// The same relative to a world position, in metres: far from the world's own origin, where f32 world positions are
+    /// coarse, what is modelled near its node keeps its digits.
+    pub fn triangles_from(&self, scene: &Scene, origin: DVec3) -> Vec<Triangle> {
         let instances = scene.instances();
         let count = |i: &Instance| scene.meshes[i.mesh].primitives[i.primitive].indices.len() / 3;
         let mut triangles = Vec::with_capacity(instances.iter().map(count).sum());
         for (number, instance) in instances.iter().enumerate() {
-            self.instance_triangles(scene, instance, number as u32, &mut triangles);
+            self.instance_triangles(scene, instance, (number as u32, origin), &mut triangles);
         }
         triangles
     }
 
-    fn instance_triangles(&self, scene: &Scene, instance: &Instance, number: u32, triangles: &mut Vec<Triangle>) {
+    fn instance_triangles(
+        &self,
+        scene: &Scene,
+        instance: &Instance,
+        (number, origin): (u32, DVec3),
+        triangles: &mut Vec<Triangle>,
+    ) {
         let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
-        let world_from_local = self.world_from_instance(scene, instance);
+        let mut world_from_local = self.world_from_instance(scene, instance);
+        let from_origin = (world_from_local.w_axis.truncate().as_dvec3() - origin).as_vec3();
+        world_from_local.w_axis = from_origin.extend(1.0);
         let deformed = self.deform(scene, instance);
         let local = deformed.as_ref().map_or(&primitive.positions, |d| &d.positions);
         let world: Vec<Vec3> = local.iter().map(|&p| world_from_local.transform_point3(p)).collect();

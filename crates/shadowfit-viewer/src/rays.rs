@@ -1,7 +1,7 @@
 //! A scene's casters as rays see them: the same triangles and cut-outs that the renderer draws
 //! into the shadow map.
 
-use glam::{Vec2, Vec4};
+use glam::{DVec3, Vec2, Vec4};
 use shadowfit_scene::{AlphaMode, Image, Instance, Pose, Primitive, Scene, Texture, Triangle};
 use shadowfit_truth::{AlphaImage, CutOut, CutOuts, Tracer, Wrap};
 
@@ -11,36 +11,43 @@ use shadowfit_truth::{AlphaImage, CutOut, CutOuts, Tracer, Wrap};
 pub struct SceneRays {
     /// Answers rays; triangle numbers are those of `triangles`.
     pub tracer: Tracer,
-    /// The casters' triangles, world space, in metres.
+    /// The casters' triangles, relative to the origin, in metres.
     pub triangles: Vec<Triangle>,
+    /// World position that rays and triangles are relative to, in metres.
+    pub origin: DVec3,
 }
 
 impl SceneRays {
     /// Moves everything to another pose of the same scene.
     pub fn set_pose(&mut self, scene: &Scene, pose: &Pose) {
-        let triangles = casters(scene, &scene.instances(), pose);
+        let triangles = casters(scene, &scene.instances(), pose, self.origin);
         if self.tracer.set_triangles(triangles.iter().map(|triangle| triangle.vertices)).is_err() {
             // Another scene after all.
-            *self = Self::new(scene, pose);
+            *self = Self::from_origin(scene, pose, self.origin);
             return;
         }
         self.triangles = triangles;
     }
 
-    /// Builds the rays' view of a scene in a pose.
+    /// Builds the rays' view of a scene in a pose, in world space.
     pub fn new(scene: &Scene, pose: &Pose) -> Self {
+        Self::from_origin(scene, pose, DVec3::ZERO)
+    }
+
+    /// The same relative to a world position, in metres, for scenes far from the world's own origin.
+    pub fn from_origin(scene: &Scene, pose: &Pose, origin: DVec3) -> Self {
         let instances = scene.instances();
-        let triangles = casters(scene, &instances, pose);
+        let triangles = casters(scene, &instances, pose, origin);
         let tracer = Tracer::new(triangles.iter().map(|triangle| triangle.vertices))
             .with_cut_outs(cut_outs(scene, &instances, &triangles));
-        Self { tracer, triangles }
+        Self { tracer, triangles, origin }
     }
 }
 
 /// The triangles that cast, in the order of the renderer's numbers.
-fn casters(scene: &Scene, instances: &[Instance], pose: &Pose) -> Vec<Triangle> {
+fn casters(scene: &Scene, instances: &[Instance], pose: &Pose, origin: DVec3) -> Vec<Triangle> {
     let alpha_of = |triangle: &Triangle| material(scene, instances, triangle).alpha;
-    pose.triangles(scene).into_iter().filter(|triangle| alpha_of(triangle) != AlphaMode::Blend).collect()
+    pose.triangles_from(scene, origin).into_iter().filter(|triangle| alpha_of(triangle) != AlphaMode::Blend).collect()
 }
 
 fn primitive<'a>(scene: &'a Scene, instances: &[Instance], triangle: &Triangle) -> &'a Primitive {

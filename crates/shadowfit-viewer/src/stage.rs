@@ -444,7 +444,7 @@ impl Stage {
         let truth_settings = TruthSettings::new(-direction.as_dvec3().normalize());
         let truth = Truth::trace(&rays.tracer, &PixelCamera::new(&camera, size), &truth_settings, &seen);
         let factors: Vec<f32> = pixels.iter().map(|pixel| pixel.map_or(1.0, |pixel| pixel.factor)).collect();
-        let measured = study::measured(&maps, direction);
+        let measured = study::measured(&maps, direction, DVec3::ZERO);
         let seen =
             MapsSeen { maps: &measured, reach: bias::reach(descriptor.filter), depth_clamp: descriptor.depth_clamp };
         let counts = |triangle: u32| instance_counts[rays.triangles[triangle as usize].instance as usize];

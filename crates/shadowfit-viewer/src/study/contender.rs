@@ -114,15 +114,15 @@ impl Contender {
         let pixels = self.probe(gpu, subject, shot, maps, None)?;
         let truth = truth.0.get_or_insert_with(|| trace(subject, shot, &self.judging, &pixels));
         let factors = factors(&pixels);
-        let measured = measured(maps, shot.direction);
+        let measured = measured(maps, shot.direction, subject.rays.origin);
         let mut judged = judge(&subject.rays.tracer, truth, &self.seen(&measured), &factors, |_| true);
-        let forward = shot.camera.forward.normalize();
+        let (forward, origin) = (shot.camera.forward.normalize(), subject.rays.origin);
         if let Some(before) = self.before.take().filter(|_| self.judging.crawl) {
             let pixels = self.probe(gpu, subject, shot, &before.maps, Some((before.eye, before.forward)))?;
             let factors_before = self::factors(&pixels);
             let before = MapsBefore {
-                maps: &self::measured(&before.maps, shot.direction),
-                eye: before.eye,
+                maps: &self::measured(&before.maps, shot.direction, origin),
+                eye: before.eye - origin,
                 forward: before.forward.as_dvec3(),
                 factors: &factors_before,
             };
@@ -192,9 +192,9 @@ impl Contender {
         let atmosphere = Atmosphere::default();
         let frame = frame(shot, maps, &self.bias, &atmosphere, None);
         self.renderer.draw_probe(gpu, &mut subject.gpu_scene, &frame, &self.targets)?;
-        let measured = measured(maps, shot.direction);
+        let measured = measured(maps, shot.direction, subject.rays.origin);
         judge(&LiveInput {
-            camera: PixelCamera::new(&shot.camera, self.judging.size),
+            camera: PixelCamera::new(&subject.camera_for_rays(&shot.camera), self.judging.size),
             settings: truth_settings(shot, &self.judging),
             maps: self.seen(&measured),
             seen: &self.targets.view,
@@ -254,7 +254,8 @@ fn factors(pixels: &[Option<ProbePixel>]) -> Vec<f32> {
 fn trace(subject: &Subject, shot: &Shot, judging: &Judging, pixels: &[Option<ProbePixel>]) -> Truth {
     let settings = truth_settings(shot, judging);
     let seen: Vec<Option<u32>> = pixels.iter().map(|pixel| pixel.map(|pixel| pixel.triangle)).collect();
-    Truth::trace(&subject.rays.tracer, &PixelCamera::new(&shot.camera, judging.size), &settings, &seen)
+    let camera = PixelCamera::new(&subject.camera_for_rays(&shot.camera), judging.size);
+    Truth::trace(&subject.rays.tracer, &camera, &settings, &seen)
 }
 
 fn truth_settings(shot: &Shot, judging: &Judging) -> TruthSettings {
@@ -267,21 +268,26 @@ fn truth_settings(shot: &Shot, judging: &Judging) -> TruthSettings {
     }
 }
 
-/// The maps as the measures take them.
-pub(crate) fn measured(maps: &[MapFit], direction: Vec3) -> Vec<ShadowMap> {
-    maps.iter().map(|map| ShadowMap::new(&fit_map(map), -direction.as_dvec3())).collect()
+/// The maps as the measures take them, for positions relative to a world position.
+pub(crate) fn measured(maps: &[MapFit], direction: Vec3, origin: DVec3) -> Vec<ShadowMap> {
+    let from_origin = |map: &MapFit| FitMap { view_proj: clip_from(map, origin).to_cols_array(), ..fit_map(map) };
+    maps.iter().map(|map| ShadowMap::new(&from_origin(map), -direction.as_dvec3())).collect()
 }
 
 /// A map as fit files have it: the f32 matrix that the renderer gets, made absolute in f64.
 pub fn fit_map(map: &MapFit) -> FitMap {
-    let clip_from_world = map.fit.clip_from_world.as_dmat4() * DMat4::from_translation(-map.fit.origin);
     FitMap {
-        view_proj: clip_from_world.to_cols_array(),
+        view_proj: clip_from(map, DVec3::ZERO).to_cols_array(),
         resolution: map.fit.resolution.x,
         resolution_xy: (map.fit.resolution.x != map.fit.resolution.y).then(|| map.fit.resolution.to_array()),
         split_near: 0.0,
         split_far: f64::from(map.far).min(NO_END),
     }
+}
+
+/// Clip space from positions relative to a world position.
+fn clip_from(map: &MapFit, origin: DVec3) -> DMat4 {
+    map.fit.clip_from_world.as_dmat4() * DMat4::from_translation(origin - map.fit.origin)
 }
 
 /// Fits a technique's maps frame by frame.
@@ -322,7 +328,8 @@ impl Fitter {
         let fitted = self.cascades.fit(&input, &self.technique.maps, &mut Workspace::new(&mut self.storage));
         let maps = fitted.with_context(|| format!("technique {}", self.technique.name))?;
         if self.technique.maps.splits == SplitScheme::FromHistogram {
-            self.depths = Some(SeenDepths::trace(&subject.rays.tracer, &shot.camera, shot.direction));
+            self.depths =
+                Some(SeenDepths::trace(&subject.rays.tracer, &subject.camera_for_rays(&shot.camera), shot.direction));
         }
         Ok(maps.iter().map(MapFit::from).collect())
     }

@@ -1,6 +1,7 @@
 //! A scene ready to be drawn, traced and fitted to.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
+use shadowfit::PerspectiveCamera;
 use shadowfit_render::{Gpu, GpuScene};
 use shadowfit_scene::{Aabb, Pose, Scene};
 
@@ -8,6 +9,16 @@ use crate::boxes::SceneBoxes;
 use crate::rays::SceneRays;
 use crate::stage::StageError;
 use crate::study::Knowledge;
+
+/// Distance from the world's origin within which f32 positions are exact to a thousandth of the rays' offset of a
+/// millimetre, or nearly, in metres.
+const NEAR_THE_ORIGIN: f32 = 1000.0;
+
+/// What rays are relative to: the world's own origin, or the middle of a scene that is far from it.
+fn origin_of(bounds: &Aabb) -> DVec3 {
+    let middle = (bounds.min + bounds.max) * 0.5;
+    if middle.abs().max_element() <= NEAR_THE_ORIGIN { DVec3::ZERO } else { middle.as_dvec3().round() }
+}
 
 /// A scene in a pose, on the GPU, for rays and as boxes.
 #[derive(Debug)]
@@ -35,7 +46,7 @@ impl Subject {
             return Err(StageError::NothingToDraw(scene.name));
         };
         let gpu_scene = GpuScene::new(gpu, layout, &scene, &pose);
-        let rays = SceneRays::new(&scene, &pose);
+        let rays = SceneRays::from_origin(&scene, &pose, origin_of(&bounds));
         let [mut clusters, mut objects] = [SceneBoxes::new(&scene, &pose), SceneBoxes::of_instances(&scene)];
         for boxes in [&mut clusters, &mut objects] {
             boxes.set_pose(|index| gpu_scene.instance_bounds(index));
@@ -52,6 +63,11 @@ impl Subject {
             boxes.set_pose(|index| self.gpu_scene.instance_bounds(index));
         }
         self.bounds = self.gpu_scene.bounds().unwrap_or(self.bounds);
+    }
+
+    /// A camera as rays see it: relative to their origin.
+    pub fn camera_for_rays(&self, camera: &PerspectiveCamera) -> PerspectiveCamera {
+        PerspectiveCamera { eye: camera.eye - self.rays.origin, ..*camera }
     }
 
     /// World bounds, in metres.
