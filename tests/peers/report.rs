@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use shadowfit_truth::peers::{FitFile, FitFrame, FitMap};
+use shadowfit_truth::peers::{FitFile, FitFrame, FitMap, Scenarios};
+use shadowfit_viewer::study::DEFAULT_TECHNIQUE;
 
-use crate::support::example_program;
+use crate::support::{assets, example_program, peers};
 
 /// The exit code of every refusal.
 const REFUSED: i32 = 2;
@@ -156,4 +157,58 @@ fn gpu_a_perspective_map_is_measured_and_its_picture_refused_with_the_reason() {
     assert_eq!(refused.status.code(), Some(REFUSED), "{message}");
     assert!(message.contains("fit.json: cannot be drawn") && message.contains("perspective"), "{message}");
     assert!(scratch.report(&[&arguments[..], &["--no-render"]].concat()).status.success());
+}
+
+/// Every so many frames of each path are taken, with the one before for what a fit knows of it.
+const EVERY: usize = 10;
+
+/// Some of the frames of two scenes, and Bevy's maps for them, as files.
+fn a_part_of_the_peers(scratch: &Scratch, folder: &Path) {
+    let mut scenarios = Scenarios::read(&folder.join("scenarios.json")).expect("scenarios");
+    let mut bevy = FitFile::read(&folder.join("fits/bevy.json")).expect("Bevy's fit");
+    let names: Vec<String> = scenarios.scenes.iter().map(|scene| scene.name.clone()).collect();
+    scenarios.frames.retain(|frame| {
+        ["zdm2", "graveyard"].contains(&names[frame.scene].as_str()) && frame.frame as usize % EVERY >= EVERY - 2
+    });
+    let ids: Vec<&str> = scenarios.frames.iter().map(|frame| frame.id.as_str()).collect();
+    bevy.frames.retain(|frame| ids.contains(&frame.id.as_str()));
+    // Scenes without a frame would be read for nothing.
+    let used: Vec<usize> =
+        (0..names.len()).filter(|scene| scenarios.frames.iter().any(|f| f.scene == *scene)).collect();
+    for frame in &mut scenarios.frames {
+        frame.scene = used.iter().position(|scene| *scene == frame.scene).expect("a scene that is used");
+    }
+    let mut number = 0;
+    scenarios.scenes.retain(|_| {
+        number += 1;
+        used.contains(&(number - 1))
+    });
+    scratch.file("part.json", serde_json::to_string(&scenarios).expect("JSON").as_bytes());
+    bevy.write(&scratch.0.join("bevy.json")).expect("a fit file");
+}
+
+#[test]
+fn gpu_the_default_technique_has_at_most_half_of_the_wrong_pixels_of_bevys_fit() {
+    let (Some(assets), Some(peers)) = (assets(), peers()) else { return };
+    let scratch = Scratch::new("half");
+    a_part_of_the_peers(&scratch, &peers);
+    let assets = assets.canonicalize().expect("the assets' folder");
+    let assets = assets.to_str().expect("a plain name");
+    let fitted = Command::new(example_program("peer_fit"))
+        .current_dir(&scratch.0)
+        .args(["part.json", "--fit", DEFAULT_TECHNIQUE, "--assets", assets, "-o", "ours.json"])
+        .output()
+        .expect("peer_fit starts");
+    assert!(fitted.status.success(), "{}", String::from_utf8_lossy(&fitted.stderr));
+    let small = ["--stride", "16", "--size", "640x360", "--software"];
+    let whole = [&["part.json", "bevy.json", "ours.json", "--assets", assets, "-o", "out"][..], &small].concat();
+    let output = scratch.report(&whole);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let json: serde_json::Value = serde_json::from_str(&text(&scratch.0.join("out/table.json"))).expect("JSON");
+    let column = |fit: usize, name: &str| json["fits"][fit]["overall"][name].as_f64().expect("a number");
+    let [bevy, ours] = [0, 1].map(|fit| column(fit, "wrong %"));
+    println!("wrong: {bevy}% with Bevy's fit, {ours}% with {DEFAULT_TECHNIQUE}");
+    assert!(ours <= 0.5 && ours * 2.0 <= bevy, "{ours}% of {bevy}%");
+    assert!(column(1, "false shadow %") <= 0.01 && column(1, "false light %") <= 0.2, "off edges");
+    assert_eq!((column(1, "hole %"), column(1, "uncov %"), column(1, "lost %")), (0.0, 0.0, 0.0));
 }
