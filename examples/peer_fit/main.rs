@@ -71,6 +71,8 @@ fn run(args: &Args) -> Result<()> {
     let known = || format!("--fit {}: there is no such technique; --fit list names them", args.fit);
     let mut technique = Technique::named(&args.fit).with_context(known)?;
     technique.maps.fit.resolution = UVec2::splat(args.resolution);
+    // The measures of fits are of points: no filter reads beside them.
+    technique.maps.fit.kernel_margin = 0.0;
     let scenarios = args.scenarios.as_ref().context("give the file of scenarios")?;
     let out = args.out.as_ref().context("give the file to write with -o OUT.json")?;
     let scenarios = Scenarios::read(scenarios)?;

@@ -68,9 +68,9 @@ impl Drawing {
 
     /// A technique with the filter, bias and format that are asked for.
     pub(crate) fn changed(&self, mut technique: Technique) -> Result<Technique> {
-        technique.filter = self.filter.unwrap_or(technique.filter);
         if self.bias.is_some() || self.filter.is_some() {
-            technique.bias = self.bias(technique.filter)?;
+            let filter = self.filter.unwrap_or(technique.filter);
+            technique = technique.with_look_up(filter, self.bias(filter)?);
         }
         if self.color_format {
             technique.format = MapFormat::R32Float;

@@ -1,9 +1,8 @@
 //! The present view judged against rays: what the demonstrations and their cures are held to.
 
 use glam::DVec3;
-use shadowfit::bias;
 use shadowfit_render::{Atmosphere, ProbeTargets};
-use shadowfit_truth::{Judged, MapsSeen, PixelCamera, Truth, TruthSettings, judge};
+use shadowfit_truth::{Judged, PixelCamera, Truth, TruthSettings, judge};
 
 use super::{Stage, frame, map_fits};
 use crate::study;
@@ -41,15 +40,13 @@ impl Stage {
         let instance_counts = self.counted_instances(subject_only);
         let direction = self.settings.light.direction();
         let rays = self.rays();
-        let seen: Vec<Option<u32>> = pixels.iter().map(|pixel| Some(pixel.as_ref()?.triangle)).collect();
         let truth_settings = TruthSettings::new(-direction.as_dvec3().normalize());
-        let truth = Truth::trace(&rays.tracer, &PixelCamera::new(&camera, size), &truth_settings, &seen);
-        let factors: Vec<f32> = pixels.iter().map(|pixel| pixel.map_or(1.0, |pixel| pixel.factor)).collect();
+        let truth =
+            Truth::trace(&rays.tracer, &PixelCamera::new(&camera, size), &truth_settings, &study::triangles(&pixels));
         let measured = study::measured(&maps, direction, DVec3::ZERO);
-        let seen =
-            MapsSeen { maps: &measured, reach: bias::reach(descriptor.filter), depth_clamp: descriptor.depth_clamp };
+        let seen = study::maps_seen(&measured, &descriptor);
         let counts = |triangle: u32| instance_counts[rays.triangles[triangle as usize].instance as usize];
-        let judged = judge(&rays.tracer, &truth, &seen, &factors, counts);
+        let judged = judge(&rays.tracer, &truth, &seen, &study::factors(&pixels), counts);
         Some((truth, judged))
     }
 

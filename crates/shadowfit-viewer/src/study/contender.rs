@@ -202,8 +202,7 @@ impl Contender {
     }
 
     fn seen<'a>(&self, maps: &'a [ShadowMap]) -> MapsSeen<'a> {
-        let descriptor = self.renderer.shadow_map().descriptor();
-        MapsSeen { maps, reach: bias::reach(descriptor.filter), depth_clamp: descriptor.depth_clamp }
+        maps_seen(maps, self.renderer.shadow_map().descriptor())
     }
 
     fn probe(
@@ -247,13 +246,24 @@ fn atmosphere(camera: &PerspectiveCamera) -> Atmosphere {
     Atmosphere { haze_per_metre: atmosphere.haze_per_metre * usual / camera.far.max(1e-3), ..atmosphere }
 }
 
-fn factors(pixels: &[Option<ProbePixel>]) -> Vec<f32> {
+/// The shadow factor of each pixel.
+pub(crate) fn factors(pixels: &[Option<ProbePixel>]) -> Vec<f32> {
     pixels.iter().map(|pixel| pixel.map_or(1.0, |pixel| pixel.factor)).collect()
+}
+
+/// The triangle of each pixel.
+pub(crate) fn triangles(pixels: &[Option<ProbePixel>]) -> Vec<Option<u32>> {
+    pixels.iter().map(|pixel| pixel.map(|pixel| pixel.triangle)).collect()
+}
+
+/// How the maps of a shadow map are read.
+pub(crate) fn maps_seen<'a>(maps: &'a [ShadowMap], descriptor: &ShadowMapDescriptor) -> MapsSeen<'a> {
+    MapsSeen { maps, reach: bias::reach(descriptor.filter), depth_clamp: descriptor.depth_clamp }
 }
 
 fn trace(subject: &Subject, shot: &Shot, judging: &Judging, pixels: &[Option<ProbePixel>]) -> Truth {
     let settings = truth_settings(shot, judging);
-    let seen: Vec<Option<u32>> = pixels.iter().map(|pixel| pixel.map(|pixel| pixel.triangle)).collect();
+    let seen = triangles(pixels);
     let camera = PixelCamera::new(&subject.camera_for_rays(&shot.camera), judging.size);
     Truth::trace(&subject.rays.tracer, &camera, &settings, &seen)
 }
@@ -302,11 +312,7 @@ pub struct Fitter {
 impl Fitter {
     /// A fitter that knows no frame yet.
     pub fn new(technique: &Technique) -> Self {
-        let mut technique = technique.clone();
-        // Room for all that the filter reads beside a point.
-        let fit = &mut technique.maps.fit;
-        fit.kernel_margin = fit.kernel_margin.max(bias::reach(technique.filter));
-        Self { technique, cascades: CascadeFitter::new(), depths: None, storage: Vec::new() }
+        Self { technique: technique.clone(), cascades: CascadeFitter::new(), depths: None, storage: Vec::new() }
     }
 
     /// The maps of a frame, in order of their `far`.

@@ -14,8 +14,8 @@ mod technique;
 mod tune;
 
 pub use comparison::{Comparison, Outcome};
-pub(crate) use contender::measured;
 pub use contender::{Contender, Fitter, Judging, SharedTruth, Shot, fit_map};
+pub(crate) use contender::{factors, maps_seen, measured, triangles};
 pub use histogram::SeenDepths;
 pub use live::{Agreement, LiveTruth};
 pub use subject::Subject;

@@ -6,6 +6,7 @@ use anyhow::{Context, Result, ensure};
 use glam::UVec2;
 use serde::ser::Error as _;
 use serde::{Deserialize, Serialize, Serializer};
+use shadowfit::bias::reach;
 use shadowfit::settings::{BiasSettings, FilterKind, MapFormat};
 use shadowfit::{
     CascadeSettings, CasterPolicy, DepthConvention, FitKind, FitSettings, HoldSettings, SplitScheme, Stabilise,
@@ -172,16 +173,25 @@ impl Technique {
     }
 
     fn of(named: &Named) -> Self {
-        let filter = FilterKind::Pcf5x5;
-        Self {
+        let technique = Self {
             name: named.name.to_owned(),
             what: named.what.to_owned(),
             receivers: named.receivers,
             maps: (named.maps)(),
-            bias: BiasSettings::automatic(filter),
-            filter,
+            bias: BiasSettings::default(),
+            filter: FilterKind::default(),
             format: MapFormat::default(),
-        }
+        };
+        let filter = FilterKind::Pcf5x5;
+        technique.with_look_up(filter, BiasSettings::automatic(filter))
+    }
+
+    /// This technique with another filter and bias, and room at the maps' borders for what the filter reads there.
+    #[must_use]
+    pub fn with_look_up(mut self, filter: FilterKind, bias: BiasSettings) -> Self {
+        (self.filter, self.bias) = (filter, bias);
+        self.maps.fit.kernel_margin = reach(filter);
+        self
     }
 
     /// This technique with maps of another width and height, in texels.

@@ -168,10 +168,9 @@ fn start(budget: Budget) -> Technique {
             stabilise: Stabilise::Off,
             ..CascadeSettings::default()
         },
-        bias: BiasSettings::automatic_normal_offset(filter),
-        filter,
         ..Technique::default()
     }
+    .with_look_up(filter, BiasSettings::automatic_normal_offset(filter))
 }
 
 /// The changes that are tried, round by round: what matters most comes first.
@@ -220,7 +219,7 @@ fn filters() -> Vec<Change> {
             } else if technique.bias == BiasSettings::automatic_normal_offset(technique.filter) {
                 technique.bias = BiasSettings::automatic_normal_offset(filter);
             }
-            technique.filter = filter;
+            *technique = technique.clone().with_look_up(filter, technique.bias);
         })
     };
     names.into_iter().zip(FilterKind::ALL).map(change).collect()
