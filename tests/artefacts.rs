@@ -24,7 +24,7 @@ fn judged(stage: &mut Stage, subject_only: bool) -> Judged {
 /// Share of the facing pixels that are wrong.
 fn wrong(stage: &mut Stage) -> f64 {
     let tally = judged(stage, false).tally;
-    tally.share(tally.wrong)
+    tally.share(tally.all.wrong)
 }
 
 /// Share of all pixels, sky included.
@@ -39,16 +39,16 @@ fn gpu_acne_covers_the_character_and_its_fix_clears_it() {
     let shown = judged(&mut stage, true).tally;
     stage.fix_artefact(Artefact::Acne);
     let fixed = judged(&mut stage, true).tally;
-    let [acne, acne_fixed] = [&shown, &fixed].map(|tally| tally.share(tally.false_shadow));
+    let [acne, acne_fixed] = [&shown, &fixed].map(|tally| tally.share(tally.all.false_shadow));
     println!("acne shown: {acne}, fixed: {acne_fixed}");
     assert!(
-        shown.facing as f32 > 0.1 * (SIZE[0] * SIZE[1]) as f32,
+        shown.all.facing as f32 > 0.1 * (SIZE[0] * SIZE[1]) as f32,
         "the character fills the picture: {}",
-        shown.facing
+        shown.all.facing
     );
     assert!(acne >= 0.15, "false shadow on the character: {acne}");
     assert!(acne_fixed < CURED, "false shadow after the fix: {acne_fixed}");
-    assert_eq!(shown.facing, fixed.facing, "the same pixels are judged");
+    assert_eq!(shown.all.facing, fixed.all.facing, "the same pixels are judged");
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn gpu_a_clipping_hole_shows_and_its_fix_closes_it() {
     stage.fix_artefact(Artefact::ClippingHole);
     let fixed = judged(&mut stage, false);
     let [hole, hole_fixed] = [&shown, &fixed].map(|judged| share_of_picture(judged, Class::Hole));
-    let acne = fixed.tally.share(fixed.tally.false_shadow);
+    let acne = fixed.tally.share(fixed.tally.all.false_shadow);
     println!("hole shown: {hole}, fixed: {hole_fixed}; false shadow {acne}");
     assert!(hole >= 0.02, "hole in the picture: {hole}");
     assert!(hole_fixed < CURED, "hole after the fix: {hole_fixed}");

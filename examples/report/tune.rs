@@ -107,10 +107,10 @@ fn steps(tuned: &Tuned) -> String {
             "| {} | {:.4} | {:.4} | {:.4} | {:.4} | {:.4} | {bought} |",
             step.what,
             step.error,
-            percent(step.tally.wrong),
-            percent(step.tally.false_shadow),
-            percent(step.tally.false_light),
-            percent(step.tally.hole),
+            percent(step.tally.all.wrong),
+            percent(step.tally.all.false_shadow),
+            percent(step.tally.all.false_light),
+            percent(step.tally.all.hole),
         );
         if step.is_kept {
             best = step.error;

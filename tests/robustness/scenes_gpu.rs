@@ -36,9 +36,12 @@ fn load(path: &Path) -> Scene {
 }
 
 fn is_sound(tally: &PictureTally) -> bool {
-    let classes = tally.false_shadow + tally.false_light + tally.hole + tally.edge;
+    let classes = tally.all.false_shadow + tally.all.false_light + tally.all.hole + tally.all.edge;
     let finite = tally.columns().iter().all(|(_, value)| value.is_finite() && *value >= 0.0);
-    finite && classes == tally.wrong && tally.wrong <= tally.facing && tally.error <= tally.facing as f64
+    finite
+        && classes == tally.all.wrong
+        && tally.all.wrong <= tally.all.facing
+        && tally.error <= tally.all.facing as f64
 }
 
 /// Draws and judges the present view.
@@ -51,7 +54,7 @@ fn draw_and_judge(stage: &mut Stage, name: &str) {
     assert!(pixels.chunks_exact(4).any(|pixel| pixel != first), "{name}: the picture is one flat colour");
     let judged = stage.judge(SIZE, false).unwrap_or_else(|| panic!("{name}: {:?}", stage.problem()));
     assert!(is_sound(&judged.tally), "{name}: {:?}", judged.tally.columns());
-    assert!(judged.tally.facing > 0, "{name}: nothing that the light reaches is in its own first view");
+    assert!(judged.tally.all.facing > 0, "{name}: nothing that the light reaches is in its own first view");
 }
 
 #[test]

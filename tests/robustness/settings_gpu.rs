@@ -119,7 +119,7 @@ fn absurd_numbers_are_judged_and_demonstrated_without_a_panic() {
             stage.reset();
             write(&mut stage.settings, value);
             let tally = stage.judge([16, 9], false).expect("an adapter that tells triangles apart").tally;
-            assert!(tally.wrong <= tally.facing, "{name} = {value}: {tally:?}");
+            assert!(tally.all.wrong <= tally.all.facing, "{name} = {value}: {tally:?}");
         }
     }
     for (name, write) in FIELDS {

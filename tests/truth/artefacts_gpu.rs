@@ -21,7 +21,7 @@ fn wall_on_a_floor() -> View {
 }
 
 fn shares(tally: &PictureTally) -> [f64; 4] {
-    [tally.false_shadow, tally.false_light, tally.hole, tally.edge].map(|count| tally.share(count))
+    [tally.all.false_shadow, tally.all.false_light, tally.all.hole, tally.all.edge].map(|count| tally.share(count))
 }
 
 #[test]
@@ -32,7 +32,7 @@ fn acne_without_a_bias_is_false_shadow_and_the_automatic_bias_leaves_none() {
         let cured = box_on_a_floor().judged(single(FitKind::Focused, filter, BiasSettings::automatic(filter)));
         println!("{filter:?}: {:?} without a bias, {:?} with the automatic one", shares(&bare), shares(&cured));
         assert!(acne > 0.1, "{filter:?}: {acne}");
-        assert_eq!((cured.false_shadow, cured.false_light, cured.hole), (0, 0, 0), "{filter:?}");
+        assert_eq!((cured.all.false_shadow, cured.all.false_light, cured.all.hole), (0, 0, 0), "{filter:?}");
         // By the normal offset as well, but where it moves a point beside an edge to the other side of it.
         let offset = BiasSettings::automatic_normal_offset(filter);
         let offset = box_on_a_floor().judged(single(FitKind::Focused, filter, offset));
@@ -50,7 +50,7 @@ fn a_bias_ten_times_too_large_is_false_light() {
         println!("{filter:?}: {:?}, {:?} with a tenth of it", shares(&tally), shares(&cured));
         assert!(shares(&cured)[1] < 0.0002, "{filter:?}: {:?}", shares(&cured));
         assert!(shares(&tally)[1] > 0.001, "{filter:?}: {:?}", shares(&tally));
-        assert_eq!((tally.false_shadow, tally.hole), (0, 0), "{filter:?}");
+        assert_eq!((tally.all.false_shadow, tally.all.hole), (0, 0), "{filter:?}");
     }
 }
 
@@ -61,11 +61,14 @@ fn the_hole_of_the_xna_sample_is_a_hole_and_nothing_else() {
     let view = View::new(objects, Vec3::new(0.0, 2.0, 4.0), Vec3::new(0.0, 0.0, -3.0), Vec3::new(0.02, -0.6, -0.8));
     let filter = FilterKind::Hardware2x2;
     let holed = view.judged(single(FitKind::XnaSample, filter, BiasSettings::automatic(filter)));
-    println!("{:?} of {} pixels", shares(&holed), holed.facing);
-    assert!(holed.share(holed.hole) > 0.05, "{:?}", shares(&holed));
-    assert_eq!((holed.wrong, holed.false_shadow, holed.false_light, holed.edge), (holed.hole, 0, 0, 0));
+    println!("{:?} of {} pixels", shares(&holed), holed.all.facing);
+    assert!(holed.share(holed.all.hole) > 0.05, "{:?}", shares(&holed));
+    assert_eq!(
+        (holed.all.wrong, holed.all.false_shadow, holed.all.false_light, holed.all.edge),
+        (holed.all.hole, 0, 0, 0)
+    );
     let cured = view.judged(single(FitKind::Focused, filter, BiasSettings::automatic(filter)));
-    assert_eq!((cured.hole, cured.false_shadow, cured.false_light), (0, 0, 0), "{:?}", shares(&cured));
+    assert_eq!((cured.all.hole, cured.all.false_shadow, cured.all.false_light), (0, 0, 0), "{:?}", shares(&cured));
 }
 
 #[test]
@@ -103,7 +106,12 @@ fn a_scene_a_hundred_kilometres_from_the_origin_is_judged_as_at_home() {
     let away = box_on_a_floor().judged_away(technique(), Vec3::new(100_000.0, 500.0, -75_000.0));
     let [home_shares, away_shares] = [&home, &away].map(shares);
     println!("{home_shares:?} at home, {away_shares:?} away");
-    assert!(home.facing.abs_diff(away.facing) * 1000 <= home.facing, "{} and {}", home.facing, away.facing);
+    assert!(
+        home.all.facing.abs_diff(away.all.facing) * 1000 <= home.all.facing,
+        "{} and {}",
+        home.all.facing,
+        away.all.facing
+    );
     for (home, away) in home_shares.iter().zip(away_shares) {
         assert!((home - away).abs() < 0.001, "{home_shares:?} at home, {away_shares:?} away");
     }

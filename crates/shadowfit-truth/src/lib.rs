@@ -27,6 +27,6 @@ pub use cut_out::{AlphaImage, CutOut, CutOuts, Wrap};
 pub use displacement::GREATEST_DISPLACEMENT;
 pub use judge::{Class, Judged, MapsSeen, judge};
 pub use memory::TracerMemory;
-pub use tally::{GrazingTally, PictureTally};
+pub use tally::{ClassTally, PictureTally};
 pub use tracer::{Hit, Tracer, TriangleCountError};
 pub use truth::{Truth, TruthPoint, TruthSettings};

@@ -11,26 +11,16 @@ use crate::{Class, Judged, Truth};
 pub struct PictureTally {
     /// Pictures.
     pub frames: u64,
-    /// Facing pixels, grazing ones included.
-    pub facing: u64,
-    /// Those whose verdict differs from the truth, edges included.
-    pub wrong: u64,
-    /// [`Class::FalseShadow`].
-    pub false_shadow: u64,
-    /// [`Class::FalseLight`].
-    pub false_light: u64,
-    /// [`Class::Hole`].
-    pub hole: u64,
-    /// [`Class::Edge`].
-    pub edge: u64,
+    /// Classes of all facing pixels, grazing ones included.
+    pub all: ClassTally,
+    /// Classes of those whose cosine toward the light is below 0.05.
+    pub grazing: ClassTally,
     /// Pixels in the edge zone, right or wrong.
     pub edge_zone: u64,
     /// Sum of |factor − truth|, the truth's share of light.
     pub error: f64,
     /// Pixels that no map holds.
     pub uncovered: u64,
-    /// The same once more for pixels whose cosine toward the light is below 0.05.
-    pub grazing: GrazingTally,
     /// Pixels per texel along the worse axis, of pixels that a map holds and that are not grazing.
     pub texels: Histogram,
     /// Those of them with more than one pixel per texel.
@@ -46,9 +36,9 @@ pub struct PictureTally {
     pub crawl_different: u64,
 }
 
-/// Sums over the facing pixels that the light grazes.
+/// Numbers of pixels by class.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct GrazingTally {
+pub struct ClassTally {
     /// Pixels.
     pub facing: u64,
     /// Those whose verdict differs from the truth, edges included.
@@ -68,12 +58,7 @@ impl PictureTally {
     /// them in the same order.
     pub fn merge(&mut self, other: &Self) {
         self.frames += other.frames;
-        self.facing += other.facing;
-        self.wrong += other.wrong;
-        self.false_shadow += other.false_shadow;
-        self.false_light += other.false_light;
-        self.hole += other.hole;
-        self.edge += other.edge;
+        self.all.merge(&other.all);
         self.edge_zone += other.edge_zone;
         self.error += other.error;
         self.uncovered += other.uncovered;
@@ -94,7 +79,7 @@ impl PictureTally {
 
     /// A count's share of the facing pixels, 0..=1; 0 without any.
     pub fn share(&self, count: u64) -> f64 {
-        ratio(count as f64, self.facing)
+        ratio(count as f64, self.all.facing)
     }
 
     /// Names and values of a report's columns: per cent of the facing pixels (of those with a texel
@@ -104,14 +89,14 @@ impl PictureTally {
         let percent = |count: u64| 100.0 * self.share(count);
         let quantile = |q: f64| self.texels.log2_quantile(q).map_or(0.0, f64::exp2);
         vec![
-            ("wrong %", percent(self.wrong)),
-            ("false shadow %", percent(self.false_shadow)),
-            ("false light %", percent(self.false_light)),
-            ("hole %", percent(self.hole)),
-            ("edge %", percent(self.edge)),
+            ("wrong %", percent(self.all.wrong)),
+            ("false shadow %", percent(self.all.false_shadow)),
+            ("false light %", percent(self.all.false_light)),
+            ("hole %", percent(self.all.hole)),
+            ("edge %", percent(self.all.edge)),
             ("edge zone %", percent(self.edge_zone)),
             ("uncov %", percent(self.uncovered)),
-            ("mean error %", 100.0 * ratio(self.error, self.facing)),
+            ("mean error %", 100.0 * ratio(self.error, self.all.facing)),
             ("grazing %", percent(self.grazing.facing)),
             ("grazing wrong %", percent(self.grazing.wrong)),
             ("ppt p50", quantile(0.5)),
@@ -138,12 +123,7 @@ impl PictureTally {
     fn add(&mut self, truth: &Truth, judged: &Judged, factor: f32, pixel: usize) {
         let Some(point) = &truth.points[pixel] else { return };
         let class = judged.classes[pixel];
-        self.facing += 1;
-        self.wrong += u64::from(class != Class::Right);
-        self.false_shadow += u64::from(class == Class::FalseShadow);
-        self.false_light += u64::from(class == Class::FalseLight);
-        self.hole += u64::from(class == Class::Hole);
-        self.edge += u64::from(class == Class::Edge);
+        self.all.add(class);
         self.edge_zone += u64::from(judged.edge_zone[pixel]);
         // A factor that is not a number is a shadow to the verdict, and so it is here.
         let factor = if factor.is_nan() { 0.0 } else { factor.clamp(0.0, 1.0) };
@@ -160,7 +140,7 @@ impl PictureTally {
     }
 }
 
-impl GrazingTally {
+impl ClassTally {
     fn add(&mut self, class: Class) {
         self.facing += 1;
         self.wrong += u64::from(class != Class::Right);

@@ -57,7 +57,7 @@ fn map(pixels_per_texel: u32, top: f64) -> ShadowMap {
 
 /// False shadow, false light, hole, edge and wrong, in columns of 40.
 fn columns(tally: &PictureTally) -> [u64; 5] {
-    [tally.false_shadow, tally.false_light, tally.hole, tally.edge, tally.wrong].map(|count| {
+    [tally.all.false_shadow, tally.all.false_light, tally.all.hole, tally.all.edge, tally.all.wrong].map(|count| {
         assert!(count.is_multiple_of(10), "whole columns");
         count / 10
     })
@@ -70,7 +70,10 @@ fn right_factor(column: usize) -> f32 {
 #[test]
 fn a_perfect_map_has_no_wrong_pixel() {
     let tally = Room::new().judge(right_factor, map(1, 9.0), false).tally;
-    assert_eq!((tally.frames, tally.facing, tally.wrong, tally.error, tally.displacement), (1, 400, 0, 0.0, 0.0));
+    assert_eq!(
+        (tally.frames, tally.all.facing, tally.all.wrong, tally.error, tally.displacement),
+        (1, 400, 0, 0.0, 0.0)
+    );
     assert_eq!((tally.transitions, tally.edge_zone, tally.uncovered, tally.grazing.facing), (10, 40, 0, 0));
 }
 
@@ -155,7 +158,7 @@ fn triangles_that_do_not_count_are_judged_and_in_no_sum() {
     assert_eq!(counted.classes, all.classes);
     let of_triangle = room.truth.points.iter().flatten().filter(|point| point.triangle == one).count();
     assert!((1..400).contains(&of_triangle));
-    assert_eq!(counted.tally.facing, of_triangle as u64);
+    assert_eq!(counted.tally.all.facing, of_triangle as u64);
 }
 
 #[test]
@@ -164,16 +167,16 @@ fn grazing_pixels_count_in_all_and_are_listed_apart_but_have_no_texels() {
     let room = Room::lit_from(to_light, |_| ());
     let map = shadow_map(DVec3::ZERO, to_light, 16.0, 20.0, 64);
     let tally = room.judge(|_| 0.0, map, false).tally;
-    assert_eq!((tally.facing, tally.grazing.facing, tally.texels.total()), (400, 400, 0));
-    assert!(tally.wrong > 0 && tally.grazing.wrong == tally.wrong);
-    assert_eq!(tally.grazing.false_shadow, tally.false_shadow);
+    assert_eq!((tally.all.facing, tally.grazing.facing, tally.texels.total()), (400, 400, 0));
+    assert!(tally.all.wrong > 0 && tally.grazing.wrong == tally.all.wrong);
+    assert_eq!(tally.grazing.false_shadow, tally.all.false_shadow);
 }
 
 #[test]
 fn an_edge_that_is_shifted_by_three_pixels_is_displaced_by_three() {
     let shifted = |column: usize| if column < 23 { 0.0 } else { 1.0 };
     let tally = Room::new().judge(shifted, map(1, 9.0), false).tally;
-    assert_eq!((tally.displacement, tally.transitions, tally.wrong), (30.0, 10, 30));
+    assert_eq!((tally.displacement, tally.transitions, tally.all.wrong), (30.0, 10, 30));
     let column = |name| tally.columns().into_iter().find(|(known, _)| *known == name).map(|(_, value)| value);
     assert_eq!((column("edge px"), column("wrong %"), column("crawl %")), (Some(3.0), Some(7.5), Some(0.0)));
 }
@@ -185,11 +188,11 @@ fn soft_truth_counts_as_it_is_and_is_lit_from_one_half_on() {
     assert!(factors.iter().any(|factor| (0.1..0.9).contains(factor)));
     let maps = MapsSeen { maps: &[map(1, 9.0)], reach: 0.5, depth_clamp: false };
     let tally = judge(&room.tracer, &room.truth, &maps, &factors, |_| true).tally;
-    assert_eq!((tally.wrong, tally.error), (0, 0.0));
+    assert_eq!((tally.all.wrong, tally.error), (0, 0.0));
     // A hole is one also where only some of the rays are blocked.
     let low = MapsSeen { maps: &[map(1, 1.0)], ..maps };
     let judged = judge(&room.tracer, &room.truth, &low, &[1.0; PIXELS], |_| true);
-    assert_eq!((judged.tally.hole, judged.tally.wrong), (200, 200));
+    assert_eq!((judged.tally.all.hole, judged.tally.all.wrong), (200, 200));
 }
 
 #[test]
@@ -198,7 +201,10 @@ fn merged_tallies_are_those_of_both_pictures() {
     let mut merged = room.judge(|_| 0.0, map(1, 9.0), false).tally;
     merged.merge(&room.judge(|_| 1.0, map(4, 1.0), false).tally);
     merged.add_crawl((3, 12));
-    assert_eq!((merged.frames, merged.facing, merged.wrong, merged.hole, merged.false_shadow), (2, 800, 400, 200, 180));
+    assert_eq!(
+        (merged.frames, merged.all.facing, merged.all.wrong, merged.all.hole, merged.all.false_shadow),
+        (2, 800, 400, 200, 180)
+    );
     let value = |name| merged.columns().into_iter().find(|(known, _)| *known == name).expect("a column").1;
     assert_eq!((value("wrong %"), value("hole %"), value("crawl %"), value("edge px")), (50.0, 25.0, 25.0, 32.0));
     assert!((value("ppt p95") - 4.0).abs() < 4.0 * 0.005 && (value("ppt p50") - 1.0).abs() < 0.005);

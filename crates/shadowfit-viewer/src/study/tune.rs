@@ -303,6 +303,7 @@ fn measure(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use shadowfit_truth::ClassTally;
 
     #[test]
     fn every_change_but_those_to_what_is_already_so_makes_another_technique() {
@@ -328,7 +329,11 @@ mod tests {
 
     #[test]
     fn the_error_is_the_weighted_sum_of_the_columns() {
-        let tally = PictureTally { frames: 1, facing: 100, wrong: 10, hole: 5, ..PictureTally::default() };
+        let tally = PictureTally {
+            frames: 1,
+            all: ClassTally { facing: 100, wrong: 10, hole: 5, ..ClassTally::default() },
+            ..PictureTally::default()
+        };
         let weights = Weights { wrong: 1.0, hole: 2.0, ..Weights::default() };
         assert!((weights.error(&tally) - 20.0).abs() < 1e-9);
     }
