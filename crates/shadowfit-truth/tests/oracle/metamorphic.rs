@@ -55,7 +55,7 @@ fn assert_same(name: &str, wanted: &PictureTally, found: &PictureTally, toleranc
 
 fn plain() -> PictureTally {
     let plain = tally(DAffine3::IDENTITY, 1.0);
-    for count in [plain.false_shadow, plain.false_light, plain.hole, plain.edge] {
+    for count in [plain.all.false_shadow, plain.all.false_light, plain.all.hole, plain.all.edge] {
         assert!(count > 50, "{:?}", plain.columns());
     }
     plain
