@@ -114,7 +114,7 @@ pub(super) fn single(kind: FitKind, filter: FilterKind, bias: BiasSettings) -> T
         stabilise: Stabilise::Off,
         ..CascadeSettings::default()
     };
-    Technique { receivers: Knowledge::Objects, maps, bias, filter, ..Technique::default() }
+    Technique { receivers: Knowledge::Objects, maps, ..Technique::default() }.with_look_up(filter, bias)
 }
 
 /// No bias at all.
