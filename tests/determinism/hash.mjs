@@ -3,10 +3,15 @@
 import { readFileSync } from 'node:fs';
 
 const { instance } = await WebAssembly.instantiate(readFileSync(process.argv[2]), {});
-const [hash, expected] = [instance.exports.shadowfit_hash(), instance.exports.shadowfit_expected_hash()];
+const { shadowfit_hash, shadowfit_expected_hash, shadowfit_numbers, shadowfit_expected_numbers } = instance.exports;
 const hex = (value) => `0x${BigInt.asUintN(64, value).toString(16)}`;
-if (hash !== expected) {
-    console.error(`the fits' hash is ${hex(hash)} in WebAssembly, but ${hex(expected)} elsewhere`);
-    process.exit(1);
+for (const [name, hash, expected] of [
+    ["the fits' hash", shadowfit_hash(), shadowfit_expected_hash()],
+    ["the hash over their numbers", shadowfit_numbers(), shadowfit_expected_numbers()],
+]) {
+    if (hash !== expected) {
+        console.error(`${name} is ${hex(hash)} in WebAssembly, but ${hex(expected)} elsewhere`);
+        process.exit(1);
+    }
+    console.log(`${name} is ${hex(hash)} in WebAssembly too`);
 }
-console.log(`the fits' hash is ${hex(hash)} in WebAssembly too`);

@@ -3,8 +3,8 @@
 use shadowfit::glam::{DMat4, DVec3, DVec4, UVec2, Vec3};
 use shadowfit::{
     Aabb, Boxes, CascadeSettings, CasterPolicy, Clusters, DepthConvention, DepthHistogram, FitError, FitInput, FitKind,
-    FitSettings, HoldSettings, MapOverride, NormalCone, PerspectiveCamera, RectangleKind, SplitScheme, Stabilise,
-    ViewFrustum,
+    FitSettings, HoldSettings, MAX_CASCADES, MapOverride, NormalCone, PerspectiveCamera, RectangleKind, SplitScheme,
+    Stabilise, ViewFrustum,
 };
 
 use crate::random::Random;
@@ -204,8 +204,8 @@ pub(crate) fn cascade_settings(random: &mut Random, camera: &PerspectiveCamera) 
         splits: random.pick(&schemes),
         overlap: random.pick(&[0.0, 0.1, 0.5]),
         stabilise: random.pick(&[Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis]),
-        hold: HoldSettings::default().with_waste(random.between(1.2, 3.0)),
-        ..CascadeSettings::default()
+        hold: HoldSettings { margin: 0.02, growth: 1.4, waste: random.between(1.2, 3.0), horizon: 32 },
+        overrides: [None; MAX_CASCADES],
     };
     if random.once_in(4) {
         settings.overrides[0] = Some(MapOverride { kind: kind(random), resolution: UVec2::new(512, 1024) });

@@ -6,6 +6,7 @@
 
 mod hash;
 mod inputs;
+mod numbers;
 mod random;
 mod run;
 
@@ -15,6 +16,10 @@ pub const FITS: u32 = 10_000;
 /// The hash of all fits. A change of what a fit computes changes it on purpose, and on all targets alike:
 /// `cargo test -p shadowfit-determinism` prints the new one.
 pub const HASH: u64 = 0x0ce3_83d5_423d_3c8d;
+
+/// The hash over the numbers alone that as many fits give, every setting written out: it does not know what anything is
+/// called or what is kept between frames, and only changes if engines get other numbers.
+pub const NUMBERS: u64 = 0xc357_2f28_d9c9_f7a5;
 
 /// What 10,000 fits came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +37,11 @@ pub fn outcome() -> Outcome {
     run::run(FITS)
 }
 
+/// The hash over the numbers that fits give.
+pub fn numbers() -> u64 {
+    numbers::hash(FITS)
+}
+
 /// The hash of all fits, for a host without Rust: WebAssembly is given no name but a fixed one.
 #[expect(unsafe_code, reason = "a fixed name is all that it says; no other function of this program has it")]
 #[unsafe(no_mangle)]
@@ -44,4 +54,18 @@ pub extern "C" fn shadowfit_hash() -> u64 {
 #[unsafe(no_mangle)]
 pub extern "C" fn shadowfit_expected_hash() -> u64 {
     HASH
+}
+
+/// The hash over the numbers, likewise.
+#[expect(unsafe_code, reason = "as above")]
+#[unsafe(no_mangle)]
+pub extern "C" fn shadowfit_numbers() -> u64 {
+    numbers()
+}
+
+/// The hash that [`shadowfit_numbers`] should have.
+#[expect(unsafe_code, reason = "as above")]
+#[unsafe(no_mangle)]
+pub extern "C" fn shadowfit_expected_numbers() -> u64 {
+    NUMBERS
 }

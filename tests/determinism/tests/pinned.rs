@@ -1,6 +1,6 @@
 //! The hash over all fits on the machine that runs the tests.
 
-use shadowfit_determinism::{FITS, HASH, Outcome, outcome};
+use shadowfit_determinism::{FITS, HASH, NUMBERS, Outcome, numbers, outcome};
 
 #[test]
 fn ten_thousand_fits_have_the_same_bits_as_everywhere_else() {
@@ -8,4 +8,10 @@ fn ten_thousand_fits_have_the_same_bits_as_everywhere_else() {
     assert!(fits >= FITS, "{fits} fits");
     assert!(refused < FITS / 20, "{refused} inputs were refused: they say little");
     assert_eq!(hash, HASH, "the fits' hash is {hash:#018x}; pin it if fits were changed on purpose");
+}
+
+#[test]
+fn the_same_settings_give_the_same_numbers_as_ever() {
+    let hash = numbers();
+    assert_eq!(hash, NUMBERS, "the hash over the numbers is {hash:#018x}: engines get other numbers");
 }

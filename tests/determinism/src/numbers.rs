@@ -1,0 +1,147 @@
+//! A second hash, over the numbers alone that fits give: no names, no state between frames, no texts of errors.
+//!
+//! The first hash covers whatever values print as, so that it also changes when a field is renamed or added. This one
+//! changes only if an engine gets another number for the same settings, all of which are written out here.
+
+use shadowfit::bias::Reach;
+use shadowfit::diagnostics::DepthStorage;
+use shadowfit::glam::{DVec2, DVec3, Mat4, Vec2, Vec3};
+use shadowfit::{
+    Bias, BiasSettings, CascadeFitter, CasterPolicy, CasterVolume, FitError, LightFit, Sweep, Workspace, cull,
+    fit_scene,
+};
+
+use crate::inputs::{Scene, cascade_settings, fit_settings};
+use crate::random::Random;
+
+/// Frames of a camera's flight.
+const FRAMES: u32 = 6;
+
+/// The hash over the numbers of so many fits.
+pub(crate) fn hash(fits: u32) -> u64 {
+    let mut run =
+        Run { random: Random::new(2), numbers: Numbers::new(), storage: vec![DVec2::ZERO; Workspace::required(64, 8)] };
+    let mut done = 0;
+    while done < fits {
+        // What is refused gives no number.
+        done += run.scene().unwrap_or(0);
+    }
+    run.numbers.0
+}
+
+struct Run {
+    random: Random,
+    numbers: Numbers,
+    storage: Vec<DVec2>,
+}
+
+impl Run {
+    /// Fits to a random scene; gives how many fits that were.
+    fn scene(&mut self) -> Result<u32, FitError> {
+        let mut scene = Scene::new(&mut self.random)?;
+        if !self.random.once_in(8) {
+            let settings = fit_settings(&mut self.random, &scene.camera);
+            let fit = fit_scene(&scene.input(), &settings, &mut Workspace::new(&mut self.storage))?;
+            self.numbers.fit(&fit);
+            self.follow(&scene, &fit, settings.casters)?;
+            return Ok(1);
+        }
+        let settings = cascade_settings(&mut self.random, &scene.camera);
+        // The same way in as in the frames to come: what is held may tolerate another one's rounding.
+        scene.views = vec![scene.camera.frustum()?];
+        let mut fitter = CascadeFitter::new();
+        for _ in 0..FRAMES {
+            let maps = fitter.fit(&scene.input(), &settings, &mut Workspace::new(&mut self.storage))?;
+            for map in maps.iter() {
+                self.numbers.fit(&map.fit);
+                self.numbers.f32s(&[map.near, map.far, map.covered_near]);
+                if let Some(anchor) = map.anchor {
+                    anchor.first.map(|line| self.numbers.bits(line as u64));
+                    self.numbers.f64s(&[anchor.texel.x, anchor.texel.y, anchor.depth[0], anchor.depth[1]]);
+                }
+            }
+            scene.advance(&mut self.random)?;
+        }
+        Ok(FRAMES)
+    }
+
+    /// Biases and culling by a fit.
+    fn follow(&mut self, scene: &Scene, fit: &LightFit, casters: CasterPolicy) -> Result<(), FitError> {
+        let random = &mut self.random;
+        let reach = random.pick(&[Reach::POINT, Reach::HARDWARE_2X2, Reach::kernel(3), Reach::kernel(5)]);
+        let storage = random.pick(&[DepthStorage::Unorm16, DepthStorage::Float16, DepthStorage::Float32]);
+        let settings = BiasSettings {
+            constant: random.scale(-2, 1),
+            slope: random.between(0.0, 3.0),
+            normal_offset: random.between(0.0, 2.0),
+            receiver_plane: random.between(0.0, 2.0),
+        };
+        for bias in [
+            Bias::from_texels(&settings, fit),
+            Bias::automatic(reach, storage, fit)?,
+            Bias::automatic_receiver_plane(reach, storage, fit)?,
+        ] {
+            self.numbers.f32s(&[bias.constant_depth, bias.slope_depth, bias.normal_offset, bias.receiver_plane]);
+        }
+        let far = scene.camera.far * self.random.between(0.3, 1.0);
+        let normal_offset = self.random.between(0.0, 0.1);
+        let sweep = Sweep { views: &scene.views, near: f32::MIN, far, reach, normal_offset };
+        let swept = CasterVolume::swept(fit, &sweep)?;
+        let volumes = [swept, swept.cut_at_near_plane(fit), CasterVolume::of_map(fit, casters), fit.caster_volume()];
+        let mut masks = [0; 24];
+        cull(&volumes, scene.origin, &scene.casters, &mut masks);
+        for volume in volumes {
+            self.numbers.place(volume.origin);
+            for plane in volume.active_planes() {
+                self.numbers.f32s(&plane.to_array());
+            }
+        }
+        masks.map(|mask| self.numbers.bits(u64::from(mask)));
+        Ok(())
+    }
+}
+
+/// FNV-1a over the bits of numbers (G. Fowler, L. C. Noll, K.-P. Vo: "The FNV non-cryptographic hash algorithm").
+struct Numbers(u64);
+
+impl Numbers {
+    fn new() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+
+    fn bits(&mut self, bits: u64) {
+        for byte in bits.to_le_bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+
+    fn f32s(&mut self, numbers: &[f32]) {
+        numbers.iter().for_each(|number| self.bits(u64::from(number.to_bits())));
+    }
+
+    fn f64s(&mut self, numbers: &[f64]) {
+        numbers.iter().for_each(|number| self.bits(number.to_bits()));
+    }
+
+    fn place(&mut self, place: DVec3) {
+        self.f64s(&place.to_array());
+    }
+
+    fn matrix(&mut self, matrix: &Mat4) {
+        self.f32s(&matrix.to_cols_array());
+    }
+
+    fn fit(&mut self, fit: &LightFit) {
+        self.place(fit.origin);
+        for matrix in [&fit.light_from_world, &fit.clip_from_light, &fit.clip_from_world, &fit.uv_from_world] {
+            self.matrix(matrix);
+        }
+        let Vec2 { x, y } = fit.texel_size;
+        for Vec3 { x, y, z } in [fit.direction, fit.box_min, fit.box_max] {
+            self.f32s(&[x, y, z]);
+        }
+        self.f32s(&[x, y, fit.depth_range]);
+        self.bits(u64::from(fit.resolution.x) << 32 | u64::from(fit.resolution.y));
+        self.bits(u64::from(fit.is_empty));
+    }
+}
