@@ -9,8 +9,8 @@ use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use shadowfit::glam::{DVec2, DVec3, Vec3, Vec4};
 use shadowfit::{
-    Aabb, CascadeFitter, CascadeSettings, Cascades, CasterVolume, FitInput, PerspectiveCamera, Sweep, ViewFrustum,
-    Workspace, cull,
+    Aabb, CasterVolume, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Sweep, Technique, ViewFrustum, Workspace,
+    cull,
 };
 
 /// Boxes that are at hand; calls go around in them.
@@ -32,16 +32,16 @@ fn views() -> [ViewFrustum; 1] {
     [camera.frustum().expect("a good camera")]
 }
 
-fn cascades() -> Cascades {
+fn cascades() -> FittedMaps {
     let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-    let settings = CascadeSettings { count: 4, ..CascadeSettings::default() };
-    let settings = CascadeSettings { fit: settings.fit.with_max_distance(200.0), ..settings };
+    let settings = Technique { count: 4, ..Technique::default() };
+    let settings = Technique { fit: settings.fit.with_max_distance(200.0), ..settings };
     let (views, direction) = (views(), Vec3::new(0.4, -0.8, 0.3));
     let input = FitInput::new(&views, direction);
-    CascadeFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("a good view")
+    MapFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("a good view")
 }
 
-fn swept(cascades: &Cascades) -> Vec<CasterVolume> {
+fn swept(cascades: &FittedMaps) -> Vec<CasterVolume> {
     let views = views();
     let sweep = |near, far| Sweep { near, far, ..Sweep::new(&views) };
     let volumes = cascades.iter().map(|map| CasterVolume::swept(&map.fit, &sweep(map.covered_near, map.far)));

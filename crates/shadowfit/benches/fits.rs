@@ -8,8 +8,8 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec2, Vec3, Vec3Swizzles, Vec4};
 use shadowfit::{
-    Aabb, Boxes, CascadeFitter, CascadeSettings, Cascades, CasterPolicy, Clusters, FitInput, FitKind, FitSettings,
-    PerspectiveCamera, SplitScheme, Stabilise, Workspace, fit,
+    Aabb, Boxes, CasterPolicy, Clusters, FitInput, FitKind, FitSettings, FittedMaps, MapFitter, PerspectiveCamera,
+    SplitScheme, Stabilise, Technique, Workspace, fit,
 };
 
 /// A camera that turns a little with each call, so that no result can be kept.
@@ -190,9 +190,9 @@ fn against_bevy(c: &mut Criterion) {
     let mut splits = [0.0; 7];
     splits[..3].copy_from_slice(&bounds[..3]);
     let settings = settings(FitKind::Sphere, SplitScheme::Manual(splits), Stabilise::Snap);
-    let settings = CascadeSettings { fit: settings.fit.with_casters(CasterPolicy::Extend), ..settings };
+    let settings = Technique { fit: settings.fit.with_casters(CasterPolicy::Extend), ..settings };
     let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-    let (mut fitter, mut cascades) = (CascadeFitter::new(), Cascades::default());
+    let (mut fitter, mut cascades) = (MapFitter::new(), FittedMaps::default());
     let mut turn = 0.0;
     group.bench_function("shadowfit", |b| {
         b.iter(|| {
@@ -212,9 +212,9 @@ fn against_bevy(c: &mut Criterion) {
     group.finish();
 }
 
-fn settings(kind: FitKind, splits: SplitScheme, stabilise: Stabilise) -> CascadeSettings {
+fn settings(kind: FitKind, splits: SplitScheme, stabilise: Stabilise) -> Technique {
     let fit = FitSettings { kind, casters: CasterPolicy::List, max_distance: f32::MAX, ..FitSettings::default() };
-    CascadeSettings { fit, splits, stabilise, ..CascadeSettings::default() }
+    Technique { fit, splits, stabilise, ..Technique::default() }
 }
 
 /// Boxes of 2 to 6 m on a plain of 120 m around the camera.
@@ -241,13 +241,14 @@ fn focused(c: &mut Criterion) {
             (SplitScheme::FromBoxes, Stabilise::Hysteresis, "held"),
         ] {
             let settings = settings(FitKind::Focused, splits, stabilise);
-            let mut fitter = CascadeFitter::new();
+            let mut fitter = MapFitter::new();
             let mut turn = 0.0;
             group.bench_function(format!("{name}, {kind}"), |b| {
                 b.iter(|| {
                     let views = [camera(&mut turn).frustum().expect("a good camera")];
                     let boxes = Boxes { origin: DVec3::ZERO, boxes: &boxes };
-                    let input = FitInput { receivers: Some(boxes), casters: boxes, ..FitInput::new(&views, DIRECTION) };
+                    let input =
+                        FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, DIRECTION) };
                     fitter.fit(&input, black_box(&settings), &mut Workspace::new(&mut storage)).expect("a good fit")
                 });
             });

@@ -91,7 +91,7 @@ pub(crate) fn snap(volume: &mut Volume, origin: DVec3, settings: &FitSettings) -
 /// Texels that are left for what a map on the grid must hold.
 pub(crate) fn usable(settings: &FitSettings) -> DVec2 {
     // One texel is lost to the shift onto the grid.
-    settings.resolution.as_dvec2() - (2.0 * f64::from(settings.kernel_margin) + 1.0)
+    settings.resolution.as_dvec2() - (2.0 * f64::from(settings.border_texels()) + 1.0)
 }
 
 /// As [`snap`], for the corners of a box alone: gives where it came to lie, and its new corners.
@@ -105,7 +105,7 @@ pub(crate) fn snapped(
 ) -> (Grid, DVec3, DVec3) {
     let anchor = anchor(axes, origin);
     let resolution = settings.resolution.as_dvec2();
-    let kernel = f64::from(settings.kernel_margin);
+    let kernel = f64::from(settings.border_texels());
     let usable = usable(settings);
     // The rounding of a map that is larger than what it holds is that of its own extent.
     let size = (max - min).truncate();

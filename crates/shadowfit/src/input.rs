@@ -8,7 +8,7 @@ use crate::{Boxes, DepthHistogram, NormalCone, ViewFrustum};
 ///
 /// ```
 /// use shadowfit::glam::{DVec3, Vec3};
-/// use shadowfit::{Aabb, Boxes, CasterPolicy, FitInput, FitKind, FitSettings, PerspectiveCamera, Workspace};
+/// use shadowfit::{Aabb, Boxes, FitInput, FitSettings, PerspectiveCamera, Workspace};
 ///
 /// let camera = PerspectiveCamera {
 ///     eye: DVec3::new(0.0, 1.7, 5.0),
@@ -25,8 +25,8 @@ use crate::{Boxes, DepthHistogram, NormalCone, ViewFrustum};
 ///     Aabb::new(Vec3::new(-2.0, 0.0, -12.0), Vec3::new(2.0, 6.0, -8.0)),    // house
 /// ];
 /// let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
-/// let input = FitInput { receivers: Some(boxes), casters: boxes, ..FitInput::new(&view, Vec3::new(0.3, -0.8, 0.2)) };
-/// let settings = FitSettings::default().with_kind(FitKind::Focused).with_casters(CasterPolicy::List);
+/// let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&view, Vec3::new(0.3, -0.8, 0.2)) };
+/// let settings = FitSettings::default().with_max_distance(40.0);
 /// let mut storage = [Default::default(); Workspace::required(2, 1)];
 /// let map = shadowfit::fit_scene(&input, &settings, &mut Workspace::new(&mut storage))?;
 /// assert!(map.texel_size.x < 0.03); // the frustum alone gives ten times that
@@ -48,20 +48,23 @@ pub struct FitInput<'a> {
     /// known: those that turn away from the light where the camera sees them are dark without a
     /// map, so [`FitKind::Focused`](crate::FitKind) passes them over.
     pub receiver_cones: &'a [NormalCone],
-    /// Boxes around everything that throws shadows, for the caster policies that use them.
-    pub casters: Boxes<'a>,
+    /// Boxes around everything that throws shadows, which place the near plane: no caster in them is
+    /// lost. `None` when they are not known: the near plane is then moved toward the light by
+    /// [`FitSettings::caster_extension`](crate::FitSettings::caster_extension). An empty slice means
+    /// that nothing casts.
+    pub casters: Option<Boxes<'a>>,
     /// What depths the last frame showed, for
     /// [`SplitScheme::FromHistogram`](crate::SplitScheme::FromHistogram).
     pub histogram: Option<DepthHistogram<'a>>,
     /// Between which depths the last frame showed anything, if that is known: uniform, logarithmic
-    /// and practical cuts are spread between them instead of over all that is in view.
+    /// and practical splits are spread between them instead of over all that is in view.
     pub depth_bounds: Option<DepthBounds>,
 }
 
 /// View depths of the nearest and the farthest visible point, as a reduction of a depth buffer
 /// gives them (A. Lauritzen, M. Salvi, A. Lefohn, "Sample distribution shadow maps", 2011).
 ///
-/// They only choose where the maps are cut. The first map still begins where shadows do and the last
+/// They only choose where the maps are split. The first map still begins where shadows do and the last
 /// one ends where they end, so late or wrong bounds cost sharpness, never coverage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthBounds {
@@ -79,7 +82,7 @@ impl<'a> FitInput<'a> {
             direction,
             receivers: None,
             receiver_cones: &[],
-            casters: Boxes::default(),
+            casters: None,
             histogram: None,
             depth_bounds: None,
         }
@@ -108,7 +111,7 @@ impl<'a> Workspace<'a> {
             .saturating_add(64)
     }
 
-    /// A workspace over storage whose content is of no account.
+    /// A workspace over storage, whose content is ignored.
     pub fn new(storage: &'a mut [DVec2]) -> Self {
         Self { storage }
     }

@@ -67,15 +67,17 @@ pub mod diagnostics;
 pub mod figures;
 pub mod fits;
 pub mod light_steps;
+#[cfg(feature = "mint")]
+pub mod mint;
 pub mod params;
 pub mod scroll;
 pub mod settings;
+pub mod tool;
 pub mod verify;
 
 mod axes;
 mod bounds;
 mod camera;
-mod cascades;
 mod caster;
 mod checks;
 #[cfg(feature = "alloc")]
@@ -87,18 +89,18 @@ mod grid;
 mod hull;
 mod input;
 mod light_fit;
-#[cfg(feature = "mint")]
-pub mod mint;
+mod map_fitter;
 mod motion;
 mod normal_cone;
+mod presets;
 mod rectangle;
 mod splits;
+mod technique;
 mod view;
 
 pub use bias::Bias;
 pub use bounds::{Aabb, Boxes};
 pub use camera::PerspectiveCamera;
-pub use cascades::{CascadeFitter, CascadeMap, Cascades, fewest_maps};
 pub use caster::{Bounds, CasterPlanes, CasterVolume, OrientedBox, Sphere, Sweep, cull};
 #[cfg(feature = "alloc")]
 pub use clusters::Clusters;
@@ -110,13 +112,16 @@ pub use glam;
 pub use input::{DepthBounds, FitInput, Workspace};
 pub use light_fit::{Constraint, LightFit, WorldMatrices};
 pub use light_steps::{LightStep, LightStepSettings, LightSteps};
+pub use map_fitter::{FittedMap, FittedMaps, MapFitter, fewest_maps};
 pub use normal_cone::NormalCone;
+pub use presets::{PRESETS, Preset, RECOMMENDED};
 pub use scroll::{GridAnchor, Scroll};
 pub use settings::{
-    BiasSettings, CameraSettings, CascadeSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings,
-    LightSettings, MAX_CASCADES, MapFormat, MapOverride, RectangleKind, Settings, SplitScheme, Stabilise, ViewSettings,
+    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapFormat, MapOverride,
+    RectangleKind, SplitScheme, Stabilise,
 };
 pub use splits::{DepthHistogram, needed_texel};
+pub use technique::{ReceiverSource, Technique};
 
 /// Runs the example of the README as a test.
 #[cfg(doctest)]

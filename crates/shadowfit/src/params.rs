@@ -1,15 +1,17 @@
-//! Every knob of [`Settings`] as plain data: name, unit, range, help and access.
+//! Every knob of a [`Technique`] and of the [tools' settings](crate::tool) as plain data: name, unit,
+//! range, help and access.
 //!
-//! Panels, command lines, saved files and code export are made from this one table, so that a knob
-//! is added, renamed or re-ranged in one place.
+//! Panels, command lines and saved files are made from this one table, so that a knob is added,
+//! renamed or re-ranged in one place.
 //!
 //! ```
 //! use shadowfit::params::{self, Kind};
-//! use shadowfit::Settings;
+//! use shadowfit::tool::Settings;
 //!
 //! let mut settings = Settings::default();
 //! params::set_from_str(&mut settings, "light.elevation", "30").unwrap();
-//! assert!(params::set_from_str(&mut settings, "map.resolution", "2000").is_err());
+//! params::set_from_str(&mut settings, "fit.max_distance", "far_plane").unwrap();
+//! assert!(params::set_from_str(&mut settings, "map.resolution", "20").is_err());
 //! for parameter in params::PARAMETERS {
 //!     if let Kind::Toggle(toggle) = &parameter.kind {
 //!         toggle.set(&mut settings, false);
@@ -17,13 +19,13 @@
 //! }
 //! ```
 //!
-//! Angles are degrees here and radians in [`Settings`]; lengths are metres and biases texels in
-//! both.
+//! Angles are degrees here and radians in the settings; lengths are metres and biases texels in both.
 
 mod table;
 mod text;
 
-use crate::Settings;
+use crate::Technique;
+use crate::tool::Settings;
 
 pub use table::PARAMETERS;
 pub use text::{ParameterError, format_value, set_from_str};
@@ -59,6 +61,7 @@ impl Parameter {
     pub fn is_equal(&self, a: &Settings, b: &Settings) -> bool {
         match &self.kind {
             Kind::Number(number) => number.get(a) == number.get(b),
+            Kind::Optional(optional) => optional.get(a) == optional.get(b),
             Kind::Choice(choice) => choice.get(a) == choice.get(b),
             Kind::Toggle(toggle) => toggle.get(a) == toggle.get(b),
         }
@@ -68,10 +71,45 @@ impl Parameter {
     pub fn copy(&self, settings: &mut Settings, from: &Settings) {
         match &self.kind {
             Kind::Number(number) => number.set(settings, number.get(from)),
+            Kind::Optional(optional) => optional.set(settings, optional.get(from)),
             Kind::Choice(choice) => choice.set(settings, choice.get(from)),
             Kind::Toggle(toggle) => toggle.set(settings, toggle.get(from)),
         }
     }
+
+    /// Whether the settings hold a value of this knob: λ is there only while the practical splits are
+    /// chosen, and the manual splits while those are.
+    pub fn is_present(&self, settings: &Settings) -> bool {
+        match &self.kind {
+            Kind::Optional(optional) => optional.unset.is_some() || optional.get(settings).is_some(),
+            _ => true,
+        }
+    }
+}
+
+/// The knobs that make up a [`Technique`], in the order that they are shown.
+pub fn technique_parameters() -> impl Iterator<Item = &'static Parameter> {
+    PARAMETERS.iter().filter(|parameter| parameter.group.is_technique())
+}
+
+/// Sets one parameter of a technique from text, as [`set_from_str`] does.
+///
+/// # Errors
+///
+/// As [`set_from_str`]; [`ParameterError::UnknownId`] for the id of a knob that is no part of a
+/// technique.
+pub fn set_technique_from_str<'a>(
+    technique: &mut Technique,
+    id: &'a str,
+    value: &'a str,
+) -> Result<(), ParameterError<'a>> {
+    if parameter(id).is_some_and(|parameter| !parameter.group.is_technique()) {
+        return Err(ParameterError::UnknownId { id });
+    }
+    let mut settings = Settings::default().with_technique(*technique);
+    set_from_str(&mut settings, id, value)?;
+    *technique = settings.technique;
+    Ok(())
 }
 
 /// What values a knob takes.
@@ -79,6 +117,8 @@ impl Parameter {
 pub enum Kind {
     /// A number in a range.
     Number(Number),
+    /// A number in a range, or none.
+    Optional(Optional),
     /// One of a few named options.
     Choice(Choice),
     /// On or off.
@@ -119,6 +159,42 @@ impl Number {
     }
 }
 
+/// A number in a range that need not be there.
+#[derive(Clone, Copy, Debug)]
+pub struct Optional {
+    /// Least value.
+    pub min: f64,
+    /// Greatest value.
+    pub max: f64,
+    /// A fine step for keys and dragging; not a grid, values between steps are kept.
+    pub step: f64,
+    /// Whether a slider over the range should be logarithmic.
+    pub logarithmic: bool,
+    /// Decimals worth showing.
+    pub decimals: usize,
+    /// What no number is called and does. `None` where another knob decides whether there is one:
+    /// without it, this one has nothing to show and setting it is ignored.
+    pub unset: Option<ChoiceOption>,
+    /// The number that a panel begins with when it is turned on.
+    pub initial: f64,
+    read: fn(&Settings) -> Option<f64>,
+    write: fn(&mut Settings, Option<f64>),
+}
+
+impl Optional {
+    /// The value, as it stands: settings that were filled by hand may lie outside the range.
+    pub fn get(&self, settings: &Settings) -> Option<f64> {
+        (self.read)(settings)
+    }
+
+    /// Sets the value, clamped to the range, or takes it away; NaN and infinity are ignored.
+    pub fn set(&self, settings: &mut Settings, value: Option<f64>) {
+        if value.is_none_or(f64::is_finite) {
+            (self.write)(settings, value.map(|value| value.max(self.min).min(self.max)));
+        }
+    }
+}
+
 /// One of a few named options.
 #[derive(Clone, Copy, Debug)]
 pub struct Choice {
@@ -129,8 +205,7 @@ pub struct Choice {
 }
 
 impl Choice {
-    /// Index of the current option. Settings that were filled by hand may hold a resolution that
-    /// is none of the options: the largest that the map's longer side reaches stands for it.
+    /// Index of the current option.
     pub fn get(&self, settings: &Settings) -> usize {
         (self.read)(settings)
     }
@@ -176,12 +251,18 @@ impl Toggle {
 /// A heading over some knobs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Group {
-    /// Where the shadow map looks.
+    /// Where the shadow maps look.
     Fit,
-    /// What the shadow map stores and how it is read.
+    /// How many maps there are, and where one ends and the next begins.
+    Splits,
+    /// What keeps the maps from changing while the camera moves.
+    Stabilise,
+    /// What a shadow map stores and how it is read.
     Map,
     /// Biases against self-shadowing.
     Bias,
+    /// What single maps have of their own.
+    Override,
     /// The sun.
     Light,
     /// Lens and speed of the camera.
@@ -192,14 +273,32 @@ pub enum Group {
 
 impl Group {
     /// All groups, in the order that they are shown.
-    pub const ALL: [Self; 6] = [Self::Fit, Self::Map, Self::Bias, Self::Light, Self::Camera, Self::View];
+    pub const ALL: [Self; 9] = [
+        Self::Fit,
+        Self::Splits,
+        Self::Stabilise,
+        Self::Map,
+        Self::Bias,
+        Self::Override,
+        Self::Light,
+        Self::Camera,
+        Self::View,
+    ];
+
+    /// Whether its knobs are a part of the [`Technique`]; the others belong to the tools.
+    pub const fn is_technique(self) -> bool {
+        !matches!(self, Self::Light | Self::Camera | Self::View)
+    }
 
     /// Stable name; the ids of the group's parameters begin with it and a dot.
     pub const fn id(self) -> &'static str {
         match self {
             Self::Fit => "fit",
+            Self::Splits => "splits",
+            Self::Stabilise => "stabilise",
             Self::Map => "map",
             Self::Bias => "bias",
+            Self::Override => "override",
             Self::Light => "light",
             Self::Camera => "camera",
             Self::View => "view",
@@ -210,8 +309,11 @@ impl Group {
     pub const fn label(self) -> &'static str {
         match self {
             Self::Fit => "Fit",
+            Self::Splits => "Maps and splits",
+            Self::Stabilise => "Stabilise",
             Self::Map => "Shadow map",
             Self::Bias => "Bias",
+            Self::Override => "Single maps",
             Self::Light => "Light",
             Self::Camera => "Camera",
             Self::View => "View",
@@ -221,12 +323,15 @@ impl Group {
     /// What the group's knobs have in common, in a sentence.
     pub const fn help(self) -> &'static str {
         match self {
-            Self::Fit => "Which part of the scene the shadow map covers.",
-            Self::Map => "How large the shadow map is, what it stores and how it is read.",
+            Self::Fit => "Which part of the scene a shadow map covers.",
+            Self::Splits => "How many maps share the view, and at which distances one ends and the next begins.",
+            Self::Stabilise => "Whether maps stay where they are while the camera moves, so that edges do not crawl.",
+            Self::Map => "How large a shadow map is, what it stores and how it is read.",
             Self::Bias => {
                 "How far the comparison is moved so that a surface does not shadow itself. Too little leaves \
                  acne, too much detaches shadows from their casters."
             }
+            Self::Override => "What one of several maps has of its own, map 1 being the nearest.",
             Self::Light => "Where the sun stands.",
             Self::Camera => "The lens and the speed of the camera.",
             Self::View => "What is drawn over or instead of the picture.",

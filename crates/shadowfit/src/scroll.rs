@@ -31,7 +31,7 @@ use crate::axes::LightAxes;
 use crate::fits::Volume;
 use crate::grid::Grid;
 use crate::light_fit::Constraint;
-use crate::{CascadeMap, FitError, FitSettings, LightFit, checks};
+use crate::{FitError, FitSettings, FittedMap, LightFit, checks};
 
 /// Where a map lies on the world's texel grid.
 ///
@@ -75,9 +75,9 @@ pub struct TexelRect {
 /// How a map came about from the one before it.
 ///
 /// ```
-/// # use shadowfit::{CascadeMap, Scroll};
+/// # use shadowfit::{FittedMap, Scroll};
 /// # fn draw_all() {} fn copy_within_the_map(_: i32, _: i32) {} fn draw_in(_: u32, _: u32, _: u32, _: u32) {}
-/// fn draw_static_casters(before: &CascadeMap, now: &CascadeMap) {
+/// fn draw_static_casters(before: &FittedMap, now: &FittedMap) {
 ///     let scroll = Scroll::between(before, now);
 ///     if scroll.is_redraw() {
 ///         return draw_all();
@@ -87,7 +87,7 @@ pub struct TexelRect {
 ///         draw_in(strip.min.x, strip.min.y, strip.size.x, strip.size.y); // a scissor rectangle
 ///     }
 /// }
-/// # draw_static_casters(&CascadeMap::default(), &CascadeMap::default());
+/// # draw_static_casters(&FittedMap::default(), &FittedMap::default());
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Scroll {
@@ -105,7 +105,7 @@ pub struct Scroll {
 
 impl Scroll {
     /// How a map came about from the same map of an earlier frame.
-    pub fn between(before: &CascadeMap, now: &CascadeMap) -> Self {
+    pub fn between(before: &FittedMap, now: &FittedMap) -> Self {
         shift(before, now).map_or_else(
             || Self::new_map(now.fit.resolution),
             |(by, depth_changed)| Self {
@@ -136,7 +136,7 @@ impl Scroll {
 }
 
 /// Texels from a map to an earlier one and whether the depth range changed, if they share any.
-fn shift(before: &CascadeMap, now: &CascadeMap) -> Option<(IVec2, bool)> {
+fn shift(before: &FittedMap, now: &FittedMap) -> Option<(IVec2, bool)> {
     let (old, new) = (before.anchor?, now.anchor?);
     let axes = |fit: &LightFit| [0, 1, 2].map(|i| fit.light_from_world.col(i));
     let is_same = axes(&before.fit) == axes(&now.fit)
@@ -210,7 +210,7 @@ pub struct Tiles {
 /// [`FitError::NotOnGrid`] for a map that is neither snapped nor held nor a sphere's;
 /// [`FitError::OutOfRange`] for a size of 0 or above 65 536 texels, and for an anchor or a fit that
 /// make no sense.
-pub fn tiles(map: &CascadeMap, size: u32) -> Result<Tiles, FitError> {
+pub fn tiles(map: &FittedMap, size: u32) -> Result<Tiles, FitError> {
     checks::within("the size of a tile", f64::from(size), 1.0, f64::from(MAX_TILE))?;
     let anchor = map.anchor.ok_or(FitError::NotOnGrid)?;
     let axes = LightAxes::of_matrix(&map.fit.light_from_world)?;
@@ -231,7 +231,7 @@ pub fn tiles(map: &CascadeMap, size: u32) -> Result<Tiles, FitError> {
 const MAX_TILE: u32 = 65_536;
 
 /// The projection of a tile whose origin is in the middle of its near plane.
-fn tile_fit(axes: &LightAxes, anchor: &GridAnchor, size: u32, map: &CascadeMap) -> Result<LightFit, FitError> {
+fn tile_fit(axes: &LightAxes, anchor: &GridAnchor, size: u32, map: &FittedMap) -> Result<LightFit, FitError> {
     let half = anchor.texel * (f64::from(size) * 0.5);
     let depth_range = anchor.depth[1] - anchor.depth[0];
     let volume = Volume {

@@ -23,7 +23,7 @@ use crate::axes::LightAxes;
 use crate::bias::{HARDWARE_SNAP, Reach};
 use crate::fits::{Content, Footprint, Outline, Range, Scratch};
 use crate::view::{Slice, box_corners, moved};
-use crate::{CascadeMap, CascadeSettings, CasterPolicy, FitError, FitInput, FitSettings, LightFit, Workspace, checks};
+use crate::{CasterPolicy, FitError, FitInput, FitSettings, FittedMap, LightFit, Technique, Workspace, checks};
 use half_space::{HalfSpaces, ROUNDING};
 
 /// What is claimed of a map: which receivers read it, how far around them, and whether casters
@@ -56,9 +56,9 @@ impl Claim {
         Self { near, far, reach, normal_offset: 0.0, casters: settings.casters }
     }
 
-    /// What one of several maps is made for: the receivers from [`CascadeMap::covered_near`] to
-    /// [`CascadeMap::far`] or the shadow distance.
-    pub const fn of_map(map: &CascadeMap, settings: &CascadeSettings, reach: Reach) -> Self {
+    /// What one of several maps is made for: the receivers from [`FittedMap::covered_near`] to
+    /// [`FittedMap::far`] or the shadow distance.
+    pub const fn of_map(map: &FittedMap, settings: &Technique, reach: Reach) -> Self {
         let far = map.far.min(settings.fit.max_distance);
         Self { near: map.covered_near.min(far), far, reach, normal_offset: 0.0, casters: settings.fit.casters }
     }
@@ -196,13 +196,13 @@ pub struct Slack {
 /// let mut workspace = Workspace::new(&mut storage);
 ///
 /// // Hardware 2×2 samples read texels up to one away: half a texel must be left free for them.
-/// let settings = FitSettings::default().with_kernel_margin(0.5);
+/// let settings = FitSettings::default().with_border(0.5);
 /// let claim = Claim::of_fit(&settings, Reach::HARDWARE_2X2);
 /// let map = shadowfit::fit_scene(&input, &settings, &mut workspace)?;
 /// assert!(verify(&input, &map, &claim, &mut workspace)?.is_proven());
 ///
 /// // Without them there is a hole, and the certificate says where.
-/// let map = shadowfit::fit_scene(&input, &settings.with_kernel_margin(0.0), &mut workspace)?;
+/// let map = shadowfit::fit_scene(&input, &settings.with_border(0.0), &mut workspace)?;
 /// let Certificate::Uncovered { plane, by, .. } = verify(&input, &map, &claim, &mut workspace)? else { panic!() };
 /// assert!(plane != MapPlane::Near && by > 0.49 && by < 0.51);
 /// # Ok::<(), shadowfit::FitError>(())
@@ -240,7 +240,10 @@ pub fn verify(
         return Ok(certificate);
     }
     let mut slack = Slack { planes: receivers.least.map(|(margin, _)| margin as f32), casters: f32::INFINITY };
-    if receivers.any.is_some() && claim.casters != CasterPolicy::DepthClamp && !content.casters.boxes.is_empty() {
+    if receivers.any.is_some()
+        && claim.casters != CasterPolicy::DepthClamp
+        && content.casters.is_some_and(|casters| !casters.boxes.is_empty())
+    {
         let footprint = Footprint::of_receivers(&content, axes, range, points)?;
         let pad = caster_reach(fit, claim, footprint.reach);
         let (by, point) = nearest_caster(&content, &Outline::new(&axes, footprint.outline, pad), &half_spaces, offset);
@@ -269,9 +272,10 @@ const SHIFT_ROUNDINGS: f64 = 32.0;
 
 /// The casters' least distance behind the near plane, in metres, and where.
 fn nearest_caster(content: &Content, over: &Outline, half_spaces: &HalfSpaces, offset: DVec3) -> (f64, DVec3) {
-    let (moved_by, mut scratch) = (content.casters.origin - content.origin, Scratch::new());
+    let casters = content.casters.unwrap_or_default();
+    let (moved_by, mut scratch) = (casters.origin - content.origin, Scratch::new());
     let mut least = (f64::INFINITY, DVec3::ZERO);
-    for aabb in content.casters.boxes.iter().filter(|aabb| !aabb.is_empty()) {
+    for aabb in casters.boxes.iter().filter(|aabb| !aabb.is_empty()) {
         let (min, max) = moved(aabb, moved_by);
         over.parts_over(min, max, f64::MIN, &mut scratch, |corner| {
             let p = over.axes.unproject(corner) + offset;

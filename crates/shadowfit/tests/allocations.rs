@@ -6,9 +6,9 @@ use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::scroll::tiles;
 use shadowfit::verify::{Claim, verify};
 use shadowfit::{
-    Aabb, Boxes, CascadeFitter, CascadeSettings, CasterPolicy, CasterVolume, FitInput, FitKind, FitSettings,
-    MAX_CASCADES, OrientedBox, PerspectiveCamera, RectangleKind, Scroll, Sphere, SplitScheme, Stabilise, Sweep,
-    ViewFrustum, Workspace, cull, fit, fit_scene,
+    Aabb, Boxes, CasterPolicy, CasterVolume, FitInput, FitKind, FitSettings, MAX_MAPS, MapFitter, OrientedBox,
+    PerspectiveCamera, RectangleKind, Scroll, Sphere, SplitScheme, Stabilise, Sweep, Technique, ViewFrustum, Workspace,
+    cull, fit, fit_scene,
 };
 
 const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.4);
@@ -61,7 +61,7 @@ fn the_counter_counts() {
 fn no_fit_allocates() {
     let (views, objects) = (views(), objects());
     let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
-    let input = FitInput { receivers: Some(boxes), casters: boxes, ..FitInput::new(&views, DIRECTION) };
+    let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, DIRECTION) };
     let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), views.len())];
     for kind in KINDS {
         for rectangle in [RectangleKind::AxisAligned, RectangleKind::MinimumArea, RectangleKind::MinimumSquare] {
@@ -80,14 +80,14 @@ fn no_fit_allocates() {
 fn no_cascade_fit_allocates() {
     let (views, objects) = (views(), objects());
     let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
-    let input = FitInput { receivers: Some(boxes), casters: boxes, ..FitInput::new(&views, DIRECTION) };
+    let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, DIRECTION) };
     let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), views.len())];
     for kind in KINDS {
         for stabilise in [Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis] {
             for splits in [SplitScheme::Logarithmic, SplitScheme::Practical(0.5), SplitScheme::FromBoxes] {
                 let fit = FitSettings::default().with_kind(kind).with_casters(CasterPolicy::List);
-                let settings = CascadeSettings { count: 4, stabilise, splits, fit, ..CascadeSettings::default() };
-                let (what, mut fitter) = (format!("{settings:?}"), CascadeFitter::new());
+                let settings = Technique { count: 4, stabilise, splits, fit, ..Technique::default() };
+                let (what, mut fitter) = (format!("{settings:?}"), MapFitter::new());
                 for _ in 0..2 {
                     let mut workspace = Workspace::new(&mut storage);
                     let maps = without_allocation(&what, || fitter.fit(&input, &settings, &mut workspace));
@@ -102,12 +102,12 @@ fn no_cascade_fit_allocates() {
 fn no_certificate_and_no_scrolling_allocates() {
     let (views, objects) = (views(), objects());
     let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
-    let input = FitInput { receivers: Some(boxes), casters: boxes, ..FitInput::new(&views, DIRECTION) };
+    let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, DIRECTION) };
     let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), views.len())];
     let mut workspace = Workspace::new(&mut storage);
     let fit = FitSettings::default().with_kind(FitKind::Sphere).with_casters(CasterPolicy::List);
-    let settings = CascadeSettings { fit, ..CascadeSettings::default() };
-    let mut fitter = CascadeFitter::new();
+    let settings = Technique { fit, ..Technique::default() };
+    let mut fitter = MapFitter::new();
     let before = fitter.fit(&input, &settings, &mut workspace).expect("a good scene");
     let now = fitter.fit(&input, &settings, &mut workspace).expect("a good scene");
     for (before, map) in before.iter().zip(now.iter()) {
@@ -125,10 +125,10 @@ fn no_certificate_and_no_scrolling_allocates() {
 fn no_culling_allocates() {
     let (views, boxes) = (views(), objects());
     let mut storage = [DVec2::ZERO; Workspace::required(0, 2)];
-    let settings = CascadeSettings { count: 4, ..CascadeSettings::default() };
+    let settings = Technique { count: 4, ..Technique::default() };
     let input = FitInput::new(&views, DIRECTION);
-    let maps = CascadeFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("good views");
-    let mut volumes = [CasterVolume::everywhere(DVec3::ZERO); MAX_CASCADES];
+    let maps = MapFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("good views");
+    let mut volumes = [CasterVolume::everywhere(DVec3::ZERO); MAX_MAPS];
     for count in [1, 2] {
         for (volume, map) in volumes.iter_mut().zip(maps.iter()) {
             let sweep = Sweep { near: map.covered_near, far: map.far, ..Sweep::new(&views[..count]) };

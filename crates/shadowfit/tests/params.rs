@@ -53,22 +53,12 @@ fn every_field_is_reached_by_a_row() {
     // Without `..`, so that a new field does not compile until it is looked at here.
     let Settings { fit, bias, filter, format, light, camera, view } = all;
     let old = Settings::default();
-    let FitSettings {
-        kind,
-        rectangle,
-        max_distance,
-        margin,
-        kernel_margin,
-        casters,
-        caster_extension,
-        up,
-        resolution,
-        depth,
-    } = fit;
+    let FitSettings { kind, rectangle, max_distance, margin, border, casters, caster_extension, up, resolution, depth } =
+        fit;
     assert!(kind != old.fit.kind && depth != old.fit.depth && resolution.x == resolution.y);
     assert!(resolution != old.fit.resolution && max_distance != old.fit.max_distance);
     assert!(margin != old.fit.margin && caster_extension != old.fit.caster_extension);
-    assert!(rectangle != old.fit.rectangle && casters != old.fit.casters && kernel_margin != old.fit.kernel_margin);
+    assert!(rectangle != old.fit.rectangle && casters != old.fit.casters && border != old.fit.border.unwrap_or(3.0));
     assert_eq!(up, old.fit.up, "which way is up belongs to the world, and no person tunes it");
     let BiasSettings { constant, slope, normal_offset, receiver_plane } = bias;
     assert!(constant != old.bias.constant && slope != old.bias.slope && normal_offset != old.bias.normal_offset);
@@ -273,7 +263,7 @@ fn knobs_of_the_fit_say_where_they_have_no_effect() {
         ("fit.rectangle", "fit.kind", "frustum_aabb", "focused"),
         ("fit.rectangle", "fit.kind", "sphere", "focused"),
         ("fit.casters", "fit.kind", "xna_sample", "XNA"),
-        ("fit.kernel_margin", "fit.kind", "xna_sample", "XNA"),
+        ("fit.border", "fit.kind", "xna_sample", "XNA"),
         ("fit.caster_extension", "fit.kind", "xna_sample", "XNA"),
         ("fit.caster_extension", "fit.casters", "none", "By extension"),
         ("fit.caster_extension", "fit.casters", "scene_bounds", "By extension"),
@@ -307,7 +297,8 @@ fn a_knob_that_says_it_has_no_effect_has_none_and_the_others_have_one() {
         Aabb::new(Vec3::new(30.0, 30.0, 30.0), Vec3::new(31.0, 31.0, 31.0)),
     ];
     let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
-    let input = FitInput { receivers: Some(boxes), casters: boxes, ..FitInput::new(&views, Vec3::new(0.4, -0.7, 0.3)) };
+    let input =
+        FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, Vec3::new(0.4, -0.7, 0.3)) };
     let map = |settings: &Settings| {
         let mut storage = [Default::default(); Workspace::required(3, 1)];
         shadowfit::fit_scene(&input, &settings.fit, &mut Workspace::new(&mut storage)).expect("a fit")

@@ -2,9 +2,9 @@
 
 use shadowfit::glam::{DMat4, DVec3, DVec4, UVec2, Vec3};
 use shadowfit::{
-    Aabb, Boxes, CascadeSettings, CasterPolicy, Clusters, DepthConvention, DepthHistogram, FitError, FitInput, FitKind,
-    FitSettings, HoldSettings, MAX_CASCADES, MapOverride, NormalCone, PerspectiveCamera, RectangleKind, SplitScheme,
-    Stabilise, ViewFrustum,
+    Aabb, BiasSettings, Boxes, CasterPolicy, Clusters, DepthConvention, DepthHistogram, FilterKind, FitError, FitInput,
+    FitKind, FitSettings, HoldSettings, MAX_MAPS, MapFormat, MapOverride, NormalCone, PerspectiveCamera,
+    ReceiverSource, RectangleKind, SplitScheme, Stabilise, Technique, ViewFrustum,
 };
 
 use crate::random::Random;
@@ -66,7 +66,7 @@ impl Scene {
         FitInput {
             receivers: self.receivers.as_deref().map(boxes),
             receiver_cones: &self.cones,
-            casters: boxes(&self.casters),
+            casters: Some(boxes(&self.casters)),
             histogram: self.histogram.as_deref().map(|bins| DepthHistogram {
                 near: self.camera.near,
                 far: self.camera.far,
@@ -171,7 +171,7 @@ pub(crate) fn fit_settings(random: &mut Random, camera: &PerspectiveCamera) -> F
         rectangle: random.pick(&[RectangleKind::AxisAligned, RectangleKind::MinimumArea, RectangleKind::MinimumSquare]),
         max_distance: if random.once_in(3) { camera.far * random.between(0.2, 1.5) } else { f32::MAX },
         margin: if random.once_in(4) { camera.far * random.between(0.0, 0.1) } else { 0.0 },
-        kernel_margin: random.pick(&[0.0, 1.0, 2.5, 8.0]),
+        border: Some(random.pick(&[0.0, 1.0, 2.5, 8.0])),
         casters: random.pick(&[None, Extend, SceneBounds, List, DepthClamp]),
         caster_extension: camera.far * random.between(0.0, 2.0),
         up: random.pick(&[Vec3::Y, Vec3::Z, Vec3::new(0.3, 0.7, -0.2)]),
@@ -185,7 +185,7 @@ fn kind(random: &mut Random) -> FitKind {
 }
 
 /// Settings of several maps.
-pub(crate) fn cascade_settings(random: &mut Random, camera: &PerspectiveCamera) -> CascadeSettings {
+pub(crate) fn technique(random: &mut Random, camera: &PerspectiveCamera) -> Technique {
     let mut manual = [0.0; 7];
     for (share, cut) in (1_u8..).zip(&mut manual) {
         *cut = camera.near + (camera.far - camera.near) * (f32::from(share) / 8.0);
@@ -198,17 +198,21 @@ pub(crate) fn cascade_settings(random: &mut Random, camera: &PerspectiveCamera) 
         SplitScheme::FromBoxes,
         SplitScheme::FromHistogram,
     ];
-    let mut settings = CascadeSettings {
+    let mut settings = Technique {
         fit: FitSettings { max_distance: f32::MAX, ..fit_settings(random, camera) },
         count: 1 + random.below(5),
         splits: random.pick(&schemes),
         overlap: random.pick(&[0.0, 0.1, 0.5]),
         stabilise: random.pick(&[Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis]),
         hold: HoldSettings { margin: 0.02, growth: 1.4, waste: random.between(1.2, 3.0), horizon: 32 },
-        overrides: [None; MAX_CASCADES],
+        overrides: [MapOverride::default(); MAX_MAPS],
+        receivers: ReceiverSource::Clusters,
+        filter: FilterKind::Point,
+        bias: BiasSettings { constant: 0.5, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0 },
+        format: MapFormat::Depth32Float,
     };
     if random.once_in(4) {
-        settings.overrides[0] = Some(MapOverride { kind: kind(random), resolution: UVec2::new(512, 1024) });
+        settings.overrides[0] = MapOverride { kind: Some(kind(random)), resolution: Some(UVec2::new(512, 1024)) };
     }
     settings
 }

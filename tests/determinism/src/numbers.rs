@@ -7,11 +7,10 @@ use shadowfit::bias::Reach;
 use shadowfit::diagnostics::DepthStorage;
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec2, Vec3};
 use shadowfit::{
-    Bias, BiasSettings, CascadeFitter, CasterPolicy, CasterVolume, FitError, LightFit, Sweep, Workspace, cull,
-    fit_scene,
+    Bias, BiasSettings, CasterPolicy, CasterVolume, FitError, LightFit, MapFitter, Sweep, Workspace, cull, fit_scene,
 };
 
-use crate::inputs::{Scene, cascade_settings, fit_settings};
+use crate::inputs::{Scene, fit_settings, technique};
 use crate::random::Random;
 
 /// Frames of a camera's flight.
@@ -46,17 +45,17 @@ impl Run {
             self.follow(&scene, &fit, settings.casters)?;
             return Ok(1);
         }
-        let settings = cascade_settings(&mut self.random, &scene.camera);
+        let settings = technique(&mut self.random, &scene.camera);
         // The same way in as in the frames to come: what is held may tolerate another one's rounding.
         scene.views = vec![scene.camera.frustum()?];
-        let mut fitter = CascadeFitter::new();
+        let mut fitter = MapFitter::new();
         for _ in 0..FRAMES {
             let maps = fitter.fit(&scene.input(), &settings, &mut Workspace::new(&mut self.storage))?;
             for map in maps.iter() {
                 self.numbers.fit(&map.fit);
                 self.numbers.f32s(&[map.near, map.far, map.covered_near]);
                 if let Some(anchor) = map.anchor {
-                    anchor.first.map(|line| self.numbers.bits(line as u64));
+                    anchor.first.iter().for_each(|line| self.numbers.bits(line.cast_unsigned()));
                     self.numbers.f64s(&[anchor.texel.x, anchor.texel.y, anchor.depth[0], anchor.depth[1]]);
                 }
             }
@@ -96,7 +95,7 @@ impl Run {
                 self.numbers.f32s(&plane.to_array());
             }
         }
-        masks.map(|mask| self.numbers.bits(u64::from(mask)));
+        masks.iter().for_each(|mask| self.numbers.bits(u64::from(*mask)));
         Ok(())
     }
 }

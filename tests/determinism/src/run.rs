@@ -5,13 +5,15 @@ use shadowfit::diagnostics::{DepthStorage, acne_margin, coverage, depth_step_at,
 use shadowfit::fits::sphere::enclosing_sphere;
 use shadowfit::glam::{DVec2, UVec2, Vec3};
 use shadowfit::{
-    Bias, BiasSettings, CascadeFitter, CasterPolicy, CasterVolume, DepthHistogram, FilterKind, FitError, LightFit,
-    LightSettings, LightStepSettings, LightSteps, OrientedBox, Sphere, Sweep, Workspace, cull, fit_scene, needed_texel,
+    Bias, BiasSettings, CasterPolicy, CasterVolume, DepthHistogram, FilterKind, FitError, LightFit, LightStepSettings,
+    LightSteps, MapFitter, OrientedBox, Sphere, Sweep, Workspace, cull, fit_scene, needed_texel,
 };
+
+use shadowfit::tool::LightSettings;
 
 use crate::Outcome;
 use crate::hash::Hash;
-use crate::inputs::{Scene, cascade_settings, fit_settings};
+use crate::inputs::{Scene, fit_settings, technique};
 use crate::random::Random;
 
 /// Frames of a camera's flight.
@@ -54,8 +56,8 @@ impl Run {
             self.fits += 1;
             return self.follow(&scene, &fit, settings.casters);
         }
-        let settings = cascade_settings(&mut self.random, &scene.camera);
-        let mut fitter = CascadeFitter::new();
+        let settings = technique(&mut self.random, &scene.camera);
+        let mut fitter = MapFitter::new();
         for _ in 0..FRAMES {
             let cascades = fitter.fit(&scene.input(), &settings, &mut Workspace::new(&mut self.storage))?;
             self.hash.add(&cascades);

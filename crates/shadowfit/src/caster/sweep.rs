@@ -99,8 +99,8 @@ impl CasterVolume {
     /// # let workspace = &mut Workspace::new(&mut storage);
     /// let views = [camera.frustum()?];
     /// let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
-    /// let cascades = CascadeFitter::new().fit(&input, &CascadeSettings::default(), workspace)?;
-    /// let mut volumes = [CasterVolume::everywhere(views[0].origin); MAX_CASCADES];
+    /// let cascades = MapFitter::new().fit(&input, &Technique::default(), workspace)?;
+    /// let mut volumes = [CasterVolume::everywhere(views[0].origin); MAX_MAPS];
     /// for (volume, map) in volumes.iter_mut().zip(cascades.iter()) {
     ///     let sweep = Sweep {
     ///         near: map.covered_near,

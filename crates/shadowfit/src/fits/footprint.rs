@@ -17,7 +17,7 @@ pub(crate) struct Content<'a> {
     pub(crate) views: &'a [ViewFrustum],
     pub(crate) origin: DVec3,
     pub(crate) receivers: Option<Boxes<'a>>,
-    pub(crate) casters: Boxes<'a>,
+    pub(crate) casters: Option<Boxes<'a>>,
     /// Least and greatest view depth of each receiver, view by view; the least is above the
     /// greatest where the box is out of view.
     depths: &'a [DVec2],
@@ -43,7 +43,7 @@ impl<'a> Content<'a> {
         if workspace.storage.len() < required {
             return Err(FitError::WorkspaceTooSmall { given: workspace.storage.len(), required });
         }
-        for boxes in input.receivers.iter().chain([&input.casters]) {
+        for boxes in input.receivers.iter().chain(&input.casters) {
             check(boxes)?;
         }
         let (depths, points) = workspace.storage.split_at_mut(needed);

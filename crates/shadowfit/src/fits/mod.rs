@@ -34,7 +34,7 @@ pub(crate) use volume::{Placing, ROUNDING, Volume};
 /// is refused like every number that is not finite). `direction` is the light's
 /// **direction of travel** in world axes (right-handed); sources that speak of the direction
 /// toward the light use the opposite sign. Its length is of no account. Nothing is known of the
-/// scene here: [`fit_scene`] takes boxes, [`CascadeFitter`](crate::CascadeFitter) makes several
+/// scene here: [`fit_scene`] takes boxes, [`MapFitter`](crate::MapFitter) makes several
 /// maps and keeps them still.
 ///
 /// # Errors
@@ -170,7 +170,7 @@ pub(crate) fn check(settings: &FitSettings) -> Result<(), FitError> {
         return Err(FitError::ZeroResolution { resolution: settings.resolution });
     }
     let widest = f64::from(settings.resolution.min_element()) * 0.25;
-    checks::within("the fit's kernel margin", f64::from(settings.kernel_margin), 0.0, widest)?;
+    checks::within("the fit's border", f64::from(settings.border_texels()), 0.0, widest)?;
     checks::finite("the maximum shadow distance", f64::from(settings.max_distance))?;
     Ok(())
 }

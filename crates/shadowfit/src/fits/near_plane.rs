@@ -42,19 +42,18 @@ pub(crate) fn place(
     reach: f64,
 ) -> NearPlane {
     let over = || Outline::new(axes, outline, reach);
-    let z = match settings.casters {
-        CasterPolicy::None | CasterPolicy::DepthClamp => covered,
-        CasterPolicy::Extend => covered + f64::from(settings.caster_extension),
-        CasterPolicy::SceneBounds => {
-            let all = content.casters.boxes.iter().filter(|b| !b.is_empty()).fold(Aabb::EMPTY, |a, b| a.union(*b));
-            let all = [all];
-            highest(&over(), &Boxes { boxes: &all, ..content.casters }, content.origin, covered)
+    let extended = (covered + f64::from(settings.caster_extension), Constraint::CasterExtension);
+    let (z, moved) = match (settings.casters, &content.casters) {
+        (CasterPolicy::None | CasterPolicy::DepthClamp, _) => (covered, Constraint::Casters),
+        (CasterPolicy::Extend, _) | (CasterPolicy::SceneBounds | CasterPolicy::List, None) => extended,
+        (CasterPolicy::SceneBounds, Some(casters)) => {
+            let all = casters.boxes.iter().filter(|b| !b.is_empty()).fold(Aabb::EMPTY, |a, b| a.union(*b));
+            let all = Boxes { boxes: &[all], ..*casters };
+            (highest(&over(), &all, content.origin, covered), Constraint::Casters)
         }
-        CasterPolicy::List => highest(&over(), &content.casters, content.origin, covered),
-    };
-    let moved = match settings.casters {
-        CasterPolicy::Extend => Constraint::CasterExtension,
-        _ => Constraint::Casters,
+        (CasterPolicy::List, Some(casters)) => {
+            (highest(&over(), casters, content.origin, covered), Constraint::Casters)
+        }
     };
     NearPlane { z, set_by: if z > covered { Some(moved) } else { None } }
 }
@@ -78,7 +77,7 @@ fn highest(over: &Outline, casters: &Boxes, origin: DVec3, covered: f64) -> f64 
 /// in metres: a filter of reach E needs E - 1/2 texels of margin, and half a texel more is for the
 /// rasteriser. `rounding` is what receivers and casters may be shifted by, each.
 pub(crate) fn filter_reach(texel: DVec2, settings: &FitSettings, rounding: f64) -> f64 {
-    let texels = (f64::from(settings.kernel_margin) + 1.0) * texel.max_element();
+    let texels = (f64::from(settings.border_texels()) + 1.0) * texel.max_element();
     (texels + 2.0 * rounding) * ANY_AXES + f64::from(settings.margin)
 }
 

@@ -82,7 +82,7 @@ impl Volume {
         let longest = rectangle.size().max_element();
         // That of the map, which the kernel's texels widen.
         let resolution = settings.resolution.as_dvec2();
-        let widening = resolution / (resolution - 2.0 * f64::from(settings.kernel_margin));
+        let widening = resolution / (resolution - 2.0 * f64::from(settings.border_texels()));
         let rounding = (rectangle.size() * widening + footprint.reach) * ROUNDING;
         let pad = rounding + f64::from(settings.margin);
         let thinnest = longest.max(footprint.reach) * THINNEST;
@@ -137,7 +137,7 @@ fn widened(min: DVec2, max: DVec2, thinnest: f64) -> (DVec2, DVec2) {
 /// Leaves the kernel margin free on all sides.
 fn with_kernel(min: DVec3, max: DVec3, settings: &FitSettings) -> (DVec3, DVec3) {
     let resolution = settings.resolution.as_dvec2();
-    let kernel = DVec2::splat(f64::from(settings.kernel_margin));
+    let kernel = DVec2::splat(f64::from(settings.border_texels()));
     let margin = (max - min).truncate() / (resolution - kernel * 2.0) * kernel;
     (min - margin.extend(0.0), max + margin.extend(0.0))
 }

@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-use super::{Kind, Number, PARAMETERS, Parameter, parameter};
-use crate::Settings;
+use super::{Kind, Number, Optional, PARAMETERS, Parameter, parameter};
+use crate::tool::Settings;
 
 /// Sets one parameter from text: a number in the parameter's unit, an option's id, or `true`,
 /// `on`, `false`, `off`. Spaces around the value are ignored.
@@ -19,12 +19,14 @@ pub fn set_from_str<'a>(settings: &mut Settings, id: &'a str, value: &'a str) ->
     let parameter = parameter(id).ok_or(ParameterError::UnknownId { id })?;
     let value = value.trim();
     match &parameter.kind {
-        Kind::Number(number) => {
-            let parsed: f64 = value.parse().map_err(|_| ParameterError::NotANumber { parameter, value })?;
-            if !(number.min..=number.max).contains(&parsed) {
-                return Err(ParameterError::OutOfRange { parameter, value });
+        Kind::Number(number) => number.set(settings, parse(parameter, value, number.min, number.max)?),
+        Kind::Optional(optional) => {
+            let is_unset = optional.unset.is_some_and(|unset| unset.id == value);
+            let parsed = if is_unset { None } else { Some(parse(parameter, value, optional.min, optional.max)?) };
+            optional.set(settings, parsed);
+            if let (Some(_), None, Some(reason)) = (parsed, optional.get(settings), (parameter.inert)(settings)) {
+                return Err(ParameterError::NotPresent { parameter, reason });
             }
-            number.set(settings, parsed);
         }
         Kind::Choice(choice) => {
             let index = choice.options.iter().position(|option| option.id == value);
@@ -39,27 +41,59 @@ pub fn set_from_str<'a>(settings: &mut Settings, id: &'a str, value: &'a str) ->
     Ok(())
 }
 
+/// A number within a range.
+fn parse<'a>(parameter: &'static Parameter, value: &'a str, min: f64, max: f64) -> Result<f64, ParameterError<'a>> {
+    let parsed: f64 = value.parse().map_err(|_| ParameterError::NotANumber { parameter, value })?;
+    if (min..=max).contains(&parsed) { Ok(parsed) } else { Err(ParameterError::OutOfRange { parameter, value }) }
+}
+
 /// Writes a parameter's value as [`set_from_str`] reads it, without its unit.
 ///
 /// A number gets the fewest decimals that restore the setting to the bit; one outside its range,
-/// which no text restores, is written with all its digits.
+/// which no text restores, is written with all its digits. One that [is not
+/// there](Parameter::is_present) is written as nothing.
 ///
 /// # Errors
 ///
 /// Only those of `out`.
 pub fn format_value(settings: &Settings, parameter: &Parameter, out: &mut dyn fmt::Write) -> fmt::Result {
     match &parameter.kind {
-        Kind::Number(number) => write_number(settings, number, out),
+        Kind::Number(number) => {
+            let set = |settings: &mut Settings, value| number.set(settings, value);
+            write_number(
+                settings,
+                number.get(settings),
+                (number.min, number.max),
+                (&set, &|s| Some(number.get(s))),
+                out,
+            )
+        }
+        Kind::Optional(optional) => match (optional.get(settings), optional.unset) {
+            (Some(value), _) => {
+                let set = |settings: &mut Settings, value| optional.set(settings, Some(value));
+                write_number(settings, value, (optional.min, optional.max), (&set, &|s| optional.get(s)), out)
+            }
+            (None, Some(unset)) => out.write_str(unset.id),
+            (None, None) => Ok(()),
+        },
         Kind::Choice(choice) => out.write_str(choice.options.get(choice.get(settings)).map_or("", |option| option.id)),
         Kind::Toggle(toggle) => out.write_str(if toggle.get(settings) { "true" } else { "false" }),
     }
 }
 
-fn write_number(settings: &Settings, number: &Number, out: &mut dyn fmt::Write) -> fmt::Result {
+/// How a knob's number is written and read back.
+type Access<'a> = (&'a dyn Fn(&mut Settings, f64), &'a dyn Fn(&Settings) -> Option<f64>);
+
+fn write_number(
+    settings: &Settings,
+    value: f64,
+    (min, max): (f64, f64),
+    (set, get): Access<'_>,
+    out: &mut dyn fmt::Write,
+) -> fmt::Result {
     /// More than any value in any range needs: f32 has 9 significant decimal digits, and the least
     /// positive values of the ranges are hundredths.
     const MOST_DECIMALS: usize = 17;
-    let value = number.get(settings);
     for decimals in 0..=MOST_DECIMALS {
         let mut text = ShortText::default();
         if fmt::Write::write_fmt(&mut text, format_args!("{value:.decimals$}")).is_err() {
@@ -67,8 +101,8 @@ fn write_number(settings: &Settings, number: &Number, out: &mut dyn fmt::Write) 
         }
         let mut restored = *settings;
         if let Ok(parsed) = text.as_str().parse() {
-            number.set(&mut restored, parsed);
-            if number.get(&restored) == value && !value.is_nan() && (number.min..=number.max).contains(&parsed) {
+            set(&mut restored, parsed);
+            if get(&restored) == Some(value) && (min..=max).contains(&parsed) {
                 return out.write_str(text.as_str());
             }
         }
@@ -128,6 +162,13 @@ pub enum ParameterError<'a> {
         /// What was given.
         value: &'a str,
     },
+    /// Another parameter decides whether this one exists, and it does not.
+    NotPresent {
+        /// The parameter.
+        parameter: &'static Parameter,
+        /// What to set first.
+        reason: &'static str,
+    },
 }
 
 impl core::error::Error for ParameterError<'_> {}
@@ -151,15 +192,19 @@ impl fmt::Display for ParameterError<'_> {
                 write!(f, "{} is {value:?}, which is none of its options; give ", parameter.id)?;
                 allowed(f, parameter)
             }
+            Self::NotPresent { parameter, reason } => {
+                write!(f, "{} cannot be set: {reason}", parameter.id)
+            }
         }
     }
 }
 
 fn allowed(f: &mut fmt::Formatter<'_>, parameter: &Parameter) -> fmt::Result {
     match &parameter.kind {
-        Kind::Number(Number { min, max, .. }) => {
-            write!(f, "a number from {min} to {max}")?;
-            if parameter.unit.is_empty() { Ok(()) } else { write!(f, " {}", parameter.unit) }
+        Kind::Number(Number { min, max, .. }) => allowed_number(f, parameter, *min, *max),
+        Kind::Optional(Optional { min, max, unset, .. }) => {
+            allowed_number(f, parameter, *min, *max)?;
+            unset.map_or(Ok(()), |unset| write!(f, ", or {}", unset.id))
         }
         Kind::Choice(choice) => {
             f.write_str("one of ")?;
@@ -167,6 +212,11 @@ fn allowed(f: &mut fmt::Formatter<'_>, parameter: &Parameter) -> fmt::Result {
         }
         Kind::Toggle(_) => f.write_str("true or false"),
     }
+}
+
+fn allowed_number(f: &mut fmt::Formatter<'_>, parameter: &Parameter, min: f64, max: f64) -> fmt::Result {
+    write!(f, "a number from {min} to {max}")?;
+    if parameter.unit.is_empty() { Ok(()) } else { write!(f, " {}", parameter.unit) }
 }
 
 fn list(f: &mut fmt::Formatter<'_>, words: impl Iterator<Item = &'static str>) -> fmt::Result {

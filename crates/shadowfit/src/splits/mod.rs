@@ -1,6 +1,6 @@
 //! Where one map ends and the next begins.
 //!
-//! Cascades give each range of view depths a map of its own. Fixed schemes place the cuts by depth
+//! FittedMaps give each range of view depths a map of its own. Fixed schemes place the cuts by depth
 //! alone; the ones that look at the content place them where the most visible pixels gain.
 
 mod extents;
@@ -10,15 +10,15 @@ mod visible;
 
 use crate::checks;
 use crate::fits::{Content, Light, Range};
-use crate::settings::{CascadeSettings, FitKind, SplitScheme, Stabilise};
-use crate::{FitError, FitInput, MAX_CASCADES};
+use crate::settings::{FitKind, SplitScheme, Stabilise};
+use crate::{FitError, FitInput, MAX_MAPS, Technique};
 
 use extents::Sizes;
 pub use histogram::{DepthHistogram, needed_texel};
 use optimise::{Cuts as BinCuts, least_quantile, quantile};
 
 /// Cuts of all maps, in metres of view depth: map i covers `cuts[i]..cuts[i + 1]`.
-pub(crate) type Cuts = [f32; MAX_CASCADES + 1];
+pub(crate) type Cuts = [f32; MAX_MAPS + 1];
 
 /// Bins of log view depth that the content is sorted into.
 pub(crate) const BINS: usize = 64;
@@ -73,7 +73,7 @@ pub(crate) type Weights = [[f64; CLASSES]; BINS];
 /// maps lies (F. Zhang, H. Sun, L. Xu, L. K. Lun, "Parallel-split shadow maps for large-scale
 /// virtual environments", 2006): `λ log + (1 - λ) uniform`.
 pub(crate) fn practical(near: f64, far: f64, count: usize, lambda: f64) -> Cuts {
-    let mut cuts = [far as f32; MAX_CASCADES + 1];
+    let mut cuts = [far as f32; MAX_MAPS + 1];
     for (i, cut) in cuts.iter_mut().enumerate().take(count) {
         let share = i as f64 / count as f64;
         let uniform = near + (far - near) * share;
@@ -87,7 +87,7 @@ pub(crate) fn practical(near: f64, far: f64, count: usize, lambda: f64) -> Cuts 
 pub(crate) struct Chooser<'a, 'b> {
     pub(crate) content: &'a Content<'b>,
     pub(crate) light: Light,
-    pub(crate) settings: &'a CascadeSettings,
+    pub(crate) settings: &'a Technique,
     pub(crate) input: &'a FitInput<'b>,
     /// What is shadowed at all.
     pub(crate) range: Range,
@@ -151,7 +151,7 @@ impl Chooser<'_, '_> {
         let count = self.settings.count as usize;
         let end = self.end(spread) as f32;
         cuts[0] = self.range.near;
-        for i in 1..=MAX_CASCADES {
+        for i in 1..=MAX_MAPS {
             cuts[i] = if i >= count { end } else { cuts[i].max(cuts[i - 1]).min(end) };
         }
         cuts
@@ -162,7 +162,7 @@ impl Chooser<'_, '_> {
         let bins = Bins::new(spread.0, spread.1);
         let (weights, sizes) = (self.weights(&bins), Sizes::new(self, &bins));
         let BinCuts { bins: chosen, .. } = least_quantile(&bins, &weights, &sizes, self.settings.count as usize);
-        let mut cuts = [0.0; MAX_CASCADES + 1];
+        let mut cuts = [0.0; MAX_MAPS + 1];
         for (cut, bin) in cuts.iter_mut().zip(chosen) {
             *cut = bins.start(bin) as f32;
         }
@@ -189,7 +189,7 @@ impl Chooser<'_, '_> {
         let bins = Bins::new(now.0, now.1);
         let (weights, sizes) = (self.weights(&bins), Sizes::new(self, &bins));
         let best = least_quantile(&bins, &weights, &sizes, count);
-        let mut chosen = [BINS; MAX_CASCADES + 1];
+        let mut chosen = [BINS; MAX_MAPS + 1];
         for (bin, cut) in chosen.iter_mut().zip(cuts).take(count) {
             *bin = bins.nearest(f64::from(*cut));
         }
@@ -231,8 +231,8 @@ const FAR_SLACK: f64 = 0.1;
 const NEAREST: f64 = 1.0 / 65_536.0;
 
 /// Cuts given by hand.
-fn manual(given: &[f32; MAX_CASCADES - 1], count: usize, range: Range) -> Result<Cuts, FitError> {
-    let mut cuts = [range.far; MAX_CASCADES + 1];
+fn manual(given: &[f32; MAX_MAPS - 1], count: usize, range: Range) -> Result<Cuts, FitError> {
+    let mut cuts = [range.far; MAX_MAPS + 1];
     cuts[0] = range.near;
     let mut last = f32::MIN;
     for i in 1..count {

@@ -8,7 +8,7 @@
 
 use super::extents::Sizes;
 use super::{BINS, Bins, CLASSES, Weights};
-use crate::MAX_CASCADES;
+use crate::MAX_MAPS;
 
 /// Share of the points that may lie over the bound.
 const OVER: f64 = 0.05;
@@ -31,7 +31,7 @@ const PER_CLASS: f64 = 0.5;
 
 /// Bins at which the maps begin; the last one's end follows.
 pub(super) struct Cuts {
-    pub(super) bins: [usize; MAX_CASCADES + 1],
+    pub(super) bins: [usize; MAX_MAPS + 1],
     /// The bound that was reached: log2 of map width per view depth.
     pub(super) quality: f64,
 }
@@ -39,7 +39,7 @@ pub(super) struct Cuts {
 /// The best cuts into `count` maps.
 pub(super) fn least_quantile(bins: &Bins, weights: &Weights, sizes: &Sizes, count: usize) -> Cuts {
     let search = Search::new(bins, weights, sizes);
-    let even: [usize; MAX_CASCADES + 1] = core::array::from_fn(|i| BINS * i.min(count) / count);
+    let even: [usize; MAX_MAPS + 1] = core::array::from_fn(|i| BINS * i.min(count) / count);
     let known = search.quantile(&even[..=count]);
     let bound = bisect(known - OCTAVES, known, |bound| search.is_feasible(count, bound));
     Cuts { bins: search.best(count, bound), quality: bound }
@@ -150,10 +150,10 @@ impl<'a> Search<'a> {
     }
 
     /// The cuts that leave the least over the bound and, of those, see the least error.
-    fn best(&self, count: usize, bound: f64) -> [usize; MAX_CASCADES + 1] {
+    fn best(&self, count: usize, bound: f64) -> [usize; MAX_MAPS + 1] {
         let mut least = [f64::MAX; BINS + 1];
         least[0] = 0.0;
-        let mut from = [[0_u8; BINS + 1]; MAX_CASCADES];
+        let mut from = [[0_u8; BINS + 1]; MAX_MAPS];
         for (map, from) in from.iter_mut().enumerate().take(count) {
             let mut next = [f64::MAX; BINS + 1];
             for (first, before) in
@@ -168,7 +168,7 @@ impl<'a> Search<'a> {
             }
             least = next;
         }
-        let mut cuts = [BINS; MAX_CASCADES + 1];
+        let mut cuts = [BINS; MAX_MAPS + 1];
         let mut end = BINS;
         for map in (0..count).rev() {
             end = usize::from(from[map][end]);

@@ -3,7 +3,8 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DMat4, DVec3, Mat4, UVec2, Vec3};
-use shadowfit::{DepthConvention, FitError, FitSettings, LightFit, LightSettings, PerspectiveCamera, ViewFrustum};
+use shadowfit::tool::LightSettings;
+use shadowfit::{DepthConvention, FitError, FitSettings, LightFit, PerspectiveCamera, ViewFrustum};
 
 use crate::support::{DIRECTION, KINDS, any_kind, camera, cases, exact, fitted};
 

@@ -4,9 +4,9 @@
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Mat4, UVec2, Vec3};
 use shadowfit::{
-    Aabb, Boxes, CascadeFitter, CascadeSettings, Cascades, CasterPolicy, DepthBounds, DepthHistogram, FitError,
-    FitInput, FitKind, FitSettings, LightFit, MapOverride, NormalCone, RectangleKind, SplitScheme, Stabilise,
-    ViewFrustum, Workspace,
+    Aabb, Boxes, CasterPolicy, DepthBounds, DepthHistogram, FitError, FitInput, FitKind, FitSettings, FittedMaps,
+    LightFit, MapFitter, MapOverride, NormalCone, RectangleKind, SplitScheme, Stabilise, Technique, ViewFrustum,
+    Workspace,
 };
 
 use crate::support::{DIRECTION, camera, cases};
@@ -25,7 +25,7 @@ struct Inputs {
     bounds: DepthBounds,
     bins: Vec<u32>,
     classes: usize,
-    settings: CascadeSettings,
+    settings: Technique,
     storage: usize,
 }
 
@@ -44,7 +44,7 @@ fn good() -> Inputs {
         bounds: DepthBounds { near: 1.0, far: 50.0 },
         bins: vec![1, 5, 9, 2, 0, 3],
         classes: 2,
-        settings: CascadeSettings { count: 3, ..CascadeSettings::default() },
+        settings: Technique { count: 3, ..Technique::default() },
         storage: Workspace::required(2, 2),
     }
 }
@@ -55,7 +55,7 @@ impl Inputs {
         let input = FitInput {
             receivers: Some(Boxes { origin: self.origins[0], boxes: &self.receivers }),
             receiver_cones: &self.cones,
-            casters: Boxes { origin: self.origins[1], boxes: &self.casters },
+            casters: Some(Boxes { origin: self.origins[1], boxes: &self.casters }),
             histogram: Some(histogram),
             depth_bounds: Some(self.bounds),
             ..FitInput::new(&self.views, self.direction)
@@ -64,7 +64,7 @@ impl Inputs {
         run(&input, &mut Workspace::new(&mut storage))
     }
 
-    fn fit(&self, fitter: &mut CascadeFitter) -> Result<Cascades, FitError> {
+    fn fit(&self, fitter: &mut MapFitter) -> Result<FittedMaps, FitError> {
         self.with(|input, workspace| fitter.fit(input, &self.settings, workspace))
     }
 
@@ -74,7 +74,7 @@ impl Inputs {
 
     /// Fits twice, so that what is kept from the first frame is used by the second.
     fn check(&self, name: &str) {
-        let mut fitter = CascadeFitter::new();
+        let mut fitter = MapFitter::new();
         for _ in 0..2 {
             for map in self.fit(&mut fitter).iter().flat_map(|maps| maps.iter()) {
                 assert!(is_finite(&map.fit), "{name}: {map:?}");
@@ -132,7 +132,7 @@ const SETTERS: [Setter; 44] = [
     ("histogram classes", |i, v| i.classes = v as usize),
     ("max distance", |i, v| i.settings.fit.max_distance = v as f32),
     ("margin", |i, v| i.settings.fit.margin = v as f32),
-    ("kernel margin", |i, v| i.settings.fit.kernel_margin = v as f32),
+    ("kernel margin", |i, v| i.settings.fit.border = Some(v as f32)),
     ("extension", |i, v| i.settings.fit.caster_extension = v as f32),
     ("up x", |i, v| i.settings.fit.up.x = v as f32),
     ("up", |i, v| i.settings.fit.up = Vec3::splat(v as f32)),
@@ -215,12 +215,12 @@ fn what_is_not_finite_is_refused_and_leaves_the_fitter_as_it_was() {
                 // An infinite corner makes a box that holds nothing, which is allowed.
                 let is_emptied = matches!(name, "receiver min" | "caster min") && value == f64::INFINITY
                     || matches!(name, "receiver max" | "caster max") && value == f64::NEG_INFINITY;
-                let mut fitter = CascadeFitter::new();
+                let mut fitter = MapFitter::new();
                 before.fit(&mut fitter).unwrap();
                 let result = bad.fit(&mut fitter);
                 if !is_emptied {
                     assert!(matches!(result, Err(FitError::NotFinite { .. })), "{name} = {value}: {result:?}");
-                    let mut undisturbed = CascadeFitter::new();
+                    let mut undisturbed = MapFitter::new();
                     before.fit(&mut undisturbed).unwrap();
                     assert_eq!(before.fit(&mut fitter), before.fit(&mut undisturbed), "{name} = {value}");
                 }
@@ -234,7 +234,7 @@ fn counts_outside_of_one_to_eight_are_refused() {
     for count in [0, 9, u32::MAX] {
         let mut inputs = good();
         inputs.settings.count = count;
-        let result = inputs.fit(&mut CascadeFitter::new());
+        let result = inputs.fit(&mut MapFitter::new());
         assert!(matches!(result, Err(FitError::OutOfRange { value, .. }) if value == f64::from(count)), "{result:?}");
     }
 }
@@ -251,16 +251,16 @@ fn settings_without_meaning_are_refused() {
         ("waste", |i, _| i.settings.hold.waste = 0.9),
         ("growth", |i, _| i.settings.hold.growth = 0.9),
         ("hold margin", |i, _| i.settings.hold.margin = -0.1),
-        ("kernel as wide as the map", |i, _| i.settings.fit.kernel_margin = 1e4),
+        ("kernel as wide as the map", |i, _| i.settings.fit.border = Some(1e4)),
         ("an override without texels", |i, _| {
-            i.settings.overrides[1] = Some(MapOverride { kind: FitKind::Sphere, resolution: UVec2::new(0, 8) });
+            i.settings.overrides[1] = MapOverride { kind: Some(FitKind::Sphere), resolution: Some(UVec2::new(0, 8)) };
         }),
         ("no view", |i, _| i.views.clear()),
     ];
     for (name, set) in refused {
         let mut inputs = good();
         set(&mut inputs, 0.0);
-        assert!(inputs.fit(&mut CascadeFitter::new()).is_err(), "{name}");
+        assert!(inputs.fit(&mut MapFitter::new()).is_err(), "{name}");
     }
 }
 
@@ -287,10 +287,10 @@ fn a_workspace_of_any_length_is_too_small_or_enough() {
         for stabilise in STABILISE {
             for storage in 0..=Workspace::required(2, 2) {
                 let mut inputs = good();
-                inputs.settings = CascadeSettings { stabilise, splits: SplitScheme::Uniform, ..inputs.settings };
+                inputs.settings = Technique { stabilise, splits: SplitScheme::Uniform, ..inputs.settings };
                 inputs.settings.fit.kind = kind;
                 inputs.storage = storage;
-                let results = [inputs.single().map(|_| ()), inputs.fit(&mut CascadeFitter::new()).map(|_| ())];
+                let results = [inputs.single().map(|_| ()), inputs.fit(&mut MapFitter::new()).map(|_| ())];
                 for result in results {
                     match result {
                         Ok(()) => {}
@@ -330,7 +330,7 @@ fn the_required_workspace_is_enough_for_boxes_on_a_circle() {
                     receivers: boxes.clone(),
                     casters: boxes.clone(),
                     cones: Vec::new(),
-                    settings: CascadeSettings {
+                    settings: Technique {
                         fit: FitSettings {
                             kind: FitKind::Focused,
                             rectangle,
@@ -340,13 +340,13 @@ fn the_required_workspace_is_enough_for_boxes_on_a_circle() {
                         count: 2,
                         splits: SplitScheme::Uniform,
                         stabilise,
-                        ..CascadeSettings::default()
+                        ..Technique::default()
                     },
                     storage: Workspace::required(boxes.len(), 1),
                     ..good()
                 };
                 inputs.single().unwrap();
-                let mut fitter = CascadeFitter::new();
+                let mut fitter = MapFitter::new();
                 inputs.fit(&mut fitter).unwrap();
                 inputs.fit(&mut fitter).unwrap();
             }

@@ -5,7 +5,7 @@
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::{
-    Aabb, Boxes, CascadeFitter, CascadeSettings, CasterPolicy, FitInput, FitSettings, LightFit, Stabilise, Workspace,
+    Aabb, Boxes, CasterPolicy, FitInput, FitSettings, LightFit, MapFitter, Stabilise, Technique, Workspace,
 };
 
 use crate::scenes::{
@@ -126,7 +126,7 @@ impl Stage {
         let origin = views[0].origin;
         let receivers = Some(Boxes { origin, boxes: &self.receivers });
         let casters = Boxes { origin, boxes: &self.casters };
-        FitInput { receivers, casters, ..FitInput::new(views, direction) }
+        FitInput { receivers, casters: Some(casters), ..FitInput::new(views, direction) }
     }
 }
 
@@ -167,10 +167,10 @@ proptest! {
         direction in any_light(), settings in any_cascades(), policy in any_policy(), places in any_places(),
         walk in any_walk(),
     ) {
-        let settings = CascadeSettings { fit: FitSettings { casters: policy, ..settings.fit }, ..settings };
+        let settings = Technique { fit: FitSettings { casters: policy, ..settings.fit }, ..settings };
         let last = f64::from(settings.fit.max_distance);
         prop_assume!(view.lens.near < last);
-        let mut fitter = CascadeFitter::new();
+        let mut fitter = MapFitter::new();
         let frames = if settings.stabilise == Stabilise::Hysteresis { 3 } else { 1 };
         let mut view = view;
         for _ in 0..frames {
@@ -182,13 +182,7 @@ proptest! {
     }
 }
 
-fn check_frame(
-    fitter: &mut CascadeFitter,
-    view: &SceneView,
-    settings: &CascadeSettings,
-    stage: &Stage,
-    direction: Vec3,
-) {
+fn check_frame(fitter: &mut MapFitter, view: &SceneView, settings: &Technique, stage: &Stage, direction: Vec3) {
     let views = [view.frustum()];
     let mut storage = vec![DVec2::ZERO; Workspace::required(6, 1)];
     let maps = fitter.fit(&stage.input(&views, direction), settings, &mut Workspace::new(&mut storage)).unwrap();

@@ -7,8 +7,7 @@
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::{
-    Aabb, Boxes, CascadeFitter, CascadeMap, CascadeSettings, DepthHistogram, FitInput, FitKind, LightFit, ViewFrustum,
-    Workspace,
+    Aabb, Boxes, DepthHistogram, FitInput, FitKind, FittedMap, LightFit, MapFitter, Technique, ViewFrustum, Workspace,
 };
 
 use crate::scenes::{
@@ -75,7 +74,7 @@ fn assert_stored(fit: &LightFit, kernel: f32, point: DVec3) {
 }
 
 /// The map that a shader takes for a view depth, and the next one where they overlap.
-fn chosen(maps: &[CascadeMap], depth: f32) -> impl Iterator<Item = &CascadeMap> {
+fn chosen(maps: &[FittedMap], depth: f32) -> impl Iterator<Item = &FittedMap> {
     let first = maps.iter().position(|map| depth < map.far).unwrap_or(maps.len() - 1);
     let next = maps.get(first + 1).filter(move |next| depth >= next.covered_near);
     [Some(&maps[first]), next].into_iter().flatten()
@@ -114,8 +113,8 @@ fn workspace(boxes: usize, views: usize) -> Vec<DVec2> {
 
 /// Fits one frame and looks up what its views see.
 fn check_frame(
-    fitter: &mut CascadeFitter,
-    settings: &CascadeSettings,
+    fitter: &mut MapFitter,
+    settings: &Technique,
     views: &[SceneView],
     stage: &Stage,
     direction: Vec3,
@@ -135,7 +134,7 @@ fn check_frame(
             let depth = frustum.forward.dot(point.as_vec3());
             for map in chosen(&maps, depth) {
                 assert!(!map.fit.is_empty, "what is seen at {depth} m lies in a map that nobody draws");
-                assert_stored(&map.fit, settings.fit.kernel_margin, view.eye + point);
+                assert_stored(&map.fit, settings.border(), view.eye + point);
             }
         }
     }
@@ -160,7 +159,7 @@ proptest! {
         let points = seen(&samples, &view, receivers, f64::from(fit.max_distance));
         prop_assert!(points.is_empty() || !map.is_empty);
         for point in points {
-            assert_stored(&map, fit.kernel_margin, view.eye + point);
+            assert_stored(&map, fit.border.unwrap_or(3.0), view.eye + point);
         }
     }
 
@@ -175,7 +174,7 @@ proptest! {
         if let Some(other) = views.get_mut(1) {
             *other = apart.0.moved(other);
         }
-        let mut fitter = CascadeFitter::new();
+        let mut fitter = MapFitter::new();
         for _ in 0..frames {
             check_frame(&mut fitter, &settings, &views, &stage, direction, &samples);
             for view in &mut views {
@@ -194,6 +193,6 @@ proptest! {
         prop_assume!(camera.near < settings.fit.max_distance);
         let view = of_camera(&camera);
         let stage = Stage::new(&plans, &view);
-        check_frame(&mut CascadeFitter::new(), &settings, &[view], &stage, direction, &samples);
+        check_frame(&mut MapFitter::new(), &settings, &[view], &stage, direction, &samples);
     }
 }

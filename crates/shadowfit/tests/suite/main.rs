@@ -8,7 +8,6 @@ mod batched_culling;
 mod bias;
 #[cfg(feature = "bytemuck")]
 mod bytemuck;
-mod cascades;
 mod caster;
 mod caster_depth;
 mod clusters;
@@ -20,6 +19,7 @@ mod filters;
 mod frustum;
 mod invariance;
 mod light_steps;
+mod maps;
 mod metamorphic;
 #[cfg(feature = "mint")]
 mod mint;

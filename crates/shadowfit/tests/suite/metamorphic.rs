@@ -7,8 +7,8 @@
 use proptest::prelude::*;
 use shadowfit::glam::{DMat3, DQuat, DVec2, DVec3, Mat3, UVec2, Vec3};
 use shadowfit::{
-    Aabb, Boxes, CascadeFitter, CascadeSettings, CasterPolicy, DepthConvention, FitInput, FitKind, FitSettings,
-    LightFit, RectangleKind, SplitScheme, Stabilise, ViewFrustum, Workspace,
+    Aabb, Boxes, CasterPolicy, DepthConvention, FitInput, FitKind, FitSettings, LightFit, MapFitter, RectangleKind,
+    SplitScheme, Stabilise, Technique, ViewFrustum, Workspace,
 };
 
 use crate::scenes::{BoxPlan, COVERING, SceneView, any_box, any_light, any_view};
@@ -36,7 +36,7 @@ impl Scene {
         let views = [self.frustum];
         let receivers = self.receivers.as_ref().map(|boxes| Boxes { origin, boxes });
         let casters = Boxes { origin, boxes: &self.casters };
-        let input = FitInput { receivers, casters, ..FitInput::new(&views, self.direction) };
+        let input = FitInput { receivers, casters: Some(casters), ..FitInput::new(&views, self.direction) };
         let mut storage = vec![DVec2::ZERO; Workspace::required(self.casters.len(), 1)];
         shadowfit::fit_scene(&input, settings, &mut Workspace::new(&mut storage)).unwrap()
     }
@@ -266,18 +266,18 @@ proptest! {
     fn an_eighth_of_an_octave_scales_snapped_maps_by_just_that(
         view in any_view(), direction in any_light(), eighths in -24_i32..24, kind in any_fit_kind(),
     ) {
-        let cascades = CascadeSettings {
+        let cascades = Technique {
             fit: settings(kind, RectangleKind::AxisAligned),
             count: 1,
             splits: SplitScheme::Uniform,
             stabilise: Stabilise::Snap,
-            ..CascadeSettings::default()
+            ..Technique::default()
         };
         let texel = |scene: &Scene| {
             let views = [scene.frustum];
             let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
             let input = FitInput::new(&views, scene.direction);
-            CascadeFitter::new().fit(&input, &cascades, &mut Workspace::new(&mut storage)).unwrap()[0].fit.texel_size
+            MapFitter::new().fit(&input, &cascades, &mut Workspace::new(&mut storage)).unwrap()[0].fit.texel_size
         };
         let scale = (f64::from(eighths) / 8.0).exp2();
         let here = scene(&view, direction, None);
@@ -363,14 +363,14 @@ proptest! {
         (i, j) in (-5000_i32..5000, -5000_i32..5000),
     ) {
         let fit = settings(kind, RectangleKind::AxisAligned);
-        let cascades = CascadeSettings { fit, count: 1, splits: SplitScheme::Uniform, ..CascadeSettings::default() };
+        let cascades = Technique { fit, count: 1, splits: SplitScheme::Uniform, ..Technique::default() };
         let here = scene(&view, direction, boxes.as_deref());
         let snapped = |scene: &Scene| {
             let (views, origin) = ([scene.frustum], scene.frustum.origin);
             let mut storage = vec![DVec2::ZERO; Workspace::required(scene.casters.len(), 1)];
             let receivers = scene.receivers.as_ref().map(|boxes| Boxes { origin, boxes });
             let input = FitInput { receivers, ..FitInput::new(&views, scene.direction) };
-            CascadeFitter::new().fit(&input, &cascades, &mut Workspace::new(&mut storage)).unwrap()[0].fit
+            MapFitter::new().fit(&input, &cascades, &mut Workspace::new(&mut storage)).unwrap()[0].fit
         };
         let a = snapped(&here);
         let [right, up] = [a.light_from_world.row(0), a.light_from_world.row(1)].map(|r| r.truncate().as_dvec3());

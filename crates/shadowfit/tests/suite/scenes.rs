@@ -6,8 +6,8 @@
 use proptest::prelude::*;
 use shadowfit::glam::{DMat4, DQuat, DVec3, DVec4, UVec2, Vec3};
 use shadowfit::{
-    Aabb, CascadeSettings, CasterPolicy, DepthConvention, FitKind, FitSettings, PerspectiveCamera, RectangleKind,
-    SplitScheme, Stabilise, ViewFrustum,
+    Aabb, CasterPolicy, DepthConvention, FitKind, FitSettings, PerspectiveCamera, RectangleKind, SplitScheme,
+    Stabilise, Technique, ViewFrustum,
 };
 
 use crate::support::{any_direction, double, float};
@@ -215,12 +215,12 @@ pub(crate) fn any_covering_fit() -> impl Strategy<Value = FitSettings> {
     let margins = (prop_oneof![Just(0.0), float(0.0, 8.0)], prop_oneof![3 => Just(0.0), 1 => float(0.0, 3.0)]);
     let distance = prop_oneof![Just(f32::MAX), float(3.0, 500.0)];
     (kind, rectangle, (size(), size()), up, margins, distance, any_depth()).prop_map(
-        |(kind, rectangle, (width, height), up, (kernel_margin, margin), max_distance, depth)| FitSettings {
+        |(kind, rectangle, (width, height), up, (border, margin), max_distance, depth)| FitSettings {
             kind,
             rectangle,
             max_distance,
             margin,
-            kernel_margin,
+            border: Some(border),
             casters: CasterPolicy::None,
             caster_extension: 0.0,
             up,
@@ -243,17 +243,17 @@ pub(crate) fn any_splits() -> impl Strategy<Value = SplitScheme> {
     ]
 }
 
-pub(crate) fn any_cascades() -> impl Strategy<Value = CascadeSettings> {
+pub(crate) fn any_cascades() -> impl Strategy<Value = Technique> {
     let stabilise = prop::sample::select(vec![Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis]);
     let overlap = prop_oneof![Just(0.0), Just(1.0), float(0.0, 0.5)];
     (any_covering_fit(), 1..=8_u32, any_splits(), overlap, stabilise).prop_map(
-        |(fit, count, splits, overlap, stabilise)| CascadeSettings {
+        |(fit, count, splits, overlap, stabilise)| Technique {
             fit,
             count,
             splits,
             overlap,
             stabilise,
-            ..CascadeSettings::default()
+            ..Technique::default()
         },
     )
 }

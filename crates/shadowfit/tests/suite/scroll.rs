@@ -6,14 +6,14 @@ use proptest::prelude::*;
 use shadowfit::glam::{DQuat, DVec2, DVec3, UVec2, Vec3};
 use shadowfit::scroll::{TexelRect, Tile, tiles};
 use shadowfit::{
-    Aabb, Boxes, CascadeFitter, CascadeMap, CascadeSettings, Cascades, CasterPolicy, DepthConvention, FitError,
-    FitInput, FitKind, FitSettings, GridAnchor, LightFit, PerspectiveCamera, RectangleKind, Scroll, SplitScheme,
-    Stabilise, Workspace,
+    Aabb, Boxes, CasterPolicy, DepthConvention, FitError, FitInput, FitKind, FitSettings, FittedMap, FittedMaps,
+    GridAnchor, LightFit, MapFitter, PerspectiveCamera, RectangleKind, Scroll, SplitScheme, Stabilise, Technique,
+    Workspace,
 };
 
 use crate::support::{DIRECTION, any_direction, camera, double};
 
-fn settings(kind: FitKind, stabilise: Stabilise, resolution: u32) -> CascadeSettings {
+fn settings(kind: FitKind, stabilise: Stabilise, resolution: u32) -> Technique {
     let fit = FitSettings {
         kind,
         rectangle: RectangleKind::AxisAligned,
@@ -21,12 +21,12 @@ fn settings(kind: FitKind, stabilise: Stabilise, resolution: u32) -> CascadeSett
         resolution: UVec2::new(resolution, resolution * 3 / 4),
         ..FitSettings::default()
     };
-    CascadeSettings {
+    Technique {
         fit,
         count: 3,
         stabilise,
         splits: SplitScheme::Manual([8.0, 18.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
-        ..CascadeSettings::default()
+        ..Technique::default()
     }
 }
 
@@ -42,23 +42,23 @@ fn town() -> Vec<Aabb> {
 }
 
 fn frame(
-    fitter: &mut CascadeFitter,
+    fitter: &mut MapFitter,
     camera: &PerspectiveCamera,
     direction: Vec3,
-    settings: &CascadeSettings,
+    settings: &Technique,
     boxes: &[Aabb],
-) -> Cascades {
+) -> FittedMaps {
     let views = [camera.frustum().unwrap()];
     let boxes = Boxes { origin: DVec3::ZERO, boxes };
-    let input = FitInput { receivers: Some(boxes), casters: boxes, ..FitInput::new(&views, direction) };
+    let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, direction) };
     let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.boxes.len(), 3)];
     fitter.fit(&input, settings, &mut Workspace::new(&mut storage)).unwrap()
 }
 
 /// A map of 2 m texels straight below the light, whose left bottom corner is at a grid line.
-fn plain_map(first: [i64; 2], resolution: UVec2) -> CascadeMap {
+fn plain_map(first: [i64; 2], resolution: UVec2) -> FittedMap {
     let anchor = GridAnchor { first, texel: DVec2::splat(2.0), depth: [-10.0, 30.0] };
-    CascadeMap { fit: LightFit { resolution, ..LightFit::default() }, anchor: Some(anchor), ..CascadeMap::default() }
+    FittedMap { fit: LightFit { resolution, ..LightFit::default() }, anchor: Some(anchor), ..FittedMap::default() }
 }
 
 /// World column and row, counted upward, of a texel of a map.
@@ -106,7 +106,7 @@ proptest! {
         stabilise in prop::sample::select(vec![Stabilise::Snap, Stabilise::Hysteresis]),
         far_out in prop::sample::select(vec![0.0, 1e3, 1e5]), turn in double(0.0, 0.05),
     ) {
-        let (settings, town, mut fitter) = (settings(kind, stabilise, 512), town(), CascadeFitter::new());
+        let (settings, town, mut fitter) = (settings(kind, stabilise, 512), town(), MapFitter::new());
         let mut camera = camera();
         camera.eye += DVec3::new(far_out, 0.0, -far_out);
         let town: Vec<Aabb> = town.iter().map(|b| {
@@ -142,7 +142,7 @@ proptest! {
         settings.fit.depth = depth;
         let mut camera = camera();
         camera.eye += DVec3::splat(far_out);
-        let maps = frame(&mut CascadeFitter::new(), &camera, direction, &settings, &[]);
+        let maps = frame(&mut MapFitter::new(), &camera, direction, &settings, &[]);
         let map = &maps[1];
         let (min, max) = (map.fit.box_min.as_dvec3(), map.fit.box_max.as_dvec3());
         let inside = |x: f64, y: f64, z: f64| {
@@ -183,7 +183,7 @@ fn texel(fit: &LightFit, point: DVec3) -> DVec2 {
 #[test]
 fn tiles_have_the_same_bits_wherever_the_camera_is() {
     let settings = settings(FitKind::Sphere, Stabilise::Snap, 512);
-    let (town, mut fitter, mut camera) = (town(), CascadeFitter::new(), camera());
+    let (town, mut fitter, mut camera) = (town(), MapFitter::new(), camera());
     let mut known: HashMap<(usize, [i64; 2], [u64; 2]), LightFit> = HashMap::new();
     let (mut again, mut levels) = (0, std::collections::HashSet::new());
     for _ in 0..60 {
@@ -216,7 +216,7 @@ fn depth_ranges_hold_while_a_camera_walks() {
         (FitKind::Focused, Stabilise::Hysteresis),
     ] {
         let settings = settings(kind, stabilise, 1024);
-        let (mut fitter, mut camera) = (CascadeFitter::new(), camera());
+        let (mut fitter, mut camera) = (MapFitter::new(), camera());
         let mut before = frame(&mut fitter, &camera, DIRECTION, &settings, &town);
         let (mut depth_changes, mut new, mut shifts, frames) = (0, 0, 0, 600);
         for i in 0..frames {
@@ -248,8 +248,8 @@ fn what_changes_the_projection_makes_a_new_map() {
     let same = Scroll::between(&before, &before);
     assert!(!same.is_redraw() && same.exposed().count() == 0);
     let anchor = before.anchor.unwrap();
-    let with = |anchor: GridAnchor| CascadeMap { anchor: Some(anchor), ..before };
-    let with_fit = |fit: LightFit| CascadeMap { fit, ..before };
+    let with = |anchor: GridAnchor| FittedMap { anchor: Some(anchor), ..before };
+    let with_fit = |fit: LightFit| FittedMap { fit, ..before };
     let depth = Scroll::between(&before, &with(GridAnchor { depth: [-10.0, 31.0], ..anchor }));
     assert!(!depth.is_new && depth.depth_changed && depth.is_redraw() && depth.exposed().count() == 0);
     let mut turned = before.fit;
@@ -260,7 +260,7 @@ fn what_changes_the_projection_makes_a_new_map() {
         with_fit(LightFit { resolution: UVec2::new(8, 9), ..before.fit }),
         with_fit(LightFit { depth: DepthConvention::Reversed, ..before.fit }),
         with_fit(turned),
-        CascadeMap { anchor: None, ..before },
+        FittedMap { anchor: None, ..before },
     ] {
         for scroll in [Scroll::between(&before, &other), Scroll::between(&other, &before)] {
             assert!(scroll.is_new && scroll.is_redraw(), "{other:?}");
@@ -275,36 +275,27 @@ fn what_changes_the_projection_makes_a_new_map() {
 
 #[test]
 fn maps_on_no_grid_have_no_tiles_and_bad_ones_are_errors() {
-    let free = frame(
-        &mut CascadeFitter::new(),
-        &camera(),
-        DIRECTION,
-        &settings(FitKind::Oriented, Stabilise::Off, 64),
-        &town(),
-    );
+    let free =
+        frame(&mut MapFitter::new(), &camera(), DIRECTION, &settings(FitKind::Oriented, Stabilise::Off, 64), &town());
     assert!(free[0].anchor.is_none());
     assert_eq!(tiles(&free[0], 64).unwrap_err(), FitError::NotOnGrid);
-    let good = frame(
-        &mut CascadeFitter::new(),
-        &camera(),
-        DIRECTION,
-        &settings(FitKind::Oriented, Stabilise::Snap, 64),
-        &town(),
-    )[0];
+    let good =
+        frame(&mut MapFitter::new(), &camera(), DIRECTION, &settings(FitKind::Oriented, Stabilise::Snap, 64), &town())
+            [0];
     assert!(tiles(&good, 64).is_ok());
     let anchor = good.anchor.unwrap();
     for size in [0, 65_537, u32::MAX] {
         assert!(matches!(tiles(&good, size), Err(FitError::OutOfRange { .. })), "{size}");
     }
     for bad in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
-        let with = |anchor: GridAnchor| CascadeMap { anchor: Some(anchor), ..good };
+        let with = |anchor: GridAnchor| FittedMap { anchor: Some(anchor), ..good };
         assert!(tiles(&with(GridAnchor { texel: DVec2::new(bad, 1.0), ..anchor }), 64).is_err(), "{bad}");
         assert!(tiles(&with(GridAnchor { depth: [0.0, bad], ..anchor }), 64).is_err(), "{bad}");
         let mut fit = good.fit;
         fit.light_from_world.y_axis.y = bad as f32;
         fit.light_from_world.z_axis.y = bad as f32;
-        assert!(tiles(&CascadeMap { fit, ..good }, 64).is_err(), "{bad}");
+        assert!(tiles(&FittedMap { fit, ..good }, 64).is_err(), "{bad}");
     }
     let far = GridAnchor { first: [i64::MIN, i64::MAX], ..anchor };
-    assert!(tiles(&CascadeMap { anchor: Some(far), ..good }, 64).is_err());
+    assert!(tiles(&FittedMap { anchor: Some(far), ..good }, 64).is_err());
 }

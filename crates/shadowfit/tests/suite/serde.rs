@@ -8,11 +8,12 @@ use shadowfit::diagnostics::{AcneMargin, Coverage, DepthStorage, PixelsPerTexel}
 use shadowfit::figures::Figures;
 use shadowfit::fits::sphere::enclosing_sphere;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
+use shadowfit::tool::Settings;
 use shadowfit::verify::{Certificate, Claim, MapPlane, Slack};
 use shadowfit::{
-    Aabb, Bias, BiasSettings, CascadeFitter, CascadeSettings, CasterPlanes, CasterPolicy, DepthConvention, FitInput,
-    FitKind, FitSettings, LightStepSettings, LightSteps, MapOverride, NormalCone, OrientedBox, RectangleKind, Settings,
-    Sphere, SplitScheme, Stabilise, ViewFrustum, Workspace,
+    Aabb, Bias, BiasSettings, CasterPlanes, CasterPolicy, DepthConvention, FitInput, FitKind, FitSettings,
+    LightStepSettings, LightSteps, MapFitter, MapOverride, NormalCone, OrientedBox, RectangleKind, Sphere, SplitScheme,
+    Stabilise, Technique, ViewFrustum, Workspace,
 };
 
 use crate::support::{DIRECTION, camera, fitted};
@@ -36,11 +37,11 @@ fn settings_survive() {
         .with_max_distance(f32::MAX)
         .with_margin(0.1);
     survives(&Settings::default().with_fit(fit));
-    let mut cascades = CascadeSettings::default()
+    let mut cascades = Technique::default()
         .with_fit(fit)
         .with_splits(SplitScheme::Manual([1.0, 2.5, 0.1, 1e-7, 3e9, 0.3, 7.0]))
         .with_stabilise(Stabilise::Hysteresis);
-    cascades.overrides[2] = Some(MapOverride { kind: FitKind::Sphere, resolution: UVec2::new(512, 1024) });
+    cascades.overrides[2] = MapOverride { kind: Some(FitKind::Sphere), resolution: Some(UVec2::new(512, 1024)) };
     survives(&cascades);
     survives(&cascades.with_splits(SplitScheme::Practical(0.7)));
     survives(&LightStepSettings::default());
@@ -96,15 +97,15 @@ fn lights_that_step_go_on() {
 
 #[test]
 fn a_fitter_that_was_saved_goes_on_as_the_one_that_was_not() {
-    let settings = CascadeSettings::default().with_stabilise(Stabilise::Hysteresis);
+    let settings = Technique::default().with_stabilise(Stabilise::Hysteresis);
     let mut storage = [DVec2::ZERO; Workspace::required(0, 4)];
-    let mut fit = |fitter: &mut CascadeFitter, frame: u8| {
+    let mut fit = |fitter: &mut MapFitter, frame: u8| {
         let mut camera = camera();
         camera.eye.x += f64::from(frame) * 0.3;
         let views: [ViewFrustum; 1] = [camera.frustum().unwrap()];
         fitter.fit(&FitInput::new(&views, DIRECTION), &settings, &mut Workspace::new(&mut storage)).unwrap()
     };
-    let mut fitter = CascadeFitter::new();
+    let mut fitter = MapFitter::new();
     for frame in 0..3 {
         survives(&fit(&mut fitter, frame));
     }
@@ -112,18 +113,18 @@ fn a_fitter_that_was_saved_goes_on_as_the_one_that_was_not() {
     for frame in 3..12 {
         assert_eq!(fit(&mut fitter, frame), fit(&mut other, frame), "frame {frame}");
     }
-    assert_ne!(fit(&mut CascadeFitter::new(), 11), fit(&mut fitter, 11), "the state matters");
+    assert_ne!(fit(&mut MapFitter::new(), 11), fit(&mut fitter, 11), "the state matters");
 }
 
 #[test]
 fn a_damaged_number_of_cascades_is_no_trouble() {
     let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
     let views = [camera().frustum().unwrap()];
-    let cascades = CascadeFitter::new()
-        .fit(&FitInput::new(&views, DIRECTION), &CascadeSettings::default(), &mut Workspace::new(&mut storage))
+    let cascades = MapFitter::new()
+        .fit(&FitInput::new(&views, DIRECTION), &Technique::default(), &mut Workspace::new(&mut storage))
         .unwrap();
     let mut json = serde_json::to_value(cascades).unwrap();
     json["count"] = 1000.into();
-    let damaged: shadowfit::Cascades = serde_json::from_value(json).unwrap();
-    assert_eq!(damaged.len(), shadowfit::MAX_CASCADES);
+    let damaged: shadowfit::FittedMaps = serde_json::from_value(json).unwrap();
+    assert_eq!(damaged.len(), shadowfit::MAX_MAPS);
 }

@@ -2,7 +2,8 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::Vec3;
-use shadowfit::{BiasSettings, CameraSettings, FilterKind, LightSettings, MapFormat, Settings, ViewSettings};
+use shadowfit::tool::{CameraSettings, LightSettings, Settings, ViewSettings};
+use shadowfit::{BiasSettings, FilterKind, MapFormat};
 
 use crate::support::any_direction;
 

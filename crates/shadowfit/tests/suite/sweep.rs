@@ -174,7 +174,7 @@ proptest! {
         let receivers = [Aabb::new(middle.as_vec3() - size, middle.as_vec3() + size)];
         let receivers = (kind == FitKind::Focused).then_some(Boxes { origin: view.origin, boxes: &receivers });
         let reach = Reach { taps, disc: Vec2::new(disc, disc * 0.5) };
-        let settings = exact(kind).with_kernel_margin(taps + disc + 1.0).with_max_distance(far);
+        let settings = exact(kind).with_border(taps + disc + 1.0).with_max_distance(far);
         let fit = fit_of(&views, direction, &settings, receivers);
 
         let normal_offset = offset * (to - from).min(1.0);

@@ -7,8 +7,8 @@
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::{
-    CascadeFitter, CascadeMap, CascadeSettings, Cascades, Constraint, FitInput, FitKind, FitSettings, LightFit,
-    RectangleKind, SplitScheme, Stabilise, ViewFrustum, Workspace,
+    Constraint, FitInput, FitKind, FitSettings, FittedMap, FittedMaps, LightFit, MapFitter, RectangleKind, SplitScheme,
+    Stabilise, Technique, ViewFrustum, Workspace,
 };
 
 use crate::scenes::{COVERING, SceneView, Walk, any_light, any_view, any_walk};
@@ -48,27 +48,27 @@ fn apart(a: DVec2, b: DVec2) -> f64 {
     (d - d.round()).abs().max_element()
 }
 
-fn settings(kind: FitKind, stabilise: Stabilise, count: u32, resolution: u32, kernel: f32) -> CascadeSettings {
+fn settings(kind: FitKind, stabilise: Stabilise, count: u32, resolution: u32, kernel: f32) -> Technique {
     let fit = FitSettings {
         kind,
         rectangle: RectangleKind::MinimumArea,
-        kernel_margin: kernel,
+        border: Some(kernel),
         max_distance: f32::MAX,
         resolution: UVec2::splat(resolution),
         ..FitSettings::default()
     };
     let splits = SplitScheme::Practical(0.7);
-    CascadeSettings { fit, count, splits, stabilise, ..CascadeSettings::default() }
+    Technique { fit, count, splits, stabilise, ..Technique::default() }
 }
 
-fn frame(fitter: &mut CascadeFitter, view: &SceneView, direction: Vec3, settings: &CascadeSettings) -> Cascades {
+fn frame(fitter: &mut MapFitter, view: &SceneView, direction: Vec3, settings: &Technique) -> FittedMaps {
     let views: [ViewFrustum; 1] = [view.frustum()];
     let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
     fitter.fit(&FitInput::new(&views, direction), settings, &mut Workspace::new(&mut storage)).unwrap()
 }
 
 /// Points that the first frame sees in one of its maps.
-fn points_in(map: &CascadeMap, view: &SceneView, places: &[[f64; 3]]) -> Vec<DVec3> {
+fn points_in(map: &FittedMap, view: &SceneView, places: &[[f64; 3]]) -> Vec<DVec3> {
     let (near, far) = (f64::from(map.near), f64::from(map.far).min(view.lens.far));
     places.iter().map(|[x, y, z]| view.eye + view.point(*x, *y, near + (far - near) * z)).collect()
 }
@@ -79,11 +79,11 @@ fn walk(
     view: SceneView,
     step: Walk,
     direction: Vec3,
-    settings: &CascadeSettings,
+    settings: &Technique,
     places: &[[f64; 3]],
     is_kept: impl Fn(&LightFit) -> bool,
 ) -> usize {
-    let mut fitter = CascadeFitter::new();
+    let mut fitter = MapFitter::new();
     let mut before = frame(&mut fitter, &view, direction, settings);
     let points: Vec<Vec<DVec3>> = before.iter().map(|map| points_in(map, &view, places)).collect();
     let (mut view, mut kept) = (view, 0);
@@ -99,7 +99,7 @@ fn walk(
                 map.fit.texel_size,
                 old.fit.texel_size
             );
-            let texel = exact_texel(&map.fit, settings.fit.kernel_margin);
+            let texel = exact_texel(&map.fit, settings.border());
             // Leaps take the camera to where the points are in no map, which rounds them the more.
             for point in points.iter().filter(|point| map.fit.covers(**point) && old.fit.covers(**point)) {
                 let place = shader_place(&map.fit, *point);
@@ -116,7 +116,7 @@ fn walk(
 
 /// Whether a frustum's sphere is so near to a step of extents that the 1e-7 by which its corners
 /// are rounded, other ones in each frame, may choose between two steps.
-fn is_on_a_step(view: &SceneView, maps: &Cascades, radius: impl Fn(&CascadeMap) -> f64) -> bool {
+fn is_on_a_step(view: &SceneView, maps: &FittedMaps, radius: impl Fn(&FittedMap) -> f64) -> bool {
     let far = view.lens.far;
     maps.iter().filter(|map| f64::from(map.near) < far).any(|map| {
         let steps = 8.0 * (2.0 * radius(map) * (1.0 - STEP_ROOM)).log2();
@@ -124,7 +124,7 @@ fn is_on_a_step(view: &SceneView, maps: &Cascades, radius: impl Fn(&CascadeMap) 
     })
 }
 
-fn sphere_radius(view: &SceneView, map: &CascadeMap) -> f64 {
+fn sphere_radius(view: &SceneView, map: &FittedMap) -> f64 {
     let slice = view.frustum().slice(map.near, map.far.min(f32::MAX)).unwrap();
     shadowfit::fits::sphere::enclosing_sphere(&slice).unwrap().radius
 }
@@ -147,7 +147,7 @@ proptest! {
         places in any_places(),
     ) {
         let settings = settings(FitKind::Sphere, Stabilise::Snap, count, size, kernel);
-        let maps = frame(&mut CascadeFitter::new(), &view, direction, &settings);
+        let maps = frame(&mut MapFitter::new(), &view, direction, &settings);
         prop_assume!(!is_on_a_step(&view, &maps, |map| sphere_radius(&view, map)));
         walk(view, step, direction, &settings, &places, |_| true);
     }

@@ -5,9 +5,8 @@ use shadowfit::bias::Reach;
 use shadowfit::glam::{DQuat, DVec2, DVec3, Mat4, UVec2, Vec3};
 use shadowfit::verify::{Certificate, Claim, MapPlane, verify};
 use shadowfit::{
-    Aabb, Boxes, CascadeFitter, CascadeSettings, CasterPolicy, DepthConvention, FitError, FitInput, FitKind,
-    FitSettings, HoldSettings, LightFit, PerspectiveCamera, RectangleKind, SplitScheme, Stabilise, ViewFrustum,
-    Workspace,
+    Aabb, Boxes, CasterPolicy, DepthConvention, FitError, FitInput, FitKind, FitSettings, HoldSettings, LightFit,
+    MapFitter, PerspectiveCamera, RectangleKind, SplitScheme, Stabilise, Technique, ViewFrustum, Workspace,
 };
 
 use crate::support::{DIRECTION, any_camera, any_direction, apply, camera, cases, double, float};
@@ -50,7 +49,7 @@ impl Scene {
     }
 
     fn input<'a>(&'a self, views: &'a [ViewFrustum], direction: Vec3) -> FitInput<'a> {
-        FitInput { receivers: self.receivers(), casters: self.casters(), ..FitInput::new(views, direction) }
+        FitInput { receivers: self.receivers(), casters: Some(self.casters()), ..FitInput::new(views, direction) }
     }
 
     fn len(&self) -> usize {
@@ -95,20 +94,20 @@ fn any_fit() -> impl Strategy<Value = FitSettings> {
     let resolution = prop::sample::select(vec![UVec2::new(2048, 2048), UVec2::new(512, 1024), UVec2::new(64, 40)]);
     let distance = prop_oneof![Just(f32::MAX), float(5.0, 500.0)];
     (kind, rectangle, casters, resolution, any_depth(), distance, prop_oneof![Just(0.0), float(0.0, 6.0)]).prop_map(
-        |(kind, rectangle, casters, resolution, depth, max_distance, kernel_margin)| FitSettings {
+        |(kind, rectangle, casters, resolution, depth, max_distance, border)| FitSettings {
             kind,
             rectangle,
             casters,
             resolution,
             depth,
             max_distance,
-            kernel_margin,
+            border: Some(border),
             ..FitSettings::default()
         },
     )
 }
 
-fn any_cascades() -> impl Strategy<Value = CascadeSettings> {
+fn any_cascades() -> impl Strategy<Value = Technique> {
     let splits = prop_oneof![
         Just(SplitScheme::Uniform),
         Just(SplitScheme::Logarithmic),
@@ -118,21 +117,21 @@ fn any_cascades() -> impl Strategy<Value = CascadeSettings> {
     let stabilise = prop::sample::select(vec![Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis]);
     let hold = prop_oneof![Just(0.0), Just(0.02), float(0.0, 0.5)];
     (any_fit(), 1..=8_u32, splits, prop_oneof![Just(0.0), float(0.0, 1.0)], stabilise, hold).prop_map(
-        |(fit, count, splits, overlap, stabilise, margin)| CascadeSettings {
+        |(fit, count, splits, overlap, stabilise, margin)| Technique {
             fit,
             count,
             splits,
             overlap,
             stabilise,
             hold: HoldSettings::default().with_margin(margin),
-            ..CascadeSettings::default()
+            ..Technique::default()
         },
     )
 }
 
 /// The reach that a kernel margin is enough for.
 fn reach_of(settings: &FitSettings) -> Reach {
-    Reach::taps(settings.kernel_margin + 0.5)
+    Reach::taps(settings.border.unwrap_or(3.0) + 0.5)
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -222,7 +221,7 @@ proptest! {
         let scene = scene(&plans, &camera);
         let mut storage = storage(scene.len());
         let mut workspace = Workspace::new(&mut storage);
-        let (mut fitter, mut camera) = (CascadeFitter::new(), camera);
+        let (mut fitter, mut camera) = (MapFitter::new(), camera);
         for frame in 0..frames {
             let views = [camera.frustum().unwrap()];
             let input = scene.input(&views, direction);
@@ -258,17 +257,16 @@ fn stable_maps_keep_the_casters_that_wide_filters_read() {
     let fit = FitSettings {
         kind: FitKind::Sphere,
         casters: CasterPolicy::List,
-        kernel_margin: 3.195_267_7,
+        border: Some(3.195_267_7),
         resolution: UVec2::new(64, 40),
         ..FitSettings::default()
     };
-    let settings =
-        CascadeSettings { fit, count: 7, splits: SplitScheme::Logarithmic, overlap: 0.0, ..CascadeSettings::default() };
+    let settings = Technique { fit, count: 7, splits: SplitScheme::Logarithmic, overlap: 0.0, ..Technique::default() };
     let views = [camera.frustum().unwrap()];
     let input = scene.input(&views, Vec3::new(-0.172_338_68, -0.965_532_3, -0.195_055_77));
     let mut storage = storage(scene.len());
     let mut workspace = Workspace::new(&mut storage);
-    let maps = CascadeFitter::new().fit(&input, &settings, &mut workspace).unwrap();
+    let maps = MapFitter::new().fit(&input, &settings, &mut workspace).unwrap();
     for (i, map) in maps.iter().enumerate() {
         let claim = Claim::of_map(map, &settings, reach_of(&fit));
         let certificate = verify(&input, &map.fit, &claim, &mut workspace).unwrap();
@@ -307,7 +305,7 @@ fn plain() -> FitSettings {
 }
 
 fn certificate(input: &FitInput, fit: &LightFit, claim: &Claim) -> Certificate {
-    let mut storage = storage(input.casters.boxes.len().max(1));
+    let mut storage = storage(1);
     verify(input, fit, claim, &mut Workspace::new(&mut storage)).unwrap()
 }
 
@@ -323,8 +321,10 @@ fn slack_is_what_margins_add() {
     let settings = plain().with_margin(0.5);
     let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &settings).unwrap();
     let casters = [over(0.0, -0.75, 0.125)];
-    let input =
-        FitInput { casters: Boxes { origin: views[0].origin, boxes: &casters }, ..FitInput::new(&views, Vec3::NEG_Y) };
+    let input = FitInput {
+        casters: Some(Boxes { origin: views[0].origin, boxes: &casters }),
+        ..FitInput::new(&views, Vec3::NEG_Y)
+    };
     let Certificate::Proven(slack) = certificate(&input, &fit, &Claim::of_fit(&settings, Reach::POINT)) else {
         panic!("{fit:?}");
     };
@@ -425,7 +425,7 @@ fn a_near_plane_behind_a_caster_loses_it() {
         let casters = [over(0.0, -2.0, 0.5), caster];
         let casters = Boxes { origin, boxes: &casters };
         let claim = Claim { reach: Reach::POINT, ..*claim };
-        certificate(&FitInput { casters, ..FitInput::new(&views, Vec3::NEG_Y) }, &fit, &claim)
+        certificate(&FitInput { casters: Some(casters), ..FitInput::new(&views, Vec3::NEG_Y) }, &fit, &claim)
     };
     // 5 m above the eye; the near plane is 1 m below it.
     let Certificate::CasterLost { point, by } = check(over(3.0, 4.0, 1.0), &claim) else { panic!("not lost") };
@@ -441,8 +441,8 @@ fn a_near_plane_behind_a_caster_loses_it() {
     let beside = over(5.015, 4.0, 1.0);
     assert!(check(beside, &claim).is_proven());
     let casters = [beside];
-    let input = FitInput { casters: Boxes { origin, boxes: &casters }, ..FitInput::new(&views, Vec3::NEG_Y) };
-    let settings = settings.with_kernel_margin(1.5);
+    let input = FitInput { casters: Some(Boxes { origin, boxes: &casters }), ..FitInput::new(&views, Vec3::NEG_Y) };
+    let settings = settings.with_border(1.5);
     let wide = shadowfit::fit(&views[0], Vec3::NEG_Y, &settings).unwrap();
     let certificate = certificate(&input, &wide, &Claim::of_fit(&settings, Reach::taps(2.0)));
     assert!(matches!(certificate, Certificate::CasterLost { .. }), "{certificate:?}");
@@ -458,7 +458,7 @@ fn the_xna_fit_covers_the_view_but_loses_casters_before_it() {
     assert!(certificate(&input, &fit, &claim).is_proven());
     let middle = (fit.corners()[0] + fit.corners()[2]) * 0.5 - fit.direction * 10.0;
     let casters = [Aabb::new(middle - 1.0, middle + 1.0)];
-    let input = FitInput { casters: Boxes { origin: fit.origin, boxes: &casters }, ..input };
+    let input = FitInput { casters: Some(Boxes { origin: fit.origin, boxes: &casters }), ..input };
     let Certificate::CasterLost { point, by } = certificate(&input, &fit, &claim) else { panic!("not lost") };
     assert!(by > 10.0 && by < 12.0 && !fit.covers(point), "{point} by {by}");
     // Its corners stand in its planes: without a margin, rounding may put them beyond.

@@ -1,11 +1,11 @@
 //! The rows of the fit: where the shadow map looks.
 
 use super::{always_active, pull_near};
-use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Parameter};
-use crate::{CasterPolicy, FitKind, RectangleKind};
+use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
+use crate::{CasterPolicy, FitKind, ReceiverSource, RectangleKind};
 
 /// The fits in the order of their options.
-const FIT_KINDS: [FitKind; 5] =
+pub(super) const FIT_KINDS: [FitKind; 5] =
     [FitKind::FrustumAabb, FitKind::XnaSample, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
 
 pub(super) const KIND: Parameter = Parameter {
@@ -46,8 +46,8 @@ pub(super) const KIND: Parameter = Parameter {
                 help: "The least rectangle around what the camera sees of the scene's objects: the finest texels.",
             },
         ],
-        read: |s| FIT_KINDS.iter().position(|kind| *kind == s.fit.kind).unwrap_or(0),
-        write: |s, index| s.fit.kind = FIT_KINDS[index],
+        read: |s| FIT_KINDS.iter().position(|kind| *kind == s.technique.fit.kind).unwrap_or(0),
+        write: |s, index| s.technique.fit.kind = FIT_KINDS[index],
     }),
     inert: always_active,
 };
@@ -77,11 +77,11 @@ pub(super) const RECTANGLE: Parameter = Parameter {
                 help: "Along the light's own axes: larger, but it turns only when the light does.",
             },
         ],
-        read: |s| RECTANGLES.iter().position(|kind| *kind == s.fit.rectangle).unwrap_or(0),
-        write: |s, index| s.fit.rectangle = RECTANGLES[index],
+        read: |s| RECTANGLES.iter().position(|kind| *kind == s.technique.fit.rectangle).unwrap_or(0),
+        write: |s, index| s.technique.fit.rectangle = RECTANGLES[index],
     }),
     inert: |s| {
-        (!matches!(s.fit.kind, FitKind::Oriented | FitKind::Focused))
+        (!matches!(s.technique.fit.kind, FitKind::Oriented | FitKind::Focused))
             .then_some("Only the oriented and the focused fit can turn; choose one of them.")
     },
 };
@@ -93,16 +93,24 @@ pub(super) const MAX_DISTANCE: Parameter = Parameter {
     unit: "m",
     help: "Shadows end at this distance from the camera. Lower it to spend the map's texels near the camera, \
            which sharpens shadows there; raise it when shadows vanish too close.",
-    kind: Kind::Number(Number {
+    kind: Kind::Optional(Optional {
         min: 1.0,
-        max: 10_000.0,
+        max: 100_000.0,
         step: 1.0,
         logarithmic: true,
         decimals: 1,
-        read: |s| f64::from(s.fit.max_distance),
+        unset: Some(ChoiceOption {
+            id: "far_plane",
+            label: "far plane",
+            help: "Shadows reach as far as the camera sees.",
+        }),
+        initial: 100.0,
+        read: |s| Some(f64::from(s.technique.fit.max_distance)).filter(|distance| *distance < f64::from(f32::MAX)),
         write: |s, value| {
-            s.fit.max_distance = value as f32;
-            pull_near(s, value as f32);
+            s.technique.fit.max_distance = value.map_or(f32::MAX, |value| value as f32);
+            if let Some(value) = value {
+                pull_near(s, value as f32);
+            }
         },
     }),
     inert: always_active,
@@ -110,7 +118,7 @@ pub(super) const MAX_DISTANCE: Parameter = Parameter {
 
 /// The caster policies in the order of their options.
 const CASTER_POLICIES: [CasterPolicy; 5] =
-    [CasterPolicy::Extend, CasterPolicy::List, CasterPolicy::SceneBounds, CasterPolicy::DepthClamp, CasterPolicy::None];
+    [CasterPolicy::List, CasterPolicy::Extend, CasterPolicy::SceneBounds, CasterPolicy::DepthClamp, CasterPolicy::None];
 
 pub(super) const CASTERS: Parameter = Parameter {
     id: "fit.casters",
@@ -122,14 +130,14 @@ pub(super) const CASTERS: Parameter = Parameter {
     kind: Kind::Choice(Choice {
         options: &[
             ChoiceOption {
-                id: "extend",
-                label: "By extension",
-                help: "The near plane moves toward the light by the caster extension.",
-            },
-            ChoiceOption {
                 id: "list",
                 label: "By objects",
                 help: "At the first object that can throw a shadow into view: none is lost, no depth is wasted.",
+            },
+            ChoiceOption {
+                id: "extend",
+                label: "By extension",
+                help: "The near plane moves toward the light by the caster extension.",
             },
             ChoiceOption {
                 id: "scene_bounds",
@@ -148,11 +156,11 @@ pub(super) const CASTERS: Parameter = Parameter {
                 help: "At what is covered: casters before it are lost, which leaves holes, as in the XNA sample.",
             },
         ],
-        read: |s| CASTER_POLICIES.iter().position(|policy| *policy == s.fit.casters).unwrap_or(0),
-        write: |s, index| s.fit.casters = CASTER_POLICIES[index],
+        read: |s| CASTER_POLICIES.iter().position(|policy| *policy == s.technique.fit.casters).unwrap_or(0),
+        write: |s, index| s.technique.fit.casters = CASTER_POLICIES[index],
     }),
     inert: |s| {
-        (s.fit.kind == FitKind::XnaSample)
+        (s.technique.fit.kind == FitKind::XnaSample)
             .then_some("The XNA sample's fit has no thought for casters; choose another fit.")
     },
 };
@@ -171,38 +179,47 @@ pub(super) const CASTER_EXTENSION: Parameter = Parameter {
         step: 1.0,
         logarithmic: true,
         decimals: 1,
-        read: |s| f64::from(s.fit.caster_extension),
-        write: |s, value| s.fit.caster_extension = value as f32,
+        read: |s| f64::from(s.technique.fit.caster_extension),
+        write: |s, value| s.technique.fit.caster_extension = value as f32,
     }),
-    inert: |s| match (s.fit.kind, s.fit.casters) {
+    inert: |s| match (s.technique.fit.kind, s.technique.fit.casters) {
         (FitKind::XnaSample, _) => Some("The XNA sample's fit has no caster extension; choose another fit."),
         (_, CasterPolicy::Extend) => None,
+        (_, CasterPolicy::List | CasterPolicy::SceneBounds) => {
+            Some("The objects place the near plane where they are known; set Casters to By extension.")
+        }
         _ => Some("The near plane is placed by something else; set Casters to By extension."),
     },
 };
 
-/// Widest kernel margin, in texels: more than any filter of the map reaches, and less than the quarter of the smallest
-/// map that a fit accepts.
-const WIDEST_KERNEL_MARGIN: f64 = 32.0;
+/// Widest border, in texels: more than any filter of the map reaches, and less than the quarter of the smallest map that
+/// a fit accepts.
+const WIDEST_BORDER: f64 = 32.0;
 
-pub(super) const KERNEL_MARGIN: Parameter = Parameter {
-    id: "fit.kernel_margin",
+pub(super) const BORDER: Parameter = Parameter {
+    id: "fit.border",
     group: Group::Fit,
-    label: "Filter margin",
+    label: "Border",
     unit: "texels",
     help: "Keeps so many texels free between what is covered and the map's border, so that filter and normal offset \
-           find depths there. Raise it to their reach where shadows break off at the border.",
-    kind: Kind::Number(Number {
+           find depths there.",
+    kind: Kind::Optional(Optional {
         min: 0.0,
-        max: WIDEST_KERNEL_MARGIN,
+        max: WIDEST_BORDER,
         step: 0.5,
         logarithmic: false,
         decimals: 1,
-        read: |s| f64::from(s.fit.kernel_margin),
-        write: |s, value| s.fit.kernel_margin = value as f32,
+        unset: Some(ChoiceOption {
+            id: "auto",
+            label: "from filter and bias",
+            help: "As many as the filter and the normal offset reach.",
+        }),
+        initial: 3.0,
+        read: |s| s.technique.fit.border.map(f64::from),
+        write: |s, value| s.technique.fit.border = value.map(|value| value as f32),
     }),
     inert: |s| {
-        (s.fit.kind == FitKind::XnaSample)
+        (s.technique.fit.kind == FitKind::XnaSample)
             .then_some("The XNA sample's fit keeps no texels free; choose another fit, or use the box margin.")
     },
 };
@@ -220,8 +237,59 @@ pub(super) const MARGIN: Parameter = Parameter {
         step: 0.1,
         logarithmic: true,
         decimals: 1,
-        read: |s| f64::from(s.fit.margin),
-        write: |s, value| s.fit.margin = value as f32,
+        read: |s| f64::from(s.technique.fit.margin),
+        write: |s, value| s.technique.fit.margin = value as f32,
+    }),
+    inert: always_active,
+};
+
+/// A component of the direction that is up.
+macro_rules! up {
+    ($name:ident, $id:literal, $label:literal, $axis:ident) => {
+        pub(super) const $name: Parameter = Parameter {
+            id: $id,
+            group: Group::Fit,
+            label: $label,
+            unit: "",
+            help: "Component of the world's direction that is up, which the axes of a vertical light follow. Worlds \
+                   with z up have 0, 0, 1.",
+            kind: Kind::Number(Number {
+                min: -1.0,
+                max: 1.0,
+                step: 0.1,
+                logarithmic: false,
+                decimals: 2,
+                read: |s| f64::from(s.technique.fit.up.$axis),
+                write: |s, value| s.technique.fit.up.$axis = value as f32,
+            }),
+            inert: always_active,
+        };
+    };
+}
+
+up!(UP_X, "fit.up_x", "Up, x", x);
+up!(UP_Y, "fit.up_y", "Up, y", y);
+up!(UP_Z, "fit.up_z", "Up, z", z);
+
+pub(super) const RECEIVERS: Parameter = Parameter {
+    id: "fit.receivers",
+    group: Group::Fit,
+    label: "Known of the scene",
+    unit: "",
+    help: "Which boxes of the scene the fit gets. Clusters of triangles hug large meshes more closely than one box \
+           for each object.",
+    kind: Kind::Choice(Choice {
+        options: &[
+            ChoiceOption { id: "clusters", label: "Triangle clusters", help: "Boxes around clusters of triangles." },
+            ChoiceOption { id: "objects", label: "Objects", help: "One box for each object." },
+        ],
+        read: |s| match s.technique.receivers {
+            ReceiverSource::Clusters => 0,
+            ReceiverSource::Objects => 1,
+        },
+        write: |s, index| {
+            s.technique.receivers = if index == 0 { ReceiverSource::Clusters } else { ReceiverSource::Objects };
+        },
     }),
     inert: always_active,
 };

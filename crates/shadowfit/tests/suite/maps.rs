@@ -3,35 +3,35 @@
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::{
-    Aabb, Boxes, CascadeFitter, CascadeMap, CascadeSettings, Cascades, CasterPolicy, Constraint, DepthBounds,
-    DepthHistogram, FitInput, FitKind, FitSettings, PerspectiveCamera, RectangleKind, SplitScheme, Stabilise,
-    ViewFrustum, Workspace,
+    Aabb, Boxes, CasterPolicy, Constraint, DepthBounds, DepthHistogram, FitInput, FitKind, FitSettings, FittedMap,
+    FittedMaps, MapFitter, PerspectiveCamera, RectangleKind, SplitScheme, Stabilise, Technique, ViewFrustum, Workspace,
 };
 
 use crate::scenes::{COVERING, any_cascades, any_light, any_view};
 use crate::support::{DIRECTION, any_camera, any_direction, camera, cases};
 
-fn fit_with(fitter: &mut CascadeFitter, input: &FitInput, settings: &CascadeSettings) -> Cascades {
-    let boxes = input.receivers.map_or(0, |boxes| boxes.boxes.len()).max(input.casters.boxes.len());
+fn fit_with(fitter: &mut MapFitter, input: &FitInput, settings: &Technique) -> FittedMaps {
+    let boxes =
+        input.receivers.map_or(0, |boxes| boxes.boxes.len()).max(input.casters.map_or(0, |boxes| boxes.boxes.len()));
     let mut storage = vec![DVec2::ZERO; Workspace::required(boxes, input.views.len())];
     fitter.fit(input, settings, &mut Workspace::new(&mut storage)).unwrap()
 }
 
-fn fit_once(input: &FitInput, settings: &CascadeSettings) -> Cascades {
-    fit_with(&mut CascadeFitter::new(), input, settings)
+fn fit_once(input: &FitInput, settings: &Technique) -> FittedMaps {
+    fit_with(&mut MapFitter::new(), input, settings)
 }
 
-fn settings(kind: FitKind, splits: SplitScheme, count: u32) -> CascadeSettings {
+fn settings(kind: FitKind, splits: SplitScheme, count: u32) -> Technique {
     let fit = FitSettings { kind, max_distance: f32::MAX, casters: CasterPolicy::None, ..FitSettings::default() };
-    CascadeSettings { fit, count, splits, stabilise: Stabilise::Off, ..CascadeSettings::default() }
+    Technique { fit, count, splits, stabilise: Stabilise::Off, ..Technique::default() }
 }
 
 /// Ends of all maps but the last.
-fn cuts(maps: &[CascadeMap]) -> Vec<f64> {
+fn cuts(maps: &[FittedMap]) -> Vec<f64> {
     maps[..maps.len() - 1].iter().map(|map| f64::from(map.far)).collect()
 }
 
-fn assert_cuts(maps: &[CascadeMap], expected: impl Fn(f64) -> f64) {
+fn assert_cuts(maps: &[FittedMap], expected: impl Fn(f64) -> f64) {
     let count = maps.len() as f64;
     for (i, cut) in cuts(maps).into_iter().enumerate() {
         let wanted = expected((i + 1) as f64 / count);
@@ -51,7 +51,7 @@ proptest! {
         let views = [view.frustum()];
         let maps = fit_once(&FitInput::new(&views, direction), &settings);
         prop_assert_eq!(maps.len(), settings.count as usize);
-        let ranged: Vec<&CascadeMap> = maps.iter().filter(|map| map.near < map.far).collect();
+        let ranged: Vec<&FittedMap> = maps.iter().filter(|map| map.near < map.far).collect();
         prop_assert_eq!(ranged[0].near, views[0].near);
         prop_assert_eq!(ranged[ranged.len() - 1].far, f32::MAX);
         for pair in ranged.windows(2) {
@@ -99,11 +99,11 @@ proptest! {
     ) {
         prop_assume!(view.lens.near.max(other.lens.near) < f64::from(settings.fit.max_distance));
         let (views, others) = ([view.frustum()], [other.frustum()]);
-        let mut fitter = CascadeFitter::new();
+        let mut fitter = MapFitter::new();
         fit_with(&mut fitter, &FitInput::new(&others, direction), &settings);
         fitter.reset();
         let input = FitInput::new(&views, direction);
-        let mut new = CascadeFitter::new();
+        let mut new = MapFitter::new();
         for _ in 0..2 {
             prop_assert_eq!(fit_with(&mut fitter, &input, &settings), fit_with(&mut new, &input, &settings));
         }
@@ -117,7 +117,7 @@ proptest! {
         prop_assume!(view.lens.near < f64::from(settings.fit.max_distance));
         let views = [view.frustum()];
         let input = FitInput::new(&views, direction);
-        let mut fitter = CascadeFitter::new();
+        let mut fitter = MapFitter::new();
         let first = fit_with(&mut fitter, &input, &settings);
         let second = fit_with(&mut fitter, &input, &settings);
         for (a, b) in first.iter().zip(second.iter()) {
@@ -142,7 +142,7 @@ proptest! {
         // Of rectangles of least area the longer side, which counts here, is what it happens to be.
         let square = |splits| {
             let plain = settings(kind, splits, count);
-            CascadeSettings { fit: plain.fit.with_rectangle(RectangleKind::MinimumSquare), ..plain }
+            Technique { fit: plain.fit.with_rectangle(RectangleKind::MinimumSquare), ..plain }
         };
         let measure = |splits| quantile(&fit_once(&input, &square(splits)), &views[0]);
         let (chosen, logarithmic) = (measure(SplitScheme::FromBoxes), measure(SplitScheme::Logarithmic));
@@ -152,14 +152,14 @@ proptest! {
 }
 
 /// The quantile with another number of maps.
-fn error_of(input: &FitInput, settings: &CascadeSettings, count: u32) -> f64 {
+fn error_of(input: &FitInput, settings: &Technique, count: u32) -> f64 {
     let mut settings = *settings;
     settings.count = count;
     quantile(&fit_once(input, &settings), &input.views[0])
 }
 
 /// 95% quantile of the wider texel side per view depth, over depths at even steps of their log.
-fn quantile(maps: &[CascadeMap], view: &ViewFrustum) -> f64 {
+fn quantile(maps: &[FittedMap], view: &ViewFrustum) -> f64 {
     let (near, far) = (f64::from(view.near).max(f64::from(view.far) / 65_536.0), f64::from(view.far));
     let mut errors: Vec<f64> = (0..1000)
         .map(|i| {
@@ -203,7 +203,7 @@ fn manual_cuts_outside_of_what_is_shadowed_leave_maps_empty() {
     let given = [0.01, 0.05, 20.0, 50.0, 150.0, 200.0, 300.0];
     for kind in COVERING {
         for stabilise in [Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis] {
-            let settings = CascadeSettings { stabilise, ..settings(kind, SplitScheme::Manual(given), 8) };
+            let settings = Technique { stabilise, ..settings(kind, SplitScheme::Manual(given), 8) };
             let maps = fit_once(&FitInput::new(&views, DIRECTION), &settings);
             let empty: Vec<bool> = maps.iter().map(|map| map.fit.is_empty).collect();
             assert_eq!(empty, [true, true, false, false, false, true, true, true], "{kind:?}");
@@ -286,11 +286,7 @@ fn fixed_cuts_are_spread_between_the_depth_bounds_and_lose_nothing_outside() {
     }
     for (near, far) in [(f32::NAN, 5.0), (1.0, f32::INFINITY), (6.0, 5.0)] {
         let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-        let result = CascadeFitter::new().fit(
-            &bounds(near, far),
-            &CascadeSettings::default(),
-            &mut Workspace::new(&mut storage),
-        );
+        let result = MapFitter::new().fit(&bounds(near, far), &Technique::default(), &mut Workspace::new(&mut storage));
         assert!(result.is_err(), "{near} {far}");
     }
 }
@@ -299,9 +295,8 @@ fn fixed_cuts_are_spread_between_the_depth_bounds_and_lose_nothing_outside() {
 #[test]
 fn held_cuts_follow_depth_bounds_that_leave_them() {
     let views = [ahead()];
-    let settings =
-        CascadeSettings { stabilise: Stabilise::Snap, ..settings(FitKind::Sphere, SplitScheme::Logarithmic, 3) };
-    let mut fitter = CascadeFitter::new();
+    let settings = Technique { stabilise: Stabilise::Snap, ..settings(FitKind::Sphere, SplitScheme::Logarithmic, 3) };
+    let mut fitter = MapFitter::new();
     let mut cut = |near, far| {
         let input = FitInput { depth_bounds: Some(DepthBounds { near, far }), ..FitInput::new(&views, DIRECTION) };
         // Held cuts are compared every few frames.
@@ -325,7 +320,7 @@ proptest! {
         let views = [camera.frustum().unwrap()];
         let input = FitInput::new(&views, direction);
         let plain = settings(kind, SplitScheme::FromBoxes, count);
-        let settings = CascadeSettings { fit: plain.fit.with_rectangle(RectangleKind::MinimumSquare), ..plain };
+        let settings = Technique { fit: plain.fit.with_rectangle(RectangleKind::MinimumSquare), ..plain };
         let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
         let mut fewest = |waste| shadowfit::fewest_maps(&input, &settings, waste, &mut Workspace::new(&mut storage)).unwrap();
         let found = fewest(waste);
@@ -348,8 +343,8 @@ fn no_receivers_give_empty_maps_and_no_error() {
         for splits in
             [SplitScheme::Uniform, SplitScheme::Logarithmic, SplitScheme::FromBoxes, SplitScheme::FromHistogram]
         {
-            let settings = CascadeSettings { stabilise, ..settings(FitKind::Focused, splits, 3) };
-            let mut fitter = CascadeFitter::new();
+            let settings = Technique { stabilise, ..settings(FitKind::Focused, splits, 3) };
+            let mut fitter = MapFitter::new();
             for _ in 0..2 {
                 let maps = fit_with(&mut fitter, &input, &settings);
                 assert!(maps.len() == 3 && maps.iter().all(|map| map.fit.is_empty), "{settings:?}");
@@ -364,8 +359,8 @@ fn a_far_plane_that_comes_nearer_leaves_held_cuts_without_error() {
     for kind in COVERING {
         for stabilise in [Stabilise::Snap, Stabilise::Hysteresis] {
             for splits in [SplitScheme::Uniform, SplitScheme::FromBoxes] {
-                let settings = CascadeSettings { stabilise, ..settings(kind, splits, 4) };
-                let mut fitter = CascadeFitter::new();
+                let settings = Technique { stabilise, ..settings(kind, splits, 4) };
+                let mut fitter = MapFitter::new();
                 for far in [80.0, 60.0, 50.0, 46.0, 79.0] {
                     let views = [PerspectiveCamera { far, ..camera() }.frustum().unwrap()];
                     let maps = fit_with(&mut fitter, &FitInput::new(&views, DIRECTION), &settings);
@@ -396,7 +391,7 @@ fn what_set_each_plane_is_named() {
     let above = [Aabb::new(Vec3::new(-1.0, 5.0, -21.0), Vec3::new(1.0, 6.0, -19.0))];
     let receivers = Some(Boxes { origin: DVec3::ZERO, boxes: &ball });
     let casters = Boxes { origin: DVec3::ZERO, boxes: &above };
-    let boxed = FitInput { receivers, casters, ..input };
+    let boxed = FitInput { receivers, casters: Some(casters), ..input };
     assert_eq!(set_by(&boxed, FitKind::Focused, CasterPolicy::None), [Receivers; 6]);
     for casters in [CasterPolicy::List, CasterPolicy::SceneBounds] {
         let expected = [Receivers, Receivers, Receivers, Receivers, Receivers, Casters];
@@ -407,9 +402,8 @@ fn what_set_each_plane_is_named() {
     let floored = FitInput { receivers: Some(Boxes { origin: DVec3::ZERO, boxes: &floor }), ..input };
     let by = set_by(&floored, FitKind::Focused, CasterPolicy::None);
     assert_eq!((by[3], by[4], by[5]), (View, Receivers, Receivers));
-    let mut fitter = CascadeFitter::new();
-    let held =
-        CascadeSettings { stabilise: Stabilise::Hysteresis, ..settings(FitKind::Focused, SplitScheme::Uniform, 1) };
+    let mut fitter = MapFitter::new();
+    let held = Technique { stabilise: Stabilise::Hysteresis, ..settings(FitKind::Focused, SplitScheme::Uniform, 1) };
     assert_eq!(fit_with(&mut fitter, &boxed, &held)[0].fit.set_by, [Receivers; 6]);
     assert_eq!(fit_with(&mut fitter, &boxed, &held)[0].fit.set_by, [Held; 6]);
 }

@@ -1,6 +1,6 @@
 //! Several maps for one view, kept still from frame to frame.
 //!
-//! A [`CascadeFitter`] remembers what it fitted last, as plain data: the cuts between the maps and,
+//! A [`MapFitter`] remembers what it fitted last, as plain data: the cuts between the maps and,
 //! with [`Stabilise::Hysteresis`], the maps themselves. Everything else follows from the input.
 
 mod hold;
@@ -11,17 +11,21 @@ use glam::{DVec2, Vec3};
 
 use crate::fits::{self, Content, Light, Placing, Range, Volume};
 use crate::motion::Motion;
-use crate::settings::{CascadeSettings, FitKind, FitSettings, MAX_CASCADES, Stabilise};
+use crate::settings::{BiasSettings, FitKind, FitSettings, MAX_MAPS, MapOverride, Stabilise};
 use crate::splits::{Chooser, Cuts};
-use crate::{DepthBounds, FitError, FitInput, GridAnchor, LightFit, ViewFrustum, Workspace, checks, grid};
+use crate::{
+    Bias, DepthBounds, FitError, FitInput, GridAnchor, LightFit, Technique, ViewFrustum, Workspace, checks, grid,
+};
 use hold::HeldMap;
 
 /// One of several maps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct CascadeMap {
+pub struct FittedMap {
     /// The map's matrices and box.
     pub fit: LightFit,
+    /// The technique's biases for this map's texels and depth range.
+    pub bias: Bias,
     /// View depth from which points choose this map, in metres.
     pub near: f32,
     /// View depth up to which points choose this map, in metres: they take the first map that ends
@@ -39,30 +43,30 @@ pub struct CascadeMap {
 /// The maps of one frame, nearest first.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Cascades {
-    maps: [CascadeMap; MAX_CASCADES],
+pub struct FittedMaps {
+    maps: [FittedMap; MAX_MAPS],
     count: usize,
 }
 
-impl Deref for Cascades {
-    type Target = [CascadeMap];
+impl Deref for FittedMaps {
+    type Target = [FittedMap];
 
-    fn deref(&self) -> &[CascadeMap] {
+    fn deref(&self) -> &[FittedMap] {
         // A number that was read from a file may be any.
-        &self.maps[..self.count.min(MAX_CASCADES)]
+        &self.maps[..self.count.min(MAX_MAPS)]
     }
 }
 
 /// Fits several maps frame by frame.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct CascadeFitter {
+pub struct MapFitter {
     cuts: Option<HeldCuts>,
-    maps: [Option<HeldMap>; MAX_CASCADES],
-    depths: [Option<HeldDepth>; MAX_CASCADES],
+    maps: [Option<HeldMap>; MAX_MAPS],
+    depths: [Option<HeldDepth>; MAX_MAPS],
     last_view: Option<ViewFrustum>,
     /// What the state was made with; any change begins anew.
-    settings: Option<CascadeSettings>,
+    settings: Option<Technique>,
 }
 
 /// Cuts of an earlier frame.
@@ -90,7 +94,7 @@ struct HeldDepth {
 /// frame's fit. Whether they reach as far as they must is looked at in each.
 const COMPARE_EVERY: u32 = 8;
 
-impl CascadeFitter {
+impl MapFitter {
     /// A fitter that remembers nothing.
     pub fn new() -> Self {
         Self::default()
@@ -113,10 +117,10 @@ impl CascadeFitter {
     pub fn fit(
         &mut self,
         input: &FitInput,
-        settings: &CascadeSettings,
+        settings: &Technique,
         workspace: &mut Workspace,
-    ) -> Result<Cascades, FitError> {
-        let mut cascades = Cascades::default();
+    ) -> Result<FittedMaps, FitError> {
+        let mut cascades = FittedMaps::default();
         self.fit_into(input, settings, workspace, &mut cascades)?;
         Ok(cascades)
     }
@@ -129,11 +133,12 @@ impl CascadeFitter {
     pub fn fit_into(
         &mut self,
         input: &FitInput,
-        settings: &CascadeSettings,
+        technique: &Technique,
         workspace: &mut Workspace,
-        cascades: &mut Cascades,
+        cascades: &mut FittedMaps,
     ) -> Result<(), FitError> {
-        let (light, distance) = check(input, settings)?;
+        let (light, distance) = check(input, technique)?;
+        let settings = &technique.with_fit(technique.fit.with_border(technique.border()));
         let is_continued = self.settings.as_ref() == Some(settings);
         let before = if is_continued { Some(&*self) } else { None };
         let (content, points) = Content::new(input, workspace)?;
@@ -142,7 +147,7 @@ impl CascadeFitter {
         let cuts = choose_cuts(before.and_then(|before| before.cuts), &chooser)?;
         cascades.count = settings.count as usize;
         let mut held = None;
-        let depths = before.map_or([None; MAX_CASCADES], |before| before.depths);
+        let depths = before.map_or([None; MAX_MAPS], |before| before.depths);
         let mut places = Places { content: &content, settings, light, range, depths, points };
         if settings.stabilise == Stabilise::Hysteresis {
             held = Some(places.hold(input, before, &cuts.cuts, cascades)?);
@@ -153,7 +158,7 @@ impl CascadeFitter {
         (self.cuts, self.depths) = (Some(cuts), places.depths);
         self.last_view = Some(input.views[0]);
         if !is_continued {
-            (self.settings, self.maps) = (Some(*settings), [None; MAX_CASCADES]);
+            (self.settings, self.maps) = (Some(*settings), [None; MAX_MAPS]);
         }
         if let Some(held) = held {
             self.maps = held;
@@ -168,14 +173,14 @@ impl CascadeFitter {
 /// What is visible is told by the histogram where the settings' splits use one, else by the boxes;
 /// other splits are taken for [`SplitScheme::FromBoxes`](crate::SplitScheme::FromBoxes) here. Costs
 /// about as much as choosing the cuts of one frame: ask when a level begins, or now and then, and
-/// set [`CascadeSettings::count`] by it.
+/// set [`Technique::count`] by it.
 ///
 /// # Errors
 ///
-/// As [`CascadeFitter::fit`], and [`FitError::OutOfRange`] for a waste outside 1..=100.
+/// As [`MapFitter::fit`], and [`FitError::OutOfRange`] for a waste outside 1..=100.
 pub fn fewest_maps(
     input: &FitInput,
-    settings: &CascadeSettings,
+    settings: &Technique,
     waste: f32,
     workspace: &mut Workspace,
 ) -> Result<u32, FitError> {
@@ -205,19 +210,19 @@ fn choose_cuts(held: Option<HeldCuts>, chooser: &Chooser) -> Result<HeldCuts, Fi
 /// What all maps of a frame are fitted with.
 struct Places<'a, 'b> {
     content: &'a Content<'b>,
-    settings: &'a CascadeSettings,
+    settings: &'a Technique,
     light: Light,
     range: Range,
     /// Depth ranges of the last frame, then of this one.
-    depths: [Option<HeldDepth>; MAX_CASCADES],
+    depths: [Option<HeldDepth>; MAX_MAPS],
     points: &'a mut [DVec2],
 }
 
 impl Places<'_, '_> {
     /// All maps of this frame alone.
-    fn fit(&mut self, cuts: &Cuts, cascades: &mut Cascades) -> Result<(), FitError> {
+    fn fit(&mut self, cuts: &Cuts, cascades: &mut FittedMaps) -> Result<(), FitError> {
         // Each step of one map waits for the step before it; those of several maps side by side do not.
-        let mut volumes = [None; MAX_CASCADES];
+        let mut volumes = [None; MAX_MAPS];
         for (i, volume) in volumes.iter_mut().enumerate().take(cascades.count) {
             self.fit_anew(cuts, i, volume)?;
         }
@@ -254,14 +259,14 @@ impl Places<'_, '_> {
     fn hold(
         &mut self,
         input: &FitInput,
-        before: Option<&CascadeFitter>,
+        before: Option<&MapFitter>,
         cuts: &Cuts,
-        cascades: &mut Cascades,
-    ) -> Result<[Option<HeldMap>; MAX_CASCADES], FitError> {
+        cascades: &mut FittedMaps,
+    ) -> Result<[Option<HeldMap>; MAX_MAPS], FitError> {
         let last_view = before.and_then(|before| before.last_view);
         let motion = last_view.and_then(|last| Motion::between(&last, &input.views[0]));
         let frame = hold::Frame { input, content: self.content, light: self.light, motion, hold: self.settings.hold };
-        let mut maps = [None; MAX_CASCADES];
+        let mut maps = [None; MAX_MAPS];
         for (i, map) in maps.iter_mut().enumerate().take(cascades.count) {
             let slice = self.slice(cuts, i);
             let own = own_settings(self.settings, i);
@@ -294,7 +299,7 @@ impl Places<'_, '_> {
     /// Writes a map where it stands, since it is large.
     fn write(
         &self,
-        map: &mut CascadeMap,
+        map: &mut FittedMap,
         volume: &Volume,
         settings: &FitSettings,
         cuts: &Cuts,
@@ -303,6 +308,7 @@ impl Places<'_, '_> {
         let slice = slice_range(cuts, i, self.settings, self.range);
         let is_void = is_void(self.content.views, slice);
         map.fit = LightFit::from_volume(self.content.origin, volume, settings)?;
+        map.bias = Bias::from_texels(&self.settings.bias, &map.fit);
         map.fit.is_empty |= is_void;
         map.anchor = volume.grid.as_ref().and_then(GridAnchor::of);
         (map.near, map.far) = (cuts[i], cuts[i + 1]);
@@ -318,7 +324,7 @@ fn is_void(views: &[ViewFrustum], slice: Range) -> bool {
 
 /// Keeps maps without a range from being chosen, by rounded depths too: those before all others end
 /// nowhere, those after them begin nowhere, and the last one with a range has no end.
-fn part_voids(maps: &mut [CascadeMap]) {
+fn part_voids(maps: &mut [FittedMap]) {
     for map in maps.iter_mut().take_while(|map| map.near >= map.far) {
         map.far = f32::MIN;
     }
@@ -332,8 +338,14 @@ fn part_voids(maps: &mut [CascadeMap]) {
 }
 
 /// The settings of a map that differs from the others.
-fn own_settings(settings: &CascadeSettings, map: usize) -> Option<FitSettings> {
-    settings.overrides[map].map(|own| FitSettings { kind: own.kind, resolution: own.resolution, ..settings.fit })
+fn own_settings(settings: &Technique, map: usize) -> Option<FitSettings> {
+    let own = settings.overrides[map];
+    let fit = settings.fit;
+    (own != MapOverride::default()).then(|| FitSettings {
+        kind: own.kind.unwrap_or(fit.kind),
+        resolution: own.resolution.unwrap_or(fit.resolution),
+        ..fit
+    })
 }
 
 /// Everything that is shadowed.
@@ -344,7 +356,7 @@ fn whole_range(input: &FitInput, distance: f32) -> Range {
 }
 
 /// The view depths that a map covers.
-fn slice_range(cuts: &Cuts, map: usize, settings: &CascadeSettings, whole: Range) -> Range {
+fn slice_range(cuts: &Cuts, map: usize, settings: &Technique, whole: Range) -> Range {
     let near = if map == 0 { whole.near } else { cuts[map] - settings.overlap * (cuts[map] - cuts[map - 1]) };
     Range { near, far: cuts[map + 1] }
 }
@@ -361,8 +373,8 @@ fn widened(slice: Range) -> Range {
 const DEPTH_ROUNDING: f32 = 64.0 / 16_777_216.0;
 
 /// Checks what is new beside a single fit's settings.
-fn check(input: &FitInput, settings: &CascadeSettings) -> Result<(Light, f32), FitError> {
-    let most = MAX_CASCADES as f64;
+fn check(input: &FitInput, settings: &Technique) -> Result<(Light, f32), FitError> {
+    let most = MAX_MAPS as f64;
     checks::within("the number of cascades", f64::from(settings.count), 1.0, most)?;
     checks::within("the cascades' overlap", f64::from(settings.overlap), 0.0, 1.0)?;
     let hold = settings.hold;
@@ -377,7 +389,11 @@ fn check(input: &FitInput, settings: &CascadeSettings) -> Result<(Light, f32), F
             return Err(FitError::NearNotBelowFar { near, far });
         }
     }
-    let prepared = fits::prepare(input, &settings.fit)?;
+    let BiasSettings { constant, slope, normal_offset, receiver_plane } = settings.bias;
+    for bias in [constant, slope, normal_offset, receiver_plane] {
+        checks::finite("a bias", f64::from(bias))?;
+    }
+    let prepared = fits::prepare(input, &settings.fit.with_border(settings.border()))?;
     for own in (0..settings.count as usize).filter_map(|map| own_settings(settings, map)) {
         fits::check(&own)?;
     }

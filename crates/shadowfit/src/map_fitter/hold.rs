@@ -79,7 +79,7 @@ impl Frame<'_, '_> {
         points: &mut [DVec2],
     ) -> Result<HeldMap, FitError> {
         // Margins in texels and the near plane depend on the texels of the map that is kept or made.
-        let plain = FitSettings { kernel_margin: 0.0, casters: CasterPolicy::None, ..*settings };
+        let plain = FitSettings { border: Some(0.0), casters: CasterPolicy::None, ..*settings };
         let fresh = fits::fit_slice(self.content, &self.light, &plain, slice, Placing::Tight, points)?;
         if let Some(held) = held.filter(|held| held.is_of(&fresh, settings))
             && let Some(kept) = self.keep(&held, &fresh, settings, slice, points)?
@@ -157,7 +157,7 @@ impl Frame<'_, '_> {
         let extent = (held.texel * held.resolution).max_element();
         let rounding = (footprint.reach + extent) * grid::ROUNDING;
         let pad = rounding + f64::from(settings.margin);
-        let kernel = held.texel * f64::from(settings.kernel_margin);
+        let kernel = held.texel * f64::from(settings.border_texels());
         let mut across = Rectangle::around(footprint.outline, DVec2::X);
         across.min -= kernel + pad;
         across.max += kernel + pad;
@@ -176,7 +176,7 @@ impl Frame<'_, '_> {
         points: &mut [DVec2],
     ) -> Result<HeldMap, FitError> {
         let mut volume = *fresh;
-        let plain = FitSettings { kernel_margin: 0.0, ..*settings };
+        let plain = FitSettings { border: Some(0.0), ..*settings };
         let mut frames = self.hold.horizon;
         while let Some(motion) = self.motion.filter(|motion| frames > 0 && !motion.is_still()) {
             let ahead = [motion.after(&self.input.views[0], frames / 2), motion.after(&self.input.views[0], frames)];

@@ -1,0 +1,162 @@
+//! The rows of a shadow map: what it stores and how it is read.
+
+use glam::UVec2;
+
+use super::always_active;
+use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
+use crate::{DepthConvention, FilterKind, MapFormat};
+
+/// Least and greatest side of a map, in texels.
+pub(super) const SIDES: (f64, f64) = (256.0, 8192.0);
+
+pub(super) const RESOLUTION: Parameter = Parameter {
+    id: "map.resolution",
+    group: Group::Map,
+    label: "Resolution",
+    unit: "texels",
+    help: "Width of a shadow map, and its height where it is square. Each doubling halves the jaggies and costs four \
+           times the memory and fill; 2048 takes 16 MiB a map at 32 bits a texel.",
+    kind: Kind::Number(Number {
+        min: SIDES.0,
+        max: SIDES.1,
+        step: 256.0,
+        logarithmic: true,
+        decimals: 0,
+        read: |s| f64::from(s.technique.fit.resolution.x),
+        write: |s, value| {
+            let resolution = &mut s.technique.fit.resolution;
+            let is_square = resolution.x == resolution.y;
+            resolution.x = value as u32;
+            if is_square {
+                resolution.y = resolution.x;
+            }
+        },
+    }),
+    inert: always_active,
+};
+
+pub(super) const HEIGHT: Parameter = Parameter {
+    id: "map.height",
+    group: Group::Map,
+    label: "Height",
+    unit: "texels",
+    help: "Height of a shadow map that is not square.",
+    kind: Kind::Optional(Optional {
+        min: SIDES.0,
+        max: SIDES.1,
+        step: 256.0,
+        logarithmic: true,
+        decimals: 0,
+        unset: Some(ChoiceOption { id: "square", label: "as the width", help: "Maps are square." }),
+        initial: 1024.0,
+        read: |s| {
+            let UVec2 { x, y } = s.technique.fit.resolution;
+            (x != y).then_some(f64::from(y))
+        },
+        write: |s, value| {
+            let resolution = &mut s.technique.fit.resolution;
+            resolution.y = value.map_or(resolution.x, |value| value as u32);
+        },
+    }),
+    inert: always_active,
+};
+
+pub(super) const FORMAT: Parameter = Parameter {
+    id: "map.format",
+    group: Group::Map,
+    label: "Format",
+    unit: "",
+    help: "The texture format that stores the depths. Both hold 32-bit floats and give the same shadows; the \
+           colour format shows what the comparison costs without a comparison sampler.",
+    kind: Kind::Choice(Choice {
+        options: &[
+            ChoiceOption {
+                id: "depth32float",
+                label: "Depth 32-bit float",
+                help: "A depth texture, compared by the sampler.",
+            },
+            ChoiceOption {
+                id: "r32float",
+                label: "Colour 32-bit float",
+                help: "One colour channel with a depth buffer of its own, compared in the shader, as the XNA \
+                       sample has it.",
+            },
+        ],
+        read: |s| match s.technique.format {
+            MapFormat::Depth32Float => 0,
+            MapFormat::R32Float => 1,
+        },
+        write: |s, index| s.technique.format = if index == 0 { MapFormat::Depth32Float } else { MapFormat::R32Float },
+    }),
+    inert: always_active,
+};
+
+pub(super) const FILTER: Parameter = Parameter {
+    id: "map.filter",
+    group: Group::Map,
+    label: "Filter",
+    unit: "",
+    help: "How the stored depths become a shadow factor. A wider filter softens jaggies, and loses what is \
+           thinner than it; by the normal offset alone it needs more bias, since it reaches farther.",
+    kind: Kind::Choice(Choice {
+        options: &[
+            ChoiceOption {
+                id: "point",
+                label: "Point",
+                help: "One comparison with the nearest texel: every texel shows as a hard square.",
+            },
+            ChoiceOption {
+                id: "hardware_2x2",
+                label: "2×2 comparison",
+                help: "Four comparisons, weighted bilinearly: percentage-closer filtering by the sampler.",
+            },
+            ChoiceOption {
+                id: "pcf_3x3",
+                label: "PCF 3×3",
+                help: "A tent over 16 texels, in four hardware look-ups: soft edges about two texels wide.",
+            },
+            ChoiceOption {
+                id: "pcf_5x5",
+                label: "PCF 5×5",
+                help: "A tent over 36 texels, in nine hardware look-ups: jaggies are gone, and so is what is thinner \
+                       than two texels.",
+            },
+        ],
+        read: |s| FilterKind::ALL.iter().position(|filter| *filter == s.technique.filter).unwrap_or(0),
+        write: |s, index| s.technique.filter = FilterKind::ALL.get(index).copied().unwrap_or_default(),
+    }),
+    inert: always_active,
+};
+
+pub(super) const DEPTH: Parameter = Parameter {
+    id: "map.depth",
+    group: Group::Map,
+    label: "Depth convention",
+    unit: "",
+    help: "Which depths the near and far planes of the map get. The picture stays the same; choose what your \
+           graphics API and depth comparison expect.",
+    kind: Kind::Choice(Choice {
+        options: &[
+            ChoiceOption {
+                id: "zero_to_one",
+                label: "0 to 1",
+                help: "Near is 0, far is 1: wgpu, Direct3D, Vulkan and Metal.",
+            },
+            ChoiceOption { id: "reversed", label: "1 to 0 (reversed)", help: "Near is 1, far is 0." },
+            ChoiceOption { id: "negative_one_to_one", label: "-1 to 1 (OpenGL)", help: "Near is -1, far is 1." },
+        ],
+        read: |s| match s.technique.fit.depth {
+            DepthConvention::ZeroToOne => 0,
+            DepthConvention::Reversed => 1,
+            DepthConvention::NegativeOneToOne => 2,
+        },
+        write: |s, index| {
+            s.technique.fit.depth = match index {
+                0 => DepthConvention::ZeroToOne,
+                1 => DepthConvention::Reversed,
+                _ => DepthConvention::NegativeOneToOne,
+            };
+        },
+    }),
+    inert: always_active,
+};

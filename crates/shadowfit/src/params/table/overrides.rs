@@ -1,0 +1,128 @@
+//! The rows of what single maps have of their own.
+
+use glam::UVec2;
+
+use super::fit::FIT_KINDS;
+use super::map::SIDES;
+use crate::MAX_MAPS;
+use crate::params::{Choice, ChoiceOption, Group, Kind, Optional, Parameter};
+use crate::tool::Settings;
+
+/// The three rows of a map.
+const fn rows<const MAP: usize>(ids: [&'static str; 3], labels: [&'static str; 3]) -> [Parameter; 3] {
+    [kind::<MAP>(ids[0], labels[0]), width::<MAP>(ids[1], labels[1]), height::<MAP>(ids[2], labels[2])]
+}
+
+const fn kind<const MAP: usize>(id: &'static str, label: &'static str) -> Parameter {
+    Parameter {
+        id,
+        group: Group::Override,
+        label,
+        unit: "",
+        help: "The rule of this map's fit, where it is not that of the others.",
+        kind: Kind::Choice(Choice {
+            options: &[
+                ChoiceOption { id: "same", label: "as the others", help: "The rule of all maps." },
+                ChoiceOption { id: "frustum_aabb", label: "Frustum box", help: "See Fit." },
+                ChoiceOption { id: "xna_sample", label: "XNA sample", help: "See Fit." },
+                ChoiceOption { id: "oriented", label: "Oriented rectangle", help: "See Fit." },
+                ChoiceOption { id: "sphere", label: "Stable sphere", help: "See Fit." },
+                ChoiceOption { id: "focused", label: "Focused on the scene", help: "See Fit." },
+            ],
+            read: |s| {
+                let own = s.technique.overrides[MAP].kind;
+                own.map_or(0, |own| 1 + FIT_KINDS.iter().position(|kind| *kind == own).unwrap_or(0))
+            },
+            write: |s, index| {
+                s.technique.overrides[MAP].kind = index.checked_sub(1).and_then(|index| FIT_KINDS.get(index)).copied();
+            },
+        }),
+        inert: no_such_map::<MAP>,
+    }
+}
+
+const fn width<const MAP: usize>(id: &'static str, label: &'static str) -> Parameter {
+    Parameter {
+        id,
+        group: Group::Override,
+        label,
+        unit: "texels",
+        help: "Width of this map, and its height where that is not set, where it is not that of the others. The maps \
+               share equal layers, so it must not exceed the resolution of the others.",
+        kind: Kind::Optional(Optional {
+            min: SIDES.0,
+            max: SIDES.1,
+            step: 256.0,
+            logarithmic: true,
+            decimals: 0,
+            unset: Some(ChoiceOption { id: "same", label: "as the others", help: "The resolution of all maps." }),
+            initial: 1024.0,
+            read: |s| s.technique.overrides[MAP].resolution.map(|own| f64::from(own.x)),
+            write: |s, value| {
+                let own = &mut s.technique.overrides[MAP].resolution;
+                *own = value.map(|value| {
+                    let square = UVec2::splat(value as u32);
+                    own.map_or(square, |own| if own.x == own.y { square } else { own.with_x(square.x) })
+                });
+            },
+        }),
+        inert: no_such_map::<MAP>,
+    }
+}
+
+const fn height<const MAP: usize>(id: &'static str, label: &'static str) -> Parameter {
+    Parameter {
+        id,
+        group: Group::Override,
+        label,
+        unit: "texels",
+        help: "Height of this map, where it has a width of its own and is not square.",
+        kind: Kind::Optional(Optional {
+            min: SIDES.0,
+            max: SIDES.1,
+            step: 256.0,
+            logarithmic: true,
+            decimals: 0,
+            unset: Some(ChoiceOption { id: "square", label: "as the width", help: "This map is square." }),
+            initial: 512.0,
+            read: |s| {
+                let own = s.technique.overrides[MAP].resolution;
+                own.filter(|own| own.x != own.y).map(|own| f64::from(own.y))
+            },
+            write: |s, value| {
+                if let Some(own) = &mut s.technique.overrides[MAP].resolution {
+                    own.y = value.map_or(own.x, |value| value as u32);
+                }
+            },
+        }),
+        inert: |s| match s.technique.overrides[MAP].resolution {
+            Some(_) => no_such_map::<MAP>(s),
+            None => Some("This map has no width of its own; set that first."),
+        },
+    }
+}
+
+fn no_such_map<const MAP: usize>(s: &Settings) -> Option<&'static str> {
+    (MAP >= s.technique.count as usize).then_some("There is no such map; raise the number of maps.")
+}
+
+/// Ids and labels of a map's rows.
+macro_rules! own {
+    ($map:literal, $number:literal) => {
+        rows::<$map>(
+            [
+                concat!("override.map_", $number, "_kind"),
+                concat!("override.map_", $number, "_resolution"),
+                concat!("override.map_", $number, "_height"),
+            ],
+            [
+                concat!("Map ", $number, ": fit"),
+                concat!("Map ", $number, ": resolution"),
+                concat!("Map ", $number, ": height"),
+            ],
+        )
+    };
+}
+
+pub(super) const MAPS: [[Parameter; 3]; MAX_MAPS] =
+    [own!(0, "1"), own!(1, "2"), own!(2, "3"), own!(3, "4"), own!(4, "5"), own!(5, "6"), own!(6, "7"), own!(7, "8")];

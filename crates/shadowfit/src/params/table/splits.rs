@@ -1,0 +1,178 @@
+//! The rows of the splits: how many maps there are, and where one ends and the next begins.
+
+use super::always_active;
+use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
+use crate::{MAX_MAPS, SplitScheme};
+
+pub(super) const COUNT: Parameter = Parameter {
+    id: "splits.count",
+    group: Group::Splits,
+    label: "Maps",
+    unit: "",
+    help: "How many shadow maps share the view, the nearest first. More are sharper, and cost memory and time each.",
+    kind: Kind::Number(Number {
+        min: 1.0,
+        max: MAX_MAPS as f64,
+        step: 1.0,
+        logarithmic: false,
+        decimals: 0,
+        read: |s| f64::from(s.technique.count),
+        write: |s, value| s.technique.count = value as u32,
+    }),
+    inert: always_active,
+};
+
+/// Share of the logarithmic splits that the practical ones begin with, as most engines have it.
+const USUAL_LAMBDA: f32 = 0.5;
+
+/// View depths that manual splits begin with, in metres: each twice the one before.
+const USUAL_SPLITS: [f32; MAX_MAPS - 1] = [5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0];
+
+pub(super) const SCHEME: Parameter = Parameter {
+    id: "splits.scheme",
+    group: Group::Splits,
+    label: "Splits",
+    unit: "",
+    help: "Where one map ends and the next begins. Those that look at the scene give each map as many visible pixels \
+           as serve all of them best.",
+    kind: Kind::Choice(Choice {
+        options: &[
+            ChoiceOption {
+                id: "from_histogram",
+                label: "From what is visible",
+                help: "For the visible depths of the frame before; without them as From boxes.",
+            },
+            ChoiceOption {
+                id: "from_boxes",
+                label: "From boxes",
+                help: "For what the boxes of the scene let expect of the visible depths.",
+            },
+            ChoiceOption {
+                id: "practical",
+                label: "Practical",
+                help: "A mixture of logarithmic and uniform splits, by λ (parallel-split shadow maps, 2006).",
+            },
+            ChoiceOption {
+                id: "logarithmic",
+                label: "Logarithmic",
+                help: "Ranges of equal ratio: most maps are spent close to the camera.",
+            },
+            ChoiceOption { id: "uniform", label: "Uniform", help: "Ranges of equal length." },
+            ChoiceOption { id: "manual", label: "Manual", help: "At the distances that are given below." },
+        ],
+        read: |s| match s.technique.splits {
+            SplitScheme::FromHistogram => 0,
+            SplitScheme::FromBoxes => 1,
+            SplitScheme::Practical(_) => 2,
+            SplitScheme::Logarithmic => 3,
+            SplitScheme::Uniform => 4,
+            SplitScheme::Manual(_) => 5,
+        },
+        write: |s, index| {
+            s.technique.splits = match (index, s.technique.splits) {
+                (0, _) => SplitScheme::FromHistogram,
+                (1, _) => SplitScheme::FromBoxes,
+                (2, SplitScheme::Practical(lambda)) => SplitScheme::Practical(lambda),
+                (2, _) => SplitScheme::Practical(USUAL_LAMBDA),
+                (3, _) => SplitScheme::Logarithmic,
+                (4, _) => SplitScheme::Uniform,
+                (_, SplitScheme::Manual(splits)) => SplitScheme::Manual(splits),
+                _ => SplitScheme::Manual(USUAL_SPLITS),
+            };
+        },
+    }),
+    inert: |s| (s.technique.count < 2).then_some("One map has no splits; raise the number of maps."),
+};
+
+pub(super) const LAMBDA: Parameter = Parameter {
+    id: "splits.lambda",
+    group: Group::Splits,
+    label: "Lambda",
+    unit: "",
+    help: "Share of the logarithmic splits in the practical ones: 1 spends most maps close to the camera, 0 spreads \
+           them evenly.",
+    kind: Kind::Optional(Optional {
+        min: 0.0,
+        max: 1.0,
+        step: 0.05,
+        logarithmic: false,
+        decimals: 2,
+        unset: None,
+        initial: USUAL_LAMBDA as f64,
+        read: |s| match s.technique.splits {
+            SplitScheme::Practical(lambda) => Some(f64::from(lambda)),
+            _ => None,
+        },
+        write: |s, value| {
+            if let (SplitScheme::Practical(lambda), Some(value)) = (&mut s.technique.splits, value) {
+                *lambda = value as f32;
+            }
+        },
+    }),
+    inert: |s| {
+        (!matches!(s.technique.splits, SplitScheme::Practical(_)))
+            .then_some("Only practical splits have a lambda; set Splits to Practical.")
+    },
+};
+
+/// The view depth at which one of the maps ends.
+const fn manual<const MAP: usize>(id: &'static str, label: &'static str) -> Parameter {
+    Parameter {
+        id,
+        group: Group::Splits,
+        label,
+        unit: "m",
+        help: "View depth at which this map ends and the next one begins. Each has to be greater than the one before.",
+        kind: Kind::Optional(Optional {
+            min: 0.01,
+            max: 100_000.0,
+            step: 0.1,
+            logarithmic: true,
+            decimals: 2,
+            unset: None,
+            initial: USUAL_SPLITS[MAP] as f64,
+            read: |s| match s.technique.splits {
+                SplitScheme::Manual(splits) => Some(f64::from(splits[MAP])),
+                _ => None,
+            },
+            write: |s, value| {
+                if let (SplitScheme::Manual(splits), Some(value)) = (&mut s.technique.splits, value) {
+                    splits[MAP] = value as f32;
+                }
+            },
+        }),
+        inert: |s| match s.technique.splits {
+            SplitScheme::Manual(_) if MAP + 1 < s.technique.count as usize => None,
+            SplitScheme::Manual(_) => Some("There is no such map; raise the number of maps."),
+            _ => Some("The splits are chosen by a rule; set Splits to Manual."),
+        },
+    }
+}
+
+pub(super) const MANUAL: [Parameter; MAX_MAPS - 1] = [
+    manual::<0>("splits.manual_1", "Map 1 ends"),
+    manual::<1>("splits.manual_2", "Map 2 ends"),
+    manual::<2>("splits.manual_3", "Map 3 ends"),
+    manual::<3>("splits.manual_4", "Map 4 ends"),
+    manual::<4>("splits.manual_5", "Map 5 ends"),
+    manual::<5>("splits.manual_6", "Map 6 ends"),
+    manual::<6>("splits.manual_7", "Map 7 ends"),
+];
+
+pub(super) const OVERLAP: Parameter = Parameter {
+    id: "splits.overlap",
+    group: Group::Splits,
+    label: "Overlap",
+    unit: "",
+    help: "Share of a map's range of distances that the next map covers too, for a blend between them.",
+    kind: Kind::Number(Number {
+        min: 0.0,
+        max: 1.0,
+        step: 0.05,
+        logarithmic: false,
+        decimals: 2,
+        read: |s| f64::from(s.technique.overlap),
+        write: |s, value| s.technique.overlap = value as f32,
+    }),
+    inert: |s| (s.technique.count < 2).then_some("One map overlaps with none; raise the number of maps."),
+};

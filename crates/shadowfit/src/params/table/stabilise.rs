@@ -1,0 +1,124 @@
+//! The rows of what keeps the maps still.
+
+use super::always_active;
+use crate::Stabilise;
+use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Parameter};
+use crate::tool::Settings;
+
+pub(super) const MODE: Parameter = Parameter {
+    id: "stabilise.mode",
+    group: Group::Stabilise,
+    label: "Stabilise",
+    unit: "",
+    help: "Whether maps stay where they are while the camera moves. Maps that are fitted anew have the finest texels, \
+           and edges that crawl.",
+    kind: Kind::Choice(Choice {
+        options: &[
+            ChoiceOption {
+                id: "hysteresis",
+                label: "Keep while it serves",
+                help: "A map is kept, and moved by whole texels, until it no longer covers what it must.",
+            },
+            ChoiceOption {
+                id: "snap",
+                label: "Snap to texels",
+                help: "Maps move by whole texels of a grid that is fixed to the world. Turning the camera still \
+                       changes them, but for the stable sphere.",
+            },
+            ChoiceOption { id: "off", label: "Off", help: "Maps are fitted anew in each frame." },
+        ],
+        read: |s| match s.technique.stabilise {
+            Stabilise::Hysteresis => 0,
+            Stabilise::Snap => 1,
+            Stabilise::Off => 2,
+        },
+        write: |s, index| {
+            s.technique.stabilise = match index {
+                0 => Stabilise::Hysteresis,
+                1 => Stabilise::Snap,
+                _ => Stabilise::Off,
+            };
+        },
+    }),
+    inert: always_active,
+};
+
+pub(super) const MARGIN: Parameter = Parameter {
+    id: "stabilise.margin",
+    group: Group::Stabilise,
+    label: "Margin",
+    unit: "",
+    help: "Free room around a new map, as a share of its extent, so that it serves longer.",
+    kind: Kind::Number(Number {
+        min: 0.0,
+        max: 10.0,
+        step: 0.01,
+        logarithmic: true,
+        decimals: 2,
+        read: |s| f64::from(s.technique.hold.margin),
+        write: |s, value| s.technique.hold.margin = value as f32,
+    }),
+    inert: only_held,
+};
+
+pub(super) const GROWTH: Parameter = Parameter {
+    id: "stabilise.growth",
+    group: Group::Stabilise,
+    label: "Growth",
+    unit: "×",
+    help: "A new map also covers what the camera will see if it moves on as it does, while that makes the map no more \
+           than this factor wider.",
+    kind: Kind::Number(Number {
+        min: 1.0,
+        max: 100.0,
+        step: 0.05,
+        logarithmic: true,
+        decimals: 2,
+        read: |s| f64::from(s.technique.hold.growth),
+        write: |s, value| s.technique.hold.growth = value as f32,
+    }),
+    inert: only_held,
+};
+
+pub(super) const WASTE: Parameter = Parameter {
+    id: "stabilise.waste",
+    group: Group::Stabilise,
+    label: "Waste",
+    unit: "×",
+    help: "A kept map is made anew when its texels are wider than they have to be by this factor; splits likewise.",
+    kind: Kind::Number(Number {
+        min: 1.0,
+        max: 100.0,
+        step: 0.05,
+        logarithmic: true,
+        decimals: 2,
+        read: |s| f64::from(s.technique.hold.waste),
+        write: |s, value| s.technique.hold.waste = value as f32,
+    }),
+    inert: |s| {
+        (s.technique.stabilise == Stabilise::Off).then_some("Nothing is kept from frame to frame; turn on Stabilise.")
+    },
+};
+
+pub(super) const HORIZON: Parameter = Parameter {
+    id: "stabilise.horizon",
+    group: Group::Stabilise,
+    label: "Horizon",
+    unit: "frames",
+    help: "Most frames of the camera's motion that a new map looks ahead.",
+    kind: Kind::Number(Number {
+        min: 0.0,
+        max: 1_000.0,
+        step: 1.0,
+        logarithmic: true,
+        decimals: 0,
+        read: |s| f64::from(s.technique.hold.horizon),
+        write: |s, value| s.technique.hold.horizon = value as u32,
+    }),
+    inert: only_held,
+};
+
+fn only_held(s: &Settings) -> Option<&'static str> {
+    (s.technique.stabilise != Stabilise::Hysteresis)
+        .then_some("Only kept maps look ahead; set Stabilise to Keep while it serves.")
+}

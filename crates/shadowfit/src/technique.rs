@@ -1,0 +1,139 @@
+//! All that decides how the shadows of a sun come out, as one plain type.
+//!
+//! [`Technique::default`] is the one to begin with; [`PRESETS`](crate::PRESETS) has others by name.
+
+use crate::bias::reach;
+use crate::settings::{
+    BiasSettings, FilterKind, FitSettings, HoldSettings, MAX_MAPS, MapFormat, MapOverride, SplitScheme, Stabilise,
+    setters,
+};
+use glam::UVec2;
+
+/// What a fit is told of the scene's receivers by whoever makes its boxes.
+///
+/// The fit itself takes whatever boxes it gets: this says what a technique was measured with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum ReceiverSource {
+    /// The boxes of its objects.
+    Objects,
+    /// The boxes of clusters of its triangles, with cones of their normals (`Clusters`, with the
+    /// feature `alloc`).
+    #[default]
+    Clusters,
+}
+
+/// How shadows are made: the maps and their fit, the filter and the bias that read them, their
+/// format.
+///
+/// ```
+/// use shadowfit::{FilterKind, Technique};
+///
+/// let technique = Technique::preset("stable-4").unwrap().with_filter(FilterKind::Pcf3x3);
+/// assert_eq!((technique.count, technique.border()), (4, 2.0));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+pub struct Technique {
+    /// Number of maps, 1..=8. Default: 4, as Bevy, three.js and Babylon.js have it.
+    pub count: u32,
+    /// The fit of all maps.
+    pub fit: FitSettings,
+    /// Where one map ends and the next begins. Default: [`SplitScheme::FromHistogram`], which takes
+    /// boxes where no histogram is given.
+    pub splits: SplitScheme,
+    /// Share of a map's range of view depths that the next map covers too, for a blend between
+    /// them, 0..=1. Default: 0.
+    pub overlap: f32,
+    /// What keeps the maps still. Default: [`Stabilise::Hysteresis`].
+    pub stabilise: Stabilise,
+    /// Details of [`Stabilise::Hysteresis`], and when held splits are given up.
+    pub hold: HoldSettings,
+    /// What single maps have of their own, the nearest first. Default: nothing.
+    pub overrides: [MapOverride; MAX_MAPS],
+    /// What the fit is told of the scene. Default: [`ReceiverSource::Clusters`].
+    pub receivers: ReceiverSource,
+    /// Filter of the look-up. Default: [`FilterKind::Pcf5x5`].
+    pub filter: FilterKind,
+    /// Biases of the look-up. Default: [`BiasSettings::automatic`] for the default filter.
+    pub bias: BiasSettings,
+    /// Storage of the maps. Default: [`MapFormat::Depth32Float`].
+    pub format: MapFormat,
+}
+
+impl Default for Technique {
+    /// The preset `calm-4`: the best all round.
+    fn default() -> Self {
+        Self {
+            count: 4,
+            fit: FitSettings::default(),
+            splits: SplitScheme::default(),
+            overlap: 0.0,
+            stabilise: Stabilise::default(),
+            hold: HoldSettings::default(),
+            overrides: [MapOverride::default(); MAX_MAPS],
+            receivers: ReceiverSource::default(),
+            filter: FilterKind::default(),
+            bias: BiasSettings::default(),
+            format: MapFormat::default(),
+        }
+    }
+}
+
+setters!(Technique {
+    with_count count: u32,
+    with_fit fit: FitSettings,
+    with_splits splits: SplitScheme,
+    with_overlap overlap: f32,
+    with_stabilise stabilise: Stabilise,
+    with_hold hold: HoldSettings,
+    with_overrides overrides: [MapOverride; MAX_MAPS],
+    with_receivers receivers: ReceiverSource,
+    with_format format: MapFormat,
+});
+
+impl Technique {
+    /// This technique with another filter, and the [automatic bias](BiasSettings::automatic) that it
+    /// needs.
+    #[must_use]
+    pub fn with_filter(self, filter: FilterKind) -> Self {
+        self.with_look_up(filter, BiasSettings::automatic(filter))
+    }
+
+    /// This technique with another filter and bias.
+    #[must_use]
+    pub const fn with_look_up(mut self, filter: FilterKind, bias: BiasSettings) -> Self {
+        (self.filter, self.bias) = (filter, bias);
+        self
+    }
+
+    /// This technique with maps of another width and height, in texels.
+    #[must_use]
+    pub const fn with_resolution(mut self, width: u32, height: u32) -> Self {
+        self.fit.resolution = UVec2::new(width, height);
+        self
+    }
+
+    /// This technique with shadows that end at another view depth, in metres; `f32::MAX` is as far
+    /// as the camera sees.
+    #[must_use]
+    pub const fn with_max_distance(mut self, metres: f32) -> Self {
+        self.fit.max_distance = metres;
+        self
+    }
+
+    /// Free texels at the border of each map: [`FitSettings::border`] where it is set, else what the
+    /// filter and the normal offset can reach.
+    pub const fn border(&self) -> f32 {
+        match self.fit.border {
+            Some(texels) => texels,
+            // The looked-up point moves across the light by the offset at most.
+            None => reach(self.filter) + self.bias.normal_offset,
+        }
+    }
+
+    /// Width and height of a map, in texels.
+    pub fn resolution_of(&self, map: usize) -> UVec2 {
+        self.overrides.get(map).and_then(|own| own.resolution).unwrap_or(self.fit.resolution)
+    }
+}
