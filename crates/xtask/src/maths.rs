@@ -10,7 +10,7 @@ mod calipers;
 mod canvas;
 mod clusters;
 mod culling;
-mod cuts;
+
 mod diagnostics;
 mod family;
 mod focused;
@@ -19,6 +19,7 @@ mod near_plane;
 mod scene;
 mod sphere;
 mod splits;
+mod visible_splits;
 mod xna;
 
 use anyhow::{Context, Result};
@@ -42,7 +43,7 @@ const PICTURES: [Picture; 14] = [
     ("clusters", clusters::draw),
     ("near_plane", near_plane::draw),
     ("splits", splits::draw),
-    ("cuts", cuts::draw),
+    ("visible_splits", visible_splits::draw),
     ("hold", hold::draw),
     ("culling", culling::draw),
     ("bias", bias::draw),

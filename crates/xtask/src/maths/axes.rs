@@ -2,10 +2,11 @@
 
 use anyhow::Result;
 use shadowfit::glam::DVec2;
-use shadowfit::{FitInput, FitKind, FitSettings, LightSettings};
+use shadowfit::tool::LightSettings;
+use shadowfit::{FitInput, FitKind};
 
 use super::canvas::{BLUE, Canvas, GREY, PALE, RED, Side, YELLOW, fill, stroke};
-use super::scene::{axes, camera, fit_one};
+use super::scene::{axes, camera, fit_one, plain_fit};
 
 /// Pixels from the zenith to a sun 15° above the horizon.
 const RADIUS: f64 = 132.0;
@@ -39,7 +40,7 @@ fn sky(canvas: &mut Canvas, middle: DVec2, kind: FitKind, colour: &'static str) 
             let azimuth = std::f64::consts::TAU * f64::from(i) / f64::from(count);
             let elevation = (90.0 - ring * (90.0 - LOWEST)).to_radians();
             let light = LightSettings::default().with_azimuth(azimuth as f32).with_elevation(elevation as f32);
-            let settings = FitSettings::default().with_kind(kind);
+            let settings = plain_fit().with_kind(kind);
             let [_, up, to_light] = axes(&fit_one(&FitInput::new(&view, light.direction()), &settings)?);
             // A plan: x to the right and -z up, so that z is the page's y.
             let place = DVec2::new(to_light.x, to_light.z);

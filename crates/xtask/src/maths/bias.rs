@@ -3,10 +3,10 @@
 use anyhow::Result;
 use shadowfit::bias::{Reach, acos_bias, acos_epsilon, normal_offset, receiver_plane_depth};
 use shadowfit::glam::{DVec2, DVec3};
-use shadowfit::{FilterKind, FitInput, FitKind, FitSettings, LightFit};
+use shadowfit::{FilterKind, FitInput, FitKind, LightFit};
 
 use super::canvas::{BLUE, Canvas, Frame, GREEN, GREY, INK, PALE, RED, Side, YELLOW, fill, stroke};
-use super::scene::{axes, camera, fit_one};
+use super::scene::{axes, camera, fit_one, plain_fit};
 
 /// Slope of the plane in the picture, in degrees from facing the light.
 const SLOPE: f64 = 32.0;
@@ -14,7 +14,7 @@ const SLOPE: f64 = 32.0;
 pub(super) fn draw() -> Result<String> {
     let view = [camera(30.0, -5.0, 0.8, 20.0).frustum()?];
     let input = FitInput::new(&view, shadowfit::glam::Vec3::new(0.3, -0.8, 0.2));
-    let settings = FitSettings::default().with_kind(FitKind::Sphere).with_caster_extension(30.0);
+    let settings = plain_fit().with_kind(FitKind::Sphere).with_caster_extension(30.0);
     let fit = fit_one(&input, &settings)?;
     let mut canvas = Canvas::new(424.0, "A slope under its stored depths, and biases by angle");
     stairs(&mut canvas, &fit)?;

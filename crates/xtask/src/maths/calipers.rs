@@ -2,18 +2,18 @@
 
 use anyhow::Result;
 use shadowfit::glam::{DVec2, Vec3};
-use shadowfit::{FitInput, FitKind, FitSettings, RectangleKind};
+use shadowfit::{FitInput, FitKind, RectangleKind};
 
 use super::canvas::{BLUE, Canvas, Frame, GREY, INK, PALE, PURPLE, Side, bounds, fill, stroke};
-use super::scene::{Look, axes, camera, draw_frustum, fit_one, hull};
+use super::scene::{Look, axes, camera, draw_frustum, fit_one, hull, plain_fit};
 
 const LIGHT: Vec3 = Vec3::new(0.3, -0.85, 0.2);
 
 pub(super) fn draw() -> Result<String> {
     let view = [camera(40.0, -4.0, 0.42, 40.0).frustum()?];
     let input = FitInput::new(&view, LIGHT);
-    let look = Look::from_light(&fit_one(&input, &FitSettings::default())?);
-    let settings = FitSettings::default().with_kind(FitKind::Oriented);
+    let look = Look::from_light(&fit_one(&input, &plain_fit())?);
+    let settings = plain_fit().with_kind(FitKind::Oriented);
     let area = fit_one(&input, &settings)?;
     let square = fit_one(&input, &settings.with_rectangle(RectangleKind::MinimumSquare))?;
     let mut canvas = Canvas::new(392.0, "The least rectangle and the least square around an outline");

@@ -2,10 +2,10 @@
 
 use anyhow::Result;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::{Clusters, FitInput, FitKind, FitSettings, PerspectiveCamera};
+use shadowfit::{Clusters, FitInput, FitKind, PerspectiveCamera};
 
 use super::canvas::{Canvas, Frame, GREEN, GREY, INK, RED, Side, YELLOW, fill, stroke};
-use super::scene::{Look, boxes, draw_body, fit_one};
+use super::scene::{Look, boxes, draw_body, fit_one, plain_fit};
 
 /// The page is the plane of x and y.
 const LOOK: Look = Look { origin: DVec3::ZERO, right: DVec3::X, up: DVec3::Y };
@@ -47,7 +47,7 @@ fn arch(canvas: &mut Canvas, limit: usize, middle: DVec2, colour: &'static str, 
     let view = [camera.frustum()?];
     let light = Vec3::new(0.62, -0.72, 0.0);
     let input = FitInput { receivers: Some(boxes(clusters.boxes())), ..FitInput::new(&view, light) };
-    let settings = FitSettings::default().with_kind(FitKind::Focused).with_caster_extension(0.0);
+    let settings = plain_fit().with_kind(FitKind::Focused).with_caster_extension(0.0);
     let fit = fit_one(&input, &settings)?;
     let frame = Frame::scaled(DVec2::new(0.0, 2.0), middle, 19.0);
     let map = LOOK.map(&fit);

@@ -2,11 +2,11 @@
 
 use anyhow::Result;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::{Aabb, CasterVolume, FitInput, FitKind, FitSettings, LightFit, Sweep, ViewFrustum};
+use shadowfit::{Aabb, CasterVolume, FitInput, FitKind, LightFit, Sweep, ViewFrustum};
 
 use super::canvas::{BLUE, Canvas, Frame, GREEN, GREY, INK, Side, bounds, fill, stroke};
 use super::near_plane::cut;
-use super::scene::{Look, camera, draw_body, draw_frustum, fit_one, hull};
+use super::scene::{Look, camera, draw_body, draw_frustum, fit_one, hull, plain_fit};
 
 pub(super) fn draw() -> Result<String> {
     let mut canvas = Canvas::new(414.0, "Casters kept and culled by the view swept toward the light");
@@ -18,7 +18,7 @@ pub(super) fn draw() -> Result<String> {
 /// A map of a view and the volume that can throw shadows into it.
 fn volumes(view: ViewFrustum, light: Vec3) -> Result<(LightFit, CasterVolume)> {
     let views = [view];
-    let settings = FitSettings::default().with_kind(FitKind::Oriented).with_caster_extension(12.0);
+    let settings = plain_fit().with_kind(FitKind::Oriented).with_caster_extension(12.0);
     let fit = fit_one(&FitInput::new(&views, light), &settings)?;
     let volume = CasterVolume::swept(&fit, &Sweep::new(&views))?;
     Ok((fit, volume))
@@ -43,7 +43,7 @@ fn scattered(count: u32, low: DVec3, high: DVec3) -> Vec<Aabb> {
 fn from_side(canvas: &mut Canvas) -> Result<()> {
     let view = camera(90.0, -3.0, 0.75, 15.0).frustum()?;
     let (fit, volume) = volumes(view, Vec3::new(0.5, -0.86, 0.0))?;
-    let flat = fit_one(&FitInput::new(&[view], fit.direction), &FitSettings::default())?;
+    let flat = fit_one(&FitInput::new(&[view], fit.direction), &plain_fit())?;
     let look = Look::from_side(&flat);
     let (low, high) = bounds(look.map(&fit));
     let (low, high) = (low - DVec2::new(3.0, 1.5), high + DVec2::new(3.0, 0.0));
@@ -77,7 +77,7 @@ fn from_side(canvas: &mut Canvas) -> Result<()> {
 fn from_light(canvas: &mut Canvas) -> Result<()> {
     let view = camera(40.0, -4.0, 0.6, 26.0).frustum()?;
     let (fit, volume) = volumes(view, Vec3::new(0.3, -0.85, 0.2))?;
-    let look = Look::from_light(&fit_one(&FitInput::new(&[view], fit.direction), &FitSettings::default())?);
+    let look = Look::from_light(&fit_one(&FitInput::new(&[view], fit.direction), &plain_fit())?);
     let map = look.map(&fit);
     let frame = Frame::around(map, DVec2::new(400.0, 36.0), DVec2::new(690.0, 352.0));
     draw_frustum(canvas, &frame, &look.frustum(&view));

@@ -3,10 +3,10 @@
 use anyhow::Result;
 use shadowfit::diagnostics::{PixelsPerTexel, pixels_per_texel};
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::{DepthConvention, FitInput, FitKind, FitSettings, LightFit, PerspectiveCamera};
+use shadowfit::{DepthConvention, FitInput, FitKind, LightFit, PerspectiveCamera};
 
 use super::canvas::{Canvas, GREEN, INK, RED, Side, YELLOW, fill, stroke};
-use super::scene::{camera, fit_one};
+use super::scene::{camera, fit_one, plain_fit};
 
 /// Size of the camera's picture, in pixels: those of this picture.
 const PICTURE: UVec2 = UVec2::new(688, 344);
@@ -25,7 +25,7 @@ pub(super) fn draw() -> Result<String> {
     let camera = PerspectiveCamera { eye: DVec3::new(0.0, 7.0, 0.0), aspect: 2.0, ..camera(20.0, -24.0, 0.75, 34.0) };
     let view = [camera.frustum()?];
     let input = FitInput::new(&view, Vec3::new(0.5, -0.7, 0.3));
-    let settings = FitSettings::default().with_kind(FitKind::Oriented).with_resolution(UVec2::splat(TEXELS));
+    let settings = plain_fit().with_kind(FitKind::Oriented).with_resolution(UVec2::splat(TEXELS));
     let ground = Ground { fit: fit_one(&input, &settings)?, camera };
     canvas.rectangle(DVec2::new(16.0, 16.0), DVec2::new(704.0, 360.0), fill("#dfe9f0", 1.0));
     let mut labels = Vec::new();

@@ -2,10 +2,10 @@
 
 use anyhow::Result;
 use shadowfit::glam::{DVec2, Vec3};
-use shadowfit::{Boxes, FitInput, FitKind, FitSettings, LightFit, RectangleKind};
+use shadowfit::{Boxes, FitInput, FitKind, LightFit, RectangleKind};
 
 use super::canvas::{BLUE, Canvas, Frame, GREEN, GREY, INK, PURPLE, RED, Side, YELLOW, bounds, fill, stroke};
-use super::scene::{Look, VILLAGE, boxes, camera, draw_box, draw_frustum, fit_one};
+use super::scene::{Look, VILLAGE, boxes, camera, draw_box, draw_frustum, fit_one, plain_fit};
 
 const LIGHT: Vec3 = Vec3::new(0.3, -0.85, 0.2);
 
@@ -15,7 +15,7 @@ const ROW: f64 = 262.0;
 pub(super) fn draw() -> Result<String> {
     let view = [camera(40.0, -4.0, 0.42, 40.0).frustum()?];
     let receivers: Boxes = boxes(&VILLAGE);
-    let input = FitInput { receivers: Some(receivers), casters: receivers, ..FitInput::new(&view, LIGHT) };
+    let input = FitInput { receivers: Some(receivers), casters: Some(receivers), ..FitInput::new(&view, LIGHT) };
     let rules = [
         ("XNA sample", FitKind::XnaSample, RectangleKind::AxisAligned, GREY),
         ("Frustum AABB", FitKind::FrustumAabb, RectangleKind::AxisAligned, RED),
@@ -25,7 +25,7 @@ pub(super) fn draw() -> Result<String> {
         ("Focused", FitKind::Focused, RectangleKind::MinimumArea, GREEN),
     ];
     let mut canvas = Canvas::new(2.0 * ROW + 36.0, "Six maps of one camera and one sun, seen from the light");
-    let settings = |kind, rectangle| FitSettings::default().with_kind(kind).with_rectangle(rectangle);
+    let settings = |kind, rectangle| plain_fit().with_kind(kind).with_rectangle(rectangle);
     let look = Look::from_light(&fit_one(&input, &settings(FitKind::FrustumAabb, RectangleKind::AxisAligned))?);
     let fits = rules.map(|(_, kind, rectangle, _)| fit_one(&input, &settings(kind, rectangle)));
     let fits = fits.into_iter().collect::<Result<Vec<_>>>()?;

@@ -2,10 +2,10 @@
 
 use anyhow::Result;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::{Aabb, FitInput, FitKind, FitSettings, ViewFrustum};
+use shadowfit::{Aabb, FitInput, FitKind, ViewFrustum};
 
 use super::canvas::{BLUE, Canvas, Frame, GREEN, GREY, INK, RED, Side, bounds, fill, stroke};
-use super::scene::{EDGES, Look, boxes, camera, corners, draw_body, draw_frustum, fit_one, hull};
+use super::scene::{EDGES, Look, boxes, camera, corners, draw_body, draw_frustum, fit_one, hull, plain_fit};
 
 /// A long hall that the view cuts through.
 const HALL: Aabb = Aabb::new(Vec3::new(-1.0, 0.0, -15.5), Vec3::new(11.0, 8.0, -9.0));
@@ -43,9 +43,9 @@ pub(super) fn draw() -> Result<String> {
 fn from_light(canvas: &mut Canvas, view: &ViewFrustum, both: &[DVec3]) -> Result<()> {
     let (views, halls) = ([*view], [HALL]);
     let input = FitInput { receivers: Some(boxes(&halls)), ..FitInput::new(&views, LIGHT) };
-    let focused = fit_one(&input, &FitSettings::default().with_kind(FitKind::Focused))?;
-    let oriented = fit_one(&input, &FitSettings::default().with_kind(FitKind::Oriented))?;
-    let look = Look::from_light(&fit_one(&input, &FitSettings::default())?);
+    let focused = fit_one(&input, &plain_fit().with_kind(FitKind::Focused))?;
+    let oriented = fit_one(&input, &plain_fit().with_kind(FitKind::Oriented))?;
+    let look = Look::from_light(&fit_one(&input, &plain_fit())?);
     let all = look.map(&oriented).into_iter().chain(look.aabb(&HALL));
     let frame = Frame::around(all, DVec2::new(390.0, 20.0), DVec2::new(702.0, 316.0));
     draw_frustum(canvas, &frame, &look.frustum(view));

@@ -2,13 +2,10 @@
 
 use anyhow::Result;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::{
-    CascadeFitter, CascadeSettings, FitInput, FitKind, FitSettings, LightFit, PerspectiveCamera, Stabilise,
-    ViewFrustum, Workspace,
-};
+use shadowfit::{FitInput, FitKind, LightFit, MapFitter, PerspectiveCamera, Stabilise, ViewFrustum, Workspace};
 
 use super::canvas::{Canvas, Frame, GREY, INK, Side, fill, stroke};
-use super::scene::{Look, axes, camera, draw_frustum, fit_one};
+use super::scene::{Look, axes, camera, draw_frustum, fit_one, plain_fit, plain_maps};
 use super::splits::MAPS;
 
 const LIGHT: Vec3 = Vec3::new(0.25, -0.9, 0.2);
@@ -20,7 +17,7 @@ pub(super) fn draw() -> Result<String> {
     let views = views()?;
     let (fresh, held) = (maps(&views, Stabilise::Off)?, maps(&views, Stabilise::Hysteresis)?);
     let mut canvas = Canvas::new(404.0, "A turning camera with fresh and with held maps");
-    let plain = FitSettings::default().with_kind(FitKind::FrustumAabb);
+    let plain = plain_fit().with_kind(FitKind::FrustumAabb);
     let plain = fit_one(&FitInput::new(&views[..1], LIGHT), &plain)?;
     let look = Look { origin: DVec3::ZERO, ..Look::from_light(&plain) };
     let all = held.iter().chain(&fresh).flat_map(|fit| look.map(fit));
@@ -55,11 +52,9 @@ fn views() -> Result<Vec<ViewFrustum>> {
 
 /// One map a frame.
 fn maps(views: &[ViewFrustum], stabilise: Stabilise) -> Result<Vec<LightFit>> {
-    let settings = CascadeSettings::default()
-        .with_fit(FitSettings::default().with_kind(FitKind::Oriented))
-        .with_count(1)
-        .with_stabilise(stabilise);
-    let mut fitter = CascadeFitter::new();
+    let settings =
+        plain_maps().with_fit(plain_fit().with_kind(FitKind::Oriented)).with_count(1).with_stabilise(stabilise);
+    let mut fitter = MapFitter::new();
     let mut fit = |view: &ViewFrustum| {
         let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
         let input = FitInput::new(std::slice::from_ref(view), LIGHT);

@@ -2,10 +2,10 @@
 
 use anyhow::Result;
 use shadowfit::glam::{DVec2, Vec3};
-use shadowfit::{Aabb, CasterPolicy, FitInput, FitKind, FitSettings};
+use shadowfit::{Aabb, CasterPolicy, FitInput, FitKind};
 
 use super::canvas::{BLUE, Canvas, Frame, GREEN, GREY, INK, PURPLE, RED, Side, bounds, fill, stroke};
-use super::scene::{Look, boxes, camera, draw_body, draw_frustum, fit_one, hull};
+use super::scene::{Look, boxes, camera, draw_body, draw_frustum, fit_one, hull, plain_fit};
 
 const LIGHT: Vec3 = Vec3::new(0.5, -0.86, 0.0);
 
@@ -19,8 +19,8 @@ const CASTERS: [Aabb; 4] = [
 
 pub(super) fn draw() -> Result<String> {
     let view = [camera(90.0, 0.0, 0.7, 16.0).frustum()?];
-    let input = FitInput { casters: boxes(&CASTERS), ..FitInput::new(&view, LIGHT) };
-    let settings = FitSettings::default().with_kind(FitKind::Oriented).with_caster_extension(16.0);
+    let input = FitInput { casters: Some(boxes(&CASTERS)), ..FitInput::new(&view, LIGHT) };
+    let settings = plain_fit().with_kind(FitKind::Oriented).with_caster_extension(16.0);
     let fit = |policy| fit_one(&input, &settings.with_casters(policy));
     let list = fit(CasterPolicy::List)?;
     let look = Look::from_side(&fit_one(&input, &settings.with_kind(FitKind::FrustumAabb))?);

@@ -2,7 +2,10 @@
 
 use anyhow::Result;
 use shadowfit::glam::{DVec2, DVec3, Vec3, Vec4};
-use shadowfit::{Aabb, Boxes, FitInput, FitSettings, LightFit, PerspectiveCamera, ViewFrustum, Workspace, fit_scene};
+use shadowfit::{
+    Aabb, Boxes, CasterPolicy, FitInput, FitKind, FitSettings, LightFit, PerspectiveCamera, SplitScheme, Stabilise,
+    Technique, ViewFrustum, Workspace, fit_scene,
+};
 
 use super::canvas::{Canvas, Frame, GREY, Paint, fill, stroke};
 
@@ -32,6 +35,23 @@ pub(super) const VILLAGE: [Aabb; 6] = [
     Aabb::new(Vec3::new(19.0, 0.0, -32.0), Vec3::new(23.0, 4.0, -28.0)),
 ];
 
+/// The frustum's box with nothing beside it, near plane by extension: what the pictures show the parts of a fit on.
+pub(super) fn plain_fit() -> FitSettings {
+    FitSettings::default()
+        .with_kind(FitKind::FrustumAabb)
+        .with_max_distance(40.0)
+        .with_casters(CasterPolicy::Extend)
+        .with_border(0.0)
+}
+
+/// Four maps of such fits around what is seen, on the grid of texels.
+pub(super) fn plain_maps() -> Technique {
+    Technique::default()
+        .with_fit(plain_fit().with_kind(FitKind::Focused))
+        .with_splits(SplitScheme::FromBoxes)
+        .with_stabilise(Stabilise::Snap)
+}
+
 /// Boxes in world coordinates as fits take them.
 pub(super) fn boxes(boxes: &[Aabb]) -> Boxes<'_> {
     Boxes { origin: DVec3::ZERO, boxes }
@@ -39,7 +59,10 @@ pub(super) fn boxes(boxes: &[Aabb]) -> Boxes<'_> {
 
 /// Fits one map, with as much storage as it takes.
 pub(super) fn fit_one(input: &FitInput, settings: &FitSettings) -> Result<LightFit> {
-    let count = input.receivers.map_or(0, |receivers| receivers.boxes.len()).max(input.casters.boxes.len());
+    let count = input
+        .receivers
+        .map_or(0, |receivers| receivers.boxes.len())
+        .max(input.casters.map_or(0, |casters| casters.boxes.len()));
     let mut storage = vec![DVec2::ZERO; Workspace::required(count, input.views.len())];
     Ok(fit_scene(input, settings, &mut Workspace::new(&mut storage))?)
 }

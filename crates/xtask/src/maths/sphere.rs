@@ -3,10 +3,10 @@
 use anyhow::Result;
 use shadowfit::fits::sphere::enclosing_sphere;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::{CasterPolicy, FitInput, FitKind, FitSettings, PerspectiveCamera};
+use shadowfit::{CasterPolicy, FitInput, FitKind, PerspectiveCamera};
 
 use super::canvas::{BLUE, Canvas, Frame, GREY, INK, PALE, RED, Side, YELLOW, fill, stroke};
-use super::scene::{Look, camera, draw_frustum, fit_one};
+use super::scene::{Look, camera, draw_frustum, fit_one, plain_fit};
 
 pub(super) fn draw() -> Result<String> {
     let mut canvas = Canvas::new(386.0, "A frustum's enclosing sphere, and two of its maps on the world's grid");
@@ -54,10 +54,8 @@ fn section(canvas: &mut Canvas) -> Result<()> {
 fn grid(canvas: &mut Canvas) -> Result<()> {
     let first = [camera(25.0, 0.0, 0.6, 12.0).frustum()?];
     let second = [PerspectiveCamera { eye: DVec3::new(3.4, 1.7, 1.3), ..camera(-38.0, 0.0, 0.6, 12.0) }.frustum()?];
-    let settings = FitSettings::default()
-        .with_kind(FitKind::Sphere)
-        .with_casters(CasterPolicy::None)
-        .with_resolution(UVec2::splat(16));
+    let settings =
+        plain_fit().with_kind(FitKind::Sphere).with_casters(CasterPolicy::None).with_resolution(UVec2::splat(16));
     let light = Vec3::new(0.2, -0.9, 0.1);
     let fits =
         [fit_one(&FitInput::new(&first, light), &settings)?, fit_one(&FitInput::new(&second, light), &settings)?];

@@ -1,14 +1,11 @@
-//! Cuts by depth alone: the same view cut by three schemes.
+//! Splits by depth alone: the same view split by three schemes.
 
 use anyhow::Result;
 use shadowfit::glam::{DVec2, Vec3};
-use shadowfit::{
-    CascadeFitter, CascadeSettings, Cascades, FitInput, FitKind, FitSettings, SplitScheme, Stabilise, ViewFrustum,
-    Workspace,
-};
+use shadowfit::{FitInput, FitKind, FittedMaps, MapFitter, SplitScheme, Stabilise, Technique, ViewFrustum, Workspace};
 
 use super::canvas::{BLUE, Canvas, Frame, GREEN, GREY, INK, PURPLE, Side, YELLOW, stroke};
-use super::scene::camera;
+use super::scene::{camera, plain_fit, plain_maps};
 
 /// Colours of the maps, the nearest first.
 pub(super) const MAPS: [&str; 4] = [BLUE, GREEN, YELLOW, PURPLE];
@@ -20,7 +17,7 @@ pub(super) fn draw() -> Result<String> {
         ("Practical, λ = 0.5", SplitScheme::Practical(0.5)),
         ("Logarithmic", SplitScheme::Logarithmic),
     ];
-    let mut canvas = Canvas::new(430.0, "One view cut into four slices by three schemes");
+    let mut canvas = Canvas::new(430.0, "One view split into four slices by three schemes");
     for (i, (name, splits)) in schemes.into_iter().enumerate() {
         let settings = settings(splits);
         let maps = cascades(&FitInput::new(&[view], Vec3::new(0.3, -0.8, 0.2)), &settings)?;
@@ -30,20 +27,23 @@ pub(super) fn draw() -> Result<String> {
 }
 
 /// Four maps around slices of the frustum, without anything that holds them.
-fn settings(splits: SplitScheme) -> CascadeSettings {
-    let fit = FitSettings::default().with_kind(FitKind::Oriented).with_max_distance(80.0);
-    CascadeSettings::default().with_fit(fit).with_splits(splits).with_stabilise(Stabilise::Off)
+fn settings(splits: SplitScheme) -> Technique {
+    let fit = plain_fit().with_kind(FitKind::Oriented).with_max_distance(80.0);
+    plain_maps().with_fit(fit).with_splits(splits).with_stabilise(Stabilise::Off)
 }
 
 /// Fits one frame's maps, with as much storage as that takes.
-pub(super) fn cascades(input: &FitInput, settings: &CascadeSettings) -> Result<Cascades> {
-    let count = input.receivers.map_or(0, |receivers| receivers.boxes.len()).max(input.casters.boxes.len());
+pub(super) fn cascades(input: &FitInput, settings: &Technique) -> Result<FittedMaps> {
+    let count = input
+        .receivers
+        .map_or(0, |receivers| receivers.boxes.len())
+        .max(input.casters.map_or(0, |casters| casters.boxes.len()));
     let mut storage = vec![DVec2::ZERO; Workspace::required(count, input.views.len())];
-    Ok(CascadeFitter::new().fit(input, settings, &mut Workspace::new(&mut storage))?)
+    Ok(MapFitter::new().fit(input, settings, &mut Workspace::new(&mut storage))?)
 }
 
-/// The view from above, cut.
-fn row(canvas: &mut Canvas, view: &ViewFrustum, maps: &Cascades, top: f64, name: &str) {
+/// The view from above, split.
+fn row(canvas: &mut Canvas, view: &ViewFrustum, maps: &FittedMaps, top: f64, name: &str) {
     let spread = f64::from(view.corners[5].x / view.corners[5].z).abs() * 80.0;
     let (min, max) = (DVec2::new(24.0, top), DVec2::new(696.0, top + 92.0));
     let frame = Frame::stretched(DVec2::new(0.0, -spread), DVec2::new(80.0, spread), min, max);

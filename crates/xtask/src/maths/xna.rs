@@ -2,10 +2,10 @@
 
 use anyhow::Result;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::{Aabb, FitInput, FitKind, FitSettings, LightFit, ViewFrustum};
+use shadowfit::{Aabb, FitInput, FitKind, LightFit, ViewFrustum};
 
 use super::canvas::{BLUE, Canvas, Frame, GREEN, GREY, INK, RED, Side, YELLOW, bounds, stroke};
-use super::scene::{Look, camera, draw_body, draw_frustum, fit_one};
+use super::scene::{Look, camera, draw_body, draw_frustum, fit_one, plain_fit};
 
 /// A light in the page's plane.
 const LIGHT: Vec3 = Vec3::new(0.5, -0.86, 0.0);
@@ -17,7 +17,7 @@ pub(super) fn draw() -> Result<String> {
     let view = camera(90.0, 4.0, 0.8, 15.0).frustum()?;
     let views = [view];
     let input = FitInput::new(&views, LIGHT);
-    let settings = FitSettings::default().with_caster_extension(9.0);
+    let settings = plain_fit().with_caster_extension(9.0);
     let tight = fit_one(&input, &settings)?;
     let xna = fit_one(&input, &settings.with_kind(FitKind::XnaSample))?;
     let look = Look::from_side(&tight);

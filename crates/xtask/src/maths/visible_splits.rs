@@ -1,15 +1,15 @@
-//! Cuts from what is visible: a histogram of depth, and what three ways to cut make of it.
+//! Splits from what is visible: a histogram of depth, and the splits that three schemes make of it.
 
 use anyhow::Result;
 use shadowfit::diagnostics::pixels_per_texel;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::{
-    Aabb, CascadeSettings, Cascades, DepthConvention, DepthHistogram, FitInput, PerspectiveCamera, SplitScheme,
-    Stabilise, needed_texel,
+    Aabb, DepthConvention, DepthHistogram, FitInput, FittedMaps, PerspectiveCamera, SplitScheme, Stabilise,
+    needed_texel,
 };
 
 use super::canvas::{BLUE, Canvas, Frame, GREY, INK, RED, SKY, Side, fill, stroke};
-use super::scene::boxes;
+use super::scene::{boxes, plain_maps};
 use super::splits::{MAPS, cascades};
 
 /// Where the sun travels.
@@ -68,7 +68,7 @@ pub(super) fn draw() -> Result<String> {
     let view = [camera.frustum()?];
     let receivers = Some(boxes(&SQUARE));
     let input = FitInput { receivers, histogram: Some(histogram), ..FitInput::new(&view, LIGHT) };
-    let mut canvas = Canvas::new(520.0, "A histogram of visible depth, and the cuts that three schemes make of it");
+    let mut canvas = Canvas::new(520.0, "A histogram of visible depth, and the splits that three schemes make of it");
     bars(&mut canvas, &counts);
     let schemes = [
         ("Logarithmic", SplitScheme::Logarithmic),
@@ -76,7 +76,7 @@ pub(super) fn draw() -> Result<String> {
         ("FromHistogram", SplitScheme::FromHistogram),
     ];
     for (i, (name, splits)) in schemes.into_iter().enumerate() {
-        let mut settings = CascadeSettings::default().with_splits(splits).with_stabilise(Stabilise::Off);
+        let mut settings = plain_maps().with_splits(splits).with_stabilise(Stabilise::Off);
         settings.fit.max_distance = FAR;
         let maps = cascades(&input, &settings)?;
         let quantile = quantile(&camera, &samples, &maps)?;
@@ -139,7 +139,7 @@ fn hit(eye: DVec3, ray: DVec3, aabb: &Aabb) -> Option<(f64, DVec3)> {
 }
 
 /// The 95% quantile of pixels per texel over the samples.
-fn quantile(camera: &PerspectiveCamera, samples: &[Sample], maps: &Cascades) -> Result<f32> {
+fn quantile(camera: &PerspectiveCamera, samples: &[Sample], maps: &FittedMaps) -> Result<f32> {
     let clip_from_world = camera.clip_from_world(DepthConvention::ZeroToOne);
     let mut errors = Vec::new();
     for sample in samples {
@@ -192,8 +192,8 @@ fn bars(canvas: &mut Canvas, counts: &[u32]) {
     }
 }
 
-/// The slices of some cuts, and the pixels per texel that a surface head-on would have in them.
-fn row(canvas: &mut Canvas, camera: &PerspectiveCamera, maps: &Cascades, top: f64, name: &str, quantile: f32) {
+/// The slices between some splits, and the pixels per texel that a surface head-on would have in them.
+fn row(canvas: &mut Canvas, camera: &PerspectiveCamera, maps: &FittedMaps, top: f64, name: &str, quantile: f32) {
     let frame = frame(top, 76.0, -4.0, 4.0);
     let pixel = 2.0 * libm::tan(f64::from(camera.fov_y) * 0.5) / f64::from(PICTURE.y);
     for (map, colour) in maps.iter().zip(MAPS) {
