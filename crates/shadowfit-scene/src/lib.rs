@@ -13,7 +13,6 @@ mod pose;
 mod sample;
 mod scene;
 
-pub use bounds::Aabb;
 pub use deform::Deformed;
 pub use error::SceneError;
 pub use import::{load_gltf, load_gltf_scene};

@@ -23,8 +23,9 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::path::Path;
 
-use glam::{Mat4, Vec3};
+use glam::Mat4;
 use gltf::json::Root;
+use shadowfit::Aabb;
 
 use self::accessor::Reader;
 use self::animation::Animations;
@@ -34,7 +35,7 @@ use self::mesh::MAX_COORDINATE;
 use self::nodes::Tree;
 use self::notes::Notes;
 use crate::error::Problem;
-use crate::{Aabb, Mesh, Node, Pose, Primitive, Scene, SceneError, Skin};
+use crate::{Mesh, Node, Pose, Primitive, Scene, SceneError, Skin};
 
 /// Triangles that a scene may draw: nodes may share meshes, so that a small file can ask for any
 /// number of them.
@@ -185,7 +186,7 @@ fn check_extent(scene: &Scene, rest: &Pose, tree: &Tree) -> Result<(), Problem> 
             Some(skin) => rest.world_from_mesh_by_joint(skin),
             None => vec![rest.world_from(instance.node)],
         };
-        if !matrices.iter().all(|&matrix| reaches_acceptable(bounds, matrix)) {
+        if !matrices.iter().all(|&matrix| is_within_reach(bounds, matrix)) {
             let reason = format!("it puts geometry beyond {MAX_COORDINATE:e} m");
             return Err(Problem::new(element, reason).hint("Scale the scene down"));
         }
@@ -193,10 +194,9 @@ fn check_extent(scene: &Scene, rest: &Pose, tree: &Tree) -> Result<(), Problem> 
     Ok(())
 }
 
-fn reaches_acceptable(bounds: Aabb, world_from_local: Mat4) -> bool {
-    (0..8).all(|corner| {
-        let pick = |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
-        let world = world_from_local.transform_point3(Vec3::new(pick(0), pick(1), pick(2)));
+fn is_within_reach(bounds: Aabb, world_from_local: Mat4) -> bool {
+    bounds.corners().into_iter().all(|corner| {
+        let world = world_from_local.transform_point3(corner);
         world.is_finite() && world.abs().max_element() <= MAX_COORDINATE
     })
 }
