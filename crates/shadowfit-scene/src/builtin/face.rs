@@ -127,11 +127,11 @@ fn head() -> Solid {
         // Denser where brow, eyes and nose are: a little below the horizon of the centre.
         let height = height + 0.055 * (TAU * height).sin() * 0.9;
         let (up, flat) = (-(PI * height).cos(), (PI * height).sin());
-        let point = |place: usize| {
-            let turn = place as f32 / half as f32;
+        let point = |index: usize| {
+            let turn = index as f32 / half as f32;
             let turn = PI * (turn - 0.12 * (PI * turn).sin());
             let direction = Vec3::new(flat * turn.sin(), up, flat * turn.cos());
-            let direction = if place == half { Vec3::new(0.0, up, -flat) } else { direction };
+            let direction = if index == half { Vec3::new(0.0, up, -flat) } else { direction };
             CENTRE + direction * reach(direction)
         };
         let left: Vec<Vec3> = (0..=half).map(point).collect();

@@ -1,4 +1,4 @@
-//! Import of glTF 2.0 scenes, for files that nobody vouches for.
+//! Import of glTF 2.0 scenes from files that may be broken or malicious.
 //!
 //! The gltf crate parses the JSON; everything behind it (GLB chunks, URIs, accessors, indices of any
 //! kind) is checked here before it is used, because the crate's own readers may panic on bad data.
@@ -44,7 +44,8 @@ const MAX_DRAWN_TRIANGLES: usize = 1 << 26;
 /// Loads the default scene of a `.gltf` or `.glb` file, or its first where none is the default.
 ///
 /// # Errors
-/// Every way in which the file can be wrong, by file, element and reason; see [`SceneError`].
+/// If the file cannot be read, is not valid glTF 2.0, requires an extension that is not supported, or draws nothing;
+/// see [`SceneError`].
 pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
     load_gltf_scene(path, None)
 }
@@ -52,7 +53,7 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
 /// Loads scene number `scene` of a file, counted from 0; `None` is the default one.
 ///
 /// # Errors
-/// As [`load_gltf`], and where the file has no such scene.
+/// As [`load_gltf`], and if the file has no such scene.
 pub fn load_gltf_scene(path: &Path, scene: Option<usize>) -> Result<Scene, SceneError> {
     let mut source = container::read(path)?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
