@@ -32,7 +32,7 @@ pub struct Triangle {
     pub vertices: [Vec3; 3],
     /// Index into [`Scene::instances`].
     pub instance: u32,
-    /// Index of the triangle within its primitive, whose vertex indices from `3 * index` on it uses.
+    /// Index of the triangle within its primitive; its vertex indices there begin at `3 * index`.
     pub index: u32,
 }
 
@@ -147,7 +147,7 @@ impl Pose {
     }
 
     /// As [`Pose::triangles`], with corners relative to `origin`, a world position in metres. Far from the world's own
-    /// origin, where world positions in f32 are coarse, vertices that lie near their node lose no precision so.
+    /// origin, where world positions in f32 are coarse, this keeps the precision of vertices that lie near their node.
     pub fn triangles_from(&self, scene: &Scene, origin: DVec3) -> Vec<Triangle> {
         let instances = scene.instances();
         let count = |i: &Instance| scene.meshes[i.mesh].primitives[i.primitive].indices.len() / 3;

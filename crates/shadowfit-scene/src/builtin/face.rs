@@ -177,10 +177,10 @@ fn hair() -> Solid {
         section(0.16, 0.101, 0.111, -0.022),
         section(0.215, 0.097, 0.108, -0.016),
     ];
-    let places = [(0.015, 0.163, 0.0045), (0.034, 0.1675, 0.0062), (0.059, 0.1605, 0.0035)];
-    let [inner, middle, outer] = places.map(|(x, y, _)| on_face(x, y));
-    let brow = capsule(inner, places[0].2, middle, places[1].2, 12);
-    let brow = brow.with(capsule(middle, places[1].2, outer, places[2].2, 12)).and_mirrored();
+    let points = [(0.015, 0.163, 0.0045), (0.034, 0.1675, 0.0062), (0.059, 0.1605, 0.0035)];
+    let [inner, middle, outer] = points.map(|(x, y, _)| on_face(x, y));
+    let brow = capsule(inner, points[0].2, middle, points[1].2, 12);
+    let brow = brow.with(capsule(middle, points[1].2, outer, points[2].2, 12)).and_mirrored();
     loft(&sections, 2.1, 3, 36).with(brow)
 }
 
