@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 
-use crate::support::example_program;
+use crate::support::{NOTES, SCENE_WITH_NOTES, example_program};
 
 /// The exit code of every refusal.
 const REFUSED: i32 = 2;
@@ -114,6 +114,27 @@ fn a_moving_scene_and_a_sun_with_a_radius_are_judged_too() {
     assert_ne!(still, moving, "the figure walks");
     let soft = judged(&["--sun-radius", "3", "--sun-rays", "16"], "soft");
     assert_ne!(soft["mean error %"], still["mean error %"], "penumbrae are neither lit nor dark");
+}
+
+#[test]
+fn what_import_notes_of_a_scene_is_said_and_stands_in_the_report() {
+    let scratch = Scratch::new("notes");
+    scratch.file("notes.gltf", SCENE_WITH_NOTES);
+    let arguments = ["notes.gltf", "--path", "path.toml", "--config", "xna-1", "--resolution", "256", "-o", "out"];
+    let output = scratch.report(&arguments);
+    succeeded(&output);
+    let message = String::from_utf8_lossy(&output.stderr);
+    let report = scratch.json("out/report.json");
+    let noted: Vec<&str> =
+        report["scene_notes"].as_array().expect("a list").iter().filter_map(|n| n.as_str()).collect();
+    for note in NOTES {
+        assert!(message.contains(&format!("warning: notes.gltf: {note}")), "\"{note}\" is missing in: {message}");
+        assert!(noted.iter().any(|noted| noted.starts_with(note)), "{noted:?}");
+    }
+    for file in ["out/report.md", "out/index.html"] {
+        let text = scratch.text(file);
+        assert!(text.contains("Notes on the scene") && text.contains("lines skipped"), "{file}");
+    }
 }
 
 #[test]

@@ -26,8 +26,10 @@ pub(crate) struct Run {
     /// The graphics adapter that rendered.
     pub(crate) adapter: String,
     pub(crate) light: LightSettings,
-    /// Whole sentences for the reader.
+    /// What the reader should know of the measurement, whole sentences.
     pub(crate) notes: Vec<String>,
+    /// What import skipped, replaced or repaired, which the pictures then lack.
+    pub(crate) scene_notes: Vec<String>,
     /// Frames that were measured, in their order.
     pub(crate) frames: Vec<FrameInfo>,
     pub(crate) techniques: Vec<TechniqueRun>,
@@ -168,6 +170,7 @@ pub(crate) mod tests {
             adapter: "software".into(),
             light: LightSettings::default(),
             notes: vec!["A note & more.".into()],
+            scene_notes: vec!["images[0]: replaced by a placeholder".into(), "points <skipped>".into()],
             frames: ["orbit/0", "orbit/1", "orbit/2", "fly-through/0", "fly-through/1"].map(frame).into(),
             techniques: vec![technique("xna", 4.0), technique("focused | best", 1.0)],
             finished: true,

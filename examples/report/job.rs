@@ -67,14 +67,18 @@ pub(crate) struct Prepared {
     pub(crate) path: CameraPath,
     pub(crate) light: LightSettings,
     pub(crate) frames: Vec<JobFrame>,
-    /// What people should know, whole sentences.
+    /// What people should know of the measurement, whole sentences.
     pub(crate) notes: Vec<String>,
+    /// What import skipped, replaced or repaired.
+    pub(crate) scene_notes: Vec<String>,
 }
 
 impl Job {
-    /// Loads the scene, opens the GPU, and finds the frames.
+    /// Loads the scene, opens the GPU, and finds the frames. What import noted of the scene goes to the standard error
+    /// too.
     pub(crate) fn prepare(&self) -> Result<Prepared> {
         let scene = self.load()?;
+        scene.warnings(&self.scene).for_each(|warning| eprintln!("{warning}"));
         self.check_memory(&scene)?;
         let sun = scene.sun.and_then(|sun| LightSettings::from_direction(sun.direction).ok());
         let animates = !scene.animations.is_empty();
@@ -87,7 +91,8 @@ impl Job {
             self.play.is_none_or(|fps| fps.is_finite() && fps > 0.0),
             "--play: give a number of frames a second above 0"
         );
-        let mut notes = scene.notes.clone();
+        let mut notes = Vec::new();
+        let scene_notes = scene.notes.clone();
         let judging = self.drawing.judging();
         let comparison = Comparison::new(self.drawing.gpu()?, scene, judging)?;
         let aspect = judging.size[0] as f32 / judging.size[1] as f32;
@@ -105,7 +110,7 @@ impl Job {
         let light = self.light.or(path.light).or(sun).unwrap_or_default();
         let frames = self.frames(&path, &light);
         notes.extend(ray_offset_note(comparison.subject().bounds(), judging.ray_offset));
-        Ok(Prepared { comparison, judging, path, light, frames, notes })
+        Ok(Prepared { comparison, judging, path, light, frames, notes, scene_notes })
     }
 
     /// The scene's name for people.

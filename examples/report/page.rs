@@ -14,7 +14,7 @@ use image::imageops::{FilterType, resize};
 
 use crate::data::{FramePictures, Run, TechniqueRun, meaning, value, wrong_at};
 use crate::plots::{Plot, colour};
-use crate::tables::{Table, facts, stopped, tables};
+use crate::tables::{SCENE_NOTES, Table, facts, stopped, tables};
 use crate::write::png;
 use shadowfit_truth::peers::readable;
 
@@ -66,6 +66,13 @@ fn head(run: &Run) -> String {
     text.push_str("</dl>\n");
     for note in &run.notes {
         let _ = writeln!(text, "<p class=\"note\">{}</p>", escape(note));
+    }
+    if !run.scene_notes.is_empty() {
+        let _ = write!(text, "<h2>{SCENE_NOTES}</h2>\n<ul class=\"note\">\n");
+        for note in &run.scene_notes {
+            let _ = writeln!(text, "<li>{}</li>", escape(note));
+        }
+        text.push_str("</ul>\n");
     }
     text.push_str("</header>\n");
     text
@@ -308,6 +315,16 @@ mod tests {
     fn a_missing_picture_is_named() {
         let error = data_uri(Path::new("nowhere/a.png")).expect_err("refused");
         assert!(format!("{error:#}").starts_with("nowhere/a.png: the picture cannot be read"), "{error:#}");
+    }
+
+    #[test]
+    fn the_page_lists_the_notes_on_the_scene_and_has_no_heading_for_none() {
+        let text = page(&run(), &[], Path::new(".")).expect("a page");
+        let list = "<h2>Notes on the scene</h2>\n<ul class=\"note\">\n<li>images[0]: replaced by a placeholder</li>\n\
+                    <li>points &lt;skipped&gt;</li>\n</ul>";
+        assert!(text.contains(list), "{text}");
+        let text = page(&Run { scene_notes: Vec::new(), ..run() }, &[], Path::new(".")).expect("a page");
+        assert!(!text.contains("Notes on the scene"), "{text}");
     }
 
     #[test]

@@ -136,6 +136,7 @@ fn report(args: &Args, job: &Prepared, techniques: &[Technique], measured: &[Mea
         adapter: job.comparison.gpu().name(),
         light: job.light,
         notes: job.notes.clone(),
+        scene_notes: job.scene_notes.clone(),
         frames: frames.iter().map(|frame| FrameInfo { name: frame.name.clone(), group: frame.group.clone() }).collect(),
         techniques: techniques.iter().zip(measured).map(of_technique).collect(),
         finished: done == job.frames.len(),

@@ -9,6 +9,9 @@ use shadowfit_truth::peers::readable;
 
 use crate::data::{Better, Columns, Run, better};
 
+/// Heading of the list of what import skipped, replaced or repaired.
+pub(crate) const SCENE_NOTES: &str = "Notes on the scene";
+
 /// Text of a value, and whether it is the best of its column; unequal numbers that read the same are equally good.
 type Cell = (String, bool);
 
@@ -57,6 +60,12 @@ pub(crate) fn to_markdown(run: &Run) -> String {
     }
     for note in &run.notes {
         let _ = writeln!(text, "- {}", escape(note));
+    }
+    if !run.scene_notes.is_empty() {
+        let _ = write!(text, "\n## {SCENE_NOTES}\n\n");
+        for note in &run.scene_notes {
+            let _ = writeln!(text, "- {}", escape(note));
+        }
     }
     for table in tables(run) {
         let _ = write!(text, "\n## {}\n\n{}", escape(&table.title), markdown(&table));
@@ -189,13 +198,26 @@ mod tests {
         let techniques = ["## Techniques", "### xna", "### focused \\| best"];
         assert_eq!(
             headings,
-            [&["# Courtyard \\<1\\>", "## All frames", "## orbit", "## fly-through"], &techniques[..]].concat()
+            [
+                &["# Courtyard \\<1\\>", "## Notes on the scene", "## All frames", "## orbit", "## fly-through"],
+                &techniques[..]
+            ]
+            .concat()
         );
         assert!(text.contains("1 234 567 triangles") && text.contains("A note &amp; more."), "{text}");
         assert!(
             text.contains("```toml\nkind = \"Sphere\"\nmargin = 0.1\n```\n") && !text.contains("Stopped"),
             "{text}"
         );
+    }
+
+    #[test]
+    fn markdown_lists_the_notes_on_the_scene_and_has_no_heading_for_none() {
+        let text = to_markdown(&run());
+        let list = "## Notes on the scene\n\n- images\\[0\\]: replaced by a placeholder\n- points \\<skipped\\>\n\n";
+        assert!(text.contains(list), "{text}");
+        let text = to_markdown(&Run { scene_notes: Vec::new(), ..run() });
+        assert!(!text.contains("Notes on the scene"), "{text}");
     }
 
     #[test]
@@ -211,6 +233,7 @@ mod tests {
     fn json_holds_all_data_with_columns_in_order_and_null_for_what_is_not_there() {
         let json = to_json(&run()).expect("JSON");
         let value: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+        assert_eq!(value["scene_notes"][1], "points <skipped>");
         let technique = &value["techniques"][1];
         assert_eq!(technique["frames"][2]["wrong %"], 3.0);
         assert!(technique["groups"]["fly-through"]["crawl %"].is_null());

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use crate::support::{assets, files_below, viewer_program};
+use crate::support::{NOTES, SCENE_WITH_NOTES, assets, files_below, viewer_program};
 
 /// The exit code of every refusal.
 const REFUSED: i32 = 2;
@@ -85,6 +85,22 @@ fn broken_files_end_in_exit_code_2_with_their_name_and_the_reason() {
         let path = path.to_str().expect("a path in UTF-8");
         assert_refused(&scratch, &[path, "--headless", "out"], &[&name, reason]);
     }
+}
+
+#[test]
+fn what_import_notes_of_a_scene_goes_to_the_standard_error_a_line_for_each_note() {
+    let scratch = Scratch::new("notes");
+    scratch.file("notes.gltf", SCENE_WITH_NOTES.as_bytes());
+    let output = run(&scratch.0, &["notes.gltf", "--headless", "out"]);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{message}");
+    for note in NOTES {
+        let line = format!("warning: notes.gltf: {note}");
+        assert!(message.lines().any(|said| said.starts_with(&line)), "\"{line}\" is missing in: {message}");
+    }
+    let output = run(&scratch.0, &["--headless", "out"]);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && !message.contains("warning"), "the built-in scene has no notes: {message}");
 }
 
 #[test]

@@ -3,7 +3,8 @@
 //! ray tracers see the very same triangles.
 
 use glam::{DVec3, Mat4, Vec3, Vec4};
-use shadowfit_scene::{Aabb, AlphaMode, Instance, Pose, Primitive, Scene};
+use shadowfit::Aabb;
+use shadowfit_scene::{AlphaMode, Instance, Pose, Primitive, Scene};
 
 use crate::Gpu;
 use crate::material::upload_materials;
@@ -96,11 +97,11 @@ impl GpuScene {
                     Some(deformed) => {
                         let motion = interleave_motion(&deformed.positions, &deformed.normals, &deformed.tangents);
                         gpu.queue.write_buffer(&part.motion, 0, bytemuck::cast_slice(&motion));
-                        point_bounds(&deformed.positions)
+                        Aabb::from_points(deformed.positions)
                     }
                     None => part.local_bounds,
                 };
-                entry.bounds = local.map_or(EMPTY, |local| transformed(&local, &entry.world_from_mesh));
+                entry.bounds = local.map_or(Aabb::EMPTY, |local| transformed(&local, &entry.world_from_mesh));
             }
         }
     }
@@ -152,14 +153,12 @@ impl GpuScene {
     /// box.
     pub fn instance_bounds(&self, index: usize) -> Option<Aabb> {
         let bounds = self.instances.get(index)?.bounds;
-        bounds.min.cmple(bounds.max).all().then_some(bounds)
+        (!bounds.is_empty()).then_some(bounds)
     }
 
-    /// World bounds of everything that casts, in metres; `None` for an empty scene.
+    /// World bounds of everything drawn, blended surfaces too, in its present pose, in metres; `None` for an empty scene.
     pub fn bounds(&self) -> Option<Aabb> {
-        let join = |a: Aabb, b: Aabb| Aabb { min: a.min.min(b.min), max: a.max.max(b.max) };
-        let all = self.instances.iter().map(|instance| instance.bounds).fold(EMPTY, join);
-        all.min.cmple(all.max).all().then_some(all)
+        self.instances.iter().map(|instance| instance.bounds).filter(|bounds| !bounds.is_empty()).reduce(Aabb::union)
     }
 }
 
@@ -183,7 +182,7 @@ impl Part {
             alpha: material.alpha,
             double_sided: material.double_sided,
             mirrored,
-            local_bounds: point_bounds(&primitive.positions),
+            local_bounds: Aabb::from_points(primitive.positions.iter().copied()),
             members: Vec::new(),
         }
     }
@@ -208,8 +207,6 @@ pub(crate) fn in_frustum(clip_from_world: Mat4) -> impl Fn(Vec3, Vec3) -> bool {
     }
 }
 
-const EMPTY: Aabb = Aabb { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
-
 /// Instances with the numbers of their first triangles.
 fn numbered(scene: &Scene, instances: Vec<Instance>) -> Vec<SceneInstance> {
     let mut triangles = 0;
@@ -219,7 +216,7 @@ fn numbered(scene: &Scene, instances: Vec<Instance>) -> Vec<SceneInstance> {
         if scene.materials[primitive.material].alpha != AlphaMode::Blend {
             triangles += primitive.indices.len() as u32 / 3;
         }
-        SceneInstance { instance, first_triangle, world_from_mesh: Mat4::IDENTITY, bounds: EMPTY }
+        SceneInstance { instance, first_triangle, world_from_mesh: Mat4::IDENTITY, bounds: Aabb::EMPTY }
     };
     instances.into_iter().map(number).collect()
 }
@@ -237,12 +234,6 @@ fn interleave_motion(positions: &[Vec3], normals: &[Vec3], tangents: &[Vec4]) ->
         motion.extend(tangents.get(index).copied().unwrap_or(Vec4::ZERO).to_array());
     }
     motion
-}
-
-fn point_bounds(points: &[Vec3]) -> Option<Aabb> {
-    let first = *points.first()?;
-    let grow = |bounds: Aabb, p: &Vec3| Aabb { min: bounds.min.min(*p), max: bounds.max.max(*p) };
-    Some(points.iter().fold(Aabb { min: first, max: first }, grow))
 }
 
 fn transformed(bounds: &Aabb, matrix: &Mat4) -> Aabb {

@@ -1,52 +1,18 @@
-//! World-space bounds of posed scenes, exact to the vertex: what fits enclose and cameras frame.
+//! World-space bounds of posed scenes, exact to the vertex.
 
 use glam::{Mat4, Vec3};
+use shadowfit::Aabb;
 
 use crate::{Instance, Pose, Scene};
 
-/// An axis-aligned box; corners in the space of the points it was made from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Aabb {
-    /// Corner with the smallest coordinates.
-    pub min: Vec3,
-    /// Corner with the greatest coordinates.
-    pub max: Vec3,
-}
-
-impl Aabb {
-    /// The smallest box around `points`; `None` without points.
-    pub fn from_points(points: impl IntoIterator<Item = Vec3>) -> Option<Self> {
-        let mut points = points.into_iter();
-        let first = points.next()?;
-        let start = Self { min: first, max: first };
-        Some(points.fold(start, |b, p| Self { min: b.min.min(p), max: b.max.max(p) }))
-    }
-
-    /// The smallest box around both.
-    #[must_use]
-    pub fn union(self, other: Self) -> Self {
-        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
-    }
-
-    /// The middle.
-    pub fn center(self) -> Vec3 {
-        self.min + (self.max - self.min) * 0.5
-    }
-
-    /// Edge lengths.
-    pub fn size(self) -> Vec3 {
-        self.max - self.min
-    }
-}
-
 impl Scene {
-    /// World-space bounds of everything drawn, deformed as in `pose`; `None` if nothing is drawn.
+    /// World-space bounds of everything drawn, in metres, deformed as in `pose`; `None` if nothing is drawn.
     pub fn bounds(&self, pose: &Pose) -> Option<Aabb> {
         self.bounds_where(pose, |_| true)
     }
 
-    /// World-space bounds of what `root` and its descendants draw, deformed as in `pose`; `None` if
-    /// they draw nothing.
+    /// World-space bounds of what `root` (an index into [`Scene::nodes`]) and its descendants draw, in metres, deformed
+    /// as in `pose`; `None` if they draw nothing.
     pub fn node_bounds(&self, pose: &Pose, root: usize) -> Option<Aabb> {
         self.bounds_where(pose, |node| self.is_descendant(node, root))
     }
@@ -59,7 +25,7 @@ impl Scene {
             .reduce(Aabb::union)
     }
 
-    /// World-space bounds of one instance, deformed as in `pose`; `None` if it has no triangles.
+    /// World-space bounds of one instance, in metres, deformed as in `pose`; `None` if it has no triangles.
     pub fn instance_bounds(&self, pose: &Pose, instance: &Instance) -> Option<Aabb> {
         let primitive = self.meshes.get(instance.mesh)?.primitives.get(instance.primitive)?;
         let world_from_local = pose.world_from_instance(self, instance);

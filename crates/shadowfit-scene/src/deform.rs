@@ -5,16 +5,16 @@ use glam::{Mat3, Mat4, Vec3, Vec4};
 
 use crate::{Instance, Pose, Primitive, Scene, Skin};
 
-/// Vertices of an instance after morphing and skinning, parallel to the primitive's own.
+/// Vertices of an instance after morphing and skinning, in the order of the primitive's own.
 ///
-/// Morphed only: in the mesh's space, like the primitive's. Skinned: in world space.
+/// Skinned vertices are in world space; those that are only morphed are in the mesh's space, as the primitive's are.
 #[derive(Clone, Debug, Default)]
 pub struct Deformed {
     /// Positions, in metres.
     pub positions: Vec<Vec3>,
     /// Unit normals.
     pub normals: Vec<Vec3>,
-    /// Unit tangents with the bitangent's sign in w; empty where the primitive has none.
+    /// Unit tangents with the bitangent's sign in w; empty if the primitive has none.
     pub tangents: Vec<Vec4>,
 }
 
@@ -41,7 +41,7 @@ impl Pose {
         Some(deformed)
     }
 
-    /// One matrix a joint: where it carries the mesh's vertices in the world.
+    /// For each joint of a skin, world from the mesh's space for a vertex that this joint alone moves.
     pub fn world_from_mesh_by_joint(&self, skin: &Skin) -> Vec<Mat4> {
         let joints = skin.joints.iter().zip(&skin.joint_from_mesh);
         joints.map(|(&node, &joint_from_mesh)| self.world_from(node) * joint_from_mesh).collect()
@@ -49,7 +49,7 @@ impl Pose {
 }
 
 impl Scene {
-    /// The skin that deforms the instance, if its primitive carries joints.
+    /// The skin that deforms the instance; `None` if its node has none, or its primitive has no joints.
     pub fn instance_skin(&self, instance: &Instance) -> Option<&Skin> {
         let primitive = self.meshes.get(instance.mesh)?.primitives.get(instance.primitive)?;
         let skin = self.skins.get(self.nodes.get(instance.node)?.skin?)?;

@@ -1,8 +1,8 @@
-//! Errors of scene import, written for people: which file, which element, why, and what to do.
+//! Errors of import, each with the file, the element, the reason and what to do.
 
 use std::path::{Path, PathBuf};
 
-/// Why a scene file was refused. Nothing of the file is kept then.
+/// Why a scene file was refused. No part of the scene is loaded then.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
@@ -21,7 +21,7 @@ pub enum SceneError {
     Malformed {
         /// The file.
         path: PathBuf,
-        /// The part of the file.
+        /// The part of the file, such as `GLB header`.
         element: String,
         /// What is wrong with it.
         reason: String,
@@ -33,14 +33,14 @@ pub enum SceneError {
     Extension {
         /// The file.
         path: PathBuf,
-        /// The entry that asks for it.
+        /// The entry that requires it, such as `extensionsRequired[0]`.
         element: String,
         /// Name of the extension.
         name: String,
         /// What to do about it.
         hint: &'static str,
     },
-    /// One element of the file is wrong.
+    /// One element of the file is invalid.
     #[error("{}: {element}: {reason}. {hint}", path.display())]
     Element {
         /// The file.
@@ -77,7 +77,7 @@ impl SceneError {
     }
 }
 
-/// A wrong element, before the file's name is known.
+/// An invalid element, before the file's name is known.
 #[derive(Clone, Debug)]
 pub(crate) struct Problem {
     element: String,
@@ -85,7 +85,7 @@ pub(crate) struct Problem {
     hint: &'static str,
 }
 
-/// What to do about data that contradicts the specification.
+/// What to do about data that the specification does not allow.
 const RE_EXPORT: &str = "Export the file again, or look at it with the Khronos glTF validator";
 
 impl Problem {
@@ -94,17 +94,17 @@ impl Problem {
         Self { element: element.into(), reason: reason.into(), hint: RE_EXPORT }
     }
 
-    /// The same problem with better advice.
+    /// The same problem with another hint.
     pub(crate) fn hint(self, hint: &'static str) -> Self {
         Self { hint, ..self }
     }
 
-    /// Reason alone, for problems that become notes.
+    /// The reason, for problems that become notes.
     pub(crate) fn reason(&self) -> &str {
         &self.reason
     }
 
-    /// Names the file.
+    /// The error, with the name of the file.
     pub(crate) fn at(self, path: &Path) -> SceneError {
         let Self { element, reason, hint } = self;
         SceneError::Element { path: path.to_owned(), element, reason, hint }

@@ -1,7 +1,7 @@
 //! CPU scenes for the shadowfit samples: glTF import, the built-in scene, animation and bounds.
 //!
-//! Renderers draw [`Scene`] and [`Pose`]; ray tracers take [`Pose::triangles`]. Nothing here
-//! touches a GPU.
+//! A [`Scene`] is the data, a [`Pose`] where everything is at a time of an animation. Renderers draw both; ray tracers
+//! take [`Pose::triangles`]. Nothing here needs a GPU. Spaces are right-handed with y up, in metres and radians.
 
 mod bounds;
 pub mod builtin;
@@ -13,7 +13,6 @@ mod pose;
 mod sample;
 mod scene;
 
-pub use bounds::Aabb;
 pub use deform::Deformed;
 pub use error::SceneError;
 pub use import::{load_gltf, load_gltf_scene};

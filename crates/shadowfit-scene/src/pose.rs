@@ -1,4 +1,4 @@
-//! A scene at a moment: world transforms, morph weights, and the triangles that follow.
+//! A scene at a time: world transforms, morph weights, and the triangles that follow.
 
 use glam::{DVec3, Mat4, Vec3};
 
@@ -16,12 +16,12 @@ pub struct Instance {
     pub primitive: usize,
 }
 
-/// Where everything is at a moment.
+/// Where everything in a scene is at a time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pose {
-    /// World from node, one a node.
+    /// World from node, for each node.
     pub world_from_node: Vec<Mat4>,
-    /// Morph weights, one list a node: one weight a target of its mesh, empty where it has none.
+    /// For each node, the weight of each morph target of its mesh; empty where it has none.
     pub morph_weights: Vec<Vec<f32>>,
 }
 
@@ -32,7 +32,7 @@ pub struct Triangle {
     pub vertices: [Vec3; 3],
     /// Index into [`Scene::instances`].
     pub instance: u32,
-    /// Number of the triangle within its primitive: it uses indices `3 * index ..`.
+    /// Index of the triangle within its primitive; its vertex indices there begin at `3 * index`.
     pub index: u32,
 }
 
@@ -58,8 +58,9 @@ impl Scene {
         instances
     }
 
-    /// The scene at `seconds` into an animation, which loops over its duration; at rest for `None`
-    /// and for an animation that does not exist.
+    /// The scene at a time of an animation (an index into [`Scene::animations`]), in seconds, which is wrapped to the
+    /// animation's duration; at rest for `None` and for an animation that does not exist. A time that is not finite
+    /// counts as 0.
     pub fn pose(&self, animation: Option<usize>, seconds: f32) -> Pose {
         let mut locals: Vec<Transform> = self.nodes.iter().map(|node| node.rest).collect();
         let mut morph_weights: Vec<_> = self.nodes.iter().map(|n| self.rest_weights(n)).collect();
@@ -81,7 +82,7 @@ impl Scene {
         Pose { world_from_node: self.compose(&locals), morph_weights }
     }
 
-    /// Whether `node` is `root` or lies below it.
+    /// Whether `node` is `root` or a descendant of it; both are indices into [`Scene::nodes`].
     pub fn is_descendant(&self, node: usize, root: usize) -> bool {
         let parent_of = |&index: &usize| self.nodes.get(index).and_then(|n| n.parent);
         // Parents have smaller indices, so the search ends at or before the root's.
@@ -90,7 +91,7 @@ impl Scene {
             .any(|ancestor| ancestor == root)
     }
 
-    /// One weight a morph target of the node's mesh: the node's, else the mesh's, else 0.
+    /// One weight for each morph target of the node's mesh: the node's, else the mesh's, else 0.
     fn rest_weights(&self, node: &Node) -> Vec<f32> {
         let Some(mesh) = node.mesh.and_then(|index| self.meshes.get(index)) else {
             return Vec::new();
@@ -114,8 +115,8 @@ impl Scene {
 }
 
 impl Pose {
-    /// World from the space of the instance's vertices (those of [`Pose::deform`] where it gives
-    /// some): the node's matrix, or the identity for skinned instances.
+    /// World from the space of the instance's vertices: the node's matrix, or the identity for skinned instances, whose
+    /// vertices [`Pose::deform`] gives in world space.
     pub fn world_from_instance(&self, scene: &Scene, instance: &Instance) -> Mat4 {
         match scene.instance_skin(instance) {
             Some(_) => Mat4::IDENTITY,
@@ -123,9 +124,9 @@ impl Pose {
         }
     }
 
-    /// Whether the instance is mirrored, so that its triangles wind clockwise seen from outside:
-    /// renderers swap their front face for it, [`Pose::triangles`] swaps two corners. It is the sign
-    /// of the node's determinant, or of the first joint's for skinned instances.
+    /// Whether the instance is mirrored, so that its triangles wind clockwise seen from outside: the determinant of the
+    /// node's matrix is negative, or that of the first joint's for skinned instances. Renderers then have to swap front
+    /// and back faces; [`Pose::triangles`] swaps two corners.
     pub fn is_mirrored(&self, scene: &Scene, instance: &Instance) -> bool {
         let matrix = match scene.instance_skin(instance) {
             Some(skin) => match (skin.joints.first(), skin.joint_from_mesh.first()) {
@@ -137,7 +138,7 @@ impl Pose {
         glam::Mat3::from_mat4(matrix).determinant() < 0.0
     }
 
-    /// Every triangle of every instance, in instance order, deformed and in world space.
+    /// Every triangle of every instance, in instance order, deformed, in world space and metres.
     ///
     /// Mirrored instances ([`Pose::is_mirrored`]) have their second and third corner swapped, so
     /// that all geometric normals point outward.
@@ -145,8 +146,8 @@ impl Pose {
         self.triangles_from(scene, DVec3::ZERO)
     }
 
-    /// The same relative to a world position, in metres: far from the world's own origin, where f32 world positions are
-    /// coarse, what is modelled near its node keeps its digits.
+    /// As [`Pose::triangles`], with corners relative to `origin`, a world position in metres. Far from the world's own
+    /// origin, where world positions in f32 are coarse, this keeps the precision of vertices that lie near their node.
     pub fn triangles_from(&self, scene: &Scene, origin: DVec3) -> Vec<Triangle> {
         let instances = scene.instances();
         let count = |i: &Instance| scene.meshes[i.mesh].primitives[i.primitive].indices.len() / 3;
@@ -185,7 +186,7 @@ impl Pose {
     }
 }
 
-/// Time within a loop of `duration`; 0 for times and durations that are not finite or positive.
+/// `seconds` wrapped to 0..`duration`; 0 for times and durations that are not finite or positive.
 fn looped(seconds: f32, duration: f32) -> f32 {
     if seconds.is_finite() && duration.is_finite() && duration > 0.0 { seconds.rem_euclid(duration) } else { 0.0 }
 }

@@ -46,7 +46,7 @@ fn lerp(a: f32, b: f32, fraction: f32) -> f32 {
     a + (b - a) * fraction
 }
 
-/// Cubic splines may pass through zero; that point has no direction and stands for no rotation.
+/// The rotation as a unit quaternion. Cubic splines may pass through zero, which counts as no rotation.
 fn normalized(rotation: Quat) -> Quat {
     let length = rotation.length();
     if length > 1e-12 && length.is_finite() { rotation * (1.0 / length) } else { Quat::IDENTITY }

@@ -1,5 +1,7 @@
-//! The data of a scene on the CPU: what import and the built-in scenes produce, and what renderers
-//! and ray tracers read. Right-handed, y up, metres, radians, column vectors.
+//! The data of a scene: what import and the built-in scene produce, and what renderers and ray tracers read.
+//! Right-handed, y up, metres, radians, column vectors.
+
+use std::path::Path;
 
 use glam::{Mat4, Quat, Vec2, Vec3, Vec4};
 
@@ -20,14 +22,24 @@ pub struct Scene {
     pub skins: Vec<Skin>,
     /// Animations.
     pub animations: Vec<Animation>,
-    /// Cameras that the file brings.
+    /// Cameras, in the order of their nodes.
     pub cameras: Vec<SceneCamera>,
-    /// Directional light that the file brings: the first one found.
+    /// The first directional light of the file, or the built-in scene's own.
     pub sun: Option<Sun>,
-    /// Node whose descendants are what the eye should be on, if the scene has such a thing.
+    /// Index of the node that, with its descendants, cameras should look at, if the scene has one.
     pub subject: Option<usize>,
-    /// What import skipped, replaced or repaired, for people.
+    /// What import skipped, replaced or repaired, as sentences for people.
     pub notes: Vec<String>,
+}
+
+impl Scene {
+    /// The notes as lines for a terminal, `warning: FILE: NOTE`, each a single line. `file` is the one that the scene
+    /// was loaded from.
+    pub fn warnings(&self, file: &Path) -> impl Iterator<Item = String> {
+        self.notes
+            .iter()
+            .map(move |note| format!("warning: {}: {}", file.display(), note.replace(char::is_control, " ")))
+    }
 }
 
 /// A node of the transform tree.
@@ -39,15 +51,15 @@ pub struct Node {
     pub parent: Option<usize>,
     /// Transform at rest, relative to the parent.
     pub rest: Transform,
-    /// Mesh drawn here.
+    /// Index into [`Scene::meshes`] of the mesh drawn here.
     pub mesh: Option<usize>,
-    /// Skin that deforms the mesh.
+    /// Index into [`Scene::skins`] of the skin that deforms the mesh.
     pub skin: Option<usize>,
-    /// Morph weights at rest; empty means the mesh's own.
+    /// Morph weights at rest; where empty, those of the mesh are used.
     pub morph_weights: Vec<f32>,
 }
 
-/// Translation, rotation and scale; a node given as a matrix keeps it as `matrix` instead.
+/// A transform from a node's space to its parent's: translation, rotation and scale, or a matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transform {
     /// Translation, in metres.
@@ -56,7 +68,7 @@ pub struct Transform {
     pub rotation: Quat,
     /// Scale; negative values mirror.
     pub scale: Vec3,
-    /// Replaces the other three where the file gives a matrix.
+    /// Used instead of the other three where the file gives a matrix.
     pub matrix: Option<Mat4>,
 }
 
@@ -77,8 +89,8 @@ pub struct Mesh {
     pub morph_weights: Vec<f32>,
 }
 
-/// Indexed triangles with one material. All vertex arrays have the length of `positions` or are
-/// empty where said so.
+/// Indexed triangles with one material. Each vertex array has the length of `positions`, or is empty where its field
+/// says so.
 #[derive(Clone, Debug, Default)]
 pub struct Primitive {
     /// Index into [`Scene::materials`].
@@ -93,37 +105,37 @@ pub struct Primitive {
     pub uvs: Vec<Vec2>,
     /// Linear vertex colours; empty where absent.
     pub colors: Vec<Vec4>,
-    /// Indices, three a triangle, all smaller than `positions.len()`.
+    /// Vertex indices, three for each triangle, counter-clockwise seen from outside, all less than `positions.len()`.
     pub indices: Vec<u32>,
-    /// Joint indices into the skin, with the four greatest weights, normalised; empty if unskinned.
+    /// Indices into [`Skin::joints`], the four joints with the greatest weights for each vertex; empty if unskinned.
     pub joints: Vec<[u16; 4]>,
-    /// Weights that belong to `joints`; empty if unskinned.
+    /// Weights of `joints`, with the sum 1 at each vertex; empty if unskinned.
     pub weights: Vec<Vec4>,
     /// Morph targets.
     pub morphs: Vec<MorphTarget>,
 }
 
-/// Displacements of one morph target, as long as the primitive's positions.
+/// Displacements of one morph target, one for each vertex of the primitive.
 #[derive(Clone, Debug, Default)]
 pub struct MorphTarget {
-    /// Added to the positions, times the weight.
+    /// Added to the positions, multiplied by the weight; in metres.
     pub positions: Vec<Vec3>,
-    /// Added to the normals, times the weight; empty where absent.
+    /// Added to the normals, multiplied by the weight; empty where absent.
     pub normals: Vec<Vec3>,
 }
 
-/// How alpha is read.
+/// What a material's alpha means.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum AlphaMode {
     /// Alpha is ignored.
     #[default]
     Opaque,
-    /// Fragments with alpha below the cutoff are absent.
+    /// Where alpha is below the cutoff, the surface has a hole.
     Mask {
         /// Cutoff, 0..=1.
         cutoff: f32,
     },
-    /// Blended over what lies behind; casts nothing.
+    /// Blended over what lies behind; casts no shadow.
     Blend,
 }
 
@@ -134,19 +146,19 @@ pub struct Material {
     pub name: String,
     /// Linear base colour and alpha.
     pub base_color: Vec4,
-    /// Multiplied with `base_color`; sRGB encoded image.
+    /// Image that is multiplied with `base_color`; its colours are sRGB encoded.
     pub base_color_texture: Option<Texture>,
-    /// Tangent-space normal map; linear image.
+    /// Tangent-space normal map; its values are linear.
     pub normal_texture: Option<Texture>,
-    /// Scale of the normal map's x and y.
+    /// Factor on the x and y of the normal map.
     pub normal_scale: f32,
     /// Metalness, 0..=1.
     pub metallic: f32,
     /// Roughness, 0..=1.
     pub roughness: f32,
-    /// Linear emitted radiance.
+    /// Emitted radiance, linear colour.
     pub emissive: Vec3,
-    /// How alpha is read.
+    /// What alpha means.
     pub alpha: AlphaMode,
     /// Whether back faces are drawn.
     pub double_sided: bool,
@@ -169,16 +181,16 @@ impl Default for Material {
     }
 }
 
-/// A use of an image.
+/// An image and how it is sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Texture {
     /// Index into [`Scene::images`].
     pub image: usize,
     /// Wrap mode along u and v.
     pub wrap: [Wrap; 2],
-    /// Whether magnification is nearest instead of linear.
+    /// Whether magnification takes the nearest texel instead of interpolating.
     pub nearest: bool,
-    /// Rows of the 2×3 matrix of `KHR_texture_transform`: `uv = rows * (u, v, 1)`.
+    /// Rows of a 2×3 matrix, that of `KHR_texture_transform`: image coordinates from (u, v, 1) of the vertex.
     pub uv_from_texcoord: [Vec3; 2],
 }
 
@@ -207,21 +219,21 @@ pub struct Image {
     pub rgba: Vec<u8>,
 }
 
-/// Joints that deform a mesh.
+/// The joints that deform a mesh.
 #[derive(Clone, Debug, Default)]
 pub struct Skin {
-    /// Nodes that serve as joints.
+    /// Indices into [`Scene::nodes`].
     pub joints: Vec<usize>,
-    /// One matrix a joint: joint space from mesh space at bind time.
+    /// For each joint, joint space from mesh space in the pose that the mesh was modelled in.
     pub joint_from_mesh: Vec<Mat4>,
 }
 
-/// A camera that the file brings.
+/// A camera of a scene.
 #[derive(Clone, Debug)]
 pub struct SceneCamera {
     /// Name, possibly empty.
     pub name: String,
-    /// Node that carries it: looks along its -z, y up.
+    /// Index of the node that carries it; it looks along the node's -z, with +y up.
     pub node: usize,
     /// Lens.
     pub lens: Lens,
@@ -250,23 +262,23 @@ pub enum Lens {
     },
 }
 
-/// A directional light that the file brings.
+/// A directional light of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sun {
     /// Unit direction of travel of the light, in world space at rest.
     pub direction: Vec3,
-    /// Linear colour.
+    /// Linear colour, each component at least 0.
     pub color: Vec3,
     /// Illuminance, in lux.
     pub intensity: f32,
 }
 
-/// A clip of keyframes.
+/// Keyframes of any number of nodes, played in a loop.
 #[derive(Clone, Debug, Default)]
 pub struct Animation {
     /// Name, possibly empty.
     pub name: String,
-    /// Length, in seconds; it plays in a loop.
+    /// Length of the loop, in seconds.
     pub duration: f32,
     /// Channels.
     pub channels: Vec<Channel>,
@@ -275,7 +287,7 @@ pub struct Animation {
 /// Keyframes of one property of one node.
 #[derive(Clone, Debug)]
 pub struct Channel {
-    /// Node that moves.
+    /// Index of the node that moves.
     pub node: usize,
     /// Times, in seconds, ascending.
     pub times: Vec<f32>,
@@ -291,13 +303,13 @@ pub enum Interpolation {
     /// Linear, spherical for rotations.
     #[default]
     Linear,
-    /// Holds the earlier value.
+    /// The value of the earlier key.
     Step,
-    /// Cubic Hermite: three values a key (in-tangent, value, out-tangent).
+    /// Cubic Hermite spline: three values for each key (in-tangent, value, out-tangent).
     CubicSpline,
 }
 
-/// Values of a [`Channel`], one a key (three for cubic splines).
+/// Values of a [`Channel`], one for each key (three for cubic splines).
 #[derive(Clone, Debug)]
 pub enum ChannelValues {
     /// Translations, in metres.
@@ -306,6 +318,6 @@ pub enum ChannelValues {
     Rotation(Vec<Quat>),
     /// Scales.
     Scale(Vec<Vec3>),
-    /// Morph weights, all of a key together.
+    /// Morph weights, those of a key one after the other.
     MorphWeights(Vec<f32>),
 }

@@ -4,11 +4,10 @@
 use core::f32::consts::{PI, TAU};
 
 use glam::{UVec2, Vec3};
-use shadowfit::PerspectiveCamera;
 use shadowfit::settings::{BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, Settings};
+use shadowfit::{Aabb, PerspectiveCamera};
 use shadowfit_egui::Artefact;
 use shadowfit_render::FlyCamera;
-use shadowfit_scene::Aabb;
 
 use crate::scout::{GRID, Scout, Seen, Shadow, aimed};
 use crate::stage::Stage;

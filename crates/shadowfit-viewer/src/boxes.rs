@@ -75,16 +75,13 @@ impl SceneBoxes {
     }
 
     /// Takes the boxes of what moves: `bounds` gives that of an instance by its index, in world space.
-    pub(crate) fn set_pose(&mut self, bounds: impl Fn(usize) -> Option<shadowfit_scene::Aabb>) {
+    pub(crate) fn set_pose(&mut self, bounds: impl Fn(usize) -> Option<Aabb>) {
         self.receivers.truncate(self.still[0]);
         self.cones.truncate(self.still[0]);
         self.casters.truncate(self.still[1]);
         for &(index, casts) in &self.moving {
             let is_near = |corner: Vec3| corner.abs().cmple(Vec3::splat(FARTHEST)).all();
-            let Some(bounds) = bounds(index).filter(|bounds| is_near(bounds.min) && is_near(bounds.max)) else {
-                continue;
-            };
-            let aabb = Aabb::new(bounds.min, bounds.max);
+            let Some(aabb) = bounds(index).filter(|aabb| is_near(aabb.min) && is_near(aabb.max)) else { continue };
             self.receivers.push(aabb);
             self.cones.push(NormalCone::ALL);
             if casts {

@@ -16,9 +16,13 @@ const SAMPLES: u32 = 4;
 /// Time of the animation at which the pictures are taken, in seconds.
 const PICTURE_TIME: f32 = 0.0;
 
-/// Renders the picture set that the arguments ask for and says where it is.
+/// Renders the picture set that the arguments ask for and says where it is. What import noted of the scene goes to the
+/// standard error.
 pub(crate) fn run(arguments: &Arguments, folder: &Path) -> Result<()> {
     let scene = arguments.load_scene()?;
+    if let Some(file) = &arguments.scene {
+        scene.warnings(file).for_each(|warning| eprintln!("{warning}"));
+    }
     let gpu = pollster::block_on(Gpu::headless(arguments.adapter()))?;
     let mut stage = Stage::new(gpu, scene, SAMPLES)?;
     arguments.apply(&mut stage.settings)?;

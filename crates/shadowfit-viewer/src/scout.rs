@@ -2,8 +2,7 @@
 //! artefact shows.
 
 use glam::{DVec3, Vec3};
-use shadowfit::{LightFit, PerspectiveCamera};
-use shadowfit_scene::Aabb;
+use shadowfit::{Aabb, LightFit, PerspectiveCamera};
 
 use crate::rays::SceneRays;
 

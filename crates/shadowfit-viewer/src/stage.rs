@@ -7,12 +7,12 @@ use core::fmt;
 use glam::{DVec3, Mat4, Vec3};
 use shadowfit::figures::Figures;
 use shadowfit::settings::{CasterPolicy, FitSettings, LightSettings, Settings};
-use shadowfit::{DepthConvention, FitError, LightFit, PerspectiveCamera, ViewFrustum, diagnostics};
+use shadowfit::{Aabb, DepthConvention, FitError, LightFit, PerspectiveCamera, ViewFrustum, diagnostics};
 use shadowfit_egui::Artefact;
 use shadowfit_render::{
     Atmosphere, FlyCamera, FlyInput, Frame, Gpu, GpuScene, Inset, Line, Picture, Renderer, Statistics,
 };
-use shadowfit_scene::{Aabb, Lens, Pose, Scene};
+use shadowfit_scene::{Lens, Pose, Scene};
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor, ShadowMapError};
 
 use crate::boxes::SceneBoxes;

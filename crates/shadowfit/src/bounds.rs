@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-/// An axis-aligned box in world axes, in metres, relative to an origin that its user states.
+/// An axis-aligned box in metres, relative to an origin that its user states. Fits take boxes in world axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
@@ -23,6 +23,13 @@ impl Aabb {
         Self { min, max }
     }
 
+    /// The least box that holds all `points`, which are finite and in metres; `None` if there are none.
+    pub fn from_points(points: impl IntoIterator<Item = Vec3>) -> Option<Self> {
+        let mut points = points.into_iter();
+        let first = points.next()?;
+        Some(points.fold(Self::new(first, first), Self::with_point))
+    }
+
     /// The least box that holds both.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
@@ -33,6 +40,26 @@ impl Aabb {
     #[must_use]
     pub fn with_point(self, point: Vec3) -> Self {
         Self { min: self.min.min(point), max: self.max.max(point) }
+    }
+
+    /// Edge lengths along x, y and z, in metres. Those of an empty box have no meaning.
+    pub fn size(&self) -> Vec3 {
+        self.max - self.min
+    }
+
+    /// The eight corners: the four with the least z around, then the four with the greatest.
+    pub fn corners(&self) -> [Vec3; 8] {
+        let (a, b) = (self.min, self.max);
+        [
+            Vec3::new(a.x, a.y, a.z),
+            Vec3::new(b.x, a.y, a.z),
+            Vec3::new(b.x, b.y, a.z),
+            Vec3::new(a.x, b.y, a.z),
+            Vec3::new(a.x, a.y, b.z),
+            Vec3::new(b.x, a.y, b.z),
+            Vec3::new(b.x, b.y, b.z),
+            Vec3::new(a.x, b.y, b.z),
+        ]
     }
 
     /// Whether the box holds no point: a coordinate of `min` above that of `max`, or NaN.
@@ -49,4 +76,26 @@ pub struct Boxes<'a> {
     pub origin: DVec3,
     /// The boxes. Empty ones are passed over.
     pub boxes: &'a [Aabb],
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_box_around_the_corners_of_a_box_is_that_box() {
+        let aabb = Aabb::new(Vec3::new(-1.0, 2.0, 3.0), Vec3::new(4.0, 6.0, 8.0));
+        let mut corners = aabb.corners();
+        assert_eq!(Aabb::from_points(corners), Some(aabb));
+        assert_eq!(aabb.size(), Vec3::new(5.0, 4.0, 5.0));
+        corners.sort_by(|a, b| a.to_array().partial_cmp(&b.to_array()).unwrap());
+        assert!(corners.windows(2).all(|pair| pair[0] != pair[1]), "{corners:?}");
+    }
+
+    #[test]
+    fn a_single_point_has_a_box_without_size_and_no_points_have_none() {
+        let point = Vec3::new(1.0, -2.0, 3.0);
+        assert_eq!(Aabb::from_points([point]), Some(Aabb::new(point, point)));
+        assert_eq!(Aabb::from_points([]), None);
+    }
 }

@@ -126,8 +126,8 @@ fn loggia(builder: &mut Builder, column: usize) {
     }
     let platform = builder.solid("platform", &platform, Paint::Stone, CRISP);
     builder.place(group, platform, Vec3::ZERO, 0.0);
-    for place in 0..8 {
-        let x = -7.0 + 2.0 * place as f32;
+    for index in 0..8 {
+        let x = -7.0 + 2.0 * index as f32;
         builder.place(group, column, Vec3::new(x, PLATFORM, ROW), 0.0);
     }
     rear_wall(builder, group);
@@ -168,16 +168,16 @@ fn roof(builder: &mut Builder, group: usize) {
     let slope = builder.node("roof", Some(group), tilt, None);
     let rafter = block(Vec3::new(-0.05, 0.0, -2.55), Vec3::new(0.05, 0.15, 0.72), 0.008);
     let rafter = builder.solid("rafter", &rafter, Paint::Timber, CRISP);
-    for place in 0..31 {
-        builder.place(slope, rafter, Vec3::new(-7.5 + 0.5 * place as f32, 0.0, 0.0), 0.0);
+    for index in 0..31 {
+        builder.place(slope, rafter, Vec3::new(-7.5 + 0.5 * index as f32, 0.0, 0.0), 0.0);
     }
     let boards = block(Vec3::new(-7.95, 0.14, -2.7), Vec3::new(7.95, 0.19, 0.80), 0.006);
     let boards = builder.solid("roof boards", &boards, Paint::Roof, CRISP);
     builder.place(slope, boards, Vec3::ZERO, 0.0);
     let tile = tile_row();
     let tile = builder.solid("tile row", &tile, Paint::Roof, SMOOTH);
-    for place in 0..63 {
-        builder.place(slope, tile, Vec3::new(-7.75 + 0.25 * place as f32, 0.185, 0.86), 0.0);
+    for index in 0..63 {
+        builder.place(slope, tile, Vec3::new(-7.75 + 0.25 * index as f32, 0.185, 0.86), 0.0);
     }
 }
 
@@ -214,13 +214,13 @@ fn arcade(builder: &mut Builder) {
     let arch = builder.solid("arch", &arch, Paint::Stone, CRISP);
     // Along the far side, then toward the eye on the right; neighbours overlap, so every second
     // one is a little thinner and lower, lest faces coincide.
-    for place in 0..24 {
-        let (at, yaw) = if place < 15 {
-            (Vec3::new(-24.0 + 4.1 * place as f32, 0.0, -34.0), 0.0)
+    for index in 0..24 {
+        let (at, yaw) = if index < 15 {
+            (Vec3::new(-24.0 + 4.1 * index as f32, 0.0, -34.0), 0.0)
         } else {
-            (Vec3::new(36.0, 0.0, -31.0 + 4.1 * (place - 15) as f32), TAU / 4.0)
+            (Vec3::new(36.0, 0.0, -31.0 + 4.1 * (index - 15) as f32), TAU / 4.0)
         };
-        let odd = (place % 2) as f32;
+        let odd = (index % 2) as f32;
         let node = builder.place(group, arch, at - Vec3::Y * 0.01 * odd, yaw);
         builder.scene.nodes[node].rest.scale.z = 1.0 - 0.02 * odd;
     }

@@ -88,8 +88,8 @@ fn chest() -> Vec<Primitive> {
     let buttons = button(-0.10, 0.104).with(button(-0.025, 0.114)).with(button(0.05, 0.124));
     let wrap = |radius: f32, y: f32, z: f32, pitch: f32, roll: f32| {
         let turn = Quat::from_rotation_x(pitch) * Quat::from_rotation_z(roll);
-        let place = Affine3A::from_rotation_translation(turn, Vec3::new(0.0, y, z));
-        torus(radius, 0.036, 0.034, 32, 10).transformed(place)
+        let transform = Affine3A::from_rotation_translation(turn, Vec3::new(0.0, y, z));
+        torus(radius, 0.036, 0.034, 32, 10).transformed(transform)
     };
     let knot = ellipsoid(Vec3::new(0.036, 0.042, 0.03), 20, 12).moved(Vec3::new(0.062, 0.20, -0.085));
     let scarf = wrap(0.084, 0.205, 0.004, 0.24, 0.06).with(wrap(0.073, 0.248, 0.004, 0.12, -0.10)).with(knot);
@@ -176,8 +176,8 @@ fn along_z(sections: &[super::shapes::Section], floor: f32) -> Solid {
 fn sole([low, high]: [f32; 2], [back, front]: [f32; 2], half: f32, flare: f32) -> Solid {
     let (middle, reach) = (f32::midpoint(back, front), (front - back) / 2.0);
     let ring = |y: f32, inset: f32| {
-        let point = |place: usize| {
-            let (sin, cos) = (place as f32 / 32.0 * TAU).sin_cos();
+        let point = |index: usize| {
+            let (sin, cos) = (index as f32 / 32.0 * TAU).sin_cos();
             let squarer = |v: f32| v.signum() * v.abs().powf(0.75);
             let width = half + flare * cos;
             Vec3::new(squarer(sin) * (width - inset), y, middle + squarer(cos) * (reach - inset))

@@ -18,14 +18,14 @@ pub(super) const THIGH: f32 = 0.43;
 pub(super) const SHIN: f32 = 0.415;
 /// Height of the ankle above the sole.
 pub(super) const ANKLE: f32 = 0.09;
-/// Place of the toe joint from the ankle.
+/// Position of the toe joint relative to the ankle.
 pub(super) const TOE: Vec3 = Vec3::new(0.0, -0.055, 0.115);
-/// Place of a hip joint from the hips' node, for the left side.
+/// Position of the left hip joint relative to the hips' node.
 pub(super) const HIP: Vec3 = Vec3::new(0.092, -0.02, 0.0);
-/// Place of a shoulder from the chest's node, for the left side.
+/// Position of the left shoulder relative to the chest's node.
 pub(super) const SHOULDER: Vec3 = Vec3::new(0.160, 0.136, -0.008);
 
-/// A joint of the figure; its number is its place in [`RIG`].
+/// A joint of the figure; its number is its index in [`RIG`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Joint {
     Root,
@@ -106,7 +106,7 @@ impl Side {
     }
 }
 
-/// A joint's name, parent and place in its parent's axes, in metres.
+/// A joint's name, parent and position in its parent's axes, in metres.
 pub(super) struct Bone {
     name: &'static str,
     pub(super) parent: Option<Joint>,

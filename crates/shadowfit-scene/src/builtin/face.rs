@@ -127,11 +127,11 @@ fn head() -> Solid {
         // Denser where brow, eyes and nose are: a little below the horizon of the centre.
         let height = height + 0.055 * (TAU * height).sin() * 0.9;
         let (up, flat) = (-(PI * height).cos(), (PI * height).sin());
-        let point = |place: usize| {
-            let turn = place as f32 / half as f32;
+        let point = |index: usize| {
+            let turn = index as f32 / half as f32;
             let turn = PI * (turn - 0.12 * (PI * turn).sin());
             let direction = Vec3::new(flat * turn.sin(), up, flat * turn.cos());
-            let direction = if place == half { Vec3::new(0.0, up, -flat) } else { direction };
+            let direction = if index == half { Vec3::new(0.0, up, -flat) } else { direction };
             CENTRE + direction * reach(direction)
         };
         let left: Vec<Vec3> = (0..=half).map(point).collect();
@@ -177,10 +177,10 @@ fn hair() -> Solid {
         section(0.16, 0.101, 0.111, -0.022),
         section(0.215, 0.097, 0.108, -0.016),
     ];
-    let places = [(0.015, 0.163, 0.0045), (0.034, 0.1675, 0.0062), (0.059, 0.1605, 0.0035)];
-    let [inner, middle, outer] = places.map(|(x, y, _)| on_face(x, y));
-    let brow = capsule(inner, places[0].2, middle, places[1].2, 12);
-    let brow = brow.with(capsule(middle, places[1].2, outer, places[2].2, 12)).and_mirrored();
+    let points = [(0.015, 0.163, 0.0045), (0.034, 0.1675, 0.0062), (0.059, 0.1605, 0.0035)];
+    let [inner, middle, outer] = points.map(|(x, y, _)| on_face(x, y));
+    let brow = capsule(inner, points[0].2, middle, points[1].2, 12);
+    let brow = brow.with(capsule(middle, points[1].2, outer, points[2].2, 12)).and_mirrored();
     loft(&sections, 2.1, 3, 36).with(brow)
 }
 

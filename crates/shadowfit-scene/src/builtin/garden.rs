@@ -30,9 +30,9 @@ pub(super) fn build(builder: &mut Builder) {
 fn fence(builder: &mut Builder, group: usize) {
     let post = [(0.02, -0.01), (0.02, 1.2), (0.013, 1.225), (0.021, 1.24), (0.026, 1.26), (0.021, 1.28), (0.0, 1.305)];
     let post = builder.solid("fence post", &lathe(&post, 10), Paint::Iron, 0.9);
-    for place in 0..34 {
-        let z = 2.3 - 0.2 * place as f32;
-        if place % 11 != 0 {
+    for index in 0..34 {
+        let z = 2.3 - 0.2 * index as f32;
+        if index % 11 != 0 {
             builder.place(group, post, Vec3::new(FENCE_X, 0.0, z), 0.0);
         }
     }
@@ -40,8 +40,8 @@ fn fence(builder: &mut Builder, group: usize) {
         .with(block(Vec3::new(-0.095, 1.295, -0.095), Vec3::new(0.095, 1.34, 0.095), 0.008))
         .with(ellipsoid(Vec3::splat(0.07), 18, 10).moved(Vec3::Y * 1.395));
     let stout = builder.solid("fence pier", &stout, Paint::Timber, 0.75);
-    for place in 0..4 {
-        builder.place(group, stout, Vec3::new(FENCE_X, 0.0, 2.3 - 2.2 * place as f32), 0.0);
+    for index in 0..4 {
+        builder.place(group, stout, Vec3::new(FENCE_X, 0.0, 2.3 - 2.2 * index as f32), 0.0);
     }
     let rail = block(Vec3::new(-0.016, -0.02, -6.6), Vec3::new(0.016, 0.02, 0.0), 0.005);
     let rail = builder.solid("fence rail", &rail, Paint::Iron, CRISP);
@@ -167,16 +167,16 @@ fn cypresses(builder: &mut Builder, group: usize) {
         lathe(&[(0.13, -0.02), (0.10, 0.8)], 14).primitive(Paint::Bark.index(), CRISP),
     ];
     let tree = builder.mesh("cypress", primitives);
-    let row = (0..9).map(|place| Vec3::new(-9.0 + 2.9 * place as f32, 0.0, -12.6 - 0.9 * (place % 2) as f32));
-    let far = (0..16).map(|place| {
-        let angle = place as f32 / 16.0 * TAU + 0.1;
-        Vec3::new(angle.sin(), 0.0, angle.cos()) * (27.0 + 14.0 * hash(place, 3))
+    let row = (0..9).map(|index| Vec3::new(-9.0 + 2.9 * index as f32, 0.0, -12.6 - 0.9 * (index % 2) as f32));
+    let far = (0..16).map(|index| {
+        let angle = index as f32 / 16.0 * TAU + 0.1;
+        Vec3::new(angle.sin(), 0.0, angle.cos()) * (27.0 + 14.0 * hash(index, 3))
     });
     let near = [Vec3::new(11.4, 0.0, -5.2), Vec3::new(-8.9, 0.0, -5.4), Vec3::new(12.0, 0.0, 1.5)];
-    for (place, at) in row.chain(far).chain(near).enumerate() {
-        let size = 0.85 + 0.4 * hash(place as u32, 9);
+    for (index, at) in row.chain(far).chain(near).enumerate() {
+        let size = 0.85 + 0.4 * hash(index as u32, 9);
         let node = builder.place_scaled(group, tree, at, Vec3::new(1.0, size, 1.0));
-        builder.scene.nodes[node].rest.rotation = Quat::from_rotation_y(TAU * hash(place as u32, 11));
+        builder.scene.nodes[node].rest.rotation = Quat::from_rotation_y(TAU * hash(index as u32, 11));
     }
 }
 
@@ -186,8 +186,8 @@ fn low_walls(builder: &mut Builder, group: usize) {
     let coping: Solid = block(Vec3::new(-0.22, 0.93, -2.54), Vec3::new(0.22, 1.02, 2.54), 0.012);
     let primitives = vec![wall.primitive(Paint::Plaster.index(), CRISP), coping.primitive(Paint::Stone.index(), CRISP)];
     let wall = builder.mesh("low wall", primitives);
-    for place in 0..5 {
-        let z = -8.0 + 5.3 * place as f32;
+    for index in 0..5 {
+        let z = -8.0 + 5.3 * index as f32;
         builder.place(group, wall, Vec3::new(10.4, 0.0, z), 0.0);
         builder.place(group, wall, Vec3::new(-7.6, 0.0, z), 0.0);
     }

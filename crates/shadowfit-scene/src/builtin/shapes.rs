@@ -33,20 +33,20 @@ pub(super) const fn section(y: f32, rx: f32, rz: f32, cz: f32) -> Section {
 pub(super) fn tube(rings: &[Vec<Vec3>], bottom: Vec3, top: Vec3) -> Solid {
     let around = rings[0].len();
     let mut solid = Solid { positions: rings.concat(), triangles: Vec::new() };
-    let id = |ring: usize, place: usize| (ring * around + place % around) as u32;
+    let id = |ring: usize, index: usize| (ring * around + index % around) as u32;
     for ring in 1..rings.len() {
-        for place in 0..around {
-            let [a, b] = [id(ring - 1, place), id(ring - 1, place + 1)];
-            let [c, d] = [id(ring, place + 1), id(ring, place)];
+        for index in 0..around {
+            let [a, b] = [id(ring - 1, index), id(ring - 1, index + 1)];
+            let [c, d] = [id(ring, index + 1), id(ring, index)];
             solid.triangles.extend([[a, b, c], [a, c, d]]);
         }
     }
     let poles = solid.positions.len() as u32;
     solid.positions.extend([bottom, top]);
     let last = rings.len() - 1;
-    for place in 0..around {
-        solid.triangles.push([poles, id(0, place + 1), id(0, place)]);
-        solid.triangles.push([poles + 1, id(last, place), id(last, place + 1)]);
+    for index in 0..around {
+        solid.triangles.push([poles, id(0, index + 1), id(0, index)]);
+        solid.triangles.push([poles + 1, id(last, index), id(last, index + 1)]);
     }
     solid
 }
@@ -70,8 +70,8 @@ pub(super) fn lathe(profile: &[(f32, f32)], segments: usize) -> Solid {
 /// A [`lathe`] whose radius is multiplied by `shape(turn, height)`.
 pub(super) fn modulated_lathe(profile: &[(f32, f32)], segments: usize, shape: impl Fn(f32, f32) -> f32) -> Solid {
     let ring = |&(radius, height): &(f32, f32)| {
-        let point = |place: usize| {
-            let turn = place as f32 / segments as f32 * TAU;
+        let point = |index: usize| {
+            let turn = index as f32 / segments as f32 * TAU;
             let radius = radius * shape(turn, height);
             Vec3::new(radius * turn.sin(), height, radius * turn.cos())
         };
@@ -126,8 +126,8 @@ pub(super) fn loft(sections: &[Section], power: f32, steps: usize, segments: usi
     full.extend(&path);
     full.extend(dome(path[path.len() - 1], 1.0));
     let ring = |s: &Section| {
-        let point = |place: usize| {
-            let (x, z) = superellipse(place as f32 / segments as f32 * TAU, power);
+        let point = |index: usize| {
+            let (x, z) = superellipse(index as f32 / segments as f32 * TAU, power);
             Vec3::new(s.cx + x * s.rx, s.y, s.cz + z * s.rz)
         };
         (0..segments).map(point).collect::<Vec<_>>()
@@ -155,12 +155,12 @@ fn dome(end: Section, up: f32) -> Vec<Section> {
     (1..DOME).map(at).collect()
 }
 
-/// A limb hanging from the origin along -y: radii at evenly spaced places, top first.
+/// A limb hanging from the origin along -y: radii at even distances, top first.
 pub(super) fn limb(length: f32, radii: &[f32], segments: usize) -> Solid {
     let last = radii.len() - 1;
-    let at = |place: usize| {
-        let radius = radii[last - place];
-        section(-length * (last - place) as f32 / last as f32, radius, radius, 0.0)
+    let at = |index: usize| {
+        let radius = radii[last - index];
+        section(-length * (last - index) as f32 / last as f32, radius, radius, 0.0)
     };
     let sections: Vec<_> = (0..=last).map(at).collect();
     loft(&sections, 2.0, 2, segments)
@@ -201,7 +201,7 @@ pub(super) fn torus(radius: f32, thick: f32, tall: f32, around: usize, across: u
 /// A box about the origin whose edges are rounded with `radius` in `steps` steps.
 pub(super) fn rounded_box(half: Vec3, radius: f32, steps: usize) -> Solid {
     let inner = half - radius;
-    // Places along an axis of a face: the rounded end, the flat middle, the other rounded end.
+    // Positions along an axis of a face: the rounded end, the flat middle, the other rounded end.
     let mut line: Vec<(f32, f32)> = Vec::new();
     for step in 0..=steps {
         line.push((-1.0, -(1.0 - step as f32 / steps as f32)));

@@ -102,7 +102,7 @@ struct Corners {
     areas: Vec<Vec3>,
     /// Unit face normals.
     normals: Vec<Vec3>,
-    /// Corner numbers (3 · face + place), grouped by vertex.
+    /// Corner numbers (3 · face + corner), grouped by vertex.
     by_vertex: Vec<u32>,
     /// Start of each vertex's group in `by_vertex`, and the end of the last.
     starts: Vec<usize>,

@@ -66,7 +66,7 @@ impl Noise {
 struct NoiseRow(Vec<f32>);
 
 impl NoiseRow {
-    /// Value at a place in cells.
+    /// Value at a position in cells.
     fn at(&self, x: f32) -> f32 {
         let column = x as u32;
         let left = self.0[(column % NOISE_CELLS) as usize];

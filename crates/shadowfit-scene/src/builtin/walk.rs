@@ -1,6 +1,6 @@
 //! How the wanderer stands, walks and turns.
 //!
-//! The walk starts from the feet: each is planted at a fixed place on a circular path and rolls
+//! The walk starts from the feet: each is planted at a fixed point of a circular path and rolls
 //! from heel to toe there, so that it cannot slide; thighs and shins follow by two-bone inverse
 //! kinematics. Hips, shoulders and arms swing by sines in step with the feet.
 
@@ -31,9 +31,9 @@ const LAG: f32 = 0.035;
 const TOE_OUT: f32 = 0.1;
 /// Point that the heel rolls over, from the ankle.
 const HEEL: Vec3 = Vec3::new(0.0, -ANKLE, -0.055);
-/// Time of a turn in place, in seconds.
+/// Time of a turn on the spot, in seconds.
 const TURN_TIME: f32 = 12.0;
-/// Keyframes of a turn in place.
+/// Keyframes of a turn on the spot.
 const TURN_KEYS: usize = 72;
 
 /// A pose: where root and hips are, and how every joint is turned.
@@ -62,7 +62,7 @@ impl Posture {
         self.rotations[joint as usize] = Quat::from_euler(EulerRot::YXZ, yaw, pitch, roll);
     }
 
-    /// Place and orientation of a joint relative to the root.
+    /// Position and orientation of a joint relative to the root.
     fn frame(&self, joint: Joint) -> (Vec3, Quat) {
         match RIG[joint as usize].parent {
             None => (Vec3::ZERO, Quat::IDENTITY),
@@ -170,12 +170,12 @@ fn breathe(posture: &mut Posture, phase: f32) {
     posture.rotations[Joint::Neck as usize] *= breath.inverse();
 }
 
-/// Root's place and heading after `strides` strides: a circle through the origin, to the left.
+/// Root's position and heading after `strides` strides: a circle through the origin, to the left.
 fn path(strides: f32) -> (Vec3, Quat) {
     path_at(strides * STRIDE)
 }
 
-/// Root's place and heading after `length` metres of path.
+/// Root's position and heading after `length` metres of path.
 fn path_at(length: f32) -> (Vec3, Quat) {
     let angle = length / PATH_RADIUS;
     let (sin, cos) = angle.sin_cos();
@@ -286,10 +286,10 @@ fn swing_arms(posture: &mut Posture, turn: f32) {
 
 /// Lets the end of the scarf trail behind, each piece later than the one above.
 fn swing_scarf(posture: &mut Posture, turn: f32) {
-    for (place, joint) in [Joint::TailA, Joint::TailB, Joint::TailC].into_iter().enumerate() {
-        let late = place as f32 * 0.9;
-        let pitch = [0.30, 0.12, -0.05][place] + [0.07, 0.10, 0.14][place] * (2.0 * turn - late).sin();
-        let roll = [0.05, 0.06, 0.10][place] * (turn - late).sin();
+    for (index, joint) in [Joint::TailA, Joint::TailB, Joint::TailC].into_iter().enumerate() {
+        let late = index as f32 * 0.9;
+        let pitch = [0.30, 0.12, -0.05][index] + [0.07, 0.10, 0.14][index] * (2.0 * turn - late).sin();
+        let roll = [0.05, 0.06, 0.10][index] * (turn - late).sin();
         posture.turn(joint, pitch, 0.0, roll);
     }
 }
@@ -304,9 +304,11 @@ fn animation(name: &str, duration: f32, poses: &[Posture], joints: &Joints) -> A
         interpolation: Interpolation::Linear,
         values,
     };
-    let place = |get: fn(&Posture) -> Vec3| ChannelValues::Translation(poses.iter().map(get).collect());
-    let mut channels =
-        vec![channel(Joint::Root, place(|pose| pose.root)), channel(Joint::Hips, place(|pose| pose.hips))];
+    let translations = |get: fn(&Posture) -> Vec3| ChannelValues::Translation(poses.iter().map(get).collect());
+    let mut channels = vec![
+        channel(Joint::Root, translations(|pose| pose.root)),
+        channel(Joint::Hips, translations(|pose| pose.hips)),
+    ];
     for joint in Joint::ALL {
         let mut turns: Vec<Quat> = poses.iter().map(|pose| pose.rotations[joint as usize]).collect();
         // The same rotation has two signs; neighbours take the nearer one.

@@ -35,7 +35,7 @@ pub(crate) struct Reader<'a> {
     elements_left: Cell<u64>,
 }
 
-/// The checked place of an accessor's data.
+/// Where an accessor's data is and how it is laid out, checked.
 struct Layout<'a> {
     /// From the first element on; `None` where all elements are zero.
     bytes: Option<&'a [u8]>,
@@ -207,12 +207,12 @@ impl<'a> Reader<'a> {
         if count > values.len() as u64 {
             return Err(wrong("it replaces more elements than there are"));
         }
-        let place = |view, offset: u64, size: usize| -> Result<&[u8], Problem> {
+        let part = |view, offset: u64, size: usize| -> Result<&[u8], Problem> {
             let bytes = self.view(view, &name)?;
             range(bytes, offset, count * size as u64).ok_or_else(|| wrong("it exceeds its buffer view"))
         };
-        let indices = place(sparse.indices.buffer_view, sparse.indices.byte_offset.0, component.size())?;
-        let replacements = place(sparse.values.buffer_view, sparse.values.byte_offset.0, size)?;
+        let indices = part(sparse.indices.buffer_view, sparse.indices.byte_offset.0, component.size())?;
+        let replacements = part(sparse.values.buffer_view, sparse.values.byte_offset.0, size)?;
         let indices = indices.chunks_exact(component.size());
         for (index, replacement) in indices.zip(replacements.chunks_exact(size)) {
             let index = unsigned(index, component) as usize;

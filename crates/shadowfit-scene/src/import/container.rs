@@ -13,8 +13,13 @@ use crate::SceneError;
 pub(crate) const MAX_FILE_BYTES: u64 = u32::MAX as u64;
 
 /// Extensions that a file may require.
-const SUPPORTED: [&str; 4] =
-    ["KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_mesh_quantization", "KHR_texture_transform"];
+const SUPPORTED: [&str; 5] = [
+    "EXT_texture_webp",
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+];
 
 /// A parsed file.
 pub(crate) struct Source {

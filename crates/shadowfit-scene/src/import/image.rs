@@ -1,5 +1,5 @@
-//! Images: PNG and JPEG, external, embedded or in a data URI. An image that cannot be used is never
-//! an error: a placeholder takes its place and a note says why.
+//! Images: PNG, JPEG and WebP, external, embedded or in a data URI. An image that cannot be used is not
+//! an error: the texture gets another image, and a note says why.
 
 use std::collections::HashMap;
 use std::io::Cursor;
@@ -10,7 +10,6 @@ use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
 use super::accessor::Reader;
 use super::container::MAX_FILE_BYTES;
-use super::notes::Notes;
 use super::uri::read_uri;
 use crate::Image;
 
@@ -27,8 +26,8 @@ const MAX_TOTAL_BYTES: u64 = 1 << 30;
 pub(crate) struct Images<'a> {
     root: &'a Root,
     folder: &'a Path,
-    /// By index in the file; `None` where it could not be used.
-    loaded: HashMap<usize, Option<usize>>,
+    /// By index in the file: index in the scene, or why it cannot be used.
+    loaded: HashMap<usize, Result<usize, String>>,
     decoded: Vec<Image>,
     placeholder: Option<usize>,
     bytes_left: u64,
@@ -41,24 +40,17 @@ impl<'a> Images<'a> {
         Self { root, folder, loaded, decoded, placeholder: None, bytes_left: MAX_TOTAL_BYTES }
     }
 
-    /// Index of an image in the scene; `None` where it cannot be used, which the notes tell.
-    pub(crate) fn load(&mut self, index: usize, reader: &Reader, notes: &mut Notes) -> Option<usize> {
-        if let Some(&loaded) = self.loaded.get(&index) {
-            return loaded;
+    /// Index of an image in the scene, or why it cannot be used.
+    pub(crate) fn load(&mut self, index: usize, reader: &Reader) -> Result<usize, String> {
+        if let Some(loaded) = self.loaded.get(&index) {
+            return loaded.clone();
         }
-        let result = self.try_load(index, reader);
-        let loaded = match result {
-            Ok(image) => {
-                self.bytes_left -= image.rgba.len() as u64;
-                self.decoded.push(image);
-                Some(self.decoded.len() - 1)
-            }
-            Err(reason) => {
-                notes.add(format!("images[{index}]: replaced by a placeholder: {reason}"));
-                None
-            }
-        };
-        self.loaded.insert(index, loaded);
+        let loaded = self.try_load(index, reader).map(|image| {
+            self.bytes_left -= image.rgba.len() as u64;
+            self.decoded.push(image);
+            self.decoded.len() - 1
+        });
+        self.loaded.insert(index, loaded.clone());
         loaded
     }
 
@@ -99,12 +91,13 @@ fn name(json: &json::Image, index: usize) -> String {
     json.name.clone().or_else(|| file.cloned()).unwrap_or_else(|| format!("images[{index}]"))
 }
 
-/// Width, height and RGBA of an encoded image; dimensions are checked before pixels are allocated.
+/// Width, height and RGBA of an encoded image, whose format its first bytes tell; dimensions are checked before pixels
+/// are allocated.
 fn decode(bytes: &[u8], bytes_left: u64) -> Result<(u32, u32, Vec<u8>), String> {
     let format = match image::guess_format(bytes) {
-        Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg)) => format,
-        Ok(other) => return Err(format!("{other:?} is not supported, only PNG and JPEG are")),
-        Err(_) => return Err("it is neither PNG nor JPEG".to_owned()),
+        Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP)) => format,
+        Ok(other) => return Err(format!("{other:?} is not supported, only PNG, JPEG and WebP are")),
+        Err(_) => return Err("it is not PNG, JPEG or WebP".to_owned()),
     };
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_SIDE);

@@ -57,10 +57,10 @@ fn insert(slots: &mut [(u16, f32); 4], joint: u32, weight: f32) {
     if !(weight > 0.0 && weight.is_finite()) {
         return;
     }
-    let Some(place) = slots.iter().position(|&(_, other)| weight > other) else { return };
-    slots[place..].rotate_right(1);
+    let Some(slot) = slots.iter().position(|&(_, other)| weight > other) else { return };
+    slots[slot..].rotate_right(1);
     // Joints are u8 or u16 by the specification; a greater one is out of range in every skin.
-    slots[place] = (u16::try_from(joint).unwrap_or(u16::MAX), weight);
+    slots[slot] = (u16::try_from(joint).unwrap_or(u16::MAX), weight);
 }
 
 /// A vertex without influences hangs on the first joint.

@@ -120,17 +120,8 @@ impl<'a> Materials<'a> {
             .get(used.texture.value())
             .ok_or_else(|| Problem::new(used.element.as_str(), format!("there is no texture {}", used.texture)))?;
         let element = format!("textures[{}]", used.texture);
-        // What the crate gives for a texture without a source of its own.
-        let absent = u32::MAX as usize;
-        let source = texture.source.value();
-        let image = if source == absent {
-            notes.add(format!("{element}: replaced by a placeholder: it has no PNG or JPEG image"));
-            None
-        } else if source >= self.root.images.len() {
-            return Err(Problem::new(element, format!("there is no image {source}")));
-        } else {
-            self.images.load(source, self.reader, notes)
-        };
+        let sources = sources(texture, self.root.images.len(), &element)?;
+        let image = self.image(&sources, &element, notes);
         let Some(image) = image else { return Ok(None) };
         let mut loaded = Texture { image, ..blank() };
         if let Some(index) = texture.sampler {
@@ -145,8 +136,53 @@ impl<'a> Materials<'a> {
         Ok(Some(loaded))
     }
 
+    /// The first of a texture's images that can be used; notes say why those before it cannot.
+    fn image(&mut self, sources: &[usize], element: &str, notes: &mut Notes) -> Option<usize> {
+        if sources.is_empty() {
+            notes.add(format!("{element}: replaced by a placeholder: it has no PNG, JPEG or WebP image"));
+        }
+        for (index, &source) in sources.iter().enumerate() {
+            match self.images.load(source, self.reader) {
+                Ok(image) => return Some(image),
+                Err(reason) => {
+                    let next = sources.get(index + 1);
+                    let instead = next.map_or("a placeholder".to_owned(), |next| format!("images[{next}]"));
+                    notes.add(format!("images[{source}]: replaced by {instead}: {reason}"));
+                }
+            }
+        }
+        None
+    }
+
     fn blank(&mut self) -> Texture {
         Texture { image: self.images.placeholder(), ..blank() }
+    }
+}
+
+/// Images of a texture, the preferred one first: that of `EXT_texture_webp`, then the one for readers without it. All
+/// are below `count`, the number of images in the file.
+fn sources(texture: &texture::Texture, count: usize, element: &str) -> Result<Vec<usize>, Problem> {
+    // What the gltf crate gives for a texture without an image of its own.
+    let absent = u32::MAX as usize;
+    let mut sources = Vec::new();
+    sources.extend(webp_source(texture, element)?);
+    sources.extend(Some(texture.source.value()).filter(|&source| source != absent));
+    match sources.iter().find(|&&source| source >= count) {
+        Some(source) => Err(Problem::new(element, format!("there is no image {source}"))),
+        None => Ok(sources),
+    }
+}
+
+/// The image that `EXT_texture_webp` names; the gltf crate leaves this extension unparsed.
+fn webp_source(texture: &texture::Texture, element: &str) -> Result<Option<usize>, Problem> {
+    let extension = texture.extensions.as_ref().and_then(|extensions| extensions.others.get("EXT_texture_webp"));
+    let Some(source) = extension.and_then(|extension| extension.get("source")) else { return Ok(None) };
+    match source.as_u64().and_then(|source| usize::try_from(source).ok()) {
+        Some(source) => Ok(Some(source)),
+        None => {
+            let element = format!("{element}.extensions.EXT_texture_webp.source");
+            Err(Problem::new(element, format!("{source} is not the index of an image")))
+        }
     }
 }
 

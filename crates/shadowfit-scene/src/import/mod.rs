@@ -1,4 +1,4 @@
-//! Import of glTF 2.0 scenes, for files that nobody vouches for.
+//! Import of glTF 2.0 scenes from files that may be broken or malicious.
 //!
 //! The gltf crate parses the JSON; everything behind it (GLB chunks, URIs, accessors, indices of any
 //! kind) is checked here before it is used, because the crate's own readers may panic on bad data.
@@ -23,8 +23,9 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::path::Path;
 
-use glam::{Mat4, Vec3};
+use glam::Mat4;
 use gltf::json::Root;
+use shadowfit::Aabb;
 
 use self::accessor::Reader;
 use self::animation::Animations;
@@ -34,7 +35,7 @@ use self::mesh::MAX_COORDINATE;
 use self::nodes::Tree;
 use self::notes::Notes;
 use crate::error::Problem;
-use crate::{Aabb, Mesh, Node, Pose, Primitive, Scene, SceneError, Skin};
+use crate::{Mesh, Node, Pose, Primitive, Scene, SceneError, Skin};
 
 /// Triangles that a scene may draw: nodes may share meshes, so that a small file can ask for any
 /// number of them.
@@ -43,7 +44,8 @@ const MAX_DRAWN_TRIANGLES: usize = 1 << 26;
 /// Loads the default scene of a `.gltf` or `.glb` file, or its first where none is the default.
 ///
 /// # Errors
-/// Every way in which the file can be wrong, by file, element and reason; see [`SceneError`].
+/// If the file cannot be read, is not valid glTF 2.0, requires an extension that is not supported, or draws nothing;
+/// see [`SceneError`].
 pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
     load_gltf_scene(path, None)
 }
@@ -51,7 +53,7 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
 /// Loads scene number `scene` of a file, counted from 0; `None` is the default one.
 ///
 /// # Errors
-/// As [`load_gltf`], and where the file has no such scene.
+/// As [`load_gltf`], and if the file has no such scene.
 pub fn load_gltf_scene(path: &Path, scene: Option<usize>) -> Result<Scene, SceneError> {
     let mut source = container::read(path)?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -185,7 +187,7 @@ fn check_extent(scene: &Scene, rest: &Pose, tree: &Tree) -> Result<(), Problem> 
             Some(skin) => rest.world_from_mesh_by_joint(skin),
             None => vec![rest.world_from(instance.node)],
         };
-        if !matrices.iter().all(|&matrix| reaches_acceptable(bounds, matrix)) {
+        if !matrices.iter().all(|&matrix| is_within_reach(bounds, matrix)) {
             let reason = format!("it puts geometry beyond {MAX_COORDINATE:e} m");
             return Err(Problem::new(element, reason).hint("Scale the scene down"));
         }
@@ -193,10 +195,9 @@ fn check_extent(scene: &Scene, rest: &Pose, tree: &Tree) -> Result<(), Problem> 
     Ok(())
 }
 
-fn reaches_acceptable(bounds: Aabb, world_from_local: Mat4) -> bool {
-    (0..8).all(|corner| {
-        let pick = |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
-        let world = world_from_local.transform_point3(Vec3::new(pick(0), pick(1), pick(2)));
+fn is_within_reach(bounds: Aabb, world_from_local: Mat4) -> bool {
+    bounds.corners().into_iter().all(|corner| {
+        let world = world_from_local.transform_point3(corner);
         world.is_finite() && world.abs().max_element() <= MAX_COORDINATE
     })
 }

@@ -17,21 +17,21 @@ pub(crate) struct Tree {
 }
 
 /// Collects the nodes of a scene: the given one, else the default one, else the first; in a file
-/// without scenes all nodes that are nobody's child.
+/// without scenes all nodes without a parent.
 pub(crate) fn collect(root: &Root, scene: Option<usize>) -> Result<Tree, Problem> {
     let (element, roots) = roots(root, scene)?;
     let mut tree = Tree { nodes: Vec::new(), file_index: Vec::new(), scene_index: vec![None; root.nodes.len()] };
     let mut pending: Vec<_> = roots.iter().rev().map(|&index| (index, None)).collect();
     while let Some((index, parent)) = pending.pop() {
-        let place = || match parent {
+        let parent_element = || match parent {
             Some(parent) => format!("nodes[{}].children", tree.file_index[parent]),
             None => element.clone(),
         };
         let json = root.nodes.get(index.value());
-        let json = json.ok_or_else(|| Problem::new(place(), format!("there is no node {index}")))?;
+        let json = json.ok_or_else(|| Problem::new(parent_element(), format!("there is no node {index}")))?;
         if tree.scene_index[index.value()].is_some() {
             let reason = format!("node {index} is reached twice: it has two parents or is its own ancestor");
-            return Err(Problem::new(place(), reason));
+            return Err(Problem::new(parent_element(), reason));
         }
         let own = tree.nodes.len();
         tree.scene_index[index.value()] = Some(own);

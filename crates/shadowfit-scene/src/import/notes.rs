@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 /// Notes kept one by one; more are only counted, so that a broken file cannot fill the memory.
 const MAX_NOTES: usize = 64;
 
-/// What can happen to many elements and is told as one sum.
+/// What can happen to many elements and has one note with their number.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Tally {
     /// Triangles without area.

@@ -1,4 +1,4 @@
-//! Cameras and the sun that a file brings: the viewer starts with them.
+//! Cameras and the sun of a file.
 
 use std::f32::consts::PI;
 

@@ -7,5 +7,6 @@ mod assets;
 mod build;
 mod hostile;
 mod small_broken;
+mod small_images;
 mod small_motion;
 mod small_surface;

@@ -1,9 +1,9 @@
 //! A scene ready to be drawn, traced and fitted to.
 
 use glam::{DVec3, Vec3};
-use shadowfit::PerspectiveCamera;
+use shadowfit::{Aabb, PerspectiveCamera};
 use shadowfit_render::{Gpu, GpuScene};
-use shadowfit_scene::{Aabb, Pose, Scene};
+use shadowfit_scene::{Pose, Scene};
 
 use crate::boxes::SceneBoxes;
 use crate::rays::SceneRays;
