@@ -1,6 +1,6 @@
-//! What a pixel of a judged picture is called.
+//! The classes of pixels in a judged picture.
 
-/// What a judgement calls a pixel.
+/// How a pixel of a picture compares with the truth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Class {

@@ -1,8 +1,8 @@
 //! Sorts the wrong pixels of a picture: false shadow (acne), false light (peter-panning, leaks), hole
 //! (clipping) and edge (aliasing).
 //!
-//! A picture's filtered shadow factors are compared with the truth. What a wrong pixel is called
-//! depends on the map that it reads: how wide its texels are on screen, and whether it holds an
+//! A picture's filtered shadow factors are compared with the truth. The class of a wrong pixel depends
+//! on the map that it reads: how wide its texels are on screen, and whether it holds an
 //! occluder.
 
 use rayon::prelude::*;
@@ -17,7 +17,7 @@ use crate::truth::{Truth, TruthPoint};
 /// A judged picture. All lists are rows of pixels from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Judged {
-    /// What each pixel is called.
+    /// Class of each pixel.
     pub classes: Vec<Class>,
     /// Screen pixels per shadow texel along the worse axis, in the map that is read. Infinite where no
     /// map holds the point or the surface is edge-on to the light; not a number where the pixel is
@@ -34,7 +34,7 @@ pub struct Judged {
     pub tally: PictureTally,
 }
 
-/// What is found out about a single pixel.
+/// The result for a single pixel.
 struct Finding {
     class: Class,
     pixels_per_texel: f32,
@@ -88,7 +88,7 @@ pub fn judge(
     judged
 }
 
-/// What the map that a point reads tells of a pixel.
+/// Judges a single pixel.
 fn find(tracer: &Tracer, truth: &Truth, maps: &PictureMaps, factor: f32, pixel: usize, point: &TruthPoint) -> Finding {
     let choice = choose(maps.maps, point.view_depth, point.position);
     let texel_width = choice.as_ref().map(|choice| texel_width(truth, choice, pixel, point));

@@ -16,7 +16,7 @@ use crate::memory::TracerMemory;
 /// and third corner.
 type AlphaTest = Box<dyn Fn(u32, [f32; 2]) -> bool + Send + Sync>;
 
-/// A refitted hierarchy is built anew when its cost has grown by more than this factor since it was
+/// A refitted hierarchy is rebuilt when its cost has grown by more than this factor since it was
 /// built. The time of a ray grows about as the cost does, and a build takes as long as many thousands
 /// of rays.
 const MAX_COST_GROWTH: f32 = 1.5;
@@ -71,7 +71,7 @@ impl Tracer {
     }
 
     /// Moves all triangles, given in their order (world space, metres): for animated scenes. The
-    /// hierarchy is refitted, or built anew where a ray through the refitted one would cost more than
+    /// hierarchy is refitted, or rebuilt where a ray through the refitted one would cost more than
     /// 1.5 times what it cost when it was built.
     ///
     /// # Errors
@@ -327,7 +327,7 @@ mod tests {
             .expect("as many");
         assert!(boxes_hold_their_triangles(&tracer));
         assert_eq!(tracer.built_cost, slow_before, "a small motion is refitted");
-        // Shuffled, neighbours of the hierarchy lie far apart: it is built anew.
+        // Shuffled, neighbours of the hierarchy lie far apart: it is rebuilt.
         tracer.set_triangles(row(|index| index * 211 % 500)).expect("as many");
         let cost_now = cost(tracer.bvh.as_ref().expect("triangles"));
         assert!(boxes_hold_their_triangles(&tracer) && cost_now < slow_before * MAX_COST_GROWTH, "{cost_now}");

@@ -1,4 +1,4 @@
-//! What is judged on the GPU, and the uniform that its shaders read.
+//! A picture to judge on the GPU, and the uniform that is made of it for the shaders.
 
 use glam::DVec3;
 

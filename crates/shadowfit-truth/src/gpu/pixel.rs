@@ -1,4 +1,4 @@
-//! What the texture of classes says about a pixel.
+//! How a pixel of the texture of classes is encoded.
 
 use crate::class::Class;
 
@@ -15,7 +15,7 @@ use crate::class::Class;
 /// All bits of a pixel that is not judged are 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GpuPixel {
-    /// What the pixel is called.
+    /// Class of the pixel.
     pub class: Class,
     /// Whether the light reaches it in truth.
     pub is_lit: bool,

@@ -68,7 +68,7 @@ impl GpuTracer {
         Ok(Self { buffers, group, origin, triangles: tracer.len() as u32 })
     }
 
-    /// Uploads a tracer whose triangles have moved, or another tracer. Buffers are made anew only when
+    /// Uploads a tracer whose triangles have moved, or another tracer. Buffers are created again only when
     /// their sizes change.
     ///
     /// # Errors

@@ -1,4 +1,5 @@
-//! What the shaders read, field by field as in WGSL; tests compare sizes and offsets with naga's reflection.
+//! The records that the shaders read, field by field as in WGSL; tests compare sizes and offsets with naga's
+//! reflection.
 
 /// Greatest number of shadow maps that a picture may have.
 pub const MAX_MAPS: usize = 8;

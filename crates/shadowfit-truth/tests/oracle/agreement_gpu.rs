@@ -24,7 +24,7 @@ fn device() -> (wgpu::Device, wgpu::Queue) {
     pollster::block_on(adapter.request_device(&descriptor)).expect("a device with the default limits")
 }
 
-/// What is judged.
+/// A picture that both judge.
 struct Picture {
     tracer: Tracer,
     camera: PixelCamera,
@@ -35,7 +35,7 @@ struct Picture {
     origin: DVec3,
 }
 
-/// What both found.
+/// The results of both.
 struct Both {
     truth: Truth,
     judged: Judged,

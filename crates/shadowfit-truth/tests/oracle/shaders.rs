@@ -1,4 +1,4 @@
-//! The WGSL of the GPU's twin: valid with what every WebGPU device has, and laid out as the Rust that fills it.
+//! The WGSL of the compute passes: valid with what every WebGPU device has, and laid out as the Rust that fills it.
 
 use core::mem::offset_of;
 

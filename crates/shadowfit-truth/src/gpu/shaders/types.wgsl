@@ -89,7 +89,7 @@ const LIT: u32 = 2u;
 const SEEMS_LIT: u32 = 4u;
 const MAP_SHIFT: u32 = 4u;
 
-// More than any pixels per texel or distance that matters; stands for the infinity of the CPU's twin.
+// Greater than any pixels per texel or distance that matters; used where the CPU uses infinity.
 const FAR: f32 = 3.0e38;
 const NONE: u32 = 0xffffffffu;
 
