@@ -64,7 +64,7 @@ pub(crate) fn run(scenarios: &Scenarios, technique: &Technique, source: Option<&
         language: "Rust".to_owned(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         note: technique.what.clone(),
-        pancake: false,
+        depth_clamp: false,
         ns_per_fit: Some(median(all)),
         ns_quiet: Some(median(fastest)),
         frames: fitted.collect(),

@@ -12,7 +12,7 @@ use shadowfit::settings::{BiasSettings, FilterKind, MapFormat};
 use shadowfit_render::Gpu;
 use shadowfit_scene::Scene;
 use shadowfit_truth::Tracer;
-use shadowfit_truth::peers::{FitFile, FitMap, Frame, Scenarios, Study, overall_markdown, to_json, to_markdown};
+use shadowfit_truth::peers::{FitFile, FitMap, Frame, Ranking, Scenarios, overall_markdown, to_json, to_markdown};
 use shadowfit_viewer::study::{Contender, Judging, SharedTruth, Shot, Subject};
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
 
@@ -47,23 +47,32 @@ pub(crate) struct Args {
 
 /// Measures, writes both tables, and prints the rows over all frames.
 pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
-    let mut study = Study::new(Scenarios::read(&args.scenarios)?);
+    let mut ranking = Ranking::new(Scenarios::read(&args.scenarios)?);
+    // Measuring takes minutes: a scene whose triangles nobody gave is refused before that.
+    for scene in &ranking.scenarios().scenes {
+        args.geometry.file(scene)?;
+    }
     let mut files = Vec::new();
     for path in &args.fits {
         let file = FitFile::read(path)?;
-        study.add(&file, path)?;
+        ranking.add(&file, path)?;
         files.push(file);
     }
-    let mut pictures = if args.no_render { None } else { Some(Pictures::new(&study, &files, args)?) };
-    measure(&mut study, args, pictures.as_mut(), interrupt)?;
-    let tables = study.tables();
+    let mut pictures = if args.no_render { None } else { Some(Pictures::new(&ranking, &files, args)?) };
+    measure(&mut ranking, args, pictures.as_mut(), interrupt)?;
+    let tables = ranking.tables();
     print!("{}", overall_markdown(&tables));
     Ok(())
 }
 
 /// Measures scene after scene; both tables are written after each, so that what is finished can be read.
-fn measure(study: &mut Study, args: &Args, mut pictures: Option<&mut Pictures>, interrupt: &Interrupt) -> Result<()> {
-    let scenarios = study.scenarios().clone();
+fn measure(
+    ranking: &mut Ranking,
+    args: &Args,
+    mut pictures: Option<&mut Pictures>,
+    interrupt: &Interrupt,
+) -> Result<()> {
+    let scenarios = ranking.scenarios().clone();
     let drawn = pictures.as_ref().map_or(0, |pictures| pictures.count(&scenarios));
     let progress = ProgressBar::new((scenarios.frames.len() + drawn) as u64);
     progress.set_style(ProgressStyle::with_template("{msg:10} {wide_bar} {pos}/{len} frames, {eta} left")?);
@@ -71,11 +80,11 @@ fn measure(study: &mut Study, args: &Args, mut pictures: Option<&mut Pictures>, 
         progress.set_message(scene.name.clone());
         let objects = args.geometry.read(scene)?;
         let tracer = Tracer::new(objects.iter().flatten().copied());
-        study.measure_scene(index, &tracer, args.stride, &|| progress.inc(1));
+        ranking.measure_scene(index, &tracer, args.stride, &|| progress.inc(1));
         if let Some(pictures) = &mut pictures {
-            pictures.draw_scene(study, index, &objects, (&progress, interrupt))?;
+            pictures.draw_scene(ranking, index, &objects, (&progress, interrupt))?;
         }
-        let tables = study.tables();
+        let tables = ranking.tables();
         fs::create_dir_all(&args.out).with_context(|| format!("{}: cannot be made", args.out.display()))?;
         write(&args.out.join("table.json"), &to_json(&tables))?;
         write(&args.out.join("table.md"), &to_markdown(&tables))?;
@@ -103,15 +112,15 @@ struct Drawn {
 }
 
 impl Pictures {
-    fn new(study: &Study, files: &[FitFile], args: &Args) -> Result<Self> {
+    fn new(ranking: &Ranking, files: &[FitFile], args: &Args) -> Result<Self> {
         let gpu = args.drawing.gpu()?;
         let judging = args.drawing.judging();
         let filter = args.drawing.filter();
         let bias = args.drawing.bias(filter)?;
         let fits = files.iter().zip(&args.fits).map(|(file, path)| {
-            let maps = file.maps_in_order(study.scenarios(), path)?;
+            let maps = file.maps_in_order(ranking.scenarios(), path)?;
             let maps: Vec<Vec<FitMap>> = maps.into_iter().map(<[FitMap]>::to_vec).collect();
-            let descriptor = descriptor(study.scenarios(), file, &maps, filter, args.drawing.format());
+            let descriptor = descriptor(ranking.scenarios(), file, &maps, filter, args.drawing.format());
             let descriptor = descriptor.with_context(|| format!("{}: cannot be drawn", path.display()))?;
             let contender = contender(&gpu, &descriptor, bias, judging);
             let contender = contender.with_context(|| format!("{}: cannot be drawn", path.display()))?;
@@ -132,12 +141,12 @@ impl Pictures {
 
     fn draw_scene(
         &mut self,
-        study: &mut Study,
+        ranking: &mut Ranking,
         scene: usize,
         objects: &[Vec<Corners>],
         (progress, interrupt): (&ProgressBar, &Interrupt),
     ) -> Result<()> {
-        let scenarios = study.scenarios().clone();
+        let scenarios = ranking.scenarios().clone();
         let Some(first) = self.fits.first() else { return Ok(()) };
         let plain = Scene::from_objects(&scenarios.scenes[scene].name, objects);
         let mut subject = Subject::new(&self.gpu, first.contender.material_layout(), plain)?;
@@ -155,7 +164,7 @@ impl Pictures {
                 let maps = map_fits(&drawn.maps[index], &shot)
                     .with_context(|| format!("{}: frame {}: cannot be drawn", drawn.name, frame.id))?;
                 let judged = drawn.contender.judge(&self.gpu, &mut subject, &shot, &maps, &mut truth)?;
-                study.add_picture(fit, index, &judged.tally);
+                ranking.add_picture(fit, index, &judged.tally);
             }
             progress.inc(1);
         }
@@ -189,7 +198,14 @@ fn descriptor(
         Some((map, frame)) => light_fit(map, &shot(frame, true))?.depth,
         None => shadowfit::DepthConvention::ZeroToOne,
     };
-    Ok(ShadowMapDescriptor { resolution, maps: most.max(1) as u32, format, filter, depth, depth_clamp: file.pancake })
+    Ok(ShadowMapDescriptor {
+        resolution,
+        maps: most.max(1) as u32,
+        format,
+        filter,
+        depth,
+        depth_clamp: file.depth_clamp,
+    })
 }
 
 fn shot(frame: &Frame, is_first: bool) -> Shot {

@@ -16,37 +16,53 @@ const TRIANGLE_BYTES: usize = 36;
 /// Corners, world space, metres.
 pub(crate) type Corners = [Vec3; 3];
 
-/// Where the triangles come from: one of these two, if they are needed.
+/// Where the triangles come from: one of these two folders, if triangles are needed.
 #[derive(Clone, Debug, clap::Args)]
 #[group(required = false, multiple = false)]
 pub(crate) struct Source {
     /// Folder that the scenes' glTF files are in
     #[arg(long, value_name = "DIR")]
     pub(crate) assets: Option<PathBuf>,
-    /// Folder with <scene>.f32 for each scene: 9 little-endian f32 a triangle, world space, metres
+    /// Folder with <scene>.f32 for each scene: 9 little-endian f32 for each triangle, world space, metres
     #[arg(long, value_name = "DIR")]
     pub(crate) triangles: Option<PathBuf>,
 }
 
 impl Source {
+    /// The file that the triangles of a scene are read from.
+    ///
+    /// # Errors
+    ///
+    /// When no folder was given, or the scene has no glTF file and no folder of plain files was given.
+    pub(crate) fn file(&self, scene: &Scene) -> Result<PathBuf> {
+        let Scene { name, file, .. } = scene;
+        match (&self.triangles, &self.assets, file) {
+            (Some(folder), ..) => Ok(folder.join(format!("{name}.f32"))),
+            (None, Some(folder), Some(file)) => Ok(folder.join(file)),
+            (None, _, None) => bail!(
+                "the scenarios name no \"file\" for scene \"{name}\": add it, a glTF file below the folder of --assets, \
+                 or give the folder that holds {name}.f32 with --triangles DIR"
+            ),
+            (None, None, Some(_)) => bail!("give the scenes' files with --assets DIR or --triangles DIR"),
+        }
+    }
+
     /// The triangles of a scene, world space, metres: a list for each object in the order of [`Scene::objects`], or a
     /// single list from a plain file, which knows no objects.
     ///
     /// # Errors
     ///
-    /// When a file cannot be read, or its triangles are not those that the scenarios speak of.
+    /// As for [`Self::file`], and when the file cannot be read, or its triangles are not those of the scenarios.
     pub(crate) fn read(&self, scene: &Scene) -> Result<Vec<Vec<Corners>>> {
-        let at = |file: &Path| format!("{}: scene \"{}\"", file.display(), scene.name);
-        if let Some(folder) = &self.assets {
-            let file = folder.join(&scene.file);
-            let objects = read_gltf(&file, scene)?;
-            check_whole(scene, &objects).and_then(|()| check_objects(scene, &objects)).with_context(|| at(&file))?;
+        let file = self.file(scene)?;
+        let at = || format!("{}: scene \"{}\"", file.display(), scene.name);
+        if self.triangles.is_some() {
+            let objects = vec![read_plain(&file)?];
+            check_whole(scene, &objects).with_context(at)?;
             return Ok(objects);
         }
-        let folder = self.triangles.as_ref().context("give the scenes' files with --assets DIR or --triangles DIR")?;
-        let file = folder.join(format!("{}.f32", scene.name));
-        let objects = vec![read_plain(&file)?];
-        check_whole(scene, &objects).with_context(|| at(&file))?;
+        let objects = read_gltf(&file, scene)?;
+        check_whole(scene, &objects).and_then(|()| check_objects(scene, &objects)).with_context(at)?;
         Ok(objects)
     }
 }

@@ -1,7 +1,7 @@
 //! Numbers that were measured of other code's fits elsewhere are found again here, from the same maps and scenes.
 
 use shadowfit_truth::Tracer;
-use shadowfit_truth::peers::{FitFile, Row, Scenarios, Study};
+use shadowfit_truth::peers::{FitFile, Ranking, Row, Scenarios};
 
 use super::geometry::Source;
 use crate::support::{assets, peers};
@@ -33,16 +33,16 @@ const CRITICAL: [[f64; 3]; 5] = [
 #[test]
 fn the_published_numbers_of_five_peers_are_found_again_to_the_last_digit() {
     let (Some(assets), Some(peers)) = (assets(), peers()) else { return };
-    let mut study = Study::new(Scenarios::read(&peers.join("scenarios.json")).expect("scenarios"));
+    let mut ranking = Ranking::new(Scenarios::read(&peers.join("scenarios.json")).expect("scenarios"));
     for (peer, _) in ROWS {
         let file = peers.join(format!("fits/{peer}.json"));
-        study.add(&FitFile::read(&file).expect("a fit"), &file).expect("all frames");
+        ranking.add(&FitFile::read(&file).expect("a fit"), &file).expect("all frames");
     }
     let source = Source { assets: Some(assets), triangles: None };
-    let scene = study.scenarios().scenes.iter().position(|scene| scene.name == "zdm2").expect("the scene");
-    let objects = source.read(&study.scenarios().scenes[scene]).expect("triangles");
-    study.measure_scene(scene, &Tracer::new(objects.into_iter().flatten()), 1, &|| ());
-    for ((table, (peer, numbers)), critical) in study.tables().iter().zip(ROWS).zip(CRITICAL) {
+    let scene = ranking.scenarios().scenes.iter().position(|scene| scene.name == "zdm2").expect("the scene");
+    let objects = source.read(&ranking.scenarios().scenes[scene]).expect("triangles");
+    ranking.measure_scene(scene, &Tracer::new(objects.into_iter().flatten()), 1, &|| ());
+    for ((table, (peer, numbers)), critical) in ranking.tables().iter().zip(ROWS).zip(CRITICAL) {
         assert_row(peer, &table.overall, numbers);
         let found: Vec<f64> = table.groups.iter().map(|(_, row)| row.critical.round()).collect();
         assert_eq!(found, critical, "{peer}");

@@ -27,6 +27,13 @@ const SCENARIOS: &str = r#"{
 /// The floor's corners.
 const FLOOR: [f32; 9] = [-50.0, 0.0, -50.0, -50.0, 0.0, 150.0, 150.0, 0.0, -50.0];
 
+/// The scenarios without the scene's file.
+fn without_file() -> String {
+    let scenarios = SCENARIOS.replace("\"file\": \"floor.glb\", ", "");
+    assert_ne!(scenarios, SCENARIOS);
+    scenarios
+}
+
 /// Folder with the files of one test, removed at the end.
 struct Scratch(PathBuf);
 
@@ -52,6 +59,11 @@ impl Scratch {
     fn report(&self, arguments: &[&str]) -> Output {
         let mut command = Command::new(example_program("report"));
         command.current_dir(&self.0).arg("peers").args(arguments).output().expect("the report starts")
+    }
+
+    fn peer_fit(&self, arguments: &[&str]) -> Output {
+        let mut command = Command::new(example_program("peer_fit"));
+        command.current_dir(&self.0).args(arguments).output().expect("peer_fit starts")
     }
 }
 
@@ -126,6 +138,75 @@ fn bad_input_is_refused_by_file_element_and_reason() {
 }
 
 #[test]
+fn scenes_without_a_file_are_fitted_and_measured_by_their_triangles() {
+    let scratch = Scratch::new("plain");
+    scratch.file("scenarios.json", without_file().as_bytes());
+    // Clusters need the triangles, boxes do not.
+    for (technique, geometry) in [("clusters-4", &["--triangles", "."][..]), ("focused-4", &[])] {
+        let arguments = [&["scenarios.json", "--fit", technique, "-o", "ours.json"][..], geometry].concat();
+        let fitted = scratch.peer_fit(&arguments);
+        assert!(fitted.status.success(), "{technique}: {}", String::from_utf8_lossy(&fitted.stderr));
+        let measure = ["scenarios.json", "ours.json", "--triangles", ".", "--no-render", "-o", "out"];
+        let output = scratch.report(&measure);
+        assert!(output.status.success(), "{technique}: {}", String::from_utf8_lossy(&output.stderr));
+        let row = format!("| shadowfit {technique} | ");
+        assert!(text(&scratch.0.join("out/table.md")).contains(&row), "{technique}");
+    }
+}
+
+#[test]
+fn without_triangles_a_scene_without_a_file_is_named_and_what_to_do() {
+    let scratch = Scratch::new("nameless");
+    scratch.file("scenarios.json", without_file().as_bytes());
+    let words = ["no \"file\" for scene \"floor\"", "--triangles DIR", "floor.f32"];
+    let measured: [&[&str]; 2] = [&["--assets", "."], &[]];
+    for geometry in measured {
+        let arguments = [&["scenarios.json", "fit.json", "--no-render", "-o", "out"][..], geometry].concat();
+        assert_refused(&scratch.report(&arguments), &words);
+    }
+    let fitted = scratch.peer_fit(&["scenarios.json", "--fit", "clusters-4", "--assets", ".", "-o", "ours.json"]);
+    assert_refused(&fitted, &words);
+    assert!(!scratch.0.join("out").exists() && !scratch.0.join("ours.json").exists());
+}
+
+#[test]
+fn whole_numbers_with_a_point_are_measured_alike_and_others_are_refused() {
+    let scratch = Scratch::new("numbers");
+    let whole =
+        SCENARIOS.replace("\"triangles\": 1,", "\"triangles\": 1.0,").replace("\"scene\": 0,", "\"scene\": 0.0,");
+    let whole = whole.replace("\"frame\": 0,", "\"frame\": 0.0,");
+    let fit = text(&scratch.0.join("fit.json"));
+    let geometry = ["--triangles", ".", "--no-render", "-o", "out"];
+    let table = || {
+        let output = scratch.report(&[&["scenarios.json", "fit.json"][..], &geometry].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        text(&scratch.0.join("out/table.json"))
+    };
+    let wanted = table();
+    scratch.file("scenarios.json", whole.as_bytes());
+    scratch.file("fit.json", fit.replace("\"resolution\":1000", "\"resolution\":1000.0").as_bytes());
+    assert_eq!(table(), wanted);
+    for (resolution, reason) in [("2048.5", "2048.5 is not a whole number"), ("-1.0", "-1.0 is negative")] {
+        let bad = fit.replace("\"resolution\":1000", &format!("\"resolution\":{resolution}"));
+        scratch.file("bad.json", bad.as_bytes());
+        let output = scratch.report(&[&["scenarios.json", "bad.json"][..], &geometry].concat());
+        assert_refused(&output, &[&format!("bad.json: frames[0].maps[0].resolution: {reason}")]);
+    }
+    scratch.file("bad.json", SCENARIOS.replace("\"frame\": 0,", "\"frame\": 0.5,").as_bytes());
+    let output = scratch.report(&[&["bad.json", "fit.json"][..], &geometry].concat());
+    assert_refused(&output, &["bad.json: frames[0].frame: 0.5 is not a whole number"]);
+}
+
+/// Asserts that a program refused its input with a message of these words.
+fn assert_refused(output: &Output, words: &[&str]) {
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(REFUSED), "{message}");
+    for word in words {
+        assert!(message.contains(word), "\"{word}\" is missing in: {message}");
+    }
+}
+
+#[test]
 fn gpu_fits_are_drawn_and_their_pictures_stand_in_the_same_rows() {
     let scratch = Scratch::new("drawn");
     let small = ["--software", "--size", "160x90"];
@@ -194,11 +275,7 @@ fn gpu_the_default_technique_has_at_most_half_of_the_wrong_pixels_of_bevys_fit()
     a_part_of_the_peers(&scratch, &peers);
     let assets = assets.canonicalize().expect("the assets' folder");
     let assets = assets.to_str().expect("a plain name");
-    let fitted = Command::new(example_program("peer_fit"))
-        .current_dir(&scratch.0)
-        .args(["part.json", "--fit", DEFAULT_TECHNIQUE, "--assets", assets, "-o", "ours.json"])
-        .output()
-        .expect("peer_fit starts");
+    let fitted = scratch.peer_fit(&["part.json", "--fit", DEFAULT_TECHNIQUE, "--assets", assets, "-o", "ours.json"]);
     assert!(fitted.status.success(), "{}", String::from_utf8_lossy(&fitted.stderr));
     let small = ["--stride", "16", "--size", "640x360", "--software"];
     let whole = [&["part.json", "bevy.json", "ours.json", "--assets", assets, "-o", "out"][..], &small].concat();

@@ -1,7 +1,7 @@
 //! A pinhole camera and the rays through the centres of its pixels.
 //!
-//! Everything is f64 and in world space, so that a visible point is as exact as its triangle. What a
-//! pixel is on a surface, the measures of pictures and those of fits must answer alike.
+//! Everything is f64 and in world space, so that a visible point is as exact as its triangle. The
+//! measures of pictures and those of fits both find here how large a pixel is on a surface.
 
 use glam::{DVec2, DVec3};
 use shadowfit::PerspectiveCamera;
@@ -28,9 +28,9 @@ pub struct PixelCamera {
 }
 
 impl PixelCamera {
-    /// The pixels of a camera whose picture has `size` pixels, which need not be square. A camera
-    /// that [`PerspectiveCamera::frustum`] refuses gives axes that are not numbers, and pictures in
-    /// which nothing is judged.
+    /// The pixels of a camera whose picture has `size` pixels across and down; they need not be square.
+    /// A camera that [`PerspectiveCamera::frustum`] refuses gives axes that are not numbers, and
+    /// pictures in which no pixel is judged.
     pub fn new(camera: &PerspectiveCamera, size: [u32; 2]) -> Self {
         let forward = camera.forward.as_dvec3().normalize();
         let right = forward.cross(camera.up.as_dvec3()).normalize();
@@ -52,15 +52,15 @@ impl PixelCamera {
         self.size[0] as usize * self.size[1] as usize
     }
 
-    /// Direction through the centre of a pixel, counted from the left and from the top. Its part
-    /// along the view is 1, so that the distance along it is view depth.
+    /// Direction through the centre of a pixel, counted from the left and from the top, world axes.
+    /// Its component along the view is 1, so that the distance along it is view depth.
     pub fn ray(&self, x: u32, y: u32) -> DVec3 {
         let across = (2.0 * (f64::from(x) + 0.5) / f64::from(self.size[0]) - 1.0) * self.tan_half_fov.x;
         let upward = (1.0 - 2.0 * (f64::from(y) + 0.5) / f64::from(self.size[1])) * self.tan_half_fov.y;
         self.right * across + self.up * upward + self.forward
     }
 
-    /// Direction through the centre of the pixel at this place among the rows from the top.
+    /// The same for a pixel by its index in the rows from the top.
     pub fn ray_of(&self, index: usize) -> DVec3 {
         let width = self.size[0].max(1) as usize;
         self.ray((index % width) as u32, (index / width) as u32)
@@ -71,16 +71,16 @@ impl PixelCamera {
         (point - self.eye).dot(self.forward)
     }
 
-    /// How far a point moves on its tangent plane for one pixel to the right, and for one down.
-    /// `ray` is that of its pixel, `normal` a normal of the plane of either side.
+    /// How far a point moves on its tangent plane for one pixel to the right, and for one down, world
+    /// space, metres. `ray` is that of its pixel, `normal` a normal of the plane, toward either side.
     pub fn pixel_steps(&self, ray: DVec3, normal: DVec3, view_depth: f64) -> [DVec3; 2] {
         let [across, down] = [0, 1].map(|axis| 2.0 * self.tan_half_fov[axis] / f64::from(self.size[axis]));
         [self.right * across, -self.up * down].map(|step| slide(step, ray, normal, view_depth))
     }
 }
 
-/// How far the point that a ray meets moves on its tangent plane when the ray is moved by `across`
-/// at view depth 1.
+/// How far the point where a ray meets a plane moves on it when the ray is moved by `across` at view
+/// depth 1.
 pub(crate) fn slide(across: DVec3, ray: DVec3, normal: DVec3, view_depth: f64) -> DVec3 {
     (across - ray * (across.dot(normal) / ray.dot(normal))) * view_depth
 }

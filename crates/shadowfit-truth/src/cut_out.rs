@@ -1,26 +1,26 @@
-//! Triangles with holes, as plain data: the processor and the GPU answer alike.
+//! Triangles with holes, as plain data: the CPU and the GPU evaluate them alike.
 //!
-//! A triangle is there where base alpha × vertex alpha × image alpha reaches a cutoff, with the
-//! image sampled at its finest level, between texel centres or at the nearest one.
+//! A triangle is opaque where base alpha × vertex alpha × image alpha reaches a cutoff; elsewhere it is
+//! a hole. The image is sampled at its finest level, by bilinear interpolation or at the nearest texel.
 
 use std::collections::HashMap;
 
 use glam::{Vec2, Vec3};
 
-/// Texels from an image's left and top edge are cut to ± this before they are wrapped: whole numbers
-/// of this size and their neighbours fit i32, and f32 has no fractions there.
-pub(crate) const FARTHEST_TEXEL: f32 = 1_073_741_824.0;
+/// Texel coordinates are clamped to ± this before they are wrapped: whole numbers of this size and
+/// their neighbours fit i32, and f32 has no fractions there.
+pub(crate) const MAX_TEXEL: f32 = 1_073_741_824.0;
 
-/// How an image goes on beyond its edges along an axis.
+/// How an image continues beyond its edges along an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Wrap {
-    /// Again and again.
+    /// It is repeated.
     #[default]
     Repeat = 0,
-    /// With the texels of its edge.
+    /// The texels at its edge continue.
     Clamp = 1,
-    /// Again and again, every second time mirrored.
+    /// It is repeated, and every second copy is mirrored.
     Mirror = 2,
 }
 
@@ -33,8 +33,8 @@ pub struct AlphaImage {
 }
 
 impl AlphaImage {
-    /// An image from its alpha in rows from the top, 255 opaque. `None` without texels, when they are
-    /// not `width * height`, or when a side is beyond 2^24 texels.
+    /// An image from its alpha in rows from the top, 255 opaque. `None` when `alpha` is empty or does
+    /// not have `width * height` elements, or when a side is longer than 2^24 texels.
     pub fn new(width: u32, height: u32, alpha: Vec<u8>) -> Option<Self> {
         let texels = (width as usize).checked_mul(height as usize)?;
         let fits = texels > 0 && texels == alpha.len() && width.max(height) <= 1 << 24;
@@ -59,37 +59,39 @@ impl AlphaImage {
 /// A triangle with holes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CutOut {
-    /// Texture coordinates of the corners, 0..=1 over the image from its top left, the image's own
-    /// transform applied.
+    /// Texture coordinates of the corners, 0..=1 over the image from its top left, with any texture
+    /// transform already applied.
     pub uvs: [Vec2; 3],
     /// Alpha of the corners, 0..=1.
     pub alphas: [f32; 3],
     /// Alpha of the material, 0..=1.
     pub base_alpha: f32,
-    /// Least alpha that is there.
+    /// Least alpha that is opaque.
     pub cutoff: f32,
-    /// Place of the image among [`CutOuts::images`]; one that is not there is opaque.
+    /// Index of the image in [`CutOuts::images`]; `None`, or an index beyond them, is opaque.
     pub image: Option<u32>,
-    /// How the image goes on to the right and down.
+    /// How the image continues across and down.
     pub wrap: [Wrap; 2],
-    /// Whether the nearest texel is taken instead of a mean of four.
+    /// Whether the nearest texel is taken instead of interpolating between four.
     pub nearest: bool,
 }
 
 /// The triangles with holes of a scene, and their images.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CutOuts {
-    places: HashMap<u32, u32>,
+    /// Index in `all` by triangle.
+    indices: HashMap<u32, u32>,
     all: Vec<CutOut>,
     images: Vec<AlphaImage>,
 }
 
 impl CutOuts {
-    /// Cut-outs by the tracer's index of their triangle; the last one given for a triangle is taken.
+    /// `cut_outs` has the tracer's index of a triangle with each cut-out; the last one given for a
+    /// triangle counts.
     pub fn new(images: Vec<AlphaImage>, cut_outs: impl IntoIterator<Item = (u32, CutOut)>) -> Self {
         let mut made = Self { images, ..Self::default() };
         for (triangle, cut_out) in cut_outs {
-            made.places.insert(triangle, made.all.len() as u32);
+            made.indices.insert(triangle, made.all.len() as u32);
             made.all.push(cut_out);
         }
         made
@@ -97,7 +99,7 @@ impl CutOuts {
 
     /// Whether no triangle has holes.
     pub fn is_empty(&self) -> bool {
-        self.places.is_empty()
+        self.indices.is_empty()
     }
 
     /// All cut-outs, in the order in which they were given.
@@ -110,16 +112,16 @@ impl CutOuts {
         &self.images
     }
 
-    /// Place of a triangle's cut-out among [`Self::cut_outs`].
-    pub fn place(&self, triangle: u32) -> Option<u32> {
-        self.places.get(&triangle).copied()
+    /// Index in [`Self::cut_outs`] of a triangle's cut-out.
+    pub fn index_of(&self, triangle: u32) -> Option<u32> {
+        self.indices.get(&triangle).copied()
     }
 
-    /// Whether a triangle is there at a point with these weights of its second and third corner.
-    /// Triangles without a cut-out are there everywhere.
-    pub fn is_there(&self, triangle: u32, [second, third]: [f32; 2]) -> bool {
-        let Some(place) = self.place(triangle) else { return true };
-        let cut_out = &self.all[place as usize];
+    /// Whether a triangle is opaque at a point with these weights of its second and third corner.
+    /// Triangles without a cut-out are opaque everywhere.
+    pub fn is_opaque(&self, triangle: u32, [second, third]: [f32; 2]) -> bool {
+        let Some(index) = self.index_of(triangle) else { return true };
+        let cut_out = &self.all[index as usize];
         let weights = Vec3::new(1.0 - second - third, second, third);
         let [a, b, c] = cut_out.uvs;
         let uv = a * weights.x + b * weights.y + c * weights.z;
@@ -133,8 +135,8 @@ impl CutOuts {
 /// Alpha of an image at texture coordinates, 0..=1.
 fn sample(image: &AlphaImage, cut_out: &CutOut, uv: Vec2) -> f32 {
     let size = image.size().map(u32::cast_signed);
-    let farthest = Vec2::splat(FARTHEST_TEXEL);
-    let position = (uv * Vec2::new(size[0] as f32, size[1] as f32) - 0.5).clamp(-farthest, farthest);
+    let limit = Vec2::splat(MAX_TEXEL);
+    let position = (uv * Vec2::new(size[0] as f32, size[1] as f32) - 0.5).clamp(-limit, limit);
     let (corner, weight) = (position.floor(), position - position.floor());
     let alpha = |right: i32, down: i32| {
         let x = wrapped(corner.x as i32 + right, size[0], cut_out.wrap[0]);
@@ -147,7 +149,7 @@ fn sample(image: &AlphaImage, cut_out: &CutOut, uv: Vec2) -> f32 {
     row(0) * (1.0 - weight.y) + row(1) * weight.y
 }
 
-/// The texel of a row of `size` that stands at `index`.
+/// The texel, in a row of `size`, that an index stands for.
 fn wrapped(index: i32, size: i32, wrap: Wrap) -> i32 {
     match wrap {
         Wrap::Repeat => index.rem_euclid(size),
@@ -201,19 +203,19 @@ mod tests {
     #[test]
     fn base_vertex_and_image_alpha_are_multiplied_and_reach_the_cutoff() {
         let (image, cut_out) = row(Wrap::Clamp, false);
-        let there = |change: fn(&mut CutOut), weights| {
+        let is_opaque = |change: fn(&mut CutOut), weights| {
             let mut cut_out = cut_out;
             change(&mut cut_out);
-            CutOuts::new(vec![image.clone()], [(3, cut_out)]).is_there(3, weights)
+            CutOuts::new(vec![image.clone()], [(3, cut_out)]).is_opaque(3, weights)
         };
-        assert!(!there(|_| (), [0.2, 0.5]) && there(|_| (), [0.51, 0.4]));
-        assert!(!there(|cut_out| cut_out.base_alpha = 0.4, [0.8, 0.0]));
+        assert!(!is_opaque(|_| (), [0.2, 0.5]) && is_opaque(|_| (), [0.51, 0.4]));
+        assert!(!is_opaque(|cut_out| cut_out.base_alpha = 0.4, [0.8, 0.0]));
         // Only the second corner is opaque.
-        assert!(!there(|cut_out| cut_out.alphas = [0.0, 1.0, 0.0], [0.49, 0.5]));
-        assert!(there(|cut_out| cut_out.alphas = [0.0, 1.0, 0.0], [0.8, 0.0]));
+        assert!(!is_opaque(|cut_out| cut_out.alphas = [0.0, 1.0, 0.0], [0.49, 0.5]));
+        assert!(is_opaque(|cut_out| cut_out.alphas = [0.0, 1.0, 0.0], [0.8, 0.0]));
         // Without its image the triangle has no holes, and other triangles never had.
-        assert!(there(|cut_out| cut_out.image = Some(9), [0.1, 0.1]));
-        assert!(CutOuts::new(vec![image.clone()], [(3, cut_out)]).is_there(2, [0.1, 0.1]));
+        assert!(is_opaque(|cut_out| cut_out.image = Some(9), [0.1, 0.1]));
+        assert!(CutOuts::new(vec![image.clone()], [(3, cut_out)]).is_opaque(2, [0.1, 0.1]));
     }
 
     #[test]

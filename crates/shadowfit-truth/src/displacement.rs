@@ -1,13 +1,13 @@
 //! How far the map's shadow edges lie from the true ones, on screen.
 //!
 //! An edge is the border between two neighbouring judged pixels of different verdicts; its sign is
-//! the direction toward the lit one, so that the two sides of a thin shadow are not mistaken for each
-//! other.
+//! the direction toward the lit one, so that one side of a thin shadow is not compared with the other.
 
-use crate::edges::{NOWHERE, squared_distances};
+use crate::distances::{NONE_MARKED, squared_distances};
 
-/// Distances are cut here, in pixels, and edges without a counterpart count as this far.
-pub const GREATEST_DISPLACEMENT: f64 = 32.0;
+/// Distances of shadow edges are clamped to this, in pixels; a true edge without one of the same sign
+/// in the map counts as this far away.
+pub const MAX_DISPLACEMENT: f64 = 32.0;
 
 /// Sum of the distances of true transitions to the nearest transition of the same sign in the map,
 /// in pixels, and the number of true transitions.
@@ -35,9 +35,9 @@ pub(crate) fn displacement(
             let is_transition = |verdict: &dyn Fn(usize) -> Option<bool>, x: usize, y: usize| {
                 verdict(before(x, y)) == Some(!toward_after) && verdict(after(x, y)) == Some(toward_after)
             };
-            let places = (0..borders[0] * borders[1]).map(|place| (place % borders[0], place / borders[0]));
-            let mut wanted =
-                places.filter(|(x, y)| is_transition(truth, *x, *y) && counts(before(*x, *y)) && counts(after(*x, *y)));
+            let positions = (0..borders[0] * borders[1]).map(|index| (index % borders[0], index / borders[0]));
+            let mut wanted = positions
+                .filter(|(x, y)| is_transition(truth, *x, *y) && counts(before(*x, *y)) && counts(after(*x, *y)));
             let Some(first) = wanted.next() else { continue };
             let squares = squared_distances(borders, |x, y| is_transition(map, x, y));
             for (x, y) in std::iter::once(first).chain(wanted) {
@@ -49,9 +49,9 @@ pub(crate) fn displacement(
     found
 }
 
-/// A distance from its square, cut.
+/// A distance from its square, clamped.
 fn length(square: u32) -> f64 {
-    if square == NOWHERE { GREATEST_DISPLACEMENT } else { f64::from(square).sqrt().min(GREATEST_DISPLACEMENT) }
+    if square == NONE_MARKED { MAX_DISPLACEMENT } else { f64::from(square).sqrt().min(MAX_DISPLACEMENT) }
 }
 
 #[cfg(test)]
@@ -64,11 +64,12 @@ mod tests {
         truth: impl Fn(i32, i32) -> Option<bool> + Sync,
         map: impl Fn(i32, i32) -> Option<bool> + Sync,
     ) -> Displacement {
-        let place = |index: usize| [index % SIZE[0], index / SIZE[0]].map(|index| i32::try_from(index).expect("small"));
+        let position =
+            |index: usize| [index % SIZE[0], index / SIZE[0]].map(|index| i32::try_from(index).expect("small"));
         displacement(
             SIZE,
-            &|index| truth(place(index)[0], place(index)[1]),
-            &|index| map(place(index)[0], place(index)[1]),
+            &|index| truth(position(index)[0], position(index)[1]),
+            &|index| map(position(index)[0], position(index)[1]),
             |_| true,
         )
     }
@@ -84,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_of_the_other_sign_or_none_is_no_counterpart() {
+    fn an_edge_of_the_other_sign_is_not_compared_and_a_missing_one_is_32_pixels_away() {
         let other = of(|x, _| Some(x >= 25), |x, _| Some(x < 25));
         let none = of(|x, _| Some(x >= 25), |_, _| Some(true));
         let far = of(|x, _| Some(x >= 5), |x, _| Some(x >= 45));

@@ -1,19 +1,33 @@
 //! Ray-traced reference shadows, and the errors of a shadow map judged against them.
 //!
-//! It takes plain triangle slices (world space, right-handed, metres) and cut-outs, so that any
-//! engine can be judged: [`Tracer`] answers rays, [`Truth`] says what the light does at each pixel,
-//! [`judge()`] sorts the pixels of a picture into right ones and the named kinds of wrong ones, and
-//! [`peers`] ranks fits by what their maps give to many frames. With the feature `gpu`, compute
-//! passes fill a texture with the same classes.
+//! It takes plain triangles (world space, right-handed, metres) and cut-outs, so that any engine can
+//! be judged. [`Tracer`] casts rays, [`Truth`] says whether light reaches each pixel, [`judge()`]
+//! sorts the pixels of a picture into right ones and the named kinds of wrong ones, and [`peers`]
+//! ranks fits by what their maps give to many frames. With the feature `gpu`, compute passes fill a
+//! texture with the same classes.
+//!
+//! Each module uses only modules of the lines below its own. What pictures and fits share (`maps`,
+//! `histogram`, `tally`) stands below both:
+//!
+//! ```text
+//! crawl
+//! gpu      judge
+//! peers    truth
+//! displacement  tally  tracer
+//! camera  class  cut_out  distances  histogram  maps  memory  sun
+//! ```
 
 mod camera;
+mod class;
 mod crawl;
 mod cut_out;
 mod displacement;
-mod edges;
+mod distances;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+mod histogram;
 mod judge;
+mod maps;
 mod memory;
 pub mod peers;
 mod sun;
@@ -22,11 +36,14 @@ mod tracer;
 mod truth;
 
 pub use camera::PixelCamera;
+pub use class::Class;
 pub use crawl::{MapsBefore, crawl};
 pub use cut_out::{AlphaImage, CutOut, CutOuts, Wrap};
-pub use displacement::GREATEST_DISPLACEMENT;
-pub use judge::{Class, Judged, MapsSeen, judge};
+pub use displacement::MAX_DISPLACEMENT;
+pub use histogram::Histogram;
+pub use judge::{Judged, judge};
+pub use maps::{MapGradients, MapPosition, MeasuredMap, PictureMaps};
 pub use memory::TracerMemory;
-pub use tally::{ClassTally, PictureTally};
+pub use tally::{ClassTally, PictureFigures, PictureTally};
 pub use tracer::{Hit, Tracer, TriangleCountError};
 pub use truth::{Truth, TruthPoint, TruthSettings};

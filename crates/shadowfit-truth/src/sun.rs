@@ -1,7 +1,7 @@
-//! Directions toward a sun of some size: one, or many that are spread evenly over its disc.
+//! Directions toward the sun: one for a hard sun, or many spread evenly over its disc.
 //!
 //! The spread is Vogel's spiral (H. Vogel, "A better way to construct the sunflower head", 1979) on
-//! the cap of the sphere, which has no rows that a straight shadow edge could fall between.
+//! the cap of the sphere: it has no rows, so that no straight shadow edge falls between two of them.
 
 use core::f64::consts::TAU;
 
@@ -21,7 +21,7 @@ pub(crate) struct Sun {
 }
 
 impl Sun {
-    /// `to_light` is the unit direction toward the middle, `radius` the angular radius in radians.
+    /// `to_light` is the unit direction toward the centre, `radius` the angular radius in radians.
     pub(crate) fn new(to_light: DVec3, radius: f64, rays: u32) -> Self {
         let is_soft = radius > 0.0 && rays > 1;
         let (first, second) =
@@ -30,7 +30,7 @@ impl Sun {
         Self { to_light, across: [first, second], cap: 2.0 * half * half, rays: if is_soft { rays } else { 1 } }
     }
 
-    /// The direction toward the middle.
+    /// The unit direction toward the sun's centre.
     pub(crate) fn centre(&self) -> DVec3 {
         self.to_light
     }
@@ -40,7 +40,7 @@ impl Sun {
         self.rays
     }
 
-    /// Unit directions of a pixel's rays: only the middle for a hard sun.
+    /// Unit directions of a pixel's rays; for a hard sun only that toward the centre.
     pub(crate) fn directions(&self, pixel: usize) -> impl Iterator<Item = DVec3> {
         let sun = *self;
         let turn = turn_of(pixel);
@@ -56,7 +56,7 @@ impl Sun {
     }
 }
 
-/// How far a pixel's pattern is turned, in radians: neighbours do not err alike.
+/// How far a pixel's pattern is turned, in radians, so that neighbouring pixels have different errors.
 fn turn_of(pixel: usize) -> f64 {
     // Fibonacci hashing: the upper bits of the product with 2^64 over the golden ratio.
     let hash = (pixel as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
@@ -76,7 +76,7 @@ mod tests {
         let directions: Vec<DVec3> = sun.directions(5).collect();
         assert_eq!(directions.len(), 64);
         assert!(directions.iter().all(|d| d.is_normalized() && d.angle_between(to_light) < 0.1));
-        // The mean points at the middle: the spread is even.
+        // The mean points at the centre: the spread is even.
         let mean = directions.iter().sum::<DVec3>() / 64.0;
         assert!(mean.angle_between(to_light) < 0.1 * 0.02, "{}", mean.angle_between(to_light));
     }

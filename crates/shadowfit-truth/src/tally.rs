@@ -1,36 +1,37 @@
-//! What is summed up over the pixels of judged pictures; sums of pictures can be merged.
+//! Sums over the pixels of judged pictures, and the figures that follow from them.
+//!
+//! Sums of pictures can be merged. Where no pixel was judged there are no figures, so that an empty
+//! picture is never taken for a perfect one.
 
-use crate::displacement::displacement;
-use crate::judge::seems_lit;
-use crate::peers::Histogram;
-use crate::peers::choice::LEAST_FACING;
-use crate::{Class, Judged, Truth};
+use crate::class::Class;
+use crate::histogram::Histogram;
 
-/// Sums over the facing pixels that count: those that face the light, within the shadow distance.
+/// Sums over the pixels that count: those that face the light, within the shadow distance.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PictureTally {
-    /// Pictures.
+    /// Number of pictures.
     pub frames: u64,
-    /// Classes of all facing pixels, grazing ones included.
+    /// Classes of all pixels that count, grazing ones included.
     pub all: ClassTally,
     /// Classes of those whose cosine toward the light is below 0.05.
     pub grazing: ClassTally,
     /// Pixels in the edge zone, right or wrong.
     pub edge_zone: u64,
-    /// Sum of |factor − truth|, the truth's share of light.
+    /// Sum of |factor − truth|, where truth is the share of light that arrives.
     pub error: f64,
     /// Pixels that no map holds.
     pub uncovered: u64,
     /// Pixels per texel along the worse axis, of pixels that a map holds and that are not grazing.
-    pub texels: Histogram,
+    pub pixels_per_texel: Histogram,
     /// Those of them with more than one pixel per texel.
-    pub under: u64,
-    /// Sum over true transitions of the distance to the nearest one of the same sign in the map, in
-    /// pixels, each at most 32.
+    pub undersampled: u64,
+    /// Sum over true shadow edges, border by border between two pixels, of the distance to the
+    /// map's nearest edge of the same sign, in pixels, each at most
+    /// [`MAX_DISPLACEMENT`](crate::MAX_DISPLACEMENT).
     pub displacement: f64,
-    /// True transitions.
+    /// Borders between two pixels that are true shadow edges.
     pub transitions: u64,
-    /// Pixels in the edge zone whose verdict was compared with that of the frame before.
+    /// Pixels in the edge zone that [`crawl()`](crate::crawl()) compared with the frame before.
     pub crawl_compared: u64,
     /// Those of them whose verdict differs.
     pub crawl_different: u64,
@@ -39,7 +40,7 @@ pub struct PictureTally {
 /// Numbers of pixels by class.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ClassTally {
-    /// Pixels.
+    /// All pixels; each of them faces the light.
     pub facing: u64,
     /// Those whose verdict differs from the truth, edges included.
     pub wrong: u64,
@@ -53,6 +54,55 @@ pub struct ClassTally {
     pub edge: u64,
 }
 
+/// The figures of judged pictures. Shares are in per cent of the pixels that count, 0..=100, unless a
+/// field says otherwise; a figure of which nothing was there to be measured is `None`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PictureFigures {
+    /// Pixels whose verdict differs from the truth, edges included.
+    pub wrong: f64,
+    /// [`Class::FalseShadow`].
+    pub false_shadow: f64,
+    /// [`Class::FalseLight`].
+    pub false_light: f64,
+    /// [`Class::Hole`].
+    pub hole: f64,
+    /// [`Class::Edge`].
+    pub edge: f64,
+    /// Pixels in the edge zone, right or wrong.
+    pub edge_zone: f64,
+    /// Pixels that no map holds.
+    pub uncovered: f64,
+    /// Mean of |factor − truth|, in per cent of full light.
+    pub mean_error: f64,
+    /// Pixels whose cosine toward the light is below 0.05.
+    pub grazing: f64,
+    /// Wrong ones of those, in per cent of all pixels that count.
+    pub grazing_wrong: f64,
+    /// Quantiles 50%, 95% and 99% of pixels per texel along the worse axis. `None` where every pixel
+    /// is grazing or uncovered.
+    pub pixels_per_texel: Option<[f64; 3]>,
+    /// Pixels with more than one pixel per texel, in per cent of those that have a value in
+    /// `pixels_per_texel`. `None` where none has.
+    pub undersampled: Option<f64>,
+    /// Mean distance of true shadow edges to the map's nearest edge of the same sign, in pixels.
+    /// `None` without a true edge.
+    pub edge_distance: Option<f64>,
+    /// Pixels of the edge zone whose verdict differs in the maps of the frame before, in per cent of
+    /// those compared. `None` where none was compared.
+    pub crawl: Option<f64>,
+}
+
+/// A pixel that counts, as the sums take it.
+pub(crate) struct CountedPixel {
+    pub(crate) class: Class,
+    pub(crate) is_in_edge_zone: bool,
+    /// |factor − truth|.
+    pub(crate) error: f32,
+    pub(crate) is_covered: bool,
+    pub(crate) is_grazing: bool,
+    pub(crate) pixels_per_texel: f32,
+}
+
 impl PictureTally {
     /// Adds the sums of `other`. Where sums of many pictures must be the same to the last bit, merge
     /// them in the same order.
@@ -63,79 +113,92 @@ impl PictureTally {
         self.error += other.error;
         self.uncovered += other.uncovered;
         self.grazing.merge(&other.grazing);
-        self.texels.merge(&other.texels);
-        self.under += other.under;
+        self.pixels_per_texel.merge(&other.pixels_per_texel);
+        self.undersampled += other.undersampled;
         self.displacement += other.displacement;
         self.transitions += other.transitions;
         self.crawl_compared += other.crawl_compared;
         self.crawl_different += other.crawl_different;
     }
 
-    /// Adds what [`crate::crawl()`] counted: pixels that differ, and pixels compared.
+    /// Adds what [`crawl()`](crate::crawl()) counted: pixels that differ, and pixels compared.
     pub fn add_crawl(&mut self, (different, compared): (u64, u64)) {
         self.crawl_different += different;
         self.crawl_compared += compared;
     }
 
-    /// A count's share of the facing pixels, 0..=1; 0 without any.
-    pub fn share(&self, count: u64) -> f64 {
-        ratio(count as f64, self.all.facing)
+    /// Whether no pixel was judged: the sky alone, or only surfaces that face away from the light or
+    /// lie beyond the shadow distance. There are no figures then, and a wrong share of 0 means
+    /// nothing.
+    pub fn is_empty(&self) -> bool {
+        self.all.facing == 0
     }
 
-    /// Names and values of a report's columns: per cent of the facing pixels (of those with a texel
-    /// for `ppt > 1 %`, of the pixels compared for `crawl %`), pixels per texel, and pixels. 0 where
-    /// nothing was counted.
-    pub fn columns(&self) -> Vec<(&'static str, f64)> {
+    /// A count's share of the pixels that count, 0..=1. It is 0 when [`Self::is_empty`], which callers
+    /// have to ask first.
+    pub fn share(&self, count: u64) -> f64 {
+        if self.is_empty() { 0.0 } else { count as f64 / self.all.facing as f64 }
+    }
+
+    /// The figures; `None` when [`Self::is_empty`].
+    pub fn figures(&self) -> Option<PictureFigures> {
         let percent = |count: u64| 100.0 * self.share(count);
-        let quantile = |q: f64| self.texels.log2_quantile(q).map_or(0.0, f64::exp2);
+        let [p50, p95, p99] = [0.5, 0.95, 0.99].map(|q| self.pixels_per_texel.log2_quantile(q).map(f64::exp2));
+        (!self.is_empty()).then(|| PictureFigures {
+            wrong: percent(self.all.wrong),
+            false_shadow: percent(self.all.false_shadow),
+            false_light: percent(self.all.false_light),
+            hole: percent(self.all.hole),
+            edge: percent(self.all.edge),
+            edge_zone: percent(self.edge_zone),
+            uncovered: percent(self.uncovered),
+            mean_error: 100.0 * (self.error / self.all.facing as f64),
+            grazing: percent(self.grazing.facing),
+            grazing_wrong: percent(self.grazing.wrong),
+            pixels_per_texel: p50.zip(p95).zip(p99).map(|((p50, p95), p99)| [p50, p95, p99]),
+            undersampled: ratio(self.undersampled as f64, self.pixels_per_texel.total()).map(|share| 100.0 * share),
+            edge_distance: ratio(self.displacement, self.transitions),
+            crawl: ratio(self.crawl_different as f64, self.crawl_compared).map(|share| 100.0 * share),
+        })
+    }
+
+    /// Titles and values of a report's columns, made from [`Self::figures`]. Not a number where
+    /// nothing was there to be measured.
+    pub fn columns(&self) -> Vec<(&'static str, f64)> {
+        let figures = self.figures();
+        let of = |value: fn(&PictureFigures) -> Option<f64>| figures.as_ref().and_then(value).unwrap_or(f64::NAN);
         vec![
-            ("wrong %", percent(self.all.wrong)),
-            ("false shadow %", percent(self.all.false_shadow)),
-            ("false light %", percent(self.all.false_light)),
-            ("hole %", percent(self.all.hole)),
-            ("edge %", percent(self.all.edge)),
-            ("edge zone %", percent(self.edge_zone)),
-            ("uncov %", percent(self.uncovered)),
-            ("mean error %", 100.0 * ratio(self.error, self.all.facing)),
-            ("grazing %", percent(self.grazing.facing)),
-            ("grazing wrong %", percent(self.grazing.wrong)),
-            ("ppt p50", quantile(0.5)),
-            ("ppt p95", quantile(0.95)),
-            ("ppt p99", quantile(0.99)),
-            ("ppt > 1 %", 100.0 * ratio(self.under as f64, self.texels.total())),
-            ("edge px", ratio(self.displacement, self.transitions)),
-            ("crawl %", 100.0 * ratio(self.crawl_different as f64, self.crawl_compared)),
+            ("wrong %", of(|figures| Some(figures.wrong))),
+            ("false shadow %", of(|figures| Some(figures.false_shadow))),
+            ("false light %", of(|figures| Some(figures.false_light))),
+            ("hole %", of(|figures| Some(figures.hole))),
+            ("edge %", of(|figures| Some(figures.edge))),
+            ("edge zone %", of(|figures| Some(figures.edge_zone))),
+            ("uncov %", of(|figures| Some(figures.uncovered))),
+            ("mean error %", of(|figures| Some(figures.mean_error))),
+            ("grazing %", of(|figures| Some(figures.grazing))),
+            ("grazing wrong %", of(|figures| Some(figures.grazing_wrong))),
+            ("ppt p50", of(|figures| figures.pixels_per_texel.map(|[p50, ..]| p50))),
+            ("ppt p95", of(|figures| figures.pixels_per_texel.map(|[_, p95, _]| p95))),
+            ("ppt p99", of(|figures| figures.pixels_per_texel.map(|[.., p99]| p99))),
+            ("ppt > 1 %", of(|figures| figures.undersampled)),
+            ("edge px", of(|figures| figures.edge_distance)),
+            ("crawl %", of(|figures| figures.crawl)),
         ]
     }
 
-    /// Sums over a judged picture, its tally aside.
-    pub(crate) fn of(truth: &Truth, judged: &Judged, factors: &[f32]) -> Self {
-        let mut tally = Self { frames: 1, ..Self::default() };
-        for pixel in (0..factors.len()).filter(|pixel| judged.counted[*pixel]) {
-            tally.add(truth, judged, factors[pixel], pixel);
-        }
-        let size = truth.camera.size.map(|side| side as usize);
-        let seen = |pixel: usize| truth.verdict(pixel).map(|_| seems_lit(factors[pixel]));
-        let edges = displacement(size, &|pixel| truth.verdict(pixel), &seen, |pixel| judged.counted[pixel]);
-        Self { displacement: edges.sum, transitions: edges.transitions, ..tally }
-    }
-
-    fn add(&mut self, truth: &Truth, judged: &Judged, factor: f32, pixel: usize) {
-        let Some(point) = &truth.points[pixel] else { return };
-        let class = judged.classes[pixel];
-        self.all.add(class);
-        self.edge_zone += u64::from(judged.edge_zone[pixel]);
-        // A factor that is not a number is a shadow to the verdict, and so it is here.
-        let factor = if factor.is_nan() { 0.0 } else { factor.clamp(0.0, 1.0) };
-        self.error += f64::from((factor - point.lit).abs());
-        let is_covered = judged.choice[pixel].is_some();
-        self.uncovered += u64::from(!is_covered);
-        if point.facing < LEAST_FACING {
-            self.grazing.add(class);
-        } else if is_covered {
-            let texels = f64::from(judged.pixels_per_texel[pixel]);
-            self.texels.add(texels);
-            self.under += u64::from(texels > 1.0);
+    /// Adds a pixel.
+    pub(crate) fn add(&mut self, pixel: &CountedPixel) {
+        self.all.add(pixel.class);
+        self.edge_zone += u64::from(pixel.is_in_edge_zone);
+        self.error += f64::from(pixel.error);
+        self.uncovered += u64::from(!pixel.is_covered);
+        if pixel.is_grazing {
+            self.grazing.add(pixel.class);
+        } else if pixel.is_covered {
+            let pixels_per_texel = f64::from(pixel.pixels_per_texel);
+            self.pixels_per_texel.add(pixels_per_texel);
+            self.undersampled += u64::from(pixels_per_texel > 1.0);
         }
     }
 }
@@ -160,7 +223,73 @@ impl ClassTally {
     }
 }
 
-/// A sum over a count, 0 where nothing was counted.
-fn ratio(sum: f64, count: u64) -> f64 {
-    if count == 0 { 0.0 } else { sum / count as f64 }
+/// A sum over a count; `None` where nothing was counted.
+fn ratio(sum: f64, count: u64) -> Option<f64> {
+    (count > 0).then(|| sum / count as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tally_without_a_judged_pixel_has_no_figures() {
+        let mut tally = PictureTally { frames: 3, ..PictureTally::default() };
+        tally.merge(&PictureTally { frames: 1, ..PictureTally::default() });
+        assert!(tally.is_empty());
+        assert_eq!(tally.figures(), None);
+        assert!(tally.columns().iter().all(|(_, value)| value.is_nan()), "{:?}", tally.columns());
+    }
+
+    #[test]
+    fn figures_are_shares_in_per_cent_and_what_was_not_measured_is_none() {
+        let mut tally = PictureTally::default();
+        let pixel = |class, is_covered| CountedPixel {
+            class,
+            is_in_edge_zone: class == Class::Edge,
+            error: 0.25,
+            is_covered,
+            is_grazing: true,
+            pixels_per_texel: 4.0,
+        };
+        for class in [Class::Right, Class::Edge, Class::FalseShadow, Class::FalseLight] {
+            tally.add(&pixel(class, true));
+        }
+        tally.add(&pixel(Class::Hole, false));
+        let figures = tally.figures().expect("five pixels");
+        let wanted = PictureFigures {
+            wrong: 80.0,
+            false_shadow: 20.0,
+            false_light: 20.0,
+            hole: 20.0,
+            edge: 20.0,
+            edge_zone: 20.0,
+            uncovered: 20.0,
+            mean_error: 25.0,
+            grazing: 100.0,
+            grazing_wrong: 80.0,
+            pixels_per_texel: None,
+            undersampled: None,
+            edge_distance: None,
+            crawl: None,
+        };
+        assert_eq!(figures, wanted);
+        tally.add(&CountedPixel { is_grazing: false, ..pixel(Class::Right, true) });
+        tally.add_crawl((1, 4));
+        let figures = tally.figures().expect("six pixels");
+        assert_eq!((figures.undersampled, figures.crawl), (Some(100.0), Some(25.0)));
+        let [median, ..] = figures.pixels_per_texel.expect("one pixel that is not grazing");
+        assert!((median / 4.0 - 1.0).abs() < 0.003, "{median}");
+    }
+
+    #[test]
+    fn columns_are_the_figures_by_title() {
+        let all = ClassTally { facing: 8, wrong: 4, false_shadow: 1, false_light: 2, hole: 3, edge: 4 };
+        let tally = PictureTally { all, transitions: 2, displacement: 3.0, ..PictureTally::default() };
+        let columns = tally.columns();
+        let column = |title| columns.iter().find(|(known, _)| *known == title).expect("a column").1;
+        let titles = ["wrong %", "false shadow %", "false light %", "hole %", "edge %", "edge px"];
+        assert_eq!(titles.map(column), [50.0, 12.5, 25.0, 37.5, 50.0, 1.5]);
+        assert!(column("crawl %").is_nan() && column("ppt p50").is_nan());
+    }
 }

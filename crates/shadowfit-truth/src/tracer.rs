@@ -9,18 +9,19 @@ use obvhs::bvh2::{Bvh2, builder::build_bvh2_from_tris};
 use obvhs::ray::{Ray, RayHit};
 use obvhs::{BvhBuildParams, triangle::Triangle};
 
-use crate::{CutOuts, TracerMemory};
+use crate::cut_out::CutOuts;
+use crate::memory::TracerMemory;
 
-/// Says whether a triangle is there at a point: its index, and the weights of its second and third
-/// corner. Cut-outs answer `false`.
+/// Says whether a triangle, given by its index, is opaque at a point with these weights of its second
+/// and third corner.
 type AlphaTest = Box<dyn Fn(u32, [f32; 2]) -> bool + Send + Sync>;
 
-/// A refitted hierarchy is built anew when its cost has grown by more than this factor since it was
-/// built: rays take about as much longer as the cost grows, and a build takes as long as many
-/// thousands of them.
-const MOST_COST_GROWTH: f32 = 1.5;
+/// A refitted hierarchy is rebuilt when its cost has grown by more than this factor since it was
+/// built. The time of a ray grows about as the cost does, and a build takes as long as many thousands
+/// of rays.
+const MAX_COST_GROWTH: f32 = 1.5;
 
-/// Triangles that can be asked for rays.
+/// Triangles, and a hierarchy through which rays find those that they meet.
 pub struct Tracer {
     triangles: Vec<Triangle>,
     bvh: Option<Bvh2>,
@@ -39,7 +40,7 @@ pub struct Hit {
     pub triangle: u32,
 }
 
-/// Moved triangles are not as many as were there.
+/// The number of moved triangles differs from that of the tracer's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the tracer has {wanted} triangles and was given {given} moved ones: give every triangle, in the same order")]
 pub struct TriangleCountError {
@@ -69,12 +70,13 @@ impl Tracer {
         Self { triangles, bvh, built_cost, alpha_test: None, cut_outs: CutOuts::default() }
     }
 
-    /// Moves the triangles, in their order (world space, metres): for scenes that are animated. The
-    /// hierarchy is refitted, or built anew when that has made it half as slow again.
+    /// Moves all triangles, given in their order (world space, metres): for animated scenes. The
+    /// hierarchy is refitted, or rebuilt where a ray through the refitted one would cost more than
+    /// 1.5 times what it cost when it was built.
     ///
     /// # Errors
     ///
-    /// When they are not as many as there are; nothing is changed then.
+    /// When the number of triangles differs; nothing is changed then.
     pub fn set_triangles(&mut self, moved: impl IntoIterator<Item = [Vec3; 3]>) -> Result<(), TriangleCountError> {
         let moved: Vec<Triangle> = moved.into_iter().map(triangle).collect();
         if moved.len() != self.triangles.len() {
@@ -83,8 +85,8 @@ impl Tracer {
         self.triangles = moved;
         let Some(bvh) = &mut self.bvh else { return Ok(()) };
         refit(bvh, &self.triangles);
-        // Costs that are not numbers are built anew as well.
-        let is_good = cost(bvh) <= self.built_cost * MOST_COST_GROWTH;
+        // A cost that is not a number is not good either.
+        let is_good = cost(bvh) <= self.built_cost * MAX_COST_GROWTH;
         if !is_good {
             self.bvh = build(&self.triangles);
             self.built_cost = self.bvh.as_ref().map_or(0.0, cost);
@@ -92,22 +94,22 @@ impl Tracer {
         Ok(())
     }
 
-    /// What a tracer of so many triangles will need, to a factor of 1.5 for thousands of triangles
-    /// that come from an iterator that knows their number.
+    /// Memory that a tracer of this number of triangles will need. It is right to a factor of 1.5 for a
+    /// thousand triangles or more, given to [`Self::new`] by an iterator that knows its length.
     pub fn memory(triangles: usize) -> TracerMemory {
         TracerMemory::of(triangles)
     }
 
-    /// Adds an alpha test: `is_there(triangle, weights)`, with the weights of the triangle's second
-    /// and third corner at the hit.
+    /// Adds an alpha test: `is_opaque(triangle, weights)` says whether a triangle, given by its index,
+    /// stops a ray, with the weights of its second and third corner at the hit.
     #[must_use]
-    pub fn with_alpha_test(mut self, is_there: impl Fn(u32, [f32; 2]) -> bool + Send + Sync + 'static) -> Self {
-        self.alpha_test = Some(Box::new(is_there));
+    pub fn with_alpha_test(mut self, is_opaque: impl Fn(u32, [f32; 2]) -> bool + Send + Sync + 'static) -> Self {
+        self.alpha_test = Some(Box::new(is_opaque));
         self
     }
 
-    /// Adds triangles with holes, in place of those added before. What also has an alpha test must
-    /// pass both.
+    /// Sets the triangles with holes, in place of those set before. Where there is an alpha test as well,
+    /// both must find the triangle opaque.
     #[must_use]
     pub fn with_cut_outs(mut self, cut_outs: CutOuts) -> Self {
         self.cut_outs = cut_outs;
@@ -119,7 +121,7 @@ impl Tracer {
         &self.cut_outs
     }
 
-    /// Whether there is an alpha test that only the processor can run.
+    /// Whether there is an alpha test that only the CPU can run.
     #[cfg(feature = "gpu")]
     pub(crate) fn has_alpha_test(&self) -> bool {
         self.alpha_test.is_some()
@@ -159,8 +161,8 @@ impl Tracer {
         (b - a).cross(c - a).normalize_or_zero()
     }
 
-    /// Distance along a ray to the plane of the triangle that was hit, in f64; the one that f32
-    /// found if that is not finite.
+    /// Distance along a ray to the plane of the triangle that was hit, in f64; where that is not finite,
+    /// the distance that f32 found.
     pub(crate) fn refine(&self, hit: Hit, normal: DVec3, origin: DVec3, direction: DVec3) -> f64 {
         let corner = self.corners(hit.triangle)[0].as_dvec3();
         let distance = normal.dot(corner - origin) / normal.dot(direction);
@@ -175,7 +177,7 @@ impl Tracer {
             .then(|| Hit { distance: hit.t, triangle: bvh.primitive_indices[hit.primitive_id as usize] })
     }
 
-    /// Whether anything stands in the way of a ray (world space, metres).
+    /// Whether a ray (world space, metres) meets any triangle.
     pub fn is_occluded(&self, origin: Vec3, direction: Vec3) -> bool {
         self.ray(origin, direction).is_some_and(|(bvh, ray)| {
             !bvh.ray_traverse_miss(ray, |ray, slot| self.meet(ray, bvh.primitive_indices[slot]))
@@ -202,8 +204,8 @@ impl Tracer {
     }
 
     fn ray(&self, origin: Vec3, direction: Vec3) -> Option<(&Bvh2, Ray)> {
-        let sane = origin.is_finite() && direction.is_finite() && direction != Vec3::ZERO;
-        let bvh = self.bvh.as_ref().filter(|_| sane)?;
+        let is_finite = origin.is_finite() && direction.is_finite() && direction != Vec3::ZERO;
+        let bvh = self.bvh.as_ref().filter(|_| is_finite)?;
         Some((bvh, Ray::new_inf(origin.into(), direction.into())))
     }
 
@@ -216,8 +218,8 @@ impl Tracer {
             return distance;
         }
         let weights = weights(triangle, ray, distance);
-        let passes = self.alpha_test.as_ref().is_none_or(|is_there| is_there(index, weights));
-        if passes && self.cut_outs.is_there(index, weights) { distance } else { f32::INFINITY }
+        let passes = self.alpha_test.as_ref().is_none_or(|is_opaque| is_opaque(index, weights));
+        if passes && self.cut_outs.is_opaque(index, weights) { distance } else { f32::INFINITY }
     }
 }
 
@@ -231,14 +233,14 @@ fn triangle(vertices: [Vec3; 3]) -> Triangle {
 fn build(triangles: &[Triangle]) -> Option<Bvh2> {
     let params = BvhBuildParams::medium_build();
     let mut bvh = (!triangles.is_empty()).then(|| build_bvh2_from_tris(triangles, params, &mut Duration::default()))?;
-    // What only the builder needs, and the room that its first nodes took.
+    // Drops what only the builder needs, and unused capacity.
     bvh.parents = Vec::new();
     bvh.primitives_to_nodes = Vec::new();
     bvh.nodes.shrink_to_fit();
     Some(bvh)
 }
 
-/// Makes the boxes those of triangles that have moved.
+/// Fits the boxes to triangles that have moved.
 fn refit(bvh: &mut Bvh2, triangles: &[Triangle]) {
     for node in bvh.nodes.iter_mut().filter(|node| node.is_leaf()) {
         let slots = node.first_index as usize..(node.first_index + node.prim_count) as usize;
@@ -248,13 +250,13 @@ fn refit(bvh: &mut Bvh2, triangles: &[Triangle]) {
     bvh.refit_all();
 }
 
-/// Cost of a ray through the hierarchy by the surface area heuristic: boxes and triangles that a ray
-/// through the whole is expected to meet.
+/// Cost of a ray through the hierarchy by the surface area heuristic: the expected number of boxes and
+/// triangles that it is tested against.
 fn cost(bvh: &Bvh2) -> f32 {
     let area = |node: &obvhs::bvh2::node::Bvh2Node| f64::from(node.aabb().half_area());
     let sum: f64 = bvh.nodes.iter().map(|node| area(node) * f64::from(node.prim_count.max(1))).sum();
     let whole = area(&bvh.nodes[0]);
-    // Nothing has an area: all hierarchies are alike.
+    // Without any area all hierarchies cost the same.
     if whole == 0.0 { 0.0 } else { (sum / whole) as f32 }
 }
 
@@ -292,16 +294,16 @@ mod tests {
     }
 
     #[test]
-    fn a_cut_out_lets_the_ray_through_where_it_says_so() {
-        // Only the half next to the first corner is there.
+    fn an_alpha_test_lets_the_ray_through_where_it_is_not_opaque() {
+        // Only the half next to the first corner is opaque.
         let tracer = Tracer::new(square_at(1.0)).with_alpha_test(|_, [second, third]| second + third < 0.5);
         assert!(tracer.is_occluded(Vec3::new(-0.9, 0.0, -0.8), Vec3::Y));
         assert!(!tracer.is_occluded(Vec3::new(0.9, 0.0, 0.8), Vec3::Y));
     }
 
-    /// Small triangles in a row, a metre apart, in the order of `place`.
-    fn row(place: impl Fn(u32) -> u32) -> Vec<[Vec3; 3]> {
-        let at = |index: u32| Vec3::X * place(index) as f32;
+    /// Small triangles in a row, a metre apart, in the order of `position`.
+    fn row(position: impl Fn(u32) -> u32) -> Vec<[Vec3; 3]> {
+        let at = |index: u32| Vec3::X * position(index) as f32;
         (0..500).map(|index| [Vec3::ZERO, Vec3::X * 0.5, Vec3::Y * 0.5].map(|corner| at(index) + corner)).collect()
     }
 
@@ -325,11 +327,11 @@ mod tests {
             .expect("as many");
         assert!(boxes_hold_their_triangles(&tracer));
         assert_eq!(tracer.built_cost, slow_before, "a small motion is refitted");
-        // Shuffled, neighbours of the hierarchy lie far apart: it is built anew.
+        // Shuffled, neighbours of the hierarchy lie far apart: it is rebuilt.
         tracer.set_triangles(row(|index| index * 211 % 500)).expect("as many");
         let cost_now = cost(tracer.bvh.as_ref().expect("triangles"));
-        assert!(boxes_hold_their_triangles(&tracer) && cost_now < slow_before * MOST_COST_GROWTH, "{cost_now}");
-        // Gone mad, and back.
+        assert!(boxes_hold_their_triangles(&tracer) && cost_now < slow_before * MAX_COST_GROWTH, "{cost_now}");
+        // Not finite, and finite again.
         tracer.set_triangles(vec![[Vec3::NAN; 3]; 500]).expect("as many");
         assert!(!tracer.is_occluded(Vec3::new(0.1, 0.1, 1.0), Vec3::NEG_Z));
         tracer.set_triangles(row(|index| index)).expect("as many");
@@ -356,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn empty_scenes_and_mad_rays_meet_nothing() {
+    fn empty_scenes_and_rays_that_are_not_finite_meet_nothing() {
         let empty = Tracer::new([]);
         assert!(empty.is_empty() && empty.first_hit(Vec3::ZERO, Vec3::Y).is_none());
         let square = Tracer::new(square_at(1.0));

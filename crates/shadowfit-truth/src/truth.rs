@@ -1,14 +1,16 @@
-//! What the light really does at each pixel of a picture.
+//! Whether the light reaches each pixel of a picture, by rays.
 //!
-//! It follows from the scene, the camera and the light alone, so that it is traced once and any
-//! number of shadow maps are judged against it.
+//! It depends on the scene, the camera and the light alone, so that it is traced once and any number
+//! of shadow maps are judged against it.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::edges::{NOWHERE, squared_distances};
+use crate::camera::PixelCamera;
+use crate::class::counts_as_lit;
+use crate::distances::{NONE_MARKED, squared_distances};
 use crate::sun::Sun;
-use crate::{Hit, PixelCamera, Tracer};
+use crate::tracer::{Hit, Tracer};
 
 /// How truth is traced. World space, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +28,8 @@ pub struct TruthSettings {
 }
 
 impl TruthSettings {
-    /// A hard sun, rays that start a millimetre above the surface, and no end of the shadows.
+    /// A hard sun, rays that start a millimetre above the surface, and no shadow distance: pixels are
+    /// judged at any view depth. `to_light` is the unit direction toward the light, world axes.
     pub fn new(to_light: DVec3) -> Self {
         Self { to_light, ray_offset: 1e-3, sun_radius: 0.0, sun_rays: 64, max_distance: f64::INFINITY }
     }
@@ -54,7 +57,7 @@ pub struct TruthPoint {
 impl TruthPoint {
     /// Whether at least half of the light arrives; `None` where the point is not judged.
     pub fn verdict(&self) -> Option<bool> {
-        self.is_judged.then_some(self.lit >= 0.5)
+        self.is_judged.then(|| counts_as_lit(self.lit))
     }
 }
 
@@ -77,14 +80,14 @@ impl Truth {
     /// beyond the tracer's triangles counts as sky.
     ///
     /// The visible point is where the ray through the pixel's centre meets the triangle's plane. Its
-    /// view depth is held within that of the corners, since a sliver that is seen edge-on would be
-    /// met anywhere.
+    /// view depth is clamped to that of the triangle's corners, since the ray may meet the plane of a
+    /// sliver that is seen edge-on anywhere.
     ///
     /// # Panics
     ///
-    /// If `seen` does not have an element a pixel.
+    /// If `seen` does not have one element for each pixel.
     pub fn trace(tracer: &Tracer, camera: &PixelCamera, settings: &TruthSettings, seen: &[Option<u32>]) -> Self {
-        assert_eq!(seen.len(), camera.pixels(), "as many triangles as pixels");
+        assert_eq!(seen.len(), camera.pixels(), "one triangle or `None` for each pixel");
         let sun = Sun::new(settings.to_light, settings.sun_radius, settings.sun_rays);
         let points: Vec<Option<TruthPoint>> = seen
             .par_iter()
@@ -116,34 +119,35 @@ impl Truth {
         (0..camera.pixels()).into_par_iter().map(see).collect()
     }
 
-    /// Whether the light reaches a pixel (its place among the rows from the top); `None` where it is
-    /// not judged.
+    /// Whether at least half of the light reaches a pixel, given by its index in the rows from the
+    /// top; `None` where it is not judged.
     pub fn verdict(&self, pixel: usize) -> Option<bool> {
         self.points[pixel].as_ref()?.verdict()
     }
 
-    /// Distance, in pixels, from a pixel's centre to the nearest border between two neighbouring
-    /// judged pixels (of four neighbours) whose verdicts differ, by the nearest pixel that has such a
-    /// border: half a pixel more than the distance to its centre. Infinite where there is none.
+    /// Distance, in pixels, from a pixel's centre to the nearest transition: a border between two
+    /// judged pixels, side by side or one above the other, whose verdicts differ. It is measured to
+    /// the centre of the nearest pixel with such a border, and half a pixel is added. Infinite without
+    /// a transition.
     pub fn transition_distance(&self, pixel: usize) -> f32 {
         match self.transition_squares[pixel] {
-            NOWHERE => f32::INFINITY,
+            NONE_MARKED => f32::INFINITY,
             square => (square as f32).sqrt() + 0.5,
         }
     }
 
     /// Whether the distance to a transition is at most `width`, in pixels.
     ///
-    /// In f32, without a root: a whole square against that of `width` less half a pixel, so that
-    /// another implementation, such as the GPU's, finds the very same pixels.
+    /// In f32 and without a root: the whole square is compared with that of `width` less half a pixel,
+    /// so that another implementation, such as the GPU's, finds exactly the same pixels.
     pub(crate) fn is_near_transition(&self, pixel: usize, width: f32) -> bool {
         let square = self.transition_squares[pixel];
         let reach = width - 0.5;
-        square != NOWHERE && square as f32 <= reach * reach
+        square != NONE_MARKED && square as f32 <= reach * reach
     }
 
-    /// What blocks a judged point: the ray toward the sun's middle, or the first one that is blocked
-    /// when that one is free.
+    /// Direction of a ray from a shadowed point that is blocked: the one toward the sun's centre, or
+    /// the first blocked one where that one is free.
     pub(crate) fn blocked_ray(&self, tracer: &Tracer, pixel: usize, point: &TruthPoint) -> DVec3 {
         let settings = &self.settings;
         let sun = Sun::new(settings.to_light, settings.sun_radius, settings.sun_rays);
@@ -183,7 +187,7 @@ impl Truth {
     }
 }
 
-/// What the ray through a pixel's centre meets of the plane of the triangle that is seen there.
+/// Where the ray through a pixel's centre meets the plane of the triangle that is seen there.
 fn visible_point(
     tracer: &Tracer,
     camera: &PixelCamera,
@@ -197,7 +201,7 @@ fn visible_point(
     let depths = corners.map(|corner| camera.view_depth(corner));
     let nearest = depths.into_iter().fold(f64::INFINITY, f64::min).max(camera.near);
     let farthest = depths.into_iter().fold(f64::NEG_INFINITY, f64::max).min(camera.far);
-    // `max` and `min` drop what is not a number: a ray within the plane.
+    // A ray within the plane gives NaN, which `max` and `min` drop.
     let view_depth = (normal.dot(corners[0] - camera.eye) / normal.dot(ray)).max(nearest).min(farthest);
     let normal = if normal.dot(ray) > 0.0 { -normal } else { normal };
     let facing = normal.dot(settings.to_light);

@@ -1,4 +1,4 @@
-//! A tracer's memory, told in advance, against the allocator. A program of its own: it replaces the
+//! A tracer's estimated memory against the allocator. A program of its own: it replaces the
 //! allocator.
 
 use allocation_counter::measure;
@@ -14,7 +14,7 @@ fn at(corner: Vec3) -> [Vec3; 3] {
 fn ground(count: u32) -> impl ExactSizeIterator<Item = [Vec3; 3]> {
     let side = f64::from(count).sqrt().ceil() as u32;
     (0..count).map(move |index| {
-        let [x, z] = [index % side, index / side].map(|place| place as f32);
+        let [x, z] = [index % side, index / side].map(|cell| cell as f32);
         at(Vec3::new(x, (x * 0.1).sin() + (z * 0.13).cos(), z))
     })
 }
@@ -35,14 +35,17 @@ fn measured(triangles: impl Iterator<Item = [Vec3; 3]>) -> [f64; 2] {
 }
 
 #[test]
-fn memory_is_told_in_advance_within_a_factor_of_one_and_a_half() {
+fn memory_is_estimated_within_a_factor_of_one_and_a_half() {
     for count in [1_000, 30_000] {
-        let told = Tracer::memory(count as usize);
-        let told = [told.building, told.kept].map(|bytes| bytes as f64);
+        let estimate = Tracer::memory(count as usize);
+        let estimate = [estimate.building, estimate.kept].map(|bytes| bytes as f64);
         for (name, found) in [("ground", measured(ground(count))), ("soup", measured(soup(count)))] {
-            for (told, found) in told.into_iter().zip(found) {
-                let ratio = found / told;
-                assert!((1.0 / 1.5..=1.5).contains(&ratio), "{name} of {count}: {found} bytes, {told} were told");
+            for (estimate, found) in estimate.into_iter().zip(found) {
+                let ratio = found / estimate;
+                assert!(
+                    (1.0 / 1.5..=1.5).contains(&ratio),
+                    "{name} of {count}: {found} bytes, {estimate} were estimated"
+                );
             }
         }
     }

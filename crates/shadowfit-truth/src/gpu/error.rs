@@ -5,9 +5,9 @@ use thiserror::Error;
 /// Why a picture cannot be judged on the GPU.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum GpuTruthError {
-    /// The tracer's alpha test is a function of the processor.
+    /// The tracer's alpha test is a function that only the CPU can run.
     #[error(
-        "the tracer has an alpha test that only the processor can run: give its holes as plain data, \
+        "the tracer has an alpha test, a function that only the CPU can run: give its holes as plain data, \
          with `Tracer::with_cut_outs`"
     )]
     AlphaTest,
@@ -26,19 +26,19 @@ pub enum GpuTruthError {
     },
     /// The hierarchy is deeper than the shader's stack.
     #[error(
-        "the triangles' hierarchy has {depth} levels, and the shader can follow {most}: leave out triangles that \
+        "the triangles' hierarchy has {depth} levels, and the shader can follow {limit}: leave out triangles that \
          coincide or have extreme sizes"
     )]
     TooDeep {
         /// Levels of the hierarchy.
         depth: usize,
         /// Levels that the shader can follow.
-        most: usize,
+        limit: usize,
     },
     /// More maps than the uniform holds.
-    #[error("the picture has {0} shadow maps, and the shader reads at most 8: judge it on the processor")]
+    #[error("the picture has {0} shadow maps, and the shader reads at most 8: judge it on the CPU")]
     TooManyMaps(usize),
-    /// Truth is a mean over many rays.
+    /// A sun with a radius needs many rays.
     #[error("the sun has a radius, and the GPU traces hard shadows only: set `sun_radius` to 0")]
     SoftSun,
     /// The picture of triangles and the camera have different sizes.
@@ -52,6 +52,9 @@ pub enum GpuTruthError {
         /// Size of the camera's picture, in pixels.
         camera: [u32; 2],
     },
+    /// No picture was judged before its classes were read.
+    #[error("no picture was judged yet: call `GpuJudge::judge` and submit its encoder before reading")]
+    NotJudged,
     /// The classes cannot be read back.
     #[error("the classes cannot be read back from the device, which was lost or ran out of memory: open it again")]
     Read,

@@ -1,27 +1,18 @@
 //! The three passes that judge a picture, and the texture that they fill.
 
-use super::tracer::scene_layout;
+use super::error::GpuTruthError;
+use super::input::GpuJudgeInput;
+use super::pixel::GpuPixel;
+use super::shader;
+use super::tracer::{GpuTracer, scene_layout};
 use super::uniform::JudgeUniform;
-use super::{GpuPixel, GpuTracer, GpuTruthError, shader};
-use crate::{MapsSeen, PixelCamera, TruthSettings};
 
-/// Bytes of a pixel between the passes: flags, footprint, distance along the row.
+/// Bytes of a pixel between the passes: flags, pixels per texel, distance along the row.
 const PIXEL_BYTES: u64 = 12;
 /// Pixels a side of a workgroup's square.
 const SQUARE: u32 = 8;
-/// A texture's rows begin at multiples of this in a buffer, in bytes; wgpu demands it.
+/// A texture's rows begin at multiples of this in a buffer, in bytes; wgpu requires it.
 const ROW_ALIGNMENT: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
-
-/// A picture to judge.
-#[derive(Clone, Copy, Debug)]
-pub struct GpuJudgeInput<'a> {
-    /// Camera of the picture.
-    pub camera: &'a PixelCamera,
-    /// How truth is traced; the sun must be hard.
-    pub settings: &'a TruthSettings,
-    /// The maps, at most [`super::MAX_MAPS`].
-    pub maps: &'a MapsSeen<'a>,
-}
 
 /// Judges pictures on the GPU.
 #[derive(Debug)]
@@ -32,7 +23,7 @@ pub struct GpuJudge {
     target: Option<Target>,
 }
 
-/// What has the size of the picture.
+/// The buffer and the texture that have the size of the picture.
 #[derive(Debug)]
 struct Target {
     size: [u32; 2],
@@ -76,15 +67,16 @@ impl GpuJudge {
     }
 
     /// Records the passes that judge a picture, and returns the texture that they fill (see
-    /// [`GpuPixel`]); it is another one only when the size has changed. `seen` is an `Rg32Uint` of the
-    /// camera's size: the tracer's triangle plus 1 (0 sky), and the bits of the filtered factor.
+    /// [`GpuPixel`]). The texture stays the same one as long as the size does. `seen` is an `Rg32Uint`
+    /// of the camera's size: the index of the tracer's triangle plus 1 (0 for the sky), and the bits
+    /// of the filtered factor, an f32.
     ///
-    /// Submit the encoder before the next picture is recorded, which takes the place of this one.
+    /// Submit the encoder before the next picture is recorded, which overwrites this one.
     ///
     /// # Errors
     ///
-    /// When the sizes differ, the picture is too large for the device, has too many maps, or a sun
-    /// with a radius.
+    /// When the sizes of `seen` and the camera differ, the picture is too large for the device, there
+    /// are more than [`MAX_MAPS`](super::MAX_MAPS) maps, or the sun has a radius.
     pub fn judge(
         &mut self,
         device: &wgpu::Device,
@@ -99,7 +91,7 @@ impl GpuJudge {
         if [texture.width(), texture.height()] != size {
             return Err(GpuTruthError::Size { seen: [texture.width(), texture.height()], camera: size });
         }
-        let uniform = JudgeUniform::new(input, tracer.origin(), tracer.triangles())?;
+        let uniform = input.uniform(tracer.origin(), tracer.triangles())?;
         let target = match self.target.take() {
             Some(target) if target.size == size => target,
             _ => Target::new(device, size)?,
@@ -118,19 +110,18 @@ impl GpuJudge {
         Ok(&self.target.insert(target).classes)
     }
 
-    /// The texture of the last picture's classes.
+    /// The texture of the last picture's classes; `None` before the first picture.
     pub fn classes(&self) -> Option<&wgpu::Texture> {
         self.target.as_ref().map(|target| &target.classes)
     }
 
-    /// Reads the last picture's classes back, rows from the top, and waits for the device. Empty
-    /// before the first picture.
+    /// Reads the last picture's classes back, rows from the top, and waits for the device.
     ///
     /// # Errors
     ///
-    /// When the device is lost or has no memory left.
+    /// When no picture was judged yet, or the device is lost or has no memory left.
     pub fn read(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<GpuPixel>, GpuTruthError> {
-        let Some(target) = &self.target else { return Ok(Vec::new()) };
+        let target = self.target.as_ref().ok_or(GpuTruthError::NotJudged)?;
         let [width, height] = target.size;
         let row = (width * 4).next_multiple_of(ROW_ALIGNMENT);
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
@@ -147,7 +138,7 @@ impl GpuJudge {
             target.classes.size(),
         );
         queue.submit([encoder.finish()]);
-        // Whether it was mapped is asked below.
+        // Whether it was mapped is checked below.
         buffer.slice(..).map_async(wgpu::MapMode::Read, |_| ());
         device.poll(wgpu::PollType::wait_indefinitely()).map_err(|_| GpuTruthError::Read)?;
         let mapped = buffer.slice(..).get_mapped_range().map_err(|_| GpuTruthError::Read)?;

@@ -1,10 +1,11 @@
 //! The same classes from compute passes, for pictures that are judged while they are looked at.
 //!
-//! [`GpuTracer`] holds a tracer's triangles and hierarchy, [`GpuJudge`] fills a texture with the
-//! class of each pixel, and nothing is read back. Only what every WebGPU device has is used. The
-//! processor's [`crate::judge()`] is the reference: the GPU has its rules in f32.
+//! [`GpuTracer`] holds a tracer's triangles and hierarchy, and [`GpuJudge`] fills a texture with the
+//! class of each pixel, without reading anything back. It uses only what every WebGPU device has. The
+//! CPU's [`crate::judge()`] is the reference; the GPU follows the same rules in f32.
 
 mod error;
+mod input;
 mod judge;
 mod pixel;
 pub mod shader;
@@ -12,7 +13,8 @@ mod tracer;
 mod uniform;
 
 pub use error::GpuTruthError;
-pub use judge::{GpuJudge, GpuJudgeInput};
+pub use input::GpuJudgeInput;
+pub use judge::GpuJudge;
 pub use pixel::GpuPixel;
 pub use tracer::GpuTracer;
-pub use uniform::{CutOutRecord, ImageRecord, JudgeUniform, MAX_MAPS, NodeRecord, SeenMapUniform, TriangleRecord};
+pub use uniform::{CutOutRecord, ImageRecord, JudgeUniform, MAX_MAPS, MapUniform, NodeRecord, TriangleRecord};

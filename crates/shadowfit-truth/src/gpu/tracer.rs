@@ -2,16 +2,17 @@
 
 use glam::{DVec3, Vec3};
 
-use super::GpuTruthError;
+use super::error::GpuTruthError;
 use super::uniform::{CutOutRecord, ImageRecord, NodeRecord, TriangleRecord};
-use crate::{CutOut, CutOuts, Tracer};
+use crate::cut_out::{CutOut, CutOuts};
+use crate::tracer::Tracer;
 
-/// Levels that the stack of the shader can follow; `STACK` in `rays.wgsl`.
-pub(crate) const MOST_DEPTH: usize = 64;
+/// Levels of the hierarchy that the shader's stack can follow; `STACK` in `rays.wgsl`.
+const MAX_DEPTH: usize = 64;
 
 /// What each buffer holds, for its label and for errors; the order is that of the bindings.
 const CONTENTS: [&str; 6] =
-    ["hierarchy nodes", "triangles", "triangle numbers", "cut-outs", "cut-out images", "cut-out texels"];
+    ["hierarchy nodes", "triangles", "triangle indices", "cut-outs", "cut-out images", "cut-out texels"];
 
 /// A tracer's scene on the GPU.
 #[derive(Debug)]
@@ -23,9 +24,8 @@ pub struct GpuTracer {
 }
 
 impl GpuTracer {
-    /// Uploads a tracer. Triangles are stored in f32 relative to `origin` (world space, metres),
-    /// which should be near what is judged; with the world's own origin they are those of the
-    /// processor to the last bit.
+    /// Uploads a tracer. Triangles are stored in f32 relative to `origin` (world space, metres), which
+    /// should be near what is judged. With an origin of zero they equal the CPU's to the last bit.
     ///
     /// # Errors
     ///
@@ -68,12 +68,12 @@ impl GpuTracer {
         Ok(Self { buffers, group, origin, triangles: tracer.len() as u32 })
     }
 
-    /// Uploads a tracer whose triangles have moved, or another one; buffers are made anew only where
-    /// they have other sizes.
+    /// Uploads a tracer whose triangles have moved, or another tracer. Buffers are created again only when
+    /// their sizes change.
     ///
     /// # Errors
     ///
-    /// As for [`Self::new`]; the scene that was there stays.
+    /// As for [`Self::new`]; the scene is unchanged then.
     pub fn update(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, tracer: &Tracer) -> Result<(), GpuTruthError> {
         let contents = contents(tracer, self.origin)?;
         let fits = |(buffer, content): (&wgpu::Buffer, &Vec<u8>)| buffer.size() == content.len() as u64;
@@ -87,7 +87,7 @@ impl GpuTracer {
         Ok(())
     }
 
-    /// What triangles are stored relative to, world space, metres.
+    /// The point that triangles are stored relative to, world space, metres.
     pub fn origin(&self) -> DVec3 {
         self.origin
     }
@@ -135,7 +135,7 @@ fn contents(tracer: &Tracer, origin: DVec3) -> Result<[Vec<u8>; 6], GpuTruthErro
     for (slot, triangle) in (0u32..).zip(order) {
         slots[*triangle as usize] = slot;
         let [a, b, c] = tracer.corners(*triangle).map(relative);
-        let cut_out = cut_outs.place(*triangle).map_or(0, |place| place + 1);
+        let cut_out = cut_outs.index_of(*triangle).map_or(0, |index| index + 1);
         triangles.push(TriangleRecord { a, cut_out, b, c, ..TriangleRecord::default() });
     }
     let (images, alphas) = images(cut_outs)?;
@@ -144,15 +144,15 @@ fn contents(tracer: &Tracer, origin: DVec3) -> Result<[Vec<u8>; 6], GpuTruthErro
     Ok([bytes(nodes), bytes(triangles), bytes(slots), bytes(records), bytes(images), alphas])
 }
 
-/// The hierarchy's nodes, and the numbers of the triangles in leaf order.
+/// The hierarchy's nodes, and the indices of the triangles in leaf order.
 fn nodes(tracer: &Tracer, origin: DVec3) -> Result<(Vec<NodeRecord>, &[u32]), GpuTruthError> {
     let Some(bvh) = tracer.bvh() else {
         // A leaf with a triangle of no area, which no ray meets.
         return Ok((vec![NodeRecord { least: [0.0; 3], count: 1, most: [0.0; 3], first: 0 }], &[]));
     };
     let depth = bvh.depth(0);
-    if depth > MOST_DEPTH {
-        return Err(GpuTruthError::TooDeep { depth, most: MOST_DEPTH });
+    if depth > MAX_DEPTH {
+        return Err(GpuTruthError::TooDeep { depth, limit: MAX_DEPTH });
     }
     let records = bvh.nodes.iter().map(|node| {
         let [least, most] = [node.aabb().min, node.aabb().max].map(|corner| Vec3::from(corner).as_dvec3() - origin);
@@ -166,13 +166,13 @@ fn nodes(tracer: &Tracer, origin: DVec3) -> Result<(Vec<NodeRecord>, &[u32]), Gp
     Ok((records.collect(), &bvh.primitive_indices))
 }
 
-/// The f32 that is next below a value, or is it: boxes hold their triangles after rounding.
+/// The greatest f32 that is not above a value, so that boxes hold their triangles after rounding.
 fn below(value: f64) -> f32 {
     let rounded = value as f32;
     if f64::from(rounded) > value { rounded.next_down() } else { rounded }
 }
 
-/// The f32 that is next above a value, or is it.
+/// The least f32 that is not below a value.
 fn above(value: f64) -> f32 {
     let rounded = value as f32;
     if f64::from(rounded) < value { rounded.next_up() } else { rounded }

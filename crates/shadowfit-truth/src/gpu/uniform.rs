@@ -1,11 +1,7 @@
-//! What the shaders read, field by field as in WGSL; tests compare sizes and offsets with naga's reflection.
+//! The records that the shaders read, field by field as in WGSL; tests compare sizes and offsets with naga's
+//! reflection.
 
-use glam::DVec3;
-
-use super::{GpuJudgeInput, GpuTruthError};
-use crate::peers::ShadowMap;
-
-/// Most shadow maps of a picture.
+/// Greatest number of shadow maps that a picture may have.
 pub const MAX_MAPS: usize = 8;
 
 /// A node of the hierarchy.
@@ -28,7 +24,7 @@ pub struct NodeRecord {
 pub struct TriangleRecord {
     /// First corner, relative to the origin, in metres.
     pub a: [f32; 3],
-    /// Place of its cut-out plus 1, 0 for none.
+    /// Index of its cut-out plus 1, 0 for none.
     pub cut_out: u32,
     /// Second corner.
     pub b: [f32; 3],
@@ -52,13 +48,13 @@ pub struct CutOutRecord {
     pub uv_c: [f32; 2],
     /// Alpha of the material.
     pub base_alpha: f32,
-    /// Least alpha that is there.
+    /// Least alpha that is opaque.
     pub cutoff: f32,
     /// Alpha of the corners.
     pub alphas: [f32; 3],
-    /// Place of its image plus 1, 0 for none.
+    /// Index of its image plus 1, 0 for none.
     pub image: u32,
-    /// [`crate::Wrap`] to the right and down.
+    /// [`crate::Wrap`] across and down.
     pub wrap: [u32; 2],
     /// 1 where the nearest texel is taken.
     pub nearest: u32,
@@ -83,7 +79,7 @@ pub struct ImageRecord {
 /// A shadow map.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct SeenMapUniform {
+pub struct MapUniform {
     /// First row of clip from positions relative to the eye.
     pub row_x: [f32; 4],
     /// Second row.
@@ -94,7 +90,7 @@ pub struct SeenMapUniform {
     pub row_w: [f32; 4],
     /// Texels across and down.
     pub size: [f32; 2],
-    /// View depth below which the map is the first choice, in metres.
+    /// View depth below which the map is the first to be read, in metres.
     pub split_far: f32,
     /// 1 where depth 1 is nearest to the light.
     pub is_reversed: u32,
@@ -122,7 +118,7 @@ pub struct JudgeUniform {
     pub max_distance: f32,
     /// Unit direction toward the light.
     pub to_light: [f32; 3],
-    /// Width of the edge zone, in pixels or texels' footprints.
+    /// Width of the edge zone: in pixels, or in texels where those are wider than pixels on screen.
     pub edge_width: f32,
     /// Tangents of half of the fields of view.
     pub tan_half_fov: [f32; 2],
@@ -137,59 +133,5 @@ pub struct JudgeUniform {
     /// Unused.
     pub padding: u32,
     /// The maps.
-    pub maps: [SeenMapUniform; MAX_MAPS],
-}
-
-impl JudgeUniform {
-    /// A picture's uniform, for triangles that are stored relative to `origin`.
-    pub(crate) fn new(input: &GpuJudgeInput, origin: DVec3, triangles: u32) -> Result<Self, GpuTruthError> {
-        let GpuJudgeInput { camera, settings, maps } = input;
-        if maps.maps.len() > MAX_MAPS {
-            return Err(GpuTruthError::TooManyMaps(maps.maps.len()));
-        }
-        if settings.sun_radius > 0.0 {
-            return Err(GpuTruthError::SoftSun);
-        }
-        let mut uniforms = [SeenMapUniform::default(); MAX_MAPS];
-        for (uniform, map) in uniforms.iter_mut().zip(maps.maps) {
-            *uniform = seen_map(map, camera.eye);
-        }
-        Ok(Self {
-            eye: (camera.eye - origin).as_vec3().into(),
-            near: finite(camera.near),
-            right: camera.right.as_vec3().into(),
-            far: finite(camera.far),
-            up: camera.up.as_vec3().into(),
-            ray_offset: finite(settings.ray_offset),
-            forward: camera.forward.as_vec3().into(),
-            max_distance: finite(settings.max_distance),
-            to_light: settings.to_light.as_vec3().into(),
-            edge_width: maps.edge_width(),
-            tan_half_fov: camera.tan_half_fov.as_vec2().into(),
-            size: camera.size,
-            map_count: maps.maps.len() as u32,
-            depth_clamp: maps.depth_clamp.into(),
-            triangles,
-            padding: 0,
-            maps: uniforms,
-        })
-    }
-}
-
-fn seen_map(map: &ShadowMap, eye: DVec3) -> SeenMapUniform {
-    let [row_x, row_y, row_z, row_w] = map.rows_from(eye).map(|row| row.as_vec4().into());
-    SeenMapUniform {
-        row_x,
-        row_y,
-        row_z,
-        row_w,
-        size: map.size.as_vec2().into(),
-        split_far: finite(map.split_far),
-        is_reversed: map.is_reversed.into(),
-    }
-}
-
-/// A length that shaders can compare: WGSL has no infinity.
-fn finite(value: f64) -> f32 {
-    (value as f32).clamp(f32::MIN, f32::MAX)
+    pub maps: [MapUniform; MAX_MAPS],
 }

@@ -1,12 +1,13 @@
-//! Which share of a map's area the visible points need: each marks the cells under its footprint.
+//! Which share of a map's area the visible points need: each point marks the cells that its part of the
+//! picture covers.
 
 use glam::DVec2;
 
-/// Cells across and down a map.
+/// Number of cells across a map, and down it.
 const CELLS: usize = 256;
-/// Longest side of a footprint, in cells.
-const LONGEST_SIDE: f64 = 16.0;
-/// Samples in a cell's length along a side of a footprint.
+/// Longer sides of a point's parallelogram are shortened to this, in cells.
+const MAX_SIDE: f64 = 16.0;
+/// Samples in a cell's length along a side of a point's parallelogram.
 const SAMPLES_PER_CELL: f64 = 1.5;
 
 /// The cells of a map.
@@ -27,15 +28,15 @@ impl Cells {
     pub(crate) fn mark(&mut self, size: DVec2, centre: DVec2, sides: [DVec2; 2]) {
         let cells_per_texel = CELLS as f64 / size;
         let centre = centre * cells_per_texel;
-        let [across, down] = sides.map(|side| (side * cells_per_texel).clamp_length_max(LONGEST_SIDE));
+        let [across, down] = sides.map(|side| (side * cells_per_texel).clamp_length_max(MAX_SIDE));
         if !(centre.is_finite() && across.is_finite() && down.is_finite()) {
             return;
         }
         let [samples_across, samples_down] = [across, down].map(samples);
         for row in 0..samples_down {
-            let middle = centre + down * place(row, samples_down);
+            let middle = centre + down * offset(row, samples_down);
             for column in 0..samples_across {
-                self.mark_cell(middle + across * place(column, samples_across));
+                self.mark_cell(middle + across * offset(column, samples_across));
             }
         }
     }
@@ -58,8 +59,8 @@ fn samples(side: DVec2) -> u32 {
     ((SAMPLES_PER_CELL * side.length()).ceil() as u32).max(1)
 }
 
-/// Place of a sample along a side, from -0.5 to 0.5.
-fn place(index: u32, samples: u32) -> f64 {
+/// Where a sample lies along a side, from -0.5 to 0.5.
+fn offset(index: u32, samples: u32) -> f64 {
     (f64::from(index) + 0.5) / f64::from(samples) - 0.5
 }
 
@@ -67,7 +68,8 @@ fn place(index: u32, samples: u32) -> f64 {
 mod tests {
     use super::*;
 
-    /// Marked cells for a footprint of so many cells, in a map of 512 by 1024 texels, around (100, 100).
+    /// Number of cells that a parallelogram with these sides, in cells, marks in a map of 512 by 1024
+    /// texels, around cell (100, 100).
     fn marked(across: DVec2, down: DVec2) -> usize {
         let mut cells = Cells::default();
         let texels_per_cell = DVec2::new(2.0, 4.0);
@@ -77,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn a_footprint_marks_the_cells_it_covers() {
+    fn a_parallelogram_marks_the_cells_it_covers() {
         assert_eq!(marked(DVec2::ZERO, DVec2::ZERO), 1);
         assert_eq!(marked(DVec2::new(4.0, 0.0), DVec2::new(0.0, 6.0)), 24);
         // A square that stands on its corner covers no less than its area.
@@ -86,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn sides_are_cut_to_16_cells() {
+    fn sides_are_shortened_to_16_cells() {
         assert_eq!(marked(DVec2::new(90.0, 0.0), DVec2::ZERO), 16);
     }
 

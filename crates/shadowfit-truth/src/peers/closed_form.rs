@@ -1,5 +1,5 @@
-//! Measures whose values follow from a drawing: a camera that looks straight down on a floor, under
-//! a light that falls straight down, and maps around what it sees.
+//! Measures whose values follow from a drawing: a camera looks straight down on a floor, the light
+//! falls straight down, and maps enclose what the camera sees.
 //!
 //! ```text
 //!   eye ▽  height 4          pixels and texels are parallel to x and z,
@@ -11,7 +11,7 @@ use glam::dcamera::rh::{proj::directx::orthographic, view::look_to_mat4};
 use glam::{DMat4, DVec2, DVec3, Vec3};
 
 use super::*;
-use crate::Tracer;
+use crate::{Histogram, MeasuredMap, Tracer};
 
 /// Height of the eye over the floor, in metres.
 const EYE: f64 = 4.0;
@@ -26,7 +26,7 @@ const POINTS: u64 = 320 * 180;
 pub(crate) fn scenarios(frames: u32) -> Scenarios {
     let scene = Scene {
         name: "room".to_owned(),
-        file: "room.glb".to_owned(),
+        file: Some("room.glb".to_owned()),
         scale: 1.0,
         ground: None,
         triangles: 2,
@@ -89,19 +89,19 @@ impl Room {
     }
 }
 
-fn prepared(map: &FitMap) -> ShadowMap {
-    ShadowMap::new(map, DVec3::Y)
+fn prepared(map: &FitMap) -> MeasuredMap {
+    map.measured(DVec3::Y)
 }
 
 /// Measures of maps on the floor under roofs.
-fn tally(roofs: &[(f32, f32)], maps: &[FitMap], pancake: bool) -> Tally {
-    let maps: Vec<ShadowMap> = maps.iter().map(prepared).collect();
-    measure(&Room::new(roofs).visible(), &FrameMaps { maps: &maps, previous: None, pancake })
+fn tally(roofs: &[(f32, f32)], maps: &[FitMap], depth_clamp: bool) -> Tally {
+    let maps: Vec<MeasuredMap> = maps.iter().map(prepared).collect();
+    measure(&Room::new(roofs).visible(), &FrameMaps { maps: &maps, previous: None, depth_clamp })
 }
 
 /// Measures of how `then` became `now`.
 fn shimmer(then: &FitMap, now: &FitMap) -> Shimmer {
-    let frame = FrameMaps { maps: &[prepared(now)], previous: Some(&[prepared(then)]), pancake: false };
+    let frame = FrameMaps { maps: &[prepared(now)], previous: Some(&[prepared(then)]), depth_clamp: false };
     measure(&Room::new(&[]).visible(), &frame).shimmer
 }
 
@@ -166,36 +166,36 @@ fn errors_are_pixels_per_texel_and_the_critical_resolution_is_pixels_per_map() {
     let texel = 8.0 / 1024.0;
     let half_a_bin = 0.5 / 128.0;
     for q in [0.01, 0.5, 0.99] {
-        let found = tally.error.log2_quantile(q).expect("points");
+        let found = tally.pixels_per_texel.log2_quantile(q).expect("points");
         assert!((found - (texel / PIXEL).log2()).abs() <= half_a_bin);
         let found = tally.critical.log2_quantile(q).expect("points");
         assert!((found - (8.0 / PIXEL).log2()).abs() <= half_a_bin);
     }
-    assert_eq!((tally.error.total(), tally.under, tally.uncovered), (POINTS, POINTS, 0));
+    assert_eq!((tally.pixels_per_texel.total(), tally.undersampled, tally.uncovered), (POINTS, POINTS, 0));
 }
 
 #[test]
-fn a_texel_a_pixel_is_not_under_and_the_worse_axis_counts_in_maps_that_are_not_square() {
+fn one_pixel_per_texel_is_not_undersampled_and_the_worse_axis_counts_in_maps_that_are_not_square() {
     let fine = FitMap { resolution: 4096, ..Room::map() };
-    assert_eq!(tally(&[], &[fine], false).under, 0);
+    assert_eq!(tally(&[], &[fine], false).undersampled, 0);
     let wide = FitMap { resolution_xy: Some([4096, 1024]), ..Room::map() };
     let tally = tally(&[], &[wide], false);
     let error = (8.0 / 1024.0 / PIXEL).log2();
     let found = |histogram: &Histogram| histogram.log2_quantile(0.5).expect("points");
-    assert!((found(&tally.error) - error).abs() <= 0.5 / 128.0);
+    assert!((found(&tally.pixels_per_texel) - error).abs() <= 0.5 / 128.0);
     // As many texels as a square of 2048.
     assert!((found(&tally.critical) - (error + 11.0)).abs() <= 0.5 / 128.0);
 }
 
 #[test]
-fn surfaces_along_the_light_have_no_say_in_the_errors_alone() {
+fn grazing_surfaces_are_left_out_of_pixels_per_texel_alone() {
     let mut frame = Room::frame();
     let grazing = DVec3::new(1.0, 0.04, 0.0).normalize();
     frame.light_dir = (-grazing).to_array();
     let visible = VisiblePoints::trace(&Room::new(&[]).tracer, &frame, 1);
-    let maps = [ShadowMap::new(&Room::map(), grazing)];
-    let tally = measure(&visible, &FrameMaps { maps: &maps, previous: Some(&maps), pancake: false });
-    assert_eq!((tally.facing, tally.error.total(), tally.under), (POINTS, 0, 0));
+    let maps = [Room::map().measured(grazing)];
+    let tally = measure(&visible, &FrameMaps { maps: &maps, previous: Some(&maps), depth_clamp: false });
+    assert_eq!((tally.facing, tally.pixels_per_texel.total(), tally.undersampled), (POINTS, 0, 0));
     assert!(tally.shimmer.points > 0 && tally.used > 0.0);
 }
 
@@ -205,18 +205,18 @@ fn points_beside_every_map_are_uncovered_and_left_out_of_the_rest() {
     let half = Room::map_around(DVec2::new(4.0, 0.0), 8.0, 8.0);
     let tally = tally(&[(-100.0, 6.0)], &[half], false);
     assert_eq!((tally.uncovered, tally.covered()), (POINTS / 2, POINTS / 2));
-    assert_eq!((tally.error.total(), tally.shadowed, tally.lost), (POINTS / 2, POINTS / 2, 0));
+    assert_eq!((tally.pixels_per_texel.total(), tally.shadowed, tally.lost), (POINTS / 2, POINTS / 2, 0));
 }
 
 #[test]
 fn a_point_reads_the_first_map_beyond_its_depth_that_holds_it() {
     let coarse = FitMap { resolution: 512, ..Room::map() };
     let fine_half = Room::map_around(DVec2::new(4.0, 0.0), 8.0, 8.0);
-    let octaves = |tally: &Tally, q: f64| tally.error.log2_quantile(q).expect("points").round();
+    let octaves = |tally: &Tally, q: f64| tally.pixels_per_texel.log2_quantile(q).expect("points").round();
     // The near map ends before the floor: only the far one is read.
     let too_near = FitMap { split_far: EYE - 0.01, ..Room::map() };
     let alone = tally(&[], std::slice::from_ref(&coarse), false);
-    assert_eq!(tally(&[], &[too_near, coarse.clone()], false).error, alone.error);
+    assert_eq!(tally(&[], &[too_near, coarse.clone()], false).pixels_per_texel, alone.pixels_per_texel);
     // The near map holds one half: the far one is read for the other.
     let mixed = tally(&[], &[fine_half, coarse], false);
     assert_eq!((octaves(&mixed, 0.5), octaves(&mixed, 0.51), mixed.uncovered), (1.0, 2.0, 0));
@@ -230,8 +230,8 @@ fn a_caster_before_the_near_plane_is_lost_unless_the_renderer_clamps_depth() {
     let under_roof = Room::map_around(DVec2::ZERO, 8.0, 5.0);
     for map in [reversed(&under_roof), under_roof] {
         let map = std::slice::from_ref(&map);
-        let lost = |pancake| {
-            let tally = tally(&[(0.0, 6.0)], map, pancake);
+        let lost = |depth_clamp| {
+            let tally = tally(&[(0.0, 6.0)], map, depth_clamp);
             (tally.shadowed, tally.lost, tally.lost_unclamped)
         };
         assert_eq!(lost(false), (POINTS / 2, POINTS / 2, POINTS / 2));
@@ -274,7 +274,7 @@ fn a_map_that_grows_changes_its_texels_size() {
 fn crawl_needs_the_point_in_the_same_map_of_the_frame_before() {
     let beside = Room::map_around(DVec2::new(40.0, 0.0), 8.0, 8.0);
     assert_eq!(shimmer(&beside, &Room::map()).points, 0);
-    let frame = FrameMaps { maps: &[prepared(&Room::map())], previous: Some(&[]), pancake: false };
+    let frame = FrameMaps { maps: &[prepared(&Room::map())], previous: Some(&[]), depth_clamp: false };
     assert_eq!(measure(&Room::new(&[]).visible(), &frame).shimmer, Shimmer::default());
 }
 
@@ -288,21 +288,21 @@ fn the_depth_range_is_the_maps_depth_plain_or_reversed() {
 }
 
 #[test]
-fn a_study_measures_each_fit_on_each_frame_and_follows_the_path() {
+fn a_ranking_measures_each_fit_on_each_frame_and_follows_the_path() {
     let scenarios = scenarios(3);
     let fit = |step: f64| {
         let map = |frame: u32| Room::map_around(DVec2::X * (f64::from(frame) * step * 8.0 / 1024.0), 8.0, 8.0);
         let frames = (0..3).rev().map(|frame| FitFrame { id: format!("room/90/{frame}"), maps: vec![map(frame)] });
         FitFile { peer: format!("step {step}"), frames: frames.collect(), ..FitFile::default() }
     };
-    let mut study = Study::new(scenarios);
+    let mut ranking = Ranking::new(scenarios);
     for step in [1.0, 0.25] {
-        study.add(&fit(step), std::path::Path::new("fit.json")).expect("all frames");
+        ranking.add(&fit(step), std::path::Path::new("fit.json")).expect("all frames");
     }
     let done = std::sync::atomic::AtomicU32::new(0);
     let count = || _ = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-    study.measure_scene(0, &Room::new(&[(0.0, 6.0)]).tracer, 2, &count);
-    let tables = study.tables();
+    ranking.measure_scene(0, &Room::new(&[(0.0, 6.0)]).tracer, 2, &count);
+    let tables = ranking.tables();
     assert_eq!((tables[0].peer.as_str(), tables[1].peer.as_str(), done.into_inner()), ("step 1", "step 0.25", 3));
     assert_eq!((tables[0].overall.still, tables[1].overall.still), (100.0, 0.0));
     assert!(close(tables[1].overall.shimmer, 0.25));

@@ -1,4 +1,4 @@
-//! Files that cannot be used, told for people: which file, which part of it, and why.
+//! Files that cannot be used: which file, which part of it, and why, in words for people.
 
 use std::path::{Path, PathBuf};
 

@@ -1,18 +1,20 @@
-//! What a fit answered for each frame: the files `fits/<peer>.json`.
+//! The maps that a fit made for each frame: the files `fits/<peer>.json`.
 
 use std::collections::HashMap;
 use std::path::Path;
 
-use glam::{DMat4, DVec2};
+use glam::{DMat4, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::Scenarios;
 use super::error::{PeersError, Problem, check_finite, read_json};
+use super::scenarios::Scenarios;
+use super::whole;
+use crate::maps::MeasuredMap;
 
 /// The content of a fit file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FitFile {
-    /// Name.
+    /// Name of the fit.
     pub peer: String,
     /// Language of the code that ran.
     #[serde(default)]
@@ -23,16 +25,17 @@ pub struct FitFile {
     /// Remarks.
     #[serde(default)]
     pub note: String,
-    /// Whether the renderer clamps depth, so that casters before the near plane still shade.
-    #[serde(default)]
-    pub pancake: bool,
+    /// Whether the renderer clamps depth, so that casters before the near plane still cast shadows;
+    /// `pancake` in the file.
+    #[serde(default, rename = "pancake")]
+    pub depth_clamp: bool,
     /// Median time of one frame's fit, in nanoseconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ns_per_fit: Option<f64>,
     /// Median over frames of each frame's fastest batch, in nanoseconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ns_quiet: Option<f64>,
-    /// Every frame of the scenarios once, in any order.
+    /// Each frame of the scenarios exactly once, in any order.
     pub frames: Vec<FitFrame>,
 }
 
@@ -51,16 +54,17 @@ pub struct FitMap {
     /// Clip from world, column-major: x and y in -1..=1 (y up), depth 0..=1 after division by w,
     /// plain or reversed. Perspective is allowed.
     pub view_proj: [f64; 16],
-    /// Texels a side of a square map.
-    #[serde(default)]
+    /// Width and height, in texels, of a square map.
+    #[serde(default, deserialize_with = "whole::number")]
     pub resolution: u32,
-    /// Width and height, in texels, of a map that is not square; replaces `resolution`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Width and height, in texels, of a map that is not square; `resolution` is ignored then.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "whole::pair")]
     pub resolution_xy: Option<[u32; 2]>,
-    /// View depth where the map begins, in metres; for information, nothing is measured with it.
+    /// View depth where the map begins, in metres. The measures ignore it.
     #[serde(default)]
     pub split_near: f64,
-    /// View depth below which the map is the first choice, in metres; large for no end.
+    /// View depth below which the map is the first to be read, in metres; a large number, such as 1e9,
+    /// for a map without an end.
     pub split_far: f64,
 }
 
@@ -75,6 +79,11 @@ impl FitMap {
     pub fn clip_from_world(&self) -> DMat4 {
         DMat4::from_cols_array(&self.view_proj)
     }
+
+    /// The map as the measures take it; `to_light` is the unit direction toward the light, world axes.
+    pub fn measured(&self, to_light: DVec3) -> MeasuredMap {
+        MeasuredMap::new(&self.clip_from_world(), self.size(), self.split_far, to_light)
+    }
 }
 
 impl FitFile {
@@ -82,18 +91,18 @@ impl FitFile {
     ///
     /// # Errors
     ///
-    /// When it cannot be read, is not of this format, or an element makes no sense.
+    /// When it cannot be read, is not of this format, or an element is impossible.
     pub fn read(file: &Path) -> Result<Self, PeersError> {
         let fit: Self = read_json(file)?;
         fit.check().map_err(|problem| problem.at(file))?;
         Ok(fit)
     }
 
-    /// Writes a file that [`FitFile::read`] reads back without loss.
+    /// Writes a file from which [`FitFile::read`] gets the same values.
     ///
     /// # Errors
     ///
-    /// When it cannot be written, or an element makes no sense.
+    /// When it cannot be written, or an element is impossible.
     pub fn write(&self, file: &Path) -> Result<(), PeersError> {
         self.check().map_err(|problem| problem.at(file))?;
         let failed = |reason: String| Problem::new("file", format!("cannot be written: {reason}")).at(file);
@@ -105,24 +114,24 @@ impl FitFile {
     ///
     /// # Errors
     ///
-    /// When a frame is missing, unknown or there twice.
+    /// When a frame is missing, occurs twice, or is not one of the scenarios'.
     pub fn maps_in_order(&self, scenarios: &Scenarios, file: &Path) -> Result<Vec<&[FitMap]>, PeersError> {
         let problem = |index: usize, reason: String| Problem::new(format!("frames[{index}].id"), reason).at(file);
-        let places: HashMap<&str, usize> =
-            scenarios.frames.iter().enumerate().map(|(place, frame)| (frame.id.as_str(), place)).collect();
+        let indices: HashMap<&str, usize> =
+            scenarios.frames.iter().enumerate().map(|(index, frame)| (frame.id.as_str(), index)).collect();
         let mut maps: Vec<Option<&[FitMap]>> = vec![None; scenarios.frames.len()];
         for (index, frame) in self.frames.iter().enumerate() {
-            let Some(&place) = places.get(frame.id.as_str()) else {
+            let Some(&wanted) = indices.get(frame.id.as_str()) else {
                 return Err(problem(index, format!("the scenarios have no frame \"{}\"", frame.id)));
             };
-            if maps[place].replace(&frame.maps).is_some() {
-                return Err(problem(index, format!("frame \"{}\" is there twice", frame.id)));
+            if maps[wanted].replace(&frame.maps).is_some() {
+                return Err(problem(index, format!("frame \"{}\" occurs twice", frame.id)));
             }
         }
-        let missing = |place: usize| format!("frame \"{}\" of the scenarios is missing", scenarios.frames[place].id);
+        let missing = |index: usize| format!("frame \"{}\" of the scenarios is missing", scenarios.frames[index].id);
         maps.iter()
             .enumerate()
-            .map(|(place, maps)| maps.ok_or_else(|| Problem::new("frames", missing(place)).at(file)))
+            .map(|(index, maps)| maps.ok_or_else(|| Problem::new("frames", missing(index)).at(file)))
             .collect()
     }
 
@@ -164,7 +173,7 @@ mod tests {
         let maps = vec![Room::map(), FitMap { split_far: 1e9, resolution_xy: Some([64, 32]), ..Room::map() }];
         let frame = |id: &str| FitFrame { id: id.to_owned(), maps: maps.clone() };
         let frames = vec![frame("room/90/1"), frame("room/90/0")];
-        FitFile { peer: "tested".to_owned(), pancake: true, ns_per_fit: Some(0.1), frames, ..FitFile::default() }
+        FitFile { peer: "tested".to_owned(), depth_clamp: true, ns_per_fit: Some(0.1), frames, ..FitFile::default() }
     }
 
     fn file() -> &'static Path {
@@ -194,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_that_is_missing_unknown_or_there_twice_is_named() {
+    fn a_frame_that_is_missing_unknown_or_given_twice_is_named() {
         let scenarios = scenarios(2);
         let refused = |ids: &[&str]| {
             let frames = ids.iter().map(|id| FitFrame { id: (*id).to_owned(), maps: Vec::new() }).collect();
@@ -203,29 +212,29 @@ mod tests {
         };
         let missing = "fits/tested.json: frames: frame \"room/90/1\" of the scenarios is missing";
         assert_eq!(refused(&["room/90/0"]), missing);
-        let twice = "fits/tested.json: frames[1].id: frame \"room/90/0\" is there twice";
+        let twice = "fits/tested.json: frames[1].id: frame \"room/90/0\" occurs twice";
         assert_eq!(refused(&["room/90/0", "room/90/0"]), twice);
         let unknown = "fits/tested.json: frames[0].id: the scenarios have no frame \"hall/1/0\"";
         assert_eq!(refused(&["hall/1/0"]), unknown);
     }
 
     #[test]
-    fn maps_that_make_no_sense_are_refused_by_element_and_reason() {
+    fn impossible_maps_are_refused_by_element_and_reason() {
         let refused = |change: fn(&mut FitMap)| {
             let mut fit = fit();
             change(&mut fit.frames[0].maps[1]);
             fit.check().expect_err("refused").at(file()).to_string()
         };
-        let place = "fits/tested.json: frames[0] (\"room/90/1\").maps[1]";
-        assert_eq!(refused(|map| map.view_proj[3] = f64::NAN), format!("{place}.view_proj: NaN is not finite"));
-        assert_eq!(refused(|map| map.view_proj = [0.0; 16]), format!("{place}.view_proj: the matrix has no inverse"));
+        let element = "fits/tested.json: frames[0] (\"room/90/1\").maps[1]";
+        assert_eq!(refused(|map| map.view_proj[3] = f64::NAN), format!("{element}.view_proj: NaN is not finite"));
+        assert_eq!(refused(|map| map.view_proj = [0.0; 16]), format!("{element}.view_proj: the matrix has no inverse"));
         assert_eq!(
             refused(|map| map.resolution_xy = Some([0, 1])),
-            format!("{place}.resolution: the map has no texels")
+            format!("{element}.resolution: the map has no texels")
         );
         assert_eq!(
             refused(|map| map.split_far = 0.0),
-            format!("{place}.split_far: the maps are not in order of split_far")
+            format!("{element}.split_far: the maps are not in order of split_far")
         );
         assert!(refused(|map| map.split_far = f64::INFINITY).ends_with("split_far: inf is not finite"));
     }
@@ -237,5 +246,40 @@ mod tests {
         assert!(problem(map).starts_with("fits/tested.json: frames[0].maps[0].view_proj"), "{}", problem(map));
         assert!(problem("{").starts_with("fits/tested.json: file: EOF"), "{}", problem("{"));
         assert!(problem("{\"peer\": \"a\", \"frames\": []} x").contains("trailing"));
+    }
+    fn parsed(text: &str) -> Result<FitFile, PeersError> {
+        parse_json(text.as_bytes()).map_err(|problem| problem.at(file()))
+    }
+
+    /// A file of a single map, which has these fields in addition.
+    fn with_fields(fields: &str) -> String {
+        let map = serde_json::to_string(&Room::map()).expect("JSON");
+        let plain = map.replace("\"resolution\":1024,", "");
+        assert_ne!(map, plain);
+        let map = plain.replacen('{', &format!("{{{fields}, "), 1);
+        format!(r#"{{"peer": "a", "frames": [{{"id": "b", "maps": [{map}]}}]}}"#)
+    }
+
+    #[test]
+    fn sizes_are_read_with_and_without_a_point() {
+        let size = |fields: &str| parsed(&with_fields(fields)).expect("a fit file").frames[0].maps[0].size();
+        assert_eq!(size(r#""resolution": 2048"#), DVec2::splat(2048.0));
+        assert_eq!(size(r#""resolution": 2048.0"#), DVec2::splat(2048.0));
+        assert_eq!(size(r#""resolution_xy": [64.0, 32]"#), DVec2::new(64.0, 32.0));
+    }
+
+    #[test]
+    fn sizes_that_are_not_whole_or_negative_are_refused_by_element_and_reason() {
+        let refused = |fields: &str| parsed(&with_fields(fields)).expect_err("refused").to_string();
+        let cases = [
+            (r#""resolution": 2048.5"#, "resolution: 2048.5 is not a whole number"),
+            (r#""resolution": -1.0"#, "resolution: -1.0 is negative"),
+            (r#""resolution_xy": [64, 32.5]"#, "resolution_xy[1]: 32.5 is not a whole number"),
+        ];
+        for (fields, reason) in cases {
+            let message = refused(fields);
+            let wanted = format!("fits/tested.json: frames[0].maps[0].{reason}");
+            assert!(message.starts_with(&wanted), "{message}");
+        }
     }
 }

@@ -3,30 +3,31 @@
 use glam::{DVec2, DVec3};
 
 use super::cells::Cells;
-use super::choice::{Choice, LEAST_FACING, Occluder, choose, pixels_per_texel};
-use super::shadow_map::{Gradients, ShadowMap};
 use super::tally::{Shimmer, Tally};
 use super::visible::{VisiblePoint, VisiblePoints};
+use crate::maps::{MIN_FACING, MapChoice, MapGradients, MeasuredMap, Occluder, choose, pixels_per_texel};
 
-/// Every so many visible points one is followed into the frame before.
+/// Every 23rd visible point is looked up in the frame before. It shares no factor with the 320 rays of
+/// a row, so that points in all columns are.
 const SHIMMER_STEP: u32 = 23;
-/// Points that move by less, in texels, stand still.
+/// Points that move by less than this, in texels, stand still.
 const STILL_MOVE: f64 = 0.02;
-/// Texels whose relative size changes by less keep it.
+/// Texels whose size changes by a smaller share than this keep their size.
 const STILL_SCALE: f64 = 1e-4;
 
-/// The maps of one frame, and what is known beside them.
+/// The maps of one frame and of the frame before.
 #[derive(Clone, Copy, Debug)]
 pub struct FrameMaps<'a> {
     /// Maps, in order of their splits.
-    pub maps: &'a [ShadowMap],
-    /// Maps of the frame before on the same path.
-    pub previous: Option<&'a [ShadowMap]>,
-    /// Whether the renderer clamps depth, so that casters before the near plane still shade.
-    pub pancake: bool,
+    pub maps: &'a [MeasuredMap],
+    /// Maps of the frame before on the same path; `None` for the first frame of a path, which has no
+    /// shimmer.
+    pub previous: Option<&'a [MeasuredMap]>,
+    /// Whether the renderer clamps depth, so that casters before the near plane still cast shadows.
+    pub depth_clamp: bool,
 }
 
-/// Measures one frame's maps.
+/// Measures one frame's maps on the points that its camera sees.
 pub fn measure(visible: &VisiblePoints, frame: &FrameMaps) -> Tally {
     let maps = frame.maps;
     let mut tally =
@@ -37,12 +38,12 @@ pub fn measure(visible: &VisiblePoints, frame: &FrameMaps) -> Tally {
             tally.uncovered += 1;
             continue;
         };
-        let gradients = choice.map.gradients(&choice.place);
+        let gradients = choice.map.gradients(&choice.position);
         add_occluders(&mut tally, visible, frame, point, &choice);
         let jacobian = gradients.texels_per_step([point.pixel_right, point.pixel_down]);
-        add_error(&mut tally, point, &choice, jacobian);
-        let footprint = jacobian.map(|column| column * visible.pixels_per_ray);
-        cells[choice.index].get_or_insert_default().mark(choice.map.size, choice.place.texel, footprint);
+        add_pixels_per_texel(&mut tally, point, &choice, jacobian);
+        let sides = jacobian.map(|column| column * visible.pixels_per_ray);
+        cells[choice.index].get_or_insert_default().mark(choice.map.size, choice.position.texel, sides);
         if point.number.is_multiple_of(SHIMMER_STEP) {
             add_shimmer(&mut tally.shimmer, point, (&choice, &gradients), frame.previous);
         }
@@ -52,7 +53,13 @@ pub fn measure(visible: &VisiblePoints, frame: &FrameMaps) -> Tally {
     tally
 }
 
-fn add_occluders(tally: &mut Tally, visible: &VisiblePoints, frame: &FrameMaps, point: &VisiblePoint, choice: &Choice) {
+fn add_occluders(
+    tally: &mut Tally,
+    visible: &VisiblePoints,
+    frame: &FrameMaps,
+    point: &VisiblePoint,
+    choice: &MapChoice,
+) {
     if point.occluders.is_empty() {
         return;
     }
@@ -61,44 +68,44 @@ fn add_occluders(tally: &mut Tally, visible: &VisiblePoints, frame: &FrameMaps, 
     let (mut is_drawn, mut is_in) = (false, false);
     for occluder in visible.occluders_of(point) {
         match choice.occluder(occluder) {
-            Occluder::Out => {}
+            Occluder::Outside => {}
             Occluder::BeforeNear => is_drawn = true,
-            Occluder::In => {
+            Occluder::Inside => {
                 (is_drawn, is_in) = (true, true);
                 break;
             }
         }
     }
     tally.lost_unclamped += u64::from(!is_in);
-    tally.lost += u64::from(!(if frame.pancake { is_drawn } else { is_in }));
+    tally.lost += u64::from(!(if frame.depth_clamp { is_drawn } else { is_in }));
 }
 
-fn add_error(tally: &mut Tally, point: &VisiblePoint, choice: &Choice, jacobian: [DVec2; 2]) {
-    if point.facing < LEAST_FACING {
+fn add_pixels_per_texel(tally: &mut Tally, point: &VisiblePoint, choice: &MapChoice, jacobian: [DVec2; 2]) {
+    if point.facing < MIN_FACING {
         return;
     }
-    let error = pixels_per_texel(jacobian);
-    tally.error.add(error);
-    tally.under += u64::from(error > 1.0 || error.is_nan());
+    let pixels_per_texel = pixels_per_texel(jacobian);
+    tally.pixels_per_texel.add(pixels_per_texel);
+    tally.undersampled += u64::from(pixels_per_texel > 1.0 || pixels_per_texel.is_nan());
     // The side of a square of as many texels.
-    tally.critical.add(error * (choice.map.size.x * choice.map.size.y).sqrt());
+    tally.critical.add(pixels_per_texel * (choice.map.size.x * choice.map.size.y).sqrt());
 }
 
 fn add_shimmer(
     shimmer: &mut Shimmer,
     point: &VisiblePoint,
-    (choice, gradients): (&Choice, &Gradients),
-    previous: Option<&[ShadowMap]>,
+    (choice, gradients): (&MapChoice, &MapGradients),
+    previous: Option<&[MeasuredMap]>,
 ) {
     let Some(then) = previous.and_then(|maps| maps.get(choice.index)) else { return };
-    let place = then.place(point.position);
-    if !then.is_inside(&place) {
+    let position = then.project(point.position);
+    if !then.is_inside(&position) {
         return;
     }
-    let moved = choice.place.texel - place.texel;
+    let moved = choice.position.texel - position.texel;
     let crawl = (moved - moved.round()).length();
-    let texels = |gradients: &Gradients| texel_density(gradients.u, gradients.v);
-    let change = ((texels(gradients) / texels(&then.gradients(&place))).sqrt() - 1.0).abs();
+    let texels = |gradients: &MapGradients| texel_density(gradients.u, gradients.v);
+    let change = ((texels(gradients) / texels(&then.gradients(&position))).sqrt() - 1.0).abs();
     shimmer.points += 1;
     shimmer.moved += crawl;
     shimmer.still += u64::from(crawl < STILL_MOVE && change < STILL_SCALE);

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use shadowfit::PerspectiveCamera;
 
 use super::error::{PeersError, Problem, check_finite, read_json};
+use super::whole;
 
 /// The content of `scenarios.json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -24,19 +25,23 @@ pub struct Scenarios {
 pub struct Scene {
     /// Name, the first part of its frames' ids.
     pub name: String,
-    /// glTF file, relative to the folder of assets.
-    pub file: String,
-    /// Metres in a unit of the file: multiplies world coordinates, after the nodes' transforms.
+    /// glTF file, relative to the folder of assets. `None` for a scene that is only known as a list of
+    /// triangles.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// Metres in a unit of the glTF file: world coordinates, after the nodes' transforms, are multiplied
+    /// by it.
     pub scale: f64,
-    /// Extra ground, the last object.
+    /// Ground that is added to the glTF file's objects, as the last one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ground: Option<Ground>,
     /// Number of triangles, ground included.
+    #[serde(deserialize_with = "whole::number")]
     pub triangles: usize,
-    /// World boxes of the objects, min x, y, z, max x, y, z, metres: one for each node with a mesh,
+    /// World boxes of the objects, min x, y, z, max x, y, z, in metres: one for each node with a mesh,
     /// depth first, then the ground.
     pub objects: Vec<[f64; 6]>,
-    /// World box of all objects.
+    /// World box of all objects, in the same form.
     pub aabb: [f64; 6],
 }
 
@@ -55,10 +60,12 @@ pub struct Frame {
     /// `scene/elevation/frame`, for example `town/45/7`.
     pub id: String,
     /// Index into [`Scenarios::scenes`].
+    #[serde(deserialize_with = "whole::number")]
     pub scene: usize,
     /// Elevation of the light over the horizon, in degrees.
     pub elevation_deg: f64,
     /// Number along the path.
+    #[serde(deserialize_with = "whole::number")]
     pub frame: u32,
     /// View from world; the camera looks down -z.
     pub view: [f64; 16],
@@ -70,7 +77,7 @@ pub struct Frame {
     pub near: f64,
     /// Far distance along the view, in metres.
     pub far: f64,
-    /// Unit direction of travel of the light, world axes.
+    /// Unit direction in which the light travels, world axes.
     pub light_dir: [f64; 3],
 }
 
@@ -79,7 +86,7 @@ impl Scenarios {
     ///
     /// # Errors
     ///
-    /// When it cannot be read, is not of this format, or an element makes no sense.
+    /// When it cannot be read, is not of this format, or an element is impossible.
     pub fn read(file: &Path) -> Result<Self, PeersError> {
         let scenarios: Self = read_json(file)?;
         scenarios.check().map_err(|problem| problem.at(file))?;
@@ -95,7 +102,7 @@ impl Scenarios {
         format!("{}/{}", self.scenes[frame.scene].name, frame.elevation_deg)
     }
 
-    /// Index of the frame before `index` on the same path.
+    /// Index of the frame before `index` on the same path; `None` for the first one of a path.
     pub fn previous(&self, index: usize) -> Option<usize> {
         let (now, before) = (&self.frames[index], index.checked_sub(1)?);
         let then = &self.frames[before];
@@ -186,6 +193,7 @@ impl Frame {
 mod tests {
     use super::*;
     use crate::peers::closed_form::scenarios;
+    use crate::peers::error::parse_json;
 
     #[test]
     fn the_frame_before_is_that_of_the_same_path() {
@@ -200,7 +208,7 @@ mod tests {
     type Case = (fn(&mut Scenarios), &'static str);
 
     #[test]
-    fn frames_that_make_no_sense_are_refused_by_element() {
+    fn impossible_frames_are_refused_by_element() {
         let refused = |change: fn(&mut Scenarios)| {
             let mut scenarios = scenarios(2);
             change(&mut scenarios);
@@ -221,5 +229,43 @@ mod tests {
         for (change, message) in cases {
             assert_eq!(refused(change), format!("scenarios.json: {message}"));
         }
+    }
+    /// The scenarios as JSON, changed.
+    fn json(change: fn(&mut serde_json::Value)) -> Result<Scenarios, String> {
+        let mut value = serde_json::to_value(scenarios(2)).expect("JSON");
+        change(&mut value);
+        parse_json::<Scenarios>(value.to_string().as_bytes())
+            .map_err(|problem| problem.at(Path::new("scenarios.json")).to_string())
+    }
+
+    #[test]
+    fn whole_numbers_are_read_with_and_without_a_point() {
+        let found = json(|value| {
+            value["scenes"][0]["triangles"] = 2.0.into();
+            value["frames"][1]["scene"] = 0.0.into();
+            value["frames"][1]["frame"] = 1.0.into();
+        });
+        assert_eq!(found, Ok(scenarios(2)));
+    }
+
+    #[test]
+    fn numbers_that_are_not_whole_or_negative_are_refused_by_element_and_reason() {
+        let cases: [(fn(&mut serde_json::Value), &str); 4] = [
+            (|v| v["scenes"][0]["triangles"] = 2048.5.into(), "scenes[0].triangles: 2048.5 is not a whole number"),
+            (|v| v["frames"][1]["scene"] = (-1.0).into(), "frames[1].scene: -1.0 is negative"),
+            (|v| v["frames"][1]["frame"] = 0.5.into(), "frames[1].frame: 0.5 is not a whole number"),
+            (|v| v["frames"][1]["frame"] = (-1).into(), "frames[1].frame: -1 is negative"),
+        ];
+        for (change, reason) in cases {
+            let message = json(change).expect_err("refused");
+            assert!(message.starts_with(&format!("scenarios.json: {reason}")), "{message}");
+        }
+    }
+
+    #[test]
+    fn a_scene_needs_no_file() {
+        let found = json(|value| _ = value["scenes"][0].as_object_mut().expect("a scene").remove("file"));
+        assert_eq!(found.expect("scenarios").scenes[0].file, None);
+        assert_eq!(json(|_| ()).expect("scenarios").scenes[0].file.as_deref(), Some("room.glb"));
     }
 }

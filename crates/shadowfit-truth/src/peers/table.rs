@@ -7,44 +7,47 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 use super::tally::Tally;
-use crate::PictureTally;
+use crate::tally::PictureTally;
 
-/// Units of depth that a 24-bit map tells apart.
+/// Number of depths that a 24-bit map can store.
 const DEPTH_STEPS: f64 = (1u64 << 24) as f64;
-/// Share of the points that the critical resolution serves.
+/// Share of the points that have at most a pixel per texel at the critical resolution.
 const CRITICAL_QUANTILE: f64 = 0.95;
 
-/// The measures of a fit over a set of frames. A value is not a number where nothing was there to
-/// be measured.
+/// The measures of a fit over a set of frames. A value of which nothing was there to be measured is not
+/// a number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Maps a frame.
+    /// Maps in a frame.
     pub maps: f64,
     /// Percentage of the facing points that no map holds; they are left out of all that follows.
     pub uncovered: f64,
-    /// Percentage of the covered shadowed points whose occluders the renderer loses.
+    /// Percentage of the covered shadowed points that have no occluder in their map, or before its near
+    /// plane where the renderer clamps depth: their shadow is lost.
     pub lost: f64,
-    /// Percentage of the covered shadowed points whose occluders are outside the map's volume.
+    /// The same without depth clamp.
     pub lost_unclamped: f64,
-    /// Quantiles 50%, 95% and 99% of log2 of pixels per texel along the worse axis.
+    /// Quantiles 50%, 95% and 99% of log2 of pixels per texel along the worse axis: 0 for one pixel per
+    /// texel, 1 for two.
     pub error: [f64; 3],
-    /// Percentage of points with more than a pixel per texel.
-    pub under: f64,
-    /// Critical resolution, in texels.
+    /// Percentage of points with more than one pixel per texel.
+    pub undersampled: f64,
+    /// Critical resolution, in texels: the side of the maps at which 95% of the points have at most a
+    /// pixel per texel.
     pub critical: f64,
     /// Geometric mean of the groups' critical resolutions, in texels.
     pub critical_mean: f64,
     /// Percentage of a map's area that visible points need.
     pub used: f64,
-    /// Crawl between frames, in texels.
+    /// Mean of how far points move in their map between frames beyond whole texels, in texels.
     pub shimmer: f64,
-    /// Percentage of points that stand still.
+    /// Percentage of points that move by less than 0.02 texels and whose texels keep their size.
     pub still: f64,
-    /// Relative change of a texel's size between frames, in percent.
+    /// Mean relative change of a texel's side between frames, in per cent.
     pub scale: f64,
-    /// Depth step of a 24-bit map, in micrometres.
+    /// Mean depth step of a 24-bit map, in micrometres along the light.
     pub depth: f64,
-    /// Further columns of judged pictures: names and values. Empty where none were drawn.
+    /// Titles and values of further columns, of judged pictures. Empty where none were drawn.
     pub pictures: Vec<(&'static str, f64)>,
 }
 
@@ -55,7 +58,7 @@ pub struct GroupTally {
     pub scene: String,
     /// Name of the group, such as `town/45`.
     pub group: String,
-    /// Its sums.
+    /// The sums of its frames.
     pub tally: Tally,
     /// The sums of its judged pictures.
     pub pictures: PictureTally,
@@ -69,7 +72,7 @@ pub struct FitTable {
     /// Time of one frame's fit, in nanoseconds, as its file says.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ns_per_fit: Option<f64>,
-    /// Everything pooled.
+    /// All frames pooled.
     pub overall: Row,
     /// A row for each scene, in the order measured.
     #[serde(serialize_with = "as_map")]
@@ -80,7 +83,7 @@ pub struct FitTable {
 }
 
 impl Row {
-    /// The row of groups pooled together.
+    /// The row of several groups, pooled.
     pub fn pooled<'a>(groups: impl Iterator<Item = &'a GroupTally>) -> Self {
         let (mut pool, mut pictures) = (Tally::default(), PictureTally::default());
         let mut log2_criticals = Vec::new();
@@ -103,8 +106,8 @@ impl Row {
             uncovered: percentage(tally.uncovered, tally.facing),
             lost: percentage(tally.lost, tally.shadowed),
             lost_unclamped: percentage(tally.lost_unclamped, tally.shadowed),
-            error: [0.5, 0.95, 0.99].map(|q| tally.error.log2_quantile(q).unwrap_or(f64::NAN)),
-            under: percentage(tally.under, tally.error.total()),
+            error: [0.5, 0.95, 0.99].map(|q| tally.pixels_per_texel.log2_quantile(q).unwrap_or(f64::NAN)),
+            undersampled: percentage(tally.undersampled, tally.pixels_per_texel.total()),
             critical,
             critical_mean: critical,
             used: 100.0 * ratio(tally.used, tally.maps),
@@ -116,7 +119,7 @@ impl Row {
         }
     }
 
-    /// Names of the columns, and their values.
+    /// Titles and values of the columns.
     pub fn columns(&self) -> Vec<(&'static str, f64)> {
         let mut columns = vec![
             ("maps", self.maps),
@@ -126,7 +129,7 @@ impl Row {
             ("err p50", self.error[0]),
             ("p95", self.error[1]),
             ("p99", self.error[2]),
-            ("under %", self.under),
+            ("under %", self.undersampled),
             ("crit res", self.critical),
             ("crit gm", self.critical_mean),
             ("used %", self.used),
@@ -140,7 +143,7 @@ impl Row {
     }
 }
 
-/// The columns of judged pictures that stand beside those of a fit, which has one of uncovered points of its own.
+/// The columns of judged pictures, without that of uncovered points, which the fit has itself.
 fn picture_columns(pictures: &PictureTally) -> Vec<(&'static str, f64)> {
     if pictures.frames == 0 {
         return Vec::new();
@@ -161,7 +164,7 @@ impl Serialize for Row {
 }
 
 impl FitTable {
-    /// The rows that follow from the sums of groups.
+    /// The rows of a fit from the sums of its groups.
     pub fn new(peer: &str, ns_per_fit: Option<f64>, groups: &[GroupTally]) -> Self {
         let mut scenes: Vec<(String, Row)> = Vec::new();
         for GroupTally { scene, .. } in groups {
@@ -228,12 +231,12 @@ fn markdown(names: &[String], rows: impl Iterator<Item = (String, Vec<String>)>)
     text
 }
 
-/// A number as people read it: whole texels, else as [`readable`].
+/// A number for people: whole texels, everything else as [`readable`].
 fn cell(column: &str, value: f64) -> String {
     if column.starts_with("crit") && value.is_finite() { format!("{value:.0}") } else { readable(value) }
 }
 
-/// A number as people read it: three digits and at most four decimals; a dash for what is not a number.
+/// A number for people: three digits and at most four decimals; a dash for what is not a number.
 pub fn readable(value: f64) -> String {
     if !value.is_finite() {
         return if value.is_nan() { "-".to_owned() } else { value.to_string() };
@@ -261,10 +264,10 @@ fn as_map<S: Serializer>(rows: &[(String, Row)], serializer: S) -> Result<S::Ok,
 mod tests {
     use super::*;
 
-    /// A group with one error of `octaves` over a map of a texel.
+    /// A group of one point with 2^`octaves` pixels per texel, in a map of one texel.
     fn group(scene: &str, group: &str, octaves: i32) -> GroupTally {
         let mut tally = Tally { frames: 1, maps: 1, facing: 4, uncovered: 1, ..Tally::default() };
-        tally.error.add(f64::from(octaves).exp2());
+        tally.pixels_per_texel.add(f64::from(octaves).exp2());
         tally.critical.add(f64::from(octaves).exp2());
         GroupTally { scene: scene.to_owned(), group: group.to_owned(), tally, pictures: PictureTally::default() }
     }

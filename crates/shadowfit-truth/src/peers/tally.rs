@@ -1,13 +1,13 @@
-//! What is summed up while fits are measured; sums of frames can be merged.
+//! Sums over the frames on which a fit is measured; sums of frames can be merged.
 
-use super::quantiles::Histogram;
+use crate::histogram::Histogram;
 
 /// Sums of points and maps, from which the columns of a table follow.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tally {
-    /// Frames.
+    /// Number of frames.
     pub frames: u64,
-    /// Maps of all frames.
+    /// Number of maps in all frames.
     pub maps: u64,
     /// Visible points that face the light.
     pub facing: u64,
@@ -19,13 +19,14 @@ pub struct Tally {
     pub lost: u64,
     /// Those of them whose occluders are not in the map's volume.
     pub lost_unclamped: u64,
-    /// Pixels per texel along the worse axis.
-    pub error: Histogram,
-    /// Points in `error` with more than one pixel per texel.
-    pub under: u64,
-    /// Pixels per texel times the map's side in texels.
+    /// Pixels per texel along the worse axis, of covered points that are not grazing.
+    pub pixels_per_texel: Histogram,
+    /// Points in `pixels_per_texel` with more than one pixel per texel.
+    pub undersampled: u64,
+    /// Pixels per texel times the side, in texels, of a square map of as many texels: the side at which
+    /// the point would have one pixel per texel.
     pub critical: Histogram,
-    /// Sum over maps of the share of their area that is needed.
+    /// Sum over maps of the share of their area, 0..=1, that visible points need.
     pub used: f64,
     /// Crawl between frames.
     pub shimmer: Shimmer,
@@ -36,13 +37,13 @@ pub struct Tally {
 /// How maps move between frames of a path.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shimmer {
-    /// Points looked at.
+    /// Points that were compared with the frame before.
     pub points: u64,
-    /// Sum of their moves within a texel, in texels.
+    /// Sum of how far each moved in its map beyond whole texels, in texels.
     pub moved: f64,
-    /// Points that stand still and keep their texels' size.
+    /// Points that moved by less than 0.02 texels and whose texels' size changed by less than 0.01%.
     pub still: u64,
-    /// Sum of relative changes of a texel's size.
+    /// Sum of the relative changes of a texel's side.
     pub scaled: f64,
 }
 
@@ -56,8 +57,8 @@ impl Tally {
         self.shadowed += other.shadowed;
         self.lost += other.lost;
         self.lost_unclamped += other.lost_unclamped;
-        self.error.merge(&other.error);
-        self.under += other.under;
+        self.pixels_per_texel.merge(&other.pixels_per_texel);
+        self.undersampled += other.undersampled;
         self.critical.merge(&other.critical);
         self.used += other.used;
         self.shimmer.merge(other.shimmer);

@@ -1,4 +1,4 @@
-//! What a frame's camera sees of the lit side of the world, and everything that shadows it.
+//! The points that a frame's camera sees on surfaces that face the light, and their occluders.
 //!
 //! Rays look for triangles in f32; every hit is refined to its triangle's plane in f64.
 
@@ -6,13 +6,13 @@ use std::ops::Range;
 
 use glam::{DVec2, DVec3};
 
-use super::Frame;
-use crate::Tracer;
+use super::scenarios::Frame;
 use crate::camera::{PixelCamera, slide};
+use crate::tracer::Tracer;
 
-/// Rays across and down a frame.
+/// Number of rays across and down a frame.
 pub const RAYS: [u32; 2] = [320, 180];
-/// Height of the screen whose pixels are meant.
+/// Height, in pixels, of the screen whose pixels are compared with texels.
 const SCREEN_HEIGHT: f64 = 1080.0;
 /// Start of shadow rays above the surface, in metres.
 const RAY_OFFSET: f64 = 1e-3;
@@ -26,7 +26,7 @@ pub struct VisiblePoints {
     pub visible: u32,
     /// Unit direction toward the light, world axes.
     pub to_light: DVec3,
-    /// Side of the square of pixels that a ray stands for: 6 where every ray is traced.
+    /// Side, in pixels, of the square that a ray stands for: 6 where every ray is traced.
     pub pixels_per_ray: f64,
     /// Distances of the occluders along `to_light`, in metres: each point has a range of it.
     pub occluders: Vec<f64>,
@@ -43,7 +43,7 @@ pub struct VisiblePoint {
     pub normal: DVec3,
     /// Cosine of the angle between the normal and the direction toward the light, above 0.
     pub facing: f64,
-    /// Distance from the eye along the view's axis.
+    /// Distance from the eye along the view, in metres.
     pub view_depth: f64,
     /// How far the point moves on its tangent plane for a pixel to the right.
     pub pixel_right: DVec3,
@@ -54,8 +54,8 @@ pub struct VisiblePoint {
 }
 
 impl VisiblePoints {
-    /// Traces every `stride`th ray across and down of the frame (1 for what the measures define;
-    /// more is a quick look), with the triangles of the frame's scene.
+    /// Traces every `stride`-th ray across and down of a frame through the triangles of its scene. The
+    /// measures are defined for a stride of 1; with more they are faster and approximate.
     pub fn trace(tracer: &Tracer, frame: &Frame, stride: u32) -> Self {
         let camera = ray_camera(frame);
         let stride = stride.max(1);
@@ -70,13 +70,13 @@ impl VisiblePoints {
         visible
     }
 
-    /// Where the occluders of a point are, world space.
+    /// Positions of a point's occluders, world space, metres.
     pub fn occluders_of(&self, point: &VisiblePoint) -> impl Iterator<Item = DVec3> {
         let (origin, to_light) = (point.position, self.to_light);
         self.occluders[point.occluders.clone()].iter().map(move |distance| origin + to_light * *distance)
     }
 
-    /// Follows one ray, and counts and keeps what it meets.
+    /// Traces one ray, and counts and keeps the point that it meets.
     fn add(&mut self, tracer: &Tracer, camera: &PixelCamera, direction: DVec3) {
         let Some(hit) = tracer.first_hit(camera.eye.as_vec3(), direction.as_vec3()) else { return };
         let mut normal = tracer.plane_normal(hit.triangle);

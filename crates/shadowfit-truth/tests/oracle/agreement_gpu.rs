@@ -1,12 +1,13 @@
-//! The GPU's classes against the processor's, on scenes with every kind of error in them.
+//! The GPU's classes against the CPU's, on scenes with every kind of error in them.
 //!
 //! The two differ only by rounding: at pixels whose shadow ray passes within micrometres of an edge.
 
 use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
 use shadowfit_truth::gpu::{GpuJudge, GpuJudgeInput, GpuPixel, GpuTracer, GpuTruthError};
-use shadowfit_truth::peers::{FitMap, ShadowMap};
+use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{
-    AlphaImage, Class, CutOut, CutOuts, Judged, MapsSeen, PixelCamera, Tracer, Truth, TruthSettings, Wrap, judge,
+    AlphaImage, Class, CutOut, CutOuts, Judged, MeasuredMap, PictureMaps, PixelCamera, Tracer, Truth, TruthSettings,
+    Wrap, judge,
 };
 
 use super::scenes::{Triangles, cuboid, level, looking_at, map_around, quad, sphere};
@@ -23,7 +24,7 @@ fn device() -> (wgpu::Device, wgpu::Queue) {
     pollster::block_on(adapter.request_device(&descriptor)).expect("a device with the default limits")
 }
 
-/// What is judged.
+/// A picture that both judge.
 struct Picture {
     tracer: Tracer,
     camera: PixelCamera,
@@ -34,7 +35,7 @@ struct Picture {
     origin: DVec3,
 }
 
-/// What both found.
+/// The results of both.
 struct Both {
     truth: Truth,
     judged: Judged,
@@ -61,22 +62,23 @@ impl Picture {
     /// each texel's centre, with a bias of a centimetre on the left and of 3 m on the right:
     /// acne, leaks, holes and jagged edges.
     fn judge(&self) -> Both {
-        let maps: Vec<ShadowMap> = self.maps.iter().map(|map| ShadowMap::new(map, self.settings.to_light)).collect();
+        let maps: Vec<MeasuredMap> = self.maps.iter().map(|map| map.measured(self.settings.to_light)).collect();
         let seen = Truth::seen_by_rays(&self.tracer, &self.camera);
         let truth = Truth::trace(&self.tracer, &self.camera, &self.settings, &seen);
         let factors: Vec<f32> =
             truth.points.iter().map(|point| point.as_ref().map_or(1.0, |point| self.factor(&maps, point))).collect();
-        let maps = MapsSeen { maps: &maps, reach: 1.0, depth_clamp: self.depth_clamp };
+        let maps = PictureMaps { maps: &maps, reach: 1.0, depth_clamp: self.depth_clamp };
         let judged = judge(&self.tracer, &truth, &maps, &factors, |_| true);
         let gpu = self.judge_on_gpu(&maps, &seen, &factors).expect("a picture that the GPU can judge");
         Both { truth, judged, gpu, edge_width: maps.edge_width() }
     }
 
-    fn factor(&self, maps: &[ShadowMap], point: &shadowfit_truth::TruthPoint) -> f32 {
-        let is_read = |map: &&ShadowMap| point.view_depth < map.split_far && map.is_inside(&map.place(point.position));
+    fn factor(&self, maps: &[MeasuredMap], point: &shadowfit_truth::TruthPoint) -> f32 {
+        let is_read =
+            |map: &&MeasuredMap| point.view_depth < map.split_far && map.is_inside(&map.project(point.position));
         let Some(index) = maps.iter().position(|map| is_read(&map)) else { return 1.0 };
         let (map, clip_from_world) = (&maps[index], DMat4::from_cols_array(&self.maps[index].view_proj));
-        let texel = map.place(point.position).texel.floor() + 0.5;
+        let texel = map.project(point.position).texel.floor() + 0.5;
         let ndc = (texel / map.size - 0.5) * DVec2::new(2.0, -2.0);
         let depth = clip_from_world.project_point3(point.position).z;
         let centre = clip_from_world.inverse().project_point3(ndc.extend(depth));
@@ -84,7 +86,7 @@ impl Picture {
         let bias = if point.position.x < 0.0 { 0.01 } else { 3.0 };
         let mut factor = 1.0;
         self.tracer.for_each_hit((centre + to_light * bias).as_vec3(), to_light.as_vec3(), |hit| {
-            let is_drawn = map.place(centre + to_light * (f64::from(hit.distance) + bias)).depth >= 0.0;
+            let is_drawn = map.project(centre + to_light * (f64::from(hit.distance) + bias)).depth >= 0.0;
             if is_drawn || self.depth_clamp {
                 factor = 0.0;
             }
@@ -94,7 +96,7 @@ impl Picture {
 
     fn judge_on_gpu(
         &self,
-        maps: &MapsSeen,
+        maps: &PictureMaps,
         seen: &[Option<u32>],
         factors: &[f32],
     ) -> Result<Vec<GpuPixel>, GpuTruthError> {
@@ -144,7 +146,7 @@ impl Both {
     /// Asserts that at least 99.9% of the facing pixels off the edge zone, and 99.5% of all of them,
     /// have the same class; that the map read is the same for 99.9%, and pixels per texel within 0.2%
     /// for as many; and that edge zones are the very same wherever truth is, as far as a pixel's zone
-    /// reaches. Returns the processor's number of pixels of each class.
+    /// reaches. Returns the CPU's number of pixels of each class.
     fn assert_agreement(&self, name: &str) -> [usize; 6] {
         let pixels = || (0..self.gpu.len()).filter(|pixel| self.truth.verdict(*pixel).is_some());
         let same = |pixel: &usize| self.judged.classes[*pixel] == self.gpu[*pixel].class;
@@ -153,15 +155,15 @@ impl Both {
         };
         let off_edges: Vec<usize> = pixels().filter(|pixel| !self.judged.edge_zone[*pixel]).collect();
         let classes = [share(off_edges, &same), share(pixels().collect(), &same)];
-        let choices = share(pixels().collect(), &|pixel| self.judged.choice[*pixel] == self.gpu[*pixel].choice);
+        let maps = share(pixels().collect(), &|pixel| self.judged.map_index[*pixel] == self.gpu[*pixel].map_index);
         // The texture has 256 steps an octave: half a step is 0.14%.
-        let footprints = share(pixels().collect(), &|pixel| {
+        let texels = share(pixels().collect(), &|pixel| {
             let (found, wanted) = (self.gpu[*pixel].pixels_per_texel, self.judged.pixels_per_texel[*pixel]);
             found == wanted || (found / wanted - 1.0).abs() <= 0.002
         });
-        println!("{name}: classes {classes:?}, choices {choices}, footprints {footprints}");
+        println!("{name}: classes {classes:?}, maps {maps}, pixels per texel {texels}");
         assert!(classes[0] >= 0.999 && classes[1] >= 0.995, "{name}: classes {classes:?}");
-        assert!(choices >= 0.999 && footprints >= 0.999, "{name}: choices {choices}, footprints {footprints}");
+        assert!(maps >= 0.999 && texels >= 0.999, "{name}: maps {maps}, pixels per texel {texels}");
         self.assert_edge_zones(name);
         let mut counts = [0; 6];
         self.judged.classes.iter().for_each(|class| counts[*class as usize] += 1);
@@ -172,7 +174,7 @@ impl Both {
     /// or a transition exactly at the end of its reach, to 0.1%.
     fn assert_edge_zones(&self, name: &str) {
         let width = self.truth.camera.size[0] as usize;
-        let place = |pixel: usize| DVec2::new((pixel % width) as f64, (pixel / width) as f64);
+        let position = |pixel: usize| DVec2::new((pixel % width) as f64, (pixel / width) as f64);
         let truth_differs = |pixel: &usize| {
             let gpu = self.gpu[*pixel];
             self.truth.verdict(*pixel) != (gpu.class != Class::NotJudged).then_some(gpu.is_lit)
@@ -182,11 +184,12 @@ impl Both {
             if self.judged.edge_zone[pixel] == self.gpu[pixel].is_in_edge_zone {
                 continue;
             }
-            let footprint = self.judged.choice[pixel].map_or(1.0, |_| self.judged.pixels_per_texel[pixel].max(1.0));
-            let reach = f64::from(self.edge_width * footprint);
-            let is_near = |other: &usize| place(*other).distance(place(pixel)) <= reach * 1.01 + 1.5;
+            let texel_width =
+                self.judged.map_index[pixel].map_or(1.0, |_| self.judged.pixels_per_texel[pixel].max(1.0));
+            let reach = f64::from(self.edge_width * texel_width);
+            let is_near = |other: &usize| position(*other).distance(position(pixel)) <= reach * 1.01 + 1.5;
             let is_tie = (f64::from(self.truth.transition_distance(pixel)) / reach - 1.0).abs() < 1e-3;
-            assert!(is_tie || differing.iter().any(is_near), "{name}: the edge zone differs at {}", place(pixel));
+            assert!(is_tie || differing.iter().any(is_near), "{name}: the edge zone differs at {}", position(pixel));
         }
     }
 }
@@ -311,6 +314,7 @@ fn moved_triangles_are_uploaded_again_and_the_texture_stays() {
     let mut picture = Picture::new(boxes(), DVec3::new(-4.0, 3.0, 5.0), sun());
     let mut tracer = GpuTracer::new(&device, &queue, &picture.tracer, DVec3::ZERO).expect("a scene that fits");
     let mut gpu = GpuJudge::new(&device);
+    assert_eq!(gpu.read(&device, &queue), Err(GpuTruthError::NotJudged));
     let mut pictures = Vec::new();
     let mut textures = Vec::new();
     for raised in [0.0, 1.5] {
@@ -318,8 +322,8 @@ fn moved_triangles_are_uploaded_again_and_the_texture_stays() {
         picture.tracer = Tracer::new(moved);
         tracer.update(&device, &queue, &picture.tracer).expect("a scene that fits");
         let seen = Truth::seen_by_rays(&picture.tracer, &picture.camera);
-        let maps = [ShadowMap::new(&picture.maps[1], sun())];
-        let maps = MapsSeen { maps: &maps, reach: 0.5, depth_clamp: true };
+        let maps = [picture.maps[1].measured(sun())];
+        let maps = PictureMaps { maps: &maps, reach: 0.5, depth_clamp: true };
         let texture = seen_texture(&device, &queue, picture.camera.size, &seen, &vec![1.0; seen.len()]);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -353,12 +357,12 @@ fn what_the_gpu_cannot_judge_is_refused_by_its_reason() {
     let refused = GpuTracer::new(&device, &queue, &tracer().with_alpha_test(|_, _| true), DVec3::ZERO);
     assert_eq!(refused.err(), Some(GpuTruthError::AlphaTest));
     let picture = Picture::new(boxes(), DVec3::new(-4.0, 3.0, 5.0), sun());
-    let map = ShadowMap::new(&picture.maps[0], sun());
+    let map = picture.maps[0].measured(sun());
     let judge = |change: &dyn Fn(&mut TruthSettings), maps: usize, size: [u32; 2]| {
         let mut settings = picture.settings;
         change(&mut settings);
         let camera = PixelCamera { size, ..picture.camera };
-        let maps = MapsSeen { maps: &vec![map; maps], reach: 0.5, depth_clamp: false };
+        let maps = PictureMaps { maps: &vec![map; maps], reach: 0.5, depth_clamp: false };
         let gpu_tracer = GpuTracer::new(&device, &queue, &picture.tracer, DVec3::ZERO).expect("a scene that fits");
         let texture = seen_texture(&device, &queue, [8, 8], &[None; 64], &[1.0; 64]);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());

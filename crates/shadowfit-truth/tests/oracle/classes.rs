@@ -1,8 +1,10 @@
 //! Shares of made-up shadow factors: a floor under half a roof, judged to the pixel.
 
 use glam::DVec3;
-use shadowfit_truth::peers::ShadowMap;
-use shadowfit_truth::{Class, Judged, MapsBefore, MapsSeen, PictureTally, Tracer, Truth, TruthSettings, crawl, judge};
+use shadowfit_truth::peers::FitMap;
+use shadowfit_truth::{
+    Class, Judged, MapsBefore, MeasuredMap, PictureMaps, PictureTally, Tracer, Truth, TruthSettings, crawl, judge,
+};
 
 use super::scenes::{level, looking_down, map_around, shadow_map};
 
@@ -33,25 +35,25 @@ impl Room {
     }
 
     /// Judges factors by column.
-    fn judge(&self, factor: impl Fn(usize) -> f32, map: ShadowMap, depth_clamp: bool) -> Judged {
+    fn judge(&self, factor: impl Fn(usize) -> f32, map: MeasuredMap, depth_clamp: bool) -> Judged {
         self.judge_counting(factor, map, depth_clamp, |_| true)
     }
 
     fn judge_counting(
         &self,
         factor: impl Fn(usize) -> f32,
-        map: ShadowMap,
+        map: MeasuredMap,
         depth_clamp: bool,
         counts: impl Fn(u32) -> bool + Sync,
     ) -> Judged {
         let factors: Vec<f32> = (0..PIXELS).map(|pixel| factor(pixel % 40)).collect();
-        let maps = MapsSeen { maps: &[map], reach: 0.5, depth_clamp };
+        let maps = PictureMaps { maps: &[map], reach: 0.5, depth_clamp };
         judge(&self.tracer, &self.truth, &maps, &factors, counts)
     }
 }
 
-/// A map 8 m wide around the floor with texels of so many pixels, from `top` metres over the floor.
-fn map(pixels_per_texel: u32, top: f64) -> ShadowMap {
+/// A map 8 m wide around the floor, whose texels are `pixels_per_texel` pixels wide, from `top` metres over it.
+fn map(pixels_per_texel: u32, top: f64) -> MeasuredMap {
     shadow_map(DVec3::ZERO, DVec3::Y, 8.0, top, 80 / pixels_per_texel)
 }
 
@@ -88,12 +90,12 @@ fn a_map_that_shadows_everything_is_false_shadow_but_for_the_edge_zone() {
 }
 
 #[test]
-fn coarse_texels_widen_the_edge_zone_by_their_footprint() {
+fn coarse_texels_widen_the_edge_zone_by_their_width_on_screen() {
     // 1.5 texels of 4 pixels: columns up to 6 pixels from the border.
     let judged = Room::new().judge(|_| 0.0, map(4, 9.0), false);
     assert_eq!(columns(&judged.tally), [14, 0, 0, 6, 20]);
     assert!(judged.pixels_per_texel.iter().all(|pixels| (pixels - 4.0).abs() < 1e-4));
-    assert_eq!((judged.tally.texels.total(), judged.tally.under), (400, 400));
+    assert_eq!((judged.tally.pixels_per_texel.total(), judged.tally.undersampled), (400, 400));
 }
 
 #[test]
@@ -116,23 +118,19 @@ fn points_outside_every_map_are_uncovered_and_holes_where_they_are_shadowed() {
     let beside = shadow_map(DVec3::X * 50.0, DVec3::Y, 8.0, 9.0, 80);
     let judged = Room::new().judge(|_| 1.0, beside, true);
     assert_eq!((columns(&judged.tally), judged.tally.uncovered), ([0, 0, 20, 0, 20], 400));
-    assert!(judged.choice.iter().all(Option::is_none) && judged.pixels_per_texel.iter().all(|p| p.is_infinite()));
-    assert_eq!((judged.tally.edge_zone, judged.tally.texels.total()), (40, 0));
+    assert!(judged.map_index.iter().all(Option::is_none) && judged.pixels_per_texel.iter().all(|p| p.is_infinite()));
+    assert_eq!((judged.tally.edge_zone, judged.tally.pixels_per_texel.total()), (40, 0));
 }
 
 #[test]
 fn points_read_the_first_map_beyond_their_depth_and_classes_name_it() {
     let room = Room::new();
     let far = map_around(DVec3::ZERO, DVec3::Y, 8.0, 9.0, 80);
-    let maps = [
-        shadowfit_truth::peers::FitMap { split_far: 0.5, ..far.clone() },
-        map_around(DVec3::X * 4.0, DVec3::Y, 8.0, 9.0, 80),
-        far,
-    ]
-    .map(|map| ShadowMap::new(&map, DVec3::Y));
-    let seen = MapsSeen { maps: &maps, reach: 0.5, depth_clamp: false };
+    let maps = [FitMap { split_far: 0.5, ..far.clone() }, map_around(DVec3::X * 4.0, DVec3::Y, 8.0, 9.0, 80), far]
+        .map(|map| map.measured(DVec3::Y));
+    let seen = PictureMaps { maps: &maps, reach: 0.5, depth_clamp: false };
     let judged = judge(&room.tracer, &room.truth, &seen, &[1.0; PIXELS], |_| true);
-    for (pixel, choice) in judged.choice.iter().enumerate() {
+    for (pixel, choice) in judged.map_index.iter().enumerate() {
         assert_eq!(*choice, Some(if pixel % 40 < 20 { 2 } else { 1 }));
     }
 }
@@ -145,7 +143,7 @@ fn surfaces_that_face_away_or_lie_beyond_the_shadow_distance_are_not_judged() {
         assert!(judged.classes.iter().all(|class| *class == Class::NotJudged));
         assert!(judged.pixels_per_texel.iter().all(|pixels| pixels.is_nan()));
         assert_eq!(judged.tally, PictureTally { frames: 1, ..PictureTally::default() });
-        assert!(judged.tally.columns().iter().all(|(_, value)| *value == 0.0));
+        assert!(judged.tally.is_empty() && judged.tally.figures().is_none());
     }
 }
 
@@ -167,7 +165,7 @@ fn grazing_pixels_count_in_all_and_are_listed_apart_but_have_no_texels() {
     let room = Room::lit_from(to_light, |_| ());
     let map = shadow_map(DVec3::ZERO, to_light, 16.0, 20.0, 64);
     let tally = room.judge(|_| 0.0, map, false).tally;
-    assert_eq!((tally.all.facing, tally.grazing.facing, tally.texels.total()), (400, 400, 0));
+    assert_eq!((tally.all.facing, tally.grazing.facing, tally.pixels_per_texel.total()), (400, 400, 0));
     assert!(tally.all.wrong > 0 && tally.grazing.wrong == tally.all.wrong);
     assert_eq!(tally.grazing.false_shadow, tally.all.false_shadow);
 }
@@ -177,8 +175,8 @@ fn an_edge_that_is_shifted_by_three_pixels_is_displaced_by_three() {
     let shifted = |column: usize| if column < 23 { 0.0 } else { 1.0 };
     let tally = Room::new().judge(shifted, map(1, 9.0), false).tally;
     assert_eq!((tally.displacement, tally.transitions, tally.all.wrong), (30.0, 10, 30));
-    let column = |name| tally.columns().into_iter().find(|(known, _)| *known == name).map(|(_, value)| value);
-    assert_eq!((column("edge px"), column("wrong %"), column("crawl %")), (Some(3.0), Some(7.5), Some(0.0)));
+    let figures = tally.figures().expect("a picture of the floor");
+    assert_eq!((figures.edge_distance, figures.wrong, figures.crawl), (Some(3.0), 7.5, None));
 }
 
 #[test]
@@ -186,11 +184,11 @@ fn soft_truth_counts_as_it_is_and_is_lit_from_one_half_on() {
     let room = Room::lit_from(DVec3::Y, |settings| (settings.sun_radius, settings.sun_rays) = (0.2, 64));
     let factors: Vec<f32> = room.truth.points.iter().map(|point| point.expect("the floor").lit).collect();
     assert!(factors.iter().any(|factor| (0.1..0.9).contains(factor)));
-    let maps = MapsSeen { maps: &[map(1, 9.0)], reach: 0.5, depth_clamp: false };
+    let maps = PictureMaps { maps: &[map(1, 9.0)], reach: 0.5, depth_clamp: false };
     let tally = judge(&room.tracer, &room.truth, &maps, &factors, |_| true).tally;
     assert_eq!((tally.all.wrong, tally.error), (0, 0.0));
     // A hole is one also where only some of the rays are blocked.
-    let low = MapsSeen { maps: &[map(1, 1.0)], ..maps };
+    let low = PictureMaps { maps: &[map(1, 1.0)], ..maps };
     let judged = judge(&room.tracer, &room.truth, &low, &[1.0; PIXELS], |_| true);
     assert_eq!((judged.tally.all.hole, judged.tally.all.wrong), (200, 200));
 }
@@ -205,9 +203,13 @@ fn merged_tallies_are_those_of_both_pictures() {
         (merged.frames, merged.all.facing, merged.all.wrong, merged.all.hole, merged.all.false_shadow),
         (2, 800, 400, 200, 180)
     );
-    let value = |name| merged.columns().into_iter().find(|(known, _)| *known == name).expect("a column").1;
-    assert_eq!((value("wrong %"), value("hole %"), value("crawl %"), value("edge px")), (50.0, 25.0, 25.0, 32.0));
-    assert!((value("ppt p95") - 4.0).abs() < 4.0 * 0.005 && (value("ppt p50") - 1.0).abs() < 0.005);
+    let figures = merged.figures().expect("two pictures of the floor");
+    assert_eq!(
+        (figures.wrong, figures.hole, figures.crawl, figures.edge_distance),
+        (50.0, 25.0, Some(25.0), Some(32.0))
+    );
+    let [p50, p95, _] = figures.pixels_per_texel.expect("texels");
+    assert!((p95 - 4.0).abs() < 4.0 * 0.005 && (p50 - 1.0).abs() < 0.005, "{p50} {p95}");
 }
 
 #[test]
@@ -224,7 +226,7 @@ fn crawl_compares_edge_pixels_that_the_maps_of_both_frames_hold() {
     let beside = [shadow_map(DVec3::X * -4.0, DVec3::Y, 8.0, 9.0, 80)];
     assert_eq!(crawl(&room.truth, &judged, &now, &MapsBefore { maps: &beside, ..before }), (10, 20));
     // Or beyond its last split.
-    let short = shadowfit_truth::peers::FitMap { split_far: 1.9, ..map_around(DVec3::ZERO, DVec3::Y, 8.0, 9.0, 80) };
-    let short = [ShadowMap::new(&short, DVec3::Y)];
+    let short = FitMap { split_far: 1.9, ..map_around(DVec3::ZERO, DVec3::Y, 8.0, 9.0, 80) };
+    let short = [short.measured(DVec3::Y)];
     assert_eq!(crawl(&room.truth, &judged, &now, &MapsBefore { maps: &short, ..before }), (0, 0));
 }

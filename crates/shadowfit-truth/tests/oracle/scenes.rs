@@ -2,8 +2,8 @@
 
 use glam::dcamera::rh::{proj::directx::orthographic, view::look_to_mat4};
 use glam::{DMat4, DVec2, DVec3, Vec3};
-use shadowfit_truth::PixelCamera;
-use shadowfit_truth::peers::{FitMap, ShadowMap};
+use shadowfit_truth::peers::FitMap;
+use shadowfit_truth::{MeasuredMap, PixelCamera};
 
 pub(crate) type Triangles = Vec<[Vec3; 3]>;
 
@@ -100,6 +100,6 @@ pub(crate) fn map_around(centre: DVec3, to_light: DVec3, width: f64, before: f64
 }
 
 /// The same, made ready.
-pub(crate) fn shadow_map(centre: DVec3, to_light: DVec3, width: f64, before: f64, texels: u32) -> ShadowMap {
-    ShadowMap::new(&map_around(centre, to_light, width, before, texels), to_light)
+pub(crate) fn shadow_map(centre: DVec3, to_light: DVec3, width: f64, before: f64, texels: u32) -> MeasuredMap {
+    map_around(centre, to_light, width, before, texels).measured(to_light)
 }

@@ -1,11 +1,11 @@
-//! The WGSL of the GPU's twin: valid with what every WebGPU device has, and laid out as the Rust that fills it.
+//! The WGSL of the compute passes: valid with what every WebGPU device has, and laid out as the Rust that fills it.
 
 use core::mem::offset_of;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Module, TypeInner};
 use shadowfit_truth::gpu::{
-    CutOutRecord, ImageRecord, JudgeUniform, MAX_MAPS, NodeRecord, SeenMapUniform, TriangleRecord, shader,
+    CutOutRecord, ImageRecord, JudgeUniform, MAX_MAPS, MapUniform, NodeRecord, TriangleRecord, shader,
 };
 
 fn modules() -> [(&'static str, String); 3] {
@@ -61,7 +61,7 @@ fn every_record_has_the_size_and_offsets_of_its_wgsl_struct() {
         "CutOut" = CutOutRecord { uv_a, uv_b, uv_c, base_alpha, cutoff, alphas, image, wrap, nearest, padding }
     );
     assert_layout!(module, "Image" = ImageRecord { first, width, height, padding });
-    assert_layout!(module, "Map" = SeenMapUniform { row_x, row_y, row_z, row_w, size, split_far, is_reversed });
+    assert_layout!(module, "Map" = MapUniform { row_x, row_y, row_z, row_w, size, split_far, is_reversed });
     assert_layout!(
         module,
         "Judge" = JudgeUniform {
@@ -101,5 +101,5 @@ fn the_maps_are_as_many_and_as_far_apart_in_both_languages() {
             _ => None,
         })
         .collect();
-    assert_eq!(arrays, [(MAX_MAPS, size_of::<SeenMapUniform>())]);
+    assert_eq!(arrays, [(MAX_MAPS, size_of::<MapUniform>())]);
 }

@@ -6,8 +6,8 @@ use shadowfit::settings::BiasSettings;
 use shadowfit::{CascadeFitter, PerspectiveCamera, SplitScheme, Workspace, bias};
 use shadowfit_render::{Atmosphere, Frame, Gpu, Picture, ProbePixel, ProbeTargets, Renderer};
 use shadowfit_truth::gpu::GpuPixel;
-use shadowfit_truth::peers::{FitMap, ShadowMap};
-use shadowfit_truth::{Judged, MapsBefore, MapsSeen, PixelCamera, Truth, TruthSettings, crawl, judge};
+use shadowfit_truth::peers::FitMap;
+use shadowfit_truth::{Judged, MapsBefore, MeasuredMap, PictureMaps, PixelCamera, Truth, TruthSettings, crawl, judge};
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
 
 use crate::study::live::{LiveInput, LiveTruth};
@@ -201,7 +201,7 @@ impl Contender {
         })
     }
 
-    fn seen<'a>(&self, maps: &'a [ShadowMap]) -> MapsSeen<'a> {
+    fn seen<'a>(&self, maps: &'a [MeasuredMap]) -> PictureMaps<'a> {
         maps_seen(maps, self.renderer.shadow_map().descriptor())
     }
 
@@ -257,8 +257,8 @@ pub(crate) fn triangles(pixels: &[Option<ProbePixel>]) -> Vec<Option<u32>> {
 }
 
 /// How the maps of a shadow map are read.
-pub(crate) fn maps_seen<'a>(maps: &'a [ShadowMap], descriptor: &ShadowMapDescriptor) -> MapsSeen<'a> {
-    MapsSeen { maps, reach: bias::reach(descriptor.filter), depth_clamp: descriptor.depth_clamp }
+pub(crate) fn maps_seen<'a>(maps: &'a [MeasuredMap], descriptor: &ShadowMapDescriptor) -> PictureMaps<'a> {
+    PictureMaps { maps, reach: bias::reach(descriptor.filter), depth_clamp: descriptor.depth_clamp }
 }
 
 fn trace(subject: &Subject, shot: &Shot, judging: &Judging, pixels: &[Option<ProbePixel>]) -> Truth {
@@ -279,9 +279,9 @@ fn truth_settings(shot: &Shot, judging: &Judging) -> TruthSettings {
 }
 
 /// The maps as the measures take them, for positions relative to a world position.
-pub(crate) fn measured(maps: &[MapFit], direction: Vec3, origin: DVec3) -> Vec<ShadowMap> {
+pub(crate) fn measured(maps: &[MapFit], direction: Vec3, origin: DVec3) -> Vec<MeasuredMap> {
     let from_origin = |map: &MapFit| FitMap { view_proj: clip_from(map, origin).to_cols_array(), ..fit_map(map) };
-    maps.iter().map(|map| ShadowMap::new(&from_origin(map), -direction.as_dvec3())).collect()
+    maps.iter().map(|map| from_origin(map).measured(-direction.as_dvec3())).collect()
 }
 
 /// A map as fit files have it: the f32 matrix that the renderer gets, made absolute in f64.

@@ -37,16 +37,15 @@ impl Default for Weights {
 }
 
 impl Weights {
-    /// The weighted error of a tally.
+    /// The weighted error of a tally; infinite where nothing was judged.
     pub fn error(&self, tally: &PictureTally) -> f64 {
-        let column =
-            |name: &str| tally.columns().iter().find(|(known, _)| *known == name).map_or(0.0, |(_, value)| *value);
-        self.wrong * column("wrong %")
-            + self.false_shadow * column("false shadow %")
-            + self.false_light * column("false light %")
-            + self.hole * column("hole %")
-            + self.mean_error * column("mean error %")
-            + self.crawl * column("crawl %")
+        let Some(figures) = tally.figures() else { return f64::INFINITY };
+        self.wrong * figures.wrong
+            + self.false_shadow * figures.false_shadow
+            + self.false_light * figures.false_light
+            + self.hole * figures.hole
+            + self.mean_error * figures.mean_error
+            + self.crawl * figures.crawl.unwrap_or(0.0)
     }
 }
 

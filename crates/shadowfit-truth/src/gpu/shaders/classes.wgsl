@@ -6,24 +6,24 @@ const FALSE_LIGHT: u32 = 3u;
 const HOLE: u32 = 4u;
 const EDGE: u32 = 5u;
 
-// Logarithms of footprints in the texture: steps of an octave, and the step that stands for 1.
+// Logarithms of pixels per texel in the texture: steps in an octave, and the step that stands for 1.
 const OCTAVE: f32 = 256.0;
 const ONE: f32 = 32768.0;
-const MOST: f32 = 65535.0;
+const MAX_STEP: f32 = 65535.0;
 
-fn footprint_bits(footprint: f32) -> u32 {
-    return u32(clamp(round(log2(footprint) * OCTAVE) + ONE, 0.0, MOST));
+fn encode_octaves(value: f32) -> u32 {
+    return u32(clamp(round(log2(value) * OCTAVE) + ONE, 0.0, MAX_STEP));
 }
 
 fn is_row_near(pixel: vec2<u32>, step: u32, square: f32) -> bool {
     let along = pixels[pixel_index(pixel)].along_row;
-    return along != NOWHERE && f32(along * along + step * step) <= square;
+    return along != NONE && f32(along * along + step * step) <= square;
 }
 
 // Whether a transition lies within a number of pixels: squares of whole pixels against that of the width less half a
-// pixel, as the processor compares them.
+// pixel, as the CPU compares them.
 fn is_near_transition(pixel: vec2<u32>, width: f32) -> bool {
-    // Beyond the largest picture's diagonal all is near.
+    // No picture has a longer diagonal.
     let reach = min(width - 0.5, 65536.0);
     let square = reach * reach;
     for (var step = 0u; step < judge.size.y && f32(step * step) <= square; step++) {
@@ -37,15 +37,15 @@ fn is_near_transition(pixel: vec2<u32>, width: f32) -> bool {
     return false;
 }
 
-// Whether the map that is read holds none of the point's occluders, or none is read.
-fn is_hole(pixel: vec2<u32>, choice: u32) -> bool {
-    if choice == 0u {
+// Whether the map that is read (its index plus 1) holds none of the point's occluders, or no map is read.
+fn is_hole(pixel: vec2<u32>, map_plus_1: u32) -> bool {
+    if map_plus_1 == 0u {
         return true;
     }
     let drawn = textureLoad(seen, pixel, 0);
     let surface = surface_of(pixel, triangles[slots[drawn.x - 1u]]);
-    let place = place_in(judge.maps[choice - 1u], surface.position);
-    let receiver = Receiver(choice - 1u, surface.position, place.depth);
+    let map = map_plus_1 - 1u;
+    let receiver = Receiver(map, surface.position, project(judge.maps[map], surface.position).depth);
     return !is_occluded(ray_origin(surface), judge.to_light, receiver);
 }
 
@@ -55,7 +55,7 @@ fn class_of(pixel: vec2<u32>, flags: u32, is_in_edge_zone: bool) -> u32 {
     if is_lit == seems_lit {
         return RIGHT;
     }
-    if !is_lit && is_hole(pixel, flags >> CHOICE_SHIFT) {
+    if !is_lit && is_hole(pixel, flags >> MAP_SHIFT) {
         return HOLE;
     }
     if is_in_edge_zone {
@@ -71,15 +71,15 @@ fn class_of(pixel: vec2<u32>, flags: u32, is_in_edge_zone: bool) -> u32 {
     let pixel = pixels[pixel_index(id.xy)];
     var bits = 0u;
     if (pixel.flags & JUDGED) != 0u {
-        let choice = pixel.flags >> CHOICE_SHIFT;
-        // Without a map no texel is read, and only the pixels are meant.
-        let footprint = select(1.0, max(pixel.footprint, 1.0), choice != 0u);
-        let is_in_edge_zone = is_near_transition(id.xy, judge.edge_width * min(footprint, 1e9));
+        let map_plus_1 = pixel.flags >> MAP_SHIFT;
+        // Without a map no texel is read, and the zone's width is in pixels.
+        let texel_width = select(1.0, max(pixel.pixels_per_texel, 1.0), map_plus_1 != 0u);
+        let is_in_edge_zone = is_near_transition(id.xy, judge.edge_width * min(texel_width, 1e9));
         bits = class_of(id.xy, pixel.flags, is_in_edge_zone)
             | select(0u, 8u, (pixel.flags & LIT) != 0u)
             | select(0u, 16u, is_in_edge_zone)
-            | (choice << 8u)
-            | (select(u32(MOST), footprint_bits(pixel.footprint), choice != 0u) << 16u);
+            | (map_plus_1 << 8u)
+            | (select(u32(MAX_STEP), encode_octaves(pixel.pixels_per_texel), map_plus_1 != 0u) << 16u);
     }
     textureStore(classes, id.xy, vec4<u32>(bits, 0u, 0u, 0u));
 }

@@ -1,11 +1,12 @@
-// Rays through the hierarchy: the arithmetic of the processor's, with its rule that a weight of minus zero misses.
+// Rays through the hierarchy: the arithmetic of the CPU's rays, with their rule that a weight of minus zero misses.
 // Origins are relative to the origin of the triangles.
 
-// Depth of the hierarchy is checked against this before it is uploaded.
+// The hierarchy's depth is compared with this before it is uploaded.
 const STACK: u32 = 64u;
 const EPSILON: f32 = 1.1920929e-7;
 
-// Who asks for occluders: a point that reads a map, or nobody, and any occluder will do.
+// The point whose occluders are looked for, and the map that it reads: only those in the map count. Without a map,
+// NONE, every occluder counts.
 struct Receiver {
     map: u32,
     // Relative to the eye.
@@ -70,13 +71,13 @@ fn wrapped(index: i32, size: i32, wrap: u32) -> i32 {
 fn alpha_at(image: Image, cut_out: CutOut, corner: vec2<i32>) -> f32 {
     let x = wrapped(corner.x, image.width, cut_out.wrap.x);
     let y = wrapped(corner.y, image.height, cut_out.wrap.y);
-    let place = image.first + u32(y) * u32(image.width) + u32(x);
-    return f32((alphas[place / 4u] >> (place % 4u * 8u)) & 255u) / 255.0;
+    let texel = image.first + u32(y) * u32(image.width) + u32(x);
+    return f32((alphas[texel / 4u] >> (texel % 4u * 8u)) & 255u) / 255.0;
 }
 
 fn sample_alpha(image: Image, cut_out: CutOut, uv: vec2<f32>) -> f32 {
-    let farthest = vec2<f32>(1073741824.0);
-    let position = clamp(uv * vec2<f32>(f32(image.width), f32(image.height)) - 0.5, -farthest, farthest);
+    let limit = vec2<f32>(1073741824.0);
+    let position = clamp(uv * vec2<f32>(f32(image.width), f32(image.height)) - 0.5, -limit, limit);
     let weight = position - floor(position);
     let corner = vec2<i32>(floor(position));
     if cut_out.nearest != 0u {
@@ -89,8 +90,8 @@ fn sample_alpha(image: Image, cut_out: CutOut, uv: vec2<f32>) -> f32 {
     return mix(upper, lower, weight.y);
 }
 
-// Whether a triangle with holes is there at a point.
-fn is_there(triangle: Triangle, point: vec3<f32>) -> bool {
+// Whether a triangle with holes is opaque at a point.
+fn is_opaque(triangle: Triangle, point: vec3<f32>) -> bool {
     let cut_out = cut_outs[triangle.cut_out - 1u];
     let edge1 = triangle.b - triangle.a;
     let edge2 = triangle.c - triangle.a;
@@ -110,13 +111,13 @@ fn is_there(triangle: Triangle, point: vec3<f32>) -> bool {
 
 // Whether the receiver's map holds an occluder at a distance toward the light.
 fn holds(receiver: Receiver, direction: vec3<f32>, distance: f32) -> bool {
-    if receiver.map == NOWHERE {
+    if receiver.map == NONE {
         return true;
     }
     let map = judge.maps[receiver.map];
-    let place = place_in(map, receiver.position + direction * distance);
-    return is_within_sides(map, place) && place.depth <= receiver.depth + 1e-6
-        && (judge.depth_clamp != 0u || place.depth >= -1e-6);
+    let at = project(map, receiver.position + direction * distance);
+    return is_within_sides(map, at) && at.depth <= receiver.depth + 1e-6
+        && (judge.depth_clamp != 0u || at.depth >= -1e-6);
 }
 
 fn is_occluder(triangle: Triangle, origin: vec3<f32>, direction: vec3<f32>, receiver: Receiver) -> bool {
@@ -124,7 +125,7 @@ fn is_occluder(triangle: Triangle, origin: vec3<f32>, direction: vec3<f32>, rece
     if distance >= FAR {
         return false;
     }
-    if triangle.cut_out != 0u && !is_there(triangle, origin + direction * distance) {
+    if triangle.cut_out != 0u && !is_opaque(triangle, origin + direction * distance) {
         return false;
     }
     return holds(receiver, direction, distance);

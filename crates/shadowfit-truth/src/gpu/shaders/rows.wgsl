@@ -1,5 +1,5 @@
-// Second pass: how far each pixel is from the nearest transition of its row. A workgroup takes a row, each of its
-// invocations a part of it.
+// Second pass: how far each pixel is from the nearest transition in its row. A workgroup handles a row, and each of
+// its invocations a part of it.
 
 const LANES: u32 = 64u;
 var<workgroup> first_of: array<u32, LANES>;
@@ -29,11 +29,11 @@ fn is_transition(pixel: vec2<u32>) -> bool {
     let part = (judge.size.x + LANES - 1u) / LANES;
     let begin = min(lane * part, judge.size.x);
     let end = min(begin + part, judge.size.x);
-    var first = NOWHERE;
-    var last = NOWHERE;
+    var first = NONE;
+    var last = NONE;
     for (var x = begin; x < end; x++) {
         if is_transition(vec2<u32>(x, y)) {
-            first = select(first, x, first == NOWHERE);
+            first = select(first, x, first == NONE);
             last = x;
         }
     }
@@ -41,22 +41,22 @@ fn is_transition(pixel: vec2<u32>) -> bool {
     last_of[lane] = last;
     workgroupBarrier();
     // The nearest transitions before and behind this part.
-    var before = NOWHERE;
+    var before = NONE;
     for (var other = 0u; other < lane; other++) {
-        before = select(before, last_of[other], last_of[other] != NOWHERE);
+        before = select(before, last_of[other], last_of[other] != NONE);
     }
-    var behind = NOWHERE;
+    var behind = NONE;
     for (var other = LANES - 1u; other > lane; other--) {
-        behind = select(behind, first_of[other], first_of[other] != NOWHERE);
+        behind = select(behind, first_of[other], first_of[other] != NONE);
     }
     for (var x = begin; x < end; x++) {
         before = select(before, x, is_transition(vec2<u32>(x, y)));
-        pixels[pixel_index(vec2<u32>(x, y))].along_row = select(x - before, NOWHERE, before == NOWHERE);
+        pixels[pixel_index(vec2<u32>(x, y))].along_row = select(x - before, NONE, before == NONE);
     }
     for (var x = end; x > begin; x--) {
         let index = pixel_index(vec2<u32>(x - 1u, y));
         behind = select(behind, x - 1u, pixels[index].along_row == 0u);
-        let distance = select(behind - (x - 1u), NOWHERE, behind == NOWHERE);
+        let distance = select(behind - (x - 1u), NONE, behind == NONE);
         pixels[index].along_row = min(pixels[index].along_row, distance);
     }
 }

@@ -4,13 +4,13 @@ struct Surface {
     position: vec3<f32>,
     // Unit geometric normal on the side of the eye.
     normal: vec3<f32>,
-    // Through the pixel's centre; its part along the view is 1.
+    // Through the pixel's centre; its component along the view is 1.
     ray: vec3<f32>,
     facing: f32,
     view_depth: f32,
 }
 
-struct Place {
+struct MapPosition {
     texel: vec2<f32>,
     // 0 nearest to the light.
     depth: f32,
@@ -23,7 +23,7 @@ fn ray_of(pixel: vec2<u32>) -> vec3<f32> {
     return judge.right * share.x - judge.up * share.y + judge.forward;
 }
 
-// The point of a triangle's plane on the pixel's ray, its view depth held within that of the corners.
+// Where the pixel's ray meets a triangle's plane, with the view depth clamped to that of the corners.
 fn surface_of(pixel: vec2<u32>, triangle: Triangle) -> Surface {
     let ray = ray_of(pixel);
     let area = cross(triangle.b - triangle.a, triangle.c - triangle.a);
@@ -53,33 +53,33 @@ fn surface_of(pixel: vec2<u32>, triangle: Triangle) -> Surface {
     return Surface(position, normal, ray, dot(normal, judge.to_light), view_depth);
 }
 
-fn place_in(map: Map, position: vec3<f32>) -> Place {
+fn project(map: Map, position: vec3<f32>) -> MapPosition {
     let point = vec4<f32>(position, 1.0);
     let w = dot(map.row_w, point);
     let ndc = vec3<f32>(dot(map.row_x, point), dot(map.row_y, point), dot(map.row_z, point)) / w;
     let texel = (0.5 + ndc.xy * vec2<f32>(0.5, -0.5)) * map.size;
-    return Place(texel, select(ndc.z, 1.0 - ndc.z, map.is_reversed != 0u), ndc, w);
+    return MapPosition(texel, select(ndc.z, 1.0 - ndc.z, map.is_reversed != 0u), ndc, w);
 }
 
-fn is_within_sides(map: Map, place: Place) -> bool {
-    let slack = map.size * 1e-5;
-    return place.w > 0.0 && all(place.texel >= -slack) && all(place.texel <= map.size + slack);
+fn is_within_sides(map: Map, at: MapPosition) -> bool {
+    let tolerance = map.size * 1e-5;
+    return at.w > 0.0 && all(at.texel >= -tolerance) && all(at.texel <= map.size + tolerance);
 }
 
-fn is_inside(map: Map, place: Place) -> bool {
-    return is_within_sides(map, place) && place.depth >= -1e-5 && place.depth <= 1.0 + 1e-5;
+fn is_inside(map: Map, at: MapPosition) -> bool {
+    return is_within_sides(map, at) && at.depth >= -1e-5 && at.depth <= 1.0 + 1e-5;
 }
 
-// The first map whose split is beyond the point, or the next later one that holds it; NOWHERE without one.
+// The first map whose split is beyond the point, or the next later one that holds the point; NONE without one.
 fn choose(surface: Surface) -> u32 {
     var is_reached = false;
     for (var index = 0u; index < judge.map_count; index++) {
         is_reached = is_reached || surface.view_depth < judge.maps[index].split_far;
-        if is_reached && is_inside(judge.maps[index], place_in(judge.maps[index], surface.position)) {
+        if is_reached && is_inside(judge.maps[index], project(judge.maps[index], surface.position)) {
             return index;
         }
     }
-    return NOWHERE;
+    return NONE;
 }
 
 // How far a point moves on its tangent plane when its ray is moved by `across` at view depth 1.
@@ -90,9 +90,9 @@ fn slide(surface: Surface, across: vec3<f32>) -> vec3<f32> {
 
 // Pixels per texel along the worse axis: one over the smaller singular value of texels a pixel.
 fn pixels_per_texel(surface: Surface, map: Map) -> f32 {
-    let place = place_in(map, surface.position);
-    let u = (map.row_x.xyz - map.row_w.xyz * place.ndc.x) * (0.5 * map.size.x / place.w);
-    let v = (map.row_y.xyz - map.row_w.xyz * place.ndc.y) * (-0.5 * map.size.y / place.w);
+    let at = project(map, surface.position);
+    let u = (map.row_x.xyz - map.row_w.xyz * at.ndc.x) * (0.5 * map.size.x / at.w);
+    let v = (map.row_y.xyz - map.row_w.xyz * at.ndc.y) * (-0.5 * map.size.y / at.w);
     let pixel = 2.0 * judge.tan_half_fov / vec2<f32>(judge.size);
     let to_right = slide(surface, judge.right * pixel.x);
     let to_down = slide(surface, -judge.up * pixel.y);

@@ -12,7 +12,7 @@ struct Node {
 // Corners relative to the origin, in leaf order.
 struct Triangle {
     a: vec3<f32>,
-    // Place of its cut-out plus 1, 0 for none.
+    // Index of its cut-out plus 1, 0 for none.
     cut_out: u32,
     b: vec3<f32>,
     padding_0: u32,
@@ -27,7 +27,7 @@ struct CutOut {
     base_alpha: f32,
     cutoff: f32,
     alphas: vec3<f32>,
-    // Place of its image plus 1, 0 for none.
+    // Index of its image plus 1, 0 for none.
     image: u32,
     wrap: vec2<u32>,
     nearest: u32,
@@ -64,7 +64,7 @@ struct Judge {
     forward: vec3<f32>,
     max_distance: f32,
     to_light: vec3<f32>,
-    // Pixels, or texels' footprints if those are more.
+    // In pixels, or in texels where those are wider than pixels on screen.
     edge_width: f32,
     tan_half_fov: vec2<f32>,
     size: vec2<u32>,
@@ -78,24 +78,24 @@ struct Judge {
 struct Pixel {
     flags: u32,
     // Pixels per texel along the worse axis.
-    footprint: f32,
+    pixels_per_texel: f32,
     // Distance along the row to the nearest transition, in pixels.
     along_row: u32,
 }
 
-// Bits of Pixel.flags; the map that is read, plus 1, stands above them.
+// Bits of Pixel.flags; above them stands the index of the map that is read, plus 1.
 const JUDGED: u32 = 1u;
 const LIT: u32 = 2u;
 const SEEMS_LIT: u32 = 4u;
-const CHOICE_SHIFT: u32 = 4u;
+const MAP_SHIFT: u32 = 4u;
 
-// More than any finite footprint or distance that matters, where the processor's twin has infinity.
+// Greater than any pixels per texel or distance that matters; used where the CPU uses infinity.
 const FAR: f32 = 3.0e38;
-const NOWHERE: u32 = 0xffffffffu;
+const NONE: u32 = 0xffffffffu;
 
 @group(0) @binding(0) var<storage, read> nodes: array<Node>;
 @group(0) @binding(1) var<storage, read> triangles: array<Triangle>;
-// Leaf-order place of each triangle by its own number.
+// Leaf-order index of each triangle by its own index.
 @group(0) @binding(2) var<storage, read> slots: array<u32>;
 @group(0) @binding(3) var<storage, read> cut_outs: array<CutOut>;
 @group(0) @binding(4) var<storage, read> images: array<Image>;
@@ -103,7 +103,7 @@ const NOWHERE: u32 = 0xffffffffu;
 @group(0) @binding(5) var<storage, read> alphas: array<u32>;
 
 @group(1) @binding(0) var<uniform> judge: Judge;
-// Triangle's number plus 1 (0 sky), and the bits of the filtered factor.
+// Triangle's index plus 1 (0 for the sky), and the bits of the filtered factor.
 @group(1) @binding(1) var seen: texture_2d<u32>;
 @group(1) @binding(2) var<storage, read_write> pixels: array<Pixel>;
 @group(1) @binding(3) var classes: texture_storage_2d<r32uint, write>;

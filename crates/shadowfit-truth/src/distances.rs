@@ -1,22 +1,22 @@
-//! How far each pixel is from the nearest marked one, exactly: squares of whole pixels.
+//! How far each pixel is from the nearest marked one, as exact squares of whole pixels.
 //!
 //! A. Meijster, J. Roerdink, W. Hesselink, "A general algorithm for computing distance transforms in
 //! linear time", 2000: distances along the rows, then the lower envelope of parabolas down each
-//! column. Integers throughout, so that masks made of it are the same everywhere.
+//! column. Integers throughout, so that results are the same on every machine.
 
 use rayon::prelude::*;
 
-/// Square of a distance where nothing is marked.
-pub(crate) const NOWHERE: u32 = u32::MAX;
+/// Stands for the square of the distance where no pixel is marked.
+pub(crate) const NONE_MARKED: u32 = u32::MAX;
 
 /// Square of the distance, in pixels, from each pixel's centre to that of the nearest marked one;
-/// [`NOWHERE`] without any. Rows from the top.
+/// [`NONE_MARKED`] without any. Rows from the top.
 pub(crate) fn squared_distances(size: [usize; 2], is_marked: impl Fn(usize, usize) -> bool + Sync) -> Vec<u32> {
     let [width, height] = size;
     if width == 0 || height == 0 {
         return Vec::new();
     }
-    let mut along_row = vec![NOWHERE; width * height];
+    let mut along_row = vec![NONE_MARKED; width * height];
     along_row.par_chunks_mut(width).enumerate().for_each(|(y, row)| sweep_row(row, |x| is_marked(x, y)));
     let columns: Vec<Vec<u32>> = (0..width)
         .into_par_iter()
@@ -32,12 +32,12 @@ pub(crate) fn squared_distances(size: [usize; 2], is_marked: impl Fn(usize, usiz
 
 /// Distance along a row to the nearest marked pixel of that row.
 fn sweep_row(row: &mut [u32], is_marked: impl Fn(usize) -> bool) {
-    let mut last = NOWHERE;
+    let mut last = NONE_MARKED;
     for (x, distance) in row.iter_mut().enumerate() {
         last = if is_marked(x) { 0 } else { last.saturating_add(1) };
         *distance = last;
     }
-    last = NOWHERE;
+    last = NONE_MARKED;
     for distance in row.iter_mut().rev() {
         last = last.saturating_add(1).min(*distance);
         *distance = last;
@@ -55,7 +55,7 @@ fn column(along_row: &[u32]) -> Vec<u32> {
     let last_of = |upper: u32, lower: u32| (value(lower, 0) - value(upper, 0)).div_euclid(2 * i64::from(lower - upper));
     // Rows of the lower envelope, and where each begins.
     let mut envelope: Vec<(u32, i64)> = Vec::new();
-    for row in (0..rows).filter(|row| along_row[*row as usize] != NOWHERE) {
+    for row in (0..rows).filter(|row| along_row[*row as usize] != NONE_MARKED) {
         while envelope.last().is_some_and(|(top, start)| last_of(*top, row) < *start) {
             envelope.pop();
         }
@@ -64,13 +64,15 @@ fn column(along_row: &[u32]) -> Vec<u32> {
             envelope.push((row, start));
         }
     }
-    let mut place = 0;
+    let mut current = 0;
     (0..rows)
         .map(|y| {
-            while envelope.get(place + 1).is_some_and(|(_, start)| *start <= i64::from(y)) {
-                place += 1;
+            while envelope.get(current + 1).is_some_and(|(_, start)| *start <= i64::from(y)) {
+                current += 1;
             }
-            envelope.get(place).map_or(NOWHERE, |(row, _)| u32::try_from(value(*row, y)).unwrap_or(NOWHERE - 1))
+            envelope
+                .get(current)
+                .map_or(NONE_MARKED, |(row, _)| u32::try_from(value(*row, y)).unwrap_or(NONE_MARKED - 1))
         })
         .collect()
 }
@@ -92,14 +94,14 @@ mod tests {
                     .filter(|(u, v)| is_marked(*u, *v))
                     .map(|(u, v)| (u.abs_diff(x).pow(2) + v.abs_diff(y).pow(2)) as u32)
                     .min();
-                assert_eq!(found, wanted.unwrap_or(NOWHERE), "pixel {x}, {y} of {size:?}");
+                assert_eq!(found, wanted.unwrap_or(NONE_MARKED), "pixel {x}, {y} of {size:?}");
             }
         }
     }
 
     #[test]
-    fn without_a_mark_every_distance_is_nowhere() {
-        assert!(squared_distances([3, 2], |_, _| false).iter().all(|square| *square == NOWHERE));
+    fn without_a_mark_no_pixel_has_a_distance() {
+        assert!(squared_distances([3, 2], |_, _| false).iter().all(|square| *square == NONE_MARKED));
         assert!(squared_distances([0, 2], |_, _| true).is_empty());
     }
 }

@@ -1,29 +1,29 @@
-//! Quantiles of values that span many octaves, in little memory, independent of their order.
+//! Quantiles of values that span many octaves, in little memory and independent of their order.
 
-/// Bins of an octave: quantiles are good to half a bin, 0.3%.
+/// Bins in an octave, so that a quantile is off by at most half a bin, 0.3%.
 const BINS_PER_OCTAVE: f64 = 128.0;
-/// Octaves either side of 1 that have bins; values beyond are counted at the end of that range.
+/// Octaves on either side of 1 that have bins; values beyond are counted in the last bin of that side.
 const OCTAVES: f64 = 128.0;
 
 /// Counts of values in bins of equal width in log2.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Histogram {
-    /// Number of the first bin in `counts`; bin k spans log2 from k / 128 to (k + 1) / 128.
+    /// Index of the first bin in `counts`; bin k spans log2 from k / 128 to (k + 1) / 128.
     first: i32,
     counts: Vec<u64>,
     total: u64,
 }
 
 impl Histogram {
-    /// Counts a value; one that is not a number counts as infinite.
+    /// Counts a value. NaN counts as infinite, a value of 0 or less as the least one.
     pub fn add(&mut self, value: f64) {
         let log2 = if value.is_nan() { f64::INFINITY } else { value.max(0.0).log2() };
         let bin = (log2.clamp(-OCTAVES, OCTAVES) * BINS_PER_OCTAVE).floor() as i32;
-        *self.slot(bin) += 1;
+        *self.count_mut(bin) += 1;
         self.total += 1;
     }
 
-    /// How many values were counted.
+    /// Number of values counted.
     pub fn total(&self) -> u64 {
         self.total
     }
@@ -32,28 +32,28 @@ impl Histogram {
     pub fn merge(&mut self, other: &Self) {
         for (bin, count) in (other.first..).zip(&other.counts) {
             if *count > 0 {
-                *self.slot(bin) += count;
+                *self.count_mut(bin) += count;
             }
         }
         self.total += other.total;
     }
 
     /// Log2 of the quantile `q`, 0..=1: the middle of the first bin at which the count reaches
-    /// ceil(q n). `None` without values; infinite where values are beyond all bins.
+    /// ceil(q n) of the n values. `None` without values; infinite where the quantile is 2^128 or more.
     pub fn log2_quantile(&self, q: f64) -> Option<f64> {
         let wanted = ((q * self.total as f64).ceil() as u64).max(1);
         let mut count = 0;
-        let place = self.counts.iter().position(|bin| {
+        let index = self.counts.iter().position(|bin| {
             count += bin;
             count >= wanted
         })?;
-        let bin = f64::from(self.first) + place as f64;
+        let bin = f64::from(self.first) + index as f64;
         let last = OCTAVES * BINS_PER_OCTAVE;
         Some(if bin >= last { f64::INFINITY } else { (bin + 0.5) / BINS_PER_OCTAVE })
     }
 
-    /// The count of a bin; makes room for it.
-    fn slot(&mut self, bin: i32) -> &mut u64 {
+    /// The count of a bin, which is added if it is not there yet.
+    fn count_mut(&mut self, bin: i32) -> &mut u64 {
         if self.counts.is_empty() {
             self.first = bin;
         }
@@ -62,11 +62,11 @@ impl Histogram {
             self.counts.splice(0..0, std::iter::repeat_n(0, missing));
             self.first = bin;
         }
-        let place = (bin - self.first) as usize;
-        if place >= self.counts.len() {
-            self.counts.resize(place + 1, 0);
+        let index = (bin - self.first) as usize;
+        if index >= self.counts.len() {
+            self.counts.resize(index + 1, 0);
         }
-        &mut self.counts[place]
+        &mut self.counts[index]
     }
 }
 
@@ -74,7 +74,7 @@ impl Histogram {
 mod tests {
     use super::*;
 
-    /// Values in many octaves, in an order that makes room at both ends.
+    /// Values in many octaves, in an order that adds bins at both ends.
     fn values() -> Vec<f64> {
         (0..2000u32).map(|i| (f64::from((i * 787) % 2000) - 900.5) / 100.0).map(f64::exp2).collect()
     }

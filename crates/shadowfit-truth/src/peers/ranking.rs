@@ -5,34 +5,36 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::error::PeersError;
+use super::fit_file::{FitFile, FitMap};
 use super::measure::{FrameMaps, measure};
-use super::shadow_map::ShadowMap;
+use super::scenarios::{Frame, Scenarios};
 use super::table::{FitTable, GroupTally};
 use super::tally::Tally;
 use super::visible::VisiblePoints;
-use super::{FitFile, Scenarios};
-use crate::{PictureTally, Tracer};
+use crate::maps::MeasuredMap;
+use crate::tally::PictureTally;
+use crate::tracer::Tracer;
 
-/// Fits that are measured side by side, so that each frame is traced once.
+/// Fits that are measured on the same frames, each of which is traced once for all of them.
 #[derive(Clone, Debug)]
-pub struct Study {
+pub struct Ranking {
     scenarios: Scenarios,
     fits: Vec<Fit>,
 }
 
-/// A fit, and what was measured of it so far.
+/// A fit, and its sums so far.
 #[derive(Clone, Debug)]
 struct Fit {
     peer: String,
     nanoseconds: Option<f64>,
-    pancake: bool,
+    depth_clamp: bool,
     /// Maps of each frame, in the order of the scenarios.
-    maps: Vec<Vec<ShadowMap>>,
+    maps: Vec<Vec<MeasuredMap>>,
     groups: Vec<GroupTally>,
 }
 
-impl Study {
-    /// A study without fits.
+impl Ranking {
+    /// A ranking without fits.
     pub fn new(scenarios: Scenarios) -> Self {
         Self { scenarios, fits: Vec::new() }
     }
@@ -46,24 +48,24 @@ impl Study {
     ///
     /// # Errors
     ///
-    /// When the fit does not have every frame of the scenarios once, and no other.
+    /// When a frame of the scenarios is missing or occurs twice, or the fit has one that they do not.
     pub fn add(&mut self, fit: &FitFile, file: &Path) -> Result<(), PeersError> {
         let in_order = fit.maps_in_order(&self.scenarios, file)?;
-        let prepare = |(frame, maps): (&super::Frame, &[super::FitMap])| {
-            maps.iter().map(|map| ShadowMap::new(map, frame.to_light())).collect()
+        let prepare = |(frame, maps): (&Frame, &[FitMap])| -> Vec<MeasuredMap> {
+            maps.iter().map(|map| map.measured(frame.to_light())).collect()
         };
         self.fits.push(Fit {
             peer: fit.peer.clone(),
             nanoseconds: fit.ns_per_fit,
-            pancake: fit.pancake,
+            depth_clamp: fit.depth_clamp,
             maps: self.scenarios.frames.iter().zip(in_order).map(prepare).collect(),
             groups: Vec::new(),
         });
         Ok(())
     }
 
-    /// Measures all frames of a scene, on every core. `stride` takes every so many rays across and
-    /// down, 1 for all; `frame_done` is called as often as the scene has frames.
+    /// Measures all frames of a scene, on all cores, with the scene's triangles in `tracer`. `stride` is
+    /// that of [`VisiblePoints::trace`]; `frame_done` is called once for each frame.
     pub fn measure_scene(&mut self, scene: usize, tracer: &Tracer, stride: u32, frame_done: &(impl Fn() + Sync)) {
         let frames: Vec<usize> =
             (0..self.scenarios.frames.len()).filter(|index| self.scenarios.frames[*index].scene == scene).collect();
@@ -75,7 +77,7 @@ impl Study {
                 tallies
             })
             .collect();
-        // Merged in order, so that sums do not depend on which core was first.
+        // Merged in order, so that sums do not depend on which core finished first.
         for (frame, tallies) in frames.iter().zip(tallies) {
             let frame = &self.scenarios.frames[*frame];
             let (scene, group) = (&self.scenarios.scenes[frame.scene].name, self.scenarios.group(frame));
@@ -85,8 +87,13 @@ impl Study {
         }
     }
 
-    /// Adds the sums of a judged picture: of a fit, by the order in which fits were added, at a frame. Pictures are
-    /// summed in the order in which they are added.
+    /// Adds the sums of a judged picture. `fit` is the index of the fit in the order in which fits were
+    /// added, `frame` that of the frame in the scenarios. To get the same sums to the last bit, add
+    /// pictures in the same order.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such fit or frame.
     pub fn add_picture(&mut self, fit: usize, frame: usize, pictures: &PictureTally) {
         let frame = &self.scenarios.frames[frame];
         let (scene, group) = (&self.scenarios.scenes[frame.scene].name, self.scenarios.group(frame));
@@ -106,7 +113,7 @@ impl Study {
             let maps = FrameMaps {
                 maps: &fit.maps[frame],
                 previous: previous.map(|previous| fit.maps[previous].as_slice()),
-                pancake: fit.pancake,
+                depth_clamp: fit.depth_clamp,
             };
             measure(&visible, &maps)
         };
@@ -115,9 +122,9 @@ impl Study {
 }
 
 impl Fit {
-    /// The sums of a group, made when it is new.
+    /// The sums of a group, which is added when it is new.
     fn group(&mut self, scene: &str, group: &str) -> &mut GroupTally {
-        let place = self.groups.iter().position(|known| known.group == group).unwrap_or_else(|| {
+        let index = self.groups.iter().position(|known| known.group == group).unwrap_or_else(|| {
             self.groups.push(GroupTally {
                 scene: scene.to_owned(),
                 group: group.to_owned(),
@@ -126,6 +133,6 @@ impl Fit {
             });
             self.groups.len() - 1
         });
-        &mut self.groups[place]
+        &mut self.groups[index]
     }
 }

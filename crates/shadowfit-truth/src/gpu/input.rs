@@ -1,0 +1,74 @@
+//! A picture to judge on the GPU, and the uniform that is made of it for the shaders.
+
+use glam::DVec3;
+
+use super::error::GpuTruthError;
+use super::uniform::{JudgeUniform, MAX_MAPS, MapUniform};
+use crate::camera::PixelCamera;
+use crate::maps::{MeasuredMap, PictureMaps};
+use crate::truth::TruthSettings;
+
+/// A picture to judge.
+#[derive(Clone, Copy, Debug)]
+pub struct GpuJudgeInput<'a> {
+    /// Camera of the picture.
+    pub camera: &'a PixelCamera,
+    /// How truth is traced; the sun must be hard.
+    pub settings: &'a TruthSettings,
+    /// The maps, at most [`MAX_MAPS`].
+    pub maps: &'a PictureMaps<'a>,
+}
+
+impl GpuJudgeInput<'_> {
+    /// The uniform of the picture, for triangles that are stored relative to `origin`.
+    pub(crate) fn uniform(&self, origin: DVec3, triangles: u32) -> Result<JudgeUniform, GpuTruthError> {
+        let Self { camera, settings, maps } = self;
+        if maps.maps.len() > MAX_MAPS {
+            return Err(GpuTruthError::TooManyMaps(maps.maps.len()));
+        }
+        if settings.sun_radius > 0.0 {
+            return Err(GpuTruthError::SoftSun);
+        }
+        let mut uniforms = [MapUniform::default(); MAX_MAPS];
+        for (uniform, map) in uniforms.iter_mut().zip(maps.maps) {
+            *uniform = map_uniform(map, camera.eye);
+        }
+        Ok(JudgeUniform {
+            eye: (camera.eye - origin).as_vec3().into(),
+            near: finite(camera.near),
+            right: camera.right.as_vec3().into(),
+            far: finite(camera.far),
+            up: camera.up.as_vec3().into(),
+            ray_offset: finite(settings.ray_offset),
+            forward: camera.forward.as_vec3().into(),
+            max_distance: finite(settings.max_distance),
+            to_light: settings.to_light.as_vec3().into(),
+            edge_width: maps.edge_width(),
+            tan_half_fov: camera.tan_half_fov.as_vec2().into(),
+            size: camera.size,
+            map_count: maps.maps.len() as u32,
+            depth_clamp: maps.depth_clamp.into(),
+            triangles,
+            padding: 0,
+            maps: uniforms,
+        })
+    }
+}
+
+fn map_uniform(map: &MeasuredMap, eye: DVec3) -> MapUniform {
+    let [row_x, row_y, row_z, row_w] = map.rows_from(eye).map(|row| row.as_vec4().into());
+    MapUniform {
+        row_x,
+        row_y,
+        row_z,
+        row_w,
+        size: map.size.as_vec2().into(),
+        split_far: finite(map.split_far),
+        is_reversed: map.is_reversed.into(),
+    }
+}
+
+/// A length that shaders can compare: WGSL has no infinity.
+fn finite(value: f64) -> f32 {
+    (value as f32).clamp(f32::MIN, f32::MAX)
+}
