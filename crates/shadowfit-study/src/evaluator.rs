@@ -1,65 +1,34 @@
-//! What draws one technique's shadows and has them judged, frame by frame along a path.
+//! The one place where a technique's pictures are drawn and judged.
 
-use anyhow::{Context, Result};
-use glam::{DMat4, DVec2, DVec3, Vec3};
+use anyhow::Result;
+use glam::{DVec3, Vec3};
 use shadowfit::settings::BiasSettings;
-use shadowfit::{CascadeFitter, PerspectiveCamera, SplitScheme, Workspace, bias};
-use shadowfit_render::{Atmosphere, Frame, Gpu, Picture, ProbePixel, ProbeTargets, Renderer};
+use shadowfit_render::{Frame, Gpu, Picture, ProbePixel, ProbeTargets, Renderer, Statistics};
 use shadowfit_truth::gpu::GpuPixel;
-use shadowfit_truth::peers::{FitMap, ShadowMap};
-use shadowfit_truth::{Judged, MapsBefore, MapsSeen, PixelCamera, Truth, TruthSettings, crawl, judge};
-use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
+use shadowfit_truth::peers::ShadowMap;
+use shadowfit_truth::{Judged, MapsBefore, MapsSeen, crawl, judge};
+use shadowfit_wgpu::{MapFit, ShadowMapError};
 
-use crate::study::live::{LiveInput, LiveTruth};
-use crate::study::{SeenDepths, Subject, Technique};
+use crate::frame::frame;
+use crate::live::{LiveInput, LiveTruth};
+use crate::maps::{maps_seen, measured};
+use crate::{FrameOptions, Judging, PreparedScene, SharedTruth, View};
 
-/// Stands for no end of a map's view depths.
-const NO_END: f64 = 1e9;
-
-/// A camera and a light.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shot {
-    /// Eye and lens.
-    pub camera: PerspectiveCamera,
-    /// Unit direction of travel of the light, world axes.
-    pub direction: Vec3,
-    /// Whether a path begins here, so that nothing before it counts.
-    pub is_first: bool,
+/// Draws a technique's maps and the scene shadowed by them, and judges the picture.
+#[derive(Debug)]
+pub struct Evaluator {
+    /// Draws; its shadow map is the one that the maps are drawn into.
+    pub renderer: Renderer,
+    /// Biases of the look-up.
+    pub bias: BiasSettings,
+    /// How pictures are judged.
+    pub judging: Judging,
+    targets: Option<ProbeTargets>,
+    picture: Option<Picture>,
+    before: Option<Before>,
 }
 
-/// The truth of a frame, for all contenders: traced when the first of them has said which triangles are seen.
-#[derive(Debug, Default)]
-pub struct SharedTruth(Option<Truth>);
-
-impl SharedTruth {
-    /// The truth, once a contender has been judged.
-    pub fn get(&self) -> Option<&Truth> {
-        self.0.as_ref()
-    }
-}
-
-/// How pictures are judged.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Judging {
-    /// Width and height, in pixels.
-    pub size: [u32; 2],
-    /// Start of shadow rays over the surface, in metres.
-    pub ray_offset: f64,
-    /// Angular radius of the sun, in radians; 0 for hard shadows.
-    pub sun_radius: f64,
-    /// Rays to a sun that is no point.
-    pub sun_rays: u32,
-    /// Whether crawl is measured, which draws each frame once more.
-    pub crawl: bool,
-}
-
-impl Default for Judging {
-    fn default() -> Self {
-        Self { size: [1280, 720], ray_offset: 1e-3, sun_radius: 0.0, sun_rays: 64, crawl: true }
-    }
-}
-
-/// Maps of the frame before.
+/// The maps of the frame before, and the eye and forward direction that chose among them.
 #[derive(Debug)]
 struct Before {
     maps: Vec<MapFit>,
@@ -67,35 +36,46 @@ struct Before {
     forward: Vec3,
 }
 
-/// One of several that are compared: a renderer with its own shadow map.
-#[derive(Debug)]
-pub struct Contender {
-    renderer: Renderer,
-    bias: BiasSettings,
-    judging: Judging,
-    targets: ProbeTargets,
-    picture: Option<Picture>,
-    before: Option<Before>,
-}
+impl Evaluator {
+    /// An evaluator that has judged nothing yet. Its shadow map is read with `bias`.
+    pub fn new(renderer: Renderer, bias: BiasSettings, judging: Judging) -> Self {
+        Self { renderer, bias, judging, targets: None, picture: None, before: None }
+    }
 
-impl Contender {
-    /// A contender whose maps are made of `descriptor` and read with `bias`.
+    /// Draws the maps of a view and its shaded picture. Maps are in order of their `far`.
     ///
     /// # Errors
     ///
-    /// When the shadow map cannot be made.
-    pub fn new(gpu: &Gpu, descriptor: &ShadowMapDescriptor, bias: BiasSettings, judging: Judging) -> Result<Self> {
-        let renderer = Renderer::new(gpu, descriptor, 1)?;
-        let targets = ProbeTargets::new(&gpu.device, judging.size);
-        Ok(Self { renderer, bias, judging, targets, picture: None, before: None })
+    /// When a map does not suit the shadow map; nothing is drawn then.
+    pub fn draw(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut PreparedScene,
+        view: &View,
+        maps: &[MapFit],
+        options: &FrameOptions<'_>,
+        picture: &Picture,
+    ) -> Result<Statistics, ShadowMapError> {
+        let atmosphere = options.atmosphere(view);
+        let frame = frame(view, maps, &self.bias, options, &atmosphere);
+        self.renderer.draw(gpu, &mut scene.gpu_scene, &frame, picture)
     }
 
-    /// Layout of the scenes' materials, for [`Subject::new`].
-    pub fn material_layout(&self) -> &wgpu::BindGroupLayout {
-        self.renderer.material_layout()
+    /// The shaded picture of a view, in the size that is judged: sRGB pixels, four bytes each, rows from the top.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::draw`].
+    pub fn picture(&mut self, gpu: &Gpu, scene: &mut PreparedScene, view: &View, maps: &[MapFit]) -> Result<Vec<u8>> {
+        let kept = self.picture.take().filter(|picture| picture.size == self.judging.size);
+        let picture = kept.unwrap_or_else(|| self.renderer.picture(gpu, self.judging.size));
+        self.draw(gpu, scene, view, maps, &FrameOptions::default(), &picture)?;
+        let pixels = picture.read(gpu);
+        self.picture = Some(picture);
+        Ok(pixels)
     }
 
-    /// Draws the maps of a frame (in order of their `far`) and judges the shadows that they give.
+    /// Draws the maps of a view (in order of their `far`) and judges the shadows that they give.
     ///
     /// # Errors
     ///
@@ -103,53 +83,40 @@ impl Contender {
     pub fn judge(
         &mut self,
         gpu: &Gpu,
-        subject: &mut Subject,
-        shot: &Shot,
+        scene: &mut PreparedScene,
+        view: &View,
         maps: &[MapFit],
         truth: &mut SharedTruth,
     ) -> Result<Judged> {
-        if shot.is_first {
+        if view.is_first {
             self.before = None;
         }
-        let pixels = self.probe(gpu, subject, shot, maps, None)?;
-        let truth = truth.0.get_or_insert_with(|| trace(subject, shot, &self.judging, &pixels));
+        let pixels = self.probe(gpu, scene, view, maps, None)?;
+        let truth = truth.or_trace(scene, view, &self.judging, &pixels);
         let factors = factors(&pixels);
-        let measured = measured(maps, shot.direction, subject.rays.origin);
-        let mut judged = judge(&subject.rays.tracer, truth, &self.seen(&measured), &factors, |_| true);
-        let (forward, origin) = (shot.camera.forward.normalize(), subject.rays.origin);
+        let origin = scene.origin();
+        let measured_maps = measured(maps, view.direction, origin);
+        let rays = scene.rays();
+        let counted = scene.counted_instances(self.judging.subject_only);
+        let counts = |triangle: u32| counted[rays.triangles[triangle as usize].instance as usize];
+        let mut judged = judge(&rays.tracer, truth, &self.seen(&measured_maps), &factors, counts);
         if let Some(before) = self.before.take().filter(|_| self.judging.crawl) {
-            let pixels = self.probe(gpu, subject, shot, &before.maps, Some((before.eye, before.forward)))?;
-            let factors_before = self::factors(&pixels);
+            let choice = Some((before.eye, before.forward));
+            let factors_before = self::factors(&self.probe(gpu, scene, view, &before.maps, choice)?);
             let before = MapsBefore {
-                maps: &self::measured(&before.maps, shot.direction, origin),
+                maps: &measured(&before.maps, view.direction, origin),
                 eye: before.eye - origin,
                 forward: before.forward.as_dvec3(),
                 factors: &factors_before,
             };
-            let (different, compared) = crawl(truth, &judged, &factors, &before);
-            judged.tally.add_crawl((different, compared));
+            judged.tally.add_crawl(crawl(truth, &judged, &factors, &before));
         }
-        self.before = Some(Before { maps: maps.to_vec(), eye: shot.camera.eye, forward });
+        let forward = view.camera.forward.normalize();
+        self.before = Some(Before { maps: maps.to_vec(), eye: view.camera.eye, forward });
         Ok(judged)
     }
 
-    /// The shaded picture of a frame: sRGB pixels, four bytes each, rows from the top.
-    ///
-    /// # Errors
-    ///
-    /// When a map does not suit the shadow map.
-    pub fn picture(&mut self, gpu: &Gpu, subject: &mut Subject, shot: &Shot, maps: &[MapFit]) -> Result<Vec<u8>> {
-        let picture = self.picture.take().unwrap_or_else(|| self.renderer.picture(gpu, self.judging.size));
-        let atmosphere = atmosphere(&shot.camera);
-        let frame = frame(shot, maps, &self.bias, &atmosphere, None);
-        let drawn = self.renderer.draw(gpu, &mut subject.gpu_scene, &frame, &picture);
-        let pixels = picture.read(gpu);
-        self.picture = Some(picture);
-        drawn?;
-        Ok(pixels)
-    }
-
-    /// Draws a frame and judges it on the GPU.
+    /// Draws a view and judges it on the GPU. All pixels count there, whatever [`Judging::subject_only`] says.
     ///
     /// # Errors
     ///
@@ -157,15 +124,15 @@ impl Contender {
     pub fn judge_live(
         &mut self,
         gpu: &Gpu,
-        subject: &mut Subject,
-        shot: &Shot,
+        scene: &mut PreparedScene,
+        view: &View,
         maps: &[MapFit],
         live: &mut LiveTruth,
     ) -> Result<Vec<GpuPixel>> {
-        self.with_live_input(gpu, subject, shot, maps, |input| live.judge(gpu, input))
+        self.with_live_input(gpu, scene, view, maps, |input| live.judge(gpu, input))
     }
 
-    /// Mean time of judging a frame on the GPU, drawing aside, in milliseconds.
+    /// Mean time of judging a view on the GPU, drawing aside, in milliseconds.
     ///
     /// # Errors
     ///
@@ -173,170 +140,73 @@ impl Contender {
     pub fn time_live(
         &mut self,
         gpu: &Gpu,
-        subject: &mut Subject,
-        shot: &Shot,
+        scene: &mut PreparedScene,
+        view: &View,
         maps: &[MapFit],
         (live, repeats): (&mut LiveTruth, u32),
     ) -> Result<f64> {
-        self.with_live_input(gpu, subject, shot, maps, |input| live.time(gpu, input, repeats))
+        self.with_live_input(gpu, scene, view, maps, |input| live.time(gpu, input, repeats))
     }
 
     fn with_live_input<T>(
         &mut self,
         gpu: &Gpu,
-        subject: &mut Subject,
-        shot: &Shot,
+        scene: &mut PreparedScene,
+        view: &View,
         maps: &[MapFit],
         judge: impl FnOnce(&LiveInput<'_>) -> Result<T>,
     ) -> Result<T> {
-        let atmosphere = Atmosphere::default();
-        let frame = frame(shot, maps, &self.bias, &atmosphere, None);
-        self.renderer.draw_probe(gpu, &mut subject.gpu_scene, &frame, &self.targets)?;
-        let measured = measured(maps, shot.direction, subject.rays.origin);
-        judge(&LiveInput {
-            camera: PixelCamera::new(&subject.camera_for_rays(&shot.camera), self.judging.size),
-            settings: truth_settings(shot, &self.judging),
+        let targets = self.draw_probe(gpu, scene, view, maps, None)?;
+        let measured = measured(maps, view.direction, scene.origin());
+        let result = judge(&LiveInput {
+            camera: self.judging.pixel_camera(scene, view),
+            settings: self.judging.truth_settings(view),
             maps: self.seen(&measured),
-            seen: &self.targets.view,
-        })
+            seen: &targets.view,
+        });
+        self.targets = Some(targets);
+        result
     }
 
     fn seen<'a>(&self, maps: &'a [ShadowMap]) -> MapsSeen<'a> {
         maps_seen(maps, self.renderer.shadow_map().descriptor())
     }
 
+    /// What each pixel shows. `choice` is the eye and the forward direction that choose the maps, if not the camera's.
     fn probe(
         &mut self,
         gpu: &Gpu,
-        subject: &mut Subject,
-        shot: &Shot,
+        scene: &mut PreparedScene,
+        view: &View,
         maps: &[MapFit],
         choice: Option<(DVec3, Vec3)>,
     ) -> Result<Vec<Option<ProbePixel>>> {
-        let atmosphere = Atmosphere::default();
-        let frame = frame(shot, maps, &self.bias, &atmosphere, choice);
-        Ok(self.renderer.probe(gpu, &mut subject.gpu_scene, &frame, &self.targets)?.pixels)
+        let targets = self.draw_probe(gpu, scene, view, maps, choice)?;
+        let pixels = targets.read(gpu).pixels;
+        self.targets = Some(targets);
+        Ok(pixels)
+    }
+
+    /// Draws a probe into targets that the caller hands back.
+    fn draw_probe(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut PreparedScene,
+        view: &View,
+        maps: &[MapFit],
+        choice: Option<(DVec3, Vec3)>,
+    ) -> Result<ProbeTargets> {
+        let kept = self.targets.take().filter(|targets| targets.size == self.judging.size);
+        let targets = kept.unwrap_or_else(|| ProbeTargets::new(&gpu.device, self.judging.size));
+        let options = FrameOptions::default();
+        let atmosphere = options.atmosphere(view);
+        let frame = Frame { choice, ..frame(view, maps, &self.bias, &options, &atmosphere) };
+        self.renderer.draw_probe(gpu, &mut scene.gpu_scene, &frame, &targets)?;
+        Ok(targets)
     }
 }
 
-fn frame<'a>(
-    shot: &'a Shot,
-    maps: &'a [MapFit],
-    bias: &'a BiasSettings,
-    atmosphere: &'a Atmosphere,
-    choice: Option<(DVec3, Vec3)>,
-) -> Frame<'a> {
-    Frame {
-        camera: &shot.camera,
-        direction: shot.direction,
-        maps,
-        choice,
-        bias,
-        shadows: true,
-        atmosphere,
-        lines: &[],
-        inset: None,
-    }
-}
-
-/// Haze that suits what is seen, so that a chair is not lost in it nor a town without.
-fn atmosphere(camera: &PerspectiveCamera) -> Atmosphere {
-    let atmosphere = Atmosphere::default();
-    let usual = shadowfit::settings::CameraSettings::default().far;
-    Atmosphere { haze_per_metre: atmosphere.haze_per_metre * usual / camera.far.max(1e-3), ..atmosphere }
-}
-
-/// The shadow factor of each pixel.
-pub(crate) fn factors(pixels: &[Option<ProbePixel>]) -> Vec<f32> {
+/// The shadow factor of each pixel; the sky is lit.
+fn factors(pixels: &[Option<ProbePixel>]) -> Vec<f32> {
     pixels.iter().map(|pixel| pixel.map_or(1.0, |pixel| pixel.factor)).collect()
-}
-
-/// The triangle of each pixel.
-pub(crate) fn triangles(pixels: &[Option<ProbePixel>]) -> Vec<Option<u32>> {
-    pixels.iter().map(|pixel| pixel.map(|pixel| pixel.triangle)).collect()
-}
-
-/// How the maps of a shadow map are read.
-pub(crate) fn maps_seen<'a>(maps: &'a [ShadowMap], descriptor: &ShadowMapDescriptor) -> MapsSeen<'a> {
-    MapsSeen { maps, reach: bias::reach(descriptor.filter), depth_clamp: descriptor.depth_clamp }
-}
-
-fn trace(subject: &Subject, shot: &Shot, judging: &Judging, pixels: &[Option<ProbePixel>]) -> Truth {
-    let settings = truth_settings(shot, judging);
-    let seen = triangles(pixels);
-    let camera = PixelCamera::new(&subject.camera_for_rays(&shot.camera), judging.size);
-    Truth::trace(&subject.rays.tracer, &camera, &settings, &seen)
-}
-
-fn truth_settings(shot: &Shot, judging: &Judging) -> TruthSettings {
-    TruthSettings {
-        to_light: -shot.direction.as_dvec3().normalize(),
-        ray_offset: judging.ray_offset,
-        sun_radius: judging.sun_radius,
-        sun_rays: judging.sun_rays,
-        max_distance: f64::from(shot.camera.far),
-    }
-}
-
-/// The maps as the measures take them, for positions relative to a world position.
-pub(crate) fn measured(maps: &[MapFit], direction: Vec3, origin: DVec3) -> Vec<ShadowMap> {
-    let from_origin = |map: &MapFit| FitMap { view_proj: clip_from(map, origin).to_cols_array(), ..fit_map(map) };
-    maps.iter().map(|map| ShadowMap::new(&from_origin(map), -direction.as_dvec3())).collect()
-}
-
-/// A map as fit files have it: the f32 matrix that the renderer gets, made absolute in f64.
-pub fn fit_map(map: &MapFit) -> FitMap {
-    FitMap {
-        view_proj: clip_from(map, DVec3::ZERO).to_cols_array(),
-        resolution: map.fit.resolution.x,
-        resolution_xy: (map.fit.resolution.x != map.fit.resolution.y).then(|| map.fit.resolution.to_array()),
-        split_near: 0.0,
-        split_far: f64::from(map.far).min(NO_END),
-    }
-}
-
-/// Clip space from positions relative to a world position.
-fn clip_from(map: &MapFit, origin: DVec3) -> DMat4 {
-    map.fit.clip_from_world.as_dmat4() * DMat4::from_translation(origin - map.fit.origin)
-}
-
-/// Fits a technique's maps frame by frame.
-#[derive(Debug)]
-pub struct Fitter {
-    technique: Technique,
-    cascades: CascadeFitter,
-    depths: Option<SeenDepths>,
-    storage: Vec<DVec2>,
-}
-
-impl Fitter {
-    /// A fitter that knows no frame yet.
-    pub fn new(technique: &Technique) -> Self {
-        Self { technique: technique.clone(), cascades: CascadeFitter::new(), depths: None, storage: Vec::new() }
-    }
-
-    /// The maps of a frame, in order of their `far`.
-    ///
-    /// # Errors
-    ///
-    /// When the camera or the settings make no sense.
-    pub fn fit(&mut self, subject: &Subject, shot: &Shot) -> Result<Vec<MapFit>> {
-        if shot.is_first {
-            self.cascades.reset();
-            self.depths = None;
-        }
-        let boxes = subject.boxes(self.technique.receivers);
-        // Held maps are fitted to the views of two frames ahead as well.
-        self.storage.resize(boxes.required(3), DVec2::ZERO);
-        let views = [shot.camera.frustum().context("the camera")?];
-        let mut input = boxes.input(&views, shot.direction);
-        input.histogram = self.depths.as_ref().map(SeenDepths::histogram);
-        let fitted = self.cascades.fit(&input, &self.technique.maps, &mut Workspace::new(&mut self.storage));
-        let maps = fitted.with_context(|| format!("technique {}", self.technique.name))?;
-        if self.technique.maps.splits == SplitScheme::FromHistogram {
-            self.depths =
-                Some(SeenDepths::trace(&subject.rays.tracer, &subject.camera_for_rays(&shot.camera), shot.direction));
-        }
-        Ok(maps.iter().map(MapFit::from).collect())
-    }
 }

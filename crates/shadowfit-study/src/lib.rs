@@ -1,23 +1,38 @@
-//! Techniques compared on the same frames: each is fitted, drawn by the samples' renderer, and judged against rays.
+//! Techniques on the same frames: each is fitted, drawn by the samples' renderer, and judged against rays. No window.
 //!
-//! A [`Subject`] is the scene, a [`Shot`] a camera and a light. A [`Technique`] is all that decides how shadows come
-//! out; its [`Fitter`] makes the maps of a shot, and a [`Contender`] draws and judges them. A [`Comparison`] does so
-//! for several, and [`tune()`] searches the best.
+//! A [`PreparedScene`] is a scene that can be drawn, traced and fitted to; a [`View`] is a camera and a light. A
+//! [`Technique`] is all that decides how shadows come out: its [`TechniqueFitter`] makes the maps of a view, and an
+//! [`Evaluator`] draws them and judges the picture. A [`Comparison`] does so for several techniques, and [`tune()`]
+//! searches the best one. The viewer draws and judges through the same fitter and evaluator.
 
+mod agreement;
+mod boxes;
 mod comparison;
-mod contender;
+mod evaluator;
+mod fitter;
+mod frame;
 mod histogram;
+mod judging;
 mod live;
+mod maps;
+mod rays;
 mod rust_code;
-mod subject;
+mod scene;
 mod technique;
 mod tune;
+mod view;
 
-pub use comparison::{Comparison, Outcome};
-pub use contender::{Contender, Fitter, Judging, SharedTruth, Shot, fit_map};
-pub(crate) use contender::{factors, maps_seen, measured, triangles};
+pub use agreement::Agreement;
+pub use comparison::{Comparison, Outcome, ensure_judged};
+pub use evaluator::Evaluator;
+pub use fitter::TechniqueFitter;
+pub use frame::FrameOptions;
 pub use histogram::SeenDepths;
-pub use live::{Agreement, LiveTruth};
-pub use subject::Subject;
-pub use technique::{DEFAULT_TECHNIQUE, Knowledge, Technique};
+pub use judging::{Judging, SharedTruth};
+pub use live::LiveTruth;
+pub use maps::fit_map;
+pub use rays::SceneRays;
+pub use scene::{NothingToDraw, PreparedScene};
+pub use technique::{DEFAULT_TECHNIQUE, ReceiverSource, Technique};
 pub use tune::{Budget, Step, Tuned, Weights, tune};
+pub use view::View;

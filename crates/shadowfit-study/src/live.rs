@@ -6,9 +6,9 @@ use anyhow::{Context, Result};
 use glam::DVec3;
 use shadowfit_render::Gpu;
 use shadowfit_truth::gpu::{GpuJudge, GpuJudgeInput, GpuPixel, GpuTracer};
-use shadowfit_truth::{Class, Judged, MapsSeen, PixelCamera};
+use shadowfit_truth::{MapsSeen, PixelCamera, TruthSettings};
 
-use crate::study::Subject;
+use crate::PreparedScene;
 
 /// A scene's rays on the GPU, and the passes that judge with them.
 #[derive(Debug)]
@@ -17,10 +17,10 @@ pub struct LiveTruth {
     judge: GpuJudge,
 }
 
-/// What is judged live, beside what the contender knows.
+/// A picture that is judged live.
 pub(crate) struct LiveInput<'a> {
     pub(crate) camera: PixelCamera,
-    pub(crate) settings: shadowfit_truth::TruthSettings,
+    pub(crate) settings: TruthSettings,
     pub(crate) maps: MapsSeen<'a>,
     pub(crate) seen: &'a wgpu::TextureView,
 }
@@ -31,9 +31,9 @@ impl LiveTruth {
     /// # Errors
     ///
     /// When the scene is too large for the GPU.
-    pub fn new(gpu: &Gpu, subject: &Subject) -> Result<Self> {
-        let tracer = GpuTracer::new(&gpu.device, &gpu.queue, &subject.rays.tracer, DVec3::ZERO)
-            .with_context(|| subject.scene.name.clone())?;
+    pub fn new(gpu: &Gpu, scene: &PreparedScene) -> Result<Self> {
+        let tracer = GpuTracer::new(&gpu.device, &gpu.queue, &scene.rays().tracer, DVec3::ZERO)
+            .with_context(|| scene.scene().name.clone())?;
         Ok(Self { tracer, judge: GpuJudge::new(&gpu.device) })
     }
 
@@ -42,8 +42,8 @@ impl LiveTruth {
     /// # Errors
     ///
     /// As for [`Self::new`].
-    pub fn set_pose(&mut self, gpu: &Gpu, subject: &Subject) -> Result<()> {
-        Ok(self.tracer.update(&gpu.device, &gpu.queue, &subject.rays.tracer)?)
+    pub fn set_pose(&mut self, gpu: &Gpu, scene: &PreparedScene) -> Result<()> {
+        Ok(self.tracer.update(&gpu.device, &gpu.queue, &scene.rays().tracer)?)
     }
 
     /// Bytes on the GPU.
@@ -78,58 +78,4 @@ impl LiveTruth {
         gpu.queue.submit([encoder.finish()]);
         Ok(())
     }
-}
-
-/// How far the classes of the GPU and of the processor agree, over any number of pictures.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Agreement {
-    judged: u64,
-    same: u64,
-    judged_off_edges: u64,
-    same_off_edges: u64,
-    same_edge_zone: u64,
-}
-
-impl Agreement {
-    /// Adds a picture that both judged.
-    pub fn add(&mut self, judged: &Judged, pixels: &[GpuPixel]) {
-        for (pixel, found) in pixels.iter().enumerate() {
-            let class = judged.classes[pixel];
-            if class == Class::NotJudged && found.class == Class::NotJudged {
-                continue;
-            }
-            let same = u64::from(class == found.class);
-            self.judged += 1;
-            self.same += same;
-            self.same_edge_zone += u64::from(judged.edge_zone[pixel] == found.is_in_edge_zone);
-            if !judged.edge_zone[pixel] {
-                self.judged_off_edges += 1;
-                self.same_off_edges += same;
-            }
-        }
-    }
-
-    /// Number of pixels that either judged.
-    pub fn pixels(&self) -> u64 {
-        self.judged
-    }
-
-    /// Share of all judged pixels that have the same class, 0..=1; 1 without any.
-    pub fn all(&self) -> f64 {
-        share(self.same, self.judged)
-    }
-
-    /// The same of those outside the processor's edge zone.
-    pub fn off_edges(&self) -> f64 {
-        share(self.same_off_edges, self.judged_off_edges)
-    }
-
-    /// Share of all judged pixels that both put into the edge zone, or both do not.
-    pub fn edge_zone(&self) -> f64 {
-        share(self.same_edge_zone, self.judged)
-    }
-}
-
-fn share(same: u64, judged: u64) -> f64 {
-    if judged == 0 { 1.0 } else { same as f64 / judged as f64 }
 }
