@@ -1,5 +1,5 @@
-//! The shadowfit viewer as a library: a [`Stage`] that holds scene, camera, settings and renderer;
-//! the artefact demonstrations; a window around it, and a headless mode that renders the same
+//! The shadowfit viewer as a library: a [`Stage`] that holds scene, camera and settings, and draws and
+//! judges through `shadowfit-study`; the artefact demonstrations; a window around it, and a headless mode that renders the same
 //! views to files. `examples/viewer` is its thin main.
 
 mod artefact;
