@@ -39,7 +39,7 @@ fn gpu_every_policy_that_thinks_of_casters_closes_the_holes_of_every_fit() {
         for casters in [CasterPolicy::Extend, CasterPolicy::List, CasterPolicy::SceneBounds, CasterPolicy::DepthClamp] {
             stage.settings.fit = stage.settings.fit.with_kind(kind).with_casters(casters);
             let [hole, other] = wrong(&mut stage);
-            let fit = stage.fits(SIZE)[0];
+            let fit = stage.maps(SIZE)[0].fit;
             println!("{kind:?} {casters:?}: hole {hole}, false {other}, {} {}", fit.texel_size, fit.depth_range);
             assert!(hole < STRAY && other < STRAY, "{kind:?} {casters:?}: hole {hole}, false light or shadow {other}");
         }
@@ -62,7 +62,7 @@ fn gpu_texels_are_finest_with_the_focused_fit_and_depth_is_shortest_with_depth_c
     let mut stage = stage();
     let mut fit = |kind, casters| {
         stage.settings.fit = stage.settings.fit.with_kind(kind).with_casters(casters);
-        let fit = stage.fits(SIZE)[0];
+        let fit = stage.maps(SIZE)[0].fit;
         (fit.texel_size.x * fit.texel_size.y, fit.depth_range)
     };
     let [boxed, oriented, sphere, focused] = KINDS.map(|kind| fit(kind, CasterPolicy::List).0);

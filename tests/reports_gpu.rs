@@ -138,13 +138,15 @@ fn what_import_notes_of_a_scene_is_said_and_stands_in_the_report() {
 }
 
 #[test]
-fn a_camera_that_sees_nothing_gives_a_report_without_figures() {
+fn a_camera_that_sees_nothing_is_refused_by_reports_and_by_the_search() {
     let scratch = Scratch::new("sky");
     scratch.file("sky.toml", "near = 0.1\nfar = 9.0\n[[keys]]\neye = [0.0, 50.0, 0.0]\nforward = [0.0, 0.9, 1.0]\n");
-    succeeded(&scratch.report(&["courtyard", "--path", "sky.toml", "--config", "clusters-4", "-o", "out"]));
-    let columns = scratch.json("out/report.json")["techniques"][0]["overall"].clone();
-    for (name, value) in columns.as_object().expect("columns") {
-        assert!(value.is_null(), "{name}: {value}");
+    for (kind, file) in [(&[][..], "report.json"), (&["tune"][..], "technique.toml")] {
+        let output = scratch.report(&[kind, &["courtyard", "--path", "sky.toml", "-o", "out"]].concat());
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(REFUSED), "{kind:?}: {message}");
+        assert!(message.contains("nothing was judged"), "{kind:?}: {message}");
+        assert!(!scratch.0.join("out").join(file).exists(), "{kind:?} writes figures of nothing");
     }
 }
 
@@ -206,7 +208,7 @@ fn the_gpus_classes_are_compared_and_timed() {
     let output = scratch.report(&["live", "courtyard", "--path", "path.toml", "--config", "focused-4"]);
     succeeded(&output);
     let text = String::from_utf8_lossy(&output.stdout);
-    assert!(text.contains("judging takes") && text.contains("the processor agrees on"), "{text}");
+    assert!(text.contains("judging takes") && text.contains("the CPU agrees on"), "{text}");
 }
 
 #[cfg(unix)]

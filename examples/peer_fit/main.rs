@@ -13,8 +13,8 @@ use anyhow::{Context, Result, ensure};
 use clap::Parser;
 use glam::UVec2;
 use shadowfit::SplitScheme;
+use shadowfit_study::{ReceiverSource, Technique};
 use shadowfit_truth::peers::Scenarios;
-use shadowfit_viewer::study::{Knowledge, Technique};
 
 #[path = "../shared/geometry.rs"]
 mod geometry;
@@ -76,7 +76,7 @@ fn run(args: &Args) -> Result<()> {
     let scenarios = args.scenarios.as_ref().context("give the file of scenarios")?;
     let out = args.out.as_ref().context("give the file to write with -o OUT.json")?;
     let scenarios = Scenarios::read(scenarios)?;
-    let needs = technique.receivers == Knowledge::Clusters || technique.maps.splits == SplitScheme::FromHistogram;
+    let needs = technique.receivers == ReceiverSource::Clusters || technique.maps.splits == SplitScheme::FromHistogram;
     ensure!(
         !needs || args.geometry.is_some(),
         "--fit {} needs the scenes' triangles: give --assets DIR or --triangles DIR",

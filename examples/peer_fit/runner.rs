@@ -8,9 +8,9 @@ use shadowfit::{
     Aabb, Boxes, CascadeFitter, CascadeMap, CascadeSettings, Cascades, Clusters, FitInput, NormalCone, SplitScheme,
     ViewFrustum, Workspace,
 };
+use shadowfit_study::{ReceiverSource, SeenDepths, Technique, fit_map};
 use shadowfit_truth::Tracer;
 use shadowfit_truth::peers::{FitFile, FitFrame, FitMap, Scenarios, Scene};
-use shadowfit_viewer::study::{Knowledge, SeenDepths, Technique, fit_map};
 use shadowfit_wgpu::MapFit;
 
 use crate::geometry::Source;
@@ -74,7 +74,7 @@ pub(crate) fn run(scenarios: &Scenarios, technique: &Technique, source: Option<&
 fn know(scene: &Scene, technique: &Technique, source: Option<&Source>) -> Result<Known> {
     let triangles = source.map(|source| source.read(scene)).transpose()?;
     let (boxes, cones) = match (technique.receivers, &triangles) {
-        (Knowledge::Clusters, Some(objects)) => {
+        (ReceiverSource::Clusters, Some(objects)) => {
             let objects: Vec<&[[Vec3; 3]]> = objects.iter().map(Vec::as_slice).collect();
             let clusters = Clusters::build(&objects, Clusters::DEFAULT_LIMIT).context(scene.name.clone())?;
             (clusters.boxes().to_vec(), clusters.cones().to_vec())

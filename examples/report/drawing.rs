@@ -4,7 +4,7 @@ use anyhow::{Context, Result, bail, ensure};
 use shadowfit::params;
 use shadowfit::settings::{BiasSettings, FilterKind, MapFormat, Settings};
 use shadowfit_render::{AdapterChoice, Gpu};
-use shadowfit_viewer::study::{Judging, Technique};
+use shadowfit_study::{Judging, Technique};
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct Drawing {
@@ -58,6 +58,7 @@ impl Drawing {
             sun_radius: self.sun_radius.to_radians(),
             sun_rays: self.sun_rays,
             crawl: !self.no_crawl,
+            subject_only: false,
         }
     }
 

@@ -7,8 +7,8 @@ use glam::Vec3;
 use shadowfit::settings::LightSettings;
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_scene::{Scene, load_gltf};
+use shadowfit_study::{Comparison, Judging, View};
 use shadowfit_truth::Tracer;
-use shadowfit_viewer::study::{Comparison, Judging, Shot};
 
 use crate::drawing::{Drawing, positive};
 use crate::path::{CameraPath, find};
@@ -19,7 +19,7 @@ const BUILT_IN: &str = "courtyard";
 const GIB: f64 = (1u64 << 30) as f64;
 /// Share of a scene's size from which on the offset of shadow rays is coarse.
 const COARSE_OFFSET: f64 = 5e-4;
-/// Bytes of a vertex in the scene, on the way to the GPU and, where the adapter is the processor, there: 32, 64, 64 and
+/// Bytes of a vertex in the scene, on the way to the GPU and, where the adapter is the CPU, there: 32, 64, 64 and
 /// once more 40 for its place in the world and rounding up.
 const BYTES_A_VERTEX: u64 = 200;
 /// Bytes of a triangle in the lists that rays and fits are made from.
@@ -55,7 +55,7 @@ pub(crate) struct JobFrame {
     pub(crate) name: String,
     /// Such as `orbit`.
     pub(crate) group: String,
-    pub(crate) shot: Shot,
+    pub(crate) view: View,
     /// Time of the animation, in seconds, if it plays.
     pub(crate) seconds: Option<f32>,
 }
@@ -99,17 +99,17 @@ impl Job {
         let path = if let Some(file) = &self.path {
             CameraPath::read(file, aspect)?
         } else {
-            let subject = comparison.subject();
-            let origin = subject.rays.origin;
-            let bounds = subject.bounds().map(|corner| (corner.as_dvec3() - origin).as_vec3());
-            let mut found = find(&subject.rays.tracer, bounds, aspect).with_context(|| self.title())?;
+            let (bounds, rays) = (comparison.scene().bounds(), comparison.scene().rays());
+            let origin = rays.origin;
+            let bounds = [bounds.min, bounds.max].map(|corner| (corner.as_dvec3() - origin).as_vec3());
+            let mut found = find(&rays.tracer, bounds, aspect).with_context(|| self.title())?;
             found.path.frames.iter_mut().for_each(|frame| frame.camera.eye += origin);
             notes.extend(found.notes);
             found.path
         };
         let light = self.light.or(path.light).or(sun).unwrap_or_default();
         let frames = self.frames(&path, &light);
-        notes.extend(ray_offset_note(comparison.subject().bounds(), judging.ray_offset));
+        notes.extend(ray_offset_note(comparison.scene().bounds().size(), judging.ray_offset));
         Ok(Prepared { comparison, judging, path, light, frames, notes, scene_notes })
     }
 
@@ -153,7 +153,7 @@ impl Job {
         let frames = path.frames.iter().zip(names).enumerate().map(|(index, (frame, name))| JobFrame {
             name,
             group: frame.group.clone(),
-            shot: Shot {
+            view: View {
                 camera: frame.camera,
                 direction,
                 is_first: index == 0 || path.frames[index - 1].group != frame.group,
@@ -165,8 +165,8 @@ impl Job {
 }
 
 /// Says when shadow rays start so far over the surfaces that they pass over what lies close together.
-fn ray_offset_note([low, high]: [Vec3; 2], offset: f64) -> Option<String> {
-    let size = f64::from((high - low).length());
+fn ray_offset_note(size: Vec3, offset: f64) -> Option<String> {
+    let size = f64::from(size.length());
     (offset > size * COARSE_OFFSET).then(|| {
         format!(
             "Shadow rays start {:.3} mm over the surfaces, which is much for a scene {size:.2} m across: where \

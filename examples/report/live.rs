@@ -1,7 +1,7 @@
-//! `report live`: the classes from the GPU, compared with those of the processor, and how long they take.
+//! `report live`: the classes from the GPU, compared with those of the CPU, and how long they take.
 
 use anyhow::{Result, bail};
-use shadowfit_viewer::study::{Agreement, LiveTruth, SharedTruth, Technique};
+use shadowfit_study::{Agreement, LiveTruth, SharedTruth, Technique};
 
 use crate::interrupt::Interrupt;
 use crate::job::Job;
@@ -16,7 +16,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     job: Job,
     /// Technique, by name or as a TOML file
-    #[arg(long = "config", value_name = "NAME|FILE.toml", default_value = shadowfit_viewer::study::DEFAULT_TECHNIQUE)]
+    #[arg(long = "config", value_name = "NAME|FILE.toml", default_value = shadowfit_study::DEFAULT_TECHNIQUE)]
     config: String,
 }
 
@@ -24,11 +24,11 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     let mut job = args.job.prepare()?;
     job.comparison.add(args.job.drawing.changed(Technique::find(&args.config)?)?)?;
-    let mut live = LiveTruth::new(job.comparison.gpu(), job.comparison.subject())?;
+    let mut live = LiveTruth::new(job.comparison.gpu(), job.comparison.scene())?;
     println!(
         "{}: {} triangles, {:.1} MiB on {}, {} by {} pixels",
         args.job.title(),
-        job.comparison.subject().triangles(),
+        job.comparison.scene().casting_triangles(),
         live.bytes() as f64 / f64::from(1 << 20),
         job.comparison.gpu().name(),
         job.judging.size[0],
@@ -42,14 +42,14 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
         }
         if let Some(seconds) = frame.seconds {
             job.comparison.set_time(0, seconds);
-            live.set_pose(job.comparison.gpu(), job.comparison.subject())?;
+            live.set_pose(job.comparison.gpu(), job.comparison.scene())?;
         }
-        let outcomes = job.comparison.frame(&frame.shot, &mut SharedTruth::default())?;
-        let (gpu, contender, subject) = job.comparison.contender(0);
+        let outcomes = job.comparison.frame(&frame.view, &mut SharedTruth::default())?;
+        let (gpu, evaluator, scene) = job.comparison.evaluator(0);
         for outcome in outcomes {
-            let pixels = contender.judge_live(gpu, subject, &frame.shot, &outcome.maps, &mut live)?;
+            let pixels = evaluator.judge_live(gpu, scene, &frame.view, &outcome.maps, &mut live)?;
             let repeats = if gpu.is_software() { 1 } else { REPEATS };
-            times.push(contender.time_live(gpu, subject, &frame.shot, &outcome.maps, (&mut live, repeats))?);
+            times.push(evaluator.time_live(gpu, scene, &frame.view, &outcome.maps, (&mut live, repeats))?);
             sum.add(&outcome.judged, &pixels);
         }
     }
@@ -62,14 +62,14 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
 fn tell(agreement: &Agreement) -> Result<()> {
     let [off_edges, all] = [agreement.off_edges(), agreement.all()];
     println!(
-        "the processor agrees on {:.4}% of the pixels off edges and {:.4}% of all that face the light; the edge zone \
+        "the CPU agrees on {:.4}% of the pixels off edges and {:.4}% of all that face the light; the edge zone \
          is the same at {:.4}%",
         100.0 * off_edges,
         100.0 * all,
         100.0 * agreement.edge_zone(),
     );
     if off_edges < PROMISED[0] || all < PROMISED[1] {
-        bail!("the GPU's classes differ from the processor's by more than {PROMISED:?} allow");
+        bail!("the GPU's classes differ from the CPU's by more than {PROMISED:?} allow");
     }
     Ok(())
 }

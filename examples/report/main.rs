@@ -8,7 +8,7 @@
 //! cargo run --release --example report -- tune town.glb --maps 4 --resolution 2048 -o out/tuned
 //! # Fit files of any code over 300 frames of five scenes, drawn by the same renderer.
 //! cargo run --release --example report -- peers peers/scenarios.json peers/fits/*.json --assets assets -o out/peers
-//! # The classes on the GPU: agreement with the processor, and milliseconds.
+//! # The classes on the GPU: agreement with the CPU, and milliseconds.
 //! cargo run --release --example report -- live town.glb
 //! ```
 
@@ -57,7 +57,7 @@ enum Command {
     Peers(Box<peers::Args>),
     /// Search the technique with the least error
     Tune(Box<tune::Args>),
-    /// Judge on the GPU, compare with the processor, and time it
+    /// Judge on the GPU, compare with the CPU, and time it
     Live(Box<live::Args>),
 }
 

@@ -9,11 +9,11 @@ use glam::{DVec3, UVec2};
 use indicatif::{ProgressBar, ProgressStyle};
 use shadowfit::LightFit;
 use shadowfit::settings::{BiasSettings, FilterKind, MapFormat};
-use shadowfit_render::Gpu;
+use shadowfit_render::{Gpu, Renderer};
 use shadowfit_scene::Scene;
+use shadowfit_study::{Evaluator, Judging, PreparedScene, SharedTruth, View};
 use shadowfit_truth::Tracer;
 use shadowfit_truth::peers::{FitFile, FitMap, Frame, Ranking, Scenarios, overall_markdown, to_json, to_markdown};
-use shadowfit_viewer::study::{Contender, Judging, SharedTruth, Shot, Subject};
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
 
 use crate::drawing::Drawing;
@@ -106,7 +106,7 @@ struct Pictures {
 /// What draws one fit.
 struct Drawn {
     name: String,
-    contender: Contender,
+    evaluator: Evaluator,
     /// Maps of each frame, in the order of the scenarios.
     maps: Vec<Vec<FitMap>>,
 }
@@ -122,9 +122,9 @@ impl Pictures {
             let maps: Vec<Vec<FitMap>> = maps.into_iter().map(<[FitMap]>::to_vec).collect();
             let descriptor = descriptor(ranking.scenarios(), file, &maps, filter, args.drawing.format());
             let descriptor = descriptor.with_context(|| format!("{}: cannot be drawn", path.display()))?;
-            let contender = contender(&gpu, &descriptor, bias, judging);
-            let contender = contender.with_context(|| format!("{}: cannot be drawn", path.display()))?;
-            Ok(Drawn { name: file.peer.clone(), contender, maps })
+            let evaluator = evaluator(&gpu, &descriptor, bias, judging);
+            let evaluator = evaluator.with_context(|| format!("{}: cannot be drawn", path.display()))?;
+            Ok(Drawn { name: file.peer.clone(), evaluator, maps })
         });
         let fits = fits.collect::<Result<Vec<_>>>()?;
         Ok(Self { gpu, every: args.every, fits })
@@ -149,7 +149,7 @@ impl Pictures {
         let scenarios = ranking.scenarios().clone();
         let Some(first) = self.fits.first() else { return Ok(()) };
         let plain = Scene::from_objects(&scenarios.scenes[scene].name, objects);
-        let mut subject = Subject::new(&self.gpu, first.contender.material_layout(), plain)?;
+        let mut prepared = PreparedScene::new(&self.gpu, first.evaluator.renderer.material_layout(), plain)?;
         for (index, frame) in scenarios.frames.iter().enumerate() {
             if frame.scene != scene || !self.takes(frame) {
                 continue;
@@ -158,12 +158,12 @@ impl Pictures {
                 break;
             }
             let is_first = self.every > 1 || scenarios.previous(index).is_none();
-            let shot = shot(frame, is_first);
+            let view = view(frame, is_first);
             let mut truth = SharedTruth::default();
             for (fit, drawn) in self.fits.iter_mut().enumerate() {
-                let maps = map_fits(&drawn.maps[index], &shot)
+                let maps = map_fits(&drawn.maps[index], &view)
                     .with_context(|| format!("{}: frame {}: cannot be drawn", drawn.name, frame.id))?;
-                let judged = drawn.contender.judge(&self.gpu, &mut subject, &shot, &maps, &mut truth)?;
+                let judged = drawn.evaluator.judge(&self.gpu, &mut prepared, &view, &maps, &mut truth)?;
                 ranking.add_picture(fit, index, &judged.tally);
             }
             progress.inc(1);
@@ -172,11 +172,11 @@ impl Pictures {
     }
 }
 
-fn contender(gpu: &Gpu, descriptor: &ShadowMapDescriptor, bias: BiasSettings, judging: Judging) -> Result<Contender> {
+fn evaluator(gpu: &Gpu, descriptor: &ShadowMapDescriptor, bias: BiasSettings, judging: Judging) -> Result<Evaluator> {
     if descriptor.depth_clamp && !gpu.has_depth_clamp() {
         anyhow::bail!("its casters are clamped to the near plane, and this graphics adapter cannot do that");
     }
-    Contender::new(gpu, descriptor, bias, judging)
+    Ok(Evaluator::new(Renderer::new(gpu, descriptor, 1)?, bias, judging))
 }
 
 /// The shadow map that holds all maps of a file.
@@ -195,7 +195,7 @@ fn descriptor(
     }
     let first = maps.iter().zip(&scenarios.frames).find_map(|(maps, frame)| Some((maps.first()?, frame)));
     let depth = match first {
-        Some((map, frame)) => light_fit(map, &shot(frame, true))?.depth,
+        Some((map, frame)) => light_fit(map, &view(frame, true))?.depth,
         None => shadowfit::DepthConvention::ZeroToOne,
     };
     Ok(ShadowMapDescriptor {
@@ -208,21 +208,21 @@ fn descriptor(
     })
 }
 
-fn shot(frame: &Frame, is_first: bool) -> Shot {
+fn view(frame: &Frame, is_first: bool) -> View {
     let direction = DVec3::from_array(frame.light_dir).as_vec3();
-    Shot { camera: frame.camera(), direction, is_first }
+    View { camera: frame.camera(), direction, is_first }
 }
 
-fn map_fits(maps: &[FitMap], shot: &Shot) -> Result<Vec<MapFit>> {
-    let far = |split: f64| if split >= f64::from(shot.camera.far) { f32::MAX } else { split as f32 };
-    maps.iter().map(|map| Ok(MapFit { fit: light_fit(map, shot)?, far: far(map.split_far) })).collect()
+fn map_fits(maps: &[FitMap], view: &View) -> Result<Vec<MapFit>> {
+    let far = |split: f64| if split >= f64::from(view.camera.far) { f32::MAX } else { split as f32 };
+    maps.iter().map(|map| Ok(MapFit { fit: light_fit(map, view)?, far: far(map.split_far) })).collect()
 }
 
-fn light_fit(map: &FitMap, shot: &Shot) -> Result<LightFit> {
+fn light_fit(map: &FitMap, view: &View) -> Result<LightFit> {
     let size = map.size();
     let resolution = UVec2::new(size.x as u32, size.y as u32);
     ensure!(size.max_element() <= 8192.0, "a map of {} by {} texels is too large to be drawn", size.x, size.y);
-    Ok(LightFit::from_clip_from_world(&map.clip_from_world(), shot.direction, resolution, shot.camera.eye)?)
+    Ok(LightFit::from_clip_from_world(&map.clip_from_world(), view.direction, resolution, view.camera.eye)?)
 }
 
 fn write(file: &Path, text: &str) -> Result<()> {

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use image::RgbaImage;
 use indicatif::{ProgressBar, ProgressStyle};
+use shadowfit_study::{SharedTruth, Technique, ensure_judged};
 use shadowfit_truth::PictureTally;
-use shadowfit_viewer::study::{SharedTruth, Technique};
 use shadowfit_wgpu::MapFit;
 
 use crate::data::{Columns, FrameInfo, FramePictures, Run, TechniqueRun};
@@ -62,6 +62,7 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<bool> {
         progress.inc(1);
     }
     progress.finish_and_clear();
+    check(&techniques, &measured, interrupt)?;
     let mut run = report(args, &job, &techniques, &measured);
     // The tables first: pictures take a while, and may fail for want of room.
     output.write_report(&run, &job.path)?;
@@ -91,6 +92,16 @@ fn techniques(args: &Args) -> Result<Vec<Technique>> {
         .collect()
 }
 
+/// Refuses to report on pictures in which nothing is judged. One that was interrupted may have none.
+fn check(techniques: &[Technique], measured: &[Measured], interrupt: &Interrupt) -> Result<()> {
+    for (technique, measured) in techniques.iter().zip(measured) {
+        if !(interrupt.is_requested() && measured.tallies.is_empty()) {
+            ensure_judged(&pool(&measured.tallies)).with_context(|| format!("technique {}", technique.name))?;
+        }
+    }
+    Ok(())
+}
+
 fn pose(job: &mut Prepared, index: usize) {
     if let Some(seconds) = job.frames[index].seconds {
         job.comparison.set_time(0, seconds);
@@ -99,8 +110,8 @@ fn pose(job: &mut Prepared, index: usize) {
 
 fn measure(job: &mut Prepared, index: usize, measured: &mut [Measured]) -> Result<()> {
     pose(job, index);
-    let JobFrame { name, shot, .. } = &job.frames[index];
-    let outcomes = job.comparison.frame(shot, &mut SharedTruth::default()).with_context(|| format!("frame {name}"))?;
+    let JobFrame { name, view, .. } = &job.frames[index];
+    let outcomes = job.comparison.frame(view, &mut SharedTruth::default()).with_context(|| format!("frame {name}"))?;
     for (measured, outcome) in measured.iter_mut().zip(outcomes) {
         measured.tallies.push(outcome.judged.tally);
         measured.maps.push(outcome.maps);
@@ -116,7 +127,7 @@ fn report(args: &Args, job: &Prepared, techniques: &[Technique], measured: &[Mea
         name: technique.name.clone(),
         what: technique.what.clone(),
         settings: technique.to_toml().unwrap_or_else(|error| format!("# cannot be written: {error}")),
-        overall: columns(measured.tallies.iter()),
+        overall: columns(&measured.tallies),
         groups: groups(frames)
             .into_iter()
             .map(|group| {
@@ -125,13 +136,13 @@ fn report(args: &Args, job: &Prepared, techniques: &[Technique], measured: &[Mea
                 (group, columns)
             })
             .collect(),
-        frames: measured.tallies.iter().map(|tally| columns([tally].into_iter())).collect(),
+        frames: measured.tallies.iter().map(|tally| columns([tally])).collect(),
         pictures: Vec::new(),
     };
     Run {
         title: format!("Shadows of {}", args.job.title()),
         scene: args.job.title(),
-        triangles: job.comparison.subject().triangles() as u64,
+        triangles: job.comparison.scene().casting_triangles(),
         size: job.judging.size,
         adapter: job.comparison.gpu().name(),
         light: job.light,
@@ -154,12 +165,16 @@ fn groups(frames: &[JobFrame]) -> Vec<String> {
     groups
 }
 
-fn columns<'a>(tallies: impl Iterator<Item = &'a PictureTally>) -> Columns {
+fn pool<'a>(tallies: impl IntoIterator<Item = &'a PictureTally>) -> PictureTally {
     let mut pool = PictureTally::default();
     for tally in tallies {
         pool.merge(tally);
     }
-    pool.columns().into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+    pool
+}
+
+fn columns<'a>(tallies: impl IntoIterator<Item = &'a PictureTally>) -> Columns {
+    pool(tallies).columns().into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
 /// Draws the worst, a middling and the best frame with every technique, from the maps that they had then.
@@ -170,7 +185,7 @@ fn draw_pictures(job: &mut Prepared, measured: &[Measured], output: &Output, run
         let mut truth = SharedTruth::default();
         for (number, technique) in run.techniques.iter_mut().enumerate() {
             let maps = &measured[number].maps[index];
-            let (pixels, judged) = job.comparison.picture(number, &frame.shot, maps, &mut truth)?;
+            let (pixels, judged) = job.comparison.picture(number, &frame.view, maps, &mut truth)?;
             let [width, height] = job.judging.size;
             let picture = RgbaImage::from_raw(width, height, pixels).context("a picture of another size")?;
             let place = (number, technique.name.as_str());

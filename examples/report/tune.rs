@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
-use shadowfit_viewer::study::{Budget, Shot, Tuned, Weights, tune};
+use shadowfit_study::{Budget, Tuned, View, Weights, tune};
 
 use crate::interrupt::Interrupt;
 use crate::job::Job;
@@ -46,11 +46,11 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
         "report tune searches the filter and the bias itself; leave --filter, --bias and --color-format out"
     );
     let mut job = args.job.prepare()?;
-    let shots = picked(&job.frames.iter().map(|frame| frame.shot).collect::<Vec<_>>(), args.frames as usize);
+    let views = picked(&job.frames.iter().map(|frame| frame.view).collect::<Vec<_>>(), args.frames as usize);
     let budget = Budget { maps: args.maps, resolution: args.resolution };
     let progress = ProgressBar::new(0);
     progress.set_style(ProgressStyle::with_template("{wide_bar} {pos}/{len} tried, {eta} left")?);
-    let tuned = tune(&mut job.comparison, &shots, budget, &args.weights, &mut |tried, most| {
+    let tuned = tune(&mut job.comparison, &views, budget, &args.weights, &mut |tried, most| {
         progress.set_length(most as u64);
         progress.set_position(tried as u64);
         !interrupt.is_requested()
@@ -73,17 +73,17 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
 
 /// So many of the frames, in pairs of neighbours that are evenly spread: what a fit knows of the frame before counts,
 /// and so does crawl.
-fn picked(shots: &[Shot], count: usize) -> Vec<Shot> {
-    if count >= shots.len() {
-        return shots.to_vec();
+fn picked(views: &[View], count: usize) -> Vec<View> {
+    if count >= views.len() {
+        return views.to_vec();
     }
     let pairs = count.div_ceil(2);
-    let begin = |pair: usize| (2 * pair + 1) * shots.len() / (2 * pairs);
+    let begin = |pair: usize| (2 * pair + 1) * views.len() / (2 * pairs);
     let pair = |pair: usize| {
-        let first = begin(pair).min(shots.len().saturating_sub(2));
+        let first = begin(pair).min(views.len().saturating_sub(2));
         let first =
-            if shots.get(first + 1).is_some_and(|shot| shot.is_first) { first.saturating_sub(1) } else { first };
-        [Shot { is_first: true, ..shots[first] }, shots[first + 1]]
+            if views.get(first + 1).is_some_and(|view| view.is_first) { first.saturating_sub(1) } else { first };
+        [View { is_first: true, ..views[first] }, views[first + 1]]
     };
     (0..pairs).flat_map(pair).take(count).collect()
 }

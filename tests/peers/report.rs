@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use shadowfit_study::DEFAULT_TECHNIQUE;
 use shadowfit_truth::peers::{FitFile, FitFrame, FitMap, Scenarios};
-use shadowfit_viewer::study::DEFAULT_TECHNIQUE;
 
 use crate::support::{assets, example_program, peers};
 

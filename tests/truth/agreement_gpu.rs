@@ -1,12 +1,12 @@
-//! The GPU's classes against the processor's, on the built-in scene and on every scene of the collection.
+//! The GPU's classes against the CPU's, on the built-in scene and on every scene of the collection.
 
 use std::path::Path;
 
 use shadowfit::PerspectiveCamera;
 use shadowfit::glam::Vec3;
 use shadowfit_scene::builtin::default_scene;
-use shadowfit_scene::{Scene, load_gltf};
-use shadowfit_viewer::study::{Agreement, Comparison, Judging, LiveTruth, SharedTruth, Shot, Technique};
+use shadowfit_scene::{Aabb, Scene, load_gltf};
+use shadowfit_study::{Agreement, Comparison, Judging, LiveTruth, SharedTruth, Technique, View};
 
 use super::shapes::NO_BIAS;
 use crate::support::{assets, software_gpu};
@@ -31,8 +31,8 @@ const SCENES: [&str; 11] = [
 ];
 
 /// Views of the middle of a scene from two sides.
-fn shots([low, high]: [Vec3; 2]) -> [Shot; 2] {
-    let (centre, radius) = ((low + high) * 0.5, ((high - low).length() * 0.5).max(1e-3));
+fn views(bounds: Aabb) -> [View; 2] {
+    let (centre, radius) = (bounds.center(), (bounds.size().length() * 0.5).max(1e-3));
     [Vec3::new(0.6, 0.5, 0.7), Vec3::new(-0.5, 0.25, 0.4)].map(|away| {
         let eye = centre + away * radius;
         let camera = PerspectiveCamera {
@@ -44,7 +44,7 @@ fn shots([low, high]: [Vec3; 2]) -> [Shot; 2] {
             near: radius * 1e-3,
             far: radius * 6.0,
         };
-        Shot { camera, direction: Vec3::new(-0.5, -0.7, -0.4).normalize(), is_first: true }
+        View { camera, direction: Vec3::new(-0.5, -0.7, -0.4).normalize(), is_first: true }
     })
 }
 
@@ -62,13 +62,13 @@ fn assert_agreement(scene: Scene) {
     for technique in techniques() {
         comparison.add(technique).expect("a technique");
     }
-    let mut live = LiveTruth::new(comparison.gpu(), comparison.subject()).expect("a scene that fits");
+    let mut live = LiveTruth::new(comparison.gpu(), comparison.scene()).expect("a scene that fits");
     let mut agreement = Agreement::default();
-    for shot in shots(comparison.subject().bounds()) {
-        let outcomes = comparison.frame(&shot, &mut SharedTruth::default()).expect("a frame");
+    for view in views(comparison.scene().bounds()) {
+        let outcomes = comparison.frame(&view, &mut SharedTruth::default()).expect("a frame");
         for (number, outcome) in outcomes.iter().enumerate() {
-            let (gpu, contender, subject) = comparison.contender(number);
-            let pixels = contender.judge_live(gpu, subject, &shot, &outcome.maps, &mut live).expect("judged");
+            let (gpu, evaluator, scene) = comparison.evaluator(number);
+            let pixels = evaluator.judge_live(gpu, scene, &view, &outcome.maps, &mut live).expect("judged");
             agreement.add(&outcome.judged, &pixels);
         }
     }

@@ -5,19 +5,19 @@ use shadowfit::glam::{Affine3A, Quat, Vec3};
 use shadowfit::settings::{BiasSettings, FilterKind};
 use shadowfit_truth::PictureTally;
 
-use super::shapes::{NO_BIAS, View, floor, single, solid};
+use super::shapes::{Arrangement, NO_BIAS, floor, single, solid};
 
 /// A box on a floor, from above and aside.
-fn box_on_a_floor() -> View {
+fn box_on_a_floor() -> Arrangement {
     let objects = vec![floor(8.0), solid(Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 2.0, 1.0))];
-    View::new(objects, Vec3::new(4.0, 4.5, 6.0), Vec3::new(-0.5, 0.5, 0.0), Vec3::new(-0.5, -0.7, -0.3))
+    Arrangement::new(objects, Vec3::new(4.0, 4.5, 6.0), Vec3::new(-0.5, 0.5, 0.0), Vec3::new(-0.5, -0.7, -0.3))
 }
 
 /// A thin wall on a floor, from its dark side: what stands before a point at its foot is no farther than the point
 /// from the wall.
-fn wall_on_a_floor() -> View {
+fn wall_on_a_floor() -> Arrangement {
     let objects = vec![floor(8.0), solid(Vec3::new(-2.0, 0.0, -0.01), Vec3::new(2.0, 2.0, 0.01))];
-    View::new(objects, Vec3::new(-1.0, 4.0, -6.0), Vec3::new(-0.5, 0.5, -1.0), Vec3::new(-0.2, -0.7, -0.5))
+    Arrangement::new(objects, Vec3::new(-1.0, 4.0, -6.0), Vec3::new(-0.5, 0.5, -1.0), Vec3::new(-0.2, -0.7, -0.5))
 }
 
 fn shares(tally: &PictureTally) -> [f64; 4] {
@@ -58,7 +58,8 @@ fn a_bias_ten_times_too_large_is_false_light() {
 fn the_hole_of_the_xna_sample_is_a_hole_and_nothing_else() {
     // The tower stands behind the camera: the sample's box, which holds the view alone, cuts it off.
     let objects = vec![floor(40.0), solid(Vec3::new(-1.0, 0.0, 8.0), Vec3::new(1.0, 12.0, 10.0))];
-    let view = View::new(objects, Vec3::new(0.0, 2.0, 4.0), Vec3::new(0.0, 0.0, -3.0), Vec3::new(0.02, -0.6, -0.8));
+    let view =
+        Arrangement::new(objects, Vec3::new(0.0, 2.0, 4.0), Vec3::new(0.0, 0.0, -3.0), Vec3::new(0.02, -0.6, -0.8));
     let filter = FilterKind::Hardware2x2;
     let holed = view.judged(single(FitKind::XnaSample, filter, BiasSettings::automatic(filter)));
     println!("{:?} of {} pixels", shares(&holed), holed.all.facing);

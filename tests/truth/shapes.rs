@@ -4,8 +4,8 @@ use shadowfit::glam::{Affine3A, DVec3, Vec3};
 use shadowfit::settings::{BiasSettings, FilterKind};
 use shadowfit::{CascadeSettings, CasterPolicy, FitKind, FitSettings, PerspectiveCamera, SplitScheme, Stabilise};
 use shadowfit_scene::Scene;
+use shadowfit_study::{Comparison, Judging, ReceiverSource, SharedTruth, Technique, View};
 use shadowfit_truth::PictureTally;
-use shadowfit_viewer::study::{Comparison, Judging, Knowledge, SharedTruth, Shot, Technique};
 
 use crate::support::software_gpu;
 
@@ -35,16 +35,16 @@ fn quad([a, b, c, d]: [Vec3; 4]) -> Vec<Corners> {
     vec![[a, b, c], [a, c, d]]
 }
 
-/// A view of a scene.
+/// Shapes, and how they are seen and lit.
 #[derive(Clone)]
-pub(super) struct View {
+pub(super) struct Arrangement {
     pub(super) objects: Vec<Vec<Corners>>,
     pub(super) camera: PerspectiveCamera,
     pub(super) direction: Vec3,
     pub(super) ray_offset: f64,
 }
 
-impl View {
+impl Arrangement {
     /// Seen from `eye` toward `target`, with the light travelling in `direction`.
     pub(super) fn new(objects: Vec<Vec<Corners>>, eye: Vec3, target: Vec3, direction: Vec3) -> Self {
         let camera = PerspectiveCamera {
@@ -92,8 +92,8 @@ impl View {
         let mut comparison = Comparison::new(software_gpu(), scene, judging).expect("a scene");
         comparison.add(technique).expect("a technique");
         let camera = PerspectiveCamera { eye: self.camera.eye + away.as_dvec3(), ..self.camera };
-        let shot = Shot { camera, direction: self.direction, is_first: true };
-        let outcomes = comparison.frame(&shot, &mut SharedTruth::default()).expect("a frame");
+        let view = View { camera, direction: self.direction, is_first: true };
+        let outcomes = comparison.frame(&view, &mut SharedTruth::default()).expect("a frame");
         outcomes[0].judged.tally.clone()
     }
 }
@@ -114,7 +114,7 @@ pub(super) fn single(kind: FitKind, filter: FilterKind, bias: BiasSettings) -> T
         stabilise: Stabilise::Off,
         ..CascadeSettings::default()
     };
-    Technique { receivers: Knowledge::Objects, maps, ..Technique::default() }.with_look_up(filter, bias)
+    Technique { receivers: ReceiverSource::Objects, maps, ..Technique::default() }.with_look_up(filter, bias)
 }
 
 /// No bias at all.

@@ -3,14 +3,14 @@
 
 use core::f32::consts::{PI, TAU};
 
-use glam::{UVec2, Vec3};
+use glam::{DVec3, UVec2, Vec3};
 use shadowfit::settings::{BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, Settings};
 use shadowfit::{Aabb, PerspectiveCamera};
 use shadowfit_egui::Artefact;
 use shadowfit_render::FlyCamera;
 
-use crate::scout::{GRID, Scout, Seen, Shadow, aimed};
 use crate::stage::Stage;
+use crate::view_search::{GRID, Seen, Shadow, ViewSearch, aimed};
 
 /// Height of a shadow texel on screen when acne is shown, in parts of the picture's height: a few
 /// pixels, so that its stripes can be told apart.
@@ -39,19 +39,22 @@ pub(crate) fn show(stage: &mut Stage, artefact: Artefact) -> bool {
     stage.settings.view.shadows = true;
     stage.settings.light.animate = false;
     let light = stage.settings.light.direction();
-    let (bounds, subject) = (stage.bounds(), stage.subject_bounds());
-    let has_subject = stage.scene().subject.is_some();
-    let lens = PerspectiveCamera { aspect: ASPECT, ..stage.perspective([1, 1]) };
+    let scene = stage.prepared_scene();
+    let origin = scene.origin();
+    let [bounds, subject] = [scene.bounds(), scene.subject_bounds()].map(|bounds| relative_to(origin, &bounds));
+    let has_subject = scene.scene().subject.is_some();
+    let lens = scene.camera_for_rays(&lens(stage));
     let mut settings = stage.settings;
-    let scout = Scout::new(stage.rays(), light, &bounds);
-    let place = Place::new(&scout, light, subject, has_subject, lens);
+    let search = ViewSearch::new(scene.rays(), light, &bounds);
+    let place = Place::new(&search, light, subject, has_subject, lens);
     let (camera, found) = match artefact {
-        Artefact::Acne => show_acne(&scout, &place, light, &mut settings),
-        Artefact::Aliasing => show_aliasing(&scout, &place, light, &mut settings),
-        Artefact::ClippingHole => show_hole(&scout, &place, light, &mut settings),
+        Artefact::Acne => show_acne(&search, &place, light, &mut settings),
+        Artefact::Aliasing => show_aliasing(&search, &place, light, &mut settings),
+        Artefact::ClippingHole => show_hole(&search, &place, light, &mut settings),
     };
     stage.settings = settings;
-    stage.camera = camera;
+    let eye = origin + camera.eye;
+    stage.camera = FlyCamera::look_at(eye, eye + camera.forward.as_dvec3());
     found
 }
 
@@ -93,8 +96,8 @@ struct Place {
 }
 
 impl Place {
-    fn new(scout: &Scout<'_>, light: Vec3, bounds: Aabb, has_subject: bool, lens: PerspectiveCamera) -> Self {
-        let mut shadows = scout.shadows(&bounds);
+    fn new(search: &ViewSearch<'_>, light: Vec3, bounds: Aabb, has_subject: bool, lens: PerspectiveCamera) -> Self {
+        let mut shadows = search.shadows(&bounds);
         shadows.sort_by(|a, b| a.reach.total_cmp(&b.reach));
         let radius = ((bounds.max - bounds.min).length() * 0.5).max(1e-3);
         let whole = Self { bounds, center: (bounds.min + bounds.max) * 0.5, radius, lens, shadows };
@@ -106,7 +109,7 @@ impl Place {
         let center = long.receiver - light * (long.reach * 0.5);
         let radius = long.reach;
         let bounds = Aabb { min: center - radius, max: center + radius };
-        let mut shadows = scout.shadows(&bounds);
+        let mut shadows = search.shadows(&bounds);
         shadows.sort_by(|a, b| a.reach.total_cmp(&b.reach));
         Self { bounds, center, radius, lens, shadows }
     }
@@ -124,16 +127,21 @@ impl Place {
 
 /// The subject's upper part close up from the lit side, without any bias: every slope shadows
 /// itself.
-fn show_acne(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut Settings) -> (FlyCamera, bool) {
+fn show_acne(
+    search: &ViewSearch<'_>,
+    place: &Place,
+    light: Vec3,
+    settings: &mut Settings,
+) -> (PerspectiveCamera, bool) {
     let target = place.center + Vec3::Y * (place.bounds.max.y - place.bounds.min.y) * 0.25;
     let distances = [1.5, 1.8].map(|radii| radii * place.radius);
     let candidates = around(target, -light, &[0.3, 0.6, 0.9, -0.3, -0.6, -0.9], &[0.0, 0.15], &distances);
     let score = |camera: &PerspectiveCamera| {
         let shows = |seen: &Seen| {
-            let slope = scout.facing(seen);
-            place.contains(seen.position) && (0.1..0.9).contains(&slope) && !scout.is_shadowed(seen)
+            let slope = search.facing(seen);
+            place.contains(seen.position) && (0.1..0.9).contains(&slope) && !search.is_shadowed(seen)
         };
-        let pixels = scout.look(camera);
+        let pixels = search.look(camera);
         if is_blocked(&pixels, place.radius * 0.3) {
             0
         } else {
@@ -148,24 +156,29 @@ fn show_acne(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut Setti
     settings.fit.margin = 0.0;
     let texel = place.picture_height(distance) * ACNE_TEXEL;
     stretch_to_texel(&camera, light, settings, distance + place.radius, texel);
-    (fly(&camera), found)
+    (camera, found)
 }
 
 /// The edge of the subject's shadow close up, in a map that has to cover far too much.
-fn show_aliasing(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut Settings) -> (FlyCamera, bool) {
+fn show_aliasing(
+    search: &ViewSearch<'_>,
+    place: &Place,
+    light: Vec3,
+    settings: &mut Settings,
+) -> (PerspectiveCamera, bool) {
     let targets = spread(&place.shadows, 5);
     let height = place.radius;
     let candidates = targets.iter().flat_map(|shadow| {
         around(shadow.receiver, -light, &[-2.2, -1.4, -0.7, 0.7, 1.4, 2.2], &[0.5, 0.8], &[height * 1.5, height * 2.2])
     });
     let score = |camera: &PerspectiveCamera| {
-        let pixels = scout.look(camera);
+        let pixels = search.look(camera);
         if is_blocked(&pixels, place.radius * 0.3) {
             return 0.0;
         }
         let shadowed: Vec<Option<bool>> = pixels
             .iter()
-            .map(|seen| seen.filter(|seen| scout.facing(seen) > 0.2).map(|seen| scout.is_shadowed(&seen)))
+            .map(|seen| seen.filter(|seen| search.facing(seen) > 0.2).map(|seen| search.is_shadowed(&seen)))
             .collect();
         let share = shadowed.iter().filter(|pixel| **pixel == Some(true)).count() as f32 / shadowed.len() as f32;
         // The most edge, with about as much shadow as light.
@@ -173,18 +186,23 @@ fn show_aliasing(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut S
     };
     let (camera, found) = best(&place.lens, candidates, score);
     let distance =
-        scout.look(&camera)[(GRID[0] * GRID[1] / 2 + GRID[0] / 2) as usize].map_or(height * 2.0, |seen| seen.distance);
+        search.look(&camera)[(GRID[0] * GRID[1] / 2 + GRID[0] / 2) as usize].map_or(height * 2.0, |seen| seen.distance);
     settings.filter = FilterKind::Point;
     settings.bias = BiasSettings::automatic(FilterKind::Point);
     settings.fit.kind = FitKind::FrustumAabb;
     settings.fit.resolution = UVec2::splat(2048);
     let texel = place.picture_height(distance) * ALIASING_TEXEL;
     stretch_to_texel(&camera, light, settings, distance * 2.0, texel);
-    (fly(&camera), found)
+    (camera, found)
 }
 
 /// Between the subject and its shadow: the shadow is in view, what throws it is not in the map.
-fn show_hole(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut Settings) -> (FlyCamera, bool) {
+fn show_hole(
+    search: &ViewSearch<'_>,
+    place: &Place,
+    light: Vec3,
+    settings: &mut Settings,
+) -> (PerspectiveCamera, bool) {
     settings.fit.kind = FitKind::XnaSample;
     settings.fit.margin = 0.0;
     let targets = spread(&place.shadows, 4);
@@ -199,12 +217,12 @@ fn show_hole(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut Setti
         shadowfit::fit(&frustum, light, &fit_settings).ok()
     };
     let score = |camera: &PerspectiveCamera| {
-        let (pixels, Some(fit)) = (scout.look(camera), fit_at(camera)) else { return 0.0 };
+        let (pixels, Some(fit)) = (search.look(camera), fit_at(camera)) else { return 0.0 };
         if is_blocked(&pixels, place.radius * 0.6) {
             return 0.0;
         }
-        let shadowed = || pixels.iter().flatten().filter(|seen| scout.facing(seen) > 0.0 && scout.is_shadowed(seen));
-        let holes = shadowed().filter(|seen| scout.is_hole(seen, &fit)).count();
+        let shadowed = || pixels.iter().flatten().filter(|seen| search.facing(seen) > 0.0 && search.is_shadowed(seen));
+        let holes = shadowed().filter(|seen| search.is_hole(seen, &fit)).count();
         // A large hole, but a shadow that breaks off says more than one that is missing whole.
         let kept = (shadowed().count() - holes) as f32 / (pixels.len() as f32 * KEPT_SHADOW);
         holes as f32 * (0.2 + 0.8 * kept.min(1.0))
@@ -212,7 +230,7 @@ fn show_hole(scout: &Scout<'_>, place: &Place, light: Vec3, settings: &mut Setti
     let (camera, found) = best(&place.lens, candidates, score);
     settings.fit.max_distance = place.radius * HOLE_DISTANCE;
     settings.bias = BiasSettings::automatic(settings.filter);
-    (fly(&camera), found)
+    (camera, found)
 }
 
 /// Candidate eyes around a target, each with the target: turned from the light's side by
@@ -298,16 +316,23 @@ fn stretch_to_texel(camera: &PerspectiveCamera, light: Vec3, settings: &mut Sett
 }
 
 /// Distance beyond which next to nothing is seen, in metres.
-fn farthest_seen(stage: &mut Stage) -> Option<f32> {
-    let camera = PerspectiveCamera { aspect: ASPECT, ..stage.perspective([1, 1]) };
-    let (light, bounds) = (stage.settings.light.direction(), stage.bounds());
-    let pixels = Scout::new(stage.rays(), light, &bounds).look(&camera);
+fn farthest_seen(stage: &Stage) -> Option<f32> {
+    let scene = stage.prepared_scene();
+    let light = stage.settings.light.direction();
+    let pixels = ViewSearch::new(scene.rays(), light, &scene.bounds()).look(&scene.camera_for_rays(&lens(stage)));
     let mut distances: Vec<f32> = pixels.iter().flatten().map(|seen| seen.distance).collect();
     distances.sort_by(f32::total_cmp);
     let index = (distances.len() as f32 * 0.98) as usize;
     Some(distances.get(index)? * 1.1)
 }
 
-fn fly(camera: &PerspectiveCamera) -> FlyCamera {
-    FlyCamera::look_at(camera.eye, camera.eye + camera.forward.as_dvec3())
+/// The present camera, with the aspect that candidates are judged with.
+fn lens(stage: &Stage) -> PerspectiveCamera {
+    PerspectiveCamera { aspect: ASPECT, ..stage.perspective([1, 1]) }
+}
+
+/// A world-space box relative to a world position, in metres.
+fn relative_to(origin: DVec3, bounds: &Aabb) -> Aabb {
+    let relative = |corner: Vec3| (corner.as_dvec3() - origin).as_vec3();
+    Aabb { min: relative(bounds.min), max: relative(bounds.max) }
 }

@@ -136,7 +136,7 @@ impl Interface {
         let message = stage.problem().or(stage.notice()).map(str::to_owned).or_else(|| self.message.clone());
         let input = PanelInput {
             figures: &figures,
-            scene: SceneLine { name: &name, triangles: stage.triangles(), notes: &notes },
+            scene: SceneLine { name: &name, triangles: stage.prepared_scene().triangles(), notes: &notes },
             artefact: shown.map(|shown| shown.artefact),
             artefact_fixed: shown.is_some_and(|shown| shown.fixed),
             message: message.as_deref(),

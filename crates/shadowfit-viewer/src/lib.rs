@@ -1,9 +1,8 @@
-//! The shadowfit viewer as a library: a [`Stage`] that holds scene, camera, settings and renderer;
-//! the artefact demonstrations; a window around it, and a headless mode that renders the same
+//! The shadowfit viewer as a library: a [`Stage`] that holds scene, camera and settings, and draws and
+//! judges through `shadowfit-study`; the artefact demonstrations; a window around it, and a headless mode that renders the same
 //! views to files. `examples/viewer` is its thin main.
 
 mod artefact;
-mod boxes;
 mod cli;
 mod files;
 #[cfg(feature = "gamepad")]
@@ -12,17 +11,14 @@ mod headless;
 mod input;
 mod interface;
 mod outside;
-mod rays;
-mod scout;
 mod stage;
-pub mod study;
+mod view_search;
 mod window;
 
 use std::process::ExitCode;
 
 pub use cli::Arguments;
 pub use headless::render_pictures;
-pub use rays::SceneRays;
 pub use shadowfit_egui::Artefact;
 pub use stage::{Shown, Stage, StageError};
 

@@ -1,13 +1,14 @@
-//! The view from outside: the camera's frustum, the light's box and the sun's direction drawn as
-//! lines, seen by a second camera that keeps both in its picture.
+//! The view from outside: the camera's frustum, the maps' boxes and the sun's direction drawn as
+//! lines, seen by a second camera that keeps all of them in its picture.
 
 use glam::{DVec3, Vec3, Vec4};
 use shadowfit::{LightFit, PerspectiveCamera, ViewFrustum};
 use shadowfit_render::{Line, box_lines};
+use shadowfit_wgpu::MapFit;
 
 /// Colour of the camera's frustum: a warm yellow.
 const FRUSTUM_COLOR: Vec4 = Vec4::new(1.0, 0.62, 0.05, 1.0);
-/// Colour of the light's box: a clear blue.
+/// Colour of the maps' boxes: a clear blue.
 const BOX_COLOR: Vec4 = Vec4::new(0.05, 0.45, 1.0, 1.0);
 /// Colour of the box's face toward the light, its near plane, and of the sun's rays.
 const NEAR_COLOR: Vec4 = Vec4::new(1.0, 0.12, 0.25, 1.0);
@@ -15,11 +16,11 @@ const NEAR_COLOR: Vec4 = Vec4::new(1.0, 0.12, 0.25, 1.0);
 /// Vertical field of view of the outside camera, in radians.
 const FOV_Y: f32 = 0.8;
 
-/// The frustum that is shadowed, the box that was fitted to it, and rays along the light's
-/// direction of travel through the box.
-pub(crate) fn lines(frustum: Option<&ViewFrustum>, fits: &[LightFit]) -> Vec<Line> {
+/// The frustum that is shadowed, the boxes of the maps that were fitted to it, and an arrow along the
+/// light's direction of travel into each box.
+pub(crate) fn lines(frustum: Option<&ViewFrustum>, maps: &[MapFit]) -> Vec<Line> {
     let mut lines = Vec::new();
-    for fit in fits {
+    for MapFit { fit, .. } in maps {
         let corners = fit.corners();
         lines.extend(box_lines(fit.origin, &corners, BOX_COLOR));
         lines.extend(near_face(fit, &corners));
@@ -57,11 +58,12 @@ fn near_face(fit: &LightFit, corners: &[Vec3; 8]) -> Vec<Line> {
 const EDGE_ENDS: [[usize; 2]; 12] =
     [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
 
-/// A camera that sees all of the frustum and the box from behind and above the inner camera.
-pub(crate) fn camera(inner: &PerspectiveCamera, frustum: Option<&ViewFrustum>, fits: &[LightFit]) -> PerspectiveCamera {
+/// A camera that sees all of the frustum and the boxes from behind and above the inner camera.
+pub(crate) fn camera(inner: &PerspectiveCamera, frustum: Option<&ViewFrustum>, maps: &[MapFit]) -> PerspectiveCamera {
     let mut points: Vec<DVec3> = vec![inner.eye];
     points.extend(frustum.iter().flat_map(|f| f.corners.map(|corner| f.origin + corner.as_dvec3())));
-    points.extend(fits.iter().flat_map(|fit| fit.corners().map(|corner| fit.origin + corner.as_dvec3())));
+    points
+        .extend(maps.iter().flat_map(|MapFit { fit, .. }| fit.corners().map(|corner| fit.origin + corner.as_dvec3())));
     let low = points.iter().copied().reduce(DVec3::min).unwrap_or(inner.eye);
     let high = points.iter().copied().reduce(DVec3::max).unwrap_or(inner.eye);
     let center = (low + high) * 0.5;
@@ -100,7 +102,7 @@ mod tests {
         };
         let frustum = inner.frustum().expect("a frustum");
         let fitted = fit(&frustum, Vec3::new(0.4, -0.7, 0.3).normalize(), &FitSettings::default()).expect("a fit");
-        let outside = camera(&inner, Some(&frustum), &[fitted]);
+        let outside = camera(&inner, Some(&frustum), &[fitted.into()]);
         let clip = outside.clip_from_world(shadowfit::DepthConvention::Reversed);
         for corner in fitted.corners().map(|corner| fitted.origin + corner.as_dvec3()) {
             let point = clip * (corner - outside.eye).as_vec3().extend(1.0);

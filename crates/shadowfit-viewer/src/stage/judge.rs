@@ -1,11 +1,9 @@
 //! The present view judged against rays: what the demonstrations and their cures are held to.
 
-use glam::DVec3;
-use shadowfit_render::{Atmosphere, ProbeTargets};
-use shadowfit_truth::{Judged, PixelCamera, Truth, TruthSettings, judge};
+use shadowfit_study::{Judging, SharedTruth, View};
+use shadowfit_truth::Judged;
 
-use super::{Stage, frame, map_fits};
-use crate::study;
+use super::Stage;
 
 impl Stage {
     /// Draws the present view's shadow decisions at the given size and judges them against rays.
@@ -19,41 +17,23 @@ impl Stage {
     /// that borders on a change of the true shadow.
     pub fn pixels_per_texel_at_edges(&mut self, size: [u32; 2]) -> Vec<f32> {
         let Some((truth, judged)) = self.judge_with_truth(size, false) else { return Vec::new() };
+        let Some(truth) = truth.get() else { return Vec::new() };
         let at_edge = |pixel: &usize| truth.transition_distance(*pixel) <= 0.5 && judged.counted[*pixel];
         (0..truth.points.len()).filter(at_edge).map(|pixel| judged.pixels_per_texel[pixel]).collect()
     }
 
-    fn judge_with_truth(&mut self, size: [u32; 2], subject_only: bool) -> Option<(Truth, Judged)> {
-        let maps = map_fits(&self.fits(size));
-        let camera = self.perspective(size);
-        let atmosphere = Atmosphere::default();
-        let frame = frame(&self.settings, &camera, &maps, &atmosphere, &[], None);
-        let targets = ProbeTargets::new(&self.gpu.device, size);
-        let pixels = match self.renderer.probe(&self.gpu, &mut self.gpu_scene, &frame, &targets) {
-            Ok(probe) => probe.pixels,
+    fn judge_with_truth(&mut self, size: [u32; 2], subject_only: bool) -> Option<(SharedTruth, Judged)> {
+        let maps = self.maps(size);
+        // The picture of one moment, whatever was judged before.
+        let view = View { is_first: true, ..self.view(size) };
+        self.evaluator.judging = Judging { size, subject_only, ..self.evaluator.judging };
+        let mut truth = SharedTruth::default();
+        match self.evaluator.judge(&self.gpu, &mut self.scene, &view, &maps, &mut truth) {
+            Ok(judged) => Some((truth, judged)),
             Err(error) => {
-                self.problem = Some(error.to_string());
-                return None;
+                self.problem = Some(format!("{error:#}"));
+                None
             }
-        };
-        let descriptor = *self.renderer.shadow_map().descriptor();
-        let instance_counts = self.counted_instances(subject_only);
-        let direction = self.settings.light.direction();
-        let rays = self.rays();
-        let truth_settings = TruthSettings::new(-direction.as_dvec3().normalize());
-        let truth =
-            Truth::trace(&rays.tracer, &PixelCamera::new(&camera, size), &truth_settings, &study::triangles(&pixels));
-        let measured = study::measured(&maps, direction, DVec3::ZERO);
-        let seen = study::maps_seen(&measured, &descriptor);
-        let counts = |triangle: u32| instance_counts[rays.triangles[triangle as usize].instance as usize];
-        let judged = judge(&rays.tracer, &truth, &seen, &study::factors(&pixels), counts);
-        Some((truth, judged))
-    }
-
-    /// Which instances count in the shares.
-    fn counted_instances(&self, subject_only: bool) -> Vec<bool> {
-        let root = self.scene.subject.filter(|_| subject_only);
-        let counts = |node| root.is_none_or(|root| self.scene.is_descendant(node, root));
-        self.scene.instances().iter().map(|instance| counts(instance.node)).collect()
+        }
     }
 }

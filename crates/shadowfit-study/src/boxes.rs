@@ -3,9 +3,8 @@
 //! What never moves is cut once into clusters that hug its surface, since a level that is one mesh has a box that tells
 //! nothing. What an animation moves has one box an instance, made anew with every pose.
 
-use glam::{DVec2, DVec3, Vec3};
-use shadowfit::settings::FitSettings;
-use shadowfit::{Aabb, Boxes, Clusters, FitError, FitInput, LightFit, NormalCone, ViewFrustum, Workspace};
+use glam::{DVec3, Vec3};
+use shadowfit::{Aabb, Boxes, Clusters, FitInput, NormalCone, ViewFrustum, Workspace};
 use shadowfit_scene::{AlphaMode, Instance, Pose, Scene};
 
 /// Triangles from which on nothing is cut into clusters: at a fifth of a microsecond each it would hold up the opening
@@ -15,7 +14,7 @@ const MOST_TRIANGLES: usize = 6_000_000;
 /// Greatest coordinate of a box that fits take, in metres; a box beyond it is left out.
 const FARTHEST: f32 = 1e18;
 
-/// Boxes of a scene in its present pose, in world space, and what fits need to work with them.
+/// Boxes of a scene in its present pose, in world space.
 #[derive(Debug, Default)]
 pub(crate) struct SceneBoxes {
     /// Of all that is drawn: that of the clusters, then one an instance that moves.
@@ -28,8 +27,6 @@ pub(crate) struct SceneBoxes {
     still: [usize; 2],
     /// Index of each instance that has a box of its own, and whether it casts.
     moving: Vec<(usize, bool)>,
-    /// Storage that fits work in.
-    storage: Vec<DVec2>,
 }
 
 impl SceneBoxes {
@@ -49,7 +46,7 @@ impl SceneBoxes {
         let still = [receivers.len(), casters.len()];
         let moving = (0..instances.len()).filter(|index| moves[*index]).map(|index| (index, casts[index])).collect();
         let cones = clusters.cones().to_vec();
-        Self { receivers, cones, casters, still, moving, storage: Vec::new() }
+        Self { receivers, cones, casters, still, moving }
     }
 
     /// One box an instance, whether it moves or not. [`Self::set_pose`] has to follow.
@@ -88,24 +85,6 @@ impl SceneBoxes {
                 self.casters.push(aabb);
             }
         }
-        self.storage.resize(self.required(1), DVec2::ZERO);
-    }
-
-    /// Fits one map to what a view sees of the scene. `direction` is the light's direction of travel in world axes.
-    ///
-    /// # Errors
-    ///
-    /// As [`shadowfit::fit_scene`].
-    pub(crate) fn fit(
-        &mut self,
-        view: &ViewFrustum,
-        direction: Vec3,
-        settings: &FitSettings,
-    ) -> Result<LightFit, FitError> {
-        let mut storage = core::mem::take(&mut self.storage);
-        let fit = shadowfit::fit_scene(&self.input(&[*view], direction), settings, &mut Workspace::new(&mut storage));
-        self.storage = storage;
-        fit
     }
 }
 

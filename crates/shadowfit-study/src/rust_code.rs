@@ -5,7 +5,7 @@ use std::fmt::Write;
 use shadowfit::settings::BiasSettings;
 use shadowfit::{CascadeSettings, FitSettings, HoldSettings, SplitScheme};
 
-use crate::study::Technique;
+use crate::Technique;
 
 impl Technique {
     /// Statements that define `maps`, `bias` and `filter` as this technique has them: what is as by default is left

@@ -1,10 +1,9 @@
-//! Looks for places: casts coarse pictures of rays from candidate cameras, to find where an
-//! artefact shows.
+//! The search for views: casts coarse pictures of rays from candidate cameras, to find where an
+//! artefact shows. Positions are relative to the origin of the scene's rays, in metres.
 
 use glam::{DVec3, Vec3};
 use shadowfit::{Aabb, LightFit, PerspectiveCamera};
-
-use crate::rays::SceneRays;
+use shadowfit_study::SceneRays;
 
 /// Columns and rows of a candidate's coarse picture.
 pub(crate) const GRID: [u32; 2] = [32, 18];
@@ -18,7 +17,7 @@ const RAY_OFFSET: f32 = 1e-4;
 /// What one coarse pixel sees.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen {
-    /// Visible point, world space, metres.
+    /// Visible point.
     pub(crate) position: Vec3,
     /// Unit geometric normal toward the eye.
     pub(crate) normal: Vec3,
@@ -29,20 +28,20 @@ pub(crate) struct Seen {
 /// A point in shadow and what throws it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shadow {
-    /// The point in shadow, world space, metres.
+    /// The point in shadow.
     pub(crate) receiver: Vec3,
     /// How far toward the light the caster is, in metres.
     pub(crate) reach: f32,
 }
 
 /// Rays of a scene under one light.
-pub(crate) struct Scout<'a> {
+pub(crate) struct ViewSearch<'a> {
     rays: &'a SceneRays,
     to_light: Vec3,
     offset: f32,
 }
 
-impl<'a> Scout<'a> {
+impl<'a> ViewSearch<'a> {
     pub(crate) fn new(rays: &'a SceneRays, direction: Vec3, bounds: &Aabb) -> Self {
         Self { rays, to_light: -direction, offset: (bounds.max - bounds.min).length() * RAY_OFFSET }
     }

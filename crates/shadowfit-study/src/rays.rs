@@ -29,12 +29,8 @@ impl SceneRays {
         self.triangles = triangles;
     }
 
-    /// Builds the rays' view of a scene in a pose, in world space.
-    pub fn new(scene: &Scene, pose: &Pose) -> Self {
-        Self::from_origin(scene, pose, DVec3::ZERO)
-    }
-
-    /// The same relative to a world position, in metres, for scenes far from the world's own origin.
+    /// Makes a scene's casters in a pose ready for rays. `origin` is the world position, in metres, that everything is
+    /// relative to: f32 rays are exact only for scenes near it.
     pub fn from_origin(scene: &Scene, pose: &Pose, origin: DVec3) -> Self {
         let instances = scene.instances();
         let triangles = casters(scene, &instances, pose, origin);

@@ -11,7 +11,7 @@ use shadowfit::{
 };
 use shadowfit_truth::PictureTally;
 
-use crate::study::{Comparison, Knowledge, SharedTruth, Shot, Technique};
+use crate::{Comparison, ReceiverSource, SharedTruth, Technique, View, ensure_judged};
 
 /// What is counted against a technique: weights of shares in per cent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,20 +100,20 @@ impl Change {
 ///
 /// # Errors
 ///
-/// When there are no frames, or one cannot be drawn.
+/// When there are no views, one cannot be drawn, or none shows a surface that faces the light.
 pub fn tune(
     comparison: &mut Comparison,
-    shots: &[Shot],
+    views: &[View],
     budget: Budget,
     weights: &Weights,
     progress: &mut dyn FnMut(usize, usize) -> bool,
 ) -> Result<Tuned> {
-    ensure!(!shots.is_empty(), "there is no frame to tune for");
-    let mut truths: Vec<SharedTruth> = shots.iter().map(|_| SharedTruth::default()).collect();
+    ensure!(!views.is_empty(), "there is no frame to tune for");
+    let mut truths: Vec<SharedTruth> = views.iter().map(|_| SharedTruth::default()).collect();
     let rounds = rounds(budget);
     let most = 1 + rounds.iter().map(Vec::len).sum::<usize>();
     let mut best = start(budget);
-    let mut tally = measure(comparison, shots, &mut truths, &best)?;
+    let mut tally = measure(comparison, views, &mut truths, &best)?;
     let mut error = weights.error(&tally);
     let mut tried = vec![best.clone()];
     let mut steps = vec![Step { what: "the start".to_owned(), error, tally: tally.clone(), is_kept: true }];
@@ -129,7 +129,7 @@ pub fn tune(
                 continue;
             }
             tried.push(candidate.clone());
-            let found = measure(comparison, shots, &mut truths, &candidate).with_context(|| change.what.clone())?;
+            let found = measure(comparison, views, &mut truths, &candidate).with_context(|| change.what.clone())?;
             let new_error = weights.error(&found);
             steps.push(Step { what: change.what, error: new_error, tally: found.clone(), is_kept: false });
             if new_error < error {
@@ -159,7 +159,7 @@ fn start(budget: Budget) -> Technique {
     Technique {
         name: "start".to_owned(),
         what: String::new(),
-        receivers: Knowledge::Objects,
+        receivers: ReceiverSource::Objects,
         maps: CascadeSettings {
             fit,
             count: budget.maps,
@@ -185,10 +185,10 @@ fn rounds(budget: Budget) -> Vec<Vec<Change>> {
 
 fn fits() -> Vec<Change> {
     let kinds = [
-        ("least rectangles of the frustum", FitKind::Oriented, Knowledge::Objects),
-        ("spheres around the frustum's slices", FitKind::Sphere, Knowledge::Objects),
-        ("least rectangles around the objects in view", FitKind::Focused, Knowledge::Objects),
-        ("least rectangles around the triangle clusters in view", FitKind::Focused, Knowledge::Clusters),
+        ("least rectangles of the frustum", FitKind::Oriented, ReceiverSource::Objects),
+        ("spheres around the frustum's slices", FitKind::Sphere, ReceiverSource::Objects),
+        ("least rectangles around the objects in view", FitKind::Focused, ReceiverSource::Objects),
+        ("least rectangles around the triangle clusters in view", FitKind::Focused, ReceiverSource::Clusters),
     ];
     let change = |(what, kind, receivers)| {
         Change::new(what, move |technique: &mut Technique| {
@@ -226,11 +226,11 @@ fn filters() -> Vec<Change> {
 
 fn splits() -> Vec<Change> {
     let schemes = [
-        ("uniform cuts", SplitScheme::Uniform),
-        ("practical cuts, 0.8", SplitScheme::Practical(0.8)),
-        ("logarithmic cuts", SplitScheme::Logarithmic),
-        ("cuts from the boxes", SplitScheme::FromBoxes),
-        ("cuts from a histogram of visible depth", SplitScheme::FromHistogram),
+        ("uniform splits", SplitScheme::Uniform),
+        ("practical splits, 0.8", SplitScheme::Practical(0.8)),
+        ("logarithmic splits", SplitScheme::Logarithmic),
+        ("splits from the boxes", SplitScheme::FromBoxes),
+        ("splits from a histogram of visible depth", SplitScheme::FromHistogram),
     ];
     let change = |(what, splits)| Change::new(what, move |technique: &mut Technique| technique.maps.splits = splits);
     schemes.into_iter().map(change).collect()
@@ -283,19 +283,20 @@ fn fine_biases() -> Vec<Change> {
 /// Sums over all frames.
 fn measure(
     comparison: &mut Comparison,
-    shots: &[Shot],
+    views: &[View],
     truths: &mut [SharedTruth],
     technique: &Technique,
 ) -> Result<PictureTally> {
     comparison.clear();
     comparison.add(technique.clone())?;
     let mut tally = PictureTally::default();
-    for (shot, truth) in shots.iter().zip(truths) {
-        for outcome in comparison.frame(shot, truth)? {
+    for (view, truth) in views.iter().zip(truths) {
+        for outcome in comparison.frame(view, truth)? {
             tally.merge(&outcome.judged.tally);
         }
     }
     comparison.clear();
+    ensure_judged(&tally)?;
     Ok(tally)
 }
 
@@ -327,13 +328,27 @@ mod tests {
     }
 
     #[test]
-    fn the_error_is_the_weighted_sum_of_the_columns() {
+    fn the_error_is_the_sum_of_the_weighted_shares_in_per_cent() {
+        let all = ClassTally { facing: 200, wrong: 30, false_shadow: 10, false_light: 4, hole: 6, edge: 10 };
         let tally = PictureTally {
             frames: 1,
-            all: ClassTally { facing: 100, wrong: 10, hole: 5, ..ClassTally::default() },
+            all,
+            error: 5.0,
+            crawl_compared: 50,
+            crawl_different: 4,
             ..PictureTally::default()
         };
-        let weights = Weights { wrong: 1.0, hole: 2.0, ..Weights::default() };
-        assert!((weights.error(&tally) - 20.0).abs() < 1e-9);
+        let none = Weights { wrong: 0.0, false_shadow: 0.0, false_light: 0.0, hole: 0.0, mean_error: 0.0, crawl: 0.0 };
+        for (weights, error) in [
+            (Weights { wrong: 1.0, ..none }, 15.0),
+            (Weights { false_shadow: 2.0, ..none }, 10.0),
+            (Weights { false_light: 3.0, ..none }, 6.0),
+            (Weights { hole: 1.0, ..none }, 3.0),
+            (Weights { mean_error: 4.0, ..none }, 10.0),
+            (Weights { crawl: 0.5, ..none }, 4.0),
+            (Weights { wrong: 1.0, hole: 2.0, crawl: 1.0, ..none }, 29.0),
+        ] {
+            assert!((weights.error(&tally) - error).abs() < 1e-9, "{weights:?}: {}", weights.error(&tally));
+        }
     }
 }

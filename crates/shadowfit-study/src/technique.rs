@@ -15,7 +15,7 @@ use shadowfit_wgpu::{MAX_MAPS, RESOLUTIONS, ShadowMapDescriptor};
 
 /// What a fit is told of the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Knowledge {
+pub enum ReceiverSource {
     /// The boxes of its objects.
     Objects,
     /// The boxes of clusters of its triangles.
@@ -35,7 +35,7 @@ pub struct Technique {
     pub what: String,
     /// What the fit is told of the scene.
     #[serde(default)]
-    pub receivers: Knowledge,
+    pub receivers: ReceiverSource,
     /// The maps and how they are fitted.
     #[serde(default, serialize_with = "without_overrides")]
     pub maps: CascadeSettings,
@@ -73,7 +73,7 @@ fn without_overrides<S: Serializer>(maps: &CascadeSettings, serializer: S) -> Re
 struct Named {
     name: &'static str,
     what: &'static str,
-    receivers: Knowledge,
+    receivers: ReceiverSource,
     maps: fn() -> CascadeSettings,
 }
 
@@ -84,37 +84,37 @@ const NAMED: [Named; 10] = [
     Named {
         name: "xna-1",
         what: "one map by the XNA sample's rule",
-        receivers: Knowledge::Objects,
+        receivers: ReceiverSource::Objects,
         maps: || single(FitKind::XnaSample),
     },
     Named {
         name: "aabb-1",
         what: "one map, box of the frustum in the light's axes",
-        receivers: Knowledge::Objects,
+        receivers: ReceiverSource::Objects,
         maps: || single(FitKind::FrustumAabb),
     },
     Named {
         name: "oriented-1",
         what: "one map, least rectangle around the frustum",
-        receivers: Knowledge::Objects,
+        receivers: ReceiverSource::Objects,
         maps: || single(FitKind::Oriented),
     },
     Named {
         name: "focused-1",
         what: "one map, least rectangle around the objects' boxes in view",
-        receivers: Knowledge::Objects,
+        receivers: ReceiverSource::Objects,
         maps: || single(FitKind::Focused),
     },
     Named {
         name: "clusters-1",
         what: "one map, least rectangle around the triangle clusters' boxes in view",
-        receivers: Knowledge::Clusters,
+        receivers: ReceiverSource::Clusters,
         maps: || single(FitKind::Focused),
     },
     Named {
         name: "stable-4",
-        what: "4 maps around spheres on a fixed grid of texels, cuts from the clusters' boxes and held",
-        receivers: Knowledge::Clusters,
+        what: "4 maps around spheres on a fixed grid of texels, splits from the clusters' boxes and held",
+        receivers: ReceiverSource::Clusters,
         maps: || {
             let settings = several(FitKind::Sphere, SplitScheme::FromBoxes, Stabilise::Snap);
             settings.with_hold(HoldSettings::default().with_waste(4.0))
@@ -122,26 +122,26 @@ const NAMED: [Named; 10] = [
     },
     Named {
         name: "focused-4",
-        what: "4 maps, least rectangles around the objects' boxes in view, cuts from the boxes",
-        receivers: Knowledge::Objects,
+        what: "4 maps, least rectangles around the objects' boxes in view, splits from the boxes",
+        receivers: ReceiverSource::Objects,
         maps: || several(FitKind::Focused, SplitScheme::FromBoxes, Stabilise::Off),
     },
     Named {
         name: "clusters-4",
-        what: "4 maps, least rectangles around the triangle clusters' boxes in view, cuts from the boxes",
-        receivers: Knowledge::Clusters,
+        what: "4 maps, least rectangles around the triangle clusters' boxes in view, splits from the boxes",
+        receivers: ReceiverSource::Clusters,
         maps: || several(FitKind::Focused, SplitScheme::FromBoxes, Stabilise::Off),
     },
     Named {
         name: "histogram-4",
-        what: "as clusters-4, cuts from a histogram of the visible depth of the frame before",
-        receivers: Knowledge::Clusters,
+        what: "as clusters-4, splits from a histogram of the visible depth of the frame before",
+        receivers: ReceiverSource::Clusters,
         maps: || several(FitKind::Focused, SplitScheme::FromHistogram, Stabilise::Off),
     },
     Named {
         name: "calm-4",
         what: "as histogram-4, maps held while they serve and moved by whole texels",
-        receivers: Knowledge::Clusters,
+        receivers: ReceiverSource::Clusters,
         maps: || several(FitKind::Focused, SplitScheme::FromHistogram, Stabilise::Hysteresis),
     },
 ];
@@ -282,7 +282,8 @@ impl Technique {
             format: self.format,
             filter: self.filter,
             depth: self.maps.fit.depth,
-            depth_clamp: self.maps.fit.casters == CasterPolicy::DepthClamp,
+            // The XNA sample's fit has no caster policy.
+            depth_clamp: self.maps.fit.casters == CasterPolicy::DepthClamp && self.maps.fit.kind != FitKind::XnaSample,
         }
     }
 }

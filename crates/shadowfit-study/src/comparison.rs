@@ -1,0 +1,161 @@
+//! Techniques side by side in one scene, frame by frame.
+
+use anyhow::{Context, Result, ensure};
+use shadowfit_render::{Gpu, Renderer};
+use shadowfit_scene::Scene;
+use shadowfit_truth::{Judged, PictureTally};
+use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
+
+use crate::{Evaluator, Judging, PreparedScene, SharedTruth, Technique, TechniqueFitter, View};
+
+/// Samples per pixel of pictures that are compared.
+const SAMPLES: u32 = 1;
+
+/// One technique in a comparison.
+#[derive(Debug)]
+struct Entry {
+    fitter: TechniqueFitter,
+    evaluator: Evaluator,
+}
+
+/// Techniques that are compared in a scene.
+#[derive(Debug)]
+pub struct Comparison {
+    gpu: Gpu,
+    scene: PreparedScene,
+    judging: Judging,
+    entries: Vec<Entry>,
+}
+
+/// What a technique made of a frame.
+#[derive(Debug)]
+pub struct Outcome {
+    /// Its maps.
+    pub maps: Vec<MapFit>,
+    /// Its picture, judged.
+    pub judged: Judged,
+}
+
+impl Comparison {
+    /// A comparison without techniques.
+    ///
+    /// # Errors
+    ///
+    /// When the scene has nothing to draw.
+    pub fn new(gpu: Gpu, scene: Scene, judging: Judging) -> Result<Self> {
+        // A renderer of any shadow map has the layout that all share.
+        let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::default(), SAMPLES)?;
+        let scene = PreparedScene::new(&gpu, renderer.material_layout(), scene)?;
+        Ok(Self { gpu, scene, judging, entries: Vec::new() })
+    }
+
+    /// Adds a technique.
+    ///
+    /// # Errors
+    ///
+    /// When its shadow map cannot be made on this GPU.
+    pub fn add(&mut self, technique: Technique) -> Result<()> {
+        let renderer = Renderer::new(&self.gpu, &technique.descriptor(), SAMPLES)
+            .with_context(|| format!("technique {}", technique.name))?;
+        let evaluator = Evaluator::new(renderer, technique.bias, self.judging);
+        self.entries.push(Entry { fitter: TechniqueFitter::new(technique), evaluator });
+        Ok(())
+    }
+
+    /// Takes all techniques out.
+    pub fn clear(&mut self) {
+        self.entries.clear();
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &PreparedScene {
+        &self.scene
+    }
+
+    /// The GPU that draws.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// The techniques, in the order in which they were added.
+    pub fn techniques(&self) -> impl Iterator<Item = &Technique> {
+        self.entries.iter().map(|entry| entry.fitter.technique())
+    }
+
+    /// Poses the scene at a time of an animation, in seconds.
+    pub fn set_time(&mut self, animation: usize, seconds: f32) {
+        self.scene.set_time(&self.gpu, animation, seconds);
+    }
+
+    /// Fits, draws and judges a frame with every technique, in the order in which they were added. The truth is traced
+    /// unless it is there already, of the same frame.
+    ///
+    /// # Errors
+    ///
+    /// When the camera makes no sense or the device cannot tell triangles apart.
+    pub fn frame(&mut self, view: &View, truth: &mut SharedTruth) -> Result<Vec<Outcome>> {
+        let mut outcomes = Vec::with_capacity(self.entries.len());
+        for Entry { fitter, evaluator } in &mut self.entries {
+            let maps = fitter.fit(&self.scene, view);
+            let maps = maps.with_context(|| format!("technique {}", fitter.technique().name))?;
+            let judged = evaluator.judge(&self.gpu, &mut self.scene, view, &maps, truth)?;
+            outcomes.push(Outcome { maps, judged });
+        }
+        Ok(outcomes)
+    }
+
+    /// A technique's evaluator and the scene, to judge frames live.
+    pub fn evaluator(&mut self, technique: usize) -> (&Gpu, &mut Evaluator, &mut PreparedScene) {
+        (&self.gpu, &mut self.entries[technique].evaluator, &mut self.scene)
+    }
+
+    /// The shaded picture of a frame by a technique, with maps that [`Self::frame`] gave: sRGB pixels, four bytes
+    /// each, rows from the top; and the same judged anew.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::frame`].
+    pub fn picture(
+        &mut self,
+        technique: usize,
+        view: &View,
+        maps: &[MapFit],
+        truth: &mut SharedTruth,
+    ) -> Result<(Vec<u8>, Judged)> {
+        let evaluator = &mut self.entries[technique].evaluator;
+        let alone = View { is_first: true, ..*view };
+        let judged = evaluator.judge(&self.gpu, &mut self.scene, &alone, maps, truth)?;
+        Ok((evaluator.picture(&self.gpu, &mut self.scene, view, maps)?, judged))
+    }
+}
+
+/// Refuses the sums of frames in which nothing was judged: their shares of wrong pixels would all be 0.
+///
+/// # Errors
+///
+/// When there is no frame, or no pixel of any faces the light.
+pub fn ensure_judged(tally: &PictureTally) -> Result<()> {
+    ensure!(tally.frames > 0, "nothing was judged: there is no frame");
+    ensure!(
+        tally.all.facing > 0,
+        "nothing was judged: in none of the {} frames a pixel faces the light; choose another path or light",
+        tally.frames
+    );
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shadowfit_truth::ClassTally;
+
+    #[test]
+    fn sums_without_a_frame_or_a_facing_pixel_are_refused() {
+        let none = PictureTally::default();
+        assert!(ensure_judged(&none).is_err_and(|error| error.to_string().contains("no frame")));
+        let dark = PictureTally { frames: 3, ..none };
+        assert!(ensure_judged(&dark).is_err_and(|error| error.to_string().contains("3 frames")));
+        let lit = PictureTally { all: ClassTally { facing: 1, ..ClassTally::default() }, ..dark };
+        assert!(ensure_judged(&lit).is_ok());
+    }
+}

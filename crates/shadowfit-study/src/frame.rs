@@ -1,0 +1,106 @@
+//! The one place where a frame of the samples' renderer is put together, and its haze chosen.
+
+use shadowfit::PerspectiveCamera;
+use shadowfit::settings::{BiasSettings, CameraSettings};
+use shadowfit_render::{Atmosphere, Frame, Inset, Line};
+use shadowfit_wgpu::MapFit;
+
+use crate::View;
+
+/// What a picture shows beside the shaded scene, and through which camera. By default the view's own camera sees the
+/// scene with its shadows, and nothing else is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameOptions<'a> {
+    /// Camera that the scene is seen through instead of the view's, from whose eye points still choose their map.
+    pub outside: Option<PerspectiveCamera>,
+    /// Lines drawn over the scene.
+    pub lines: &'a [Line],
+    /// Shadow map shown in a corner.
+    pub inset: Option<Inset>,
+    /// Whether shadows are drawn.
+    pub shadows: bool,
+    /// Distance that the haze suits, in metres: it grows as dense there as the default haze at the default camera's far
+    /// plane. The far plane of the camera that sees the scene if `None`.
+    pub sight: Option<f32>,
+}
+
+impl Default for FrameOptions<'_> {
+    fn default() -> Self {
+        Self { outside: None, lines: &[], inset: None, shadows: true, sight: None }
+    }
+}
+
+impl FrameOptions<'_> {
+    /// Haze that suits the size of what is seen, so that a chair is not lost in it nor a town without.
+    pub(crate) fn atmosphere(&self, view: &View) -> Atmosphere {
+        let atmosphere = Atmosphere::default();
+        let sight = self.sight.unwrap_or_else(|| self.outside.unwrap_or(view.camera).far);
+        let usual = CameraSettings::default().far;
+        Atmosphere { haze_per_metre: atmosphere.haze_per_metre * usual / sight.max(1e-3), ..atmosphere }
+    }
+}
+
+/// The frame of a view. `atmosphere` is that of the options, which the frame borrows.
+pub(crate) fn frame<'a>(
+    view: &'a View,
+    maps: &'a [MapFit],
+    bias: &'a BiasSettings,
+    options: &'a FrameOptions<'a>,
+    atmosphere: &'a Atmosphere,
+) -> Frame<'a> {
+    Frame {
+        camera: options.outside.as_ref().unwrap_or(&view.camera),
+        direction: view.direction,
+        maps,
+        choice: options.outside.map(|_| (view.camera.eye, view.camera.forward.normalize())),
+        bias,
+        shadows: options.shadows,
+        atmosphere,
+        lines: options.lines,
+        inset: options.inset,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec3, Vec3};
+
+    use super::*;
+
+    fn camera(far: f32) -> PerspectiveCamera {
+        PerspectiveCamera {
+            eye: DVec3::ZERO,
+            forward: Vec3::NEG_Z,
+            up: Vec3::Y,
+            fov_y: 0.8,
+            aspect: 1.0,
+            near: 0.1,
+            far,
+        }
+    }
+
+    #[test]
+    fn haze_thins_with_the_distance_that_it_suits() {
+        let view = View { camera: camera(10.0), direction: Vec3::NEG_Y, is_first: true };
+        let haze = |options: FrameOptions| options.atmosphere(&view).haze_per_metre;
+        let own = haze(FrameOptions::default());
+        let near = |value: f32, expected: f32| (value - expected).abs() <= 1e-6 * expected;
+        assert!(near(haze(FrameOptions { sight: Some(20.0), ..FrameOptions::default() }), own / 2.0));
+        assert!(near(haze(FrameOptions { outside: Some(camera(40.0)), ..FrameOptions::default() }), own / 4.0));
+        let usual = View { camera: camera(CameraSettings::default().far), ..view };
+        let default = Atmosphere::default().haze_per_metre;
+        assert!(near(FrameOptions::default().atmosphere(&usual).haze_per_metre, default));
+    }
+
+    #[test]
+    fn a_frame_seen_from_outside_keeps_the_eye_that_chooses_the_maps() {
+        let view = View { camera: camera(10.0), direction: Vec3::NEG_Y, is_first: true };
+        let outside = PerspectiveCamera { eye: DVec3::new(5.0, 6.0, 7.0), ..camera(100.0) };
+        let options = FrameOptions { outside: Some(outside), ..FrameOptions::default() };
+        let (bias, atmosphere) = (BiasSettings::default(), options.atmosphere(&view));
+        let drawn = frame(&view, &[], &bias, &options, &atmosphere);
+        assert_eq!((drawn.camera.eye, drawn.choice), (outside.eye, Some((DVec3::ZERO, Vec3::NEG_Z))));
+        let inside = FrameOptions::default();
+        assert_eq!(frame(&view, &[], &bias, &inside, &atmosphere).choice, None);
+    }
+}

@@ -1,0 +1,73 @@
+//! How pictures are judged, and the truth that all techniques of a frame share.
+
+use shadowfit_render::ProbePixel;
+use shadowfit_truth::{PixelCamera, Truth, TruthSettings};
+
+use crate::{PreparedScene, View};
+
+/// How pictures are judged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Judging {
+    /// Width and height, in pixels.
+    pub size: [u32; 2],
+    /// Distance over the surface at which shadow rays start, in metres.
+    pub ray_offset: f64,
+    /// Angular radius of the sun, in radians; 0 for hard shadows.
+    pub sun_radius: f64,
+    /// Rays to a sun that is no point.
+    pub sun_rays: u32,
+    /// Whether crawl is measured, which draws each frame once more.
+    pub crawl: bool,
+    /// Whether only pixels of the scene's subject count; all do in a scene without one.
+    pub subject_only: bool,
+}
+
+impl Default for Judging {
+    fn default() -> Self {
+        Self { size: [1280, 720], ray_offset: 1e-3, sun_radius: 0.0, sun_rays: 64, crawl: true, subject_only: false }
+    }
+}
+
+impl Judging {
+    /// How the truth of a view is traced: shadows are judged up to the camera's far plane.
+    pub(crate) fn truth_settings(&self, view: &View) -> TruthSettings {
+        TruthSettings {
+            to_light: -view.direction.as_dvec3().normalize(),
+            ray_offset: self.ray_offset,
+            sun_radius: self.sun_radius,
+            sun_rays: self.sun_rays,
+            max_distance: f64::from(view.camera.far),
+        }
+    }
+
+    /// The rays of a view's pixels, relative to the origin of the scene's rays.
+    pub(crate) fn pixel_camera(&self, scene: &PreparedScene, view: &View) -> PixelCamera {
+        PixelCamera::new(&scene.camera_for_rays(&view.camera), self.size)
+    }
+}
+
+/// The truth of a frame, for all techniques: traced when the first of them has said which triangles are seen.
+#[derive(Debug, Default)]
+pub struct SharedTruth(Option<Truth>);
+
+impl SharedTruth {
+    /// The truth, once a picture has been judged.
+    pub fn get(&self) -> Option<&Truth> {
+        self.0.as_ref()
+    }
+
+    /// The truth, traced from what a probe has seen unless it is there already.
+    pub(crate) fn or_trace(
+        &mut self,
+        scene: &PreparedScene,
+        view: &View,
+        judging: &Judging,
+        pixels: &[Option<ProbePixel>],
+    ) -> &Truth {
+        self.0.get_or_insert_with(|| {
+            let seen: Vec<Option<u32>> = pixels.iter().map(|pixel| pixel.map(|pixel| pixel.triangle)).collect();
+            let camera = judging.pixel_camera(scene, view);
+            Truth::trace(&scene.rays().tracer, &camera, &judging.truth_settings(view), &seen)
+        })
+    }
+}

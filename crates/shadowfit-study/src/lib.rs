@@ -1,0 +1,38 @@
+//! Techniques on the same frames: each is fitted, drawn by the samples' renderer, and judged against rays. No window.
+//!
+//! A [`PreparedScene`] is a scene that can be drawn, traced and fitted to; a [`View`] is a camera and a light. A
+//! [`Technique`] is all that decides how shadows come out: its [`TechniqueFitter`] makes the maps of a view, and an
+//! [`Evaluator`] draws them and judges the picture. A [`Comparison`] does so for several techniques, and [`tune()`]
+//! searches the best one. The viewer draws and judges through the same fitter and evaluator.
+
+mod agreement;
+mod boxes;
+mod comparison;
+mod evaluator;
+mod fitter;
+mod frame;
+mod histogram;
+mod judging;
+mod live;
+mod maps;
+mod rays;
+mod rust_code;
+mod scene;
+mod technique;
+mod tune;
+mod view;
+
+pub use agreement::Agreement;
+pub use comparison::{Comparison, Outcome, ensure_judged};
+pub use evaluator::Evaluator;
+pub use fitter::TechniqueFitter;
+pub use frame::FrameOptions;
+pub use histogram::SeenDepths;
+pub use judging::{Judging, SharedTruth};
+pub use live::LiveTruth;
+pub use maps::fit_map;
+pub use rays::SceneRays;
+pub use scene::{NothingToDraw, PreparedScene};
+pub use technique::{DEFAULT_TECHNIQUE, ReceiverSource, Technique};
+pub use tune::{Budget, Step, Tuned, Weights, tune};
+pub use view::View;

@@ -1,0 +1,81 @@
+//! The classes on the GPU: the same pictures judged where they are drawn.
+
+use std::time::Instant;
+
+use anyhow::{Context, Result};
+use glam::DVec3;
+use shadowfit_render::Gpu;
+use shadowfit_truth::gpu::{GpuJudge, GpuJudgeInput, GpuPixel, GpuTracer};
+use shadowfit_truth::{MapsSeen, PixelCamera, TruthSettings};
+
+use crate::PreparedScene;
+
+/// A scene's rays on the GPU, and the passes that judge with them.
+#[derive(Debug)]
+pub struct LiveTruth {
+    tracer: GpuTracer,
+    judge: GpuJudge,
+}
+
+/// A picture that is judged live.
+pub(crate) struct LiveInput<'a> {
+    pub(crate) camera: PixelCamera,
+    pub(crate) settings: TruthSettings,
+    pub(crate) maps: MapsSeen<'a>,
+    pub(crate) seen: &'a wgpu::TextureView,
+}
+
+impl LiveTruth {
+    /// Uploads the rays of a scene.
+    ///
+    /// # Errors
+    ///
+    /// When the scene is too large for the GPU.
+    pub fn new(gpu: &Gpu, scene: &PreparedScene) -> Result<Self> {
+        let tracer = GpuTracer::new(&gpu.device, &gpu.queue, &scene.rays().tracer, DVec3::ZERO)
+            .with_context(|| scene.scene().name.clone())?;
+        Ok(Self { tracer, judge: GpuJudge::new(&gpu.device) })
+    }
+
+    /// Takes over a new pose of the scene.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::new`].
+    pub fn set_pose(&mut self, gpu: &Gpu, scene: &PreparedScene) -> Result<()> {
+        Ok(self.tracer.update(&gpu.device, &gpu.queue, &scene.rays().tracer)?)
+    }
+
+    /// Bytes on the GPU.
+    pub fn bytes(&self) -> u64 {
+        self.tracer.bytes()
+    }
+
+    pub(crate) fn judge(&mut self, gpu: &Gpu, input: &LiveInput<'_>) -> Result<Vec<GpuPixel>> {
+        self.submit(gpu, input)?;
+        Ok(self.judge.read(&gpu.device, &gpu.queue)?)
+    }
+
+    /// Mean time of one picture over `repeats`, in milliseconds: from the first submission to the end of the last.
+    pub(crate) fn time(&mut self, gpu: &Gpu, input: &LiveInput<'_>, repeats: u32) -> Result<f64> {
+        // Clocks and caches warm up first.
+        for _ in 0..repeats {
+            self.submit(gpu, input)?;
+        }
+        gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
+        let start = Instant::now();
+        for _ in 0..repeats {
+            self.submit(gpu, input)?;
+        }
+        gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
+        Ok(start.elapsed().as_secs_f64() * 1e3 / f64::from(repeats.max(1)))
+    }
+
+    fn submit(&mut self, gpu: &Gpu, input: &LiveInput<'_>) -> Result<()> {
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let judged = GpuJudgeInput { camera: &input.camera, settings: &input.settings, maps: &input.maps };
+        self.judge.judge(&gpu.device, &gpu.queue, &mut encoder, &self.tracer, input.seen, &judged)?;
+        gpu.queue.submit([encoder.finish()]);
+        Ok(())
+    }
+}

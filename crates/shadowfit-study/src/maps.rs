@@ -1,0 +1,38 @@
+//! Fitted maps as the measures of `shadowfit-truth` take them.
+
+use glam::{DMat4, DVec3, Vec3};
+use shadowfit::bias;
+use shadowfit_truth::MapsSeen;
+use shadowfit_truth::peers::{FitMap, ShadowMap};
+use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
+
+/// Stands for no end of a map's view depths, in metres: fit files hold finite numbers.
+const NO_END: f64 = 1e9;
+
+/// A map as fit files have it: the f32 matrix that the renderer gets, made absolute in f64.
+pub fn fit_map(map: &MapFit) -> FitMap {
+    FitMap {
+        view_proj: clip_from(map, DVec3::ZERO).to_cols_array(),
+        resolution: map.fit.resolution.x,
+        resolution_xy: (map.fit.resolution.x != map.fit.resolution.y).then(|| map.fit.resolution.to_array()),
+        split_near: 0.0,
+        split_far: f64::from(map.far).min(NO_END),
+    }
+}
+
+/// Maps as the measures take them, for positions relative to a world position. `direction` is the light's direction of
+/// travel.
+pub(crate) fn measured(maps: &[MapFit], direction: Vec3, origin: DVec3) -> Vec<ShadowMap> {
+    let from_origin = |map: &MapFit| FitMap { view_proj: clip_from(map, origin).to_cols_array(), ..fit_map(map) };
+    maps.iter().map(|map| ShadowMap::new(&from_origin(map), -direction.as_dvec3())).collect()
+}
+
+/// How the maps of a shadow map are read.
+pub(crate) fn maps_seen<'a>(maps: &'a [ShadowMap], descriptor: &ShadowMapDescriptor) -> MapsSeen<'a> {
+    MapsSeen { maps, reach: bias::reach(descriptor.filter), depth_clamp: descriptor.depth_clamp }
+}
+
+/// Clip space from positions relative to a world position.
+fn clip_from(map: &MapFit, origin: DVec3) -> DMat4 {
+    map.fit.clip_from_world.as_dmat4() * DMat4::from_translation(origin - map.fit.origin)
+}

@@ -1,0 +1,15 @@
+//! A camera and a light: what a picture is of, beside the scene.
+
+use glam::Vec3;
+use shadowfit::PerspectiveCamera;
+
+/// A camera and a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Eye and lens; world space, metres.
+    pub camera: PerspectiveCamera,
+    /// Unit direction of travel of the light, world axes.
+    pub direction: Vec3,
+    /// Whether a path begins here: nothing is kept from the view before, and crawl is not measured against it.
+    pub is_first: bool,
+}
