@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use glam::{DVec3, UVec2};
 use indicatif::{ProgressBar, ProgressStyle};
-use shadowfit::LightFit;
 use shadowfit::settings::{BiasSettings, FilterKind, MapFormat};
+use shadowfit::{Bias, LightFit};
 use shadowfit_render::Gpu;
 use shadowfit_scene::Scene;
 use shadowfit_truth::Tracer;
@@ -91,6 +91,7 @@ fn measure(study: &mut Study, args: &Args, mut pictures: Option<&mut Pictures>, 
 struct Pictures {
     gpu: Gpu,
     every: u32,
+    bias: BiasSettings,
     fits: Vec<Drawn>,
 }
 
@@ -113,12 +114,12 @@ impl Pictures {
             let maps: Vec<Vec<FitMap>> = maps.into_iter().map(<[FitMap]>::to_vec).collect();
             let descriptor = descriptor(study.scenarios(), file, &maps, filter, args.drawing.format());
             let descriptor = descriptor.with_context(|| format!("{}: cannot be drawn", path.display()))?;
-            let contender = contender(&gpu, &descriptor, bias, judging);
+            let contender = contender(&gpu, &descriptor, judging);
             let contender = contender.with_context(|| format!("{}: cannot be drawn", path.display()))?;
             Ok(Drawn { name: file.peer.clone(), contender, maps })
         });
         let fits = fits.collect::<Result<Vec<_>>>()?;
-        Ok(Self { gpu, every: args.every, fits })
+        Ok(Self { gpu, every: args.every, bias, fits })
     }
 
     /// Whether a frame is drawn. Those of quick looks are not neighbours, so that they have no crawl.
@@ -152,7 +153,7 @@ impl Pictures {
             let shot = shot(frame, is_first);
             let mut truth = SharedTruth::default();
             for (fit, drawn) in self.fits.iter_mut().enumerate() {
-                let maps = map_fits(&drawn.maps[index], &shot)
+                let maps = map_fits(&drawn.maps[index], &shot, &self.bias)
                     .with_context(|| format!("{}: frame {}: cannot be drawn", drawn.name, frame.id))?;
                 let judged = drawn.contender.judge(&self.gpu, &mut subject, &shot, &maps, &mut truth)?;
                 study.add_picture(fit, index, &judged.tally);
@@ -163,11 +164,11 @@ impl Pictures {
     }
 }
 
-fn contender(gpu: &Gpu, descriptor: &ShadowMapDescriptor, bias: BiasSettings, judging: Judging) -> Result<Contender> {
+fn contender(gpu: &Gpu, descriptor: &ShadowMapDescriptor, judging: Judging) -> Result<Contender> {
     if descriptor.depth_clamp && !gpu.has_depth_clamp() {
         anyhow::bail!("its casters are clamped to the near plane, and this graphics adapter cannot do that");
     }
-    Contender::new(gpu, descriptor, bias, judging)
+    Contender::new(gpu, descriptor, judging)
 }
 
 /// The shadow map that holds all maps of a file.
@@ -197,9 +198,13 @@ fn shot(frame: &Frame, is_first: bool) -> Shot {
     Shot { camera: frame.camera(), direction, is_first }
 }
 
-fn map_fits(maps: &[FitMap], shot: &Shot) -> Result<Vec<MapFit>> {
+fn map_fits(maps: &[FitMap], shot: &Shot, bias: &BiasSettings) -> Result<Vec<MapFit>> {
     let far = |split: f64| if split >= f64::from(shot.camera.far) { f32::MAX } else { split as f32 };
-    maps.iter().map(|map| Ok(MapFit { fit: light_fit(map, shot)?, far: far(map.split_far) })).collect()
+    let fitted = |map: &FitMap| {
+        let fit = light_fit(map, shot)?;
+        Ok(MapFit { far: far(map.split_far), ..MapFit::new(fit, Bias::from_texels(bias, &fit)) })
+    };
+    maps.iter().map(fitted).collect()
 }
 
 fn light_fit(map: &FitMap, shot: &Shot) -> Result<LightFit> {

@@ -7,10 +7,10 @@ use core::fmt;
 use glam::{DVec3, Mat4, Vec3};
 use shadowfit::figures::Figures;
 use shadowfit::settings::{CasterPolicy, FitSettings, LightSettings, Settings};
-use shadowfit::{DepthConvention, FitError, LightFit, PerspectiveCamera, ViewFrustum, diagnostics};
+use shadowfit::{Bias, DepthConvention, FitError, LightFit, PerspectiveCamera, ViewFrustum, diagnostics};
 use shadowfit_egui::Artefact;
 use shadowfit_render::{
-    Atmosphere, FlyCamera, FlyInput, Frame, Gpu, GpuScene, Inset, Line, Picture, Renderer, Statistics,
+    Atmosphere, FlyCamera, FlyInput, Frame, Gpu, GpuScene, Inset, Line, RenderTarget, Renderer, Statistics,
 };
 use shadowfit_scene::{Aabb, Lens, Pose, Scene};
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor, ShadowMapError};
@@ -174,8 +174,8 @@ impl Stage {
     }
 
     /// A picture that this stage can draw into.
-    pub fn picture(&self, size: [u32; 2]) -> Picture {
-        self.renderer.picture(&self.gpu, size)
+    pub fn picture(&self, size: [u32; 2]) -> RenderTarget {
+        self.renderer.target(&self.gpu, size)
     }
 
     /// The artefact on show, if any.
@@ -311,7 +311,7 @@ impl Stage {
     }
 
     /// Draws the present view into a picture.
-    pub fn draw(&mut self, picture: &Picture) {
+    pub fn draw(&mut self, picture: &RenderTarget) {
         self.problem = None;
         self.update_shadow_map();
         let fitted = self.fitted(picture.size);
@@ -326,7 +326,7 @@ impl Stage {
         };
         let inset = fitted.fits.first().filter(|_| self.settings.view.inset).map(|fit| self.inset(fit, picture.size));
         let atmosphere = self.atmosphere(&camera);
-        let maps = map_fits(&fitted.fits);
+        let maps = map_fits(&fitted.fits, &self.settings);
         let frame = frame(&self.settings, &camera, &maps, &atmosphere, &lines, inset);
         match self.renderer.draw(&self.gpu, &mut self.gpu_scene, &frame, picture) {
             Ok(statistics) => self.statistics = statistics,
@@ -432,21 +432,12 @@ fn frame<'a>(
     lines: &'a [Line],
     inset: Option<Inset>,
 ) -> Frame<'a> {
-    Frame {
-        camera,
-        direction: settings.light.direction(),
-        maps,
-        choice: None,
-        bias: &settings.bias,
-        shadows: settings.view.shadows,
-        atmosphere,
-        lines,
-        inset,
-    }
+    let frame = Frame::new(camera, settings.light.direction(), maps, atmosphere);
+    Frame { shadows: settings.view.shadows, lines, inset, ..frame }
 }
 
-fn map_fits(fits: &[LightFit]) -> Vec<MapFit> {
-    fits.iter().map(|fit| MapFit::from(*fit)).collect()
+fn map_fits(fits: &[LightFit], settings: &Settings) -> Vec<MapFit> {
+    fits.iter().map(|fit| MapFit::new(*fit, Bias::from_texels(&settings.bias, fit))).collect()
 }
 
 /// The map that the settings ask for, with depths that wgpu can draw: it has no -1..1.

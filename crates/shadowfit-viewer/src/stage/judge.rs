@@ -24,7 +24,7 @@ impl Stage {
     }
 
     fn judge_with_truth(&mut self, size: [u32; 2], subject_only: bool) -> Option<(Truth, Judged)> {
-        let maps = map_fits(&self.fits(size));
+        let maps = map_fits(&self.fits(size), &self.settings);
         let camera = self.perspective(size);
         let atmosphere = Atmosphere::default();
         let frame = frame(&self.settings, &camera, &maps, &atmosphere, &[], None);

@@ -43,8 +43,7 @@ impl Comparison {
     pub fn new(gpu: Gpu, scene: Scene, judging: Judging) -> Result<Self> {
         // A renderer of any technique has the layout that all share.
         let technique = Technique::default();
-        let layout =
-            Contender::new(&gpu, &technique.descriptor(), technique.bias, Judging { size: [1; 2], ..judging })?;
+        let layout = Contender::new(&gpu, &technique.descriptor(), Judging { size: [1; 2], ..judging })?;
         let subject = Subject::new(&gpu, layout.material_layout(), scene)?;
         Ok(Self { gpu, subject, judging, entries: Vec::new() })
     }
@@ -55,7 +54,7 @@ impl Comparison {
     ///
     /// When its shadow map cannot be made on this GPU.
     pub fn add(&mut self, technique: Technique) -> Result<()> {
-        let contender = Contender::new(&self.gpu, &technique.descriptor(), technique.bias, self.judging)
+        let contender = Contender::new(&self.gpu, &technique.descriptor(), self.judging)
             .with_context(|| format!("technique {}", technique.name))?;
         self.entries.push(Entry { fitter: Fitter::new(&technique), contender, technique });
         Ok(())

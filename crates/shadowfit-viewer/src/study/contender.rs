@@ -2,9 +2,8 @@
 
 use anyhow::{Context, Result};
 use glam::{DMat4, DVec2, DVec3, Vec3};
-use shadowfit::settings::BiasSettings;
 use shadowfit::{CascadeFitter, PerspectiveCamera, SplitScheme, Workspace, bias};
-use shadowfit_render::{Atmosphere, Frame, Gpu, Picture, ProbePixel, ProbeTargets, Renderer};
+use shadowfit_render::{Atmosphere, Frame, Gpu, ProbePixel, ProbeTargets, RenderTarget, Renderer};
 use shadowfit_truth::gpu::GpuPixel;
 use shadowfit_truth::peers::{FitMap, ShadowMap};
 use shadowfit_truth::{Judged, MapsBefore, MapsSeen, PixelCamera, Truth, TruthSettings, crawl, judge};
@@ -71,23 +70,22 @@ struct Before {
 #[derive(Debug)]
 pub struct Contender {
     renderer: Renderer,
-    bias: BiasSettings,
     judging: Judging,
     targets: ProbeTargets,
-    picture: Option<Picture>,
+    picture: Option<RenderTarget>,
     before: Option<Before>,
 }
 
 impl Contender {
-    /// A contender whose maps are made of `descriptor` and read with `bias`.
+    /// A contender whose maps are made of `descriptor`.
     ///
     /// # Errors
     ///
     /// When the shadow map cannot be made.
-    pub fn new(gpu: &Gpu, descriptor: &ShadowMapDescriptor, bias: BiasSettings, judging: Judging) -> Result<Self> {
+    pub fn new(gpu: &Gpu, descriptor: &ShadowMapDescriptor, judging: Judging) -> Result<Self> {
         let renderer = Renderer::new(gpu, descriptor, 1)?;
         let targets = ProbeTargets::new(&gpu.device, judging.size);
-        Ok(Self { renderer, bias, judging, targets, picture: None, before: None })
+        Ok(Self { renderer, judging, targets, picture: None, before: None })
     }
 
     /// Layout of the scenes' materials, for [`Subject::new`].
@@ -139,14 +137,14 @@ impl Contender {
     ///
     /// When a map does not suit the shadow map.
     pub fn picture(&mut self, gpu: &Gpu, subject: &mut Subject, shot: &Shot, maps: &[MapFit]) -> Result<Vec<u8>> {
-        let picture = self.picture.take().unwrap_or_else(|| self.renderer.picture(gpu, self.judging.size));
+        let picture = self.picture.take().unwrap_or_else(|| self.renderer.target(gpu, self.judging.size));
         let atmosphere = atmosphere(&shot.camera);
-        let frame = frame(shot, maps, &self.bias, &atmosphere, None);
+        let frame = frame(shot, maps, &atmosphere, None);
         let drawn = self.renderer.draw(gpu, &mut subject.gpu_scene, &frame, &picture);
         let pixels = picture.read(gpu);
         self.picture = Some(picture);
         drawn?;
-        Ok(pixels)
+        Ok(pixels?)
     }
 
     /// Draws a frame and judges it on the GPU.
@@ -190,7 +188,7 @@ impl Contender {
         judge: impl FnOnce(&LiveInput<'_>) -> Result<T>,
     ) -> Result<T> {
         let atmosphere = Atmosphere::default();
-        let frame = frame(shot, maps, &self.bias, &atmosphere, None);
+        let frame = frame(shot, maps, &atmosphere, None);
         self.renderer.draw_probe(gpu, &mut subject.gpu_scene, &frame, &self.targets)?;
         let measured = measured(maps, shot.direction, subject.rays.origin);
         judge(&LiveInput {
@@ -214,7 +212,7 @@ impl Contender {
         choice: Option<(DVec3, Vec3)>,
     ) -> Result<Vec<Option<ProbePixel>>> {
         let atmosphere = Atmosphere::default();
-        let frame = frame(shot, maps, &self.bias, &atmosphere, choice);
+        let frame = frame(shot, maps, &atmosphere, choice);
         Ok(self.renderer.probe(gpu, &mut subject.gpu_scene, &frame, &self.targets)?.pixels)
     }
 }
@@ -222,21 +220,10 @@ impl Contender {
 fn frame<'a>(
     shot: &'a Shot,
     maps: &'a [MapFit],
-    bias: &'a BiasSettings,
     atmosphere: &'a Atmosphere,
     choice: Option<(DVec3, Vec3)>,
 ) -> Frame<'a> {
-    Frame {
-        camera: &shot.camera,
-        direction: shot.direction,
-        maps,
-        choice,
-        bias,
-        shadows: true,
-        atmosphere,
-        lines: &[],
-        inset: None,
-    }
+    Frame { choice, ..Frame::new(&shot.camera, shot.direction, maps, atmosphere) }
 }
 
 /// Haze that suits what is seen, so that a chair is not lost in it nor a town without.
@@ -337,6 +324,6 @@ impl Fitter {
             self.depths =
                 Some(SeenDepths::trace(&subject.rays.tracer, &subject.camera_for_rays(&shot.camera), shot.direction));
         }
-        Ok(maps.iter().map(MapFit::from).collect())
+        Ok(maps.iter().map(|map| MapFit::from_texels(map, &self.technique.bias)).collect())
     }
 }
