@@ -12,10 +12,14 @@
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
-use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::bias::reach;
+use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::settings::BiasSettings;
-use shadowfit::{DepthConvention, FitSettings, PerspectiveCamera, fit};
-use shadowfit_wgpu::{MapView, ShadowMap, ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
+use shadowfit::{
+    Aabb, Boxes, CascadeFitter, CascadeSettings, CasterPolicy, DepthConvention, FitInput, FitSettings,
+    PerspectiveCamera, Workspace,
+};
+use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
 use wgpu::util::DeviceExt;
 
 /// Size of the picture, in pixels; rows of a multiple of 64 pixels are read back without padding.
@@ -28,6 +32,14 @@ const SKY: wgpu::Color = wgpu::Color { r: 0.35, g: 0.55, b: 0.85, a: 1.0 };
 const PLACE: DVec3 = DVec3::new(50_000.0, 0.0, -20_000.0);
 /// The way the sun's light travels.
 const DIRECTION: Vec3 = Vec3::new(0.55, -0.7, -0.45);
+
+/// Number of shadow maps, each for a slice of the view.
+const MAPS: u32 = 4;
+/// View depth at which shadows end, in metres.
+const SHADOW_DISTANCE: f32 = 50.0;
+/// Bind group of the map's matrix in the shadow pass and of the maps in the shaded one. Any will do: this engine has its
+/// camera at group 0 in every pass.
+const SHADOW_GROUP: u32 = 1;
 
 /// What the engine's passes have in common: a unit cube, placed and scaled by its instance.
 const VERTEX_WGSL: &str = "
@@ -95,10 +107,19 @@ struct Block {
     color: [f32; 3],
 }
 
+impl Block {
+    /// Its bounds relative to a place in world space, in metres. The difference is taken in f64.
+    fn bounds(&self, origin: DVec3) -> Aabb {
+        let center = (self.center - origin).as_vec3();
+        Aabb::new(center - self.half_size, center + self.half_size)
+    }
+}
+
 /// The engine: its own buffers and pipelines, and the shadow map beside them.
 struct Engine {
     device: wgpu::Device,
     queue: wgpu::Queue,
+    fitter: CascadeFitter,
     shadow_map: ShadowMap,
     caster_pipeline: wgpu::RenderPipeline,
     scene_pipeline: wgpu::RenderPipeline,
@@ -111,7 +132,7 @@ fn main() -> Result<()> {
     let path = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("out/engine_integration.png"), PathBuf::from);
     let camera = PerspectiveCamera {
         eye: PLACE + DVec3::new(-3.0, 5.5, 14.5),
-        forward: Vec3::new(0.12, -0.26, -1.0),
+        forward: Vec3::new(0.12, -0.26, -1.0).normalize(),
         up: Vec3::Y,
         fov_y: 0.8,
         aspect: SIZE.width as f32 / SIZE.height as f32,
@@ -156,8 +177,8 @@ impl Engine {
         let adapter = instance.request_adapter(&wgpu::RequestAdapterOptions::default()).await?;
         let (device, queue) = adapter.request_device(&wgpu::DeviceDescriptor::default()).await?;
 
-        // STEP 1: make the shadow map. 2048² texels, 32-bit depth, a tent of 5×5 unless told otherwise.
-        let shadow_map = ShadowMap::new(&device, &ShadowMapDescriptor::default())?;
+        // STEP 1: make the shadow maps. 2048² texels, 32-bit depth, a tent of 5×5 unless told otherwise.
+        let shadow_map = ShadowMap::new(&device, &ShadowMapDescriptor { maps: MAPS, ..Default::default() })?;
 
         let camera_uniform = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("camera"),
@@ -165,10 +186,10 @@ impl Engine {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let scene_pipeline = scene_pipeline(&device, &shadow_map);
+        let camera_layout = camera_layout(&device);
         let camera_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("camera"),
-            layout: &scene_pipeline.get_bind_group_layout(0),
+            layout: &camera_layout,
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: camera_uniform.as_entire_binding() }],
         });
         let cube = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -176,22 +197,27 @@ impl Engine {
             contents: bytemuck::cast_slice(&cube()),
             usage: wgpu::BufferUsages::VERTEX,
         });
-        let caster_pipeline = caster_pipeline(&device, &shadow_map);
-        Ok(Self { device, queue, shadow_map, caster_pipeline, scene_pipeline, camera_uniform, camera_group, cube })
+        let caster_pipeline = caster_pipeline(&device, &camera_layout, &shadow_map);
+        let scene_pipeline = scene_pipeline(&device, &camera_layout, &shadow_map);
+        let fitter = CascadeFitter::new();
+        Ok(Self {
+            device,
+            queue,
+            fitter,
+            shadow_map,
+            caster_pipeline,
+            scene_pipeline,
+            camera_uniform,
+            camera_group,
+            cube,
+        })
     }
 
     /// Draws a picture and returns its sRGB pixels.
     fn draw(&mut self, camera: &PerspectiveCamera, blocks: &[Block]) -> Result<Vec<u8>> {
-        // STEP 4: each frame, fit the light to the camera and hand the fit over, with the origin that positions in
-        // the engine's shaders are relative to: here the eye, where f32 is most exact.
-        let settings = FitSettings::default().with_max_distance(50.0);
-        let light = fit(&camera.frustum()?, DIRECTION, &settings)?;
-        let bias = BiasSettings::automatic(self.shadow_map.descriptor().filter);
-        let view = MapView::from_eye(camera.eye, camera.forward);
-        self.shadow_map.prepare(&self.queue, &view, &[light.into()], &bias)?;
-
+        self.fit_maps(camera, blocks)?;
         let clip_from_world = camera.clip_from_world(DepthConvention::ZeroToOne).to_cols_array();
-        let to_light = (-light.direction).extend(0.0).to_array();
+        let to_light = (-DIRECTION.normalize()).extend(0.0).to_array();
         self.queue.write_buffer(&self.camera_uniform, 0, bytemuck::cast_slice(&clip_from_world));
         self.queue.write_buffer(&self.camera_uniform, 64, bytemuck::cast_slice(&to_light));
         let instances = self.instances(camera.eye, blocks);
@@ -200,6 +226,31 @@ impl Engine {
         self.shadow_pass(&mut encoder, camera.eye, blocks, &instances);
         let picture = self.scene_pass(&mut encoder, blocks.len() as u32, &instances);
         self.read(encoder, &picture)
+    }
+
+    /// STEP 4: each frame, fit the maps to what the camera sees of the scene's boxes and hand them over, each with its
+    /// bias, and with the origin that positions in the engine's shaders are relative to: here the eye, where f32 is
+    /// most exact. The fitter keeps the maps still while the camera moves.
+    fn fit_maps(&mut self, camera: &PerspectiveCamera, blocks: &[Block]) -> Result<()> {
+        let filter = self.shadow_map.descriptor().filter;
+        let views = [camera.frustum()?];
+        let objects: Vec<Aabb> = blocks.iter().map(|block| block.bounds(PLACE)).collect();
+        let boxes = Boxes { origin: PLACE, boxes: &objects };
+        let input = FitInput { receivers: Some(boxes), casters: boxes, ..FitInput::new(&views, DIRECTION) };
+        let mut settings = CascadeSettings { count: MAPS, ..CascadeSettings::default() };
+        settings.fit = FitSettings { casters: CasterPolicy::List, max_distance: SHADOW_DISTANCE, ..settings.fit };
+        // Room at the maps' borders for what the filter reads there.
+        settings.fit.kernel_margin = reach(filter);
+        let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), 1)];
+        let fitted = self.fitter.fit(&input, &settings, &mut Workspace::new(&mut storage))?;
+
+        let bias = BiasSettings::automatic(filter);
+        let mut maps: Vec<MapFit> = fitted.iter().map(|map| MapFit::from_texels(map, &bias)).collect();
+        let view = MapView::from_eye(camera.eye, camera.forward);
+        // Leave out casters whose shadows are not in view. Without this line each map draws all that it can store.
+        MapFit::sweep(&mut maps, &view, &views, filter)?;
+        self.shadow_map.prepare(&self.queue, &view, &maps)?;
+        Ok(())
     }
 
     /// The blocks with their centres relative to the eye. The difference is taken in f64.
@@ -215,16 +266,17 @@ impl Engine {
         })
     }
 
-    /// STEP 5: draw the casters into the map. The pass comes cleared, with group 0 set.
+    /// STEP 5: draw the casters into each map. The pass comes cleared, with the map's matrix bound.
     fn shadow_pass(&self, encoder: &mut wgpu::CommandEncoder, eye: DVec3, blocks: &[Block], instances: &wgpu::Buffer) {
-        self.shadow_map.render(encoder, |pass, _map, volume| {
+        self.shadow_map.render(encoder, SHADOW_GROUP, |pass, _map, volume| {
             pass.set_pipeline(&self.caster_pipeline);
+            pass.set_bind_group(0, &self.camera_group, &[]);
             pass.set_vertex_buffer(0, self.cube.slice(..));
             pass.set_vertex_buffer(1, instances.slice(..));
             for (index, block) in (0u32..).zip(blocks) {
                 // The volume, like all positions, is relative to the eye.
-                let center = (block.center - eye).as_vec3();
-                if volume.intersects_aabb(center - block.half_size, center + block.half_size) {
+                let bounds = block.bounds(eye);
+                if volume.intersects_aabb(bounds.min, bounds.max) {
                     pass.draw(0..36, index..index + 1);
                 }
             }
@@ -252,8 +304,8 @@ impl Engine {
         });
         pass.set_pipeline(&self.scene_pipeline);
         pass.set_bind_group(0, &self.camera_group, &[]);
-        // STEP 6: bind the map where the pasted WGSL looks for it.
-        pass.set_bind_group(1, self.shadow_map.receiver_group(), &[]);
+        // STEP 6: bind the maps where the pasted WGSL looks for them.
+        pass.set_bind_group(SHADOW_GROUP, self.shadow_map.receiver_group(), &[]);
         pass.set_vertex_buffer(0, self.cube.slice(..));
         pass.set_vertex_buffer(1, instances.slice(..));
         pass.draw(0..36, 0..count);
@@ -295,12 +347,12 @@ impl Engine {
 }
 
 /// STEP 2: a pipeline for the casters, with the engine's own vertices, the map's depth state and, for colour formats,
-/// its colour target. Group 0 is the map's. Both sides of the casters are drawn.
-fn caster_pipeline(device: &wgpu::Device, map: &ShadowMap) -> wgpu::RenderPipeline {
-    let module = module(device, [caster_wgsl(0).as_str(), VERTEX_WGSL, CASTER_WGSL].concat());
+/// its colour target. The map's matrix is at a bind group of the engine's choice. Both sides of the casters are drawn.
+fn caster_pipeline(device: &wgpu::Device, camera: &wgpu::BindGroupLayout, map: &ShadowMap) -> wgpu::RenderPipeline {
+    let module = module(device, [caster_wgsl(SHADOW_GROUP).as_str(), VERTEX_WGSL, CASTER_WGSL].concat());
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some("caster"),
-        bind_group_layouts: &[Some(map.caster_layout())],
+        bind_group_layouts: &[Some(camera), Some(map.caster_layout())],
         immediate_size: 0,
     });
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -323,11 +375,12 @@ fn caster_pipeline(device: &wgpu::Device, map: &ShadowMap) -> wgpu::RenderPipeli
 
 /// STEP 3: paste the look-up into the engine's own shader, in a bind group of its choice, and put the map's layout
 /// into the pipeline.
-fn scene_pipeline(device: &wgpu::Device, map: &ShadowMap) -> wgpu::RenderPipeline {
-    let module = module(device, [receiver_wgsl(map.descriptor(), 1).as_str(), VERTEX_WGSL, SCENE_WGSL].concat());
+fn scene_pipeline(device: &wgpu::Device, camera: &wgpu::BindGroupLayout, map: &ShadowMap) -> wgpu::RenderPipeline {
+    let receiver = receiver_wgsl(map.descriptor(), SHADOW_GROUP);
+    let module = module(device, [receiver.as_str(), VERTEX_WGSL, SCENE_WGSL].concat());
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some("scene"),
-        bind_group_layouts: &[Some(&camera_layout(device)), Some(map.receiver_layout())],
+        bind_group_layouts: &[Some(camera), Some(map.receiver_layout())],
         immediate_size: 0,
     });
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {

@@ -3,11 +3,13 @@
 
 use shadowfit::glam::{DVec3, Mat4, UVec2, Vec3, Vec4};
 use shadowfit::settings::{BiasSettings, CameraSettings, FilterKind, LightSettings, MapFormat, Settings};
-use shadowfit::{DepthConvention, FitSettings, LightFit, PerspectiveCamera, fit};
+use shadowfit::{Bias, DepthConvention, FitSettings, LightFit, PerspectiveCamera, fit};
 use shadowfit_render::{Atmosphere, FlyCamera, FrameUniform, Line, box_lines};
 use shadowfit_scene::builtin;
 use shadowfit_truth::{Tracer, TruthSettings};
-use shadowfit_wgpu::{CasterUniform, MAX_MAPS, MapView, RESOLUTIONS, ReceiverUniform, ShadowMapDescriptor};
+use shadowfit_wgpu::{
+    CasterUniform, MAX_MAPS, MapFit, MapUniform, MapView, RESOLUTIONS, ReceiverUniform, ShadowMapDescriptor,
+};
 
 /// The depth conventions that wgpu draws.
 const DRAWABLE: [DepthConvention; 2] = [DepthConvention::ZeroToOne, DepthConvention::Reversed];
@@ -28,6 +30,10 @@ fn fitted(light: &LightSettings, depth: DepthConvention) -> LightFit {
     fit(&frustum, light.direction(), &FitSettings::default().with_depth(depth)).expect("a good fit")
 }
 
+fn map(fit: LightFit) -> MapFit {
+    MapFit::new(fit, Bias::from_texels(&BiasSettings::default(), &fit))
+}
+
 fn matrix(columns: [[f32; 4]; 4]) -> Mat4 {
     Mat4::from_cols_array_2d(&columns)
 }
@@ -38,8 +44,7 @@ fn the_caster_and_the_receiver_uniform_of_a_fit_meet_in_the_same_texel_and_depth
     for depth in DRAWABLE {
         let fit = fitted(&LightSettings::default(), depth);
         let clip_from_world = matrix(CasterUniform::new(&fit, origin).clip_from_world);
-        let receiver =
-            ReceiverUniform::new(&[fit.into()], &MapView::from_eye(origin, Vec3::NEG_Z), &BiasSettings::default());
+        let receiver = ReceiverUniform::new(&[map(fit)], &MapView::from_eye(origin, Vec3::NEG_Z));
         let uv_from_world = matrix(receiver.maps[0].uv_from_world);
         for corner in fit.corners() {
             let point = (fit.origin + corner.as_dvec3() - origin).as_vec3();
@@ -59,8 +64,7 @@ fn settings_uniforms_and_pictures_all_point_to_the_same_sun() {
         let to_light = -light.direction();
         assert!(to_light.y > 0.0, "a sun above the horizon shines from above");
         let fit = fitted(&light, DepthConvention::ZeroToOne);
-        let receiver =
-            ReceiverUniform::new(&[fit.into()], &MapView::from_eye(fit.origin, Vec3::NEG_Z), &BiasSettings::default());
+        let receiver = ReceiverUniform::new(&[map(fit)], &MapView::from_eye(fit.origin, Vec3::NEG_Z));
         let frame = FrameUniform::new(&camera(), to_light, true, &Atmosphere::default(), [16, 9]);
         assert!(Vec3::from(receiver.to_light).abs_diff_eq(to_light, CLOSE), "{light:?}: {:?}", receiver.to_light);
         assert_eq!(frame.to_light, to_light.to_array(), "{light:?}");
@@ -75,7 +79,7 @@ fn biases_move_the_receiver_toward_the_light_in_both_depth_conventions() {
     let bias = BiasSettings { constant: 1.0, slope: 2.0, normal_offset: 3.0, receiver_plane: 4.0 };
     for (depth, toward_light) in [(DepthConvention::ZeroToOne, -1.0), (DepthConvention::Reversed, 1.0)] {
         let fit = fitted(&LightSettings::default(), depth);
-        let map = ReceiverUniform::new(&[fit.into()], &MapView::from_eye(fit.origin, Vec3::NEG_Z), &bias).maps[0];
+        let map = MapUniform::new(&MapFit::new(fit, Bias::from_texels(&bias, &fit)), fit.origin);
         let depth_of = |point: Vec3| matrix(map.uv_from_world).transform_point3(point).z;
         let lifted = depth_of(-fit.direction) - depth_of(Vec3::ZERO);
         assert!(lifted * toward_light > 0.0, "{depth:?}");
@@ -107,15 +111,11 @@ fn the_camera_s_uniform_has_reversed_depth_and_rays_through_its_pixels() {
 
 #[test]
 fn without_a_fit_everything_is_lit_and_surplus_fits_are_left_out() {
-    let none = ReceiverUniform::new(&[], &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z), &BiasSettings::default());
+    let none = ReceiverUniform::new(&[], &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z));
     assert_eq!(none.map_count, 0);
     assert_eq!(Vec3::from(none.to_light).length(), 1.0, "a direction that can be used");
     let fit = fitted(&LightSettings::default(), DepthConvention::ZeroToOne);
-    let many = ReceiverUniform::new(
-        &[fit.into(); MAX_MAPS + 3],
-        &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z),
-        &BiasSettings::default(),
-    );
+    let many = ReceiverUniform::new(&[map(fit); MAX_MAPS + 3], &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z));
     assert_eq!(many.map_count as usize, MAX_MAPS);
 }
 

@@ -136,8 +136,12 @@ fn check(stage: &mut Stage, name: &str) {
     let picture = stage.picture(SIZE);
     stage.draw(&picture);
     assert_eq!(stage.problem(), None, "{name}");
-    let rgb: Vec<u8> =
-        picture.read(stage.gpu()).chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+    let rgb: Vec<u8> = picture
+        .read(stage.gpu())
+        .expect("pixels")
+        .chunks_exact(4)
+        .flat_map(|pixel| [pixel[0], pixel[1], pixel[2]])
+        .collect();
     let actual = RgbImage::from_raw(SIZE[0], SIZE[1], rgb).expect("as many bytes as pixels");
     let golden = folder().join(name).with_extension("png");
     if updates() {

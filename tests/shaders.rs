@@ -7,8 +7,11 @@ mod exact_counts_gpu;
 mod harness;
 mod layout;
 mod parity_gpu;
+mod refusals_gpu;
 mod several_maps_gpu;
+mod sweep_gpu;
 mod tents_gpu;
+mod tint_gpu;
 
 use std::path::PathBuf;
 

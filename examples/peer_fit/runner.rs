@@ -5,8 +5,8 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use glam::{DVec2, DVec3, Vec3};
 use shadowfit::{
-    Aabb, Boxes, CascadeFitter, CascadeMap, CascadeSettings, Cascades, Clusters, FitInput, NormalCone, SplitScheme,
-    ViewFrustum, Workspace,
+    Aabb, Bias, Boxes, CascadeFitter, CascadeMap, CascadeSettings, Cascades, Clusters, FitInput, NormalCone,
+    SplitScheme, ViewFrustum, Workspace,
 };
 use shadowfit_study::{ReceiverSource, SeenDepths, Technique, fit_map};
 use shadowfit_truth::Tracer;
@@ -139,7 +139,10 @@ fn fit_all(frames: &[Prepared], known: &[Known], settings: &CascadeSettings) -> 
 
 /// A map as the fit file has it.
 fn fit_map_of(map: &CascadeMap) -> FitMap {
-    FitMap { split_near: f64::from(map.near), ..fit_map(&MapFit::from(map)) }
+    FitMap {
+        split_near: f64::from(map.near),
+        ..fit_map(&MapFit { far: map.far, ..MapFit::new(map.fit, Bias::default()) })
+    }
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use glam::{DVec3, UVec2};
 use indicatif::{ProgressBar, ProgressStyle};
-use shadowfit::LightFit;
 use shadowfit::settings::{BiasSettings, FilterKind, MapFormat};
+use shadowfit::{Bias, LightFit};
 use shadowfit_render::{Gpu, Renderer};
 use shadowfit_scene::Scene;
 use shadowfit_study::{Evaluator, Judging, PreparedScene, SharedTruth, View};
@@ -100,6 +100,7 @@ fn measure(
 struct Pictures {
     gpu: Gpu,
     every: u32,
+    bias: BiasSettings,
     fits: Vec<Drawn>,
 }
 
@@ -122,12 +123,12 @@ impl Pictures {
             let maps: Vec<Vec<FitMap>> = maps.into_iter().map(<[FitMap]>::to_vec).collect();
             let descriptor = descriptor(ranking.scenarios(), file, &maps, filter, args.drawing.format());
             let descriptor = descriptor.with_context(|| format!("{}: cannot be drawn", path.display()))?;
-            let evaluator = evaluator(&gpu, &descriptor, bias, judging);
+            let evaluator = evaluator(&gpu, &descriptor, judging);
             let evaluator = evaluator.with_context(|| format!("{}: cannot be drawn", path.display()))?;
             Ok(Drawn { name: file.peer.clone(), evaluator, maps })
         });
         let fits = fits.collect::<Result<Vec<_>>>()?;
-        Ok(Self { gpu, every: args.every, fits })
+        Ok(Self { gpu, every: args.every, bias, fits })
     }
 
     /// Whether a frame is drawn. Those of quick looks are not neighbours, so that they have no crawl.
@@ -161,7 +162,7 @@ impl Pictures {
             let view = view(frame, is_first);
             let mut truth = SharedTruth::default();
             for (fit, drawn) in self.fits.iter_mut().enumerate() {
-                let maps = map_fits(&drawn.maps[index], &view)
+                let maps = map_fits(&drawn.maps[index], &view, &self.bias)
                     .with_context(|| format!("{}: frame {}: cannot be drawn", drawn.name, frame.id))?;
                 let judged = drawn.evaluator.judge(&self.gpu, &mut prepared, &view, &maps, &mut truth)?;
                 ranking.add_picture(fit, index, &judged.tally);
@@ -172,11 +173,11 @@ impl Pictures {
     }
 }
 
-fn evaluator(gpu: &Gpu, descriptor: &ShadowMapDescriptor, bias: BiasSettings, judging: Judging) -> Result<Evaluator> {
+fn evaluator(gpu: &Gpu, descriptor: &ShadowMapDescriptor, judging: Judging) -> Result<Evaluator> {
     if descriptor.depth_clamp && !gpu.has_depth_clamp() {
         anyhow::bail!("its casters are clamped to the near plane, and this graphics adapter cannot do that");
     }
-    Ok(Evaluator::new(Renderer::new(gpu, descriptor, 1)?, bias, judging))
+    Ok(Evaluator::new(Renderer::new(gpu, descriptor, 1)?, judging))
 }
 
 /// The shadow map that holds all maps of a file.
@@ -213,9 +214,13 @@ fn view(frame: &Frame, is_first: bool) -> View {
     View { camera: frame.camera(), direction, is_first }
 }
 
-fn map_fits(maps: &[FitMap], view: &View) -> Result<Vec<MapFit>> {
+fn map_fits(maps: &[FitMap], view: &View, bias: &BiasSettings) -> Result<Vec<MapFit>> {
     let far = |split: f64| if split >= f64::from(view.camera.far) { f32::MAX } else { split as f32 };
-    maps.iter().map(|map| Ok(MapFit { fit: light_fit(map, view)?, far: far(map.split_far) })).collect()
+    let fitted = |map: &FitMap| {
+        let fit = light_fit(map, view)?;
+        Ok(MapFit { far: far(map.split_far), ..MapFit::new(fit, Bias::from_texels(bias, &fit)) })
+    };
+    maps.iter().map(fitted).collect()
 }
 
 fn light_fit(map: &FitMap, view: &View) -> Result<LightFit> {

@@ -50,7 +50,7 @@ fn draw_and_judge(stage: &mut Stage, name: &str) {
     let picture = stage.picture(SIZE);
     stage.draw(&picture);
     assert_eq!(stage.problem(), None, "{name}");
-    let pixels = picture.read(stage.gpu());
+    let pixels = picture.read(stage.gpu()).expect("pixels");
     let first = &pixels[..4];
     assert!(pixels.chunks_exact(4).any(|pixel| pixel != first), "{name}: the picture is one flat colour");
     let judged = stage.judge(SIZE, false).unwrap_or_else(|| panic!("{name}: {:?}", stage.problem()));
@@ -116,7 +116,7 @@ fn moves(stage: &mut Stage, seconds: f32) -> bool {
     let mut draw_at = |time| {
         stage.set_time(time);
         stage.draw(&picture);
-        picture.read(stage.gpu())
+        picture.read(stage.gpu()).expect("pixels")
     };
     draw_at(0.0) != draw_at(seconds)
 }

@@ -1,9 +1,9 @@
 //! A renderer of a few lines around `shadowfit-wgpu` alone, as an engine would write it: it draws casters into a shadow
 //! map, and reads back what the receiver's WGSL computes at given points.
 
-use shadowfit::LightFit;
 use shadowfit::glam::{DVec3, Vec2, Vec3};
 use shadowfit::settings::BiasSettings;
+use shadowfit::{Bias, LightFit};
 use shadowfit_render::Gpu;
 use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
 
@@ -26,6 +26,15 @@ pub(super) struct Answer {
     pub(super) factor: f32,
     /// `shadowfit_stored` at the texel of the point's index: x runs over a row.
     pub(super) stored: f32,
+}
+
+/// Which map the WGSL reads at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Choice {
+    /// `shadowfit_map_index`.
+    pub(super) map: i32,
+    /// `shadowfit_view_depth`, in metres.
+    pub(super) view_depth: f32,
 }
 
 /// Points in a row of the picture of answers; a power of two keeps the pixels' centres exact.
@@ -52,8 +61,8 @@ struct Varying {
     @location(1) @interpolate(flat) normal: vec3<f32>,
 }
 struct Answer {
-    @location(0) projected_factor: vec4<f32>,
-    @location(1) stored: vec4<f32>,
+    @location(0) one: vec4<f32>,
+    @location(1) other: vec4<f32>,
 }
 @vertex fn vs(
     @builtin(instance_index) index: u32, @location(0) position: vec3<f32>, @location(1) normal: vec3<f32>,
@@ -62,12 +71,24 @@ struct Answer {
     let ndc = pixel / vec2<f32>(ROW, ROWS) * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0);
     return Varying(vec4<f32>(ndc, 0.0, 1.0), position, normal);
 }
+";
+
+/// What [`Harness::ask`] asks.
+const LOOK_UP: &str = "
 @fragment fn fs(in: Varying) -> Answer {
     let place = shadowfit_project(shadowfit_receiver.maps[MAP], in.position, in.normal);
     let projected = vec3<f32>(place.texel / shadowfit_receiver.maps[MAP].size, place.depth);
     let gradient = place.gradient;
     let stored = shadowfit_stored(MAP, vec2<i32>(in.clip.xy));
     return Answer(vec4<f32>(projected, shadowfit_factor(in.position, in.normal)), vec4<f32>(stored, gradient, 0.0));
+}
+";
+
+/// What [`Harness::choices`] asks.
+const CHOICE: &str = "
+@fragment fn fs(in: Varying) -> Answer {
+    let map = f32(shadowfit_map_index(in.position));
+    return Answer(vec4<f32>(map, shadowfit_view_depth(in.position), 0.0, 0.0), vec4<f32>(0.0));
 }
 ";
 
@@ -78,8 +99,8 @@ pub(super) struct Harness<'a> {
 }
 
 impl<'a> Harness<'a> {
-    /// Draws `casters`, triangles relative to `origin`, into every map; `casters[i]` into map i. Each map is a choice
-    /// at all view depths.
+    /// Draws `casters`, triangles relative to `origin`, into every map; `casters[i]` into map i. Points of all view
+    /// depths read the first map that covers them.
     pub(super) fn new(
         gpu: &'a Gpu,
         descriptor: &ShadowMapDescriptor,
@@ -88,8 +109,8 @@ impl<'a> Harness<'a> {
         bias: &BiasSettings,
         casters: &[Vec<Vec3>],
     ) -> Self {
-        let maps: Vec<MapFit> = fits.iter().map(|fit| MapFit::from(*fit)).collect();
-        Self::with_maps(gpu, descriptor, &MapView::from_eye(origin, Vec3::NEG_Z), &maps, bias, casters)
+        let maps: Vec<MapFit> = fits.iter().map(|fit| MapFit::new(*fit, Bias::from_texels(bias, fit))).collect();
+        Self::with_maps(gpu, descriptor, &MapView::from_eye(origin, Vec3::NEG_Z), &maps, casters)
     }
 
     /// The same for maps that are chosen by view depth.
@@ -98,16 +119,27 @@ impl<'a> Harness<'a> {
         descriptor: &ShadowMapDescriptor,
         view: &MapView,
         maps: &[MapFit],
-        bias: &BiasSettings,
         casters: &[Vec<Vec3>],
     ) -> Self {
+        Self::with_caster_group(gpu, descriptor, view, maps, casters, 0)
+    }
+
+    /// The same with the map's matrix at a bind group of the shadow pass.
+    pub(super) fn with_caster_group(
+        gpu: &'a Gpu,
+        descriptor: &ShadowMapDescriptor,
+        view: &MapView,
+        maps: &[MapFit],
+        casters: &[Vec<Vec3>],
+        group: u32,
+    ) -> Self {
         let mut map = ShadowMap::new(&gpu.device, descriptor).expect("a possible shadow map");
-        map.prepare(&gpu.queue, view, maps, bias).expect("fits of this map");
-        let pipeline = caster_pipeline(gpu, &map);
+        map.prepare(&gpu.queue, view, maps).expect("fits of this map");
+        let pipeline = caster_pipeline(gpu, &map, group);
         let buffers: Vec<wgpu::Buffer> =
             casters.iter().map(|corners| vertex_buffer(gpu, &positions(corners))).collect();
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        map.render(&mut encoder, |pass, index, _volume| {
+        map.render(&mut encoder, group, |pass, index, _volume| {
             if casters[index].is_empty() {
                 return;
             }
@@ -121,12 +153,30 @@ impl<'a> Harness<'a> {
 
     /// Asks the WGSL about points, at most [`ROW`]² of them; projections are those of map `index`.
     pub(super) fn ask(&self, index: u32, points: &[Point]) -> Vec<Answer> {
+        let [projected, stored] = self.draw(&LOOK_UP.replace("MAP", &format!("{index}u")), points);
+        let answer = |(p, s): (&[f32; 4], &[f32; 4])| Answer {
+            projected: Vec3::new(p[0], p[1], p[2]),
+            gradient: Vec2::new(s[1], s[2]),
+            factor: p[3],
+            stored: s[0],
+        };
+        projected.iter().zip(&stored).map(answer).collect()
+    }
+
+    /// Asks the WGSL which map it reads at points, at most [`ROW`]² of them.
+    pub(super) fn choices(&self, points: &[Point]) -> Vec<Choice> {
+        let [choices, _] = self.draw(CHOICE, points);
+        choices.iter().map(|choice| Choice { map: choice[0] as i32, view_depth: choice[1] }).collect()
+    }
+
+    /// Draws a fragment shader's answers about points.
+    fn draw(&self, fragment: &str, points: &[Point]) -> [Vec<[f32; 4]>; 2] {
         let rows = (points.len() as u32).div_ceil(ROW);
-        let source = RECEIVER
+        let source = [RECEIVER, fragment]
+            .concat()
             .replace("ROWS", &format!("{rows}.0"))
             .replace("vec2<f32>(ROW", &format!("vec2<f32>({ROW}.0"))
-            .replace("ROW", &format!("{ROW}u"))
-            .replace("MAP", &format!("{index}u"));
+            .replace("ROW", &format!("{ROW}u"));
         let module = module(self.gpu, receiver_wgsl(self.map.descriptor(), 0) + &source);
         let pipeline = receiver_pipeline(self.gpu, self.map.receiver_layout(), &module);
         let targets = [(); 2].map(|()| target(self.gpu, rows));
@@ -155,14 +205,11 @@ impl<'a> Harness<'a> {
             pass.draw(0..1, 0..points.len() as u32);
         }
         self.gpu.queue.submit([encoder.finish()]);
-        let [projected, stored] = targets.each_ref().map(|texture| read(self.gpu, texture, rows));
-        let answer = |(p, s): (&[f32; 4], &[f32; 4])| Answer {
-            projected: Vec3::new(p[0], p[1], p[2]),
-            gradient: Vec2::new(s[1], s[2]),
-            factor: p[3],
-            stored: s[0],
-        };
-        projected.iter().zip(&stored).take(points.len()).map(answer).collect()
+        targets.each_ref().map(|texture| {
+            let mut answers = read(self.gpu, texture, rows);
+            answers.truncate(points.len());
+            answers
+        })
     }
 }
 
@@ -177,20 +224,23 @@ fn module(gpu: &Gpu, source: String) -> wgpu::ShaderModule {
     })
 }
 
-fn layout(gpu: &Gpu, group: &wgpu::BindGroupLayout) -> wgpu::PipelineLayout {
+/// A pipeline layout with nothing but one bind group.
+fn layout(gpu: &Gpu, group: u32, layout: &wgpu::BindGroupLayout) -> wgpu::PipelineLayout {
+    let mut layouts = vec![None; group as usize];
+    layouts.push(Some(layout));
     gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: None,
-        bind_group_layouts: &[Some(group)],
+        bind_group_layouts: &layouts,
         immediate_size: 0,
     })
 }
 
-fn caster_pipeline(gpu: &Gpu, map: &ShadowMap) -> wgpu::RenderPipeline {
-    let module = module(gpu, caster_wgsl(0) + CASTER);
+fn caster_pipeline(gpu: &Gpu, map: &ShadowMap, group: u32) -> wgpu::RenderPipeline {
+    let module = module(gpu, caster_wgsl(group) + CASTER);
     let color = [map.color_target()];
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: None,
-        layout: Some(&layout(gpu, map.caster_layout())),
+        layout: Some(&layout(gpu, group, map.caster_layout())),
         vertex: wgpu::VertexState {
             module: &module,
             entry_point: Some("vs"),
@@ -215,10 +265,10 @@ fn caster_pipeline(gpu: &Gpu, map: &ShadowMap) -> wgpu::RenderPipeline {
     })
 }
 
-fn receiver_pipeline(gpu: &Gpu, group: &wgpu::BindGroupLayout, module: &wgpu::ShaderModule) -> wgpu::RenderPipeline {
+fn receiver_pipeline(gpu: &Gpu, receiver: &wgpu::BindGroupLayout, module: &wgpu::ShaderModule) -> wgpu::RenderPipeline {
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: None,
-        layout: Some(&layout(gpu, group)),
+        layout: Some(&layout(gpu, 0, receiver)),
         vertex: wgpu::VertexState {
             module,
             entry_point: Some("vs"),

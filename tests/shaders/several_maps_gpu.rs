@@ -1,11 +1,12 @@
-//! Several maps of one view: which of them a point reads, and maps that are smaller than their layers.
+//! Several maps of one view: which of them a point reads, maps that are smaller than their layers, and casters at any bind
+//! group.
 
 use shadowfit::glam::{DVec3, UVec2, Vec3};
 use shadowfit::settings::{BiasSettings, FilterKind, FitSettings};
-use shadowfit::{LightFit, PerspectiveCamera, fit};
+use shadowfit::{Bias, LightFit, PerspectiveCamera, fit};
 use shadowfit_wgpu::{MAX_MAPS, MapFit, MapView, ShadowMapDescriptor};
 
-use super::harness::{Harness, Point};
+use super::harness::{Choice, Harness, Point};
 use crate::support::software_gpu;
 
 const NO_BIAS: BiasSettings = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0 };
@@ -36,27 +37,40 @@ fn lid(fit: &LightFit) -> Vec<Vec3> {
     vec![start, start + right * 5.0, start + below * 5.0]
 }
 
-fn ask(view: &MapView, maps: &[MapFit], shadowed: usize, points: &[Vec3]) -> Vec<f32> {
-    let gpu = software_gpu();
-    let descriptor = ShadowMapDescriptor {
+/// A map without biases that ends at a view depth.
+fn map_fit(fit: LightFit, far: f32) -> MapFit {
+    MapFit { far, ..MapFit::new(fit, Bias::default()) }
+}
+
+fn descriptor(maps: &[MapFit]) -> ShadowMapDescriptor {
+    ShadowMapDescriptor {
         resolution: [256; 2],
         maps: maps.len() as u32,
         filter: FilterKind::Point,
         ..ShadowMapDescriptor::default()
-    };
-    let casters: Vec<Vec<Vec3>> =
-        maps.iter().enumerate().map(|(i, map)| if i == shadowed { lid(&map.fit) } else { Vec::new() }).collect();
-    let harness = Harness::with_maps(&gpu, &descriptor, view, maps, &NO_BIAS, &casters);
-    let points: Vec<Point> =
-        points.iter().map(|point| Point { position: point.to_array(), normal: [0.0, 1.0, 0.0] }).collect();
-    harness.ask(0, &points).iter().map(|answer| answer.factor).collect()
+    }
+}
+
+/// Points of level ground, relative to the origin.
+fn ground(points: &[Vec3]) -> Vec<Point> {
+    points.iter().map(|point| Point { position: point.to_array(), normal: [0.0, 1.0, 0.0] }).collect()
+}
+
+/// Casters that cover one of the maps.
+fn lids(maps: &[MapFit], shadowed: usize) -> Vec<Vec<Vec3>> {
+    maps.iter().enumerate().map(|(i, map)| if i == shadowed { lid(&map.fit) } else { Vec::new() }).collect()
+}
+
+fn ask(view: &MapView, maps: &[MapFit], shadowed: usize, points: &[Vec3]) -> Vec<f32> {
+    let gpu = software_gpu();
+    let harness = Harness::with_maps(&gpu, &descriptor(maps), view, maps, &lids(maps, shadowed));
+    harness.ask(0, &ground(points)).iter().map(|answer| answer.factor).collect()
 }
 
 #[test]
 fn a_point_reads_the_first_map_that_reaches_as_far_or_the_next_one_that_holds_it() {
     let fits = [map_to(5.0, 256), map_to(20.0, 256), map_to(60.0, 256)];
-    let maps: Vec<MapFit> =
-        fits.iter().zip([4.0, 15.0, f32::MAX]).map(|(fit, far)| MapFit { fit: *fit, far }).collect();
+    let maps: Vec<MapFit> = fits.iter().zip([4.0, 15.0, f32::MAX]).map(|(fit, far)| map_fit(*fit, far)).collect();
     let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
     // Along the axis at these view depths; the last one is near, but aside of the first map.
     let is_aside = |point: &Vec3| !fits[0].covers(point.as_dvec3()) && fits[1].covers(point.as_dvec3());
@@ -80,8 +94,7 @@ fn a_point_reads_the_first_map_that_reaches_as_far_or_the_next_one_that_holds_it
 #[test]
 fn as_many_maps_as_there_may_be_are_told_apart() {
     let fits: Vec<LightFit> = (1..=MAX_MAPS).map(|i| map_to(i as f32 * 5.0, 256)).collect();
-    let maps: Vec<MapFit> =
-        fits.iter().enumerate().map(|(i, fit)| MapFit { fit: *fit, far: (i + 1) as f32 * 5.0 }).collect();
+    let maps: Vec<MapFit> = fits.iter().enumerate().map(|(i, fit)| map_fit(*fit, (i + 1) as f32 * 5.0)).collect();
     let points: Vec<Vec3> = (0..MAX_MAPS).map(|i| Vec3::NEG_Z * (i as f32 * 5.0 + 2.5)).collect();
     let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
     for shadowed in 0..MAX_MAPS {
@@ -120,6 +133,64 @@ fn a_map_in_the_corner_of_a_larger_layer_is_read_like_one_that_fills_it() {
         for (point, (full, corner)) in points.iter().zip(answers[0].iter().zip(&answers[1])) {
             // Texture coordinates of another size are rounded otherwise.
             assert!((full - corner).abs() < 0.02, "{filter:?}, {point:?}: {full} and {corner}");
+        }
+    }
+}
+
+#[test]
+fn the_map_index_and_the_view_depth_in_wgsl_are_those_computed_here() {
+    let gpu = software_gpu();
+    let forward = Vec3::new(0.25, -0.1, -1.0).normalize();
+    let fits = [map_to(5.0, 256), map_to(20.0, 256), map_to(60.0, 256)];
+    let maps: Vec<MapFit> = fits.iter().zip([4.0, 15.0, 50.0]).map(|(fit, far)| map_fit(*fit, far)).collect();
+    let (origin, eye) = (DVec3::new(1.0, -0.5, 2.0), DVec3::new(-0.5, 0.25, 1.0));
+    let view = MapView { origin, eye, forward };
+    let harness = Harness::with_maps(&gpu, &descriptor(&maps), &view, &maps, &lids(&maps, 0));
+    // In front of the eye and behind it, in view and beside it.
+    let positions: Vec<Vec3> = (0..4000)
+        .map(|i| {
+            let [a, b, c] = [0.754_877_7, 0.569_840_3, 0.430_159_7].map(|step: f32| (i as f32 * step).fract());
+            Vec3::new((a - 0.5) * 60.0, (b - 0.5) * 30.0, 15.0 - c * 90.0)
+        })
+        .collect();
+    let mut met = [0; 4];
+    for (position, Choice { map, view_depth }) in positions.iter().zip(harness.choices(&ground(&positions))) {
+        let world = position.as_dvec3() + origin;
+        let expected_depth = (world - eye).dot(forward.as_dvec3());
+        // A dozen roundings of 2⁻²⁴ of coordinates below 100 m.
+        assert!(
+            (f64::from(view_depth) - expected_depth).abs() < 1e-4,
+            "{position}: {view_depth}, not {expected_depth}"
+        );
+        let is_at_a_border = maps.iter().any(|map| {
+            let near = |point: DVec3| map.fit.covers(point);
+            (expected_depth - f64::from(map.far)).abs() < 1e-3
+                || [DVec3::X, DVec3::Y, DVec3::Z]
+                    .iter()
+                    .any(|axis| near(world + axis * 1e-3) != near(world - axis * 1e-3))
+        });
+        if !is_at_a_border {
+            let reads = |map: &MapFit| expected_depth < f64::from(map.far) && map.fit.covers(world);
+            let expected = maps.iter().position(reads).map_or(-1, |index| index as i32);
+            assert_eq!(map, expected, "{position} at view depth {expected_depth}");
+            met[(expected + 1) as usize] += 1;
+        }
+    }
+    assert!(met.iter().all(|count| *count > 15), "outside, then by map: {met:?}");
+}
+
+#[test]
+fn casters_are_drawn_alike_with_the_map_s_matrix_at_any_bind_group() {
+    let gpu = software_gpu();
+    let maps = [map_fit(map_to(5.0, 256), 4.0), map_fit(map_to(20.0, 256), f32::MAX)];
+    let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
+    let points = ground(&[2.0_f32, 3.9, 4.1, 15.0].map(|depth| Vec3::NEG_Z * depth));
+    for (shadowed, expected) in [[0.0, 0.0, 1.0, 1.0], [1.0, 1.0, 0.0, 0.0]].into_iter().enumerate() {
+        for group in 0..4 {
+            let casters = lids(&maps, shadowed);
+            let harness = Harness::with_caster_group(&gpu, &descriptor(&maps), &view, &maps, &casters, group);
+            let factors: Vec<f32> = harness.ask(0, &points).iter().map(|answer| answer.factor).collect();
+            assert_eq!(factors, expected, "group {group}, shadow in map {shadowed}");
         }
     }
 }

@@ -118,7 +118,7 @@ impl Gpu {
         self.device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL)
     }
 
-    /// Whether pictures are drawn by the processor.
+    /// Whether pictures are drawn by the CPU.
     pub fn is_software(&self) -> bool {
         self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
     }

@@ -6,24 +6,26 @@
 //! the world's origin. Right-handed, y up, metres; the camera's depth is reversed (near 1, far 0).
 
 pub mod camera;
+mod frame;
 mod gpu;
 mod lines;
 mod material;
-mod picture;
 mod pipelines;
 mod probe;
 mod renderer;
 mod scene;
 pub mod shaders;
+mod target;
 mod timer;
 mod uniform;
 
 pub use camera::{FlyCamera, FlyInput};
+pub use frame::{Culling, Frame, Inset, MapStatistics, Overlay, Statistics};
 pub use gpu::{AdapterChoice, Gpu, GpuError};
 pub use lines::{Line, box_lines};
-pub use picture::Picture;
 pub use probe::{Probe, ProbeError, ProbePixel, ProbeTargets};
-pub use renderer::{Frame, Inset, Renderer, Statistics};
+pub use renderer::Renderer;
 pub use scene::GpuScene;
+pub use target::{ReadError, RenderTarget};
 pub use timer::PassTimes;
-pub use uniform::{Atmosphere, FrameUniform, InsetUniform, InstanceData, LineVertex, MaterialUniform};
+pub use uniform::{Atmosphere, FrameUniform, InsetUniform, InstanceData, LineVertex, MAP_TINTS, MaterialUniform};

@@ -7,10 +7,10 @@ use shadowfit_scene::AlphaMode;
 use shadowfit_wgpu::ShadowMap;
 
 use crate::material::material_layout;
-use crate::picture::{COLOR_FORMAT, DEPTH_FORMAT};
 use crate::probe::PROBE_FORMAT;
 use crate::scene::Part;
 use crate::shaders;
+use crate::target::{COLOR_FORMAT, DEPTH_FORMAT};
 use crate::uniform::{InstanceData, LineVertex};
 
 /// Bind group layouts of this crate.

@@ -6,7 +6,7 @@ use core::fmt;
 use shadowfit_wgpu::ShadowMapError;
 
 use crate::Gpu;
-use crate::picture::{DEPTH_FORMAT, read_texture};
+use crate::target::{DEPTH_FORMAT, ReadError, read_texture};
 
 /// Format of the probe's target: the triangle's number plus one (0 is the sky), and the bits of the factor.
 pub(crate) const PROBE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
@@ -38,6 +38,14 @@ pub enum ProbeError {
     ShadowMap(ShadowMapError),
     /// The device has no [`wgpu::Features::PRIMITIVE_INDEX`].
     NoPrimitiveIndex,
+    /// The probe could not be read back.
+    Read(ReadError),
+}
+
+impl From<ReadError> for ProbeError {
+    fn from(error: ReadError) -> Self {
+        Self::Read(error)
+    }
 }
 
 impl From<ShadowMapError> for ProbeError {
@@ -50,6 +58,7 @@ impl fmt::Display for ProbeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::ShadowMap(error) => error.fmt(f),
+            Self::Read(error) => error.fmt(f),
             Self::NoPrimitiveIndex => write!(
                 f,
                 "this graphics adapter cannot tell which triangle a pixel shows (no PRIMITIVE_INDEX), so that its \
@@ -97,11 +106,15 @@ impl ProbeTargets {
     }
 
     /// Waits for the probe and reads it.
-    pub fn read(&self, gpu: &Gpu) -> Probe {
-        let bytes = read_texture(gpu, &self.texture, self.size, 8);
+    ///
+    /// # Errors
+    ///
+    /// [`ReadError`] if the device was lost or does not answer.
+    pub fn read(&self, gpu: &Gpu) -> Result<Probe, ReadError> {
+        let bytes = read_texture(gpu, &self.texture, self.size, 8)?;
         let pixels = bytemuck::pod_collect_to_vec::<u8, [u32; 2]>(&bytes).into_iter().map(|[triangle, factor]| {
             Some(ProbePixel { triangle: triangle.checked_sub(1)?, factor: f32::from_bits(factor) })
         });
-        Probe { size: self.size, pixels: pixels.collect() }
+        Ok(Probe { size: self.size, pixels: pixels.collect() })
     }
 }

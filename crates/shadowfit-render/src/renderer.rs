@@ -1,65 +1,18 @@
 //! One frame: shadow pass, shaded pass, sky, lines and inset.
 
-use glam::{DVec3, Mat4, Vec3};
-use shadowfit::settings::BiasSettings;
-use shadowfit::{CasterVolume, PerspectiveCamera};
-use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError};
+use glam::{DVec3, Mat4};
+use shadowfit::CasterVolume;
+use shadowfit_wgpu::{MAX_MAPS, MapFit, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError};
 
-use crate::picture::Picture;
+use crate::frame::{Culling, Frame, MapStatistics, Statistics};
 use crate::pipelines::{Layouts, Pipelines};
 use crate::probe::{Probe, ProbeError, ProbeTargets};
 use crate::scene::{Draw, GpuScene, Part, in_frustum};
+use crate::shaders::CASTER_GROUP;
+use crate::target::RenderTarget;
 use crate::timer::{Pass, PassTimer, PassTimes};
-use crate::uniform::{Atmosphere, FrameUniform, InsetUniform, LineVertex};
+use crate::uniform::{FrameUniform, InsetUniform, LineVertex};
 use crate::{Gpu, Line};
-
-/// What a frame shows.
-#[derive(Clone, Copy, Debug)]
-pub struct Frame<'a> {
-    /// Eye and lens that the picture is seen through.
-    pub camera: &'a PerspectiveCamera,
-    /// Unit direction of travel of the light.
-    pub direction: glam::Vec3,
-    /// The shadow maps, in order of their `far`; empty where there is nothing to fit.
-    pub maps: &'a [MapFit],
-    /// Eye and unit forward direction (world space, metres) whose view depths choose the map; the
-    /// camera's own where `None`.
-    pub choice: Option<(DVec3, Vec3)>,
-    /// Biases of the look-up.
-    pub bias: &'a BiasSettings,
-    /// Whether shadows are drawn.
-    pub shadows: bool,
-    /// Colours of sun and sky.
-    pub atmosphere: &'a Atmosphere,
-    /// Lines drawn over the scene.
-    pub lines: &'a [Line],
-    /// Shadow map shown in a corner.
-    pub inset: Option<Inset>,
-}
-
-/// Where and how the shadow map is shown in the picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Inset {
-    /// Left, top, width and height, in pixels.
-    pub rectangle: [f32; 4],
-    /// Stored depths shown as black and white.
-    pub depth_range: [f32; 2],
-    /// Which map.
-    pub map: u32,
-}
-
-/// What a frame drew.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Statistics {
-    /// Draw calls of the shadow pass.
-    pub shadow_draws: u32,
-    /// Triangles of the shadow pass.
-    pub shadow_triangles: u64,
-    /// Draw calls of the shaded pass.
-    pub scene_draws: u32,
-    /// Triangles of the shaded pass.
-    pub scene_triangles: u64,
-}
 
 /// Draws scenes; owns the shadow map and every pipeline.
 #[derive(Debug)]
@@ -144,29 +97,29 @@ impl Renderer {
         self.timer.times
     }
 
-    /// A picture that this renderer can draw into.
-    pub fn picture(&self, gpu: &Gpu, size: [u32; 2]) -> Picture {
-        Picture::new(&gpu.device, size, self.samples)
+    /// A target of the given width and height, in pixels, that this renderer can draw into.
+    pub fn target(&self, gpu: &Gpu, size: [u32; 2]) -> RenderTarget {
+        RenderTarget::new(&gpu.device, size, self.samples)
     }
 
-    /// Draws a frame into a picture and submits it.
+    /// Draws a frame into a target and submits it.
     ///
     /// # Errors
     ///
-    /// [`ShadowMapError::Fit`] if a fit was made for another map; nothing is drawn then.
+    /// Those of [`ShadowMap::prepare`], for maps that this renderer's shadow map cannot take; nothing is drawn then.
     pub fn draw(
         &mut self,
         gpu: &Gpu,
         scene: &mut GpuScene,
         frame: &Frame<'_>,
-        picture: &Picture,
+        target: &RenderTarget,
     ) -> Result<Statistics, ShadowMapError> {
-        let plan = self.prepare(gpu, scene, frame, picture.size)?;
+        let plan = self.prepare(gpu, scene, frame, target.size)?;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.shadow_passes(&mut encoder, scene, &plan);
-        self.scene_pass(&mut encoder, scene, &plan, picture, frame.lines.len() as u32);
+        self.scene_pass(&mut encoder, scene, &plan, target, frame.lines.len() as u32);
         if frame.inset.is_some() && !frame.maps.is_empty() {
-            self.inset_pass(&mut encoder, picture);
+            self.inset_pass(&mut encoder, target);
         }
         self.timer.resolve(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
@@ -178,7 +131,8 @@ impl Renderer {
     ///
     /// # Errors
     ///
-    /// [`ProbeError`] if a fit was made for another map, or the device cannot tell triangles apart.
+    /// [`ProbeError`] for maps that the shadow map cannot take, a device that cannot tell triangles apart, and one that
+    /// was lost.
     pub fn probe(
         &mut self,
         gpu: &Gpu,
@@ -187,7 +141,7 @@ impl Renderer {
         targets: &ProbeTargets,
     ) -> Result<Probe, ProbeError> {
         self.draw_probe(gpu, scene, frame, targets)?;
-        Ok(targets.read(gpu))
+        Ok(targets.read(gpu)?)
     }
 
     /// Draws a frame's shadow decisions, to be read on the GPU.
@@ -234,8 +188,9 @@ impl Renderer {
         let origin = frame.camera.eye;
         let (eye, forward) = frame.choice.unwrap_or((origin, frame.camera.forward.normalize()));
         let view = MapView { origin, eye, forward };
-        self.shadow_map.prepare(&gpu.queue, &view, frame.maps, frame.bias)?;
-        let uniform = FrameUniform::new(frame.camera, -frame.direction, frame.shadows, frame.atmosphere, size);
+        self.shadow_map.prepare(&gpu.queue, &view, &self.culled(frame, &view))?;
+        let uniform = FrameUniform::new(frame.camera, -frame.direction, frame.shadows, frame.atmosphere, size)
+            .with_overlay(frame.overlay);
         gpu.queue.write_buffer(&self.frame_uniform, 0, bytemuck::bytes_of(&uniform));
         if let Some(inset) = frame.inset {
             let uniform =
@@ -244,6 +199,20 @@ impl Renderer {
         }
         self.write_lines(gpu, origin, frame.lines);
         Ok(plan(gpu, scene, frame, &uniform, self.shadow_map.volumes()))
+    }
+
+    /// The maps with the casters that the frame's culling leaves them.
+    fn culled(&self, frame: &Frame<'_>, view: &MapView) -> Vec<MapFit> {
+        let mut maps = frame.maps.to_vec();
+        if frame.culling == Culling::Swept {
+            let filter = self.shadow_map.descriptor().filter;
+            let swept = frame.camera.frustum().and_then(|seen| MapFit::sweep(&mut maps, view, &[seen], filter));
+            if swept.is_err() {
+                // Of a camera that makes no sense nobody knows what it sees: maps get all that they can store.
+                maps.iter_mut().for_each(|map| map.volume = None);
+            }
+        }
+        maps
     }
 
     fn write_lines(&mut self, gpu: &Gpu, eye: DVec3, lines: &[Line]) {
@@ -259,7 +228,7 @@ impl Renderer {
         for (map, draws) in plan.shadow.iter().enumerate() {
             let query = self.timer.begin(Pass::Shadow, encoder);
             let timestamps = query.as_ref().and_then(wgpu_profiler::GpuProfilerQuery::render_pass_timestamp_writes);
-            let mut pass = self.shadow_map.begin_pass(encoder, map, timestamps);
+            let mut pass = self.shadow_map.begin_pass(encoder, map, CASTER_GROUP, timestamps);
             for draw in draws {
                 let part = &scene.parts[draw.part];
                 pass.set_pipeline(self.pipelines.caster(part));
@@ -275,18 +244,18 @@ impl Renderer {
         encoder: &mut wgpu::CommandEncoder,
         scene: &GpuScene,
         plan: &Plan,
-        picture: &Picture,
+        target: &RenderTarget,
         lines: u32,
     ) {
         let query = self.timer.begin(Pass::Scene, encoder);
-        let color = match &picture.multisampled {
-            Some(view) => color_attachment(view, Some(&picture.color_view), wgpu::Color::BLACK),
-            None => color_attachment(&picture.color_view, None, wgpu::Color::BLACK),
+        let color = match &target.multisampled {
+            Some(view) => color_attachment(view, Some(&target.color_view), wgpu::Color::BLACK),
+            None => color_attachment(&target.color_view, None, wgpu::Color::BLACK),
         };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
             color_attachments: &[Some(color)],
-            depth_stencil_attachment: Some(depth_attachment(&picture.depth_view)),
+            depth_stencil_attachment: Some(depth_attachment(&target.depth_view)),
             timestamp_writes: query.as_ref().and_then(wgpu_profiler::GpuProfilerQuery::render_pass_timestamp_writes),
             ..Default::default()
         });
@@ -318,11 +287,11 @@ impl Renderer {
         }
     }
 
-    fn inset_pass(&self, encoder: &mut wgpu::CommandEncoder, picture: &Picture) {
+    fn inset_pass(&self, encoder: &mut wgpu::CommandEncoder, target: &RenderTarget) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("inset"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &picture.color_view,
+                view: &target.color_view,
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
@@ -339,17 +308,15 @@ impl Renderer {
 
 /// Decides what each pass draws and uploads the instances.
 fn plan(gpu: &Gpu, scene: &mut GpuScene, frame: &Frame<'_>, uniform: &FrameUniform, volumes: &[CasterVolume]) -> Plan {
-    let eye = frame.camera.eye;
-    scene.begin_frame();
-    let shadow = volumes
-        .iter()
-        .map(|volume| scene.visible(eye, |min, max| volume.intersects_aabb(min, max), Part::casts))
-        .collect();
+    scene.begin_frame(frame.camera.eye);
+    let masks = scene.cull(volumes);
+    let of_map = |map: usize| scene.visible(|instance, _| masks[instance] >> map & 1 == 1, Part::casts);
+    let shadow = (0..volumes.len()).map(of_map).collect();
     let seen = in_frustum(Mat4::from_cols_array_2d(&uniform.clip_from_world));
-    let mut opaque = scene.visible(eye, &seen, Part::casts);
+    let mut opaque = scene.visible(|_, bounds| seen(bounds), Part::casts);
     // Near things first, so that what they hide is never shaded.
     opaque.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-    let mut blended = scene.visible(eye, &seen, |part| !part.casts());
+    let mut blended = scene.visible(|_, bounds| seen(bounds), |part| !part.casts());
     blended.sort_by(|a, b| b.distance.total_cmp(&a.distance));
     scene.end_frame(gpu);
     Plan { shadow, opaque, blended }
@@ -366,15 +333,24 @@ fn draw_part(pass: &mut wgpu::RenderPass<'_>, scene: &GpuScene, draw: &Draw, mat
 }
 
 fn statistics(scene: &GpuScene, plan: &Plan) -> Statistics {
-    let triangles = |draws: &mut dyn Iterator<Item = &Draw>| -> (u32, u64) {
-        draws.fold((0, 0), |(count, triangles), draw| {
-            let per_instance = u64::from(scene.parts[draw.part].index_count / 3);
-            (count + 1, triangles + per_instance * draw.instances.len() as u64)
+    let casters = |draws: &[Draw]| {
+        draws.iter().fold(MapStatistics::default(), |sum, draw| {
+            let instances = draw.instances.len() as u32;
+            let triangles = u64::from(scene.parts[draw.part].index_count / 3) * u64::from(instances);
+            MapStatistics { casters: sum.casters + instances, triangles: sum.triangles + triangles }
         })
     };
-    let (shadow_draws, shadow_triangles) = triangles(&mut plan.shadow.iter().flatten());
-    let (scene_draws, scene_triangles) = triangles(&mut plan.opaque.iter().chain(&plan.blended));
-    Statistics { shadow_draws, shadow_triangles, scene_draws, scene_triangles }
+    let mut maps = [MapStatistics::default(); MAX_MAPS];
+    for (map, draws) in maps.iter_mut().zip(&plan.shadow) {
+        *map = casters(draws);
+    }
+    Statistics {
+        shadow_draws: plan.shadow.iter().map(Vec::len).sum::<usize>() as u32,
+        shadow_triangles: maps.iter().map(|map| map.triangles).sum(),
+        scene_draws: (plan.opaque.len() + plan.blended.len()) as u32,
+        scene_triangles: casters(&plan.opaque).triangles + casters(&plan.blended).triangles,
+        maps,
+    }
 }
 
 fn color_attachment<'a>(

@@ -1,9 +1,9 @@
 //! A scene on the GPU: vertex and index buffers, materials, and per frame the instances that each
-//! pass sees. Deformed primitives (skins, morph targets) are deformed on the processor, so that
+//! pass sees. Deformed primitives (skins, morph targets) are deformed on the CPU, so that
 //! ray tracers see the very same triangles.
 
 use glam::{DVec3, Mat4, Vec3, Vec4};
-use shadowfit::Aabb;
+use shadowfit::{Aabb, CasterVolume};
 use shadowfit_scene::{AlphaMode, Instance, Pose, Primitive, Scene};
 
 use crate::Gpu;
@@ -16,6 +16,10 @@ pub struct GpuScene {
     pub(crate) parts: Vec<Part>,
     pub(crate) materials: Vec<wgpu::BindGroup>,
     instances: Vec<SceneInstance>,
+    /// What the present frame is relative to, in world space, in metres.
+    eye: DVec3,
+    /// Bounds of all instances, relative to the eye.
+    boxes: Vec<shadowfit::Aabb>,
     data: Vec<InstanceData>,
     pub(crate) instance_buffer: wgpu::Buffer,
 }
@@ -80,6 +84,8 @@ impl GpuScene {
             parts,
             materials: upload_materials(gpu, layout, scene),
             instances: numbered(scene, instances),
+            eye: DVec3::ZERO,
+            boxes: Vec::new(),
             data: Vec::new(),
             instance_buffer: instance_buffer(&gpu.device, count.max(1)),
         };
@@ -106,17 +112,28 @@ impl GpuScene {
         }
     }
 
-    /// Starts a frame's instance list.
-    pub(crate) fn begin_frame(&mut self) {
+    /// Starts a frame's instance list, for positions relative to `eye` (world space, metres).
+    pub(crate) fn begin_frame(&mut self, eye: DVec3) {
         self.data.clear();
+        self.eye = eye;
+        let relative = |point: Vec3| (point.as_dvec3() - eye).as_vec3();
+        let boxes = self.instances.iter().map(|instance| instance.bounds);
+        self.boxes.clear();
+        self.boxes.extend(boxes.map(|bounds| shadowfit::Aabb::new(relative(bounds.min), relative(bounds.max))));
+    }
+
+    /// For each instance the maps that it may throw a shadow into: bit i for volume i, relative to the frame's eye.
+    pub(crate) fn cull(&self, volumes: &[CasterVolume]) -> Vec<u8> {
+        let mut masks = vec![0; self.boxes.len()];
+        shadowfit::cull(volumes, self.eye, &self.boxes, &mut masks);
+        masks
     }
 
     /// Adds the instances that a pass sees, and returns its draws. `keep` is asked with the
-    /// instance's bounds relative to `eye`.
+    /// instance's index and its bounds relative to the frame's eye.
     pub(crate) fn visible(
         &mut self,
-        eye: DVec3,
-        mut keep: impl FnMut(Vec3, Vec3) -> bool,
+        mut keep: impl FnMut(usize, &shadowfit::Aabb) -> bool,
         mut takes: impl FnMut(&Part) -> bool,
     ) -> Vec<Draw> {
         let mut draws = Vec::new();
@@ -124,11 +141,10 @@ impl GpuScene {
             let start = self.data.len() as u32;
             let mut distance = f32::INFINITY;
             for &member in &part.members {
-                let instance = &self.instances[member];
-                let [min, max] = [instance.bounds.min, instance.bounds.max].map(|p| (p.as_dvec3() - eye).as_vec3());
-                if min.cmple(max).all() && keep(min, max) {
-                    distance = distance.min(((min + max) * 0.5).length());
-                    self.data.push(instance_data(&instance.world_from_mesh, eye, instance.first_triangle));
+                let (instance, bounds) = (&self.instances[member], &self.boxes[member]);
+                if !bounds.is_empty() && keep(member, bounds) {
+                    distance = distance.min(((bounds.min + bounds.max) * 0.5).length());
+                    self.data.push(instance_data(&instance.world_from_mesh, self.eye, instance.first_triangle));
                 }
             }
             let instances = start..self.data.len() as u32;
@@ -148,15 +164,19 @@ impl GpuScene {
         gpu.queue.write_buffer(&self.instance_buffer, 0, bytes);
     }
 
-    /// World bounds of an instance in its present pose, in metres, by its index in the scene's
-    /// instances; `None` where it has no vertices. Those of a turned instance lie around its turned
-    /// box.
+    /// World bounds of an instance in the pose that was last set, in metres, by its index in
+    /// [`Scene::instances`]; `None` where it has no vertices. They hold all its vertices, deformed ones
+    /// as they are deformed. Where its node is turned they are larger than the least box, since they
+    /// enclose the turned box of the mesh.
     pub fn instance_bounds(&self, index: usize) -> Option<Aabb> {
         let bounds = self.instances.get(index)?.bounds;
         (!bounds.is_empty()).then_some(bounds)
     }
 
-    /// World bounds of everything drawn, blended surfaces too, in its present pose, in metres; `None` for an empty scene.
+    /// World bounds of all instances in the pose that was last set, in metres, those of blended
+    /// surfaces included; `None` for a scene without vertices. It is the union of
+    /// [`Self::instance_bounds`], so it holds every vertex, but may be larger than the least box that
+    /// does.
     pub fn bounds(&self) -> Option<Aabb> {
         self.instances.iter().map(|instance| instance.bounds).filter(|bounds| !bounds.is_empty()).reduce(Aabb::union)
     }
@@ -195,13 +215,13 @@ impl Part {
 
 /// Whether a box relative to the eye may be seen: not wholly outside one of the six clip planes
 /// (Gribb and Hartmann, 2001).
-pub(crate) fn in_frustum(clip_from_world: Mat4) -> impl Fn(Vec3, Vec3) -> bool {
+pub(crate) fn in_frustum(clip_from_world: Mat4) -> impl Fn(&shadowfit::Aabb) -> bool {
     let row = |index| clip_from_world.row(index);
     let planes = [row(3) + row(0), row(3) - row(0), row(3) + row(1), row(3) - row(1), row(2), row(3) - row(2)];
-    move |min, max| {
+    move |bounds| {
         planes.iter().all(|plane| {
             let normal = plane.truncate();
-            let farthest = Vec3::select(normal.cmpge(Vec3::ZERO), max, min);
+            let farthest = Vec3::select(normal.cmpge(Vec3::ZERO), bounds.max, bounds.min);
             normal.dot(farthest) + plane.w >= 0.0
         })
     }
@@ -290,7 +310,7 @@ mod tests {
             far: 100.0,
         };
         let keep = in_frustum(camera.clip_from_world(shadowfit::DepthConvention::Reversed));
-        keep(center - 0.5, center + 0.5)
+        keep(&shadowfit::Aabb::new(center - 0.5, center + 0.5))
     }
 
     #[test]

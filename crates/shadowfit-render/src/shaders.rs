@@ -2,6 +2,9 @@
 
 use shadowfit_wgpu::{ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
 
+/// Bind group of the map's matrix in the shadow pass.
+pub const CASTER_GROUP: u32 = 0;
+
 /// Bind group of the shadow map in the shaded pass.
 pub const SHADOW_GROUP: u32 = 1;
 
@@ -28,7 +31,8 @@ pub fn sky() -> String {
 
 /// The shadow pass: group 0 is the shadow map's, group 1 the material's.
 pub fn caster() -> String {
-    [caster_wgsl(0), MATERIAL.replace("MATERIAL_GROUP", "1"), include_str!("shaders/caster.wgsl").to_owned()].concat()
+    [caster_wgsl(CASTER_GROUP), MATERIAL.replace("MATERIAL_GROUP", "1"), include_str!("shaders/caster.wgsl").to_owned()]
+        .concat()
 }
 
 /// The shaded pass: frame, shadow map and material are groups 0, 1 and 2.

@@ -55,7 +55,7 @@ pub fn render_pictures(stage: &mut Stage, folder: &Path, size: [u32; 2]) -> Resu
     let mut save = |stage: &mut Stage, name: &str| -> Result<()> {
         stage.draw(&picture);
         let path = folder.join(name).with_extension("png");
-        write_png(&path, size, &picture.read(stage.gpu()))?;
+        write_png(&path, size, &picture.read(stage.gpu())?)?;
         written.push(path);
         Ok(())
     };
@@ -103,5 +103,5 @@ fn render_interface(stage: &mut Stage, path: &Path, size: [u32; 2]) -> Result<()
     for _ in 0..4 {
         interface.frame(stage, input(), &whole.encoded_view(), size);
     }
-    write_png(path, size, &whole.read(stage.gpu()))
+    write_png(path, size, &whole.read(stage.gpu())?)
 }

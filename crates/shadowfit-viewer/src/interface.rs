@@ -4,7 +4,7 @@ use egui::{CentralPanel, Color32, Frame, MouseWheelUnit, Pos2, Rect, Sense, Ui};
 use egui_wgpu::{Renderer as EguiRenderer, RendererOptions, ScreenDescriptor};
 use glam::Vec2;
 use shadowfit_egui::{Action, PANEL_WIDTH, Panel, PanelInput, SceneLine};
-use shadowfit_render::Picture;
+use shadowfit_render::RenderTarget;
 
 use crate::stage::Stage;
 
@@ -17,7 +17,7 @@ pub(crate) struct Interface {
     pub(crate) context: egui::Context,
     renderer: EguiRenderer,
     panel: Panel,
-    picture: Picture,
+    picture: RenderTarget,
     texture: egui::TextureId,
     pub(crate) help_open: bool,
     pub(crate) panel_hidden: bool,
@@ -66,7 +66,7 @@ impl Interface {
     }
 
     /// The picture as last drawn.
-    pub(crate) fn picture(&self) -> &Picture {
+    pub(crate) fn picture(&self) -> &RenderTarget {
         &self.picture
     }
 

@@ -297,7 +297,7 @@ impl Stage {
     }
 
     /// Draws the present view into a picture.
-    pub fn draw(&mut self, picture: &Picture) {
+    pub fn draw(&mut self, picture: &RenderTarget) {
         self.problem = None;
         let Fitted { frustum, maps } = self.fit(picture.size);
         let view = self.view(picture.size);

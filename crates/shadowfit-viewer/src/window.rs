@@ -248,7 +248,8 @@ impl Running {
             }
         };
         let picture = self.interface.picture();
-        let saved = write_png(&path, picture.size, &picture.read(self.stage.gpu()));
+        let pixels = picture.read(self.stage.gpu()).map_err(anyhow::Error::from);
+        let saved = pixels.and_then(|pixels| write_png(&path, picture.size, &pixels));
         self.interface.message = Some(match saved {
             Ok(()) => format!("Saved {}", path.display()),
             Err(error) => format!("{error:#}"),

@@ -4,26 +4,42 @@
 //!
 //! ```no_run
 //! # fn demo(device: &wgpu::Device, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder,
-//! #         fit: shadowfit::LightFit, forward: shadowfit::glam::Vec3) -> Result<(), shadowfit_wgpu::ShadowMapError> {
-//! use shadowfit_wgpu::{MapView, ShadowMap, ShadowMapDescriptor, receiver_wgsl};
+//! #         cascades: &shadowfit::Cascades, camera: &shadowfit::PerspectiveCamera,
+//! #         forward: shadowfit::glam::Vec3) -> Result<(), Box<dyn std::error::Error>> {
+//! use shadowfit::BiasSettings;
+//! use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
 //!
-//! let mut map = ShadowMap::new(device, &ShadowMapDescriptor::default())?;
-//! let wgsl = receiver_wgsl(map.descriptor(), 1); // goes into the engine's own shader, as @group(1)
+//! let mut map = ShadowMap::new(device, &ShadowMapDescriptor { maps: 4, ..Default::default() })?;
+//! let caster = caster_wgsl(0); // goes into the engine's vertex shader of the shadow pass, as @group(0)
+//! let receiver = receiver_wgsl(map.descriptor(), 1); // goes into its fragment shader, as @group(1)
 //!
-//! // Each frame: positions in the engine's shaders are relative to `origin`, here the camera.
-//! let view = MapView::from_eye(fit.origin, forward);
-//! map.prepare(queue, &view, &[fit.into()], &shadowfit::settings::BiasSettings::default())?;
-//! map.render(encoder, |pass, _map_index, _volume| {
-//!     // Group 0 is set to the caster uniform; draw every caster that the volume keeps.
+//! // Each frame: the maps as `shadowfit` fitted them, nearest first, with biases in texels.
+//! let filter = map.descriptor().filter;
+//! let bias = BiasSettings::automatic(filter);
+//! let mut maps: Vec<MapFit> = cascades.iter().map(|map| MapFit::from_texels(map, &bias)).collect();
+//! // Positions in the engine's shaders are relative to the eye.
+//! let view = MapView::from_eye(camera.eye, forward);
+//! // Leave out casters whose shadows are not seen. Without this, each map gets all that it can store.
+//! MapFit::sweep(&mut maps, &view, &[camera.frustum()?], filter)?;
+//! map.prepare(queue, &view, &maps)?;
+//! map.render(encoder, 0, |pass, _map_index, _volume| {
+//!     // The caster uniform is bound at group 0: draw every caster that the volume keeps.
 //!     pass.draw(0..3, 0..1);
 //! });
 //! # Ok(()) }
 //! ```
 
+mod descriptor;
+mod error;
 mod map;
+mod map_fit;
 mod shader;
+mod sweep;
 mod uniform;
 
-pub use map::{MAX_MAPS, MapFit, MapView, RESOLUTIONS, ShadowMap, ShadowMapDescriptor, ShadowMapError};
+pub use descriptor::{MAX_MAPS, RESOLUTIONS, ShadowMapDescriptor};
+pub use error::ShadowMapError;
+pub use map::ShadowMap;
+pub use map_fit::{MapFit, MapView};
 pub use shader::{caster_wgsl, culling_wgsl, receiver_wgsl};
-pub use uniform::{CasterUniform, CullingUniform, MapUniform, ReceiverUniform, VolumeUniform};
+pub use uniform::{CasterUniform, CullingUniform, MapUniform, ReceiverUniform};

@@ -1,165 +1,11 @@
 //! The shadow map as a GPU resource: textures, clears, bind groups, and one pass per map.
 
-use core::fmt;
+use shadowfit::settings::{FilterKind, MapFormat};
+use shadowfit::{CasterPolicy, CasterVolume, DepthConvention};
 
-use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::settings::{BiasSettings, FilterKind, MapFormat, Settings};
-use shadowfit::{CascadeMap, CasterPolicy, CasterVolume, DepthConvention, FitKind, LightFit};
-
+use crate::map_fit::check;
 use crate::uniform::{CasterUniform, ReceiverUniform};
-
-/// Most maps (array layers) that one [`ShadowMap`] holds.
-pub const MAX_MAPS: usize = 8;
-
-/// Widths and heights that a map may have, in texels.
-pub const RESOLUTIONS: core::ops::RangeInclusive<u32> = 256..=8192;
-
-/// What a [`ShadowMap`] is made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ShadowMapDescriptor {
-    /// Width and height of each map, in texels, within [`RESOLUTIONS`].
-    pub resolution: [u32; 2],
-    /// Number of maps, 1..=[`MAX_MAPS`].
-    pub maps: u32,
-    /// Storage of the depths.
-    pub format: MapFormat,
-    /// Filter of the look-up.
-    pub filter: FilterKind,
-    /// Depth convention of the fits: 0..1, plain or reversed; wgpu has no -1..1.
-    pub depth: DepthConvention,
-    /// Whether casters before the near plane are kept, flattened onto it ("pancaking"), as fits with
-    /// [`CasterPolicy::DepthClamp`] need it. The device needs
-    /// [`wgpu::Features::DEPTH_CLIP_CONTROL`].
-    pub depth_clamp: bool,
-}
-
-impl Default for ShadowMapDescriptor {
-    fn default() -> Self {
-        Self {
-            resolution: [2048; 2],
-            maps: 1,
-            format: MapFormat::Depth32Float,
-            filter: FilterKind::default(),
-            depth: DepthConvention::ZeroToOne,
-            depth_clamp: false,
-        }
-    }
-}
-
-/// A fitted map, and the points that choose it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MapFit {
-    /// Where it lies.
-    pub fit: LightFit,
-    /// View depth, in metres, below which the map is a choice: a point reads the first map for
-    /// which that holds and which covers it. `f32::MAX` for no end.
-    pub far: f32,
-}
-
-impl From<LightFit> for MapFit {
-    /// A single map, for all view depths.
-    fn from(fit: LightFit) -> Self {
-        Self { fit, far: f32::MAX }
-    }
-}
-
-impl From<&CascadeMap> for MapFit {
-    fn from(map: &CascadeMap) -> Self {
-        Self { fit: map.fit, far: map.far }
-    }
-}
-
-/// From where the maps are looked up.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MapView {
-    /// World position that all positions in the shaders are relative to, in metres.
-    pub origin: DVec3,
-    /// World position of the eye that view depths are counted from, in metres.
-    pub eye: DVec3,
-    /// Unit direction in which that eye looks, world axes.
-    pub forward: Vec3,
-}
-
-impl MapView {
-    /// Everything relative to an eye that looks along `forward` (unit, world axes).
-    pub fn from_eye(eye: DVec3, forward: Vec3) -> Self {
-        Self { origin: eye, eye, forward }
-    }
-}
-
-/// Why a [`ShadowMap`] could not be made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ShadowMapError {
-    /// Width or height outside [`RESOLUTIONS`] or above the device's limit, which is given.
-    Resolution {
-        /// The resolution asked for, in texels.
-        resolution: [u32; 2],
-        /// The device's greatest texture width and height, in texels.
-        device_limit: u32,
-    },
-    /// Number of maps outside 1..=[`MAX_MAPS`].
-    Maps(u32),
-    /// A depth convention that wgpu's clip space does not have.
-    Depth(DepthConvention),
-    /// Depth clamp on a device without [`wgpu::Features::DEPTH_CLIP_CONTROL`].
-    DepthClamp,
-    /// A fit has more texels than a layer, or another depth convention: biases and comparisons
-    /// would be wrong.
-    Fit {
-        /// Index of the fit.
-        index: usize,
-        /// Its resolution, in texels, and depth convention.
-        fit: ([u32; 2], DepthConvention),
-        /// Those of the layers.
-        map: ([u32; 2], DepthConvention),
-    },
-}
-
-impl From<&Settings> for ShadowMapDescriptor {
-    /// One map that the settings' fits match.
-    fn from(settings: &Settings) -> Self {
-        Self {
-            resolution: settings.fit.resolution.to_array(),
-            maps: 1,
-            format: settings.format,
-            filter: settings.filter,
-            depth: settings.fit.depth,
-            // The XNA sample's fit has no caster policy.
-            depth_clamp: settings.fit.casters == CasterPolicy::DepthClamp && settings.fit.kind != FitKind::XnaSample,
-        }
-    }
-}
-
-impl fmt::Display for ShadowMapError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Resolution { resolution: [width, height], device_limit } => write!(
-                f,
-                "shadow map of {width} × {height} texels: each side must be {} to {} texels, and this device allows \
-                 at most {device_limit}",
-                RESOLUTIONS.start(),
-                RESOLUTIONS.end(),
-            ),
-            Self::Maps(maps) => write!(f, "{maps} shadow maps: between 1 and {MAX_MAPS} are possible"),
-            Self::Depth(depth) => {
-                write!(f, "depth convention {depth:?}: wgpu's clip space has 0..1, plain or reversed")
-            }
-            Self::DepthClamp => write!(
-                f,
-                "depth clamp: this device has no DEPTH_CLIP_CONTROL; let the fit place its near plane by another caster \
-                 policy"
-            ),
-            Self::Fit { index, fit, map } => write!(
-                f,
-                "fit {index} was made for {:?} texels and depth {:?}, the shadow map has {:?} and {:?}: give both the \
-                 same depth, and the map no fewer texels",
-                fit.0, fit.1, map.0, map.1,
-            ),
-        }
-    }
-}
-
-impl core::error::Error for ShadowMapError {}
+use crate::{MapFit, MapView, ShadowMapDescriptor, ShadowMapError};
 
 /// Shadow maps of one light: equal layers of one texture array, their passes and bind groups.
 #[derive(Debug)]
@@ -195,10 +41,7 @@ impl ShadowMap {
     /// [`ShadowMapError`] if the resolution, the number of maps, the depth convention or depth clamp
     /// is not possible.
     pub fn new(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> Result<Self, ShadowMapError> {
-        check(descriptor, device.limits().max_texture_dimension_2d)?;
-        if descriptor.depth_clamp && !device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL) {
-            return Err(ShadowMapError::DepthClamp);
-        }
+        descriptor.check(device)?;
         let caster_layout = caster_layout(device);
         let receiver_layout = receiver_layout(device, descriptor);
         let depth_texture = texture(device, descriptor, wgpu::TextureFormat::Depth32Float);
@@ -290,65 +133,57 @@ impl ShadowMap {
         if self.descriptor.depth == DepthConvention::Reversed { 0.0 } else { 1.0 }
     }
 
+    /// Bind group of a map's matrix, which [`crate::caster_wgsl`] reads: for engines whose passes bind it themselves.
+    ///
+    /// # Panics
+    ///
+    /// If `index` is not below the descriptor's number of maps.
+    pub fn caster_group(&self, index: usize) -> &wgpu::BindGroup {
+        &self.layers[index].caster_group
+    }
+
     /// Writes the uniforms for this frame's maps, in order of their `far`. Positions in the shaders
     /// are relative to the view's origin. A fit with fewer texels than a layer uses the corner of
-    /// it. Maps past the number of layers are left out; a layer without a map is neither drawn nor
-    /// read.
+    /// it. A layer without a map is neither drawn nor read.
     ///
     /// # Errors
     ///
-    /// [`ShadowMapError::Fit`] if a fit has more texels than a layer or another depth convention;
-    /// nothing is written then.
-    pub fn prepare(
-        &mut self,
-        queue: &wgpu::Queue,
-        view: &MapView,
-        maps: &[MapFit],
-        bias: &BiasSettings,
-    ) -> Result<(), ShadowMapError> {
-        self.check_fits(maps)?;
-        let maps = &maps[..maps.len().min(self.layers.len())];
+    /// [`ShadowMapError::TooManyFits`] for more fits than layers; [`ShadowMapError::Fit`] if a fit has
+    /// more texels than a layer or another depth convention; [`ShadowMapError::Order`] if the maps'
+    /// ends do not ascend; [`ShadowMapError::Bias`] and [`ShadowMapError::Forward`] for biases and a
+    /// direction that make no sense. Nothing is written then.
+    pub fn prepare(&mut self, queue: &wgpu::Queue, view: &MapView, maps: &[MapFit]) -> Result<(), ShadowMapError> {
+        check(&self.descriptor, view, maps)?;
         for (layer, map) in self.layers.iter_mut().zip(maps) {
             let uniform = CasterUniform::new(&map.fit, view.origin);
             queue.write_buffer(&layer.caster_uniform, 0, bytemuck::bytes_of(&uniform));
             layer.used = map.fit.resolution.to_array();
         }
-        let uniform = ReceiverUniform::new(maps, view, bias);
+        let uniform = ReceiverUniform::new(maps, view);
         queue.write_buffer(&self.receiver_uniform, 0, bytemuck::bytes_of(&uniform));
-        let casters = if self.descriptor.depth_clamp { CasterPolicy::DepthClamp } else { CasterPolicy::None };
+        let depth_clamp = self.descriptor.depth_clamp;
         self.volumes.clear();
-        self.volumes.extend(maps.iter().map(|map| CasterVolume::of_map(&map.fit.relative_to(view.origin), casters)));
+        self.volumes.extend(maps.iter().map(|map| volume(map, depth_clamp).relative_to(view.origin)));
         Ok(())
     }
 
-    fn check_fits(&self, maps: &[MapFit]) -> Result<(), ShadowMapError> {
-        let map = (self.descriptor.resolution, self.descriptor.depth);
-        let suits = |fit: &([u32; 2], DepthConvention)| {
-            fit.1 == map.1 && fit.0.iter().zip(&map.0).all(|(fit, layer)| (1..=*layer).contains(fit))
-        };
-        let mut made_for = maps.iter().map(|map| (map.fit.resolution.to_array(), map.fit.depth)).enumerate();
-        match made_for.find(|(_, fit)| !suits(fit)) {
-            Some((index, fit)) => Err(ShadowMapError::Fit { index, fit, map }),
-            None => Ok(()),
-        }
-    }
-
-    /// Records one pass a prepared map: cleared to the far value, group 0 set to the map's caster
-    /// uniform, then `draw(pass, map index, volume)`, which draws every caster that the volume
-    /// (relative to the origin) keeps.
+    /// Records one pass a prepared map: cleared to the far value, the map's [`Self::caster_group`]
+    /// bound at `group`, then `draw(pass, map index, volume)`, which draws every caster that the
+    /// volume (relative to the origin) keeps.
     pub fn render(
         &self,
         encoder: &mut wgpu::CommandEncoder,
+        group: u32,
         mut draw: impl FnMut(&mut wgpu::RenderPass<'_>, usize, &CasterVolume),
     ) {
         for (index, volume) in self.volumes.iter().enumerate() {
-            let mut pass = self.begin_pass(encoder, index, None);
+            let mut pass = self.begin_pass(encoder, index, group, None);
             draw(&mut pass, index, volume);
         }
     }
 
-    /// Opens the pass of one map, for engines that schedule passes themselves: cleared, with
-    /// group 0 and the viewport set.
+    /// Opens the pass of one map, for engines that schedule passes themselves: cleared, with the
+    /// map's [`Self::caster_group`] bound at `group`, and the viewport set.
     ///
     /// # Panics
     ///
@@ -357,6 +192,7 @@ impl ShadowMap {
         &self,
         encoder: &'encoder mut wgpu::CommandEncoder,
         index: usize,
+        group: u32,
         timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> wgpu::RenderPass<'encoder> {
         let layer = &self.layers[index];
@@ -387,10 +223,20 @@ impl ShadowMap {
             occlusion_query_set: None,
             multiview_mask: None,
         });
-        pass.set_bind_group(0, &layer.caster_group, &[]);
+        pass.set_bind_group(group, &layer.caster_group, &[]);
         let [width, height] = layer.used;
         pass.set_viewport(0.0, 0.0, width as f32, height as f32, 0.0, 1.0);
         pass
+    }
+}
+
+/// The casters that are drawn into a map.
+fn volume(map: &MapFit, depth_clamp: bool) -> CasterVolume {
+    let casters = if depth_clamp { CasterPolicy::DepthClamp } else { CasterPolicy::None };
+    match map.volume {
+        None => CasterVolume::of_map(&map.fit, casters),
+        Some(volume) if depth_clamp => volume,
+        Some(volume) => volume.cut_at_near_plane(&map.fit),
     }
 }
 
@@ -419,20 +265,6 @@ impl Layer {
         let used = [depth.width(), depth.height()];
         Self { depth: view(depth), color: color.map(view), caster_uniform, caster_group, used }
     }
-}
-
-fn check(descriptor: &ShadowMapDescriptor, device_limit: u32) -> Result<(), ShadowMapError> {
-    let resolution = descriptor.resolution;
-    if resolution.iter().any(|side| !RESOLUTIONS.contains(side) || *side > device_limit) {
-        return Err(ShadowMapError::Resolution { resolution, device_limit });
-    }
-    if !(1..=MAX_MAPS as u32).contains(&descriptor.maps) {
-        return Err(ShadowMapError::Maps(descriptor.maps));
-    }
-    if descriptor.depth == DepthConvention::NegativeOneToOne {
-        return Err(ShadowMapError::Depth(descriptor.depth));
-    }
-    Ok(())
 }
 
 fn texture(device: &wgpu::Device, descriptor: &ShadowMapDescriptor, format: wgpu::TextureFormat) -> wgpu::Texture {

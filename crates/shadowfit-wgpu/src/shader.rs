@@ -10,7 +10,9 @@ use crate::{MAX_MAPS, ShadowMapDescriptor};
 /// where `position` is in world space, metres, relative to the origin of
 /// [`crate::ShadowMap::prepare`].
 ///
-/// It reads binding 0 of `group`; [`crate::ShadowMap::render`] sets group 0.
+/// It reads binding 0 of `group`, which may be any: [`crate::ShadowMap::render`] and
+/// [`crate::ShadowMap::begin_pass`] bind the map's [`caster_group`](crate::ShadowMap::caster_group)
+/// where they are told to.
 pub fn caster_wgsl(group: u32) -> String {
     include_str!("shaders/caster.wgsl").replace("GROUP", &group.to_string())
 }
@@ -27,11 +29,18 @@ pub fn culling_wgsl(group: u32) -> String {
         .replace("MAX_PLANES", &CasterVolume::MAX_PLANES.to_string())
 }
 
-/// WGSL for fragment shaders that receive shadows: `shadowfit_factor(position, normal) -> f32`.
+/// WGSL for fragment shaders that receive shadows:
+///
+/// | function | gives |
+/// |---|---|
+/// | `shadowfit_factor(position, normal) -> f32` | the filtered share of the light that reaches a point: 1 lit, 0 in shadow, 1 outside every map |
+/// | `shadowfit_map_index(position) -> i32` | the index of the map that `shadowfit_factor` reads there, for tints that show it; -1 outside every map |
+/// | `shadowfit_view_depth(position) -> f32` | the view depth, in metres, that chooses among the maps: the distance from [`MapView::eye`](crate::MapView::eye) along [`MapView::forward`](crate::MapView::forward) |
 ///
 /// `position` is in world space, metres, relative to the origin of [`crate::ShadowMap::prepare`];
-/// `normal` is the unit geometric normal on the side that is seen. The result is 1 where lit and
-/// outside every map. Reads bindings 0, 1 and, for depth formats, 2 of `group`; no derivatives.
+/// `normal` is the unit geometric normal on the side that is seen. A point reads the first map that
+/// ends beyond its view depth and covers it. Reads bindings 0, 1 and, for depth formats, 2 of
+/// `group`; no derivatives.
 pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, group: u32) -> String {
     let look_up = match (descriptor.format, descriptor.filter) {
         (MapFormat::Depth32Float, _) => include_str!("shaders/compare_depth.wgsl").to_owned(),
@@ -48,34 +57,50 @@ pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, group: u32) -> String {
         FilterKind::Pcf5x5 => include_str!("shaders/filter_tent_5x5.wgsl"),
     };
     let closer = if descriptor.depth == DepthConvention::Reversed { ">=" } else { "<=" };
-    [include_str!("shaders/receiver.wgsl"), &look_up, filter, &factor(descriptor.maps)]
+    [include_str!("shaders/receiver.wgsl"), &look_up, filter, &choice(descriptor.maps)]
         .concat()
         .replace("GROUP", &group.to_string())
         .replace("MAX_MAPS", &MAX_MAPS.to_string())
         .replace("COMPARE", closer)
 }
 
-/// The look-up in the first map whose view depths reach as far as the point, or the next later one that holds it: one
-/// branch a map, since software rasterisers take twenty times as long for a loop over an array of uniforms.
-fn factor(maps: u32) -> String {
-    let branch = |map: u32| {
-        format!(
-            "    if view_depth < shadowfit_receiver.maps[{map}].far
+/// What looks for a map: one branch a map, since software rasterisers take twenty times as long for a loop over an array
+/// of uniforms.
+fn choice(maps: u32) -> String {
+    let branches = |found: &dyn Fn(u32) -> String| -> String {
+        let branch = |map: u32| {
+            format!(
+                "    if view_depth < shadowfit_receiver.maps[{map}].far
         && shadowfit_covers({map}u, shadowfit_receiver.maps[{map}], position) {{
-        return shadowfit_compare({map}u, shadowfit_receiver.maps[{map}].size,
-            shadowfit_project(shadowfit_receiver.maps[{map}], position, normal));
+        return {};
     }}
-"
+",
+                found(map)
+            )
+        };
+        (0..maps.min(MAX_MAPS as u32)).map(branch).collect()
+    };
+    let compare = |map: u32| {
+        format!(
+            "shadowfit_compare({map}u, shadowfit_receiver.maps[{map}].size,
+            shadowfit_project(shadowfit_receiver.maps[{map}], position, normal))"
         )
     };
-    let branches: String = (0..maps.min(MAX_MAPS as u32)).map(branch).collect();
     format!(
         "
 // Share of the light that reaches a point: 1 lit, 0 in shadow, 1 outside every map.
 fn shadowfit_factor(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
     let view_depth = shadowfit_view_depth(position);
-{branches}    return 1.0;
+{}    return 1.0;
 }}
-"
+
+// Index of the map that shadowfit_factor reads at a point: -1 outside every map.
+fn shadowfit_map_index(position: vec3<f32>) -> i32 {{
+    let view_depth = shadowfit_view_depth(position);
+{}    return -1;
+}}
+",
+        branches(&compare),
+        branches(&|map| map.to_string()),
     )
 }

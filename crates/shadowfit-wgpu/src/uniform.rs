@@ -3,8 +3,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::settings::BiasSettings;
-use shadowfit::{CasterVolume, DepthConvention, LightFit, bias::Bias};
+use shadowfit::{CasterPlanes, CasterVolume, DepthConvention, LightFit};
 
 use crate::{MAX_MAPS, MapFit, MapView};
 
@@ -39,7 +38,7 @@ pub struct MapUniform {
     pub normal_offset: f32,
     /// Depth bias times the plane's rise over a texel, in texels, signed likewise.
     pub receiver_plane: f32,
-    /// View depth from which on the map is no choice, in metres.
+    /// View depth at which the map ends, in metres: points from there on do not read it.
     pub far: f32,
     /// Keeps the struct a multiple of 16 bytes.
     pub padding_0: f32,
@@ -59,30 +58,14 @@ pub struct ReceiverUniform {
     pub map_count: u32,
     /// View depth of a position relative to the origin, in metres, is `dot(xyz, position) + w`.
     pub view: [f32; 4],
-    /// The maps, in order of their `far`; the first one that reaches as far as a point and covers
-    /// it is read.
+    /// The maps, in order of their `far`: a point reads the first one that ends beyond its view
+    /// depth and covers it.
     pub maps: [MapUniform; MAX_MAPS],
-}
-
-/// A caster volume as [`crate::culling_wgsl`] reads it: `shadowfit_CasterVolume` in WGSL.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub struct VolumeUniform {
-    /// Planes (n, d) with unit normals that point inward.
-    pub planes: [[f32; 4]; CasterVolume::MAX_PLANES],
-    /// Number of planes in use.
-    pub count: u32,
-    /// Keeps the struct a multiple of 16 bytes.
-    pub padding_0: u32,
-    /// As above.
-    pub padding_1: u32,
-    /// As above.
-    pub padding_2: u32,
 }
 
 /// What [`crate::culling_wgsl`] reads: `shadowfit_Culling` in WGSL.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct CullingUniform {
     /// How many of `volumes` are in use.
     pub volume_count: u32,
@@ -92,19 +75,17 @@ pub struct CullingUniform {
     pub padding_1: u32,
     /// As above.
     pub padding_2: u32,
-    /// The volumes of the maps.
-    pub volumes: [VolumeUniform; MAX_MAPS],
+    /// The volumes of the maps: `shadowfit_CasterPlanes` in WGSL.
+    pub volumes: [CasterPlanes; MAX_MAPS],
 }
 
 impl CullingUniform {
     /// The uniform for volumes of the maps, with shapes relative to `origin` (world space, metres). Volumes past
     /// [`MAX_MAPS`] are left out.
     pub fn new(volumes: &[CasterVolume], origin: DVec3) -> Self {
-        let mut uniform = Self::default();
-        for (slot, volume) in uniform.volumes.iter_mut().zip(volumes) {
-            let volume = volume.relative_to(origin);
-            slot.planes = volume.planes.map(|plane| plane.to_array());
-            slot.count = volume.active_planes().len() as u32;
+        let mut uniform = Self::zeroed();
+        for (planes, volume) in uniform.volumes.iter_mut().zip(volumes) {
+            *planes = CasterPlanes::from(&volume.relative_to(origin));
         }
         uniform.volume_count = volumes.len().min(MAX_MAPS) as u32;
         uniform
@@ -120,9 +101,8 @@ impl CasterUniform {
 
 impl MapUniform {
     /// The uniform for a map, with positions relative to `origin` (world space, metres).
-    pub fn new(map: &MapFit, origin: DVec3, settings: &BiasSettings) -> Self {
-        let fit = map.fit.relative_to(origin);
-        let bias = Bias::from_texels(settings, &fit);
+    pub fn new(map: &MapFit, origin: DVec3) -> Self {
+        let (fit, bias) = (map.fit.relative_to(origin), map.bias);
         let toward_light = if fit.depth == DepthConvention::Reversed { 1.0 } else { -1.0 };
         let [u, v] = if bias.receiver_plane == 0.0 { [Vec3::ZERO; 2] } else { depth_per_texel(&fit) };
         Self {
@@ -153,10 +133,10 @@ fn depth_per_texel(fit: &LightFit) -> [Vec3; 2] {
 impl ReceiverUniform {
     /// The uniform for maps of one light, in order of their `far`, with positions relative to the view's origin. Maps
     /// past [`MAX_MAPS`] are left out; without any, everything is lit.
-    pub fn new(maps: &[MapFit], view: &MapView, bias: &BiasSettings) -> Self {
+    pub fn new(maps: &[MapFit], view: &MapView) -> Self {
         let mut uniform = Self::default();
         for (slot, map) in uniform.maps.iter_mut().zip(maps) {
-            *slot = MapUniform::new(map, view.origin, bias);
+            *slot = MapUniform::new(map, view.origin);
         }
         uniform.map_count = maps.len().min(MAX_MAPS) as u32;
         uniform.to_light = maps.first().map_or([0.0, 1.0, 0.0], |map| (-map.fit.direction).to_array());

@@ -14,6 +14,7 @@ struct Frame {
     ground: vec4<f32>,
     viewport: vec2<f32>,
     padding: vec2<f32>,
+    map_tints: array<vec4<f32>, 8>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -14,7 +14,7 @@ struct LineOut {
 }
 
 const LINE_PIXELS: f32 = 2.5;
-// Lines are cut this far in front of the eye, in metres: what lies behind it has no place on screen.
+// Lines are cut this far in front of the eye, in metres: what lies behind the eye cannot be projected.
 const LINE_NEAR: f32 = 0.02;
 
 @vertex

@@ -99,6 +99,16 @@ fn ambient(base: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     return base * light * (1.0 - material.metallic * 0.6) + mirrored;
 }
 
+// Colour with the tint of the map that a point reads, where the frame asks for it.
+fn with_map_tint(color: vec3<f32>, position: vec3<f32>) -> vec3<f32> {
+    if frame.map_tints[0].a == 0.0 {
+        return color;
+    }
+    let map = shadowfit_map_index(position);
+    let tint = frame.map_tints[max(map, 0)];
+    return select(color, mix(color, tint.rgb, tint.a), map >= 0);
+}
+
 // Colour of a visible point. Called where control flow is uniform: it takes derivatives.
 fn shaded(in: SceneOut) -> vec4<f32> {
     let texel = textureSample(normal_texture, normal_sampler, transformed_uv(material.normal_uv, in.uv)).xyz;
@@ -113,7 +123,7 @@ fn shaded(in: SceneOut) -> vec4<f32> {
     let radiance = reflectance(base.rgb, normal, to_eye, frame.to_light) * sunlight
         + ambient(base.rgb, normal, to_eye)
         + material.emissive;
-    let color = tone_map(with_haze(radiance, in.position));
+    let color = with_map_tint(tone_map(with_haze(radiance, in.position)), in.position);
     return vec4<f32>(color, mix(1.0, base.a, material.blended));
 }
 

@@ -2,13 +2,10 @@
 // the origin of the volumes, in metres. No shape that may throw a shadow is culled; rounding may keep one that the Rust
 // test culls, or the other way round, within 1e-6 of the coordinates. NaN is not promised to count as touching.
 
-struct shadowfit_CasterVolume {
+struct shadowfit_CasterPlanes {
     // (n, d): a point p is inside where dot(n, p) + d >= 0 for all of them.
     planes: array<vec4<f32>, MAX_PLANES>,
     count: u32,
-    padding_0: u32,
-    padding_1: u32,
-    padding_2: u32,
 }
 
 struct shadowfit_Culling {
@@ -16,7 +13,7 @@ struct shadowfit_Culling {
     padding_0: u32,
     padding_1: u32,
     padding_2: u32,
-    volumes: array<shadowfit_CasterVolume, MAX_MAPS>,
+    volumes: array<shadowfit_CasterPlanes, MAX_MAPS>,
 }
 
 @group(GROUP) @binding(0) var<uniform> shadowfit_culling: shadowfit_Culling;

@@ -12,7 +12,7 @@ struct shadowfit_Map {
     size: vec2<f32>,
     normal_offset: f32,
     receiver_plane: f32,
-    // View depth from which on the map is no choice.
+    // View depth at which the map ends: points from there on do not read it.
     far: f32,
     padding_0: f32,
     padding_1: f32,
@@ -61,7 +61,8 @@ fn shadowfit_project(map: shadowfit_Map, position: vec3<f32>, normal: vec3<f32>)
     return shadowfit_Place(uv.xy * map.size, depth, gradient);
 }
 
-// Distance from the eye along the view's axis, in metres.
+// View depth of a point: its distance from the eye along the view's forward direction, in metres. Negative behind it.
+// position: world space relative to the origin, metres.
 fn shadowfit_view_depth(position: vec3<f32>) -> f32 {
     return dot(shadowfit_receiver.view.xyz, position) + shadowfit_receiver.view.w;
 }

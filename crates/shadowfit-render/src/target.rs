@@ -1,18 +1,19 @@
-//! A picture to draw into: colour (resolved to one sample), depth, and the way back to the
-//! processor.
+//! A render target: colour (resolved to one sample), depth, and the way back to the CPU.
+
+use core::fmt;
 
 use crate::Gpu;
 
-/// Colour format of pictures, as the renderer writes it.
+/// Colour format of render targets, as the renderer writes it.
 pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// The same bytes without the sRGB decoding, for user interfaces that blend encoded colours.
 pub(crate) const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// Depth format of the camera.
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// Textures of one picture.
+/// Textures that a picture is drawn into.
 #[derive(Debug)]
-pub struct Picture {
+pub struct RenderTarget {
     /// Width and height, in pixels.
     pub size: [u32; 2],
     color: wgpu::Texture,
@@ -21,8 +22,8 @@ pub struct Picture {
     pub(crate) depth_view: wgpu::TextureView,
 }
 
-impl Picture {
-    /// Makes a picture of at least 1×1 pixels with `samples` per pixel (1 or 4).
+impl RenderTarget {
+    /// Makes a target of at least 1×1 pixels, and no more than the device allows, with `samples` per pixel (1 or 4).
     pub fn new(device: &wgpu::Device, size: [u32; 2], samples: u32) -> Self {
         let limit = device.limits().max_texture_dimension_2d;
         let size = size.map(|side| side.clamp(1, limit));
@@ -40,15 +41,44 @@ impl Picture {
     }
 
     /// Waits for the picture and returns its sRGB pixels, four bytes each, rows from the top.
-    pub fn read(&self, gpu: &Gpu) -> Vec<u8> {
+    ///
+    /// # Errors
+    ///
+    /// [`ReadError`] if the device was lost or does not answer.
+    pub fn read(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadError> {
         read_texture(gpu, &self.color, self.size, 4)
     }
 }
 
+/// Why pixels could not be read back. What was drawn is not known then: no pixels stand in for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReadError {
+    /// The device was lost or destroyed, or has no memory left for the copy.
+    Lost,
+    /// The device did not finish its work.
+    Unfinished,
+}
+
+impl fmt::Display for ReadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let reason = match self {
+            Self::Lost => "it was lost, or is out of memory",
+            Self::Unfinished => "it did not finish its work",
+        };
+        write!(
+            f,
+            "pixels could not be read back from the graphics device: {reason}; start again, with smaller pictures \
+                   if it is out of memory"
+        )
+    }
+}
+
+impl core::error::Error for ReadError {}
+
 fn attachment(device: &wgpu::Device, size: [u32; 2], format: wgpu::TextureFormat, samples: u32) -> wgpu::Texture {
     let readable = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
     device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("picture"),
+        label: Some("render target"),
         size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: samples,
@@ -60,8 +90,13 @@ fn attachment(device: &wgpu::Device, size: [u32; 2], format: wgpu::TextureFormat
     })
 }
 
-/// Copies a texture to the processor, without the row padding; waits for the GPU.
-pub(crate) fn read_texture(gpu: &Gpu, texture: &wgpu::Texture, size: [u32; 2], bytes_per_pixel: u32) -> Vec<u8> {
+/// Copies a texture to the CPU, without the row padding; waits for the GPU.
+pub(crate) fn read_texture(
+    gpu: &Gpu,
+    texture: &wgpu::Texture,
+    size: [u32; 2],
+    bytes_per_pixel: u32,
+) -> Result<Vec<u8>, ReadError> {
     let row = size[0] * bytes_per_pixel;
     let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -81,17 +116,8 @@ pub(crate) fn read_texture(gpu: &Gpu, texture: &wgpu::Texture, size: [u32; 2], b
     );
     gpu.queue.submit([encoder.finish()]);
     buffer.slice(..).map_async(wgpu::MapMode::Read, |_| {});
-    // A lost device leaves the buffer unmapped: the picture is then black, and the device's own
-    // callback has told why.
-    let waited = gpu.device.poll(wgpu::PollType::wait_indefinitely());
-    let mut pixels = Vec::with_capacity((row * size[1]) as usize);
-    match (waited, buffer.slice(..).get_mapped_range()) {
-        (Ok(_), Ok(mapped)) => {
-            for line in mapped.chunks(padded as usize) {
-                pixels.extend_from_slice(&line[..row as usize]);
-            }
-        }
-        _ => pixels.resize((row * size[1]) as usize, 0),
-    }
-    pixels
+    gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|_| ReadError::Unfinished)?;
+    // A device that was lost leaves the buffer unmapped.
+    let mapped = buffer.slice(..).get_mapped_range().map_err(|_| ReadError::Lost)?;
+    Ok(mapped.chunks(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect())
 }

@@ -1,0 +1,98 @@
+//! What a frame hands to a shadow map: the fitted maps with their biases and casters, and the view that reads them.
+
+use shadowfit::bias::Bias;
+use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::settings::BiasSettings;
+use shadowfit::{CascadeMap, CasterVolume, DepthConvention, LightFit};
+
+use crate::{ShadowMapDescriptor, ShadowMapError};
+
+/// A fitted map: where it lies, which points read it, with which bias, and what is drawn into it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapFit {
+    /// Where it lies.
+    pub fit: LightFit,
+    /// View depth at which it ends, in metres: a point reads the first map that ends beyond its view depth and covers
+    /// it. `f32::MAX` for no end, `f32::MIN` for a map in front of all others that no point reads.
+    pub far: f32,
+    /// Biases of the look-up, for [`Self::fit`].
+    pub bias: Bias,
+    /// Casters that are drawn into it; `None` for all that the map can store, which is what maps need that are kept
+    /// for later frames. [`Self::sweep`] leaves only those that can throw a shadow into view.
+    pub volume: Option<CasterVolume>,
+}
+
+impl MapFit {
+    /// A single map, for all view depths, that stores every caster that it can.
+    pub fn new(fit: LightFit, bias: Bias) -> Self {
+        Self { fit, far: f32::MAX, bias, volume: None }
+    }
+
+    /// One of several maps, with biases in texels, that stores every caster that it can:
+    ///
+    /// ```
+    /// # use shadowfit::settings::BiasSettings;
+    /// # let (cascades, settings) = (shadowfit::Cascades::default(), BiasSettings::default());
+    /// use shadowfit_wgpu::MapFit;
+    ///
+    /// let maps: Vec<MapFit> = cascades.iter().map(|map| MapFit::from_texels(map, &settings)).collect();
+    /// ```
+    ///
+    /// For another [`Bias`], such as [`Bias::automatic`] or [`Bias::fixed`], set [`Self::bias`].
+    pub fn from_texels(map: &CascadeMap, settings: &BiasSettings) -> Self {
+        Self { far: map.far, ..Self::new(map.fit, Bias::from_texels(settings, &map.fit)) }
+    }
+}
+
+/// From where the maps are looked up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapView {
+    /// World position that all positions in the shaders are relative to, in metres.
+    pub origin: DVec3,
+    /// World position of the eye that view depths are counted from, in metres.
+    pub eye: DVec3,
+    /// Unit direction in which that eye looks, world axes.
+    pub forward: Vec3,
+}
+
+/// How far the length of [`MapView::forward`] may be from 1: the rounding of a direction that was normalised in f32 and
+/// turned by a few matrices.
+const UNIT_TOLERANCE: f32 = 1e-3;
+
+impl MapView {
+    /// Everything relative to an eye that looks along `forward` (unit, world axes).
+    pub fn from_eye(eye: DVec3, forward: Vec3) -> Self {
+        Self { origin: eye, eye, forward }
+    }
+}
+
+/// Refuses maps that a shadow map cannot hold or that a shader would read wrongly.
+pub(crate) fn check(descriptor: &ShadowMapDescriptor, view: &MapView, maps: &[MapFit]) -> Result<(), ShadowMapError> {
+    let (fits, layers) = (maps.len(), descriptor.maps as usize);
+    if fits > layers {
+        return Err(ShadowMapError::TooManyFits { fits, layers });
+    }
+    let length = view.forward.length();
+    // NaN is no unit length either.
+    if fits > 0 && !((length - 1.0).abs() <= UNIT_TOLERANCE) {
+        return Err(ShadowMapError::Forward { forward: view.forward, length });
+    }
+    let mut previous = f32::MIN;
+    for (index, map) in maps.iter().enumerate() {
+        check_layer(descriptor, index, &map.fit)?;
+        map.bias.checked().map_err(|error| ShadowMapError::Bias { index, error })?;
+        if !(map.far >= previous) {
+            return Err(ShadowMapError::Order { index, far: map.far, previous });
+        }
+        previous = map.far;
+    }
+    Ok(())
+}
+
+/// Refuses a fit that a layer cannot hold.
+fn check_layer(descriptor: &ShadowMapDescriptor, index: usize, fit: &LightFit) -> Result<(), ShadowMapError> {
+    let map: ([u32; 2], DepthConvention) = (descriptor.resolution, descriptor.depth);
+    let fit = (fit.resolution.to_array(), fit.depth);
+    let suits = fit.1 == map.1 && fit.0.iter().zip(&map.0).all(|(fit, layer)| (1..=*layer).contains(fit));
+    if suits { Ok(()) } else { Err(ShadowMapError::Fit { index, fit, map }) }
+}

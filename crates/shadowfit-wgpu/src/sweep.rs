@@ -1,0 +1,161 @@
+//! Which casters each of several maps needs for what the views see.
+//!
+//! A map that is drawn anew in each frame needs only the casters that can throw a shadow on a point that reads it: those
+//! in the part of the view that reads it, swept toward the light. Which part that is follows from the order in which
+//! shaders look for a map.
+
+use shadowfit::bias::{MIN_COSINE, Reach};
+use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::{CasterVolume, FitError, LightFit, Sweep, ViewFrustum};
+
+use crate::{MapFit, MapView};
+
+/// What rounding may do to a view depth in a shader, as a share of it: nine times 2⁻²⁴ of a point's distance, which in
+/// the corner of a wide view is up to seven times its depth.
+const DEPTH_ROUNDING: f64 = 64.0 / 16_777_216.0;
+
+/// What rounding may do to texture coordinates in a shader, as a share of the terms that they are summed from: eight
+/// roundings of 2⁻²⁴, two of the position, one each of the matrix and the product, and four of the sum.
+const UV_ROUNDING: f64 = 8.0 / 16_777_216.0;
+
+impl MapFit {
+    /// Leaves to each map only the casters that can throw a shadow, through this map, on what `views` see: sets
+    /// [`MapFit::volume`] of all maps. The shadows in view stay the same. `views` are all that is drawn with these
+    /// maps, up to the cameras' far planes, and `reach` is that of the filter that reads them, such as
+    /// [`ShadowMapDescriptor::filter`](crate::ShadowMapDescriptor::filter).
+    ///
+    /// The volumes serve maps with depth clamp and without. A map that is to be kept for later frames must hold all
+    /// casters: set its volume to `None` again.
+    ///
+    /// A point reads the first map that ends beyond its view depth and covers it. So a map is read from where the map
+    /// in front of it ends; but if no map in front of it provably covers the whole of some nearer slice of the views,
+    /// it is taken to be read from there: a map that is fitted to receivers alone does not, and a point which it
+    /// leaves out goes on to the next one.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`CasterVolume::swept`]. The maps before the one that fails have their volumes then.
+    pub fn sweep(
+        maps: &mut [Self],
+        view: &MapView,
+        views: &[ViewFrustum],
+        reach: impl Into<Reach>,
+    ) -> Result<(), FitError> {
+        let reach = reach.into();
+        let mismatch = views.iter().map(|frustum| depth_mismatch(view, frustum)).fold(0.0, f64::max);
+        for index in 0..maps.len() {
+            let readers = Readers { maps, view, views, mismatch };
+            maps[index].volume = Some(readers.volume(index, reach)?);
+        }
+        Ok(())
+    }
+}
+
+/// A range of view depths, in metres.
+#[derive(Clone, Copy, Debug)]
+struct Slice {
+    near: f32,
+    far: f32,
+}
+
+/// Finds which part of the views reads a map.
+struct Readers<'a> {
+    maps: &'a [MapFit],
+    view: &'a MapView,
+    views: &'a [ViewFrustum],
+    /// Greatest difference between the view depth of a point in view by the shader and by its frustum, in metres.
+    mismatch: f64,
+}
+
+impl Readers<'_> {
+    /// The casters of a map.
+    fn volume(&self, index: usize, reach: Reach) -> Result<CasterVolume, FitError> {
+        let map = &self.maps[index];
+        let Some(read) = self.read(index) else { return Ok(CasterVolume::nowhere(map.fit.origin)) };
+        let Slice { near, far } = self.widened(read);
+        let normal_offset = map.bias.normal_offset.abs();
+        let volume = CasterVolume::swept(&map.fit, &Sweep { views: self.views, near, far, reach, normal_offset })?;
+        Ok(lowered(volume, &map.fit, depth_below(map, reach)))
+    }
+
+    /// The view depths at which a point may read a map; `None` where none can.
+    fn read(&self, index: usize) -> Option<Slice> {
+        let is_read_from = |from: &usize| {
+            let slice = self.slice(*from);
+            slice.near < slice.far && !(*from..index).any(|map| self.covers(map, slice))
+        };
+        let first = (0..=index).find(is_read_from)?;
+        Some(Slice { near: self.slice(first).near, far: self.maps[index].far })
+    }
+
+    /// The view depths whose points look into a map first.
+    fn slice(&self, index: usize) -> Slice {
+        let near = if index == 0 { f32::MIN } else { self.maps[index - 1].far };
+        Slice { near, far: self.maps[index].far }
+    }
+
+    /// A slice with the depths beside it that rounding and another eye may put into it.
+    fn widened(&self, slice: Slice) -> Slice {
+        let beside = |depth: f32| self.mismatch + f64::from(depth).abs() * DEPTH_ROUNDING;
+        let bounded = |depth: f64| depth.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
+        Slice {
+            near: bounded(f64::from(slice.near) - beside(slice.near)),
+            far: bounded(f64::from(slice.far) + beside(slice.far)),
+        }
+    }
+
+    /// Whether a map provably holds all that the views have in a slice, as a shader finds out.
+    fn covers(&self, index: usize, slice: Slice) -> bool {
+        let Slice { near, far } = self.widened(slice);
+        let fit = self.maps[index].fit.relative_to(self.view.origin);
+        let covers_part = |frustum: &ViewFrustum| {
+            let offset = frustum.origin - self.view.origin;
+            // A view without a part between these depths has no point to be covered.
+            frustum
+                .slice(near, far)
+                .map_or(true, |part| part.corners.iter().all(|corner| covers(&fit, corner.as_dvec3() + offset)))
+        };
+        self.views.iter().all(covers_part)
+    }
+}
+
+/// Whether a map holds a point relative to its origin whatever a shader's rounding. The map is convex, so that with the
+/// corners of a slice it holds the slice.
+fn covers(fit: &LightFit, point: DVec3) -> bool {
+    let m = fit.uv_from_world.as_dmat4();
+    let terms = [m.x_axis * point.x, m.y_axis * point.y, m.z_axis * point.z, m.w_axis].map(|term| term.truncate());
+    let uv: DVec3 = terms.iter().sum();
+    let rounding = terms.iter().map(|term| term.abs()).sum::<DVec3>() * UV_ROUNDING;
+    uv.cmpge(rounding).all() && uv.cmple(DVec3::ONE - rounding).all()
+}
+
+/// How far the view depth of a point in a frustum may be from that of the shader, which counts it from another eye or
+/// along another direction, in metres.
+fn depth_mismatch(view: &MapView, frustum: &ViewFrustum) -> f64 {
+    let (forward, own) = (view.forward.as_dvec3(), frustum.forward.as_dvec3().normalize());
+    let farthest = frustum.corners.iter().map(|corner| corner.as_dvec3().length()).fold(0.0, f64::max);
+    (forward - own).length() * farthest + (frustum.origin - view.eye).dot(forward).abs()
+}
+
+/// How far below a point, along the light, the map may be compared with, in metres. The receiver's plane is compared at
+/// its own depth wherever the filter reads, and falls by the tangent of its slope; biases that are negative move the
+/// point itself.
+fn depth_below(map: &MapFit, reach: Reach) -> f64 {
+    let tangent = 1.0 / f64::from(MIN_COSINE);
+    let (bias, range) = (map.bias, f64::from(map.fit.depth_range));
+    let away = |bias: f32| f64::from((-bias).max(0.0));
+    let texel = map.fit.texel_size.as_dvec2().length();
+    let aside = f64::from(reach.per_axis()) * texel + f64::from(bias.normal_offset.abs());
+    let plane = if bias.receiver_plane == 0.0 { 0.0 } else { aside + away(bias.receiver_plane) * texel };
+    (away(bias.constant_depth) + away(bias.slope_depth) * tangent) * range + plane * tangent
+}
+
+/// A volume that reaches deeper along the light, in metres.
+fn lowered(mut volume: CasterVolume, fit: &LightFit, depth: f64) -> CasterVolume {
+    let to_light: Vec3 = -fit.direction;
+    for plane in volume.planes.iter_mut().take(volume.count as usize) {
+        let upward = f64::from(plane.truncate().dot(to_light).max(0.0));
+        plane.w += (upward * depth) as f32;
+    }
+    volume
+}

@@ -1,0 +1,128 @@
+//! What a shadow map refuses to be prepared with, since it would give a wrong picture without a word: each error carries
+//! the index and the value. And that a refusal changes nothing.
+
+use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::{Bias, FitError, LightFit};
+use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError};
+
+use super::exact_counts_gpu::box_fit;
+use crate::support::software_gpu;
+
+/// Layers of the shadow map.
+const LAYERS: u32 = 3;
+
+fn fit() -> LightFit {
+    box_fit(shadowfit::DepthConvention::ZeroToOne)
+}
+
+/// Maps that end at the given view depths.
+fn maps(far: &[f32]) -> Vec<MapFit> {
+    far.iter().map(|far| MapFit { far: *far, ..MapFit::new(fit(), Bias::default()) }).collect()
+}
+
+/// Prepares a shadow map with maps for a view along `forward`.
+fn prepared(maps: &[MapFit], forward: Vec3) -> Result<usize, ShadowMapError> {
+    let gpu = software_gpu();
+    let descriptor = ShadowMapDescriptor { maps: LAYERS, resolution: [256; 2], ..ShadowMapDescriptor::default() };
+    let mut map = ShadowMap::new(&gpu.device, &descriptor).expect("a possible shadow map");
+    map.prepare(&gpu.queue, &MapView::from_eye(DVec3::ZERO, forward), maps)?;
+    Ok(map.volumes().len())
+}
+
+#[test]
+fn more_fits_than_layers_are_an_error() {
+    let too_many = prepared(&maps(&[1.0, 2.0, 3.0, 4.0]), Vec3::NEG_Z);
+    assert_eq!(too_many, Err(ShadowMapError::TooManyFits { fits: 4, layers: 3 }));
+    for count in 0..=3 {
+        assert_eq!(prepared(&maps(&[1.0, 2.0, 3.0][..count]), Vec3::NEG_Z), Ok(count), "{count} fits");
+    }
+}
+
+#[test]
+fn a_forward_direction_that_is_not_of_unit_length_is_an_error() {
+    for (forward, length) in [(Vec3::new(0.12, -0.26, -1.0), 1.0402), (Vec3::ZERO, 0.0), (Vec3::X * 0.998, 0.998)] {
+        match prepared(&maps(&[1.0]), forward) {
+            Err(ShadowMapError::Forward { forward: told, length: is }) => {
+                assert_eq!(told, forward);
+                assert!((is - length).abs() < 1e-4, "{is}");
+            }
+            other => panic!("{forward}: {other:?}"),
+        }
+    }
+    for forward in [Vec3::NAN, Vec3::INFINITY] {
+        assert!(matches!(prepared(&maps(&[1.0]), forward), Err(ShadowMapError::Forward { .. })), "{forward}");
+    }
+    for length in [1.0, 1.0 - 0.9e-3, 1.0 + 0.9e-3] {
+        assert_eq!(prepared(&maps(&[1.0]), Vec3::new(0.6, 0.0, -0.8) * length), Ok(1), "{length}");
+    }
+    assert_eq!(prepared(&[], Vec3::NAN), Ok(0), "without maps no view depth is asked for");
+}
+
+#[test]
+fn a_bias_that_is_nan_or_infinite_is_an_error_with_its_map() {
+    let fields: [fn(&mut Bias) -> &mut f32; 4] = [
+        |bias| &mut bias.constant_depth,
+        |bias| &mut bias.slope_depth,
+        |bias| &mut bias.normal_offset,
+        |bias| &mut bias.receiver_plane,
+    ];
+    for field in fields {
+        for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            let mut maps = maps(&[1.0, 2.0, 3.0]);
+            *field(&mut maps[1].bias) = value;
+            match prepared(&maps, Vec3::NEG_Z) {
+                Err(ShadowMapError::Bias { index: 1, error: FitError::NotFinite { value: told, .. } }) => {
+                    assert_eq!(told.to_string(), f64::from(value).to_string());
+                }
+                other => panic!("{value}: {other:?}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn maps_out_of_order_are_an_error_and_those_without_a_range_are_not() {
+    for (far, index) in [
+        (&[2.0, 1.0][..], 1),
+        (&[1.0, f32::MAX, 3.0], 2),
+        (&[1.0, f32::NAN, 3.0], 1),
+        (&[f32::NAN], 0),
+        (&[3.0, f32::MIN], 1),
+    ] {
+        match prepared(&maps(far), Vec3::NEG_Z) {
+            Err(ShadowMapError::Order { index: told, far: value, previous }) => {
+                assert_eq!((told, value.to_bits()), (index, far[index].to_bits()), "{far:?}");
+                assert_eq!(previous, if index == 0 { f32::MIN } else { far[index - 1] }, "{far:?}");
+            }
+            other => panic!("{far:?}: {other:?}"),
+        }
+    }
+    for far in [&[1.0, 1.0, 2.0][..], &[f32::MIN, f32::MIN, 5.0], &[5.0, f32::MAX, f32::MAX], &[-2.0, 3.0]] {
+        assert_eq!(prepared(&maps(far), Vec3::NEG_Z), Ok(far.len()), "{far:?}");
+    }
+}
+
+#[test]
+fn a_refused_frame_leaves_the_volumes_of_the_last_one() {
+    let gpu = software_gpu();
+    let descriptor = ShadowMapDescriptor { maps: LAYERS, resolution: [256; 2], ..ShadowMapDescriptor::default() };
+    let mut map = ShadowMap::new(&gpu.device, &descriptor).expect("a possible shadow map");
+    let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
+    map.prepare(&gpu.queue, &view, &maps(&[1.0, 2.0])).expect("good maps");
+    let before = map.volumes().to_vec();
+    assert!(map.prepare(&gpu.queue, &view, &maps(&[3.0, 2.0, 1.0])).is_err());
+    assert_eq!(map.volumes(), before);
+}
+
+#[test]
+fn every_refusal_says_what_and_which() {
+    let fit = ShadowMapError::TooManyFits { fits: 4, layers: 1 }.to_string();
+    assert!(fit.contains("given: 4") && fit.contains("shadow map: 1"), "{fit}");
+    let order = ShadowMapError::Order { index: 2, far: 3.0, previous: 7.5 }.to_string();
+    assert!(order.contains("map 2") && order.contains("3 m") && order.contains("7.5 m"), "{order}");
+    let bias = Bias { normal_offset: f32::NAN, ..Bias::default() }.checked().expect_err("NaN");
+    let bias = ShadowMapError::Bias { index: 1, error: bias }.to_string();
+    assert!(bias.contains("map 1") && bias.contains("normal offset") && bias.contains("NaN"), "{bias}");
+    let forward = ShadowMapError::Forward { forward: Vec3::X * 2.0, length: 2.0 }.to_string();
+    assert!(forward.contains("[2, 0, 0]") && forward.contains("length 2"), "{forward}");
+}

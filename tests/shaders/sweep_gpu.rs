@@ -1,0 +1,248 @@
+//! Casters that are left out because their shadows are not seen: the shadow factor of every pixel stays the same to the
+//! last bit, and fewer casters are drawn.
+
+use shadowfit::bias::XNA_DEPTH_BIAS;
+use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
+use shadowfit::settings::{BiasSettings, FilterKind, MapFormat};
+use shadowfit::{
+    Aabb, Bias, Boxes, CascadeFitter, CascadeSettings, CasterPolicy, DepthConvention, FitInput, FitKind, FitSettings,
+    LightFit, PerspectiveCamera, SplitScheme, Stabilise, Workspace, fit,
+};
+use shadowfit_render::{Atmosphere, Culling, Frame, Gpu, GpuScene, ProbePixel, ProbeTargets, Renderer, Statistics};
+use shadowfit_scene::{Scene, builtin};
+use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
+
+use crate::support::software_gpu;
+
+/// Size of the pictures, in pixels.
+const SIZE: [u32; 2] = [240, 135];
+/// Width and height of the maps, in texels.
+const TEXELS: u32 = 512;
+
+/// The light's directions of travel: high, half-way up, and grazing the ground.
+const DIRECTIONS: [Vec3; 3] = [Vec3::new(0.2, -1.0, 0.1), Vec3::new(0.5, -0.6, -0.4), Vec3::new(-0.9, -0.2, 0.3)];
+
+/// Maps and how they are read.
+struct Case {
+    name: &'static str,
+    maps: CascadeSettings,
+    filter: FilterKind,
+    format: MapFormat,
+    bias: fn(&LightFit, FilterKind) -> Bias,
+    /// Whether all but the last map leave out the sides of their slices, as the fits of other code may.
+    is_narrow: bool,
+}
+
+fn in_texels(fit: &LightFit, filter: FilterKind) -> Bias {
+    Bias::from_texels(&BiasSettings::automatic(filter), fit)
+}
+
+fn automatic(fit: &LightFit, filter: FilterKind) -> Bias {
+    Bias::automatic(filter, shadowfit::diagnostics::DepthStorage::from(MapFormat::Depth32Float), fit).expect("a bias")
+}
+
+fn away_from_the_light(_: &LightFit, _: FilterKind) -> Bias {
+    Bias::fixed(-XNA_DEPTH_BIAS).expect("a bias")
+}
+
+fn cases() -> Vec<Case> {
+    let maps = |kind, splits, stabilise, casters| {
+        let fit = FitSettings { kind, casters, max_distance: f32::MAX, ..FitSettings::default() };
+        let fit = FitSettings { resolution: UVec2::splat(TEXELS), kernel_margin: 3.0, ..fit };
+        CascadeSettings { fit, splits, stabilise, ..CascadeSettings::default() }
+    };
+    let list = CasterPolicy::List;
+    let case = |name, maps| Case {
+        name,
+        maps,
+        filter: FilterKind::Pcf5x5,
+        format: MapFormat::Depth32Float,
+        bias: in_texels,
+        is_narrow: false,
+    };
+    let focused = maps(FitKind::Focused, SplitScheme::FromBoxes, Stabilise::Off, list);
+    let aabb = maps(FitKind::FrustumAabb, SplitScheme::Logarithmic, Stabilise::Off, list);
+    let mut reversed = focused;
+    reversed.fit.depth = DepthConvention::Reversed;
+    let clamped = maps(FitKind::Focused, SplitScheme::FromBoxes, Stabilise::Off, CasterPolicy::DepthClamp);
+    vec![
+        case("focused", focused),
+        case("held", maps(FitKind::Focused, SplitScheme::FromBoxes, Stabilise::Hysteresis, list)),
+        case("spheres", maps(FitKind::Sphere, SplitScheme::Practical(0.7), Stabilise::Snap, list)),
+        case("boxes of the slices", aabb),
+        Case { bias: automatic, ..case("boxes of the slices, normal offset", aabb) },
+        Case { bias: away_from_the_light, filter: FilterKind::Point, ..case("focused, biased away", focused) },
+        Case { format: MapFormat::R32Float, filter: FilterKind::Pcf3x3, ..case("focused, reversed", reversed) },
+        case("focused, depth clamp", clamped),
+        Case { is_narrow: true, ..case("narrow", aabb) },
+        case("one map", CascadeSettings { count: 1, ..aabb }),
+    ]
+}
+
+/// A scene and a place to look at it from.
+struct View {
+    name: &'static str,
+    scene: Scene,
+    eye: Vec3,
+    target: Vec3,
+}
+
+fn views() -> [View; 2] {
+    let (eye, target) = builtin::default_camera();
+    [
+        View { name: "courtyard", scene: builtin::default_scene(), eye, target },
+        View {
+            name: "town",
+            scene: Scene::from_objects("town", &town()),
+            eye: Vec3::new(-6.0, 3.0, 30.0),
+            target: Vec3::new(5.0, 1.0, 0.0),
+        },
+    ]
+}
+
+/// Blocks of many heights on a ground of tiles.
+fn town() -> Vec<Vec<[Vec3; 3]>> {
+    let mut objects = Vec::new();
+    for i in 0..400_i16 {
+        let share = |step: f32| (f32::from(i) * step).fract();
+        let (x, z) = (share(0.754_877_7) * 120.0 - 60.0, share(0.569_840_3) * 120.0 - 60.0);
+        let half = Vec3::new(0.3 + share(0.37) * 1.2, 0.5 + share(0.19).powi(4) * 9.0, 0.3 + share(0.83) * 1.2);
+        objects.push(solid(Vec3::new(x, half.y, z), half));
+    }
+    for tile in 0..144_i16 {
+        let (x, z) = (f32::from(tile % 12) * 12.0 - 66.0, f32::from(tile / 12) * 12.0 - 66.0);
+        objects.push(solid(Vec3::new(x, -0.2, z), Vec3::new(6.0, 0.2, 6.0)));
+    }
+    objects
+}
+
+fn solid(centre: Vec3, half: Vec3) -> Vec<[Vec3; 3]> {
+    let corner = |index: usize| {
+        let side = |bit: usize| if index >> bit & 1 == 0 { -1.0 } else { 1.0 };
+        centre + half * Vec3::new(side(0), side(1), side(2))
+    };
+    let faces = [[0, 2, 6, 4], [1, 5, 7, 3], [0, 4, 5, 1], [2, 3, 7, 6], [0, 1, 3, 2], [4, 6, 7, 5]];
+    let halves = |face: [usize; 4]| {
+        let [a, b, c, d] = face.map(corner);
+        [[a, b, c], [a, c, d]]
+    };
+    faces.into_iter().flat_map(halves).collect()
+}
+
+fn camera(view: &View) -> PerspectiveCamera {
+    PerspectiveCamera {
+        eye: view.eye.as_dvec3(),
+        forward: (view.target - view.eye).normalize(),
+        up: Vec3::Y,
+        fov_y: 0.8,
+        aspect: SIZE[0] as f32 / SIZE[1] as f32,
+        near: 0.1,
+        far: 90.0,
+    }
+}
+
+/// The maps of a case, fitted to what the camera sees of the boxes.
+fn fitted(case: &Case, camera: &PerspectiveCamera, boxes: &[Aabb], direction: Vec3) -> Vec<MapFit> {
+    let frustum = camera.frustum().expect("a camera");
+    let boxes = Boxes { origin: DVec3::ZERO, boxes };
+    let input = FitInput { views: &[frustum], receivers: Some(boxes), casters: boxes, ..FitInput::new(&[], direction) };
+    let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.boxes.len(), 3)];
+    let fitted = CascadeFitter::new().fit(&input, &case.maps, &mut Workspace::new(&mut storage)).expect("maps");
+    let narrow = PerspectiveCamera { fov_y: camera.fov_y * 0.5, ..*camera }.frustum().expect("a camera");
+    let last = fitted.len() - 1;
+    let map = |(index, map): (usize, &shadowfit::CascadeMap)| {
+        let is_narrow = case.is_narrow && index < last;
+        let settings = case.maps.fit.with_max_distance(map.far).with_casters(CasterPolicy::Extend);
+        let light = if is_narrow { fit(&narrow, direction, &settings).expect("a fit") } else { map.fit };
+        MapFit { far: map.far, ..MapFit::new(light, (case.bias)(&light, case.filter)) }
+    };
+    fitted.iter().enumerate().map(map).collect()
+}
+
+/// What is drawn, with and without the sweep.
+struct Drawn {
+    pixels: Vec<Option<ProbePixel>>,
+    statistics: Statistics,
+}
+
+fn drawn(gpu: &Gpu, renderer: &mut Renderer, scene: &mut GpuScene, frame: &Frame<'_>, culling: Culling) -> Drawn {
+    let frame = Frame { culling, ..*frame };
+    let targets = ProbeTargets::new(&gpu.device, SIZE);
+    let pixels = renderer.probe(gpu, scene, &frame, &targets).expect("a probe").pixels;
+    let statistics = renderer.draw(gpu, scene, &frame, &renderer.target(gpu, [1, 1])).expect("a frame");
+    Drawn { pixels, statistics }
+}
+
+/// Pixels whose factors differ.
+fn different(one: &[Option<ProbePixel>], other: &[Option<ProbePixel>]) -> usize {
+    let bits = |pixel: &Option<ProbePixel>| pixel.map(|pixel| (pixel.triangle, pixel.factor.to_bits()));
+    one.iter().zip(other).filter(|(a, b)| bits(a) != bits(b)).count()
+}
+
+#[test]
+fn swept_casters_give_every_pixel_the_same_factor_and_are_fewer() {
+    let gpu = software_gpu();
+    let atmosphere = Atmosphere::default();
+    for case in cases() {
+        let descriptor = ShadowMapDescriptor {
+            resolution: [TEXELS; 2],
+            maps: case.maps.count,
+            format: case.format,
+            filter: case.filter,
+            depth: case.maps.fit.depth,
+            depth_clamp: case.maps.fit.casters == CasterPolicy::DepthClamp,
+        };
+        let mut renderer = Renderer::new(&gpu, &descriptor, 1).expect("a renderer");
+        for view in views() {
+            let scene = &view.scene;
+            let mut gpu_scene = GpuScene::new(&gpu, renderer.material_layout(), scene, &scene.pose(None, 0.0));
+            let bounds = (0..scene.instances().len()).filter_map(|index| gpu_scene.instance_bounds(index));
+            let boxes: Vec<Aabb> = bounds.map(|bounds| Aabb::new(bounds.min, bounds.max)).collect();
+            let camera = camera(&view);
+            let (mut kept, mut whole) = (0, 0);
+            for direction in DIRECTIONS.map(Vec3::normalize) {
+                let maps = fitted(&case, &camera, &boxes, direction);
+                let frame = Frame::new(&camera, direction, &maps, &atmosphere);
+                let [swept, all] = [Culling::Swept, Culling::AsGiven]
+                    .map(|culling| drawn(&gpu, &mut renderer, &mut gpu_scene, &frame, culling));
+                let (count, at) = (different(&swept.pixels, &all.pixels), (case.name, view.name, direction));
+                assert_eq!(count, 0, "{at:?}: pixels with another factor");
+                let shadowed = all.pixels.iter().flatten().filter(|pixel| pixel.factor < 0.5).count();
+                assert!(shadowed > 300, "{at:?}: {shadowed} pixels in shadow, too few to tell");
+                let casters = |drawn: &Drawn| drawn.statistics.maps.map(|map| map.casters).iter().sum::<u32>();
+                kept += casters(&swept);
+                whole += casters(&all);
+                assert!(swept.statistics.maps.iter().zip(&all.statistics.maps).all(|(a, b)| a.casters <= b.casters));
+            }
+            println!("{}, {}: {kept} of {whole} casters", case.name, view.name);
+            assert!(kept < whole, "{}, {}: nothing was left out", case.name, view.name);
+        }
+    }
+}
+
+#[test]
+fn maps_that_are_looked_up_from_another_eye_keep_what_the_picture_shows() {
+    let gpu = software_gpu();
+    let atmosphere = Atmosphere::default();
+    let case = &cases()[3];
+    let descriptor = ShadowMapDescriptor { resolution: [TEXELS; 2], maps: 4, ..ShadowMapDescriptor::default() };
+    let mut renderer = Renderer::new(&gpu, &descriptor, 1).expect("a renderer");
+    let [_, view] = views();
+    let mut scene = GpuScene::new(&gpu, renderer.material_layout(), &view.scene, &view.scene.pose(None, 0.0));
+    let direction = DIRECTIONS[1].normalize();
+    let inner = camera(&view);
+    let maps = fitted(case, &inner, &[Aabb::new(Vec3::splat(-70.0), Vec3::splat(70.0))], direction);
+    let turned = Vec3::new(-inner.forward.z, inner.forward.y, inner.forward.x);
+    for (eye, forward) in [
+        (inner.eye + DVec3::new(4.0, 2.0, 1.0), inner.forward),
+        (inner.eye - inner.forward.as_dvec3() * 30.0, inner.forward),
+        (inner.eye, turned),
+    ] {
+        let outer = PerspectiveCamera { eye, forward, ..inner };
+        let frame =
+            Frame { choice: Some((inner.eye, inner.forward)), ..Frame::new(&outer, direction, &maps, &atmosphere) };
+        let [swept, all] =
+            [Culling::Swept, Culling::AsGiven].map(|culling| drawn(&gpu, &mut renderer, &mut scene, &frame, culling));
+        assert_eq!(different(&swept.pixels, &all.pixels), 0, "from {eye} along {forward}");
+    }
+}

@@ -1,0 +1,136 @@
+//! The overlay that tints surfaces by the map that they read: each pixel of a plane has the colour of the map that a
+//! computation here finds for it.
+
+use shadowfit::glam::{DVec2, DVec3, Vec3};
+use shadowfit::{Bias, CascadeFitter, CascadeSettings, FitInput, PerspectiveCamera, SplitScheme, Workspace};
+use shadowfit_render::{Atmosphere, Frame, GpuScene, MAP_TINTS, Overlay, Renderer};
+use shadowfit_scene::Scene;
+use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
+
+use crate::support::software_gpu;
+
+/// Size of the picture, in pixels.
+const SIZE: [u32; 2] = [160, 90];
+/// View depths at which the first seven of eight maps end, in metres.
+const ENDS: [f32; 7] = [3.0, 4.0, 5.5, 7.5, 10.0, 14.0, 20.0];
+/// View depth at which the last map ends, in metres: the floor goes on behind it.
+const LAST_END: f32 = 28.0;
+/// The light's direction of travel.
+const DIRECTION: Vec3 = Vec3::new(0.48, -0.8, -0.36);
+
+fn camera() -> PerspectiveCamera {
+    PerspectiveCamera {
+        eye: DVec3::new(0.0, 2.0, 0.0),
+        forward: Vec3::new(0.0, -0.28, -0.96),
+        up: Vec3::Y,
+        fov_y: 0.9,
+        aspect: SIZE[0] as f32 / SIZE[1] as f32,
+        near: 0.1,
+        far: 60.0,
+    }
+}
+
+/// Eight maps of the camera's view, and no end of the floor before that of the last one.
+fn maps(camera: &PerspectiveCamera) -> Vec<MapFit> {
+    let mut settings = CascadeSettings { count: 8, splits: SplitScheme::Manual(ENDS), ..CascadeSettings::default() };
+    (settings.fit.max_distance, settings.fit.resolution) = (LAST_END, shadowfit::glam::UVec2::splat(256));
+    let views = [camera.frustum().expect("a camera")];
+    let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+    let input = FitInput::new(&views, DIRECTION);
+    let fitted = CascadeFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("eight maps");
+    let ends = fitted.iter().map(|map| map.far.min(LAST_END));
+    fitted.iter().zip(ends).map(|(map, far)| MapFit { far, ..MapFit::new(map.fit, Bias::default()) }).collect()
+}
+
+/// The map that the floor's point behind a position in the picture reads, in pixels; `None` beyond the floor's horizon.
+fn map_at(camera: &PerspectiveCamera, maps: &[MapFit], [x, y]: [f64; 2]) -> Option<Option<usize>> {
+    let forward = camera.forward.as_dvec3();
+    let right = forward.cross(DVec3::Y).normalize();
+    let up = right.cross(forward);
+    let half_height = (f64::from(camera.fov_y) * 0.5).tan();
+    let [u, v] = [x / f64::from(SIZE[0]) * 2.0 - 1.0, 1.0 - y / f64::from(SIZE[1]) * 2.0];
+    let ray = forward + right * (u * half_height * f64::from(camera.aspect)) + up * (v * half_height);
+    let distance = -camera.eye.y / ray.y;
+    let point = camera.eye + ray * distance;
+    let depth = (point - camera.eye).dot(forward);
+    (ray.y < 0.0 && depth < f64::from(camera.far))
+        .then(|| maps.iter().position(|map| depth < f64::from(map.far) && map.fit.covers(point)))
+}
+
+/// Linear colours of a picture of the floor.
+fn picture(camera: &PerspectiveCamera, maps: &[MapFit], overlay: Overlay) -> Vec<Vec3> {
+    let gpu = software_gpu();
+    let descriptor = ShadowMapDescriptor { resolution: [256; 2], maps: 8, ..ShadowMapDescriptor::default() };
+    let mut renderer = Renderer::new(&gpu, &descriptor, 1).expect("a renderer");
+    let corner = |x: f32, z: f32| Vec3::new(x * 200.0, 0.0, z * 200.0);
+    let floor = [corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
+    let scene = Scene::from_objects("floor", &[vec![[floor[0], floor[1], floor[2]], [floor[0], floor[2], floor[3]]]]);
+    let mut gpu_scene = GpuScene::new(&gpu, renderer.material_layout(), &scene, &scene.pose(None, 0.0));
+    let target = renderer.target(&gpu, SIZE);
+    let atmosphere = Atmosphere::default();
+    let frame = Frame { overlay, ..Frame::new(camera, DIRECTION.normalize(), maps, &atmosphere) };
+    renderer.draw(&gpu, &mut gpu_scene, &frame, &target).expect("a frame");
+    let bytes = target.read(&gpu).expect("pixels");
+    bytes.as_chunks::<4>().0.iter().map(|[r, g, b, _]| linear([*r, *g, *b])).collect()
+}
+
+/// A linear colour from sRGB bytes.
+fn linear(bytes: [u8; 3]) -> Vec3 {
+    Vec3::from(bytes.map(|byte| {
+        let encoded = f32::from(byte) / 255.0;
+        if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+    }))
+}
+
+/// The map whose tint a colour was moved to; `None` where it was not moved.
+fn tint_of(plain: Vec3, tinted: Vec3) -> Option<usize> {
+    let moved = tinted - plain;
+    let toward = |map: usize| moved.normalize_or_zero().dot((linear(MAP_TINTS[map]) - plain).normalize_or_zero());
+    let nearest = (0..MAP_TINTS.len()).max_by(|a, b| toward(*a).total_cmp(&toward(*b)));
+    nearest.filter(|_| moved.length() > 0.02)
+}
+
+#[test]
+fn every_pixel_of_a_floor_is_tinted_by_the_map_that_it_reads_and_none_beyond_the_maps() {
+    let camera = camera();
+    let maps = maps(&camera);
+    let (plain, tinted) = (picture(&camera, &maps, Overlay::None), picture(&camera, &maps, Overlay::MapTint));
+    let mut met = [0; 9];
+    for (index, (plain, tinted)) in plain.iter().zip(&tinted).enumerate() {
+        let (x, y) = (index % SIZE[0] as usize, index / SIZE[0] as usize);
+        let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.5, 0.5]];
+        let around = corners.map(|[dx, dy]| map_at(&camera, &maps, [x as f64 + dx, y as f64 + dy]));
+        // Pixels on a border between two maps may go either way.
+        let Some(expected) = around[0].filter(|_| around.iter().all(|map| *map == around[0])) else { continue };
+        assert_eq!(tint_of(*plain, *tinted), expected, "pixel {x}, {y}: {plain} became {tinted}");
+        met[expected.map_or(8, |map| map)] += 1;
+    }
+    assert!(met.iter().all(|count| *count > 30), "pixels by map, and outside: {met:?}");
+}
+
+#[test]
+fn tints_are_told_apart_and_lit_and_shadowed_stay_apart_under_each() {
+    for (index, tint) in MAP_TINTS.iter().enumerate() {
+        for other in &MAP_TINTS[..index] {
+            assert!(linear(*tint).distance(linear(*other)) > 0.15, "{tint:?} and {other:?}");
+        }
+    }
+    let camera = camera();
+    let maps = maps(&camera);
+    // The same floor, in the shadow of nothing and of everything: a bias beyond the map's depth puts it there.
+    let shadowed: Vec<MapFit> =
+        maps.iter().map(|map| MapFit { bias: Bias { constant_depth: -1.0, ..Bias::default() }, ..*map }).collect();
+    let lit = picture(&camera, &maps, Overlay::MapTint);
+    let dark = picture(&camera, &shadowed, Overlay::MapTint);
+    let luminance = |color: Vec3| color.dot(Vec3::new(0.2126, 0.7152, 0.0722));
+    let mut compared = 0;
+    for (index, (lit, dark)) in lit.iter().zip(&dark).enumerate() {
+        let at = [index % SIZE[0] as usize, index / SIZE[0] as usize].map(|side| side as f64 + 0.5);
+        if map_at(&camera, &maps, at).flatten().is_some() && lit != dark {
+            assert!(luminance(*lit) > 1.3 * luminance(*dark), "{lit} and {dark}");
+            compared += 1;
+        }
+    }
+    println!("{compared} pixels are in shadow in one picture alone");
+    assert!(compared > 1000, "{compared}");
+}
