@@ -16,7 +16,7 @@ use shadowfit::bias::reach;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::settings::BiasSettings;
 use shadowfit::{
-    Aabb, Boxes, CascadeFitter, CascadeSettings, CasterPolicy, DepthConvention, FitInput, FitSettings,
+    Aabb, Boxes, MapFitter, Technique, CasterPolicy, DepthConvention, FitInput, FitSettings,
     PerspectiveCamera, Workspace,
 };
 use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
@@ -119,7 +119,7 @@ impl Block {
 struct Engine {
     device: wgpu::Device,
     queue: wgpu::Queue,
-    fitter: CascadeFitter,
+    fitter: MapFitter,
     shadow_map: ShadowMap,
     caster_pipeline: wgpu::RenderPipeline,
     scene_pipeline: wgpu::RenderPipeline,
@@ -199,7 +199,7 @@ impl Engine {
         });
         let caster_pipeline = caster_pipeline(&device, &camera_layout, &shadow_map);
         let scene_pipeline = scene_pipeline(&device, &camera_layout, &shadow_map);
-        let fitter = CascadeFitter::new();
+        let fitter = MapFitter::new();
         Ok(Self {
             device,
             queue,
@@ -237,7 +237,7 @@ impl Engine {
         let objects: Vec<Aabb> = blocks.iter().map(|block| block.bounds(PLACE)).collect();
         let boxes = Boxes { origin: PLACE, boxes: &objects };
         let input = FitInput { receivers: Some(boxes), casters: boxes, ..FitInput::new(&views, DIRECTION) };
-        let mut settings = CascadeSettings { count: MAPS, ..CascadeSettings::default() };
+        let mut settings = Technique { count: MAPS, ..Technique::default() };
         settings.fit = FitSettings { casters: CasterPolicy::List, max_distance: SHADOW_DISTANCE, ..settings.fit };
         // Room at the maps' borders for what the filter reads there.
         settings.fit.kernel_margin = reach(filter);

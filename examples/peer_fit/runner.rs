@@ -5,7 +5,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use glam::{DVec2, DVec3, Vec3};
 use shadowfit::{
-    Aabb, Bias, Boxes, CascadeFitter, CascadeMap, CascadeSettings, Cascades, Clusters, FitInput, NormalCone,
+    Aabb, Bias, Boxes, MapFitter, FittedMap, Technique, FittedMaps, Clusters, FitInput, NormalCone,
     SplitScheme, ViewFrustum, Workspace,
 };
 use shadowfit_study::{ReceiverSource, SeenDepths, Technique, fit_map};
@@ -109,11 +109,11 @@ fn prepare(scenarios: &Scenarios, index: usize, known: &[Known]) -> Result<Prepa
 }
 
 /// The maps of all frames, and the nanoseconds that each took.
-fn fit_all(frames: &[Prepared], known: &[Known], settings: &CascadeSettings) -> Result<Vec<(Cascades, f64)>> {
+fn fit_all(frames: &[Prepared], known: &[Known], settings: &Technique) -> Result<Vec<(FittedMaps, f64)>> {
     let most = known.iter().map(|known| known.boxes.len()).max().unwrap_or(0);
     // Held maps are fitted to the views of two frames ahead as well.
     let mut storage = vec![DVec2::ZERO; Workspace::required(most, 3)];
-    let mut fitter = CascadeFitter::new();
+    let mut fitter = MapFitter::new();
     frames
         .iter()
         .map(|frame| {
@@ -138,7 +138,7 @@ fn fit_all(frames: &[Prepared], known: &[Known], settings: &CascadeSettings) -> 
 }
 
 /// A map as the fit file has it.
-fn fit_map_of(map: &CascadeMap) -> FitMap {
+fn fit_map_of(map: &FittedMap) -> FitMap {
     FitMap {
         split_near: f64::from(map.near),
         ..fit_map(&MapFit { far: map.far, ..MapFit::new(map.fit, Bias::default()) })

@@ -6,7 +6,7 @@
 use std::path::PathBuf;
 
 use serde::{Serialize, Serializer};
-use shadowfit::settings::LightSettings;
+use shadowfit::tool::LightSettings;
 
 /// Names of columns, such as `wrong %`, and their values; not a number where nothing was there to be measured.
 pub(crate) type Columns = Vec<(String, f64)>;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail, ensure};
 use glam::Vec3;
-use shadowfit::settings::LightSettings;
+use shadowfit::tool::LightSettings;
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_scene::{Scene, load_gltf};
 use shadowfit_study::{Comparison, Judging, View};

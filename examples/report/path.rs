@@ -11,7 +11,7 @@ mod route;
 mod scenes;
 
 use shadowfit::PerspectiveCamera;
-use shadowfit::settings::LightSettings;
+use shadowfit::tool::LightSettings;
 
 pub(crate) use find::find;
 

@@ -3,7 +3,7 @@
 
 use shadowfit::glam::{DVec2, DVec3, Mat3, Vec3};
 use shadowfit::{
-    Aabb, CascadeFitter, CascadeSettings, CasterVolume, FitInput, OrientedBox, PerspectiveCamera, Sphere, Sweep,
+    Aabb, MapFitter, Technique, CasterVolume, FitInput, OrientedBox, PerspectiveCamera, Sphere, Sweep,
     Workspace, cull,
 };
 use shadowfit_render::Gpu;
@@ -67,9 +67,9 @@ fn volumes() -> Vec<CasterVolume> {
     };
     let views = [camera.frustum().expect("a good camera")];
     let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-    let settings = CascadeSettings { count: 2, ..CascadeSettings::default() };
+    let settings = Technique { count: 2, ..Technique::default() };
     let input = FitInput::new(&views, Vec3::new(0.4, -0.8, 0.3));
-    let maps = CascadeFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("a good view");
+    let maps = MapFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("a good view");
     let sweep = |near, far| Sweep { near, far, ..Sweep::new(&views) };
     let swept = maps.iter().map(|map| CasterVolume::swept(&map.fit, &sweep(map.covered_near, map.far)));
     let swept = swept.map(|volume| volume.expect("a good sweep"));

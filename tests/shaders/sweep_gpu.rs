@@ -5,7 +5,7 @@ use shadowfit::bias::XNA_DEPTH_BIAS;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::settings::{BiasSettings, FilterKind, MapFormat};
 use shadowfit::{
-    Aabb, Bias, Boxes, CascadeFitter, CascadeSettings, CasterPolicy, DepthConvention, FitInput, FitKind, FitSettings,
+    Aabb, Bias, Boxes, MapFitter, Technique, CasterPolicy, DepthConvention, FitInput, FitKind, FitSettings,
     LightFit, PerspectiveCamera, SplitScheme, Stabilise, Workspace, fit,
 };
 use shadowfit_render::{Atmosphere, Culling, Frame, Gpu, GpuScene, ProbePixel, ProbeTargets, Renderer, Statistics};
@@ -25,7 +25,7 @@ const DIRECTIONS: [Vec3; 3] = [Vec3::new(0.2, -1.0, 0.1), Vec3::new(0.5, -0.6, -
 /// Maps and how they are read.
 struct Case {
     name: &'static str,
-    maps: CascadeSettings,
+    maps: Technique,
     filter: FilterKind,
     format: MapFormat,
     bias: fn(&LightFit, FilterKind) -> Bias,
@@ -49,7 +49,7 @@ fn cases() -> Vec<Case> {
     let maps = |kind, splits, stabilise, casters| {
         let fit = FitSettings { kind, casters, max_distance: f32::MAX, ..FitSettings::default() };
         let fit = FitSettings { resolution: UVec2::splat(TEXELS), kernel_margin: 3.0, ..fit };
-        CascadeSettings { fit, splits, stabilise, ..CascadeSettings::default() }
+        Technique { fit, splits, stabilise, ..Technique::default() }
     };
     let list = CasterPolicy::List;
     let case = |name, maps| Case {
@@ -75,7 +75,7 @@ fn cases() -> Vec<Case> {
         Case { format: MapFormat::R32Float, filter: FilterKind::Pcf3x3, ..case("focused, reversed", reversed) },
         case("focused, depth clamp", clamped),
         Case { is_narrow: true, ..case("narrow", aabb) },
-        case("one map", CascadeSettings { count: 1, ..aabb }),
+        case("one map", Technique { count: 1, ..aabb }),
     ]
 }
 
@@ -147,10 +147,10 @@ fn fitted(case: &Case, camera: &PerspectiveCamera, boxes: &[Aabb], direction: Ve
     let boxes = Boxes { origin: DVec3::ZERO, boxes };
     let input = FitInput { views: &[frustum], receivers: Some(boxes), casters: boxes, ..FitInput::new(&[], direction) };
     let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.boxes.len(), 3)];
-    let fitted = CascadeFitter::new().fit(&input, &case.maps, &mut Workspace::new(&mut storage)).expect("maps");
+    let fitted = MapFitter::new().fit(&input, &case.maps, &mut Workspace::new(&mut storage)).expect("maps");
     let narrow = PerspectiveCamera { fov_y: camera.fov_y * 0.5, ..*camera }.frustum().expect("a camera");
     let last = fitted.len() - 1;
-    let map = |(index, map): (usize, &shadowfit::CascadeMap)| {
+    let map = |(index, map): (usize, &shadowfit::FittedMap)| {
         let is_narrow = case.is_narrow && index < last;
         let settings = case.maps.fit.with_max_distance(map.far).with_casters(CasterPolicy::Extend);
         let light = if is_narrow { fit(&narrow, direction, &settings).expect("a fit") } else { map.fit };

@@ -2,7 +2,7 @@
 //! computation here finds for it.
 
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::{Bias, CascadeFitter, CascadeSettings, FitInput, PerspectiveCamera, SplitScheme, Workspace};
+use shadowfit::{Bias, MapFitter, Technique, FitInput, PerspectiveCamera, SplitScheme, Workspace};
 use shadowfit_render::{Atmosphere, Frame, GpuScene, MAP_TINTS, Overlay, Renderer};
 use shadowfit_scene::Scene;
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
@@ -32,12 +32,12 @@ fn camera() -> PerspectiveCamera {
 
 /// Eight maps of the camera's view, and no end of the floor before that of the last one.
 fn maps(camera: &PerspectiveCamera) -> Vec<MapFit> {
-    let mut settings = CascadeSettings { count: 8, splits: SplitScheme::Manual(ENDS), ..CascadeSettings::default() };
+    let mut settings = Technique { count: 8, splits: SplitScheme::Manual(ENDS), ..Technique::default() };
     (settings.fit.max_distance, settings.fit.resolution) = (LAST_END, shadowfit::glam::UVec2::splat(256));
     let views = [camera.frustum().expect("a camera")];
     let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
     let input = FitInput::new(&views, DIRECTION);
-    let fitted = CascadeFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("eight maps");
+    let fitted = MapFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("eight maps");
     let ends = fitted.iter().map(|map| map.far.min(LAST_END));
     fitted.iter().zip(ends).map(|(map, far)| MapFit { far, ..MapFit::new(map.fit, Bias::default()) }).collect()
 }

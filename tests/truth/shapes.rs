@@ -2,7 +2,7 @@
 
 use shadowfit::glam::{Affine3A, DVec3, Vec3};
 use shadowfit::settings::{BiasSettings, FilterKind};
-use shadowfit::{CascadeSettings, CasterPolicy, FitKind, FitSettings, PerspectiveCamera, SplitScheme, Stabilise};
+use shadowfit::{Technique, CasterPolicy, FitKind, FitSettings, PerspectiveCamera, SplitScheme, Stabilise};
 use shadowfit_scene::Scene;
 use shadowfit_study::{Comparison, Judging, ReceiverSource, SharedTruth, Technique, View};
 use shadowfit_truth::PictureTally;
@@ -107,12 +107,12 @@ pub(super) fn single(kind: FitKind, filter: FilterKind, bias: BiasSettings) -> T
         resolution: shadowfit::glam::UVec2::splat(512),
         ..FitSettings::default()
     };
-    let maps = CascadeSettings {
+    let maps = Technique {
         fit,
         count: 1,
         splits: SplitScheme::Logarithmic,
         stabilise: Stabilise::Off,
-        ..CascadeSettings::default()
+        ..Technique::default()
     };
     Technique { receivers: ReceiverSource::Objects, maps, ..Technique::default() }.with_look_up(filter, bias)
 }

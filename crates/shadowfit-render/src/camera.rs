@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Vec2, Vec3};
 use shadowfit::PerspectiveCamera;
-use shadowfit::settings::CameraSettings;
+use shadowfit::tool::CameraSettings;
 
 /// Steepest look up or down, in radians: just short of the vertical, where "up" would flip.
 pub const MAX_PITCH: f32 = 1.55;

@@ -61,7 +61,7 @@ impl SceneBoxes {
         FitInput {
             receivers: Some(Boxes { origin: DVec3::ZERO, boxes: &self.receivers }),
             receiver_cones: &self.cones,
-            casters: Boxes { origin: DVec3::ZERO, boxes: &self.casters },
+            casters: Some(Boxes { origin: DVec3::ZERO, boxes: &self.casters }),
             ..FitInput::new(views, direction)
         }
     }

@@ -6,7 +6,7 @@ use shadowfit_scene::Scene;
 use shadowfit_truth::{Judged, PictureTally};
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
 
-use crate::{Evaluator, Judging, PreparedScene, SharedTruth, Technique, TechniqueFitter, View};
+use crate::{Evaluator, Judging, NamedTechnique, PreparedScene, SharedTruth, TechniqueFitter, View};
 
 /// Samples per pixel of pictures that are compared.
 const SAMPLES: u32 = 1;
@@ -14,6 +14,7 @@ const SAMPLES: u32 = 1;
 /// One technique in a comparison.
 #[derive(Debug)]
 struct Entry {
+    named: NamedTechnique,
     fitter: TechniqueFitter,
     evaluator: Evaluator,
 }
@@ -54,11 +55,11 @@ impl Comparison {
     /// # Errors
     ///
     /// When its shadow map cannot be made on this GPU.
-    pub fn add(&mut self, technique: Technique) -> Result<()> {
-        let renderer = Renderer::new(&self.gpu, &technique.descriptor(), SAMPLES)
-            .with_context(|| format!("technique {}", technique.name))?;
-        let evaluator = Evaluator::new(renderer, technique.bias, self.judging);
-        self.entries.push(Entry { fitter: TechniqueFitter::new(technique), evaluator });
+    pub fn add(&mut self, named: NamedTechnique) -> Result<()> {
+        let renderer = Renderer::new(&self.gpu, &ShadowMapDescriptor::from(&named.technique), SAMPLES)
+            .with_context(|| format!("technique {}", named.name))?;
+        let evaluator = Evaluator::new(renderer, self.judging);
+        self.entries.push(Entry { fitter: TechniqueFitter::new(named.technique), named, evaluator });
         Ok(())
     }
 
@@ -78,8 +79,8 @@ impl Comparison {
     }
 
     /// The techniques, in the order in which they were added.
-    pub fn techniques(&self) -> impl Iterator<Item = &Technique> {
-        self.entries.iter().map(|entry| entry.fitter.technique())
+    pub fn techniques(&self) -> impl Iterator<Item = &NamedTechnique> {
+        self.entries.iter().map(|entry| &entry.named)
     }
 
     /// Poses the scene at a time of an animation, in seconds.
@@ -95,9 +96,9 @@ impl Comparison {
     /// When the camera makes no sense or the device cannot tell triangles apart.
     pub fn frame(&mut self, view: &View, truth: &mut SharedTruth) -> Result<Vec<Outcome>> {
         let mut outcomes = Vec::with_capacity(self.entries.len());
-        for Entry { fitter, evaluator } in &mut self.entries {
+        for Entry { named, fitter, evaluator } in &mut self.entries {
             let maps = fitter.fit(&self.scene, view);
-            let maps = maps.with_context(|| format!("technique {}", fitter.technique().name))?;
+            let maps = maps.with_context(|| format!("technique {}", named.name))?;
             let judged = evaluator.judge(&self.gpu, &mut self.scene, view, &maps, truth)?;
             outcomes.push(Outcome { maps, judged });
         }

@@ -2,16 +2,14 @@
 
 use anyhow::Result;
 use glam::{DVec3, Vec3};
-use shadowfit::settings::BiasSettings;
-use shadowfit_render::{Frame, Gpu, Picture, ProbePixel, ProbeTargets, Renderer, Statistics};
+use shadowfit_render::{Frame, Gpu, ProbePixel, ProbeTargets, RenderTarget, Renderer, Statistics};
 use shadowfit_truth::gpu::GpuPixel;
-use shadowfit_truth::peers::ShadowMap;
-use shadowfit_truth::{Judged, MapsBefore, MapsSeen, crawl, judge};
+use shadowfit_truth::{Judged, MapsBefore, MeasuredMap, PictureMaps, crawl, judge};
 use shadowfit_wgpu::{MapFit, ShadowMapError};
 
 use crate::frame::frame;
 use crate::live::{LiveInput, LiveTruth};
-use crate::maps::{maps_seen, measured};
+use crate::maps::{measured, picture_maps};
 use crate::{FrameOptions, Judging, PreparedScene, SharedTruth, View};
 
 /// Draws a technique's maps and the scene shadowed by them, and judges the picture.
@@ -19,12 +17,10 @@ use crate::{FrameOptions, Judging, PreparedScene, SharedTruth, View};
 pub struct Evaluator {
     /// Draws; its shadow map is the one that the maps are drawn into.
     pub renderer: Renderer,
-    /// Biases of the look-up.
-    pub bias: BiasSettings,
     /// How pictures are judged.
     pub judging: Judging,
     targets: Option<ProbeTargets>,
-    picture: Option<Picture>,
+    picture: Option<RenderTarget>,
     before: Option<Before>,
 }
 
@@ -37,9 +33,9 @@ struct Before {
 }
 
 impl Evaluator {
-    /// An evaluator that has judged nothing yet. Its shadow map is read with `bias`.
-    pub fn new(renderer: Renderer, bias: BiasSettings, judging: Judging) -> Self {
-        Self { renderer, bias, judging, targets: None, picture: None, before: None }
+    /// An evaluator that has judged nothing yet.
+    pub fn new(renderer: Renderer, judging: Judging) -> Self {
+        Self { renderer, judging, targets: None, picture: None, before: None }
     }
 
     /// Draws the maps of a view and its shaded picture. Maps are in order of their `far`.
@@ -54,10 +50,10 @@ impl Evaluator {
         view: &View,
         maps: &[MapFit],
         options: &FrameOptions<'_>,
-        picture: &Picture,
+        picture: &RenderTarget,
     ) -> Result<Statistics, ShadowMapError> {
         let atmosphere = options.atmosphere(view);
-        let frame = frame(view, maps, &self.bias, options, &atmosphere);
+        let frame = frame(view, maps, options, &atmosphere);
         self.renderer.draw(gpu, &mut scene.gpu_scene, &frame, picture)
     }
 
@@ -68,11 +64,11 @@ impl Evaluator {
     /// As for [`Self::draw`].
     pub fn picture(&mut self, gpu: &Gpu, scene: &mut PreparedScene, view: &View, maps: &[MapFit]) -> Result<Vec<u8>> {
         let kept = self.picture.take().filter(|picture| picture.size == self.judging.size);
-        let picture = kept.unwrap_or_else(|| self.renderer.picture(gpu, self.judging.size));
+        let picture = kept.unwrap_or_else(|| self.renderer.target(gpu, self.judging.size));
         self.draw(gpu, scene, view, maps, &FrameOptions::default(), &picture)?;
         let pixels = picture.read(gpu);
         self.picture = Some(picture);
-        Ok(pixels)
+        Ok(pixels?)
     }
 
     /// Draws the maps of a view (in order of their `far`) and judges the shadows that they give.
@@ -168,8 +164,8 @@ impl Evaluator {
         result
     }
 
-    fn seen<'a>(&self, maps: &'a [ShadowMap]) -> MapsSeen<'a> {
-        maps_seen(maps, self.renderer.shadow_map().descriptor())
+    fn seen<'a>(&self, maps: &'a [MeasuredMap]) -> PictureMaps<'a> {
+        picture_maps(maps, self.renderer.shadow_map().descriptor())
     }
 
     /// What each pixel shows. `choice` is the eye and the forward direction that choose the maps, if not the camera's.
@@ -182,9 +178,9 @@ impl Evaluator {
         choice: Option<(DVec3, Vec3)>,
     ) -> Result<Vec<Option<ProbePixel>>> {
         let targets = self.draw_probe(gpu, scene, view, maps, choice)?;
-        let pixels = targets.read(gpu).pixels;
+        let probe = targets.read(gpu);
         self.targets = Some(targets);
-        Ok(pixels)
+        Ok(probe?.pixels)
     }
 
     /// Draws a probe into targets that the caller hands back.
@@ -200,7 +196,7 @@ impl Evaluator {
         let targets = kept.unwrap_or_else(|| ProbeTargets::new(&gpu.device, self.judging.size));
         let options = FrameOptions::default();
         let atmosphere = options.atmosphere(view);
-        let frame = Frame { choice, ..frame(view, maps, &self.bias, &options, &atmosphere) };
+        let frame = Frame { choice, ..frame(view, maps, &options, &atmosphere) };
         self.renderer.draw_probe(gpu, &mut scene.gpu_scene, &frame, &targets)?;
         Ok(targets)
     }

@@ -1,10 +1,10 @@
 //! The one place where a technique's maps are fitted to a scene, view after view.
 
 use glam::DVec2;
-use shadowfit::{CascadeFitter, FitError, SplitScheme, Workspace};
+use shadowfit::{FitError, MapFitter, SplitScheme, Technique, Workspace};
 use shadowfit_wgpu::MapFit;
 
-use crate::{PreparedScene, SeenDepths, Technique, View};
+use crate::{PreparedScene, SeenDepths, View};
 
 /// Views that a fit works with: held maps are fitted to the views of two frames ahead as well.
 const VIEWS: usize = 3;
@@ -13,7 +13,7 @@ const VIEWS: usize = 3;
 #[derive(Debug)]
 pub struct TechniqueFitter {
     technique: Technique,
-    maps: CascadeFitter,
+    maps: MapFitter,
     depths: Option<SeenDepths>,
     storage: Vec<DVec2>,
 }
@@ -21,7 +21,7 @@ pub struct TechniqueFitter {
 impl TechniqueFitter {
     /// A fitter that remembers no frame.
     pub fn new(technique: Technique) -> Self {
-        Self { technique, maps: CascadeFitter::new(), depths: None, storage: Vec::new() }
+        Self { technique, maps: MapFitter::new(), depths: None, storage: Vec::new() }
     }
 
     /// What is fitted.
@@ -32,7 +32,7 @@ impl TechniqueFitter {
     /// Goes on with a technique; with another one than before the fitter forgets all frames.
     pub fn set_technique(&mut self, technique: &Technique) {
         if self.technique != *technique {
-            *self = Self::new(technique.clone());
+            *self = Self::new(*technique);
         }
     }
 
@@ -51,8 +51,8 @@ impl TechniqueFitter {
         let frusta = [view.camera.frustum()?];
         let mut input = boxes.input(&frusta, view.direction);
         input.histogram = self.depths.as_ref().map(SeenDepths::histogram);
-        let maps = self.maps.fit(&input, &self.technique.maps, &mut Workspace::new(&mut self.storage))?;
-        if self.technique.maps.splits == SplitScheme::FromHistogram {
+        let maps = self.maps.fit(&input, &self.technique, &mut Workspace::new(&mut self.storage))?;
+        if self.technique.splits == SplitScheme::FromHistogram {
             let camera = scene.camera_for_rays(&view.camera);
             self.depths = Some(SeenDepths::trace(&scene.rays().tracer, &camera, view.direction));
         }

@@ -1,7 +1,7 @@
 //! The one place where a frame of the samples' renderer is put together, and its haze chosen.
 
 use shadowfit::PerspectiveCamera;
-use shadowfit::settings::{BiasSettings, CameraSettings};
+use shadowfit::tool::CameraSettings;
 use shadowfit_render::{Atmosphere, Frame, Inset, Line};
 use shadowfit_wgpu::MapFit;
 
@@ -44,20 +44,16 @@ impl FrameOptions<'_> {
 pub(crate) fn frame<'a>(
     view: &'a View,
     maps: &'a [MapFit],
-    bias: &'a BiasSettings,
     options: &'a FrameOptions<'a>,
     atmosphere: &'a Atmosphere,
 ) -> Frame<'a> {
+    let camera = options.outside.as_ref().unwrap_or(&view.camera);
     Frame {
-        camera: options.outside.as_ref().unwrap_or(&view.camera),
-        direction: view.direction,
-        maps,
         choice: options.outside.map(|_| (view.camera.eye, view.camera.forward.normalize())),
-        bias,
         shadows: options.shadows,
-        atmosphere,
         lines: options.lines,
         inset: options.inset,
+        ..Frame::new(camera, view.direction, maps, atmosphere)
     }
 }
 
@@ -97,10 +93,10 @@ mod tests {
         let view = View { camera: camera(10.0), direction: Vec3::NEG_Y, is_first: true };
         let outside = PerspectiveCamera { eye: DVec3::new(5.0, 6.0, 7.0), ..camera(100.0) };
         let options = FrameOptions { outside: Some(outside), ..FrameOptions::default() };
-        let (bias, atmosphere) = (BiasSettings::default(), options.atmosphere(&view));
-        let drawn = frame(&view, &[], &bias, &options, &atmosphere);
+        let atmosphere = options.atmosphere(&view);
+        let drawn = frame(&view, &[], &options, &atmosphere);
         assert_eq!((drawn.camera.eye, drawn.choice), (outside.eye, Some((DVec3::ZERO, Vec3::NEG_Z))));
         let inside = FrameOptions::default();
-        assert_eq!(frame(&view, &[], &bias, &inside, &atmosphere).choice, None);
+        assert_eq!(frame(&view, &[], &inside, &atmosphere).choice, None);
     }
 }

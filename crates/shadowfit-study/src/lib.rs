@@ -1,7 +1,7 @@
 //! Techniques on the same frames: each is fitted, drawn by the samples' renderer, and judged against rays. No window.
 //!
 //! A [`PreparedScene`] is a scene that can be drawn, traced and fitted to; a [`View`] is a camera and a light. A
-//! [`Technique`] is all that decides how shadows come out: its [`TechniqueFitter`] makes the maps of a view, and an
+//! [`Technique`](shadowfit::Technique) is all that decides how shadows come out: its [`TechniqueFitter`] makes the maps of a view, and an
 //! [`Evaluator`] draws them and judges the picture. A [`Comparison`] does so for several techniques, and [`tune()`]
 //! searches the best one. The viewer draws and judges through the same fitter and evaluator.
 
@@ -16,9 +16,8 @@ mod judging;
 mod live;
 mod maps;
 mod rays;
-mod rust_code;
 mod scene;
-mod technique;
+mod technique_file;
 mod tune;
 mod view;
 
@@ -33,6 +32,6 @@ pub use live::LiveTruth;
 pub use maps::fit_map;
 pub use rays::SceneRays;
 pub use scene::{NothingToDraw, PreparedScene};
-pub use technique::{DEFAULT_TECHNIQUE, ReceiverSource, Technique};
+pub use technique_file::NamedTechnique;
 pub use tune::{Budget, Step, Tuned, Weights, tune};
 pub use view::View;

@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use glam::DVec3;
 use shadowfit_render::Gpu;
 use shadowfit_truth::gpu::{GpuJudge, GpuJudgeInput, GpuPixel, GpuTracer};
-use shadowfit_truth::{MapsSeen, PixelCamera, TruthSettings};
+use shadowfit_truth::{PictureMaps, PixelCamera, TruthSettings};
 
 use crate::PreparedScene;
 
@@ -21,7 +21,7 @@ pub struct LiveTruth {
 pub(crate) struct LiveInput<'a> {
     pub(crate) camera: PixelCamera,
     pub(crate) settings: TruthSettings,
-    pub(crate) maps: MapsSeen<'a>,
+    pub(crate) maps: PictureMaps<'a>,
     pub(crate) seen: &'a wgpu::TextureView,
 }
 

@@ -2,8 +2,8 @@
 
 use glam::{DMat4, DVec3, Vec3};
 use shadowfit::bias;
-use shadowfit_truth::MapsSeen;
-use shadowfit_truth::peers::{FitMap, ShadowMap};
+use shadowfit_truth::peers::FitMap;
+use shadowfit_truth::{MeasuredMap, PictureMaps};
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
 
 /// Stands for no end of a map's view depths, in metres: fit files hold finite numbers.
@@ -22,14 +22,14 @@ pub fn fit_map(map: &MapFit) -> FitMap {
 
 /// Maps as the measures take them, for positions relative to a world position. `direction` is the light's direction of
 /// travel.
-pub(crate) fn measured(maps: &[MapFit], direction: Vec3, origin: DVec3) -> Vec<ShadowMap> {
+pub(crate) fn measured(maps: &[MapFit], direction: Vec3, origin: DVec3) -> Vec<MeasuredMap> {
     let from_origin = |map: &MapFit| FitMap { view_proj: clip_from(map, origin).to_cols_array(), ..fit_map(map) };
-    maps.iter().map(|map| ShadowMap::new(&from_origin(map), -direction.as_dvec3())).collect()
+    maps.iter().map(|map| from_origin(map).measured(-direction.as_dvec3())).collect()
 }
 
 /// How the maps of a shadow map are read.
-pub(crate) fn maps_seen<'a>(maps: &'a [ShadowMap], descriptor: &ShadowMapDescriptor) -> MapsSeen<'a> {
-    MapsSeen { maps, reach: bias::reach(descriptor.filter), depth_clamp: descriptor.depth_clamp }
+pub(crate) fn picture_maps<'a>(maps: &'a [MeasuredMap], descriptor: &ShadowMapDescriptor) -> PictureMaps<'a> {
+    PictureMaps { maps, reach: bias::reach(descriptor.filter), depth_clamp: descriptor.depth_clamp }
 }
 
 /// Clip space from positions relative to a world position.

@@ -4,12 +4,12 @@ use core::cell::{OnceCell, RefCell};
 use core::fmt;
 
 use glam::DVec3;
-use shadowfit::PerspectiveCamera;
+use shadowfit::{Aabb, PerspectiveCamera, ReceiverSource};
 use shadowfit_render::{Gpu, GpuScene};
-use shadowfit_scene::{Aabb, AlphaMode, Instance, Pose, Scene};
+use shadowfit_scene::{AlphaMode, Instance, Pose, Scene};
 
+use crate::SceneRays;
 use crate::boxes::SceneBoxes;
-use crate::{ReceiverSource, SceneRays};
 
 /// Greatest coordinate of a scene's middle, in metres, up to which its rays are relative to the world's own origin: f32
 /// positions are that near to it exact to about a tenth of the rays' offset of a millimetre.

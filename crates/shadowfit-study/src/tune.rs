@@ -4,14 +4,11 @@
 //! the same answer, and what each change bought can be said.
 
 use anyhow::{Context, Result, ensure};
-use glam::UVec2;
 use shadowfit::settings::{BiasSettings, FilterKind};
-use shadowfit::{
-    CascadeSettings, CasterPolicy, FitKind, FitSettings, HoldSettings, RectangleKind, SplitScheme, Stabilise,
-};
+use shadowfit::{FitKind, HoldSettings, ReceiverSource, RectangleKind, SplitScheme, Stabilise, Technique};
 use shadowfit_truth::PictureTally;
 
-use crate::{Comparison, ReceiverSource, SharedTruth, Technique, View, ensure_judged};
+use crate::{Comparison, NamedTechnique, SharedTruth, View, ensure_judged};
 
 /// What is counted against a technique: weights of shares in per cent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,7 +72,7 @@ pub struct Step {
 #[derive(Clone, Debug)]
 pub struct Tuned {
     /// The best technique found.
-    pub technique: Technique,
+    pub technique: NamedTechnique,
     /// Its sums over all frames.
     pub tally: PictureTally,
     /// All that was tried, in order; the first is the start.
@@ -115,20 +112,20 @@ pub fn tune(
     let mut best = start(budget);
     let mut tally = measure(comparison, views, &mut truths, &best)?;
     let mut error = weights.error(&tally);
-    let mut tried = vec![best.clone()];
+    let mut tried = vec![best];
     let mut steps = vec![Step { what: "the start".to_owned(), error, tally: tally.clone(), is_kept: true }];
     let mut goes_on = progress(1, most);
     for changes in rounds {
         // The best of each round is kept.
-        let from = best.clone();
+        let from = best;
         let mut kept = None;
         for change in changes {
-            let mut candidate = from.clone();
+            let mut candidate = from;
             (change.apply)(&mut candidate);
             if !goes_on || tried.contains(&candidate) {
                 continue;
             }
-            tried.push(candidate.clone());
+            tried.push(candidate);
             let found = measure(comparison, views, &mut truths, &candidate).with_context(|| change.what.clone())?;
             let new_error = weights.error(&found);
             steps.push(Step { what: change.what, error: new_error, tally: found.clone(), is_kept: false });
@@ -141,35 +138,14 @@ pub fn tune(
             steps[kept].is_kept = true;
         }
     }
-    let what = format!("the least error found with {} maps of {} texels", budget.maps, budget.resolution);
-    let technique = Technique { name: "tuned".to_owned(), what, ..best };
+    let summary = format!("the least error found with {} maps of {} texels", budget.maps, budget.resolution);
+    let technique = NamedTechnique { name: "tuned".to_owned(), summary, technique: best };
     Ok(Tuned { technique, tally, steps, stopped_early: !goes_on })
 }
 
-/// What many renderers do: boxes of the frustum's slices, a tent of 3×3 and an offset along the normal.
+/// The recommended technique, within the budget.
 fn start(budget: Budget) -> Technique {
-    let fit = FitSettings {
-        kind: FitKind::FrustumAabb,
-        casters: CasterPolicy::List,
-        max_distance: f32::MAX,
-        resolution: UVec2::splat(budget.resolution),
-        ..FitSettings::default()
-    };
-    let filter = FilterKind::Pcf3x3;
-    Technique {
-        name: "start".to_owned(),
-        what: String::new(),
-        receivers: ReceiverSource::Objects,
-        maps: CascadeSettings {
-            fit,
-            count: budget.maps,
-            splits: SplitScheme::Practical(0.5),
-            stabilise: Stabilise::Off,
-            ..CascadeSettings::default()
-        },
-        ..Technique::default()
-    }
-    .with_look_up(filter, BiasSettings::automatic_normal_offset(filter))
+    Technique::default().with_count(budget.maps).with_resolution(budget.resolution, budget.resolution)
 }
 
 /// The changes that are tried, round by round: what matters most comes first.
@@ -185,14 +161,14 @@ fn rounds(budget: Budget) -> Vec<Vec<Change>> {
 
 fn fits() -> Vec<Change> {
     let kinds = [
-        ("least rectangles of the frustum", FitKind::Oriented, ReceiverSource::Objects),
-        ("spheres around the frustum's slices", FitKind::Sphere, ReceiverSource::Objects),
+        ("boxes of the frustum's slices", FitKind::FrustumAabb, ReceiverSource::Clusters),
+        ("least rectangles of the frustum", FitKind::Oriented, ReceiverSource::Clusters),
+        ("spheres around the frustum's slices", FitKind::Sphere, ReceiverSource::Clusters),
         ("least rectangles around the objects in view", FitKind::Focused, ReceiverSource::Objects),
-        ("least rectangles around the triangle clusters in view", FitKind::Focused, ReceiverSource::Clusters),
     ];
     let change = |(what, kind, receivers)| {
         Change::new(what, move |technique: &mut Technique| {
-            technique.maps.fit.kind = kind;
+            technique.fit.kind = kind;
             technique.receivers = receivers;
         })
     };
@@ -201,7 +177,9 @@ fn fits() -> Vec<Change> {
 
 fn biases() -> Vec<Change> {
     vec![
-        Change::new("receiver-plane bias", |technique| technique.bias = BiasSettings::automatic(technique.filter)),
+        Change::new("an offset along the normal", |technique| {
+            technique.bias = BiasSettings::automatic_normal_offset(technique.filter);
+        }),
         Change::new("no bias", |technique| {
             technique.bias = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0 };
         }),
@@ -218,7 +196,7 @@ fn filters() -> Vec<Change> {
             } else if technique.bias == BiasSettings::automatic_normal_offset(technique.filter) {
                 technique.bias = BiasSettings::automatic_normal_offset(filter);
             }
-            *technique = technique.clone().with_look_up(filter, technique.bias);
+            technique.filter = filter;
         })
     };
     names.into_iter().zip(FilterKind::ALL).map(change).collect()
@@ -230,27 +208,25 @@ fn splits() -> Vec<Change> {
         ("practical splits, 0.8", SplitScheme::Practical(0.8)),
         ("logarithmic splits", SplitScheme::Logarithmic),
         ("splits from the boxes", SplitScheme::FromBoxes),
-        ("splits from a histogram of visible depth", SplitScheme::FromHistogram),
     ];
-    let change = |(what, splits)| Change::new(what, move |technique: &mut Technique| technique.maps.splits = splits);
+    let change = |(what, splits)| Change::new(what, move |technique: &mut Technique| technique.splits = splits);
     schemes.into_iter().map(change).collect()
 }
 
 fn counts(maps: u32) -> Vec<Change> {
     let fewer = (1..maps).rev().take(2);
-    let change = |count| {
-        Change::new(format!("{count} maps only"), move |technique: &mut Technique| technique.maps.count = count)
-    };
+    let change =
+        |count| Change::new(format!("{count} maps only"), move |technique: &mut Technique| technique.count = count);
     fewer.map(change).collect()
 }
 
 fn stillness() -> Vec<Change> {
     vec![
-        Change::new("maps on a grid of whole texels", |technique| technique.maps.stabilise = Stabilise::Snap),
-        Change::new("maps held while they serve", |technique| technique.maps.stabilise = Stabilise::Hysteresis),
-        Change::new("maps held longer", |technique| {
-            technique.maps.stabilise = Stabilise::Hysteresis;
-            technique.maps.hold = HoldSettings::default().with_waste(3.0);
+        Change::new("maps fitted anew in each frame", |technique| technique.stabilise = Stabilise::Off),
+        Change::new("maps on a grid of whole texels", |technique| technique.stabilise = Stabilise::Snap),
+        Change::new("maps held longer", |technique| technique.hold = HoldSettings::default().with_waste(3.0)),
+        Change::new("maps held for a shorter time", |technique| {
+            technique.hold = HoldSettings::default().with_waste(1.3).with_growth(1.2);
         }),
     ]
 }
@@ -260,7 +236,7 @@ fn rectangles() -> Vec<Change> {
         ("rectangles along the light's axes", RectangleKind::AxisAligned),
         ("least squares instead of rectangles", RectangleKind::MinimumSquare),
     ];
-    let change = |(what, kind)| Change::new(what, move |technique: &mut Technique| technique.maps.fit.rectangle = kind);
+    let change = |(what, kind)| Change::new(what, move |technique: &mut Technique| technique.fit.rectangle = kind);
     kinds.into_iter().map(change).collect()
 }
 
@@ -288,7 +264,7 @@ fn measure(
     technique: &Technique,
 ) -> Result<PictureTally> {
     comparison.clear();
-    comparison.add(technique.clone())?;
+    comparison.add(NamedTechnique { name: "candidate".to_owned(), summary: String::new(), technique: *technique })?;
     let mut tally = PictureTally::default();
     for (view, truth) in views.iter().zip(truths) {
         for outcome in comparison.frame(view, truth)? {
@@ -311,9 +287,9 @@ mod tests {
         let changes: Vec<Change> = rounds(Budget { maps: 4, resolution: 1024 }).into_iter().flatten().collect();
         assert!(changes.len() > 20, "{}", changes.len());
         for change in changes {
-            let mut changed = start.clone();
+            let mut changed = start;
             (change.apply)(&mut changed);
-            assert!(changed != start || change.what == "a tent of 3×3", "{}", change.what);
+            assert!(changed != start || change.what == "a tent of 5×5", "{}", change.what);
         }
     }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Parser;
 use shadowfit::params;
-use shadowfit::settings::Settings;
+use shadowfit::tool::Settings;
 use shadowfit_render::AdapterChoice;
 use shadowfit_scene::Scene;
 

@@ -8,7 +8,7 @@ use core::fmt;
 
 use glam::Vec3;
 use shadowfit::settings::{CasterPolicy, Settings, SplitScheme, Stabilise};
-use shadowfit::{Aabb, CascadeSettings, DepthConvention, FitError, LightFit, PerspectiveCamera, ViewFrustum};
+use shadowfit::{Aabb, Technique, DepthConvention, FitError, LightFit, PerspectiveCamera, ViewFrustum};
 use shadowfit_egui::Artefact;
 use shadowfit_render::{FlyCamera, FlyInput, Gpu, Inset, Picture, Renderer, Statistics};
 use shadowfit_scene::Scene;
@@ -371,12 +371,12 @@ impl Stage {
 
 /// The technique of the settings: one map.
 fn technique(settings: &Settings) -> Technique {
-    let maps = CascadeSettings {
+    let maps = Technique {
         fit: settings.fit,
         count: 1,
         splits: SplitScheme::Logarithmic,
         stabilise: Stabilise::Off,
-        ..CascadeSettings::default()
+        ..Technique::default()
     };
     Technique {
         name: String::new(),

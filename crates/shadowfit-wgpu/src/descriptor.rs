@@ -1,12 +1,9 @@
 //! What a shadow map is made of: size, count, format, filter and depth convention.
 
-use shadowfit::settings::{FilterKind, MapFormat, Settings};
-use shadowfit::{CasterPolicy, DepthConvention, FitKind};
+use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MAX_MAPS, MapFormat};
+use shadowfit::{DepthConvention, Technique};
 
 use crate::ShadowMapError;
-
-/// Most maps (array layers) that one [`ShadowMap`] holds.
-pub const MAX_MAPS: usize = 8;
 
 /// Widths and heights that a map may have, in texels.
 pub const RESOLUTIONS: core::ops::RangeInclusive<u32> = 256..=8192;
@@ -43,17 +40,18 @@ impl Default for ShadowMapDescriptor {
     }
 }
 
-impl From<&Settings> for ShadowMapDescriptor {
-    /// One map that the settings' fits match.
-    fn from(settings: &Settings) -> Self {
+impl From<&Technique> for ShadowMapDescriptor {
+    /// Layers for the technique's maps, as wide and as high as the largest of them.
+    fn from(technique: &Technique) -> Self {
+        let sizes = (0..technique.count as usize).map(|map| technique.resolution_of(map));
         Self {
-            resolution: settings.fit.resolution.to_array(),
-            maps: 1,
-            format: settings.format,
-            filter: settings.filter,
-            depth: settings.fit.depth,
+            resolution: sizes.fold(technique.fit.resolution, |a, b| a.max(b)).to_array(),
+            maps: technique.count,
+            format: technique.format,
+            filter: technique.filter,
+            depth: technique.fit.depth,
             // The XNA sample's fit has no caster policy.
-            depth_clamp: settings.fit.casters == CasterPolicy::DepthClamp && settings.fit.kind != FitKind::XnaSample,
+            depth_clamp: technique.fit.casters == CasterPolicy::DepthClamp && technique.fit.kind != FitKind::XnaSample,
         }
     }
 }

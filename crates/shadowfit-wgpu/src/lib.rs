@@ -4,23 +4,22 @@
 //!
 //! ```no_run
 //! # fn demo(device: &wgpu::Device, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder,
-//! #         cascades: &shadowfit::Cascades, camera: &shadowfit::PerspectiveCamera,
+//! #         fitted: &shadowfit::FittedMaps, camera: &shadowfit::PerspectiveCamera,
 //! #         forward: shadowfit::glam::Vec3) -> Result<(), Box<dyn std::error::Error>> {
-//! use shadowfit::BiasSettings;
+//! use shadowfit::Technique;
 //! use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
 //!
-//! let mut map = ShadowMap::new(device, &ShadowMapDescriptor { maps: 4, ..Default::default() })?;
+//! let technique = Technique::default(); // four maps
+//! let mut map = ShadowMap::new(device, &ShadowMapDescriptor::from(&technique))?;
 //! let caster = caster_wgsl(0); // goes into the engine's vertex shader of the shadow pass, as @group(0)
 //! let receiver = receiver_wgsl(map.descriptor(), 1); // goes into its fragment shader, as @group(1)
 //!
-//! // Each frame: the maps as `shadowfit` fitted them, nearest first, with biases in texels.
-//! let filter = map.descriptor().filter;
-//! let bias = BiasSettings::automatic(filter);
-//! let mut maps: Vec<MapFit> = cascades.iter().map(|map| MapFit::from_texels(map, &bias)).collect();
+//! // Each frame: the maps as `shadowfit::MapFitter` fitted them, nearest first.
+//! let mut maps: Vec<MapFit> = fitted.iter().map(MapFit::from).collect();
 //! // Positions in the engine's shaders are relative to the eye.
 //! let view = MapView::from_eye(camera.eye, forward);
 //! // Leave out casters whose shadows are not seen. Without this, each map gets all that it can store.
-//! MapFit::sweep(&mut maps, &view, &[camera.frustum()?], filter)?;
+//! MapFit::sweep(&mut maps, &view, &[camera.frustum()?], technique.filter)?;
 //! map.prepare(queue, &view, &maps)?;
 //! map.render(encoder, 0, |pass, _map_index, _volume| {
 //!     // The caster uniform is bound at group 0: draw every caster that the volume keeps.
@@ -37,9 +36,10 @@ mod shader;
 mod sweep;
 mod uniform;
 
-pub use descriptor::{MAX_MAPS, RESOLUTIONS, ShadowMapDescriptor};
+pub use descriptor::{RESOLUTIONS, ShadowMapDescriptor};
 pub use error::ShadowMapError;
 pub use map::ShadowMap;
 pub use map_fit::{MapFit, MapView};
 pub use shader::{caster_wgsl, culling_wgsl, receiver_wgsl};
+pub use shadowfit::settings::MAX_MAPS;
 pub use uniform::{CasterUniform, CullingUniform, MapUniform, ReceiverUniform};

@@ -2,8 +2,7 @@
 
 use shadowfit::bias::Bias;
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::settings::BiasSettings;
-use shadowfit::{CascadeMap, CasterVolume, DepthConvention, LightFit};
+use shadowfit::{CasterVolume, DepthConvention, FittedMap, LightFit};
 
 use crate::{ShadowMapDescriptor, ShadowMapError};
 
@@ -27,20 +26,21 @@ impl MapFit {
     pub fn new(fit: LightFit, bias: Bias) -> Self {
         Self { fit, far: f32::MAX, bias, volume: None }
     }
+}
 
-    /// One of several maps, with biases in texels, that stores every caster that it can:
+impl From<&FittedMap> for MapFit {
+    /// One of several maps with the biases of its technique, that stores every caster that it can:
     ///
     /// ```
-    /// # use shadowfit::settings::BiasSettings;
-    /// # let (cascades, settings) = (shadowfit::Cascades::default(), BiasSettings::default());
+    /// # let fitted = shadowfit::FittedMaps::default();
     /// use shadowfit_wgpu::MapFit;
     ///
-    /// let maps: Vec<MapFit> = cascades.iter().map(|map| MapFit::from_texels(map, &settings)).collect();
+    /// let maps: Vec<MapFit> = fitted.iter().map(MapFit::from).collect();
     /// ```
     ///
-    /// For another [`Bias`], such as [`Bias::automatic`] or [`Bias::fixed`], set [`Self::bias`].
-    pub fn from_texels(map: &CascadeMap, settings: &BiasSettings) -> Self {
-        Self { far: map.far, ..Self::new(map.fit, Bias::from_texels(settings, &map.fit)) }
+    /// For another [`Bias`], such as [`Bias::automatic`] or [`Bias::fixed`], set [`MapFit::bias`].
+    fn from(map: &FittedMap) -> Self {
+        Self { far: map.far, ..Self::new(map.fit, map.bias) }
     }
 }
 

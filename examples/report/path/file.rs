@@ -12,7 +12,7 @@ use glam::{DVec3, Vec3};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use shadowfit::PerspectiveCamera;
-use shadowfit::settings::LightSettings;
+use shadowfit::tool::LightSettings;
 
 use super::{CameraPath, PathFrame};
 
