@@ -1,32 +1,125 @@
-//! The figures that a tool shows live: plain numbers, filled by whoever measured them.
+//! The figures that a tool shows live: plain numbers, filled by whoever measured them, and the tints
+//! by which pictures and tables tell maps apart.
 
-use crate::Constraint;
+use glam::Vec3;
+
+use crate::diagnostics::depth_step;
+use crate::{Constraint, FittedMap, MAX_MAPS, MapFormat};
+
+/// Tints of the maps, the nearest first, as sRGB bytes of red, green and blue.
+///
+/// The colours of M. Okabe and K. Ito ("Color universal design", 2008), with a grey for their black,
+/// which would hide the picture: people with any one kind of colour blindness tell them apart. Their
+/// order keeps neighbours, and the first four, farthest from each other for all of them.
+pub const MAP_TINTS: [[u8; 3]; MAX_MAPS] = [
+    [213, 94, 0],
+    [0, 114, 178],
+    [204, 121, 167],
+    [240, 228, 66],
+    [0, 158, 115],
+    [230, 159, 0],
+    [86, 180, 233],
+    [187, 187, 187],
+];
+
+/// [`MAP_TINTS`] as linear red, green and blue, 0..=1, in which shaders compute.
+pub fn linear_map_tints() -> [Vec3; MAX_MAPS] {
+    MAP_TINTS.map(|tint| Vec3::from(tint.map(|byte| linear(f32::from(byte) / 255.0))))
+}
+
+/// The sRGB transfer function (IEC 61966-2-1), from an encoded value to a linear one, both 0..=1.
+fn linear(encoded: f32) -> f32 {
+    if encoded <= 0.040_45 { encoded / 12.92 } else { libm::powf((encoded + 0.055) / 1.055, 2.4) }
+}
 
 /// Live figures of one frame. `None` means not measured, never zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Figures {
-    /// What set the planes -x, +x, -y, +y, far and near of the map's box, see
-    /// [`LightFit::set_by`](crate::LightFit::set_by).
-    pub set_by: Option<[Constraint; 6]>,
-    /// Whether no receiver is in view, see [`LightFit::is_empty`](crate::LightFit::is_empty).
-    pub is_empty: Option<bool>,
-    /// Size of one shadow texel across the light, in metres, along u and v.
-    pub texel_size: Option<[f32; 2]>,
-    /// Extent of the map along the light, in metres.
-    pub depth_range: Option<f32>,
-    /// Smallest depth difference that the map's format resolves at its far end, in metres.
-    pub depth_step: Option<f32>,
-    /// Screen pixels per shadow texel along the worse axis at the picture's centre.
+    /// Figures of the maps, the nearest first; `None` where there is no such map.
+    pub maps: [Option<MapFigures>; MAX_MAPS],
+    /// Index of the map that is read at the picture's centre, 0..8.
+    pub map_ahead: Option<u32>,
+    /// Screen pixels per texel of that map, along the worse axis, at the picture's centre.
     pub pixels_per_texel: Option<f32>,
     /// Time of a whole frame, in milliseconds.
     pub frame_ms: Option<f32>,
-    /// GPU time of the shadow pass, in milliseconds.
+    /// GPU time of the shadow passes of all maps, in milliseconds.
     pub shadow_pass_ms: Option<f32>,
     /// GPU time of the scene pass, in milliseconds.
     pub scene_pass_ms: Option<f32>,
-    /// Draw calls of the shadow pass.
+    /// Draw calls of the shadow passes of all maps.
     pub shadow_draws: Option<u32>,
-    /// Triangles drawn into the shadow map.
+    /// Triangles drawn into all maps.
     pub shadow_triangles: Option<u64>,
+}
+
+/// Live figures of one map. `None` means not measured, never zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+pub struct MapFigures {
+    /// View depths between which points choose this map, in metres; `None` where none does.
+    pub view_depths: Option<[f32; 2]>,
+    /// What set the planes -x, +x, -y, +y, far and near of the map's box, see
+    /// [`LightFit::set_by`](crate::LightFit::set_by).
+    pub set_by: [Constraint; 6],
+    /// Whether no receiver is in view, see [`LightFit::is_empty`](crate::LightFit::is_empty).
+    pub is_empty: bool,
+    /// Size of one texel across the light, in metres, along u and v.
+    pub texel_size: [f32; 2],
+    /// Extent of the map along the light, in metres.
+    pub depth_range: f32,
+    /// Smallest depth difference that the map's format resolves everywhere in the range, in metres.
+    pub depth_step: f32,
+    /// Casters that culling left to be drawn.
+    pub casters: Option<u32>,
+    /// Draw calls of its shadow pass.
+    pub draws: Option<u32>,
+    /// Triangles drawn into it.
+    pub triangles: Option<u64>,
+}
+
+impl MapFigures {
+    /// The figures of a fitted map that is stored in `format`, with nothing drawn yet. `end` is the
+    /// view depth at which shadows end, in metres, since the last map itself has no end.
+    pub fn new(map: &FittedMap, end: f32, format: MapFormat) -> Self {
+        let FittedMap { fit, near, far, .. } = map;
+        let view_depths = [*near, far.min(end)];
+        Self {
+            view_depths: (view_depths[0] < view_depths[1]).then_some(view_depths),
+            set_by: fit.set_by,
+            is_empty: fit.is_empty,
+            texel_size: fit.texel_size.to_array(),
+            depth_range: fit.depth_range,
+            depth_step: depth_step(format, fit.depth_range),
+            casters: None,
+            draws: None,
+            triangles: None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tints_are_linear_by_the_srgb_curve() {
+        let tints = linear_map_tints();
+        // Exact values of the curve for the bytes 0, 94 and 213.
+        for (value, expected) in tints[0].to_array().into_iter().zip([0.665_387_3, 0.111_932_4, 0.0]) {
+            assert!((value - expected).abs() < 1e-6, "{value} is not {expected}");
+        }
+        assert_eq!(linear(1.0), 1.0);
+    }
+
+    #[test]
+    fn the_last_map_ends_with_the_shadows_and_an_empty_one_has_no_depths() {
+        let figures =
+            |near, far| MapFigures::new(&FittedMap { near, far, ..FittedMap::default() }, 80.0, MapFormat::default());
+        assert_eq!(figures(0.1, 5.0).view_depths, Some([0.1, 5.0]));
+        assert_eq!(figures(40.0, f32::MAX).view_depths, Some([40.0, 80.0]));
+        assert_eq!(figures(5.0, f32::MIN).view_depths, None);
+        assert_eq!(figures(f32::MAX, f32::MAX).view_depths, None);
+    }
 }

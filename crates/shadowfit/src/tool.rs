@@ -58,9 +58,14 @@ impl Default for CameraSettings {
 pub struct ViewSettings {
     /// Whether shadows are drawn at all.
     pub shadows: bool,
-    /// Shows the shadow map in a corner.
+    /// Shows one of the shadow maps in a corner.
     pub inset: bool,
-    /// Looks at the camera from outside, with its frustum and the light's box drawn.
+    /// Number of the map that the inset shows, 1..=8 from the nearest; the last one where there are
+    /// fewer.
+    pub inset_map: u32,
+    /// Tints each point by the map that it reads, see [`MAP_TINTS`](crate::figures::MAP_TINTS).
+    pub tint_maps: bool,
+    /// Looks at the camera from outside, with its frustum and the boxes of the maps drawn.
     pub outside: bool,
     /// Keeps the current fit while the camera flies on.
     pub freeze_fit: bool,
@@ -70,7 +75,15 @@ pub struct ViewSettings {
 
 impl Default for ViewSettings {
     fn default() -> Self {
-        Self { shadows: true, inset: true, outside: false, freeze_fit: false, play: true }
+        Self {
+            shadows: true,
+            inset: true,
+            inset_map: 1,
+            tint_maps: false,
+            outside: false,
+            freeze_fit: false,
+            play: true,
+        }
     }
 }
 
@@ -105,6 +118,8 @@ setters!(CameraSettings {
 setters!(ViewSettings {
     with_shadows shadows: bool,
     with_inset inset: bool,
+    with_inset_map inset_map: u32,
+    with_tint_maps tint_maps: bool,
     with_outside outside: bool,
     with_freeze_fit freeze_fit: bool,
     with_play play: bool,
@@ -116,6 +131,13 @@ setters!(Settings {
     with_camera camera: CameraSettings,
     with_view view: ViewSettings,
 });
+
+impl ViewSettings {
+    /// Index of the map that the inset shows, of a technique with `count` maps.
+    pub fn inset_index(&self, count: u32) -> usize {
+        self.inset_map.clamp(1, count.max(1)) as usize - 1
+    }
+}
 
 impl LightSettings {
     /// Unit **direction of travel** of the light in the right-handed, y-up world: away from the

@@ -83,6 +83,8 @@ pub static PARAMETERS: &[Parameter] = &[
     tool::SPEED,
     tool::SHADOWS,
     tool::INSET,
+    tool::INSET_MAP,
+    tool::TINT_MAPS,
     tool::OUTSIDE,
     tool::FREEZE_FIT,
     tool::PLAY,

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use serde::{Serialize, de::DeserializeOwned};
 use shadowfit::bias::Reach;
 use shadowfit::diagnostics::{AcneMargin, Coverage, DepthStorage, PixelsPerTexel};
-use shadowfit::figures::Figures;
+use shadowfit::figures::{Figures, MapFigures};
 use shadowfit::fits::sphere::enclosing_sphere;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
 use shadowfit::tool::Settings;
@@ -82,7 +82,9 @@ fn outputs_survive() {
     survives(&Certificate::Proven(Slack { planes: [0.1; 6], casters: 2.5 }));
     survives(&AcneMargin { metres: 0.1, texels: -0.3 });
     survives(&PixelsPerTexel { worse_axis: 0.1, area: 0.7 });
-    survives(&Figures { texel_size: Some(Vec2::splat(0.1).to_array()), ..Figures::default() });
+    let mut figures = Figures { map_ahead: Some(1), ..Figures::default() };
+    figures.maps[1] = Some(MapFigures { texel_size: [0.1; 2], draws: Some(3), ..MapFigures::default() });
+    survives(&figures);
 }
 
 #[test]

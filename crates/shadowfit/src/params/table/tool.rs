@@ -1,6 +1,7 @@
 //! The rows of the tools' settings: sun, camera and what is drawn.
 
 use super::{always_active, pull_near};
+use crate::MAX_MAPS;
 use crate::params::{Group, Kind, MIN_FAR_PER_NEAR, Number, Parameter, Toggle};
 use crate::tool::FLYING_SPEEDS;
 
@@ -166,8 +167,36 @@ pub(super) const INSET: Parameter = Parameter {
     group: Group::View,
     label: "Shadow map inset",
     unit: "",
-    help: "Shows the shadow map itself in a corner: how much of it is used and what is missing from it.",
+    help: "Shows one of the shadow maps itself in a corner: how much of it is used and what is missing from it.",
     kind: Kind::Toggle(Toggle { read: |s| s.view.inset, write: |s, on| s.view.inset = on }),
+    inert: always_active,
+};
+
+pub(super) const INSET_MAP: Parameter = Parameter {
+    id: "view.inset_map",
+    group: Group::View,
+    label: "Map in the inset",
+    unit: "",
+    help: "Which map the inset shows, map 1 being the nearest.",
+    kind: Kind::Number(Number {
+        min: 1.0,
+        max: MAX_MAPS as f64,
+        step: 1.0,
+        logarithmic: false,
+        decimals: 0,
+        read: |s| f64::from(s.view.inset_map),
+        write: |s, value| s.view.inset_map = value as u32,
+    }),
+    inert: |s| (!s.view.inset).then_some("There is no inset; turn on Shadow map inset."),
+};
+
+pub(super) const TINT_MAPS: Parameter = Parameter {
+    id: "view.tint_maps",
+    group: Group::View,
+    label: "Tint by map",
+    unit: "",
+    help: "Tints each point by the map that it reads, in the colours of the table of the maps.",
+    kind: Kind::Toggle(Toggle { read: |s| s.view.tint_maps, write: |s, on| s.view.tint_maps = on }),
     inert: always_active,
 };
 
@@ -176,8 +205,8 @@ pub(super) const OUTSIDE: Parameter = Parameter {
     group: Group::View,
     label: "Outside view",
     unit: "",
-    help: "Looks at the camera from outside, with its frustum and the light's box drawn. A caster outside the \
-           box throws no shadow.",
+    help: "Looks at the camera from outside, with its frustum and the boxes of the maps drawn. A caster outside \
+           a map's box throws no shadow there.",
     kind: Kind::Toggle(Toggle { read: |s| s.view.outside, write: |s, on| s.view.outside = on }),
     inert: always_active,
 };
@@ -187,8 +216,8 @@ pub(super) const FREEZE_FIT: Parameter = Parameter {
     group: Group::View,
     label: "Freeze the fit",
     unit: "",
-    help: "Keeps the shadow map where it looks now while the camera flies on, to see from elsewhere what it \
-           covers.",
+    help: "Keeps the shadow maps where they look now while the camera flies on, to see from elsewhere what they \
+           cover.",
     kind: Kind::Toggle(Toggle { read: |s| s.view.freeze_fit, write: |s, on| s.view.freeze_fit = on }),
     inert: always_active,
 };
