@@ -12,12 +12,9 @@
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
-use shadowfit::bias::reach;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::settings::BiasSettings;
 use shadowfit::{
-    Aabb, Boxes, MapFitter, Technique, CasterPolicy, DepthConvention, FitInput, FitSettings,
-    PerspectiveCamera, Workspace,
+    Aabb, Boxes, DepthConvention, FitInput, MapFitter, PerspectiveCamera, Technique, Workspace,
 };
 use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
 use wgpu::util::DeviceExt;
@@ -33,8 +30,6 @@ const PLACE: DVec3 = DVec3::new(50_000.0, 0.0, -20_000.0);
 /// The way the sun's light travels.
 const DIRECTION: Vec3 = Vec3::new(0.55, -0.7, -0.45);
 
-/// Number of shadow maps, each for a slice of the view.
-const MAPS: u32 = 4;
 /// View depth at which shadows end, in metres.
 const SHADOW_DISTANCE: f32 = 50.0;
 /// Bind group of the map's matrix in the shadow pass and of the maps in the shaded one. Any will do: this engine has its
@@ -119,6 +114,7 @@ impl Block {
 struct Engine {
     device: wgpu::Device,
     queue: wgpu::Queue,
+    technique: Technique,
     fitter: MapFitter,
     shadow_map: ShadowMap,
     caster_pipeline: wgpu::RenderPipeline,
@@ -177,8 +173,10 @@ impl Engine {
         let adapter = instance.request_adapter(&wgpu::RequestAdapterOptions::default()).await?;
         let (device, queue) = adapter.request_device(&wgpu::DeviceDescriptor::default()).await?;
 
-        // STEP 1: make the shadow maps. 2048² texels, 32-bit depth, a tent of 5×5 unless told otherwise.
-        let shadow_map = ShadowMap::new(&device, &ShadowMapDescriptor { maps: MAPS, ..Default::default() })?;
+        // STEP 1: choose a technique and make its shadow maps. The recommended one has four of 2048² texels with 32-bit
+        // depth, and a tent of 5×5.
+        let technique = Technique::default().with_max_distance(SHADOW_DISTANCE);
+        let shadow_map = ShadowMap::new(&device, &ShadowMapDescriptor::from(&technique))?;
 
         let camera_uniform = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("camera"),
@@ -203,6 +201,7 @@ impl Engine {
         Ok(Self {
             device,
             queue,
+            technique,
             fitter,
             shadow_map,
             caster_pipeline,
@@ -232,23 +231,18 @@ impl Engine {
     /// bias, and with the origin that positions in the engine's shaders are relative to: here the eye, where f32 is
     /// most exact. The fitter keeps the maps still while the camera moves.
     fn fit_maps(&mut self, camera: &PerspectiveCamera, blocks: &[Block]) -> Result<()> {
-        let filter = self.shadow_map.descriptor().filter;
         let views = [camera.frustum()?];
         let objects: Vec<Aabb> = blocks.iter().map(|block| block.bounds(PLACE)).collect();
         let boxes = Boxes { origin: PLACE, boxes: &objects };
-        let input = FitInput { receivers: Some(boxes), casters: boxes, ..FitInput::new(&views, DIRECTION) };
-        let mut settings = Technique { count: MAPS, ..Technique::default() };
-        settings.fit = FitSettings { casters: CasterPolicy::List, max_distance: SHADOW_DISTANCE, ..settings.fit };
-        // Room at the maps' borders for what the filter reads there.
-        settings.fit.kernel_margin = reach(filter);
-        let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), 1)];
-        let fitted = self.fitter.fit(&input, &settings, &mut Workspace::new(&mut storage))?;
+        let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, DIRECTION) };
+        // Maps that are held look ahead: room for two views more than there are.
+        let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), 3)];
+        let fitted = self.fitter.fit(&input, &self.technique, &mut Workspace::new(&mut storage))?;
 
-        let bias = BiasSettings::automatic(filter);
-        let mut maps: Vec<MapFit> = fitted.iter().map(|map| MapFit::from_texels(map, &bias)).collect();
+        let mut maps: Vec<MapFit> = fitted.iter().map(MapFit::from).collect();
         let view = MapView::from_eye(camera.eye, camera.forward);
         // Leave out casters whose shadows are not in view. Without this line each map draws all that it can store.
-        MapFit::sweep(&mut maps, &view, &views, filter)?;
+        MapFit::sweep(&mut maps, &view, &views, self.technique.filter)?;
         self.shadow_map.prepare(&self.queue, &view, &maps)?;
         Ok(())
     }

@@ -69,9 +69,9 @@ fn a_report_has_tables_plots_pictures_and_a_page_that_needs_nothing_else() {
         "courtyard",
         "--path",
         "path.toml",
-        "--config",
+        "--technique",
         "xna-1",
-        "--config",
+        "--technique",
         "clusters-4",
         "--resolution",
         "512",
@@ -98,13 +98,13 @@ fn a_report_has_tables_plots_pictures_and_a_page_that_needs_nothing_else() {
     }
     assert!(scratch.text("out/plots/wrong.svg").contains("<svg"));
     // What was looked at can be looked at again.
-    succeeded(&scratch.report(&["courtyard", "--path", "out/path.toml", "--config", "xna-1", "-o", "again"]));
+    succeeded(&scratch.report(&["courtyard", "--path", "out/path.toml", "--technique", "xna-1", "-o", "again"]));
 }
 
 #[test]
 fn a_moving_scene_and_a_sun_with_a_radius_are_judged_too() {
     let scratch = Scratch::new("moving");
-    let arguments = ["courtyard", "--path", "path.toml", "--config", "focused-4", "--resolution", "512"];
+    let arguments = ["courtyard", "--path", "path.toml", "--technique", "focused-4", "--resolution", "512"];
     let judged = |more: &[&str], out: &str| {
         succeeded(&scratch.report(&[&arguments, more, &["-o", out]].concat()));
         scratch.json(&format!("{out}/report.json"))["techniques"][0]["overall"].clone()
@@ -120,7 +120,7 @@ fn a_moving_scene_and_a_sun_with_a_radius_are_judged_too() {
 fn what_import_notes_of_a_scene_is_said_and_stands_in_the_report() {
     let scratch = Scratch::new("notes");
     scratch.file("notes.gltf", SCENE_WITH_NOTES);
-    let arguments = ["notes.gltf", "--path", "path.toml", "--config", "xna-1", "--resolution", "256", "-o", "out"];
+    let arguments = ["notes.gltf", "--path", "path.toml", "--technique", "xna-1", "--resolution", "256", "-o", "out"];
     let output = scratch.report(&arguments);
     succeeded(&output);
     let message = String::from_utf8_lossy(&output.stderr);
@@ -156,15 +156,15 @@ fn bad_input_is_refused_by_file_and_reason_and_nothing_is_written() {
     scratch.file("broken.toml", "near = 0.1\nfar = ");
     scratch.file("backwards.toml", &PATH.replace("far = 60.0", "far = 0.01"));
     scratch.file("empty.gltf", r#"{"asset": {"version": "2.0"}, "scenes": [{"nodes": []}], "scene": 0}"#);
-    scratch.file("technique.toml", "[maps]\ncount = 9\n");
+    scratch.file("technique.toml", "[splits]\ncount = 9\n");
     let cases: [(&[&str], &str); 12] = [
         (&["courtyard", "--path", "broken.toml"], "broken.toml"),
         (&["courtyard", "--path", "backwards.toml"], "backwards.toml"),
         (&["courtyard", "--path", "nowhere.toml"], "nowhere.toml"),
         (&["empty.gltf"], "empty"),
         (&["nowhere.glb"], "nowhere.glb"),
-        (&["courtyard", "--config", "technique.toml"], "technique.toml: maps.count: 9"),
-        (&["courtyard", "--config", "best"], "there is no technique \"best\""),
+        (&["courtyard", "--technique", "technique.toml"], "technique.toml: splits.count is 9"),
+        (&["courtyard", "--technique", "best"], "there is no technique \"best\""),
         (&["courtyard", "--max-memory", "0.001"], "GiB of memory, more than --max-memory 0.001"),
         (&["courtyard", "--light", "30"], "AZIMUTH,ELEVATION"),
         (&["courtyard", "--units-per-metre", "0"], "0 is not a number above 0"),
@@ -191,11 +191,11 @@ fn tuning_finds_the_same_technique_twice_and_says_what_each_change_bought() {
     };
     let [technique, code, steps] = tuned("a");
     assert_eq!(tuned("b"), [technique.clone(), code.clone(), steps.clone()]);
-    assert!(technique.contains("name = \"tuned\"") && code.starts_with("let maps = Technique"));
+    assert!(technique.contains("name = \"tuned\"") && code.starts_with("let technique = Technique"));
     let bought = steps.lines().filter(|line| line.ends_with("% |")).count();
     assert!(bought >= 2, "changes that helped:\n{steps}");
     // The file is a technique that reports take.
-    let arguments = ["courtyard", "--path", "path.toml", "--config", "a/technique.toml", "--config", "xna-1"];
+    let arguments = ["courtyard", "--path", "path.toml", "--technique", "a/technique.toml", "--technique", "xna-1"];
     succeeded(&scratch.report(&[&arguments[..], &["--resolution", "256", "-o", "out"]].concat()));
     let report = scratch.json("out/report.json");
     let wrong = |index: usize| report["techniques"][index]["overall"]["wrong %"].as_f64().expect("a number");
@@ -205,7 +205,7 @@ fn tuning_finds_the_same_technique_twice_and_says_what_each_change_bought() {
 #[test]
 fn the_gpus_classes_are_compared_and_timed() {
     let scratch = Scratch::new("live");
-    let output = scratch.report(&["live", "courtyard", "--path", "path.toml", "--config", "focused-4"]);
+    let output = scratch.report(&["live", "courtyard", "--path", "path.toml", "--technique", "focused-4"]);
     succeeded(&output);
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(text.contains("judging takes") && text.contains("the CPU agrees on"), "{text}");
@@ -216,7 +216,7 @@ fn the_gpus_classes_are_compared_and_timed() {
 fn what_is_finished_at_ctrl_c_is_written_and_said_to_be_a_part() {
     let scratch = Scratch::new("stopped");
     scratch.file("long.toml", &format!("frames_per_key = 3000\n{PATH}"));
-    let arguments = ["courtyard", "--path", "long.toml", "--config", "xna-1", "--resolution", "256", "-o", "out"];
+    let arguments = ["courtyard", "--path", "long.toml", "--technique", "xna-1", "--resolution", "256", "-o", "out"];
     let mut command = scratch.command(&[&arguments[..], &SMALL].concat());
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the report starts");
     // The folder is made when the first frame is about to be measured.

@@ -11,9 +11,8 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, ensure};
 use clap::Parser;
-use glam::UVec2;
-use shadowfit::SplitScheme;
-use shadowfit_study::{ReceiverSource, Technique};
+use shadowfit::{PRESETS, ReceiverSource, SplitScheme};
+use shadowfit_study::NamedTechnique;
 use shadowfit_truth::peers::Scenarios;
 
 #[path = "../shared/geometry.rs"]
@@ -31,12 +30,12 @@ struct Args {
     /// Scenes, cameras and lights
     #[arg(value_name = "SCENARIOS.json")]
     scenarios: Option<PathBuf>,
-    /// Name of a technique, or "list" for all of them
-    #[arg(long, value_name = "NAME|list")]
+    /// Technique, by name or as a TOML file, or "list" for all names
+    #[arg(long, value_name = "NAME|FILE.toml|list")]
     fit: String,
-    /// Width and height of the maps, in texels
-    #[arg(long, default_value_t = 2048, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=65536))]
-    resolution: u32,
+    /// Width and height of the maps, in texels [default: what the technique says, 2048 for the names]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=65536))]
+    resolution: Option<u32>,
     #[command(flatten)]
     geometry: Option<Source>,
     /// The fit file to write
@@ -62,28 +61,31 @@ fn main() -> ExitCode {
 }
 
 fn list() {
-    for (name, what) in Technique::names() {
-        println!("{name:12} {what}");
+    for preset in &PRESETS {
+        println!("{:12} {}
+{:12} {}", preset.name, preset.summary, "", preset.advice);
     }
 }
 
 fn run(args: &Args) -> Result<()> {
-    let known = || format!("--fit {}: there is no such technique; --fit list names them", args.fit);
-    let mut technique = Technique::named(&args.fit).with_context(known)?;
-    technique.maps.fit.resolution = UVec2::splat(args.resolution);
+    let mut named = NamedTechnique::find(&args.fit).with_context(|| format!("--fit {}", args.fit))?;
+    if let Some(texels) = args.resolution {
+        named = named.with_resolution(texels);
+    }
     // The measures of fits are of points: no filter reads beside them.
-    technique.maps.fit.kernel_margin = 0.0;
+    let technique = &mut named.technique;
+    technique.fit.border = Some(0.0);
     let scenarios = args.scenarios.as_ref().context("give the file of scenarios")?;
     let out = args.out.as_ref().context("give the file to write with -o OUT.json")?;
     let scenarios = Scenarios::read(scenarios)?;
-    let needs = technique.receivers == ReceiverSource::Clusters || technique.maps.splits == SplitScheme::FromHistogram;
+    let needs = technique.receivers == ReceiverSource::Clusters || technique.splits == SplitScheme::FromHistogram;
     ensure!(
         !needs || args.geometry.is_some(),
         "--fit {} needs the scenes' triangles: give --assets DIR or --triangles DIR",
         args.fit
     );
     let source = args.geometry.as_ref().filter(|_| needs);
-    let file = runner::run(&scenarios, &technique, source)?;
+    let file = runner::run(&scenarios, &named, source)?;
     file.write(out)?;
     println!(
         "{}: {} frames, {:.1} µs a frame",

@@ -5,10 +5,10 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use glam::{DVec2, DVec3, Vec3};
 use shadowfit::{
-    Aabb, Bias, Boxes, MapFitter, FittedMap, Technique, FittedMaps, Clusters, FitInput, NormalCone,
-    SplitScheme, ViewFrustum, Workspace,
+    Aabb, Boxes, Clusters, FitInput, FittedMap, FittedMaps, MapFitter, NormalCone, ReceiverSource, SplitScheme, Technique,
+    ViewFrustum, Workspace,
 };
-use shadowfit_study::{ReceiverSource, SeenDepths, Technique, fit_map};
+use shadowfit_study::{NamedTechnique, SeenDepths, fit_map};
 use shadowfit_truth::Tracer;
 use shadowfit_truth::peers::{FitFile, FitFrame, FitMap, Scenarios, Scene};
 use shadowfit_wgpu::MapFit;
@@ -37,7 +37,8 @@ struct Prepared {
 }
 
 /// Fits every frame of the scenarios.
-pub(crate) fn run(scenarios: &Scenarios, technique: &Technique, source: Option<&Source>) -> Result<FitFile> {
+pub(crate) fn run(scenarios: &Scenarios, named: &NamedTechnique, source: Option<&Source>) -> Result<FitFile> {
+    let technique = &named.technique;
     let known: Vec<Known> =
         scenarios.scenes.iter().map(|scene| know(scene, technique, source)).collect::<Result<_>>()?;
     let frames: Vec<Prepared> =
@@ -45,7 +46,7 @@ pub(crate) fn run(scenarios: &Scenarios, technique: &Technique, source: Option<&
     let mut times = vec![Vec::with_capacity(BATCHES); frames.len()];
     let mut maps = Vec::new();
     for batch in 0..=BATCHES {
-        let fitted = fit_all(&frames, &known, &technique.maps)?;
+        let fitted = fit_all(&frames, &known, technique)?;
         if batch > 0 {
             for (times, (_, time)) in times.iter_mut().zip(&fitted) {
                 times.push(*time);
@@ -53,17 +54,17 @@ pub(crate) fn run(scenarios: &Scenarios, technique: &Technique, source: Option<&
         }
         maps = fitted;
     }
-    let fitted = scenarios.frames.iter().zip(&maps).map(|(frame, (cascades, _))| FitFrame {
+    let fitted = scenarios.frames.iter().zip(&maps).map(|(frame, (maps, _))| FitFrame {
         id: frame.id.clone(),
-        maps: cascades.iter().map(fit_map_of).collect(),
+        maps: maps.iter().map(fit_map_of).collect(),
     });
     let all: Vec<f64> = times.iter().flatten().copied().collect();
     let fastest: Vec<f64> = times.iter().map(|times| times.iter().copied().fold(f64::MAX, f64::min)).collect();
     Ok(FitFile {
-        peer: format!("shadowfit {}", technique.name),
+        peer: format!("shadowfit {}", named.name),
         language: "Rust".to_owned(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
-        note: technique.what.clone(),
+        note: named.summary.clone(),
         depth_clamp: false,
         ns_per_fit: Some(median(all)),
         ns_quiet: Some(median(fastest)),
@@ -81,7 +82,7 @@ fn know(scene: &Scene, technique: &Technique, source: Option<&Source>) -> Result
         }
         _ => (scene.objects.iter().map(outward).collect(), Vec::new()),
     };
-    let tracer = triangles.filter(|_| technique.maps.splits == SplitScheme::FromHistogram);
+    let tracer = triangles.filter(|_| technique.splits == SplitScheme::FromHistogram);
     Ok(Known { boxes, cones, tracer: tracer.map(|objects| Tracer::new(objects.into_iter().flatten())) })
 }
 
@@ -109,7 +110,7 @@ fn prepare(scenarios: &Scenarios, index: usize, known: &[Known]) -> Result<Prepa
 }
 
 /// The maps of all frames, and the nanoseconds that each took.
-fn fit_all(frames: &[Prepared], known: &[Known], settings: &Technique) -> Result<Vec<(FittedMaps, f64)>> {
+fn fit_all(frames: &[Prepared], known: &[Known], technique: &Technique) -> Result<Vec<(FittedMaps, f64)>> {
     let most = known.iter().map(|known| known.boxes.len()).max().unwrap_or(0);
     // Held maps are fitted to the views of two frames ahead as well.
     let mut storage = vec![DVec2::ZERO; Workspace::required(most, 3)];
@@ -126,13 +127,13 @@ fn fit_all(frames: &[Prepared], known: &[Known], settings: &Technique) -> Result
                 direction: frame.direction,
                 receivers: Some(boxes),
                 receiver_cones: &known[frame.scene].cones,
-                casters: boxes,
+                casters: Some(boxes),
                 histogram: frame.depths.as_ref().map(SeenDepths::histogram),
                 ..FitInput::new(&[], frame.direction)
             };
             let start = Instant::now();
-            let cascades = fitter.fit(&input, settings, &mut Workspace::new(&mut storage))?;
-            Ok((cascades, start.elapsed().as_nanos() as f64))
+            let maps = fitter.fit(&input, technique, &mut Workspace::new(&mut storage))?;
+            Ok((maps, start.elapsed().as_nanos() as f64))
         })
         .collect()
 }
@@ -141,7 +142,7 @@ fn fit_all(frames: &[Prepared], known: &[Known], settings: &Technique) -> Result
 fn fit_map_of(map: &FittedMap) -> FitMap {
     FitMap {
         split_near: f64::from(map.near),
-        ..fit_map(&MapFit { far: map.far, ..MapFit::new(map.fit, Bias::default()) })
+        ..fit_map(&MapFit::from(map))
     }
 }
 

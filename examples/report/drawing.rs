@@ -1,10 +1,10 @@
 //! How pictures are drawn and judged: the arguments that all kinds of reports share.
 
 use anyhow::{Context, Result, bail, ensure};
-use shadowfit::params;
-use shadowfit::settings::{BiasSettings, FilterKind, MapFormat, Settings};
+use shadowfit::{Technique, params};
+use shadowfit::settings::{BiasSettings, FilterKind, MapFormat};
 use shadowfit_render::{AdapterChoice, Gpu};
-use shadowfit_study::{Judging, Technique};
+use shadowfit_study::{Judging, NamedTechnique};
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct Drawing {
@@ -37,6 +37,9 @@ pub(crate) struct Drawing {
     /// Rays to a sun that is no point
     #[arg(long, default_value_t = 64, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     sun_rays: u32,
+    /// Sets a parameter of the techniques, e.g. `splits.count=2`; the viewer's --parameters lists them
+    #[arg(long = "set", value_name = "ID=VALUE")]
+    set: Vec<String>,
     /// Leave crawl out, which draws each frame a second time
     #[arg(long)]
     no_crawl: bool,
@@ -62,21 +65,30 @@ impl Drawing {
         }
     }
 
-    /// Whether the filter, the bias or the format is asked for.
-    pub(crate) fn sets_look_up(&self) -> bool {
-        self.filter.is_some() || self.bias.is_some() || self.color_format
+    /// Whether something of the techniques is asked for.
+    pub(crate) fn changes_techniques(&self) -> bool {
+        self.filter.is_some() || self.bias.is_some() || self.color_format || !self.set.is_empty()
     }
 
-    /// A technique with the filter, bias and format that are asked for.
-    pub(crate) fn changed(&self, mut technique: Technique) -> Result<Technique> {
+    /// A technique with what is asked for changed.
+    pub(crate) fn changed(&self, mut named: NamedTechnique) -> Result<NamedTechnique> {
+        let technique = &mut named.technique;
         if self.bias.is_some() || self.filter.is_some() {
             let filter = self.filter.unwrap_or(technique.filter);
-            technique = technique.with_look_up(filter, self.bias(filter)?);
+            *technique = technique.with_look_up(filter, self.bias(filter)?);
         }
         if self.color_format {
             technique.format = MapFormat::R32Float;
         }
-        Ok(technique)
+        for assignment in &self.set {
+            let (id, value) = assignment
+                .split_once('=')
+                .with_context(|| format!("--set {assignment}: expected ID=VALUE, e.g. splits.count=2"))?;
+            if let Err(error) = params::set_technique_from_str(technique, id.trim(), value.trim()) {
+                bail!("--set {assignment}: {error}");
+            }
+        }
+        Ok(named)
     }
 
     pub(crate) fn filter(&self) -> FilterKind {
@@ -91,16 +103,16 @@ impl Drawing {
     pub(crate) fn bias(&self, filter: FilterKind) -> Result<BiasSettings> {
         let Some(text) = &self.bias else { return Ok(BiasSettings::automatic(filter)) };
         let zero = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0 };
-        let mut settings = Settings { bias: zero, ..Settings::default() };
+        let mut technique = Technique { bias: zero, ..Technique::default() };
         for part in text.split(',').filter(|part| !part.is_empty()) {
             let (name, value) =
                 part.split_once('=').with_context(|| format!("--bias: \"{part}\" is not NAME=TEXELS"))?;
             let id = format!("bias.{}", name.trim());
-            if let Err(error) = params::set_from_str(&mut settings, &id, value) {
+            if let Err(error) = params::set_technique_from_str(&mut technique, &id, value) {
                 bail!("--bias: {error}");
             }
         }
-        Ok(settings.bias)
+        Ok(technique.bias)
     }
 }
 

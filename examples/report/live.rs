@@ -1,7 +1,7 @@
 //! `report live`: the classes from the GPU, compared with those of the CPU, and how long they take.
 
 use anyhow::{Result, bail};
-use shadowfit_study::{Agreement, LiveTruth, SharedTruth, Technique};
+use shadowfit_study::{Agreement, LiveTruth, SharedTruth, NamedTechnique};
 
 use crate::interrupt::Interrupt;
 use crate::job::Job;
@@ -16,14 +16,14 @@ pub(crate) struct Args {
     #[command(flatten)]
     job: Job,
     /// Technique, by name or as a TOML file
-    #[arg(long = "config", value_name = "NAME|FILE.toml", default_value = shadowfit_study::DEFAULT_TECHNIQUE)]
-    config: String,
+    #[arg(long = "technique", alias = "config", value_name = "NAME|FILE.toml", default_value = shadowfit::RECOMMENDED)]
+    technique: String,
 }
 
 /// Compares all frames and times each, and fails when they agree less than promised.
 pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     let mut job = args.job.prepare()?;
-    job.comparison.add(args.job.drawing.changed(Technique::find(&args.config)?)?)?;
+    job.comparison.add(args.job.drawing.changed(NamedTechnique::find(&args.technique)?)?)?;
     let mut live = LiveTruth::new(job.comparison.gpu(), job.comparison.scene())?;
     println!(
         "{}: {} triangles, {:.1} MiB on {}, {} by {} pixels",

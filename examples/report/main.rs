@@ -3,7 +3,7 @@
 //! ```sh
 //! # Techniques over an orbit and a flight through a scene: tables, plots, pictures, and a page that shows them.
 //! cargo run --release --example report -- courtyard -o out/report
-//! cargo run --release --example report -- town.glb --path walk.toml --config xna-1 --config mine.toml -o out/report
+//! cargo run --release --example report -- town.glb --path walk.toml --technique xna-1 --technique mine.toml -o out/report
 //! # The technique with the least error, within a budget.
 //! cargo run --release --example report -- tune town.glb --maps 4 --resolution 2048 -o out/tuned
 //! # Fit files of any code over 300 frames of five scenes, drawn by the same renderer.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use image::RgbaImage;
 use indicatif::{ProgressBar, ProgressStyle};
-use shadowfit_study::{SharedTruth, Technique, ensure_judged};
+use shadowfit_study::{SharedTruth, NamedTechnique, ensure_judged};
 use shadowfit_truth::PictureTally;
 use shadowfit_wgpu::MapFit;
 
@@ -24,8 +24,8 @@ pub(crate) struct Args {
     #[command(flatten)]
     job: Job,
     /// Technique, by name or as a TOML file; give it once for each [default: xna-1, stable-4, clusters-4, histogram-4]
-    #[arg(long = "config", value_name = "NAME|FILE.toml")]
-    configs: Vec<String>,
+    #[arg(long = "technique", alias = "config", value_name = "NAME|FILE.toml")]
+    techniques: Vec<String>,
     /// Width and height of all maps, in texels [default: what the techniques say]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(256..=8192))]
     resolution: Option<u32>,
@@ -73,17 +73,17 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<bool> {
     Ok(run.finished)
 }
 
-fn techniques(args: &Args) -> Result<Vec<Technique>> {
-    let names: Vec<&str> = if args.configs.is_empty() {
+fn techniques(args: &Args) -> Result<Vec<NamedTechnique>> {
+    let names: Vec<&str> = if args.techniques.is_empty() {
         DEFAULT_TECHNIQUES.to_vec()
     } else {
-        args.configs.iter().map(String::as_str).collect()
+        args.techniques.iter().map(String::as_str).collect()
     };
     let drawing = &args.job.drawing;
     names
         .into_iter()
         .map(|name| {
-            let technique = drawing.changed(Technique::find(name)?)?;
+            let technique = drawing.changed(NamedTechnique::find(name)?)?;
             Ok(match args.resolution {
                 Some(texels) => technique.with_resolution(texels),
                 None => technique,
@@ -93,7 +93,7 @@ fn techniques(args: &Args) -> Result<Vec<Technique>> {
 }
 
 /// Refuses to report on pictures in which nothing is judged. One that was interrupted may have none.
-fn check(techniques: &[Technique], measured: &[Measured], interrupt: &Interrupt) -> Result<()> {
+fn check(techniques: &[NamedTechnique], measured: &[Measured], interrupt: &Interrupt) -> Result<()> {
     for (technique, measured) in techniques.iter().zip(measured) {
         if !(interrupt.is_requested() && measured.tallies.is_empty()) {
             ensure_judged(&pool(&measured.tallies)).with_context(|| format!("technique {}", technique.name))?;
@@ -120,12 +120,12 @@ fn measure(job: &mut Prepared, index: usize, measured: &mut [Measured]) -> Resul
 }
 
 /// Everything but the pictures.
-fn report(args: &Args, job: &Prepared, techniques: &[Technique], measured: &[Measured]) -> Run {
+fn report(args: &Args, job: &Prepared, techniques: &[NamedTechnique], measured: &[Measured]) -> Run {
     let done = measured.first().map_or(0, |measured| measured.tallies.len());
     let frames = &job.frames[..done];
-    let of_technique = |(technique, measured): (&Technique, &Measured)| TechniqueRun {
+    let of_technique = |(technique, measured): (&NamedTechnique, &Measured)| TechniqueRun {
         name: technique.name.clone(),
-        what: technique.what.clone(),
+        what: technique.summary.clone(),
         settings: technique.to_toml().unwrap_or_else(|error| format!("# cannot be written: {error}")),
         overall: columns(&measured.tallies),
         groups: groups(frames)

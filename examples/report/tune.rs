@@ -42,8 +42,8 @@ pub(crate) struct Args {
 /// Searches, and writes what was found and what each change bought.
 pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     ensure!(
-        !args.job.drawing.sets_look_up(),
-        "report tune searches the filter and the bias itself; leave --filter, --bias and --color-format out"
+        !args.job.drawing.changes_techniques(),
+        "report tune searches all of a technique itself; leave --filter, --bias, --color-format and --set out"
     );
     let mut job = args.job.prepare()?;
     let views = picked(&job.frames.iter().map(|frame| frame.view).collect::<Vec<_>>(), args.frames as usize);
@@ -60,14 +60,14 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     let steps = steps(&tuned);
     for (name, text) in [
         ("technique.toml", tuned.technique.to_toml()?),
-        ("technique.rs", tuned.technique.to_rust()),
+        ("technique.rs", tuned.technique.technique.to_rust()),
         ("steps.md", steps.clone()),
     ] {
         let file = args.out.join(name);
         fs::write(&file, text).with_context(|| format!("{}: cannot be written", file.display()))?;
     }
-    print!("{steps}\n{}", tuned.technique.to_rust());
-    println!("\n{}: technique.toml (for --config), technique.rs, steps.md", args.out.display());
+    print!("{steps}\n{}", tuned.technique.technique.to_rust());
+    println!("\n{}: technique.toml (for --technique), technique.rs, steps.md", args.out.display());
     Ok(())
 }
 

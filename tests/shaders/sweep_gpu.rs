@@ -25,7 +25,7 @@ const DIRECTIONS: [Vec3; 3] = [Vec3::new(0.2, -1.0, 0.1), Vec3::new(0.5, -0.6, -
 /// Maps and how they are read.
 struct Case {
     name: &'static str,
-    maps: Technique,
+    technique: Technique,
     filter: FilterKind,
     format: MapFormat,
     bias: fn(&LightFit, FilterKind) -> Bias,
@@ -48,13 +48,13 @@ fn away_from_the_light(_: &LightFit, _: FilterKind) -> Bias {
 fn cases() -> Vec<Case> {
     let maps = |kind, splits, stabilise, casters| {
         let fit = FitSettings { kind, casters, max_distance: f32::MAX, ..FitSettings::default() };
-        let fit = FitSettings { resolution: UVec2::splat(TEXELS), kernel_margin: 3.0, ..fit };
+        let fit = FitSettings { resolution: UVec2::splat(TEXELS), ..fit };
         Technique { fit, splits, stabilise, ..Technique::default() }
     };
     let list = CasterPolicy::List;
     let case = |name, maps| Case {
         name,
-        maps,
+        technique: maps,
         filter: FilterKind::Pcf5x5,
         format: MapFormat::Depth32Float,
         bias: in_texels,
@@ -145,14 +145,14 @@ fn camera(view: &View) -> PerspectiveCamera {
 fn fitted(case: &Case, camera: &PerspectiveCamera, boxes: &[Aabb], direction: Vec3) -> Vec<MapFit> {
     let frustum = camera.frustum().expect("a camera");
     let boxes = Boxes { origin: DVec3::ZERO, boxes };
-    let input = FitInput { views: &[frustum], receivers: Some(boxes), casters: boxes, ..FitInput::new(&[], direction) };
+    let input = FitInput { views: &[frustum], receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&[], direction) };
     let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.boxes.len(), 3)];
-    let fitted = MapFitter::new().fit(&input, &case.maps, &mut Workspace::new(&mut storage)).expect("maps");
+    let fitted = MapFitter::new().fit(&input, &case.technique, &mut Workspace::new(&mut storage)).expect("maps");
     let narrow = PerspectiveCamera { fov_y: camera.fov_y * 0.5, ..*camera }.frustum().expect("a camera");
     let last = fitted.len() - 1;
     let map = |(index, map): (usize, &shadowfit::FittedMap)| {
         let is_narrow = case.is_narrow && index < last;
-        let settings = case.maps.fit.with_max_distance(map.far).with_casters(CasterPolicy::Extend);
+        let settings = case.technique.fit.with_max_distance(map.far).with_casters(CasterPolicy::Extend);
         let light = if is_narrow { fit(&narrow, direction, &settings).expect("a fit") } else { map.fit };
         MapFit { far: map.far, ..MapFit::new(light, (case.bias)(&light, case.filter)) }
     };
@@ -189,8 +189,8 @@ fn swept_casters_give_every_pixel_the_same_factor_and_are_fewer() {
             maps: case.maps.count,
             format: case.format,
             filter: case.filter,
-            depth: case.maps.fit.depth,
-            depth_clamp: case.maps.fit.casters == CasterPolicy::DepthClamp,
+            depth: case.technique.fit.depth,
+            depth_clamp: case.technique.fit.casters == CasterPolicy::DepthClamp,
         };
         let mut renderer = Renderer::new(&gpu, &descriptor, 1).expect("a renderer");
         for view in views() {

@@ -3,7 +3,8 @@
 
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::{Bias, MapFitter, Technique, FitInput, PerspectiveCamera, SplitScheme, Workspace};
-use shadowfit_render::{Atmosphere, Frame, GpuScene, MAP_TINTS, Overlay, Renderer};
+use shadowfit::figures::MAP_TINTS;
+use shadowfit_render::{Atmosphere, Frame, GpuScene, Overlay, Renderer};
 use shadowfit_scene::Scene;
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
 

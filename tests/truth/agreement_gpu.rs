@@ -6,7 +6,8 @@ use shadowfit::PerspectiveCamera;
 use shadowfit::glam::Vec3;
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_scene::{Aabb, Scene, load_gltf};
-use shadowfit_study::{Agreement, Comparison, Judging, LiveTruth, SharedTruth, Technique, View};
+use shadowfit::Technique;
+use shadowfit_study::{Agreement, Comparison, Judging, LiveTruth, SharedTruth, View};
 
 use super::shapes::NO_BIAS;
 use crate::support::{assets, software_gpu};
@@ -50,8 +51,8 @@ fn views(bounds: Aabb) -> [View; 2] {
 
 /// A technique with few errors, and one with all kinds of them.
 fn techniques() -> [Technique; 2] {
-    let good = Technique::named("focused-4").expect("a known name").with_resolution(512);
-    let poor = Technique { bias: NO_BIAS, ..Technique::named("xna-1").expect("a known name").with_resolution(512) };
+    let preset = |name| Technique::preset(name).expect("a preset").with_resolution(512, 512);
+    let (good, poor) = (preset("focused-4"), Technique { bias: NO_BIAS, ..preset("xna-1") });
     [good, poor]
 }
 

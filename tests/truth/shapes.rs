@@ -2,9 +2,9 @@
 
 use shadowfit::glam::{Affine3A, DVec3, Vec3};
 use shadowfit::settings::{BiasSettings, FilterKind};
-use shadowfit::{Technique, CasterPolicy, FitKind, FitSettings, PerspectiveCamera, SplitScheme, Stabilise};
+use shadowfit::{FitKind, FitSettings, PerspectiveCamera, Technique};
 use shadowfit_scene::Scene;
-use shadowfit_study::{Comparison, Judging, ReceiverSource, SharedTruth, Technique, View};
+use shadowfit_study::{Comparison, Judging, SharedTruth, View};
 use shadowfit_truth::PictureTally;
 
 use crate::support::software_gpu;
@@ -100,21 +100,8 @@ impl Arrangement {
 
 /// One map of 512 texels around what is seen, with a filter and a bias.
 pub(super) fn single(kind: FitKind, filter: FilterKind, bias: BiasSettings) -> Technique {
-    let fit = FitSettings {
-        kind,
-        casters: CasterPolicy::List,
-        max_distance: f32::MAX,
-        resolution: shadowfit::glam::UVec2::splat(512),
-        ..FitSettings::default()
-    };
-    let maps = Technique {
-        fit,
-        count: 1,
-        splits: SplitScheme::Logarithmic,
-        stabilise: Stabilise::Off,
-        ..Technique::default()
-    };
-    Technique { receivers: ReceiverSource::Objects, maps, ..Technique::default() }.with_look_up(filter, bias)
+    let fit = FitSettings::default().with_kind(kind);
+    Technique::preset("focused-1").expect("a preset").with_fit(fit).with_resolution(512, 512).with_look_up(filter, bias)
 }
 
 /// No bias at all.

@@ -67,7 +67,7 @@ pub enum Overlay {
     /// Nothing.
     #[default]
     None,
-    /// Surfaces are tinted by the map that they read, in the colours [`MAP_TINTS`](crate::MAP_TINTS). What no map
+    /// Surfaces are tinted by the map that they read, in the colours [`MAP_TINTS`](shadowfit::figures::MAP_TINTS). What no map
     /// covers keeps its own colour.
     MapTint,
 }

@@ -28,4 +28,4 @@ pub use renderer::Renderer;
 pub use scene::GpuScene;
 pub use target::{ReadError, RenderTarget};
 pub use timer::PassTimes;
-pub use uniform::{Atmosphere, FrameUniform, InsetUniform, InstanceData, LineVertex, MAP_TINTS, MaterialUniform};
+pub use uniform::{Atmosphere, FrameUniform, InsetUniform, InstanceData, LineVertex, MaterialUniform};

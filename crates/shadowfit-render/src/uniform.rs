@@ -3,6 +3,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
+use shadowfit::figures::linear_map_tints;
 use shadowfit::{DepthConvention, PerspectiveCamera};
 use shadowfit_scene::{Material, Texture};
 use shadowfit_wgpu::MAX_MAPS;
@@ -35,20 +36,6 @@ impl Default for Atmosphere {
         }
     }
 }
-
-/// Colours of the maps in [`Overlay::MapTint`], the nearest first, as sRGB bytes: seven that are told apart with every
-/// kind of colour blindness, and white (M. Okabe, K. Ito, "Color universal design", 2008, whose black would look like
-/// a shadow). Neighbours differ in lightness too.
-pub const MAP_TINTS: [[u8; 3]; MAX_MAPS] = [
-    [0xe6, 0x9f, 0x00],
-    [0x00, 0x72, 0xb2],
-    [0xf0, 0xe4, 0x42],
-    [0x00, 0x9e, 0x73],
-    [0xcc, 0x79, 0xa7],
-    [0x56, 0xb4, 0xe9],
-    [0xd5, 0x5e, 0x00],
-    [0xff, 0xff, 0xff],
-];
 
 /// Share of a map's tint in a surface's colour: enough to name the map by it, and little enough that lit and shadowed
 /// stay two to one or more apart.
@@ -84,7 +71,7 @@ pub struct FrameUniform {
     pub viewport: [f32; 2],
     /// Keeps the struct a multiple of 16 bytes.
     pub padding: [f32; 2],
-    /// Linear [`MAP_TINTS`], and as alpha their share in a surface's colour: 0 without the overlay.
+    /// Linear [`MAP_TINTS`](shadowfit::figures::MAP_TINTS), and as alpha their share in a surface's colour: 0 without the overlay.
     pub map_tints: [[f32; 4]; MAX_MAPS],
 }
 
@@ -124,18 +111,8 @@ impl FrameUniform {
             Overlay::None => 0.0,
             Overlay::MapTint => TINT_SHARE,
         };
-        let map_tints = MAP_TINTS.map(|tint| {
-            let [r, g, b] = tint.map(linear);
-            [r, g, b, share]
-        });
-        Self { map_tints, ..self }
+        Self { map_tints: linear_map_tints().map(|tint| tint.extend(share).to_array()), ..self }
     }
-}
-
-/// A linear colour channel from an sRGB byte (IEC 61966-2-1).
-fn linear(byte: u8) -> f32 {
-    let encoded = f32::from(byte) / 255.0;
-    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
 /// What the shaders read of a material: `Material` in WGSL.

@@ -55,7 +55,8 @@ impl Comparison {
     /// # Errors
     ///
     /// When its shadow map cannot be made on this GPU.
-    pub fn add(&mut self, named: NamedTechnique) -> Result<()> {
+    pub fn add(&mut self, technique: impl Into<NamedTechnique>) -> Result<()> {
+        let named = technique.into();
         let renderer = Renderer::new(&self.gpu, &ShadowMapDescriptor::from(&named.technique), SAMPLES)
             .with_context(|| format!("technique {}", named.name))?;
         let evaluator = Evaluator::new(renderer, self.judging);

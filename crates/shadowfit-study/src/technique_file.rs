@@ -26,11 +26,14 @@ pub struct NamedTechnique {
 
 impl Default for NamedTechnique {
     fn default() -> Self {
-        Self::preset(RECOMMENDED).unwrap_or(Self {
-            name: String::new(),
-            summary: String::new(),
-            technique: Technique::default(),
-        })
+        Self::preset(RECOMMENDED).unwrap_or_else(|| Technique::default().into())
+    }
+}
+
+impl From<Technique> for NamedTechnique {
+    /// Without a name.
+    fn from(technique: Technique) -> Self {
+        Self { name: String::new(), summary: String::new(), technique }
     }
 }
 

@@ -264,7 +264,7 @@ fn measure(
     technique: &Technique,
 ) -> Result<PictureTally> {
     comparison.clear();
-    comparison.add(NamedTechnique { name: "candidate".to_owned(), summary: String::new(), technique: *technique })?;
+    comparison.add(*technique)?;
     let mut tally = PictureTally::default();
     for (view, truth) in views.iter().zip(truths) {
         for outcome in comparison.frame(view, truth)? {

@@ -43,7 +43,7 @@ fn errors(images: &Path) -> Result<()> {
     report.args(["--release", "--quiet", "--example", "report", "--", "courtyard", "--software", "--size", SIZE]);
     report.arg("--path").arg(process::root().join(ERROR_VIEW)).arg("-o").arg(&out);
     for (_, technique) in TECHNIQUES {
-        report.args(["--config", technique]);
+        report.args(["--technique", technique]);
     }
     process::run(report.stdout(Stdio::null()))?;
     for (place, technique) in TECHNIQUES {
