@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Vec2, Vec3};
 use shadowfit::PerspectiveCamera;
-use shadowfit::tool::CameraSettings;
+use shadowfit::tool::{CameraSettings, FLYING_SPEEDS};
 
 /// Steepest look up or down, in radians: just short of the vertical, where "up" would flip.
 pub const MAX_PITCH: f32 = 1.55;
@@ -15,8 +15,6 @@ pub const FAST_FACTOR: f32 = 4.0;
 pub const DRAG_RADIANS_PER_PIXEL: f32 = 0.004;
 /// Speed factor per notch of the wheel.
 pub const WHEEL_FACTOR: f32 = 1.2;
-/// Range of the flying speed, in metres a second.
-pub const SPEED_RANGE: core::ops::RangeInclusive<f32> = 0.05..=2000.0;
 
 /// Longest step that is integrated at once, in seconds: turning while moving follows the same
 /// curve whatever the frame rate.
@@ -85,8 +83,8 @@ impl FlyCamera {
     /// Moves and turns for `seconds` and applies the wheel to `settings.speed`. Two half frames
     /// lead to the same place as one whole.
     pub fn update(&mut self, settings: &mut CameraSettings, input: &FlyInput, seconds: f32) {
-        settings.speed =
-            (settings.speed * WHEEL_FACTOR.powf(input.wheel)).clamp(*SPEED_RANGE.start(), *SPEED_RANGE.end());
+        let (slowest, fastest) = FLYING_SPEEDS;
+        settings.speed = (settings.speed * WHEEL_FACTOR.powf(input.wheel)).clamp(slowest, fastest);
         self.yaw -= input.drag.x * DRAG_RADIANS_PER_PIXEL;
         self.pitch = (self.pitch - input.drag.y * DRAG_RADIANS_PER_PIXEL).clamp(-MAX_PITCH, MAX_PITCH);
         let speed = settings.speed * if input.fast { FAST_FACTOR } else { 1.0 };
@@ -209,6 +207,6 @@ mod tests {
         camera.update(&mut settings, &FlyInput { wheel: 1.0, ..Default::default() }, 0.0);
         assert_eq!(settings.speed, WHEEL_FACTOR);
         camera.update(&mut settings, &FlyInput { wheel: 1e3, ..Default::default() }, 0.0);
-        assert_eq!(settings.speed, *SPEED_RANGE.end());
+        assert_eq!(settings.speed, FLYING_SPEEDS.1);
     }
 }

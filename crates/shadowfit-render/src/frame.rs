@@ -103,6 +103,8 @@ pub struct Statistics {
 pub struct MapStatistics {
     /// Instances that were not culled.
     pub casters: u32,
+    /// Draw calls for them.
+    pub draws: u32,
     /// Their triangles.
     pub triangles: u64,
 }

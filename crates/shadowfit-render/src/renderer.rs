@@ -337,7 +337,11 @@ fn statistics(scene: &GpuScene, plan: &Plan) -> Statistics {
         draws.iter().fold(MapStatistics::default(), |sum, draw| {
             let instances = draw.instances.len() as u32;
             let triangles = u64::from(scene.parts[draw.part].index_count / 3) * u64::from(instances);
-            MapStatistics { casters: sum.casters + instances, triangles: sum.triangles + triangles }
+            MapStatistics {
+                casters: sum.casters + instances,
+                draws: sum.draws + 1,
+                triangles: sum.triangles + triangles,
+            }
         })
     };
     let mut maps = [MapStatistics::default(); MAX_MAPS];
@@ -345,7 +349,7 @@ fn statistics(scene: &GpuScene, plan: &Plan) -> Statistics {
         *map = casters(draws);
     }
     Statistics {
-        shadow_draws: plan.shadow.iter().map(Vec::len).sum::<usize>() as u32,
+        shadow_draws: maps.iter().map(|map| map.draws).sum(),
         shadow_triangles: maps.iter().map(|map| map.triangles).sum(),
         scene_draws: (plan.opaque.len() + plan.blended.len()) as u32,
         scene_triangles: casters(&plan.opaque).triangles + casters(&plan.blended).triangles,

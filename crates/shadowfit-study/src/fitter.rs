@@ -1,7 +1,7 @@
 //! The one place where a technique's maps are fitted to a scene, view after view.
 
 use glam::DVec2;
-use shadowfit::{FitError, MapFitter, SplitScheme, Technique, Workspace};
+use shadowfit::{FitError, FittedMaps, MapFitter, SplitScheme, Technique, Workspace};
 use shadowfit_wgpu::MapFit;
 
 use crate::{PreparedScene, SeenDepths, View};
@@ -14,6 +14,7 @@ const VIEWS: usize = 3;
 pub struct TechniqueFitter {
     technique: Technique,
     maps: MapFitter,
+    fitted: FittedMaps,
     depths: Option<SeenDepths>,
     storage: Vec<DVec2>,
 }
@@ -21,7 +22,7 @@ pub struct TechniqueFitter {
 impl TechniqueFitter {
     /// A fitter that remembers no frame.
     pub fn new(technique: Technique) -> Self {
-        Self { technique, maps: MapFitter::new(), depths: None, storage: Vec::new() }
+        Self { technique, maps: MapFitter::new(), fitted: FittedMaps::default(), depths: None, storage: Vec::new() }
     }
 
     /// What is fitted.
@@ -36,6 +37,23 @@ impl TechniqueFitter {
         }
     }
 
+    /// The maps of the last view, with the view depths that they are read at; none before the first fit.
+    pub fn fitted(&self) -> &FittedMaps {
+        &self.fitted
+    }
+
+    /// The maps of a view on which the camera has just been set, as a running program has them as soon as it has seen
+    /// that view: nothing is held from other views, and the histogram is that of this one.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::fit`].
+    pub fn fit_alone(&mut self, scene: &PreparedScene, view: &View) -> Result<Vec<MapFit>, FitError> {
+        self.maps.reset();
+        self.depths = self.see(scene, view)?;
+        self.fit_maps(scene, view)
+    }
+
     /// The maps of a view, in order of their `far`.
     ///
     /// # Errors
@@ -46,16 +64,31 @@ impl TechniqueFitter {
             self.maps.reset();
             self.depths = None;
         }
+        let maps = self.fit_maps(scene, view)?;
+        self.depths = self.see(scene, view)?;
+        Ok(maps)
+    }
+
+    /// The maps of a view, from what is remembered.
+    fn fit_maps(&mut self, scene: &PreparedScene, view: &View) -> Result<Vec<MapFit>, FitError> {
         let boxes = scene.boxes(self.technique.receivers);
         self.storage.resize(boxes.required(VIEWS), DVec2::ZERO);
         let frusta = [view.camera.frustum()?];
         let mut input = boxes.input(&frusta, view.direction);
         input.histogram = self.depths.as_ref().map(SeenDepths::histogram);
-        let maps = self.maps.fit(&input, &self.technique, &mut Workspace::new(&mut self.storage))?;
-        if self.technique.splits == SplitScheme::FromHistogram {
-            let camera = scene.camera_for_rays(&view.camera);
-            self.depths = Some(SeenDepths::trace(&scene.rays().tracer, &camera, view.direction));
+        let workspace = &mut Workspace::new(&mut self.storage);
+        self.maps.fit_into(&input, &self.technique, workspace, &mut self.fitted)?;
+        Ok(self.fitted.iter().map(MapFit::from).collect())
+    }
+
+    /// The histogram of a view, where the technique uses one.
+    fn see(&self, scene: &PreparedScene, view: &View) -> Result<Option<SeenDepths>, FitError> {
+        if self.technique.splits != SplitScheme::FromHistogram {
+            return Ok(None);
         }
-        Ok(maps.iter().map(MapFit::from).collect())
+        // A camera that makes no sense sees nothing.
+        view.camera.frustum()?;
+        let camera = scene.camera_for_rays(&view.camera);
+        Ok(Some(SeenDepths::trace(&scene.rays().tracer, &camera, view.direction)))
     }
 }

@@ -2,7 +2,7 @@
 
 use shadowfit::PerspectiveCamera;
 use shadowfit::tool::CameraSettings;
-use shadowfit_render::{Atmosphere, Frame, Inset, Line};
+use shadowfit_render::{Atmosphere, Culling, Frame, Inset, Line, Overlay};
 use shadowfit_wgpu::MapFit;
 
 use crate::View;
@@ -13,6 +13,10 @@ use crate::View;
 pub struct FrameOptions<'a> {
     /// Camera that the scene is seen through instead of the view's, from whose eye points still choose their map.
     pub outside: Option<PerspectiveCamera>,
+    /// Which casters are drawn into the maps.
+    pub culling: Culling,
+    /// What is laid over the shaded surfaces.
+    pub overlay: Overlay,
     /// Lines drawn over the scene.
     pub lines: &'a [Line],
     /// Shadow map shown in a corner.
@@ -26,7 +30,15 @@ pub struct FrameOptions<'a> {
 
 impl Default for FrameOptions<'_> {
     fn default() -> Self {
-        Self { outside: None, lines: &[], inset: None, shadows: true, sight: None }
+        Self {
+            outside: None,
+            culling: Culling::default(),
+            overlay: Overlay::default(),
+            lines: &[],
+            inset: None,
+            shadows: true,
+            sight: None,
+        }
     }
 }
 
@@ -50,6 +62,8 @@ pub(crate) fn frame<'a>(
     let camera = options.outside.as_ref().unwrap_or(&view.camera);
     Frame {
         choice: options.outside.map(|_| (view.camera.eye, view.camera.forward.normalize())),
+        culling: options.culling,
+        overlay: options.overlay,
         shadows: options.shadows,
         lines: options.lines,
         inset: options.inset,

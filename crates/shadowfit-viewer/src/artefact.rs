@@ -1,11 +1,14 @@
 //! The three demonstrations: where to stand and what to set so that an artefact is unmistakable in
 //! the scene at hand, and the setting that cures it.
+//!
+//! Several maps keep their fit, their splits and what holds them still: only what makes the artefact plain is taken from
+//! them. A single map is fitted by the rule that has the artefact by nature.
 
 use core::f32::consts::{PI, TAU};
 
 use glam::{DVec3, UVec2, Vec3};
-use shadowfit::settings::{BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, Settings};
-use shadowfit::{Aabb, PerspectiveCamera};
+use shadowfit::tool::Settings;
+use shadowfit::{Aabb, BiasSettings, CasterPolicy, FilterKind, FitKind, PerspectiveCamera, Technique};
 use shadowfit_egui::Artefact;
 use shadowfit_render::FlyCamera;
 
@@ -20,14 +23,20 @@ const ALIASING_TEXEL: f32 = 1.0 / 15.0;
 /// Constant bias of acne's cure, in texels. The automatic bias clears every plane; where surfaces meet in a crease, a
 /// texel stores the neighbour, which stands a part of a texel higher, and one comparison has no others to outvote it.
 const CREASE_BIAS: f32 = 1.0;
-/// Length of the shadowed frustum when the hole is shown, in radii of the subject.
+/// Length of the shadowed frustum when the hole is shown with a single map, in radii of the subject.
 const HOLE_DISTANCE: f32 = 4.0;
 /// Reach of a long shadow, in radii of the scene, from which on the scene is shown as a whole.
 const LARGE_REACH: f32 = 0.3;
 /// Share of the picture that should still show a shadow when the hole is shown.
 const KEPT_SHADOW: f32 = 0.1;
-/// Resolution of the map after aliasing is fixed, in texels.
+/// Resolution of a single map, in texels, when aliasing is shown.
+const SHOWN_RESOLUTION: u32 = 2048;
+/// The same after aliasing is fixed.
 const FIXED_RESOLUTION: u32 = 4096;
+/// Least resolution of each of several maps after aliasing is fixed, in texels.
+const FIXED_RESOLUTION_EACH: u32 = 2048;
+/// Halvings of the range in which the right coarseness is searched, on a logarithmic scale: to a millionth of it.
+const STEPS: u32 = 24;
 /// Aspect that candidates are judged with.
 const ASPECT: f32 = 16.0 / 9.0;
 
@@ -41,16 +50,16 @@ pub(crate) fn show(stage: &mut Stage, artefact: Artefact) -> bool {
     let light = stage.settings.light.direction();
     let scene = stage.prepared_scene();
     let origin = scene.origin();
-    let [bounds, subject] = [scene.bounds(), scene.subject_bounds()].map(|bounds| relative_to(origin, &bounds));
+    let subject = relative_to(origin, &scene.subject_bounds());
     let has_subject = scene.scene().subject.is_some();
     let lens = scene.camera_for_rays(&lens(stage));
     let mut settings = stage.settings;
-    let search = ViewSearch::new(scene.rays(), light, &bounds);
+    let search = ViewSearch::new(scene, light);
     let place = Place::new(&search, light, subject, has_subject, lens);
     let (camera, found) = match artefact {
-        Artefact::Acne => show_acne(&search, &place, light, &mut settings),
-        Artefact::Aliasing => show_aliasing(&search, &place, light, &mut settings),
-        Artefact::ClippingHole => show_hole(&search, &place, light, &mut settings),
+        Artefact::Acne => show_acne(&search, &place, &mut settings),
+        Artefact::Aliasing => show_aliasing(&search, &place, &mut settings),
+        Artefact::ClippingHole => show_hole(&search, &place, &mut settings),
     };
     stage.settings = settings;
     let eye = origin + camera.eye;
@@ -60,27 +69,32 @@ pub(crate) fn show(stage: &mut Stage, artefact: Artefact) -> bool {
 
 /// Applies the cure of an artefact on show.
 pub(crate) fn fix(stage: &mut Stage, artefact: Artefact) {
-    let bounds = stage.bounds();
+    let seen = farthest_seen(stage);
+    let technique = &mut stage.settings.technique;
+    let is_single = technique.count == 1;
     match artefact {
         // Enough for planes and creases, and nothing else changed.
         Artefact::Acne => {
-            let automatic = BiasSettings::automatic(stage.settings.filter);
-            stage.settings.bias = BiasSettings { constant: CREASE_BIAS, ..automatic };
+            technique.bias = BiasSettings { constant: CREASE_BIAS, ..BiasSettings::automatic(technique.filter) };
         }
-        // Spend the map on what is seen, make it larger, and smooth what is left.
+        // Spend the maps on what is seen, make them larger, and smooth what is left.
         Artefact::Aliasing => {
-            let seen = farthest_seen(stage);
-            let settings = &mut stage.settings;
-            settings.fit.max_distance = seen.unwrap_or(settings.fit.max_distance);
-            settings.fit.resolution = UVec2::splat(FIXED_RESOLUTION);
-            settings.filter = FilterKind::Pcf5x5;
-            settings.bias = BiasSettings::automatic(settings.filter);
+            let fit = &mut technique.fit;
+            fit.margin = 0.0;
+            if is_single {
+                fit.max_distance = seen.unwrap_or(fit.max_distance);
+                fit.resolution = UVec2::splat(FIXED_RESOLUTION);
+            } else {
+                fit.resolution = fit.resolution.max(UVec2::splat(FIXED_RESOLUTION_EACH));
+            }
+            *technique = technique.with_filter(FilterKind::Pcf5x5);
         }
         // Take in every caster between the light and the view.
         Artefact::ClippingHole => {
-            stage.settings.fit.kind = FitKind::FrustumAabb;
-            stage.settings.fit.casters = CasterPolicy::Extend;
-            stage.settings.fit.caster_extension = (bounds.max - bounds.min).length();
+            technique.fit.casters = CasterPolicy::List;
+            if is_single {
+                technique.fit.kind = FitKind::Focused;
+            }
         }
     }
 }
@@ -127,15 +141,10 @@ impl Place {
 
 /// The subject's upper part close up from the lit side, without any bias: every slope shadows
 /// itself.
-fn show_acne(
-    search: &ViewSearch<'_>,
-    place: &Place,
-    light: Vec3,
-    settings: &mut Settings,
-) -> (PerspectiveCamera, bool) {
+fn show_acne(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) -> (PerspectiveCamera, bool) {
     let target = place.center + Vec3::Y * (place.bounds.max.y - place.bounds.min.y) * 0.25;
     let distances = [1.5, 1.8].map(|radii| radii * place.radius);
-    let candidates = around(target, -light, &[0.3, 0.6, 0.9, -0.3, -0.6, -0.9], &[0.0, 0.15], &distances);
+    let candidates = around(target, -search.direction, &[0.3, 0.6, 0.9, -0.3, -0.6, -0.9], &[0.0, 0.15], &distances);
     let score = |camera: &PerspectiveCamera| {
         let shows = |seen: &Seen| {
             let slope = search.facing(seen);
@@ -150,26 +159,27 @@ fn show_acne(
     };
     let (camera, found) = best(&place.lens, candidates, |camera| score(camera) as f32);
     let distance = camera.eye.as_vec3().distance(place.center);
-    settings.bias = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0 };
-    settings.filter = FilterKind::Point;
-    settings.fit.kind = FitKind::XnaSample;
-    settings.fit.margin = 0.0;
+    let none = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0 };
+    settings.technique =
+        alone_or_as_it_is(settings.technique, FitKind::XnaSample).with_look_up(FilterKind::Point, none);
     let texel = place.picture_height(distance) * ACNE_TEXEL;
-    stretch_to_texel(&camera, light, settings, distance + place.radius, texel);
+    let middle = camera.eye.as_vec3() + camera.forward * distance;
+    coarsen(search, &camera, settings, &Coarse { point: middle, texel, least: distance + place.radius });
     (camera, found)
 }
 
 /// The edge of the subject's shadow close up, in a map that has to cover far too much.
-fn show_aliasing(
-    search: &ViewSearch<'_>,
-    place: &Place,
-    light: Vec3,
-    settings: &mut Settings,
-) -> (PerspectiveCamera, bool) {
+fn show_aliasing(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) -> (PerspectiveCamera, bool) {
     let targets = spread(&place.shadows, 5);
     let height = place.radius;
     let candidates = targets.iter().flat_map(|shadow| {
-        around(shadow.receiver, -light, &[-2.2, -1.4, -0.7, 0.7, 1.4, 2.2], &[0.5, 0.8], &[height * 1.5, height * 2.2])
+        around(
+            shadow.receiver,
+            -search.direction,
+            &[-2.2, -1.4, -0.7, 0.7, 1.4, 2.2],
+            &[0.5, 0.8],
+            &[height * 1.5, height * 2.2],
+        )
     });
     let score = |camera: &PerspectiveCamera| {
         let pixels = search.look(camera);
@@ -185,52 +195,62 @@ fn show_aliasing(
         edges(&shadowed) as f32 * (1.0 - (share - 0.4).abs())
     };
     let (camera, found) = best(&place.lens, candidates, score);
-    let distance =
-        search.look(&camera)[(GRID[0] * GRID[1] / 2 + GRID[0] / 2) as usize].map_or(height * 2.0, |seen| seen.distance);
-    settings.filter = FilterKind::Point;
-    settings.bias = BiasSettings::automatic(FilterKind::Point);
-    settings.fit.kind = FitKind::FrustumAabb;
-    settings.fit.resolution = UVec2::splat(2048);
+    let middle = search.look(&camera)[(GRID[0] * GRID[1] / 2 + GRID[0] / 2) as usize];
+    let distance = middle.map_or(height * 2.0, |seen| seen.distance);
+    let point = middle.map_or(camera.eye.as_vec3() + camera.forward * distance, |seen| seen.position);
+    settings.technique = alone_or_as_it_is(settings.technique, FitKind::FrustumAabb).with_filter(FilterKind::Point);
+    if settings.technique.count == 1 {
+        settings.technique.fit.resolution = UVec2::splat(SHOWN_RESOLUTION);
+    }
     let texel = place.picture_height(distance) * ALIASING_TEXEL;
-    stretch_to_texel(&camera, light, settings, distance * 2.0, texel);
+    coarsen(search, &camera, settings, &Coarse { point, texel, least: distance * 2.0 });
     (camera, found)
 }
 
 /// Between the subject and its shadow: the shadow is in view, what throws it is not in the map.
-fn show_hole(
-    search: &ViewSearch<'_>,
-    place: &Place,
-    light: Vec3,
-    settings: &mut Settings,
-) -> (PerspectiveCamera, bool) {
-    settings.fit.kind = FitKind::XnaSample;
-    settings.fit.margin = 0.0;
+fn show_hole(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) -> (PerspectiveCamera, bool) {
+    let technique = &mut settings.technique;
+    *technique = alone_or_as_it_is(*technique, FitKind::XnaSample).with_filter(technique.filter);
+    technique.fit.margin = 0.0;
+    technique.fit.casters = CasterPolicy::None;
+    if technique.count == 1 {
+        technique.fit.max_distance = place.radius * HOLE_DISTANCE;
+    }
     let targets = spread(&place.shadows, 4);
     let candidates = targets.iter().flat_map(|shadow| {
         let reach = shadow.reach;
-        around(shadow.receiver, -light, &around_the_clock(), &[0.4, 0.7], &[reach * 0.7, reach, reach * 1.3])
+        let distances = [reach * 0.7, reach, reach * 1.3];
+        around(shadow.receiver, -search.direction, &around_the_clock(), &[0.4, 0.7], &distances)
     });
-    let fit_at = |camera: &PerspectiveCamera| {
-        let distance = place.radius * HOLE_DISTANCE;
-        let frustum = camera.frustum().ok()?;
-        let fit_settings = FitSettings { max_distance: distance, ..settings.fit };
-        shadowfit::fit(&frustum, light, &fit_settings).ok()
-    };
+    let mut most = 0.0_f32;
     let score = |camera: &PerspectiveCamera| {
-        let (pixels, Some(fit)) = (search.look(camera), fit_at(camera)) else { return 0.0 };
+        let pixels = search.look(camera);
         if is_blocked(&pixels, place.radius * 0.6) {
             return 0.0;
         }
-        let shadowed = || pixels.iter().flatten().filter(|seen| search.facing(seen) > 0.0 && search.is_shadowed(seen));
-        let holes = shadowed().filter(|seen| search.is_hole(seen, &fit)).count();
+        let is_shadowed = |seen: &&Seen| search.facing(seen) > 0.0 && search.is_shadowed(seen);
+        let shadowed: Vec<&Seen> = pixels.iter().flatten().filter(is_shadowed).collect();
+        // Not worth a fit where a hole in all of the shadow would be smaller than one that was found.
+        if shadowed.len() as f32 <= most {
+            return 0.0;
+        }
+        let Some(fitted) = search.fit(technique, camera) else { return 0.0 };
+        let holes = shadowed.iter().filter(|seen| search.is_hole(seen, &fitted)).count();
         // A large hole, but a shadow that breaks off says more than one that is missing whole.
-        let kept = (shadowed().count() - holes) as f32 / (pixels.len() as f32 * KEPT_SHADOW);
-        holes as f32 * (0.2 + 0.8 * kept.min(1.0))
+        let kept = (shadowed.len() - holes) as f32 / (pixels.len() as f32 * KEPT_SHADOW);
+        let score = holes as f32 * (0.2 + 0.8 * kept.min(1.0));
+        most = most.max(score);
+        score
     };
-    let (camera, found) = best(&place.lens, candidates, score);
-    settings.fit.max_distance = place.radius * HOLE_DISTANCE;
-    settings.bias = BiasSettings::automatic(settings.filter);
-    (camera, found)
+    best(&place.lens, candidates, score)
+}
+
+/// A single map fitted by another rule, with no margin; several maps as they are.
+fn alone_or_as_it_is(mut technique: Technique, kind: FitKind) -> Technique {
+    if technique.count == 1 {
+        technique.fit = technique.fit.with_kind(kind).with_margin(0.0);
+    }
+    technique
 }
 
 /// Candidate eyes around a target, each with the target: turned from the light's side by
@@ -259,7 +279,7 @@ fn around_the_clock() -> [f32; 12] {
 fn best(
     lens: &PerspectiveCamera,
     candidates: impl IntoIterator<Item = [Vec3; 2]>,
-    score: impl Fn(&PerspectiveCamera) -> f32,
+    mut score: impl FnMut(&PerspectiveCamera) -> f32,
 ) -> (PerspectiveCamera, bool) {
     let mut best = (0.0, *lens);
     for [eye, target] in candidates {
@@ -297,29 +317,55 @@ fn spread(sorted: &[Shadow], count: usize) -> Vec<Shadow> {
     (0..count).map(|index| sorted[(2 * index + 1) * sorted.len() / (2 * count)]).collect()
 }
 
-/// Lengthens the shadow distance until a texel has the wanted size, in metres: texels grow with
-/// the frustum that the map has to hold.
-fn stretch_to_texel(camera: &PerspectiveCamera, light: Vec3, settings: &mut Settings, least: f32, texel: f32) {
-    let size_at = |distance: f32| {
-        let camera = PerspectiveCamera { far: camera.far.max(distance), ..*camera };
-        let fit_settings = FitSettings { max_distance: distance, ..settings.fit };
-        let fit = camera.frustum().and_then(|frustum| shadowfit::fit(&frustum, light, &fit_settings));
-        fit.map_or(f32::INFINITY, |fit| fit.texel_size.max_element())
+/// How coarse a map is made.
+struct Coarse {
+    /// A point that reads the map.
+    point: Vec3,
+    /// Wanted size of a texel, in metres.
+    texel: f32,
+    /// Shortest shadow distance of a single map, in metres.
+    least: f32,
+}
+
+/// Makes texels as large as wanted: with the frustum that a single map has to hold, with the margin around each of
+/// several.
+fn coarsen(search: &ViewSearch<'_>, camera: &PerspectiveCamera, settings: &mut Settings, wanted: &Coarse) {
+    let is_single = settings.technique.count == 1;
+    let with = |amount: f32| {
+        let mut settings = *settings;
+        if is_single {
+            settings.technique.fit.max_distance = amount;
+            settings.camera.far = settings.camera.far.max(amount);
+        } else {
+            settings.technique.fit.margin = amount;
+        }
+        settings
     };
-    let (mut low, mut high) = (least, least * 1e4);
-    for _ in 0..40 {
+    let point = search.world(wanted.point.as_dvec3());
+    let texel_with = |settings: &Settings| {
+        let camera = PerspectiveCamera { far: settings.camera.far, ..*camera };
+        let fitted = search.fit(&settings.technique, &camera)?;
+        Some(fitted.maps[fitted.read_at(point)?].fit.texel_size.max_element())
+    };
+    let resolution = settings.technique.fit.resolution.max_element() as f32;
+    // A margin of half a map's texels alone makes them as large as wanted.
+    let (mut low, mut high) = if is_single {
+        (wanted.least, wanted.least * 1e4)
+    } else {
+        (wanted.texel * 1e-3, wanted.texel * resolution * 0.5)
+    };
+    for _ in 0..STEPS {
         let middle = (low * high).sqrt();
-        if size_at(middle) < texel { low = middle } else { high = middle }
+        if texel_with(&with(middle)).is_some_and(|texel| texel < wanted.texel) { low = middle } else { high = middle }
     }
-    settings.fit.max_distance = low;
-    settings.camera.far = settings.camera.far.max(low);
+    *settings = with(low);
 }
 
 /// Distance beyond which next to nothing is seen, in metres.
 fn farthest_seen(stage: &Stage) -> Option<f32> {
     let scene = stage.prepared_scene();
     let light = stage.settings.light.direction();
-    let pixels = ViewSearch::new(scene.rays(), light, &scene.bounds()).look(&scene.camera_for_rays(&lens(stage)));
+    let pixels = ViewSearch::new(scene, light).look(&scene.camera_for_rays(&lens(stage)));
     let mut distances: Vec<f32> = pixels.iter().flatten().map(|seen| seen.distance).collect();
     distances.sort_by(f32::total_cmp);
     let index = (distances.len() as f32 * 0.98) as usize;

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Parser;
-use shadowfit::params;
+use shadowfit::params::{self, Kind, Parameter};
 use shadowfit::tool::Settings;
 use shadowfit_render::AdapterChoice;
 use shadowfit_scene::Scene;
+use shadowfit_study::NamedTechnique;
 
 /// Fly through a scene under one sun, and show, measure and cure shadow acne, aliasing and
 /// clipping holes.
@@ -33,6 +34,10 @@ pub struct Arguments {
     /// Size of the window or of the pictures, in pixels.
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1280x720", value_parser = parse_size)]
     pub size: [u32; 2],
+
+    /// Begins with a technique: a preset by its name, e.g. `stable-4`, or a .toml file, such as the tuner writes.
+    #[arg(long, value_name = "NAME|FILE.toml")]
+    pub technique: Option<String>,
 
     /// Sets a parameter, e.g. `--set bias.normal_offset=1.5`; `--parameters` lists them.
     #[arg(long = "set", value_name = "ID=VALUE")]
@@ -92,12 +97,15 @@ impl Arguments {
         if self.software { AdapterChoice::Software } else { AdapterChoice::Any }
     }
 
-    /// Applies the `--set` and `--no-play` arguments.
+    /// Applies the `--technique`, `--set` and `--no-play` arguments, in this order. A preset keeps the shadow distance
+    /// and the caster extension of the settings, which suit the scene; a file has its own. Returns what was opened from
+    /// a file.
     ///
     /// # Errors
     ///
-    /// If a parameter is not known or a value not possible.
-    pub fn apply(&self, settings: &mut Settings) -> Result<()> {
+    /// If there is no such technique or parameter, or a value is not possible.
+    pub fn apply(&self, settings: &mut Settings) -> Result<Option<NamedTechnique>> {
+        let opened = self.technique.as_deref().map(|technique| open_technique(technique, settings)).transpose()?;
         for assignment in &self.set {
             let (id, value) = assignment
                 .split_once('=')
@@ -109,8 +117,21 @@ impl Arguments {
         if self.no_play {
             settings.view.play = false;
         }
-        Ok(())
+        Ok(opened.flatten())
     }
+}
+
+/// Takes a preset with the lengths that suit the scene, or a file as it is, which is returned then.
+fn open_technique(text: &str, settings: &mut Settings) -> Result<Option<NamedTechnique>> {
+    let opened = NamedTechnique::find(text).with_context(|| format!("--technique {text}"))?;
+    let of_scene = settings.technique.fit;
+    settings.technique = opened.technique;
+    if NamedTechnique::preset(text).is_none() {
+        return Ok(Some(opened));
+    }
+    let fit = &mut settings.technique.fit;
+    (fit.max_distance, fit.caster_extension) = (of_scene.max_distance, of_scene.caster_extension);
+    Ok(None)
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {
@@ -128,14 +149,25 @@ fn parameter_list() -> String {
         let mut value = String::new();
         // Writing to a String cannot fail.
         let _ = params::format_value(&defaults, parameter, &mut value);
-        let range = match &parameter.kind {
-            params::Kind::Number(number) => format!("{}..{} {}", number.min, number.max, parameter.unit),
-            params::Kind::Choice(choice) => choice.options.iter().map(|option| option.id).collect::<Vec<_>>().join("|"),
-            params::Kind::Toggle(_) => "on|off".to_owned(),
-        };
-        let _ = writeln!(list, "{}={value}  ({range})\n    {}", parameter.id, parameter.help);
+        // What another knob brings about has no value until then.
+        let value = if parameter.is_present(&defaults) { format!("={value}") } else { String::new() };
+        let _ = writeln!(list, "{}{value}  ({})\n    {}", parameter.id, range(parameter), parameter.help);
     }
     list
+}
+
+/// The values that a parameter takes.
+fn range(parameter: &Parameter) -> String {
+    let numbers = |min: f64, max: f64| format!("{min}..{max} {}", parameter.unit).trim_end().to_owned();
+    match &parameter.kind {
+        Kind::Number(number) => numbers(number.min, number.max),
+        Kind::Optional(optional) => {
+            let unset = optional.unset.map_or(String::new(), |unset| format!(", or {}", unset.id));
+            numbers(optional.min, optional.max) + &unset
+        }
+        Kind::Choice(choice) => choice.options.iter().map(|option| option.id).collect::<Vec<_>>().join("|"),
+        Kind::Toggle(_) => "on|off".to_owned(),
+    }
 }
 
 #[cfg(test)]
@@ -155,7 +187,7 @@ mod tests {
         let mut settings = Settings::default();
         let arguments = Arguments::parse_from(["viewer", "--set", "bias.constant=0.5", "--no-play"]);
         arguments.apply(&mut settings).expect("a good assignment");
-        assert_eq!(settings.bias.constant, 0.5);
+        assert_eq!(settings.technique.bias.constant, 0.5);
         assert!(!settings.view.play);
         for bad in ["bias.constant", "bias.constant=x", "no.such=1", "bias.constant=1e9"] {
             let error = Arguments::parse_from(["viewer", "--set", bad]).apply(&mut settings).expect_err(bad);
@@ -164,8 +196,48 @@ mod tests {
     }
 
     #[test]
-    fn every_parameter_is_listed() {
+    fn presets_keep_the_lengths_of_the_scene_and_files_have_their_own() {
+        let mut scene = Settings::default();
+        (scene.technique.fit.max_distance, scene.technique.fit.caster_extension) = (80.0, 7.0);
+        let apply = |arguments: &[&str]| {
+            let mut settings = scene;
+            let arguments = Arguments::parse_from(["viewer", "--technique"].iter().chain(arguments));
+            arguments.apply(&mut settings).map(|opened| (settings.technique, opened))
+        };
+        let preset = NamedTechnique::preset("stable-4").expect("a preset");
+        let (technique, opened) = apply(&["stable-4", "--set", "splits.count=3"]).expect("a preset");
+        let mut expected = preset.technique.with_max_distance(80.0).with_count(3);
+        expected.fit.caster_extension = 7.0;
+        assert_eq!((technique, opened), (expected, None), "--set comes after --technique");
+
+        let folder = std::env::temp_dir().join(format!("shadowfit-viewer-techniques-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let write = |name: &str, text: &str| {
+            let file = folder.join(name);
+            std::fs::write(&file, text).expect("written");
+            file.to_string_lossy().into_owned()
+        };
+        let tuned = NamedTechnique { name: "tuned".to_owned(), ..preset }.with_resolution(512);
+        let file = write("tuned.toml", &tuned.to_toml().expect("text"));
+        let (technique, opened) = apply(&[&file]).expect("a file");
+        assert_eq!((technique, opened.as_ref()), (tuned.technique, Some(&tuned)));
+
+        let bad = write("bad.toml", "[splits]\ncount = 9");
+        let error = format!("{:#}", apply(&[&bad]).expect_err("nine maps"));
+        assert!(["--technique", "bad.toml", "splits.count is 9"].iter().all(|word| error.contains(word)), "{error}");
+        std::fs::remove_dir_all(&folder).expect("removed");
+        let error = format!("{:#}", apply(&["none"]).expect_err("no such preset"));
+        assert!(error.contains("\"none\"") && error.contains("calm-4"), "{error}");
+    }
+
+    #[test]
+    fn every_parameter_is_listed_with_what_stands_for_no_number() {
         let list = parameter_list();
         assert!(params::PARAMETERS.iter().all(|parameter| list.contains(parameter.id)));
+        let line = |id: &str| list.lines().find(|line| line.starts_with(id)).unwrap_or_else(|| panic!("{id}"));
+        assert!(
+            line("fit.max_distance").contains("=far_plane") && line("fit.max_distance").contains(", or far_plane)")
+        );
+        assert!(line("splits.lambda").starts_with("splits.lambda  ("), "no value without the practical splits");
     }
 }

@@ -50,12 +50,12 @@ pub(crate) fn run(arguments: &Arguments, folder: &Path) -> Result<()> {
 /// If a file cannot be written.
 pub fn render_pictures(stage: &mut Stage, folder: &Path, size: [u32; 2]) -> Result<Vec<PathBuf>> {
     std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
-    let picture = stage.picture(size);
+    let target = stage.target(size);
     let mut written = Vec::new();
     let mut save = |stage: &mut Stage, name: &str| -> Result<()> {
-        stage.draw(&picture);
+        stage.draw(&target);
         let path = folder.join(name).with_extension("png");
-        write_png(&path, size, &picture.read(stage.gpu())?)?;
+        write_png(&path, size, &target.read(stage.gpu())?)?;
         written.push(path);
         Ok(())
     };
@@ -94,7 +94,7 @@ pub fn render_pictures(stage: &mut Stage, folder: &Path, size: [u32; 2]) -> Resu
 fn render_interface(stage: &mut Stage, path: &Path, size: [u32; 2]) -> Result<()> {
     let format = wgpu::TextureFormat::Rgba8Unorm;
     let mut interface = Interface::new(stage, format);
-    let whole = stage.picture(size);
+    let whole = stage.target(size);
     let input = || egui::RawInput {
         screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(size[0] as f32, size[1] as f32))),
         ..Default::default()

@@ -5,6 +5,7 @@ use egui_wgpu::{Renderer as EguiRenderer, RendererOptions, ScreenDescriptor};
 use glam::Vec2;
 use shadowfit_egui::{Action, PANEL_WIDTH, Panel, PanelInput, SceneLine};
 use shadowfit_render::RenderTarget;
+use shadowfit_study::NamedTechnique;
 
 use crate::stage::Stage;
 
@@ -38,12 +39,13 @@ pub(crate) struct Asked {
 }
 
 impl Interface {
-    pub(crate) fn new(stage: &Stage, target: wgpu::TextureFormat) -> Self {
+    /// An interface that is painted to a surface of the given format.
+    pub(crate) fn new(stage: &Stage, format: wgpu::TextureFormat) -> Self {
         let gpu = stage.gpu();
         let context = egui::Context::default();
         shadowfit_egui::apply_style(&context);
-        let mut renderer = EguiRenderer::new(&gpu.device, target, RendererOptions::default());
-        let picture = stage.picture([16, 16]);
+        let mut renderer = EguiRenderer::new(&gpu.device, format, RendererOptions::default());
+        let picture = stage.target([16, 16]);
         let texture = renderer.register_native_texture(&gpu.device, &picture.encoded_view(), wgpu::FilterMode::Nearest);
         let mut interface = Self {
             context,
@@ -65,7 +67,12 @@ impl Interface {
         self.panel.defaults = stage.settings;
     }
 
-    /// The picture as last drawn.
+    /// Puts a technique that was opened from a file among those of the menu.
+    pub(crate) fn name_technique(&mut self, opened: NamedTechnique) {
+        self.panel.name_technique(opened.name, opened.technique);
+    }
+
+    /// What the picture was last drawn into.
     pub(crate) fn picture(&self) -> &RenderTarget {
         &self.picture
     }
@@ -83,7 +90,7 @@ impl Interface {
         let context = self.context.clone();
         let output = context.run_ui(raw_input, |ui| picture_size = self.layout(ui, stage, &mut asked));
         if picture_size != self.picture.size {
-            self.picture = stage.picture(picture_size);
+            self.picture = stage.target(picture_size);
             self.renderer.update_egui_texture_from_wgpu_texture(
                 &stage.gpu().device,
                 &self.picture.encoded_view(),

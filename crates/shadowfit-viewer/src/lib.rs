@@ -1,10 +1,11 @@
-//! The shadowfit viewer as a library: a [`Stage`] that holds scene, camera and settings, and draws and
-//! judges through `shadowfit-study`; the artefact demonstrations; a window around it, and a headless mode that renders the same
-//! views to files. `examples/viewer` is its thin main.
+//! The shadowfit viewer as a library: a [`Stage`] that holds scene, camera and settings, and fits, draws and judges
+//! through `shadowfit-study`; the artefact demonstrations; a window around it, and a headless mode that renders the
+//! same views to files. `examples/viewer` is its thin main.
 
 mod artefact;
 mod cli;
 mod files;
+mod fitted;
 #[cfg(feature = "gamepad")]
 mod gamepad;
 mod headless;

@@ -1,69 +1,59 @@
-//! The view from outside: the camera's frustum, the maps' boxes and the sun's direction drawn as
-//! lines, seen by a second camera that keeps all of them in its picture.
+//! The view from outside: the camera's frustum in the slices that read a map each, the maps' boxes in their tints and
+//! the sun's direction, drawn as lines and seen by a second camera that keeps all of them in its picture.
 
 use glam::{DVec3, Vec3, Vec4};
-use shadowfit::{LightFit, PerspectiveCamera, ViewFrustum};
+use shadowfit::figures::linear_map_tints;
+use shadowfit::{LightFit, PerspectiveCamera};
 use shadowfit_render::{Line, box_lines};
-use shadowfit_wgpu::MapFit;
 
-/// Colour of the camera's frustum: a warm yellow.
-const FRUSTUM_COLOR: Vec4 = Vec4::new(1.0, 0.62, 0.05, 1.0);
-/// Colour of the maps' boxes: a clear blue.
-const BOX_COLOR: Vec4 = Vec4::new(0.05, 0.45, 1.0, 1.0);
-/// Colour of the box's face toward the light, its near plane, and of the sun's rays.
-const NEAR_COLOR: Vec4 = Vec4::new(1.0, 0.12, 0.25, 1.0);
+use crate::fitted::Fitted;
+
+/// Colour of the camera's frustum and its slices: white, which no map has.
+const FRUSTUM_COLOR: Vec4 = Vec4::ONE;
 
 /// Vertical field of view of the outside camera, in radians.
 const FOV_Y: f32 = 0.8;
 
-/// The frustum that is shadowed, the boxes of the maps that were fitted to it, and an arrow along the
-/// light's direction of travel into each box.
-pub(crate) fn lines(frustum: Option<&ViewFrustum>, maps: &[MapFit]) -> Vec<Line> {
+/// Length of the arrow along the light, as a share of half the diagonal of the box's face.
+const ARROW: f32 = 0.4;
+
+/// The slices of the view, and for each map that some point reads its box and an arrow along the light's direction of
+/// travel into it, in the map's tint.
+pub(crate) fn lines(fitted: &Fitted) -> Vec<Line> {
     let mut lines = Vec::new();
-    for MapFit { fit, .. } in maps {
-        let corners = fit.corners();
-        lines.extend(box_lines(fit.origin, &corners, BOX_COLOR));
-        lines.extend(near_face(fit, &corners));
-    }
-    if let Some(frustum) = frustum {
-        lines.extend(box_lines(frustum.origin, &frustum.corners, FRUSTUM_COLOR));
+    for (index, (map, tint)) in fitted.maps.iter().zip(linear_map_tints()).enumerate() {
+        let Some(slice) = fitted.slice(index) else { continue };
+        let color = tint.extend(1.0);
+        lines.extend(box_lines(slice.origin, &slice.corners, FRUSTUM_COLOR));
+        lines.extend(box_lines(map.fit.origin, &map.fit.corners(), color));
+        lines.extend(arrow(&map.fit, color));
     }
     lines
 }
 
-/// The face of the box toward the light, with an arrow from its middle into the box.
-fn near_face(fit: &LightFit, corners: &[Vec3; 8]) -> Vec<Line> {
-    let mut order: Vec<usize> = (0..8).collect();
-    order.sort_by(|a, b| corners[*a].dot(fit.direction).total_cmp(&corners[*b].dot(fit.direction)));
-    let is_near = |index: usize| order[..4].contains(&index);
-    let mut lines: Vec<Line> = box_lines(fit.origin, corners, NEAR_COLOR)
-        .into_iter()
-        .zip(EDGE_ENDS)
-        .filter(|(_, [a, b])| is_near(*a) && is_near(*b))
-        .map(|(line, _)| line)
-        .collect();
-    let middle = order[..4].iter().map(|index| corners[*index]).sum::<Vec3>() / 4.0;
-    let size = (corners[order[0]] - middle).length() * 0.4;
+/// An arrow along the light from the middle of the box's near face, the one toward the light.
+fn arrow(fit: &LightFit, color: Vec4) -> [Line; 3] {
+    let mut corners = fit.corners();
+    corners.sort_by(|a, b| a.dot(fit.direction).total_cmp(&b.dot(fit.direction)));
+    let middle = corners[..4].iter().sum::<Vec3>() / 4.0;
+    let size = (corners[0] - middle).length() * ARROW;
     let tip = middle + fit.direction * size;
     let side = fit.direction.any_orthonormal_vector() * size * 0.15;
     let back = tip - fit.direction * size * 0.3;
     let world = |point: Vec3| fit.origin + point.as_dvec3();
-    for [from, to] in [[middle, tip], [back + side, tip], [back - side, tip]] {
-        lines.push(Line { ends: [world(from), world(to)], color: NEAR_COLOR });
-    }
-    lines
+    [[middle, tip], [back + side, tip], [back - side, tip]]
+        .map(|[from, to]| Line { ends: [world(from), world(to)], color })
 }
 
-/// Corners at the ends of each edge, in the order of [`box_lines`].
-const EDGE_ENDS: [[usize; 2]; 12] =
-    [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
-
 /// A camera that sees all of the frustum and the boxes from behind and above the inner camera.
-pub(crate) fn camera(inner: &PerspectiveCamera, frustum: Option<&ViewFrustum>, maps: &[MapFit]) -> PerspectiveCamera {
+pub(crate) fn camera(inner: &PerspectiveCamera, fitted: &Fitted) -> PerspectiveCamera {
+    let read = |index: &usize| fitted.slice(*index).is_some();
     let mut points: Vec<DVec3> = vec![inner.eye];
-    points.extend(frustum.iter().flat_map(|f| f.corners.map(|corner| f.origin + corner.as_dvec3())));
-    points
-        .extend(maps.iter().flat_map(|MapFit { fit, .. }| fit.corners().map(|corner| fit.origin + corner.as_dvec3())));
+    points.extend(fitted.frustum().iter().flat_map(|f| f.corners.map(|corner| f.origin + corner.as_dvec3())));
+    for index in (0..fitted.maps.len()).filter(read) {
+        let fit = &fitted.maps[index].fit;
+        points.extend(fit.corners().map(|corner| fit.origin + corner.as_dvec3()));
+    }
     let low = points.iter().copied().reduce(DVec3::min).unwrap_or(inner.eye);
     let high = points.iter().copied().reduce(DVec3::max).unwrap_or(inner.eye);
     let center = (low + high) * 0.5;
@@ -85,13 +75,14 @@ pub(crate) fn camera(inner: &PerspectiveCamera, frustum: Option<&ViewFrustum>, m
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use shadowfit::fit;
-    use shadowfit::settings::FitSettings;
+    use glam::DVec2;
+    use shadowfit::{FitInput, MapFitter, Technique, Workspace};
 
-    #[test]
-    fn every_corner_is_in_the_outside_picture() {
-        let inner = PerspectiveCamera {
+    use super::*;
+
+    /// Four maps far from the world's origin.
+    fn fitted() -> Fitted {
+        let camera = PerspectiveCamera {
             eye: DVec3::new(1e5, 3.0, -2e4),
             forward: Vec3::new(0.3, -0.2, -0.9),
             up: Vec3::Y,
@@ -100,34 +91,35 @@ mod tests {
             near: 0.1,
             far: 100.0,
         };
-        let frustum = inner.frustum().expect("a frustum");
-        let fitted = fit(&frustum, Vec3::new(0.4, -0.7, 0.3).normalize(), &FitSettings::default()).expect("a fit");
-        let outside = camera(&inner, Some(&frustum), &[fitted.into()]);
+        let views = [camera.frustum().expect("a frustum")];
+        let mut storage = vec![DVec2::ZERO; Workspace::required(0, 3)];
+        let technique = Technique::default();
+        let input = FitInput::new(&views, Vec3::new(0.4, -0.7, 0.3).normalize());
+        let maps = MapFitter::new().fit(&input, &technique, &mut Workspace::new(&mut storage)).expect("maps");
+        Fitted::new(camera, &technique, maps)
+    }
+
+    #[test]
+    fn every_corner_of_every_map_is_in_the_outside_picture() {
+        let fitted = fitted();
+        assert_eq!(fitted.maps.len(), 4);
+        let outside = camera(&fitted.camera.expect("a camera"), &fitted);
         let clip = outside.clip_from_world(shadowfit::DepthConvention::Reversed);
-        for corner in fitted.corners().map(|corner| fitted.origin + corner.as_dvec3()) {
-            let point = clip * (corner - outside.eye).as_vec3().extend(1.0);
+        let ends: Vec<DVec3> = lines(&fitted).iter().flat_map(|line| line.ends).collect();
+        assert_eq!(ends.len(), 4 * 2 * (12 + 12 + 3), "a slice, a box and an arrow for each map");
+        for end in ends {
+            let point = clip * (end - outside.eye).as_vec3().extend(1.0);
             let ndc = point.truncate() / point.w;
             assert!(point.w > 0.0 && ndc.x.abs() < 1.0 && ndc.y.abs() < 1.0, "{ndc}");
         }
     }
 
     #[test]
-    fn the_near_face_has_four_edges_toward_the_light_and_an_arrow() {
-        let inner = PerspectiveCamera {
-            eye: DVec3::ZERO,
-            forward: Vec3::NEG_Z,
-            up: Vec3::Y,
-            fov_y: 0.8,
-            aspect: 1.0,
-            near: 0.1,
-            far: 10.0,
-        };
-        let direction = Vec3::new(0.4, -0.7, 0.3).normalize();
-        let fitted = fit(&inner.frustum().expect("a frustum"), direction, &FitSettings::default()).expect("a fit");
-        let lines = near_face(&fitted, &fitted.corners());
-        assert_eq!(lines.len(), 4 + 3);
-        let depth = |line: &Line| line.ends.map(|end| end.as_vec3().dot(direction));
-        let [a, b] = depth(&lines[0]);
-        assert!((a - b).abs() < 1e-3, "an edge of the near face lies across the light: {a} {b}");
+    fn arrows_begin_at_the_face_toward_the_light_and_point_along_it() {
+        let fit = fitted().maps[2].fit;
+        let depth = |end: DVec3| (end - fit.origin).as_vec3().dot(fit.direction);
+        let nearest = fit.corners().iter().map(|corner| corner.dot(fit.direction)).fold(f32::MAX, f32::min);
+        let [from, to] = arrow(&fit, Vec4::ONE)[0].ends.map(depth);
+        assert!((from - nearest).abs() < 1e-3 && to > from, "{from} to {to}, the face is at {nearest}");
     }
 }

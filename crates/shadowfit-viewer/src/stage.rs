@@ -2,37 +2,26 @@
 
 mod figures;
 mod home;
+mod inset;
 mod judge;
+mod maps;
 
 use core::fmt;
 
-use glam::Vec3;
-use shadowfit::settings::{CasterPolicy, Settings, SplitScheme, Stabilise};
-use shadowfit::{Aabb, Technique, DepthConvention, FitError, LightFit, PerspectiveCamera, ViewFrustum};
+use shadowfit::tool::Settings;
+use shadowfit::{Aabb, PerspectiveCamera};
 use shadowfit_egui::Artefact;
-use shadowfit_render::{FlyCamera, FlyInput, Gpu, Inset, Picture, Renderer, Statistics};
+use shadowfit_render::{Culling, FlyCamera, FlyInput, Gpu, Overlay, RenderTarget, Renderer, Statistics};
 use shadowfit_scene::Scene;
-use shadowfit_study::{
-    Evaluator, FrameOptions, Judging, NothingToDraw, PreparedScene, ReceiverSource, Technique, TechniqueFitter, View,
-};
-use shadowfit_wgpu::{MapFit, ShadowMapError};
+use shadowfit_study::{Evaluator, FrameOptions, Judging, NothingToDraw, PreparedScene, TechniqueFitter, View};
+use shadowfit_wgpu::{MapFit, ShadowMapDescriptor, ShadowMapError};
 
+use crate::fitted::Fitted;
 use crate::{artefact, outside};
-
-/// Width of a picture, in pixels, from which on the inset has its full 300×200; smaller pictures
-/// have a smaller one.
-const FULL_INSET_WIDTH: f32 = 960.0;
-/// Full size of the inset, in pixels.
-const INSET_SIZE: [f32; 2] = [300.0, 200.0];
-/// Distance of the inset from the picture's corner, in pixels, at full size.
-const INSET_MARGIN: f32 = 12.0;
 
 /// Told when a scene has no place that shows an artefact.
 const NOT_FOUND: &str =
     "No place in this scene shows this well: nothing throws a shadow on a surface that faces the light.";
-
-/// Told when the GPU lacks what a caster policy needs.
-const NO_DEPTH_CLAMP: &str = "this GPU has no depth clamp: the objects place the map's near plane instead";
 
 /// The artefact on show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -99,13 +88,6 @@ pub struct Stage {
     statistics: Statistics,
 }
 
-/// The part of the view that is shadowed, and the maps fitted to it, in order of their `far`.
-#[derive(Clone, Debug, Default)]
-struct Fitted {
-    frustum: Option<ViewFrustum>,
-    maps: Vec<MapFit>,
-}
-
 impl Stage {
     /// Sets up a scene with settings that suit its size, seen by its own camera or from a place
     /// that shows all of it. Pictures get `samples` per pixel (1 or 4).
@@ -114,10 +96,10 @@ impl Stage {
     ///
     /// [`StageError`] if the scene is empty or the shadow map impossible.
     pub fn new(gpu: Gpu, scene: Scene, samples: u32) -> Result<Self, StageError> {
-        let technique = technique(&Settings::default());
-        let renderer = Renderer::new(&gpu, &technique.descriptor(), samples)?;
+        let technique = Settings::default().technique;
+        let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::from(&technique), samples)?;
         let scene = PreparedScene::new(&gpu, renderer.material_layout(), scene)?;
-        let evaluator = Evaluator::new(renderer, technique.bias, Judging { crawl: false, ..Judging::default() });
+        let evaluator = Evaluator::new(renderer, Judging { crawl: false, ..Judging::default() });
         let home = home::home(&scene);
         Ok(Self {
             settings: home.0,
@@ -172,9 +154,9 @@ impl Stage {
         &self.gpu
     }
 
-    /// A picture that this stage can draw into.
-    pub fn picture(&self, size: [u32; 2]) -> Picture {
-        self.evaluator.renderer.picture(&self.gpu, size)
+    /// A target of the given width and height, in pixels, that this stage can draw into.
+    pub fn target(&self, size: [u32; 2]) -> RenderTarget {
+        self.evaluator.renderer.target(&self.gpu, size)
     }
 
     /// The artefact on show, if any.
@@ -220,6 +202,12 @@ impl Stage {
     /// Back to the view that the scene was opened with; settings stay.
     pub fn reset_camera(&mut self) {
         self.camera = self.home.1;
+        self.cut();
+    }
+
+    /// Begins anew with a view that has nothing to do with the one before; what is frozen stays.
+    fn cut(&mut self) {
+        self.fitted = self.fitted.take().filter(|_| self.settings.view.freeze_fit);
     }
 
     /// Takes the present settings and view as those to go back to.
@@ -253,66 +241,34 @@ impl Stage {
 
     /// The present view as it is fitted and judged, for a picture of the given size.
     fn view(&self, size: [u32; 2]) -> View {
-        let is_first = self.fitted.is_none();
-        View { camera: self.perspective(size), direction: self.settings.light.direction(), is_first }
+        View { camera: self.perspective(size), direction: self.settings.light.direction(), is_first: false }
     }
 
-    /// The maps of the present view and settings, in order of their `far`; none where there is nothing
-    /// to fit, with the reason as [`Self::problem`].
-    pub fn maps(&mut self, size: [u32; 2]) -> Vec<MapFit> {
-        self.fit(size).maps
-    }
-
-    /// Fits the present view, unless what was fitted last is frozen.
-    fn fit(&mut self, size: [u32; 2]) -> Fitted {
-        let technique = self.drawable_technique();
-        let map = self.evaluator.renderer.shadow_map().descriptor();
-        let suits =
-            |map_fit: &MapFit| map_fit.fit.resolution.to_array() == map.resolution && map_fit.fit.depth == map.depth;
-        if self.settings.view.freeze_fit
-            && let Some(frozen) = &self.fitted
-            && frozen.maps.len() <= map.maps as usize
-            && frozen.maps.iter().all(suits)
-        {
-            return frozen.clone();
-        }
-        let fitted = match self.fit_now(&technique, size) {
-            Ok(fitted) => fitted,
-            Err(error) => {
-                self.problem = Some(format!("no shadow map: {error}"));
-                Fitted::default()
-            }
-        };
-        self.fitted = Some(fitted.clone());
-        fitted
-    }
-
-    fn fit_now(&mut self, technique: &Technique, size: [u32; 2]) -> Result<Fitted, FitError> {
-        let view = self.view(size);
-        self.fitter.set_technique(technique);
-        let maps = self.fitter.fit(&self.scene, &view)?;
-        let frustum = view.camera.frustum()?;
-        let far = view.camera.far.min(technique.maps.fit.max_distance);
-        Ok(Fitted { frustum: frustum.slice(view.camera.near, far).ok(), maps })
-    }
-
-    /// Draws the present view into a picture.
-    pub fn draw(&mut self, picture: &RenderTarget) {
+    /// Draws the present view into a target.
+    pub fn draw(&mut self, target: &RenderTarget) {
         self.problem = None;
-        let Fitted { frustum, maps } = self.fit(picture.size);
-        let view = self.view(picture.size);
-        let is_outside = self.settings.view.outside;
-        let outside = is_outside.then(|| outside::camera(&view.camera, frustum.as_ref(), &maps));
-        let lines = if is_outside { outside::lines(frustum.as_ref(), &maps) } else { Vec::new() };
-        let inset = maps.first().filter(|_| self.settings.view.inset).map(|map| self.inset(&map.fit, picture.size));
+        let fitted = self.fit(target.size);
+        let maps: Vec<MapFit> = fitted.maps.iter().map(MapFit::from).collect();
+        let seen = self.view(target.size);
+        // A frozen fit was made for another camera, whose view depths still choose among its maps.
+        let view = View { camera: fitted.camera.unwrap_or(seen.camera), ..seen };
+        let settings = self.settings.view;
+        let outside = settings.outside.then(|| outside::camera(&seen.camera, &fitted));
+        let from_elsewhere = outside.or_else(|| (view.camera != seen.camera).then_some(seen.camera));
+        let lines = if settings.outside { outside::lines(&fitted) } else { Vec::new() };
+        let shown = settings.inset_index(maps.len() as u32);
+        let inset = maps.get(shown).filter(|_| settings.inset);
         let options = FrameOptions {
-            outside,
+            outside: from_elsewhere,
+            // Maps that are looked at themselves hold all their casters, not only those of this picture's shadows.
+            culling: if from_elsewhere.is_some() { Culling::AsGiven } else { Culling::Swept },
+            overlay: if settings.tint_maps { Overlay::MapTint } else { Overlay::None },
             lines: &lines,
-            inset,
-            shadows: self.settings.view.shadows,
+            inset: inset.map(|map| inset::inset(shown, &map.fit, &self.bounds(), target.size)),
+            shadows: settings.shadows,
             sight: Some(self.sight(outside.as_ref())),
         };
-        match self.evaluator.draw(&self.gpu, &mut self.scene, &view, &maps, &options, picture) {
+        match self.evaluator.draw(&self.gpu, &mut self.scene, &view, &maps, &options, target) {
             Ok(statistics) => self.statistics = statistics,
             Err(error) => self.problem = Some(error.to_string()),
         }
@@ -323,79 +279,4 @@ impl Stage {
         let visible = self.home.0.camera.far;
         outside.map_or(visible, |camera| camera.far.max(visible))
     }
-
-    /// The technique that the settings ask for, as far as it can be drawn, and its shadow map made. Where that is
-    /// impossible, the old one stays and is fitted to, with the reason as [`Self::problem`].
-    fn drawable_technique(&mut self) -> Technique {
-        let mut technique = technique(&self.settings);
-        let fit = &mut technique.maps.fit;
-        if fit.depth == DepthConvention::NegativeOneToOne {
-            self.problem = Some("depth -1 to 1 is OpenGL's: wgpu draws the map with 0 to 1 instead".to_owned());
-            fit.depth = DepthConvention::ZeroToOne;
-        }
-        if technique.descriptor().depth_clamp && !self.gpu.has_depth_clamp() {
-            self.problem = Some(NO_DEPTH_CLAMP.to_owned());
-            technique.maps.fit.casters = CasterPolicy::List;
-        }
-        self.evaluator.bias = technique.bias;
-        if let Err(error) = self.evaluator.renderer.set_shadow_map(&self.gpu, &technique.descriptor()) {
-            self.problem = Some(error.to_string());
-            let map = self.evaluator.renderer.shadow_map().descriptor();
-            technique.maps.count = technique.maps.count.min(map.maps);
-            let fit = &mut technique.maps.fit;
-            (fit.resolution, fit.depth) = (map.resolution.into(), map.depth);
-            if fit.casters == CasterPolicy::DepthClamp && !map.depth_clamp {
-                fit.casters = CasterPolicy::List;
-            }
-        }
-        technique
-    }
-
-    /// The shadow map in the lower left corner, with the depths of the scene stretched to grey.
-    fn inset(&self, fit: &LightFit, size: [u32; 2]) -> Inset {
-        let scale = (size[0] as f32 / FULL_INSET_WIDTH).min(1.0);
-        let [width, height] = INSET_SIZE.map(|side| (side * scale).round());
-        let margin = (INSET_MARGIN * scale).round();
-        let depths = corners(&self.bounds()).map(|corner| {
-            fit.uv_from_world.transform_point3((corner.as_dvec3() - fit.origin).as_vec3()).z.clamp(0.0, 1.0)
-        });
-        let low = depths.iter().copied().fold(1.0, f32::min);
-        let high = depths.iter().copied().fold(0.0, f32::max);
-        Inset {
-            rectangle: [margin, size[1] as f32 - height - margin, width, height],
-            depth_range: if low < high { [low, high] } else { [0.0, 1.0] },
-            map: 0,
-        }
-    }
-}
-
-/// The technique of the settings: one map.
-fn technique(settings: &Settings) -> Technique {
-    let maps = Technique {
-        fit: settings.fit,
-        count: 1,
-        splits: SplitScheme::Logarithmic,
-        stabilise: Stabilise::Off,
-        ..Technique::default()
-    };
-    Technique {
-        name: String::new(),
-        what: String::new(),
-        receivers: ReceiverSource::Clusters,
-        maps,
-        bias: settings.bias,
-        filter: settings.filter,
-        format: settings.format,
-    }
-}
-
-fn corners(bounds: &Aabb) -> [Vec3; 8] {
-    core::array::from_fn(|index| {
-        let pick = |bit: usize, low: f32, high: f32| if index >> bit & 1 == 0 { low } else { high };
-        Vec3::new(
-            pick(0, bounds.min.x, bounds.max.x),
-            pick(1, bounds.min.y, bounds.max.y),
-            pick(2, bounds.min.z, bounds.max.z),
-        )
-    })
 }

@@ -2,8 +2,11 @@
 //! artefact shows. Positions are relative to the origin of the scene's rays, in metres.
 
 use glam::{DVec3, Vec3};
-use shadowfit::{Aabb, LightFit, PerspectiveCamera};
-use shadowfit_study::SceneRays;
+use shadowfit::{Aabb, PerspectiveCamera, Technique};
+use shadowfit_study::{PreparedScene, TechniqueFitter, View};
+use shadowfit_truth::Tracer;
+
+use crate::fitted::Fitted;
 
 /// Columns and rows of a candidate's coarse picture.
 pub(crate) const GRID: [u32; 2] = [32, 18];
@@ -34,16 +37,35 @@ pub(crate) struct Shadow {
     pub(crate) reach: f32,
 }
 
-/// Rays of a scene under one light.
+/// A scene under one light.
 pub(crate) struct ViewSearch<'a> {
-    rays: &'a SceneRays,
+    scene: &'a PreparedScene,
+    tracer: &'a Tracer,
+    /// Direction of travel of the light.
+    pub(crate) direction: Vec3,
     to_light: Vec3,
     offset: f32,
 }
 
 impl<'a> ViewSearch<'a> {
-    pub(crate) fn new(rays: &'a SceneRays, direction: Vec3, bounds: &Aabb) -> Self {
-        Self { rays, to_light: -direction, offset: (bounds.max - bounds.min).length() * RAY_OFFSET }
+    pub(crate) fn new(scene: &'a PreparedScene, direction: Vec3) -> Self {
+        let bounds = scene.bounds();
+        let offset = (bounds.max - bounds.min).length() * RAY_OFFSET;
+        Self { scene, tracer: &scene.rays().tracer, direction, to_light: -direction, offset }
+    }
+
+    /// The maps of a candidate, fitted as the viewer fits them to a view that the camera has just been set on; `None`
+    /// where nothing can be fitted.
+    pub(crate) fn fit(&self, technique: &Technique, camera: &PerspectiveCamera) -> Option<Fitted> {
+        let camera = PerspectiveCamera { eye: self.world(camera.eye), ..*camera };
+        let mut fitter = TechniqueFitter::new(*technique);
+        fitter.fit_alone(self.scene, &View { camera, direction: self.direction, is_first: true }).ok()?;
+        Some(Fitted::new(camera, technique, *fitter.fitted()))
+    }
+
+    /// World position of a point of the search.
+    pub(crate) fn world(&self, point: DVec3) -> DVec3 {
+        self.scene.origin() + point
     }
 
     /// The coarse picture of a camera, rows from the top.
@@ -58,8 +80,8 @@ impl<'a> ViewSearch<'a> {
                 let y = 1.0 - ((index / GRID[0]) as f32 + 0.5) / GRID[1] as f32 * 2.0;
                 let ray = camera.forward + right * (x * half_height * camera.aspect) + up * (y * half_height);
                 let ray = ray.normalize();
-                let hit = self.rays.tracer.first_hit(eye, ray)?;
-                let normal = self.rays.tracer.normal(hit.triangle);
+                let hit = self.tracer.first_hit(eye, ray)?;
+                let normal = self.tracer.normal(hit.triangle);
                 Some(Seen {
                     position: eye + ray * hit.distance,
                     normal: if normal.dot(ray) > 0.0 { -normal } else { normal },
@@ -76,14 +98,16 @@ impl<'a> ViewSearch<'a> {
 
     /// Whether a seen point is in shadow.
     pub(crate) fn is_shadowed(&self, seen: &Seen) -> bool {
-        self.rays.tracer.is_occluded(seen.position + seen.normal * self.offset, self.to_light)
+        self.tracer.is_occluded(seen.position + seen.normal * self.offset, self.to_light)
     }
 
-    /// Whether a seen point is in shadow by casters that are all outside the fitted map.
-    pub(crate) fn is_hole(&self, seen: &Seen, fit: &LightFit) -> bool {
+    /// Whether a seen point is in shadow by casters that are all outside the map that it reads.
+    pub(crate) fn is_hole(&self, seen: &Seen, fitted: &Fitted) -> bool {
         let origin = seen.position + seen.normal * self.offset;
-        let hits = self.rays.tracer.all_hits(origin, self.to_light);
-        let inside = |distance: f32| fit.covers((origin + self.to_light * distance).as_dvec3());
+        let Some(map) = fitted.read_at(self.world(origin.as_dvec3())) else { return false };
+        let fit = &fitted.maps[map].fit;
+        let hits = self.tracer.all_hits(origin, self.to_light);
+        let inside = |distance: f32| fit.covers(self.world((origin + self.to_light * distance).as_dvec3()));
         !hits.is_empty() && !hits.iter().any(|hit| inside(hit.distance))
     }
 
@@ -107,10 +131,10 @@ impl<'a> ViewSearch<'a> {
     /// that faces the light.
     fn shadow_along(&self, middle: Vec3, radius: f32) -> Option<Shadow> {
         let start = middle + self.to_light * radius;
-        let mut hits = self.rays.tracer.all_hits(start, -self.to_light);
+        let mut hits = self.tracer.all_hits(start, -self.to_light);
         hits.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let caster = hits.first().filter(|hit| hit.distance < radius * 2.0)?;
-        let faces = |triangle| self.rays.tracer.normal(triangle).dot(self.to_light) > 0.3;
+        let faces = |triangle| self.tracer.normal(triangle).dot(self.to_light) > 0.3;
         let least = caster.distance + radius * LEAST_REACH;
         let receiver = hits[1..].iter().rfind(|hit| hit.distance > least && faces(hit.triangle))?;
         Some(Shadow { receiver: start - self.to_light * receiver.distance, reach: receiver.distance - caster.distance })

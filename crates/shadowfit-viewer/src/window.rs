@@ -130,10 +130,13 @@ impl Running {
         let surface = Surface::new(instance, window.clone(), surface, &gpu)?;
         let samples = if gpu.is_software() { SOFTWARE_SAMPLES } else { GPU_SAMPLES };
         let mut stage = Stage::new(gpu, scene, samples)?;
-        arguments.apply(&mut stage.settings)?;
+        let technique = arguments.apply(&mut stage.settings)?;
         stage.animation = arguments.animation;
         stage.set_home();
-        let interface = Interface::new(&stage, surface.configuration.format);
+        let mut interface = Interface::new(&stage, surface.configuration.format);
+        if let Some(technique) = technique {
+            interface.name_technique(technique);
+        }
         let egui = egui_winit::State::new(
             interface.context.clone(),
             egui::ViewportId::ROOT,

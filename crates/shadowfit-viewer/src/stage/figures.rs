@@ -1,15 +1,19 @@
 //! The live figures of the stage's frames.
 
-use glam::Vec3;
-use shadowfit::figures::Figures;
+use glam::{DVec3, Vec3};
+use shadowfit::figures::{Figures, MapFigures};
 use shadowfit::{DepthConvention, LightFit, PerspectiveCamera, diagnostics};
-use shadowfit_wgpu::MapFit;
 
 use super::Stage;
+use crate::fitted::Fitted;
 
 impl Stage {
     /// The live figures of the last frame, for a picture of the given size.
     pub fn figures(&mut self, size: [u32; 2]) -> Figures {
+        let fitted = match &self.fitted {
+            Some(fitted) => fitted.clone(),
+            None => self.fit(size),
+        };
         let (statistics, times) = (self.statistics, self.evaluator.renderer.pass_times());
         let mut figures = Figures {
             shadow_pass_ms: times.shadow_ms,
@@ -18,33 +22,30 @@ impl Stage {
             shadow_triangles: Some(statistics.shadow_triangles),
             ..Figures::default()
         };
-        let maps = match &self.fitted {
-            Some(fitted) => fitted.maps.clone(),
-            None => self.maps(size),
-        };
-        if let Some(MapFit { fit, .. }) = maps.first() {
-            figures.set_by = Some(fit.set_by);
-            figures.is_empty = Some(fit.is_empty);
-            figures.texel_size = Some(fit.texel_size.to_array());
-            figures.depth_range = Some(fit.depth_range);
-            figures.depth_step = Some(diagnostics::depth_step(self.settings.format, fit.depth_range));
-            figures.pixels_per_texel = self.pixels_per_texel_ahead(fit, size);
+        for ((figures, map), drawn) in figures.maps.iter_mut().zip(fitted.maps.iter()).zip(&statistics.maps) {
+            *figures = Some(MapFigures {
+                casters: Some(drawn.casters),
+                draws: Some(drawn.draws),
+                triangles: Some(drawn.triangles),
+                ..MapFigures::new(map, fitted.end, self.settings.technique.format)
+            });
+        }
+        if let Some((map, pixels_per_texel)) = self.ahead(&fitted, size) {
+            (figures.map_ahead, figures.pixels_per_texel) = (Some(map as u32), pixels_per_texel);
         }
         figures
     }
 
-    /// Pixels per texel where the middle of the picture meets the scene.
-    fn pixels_per_texel_ahead(&self, fit: &LightFit, size: [u32; 2]) -> Option<f32> {
-        // A scene that moves would need new rays each frame; its figure is left open.
-        if self.settings.view.play && !self.scene().animations.is_empty() {
-            return None;
-        }
+    /// The map that is read where the middle of the picture meets the scene, and its pixels per texel there.
+    fn ahead(&self, fitted: &Fitted, size: [u32; 2]) -> Option<(usize, Option<f32>)> {
         let camera = self.perspective(size);
         let rays = self.scene.rays();
         let eye = self.scene.camera_for_rays(&camera).eye;
         let hit = rays.tracer.first_hit(eye.as_vec3(), camera.forward)?;
         let normal = rays.tracer.normal(hit.triangle);
-        pixels_per_texel(fit, &camera, size, camera.forward * hit.distance, normal)
+        let point = camera.forward * hit.distance;
+        let map = fitted.read_at(camera.eye + DVec3::from(point))?;
+        Some((map, pixels_per_texel(&fitted.maps[map].fit, &camera, size, point, normal)))
     }
 }
 

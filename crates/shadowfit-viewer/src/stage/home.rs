@@ -1,9 +1,10 @@
 //! The settings and the view that a scene is opened with.
 
 use glam::{DVec3, Mat4, Vec3};
-use shadowfit::settings::{LightSettings, Settings};
+use shadowfit::Aabb;
+use shadowfit::tool::{LightSettings, Settings};
 use shadowfit_render::FlyCamera;
-use shadowfit_scene::{Aabb, Lens};
+use shadowfit_scene::Lens;
 use shadowfit_study::PreparedScene;
 
 /// Settings and view for a scene: its own camera and sun where it has them.
@@ -15,9 +16,9 @@ pub(super) fn home(prepared: &PreparedScene) -> (Settings, FlyCamera) {
     }
     let radius = ((bounds.max - bounds.min).length() * 0.5).max(1e-3);
     if scene.subject.is_none() {
-        // A scene of unknown units: everything follows from its size.
-        settings.fit.max_distance = radius * 4.0;
-        settings.fit.caster_extension = radius * 2.0;
+        // A scene of unknown units: all lengths follow from its size. Shadows reach as far as the camera sees, since maps
+        // are spent on what is there and not on the distance.
+        settings.technique.fit.caster_extension = radius * 2.0;
         settings.camera.near = radius * 0.005;
         settings.camera.far = radius * 20.0;
         settings.camera.speed = radius * 0.4;

@@ -1,0 +1,79 @@
+//! The maps of a view, and which of them a point reads.
+
+use glam::DVec3;
+use shadowfit::{FittedMaps, PerspectiveCamera, Technique, ViewFrustum};
+
+/// The maps of a view.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Fitted {
+    /// The camera of the view, whose view depths choose among the maps; `None` where nothing was fitted.
+    pub(crate) camera: Option<PerspectiveCamera>,
+    /// View depth at which shadows end, in metres.
+    pub(crate) end: f32,
+    /// The maps, the nearest first.
+    pub(crate) maps: FittedMaps,
+}
+
+impl Fitted {
+    pub(crate) fn new(camera: PerspectiveCamera, technique: &Technique, maps: FittedMaps) -> Self {
+        Self { camera: Some(camera), end: camera.far.min(technique.fit.max_distance), maps }
+    }
+
+    /// The part of the view that is shadowed.
+    pub(crate) fn frustum(&self) -> Option<ViewFrustum> {
+        self.between(f32::MIN, f32::MAX)
+    }
+
+    /// The part of the view whose points look into a map first; `None` where no point does.
+    pub(crate) fn slice(&self, map: usize) -> Option<ViewFrustum> {
+        let map = self.maps.get(map)?;
+        self.between(map.near, map.far)
+    }
+
+    fn between(&self, near: f32, far: f32) -> Option<ViewFrustum> {
+        let camera = self.camera?;
+        camera.frustum().and_then(|frustum| frustum.slice(near.max(camera.near), far.min(self.end))).ok()
+    }
+
+    /// Index of the map that a point (world space, metres) reads: of those that end beyond its view depth the first that
+    /// covers it.
+    pub(crate) fn read_at(&self, point: DVec3) -> Option<usize> {
+        let camera = self.camera?;
+        let depth = (point - camera.eye).dot(camera.forward.as_dvec3().normalize());
+        self.maps.iter().position(|map| depth < f64::from(map.far) && map.fit.covers(point))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec2, Vec3};
+    use shadowfit::{FitInput, MapFitter, SplitScheme, Workspace};
+
+    use super::*;
+
+    #[test]
+    fn points_read_the_map_of_their_view_depth_and_slices_end_with_the_shadows() {
+        let camera = PerspectiveCamera {
+            eye: DVec3::new(3.0, 2.0, 1.0),
+            forward: Vec3::NEG_Z,
+            up: Vec3::Y,
+            fov_y: 0.8,
+            aspect: 1.5,
+            near: 0.5,
+            far: 300.0,
+        };
+        let manual = SplitScheme::Manual([10.0, 30.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let technique = Technique::default().with_count(3).with_splits(manual).with_max_distance(80.0);
+        let frustum = [camera.frustum().expect("a frustum")];
+        let mut storage = vec![DVec2::ZERO; Workspace::required(0, 3)];
+        let input = FitInput::new(&frustum, Vec3::new(0.3, -0.8, 0.2).normalize());
+        let maps = MapFitter::new().fit(&input, &technique, &mut Workspace::new(&mut storage)).expect("maps");
+        let fitted = Fitted::new(camera, &technique, maps);
+        let at = |depth: f64| fitted.read_at(camera.eye + DVec3::NEG_Z * depth);
+        assert_eq!([at(5.0), at(20.0), at(50.0), at(500.0)], [Some(0), Some(1), Some(2), None]);
+        let ends = [0, 1, 2, 3].map(|map| fitted.slice(map).map(|slice| [slice.near, slice.far]));
+        assert_eq!(ends, [Some([0.5, 10.0]), Some([10.0, 30.0]), Some([30.0, 80.0]), None]);
+        assert_eq!(fitted.frustum().map(|frustum| [frustum.near, frustum.far]), Some([0.5, 80.0]));
+        assert_eq!(Fitted::default().read_at(camera.eye), None);
+    }
+}
