@@ -14,6 +14,8 @@ use glam::{DVec3, Vec3, Vec4};
 use crate::settings::CasterPolicy;
 use crate::{Aabb, LightFit};
 
+use shapes::ROUNDING;
+
 pub use batch::cull;
 pub use planes::CasterPlanes;
 pub use shapes::{Bounds, OrientedBox, Sphere};
@@ -47,11 +49,6 @@ pub struct CasterVolume {
     /// Number of planes in use.
     pub count: u32,
 }
-
-/// Rounding that the tests allow for, as a share of the coordinates of shape and plane: 16 · 2⁻²⁴.
-/// A test has at most ten operations in f32; the planes' normals are rounded once and lie by two
-/// roundings more along the light.
-const ROUNDING: f32 = 16.0 / 16_777_216.0;
 
 /// A plane that everything is inside of.
 const EVERYWHERE: Vec4 = Vec4::new(0.0, 0.0, 0.0, 1.0);
@@ -162,6 +159,16 @@ impl CasterVolume {
         let slack = shape.slack();
         let is_behind = |plane: &Vec4| shape.support(plane.truncate()) + widened(plane.w) < -slack;
         slack != f32::NEG_INFINITY && !self.active_planes().iter().any(is_behind)
+    }
+}
+
+impl LightFit {
+    /// Every caster that the map can store: its own box, relative to [`Self::origin`]. Casters
+    /// nearer to the light than its near plane are not among them; with depth clamp they are, see
+    /// [`CasterVolume::of_map`]. [`CasterVolume::swept`] holds only those that can throw a shadow
+    /// into view.
+    pub fn caster_volume(&self) -> CasterVolume {
+        CasterVolume::of_map(self, CasterPolicy::None)
     }
 }
 

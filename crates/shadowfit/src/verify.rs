@@ -21,8 +21,11 @@ use glam::DVec3;
 
 use crate::axes::LightAxes;
 use crate::bias::{HARDWARE_SNAP, Reach};
-use crate::fits::{Content, Footprint, Outline, Range, Scratch};
-use crate::view::{Slice, box_corners, moved};
+use crate::content::Content;
+use crate::light_hull::LightHull;
+use crate::outline::{Outline, Scratch};
+use crate::rule::Covers;
+use crate::view::{Range, Slice, box_corners, moved};
 use crate::{CasterPolicy, FitError, FitInput, FitSettings, FittedMap, LightFit, Technique, Workspace, checks};
 use half_space::{HalfSpaces, ROUNDING};
 
@@ -244,9 +247,9 @@ pub fn verify(
         && claim.casters != CasterPolicy::DepthClamp
         && content.casters.is_some_and(|casters| !casters.boxes.is_empty())
     {
-        let footprint = Footprint::of_receivers(&content, axes, range, points)?;
-        let pad = caster_reach(fit, claim, footprint.reach);
-        let (by, point) = nearest_caster(&content, &Outline::new(&axes, footprint.outline, pad), &half_spaces, offset);
+        let hull = LightHull::of(Covers::Receivers, &content, axes, range, points)?;
+        let pad = caster_reach(fit, claim, hull.farthest);
+        let (by, point) = nearest_caster(&content, &Outline::new(&axes, hull.outline, pad), &half_spaces, offset);
         if by < 0.0 {
             return Ok(Certificate::CasterLost { point: fit.origin + point, by: -by as f32 });
         }
