@@ -14,7 +14,7 @@
 use glam::{DVec3, Vec3, Vec4};
 
 use super::shapes::{Bounds, LANES, Lane, Lanes};
-use super::{CasterVolume, widened};
+use super::volume::{CasterVolume, widened};
 
 /// Most volumes that one call tests: the bits of a mask.
 const MAX_VOLUMES: usize = 8;

@@ -20,7 +20,7 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
-use super::{CasterVolume, map_planes};
+use super::volume::{CasterVolume, map_planes};
 use crate::bias::Reach;
 use crate::checks::{self, MAX_LENGTH};
 use crate::hull::HullBuilder;
