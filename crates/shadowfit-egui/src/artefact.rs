@@ -50,12 +50,12 @@ impl Artefact {
                  surfaces that face the light."
             }
             Self::Aliasing => {
-                "Shadow edges near the camera are staircases. One map is spread evenly over the whole shadow \
-                 distance, while the camera magnifies what is near, so one texel there covers many pixels. \
-                 The figure 'pixels per texel' says how many."
+                "Shadow edges near the camera are staircases. A map is spread evenly over all that it covers, while \
+                 the camera magnifies what is near, so one texel there covers many pixels. The figure 'pixels per \
+                 texel' says how many."
             }
             Self::ClippingHole => {
-                "A shadow that should be there is missing or cut off. The map's box is fitted to what the camera \
+                "A shadow that should be there is missing or cut off. A map's box is fitted to what the camera \
                  sees; a caster between the light and that box is outside it, is never drawn into the map, and \
                  so throws no shadow into the view."
             }
@@ -72,12 +72,12 @@ impl Artefact {
                  shadows from their casters."
             }
             Self::Aliasing => {
-                "The shadow distance is shortened, so that the map's texels are spent near the camera, the map \
-                 is larger, and the filter blends neighbouring texels. What is farther away than the shadow \
-                 distance has no shadow now."
+                "The shadow distance is shortened, so that texels are spent near the camera, the maps are larger, \
+                 and the filter blends neighbouring texels. What is farther away than the shadow distance has no \
+                 shadow now."
             }
             Self::ClippingHole => {
-                "The near plane of the map is pulled toward the light by the caster extension, so that casters \
+                "The near plane of each map is pulled toward the light by the caster extension, so that casters \
                  outside the view are drawn into it. The size of the texels stays; only the depth range grows."
             }
         }

@@ -5,8 +5,8 @@
 //! [`shadowfit::params`], so a new parameter appears by itself.
 //!
 //! ```
-//! use shadowfit::Settings;
 //! use shadowfit::figures::Figures;
+//! use shadowfit::tool::Settings;
 //! use shadowfit_egui::{PANEL_WIDTH, Panel, PanelInput, SceneLine};
 //!
 //! # fn host(ui: &mut egui::Ui, panel: &mut Panel, settings: &mut Settings) {
@@ -31,24 +31,29 @@
 mod artefact;
 mod figures;
 mod help;
+mod maps;
 mod rows;
 mod style;
+mod technique;
+mod units;
 
 use std::collections::BTreeSet;
 
 use egui::{RichText, ScrollArea, Sense, TextStyle, Ui, Vec2};
-use shadowfit::Settings;
+use shadowfit::Technique;
 use shadowfit::figures::Figures;
 use shadowfit::params::Group;
+use shadowfit::tool::Settings;
 
 pub use artefact::Artefact;
 pub use help::{KEYS, KeyHelp, help_overlay};
 pub use style::apply_style;
 
 /// Width that the panel is laid out for, in points, margins included.
-pub const PANEL_WIDTH: f32 = 320.0;
+pub const PANEL_WIDTH: f32 = 360.0;
 
-/// The tuning panel. Keep one for as long as its host lives: it remembers the plotted times.
+/// The tuning panel. Keep one for as long as its host lives: it remembers the plotted times
+/// and the name of the technique.
 #[derive(Clone, Debug, Default)]
 pub struct Panel {
     /// What the reset button of a parameter goes back to. A host that begins with settings of its
@@ -56,6 +61,7 @@ pub struct Panel {
     pub defaults: Settings,
     /// Ids of parameters that the host does not use and that get no control.
     pub hidden: BTreeSet<&'static str>,
+    technique: technique::Menu,
     frame_times: figures::History,
 }
 
@@ -124,6 +130,12 @@ impl Panel {
         self
     }
 
+    /// Names the technique of the settings after a file or whatever else the host opened it from. The
+    /// menu of techniques shows that name and, once the technique is changed, offers it again.
+    pub fn name_technique(&mut self, name: impl Into<String>, technique: Technique) {
+        self.technique.open(name.into(), technique);
+    }
+
     /// Shows the panel in the whole of `ui`, with a scroll bar when it is higher than that. Call
     /// it once a frame.
     pub fn show(&mut self, ui: &mut Ui, input: PanelInput<'_>) -> PanelOutput {
@@ -139,6 +151,8 @@ impl Panel {
                 figures::show(ui, figures);
                 self.frame_times.plot(ui);
             });
+            ui.add_space(6.0);
+            self.technique.show(ui, &mut settings.technique);
             for group in Group::ALL {
                 self.group(ui, group, settings);
             }
@@ -151,10 +165,13 @@ impl Panel {
         if rows.peek().is_none() {
             return;
         }
-        let open = !matches!(group, Group::Camera);
+        let open = !matches!(group, Group::Override | Group::Camera);
         section(ui, group.label(), open, |ui| {
             for parameter in rows {
-                rows::show(ui, parameter, settings, &self.defaults);
+                // Asked row by row, since each may change what the next ones are.
+                if rows::is_shown(parameter, settings) {
+                    rows::show(ui, parameter, settings, &self.defaults);
+                }
             }
         })
         .on_hover_text(group.help());
@@ -171,7 +188,7 @@ fn section(ui: &mut Ui, title: &str, open: bool, contents: impl FnOnce(&mut Ui))
 
 fn header(ui: &mut Ui, scene: &SceneLine<'_>, message: Option<&str>, action: &mut Option<Action>) {
     ui.heading("Shadow tuning");
-    ui.add(egui::Label::new(format!("{}, {} triangles", scene.name, figures::grouped(scene.triangles))).wrap());
+    ui.add(egui::Label::new(format!("{}, {} triangles", scene.name, units::grouped(scene.triangles))).wrap());
     for note in scene.notes {
         ui.add(egui::Label::new(RichText::new(note).color(ui.visuals().warn_fg_color)).wrap());
     }

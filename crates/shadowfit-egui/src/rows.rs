@@ -1,87 +1,196 @@
 //! One control per parameter: label, slider or list or check box, unit, and a reset button when the
 //! value is not the default.
 
-use std::f32::consts::TAU;
+mod label;
+mod side;
 
-use egui::{
-    Align, Checkbox, Color32, ComboBox, Label, Layout, Pos2, Response, Role, Sense, Shape, Slider, SliderClamping,
-    Stroke, Ui, Vec2, WidgetInfo,
-};
-use shadowfit::Settings;
-use shadowfit::params::{Choice, Kind, Number, Parameter, Toggle};
+use egui::{Checkbox, ComboBox, Response, Slider, SliderClamping, Ui};
+use shadowfit::params::{Choice, Group, Kind, Number, Optional, Parameter, Toggle};
+use shadowfit::tool::Settings;
 
-/// Width of the labels, in points: the longest of them fits.
-const LABEL_WIDTH: f32 = 108.0;
+use crate::maps;
+use label::{RESET_WIDTH, reset_button};
+
+pub(crate) use label::label;
+
 /// Width of the number field with its unit, in points.
 const VALUE_WIDTH: f32 = 82.0;
-/// Width kept free for the reset button, in points, so that controls do not jump.
-const RESET_WIDTH: f32 = 20.0;
+
+/// Id of the parameter that is shown as a row of buttons, one for each map.
+const INSET_MAP: &str = "view.inset_map";
+
+/// A parameter, and what its row says.
+struct Row<'a> {
+    parameter: &'a Parameter,
+    /// What it does, its range and its default.
+    help: String,
+    /// Why it has no effect.
+    reason: Option<&'static str>,
+}
+
+impl Row<'_> {
+    fn label(&self, ui: &mut Ui) -> Response {
+        self.explain(label(ui, self.parameter.label))
+    }
+
+    fn explain(&self, response: Response) -> Response {
+        match self.reason {
+            Some(reason) => response.on_disabled_hover_text(format!("{reason}\n\n{}", self.help)),
+            None => response.on_hover_text(&self.help),
+        }
+    }
+}
+
+/// Whether a parameter gets a row under these settings: not one of another choice of splits, and none
+/// of a map that is not there.
+pub(crate) fn is_shown(parameter: &Parameter, settings: &Settings) -> bool {
+    let belongs_to_a_choice = matches!(&parameter.kind, Kind::Optional(optional) if optional.unset.is_none());
+    let goes_when_inert = belongs_to_a_choice || parameter.group == Group::Override;
+    parameter.is_present(settings) && !(goes_when_inert && (parameter.inert)(settings).is_some())
+}
 
 /// The row of a parameter. A double click on its label resets it, as the button does; a number that
 /// is NaN, which no slider can show, resets itself.
 pub(crate) fn show(ui: &mut Ui, parameter: &Parameter, settings: &mut Settings, defaults: &Settings) {
-    let help = help(parameter, defaults);
-    let reason = (parameter.inert)(settings);
-    let mut reset = matches!(parameter.kind, Kind::Number(number) if number.get(settings).is_nan());
+    let row = Row { parameter, help: help(parameter, defaults), reason: (parameter.inert)(settings) };
+    let mut reset = is_nan(parameter, settings);
     ui.push_id(parameter.id, |ui| {
-        ui.horizontal(|ui| {
-            ui.add_enabled_ui(reason.is_none(), |ui| match &parameter.kind {
-                Kind::Number(number) => reset |= number_row(ui, parameter, number, settings, &help, reason),
-                Kind::Choice(choice) => reset |= choice_row(ui, parameter, choice, settings, &help, reason),
-                Kind::Toggle(toggle) => toggle_row(ui, parameter, *toggle, settings, &help, reason),
-            });
+        let line = ui.horizontal(|ui| {
+            let line = ui.add_enabled_ui(row.reason.is_none(), |ui| first_line(ui, &row, settings));
             if !parameter.is_equal(settings, defaults) {
-                reset |= reset_button(ui, parameter);
+                reset |= reset_button(ui, parameter.label);
             }
+            line.inner
         });
+        let label = line.inner;
+        if let Kind::Optional(optional) = &parameter.kind
+            && optional.unset.is_some()
+            && optional.get(settings).is_some()
+        {
+            ui.add_enabled_ui(row.reason.is_none(), |ui| second_line(ui, &row, optional, settings, label.as_ref()));
+        }
+        reset |= label.is_some_and(|label| label.double_clicked());
     });
     if reset {
         parameter.copy(settings, defaults);
     }
 }
 
-fn number_row(
-    ui: &mut Ui,
-    parameter: &Parameter,
-    number: &Number,
-    settings: &mut Settings,
-    help: &str,
-    reason: Option<&str>,
-) -> bool {
-    let label = label(ui, parameter, help, reason);
-    let taken = VALUE_WIDTH + RESET_WIDTH + 2.0 * ui.spacing().item_spacing.x;
-    let slider_width = (ui.available_width() - taken).max(24.0);
-    ui.spacing_mut().slider_width = slider_width;
-    ui.spacing_mut().interact_size.x = VALUE_WIDTH;
-    let mut value = number.get(settings);
-    let mut slider = Slider::new(&mut value, number.min..=number.max)
-        // The setting stays as it is until a person turns it.
-        .clamping(SliderClamping::Edits)
-        .logarithmic(number.logarithmic)
-        .fixed_decimals(number.decimals);
-    if !parameter.unit.is_empty() {
-        slider = slider.suffix(format!(" {}", parameter.unit));
+/// Label and control, or for a number that need not be there its check box; returns the label.
+fn first_line(ui: &mut Ui, row: &Row<'_>, settings: &mut Settings) -> Option<Response> {
+    if let Kind::Toggle(toggle) = &row.parameter.kind {
+        toggle_control(ui, row, *toggle, settings);
+        return None;
     }
-    let response = ui.add(slider).labelled_by(label.id);
-    if response.changed() {
-        number.set(settings, value);
+    let label = row.label(ui);
+    match &row.parameter.kind {
+        Kind::Number(number) if row.parameter.id == INSET_MAP => {
+            let index = settings.view.inset_index(settings.technique.count);
+            if let Some(map) = maps::selector(ui, settings.technique.count, index, |button| row.explain(button)) {
+                number.set(settings, map as f64 + 1.0);
+            }
+        }
+        Kind::Number(number) => {
+            if let Some(value) = number_control(ui, row, &Scale::from(number), number.get(settings), &label) {
+                number.set(settings, value);
+            }
+        }
+        Kind::Optional(optional) => match (&optional.unset, optional.get(settings)) {
+            (Some(unset), value) => {
+                let mut is_unset = value.is_none();
+                let response = ui.add(Checkbox::new(&mut is_unset, unset.label)).on_hover_text(unset.help);
+                if response.changed() {
+                    if is_unset { optional.set(settings, None) } else { begin(optional, settings) }
+                }
+                rename(ui, &response, format!("{}: {}", row.parameter.label, unset.label));
+                row.explain(response);
+            }
+            (None, Some(value)) => {
+                if let Some(value) = number_control(ui, row, &Scale::from(optional), value, &label) {
+                    optional.set(settings, Some(value));
+                }
+            }
+            (None, None) => {}
+        },
+        Kind::Choice(choice) => choice_control(ui, row, choice, settings, &label),
+        Kind::Toggle(_) => {}
     }
-    explain(response, help, reason);
-    label.double_clicked()
+    Some(label)
 }
 
-fn choice_row(
-    ui: &mut Ui,
-    parameter: &Parameter,
-    choice: &Choice,
-    settings: &mut Settings,
-    help: &str,
-    reason: Option<&str>,
-) -> bool {
-    let label = label(ui, parameter, help, reason);
+/// Slider and field of a number that need not be there, while it is.
+fn second_line(ui: &mut Ui, row: &Row<'_>, optional: &Optional, settings: &mut Settings, label: Option<&Response>) {
+    let (Some(value), Some(label)) = (optional.get(settings), label) else { return };
+    ui.horizontal(|ui| {
+        ui.add_space(ui.spacing().icon_width);
+        if let Some(value) = number_control(ui, row, &Scale::from(optional), value, label) {
+            let mut next = *settings;
+            optional.set(&mut next, Some(value));
+            // A value that reads as none, such as a height equal to the width, takes the slider away: not from under
+            // the pointer that drags it.
+            if optional.get(&next).is_some() || !ui.input(|input| input.pointer.any_down()) {
+                *settings = next;
+            }
+        }
+    });
+}
+
+/// Turns a number on, at half of what it begins with where that reads as none.
+fn begin(optional: &Optional, settings: &mut Settings) {
+    optional.set(settings, Some(optional.initial));
+    if optional.get(settings).is_none() {
+        optional.set(settings, Some(0.5 * optional.initial));
+    }
+}
+
+/// Range and look of a number.
+struct Scale {
+    min: f64,
+    max: f64,
+    logarithmic: bool,
+    decimals: usize,
+}
+
+impl From<&Number> for Scale {
+    fn from(number: &Number) -> Self {
+        Self { min: number.min, max: number.max, logarithmic: number.logarithmic, decimals: number.decimals }
+    }
+}
+
+impl From<&Optional> for Scale {
+    fn from(optional: &Optional) -> Self {
+        let Optional { min, max, logarithmic, decimals, .. } = *optional;
+        Self { min, max, logarithmic, decimals }
+    }
+}
+
+/// Slider and field, and for the sides of maps a list of the powers of two; returns a new value.
+fn number_control(ui: &mut Ui, row: &Row<'_>, scale: &Scale, mut value: f64, label: &Response) -> Option<f64> {
+    let gap = ui.spacing().item_spacing.x;
+    let is_side = side::is_side(row.parameter, scale.decimals);
+    let list_width = if is_side { side::LIST_WIDTH + gap } else { 0.0 };
+    let taken = VALUE_WIDTH + list_width + RESET_WIDTH + 2.0 * gap;
+    ui.spacing_mut().slider_width = (ui.available_width() - taken).max(24.0);
+    ui.spacing_mut().interact_size.x = VALUE_WIDTH;
+    let mut slider = Slider::new(&mut value, scale.min..=scale.max)
+        // The setting stays as it is until a person turns it.
+        .clamping(SliderClamping::Edits)
+        .logarithmic(scale.logarithmic)
+        // A typed number counts when it is complete: 1024 passes through 1, 10 and 102.
+        .update_while_editing(false);
+    slider = if scale.decimals == 0 { slider.integer() } else { slider.fixed_decimals(scale.decimals) };
+    if !row.parameter.unit.is_empty() {
+        slider = slider.suffix(format!(" {}", row.parameter.unit));
+    }
+    let response = row.explain(ui.add(slider).labelled_by(label.id));
+    let chosen = if is_side { side::list(ui, row.parameter.label, value, scale.min..=scale.max) } else { None };
+    chosen.or_else(|| response.changed().then_some(value))
+}
+
+fn choice_control(ui: &mut Ui, row: &Row<'_>, choice: &Choice, settings: &mut Settings, label: &Response) {
     let name = |index: usize| {
         let option = choice.options.get(index).map_or("", |option| option.label);
-        if parameter.unit.is_empty() { option.to_owned() } else { format!("{option} {}", parameter.unit) }
+        if row.parameter.unit.is_empty() { option.to_owned() } else { format!("{option} {}", row.parameter.unit) }
     };
     let current = choice.get(settings);
     let width = ui.available_width() - RESET_WIDTH - ui.spacing().item_spacing.x;
@@ -92,69 +201,28 @@ fn choice_row(
             }
         }
     });
-    explain(list.response.labelled_by(label.id), help, reason);
-    label.double_clicked()
+    row.explain(list.response.labelled_by(label.id));
 }
 
-fn toggle_row(
-    ui: &mut Ui,
-    parameter: &Parameter,
-    toggle: Toggle,
-    settings: &mut Settings,
-    help: &str,
-    reason: Option<&str>,
-) {
+fn toggle_control(ui: &mut Ui, row: &Row<'_>, toggle: Toggle, settings: &mut Settings) {
     let mut on = toggle.get(settings);
-    let response = ui.add(Checkbox::new(&mut on, parameter.label));
+    let response = ui.add(Checkbox::new(&mut on, row.parameter.label));
     if response.changed() {
         toggle.set(settings, on);
     }
-    explain(response, help, reason);
+    row.explain(response);
 }
 
-fn label(ui: &mut Ui, parameter: &Parameter, help: &str, reason: Option<&str>) -> Response {
-    let size = Vec2::new(LABEL_WIDTH, ui.spacing().interact_size.y);
-    let layout = Layout::left_to_right(Align::Center);
-    let response = ui
-        .allocate_ui_with_layout(size, layout, |ui| {
-            ui.set_min_width(LABEL_WIDTH);
-            ui.add(Label::new(parameter.label).sense(Sense::click()).selectable(false))
-        })
-        .inner;
-    explain(response, help, reason)
+/// Gives a widget another name for those who hear the panel.
+pub(crate) fn rename(ui: &Ui, response: &Response, name: String) {
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));
 }
 
-fn reset_button(ui: &mut Ui, parameter: &Parameter) -> bool {
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-        let (rect, response) = ui.allocate_exact_size(Vec2::splat(RESET_WIDTH), Sense::click());
-        let name = format!("Reset {}", parameter.label);
-        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
-        if ui.is_rect_visible(rect) {
-            paint_reset_icon(ui, rect.center(), ui.style().interact(&response).fg_stroke.color);
-        }
-        response.on_hover_text("Back to the default").clicked()
-    })
-    .inner
-}
-
-/// An arrow that turns back anticlockwise. It is painted because egui's default fonts have no such
-/// glyph.
-fn paint_reset_icon(ui: &Ui, center: Pos2, colour: Color32) {
-    const RADIUS: f32 = 5.0;
-    const SEGMENTS: u8 = 16;
-    // From the arrow's head at the upper left, clockwise over the top, most of the way round;
-    // y points down.
-    let at = |turn: f32, radius: f32| center + radius * Vec2::angled(TAU * turn);
-    let arc = (0..=SEGMENTS).map(|step| at(-0.4 + 0.75 * f32::from(step) / f32::from(SEGMENTS), RADIUS)).collect();
-    ui.painter().line(arc, Stroke::new(1.5, colour));
-    let head = [at(-0.4, RADIUS + 3.0), at(-0.4, RADIUS - 3.0), at(-0.5, RADIUS + 0.5)];
-    ui.painter().add(Shape::convex_polygon(head.into(), colour, Stroke::NONE));
-}
-
-fn explain(response: Response, help: &str, reason: Option<&str>) -> Response {
-    match reason {
-        Some(reason) => response.on_disabled_hover_text(format!("{reason}\n\n{help}")),
-        None => response.on_hover_text(help),
+fn is_nan(parameter: &Parameter, settings: &Settings) -> bool {
+    match &parameter.kind {
+        Kind::Number(number) => number.get(settings).is_nan(),
+        Kind::Optional(optional) => optional.get(settings).is_some_and(f64::is_nan),
+        Kind::Choice(_) | Kind::Toggle(_) => false,
     }
 }
 
@@ -165,6 +233,15 @@ fn help(parameter: &Parameter, defaults: &Settings) -> String {
         Kind::Number(number) => {
             let decimals = number.decimals;
             format!("{} to {}{unit}, default {:.decimals$}{unit}", number.min, number.max, number.get(defaults))
+        }
+        Kind::Optional(optional) => {
+            let decimals = optional.decimals;
+            let default = match (optional.get(defaults), optional.unset) {
+                (Some(value), _) => format!(", default {value:.decimals$}{unit}"),
+                (None, Some(unset)) => format!(", default {}", unset.label),
+                (None, None) => String::new(),
+            };
+            format!("{} to {}{unit}{default}", optional.min, optional.max)
         }
         Kind::Choice(choice) => {
             let default = choice.options.get(choice.get(defaults)).map_or("", |option| option.label);

@@ -20,6 +20,50 @@ pub(crate) struct LightAxes {
     pub(crate) z: Vec3,
 }
 
+/// Where a light's rotation about itself comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Roll {
+    /// [`LightAxes::look_at`].
+    LookAt,
+    /// [`LightAxes::shortest_arc`].
+    ShortestArc,
+}
+
+/// The light of one frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Light {
+    /// Unit direction of travel.
+    direction: DVec3,
+    /// Unit direction that is up.
+    up: DVec3,
+    /// What `axes` were made by.
+    roll: Roll,
+    axes: LightAxes,
+}
+
+impl Light {
+    /// A light with the axes that most of its maps need at hand.
+    #[inline(always)]
+    pub(crate) fn new(direction: DVec3, up: DVec3, roll: Roll) -> Self {
+        let axes = match roll {
+            Roll::LookAt => LightAxes::look_at(direction, up),
+            Roll::ShortestArc => LightAxes::shortest_arc(direction, up),
+        };
+        Self { direction, up, roll, axes }
+    }
+
+    /// Its axes by a roll.
+    #[inline(always)]
+    pub(crate) fn axes(&self, roll: Roll) -> LightAxes {
+        if roll == self.roll { self.axes } else { self.other_axes(roll) }
+    }
+
+    #[inline(never)]
+    fn other_axes(&self, roll: Roll) -> LightAxes {
+        Self::new(self.direction, self.up, roll).axes
+    }
+}
+
 /// Sine of the angle to the vertical below which the look-at roll is taken from a fixed axis: an
 /// f32 unit vector's own rounding is 1e-7, so its azimuth is noise there.
 const VERTICAL_SINE: f64 = 1e-6;
@@ -32,27 +76,28 @@ impl LightAxes {
     /// sample's is +y).
     ///
     /// Within 1e-6 radians of the vertical, where the sample divides by zero, the map's top is
-    /// where a plan's would be (-z for +y up). The roll flips there: it follows the azimuth on
+    /// where that of a map seen from straight above is (-z for +y up). The roll flips there: it follows the azimuth on
     /// every side, so no choice at the pole is continuous.
     #[inline(always)]
     pub(crate) fn look_at(direction: DVec3, up: DVec3) -> Self {
         let mut right = direction.cross(up);
         let mut length = checks::length(right);
         if length < VERTICAL_SINE {
-            right = direction.cross(plan(up).1);
+            right = direction.cross(top_down_axes(up).1);
             length = checks::length(right);
         }
         let right = right / length;
         Self::from_f64(right, right.cross(direction), -direction)
     }
 
-    /// The axes of a light straight down (for +y up: x = +x, y = -z, so that the map reads like a
-    /// plan with -z at its top), turned by the shortest arc from straight down to `direction`.
+    /// The axes of a light straight down (for +y up: x = +x, y = -z, so that -z is at the map's
+    /// top), turned by the shortest arc from straight down to `direction`.
     ///
-    /// Continuous everywhere but for light straight up, where the arc's axis is the plan's x.
+    /// Continuous everywhere but for light straight up, where the arc's axis is the x of light
+    /// straight down.
     #[inline(always)]
     pub(crate) fn shortest_arc(direction: DVec3, up: DVec3) -> Self {
-        let (x, y) = plan(up);
+        let (x, y) = top_down_axes(up);
         match arc(-up, direction) {
             Some(turn) => Self::from_f64(turn(x), turn(y), -direction),
             None => Self::from_f64(x, -y, -direction),
@@ -105,15 +150,14 @@ impl LightAxes {
     }
 }
 
-/// The plan's axes x and y, as they appear to a light straight down: +x and -z, turned by the
-/// shortest arc from +y to `up`.
+/// Axes x and y of light straight down: +x and -z, turned by the shortest arc from +y to `up`.
 #[inline(always)]
-fn plan(up: DVec3) -> (DVec3, DVec3) {
-    if up == DVec3::Y { (DVec3::X, DVec3::NEG_Z) } else { tilted_plan(up) }
+fn top_down_axes(up: DVec3) -> (DVec3, DVec3) {
+    if up == DVec3::Y { (DVec3::X, DVec3::NEG_Z) } else { tilted_top_down_axes(up) }
 }
 
 /// The same for any direction that is up.
-fn tilted_plan(up: DVec3) -> (DVec3, DVec3) {
+fn tilted_top_down_axes(up: DVec3) -> (DVec3, DVec3) {
     match arc(DVec3::Y, up) {
         Some(turn) => (turn(DVec3::X), turn(DVec3::NEG_Z)),
         None => (DVec3::X, DVec3::Z),

@@ -33,7 +33,7 @@ use glam::{DVec3, Vec2, Vec3, Vec4};
 
 pub use self::classic::{ACOS_BIAS_LIMIT, XNA_DEPTH_BIAS, acos_bias, acos_epsilon};
 pub use self::reach::{HARDWARE_SNAP, Reach, reach};
-use crate::diagnostics::{DepthStorage, depth_step};
+use crate::depth_storage::{DepthStorage, depth_step};
 use crate::settings::{BiasSettings, FilterKind};
 use crate::{DepthConvention, FitError, LightFit, checks};
 

@@ -5,7 +5,9 @@
 
 use glam::{DVec3, Mat4, Vec3, Vec4};
 
-use crate::{DepthConvention, FitError, ViewFrustum, checks};
+use crate::checks::{self, MAX_LENGTH, MIN_LENGTH};
+use crate::frustum::{CORNERS_XY, check_corners, check_extent};
+use crate::{DepthConvention, FitError, ViewFrustum};
 
 /// A symmetric perspective camera in a right-handed world; its view space looks along -z.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,10 +30,10 @@ pub struct PerspectiveCamera {
 }
 
 /// The camera's unit axes in world space, right-handed with `right × up = -forward`.
-pub(crate) struct CameraAxes {
-    pub(crate) right: DVec3,
-    pub(crate) up: DVec3,
-    pub(crate) forward: DVec3,
+struct CameraAxes {
+    right: DVec3,
+    up: DVec3,
+    forward: DVec3,
 }
 
 impl PerspectiveCamera {
@@ -89,12 +91,12 @@ impl PerspectiveCamera {
     }
 
     /// Tangent of half the vertical field of view.
-    pub(crate) fn tangent_y(&self) -> f64 {
+    fn tangent_y(&self) -> f64 {
         libm::tan(f64::from(self.fov_y) * 0.5)
     }
 
     #[inline(always)]
-    pub(crate) fn axes(&self) -> Result<CameraAxes, FitError> {
+    fn axes(&self) -> Result<CameraAxes, FitError> {
         let forward = checks::unit("the camera's forward direction", self.forward)?;
         let up = checks::unit("the camera's up direction", self.up)?;
         let right = forward.cross(up);
@@ -104,6 +106,42 @@ impl PerspectiveCamera {
         }
         let right = right / length;
         Ok(CameraAxes { right, up: right.cross(forward), forward })
+    }
+}
+
+impl ViewFrustum {
+    /// The frustum of a perspective camera. Exact to f32 rounding of each corner (6e-8 of its
+    /// distance from the eye), wherever the eye is.
+    ///
+    /// # Errors
+    ///
+    /// Every parameter that is NaN, infinite, zero, or too small or large for f32 arithmetic;
+    /// [`FitError::OutOfRange`] for a field of view outside 0..π, [`FitError::ParallelUp`] for a
+    /// roll that is undefined, [`FitError::NearNotBelowFar`].
+    #[inline(always)]
+    pub fn from_camera(camera: &PerspectiveCamera) -> Result<Self, FitError> {
+        // First, since a call makes everything that is known by then go to memory.
+        let tangent = camera.tangent_y();
+        checks::point("the camera's eye", camera.eye)?;
+        let axes = camera.axes()?;
+        let fov_y = f64::from(camera.fov_y);
+        checks::within("the camera's fov_y", fov_y, MIN_LENGTH, core::f64::consts::PI)?;
+        let aspect = f64::from(camera.aspect);
+        checks::within("the camera's aspect", aspect, MIN_LENGTH, MAX_LENGTH)?;
+        let near = f64::from(camera.near);
+        checks::within("the camera's near distance", near, MIN_LENGTH, MAX_LENGTH)?;
+        let far = f64::from(camera.far);
+        checks::within("the camera's far distance", far, MIN_LENGTH, MAX_LENGTH)?;
+        let (right, up) = (axes.right * tangent * aspect, axes.up * tangent);
+        let mut corners = [Vec3::ZERO; 8];
+        for (i, (x, y)) in CORNERS_XY.into_iter().enumerate() {
+            let ray = axes.forward + right * x + up * y;
+            corners[i] = (ray * near).as_vec3();
+            corners[i + 4] = (ray * far).as_vec3();
+        }
+        check_corners(&corners)?;
+        check_extent(&corners, camera.near, camera.far)?;
+        Ok(Self { origin: camera.eye, corners, near: camera.near, far: camera.far, forward: axes.forward.as_vec3() })
     }
 }
 

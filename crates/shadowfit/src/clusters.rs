@@ -15,10 +15,7 @@ use glam::Vec3;
 
 use crate::checks::{self, MAX_LENGTH};
 use crate::{Aabb, FitError, NormalCone};
-use piece::{Corners, Outline};
-
-/// Three positions, in metres.
-type Triangle = [Vec3; 3];
+use piece::{Corners, Outline, Triangle};
 
 /// Boxes around small groups of triangles, for [`Boxes::boxes`](crate::Boxes::boxes): together
 /// they hold every point of every triangle. No group holds triangles of two objects.
@@ -66,7 +63,7 @@ impl Clusters {
     ///
     /// Each object is a slice of triangles; the three positions of each are in metres, relative to
     /// an origin that all share, which is the origin of [`boxes`](Self::boxes). Winding and
-    /// handedness are of no account. The same triangles give the same clusters on every target.
+    /// handedness do not matter. The same triangles give the same clusters on every target.
     ///
     /// Groups of triangles are cut in two by planes, again and again where the most air is left in
     /// the box, and not where none is: a flat box that is full stays whole. A triangle that a plane

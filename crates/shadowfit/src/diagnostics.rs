@@ -6,14 +6,14 @@
 
 mod acne;
 mod coverage;
-mod storage;
 
 use glam::{DVec2, DVec3, Mat4, UVec2, Vec3};
 
 pub use self::acne::{AcneMargin, acne_margin};
 pub use self::coverage::{Coverage, coverage, share_of_map};
-pub use self::storage::{DepthStorage, depth_step, depth_step_at};
 use crate::{FitError, LightFit, checks};
+
+pub use crate::depth_storage::{DepthStorage, depth_step, depth_step_at};
 
 /// Screen pixels that one shadow texel covers on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,8 +5,8 @@
 
 use glam::{DMat4, DVec3, DVec4, Mat4, Vec3};
 
-use crate::checks::{self, MAX_LENGTH, MIN_LENGTH};
-use crate::{DepthConvention, FitError, PerspectiveCamera};
+use crate::checks::{self, MAX_LENGTH};
+use crate::{DepthConvention, FitError};
 
 /// A convex view volume with four edges that run from a near rectangle to a parallel far one:
 /// perspective, orthographic, off-axis or mirrored.
@@ -33,7 +33,7 @@ pub struct ViewFrustum {
 }
 
 /// Clip x and y of the corners, in their order.
-const CORNERS_XY: [(f64, f64); 4] = [(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)];
+pub(crate) const CORNERS_XY: [(f64, f64); 4] = [(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)];
 
 /// Below this share of its terms the w of a far corner is rounding of an f32 matrix, and the far
 /// plane counts as infinite. It is a few times 2⁻²⁴.
@@ -43,40 +43,6 @@ const INFINITE_W_F32: f64 = 1.0 / 4_194_304.0;
 const INFINITE_W_F64: f64 = 1.0 / 2_251_799_813_685_248.0;
 
 impl ViewFrustum {
-    /// The frustum of a perspective camera. Exact to f32 rounding of each corner (6e-8 of its
-    /// distance from the eye), wherever the eye is.
-    ///
-    /// # Errors
-    ///
-    /// Every parameter that is NaN, infinite, zero, or too small or large for f32 arithmetic;
-    /// [`FitError::OutOfRange`] for a field of view outside 0..π, [`FitError::ParallelUp`] for a
-    /// roll that is undefined, [`FitError::NearNotBelowFar`].
-    #[inline(always)]
-    pub fn from_camera(camera: &PerspectiveCamera) -> Result<Self, FitError> {
-        // First, since a call makes everything that is known by then go to memory.
-        let tangent = camera.tangent_y();
-        checks::point("the camera's eye", camera.eye)?;
-        let axes = camera.axes()?;
-        let fov_y = f64::from(camera.fov_y);
-        checks::within("the camera's fov_y", fov_y, MIN_LENGTH, core::f64::consts::PI)?;
-        let aspect = f64::from(camera.aspect);
-        checks::within("the camera's aspect", aspect, MIN_LENGTH, MAX_LENGTH)?;
-        let near = f64::from(camera.near);
-        checks::within("the camera's near distance", near, MIN_LENGTH, MAX_LENGTH)?;
-        let far = f64::from(camera.far);
-        checks::within("the camera's far distance", far, MIN_LENGTH, MAX_LENGTH)?;
-        let (right, up) = (axes.right * tangent * aspect, axes.up * tangent);
-        let mut corners = [Vec3::ZERO; 8];
-        for (i, (x, y)) in CORNERS_XY.into_iter().enumerate() {
-            let ray = axes.forward + right * x + up * y;
-            corners[i] = (ray * near).as_vec3();
-            corners[i + 4] = (ray * far).as_vec3();
-        }
-        check_corners(&corners)?;
-        check_extent(&corners, camera.near, camera.far)?;
-        Ok(Self { origin: camera.eye, corners, near: camera.near, far: camera.far, forward: axes.forward.as_vec3() })
-    }
-
     /// The frustum behind an f32 matrix from clip space to **absolute** world space, with the
     /// camera's position and the matrix's depth range.
     ///
@@ -195,7 +161,7 @@ impl ViewFrustum {
 
 /// Refuses corners that are not finite or too far away.
 #[inline(always)]
-fn check_corners(corners: &[Vec3; 8]) -> Result<(), FitError> {
+pub(crate) fn check_corners(corners: &[Vec3; 8]) -> Result<(), FitError> {
     // One pass that tells good corners, another only to name a bad one.
     let limit = MAX_LENGTH as f32;
     let is_good = |c: &Vec3| (c.x.abs() <= limit) & (c.y.abs() <= limit) & (c.z.abs() <= limit);
@@ -211,7 +177,7 @@ fn name_bad(corners: [Vec3; 8]) -> Result<(), FitError> {
 
 /// Refuses a frustum with nothing between near and far or between its sides.
 #[inline]
-fn check_extent(corners: &[Vec3; 8], near: f32, far: f32) -> Result<(), FitError> {
+pub(crate) fn check_extent(corners: &[Vec3; 8], near: f32, far: f32) -> Result<(), FitError> {
     if near >= far {
         return Err(FitError::NearNotBelowFar { near, far });
     }

@@ -8,10 +8,8 @@
 use glam::{DVec2, DVec3};
 
 use crate::axes::LightAxes;
-use crate::fits::Volume;
-use crate::settings::FitSettings;
-
-pub(crate) use crate::fits::ROUNDING;
+use crate::rule::FitRule;
+use crate::volume::{Grid, ROUNDING, Volume};
 
 /// What an extent may lie above a step and still be rounded down to it, as a share of it: the noise
 /// of f32 corners must not choose between two steps.
@@ -63,50 +61,32 @@ pub(crate) fn anchor(axes: &LightAxes, origin: DVec3) -> DVec3 {
     axes.project(origin)
 }
 
-/// Where a map lies on the world's grid. Lines are counted from the world's origin along the map's
-/// axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Grid {
-    /// Grid line of the map's least corner.
-    pub(crate) first: DVec2,
-    /// Size of a texel, in metres.
-    pub(crate) texel: DVec2,
-    /// Far and near plane along the light's z from the world's origin, in metres; in steps once it
-    /// has been [`steadied`].
-    pub(crate) z: (f64, f64),
-}
-
 /// Steps of a map's depth range in its length: near and far plane stay where they are until what
 /// they hold has moved by about one of them.
 const DEPTH_STEPS: f64 = 16.0;
 
 /// Rounds a volume's extents across the light up and moves it to the world's grid, so that it still
 /// holds what it held, with the kernel's texels around it.
-pub(crate) fn snap(volume: &mut Volume, origin: DVec3, settings: &FitSettings) -> Grid {
-    let (grid, min, max) = snapped(&volume.axes, volume.min, volume.max, origin, settings);
+#[inline(always)]
+pub(crate) fn snap(volume: &mut Volume, origin: DVec3, rule: &FitRule) -> Grid {
+    let (grid, min, max) = snapped(&volume.axes, volume.min, volume.max, origin, rule);
     (volume.min, volume.max, volume.grid) = (min, max, Some(grid));
     grid
 }
 
 /// Texels that are left for what a map on the grid must hold.
-pub(crate) fn usable(settings: &FitSettings) -> DVec2 {
+pub(crate) fn usable(rule: &FitRule) -> DVec2 {
     // One texel is lost to the shift onto the grid.
-    settings.resolution.as_dvec2() - (2.0 * f64::from(settings.border_texels()) + 1.0)
+    rule.resolution.as_dvec2() - (2.0 * rule.border + 1.0)
 }
 
-/// As [`snap`], for the corners of a box alone: gives where it came to lie, and its new corners.
+/// The same for the corners of a box: gives where it comes to lie, and its new corners.
 #[inline(always)]
-pub(crate) fn snapped(
-    axes: &LightAxes,
-    min: DVec3,
-    max: DVec3,
-    origin: DVec3,
-    settings: &FitSettings,
-) -> (Grid, DVec3, DVec3) {
+fn snapped(axes: &LightAxes, min: DVec3, max: DVec3, origin: DVec3, rule: &FitRule) -> (Grid, DVec3, DVec3) {
     let anchor = anchor(axes, origin);
-    let resolution = settings.resolution.as_dvec2();
-    let kernel = f64::from(settings.border_texels());
-    let usable = usable(settings);
+    let resolution = rule.resolution.as_dvec2();
+    let kernel = rule.border;
+    let usable = usable(rule);
     // The rounding of a map that is larger than what it holds is that of its own extent.
     let size = (max - min).truncate();
     let pad = ROUNDING * (size * resolution / usable).max_element();
@@ -123,19 +103,19 @@ pub(crate) fn snapped(
 /// Puts the near and far plane of a volume on the grid to a range that holds them: one that is held
 /// from an earlier frame, while it does and is no more than `waste` times as long as a new one.
 #[inline(always)]
-pub(crate) fn steady(volume: &mut Volume, origin: DVec3, held: Option<(f64, f64)>, waste: f64) {
+pub(crate) fn stabilise_depth(volume: &mut Volume, origin: DVec3, held: Option<(f64, f64)>, waste: f64) {
     let anchor = anchor(&volume.axes, origin).z;
     if let Some(grid) = &mut volume.grid {
-        grid.z = steadied(held, (volume.min.z + anchor, volume.max.z + anchor), waste);
+        grid.z = stabilised_depth(held, (volume.min.z + anchor, volume.max.z + anchor), waste);
         (volume.min.z, volume.max.z) = (grid.z.0 - anchor, grid.z.1 - anchor);
         volume.light_at_near_plane();
     }
 }
 
 /// A depth range that holds another, both along the light's z from the world's origin, in metres:
-/// the held one, or a new one in steps of its length. One that takes a held one's place has room for
-/// more of what made it necessary.
-pub(crate) fn steadied(held: Option<(f64, f64)>, (low, high): (f64, f64), waste: f64) -> (f64, f64) {
+/// the held one, or a new one in steps of its length. One that replaces a held one has room for more
+/// of what made it necessary.
+pub(crate) fn stabilised_depth(held: Option<(f64, f64)>, (low, high): (f64, f64), waste: f64) -> (f64, f64) {
     let length = high - low;
     // A larger range rounds more.
     let rounding = 2.0 * ROUNDING * length;
@@ -161,3 +141,33 @@ pub(crate) fn steadied(held: Option<(f64, f64)>, (low, high): (f64, f64), waste:
 /// Free space on either side of a renewed depth range, as a share of what it must hold: about a
 /// third of a bit of depth.
 const ROOM: f64 = 0.125;
+
+/// Where a map lies on the world's texel grid.
+///
+/// Its lines run along the map's x and y axis (the rows of
+/// [`light_from_world`](crate::LightFit::light_from_world)) and are counted from the world's origin.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct GridAnchor {
+    /// Grid lines of the map's left and bottom side: they lie this many texels to the right of and
+    /// above the world's origin.
+    pub first: [i64; 2],
+    /// Exact size of a texel along x and y, in metres;
+    /// [`LightFit::texel_size`](crate::LightFit::texel_size) is this in f32.
+    pub texel: DVec2,
+    /// Far and near plane of the map along the direction **toward** the light, from the world's
+    /// origin, in metres.
+    pub depth: [f64; 2],
+}
+
+/// Grid lines beyond this are not whole numbers in f64 any more.
+pub(crate) const MAX_LINE: f64 = 4_503_599_627_370_496.0;
+
+impl GridAnchor {
+    /// Of a map on the grid, if its lines can be counted.
+    pub(crate) fn of(grid: &Grid) -> Option<Self> {
+        let DVec2 { x, y } = grid.first;
+        let is_whole = x.abs() < MAX_LINE && y.abs() < MAX_LINE;
+        is_whole.then_some(Self { first: [x as i64, y as i64], texel: grid.texel, depth: [grid.z.0, grid.z.1] })
+    }
+}

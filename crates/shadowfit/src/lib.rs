@@ -82,21 +82,32 @@ mod caster;
 mod checks;
 #[cfg(feature = "alloc")]
 mod clusters;
+mod content;
+mod covered;
 mod depth;
+mod depth_storage;
+mod enclosing_sphere;
 mod error;
 mod frustum;
 mod grid;
+mod histogram;
 mod hull;
 mod input;
 mod light_fit;
+mod light_hull;
 mod map_fitter;
+mod maps;
 mod motion;
+mod near_plane;
 mod normal_cone;
+mod outline;
 mod presets;
 mod rectangle;
+mod rule;
 mod splits;
 mod technique;
 mod view;
+mod volume;
 
 pub use bias::Bias;
 pub use bounds::{Aabb, Boxes};
@@ -109,19 +120,22 @@ pub use error::FitError;
 pub use fits::{fit, fit_scene};
 pub use frustum::ViewFrustum;
 pub use glam;
+pub use grid::GridAnchor;
+pub use histogram::{DepthHistogram, needed_texel};
 pub use input::{DepthBounds, FitInput, Workspace};
-pub use light_fit::{Constraint, LightFit, WorldMatrices};
+pub use light_fit::{LightFit, WorldMatrices};
 pub use light_steps::{LightStep, LightStepSettings, LightSteps};
-pub use map_fitter::{FittedMap, FittedMaps, MapFitter, fewest_maps};
+pub use map_fitter::{MapFitter, fewest_maps};
+pub use maps::{FittedMap, FittedMaps};
 pub use normal_cone::NormalCone;
 pub use presets::{PRESETS, Preset, RECOMMENDED};
-pub use scroll::{GridAnchor, Scroll};
+pub use scroll::Scroll;
 pub use settings::{
     BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapFormat, MapOverride,
     RectangleKind, SplitScheme, Stabilise,
 };
-pub use splits::{DepthHistogram, needed_texel};
 pub use technique::{ReceiverSource, Technique};
+pub use volume::Constraint;
 
 /// Runs the example of the README as a test.
 #[cfg(doctest)]

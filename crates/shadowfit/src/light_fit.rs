@@ -9,9 +9,8 @@ use glam::{DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use crate::axes::LightAxes;
 use crate::checks::{MAX_LENGTH, MIN_LENGTH};
-use crate::fits::Volume;
-use crate::settings::{CasterPolicy, FitSettings};
-use crate::{CasterVolume, DepthConvention, FitError, checks};
+use crate::volume::{Constraint, Volume};
+use crate::{DepthConvention, FitError, checks};
 
 /// An orthographic view-projection of a directional light.
 ///
@@ -58,26 +57,6 @@ pub struct LightFit {
     pub is_empty: bool,
 }
 
-/// What set a plane of a fitted box: where to turn for a tighter fit.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub enum Constraint {
-    /// The view frustum, cut at the shadow distance or by the splits.
-    #[default]
-    View,
-    /// The box of a receiver.
-    Receivers,
-    /// The box of a caster that stands before what is covered.
-    Casters,
-    /// [`FitSettings::caster_extension`].
-    CasterExtension,
-    /// The enclosing sphere of the [stable fit](crate::fits::sphere).
-    Sphere,
-    /// A fit that is held from an earlier frame.
-    Held,
-}
-
 /// Matrices that take plain f32 world positions, for engines without a camera-relative path.
 ///
 /// World coordinates rounded to f32 cost about 6e-8 of their distance from the world's origin:
@@ -100,7 +79,12 @@ const COVER_SLACK: f64 = 1e-6;
 impl LightFit {
     /// Turns a fit's decision into matrices; refuses boxes that f32 matrices cannot hold.
     #[inline(always)]
-    pub(crate) fn from_volume(origin: DVec3, volume: &Volume, settings: &FitSettings) -> Result<Self, FitError> {
+    pub(crate) fn from_volume(
+        origin: DVec3,
+        volume: &Volume,
+        resolution: UVec2,
+        depth: DepthConvention,
+    ) -> Result<Self, FitError> {
         let size = volume.max - volume.min;
         for extent in [size.x, size.y, volume.depth_range] {
             checks::within("an extent of the light's box", extent, MIN_LENGTH, MAX_LENGTH)?;
@@ -109,7 +93,7 @@ impl LightFit {
         let light = DVec3::new(centre.x, centre.y, volume.light_z);
         let LightAxes { x, y, z } = volume.axes;
         let t = (-light).as_vec3();
-        let (scale, offset) = projection(size, volume, settings.depth);
+        let (scale, offset) = projection(size, volume, depth);
         let box_max = DVec3::new(size.x * 0.5, size.y * 0.5, volume.max.z - volume.light_z);
         let light_from_world = Mat4::from_cols(
             Vec4::new(x.x, y.x, z.x, 0.0),
@@ -123,7 +107,7 @@ impl LightFit {
             Vec4::new(0.0, 0.0, scale.z as f32, 0.0),
             Vec4::new(0.0, 0.0, offset as f32, 1.0),
         );
-        let (clip_from_world, uv_from_world) = products(&light_from_world, &clip_from_light, settings.depth);
+        let (clip_from_world, uv_from_world) = products(&light_from_world, &clip_from_light, depth);
         Ok(Self {
             origin,
             direction: -z,
@@ -133,10 +117,10 @@ impl LightFit {
             uv_from_world,
             box_min: (box_max - size).as_vec3(),
             box_max: box_max.as_vec3(),
-            texel_size: (size.truncate() / settings.resolution.as_dvec2()).as_vec2(),
+            texel_size: (size.truncate() / resolution.as_dvec2()).as_vec2(),
             depth_range: volume.depth_range as f32,
-            resolution: settings.resolution,
-            depth: settings.depth,
+            resolution,
+            depth,
             set_by: volume.set_by,
             is_empty: volume.is_empty,
         })
@@ -175,14 +159,6 @@ impl LightFit {
         let (min, max) = self.clip_box();
         let slack = (max - min) * COVER_SLACK;
         p.cmpge(min - slack).all() && p.cmple(max + slack).all()
-    }
-
-    /// Every caster that the map can store: its own box, relative to [`Self::origin`]. Casters
-    /// nearer to the light than its near plane are not among them; with depth clamp they are, see
-    /// [`CasterVolume::of_map`]. [`CasterVolume::swept`] holds only those that can throw a shadow
-    /// into view.
-    pub fn caster_volume(&self) -> CasterVolume {
-        CasterVolume::of_map(self, CasterPolicy::None)
     }
 
     /// Corners of the box that the map stores, in world axes relative to [`Self::origin`], in

@@ -11,6 +11,7 @@
 //! let mut settings = Settings::default();
 //! params::set_from_str(&mut settings, "light.elevation", "30").unwrap();
 //! params::set_from_str(&mut settings, "fit.max_distance", "far_plane").unwrap();
+//! params::set_from_str(&mut settings, "splits.count", "3").unwrap();
 //! assert!(params::set_from_str(&mut settings, "map.resolution", "20").is_err());
 //! for parameter in params::PARAMETERS {
 //!     if let Kind::Toggle(toggle) = &parameter.kind {
@@ -77,12 +78,13 @@ impl Parameter {
         }
     }
 
-    /// Whether the settings hold a value of this knob: λ is there only while the practical splits are
-    /// chosen, and the manual splits while those are.
+    /// Whether the settings have a place for this knob: λ is there only while the practical splits are
+    /// chosen, the manual splits while those are, and a single map's own height while it has a width
+    /// of its own. Setting a knob that is not there changes nothing.
     pub fn is_present(&self, settings: &Settings) -> bool {
         match &self.kind {
-            Kind::Optional(optional) => optional.unset.is_some() || optional.get(settings).is_some(),
-            _ => true,
+            Kind::Optional(optional) => (optional.present)(settings),
+            Kind::Number(_) | Kind::Choice(_) | Kind::Toggle(_) => true,
         }
     }
 }
@@ -96,7 +98,7 @@ pub fn technique_parameters() -> impl Iterator<Item = &'static Parameter> {
 ///
 /// # Errors
 ///
-/// As [`set_from_str`]; [`ParameterError::UnknownId`] for the id of a knob that is no part of a
+/// As [`set_from_str`]; [`ParameterError::NotOfTechnique`] for the id of a knob that is no part of a
 /// technique.
 pub fn set_technique_from_str<'a>(
     technique: &mut Technique,
@@ -104,7 +106,7 @@ pub fn set_technique_from_str<'a>(
     value: &'a str,
 ) -> Result<(), ParameterError<'a>> {
     if parameter(id).is_some_and(|parameter| !parameter.group.is_technique()) {
-        return Err(ParameterError::UnknownId { id });
+        return Err(ParameterError::NotOfTechnique { id });
     }
     let mut settings = Settings::default().with_technique(*technique);
     set_from_str(&mut settings, id, value)?;
@@ -136,7 +138,7 @@ pub struct Number {
     pub step: f64,
     /// Whether a slider over the range should be logarithmic.
     pub logarithmic: bool,
-    /// Decimals worth showing.
+    /// Decimals worth showing; 0 for whole numbers.
     pub decimals: usize,
     read: fn(&Settings) -> f64,
     write: fn(&mut Settings, f64),
@@ -151,7 +153,7 @@ impl Number {
     /// Sets the value, clamped to the range; NaN and infinity are ignored.
     ///
     /// The near and far planes and the shadow distance move each other, see
-    /// [`MIN_FAR_PER_NEAR`].
+    /// [`MIN_FAR_PER_NEAR`]. Where [`Self::decimals`] is 0, what follows the point is cut off.
     pub fn set(&self, settings: &mut Settings, value: f64) {
         if value.is_finite() {
             (self.write)(settings, value.max(self.min).min(self.max));
@@ -170,13 +172,14 @@ pub struct Optional {
     pub step: f64,
     /// Whether a slider over the range should be logarithmic.
     pub logarithmic: bool,
-    /// Decimals worth showing.
+    /// Decimals worth showing; 0 for whole numbers.
     pub decimals: usize,
-    /// What no number is called and does. `None` where another knob decides whether there is one:
-    /// without it, this one has nothing to show and setting it is ignored.
+    /// What having no number is called and does. `None` where only another knob takes the number
+    /// away, see [`Parameter::is_present`].
     pub unset: Option<ChoiceOption>,
     /// The number that a panel begins with when it is turned on.
     pub initial: f64,
+    present: fn(&Settings) -> bool,
     read: fn(&Settings) -> Option<f64>,
     write: fn(&mut Settings, Option<f64>),
 }
@@ -187,9 +190,13 @@ impl Optional {
         (self.read)(settings)
     }
 
-    /// Sets the value, clamped to the range, or takes it away; NaN and infinity are ignored.
+    /// Sets the value, clamped to the range, or takes it away. NaN and infinity are ignored, and so
+    /// is everything while the knob [is not there](Parameter::is_present).
+    ///
+    /// The near and far planes and the shadow distance move each other, see
+    /// [`MIN_FAR_PER_NEAR`].
     pub fn set(&self, settings: &mut Settings, value: Option<f64>) {
-        if value.is_none_or(f64::is_finite) {
+        if (self.present)(settings) && value.is_none_or(f64::is_finite) {
             (self.write)(settings, value.map(|value| value.max(self.min).min(self.max)));
         }
     }

@@ -25,42 +25,14 @@
 
 use core::ops::Range;
 
-use glam::{DVec2, DVec3, IVec2, UVec2};
+use glam::{DVec3, IVec2, UVec2};
 
 use crate::axes::LightAxes;
-use crate::fits::Volume;
-use crate::grid::Grid;
-use crate::light_fit::Constraint;
-use crate::{FitError, FitSettings, FittedMap, LightFit, checks};
+use crate::grid::MAX_LINE;
+use crate::volume::{Constraint, Volume};
+use crate::{FitError, FittedMap, LightFit, checks};
 
-/// Where a map lies on the world's texel grid.
-///
-/// Its lines run along the map's x and y axis (the rows of
-/// [`light_from_world`](LightFit::light_from_world)) and are counted from the world's origin.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct GridAnchor {
-    /// Grid lines of the map's left and bottom side: the world's origin lies so many texels to the
-    /// left of and below them.
-    pub first: [i64; 2],
-    /// Exact size of a texel along x and y, in metres; [`LightFit::texel_size`] is this in f32.
-    pub texel: DVec2,
-    /// Far and near plane of the map along the direction **toward** the light, from the world's
-    /// origin, in metres.
-    pub depth: [f64; 2],
-}
-
-/// Grid lines beyond this are not whole numbers in f64 any more.
-const MAX_LINE: f64 = 4_503_599_627_370_496.0;
-
-impl GridAnchor {
-    /// Of a map on the grid, if its place can be counted.
-    pub(crate) fn of(grid: &Grid) -> Option<Self> {
-        let DVec2 { x, y } = grid.first;
-        let is_whole = x.abs() < MAX_LINE && y.abs() < MAX_LINE;
-        is_whole.then_some(Self { first: [x as i64, y as i64], texel: grid.texel, depth: [grid.z.0, grid.z.1] })
-    }
-}
+pub use crate::grid::GridAnchor;
 
 /// A rectangle of texels. Texture rows count downward from the top, as in
 /// [`uv_from_world`](LightFit::uv_from_world).
@@ -244,8 +216,7 @@ fn tile_fit(axes: &LightAxes, anchor: &GridAnchor, size: u32, map: &FittedMap) -
         is_empty: false,
         grid: None,
     };
-    let settings = FitSettings { resolution: UVec2::splat(size), depth: map.fit.depth, ..FitSettings::default() };
-    LightFit::from_volume(DVec3::ZERO, &volume, &settings)
+    LightFit::from_volume(DVec3::ZERO, &volume, UVec2::splat(size), map.fit.depth)
 }
 
 impl Tiles {

@@ -6,7 +6,6 @@
 use glam::{UVec2, Vec3};
 
 use crate::DepthConvention;
-use crate::bias::reach;
 
 /// Writes one `with_*` method per field of a settings struct.
 macro_rules! setters {
@@ -140,14 +139,6 @@ impl FitSettings {
     pub const fn with_border(mut self, texels: f32) -> Self {
         self.border = Some(texels);
         self
-    }
-
-    /// The free texels, as set or as the default filter and bias need them.
-    pub(crate) const fn border_texels(&self) -> f32 {
-        match self.border {
-            Some(texels) => texels,
-            None => reach(FilterKind::Pcf5x5),
-        }
     }
 }
 

@@ -16,94 +16,21 @@
 //! ```
 
 mod half_space;
+mod query;
 
 use glam::DVec3;
 
 use crate::axes::LightAxes;
-use crate::bias::{HARDWARE_SNAP, Reach};
-use crate::fits::{Content, Footprint, Outline, Range, Scratch};
-use crate::view::{Slice, box_corners, moved};
-use crate::{CasterPolicy, FitError, FitInput, FitSettings, FittedMap, LightFit, Technique, Workspace, checks};
+use crate::bias::HARDWARE_SNAP;
+use crate::content::Content;
+use crate::light_hull::LightHull;
+use crate::outline::{Outline, Scratch};
+use crate::rule::Covers;
+use crate::view::{Range, Slice, box_corners, moved};
+use crate::{CasterPolicy, FitError, FitInput, LightFit, Workspace, checks};
 use half_space::{HalfSpaces, ROUNDING};
 
-/// What is claimed of a map: which receivers read it, how far around them, and whether casters
-/// before the near plane are clipped.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Claim {
-    /// View depth from which receivers read the map, in metres.
-    pub near: f32,
-    /// View depth up to which receivers read the map, in metres.
-    pub far: f32,
-    /// Reach of the filter: of all texels that it reads, the centres must lie in the map. What a
-    /// sampler loses by [rounding texture coordinates](HARDWARE_SNAP) shifts weights by no more
-    /// than that, so it counts only where [`Reach::on_hardware`] has put it in.
-    pub reach: Reach,
-    /// How far across the light the place that is looked up may lie off the receiver, in metres:
-    /// [`Bias::normal_offset`](crate::Bias::normal_offset). Along the light it needs no room: what
-    /// is looked up before the near plane is lit, as it should be where no caster is lost.
-    pub normal_offset: f32,
-    /// How casters before the near plane are treated: [`CasterPolicy::DepthClamp`] loses none.
-    /// The other policies are alike here.
-    pub casters: CasterPolicy,
-}
-
-impl Claim {
-    /// What a single map of [`fit_scene`](crate::fit_scene) is made for: all receivers up to the
-    /// shadow distance.
-    pub const fn of_fit(settings: &FitSettings, reach: Reach) -> Self {
-        let (near, far) = (f32::MIN, settings.max_distance);
-        Self { near, far, reach, normal_offset: 0.0, casters: settings.casters }
-    }
-
-    /// What one of several maps is made for: the receivers from [`FittedMap::covered_near`] to
-    /// [`FittedMap::far`] or the shadow distance.
-    pub const fn of_map(map: &FittedMap, settings: &Technique, reach: Reach) -> Self {
-        let far = map.far.min(settings.fit.max_distance);
-        Self { near: map.covered_near.min(far), far, reach, normal_offset: 0.0, casters: settings.fit.casters }
-    }
-
-    /// This claim with another [`normal_offset`](Self::normal_offset).
-    #[must_use]
-    pub const fn with_normal_offset(mut self, normal_offset: f32) -> Self {
-        self.normal_offset = normal_offset;
-        self
-    }
-
-    fn checked(&self) -> Result<Range, FitError> {
-        checks::finite("the claim's near distance", f64::from(self.near))?;
-        checks::finite("the claim's far distance", f64::from(self.far))?;
-        checks::within("the claim's normal offset", f64::from(self.normal_offset), 0.0, checks::MAX_LENGTH)?;
-        self.reach.checked()?;
-        if self.near > self.far {
-            return Err(FitError::NearNotBelowFar { near: self.near, far: self.far });
-        }
-        Ok(Range { near: self.near, far: self.far })
-    }
-}
-
-/// A side of the box that a map stores, in light space: -x, +x, -y, +y, far, near.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum MapPlane {
-    /// Texture coordinate u = 0.
-    Left,
-    /// Texture coordinate u = 1.
-    Right,
-    /// Texture coordinate v = 1.
-    Bottom,
-    /// Texture coordinate v = 0.
-    Top,
-    /// Away from the light.
-    Far,
-    /// Toward the light.
-    Near,
-}
-
-impl MapPlane {
-    /// All planes, in the order of [`LightFit::set_by`].
-    pub const ALL: [Self; 6] = [Self::Left, Self::Right, Self::Bottom, Self::Top, Self::Far, Self::Near];
-}
+pub use query::{CoverageQuery, MapPlane};
 
 /// What [`verify`] found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,7 +39,7 @@ impl MapPlane {
 pub enum Certificate {
     /// There are no holes: all receivers are inside with all that the filter reads, and none of
     /// the given casters is lost.
-    Proven(Slack),
+    Proven(Margins),
     /// A receiver is outside, or cannot be proven to be inside.
     Uncovered {
         /// The plane of the map that it lies beyond.
@@ -125,7 +52,7 @@ pub enum Certificate {
     },
     /// A receiver is seen although the fit [says](LightFit::is_empty) that none is, so that its
     /// shadow pass may be left out.
-    LeftOut {
+    MarkedEmpty {
         /// A point of it, in world space.
         point: DVec3,
     },
@@ -149,7 +76,7 @@ impl Certificate {
 /// What is left free beyond all that is required. Infinite where there was nothing to require.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Slack {
+pub struct Margins {
     /// At each of [`MapPlane::ALL`]: texels for the planes across the light, metres for far and
     /// near.
     pub planes: [f32; 6],
@@ -160,14 +87,14 @@ pub struct Slack {
 
 /// Proves that a map has no holes, or finds one.
 ///
-/// - **Receivers** are `input.receivers` clipped to the views' slices between `claim.near` and
-///   `claim.far`; the slices themselves where the boxes are not known. Boxes whose
+/// - **Receivers** are `input.receivers` clipped to the views' slices between `query.near` and
+///   `query.far`; the slices themselves where the boxes are not known. Boxes whose
 ///   [cone](FitInput::receiver_cones) turns away from the light are passed over as the fits do. A
 ///   frustum ends where its corners say; a camera matrix that is rounded otherwise may show a
 ///   sliver beyond.
 /// - **Casters** are `input.casters`, whatever policy the fit was made by: those parts that stand
 ///   over the receivers' outline, widened by the filter's reach, the rasteriser's snap and the
-///   normal offset. Nothing is claimed of casters that are not given.
+///   normal offset. Nothing is proven of casters that are not given.
 /// - **Rounding**: positions are taken as f32 relative to [`LightFit::origin`], multiplied by
 ///   `uv_from_world` and `clip_from_world` in f32 in any order of operations. Positions relative
 ///   to another origin need [`LightFit::relative_to`] first, and a certificate of that.
@@ -178,7 +105,7 @@ pub struct Slack {
 /// ```
 /// use shadowfit::bias::Reach;
 /// use shadowfit::glam::{DVec2, DVec3, Vec3};
-/// use shadowfit::verify::{Certificate, Claim, MapPlane, verify};
+/// use shadowfit::verify::{Certificate, CoverageQuery, MapPlane, verify};
 /// use shadowfit::{FitInput, FitSettings, PerspectiveCamera, Workspace};
 ///
 /// let camera = PerspectiveCamera {
@@ -197,13 +124,13 @@ pub struct Slack {
 ///
 /// // Hardware 2×2 samples read texels up to one away: half a texel must be left free for them.
 /// let settings = FitSettings::default().with_border(0.5);
-/// let claim = Claim::of_fit(&settings, Reach::HARDWARE_2X2);
+/// let query = CoverageQuery::of_fit(&settings, Reach::HARDWARE_2X2);
 /// let map = shadowfit::fit_scene(&input, &settings, &mut workspace)?;
-/// assert!(verify(&input, &map, &claim, &mut workspace)?.is_proven());
+/// assert!(verify(&input, &map, &query, &mut workspace)?.is_proven());
 ///
 /// // Without them there is a hole, and the certificate says where.
 /// let map = shadowfit::fit_scene(&input, &settings.with_border(0.0), &mut workspace)?;
-/// let Certificate::Uncovered { plane, by, .. } = verify(&input, &map, &claim, &mut workspace)? else { panic!() };
+/// let Certificate::Uncovered { plane, by, .. } = verify(&input, &map, &query, &mut workspace)? else { panic!() };
 /// assert!(plane != MapPlane::Near && by > 0.49 && by < 0.51);
 /// # Ok::<(), shadowfit::FitError>(())
 /// ```
@@ -212,16 +139,16 @@ pub struct Slack {
 ///
 /// Those of the views, the light's direction and the boxes as of
 /// [`fit_scene`](crate::fit_scene); [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the
-/// claim and for a fit whose matrices are no light's; [`FitError::ZeroResolution`];
-/// [`FitError::NearNotBelowFar`] for a claim whose near is above its far (equal ones claim
+/// query and for a fit whose matrices are no light's; [`FitError::ZeroResolution`];
+/// [`FitError::NearNotBelowFar`] for a query whose near is above its far (equal ones ask for
 /// nothing); [`FitError::WorkspaceTooSmall`].
 pub fn verify(
     input: &FitInput,
     fit: &LightFit,
-    claim: &Claim,
+    query: &CoverageQuery,
     workspace: &mut Workspace,
 ) -> Result<Certificate, FitError> {
-    let range = claim.checked()?;
+    let range = query.checked()?;
     if input.views.is_empty() {
         return Err(FitError::NoView);
     }
@@ -230,7 +157,7 @@ pub fn verify(
     }
     checks::unit("the light's direction", input.direction)?;
     checks::point("the fit's origin", fit.origin)?;
-    let half_spaces = HalfSpaces::new(fit, claim)?;
+    let half_spaces = HalfSpaces::new(fit, query)?;
     let axes = LightAxes::of_matrix(&fit.light_from_world)?;
     let (content, points) = Content::new(input, workspace)?;
     let offset = content.origin - fit.origin;
@@ -239,31 +166,31 @@ pub fn verify(
     if let Some(certificate) = receivers.failure(fit) {
         return Ok(certificate);
     }
-    let mut slack = Slack { planes: receivers.least.map(|(margin, _)| margin as f32), casters: f32::INFINITY };
+    let mut margins = Margins { planes: receivers.least.map(|(margin, _)| margin as f32), casters: f32::INFINITY };
     if receivers.any.is_some()
-        && claim.casters != CasterPolicy::DepthClamp
+        && query.casters != CasterPolicy::DepthClamp
         && content.casters.is_some_and(|casters| !casters.boxes.is_empty())
     {
-        let footprint = Footprint::of_receivers(&content, axes, range, points)?;
-        let pad = caster_reach(fit, claim, footprint.reach);
-        let (by, point) = nearest_caster(&content, &Outline::new(&axes, footprint.outline, pad), &half_spaces, offset);
+        let hull = LightHull::of(Covers::Receivers, &content, axes, range, points)?;
+        let pad = caster_reach(fit, query, hull.farthest);
+        let (by, point) = nearest_caster(&content, &Outline::new(&axes, hull.outline, pad), &half_spaces, offset);
         if by < 0.0 {
             return Ok(Certificate::CasterLost { point: fit.origin + point, by: -by as f32 });
         }
-        slack.casters = by as f32;
+        margins.casters = by as f32;
     }
-    Ok(Certificate::Proven(slack))
+    Ok(Certificate::Proven(margins))
 }
 
 /// How far around the outline casters are read, in metres: the reach of the filter with the
 /// rasteriser's snap, the normal offset, and what rounding may shift both receivers and casters.
-fn caster_reach(fit: &LightFit, claim: &Claim, distance: f64) -> f64 {
+fn caster_reach(fit: &LightFit, query: &CoverageQuery, distance: f64) -> f64 {
     let size = (fit.box_max - fit.box_min).as_dvec3().truncate();
     let texel = size / fit.resolution.as_dvec2();
-    let reach = claim.reach.disc.as_dvec2() + f64::from(claim.reach.taps + HARDWARE_SNAP);
+    let reach = query.reach.disc.as_dvec2() + f64::from(query.reach.taps + HARDWARE_SNAP);
     let rounding = SHIFT_ROUNDINGS * ROUNDING * (distance + size.max_element());
     let texels = reach * texel;
-    libm::sqrt(texels.dot(texels)) + f64::from(claim.normal_offset) + rounding
+    libm::sqrt(texels.dot(texels)) + f64::from(query.normal_offset) + rounding
 }
 
 /// Roundings that shift a receiver and a caster against each other across the light, as multiples
@@ -347,7 +274,7 @@ impl<'a> Worst<'a> {
     fn failure(&self, fit: &LightFit) -> Option<Certificate> {
         let point = self.any?;
         if fit.is_empty {
-            return Some(Certificate::LeftOut { point: fit.origin + point });
+            return Some(Certificate::MarkedEmpty { point: fit.origin + point });
         }
         let (across, along) = (fit.resolution.as_dvec2(), f64::from(fit.depth_range));
         let extents = [across.x, across.x, across.y, across.y, along, along];

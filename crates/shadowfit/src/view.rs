@@ -16,6 +16,13 @@ use glam::{DVec3, Vec3};
 
 use crate::{Aabb, ViewFrustum, checks};
 
+/// A range of view depths, in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Range {
+    pub(crate) near: f32,
+    pub(crate) far: f32,
+}
+
 /// Corners of the part of a frustum between two view depths, relative to an origin; `None` where
 /// they leave nothing of it.
 #[inline(always)]
@@ -92,7 +99,7 @@ impl View {
         Self { corners, near, far, depth, sides }
     }
 
-    /// Place of a point in the picture: 0..1 from left to right and from top to bottom. The point
+    /// Position of a point in the picture: 0..1 from left to right and from top to bottom. The point
     /// is not before the near plane.
     pub(crate) fn picture_position(&self, p: DVec3) -> [f64; 2] {
         // Sides 0 to 3 are top, right, bottom, left; each is measured in what the opposite end of

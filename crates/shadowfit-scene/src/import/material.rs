@@ -177,13 +177,12 @@ fn sources(texture: &texture::Texture, count: usize, element: &str) -> Result<Ve
 fn webp_source(texture: &texture::Texture, element: &str) -> Result<Option<usize>, Problem> {
     let extension = texture.extensions.as_ref().and_then(|extensions| extensions.others.get("EXT_texture_webp"));
     let Some(source) = extension.and_then(|extension| extension.get("source")) else { return Ok(None) };
-    match source.as_u64().and_then(|source| usize::try_from(source).ok()) {
-        Some(source) => Ok(Some(source)),
-        None => {
-            let element = format!("{element}.extensions.EXT_texture_webp.source");
-            Err(Problem::new(element, format!("{source} is not the index of an image")))
-        }
-    }
+    let index = source.as_u64().and_then(|source| usize::try_from(source).ok());
+    let wrong = || {
+        let element = format!("{element}.extensions.EXT_texture_webp.source");
+        Problem::new(element, format!("{source} is not the index of an image"))
+    };
+    index.ok_or_else(wrong).map(Some)
 }
 
 fn base_color_use<'a>(json: &'a json::Material, element: &str) -> Option<Use<'a>> {

@@ -139,7 +139,8 @@ fn webp_images_cut_short_at_any_length_are_replaced_with_a_note() {
 #[test]
 fn a_webp_image_that_claims_more_pixels_than_the_limit_is_replaced_before_they_are_allocated() {
     // Width and height less one, in 14 bits each.
-    let size = 16_382_u32 | 16_382 << 14;
+    let side = 16_383_u32 - 1;
+    let size = side | (side << 14);
     let bytes = [b"RIFF\x12\0\0\0WEBPVP8L\x05\0\0\0\x2f".as_slice(), &size.to_le_bytes(), b"\0"].concat();
     let scene = load(WEBP_ALONE, &[data_uri(&bytes, "webp")]).unwrap();
     assert_placeholder(&scene);

@@ -13,12 +13,8 @@
 
 use glam::{DVec3, Vec3, Vec4};
 
-use super::shapes::{Lane, Lanes};
-use super::{Bounds, CasterVolume, widened};
-
-/// Shapes that are tested together. Loops this long are not unrolled, which keeps them simple
-/// enough for every compiler to vectorise, and all lanes stay in the innermost cache.
-pub(super) const LANES: usize = 64;
+use super::shapes::{Bounds, LANES, Lane, Lanes};
+use super::volume::{CasterVolume, widened};
 
 /// Most volumes that one call tests: the bits of a mask.
 const MAX_VOLUMES: usize = 8;
@@ -39,11 +35,11 @@ const MAX_SCREEN: usize = 6;
 ///
 /// A call has a fixed cost of about a microsecond for four volumes: give it all shapes at once.
 pub fn cull<S: Bounds>(volumes: &[CasterVolume], origin: DVec3, shapes: &[S], masks: &mut [u8]) {
-    let plan = Plan::new(volumes, origin);
+    let table = PlaneTable::new(volumes, origin);
     let count = shapes.len().min(masks.len());
     let Some(first) = shapes.first() else { return };
-    let mut block = Block::<S>::new(&plan);
-    let mut waiting = Waiting { shapes: [*first; LANES], places: [0; LANES], count: 0 };
+    let mut block = Block::<S>::new(&table);
+    let mut waiting = Waiting { shapes: [*first; LANES], indices: [0; LANES], count: 0 };
     let (chunks, rest) = shapes[..count].as_chunks();
     for (chunk, start) in chunks.iter().zip((0..).step_by(LANES)) {
         waiting.pass(&mut block, chunk, start, masks);
@@ -52,8 +48,8 @@ pub fn cull<S: Bounds>(volumes: &[CasterVolume], origin: DVec3, shapes: &[S], ma
     // What does not fill the lanes is tested at once; no one asks for the lanes behind it.
     let start = count - rest.len();
     waiting.shapes[..rest.len()].copy_from_slice(rest);
-    for (place, index) in waiting.places.iter_mut().zip(start..count) {
-        *place = index;
+    for (waiting, index) in waiting.indices.iter_mut().zip(start..count) {
+        *waiting = index;
     }
     waiting.count = rest.len();
     waiting.flush(&mut block, masks);
@@ -62,7 +58,7 @@ pub fn cull<S: Bounds>(volumes: &[CasterVolume], origin: DVec3, shapes: &[S], ma
 /// Shapes that passed the screen, and where their masks go.
 struct Waiting<S> {
     shapes: [S; LANES],
-    places: [usize; LANES],
+    indices: [usize; LANES],
     count: usize,
 }
 
@@ -83,7 +79,7 @@ impl<S: Bounds> Waiting<S> {
         }
         for i in passed.lanes[..passed.count].iter().map(|i| usize::from(*i)) {
             self.shapes[self.count] = chunk[i];
-            self.places[self.count] = start + i;
+            self.indices[self.count] = start + i;
             self.count += 1;
         }
     }
@@ -93,8 +89,8 @@ impl<S: Bounds> Waiting<S> {
         if self.count > 0 {
             block.load(&self.shapes);
             block.test();
-            for (place, mask) in self.places[..self.count].iter().zip(block.results()) {
-                masks[*place] = mask;
+            for (index, mask) in self.indices[..self.count].iter().zip(block.results()) {
+                masks[*index] = mask;
             }
             self.count = 0;
         }
@@ -109,7 +105,7 @@ struct Passed {
 
 /// Shapes in lanes, and what is known of them.
 struct Block<'a, S: Bounds> {
-    plan: &'a Plan,
+    table: &'a PlaneTable,
     lanes: S::Lanes,
     slack: Lane,
     reach: Lane,
@@ -122,10 +118,10 @@ struct Block<'a, S: Bounds> {
 }
 
 impl<'a, S: Bounds> Block<'a, S> {
-    fn new(plan: &'a Plan) -> Self {
+    fn new(table: &'a PlaneTable) -> Self {
         let (slack, reach) = ([0.0; LANES], [0.0; LANES]);
         let (lanes, least) = (S::Lanes::default(), [[0.0; LANES]; MAX_VOLUMES]);
-        Self { plan, lanes, slack, reach, least, was_outside: false, first_plane: 0 }
+        Self { table, lanes, slack, reach, least, was_outside: false, first_plane: 0 }
     }
 
     /// Puts shapes into the lanes.
@@ -139,7 +135,7 @@ impl<'a, S: Bounds> Block<'a, S> {
     /// Neighbours in a list are often neighbours in the world. Where one block was all outside,
     /// the next one is given up as soon as it is, beginning with the plane that decided the last.
     fn screen(&mut self) -> Passed {
-        let screen = &self.plan.screen[..self.plan.screen_count];
+        let screen = &self.table.screen[..self.table.screen_count];
         let least = &mut self.least[0];
         least.fill(f32::MAX);
         let (before, after) = screen.split_at(self.first_plane.min(screen.len()));
@@ -164,10 +160,10 @@ impl<'a, S: Bounds> Block<'a, S> {
 
     /// Measures all lanes against the planes of all volumes.
     fn test(&mut self) {
-        let Self { plan, lanes, reach, least, .. } = self;
-        let volumes = &mut least[..plan.volume_count];
+        let Self { table, lanes, reach, least, .. } = self;
+        let volumes = &mut least[..table.volume_count];
         volumes.fill([f32::MAX; LANES]);
-        for (normal, offsets) in plan.normals[..plan.normal_count].iter().zip(&plan.offsets) {
+        for (normal, offsets) in table.normals[..table.normal_count].iter().zip(&table.offsets) {
             reaches::<S>(lanes, *normal, reach);
             for (least, d) in volumes.iter_mut().zip(offsets) {
                 if *d < f32::INFINITY {
@@ -180,7 +176,7 @@ impl<'a, S: Bounds> Block<'a, S> {
     /// The masks of all lanes.
     fn results(&self) -> [u8; LANES] {
         let mut bits = [0; LANES];
-        for (volume, least) in self.least[..self.plan.volume_count].iter().enumerate() {
+        for (volume, least) in self.least[..self.table.volume_count].iter().enumerate() {
             mark(least, &self.slack, 1 << volume, &mut bits);
         }
         bits
@@ -238,7 +234,7 @@ fn lesser(least: f32, distance: f32) -> f32 {
 }
 
 /// The planes of all volumes, by their normals.
-struct Plan {
+struct PlaneTable {
     normals: [Vec3; MAX_PLANES],
     normal_count: usize,
     /// The planes' d for each normal and volume; infinite where a volume has no such plane.
@@ -249,9 +245,9 @@ struct Plan {
     screen_count: usize,
 }
 
-impl Plan {
+impl PlaneTable {
     fn new(volumes: &[CasterVolume], origin: DVec3) -> Self {
-        let mut plan = Self {
+        let mut table = Self {
             normals: [Vec3::ZERO; MAX_PLANES],
             normal_count: 0,
             offsets: [[f32::INFINITY; MAX_VOLUMES]; MAX_PLANES],
@@ -261,13 +257,13 @@ impl Plan {
         };
         for (i, volume) in volumes.iter().take(MAX_VOLUMES).enumerate() {
             for plane in volume.relative_to(origin).active_planes() {
-                let normal = plan.normal_index(plane.truncate());
-                let d = &mut plan.offsets[normal][i];
+                let normal = table.normal_index(plane.truncate());
+                let d = &mut table.offsets[normal][i];
                 *d = lesser(*d, widened(plane.w));
             }
         }
-        plan.find_screen();
-        plan
+        table.find_screen();
+        table
     }
 
     /// Where a normal stands in the list, added to it if it is new.

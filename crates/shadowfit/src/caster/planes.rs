@@ -1,6 +1,6 @@
 //! The planes of a volume with one layout for all targets, as shaders take them.
 
-use super::CasterVolume;
+use super::volume::CasterVolume;
 
 /// The planes of a [`CasterVolume`] for a shader, with the layout of this WGSL in uniform and in
 /// storage buffers, 272 bytes:

@@ -5,9 +5,16 @@
 
 use glam::{Mat4, Vec3};
 
-use super::ROUNDING;
-use super::batch::LANES;
 use crate::Aabb;
+
+/// Rounding that the tests allow for, as a share of the coordinates of shape and plane: 16 · 2⁻²⁴.
+/// A test has at most ten operations in f32; the planes' normals are rounded once and lie by two
+/// roundings more along the light.
+pub(super) const ROUNDING: f32 = 16.0 / 16_777_216.0;
+
+/// Shapes that are tested together. Loops this long are not unrolled, which keeps them simple
+/// enough for every compiler to vectorise, and all lanes stay in the innermost cache.
+pub(super) const LANES: usize = 64;
 
 /// A sphere around a caster, relative to an origin that its user states.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -61,7 +68,7 @@ impl Bounds for OrientedBox {}
 mod sealed {
     use glam::Vec3;
 
-    use crate::caster::batch::LANES;
+    use super::LANES;
 
     /// What the tests ask of a shape.
     pub trait Shape: Copy {

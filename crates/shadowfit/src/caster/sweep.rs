@@ -20,12 +20,12 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
-use super::{CasterVolume, map_planes};
+use super::volume::{CasterVolume, map_planes};
 use crate::bias::Reach;
 use crate::checks::{self, MAX_LENGTH};
-use crate::fits::ROUNDING;
 use crate::hull::HullBuilder;
 use crate::view::{Slice, View};
+use crate::volume::ROUNDING;
 use crate::{FitError, LightFit, ViewFrustum};
 
 /// Which receivers read a map, and how far around them.

@@ -1,6 +1,6 @@
 //! Pieces of triangles, cut by planes.
 //!
-//! A corner of a piece is kept as its place in the triangle, (u, v) for a + u (b - a) + v (c - a),
+//! A corner of a piece is kept as its position in the triangle, (u, v) for a + u (b - a) + v (c - a),
 //! so that the piece follows when the triangle moves, however it is deformed:
 //!
 //! ```text
@@ -15,8 +15,10 @@ use alloc::vec::Vec;
 
 use glam::{DVec2, DVec3, Vec3};
 
-use super::Triangle;
 use crate::Aabb;
+
+/// Three positions, in metres.
+pub(super) type Triangle = [Vec3; 3];
 
 /// Corners of a whole triangle.
 const WHOLE: [DVec2; 3] = [DVec2::ZERO, DVec2::X, DVec2::Y];
@@ -54,15 +56,15 @@ impl Piece {
     }
 }
 
-/// Corners of the pieces that are not whole, by their place in their triangle.
+/// Corners of the pieces that are not whole, by their position in their triangle.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Corners {
-    places: Vec<DVec2>,
+    positions: Vec<DVec2>,
 }
 
 impl Corners {
     pub(super) fn len(&self) -> usize {
-        self.places.len()
+        self.positions.len()
     }
 
     /// Puts the corners of a piece into `out`, in order around it, rounded.
@@ -70,7 +72,7 @@ impl Corners {
         out.clear();
         match outline.count {
             0 => out.extend(triangle),
-            _ => out.extend(self.places(outline).iter().map(|&place| at(triangle, place).as_vec3())),
+            _ => out.extend(self.positions(outline).iter().map(|&position| at(triangle, position).as_vec3())),
         }
     }
 
@@ -79,7 +81,7 @@ impl Corners {
         if outline.count == 0 {
             return triangle.iter().fold(Aabb::EMPTY, |aabb, &corner| aabb.with_point(corner));
         }
-        let corners = self.places(outline).iter().map(|&place| at(triangle, place));
+        let corners = self.positions(outline).iter().map(|&position| at(triangle, position));
         let (min, max) = corners.fold((DVec3::MAX, DVec3::MIN), |(min, max), p| (min.min(p), max.max(p)));
         rounded_out(min, max)
     }
@@ -89,15 +91,15 @@ impl Corners {
         if outline.count == 0 {
             return outline;
         }
-        let first = self.places.len() as u32;
-        self.places.extend_from_slice(other.places(outline));
+        let first = self.positions.len() as u32;
+        self.positions.extend_from_slice(other.positions(outline));
         Outline { first, ..outline }
     }
 
     /// How many corners both parts of a piece have at most.
     pub(super) fn needed_to_cut(&self, outline: Outline) -> usize {
         // Each part has the corners on its side, and each corner and each edge may give one more.
-        4 * self.places(outline).len()
+        4 * self.positions(outline).len()
     }
 
     /// The parts of a piece below and above a coordinate along an axis. `None` for a part without
@@ -119,46 +121,46 @@ impl Corners {
 
     /// The part of a piece on one side of a plane: below for `side` 1, above for -1.
     fn part(&mut self, piece: &Piece, triangle: &Triangle, axis: usize, cut: f32, side: f64) -> Option<Piece> {
-        let first = self.places.len();
-        let count = self.places(piece.outline).len();
-        let place = |corners: &Self, i: usize| match piece.outline.count {
+        let first = self.positions.len();
+        let count = self.positions(piece.outline).len();
+        let position = |corners: &Self, i: usize| match piece.outline.count {
             0 => WHOLE[i],
-            _ => corners.places[piece.outline.first as usize + i],
+            _ => corners.positions[piece.outline.first as usize + i],
         };
-        let height = |place: DVec2| (at(triangle, place)[axis] - f64::from(cut)) * side;
-        let mut before = place(self, count - 1);
+        let height = |position: DVec2| (at(triangle, position)[axis] - f64::from(cut)) * side;
+        let mut before = position(self, count - 1);
         for i in 0..count {
-            let corner = place(self, i);
+            let corner = position(self, i);
             let (a, b) = (height(before), height(corner));
             if a * b < 0.0 {
-                self.places.push(before + (corner - before) * (a / (a - b)));
+                self.positions.push(before + (corner - before) * (a / (a - b)));
             }
             if b <= 0.0 {
-                self.places.push(corner);
+                self.positions.push(corner);
             }
             before = corner;
         }
-        let count = self.places.len() - first;
+        let count = self.positions.len() - first;
         if count < 3 {
-            self.places.truncate(first);
+            self.positions.truncate(first);
             return None;
         }
         let outline = Outline { first: first as u32, count: count as u32, ..piece.outline };
         let bounds = self.bounds(outline, triangle);
         let aabb = Aabb { min: bounds.min.max(piece.aabb.min), max: bounds.max.min(piece.aabb.max) };
-        let share = share(&self.places[first..]);
+        let share = share(&self.positions[first..]);
         Some(Piece { aabb, area: (area(triangle) * share).as_vec3(), outline })
     }
 
-    fn places(&self, outline: Outline) -> &[DVec2] {
-        if outline.count == 0 { &WHOLE } else { &self.places[outline.first as usize..][..outline.count as usize] }
+    fn positions(&self, outline: Outline) -> &[DVec2] {
+        if outline.count == 0 { &WHOLE } else { &self.positions[outline.first as usize..][..outline.count as usize] }
     }
 }
 
-/// The point of a triangle at a place (u, v). Exact at a flat triangle's common coordinate.
-fn at(triangle: &Triangle, place: DVec2) -> DVec3 {
+/// The point of a triangle at a position (u, v). Exact at a flat triangle's common coordinate.
+fn at(triangle: &Triangle, position: DVec2) -> DVec3 {
     let [a, b, c] = triangle.map(Vec3::as_dvec3);
-    a + (b - a) * place.x + (c - a) * place.y
+    a + (b - a) * position.x + (c - a) * position.y
 }
 
 fn area(triangle: &Triangle) -> DVec3 {
@@ -166,9 +168,9 @@ fn area(triangle: &Triangle) -> DVec3 {
     (b - a).cross(c - a) * 0.5
 }
 
-/// Area of a convex polygon of places, as a share of the triangle's.
-fn share(places: &[DVec2]) -> f64 {
-    let fan = places.windows(2).map(|edge| (edge[0] - places[0]).perp_dot(edge[1] - places[0]));
+/// Area of a convex polygon of positions, as a share of the triangle's.
+fn share(positions: &[DVec2]) -> f64 {
+    let fan = positions.windows(2).map(|edge| (edge[0] - positions[0]).perp_dot(edge[1] - positions[0]));
     fan.sum::<f64>().abs()
 }
 

@@ -7,8 +7,7 @@ use core::cmp::Ordering;
 
 use glam::{DVec3, Vec3};
 
-use super::Triangle;
-use super::piece::{Corners, Piece};
+use super::piece::{Corners, Piece, Triangle};
 use super::slabs::{Slabs, sides};
 use crate::Aabb;
 
@@ -34,7 +33,7 @@ pub(super) struct Group {
     aabb: Aabb,
     /// About how much air is in the box, in m³.
     air: f64,
-    /// Its place in [`Splitter::next`], which also decides between equals.
+    /// Its slot in [`Splitter::next`], which also decides between equals.
     slot: usize,
 }
 
@@ -70,8 +69,8 @@ impl Group {
         best.map(|(_, axis, cut)| (axis, cut)).or_else(|| middle(&self.aabb))
     }
 
-    /// The axis along which the pieces' middles spread most, and half way there; `None` if they are
-    /// all in one place.
+    /// The axis along which the pieces' middles spread most, and half way there; `None` if they
+    /// all coincide.
     fn middle_of_middles(&self) -> Option<(usize, f32)> {
         middle(&self.pieces.iter().fold(Aabb::EMPTY, |aabb, piece| aabb.with_point(piece.middle())))
     }
@@ -167,7 +166,7 @@ impl<'a> Splitter<'a> {
         self.next[slot]
     }
 
-    /// Each slot's place in the order.
+    /// Each slot's rank in the order.
     fn ranks(&self) -> Vec<usize> {
         let mut ranks = vec![0; self.next.len()];
         let mut slot = 0;

@@ -1,9 +1,10 @@
-//! How far a bias is from self-shadowing, foretold from the plane of the surface.
+//! How far a bias is from self-shadowing, predicted from the plane of the surface.
 
 use glam::{DVec3, Vec3};
 
-use super::{DepthStorage, coverage};
+use super::coverage::coverage;
 use crate::bias::{Bias, Reach, SQUARED_SINE_ROUNDING, Slope, depth_precision};
+use crate::depth_storage::DepthStorage;
 use crate::{FitError, LightFit, checks};
 
 /// What is left of a bias once a plane has taken what it needs; negative is what is missing, and

@@ -15,9 +15,9 @@
 //! The roll about the light comes from the shortest arc from straight down, so the map turns
 //! continuously with the sun.
 
-use glam::{DVec2, Vec3};
+use glam::Vec3;
 
-use super::{Content, Footprint, Light, Placing, Range, Volume, fit_as};
+use crate::fits::fit_as;
 use crate::settings::{FitKind, FitSettings};
 use crate::{FitError, LightFit, ViewFrustum};
 
@@ -29,16 +29,4 @@ use crate::{FitError, LightFit, ViewFrustum};
 /// As [`fits::fit`](super::fit).
 pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightFit, FitError> {
     fit_as(FitKind::FrustumAabb, frustum, direction, settings)
-}
-
-pub(crate) fn volume(
-    content: &Content,
-    light: &Light,
-    settings: &FitSettings,
-    range: Range,
-    placing: Placing,
-    points: &mut [DVec2],
-) -> Result<Volume, FitError> {
-    let footprint = Footprint::of_views(content, light.axes, range, points)?;
-    Ok(Volume::around(&footprint, content, settings, range, placing))
 }

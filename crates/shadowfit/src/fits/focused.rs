@@ -6,9 +6,9 @@
 //! the surfaces, the finer the texels, which is why a large mesh is worth cutting into clusters
 //! (`Clusters`, with the feature `alloc`).
 
-use glam::{DVec2, Vec3};
+use glam::Vec3;
 
-use super::{Content, Footprint, Light, Placing, Range, Volume, fit_as};
+use crate::fits::fit_as;
 use crate::settings::{FitKind, FitSettings};
 use crate::{FitError, LightFit, ViewFrustum};
 
@@ -21,16 +21,4 @@ use crate::{FitError, LightFit, ViewFrustum};
 /// As [`fits::fit`](super::fit).
 pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightFit, FitError> {
     fit_as(FitKind::Focused, frustum, direction, settings)
-}
-
-pub(crate) fn volume(
-    content: &Content,
-    light: &Light,
-    settings: &FitSettings,
-    range: Range,
-    placing: Placing,
-    points: &mut [DVec2],
-) -> Result<Volume, FitError> {
-    let footprint = Footprint::of_receivers(content, light.axes, range, points)?;
-    Ok(Volume::around(&footprint, content, settings, range, placing))
 }

@@ -5,9 +5,9 @@
 //! turns and changes its size with every movement of the camera, so shadow edges crawl unless the
 //! fit is [held](crate::Stabilise::Hysteresis).
 
-use glam::{DVec2, Vec3};
+use glam::Vec3;
 
-use super::{Content, Footprint, Light, Placing, Range, Volume, fit_as};
+use crate::fits::fit_as;
 use crate::settings::{FitKind, FitSettings};
 use crate::{FitError, LightFit, ViewFrustum};
 
@@ -19,16 +19,4 @@ use crate::{FitError, LightFit, ViewFrustum};
 /// As [`fits::fit`](super::fit).
 pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightFit, FitError> {
     fit_as(FitKind::Oriented, frustum, direction, settings)
-}
-
-pub(crate) fn volume(
-    content: &Content,
-    light: &Light,
-    settings: &FitSettings,
-    range: Range,
-    placing: Placing,
-    points: &mut [DVec2],
-) -> Result<Volume, FitError> {
-    let footprint = Footprint::of_views(content, light.axes, range, points)?;
-    Ok(Volume::around(&footprint, content, settings, range, placing))
 }

@@ -21,14 +21,11 @@
 //! f32), a vertical light takes another up axis (the source divides by zero), reversed and -1..1
 //! depth are offered, and `margin` is the cure that the source's text suggests.
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
-use super::{Content, Light, Range, Volume, checked, fit_as};
-use crate::checks::MIN_LENGTH;
-use crate::light_fit::Constraint;
+use crate::fits::fit_as;
 use crate::settings::{FitKind, FitSettings};
-use crate::view::slice_corners;
-use crate::{FitError, FitInput, LightFit, ViewFrustum};
+use crate::{FitError, LightFit, ViewFrustum};
 
 /// Fits as the XNA sample does; see the [module](self). `direction` is the light's direction of
 /// travel in world axes. Of the settings the caster policy, the rectangle and the kernel margin
@@ -39,49 +36,4 @@ use crate::{FitError, FitInput, LightFit, ViewFrustum};
 /// As [`fits::fit`](super::fit).
 pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightFit, FitError> {
     fit_as(FitKind::XnaSample, frustum, direction, settings)
-}
-
-pub(crate) fn volume(
-    content: &Content,
-    light: &Light,
-    settings: &FitSettings,
-    range: Range,
-) -> Result<Volume, FitError> {
-    around(content.slices(range), light, settings)
-}
-
-/// The map around the only view of an input.
-pub(crate) fn of_view(input: &FitInput, settings: &FitSettings) -> Result<LightFit, FitError> {
-    let (direction, up) = checked(input, settings)?;
-    let light = Light::new(direction, up, FitKind::XnaSample);
-    let view = &input.views[0];
-    let corners = slice_corners(view, view.origin, view.near, settings.max_distance);
-    let volume = around(corners.into_iter(), &light, settings)?;
-    LightFit::from_volume(view.origin, &volume, settings)
-}
-
-/// The sample's box around the corners of views' slices.
-#[inline(always)]
-pub(crate) fn around(
-    slices: impl Iterator<Item = [DVec3; 8]>,
-    light: &Light,
-    settings: &FitSettings,
-) -> Result<Volume, FitError> {
-    let axes = light.axes;
-    let (mut min, mut max) = (DVec3::MAX, DVec3::MIN);
-    for slice in slices {
-        for corner in slice {
-            let p = axes.project(corner);
-            (min, max) = (min.min(p), max.max(p));
-        }
-    }
-    let size = max - min;
-    if size.min_element() < MIN_LENGTH {
-        return Err(FitError::EmptyFrustum { size: size.as_vec3() });
-    }
-    let margin = DVec3::splat(f64::from(settings.margin));
-    let (min, max) = (min - margin, max + margin);
-    let depth_range = 2.0 * (max.z - min.z);
-    let set_by = [Constraint::View; 6];
-    Ok(Volume { axes, min, max, light_z: min.z, depth_range, set_by, is_empty: false, grid: None })
 }

@@ -3,9 +3,7 @@
 use glam::{DMat4, DVec3, UVec2, Vec3};
 
 use crate::axes::LightAxes;
-use crate::fits::Volume;
-use crate::light_fit::Constraint;
-use crate::settings::FitSettings;
+use crate::volume::{Constraint, Volume};
 use crate::{DepthConvention, FitError, LightFit, checks};
 
 /// How far axes may be from being perpendicular, and from the light's direction, as a cosine: matrices that were
@@ -43,8 +41,7 @@ impl LightFit {
         check_axes(axes, along)?;
         let depth = if along > 0.0 { DepthConvention::ZeroToOne } else { DepthConvention::Reversed };
         // Light space looks along -z, whichever way the depth runs.
-        let settings = FitSettings { resolution, depth, ..FitSettings::default() };
-        Self::from_volume(origin, &rows.volume(axes, along.signum()), &settings)
+        Self::from_volume(origin, &rows.volume(axes, along.signum()), resolution, depth)
     }
 }
 

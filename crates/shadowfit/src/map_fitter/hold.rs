@@ -3,7 +3,7 @@
 //! A held map keeps its angle and its texel size, and moves by whole texels of the world's grid.
 //! It is given up when what must be covered no longer fits into it, or when a fresh fit would
 //! have much finer texels. The new one is made larger, by what the camera will see if it goes on
-//! as it does, for as long as that costs no more than the settings allow:
+//! as it does, for as long as that costs no more than the rule allow:
 //!
 //! ```text
 //!    ┌─────────────────┐ new map
@@ -15,13 +15,18 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::axes::LightAxes;
-use crate::fits::{self, Content, Footprint, Light, Placing, Range, Volume};
-use crate::grid::{self, Grid};
-use crate::light_fit::Constraint;
+use crate::axes::{Light, LightAxes};
+use crate::content::Content;
+use crate::fits::{self, Placement};
+use crate::grid;
+use crate::light_hull::LightHull;
 use crate::motion::Motion;
+use crate::near_plane;
 use crate::rectangle::Rectangle;
-use crate::settings::{CasterPolicy, FitKind, FitSettings, HoldSettings};
+use crate::rule::FitRule;
+use crate::settings::HoldSettings;
+use crate::view::Range;
+use crate::volume::{Constraint, Grid, ROUNDING, Volume};
 use crate::{FitError, FitInput, ViewFrustum, Workspace};
 
 /// A map of an earlier frame, in the world's own coordinates.
@@ -42,7 +47,7 @@ pub(crate) struct HeldMap {
 }
 
 /// One frame's input to the holding of maps.
-pub(crate) struct Frame<'a, 'b> {
+pub(crate) struct Holder<'a, 'b> {
     pub(crate) input: &'a FitInput<'b>,
     pub(crate) content: &'a Content<'a>,
     pub(crate) light: Light,
@@ -69,31 +74,31 @@ pub(crate) fn volume(held: &HeldMap, origin: DVec3) -> Volume {
     volume
 }
 
-impl Frame<'_, '_> {
+impl Holder<'_, '_> {
     /// The map of this frame: the held one if it serves.
-    pub(crate) fn place(
+    pub(crate) fn hold(
         &self,
         held: Option<HeldMap>,
-        settings: &FitSettings,
+        rule: &FitRule,
         slice: Range,
         points: &mut [DVec2],
     ) -> Result<HeldMap, FitError> {
-        // Margins in texels and the near plane depend on the texels of the map that is kept or made.
-        let plain = FitSettings { border: Some(0.0), casters: CasterPolicy::None, ..*settings };
-        let fresh = fits::fit_slice(self.content, &self.light, &plain, slice, Placing::Tight, points)?;
-        if let Some(held) = held.filter(|held| held.is_of(&fresh, settings))
-            && let Some(kept) = self.keep(&held, &fresh, settings, slice, points)?
+        // The border and the near plane depend on the texels of the map that is kept or made.
+        let plain = rule.without_room();
+        let fresh = fits::fit_map(self.content, &self.light, &plain, slice, Placement::Tight, points)?;
+        if let Some(held) = held.filter(|held| held.is_of(&fresh, rule))
+            && let Some(kept) = self.keep(&held, &fresh, rule, slice, points)?
         {
             return Ok(kept);
         }
-        self.make(&fresh, settings, slice, points)
+        self.make(&fresh, rule, slice, points)
     }
 
     /// A plain fit around what the views see and what they will see in some frames.
     fn fit_ahead(
         &self,
         ahead: &[ViewFrustum],
-        settings: &FitSettings,
+        rule: &FitRule,
         slice: Range,
         points: &mut [DVec2],
     ) -> Result<Volume, FitError> {
@@ -108,7 +113,7 @@ impl Frame<'_, '_> {
         let input = FitInput { views: &views[..now + ahead.len()], ..*self.input };
         let mut workspace = Workspace::new(points);
         let (content, points) = Content::new(&input, &mut workspace)?;
-        fits::fit_slice(&content, &self.light, settings, slice, Placing::Tight, points)
+        fits::fit_map(&content, &self.light, rule, slice, Placement::Tight, points)
     }
 
     /// The held map moved by whole texels, if what must be covered fits into it and it is not too
@@ -117,13 +122,13 @@ impl Frame<'_, '_> {
         &self,
         held: &HeldMap,
         fresh: &Volume,
-        settings: &FitSettings,
+        rule: &FitRule,
         slice: Range,
         points: &mut [DVec2],
     ) -> Result<Option<HeldMap>, FitError> {
-        let needed = self.needed(held, settings, slice, points)?;
+        let needed = self.needed(held, rule, slice, points)?;
         let size = fresh.max - fresh.min;
-        let held_size = held.texel * grid::usable(settings);
+        let held_size = held.texel * grid::usable(rule);
         let waste = f64::from(self.hold.waste);
         if held_size.x * held_size.y > size.x * size.y * waste * waste {
             return Ok(None);
@@ -136,47 +141,32 @@ impl Frame<'_, '_> {
         }
         let mut kept = *held;
         kept.first = held.first.min(low).max(high);
-        kept.z = grid::steadied(Some(held.z), (needed.z.0 + anchor.z, needed.z.1 + anchor.z), waste);
+        kept.z = grid::stabilised_depth(Some(held.z), (needed.z.0 + anchor.z, needed.z.1 + anchor.z), waste);
         kept.is_empty = fresh.is_empty;
         kept.set_by = [Constraint::Held; 6];
         Ok(Some(kept))
     }
 
     /// What must be covered and where the near plane must be, along the held axes.
-    fn needed(
-        &self,
-        held: &HeldMap,
-        settings: &FitSettings,
-        slice: Range,
-        points: &mut [DVec2],
-    ) -> Result<Needed, FitError> {
-        let footprint = match settings.kind {
-            FitKind::Focused => Footprint::of_receivers(self.content, held.axes, slice, points)?,
-            _ => Footprint::of_views(self.content, held.axes, slice, points)?,
-        };
+    fn needed(&self, held: &HeldMap, rule: &FitRule, slice: Range, points: &mut [DVec2]) -> Result<Needed, FitError> {
+        let hull = LightHull::of(rule.covers, self.content, held.axes, slice, points)?;
         let extent = (held.texel * held.resolution).max_element();
-        let rounding = (footprint.reach + extent) * grid::ROUNDING;
-        let pad = rounding + f64::from(settings.margin);
-        let kernel = held.texel * f64::from(settings.border_texels());
-        let mut across = Rectangle::around(footprint.outline, DVec2::X);
-        across.min -= kernel + pad;
-        across.max += kernel + pad;
-        let reach = fits::filter_reach(held.texel, settings, rounding);
-        let (low, high) = (footprint.z.0 - pad, footprint.z.1 + pad);
-        let near = fits::place_near(high, &held.axes, footprint.outline, self.content, settings, reach);
+        let rounding = (hull.farthest + extent) * ROUNDING;
+        let pad = rounding + rule.margin;
+        let border = held.texel * rule.border;
+        let mut across = Rectangle::around(hull.outline, DVec2::X);
+        across.min -= border + pad;
+        across.max += border + pad;
+        let reach = near_plane::filter_reach(held.texel, rule, rounding);
+        let (low, high) = (hull.z.0 - pad, hull.z.1 + pad);
+        let near = near_plane::find(high, &held.axes, hull.outline, self.content, rule.depth, reach);
         Ok(Needed { across, z: (low, near.z), near_set_by: near.set_by })
     }
 
     /// A new map with room for the motion to come.
-    fn make(
-        &self,
-        fresh: &Volume,
-        settings: &FitSettings,
-        slice: Range,
-        points: &mut [DVec2],
-    ) -> Result<HeldMap, FitError> {
+    fn make(&self, fresh: &Volume, rule: &FitRule, slice: Range, points: &mut [DVec2]) -> Result<HeldMap, FitError> {
         let mut volume = *fresh;
-        let plain = FitSettings { border: Some(0.0), ..*settings };
+        let plain = FitRule { border: 0.0, ..*rule };
         let mut frames = self.hold.horizon;
         while let Some(motion) = self.motion.filter(|motion| frames > 0 && !motion.is_still()) {
             let ahead = [motion.after(&self.input.views[0], frames / 2), motion.after(&self.input.views[0], frames)];
@@ -194,14 +184,14 @@ impl Frame<'_, '_> {
         volume.min -= room.extend(0.0);
         volume.max += room.extend(0.0);
         let origin = self.input.views[0].origin;
-        let grid = grid::snap(&mut volume, origin, settings);
-        let mut map = HeldMap::new(&volume, grid, settings, fresh);
-        let needed = self.needed(&map, settings, slice, points)?;
+        let grid = grid::snap(&mut volume, origin, rule);
+        let mut map = HeldMap::new(&volume, grid, rule, fresh);
+        let needed = self.needed(&map, rule, slice, points)?;
         let anchor = grid::anchor(&map.axes, origin).z;
         let now = (needed.z.0 + anchor, needed.z.1 + anchor);
-        let ahead = grid::steadied(None, (grid.z.0.min(now.0), grid.z.1.max(now.1)), 1.0);
+        let ahead = grid::stabilised_depth(None, (grid.z.0.min(now.0), grid.z.1.max(now.1)), 1.0);
         // What the next frame would give up is not begun with.
-        map.z = grid::steadied(Some(ahead), now, f64::from(self.hold.waste));
+        map.z = grid::stabilised_depth(Some(ahead), now, f64::from(self.hold.waste));
         map.set_by[5] = needed.near_set_by.unwrap_or(map.set_by[5]);
         Ok(map)
     }
@@ -218,12 +208,12 @@ struct Needed {
 const MAX_VIEWS: usize = 10;
 
 impl HeldMap {
-    fn new(volume: &Volume, grid: Grid, settings: &FitSettings, fresh: &Volume) -> Self {
+    fn new(volume: &Volume, grid: Grid, rule: &FitRule, fresh: &Volume) -> Self {
         Self {
             axes: volume.axes,
             texel: grid.texel,
             first: grid.first,
-            resolution: settings.resolution.as_dvec2(),
+            resolution: rule.resolution.as_dvec2(),
             z: grid.z,
             is_empty: fresh.is_empty,
             set_by: fresh.set_by,
@@ -231,8 +221,8 @@ impl HeldMap {
     }
 
     /// Whether the map is of the same light and resolution.
-    fn is_of(&self, fresh: &Volume, settings: &FitSettings) -> bool {
-        self.axes.z == fresh.axes.z && self.resolution == settings.resolution.as_dvec2()
+    fn is_of(&self, fresh: &Volume, rule: &FitRule) -> bool {
+        self.axes.z == fresh.axes.z && self.resolution == rule.resolution.as_dvec2()
     }
 }
 

@@ -90,6 +90,10 @@ pub static PARAMETERS: &[Parameter] = &[
     tool::PLAY,
 ];
 
+const fn always_there(_: &Settings) -> bool {
+    true
+}
+
 const fn always_active(_: &Settings) -> Option<&'static str> {
     None
 }

@@ -2,31 +2,32 @@
 
 use core::fmt;
 
-use super::{Kind, Number, Optional, PARAMETERS, Parameter, parameter};
+use super::{Kind, Number, Optional, PARAMETERS, Parameter, parameter, technique_parameters};
 use crate::tool::Settings;
 
 /// Sets one parameter from text: a number in the parameter's unit, an option's id, or `true`,
 /// `on`, `false`, `off`. Spaces around the value are ignored.
 ///
-/// Unlike [`Number::set`], a number outside its range is an error, since a file or command line
-/// has no slider that would show the clamped value.
+/// Unlike [`Number::set`], a number outside its range and a fraction where whole numbers are meant
+/// are errors, since a file or command line has no slider that would show what became of them.
 ///
 /// # Errors
 ///
-/// [`ParameterError`], with `settings` untouched: the id is unknown, or the value is not one that
-/// the parameter takes.
+/// [`ParameterError`], with `settings` untouched: the id is unknown, the value is not one that the
+/// parameter takes, or the parameter [is not there](Parameter::is_present).
 pub fn set_from_str<'a>(settings: &mut Settings, id: &'a str, value: &'a str) -> Result<(), ParameterError<'a>> {
     let parameter = parameter(id).ok_or(ParameterError::UnknownId { id })?;
     let value = value.trim();
     match &parameter.kind {
-        Kind::Number(number) => number.set(settings, parse(parameter, value, number.min, number.max)?),
+        Kind::Number(number) => number.set(settings, parse(parameter, value, number.into())?),
         Kind::Optional(optional) => {
             let is_unset = optional.unset.is_some_and(|unset| unset.id == value);
-            let parsed = if is_unset { None } else { Some(parse(parameter, value, optional.min, optional.max)?) };
-            optional.set(settings, parsed);
-            if let (Some(_), None, Some(reason)) = (parsed, optional.get(settings), (parameter.inert)(settings)) {
+            let parsed = if is_unset { None } else { Some(parse(parameter, value, optional.into())?) };
+            if parsed.is_some() && !parameter.is_present(settings) {
+                let reason = (parameter.inert)(settings).unwrap_or_default();
                 return Err(ParameterError::NotPresent { parameter, reason });
             }
+            optional.set(settings, parsed);
         }
         Kind::Choice(choice) => {
             let index = choice.options.iter().position(|option| option.id == value);
@@ -41,10 +42,36 @@ pub fn set_from_str<'a>(settings: &mut Settings, id: &'a str, value: &'a str) ->
     Ok(())
 }
 
-/// A number within a range.
-fn parse<'a>(parameter: &'static Parameter, value: &'a str, min: f64, max: f64) -> Result<f64, ParameterError<'a>> {
+/// A number that a parameter takes.
+fn parse<'a>(parameter: &'static Parameter, value: &'a str, numbers: Numbers) -> Result<f64, ParameterError<'a>> {
     let parsed: f64 = value.parse().map_err(|_| ParameterError::NotANumber { parameter, value })?;
-    if (min..=max).contains(&parsed) { Ok(parsed) } else { Err(ParameterError::OutOfRange { parameter, value }) }
+    if !(numbers.min..=numbers.max).contains(&parsed) {
+        Err(ParameterError::OutOfRange { parameter, value })
+    } else if numbers.is_whole && libm::trunc(parsed) != parsed {
+        Err(ParameterError::NotANumber { parameter, value })
+    } else {
+        Ok(parsed)
+    }
+}
+
+/// Which numbers a knob takes.
+#[derive(Clone, Copy)]
+struct Numbers {
+    min: f64,
+    max: f64,
+    is_whole: bool,
+}
+
+impl From<&Number> for Numbers {
+    fn from(&Number { min, max, decimals, .. }: &Number) -> Self {
+        Self { min, max, is_whole: decimals == 0 }
+    }
+}
+
+impl From<&Optional> for Numbers {
+    fn from(&Optional { min, max, decimals, .. }: &Optional) -> Self {
+        Self { min, max, is_whole: decimals == 0 }
+    }
 }
 
 /// Writes a parameter's value as [`set_from_str`] reads it, without its unit.
@@ -57,21 +84,18 @@ fn parse<'a>(parameter: &'static Parameter, value: &'a str, min: f64, max: f64) 
 ///
 /// Only those of `out`.
 pub fn format_value(settings: &Settings, parameter: &Parameter, out: &mut dyn fmt::Write) -> fmt::Result {
+    if !parameter.is_present(settings) {
+        return Ok(());
+    }
     match &parameter.kind {
         Kind::Number(number) => {
             let set = |settings: &mut Settings, value| number.set(settings, value);
-            write_number(
-                settings,
-                number.get(settings),
-                (number.min, number.max),
-                (&set, &|s| Some(number.get(s))),
-                out,
-            )
+            write_number(settings, number.get(settings), number.into(), (&set, &|s| Some(number.get(s))), out)
         }
         Kind::Optional(optional) => match (optional.get(settings), optional.unset) {
             (Some(value), _) => {
                 let set = |settings: &mut Settings, value| optional.set(settings, Some(value));
-                write_number(settings, value, (optional.min, optional.max), (&set, &|s| optional.get(s)), out)
+                write_number(settings, value, optional.into(), (&set, &|s| optional.get(s)), out)
             }
             (None, Some(unset)) => out.write_str(unset.id),
             (None, None) => Ok(()),
@@ -87,7 +111,7 @@ type Access<'a> = (&'a dyn Fn(&mut Settings, f64), &'a dyn Fn(&Settings) -> Opti
 fn write_number(
     settings: &Settings,
     value: f64,
-    (min, max): (f64, f64),
+    Numbers { min, max, .. }: Numbers,
     (set, get): Access<'_>,
     out: &mut dyn fmt::Write,
 ) -> fmt::Result {
@@ -141,12 +165,17 @@ pub enum ParameterError<'a> {
         /// The id that was asked for.
         id: &'a str,
     },
-    /// The value is not a number.
+    /// The value is not a number, or not a whole one where that is needed.
     NotANumber {
         /// The parameter.
         parameter: &'static Parameter,
         /// What was given.
         value: &'a str,
+    },
+    /// The parameter is no part of a [`Technique`](crate::Technique).
+    NotOfTechnique {
+        /// The id that was asked for.
+        id: &'a str,
     },
     /// The number lies outside the parameter's range, or is NaN.
     OutOfRange {
@@ -180,8 +209,12 @@ impl fmt::Display for ParameterError<'_> {
                 write!(f, "there is no parameter {id:?}; there are ")?;
                 list(f, PARAMETERS.iter().map(|parameter| parameter.id))
             }
+            Self::NotOfTechnique { id } => {
+                write!(f, "{id} is no part of a technique, which is made of ")?;
+                list(f, technique_parameters().map(|parameter| parameter.id))
+            }
             Self::NotANumber { parameter, value } => {
-                write!(f, "{} is {value:?}, which is not a number; give ", parameter.id)?;
+                write!(f, "{} is {value:?}; give ", parameter.id)?;
                 allowed(f, parameter)
             }
             Self::OutOfRange { parameter, value } => {
@@ -201,10 +234,10 @@ impl fmt::Display for ParameterError<'_> {
 
 fn allowed(f: &mut fmt::Formatter<'_>, parameter: &Parameter) -> fmt::Result {
     match &parameter.kind {
-        Kind::Number(Number { min, max, .. }) => allowed_number(f, parameter, *min, *max),
-        Kind::Optional(Optional { min, max, unset, .. }) => {
-            allowed_number(f, parameter, *min, *max)?;
-            unset.map_or(Ok(()), |unset| write!(f, ", or {}", unset.id))
+        Kind::Number(number) => allowed_numbers(f, parameter, number.into()),
+        Kind::Optional(optional) => {
+            allowed_numbers(f, parameter, optional.into())?;
+            optional.unset.map_or(Ok(()), |unset| write!(f, ", or {}", unset.id))
         }
         Kind::Choice(choice) => {
             f.write_str("one of ")?;
@@ -214,8 +247,9 @@ fn allowed(f: &mut fmt::Formatter<'_>, parameter: &Parameter) -> fmt::Result {
     }
 }
 
-fn allowed_number(f: &mut fmt::Formatter<'_>, parameter: &Parameter, min: f64, max: f64) -> fmt::Result {
-    write!(f, "a number from {min} to {max}")?;
+fn allowed_numbers(f: &mut fmt::Formatter<'_>, parameter: &Parameter, numbers: Numbers) -> fmt::Result {
+    let Numbers { min, max, is_whole } = numbers;
+    write!(f, "a {}number from {min} to {max}", if is_whole { "whole " } else { "" })?;
     if parameter.unit.is_empty() { Ok(()) } else { write!(f, " {}", parameter.unit) }
 }
 

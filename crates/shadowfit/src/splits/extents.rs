@@ -6,11 +6,13 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
-use super::{BINS, Bins, Chooser};
+use super::bins::{BINS, Bins};
 use crate::axes::LightAxes;
-use crate::fits::{Range, rectangle_kind, sphere};
+use crate::content::Content;
 use crate::grid;
-use crate::settings::{FitKind, RectangleKind, Stabilise};
+use crate::rule::{Covers, FitRule};
+use crate::settings::RectangleKind;
+use crate::view::Range;
 
 /// Directions over half a turn; the one a quarter turn further on is the other side's.
 const DIRECTIONS: usize = 32;
@@ -21,14 +23,29 @@ pub(super) struct Sizes {
     log: [[f32; BINS]; BINS],
 }
 
-impl Sizes {
-    pub(super) fn new(chooser: &Chooser, bins: &Bins) -> Self {
-        match chooser.settings.fit.kind {
-            FitKind::Sphere => Self::of_spheres(chooser, bins),
-            _ => Self::of_rectangles(chooser, bins),
+/// What the maps will be made by.
+pub(super) struct Maps<'a, 'b> {
+    pub(super) content: &'a Content<'b>,
+    pub(super) axes: LightAxes,
+    pub(super) rule: &'a FitRule,
+    /// Whether their extents are rounded up to those of the world's grid.
+    pub(super) is_snapped: bool,
+    /// View depths at which the first map begins and the last one ends, in metres.
+    pub(super) near: f64,
+    pub(super) end: f64,
+}
+
+impl Maps<'_, '_> {
+    /// The sizes of the maps of all runs.
+    pub(super) fn sizes(&self, bins: &Bins) -> Sizes {
+        match self.rule.covers {
+            Covers::Sphere => Sizes::of_spheres(self, bins),
+            _ => Sizes::of_rectangles(self, bins),
         }
     }
+}
 
+impl Sizes {
     /// log2 of the extent of the bins `first..end`, in metres.
     pub(super) fn log_extent(&self, first: usize, end: usize) -> f32 {
         self.log[first][end - first - 1]
@@ -44,36 +61,33 @@ impl Sizes {
         Self { log }
     }
 
-    fn of_spheres(chooser: &Chooser, bins: &Bins) -> Self {
-        let last = chooser.end((bins.start(0), bins.start(BINS)));
+    fn of_spheres(maps: &Maps, bins: &Bins) -> Self {
         let starts: [f64; BINS + 1] = core::array::from_fn(|bin| bins.start(bin));
         Self::fill(|first, end| {
             // The first map reaches to the near plane.
-            let near = if first == 0 { f64::from(chooser.range.near) } else { starts[first] };
-            let far = if end == BINS { last } else { starts[end] };
+            let near = if first == 0 { maps.near } else { starts[first] };
+            let far = if end == BINS { maps.end } else { starts[end] };
             let range = Range { near: near as f32, far: far as f32 };
-            let radius = sphere::around(chooser.content, range).map_or(far, |sphere| sphere.radius);
+            let radius = maps.content.enclosing_sphere(range).map_or(far, |sphere| sphere.radius);
             grid::quantised(2.0 * radius)
         })
     }
 
-    fn of_rectangles(chooser: &Chooser, bins: &Bins) -> Self {
-        let directions = Directions::new(&chooser.light.axes);
+    fn of_rectangles(maps: &Maps, bins: &Bins) -> Self {
+        let directions = Directions::new(&maps.axes);
         let mut extents = [Dop::EMPTY; BINS];
         for (bin, dop) in extents.iter_mut().enumerate() {
             let range = Range { near: bins.start(bin) as f32, far: bins.start(bin + 1) as f32 };
-            dop.collect(chooser, &directions, range);
+            dop.collect(maps, &directions, range);
         }
-        let kind = rectangle_kind(&chooser.settings.fit);
-        let is_snapped = chooser.settings.stabilise == Stabilise::Snap;
         let mut run = Dop::EMPTY;
         Self::fill(|first, end| {
             if end == first + 1 {
                 run = Dop::EMPTY;
             }
             run = run.union(&extents[end - 1]);
-            let size = run.size(kind);
-            if is_snapped { grid::quantised(size) } else { size }
+            let size = run.size(maps.rule.rectangle);
+            if maps.is_snapped { grid::quantised(size) } else { size }
         })
     }
 }
@@ -117,9 +131,9 @@ impl Dop {
     }
 
     /// Collects what a map of a range would hold.
-    fn collect(&mut self, chooser: &Chooser, directions: &Directions, range: Range) {
-        let content = chooser.content;
-        let Ok(()) = if chooser.settings.fit.kind == FitKind::Focused && content.receivers.is_some() {
+    fn collect(&mut self, maps: &Maps, directions: &Directions, range: Range) {
+        let content = maps.content;
+        let Ok(()) = if maps.rule.covers == Covers::Receivers && content.receivers.is_some() {
             content.receivers_in(range, |_, slice, min, max| {
                 if self.holds(directions, min, max) {
                     return Ok(());

@@ -1,19 +1,19 @@
-//! The cuts with the least 95% quantile of pixels per texel.
+//! The splits with the least 95% quantile of pixels per texel.
 //!
 //! A point at view depth z in a map of width S sees S / (resolution · z · pixel angle) pixels per
 //! texel, so for a bound T on S / z each run of bins leaves those points over the bound that lie
-//! nearer than S / T. Which cuts leave the fewest is found exactly by dynamic programming over
+//! nearer than S / T. Which splits leave the fewest is found exactly by dynamic programming over
 //! the bins (R. Bellman, "On the approximation of curves by line segments using dynamic
 //! programming", 1961); the least T that leaves 5% at most by bisection.
 
+use super::bins::{BINS, Bins, CLASSES, Weights};
 use super::extents::Sizes;
-use super::{BINS, Bins, CLASSES, Weights};
 use crate::MAX_MAPS;
 
 /// Share of the points that may lie over the bound.
 const OVER: f64 = 0.05;
 
-/// Octaves below the bound of logarithmic cuts that are searched for a better one: none has been
+/// Octaves below the bound of logarithmic splits that are searched for a better one: none has been
 /// seen to be so much better.
 const OCTAVES: f64 = 4.0;
 
@@ -21,7 +21,7 @@ const OCTAVES: f64 = 4.0;
 const STEPS: usize = 9;
 
 /// How much a point's log2 error counts beside its being over the bound or not: enough to choose
-/// between cuts that leave equally many over it.
+/// between splits that leave equally many over it.
 const MEAN: f64 = 0.01;
 
 /// Octaves that a class counts: by half of what its surfaces need, since they are foreshortened along
@@ -30,27 +30,27 @@ const MEAN: f64 = 0.01;
 const PER_CLASS: f64 = 0.5;
 
 /// Bins at which the maps begin; the last one's end follows.
-pub(super) struct Cuts {
+pub(super) struct BinSplits {
     pub(super) bins: [usize; MAX_MAPS + 1],
     /// The bound that was reached: log2 of map width per view depth.
     pub(super) quality: f64,
 }
 
-/// The best cuts into `count` maps.
-pub(super) fn least_quantile(bins: &Bins, weights: &Weights, sizes: &Sizes, count: usize) -> Cuts {
+/// The best splits into `count` maps.
+pub(super) fn least_quantile(bins: &Bins, weights: &Weights, sizes: &Sizes, count: usize) -> BinSplits {
     let search = Search::new(bins, weights, sizes);
     let even: [usize; MAX_MAPS + 1] = core::array::from_fn(|i| BINS * i.min(count) / count);
     let known = search.quantile(&even[..=count]);
     let bound = bisect(known - OCTAVES, known, |bound| search.is_feasible(count, bound));
-    Cuts { bins: search.best(count, bound), quality: bound }
+    BinSplits { bins: search.best(count, bound), quality: bound }
 }
 
-/// The bound that given cuts reach.
-pub(super) fn quantile(bins: &Bins, weights: &Weights, sizes: &Sizes, cuts: &[usize]) -> f64 {
-    Search::new(bins, weights, sizes).quantile(cuts)
+/// The bound that given splits reach.
+pub(super) fn quantile(bins: &Bins, weights: &Weights, sizes: &Sizes, splits: &[usize]) -> f64 {
+    Search::new(bins, weights, sizes).quantile(splits)
 }
 
-/// The fewest maps whose best cuts reach a bound `waste` times that of `count` maps.
+/// The fewest maps whose best splits reach a bound `waste` times that of `count` maps.
 pub(super) fn fewest(bins: &Bins, weights: &Weights, sizes: &Sizes, count: usize, waste: f64) -> usize {
     let bound = least_quantile(bins, weights, sizes, count).quality + libm::log2(waste);
     let search = Search::new(bins, weights, sizes);
@@ -95,9 +95,9 @@ impl<'a> Search<'a> {
         Self { bins, sizes, before, log_before, classes }
     }
 
-    /// The bound that given cuts reach.
-    fn quantile(&self, cuts: &[usize]) -> f64 {
-        let runs = || cuts.windows(2).filter(|run| run[0] < run[1]).map(|run| (run[0], run[1]));
+    /// The bound that given splits reach.
+    fn quantile(&self, splits: &[usize]) -> f64 {
+        let runs = || splits.windows(2).filter(|run| run[0] < run[1]).map(|run| (run[0], run[1]));
         // With the largest map at the nearest depth of the last class all points are within it.
         let largest = runs().map(|(first, end)| self.sizes.log_extent(first, end)).fold(f32::MIN, f32::max);
         let high = f64::from(largest) - self.bins.log_near + PER_CLASS * CLASSES as f64;
@@ -128,7 +128,7 @@ impl<'a> Search<'a> {
         f64::from(self.sizes.log_extent(first, end)) * (w1 - w0) - (d1 - d0)
     }
 
-    /// Whether any cuts leave no more than the allowed share over a bound.
+    /// Whether any splits leave no more than the allowed share over a bound.
     fn is_feasible(&self, count: usize, bound: f64) -> bool {
         let mut least = [f64::MAX; BINS + 1];
         least[0] = 0.0;
@@ -149,7 +149,7 @@ impl<'a> Search<'a> {
         least[BINS] <= OVER
     }
 
-    /// The cuts that leave the least over the bound and, of those, see the least error.
+    /// The splits that leave the least over the bound and, of those, see the least error.
     fn best(&self, count: usize, bound: f64) -> [usize; MAX_MAPS + 1] {
         let mut least = [f64::MAX; BINS + 1];
         least[0] = 0.0;
@@ -168,15 +168,15 @@ impl<'a> Search<'a> {
             }
             least = next;
         }
-        let mut cuts = [BINS; MAX_MAPS + 1];
+        let mut splits = [BINS; MAX_MAPS + 1];
         let mut end = BINS;
         for map in (0..count).rev() {
             end = usize::from(from[map][end]);
-            cuts[map] = end;
+            splits[map] = end;
         }
-        cuts
+        splits
     }
 }
 
-/// Octaves that the bound of given cuts is searched in.
+/// Octaves that the bound of given splits is searched in.
 const WIDEST: f64 = 64.0;

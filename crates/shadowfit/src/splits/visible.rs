@@ -6,8 +6,8 @@
 
 use glam::DVec3;
 
-use super::{BINS, Bins, CLASSES, Weights};
-use crate::fits::Content;
+use super::bins::{BINS, Bins, CLASSES, Weights};
+use crate::content::Content;
 use crate::view::{View, box_corners};
 
 /// Rays across the picture.
@@ -19,7 +19,7 @@ const ROWS: usize = 18;
 const LAYERS: usize = 4;
 
 /// How much less each further box counts. Chosen with the two numbers beside it on ten scenes:
-/// counting the first box alone misjudges cuts where boxes are loose.
+/// counting the first box alone misjudges splits where boxes are loose.
 const FURTHER: f64 = 0.85;
 
 /// What a ray counts for the boxes that it begins in, which may hold anything up to their ends.

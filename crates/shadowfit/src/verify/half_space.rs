@@ -7,7 +7,7 @@
 
 use glam::{DVec3, Mat4, Vec4};
 
-use super::{Claim, MapPlane};
+use super::query::{CoverageQuery, MapPlane};
 use crate::{DepthConvention, FitError, LightFit, checks};
 
 /// Relative rounding of f32, 2⁻²⁴.
@@ -67,7 +67,7 @@ struct Matrix {
 }
 
 impl HalfSpaces {
-    pub(super) fn new(fit: &LightFit, claim: &Claim) -> Result<Self, FitError> {
+    pub(super) fn new(fit: &LightFit, query: &CoverageQuery) -> Result<Self, FitError> {
         if fit.resolution.x == 0 || fit.resolution.y == 0 {
             return Err(FitError::ZeroResolution { resolution: fit.resolution });
         }
@@ -97,7 +97,7 @@ impl HalfSpaces {
         ];
         let mut all = [HalfSpace::NONE; 18];
         for (matrix, planes) in matrices.iter().zip(all.chunks_exact_mut(6)) {
-            matrix.half_spaces(fit, claim, planes)?;
+            matrix.half_spaces(fit, query, planes)?;
         }
         Ok(Self { all })
     }
@@ -114,7 +114,7 @@ impl HalfSpace {
 }
 
 impl Matrix {
-    fn half_spaces(&self, fit: &LightFit, claim: &Claim, out: &mut [HalfSpace]) -> Result<(), FitError> {
+    fn half_spaces(&self, fit: &LightFit, query: &CoverageQuery, out: &mut [HalfSpace]) -> Result<(), FitError> {
         for element in self.elements.to_cols_array() {
             checks::finite(self.name, f64::from(element))?;
         }
@@ -134,10 +134,10 @@ impl Matrix {
             let (unit, need) = if axis < 2 {
                 let extent = (other - at).abs();
                 let texels = resolution[axis] / checks::within("the light's box", extent, f64::MIN_POSITIVE, f64::MAX)?;
-                let disc = f64::from(claim.reach.disc[axis]);
+                let disc = f64::from(query.reach.disc[axis]);
                 // The centre of the first texel beyond the border lies half a texel out.
-                let read = (f64::from(claim.reach.taps) + disc - 0.5).max(0.0);
-                (texels, read + f64::from(claim.normal_offset) / metres * texels)
+                let read = (f64::from(query.reach.taps) + disc - 0.5).max(0.0);
+                (texels, read + f64::from(query.normal_offset) / metres * texels)
             } else {
                 (metres, 0.0)
             };

@@ -87,6 +87,7 @@ fn settings(kind: FitKind, rectangle: RectangleKind) -> FitSettings {
         casters: CasterPolicy::List,
         max_distance: f32::MAX,
         caster_extension: 0.0,
+        border: Some(0.0),
         resolution: UVec2::splat(512),
         ..FitSettings::default()
     }
@@ -363,7 +364,13 @@ proptest! {
         (i, j) in (-5000_i32..5000, -5000_i32..5000),
     ) {
         let fit = settings(kind, RectangleKind::AxisAligned);
-        let cascades = Technique { fit, count: 1, splits: SplitScheme::Uniform, ..Technique::default() };
+        let cascades = Technique {
+            fit,
+            count: 1,
+            splits: SplitScheme::Uniform,
+            stabilise: Stabilise::Snap,
+            ..Technique::default()
+        };
         let here = scene(&view, direction, boxes.as_deref());
         let snapped = |scene: &Scene| {
             let (views, origin) = ([scene.frustum], scene.frustum.origin);

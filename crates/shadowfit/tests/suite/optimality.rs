@@ -51,6 +51,7 @@ fn oriented(frustum: &ViewFrustum, direction: Vec3, rectangle: RectangleKind) ->
         rectangle,
         max_distance: f32::MAX,
         casters: CasterPolicy::None,
+        border: Some(0.0),
         resolution: UVec2::splat(64),
         ..FitSettings::default()
     };
@@ -114,11 +115,11 @@ fn least_radius(corners: &[DVec3; 8]) -> f64 {
 
 fn assert_least_sphere(frustum: &ViewFrustum) {
     let corners = frustum.corners.map(Vec3::as_dvec3);
-    let sphere = enclosing_sphere(frustum).unwrap();
+    let (centre, radius) = enclosing_sphere(frustum).unwrap();
     let best = least_radius(&corners);
-    assert!((sphere.radius / best - 1.0).abs() <= 1e-4, "{} for {best}", sphere.radius);
+    assert!((radius / best - 1.0).abs() <= 1e-4, "{radius} for {best}");
     for corner in corners {
-        assert!(corner.distance(sphere.centre) <= sphere.radius * (1.0 + 2e-6), "{corner} is outside of {sphere:?}");
+        assert!(corner.distance(centre) <= radius * (1.0 + 2e-6), "{corner} is outside of {radius} around {centre}");
     }
 }
 

@@ -36,21 +36,23 @@ fn settings_survive() {
         .with_depth(DepthConvention::NegativeOneToOne)
         .with_max_distance(f32::MAX)
         .with_margin(0.1);
-    survives(&Settings::default().with_fit(fit));
-    let mut cascades = Technique::default()
+    let mut technique = Technique::default()
         .with_fit(fit)
         .with_splits(SplitScheme::Manual([1.0, 2.5, 0.1, 1e-7, 3e9, 0.3, 7.0]))
         .with_stabilise(Stabilise::Hysteresis);
-    cascades.overrides[2] = MapOverride { kind: Some(FitKind::Sphere), resolution: Some(UVec2::new(512, 1024)) };
-    survives(&cascades);
-    survives(&cascades.with_splits(SplitScheme::Practical(0.7)));
+    technique.overrides[2] = MapOverride { kind: Some(FitKind::Sphere), resolution: Some(UVec2::new(512, 1024)) };
+    survives(&technique);
+    survives(&technique.with_splits(SplitScheme::Practical(0.7)));
+    survives(&Settings::default().with_technique(technique));
     survives(&LightStepSettings::default());
 }
 
 #[test]
 fn settings_that_a_file_does_not_name_have_their_defaults() {
-    let settings: Settings = serde_json::from_str(r#"{"bias": {"slope": 2.0}}"#).unwrap();
-    assert_eq!(settings, Settings::default().with_bias(BiasSettings::default().with_slope(2.0)));
+    let settings: Settings = serde_json::from_str(r#"{"technique": {"bias": {"slope": 2.0}}}"#).unwrap();
+    let bias = BiasSettings::default().with_slope(2.0);
+    assert_eq!(settings.technique, Technique { bias, ..Technique::default() });
+    assert_eq!(settings, Settings::default().with_technique(settings.technique));
 }
 
 #[test]

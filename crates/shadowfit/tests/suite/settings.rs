@@ -1,9 +1,9 @@
-//! The sun's angles and the settings' `with_*` methods.
+//! The sun's angles, and what follows from a technique's settings.
 
 use proptest::prelude::*;
-use shadowfit::glam::Vec3;
+use shadowfit::glam::{UVec2, Vec3};
 use shadowfit::tool::{CameraSettings, LightSettings, Settings, ViewSettings};
-use shadowfit::{BiasSettings, FilterKind, MapFormat};
+use shadowfit::{BiasSettings, FilterKind, FitSettings, MapFormat, Technique};
 
 use crate::support::any_direction;
 
@@ -61,13 +61,30 @@ fn with_methods_change_their_field_only() {
     let camera = CameraSettings::default().with_near(1.0);
     assert_eq!(camera, CameraSettings { near: 1.0, ..CameraSettings::default() });
     let view = ViewSettings::default().with_inset(false);
-    let settings = Settings::default()
-        .with_bias(bias)
-        .with_camera(camera)
-        .with_view(view)
-        .with_filter(FilterKind::Point)
-        .with_format(MapFormat::R32Float);
-    let expected =
-        Settings { bias, camera, view, filter: FilterKind::Point, format: MapFormat::R32Float, ..Settings::default() };
-    assert_eq!(settings, expected);
+    let technique = Technique::default().with_look_up(FilterKind::Point, bias).with_format(MapFormat::R32Float);
+    let expected = Technique { bias, filter: FilterKind::Point, format: MapFormat::R32Float, ..Technique::default() };
+    assert_eq!(technique, expected);
+    let settings = Settings::default().with_technique(technique).with_camera(camera).with_view(view);
+    assert_eq!(settings, Settings { technique, camera, view, ..Settings::default() });
+}
+
+#[test]
+fn another_filter_brings_its_bias_and_its_border() {
+    let technique = Technique::default().with_filter(FilterKind::Point);
+    assert_eq!(technique.bias, BiasSettings::automatic(FilterKind::Point));
+    assert_eq!((technique.border(), Technique::default().border()), (0.5, 3.0));
+    let offset = BiasSettings::automatic_normal_offset(FilterKind::Point);
+    let moved = technique.with_look_up(FilterKind::Point, offset);
+    assert_eq!(moved.border(), 0.5 + offset.normal_offset, "the looked-up point moves by the offset");
+    assert_eq!(moved.with_fit(FitSettings::default().with_border(7.0)).border(), 7.0, "what is set stays");
+}
+
+#[test]
+fn a_map_of_its_own_resolution_has_it_and_the_others_have_that_of_the_fit() {
+    let mut technique = Technique::default().with_resolution(1024, 512);
+    technique.overrides[2].resolution = Some(UVec2::splat(256));
+    assert_eq!(technique.resolution_of(2), UVec2::splat(256));
+    for map in [0, 1, 3, 7, 8, usize::MAX] {
+        assert_eq!(technique.resolution_of(map), UVec2::new(1024, 512), "map {map}");
+    }
 }

@@ -126,7 +126,7 @@ fn is_on_a_step(view: &SceneView, maps: &FittedMaps, radius: impl Fn(&FittedMap)
 
 fn sphere_radius(view: &SceneView, map: &FittedMap) -> f64 {
     let slice = view.frustum().slice(map.near, map.far.min(f32::MAX)).unwrap();
-    shadowfit::fits::sphere::enclosing_sphere(&slice).unwrap().radius
+    shadowfit::fits::sphere::enclosing_sphere(&slice).unwrap().1
 }
 
 fn any_places() -> impl Strategy<Value = Vec<[f64; 3]>> {

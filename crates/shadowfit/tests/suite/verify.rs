@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use shadowfit::bias::Reach;
 use shadowfit::glam::{DQuat, DVec2, DVec3, Mat4, UVec2, Vec3};
-use shadowfit::verify::{Certificate, Claim, MapPlane, verify};
+use shadowfit::verify::{Certificate, CoverageQuery, MapPlane, verify};
 use shadowfit::{
     Aabb, Boxes, CasterPolicy, DepthConvention, FitError, FitInput, FitKind, FitSettings, HoldSettings, LightFit,
     MapFitter, PerspectiveCamera, RectangleKind, SplitScheme, Stabilise, Technique, ViewFrustum, Workspace,
@@ -175,8 +175,8 @@ proptest! {
         let mut storage = storage(scene.len());
         let mut workspace = Workspace::new(&mut storage);
         let map = shadowfit::fit_scene(&input, &fit, &mut workspace).unwrap();
-        let claim = Claim::of_fit(&fit, reach_of(&fit));
-        let certificate = verify(&input, &map, &claim, &mut workspace).unwrap();
+        let query = CoverageQuery::of_fit(&fit, reach_of(&fit));
+        let certificate = verify(&input, &map, &query, &mut workspace).unwrap();
         prop_assert!(certificate.is_proven(), "{certificate:?}");
     }
 
@@ -196,8 +196,8 @@ proptest! {
         // Shift the map by up to a tenth: most of these have holes, and the others must have none.
         let shift = map.light_from_world.x_axis.truncate() * (map.box_max.x - map.box_min.x) * margin as f32;
         map.origin += shift.as_dvec3();
-        let claim = Claim { near: f32::MIN, far: f32::MAX, ..Claim::of_fit(&fit, reach_of(&fit)) };
-        let Certificate::Proven(_) = verify(&input, &map, &claim, &mut workspace).unwrap() else { return Ok(()) };
+        let query = CoverageQuery { near: f32::MIN, far: f32::MAX, ..CoverageQuery::of_fit(&fit, reach_of(&fit)) };
+        let Certificate::Proven(_) = verify(&input, &map, &query, &mut workspace).unwrap() else { return Ok(()) };
         let corner = |i: usize| views[0].corners[i].as_dvec3();
         for (x, y, z) in places {
             let at = |t: f64, a: DVec3, b: DVec3| a * (1.0 - t) + b * t;
@@ -227,8 +227,8 @@ proptest! {
             let input = scene.input(&views, direction);
             let maps = fitter.fit(&input, &settings, &mut workspace).unwrap();
             for (i, map) in maps.iter().enumerate() {
-                let claim = Claim::of_map(map, &settings, reach_of(&settings.fit));
-                let certificate = verify(&input, &map.fit, &claim, &mut workspace).unwrap();
+                let query = CoverageQuery::of_map(map, &settings, reach_of(&settings.fit));
+                let certificate = verify(&input, &map.fit, &query, &mut workspace).unwrap();
                 prop_assert!(certificate.is_proven(), "frame {frame}, map {i}: {certificate:?} of {map:?}");
             }
             camera = walk.moved(&camera);
@@ -268,8 +268,8 @@ fn stable_maps_keep_the_casters_that_wide_filters_read() {
     let mut workspace = Workspace::new(&mut storage);
     let maps = MapFitter::new().fit(&input, &settings, &mut workspace).unwrap();
     for (i, map) in maps.iter().enumerate() {
-        let claim = Claim::of_map(map, &settings, reach_of(&fit));
-        let certificate = verify(&input, &map.fit, &claim, &mut workspace).unwrap();
+        let query = CoverageQuery::of_map(map, &settings, reach_of(&fit));
+        let certificate = verify(&input, &map.fit, &query, &mut workspace).unwrap();
         assert!(certificate.is_proven(), "map {i}: {certificate:?}");
     }
 }
@@ -299,14 +299,15 @@ fn plain() -> FitSettings {
     FitSettings {
         kind: FitKind::FrustumAabb,
         casters: CasterPolicy::None,
+        border: Some(0.0),
         resolution: UVec2::new(800, 400),
         ..FitSettings::default()
     }
 }
 
-fn certificate(input: &FitInput, fit: &LightFit, claim: &Claim) -> Certificate {
+fn certificate(input: &FitInput, fit: &LightFit, query: &CoverageQuery) -> Certificate {
     let mut storage = storage(1);
-    verify(input, fit, claim, &mut Workspace::new(&mut storage)).unwrap()
+    verify(input, fit, query, &mut Workspace::new(&mut storage)).unwrap()
 }
 
 /// A box with its middle over the view's, relative to the eye.
@@ -325,7 +326,7 @@ fn slack_is_what_margins_add() {
         casters: Some(Boxes { origin: views[0].origin, boxes: &casters }),
         ..FitInput::new(&views, Vec3::NEG_Y)
     };
-    let Certificate::Proven(slack) = certificate(&input, &fit, &Claim::of_fit(&settings, Reach::POINT)) else {
+    let Certificate::Proven(slack) = certificate(&input, &fit, &CoverageQuery::of_fit(&settings, Reach::POINT)) else {
         panic!("{fit:?}");
     };
     let expected = [800.0 / 9.0 * 0.5, 800.0 / 9.0 * 0.5, 400.0 / 5.0 * 0.5, 400.0 / 5.0 * 0.5, 0.5, 0.5];
@@ -335,8 +336,8 @@ fn slack_is_what_margins_add() {
     // The caster's top is 0.625 m below the eye, the near plane 0.5 m.
     assert!((slack.casters - 0.125).abs() < 1e-4, "{}", slack.casters);
     // The filter takes its reach, from half a texel on, and the normal offset what it is long.
-    let claim = Claim::of_fit(&settings, Reach::POINT.over_disc(3.0)).with_normal_offset(0.1);
-    let Certificate::Proven(wide) = certificate(&input, &fit, &claim) else { panic!("{fit:?}") };
+    let query = CoverageQuery::of_fit(&settings, Reach::POINT.over_disc(3.0)).with_normal_offset(0.1);
+    let Certificate::Proven(wide) = certificate(&input, &fit, &query) else { panic!("{fit:?}") };
     for (i, per_metre) in [800.0 / 9.0, 800.0 / 9.0, 80.0, 80.0].into_iter().enumerate() {
         assert!((slack.planes[i] - wide.planes[i] - 3.0 - 0.1 * per_metre).abs() < 1e-3);
     }
@@ -348,8 +349,8 @@ fn a_shrunken_box_is_refused_with_its_plane_and_a_point_outside() {
     let views = [from_above()];
     let input = FitInput::new(&views, Vec3::NEG_Y);
     let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &plain()).unwrap();
-    let claim = Claim::of_fit(&plain(), Reach::POINT);
-    assert!(certificate(&input, &fit, &claim).is_proven());
+    let query = CoverageQuery::of_fit(&plain(), Reach::POINT);
+    assert!(certificate(&input, &fit, &query).is_proven());
     for (i, plane) in MapPlane::ALL.into_iter().enumerate() {
         let mut small = fit;
         // One side of the box moves in by 1% of its extent, in all that the fit says.
@@ -373,7 +374,7 @@ fn a_shrunken_box_is_refused_with_its_plane_and_a_point_outside() {
             squeeze(&mut small.clip_from_world, axis, (0.0, 1.0), !is_high);
             squeeze(&mut small.uv_from_world, axis, (0.0, 1.0), !is_high);
         }
-        let Certificate::Uncovered { plane: found, point, by } = certificate(&input, &small, &claim) else {
+        let Certificate::Uncovered { plane: found, point, by } = certificate(&input, &small, &query) else {
             panic!("{plane:?} of {small:?}");
         };
         assert_eq!(found, plane);
@@ -399,9 +400,9 @@ fn each_of_the_matrices_counts_by_itself() {
     let views = [from_above()];
     let input = FitInput::new(&views, Vec3::NEG_Y);
     let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &plain()).unwrap();
-    let claim = Claim::of_fit(&plain(), Reach::POINT);
+    let query = CoverageQuery::of_fit(&plain(), Reach::POINT);
     let refused = |fit: &LightFit| {
-        matches!(certificate(&input, fit, &claim), Certificate::Uncovered { plane: MapPlane::Right, .. })
+        matches!(certificate(&input, fit, &query), Certificate::Uncovered { plane: MapPlane::Right, .. })
     };
     let mut small = fit;
     squeeze(&mut small.clip_from_world, 0, (-1.0, 1.0), true);
@@ -420,31 +421,31 @@ fn a_near_plane_behind_a_caster_loses_it() {
     let origin = views[0].origin;
     let settings = plain();
     let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &settings).unwrap();
-    let claim = Claim::of_fit(&settings, Reach::HARDWARE_2X2);
-    let check = |caster: Aabb, claim: &Claim| {
+    let query = CoverageQuery::of_fit(&settings, Reach::HARDWARE_2X2);
+    let check = |caster: Aabb, query: &CoverageQuery| {
         let casters = [over(0.0, -2.0, 0.5), caster];
         let casters = Boxes { origin, boxes: &casters };
-        let claim = Claim { reach: Reach::POINT, ..*claim };
-        certificate(&FitInput { casters: Some(casters), ..FitInput::new(&views, Vec3::NEG_Y) }, &fit, &claim)
+        let query = CoverageQuery { reach: Reach::POINT, ..*query };
+        certificate(&FitInput { casters: Some(casters), ..FitInput::new(&views, Vec3::NEG_Y) }, &fit, &query)
     };
     // 5 m above the eye; the near plane is 1 m below it.
-    let Certificate::CasterLost { point, by } = check(over(3.0, 4.0, 1.0), &claim) else { panic!("not lost") };
+    let Certificate::CasterLost { point, by } = check(over(3.0, 4.0, 1.0), &query) else { panic!("not lost") };
     assert!((by - 6.0).abs() < 1e-3 && (point.y - origin.y - 5.0).abs() < 1e-9, "{point} by {by}");
     assert!(looked_up(&fit, point).z < 0.0);
     // Beside the view nothing throws a shadow into it, nor from below.
-    assert!(check(over(5.1, 4.0, 1.0), &claim).is_proven());
-    assert!(check(over(0.0, -9.0, 1.0), &claim).is_proven());
+    assert!(check(over(5.1, 4.0, 1.0), &query).is_proven());
+    assert!(check(over(0.0, -9.0, 1.0), &query).is_proven());
     // A part over the view counts, and with depth clamp nothing.
-    assert!(!check(over(4.9, 4.0, 1.0), &claim).is_proven());
-    assert!(check(over(0.0, 4.0, 1.0), &Claim { casters: CasterPolicy::DepthClamp, ..claim }).is_proven());
+    assert!(!check(over(4.9, 4.0, 1.0), &query).is_proven());
+    assert!(check(over(0.0, 4.0, 1.0), &CoverageQuery { casters: CasterPolicy::DepthClamp, ..query }).is_proven());
     // A texel has 1 cm: what stands 1.5 cm beside the view is read by a filter of reach 2 only.
     let beside = over(5.015, 4.0, 1.0);
-    assert!(check(beside, &claim).is_proven());
+    assert!(check(beside, &query).is_proven());
     let casters = [beside];
     let input = FitInput { casters: Some(Boxes { origin, boxes: &casters }), ..FitInput::new(&views, Vec3::NEG_Y) };
     let settings = settings.with_border(1.5);
     let wide = shadowfit::fit(&views[0], Vec3::NEG_Y, &settings).unwrap();
-    let certificate = certificate(&input, &wide, &Claim::of_fit(&settings, Reach::taps(2.0)));
+    let certificate = certificate(&input, &wide, &CoverageQuery::of_fit(&settings, Reach::taps(2.0)));
     assert!(matches!(certificate, Certificate::CasterLost { .. }), "{certificate:?}");
 }
 
@@ -453,17 +454,17 @@ fn the_xna_fit_covers_the_view_but_loses_casters_before_it() {
     let views = [PerspectiveCamera { far: 20.0, ..camera() }.frustum().unwrap()];
     let settings = plain().with_kind(FitKind::XnaSample).with_margin(0.01);
     let fit = shadowfit::fit(&views[0], DIRECTION, &settings).unwrap();
-    let claim = Claim::of_fit(&settings, Reach::POINT);
+    let query = CoverageQuery::of_fit(&settings, Reach::POINT);
     let input = FitInput::new(&views, DIRECTION);
-    assert!(certificate(&input, &fit, &claim).is_proven());
+    assert!(certificate(&input, &fit, &query).is_proven());
     let middle = (fit.corners()[0] + fit.corners()[2]) * 0.5 - fit.direction * 10.0;
     let casters = [Aabb::new(middle - 1.0, middle + 1.0)];
     let input = FitInput { casters: Some(Boxes { origin: fit.origin, boxes: &casters }), ..input };
-    let Certificate::CasterLost { point, by } = certificate(&input, &fit, &claim) else { panic!("not lost") };
+    let Certificate::CasterLost { point, by } = certificate(&input, &fit, &query) else { panic!("not lost") };
     assert!(by > 10.0 && by < 12.0 && !fit.covers(point), "{point} by {by}");
     // Its corners stand in its planes: without a margin, rounding may put them beyond.
     let exact = shadowfit::fit(&views[0], DIRECTION, &settings.with_margin(0.0)).unwrap();
-    let Certificate::Uncovered { by, .. } = certificate(&FitInput::new(&views, DIRECTION), &exact, &claim) else {
+    let Certificate::Uncovered { by, .. } = certificate(&FitInput::new(&views, DIRECTION), &exact, &query) else {
         panic!("proven")
     };
     assert!(by < 0.01, "{by}");
@@ -476,13 +477,13 @@ fn receivers_of_a_map_that_nobody_draws_are_found() {
     let boxes = Boxes { origin: views[0].origin, boxes: &receivers };
     let input = FitInput { receivers: Some(boxes), ..FitInput::new(&views, Vec3::NEG_Y) };
     let fit = LightFit { is_empty: true, ..shadowfit::fit(&views[0], Vec3::NEG_Y, &plain()).unwrap() };
-    let claim = Claim::of_fit(&plain(), Reach::POINT);
-    assert!(matches!(certificate(&input, &fit, &claim), Certificate::LeftOut { .. }));
+    let query = CoverageQuery::of_fit(&plain(), Reach::POINT);
+    assert!(matches!(certificate(&input, &fit, &query), Certificate::MarkedEmpty { .. }));
     // Nothing is required where nothing receives, in the range or at all.
     for (boxes, far) in [(&receivers[..], 1.5), (&receivers[..0], 3.0)] {
         let boxes = Boxes { origin: views[0].origin, boxes };
         let input = FitInput { receivers: Some(boxes), ..input };
-        let Certificate::Proven(slack) = certificate(&input, &fit, &Claim { far, ..claim }) else { panic!("{far}") };
+        let Certificate::Proven(slack) = certificate(&input, &fit, &CoverageQuery { far, ..query }) else { panic!("{far}") };
         assert_eq!(slack.planes, [f32::INFINITY; 6]);
     }
 }
@@ -492,13 +493,13 @@ fn another_origin_far_away_is_refused_for_its_rounding() {
     let views = [from_above()];
     let input = FitInput::new(&views, Vec3::NEG_Y);
     let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &plain().with_margin(0.001)).unwrap();
-    let claim = Claim::of_fit(&plain(), Reach::POINT);
-    assert!(certificate(&input, &fit, &claim).is_proven());
+    let query = CoverageQuery::of_fit(&plain(), Reach::POINT);
+    assert!(certificate(&input, &fit, &query).is_proven());
     let near = fit.relative_to(fit.origin + DVec3::new(10.0, 0.0, 10.0));
-    assert!(certificate(&input, &near, &claim).is_proven());
+    assert!(certificate(&input, &near, &query).is_proven());
     // At 10 km f32 has steps of a millimetre.
     let far = fit.relative_to(fit.origin + DVec3::new(1e4, 0.0, 1e4));
-    assert!(!certificate(&input, &far, &claim).is_proven());
+    assert!(!certificate(&input, &far, &query).is_proven());
 }
 
 #[test]
@@ -506,21 +507,21 @@ fn bad_numbers_are_errors() {
     let views = [from_above()];
     let input = FitInput::new(&views, Vec3::NEG_Y);
     let fit = shadowfit::fit(&views[0], Vec3::NEG_Y, &plain()).unwrap();
-    let claim = Claim::of_fit(&plain(), Reach::POINT);
+    let query = CoverageQuery::of_fit(&plain(), Reach::POINT);
     let mut storage = storage(1);
-    let mut error = |input: &FitInput, fit: &LightFit, claim: &Claim| {
-        verify(input, fit, claim, &mut Workspace::new(&mut storage)).unwrap_err()
+    let mut error = |input: &FitInput, fit: &LightFit, query: &CoverageQuery| {
+        verify(input, fit, query, &mut Workspace::new(&mut storage)).unwrap_err()
     };
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         let is_bad = |e: FitError| matches!(e, FitError::NotFinite { .. });
-        for claim in [
-            Claim { near: bad, ..claim },
-            Claim { far: bad, ..claim },
-            Claim { normal_offset: bad, ..claim },
-            Claim { reach: Reach::taps(bad), ..claim },
-            Claim { reach: Reach::POINT.over_disc(bad), ..claim },
+        for query in [
+            CoverageQuery { near: bad, ..query },
+            CoverageQuery { far: bad, ..query },
+            CoverageQuery { normal_offset: bad, ..query },
+            CoverageQuery { reach: Reach::taps(bad), ..query },
+            CoverageQuery { reach: Reach::POINT.over_disc(bad), ..query },
         ] {
-            assert!(is_bad(error(&input, &fit, &claim)), "{claim:?}");
+            assert!(is_bad(error(&input, &fit, &query)), "{query:?}");
         }
         for i in 0..16 {
             let with = |matrix: Mat4| {
@@ -533,7 +534,7 @@ fn bad_numbers_are_errors() {
                 LightFit { clip_from_world: with(fit.clip_from_world), ..fit },
                 LightFit { uv_from_world: with(fit.uv_from_world), ..fit },
             ] {
-                assert!(is_bad(error(&input, &fit, &claim)), "element {i}");
+                assert!(is_bad(error(&input, &fit, &query)), "element {i}");
             }
         }
         for fit in [
@@ -542,18 +543,18 @@ fn bad_numbers_are_errors() {
             LightFit { depth_range: bad, ..fit },
             LightFit { origin: DVec3::splat(f64::from(bad)), ..fit },
         ] {
-            assert!(is_bad(error(&input, &fit, &claim)));
+            assert!(is_bad(error(&input, &fit, &query)));
         }
-        assert!(is_bad(error(&FitInput { direction: Vec3::splat(bad), ..input }, &fit, &claim)));
+        assert!(is_bad(error(&FitInput { direction: Vec3::splat(bad), ..input }, &fit, &query)));
     }
-    let range = Claim { near: 2.0, far: 1.0, ..claim };
+    let range = CoverageQuery { near: 2.0, far: 1.0, ..query };
     assert_eq!(error(&input, &fit, &range), FitError::NearNotBelowFar { near: 2.0, far: 1.0 });
-    assert_eq!(error(&FitInput { views: &[], ..input }, &fit, &claim), FitError::NoView);
+    assert_eq!(error(&FitInput { views: &[], ..input }, &fit, &query), FitError::NoView);
     let resolution = UVec2::new(0, 4);
-    assert_eq!(error(&input, &LightFit { resolution, ..fit }, &claim), FitError::ZeroResolution { resolution });
-    assert!(matches!(error(&input, &LightFit::default(), &claim), FitError::ZeroResolution { .. }));
+    assert_eq!(error(&input, &LightFit { resolution, ..fit }, &query), FitError::ZeroResolution { resolution });
+    assert!(matches!(error(&input, &LightFit::default(), &query), FitError::ZeroResolution { .. }));
     let flat = LightFit { clip_from_world: Mat4::ZERO, ..fit };
-    assert!(matches!(error(&input, &flat, &claim), FitError::OutOfRange { .. }));
-    let small = verify(&input, &fit, &claim, &mut Workspace::new(&mut []));
+    assert!(matches!(error(&input, &flat, &query), FitError::OutOfRange { .. }));
+    let small = verify(&input, &fit, &query, &mut Workspace::new(&mut []));
     assert!(matches!(small, Err(FitError::WorkspaceTooSmall { .. })));
 }

@@ -46,9 +46,9 @@ pub(super) const NORMAL_OFFSET: Parameter = Parameter {
     group: Group::Bias,
     label: "Normal offset",
     unit: "texels",
-    help: "Looks the shadow up a little above the surface, along its normal and more at grazing light. The cure for \
-           acne where shaders know no receiver plane: 0.71 texels clear the point filter, 1.42 the 2×2 one, 2.83 and \
-           4.24 those of 3×3 and 5×5, on any slope.",
+    help: "Looks the shadow up a little above the surface, along its normal, and higher where the light grazes. The \
+           cure for acne in shaders that have no receiver plane: 0.71 texels are enough for the point filter, 1.42 for \
+           2×2, 2.83 for 3×3 and 4.24 for 5×5, on any slope.",
     kind: Kind::Number(Number {
         min: 0.0,
         max: 16.0,
@@ -66,9 +66,9 @@ pub(super) const RECEIVER_PLANE: Parameter = Parameter {
     group: Group::Bias,
     label: "Receiver plane",
     unit: "texels",
-    help: "Compares each texel with the depth of the lit surface's own plane there, and moves that toward the light by \
-           the plane's rise over so many texels. Clears any slope with far less leaking than the others: 0.5 is enough \
-           for the point filter and 1 for the rest. 0 turns it off.",
+    help: "Compares each texel with the depth that the lit surface's own plane has there, moved toward the light by \
+           what the plane rises over this many texels. Clears any slope and leaks far less light than the other biases: \
+           0.5 is enough for the point filter and 1 for the rest. 0 turns it off.",
     kind: Kind::Number(Number {
         min: 0.0,
         max: 16.0,

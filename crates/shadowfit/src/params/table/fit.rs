@@ -1,33 +1,26 @@
 //! The rows of the fit: where the shadow map looks.
 
-use super::{always_active, pull_near};
+use super::{always_active, always_there, pull_near};
 use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
 use crate::{CasterPolicy, FitKind, ReceiverSource, RectangleKind};
 
 /// The fits in the order of their options.
 pub(super) const FIT_KINDS: [FitKind; 5] =
-    [FitKind::FrustumAabb, FitKind::XnaSample, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
+    [FitKind::Focused, FitKind::Oriented, FitKind::Sphere, FitKind::FrustumAabb, FitKind::XnaSample];
 
 pub(super) const KIND: Parameter = Parameter {
     id: "fit.kind",
     group: Group::Fit,
     label: "Fit",
     unit: "",
-    help: "The rule that decides where the shadow map looks. Focused has the finest texels, the sphere the calmest \
-           edges; the frustum box is what most engines use. The XNA sample's rule loses casters outside the view.",
+    help: "The rule that decides where a shadow map looks. Focused has the finest texels, the sphere the calmest edges. \
+           The frustum box is the plainest; the XNA sample's rule loses casters outside the view.",
     kind: Kind::Choice(Choice {
         options: &[
             ChoiceOption {
-                id: "frustum_aabb",
-                label: "Frustum box",
-                help: "The box of the camera frustum in the light's axes, whether there is anything to see in it or \
-                       only air.",
-            },
-            ChoiceOption {
-                id: "xna_sample",
-                label: "XNA sample",
-                help: "The box of Microsoft's XNA Shadow Mapping sample (2008), with twice the depth that is \
-                       needed and no thought for casters outside the view.",
+                id: "focused",
+                label: "Focused on the scene",
+                help: "The least rectangle around what the camera sees of the scene's boxes: the finest texels.",
             },
             ChoiceOption {
                 id: "oriented",
@@ -41,13 +34,43 @@ pub(super) const KIND: Parameter = Parameter {
                        when the camera moves or turns.",
             },
             ChoiceOption {
-                id: "focused",
-                label: "Focused on the scene",
-                help: "The least rectangle around what the camera sees of the scene's objects: the finest texels.",
+                id: "frustum_aabb",
+                label: "Frustum box",
+                help: "The box of the camera frustum in the light's axes, whether there is anything to see in it or \
+                       only air.",
+            },
+            ChoiceOption {
+                id: "xna_sample",
+                label: "XNA sample",
+                help: "The box of Microsoft's XNA Shadow Mapping sample (2008), with twice the depth that is \
+                       needed. It loses casters outside the view.",
             },
         ],
         read: |s| FIT_KINDS.iter().position(|kind| *kind == s.technique.fit.kind).unwrap_or(0),
         write: |s, index| s.technique.fit.kind = FIT_KINDS[index],
+    }),
+    inert: always_active,
+};
+
+pub(super) const RECEIVERS: Parameter = Parameter {
+    id: "fit.receivers",
+    group: Group::Fit,
+    label: "Boxes of the scene",
+    unit: "",
+    help: "Which boxes tell the fit where the scene shows shadows. Clusters of triangles hug large meshes more closely \
+           than one box for each object.",
+    kind: Kind::Choice(Choice {
+        options: &[
+            ChoiceOption { id: "clusters", label: "Triangle clusters", help: "Boxes around clusters of triangles." },
+            ChoiceOption { id: "objects", label: "Objects", help: "One box for each object." },
+        ],
+        read: |s| match s.technique.receivers {
+            ReceiverSource::Clusters => 0,
+            ReceiverSource::Objects => 1,
+        },
+        write: |s, index| {
+            s.technique.receivers = if index == 0 { ReceiverSource::Clusters } else { ReceiverSource::Objects };
+        },
     }),
     inert: always_active,
 };
@@ -91,8 +114,8 @@ pub(super) const MAX_DISTANCE: Parameter = Parameter {
     group: Group::Fit,
     label: "Shadow distance",
     unit: "m",
-    help: "Shadows end at this distance from the camera. Lower it to spend the map's texels near the camera, \
-           which sharpens shadows there; raise it when shadows vanish too close.",
+    help: "Shadows end at this distance from the camera. Lower it to spend the texels near the camera, which \
+           sharpens shadows there; raise it when shadows vanish too close.",
     kind: Kind::Optional(Optional {
         min: 1.0,
         max: 100_000.0,
@@ -105,6 +128,7 @@ pub(super) const MAX_DISTANCE: Parameter = Parameter {
             help: "Shadows reach as far as the camera sees.",
         }),
         initial: 100.0,
+        present: always_there,
         read: |s| Some(f64::from(s.technique.fit.max_distance)).filter(|distance| *distance < f64::from(f32::MAX)),
         write: |s, value| {
             s.technique.fit.max_distance = value.map_or(f32::MAX, |value| value as f32);
@@ -161,7 +185,7 @@ pub(super) const CASTERS: Parameter = Parameter {
     }),
     inert: |s| {
         (s.technique.fit.kind == FitKind::XnaSample)
-            .then_some("The XNA sample's fit has no thought for casters; choose another fit.")
+            .then_some("The XNA sample's fit takes no account of casters; choose another fit.")
     },
 };
 
@@ -201,7 +225,7 @@ pub(super) const BORDER: Parameter = Parameter {
     group: Group::Fit,
     label: "Border",
     unit: "texels",
-    help: "Keeps so many texels free between what is covered and the map's border, so that filter and normal offset \
+    help: "Texels that stay free between what is covered and the map's border, so that the filter and the normal offset \
            find depths there.",
     kind: Kind::Optional(Optional {
         min: 0.0,
@@ -212,9 +236,10 @@ pub(super) const BORDER: Parameter = Parameter {
         unset: Some(ChoiceOption {
             id: "auto",
             label: "from filter and bias",
-            help: "As many as the filter and the normal offset reach.",
+            help: "As many as the filter and the normal offset can reach.",
         }),
         initial: 3.0,
+        present: always_there,
         read: |s| s.technique.fit.border.map(f64::from),
         write: |s, value| s.technique.fit.border = value.map(|value| value as f32),
     }),
@@ -251,8 +276,8 @@ macro_rules! up {
             group: Group::Fit,
             label: $label,
             unit: "",
-            help: "Component of the world's direction that is up, which the axes of a vertical light follow. Worlds \
-                   with z up have 0, 0, 1.",
+            help: "Which way is up in the world, as three components of a direction: 0, 1, 0 where y is up, 0, 0, 1 \
+                   where z is. The map's axes follow it.",
             kind: Kind::Number(Number {
                 min: -1.0,
                 max: 1.0,
@@ -270,26 +295,3 @@ macro_rules! up {
 up!(UP_X, "fit.up_x", "Up, x", x);
 up!(UP_Y, "fit.up_y", "Up, y", y);
 up!(UP_Z, "fit.up_z", "Up, z", z);
-
-pub(super) const RECEIVERS: Parameter = Parameter {
-    id: "fit.receivers",
-    group: Group::Fit,
-    label: "Known of the scene",
-    unit: "",
-    help: "Which boxes of the scene the fit gets. Clusters of triangles hug large meshes more closely than one box \
-           for each object.",
-    kind: Kind::Choice(Choice {
-        options: &[
-            ChoiceOption { id: "clusters", label: "Triangle clusters", help: "Boxes around clusters of triangles." },
-            ChoiceOption { id: "objects", label: "Objects", help: "One box for each object." },
-        ],
-        read: |s| match s.technique.receivers {
-            ReceiverSource::Clusters => 0,
-            ReceiverSource::Objects => 1,
-        },
-        write: |s, index| {
-            s.technique.receivers = if index == 0 { ReceiverSource::Clusters } else { ReceiverSource::Objects };
-        },
-    }),
-    inert: always_active,
-};

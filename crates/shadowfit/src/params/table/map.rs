@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 
-use super::always_active;
+use super::{always_active, always_there};
 use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
 use crate::{DepthConvention, FilterKind, MapFormat};
 
@@ -14,8 +14,8 @@ pub(super) const RESOLUTION: Parameter = Parameter {
     group: Group::Map,
     label: "Resolution",
     unit: "texels",
-    help: "Width of a shadow map, and its height where it is square. Each doubling halves the jaggies and costs four \
-           times the memory and fill; 2048 takes 16 MiB a map at 32 bits a texel.",
+    help: "Width of each shadow map, and its height where it is square. Doubling it makes edges half as jagged and \
+           takes four times the memory and fill rate: a map of 2048 texels has 16 MiB.",
     kind: Kind::Number(Number {
         min: SIDES.0,
         max: SIDES.1,
@@ -40,7 +40,7 @@ pub(super) const HEIGHT: Parameter = Parameter {
     group: Group::Map,
     label: "Height",
     unit: "texels",
-    help: "Height of a shadow map that is not square.",
+    help: "Height of each shadow map, if they are not square.",
     kind: Kind::Optional(Optional {
         min: SIDES.0,
         max: SIDES.1,
@@ -49,6 +49,7 @@ pub(super) const HEIGHT: Parameter = Parameter {
         decimals: 0,
         unset: Some(ChoiceOption { id: "square", label: "as the width", help: "Maps are square." }),
         initial: 1024.0,
+        present: always_there,
         read: |s| {
             let UVec2 { x, y } = s.technique.fit.resolution;
             (x != y).then_some(f64::from(y))
@@ -96,8 +97,9 @@ pub(super) const FILTER: Parameter = Parameter {
     group: Group::Map,
     label: "Filter",
     unit: "",
-    help: "How the stored depths become a shadow factor. A wider filter softens jaggies, and loses what is \
-           thinner than it; by the normal offset alone it needs more bias, since it reaches farther.",
+    help: "How the stored depths become a shadow. A wider filter softens jagged edges and loses shadows that are \
+           thinner than it. It also reaches farther, so that the normal offset has to grow with it; the receiver \
+           plane does not.",
     kind: Kind::Choice(Choice {
         options: &[
             ChoiceOption {
@@ -118,8 +120,8 @@ pub(super) const FILTER: Parameter = Parameter {
             ChoiceOption {
                 id: "pcf_5x5",
                 label: "PCF 5×5",
-                help: "A tent over 36 texels, in nine hardware look-ups: jaggies are gone, and so is what is thinner \
-                       than two texels.",
+                help: "A tent over 36 texels, in nine hardware look-ups: edges are smooth, and shadows thinner than two \
+                       texels fade.",
             },
         ],
         read: |s| FilterKind::ALL.iter().position(|filter| *filter == s.technique.filter).unwrap_or(0),

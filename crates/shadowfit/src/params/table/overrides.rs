@@ -2,6 +2,7 @@
 
 use glam::UVec2;
 
+use super::always_there;
 use super::fit::FIT_KINDS;
 use super::map::SIDES;
 use crate::MAX_MAPS;
@@ -19,15 +20,15 @@ const fn kind<const MAP: usize>(id: &'static str, label: &'static str) -> Parame
         group: Group::Override,
         label,
         unit: "",
-        help: "The rule of this map's fit, where it is not that of the others.",
+        help: "The rule that decides where this map looks. The last map, which is the coarsest, may be calmer as a sphere.",
         kind: Kind::Choice(Choice {
             options: &[
                 ChoiceOption { id: "same", label: "as the others", help: "The rule of all maps." },
-                ChoiceOption { id: "frustum_aabb", label: "Frustum box", help: "See Fit." },
-                ChoiceOption { id: "xna_sample", label: "XNA sample", help: "See Fit." },
-                ChoiceOption { id: "oriented", label: "Oriented rectangle", help: "See Fit." },
-                ChoiceOption { id: "sphere", label: "Stable sphere", help: "See Fit." },
-                ChoiceOption { id: "focused", label: "Focused on the scene", help: "See Fit." },
+                ChoiceOption { id: "focused", label: "Focused on the scene", help: "As under Fit." },
+                ChoiceOption { id: "oriented", label: "Oriented rectangle", help: "As under Fit." },
+                ChoiceOption { id: "sphere", label: "Stable sphere", help: "As under Fit." },
+                ChoiceOption { id: "frustum_aabb", label: "Frustum box", help: "As under Fit." },
+                ChoiceOption { id: "xna_sample", label: "XNA sample", help: "As under Fit." },
             ],
             read: |s| {
                 let own = s.technique.overrides[MAP].kind;
@@ -47,8 +48,8 @@ const fn width<const MAP: usize>(id: &'static str, label: &'static str) -> Param
         group: Group::Override,
         label,
         unit: "texels",
-        help: "Width of this map, and its height where that is not set, where it is not that of the others. The maps \
-               share equal layers, so it must not exceed the resolution of the others.",
+        help: "Width of this map, and its height where it is square. All maps are stored in layers of the same size, \
+               so it must not exceed the resolution of the others.",
         kind: Kind::Optional(Optional {
             min: SIDES.0,
             max: SIDES.1,
@@ -57,6 +58,7 @@ const fn width<const MAP: usize>(id: &'static str, label: &'static str) -> Param
             decimals: 0,
             unset: Some(ChoiceOption { id: "same", label: "as the others", help: "The resolution of all maps." }),
             initial: 1024.0,
+            present: always_there,
             read: |s| s.technique.overrides[MAP].resolution.map(|own| f64::from(own.x)),
             write: |s, value| {
                 let own = &mut s.technique.overrides[MAP].resolution;
@@ -76,7 +78,7 @@ const fn height<const MAP: usize>(id: &'static str, label: &'static str) -> Para
         group: Group::Override,
         label,
         unit: "texels",
-        help: "Height of this map, where it has a width of its own and is not square.",
+        help: "Height of this map, if it is not square.",
         kind: Kind::Optional(Optional {
             min: SIDES.0,
             max: SIDES.1,
@@ -85,6 +87,7 @@ const fn height<const MAP: usize>(id: &'static str, label: &'static str) -> Para
             decimals: 0,
             unset: Some(ChoiceOption { id: "square", label: "as the width", help: "This map is square." }),
             initial: 512.0,
+            present: |s| s.technique.overrides[MAP].resolution.is_some(),
             read: |s| {
                 let own = s.technique.overrides[MAP].resolution;
                 own.filter(|own| own.x != own.y).map(|own| f64::from(own.y))
@@ -97,7 +100,7 @@ const fn height<const MAP: usize>(id: &'static str, label: &'static str) -> Para
         }),
         inert: |s| match s.technique.overrides[MAP].resolution {
             Some(_) => no_such_map::<MAP>(s),
-            None => Some("This map has no width of its own; set that first."),
+            None => Some(NO_RESOLUTION[MAP]),
         },
     }
 }
@@ -105,6 +108,19 @@ const fn height<const MAP: usize>(id: &'static str, label: &'static str) -> Para
 fn no_such_map<const MAP: usize>(s: &Settings) -> Option<&'static str> {
     (MAP >= s.technique.count as usize).then_some("There is no such map; raise the number of maps.")
 }
+
+/// Why there is no height of a map's own.
+macro_rules! no_resolution {
+    ($($number:literal),+) => {
+        [$(concat!(
+            "This map has no resolution of its own; set that first (override.map_",
+            $number,
+            "_resolution)."
+        )),+]
+    };
+}
+
+const NO_RESOLUTION: [&str; MAX_MAPS] = no_resolution!("1", "2", "3", "4", "5", "6", "7", "8");
 
 /// Ids and labels of a map's rows.
 macro_rules! own {

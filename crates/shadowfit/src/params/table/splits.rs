@@ -1,6 +1,6 @@
 //! The rows of the splits: how many maps there are, and where one ends and the next begins.
 
-use super::always_active;
+use super::{always_active, always_there};
 use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
 use crate::{MAX_MAPS, SplitScheme};
 
@@ -9,7 +9,8 @@ pub(super) const COUNT: Parameter = Parameter {
     group: Group::Splits,
     label: "Maps",
     unit: "",
-    help: "How many shadow maps share the view, the nearest first. More are sharper, and cost memory and time each.",
+    help: "How many shadow maps share the view. Each more makes shadows sharper, and costs the memory and the time of a \
+           map.",
     kind: Kind::Number(Number {
         min: 1.0,
         max: MAX_MAPS as f64,
@@ -33,32 +34,32 @@ pub(super) const SCHEME: Parameter = Parameter {
     group: Group::Splits,
     label: "Splits",
     unit: "",
-    help: "Where one map ends and the next begins. Those that look at the scene give each map as many visible pixels \
-           as serve all of them best.",
+    help: "Where one map ends and the next begins. The first two look at the scene and even out how sharp its shadows \
+           are; the others are spread over the distances in view by a formula.",
     kind: Kind::Choice(Choice {
         options: &[
             ChoiceOption {
                 id: "from_histogram",
                 label: "From what is visible",
-                help: "For the visible depths of the frame before; without them as From boxes.",
+                help: "By the depths that the frame before showed; where they are not known, as From boxes.",
             },
             ChoiceOption {
                 id: "from_boxes",
                 label: "From boxes",
-                help: "For what the boxes of the scene let expect of the visible depths.",
+                help: "By the depths at which the boxes of the scene lie in view.",
             },
             ChoiceOption {
                 id: "practical",
                 label: "Practical",
-                help: "A mixture of logarithmic and uniform splits, by λ (parallel-split shadow maps, 2006).",
+                help: "A mixture of logarithmic and uniform splits, by lambda (parallel-split shadow maps, 2006).",
             },
             ChoiceOption {
                 id: "logarithmic",
                 label: "Logarithmic",
-                help: "Ranges of equal ratio: most maps are spent close to the camera.",
+                help: "Each map ends at the same multiple of where it begins, so most of them lie close to the camera.",
             },
-            ChoiceOption { id: "uniform", label: "Uniform", help: "Ranges of equal length." },
-            ChoiceOption { id: "manual", label: "Manual", help: "At the distances that are given below." },
+            ChoiceOption { id: "uniform", label: "Uniform", help: "All maps serve equally long ranges." },
+            ChoiceOption { id: "manual", label: "Manual", help: "At distances that are set one by one." },
         ],
         read: |s| match s.technique.splits {
             SplitScheme::FromHistogram => 0,
@@ -90,7 +91,7 @@ pub(super) const LAMBDA: Parameter = Parameter {
     label: "Lambda",
     unit: "",
     help: "Share of the logarithmic splits in the practical ones: 1 spends most maps close to the camera, 0 spreads \
-           them evenly.",
+           them evenly. Engines begin with 0.5 to 0.75.",
     kind: Kind::Optional(Optional {
         min: 0.0,
         max: 1.0,
@@ -99,6 +100,7 @@ pub(super) const LAMBDA: Parameter = Parameter {
         decimals: 2,
         unset: None,
         initial: USUAL_LAMBDA as f64,
+        present: |s| matches!(s.technique.splits, SplitScheme::Practical(_)),
         read: |s| match s.technique.splits {
             SplitScheme::Practical(lambda) => Some(f64::from(lambda)),
             _ => None,
@@ -109,9 +111,9 @@ pub(super) const LAMBDA: Parameter = Parameter {
             }
         },
     }),
-    inert: |s| {
-        (!matches!(s.technique.splits, SplitScheme::Practical(_)))
-            .then_some("Only practical splits have a lambda; set Splits to Practical.")
+    inert: |s| match s.technique.splits {
+        SplitScheme::Practical(_) => (SCHEME.inert)(s),
+        _ => Some("Only practical splits have a lambda; set Splits to Practical (splits.scheme = practical)."),
     },
 };
 
@@ -122,15 +124,17 @@ const fn manual<const MAP: usize>(id: &'static str, label: &'static str) -> Para
         group: Group::Splits,
         label,
         unit: "m",
-        help: "View depth at which this map ends and the next one begins. Each has to be greater than the one before.",
+        help: "Distance from the camera, along its view, at which this map ends and the next one begins. Each has to be \
+               greater than the one before.",
         kind: Kind::Optional(Optional {
-            min: 0.01,
+            min: 0.0,
             max: 100_000.0,
             step: 0.1,
             logarithmic: true,
             decimals: 2,
             unset: None,
             initial: USUAL_SPLITS[MAP] as f64,
+            present: |s| matches!(s.technique.splits, SplitScheme::Manual(_)),
             read: |s| match s.technique.splits {
                 SplitScheme::Manual(splits) => Some(f64::from(splits[MAP])),
                 _ => None,
@@ -144,7 +148,7 @@ const fn manual<const MAP: usize>(id: &'static str, label: &'static str) -> Para
         inert: |s| match s.technique.splits {
             SplitScheme::Manual(_) if MAP + 1 < s.technique.count as usize => None,
             SplitScheme::Manual(_) => Some("There is no such map; raise the number of maps."),
-            _ => Some("The splits are chosen by a rule; set Splits to Manual."),
+            _ => Some("The splits are chosen by a rule; set Splits to Manual (splits.scheme = manual)."),
         },
     }
 }
@@ -164,7 +168,8 @@ pub(super) const OVERLAP: Parameter = Parameter {
     group: Group::Splits,
     label: "Overlap",
     unit: "",
-    help: "Share of a map's range of distances that the next map covers too, for a blend between them.",
+    help: "Share of each map's range of distances that the next map covers too, so that the shader can blend between \
+           them. It hides the line between two maps, and costs a little of their sharpness.",
     kind: Kind::Number(Number {
         min: 0.0,
         max: 1.0,

@@ -10,8 +10,8 @@ pub(super) const MODE: Parameter = Parameter {
     group: Group::Stabilise,
     label: "Stabilise",
     unit: "",
-    help: "Whether maps stay where they are while the camera moves. Maps that are fitted anew have the finest texels, \
-           and edges that crawl.",
+    help: "Whether maps stay where they are while the camera moves. A map that is fitted anew in each frame has the \
+           finest texels, but its shadow edges crawl.",
     kind: Kind::Choice(Choice {
         options: &[
             ChoiceOption {
@@ -22,8 +22,8 @@ pub(super) const MODE: Parameter = Parameter {
             ChoiceOption {
                 id: "snap",
                 label: "Snap to texels",
-                help: "Maps move by whole texels of a grid that is fixed to the world. Turning the camera still \
-                       changes them, but for the stable sphere.",
+                help: "Maps move by whole texels of a grid that is fixed to the world. Edges still crawl while the \
+                       camera turns, except with the stable sphere.",
             },
             ChoiceOption { id: "off", label: "Off", help: "Maps are fitted anew in each frame." },
         ],
@@ -48,7 +48,8 @@ pub(super) const MARGIN: Parameter = Parameter {
     group: Group::Stabilise,
     label: "Margin",
     unit: "",
-    help: "Free room around a new map, as a share of its extent, so that it serves longer.",
+    help: "Room left around what a new map must cover, as a share of its width, so that it can be kept for longer. \
+           More room makes texels coarser.",
     kind: Kind::Number(Number {
         min: 0.0,
         max: 10.0,
@@ -66,8 +67,8 @@ pub(super) const GROWTH: Parameter = Parameter {
     group: Group::Stabilise,
     label: "Growth",
     unit: "×",
-    help: "A new map also covers what the camera will see if it moves on as it does, while that makes the map no more \
-           than this factor wider.",
+    help: "A new map also covers what the camera will see if it goes on moving as it does, as far ahead as makes the \
+           map wider by this factor at most.",
     kind: Kind::Number(Number {
         min: 1.0,
         max: 100.0,
@@ -85,7 +86,8 @@ pub(super) const WASTE: Parameter = Parameter {
     group: Group::Stabilise,
     label: "Waste",
     unit: "×",
-    help: "A kept map is made anew when its texels are wider than they have to be by this factor; splits likewise.",
+    help: "A kept map is made anew once its texels are larger than they have to be by this factor, and kept splits are \
+           likewise. Lower is sharper, higher is calmer.",
     kind: Kind::Number(Number {
         min: 1.0,
         max: 100.0,
@@ -105,7 +107,7 @@ pub(super) const HORIZON: Parameter = Parameter {
     group: Group::Stabilise,
     label: "Horizon",
     unit: "frames",
-    help: "Most frames of the camera's motion that a new map looks ahead.",
+    help: "How many frames of the camera's motion a new map looks ahead at most.",
     kind: Kind::Number(Number {
         min: 0.0,
         max: 1_000.0,

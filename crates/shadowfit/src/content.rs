@@ -1,15 +1,12 @@
-//! What a map must hold, as seen from the light: an outline in its plane and a range along it.
+//! The views and boxes of one frame, as fits work with them.
 
 use core::cell::OnceCell;
 
 use glam::{DVec2, DVec3, Vec3};
 
-use crate::axes::LightAxes;
-use crate::checks::MIN_LENGTH;
-use crate::fits::Range;
-use crate::fits::sphere::Round;
+use crate::enclosing_sphere::{EnclosingSphere, SymmetricFrustum, minimal};
 use crate::hull::HullBuilder;
-use crate::view::{Slice, View, box_corners, moved, slice_corners};
+use crate::view::{Range, Slice, View, moved, slice_corners};
 use crate::{Boxes, FitError, FitInput, NormalCone, ViewFrustum, Workspace, checks};
 
 /// The views and boxes of one frame, with the view depths of each box worked out once.
@@ -21,8 +18,11 @@ pub(crate) struct Content<'a> {
     /// Least and greatest view depth of each receiver, view by view; the least is above the
     /// greatest where the box is out of view.
     depths: &'a [DVec2],
-    round: OnceCell<Option<Round>>,
+    symmetric: OnceCell<Option<SymmetricFrustum>>,
 }
+
+/// Most views that share a stable map.
+pub const MAX_SPHERE_VIEWS: usize = 8;
 
 /// Depths of a box that is out of view.
 const OUT_OF_VIEW: DVec2 = DVec2::new(f64::MAX, f64::MIN);
@@ -69,14 +69,66 @@ impl<'a> Content<'a> {
             receivers: input.receivers,
             casters: input.casters,
             depths,
-            round: OnceCell::new(),
+            symmetric: OnceCell::new(),
         };
         Ok((content, points))
     }
 
+    /// The views of an input alone, for fits that look at nothing else.
+    #[inline(always)]
+    pub(crate) fn of_views(input: &FitInput<'a>) -> Self {
+        Self {
+            views: input.views,
+            origin: input.views[0].origin,
+            receivers: None,
+            casters: None,
+            depths: &[],
+            symmetric: OnceCell::new(),
+        }
+    }
+
+    /// The minimal sphere around all views' slices, relative to the origin.
+    #[inline(always)]
+    pub(crate) fn enclosing_sphere(&self, range: Range) -> Result<EnclosingSphere, FitError> {
+        if let ([view], Some(symmetric)) = (self.views, self.symmetric()) {
+            let (near, far) = (range.near.max(view.near), range.far.min(view.far));
+            if near >= far {
+                return Err(FitError::NearNotBelowFar { near, far });
+            }
+            let per_metre = 1.0 / (f64::from(view.far) - f64::from(view.near));
+            let share = |depth: f32| (f64::from(depth) - f64::from(view.near)) * per_metre;
+            return Ok(symmetric.sphere(share(near), share(far)));
+        }
+        self.enclosing_sphere_of_any(range)
+    }
+
+    /// The same for views that are several or not symmetric.
+    #[inline(never)]
+    fn enclosing_sphere_of_any(&self, range: Range) -> Result<EnclosingSphere, FitError> {
+        let mut corners = [DVec3::ZERO; 8 * MAX_SPHERE_VIEWS];
+        let mut count = 0;
+        for slice in self.slices(range) {
+            let Some(free) = corners.get_mut(8 * count..8 * count + 8) else {
+                let (value, max) = (self.views.len() as f64, MAX_SPHERE_VIEWS as f64);
+                return Err(FitError::OutOfRange {
+                    input: "the number of views of a stable fit",
+                    value,
+                    min: 1.0,
+                    max,
+                });
+            };
+            free.copy_from_slice(&slice);
+            count += 1;
+        }
+        if count == 0 {
+            return Err(FitError::NearNotBelowFar { near: range.near, far: range.far });
+        }
+        Ok(minimal(&corners[..8 * count]))
+    }
+
     /// The first view, if its spheres are those of a symmetric frustum.
-    pub(crate) fn round(&self) -> Option<&Round> {
-        self.round.get_or_init(|| Round::new(&self.views[0].corners.map(Vec3::as_dvec3))).as_ref()
+    fn symmetric(&self) -> Option<&SymmetricFrustum> {
+        self.symmetric.get_or_init(|| SymmetricFrustum::new(&self.views[0].corners.map(Vec3::as_dvec3))).as_ref()
     }
 
     /// The views as fits use them.
@@ -180,105 +232,4 @@ fn check(boxes: &Boxes) -> Result<(), FitError> {
         }
     }
     Ok(())
-}
-
-/// Least and greatest coordinates along the light's axes, and the outline across them.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Footprint<'a> {
-    pub(crate) axes: LightAxes,
-    /// Convex outline in the plane of the axes' x and y, anticlockwise, relative to the origin.
-    pub(crate) outline: &'a [DVec2],
-    /// Range along the axes' z.
-    pub(crate) z: (f64, f64),
-    /// Greatest distance from the origin, for the rounding of f32 coordinates.
-    pub(crate) reach: f64,
-    /// Whether nothing was found and the views' slices stand in.
-    pub(crate) is_empty: bool,
-}
-
-/// Collects a footprint.
-struct Collector<'a> {
-    axes: LightAxes,
-    hull: HullBuilder<'a>,
-    z: (f64, f64),
-    reach_squared: f64,
-}
-
-impl<'a> Collector<'a> {
-    fn new(axes: LightAxes, points: &'a mut [DVec2]) -> Self {
-        Self { axes, hull: HullBuilder::new(points), z: (f64::MAX, f64::MIN), reach_squared: 0.0 }
-    }
-
-    fn push(&mut self, p: DVec3) -> Result<(), FitError> {
-        let q = self.axes.project(p);
-        self.z = (self.z.0.min(q.z), self.z.1.max(q.z));
-        self.reach_squared = self.reach_squared.max(p.dot(p));
-        self.hull.push(q.truncate())
-    }
-
-    /// Whether a box lies inside of what has been collected so far, so that no part of it can
-    /// change the footprint.
-    fn holds(&self, min: DVec3, max: DVec3) -> bool {
-        !self.hull.is_empty()
-            && box_corners(min, max).into_iter().all(|corner| {
-                let q = self.axes.project(corner);
-                q.z >= self.z.0 && q.z <= self.z.1 && self.hull.holds(q.truncate())
-            })
-    }
-
-    fn finish(self, is_empty: bool) -> Footprint<'a> {
-        let reach = libm::sqrt(self.reach_squared);
-        Footprint { axes: self.axes, outline: self.hull.finish(), z: self.z, reach, is_empty }
-    }
-}
-
-impl<'a> Footprint<'a> {
-    /// Of the views' slices.
-    pub(crate) fn of_views(
-        content: &Content,
-        axes: LightAxes,
-        range: Range,
-        points: &'a mut [DVec2],
-    ) -> Result<Self, FitError> {
-        let mut collector = Collector::new(axes, points);
-        content.corners(range).try_for_each(|corner| collector.push(corner))?;
-        collector.finish(false).checked()
-    }
-
-    /// Of the receivers' boxes clipped to the views' slices; of the slices themselves where no
-    /// boxes are known or none is in view.
-    pub(crate) fn of_receivers(
-        content: &Content,
-        axes: LightAxes,
-        range: Range,
-        points: &'a mut [DVec2],
-    ) -> Result<Self, FitError> {
-        if content.receivers.is_none() {
-            return Self::of_views(content, axes, range, points);
-        }
-        let mut collector = Collector::new(axes, points);
-        content.receivers_in(range, |_, slice, min, max| {
-            if collector.holds(min, max) { Ok(()) } else { slice.clip(min, max, &mut |p| collector.push(p)) }
-        })?;
-        if collector.hull.is_empty() {
-            let Collector { hull, .. } = collector;
-            let footprint = Self::of_views(content, axes, range, hull.into_storage())?;
-            return Ok(Self { is_empty: true, ..footprint });
-        }
-        Ok(collector.finish(false))
-    }
-
-    /// Refuses a footprint of views without extent.
-    fn checked(self) -> Result<Self, FitError> {
-        let (mut min, mut max) = (DVec2::MAX, DVec2::MIN);
-        for p in self.outline {
-            (min, max) = (min.min(*p), max.max(*p));
-        }
-        let size = max - min;
-        if size.min_element() < MIN_LENGTH || self.z.1 - self.z.0 < MIN_LENGTH {
-            let size = size.extend(self.z.1 - self.z.0);
-            return Err(FitError::EmptyFrustum { size: size.as_vec3() });
-        }
-        Ok(self)
-    }
 }

@@ -2,14 +2,12 @@
 
 use glam::Vec3;
 
-use super::{BINS, Bins, CLASSES, Weights};
-
 /// Counts of visible points that face the light, in bins at even steps of log view depth, and
 /// optionally by how much finer texels they need than their depth alone says.
 ///
 /// Fill it from the depth buffer of the frame before, as coarsely as you like (64 × 36 samples
 /// serve), leaving out the sky: [`Self::bin`] says where a point counts. It only chooses where the
-/// maps are cut: a late or wrong histogram costs sharpness, never coverage.
+/// maps are split: a late or wrong histogram costs sharpness, never coverage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthHistogram<'a> {
     /// View depth at which the first bin begins, in metres; positive.
@@ -54,31 +52,10 @@ impl DepthHistogram<'_> {
         Some(class * depth_bins + depth_bin)
     }
 
-    /// Whether nothing was counted, or the depths make no sense: cuts come from boxes then.
+    /// Whether nothing was counted, or the depths make no sense: splits come from boxes then.
     pub fn is_empty(&self) -> bool {
         let is_valid = self.near > 0.0 && self.near < self.far && self.far.is_finite();
         let is_whole = self.classes > 0 && self.bins.len().is_multiple_of(self.classes);
         !is_valid || !is_whole || self.bins.iter().all(|count| *count == 0)
     }
-
-    /// The counts as shares, spread over other bins.
-    pub(super) fn weights(&self, bins: &Bins) -> Weights {
-        let mut weights = [[0.0; CLASSES]; BINS];
-        let (near, far) = (f64::from(self.near), f64::from(self.far));
-        let depths = self.bins.len() / self.classes;
-        let step = libm::log2(far / near) / depths as f64;
-        let total: f64 = self.bins.iter().map(|count| f64::from(*count)).sum();
-        for (i, count) in self.bins.iter().enumerate().filter(|(_, count)| **count > 0) {
-            let class = (i / depths).min(CLASSES - 1);
-            for part in 0..PARTS {
-                let middle = (i % depths) as f64 + (f64::from(part) + 0.5) / f64::from(PARTS);
-                let depth = near * libm::exp2(step * middle);
-                weights[bins.of(depth)][class] += f64::from(*count) / (total * f64::from(PARTS));
-            }
-        }
-        weights
-    }
 }
-
-/// Parts that each bin is cut in, to be spread.
-const PARTS: u32 = 4;

@@ -1,0 +1,177 @@
+//! The volume itself, and the tests of single shapes.
+
+use glam::{DVec3, Vec3, Vec4};
+
+use super::shapes::{Bounds, OrientedBox, ROUNDING, Sphere};
+use crate::settings::CasterPolicy;
+use crate::{Aabb, LightFit};
+
+/// A convex volume that holds casters of one map, as planes: plain data, for the CPU and for
+/// shaders alike.
+///
+/// | made by | holds |
+/// |---|---|
+/// | [`LightFit::caster_volume`] | every caster that the map can store |
+/// | [`CasterVolume::of_map`] | the same, without a near plane where the pipeline clamps depth |
+/// | [`CasterVolume::swept`] | every caster that can throw a shadow into a slice of the view |
+///
+/// A shape is culled when it lies wholly behind one of the planes. That is conservative and not
+/// exact: a shape beyond an edge or a corner of the volume, behind none of the planes, is kept, and
+/// the larger it is the more often. For each 100 boxes that throw a shadow into the view of the
+/// tests' camera, a swept volume keeps at most 7 others when their half extents are up to a tenth
+/// of the view's, and at most 25 when they are up to its half. The map's own box keeps more than
+/// three times as many.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct CasterVolume {
+    /// World position that the planes, and all shapes tested one by one, are relative to, in
+    /// metres.
+    pub origin: DVec3,
+    /// Planes (n, d) with unit normals that point inward: a point p in world axes, in metres
+    /// relative to [`Self::origin`], is inside where n·p + d >= 0 for all of them. Those past
+    /// [`Self::count`] are (0, 0, 0, 1), which everything is inside of.
+    pub planes: [Vec4; Self::MAX_PLANES],
+    /// Number of planes in use.
+    pub count: u32,
+}
+
+/// A plane that everything is inside of.
+const EVERYWHERE: Vec4 = Vec4::new(0.0, 0.0, 0.0, 1.0);
+
+/// A plane that nothing is inside of.
+const NOWHERE: Vec4 = Vec4::new(0.0, 0.0, 0.0, f32::MIN);
+
+impl CasterVolume {
+    /// Most planes of a volume: four sides and far plane of the map, five planes of a view that
+    /// face away from the light and its six silhouette edges.
+    pub const MAX_PLANES: usize = 16;
+
+    /// A volume that holds everything.
+    pub const fn everywhere(origin: DVec3) -> Self {
+        Self { origin, planes: [EVERYWHERE; Self::MAX_PLANES], count: 0 }
+    }
+
+    /// A volume that holds nothing.
+    pub const fn nowhere(origin: DVec3) -> Self {
+        let mut planes = [EVERYWHERE; Self::MAX_PLANES];
+        planes[0] = NOWHERE;
+        Self { origin, planes, count: 1 }
+    }
+
+    /// Every caster that a map can store, relative to the fit's origin. Planes in the light's
+    /// axes: -x, +x, -y, +y, far, and near unless `casters` is [`CasterPolicy::DepthClamp`]: a map
+    /// drawn with depth clamp stores casters before its near plane too.
+    pub fn of_map(fit: &LightFit, casters: CasterPolicy) -> Self {
+        let (sides, [far, near]) = map_planes(fit);
+        let mut volume = Self::everywhere(fit.origin);
+        for plane in sides {
+            volume.push(plane);
+        }
+        volume.push(far);
+        if casters != CasterPolicy::DepthClamp {
+            volume.push(near);
+        }
+        volume
+    }
+
+    /// This volume cut at the near plane of a map, for passes without depth clamp: casters before
+    /// that plane would be drawn for nothing.
+    #[must_use]
+    pub fn cut_at_near_plane(&self, fit: &LightFit) -> Self {
+        let (_, [_, near]) = map_planes(&fit.relative_to(self.origin));
+        let mut volume = *self;
+        volume.push(near);
+        volume
+    }
+
+    /// The planes in use.
+    pub fn active_planes(&self) -> &[Vec4] {
+        &self.planes[..(self.count as usize).min(Self::MAX_PLANES)]
+    }
+
+    /// Adds a plane if there is room for it; without it the volume is only larger.
+    pub(super) fn push(&mut self, plane: Vec4) {
+        if let Some(free) = self.planes.get_mut(self.count as usize) {
+            *free = plane;
+            self.count += 1;
+        }
+    }
+
+    /// The same volume with its planes relative to another world position, in metres. The planes
+    /// are moved in f64 and lie outward by the rounding of their normals over that distance, 1e-7
+    /// of it.
+    #[must_use]
+    pub fn relative_to(&self, origin: DVec3) -> Self {
+        let offset = origin - self.origin;
+        let slack = (offset.x.abs() + offset.y.abs() + offset.z.abs()) * NORMAL_ROUNDING;
+        let mut volume = Self { origin, ..*self };
+        for plane in &mut volume.planes {
+            // Planes without a normal hold all or nothing, wherever they are.
+            if plane.truncate() != Vec3::ZERO {
+                let moved = f64::from(plane.w) + plane.truncate().as_dvec3().dot(offset) + slack;
+                plane.w = moved as f32;
+            }
+        }
+        volume
+    }
+
+    /// Whether an axis-aligned box may touch the volume. `min` and `max` are its corners in world
+    /// axes **relative to [`Self::origin`]**, in metres. A box with a `min` above its `max` holds
+    /// nothing and touches nothing; one with NaN counts as touching.
+    ///
+    /// Known false positives: boxes that lie outside near an edge or corner of the volume without
+    /// being wholly behind one of its planes.
+    pub fn intersects_aabb(&self, min: Vec3, max: Vec3) -> bool {
+        self.intersects(&Aabb { min, max })
+    }
+
+    /// Whether a sphere may touch the volume: centre in world axes relative to [`Self::origin`]
+    /// and radius, in metres. A negative radius touches nothing; NaN counts as touching.
+    ///
+    /// Known false positives are as of [`Self::intersects_aabb`]; a sphere behind a plane is
+    /// culled exactly.
+    pub fn intersects_sphere(&self, centre: Vec3, radius: f32) -> bool {
+        self.intersects(&Sphere { centre, radius })
+    }
+
+    /// Whether an oriented box, relative to [`Self::origin`], may touch the volume. NaN counts as
+    /// touching. Known false positives are as of [`Self::intersects_aabb`].
+    pub fn intersects_obb(&self, oriented: &OrientedBox) -> bool {
+        self.intersects(oriented)
+    }
+
+    fn intersects<S: Bounds>(&self, shape: &S) -> bool {
+        let slack = shape.slack();
+        let is_behind = |plane: &Vec4| shape.support(plane.truncate()) + widened(plane.w) < -slack;
+        slack != f32::NEG_INFINITY && !self.active_planes().iter().any(is_behind)
+    }
+}
+
+impl LightFit {
+    /// Every caster that the map can store: its own box, relative to [`Self::origin`]. Casters
+    /// nearer to the light than its near plane are not among them; with depth clamp they are, see
+    /// [`CasterVolume::of_map`]. [`CasterVolume::swept`] holds only those that can throw a shadow
+    /// into view.
+    pub fn caster_volume(&self) -> CasterVolume {
+        CasterVolume::of_map(self, CasterPolicy::None)
+    }
+}
+
+/// Rounding of a unit normal's direction, in f64.
+const NORMAL_ROUNDING: f64 = 2.0 / 16_777_216.0;
+
+/// A plane's d with the rounding that its own part in the test may have.
+pub(super) fn widened(d: f32) -> f32 {
+    d + d.abs() * ROUNDING
+}
+
+/// The planes -x, +x, -y, +y of a map, and far and near, relative to the fit's origin.
+pub(super) fn map_planes(fit: &LightFit) -> ([Vec4; 4], [Vec4; 2]) {
+    let (min, max) = fit.clip_box();
+    let rows = fit.light_from_world.transpose();
+    let t = fit.light_from_world.w_axis.truncate().as_dvec3();
+    let axes = [rows.x_axis, rows.y_axis, rows.z_axis].map(Vec4::truncate);
+    let low = |i: usize| axes[i].extend((t[i] - min[i]) as f32);
+    let high = |i: usize| (-axes[i]).extend((max[i] - t[i]) as f32);
+    ([low(0), high(0), low(1), high(1)], [low(2), high(2)])
+}

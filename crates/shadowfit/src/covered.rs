@@ -1,0 +1,178 @@
+//! The box that a map must hold, along the light's axes: padded for rounding and by the margin, and
+//! not yet laid on a grid, widened by a border or moved to the casters.
+
+use glam::{DVec2, DVec3};
+
+use crate::FitError;
+use crate::axes::LightAxes;
+use crate::checks::{self, MIN_LENGTH};
+use crate::content::Content;
+use crate::enclosing_sphere::SYMMETRY;
+use crate::light_hull::LightHull;
+use crate::rectangle::{self, Rectangle};
+use crate::rule::{Covers, FitRule};
+use crate::settings::RectangleKind;
+use crate::view::Range;
+use crate::volume::{Constraint, ROUNDING, Volume};
+
+/// What a map must hold.
+#[derive(Clone, Copy)]
+pub(crate) struct Covered<'a> {
+    pub(crate) axes: LightAxes,
+    pub(crate) min: DVec3,
+    pub(crate) max: DVec3,
+    /// What set the planes -x, +x, -y, +y, far, near.
+    pub(crate) set_by: [Constraint; 6],
+    pub(crate) is_empty: bool,
+    /// What rounding may shift a receiver or a caster by across the light, in metres.
+    pub(crate) rounding: f64,
+    /// What of the light's plane casters may throw shadows into.
+    pub(crate) shadowed: Shadowed<'a>,
+}
+
+/// A part of the light's plane.
+#[derive(Clone, Copy)]
+pub(crate) enum Shadowed<'a> {
+    /// A convex outline, anticlockwise in the plane of these axes.
+    Outline(LightAxes, &'a [DVec2]),
+    /// All of the map, so that turning the camera moves no plane.
+    WholeMap,
+}
+
+impl<'a> Covered<'a> {
+    /// What a rule covers of a range of view depths.
+    #[inline(always)]
+    pub(crate) fn new(
+        rule: &FitRule,
+        content: &Content,
+        axes: LightAxes,
+        range: Range,
+        points: &'a mut [DVec2],
+    ) -> Result<Self, FitError> {
+        match rule.covers {
+            Covers::ExactCorners => Self::corners(rule, content, axes, range),
+            Covers::Sphere => Self::sphere(rule, content, axes, range),
+            Covers::Views | Covers::Receivers => {
+                let hull = LightHull::of(rule.covers, content, axes, range, points)?;
+                Ok(Self::hull(rule, content, &hull, range))
+            }
+        }
+    }
+
+    /// The box of the slices' corners, with the margin and nothing else.
+    #[inline(always)]
+    fn corners(rule: &FitRule, content: &Content, axes: LightAxes, range: Range) -> Result<Self, FitError> {
+        let (mut min, mut max) = (DVec3::MAX, DVec3::MIN);
+        for slice in content.slices(range) {
+            for corner in slice {
+                let p = axes.project(corner);
+                (min, max) = (min.min(p), max.max(p));
+            }
+        }
+        let size = max - min;
+        if size.min_element() < MIN_LENGTH {
+            return Err(FitError::EmptyFrustum { size: size.as_vec3() });
+        }
+        let margin = DVec3::splat(rule.margin);
+        Ok(Self {
+            axes,
+            min: min - margin,
+            max: max + margin,
+            set_by: [Constraint::View; 6],
+            is_empty: false,
+            rounding: 0.0,
+            shadowed: Shadowed::WholeMap,
+        })
+    }
+
+    /// The cube around the slices' enclosing sphere.
+    #[inline(always)]
+    fn sphere(rule: &FitRule, content: &Content, axes: LightAxes, range: Range) -> Result<Self, FitError> {
+        let sphere = content.enclosing_sphere(range)?;
+        let centre = axes.project(sphere.centre);
+        let rounding = ROUNDING * (3.0 * sphere.radius + checks::length(sphere.centre));
+        let pad = rule.margin + rounding + 2.0 * SYMMETRY * sphere.radius;
+        let extent = DVec3::splat(2.0 * (sphere.radius + pad));
+        Ok(Self {
+            axes,
+            min: centre - extent * 0.5,
+            max: centre + extent * 0.5,
+            set_by: [Constraint::Sphere; 6],
+            is_empty: false,
+            rounding,
+            shadowed: Shadowed::WholeMap,
+        })
+    }
+
+    /// The box of the hull's rectangle and its range along the light.
+    fn hull(rule: &FitRule, content: &Content, hull: &LightHull<'a>, range: Range) -> Self {
+        let rectangle = match rule.rectangle {
+            RectangleKind::AxisAligned => Rectangle::around(hull.outline, DVec2::X),
+            RectangleKind::MinimumArea => rectangle::min_area(hull.outline),
+            RectangleKind::MinimumSquare => square(rectangle::min_square(hull.outline)),
+        };
+        let longest = rectangle.size().max_element();
+        // That of the map, which the border widens.
+        let resolution = rule.resolution.as_dvec2();
+        let widening = resolution / (resolution - 2.0 * rule.border);
+        let rounding = (rectangle.size() * widening + hull.farthest) * ROUNDING;
+        let pad = rounding + rule.margin;
+        let thinnest = longest.max(hull.farthest) * THINNEST;
+        let (min, max) = widened(rectangle.min - pad, rectangle.max + pad, thinnest);
+        let z_pad = (hull.z.1 - hull.z.0 + hull.farthest) * ROUNDING + rule.margin;
+        let (z_min, z_max) = widened(DVec2::splat(hull.z.0 - z_pad), DVec2::splat(hull.z.1 + z_pad), thinnest);
+        Self {
+            axes: hull.axes.turned(rectangle.axis),
+            min: min.extend(z_min.x),
+            max: max.extend(z_max.x),
+            set_by: constraints(&rectangle, hull, content, range),
+            is_empty: hull.is_empty,
+            rounding: rounding.max_element(),
+            shadowed: Shadowed::Outline(hull.axes, hull.outline),
+        }
+    }
+
+    /// The box as it is, for the steps that follow.
+    #[inline(always)]
+    pub(crate) fn volume(&self) -> Volume {
+        let Self { axes, min, max, set_by, is_empty, .. } = *self;
+        Volume { axes, min, max, light_z: 0.0, depth_range: 0.0, set_by, is_empty, grid: None }
+    }
+}
+
+/// Extents below this share of a map's longer side, or of its distance from the origin, are
+/// widened to it: a flat wall seen edge-on from the light needs no width, but a matrix does.
+const THINNEST: f64 = 1e-5;
+
+/// The square with the rectangle's longer side, about the same middle.
+fn square(r: Rectangle) -> Rectangle {
+    let (centre, half) = ((r.min + r.max) * 0.5, r.size().max_element() * 0.5);
+    Rectangle { axis: r.axis, min: centre - half, max: centre + half }
+}
+
+/// The same range, at least as long as `thinnest`.
+fn widened(min: DVec2, max: DVec2, thinnest: f64) -> (DVec2, DVec2) {
+    let missing = (DVec2::splat(thinnest) - (max - min)).max(DVec2::ZERO) * 0.5;
+    (min - missing, max + missing)
+}
+
+/// Share of a box's longest side within which its planes count as the view's own.
+const SAME_PLANE: f64 = 1e-5;
+
+/// What set each plane: the view where it lies at the view's own extent, else the receivers.
+fn constraints(rectangle: &Rectangle, hull: &LightHull, content: &Content, range: Range) -> [Constraint; 6] {
+    if content.receivers.is_none() || hull.is_empty {
+        return [Constraint::View; 6];
+    }
+    let (mut min, mut max) = (DVec3::MAX, DVec3::MIN);
+    for corner in content.corners(range) {
+        let p = hull.axes.project(corner);
+        let q = DVec3::new(p.truncate().dot(rectangle.axis), p.truncate().dot(rectangle.axis.perp()), p.z);
+        (min, max) = (min.min(q), max.max(q));
+    }
+    let same = (max - min).max_element() * SAME_PLANE;
+    let low = rectangle.min.extend(hull.z.0) - min;
+    let high = max - rectangle.max.extend(hull.z.1);
+    let by = |gap: f64| if gap <= same { Constraint::View } else { Constraint::Receivers };
+    [by(low.x), by(high.x), by(low.y), by(high.y), by(low.z), by(high.z)]
+}

@@ -1,0 +1,114 @@
+//! Where the near plane stands, so that every caster that can throw a shadow into view is kept.
+//!
+//! What can do so stands over what is covered, toward the light; [`Outline`] finds the part of each
+//! caster's box that does.
+//!
+//! ```text
+//!    toward the light          ┌──────┐
+//!           ▲                  │caster│   only the part over the outline counts,
+//!    near ──┼───────────────●──┤- - - │   so the plane stands at ●
+//!           │     outline   │  └──────┘
+//!           └───────────────┘
+//! ```
+
+use glam::DVec2;
+
+use crate::axes::LightAxes;
+use crate::content::Content;
+use crate::covered::{Covered, Shadowed};
+use crate::outline::{Outline, Scratch};
+use crate::rule::{Covers, Depth, FitRule};
+use crate::view::moved;
+use crate::volume::{Constraint, ROUNDING, Volume};
+use crate::{Aabb, Boxes};
+
+/// Coordinate of the near plane along the light's z, and what set it if not what is covered.
+pub(crate) struct NearPlane {
+    pub(crate) z: f64,
+    pub(crate) set_by: Option<Constraint>,
+}
+
+/// Moves the near plane of a volume, which so far ends at what is covered, to where the rule puts
+/// it, and the light with it.
+#[inline(always)]
+pub(crate) fn place(volume: &mut Volume, rule: &FitRule, covered: &Covered, content: &Content) {
+    if rule.depth == Depth::Doubled {
+        volume.light_z = volume.min.z;
+        volume.depth_range = 2.0 * (volume.max.z - volume.min.z);
+        return;
+    }
+    let texel = (volume.max - volume.min).truncate() / rule.resolution.as_dvec2();
+    let reach = filter_reach(texel, rule, covered.rounding);
+    let near = match covered.shadowed {
+        Shadowed::Outline(axes, outline) => find(volume.max.z, &axes, outline, content, rule.depth, reach),
+        Shadowed::WholeMap => {
+            let (min, max) = (volume.min, volume.max);
+            let corners = [(min.x, min.y), (max.x, min.y), (max.x, max.y), (min.x, max.y)];
+            let corners = corners.map(|(x, y)| DVec2::new(x, y));
+            find(volume.max.z, &volume.axes, &corners, content, rule.depth, reach)
+        }
+    };
+    (volume.max.z, volume.set_by[5]) = (near.z, near.set_by.unwrap_or(volume.set_by[5]));
+    if rule.covers != Covers::Sphere {
+        // The rounding of the depth range, which casters may make far longer than what is covered. A
+        // sphere's gets it with its steps.
+        let depth = (volume.max.z - volume.min.z) * ROUNDING;
+        (volume.min.z, volume.max.z) = (volume.min.z - depth, volume.max.z + depth);
+    }
+    volume.light_at_near_plane();
+}
+
+/// Finds the near plane of what ends at `covered` along the light's z.
+///
+/// `outline` is the convex outline of what is covered, anticlockwise, in the plane of `axes`;
+/// casters that stand no farther beside it than `reach` (in metres) count too.
+#[inline(always)]
+pub(crate) fn find(
+    covered: f64,
+    axes: &LightAxes,
+    outline: &[DVec2],
+    content: &Content,
+    depth: Depth,
+    reach: f64,
+) -> NearPlane {
+    let casters = content.casters.unwrap_or_default();
+    let over = || Outline::new(axes, outline, reach);
+    let (z, set_by) = match depth {
+        Depth::AtCovered | Depth::Doubled => return NearPlane { z: covered, set_by: None },
+        Depth::Extended(metres) => (covered + metres, Constraint::CasterExtension),
+        Depth::AtCasterBounds => {
+            let all = casters.boxes.iter().filter(|b| !b.is_empty()).fold(Aabb::EMPTY, |a, b| a.union(*b));
+            let all = Boxes { boxes: &[all], ..casters };
+            (highest(&over(), &all, content, covered), Constraint::Casters)
+        }
+        Depth::AtCasters => (highest(&over(), &casters, content, covered), Constraint::Casters),
+    };
+    NearPlane { z, set_by: (z > covered).then_some(set_by) }
+}
+
+/// The greatest z of all casters over the outline, or `covered` where none reaches higher.
+fn highest(over: &Outline, casters: &Boxes, content: &Content, covered: f64) -> f64 {
+    let (offset, mut scratch) = (casters.origin - content.origin, Scratch::new());
+    let mut z = covered;
+    for aabb in casters.boxes.iter().filter(|aabb| !aabb.is_empty()) {
+        let (min, max) = moved(aabb, offset);
+        let farthest = min.abs().max(max.abs()).element_sum();
+        let floor = z - farthest * ROUNDING;
+        over.parts_over(min, max, floor, &mut scratch, |corner| {
+            z = z.max(corner.z + corner.abs().element_sum() * ROUNDING);
+        });
+    }
+    z
+}
+
+/// How far beside the outline casters are read by a filter that the border is enough for, in
+/// metres: a filter of reach E needs E - 1/2 texels of border, and half a texel more is for the
+/// rasteriser. `rounding` is what receivers and casters may be shifted by, each.
+pub(crate) fn filter_reach(texel: DVec2, rule: &FitRule, rounding: f64) -> f64 {
+    let texels = (rule.border + 1.0) * texel.max_element();
+    (texels + 2.0 * rounding) * ANY_AXES + rule.margin
+}
+
+/// How far an outline must be [widened](Outline) to hold it widened by the diagonal of a unit
+/// square, whatever is held beyond that: √2 each.
+const ANY_AXES: f64 = 2.0;

@@ -1,0 +1,140 @@
+//! A fit as data: what each kind covers, by which rectangle, along which axes and how deep.
+//!
+//! The settings' kind is looked at here and nowhere else. A further fit is a file in
+//! [`fits`](crate::fits) that documents it, and a line in [`FitRule::new`].
+
+use glam::UVec2;
+
+use crate::axes::Roll;
+use crate::bias::reach;
+use crate::checks::{self, MAX_LENGTH};
+use crate::settings::{CasterPolicy, FilterKind, FitKind, FitSettings, RectangleKind};
+use crate::{DepthConvention, FitError};
+
+/// What a map must hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Covers {
+    /// The box of the views' corners and nothing more, not even room for rounding or the filter.
+    ExactCorners,
+    /// The outline of the views' slices, as the light sees them.
+    Views,
+    /// That of the receivers' boxes clipped to the slices.
+    Receivers,
+    /// The sphere around the views' slices, always on the world's grid.
+    Sphere,
+}
+
+impl Covers {
+    /// Whether the map covers what is shadowed to its very end, wherever the receivers end.
+    pub(crate) const fn whole_distance(self) -> bool {
+        matches!(self, Self::ExactCorners | Self::Receivers)
+    }
+}
+
+/// What places the near plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Depth {
+    /// The XNA sample's own depth: the light at the far side of the box, and twice its depth.
+    Doubled,
+    /// At what is covered.
+    AtCovered,
+    /// So many metres before what is covered.
+    Extended(f64),
+    /// At the box around all casters, as far as it can throw shadows into view.
+    AtCasterBounds,
+    /// At the first caster that can.
+    AtCasters,
+}
+
+/// How one map is fitted: [`FitSettings`] with everything resolved that follows from their kind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FitRule {
+    pub(crate) covers: Covers,
+    pub(crate) rectangle: RectangleKind,
+    pub(crate) roll: Roll,
+    pub(crate) depth: Depth,
+    /// Free texels between what is covered and the map's border.
+    pub(crate) border: f64,
+    /// What the box is enlarged by on all sides, in metres.
+    pub(crate) margin: f64,
+    /// Width and height of the map, in texels.
+    pub(crate) resolution: UVec2,
+    /// Depth convention of the fitted clip space.
+    pub(crate) convention: DepthConvention,
+}
+
+impl FitRule {
+    /// The rule of settings with so many free texels at the border.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for a number of the settings, and
+    /// [`FitError::ZeroResolution`].
+    pub(crate) fn new(settings: &FitSettings, border: f32, casters_are_known: bool) -> Result<Self, FitError> {
+        check(settings, border)?;
+        let (covers, rectangle, roll, depth) = {
+            let near = near_plane(settings, casters_are_known);
+            match settings.kind {
+                FitKind::XnaSample => (Covers::ExactCorners, RectangleKind::AxisAligned, Roll::LookAt, Depth::Doubled),
+                FitKind::FrustumAabb => (Covers::Views, RectangleKind::AxisAligned, Roll::ShortestArc, near),
+                FitKind::Oriented => (Covers::Views, settings.rectangle, Roll::ShortestArc, near),
+                FitKind::Sphere => (Covers::Sphere, RectangleKind::AxisAligned, Roll::ShortestArc, near),
+                FitKind::Focused => (Covers::Receivers, settings.rectangle, Roll::ShortestArc, near),
+            }
+        };
+        Ok(Self {
+            covers,
+            rectangle,
+            roll,
+            depth,
+            border: f64::from(border),
+            margin: f64::from(settings.margin),
+            resolution: settings.resolution,
+            convention: settings.depth,
+        })
+    }
+
+    /// Whether a map of this rule can be kept from frame to frame: not the sample's.
+    pub(crate) fn can_be_held(&self) -> bool {
+        self.covers != Covers::ExactCorners
+    }
+
+    /// This rule without a border, its near plane at what is covered.
+    pub(crate) const fn without_room(self) -> Self {
+        Self { border: 0.0, depth: Depth::AtCovered, ..self }
+    }
+}
+
+/// Free texels of settings without a technique: where they set none, what the default filter reaches.
+pub(crate) const fn default_border(settings: &FitSettings) -> f32 {
+    match settings.border {
+        Some(texels) => texels,
+        None => reach(FilterKind::Pcf5x5),
+    }
+}
+
+/// What the settings' caster policy comes to.
+fn near_plane(settings: &FitSettings, casters_are_known: bool) -> Depth {
+    match settings.casters {
+        CasterPolicy::None | CasterPolicy::DepthClamp => Depth::AtCovered,
+        CasterPolicy::SceneBounds if casters_are_known => Depth::AtCasterBounds,
+        CasterPolicy::List if casters_are_known => Depth::AtCasters,
+        CasterPolicy::Extend | CasterPolicy::SceneBounds | CasterPolicy::List => {
+            Depth::Extended(f64::from(settings.caster_extension))
+        }
+    }
+}
+
+/// Checks the numbers of a fit's settings.
+fn check(settings: &FitSettings, border: f32) -> Result<(), FitError> {
+    checks::within("the fit's margin", f64::from(settings.margin), 0.0, MAX_LENGTH)?;
+    let extension = f64::from(settings.caster_extension);
+    checks::within("the fit's caster extension", extension, 0.0, MAX_LENGTH)?;
+    if settings.resolution.x == 0 || settings.resolution.y == 0 {
+        return Err(FitError::ZeroResolution { resolution: settings.resolution });
+    }
+    let widest = f64::from(settings.resolution.min_element()) * 0.25;
+    checks::within("the fit's border", f64::from(border), 0.0, widest)?;
+    checks::finite("the maximum shadow distance", f64::from(settings.max_distance))?;
+    Ok(())
+}

@@ -1,0 +1,135 @@
+//! Random techniques within the ranges of the parameter table.
+
+use proptest::option;
+use proptest::prelude::*;
+use proptest::sample::select;
+use shadowfit::glam::{UVec2, Vec3};
+use shadowfit::settings::{BiasSettings, HoldSettings, MAX_MAPS, MapOverride};
+use shadowfit::{
+    CasterPolicy, DepthConvention, FilterKind, FitKind, FitSettings, MapFormat, ReceiverSource, RectangleKind,
+    SplitScheme, Stabilise, Technique,
+};
+
+/// Any variant of an enum without payloads. Does not compile until a new variant is listed.
+macro_rules! any {
+    ($name:ident: $($variant:ident),+) => {{
+        const _: fn($name) = |value| match value { $($name::$variant => ()),+ };
+        select(vec![$($name::$variant),+])
+    }};
+}
+
+fn any_kind() -> impl Strategy<Value = FitKind> {
+    any!(FitKind: XnaSample, FrustumAabb, Oriented, Sphere, Focused)
+}
+
+fn any_resolution() -> impl Strategy<Value = UVec2> {
+    let side = || 256_u32..=8192;
+    prop_oneof![side().prop_map(UVec2::splat), (side(), side()).prop_map(UVec2::from)]
+}
+
+fn any_splits() -> impl Strategy<Value = SplitScheme> {
+    const _: fn(SplitScheme) = |value| match value {
+        SplitScheme::Uniform
+        | SplitScheme::Logarithmic
+        | SplitScheme::Practical(_)
+        | SplitScheme::Manual(_)
+        | SplitScheme::FromBoxes
+        | SplitScheme::FromHistogram => (),
+    };
+    prop_oneof![
+        Just(SplitScheme::Uniform),
+        Just(SplitScheme::Logarithmic),
+        (0.0_f32..=1.0).prop_map(SplitScheme::Practical),
+        prop::array::uniform7(0.0_f32..=1e5).prop_map(SplitScheme::Manual),
+        Just(SplitScheme::FromBoxes),
+        Just(SplitScheme::FromHistogram),
+    ]
+}
+
+fn any_fit() -> impl Strategy<Value = FitSettings> {
+    let rule = (
+        any_kind(),
+        any!(RectangleKind: AxisAligned, MinimumArea, MinimumSquare),
+        any!(CasterPolicy: None, Extend, SceneBounds, List, DepthClamp),
+        any!(DepthConvention: ZeroToOne, Reversed, NegativeOneToOne),
+    );
+    let sizes = (
+        prop_oneof![Just(f32::MAX), 1.0_f32..=1e5],
+        0.0_f32..=1e3,
+        option::of(0.0_f32..=32.0),
+        0.0_f32..=1e4,
+        prop::array::uniform3(-1.0_f32..=1.0).prop_map(Vec3::from),
+        any_resolution(),
+    );
+    (rule, sizes).prop_map(
+        |((kind, rectangle, casters, depth), (max_distance, margin, border, caster_extension, up, resolution))| {
+            FitSettings {
+                kind,
+                rectangle,
+                max_distance,
+                margin,
+                border,
+                casters,
+                caster_extension,
+                up,
+                resolution,
+                depth,
+            }
+        },
+    )
+}
+
+fn any_hold() -> impl Strategy<Value = HoldSettings> {
+    (0.0_f32..=10.0, 1.0_f32..=100.0, 1.0_f32..=100.0, 0_u32..=1000)
+        .prop_map(|(margin, growth, waste, horizon)| HoldSettings { margin, growth, waste, horizon })
+}
+
+fn any_bias() -> impl Strategy<Value = BiasSettings> {
+    // Down to a millionth of a texel.
+    let texels = || (-20.0_f32..=4.0).prop_map(f32::exp2);
+    (texels(), texels(), texels(), texels()).prop_map(|(constant, slope, normal_offset, receiver_plane)| BiasSettings {
+        constant,
+        slope,
+        normal_offset,
+        receiver_plane,
+    })
+}
+
+fn any_overrides() -> impl Strategy<Value = [MapOverride; MAX_MAPS]> {
+    let own = (option::of(any_kind()), option::of(any_resolution()));
+    prop::array::uniform8(own.prop_map(|(kind, resolution)| MapOverride { kind, resolution }))
+}
+
+/// Any technique that the parameter table has a value for.
+pub(crate) fn any_technique() -> impl Strategy<Value = Technique> {
+    let maps = (
+        1..=MAX_MAPS as u32,
+        any_fit(),
+        any_splits(),
+        0.0_f32..=1.0,
+        any!(Stabilise: Off, Snap, Hysteresis),
+        any_hold(),
+        any_overrides(),
+    );
+    let look_up = (
+        any!(ReceiverSource: Objects, Clusters),
+        any!(FilterKind: Point, Hardware2x2, Pcf3x3, Pcf5x5),
+        any_bias(),
+        any!(MapFormat: Depth32Float, R32Float),
+    );
+    (maps, look_up).prop_map(
+        |((count, fit, splits, overlap, stabilise, hold, overrides), (receivers, filter, bias, format))| Technique {
+            count,
+            fit,
+            splits,
+            overlap,
+            stabilise,
+            hold,
+            overrides,
+            receivers,
+            filter,
+            bias,
+            format,
+        },
+    )
+}
