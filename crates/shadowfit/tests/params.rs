@@ -151,9 +151,11 @@ fn leaves(settings: &Settings) -> Vec<(String, String)> {
     leaf("camera.near", near);
     leaf("camera.far", far);
     leaf("camera.speed", speed);
-    let ViewSettings { shadows, inset, outside, freeze_fit, play } = view;
+    let ViewSettings { shadows, inset, inset_map, tint_maps, outside, freeze_fit, play } = view;
     leaf("view.shadows", shadows);
     leaf("view.inset", inset);
+    leaf("view.inset_map", inset_map);
+    leaf("view.tint_maps", tint_maps);
     leaf("view.outside", outside);
     leaf("view.freeze_fit", freeze_fit);
     leaf("view.play", play);
