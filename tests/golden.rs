@@ -133,7 +133,7 @@ fn folder() -> PathBuf {
 /// Draws the stage and compares it with its golden, or writes the golden.
 fn check(stage: &mut Stage, name: &str) {
     assert!(NAMES.contains(&name), "{name} is missing in the list of goldens");
-    let picture = stage.picture(SIZE);
+    let picture = stage.target(SIZE);
     stage.draw(&picture);
     assert_eq!(stage.problem(), None, "{name}");
     let rgb: Vec<u8> = picture

@@ -5,8 +5,8 @@ use shadowfit::bias::XNA_DEPTH_BIAS;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::settings::{BiasSettings, FilterKind, MapFormat};
 use shadowfit::{
-    Aabb, Bias, Boxes, MapFitter, Technique, CasterPolicy, DepthConvention, FitInput, FitKind, FitSettings,
-    LightFit, PerspectiveCamera, SplitScheme, Stabilise, Workspace, fit,
+    Aabb, Bias, Boxes, CasterPolicy, DepthConvention, FitInput, FitKind, FitSettings, LightFit, MapFitter,
+    PerspectiveCamera, SplitScheme, Stabilise, Technique, Workspace, fit,
 };
 use shadowfit_render::{Atmosphere, Culling, Frame, Gpu, GpuScene, ProbePixel, ProbeTargets, Renderer, Statistics};
 use shadowfit_scene::{Scene, builtin};
@@ -145,7 +145,8 @@ fn camera(view: &View) -> PerspectiveCamera {
 fn fitted(case: &Case, camera: &PerspectiveCamera, boxes: &[Aabb], direction: Vec3) -> Vec<MapFit> {
     let frustum = camera.frustum().expect("a camera");
     let boxes = Boxes { origin: DVec3::ZERO, boxes };
-    let input = FitInput { views: &[frustum], receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&[], direction) };
+    let input =
+        FitInput { views: &[frustum], receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&[], direction) };
     let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.boxes.len(), 3)];
     let fitted = MapFitter::new().fit(&input, &case.technique, &mut Workspace::new(&mut storage)).expect("maps");
     let narrow = PerspectiveCamera { fov_y: camera.fov_y * 0.5, ..*camera }.frustum().expect("a camera");
@@ -186,7 +187,7 @@ fn swept_casters_give_every_pixel_the_same_factor_and_are_fewer() {
     for case in cases() {
         let descriptor = ShadowMapDescriptor {
             resolution: [TEXELS; 2],
-            maps: case.maps.count,
+            maps: case.technique.count,
             format: case.format,
             filter: case.filter,
             depth: case.technique.fit.depth,
