@@ -133,10 +133,10 @@ fn folder() -> PathBuf {
 /// Draws the stage and compares it with its golden, or writes the golden.
 fn check(stage: &mut Stage, name: &str) {
     assert!(NAMES.contains(&name), "{name} is missing in the list of goldens");
-    let picture = stage.target(SIZE);
-    stage.draw(&picture);
+    let target = stage.target(SIZE);
+    stage.draw(&target);
     assert_eq!(stage.problem(), None, "{name}");
-    let rgb: Vec<u8> = picture
+    let rgb: Vec<u8> = target
         .read(stage.gpu())
         .expect("pixels")
         .chunks_exact(4)
