@@ -25,6 +25,7 @@ mod metamorphic;
 mod mint;
 mod optimality;
 mod other_matrices;
+mod rounding;
 mod scenes;
 mod scroll;
 mod self_shadowing;
