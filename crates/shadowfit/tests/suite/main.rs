@@ -26,6 +26,7 @@ mod mint;
 mod optimality;
 mod other_matrices;
 mod rust_code;
+mod rounding;
 mod scenes;
 mod scroll;
 mod self_shadowing;
