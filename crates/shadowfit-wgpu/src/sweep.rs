@@ -4,8 +4,9 @@
 //! in the part of the view that reads it, swept toward the light. Which part that is follows from the order in which
 //! shaders look for a map.
 
-use shadowfit::bias::{MIN_COSINE, Reach};
+use shadowfit::bias::{MIN_COSINE, reach};
 use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::settings::FilterKind;
 use shadowfit::{CasterPolicy, CasterVolume, FitError, LightFit, Sweep, ViewFrustum};
 
 use crate::{MapFit, MapView};
@@ -21,7 +22,7 @@ const UV_ROUNDING: f64 = 8.0 / 16_777_216.0;
 impl MapFit {
     /// Leaves to each map only the casters that can throw a shadow, through this map, on what `views` see: sets
     /// [`MapFit::volume`] of all maps. The shadows in view stay the same. `views` are all that is drawn with these
-    /// maps, up to the cameras' far planes, and `reach` is that of the filter that reads them, such as
+    /// maps, up to the cameras' far planes, and `filter` is the one that reads them,
     /// [`ShadowMapDescriptor::filter`](crate::ShadowMapDescriptor::filter).
     ///
     /// The volumes serve maps with depth clamp and without. A map that is to be kept for later frames must hold all
@@ -39,13 +40,12 @@ impl MapFit {
         maps: &mut [Self],
         view: &MapView,
         views: &[ViewFrustum],
-        reach: impl Into<Reach>,
+        filter: FilterKind,
     ) -> Result<(), FitError> {
-        let reach = reach.into();
         let mismatch = views.iter().map(|frustum| depth_mismatch(view, frustum)).fold(0.0, f64::max);
         for index in 0..maps.len() {
             let readers = Readers { maps, view, views, mismatch };
-            maps[index].volume = Some(readers.volume(index, reach)?);
+            maps[index].volume = Some(readers.volume(index, filter)?);
         }
         Ok(())
     }
@@ -69,13 +69,13 @@ struct Readers<'a> {
 
 impl Readers<'_> {
     /// The casters of a map.
-    fn volume(&self, index: usize, reach: Reach) -> Result<CasterVolume, FitError> {
+    fn volume(&self, index: usize, filter: FilterKind) -> Result<CasterVolume, FitError> {
         let map = &self.maps[index];
         let Some(read) = self.read(index) else { return Ok(CasterVolume::nowhere(map.fit.origin)) };
         let Slice { near, far } = self.widened(read);
-        let normal_offset = map.bias.normal_offset.abs();
+        let (reach, normal_offset) = (filter.into(), map.bias.normal_offset.abs());
         let volume = CasterVolume::swept(&map.fit, &Sweep { views: self.views, near, far, reach, normal_offset })?;
-        Ok(lowered(volume, &map.fit, depth_below(map, reach)))
+        Ok(lowered(volume, &map.fit, depth_below(map, filter)))
     }
 
     /// The view depths at which a point may read a map; `None` where none can.
@@ -138,14 +138,15 @@ fn depth_mismatch(view: &MapView, frustum: &ViewFrustum) -> f64 {
 }
 
 /// How far below a point, along the light, the map may be compared with, in metres. The receiver's plane is compared at
-/// its own depth wherever the filter reads, and falls by the tangent of its slope; biases that are negative move the
+/// its own depth wherever the filter looks, and falls by the tangent of its slope; biases that are negative move the
 /// point itself.
-fn depth_below(map: &MapFit, reach: Reach) -> f64 {
+fn depth_below(map: &MapFit, filter: FilterKind) -> f64 {
     let tangent = 1.0 / f64::from(MIN_COSINE);
     let (bias, range) = (map.bias, f64::from(map.fit.depth_range));
     let away = |bias: f32| f64::from((-bias).max(0.0));
     let texel = map.fit.texel_size.as_dvec2().length();
-    let aside = f64::from(reach.per_axis()) * texel + f64::from(bias.normal_offset.abs());
+    // Look-ups lie a texel less far away than the texels that they read; at the map's border they move by half of one.
+    let aside = f64::from((reach(filter) - 1.0).max(0.5)) * texel + f64::from(bias.normal_offset.abs());
     let plane = if bias.receiver_plane == 0.0 { 0.0 } else { aside + away(bias.receiver_plane) * texel };
     (away(bias.constant_depth) + away(bias.slope_depth) * tangent) * range + plane * tangent
 }
