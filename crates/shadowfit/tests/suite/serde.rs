@@ -7,7 +7,7 @@ use shadowfit::bias::Reach;
 use shadowfit::diagnostics::{AcneMargin, Coverage, DepthStorage, PixelsPerTexel};
 use shadowfit::figures::{Figures, MapFigures};
 use shadowfit::fits::sphere::enclosing_sphere;
-use shadowfit::glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
+use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::tool::Settings;
 use shadowfit::verify::{Certificate, Claim, MapPlane, Slack};
 use shadowfit::{
