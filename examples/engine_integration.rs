@@ -13,9 +13,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::{
-    Aabb, Boxes, DepthConvention, FitInput, MapFitter, PerspectiveCamera, Technique, Workspace,
-};
+use shadowfit::{Aabb, Boxes, DepthConvention, FitInput, MapFitter, PerspectiveCamera, Technique, Workspace};
 use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
 use wgpu::util::DeviceExt;
 

@@ -1,15 +1,20 @@
 //! Conventions across the crates, from settings to uniforms: what one crate writes is what the next one reads. The
 //! crates' own tests have the conventions of each.
 
-use shadowfit::glam::{DVec3, Mat4, UVec2, Vec3, Vec4};
-use shadowfit::settings::{BiasSettings, CameraSettings, FilterKind, LightSettings, MapFormat, Settings};
-use shadowfit::{Bias, DepthConvention, FitSettings, LightFit, PerspectiveCamera, fit};
+use shadowfit::glam::{DVec3, Mat4, Vec3, Vec4};
+use shadowfit::settings::BiasSettings;
+use shadowfit::tool::{CameraSettings, LightSettings};
+use shadowfit::{Bias, DepthConvention, FitSettings, LightFit, PerspectiveCamera, RECOMMENDED, Technique, fit};
 use shadowfit_render::{Atmosphere, FlyCamera, FrameUniform, Line, box_lines};
 use shadowfit_scene::builtin;
+use shadowfit_study::NamedTechnique;
 use shadowfit_truth::{Tracer, TruthSettings};
+use shadowfit_viewer::Stage;
 use shadowfit_wgpu::{
     CasterUniform, MAX_MAPS, MapFit, MapUniform, MapView, RESOLUTIONS, ReceiverUniform, ShadowMapDescriptor,
 };
+
+use crate::support::software_gpu;
 
 /// The depth conventions that wgpu draws.
 const DRAWABLE: [DepthConvention; 2] = [DepthConvention::ZeroToOne, DepthConvention::Reversed];
@@ -119,25 +124,47 @@ fn without_a_fit_everything_is_lit_and_surplus_fits_are_left_out() {
     assert_eq!(many.map_count as usize, MAX_MAPS);
 }
 
+/// A technique with the distance and the resolution of another, which depend on the scene and on what may be spent.
+fn with_extent_of(technique: Technique, other: &Technique) -> Technique {
+    let fit = technique.fit.with_max_distance(other.fit.max_distance).with_resolution(other.fit.resolution);
+    technique.with_fit(fit)
+}
+
 #[test]
-fn the_core_and_the_map_agree_on_defaults() {
-    let (settings, map) = (Settings::default(), ShadowMapDescriptor::default());
-    assert_eq!(settings.fit.resolution, UVec2::from(map.resolution));
-    assert_eq!((settings.format, settings.filter, settings.fit.depth), (map.format, map.filter, map.depth));
-    assert_eq!((map.format, map.filter), (MapFormat::Depth32Float, FilterKind::Pcf5x5));
-    assert!(map.resolution.iter().all(|side| RESOLUTIONS.contains(side)));
+fn the_core_the_shadow_map_and_the_docs_recommend_the_same_technique() {
+    let recommended = Technique::default();
+    assert_eq!(Technique::preset(RECOMMENDED), Some(recommended));
+    assert_eq!(NamedTechnique::default().technique, recommended);
+    assert_eq!(FitSettings::default(), recommended.fit);
+    assert_eq!(ShadowMapDescriptor::default(), ShadowMapDescriptor::from(&recommended));
+    assert_eq!(recommended.border(), 3.0, "the reach of PCF 5×5");
+    for (name, text) in [
+        ("README.md", include_str!("../README.md")),
+        ("the core's README.md", include_str!("../crates/shadowfit/README.md")),
+        ("fit_once", include_str!("../examples/fit_once.rs")),
+        ("engine_integration", include_str!("../examples/engine_integration.rs")),
+    ] {
+        assert!(text.contains("Technique::default()"), "{name} begins elsewhere");
+    }
+}
+
+#[test]
+fn gpu_the_viewer_starts_with_the_recommended_technique() {
+    let stage = Stage::new(software_gpu(), builtin::default_scene(), 1).expect("the default scene");
+    let start = stage.settings.technique;
+    assert_eq!(start, with_extent_of(Technique::default(), &start));
 }
 
 #[test]
 fn every_resolution_of_the_panel_is_one_that_a_map_can_have() {
-    use shadowfit::params::{Kind, PARAMETERS, set_from_str};
-    let row = PARAMETERS.iter().find(|row| row.id == "map.resolution").expect("a row for the resolution");
-    let Kind::Choice(choice) = &row.kind else { panic!("the resolution is chosen from a list") };
-    for option in choice.options {
-        let mut settings = Settings::default();
-        set_from_str(&mut settings, row.id, option.id).expect("its own option");
-        let resolution = settings.fit.resolution;
-        assert!(resolution.to_array().iter().all(|side| RESOLUTIONS.contains(side)), "{resolution}");
+    use shadowfit::params::{Kind, parameter};
+    for id in ["map.resolution", "map.height", "override.map_8_resolution", "override.map_8_height"] {
+        let range = match parameter(id).expect(id).kind {
+            Kind::Number(number) => (number.min, number.max),
+            Kind::Optional(optional) => (optional.min, optional.max),
+            _ => panic!("{id} is a number"),
+        };
+        assert_eq!(range, (f64::from(*RESOLUTIONS.start()), f64::from(*RESOLUTIONS.end())), "{id}");
     }
 }
 

@@ -1,7 +1,7 @@
 //! The fits in the viewer, on the default scene: whichever is chosen, no shadow has a hole once the casters have a
 //! place in the map, and knowing the scene makes texels finer. Judged against rays, which need no shadow map.
 
-use shadowfit::{CasterPolicy, FitKind};
+use shadowfit::{CasterPolicy, FitKind, Stabilise};
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_truth::Class;
 use shadowfit_viewer::{Artefact, Stage};
@@ -37,7 +37,7 @@ fn gpu_every_policy_that_thinks_of_casters_closes_the_holes_of_every_fit() {
     let mut stage = stage();
     for kind in KINDS {
         for casters in [CasterPolicy::Extend, CasterPolicy::List, CasterPolicy::SceneBounds, CasterPolicy::DepthClamp] {
-            stage.settings.fit = stage.settings.fit.with_kind(kind).with_casters(casters);
+            stage.settings.technique.fit = stage.settings.technique.fit.with_kind(kind).with_casters(casters);
             let [hole, other] = wrong(&mut stage);
             let fit = stage.maps(SIZE)[0].fit;
             println!("{kind:?} {casters:?}: hole {hole}, false {other}, {} {}", fit.texel_size, fit.depth_range);
@@ -50,7 +50,7 @@ fn gpu_every_policy_that_thinks_of_casters_closes_the_holes_of_every_fit() {
 fn gpu_without_a_thought_for_casters_the_tight_fits_leave_holes() {
     let mut stage = stage();
     for kind in [FitKind::XnaSample, FitKind::FrustumAabb, FitKind::Focused] {
-        stage.settings.fit = stage.settings.fit.with_kind(kind).with_casters(CasterPolicy::None);
+        stage.settings.technique.fit = stage.settings.technique.fit.with_kind(kind).with_casters(CasterPolicy::None);
         let [hole, _] = wrong(&mut stage);
         println!("{kind:?}: hole {hole}");
         assert!(hole > 10.0 * STRAY, "{kind:?}: {hole}");
@@ -60,8 +60,9 @@ fn gpu_without_a_thought_for_casters_the_tight_fits_leave_holes() {
 #[test]
 fn gpu_texels_are_finest_with_the_focused_fit_and_depth_is_shortest_with_depth_clamp() {
     let mut stage = stage();
+    let single = stage.settings.technique.with_count(1).with_stabilise(Stabilise::Off);
     let mut fit = |kind, casters| {
-        stage.settings.fit = stage.settings.fit.with_kind(kind).with_casters(casters);
+        stage.settings.technique = single.with_fit(single.fit.with_kind(kind).with_casters(casters));
         let fit = stage.maps(SIZE)[0].fit;
         (fit.texel_size.x * fit.texel_size.y, fit.depth_range)
     };

@@ -62,8 +62,11 @@ fn main() -> ExitCode {
 
 fn list() {
     for preset in &PRESETS {
-        println!("{:12} {}
-{:12} {}", preset.name, preset.summary, "", preset.advice);
+        println!(
+            "{:12} {}
+{:12} {}",
+            preset.name, preset.summary, "", preset.advice
+        );
     }
 }
 

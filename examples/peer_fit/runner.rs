@@ -5,8 +5,8 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use glam::{DVec2, DVec3, Vec3};
 use shadowfit::{
-    Aabb, Boxes, Clusters, FitInput, FittedMap, FittedMaps, MapFitter, NormalCone, ReceiverSource, SplitScheme, Technique,
-    ViewFrustum, Workspace,
+    Aabb, Boxes, Clusters, FitInput, FittedMap, FittedMaps, MapFitter, NormalCone, ReceiverSource, SplitScheme,
+    Technique, ViewFrustum, Workspace,
 };
 use shadowfit_study::{NamedTechnique, SeenDepths, fit_map};
 use shadowfit_truth::Tracer;
@@ -54,10 +54,11 @@ pub(crate) fn run(scenarios: &Scenarios, named: &NamedTechnique, source: Option<
         }
         maps = fitted;
     }
-    let fitted = scenarios.frames.iter().zip(&maps).map(|(frame, (maps, _))| FitFrame {
-        id: frame.id.clone(),
-        maps: maps.iter().map(fit_map_of).collect(),
-    });
+    let fitted = scenarios
+        .frames
+        .iter()
+        .zip(&maps)
+        .map(|(frame, (maps, _))| FitFrame { id: frame.id.clone(), maps: maps.iter().map(fit_map_of).collect() });
     let all: Vec<f64> = times.iter().flatten().copied().collect();
     let fastest: Vec<f64> = times.iter().map(|times| times.iter().copied().fold(f64::MAX, f64::min)).collect();
     Ok(FitFile {
@@ -140,10 +141,7 @@ fn fit_all(frames: &[Prepared], known: &[Known], technique: &Technique) -> Resul
 
 /// A map as the fit file has it.
 fn fit_map_of(map: &FittedMap) -> FitMap {
-    FitMap {
-        split_near: f64::from(map.near),
-        ..fit_map(&MapFit::from(map))
-    }
+    FitMap { split_near: f64::from(map.near), ..fit_map(&MapFit::from(map)) }
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

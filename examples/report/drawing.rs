@@ -1,8 +1,8 @@
 //! How pictures are drawn and judged: the arguments that all kinds of reports share.
 
 use anyhow::{Context, Result, bail, ensure};
-use shadowfit::{Technique, params};
 use shadowfit::settings::{BiasSettings, FilterKind, MapFormat};
+use shadowfit::{Technique, params};
 use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_study::{Judging, NamedTechnique};
 
@@ -143,7 +143,7 @@ fn size(text: &str) -> Result<[u32; 2]> {
 }
 
 fn filter(text: &str) -> Result<FilterKind> {
-    let mut settings = Settings::default();
-    params::set_from_str(&mut settings, "map.filter", text).map_err(|error| anyhow::anyhow!("{error}"))?;
-    Ok(settings.filter)
+    let mut technique = Technique::default();
+    params::set_technique_from_str(&mut technique, "map.filter", text).map_err(|error| anyhow::anyhow!("{error}"))?;
+    Ok(technique.filter)
 }

@@ -1,7 +1,7 @@
 //! `report live`: the classes from the GPU, compared with those of the CPU, and how long they take.
 
 use anyhow::{Result, bail};
-use shadowfit_study::{Agreement, LiveTruth, SharedTruth, NamedTechnique};
+use shadowfit_study::{Agreement, LiveTruth, NamedTechnique, SharedTruth};
 
 use crate::interrupt::Interrupt;
 use crate::job::Job;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use image::RgbaImage;
 use indicatif::{ProgressBar, ProgressStyle};
-use shadowfit_study::{SharedTruth, NamedTechnique, ensure_judged};
+use shadowfit_study::{NamedTechnique, SharedTruth, ensure_judged};
 use shadowfit_truth::PictureTally;
 use shadowfit_wgpu::MapFit;
 

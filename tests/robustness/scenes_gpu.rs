@@ -47,7 +47,7 @@ fn is_sound(tally: &PictureTally) -> bool {
 
 /// Draws and judges the present view.
 fn draw_and_judge(stage: &mut Stage, name: &str) {
-    let picture = stage.picture(SIZE);
+    let picture = stage.target(SIZE);
     stage.draw(&picture);
     assert_eq!(stage.problem(), None, "{name}");
     let pixels = picture.read(stage.gpu()).expect("pixels");
@@ -112,7 +112,7 @@ fn artefacts_of_real_scenes_are_shown_and_fixed_without_a_problem() {
 /// Whether the picture of a time of the animation differs from that of its start.
 fn moves(stage: &mut Stage, seconds: f32) -> bool {
     stage.settings.view.inset = false;
-    let picture = stage.picture(SIZE);
+    let picture = stage.target(SIZE);
     let mut draw_at = |time| {
         stage.set_time(time);
         stage.draw(&picture);

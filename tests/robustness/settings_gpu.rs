@@ -25,13 +25,13 @@ type Field = (&'static str, fn(&mut Settings, f32));
 
 /// Every number that is a float.
 const FIELDS: [Field; 15] = [
-    ("fit.max_distance", |s, x| s.fit.max_distance = x),
-    ("fit.margin", |s, x| s.fit.margin = x),
-    ("fit.kernel_margin", |s, x| s.fit.kernel_margin = x),
-    ("fit.caster_extension", |s, x| s.fit.caster_extension = x),
-    ("bias.constant", |s, x| s.bias.constant = x),
-    ("bias.slope", |s, x| s.bias.slope = x),
-    ("bias.normal_offset", |s, x| s.bias.normal_offset = x),
+    ("fit.max_distance", |s, x| s.technique.fit.max_distance = x),
+    ("fit.margin", |s, x| s.technique.fit.margin = x),
+    ("fit.border", |s, x| s.technique.fit.border = Some(x)),
+    ("fit.caster_extension", |s, x| s.technique.fit.caster_extension = x),
+    ("bias.constant", |s, x| s.technique.bias.constant = x),
+    ("bias.slope", |s, x| s.technique.bias.slope = x),
+    ("bias.normal_offset", |s, x| s.technique.bias.normal_offset = x),
     ("light.azimuth", |s, x| s.light.azimuth = x),
     ("light.elevation", |s, x| s.light.elevation = x),
     ("light.animate_speed", |s, x| s.light.animate_speed = x),
@@ -47,7 +47,7 @@ const FIELDS: [Field; 15] = [
 const REFUSED: [&str; 14] = [
     "fit.max_distance",
     "fit.margin",
-    "fit.kernel_margin",
+    "fit.border",
     "fit.caster_extension",
     "bias.constant",
     "bias.slope",
@@ -75,14 +75,14 @@ fn light_scene() -> Scene {
 fn stage() -> Stage {
     let mut stage = Stage::new(software_gpu(), light_scene(), 1).expect("the default scene");
     // Small maps: what is tested here does not depend on their size.
-    stage.settings.fit.resolution = UVec2::splat(256);
+    stage.settings.technique.fit.resolution = UVec2::splat(256);
     stage.set_home();
     stage
 }
 
 /// Draws, and everything else that a frame of the window does.
 fn frame(stage: &mut Stage) {
-    let picture = stage.picture(SIZE);
+    let picture = stage.target(SIZE);
     stage.draw(&picture);
     let _ = stage.figures(SIZE);
     stage.update(&FlyInput::default(), 0.016);
@@ -98,7 +98,7 @@ fn every_absurd_number_is_drawn_without_a_panic_and_refused_fits_are_told() {
                 stage.settings.view.outside = outside;
                 stage.settings.light.animate = true;
                 write(&mut stage.settings, value);
-                let picture = stage.picture(SIZE);
+                let picture = stage.target(SIZE);
                 stage.draw(&picture);
                 let problem = stage.problem().map(str::to_owned);
                 if !value.is_finite() && REFUSED.contains(&name) {
@@ -136,7 +136,7 @@ fn absurd_numbers_are_judged_and_demonstrated_without_a_panic() {
         stage.reset();
         write(&mut stage.settings, f32::NAN);
         stage.fix_artefact(Artefact::ClippingHole);
-        let picture = stage.picture([16, 9]);
+        let picture = stage.target([16, 9]);
         stage.draw(&picture);
         println!("{name}: {:?}", stage.problem());
     }
@@ -147,13 +147,13 @@ fn impossible_maps_keep_the_old_one_and_say_why() {
     let mut stage = stage();
     for resolution in [UVec2::ZERO, UVec2::new(0, 2048), UVec2::ONE, UVec2::new(100_000, 512), UVec2::MAX] {
         stage.reset();
-        stage.settings.fit.resolution = resolution;
+        stage.settings.technique.fit.resolution = resolution;
         frame(&mut stage);
         let problem = stage.problem().unwrap_or_else(|| panic!("{resolution}: no word about it"));
         assert!(problem.contains("texel") || problem.contains("resolution"), "{resolution}: {problem}");
     }
     stage.reset();
-    stage.settings.fit.depth = DepthConvention::NegativeOneToOne;
+    stage.settings.technique.fit.depth = DepthConvention::NegativeOneToOne;
     frame(&mut stage);
     assert!(stage.problem().is_some_and(|problem| problem.contains("OpenGL")), "{:?}", stage.problem());
 }
@@ -166,7 +166,8 @@ fn absurd_places_of_the_eye_are_drawn_without_a_panic() {
         for eye in places {
             for angle in [f32::NAN, f32::INFINITY, 0.0, 1e30] {
                 stage.reset();
-                stage.settings.fit = stage.settings.fit.with_kind(kind).with_casters(CasterPolicy::List);
+                stage.settings.technique.fit =
+                    stage.settings.technique.fit.with_kind(kind).with_casters(CasterPolicy::List);
                 stage.camera.position = eye;
                 (stage.camera.yaw, stage.camera.pitch) = (angle, angle);
                 frame(&mut stage);
@@ -192,7 +193,7 @@ fn absurd_times_and_animations_are_posed_without_a_panic() {
 fn pictures_of_one_pixel_and_of_odd_sizes_are_drawn() {
     let mut stage = stage();
     for size in [[1, 1], [0, 0], [1, 500], [700, 3], [33, 17]] {
-        let picture = stage.picture(size);
+        let picture = stage.target(size);
         stage.draw(&picture);
         let [width, height] = picture.size;
         assert_eq!([width, height], size.map(|side: u32| side.max(1)));

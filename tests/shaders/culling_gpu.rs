@@ -3,8 +3,7 @@
 
 use shadowfit::glam::{DVec2, DVec3, Mat3, Vec3};
 use shadowfit::{
-    Aabb, MapFitter, Technique, CasterVolume, FitInput, OrientedBox, PerspectiveCamera, Sphere, Sweep,
-    Workspace, cull,
+    Aabb, CasterVolume, FitInput, MapFitter, OrientedBox, PerspectiveCamera, Sphere, Sweep, Technique, Workspace, cull,
 };
 use shadowfit_render::Gpu;
 use shadowfit_wgpu::{CullingUniform, culling_wgsl};

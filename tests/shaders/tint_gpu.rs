@@ -1,9 +1,9 @@
 //! The overlay that tints surfaces by the map that they read: each pixel of a plane has the colour of the map that a
 //! computation here finds for it.
 
-use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::{Bias, MapFitter, Technique, FitInput, PerspectiveCamera, SplitScheme, Workspace};
 use shadowfit::figures::MAP_TINTS;
+use shadowfit::glam::{DVec2, DVec3, Vec3};
+use shadowfit::{Bias, FitInput, MapFitter, PerspectiveCamera, SplitScheme, Technique, Workspace};
 use shadowfit_render::{Atmosphere, Frame, GpuScene, Overlay, Renderer};
 use shadowfit_scene::Scene;
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use shadowfit::PerspectiveCamera;
 use shadowfit::glam::Vec3;
+use shadowfit::{Aabb, Technique};
 use shadowfit_scene::builtin::default_scene;
-use shadowfit_scene::{Aabb, Scene, load_gltf};
-use shadowfit::Technique;
+use shadowfit_scene::{Scene, load_gltf};
 use shadowfit_study::{Agreement, Comparison, Judging, LiveTruth, SharedTruth, View};
 
 use super::shapes::NO_BIAS;
@@ -33,7 +33,7 @@ const SCENES: [&str; 11] = [
 
 /// Views of the middle of a scene from two sides.
 fn views(bounds: Aabb) -> [View; 2] {
-    let (centre, radius) = (bounds.center(), (bounds.size().length() * 0.5).max(1e-3));
+    let (centre, radius) = ((bounds.min + bounds.max) * 0.5, (bounds.size().length() * 0.5).max(1e-3));
     [Vec3::new(0.6, 0.5, 0.7), Vec3::new(-0.5, 0.25, 0.4)].map(|away| {
         let eye = centre + away * radius;
         let camera = PerspectiveCamera {

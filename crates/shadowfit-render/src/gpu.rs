@@ -108,6 +108,14 @@ impl Gpu {
         Ok(Self { adapter, device, queue })
     }
 
+    /// Until what it returns is dropped, errors of the device are not reported to its handler, which ends the program:
+    /// whatever is made on a device that was lost is invalid. What comes of the work tells whether it failed.
+    pub(crate) fn without_reports(&self) -> Unreported {
+        let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        Unreported { _validation: validation, _memory: memory }
+    }
+
     /// Name of the adapter, for titles and reports.
     pub fn name(&self) -> String {
         self.adapter.get_info().name
@@ -122,6 +130,12 @@ impl Gpu {
     pub fn is_software(&self) -> bool {
         self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
     }
+}
+
+/// Error scopes, dropped in this order: the last one that was opened first.
+pub(crate) struct Unreported {
+    _validation: wgpu::ErrorScopeGuard,
+    _memory: wgpu::ErrorScopeGuard,
 }
 
 async fn any_adapter(

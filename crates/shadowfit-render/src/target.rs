@@ -97,6 +97,7 @@ pub(crate) fn read_texture(
     size: [u32; 2],
     bytes_per_pixel: u32,
 ) -> Result<Vec<u8>, ReadError> {
+    let _unreported = gpu.without_reports();
     let row = size[0] * bytes_per_pixel;
     let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {

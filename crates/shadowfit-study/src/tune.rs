@@ -294,6 +294,12 @@ mod tests {
     }
 
     #[test]
+    fn the_search_starts_with_the_recommended_technique() {
+        let start = start(Budget { maps: 4, resolution: 1024 });
+        assert_eq!(start, Technique::default().with_resolution(1024, 1024));
+    }
+
+    #[test]
     fn a_change_of_the_filter_takes_the_bias_along() {
         let mut technique = Technique {
             bias: BiasSettings::automatic(FilterKind::Pcf3x3),

@@ -28,15 +28,9 @@ pub struct ShadowMapDescriptor {
 }
 
 impl Default for ShadowMapDescriptor {
+    /// What the recommended technique draws: four maps of 2048² texels.
     fn default() -> Self {
-        Self {
-            resolution: [2048; 2],
-            maps: 1,
-            format: MapFormat::Depth32Float,
-            filter: FilterKind::default(),
-            depth: DepthConvention::ZeroToOne,
-            depth_clamp: false,
-        }
+        Self::from(&Technique::default())
     }
 }
 

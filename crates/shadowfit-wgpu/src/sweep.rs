@@ -6,7 +6,7 @@
 
 use shadowfit::bias::{MIN_COSINE, Reach};
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::{CasterVolume, FitError, LightFit, Sweep, ViewFrustum};
+use shadowfit::{CasterPolicy, CasterVolume, FitError, LightFit, Sweep, ViewFrustum};
 
 use crate::{MapFit, MapView};
 
@@ -150,10 +150,13 @@ fn depth_below(map: &MapFit, reach: Reach) -> f64 {
     (away(bias.constant_depth) + away(bias.slope_depth) * tangent) * range + plane * tangent
 }
 
-/// A volume that reaches deeper along the light, in metres.
+/// A swept volume that reaches deeper along the light, in metres, but not below what the map stores.
 fn lowered(mut volume: CasterVolume, fit: &LightFit, depth: f64) -> CasterVolume {
+    // Its planes are four sides and the far one.
+    let stored = CasterVolume::of_map(fit, CasterPolicy::DepthClamp);
     let to_light: Vec3 = -fit.direction;
-    for plane in volume.planes.iter_mut().take(volume.count as usize) {
+    let planes = volume.planes.iter_mut().take(volume.count as usize);
+    for plane in planes.filter(|plane| !stored.active_planes().contains(plane)) {
         let upward = f64::from(plane.truncate().dot(to_light).max(0.0));
         plane.w += (upward * depth) as f32;
     }

@@ -151,9 +151,11 @@ fn leaves(settings: &Settings) -> Vec<(String, String)> {
     leaf("camera.near", near);
     leaf("camera.far", far);
     leaf("camera.speed", speed);
-    let ViewSettings { shadows, inset, outside, freeze_fit, play } = view;
+    let ViewSettings { shadows, inset, inset_map, tint_maps, outside, freeze_fit, play } = view;
     leaf("view.shadows", shadows);
     leaf("view.inset", inset);
+    leaf("view.inset_map", inset_map);
+    leaf("view.tint_maps", tint_maps);
     leaf("view.outside", outside);
     leaf("view.freeze_fit", freeze_fit);
     leaf("view.play", play);
@@ -187,6 +189,21 @@ fn every_field_is_reached_by_a_row() {
         }
     }
     assert!(unreached.is_empty(), "no row changes {unreached:?}");
+}
+
+#[test]
+fn every_row_of_a_technique_shows_in_its_rust_code() {
+    let code = |settings: &Settings| {
+        let mut code = String::new();
+        settings.technique.write_rust(&mut code).expect("a string takes any text");
+        code
+    };
+    for parameter in technique_parameters() {
+        let start = with_place_for(parameter);
+        let mut changed = start;
+        change(&mut changed, parameter);
+        assert_ne!(code(&changed), code(&start), "{}", parameter.id);
+    }
 }
 
 #[test]

@@ -248,9 +248,12 @@ mod tests {
         assert_eq!(found, Ok(scenarios(2)));
     }
 
+    /// What spoils the scenarios' JSON, and the message that says so.
+    type JsonCase = (fn(&mut serde_json::Value), &'static str);
+
     #[test]
     fn numbers_that_are_not_whole_or_negative_are_refused_by_element_and_reason() {
-        let cases: [(fn(&mut serde_json::Value), &str); 4] = [
+        let cases: [JsonCase; 4] = [
             (|v| v["scenes"][0]["triangles"] = 2048.5.into(), "scenes[0].triangles: 2048.5 is not a whole number"),
             (|v| v["frames"][1]["scene"] = (-1.0).into(), "frames[1].scene: -1.0 is negative"),
             (|v| v["frames"][1]["frame"] = 0.5.into(), "frames[1].frame: 0.5 is not a whole number"),

@@ -7,9 +7,9 @@ use shadowfit::bias::Reach;
 use shadowfit::diagnostics::{AcneMargin, Coverage, DepthStorage, PixelsPerTexel};
 use shadowfit::figures::{Figures, MapFigures};
 use shadowfit::fits::sphere::enclosing_sphere;
-use shadowfit::glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
+use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::tool::Settings;
-use shadowfit::verify::{Certificate, Claim, MapPlane, Slack};
+use shadowfit::verify::{Certificate, CoverageQuery, MapPlane, Margins};
 use shadowfit::{
     Aabb, Bias, BiasSettings, CasterPlanes, CasterPolicy, DepthConvention, FitInput, FitKind, FitSettings,
     LightStepSettings, LightSteps, MapFitter, MapOverride, NormalCone, OrientedBox, RectangleKind, Sphere, SplitScheme,
@@ -79,9 +79,9 @@ fn outputs_survive() {
     survives(&bias.on_plane(&fit, Vec3::Y).unwrap());
     survives(&Reach::HARDWARE_2X2.over_disc(3.0));
     survives(&Coverage::BeforeNear);
-    survives(&Claim::of_fit(&FitSettings::default(), Reach::POINT));
+    survives(&CoverageQuery::of_fit(&FitSettings::default(), Reach::POINT));
     survives(&Certificate::Uncovered { plane: MapPlane::Far, point: DVec3::splat(0.1), by: 0.3 });
-    survives(&Certificate::Proven(Slack { planes: [0.1; 6], casters: 2.5 }));
+    survives(&Certificate::Proven(Margins { planes: [0.1; 6], casters: 2.5 }));
     survives(&AcneMargin { metres: 0.1, texels: -0.3 });
     survives(&PixelsPerTexel { worse_axis: 0.1, area: 0.7 });
     let mut figures = Figures { map_ahead: Some(1), ..Figures::default() };

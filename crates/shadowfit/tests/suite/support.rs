@@ -10,7 +10,12 @@ pub(crate) const KINDS: [FitKind; 2] = [FitKind::XnaSample, FitKind::FrustumAabb
 
 /// Settings that add nothing to the frustum's own box.
 pub(crate) fn exact(kind: FitKind) -> FitSettings {
-    FitSettings::default().with_kind(kind).with_margin(0.0).with_caster_extension(0.0).with_max_distance(f32::MAX).with_border(0.0)
+    FitSettings::default()
+        .with_kind(kind)
+        .with_margin(0.0)
+        .with_caster_extension(0.0)
+        .with_max_distance(f32::MAX)
+        .with_border(0.0)
 }
 
 /// A plain camera some way from the world's origin.

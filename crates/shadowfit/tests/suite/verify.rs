@@ -483,7 +483,9 @@ fn receivers_of_a_map_that_nobody_draws_are_found() {
     for (boxes, far) in [(&receivers[..], 1.5), (&receivers[..0], 3.0)] {
         let boxes = Boxes { origin: views[0].origin, boxes };
         let input = FitInput { receivers: Some(boxes), ..input };
-        let Certificate::Proven(slack) = certificate(&input, &fit, &CoverageQuery { far, ..query }) else { panic!("{far}") };
+        let Certificate::Proven(slack) = certificate(&input, &fit, &CoverageQuery { far, ..query }) else {
+            panic!("{far}")
+        };
         assert_eq!(slack.planes, [f32::INFINITY; 6]);
     }
 }

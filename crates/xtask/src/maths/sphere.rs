@@ -18,15 +18,15 @@ pub(super) fn draw() -> Result<String> {
 /// The frustum cut along its diagonal, where the half diagonals r₀ and r₁ are.
 fn section(canvas: &mut Canvas) -> Result<()> {
     let view = PerspectiveCamera { near: 4.0, ..camera(0.0, 0.0, 0.46, 14.0) }.frustum()?;
-    let sphere = enclosing_sphere(&view)?;
+    let (middle, radius) = enclosing_sphere(&view)?;
     let length = |v: DVec3| libm::sqrt(v.dot(v));
     let corner = |i: usize| view.corners[i].as_dvec3();
     let diagonal = (corner(5) - corner(7)) / length(corner(5) - corner(7));
     let look = Look { origin: view.origin, right: view.forward.as_dvec3(), up: diagonal };
-    let centre = look.relative(sphere.centre);
-    let frame = Frame::scaled(centre, DVec2::new(180.0, 164.0), 134.0 / sphere.radius);
+    let centre = look.relative(middle);
+    let frame = Frame::scaled(centre, DVec2::new(180.0, 164.0), 134.0 / radius);
     let [a, b, c, d] = [1, 5, 7, 3].map(|i| look.relative(corner(i)));
-    canvas.circle(frame.at(centre), frame.scale() * sphere.radius, stroke(YELLOW, 2.5).filled(YELLOW, 0.08));
+    canvas.circle(frame.at(centre), frame.scale() * radius, stroke(YELLOW, 2.5).filled(YELLOW, 0.08));
     canvas.polygon([a, b, c, d].map(|p| frame.at(p)), stroke("#b08d2a", 1.2).filled("#f4e3b2", 0.75));
     let (near, far) = (DVec2::new(a.x, 0.0), DVec2::new(b.x, 0.0));
     canvas.line(frame.at(near), frame.at(far), stroke(GREY, 1.0).dashed());
