@@ -14,7 +14,7 @@ use label::{RESET_WIDTH, reset_button};
 pub(crate) use label::label;
 
 /// Width of the number field with its unit, in points.
-const VALUE_WIDTH: f32 = 82.0;
+const VALUE_WIDTH: f32 = 92.0;
 
 /// Id of the parameter that is shown as a row of buttons, one for each map.
 const INSET_MAP: &str = "view.inset_map";

@@ -14,7 +14,7 @@ use shadowfit::{
 use shadowfit_egui::{Action, Artefact, KEYS, PANEL_WIDTH, Panel, PanelInput, SceneLine, apply_style, help_overlay};
 
 /// Higher than all that the panel holds, so that nothing is scrolled out of view.
-const HEIGHT: f32 = 3000.0;
+const HEIGHT: f32 = 3400.0;
 
 #[derive(Default)]
 struct Host {
@@ -234,18 +234,22 @@ fn assert_fits(harness: &Harness<'_, Host>) {
     let width = harness.state().content_width;
     assert!(width <= PANEL_WIDTH, "the content is {width} points wide");
     for parameter in PARAMETERS {
-        let Some(control) = query_control(harness, parameter) else { continue };
-        let row = control.rect();
-        assert!(row.right() <= PANEL_WIDTH, "{}", parameter.id);
         let reset = format!("Reset {}", parameter.label);
-        let menu = format!("{}: powers of two", parameter.label);
+        let list = format!("{}: powers of two", parameter.label);
         let labels = harness.query_all_by_role(Role::Label).filter(|n| n.value().as_deref() == Some(parameter.label));
-        let others = harness.query_all_by_label(&reset).chain(harness.query_all_by_label(&menu)).chain(labels);
-        let field = harness.query_by_role_and_label(Role::SpinButton, parameter.label);
-        for other in others.chain(field) {
-            let overlap: Rect = other.rect().intersect(row);
-            assert!(!overlap.is_positive(), "{}: {overlap:?}", parameter.id);
-            assert!(other.rect().right() <= PANEL_WIDTH, "{}", parameter.id);
+        let widgets: Vec<Rect> = labels
+            .chain(query_control(harness, parameter))
+            .chain(find(harness, Role::SpinButton, parameter.label))
+            .chain(find(harness, Role::ComboBox, &list))
+            .chain(find(harness, Role::Button, &reset))
+            .map(|node| node.rect())
+            .collect();
+        for (index, rect) in widgets.iter().enumerate() {
+            assert!(rect.right() <= PANEL_WIDTH, "{}", parameter.id);
+            for other in &widgets[..index] {
+                let overlap = rect.intersect(*other);
+                assert!(!overlap.is_positive(), "{}: {overlap:?}", parameter.id);
+            }
         }
     }
 }
