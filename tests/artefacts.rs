@@ -96,7 +96,9 @@ fn gpu_aliasing_magnifies_the_shadow_edge_and_its_fix_sharpens_it() {
         stage.fix_artefact(Artefact::Aliasing);
         let fixed = median_at_edges(&mut stage);
         let wrong_fixed = self::wrong(&mut stage);
-        println!("{technique}: pixels per texel at the edge: {shown} shown, {fixed} fixed; wrong {wrong}, {wrong_fixed}");
+        println!(
+            "{technique}: pixels per texel at the edge: {shown} shown, {fixed} fixed; wrong {wrong}, {wrong_fixed}"
+        );
         assert!(shown >= 8.0, "{technique}: median pixels per texel at the shadow's edge: {shown}");
         assert!(fixed < 1.0, "{technique}: after the fix: {fixed}");
         assert!(wrong_fixed < wrong * 0.2, "{technique}: wrong pixels: {wrong}, after the fix {wrong_fixed}");

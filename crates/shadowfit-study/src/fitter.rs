@@ -4,7 +4,7 @@ use glam::DVec2;
 use shadowfit::{FitError, FittedMaps, MapFitter, SplitScheme, Technique, Workspace};
 use shadowfit_wgpu::MapFit;
 
-use crate::{PreparedScene, SeenDepths, View};
+use crate::{PreparedScene, SceneRays, SeenDepths, View};
 
 /// Views that a fit works with: held maps are fitted to the views of two frames ahead as well.
 const VIEWS: usize = 3;
@@ -12,6 +12,10 @@ const VIEWS: usize = 3;
 /// Fits a technique's maps frame by frame, and remembers what held maps and histograms need of the frame before.
 #[derive(Debug)]
 pub struct TechniqueFitter {
+    /// Whether histograms may be of an earlier pose of the scene, in [`Self::fit`]: rays of the present pose take some
+    /// milliseconds more for each hundred thousand triangles whenever the scene has moved. A late histogram costs
+    /// sharpness, never coverage.
+    pub takes_late_histograms: bool,
     technique: Technique,
     maps: MapFitter,
     fitted: FittedMaps,
@@ -22,7 +26,14 @@ pub struct TechniqueFitter {
 impl TechniqueFitter {
     /// A fitter that remembers no frame.
     pub fn new(technique: Technique) -> Self {
-        Self { technique, maps: MapFitter::new(), fitted: FittedMaps::default(), depths: None, storage: Vec::new() }
+        Self {
+            takes_late_histograms: false,
+            technique,
+            maps: MapFitter::new(),
+            fitted: FittedMaps::default(),
+            depths: None,
+            storage: Vec::new(),
+        }
     }
 
     /// What is fitted.
@@ -33,7 +44,7 @@ impl TechniqueFitter {
     /// Goes on with a technique; with another one than before the fitter forgets all frames.
     pub fn set_technique(&mut self, technique: &Technique) {
         if self.technique != *technique {
-            *self = Self::new(*technique);
+            *self = Self { takes_late_histograms: self.takes_late_histograms, ..Self::new(*technique) };
         }
     }
 
@@ -50,7 +61,7 @@ impl TechniqueFitter {
     /// As [`Self::fit`].
     pub fn fit_alone(&mut self, scene: &PreparedScene, view: &View) -> Result<Vec<MapFit>, FitError> {
         self.maps.reset();
-        self.depths = self.see(scene, view)?;
+        self.depths = self.see(scene, view, false)?;
         self.fit_maps(scene, view)
     }
 
@@ -65,7 +76,7 @@ impl TechniqueFitter {
             self.depths = None;
         }
         let maps = self.fit_maps(scene, view)?;
-        self.depths = self.see(scene, view)?;
+        self.depths = self.see(scene, view, self.takes_late_histograms)?;
         Ok(maps)
     }
 
@@ -82,13 +93,14 @@ impl TechniqueFitter {
     }
 
     /// The histogram of a view, where the technique uses one.
-    fn see(&self, scene: &PreparedScene, view: &View) -> Result<Option<SeenDepths>, FitError> {
+    fn see(&self, scene: &PreparedScene, view: &View, late: bool) -> Result<Option<SeenDepths>, FitError> {
         if self.technique.splits != SplitScheme::FromHistogram {
             return Ok(None);
         }
         // A camera that makes no sense sees nothing.
         view.camera.frustum()?;
         let camera = scene.camera_for_rays(&view.camera);
-        Ok(Some(SeenDepths::trace(&scene.rays().tracer, &camera, view.direction)))
+        let trace = |rays: &SceneRays| SeenDepths::trace(&rays.tracer, &camera, view.direction);
+        Ok(Some(if late { scene.with_late_rays(trace) } else { trace(scene.rays()) }))
     }
 }

@@ -129,6 +129,19 @@ impl PreparedScene {
         })
     }
 
+    /// Calls a function with rays of the present pose if they are there, else with those of an earlier one, which cost
+    /// nothing while the scene moves; new ones are made only where there are none at all.
+    pub(crate) fn with_late_rays<T>(&self, call: impl FnOnce(&SceneRays) -> T) -> T {
+        let earlier = self.earlier_rays.borrow();
+        match (self.rays.get(), &*earlier) {
+            (None, Some(rays)) => call(rays),
+            _ => {
+                drop(earlier);
+                call(self.rays())
+            }
+        }
+    }
+
     /// A camera as rays see it: relative to their origin.
     pub fn camera_for_rays(&self, camera: &PerspectiveCamera) -> PerspectiveCamera {
         PerspectiveCamera { eye: camera.eye - self.origin, ..*camera }

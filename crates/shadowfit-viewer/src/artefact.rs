@@ -19,7 +19,7 @@ use crate::view_search::{GRID, Seen, Shadow, ViewSearch, aimed};
 /// pixels, so that its stripes can be told apart.
 const ACNE_TEXEL: f32 = 1.0 / 210.0;
 /// The same when aliasing is shown: dozens of pixels.
-const ALIASING_TEXEL: f32 = 1.0 / 15.0;
+const ALIASING_TEXEL: f32 = 1.0 / 22.0;
 /// Constant bias of acne's cure, in texels. The automatic bias clears every plane; where surfaces meet in a crease, a
 /// texel stores the neighbour, which stands a part of a texel higher, and one comparison has no others to outvote it.
 const CREASE_BIAS: f32 = 1.0;

@@ -18,17 +18,32 @@ const FOV_Y: f32 = 0.8;
 const ARROW: f32 = 0.4;
 
 /// The slices of the view, and for each map that some point reads its box and an arrow along the light's direction of
-/// travel into it, in the map's tint.
+/// travel into it, in the map's tint. The view is drawn as far as the maps reach.
 pub(crate) fn lines(fitted: &Fitted) -> Vec<Line> {
     let mut lines = Vec::new();
+    let reach = reach(fitted);
     for (index, (map, tint)) in fitted.maps.iter().zip(linear_map_tints()).enumerate() {
         let Some(slice) = fitted.slice(index) else { continue };
         let color = tint.extend(1.0);
+        let slice = slice.slice(slice.near, reach).unwrap_or(slice);
         lines.extend(box_lines(slice.origin, &slice.corners, FRUSTUM_COLOR));
         lines.extend(box_lines(map.fit.origin, &map.fit.corners(), color));
         lines.extend(arrow(&map.fit, color));
     }
     lines
+}
+
+/// Greatest view depth of a corner of a map's box, in metres.
+fn reach(fitted: &Fitted) -> f32 {
+    let Some(camera) = fitted.camera else { return 0.0 };
+    let depth = |corner: DVec3| (corner - camera.eye).dot(camera.forward.as_dvec3().normalize()) as f32;
+    box_corners(fitted).map(depth).fold(0.0, f32::max)
+}
+
+/// Corners of the boxes of all maps that some point reads, world space, in metres.
+fn box_corners(fitted: &Fitted) -> impl Iterator<Item = DVec3> {
+    let read = fitted.maps.iter().enumerate().filter(|(index, _)| fitted.slice(*index).is_some());
+    read.flat_map(|(_, map)| map.fit.corners().map(|corner| map.fit.origin + corner.as_dvec3()))
 }
 
 /// An arrow along the light from the middle of the box's near face, the one toward the light.
@@ -47,13 +62,10 @@ fn arrow(fit: &LightFit, color: Vec4) -> [Line; 3] {
 
 /// A camera that sees all of the frustum and the boxes from behind and above the inner camera.
 pub(crate) fn camera(inner: &PerspectiveCamera, fitted: &Fitted) -> PerspectiveCamera {
-    let read = |index: &usize| fitted.slice(*index).is_some();
     let mut points: Vec<DVec3> = vec![inner.eye];
-    points.extend(fitted.frustum().iter().flat_map(|f| f.corners.map(|corner| f.origin + corner.as_dvec3())));
-    for index in (0..fitted.maps.len()).filter(read) {
-        let fit = &fitted.maps[index].fit;
-        points.extend(fit.corners().map(|corner| fit.origin + corner.as_dvec3()));
-    }
+    let frustum = fitted.frustum().and_then(|frustum| frustum.slice(frustum.near, reach(fitted)).ok());
+    points.extend(frustum.iter().flat_map(|f| f.corners.map(|corner| f.origin + corner.as_dvec3())));
+    points.extend(box_corners(fitted));
     let low = points.iter().copied().reduce(DVec3::min).unwrap_or(inner.eye);
     let high = points.iter().copied().reduce(DVec3::max).unwrap_or(inner.eye);
     let center = (low + high) * 0.5;

@@ -182,9 +182,14 @@ impl Stage {
             let turned = light.azimuth + light.animate_speed * seconds;
             light.azimuth = (turned + core::f32::consts::PI).rem_euclid(core::f32::consts::TAU) - core::f32::consts::PI;
         }
-        if self.settings.view.play && self.animation < self.scene().animations.len() {
+        if self.plays() {
             self.set_time(self.seconds + seconds);
         }
+    }
+
+    /// Whether an animation moves the scene from frame to frame.
+    fn plays(&self) -> bool {
+        self.settings.view.play && self.animation < self.scene().animations.len()
     }
 
     /// Poses the scene at a time of its animation, in seconds.

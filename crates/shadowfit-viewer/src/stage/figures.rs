@@ -36,8 +36,12 @@ impl Stage {
         figures
     }
 
-    /// The map that is read where the middle of the picture meets the scene, and its pixels per texel there.
+    /// The map that is read where the middle of the picture meets the scene, and its pixels per texel there. Left open
+    /// while the scene plays, which would need new rays in each frame.
     fn ahead(&self, fitted: &Fitted, size: [u32; 2]) -> Option<(usize, Option<f32>)> {
+        if self.plays() {
+            return None;
+        }
         let camera = self.perspective(size);
         let rays = self.scene.rays();
         let eye = self.scene.camera_for_rays(&camera).eye;
