@@ -106,21 +106,27 @@ impl<'a> Covered<'a> {
 
     /// The box of the hull's rectangle and its range along the light.
     fn hull(rule: &FitRule, content: &Content, hull: &LightHull<'a>, range: Range) -> Self {
+        let resolution = rule.resolution.as_dvec2();
+        let texels = resolution - 2.0 * rule.border;
         let rectangle = match rule.rectangle {
             RectangleKind::AxisAligned => Rectangle::around(hull.outline, DVec2::X),
-            RectangleKind::MinimumArea => rectangle::min_area(hull.outline),
+            RectangleKind::MinimumArea => match rule.max_texel_ratio {
+                None => rectangle::min_area(hull.outline),
+                Some(ratio) => rectangle::min_area_within(hull.outline, ratio, |size| rule.limited(size, texels)),
+            },
             RectangleKind::MinimumSquare => square(rectangle::min_square(hull.outline)),
         };
         let longest = rectangle.size().max_element();
         // That of the map, which the border widens.
-        let resolution = rule.resolution.as_dvec2();
-        let widening = resolution / (resolution - 2.0 * rule.border);
+        let widening = resolution / texels;
         let rounding = (rectangle.size() * widening + hull.farthest) * ROUNDING;
         let pad = rounding + rule.margin;
         let thinnest = longest.max(hull.farthest) * THINNEST;
-        let (min, max) = widened(rectangle.min - pad, rectangle.max + pad, thinnest);
+        let (min, max) = widened(rectangle.min - pad, rectangle.max + pad, DVec2::splat(thinnest));
+        let (min, max) = widened(min, max, rule.limited(max - min, texels));
         let z_pad = (hull.z.1 - hull.z.0 + hull.farthest) * ROUNDING + rule.margin;
-        let (z_min, z_max) = widened(DVec2::splat(hull.z.0 - z_pad), DVec2::splat(hull.z.1 + z_pad), thinnest);
+        let (z_min, z_max) = (DVec2::splat(hull.z.0 - z_pad), DVec2::splat(hull.z.1 + z_pad));
+        let (z_min, z_max) = widened(z_min, z_max, DVec2::splat(thinnest));
         Self {
             axes: hull.axes.turned(rectangle.axis),
             min: min.extend(z_min.x),
@@ -150,9 +156,9 @@ fn square(r: Rectangle) -> Rectangle {
     Rectangle { axis: r.axis, min: centre - half, max: centre + half }
 }
 
-/// The same range, at least as long as `thinnest`.
-fn widened(min: DVec2, max: DVec2, thinnest: f64) -> (DVec2, DVec2) {
-    let missing = (DVec2::splat(thinnest) - (max - min)).max(DVec2::ZERO) * 0.5;
+/// The same range about its middle, at least as long as `least`.
+fn widened(min: DVec2, max: DVec2, least: DVec2) -> (DVec2, DVec2) {
+    let missing = (least - (max - min)).max(DVec2::ZERO) * 0.5;
     (min - missing, max + missing)
 }
 

@@ -92,7 +92,12 @@ fn snapped(axes: &LightAxes, min: DVec3, max: DVec3, origin: DVec3, rule: &FitRu
     let pad = ROUNDING * (size * resolution / usable).max_element();
     let size = size + 2.0 * pad;
     let width = quantised(size.x);
-    let texel = DVec2::new(width, if size.y == size.x { width } else { quantised(size.y) }) / usable;
+    let mut size = DVec2::new(width, if size.y == size.x { width } else { quantised(size.y) });
+    if rule.max_texel_ratio.is_some() {
+        let limited = rule.limited(size, usable);
+        size = size.max(DVec2::new(quantised(limited.x), quantised(limited.y)));
+    }
+    let texel = size / usable;
     let line = (min.truncate() - pad + anchor.truncate()) / texel - kernel;
     let first = DVec2::new(floor(line.x), floor(line.y));
     let corner = first * texel - anchor.truncate();

@@ -2,8 +2,10 @@
 
 use core::ops::Deref;
 
-use crate::settings::MAX_MAPS;
-use crate::{Bias, GridAnchor, LightFit};
+use crate::bias::{Reach, reach};
+use crate::rule::FitRule;
+use crate::settings::{FitKind, MAX_MAPS};
+use crate::{Bias, CasterVolume, FitError, GridAnchor, LightFit, Sweep, Technique, ViewFrustum};
 
 /// One of several maps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -25,6 +27,74 @@ pub struct FittedMap {
     /// Where the map lies on the world's grid, if it does: what [`Scroll`](crate::Scroll) and
     /// [tiles](crate::scroll::tiles) are made from.
     pub anchor: Option<GridAnchor>,
+}
+
+impl FittedMap {
+    /// Every caster that can throw a shadow through this map on what views see of it, relative to the
+    /// fit's origin: the [swept volume](CasterVolume::swept) of the map's depths, for the technique's
+    /// filter and this map's bias. A map without a range has the volume that holds nothing.
+    ///
+    /// It is for maps that are drawn anew in each frame and read by view depth. A map that is kept, or
+    /// [scrolled](crate::Scroll), shows casters to later frames too: cull those by
+    /// [`CasterVolume::of_map`].
+    ///
+    /// A point that its own map does not hold may be read from a later one. Fits hold their slices,
+    /// filter included, so that a map's casters are those of its own depths; where the technique's do
+    /// not ([`FitKind::XnaSample`](crate::FitKind::XnaSample), or a border below the filter's reach), each map is swept from the
+    /// views' near end.
+    ///
+    /// ```
+    /// # use shadowfit::glam::{DVec2, DVec3, Vec3};
+    /// # use shadowfit::*;
+    /// # let camera = PerspectiveCamera {
+    /// #     eye: DVec3::new(0.0, 1.7, 5.0),
+    /// #     forward: Vec3::NEG_Z,
+    /// #     up: Vec3::Y,
+    /// #     fov_y: 0.8,
+    /// #     aspect: 16.0 / 9.0,
+    /// #     near: 0.1,
+    /// #     far: 200.0,
+    /// # };
+    /// # let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+    /// # let workspace = &mut Workspace::new(&mut storage);
+    /// let (views, technique) = ([camera.frustum()?], Technique::default());
+    /// let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
+    /// let maps = MapFitter::new().fit(&input, &technique, workspace)?;
+    /// let mut volumes = [CasterVolume::nowhere(views[0].origin); MAX_MAPS];
+    /// for (volume, map) in volumes.iter_mut().zip(maps.iter()) {
+    ///     *volume = map.caster_volume(&views, &technique)?;
+    /// }
+    ///
+    /// let boxes = [Aabb::new(Vec3::new(-2.0, 0.0, -12.0), Vec3::new(2.0, 6.0, -8.0))];
+    /// let mut masks = [0; 1]; // bit i: draw into map i
+    /// shadowfit::cull(&volumes[..maps.len()], DVec3::ZERO, &boxes, &mut masks);
+    /// # assert_ne!(masks[0], 0);
+    /// # Ok::<(), FitError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`CasterVolume::swept`].
+    pub fn caster_volume(&self, views: &[ViewFrustum], technique: &Technique) -> Result<CasterVolume, FitError> {
+        let near = if holds_slices(technique) { self.covered_near } else { f32::MIN };
+        if self.covered_near >= self.far {
+            return Ok(CasterVolume::nowhere(self.fit.origin));
+        }
+        let reach = Reach::from(technique.filter);
+        let sweep = Sweep { near, far: self.far, reach, normal_offset: self.bias.normal_offset, ..Sweep::new(views) };
+        CasterVolume::swept(&self.fit, &sweep)
+    }
+}
+
+/// Whether each map of a technique holds all of its slice with what the filter reads around it.
+fn holds_slices(technique: &Technique) -> bool {
+    let needed = f64::from(reach(technique.filter) + technique.bias.normal_offset);
+    let holds = |kind: FitKind| {
+        let rule = FitRule::new(&technique.fit.with_kind(kind), technique.border(), true);
+        rule.is_ok_and(|rule| rule.leaves_border(needed))
+    };
+    let own = technique.overrides.iter().take(technique.count as usize).filter_map(|own| own.kind);
+    holds(technique.fit.kind) && own.into_iter().all(holds)
 }
 
 /// The maps of one frame, nearest first.

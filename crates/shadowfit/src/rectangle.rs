@@ -55,6 +55,37 @@ pub(crate) fn min_area(hull: &[DVec2]) -> Rectangle {
     upright(best.rectangle)
 }
 
+/// The rectangle of least area around a convex polygon once it is widened to extents in which no texel is
+/// longer than `ratio` times its width. `widened` gives those extents.
+///
+/// A rectangle that is widened has an area that grows with its longer side alone, so that between two
+/// edges' directions the best one may also be where the limit is just met: there one side is a fixed
+/// multiple of the other, as the sides of the least square are equal.
+pub(crate) fn min_area_within(hull: &[DVec2], ratio: f64, widened: impl Fn(DVec2) -> DVec2) -> Rectangle {
+    let mut best = Best::new(hull, |r| widened(upright(*r).size()).element_product());
+    // At an eighth of a turn the sides change which way their texels are counted.
+    let eighth = DVec2::splat(core::f64::consts::FRAC_1_SQRT_2);
+    best.keep(&Rectangle::around(hull, eighth));
+    best.keep(&Rectangle::around(hull, -eighth.perp()));
+    // Multiples of a side for which its texels are as long as those of the other, in either position.
+    let unit = widened(DVec2::X);
+    let per_texel = unit.y * ratio;
+    let mut longest = (0.0, DVec2::X);
+    Calipers::turn(hull, |calipers| {
+        calipers.keep_longest(&mut longest);
+        best.keep(&calipers.rectangle());
+        for even in [per_texel, 1.0 / per_texel] {
+            for multiple in [even * ratio, even / ratio] {
+                if let Some(axis) = calipers.balanced(multiple) {
+                    best.keep(&Rectangle::around(hull, axis));
+                }
+            }
+        }
+    });
+    best.keep(&Rectangle::around(hull, longest.1));
+    upright(best.rectangle)
+}
+
 /// The rectangle with the least longer side around a convex polygon, which makes the least square.
 pub(crate) fn min_square(hull: &[DVec2]) -> Rectangle {
     let mut best = Best::new(hull, |r| r.size().max_element());
@@ -62,7 +93,7 @@ pub(crate) fn min_square(hull: &[DVec2]) -> Rectangle {
     Calipers::turn(hull, |calipers| {
         calipers.keep_longest(&mut longest);
         best.keep(&calipers.rectangle());
-        if let Some(axis) = calipers.balanced() {
+        if let Some(axis) = calipers.balanced(1.0) {
             best.keep(&Rectangle::around(hull, axis));
         }
     });
@@ -174,13 +205,14 @@ impl<'a> Calipers<'a> {
         }
     }
 
-    /// The direction at which both sides are equal while the lines go on touching these corners.
+    /// The direction at which the first side is `multiple` times the second while the lines go on
+    /// touching these corners.
     ///
     /// The side along a unit axis a is (right - left)·a, the other one (upper - lower)·perp(a):
-    /// their difference is linear in a and zero across d below.
-    fn balanced(&self) -> Option<DVec2> {
+    /// the difference of one and a multiple of the other is linear in a and zero across d below.
+    fn balanced(&self, multiple: f64) -> Option<DVec2> {
         let [lower, right, upper, left] = self.touched.map(|i| self.hull[i]);
-        let (along, across) = (right - left, upper - lower);
+        let (along, across) = (right - left, (upper - lower) * multiple);
         let d = DVec2::new(along.x - across.y, along.y + across.x);
         let length = libm::sqrt(d.dot(d));
         if length > 0.0 { Some(d.perp() / length) } else { None }
@@ -243,6 +275,31 @@ mod tests {
                 assert!((r.min - around.min).abs().max_element() < 1e-12, "{r:?}");
                 assert!((r.max - around.max).abs().max_element() < 1e-12, "{r:?}");
                 assert!(r.axis.x > 0.7 && r.axis.y.abs() < 0.71, "{r:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_angle_gives_less_within_a_limit_of_the_texels() {
+        for turns in [&[0.1, 0.4, 2.0, 3.0, 4.1, 5.9][..], &[0.0, 1.1, 2.2], &[0.3, 0.35, 0.4, 3.3]] {
+            let mut hull = [DVec2::ZERO; 8];
+            for (p, q) in hull.iter_mut().zip(polygon(turns)) {
+                *p = q;
+            }
+            let hull = &hull[..turns.len()];
+            for ratio in [1.0, 1.2, 1.5, 2.0, 3.0] {
+                for texels in [DVec2::ONE, DVec2::new(2.0, 1.0), DVec2::new(1.0, 3.0)] {
+                    let widened = |size: DVec2| size.max(texels * ((size / texels).max_element() / ratio));
+                    let r = min_area_within(hull, ratio, widened);
+                    let area = widened(r.size()).element_product();
+                    let turned = |size: DVec2| widened(size).element_product();
+                    // Of each direction both that name a side which is the nearer one to +x.
+                    let least = (-10_000..=10_000)
+                        .map(|i| f64::from(i) / 10_000.0 * core::f64::consts::FRAC_PI_4)
+                        .map(|a| turned(Rectangle::around(hull, DVec2::new(libm::cos(a), libm::sin(a))).size()))
+                        .fold(f64::MAX, f64::min);
+                    assert!((area - least) / least < 1e-6, "{turns:?} {ratio} {texels}: {area} and {least}");
+                }
             }
         }
     }

@@ -3,7 +3,7 @@
 //! The settings' kind is looked at here and nowhere else. A further fit is a file in
 //! [`fits`](crate::fits) that documents it, and a line in [`FitRule::new`].
 
-use glam::UVec2;
+use glam::{DVec2, UVec2};
 
 use crate::axes::Roll;
 use crate::bias::reach;
@@ -57,6 +57,8 @@ pub(crate) struct FitRule {
     pub(crate) border: f64,
     /// What the box is enlarged by on all sides, in metres.
     pub(crate) margin: f64,
+    /// Greatest ratio of a texel's sides, if there is a limit.
+    pub(crate) max_texel_ratio: Option<f64>,
     /// Width and height of the map, in texels.
     pub(crate) resolution: UVec2,
     /// Depth convention of the fitted clip space.
@@ -89,14 +91,27 @@ impl FitRule {
             depth,
             border: f64::from(border),
             margin: f64::from(settings.margin),
+            max_texel_ratio: Some(settings.max_texel_ratio).filter(|ratio| *ratio < f32::MAX).map(f64::from),
             resolution: settings.resolution,
             convention: settings.depth,
         })
     }
 
+    /// Extents across the light, in metres, that hold others and keep the texels, of which they have so
+    /// many, within the limit.
+    pub(crate) fn limited(&self, size: DVec2, texels: DVec2) -> DVec2 {
+        let Some(ratio) = self.max_texel_ratio else { return size };
+        size.max(texels * ((size / texels).max_element() / ratio))
+    }
+
     /// Whether a map of this rule can be kept from frame to frame: not the sample's.
     pub(crate) fn can_be_held(&self) -> bool {
         self.covers != Covers::ExactCorners
+    }
+
+    /// Whether its maps leave so many texels free around what they cover.
+    pub(crate) fn leaves_border(&self, texels: f64) -> bool {
+        self.covers != Covers::ExactCorners && self.border >= texels
     }
 
     /// This rule without a border, its near plane at what is covered.
@@ -133,6 +148,8 @@ fn check(settings: &FitSettings, border: f32) -> Result<(), FitError> {
     if settings.resolution.x == 0 || settings.resolution.y == 0 {
         return Err(FitError::ZeroResolution { resolution: settings.resolution });
     }
+    let ratio = f64::from(settings.max_texel_ratio);
+    checks::within("the fit's greatest texel ratio", ratio, 1.0, f64::from(f32::MAX))?;
     let widest = f64::from(settings.resolution.min_element()) * 0.25;
     checks::within("the fit's border", f64::from(border), 0.0, widest)?;
     checks::finite("the maximum shadow distance", f64::from(settings.max_distance))?;

@@ -109,6 +109,10 @@ pub struct FitSettings {
     /// Direction in world axes that is up, which a vertical light's axes follow; its length is
     /// ignored. Default: +y.
     pub up: Vec3,
+    /// Greatest ratio of a texel's longer side to its shorter one, 1 or more: long texels make blur
+    /// depend on its direction. The rectangle is chosen, and widened, to keep within it.
+    /// [`FitKind::XnaSample`] ignores it. Default: `f32::MAX`, no limit.
+    pub max_texel_ratio: f32,
     /// Width and height of the map, in texels. Default: 2048 × 2048.
     pub resolution: UVec2,
     /// Depth convention of the fitted clip space. Default: [`DepthConvention::ZeroToOne`].
@@ -126,6 +130,7 @@ impl Default for FitSettings {
             casters: CasterPolicy::List,
             caster_extension: 50.0,
             up: Vec3::Y,
+            max_texel_ratio: f32::MAX,
             resolution: UVec2::splat(2048),
             depth: DepthConvention::ZeroToOne,
         }
@@ -303,6 +308,7 @@ setters!(FitSettings {
     with_casters casters: CasterPolicy,
     with_up up: Vec3,
     with_caster_extension caster_extension: f32,
+    with_max_texel_ratio max_texel_ratio: f32,
     with_resolution resolution: UVec2,
     with_depth depth: DepthConvention,
 });

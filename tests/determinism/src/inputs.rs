@@ -175,6 +175,7 @@ pub(crate) fn fit_settings(random: &mut Random, camera: &PerspectiveCamera) -> F
         casters: random.pick(&[None, Extend, SceneBounds, List, DepthClamp]),
         caster_extension: camera.far * random.between(0.0, 2.0),
         up: random.pick(&[Vec3::Y, Vec3::Z, Vec3::new(0.3, 0.7, -0.2)]),
+        max_texel_ratio: f32::MAX,
         resolution: random.pick(&[UVec2::splat(2048), UVec2::new(1024, 512), UVec2::new(333, 4096)]),
         depth: random.pick(&DEPTHS),
     }

@@ -40,7 +40,7 @@ pub struct Sweep<'a> {
     /// Reach of the filter. A penumbra search counts as a disc, see [`Reach::over_metres`]; the
     /// texel that a caster's edge is rasterised to is added to it.
     pub reach: Reach,
-    /// How far off the receiver, in any direction, the place that is looked up may lie, in metres:
+    /// How far off the receiver, in any direction, the looked-up point may lie, in metres:
     /// [`Bias::normal_offset`](crate::Bias::normal_offset), and whatever else moves it.
     pub normal_offset: f32,
 }
@@ -82,46 +82,10 @@ impl CasterVolume {
     /// Every caster that can throw a shadow through a map on what views see of it, relative to the
     /// fit's origin.
     ///
-    /// ```
-    /// # use shadowfit::glam::{DVec2, DVec3, Vec3};
-    /// # use shadowfit::*;
-    /// # let (bias, filter) = (Bias::default(), FilterKind::default());
-    /// # let camera = PerspectiveCamera {
-    /// #     eye: DVec3::new(0.0, 1.7, 5.0),
-    /// #     forward: Vec3::NEG_Z,
-    /// #     up: Vec3::Y,
-    /// #     fov_y: 0.8,
-    /// #     aspect: 16.0 / 9.0,
-    /// #     near: 0.1,
-    /// #     far: 200.0,
-    /// # };
-    /// # let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-    /// # let workspace = &mut Workspace::new(&mut storage);
-    /// let views = [camera.frustum()?];
-    /// let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
-    /// let cascades = MapFitter::new().fit(&input, &Technique::default(), workspace)?;
-    /// let mut volumes = [CasterVolume::everywhere(views[0].origin); MAX_MAPS];
-    /// for (volume, map) in volumes.iter_mut().zip(cascades.iter()) {
-    ///     let sweep = Sweep {
-    ///         near: map.covered_near,
-    ///         far: map.far,
-    ///         reach: filter.into(),
-    ///         normal_offset: bias.normal_offset,
-    ///         ..Sweep::new(&views)
-    ///     };
-    ///     *volume = CasterVolume::swept(&map.fit, &sweep)?;
-    /// }
-    ///
-    /// let boxes = [Aabb::new(Vec3::new(-2.0, 0.0, -12.0), Vec3::new(2.0, 6.0, -8.0))];
-    /// let mut masks = [0; 1]; // bit i: draw into map i
-    /// shadowfit::cull(&volumes[..cascades.len()], DVec3::ZERO, &boxes, &mut masks);
-    /// # assert_ne!(masks[0], 0);
-    /// # Ok::<(), FitError>(())
-    /// ```
-    ///
-    /// The depths of the sweep must be those at which the shader reads this map: by view depth as
-    /// above, or, where the first map that covers a point is read, whatever the map may serve, in
-    /// doubt everything.
+    /// [`FittedMap::caster_volume`](crate::FittedMap::caster_volume) sweeps the depths of one of several
+    /// maps. The depths must be those at which the shader reads this map: by view depth as there, or,
+    /// where the first map that covers a point is read, whatever the map may serve, in doubt
+    /// everything.
     ///
     /// The planes are those of the view's slice that face away from the light, its silhouette
     /// edges swept along the light, the map's far plane and its four sides. For one view that is

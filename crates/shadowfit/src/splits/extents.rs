@@ -86,7 +86,7 @@ impl Sizes {
                 run = Dop::EMPTY;
             }
             run = run.union(&extents[end - 1]);
-            let size = run.size(maps.rule.rectangle);
+            let size = run.size(maps.rule);
             if maps.is_snapped { grid::quantised(size) } else { size }
         })
     }
@@ -150,14 +150,15 @@ impl Dop {
     }
 
     /// Longer side of the rectangle around this extent, in metres; tiny where there is none.
-    fn size(&self, kind: RectangleKind) -> f64 {
+    fn size(&self, rule: &FitRule) -> f64 {
         const QUARTER: usize = DIRECTIONS / 2;
         let length = |i: usize| f64::from(self.max[i]) - f64::from(self.min[i]);
         let mut best = (f64::MAX, 0.0);
-        let last = if kind == RectangleKind::AxisAligned { 1 } else { QUARTER };
+        let last = if rule.rectangle == RectangleKind::AxisAligned { 1 } else { QUARTER };
         for i in 0..last {
             let (a, b) = (length(i), length(i + QUARTER));
-            let cost = if kind == RectangleKind::MinimumSquare { a.max(b) } else { a * b };
+            let area = rule.max_texel_ratio.map_or(a * b, |ratio| (a * b).max(a.max(b) * a.max(b) / ratio));
+            let cost = if rule.rectangle == RectangleKind::MinimumSquare { a.max(b) } else { area };
             if cost < best.0 {
                 best = (cost, a.max(b));
             }

@@ -36,6 +36,7 @@ mod settings;
 mod support;
 mod sweep;
 mod texel_phase;
+mod texel_ratio;
 mod tightness;
 mod unprojection;
 mod verify;

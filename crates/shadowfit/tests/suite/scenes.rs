@@ -224,6 +224,7 @@ pub(crate) fn any_covering_fit() -> impl Strategy<Value = FitSettings> {
             casters: CasterPolicy::None,
             caster_extension: 0.0,
             up,
+            max_texel_ratio: f32::MAX,
             resolution: UVec2::new(width, height),
             depth,
         },

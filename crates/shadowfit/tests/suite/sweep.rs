@@ -4,8 +4,8 @@ use proptest::prelude::*;
 use shadowfit::bias::Reach;
 use shadowfit::glam::{DVec2, DVec3, Vec2, Vec3};
 use shadowfit::{
-    Aabb, Boxes, CasterVolume, FitError, FitInput, FitKind, FitSettings, LightFit, Sweep, ViewFrustum, Workspace,
-    fit_scene,
+    Aabb, Boxes, CasterVolume, FitError, FitInput, FitKind, FitSettings, LightFit, MapFitter, MapOverride, SplitScheme,
+    Stabilise, Sweep, Technique, ViewFrustum, Workspace, fit_scene,
 };
 
 use crate::support::{DIRECTION, any_direction, camera, cases, double, exact, fitted, float};
@@ -195,6 +195,42 @@ proptest! {
         for volume in [volume, volume.relative_to(DVec3::ZERO), elsewhere] {
             let (min, max) = box_around(caster - volume.origin, sample.half, sample.share);
             prop_assert!(volume.intersects_aabb(min, max), "{min} {max} relative to {}", volume.origin);
+        }
+    }
+
+    /// Of several maps a point reads the first that ends beyond it and holds it.
+    #[test]
+    fn no_map_of_several_loses_a_caster_by_its_own_volume(
+        lens in any_lens(), direction in any_direction(), kinds in (0..5_usize, 0..6_usize),
+        (is_bordered, is_held) in (any::<bool>(), any::<bool>()), overlap in prop::sample::select(vec![0.0, 0.3]),
+        points in prop::collection::vec(prop::array::uniform3(double(0.0, 1.0)), 12), half in float(0.001, 0.2),
+    ) {
+        let views = [lens.frustum(DVec3::new(12.0, 3.0, -40.0))];
+        let fit = FitSettings::default().with_kind(ALL_KINDS[kinds.0]).with_casters(shadowfit::CasterPolicy::DepthClamp);
+        let mut technique = Technique {
+            fit: if is_bordered { fit } else { fit.with_border(0.0) },
+            splits: SplitScheme::Practical(0.5),
+            stabilise: if is_held { Stabilise::Hysteresis } else { Stabilise::Off },
+            overlap,
+            ..Technique::default()
+        };
+        technique.overrides[1] = MapOverride { kind: ALL_KINDS.get(kinds.1).copied(), resolution: None };
+        let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+        let input = FitInput::new(&views, direction);
+        let fitted = MapFitter::new().fit(&input, &technique, &mut Workspace::new(&mut storage));
+        prop_assume!(fitted.is_ok());
+        let maps = fitted.unwrap();
+        let (view, to_light) = (&views[0], -direction.as_dvec3());
+        for share in points.into_iter().map(DVec3::from_array) {
+            let point = point_in(view, f64::from(view.near), f64::from(view.far), share);
+            let depth = (point - view.origin).dot(view.forward.as_dvec3()) as f32;
+            let reads = |map: &&shadowfit::FittedMap| depth < map.far && map.fit.covers(point);
+            let Some(map) = maps.iter().find(reads) else { continue };
+            let volume = map.caster_volume(&views, &technique).unwrap();
+            let over = point + to_light * f64::from(view.far) * share.x - map.fit.origin;
+            let half = Vec3::splat(half * view.far);
+            let centre = over.as_vec3();
+            prop_assert!(volume.intersects_aabb(centre - half, centre + half), "{point} by {:?}", technique.fit.kind);
         }
     }
 
