@@ -133,9 +133,9 @@ pub use presets::{PRESETS, Preset, RECOMMENDED};
 pub use scroll::Scroll;
 pub use settings::{
     BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapFormat, MapOverride,
-    RectangleKind, SplitScheme, Stabilise,
+    ReceiverSource, RectangleKind, SplitScheme, Stabilise,
 };
-pub use technique::{ReceiverSource, Technique};
+pub use technique::Technique;
 pub use volume::Constraint;
 
 /// Runs the example of the README as a test.

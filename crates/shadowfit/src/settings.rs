@@ -225,6 +225,20 @@ pub struct MapOverride {
     pub resolution: Option<UVec2>,
 }
 
+/// What a fit is told of the scene's receivers by whoever makes its boxes.
+///
+/// The fit itself takes whatever boxes it gets: this says what a technique was measured with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum ReceiverSource {
+    /// The boxes of its objects.
+    Objects,
+    /// The boxes of clusters of its triangles, with cones of their normals (`Clusters`, with the
+    /// feature `alloc`).
+    #[default]
+    Clusters,
+}
+
 /// Biases that keep a surface from shadowing itself, in texels of the map.
 ///
 /// They are converted to depth and metres in one place, [`crate::bias`].

@@ -4,24 +4,12 @@
 
 use crate::bias::reach;
 use crate::settings::{
-    BiasSettings, FilterKind, FitSettings, HoldSettings, MAX_MAPS, MapFormat, MapOverride, SplitScheme, Stabilise,
-    setters,
+    BiasSettings, FilterKind, FitSettings, HoldSettings, MAX_MAPS, MapFormat, MapOverride, ReceiverSource, SplitScheme,
+    Stabilise, setters,
 };
 use glam::UVec2;
 
-/// What a fit is told of the scene's receivers by whoever makes its boxes.
-///
-/// The fit itself takes whatever boxes it gets: this says what a technique was measured with.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum ReceiverSource {
-    /// The boxes of its objects.
-    Objects,
-    /// The boxes of clusters of its triangles, with cones of their normals (`Clusters`, with the
-    /// feature `alloc`).
-    #[default]
-    Clusters,
-}
+mod rust_code;
 
 /// How shadows are made: the maps and their fit, the filter and the bias that read them, their
 /// format.

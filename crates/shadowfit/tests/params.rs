@@ -190,6 +190,21 @@ fn every_field_is_reached_by_a_row() {
 }
 
 #[test]
+fn every_row_of_a_technique_shows_in_its_rust_code() {
+    let code = |settings: &Settings| {
+        let mut code = String::new();
+        settings.technique.write_rust(&mut code).expect("a string takes any text");
+        code
+    };
+    for parameter in technique_parameters() {
+        let start = with_place_for(parameter);
+        let mut changed = start;
+        change(&mut changed, parameter);
+        assert_ne!(code(&changed), code(&start), "{}", parameter.id);
+    }
+}
+
+#[test]
 fn rows_of_a_technique_change_nothing_but_the_technique() {
     for parameter in technique_parameters() {
         let start = with_place_for(parameter);

@@ -26,6 +26,7 @@ mod mint;
 mod optimality;
 mod other_matrices;
 mod rounding;
+mod rust_code;
 mod scenes;
 mod scroll;
 mod self_shadowing;

@@ -1,6 +1,6 @@
 //! The rows of the splits: how many maps there are, and where one ends and the next begins.
 
-use super::{always_active, always_there};
+use super::always_active;
 use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
 use crate::{MAX_MAPS, SplitScheme};
 

@@ -1,0 +1,135 @@
+//! The Rust code of a technique compiles and makes that technique.
+//!
+//! The samples under `rust_code/` are what is written now. This writes them anew:
+//!
+//! ```sh
+//! SHADOWFIT_UPDATE_GOLDENS=1 cargo test -p shadowfit rust_code
+//! ```
+
+use std::path::Path;
+
+use shadowfit::glam::{UVec2, Vec3};
+use shadowfit::settings::*;
+use shadowfit::*;
+
+/// A technique with a name, what the code in its sample makes, and that code.
+type Sample = (&'static str, Technique, Technique, &'static str);
+
+/// A sample by the name of its file.
+macro_rules! sample {
+    ($name:literal, $technique:expr) => {
+        (
+            $name,
+            $technique,
+            include!(concat!("rust_code/", $name, ".rs")),
+            include_str!(concat!("rust_code/", $name, ".rs")),
+        )
+    };
+}
+
+#[expect(clippy::let_and_return, reason = "a sample is one statement, and then what it made")]
+fn samples() -> [Sample; 6] {
+    [
+        sample!("default", Technique::default()),
+        sample!("stable_4", Technique::preset("stable-4").expect("a preset")),
+        sample!("xna_1", Technique::preset("xna-1").expect("a preset")),
+        sample!("all_fields", all_fields()),
+        sample!("some_fields", some_fields()),
+        sample!("not_finite", not_finite()),
+    ]
+}
+
+/// No field as by default.
+fn all_fields() -> Technique {
+    let own = |kind, side| MapOverride { kind: Some(kind), resolution: Some(UVec2::new(side, 2 * side)) };
+    Technique {
+        count: 3,
+        fit: FitSettings {
+            kind: FitKind::Oriented,
+            rectangle: RectangleKind::MinimumSquare,
+            max_distance: 80.25,
+            margin: 0.25,
+            border: Some(4.0),
+            casters: CasterPolicy::DepthClamp,
+            caster_extension: 7.0,
+            up: Vec3::new(0.0, -0.0, 1.0),
+            resolution: UVec2::new(1024, 512),
+            depth: DepthConvention::Reversed,
+        },
+        splits: SplitScheme::Manual([1.0, 2.5, 0.1, 1e-7, 3e9, 16_777_216.0, f32::MAX]),
+        overlap: 0.1,
+        stabilise: Stabilise::Snap,
+        hold: HoldSettings { margin: 0.5, growth: 2.0, waste: 3.0, horizon: 9 },
+        overrides: [
+            own(FitKind::XnaSample, 256),
+            own(FitKind::FrustumAabb, 512),
+            own(FitKind::Oriented, 1024),
+            own(FitKind::Sphere, 2048),
+            own(FitKind::Focused, 300),
+            own(FitKind::Sphere, 4096),
+            own(FitKind::Sphere, 8192),
+            own(FitKind::Sphere, 1),
+        ],
+        receivers: ReceiverSource::Objects,
+        filter: FilterKind::Hardware2x2,
+        bias: BiasSettings { constant: 1.0 / 3.0, slope: 0.2, normal_offset: 1e-9, receiver_plane: 1.5 },
+        format: MapFormat::R32Float,
+    }
+}
+
+/// Single fields in each of the nested structs.
+fn some_fields() -> Technique {
+    let mut technique = Technique::default().with_splits(SplitScheme::Practical(0.7)).with_max_distance(f32::MIN);
+    technique.hold.horizon = 60;
+    technique.bias.slope = 1.0;
+    technique.overrides[1].kind = Some(FitKind::Sphere);
+    technique.overrides[3].resolution = Some(UVec2::splat(1024));
+    technique
+}
+
+fn not_finite() -> Technique {
+    let mut technique = Technique::default().with_splits(SplitScheme::Practical(f32::NAN)).with_overlap(f32::INFINITY);
+    technique.fit.up = Vec3::new(f32::NEG_INFINITY, f32::NAN, f32::MAX);
+    technique.fit.border = Some(-f32::NAN);
+    technique
+}
+
+#[test]
+fn the_code_of_a_technique_compiles_and_makes_that_technique() {
+    if std::env::var_os("SHADOWFIT_UPDATE_GOLDENS").is_some_and(|value| value != "0") {
+        return write_anew();
+    }
+    for (name, technique, made, sample) in samples() {
+        assert_eq!(code_of(&technique), sample, "{name}: the head of this file says how to write it anew");
+        // As text, since NaN is not equal to itself.
+        assert_eq!(format!("{made:?}"), format!("{technique:?}"), "{name}");
+    }
+}
+
+#[test]
+fn a_technique_of_which_nothing_is_as_by_default_is_written_out_in_full() {
+    let code = code_of(&all_fields());
+    assert!(!code.contains("..") && !code.contains("default"), "{code}");
+}
+
+fn write_anew() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/suite/rust_code");
+    for (name, technique, ..) in samples() {
+        std::fs::write(folder.join(name).with_extension("rs"), code_of(&technique)).expect("a sample is written");
+    }
+}
+
+/// A sample: a block with the written statement, and the technique as its value.
+fn code_of(technique: &Technique) -> String {
+    let mut code = String::new();
+    technique.write_rust(&mut code).expect("a string takes any text");
+    format!("{{\n{code}technique\n}}\n")
+}
+
+#[test]
+#[cfg(feature = "alloc")]
+fn the_code_as_a_string_is_what_is_written() {
+    for (name, technique, _, _) in samples() {
+        assert_eq!(format!("{{\n{}technique\n}}\n", technique.to_rust()), code_of(&technique), "{name}");
+    }
+}

@@ -1,0 +1,4 @@
+{
+let technique = Technique::default();
+technique
+}
