@@ -1,6 +1,6 @@
 //! The figures that a tool shows live: plain numbers, filled by whoever measured them.
 
-use crate::Constraint;
+use crate::volume::Constraint;
 
 /// Live figures of one frame. `None` means not measured, never zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

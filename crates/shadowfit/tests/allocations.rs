@@ -2,13 +2,14 @@
 
 use allocation_counter::measure;
 use shadowfit::bias::Reach;
+use shadowfit::culling::{OrientedBox, Sphere, Sweep, cull};
+use shadowfit::fits::fit_scene;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::scroll::tiles;
-use shadowfit::verify::{Claim, verify};
+use shadowfit::scroll::{Scroll, tiles};
+use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, MAX_MAPS, RectangleKind, SplitScheme, Stabilise};
+use shadowfit::verify::{CoverageQuery, verify};
 use shadowfit::{
-    Aabb, Boxes, CasterPolicy, CasterVolume, FitInput, FitKind, FitSettings, MAX_MAPS, MapFitter, OrientedBox,
-    PerspectiveCamera, RectangleKind, Scroll, Sphere, SplitScheme, Stabilise, Sweep, Technique, ViewFrustum, Workspace,
-    cull, fit, fit_scene,
+    Aabb, Boxes, CasterVolume, FitInput, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace, fit,
 };
 
 const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.4);
@@ -111,7 +112,7 @@ fn no_certificate_and_no_scrolling_allocates() {
     let before = fitter.fit(&input, &settings, &mut workspace).expect("a good scene");
     let now = fitter.fit(&input, &settings, &mut workspace).expect("a good scene");
     for (before, map) in before.iter().zip(now.iter()) {
-        let claim = Claim::of_map(map, &settings, Reach::POINT);
+        let claim = CoverageQuery::of_map(map, &settings, Reach::POINT);
         let verified = without_allocation("verify", || verify(&input, &map.fit, &claim, &mut workspace));
         assert!(verified.expect("a good map").is_proven());
         let scroll = without_allocation("scroll", || Scroll::between(before, map));

@@ -4,11 +4,11 @@ use proptest::option;
 use proptest::prelude::*;
 use proptest::sample::select;
 use shadowfit::glam::{UVec2, Vec3};
-use shadowfit::settings::{BiasSettings, HoldSettings, MAX_MAPS, MapOverride};
-use shadowfit::{
-    CasterPolicy, DepthConvention, FilterKind, FitKind, FitSettings, MapFormat, ReceiverSource, RectangleKind,
-    SplitScheme, Stabilise, Technique,
+use shadowfit::settings::{
+    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapFormat, MapOverride,
+    ReceiverSource, RectangleKind, SplitScheme, Stabilise,
 };
+use shadowfit::{DepthConvention, Technique};
 
 /// Any variant of an enum without payloads. Does not compile until a new variant is listed.
 macro_rules! any {

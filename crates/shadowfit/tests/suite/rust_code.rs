@@ -28,6 +28,7 @@ macro_rules! sample {
 }
 
 #[expect(clippy::let_and_return, reason = "a sample is one statement, and then what it made")]
+#[expect(clippy::unreadable_literal, reason = "numbers are written as Rust prints them")]
 fn samples() -> [Sample; 6] {
     [
         sample!("default", Technique::default()),

@@ -2,7 +2,7 @@
 
 use super::{always_active, always_there, pull_near};
 use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
-use crate::{CasterPolicy, FitKind, ReceiverSource, RectangleKind};
+use crate::settings::{CasterPolicy, FitKind, ReceiverSource, RectangleKind};
 
 /// The fits in the order of their options.
 pub(super) const FIT_KINDS: [FitKind; 5] =
