@@ -34,7 +34,7 @@ fn main() -> Result<(), FitError> {
 
         println!("frame {frame}: positions are relative to the eye, {}", camera.eye);
         for (index, map) in maps.iter().enumerate() {
-            let casters = map.fit.caster_volume().relative_to(boxes.origin);
+            let casters = map.caster_volume(&views, &technique)?.relative_to(boxes.origin);
             let drawn = objects.iter().filter(|object| casters.intersects_aabb(object.min, object.max)).count();
             println!("map {index} serves what is farther than {} m; its texels are {} m", map.near, map.fit.texel_size);
             println!("  draw {drawn} of {} objects into it with {}", objects.len(), map.fit.clip_from_world);
