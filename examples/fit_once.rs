@@ -1,31 +1,46 @@
-//! The core alone, once: a camera and a sun in, the matrices and sizes of a shadow map out. No GPU, no window.
+//! The core alone: a camera, a sun and boxes of the scene in, the matrices of four shadow maps out, frame by frame. No
+//! GPU, no window.
 //!
 //! ```sh
 //! cargo run --example fit_once
 //! ```
 
-use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::{Bias, BiasSettings, FilterKind, FitError, FitSettings, PerspectiveCamera, fit};
+use shadowfit::glam::{DVec2, DVec3, Vec3};
+use shadowfit::{Aabb, Boxes, FitError, FitInput, MapFitter, PerspectiveCamera, Technique, Workspace};
 
 fn main() -> Result<(), FitError> {
-    let camera = PerspectiveCamera {
-        eye: DVec3::new(0.0, 1.7, 5.0),
-        forward: Vec3::NEG_Z,
-        up: Vec3::Y,
-        fov_y: 0.8,
-        aspect: 16.0 / 9.0,
-        near: 0.1,
-        far: 200.0,
-    };
-    let direction = Vec3::new(0.3, -0.8, 0.2); // the way the light travels
-    let settings = FitSettings::default().with_max_distance(30.0);
-    let light = fit(&camera.frustum()?, direction, &settings)?;
-    let bias = Bias::from_texels(&BiasSettings::automatic_normal_offset(FilterKind::Hardware2x2), &light);
+    let technique = Technique::default(); // 4 maps of 2048 × 2048 texels
+    let ground = Aabb::new(Vec3::new(-80.0, -0.1, -80.0), Vec3::new(80.0, 0.0, 80.0));
+    let house = Aabb::new(Vec3::new(-4.0, 0.0, -12.0), Vec3::new(4.0, 6.0, -6.0));
+    let objects = [ground, house];
+    let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
+    let sun = Vec3::new(0.3, -0.8, 0.2); // the way its light travels
 
-    println!("positions are relative to the eye at {}", light.origin);
-    println!("draw the map with clip_from_world {}", light.clip_from_world);
-    println!("look it up with uv_from_world {}", light.uv_from_world);
-    println!("offset the looked-up point along its normal by {} m times sin θ", bias.normal_offset);
-    println!("a texel is {} m, the depth range {} m", light.texel_size, light.depth_range);
+    let mut fitter = MapFitter::new(); // remembers the last frame's maps, to keep them still
+    let mut storage = [DVec2::ZERO; Workspace::required(2, 1)]; // for 2 boxes and 1 view
+    for frame in 0..3 {
+        let camera = PerspectiveCamera {
+            eye: DVec3::new(0.0, 1.7, 20.0 - 0.1 * f64::from(frame)),
+            forward: Vec3::NEG_Z,
+            up: Vec3::Y,
+            fov_y: 0.8,
+            aspect: 16.0 / 9.0,
+            near: 0.1,
+            far: 200.0,
+        };
+        let views = [camera.frustum()?];
+        let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, sun) };
+        let maps = fitter.fit(&input, &technique, &mut Workspace::new(&mut storage))?;
+
+        println!("frame {frame}: positions are relative to the eye, {}", camera.eye);
+        for (index, map) in maps.iter().enumerate() {
+            let casters = map.caster_volume(&views, &technique)?.relative_to(boxes.origin);
+            let drawn = objects.iter().filter(|object| casters.intersects_aabb(object.min, object.max)).count();
+            println!("map {index} serves what is farther than {} m; its texels are {} m", map.near, map.fit.texel_size);
+            println!("  draw {drawn} of {} objects into it with {}", objects.len(), map.fit.clip_from_world);
+            println!("  look it up with {}", map.fit.uv_from_world);
+            println!("  move the depth that is compared by {}", map.bias.constant_depth);
+        }
+    }
     Ok(())
 }

@@ -7,10 +7,10 @@ use std::hint::black_box;
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use shadowfit::culling::{Sweep, cull};
 use shadowfit::glam::{DVec2, DVec3, Vec3, Vec4};
 use shadowfit::{
-    Aabb, CasterVolume, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Sweep, Technique, ViewFrustum, Workspace,
-    cull,
+    Aabb, CasterVolume, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace,
 };
 
 /// Boxes that are at hand; calls go around in them.

@@ -6,11 +6,10 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use shadowfit::clusters::Clusters;
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec2, Vec3, Vec3Swizzles, Vec4};
-use shadowfit::{
-    Aabb, Boxes, CasterPolicy, Clusters, FitInput, FitKind, FitSettings, FittedMaps, MapFitter, PerspectiveCamera,
-    SplitScheme, Stabilise, Technique, Workspace, fit,
-};
+use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, SplitScheme, Stabilise};
+use shadowfit::{Aabb, Boxes, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, Workspace, fit};
 
 /// A camera that turns a little with each call, so that no result can be kept.
 fn camera(turn: &mut f32) -> PerspectiveCamera {

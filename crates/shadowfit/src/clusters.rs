@@ -14,7 +14,8 @@ use alloc::vec::Vec;
 use glam::Vec3;
 
 use crate::checks::{self, MAX_LENGTH};
-use crate::{Aabb, FitError, NormalCone};
+use crate::normal_cone::NormalCone;
+use crate::{Aabb, FitError};
 use piece::{Corners, Outline, Triangle};
 
 /// Boxes around small groups of triangles, for [`Boxes::boxes`](crate::Boxes::boxes): together
@@ -22,7 +23,8 @@ use piece::{Corners, Outline, Triangle};
 ///
 /// ```
 /// use shadowfit::glam::{DVec3, Vec3};
-/// use shadowfit::{Boxes, Clusters};
+/// use shadowfit::clusters::Clusters;
+/// use shadowfit::Boxes;
 ///
 /// // A stair of ten steps, each step two triangles.
 /// let mut steps = Vec::new();

@@ -6,8 +6,9 @@ use glam::{DVec2, DVec3, Vec3};
 
 use crate::enclosing_sphere::{EnclosingSphere, SymmetricFrustum, minimal};
 use crate::hull::HullBuilder;
+use crate::normal_cone::NormalCone;
 use crate::view::{Range, Slice, View, moved, slice_corners};
-use crate::{Boxes, FitError, FitInput, NormalCone, ViewFrustum, Workspace, checks};
+use crate::{Boxes, FitError, FitInput, ViewFrustum, Workspace, checks};
 
 /// The views and boxes of one frame, with the view depths of each box worked out once.
 pub(crate) struct Content<'a> {

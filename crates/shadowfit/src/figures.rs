@@ -4,7 +4,9 @@
 use glam::Vec3;
 
 use crate::diagnostics::depth_step;
-use crate::{Constraint, FittedMap, MAX_MAPS, MapFormat};
+use crate::maps::FittedMap;
+use crate::settings::{MAX_MAPS, MapFormat};
+use crate::volume::Constraint;
 
 /// Tints of the maps, the nearest first, as sRGB bytes of red, green and blue.
 ///

@@ -20,6 +20,19 @@ pub struct DepthHistogram<'a> {
     pub classes: usize,
 }
 
+/// View depths of the nearest and the farthest visible point, as a reduction of a depth buffer
+/// gives them (A. Lauritzen, M. Salvi, A. Lefohn, "Sample distribution shadow maps", 2011).
+///
+/// They only choose where the maps are split. The first map still begins where shadows do and the last
+/// one ends where they end, so late or wrong bounds cost sharpness, never coverage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DepthBounds {
+    /// Least view depth, in metres.
+    pub near: f32,
+    /// Greatest view depth, in metres; no less than the least.
+    pub far: f32,
+}
+
 /// Widest texel, in metres across the light, with which a point shows no more than one pixel per
 /// texel: the least singular value of the pixel's outline on the surface as the light sees it.
 ///

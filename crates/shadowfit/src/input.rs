@@ -2,13 +2,16 @@
 
 use glam::{DVec2, Vec3};
 
-use crate::{Boxes, DepthHistogram, NormalCone, ViewFrustum};
+use crate::histogram::{DepthBounds, DepthHistogram};
+use crate::normal_cone::NormalCone;
+use crate::{Boxes, ViewFrustum};
 
 /// Everything that changes from frame to frame.
 ///
 /// ```
 /// use shadowfit::glam::{DVec3, Vec3};
-/// use shadowfit::{Aabb, Boxes, FitInput, FitSettings, PerspectiveCamera, Workspace};
+/// use shadowfit::settings::FitSettings;
+/// use shadowfit::{Aabb, Boxes, FitInput, PerspectiveCamera, Workspace};
 ///
 /// let camera = PerspectiveCamera {
 ///     eye: DVec3::new(0.0, 1.7, 5.0),
@@ -28,7 +31,7 @@ use crate::{Boxes, DepthHistogram, NormalCone, ViewFrustum};
 /// let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&view, Vec3::new(0.3, -0.8, 0.2)) };
 /// let settings = FitSettings::default().with_max_distance(40.0);
 /// let mut storage = [Default::default(); Workspace::required(2, 1)];
-/// let map = shadowfit::fit_scene(&input, &settings, &mut Workspace::new(&mut storage))?;
+/// let map = shadowfit::fits::fit_scene(&input, &settings, &mut Workspace::new(&mut storage))?;
 /// assert!(map.texel_size.x < 0.03); // the frustum alone gives ten times that
 /// # Ok::<(), shadowfit::FitError>(())
 /// ```
@@ -40,38 +43,25 @@ pub struct FitInput<'a> {
     /// **Direction of travel** of the light in world axes, of any length: the negative of the
     /// direction toward the light.
     pub direction: Vec3,
-    /// Boxes around everything that shows shadows, for [`FitKind::Focused`](crate::FitKind) and
+    /// Boxes around everything that shows shadows, for [`FitKind::Focused`](crate::settings::FitKind) and
     /// for splits that look at the content. `None` when they are not known: everything in view
     /// counts then. An empty slice means that nothing receives.
     pub receivers: Option<Boxes<'a>>,
     /// Cones around the normals of each receiver's surfaces, or an empty slice when they are not
     /// known: those that turn away from the light where the camera sees them are dark without a
-    /// map, so [`FitKind::Focused`](crate::FitKind) passes them over.
+    /// map, so [`FitKind::Focused`](crate::settings::FitKind) passes them over.
     pub receiver_cones: &'a [NormalCone],
     /// Boxes around everything that throws shadows, which place the near plane: no caster in them is
     /// lost. `None` when they are not known: the near plane is then moved toward the light by
-    /// [`FitSettings::caster_extension`](crate::FitSettings::caster_extension). An empty slice means
+    /// [`FitSettings::caster_extension`](crate::settings::FitSettings::caster_extension). An empty slice means
     /// that nothing casts.
     pub casters: Option<Boxes<'a>>,
     /// What depths the last frame showed, for
-    /// [`SplitScheme::FromHistogram`](crate::SplitScheme::FromHistogram).
+    /// [`SplitScheme::FromHistogram`](crate::settings::SplitScheme::FromHistogram).
     pub histogram: Option<DepthHistogram<'a>>,
     /// Between which depths the last frame showed anything, if that is known: uniform, logarithmic
     /// and practical splits are spread between them instead of over all that is in view.
     pub depth_bounds: Option<DepthBounds>,
-}
-
-/// View depths of the nearest and the farthest visible point, as a reduction of a depth buffer
-/// gives them (A. Lauritzen, M. Salvi, A. Lefohn, "Sample distribution shadow maps", 2011).
-///
-/// They only choose where the maps are split. The first map still begins where shadows do and the last
-/// one ends where they end, so late or wrong bounds cost sharpness, never coverage.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DepthBounds {
-    /// Least view depth, in metres.
-    pub near: f32,
-    /// Greatest view depth, in metres; no less than the least.
-    pub far: f32,
 }
 
 impl<'a> FitInput<'a> {

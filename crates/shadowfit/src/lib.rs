@@ -1,36 +1,105 @@
-//! Fits a directional light's orthographic view-projection to a camera frustum.
+//! Fits a directional light's shadow maps to what a camera sees.
 //!
-//! Camera and light in, matrices out; this is the example `fit_once`:
+//! Camera, sun and boxes of the scene in, matrices out, frame by frame; this is the example
+//! `fit_once`:
 //!
 //! ```
-//! use shadowfit::glam::{DVec3, Vec3};
-//! use shadowfit::{Bias, BiasSettings, FilterKind, FitError, FitSettings, PerspectiveCamera, fit};
+//! use shadowfit::glam::{DVec2, DVec3, Vec3};
+//! use shadowfit::{Aabb, Boxes, FitError, FitInput, MapFitter, PerspectiveCamera, Technique, Workspace};
 //!
 //! fn main() -> Result<(), FitError> {
-//!     let camera = PerspectiveCamera {
-//!         eye: DVec3::new(0.0, 1.7, 5.0),
-//!         forward: Vec3::NEG_Z,
-//!         up: Vec3::Y,
-//!         fov_y: 0.8,
-//!         aspect: 16.0 / 9.0,
-//!         near: 0.1,
-//!         far: 200.0,
-//!     };
-//!     let direction = Vec3::new(0.3, -0.8, 0.2); // the way the light travels
-//!     let settings = FitSettings::default().with_max_distance(30.0);
-//!     let light = fit(&camera.frustum()?, direction, &settings)?;
-//!     let bias = Bias::from_texels(&BiasSettings::automatic_normal_offset(FilterKind::Hardware2x2), &light);
+//!     let technique = Technique::default(); // 4 maps of 2048 × 2048 texels
+//!     let ground = Aabb::new(Vec3::new(-80.0, -0.1, -80.0), Vec3::new(80.0, 0.0, 80.0));
+//!     let house = Aabb::new(Vec3::new(-4.0, 0.0, -12.0), Vec3::new(4.0, 6.0, -6.0));
+//!     let objects = [ground, house];
+//!     let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
+//!     let sun = Vec3::new(0.3, -0.8, 0.2); // the way its light travels
 //!
-//!     println!("positions are relative to the eye at {}", light.origin);
-//!     println!("draw the map with clip_from_world {}", light.clip_from_world);
-//!     println!("look it up with uv_from_world {}", light.uv_from_world);
-//!     println!("offset the looked-up point along its normal by {} m times sin θ", bias.normal_offset);
-//!     println!("a texel is {} m, the depth range {} m", light.texel_size, light.depth_range);
+//!     let mut fitter = MapFitter::new(); // remembers the last frame's maps, to keep them still
+//!     let mut storage = [DVec2::ZERO; Workspace::required(2, 1)]; // for 2 boxes and 1 view
+//!     for frame in 0..3 {
+//!         let camera = PerspectiveCamera {
+//!             eye: DVec3::new(0.0, 1.7, 20.0 - 0.1 * f64::from(frame)),
+//!             forward: Vec3::NEG_Z,
+//!             up: Vec3::Y,
+//!             fov_y: 0.8,
+//!             aspect: 16.0 / 9.0,
+//!             near: 0.1,
+//!             far: 200.0,
+//!         };
+//!         let views = [camera.frustum()?];
+//!         let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, sun) };
+//!         let maps = fitter.fit(&input, &technique, &mut Workspace::new(&mut storage))?;
+//!
+//!         println!("frame {frame}: positions are relative to the eye, {}", camera.eye);
+//!         for (index, map) in maps.iter().enumerate() {
+//!             let casters = map.caster_volume(&views, &technique)?.relative_to(boxes.origin);
+//!             let drawn = objects.iter().filter(|object| casters.intersects_aabb(object.min, object.max)).count();
+//!             println!("map {index} serves what is farther than {} m; its texels are {} m", map.near, map.fit.texel_size);
+//!             println!("  draw {drawn} of {} objects into it with {}", objects.len(), map.fit.clip_from_world);
+//!             println!("  look it up with {}", map.fit.uv_from_world);
+//!             println!("  move the depth that is compared by {}", map.bias.constant_depth);
+//!         }
+//!     }
 //!     Ok(())
 //! }
 //! ```
 //!
-//! The repository's `docs/MATHS.md` derives every fit, with pictures, and says when to use which.
+//! A map is drawn with `clip_from_world` and looked up with `uv_from_world`. A point reads the first
+//! map whose [`far`](FittedMap::far) lies beyond its view depth, compares its depth moved by the
+//! [`bias`](FittedMap::bias), and takes positions relative to [`LightFit::origin`], which is the
+//! eye. Boxes need not be exact: one for each object is enough, and without any the maps cover the
+//! whole view. [`Workspace::required`] says how much storage the fits work in, from the number of
+//! boxes and of views; a `Vec` that is made once serves as well as an array.
+//!
+//! [`Technique::default`] is the one to begin with, and [`PRESETS`] has others by name, each with a
+//! line that says when to take it. The repository's `docs/MATHS.md` derives every fit, with pictures.
+//!
+//! # A single map
+//!
+//! Where nothing is known but the camera, [`fit`] is a function without a memory:
+//!
+//! ```
+//! use shadowfit::glam::{DVec3, Vec3};
+//! use shadowfit::settings::{BiasSettings, FilterKind, FitSettings};
+//! use shadowfit::{Bias, PerspectiveCamera, fit};
+//!
+//! let camera = PerspectiveCamera {
+//!     eye: DVec3::new(0.0, 1.7, 20.0),
+//!     forward: Vec3::NEG_Z,
+//!     up: Vec3::Y,
+//!     fov_y: 0.8,
+//!     aspect: 16.0 / 9.0,
+//!     near: 0.1,
+//!     far: 200.0,
+//! };
+//! let settings = FitSettings::default().with_max_distance(30.0);
+//! let map = fit(&camera.frustum()?, Vec3::new(0.3, -0.8, 0.2), &settings)?;
+//! let bias = Bias::from_texels(&BiasSettings::automatic(FilterKind::Pcf5x5), &map);
+//! println!("{} {} {}", map.clip_from_world, map.uv_from_world, bias.constant_depth);
+//! # Ok::<(), shadowfit::FitError>(())
+//! ```
+//!
+//! # What is where
+//!
+//! | what you need | where it is |
+//! |---|---|
+//! | other filters, biases, splits, resolutions, the shadow distance | [`Technique`] and [`settings`] |
+//! | techniques by name | [`PRESETS`], [`Technique::preset`] |
+//! | a view from a matrix, with its depth convention; both eyes of a headset | [`ViewFrustum`], [`FitInput::views`] |
+//! | one map, from the camera alone or with boxes | [`fit`], [`fits::fit_scene`], one algorithm a module in [`fits`] |
+//! | which casters to draw into a map | [`CasterVolume`], [`culling`] for spheres, oriented boxes, whole lists and tighter volumes |
+//! | splits by what the last frame showed | [`histogram`], [`FitInput::histogram`], [`FitInput::depth_bounds`] |
+//! | how many maps are enough | [`map_fitter::fewest_maps`] |
+//! | boxes that hug large meshes | `clusters` and [`normal_cone`], feature `alloc` |
+//! | casters that stand still drawn once | [`scroll`] |
+//! | a sun that moves without edges that crawl all day | [`light_steps`] |
+//! | a proof that no map has a hole | [`verify`] |
+//! | biases in metres and depth for a filter of your own | [`Bias`], [`bias`] |
+//! | pixels per texel, depth steps, margin against acne | [`diagnostics`] |
+//! | f32 matrices for world positions, the matrix of other code as a fit | [`LightFit::world_matrices`], [`light_fit`] |
+//! | all knobs with unit, range and help, for panels and files | [`params`], [`tool`], [`figures`] |
+//! | a technique as Rust code | [`Technique::write_rust`] |
 //!
 //! # Conventions
 //!
@@ -41,7 +110,7 @@
 //! - A light is its **direction of travel**. Where a source speaks of the direction toward the
 //!   light, `to_light = -direction`.
 //! - Nothing panics; every bad input is a [`FitError`] with its value. Nothing allocates, except
-//!   `Clusters`, which needs the feature `alloc`.
+//!   `Clusters` and `Technique::to_rust`, which need the feature `alloc`.
 //! - Transcendental functions come from `libm`, everything else is `+ - × ÷ √` on scalars, so the
 //!   same input gives the same bits on every target.
 //!
@@ -50,9 +119,9 @@
 //! | feature | adds |
 //! |---|---|
 //! | `std` (default) | `alloc`, and glam with the standard library |
-//! | `alloc` | `Clusters`, for which an allocator is enough |
-//! | `serde` | `Serialize` and `Deserialize` for all settings, inputs and outputs that own their data, and for the state between frames; `Clusters` have theirs in [`Aabb`] and [`NormalCone`] |
-//! | `bytemuck` | `Pod` and `Zeroable` for [`Aabb`], [`Sphere`], [`OrientedBox`], [`NormalCone`], [`Bias`] and [`CasterPlanes`] |
+//! | `alloc` | `Clusters` and `Technique::to_rust`, for which an allocator is enough |
+//! | `serde` | `Serialize` and `Deserialize` for all settings, inputs and outputs that own their data, and for the state between frames; `Clusters` have theirs in [`Aabb`] and [`NormalCone`](normal_cone::NormalCone) |
+//! | `bytemuck` | `Pod` and `Zeroable` for [`Aabb`], [`Sphere`](culling::Sphere), [`OrientedBox`](culling::OrientedBox), [`NormalCone`](normal_cone::NormalCone), [`Bias`] and [`CasterPlanes`](culling::CasterPlanes) |
 //! | `mint` | the module `mint`: conversions from and to the types of other maths crates |
 //!
 //! This crate's vectors are those of the [`glam`] that it re-exports, 0.33 (from 0.33.2) or 0.34.
@@ -63,13 +132,21 @@
 extern crate alloc;
 
 pub mod bias;
+#[cfg(feature = "alloc")]
+pub mod clusters;
+pub mod culling;
 pub mod diagnostics;
 pub mod figures;
 pub mod fits;
+pub mod histogram;
+pub mod light_fit;
 pub mod light_steps;
+pub mod map_fitter;
 #[cfg(feature = "mint")]
 pub mod mint;
+pub mod normal_cone;
 pub mod params;
+pub mod presets;
 pub mod scroll;
 pub mod settings;
 pub mod tool;
@@ -78,10 +155,7 @@ pub mod verify;
 mod axes;
 mod bounds;
 mod camera;
-mod caster;
 mod checks;
-#[cfg(feature = "alloc")]
-mod clusters;
 mod content;
 mod covered;
 mod depth;
@@ -90,19 +164,14 @@ mod enclosing_sphere;
 mod error;
 mod frustum;
 mod grid;
-mod histogram;
 mod hull;
 mod input;
-mod light_fit;
 mod light_hull;
-mod map_fitter;
 mod maps;
 mod motion;
 mod near_plane;
-mod normal_cone;
 mod number;
 mod outline;
-mod presets;
 mod rectangle;
 mod rule;
 mod splits;
@@ -113,30 +182,18 @@ mod volume;
 pub use bias::Bias;
 pub use bounds::{Aabb, Boxes};
 pub use camera::PerspectiveCamera;
-pub use caster::{Bounds, CasterPlanes, CasterVolume, OrientedBox, Sphere, Sweep, cull};
-#[cfg(feature = "alloc")]
-pub use clusters::Clusters;
+pub use culling::CasterVolume;
 pub use depth::DepthConvention;
 pub use error::FitError;
-pub use fits::{fit, fit_scene};
+pub use fits::fit;
 pub use frustum::ViewFrustum;
 pub use glam;
-pub use grid::GridAnchor;
-pub use histogram::{DepthHistogram, needed_texel};
-pub use input::{DepthBounds, FitInput, Workspace};
-pub use light_fit::{LightFit, WorldMatrices};
-pub use light_steps::{LightStep, LightStepSettings, LightSteps};
-pub use map_fitter::{MapFitter, fewest_maps};
+pub use input::{FitInput, Workspace};
+pub use light_fit::LightFit;
+pub use map_fitter::MapFitter;
 pub use maps::{FittedMap, FittedMaps};
-pub use normal_cone::NormalCone;
-pub use presets::{PRESETS, Preset, RECOMMENDED};
-pub use scroll::Scroll;
-pub use settings::{
-    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapFormat, MapOverride,
-    ReceiverSource, RectangleKind, SplitScheme, Stabilise,
-};
+pub use presets::{PRESETS, Preset};
 pub use technique::Technique;
-pub use volume::Constraint;
 
 /// Runs the example of the README as a test.
 #[cfg(doctest)]

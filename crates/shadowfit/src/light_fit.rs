@@ -9,8 +9,10 @@ use glam::{DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use crate::axes::LightAxes;
 use crate::checks::{MAX_LENGTH, MIN_LENGTH};
-use crate::volume::{Constraint, Volume};
+use crate::volume::Volume;
 use crate::{DepthConvention, FitError, checks};
+
+pub use crate::volume::Constraint;
 
 /// An orthographic view-projection of a directional light.
 ///

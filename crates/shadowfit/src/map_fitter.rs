@@ -10,6 +10,8 @@ use glam::{DVec2, DVec3, Vec3};
 use crate::axes::Light;
 use crate::content::Content;
 use crate::fits::{self, Placement};
+use crate::grid::GridAnchor;
+use crate::histogram::DepthBounds;
 use crate::maps::{FittedMap, FittedMaps, set_empty_ranges_apart};
 use crate::motion::Motion;
 use crate::rule::FitRule;
@@ -17,9 +19,7 @@ use crate::settings::{BiasSettings, FitSettings, MAX_MAPS, MapOverride, Stabilis
 use crate::splits::{Chooser, Splits};
 use crate::view::Range;
 use crate::volume::Volume;
-use crate::{
-    Bias, DepthBounds, FitError, FitInput, GridAnchor, LightFit, Technique, ViewFrustum, Workspace, checks, grid,
-};
+use crate::{Bias, FitError, FitInput, LightFit, Technique, ViewFrustum, Workspace, checks, grid};
 use hold::HeldMap;
 
 /// Fits several maps frame by frame.
@@ -79,7 +79,7 @@ impl MapFitter {
     ///
     /// # Errors
     ///
-    /// As [`fit_scene`](crate::fit_scene), for the settings of each map;
+    /// As [`fit_scene`](crate::fits::fit_scene), for the settings of each map;
     /// [`FitError::OutOfRange`] for a number of maps outside 1..=8, an overlap or λ outside 0..=1
     /// and hold settings that make no sense; [`FitError::NearNotBelowFar`] for manual splits that
     /// do not ascend. Manual splits before or beyond what is shadowed are no error: a map without a
@@ -147,7 +147,7 @@ impl MapFitter {
 /// leave a 95% quantile of pixels per texel at most `waste` times that of the technique's count.
 ///
 /// What is visible is told by the histogram where the technique's splits use one, else by the boxes;
-/// other splits count as [`SplitScheme::FromBoxes`](crate::SplitScheme::FromBoxes) here. Costs about
+/// other splits count as [`SplitScheme::FromBoxes`](crate::settings::SplitScheme::FromBoxes) here. Costs about
 /// as much as choosing the splits of one frame: ask when a level begins, or now and then, and set
 /// [`Technique::count`] by it.
 ///

@@ -3,9 +3,11 @@
 use core::ops::Deref;
 
 use crate::bias::{Reach, reach};
+use crate::culling::Sweep;
+use crate::grid::GridAnchor;
 use crate::rule::FitRule;
 use crate::settings::{FitKind, MAX_MAPS};
-use crate::{Bias, CasterVolume, FitError, GridAnchor, LightFit, Sweep, Technique, ViewFrustum};
+use crate::{Bias, CasterVolume, FitError, LightFit, Technique, ViewFrustum};
 
 /// One of several maps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -24,7 +26,7 @@ pub struct FittedMap {
     /// View depth from which this map covers what is seen, in metres: before `near` where the
     /// maps overlap.
     pub covered_near: f32,
-    /// Where the map lies on the world's grid, if it does: what [`Scroll`](crate::Scroll) and
+    /// Where the map lies on the world's grid, if it does: what [`Scroll`](crate::scroll::Scroll) and
     /// [tiles](crate::scroll::tiles) are made from.
     pub anchor: Option<GridAnchor>,
 }
@@ -35,16 +37,18 @@ impl FittedMap {
     /// filter and this map's bias. A map without a range has the volume that holds nothing.
     ///
     /// It is for maps that are drawn anew in each frame and read by view depth. A map that is kept, or
-    /// [scrolled](crate::Scroll), shows casters to later frames too: cull those by
+    /// [scrolled](crate::scroll::Scroll), shows casters to later frames too: cull those by
     /// [`CasterVolume::of_map`].
     ///
     /// A point that its own map does not hold may be read from a later one. Fits hold their slices,
     /// filter included, so that a map's casters are those of its own depths; where the technique's do
-    /// not ([`FitKind::XnaSample`](crate::FitKind::XnaSample), or a border below the filter's reach), each map is swept from the
+    /// not ([`FitKind::XnaSample`](crate::settings::FitKind::XnaSample), or a border below the filter's reach), each map is swept from the
     /// views' near end.
     ///
     /// ```
     /// # use shadowfit::glam::{DVec2, DVec3, Vec3};
+    /// # use shadowfit::culling::cull;
+    /// # use shadowfit::settings::MAX_MAPS;
     /// # use shadowfit::*;
     /// # let camera = PerspectiveCamera {
     /// #     eye: DVec3::new(0.0, 1.7, 5.0),
@@ -67,7 +71,7 @@ impl FittedMap {
     ///
     /// let boxes = [Aabb::new(Vec3::new(-2.0, 0.0, -12.0), Vec3::new(2.0, 6.0, -8.0))];
     /// let mut masks = [0; 1]; // bit i: draw into map i
-    /// shadowfit::cull(&volumes[..maps.len()], DVec3::ZERO, &boxes, &mut masks);
+    /// cull(&volumes[..maps.len()], DVec3::ZERO, &boxes, &mut masks);
     /// # assert_ne!(masks[0], 0);
     /// # Ok::<(), FitError>(())
     /// ```

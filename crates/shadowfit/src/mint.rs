@@ -6,7 +6,8 @@
 //!
 //! ```
 //! use shadowfit::mint::{dvec3, matrix, vec3};
-//! use shadowfit::{FitSettings, PerspectiveCamera, fit};
+//! use shadowfit::settings::FitSettings;
+//! use shadowfit::{PerspectiveCamera, fit};
 //!
 //! // What another maths crate's `.into()` gives.
 //! let (eye, forward) = (mint::Point3 { x: 0.0, y: 1.7, z: 5.0 }, mint::Vector3 { x: 0.0, y: 0.0, z: -1.0 });
@@ -30,8 +31,9 @@
 use ::mint::{ColumnMatrix4, Point3, Vector3, Vector4};
 use glam::{DMat4, DVec3, Mat4, Vec3, Vec4};
 
-use crate::caster::{OrientedBox, Sphere};
-use crate::{Aabb, DepthConvention, FitError, ViewFrustum, WorldMatrices};
+use crate::culling::{OrientedBox, Sphere};
+use crate::light_fit::WorldMatrices;
+use crate::{Aabb, DepthConvention, FitError, ViewFrustum};
 
 /// A direction or position as this crate takes it, in its own unit.
 pub fn vec3(v: impl Into<Vector3<f32>>) -> Vec3 {

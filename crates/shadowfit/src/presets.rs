@@ -1,6 +1,7 @@
 //! Techniques by name, each with a line that says when to take it.
 
-use crate::{FitKind, FitSettings, HoldSettings, ReceiverSource, SplitScheme, Stabilise, Technique};
+use crate::Technique;
+use crate::settings::{FitKind, FitSettings, HoldSettings, ReceiverSource, SplitScheme, Stabilise};
 
 /// A technique by name.
 #[derive(Clone, Copy, Debug)]

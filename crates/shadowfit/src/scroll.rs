@@ -1,7 +1,7 @@
 //! What of a map can be kept from the last frame, so that static casters are drawn only where the
 //! map is new.
 //!
-//! A map on the world's grid ([snapped or held](crate::Stabilise), or the
+//! A map on the world's grid ([snapped or held](crate::settings::Stabilise), or the
 //! [stable sphere](crate::fits::sphere)) moves by whole texels. [`Scroll::between`] says by how
 //! many, which strips came into the map, and whether anything else changed:
 //!
@@ -47,7 +47,8 @@ pub struct TexelRect {
 /// How a map came about from the one before it.
 ///
 /// ```
-/// # use shadowfit::{FittedMap, Scroll};
+/// # use shadowfit::scroll::Scroll;
+/// # use shadowfit::FittedMap;
 /// # fn draw_all() {} fn copy_within_the_map(_: i32, _: i32) {} fn draw_in(_: u32, _: u32, _: u32, _: u32) {}
 /// fn draw_static_casters(before: &FittedMap, now: &FittedMap) {
 ///     let scroll = Scroll::between(before, now);
@@ -68,7 +69,7 @@ pub struct Scroll {
     /// [empty](LightFit::is_empty), or one of them lies on no grid.
     pub is_new: bool,
     /// Whether the near or the far plane moved, so that the old map's depths mean other distances
-    /// now. They stay while they serve, see [`Stabilise`](crate::Stabilise).
+    /// now. They stay while they serve, see [`Stabilise`](crate::settings::Stabilise).
     pub depth_changed: bool,
     /// What is at texel t now was at texel t + `shift` before, right and down.
     pub shift: IVec2,

@@ -1,7 +1,12 @@
 //! The parts that a [`Technique`](crate::Technique) is made of.
 //!
 //! Every field is public, has a default, and a row in [`crate::params`], from which panels, command
-//! lines and saved files are made.
+//! lines and saved files are made. Lengths are metres, sizes of maps and biases are texels, view
+//! depths are counted from the eye along the camera's forward direction.
+//!
+//! Defaults are those of the [recommended technique](crate::presets::RECOMMENDED). Where other
+//! engines have a default for the same number it is theirs; the rest comes from the measurements in
+//! the repository's `docs/BENCHMARKS.md`.
 
 use glam::{UVec2, Vec3};
 
@@ -40,7 +45,7 @@ pub enum FitKind {
     /// the world: neither moving nor turning the camera makes shadows crawl.
     Sphere,
     /// Least rectangle of what the camera can see of the receivers' boxes, turned as
-    /// [`FitSettings::rectangle`] says. Without boxes it is [`Self::Oriented`].
+    /// [`FitSettings::rectangle`] says. Without boxes it is [`Self::Oriented`]. The default.
     #[default]
     Focused,
 }
@@ -51,7 +56,7 @@ pub enum FitKind {
 pub enum RectangleKind {
     /// Along the light's own axes, never turned.
     AxisAligned,
-    /// Of least area.
+    /// Of least area. The default.
     #[default]
     MinimumArea,
     /// With the least longer side, made square: equal texels both ways on a square map.
@@ -70,7 +75,7 @@ pub enum CasterPolicy {
     /// as [`Self::Extend`] where the casters are not known.
     SceneBounds,
     /// At the first caster that can throw a shadow into view: each box is clipped to that volume.
-    /// As [`Self::Extend`] where the casters are not known.
+    /// As [`Self::Extend`] where the casters are not known. The default.
     #[default]
     List,
     /// At what is covered, with the pipeline's depth clamp holding casters before it
@@ -104,16 +109,17 @@ pub struct FitSettings {
     /// [`CasterPolicy::List`].
     pub casters: CasterPolicy,
     /// How far [`CasterPolicy::Extend`] moves the near plane toward the light, in metres. Default:
-    /// 50.
+    /// 50, which holds most buildings. It also stands in where the casters are not known.
     pub caster_extension: f32,
-    /// Direction in world axes that is up, which a vertical light's axes follow; its length is
-    /// ignored. Default: +y.
+    /// Direction in world axes that is up, which the map's axes follow; its length is ignored.
+    /// Default: +y.
     pub up: Vec3,
     /// Greatest ratio of a texel's longer side to its shorter one, 1 or more: long texels make blur
     /// depend on its direction. The rectangle is chosen, and widened, to keep within it.
     /// [`FitKind::XnaSample`] ignores it. Default: `f32::MAX`, no limit.
     pub max_texel_ratio: f32,
-    /// Width and height of the map, in texels. Default: 2048 × 2048.
+    /// Width and height of the map, in texels. Default: 2048 × 2048, as Bevy and the cascades of
+    /// three.js have it.
     pub resolution: UVec2,
     /// Depth convention of the fitted clip space. Default: [`DepthConvention::ZeroToOne`].
     pub depth: DepthConvention,
@@ -163,7 +169,8 @@ pub enum SplitScheme {
     /// Ranges of equal ratio, as perspective would have it. Spends most maps close to the eye.
     Logarithmic,
     /// Between both: λ, 0..=1, is the share of the logarithmic splits, the rest is that of the
-    /// uniform ones (the parallel-split scheme).
+    /// uniform ones (F. Zhang, H. Sun, L. Xu, L. K. Lun, "Parallel-split shadow maps for large-scale
+    /// virtual environments", 2006). 0.5 is the default of three.js and Babylon.js.
     Practical(f32),
     /// View depths in metres at which the maps end, ascending; the last map ends with the shadows.
     Manual([f32; MAX_MAPS - 1]),
@@ -171,7 +178,7 @@ pub enum SplitScheme {
     /// of what is visible.
     FromBoxes,
     /// The same by the histogram of visible depth that the engine hands in; without one as
-    /// [`Self::FromBoxes`].
+    /// [`Self::FromBoxes`]. The default.
     #[default]
     FromHistogram,
 }
@@ -188,7 +195,7 @@ pub enum Stabilise {
     Snap,
     /// A map is kept, its angle included, and moved by whole texels while it covers what it must
     /// and wastes no more than [`HoldSettings::waste`]. Made anew, it is large enough for the
-    /// movement to come.
+    /// movement to come. The default.
     #[default]
     Hysteresis,
 }
@@ -197,15 +204,15 @@ pub enum Stabilise {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct HoldSettings {
-    /// Free border of a new map, as a share of its extent.
+    /// Room left around what a new map must cover, as a share of its extent, 0..=10. Default: 0.02.
     pub margin: f32,
     /// A new map also covers what the camera will see if it goes on moving as it did, for as many
-    /// frames as make the map at most so many times as wide.
+    /// frames as make the map wider by this factor at most, 1..=100. Default: 1.4.
     pub growth: f32,
-    /// A map is made anew when its texels are so many times as wide as they had to be; likewise
-    /// the cuts.
+    /// A map is made anew when its texels are larger than they have to be by this factor, 1..=100;
+    /// held splits are chosen anew likewise. Default: 1.8.
     pub waste: f32,
-    /// Most frames that are looked ahead.
+    /// Most frames that are looked ahead. Default: 32.
     pub horizon: u32,
 }
 
@@ -219,9 +226,9 @@ impl Default for HoldSettings {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct MapOverride {
-    /// The rule of its fit.
+    /// The rule of its fit. Default: `None`, that of [`FitSettings::kind`].
     pub kind: Option<FitKind>,
-    /// Its width and height, in texels.
+    /// Its width and height, in texels. Default: `None`, that of [`FitSettings::resolution`].
     pub resolution: Option<UVec2>,
 }
 
@@ -234,7 +241,7 @@ pub enum ReceiverSource {
     /// The boxes of its objects.
     Objects,
     /// The boxes of clusters of its triangles, with cones of their normals (`Clusters`, with the
-    /// feature `alloc`).
+    /// feature `alloc`). The default.
     #[default]
     Clusters,
 }
@@ -245,19 +252,21 @@ pub enum ReceiverSource {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct BiasSettings {
-    /// Depth bias that does not depend on the slope, in texel sizes along the light.
+    /// Depth bias that does not depend on the slope, in texel sizes along the light. Default: 1/16,
+    /// for the rounding of depths in f32.
     pub constant: f32,
     /// Depth bias times the tangent of the angle between the surface normal and the light, in
-    /// texel sizes.
+    /// texel sizes. Default: 0.
     pub slope: f32,
     /// Offset of the sampled point along the geometric normal times the sine of that angle, in
-    /// texel sizes.
+    /// texel sizes. Default: 0.
     pub normal_offset: f32,
     /// Receiver-plane bias: each comparison of the filter is made with the depth of the receiver's
     /// own plane where it reads, moved toward the light by the plane's rise over so many texels
     /// (J. Isidoro, "Shadow mapping: GPU-based tips and techniques", 2006). The reach of one
     /// comparison clears a plane: 0.5 for a single texel, 1 for the hardware's 2×2 and all filters
-    /// made of it. 0 turns it off.
+    /// made of it. 0 turns it off. Default: 1 and 1/256, by which hardware rounds positions in
+    /// the map.
     pub receiver_plane: f32,
 }
 
@@ -278,7 +287,7 @@ pub enum FilterKind {
     Hardware2x2,
     /// Tent of 3×3 hardware look-ups (16 texels), by four of them.
     Pcf3x3,
-    /// Tent of 5×5 hardware look-ups (36 texels), by nine of them.
+    /// Tent of 5×5 hardware look-ups (36 texels), by nine of them. The default.
     #[default]
     Pcf5x5,
 }
@@ -292,7 +301,7 @@ impl FilterKind {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum MapFormat {
-    /// 32-bit float depth attachment, compared by the sampler.
+    /// 32-bit float depth attachment, compared by the sampler. The default.
     #[default]
     Depth32Float,
     /// One 32-bit float colour channel with a depth buffer of its own, compared by hand (the XNA

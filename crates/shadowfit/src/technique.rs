@@ -15,7 +15,8 @@ mod rust_code;
 /// format.
 ///
 /// ```
-/// use shadowfit::{FilterKind, Technique};
+/// use shadowfit::settings::FilterKind;
+/// use shadowfit::Technique;
 ///
 /// let technique = Technique::preset("stable-4").unwrap().with_filter(FilterKind::Pcf3x3);
 /// assert_eq!((technique.count, technique.border()), (4, 2.0));
@@ -23,9 +24,9 @@ mod rust_code;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Technique {
-    /// Number of maps, 1..=8. Default: 4, as Bevy, three.js and Babylon.js have it.
+    /// Number of maps, 1..=8. Default: 4, as Bevy and Babylon.js have it.
     pub count: u32,
-    /// The fit of all maps.
+    /// The fit of all maps. Default: [`FitSettings::default`].
     pub fit: FitSettings,
     /// Where one map ends and the next begins. Default: [`SplitScheme::FromHistogram`], which takes
     /// boxes where no histogram is given.
@@ -35,7 +36,8 @@ pub struct Technique {
     pub overlap: f32,
     /// What keeps the maps still. Default: [`Stabilise::Hysteresis`].
     pub stabilise: Stabilise,
-    /// Details of [`Stabilise::Hysteresis`], and when held splits are given up.
+    /// Details of [`Stabilise::Hysteresis`], and when held splits are given up. Default:
+    /// [`HoldSettings::default`].
     pub hold: HoldSettings,
     /// What single maps have of their own, the nearest first. Default: nothing.
     pub overrides: [MapOverride; MAX_MAPS],

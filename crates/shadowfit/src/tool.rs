@@ -12,13 +12,14 @@ use crate::{FitError, Technique, checks};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct LightSettings {
-    /// Compass angle of the point that the light comes from, in radians from +z toward +x.
+    /// Compass angle of the point that the light comes from, in radians from +z toward +x. Default:
+    /// 0.6.
     pub azimuth: f32,
-    /// Angle of the sun above the horizon, in radians.
+    /// Angle of the sun above the horizon, in radians. Default: 0.75.
     pub elevation: f32,
-    /// Whether the sun circles the vertical.
+    /// Whether the sun circles the vertical. Default: no.
     pub animate: bool,
-    /// Speed of that circle, in radians a second.
+    /// Speed of that circle, in radians a second. Default: 0.1.
     pub animate_speed: f32,
 }
 
@@ -35,13 +36,13 @@ pub const FLYING_SPEEDS: (f32, f32) = (0.1, 1_000.0);
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct CameraSettings {
-    /// Vertical field of view, in radians.
+    /// Vertical field of view, in radians. Default: π/4.
     pub fov_y: f32,
-    /// Distance of the near plane, in metres.
+    /// Distance of the near plane, in metres. Default: 0.1.
     pub near: f32,
-    /// Distance of the far plane, in metres.
+    /// Distance of the far plane, in metres. Default: 200.
     pub far: f32,
-    /// Flying speed, in metres a second.
+    /// Flying speed, in metres a second, within [`FLYING_SPEEDS`]. Default: 5.
     pub speed: f32,
 }
 
@@ -56,20 +57,21 @@ impl Default for CameraSettings {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent switch of the panel")]
 pub struct ViewSettings {
-    /// Whether shadows are drawn at all.
+    /// Whether shadows are drawn at all. Default: yes.
     pub shadows: bool,
-    /// Shows one of the shadow maps in a corner.
+    /// Shows one of the shadow maps in a corner. Default: yes.
     pub inset: bool,
     /// Number of the map that the inset shows, 1..=8 from the nearest; the last one where there are
-    /// fewer.
+    /// fewer. Default: 1.
     pub inset_map: u32,
     /// Tints each point by the map that it reads, see [`MAP_TINTS`](crate::figures::MAP_TINTS).
+    /// Default: no.
     pub tint_maps: bool,
-    /// Looks at the camera from outside, with its frustum and the boxes of the maps drawn.
+    /// Looks at the camera from outside, with its frustum and the boxes of the maps drawn. Default: no.
     pub outside: bool,
-    /// Keeps the current fit while the camera flies on.
+    /// Keeps the current fit while the camera flies on. Default: no.
     pub freeze_fit: bool,
-    /// Plays the scene's animation.
+    /// Plays the scene's animation. Default: yes.
     pub play: bool,
 }
 

@@ -26,8 +26,9 @@ use crate::content::Content;
 use crate::light_hull::LightHull;
 use crate::outline::{Outline, Scratch};
 use crate::rule::Covers;
+use crate::settings::CasterPolicy;
 use crate::view::{Range, Slice, box_corners, moved};
-use crate::{CasterPolicy, FitError, FitInput, LightFit, Workspace, checks};
+use crate::{FitError, FitInput, LightFit, Workspace, checks};
 use half_space::{HalfSpaces, ROUNDING};
 
 pub use query::{CoverageQuery, MapPlane};
@@ -106,7 +107,8 @@ pub struct Margins {
 /// use shadowfit::bias::Reach;
 /// use shadowfit::glam::{DVec2, DVec3, Vec3};
 /// use shadowfit::verify::{Certificate, CoverageQuery, MapPlane, verify};
-/// use shadowfit::{FitInput, FitSettings, PerspectiveCamera, Workspace};
+/// use shadowfit::settings::FitSettings;
+/// use shadowfit::{FitInput, PerspectiveCamera, Workspace};
 ///
 /// let camera = PerspectiveCamera {
 ///     eye: DVec3::new(0.0, 1.7, 5.0),
@@ -125,11 +127,11 @@ pub struct Margins {
 /// // Hardware 2×2 samples read texels up to one away: half a texel must be left free for them.
 /// let settings = FitSettings::default().with_border(0.5);
 /// let query = CoverageQuery::of_fit(&settings, Reach::HARDWARE_2X2);
-/// let map = shadowfit::fit_scene(&input, &settings, &mut workspace)?;
+/// let map = shadowfit::fits::fit_scene(&input, &settings, &mut workspace)?;
 /// assert!(verify(&input, &map, &query, &mut workspace)?.is_proven());
 ///
 /// // Without them there is a hole, and the certificate says where.
-/// let map = shadowfit::fit_scene(&input, &settings.with_border(0.0), &mut workspace)?;
+/// let map = shadowfit::fits::fit_scene(&input, &settings.with_border(0.0), &mut workspace)?;
 /// let Certificate::Uncovered { plane, by, .. } = verify(&input, &map, &query, &mut workspace)? else { panic!() };
 /// assert!(plane != MapPlane::Near && by > 0.49 && by < 0.51);
 /// # Ok::<(), shadowfit::FitError>(())
@@ -138,7 +140,7 @@ pub struct Margins {
 /// # Errors
 ///
 /// Those of the views, the light's direction and the boxes as of
-/// [`fit_scene`](crate::fit_scene); [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the
+/// [`fit_scene`](crate::fits::fit_scene); [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the
 /// query and for a fit whose matrices are no light's; [`FitError::ZeroResolution`];
 /// [`FitError::NearNotBelowFar`] for a query whose near is above its far (equal ones ask for
 /// nothing); [`FitError::WorkspaceTooSmall`].

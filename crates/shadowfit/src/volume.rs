@@ -17,7 +17,7 @@ pub enum Constraint {
     Receivers,
     /// The box of a caster that stands before what is covered.
     Casters,
-    /// [`FitSettings::caster_extension`](crate::FitSettings::caster_extension).
+    /// [`FitSettings::caster_extension`](crate::settings::FitSettings::caster_extension).
     CasterExtension,
     /// The enclosing sphere of the [stable fit](crate::fits::sphere).
     Sphere,

@@ -2,13 +2,14 @@
 
 use allocation_counter::measure;
 use shadowfit::bias::Reach;
+use shadowfit::culling::{OrientedBox, Sphere, Sweep, cull};
+use shadowfit::fits::fit_scene;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::scroll::tiles;
+use shadowfit::scroll::{Scroll, tiles};
+use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, MAX_MAPS, RectangleKind, SplitScheme, Stabilise};
 use shadowfit::verify::{CoverageQuery, verify};
 use shadowfit::{
-    Aabb, Boxes, CasterPolicy, CasterVolume, FitInput, FitKind, FitSettings, MAX_MAPS, MapFitter, OrientedBox,
-    PerspectiveCamera, RectangleKind, Scroll, Sphere, SplitScheme, Stabilise, Sweep, Technique, ViewFrustum, Workspace,
-    cull, fit, fit_scene,
+    Aabb, Boxes, CasterVolume, FitInput, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace, fit,
 };
 
 const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.4);

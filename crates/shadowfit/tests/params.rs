@@ -4,12 +4,12 @@ use shadowfit::glam::{DVec3, UVec2, Vec3};
 use shadowfit::params::{
     self, Group, Kind, PARAMETERS, Parameter, format_value, set_from_str, set_technique_from_str, technique_parameters,
 };
-use shadowfit::settings::{BiasSettings, HoldSettings, MAX_MAPS, MapOverride};
-use shadowfit::tool::{CameraSettings, LightSettings, Settings, ViewSettings};
-use shadowfit::{
-    Aabb, Boxes, CasterPolicy, DepthConvention, FilterKind, FitInput, FitKind, FitSettings, MapFormat, PRESETS,
-    PerspectiveCamera, ReceiverSource, RectangleKind, SplitScheme, Stabilise, Technique, Workspace,
+use shadowfit::settings::{
+    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapFormat, MapOverride,
+    ReceiverSource, RectangleKind, SplitScheme, Stabilise,
 };
+use shadowfit::tool::{CameraSettings, LightSettings, Settings, ViewSettings};
+use shadowfit::{Aabb, Boxes, DepthConvention, FitInput, PRESETS, PerspectiveCamera, Technique, Workspace};
 
 #[path = "params/any_technique.rs"]
 mod any_technique;
@@ -89,25 +89,35 @@ fn leaves(settings: &Settings) -> Vec<(String, String)> {
     let mut all = Vec::new();
     let mut leaf = |name: &str, value: &dyn core::fmt::Debug| all.push((name.to_owned(), format!("{value:?}")));
     let Settings { technique, light, camera, view } = settings;
+    leaves_of_technique(technique, &mut leaf);
+    let LightSettings { azimuth, elevation, animate, animate_speed } = light;
+    leaf("light.azimuth", azimuth);
+    leaf("light.elevation", elevation);
+    leaf("light.animate", animate);
+    leaf("light.animate_speed", animate_speed);
+    let CameraSettings { fov_y, near, far, speed } = camera;
+    leaf("camera.fov_y", fov_y);
+    leaf("camera.near", near);
+    leaf("camera.far", far);
+    leaf("camera.speed", speed);
+    let ViewSettings { shadows, inset, inset_map, tint_maps, outside, freeze_fit, play } = view;
+    leaf("view.shadows", shadows);
+    leaf("view.inset", inset);
+    leaf("view.inset_map", inset_map);
+    leaf("view.tint_maps", tint_maps);
+    leaf("view.outside", outside);
+    leaf("view.freeze_fit", freeze_fit);
+    leaf("view.play", play);
+    all
+}
+
+/// Takes the name and the value of a field.
+type Leaf<'a> = dyn FnMut(&str, &dyn core::fmt::Debug) + 'a;
+
+fn leaves_of_technique(technique: &Technique, leaf: &mut Leaf) {
     let Technique { count, fit, splits, overlap, stabilise, hold, overrides, receivers, filter, bias, format } =
         technique;
-    let FitSettings { kind, rectangle, max_distance, margin, border, casters, caster_extension, up, resolution, depth } =
-        fit;
-    let Vec3 { x: up_x, y: up_y, z: up_z } = up;
-    let UVec2 { x: width, y: height } = resolution;
-    leaf("fit.kind", kind);
-    leaf("fit.rectangle", rectangle);
-    leaf("fit.max_distance", max_distance);
-    leaf("fit.margin", margin);
-    leaf("fit.border", border);
-    leaf("fit.casters", casters);
-    leaf("fit.caster_extension", caster_extension);
-    leaf("fit.up.x", up_x);
-    leaf("fit.up.y", up_y);
-    leaf("fit.up.z", up_z);
-    leaf("fit.resolution.x", width);
-    leaf("fit.resolution.y", height);
-    leaf("fit.depth", depth);
+    leaves_of_fit(fit, leaf);
     leaf("count", count);
     let (lambda, ends) = match splits {
         SplitScheme::Uniform | SplitScheme::Logarithmic | SplitScheme::FromBoxes | SplitScheme::FromHistogram => {
@@ -141,25 +151,38 @@ fn leaves(settings: &Settings) -> Vec<(String, String)> {
     leaf("bias.normal_offset", normal_offset);
     leaf("bias.receiver_plane", receiver_plane);
     leaf("format", format);
-    let LightSettings { azimuth, elevation, animate, animate_speed } = light;
-    leaf("light.azimuth", azimuth);
-    leaf("light.elevation", elevation);
-    leaf("light.animate", animate);
-    leaf("light.animate_speed", animate_speed);
-    let CameraSettings { fov_y, near, far, speed } = camera;
-    leaf("camera.fov_y", fov_y);
-    leaf("camera.near", near);
-    leaf("camera.far", far);
-    leaf("camera.speed", speed);
-    let ViewSettings { shadows, inset, inset_map, tint_maps, outside, freeze_fit, play } = view;
-    leaf("view.shadows", shadows);
-    leaf("view.inset", inset);
-    leaf("view.inset_map", inset_map);
-    leaf("view.tint_maps", tint_maps);
-    leaf("view.outside", outside);
-    leaf("view.freeze_fit", freeze_fit);
-    leaf("view.play", play);
-    all
+}
+
+fn leaves_of_fit(fit: &FitSettings, leaf: &mut Leaf) {
+    let FitSettings {
+        kind,
+        rectangle,
+        max_distance,
+        margin,
+        border,
+        casters,
+        caster_extension,
+        up,
+        max_texel_ratio,
+        resolution,
+        depth,
+    } = fit;
+    let Vec3 { x: up_x, y: up_y, z: up_z } = up;
+    let UVec2 { x: width, y: height } = resolution;
+    leaf("fit.kind", kind);
+    leaf("fit.rectangle", rectangle);
+    leaf("fit.max_distance", max_distance);
+    leaf("fit.margin", margin);
+    leaf("fit.border", border);
+    leaf("fit.casters", casters);
+    leaf("fit.caster_extension", caster_extension);
+    leaf("fit.up.x", up_x);
+    leaf("fit.up.y", up_y);
+    leaf("fit.up.z", up_z);
+    leaf("fit.max_texel_ratio", max_texel_ratio);
+    leaf("fit.resolution.x", width);
+    leaf("fit.resolution.y", height);
+    leaf("fit.depth", depth);
 }
 
 #[test]
@@ -223,16 +246,18 @@ fn rows_of_a_technique_change_nothing_but_the_technique() {
     }
 }
 
+/// Checks the options of a choice and what each of them sets.
+fn check<T: PartialEq + core::fmt::Debug>(id: &str, get: fn(&Technique) -> T, expected: &[(&str, T)]) {
+    let Kind::Choice(choice) = &row(id).kind else { panic!("{id} is no choice") };
+    let ids: Vec<&str> = choice.options.iter().map(|option| option.id).collect();
+    assert_eq!(ids, expected.iter().map(|(id, _)| *id).collect::<Vec<_>>(), "{id}");
+    for (option, variant) in expected {
+        assert_eq!(get(&with(&[(id, option)]).technique), *variant, "{id}={option}");
+    }
+}
+
 #[test]
 fn option_names_stand_for_their_variants() {
-    fn check<T: PartialEq + core::fmt::Debug>(id: &str, get: fn(&Technique) -> T, expected: &[(&str, T)]) {
-        let Kind::Choice(choice) = &row(id).kind else { panic!("{id} is no choice") };
-        let ids: Vec<&str> = choice.options.iter().map(|option| option.id).collect();
-        assert_eq!(ids, expected.iter().map(|(id, _)| *id).collect::<Vec<_>>(), "{id}");
-        for (option, variant) in expected {
-            assert_eq!(get(&with(&[(id, option)]).technique), *variant, "{id}={option}");
-        }
-    }
     let fits = [
         ("focused", FitKind::Focused),
         ("oriented", FitKind::Oriented),
@@ -435,6 +460,7 @@ fn numbers_are_written_short() {
         ("camera.near", "0.1"),
         ("fit.max_distance", "far_plane"),
         ("fit.border", "auto"),
+        ("fit.max_texel_ratio", "none"),
         ("fit.up_y", "1"),
         ("splits.count", "4"),
         ("splits.lambda", "0.5"),
@@ -563,6 +589,9 @@ fn knobs_say_where_they_have_no_effect() {
         ("fit.rectangle", &[], ("fit.kind", "frustum_aabb"), "focused"),
         ("fit.rectangle", &[], ("fit.kind", "sphere"), "focused"),
         ("fit.casters", &[], ("fit.kind", "xna_sample"), "XNA"),
+        ("fit.max_texel_ratio", &[], ("fit.kind", "xna_sample"), "XNA"),
+        ("fit.max_texel_ratio", &[], ("fit.kind", "sphere"), "sphere"),
+        ("fit.max_texel_ratio", &[("map.height", "512")], ("fit.kind", "xna_sample"), "XNA"),
         ("fit.border", &[], ("fit.kind", "xna_sample"), "XNA"),
         ("fit.caster_extension", &[("fit.casters", "extend")], ("fit.kind", "xna_sample"), "XNA"),
         ("fit.caster_extension", &[("fit.casters", "extend")], ("fit.casters", "none"), "By extension"),
@@ -613,7 +642,7 @@ fn a_knob_that_says_it_has_no_effect_has_none_and_the_others_have_one() {
         FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, Vec3::new(0.4, -0.7, 0.3)) };
     let map = |settings: &Settings| {
         let mut storage = [Default::default(); Workspace::required(3, 1)];
-        shadowfit::fit_scene(&input, &settings.technique.fit, &mut Workspace::new(&mut storage)).expect("a fit")
+        shadowfit::fits::fit_scene(&input, &settings.technique.fit, &mut Workspace::new(&mut storage)).expect("a fit")
     };
     let Kind::Choice(kinds) = &row("fit.kind").kind else { panic!("fits are options") };
     // Which boxes there are is up to the engine, and y alone is up already, whatever its length.
@@ -623,7 +652,11 @@ fn a_knob_that_says_it_has_no_effect_has_none_and_the_others_have_one() {
             let mut settings = with(&[("fit.kind", kind.id)]);
             let before = map(&settings);
             let reason = (parameter.inert)(&settings);
-            change(&mut settings, parameter);
+            match &parameter.kind {
+                // A limit that this view is sure to exceed.
+                Kind::Optional(ratio) if parameter.id == "fit.max_texel_ratio" => ratio.set(&mut settings, Some(1.0)),
+                _ => change(&mut settings, parameter),
+            }
             assert_eq!(map(&settings) == before, reason.is_some(), "{} with {}: {reason:?}", parameter.id, kind.id);
         }
     }

@@ -2,8 +2,8 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::NormalCone;
 use crate::checks::length;
+use crate::normal_cone::NormalCone;
 
 impl NormalCone {
     /// A narrow cone around the normals of triangles; not the narrowest.

@@ -13,7 +13,7 @@ use crate::settings::{FitKind, FitSettings};
 use crate::{FitError, LightFit, ViewFrustum};
 
 /// Fits a frustum of whose receivers nothing is known, which is the [oriented](super::oriented)
-/// fit; [`fit_scene`](crate::fit_scene) takes boxes. `direction` is the light's direction of
+/// fit; [`fit_scene`](crate::fits::fit_scene) takes boxes. `direction` is the light's direction of
 /// travel in world axes.
 ///
 /// # Errors

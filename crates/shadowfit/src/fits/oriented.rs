@@ -3,7 +3,7 @@
 //!
 //! The frustum's outline has four to eight corners, along whose edges the rectangle is sought. It
 //! turns and changes its size with every movement of the camera, so shadow edges crawl unless the
-//! fit is [held](crate::Stabilise::Hysteresis).
+//! fit is [held](crate::settings::Stabilise::Hysteresis).
 
 use glam::Vec3;
 

@@ -16,6 +16,7 @@ pub static PARAMETERS: &[Parameter] = &[
     fit::KIND,
     fit::RECEIVERS,
     fit::RECTANGLE,
+    fit::MAX_TEXEL_RATIO,
     fit::MAX_DISTANCE,
     fit::CASTERS,
     fit::CASTER_EXTENSION,

@@ -1,6 +1,6 @@
 //! Bins of view depth, and what is visible in each.
 
-use crate::MAX_MAPS;
+use crate::settings::MAX_MAPS;
 
 /// Splits of all maps, in metres of view depth: map i covers `splits[i]..splits[i + 1]`.
 pub(crate) type Splits = [f32; MAX_MAPS + 1];

@@ -13,10 +13,10 @@ use crate::axes::Light;
 use crate::checks;
 use crate::content::Content;
 use crate::rule::FitRule;
-use crate::settings::{SplitScheme, Stabilise};
+use crate::settings::{MAX_MAPS, SplitScheme, Stabilise};
 use crate::view::Range;
 use crate::volume::ROUNDING;
-use crate::{FitError, FitInput, MAX_MAPS, Technique};
+use crate::{FitError, FitInput, Technique};
 
 use bins::{BINS, Bins, Weights};
 use extents::{Maps, Sizes};

@@ -8,7 +8,7 @@
 
 use super::bins::{BINS, Bins, CLASSES, Weights};
 use super::extents::Sizes;
-use crate::MAX_MAPS;
+use crate::settings::MAX_MAPS;
 
 /// Share of the points that may lie over the bound.
 const OVER: f64 = 0.05;

@@ -1,7 +1,7 @@
 //! Which depths are visible, by a histogram of the frame before.
 
 use super::bins::{BINS, Bins, CLASSES, Weights};
-use crate::DepthHistogram;
+use crate::histogram::DepthHistogram;
 
 /// The counts as shares, spread over other bins.
 pub(super) fn weights(histogram: &DepthHistogram, bins: &Bins) -> Weights {

@@ -149,8 +149,19 @@ impl Expression for Technique {
 
 impl Expression for FitSettings {
     fn write(&self, code: &mut Code) -> fmt::Result {
-        let Self { kind, rectangle, max_distance, margin, border, casters, caster_extension, up, resolution, depth } =
-            self;
+        let Self {
+            kind,
+            rectangle,
+            max_distance,
+            margin,
+            border,
+            casters,
+            caster_extension,
+            up,
+            max_texel_ratio,
+            resolution,
+            depth,
+        } = self;
         let default = Self::default();
         code.fields("FitSettings")
             .field("kind", kind, &default.kind)
@@ -161,6 +172,7 @@ impl Expression for FitSettings {
             .field("casters", casters, &default.casters)
             .field("caster_extension", caster_extension, &default.caster_extension)
             .field("up", up, &default.up)
+            .field("max_texel_ratio", max_texel_ratio, &default.max_texel_ratio)
             .field("resolution", resolution, &default.resolution)
             .field("depth", depth, &default.depth)
             .end()

@@ -1,8 +1,9 @@
 //! What is asked of a map.
 
 use crate::bias::Reach;
+use crate::settings::{CasterPolicy, FitSettings};
 use crate::view::Range;
-use crate::{CasterPolicy, FitError, FitSettings, FittedMap, Technique, checks};
+use crate::{FitError, FittedMap, Technique, checks};
 
 /// What a map is asked to hold: which receivers read it, how far around them, and whether casters
 /// before the near plane are clipped.
@@ -27,7 +28,7 @@ pub struct CoverageQuery {
 }
 
 impl CoverageQuery {
-    /// What a single map of [`fit_scene`](crate::fit_scene) is made for: all receivers up to the
+    /// What a single map of [`fit_scene`](crate::fits::fit_scene) is made for: all receivers up to the
     /// shadow distance.
     pub const fn of_fit(settings: &FitSettings, reach: Reach) -> Self {
         let (near, far) = (f32::MIN, settings.max_distance);
@@ -79,6 +80,6 @@ pub enum MapPlane {
 }
 
 impl MapPlane {
-    /// All planes, in the order of [`LightFit::set_by`].
+    /// All planes, in the order of [`LightFit::set_by`](crate::LightFit::set_by).
     pub const ALL: [Self; 6] = [Self::Left, Self::Right, Self::Bottom, Self::Top, Self::Far, Self::Near];
 }

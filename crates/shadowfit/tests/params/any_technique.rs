@@ -4,11 +4,11 @@ use proptest::option;
 use proptest::prelude::*;
 use proptest::sample::select;
 use shadowfit::glam::{UVec2, Vec3};
-use shadowfit::settings::{BiasSettings, HoldSettings, MAX_MAPS, MapOverride};
-use shadowfit::{
-    CasterPolicy, DepthConvention, FilterKind, FitKind, FitSettings, MapFormat, ReceiverSource, RectangleKind,
-    SplitScheme, Stabilise, Technique,
+use shadowfit::settings::{
+    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapFormat, MapOverride,
+    ReceiverSource, RectangleKind, SplitScheme, Stabilise,
 };
+use shadowfit::{DepthConvention, Technique};
 
 /// Any variant of an enum without payloads. Does not compile until a new variant is listed.
 macro_rules! any {
@@ -59,10 +59,14 @@ fn any_fit() -> impl Strategy<Value = FitSettings> {
         option::of(0.0_f32..=32.0),
         0.0_f32..=1e4,
         prop::array::uniform3(-1.0_f32..=1.0).prop_map(Vec3::from),
+        prop_oneof![Just(f32::MAX), 1.0_f32..=64.0],
         any_resolution(),
     );
     (rule, sizes).prop_map(
-        |((kind, rectangle, casters, depth), (max_distance, margin, border, caster_extension, up, resolution))| {
+        |(
+            (kind, rectangle, casters, depth),
+            (max_distance, margin, border, caster_extension, up, max_texel_ratio, resolution),
+        )| {
             FitSettings {
                 kind,
                 rectangle,
@@ -72,6 +76,7 @@ fn any_fit() -> impl Strategy<Value = FitSettings> {
                 casters,
                 caster_extension,
                 up,
+                max_texel_ratio,
                 resolution,
                 depth,
             }

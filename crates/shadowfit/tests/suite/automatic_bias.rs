@@ -11,7 +11,8 @@ use proptest::strategy::Union;
 use shadowfit::bias::{MIN_COSINE, depth_gradient, depth_precision, normal_offset};
 use shadowfit::diagnostics::{DepthStorage, acne_margin, depth_step_at};
 use shadowfit::glam::{DMat3, DVec2, DVec3, UVec2, Vec3};
-use shadowfit::{Bias, DepthConvention, FitKind, LightFit};
+use shadowfit::settings::FitKind;
+use shadowfit::{Bias, DepthConvention, LightFit};
 
 use crate::filters::{Filter, filters};
 use crate::support::{any_camera, any_direction, apply, cases, exact, fitted, float};

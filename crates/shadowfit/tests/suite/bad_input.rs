@@ -3,8 +3,9 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DMat4, DVec3, Mat4, UVec2, Vec3};
+use shadowfit::settings::FitSettings;
 use shadowfit::tool::LightSettings;
-use shadowfit::{DepthConvention, FitError, FitSettings, LightFit, PerspectiveCamera, ViewFrustum};
+use shadowfit::{DepthConvention, FitError, LightFit, PerspectiveCamera, ViewFrustum};
 
 use crate::support::{DIRECTION, KINDS, any_kind, camera, cases, exact, fitted};
 
@@ -49,7 +50,7 @@ const SETTERS: [Setter; 19] = [
     ("caster_extension", |i, v| i.settings.caster_extension = v),
 ];
 
-fn good(kind: shadowfit::FitKind) -> Inputs {
+fn good(kind: shadowfit::settings::FitKind) -> Inputs {
     Inputs { camera: camera(), direction: DIRECTION, settings: exact(kind) }
 }
 
@@ -248,7 +249,7 @@ fn eye_and_maximum_distance_of_a_matrix_frustum_are_checked() {
 
 #[test]
 fn diagnostics_refuse_bad_points_normals_and_matrices() {
-    let fit = fitted(&camera(), DIRECTION, &exact(shadowfit::FitKind::FrustumAabb));
+    let fit = fitted(&camera(), DIRECTION, &exact(shadowfit::settings::FitKind::FrustumAabb));
     let clip = camera().clip_from_world(DepthConvention::ZeroToOne);
     let at = |clip: &Mat4, point, normal| {
         shadowfit::diagnostics::pixels_per_texel(&fit, clip, UVec2::new(640, 480), point, normal)
@@ -311,7 +312,7 @@ proptest! {
             }
         }
         let frustum = read(&Mat4::from_cols_array(&elements), DVec3::ZERO, f32::from_bits(limit));
-        let settings = exact(shadowfit::FitKind::FrustumAabb);
+        let settings = exact(shadowfit::settings::FitKind::FrustumAabb);
         if let Ok(fit) = frustum.and_then(|frustum| shadowfit::fit(&frustum, DIRECTION, &settings)) {
             prop_assert!(is_finite(&fit), "{fit:?}");
         }

@@ -5,7 +5,9 @@ use proptest::prelude::*;
 use shadowfit::bias::{Reach, acos_bias, depth_gradient, normal_offset, receiver_plane_depth};
 use shadowfit::diagnostics::{DepthStorage, acne_margin, coverage, depth_step_at, share_of_map};
 use shadowfit::glam::{DVec3, Vec2, Vec3};
-use shadowfit::{Bias, BiasSettings, FitError, FitKind, LightFit, LightStepSettings, LightSteps};
+use shadowfit::light_steps::{LightStepSettings, LightSteps};
+use shadowfit::settings::{BiasSettings, FitKind};
+use shadowfit::{Bias, FitError, LightFit};
 
 use crate::support::{DIRECTION, camera, cases, exact, fitted};
 

@@ -3,11 +3,10 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Mat4, UVec2, Vec3};
-use shadowfit::{
-    Aabb, Boxes, CasterPolicy, DepthBounds, DepthHistogram, FitError, FitInput, FitKind, FitSettings, FittedMaps,
-    LightFit, MapFitter, MapOverride, NormalCone, RectangleKind, SplitScheme, Stabilise, Technique, ViewFrustum,
-    Workspace,
-};
+use shadowfit::histogram::{DepthBounds, DepthHistogram};
+use shadowfit::normal_cone::NormalCone;
+use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, MapOverride, RectangleKind, SplitScheme, Stabilise};
+use shadowfit::{Aabb, Boxes, FitError, FitInput, FittedMaps, LightFit, MapFitter, Technique, ViewFrustum, Workspace};
 
 use crate::support::{DIRECTION, camera, cases};
 
@@ -69,7 +68,7 @@ impl Inputs {
     }
 
     fn single(&self) -> Result<LightFit, FitError> {
-        self.with(|input, workspace| shadowfit::fit_scene(input, &self.settings.fit, workspace))
+        self.with(|input, workspace| shadowfit::fits::fit_scene(input, &self.settings.fit, workspace))
     }
 
     /// Fits twice, so that what is kept from the first frame is used by the second.

@@ -1,8 +1,10 @@
 //! Batched culling answers as the tests of single shapes do, to the last bit.
 
 use proptest::prelude::*;
+use shadowfit::culling::{Bounds, OrientedBox, Sphere, Sweep, cull};
 use shadowfit::glam::{DVec3, Vec3, Vec4};
-use shadowfit::{Aabb, Bounds, CasterVolume, FitKind, OrientedBox, Sphere, Sweep, cull};
+use shadowfit::settings::FitKind;
+use shadowfit::{Aabb, CasterVolume};
 
 use crate::support::{any_camera, any_direction, camera, exact, fitted, float};
 

@@ -7,7 +7,8 @@ use shadowfit::bias::{
 };
 use shadowfit::diagnostics::DepthStorage;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
-use shadowfit::{Bias, BiasSettings, FilterKind, FitKind, LightFit, MapFormat};
+use shadowfit::settings::{BiasSettings, FilterKind, FitKind, MapFormat};
+use shadowfit::{Bias, LightFit};
 
 use crate::filters::filters;
 use crate::support::{DIRECTION, any_camera, any_direction, any_kind, apply, camera, double, exact, fitted, float};

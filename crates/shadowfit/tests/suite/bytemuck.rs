@@ -1,8 +1,11 @@
 //! Feature `bytemuck`: bytes for GPUs, without padding that nobody wrote, and the same on every target.
 
 use bytemuck::{Pod, bytes_of, cast_slice, from_bytes, offset_of};
+use shadowfit::culling::{CasterPlanes, OrientedBox, Sphere};
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::{Aabb, Bias, CasterPlanes, CasterPolicy, CasterVolume, FitSettings, NormalCone, OrientedBox, Sphere};
+use shadowfit::normal_cone::NormalCone;
+use shadowfit::settings::{CasterPolicy, FitSettings};
+use shadowfit::{Aabb, Bias, CasterVolume};
 
 use crate::support::{DIRECTION, camera, fitted};
 

@@ -1,8 +1,10 @@
 //! The volume of all that a map can store, and the tests of single shapes against it.
 
 use proptest::prelude::*;
+use shadowfit::culling::OrientedBox;
 use shadowfit::glam::{DVec3, Mat3, Mat4, Vec3, Vec4};
-use shadowfit::{Aabb, CasterPolicy, CasterVolume, FitKind, OrientedBox};
+use shadowfit::settings::{CasterPolicy, FitKind};
+use shadowfit::{Aabb, CasterVolume};
 
 use crate::support::{DIRECTION, KINDS, any_camera, any_direction, any_kind, camera, double, exact, fitted, float};
 

@@ -4,9 +4,8 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::{
-    Aabb, Boxes, CasterPolicy, FitInput, FitSettings, LightFit, MapFitter, Stabilise, Technique, Workspace,
-};
+use shadowfit::settings::{CasterPolicy, FitSettings, Stabilise};
+use shadowfit::{Aabb, Boxes, FitInput, LightFit, MapFitter, Technique, Workspace};
 
 use crate::scenes::{
     BoxPlan, SceneView, Walk, any_box, any_cascades, any_covering_fit, any_light, any_view, any_walk, share,
@@ -153,7 +152,7 @@ proptest! {
         let stage = stage.unwrap();
         let views = [view.frustum()];
         let mut storage = vec![DVec2::ZERO; Workspace::required(6, 1)];
-        let map = shadowfit::fit_scene(&stage.input(&views, direction), &fit, &mut Workspace::new(&mut storage)).unwrap();
+        let map = shadowfit::fits::fit_scene(&stage.input(&views, direction), &fit, &mut Workspace::new(&mut storage)).unwrap();
         for point in &stage.points {
             assert_kept(&map, *point, &stage.casters, stage.to_light);
         }

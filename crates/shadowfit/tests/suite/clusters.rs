@@ -4,8 +4,10 @@ use std::collections::HashMap;
 
 use proptest::collection::vec;
 use proptest::prelude::*;
+use shadowfit::clusters::Clusters;
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::{Aabb, Clusters, FitError, NormalCone};
+use shadowfit::normal_cone::NormalCone;
+use shadowfit::{Aabb, FitError};
 
 use crate::support::{any_direction, double, float};
 

@@ -1,8 +1,9 @@
 //! Conventions, one table each: handedness, depth, texture direction, vertical lights, origins.
 
 use proptest::prelude::*;
+use shadowfit::DepthConvention;
 use shadowfit::glam::{DVec3, Mat3, Vec3};
-use shadowfit::{DepthConvention, FitKind};
+use shadowfit::settings::FitKind;
 
 use crate::support::{DIRECTION, KINDS, any_camera, any_direction, any_kind, apply, camera, double, exact, fitted};
 

@@ -6,9 +6,9 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::{
-    Aabb, Boxes, DepthHistogram, FitInput, FitKind, FittedMap, LightFit, MapFitter, Technique, ViewFrustum, Workspace,
-};
+use shadowfit::histogram::DepthHistogram;
+use shadowfit::settings::FitKind;
+use shadowfit::{Aabb, Boxes, FitInput, FittedMap, LightFit, MapFitter, Technique, ViewFrustum, Workspace};
 
 use crate::scenes::{
     BoxPlan, SceneView, any_box, any_cascades, any_covering_fit, any_light, any_view, any_walk, of_camera, share,
@@ -153,7 +153,7 @@ proptest! {
         let frusta = [view.frustum()];
         let input = FitInput { receivers: stage.receivers(), ..FitInput::new(&frusta, direction) };
         let mut storage = workspace(10, 1);
-        let map = shadowfit::fit_scene(&input, &fit, &mut Workspace::new(&mut storage)).unwrap();
+        let map = shadowfit::fits::fit_scene(&input, &fit, &mut Workspace::new(&mut storage)).unwrap();
         // Only one fit looks at receivers; the others store all that is in view.
         let receivers = if fit.kind == FitKind::Focused { stage.receivers() } else { None };
         let points = seen(&samples, &view, receivers, f64::from(fit.max_distance));

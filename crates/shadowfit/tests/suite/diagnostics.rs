@@ -6,7 +6,8 @@ use shadowfit::diagnostics::{
     Coverage, DepthStorage, acne_margin, coverage, depth_step, depth_step_at, pixels_per_texel, share_of_map,
 };
 use shadowfit::glam::{DMat2, DVec2, DVec3, Mat4, UVec2, Vec3};
-use shadowfit::{Bias, DepthConvention, FitKind, LightFit, MapFormat, PerspectiveCamera};
+use shadowfit::settings::{FitKind, MapFormat};
+use shadowfit::{Bias, DepthConvention, LightFit, PerspectiveCamera};
 
 use crate::support::{DIRECTION, any_camera, any_direction, any_kind, camera, cases, double, exact, fitted, float};
 

@@ -2,7 +2,8 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DMat3, DQuat, DVec3, DVec4, Vec3, Vec4};
-use shadowfit::{DepthConvention, FitKind, LightFit, PerspectiveCamera};
+use shadowfit::settings::FitKind;
+use shadowfit::{DepthConvention, LightFit, PerspectiveCamera};
 
 use crate::support::{any_camera, any_direction, double, exact, fitted};
 

@@ -1,8 +1,9 @@
 //! What moving, scaling and turning the world leaves as it was.
 
 use proptest::prelude::*;
+use shadowfit::PerspectiveCamera;
 use shadowfit::glam::{DQuat, DVec3, Vec3};
-use shadowfit::{FitKind, PerspectiveCamera};
+use shadowfit::settings::FitKind;
 
 use crate::support::{KINDS, any_camera, any_direction, any_kind, apply, camera, cases, double, exact, fitted, float};
 

@@ -2,7 +2,9 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::{FitError, FitKind, LightFit, LightStepSettings, LightSteps};
+use shadowfit::light_steps::{LightStepSettings, LightSteps};
+use shadowfit::settings::FitKind;
+use shadowfit::{FitError, LightFit};
 
 use crate::support::{DIRECTION, camera, double, exact, fitted};
 

@@ -25,6 +25,7 @@ mod metamorphic;
 mod mint;
 mod optimality;
 mod other_matrices;
+mod recommendation;
 mod rounding;
 mod rust_code;
 mod scenes;

@@ -2,9 +2,11 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
+use shadowfit::histogram::{DepthBounds, DepthHistogram};
+use shadowfit::light_fit::Constraint;
+use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, RectangleKind, SplitScheme, Stabilise};
 use shadowfit::{
-    Aabb, Boxes, CasterPolicy, Constraint, DepthBounds, DepthHistogram, FitInput, FitKind, FitSettings, FittedMap,
-    FittedMaps, MapFitter, PerspectiveCamera, RectangleKind, SplitScheme, Stabilise, Technique, ViewFrustum, Workspace,
+    Aabb, Boxes, FitInput, FittedMap, FittedMaps, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace,
 };
 
 use crate::scenes::{COVERING, any_cascades, any_light, any_view};
@@ -322,7 +324,7 @@ proptest! {
         let plain = settings(kind, SplitScheme::FromBoxes, count);
         let settings = Technique { fit: plain.fit.with_rectangle(RectangleKind::MinimumSquare), ..plain };
         let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-        let mut fewest = |waste| shadowfit::fewest_maps(&input, &settings, waste, &mut Workspace::new(&mut storage)).unwrap();
+        let mut fewest = |waste| shadowfit::map_fitter::fewest_maps(&input, &settings, waste, &mut Workspace::new(&mut storage)).unwrap();
         let found = fewest(waste);
         prop_assert!((1..=count).contains(&found) && fewest(1.0) >= found && fewest(100.0) <= found);
         // Bins and directions are as coarse as for the cuts, in both.
@@ -380,7 +382,7 @@ fn what_set_each_plane_is_named() {
     let set_by = |input: &FitInput, kind, casters| {
         let fit = FitSettings { kind, casters, caster_extension: 5.0, ..FitSettings::default() };
         let mut storage = [DVec2::ZERO; Workspace::required(2, 1)];
-        shadowfit::fit_scene(input, &fit, &mut Workspace::new(&mut storage)).unwrap().set_by
+        shadowfit::fits::fit_scene(input, &fit, &mut Workspace::new(&mut storage)).unwrap().set_by
     };
     for kind in [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Focused] {
         assert_eq!(set_by(&input, kind, CasterPolicy::None), [View; 6]);

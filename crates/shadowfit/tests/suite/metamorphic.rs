@@ -6,10 +6,8 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DMat3, DQuat, DVec2, DVec3, Mat3, UVec2, Vec3};
-use shadowfit::{
-    Aabb, Boxes, CasterPolicy, DepthConvention, FitInput, FitKind, FitSettings, LightFit, MapFitter, RectangleKind,
-    SplitScheme, Stabilise, Technique, ViewFrustum, Workspace,
-};
+use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, RectangleKind, SplitScheme, Stabilise};
+use shadowfit::{Aabb, Boxes, DepthConvention, FitInput, LightFit, MapFitter, Technique, ViewFrustum, Workspace};
 
 use crate::scenes::{BoxPlan, COVERING, SceneView, any_box, any_light, any_view};
 use crate::support::{any_direction, apply, cases, double};
@@ -38,7 +36,7 @@ impl Scene {
         let casters = Boxes { origin, boxes: &self.casters };
         let input = FitInput { receivers, casters: Some(casters), ..FitInput::new(&views, self.direction) };
         let mut storage = vec![DVec2::ZERO; Workspace::required(self.casters.len(), 1)];
-        shadowfit::fit_scene(&input, settings, &mut Workspace::new(&mut storage)).unwrap()
+        shadowfit::fits::fit_scene(&input, settings, &mut Workspace::new(&mut storage)).unwrap()
     }
 
     /// The scene seen through a linear map that takes boxes to boxes, or that has none to take.

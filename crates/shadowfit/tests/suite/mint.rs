@@ -1,12 +1,14 @@
 //! Feature `mint`: what other maths crates hand over, and what they get.
 
 use mint::{ColumnMatrix4, Point3, RowMatrix4, Vector3};
+use shadowfit::culling::{OrientedBox, Sphere};
 use shadowfit::glam::{DMat4, DVec3, Mat4, Vec3};
 use shadowfit::mint::{
     dmat4, dvec3, frustum_from_eye_from_clip, frustum_from_world_from_clip, mat4, matrix, point, vec3, vector,
     world_point,
 };
-use shadowfit::{Aabb, DepthConvention, FitError, FitSettings, OrientedBox, Sphere, ViewFrustum};
+use shadowfit::settings::FitSettings;
+use shadowfit::{Aabb, DepthConvention, FitError, ViewFrustum};
 
 use crate::support::{DIRECTION, camera, fitted};
 

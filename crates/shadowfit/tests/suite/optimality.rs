@@ -4,7 +4,8 @@
 use proptest::prelude::*;
 use shadowfit::fits::sphere::enclosing_sphere;
 use shadowfit::glam::{DVec2, DVec3, Mat3, UVec2, Vec3};
-use shadowfit::{CasterPolicy, FitKind, FitSettings, LightFit, RectangleKind, ViewFrustum};
+use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, RectangleKind};
+use shadowfit::{LightFit, ViewFrustum};
 
 use crate::scenes::{any_light, any_view, of_camera};
 use crate::support::{any_camera, any_direction, cases};

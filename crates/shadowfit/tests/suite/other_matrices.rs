@@ -1,7 +1,8 @@
 //! Matrices of other code, taken as fits.
 
 use shadowfit::glam::{DMat4, DVec3, Mat4, UVec2, Vec3};
-use shadowfit::{DepthConvention, FitError, FitKind, FitSettings, LightFit, PerspectiveCamera, fit};
+use shadowfit::settings::{FitKind, FitSettings};
+use shadowfit::{DepthConvention, FitError, LightFit, PerspectiveCamera, fit};
 
 const DIRECTION: Vec3 = Vec3::new(0.4, -0.8, 0.3);
 

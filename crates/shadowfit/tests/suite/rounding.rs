@@ -2,10 +2,13 @@
 
 use shadowfit::bias::Reach;
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec3};
+use shadowfit::histogram::DepthHistogram;
+use shadowfit::light_steps::{LightStepSettings, LightSteps};
+use shadowfit::scroll::Scroll;
+use shadowfit::settings::{FitKind, SplitScheme, Stabilise};
 use shadowfit::verify::{CoverageQuery, verify};
 use shadowfit::{
-    Aabb, Boxes, DepthConvention, DepthHistogram, FitInput, FitKind, FittedMaps, LightStepSettings, LightSteps,
-    MapFitter, PerspectiveCamera, Scroll, SplitScheme, Stabilise, Technique, ViewFrustum, Workspace,
+    Aabb, Boxes, DepthConvention, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace,
 };
 
 /// Frames of a camera that stands still.

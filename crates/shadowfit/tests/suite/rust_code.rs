@@ -28,6 +28,7 @@ macro_rules! sample {
 }
 
 #[expect(clippy::let_and_return, reason = "a sample is one statement, and then what it made")]
+#[expect(clippy::unreadable_literal, reason = "numbers are written as Rust prints them")]
 fn samples() -> [Sample; 6] {
     [
         sample!("default", Technique::default()),
@@ -53,6 +54,7 @@ fn all_fields() -> Technique {
             casters: CasterPolicy::DepthClamp,
             caster_extension: 7.0,
             up: Vec3::new(0.0, -0.0, 1.0),
+            max_texel_ratio: 3.0,
             resolution: UVec2::new(1024, 512),
             depth: DepthConvention::Reversed,
         },

@@ -5,10 +5,8 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DMat4, DQuat, DVec3, DVec4, UVec2, Vec3};
-use shadowfit::{
-    Aabb, CasterPolicy, DepthConvention, FitKind, FitSettings, PerspectiveCamera, RectangleKind, SplitScheme,
-    Stabilise, Technique, ViewFrustum,
-};
+use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, RectangleKind, SplitScheme, Stabilise};
+use shadowfit::{Aabb, DepthConvention, PerspectiveCamera, Technique, ViewFrustum};
 
 use crate::support::{any_direction, double, float};
 

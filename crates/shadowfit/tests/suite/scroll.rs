@@ -4,11 +4,11 @@ use std::collections::HashMap;
 
 use proptest::prelude::*;
 use shadowfit::glam::{DQuat, DVec2, DVec3, UVec2, Vec3};
-use shadowfit::scroll::{TexelRect, Tile, tiles};
+use shadowfit::scroll::{GridAnchor, Scroll, TexelRect, Tile, tiles};
+use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, RectangleKind, SplitScheme, Stabilise};
 use shadowfit::{
-    Aabb, Boxes, CasterPolicy, DepthConvention, FitError, FitInput, FitKind, FitSettings, FittedMap, FittedMaps,
-    GridAnchor, LightFit, MapFitter, PerspectiveCamera, RectangleKind, Scroll, SplitScheme, Stabilise, Technique,
-    Workspace,
+    Aabb, Boxes, DepthConvention, FitError, FitInput, FittedMap, FittedMaps, LightFit, MapFitter, PerspectiveCamera,
+    Technique, Workspace,
 };
 
 use crate::support::{DIRECTION, any_direction, camera, double};

@@ -5,7 +5,8 @@
 
 use shadowfit::bias::{Reach, depth_gradient, normal_offset, receiver_plane_depth};
 use shadowfit::glam::{DVec2, DVec3, DVec4, Vec2, Vec3};
-use shadowfit::{DepthConvention, FitKind, LightFit};
+use shadowfit::settings::FitKind;
+use shadowfit::{DepthConvention, LightFit};
 
 use crate::filters::{Filter, LookUp, filters};
 use crate::support::{DIRECTION, camera, exact, fitted};

@@ -4,17 +4,19 @@ use std::fmt::Debug;
 
 use serde::{Serialize, de::DeserializeOwned};
 use shadowfit::bias::Reach;
+use shadowfit::culling::{CasterPlanes, OrientedBox, Sphere};
 use shadowfit::diagnostics::{AcneMargin, Coverage, DepthStorage, PixelsPerTexel};
 use shadowfit::figures::{Figures, MapFigures};
 use shadowfit::fits::sphere::enclosing_sphere;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
+use shadowfit::light_steps::{LightStepSettings, LightSteps};
+use shadowfit::normal_cone::NormalCone;
+use shadowfit::settings::{
+    BiasSettings, CasterPolicy, FitKind, FitSettings, MapOverride, RectangleKind, SplitScheme, Stabilise,
+};
 use shadowfit::tool::Settings;
 use shadowfit::verify::{Certificate, CoverageQuery, MapPlane, Margins};
-use shadowfit::{
-    Aabb, Bias, BiasSettings, CasterPlanes, CasterPolicy, DepthConvention, FitInput, FitKind, FitSettings,
-    LightStepSettings, LightSteps, MapFitter, MapOverride, NormalCone, OrientedBox, RectangleKind, Sphere, SplitScheme,
-    Stabilise, Technique, ViewFrustum, Workspace,
-};
+use shadowfit::{Aabb, Bias, DepthConvention, FitInput, MapFitter, Technique, ViewFrustum, Workspace};
 
 use crate::support::{DIRECTION, camera, fitted};
 
@@ -130,5 +132,5 @@ fn a_damaged_number_of_cascades_is_no_trouble() {
     let mut json = serde_json::to_value(cascades).unwrap();
     json["count"] = 1000.into();
     let damaged: shadowfit::FittedMaps = serde_json::from_value(json).unwrap();
-    assert_eq!(damaged.len(), shadowfit::MAX_MAPS);
+    assert_eq!(damaged.len(), shadowfit::settings::MAX_MAPS);
 }

@@ -1,9 +1,10 @@
 //! The sun's angles, and what follows from a technique's settings.
 
 use proptest::prelude::*;
+use shadowfit::Technique;
 use shadowfit::glam::{UVec2, Vec3};
+use shadowfit::settings::{BiasSettings, FilterKind, FitSettings, MapFormat};
 use shadowfit::tool::{CameraSettings, LightSettings, Settings, ViewSettings};
-use shadowfit::{BiasSettings, FilterKind, FitSettings, MapFormat, Technique};
 
 use crate::support::any_direction;
 

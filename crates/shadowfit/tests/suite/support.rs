@@ -3,7 +3,8 @@
 use proptest::prelude::*;
 use serde_json::Value;
 use shadowfit::glam::{DVec3, Mat4, Vec3};
-use shadowfit::{FitKind, FitSettings, LightFit, PerspectiveCamera};
+use shadowfit::settings::{FitKind, FitSettings};
+use shadowfit::{LightFit, PerspectiveCamera};
 
 /// Both fits.
 pub(crate) const KINDS: [FitKind; 2] = [FitKind::XnaSample, FitKind::FrustumAabb];

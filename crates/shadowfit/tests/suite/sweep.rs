@@ -2,10 +2,12 @@
 
 use proptest::prelude::*;
 use shadowfit::bias::Reach;
+use shadowfit::culling::Sweep;
+use shadowfit::fits::fit_scene;
 use shadowfit::glam::{DVec2, DVec3, Vec2, Vec3};
+use shadowfit::settings::{FitKind, FitSettings, MapOverride, SplitScheme, Stabilise};
 use shadowfit::{
-    Aabb, Boxes, CasterVolume, FitError, FitInput, FitKind, FitSettings, LightFit, MapFitter, MapOverride, SplitScheme,
-    Stabilise, Sweep, Technique, ViewFrustum, Workspace, fit_scene,
+    Aabb, Boxes, CasterVolume, FitError, FitInput, LightFit, MapFitter, Technique, ViewFrustum, Workspace,
 };
 
 use crate::support::{DIRECTION, any_direction, camera, cases, double, exact, fitted, float};
@@ -206,7 +208,7 @@ proptest! {
         points in prop::collection::vec(prop::array::uniform3(double(0.0, 1.0)), 12), half in float(0.001, 0.2),
     ) {
         let views = [lens.frustum(DVec3::new(12.0, 3.0, -40.0))];
-        let fit = FitSettings::default().with_kind(ALL_KINDS[kinds.0]).with_casters(shadowfit::CasterPolicy::DepthClamp);
+        let fit = FitSettings::default().with_kind(ALL_KINDS[kinds.0]).with_casters(shadowfit::settings::CasterPolicy::DepthClamp);
         let mut technique = Technique {
             fit: if is_bordered { fit } else { fit.with_border(0.0) },
             splits: SplitScheme::Practical(0.5),

@@ -6,10 +6,9 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::{
-    Constraint, FitInput, FitKind, FitSettings, FittedMap, FittedMaps, LightFit, MapFitter, RectangleKind, SplitScheme,
-    Stabilise, Technique, ViewFrustum, Workspace,
-};
+use shadowfit::light_fit::Constraint;
+use shadowfit::settings::{FitKind, FitSettings, RectangleKind, SplitScheme, Stabilise};
+use shadowfit::{FitInput, FittedMap, FittedMaps, LightFit, MapFitter, Technique, ViewFrustum, Workspace};
 
 use crate::scenes::{COVERING, SceneView, Walk, any_light, any_view, any_walk};
 use crate::support::{apply, cases, double};

@@ -2,11 +2,9 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, UVec2, Vec3};
+use shadowfit::settings::{FitKind, FitSettings, RectangleKind, SplitScheme, Stabilise};
 use shadowfit::verify::{CoverageQuery, verify};
-use shadowfit::{
-    FitError, FitInput, FitKind, FitSettings, LightFit, MapFitter, RectangleKind, SplitScheme, Stabilise, Technique,
-    Workspace,
-};
+use shadowfit::{FitError, FitInput, LightFit, MapFitter, Technique, Workspace};
 
 use crate::support::{DIRECTION, any_camera, any_direction, camera, cases, float};
 

@@ -2,7 +2,8 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::{DepthConvention, FitKind, LightFit, PerspectiveCamera, ViewFrustum};
+use shadowfit::settings::FitKind;
+use shadowfit::{DepthConvention, LightFit, PerspectiveCamera, ViewFrustum};
 
 use crate::support::{KINDS, any_camera, any_direction, any_kind, apply, camera, double, exact, fitted, float};
 

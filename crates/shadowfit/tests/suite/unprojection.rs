@@ -2,7 +2,8 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DMat4, DVec3, DVec4, Mat4, Vec3};
-use shadowfit::{DepthConvention, FitError, FitKind, PerspectiveCamera, ViewFrustum};
+use shadowfit::settings::FitKind;
+use shadowfit::{DepthConvention, FitError, PerspectiveCamera, ViewFrustum};
 
 use crate::support::{DIRECTION, any_camera, camera, exact, fitted, xna_cases};
 

@@ -3,10 +3,11 @@
 use proptest::prelude::*;
 use shadowfit::bias::Reach;
 use shadowfit::glam::{DQuat, DVec2, DVec3, Mat4, UVec2, Vec3};
+use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, HoldSettings, RectangleKind, SplitScheme, Stabilise};
 use shadowfit::verify::{Certificate, CoverageQuery, MapPlane, verify};
 use shadowfit::{
-    Aabb, Boxes, CasterPolicy, DepthConvention, FitError, FitInput, FitKind, FitSettings, HoldSettings, LightFit,
-    MapFitter, PerspectiveCamera, RectangleKind, SplitScheme, Stabilise, Technique, ViewFrustum, Workspace,
+    Aabb, Boxes, DepthConvention, FitError, FitInput, LightFit, MapFitter, PerspectiveCamera, Technique, ViewFrustum,
+    Workspace,
 };
 
 use crate::support::{DIRECTION, any_camera, any_direction, apply, camera, cases, double, float};
@@ -174,7 +175,7 @@ proptest! {
         let input = scene.input(&views, direction);
         let mut storage = storage(scene.len());
         let mut workspace = Workspace::new(&mut storage);
-        let map = shadowfit::fit_scene(&input, &fit, &mut workspace).unwrap();
+        let map = shadowfit::fits::fit_scene(&input, &fit, &mut workspace).unwrap();
         let query = CoverageQuery::of_fit(&fit, reach_of(&fit));
         let certificate = verify(&input, &map, &query, &mut workspace).unwrap();
         prop_assert!(certificate.is_proven(), "{certificate:?}");
@@ -192,7 +193,7 @@ proptest! {
         let input = scene.input(&views, direction);
         let mut storage = storage(scene.len());
         let mut workspace = Workspace::new(&mut storage);
-        let mut map = shadowfit::fit_scene(&input, &fit, &mut workspace).unwrap();
+        let mut map = shadowfit::fits::fit_scene(&input, &fit, &mut workspace).unwrap();
         // Shift the map by up to a tenth: most of these have holes, and the others must have none.
         let shift = map.light_from_world.x_axis.truncate() * (map.box_max.x - map.box_min.x) * margin as f32;
         map.origin += shift.as_dvec3();

@@ -1,7 +1,8 @@
 //! The XNA fit against the published vectors of the sample, 24 cameras and lights.
 
+use shadowfit::LightFit;
 use shadowfit::glam::{DVec3, Mat4, Vec3};
-use shadowfit::{FitKind, LightFit};
+use shadowfit::settings::FitKind;
 
 use crate::support::{XnaCase, exact, fitted, numbers, relative_error, xna_cases};
 

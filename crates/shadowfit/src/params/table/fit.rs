@@ -2,7 +2,7 @@
 
 use super::{always_active, always_there, pull_near};
 use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
-use crate::{CasterPolicy, FitKind, ReceiverSource, RectangleKind};
+use crate::settings::{CasterPolicy, FitKind, ReceiverSource, RectangleKind};
 
 /// The fits in the order of their options.
 pub(super) const FIT_KINDS: [FitKind; 5] =
@@ -106,6 +106,34 @@ pub(super) const RECTANGLE: Parameter = Parameter {
     inert: |s| {
         (!matches!(s.technique.fit.kind, FitKind::Oriented | FitKind::Focused))
             .then_some("Only the oriented and the focused fit can turn; choose one of them.")
+    },
+};
+
+pub(super) const MAX_TEXEL_RATIO: Parameter = Parameter {
+    id: "fit.max_texel_ratio",
+    group: Group::Fit,
+    label: "Longest texels",
+    unit: "×",
+    help: "How many times as long as wide a texel may be. Long texels blur edges more one way than the other; a low \
+           limit makes blur even and texels coarser.",
+    kind: Kind::Optional(Optional {
+        min: 1.0,
+        max: 64.0,
+        step: 0.1,
+        logarithmic: true,
+        decimals: 1,
+        unset: Some(ChoiceOption { id: "none", label: "no limit", help: "Texels may be of any shape." }),
+        initial: 2.0,
+        present: always_there,
+        read: |s| Some(f64::from(s.technique.fit.max_texel_ratio)).filter(|ratio| *ratio < f64::from(f32::MAX)),
+        write: |s, value| s.technique.fit.max_texel_ratio = value.map_or(f32::MAX, |value| value as f32),
+    }),
+    inert: |s| match s.technique.fit.kind {
+        FitKind::XnaSample => Some("The XNA sample's fit has no limit to its texels' shape; choose another fit."),
+        FitKind::Sphere if s.technique.fit.resolution.x == s.technique.fit.resolution.y => {
+            Some("The texels of the stable sphere are as long as wide already; choose another fit.")
+        }
+        _ => None,
     },
 };
 

@@ -5,8 +5,8 @@ use glam::UVec2;
 use super::always_there;
 use super::fit::FIT_KINDS;
 use super::map::SIDES;
-use crate::MAX_MAPS;
 use crate::params::{Choice, ChoiceOption, Group, Kind, Optional, Parameter};
+use crate::settings::MAX_MAPS;
 use crate::tool::Settings;
 
 /// The three rows of a map.

@@ -2,7 +2,7 @@
 
 use super::always_active;
 use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
-use crate::{MAX_MAPS, SplitScheme};
+use crate::settings::{MAX_MAPS, SplitScheme};
 
 pub(super) const COUNT: Parameter = Parameter {
     id: "splits.count",
@@ -51,7 +51,7 @@ pub(super) const SCHEME: Parameter = Parameter {
             ChoiceOption {
                 id: "practical",
                 label: "Practical",
-                help: "A mixture of logarithmic and uniform splits, by lambda (parallel-split shadow maps, 2006).",
+                help: "A mixture of logarithmic and uniform splits, by lambda (parallel-split shadow maps).",
             },
             ChoiceOption {
                 id: "logarithmic",
@@ -91,7 +91,7 @@ pub(super) const LAMBDA: Parameter = Parameter {
     label: "Lambda",
     unit: "",
     help: "Share of the logarithmic splits in the practical ones: 1 spends most maps close to the camera, 0 spreads \
-           them evenly. Engines begin with 0.5 to 0.75.",
+           them evenly. 0.5 is a good start.",
     kind: Kind::Optional(Optional {
         min: 0.0,
         max: 1.0,

@@ -1,8 +1,8 @@
 //! The rows of what keeps the maps still.
 
 use super::always_active;
-use crate::Stabilise;
 use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Parameter};
+use crate::settings::Stabilise;
 use crate::tool::Settings;
 
 pub(super) const MODE: Parameter = Parameter {

@@ -1,7 +1,7 @@
 //! The rows of the tools' settings: sun, camera and what is drawn.
 
 use super::{always_active, pull_near};
-use crate::MAX_MAPS;
+use crate::settings::MAX_MAPS;
 use crate::params::{Group, Kind, MIN_FAR_PER_NEAR, Number, Parameter, Toggle};
 use crate::tool::FLYING_SPEEDS;
 

@@ -10,6 +10,7 @@ let technique = Technique {
         casters: CasterPolicy::DepthClamp,
         caster_extension: 7.0,
         up: Vec3::new(0.0, -0.0, 1.0),
+        max_texel_ratio: 3.0,
         resolution: UVec2::new(1024, 512),
         depth: DepthConvention::Reversed,
     },
