@@ -40,7 +40,9 @@ impl MapFit {
     ///
     /// For another [`Bias`], such as [`Bias::automatic`] or [`Bias::fixed`], set [`Self::bias`].
     pub fn from_texels(map: &CascadeMap, settings: &BiasSettings) -> Self {
-        Self { far: map.far, ..Self::new(map.fit, Bias::from_texels(settings, &map.fit)) }
+        // A map without a range behind all others begins at `f32::MAX`; its end is that of the view.
+        let far = if map.near == f32::MAX { f32::MAX } else { map.far };
+        Self { far, ..Self::new(map.fit, Bias::from_texels(settings, &map.fit)) }
     }
 }
 
