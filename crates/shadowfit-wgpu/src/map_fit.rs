@@ -76,14 +76,17 @@ pub(crate) fn check(descriptor: &ShadowMapDescriptor, view: &MapView, maps: &[Ma
     }
     let length = view.forward.length();
     // NaN is no unit length either.
-    if fits > 0 && !((length - 1.0).abs() <= UNIT_TOLERANCE) {
+    let is_unit = (length - 1.0).abs() <= UNIT_TOLERANCE;
+    if fits > 0 && !is_unit {
         return Err(ShadowMapError::Forward { forward: view.forward, length });
     }
     let mut previous = f32::MIN;
     for (index, map) in maps.iter().enumerate() {
         check_layer(descriptor, index, &map.fit)?;
         map.bias.checked().map_err(|error| ShadowMapError::Bias { index, error })?;
-        if !(map.far >= previous) {
+        // Nor is NaN in any order.
+        let is_in_order = map.far >= previous;
+        if !is_in_order {
             return Err(ShadowMapError::Order { index, far: map.far, previous });
         }
         previous = map.far;
