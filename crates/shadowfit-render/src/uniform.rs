@@ -38,7 +38,7 @@ impl Default for Atmosphere {
 
 /// Colours of the maps in [`Overlay::MapTint`], the nearest first, as sRGB bytes: seven that are told apart with every
 /// kind of colour blindness, and white (M. Okabe, K. Ito, "Color universal design", 2008, whose black would look like
-/// a shadow). Neighbours differ in lightness too.
+/// a shadow). Neighbouring maps differ in lightness too.
 pub const MAP_TINTS: [[u8; 3]; MAX_MAPS] = [
     [0xe6, 0x9f, 0x00],
     [0x00, 0x72, 0xb2],
@@ -50,8 +50,8 @@ pub const MAP_TINTS: [[u8; 3]; MAX_MAPS] = [
     [0xff, 0xff, 0xff],
 ];
 
-/// Share of a map's tint in a surface's colour: enough to name the map by it, and little enough that lit and shadowed
-/// stay two to one or more apart.
+/// Share of a map's tint in a surface's colour: enough to name the map by it, and little enough that shadows stay
+/// plain under it.
 const TINT_SHARE: f32 = 0.35;
 
 /// What every shader of a frame reads: `Frame` in WGSL.
