@@ -1,8 +1,9 @@
 //! What a shadow map refuses to be prepared with, since it would give a wrong picture without a word: each error carries
 //! the index and the value. And that a refusal changes nothing.
 
-use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::{Bias, FitError, LightFit};
+use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
+use shadowfit::settings::{BiasSettings, CascadeSettings, SplitScheme};
+use shadowfit::{Bias, CascadeFitter, FitError, FitInput, LightFit, PerspectiveCamera, Workspace};
 use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError};
 
 use super::exact_counts_gpu::box_fit;
@@ -99,6 +100,33 @@ fn maps_out_of_order_are_an_error_and_those_without_a_range_are_not() {
     }
     for far in [&[1.0, 1.0, 2.0][..], &[f32::MIN, f32::MIN, 5.0], &[5.0, f32::MAX, f32::MAX], &[-2.0, 3.0]] {
         assert_eq!(prepared(&maps(far), Vec3::NEG_Z), Ok(far.len()), "{far:?}");
+    }
+}
+
+#[test]
+fn maps_of_the_core_are_in_order_where_some_of_them_have_no_range() {
+    let view = [PerspectiveCamera {
+        eye: DVec3::ZERO,
+        forward: Vec3::NEG_Z,
+        up: Vec3::Y,
+        fov_y: 0.9,
+        aspect: 1.6,
+        near: 0.1,
+        far: 30.0,
+    }
+    .frustum()
+    .expect("a camera")];
+    for ends in [[10.0, 50.0], [-5.0, 10.0], [40.0, 50.0], [-5.0, -1.0]] {
+        let mut manual = [100.0; 7];
+        manual[..2].copy_from_slice(&ends);
+        let mut settings =
+            CascadeSettings { count: LAYERS, splits: SplitScheme::Manual(manual), ..CascadeSettings::default() };
+        settings.fit.resolution = UVec2::splat(256);
+        let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+        let input = FitInput::new(&view, Vec3::new(0.3, -0.8, 0.2));
+        let fitted = CascadeFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("maps");
+        let maps: Vec<MapFit> = fitted.iter().map(|map| MapFit::from_texels(map, &BiasSettings::default())).collect();
+        assert_eq!(prepared(&maps, Vec3::NEG_Z), Ok(3), "{ends:?}");
     }
 }
 

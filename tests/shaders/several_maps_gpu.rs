@@ -38,8 +38,8 @@ fn lid(fit: &LightFit) -> Vec<Vec3> {
 }
 
 /// A map without biases that ends at a view depth.
-fn map_fit(fit: LightFit, far: f32) -> MapFit {
-    MapFit { far, ..MapFit::new(fit, Bias::default()) }
+fn map_fit(fit: &LightFit, far: f32) -> MapFit {
+    MapFit { far, ..MapFit::new(*fit, Bias::default()) }
 }
 
 fn descriptor(maps: &[MapFit]) -> ShadowMapDescriptor {
@@ -70,7 +70,7 @@ fn ask(view: &MapView, maps: &[MapFit], shadowed: usize, points: &[Vec3]) -> Vec
 #[test]
 fn a_point_reads_the_first_map_that_reaches_as_far_or_the_next_one_that_holds_it() {
     let fits = [map_to(5.0, 256), map_to(20.0, 256), map_to(60.0, 256)];
-    let maps: Vec<MapFit> = fits.iter().zip([4.0, 15.0, f32::MAX]).map(|(fit, far)| map_fit(*fit, far)).collect();
+    let maps: Vec<MapFit> = fits.iter().zip([4.0, 15.0, f32::MAX]).map(|(fit, far)| map_fit(fit, far)).collect();
     let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
     // Along the axis at these view depths; the last one is near, but aside of the first map.
     let is_aside = |point: &Vec3| !fits[0].covers(point.as_dvec3()) && fits[1].covers(point.as_dvec3());
@@ -94,7 +94,7 @@ fn a_point_reads_the_first_map_that_reaches_as_far_or_the_next_one_that_holds_it
 #[test]
 fn as_many_maps_as_there_may_be_are_told_apart() {
     let fits: Vec<LightFit> = (1..=MAX_MAPS).map(|i| map_to(i as f32 * 5.0, 256)).collect();
-    let maps: Vec<MapFit> = fits.iter().enumerate().map(|(i, fit)| map_fit(*fit, (i + 1) as f32 * 5.0)).collect();
+    let maps: Vec<MapFit> = fits.iter().enumerate().map(|(i, fit)| map_fit(fit, (i + 1) as f32 * 5.0)).collect();
     let points: Vec<Vec3> = (0..MAX_MAPS).map(|i| Vec3::NEG_Z * (i as f32 * 5.0 + 2.5)).collect();
     let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
     for shadowed in 0..MAX_MAPS {
@@ -142,7 +142,7 @@ fn the_map_index_and_the_view_depth_in_wgsl_are_those_computed_here() {
     let gpu = software_gpu();
     let forward = Vec3::new(0.25, -0.1, -1.0).normalize();
     let fits = [map_to(5.0, 256), map_to(20.0, 256), map_to(60.0, 256)];
-    let maps: Vec<MapFit> = fits.iter().zip([4.0, 15.0, 50.0]).map(|(fit, far)| map_fit(*fit, far)).collect();
+    let maps: Vec<MapFit> = fits.iter().zip([4.0, 15.0, 50.0]).map(|(fit, far)| map_fit(fit, far)).collect();
     let (origin, eye) = (DVec3::new(1.0, -0.5, 2.0), DVec3::new(-0.5, 0.25, 1.0));
     let view = MapView { origin, eye, forward };
     let harness = Harness::with_maps(&gpu, &descriptor(&maps), &view, &maps, &lids(&maps, 0));
@@ -171,7 +171,7 @@ fn the_map_index_and_the_view_depth_in_wgsl_are_those_computed_here() {
         });
         if !is_at_a_border {
             let reads = |map: &MapFit| expected_depth < f64::from(map.far) && map.fit.covers(world);
-            let expected = maps.iter().position(reads).map_or(-1, |index| index as i32);
+            let expected = maps.iter().position(reads).map_or(-1, |index| i32::try_from(index).expect("one of eight"));
             assert_eq!(map, expected, "{position} at view depth {expected_depth}");
             met[(expected + 1) as usize] += 1;
         }
@@ -182,7 +182,7 @@ fn the_map_index_and_the_view_depth_in_wgsl_are_those_computed_here() {
 #[test]
 fn casters_are_drawn_alike_with_the_map_s_matrix_at_any_bind_group() {
     let gpu = software_gpu();
-    let maps = [map_fit(map_to(5.0, 256), 4.0), map_fit(map_to(20.0, 256), f32::MAX)];
+    let maps = [map_fit(&map_to(5.0, 256), 4.0), map_fit(&map_to(20.0, 256), f32::MAX)];
     let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
     let points = ground(&[2.0_f32, 3.9, 4.1, 15.0].map(|depth| Vec3::NEG_Z * depth));
     for (shadowed, expected) in [[0.0, 0.0, 1.0, 1.0], [1.0, 1.0, 0.0, 0.0]].into_iter().enumerate() {

@@ -179,7 +179,8 @@ fn fitted(case: &Case, camera: &PerspectiveCamera, boxes: &[Aabb], direction: Ve
         let is_narrow = case.is_narrow && index < last;
         let settings = case.technique.fit.with_max_distance(map.far).with_casters(CasterPolicy::Extend);
         let light = if is_narrow { fit(&narrow, direction, &settings).expect("a fit") } else { map.fit };
-        MapFit { far: map.far, ..MapFit::new(light, (case.bias)(&light, case.filter)) }
+        let converted = MapFit::from_texels(map, &BiasSettings::default());
+        MapFit { fit: light, bias: (case.bias)(&light, case.filter), ..converted }
     };
     fitted.iter().enumerate().map(map).collect()
 }

@@ -209,7 +209,9 @@ impl Renderer {
             let swept = frame.camera.frustum().and_then(|seen| MapFit::sweep(&mut maps, view, &[seen], filter));
             if swept.is_err() {
                 // Of a camera that makes no sense nobody knows what it sees: maps get all that they can store.
-                maps.iter_mut().for_each(|map| map.volume = None);
+                for map in &mut maps {
+                    map.volume = None;
+                }
             }
         }
         maps

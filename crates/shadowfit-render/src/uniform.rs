@@ -37,8 +37,8 @@ impl Default for Atmosphere {
     }
 }
 
-/// Share of a map's tint in a surface's colour: enough to name the map by it, and little enough that lit and shadowed
-/// stay two to one or more apart.
+/// Share of a map's tint in a surface's colour: enough to name the map by it, and little enough that shadows stay
+/// plain under it.
 const TINT_SHARE: f32 = 0.35;
 
 /// What every shader of a frame reads: `Frame` in WGSL.

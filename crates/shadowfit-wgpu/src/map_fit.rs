@@ -40,7 +40,9 @@ impl From<&FittedMap> for MapFit {
     ///
     /// For another [`Bias`], such as [`Bias::automatic`] or [`Bias::fixed`], set [`MapFit::bias`].
     fn from(map: &FittedMap) -> Self {
-        Self { far: map.far, ..Self::new(map.fit, map.bias) }
+        // A map without a range behind all others begins at `f32::MAX`; its end is that of the view.
+        let far = if map.near == f32::MAX { f32::MAX } else { map.far };
+        Self { far, ..Self::new(map.fit, map.bias) }
     }
 }
 
@@ -74,14 +76,17 @@ pub(crate) fn check(descriptor: &ShadowMapDescriptor, view: &MapView, maps: &[Ma
     }
     let length = view.forward.length();
     // NaN is no unit length either.
-    if fits > 0 && !((length - 1.0).abs() <= UNIT_TOLERANCE) {
+    let is_unit = (length - 1.0).abs() <= UNIT_TOLERANCE;
+    if fits > 0 && !is_unit {
         return Err(ShadowMapError::Forward { forward: view.forward, length });
     }
     let mut previous = f32::MIN;
     for (index, map) in maps.iter().enumerate() {
         check_layer(descriptor, index, &map.fit)?;
         map.bias.checked().map_err(|error| ShadowMapError::Bias { index, error })?;
-        if !(map.far >= previous) {
+        // Nor is NaN in any order.
+        let is_in_order = map.far >= previous;
+        if !is_in_order {
             return Err(ShadowMapError::Order { index, far: map.far, previous });
         }
         previous = map.far;

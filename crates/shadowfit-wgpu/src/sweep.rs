@@ -5,7 +5,7 @@
 //! shaders look for a map.
 
 use shadowfit::bias::{MIN_COSINE, reach};
-use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::glam::{DVec3, DVec4, Vec3};
 use shadowfit::settings::FilterKind;
 use shadowfit::{CasterPolicy, CasterVolume, FitError, LightFit, Sweep, ViewFrustum};
 
@@ -118,7 +118,7 @@ impl Readers<'_> {
 /// corners of a slice it holds the slice.
 fn covers(fit: &LightFit, point: DVec3) -> bool {
     let m = fit.uv_from_world.as_dmat4();
-    let terms = [m.x_axis * point.x, m.y_axis * point.y, m.z_axis * point.z, m.w_axis].map(|term| term.truncate());
+    let terms = [m.x_axis * point.x, m.y_axis * point.y, m.z_axis * point.z, m.w_axis].map(DVec4::truncate);
     let uv: DVec3 = terms.iter().sum();
     let rounding = terms.iter().map(|term| term.abs()).sum::<DVec3>() * UV_ROUNDING;
     uv.cmpge(rounding).all() && uv.cmple(DVec3::ONE - rounding).all()

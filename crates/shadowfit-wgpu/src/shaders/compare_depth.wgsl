@@ -3,11 +3,11 @@
 @group(GROUP) @binding(1) var shadowfit_texture: texture_depth_2d_array;
 @group(GROUP) @binding(2) var shadowfit_sampler: sampler_comparison;
 
-// One look-up at a place of a map of the given size, in texels, with the depth of the point's plane there.
-fn shadowfit_look_up(map: u32, size: vec2<f32>, texel: vec2<f32>, place: shadowfit_Place) -> f32 {
+// One look-up at a position in a map of the given size, in texels, with the depth of the point's plane there.
+fn shadowfit_look_up(map: u32, size: vec2<f32>, texel: vec2<f32>, projected: shadowfit_Projected) -> f32 {
     // Not nearer to the border of what is in use than half a texel: the sampler would read beyond it.
     let inside = clamp(texel, vec2<f32>(0.5), size - vec2<f32>(0.5));
-    let depth = place.depth + dot(place.gradient, inside - place.texel);
+    let depth = projected.depth + dot(projected.gradient, inside - projected.texel);
     let uv = inside / vec2<f32>(textureDimensions(shadowfit_texture));
     return textureSampleCompareLevel(shadowfit_texture, shadowfit_sampler, uv, i32(map), saturate(depth));
 }

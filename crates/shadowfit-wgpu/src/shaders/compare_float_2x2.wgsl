@@ -1,8 +1,8 @@
-// One look-up at a place of a map of the given size, in texels, with the depth of the point's plane there: the four
+// One look-up at a position in a map of the given size, in texels, with the depth of the point's plane there: the four
 // nearest texels, each compared, then weighted bilinearly, as a linear comparison sampler does.
-fn shadowfit_look_up(map: u32, size: vec2<f32>, texel: vec2<f32>, place: shadowfit_Place) -> f32 {
+fn shadowfit_look_up(map: u32, size: vec2<f32>, texel: vec2<f32>, projected: shadowfit_Projected) -> f32 {
     let inside = clamp(texel, vec2<f32>(0.5), size - vec2<f32>(0.5));
-    let depth = place.depth + dot(place.gradient, inside - place.texel);
+    let depth = projected.depth + dot(projected.gradient, inside - projected.texel);
     let corner = floor(inside - vec2<f32>(0.5));
     let weight = inside - vec2<f32>(0.5) - corner;
     let top = mix(

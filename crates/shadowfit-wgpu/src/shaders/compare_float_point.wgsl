@@ -1,4 +1,4 @@
 // The nearest texel alone.
-fn shadowfit_look_up(map: u32, size: vec2<f32>, texel: vec2<f32>, place: shadowfit_Place) -> f32 {
-    return shadowfit_lit(map, size, floor(texel), place.depth + dot(place.gradient, texel - place.texel));
+fn shadowfit_look_up(map: u32, size: vec2<f32>, texel: vec2<f32>, projected: shadowfit_Projected) -> f32 {
+    return shadowfit_lit(map, size, floor(texel), projected.depth + dot(projected.gradient, texel - projected.texel));
 }

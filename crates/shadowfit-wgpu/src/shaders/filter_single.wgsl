@@ -1,4 +1,4 @@
 // One look-up at the point itself.
-fn shadowfit_compare(map: u32, size: vec2<f32>, place: shadowfit_Place) -> f32 {
-    return shadowfit_look_up(map, size, place.texel, place);
+fn shadowfit_compare(map: u32, size: vec2<f32>, projected: shadowfit_Projected) -> f32 {
+    return shadowfit_look_up(map, size, projected.texel, projected);
 }

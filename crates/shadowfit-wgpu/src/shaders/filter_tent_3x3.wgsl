@@ -2,18 +2,18 @@
 // pairs of them give the same sum (after I. Castano, "Shadow mapping summary", 2013).
 //
 //   texel weights, u right of the pair's left centre:   1-u   2-u | 1+u    u     (over 4)
-fn shadowfit_compare(map: u32, size: vec2<f32>, place: shadowfit_Place) -> f32 {
-    let base = floor(place.texel - vec2<f32>(0.5));
-    let t = place.texel - vec2<f32>(0.5) - base;
+fn shadowfit_compare(map: u32, size: vec2<f32>, projected: shadowfit_Projected) -> f32 {
+    let base = floor(projected.texel - vec2<f32>(0.5));
+    let t = projected.texel - vec2<f32>(0.5) - base;
     // Centre of a pair's left texel, and the weights of the pairs.
     let centre = base + vec2<f32>(0.5);
     let w0 = 3.0 - 2.0 * t;
     let w1 = 1.0 + 2.0 * t;
     let p0 = centre - vec2<f32>(1.0) + (2.0 - t) / w0;
     let p1 = centre + vec2<f32>(1.0) + t / w1;
-    let top = w0.x * shadowfit_look_up(map, size, p0, place)
-        + w1.x * shadowfit_look_up(map, size, vec2<f32>(p1.x, p0.y), place);
-    let bottom = w0.x * shadowfit_look_up(map, size, vec2<f32>(p0.x, p1.y), place)
-        + w1.x * shadowfit_look_up(map, size, p1, place);
+    let top = w0.x * shadowfit_look_up(map, size, p0, projected)
+        + w1.x * shadowfit_look_up(map, size, vec2<f32>(p1.x, p0.y), projected);
+    let bottom = w0.x * shadowfit_look_up(map, size, vec2<f32>(p0.x, p1.y), projected)
+        + w1.x * shadowfit_look_up(map, size, p1, projected);
     return (w0.y * top + w1.y * bottom) / 16.0;
 }

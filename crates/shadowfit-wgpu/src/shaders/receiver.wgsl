@@ -34,7 +34,7 @@ struct shadowfit_Receiver {
 const SHADOWFIT_MIN_COSINE: f32 = 0.01;
 
 // Where a point is looked up.
-struct shadowfit_Place {
+struct shadowfit_Projected {
     // Texels from the map's left and top.
     texel: vec2<f32>,
     // Biased depth.
@@ -50,7 +50,7 @@ fn shadowfit_inside(uv: vec3<f32>) -> bool {
 
 // Where a point is looked up in one map.
 // position: world space relative to the origin, metres. normal: unit, geometric.
-fn shadowfit_project(map: shadowfit_Map, position: vec3<f32>, normal: vec3<f32>) -> shadowfit_Place {
+fn shadowfit_project(map: shadowfit_Map, position: vec3<f32>, normal: vec3<f32>) -> shadowfit_Projected {
     let cosine = clamp(dot(normal, shadowfit_receiver.to_light), SHADOWFIT_MIN_COSINE, 1.0);
     let sine = sqrt(1.0 - cosine * cosine);
     let offset = normal * (map.normal_offset * sine);
@@ -58,7 +58,7 @@ fn shadowfit_project(map: shadowfit_Map, position: vec3<f32>, normal: vec3<f32>)
     let gradient = vec2<f32>(dot(map.depth_per_texel_u, normal), dot(map.depth_per_texel_v, normal)) / cosine;
     let rise = map.receiver_plane * (abs(gradient.x) + abs(gradient.y));
     let depth = uv.z + map.constant_depth + map.slope_depth * sine / cosine + rise;
-    return shadowfit_Place(uv.xy * map.size, depth, gradient);
+    return shadowfit_Projected(uv.xy * map.size, depth, gradient);
 }
 
 // View depth of a point: its distance from the eye along the view's forward direction, in metres. Negative behind it.
