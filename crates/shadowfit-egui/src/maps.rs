@@ -101,29 +101,21 @@ fn cells(figures: &MapFigures) -> [Option<String>; 4] {
 /// All that is known of a map, line by line.
 fn details(map: usize, figures: &MapFigures) -> String {
     let [left, right, bottom, top, far, near] = figures.set_by.map(name);
-    let mut text = format!("Map {}", map + 1);
-    if figures.is_empty {
-        text += ": no receiver is in view";
-    }
-    text += &format!(
-        "\nTexel: {}\nDepth range: {}, in steps of {}",
-        size(figures.texel_size),
-        length(figures.depth_range),
-        length(figures.depth_step),
-    );
-    text += &format!("\nSides set by: left {left}, right {right}, bottom {bottom}, top {top}");
-    text += &format!("\nNear plane (toward the light) set by {near}, far plane by {far}");
+    let title = if figures.is_empty { ": no receiver is in view" } else { "" };
+    let mut lines = vec![
+        format!("Map {}{title}", map + 1),
+        format!("Texel: {}", size(figures.texel_size)),
+        format!("Depth range: {}, in steps of {}", length(figures.depth_range), length(figures.depth_step)),
+        format!("Sides set by: left {left}, right {right}, bottom {bottom}, top {top}"),
+        format!("Near plane (toward the light) set by {near}, far plane by {far}"),
+    ];
     let drawn = [
         ("Casters kept", figures.casters.map(u64::from)),
         ("Draw calls", figures.draws.map(u64::from)),
         ("Triangles", figures.triangles),
     ];
-    for (name, count) in drawn {
-        if let Some(count) = count {
-            text += &format!("\n{name}: {}", grouped(count));
-        }
-    }
-    text
+    lines.extend(drawn.iter().filter_map(|(name, count)| Some(format!("{name}: {}", grouped((*count)?)))));
+    lines.join("\n")
 }
 
 /// What set a plane, in a word.

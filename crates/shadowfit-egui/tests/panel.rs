@@ -189,8 +189,8 @@ fn wide_map() -> MapFigures {
     }
 }
 
-fn widest_host(settings: Settings) -> Host {
-    let mut host = Host { artefact: Some(Artefact::ClippingHole), settings, ..Host::default() };
+fn widest_host() -> Host {
+    let mut host = Host { artefact: Some(Artefact::ClippingHole), ..Host::default() };
     host.notes = vec!["The texture 'bark.ktx2' has a compression that is not supported; it is drawn grey.".into()];
     host.message = Some("Saved the picture as shadowfit-2026-07-02-12-30-00.png in the current folder.");
     host.figures = Figures {
@@ -209,13 +209,13 @@ fn widest_host(settings: Settings) -> Host {
 #[test]
 fn everything_fits_the_panel_width() {
     for settings in all_rows() {
-        let mut host = widest_host(settings);
+        let mut host = Host { settings, ..widest_host() };
         // The widest values, all changed so that the reset buttons show.
         for parameter in PARAMETERS {
             match &parameter.kind {
                 Kind::Number(number) => number.set(&mut host.settings, number.max),
                 Kind::Optional(optional) if optional.unset.is_none() => {
-                    optional.set(&mut host.settings, Some(optional.max))
+                    optional.set(&mut host.settings, Some(optional.max));
                 }
                 // Not its greatest, which the width has, and which is as wide.
                 Kind::Optional(optional) => optional.set(&mut host.settings, Some(0.999 * optional.max)),
