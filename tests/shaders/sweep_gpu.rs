@@ -9,10 +9,11 @@ use shadowfit::{
     PerspectiveCamera, SplitScheme, Stabilise, Technique, Workspace, fit,
 };
 use shadowfit_render::{Atmosphere, Culling, Frame, Gpu, GpuScene, ProbePixel, ProbeTargets, Renderer, Statistics};
-use shadowfit_scene::{Scene, builtin};
+use shadowfit_scene::{Scene, builtin, load_gltf};
+use shadowfit_truth::peers::Scenarios;
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
 
-use crate::support::software_gpu;
+use crate::support::{assets, peers, software_gpu};
 
 /// Size of the pictures, in pixels.
 const SIZE: [u32; 2] = [240, 135];
@@ -147,6 +148,23 @@ fn camera(view: &View) -> PerspectiveCamera {
     }
 }
 
+/// The world boxes of all instances, in metres.
+fn boxes(scene: &Scene, gpu_scene: &GpuScene) -> Vec<Aabb> {
+    let bounds = (0..scene.instances().len()).filter_map(|index| gpu_scene.instance_bounds(index));
+    bounds.map(|bounds| Aabb::new(bounds.min, bounds.max)).collect()
+}
+
+fn descriptor(case: &Case) -> ShadowMapDescriptor {
+    ShadowMapDescriptor {
+        resolution: [TEXELS; 2],
+        maps: case.technique.count,
+        format: case.format,
+        filter: case.filter,
+        depth: case.technique.fit.depth,
+        depth_clamp: case.technique.fit.casters == CasterPolicy::DepthClamp,
+    }
+}
+
 /// The maps of a case, fitted to what the camera sees of the boxes.
 fn fitted(case: &Case, camera: &PerspectiveCamera, boxes: &[Aabb], direction: Vec3) -> Vec<MapFit> {
     let frustum = camera.frustum().expect("a camera");
@@ -191,20 +209,11 @@ fn swept_casters_give_every_pixel_the_same_factor_and_are_fewer() {
     let gpu = software_gpu();
     let atmosphere = Atmosphere::default();
     for case in cases() {
-        let descriptor = ShadowMapDescriptor {
-            resolution: [TEXELS; 2],
-            maps: case.technique.count,
-            format: case.format,
-            filter: case.filter,
-            depth: case.technique.fit.depth,
-            depth_clamp: case.technique.fit.casters == CasterPolicy::DepthClamp,
-        };
-        let mut renderer = Renderer::new(&gpu, &descriptor, 1).expect("a renderer");
+        let mut renderer = Renderer::new(&gpu, &descriptor(&case), 1).expect("a renderer");
         for view in views() {
             let scene = &view.scene;
             let mut gpu_scene = GpuScene::new(&gpu, renderer.material_layout(), scene, &scene.pose(None, 0.0));
-            let bounds = (0..scene.instances().len()).filter_map(|index| gpu_scene.instance_bounds(index));
-            let boxes: Vec<Aabb> = bounds.map(|bounds| Aabb::new(bounds.min, bounds.max)).collect();
+            let boxes = boxes(scene, &gpu_scene);
             let camera = camera(&view);
             let (mut kept, mut whole) = (0, 0);
             for direction in DIRECTIONS.map(Vec3::normalize) {
@@ -232,8 +241,7 @@ fn maps_that_are_looked_up_from_another_eye_keep_what_the_picture_shows() {
     let gpu = software_gpu();
     let atmosphere = Atmosphere::default();
     let case = &cases()[3];
-    let descriptor = ShadowMapDescriptor { resolution: [TEXELS; 2], maps: 4, ..ShadowMapDescriptor::default() };
-    let mut renderer = Renderer::new(&gpu, &descriptor, 1).expect("a renderer");
+    let mut renderer = Renderer::new(&gpu, &descriptor(case), 1).expect("a renderer");
     let [_, view] = views();
     let mut scene = GpuScene::new(&gpu, renderer.material_layout(), &view.scene, &view.scene.pose(None, 0.0));
     let direction = DIRECTIONS[1].normalize();
@@ -252,4 +260,33 @@ fn maps_that_are_looked_up_from_another_eye_keep_what_the_picture_shows() {
             [Culling::Swept, Culling::AsGiven].map(|culling| drawn(&gpu, &mut renderer, &mut scene, &frame, culling));
         assert_eq!(different(&swept.pixels, &all.pixels), 0, "from {eye} along {forward}");
     }
+}
+
+#[test]
+fn real_scenes_get_the_same_factor_in_every_pixel() {
+    let (Some(assets), Some(peers)) = (assets(), peers()) else { return };
+    let scenarios = Scenarios::read(&peers.join("scenarios.json")).expect("scenarios");
+    let (gpu, atmosphere) = (software_gpu(), Atmosphere::default());
+    let cases = cases();
+    let mut compared = 0;
+    for (index, of_file) in scenarios.scenes.iter().enumerate() {
+        let scene = load_gltf(&assets.join(&of_file.file)).unwrap_or_else(|error| panic!("{error}"));
+        for case in &cases[..3] {
+            let mut renderer = Renderer::new(&gpu, &descriptor(case), 1).expect("a renderer");
+            let mut gpu_scene = GpuScene::new(&gpu, renderer.material_layout(), &scene, &scene.pose(None, 0.0));
+            let boxes = boxes(&scene, &gpu_scene);
+            // One frame of each path, a third of it in.
+            for frame in scenarios.frames.iter().filter(|frame| frame.scene == index && frame.frame == 7) {
+                let (camera, direction) = (frame.camera(), DVec3::from_array(frame.light_dir).as_vec3());
+                let maps = fitted(case, &camera, &boxes, direction);
+                let shown = Frame::new(&camera, direction, &maps, &atmosphere);
+                let [swept, all] = [Culling::Swept, Culling::AsGiven]
+                    .map(|culling| drawn(&gpu, &mut renderer, &mut gpu_scene, &shown, culling));
+                assert_eq!(different(&swept.pixels, &all.pixels), 0, "{}, {}", frame.id, case.name);
+                compared += swept.pixels.iter().flatten().count();
+            }
+        }
+    }
+    println!("{compared} pixels compared");
+    assert!(compared > 500_000, "{compared} pixels of scenes");
 }

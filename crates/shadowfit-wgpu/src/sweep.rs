@@ -4,8 +4,9 @@
 //! in the part of the view that reads it, swept toward the light. Which part that is follows from the order in which
 //! shaders look for a map.
 
-use shadowfit::bias::{MIN_COSINE, Reach};
+use shadowfit::bias::{MIN_COSINE, reach};
 use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::settings::FilterKind;
 use shadowfit::{CasterPolicy, CasterVolume, FitError, LightFit, Sweep, ViewFrustum};
 
 use crate::{MapFit, MapView};
@@ -21,7 +22,7 @@ const UV_ROUNDING: f64 = 8.0 / 16_777_216.0;
 impl MapFit {
     /// Leaves to each map only the casters that can throw a shadow, through this map, on what `views` see: sets
     /// [`MapFit::volume`] of all maps. The shadows in view stay the same. `views` are all that is drawn with these
-    /// maps, up to the cameras' far planes, and `reach` is that of the filter that reads them, such as
+    /// maps, up to the cameras' far planes, and `filter` is the one that reads them,
     /// [`ShadowMapDescriptor::filter`](crate::ShadowMapDescriptor::filter).
     ///
     /// The volumes serve maps with depth clamp and without. A map that is to be kept for later frames must hold all
@@ -35,17 +36,11 @@ impl MapFit {
     /// # Errors
     ///
     /// Those of [`CasterVolume::swept`]. The maps before the one that fails have their volumes then.
-    pub fn sweep(
-        maps: &mut [Self],
-        view: &MapView,
-        views: &[ViewFrustum],
-        reach: impl Into<Reach>,
-    ) -> Result<(), FitError> {
-        let reach = reach.into();
+    pub fn sweep(maps: &mut [Self], view: &MapView, views: &[ViewFrustum], filter: FilterKind) -> Result<(), FitError> {
         let mismatch = views.iter().map(|frustum| depth_mismatch(view, frustum)).fold(0.0, f64::max);
         for index in 0..maps.len() {
             let readers = Readers { maps, view, views, mismatch };
-            maps[index].volume = Some(readers.volume(index, reach)?);
+            maps[index].volume = Some(readers.volume(index, filter)?);
         }
         Ok(())
     }
@@ -69,13 +64,13 @@ struct Readers<'a> {
 
 impl Readers<'_> {
     /// The casters of a map.
-    fn volume(&self, index: usize, reach: Reach) -> Result<CasterVolume, FitError> {
+    fn volume(&self, index: usize, filter: FilterKind) -> Result<CasterVolume, FitError> {
         let map = &self.maps[index];
         let Some(read) = self.read(index) else { return Ok(CasterVolume::nowhere(map.fit.origin)) };
         let Slice { near, far } = self.widened(read);
-        let normal_offset = map.bias.normal_offset.abs();
+        let (reach, normal_offset) = (filter.into(), map.bias.normal_offset.abs());
         let volume = CasterVolume::swept(&map.fit, &Sweep { views: self.views, near, far, reach, normal_offset })?;
-        Ok(lowered(volume, &map.fit, depth_below(map, reach)))
+        Ok(lowered(volume, &map.fit, depth_below(map, filter)))
     }
 
     /// The view depths at which a point may read a map; `None` where none can.
@@ -138,14 +133,15 @@ fn depth_mismatch(view: &MapView, frustum: &ViewFrustum) -> f64 {
 }
 
 /// How far below a point, along the light, the map may be compared with, in metres. The receiver's plane is compared at
-/// its own depth wherever the filter reads, and falls by the tangent of its slope; biases that are negative move the
+/// its own depth wherever the filter looks, and falls by the tangent of its slope; biases that are negative move the
 /// point itself.
-fn depth_below(map: &MapFit, reach: Reach) -> f64 {
+fn depth_below(map: &MapFit, filter: FilterKind) -> f64 {
     let tangent = 1.0 / f64::from(MIN_COSINE);
     let (bias, range) = (map.bias, f64::from(map.fit.depth_range));
     let away = |bias: f32| f64::from((-bias).max(0.0));
     let texel = map.fit.texel_size.as_dvec2().length();
-    let aside = f64::from(reach.per_axis()) * texel + f64::from(bias.normal_offset.abs());
+    // Look-ups lie a texel less far away than the texels that they read; at the map's border they move by half of one.
+    let aside = f64::from((reach(filter) - 1.0).max(0.5)) * texel + f64::from(bias.normal_offset.abs());
     let plane = if bias.receiver_plane == 0.0 { 0.0 } else { aside + away(bias.receiver_plane) * texel };
     (away(bias.constant_depth) + away(bias.slope_depth) * tangent) * range + plane * tangent
 }
@@ -161,4 +157,87 @@ fn lowered(mut volume: CasterVolume, fit: &LightFit, depth: f64) -> CasterVolume
         plane.w += (upward * depth) as f32;
     }
     volume
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shadowfit::bias::Bias;
+    use shadowfit::{FitSettings, PerspectiveCamera, fit};
+
+    const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.2);
+    const ENDS: [f32; 3] = [5.0, 20.0, f32::MAX];
+
+    /// The view of a camera with a vertical field of view, in radians.
+    fn frustum(fov_y: f32) -> ViewFrustum {
+        let (forward, up) = (Vec3::NEG_Z, Vec3::Y);
+        let camera = PerspectiveCamera { eye: DVec3::ZERO, forward, up, fov_y, aspect: 1.6, near: 0.1, far: 60.0 };
+        camera.frustum().expect("a camera")
+    }
+
+    /// Maps around the slices of a view.
+    fn maps(view: &ViewFrustum) -> Vec<MapFit> {
+        let mut near = f32::MIN;
+        let map = |far: f32| {
+            let slice = view.slice(near - 0.01, far + 0.01).expect("a slice");
+            near = far;
+            let light = fit(&slice, DIRECTION, &FitSettings::default().with_max_distance(f32::MAX)).expect("a fit");
+            MapFit { far, ..MapFit::new(light, Bias::default()) }
+        };
+        ENDS.into_iter().map(map).collect()
+    }
+
+    /// Where each map begins to be read, in metres.
+    fn read_from(maps: &[MapFit], views: &[ViewFrustum]) -> Vec<Option<f32>> {
+        let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
+        let readers = Readers { maps, view: &view, views, mismatch: 0.0 };
+        (0..maps.len()).map(|index| readers.read(index).map(|slice| slice.near)).collect()
+    }
+
+    #[test]
+    fn a_map_is_read_from_where_the_one_in_front_ends_if_that_covers_its_slice() {
+        let view = frustum(0.9);
+        let mut maps = maps(&view);
+        assert_eq!(read_from(&maps, &[view]), [Some(f32::MIN), Some(5.0), Some(20.0)]);
+        // Wider than what the maps were fitted to: none covers its slice.
+        assert_eq!(read_from(&maps, &[view, frustum(1.1)]), [Some(f32::MIN); 3]);
+        // The second one leaves out its sides, so that the last one is read in both of their slices.
+        maps[1].fit = self::maps(&frustum(0.5))[1].fit;
+        assert_eq!(read_from(&maps, &[view]), [Some(f32::MIN), Some(5.0), Some(5.0)]);
+    }
+
+    #[test]
+    fn maps_without_a_range_are_read_where_those_in_front_leave_points_out() {
+        let view = frustum(0.9);
+        let [a, b, c] = maps(&view)[..] else { panic!("three maps") };
+        let empty = |far: f32| MapFit { far, ..c };
+        let front = [empty(f32::MIN), a, b, c];
+        assert_eq!(read_from(&front, &[view]), [None, Some(f32::MIN), Some(5.0), Some(20.0)]);
+        let behind = [a, b, c, empty(f32::MAX)];
+        assert_eq!(read_from(&behind, &[view])[3], None);
+        assert_eq!(read_from(&behind, &[frustum(1.1)])[3], Some(f32::MIN));
+        let mut maps = behind;
+        let map_view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
+        MapFit::sweep(&mut maps, &map_view, &[view], FilterKind::Pcf5x5).expect("a good view");
+        let holds = |map: &MapFit| map.volume.is_some_and(|volume| volume.intersects_sphere(Vec3::NEG_Z * 3.0, 1.0));
+        assert_eq!(maps.each_ref().map(holds), [true, false, false, false]);
+    }
+
+    #[test]
+    fn a_view_that_counts_its_depths_from_elsewhere_is_off_by_as_much() {
+        let frustum = frustum(0.9);
+        let from = |eye: DVec3, forward: Vec3| depth_mismatch(&MapView { origin: DVec3::ZERO, eye, forward }, &frustum);
+        assert_eq!(from(DVec3::ZERO, Vec3::NEG_Z), 0.0);
+        // The other eye of a headset sees the same depths.
+        assert_eq!(from(DVec3::X * 0.03, Vec3::NEG_Z), 0.0);
+        assert_eq!(from(DVec3::Z * 10.0, Vec3::NEG_Z), 10.0);
+        assert!(from(DVec3::ZERO, Vec3::Z) > 120.0);
+    }
+
+    #[test]
+    fn without_a_view_nothing_can_be_swept() {
+        let mut maps = maps(&frustum(0.9));
+        let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
+        assert_eq!(MapFit::sweep(&mut maps, &view, &[], FilterKind::Point), Err(FitError::NoView));
+    }
 }

@@ -20,6 +20,15 @@ pub(crate) struct LightAxes {
     pub(crate) z: Vec3,
 }
 
+/// Difference of two unit directions, as a length, up to which they are one that was rounded
+/// otherwise: some steps of f32.
+const SAME_DIRECTION: f64 = 8.0 / 16_777_216.0;
+
+/// Whether two unit directions differ by rounding alone.
+pub(crate) fn is_same_direction(a: DVec3, b: DVec3) -> bool {
+    (a - b).dot(a - b) <= SAME_DIRECTION * SAME_DIRECTION
+}
+
 /// Where a light's rotation about itself comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Roll {
@@ -50,6 +59,23 @@ impl Light {
             Roll::ShortestArc => LightAxes::shortest_arc(direction, up),
         };
         Self { direction, up, roll, axes }
+    }
+
+    /// The same light along a direction that is held from an earlier frame, if they differ by no more
+    /// than rounding.
+    #[inline(always)]
+    pub(crate) fn held(self, direction: Option<DVec3>) -> Self {
+        match direction {
+            Some(held) if held != self.direction && is_same_direction(held, self.direction) => {
+                Self::new(held, self.up, self.roll)
+            }
+            _ => self,
+        }
+    }
+
+    /// Unit direction of travel.
+    pub(crate) fn direction(&self) -> DVec3 {
+        self.direction
     }
 
     /// Its axes by a roll.

@@ -7,6 +7,9 @@ use core::fmt;
 
 use glam::{UVec2, Vec3};
 
+use crate::DepthConvention;
+use crate::number::{Number, Numbers};
+
 /// Why a frustum or a fit could not be made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -51,6 +54,15 @@ pub enum FitError {
         corner: usize,
         /// The w that the matrix gives there.
         w: f64,
+    },
+    /// A perspective matrix has its near and far planes at the other ends of the depth range than the
+    /// convention that was named for it.
+    OtherDepth {
+        /// The convention that was named.
+        named: DepthConvention,
+        /// Whether the matrix has reversed depth: near at 1, far at 0. If not, it is plain: 0..1 or
+        /// -1..1, which a matrix does not tell.
+        is_reversed: bool,
     },
     /// The frustum has no volume, or its box in the light's axes has no extent.
     EmptyFrustum {
@@ -105,31 +117,39 @@ impl fmt::Display for FitError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::NotFinite { input, value } => {
-                write!(f, "{input} is {value}; give a finite number")
+                write!(f, "{input} is {}; give a finite number", Number(value))
             }
             Self::OutOfRange { input, value, min, max } => {
-                write!(f, "{input} is {value:e}; give a value from {min:e} to {max:e}")
+                write!(f, "{input} is {}; give a value from {} to {}", Number(value), Number(min), Number(max))
             }
             Self::BadDirection { input, length } => {
-                write!(f, "{input} has length {length:e}; give a vector of about unit length")
+                write!(f, "{input} has length {}; give a vector of about unit length", Number(length))
             }
-            Self::ParallelUp { forward, up } => {
-                write!(f, "the camera's up {up} is parallel to its forward {forward}; tilt one of them")
-            }
+            Self::ParallelUp { forward, up } => write!(
+                f,
+                "the camera's up {} is parallel to its forward {}; tilt one of them",
+                Numbers(up),
+                Numbers(forward)
+            ),
             Self::SingularMatrix { corner, w } => write!(
                 f,
-                "world_from_clip gives w = {w:e} at clip corner {corner}; pass the inverse of \
-                 clip_from_world, with the depth convention that it was made for"
+                "world_from_clip gives w = {} at clip corner {corner}; pass the inverse of \
+                 clip_from_world, with the depth convention that it was made for",
+                Number(w)
             ),
+            Self::OtherDepth { named, is_reversed } => write_depth(f, named, is_reversed),
             Self::EmptyFrustum { size } => write!(
                 f,
-                "the frustum is empty: its box is {size} m; check the field of view, the aspect \
-                 ratio and the corners"
+                "the frustum is empty: its box is {} m; check the field of view, the aspect \
+                 ratio and the corners",
+                Numbers(size)
             ),
             Self::NearNotBelowFar { near, far } => write!(
                 f,
-                "near {near} m is not below far {far} m; raise the far plane or the maximum \
-                 shadow distance, or lower the near plane"
+                "near {} m is not below far {} m; raise the far plane or the maximum \
+                 shadow distance, or lower the near plane",
+                Number(f64::from(near)),
+                Number(f64::from(far))
             ),
             Self::NoView => write!(f, "there is no view to fit to; give at least one frustum"),
             Self::WorkspaceTooSmall { given, required } => {
@@ -145,8 +165,22 @@ impl fmt::Display for FitError {
                 write!(f, "the map is on no grid; stabilise it by snapping or hysteresis, or take the sphere")
             }
             Self::ZeroResolution { resolution } => {
-                write!(f, "the map's resolution is {resolution}; give at least one texel each way")
+                write!(
+                    f,
+                    "the map's resolution is {} × {}; give at least one texel each way",
+                    resolution.x, resolution.y
+                )
             }
         }
     }
+}
+
+fn write_depth(f: &mut fmt::Formatter<'_>, named: DepthConvention, is_reversed: bool) -> fmt::Result {
+    let (near, far) = (named.near(), named.far());
+    let (has, advice) = if is_reversed {
+        ("reversed depth (near 1, far 0)", "DepthConvention::Reversed")
+    } else {
+        ("plain depth (it grows away from the eye)", "DepthConvention::ZeroToOne, or NegativeOneToOne for OpenGL")
+    };
+    write!(f, "the camera's matrix has {has}, not near {near}, far {far} as named; name {advice}")
 }

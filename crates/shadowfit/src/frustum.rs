@@ -42,12 +42,21 @@ const INFINITE_W_F32: f64 = 1.0 / 4_194_304.0;
 /// The same for f64 matrices: a few times 2⁻⁵³.
 const INFINITE_W_F64: f64 = 1.0 / 2_251_799_813_685_248.0;
 
+/// Share by which the w of a perspective differs between its planes at least; what differs less may be
+/// an orthographic matrix that was inverted in f32.
+const PERSPECTIVE: f64 = 1e-4;
+
 impl ViewFrustum {
     /// The frustum behind an f32 matrix from clip space to **absolute** world space, with the
     /// camera's position and the matrix's depth range.
     ///
     /// A far plane beyond `max_distance` (view depth in metres), an infinite one included, is
     /// brought to it. Give `f32::MAX` to keep any finite far plane.
+    ///
+    /// A perspective tells whether its depth is reversed, and is refused where `depth` says
+    /// otherwise. Which way the depth of an orthographic matrix runs, and whether a range is 0..1 or
+    /// -1..1, no matrix tells: with the wrong one the view looks backward, or its near plane is at
+    /// half or twice the distance.
     ///
     /// # Precision
     ///
@@ -97,7 +106,8 @@ impl ViewFrustum {
     /// # Errors
     ///
     /// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the matrix, the eye and
-    /// `max_distance`; [`FitError::SingularMatrix`] where w is zero, changes its sign between near
+    /// `max_distance`; [`FitError::OtherDepth`] for a perspective of another depth convention;
+    /// [`FitError::SingularMatrix`] where w is zero, changes its sign between near
     /// and far, or corners coincide; [`FitError::NearNotBelowFar`] when nothing lies between the
     /// near plane and `max_distance`; [`FitError::EmptyFrustum`].
     pub fn from_world_from_clip_f64(
@@ -220,6 +230,7 @@ impl Unprojection {
         for element in self.matrix.to_cols_array() {
             checks::finite("an element of world_from_clip", element)?;
         }
+        self.check_depth()?;
         let forward = self.forward()?;
         let limit = f64::from(max_distance);
         let mut corners = [Vec3::ZERO; 8];
@@ -241,6 +252,25 @@ impl Unprojection {
         }
         let (near, far) = ((near_sum * 0.25) as f32, (far_sum * 0.25) as f32);
         ViewFrustum { origin: self.eye, corners, near, far, forward: forward.as_vec3() }.checked()
+    }
+
+    /// Refuses a perspective whose depth runs the other way than its convention says.
+    ///
+    /// A perspective's w is one over the view depth, up to a factor, so it falls from the near plane
+    /// to the far one: toward 1 with plain depth, 0..1 and -1..1 alike, and toward 0 with reversed
+    /// depth. An orthographic matrix has one w everywhere.
+    fn check_depth(&self) -> Result<(), FitError> {
+        let w = |z: f64| self.homogeneous(0.0, 0.0, z, 1.0).1;
+        let (at_zero, at_one) = (w(0.0), w(1.0));
+        let (least, most) = (at_zero.abs().min(at_one.abs()), at_zero.abs().max(at_one.abs()));
+        // Where w changes its sign, one of them must be the rounding of an infinite far plane.
+        let is_perspective = most - least > PERSPECTIVE * most;
+        let is_seen = at_zero * at_one >= 0.0 || least <= PERSPECTIVE * most;
+        let is_reversed = at_one.abs() > at_zero.abs();
+        if is_perspective && is_seen && is_reversed != (self.depth == DepthConvention::Reversed) {
+            return Err(FitError::OtherDepth { named: self.depth, is_reversed });
+        }
+        Ok(())
     }
 
     /// A homogeneous clip position in world axes relative to the eye, still homogeneous.

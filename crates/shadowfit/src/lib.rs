@@ -100,6 +100,7 @@ mod maps;
 mod motion;
 mod near_plane;
 mod normal_cone;
+mod number;
 mod outline;
 mod presets;
 mod rectangle;

@@ -25,13 +25,15 @@
 
 use glam::Vec3;
 
+use crate::axes::is_same_direction;
 use crate::{FitError, LightFit, checks};
 
 /// When a held light steps, and how.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct LightStepSettings {
-    /// Greatest movement at the map's edge that is left out, in texels. 0 follows every change.
+    /// Greatest movement at the map's edge that is left out, in texels. 0 follows every change that is
+    /// more than rounding. Default: 1.
     pub texels: f32,
     /// Extent of the map that this is judged by, in texels: its width, or [`Self::extent_of`].
     pub extent: f32,
@@ -141,7 +143,10 @@ impl LightSteps {
         checks::unit("the held direction", held)?;
         if next.held.is_none() {
             next = Self { held: Some(new), ..Self::default() };
-        } else if next.previous.is_none() && turn(held, new) > angle {
+        } else if next.previous.is_none()
+            && turn(held, new) > angle
+            && !is_same_direction(held.as_dvec3(), new.as_dvec3())
+        {
             next = Self { held: Some(new), previous: (settings.fade > 0.0).then_some(held), blend: 0.0 };
         }
         *self = next;

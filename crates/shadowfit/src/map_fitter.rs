@@ -5,7 +5,7 @@
 
 mod hold;
 
-use glam::{DVec2, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 
 use crate::axes::Light;
 use crate::content::Content;
@@ -30,6 +30,9 @@ pub struct MapFitter {
     maps: [Option<HeldMap>; MAX_MAPS],
     depths: [Option<HeldDepth>; MAX_MAPS],
     last_view: Option<ViewFrustum>,
+    /// The light's unit direction of travel that the maps were made for: input that differs from it by
+    /// rounding alone changes nothing.
+    direction: Option<DVec3>,
     /// What the state was made with; any change begins anew.
     technique: Option<Technique>,
 }
@@ -41,6 +44,8 @@ struct HeldSplits {
     splits: Splits,
     /// Depths over which they were spread, in metres.
     spread: (f64, f64),
+    /// View depth at which shadows ended when they were chosen, in metres.
+    far: f32,
     /// Frames since they were last compared with what would be best.
     age: u32,
 }
@@ -106,6 +111,8 @@ impl MapFitter {
         let (rules, light) = check(input, technique)?;
         let is_continued = self.technique.as_ref() == Some(technique);
         let before = if is_continued { Some(&*self) } else { None };
+        let held_light = before.filter(|_| technique.stabilise != Stabilise::Off).and_then(|before| before.direction);
+        let light = light.held(held_light);
         // 2. What is seen, and where one map ends and the next begins.
         let (content, points) = Content::new(input, workspace)?;
         let range = whole_range(input, technique.fit.max_distance);
@@ -125,7 +132,7 @@ impl MapFitter {
         set_empty_ranges_apart(maps);
         // 4. What the next frame begins with.
         (self.splits, self.depths) = (Some(splits), frame.depths);
-        self.last_view = Some(input.views[0]);
+        (self.last_view, self.direction) = (Some(input.views[0]), Some(light.direction()));
         if !is_continued {
             (self.technique, self.maps) = (Some(*technique), [None; MAX_MAPS]);
         }
@@ -165,15 +172,15 @@ fn choose_splits(held: Option<HeldSplits>, chooser: &Chooser) -> Result<HeldSpli
     let is_held = chooser.technique.stabilise != Stabilise::Off;
     let spread = chooser.spread();
     if let Some(held) = held.filter(|_| is_held)
-        && chooser.reaches(&held.splits, spread)
+        && let Some(splits) = chooser.kept(&held.splits, held.far, spread)
     {
         let age = held.age.saturating_add(1);
         let is_young = age < COMPARE_EVERY;
-        if is_young || chooser.serves(&held.splits, held.spread, spread) {
-            return Ok(HeldSplits { age: if is_young { age } else { 0 }, ..held });
+        if is_young || chooser.serves(&splits, held.spread, spread) {
+            return Ok(HeldSplits { splits, age: if is_young { age } else { 0 }, ..held });
         }
     }
-    Ok(HeldSplits { splits: chooser.choose(spread)?, spread: chooser.bounded(spread), age: 0 })
+    Ok(HeldSplits { splits: chooser.choose(spread)?, spread: chooser.bounded(spread), far: chooser.range.far, age: 0 })
 }
 
 /// The rules of all maps.

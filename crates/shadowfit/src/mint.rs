@@ -94,6 +94,20 @@ pub fn frustum_from_world_from_clip(
     ViewFrustum::from_world_from_clip_f64(&dmat4(world_from_clip), dvec3(eye), depth, max_distance)
 }
 
+/// [`ViewFrustum::from_eye_from_clip`] for a matrix and an eye of other crates.
+///
+/// # Errors
+///
+/// As there.
+pub fn frustum_from_eye_from_clip(
+    eye_from_clip: impl Into<ColumnMatrix4<f32>>,
+    eye: impl Into<Point3<f64>>,
+    depth: DepthConvention,
+    max_distance: f32,
+) -> Result<ViewFrustum, FitError> {
+    ViewFrustum::from_eye_from_clip(&mat4(eye_from_clip), dvec3(eye), depth, max_distance)
+}
+
 /// Least and greatest corner.
 impl From<[Point3<f32>; 2]> for Aabb {
     fn from([min, max]: [Point3<f32>; 2]) -> Self {

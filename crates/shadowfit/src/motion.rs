@@ -16,9 +16,12 @@ pub(crate) struct Motion {
     step: DVec3,
 }
 
-/// Difference of two views' corners, as a share of their distance, above which the lens has
-/// changed and nothing is foretold.
+/// Difference of two views' edges, as an angle in radians, and of their near corners, as a share of the
+/// far ones' distance, above which the lens has changed and nothing can be predicted.
 const SAME_LENS: f64 = 1e-4;
+
+/// The same of their far corners, which an f32 matrix of plain depth tells to 4 · 2⁻²⁴ · far / near.
+const SAME_FAR: f64 = 1.0 / 64.0;
 
 /// Orthonormal axes of a view; `None` for a view without them.
 fn axes(view: &ViewFrustum) -> Option<[DVec3; 3]> {
@@ -39,16 +42,22 @@ impl Motion {
         let motion =
             Self { turn: [image(DVec3::X), image(DVec3::Y), image(DVec3::Z)], step: now.origin - before.origin };
         let expected = motion.after(before, 1);
-        let apart = |i: usize| checks::length((expected.corners[i] - now.corners[i]).as_dvec3());
         let far = checks::length(now.corners[4].as_dvec3());
-        if (0..8).all(|i| apart(i) <= SAME_LENS * far) { Some(motion) } else { None }
+        let apart = |i: usize| checks::length((expected.corners[i] - now.corners[i]).as_dvec3());
+        let is_same = |i: usize| {
+            let edges = [&expected, now].map(|view| (view.corners[i + 4] - view.corners[i]).as_dvec3());
+            let [a, b] = edges.map(|edge| edge / checks::length(edge));
+            apart(i) <= SAME_LENS * far && apart(i + 4) <= SAME_FAR * far && checks::length(a - b) <= SAME_LENS
+        };
+        if (0..4).all(is_same) { Some(motion) } else { None }
     }
 
-    /// Whether the view stands still.
-    pub(crate) fn is_still(&self) -> bool {
+    /// Whether a view stands still, but for rounding.
+    pub(crate) fn is_still(&self, view: &ViewFrustum) -> bool {
         let turn = self.turn;
         let turned = (turn[0] - DVec3::X).abs().max((turn[1] - DVec3::Y).abs()).max((turn[2] - DVec3::Z).abs());
-        self.step == DVec3::ZERO && turned.max_element() < STILL
+        let far = checks::length(view.corners[4].as_dvec3());
+        checks::length(self.step) <= STILL * far && turned.max_element() < STILL
     }
 
     /// A view after so many more frames of the same motion.
@@ -73,7 +82,8 @@ impl Motion {
     }
 }
 
-/// Turn below which a view counts as still, in radians: the rounding of f32 corners.
+/// Turn below which a view counts as still, in radians, and movement as a share of the far corners'
+/// distance: the rounding of f32 corners.
 const STILL: f64 = 1e-6;
 
 fn apply(matrix: &[DVec3; 3], v: DVec3) -> DVec3 {

@@ -168,7 +168,7 @@ impl Holder<'_, '_> {
         let mut volume = *fresh;
         let plain = FitRule { border: 0.0, ..*rule };
         let mut frames = self.hold.horizon;
-        while let Some(motion) = self.motion.filter(|motion| frames > 0 && !motion.is_still()) {
+        while let Some(motion) = self.motion.filter(|motion| frames > 0 && !motion.is_still(&self.input.views[0])) {
             let ahead = [motion.after(&self.input.views[0], frames / 2), motion.after(&self.input.views[0], frames)];
             // Without storage or view to spare nothing is looked ahead: the map serves now all the same.
             let Ok(larger) = self.fit_ahead(&ahead, &plain, slice, points) else { break };

@@ -15,6 +15,7 @@ use crate::content::Content;
 use crate::rule::FitRule;
 use crate::settings::{SplitScheme, Stabilise};
 use crate::view::Range;
+use crate::volume::ROUNDING;
 use crate::{FitError, FitInput, MAX_MAPS, Technique};
 
 use bins::{BINS, Bins, Weights};
@@ -127,11 +128,33 @@ impl Chooser<'_, '_> {
         self.whole(splits, spread)
     }
 
-    /// Whether splits of an earlier frame hold all of this one's depths, and not far more.
-    pub(crate) fn reaches(&self, splits: &Splits, now: (f64, f64)) -> bool {
-        let end = f64::from(splits[self.technique.count as usize]);
+    /// Splits of an earlier frame, in which shadows ended at `last_far`, if they hold all of this one's
+    /// depths and not far more. What a camera's matrix loses by rounding moves nothing but their far
+    /// end.
+    pub(crate) fn kept(&self, splits: &Splits, last_far: f32, now: (f64, f64)) -> Option<Splits> {
+        let count = self.technique.count as usize;
+        let (end, far) = (f64::from(splits[count]), f64::from(self.range.far));
         let is_wasteful = end > self.end(now) * f64::from(self.technique.hold.waste);
-        end >= now.1.min(f64::from(self.range.far)) && !is_wasteful && splits[0] == self.range.near
+        let needed = now.1.min(far);
+        let is_same_far = (far - f64::from(last_far)).abs() <= far.abs() * FAR_ROUNDING;
+        let reaches = end >= needed || (is_same_far && end >= f64::from(last_far));
+        if is_wasteful || !reaches || !self.is_same_near(splits[0]) {
+            return None;
+        }
+        let mut kept = *splits;
+        for end in &mut kept[count..] {
+            *end = end.max(needed as f32);
+        }
+        Some(kept)
+    }
+
+    /// Whether the near end of what is shadowed differs from that of an earlier frame by rounding
+    /// alone.
+    fn is_same_near(&self, held: f32) -> bool {
+        let Range { near, far } = self.range;
+        let distances = checks::length(self.content.origin) + f64::from(far.abs());
+        let rounding = f64::from(held.abs()) * NEAR_ROUNDING + distances * ROUNDING;
+        (f64::from(near) - f64::from(held)).abs() <= rounding
     }
 
     /// Whether splits of an earlier frame still do for this one, beside what would be best.
@@ -193,6 +216,14 @@ const GUESS: f64 = 0.3;
 /// The same where no boxes are known and all depths are guessed alike: less than what a quantile
 /// leaves out, so that it only decides where the histogram does not.
 const BLIND_GUESS: f64 = 0.02;
+
+/// Share of its view depth that a far plane may be off by: an f32 matrix of plain depth tells it to
+/// 4 · 2⁻²⁴ · far / near, which is this at 65,000 times the near depth.
+const FAR_ROUNDING: f64 = 1.0 / 64.0;
+
+/// The same of a near plane, beside what the eye's distance from the world's origin and the view's
+/// extent cost.
+const NEAR_ROUNDING: f64 = 1e-3;
 
 /// Room beyond the farthest receiver that held splits leave, as a share of its distance.
 const FAR_SLACK: f64 = 0.1;

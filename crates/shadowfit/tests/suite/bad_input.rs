@@ -267,13 +267,16 @@ fn diagnostics_refuse_bad_points_normals_and_matrices() {
 fn every_error_says_the_value_and_what_to_do() {
     let errors = [
         (FitError::NotFinite { input: "near", value: f64::NAN }, "near is NaN; give"),
-        (FitError::OutOfRange { input: "fov_y", value: 9.0, min: 0.0, max: 3.0 }, "fov_y is 9e0; give"),
-        (FitError::BadDirection { input: "the light's direction", length: 0.0 }, "length 0e0; give"),
+        (
+            FitError::OutOfRange { input: "fov_y", value: 9.0, min: 0.0, max: 3.0 },
+            "fov_y is 9; give a value from 0 to 3",
+        ),
+        (FitError::BadDirection { input: "the light's direction", length: 0.0 }, "length 0; give"),
         (FitError::ParallelUp { forward: Vec3::Y, up: Vec3::Y }, "tilt one"),
         (FitError::SingularMatrix { corner: 4, w: 0.0 }, "clip corner 4; pass"),
-        (FitError::EmptyFrustum { size: Vec3::ZERO }, "[0, 0, 0] m; check"),
+        (FitError::EmptyFrustum { size: Vec3::ZERO }, "(0, 0, 0) m; check"),
         (FitError::NearNotBelowFar { near: 2.0, far: 1.0 }, "near 2 m is not below far 1 m; raise"),
-        (FitError::ZeroResolution { resolution: UVec2::ZERO }, "[0, 0]; give"),
+        (FitError::ZeroResolution { resolution: UVec2::ZERO }, "0 × 0; give"),
     ];
     for (error, part) in errors {
         assert!(error.to_string().contains(part), "{error}");

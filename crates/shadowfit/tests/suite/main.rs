@@ -25,6 +25,7 @@ mod metamorphic;
 mod mint;
 mod optimality;
 mod other_matrices;
+mod rounding;
 mod rust_code;
 mod scenes;
 mod scroll;

@@ -207,3 +207,61 @@ fn off_axis_and_mirrored_matrices_are_fitted_tightly() {
         }
     }
 }
+
+/// A perspective in three ways: as it is, off-axis, and mirrored.
+fn lenses(clip_from_eye: DMat4) -> [DMat4; 3] {
+    let off_axis = DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::Z, DVec4::W) + {
+        let shift = |row: DVec4| DVec4::new(0.3 * row.w, -0.4 * row.w, 0.0, 0.0);
+        DMat4::from_cols(shift(DVec4::X), shift(DVec4::Y), shift(DVec4::Z), shift(DVec4::W))
+    };
+    [clip_from_eye, off_axis * clip_from_eye, DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)) * clip_from_eye]
+}
+
+#[test]
+fn a_perspective_that_is_named_with_the_other_end_of_its_depth_is_refused() {
+    for far in [80.0, f32::INFINITY, 0.3] {
+        let camera = PerspectiveCamera { far, ..camera() };
+        for (has, named) in DEPTHS.into_iter().flat_map(|has| DEPTHS.map(|named| (has, named))) {
+            for matrix in lenses(clip_from_eye(&camera, has)).map(|matrix| matrix.inverse()) {
+                let world = DMat4::from_translation(camera.eye) * matrix;
+                for scale in [1.0, -3.0] {
+                    let results = [
+                        ViewFrustum::from_world_from_clip_f64(&(world * scale), camera.eye, named, 100.0),
+                        ViewFrustum::from_world_from_clip(&(world * scale).as_mat4(), camera.eye, named, 100.0),
+                        ViewFrustum::from_eye_from_clip(&(matrix * scale).as_mat4(), camera.eye, named, 100.0),
+                    ];
+                    let is_reversed = has == DepthConvention::Reversed;
+                    for result in results {
+                        if is_reversed == (named == DepthConvention::Reversed) {
+                            let frustum = result.unwrap();
+                            assert!(frustum.forward.dot(camera.forward) > 0.0, "{has:?} named {named:?}: {frustum:?}");
+                            // Whether a plain range is 0..1 or -1..1 no matrix tells.
+                            let near = if has == named { 1.0..=1.0 } else { 0.49..=2.01 };
+                            let ratio = frustum.near / camera.near;
+                            assert!(
+                                near.contains(&((ratio * 200.0).round() / 200.0)),
+                                "{has:?} named {named:?}: {ratio}"
+                            );
+                        } else {
+                            assert_eq!(
+                                result,
+                                Err(FitError::OtherDepth { named, is_reversed }),
+                                "{has:?} named {named:?}"
+                            );
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_said_of_the_other_depth_names_the_one_that_the_matrix_has() {
+    let text = |named, is_reversed| FitError::OtherDepth { named, is_reversed }.to_string();
+    assert_eq!(
+        text(DepthConvention::ZeroToOne, true),
+        "the camera's matrix has reversed depth (near 1, far 0), not near 0, far 1 as named; name DepthConvention::Reversed"
+    );
+    assert!(text(DepthConvention::Reversed, false).contains("DepthConvention::ZeroToOne, or NegativeOneToOne"));
+}

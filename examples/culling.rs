@@ -1,0 +1,170 @@
+//! What culling leaves of each shadow pass: casters and triangles that the maps of a technique draw when they hold all
+//! that they can store, and when they hold only what can throw a shadow into view.
+//!
+//! ```sh
+//! cargo run --release --example culling -- peers/scenarios.json --assets assets
+//! cargo run --release --example culling -- peers/scenarios.json --assets assets --casters objects --software
+//! ```
+//!
+//! The scenes and scenarios are those of `report peers`. Prints a table in Markdown, means over the frames that were
+//! drawn: the first few of each path, but for those that have no frame before them.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use clap::{Parser, ValueEnum};
+use glam::{DVec3, Vec3};
+use shadowfit::Clusters;
+use shadowfit_render::{
+    AdapterChoice, Atmosphere, Culling, Frame, Gpu, GpuScene, MapStatistics, RenderTarget, Renderer,
+};
+use shadowfit_scene::Scene;
+use shadowfit_truth::peers::Scenarios;
+use shadowfit_viewer::study::{Fitter, Shot, Subject, Technique};
+use shadowfit_wgpu::{MAX_MAPS, MapFit};
+
+#[path = "shared/geometry.rs"]
+mod geometry;
+
+use geometry::{Corners, Source};
+
+#[derive(Parser)]
+#[command(about = "Counts the casters and triangles that culling leaves of each shadow pass")]
+struct Args {
+    /// Scenes, cameras and lights
+    #[arg(value_name = "SCENARIOS.json")]
+    scenarios: PathBuf,
+    #[command(flatten)]
+    geometry: Source,
+    /// Techniques, by name or as TOML files
+    #[arg(long = "technique", value_name = "NAME|FILE", default_values = ["calm-4", "histogram-4"])]
+    techniques: Vec<String>,
+    /// What is culled as a whole
+    #[arg(long, value_enum, default_value = "clusters")]
+    casters: Casters,
+    /// Frames of each path
+    #[arg(long, default_value_t = 5, value_name = "N", value_parser = clap::value_parser!(u32).range(2..))]
+    frames: u32,
+    /// Draw on the software adapter, whatever GPU there is
+    #[arg(long)]
+    software: bool,
+}
+
+/// What is culled as a whole.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Casters {
+    /// The objects of the scenarios
+    Objects,
+    /// The clusters of triangles that the fits know
+    Clusters,
+}
+
+/// What each map drew, summed over frames: all that it can store, and what is swept from the view.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    whole: [MapStatistics; MAX_MAPS],
+    swept: [MapStatistics; MAX_MAPS],
+    frames: u32,
+}
+
+fn main() -> Result<()> {
+    let args = Args::parse();
+    let scenarios = Scenarios::read(&args.scenarios)?;
+    let choice = if args.software { AdapterChoice::Software } else { AdapterChoice::Any };
+    let gpu = pollster::block_on(Gpu::headless(choice))?;
+    println!("| scene | technique | casters by map: stored | swept | thousand triangles by map: stored | swept |");
+    println!("|---|---|---:|---:|---:|---:|");
+    for scene in 0..scenarios.scenes.len() {
+        let objects = args.geometry.read(&scenarios.scenes[scene])?;
+        for name in &args.techniques {
+            let technique = Technique::find(name)?;
+            let sums = measure(&gpu, &args, (&scenarios, scene), &objects, &technique)
+                .with_context(|| format!("{}, {name}", scenarios.scenes[scene].name))?;
+            println!(
+                "| {} | `{}` | {} |",
+                scenarios.scenes[scene].name,
+                technique.name,
+                sums.row(technique.maps.count)
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Draws a scene's frames with a technique's maps.
+fn measure(
+    gpu: &Gpu,
+    args: &Args,
+    (scenarios, scene): (&Scenarios, usize),
+    objects: &[Vec<Corners>],
+    technique: &Technique,
+) -> Result<Sums> {
+    let name = &scenarios.scenes[scene].name;
+    let mut renderer = Renderer::new(gpu, &technique.descriptor(), 1)?;
+    let layout = renderer.material_layout();
+    let subject = Subject::new(gpu, layout, Scene::from_objects(name, objects))?;
+    let casters = match args.casters {
+        Casters::Objects => objects.to_vec(),
+        Casters::Clusters => clusters(objects)?,
+    };
+    let drawn = Scene::from_objects(name, &casters);
+    let mut drawn = GpuScene::new(gpu, layout, &drawn, &drawn.pose(None, 0.0));
+    // Only what the shadow passes draw is counted.
+    let target = renderer.target(gpu, [1, 1]);
+    let mut fitter = Fitter::new(technique);
+    let mut sums = Sums::default();
+    for (index, frame) in scenarios.frames.iter().enumerate() {
+        if frame.scene != scene || frame.frame >= args.frames {
+            continue;
+        }
+        let is_first = scenarios.previous(index).is_none();
+        let shot = Shot { camera: frame.camera(), direction: DVec3::from_array(frame.light_dir).as_vec3(), is_first };
+        let maps = fitter.fit(&subject, &shot)?;
+        if !is_first {
+            sums.add(gpu, (&mut renderer, &target), &mut drawn, (&shot, &maps))?;
+        }
+    }
+    Ok(sums)
+}
+
+/// The triangles by cluster.
+fn clusters(objects: &[Vec<Corners>]) -> Result<Vec<Vec<Corners>>> {
+    let slices: Vec<&[[Vec3; 3]]> = objects.iter().map(Vec::as_slice).collect();
+    let clusters = Clusters::build(&slices, Clusters::DEFAULT_LIMIT)?;
+    let triangle = |(object, triangle): (u32, u32)| objects[object as usize][triangle as usize];
+    Ok((0..clusters.boxes().len()).map(|cluster| clusters.triangles(cluster).map(triangle).collect()).collect())
+}
+
+impl Sums {
+    fn add(
+        &mut self,
+        gpu: &Gpu,
+        (renderer, target): (&mut Renderer, &RenderTarget),
+        scene: &mut GpuScene,
+        (shot, maps): (&Shot, &[MapFit]),
+    ) -> Result<()> {
+        let atmosphere = Atmosphere::default();
+        for (sums, culling) in [(&mut self.whole, Culling::AsGiven), (&mut self.swept, Culling::Swept)] {
+            let frame = Frame { culling, ..Frame::new(&shot.camera, shot.direction, maps, &atmosphere) };
+            let statistics = renderer.draw(gpu, scene, &frame, target)?;
+            for (sum, map) in sums.iter_mut().zip(&statistics.maps) {
+                sum.casters += map.casters;
+                sum.triangles += map.triangles;
+            }
+        }
+        self.frames += 1;
+        Ok(())
+    }
+
+    /// The means as cells of a table, one number a map.
+    fn row(&self, maps: u32) -> String {
+        let frames = f64::from(self.frames.max(1));
+        let cell = |maps: &[MapStatistics], number: &dyn Fn(&MapStatistics) -> String| {
+            maps.iter().map(number).collect::<Vec<_>>().join(" / ")
+        };
+        let casters = |map: &MapStatistics| format!("{:.0}", f64::from(map.casters) / frames);
+        let thousands = |map: &MapStatistics| format!("{:.1}", map.triangles as f64 / frames / 1e3);
+        let [whole, swept] = [&self.whole, &self.swept].map(|sums| &sums[..maps as usize]);
+        [cell(whole, &casters), cell(swept, &casters), cell(whole, &thousands), cell(swept, &thousands)].join(" | ")
+    }
+}
