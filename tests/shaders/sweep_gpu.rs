@@ -271,7 +271,7 @@ fn real_scenes_get_the_same_factor_in_every_pixel() {
     let cases = cases();
     let mut compared = 0;
     for (index, of_file) in scenarios.scenes.iter().enumerate() {
-        let scene = load_gltf(&assets.join(&of_file.file)).unwrap_or_else(|error| panic!("{error}"));
+        let scene = load_gltf(&assets.join(of_file.file.as_ref().expect("a scene of the collection"))).unwrap_or_else(|error| panic!("{error}"));
         for case in &cases[..3] {
             let mut renderer = Renderer::new(&gpu, &descriptor(case), 1).expect("a renderer");
             let mut gpu_scene = GpuScene::new(&gpu, renderer.material_layout(), &scene, &scene.pose(None, 0.0));

@@ -72,13 +72,15 @@ impl Artefact {
                  shadows from their casters."
             }
             Self::Aliasing => {
-                "The shadow distance is shortened, so that texels are spent near the camera, the maps are larger, \
-                 and the filter blends neighbouring texels. What is farther away than the shadow distance has no \
-                 shadow now."
+                "Each map is laid closely around what is seen, without a margin, so that its texels are spent there; \
+                 a single map also ends its shadows where little is seen. Maps that were small are larger, and the \
+                 filter blends neighbouring texels."
             }
             Self::ClippingHole => {
-                "The near plane of each map is pulled toward the light by the caster extension, so that casters \
-                 outside the view are drawn into it. The size of the texels stays; only the depth range grows."
+                "The near plane of each map is moved toward the light to the first caster that can throw a shadow \
+                 into view, so that casters outside the view are drawn into the map. A single map is also fitted to \
+                 what is seen of the scene. With several maps the size of the texels stays, and only the depth range \
+                 grows."
             }
         }
     }

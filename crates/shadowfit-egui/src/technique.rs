@@ -7,8 +7,8 @@ use shadowfit::{PRESETS, Technique};
 use crate::rows;
 
 /// What the menu does.
-const HELP: &str = "Sets everything from Fit to Single maps as a technique by name has it, and keeps shadow distance \
-                    and resolution as they are.";
+const HELP: &str = "Sets everything from Fit to Single maps as a technique by name has it, and keeps shadow distance, \
+                    caster extension and resolution as they are.";
 
 /// Width of the open menu, in points: a summary takes one line or two.
 const WIDTH: f32 = 320.0;
@@ -99,11 +99,13 @@ impl Menu {
     }
 }
 
-/// A technique with the shadow distance and the resolution of another one: those depend on the scene
-/// and the machine.
-fn of_scene(technique: Technique, other: &Technique) -> Technique {
-    let size = other.fit.resolution;
-    technique.with_max_distance(other.fit.max_distance).with_resolution(size.x, size.y)
+/// A technique with the shadow distance, the caster extension and the resolution of another one:
+/// those depend on the scene and the machine.
+fn of_scene(mut technique: Technique, other: &Technique) -> Technique {
+    technique.fit.max_distance = other.fit.max_distance;
+    technique.fit.caster_extension = other.fit.caster_extension;
+    technique.fit.resolution = other.fit.resolution;
+    technique
 }
 
 /// A line of the menu: the name, and below it in a few words what it is.

@@ -123,7 +123,7 @@ impl Arguments {
 
 /// Takes a preset with the lengths that suit the scene, or a file as it is, which is returned then.
 fn open_technique(text: &str, settings: &mut Settings) -> Result<Option<NamedTechnique>> {
-    let opened = NamedTechnique::find(text).with_context(|| format!("--technique {text}"))?;
+    let opened = NamedTechnique::find(text).context("--technique")?;
     let of_scene = settings.technique.fit;
     settings.technique = opened.technique;
     if NamedTechnique::preset(text).is_none() {

@@ -12,7 +12,10 @@ use crate::fitted::Fitted;
 const FRUSTUM_COLOR: Vec4 = Vec4::ONE;
 
 /// Vertical field of view of the outside camera, in radians.
-const FOV_Y: f32 = 0.8;
+const FOV_Y: f32 = 1.0;
+
+/// Distance of the outside camera, as a multiple of that at which all lines just fill its picture.
+const ROOM: f32 = 1.1;
 
 /// Length of the arrow along the light, as a share of half the diagonal of the box's face.
 const ARROW: f32 = 0.4;
@@ -69,11 +72,19 @@ pub(crate) fn camera(inner: &PerspectiveCamera, fitted: &Fitted) -> PerspectiveC
     let low = points.iter().copied().reduce(DVec3::min).unwrap_or(inner.eye);
     let high = points.iter().copied().reduce(DVec3::max).unwrap_or(inner.eye);
     let center = (low + high) * 0.5;
-    let radius = points.iter().map(|point| point.distance(center)).fold(1e-3, f64::max) as f32;
     let level = Vec3::new(inner.forward.x, 0.0, inner.forward.z).normalize_or(Vec3::NEG_Z);
-    let right = level.cross(Vec3::Y);
-    let away = (right * 0.75 - level * 0.45 + Vec3::Y * 0.55).normalize();
-    let distance = radius / (FOV_Y * 0.5).sin();
+    // From behind, where the small boxes are near, and from the left, so that they lie right of the inset.
+    let away = (level.cross(Vec3::Y) * -0.5 - level * 0.75 + Vec3::Y * 0.5).normalize();
+    let right = Vec3::Y.cross(away).normalize();
+    let up = away.cross(right);
+    let tangent = (FOV_Y * 0.5).tan();
+    let offsets = || points.iter().map(|point| (point - center).as_vec3());
+    let needed = |offset: Vec3| {
+        let [across, along] = [offset.dot(right) / inner.aspect, offset.dot(up)].map(|side| side.abs() / tangent);
+        across.max(along) + offset.dot(away)
+    };
+    let distance = offsets().map(needed).fold(1e-3, f32::max) * ROOM;
+    let radius = offsets().map(Vec3::length).fold(0.0, f32::max);
     PerspectiveCamera {
         eye: center + (away * distance).as_dvec3(),
         forward: -away,
