@@ -14,14 +14,15 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use clap::{Parser, ValueEnum};
 use glam::{DVec3, Vec3};
-use shadowfit::Clusters;
+use shadowfit::Technique;
+use shadowfit::clusters::Clusters;
 use shadowfit_render::{
     AdapterChoice, Atmosphere, Culling, Frame, Gpu, GpuScene, MapStatistics, RenderTarget, Renderer,
 };
 use shadowfit_scene::Scene;
+use shadowfit_study::{NamedTechnique, PreparedScene, TechniqueFitter, View};
 use shadowfit_truth::peers::Scenarios;
-use shadowfit_viewer::study::{Fitter, Shot, Subject, Technique};
-use shadowfit_wgpu::{MAX_MAPS, MapFit};
+use shadowfit_wgpu::{MAX_MAPS, MapFit, ShadowMapDescriptor};
 
 #[path = "shared/geometry.rs"]
 mod geometry;
@@ -77,15 +78,10 @@ fn main() -> Result<()> {
     for scene in 0..scenarios.scenes.len() {
         let objects = args.geometry.read(&scenarios.scenes[scene])?;
         for name in &args.techniques {
-            let technique = Technique::find(name)?;
-            let sums = measure(&gpu, &args, (&scenarios, scene), &objects, &technique)
+            let named = NamedTechnique::find(name)?;
+            let sums = measure(&gpu, &args, (&scenarios, scene), &objects, &named.technique)
                 .with_context(|| format!("{}, {name}", scenarios.scenes[scene].name))?;
-            println!(
-                "| {} | `{}` | {} |",
-                scenarios.scenes[scene].name,
-                technique.name,
-                sums.row(technique.maps.count)
-            );
+            println!("| {} | `{}` | {} |", scenarios.scenes[scene].name, named.name, sums.row(named.technique.count));
         }
     }
     Ok(())
@@ -100,9 +96,9 @@ fn measure(
     technique: &Technique,
 ) -> Result<Sums> {
     let name = &scenarios.scenes[scene].name;
-    let mut renderer = Renderer::new(gpu, &technique.descriptor(), 1)?;
+    let mut renderer = Renderer::new(gpu, &ShadowMapDescriptor::from(technique), 1)?;
     let layout = renderer.material_layout();
-    let subject = Subject::new(gpu, layout, Scene::from_objects(name, objects))?;
+    let prepared = PreparedScene::new(gpu, layout, Scene::from_objects(name, objects))?;
     let casters = match args.casters {
         Casters::Objects => objects.to_vec(),
         Casters::Clusters => clusters(objects)?,
@@ -111,17 +107,17 @@ fn measure(
     let mut drawn = GpuScene::new(gpu, layout, &drawn, &drawn.pose(None, 0.0));
     // Only what the shadow passes draw is counted.
     let target = renderer.target(gpu, [1, 1]);
-    let mut fitter = Fitter::new(technique);
+    let mut fitter = TechniqueFitter::new(*technique);
     let mut sums = Sums::default();
     for (index, frame) in scenarios.frames.iter().enumerate() {
         if frame.scene != scene || frame.frame >= args.frames {
             continue;
         }
         let is_first = scenarios.previous(index).is_none();
-        let shot = Shot { camera: frame.camera(), direction: DVec3::from_array(frame.light_dir).as_vec3(), is_first };
-        let maps = fitter.fit(&subject, &shot)?;
+        let view = View { camera: frame.camera(), direction: DVec3::from_array(frame.light_dir).as_vec3(), is_first };
+        let maps = fitter.fit(&prepared, &view)?;
         if !is_first {
-            sums.add(gpu, (&mut renderer, &target), &mut drawn, (&shot, &maps))?;
+            sums.add(gpu, (&mut renderer, &target), &mut drawn, (&view, &maps))?;
         }
     }
     Ok(sums)
@@ -141,11 +137,11 @@ impl Sums {
         gpu: &Gpu,
         (renderer, target): (&mut Renderer, &RenderTarget),
         scene: &mut GpuScene,
-        (shot, maps): (&Shot, &[MapFit]),
+        (view, maps): (&View, &[MapFit]),
     ) -> Result<()> {
         let atmosphere = Atmosphere::default();
         for (sums, culling) in [(&mut self.whole, Culling::AsGiven), (&mut self.swept, Culling::Swept)] {
-            let frame = Frame { culling, ..Frame::new(&shot.camera, shot.direction, maps, &atmosphere) };
+            let frame = Frame { culling, ..Frame::new(&view.camera, view.direction, maps, &atmosphere) };
             let statistics = renderer.draw(gpu, scene, &frame, target)?;
             for (sum, map) in sums.iter_mut().zip(&statistics.maps) {
                 sum.casters += map.casters;

@@ -2,9 +2,10 @@
 //! crates' own tests have the conventions of each.
 
 use shadowfit::glam::{DVec3, Mat4, Vec3, Vec4};
-use shadowfit::settings::BiasSettings;
+use shadowfit::presets::RECOMMENDED;
+use shadowfit::settings::{BiasSettings, FitSettings};
 use shadowfit::tool::{CameraSettings, LightSettings};
-use shadowfit::{Bias, DepthConvention, FitSettings, LightFit, PerspectiveCamera, RECOMMENDED, Technique, fit};
+use shadowfit::{Bias, DepthConvention, LightFit, PerspectiveCamera, Technique, fit};
 use shadowfit_render::{Atmosphere, FlyCamera, FrameUniform, Line, box_lines};
 use shadowfit_scene::builtin;
 use shadowfit_study::NamedTechnique;

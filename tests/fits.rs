@@ -1,7 +1,7 @@
 //! The fits in the viewer, on the default scene: whichever is chosen, no shadow has a hole once the casters have a
 //! place in the map, and knowing the scene makes texels finer. Judged against rays, which need no shadow map.
 
-use shadowfit::{CasterPolicy, FitKind, Stabilise};
+use shadowfit::settings::{CasterPolicy, FitKind, Stabilise};
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_truth::Class;
 use shadowfit_viewer::{Artefact, Stage};

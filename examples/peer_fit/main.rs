@@ -11,7 +11,8 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, ensure};
 use clap::Parser;
-use shadowfit::{PRESETS, ReceiverSource, SplitScheme};
+use shadowfit::PRESETS;
+use shadowfit::settings::{ReceiverSource, SplitScheme};
 use shadowfit_study::NamedTechnique;
 use shadowfit_truth::peers::Scenarios;
 

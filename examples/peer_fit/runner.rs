@@ -4,10 +4,10 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 use glam::{DVec2, DVec3, Vec3};
-use shadowfit::{
-    Aabb, Boxes, Clusters, FitInput, FittedMap, FittedMaps, MapFitter, NormalCone, ReceiverSource, SplitScheme,
-    Technique, ViewFrustum, Workspace,
-};
+use shadowfit::clusters::Clusters;
+use shadowfit::normal_cone::NormalCone;
+use shadowfit::settings::{ReceiverSource, SplitScheme};
+use shadowfit::{Aabb, Boxes, FitInput, FittedMap, FittedMaps, MapFitter, Technique, ViewFrustum, Workspace};
 use shadowfit_study::{NamedTechnique, SeenDepths, fit_map};
 use shadowfit_truth::Tracer;
 use shadowfit_truth::peers::{FitFile, FitFrame, FitMap, Scenarios, Scene};

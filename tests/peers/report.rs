@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use shadowfit::RECOMMENDED;
+use shadowfit::presets::RECOMMENDED;
 use shadowfit_truth::peers::{FitFile, FitFrame, FitMap, Scenarios};
 
 use crate::support::{assets, example_program, peers};

@@ -1,8 +1,9 @@
 //! Settings that no panel would allow: every number in turn NaN, infinite, zero, negative, tiny and huge.
 
+use shadowfit::DepthConvention;
 use shadowfit::glam::{DVec3, UVec2};
+use shadowfit::settings::{CasterPolicy, FitKind};
 use shadowfit::tool::Settings;
-use shadowfit::{CasterPolicy, DepthConvention, FitKind};
 use shadowfit_render::FlyInput;
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_scene::{Mesh, Scene};

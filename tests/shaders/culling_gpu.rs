@@ -1,10 +1,9 @@
 //! Culling in WGSL against its twin in Rust: the same masks for boxes, and the same answers for spheres and oriented
 //! boxes, but where a shape lies within rounding of a plane.
 
+use shadowfit::culling::{OrientedBox, Sphere, Sweep, cull};
 use shadowfit::glam::{DVec2, DVec3, Mat3, Vec3};
-use shadowfit::{
-    Aabb, CasterVolume, FitInput, MapFitter, OrientedBox, PerspectiveCamera, Sphere, Sweep, Technique, Workspace, cull,
-};
+use shadowfit::{Aabb, CasterVolume, FitInput, MapFitter, PerspectiveCamera, Technique, Workspace};
 use shadowfit_render::Gpu;
 use shadowfit_wgpu::{CullingUniform, culling_wgsl};
 use wgpu::util::DeviceExt;

@@ -3,7 +3,7 @@
 use core::mem::offset_of;
 
 use naga::{Binding, Module, StructMember, TypeInner};
-use shadowfit::CasterPlanes;
+use shadowfit::culling::CasterPlanes;
 use shadowfit_render::{FrameUniform, InsetUniform, InstanceData, LineVertex, MaterialUniform, shaders};
 use shadowfit_wgpu::{
     CasterUniform, CullingUniform, MAX_MAPS, MapUniform, ReceiverUniform, ShadowMapDescriptor, culling_wgsl,

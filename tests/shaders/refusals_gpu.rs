@@ -2,8 +2,8 @@
 //! the index and the value. And that a refusal changes nothing.
 
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::settings::{BiasSettings, CascadeSettings, SplitScheme};
-use shadowfit::{Bias, CascadeFitter, FitError, FitInput, LightFit, PerspectiveCamera, Workspace};
+use shadowfit::settings::{BiasSettings, SplitScheme};
+use shadowfit::{Bias, FitError, FitInput, LightFit, MapFitter, PerspectiveCamera, Technique, Workspace};
 use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError};
 
 use super::exact_counts_gpu::box_fit;
@@ -119,13 +119,12 @@ fn maps_of_the_core_are_in_order_where_some_of_them_have_no_range() {
     for ends in [[10.0, 50.0], [-5.0, 10.0], [40.0, 50.0], [-5.0, -1.0]] {
         let mut manual = [100.0; 7];
         manual[..2].copy_from_slice(&ends);
-        let mut settings =
-            CascadeSettings { count: LAYERS, splits: SplitScheme::Manual(manual), ..CascadeSettings::default() };
+        let mut settings = Technique { count: LAYERS, splits: SplitScheme::Manual(manual), ..Technique::default() };
         settings.fit.resolution = UVec2::splat(256);
         let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
         let input = FitInput::new(&view, Vec3::new(0.3, -0.8, 0.2));
-        let fitted = CascadeFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("maps");
-        let maps: Vec<MapFit> = fitted.iter().map(|map| MapFit::from_texels(map, &BiasSettings::default())).collect();
+        let fitted = MapFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("maps");
+        let maps: Vec<MapFit> = fitted.iter().map(|map| MapFit::from(map)).collect();
         assert_eq!(prepared(&maps, Vec3::NEG_Z), Ok(3), "{ends:?}");
     }
 }

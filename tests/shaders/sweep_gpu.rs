@@ -3,10 +3,11 @@
 
 use shadowfit::bias::XNA_DEPTH_BIAS;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::settings::{BiasSettings, FilterKind, MapFormat};
+use shadowfit::settings::{
+    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, MapFormat, SplitScheme, Stabilise,
+};
 use shadowfit::{
-    Aabb, Bias, Boxes, CasterPolicy, DepthConvention, FitInput, FitKind, FitSettings, LightFit, MapFitter,
-    PerspectiveCamera, SplitScheme, Stabilise, Technique, Workspace, fit,
+    Aabb, Bias, Boxes, DepthConvention, FitInput, LightFit, MapFitter, PerspectiveCamera, Technique, Workspace, fit,
 };
 use shadowfit_render::{Atmosphere, Culling, Frame, Gpu, GpuScene, ProbePixel, ProbeTargets, Renderer, Statistics};
 use shadowfit_scene::{Scene, builtin, load_gltf};
@@ -179,7 +180,7 @@ fn fitted(case: &Case, camera: &PerspectiveCamera, boxes: &[Aabb], direction: Ve
         let is_narrow = case.is_narrow && index < last;
         let settings = case.technique.fit.with_max_distance(map.far).with_casters(CasterPolicy::Extend);
         let light = if is_narrow { fit(&narrow, direction, &settings).expect("a fit") } else { map.fit };
-        let converted = MapFit::from_texels(map, &BiasSettings::default());
+        let converted = MapFit::from(map);
         MapFit { fit: light, bias: (case.bias)(&light, case.filter), ..converted }
     };
     fitted.iter().enumerate().map(map).collect()
@@ -271,7 +272,8 @@ fn real_scenes_get_the_same_factor_in_every_pixel() {
     let cases = cases();
     let mut compared = 0;
     for (index, of_file) in scenarios.scenes.iter().enumerate() {
-        let scene = load_gltf(&assets.join(of_file.file.as_ref().expect("a scene of the collection"))).unwrap_or_else(|error| panic!("{error}"));
+        let scene = load_gltf(&assets.join(of_file.file.as_ref().expect("a scene of the collection")))
+            .unwrap_or_else(|error| panic!("{error}"));
         for case in &cases[..3] {
             let mut renderer = Renderer::new(&gpu, &descriptor(case), 1).expect("a renderer");
             let mut gpu_scene = GpuScene::new(&gpu, renderer.material_layout(), &scene, &scene.pose(None, 0.0));

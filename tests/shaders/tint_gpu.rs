@@ -3,7 +3,8 @@
 
 use shadowfit::figures::MAP_TINTS;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::{Bias, FitInput, MapFitter, PerspectiveCamera, SplitScheme, Technique, Workspace};
+use shadowfit::settings::SplitScheme;
+use shadowfit::{Bias, FitInput, MapFitter, PerspectiveCamera, Technique, Workspace};
 use shadowfit_render::{Atmosphere, Frame, GpuScene, Overlay, Renderer};
 use shadowfit_scene::Scene;
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};

@@ -1,8 +1,7 @@
 //! Each artefact alone, made on purpose: it is counted as what it is, and its cure brings the count to nothing.
 
-use shadowfit::FitKind;
 use shadowfit::glam::{Affine3A, Quat, Vec3};
-use shadowfit::settings::{BiasSettings, FilterKind};
+use shadowfit::settings::{BiasSettings, FilterKind, FitKind};
 use shadowfit_truth::PictureTally;
 
 use super::shapes::{Arrangement, NO_BIAS, floor, single, solid};

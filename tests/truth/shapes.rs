@@ -1,8 +1,8 @@
 //! Scenes whose shadows are known, and the pictures of them.
 
 use shadowfit::glam::{Affine3A, DVec3, Vec3};
-use shadowfit::settings::{BiasSettings, FilterKind};
-use shadowfit::{FitKind, FitSettings, PerspectiveCamera, Technique};
+use shadowfit::settings::{BiasSettings, FilterKind, FitKind, FitSettings};
+use shadowfit::{PerspectiveCamera, Technique};
 use shadowfit_scene::Scene;
 use shadowfit_study::{Comparison, Judging, SharedTruth, View};
 use shadowfit_truth::PictureTally;

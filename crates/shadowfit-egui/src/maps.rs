@@ -3,7 +3,8 @@
 
 use egui::{Button, Color32, CornerRadius, Grid, Response, RichText, Role, Sense, Stroke, Ui, Vec2, WidgetInfo};
 use shadowfit::figures::{Figures, MAP_TINTS, MapFigures};
-use shadowfit::{Constraint, MAX_MAPS};
+use shadowfit::light_fit::Constraint;
+use shadowfit::settings::MAX_MAPS;
 
 use crate::rows::rename;
 use crate::units::{grouped, length, short, size};

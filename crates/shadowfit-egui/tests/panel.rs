@@ -6,11 +6,11 @@ use egui::{Key, Rect, Vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 use shadowfit::figures::{Figures, MapFigures};
+use shadowfit::light_fit::Constraint;
 use shadowfit::params::{Group, Kind, PARAMETERS, Parameter, parameter};
+use shadowfit::settings::{CasterPolicy, FitKind, MAX_MAPS, MapOverride, SplitScheme};
 use shadowfit::tool::Settings;
-use shadowfit::{
-    CasterPolicy, Constraint, FitKind, MAX_MAPS, MapOverride, PRESETS, SplitScheme, Technique, glam::UVec2,
-};
+use shadowfit::{PRESETS, Technique, glam::UVec2};
 use shadowfit_egui::{Action, Artefact, KEYS, PANEL_WIDTH, Panel, PanelInput, SceneLine, apply_style, help_overlay};
 
 /// Higher than all that the panel holds, so that nothing is scrolled out of view.
@@ -593,11 +593,11 @@ fn a_technique_in_the_menu_explains_when_to_take_it() {
 #[test]
 fn a_technique_that_was_changed_is_called_so() {
     let mut harness = harness(Host::default());
-    assert_eq!(technique_title(&harness), shadowfit::RECOMMENDED);
+    assert_eq!(technique_title(&harness), shadowfit::presets::RECOMMENDED);
     let technique = &mut harness.state_mut().settings.technique;
     technique.overlap = 0.1;
     harness.run();
-    assert_eq!(technique_title(&harness), format!("{}, changed", shadowfit::RECOMMENDED));
+    assert_eq!(technique_title(&harness), format!("{}, changed", shadowfit::presets::RECOMMENDED));
 
     let opened = Technique::default().with_overlap(0.2);
     harness.state_mut().settings.technique = opened;

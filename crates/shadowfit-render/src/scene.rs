@@ -125,7 +125,7 @@ impl GpuScene {
     /// For each instance the maps that it may throw a shadow into: bit i for volume i, relative to the frame's eye.
     pub(crate) fn cull(&self, volumes: &[CasterVolume]) -> Vec<u8> {
         let mut masks = vec![0; self.boxes.len()];
-        shadowfit::cull(volumes, self.eye, &self.boxes, &mut masks);
+        shadowfit::culling::cull(volumes, self.eye, &self.boxes, &mut masks);
         masks
     }
 

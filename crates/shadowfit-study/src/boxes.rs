@@ -4,7 +4,9 @@
 //! nothing. What an animation moves has one box an instance, made anew with every pose.
 
 use glam::{DVec3, Vec3};
-use shadowfit::{Aabb, Boxes, Clusters, FitInput, NormalCone, ViewFrustum, Workspace};
+use shadowfit::clusters::Clusters;
+use shadowfit::normal_cone::NormalCone;
+use shadowfit::{Aabb, Boxes, FitInput, ViewFrustum, Workspace};
 use shadowfit_scene::{AlphaMode, Instance, Pose, Scene};
 
 /// Triangles from which on nothing is cut into clusters: at a fifth of a microsecond each it would hold up the opening

@@ -1,7 +1,8 @@
 //! The one place where a technique's maps are fitted to a scene, view after view.
 
 use glam::DVec2;
-use shadowfit::{FitError, FittedMaps, MapFitter, SplitScheme, Technique, Workspace};
+use shadowfit::settings::SplitScheme;
+use shadowfit::{FitError, FittedMaps, MapFitter, Technique, Workspace};
 use shadowfit_wgpu::MapFit;
 
 use crate::{PreparedScene, SceneRays, SeenDepths, View};

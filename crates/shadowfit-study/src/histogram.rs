@@ -1,7 +1,8 @@
 //! What a depth buffer of the frame before would tell: rays against the triangles stand in for it.
 
 use glam::{DVec3, Vec3};
-use shadowfit::{DepthHistogram, PerspectiveCamera, needed_texel};
+use shadowfit::PerspectiveCamera;
+use shadowfit::histogram::{DepthHistogram, needed_texel};
 use shadowfit_truth::Tracer;
 
 /// Rays across the picture.

@@ -4,7 +4,8 @@ use core::cell::{OnceCell, RefCell};
 use core::fmt;
 
 use glam::DVec3;
-use shadowfit::{Aabb, PerspectiveCamera, ReceiverSource};
+use shadowfit::settings::ReceiverSource;
+use shadowfit::{Aabb, PerspectiveCamera};
 use shadowfit_render::{Gpu, GpuScene};
 use shadowfit_scene::{AlphaMode, Instance, Pose, Scene};
 

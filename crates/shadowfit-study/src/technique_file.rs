@@ -9,8 +9,9 @@ use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use shadowfit::params::{self, Group, Parameter, technique_parameters};
+use shadowfit::presets::RECOMMENDED;
 use shadowfit::tool::Settings;
-use shadowfit::{PRESETS, RECOMMENDED, Technique};
+use shadowfit::{PRESETS, Technique};
 use toml::Value;
 
 /// A technique with what tables call it.
@@ -185,7 +186,7 @@ fn refuse_the_rest(file: &toml::Table) -> Result<()> {
 mod tests {
     use super::*;
     use shadowfit::glam::{UVec2, Vec3};
-    use shadowfit::{FitKind, MapOverride, SplitScheme};
+    use shadowfit::settings::{FitKind, MapOverride, SplitScheme};
 
     #[test]
     fn every_preset_is_written_and_read_back_the_same() {

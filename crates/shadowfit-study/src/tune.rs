@@ -4,8 +4,10 @@
 //! the same answer, and what each change bought can be said.
 
 use anyhow::{Context, Result, ensure};
-use shadowfit::settings::{BiasSettings, FilterKind};
-use shadowfit::{FitKind, HoldSettings, ReceiverSource, RectangleKind, SplitScheme, Stabilise, Technique};
+use shadowfit::Technique;
+use shadowfit::settings::{
+    BiasSettings, FilterKind, FitKind, HoldSettings, ReceiverSource, RectangleKind, SplitScheme, Stabilise,
+};
 use shadowfit_truth::PictureTally;
 
 use crate::{Comparison, NamedTechnique, SharedTruth, View, ensure_judged};

@@ -7,8 +7,9 @@
 use core::f32::consts::{PI, TAU};
 
 use glam::{DVec3, UVec2, Vec3};
+use shadowfit::settings::{BiasSettings, CasterPolicy, FilterKind, FitKind};
 use shadowfit::tool::Settings;
-use shadowfit::{Aabb, BiasSettings, CasterPolicy, FilterKind, FitKind, PerspectiveCamera, Technique};
+use shadowfit::{Aabb, PerspectiveCamera, Technique};
 use shadowfit_egui::Artefact;
 use shadowfit_render::FlyCamera;
 

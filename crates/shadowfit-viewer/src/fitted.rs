@@ -47,7 +47,8 @@ impl Fitted {
 #[cfg(test)]
 mod tests {
     use glam::{DVec2, Vec3};
-    use shadowfit::{FitInput, MapFitter, SplitScheme, Workspace};
+    use shadowfit::settings::SplitScheme;
+    use shadowfit::{FitInput, MapFitter, Workspace};
 
     use super::*;
 

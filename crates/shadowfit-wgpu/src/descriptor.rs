@@ -1,5 +1,6 @@
 //! What a shadow map is made of: size, count, format, filter and depth convention.
 
+use shadowfit::glam::UVec2;
 use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MAX_MAPS, MapFormat};
 use shadowfit::{DepthConvention, Technique};
 
@@ -39,7 +40,7 @@ impl From<&Technique> for ShadowMapDescriptor {
     fn from(technique: &Technique) -> Self {
         let sizes = (0..technique.count as usize).map(|map| technique.resolution_of(map));
         Self {
-            resolution: sizes.fold(technique.fit.resolution, |a, b| a.max(b)).to_array(),
+            resolution: sizes.fold(technique.fit.resolution, UVec2::max).to_array(),
             maps: technique.count,
             format: technique.format,
             filter: technique.filter,

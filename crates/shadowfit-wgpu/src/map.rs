@@ -1,7 +1,7 @@
 //! The shadow map as a GPU resource: textures, clears, bind groups, and one pass per map.
 
-use shadowfit::settings::{FilterKind, MapFormat};
-use shadowfit::{CasterPolicy, CasterVolume, DepthConvention};
+use shadowfit::settings::{CasterPolicy, FilterKind, MapFormat};
+use shadowfit::{CasterVolume, DepthConvention};
 
 use crate::map_fit::check;
 use crate::uniform::{CasterUniform, ReceiverUniform};

@@ -19,7 +19,7 @@ pub fn caster_wgsl(group: u32) -> String {
 
 /// WGSL for shaders that cull casters: `shadowfit_cull_box(min, max) -> u32`, whose bit i says whether the box may throw
 /// a shadow into map i, and `shadowfit_touches_box`, `_sphere` and `_oriented_box` for one map. They are the twins of
-/// [`shadowfit::cull`] and of the tests of [`shadowfit::CasterVolume`].
+/// [`shadowfit::culling::cull`] and of the tests of [`shadowfit::CasterVolume`].
 ///
 /// Reads a [`crate::CullingUniform`] at binding 0 of `group`.
 pub fn culling_wgsl(group: u32) -> String {

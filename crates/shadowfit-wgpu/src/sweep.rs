@@ -5,9 +5,10 @@
 //! shaders look for a map.
 
 use shadowfit::bias::{MIN_COSINE, reach};
+use shadowfit::culling::Sweep;
 use shadowfit::glam::{DVec3, DVec4, Vec3};
-use shadowfit::settings::FilterKind;
-use shadowfit::{CasterPolicy, CasterVolume, FitError, LightFit, Sweep, ViewFrustum};
+use shadowfit::settings::{CasterPolicy, FilterKind};
+use shadowfit::{CasterVolume, FitError, LightFit, ViewFrustum};
 
 use crate::{MapFit, MapView};
 
@@ -163,7 +164,8 @@ fn lowered(mut volume: CasterVolume, fit: &LightFit, depth: f64) -> CasterVolume
 mod tests {
     use super::*;
     use shadowfit::bias::Bias;
-    use shadowfit::{FitSettings, PerspectiveCamera, fit};
+    use shadowfit::settings::FitSettings;
+    use shadowfit::{PerspectiveCamera, fit};
 
     const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.2);
     const ENDS: [f32; 3] = [5.0, 20.0, f32::MAX];

@@ -2,8 +2,9 @@
 //! shaders in the tests, so that the two cannot drift apart.
 
 use bytemuck::{Pod, Zeroable};
+use shadowfit::culling::CasterPlanes;
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::{CasterPlanes, CasterVolume, DepthConvention, LightFit};
+use shadowfit::{CasterVolume, DepthConvention, LightFit};
 
 use crate::{MAX_MAPS, MapFit, MapView};
 

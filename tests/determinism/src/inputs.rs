@@ -1,11 +1,14 @@
 //! Cameras, lights, boxes and settings of every kind.
 
+use shadowfit::clusters::Clusters;
 use shadowfit::glam::{DMat4, DVec3, DVec4, UVec2, Vec3};
-use shadowfit::{
-    Aabb, BiasSettings, Boxes, CasterPolicy, Clusters, DepthConvention, DepthHistogram, FilterKind, FitError, FitInput,
-    FitKind, FitSettings, HoldSettings, MAX_MAPS, MapFormat, MapOverride, NormalCone, PerspectiveCamera,
-    ReceiverSource, RectangleKind, SplitScheme, Stabilise, Technique, ViewFrustum,
+use shadowfit::histogram::DepthHistogram;
+use shadowfit::normal_cone::NormalCone;
+use shadowfit::settings::{
+    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapFormat, MapOverride,
+    ReceiverSource, RectangleKind, SplitScheme, Stabilise,
 };
+use shadowfit::{Aabb, Boxes, DepthConvention, FitError, FitInput, PerspectiveCamera, Technique, ViewFrustum};
 
 use crate::random::Random;
 

@@ -4,11 +4,12 @@
 //! changes only if an engine gets another number for the same settings, all of which are written out here.
 
 use shadowfit::bias::Reach;
+use shadowfit::culling::{Sweep, cull};
 use shadowfit::diagnostics::DepthStorage;
+use shadowfit::fits::fit_scene;
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec2, Vec3};
-use shadowfit::{
-    Bias, BiasSettings, CasterPolicy, CasterVolume, FitError, LightFit, MapFitter, Sweep, Workspace, cull, fit_scene,
-};
+use shadowfit::settings::{BiasSettings, CasterPolicy};
+use shadowfit::{Bias, CasterVolume, FitError, LightFit, MapFitter, Workspace};
 
 use crate::inputs::{Scene, fit_settings, technique};
 use crate::random::Random;

@@ -1,13 +1,15 @@
 //! Runs fits, and all that engines ask of them.
 
 use shadowfit::bias::{Reach, normal_offset, receiver_plane_depth};
+use shadowfit::culling::{OrientedBox, Sphere, Sweep, cull};
 use shadowfit::diagnostics::{DepthStorage, acne_margin, coverage, depth_step_at, pixels_per_texel, share_of_map};
+use shadowfit::fits::fit_scene;
 use shadowfit::fits::sphere::enclosing_sphere;
 use shadowfit::glam::{DVec2, UVec2, Vec3};
-use shadowfit::{
-    Bias, BiasSettings, CasterPolicy, CasterVolume, DepthHistogram, FilterKind, FitError, LightFit, LightStepSettings,
-    LightSteps, MapFitter, OrientedBox, Sphere, Sweep, Workspace, cull, fit_scene, needed_texel,
-};
+use shadowfit::histogram::{DepthHistogram, needed_texel};
+use shadowfit::light_steps::{LightStepSettings, LightSteps};
+use shadowfit::settings::{BiasSettings, CasterPolicy, FilterKind};
+use shadowfit::{Bias, CasterVolume, FitError, LightFit, MapFitter, Workspace};
 
 use shadowfit::tool::LightSettings;
 

@@ -1,6 +1,7 @@
 //! The maps of the stage's views: fitted, frozen, and made on the GPU.
 
-use shadowfit::{CasterPolicy, DepthConvention, FitError, LightFit, MapOverride, PerspectiveCamera, Technique};
+use shadowfit::settings::{CasterPolicy, MapOverride};
+use shadowfit::{DepthConvention, FitError, LightFit, PerspectiveCamera, Technique};
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
 
 use super::Stage;

@@ -1,9 +1,10 @@
 //! Where a map's roll comes from: the map's up for every place of the sun, by both rules.
 
 use anyhow::Result;
+use shadowfit::FitInput;
 use shadowfit::glam::DVec2;
+use shadowfit::settings::FitKind;
 use shadowfit::tool::LightSettings;
-use shadowfit::{FitInput, FitKind};
 
 use super::canvas::{BLUE, Canvas, GREY, PALE, RED, Side, YELLOW, fill, stroke};
 use super::scene::{axes, camera, fit_one, plain_fit};

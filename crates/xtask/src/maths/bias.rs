@@ -3,7 +3,8 @@
 use anyhow::Result;
 use shadowfit::bias::{Reach, acos_bias, acos_epsilon, normal_offset, receiver_plane_depth};
 use shadowfit::glam::{DVec2, DVec3};
-use shadowfit::{FilterKind, FitInput, FitKind, LightFit};
+use shadowfit::settings::{FilterKind, FitKind};
+use shadowfit::{FitInput, LightFit};
 
 use super::canvas::{BLUE, Canvas, Frame, GREEN, GREY, INK, PALE, RED, Side, YELLOW, fill, stroke};
 use super::scene::{axes, camera, fit_one, plain_fit};

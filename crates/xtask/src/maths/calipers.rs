@@ -1,8 +1,9 @@
 //! Rotating calipers: the outline, its least rectangle and square, and what every other angle costs.
 
 use anyhow::Result;
+use shadowfit::FitInput;
 use shadowfit::glam::{DVec2, Vec3};
-use shadowfit::{FitInput, FitKind, RectangleKind};
+use shadowfit::settings::{FitKind, RectangleKind};
 
 use super::canvas::{BLUE, Canvas, Frame, GREY, INK, PALE, PURPLE, Side, bounds, fill, stroke};
 use super::scene::{Look, axes, camera, draw_frustum, fit_one, hull, plain_fit};

@@ -1,8 +1,10 @@
 //! Clusters: an arch as one box and as many, and the clusters that need no map.
 
 use anyhow::Result;
+use shadowfit::clusters::Clusters;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::{Clusters, FitInput, FitKind, PerspectiveCamera};
+use shadowfit::settings::FitKind;
+use shadowfit::{FitInput, PerspectiveCamera};
 
 use super::canvas::{Canvas, Frame, GREEN, GREY, INK, RED, Side, YELLOW, fill, stroke};
 use super::scene::{Look, boxes, draw_body, fit_one, plain_fit};

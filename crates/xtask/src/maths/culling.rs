@@ -1,8 +1,10 @@
 //! Caster culling: the view swept toward the light, from the side and from the light.
 
 use anyhow::Result;
+use shadowfit::culling::Sweep;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::{Aabb, CasterVolume, FitInput, FitKind, LightFit, Sweep, ViewFrustum};
+use shadowfit::settings::FitKind;
+use shadowfit::{Aabb, CasterVolume, FitInput, LightFit, ViewFrustum};
 
 use super::canvas::{BLUE, Canvas, Frame, GREEN, GREY, INK, Side, bounds, fill, stroke};
 use super::near_plane::cut;

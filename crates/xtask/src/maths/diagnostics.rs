@@ -3,7 +3,8 @@
 use anyhow::Result;
 use shadowfit::diagnostics::{PixelsPerTexel, pixels_per_texel};
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::{DepthConvention, FitInput, FitKind, LightFit, PerspectiveCamera};
+use shadowfit::settings::FitKind;
+use shadowfit::{DepthConvention, FitInput, LightFit, PerspectiveCamera};
 
 use super::canvas::{Canvas, GREEN, INK, RED, Side, YELLOW, fill, stroke};
 use super::scene::{camera, fit_one, plain_fit};

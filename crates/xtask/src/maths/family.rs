@@ -2,7 +2,8 @@
 
 use anyhow::Result;
 use shadowfit::glam::{DVec2, Vec3};
-use shadowfit::{Boxes, FitInput, FitKind, LightFit, RectangleKind};
+use shadowfit::settings::{FitKind, RectangleKind};
+use shadowfit::{Boxes, FitInput, LightFit};
 
 use super::canvas::{BLUE, Canvas, Frame, GREEN, GREY, INK, PURPLE, RED, Side, YELLOW, bounds, fill, stroke};
 use super::scene::{Look, VILLAGE, boxes, camera, draw_box, draw_frustum, fit_one, plain_fit};

@@ -2,7 +2,8 @@
 
 use anyhow::Result;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::{Aabb, FitInput, FitKind, ViewFrustum};
+use shadowfit::settings::FitKind;
+use shadowfit::{Aabb, FitInput, ViewFrustum};
 
 use super::canvas::{BLUE, Canvas, Frame, GREEN, GREY, INK, RED, Side, bounds, fill, stroke};
 use super::scene::{EDGES, Look, boxes, camera, corners, draw_body, draw_frustum, fit_one, hull, plain_fit};

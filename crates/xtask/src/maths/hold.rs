@@ -2,7 +2,8 @@
 
 use anyhow::Result;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::{FitInput, FitKind, LightFit, MapFitter, PerspectiveCamera, Stabilise, ViewFrustum, Workspace};
+use shadowfit::settings::{FitKind, Stabilise};
+use shadowfit::{FitInput, LightFit, MapFitter, PerspectiveCamera, ViewFrustum, Workspace};
 
 use super::canvas::{Canvas, Frame, GREY, INK, Side, fill, stroke};
 use super::scene::{Look, axes, camera, draw_frustum, fit_one, plain_fit, plain_maps};

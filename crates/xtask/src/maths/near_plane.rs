@@ -2,7 +2,8 @@
 
 use anyhow::Result;
 use shadowfit::glam::{DVec2, Vec3};
-use shadowfit::{Aabb, CasterPolicy, FitInput, FitKind};
+use shadowfit::settings::{CasterPolicy, FitKind};
+use shadowfit::{Aabb, FitInput};
 
 use super::canvas::{BLUE, Canvas, Frame, GREEN, GREY, INK, PURPLE, RED, Side, bounds, fill, stroke};
 use super::scene::{Look, boxes, camera, draw_body, draw_frustum, fit_one, hull, plain_fit};

@@ -1,11 +1,10 @@
 //! What the pictures show: cameras, lights, boxes, and how they look from the light or from elsewhere.
 
 use anyhow::Result;
+use shadowfit::fits::fit_scene;
 use shadowfit::glam::{DVec2, DVec3, Vec3, Vec4};
-use shadowfit::{
-    Aabb, Boxes, CasterPolicy, FitInput, FitKind, FitSettings, LightFit, PerspectiveCamera, SplitScheme, Stabilise,
-    Technique, ViewFrustum, Workspace, fit_scene,
-};
+use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, SplitScheme, Stabilise};
+use shadowfit::{Aabb, Boxes, FitInput, LightFit, PerspectiveCamera, Technique, ViewFrustum, Workspace};
 
 use super::canvas::{Canvas, Frame, GREY, Paint, fill, stroke};
 

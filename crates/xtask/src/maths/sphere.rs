@@ -3,7 +3,8 @@
 use anyhow::Result;
 use shadowfit::fits::sphere::enclosing_sphere;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::{CasterPolicy, FitInput, FitKind, PerspectiveCamera};
+use shadowfit::settings::{CasterPolicy, FitKind};
+use shadowfit::{FitInput, PerspectiveCamera};
 
 use super::canvas::{BLUE, Canvas, Frame, GREY, INK, PALE, RED, Side, YELLOW, fill, stroke};
 use super::scene::{Look, camera, draw_frustum, fit_one, plain_fit};

@@ -2,7 +2,8 @@
 
 use anyhow::Result;
 use shadowfit::glam::{DVec2, Vec3};
-use shadowfit::{FitInput, FitKind, FittedMaps, MapFitter, SplitScheme, Stabilise, Technique, ViewFrustum, Workspace};
+use shadowfit::settings::{FitKind, SplitScheme, Stabilise};
+use shadowfit::{FitInput, FittedMaps, MapFitter, Technique, ViewFrustum, Workspace};
 
 use super::canvas::{BLUE, Canvas, Frame, GREEN, GREY, INK, PURPLE, Side, YELLOW, stroke};
 use super::scene::{camera, plain_fit, plain_maps};

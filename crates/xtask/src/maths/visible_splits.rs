@@ -3,10 +3,9 @@
 use anyhow::Result;
 use shadowfit::diagnostics::pixels_per_texel;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::{
-    Aabb, DepthConvention, DepthHistogram, FitInput, FittedMaps, PerspectiveCamera, SplitScheme, Stabilise,
-    needed_texel,
-};
+use shadowfit::histogram::{DepthHistogram, needed_texel};
+use shadowfit::settings::{SplitScheme, Stabilise};
+use shadowfit::{Aabb, DepthConvention, FitInput, FittedMaps, PerspectiveCamera};
 
 use super::canvas::{BLUE, Canvas, Frame, GREY, INK, RED, SKY, Side, fill, stroke};
 use super::scene::{boxes, plain_maps};

@@ -2,7 +2,8 @@
 
 use anyhow::Result;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::{Aabb, FitInput, FitKind, LightFit, ViewFrustum};
+use shadowfit::settings::FitKind;
+use shadowfit::{Aabb, FitInput, LightFit, ViewFrustum};
 
 use super::canvas::{BLUE, Canvas, Frame, GREEN, GREY, INK, RED, Side, YELLOW, bounds, stroke};
 use super::scene::{Look, camera, draw_body, draw_frustum, fit_one, plain_fit};

@@ -1,8 +1,8 @@
 //! The rows of the tools' settings: sun, camera and what is drawn.
 
 use super::{always_active, pull_near};
-use crate::settings::MAX_MAPS;
 use crate::params::{Group, Kind, MIN_FAR_PER_NEAR, Number, Parameter, Toggle};
+use crate::settings::MAX_MAPS;
 use crate::tool::FLYING_SPEEDS;
 
 pub(super) const AZIMUTH: Parameter = Parameter {
