@@ -4,7 +4,7 @@ use allocation_counter::measure;
 use shadowfit::bias::Reach;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::scroll::tiles;
-use shadowfit::verify::{Claim, verify};
+use shadowfit::verify::{CoverageQuery, verify};
 use shadowfit::{
     Aabb, Boxes, CasterPolicy, CasterVolume, FitInput, FitKind, FitSettings, MAX_MAPS, MapFitter, OrientedBox,
     PerspectiveCamera, RectangleKind, Scroll, Sphere, SplitScheme, Stabilise, Sweep, Technique, ViewFrustum, Workspace,
@@ -111,8 +111,8 @@ fn no_certificate_and_no_scrolling_allocates() {
     let before = fitter.fit(&input, &settings, &mut workspace).expect("a good scene");
     let now = fitter.fit(&input, &settings, &mut workspace).expect("a good scene");
     for (before, map) in before.iter().zip(now.iter()) {
-        let claim = Claim::of_map(map, &settings, Reach::POINT);
-        let verified = without_allocation("verify", || verify(&input, &map.fit, &claim, &mut workspace));
+        let query = CoverageQuery::of_map(map, &settings, Reach::POINT);
+        let verified = without_allocation("verify", || verify(&input, &map.fit, &query, &mut workspace));
         assert!(verified.expect("a good map").is_proven());
         let scroll = without_allocation("scroll", || Scroll::between(before, map));
         assert!(!scroll.is_redraw());
