@@ -266,7 +266,7 @@ fn fixed_cuts_are_spread_between_the_depth_bounds_and_lose_nothing_outside() {
     let bounds =
         |near, far| FitInput { depth_bounds: Some(DepthBounds { near, far }), ..FitInput::new(&views, DIRECTION) };
     for kind in COVERING {
-        let splits = |splits, near, far| {
+        let inner = |splits, near, far| {
             let maps = fit_once(&bounds(near, far), &settings(kind, splits, 3));
             assert!(maps[0].near <= 0.1 && maps[0].covered_near <= 0.1, "{kind:?}");
             let last = maps.iter().rfind(|map| map.near < map.far).unwrap();
@@ -276,13 +276,13 @@ fn fixed_cuts_are_spread_between_the_depth_bounds_and_lose_nothing_outside() {
         let is_near = |[a, b]: [f32; 2], [c, d]: [f32; 2]| (a / c - 1.0).abs() < 1e-5 && (b / d - 1.0).abs() < 1e-5;
         let third = 10.0_f32.cbrt();
         assert!(
-            is_near(splits_of(SplitScheme::Logarithmic, 2.0, 20.0), [2.0 * third, 2.0 * third * third]),
+            is_near(inner(SplitScheme::Logarithmic, 2.0, 20.0), [2.0 * third, 2.0 * third * third]),
             "{kind:?}"
         );
-        assert!(is_near(splits_of(SplitScheme::Uniform, 2.0, 20.0), [8.0, 14.0]), "{kind:?}");
+        assert!(is_near(inner(SplitScheme::Uniform, 2.0, 20.0), [8.0, 14.0]), "{kind:?}");
         // Bounds beyond the view are the view's own.
         let whole = fit_once(&FitInput::new(&views, DIRECTION), &settings(kind, SplitScheme::Logarithmic, 3));
-        assert!(is_near(splits_of(SplitScheme::Logarithmic, 0.0, 1e9), [whole[1].near, whole[2].near]), "{kind:?}");
+        assert!(is_near(inner(SplitScheme::Logarithmic, 0.0, 1e9), [whole[1].near, whole[2].near]), "{kind:?}");
         // A wall that is one depth all over.
         let flat = fit_once(&bounds(5.0, 5.0), &settings(kind, SplitScheme::Logarithmic, 3));
         assert!(flat.iter().any(|map| map.near <= 4.9 && map.far > 4.9) && flat.iter().any(|map| map.far >= 100.0));
