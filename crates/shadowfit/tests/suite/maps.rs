@@ -275,10 +275,7 @@ fn fixed_cuts_are_spread_between_the_depth_bounds_and_lose_nothing_outside() {
         };
         let is_near = |[a, b]: [f32; 2], [c, d]: [f32; 2]| (a / c - 1.0).abs() < 1e-5 && (b / d - 1.0).abs() < 1e-5;
         let third = 10.0_f32.cbrt();
-        assert!(
-            is_near(inner(SplitScheme::Logarithmic, 2.0, 20.0), [2.0 * third, 2.0 * third * third]),
-            "{kind:?}"
-        );
+        assert!(is_near(inner(SplitScheme::Logarithmic, 2.0, 20.0), [2.0 * third, 2.0 * third * third]), "{kind:?}");
         assert!(is_near(inner(SplitScheme::Uniform, 2.0, 20.0), [8.0, 14.0]), "{kind:?}");
         // Bounds beyond the view are the view's own.
         let whole = fit_once(&FitInput::new(&views, DIRECTION), &settings(kind, SplitScheme::Logarithmic, 3));
