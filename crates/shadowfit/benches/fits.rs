@@ -236,7 +236,7 @@ fn focused(c: &mut Criterion) {
         let mut storage = vec![DVec2::ZERO; Workspace::required(count, 4)];
         for (splits, stabilise, kind) in [
             (SplitScheme::Logarithmic, Stabilise::Off, "logarithmic splits"),
-            (SplitScheme::FromBoxes, Stabilise::Off, "cuts from boxes each frame"),
+            (SplitScheme::FromBoxes, Stabilise::Off, "splits from boxes each frame"),
             (SplitScheme::FromBoxes, Stabilise::Hysteresis, "held"),
         ] {
             let settings = settings(FitKind::Focused, splits, stabilise);

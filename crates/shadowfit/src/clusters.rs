@@ -53,7 +53,7 @@ pub struct Clusters {
 
 impl Clusters {
     /// Number of clusters that serves scenes of one mesh well. On five measured scenes, each at
-    /// three headings, maps around so many boxes were 10% longer than around the triangles
+    /// three headings, maps around this many boxes were 10% longer than around the triangles
     /// themselves; with a quarter of the boxes 13%, with four times as many 7%.
     pub const DEFAULT_LIMIT: usize = 1024;
 

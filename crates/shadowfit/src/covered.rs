@@ -16,14 +16,9 @@ use crate::view::Range;
 use crate::volume::{Constraint, ROUNDING, Volume};
 
 /// What a map must hold.
-#[derive(Clone, Copy)]
 pub(crate) struct Covered<'a> {
-    pub(crate) axes: LightAxes,
-    pub(crate) min: DVec3,
-    pub(crate) max: DVec3,
-    /// What set the planes -x, +x, -y, +y, far, near.
-    pub(crate) set_by: [Constraint; 6],
-    pub(crate) is_empty: bool,
+    /// The box, as yet without a light.
+    pub(crate) volume: Volume,
     /// What rounding may shift a receiver or a caster by across the light, in metres.
     pub(crate) rounding: f64,
     /// What of the light's plane casters may throw shadows into.
@@ -74,15 +69,8 @@ impl<'a> Covered<'a> {
             return Err(FitError::EmptyFrustum { size: size.as_vec3() });
         }
         let margin = DVec3::splat(rule.margin);
-        Ok(Self {
-            axes,
-            min: min - margin,
-            max: max + margin,
-            set_by: [Constraint::View; 6],
-            is_empty: false,
-            rounding: 0.0,
-            shadowed: Shadowed::WholeMap,
-        })
+        let volume = volume(axes, (min - margin, max + margin), [Constraint::View; 6], false);
+        Ok(Self { volume, rounding: 0.0, shadowed: Shadowed::WholeMap })
     }
 
     /// The cube around the slices' enclosing sphere.
@@ -93,15 +81,9 @@ impl<'a> Covered<'a> {
         let rounding = ROUNDING * (3.0 * sphere.radius + checks::length(sphere.centre));
         let pad = rule.margin + rounding + 2.0 * SYMMETRY * sphere.radius;
         let extent = DVec3::splat(2.0 * (sphere.radius + pad));
-        Ok(Self {
-            axes,
-            min: centre - extent * 0.5,
-            max: centre + extent * 0.5,
-            set_by: [Constraint::Sphere; 6],
-            is_empty: false,
-            rounding,
-            shadowed: Shadowed::WholeMap,
-        })
+        let corners = (centre - extent * 0.5, centre + extent * 0.5);
+        let volume = volume(axes, corners, [Constraint::Sphere; 6], false);
+        Ok(Self { volume, rounding, shadowed: Shadowed::WholeMap })
     }
 
     /// The box of the hull's rectangle and its range along the light.
@@ -127,23 +109,20 @@ impl<'a> Covered<'a> {
         let z_pad = (hull.z.1 - hull.z.0 + hull.farthest) * ROUNDING + rule.margin;
         let (z_min, z_max) = (DVec2::splat(hull.z.0 - z_pad), DVec2::splat(hull.z.1 + z_pad));
         let (z_min, z_max) = widened(z_min, z_max, DVec2::splat(thinnest));
+        let corners = (min.extend(z_min.x), max.extend(z_max.x));
+        let set_by = constraints(&rectangle, hull, content, range);
         Self {
-            axes: hull.axes.turned(rectangle.axis),
-            min: min.extend(z_min.x),
-            max: max.extend(z_max.x),
-            set_by: constraints(&rectangle, hull, content, range),
-            is_empty: hull.is_empty,
+            volume: volume(hull.axes.turned(rectangle.axis), corners, set_by, hull.is_empty),
             rounding: rounding.max_element(),
             shadowed: Shadowed::Outline(hull.axes, hull.outline),
         }
     }
+}
 
-    /// The box as it is, for the steps that follow.
-    #[inline(always)]
-    pub(crate) fn volume(&self) -> Volume {
-        let Self { axes, min, max, set_by, is_empty, .. } = *self;
-        Volume { axes, min, max, light_z: 0.0, depth_range: 0.0, set_by, is_empty, grid: None }
-    }
+/// A box, for the steps that follow.
+#[inline(always)]
+fn volume(axes: LightAxes, (min, max): (DVec3, DVec3), set_by: [Constraint; 6], is_empty: bool) -> Volume {
+    Volume { axes, min, max, light_z: 0.0, depth_range: 0.0, set_by, is_empty, grid: None }
 }
 
 /// Extents below this share of a map's longer side, or of its distance from the origin, are

@@ -23,6 +23,32 @@ pub struct DepthHistogram<'a> {
 /// View depths of the nearest and the farthest visible point, as a reduction of a depth buffer
 /// gives them (A. Lauritzen, M. Salvi, A. Lefohn, "Sample distribution shadow maps", 2011).
 ///
+/// ```
+/// # use shadowfit::glam::{DVec2, DVec3, Vec3};
+/// use shadowfit::histogram::DepthBounds;
+/// use shadowfit::settings::SplitScheme;
+/// # use shadowfit::*;
+/// # let camera = PerspectiveCamera {
+/// #     eye: DVec3::new(0.0, 1.7, 5.0),
+/// #     forward: Vec3::NEG_Z,
+/// #     up: Vec3::Y,
+/// #     fov_y: 0.8,
+/// #     aspect: 16.0 / 9.0,
+/// #     near: 0.1,
+/// #     far: 200.0,
+/// # };
+/// let technique = Technique::default().with_splits(SplitScheme::Logarithmic);
+/// let views = [camera.frustum()?];
+/// let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+/// let mut split = |depth_bounds| {
+///     let input = FitInput { depth_bounds, ..FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2)) };
+///     MapFitter::new().fit(&input, &technique, &mut Workspace::new(&mut storage)).map(|maps| maps[0].far)
+/// };
+/// assert!(split(None)? < 1.0); // the whole view, from its near plane on
+/// assert!(split(Some(DepthBounds { near: 4.0, far: 50.0 }))? > 4.0); // what the last frame showed
+/// # Ok::<(), FitError>(())
+/// ```
+///
 /// They only choose where the maps are split. The first map still begins where shadows do and the last
 /// one ends where they end, so late or wrong bounds cost sharpness, never coverage.
 #[derive(Clone, Copy, Debug, PartialEq)]

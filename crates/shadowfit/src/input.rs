@@ -90,8 +90,8 @@ pub struct Workspace<'a> {
 const CORNERS_PER_BOX: usize = 20;
 
 impl<'a> Workspace<'a> {
-    /// Elements that are enough for any fit of so many boxes (receivers or casters, whichever are
-    /// more) in so many views. Far less is used as a rule, since few boxes make the outline.
+    /// Number of elements that is enough for any fit of a number of boxes (receivers or casters,
+    /// whichever are more) in a number of views. Far less is used as a rule, since few boxes make the outline.
     pub const fn required(boxes: usize, views: usize) -> usize {
         let pairs = boxes.saturating_mul(views);
         pairs

@@ -55,7 +55,7 @@ pub struct LightFit {
     /// What set the planes -x, +x, -y, +y, far and near of the box, in the map's axes.
     pub set_by: [Constraint; 6],
     /// Whether no receiver is in view, so that the view itself stands in and the shadow pass may
-    /// be left out. Of fits that know no receivers, only cascades without a part of the view are.
+    /// be left out. Where no receivers are known, only maps without a part of the view are.
     pub is_empty: bool,
 }
 

@@ -36,10 +36,11 @@ pub struct LightStepSettings {
     /// more than rounding. Default: 1.
     pub texels: f32,
     /// Extent of the map that this is judged by, in texels: its width, or [`Self::extent_of`].
+    /// Default: 2048.
     pub extent: f32,
     /// Time of the cross-fade from the old direction to the new one, in seconds. 0 steps at once.
     /// While a fade runs no other step begins, so that two maps are enough: a light that moves on
-    /// lags by this time.
+    /// lags by this time. Default: 0.
     pub fade: f32,
 }
 
@@ -93,6 +94,25 @@ impl LightStepSettings {
 }
 
 /// State of a held light: plain data, that of a light not yet seen by default.
+///
+/// ```
+/// use shadowfit::glam::Vec3;
+/// use shadowfit::{LightStepSettings, LightSteps};
+///
+/// let settings = LightStepSettings::default().with_texels(2.0).with_fade(0.5);
+/// let mut sun = LightSteps::default();
+/// let mut directions = 0;
+/// let mut last = None;
+/// for frame in 0..600 {
+///     let angle = frame as f32 * 1e-5; // radians
+///     let step = sun.update(Vec3::new(angle.sin(), -1.0, 0.3), &settings, 1.0 / 60.0)?;
+///     // Fit and shade with step.direction; where there is a step.previous, with both, by step.blend.
+///     directions += u32::from(last != Some(step.direction));
+///     last = Some(step.direction);
+/// }
+/// assert!(directions < 8); // instead of 600
+/// # Ok::<(), shadowfit::FitError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LightSteps {

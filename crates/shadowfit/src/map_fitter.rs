@@ -151,6 +151,30 @@ impl MapFitter {
 /// as much as choosing the splits of one frame: ask when a level begins, or now and then, and set
 /// [`Technique::count`] by it.
 ///
+/// ```
+/// # use shadowfit::glam::{DVec2, DVec3, Vec3};
+/// # use shadowfit::*;
+/// # let camera = PerspectiveCamera {
+/// #     eye: DVec3::new(0.0, 1.7, 5.0),
+/// #     forward: Vec3::NEG_Z,
+/// #     up: Vec3::Y,
+/// #     fov_y: 0.8,
+/// #     aspect: 16.0 / 9.0,
+/// #     near: 0.1,
+/// #     far: 200.0,
+/// # };
+/// # let views = [camera.frustum()?];
+/// # let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
+/// # let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+/// # let mut workspace = Workspace::new(&mut storage);
+/// let technique = Technique::default().with_count(8);
+/// let count = fewest_maps(&input, &technique, 1.5, &mut workspace)?;
+/// assert!(count < 8); // the last ones would make texels less than 1.5 times as fine
+/// let maps = MapFitter::new().fit(&input, &technique.with_count(count), &mut workspace)?;
+/// assert_eq!(maps.len(), count as usize);
+/// # Ok::<(), FitError>(())
+/// ```
+///
 /// # Errors
 ///
 /// As [`MapFitter::fit`], and [`FitError::OutOfRange`] for a waste outside 1..=100.

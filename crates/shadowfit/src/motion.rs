@@ -60,7 +60,7 @@ impl Motion {
         checks::length(self.step) <= STILL * far && turned.max_element() < STILL
     }
 
-    /// A view after so many more frames of the same motion.
+    /// A view after a number of further frames of the same motion.
     pub(crate) fn after(&self, view: &ViewFrustum, frames: u32) -> ViewFrustum {
         let mut turn = [DVec3::X, DVec3::Y, DVec3::Z];
         let mut power = self.turn;

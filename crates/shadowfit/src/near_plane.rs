@@ -15,7 +15,7 @@ use glam::DVec2;
 
 use crate::axes::LightAxes;
 use crate::content::Content;
-use crate::covered::{Covered, Shadowed};
+use crate::covered::Shadowed;
 use crate::outline::{Outline, Scratch};
 use crate::rule::{Covers, Depth, FitRule};
 use crate::view::moved;
@@ -29,17 +29,18 @@ pub(crate) struct NearPlane {
 }
 
 /// Moves the near plane of a volume, which so far ends at what is covered, to where the rule puts
-/// it, and the light with it.
+/// it, and the light with it. `rounding` is what receivers and casters may be shifted by, each, in
+/// metres.
 #[inline(always)]
-pub(crate) fn place(volume: &mut Volume, rule: &FitRule, covered: &Covered, content: &Content) {
+pub(crate) fn place(volume: &mut Volume, rule: &FitRule, shadowed: Shadowed, rounding: f64, content: &Content) {
     if rule.depth == Depth::Doubled {
         volume.light_z = volume.min.z;
         volume.depth_range = 2.0 * (volume.max.z - volume.min.z);
         return;
     }
     let texel = (volume.max - volume.min).truncate() / rule.resolution.as_dvec2();
-    let reach = filter_reach(texel, rule, covered.rounding);
-    let near = match covered.shadowed {
+    let reach = filter_reach(texel, rule, rounding);
+    let near = match shadowed {
         Shadowed::Outline(axes, outline) => find(volume.max.z, &axes, outline, content, rule.depth, reach),
         Shadowed::WholeMap => {
             let (min, max) = (volume.min, volume.max);

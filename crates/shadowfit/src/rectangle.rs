@@ -142,7 +142,7 @@ struct Calipers<'a> {
     noise: f64,
 }
 
-/// Share of a polygon's extent that is taken for rounding.
+/// Share of a polygon's extent that counts as rounding.
 const NOISE: f64 = 1e-10;
 
 impl<'a> Calipers<'a> {

@@ -38,7 +38,7 @@ pub(crate) enum Depth {
     Doubled,
     /// At what is covered.
     AtCovered,
-    /// So many metres before what is covered.
+    /// This far before what is covered, in metres.
     Extended(f64),
     /// At the box around all casters, as far as it can throw shadows into view.
     AtCasterBounds,
@@ -66,12 +66,13 @@ pub(crate) struct FitRule {
 }
 
 impl FitRule {
-    /// The rule of settings with so many free texels at the border.
+    /// The rule of settings, with the free texels at the border.
     ///
     /// # Errors
     ///
     /// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for a number of the settings, and
     /// [`FitError::ZeroResolution`].
+    #[inline(always)]
     pub(crate) fn new(settings: &FitSettings, border: f32, casters_are_known: bool) -> Result<Self, FitError> {
         check(settings, border)?;
         let (covers, rectangle, roll, depth) = {
@@ -97,8 +98,8 @@ impl FitRule {
         })
     }
 
-    /// Extents across the light, in metres, that hold others and keep the texels, of which they have so
-    /// many, within the limit.
+    /// Extents across the light, in metres, that hold others and keep the texels within the limit;
+    /// `texels` is their number each way.
     pub(crate) fn limited(&self, size: DVec2, texels: DVec2) -> DVec2 {
         let Some(ratio) = self.max_texel_ratio else { return size };
         size.max(texels * ((size / texels).max_element() / ratio))
@@ -109,7 +110,7 @@ impl FitRule {
         self.covers != Covers::ExactCorners
     }
 
-    /// Whether its maps leave so many texels free around what they cover.
+    /// Whether its maps leave a number of texels free around what they cover.
     pub(crate) fn leaves_border(&self, texels: f64) -> bool {
         self.covers != Covers::ExactCorners && self.border >= texels
     }
@@ -129,6 +130,7 @@ pub(crate) const fn default_border(settings: &FitSettings) -> f32 {
 }
 
 /// What the settings' caster policy comes to.
+#[inline]
 fn near_plane(settings: &FitSettings, casters_are_known: bool) -> Depth {
     match settings.casters {
         CasterPolicy::None | CasterPolicy::DepthClamp => Depth::AtCovered,
@@ -141,6 +143,7 @@ fn near_plane(settings: &FitSettings, casters_are_known: bool) -> Depth {
 }
 
 /// Checks the numbers of a fit's settings.
+#[inline]
 fn check(settings: &FitSettings, border: f32) -> Result<(), FitError> {
     checks::within("the fit's margin", f64::from(settings.margin), 0.0, MAX_LENGTH)?;
     let extension = f64::from(settings.caster_extension);

@@ -174,6 +174,32 @@ pub struct Tiles {
 
 /// The world-anchored tiles of `size` × `size` texels that cover a map on the grid.
 ///
+/// ```
+/// # use shadowfit::glam::{DVec2, DVec3, Vec3};
+/// # use shadowfit::scroll::tiles;
+/// # use shadowfit::*;
+/// # let camera = PerspectiveCamera {
+/// #     eye: DVec3::new(0.0, 1.7, 5.0),
+/// #     forward: Vec3::NEG_Z,
+/// #     up: Vec3::Y,
+/// #     fov_y: 0.8,
+/// #     aspect: 16.0 / 9.0,
+/// #     near: 0.1,
+/// #     far: 200.0,
+/// # };
+/// # let views = [camera.frustum()?];
+/// # let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
+/// # let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+/// let maps = MapFitter::new().fit(&input, &Technique::default(), &mut Workspace::new(&mut storage))?;
+/// let mut texels = 0;
+/// for tile in tiles(&maps[0], 256)? {
+///     // Draw tile.index by tile.fit if it is not kept yet; copy tile.map from it, beginning at tile.from.
+///     texels += tile.map.size.x * tile.map.size.y;
+/// }
+/// assert_eq!(texels, 2048 * 2048); // together they are the map
+/// # Ok::<(), FitError>(())
+/// ```
+///
 /// Tiles are drawn and kept by their index and copied into the map, or looked up themselves. A tile
 /// that is drawn again has the same bits, wherever the camera is, if what it shows has. Its depths
 /// are those of the map.

@@ -137,6 +137,41 @@ pub struct Margins {
 /// # Ok::<(), shadowfit::FitError>(())
 /// ```
 ///
+/// A debug build can prove every map of every frame:
+///
+/// ```
+/// # use shadowfit::glam::{DVec2, DVec3, Vec3};
+/// # use shadowfit::verify::{CoverageQuery, verify};
+/// # use shadowfit::*;
+/// # let mut camera = PerspectiveCamera {
+/// #     eye: DVec3::new(0.0, 1.7, 5.0),
+/// #     forward: Vec3::NEG_Z,
+/// #     up: Vec3::Y,
+/// #     fov_y: 0.8,
+/// #     aspect: 16.0 / 9.0,
+/// #     near: 0.1,
+/// #     far: 200.0,
+/// # };
+/// # let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+/// # let mut workspace = Workspace::new(&mut storage);
+/// let (mut fitter, technique) = (MapFitter::new(), Technique::default());
+/// for _ in 0..10 {
+///     camera.eye.x += 0.3;
+///     let views = [camera.frustum()?];
+///     let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
+///     let maps = fitter.fit(&input, &technique, &mut workspace)?;
+///     if cfg!(debug_assertions) {
+///         for map in maps.iter() {
+///             let query = CoverageQuery::of_map(map, &technique, technique.filter.into())
+///                 .with_normal_offset(map.bias.normal_offset);
+///             let certificate = verify(&input, &map.fit, &query, &mut workspace)?;
+///             assert!(certificate.is_proven(), "{certificate:?}");
+///         }
+///     }
+/// }
+/// # Ok::<(), FitError>(())
+/// ```
+///
 /// # Errors
 ///
 /// Those of the views, the light's direction and the boxes as of

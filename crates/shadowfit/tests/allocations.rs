@@ -112,8 +112,8 @@ fn no_certificate_and_no_scrolling_allocates() {
     let before = fitter.fit(&input, &settings, &mut workspace).expect("a good scene");
     let now = fitter.fit(&input, &settings, &mut workspace).expect("a good scene");
     for (before, map) in before.iter().zip(now.iter()) {
-        let claim = CoverageQuery::of_map(map, &settings, Reach::POINT);
-        let verified = without_allocation("verify", || verify(&input, &map.fit, &claim, &mut workspace));
+        let query = CoverageQuery::of_map(map, &settings, Reach::POINT);
+        let verified = without_allocation("verify", || verify(&input, &map.fit, &query, &mut workspace));
         assert!(verified.expect("a good map").is_proven());
         let scroll = without_allocation("scroll", || Scroll::between(before, map));
         assert!(!scroll.is_redraw());

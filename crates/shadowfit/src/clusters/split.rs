@@ -11,7 +11,7 @@ use super::piece::{Corners, Piece, Triangle};
 use super::slabs::{Slabs, sides};
 use crate::Aabb;
 
-/// Pieces of a group that decide where it is cut. So many serve as well as all.
+/// Pieces of a group that decide where it is cut. This many serve as well as all.
 const SAMPLE: usize = 128;
 
 /// Depth in shares of a box's longest side by which the unfilled part of its sides counts as air.

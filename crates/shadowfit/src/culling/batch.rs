@@ -2,7 +2,7 @@
 //!
 //! Shapes go in lanes, number by number, so that the compiler turns every loop over them into
 //! vector instructions, on any target. How far a shape reaches along a normal does not depend on
-//! where a plane stands, and the cascades of one light share most of their normals: it is worked
+//! where a plane stands, and the maps of one light share most of their normals: it is worked
 //! out once for each normal. Most shapes lie outside of all volumes, so that a few planes around
 //! all volumes come first, the *screen*, and what passes it is collected until the lanes are full.
 //!

@@ -33,15 +33,16 @@ use crate::{FitError, LightFit, ViewFrustum};
 pub struct Sweep<'a> {
     /// The views that read the map.
     pub views: &'a [ViewFrustum],
-    /// View depth from which they read it, in metres.
+    /// View depth from which they read it, in metres. Default: `f32::MIN`, from the nearest on.
     pub near: f32,
-    /// View depth up to which they read it, in metres.
+    /// View depth up to which they read it, in metres. Default: `f32::MAX`, to the farthest.
     pub far: f32,
     /// Reach of the filter. A penumbra search counts as a disc, see [`Reach::over_metres`]; the
-    /// texel that a caster's edge is rasterised to is added to it.
+    /// texel that a caster's edge is rasterised to is added to it. Default: [`Reach::HARDWARE_2X2`].
     pub reach: Reach,
     /// How far off the receiver, in any direction, the looked-up point may lie, in metres:
     /// [`Bias::normal_offset`](crate::Bias::normal_offset), and whatever else moves it.
+    /// Default: 0.
     pub normal_offset: f32,
 }
 
@@ -121,7 +122,7 @@ impl Planes<'_> {
         let (sides, [far, _]) = map_planes(self.fit);
         let to_light = -self.fit.direction.as_dvec3();
         if self.sweep.views.len() == 1 {
-            // The whole view has the same normals as its slices, to the last bit: cascades share
+            // The whole view has the same normals as its slices, to the last bit: maps share
             // them, and `cull` works them out once.
             let whole = self.view(&self.sweep.views[0]).slice(f64::MIN, f64::MAX);
             silhouette(&whole, to_light, |normal| self.push(&mut volume, normal));

@@ -83,7 +83,7 @@ const ASIDE_SLACK: f64 = 1e-6;
 /// no hull is stored: for n points and h corners n·h steps, and no limit to either.
 pub fn share_of_map(fit: &LightFit, points: &[Vec3]) -> Result<f32, FitError> {
     for point in points {
-        checks::point("a point of the footprint", point.as_dvec3())?;
+        checks::point("a point of what the map is for", point.as_dvec3())?;
         texture_point(fit, point.as_dvec3())?;
     }
     // Checked above, so that no point is left out here.

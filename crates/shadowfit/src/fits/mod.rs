@@ -80,8 +80,8 @@ fn fit_whole(
     LightFit::from_volume(content.origin, &volume, rule.resolution, rule.convention)
 }
 
-/// Checks what all fits take; gives the rule of the settings, with so many free texels at the border,
-/// and the light.
+/// Checks what all fits take; gives the rule of the settings, with the free texels at the border, and
+/// the light.
 #[inline(always)]
 pub(crate) fn prepare(input: &FitInput, settings: &FitSettings, border: f32) -> Result<(FitRule, Light), FitError> {
     if input.views.is_empty() {
@@ -124,8 +124,7 @@ pub(crate) fn fit_map(
     let axes = light.axes(rule.roll);
     // 2. What must be inside: its hull in the light's space, the rectangle around that, and the depth
     //    of both, padded for rounding and by the margin.
-    let covered = Covered::new(rule, content, axes, range, points)?;
-    let mut volume = covered.volume();
+    let Covered { mut volume, rounding, shadowed } = Covered::new(rule, content, axes, range, points)?;
     // 3. The map around it, with the border that the filter reads: on the grid or as tight as can be.
     match (rule.covers, placement) {
         (Covers::ExactCorners, _) => {}
@@ -133,7 +132,7 @@ pub(crate) fn fit_map(
         (_, Placement::Tight) => add_border(&mut volume, rule),
     }
     // 4. The near plane, moved toward the light so that casters are kept, and the light in it.
-    near_plane::place(&mut volume, rule, &covered, content);
+    near_plane::place(&mut volume, rule, shadowed, rounding, content);
     Ok(volume)
 }
 

@@ -18,7 +18,7 @@ pub struct CoverageQuery {
     /// sampler loses by [rounding texture coordinates](crate::bias::HARDWARE_SNAP) shifts weights by no more
     /// than that, so it counts only where [`Reach::on_hardware`] has put it in.
     pub reach: Reach,
-    /// How far across the light the place that is looked up may lie off the receiver, in metres:
+    /// How far across the light the looked-up point may lie off the receiver, in metres:
     /// [`Bias::normal_offset`](crate::Bias::normal_offset). Along the light it needs no room: what
     /// is looked up before the near plane is lit, as it should be where no caster is lost.
     pub normal_offset: f32,

@@ -138,8 +138,10 @@ const SETTERS: [Setter; 44] = [
     ("resolution", |i, v| i.settings.fit.resolution = UVec2::new(v as u32, 512)),
     ("count", |i, v| i.settings.count = v as u32),
     ("lambda", |i, v| i.settings.splits = SplitScheme::Practical(v as f32)),
-    ("first manual cut", |i, v| i.settings.splits = SplitScheme::Manual([v as f32, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0])),
-    ("second manual cut", |i, v| {
+    ("first manual split", |i, v| {
+        i.settings.splits = SplitScheme::Manual([v as f32, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0])
+    }),
+    ("second manual split", |i, v| {
         i.settings.splits = SplitScheme::Manual([2.0, v as f32, 10.0, 11.0, 12.0, 13.0, 14.0]);
     }),
     ("overlap", |i, v| i.settings.overlap = v as f32),
@@ -243,8 +245,8 @@ fn settings_without_meaning_are_refused() {
     let refused: [Setter; 12] = [
         ("lambda above", |i, _| i.settings.splits = SplitScheme::Practical(1.1)),
         ("lambda below", |i, _| i.settings.splits = SplitScheme::Practical(-0.1)),
-        ("cuts that fall", |i, _| i.settings.splits = SplitScheme::Manual([5.0, 4.0, 6.0, 7.0, 8.0, 9.0, 10.0])),
-        ("cuts that stay", |i, _| i.settings.splits = SplitScheme::Manual([5.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0])),
+        ("splits that fall", |i, _| i.settings.splits = SplitScheme::Manual([5.0, 4.0, 6.0, 7.0, 8.0, 9.0, 10.0])),
+        ("splits that stay", |i, _| i.settings.splits = SplitScheme::Manual([5.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0])),
         ("overlap above", |i, _| i.settings.overlap = 1.1),
         ("overlap below", |i, _| i.settings.overlap = -0.1),
         ("waste", |i, _| i.settings.hold.waste = 0.9),

@@ -1,4 +1,4 @@
-//! Several maps for one view: where they are cut, what they say of themselves, what is held.
+//! Several maps for one view: where they are split, what they say of themselves, what is held.
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
@@ -29,16 +29,16 @@ fn settings(kind: FitKind, splits: SplitScheme, count: u32) -> Technique {
 }
 
 /// Ends of all maps but the last.
-fn cuts(maps: &[FittedMap]) -> Vec<f64> {
+fn splits_of(maps: &[FittedMap]) -> Vec<f64> {
     maps[..maps.len() - 1].iter().map(|map| f64::from(map.far)).collect()
 }
 
-fn assert_cuts(maps: &[FittedMap], expected: impl Fn(f64) -> f64) {
+fn assert_splits(maps: &[FittedMap], expected: impl Fn(f64) -> f64) {
     let count = maps.len() as f64;
-    for (i, cut) in cuts(maps).into_iter().enumerate() {
+    for (i, split) in splits_of(maps).into_iter().enumerate() {
         let wanted = expected((i + 1) as f64 / count);
         // One rounding to f32.
-        assert!((cut / wanted - 1.0).abs() < 1e-6, "cut {i} at {cut} instead of {wanted}");
+        assert!((split / wanted - 1.0).abs() < 1e-6, "split {i} at {split} instead of {wanted}");
     }
 }
 
@@ -76,13 +76,13 @@ proptest! {
         let uniform = |s: f64| near + (far - near) * s;
         let logarithmic = |s: f64| near * (far / near).powf(s);
         let at = |splits| fit_once(&input, &settings(FitKind::FrustumAabb, splits, count));
-        assert_cuts(&at(SplitScheme::Uniform), uniform);
-        assert_cuts(&at(SplitScheme::Logarithmic), logarithmic);
+        assert_splits(&at(SplitScheme::Uniform), uniform);
+        assert_splits(&at(SplitScheme::Logarithmic), logarithmic);
         let l = f64::from(lambda);
-        assert_cuts(&at(SplitScheme::Practical(lambda)), |s| l * logarithmic(s) + (1.0 - l) * uniform(s));
+        assert_splits(&at(SplitScheme::Practical(lambda)), |s| l * logarithmic(s) + (1.0 - l) * uniform(s));
     }
 
-    /// The first map of a scheme around boxes still begins at the near plane, and the cuts are
+    /// The first map of a scheme around boxes still begins at the near plane, and the splits are
     /// spread over what is seen of the boxes.
     #[test]
     fn cuts_are_spread_over_the_depths_of_receivers(count in 2..=8_u32, near in crate::support::float(5.0, 20.0)) {
@@ -91,7 +91,7 @@ proptest! {
         let input = FitInput { receivers: Some(Boxes { origin: DVec3::ZERO, boxes: &boxes }), ..FitInput::new(&views, DIRECTION) };
         let maps = fit_once(&input, &settings(FitKind::FrustumAabb, SplitScheme::Uniform, count));
         let near = f64::from(near);
-        assert_cuts(&maps, |s| near + (60.0 - near) * s);
+        assert_splits(&maps, |s| near + (60.0 - near) * s);
         prop_assert_eq!(maps[0].near, views[0].near);
     }
 
@@ -131,7 +131,7 @@ proptest! {
         }
     }
 
-    /// By what they model, cuts from boxes are no worse than logarithmic ones. Nothing is known of
+    /// By what they model, splits from boxes are no worse than logarithmic ones. Nothing is known of
     /// receivers here, so every octave of depth counts alike. Cuts stand on 64 bins, each of which
     /// may cost its own width, and extents are estimated from 32 directions, which may cost 5%.
     #[test]
@@ -195,7 +195,7 @@ fn manual_cuts_are_taken_as_they_are() {
     let given = [1.0, 5.0, 20.0, 50.0, 60.0, 70.0, 80.0];
     for kind in COVERING {
         let maps = fit_once(&FitInput::new(&views, DIRECTION), &settings(kind, SplitScheme::Manual(given), 4));
-        assert_eq!(cuts(&maps), [1.0, 5.0, 20.0]);
+        assert_eq!(splits_of(&maps), [1.0, 5.0, 20.0]);
     }
 }
 
@@ -215,7 +215,7 @@ fn manual_cuts_outside_of_what_is_shadowed_leave_maps_empty() {
 }
 
 /// A histogram of a narrow band: nearly all pixels see it, so the map that they choose is made for
-/// them, and finer than by logarithmic cuts.
+/// them, and finer than by logarithmic splits.
 #[test]
 fn a_histogram_with_one_narrow_band_cuts_around_it() {
     let views = [ahead()];
@@ -268,7 +268,7 @@ fn fixed_cuts_are_spread_between_the_depth_bounds_and_lose_nothing_outside() {
     let bounds =
         |near, far| FitInput { depth_bounds: Some(DepthBounds { near, far }), ..FitInput::new(&views, DIRECTION) };
     for kind in COVERING {
-        let cuts = |splits, near, far| {
+        let inner = |splits, near, far| {
             let maps = fit_once(&bounds(near, far), &settings(kind, splits, 3));
             assert!(maps[0].near <= 0.1 && maps[0].covered_near <= 0.1, "{kind:?}");
             let last = maps.iter().rfind(|map| map.near < map.far).unwrap();
@@ -277,11 +277,11 @@ fn fixed_cuts_are_spread_between_the_depth_bounds_and_lose_nothing_outside() {
         };
         let is_near = |[a, b]: [f32; 2], [c, d]: [f32; 2]| (a / c - 1.0).abs() < 1e-5 && (b / d - 1.0).abs() < 1e-5;
         let third = 10.0_f32.cbrt();
-        assert!(is_near(cuts(SplitScheme::Logarithmic, 2.0, 20.0), [2.0 * third, 2.0 * third * third]), "{kind:?}");
-        assert!(is_near(cuts(SplitScheme::Uniform, 2.0, 20.0), [8.0, 14.0]), "{kind:?}");
+        assert!(is_near(inner(SplitScheme::Logarithmic, 2.0, 20.0), [2.0 * third, 2.0 * third * third]), "{kind:?}");
+        assert!(is_near(inner(SplitScheme::Uniform, 2.0, 20.0), [8.0, 14.0]), "{kind:?}");
         // Bounds beyond the view are the view's own.
         let whole = fit_once(&FitInput::new(&views, DIRECTION), &settings(kind, SplitScheme::Logarithmic, 3));
-        assert!(is_near(cuts(SplitScheme::Logarithmic, 0.0, 1e9), [whole[1].near, whole[2].near]), "{kind:?}");
+        assert!(is_near(inner(SplitScheme::Logarithmic, 0.0, 1e9), [whole[1].near, whole[2].near]), "{kind:?}");
         // A wall that is one depth all over.
         let flat = fit_once(&bounds(5.0, 5.0), &settings(kind, SplitScheme::Logarithmic, 3));
         assert!(flat.iter().any(|map| map.near <= 4.9 && map.far > 4.9) && flat.iter().any(|map| map.far >= 100.0));
@@ -293,21 +293,21 @@ fn fixed_cuts_are_spread_between_the_depth_bounds_and_lose_nothing_outside() {
     }
 }
 
-/// Held cuts are made anew when the bounds have left them, and not before.
+/// Held splits are made anew when the bounds have left them, and not before.
 #[test]
 fn held_cuts_follow_depth_bounds_that_leave_them() {
     let views = [ahead()];
     let settings = Technique { stabilise: Stabilise::Snap, ..settings(FitKind::Sphere, SplitScheme::Logarithmic, 3) };
     let mut fitter = MapFitter::new();
-    let mut cut = |near, far| {
+    let mut split = |near, far| {
         let input = FitInput { depth_bounds: Some(DepthBounds { near, far }), ..FitInput::new(&views, DIRECTION) };
-        // Held cuts are compared every few frames.
+        // Held splits are compared every few frames.
         (0..16).map(|_| fit_with(&mut fitter, &input, &settings)[1].near).last().unwrap()
     };
-    let first = cut(2.0, 20.0);
-    assert_eq!(cut(2.2, 22.0), first);
-    assert!(cut(2.2, 90.0) > first * 1.2, "the far end has left them");
-    assert!(cut(0.3, 90.0) < first, "the near end has left them");
+    let first = split(2.0, 20.0);
+    assert_eq!(split(2.2, 22.0), first);
+    assert!(split(2.2, 90.0) > first * 1.2, "the far end has left them");
+    assert!(split(0.3, 90.0) < first, "the near end has left them");
 }
 
 proptest! {
@@ -327,7 +327,7 @@ proptest! {
         let mut fewest = |waste| shadowfit::map_fitter::fewest_maps(&input, &settings, waste, &mut Workspace::new(&mut storage)).unwrap();
         let found = fewest(waste);
         prop_assert!((1..=count).contains(&found) && fewest(1.0) >= found && fewest(100.0) <= found);
-        // Bins and directions are as coarse as for the cuts, in both.
+        // Bins and directions are as coarse as for the splits, in both.
         let bin = f64::from(camera.far / camera.near).powf(1.0 / 64.0);
         prop_assert!(error_of(&input, &settings, found) <= error_of(&input, &settings, count) * f64::from(waste) * bin * bin * 1.1, "{found} of {count}");
         if found > 1 {
@@ -355,7 +355,7 @@ fn no_receivers_give_empty_maps_and_no_error() {
     }
 }
 
-/// The lens zooms out of reach of held cuts, and in again.
+/// The lens zooms out of reach of held splits, and in again.
 #[test]
 fn a_far_plane_that_comes_nearer_leaves_held_cuts_without_error() {
     for kind in COVERING {
