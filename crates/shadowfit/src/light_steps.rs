@@ -97,7 +97,7 @@ impl LightStepSettings {
 ///
 /// ```
 /// use shadowfit::glam::Vec3;
-/// use shadowfit::{LightStepSettings, LightSteps};
+/// use shadowfit::light_steps::{LightStepSettings, LightSteps};
 ///
 /// let settings = LightStepSettings::default().with_texels(2.0).with_fade(0.5);
 /// let mut sun = LightSteps::default();

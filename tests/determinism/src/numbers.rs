@@ -56,7 +56,9 @@ impl Run {
                 self.numbers.fit(&map.fit);
                 self.numbers.f32s(&[map.near, map.far, map.covered_near]);
                 if let Some(anchor) = map.anchor {
-                    anchor.first.iter().for_each(|line| self.numbers.bits(line.cast_unsigned()));
+                    for line in anchor.first {
+                        self.numbers.bits(line.cast_unsigned());
+                    }
                     self.numbers.f64s(&[anchor.texel.x, anchor.texel.y, anchor.depth[0], anchor.depth[1]]);
                 }
             }
@@ -96,7 +98,9 @@ impl Run {
                 self.numbers.f32s(&plane.to_array());
             }
         }
-        masks.iter().for_each(|mask| self.numbers.bits(u64::from(*mask)));
+        for mask in masks {
+            self.numbers.bits(u64::from(mask));
+        }
         Ok(())
     }
 }
@@ -116,11 +120,15 @@ impl Numbers {
     }
 
     fn f32s(&mut self, numbers: &[f32]) {
-        numbers.iter().for_each(|number| self.bits(u64::from(number.to_bits())));
+        for number in numbers {
+            self.bits(u64::from(number.to_bits()));
+        }
     }
 
     fn f64s(&mut self, numbers: &[f64]) {
-        numbers.iter().for_each(|number| self.bits(number.to_bits()));
+        for number in numbers {
+            self.bits(number.to_bits());
+        }
     }
 
     fn place(&mut self, place: DVec3) {
