@@ -3,6 +3,7 @@
 //! Tests that need a graphics device have `gpu` or `golden` in their path, by which `cargo xtask test` leaves them out
 //! where there is none.
 
+mod architecture;
 mod artefacts;
 mod conventions;
 mod fits;
