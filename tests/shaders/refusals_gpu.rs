@@ -2,7 +2,7 @@
 //! the index and the value. And that a refusal changes nothing.
 
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::settings::{BiasSettings, SplitScheme};
+use shadowfit::settings::SplitScheme;
 use shadowfit::{Bias, FitError, FitInput, LightFit, MapFitter, PerspectiveCamera, Technique, Workspace};
 use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError};
 
@@ -124,7 +124,7 @@ fn maps_of_the_core_are_in_order_where_some_of_them_have_no_range() {
         let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
         let input = FitInput::new(&view, Vec3::new(0.3, -0.8, 0.2));
         let fitted = MapFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("maps");
-        let maps: Vec<MapFit> = fitted.iter().map(|map| MapFit::from(map)).collect();
+        let maps: Vec<MapFit> = fitted.iter().map(MapFit::from).collect();
         assert_eq!(prepared(&maps, Vec3::NEG_Z), Ok(3), "{ends:?}");
     }
 }

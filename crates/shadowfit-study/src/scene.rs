@@ -134,13 +134,11 @@ impl PreparedScene {
     /// nothing while the scene moves; new ones are made only where there are none at all.
     pub(crate) fn with_late_rays<T>(&self, call: impl FnOnce(&SceneRays) -> T) -> T {
         let earlier = self.earlier_rays.borrow();
-        match (self.rays.get(), &*earlier) {
-            (None, Some(rays)) => call(rays),
-            _ => {
-                drop(earlier);
-                call(self.rays())
-            }
+        if let (None, Some(rays)) = (self.rays.get(), &*earlier) {
+            return call(rays);
         }
+        drop(earlier);
+        call(self.rays())
     }
 
     /// A camera as rays see it: relative to their origin.

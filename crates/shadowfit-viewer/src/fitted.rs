@@ -15,8 +15,8 @@ pub(crate) struct Fitted {
 }
 
 impl Fitted {
-    pub(crate) fn new(camera: PerspectiveCamera, technique: &Technique, maps: FittedMaps) -> Self {
-        Self { camera: Some(camera), end: camera.far.min(technique.fit.max_distance), maps }
+    pub(crate) fn new(camera: PerspectiveCamera, technique: &Technique, maps: &FittedMaps) -> Self {
+        Self { camera: Some(camera), end: camera.far.min(technique.fit.max_distance), maps: *maps }
     }
 
     /// The part of the view that is shadowed.
@@ -69,7 +69,7 @@ mod tests {
         let mut storage = vec![DVec2::ZERO; Workspace::required(0, 3)];
         let input = FitInput::new(&frustum, Vec3::new(0.3, -0.8, 0.2).normalize());
         let maps = MapFitter::new().fit(&input, &technique, &mut Workspace::new(&mut storage)).expect("maps");
-        let fitted = Fitted::new(camera, &technique, maps);
+        let fitted = Fitted::new(camera, &technique, &maps);
         let at = |depth: f64| fitted.read_at(camera.eye + DVec3::NEG_Z * depth);
         assert_eq!([at(5.0), at(20.0), at(50.0), at(500.0)], [Some(0), Some(1), Some(2), None]);
         let ends = [0, 1, 2, 3].map(|map| fitted.slice(map).map(|slice| [slice.near, slice.far]));

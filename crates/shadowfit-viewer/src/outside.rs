@@ -119,7 +119,7 @@ mod tests {
         let technique = Technique::default();
         let input = FitInput::new(&views, Vec3::new(0.4, -0.7, 0.3).normalize());
         let maps = MapFitter::new().fit(&input, &technique, &mut Workspace::new(&mut storage)).expect("maps");
-        Fitted::new(camera, &technique, maps)
+        Fitted::new(camera, &technique, &maps)
     }
 
     #[test]

@@ -60,7 +60,7 @@ impl<'a> ViewSearch<'a> {
         let camera = PerspectiveCamera { eye: self.world(camera.eye), ..*camera };
         let mut fitter = TechniqueFitter::new(*technique);
         fitter.fit_alone(self.scene, &View { camera, direction: self.direction, is_first: true }).ok()?;
-        Some(Fitted::new(camera, technique, *fitter.fitted()))
+        Some(Fitted::new(camera, technique, fitter.fitted()))
     }
 
     /// World position of a point of the search.

@@ -39,13 +39,13 @@ impl Stage {
             let same_lens = PerspectiveCamera { eye: last.eye, forward: last.forward, ..view.camera } == last;
             same_lens && self.fitter.technique() == technique
         });
-        if !goes_on {
+        if goes_on {
+            self.fitter.fit(&self.scene, &view)?;
+        } else {
             self.fitter.set_technique(technique);
             self.fitter.fit_alone(&self.scene, &view)?;
-        } else {
-            self.fitter.fit(&self.scene, &view)?;
         }
-        Ok(Fitted::new(view.camera, technique, *self.fitter.fitted()))
+        Ok(Fitted::new(view.camera, technique, self.fitter.fitted()))
     }
 
     /// Whether the shadow map as it is can take fitted maps.

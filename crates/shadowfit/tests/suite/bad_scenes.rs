@@ -139,7 +139,7 @@ const SETTERS: [Setter; 44] = [
     ("count", |i, v| i.settings.count = v as u32),
     ("lambda", |i, v| i.settings.splits = SplitScheme::Practical(v as f32)),
     ("first manual split", |i, v| {
-        i.settings.splits = SplitScheme::Manual([v as f32, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0])
+        i.settings.splits = SplitScheme::Manual([v as f32, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0]);
     }),
     ("second manual split", |i, v| {
         i.settings.splits = SplitScheme::Manual([2.0, v as f32, 10.0, 11.0, 12.0, 13.0, 14.0]);
