@@ -127,7 +127,7 @@ fn absurd_flags_end_in_exit_code_2_and_name_themselves() {
         (&["--set", "bias.constant"], "ID=VALUE"),
         (&["--set", "bias.constant=much"], "bias.constant"),
         (&["--set", "bias.constant=nan"], "bias.constant"),
-        (&["--set", "map.resolution=2000"], "map.resolution"),
+        (&["--set", "map.resolution=200"], "map.resolution"),
         (&["--set", "camera.far=1e99"], "camera.far"),
         (&["--animation", "-1"], "-1"),
         (&["--scene-index", "first"], "first"),

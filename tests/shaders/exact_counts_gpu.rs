@@ -8,7 +8,7 @@
 //! ```
 
 use shadowfit::glam::{DVec3, UVec2, Vec2, Vec3};
-use shadowfit::settings::{BiasSettings, FilterKind, FitSettings, MapFormat};
+use shadowfit::settings::{BiasSettings, FilterKind, FitKind, FitSettings, MapFormat};
 use shadowfit::{DepthConvention, LightFit, ViewFrustum, fit};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
@@ -36,8 +36,12 @@ pub(super) fn box_fit(depth: DepthConvention) -> LightFit {
     let [near, far] = [face(1.0), face(-1.0)];
     let corners = core::array::from_fn(|i| if i < 4 { near[i] } else { far[i - 4] });
     let frustum = ViewFrustum { origin: DVec3::ZERO, corners, near: -8.0, far: 8.0, forward: Vec3::NEG_Z };
-    let settings =
-        FitSettings::default().with_caster_extension(0.0).with_resolution(UVec2::splat(TEXELS)).with_depth(depth);
+    let settings = FitSettings::default()
+        .with_kind(FitKind::FrustumAabb)
+        .with_caster_extension(0.0)
+        .with_border(0.0)
+        .with_resolution(UVec2::splat(TEXELS))
+        .with_depth(depth);
     fit(&frustum, Vec3::NEG_Y, &settings).expect("a good fit")
 }
 

@@ -2,7 +2,7 @@
 //! group.
 
 use shadowfit::glam::{DVec3, UVec2, Vec3};
-use shadowfit::settings::{BiasSettings, FilterKind, FitSettings};
+use shadowfit::settings::{BiasSettings, FilterKind, FitKind, FitSettings};
 use shadowfit::{Bias, LightFit, PerspectiveCamera, fit};
 use shadowfit_wgpu::{MAX_MAPS, MapFit, MapView, ShadowMapDescriptor};
 
@@ -24,7 +24,10 @@ fn map_to(distance: f32, texels: u32) -> LightFit {
         near: 0.1,
         far: 200.0,
     };
-    let settings = FitSettings::default().with_max_distance(distance).with_resolution(UVec2::splat(texels));
+    let settings = FitSettings::default()
+        .with_kind(FitKind::FrustumAabb)
+        .with_max_distance(distance)
+        .with_resolution(UVec2::splat(texels));
     fit(&camera.frustum().expect("a camera"), DIRECTION, &settings).expect("a fit")
 }
 

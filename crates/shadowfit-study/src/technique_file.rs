@@ -234,7 +234,7 @@ mod tests {
         for (text, reason) in [
             ("map = 3", "map is no table"),
             ("name = 3", "name is 3"),
-            ("[splits]\ncount = 9", "splits.count is 9, which is out of range; give a number from 1 to 8"),
+            ("[splits]\ncount = 9", "splits.count is 9, which is out of range; give a whole number from 1 to 8"),
             ("[splits]\ncount = -1", "splits.count"),
             ("[map]\nresolution = 64", "map.resolution is 64"),
             ("[bias]\nslope = nan", "bias.slope is NaN"),
