@@ -9,7 +9,7 @@ use crate::ShadowMapError;
 /// Widths and heights that a map may have, in texels.
 pub const RESOLUTIONS: core::ops::RangeInclusive<u32> = 256..=8192;
 
-/// What a [`ShadowMap`] is made of.
+/// What a [`ShadowMap`](crate::ShadowMap) is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShadowMapDescriptor {
     /// Width and height of each map, in texels, within [`RESOLUTIONS`].
