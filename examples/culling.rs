@@ -1,5 +1,5 @@
-//! What culling leaves of each shadow pass: casters and triangles that the maps of a technique draw when they hold all
-//! that they can store, and when they hold only what can throw a shadow into view.
+//! What is left in each shadow pass after culling: casters and triangles that are drawn into the maps of a technique
+//! when they get all that they can store, and when they get only what can throw a shadow into view.
 //!
 //! ```sh
 //! cargo run --release --example culling -- peers/scenarios.json --assets assets
@@ -7,7 +7,7 @@
 //! ```
 //!
 //! The scenes and scenarios are those of `report peers`. Prints a table in Markdown, means over the frames that were
-//! drawn: the first few of each path, but for those that have no frame before them.
+//! drawn: the first few of each path, except those that have no frame before them.
 
 use std::path::PathBuf;
 

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! What the engine has to do is marked with STEP 1 to STEP 6. The scene stands 50 km from the world's origin, to show
-//! that shadows stay steady there: shaders get positions relative to the eye.
+//! that shadows stand still there: shaders get positions relative to the eye.
 
 use std::path::PathBuf;
 

@@ -1,6 +1,6 @@
 //! Proofs instead of pictures: every map of every frame of a camera flight is proven to have no holes, the depths that
-//! the last frame showed make splits sharper without putting that at risk, and fewer maps are taken where they serve as
-//! well. No GPU, no window.
+//! the last frame showed make splits sharper without putting that at risk, and fewer maps are taken where they are as
+//! good. No GPU, no window.
 //!
 //! ```sh
 //! cargo run --example prove_it
@@ -47,7 +47,7 @@ fn main() -> Result<(), FitError> {
     let count = fewest_maps(&input, &technique, 1.5, &mut workspace)?;
     println!("{count} maps instead of {} make texels at most 1.5 times as coarse", technique.count);
 
-    // Where no boxes tell what is visible: without bounds, with those that a reduction of the last depth buffer gives,
+    // Where no boxes say what is visible: without bounds, with those that a reduction of the last depth buffer gives,
     // and with wrong ones, as after a camera cut.
     let logarithmic = technique.with_splits(SplitScheme::Logarithmic);
     for depth_bounds in [None, Some((9.0, 60.0)), Some((1.0, 2.0))] {

@@ -1,7 +1,7 @@
-//! Maps that stay: how little has to be drawn anew while the camera walks and the sun moves.
+//! Maps that are kept: how little has to be drawn again while the camera walks and the sun moves.
 //!
-//! `LightSteps` holds the sun until its turn would show, and `Scroll` says which texels of a map the last frame has
-//! already. A minute is walked through at 10 frames a second; each line is a second of it. No GPU, no window.
+//! `LightSteps` moves the sun in steps, and `Scroll` says which texels of a map are already there from the last frame.
+//! A minute is walked through at 10 frames a second; each line is a second of it. No GPU, no window.
 //!
 //! ```sh
 //! cargo run --example still_maps

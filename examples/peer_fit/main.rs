@@ -1,5 +1,5 @@
-//! Fits shadow maps to the frames of a file of scenarios, so that they can be measured beside the fits of other
-//! engines: `report peers` reads what this writes.
+//! Fits shadow maps to the frames of a file of scenarios, so that they can be compared with the fits of other engines:
+//! `report peers` reads what this writes.
 //!
 //! ```sh
 //! cargo run --release --example peer_fit -- --fit list

@@ -1,4 +1,4 @@
-//! Fits all frames, several times over for the clock.
+//! Fits all frames, several times to measure the time.
 
 use std::time::Instant;
 
@@ -15,7 +15,7 @@ use shadowfit_wgpu::MapFit;
 
 use crate::geometry::Source;
 
-/// Times that all frames are fitted for the clock, after once to warm up.
+/// How often all frames are fitted while the time is measured, after once to warm up.
 const BATCHES: usize = 7;
 
 /// What is known of a scene.

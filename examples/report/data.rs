@@ -1,14 +1,14 @@
 //! What a finished run is, as plain data.
 //!
-//! Whoever renders and measures fills it; tables, plots and the page are made from it alone, so that they can be
-//! tested without a GPU.
+//! Rendering and measuring fill it; tables, plots and the page are made from it alone, so that they can be tested
+//! without a GPU.
 
 use std::path::PathBuf;
 
 use serde::{Serialize, Serializer};
 use shadowfit::tool::LightSettings;
 
-/// Names of columns, such as `wrong %`, and their values; not a number where nothing was there to be measured.
+/// Names of columns, such as `wrong %`, and their values; not a number where nothing could be measured.
 pub(crate) type Columns = Vec<(String, f64)>;
 
 /// The column that techniques are ranked by.
@@ -83,7 +83,7 @@ pub(crate) struct FramePictures {
 pub(crate) enum Better {
     Lower,
     Higher,
-    /// It describes, and says nothing of quality.
+    /// It describes, and says nothing about quality.
     Neither,
 }
 
@@ -101,7 +101,7 @@ pub(crate) fn better(column: &str) -> Better {
     }
 }
 
-/// What a column means, for people; `None` for one that is not known here.
+/// What a column means, in a sentence; `None` for one that is not known here.
 pub(crate) fn meaning(column: &str) -> Option<&'static str> {
     Some(match column {
         "wrong %" => "Pixels that face the light and whose verdict, lit or shadowed, differs from the ray-traced truth",

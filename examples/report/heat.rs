@@ -10,8 +10,8 @@ use plotters::style::text_anchor::HPos;
 
 use crate::text::{Strip, width};
 
-/// Ends of the scale, log2 of pixels per texel: a quarter of a pixel is more map than anybody sees, and texels of 32
-/// pixels are as bad as can be.
+/// Ends of the scale, log2 of pixels per texel: finer texels than a quarter of a pixel are not seen, and texels of 32
+/// pixels are very coarse.
 const OCTAVES: [f32; 2] = [-2.0, 5.0];
 /// Colour of pixels that no map covers or that have no surface; grey is not on the ramp.
 const NONE: [u8; 3] = [58, 60, 64];

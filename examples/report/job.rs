@@ -24,7 +24,7 @@ const COARSE_OFFSET: f64 = 5e-4;
 const BYTES_A_VERTEX: u64 = 200;
 /// Bytes of a triangle in the lists that rays and fits are made from.
 const BYTES_A_TRIANGLE: u64 = 80;
-/// Triangles from which on people are told of the memory that they take.
+/// Number of triangles from which on the memory that they take is printed.
 const MANY_TRIANGLES: usize = 1_000_000;
 
 #[derive(Clone, Debug, clap::Args)]
@@ -67,7 +67,7 @@ pub(crate) struct Prepared {
     pub(crate) path: CameraPath,
     pub(crate) light: LightSettings,
     pub(crate) frames: Vec<JobFrame>,
-    /// What people should know of the measurement, whole sentences.
+    /// What a reader should know of the measurement, in whole sentences.
     pub(crate) notes: Vec<String>,
     /// What import skipped, replaced or repaired.
     pub(crate) scene_notes: Vec<String>,
@@ -113,7 +113,7 @@ impl Job {
         Ok(Prepared { comparison, judging, path, light, frames, notes, scene_notes })
     }
 
-    /// The scene's name for people.
+    /// The scene's name in reports.
     pub(crate) fn title(&self) -> String {
         self.scene.file_stem().unwrap_or_default().to_string_lossy().into_owned()
     }

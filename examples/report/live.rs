@@ -1,4 +1,4 @@
-//! `report live`: the classes from the GPU, compared with those of the CPU, and how long they take.
+//! `report live`: pixels judged on the GPU, compared with those judged on the CPU, and how long that takes.
 
 use anyhow::{Result, bail};
 use shadowfit_study::{Agreement, LiveTruth, NamedTechnique, SharedTruth};
@@ -6,7 +6,7 @@ use shadowfit_study::{Agreement, LiveTruth, NamedTechnique, SharedTruth};
 use crate::interrupt::Interrupt;
 use crate::job::Job;
 
-/// Pictures that are judged for the clock, after as many to warm up.
+/// Pictures that are judged while the time is measured, after as many to warm up.
 const REPEATS: u32 = 50;
 /// Shares of pixels of the same class that the two promise: off edges, and of all that face the light.
 const PROMISED: [f64; 2] = [0.999, 0.995];

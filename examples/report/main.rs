@@ -6,9 +6,9 @@
 //! cargo run --release --example report -- town.glb --path walk.toml --technique xna-1 --technique mine.toml -o out/report
 //! # The technique with the least error, within a budget.
 //! cargo run --release --example report -- tune town.glb --maps 4 --resolution 2048 -o out/tuned
-//! # Fit files of any code over 300 frames of five scenes, drawn by the same renderer.
+//! # Fit files made by any code over 300 frames of five scenes, drawn by the same renderer.
 //! cargo run --release --example report -- peers peers/scenarios.json peers/fits/*.json --assets assets -o out/peers
-//! # The classes on the GPU: agreement with the CPU, and milliseconds.
+//! # Pixels judged on the GPU: how far that agrees with the CPU, and how long it takes.
 //! cargo run --release --example report -- live town.glb
 //! ```
 

@@ -71,8 +71,8 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     Ok(())
 }
 
-/// So many of the frames, in pairs of neighbours that are evenly spread: what a fit knows of the frame before counts,
-/// and so does crawl.
+/// A number of the frames, in pairs of neighbours that are evenly spread: fits depend on the frame before, and so does
+/// crawl.
 fn picked(views: &[View], count: usize) -> Vec<View> {
     if count >= views.len() {
         return views.to_vec();
@@ -88,7 +88,7 @@ fn picked(views: &[View], count: usize) -> Vec<View> {
     (0..pairs).flat_map(pair).take(count).collect()
 }
 
-/// All that was tried, as Markdown.
+/// All changes that were tried, as Markdown.
 fn steps(tuned: &Tuned) -> String {
     let mut text = String::from("| change | error | wrong % | false shadow % | false light % | hole % | bought |\n");
     text += "|---|---:|---:|---:|---:|---:|---|\n";

@@ -1,4 +1,4 @@
-//! The viewer: fly through a scene under one sun, and show, mark and cure shadow artefacts.
+//! The viewer: fly through a scene under one sun, and show and cure shadow artefacts.
 //!
 //! ```sh
 //! cargo run --release --example viewer                     # the built-in courtyard

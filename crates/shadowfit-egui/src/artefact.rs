@@ -22,7 +22,7 @@ impl Artefact {
     /// All artefacts, in the order of their keys.
     pub const ALL: [Self; 3] = [Self::Acne, Self::Aliasing, Self::ClippingHole];
 
-    /// Name for people.
+    /// Readable name.
     pub const fn label(self) -> &'static str {
         match self {
             Self::Acne => "Acne",

@@ -2,7 +2,7 @@
 //!
 //! It edits a [`Settings`], shows a [`Figures`] live, and asks its host for what only the host can
 //! do (moving the camera, taking a picture) by returning an [`Action`]. Its controls come from
-//! [`shadowfit::params`], so a new parameter appears by itself.
+//! [`shadowfit::params`], so that a new parameter gets a control without further code.
 //!
 //! ```
 //! use shadowfit::figures::Figures;
@@ -78,7 +78,7 @@ pub struct PanelInput<'a> {
     pub artefact: Option<Artefact>,
     /// Whether its cure is applied.
     pub artefact_fixed: bool,
-    /// A line for people, such as the outcome of their last action.
+    /// A readable message, such as the outcome of the last action.
     pub message: Option<&'a str>,
 }
 
@@ -89,7 +89,7 @@ pub struct SceneLine<'a> {
     pub name: &'a str,
     /// Number of its triangles.
     pub triangles: u64,
-    /// What people should know about it, such as parts that could not be shown.
+    /// Notes about it, such as parts that could not be shown.
     pub notes: &'a [String],
 }
 

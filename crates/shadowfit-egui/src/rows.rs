@@ -126,8 +126,8 @@ fn second_line(ui: &mut Ui, row: &Row<'_>, optional: &Optional, settings: &mut S
         if let Some(value) = number_control(ui, row, &Scale::from(optional), value, label) {
             let mut next = *settings;
             optional.set(&mut next, Some(value));
-            // A value that reads as none, such as a height equal to the width, takes the slider away: not from under
-            // the pointer that drags it.
+            // A value that means none, such as a height equal to the width, removes the slider, but not while it is
+            // being dragged.
             if optional.get(&next).is_some() || !ui.input(|input| input.pointer.any_down()) {
                 *settings = next;
             }
@@ -135,7 +135,7 @@ fn second_line(ui: &mut Ui, row: &Row<'_>, optional: &Optional, settings: &mut S
     });
 }
 
-/// Turns a number on, at half of what it begins with where that reads as none.
+/// Turns a number on; where its initial value means none, at half of that.
 fn begin(optional: &Optional, settings: &mut Settings) {
     optional.set(settings, Some(optional.initial));
     if optional.get(settings).is_none() {
@@ -213,7 +213,7 @@ fn toggle_control(ui: &mut Ui, row: &Row<'_>, toggle: Toggle, settings: &mut Set
     row.explain(response);
 }
 
-/// Gives a widget another name for those who hear the panel.
+/// Gives a widget another name for screen readers.
 pub(crate) fn rename(ui: &Ui, response: &Response, name: String) {
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));
 }

@@ -16,7 +16,7 @@ const WIDTH: f32 = 320.0;
 /// Most of the screen's height that the open menu takes.
 const HEIGHT: f32 = 0.6;
 
-/// What a technique is called that was chosen from nowhere.
+/// What a technique is called that was not chosen from the menu.
 const CUSTOM: &str = "custom";
 
 /// The name that was chosen last, and the technique that the host opened.
@@ -93,7 +93,7 @@ impl Menu {
         }
     }
 
-    /// What a technique is called that is none of the menu's.
+    /// What a technique is called that is not in the menu.
     fn changed(&self) -> String {
         format!("{}, changed", if self.chosen.is_empty() { CUSTOM } else { &self.chosen })
     }

@@ -28,7 +28,7 @@ pub struct Scene {
     pub sun: Option<Sun>,
     /// Index of the node that, with its descendants, cameras should look at, if the scene has one.
     pub subject: Option<usize>,
-    /// What import skipped, replaced or repaired, as sentences for people.
+    /// What import skipped, replaced or repaired, as readable sentences.
     pub notes: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! How far two judges of the same pictures agree.
+//! How far CPU and GPU agree about the same pictures.
 
 use shadowfit_truth::gpu::GpuPixel;
 use shadowfit_truth::{Class, Judged};
@@ -14,7 +14,7 @@ pub struct Agreement {
 }
 
 impl Agreement {
-    /// Adds a picture that both judged.
+    /// Adds a picture that both have judged.
     pub fn add(&mut self, judged: &Judged, pixels: &[GpuPixel]) {
         for (pixel, found) in pixels.iter().enumerate() {
             let class = judged.classes[pixel];

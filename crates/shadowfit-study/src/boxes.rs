@@ -1,7 +1,7 @@
-//! What fits know of the scene: boxes around what shows shadows and what throws them.
+//! What fits know of the scene: boxes around its receivers and its casters.
 //!
-//! What never moves is cut once into clusters that hug its surface, since a level that is one mesh has a box that tells
-//! nothing. What an animation moves has one box an instance, made anew with every pose.
+//! What never moves is divided once into clusters that fit its surface closely, since the box of a level that is one
+//! mesh says little. What an animation moves has one box for each instance, made anew with every pose.
 
 use glam::{DVec3, Vec3};
 use shadowfit::clusters::Clusters;
@@ -9,8 +9,8 @@ use shadowfit::normal_cone::NormalCone;
 use shadowfit::{Aabb, Boxes, FitInput, ViewFrustum, Workspace};
 use shadowfit_scene::{AlphaMode, Instance, Pose, Scene};
 
-/// Triangles from which on nothing is cut into clusters: at a fifth of a microsecond each it would hold up the opening
-/// of a scene by more than a second.
+/// Number of triangles from which on no clusters are made: at a fifth of a microsecond each that would delay the
+/// opening of a scene by more than a second.
 const MOST_TRIANGLES: usize = 6_000_000;
 
 /// Greatest coordinate of a box that fits take, in metres; a box beyond it is left out.
@@ -19,7 +19,7 @@ const FARTHEST: f32 = 1e18;
 /// Boxes of a scene in its present pose, in world space.
 #[derive(Debug, Default)]
 pub(crate) struct SceneBoxes {
-    /// Of all that is drawn: that of the clusters, then one an instance that moves.
+    /// Of all that is drawn: those of the clusters, then one for each instance that moves.
     receivers: Vec<Aabb>,
     /// Cones around the normals in them.
     cones: Vec<NormalCone>,
@@ -32,7 +32,7 @@ pub(crate) struct SceneBoxes {
 }
 
 impl SceneBoxes {
-    /// Cuts what never moves into clusters. [`Self::set_pose`] has to follow, for the rest.
+    /// Divides what never moves into clusters. [`Self::set_pose`] has to follow, for the rest.
     pub(crate) fn new(scene: &Scene, pose: &Pose) -> Self {
         let instances = scene.instances();
         let casts: Vec<bool> = instances.iter().map(|instance| casts(scene, instance)).collect();
@@ -51,14 +51,14 @@ impl SceneBoxes {
         Self { receivers, cones, casters, still, moving }
     }
 
-    /// One box an instance, whether it moves or not. [`Self::set_pose`] has to follow.
+    /// One box for each instance, whether it moves or not. [`Self::set_pose`] has to follow.
     pub(crate) fn of_instances(scene: &Scene) -> Self {
         let instances = scene.instances();
         let moving = instances.iter().enumerate().map(|(index, instance)| (index, casts(scene, instance))).collect();
         Self { moving, ..Self::default() }
     }
 
-    /// What fits are told of the scene, for a light that travels in `direction` (world axes).
+    /// The boxes that fits are given, for a light that travels in `direction` (world axes).
     pub(crate) fn input<'a>(&'a self, views: &'a [ViewFrustum], direction: Vec3) -> FitInput<'a> {
         FitInput {
             receivers: Some(Boxes { origin: DVec3::ZERO, boxes: &self.receivers }),
@@ -68,7 +68,7 @@ impl SceneBoxes {
         }
     }
 
-    /// Elements of storage that fits to so many views need.
+    /// Elements of storage that fits to this many views need.
     pub(crate) fn required(&self, views: usize) -> usize {
         Workspace::required(self.receivers.len().max(self.casters.len()), views)
     }
@@ -90,7 +90,7 @@ impl SceneBoxes {
     }
 }
 
-/// Whether the caster rule lets an instance cast: blended surfaces cast nothing.
+/// Whether an instance casts shadows: blended surfaces cast none.
 fn casts(scene: &Scene, instance: &Instance) -> bool {
     let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
     scene.materials[primitive.material].alpha != AlphaMode::Blend

@@ -28,7 +28,7 @@ pub struct Comparison {
     entries: Vec<Entry>,
 }
 
-/// What a technique made of a frame.
+/// The maps of a technique for a frame, and its picture.
 #[derive(Debug)]
 pub struct Outcome {
     /// Its maps.
@@ -64,7 +64,7 @@ impl Comparison {
         Ok(())
     }
 
-    /// Takes all techniques out.
+    /// Removes all techniques.
     pub fn clear(&mut self) {
         self.entries.clear();
     }

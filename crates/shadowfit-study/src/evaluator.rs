@@ -1,4 +1,4 @@
-//! The one place where a technique's pictures are drawn and judged.
+//! The only place where a technique's pictures are drawn and judged.
 
 use anyhow::Result;
 use glam::{DVec3, Vec3};
@@ -116,7 +116,7 @@ impl Evaluator {
     ///
     /// # Errors
     ///
-    /// As for [`Self::judge`], and when the sun is no point.
+    /// As for [`Self::judge`], and when the sun has a radius.
     pub fn judge_live(
         &mut self,
         gpu: &Gpu,
@@ -128,7 +128,7 @@ impl Evaluator {
         self.with_live_input(gpu, scene, view, maps, |input| live.judge(gpu, input))
     }
 
-    /// Mean time of judging a view on the GPU, drawing aside, in milliseconds.
+    /// Mean time of judging a view on the GPU, without drawing it, in milliseconds.
     ///
     /// # Errors
     ///
@@ -183,7 +183,7 @@ impl Evaluator {
         Ok(probe?.pixels)
     }
 
-    /// Draws a probe into targets that the caller hands back.
+    /// Draws a probe into targets that the caller gives back.
     fn draw_probe(
         &mut self,
         gpu: &Gpu,

@@ -1,4 +1,4 @@
-//! The one place where a technique's maps are fitted to a scene, view after view.
+//! The only place where a technique's maps are fitted to a scene, view after view.
 
 use glam::DVec2;
 use shadowfit::settings::SplitScheme;

@@ -1,4 +1,4 @@
-//! The one place where a frame of the samples' renderer is put together, and its haze chosen.
+//! The only place where a frame of the samples' renderer is put together and its haze is chosen.
 
 use shadowfit::PerspectiveCamera;
 use shadowfit::tool::CameraSettings;
@@ -43,7 +43,7 @@ impl Default for FrameOptions<'_> {
 }
 
 impl FrameOptions<'_> {
-    /// Haze that suits the size of what is seen, so that a chair is not lost in it nor a town without.
+    /// Haze that suits the size of what is seen: a chair is not lost in it, and a town has some.
     pub(crate) fn atmosphere(&self, view: &View) -> Atmosphere {
         let atmosphere = Atmosphere::default();
         let sight = self.sight.unwrap_or_else(|| self.outside.unwrap_or(view.camera).far);

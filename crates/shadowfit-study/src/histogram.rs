@@ -1,4 +1,4 @@
-//! What a depth buffer of the frame before would tell: rays against the triangles stand in for it.
+//! What a depth buffer of the frame before would show, found by rays against the triangles.
 
 use glam::{DVec3, Vec3};
 use shadowfit::PerspectiveCamera;

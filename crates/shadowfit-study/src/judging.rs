@@ -10,11 +10,11 @@ use crate::{PreparedScene, View};
 pub struct Judging {
     /// Width and height, in pixels.
     pub size: [u32; 2],
-    /// Distance over the surface at which shadow rays start, in metres.
+    /// Distance above the surface at which shadow rays start, in metres.
     pub ray_offset: f64,
     /// Angular radius of the sun, in radians; 0 for hard shadows.
     pub sun_radius: f64,
-    /// Rays to a sun that is no point.
+    /// Rays toward a sun with a radius.
     pub sun_rays: u32,
     /// Whether crawl is measured, which draws each frame once more.
     pub crawl: bool,
@@ -46,7 +46,7 @@ impl Judging {
     }
 }
 
-/// The truth of a frame, for all techniques: traced when the first of them has said which triangles are seen.
+/// The truth of a frame, for all techniques: traced as soon as the first of them has found which triangles are seen.
 #[derive(Debug, Default)]
 pub struct SharedTruth(Option<Truth>);
 

@@ -1,4 +1,5 @@
-//! Techniques on the same frames: each is fitted, drawn by the samples' renderer, and judged against rays. No window.
+//! Techniques on the same frames: each is fitted, drawn by the samples' renderer, and judged against rays, without a
+//! window.
 //!
 //! A [`PreparedScene`] is a scene that can be drawn, traced and fitted to; a [`View`] is a camera and a light. A
 //! [`Technique`](shadowfit::Technique) is all that decides how shadows come out: its [`TechniqueFitter`] makes the maps of a view, and an

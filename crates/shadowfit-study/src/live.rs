@@ -1,4 +1,4 @@
-//! The classes on the GPU: the same pictures judged where they are drawn.
+//! Pictures judged on the GPU, where they are drawn.
 
 use std::time::Instant;
 

@@ -6,7 +6,7 @@ use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{MeasuredMap, PictureMaps};
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
 
-/// Stands for no end of a map's view depths, in metres: fit files hold finite numbers.
+/// View depth, in metres, that means that a map has no end: fit files have finite numbers only.
 const NO_END: f64 = 1e9;
 
 /// A map as fit files have it: the f32 matrix that the renderer gets, made absolute in f64.

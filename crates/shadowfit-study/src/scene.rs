@@ -1,4 +1,4 @@
-//! A scene made ready: uploaded, boxed for fits, and traced when somebody asks.
+//! A scene made ready: uploaded, with boxes for fits, and with rays that are made when they are first needed.
 
 use core::cell::{OnceCell, RefCell};
 use core::fmt;
@@ -130,7 +130,7 @@ impl PreparedScene {
         })
     }
 
-    /// Calls a function with rays of the present pose if they are there, else with those of an earlier one, which cost
+    /// Calls a function with rays of the present pose if they exist, else with those of an earlier pose, which cost
     /// nothing while the scene moves; new ones are made only where there are none at all.
     pub(crate) fn with_late_rays<T>(&self, call: impl FnOnce(&SceneRays) -> T) -> T {
         let earlier = self.earlier_rays.borrow();

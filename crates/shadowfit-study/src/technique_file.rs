@@ -1,6 +1,6 @@
 //! Techniques by name, and as TOML files.
 //!
-//! A file has a table for each group of the parameter table and a line for each knob, so that what is written as
+//! A file has a table for each group of the parameter table and a line for each parameter, so that what is written as
 //! `--set map.filter=pcf_3x3` on a command line is `filter = "pcf_3x3"` under `[map]` in a file. What a file leaves out
 //! is as in the recommended technique.
 
@@ -14,7 +14,7 @@ use shadowfit::tool::Settings;
 use shadowfit::{PRESETS, Technique};
 use toml::Value;
 
-/// A technique with what tables call it.
+/// A technique with its name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedTechnique {
     /// Name, for tables.
@@ -32,7 +32,7 @@ impl Default for NamedTechnique {
 }
 
 impl From<Technique> for NamedTechnique {
-    /// Without a name.
+    /// A technique without a name.
     fn from(technique: Technique) -> Self {
         Self { name: String::new(), summary: String::new(), technique }
     }
@@ -72,7 +72,7 @@ impl NamedTechnique {
     ///
     /// # Errors
     ///
-    /// When it cannot be read or makes no sense; the message names file, group and knob.
+    /// When it cannot be read or makes no sense; the message names file, group and parameter.
     pub fn read(file: &Path) -> Result<Self> {
         let at = || file.display().to_string();
         let text = std::fs::read_to_string(file).with_context(at)?;
@@ -87,7 +87,8 @@ impl NamedTechnique {
     ///
     /// # Errors
     ///
-    /// When the text is no TOML, has a table or a key that no technique has, or a value that the knob does not take.
+    /// When the text is no TOML, has a table or a key that no technique has, or a value that the parameter does not
+    /// take.
     pub fn from_toml(text: &str) -> Result<Self> {
         let mut file: toml::Table = toml::from_str(text)?;
         let mut word = |key: &str| match file.remove(key) {
@@ -116,7 +117,7 @@ impl NamedTechnique {
     ///
     /// # Errors
     ///
-    /// When a number lies outside its knob's range or is not finite, so that it could not be read back.
+    /// When a number lies outside its parameter's range or is not finite, so that it could not be read back.
     pub fn to_toml(&self) -> Result<String> {
         let Self { name, summary, technique } = self;
         let settings = Settings::default().with_technique(*technique);
@@ -136,18 +137,18 @@ impl NamedTechnique {
     }
 }
 
-/// Whether a knob gets a line: single maps' own settings only where there are any.
+/// Whether a parameter gets a line: settings of single maps only where there are any.
 fn is_written(parameter: &Parameter, settings: &Settings) -> bool {
     let is_default = parameter.is_equal(settings, &Settings::default());
     parameter.is_present(settings) && !(parameter.group == Group::Override && is_default)
 }
 
-/// A knob's name in its group.
+/// A parameter's name in its group.
 fn key(parameter: &Parameter) -> &'static str {
     parameter.id.split_once('.').map_or(parameter.id, |(_, key)| key)
 }
 
-/// A knob's value as TOML has it: a number, true or false, or an option's id in quotes.
+/// A parameter's value as TOML has it: a number, true or false, or an option's id in quotes.
 fn value_of(parameter: &Parameter, settings: &Settings) -> String {
     let mut text = String::new();
     // Writing to a String cannot fail.
@@ -167,7 +168,7 @@ fn text_of(value: &Value) -> Result<String> {
     })
 }
 
-/// What is left in a file is a mistake of whoever wrote it.
+/// Refuses what is left of a file: tables and keys that no technique has.
 fn refuse_the_rest(file: &toml::Table) -> Result<()> {
     let groups: Vec<&str> = Group::ALL.into_iter().filter(|group| group.is_technique()).map(Group::id).collect();
     for (name, value) in file {

@@ -1,7 +1,7 @@
 //! The search for the technique with the least error in a scene, within a budget of maps and texels.
 //!
 //! One thing is changed at a time, in a fixed order, and kept when it helps: the same scene, path and GPU always give
-//! the same answer, and what each change bought can be said.
+//! the same result, and the gain of each change is known.
 
 use anyhow::{Context, Result, ensure};
 use shadowfit::Technique;
@@ -12,7 +12,7 @@ use shadowfit_truth::PictureTally;
 
 use crate::{Comparison, NamedTechnique, SharedTruth, View, ensure_judged};
 
-/// What is counted against a technique: weights of shares in per cent.
+/// How much each error of a technique counts: weights of shares in per cent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weights {
     /// Of all wrong pixels.

@@ -10,6 +10,6 @@ pub struct View {
     pub camera: PerspectiveCamera,
     /// Unit direction of travel of the light, world axes.
     pub direction: Vec3,
-    /// Whether a path begins here: nothing is kept from the view before, and crawl is not measured against it.
+    /// Whether a path begins here: nothing is kept from the view before, and crawl is not measured.
     pub is_first: bool,
 }

@@ -1,4 +1,4 @@
-//! Shimmering: how many pixels at shadow edges change their verdict only because the maps moved.
+//! Crawl: how many pixels at shadow edges change their verdict only because the maps moved.
 //!
 //! The same points of the world are looked up in the maps of this frame and in those of the frame
 //! before, so that neither the camera's motion nor true changes of the shadow are counted.
@@ -25,9 +25,9 @@ pub struct MapsBefore<'a> {
     pub factors: &'a [f32],
 }
 
-/// Compares the verdicts of two frames' maps at the pixels that count, lie in the edge zone, and whose
-/// point the maps of both frames hold. Returns how many of these pixels have another verdict in the
-/// frame before, and how many were compared: with (0, 0) nothing was measured.
+/// Compares the verdicts of two frames' maps at the pixels that count, lie in the edge zone, and whose point the maps
+/// of both frames cover. Returns how many of these pixels have another verdict in the frame before, and how many were
+/// compared: with (0, 0) nothing was measured.
 ///
 /// `factors` is what [`judge()`](crate::judge()) was given, `before` the frame before.
 ///

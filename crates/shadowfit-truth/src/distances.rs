@@ -6,7 +6,7 @@
 
 use rayon::prelude::*;
 
-/// Stands for the square of the distance where no pixel is marked.
+/// The value of the square of the distance where no pixel is marked.
 pub(crate) const NONE_MARKED: u32 = u32::MAX;
 
 /// Square of the distance, in pixels, from each pixel's centre to that of the nearest marked one;

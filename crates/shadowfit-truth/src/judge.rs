@@ -19,14 +19,13 @@ use crate::truth::{Truth, TruthPoint};
 pub struct Judged {
     /// Class of each pixel.
     pub classes: Vec<Class>,
-    /// Screen pixels per shadow texel along the worse axis, in the map that is read. Infinite where no
-    /// map holds the point or the surface is edge-on to the light; not a number where the pixel is
-    /// not judged.
+    /// Screen pixels per shadow texel along the worse axis, in the map that is read. Infinite where no map covers the
+    /// point or the surface is edge-on to the light; not a number where the pixel is not judged.
     pub pixels_per_texel: Vec<f32>,
     /// Whether the pixel lies in the edge zone; `false` where it is not judged.
     pub edge_zone: Vec<bool>,
-    /// Index of the map that is read; 255 stands for all from there on. `None` where no map holds the
-    /// point or the pixel is not judged.
+    /// Index of the map that is read; 255 stands for all from there on. `None` where no map covers the point or the
+    /// pixel is not judged.
     pub map_index: Vec<Option<u8>>,
     /// Whether the pixel is judged and counts in the sums.
     pub counted: Vec<bool>,
@@ -54,8 +53,8 @@ impl Finding {
 /// are ignored. `counts` says whether the pixels of a triangle (index into the tracer's) are summed:
 /// those of the others are judged too, and their shadow edges are edges, but no sum contains them.
 ///
-/// The edge zone reaches [`PictureMaps::edge_width`] pixels from a true shadow edge, or as many texels
-/// where a texel is wider than a pixel on screen. At a point that no map holds it is in pixels.
+/// The edge zone reaches [`PictureMaps::edge_width`] pixels from a true shadow edge, or as many texels where a texel is
+/// wider than a pixel on screen. At a point that no map covers it is in pixels.
 ///
 /// # Panics
 ///

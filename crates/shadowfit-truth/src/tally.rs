@@ -19,9 +19,9 @@ pub struct PictureTally {
     pub edge_zone: u64,
     /// Sum of |factor − truth|, where truth is the share of light that arrives.
     pub error: f64,
-    /// Pixels that no map holds.
+    /// Pixels that no map covers.
     pub uncovered: u64,
-    /// Pixels per texel along the worse axis, of pixels that a map holds and that are not grazing.
+    /// Pixels per texel along the worse axis, of pixels that a map covers and that are not grazing.
     pub pixels_per_texel: Histogram,
     /// Those of them with more than one pixel per texel.
     pub undersampled: u64,
@@ -54,8 +54,8 @@ pub struct ClassTally {
     pub edge: u64,
 }
 
-/// The figures of judged pictures. Shares are in per cent of the pixels that count, 0..=100, unless a
-/// field says otherwise; a figure of which nothing was there to be measured is `None`.
+/// The figures of judged pictures. Shares are in per cent of the pixels that count, 0..=100, unless a field says
+/// otherwise; a figure for which nothing could be measured is `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PictureFigures {
     /// Pixels whose verdict differs from the truth, edges included.
@@ -70,7 +70,7 @@ pub struct PictureFigures {
     pub edge: f64,
     /// Pixels in the edge zone, right or wrong.
     pub edge_zone: f64,
-    /// Pixels that no map holds.
+    /// Pixels that no map covers.
     pub uncovered: f64,
     /// Mean of |factor − truth|, in per cent of full light.
     pub mean_error: f64,
@@ -163,7 +163,7 @@ impl PictureTally {
     }
 
     /// Titles and values of a report's columns, made from [`Self::figures`]. Not a number where
-    /// nothing was there to be measured.
+    /// nothing could be measured.
     pub fn columns(&self) -> Vec<(&'static str, f64)> {
         let figures = self.figures();
         let of = |value: fn(&PictureFigures) -> Option<f64>| figures.as_ref().and_then(value).unwrap_or(f64::NAN);

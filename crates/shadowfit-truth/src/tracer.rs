@@ -85,7 +85,7 @@ impl Tracer {
         self.triangles = moved;
         let Some(bvh) = &mut self.bvh else { return Ok(()) };
         refit(bvh, &self.triangles);
-        // A cost that is not a number is not good either.
+        // A cost that is not a number also leads to a rebuild.
         let is_good = cost(bvh) <= self.built_cost * MAX_COST_GROWTH;
         if !is_good {
             self.bvh = build(&self.triangles);

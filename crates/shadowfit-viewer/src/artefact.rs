@@ -1,8 +1,8 @@
 //! The three demonstrations: where to stand and what to set so that an artefact is unmistakable in
 //! the scene at hand, and the setting that cures it.
 //!
-//! Several maps keep their fit, their splits and what holds them still: only what makes the artefact plain is taken from
-//! them. A single map is fitted by the rule that has the artefact by nature.
+//! Several maps keep their fit, their splits and what holds them still: only what prevents the artefact is changed. A
+//! single map is fitted by the rule that shows the artefact best.
 
 use core::f32::consts::{PI, TAU};
 
@@ -16,15 +16,16 @@ use shadowfit_render::FlyCamera;
 use crate::stage::Stage;
 use crate::view_search::{GRID, Seen, Shadow, ViewSearch, aimed};
 
-/// Height of a shadow texel on screen when acne is shown, in parts of the picture's height: a few
+/// Height of a shadow texel on screen when acne is shown, as a share of the picture's height: a few
 /// pixels, so that its stripes can be told apart.
 const ACNE_TEXEL: f32 = 1.0 / 210.0;
 /// The same when aliasing is shown: dozens of pixels.
 const ALIASING_TEXEL: f32 = 1.0 / 22.0;
 /// Constant bias of acne's cure, in texels. The automatic bias clears every plane; where surfaces meet in a crease, a
-/// texel stores the neighbour, which stands a part of a texel higher, and one comparison has no others to outvote it.
+/// texel stores the neighbouring surface, which is a fraction of a texel higher, and a single comparison is not
+/// averaged with others.
 const CREASE_BIAS: f32 = 1.0;
-/// Length of the shadowed frustum when the hole is shown with a single map, in radii of the subject.
+/// Shadow distance when the hole is shown with a single map, in radii of the subject.
 const HOLE_DISTANCE: f32 = 4.0;
 /// Reach of a long shadow, in radii of the scene, from which on the scene is shown as a whole.
 const LARGE_REACH: f32 = 0.3;
@@ -41,7 +42,7 @@ const STEPS: u32 = 24;
 /// Aspect that candidates are judged with.
 const ASPECT: f32 = 16.0 / 9.0;
 
-/// Moves camera and settings to show an artefact; `false` where the scene has no place for it.
+/// Moves camera and settings to show an artefact; returns `false` where no view of the scene shows it.
 pub(crate) fn show(stage: &mut Stage, artefact: Artefact) -> bool {
     stage.settings.view.play = false;
     stage.settings.view.outside = false;
@@ -78,7 +79,7 @@ pub(crate) fn fix(stage: &mut Stage, artefact: Artefact) {
         Artefact::Acne => {
             technique.bias = BiasSettings { constant: CREASE_BIAS, ..BiasSettings::automatic(technique.filter) };
         }
-        // Spend the maps on what is seen, make them larger, and smooth what is left.
+        // Maps that cover no more than what is seen, of more texels, with a filter that smooths what is left.
         Artefact::Aliasing => {
             let fit = &mut technique.fit;
             fit.margin = 0.0;
@@ -100,7 +101,7 @@ pub(crate) fn fix(stage: &mut Stage, artefact: Artefact) {
     }
 }
 
-/// What the demonstrations are about: the scene's subject, or its most telling part.
+/// What the demonstrations look at: the scene's subject, or the part that shows most.
 struct Place {
     bounds: Aabb,
     center: Vec3,
@@ -362,7 +363,7 @@ fn coarsen(search: &ViewSearch<'_>, camera: &PerspectiveCamera, settings: &mut S
     *settings = with(low);
 }
 
-/// Distance beyond which next to nothing is seen, in metres.
+/// Distance beyond which hardly anything is seen, in metres.
 fn farthest_seen(stage: &Stage) -> Option<f32> {
     let scene = stage.prepared_scene();
     let light = stage.settings.light.direction();

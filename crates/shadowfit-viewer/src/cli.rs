@@ -83,7 +83,7 @@ impl Arguments {
             (None, Some(index)) => bail!("--scene-index {index}: the built-in scene is the only one; name a file"),
         };
         let animations = scene.animations.len();
-        // Index 0 is the default, which a scene without animations has to bear.
+        // Index 0 is the default, which is accepted for a scene without animations.
         if self.animation >= animations.max(1) {
             let there =
                 if animations == 1 { "is 1 animation".to_owned() } else { format!("are {animations} animations") };
@@ -149,7 +149,7 @@ fn parameter_list() -> String {
         let mut value = String::new();
         // Writing to a String cannot fail.
         let _ = params::format_value(&defaults, parameter, &mut value);
-        // What another knob brings about has no value until then.
+        // A parameter that exists only with a choice of another one has no value until then.
         let value = if parameter.is_present(&defaults) { format!("={value}") } else { String::new() };
         let _ = writeln!(list, "{}{value}  ({})\n    {}", parameter.id, range(parameter), parameter.help);
     }

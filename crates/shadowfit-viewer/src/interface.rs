@@ -24,7 +24,7 @@ pub(crate) struct Interface {
     pub(crate) panel_hidden: bool,
     /// Time of the last frame, in milliseconds.
     pub(crate) frame_ms: Option<f32>,
-    /// A line for people, such as where a screenshot went.
+    /// A readable message, such as where a screenshot was saved.
     pub(crate) message: Option<String>,
 }
 

@@ -19,7 +19,7 @@ use shadowfit_wgpu::{MapFit, ShadowMapDescriptor, ShadowMapError};
 use crate::fitted::Fitted;
 use crate::{artefact, outside};
 
-/// Told when a scene has no place that shows an artefact.
+/// Shown when no view of a scene shows an artefact.
 const NOT_FOUND: &str =
     "No place in this scene shows this well: nothing throws a shadow on a surface that faces the light.";
 
@@ -89,7 +89,7 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// Sets up a scene with settings that suit its size, seen by its own camera or from a place
+    /// Sets up a scene with settings that suit its size, seen by its own camera or from a position
     /// that shows all of it. Pictures get `samples` per pixel (1 or 4).
     ///
     /// # Errors
@@ -164,12 +164,12 @@ impl Stage {
         self.shown
     }
 
-    /// What keeps the settings from being shown as they are, for people.
+    /// Why the settings cannot be shown as they are, as a readable line.
     pub fn problem(&self) -> Option<&str> {
         self.problem.as_deref()
     }
 
-    /// What people should know about what is shown, such as that the scene has no place for it.
+    /// A readable note about what is shown, such as that no view of the scene shows the artefact.
     pub fn notice(&self) -> Option<&str> {
         self.notice
     }
@@ -210,7 +210,7 @@ impl Stage {
         self.cut();
     }
 
-    /// Begins anew with a view that has nothing to do with the one before; what is frozen stays.
+    /// Starts again with a view that is unrelated to the one before; a frozen fit stays.
     fn cut(&mut self) {
         self.fitted = self.fitted.take().filter(|_| self.settings.view.freeze_fit);
     }
@@ -265,7 +265,8 @@ impl Stage {
         let inset = maps.get(shown).filter(|_| settings.inset);
         let options = FrameOptions {
             outside: from_elsewhere,
-            // Maps that are looked at themselves hold all their casters, not only those of this picture's shadows.
+            // Maps that are themselves looked at from elsewhere hold all their casters, not only those of this
+            // picture's shadows.
             culling: if from_elsewhere.is_some() { Culling::AsGiven } else { Culling::Swept },
             overlay: if settings.tint_maps { Overlay::MapTint } else { Overlay::None },
             lines: &lines,

@@ -12,9 +12,9 @@ use crate::fitted::Fitted;
 pub(crate) const GRID: [u32; 2] = [32, 18];
 /// Light rays along each side of the square that is searched for shadows.
 const LIGHT_GRID: i32 = 24;
-/// Shortest throw of a shadow that is worth showing, in radii of the searched bounds.
+/// Least distance from caster to shadow that is worth showing, in radii of the searched bounds.
 const LEAST_REACH: f32 = 0.02;
-/// Offset of shadow rays along the normal, in parts of the scene's size.
+/// Offset of shadow rays along the normal, as a share of the scene's size.
 const RAY_OFFSET: f32 = 1e-4;
 
 /// What one coarse pixel sees.
@@ -111,8 +111,8 @@ impl<'a> ViewSearch<'a> {
         !hits.is_empty() && !hits.iter().any(|hit| inside(hit.distance))
     }
 
-    /// Shadows that the things inside `bounds` throw on something that faces the light, in the
-    /// order of the search.
+    /// Shadows that casters inside `bounds` throw on receivers that face the light, in the order of
+    /// the search.
     pub(crate) fn shadows(&self, bounds: &Aabb) -> Vec<Shadow> {
         let center = (bounds.min + bounds.max) * 0.5;
         let radius = (bounds.max - bounds.min).length() * 0.5;

@@ -1,6 +1,6 @@
 //! Development tasks of the workspace: `cargo xtask run` and `cargo xtask test` are the README's two commands, the
 //! others are what a contributor and the continuous integration call. Each task first looks at what the machine has
-//! and, on Debian and its kin, installs what is missing.
+//! and, on Debian and systems derived from it, installs what is missing.
 
 mod bench;
 mod ci;

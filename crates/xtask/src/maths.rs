@@ -1,8 +1,8 @@
 //! `cargo xtask maths`: draws the pictures of docs/MATHS.md with the core crate's own fits.
 //!
-//! Every shape is what a fit gave, seen from the light or from the side, so a picture cannot show anything else than
-//! the code does. The core gives the same bits on every machine, and so do these drawings: a test compares the
-//! committed files with what is drawn now.
+//! Every shape is what a fit gave, seen from the light or from the side, so a picture cannot differ from what the code
+//! does. The core gives the same bits on every machine, and so do these drawings: a test compares the committed files
+//! with what is drawn now.
 
 mod axes;
 mod bias;

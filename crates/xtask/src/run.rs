@@ -30,7 +30,7 @@ pub(crate) fn run(args: &[String]) -> Result<()> {
 }
 
 /// The command that builds and starts the viewer, ready for the viewer's own arguments. It is optimised: on a software
-/// driver the rays and the scene's set-up share the processor with the picture.
+/// driver the rays and the scene's set-up share the CPU with the picture.
 pub(crate) fn viewer(machine: &Machine) -> Command {
     let mut command = process::cargo_here("run");
     command.arg("--manifest-path").arg(process::root().join("Cargo.toml"));

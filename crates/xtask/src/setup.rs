@@ -1,5 +1,5 @@
-//! Installs what a task needs and the machine lacks: at once on Debian and its kin as root; elsewhere it says what is
-//! missing and goes on, because what is missing may turn out not to matter.
+//! Installs what a task needs and the machine lacks: at once on Debian and systems derived from it, as root; elsewhere
+//! it says what is missing and goes on, because what is missing may turn out not to matter.
 
 use std::process::Command;
 
@@ -60,7 +60,7 @@ pub(crate) fn features(machine: &Machine) -> &'static [&'static str] {
     &[]
 }
 
-/// The Debian packages that bring what `purpose` needs and `machine` lacks, in a fixed order.
+/// The Debian packages with what `purpose` needs and `machine` lacks, in a fixed order.
 fn missing_packages(purpose: Purpose, machine: &Machine) -> Vec<&'static str> {
     let testing = purpose == Purpose::Test;
     // A machine with a driver of its own keeps it for flying; the golden images come from the software driver alone.

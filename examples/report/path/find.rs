@@ -40,7 +40,7 @@ const SHARES: [f32; 7] = [1.0, 0.85, 0.7, 0.55, 0.4, 0.28, 0.16];
 const PITCHES: [f32; 4] = [6.0, 14.0, 22.0, 32.0];
 /// Least share of a view's rays that meet the scene.
 const FILLED: f32 = 0.6;
-/// Least median distance of what a view meets, in clearances: less is a wall before the nose.
+/// Least median distance of what a view meets, in clearances: less is a wall right before the camera.
 const ROOM: f32 = 10.0;
 /// Least length of a flight, as a share of the scene's radius.
 const LEAST_LENGTH: f32 = 0.1;
@@ -55,7 +55,7 @@ const SHIFTS: [f32; 4] = [1.0, 2.0, 4.0, 8.0];
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Found {
     pub(crate) path: CameraPath,
-    /// Whole sentences; none where all is as wanted.
+    /// Whole sentences; none where nothing has to be said.
     pub(crate) notes: Vec<String>,
 }
 

@@ -212,8 +212,8 @@ fn arcade(builder: &mut Builder) {
     let cornice = block(Vec3::new(-2.04, 6.05, -0.7), Vec3::new(2.04, 6.45, 0.7), 0.03);
     let arch = arch.solid(24).moved(Vec3::Y * -0.02).with(cornice);
     let arch = builder.solid("arch", &arch, Paint::Stone, CRISP);
-    // Along the far side, then toward the eye on the right; neighbours overlap, so every second
-    // one is a little thinner and lower, lest faces coincide.
+    // Along the far side, then toward the eye on the right; neighbours overlap, so every second one
+    // is a little thinner and lower, so that faces do not coincide.
     for index in 0..24 {
         let (at, yaw) = if index < 15 {
             (Vec3::new(-24.0 + 4.1 * index as f32, 0.0, -34.0), 0.0)

@@ -52,7 +52,7 @@ pub(crate) fn load(
 }
 
 /// Keeps the four greatest weights in descending order; what is not positive and finite is no
-/// influence, and its joint is not even looked at.
+/// influence, and its joint is ignored.
 fn insert(slots: &mut [(u16, f32); 4], joint: u32, weight: f32) {
     if !(weight > 0.0 && weight.is_finite()) {
         return;
@@ -63,7 +63,7 @@ fn insert(slots: &mut [(u16, f32); 4], joint: u32, weight: f32) {
     slots[slot] = (u16::try_from(joint).unwrap_or(u16::MAX), weight);
 }
 
-/// A vertex without influences hangs on the first joint.
+/// A vertex without influences moves with the first joint.
 fn normalized(slots: [(u16, f32); 4]) -> ([u16; 4], Vec4) {
     let weights = Vec4::from_array(slots.map(|(_, weight)| weight));
     let sum = weights.element_sum();

@@ -1,4 +1,4 @@
-//! Notes for people about what import skipped, replaced or repaired.
+//! Readable notes about what import skipped, replaced or repaired.
 
 use std::collections::BTreeMap;
 

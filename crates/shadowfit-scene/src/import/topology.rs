@@ -22,7 +22,7 @@ fn strip_triangle((number, corners): (usize, &[u32])) -> [u32; 3] {
     [corners[0], corners[1 + odd], corners[2 - odd]]
 }
 
-/// What people call a mode that has no triangles; `None` for the others.
+/// The usual name of a mode that has no triangles; `None` for the others.
 pub(crate) fn without_triangles(mode: Mode) -> Option<&'static str> {
     match mode {
         Mode::Points => Some("points"),

@@ -18,7 +18,7 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
         .with_decode_allow_trailing_bits(true),
 );
 
-/// Reads what `uri` refers to from `folder`; the error is a reason for people.
+/// Reads what `uri` refers to from `folder`; the error is a readable reason.
 pub(crate) fn read_uri(folder: &Path, uri: &str, max_bytes: u64) -> Result<Vec<u8>, String> {
     if let Some(data) = uri.strip_prefix("data:") {
         return decode_data(data);
@@ -30,7 +30,7 @@ pub(crate) fn read_uri(folder: &Path, uri: &str, max_bytes: u64) -> Result<Vec<u
     read_file(&file, max_bytes).map_err(|reason| format!("{} cannot be read: {reason}", quoted(uri)))
 }
 
-/// Reads a regular file of at most `max_bytes`; the error is a reason for people.
+/// Reads a regular file of at most `max_bytes`; the error is a readable reason.
 pub(crate) fn read_file(path: &Path, max_bytes: u64) -> Result<Vec<u8>, String> {
     let metadata = std::fs::metadata(path).map_err(|error| error.to_string())?;
     if !metadata.is_file() {

@@ -21,7 +21,7 @@ pub struct GpuPixel {
     pub is_lit: bool,
     /// Whether the pixel lies in the edge zone.
     pub is_in_edge_zone: bool,
-    /// Index of the map that is read. `None` where no map holds the point or the pixel is not judged.
+    /// Index of the map that is read. `None` where no map covers the point or the pixel is not judged.
     pub map_index: Option<u8>,
     /// Pixels per texel along the worse axis, to 0.14%. Infinite where no map is read and from 2^127
     /// on; not a number where the pixel is not judged.

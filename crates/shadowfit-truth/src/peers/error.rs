@@ -1,4 +1,4 @@
-//! Files that cannot be used: which file, which part of it, and why, in words for people.
+//! Files that cannot be used: which file, which part of it, and why, in readable messages.
 
 use std::path::{Path, PathBuf};
 
@@ -51,7 +51,7 @@ pub(crate) fn parse_json<T: DeserializeOwned>(text: &[u8]) -> Result<T, Problem>
     Ok(value)
 }
 
-/// Name for people of a path in JSON; that of the whole is "." or, where nothing was read, "?".
+/// Readable name of a path in JSON; that of the whole is "." or, where nothing was read, "?".
 fn element(path: &str) -> &str {
     if matches!(path, "." | "?") { "file" } else { path }
 }

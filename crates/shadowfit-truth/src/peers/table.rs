@@ -14,13 +14,12 @@ const DEPTH_STEPS: f64 = (1u64 << 24) as f64;
 /// Share of the points that have at most a pixel per texel at the critical resolution.
 const CRITICAL_QUANTILE: f64 = 0.95;
 
-/// The measures of a fit over a set of frames. A value of which nothing was there to be measured is not
-/// a number.
+/// The measures of a fit over a set of frames. A value for which nothing could be measured is not a number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// Maps in a frame.
     pub maps: f64,
-    /// Percentage of the facing points that no map holds; they are left out of all that follows.
+    /// Percentage of the facing points that no map covers; they are left out of all that follows.
     pub uncovered: f64,
     /// Percentage of the covered shadowed points that have no occluder in their map, or before its near
     /// plane where the renderer clamps depth: their shadow is lost.
@@ -231,12 +230,12 @@ fn markdown(names: &[String], rows: impl Iterator<Item = (String, Vec<String>)>)
     text
 }
 
-/// A number for people: whole texels, everything else as [`readable`].
+/// A readable number: whole texels, everything else as [`readable`].
 fn cell(column: &str, value: f64) -> String {
     if column.starts_with("crit") && value.is_finite() { format!("{value:.0}") } else { readable(value) }
 }
 
-/// A number for people: three digits and at most four decimals; a dash for what is not a number.
+/// A readable number: three digits and at most four decimals; a dash for what is not a number.
 pub fn readable(value: f64) -> String {
     if !value.is_finite() {
         return if value.is_nan() { "-".to_owned() } else { value.to_string() };

@@ -11,9 +11,9 @@ pub struct Tally {
     pub maps: u64,
     /// Visible points that face the light.
     pub facing: u64,
-    /// Those of them that no map holds.
+    /// Those of them that no map covers.
     pub uncovered: u64,
-    /// Points that a map holds and that have an occluder.
+    /// Points that a map covers and that have an occluder.
     pub shadowed: u64,
     /// Those of them whose occluders the renderer loses.
     pub lost: u64,
@@ -65,7 +65,7 @@ impl Tally {
         self.depth_range += other.depth_range;
     }
 
-    /// Points that a map holds.
+    /// Points that a map covers.
     pub fn covered(&self) -> u64 {
         self.facing - self.uncovered
     }

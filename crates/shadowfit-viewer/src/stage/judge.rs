@@ -1,4 +1,4 @@
-//! The present view judged against rays: what the demonstrations and their cures are held to.
+//! The present view judged against rays, by which the demonstrations and their cures are tested.
 
 use shadowfit_study::{Judging, SharedTruth, View};
 use shadowfit_truth::Judged;

@@ -7,7 +7,7 @@ use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
 use super::Stage;
 use crate::fitted::Fitted;
 
-/// Told when the GPU lacks what a caster policy needs.
+/// Shown when the GPU lacks what a caster policy needs.
 const NO_DEPTH_CLAMP: &str = "this GPU has no depth clamp: the objects place the map's near plane instead";
 
 impl Stage {

@@ -155,7 +155,7 @@ fn copy_of_the_core(folder: &Path, manifest: &str) -> Result<()> {
     fs::copy(root.join("Cargo.lock"), folder.join("Cargo.lock"))?;
     let workspace = sections(manifest, |header| header.starts_with("[workspace") || header.starts_with("[profile"));
     fs::write(folder.join("Cargo.toml"), workspace)?;
-    // Benchmarks have nothing to say here, and take the longest to build.
+    // Benchmarks are not needed here, and take the longest to build.
     let core = folder.join("crates/shadowfit/Cargo.toml");
     let without_benches = sections(&fs::read_to_string(&core)?, |header| header != "[[bench]]");
     let lines: Vec<&str> = without_benches.lines().filter(|line| !line.starts_with("criterion")).collect();

@@ -1,4 +1,4 @@
-//! Where a map's roll comes from: the map's up for every place of the sun, by both rules.
+//! Where a map's roll comes from: the map's up for every position of the sun, by both rules.
 
 use anyhow::Result;
 use shadowfit::FitInput;

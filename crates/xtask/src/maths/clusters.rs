@@ -39,7 +39,7 @@ fn hills(share: f64) -> DVec2 {
     DVec2::new(share * 11.0 - 5.5, (2.0 - 1.2 * share) * (1.0 - libm::cos(phase)))
 }
 
-/// An arch in so many clusters, and the map that its boxes need.
+/// An arch in a number of clusters, and the map that its boxes need.
 fn arch(canvas: &mut Canvas, limit: usize, middle: DVec2, colour: &'static str, name: &str) -> Result<()> {
     let triangles = strip(48, half_circle);
     let clusters = Clusters::build(&[&triangles], limit)?;

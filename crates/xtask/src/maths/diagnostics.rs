@@ -61,7 +61,7 @@ fn is_inside(p: DVec2) -> bool {
     p.x > 16.0 && p.x < 704.0 && p.y > 16.0 && p.y < 360.0
 }
 
-/// Colour of so many pixels per texel.
+/// Colour of a number of pixels per texel.
 fn colour(pixels: f32) -> &'static str {
     match pixels {
         p if p < 32.0 => GREEN,

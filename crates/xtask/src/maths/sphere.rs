@@ -16,7 +16,7 @@ pub(super) fn draw() -> Result<String> {
     Ok(canvas.finish())
 }
 
-/// The frustum cut along its diagonal, where the half diagonals r₀ and r₁ are.
+/// A section of the frustum along its diagonal, where the half diagonals r₀ and r₁ are.
 fn section(canvas: &mut Canvas) -> Result<()> {
     let view = PerspectiveCamera { near: 4.0, ..camera(0.0, 0.0, 0.46, 14.0) }.frustum()?;
     let (middle, radius) = enclosing_sphere(&view)?;
