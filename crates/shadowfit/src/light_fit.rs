@@ -76,7 +76,7 @@ pub struct WorldMatrices {
 
 /// Share of the map's extent by which [`LightFit::covers`] lets a point lie outside: the rounding
 /// of f32 texture coordinates, so that the frustum's own corners count as covered.
-const COVER_SLACK: f64 = 1e-6;
+const COVER_TOLERANCE: f64 = 1e-6;
 
 impl LightFit {
     /// Turns a fit's decision into matrices; refuses boxes that f32 matrices cannot hold.
@@ -159,8 +159,8 @@ impl LightFit {
     pub fn covers(&self, point: DVec3) -> bool {
         let p = self.project(point);
         let (min, max) = self.clip_box();
-        let slack = (max - min) * COVER_SLACK;
-        p.cmpge(min - slack).all() && p.cmple(max + slack).all()
+        let tolerance = (max - min) * COVER_TOLERANCE;
+        p.cmpge(min - tolerance).all() && p.cmple(max + tolerance).all()
     }
 
     /// Corners of the box that the map stores, in world axes relative to [`Self::origin`], in

@@ -86,8 +86,8 @@ impl Corners {
         rounded_out(min, max)
     }
 
-    /// Copies the corners of a piece from `other`: corners that belong to no piece are dropped in
-    /// this way.
+    /// Copies the corners of a piece from `other`, so that only corners of pieces that are still in
+    /// use are kept.
     pub(super) fn adopt(&mut self, outline: Outline, other: &Self) -> Outline {
         if outline.count == 0 {
             return outline;

@@ -108,9 +108,8 @@ impl Eq for Group {}
 /// Estimate of the empty space in a box, in m³, from the areas of its surfaces projected along x, y
 /// and z.
 ///
-/// It is the box's volume, since surfaces are thin, and for the parts of its sides that they leave
-/// uncovered as much more as if the box were at least a tenth as deep as it is long. A flat box
-/// that is full has none.
+/// It is the box's volume, since surfaces are thin, plus the area of its sides that they leave
+/// uncovered times a tenth of its longest side. A flat box that is full has none.
 fn air(aabb: &Aabb, area: Vec3) -> f64 {
     let size = (aabb.max - aabb.min).as_dvec3();
     let open = (sides(size) * FILLED - area.as_dvec3()).max(DVec3::ZERO);

@@ -83,7 +83,7 @@ impl Chooser<'_, '_> {
             return far;
         }
         let is_held = self.technique.stabilise != Stabilise::Off;
-        let end = if is_held { self.content.farthest().map(|far| far * (1.0 + FAR_SLACK)) } else { None };
+        let end = if is_held { self.content.farthest().map(|far| far * (1.0 + FAR_ROOM)) } else { None };
         end.unwrap_or(spread.1).min(far)
     }
 
@@ -226,7 +226,7 @@ const FAR_ROUNDING: f64 = 1.0 / 64.0;
 const NEAR_ROUNDING: f64 = 1e-3;
 
 /// Room beyond the farthest receiver that held splits leave, as a share of its distance.
-const FAR_SLACK: f64 = 0.1;
+const FAR_ROOM: f64 = 0.1;
 
 /// Nearest view depth that maps are spread from, as a share of the farthest.
 const NEAREST: f64 = 1.0 / 65_536.0;
