@@ -2,7 +2,7 @@
 //! to and from (feature `mint`).
 //!
 //! They are written against mint itself, so that they do not depend on how a release of glam calls
-//! its own. Nothing is checked here: the fits refuse what makes no sense.
+//! its own. Nothing is checked here: the fits refuse bad values.
 //!
 //! ```
 //! use shadowfit::mint::{dvec3, matrix, vec3};
