@@ -1,7 +1,8 @@
-//! Culling boxes against the volumes of four cascades: one by one, as an engine would write it by hand, and batched.
+//! Culling boxes against the volumes of four maps: one by one, as an engine would write it by hand, and batched.
 //!
 //! Each call gets other boxes than the one before, as each frame does: over the same 1,000 boxes again and again a
-//! branch predictor learns every outcome, which no frame of an engine sees. The last group shows what that is worth.
+//! branch predictor learns every outcome, which no frame of an engine sees. The last group shows how much that
+//! matters.
 
 use std::hint::black_box;
 
@@ -13,7 +14,7 @@ use shadowfit::{
     Aabb, CasterVolume, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace,
 };
 
-/// Boxes that are at hand; calls go around in them.
+/// Boxes in the pool; calls cycle through them.
 const POOL: usize = 1 << 20;
 
 /// Planes of a box, which hand-written loops have.
@@ -56,7 +57,7 @@ enum Order {
     ByPlace,
 }
 
-/// Boxes of up to 10 m, at random in a square of so many metres around the camera.
+/// Boxes of up to 10 m, at random in a square with a side of this many metres around the camera.
 fn boxes(side: f32, order: Order) -> Vec<Aabb> {
     // G. Marsaglia, "Xorshift RNGs", 2003.
     let mut state = 0x2545_f491_4f6c_dd1d_u64;

@@ -103,7 +103,7 @@ fn highest(over: &Outline, casters: &Boxes, content: &Content, covered: f64) -> 
     z
 }
 
-/// How far beside the outline casters are read by a filter that the border is enough for, in
+/// How far outside the outline casters are read by the widest filter that the border allows, in
 /// metres: a filter of reach E needs E - 1/2 texels of border, and half a texel more is for the
 /// rasteriser. `rounding` is what receivers and casters may be shifted by, each.
 pub(crate) fn filter_reach(texel: DVec2, rule: &FitRule, rounding: f64) -> f64 {

@@ -191,7 +191,7 @@ impl Holder<'_, '_> {
         let anchor = grid::anchor(&map.axes, origin).z;
         let now = (needed.z.0 + anchor, needed.z.1 + anchor);
         let ahead = grid::stabilised_depth(None, (grid.z.0.min(now.0), grid.z.1.max(now.1)), 1.0);
-        // A map that the next frame would give up at once is not used.
+        // A depth range that the next frame would give up at once is not used.
         map.z = grid::stabilised_depth(Some(ahead), now, f64::from(self.hold.waste));
         map.set_by[5] = needed.near_set_by.unwrap_or(map.set_by[5]);
         Ok(map)
