@@ -256,11 +256,11 @@ proptest! {
 /// A half space: a point p is inside where n·p + d >= 0.
 type HalfSpace = (DVec3, f64);
 
-/// Whether half spaces that bound a volume have a point in common, with `slack` metres to spare: then three of their
+/// Whether half spaces that bound a volume have a point in common, with a `margin` in metres: then three of their
 /// planes meet in a point of all.
-fn meet(planes: &[HalfSpace], slack: f64) -> bool {
-    let inside = |p: DVec3| planes.iter().all(|(n, d)| n.dot(p) + d >= slack - 1e-9);
-    let shifted = |i: usize| (planes[i].0, planes[i].1 - slack);
+fn meet(planes: &[HalfSpace], margin: f64) -> bool {
+    let inside = |p: DVec3| planes.iter().all(|(n, d)| n.dot(p) + d >= margin - 1e-9);
+    let shifted = |i: usize| (planes[i].0, planes[i].1 - margin);
     for i in 0..planes.len() {
         for j in 0..i {
             for k in 0..j {
@@ -341,7 +341,7 @@ fn count(fit: &LightFit, view: &ViewFrustum, half: f64) -> Counts {
     let volume = CasterVolume::swept(fit, &sweep).unwrap();
     let slice = planes_of(view);
     // What the reach of one texel adds, and rounding.
-    let slack = f64::from(fit.texel_size.max_element()) * 2.0 + 1e-4;
+    let margin = f64::from(fit.texel_size.max_element()) * 2.0 + 1e-4;
     let mut counts = Counts::default();
     for (min, max) in boxes_around(view, half, 4000) {
         let planes: Vec<_> = slice.iter().copied().chain(shadow_of(min, max, fit.direction)).collect();
@@ -349,7 +349,7 @@ fn count(fit: &LightFit, view: &ViewFrustum, half: f64) -> Counts {
         if meet(&planes, 1e-4) {
             counts.shadowing += 1;
             assert!(is_kept, "{min} {max} throws a shadow into view");
-        } else if !meet(&planes, -slack) {
+        } else if !meet(&planes, -margin) {
             counts.others += 1;
             counts.kept_in_vain += usize::from(is_kept);
             counts.kept_in_vain_by_the_map += usize::from(fit.caster_volume().intersects_aabb(min, max));
