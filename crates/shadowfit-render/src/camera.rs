@@ -16,8 +16,8 @@ pub const DRAG_RADIANS_PER_PIXEL: f32 = 0.004;
 /// Speed factor per notch of the wheel.
 pub const WHEEL_FACTOR: f32 = 1.2;
 
-/// Longest step that is integrated at once, in seconds: turning while moving follows the same
-/// curve whatever the frame rate.
+/// Longest step that is integrated at once, in seconds: turning while moving follows the same curve
+/// at any frame rate.
 const MAX_STEP: f32 = 1.0 / 240.0;
 /// Longest frame time that is used, in seconds, so that a stall does not fling the camera away.
 const MAX_FRAME: f32 = 0.25;

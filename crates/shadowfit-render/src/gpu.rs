@@ -9,7 +9,7 @@ pub enum AdapterChoice {
     /// The fastest one.
     #[default]
     Any,
-    /// A software rasteriser (Mesa lavapipe, WARP), whatever GPU is present.
+    /// A software rasteriser (Mesa lavapipe, WARP), even if a GPU is present.
     Software,
 }
 

@@ -122,7 +122,7 @@ impl GpuScene {
         self.boxes.extend(boxes.map(|bounds| shadowfit::Aabb::new(relative(bounds.min), relative(bounds.max))));
     }
 
-    /// For each instance the maps that it may throw a shadow into: bit i for volume i, relative to the frame's eye.
+    /// For each instance the maps that it may cast a shadow into: bit i for volume i, relative to the frame's eye.
     pub(crate) fn cull(&self, volumes: &[CasterVolume]) -> Vec<u8> {
         let mut masks = vec![0; self.boxes.len()];
         shadowfit::culling::cull(volumes, self.eye, &self.boxes, &mut masks);

@@ -18,7 +18,7 @@ pub struct MapFit {
     /// Biases of the look-up, for [`Self::fit`].
     pub bias: Bias,
     /// Casters that are drawn into it; `None` for all that the map can store, which is what maps need that are kept
-    /// for later frames. [`Self::sweep`] leaves only those that can throw a shadow into view.
+    /// for later frames. [`Self::sweep`] leaves only those that can cast a shadow into view.
     pub volume: Option<CasterVolume>,
 }
 

@@ -17,7 +17,7 @@ pub fn caster_wgsl(group: u32) -> String {
     include_str!("shaders/caster.wgsl").replace("GROUP", &group.to_string())
 }
 
-/// WGSL for shaders that cull casters: `shadowfit_cull_box(min, max) -> u32`, whose bit i says whether the box may throw
+/// WGSL for shaders that cull casters: `shadowfit_cull_box(min, max) -> u32`, whose bit i says whether the box may cast
 /// a shadow into map i, and `shadowfit_touches_box`, `_sphere` and `_oriented_box` for one map. They are the twins of
 /// [`shadowfit::culling::cull`] and of the tests of [`shadowfit::CasterVolume`].
 ///

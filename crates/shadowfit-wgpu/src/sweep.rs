@@ -1,6 +1,6 @@
 //! The casters that each of several maps needs for what the views see.
 //!
-//! A map that is drawn anew in each frame needs only the casters that can throw a shadow on a point that reads it: those
+//! A map that is drawn anew in each frame needs only the casters that can cast a shadow on a point that reads it: those
 //! in the part of the view that reads it, swept toward the light. Which part that is follows from the order in which
 //! shaders look for a map.
 

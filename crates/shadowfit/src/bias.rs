@@ -100,7 +100,7 @@ impl Bias {
         }
     }
 
-    /// A fixed number of the stored depth, whatever the slope: the classic form, such as
+    /// A fixed number of the stored depth, independent of the slope: the classic form, such as
     /// [`XNA_DEPTH_BIAS`]. In metres it changes with the depth range of each fit. A negative one
     /// moves the receiver away from the light, as maps of back faces may want it.
     ///
@@ -112,11 +112,11 @@ impl Bias {
         Ok(Self { constant_depth: depth, ..Self::default() })
     }
 
-    /// The least bias that clears self-shadowing on a plane whatever its slope's azimuth: a normal
-    /// offset for the filter's reach [on hardware](Reach::on_hardware), at the worst azimuth
-    /// `E · √(tx² + ty²)`, and a constant for the [`depth_precision`] and for a sine that a shader
-    /// takes from an f32 cosine. Where a shader knows the azimuth, [`normal_offset`] needs up to
-    /// √2 less. Geometric normals are assumed.
+    /// The least bias that clears self-shadowing on a plane whose slope has any azimuth: a normal
+    /// offset for the filter's reach [on hardware](Reach::on_hardware), at the worst azimuth `E ·
+    /// √(tx² + ty²)`, and a constant for the [`depth_precision`] and for a sine that a shader takes
+    /// from an f32 cosine. Where a shader knows the azimuth, [`normal_offset`] needs up to √2 less.
+    /// Geometric normals are assumed.
     ///
     /// # Errors
     ///

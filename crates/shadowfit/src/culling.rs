@@ -1,7 +1,7 @@
 //! Which casters a shadow pass has to draw.
 //!
 //! A [`CasterVolume`] is a convex volume as planes: either all that a map can store, or the part of
-//! it that can throw a shadow into view. Tests against it are conservative: they may keep a caster
+//! it that can cast a shadow into view. Tests against it are conservative: they may keep a caster
 //! whose shadow is not visible, but never cull one whose shadow is.
 
 mod batch;

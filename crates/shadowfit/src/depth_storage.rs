@@ -3,7 +3,7 @@
 use crate::settings::MapFormat;
 use crate::{FitError, checks};
 
-/// How a map stores its depths of 0..=1, whatever the format is called.
+/// How a map stores its depths of 0..=1, independent of the format's name in a graphics API.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum DepthStorage {

@@ -1,4 +1,4 @@
-//! What a fit is told besides its settings: views, light, and boxes of the scene.
+//! The inputs of a fit besides its settings: views, light, and boxes of the scene.
 
 use glam::{DVec2, Vec3};
 

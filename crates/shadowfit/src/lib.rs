@@ -50,14 +50,14 @@
 //! [`bias`](FittedMap::bias), and takes positions relative to [`LightFit::origin`], which is the
 //! eye. Boxes need not be exact: one for each object is enough, and without any the maps cover the
 //! whole view. [`Workspace::required`] says how much storage the fits work in, from the number of
-//! boxes and of views; a `Vec` that is made once serves as well as an array.
+//! boxes and of views; a `Vec` that is allocated once works as well as an array.
 //!
 //! [`Technique::default`] is the one to begin with, and [`PRESETS`] has others by name, each with a
 //! line that says when to take it. The repository's `docs/MATHS.md` derives every fit, with pictures.
 //!
 //! # A single map
 //!
-//! Where nothing is known but the camera, [`fit`] is a function without a memory:
+//! Where only the camera is known, [`fit`] is a function without state:
 //!
 //! ```
 //! use shadowfit::glam::{DVec3, Vec3};

@@ -32,7 +32,7 @@ pub struct FittedMap {
 }
 
 impl FittedMap {
-    /// Every caster that can throw a shadow through this map on what views see of it, relative to the
+    /// Every caster that can cast a shadow through this map on what views see of it, relative to the
     /// fit's origin: the [swept volume](CasterVolume::swept) of the map's depths, for the technique's
     /// filter and this map's bias. A map without a range has the empty volume.
     ///

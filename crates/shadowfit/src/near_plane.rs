@@ -1,4 +1,4 @@
-//! Where the near plane lies, so that every caster that can throw a shadow into view is kept.
+//! Where the near plane lies, so that every caster that can cast a shadow into view is kept.
 //!
 //! Such casters lie over the covered region, toward the light; [`Outline`] finds the part of each
 //! caster's box that does.

@@ -40,9 +40,9 @@ pub(crate) enum Depth {
     AtCovered,
     /// This far before the covered region, in metres.
     Extended(f64),
-    /// At the box around all casters, as far as it can throw shadows into view.
+    /// At the box around all casters, as far as it can cast shadows into view.
     AtCasterBounds,
-    /// At the first caster that can throw a shadow into view.
+    /// At the first caster that can cast a shadow into view.
     AtCasters,
 }
 

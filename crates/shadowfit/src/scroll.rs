@@ -21,7 +21,7 @@
 //!
 //! Kept texels must have been drawn with all casters over the map
 //! ([`CasterVolume::of_map`](crate::CasterVolume::of_map)): a swept volume leaves out those that
-//! throw no shadow into the view of **that** frame.
+//! cast no shadow into the view of **that** frame.
 
 use core::ops::Range;
 

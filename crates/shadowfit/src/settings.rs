@@ -72,10 +72,10 @@ pub enum CasterPolicy {
     None,
     /// Moved toward the light by [`FitSettings::caster_extension`].
     Extend,
-    /// At the one box around all casters, clipped to the volume that can throw shadows into view;
+    /// At the one box around all casters, clipped to the volume that can cast shadows into view;
     /// as [`Self::Extend`] where the casters are not known.
     SceneBounds,
-    /// At the first caster that can throw a shadow into view: each box is clipped to that volume.
+    /// At the first caster that can cast a shadow into view: each box is clipped to that volume.
     /// As [`Self::Extend`] where the casters are not known. The default.
     #[default]
     List,

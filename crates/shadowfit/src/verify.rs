@@ -57,7 +57,7 @@ pub enum Certificate {
         /// A point of it, in world space.
         point: DVec3,
     },
-    /// A part of a caster that can throw a shadow into view lies before the near plane, or cannot
+    /// A part of a caster that can cast a shadow into view lies before the near plane, or cannot
     /// be proven to lie behind it.
     CasterLost {
         /// The part farthest toward the light, in world space.
@@ -177,7 +177,7 @@ pub struct Margins {
 /// Those of the views, the light's direction and the boxes as of
 /// [`fit_scene`](crate::fits::fit_scene); [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the
 /// query and for a fit whose matrices are not those of a light; [`FitError::ZeroResolution`];
-/// [`FitError::NearNotBelowFar`] for a query whose near is above its far (equal ones ask for nothing);
+/// [`FitError::NearNotBelowFar`] for a query whose near is above its far (equal ones require nothing);
 /// [`FitError::WorkspaceTooSmall`].
 pub fn verify(
     input: &FitInput,

@@ -4,7 +4,7 @@
 //! Binned splits as of bounding volume hierarchies (Wald, Ingo: "On fast construction of SAH-based
 //! bounding volume hierarchies", 2007), of pieces cut at the planes (Stich, Martin, et al.: "Spatial
 //! splits in bounding volume hierarchies", 2009). Unlike there, a half's cost does not grow with its
-//! number of triangles, because a fit looks at each box once, whatever is in it.
+//! number of triangles, because a fit reads each box once, no matter how many triangles are in it.
 
 use glam::{DVec3, Vec3, Vec3Swizzles as _};
 

@@ -26,7 +26,7 @@ const MAX_PLANES: usize = MAX_VOLUMES * CasterVolume::MAX_PLANES;
 /// Most planes of the screen: a silhouette has no more edges.
 const MAX_SCREEN: usize = 6;
 
-/// Tests shapes against up to eight volumes: bit i of a shape's mask says whether it may throw a
+/// Tests shapes against up to eight volumes: bit i of a shape's mask says whether it may cast a
 /// shadow into map i, with exactly the same results as the tests of
 /// `volumes[i].relative_to(origin)`.
 ///

@@ -89,10 +89,10 @@ mod sealed {
         /// Fills the lanes.
         fn gather(&mut self, shapes: &[S; LANES]);
 
-        /// Gives [`Shape::support`] of each lane.
+        /// Passes on [`Shape::support`] of each lane.
         fn support(&self, normal: Vec3, put: impl FnMut(usize, f32));
 
-        /// Gives [`Shape::slack`] of each lane.
+        /// Passes on [`Shape::slack`] of each lane.
         fn slack(&self, put: impl FnMut(usize, f32));
     }
 }

@@ -1,4 +1,4 @@
-//! The volume that can throw shadows into a slice of the view: the slice swept toward the light.
+//! The volume that can cast shadows into a slice of the view: the slice swept toward the light.
 //!
 //! It is bounded by the slice's planes that face away from the light, and by one plane along the
 //! light through each edge of the slice's outline as the light sees it (its silhouette). Nothing
@@ -80,7 +80,7 @@ const MAX_OUTLINE: usize = 6;
 const OUTLINE_STORAGE: usize = 256;
 
 impl CasterVolume {
-    /// Every caster that can throw a shadow through a map on what views see of it, relative to the
+    /// Every caster that can cast a shadow through a map on what views see of it, relative to the
     /// fit's origin.
     ///
     /// [`FittedMap::caster_volume`](crate::FittedMap::caster_volume) sweeps the depths of one of several

@@ -13,11 +13,11 @@ use crate::{Aabb, LightFit};
 /// |---|---|
 /// | [`LightFit::caster_volume`] | every caster that the map can store |
 /// | [`CasterVolume::of_map`] | the same, without a near plane where the pipeline clamps depth |
-/// | [`CasterVolume::swept`] | every caster that can throw a shadow into a slice of the view |
+/// | [`CasterVolume::swept`] | every caster that can cast a shadow into a slice of the view |
 ///
 /// A shape is culled when it lies wholly behind one of the planes. That is conservative and not
 /// exact: a shape beyond an edge or a corner of the volume, behind none of the planes, is kept, and
-/// the larger it is the more often. For each 100 boxes that throw a shadow into the view of the
+/// the larger it is the more often. For each 100 boxes that cast a shadow into the view of the
 /// tests' camera, a swept volume keeps at most 7 others when their half extents are up to a tenth
 /// of the view's, and at most 25 when they are up to its half. The map's own box keeps more than
 /// three times as many.
@@ -150,7 +150,7 @@ impl CasterVolume {
 impl LightFit {
     /// Every caster that the map can store: the map's own box, relative to [`Self::origin`].
     /// Casters nearer to the light than the map's near plane are left out; for maps with depth
-    /// clamp see [`CasterVolume::of_map`]. [`CasterVolume::swept`] holds only those that can throw
+    /// clamp see [`CasterVolume::of_map`]. [`CasterVolume::swept`] holds only those that can cast
     /// a shadow into view.
     pub fn caster_volume(&self) -> CasterVolume {
         CasterVolume::of_map(self, CasterPolicy::None)

@@ -143,7 +143,7 @@ fn add_border(volume: &mut Volume, rule: &FitRule) {
     (volume.min, volume.max) = (volume.min - free.extend(0.0), volume.max + free.extend(0.0));
 }
 
-/// Fits a single frustum by one kind, whatever the settings name.
+/// Fits a single frustum by the given kind; the kind in the settings is ignored.
 pub(crate) fn fit_as(
     kind: FitKind,
     frustum: &ViewFrustum,

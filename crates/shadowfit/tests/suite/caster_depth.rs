@@ -1,4 +1,4 @@
-//! No caster that throws a shadow into view is lost: every point of a caster's box that stands
+//! No caster that casts a shadow into view is lost: every point of a caster's box that stands
 //! between the light and a visible point of a receiver lies in the map's depth range, and its box
 //! survives culling.
 

@@ -1,5 +1,5 @@
-//! No holes: whatever a camera sees of a receiver lies in the map that its view depth chooses,
-//! with the filter's border around it, for every fit but the XNA sample's.
+//! No holes: every point of a receiver that a camera sees lies in the map that its view depth
+//! chooses, with the filter's border around it, for every fit but the XNA sample's.
 //!
 //! Points and matrices are f32, as in a shader. There is no tolerance: the fits leave room for
 //! that rounding.

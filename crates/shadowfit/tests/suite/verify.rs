@@ -327,9 +327,8 @@ fn the_margins_left_are_those_of_the_settings() {
         casters: Some(Boxes { origin: views[0].origin, boxes: &casters }),
         ..FitInput::new(&views, Vec3::NEG_Y)
     };
-    let Certificate::Proven(margins) = certificate(&input, &fit, &CoverageQuery::of_fit(&settings, Reach::POINT)) else {
-        panic!("{fit:?}");
-    };
+    let query = CoverageQuery::of_fit(&settings, Reach::POINT);
+    let Certificate::Proven(margins) = certificate(&input, &fit, &query) else { panic!("{fit:?}") };
     let expected = [800.0 / 9.0 * 0.5, 800.0 / 9.0 * 0.5, 400.0 / 5.0 * 0.5, 400.0 / 5.0 * 0.5, 0.5, 0.5];
     for (margin, expected) in margins.planes.into_iter().zip(expected) {
         assert!((margin / expected - 1.0).abs() < 1e-4, "{margin} {expected}");
@@ -433,7 +432,7 @@ fn a_near_plane_behind_a_caster_loses_it() {
     let Certificate::CasterLost { point, by } = check(over(3.0, 4.0, 1.0), &query) else { panic!("not lost") };
     assert!((by - 6.0).abs() < 1e-3 && (point.y - origin.y - 5.0).abs() < 1e-9, "{point} by {by}");
     assert!(looked_up(&fit, point).z < 0.0);
-    // Beside the view nothing throws a shadow into it, nor from below.
+    // Beside the view nothing casts a shadow into it, nor from below.
     assert!(check(over(5.1, 4.0, 1.0), &query).is_proven());
     assert!(check(over(0.0, -9.0, 1.0), &query).is_proven());
     // A part over the view counts, and with depth clamp nothing.
