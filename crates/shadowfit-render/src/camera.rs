@@ -16,13 +16,13 @@ pub const DRAG_RADIANS_PER_PIXEL: f32 = 0.004;
 /// Speed factor per notch of the wheel.
 pub const WHEEL_FACTOR: f32 = 1.2;
 
-/// Longest step that is integrated at once, in seconds: turning while moving follows the same
-/// curve whatever the frame rate.
+/// Longest step that is integrated at once, in seconds: turning while moving follows the same curve
+/// at any frame rate.
 const MAX_STEP: f32 = 1.0 / 240.0;
-/// Longest frame that is believed, in seconds; a stall does not fling the camera away.
+/// Longest frame time that is used, in seconds, so that a stall does not fling the camera away.
 const MAX_FRAME: f32 = 0.25;
 
-/// Where the camera stands and looks.
+/// The camera's position and direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlyCamera {
     /// Eye, world space, in metres.
@@ -33,7 +33,7 @@ pub struct FlyCamera {
     pub pitch: f32,
 }
 
-/// What the person asks for during one frame.
+/// The user's input during one frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FlyInput {
     /// Movement along the camera's right, world up and the look direction, each -1..=1.
@@ -81,7 +81,7 @@ impl FlyCamera {
     }
 
     /// Moves and turns for `seconds` and applies the wheel to `settings.speed`. Two half frames
-    /// lead to the same place as one whole.
+    /// give the same result as one whole frame.
     pub fn update(&mut self, settings: &mut CameraSettings, input: &FlyInput, seconds: f32) {
         let (slowest, fastest) = FLYING_SPEEDS;
         settings.speed = (settings.speed * WHEEL_FACTOR.powf(input.wheel)).clamp(slowest, fastest);

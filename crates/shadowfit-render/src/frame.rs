@@ -25,7 +25,7 @@ pub struct Frame<'a> {
     pub shadows: bool,
     /// Colours of sun and sky.
     pub atmosphere: &'a Atmosphere,
-    /// What is laid over the shaded surfaces.
+    /// What is overlaid on the shaded surfaces.
     pub overlay: Overlay,
     /// Lines drawn over the scene.
     pub lines: &'a [Line],
@@ -54,14 +54,14 @@ impl<'a> Frame<'a> {
 /// Which casters are drawn into the maps. The picture is the same either way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Culling {
-    /// Those that can throw a shadow on what the picture shows, by [`MapFit::sweep`].
+    /// Those that can cast a shadow on what the picture shows, by [`MapFit::sweep`].
     #[default]
     Swept,
     /// Those in [`MapFit::volume`]; where that is `None`, all that the map can store.
     AsGiven,
 }
 
-/// What is laid over the shaded surfaces.
+/// What is overlaid on the shaded surfaces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Overlay {
     /// Nothing.

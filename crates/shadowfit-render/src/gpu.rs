@@ -9,7 +9,7 @@ pub enum AdapterChoice {
     /// The fastest one.
     #[default]
     Any,
-    /// A software rasteriser (Mesa lavapipe, WARP), whatever GPU is present.
+    /// A software rasteriser (Mesa lavapipe, WARP), even if a GPU is present.
     Software,
 }
 
@@ -96,7 +96,8 @@ impl Gpu {
                 label: Some("shadowfit"),
                 required_features: adapter.features() & wanted,
                 required_limits: wgpu::Limits {
-                    // Scenes of millions of triangles go to the GPU whole, where they are traced.
+                    // Scenes of millions of triangles are uploaded whole to GPUs that ray trace
+                    // them.
                     max_buffer_size: limits.max_buffer_size,
                     max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
                     ..wgpu::Limits::default().using_resolution(limits)
@@ -109,7 +110,7 @@ impl Gpu {
     }
 
     /// Until what it returns is dropped, errors of the device are not reported to its handler, which ends the program:
-    /// whatever is made on a device that was lost is invalid. What comes of the work tells whether it failed.
+    /// everything created on a lost device is invalid. The result of the work shows whether it failed.
     pub(crate) fn without_reports(&self) -> Unreported {
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -132,7 +133,7 @@ impl Gpu {
     }
 }
 
-/// Error scopes, dropped in this order: the last one that was opened first.
+/// Error scopes, dropped in this order: the last opened first.
 pub(crate) struct Unreported {
     _validation: wgpu::ErrorScopeGuard,
     _memory: wgpu::ErrorScopeGuard,

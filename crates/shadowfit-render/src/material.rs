@@ -8,8 +8,8 @@ use crate::Gpu;
 use crate::shaders;
 use crate::uniform::MaterialUniform;
 
-/// Anisotropy of the texture filter: floors seen at a grazing angle stay sharp. Software adapters do without: the one of
-/// Mesa walks over every texel in the footprint of a pixel, which takes seconds for a single sliver seen edge-on.
+/// Anisotropy of the texture filter: floors seen at a grazing angle stay sharp. Software adapters do without: Mesa's
+/// visits every texel that a pixel covers, which takes seconds for a single sliver seen edge-on.
 const ANISOTROPY: u16 = 8;
 
 /// Layout of a material's bind group, the same in the shaded and the shadow pass.

@@ -21,7 +21,7 @@ pub(crate) struct Layouts {
     pub(crate) inset: wgpu::BindGroupLayout,
 }
 
-/// What decides on a part's pipeline, in every pass.
+/// What selects a part's pipeline, in every pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent property of the part")]
 pub(crate) struct PartKey {
@@ -261,7 +261,7 @@ impl Maker<'_> {
         })
     }
 
-    /// Pipelines of the probe pass; none where the device does not know the index of a primitive.
+    /// Pipelines of the probe pass; none where the device does not support the primitive index.
     fn probes(&self, layout: &wgpu::PipelineLayout, map: &ShadowMap) -> HashMap<PartKey, wgpu::RenderPipeline> {
         if !self.device.features().contains(wgpu::Features::PRIMITIVE_INDEX) {
             return HashMap::new();

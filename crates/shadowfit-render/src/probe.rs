@@ -1,5 +1,5 @@
-//! What the renderer itself knew about each pixel: which triangle it saw, and the shadow factor that it used. Measures
-//! judge these, not guesses from colours; where exactly the pixel lies follows from the triangle.
+//! What the renderer itself computed for each pixel: the visible triangle and the shadow factor. Measurements use
+//! these and not colours; the pixel's exact position follows from the triangle.
 
 use core::fmt;
 

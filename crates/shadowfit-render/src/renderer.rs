@@ -69,12 +69,12 @@ impl Renderer {
         &self.layouts.material
     }
 
-    /// The shadow map as it is.
+    /// The current shadow map.
     pub fn shadow_map(&self) -> &ShadowMap {
         &self.shadow_map
     }
 
-    /// Makes the shadow map anew if it is to be another one. On an error the old one stays.
+    /// Makes the shadow map anew if its descriptor differs. On an error the old one stays.
     ///
     /// # Errors
     ///
@@ -131,8 +131,8 @@ impl Renderer {
     ///
     /// # Errors
     ///
-    /// [`ProbeError`] for maps that the shadow map cannot take, a device that cannot tell triangles apart, and one that
-    /// was lost.
+    /// [`ProbeError`] for maps that the shadow map cannot take, a device without the primitive index, and one that was
+    /// lost.
     pub fn probe(
         &mut self,
         gpu: &Gpu,
@@ -201,14 +201,14 @@ impl Renderer {
         Ok(plan(gpu, scene, frame, &uniform, self.shadow_map.volumes()))
     }
 
-    /// The maps with the casters that the frame's culling leaves them.
+    /// The maps, each with the casters that the frame's culling keeps for it.
     fn culled(&self, frame: &Frame<'_>, view: &MapView) -> Vec<MapFit> {
         let mut maps = frame.maps.to_vec();
         if frame.culling == Culling::Swept {
             let filter = self.shadow_map.descriptor().filter;
             let swept = frame.camera.frustum().and_then(|seen| MapFit::sweep(&mut maps, view, &[seen], filter));
             if swept.is_err() {
-                // Of a camera that makes no sense nobody knows what it sees: maps get all that they can store.
+                // What an invalid camera sees is unknown: maps get all casters that they can store.
                 for map in &mut maps {
                     map.volume = None;
                 }

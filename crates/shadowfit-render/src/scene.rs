@@ -1,6 +1,6 @@
 //! A scene on the GPU: vertex and index buffers, materials, and per frame the instances that each
-//! pass sees. Deformed primitives (skins, morph targets) are deformed on the CPU, so that
-//! ray tracers see the very same triangles.
+//! pass sees. Deformed primitives (skins, morph targets) are deformed on the CPU, so that ray
+//! tracers see exactly the same triangles.
 
 use glam::{DVec3, Mat4, Vec3, Vec4};
 use shadowfit::{Aabb, CasterVolume};
@@ -16,7 +16,7 @@ pub struct GpuScene {
     pub(crate) parts: Vec<Part>,
     pub(crate) materials: Vec<wgpu::BindGroup>,
     instances: Vec<SceneInstance>,
-    /// What the present frame is relative to, in world space, in metres.
+    /// Origin of the current frame's positions, in world space, in metres.
     eye: DVec3,
     /// Bounds of all instances, relative to the eye.
     boxes: Vec<shadowfit::Aabb>,
@@ -122,7 +122,7 @@ impl GpuScene {
         self.boxes.extend(boxes.map(|bounds| shadowfit::Aabb::new(relative(bounds.min), relative(bounds.max))));
     }
 
-    /// For each instance the maps that it may throw a shadow into: bit i for volume i, relative to the frame's eye.
+    /// For each instance the maps that it may cast a shadow into: bit i for volume i, relative to the frame's eye.
     pub(crate) fn cull(&self, volumes: &[CasterVolume]) -> Vec<u8> {
         let mut masks = vec![0; self.boxes.len()];
         shadowfit::culling::cull(volumes, self.eye, &self.boxes, &mut masks);
@@ -175,8 +175,7 @@ impl GpuScene {
 
     /// World bounds of all instances in the pose that was last set, in metres, those of blended
     /// surfaces included; `None` for a scene without vertices. It is the union of
-    /// [`Self::instance_bounds`], so it holds every vertex, but may be larger than the least box that
-    /// does.
+    /// [`Self::instance_bounds`], so it holds every vertex, but may be larger than necessary.
     pub fn bounds(&self) -> Option<Aabb> {
         self.instances.iter().map(|instance| instance.bounds).filter(|bounds| !bounds.is_empty()).reduce(Aabb::union)
     }

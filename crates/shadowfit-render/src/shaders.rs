@@ -41,8 +41,8 @@ pub fn scene(shadow_map: &ShadowMapDescriptor) -> String {
     [FRAME, &receiver_wgsl(shadow_map, SHADOW_GROUP), &material, include_str!("shaders/scene.wgsl")].concat()
 }
 
-/// The probe pass, with the groups of the shaded one; it needs to know the index of a primitive. The directive that
-/// turns that on stands before all else.
+/// The probe pass, with the groups of the shaded one; it needs the primitive index. The directive that enables it
+/// must come first.
 pub fn probe(shadow_map: &ShadowMapDescriptor) -> String {
     ["enable primitive_index;\n", &scene(shadow_map), include_str!("shaders/probe.wgsl")].concat()
 }

@@ -50,7 +50,7 @@ impl RenderTarget {
     }
 }
 
-/// Why pixels could not be read back. What was drawn is not known then: no pixels stand in for it.
+/// Why pixels could not be read back. There are no pixels then, not even black ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReadError {
     /// The device was lost or destroyed, or has no memory left for the copy.

@@ -73,7 +73,7 @@ impl PassTimer {
     /// Closes a submitted frame and takes the times of those that are finished.
     pub(crate) fn end_frame(&mut self, gpu: &Gpu) {
         let Some(profiler) = &mut self.profiler else { return };
-        // On a lost device there are no times; who reads the picture is told.
+        // On a lost device there are no times; reading the picture returns an error.
         let _unreported = gpu.without_reports();
         if profiler.end_frame().is_err() {
             // A query was left open: times would be wrong from here on, so there are none.

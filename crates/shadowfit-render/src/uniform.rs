@@ -19,9 +19,9 @@ pub struct Atmosphere {
     pub zenith: Vec3,
     /// Sky at the horizon, which distant things fade into.
     pub horizon: Vec3,
-    /// Light that the ground throws back.
+    /// Light that the ground reflects.
     pub ground: Vec3,
-    /// Share of the haze that is gained per metre.
+    /// Increase of the haze per metre, as a share.
     pub haze_per_metre: f32,
 }
 
@@ -37,8 +37,8 @@ impl Default for Atmosphere {
     }
 }
 
-/// Share of a map's tint in a surface's colour: enough to name the map by it, and little enough that shadows stay
-/// plain under it.
+/// Share of a map's tint in a surface's colour: strong enough to identify the map, and weak enough that shadows
+/// stay clear under it.
 const TINT_SHARE: f32 = 0.35;
 
 /// What every shader of a frame reads: `Frame` in WGSL.

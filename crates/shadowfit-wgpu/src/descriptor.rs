@@ -52,7 +52,7 @@ impl From<&Technique> for ShadowMapDescriptor {
 }
 
 impl ShadowMapDescriptor {
-    /// Refuses what the device cannot have.
+    /// Refuses a descriptor that the device does not support.
     pub(crate) fn check(&self, device: &wgpu::Device) -> Result<(), ShadowMapError> {
         let device_limit = device.limits().max_texture_dimension_2d;
         let resolution = self.resolution;

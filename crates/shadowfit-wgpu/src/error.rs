@@ -34,7 +34,7 @@ pub enum ShadowMapError {
         /// Those of the layers.
         map: ([u32; 2], DepthConvention),
     },
-    /// More fits than layers: the farther ones would have nowhere to be drawn.
+    /// More fits than layers: the farther ones could not be drawn.
     TooManyFits {
         /// Number of fits.
         fits: usize,

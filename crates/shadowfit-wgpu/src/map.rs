@@ -95,8 +95,8 @@ impl ShadowMap {
         &self.receiver_group
     }
 
-    /// Depth state of the engine's caster pipelines. No hardware bias: biases are applied in
-    /// texels where the map is read, alike for every format.
+    /// Depth state of the engine's caster pipelines. No hardware bias: biases are applied in texels
+    /// where the map is read, in the same way for every format.
     pub fn depth_stencil_state(&self) -> wgpu::DepthStencilState {
         wgpu::DepthStencilState {
             format: wgpu::TextureFormat::Depth32Float,
@@ -150,8 +150,8 @@ impl ShadowMap {
     ///
     /// [`ShadowMapError::TooManyFits`] for more fits than layers; [`ShadowMapError::Fit`] if a fit has
     /// more texels than a layer or another depth convention; [`ShadowMapError::Order`] if the maps'
-    /// ends do not ascend; [`ShadowMapError::Bias`] and [`ShadowMapError::Forward`] for biases and a
-    /// direction that make no sense. Nothing is written then.
+    /// ends do not ascend; [`ShadowMapError::Bias`] and [`ShadowMapError::Forward`] for biases that
+    /// are not finite and for a direction that is not of unit length. Nothing is written then.
     pub fn prepare(&mut self, queue: &wgpu::Queue, view: &MapView, maps: &[MapFit]) -> Result<(), ShadowMapError> {
         check(&self.descriptor, view, maps)?;
         for (layer, map) in self.layers.iter_mut().zip(maps) {

@@ -6,10 +6,11 @@ use shadowfit::{CasterVolume, DepthConvention, FittedMap, LightFit};
 
 use crate::{ShadowMapDescriptor, ShadowMapError};
 
-/// A fitted map: where it lies, which points read it, with which bias, and what is drawn into it.
+/// A fitted map: its matrices, which points read it, with which bias, and which casters are drawn
+/// into it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapFit {
-    /// Where it lies.
+    /// The map's matrices and box.
     pub fit: LightFit,
     /// View depth at which it ends, in metres: a point reads the first map that ends beyond its view depth and covers
     /// it. `f32::MAX` for no end, `f32::MIN` for a map in front of all others that no point reads.
@@ -17,19 +18,20 @@ pub struct MapFit {
     /// Biases of the look-up, for [`Self::fit`].
     pub bias: Bias,
     /// Casters that are drawn into it; `None` for all that the map can store, which is what maps need that are kept
-    /// for later frames. [`Self::sweep`] leaves only those that can throw a shadow into view.
+    /// for later frames. [`Self::sweep`] leaves only those that can cast a shadow into view.
     pub volume: Option<CasterVolume>,
 }
 
 impl MapFit {
-    /// A single map, for all view depths, that stores every caster that it can.
+    /// A single map for all view depths, into which every caster that it can store is drawn.
     pub fn new(fit: LightFit, bias: Bias) -> Self {
         Self { fit, far: f32::MAX, bias, volume: None }
     }
 }
 
 impl From<&FittedMap> for MapFit {
-    /// One of several maps with the biases of its technique, that stores every caster that it can:
+    /// One of several maps with the biases of its technique, into which every caster that it can
+    /// store is drawn:
     ///
     /// ```
     /// # let fitted = shadowfit::FittedMaps::default();
@@ -62,7 +64,7 @@ pub struct MapView {
 const UNIT_TOLERANCE: f32 = 1e-3;
 
 impl MapView {
-    /// Everything relative to an eye that looks along `forward` (unit, world axes).
+    /// Positions and view depths relative to an eye that looks along `forward` (unit, world axes).
     pub fn from_eye(eye: DVec3, forward: Vec3) -> Self {
         Self { origin: eye, eye, forward }
     }
@@ -75,7 +77,7 @@ pub(crate) fn check(descriptor: &ShadowMapDescriptor, view: &MapView, maps: &[Ma
         return Err(ShadowMapError::TooManyFits { fits, layers });
     }
     let length = view.forward.length();
-    // NaN is no unit length either.
+    // NaN is not a unit length either.
     let is_unit = (length - 1.0).abs() <= UNIT_TOLERANCE;
     if fits > 0 && !is_unit {
         return Err(ShadowMapError::Forward { forward: view.forward, length });
@@ -84,7 +86,7 @@ pub(crate) fn check(descriptor: &ShadowMapDescriptor, view: &MapView, maps: &[Ma
     for (index, map) in maps.iter().enumerate() {
         check_layer(descriptor, index, &map.fit)?;
         map.bias.checked().map_err(|error| ShadowMapError::Bias { index, error })?;
-        // Nor is NaN in any order.
+        // NaN has no order.
         let is_in_order = map.far >= previous;
         if !is_in_order {
             return Err(ShadowMapError::Order { index, far: map.far, previous });

@@ -1,5 +1,5 @@
-//! The WGSL of casters and receivers, put together from the pieces in `shaders/`. Every name
-//! starts with `shadowfit_`, so that the text can stand in any shader.
+//! The WGSL of casters and receivers, put together from the pieces in `shaders/`. Every name starts
+//! with `shadowfit_`, so that the text can be pasted into any shader.
 
 use shadowfit::settings::{FilterKind, MapFormat};
 use shadowfit::{CasterVolume, DepthConvention};
@@ -17,7 +17,7 @@ pub fn caster_wgsl(group: u32) -> String {
     include_str!("shaders/caster.wgsl").replace("GROUP", &group.to_string())
 }
 
-/// WGSL for shaders that cull casters: `shadowfit_cull_box(min, max) -> u32`, whose bit i says whether the box may throw
+/// WGSL for shaders that cull casters: `shadowfit_cull_box(min, max) -> u32`, whose bit i says whether the box may cast
 /// a shadow into map i, and `shadowfit_touches_box`, `_sphere` and `_oriented_box` for one map. They are the twins of
 /// [`shadowfit::culling::cull`] and of the tests of [`shadowfit::CasterVolume`].
 ///
@@ -64,8 +64,8 @@ pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, group: u32) -> String {
         .replace("COMPARE", closer)
 }
 
-/// What looks for a map: one branch a map, since software rasterisers take twenty times as long for a loop over an array
-/// of uniforms.
+/// The search for a point's map: one branch per map, since software rasterisers take twenty times as long for a loop
+/// over an array of uniforms.
 fn choice(maps: u32) -> String {
     let branches = |found: &dyn Fn(u32) -> String| -> String {
         let branch = |map: u32| {

@@ -1,6 +1,6 @@
-//! Which casters each of several maps needs for what the views see.
+//! The casters that each of several maps needs for what the views see.
 //!
-//! A map that is drawn anew in each frame needs only the casters that can throw a shadow on a point that reads it: those
+//! A map that is drawn anew in each frame needs only the casters that can cast a shadow on a point that reads it: those
 //! in the part of the view that reads it, swept toward the light. Which part that is follows from the order in which
 //! shaders look for a map.
 
@@ -12,16 +12,16 @@ use shadowfit::{CasterVolume, FitError, LightFit, ViewFrustum};
 
 use crate::{MapFit, MapView};
 
-/// What rounding may do to a view depth in a shader, as a share of it: nine times 2⁻²⁴ of a point's distance, which in
-/// the corner of a wide view is up to seven times its depth.
+/// Greatest rounding error of a view depth in a shader, as a share of it: nine times 2⁻²⁴ of a point's distance, which
+/// in the corner of a wide view is up to seven times its depth.
 const DEPTH_ROUNDING: f64 = 64.0 / 16_777_216.0;
 
-/// What rounding may do to texture coordinates in a shader, as a share of the terms that they are summed from: eight
-/// roundings of 2⁻²⁴, two of the position, one each of the matrix and the product, and four of the sum.
+/// Greatest rounding error of texture coordinates in a shader, as a share of the terms that they are summed from:
+/// eight roundings of 2⁻²⁴, two of the position, one each of the matrix and the product, and four of the sum.
 const UV_ROUNDING: f64 = 8.0 / 16_777_216.0;
 
 impl MapFit {
-    /// Leaves to each map only the casters that can throw a shadow, through this map, on what `views` see: sets
+    /// Leaves each map only the casters that can cast a shadow, through this map, on what `views` see: sets
     /// [`MapFit::volume`] of all maps. The shadows in view stay the same. `views` are all that is drawn with these
     /// maps, up to the cameras' far planes, and `filter` is the one that reads them,
     /// [`ShadowMapDescriptor::filter`](crate::ShadowMapDescriptor::filter).
@@ -31,8 +31,8 @@ impl MapFit {
     ///
     /// A point reads the first map that ends beyond its view depth and covers it. So a map is read from where the map
     /// in front of it ends; but if no map in front of it provably covers the whole of some nearer slice of the views,
-    /// it is taken to be read from there: a map that is fitted to receivers alone does not, and a point which it
-    /// leaves out goes on to the next one.
+    /// the map counts as read from that slice on: a map that is fitted to receivers alone does not cover whole
+    /// slices, and a point that it leaves out reads the next one.
     ///
     /// # Errors
     ///
@@ -59,7 +59,7 @@ struct Readers<'a> {
     maps: &'a [MapFit],
     view: &'a MapView,
     views: &'a [ViewFrustum],
-    /// Greatest difference between the view depth of a point in view by the shader and by its frustum, in metres.
+    /// Greatest difference between a visible point's view depth in the shader and in its frustum, in metres.
     mismatch: f64,
 }
 
@@ -90,7 +90,7 @@ impl Readers<'_> {
         Slice { near, far: self.maps[index].far }
     }
 
-    /// A slice with the depths beside it that rounding and another eye may put into it.
+    /// A slice, widened by the depths that rounding or another eye may move into it.
     fn widened(&self, slice: Slice) -> Slice {
         let beside = |depth: f32| self.mismatch + f64::from(depth).abs() * DEPTH_ROUNDING;
         let bounded = |depth: f64| depth.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
@@ -100,7 +100,7 @@ impl Readers<'_> {
         }
     }
 
-    /// Whether a map provably holds all that the views have in a slice, as a shader finds out.
+    /// Whether a map provably holds everything that the views have in a slice, by a shader's test.
     fn covers(&self, index: usize, slice: Slice) -> bool {
         let Slice { near, far } = self.widened(slice);
         let fit = self.maps[index].fit.relative_to(self.view.origin);
@@ -115,8 +115,8 @@ impl Readers<'_> {
     }
 }
 
-/// Whether a map holds a point relative to its origin whatever a shader's rounding. The map is convex, so that with the
-/// corners of a slice it holds the slice.
+/// Whether a map holds a point, relative to its origin, for any rounding in a shader. The map is convex, so that with
+/// the corners of a slice it holds the slice.
 fn covers(fit: &LightFit, point: DVec3) -> bool {
     let m = fit.uv_from_world.as_dmat4();
     let terms = [m.x_axis * point.x, m.y_axis * point.y, m.z_axis * point.z, m.w_axis].map(DVec4::truncate);

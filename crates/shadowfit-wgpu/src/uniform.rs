@@ -37,7 +37,8 @@ pub struct MapUniform {
     pub size: [f32; 2],
     /// Offset along the normal times sin θ, in metres.
     pub normal_offset: f32,
-    /// Depth bias times the plane's rise over a texel, in texels, signed likewise.
+    /// Depth bias to be multiplied by the plane's depth change over a texel, in texels, signed
+    /// likewise.
     pub receiver_plane: f32,
     /// View depth at which the map ends, in metres: points from there on do not read it.
     pub far: f32,
@@ -121,9 +122,9 @@ impl MapUniform {
     }
 }
 
-/// What gives the change of a plane's depth over one texel along u and v when multiplied with its unit normal n: the
-/// plane's height falls by n·x / n·z along the map's x, and v runs against its y. It is
-/// [`shadowfit::bias::depth_gradient`] but for the division by n·z, the cosine.
+/// Vectors whose dot product with a plane's unit normal n gives the change of its depth over one texel along u and
+/// v: the plane's height falls by n·x / n·z along the map's x, and v runs against its y. It is
+/// [`shadowfit::bias::depth_gradient`] without the division by n·z, the cosine.
 fn depth_per_texel(fit: &LightFit) -> [Vec3; 2] {
     let away_from_light = if fit.depth == DepthConvention::Reversed { -1.0 } else { 1.0 };
     let scale = fit.texel_size * (away_from_light / fit.depth_range);

@@ -1,7 +1,8 @@
-//! Culling boxes against the volumes of four cascades: one by one, as an engine would write it by hand, and batched.
+//! Culling boxes against the volumes of four maps: one by one, as an engine would write it by hand, and batched.
 //!
 //! Each call gets other boxes than the one before, as each frame does: over the same 1,000 boxes again and again a
-//! branch predictor learns every outcome, which no frame of an engine sees. The last group shows what that is worth.
+//! branch predictor learns every outcome, which no frame of an engine sees. The last group shows how much that
+//! matters.
 
 use std::hint::black_box;
 
@@ -13,7 +14,7 @@ use shadowfit::{
     Aabb, CasterVolume, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace,
 };
 
-/// Boxes that are at hand; calls go around in them.
+/// Boxes in the pool; calls cycle through them.
 const POOL: usize = 1 << 20;
 
 /// Planes of a box, which hand-written loops have.
@@ -32,7 +33,7 @@ fn views() -> [ViewFrustum; 1] {
     [camera.frustum().expect("a good camera")]
 }
 
-fn cascades() -> FittedMaps {
+fn fitted() -> FittedMaps {
     let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
     let settings = Technique { count: 4, ..Technique::default() };
     let settings = Technique { fit: settings.fit.with_max_distance(200.0), ..settings };
@@ -41,10 +42,10 @@ fn cascades() -> FittedMaps {
     MapFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("a good view")
 }
 
-fn swept(cascades: &FittedMaps) -> Vec<CasterVolume> {
+fn swept(fitted: &FittedMaps) -> Vec<CasterVolume> {
     let views = views();
     let sweep = |near, far| Sweep { near, far, ..Sweep::new(&views) };
-    let volumes = cascades.iter().map(|map| CasterVolume::swept(&map.fit, &sweep(map.covered_near, map.far)));
+    let volumes = fitted.iter().map(|map| CasterVolume::swept(&map.fit, &sweep(map.covered_near, map.far)));
     volumes.collect::<Result<_, _>>().expect("good sweeps")
 }
 
@@ -53,10 +54,10 @@ fn swept(cascades: &FittedMaps) -> Vec<CasterVolume> {
 enum Order {
     Random,
     /// Neighbours in the list are neighbours in the world, as in a scene that is split into cells.
-    ByPlace,
+    Spatial,
 }
 
-/// Boxes of up to 10 m, at random in a square of so many metres around the camera.
+/// Boxes of up to 10 m, at random in a square with a side of this many metres around the camera.
 fn boxes(side: f32, order: Order) -> Vec<Aabb> {
     // G. Marsaglia, "Xorshift RNGs", 2003.
     let mut state = 0x2545_f491_4f6c_dd1d_u64;
@@ -73,7 +74,7 @@ fn boxes(side: f32, order: Order) -> Vec<Aabb> {
             Aabb::new(centre - half, centre + half)
         })
         .collect();
-    if order == Order::ByPlace {
+    if order == Order::Spatial {
         let cell = |v: f32| ((v / side + 0.5) * 64.0) as i32;
         boxes.sort_by_cached_key(|b| (cell(b.min.x), cell(b.min.z)));
     }
@@ -127,9 +128,9 @@ fn measure(
 }
 
 fn compare(criterion: &mut Criterion, name: &str, boxes: &[Aabb], counts: &[usize], changes: bool) {
-    let cascades = cascades();
-    let maps: Vec<_> = cascades.iter().map(|map| map.fit.caster_volume()).collect();
-    let swept = swept(&cascades);
+    let fitted = fitted();
+    let maps: Vec<_> = fitted.iter().map(|map| map.fit.caster_volume()).collect();
+    let swept = swept(&fitted);
     let six: Vec<[Vec4; SIX]> = maps.iter().map(|volume| std::array::from_fn(|i| volume.planes[i])).collect();
     let mut group = criterion.benchmark_group(name);
     for count in counts {
@@ -148,16 +149,16 @@ fn culling(criterion: &mut Criterion) {
     let counts = [1_000, 10_000, 100_000, 1_000_000];
     let around = boxes(400.0, Order::Random);
     compare(criterion, "boxes around the view", &around, &counts, true);
-    compare(criterion, "boxes by place", &boxes(400.0, Order::ByPlace), &counts[2..3], true);
+    compare(criterion, "boxes in spatial order", &boxes(400.0, Order::Spatial), &counts[2..3], true);
     compare(criterion, "boxes of a large world", &boxes(4000.0, Order::Random), &counts[2..3], true);
-    compare(criterion, "boxes of a large world by place", &boxes(4000.0, Order::ByPlace), &counts[2..3], true);
+    compare(criterion, "boxes of a large world in spatial order", &boxes(4000.0, Order::Spatial), &counts[2..3], true);
     compare(criterion, "the same boxes each time", &around, &counts[..2], false);
 }
 
 fn sweeping(criterion: &mut Criterion) {
-    let (cascades, views) = (cascades(), views());
+    let (fitted, views) = (fitted(), views());
     criterion.bench_function("sweep of one map", |bencher| {
-        bencher.iter(|| CasterVolume::swept(black_box(&cascades[0].fit), &Sweep::new(black_box(&views))));
+        bencher.iter(|| CasterVolume::swept(black_box(&fitted[0].fit), &Sweep::new(black_box(&views))));
     });
 }
 

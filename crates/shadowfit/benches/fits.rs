@@ -184,22 +184,22 @@ fn against_xna(c: &mut Criterion) {
 }
 
 fn against_bevy(c: &mut Criterion) {
-    let mut group = c.benchmark_group("4 stable cascades");
+    let mut group = c.benchmark_group("4 stable maps");
     let bounds = [10.0, 21.5, 46.4, 100.0];
     let mut splits = [0.0; 7];
     splits[..3].copy_from_slice(&bounds[..3]);
     let settings = settings(FitKind::Sphere, SplitScheme::Manual(splits), Stabilise::Snap);
     let settings = Technique { fit: settings.fit.with_casters(CasterPolicy::Extend), ..settings };
     let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-    let (mut fitter, mut cascades) = (MapFitter::new(), FittedMaps::default());
+    let (mut fitter, mut maps) = (MapFitter::new(), FittedMaps::default());
     let mut turn = 0.0;
     group.bench_function("shadowfit", |b| {
         b.iter(|| {
             let views = [black_box(&camera(&mut turn)).frustum().expect("a good camera")];
             let input = FitInput::new(black_box(&views), black_box(DIRECTION));
             let mut workspace = Workspace::new(&mut storage);
-            fitter.fit_into(&input, black_box(&settings), &mut workspace, &mut cascades).expect("a good fit");
-            black_box(&cascades);
+            fitter.fit_into(&input, black_box(&settings), &mut workspace, &mut maps).expect("a good fit");
+            black_box(&maps);
         });
     });
     group.bench_function("by hand", |b| {

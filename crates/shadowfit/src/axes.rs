@@ -1,7 +1,7 @@
 //! The light's own axes: where its roll comes from.
 //!
-//! A direction leaves the rotation about itself open. Which one a fit picks decides whether the
-//! map turns smoothly with the sun and where it flips.
+//! A direction does not fix the rotation about itself (the roll). Which roll a fit picks decides
+//! whether the map turns smoothly with the sun and where it flips.
 
 use glam::{DVec2, DVec3, Mat4, Vec3};
 
@@ -10,8 +10,8 @@ use crate::{FitError, checks};
 /// Right-handed orthonormal axes of a light in world space. The light looks along -z, so `z` is
 /// the direction *toward* the light.
 ///
-/// The axes are rounded to f32 here, once: boxes are measured along the very numbers that the
-/// matrices hold.
+/// The axes are rounded to f32 here, once, so that boxes are measured along exactly the axes that
+/// the matrices hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct LightAxes {
@@ -20,8 +20,8 @@ pub(crate) struct LightAxes {
     pub(crate) z: Vec3,
 }
 
-/// Difference of two unit directions, as a length, up to which they are one that was rounded
-/// otherwise: some steps of f32.
+/// Length of the difference of two unit directions up to which they count as the same direction,
+/// rounded differently: a few steps of f32.
 const SAME_DIRECTION: f64 = 8.0 / 16_777_216.0;
 
 /// Whether two unit directions differ by rounding alone.
@@ -45,13 +45,13 @@ pub(crate) struct Light {
     direction: DVec3,
     /// Unit direction that is up.
     up: DVec3,
-    /// What `axes` were made by.
+    /// Roll that `axes` were made with.
     roll: Roll,
     axes: LightAxes,
 }
 
 impl Light {
-    /// A light with the axes that most of its maps need at hand.
+    /// A light, with its axes precomputed for the roll that most of its maps use.
     #[inline(always)]
     pub(crate) fn new(direction: DVec3, up: DVec3, roll: Roll) -> Self {
         let axes = match roll {
@@ -61,8 +61,8 @@ impl Light {
         Self { direction, up, roll, axes }
     }
 
-    /// The same light along a direction that is held from an earlier frame, if they differ by no more
-    /// than rounding.
+    /// This light along the direction that was held from an earlier frame, if the two differ by no
+    /// more than rounding.
     #[inline(always)]
     pub(crate) fn held(self, direction: Option<DVec3>) -> Self {
         match direction {
@@ -78,7 +78,7 @@ impl Light {
         self.direction
     }
 
-    /// Its axes by a roll.
+    /// The light's axes for a roll.
     #[inline(always)]
     pub(crate) fn axes(&self, roll: Roll) -> LightAxes {
         if roll == self.roll { self.axes } else { self.other_axes(roll) }
@@ -98,8 +98,8 @@ const VERTICAL_SINE: f64 = 1e-6;
 const ORTHONORMAL: f64 = 1e-3;
 
 impl LightAxes {
-    /// Look-at axes as the XNA sample has them: `x = direction × up`; `up` is a unit vector (the
-    /// sample's is +y).
+    /// Look-at axes as the XNA sample computes them: `x = direction × up`; `up` is a unit vector
+    /// (the sample's is +y).
     ///
     /// Within 1e-6 radians of the vertical, where the sample divides by zero, the map's top is
     /// where that of a map seen from straight above is (-z for +y up). The roll flips there: it follows the azimuth on
@@ -154,7 +154,7 @@ impl LightAxes {
         DVec3::new(x.dot(v), y.dot(v), z.dot(v))
     }
 
-    /// Those of a `light_from_world`; refuses what is no rotation.
+    /// The axes of a `light_from_world` matrix; refuses a matrix that is not a rotation.
     pub(crate) fn of_matrix(light_from_world: &Mat4) -> Result<Self, FitError> {
         let rows = light_from_world.transpose();
         let axes = Self { x: rows.x_axis.truncate(), y: rows.y_axis.truncate(), z: rows.z_axis.truncate() };
@@ -163,7 +163,7 @@ impl LightAxes {
         Ok(axes)
     }
 
-    /// Of the matrix with these rows: 1 but for rounding.
+    /// Determinant of the matrix with these rows: 1 up to rounding.
     pub(crate) fn determinant(&self) -> f64 {
         self.x.as_dvec3().dot(self.y.as_dvec3().cross(self.z.as_dvec3()))
     }
@@ -182,7 +182,7 @@ fn top_down_axes(up: DVec3) -> (DVec3, DVec3) {
     if up == DVec3::Y { (DVec3::X, DVec3::NEG_Z) } else { tilted_top_down_axes(up) }
 }
 
-/// The same for any direction that is up.
+/// The axes of light straight down, for any up direction.
 fn tilted_top_down_axes(up: DVec3) -> (DVec3, DVec3) {
     match arc(DVec3::Y, up) {
         Some(turn) => (turn(DVec3::X), turn(DVec3::NEG_Z)),

@@ -60,7 +60,7 @@ pub struct Bias {
     pub receiver_plane: f32,
 }
 
-/// What a [`Bias`] amounts to on a plane.
+/// The offset and depth that a [`Bias`] gives on a plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PlaneBias {
@@ -74,21 +74,22 @@ pub struct PlaneBias {
 /// receives next to no light. Normal offsets need no such limit.
 pub const MIN_COSINE: f32 = 0.01;
 
-/// Constant bias of [`BiasSettings::automatic`], in texels: it covers the rounding of f32 while no
-/// corner of the map's box is farther than 65536 texel sizes from the origin, 32 times the width
-/// of a 2048² map.
+/// Constant bias of [`BiasSettings::automatic`], in texels: it covers the rounding of f32 as long
+/// as no corner of the map's box is farther than 65536 texel sizes from the origin, 32 times the
+/// width of a 2048² map.
 const PRECISION_TEXELS: f32 = 1.0 / 16.0;
 
-/// What the square of a sine loses that a shader takes from an f32 cosine: four roundings of 2⁻²⁴.
+/// Error of the square of a sine that a shader computes from an f32 cosine: four roundings of 2⁻²⁴.
 pub(crate) const SQUARED_SINE_ROUNDING: f64 = 4.0 / 16_777_216.0;
 
-/// What the sine itself loses at most, where that leaves nothing of it: the root, 2⁻¹¹, rounded up.
+/// Greatest error of the sine itself, reached where that error is as large as the square: its root,
+/// 2⁻¹¹, rounded up.
 const SINE_ROUNDING: f64 = 5e-4;
 
 impl Bias {
-    /// Converts biases in texels for one fit. Texels that are not square count by their longer
-    /// side, which is on the safe side of acne. Settings that are not finite give biases that are
-    /// not; [`Self::checked`] refuses those.
+    /// Converts biases in texels for one fit. Texels that are not square count with their longer
+    /// side, which is conservative against acne. Settings that are not finite give biases that are
+    /// not finite; [`Self::checked`] refuses those.
     pub fn from_texels(settings: &BiasSettings, fit: &LightFit) -> Self {
         let texel = fit.texel_size.x.max(fit.texel_size.y);
         Self {
@@ -99,9 +100,9 @@ impl Bias {
         }
     }
 
-    /// A fixed number of the stored depth, whatever the slope: the classic form, such as
-    /// [`XNA_DEPTH_BIAS`]. Its metres change with every fit's depth range. A negative one moves
-    /// the receiver away from the light, as maps of back faces may want it.
+    /// A fixed number of the stored depth, independent of the slope: the classic form, such as
+    /// [`XNA_DEPTH_BIAS`]. In metres it changes with the depth range of each fit. A negative one
+    /// moves the receiver away from the light, as maps of back faces may want it.
     ///
     /// # Errors
     ///
@@ -111,11 +112,11 @@ impl Bias {
         Ok(Self { constant_depth: depth, ..Self::default() })
     }
 
-    /// The least bias that clears self-shadowing on a plane whatever its slope's azimuth: a normal
-    /// offset for the filter's reach [on hardware](Reach::on_hardware), at the worst azimuth
-    /// `E · √(tx² + ty²)`, and a constant for the [`depth_precision`] and for a sine that a shader
-    /// takes from an f32 cosine. Where a shader knows the azimuth, [`normal_offset`] needs up to
-    /// √2 less. Geometric normals are assumed.
+    /// The least bias that clears self-shadowing on a plane whose slope has any azimuth: a normal
+    /// offset for the filter's reach [on hardware](Reach::on_hardware), at the worst azimuth `E ·
+    /// √(tx² + ty²)`, and a constant for the [`depth_precision`] and for a sine that a shader takes
+    /// from an f32 cosine. Where a shader knows the azimuth, [`normal_offset`] needs up to √2 less.
+    /// Geometric normals are assumed.
     ///
     /// # Errors
     ///
@@ -140,9 +141,9 @@ impl Bias {
         bias.checked()
     }
 
-    /// The same by depth alone, for shaders that do not move the looked-up point: the receiver
-    /// plane's gradient over the filter's reach on hardware. It clears planes up to
-    /// [`MIN_COSINE`], and grows without measure toward it.
+    /// As [`Self::automatic`], by depth bias alone, for shaders that do not offset the looked-up
+    /// point: the receiver plane's gradient over the filter's reach on hardware. It clears planes
+    /// up to [`MIN_COSINE`], and grows without bound toward it.
     ///
     /// # Errors
     ///
@@ -157,8 +158,8 @@ impl Bias {
         Self { constant_depth, receiver_plane: reach.per_axis(), ..Self::default() }.checked()
     }
 
-    /// What this bias amounts to on a plane with the given geometric normal (world axes, any
-    /// length, turned toward the light), as a shader computes it.
+    /// The offset and depth that this bias gives on a plane with the given geometric normal (world
+    /// axes, any length, turned toward the light), as a shader computes it.
     ///
     /// # Errors
     ///
@@ -180,12 +181,12 @@ impl Bias {
         })
     }
 
-    /// This bias, if all its numbers are finite: for what [`Self::from_texels`] makes of settings
-    /// that come from outside.
+    /// Returns this bias if all its numbers are finite. Use it after [`Self::from_texels`] when the
+    /// settings come from outside.
     ///
     /// # Errors
     ///
-    /// [`FitError::NotFinite`] with the first that is not.
+    /// [`FitError::NotFinite`] with the first number that is not finite.
     pub fn checked(self) -> Result<Self, FitError> {
         let Self { constant_depth, slope_depth, normal_offset, receiver_plane } = self;
         for (input, value) in [
@@ -205,9 +206,10 @@ impl BiasSettings {
     /// stays within 65536 texel sizes of the origin; [`Bias::automatic`] has no such limit.
     /// Geometric normals are assumed.
     ///
-    /// It is the receiver-plane form, for the reach of one comparison alone: judged against rays with
-    /// [`FilterKind::Pcf5x5`] it leaves a tenth (fine texels) to two fifths (coarse ones) of the wrong
-    /// pixels that the [normal offset](Self::automatic_normal_offset) does.
+    /// It is the receiver-plane form, which needs to cover only the reach of one comparison. Compared
+    /// with ray tracing, with [`FilterKind::Pcf5x5`], it leaves a tenth (fine texels) to two fifths
+    /// (coarse ones) of the wrong pixels that the [normal offset](Self::automatic_normal_offset)
+    /// leaves.
     pub fn automatic(filter: FilterKind) -> Self {
         let one_comparison = if filter == FilterKind::Point { Reach::POINT } else { Reach::HARDWARE_2X2 };
         Self {
@@ -218,8 +220,8 @@ impl BiasSettings {
         }
     }
 
-    /// The same by an offset along the normal over the filter's whole reach, for shaders that know
-    /// no receiver plane.
+    /// As [`Self::automatic`], by an offset along the normal over the filter's whole reach, for
+    /// shaders without a receiver-plane bias.
     pub fn automatic_normal_offset(filter: FilterKind) -> Self {
         Self {
             constant: PRECISION_TEXELS,
@@ -262,8 +264,8 @@ pub fn receiver_plane_depth(fit: &LightFit, reach: impl Into<Reach>, normal: Vec
 
 /// Change of the stored depth of a plane over one texel along u and along v (∂z/∂u, ∂z/∂v), with
 /// cos θ held at [`MIN_COSINE`]. A filter that adds `gradient · (tap - centre)`, in texels, to the
-/// depth that each tap is compared with has the plane's own depth there: only the reach of one
-/// look-up is left, [`Reach::POINT`] or [`Reach::HARDWARE_2X2`].
+/// depth that each tap is compared with compares with the plane's own depth there, so the bias only
+/// has to cover the reach of one look-up, [`Reach::POINT`] or [`Reach::HARDWARE_2X2`].
 ///
 /// # Errors
 ///
@@ -274,9 +276,10 @@ pub fn depth_gradient(fit: &LightFit, normal: Vec3) -> Result<Vec2, FitError> {
     Ok(Vec2::new(rounded(u)?, rounded(v)?))
 }
 
-/// Depth bias that rounding needs, in units of the stored depth: what f32 can do to the stored and
-/// the compared depth of one point at this fit's origin, and one step of the format where it is
-/// coarsest (half for storing a depth, half where hardware rounds the compared one too).
+/// Depth bias that covers rounding, in units of the stored depth: the greatest difference that f32
+/// can make between the stored and the compared depth of one point at this fit's origin, and one
+/// step of the format where it is coarsest (half for storing a depth, half where hardware rounds
+/// the compared one too).
 pub fn depth_precision(fit: &LightFit, storage: impl Into<DepthStorage>) -> f32 {
     (reach::rounding(fit) / f64::from(fit.depth_range)) as f32 + depth_step(storage, 1.0)
 }
@@ -293,7 +296,7 @@ pub const fn automatic_normal_offset(reach: f32) -> f32 {
     SQRT_2 * reach
 }
 
-/// A plane as the map's texels see it.
+/// A plane measured in the map's texels.
 pub(crate) struct Slope {
     /// Share of one texel's side, along the map's x (u) and y (against v), that lies along the
     /// normal on the light's side, in metres.

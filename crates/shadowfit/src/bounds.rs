@@ -1,8 +1,9 @@
-//! Boxes: what an engine knows of its receivers and casters.
+//! Boxes: the bounds that an engine gives of its receivers and casters.
 
 use glam::{DVec3, Vec3};
 
-/// An axis-aligned box in metres, relative to an origin that its user states. Fits take boxes in world axes.
+/// An axis-aligned box in metres, relative to an origin that the user of the box defines. Fits take boxes in
+/// world axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
@@ -15,7 +16,7 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// The box that holds nothing and changes nothing that it is joined to.
+    /// The empty box: joining it to another box leaves that box unchanged.
     pub const EMPTY: Self = Self { min: Vec3::MAX, max: Vec3::MIN };
 
     /// A box from its least and greatest corner, in metres.
@@ -69,12 +70,12 @@ impl Aabb {
 }
 
 /// Boxes in world axes relative to an origin in f64, so that they stay exact far from the world's
-/// own. Plain world-space boxes have the origin zero.
+/// origin. Plain world-space boxes have the origin zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Boxes<'a> {
     /// World position that the boxes are relative to, in metres.
     pub origin: DVec3,
-    /// The boxes. Empty ones are passed over.
+    /// The boxes. Empty ones are ignored.
     pub boxes: &'a [Aabb],
 }
 

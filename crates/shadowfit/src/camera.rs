@@ -1,7 +1,7 @@
 //! A perspective camera from plain parameters.
 //!
 //! It is the most exact way into a fit: the frustum's corners come straight from the lens and are
-//! kept relative to the eye, without the detour through an inverted f32 matrix.
+//! kept relative to the eye, without going through an inverted f32 matrix.
 
 use glam::{DVec3, Mat4, Vec3, Vec4};
 
@@ -15,7 +15,7 @@ use crate::{DepthConvention, FitError, ViewFrustum};
 pub struct PerspectiveCamera {
     /// Position of the eye in world space, in metres.
     pub eye: DVec3,
-    /// Direction of view in world space; any length near one, it is normalised.
+    /// Direction of view in world space; any length that is not extreme; it is normalised.
     pub forward: Vec3,
     /// Direction in world space that appears upward; need not be perpendicular to `forward`.
     pub up: Vec3,
@@ -56,7 +56,7 @@ impl PerspectiveCamera {
     /// Projection from view space (right-handed, looking along -z, metres) to clip space with x
     /// right, y up and the given depth range.
     ///
-    /// A camera that [`Self::frustum`] refuses gives a matrix that is of no use, but no panic.
+    /// A camera that [`Self::frustum`] refuses gives a meaningless matrix; it does not panic.
     pub fn clip_from_view(&self, depth: DepthConvention) -> Mat4 {
         let (near, far) = (f64::from(self.near), f64::from(self.far));
         let tangent = self.tangent_y();
@@ -120,7 +120,7 @@ impl ViewFrustum {
     /// roll that is undefined, [`FitError::NearNotBelowFar`].
     #[inline(always)]
     pub fn from_camera(camera: &PerspectiveCamera) -> Result<Self, FitError> {
-        // First, since a call makes everything that is known by then go to memory.
+        // First, since a function call spills everything that has been computed by then to memory.
         let tangent = camera.tangent_y();
         checks::point("the camera's eye", camera.eye)?;
         let axes = camera.axes()?;

@@ -1,6 +1,6 @@
 //! Checks of numbers that come from outside, and the limits that they use.
 //!
-//! They stand in one place so that every input is refused by the same rule and with its name.
+//! They are kept in one place so that every input is checked by the same rule and errors name it.
 
 use glam::{DVec3, Vec3};
 
@@ -19,21 +19,21 @@ pub(crate) fn finite(input: &'static str, value: f64) -> Result<f64, FitError> {
     within(input, value, f64::MIN, f64::MAX)
 }
 
-/// A result rounded to f32; refuses what is not finite there.
+/// A result rounded to f32; refuses results that are not finite in f32.
 #[inline]
 pub(crate) fn rounded(output: &'static str, value: f64) -> Result<f32, FitError> {
     let rounded = value as f32;
     finite(output, f64::from(rounded)).map(|_| rounded)
 }
 
-/// Refuses what is not finite or outside `min..=max`.
+/// Refuses numbers that are not finite or outside `min..=max`.
 #[inline]
 pub(crate) fn within(input: &'static str, value: f64, min: f64, max: f64) -> Result<f64, FitError> {
     if (min..=max).contains(&value) { Ok(value) } else { Err(refusal(input, value, min, max)) }
 }
 
-/// What is said of a value outside `min..=max`. Apart from the checks themselves, so that these are a
-/// comparison and no more where they are called.
+/// The error for a value outside `min..=max`. Separate from the checks themselves, so that only a
+/// comparison is inlined at the call.
 #[cold]
 fn refusal(input: &'static str, value: f64, min: f64, max: f64) -> FitError {
     if value.is_finite() {
@@ -63,7 +63,7 @@ pub(crate) fn unit(input: &'static str, value: Vec3) -> Result<DVec3, FitError> 
     }
 }
 
-/// What is said of a direction that is no number or of no use as one.
+/// The error for a direction that is not finite, or too short or too long to be one.
 #[cold]
 fn bad_direction(input: &'static str, value: Vec3, length: f64) -> FitError {
     let bad = value.to_array().into_iter().find(|component| !component.is_finite());

@@ -1,8 +1,8 @@
 //! Clusters: triangles cut into boxes that hug their surface.
 //!
-//! A fit knows no more of a receiver than its box, and a level that is one mesh has a box that
-//! tells it nothing. Cut once into some hundred clusters, the same mesh leaves most of the empty
-//! air outside; animated, it keeps its clusters and only their boxes are made anew.
+//! A fit knows a receiver only by its box, and the box of a level that is one mesh says nothing.
+//! Cut the same mesh once into a few hundred clusters, and their boxes hold much less empty space.
+//! An animated mesh keeps its clusters, and only their boxes are computed anew.
 
 mod cone;
 mod piece;
@@ -52,12 +52,12 @@ pub struct Clusters {
 }
 
 impl Clusters {
-    /// Number of clusters that serves scenes of one mesh well. On five measured scenes, each at
+    /// Number of clusters that works well for scenes of one mesh. On five measured scenes, each at
     /// three headings, maps around this many boxes were 10% longer than around the triangles
     /// themselves; with a quarter of the boxes 13%, with four times as many 7%.
     pub const DEFAULT_LIMIT: usize = 1024;
 
-    /// Greatest number of clusters that objects are cut into; higher limits mean this one.
+    /// Greatest number of clusters that objects are cut into; higher limits are lowered to it.
     pub const MAX_LIMIT: usize = 65_536;
 
     /// Cuts objects into `limit` clusters or fewer, or into one for each object that has triangles
@@ -67,18 +67,19 @@ impl Clusters {
     /// an origin that all share, which is the origin of [`boxes`](Self::boxes). Winding and
     /// handedness do not matter. The same triangles give the same clusters on every target.
     ///
-    /// Groups of triangles are cut in two by planes, again and again where the most air is left in
-    /// the box, and not where none is: a flat box that is full stays whole. A triangle that a plane
-    /// passes through is in the groups on both sides, each with the part of it there, so large
-    /// slanted ones get small boxes too. Where large triangles pierce one another everywhere, later
-    /// ones stay whole, and boxes overlap.
+    /// Groups of triangles are cut in two by planes, always the group whose box holds the most
+    /// empty space; a flat box that is full is not cut. A triangle that a plane passes through is
+    /// in the groups on both sides, each with the part of it there, so large slanted ones get small
+    /// boxes too. Where very many large triangles intersect one another, later ones are not cut,
+    /// and boxes overlap.
     ///
     /// Takes about 0.25 µs a triangle and 20 µs a cluster: 100 ms for 1,024 clusters of an object of
     /// 300,000 triangles.
     ///
     /// Sources: Wald, Ingo: "On fast construction of SAH-based bounding volume hierarchies", 2007;
     /// Stich, Martin, Heiko Friedrich and Andreas Dietrich: "Spatial splits in bounding volume
-    /// hierarchies", 2009. Here no hierarchy is kept, and the cost is air, not rays.
+    /// hierarchies", 2009. Here no hierarchy is kept, and the cost is empty space, not the expected
+    /// number of rays.
     ///
     /// # Errors
     ///
@@ -107,12 +108,12 @@ impl Clusters {
         Ok(clusters)
     }
 
-    /// Makes boxes and cones anew for triangles that have moved, keeping the clusters.
+    /// Updates boxes and cones for triangles that have moved, keeping the clusters.
     ///
-    /// `objects` are those of [`build`](Self::build) in the same order, each with as many triangles
-    /// as then; metres, relative to one origin. Parts of triangles go with them, however they are
-    /// deformed. Boxes grow where neighbours part, so build again when an object has changed beyond
-    /// recognition. Takes about 0.06 µs a triangle.
+    /// `objects` are those of [`build`](Self::build) in the same order, each with the same number
+    /// of triangles; metres, relative to one origin. Parts of triangles move with their triangles,
+    /// however these are deformed. Boxes grow where neighbouring triangles move apart, so build
+    /// again when an object has changed its shape completely. Takes about 0.06 µs a triangle.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! The views and boxes of one frame, as fits work with them.
+//! The views and boxes of one frame, in the form that fits use.
 
 use core::cell::OnceCell;
 
@@ -10,7 +10,7 @@ use crate::normal_cone::NormalCone;
 use crate::view::{Range, Slice, View, moved, slice_corners};
 use crate::{Boxes, FitError, FitInput, ViewFrustum, Workspace, checks};
 
-/// The views and boxes of one frame, with the view depths of each box worked out once.
+/// The views and boxes of one frame, with the view depths of each box computed once.
 pub(crate) struct Content<'a> {
     pub(crate) views: &'a [ViewFrustum],
     pub(crate) origin: DVec3,
@@ -29,7 +29,8 @@ pub const MAX_SPHERE_VIEWS: usize = 8;
 const OUT_OF_VIEW: DVec2 = DVec2::new(f64::MAX, f64::MIN);
 
 impl<'a> Content<'a> {
-    /// Checks the boxes and takes their depths; gives the rest of the workspace for points.
+    /// Checks the boxes and computes their view depths; returns the rest of the workspace, for
+    /// points.
     pub(crate) fn new<'w>(
         input: &FitInput<'w>,
         workspace: &'w mut Workspace,
@@ -75,7 +76,7 @@ impl<'a> Content<'a> {
         Ok((content, points))
     }
 
-    /// The views of an input alone, for fits that look at nothing else.
+    /// The views of an input alone, for fits that use nothing else.
     #[inline(always)]
     pub(crate) fn of_views(input: &FitInput<'a>) -> Self {
         Self {
@@ -103,7 +104,7 @@ impl<'a> Content<'a> {
         self.enclosing_sphere_of_any(range)
     }
 
-    /// The same for views that are several or not symmetric.
+    /// The same for several views, or for one that is not symmetric.
     #[inline(never)]
     fn enclosing_sphere_of_any(&self, range: Range) -> Result<EnclosingSphere, FitError> {
         let mut corners = [DVec3::ZERO; 8 * MAX_SPHERE_VIEWS];
@@ -175,8 +176,8 @@ impl<'a> Content<'a> {
         squared.map(libm::sqrt)
     }
 
-    /// Gives each receiver's box that may reach into a range of view depths, with the slice of
-    /// the view that it may meet, in coordinates relative to the origin.
+    /// Passes on each receiver's box that may reach into a range of view depths, with the slice of
+    /// the view that it may intersect, in coordinates relative to the origin.
     pub(crate) fn receivers_in<E>(
         &self,
         range: Range,
@@ -200,7 +201,7 @@ impl<'a> Content<'a> {
         Ok(())
     }
 
-    /// Gives each receiver's box that reaches into one of the views.
+    /// Passes on each receiver's box that reaches into one of the views.
     pub(crate) fn each_receiver(&self, view: usize, mut visit: impl FnMut(DVec3, DVec3)) {
         let Some(receivers) = &self.receivers else { return };
         let offset = receivers.origin - self.origin;

@@ -19,9 +19,10 @@ use crate::volume::{Constraint, ROUNDING, Volume};
 pub(crate) struct Covered<'a> {
     /// The box, as yet without a light.
     pub(crate) volume: Volume,
-    /// What rounding may shift a receiver or a caster by across the light, in metres.
+    /// Greatest distance by which rounding may shift a receiver or a caster across the light, in
+    /// metres.
     pub(crate) rounding: f64,
-    /// What of the light's plane casters may throw shadows into.
+    /// The part of the light's plane in which casters count.
     pub(crate) shadowed: Shadowed<'a>,
 }
 
@@ -35,7 +36,7 @@ pub(crate) enum Shadowed<'a> {
 }
 
 impl<'a> Covered<'a> {
-    /// What a rule covers of a range of view depths.
+    /// The box that a rule covers for a range of view depths.
     #[inline(always)]
     pub(crate) fn new(
         rule: &FitRule,
@@ -54,7 +55,7 @@ impl<'a> Covered<'a> {
         }
     }
 
-    /// The box of the slices' corners, with the margin and nothing else.
+    /// The box of the slices' corners, with the margin and without room for rounding.
     #[inline(always)]
     fn corners(rule: &FitRule, content: &Content, axes: LightAxes, range: Range) -> Result<Self, FitError> {
         let (mut min, mut max) = (DVec3::MAX, DVec3::MIN);
@@ -99,7 +100,7 @@ impl<'a> Covered<'a> {
             RectangleKind::MinimumSquare => square(rectangle::min_square(hull.outline)),
         };
         let longest = rectangle.size().max_element();
-        // That of the map, which the border widens.
+        // The rounding of the map itself, which the border widens.
         let widening = resolution / texels;
         let rounding = (rectangle.size() * widening + hull.farthest) * ROUNDING;
         let pad = rounding + rule.margin;
@@ -119,14 +120,14 @@ impl<'a> Covered<'a> {
     }
 }
 
-/// A box, for the steps that follow.
+/// The box as a volume, for the steps that follow.
 #[inline(always)]
 fn volume(axes: LightAxes, (min, max): (DVec3, DVec3), set_by: [Constraint; 6], is_empty: bool) -> Volume {
     Volume { axes, min, max, light_z: 0.0, depth_range: 0.0, set_by, is_empty, grid: None }
 }
 
-/// Extents below this share of a map's longer side, or of its distance from the origin, are
-/// widened to it: a flat wall seen edge-on from the light needs no width, but a matrix does.
+/// Extents below this share of a map's longer side, or of its distance from the origin, are widened
+/// to it: a flat wall seen edge-on from the light has no width, but a matrix needs one.
 const THINNEST: f64 = 1e-5;
 
 /// The square with the rectangle's longer side, about the same middle.
@@ -135,7 +136,7 @@ fn square(r: Rectangle) -> Rectangle {
     Rectangle { axis: r.axis, min: centre - half, max: centre + half }
 }
 
-/// The same range about its middle, at least as long as `least`.
+/// The range, widened about its middle to at least `least`.
 fn widened(min: DVec2, max: DVec2, least: DVec2) -> (DVec2, DVec2) {
     let missing = (least - (max - min)).max(DVec2::ZERO) * 0.5;
     (min - missing, max + missing)
@@ -144,7 +145,7 @@ fn widened(min: DVec2, max: DVec2, least: DVec2) -> (DVec2, DVec2) {
 /// Share of a box's longest side within which its planes count as the view's own.
 const SAME_PLANE: f64 = 1e-5;
 
-/// What set each plane: the view where it lies at the view's own extent, else the receivers.
+/// What set each plane: the view where the plane lies at the view's own extent, else the receivers.
 fn constraints(rectangle: &Rectangle, hull: &LightHull, content: &Content, range: Range) -> [Constraint; 6] {
     if content.receivers.is_none() || hull.is_empty {
         return [Constraint::View; 6];

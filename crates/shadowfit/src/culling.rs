@@ -1,8 +1,8 @@
 //! Which casters a shadow pass has to draw.
 //!
 //! A [`CasterVolume`] is a convex volume as planes: either all that a map can store, or the part of
-//! it that can throw a shadow into view. Tests against it are conservative: they may keep a caster
-//! that throws no visible shadow, but never cull one that does.
+//! it that can cast a shadow into view. Tests against it are conservative: they may keep a caster
+//! whose shadow is not visible, but never cull one whose shadow is.
 
 mod batch;
 mod planes;

@@ -3,7 +3,7 @@
 use crate::settings::MapFormat;
 use crate::{FitError, checks};
 
-/// How a map stores its depths of 0..=1, whatever the format is called.
+/// How a map stores its depths of 0..=1, independent of the format's name in a graphics API.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum DepthStorage {
@@ -29,9 +29,9 @@ impl From<MapFormat> for DepthStorage {
 }
 
 /// Smallest depth difference, in metres, that a map resolves everywhere in its range of
-/// `depth_range` metres (1 gives it in units of the stored depth). For floats it is the step at
-/// the end of the range where they are coarsest: the far end, and with reversed depth the near
-/// end. A range that is not finite gives a step that is not.
+/// `depth_range` metres (1 gives it in units of the stored depth). For floats it is the step at the
+/// end of the range where they are coarsest: the far end, and with reversed depth the near end. A
+/// range that is not finite gives a step that is not finite.
 pub fn depth_step(storage: impl Into<DepthStorage>, depth_range: f32) -> f32 {
     (step(storage.into(), 1.0) * f64::from(depth_range)) as f32
 }
@@ -62,9 +62,10 @@ fn step(storage: DepthStorage, depth: f64) -> f64 {
 }
 
 /// Step of floats with the given number of significant bits at a depth: 2^(exponent + 1 - bits),
-/// but at least 2^least. Depth 1 is the end of the range and counts to the numbers below it.
+/// but at least 2^least. Depth 1 is the end of the range and has the step of the numbers just below
+/// it.
 fn float_step(depth: f64, bits: i32, least: i32) -> f64 {
-    // An f32 widened to f64 is never subnormal, so the exponent's field says it all.
+    // An f32 widened to f64 is never subnormal, so the exponent bits alone give the exponent.
     let exponent = ((depth.to_bits() >> 52) as i32 - 1023).min(-1);
     let power = (exponent + 1 - bits).max(least);
     f64::from_bits(((power + 1023) as u64) << 52)

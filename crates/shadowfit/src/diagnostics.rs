@@ -1,8 +1,8 @@
-//! How good a fit is, as numbers that any engine can compute: pure functions of it.
+//! How good a fit is, as numbers that any engine can compute: pure functions of the fit.
 //!
-//! What a map blurs is measured in *screen pixels per shadow texel along the worse axis*: above
-//! one, its texels show as jagged edges. Beside it stand what the map covers, how much of it is
-//! used, how finely it stores depth and how far a bias is from acne.
+//! A map's sharpness is measured in *screen pixels per shadow texel along the worse axis*: above
+//! one, texels show as jagged edges. Other figures say what the map covers, how much of it is used,
+//! how finely it stores depth and how far a bias is from acne.
 
 mod acne;
 mod coverage;
@@ -30,7 +30,7 @@ pub struct PixelsPerTexel {
 /// `point` (metres) and `normal` (any length) are in world axes, the point and the input of
 /// `clip_from_world` (the **camera's**, any depth range) **relative to the fit's origin**;
 /// `viewport` is the picture's size in pixels. `None` where the point is not in front of the
-/// camera, or where the surface is edge-on to the light and its texels have no end.
+/// camera, or where the surface is edge-on to the light, so that its texels are infinitely long.
 ///
 /// # Errors
 ///
@@ -71,8 +71,8 @@ pub fn pixels_per_texel(
     Ok(Some(PixelsPerTexel { worse_axis: greatest_singular_value(along_u, along_v) as f32, area: area as f32 }))
 }
 
-/// Below this cosine between normal and light a surface is edge-on to the light: it is the
-/// rounding of f32 axes.
+/// Below this cosine between normal and light a surface counts as edge-on to the light: f32 axes
+/// are rounded by as much.
 const EDGE_ON_COSINE: f64 = 1e-6;
 
 /// Two unit vectors that span the plane with the given unit normal.

@@ -1,5 +1,5 @@
-//! The least sphere around a view: of a symmetric frustum by a formula, of any points by
-//! construction. [`fits::sphere`](crate::fits::sphere) derives both.
+//! The least sphere around a view: by a formula for a symmetric frustum, by construction for any
+//! points. [`fits::sphere`](crate::fits::sphere) derives both.
 
 use glam::DVec3;
 
@@ -12,8 +12,8 @@ pub(crate) struct EnclosingSphere {
     pub(crate) radius: f64,
 }
 
-/// Share of a half diagonal by which the four may differ for the centre to lie on the axis: a few
-/// roundings of f32 corners.
+/// Share of a half diagonal by which the four half diagonals may differ for the frustum to count as
+/// symmetric: a few roundings of f32 corners.
 pub(crate) const SYMMETRY: f64 = 1e-6;
 
 /// A frustum whose rectangles are symmetric about one axis and perpendicular to it, so that the
@@ -47,7 +47,7 @@ impl SymmetricFrustum {
         if is_symmetric && length > 0.0 { Some(Self { near, axis, length, radii: (r0, r1) }) } else { None }
     }
 
-    /// The sphere of the part between two shares of the axis.
+    /// The sphere of the part between two positions on the axis, as shares of its length.
     pub(crate) fn sphere(&self, from: f64, to: f64) -> EnclosingSphere {
         let radius = |t: f64| self.radii.0 * (1.0 - t) + self.radii.1 * t;
         // Which end is the wider one does not matter to the formula.
@@ -61,8 +61,8 @@ impl SymmetricFrustum {
 /// Share of a squared radius by which a point may lie outside and still count as inside.
 const INSIDE: f64 = 1e-12;
 
-/// Least sphere around points: any sphere that leaves a point out is made anew with that point on
-/// its surface, up to four of which fix it.
+/// Least sphere around points: when a point lies outside the sphere so far, the sphere is built
+/// anew with that point on its surface; up to four such points determine it.
 pub(crate) fn minimal(points: &[DVec3]) -> EnclosingSphere {
     let mut support = [DVec3::ZERO; 4];
     grow(points, &mut support, 0)
@@ -83,7 +83,7 @@ fn grow(points: &[DVec3], support: &mut [DVec3; 4], fixed: usize) -> EnclosingSp
     sphere
 }
 
-/// The least sphere with up to four points on its surface; of negative radius for none.
+/// The least sphere with up to four points on its surface; without points, one of negative radius.
 fn through(points: &[DVec3]) -> EnclosingSphere {
     let Some(first) = points.first() else { return EnclosingSphere { centre: DVec3::ZERO, radius: -1.0 } };
     // The centre is first + Σ λᵢ eᵢ with 2 eᵢ·(Σ λⱼ eⱼ) = eᵢ·eᵢ, solved by Gram-Schmidt: each new

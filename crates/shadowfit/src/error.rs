@@ -55,13 +55,13 @@ pub enum FitError {
         /// The w that the matrix gives there.
         w: f64,
     },
-    /// A perspective matrix has its near and far planes at the other ends of the depth range than the
-    /// convention that was named for it.
+    /// A perspective matrix has its near and far planes at the opposite ends of the depth range from
+    /// those of the stated convention.
     OtherDepth {
-        /// The convention that was named.
+        /// The convention that was stated.
         named: DepthConvention,
-        /// Whether the matrix has reversed depth: near at 1, far at 0. If not, it is plain: 0..1 or
-        /// -1..1, which a matrix does not tell.
+        /// Whether the matrix has reversed depth: near at 1, far at 0. If not, its depth is plain:
+        /// 0..1 or -1..1, which cannot be told from a matrix.
         is_reversed: bool,
     },
     /// The frustum has no volume, or its box in the light's axes has no extent.
@@ -85,19 +85,19 @@ pub enum FitError {
     WorkspaceTooSmall {
         /// Number of elements given.
         given: usize,
-        /// Number of elements that the call needs at least.
+        /// Least number of elements that the call needs.
         required: usize,
     },
-    /// The input has another number of elements than what it is to go with.
+    /// The input's number of elements differs from that of the data that it belongs to.
     CountMismatch {
         /// Name of the number.
         input: &'static str,
         /// Its value.
         given: usize,
-        /// The value that would go.
+        /// The value that is expected.
         expected: usize,
     },
-    /// A matrix is not an orthographic view-projection of the light that it is said to be of.
+    /// A matrix is not an orthographic view-projection of the stated light.
     NotOrthographic {
         /// What is wrong with it.
         why: &'static str,

@@ -1,5 +1,5 @@
-//! The figures that a tool shows live: plain numbers, filled by whoever measured them, and the tints
-//! by which pictures and tables tell maps apart.
+//! The figures that a tool shows live: plain numbers, filled in by the code that measures them, and
+//! the tints that tell maps apart in pictures and tables.
 
 use glam::Vec3;
 
@@ -73,7 +73,7 @@ pub struct MapFigures {
     pub depth_range: f32,
     /// Smallest depth difference that the map's format resolves everywhere in the range, in metres.
     pub depth_step: f32,
-    /// Casters that culling left to be drawn.
+    /// Casters that are left after culling.
     pub casters: Option<u32>,
     /// Draw calls of its shadow pass.
     pub draws: Option<u32>,

@@ -1,7 +1,7 @@
 //! The part of the world that a camera sees, as eight corners relative to the eye.
 //!
 //! Fits need nothing else of a camera. The corners are relative because world coordinates rounded
-//! to f32 lose 1e-4 of a fit already a few hundred metres from the origin.
+//! to f32 cost 1e-4 of a fit's precision already a few hundred metres from the origin.
 
 use glam::{DMat4, DVec3, DVec4, Mat4, Vec3};
 
@@ -35,15 +35,15 @@ pub struct ViewFrustum {
 /// Clip x and y of the corners, in their order.
 pub(crate) const CORNERS_XY: [(f64, f64); 4] = [(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)];
 
-/// Below this share of its terms the w of a far corner is rounding of an f32 matrix, and the far
-/// plane counts as infinite. It is a few times 2⁻²⁴.
+/// Below this share of its terms the w of a far corner is rounding noise of an f32 matrix, and the
+/// far plane counts as infinite. It is a few times 2⁻²⁴.
 const INFINITE_W_F32: f64 = 1.0 / 4_194_304.0;
 
 /// The same for f64 matrices: a few times 2⁻⁵³.
 const INFINITE_W_F64: f64 = 1.0 / 2_251_799_813_685_248.0;
 
-/// Share by which the w of a perspective differs between its planes at least; what differs less may be
-/// an orthographic matrix that was inverted in f32.
+/// Least share by which the w of a perspective differs between its planes; a matrix with a smaller
+/// difference may be an orthographic one that was inverted in f32.
 const PERSPECTIVE: f64 = 1e-4;
 
 impl ViewFrustum {
@@ -53,21 +53,20 @@ impl ViewFrustum {
     /// A far plane beyond `max_distance` (view depth in metres), an infinite one included, is
     /// brought to it. Give `f32::MAX` to keep any finite far plane.
     ///
-    /// A perspective tells whether its depth is reversed, and is refused where `depth` says
-    /// otherwise. Which way the depth of an orthographic matrix runs, and whether a range is 0..1 or
-    /// -1..1, no matrix tells: with the wrong one the view looks backward, or its near plane is at
-    /// half or twice the distance.
+    /// A perspective matrix shows whether its depth is reversed, and is refused where `depth` says
+    /// otherwise. Neither the direction of an orthographic matrix's depth, nor whether a range is
+    /// 0..1 or -1..1, can be told from a matrix: with the wrong convention the view looks backward,
+    /// or its near plane is at half or twice the distance.
     ///
     /// # Precision
     ///
-    /// An f32 matrix rounds each element by up to ε = 2⁻²⁴ of itself. At the far plane w = 1/far
-    /// is then the difference of two elements near 1/near (unless depth is reversed, where it is
-    /// one element by itself). A corner c relative to the eye moves by no more than
-    /// 4 ε r (|c| + |eye|), to first order in ε r, with r = far/near at the far corners and 1 at
-    /// the near ones, and with reversed depth r = 1 at all of them; an extent of a fitted box
-    /// moves by twice the worst of that. A matrix that was also *inverted* in f32 is worse by its
-    /// condition. Prefer [`Self::from_camera`], or [`Self::from_eye_from_clip`], for which |eye|
-    /// drops out.
+    /// An f32 matrix rounds each element by up to ε = 2⁻²⁴ of itself. At the far plane w = 1/far is
+    /// then the difference of two elements near 1/near (unless depth is reversed, where it is one
+    /// element by itself). A corner c relative to the eye moves by no more than 4 ε r
+    /// (|c| + |eye|), to first order in ε r, with r = far/near at the far corners and 1 at the near ones,
+    /// and with reversed depth r = 1 at all of them; an extent of a fitted box moves by twice the
+    /// worst of that. A matrix that was also *inverted* in f32 is worse by its condition number.
+    /// Prefer [`Self::from_camera`], or [`Self::from_eye_from_clip`], for which |eye| drops out.
     ///
     /// # Errors
     ///
@@ -85,7 +84,7 @@ impl ViewFrustum {
     /// The frustum behind an f32 matrix from clip space to world axes **relative to the eye**
     /// (the inverse of a projection times a rotation), and the eye's position.
     ///
-    /// As [`Self::from_world_from_clip`] otherwise; the distance from the world's origin falls out
+    /// As [`Self::from_world_from_clip`] otherwise; the distance from the world's origin drops out
     /// of its error bound.
     ///
     /// # Errors
@@ -152,12 +151,12 @@ impl ViewFrustum {
         (start * (1.0 - t) + end * t).as_vec3()
     }
 
-    /// The frustum itself, if a fit can use it.
+    /// Returns the frustum if a fit can use it.
     pub(crate) fn checked(self) -> Result<Self, FitError> {
         self.check().map(|()| self)
     }
 
-    /// Whether a fit can use the frustum: the fields are public, so anyone may fill them.
+    /// Checks that a fit can use the frustum: the fields are public, so they may hold anything.
     pub(crate) fn check(&self) -> Result<(), FitError> {
         checks::point("the frustum's origin", self.origin)?;
         check_corners(&self.corners)?;
@@ -172,13 +171,13 @@ impl ViewFrustum {
 /// Refuses corners that are not finite or too far away.
 #[inline(always)]
 pub(crate) fn check_corners(corners: &[Vec3; 8]) -> Result<(), FitError> {
-    // One pass that tells good corners, another only to name a bad one.
+    // One pass to check the corners, another only to name a bad one.
     let limit = MAX_LENGTH as f32;
     let is_good = |c: &Vec3| (c.x.abs() <= limit) & (c.y.abs() <= limit) & (c.z.abs() <= limit);
     if corners.iter().fold(true, |all, corner| all & is_good(corner)) { Ok(()) } else { name_bad(*corners) }
 }
 
-/// Names the corner that is no good.
+/// Names the bad corner.
 #[cold]
 #[inline(never)]
 fn name_bad(corners: [Vec3; 8]) -> Result<(), FitError> {
@@ -194,7 +193,7 @@ pub(crate) fn check_extent(corners: &[Vec3; 8], near: f32, far: f32) -> Result<(
     if volume(corners) > 0.0 { Ok(()) } else { Err(empty(*corners)) }
 }
 
-/// What is said of corners without a volume.
+/// The error for corners without a volume.
 #[cold]
 #[inline(never)]
 fn empty(corners: [Vec3; 8]) -> FitError {
@@ -213,11 +212,12 @@ fn volume(corners: &[Vec3; 8]) -> f64 {
     across.dot(axis).abs()
 }
 
-/// What turns clip corners into world positions relative to the eye.
+/// The transform of clip corners into world positions relative to the eye.
 struct Unprojection {
     matrix: DMat4,
     eye: DVec3,
-    /// What to subtract from the matrix's output: the eye, or zero where it is relative already.
+    /// Subtracted from the matrix's output: the eye, or zero where the output is relative to it
+    /// already.
     offset: DVec3,
     depth: DepthConvention,
     infinite_w: f64,
@@ -254,7 +254,7 @@ impl Unprojection {
         ViewFrustum { origin: self.eye, corners, near, far, forward: forward.as_vec3() }.checked()
     }
 
-    /// Refuses a perspective whose depth runs the other way than its convention says.
+    /// Refuses a perspective whose depth runs in the opposite direction to its convention.
     ///
     /// A perspective's w is one over the view depth, up to a factor, so it falls from the near plane
     /// to the far one: toward 1 with plain depth, 0..1 and -1..1 alike, and toward 0 with reversed

@@ -1,9 +1,9 @@
 //! The world's texel grid: what keeps a map's texels in place while the camera moves.
 //!
-//! A grid has one texel size and one light direction; its lines are counted from the world's
-//! origin in f64, so that they are the same lines wherever the eye is. Texel sizes step by eighths
-//! of an octave: relative to the content and never by a world unit, so that a scene in centimetres
-//! behaves like one in kilometres.
+//! A grid has one texel size and one light direction; its lines are counted from the world's origin
+//! in f64, so that they are the same lines wherever the eye is. Texel sizes step by eighths of an
+//! octave: relative to the extent of the content and not to a world unit, so that a scene in
+//! centimetres behaves like one in kilometres.
 
 use glam::{DVec2, DVec3};
 
@@ -11,8 +11,8 @@ use crate::axes::LightAxes;
 use crate::rule::FitRule;
 use crate::volume::{Grid, ROUNDING, Volume};
 
-/// What an extent may lie above a step and still be rounded down to it, as a share of it: the noise
-/// of f32 corners must not choose between two steps.
+/// How far an extent may lie above a step and still be rounded down to it, as a share of the step:
+/// the noise of f32 corners must not choose between two steps.
 const NOISE: f64 = 1e-5;
 
 /// 2^(k/8) for the steps of one octave and the next one's first.
@@ -32,10 +32,10 @@ const OCTAVE: [f64; 9] = [
 /// the lengths are metres, positive and normal.
 #[inline]
 pub(crate) fn quantised(length: f64) -> f64 {
-    // The power of two below it, and what it is a multiple of that.
+    // The power of two below it, and the ratio to that.
     let octave = f64::from_bits(length.to_bits() & EXPONENT);
     let least = f64::from_bits(length.to_bits() & !EXPONENT | 1.0_f64.to_bits()) * (1.0 - NOISE);
-    // The bits of positive numbers have their order, and are compared faster.
+    // The bits of positive numbers have the same order as the numbers, and are compared faster.
     let shorter = OCTAVE[..8].iter().filter(|step| step.to_bits() < least.to_bits()).count();
     OCTAVE[shorter] * (1.0 + NOISE) * octave
 }
@@ -43,14 +43,14 @@ pub(crate) fn quantised(length: f64) -> f64 {
 /// The bits of an f64's exponent.
 const EXPONENT: u64 = f64::INFINITY.to_bits();
 
-/// The greatest whole number that is no greater; the same bits as libm's, without a call where it matters.
+/// The floor of a number; the same bits as libm's, without a function call in the common case.
 #[inline]
 pub(crate) fn floor(x: f64) -> f64 {
     // Beyond this all numbers are whole, and those below it lose their fraction when it is added.
     const WHOLE: f64 = 4_503_599_627_370_496.0;
     let whole = WHOLE.copysign(x);
     let near = x + whole - whole;
-    // No branch: which way a number is rounded cannot be predicted.
+    // No branch: the direction of rounding is unpredictable.
     let floor = near - f64::from(u8::from(near > x));
     if x.abs() < WHOLE { floor.copysign(x) } else { x }
 }
@@ -61,12 +61,12 @@ pub(crate) fn anchor(axes: &LightAxes, origin: DVec3) -> DVec3 {
     axes.project(origin)
 }
 
-/// Steps of a map's depth range in its length: near and far plane stay where they are until what
-/// they hold has moved by about one of them.
+/// Steps in the length of a map's depth range: near and far plane stay where they are until the
+/// content has moved by about one step.
 const DEPTH_STEPS: f64 = 16.0;
 
 /// Rounds a volume's extents across the light up and moves it to the world's grid, so that it still
-/// holds what it held, with the kernel's texels around it.
+/// holds its content, with the border's texels around it.
 #[inline(always)]
 pub(crate) fn snap(volume: &mut Volume, origin: DVec3, rule: &FitRule) -> Grid {
     let (grid, min, max) = snapped(&volume.axes, volume.min, volume.max, origin, rule);
@@ -74,20 +74,20 @@ pub(crate) fn snap(volume: &mut Volume, origin: DVec3, rule: &FitRule) -> Grid {
     grid
 }
 
-/// Texels that are left for what a map on the grid must hold.
+/// Texels that are left for the content of a map on the grid.
 pub(crate) fn usable(rule: &FitRule) -> DVec2 {
     // One texel is lost to the shift onto the grid.
     rule.resolution.as_dvec2() - (2.0 * rule.border + 1.0)
 }
 
-/// The same for the corners of a box: gives where it comes to lie, and its new corners.
+/// The same for the corners of a box: returns its position on the grid and its new corners.
 #[inline(always)]
 fn snapped(axes: &LightAxes, min: DVec3, max: DVec3, origin: DVec3, rule: &FitRule) -> (Grid, DVec3, DVec3) {
     let anchor = anchor(axes, origin);
     let resolution = rule.resolution.as_dvec2();
-    let kernel = rule.border;
+    let border = rule.border;
     let usable = usable(rule);
-    // The rounding of a map that is larger than what it holds is that of its own extent.
+    // A map that is larger than its content is rounded by its own extent.
     let size = (max - min).truncate();
     let pad = ROUNDING * (size * resolution / usable).max_element();
     let size = size + 2.0 * pad;
@@ -98,15 +98,16 @@ fn snapped(axes: &LightAxes, min: DVec3, max: DVec3, origin: DVec3, rule: &FitRu
         size = size.max(DVec2::new(quantised(limited.x), quantised(limited.y)));
     }
     let texel = size / usable;
-    let line = (min.truncate() - pad + anchor.truncate()) / texel - kernel;
+    let line = (min.truncate() - pad + anchor.truncate()) / texel - border;
     let first = DVec2::new(floor(line.x), floor(line.y));
     let corner = first * texel - anchor.truncate();
     let grid = Grid { first, texel, z: (min.z + anchor.z, max.z + anchor.z) };
     (grid, corner.extend(min.z), (corner + texel * resolution).extend(max.z))
 }
 
-/// Puts the near and far plane of a volume on the grid to a range that holds them: one that is held
-/// from an earlier frame, while it does and is no more than `waste` times as long as a new one.
+/// Puts the near and far plane of a volume on the grid to a range that holds them: the range held
+/// from an earlier frame as long as it still holds them and is at most `waste` times as long as a
+/// new one.
 #[inline(always)]
 pub(crate) fn stabilise_depth(volume: &mut Volume, origin: DVec3, held: Option<(f64, f64)>, waste: f64) {
     let anchor = anchor(&volume.axes, origin).z;
@@ -118,8 +119,8 @@ pub(crate) fn stabilise_depth(volume: &mut Volume, origin: DVec3, held: Option<(
 }
 
 /// A depth range that holds another, both along the light's z from the world's origin, in metres:
-/// the held one, or a new one in steps of its length. One that replaces a held one has room for more
-/// of what made it necessary.
+/// the held one, or a new one in steps of its length. A new range that replaces a held one has spare
+/// room at both ends.
 pub(crate) fn stabilised_depth(held: Option<(f64, f64)>, (low, high): (f64, f64), waste: f64) -> (f64, f64) {
     let length = high - low;
     // A larger range rounds more.
@@ -134,7 +135,7 @@ pub(crate) fn stabilised_depth(held: Option<(f64, f64)>, (low, high): (f64, f64)
     let held_length = held.1 - held.0;
     let held_rounding = ROUNDING * held_length;
     let is_enough = held.0 <= low - held_rounding && held.1 >= high + held_rounding;
-    // A new range would be longer than what it holds, so that it need not even be made here.
+    // A new range would be longer than its content, so it need not be computed here.
     if is_enough && held_length <= length * waste {
         return held;
     }
@@ -143,7 +144,7 @@ pub(crate) fn stabilised_depth(held: Option<(f64, f64)>, (low, high): (f64, f64)
     if is_enough && !is_wasteful { held } else { renewed }
 }
 
-/// Free space on either side of a renewed depth range, as a share of what it must hold: about a
+/// Free space on either side of a renewed depth range, as a share of its content: it costs about a
 /// third of a bit of depth.
 const ROOM: f64 = 0.125;
 
@@ -169,7 +170,7 @@ pub struct GridAnchor {
 pub(crate) const MAX_LINE: f64 = 4_503_599_627_370_496.0;
 
 impl GridAnchor {
-    /// Of a map on the grid, if its lines can be counted.
+    /// The anchor of a map on the grid, if its grid lines are exact in f64.
     pub(crate) fn of(grid: &Grid) -> Option<Self> {
         let DVec2 { x, y } = grid.first;
         let is_whole = x.abs() < MAX_LINE && y.abs() < MAX_LINE;

@@ -1,22 +1,22 @@
-//! How deep the picture is: a histogram that the engine takes from its last depth buffer.
+//! The depths in the picture: a histogram that the engine computes from its last depth buffer.
 
 use glam::Vec3;
 
-/// Counts of visible points that face the light, in bins at even steps of log view depth, and
-/// optionally by how much finer texels they need than their depth alone says.
+/// Counts of visible points that face the light, in bins of equal log view depth, and optionally in
+/// classes by how much finer their texels must be than their depth alone requires.
 ///
 /// Fill it from the depth buffer of the frame before, as coarsely as you like (64 × 36 samples
-/// serve), leaving out the sky: [`Self::bin`] says where a point counts. It only chooses where the
-/// maps are split: a late or wrong histogram costs sharpness, never coverage.
+/// serve), leaving out the sky: [`Self::bin`] gives the bin of a point. The histogram only decides
+/// where the maps are split: a late or wrong histogram costs sharpness, never coverage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthHistogram<'a> {
     /// View depth at which the first bin begins, in metres; positive.
     pub near: f32,
     /// View depth at which the last bin ends, in metres.
     pub far: f32,
-    /// Counts: all depths of the first class, then all of the next.
+    /// Counts: all depths of the first class, then all of the second, and so on.
     pub bins: &'a [u32],
-    /// Number of classes of foreshortening, an octave each; 1 for depths alone.
+    /// Number of classes of foreshortening, each a factor of two wide; 1 for depths alone.
     pub classes: usize,
 }
 
@@ -49,7 +49,7 @@ pub struct DepthHistogram<'a> {
 /// # Ok::<(), FitError>(())
 /// ```
 ///
-/// They only choose where the maps are split. The first map still begins where shadows do and the last
+/// They only decide where the maps are split. The first map still begins where shadows do and the last
 /// one ends where they end, so late or wrong bounds cost sharpness, never coverage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthBounds {
@@ -78,8 +78,8 @@ pub fn needed_texel(right: Vec3, down: Vec3, direction: Vec3) -> f32 {
 }
 
 impl DepthHistogram<'_> {
-    /// Index into [`Self::bins`] for a visible point, `None` for one outside of the depths: its
-    /// view depth in metres and its class, `log2(depth · pixel / needed_texel)`, 0 if unknown.
+    /// Index into [`Self::bins`] for a visible point, `None` for one outside the depths: its view
+    /// depth in metres and its class, `log2(depth · pixel / needed_texel)`, 0 if unknown.
     pub fn bin(near: f32, far: f32, depth_bins: usize, classes: usize, depth: f32, class: f32) -> Option<usize> {
         if !(depth >= near && depth < far && near > 0.0) || depth_bins == 0 || classes == 0 {
             return None;
@@ -91,7 +91,7 @@ impl DepthHistogram<'_> {
         Some(class * depth_bins + depth_bin)
     }
 
-    /// Whether nothing was counted, or the depths make no sense: splits come from boxes then.
+    /// Whether nothing was counted, or the depths are invalid: splits are chosen by the boxes then.
     pub fn is_empty(&self) -> bool {
         let is_valid = self.near > 0.0 && self.near < self.far && self.far.is_finite();
         let is_whole = self.classes > 0 && self.bins.len().is_multiple_of(self.classes);

@@ -1,4 +1,4 @@
-//! Convex hull of points in the light's plane: what decides a rectangle, and nothing else does.
+//! Convex hull of points in the light's plane: all that the choice of a rectangle depends on.
 //!
 //! The hull is A. M. Andrew's monotone chain ("Another efficient algorithm for convex hulls in two
 //! dimensions", 1979). Points stream in; most fall inside the octagon of the extreme points seen
@@ -25,13 +25,14 @@ const DIRECTIONS: [DVec2; 8] = [
 pub(crate) struct HullBuilder<'a> {
     points: &'a mut [DVec2],
     len: usize,
-    /// The most extreme point in each of [`DIRECTIONS`]; the same corner twice is ordinary.
+    /// The most extreme point in each of [`DIRECTIONS`]; often one corner is the most extreme in
+    /// several.
     extremes: [DVec2; 8],
     reach: [f64; 8],
 }
 
 impl<'a> HullBuilder<'a> {
-    /// Points that the storage needs beyond those of the final hull, twice over.
+    /// Points that the storage needs beyond twice those of the final hull.
     pub(crate) const SLACK: usize = 64;
 
     pub(crate) fn new(points: &'a mut [DVec2]) -> Self {
@@ -50,7 +51,7 @@ impl<'a> HullBuilder<'a> {
         }
         (0..8).all(|i| {
             let (a, b) = (self.extremes[i], self.extremes[(i + 1) % 8]);
-            // Coinciding extremes span no edge and say nothing.
+            // Coinciding extremes span no edge.
             (b - a).perp_dot(p - a) >= 0.0
         }) && (0..8).all(|i| p.dot(DIRECTIONS[i]) <= self.reach[i])
     }
@@ -88,7 +89,7 @@ impl<'a> HullBuilder<'a> {
         self.len = hull(points, scratch);
     }
 
-    /// The storage, to begin anew.
+    /// Gives the storage back, to begin anew.
     pub(crate) fn into_storage(self) -> &'a mut [DVec2] {
         self.points
     }
@@ -129,10 +130,10 @@ fn hull(points: &mut [DVec2], scratch: &mut [DVec2]) -> usize {
     corners
 }
 
-/// Distance within which two points are one, as a share of the greatest coordinate. The direction
-/// of a shorter edge is rounding, by which a chain cannot tell left from right: it would keep
-/// corners far inside of the next ones. What is lost is a small part of the room that fits leave
-/// for rounding.
+/// Distance within which two points count as the same, as a share of the greatest coordinate. The
+/// direction of a shorter edge is rounding noise, from which a chain cannot tell left turns from
+/// right ones: it would keep corners far inside the next ones. The error is a small part of the
+/// room that fits leave for rounding.
 const SAME_PLACE: f64 = 1.0 / 1_073_741_824.0;
 
 /// Writes a chain of left turns, from the first to the last of the points, and gives its length.
@@ -147,7 +148,8 @@ fn chain(points: impl Iterator<Item = DVec2>, out: &mut [DVec2], same: f64) -> u
         while len >= 2 && (is_same(out[len - 1]) || (out[len - 1] - out[len - 2]).perp_dot(p - out[len - 2]) <= 0.0) {
             len -= 1;
         }
-        // A chain of n sorted points never outgrows n + 1 places with the other chain's corners.
+        // A chain of n sorted points, with the other chain's corners, never needs more than n + 1
+        // elements.
         if len < out.len() && !(len == 1 && is_same(out[0])) {
             out[len] = p;
             len += 1;

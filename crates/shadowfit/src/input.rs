@@ -1,4 +1,4 @@
-//! What a fit is told besides its settings: views, light, and boxes of the scene.
+//! The inputs of a fit besides its settings: views, light, and boxes of the scene.
 
 use glam::{DVec2, Vec3};
 
@@ -37,30 +37,30 @@ use crate::{Boxes, ViewFrustum};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitInput<'a> {
-    /// What is to be shadowed: one view, or several that share the maps (both eyes of a headset,
-    /// split screen). The first one's eye becomes the origin of the fit.
+    /// The views to be shadowed: one, or several that share the maps (both eyes of a headset, split
+    /// screen). The first one's eye becomes the origin of the fit.
     pub views: &'a [ViewFrustum],
     /// **Direction of travel** of the light in world axes, of any length: the negative of the
     /// direction toward the light.
     pub direction: Vec3,
-    /// Boxes around everything that shows shadows, for [`FitKind::Focused`](crate::settings::FitKind) and
-    /// for splits that look at the content. `None` when they are not known: everything in view
-    /// counts then. An empty slice means that nothing receives.
+    /// Boxes around everything that receives shadows, for [`FitKind::Focused`](crate::settings::FitKind)
+    /// and for splits that depend on the content. `None` when they are not known: everything in view
+    /// counts as a receiver then. An empty slice means that nothing receives.
     pub receivers: Option<Boxes<'a>>,
     /// Cones around the normals of each receiver's surfaces, or an empty slice when they are not
-    /// known: those that turn away from the light where the camera sees them are dark without a
-    /// map, so [`FitKind::Focused`](crate::settings::FitKind) passes them over.
+    /// known: surfaces that the camera sees and that face away from the light are dark without a
+    /// map, so [`FitKind::Focused`](crate::settings::FitKind) ignores them.
     pub receiver_cones: &'a [NormalCone],
-    /// Boxes around everything that throws shadows, which place the near plane: no caster in them is
-    /// lost. `None` when they are not known: the near plane is then moved toward the light by
+    /// Boxes around everything that casts shadows. They place the near plane: no caster in them is lost.
+    /// `None` when they are not known: the near plane is then moved toward the light by
     /// [`FitSettings::caster_extension`](crate::settings::FitSettings::caster_extension). An empty slice means
     /// that nothing casts.
     pub casters: Option<Boxes<'a>>,
-    /// What depths the last frame showed, for
+    /// The depths that the last frame showed, for
     /// [`SplitScheme::FromHistogram`](crate::settings::SplitScheme::FromHistogram).
     pub histogram: Option<DepthHistogram<'a>>,
-    /// Between which depths the last frame showed anything, if that is known: uniform, logarithmic
-    /// and practical splits are spread between them instead of over all that is in view.
+    /// Nearest and farthest depth that the last frame showed, if known: uniform, logarithmic and
+    /// practical splits are spread between them instead of over all that is in view.
     pub depth_bounds: Option<DepthBounds>,
 }
 
@@ -85,13 +85,13 @@ pub struct Workspace<'a> {
     pub(crate) storage: &'a mut [DVec2],
 }
 
-/// Corners that one box clipped to a view has at most: a convex body with six and six faces has no
-/// more than 2 · 12 - 4.
+/// Greatest number of corners of a box clipped to a view: a convex body with six and six faces has
+/// no more than 2 · 12 - 4.
 const CORNERS_PER_BOX: usize = 20;
 
 impl<'a> Workspace<'a> {
-    /// Number of elements that is enough for any fit of a number of boxes (receivers or casters,
-    /// whichever are more) in a number of views. Far less is used as a rule, since few boxes make the outline.
+    /// Number of elements that is enough for any fit of a number of boxes (receivers or casters, whichever are
+    /// more) in a number of views. Usually far less is used, since few boxes contribute to the outline.
     pub const fn required(boxes: usize, views: usize) -> usize {
         let pairs = boxes.saturating_mul(views);
         pairs

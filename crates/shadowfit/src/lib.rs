@@ -50,14 +50,14 @@
 //! [`bias`](FittedMap::bias), and takes positions relative to [`LightFit::origin`], which is the
 //! eye. Boxes need not be exact: one for each object is enough, and without any the maps cover the
 //! whole view. [`Workspace::required`] says how much storage the fits work in, from the number of
-//! boxes and of views; a `Vec` that is made once serves as well as an array.
+//! boxes and of views; a `Vec` that is allocated once works as well as an array.
 //!
 //! [`Technique::default`] is the one to begin with, and [`PRESETS`] has others by name, each with a
 //! line that says when to take it. The repository's `docs/MATHS.md` derives every fit, with pictures.
 //!
 //! # A single map
 //!
-//! Where nothing is known but the camera, [`fit`] is a function without a memory:
+//! Where only the camera is known, [`fit`] is a function without state:
 //!
 //! ```
 //! use shadowfit::glam::{DVec3, Vec3};
@@ -89,16 +89,16 @@
 //! | a view from a matrix, with its depth convention; both eyes of a headset | [`ViewFrustum`], [`FitInput::views`] |
 //! | one map, from the camera alone or with boxes | [`fit`], [`fits::fit_scene`], one algorithm a module in [`fits`] |
 //! | which casters to draw into a map | [`CasterVolume`], [`culling`] for spheres, oriented boxes, whole lists and tighter volumes |
-//! | splits by what the last frame showed | [`histogram`], [`FitInput::histogram`], [`FitInput::depth_bounds`] |
+//! | splits chosen by what the last frame showed | [`histogram`], [`FitInput::histogram`], [`FitInput::depth_bounds`] |
 //! | how many maps are enough | [`map_fitter::fewest_maps`] |
 //! | boxes that hug large meshes | `clusters` and [`normal_cone`], feature `alloc` |
-//! | casters that stand still drawn once | [`scroll`] |
-//! | a sun that moves without edges that crawl all day | [`light_steps`] |
+//! | static casters drawn only where the map is new | [`scroll`] |
+//! | a moving sun without crawling shadow edges | [`light_steps`] |
 //! | a proof that no map has a hole | [`verify`] |
 //! | biases in metres and depth for a filter of your own | [`Bias`], [`bias`] |
 //! | pixels per texel, depth steps, margin against acne | [`diagnostics`] |
-//! | f32 matrices for world positions, the matrix of other code as a fit | [`LightFit::world_matrices`], [`light_fit`] |
-//! | all knobs with unit, range and help, for panels and files | [`params`], [`tool`], [`figures`] |
+//! | f32 matrices for world positions, a fit from a matrix of other code | [`LightFit::world_matrices`], [`light_fit`] |
+//! | all parameters with unit, range and help, for panels and files | [`params`], [`tool`], [`figures`] |
 //! | a technique as Rust code | [`Technique::write_rust`] |
 //!
 //! # Conventions

@@ -1,7 +1,7 @@
 //! What every fit returns: the light's matrices and the box they store.
 //!
 //! All maps take positions relative to an origin in f64, so that they stay exact far from the
-//! world's own; [`LightFit::relative_to`] moves that origin.
+//! world's origin; [`LightFit::relative_to`] moves that origin.
 
 mod matrix;
 
@@ -40,8 +40,8 @@ pub struct LightFit {
     pub uv_from_world: Mat4,
     /// Least corner of the fitted box in light space, in metres.
     pub box_min: Vec3,
-    /// Greatest corner of the fitted box in light space, in metres. Its z is the near plane of
-    /// the map. The box fills the map but in the XNA fit, whose far plane lies one more box depth
+    /// Greatest corner of the fitted box in light space, in metres. Its z is the near plane of the
+    /// map. The box fills the map, except in the XNA fit, whose far plane lies one more box depth
     /// beyond `box_min`.
     pub box_max: Vec3,
     /// Size of one texel across the light, along u and v, in metres.
@@ -54,8 +54,9 @@ pub struct LightFit {
     pub depth: DepthConvention,
     /// What set the planes -x, +x, -y, +y, far and near of the box, in the map's axes.
     pub set_by: [Constraint; 6],
-    /// Whether no receiver is in view, so that the view itself stands in and the shadow pass may
-    /// be left out. Where no receivers are known, only maps without a part of the view are.
+    /// Whether no receiver is in view: the map is then fitted to the view itself, and its shadow
+    /// pass may be skipped. Where no receivers are known, only maps whose range has no part of the
+    /// view are empty.
     pub is_empty: bool,
 }
 
@@ -74,9 +75,9 @@ pub struct WorldMatrices {
     pub clip_from_world: Mat4,
 }
 
-/// Share of the map's extent by which [`LightFit::covers`] lets a point lie outside: the rounding
-/// of f32 texture coordinates, so that the frustum's own corners count as covered.
-const COVER_SLACK: f64 = 1e-6;
+/// Share of the map's extent by which a point may lie outside for [`LightFit::covers`]: the
+/// rounding of f32 texture coordinates, so that the frustum's own corners count as covered.
+const COVER_TOLERANCE: f64 = 1e-6;
 
 impl LightFit {
     /// Turns a fit's decision into matrices; refuses boxes that f32 matrices cannot hold.
@@ -128,9 +129,9 @@ impl LightFit {
         })
     }
 
-    /// The same map with its inputs relative to another world position, in metres. The
-    /// translation is made in f64 and rounded once. An origin that is not finite gives matrices
-    /// that are not.
+    /// The same map with its inputs relative to another world position, in metres. The translation
+    /// is computed in f64 and rounded once. An origin that is not finite gives matrices that are
+    /// not finite.
     #[must_use]
     pub fn relative_to(&self, new_origin: DVec3) -> Self {
         let moved = self.project(new_origin).as_vec3();
@@ -141,9 +142,9 @@ impl LightFit {
         fit
     }
 
-    /// World position of the light space's origin, in metres. A directional light has no
-    /// position; this is where the light's view matrix stands: the middle of the near plane, but
-    /// in the XNA fit the middle of the box's face away from the light.
+    /// World position of the light space's origin, in metres. A directional light has no position;
+    /// this is where the light's view matrix stands: the middle of the near plane, or in the XNA
+    /// fit the middle of the box's face away from the light.
     pub fn light_position(&self) -> DVec3 {
         self.origin + self.unproject(DVec3::ZERO)
     }
@@ -155,12 +156,12 @@ impl LightFit {
     }
 
     /// Whether a world position, in metres, lies inside what the map stores, to 1e-6 of the map's
-    /// extent. In the XNA fit that includes its empty farther half.
+    /// extent. In the XNA fit that includes the empty farther half of the map.
     pub fn covers(&self, point: DVec3) -> bool {
         let p = self.project(point);
         let (min, max) = self.clip_box();
-        let slack = (max - min) * COVER_SLACK;
-        p.cmpge(min - slack).all() && p.cmple(max + slack).all()
+        let tolerance = (max - min) * COVER_TOLERANCE;
+        p.cmpge(min - tolerance).all() && p.cmple(max + tolerance).all()
     }
 
     /// Corners of the box that the map stores, in world axes relative to [`Self::origin`], in

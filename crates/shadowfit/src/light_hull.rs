@@ -1,4 +1,4 @@
-//! The light-space hull: what a map must hold, as the light sees it.
+//! The light-space hull: what a map must hold, seen from the light.
 
 use glam::{DVec2, DVec3};
 
@@ -10,7 +10,8 @@ use crate::hull::HullBuilder;
 use crate::rule::Covers;
 use crate::view::{Range, box_corners};
 
-/// What a map must hold, as the light sees it: an outline across its axes and a range along them.
+/// What a map must hold, seen from the light: an outline across the light and a depth range along
+/// it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LightHull<'a> {
     pub(crate) axes: LightAxes,
@@ -20,7 +21,7 @@ pub(crate) struct LightHull<'a> {
     pub(crate) z: (f64, f64),
     /// Greatest distance from the origin, for the rounding of f32 coordinates.
     pub(crate) farthest: f64,
-    /// Whether nothing was found and the views' slices stand in.
+    /// Whether no receiver was found and the views' slices are used instead.
     pub(crate) is_empty: bool,
 }
 
@@ -44,8 +45,8 @@ impl<'a> Collector<'a> {
         self.hull.push(q.truncate())
     }
 
-    /// Whether a box lies inside of what has been collected so far, so that no part of it can
-    /// change the hull.
+    /// Whether a box lies inside what has been collected so far, so that no part of it can change
+    /// the hull.
     fn holds(&self, min: DVec3, max: DVec3) -> bool {
         !self.hull.is_empty()
             && box_corners(min, max).into_iter().all(|corner| {
@@ -61,7 +62,7 @@ impl<'a> Collector<'a> {
 }
 
 impl<'a> LightHull<'a> {
-    /// Of what a rule covers.
+    /// The hull of what a rule covers.
     pub(crate) fn of(
         covers: Covers,
         content: &Content,
@@ -75,15 +76,15 @@ impl<'a> LightHull<'a> {
         }
     }
 
-    /// Of the views' slices.
+    /// The hull of the views' slices.
     fn of_views(content: &Content, axes: LightAxes, range: Range, points: &'a mut [DVec2]) -> Result<Self, FitError> {
         let mut collector = Collector::new(axes, points);
         content.corners(range).try_for_each(|corner| collector.push(corner))?;
         collector.finish(false).checked()
     }
 
-    /// Of the receivers' boxes clipped to the views' slices; of the slices themselves where no
-    /// boxes are known or none is in view.
+    /// The hull of the receivers' boxes clipped to the views' slices; that of the slices themselves
+    /// where no boxes are known or none is in view.
     pub(crate) fn of_receivers(
         content: &Content,
         axes: LightAxes,

@@ -32,11 +32,11 @@ use crate::{FitError, LightFit, checks};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct LightStepSettings {
-    /// Greatest movement at the map's edge that is left out, in texels. 0 follows every change that is
-    /// more than rounding. Default: 1.
+    /// Greatest movement at the map's edge for which the light is still held, in texels. 0 follows
+    /// every change that is more than rounding. Default: 1.
     pub texels: f32,
-    /// Extent of the map that this is judged by, in texels: its width, or [`Self::extent_of`].
-    /// Default: 2048.
+    /// Extent of the map by which that movement is computed, in texels: its width, or
+    /// [`Self::extent_of`]. Default: 2048.
     pub extent: f32,
     /// Time of the cross-fade from the old direction to the new one, in seconds. 0 steps at once.
     /// While a fade runs no other step begins, so that two maps are enough: a light that moves on
@@ -72,8 +72,9 @@ impl LightStepSettings {
         self
     }
 
-    /// Extent of a fit that no point of its box outruns, along either axis of the map, in texels:
-    /// its longer side and its depth range together, by the shorter side of a texel.
+    /// Extent of a fit for which no point of its box moves farther than predicted, along either
+    /// axis of the map, in texels: its longer side and its depth range together, by the shorter
+    /// side of a texel.
     pub fn extent_of(fit: &LightFit) -> f32 {
         let (texel, resolution) = (fit.texel_size, fit.resolution.as_vec2());
         let side = (texel.x * resolution.x).max(texel.y * resolution.y);
@@ -93,7 +94,7 @@ impl LightStepSettings {
     }
 }
 
-/// State of a held light: plain data, that of a light not yet seen by default.
+/// State of a held light, as plain data. By default it has seen no light yet.
 ///
 /// ```
 /// use shadowfit::glam::Vec3;
@@ -174,7 +175,8 @@ impl LightSteps {
         Ok(LightStep { direction: next.held.unwrap_or(new), previous: next.previous, blend })
     }
 
-    /// Forgets the light, for a cut of the camera or of time: the next direction is taken as it is.
+    /// Forgets the light, for a jump of the camera or of time: the next direction is taken as it
+    /// is.
     pub fn reset(&mut self) {
         *self = Self::default();
     }
@@ -184,7 +186,7 @@ impl LightSteps {
         let Some(previous) = self.previous else { return Ok(*self) };
         checks::unit("the direction that is faded out", previous)?;
         let blend = checks::within("the blend of the light's step", self.blend, 0.0, 1.0)?;
-        // Without a time to fade, whatever fade was running is over.
+        // With a fade time of zero, a running fade ends.
         let blend = if fade > 0.0 { blend + seconds / f64::from(fade) } else { 1.0 };
         Ok(if blend < 1.0 { Self { blend, ..*self } } else { Self { previous: None, blend: 0.0, ..*self } })
     }

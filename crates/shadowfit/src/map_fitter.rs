@@ -1,4 +1,4 @@
-//! Several maps for one view, kept still from frame to frame.
+//! Several maps for one view, kept stable from frame to frame.
 //!
 //! A [`MapFitter`] remembers what it fitted last, as plain data: the splits between the maps and,
 //! with [`Stabilise::Hysteresis`], the maps themselves. Everything else follows from the input.
@@ -33,7 +33,7 @@ pub struct MapFitter {
     /// The light's unit direction of travel that the maps were made for: input that differs from it by
     /// rounding alone changes nothing.
     direction: Option<DVec3>,
-    /// What the state was made with; any change begins anew.
+    /// The technique that the state was computed with; any change resets it.
     technique: Option<Technique>,
 }
 
@@ -42,11 +42,11 @@ pub struct MapFitter {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct HeldSplits {
     splits: Splits,
-    /// Depths over which they were spread, in metres.
+    /// View depths over which they were distributed, in metres.
     spread: (f64, f64),
     /// View depth at which shadows ended when they were chosen, in metres.
     far: f32,
-    /// Frames since they were last compared with what would be best.
+    /// Frames since they were last compared with the best splits.
     age: u32,
 }
 
@@ -60,8 +60,8 @@ struct HeldDepth {
     z: (f64, f64),
 }
 
-/// Frames between two comparisons of held splits with what would be best, which costs most of a
-/// frame's fit. Whether they reach as far as they must is looked at in each.
+/// Frames between two comparisons of held splits with the best ones, which take most of the time of
+/// a fit. Whether they reach as far as they must is checked in each frame.
 const COMPARE_EVERY: u32 = 8;
 
 impl MapFitter {
@@ -81,9 +81,9 @@ impl MapFitter {
     ///
     /// As [`fit_scene`](crate::fits::fit_scene), for the settings of each map;
     /// [`FitError::OutOfRange`] for a number of maps outside 1..=8, an overlap or λ outside 0..=1
-    /// and hold settings that make no sense; [`FitError::NearNotBelowFar`] for manual splits that
-    /// do not ascend. Manual splits before or beyond what is shadowed are no error: a map without a
-    /// range [is empty](LightFit::is_empty). An error leaves the fitter as it was.
+    /// and hold settings that are out of range; [`FitError::NearNotBelowFar`] for manual splits
+    /// that do not ascend. Manual splits before or beyond what is shadowed are not an error: a map
+    /// without a range [is empty](LightFit::is_empty). An error leaves the fitter as it was.
     pub fn fit(
         &mut self,
         input: &FitInput,
@@ -95,11 +95,11 @@ impl MapFitter {
         Ok(maps)
     }
 
-    /// [`Self::fit`] into maps that are at hand, such as the last frame's, which saves copies.
+    /// [`Self::fit`] into existing maps, such as the last frame's, which saves copies.
     ///
     /// # Errors
     ///
-    /// As [`Self::fit`]. After an error the maps are of no use.
+    /// As [`Self::fit`]. After an error the maps must not be used.
     pub fn fit_into(
         &mut self,
         input: &FitInput,
@@ -143,13 +143,14 @@ impl MapFitter {
     }
 }
 
-/// The fewest maps that do: the least count, up to that of the technique, with which the best splits
-/// leave a 95% quantile of pixels per texel at most `waste` times that of the technique's count.
+/// The fewest maps that are enough: the least count, up to that of the technique, for which the 95%
+/// quantile of pixels per texel with the best splits is at most `waste` times that with the
+/// technique's count.
 ///
-/// What is visible is told by the histogram where the technique's splits use one, else by the boxes;
-/// other splits count as [`SplitScheme::FromBoxes`](crate::settings::SplitScheme::FromBoxes) here. Costs about
-/// as much as choosing the splits of one frame: ask when a level begins, or now and then, and set
-/// [`Technique::count`] by it.
+/// What is visible is taken from the histogram where the technique's splits use one, else estimated from the
+/// boxes; other split schemes count as [`SplitScheme::FromBoxes`](crate::settings::SplitScheme::FromBoxes)
+/// here. Costs about as much as choosing the splits of one frame: ask when a level begins, or now and then,
+/// and set [`Technique::count`] by it.
 ///
 /// ```
 /// # use shadowfit::glam::{DVec2, DVec3, Vec3};
@@ -209,7 +210,7 @@ fn choose_splits(held: Option<HeldSplits>, chooser: &Chooser) -> Result<HeldSpli
 
 /// The rules of all maps.
 struct Rules {
-    /// Of maps without an override.
+    /// The rule of maps without an override.
     most: FitRule,
     own: [Option<FitRule>; MAX_MAPS],
 }
@@ -237,7 +238,8 @@ struct Frame<'a, 'b> {
 impl Frame<'_, '_> {
     /// All maps of this frame alone.
     fn fit(&mut self, maps: &mut [FittedMap]) -> Result<(), FitError> {
-        // Each step of one map waits for the step before it; those of several maps side by side do not.
+        // Each step of one map depends on the step before it; interleaving several maps hides that
+        // latency.
         let mut volumes = [None; MAX_MAPS];
         for (i, volume) in volumes.iter_mut().enumerate().take(maps.len()) {
             self.fit_anew(i, volume)?;
@@ -249,7 +251,7 @@ impl Frame<'_, '_> {
         Ok(())
     }
 
-    /// What one map holds in this frame alone, written where it stands, since it is large.
+    /// What one map covers in this frame alone, written in place, since it is large.
     fn fit_anew(&mut self, map: usize, volume: &mut Option<Volume>) -> Result<(), FitError> {
         let is_snapped = self.technique.stabilise == Stabilise::Snap;
         let placement = if is_snapped { Placement::OnGrid } else { Placement::Tight };
@@ -307,7 +309,7 @@ impl Frame<'_, '_> {
         Range { near, far: splits[map + 1] }
     }
 
-    /// Writes a map where it stands, since it is large.
+    /// Writes a map in place, since it is large.
     fn write(&self, map: &mut FittedMap, volume: &Volume, i: usize) -> Result<(), FitError> {
         let (rule, slice) = (self.rules.of(i), self.slice_range(i));
         let is_empty = is_empty(self.content.views, slice);
@@ -333,8 +335,8 @@ fn whole_range(input: &FitInput, distance: f32) -> Range {
     Range { near, far: far.min(distance) }
 }
 
-/// The view depths that a map is fitted to: a shader's rounded view depth may put a point into the
-/// map beside the one that it belongs to.
+/// The view depths that a map is fitted to, widened: by a shader's rounded view depth a point may
+/// read the map next to its own.
 fn widened(slice: Range) -> Range {
     let rounding = slice.far.abs() * DEPTH_ROUNDING;
     Range { near: slice.near - rounding, far: slice.far + rounding }

@@ -32,9 +32,9 @@ pub struct FittedMap {
 }
 
 impl FittedMap {
-    /// Every caster that can throw a shadow through this map on what views see of it, relative to the
+    /// Every caster that can cast a shadow through this map on what views see of it, relative to the
     /// fit's origin: the [swept volume](CasterVolume::swept) of the map's depths, for the technique's
-    /// filter and this map's bias. A map without a range has the volume that holds nothing.
+    /// filter and this map's bias. A map without a range has the empty volume.
     ///
     /// It is for maps that are drawn anew in each frame and read by view depth. A map that is kept, or
     /// [scrolled](crate::scroll::Scroll), shows casters to later frames too: cull those by
@@ -90,7 +90,7 @@ impl FittedMap {
     }
 }
 
-/// Whether each map of a technique holds all of its slice with what the filter reads around it.
+/// Whether each map of a technique covers all of its slice with what the filter reads around it.
 fn holds_slices(technique: &Technique) -> bool {
     let needed = f64::from(reach(technique.filter) + technique.bias.normal_offset);
     let holds = |kind: FitKind| {
@@ -121,7 +121,7 @@ impl Deref for FittedMaps {
     type Target = [FittedMap];
 
     fn deref(&self) -> &[FittedMap] {
-        // A number that was read from a file may be any.
+        // A count that was read from a file may have any value.
         &self.maps[..self.count.min(MAX_MAPS)]
     }
 }

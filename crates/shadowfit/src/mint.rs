@@ -2,7 +2,7 @@
 //! to and from (feature `mint`).
 //!
 //! They are written against mint itself, so that they do not depend on how a release of glam calls
-//! its own. Nothing is checked here: the fits refuse what makes no sense.
+//! its own. Nothing is checked here: the fits refuse bad values.
 //!
 //! ```
 //! use shadowfit::mint::{dvec3, matrix, vec3};
@@ -82,7 +82,7 @@ pub fn matrix(m: &Mat4) -> ColumnMatrix4<f32> {
     ColumnMatrix4 { x: column(m.x_axis), y: column(m.y_axis), z: column(m.z_axis), w: column(m.w_axis) }
 }
 
-/// [`ViewFrustum::from_world_from_clip_f64`] for a matrix and an eye of other crates.
+/// [`ViewFrustum::from_world_from_clip_f64`] for a matrix and an eye of another crate.
 ///
 /// # Errors
 ///

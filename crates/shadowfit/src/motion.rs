@@ -1,7 +1,7 @@
-//! Where the camera will be if it goes on as it does.
+//! Where the camera will be if its motion goes on.
 //!
-//! A map that is to be kept for a while has to cover what comes into view meanwhile. The last two
-//! frames' views tell how the camera turns and moves; steady motion is the best guess.
+//! A map that is kept for a while has to cover what comes into view meanwhile. The views of the
+//! last two frames give the camera's rotation and movement, which are assumed to go on.
 
 use glam::{DVec3, Vec3};
 
@@ -20,7 +20,8 @@ pub(crate) struct Motion {
 /// far ones' distance, above which the lens has changed and nothing can be predicted.
 const SAME_LENS: f64 = 1e-4;
 
-/// The same of their far corners, which an f32 matrix of plain depth tells to 4 · 2⁻²⁴ · far / near.
+/// The same for their far corners, for which an f32 matrix of plain depth has an error of 4 · 2⁻²⁴ ·
+/// far / near.
 const SAME_FAR: f64 = 1.0 / 64.0;
 
 /// Orthonormal axes of a view; `None` for a view without them.
@@ -37,7 +38,7 @@ impl Motion {
     /// The step between two views, if they look through the same lens.
     pub(crate) fn between(before: &ViewFrustum, now: &ViewFrustum) -> Option<Self> {
         let (a, b) = (axes(before)?, axes(now)?);
-        // Σ bᵢ aᵢᵀ takes one view's axes to the other's.
+        // Σ bᵢ aᵢᵀ maps one view's axes to the other's.
         let image = |v: DVec3| b[0] * a[0].dot(v) + b[1] * a[1].dot(v) + b[2] * a[2].dot(v);
         let motion =
             Self { turn: [image(DVec3::X), image(DVec3::Y), image(DVec3::Z)], step: now.origin - before.origin };
@@ -52,7 +53,7 @@ impl Motion {
         if (0..4).all(is_same) { Some(motion) } else { None }
     }
 
-    /// Whether a view stands still, but for rounding.
+    /// Whether a view stands still, up to rounding.
     pub(crate) fn is_still(&self, view: &ViewFrustum) -> bool {
         let turn = self.turn;
         let turned = (turn[0] - DVec3::X).abs().max((turn[1] - DVec3::Y).abs()).max((turn[2] - DVec3::Z).abs());

@@ -1,6 +1,6 @@
-//! Where the near plane stands, so that every caster that can throw a shadow into view is kept.
+//! Where the near plane lies, so that every caster that can cast a shadow into view is kept.
 //!
-//! What can do so stands over what is covered, toward the light; [`Outline`] finds the part of each
+//! Such casters lie over the covered region, toward the light; [`Outline`] finds the part of each
 //! caster's box that does.
 //!
 //! ```text
@@ -22,15 +22,16 @@ use crate::view::moved;
 use crate::volume::{Constraint, ROUNDING, Volume};
 use crate::{Aabb, Boxes};
 
-/// Coordinate of the near plane along the light's z, and what set it if not what is covered.
+/// Coordinate of the near plane along the light's z, and what set it if it was not the covered
+/// region.
 pub(crate) struct NearPlane {
     pub(crate) z: f64,
     pub(crate) set_by: Option<Constraint>,
 }
 
-/// Moves the near plane of a volume, which so far ends at what is covered, to where the rule puts
-/// it, and the light with it. `rounding` is what receivers and casters may be shifted by, each, in
-/// metres.
+/// Moves the near plane of a volume, which so far ends at the covered region, to the place that the
+/// rule gives, and the light with it. `rounding` is what receivers and casters may be shifted by,
+/// each, in metres.
 #[inline(always)]
 pub(crate) fn place(volume: &mut Volume, rule: &FitRule, shadowed: Shadowed, rounding: f64, content: &Content) {
     if rule.depth == Depth::Doubled {
@@ -51,15 +52,15 @@ pub(crate) fn place(volume: &mut Volume, rule: &FitRule, shadowed: Shadowed, rou
     };
     (volume.max.z, volume.set_by[5]) = (near.z, near.set_by.unwrap_or(volume.set_by[5]));
     if rule.covers != Covers::Sphere {
-        // The rounding of the depth range, which casters may make far longer than what is covered. A
-        // sphere's gets it with its steps.
+        // The rounding of the depth range, which casters may make far longer than the covered
+        // region. The sphere fit includes it in its steps.
         let depth = (volume.max.z - volume.min.z) * ROUNDING;
         (volume.min.z, volume.max.z) = (volume.min.z - depth, volume.max.z + depth);
     }
     volume.light_at_near_plane();
 }
 
-/// Finds the near plane of what ends at `covered` along the light's z.
+/// Finds the near plane for a covered region that ends at `covered` along the light's z.
 ///
 /// `outline` is the convex outline of what is covered, anticlockwise, in the plane of `axes`;
 /// casters that stand no farther beside it than `reach` (in metres) count too.
@@ -102,7 +103,7 @@ fn highest(over: &Outline, casters: &Boxes, content: &Content, covered: f64) -> 
     z
 }
 
-/// How far beside the outline casters are read by a filter that the border is enough for, in
+/// How far outside the outline casters are read by the widest filter that the border allows, in
 /// metres: a filter of reach E needs E - 1/2 texels of border, and half a texel more is for the
 /// rasteriser. `rounding` is what receivers and casters may be shifted by, each.
 pub(crate) fn filter_reach(texel: DVec2, rule: &FitRule, rounding: f64) -> f64 {
@@ -110,6 +111,6 @@ pub(crate) fn filter_reach(texel: DVec2, rule: &FitRule, rounding: f64) -> f64 {
     (texels + 2.0 * rounding) * ANY_AXES + rule.margin
 }
 
-/// How far an outline must be [widened](Outline) to hold it widened by the diagonal of a unit
-/// square, whatever is held beyond that: √2 each.
+/// How far an outline must be [widened](Outline) so that it surely holds the outline widened by the
+/// diagonal of a unit square: √2 each way.
 const ANY_AXES: f64 = 2.0;

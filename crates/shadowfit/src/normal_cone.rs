@@ -1,7 +1,7 @@
 //! Where the surfaces of a cluster face, and whether that is away from the light.
 //!
-//! Both sides of a surface count, so a normal and its opposite are the same here: a cone stands
-//! for the double cone of two tips at one point, which a box's front and back share.
+//! Both sides of a surface count, so a normal and its opposite are the same here: a cone is always
+//! the double cone of the two, joined at their tips.
 
 use glam::{DVec3, Vec3};
 
@@ -10,7 +10,7 @@ use crate::checks::length;
 
 /// A double cone that holds the geometric normal of each triangle of a cluster, or its opposite.
 ///
-/// Zero-area triangles have no normal and are not drawn; they count for nothing.
+/// Zero-area triangles have no normal and are not drawn; they are ignored.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
@@ -24,18 +24,18 @@ pub struct NormalCone {
 }
 
 impl NormalCone {
-    /// The cone that holds every direction, of which nothing can be said.
+    /// The cone that holds every direction, so that nothing is ever proven of it.
     pub const ALL: Self = Self { axis: Vec3::Y, cos_half_angle: 0.0 };
 
     /// Whether all that can be seen of surfaces within a box, with normals in this cone, is turned
-    /// away from the light: dark without a map, so that a fit may pass the box over.
+    /// away from the light: dark without a map, so that a fit may ignore the box.
     ///
     /// `bounds` and `eye` are in metres relative to one origin, `to_light` is the direction
-    /// **toward** the light, of any length; all in the axes of the triangles. `true` is proven:
-    /// (n · (eye - p)) (n · `to_light`) <= 0 for every point p of the box and every normal n of the
-    /// cone, wherever the eye is. `false` may be said of a surface that is turned away, and is what
-    /// NaN, an empty box and an axis without length get. Shading normals that lean from the
-    /// geometric ones, and light through leaves, are not known here.
+    /// **toward** the light, of any length; all in the axes of the triangles. `true` is proven: (n
+    /// · (eye - p)) (n · `to_light`) <= 0 for every point p of the box and every normal n of the
+    /// cone, wherever the eye is. `false` may be returned for a surface that is turned away, and is
+    /// returned for NaN, an empty box and an axis of zero length. Shading normals that differ from
+    /// the geometric ones, and light through leaves, are not taken into account.
     ///
     /// ```text
     ///          eye          The product is never above 0 if the eye is before every such plane and
@@ -50,9 +50,9 @@ impl NormalCone {
     ///              \ to_light
     /// ```
     ///
-    /// Beyond f + h = 180° the formula is above the least value, -|v|, but below 0 like it.
-    /// Source: the cone test of mesh clusters (Kubisch, Christoph: "Introduction to Turing Mesh
-    /// Shaders", 2018), made exact for boxes and asked twice, of the eye and of the light.
+    /// Beyond f + h = 180° the formula is above the least value, -|v|, but below 0 like it. Source:
+    /// the cone test of mesh clusters (Kubisch, Christoph: "Introduction to Turing Mesh Shaders",
+    /// 2018), made exact for boxes and used twice, for the eye and for the light.
     pub fn faces_away(&self, bounds: &Aabb, eye: Vec3, to_light: Vec3) -> bool {
         self.faces_away_from(bounds, eye.as_dvec3(), to_light.as_dvec3())
     }
@@ -81,7 +81,7 @@ impl NormalCone {
     }
 }
 
-/// What a product counts as zero within, as a share of its factors' lengths: some steps of f64.
+/// Products below this share of their factors' lengths count as zero: a few steps of f64.
 const ROUNDING: f64 = 1e-14;
 
 #[cfg(test)]

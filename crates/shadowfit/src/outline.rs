@@ -1,4 +1,4 @@
-//! What of a caster's box stands over a convex outline in the light's plane.
+//! The part of a caster's box that lies over a convex outline in the light's plane.
 //!
 //! A box reaches highest over the outline at a corner of (outline ∩ one of the box's faces as the
 //! light sees them), so each of the faces that look toward the light is clipped to the outline as
@@ -45,7 +45,7 @@ impl Face {
     }
 }
 
-/// Room to clip faces in.
+/// Scratch space for clipping faces.
 pub(crate) struct Scratch([Face; 2]);
 
 impl Scratch {
@@ -56,7 +56,7 @@ impl Scratch {
 
 impl<'a> Outline<'a> {
     /// An outline in the plane of `axes` (anticlockwise), widened by `pad` metres on all sides: it
-    /// then holds all that is as near to it, and nothing that is √2 times as far away.
+    /// then holds everything within that distance, and nothing beyond √2 times that distance.
     pub(crate) fn new(axes: &LightAxes, corners: &'a [DVec2], pad: f64) -> Self {
         let (mut min, mut max) = (DVec2::MAX, DVec2::MIN);
         for p in corners {
@@ -79,7 +79,7 @@ impl<'a> Outline<'a> {
         let axes = &self.axes;
         let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
         let (x, y, z) = (axes.x.as_dvec3(), axes.y.as_dvec3(), axes.z.as_dvec3());
-        // Most casters lie lower than one that is known already.
+        // Most casters lie lower than the highest one found so far.
         if z.dot(centre) + z.abs().dot(half) <= floor {
             return;
         }
@@ -146,9 +146,9 @@ fn direction(from: DVec2, to: DVec2) -> Option<DVec2> {
     if length > 0.0 { Some(d / length) } else { None }
 }
 
-/// Puts the part of a polygon where a linear function is not negative into `out` (I. Sutherland
-/// and G. Hodgman, "Reentrant polygon clipping", 1974), if it is less than all and there is room
-/// for it, which is told.
+/// Puts the part of a polygon where a linear function is not negative into `out` (I. Sutherland and
+/// G. Hodgman, "Reentrant polygon clipping", 1974), if it is not the whole polygon and there is
+/// room for it; returns whether it did.
 fn cut(polygon: &Face, out: &mut Face, inside: impl Fn(DVec3) -> f64) -> bool {
     if polygon.corners[..polygon.len].iter().all(|corner| inside(*corner) >= 0.0) {
         return false;

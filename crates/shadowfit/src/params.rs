@@ -1,8 +1,8 @@
-//! Every knob of a [`Technique`] and of the [tools' settings](crate::tool) as plain data: name, unit,
-//! range, help and access.
+//! Every parameter of a [`Technique`] and of the [tools' settings](crate::tool) as plain data: name,
+//! unit, range, help and access.
 //!
-//! Panels, command lines and saved files are made from this one table, so that a knob is added,
-//! renamed or re-ranged in one place.
+//! Panels, command lines and saved files are generated from this one table, so that a parameter is
+//! added, renamed or given another range in one place.
 //!
 //! ```
 //! use shadowfit::params::{self, Kind};
@@ -35,30 +35,31 @@ pub use text::{ParameterError, format_value, set_from_str};
 /// the setting that is changed wins and moves the others.
 ///
 /// Two, because it is exact in binary, so that a saved file reads back the same bits, and because
-/// no view of a scene has less depth than that.
+/// no practical view has less depth than that.
 pub const MIN_FAR_PER_NEAR: f32 = 2.0;
 
-/// One knob of [`Settings`].
+/// One parameter of [`Settings`].
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
-    /// Stable name for files and command lines: the group's id, a dot, and the knob's own name.
+    /// Stable name for files and command lines: the group's id, a dot, and the parameter's own
+    /// name.
     pub id: &'static str,
-    /// Where it is shown.
+    /// Group that it is shown in.
     pub group: Group,
     /// Name for people, without its unit.
     pub label: &'static str,
     /// Unit of the value as shown ("texels", "m", "deg"); empty when it has none.
     pub unit: &'static str,
-    /// What it does to the picture and when to turn it, in a sentence or two.
+    /// What it does to the picture and when to change it, in a sentence or two.
     pub help: &'static str,
     /// Range or options, and access to the value.
     pub kind: Kind,
-    /// Why the knob has no effect under these settings, or `None` when it has one.
+    /// Why the parameter has no effect under these settings, or `None` when it has one.
     pub inert: fn(&Settings) -> Option<&'static str>,
 }
 
 impl Parameter {
-    /// Whether the knob has the same value in both settings.
+    /// Whether the parameter has the same value in both settings.
     pub fn is_equal(&self, a: &Settings, b: &Settings) -> bool {
         match &self.kind {
             Kind::Number(number) => number.get(a) == number.get(b),
@@ -68,7 +69,7 @@ impl Parameter {
         }
     }
 
-    /// Gives the knob the value that it has in `from`, by the rules of its kind.
+    /// Sets the parameter to the value that it has in `from`, by the rules of its kind.
     pub fn copy(&self, settings: &mut Settings, from: &Settings) {
         match &self.kind {
             Kind::Number(number) => number.set(settings, number.get(from)),
@@ -78,9 +79,9 @@ impl Parameter {
         }
     }
 
-    /// Whether the settings have a place for this knob: λ is there only while the practical splits are
-    /// chosen, the manual splits while those are, and a single map's own height while it has a width
-    /// of its own. Setting a knob that is not there changes nothing.
+    /// Whether the parameter exists under these settings: λ exists only while the practical splits are
+    /// chosen, the manual splits only while those are, and a single map's own height only while it has
+    /// a width of its own. Setting a parameter that does not exist changes nothing.
     pub fn is_present(&self, settings: &Settings) -> bool {
         match &self.kind {
             Kind::Optional(optional) => (optional.present)(settings),
@@ -89,7 +90,7 @@ impl Parameter {
     }
 }
 
-/// The knobs that make up a [`Technique`], in the order that they are shown.
+/// The parameters that make up a [`Technique`], in the order that they are shown.
 pub fn technique_parameters() -> impl Iterator<Item = &'static Parameter> {
     PARAMETERS.iter().filter(|parameter| parameter.group.is_technique())
 }
@@ -98,8 +99,8 @@ pub fn technique_parameters() -> impl Iterator<Item = &'static Parameter> {
 ///
 /// # Errors
 ///
-/// As [`set_from_str`]; [`ParameterError::NotOfTechnique`] for the id of a knob that is no part of a
-/// technique.
+/// As [`set_from_str`]; [`ParameterError::NotOfTechnique`] for the id of a parameter that is not
+/// part of a technique.
 pub fn set_technique_from_str<'a>(
     technique: &mut Technique,
     id: &'a str,
@@ -114,12 +115,12 @@ pub fn set_technique_from_str<'a>(
     Ok(())
 }
 
-/// What values a knob takes.
+/// What values a parameter takes.
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
     /// A number in a range.
     Number(Number),
-    /// A number in a range, or none.
+    /// A number in a range, or no value.
     Optional(Optional),
     /// One of a few named options.
     Choice(Choice),
@@ -152,8 +153,8 @@ impl Number {
 
     /// Sets the value, clamped to the range; NaN and infinity are ignored.
     ///
-    /// The near and far planes and the shadow distance move each other, see
-    /// [`MIN_FAR_PER_NEAR`]. Where [`Self::decimals`] is 0, what follows the point is cut off.
+    /// The near and far planes and the shadow distance move each other, see [`MIN_FAR_PER_NEAR`].
+    /// Where [`Self::decimals`] is 0, the fraction is cut off.
     pub fn set(&self, settings: &mut Settings, value: f64) {
         if value.is_finite() {
             (self.write)(settings, value.max(self.min).min(self.max));
@@ -161,7 +162,7 @@ impl Number {
     }
 }
 
-/// A number in a range that need not be there.
+/// A number in a range, or no value.
 #[derive(Clone, Copy, Debug)]
 pub struct Optional {
     /// Least value.
@@ -174,10 +175,10 @@ pub struct Optional {
     pub logarithmic: bool,
     /// Decimals worth showing; 0 for whole numbers.
     pub decimals: usize,
-    /// What having no number is called and does. `None` where only another knob takes the number
-    /// away, see [`Parameter::is_present`].
+    /// Name and description of having no value. `None` where only another parameter removes the
+    /// value, see [`Parameter::is_present`].
     pub unset: Option<ChoiceOption>,
-    /// The number that a panel begins with when it is turned on.
+    /// The number that a panel starts from when the value is turned on.
     pub initial: f64,
     present: fn(&Settings) -> bool,
     read: fn(&Settings) -> Option<f64>,
@@ -190,8 +191,8 @@ impl Optional {
         (self.read)(settings)
     }
 
-    /// Sets the value, clamped to the range, or takes it away. NaN and infinity are ignored, and so
-    /// is everything while the knob [is not there](Parameter::is_present).
+    /// Sets the value, clamped to the range, or removes it. NaN and infinity are ignored, and so is
+    /// any value while the parameter [does not exist](Parameter::is_present).
     ///
     /// The near and far planes and the shadow distance move each other, see
     /// [`MIN_FAR_PER_NEAR`].
@@ -255,20 +256,20 @@ impl Toggle {
     }
 }
 
-/// A heading over some knobs.
+/// A group of parameters, shown under one heading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Group {
-    /// Where the shadow maps look.
+    /// How each map is fitted.
     Fit,
     /// How many maps there are, and where one ends and the next begins.
     Splits,
-    /// What keeps the maps from changing while the camera moves.
+    /// What keeps the maps stable while the camera moves.
     Stabilise,
     /// What a shadow map stores and how it is read.
     Map,
     /// Biases against self-shadowing.
     Bias,
-    /// What single maps have of their own.
+    /// Overrides for single maps.
     Override,
     /// The sun.
     Light,
@@ -292,7 +293,7 @@ impl Group {
         Self::View,
     ];
 
-    /// Whether its knobs are a part of the [`Technique`]; the others belong to the tools.
+    /// Whether its parameters are part of the [`Technique`]; the others belong to the tools.
     pub const fn is_technique(self) -> bool {
         !matches!(self, Self::Light | Self::Camera | Self::View)
     }
@@ -327,7 +328,7 @@ impl Group {
         }
     }
 
-    /// What the group's knobs have in common, in a sentence.
+    /// What the group's parameters have in common, in a sentence.
     pub const fn help(self) -> &'static str {
         match self {
             Self::Fit => "Which part of the scene a shadow map covers.",

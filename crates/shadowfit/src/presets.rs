@@ -93,7 +93,7 @@ pub static PRESETS: [Preset; 10] = [
 pub const RECOMMENDED: &str = "calm-4";
 
 impl Technique {
-    /// The preset of a name, or `None` where [`PRESETS`] has none of that name.
+    /// The technique of the preset with this name, or `None` where [`PRESETS`] has no such name.
     pub fn preset(name: &str) -> Option<Self> {
         PRESETS.iter().find(|preset| preset.name == name).map(Preset::technique)
     }

@@ -1,12 +1,12 @@
-//! The least rectangle around a convex polygon: what turns the map about the light.
+//! The least rectangle around a convex polygon: it decides how the map is turned about the light.
 //!
-//! One side of the least-area rectangle lies along an edge of the polygon (H. Freeman and
-//! R. Shapira, "Determining the minimum-area encasing rectangle for an arbitrary closed curve",
-//! 1975), so only the edges' directions are tried, with four calipers that turn with them
-//! (G. T. Toussaint, "Solving geometric problems with the rotating calipers", 1983). For the least
-//! square this is not enough: between two edges' directions the calipers' corners stay, both
+//! One side of the least-area rectangle lies along an edge of the polygon (H. Freeman and R.
+//! Shapira, "Determining the minimum-area encasing rectangle for an arbitrary closed curve", 1975),
+//! so only the edges' directions are tried, with four calipers that turn with them (G. T.
+//! Toussaint, "Solving geometric problems with the rotating calipers", 1983). For the least square
+//! this is not enough: between two edges' directions the calipers touch the same corners, both
 //! sides are sinusoids of the angle (concave there), and the longer one is least where the two are
-//! equal or at an end.
+//! equal or at an end of the interval.
 
 use glam::DVec2;
 
@@ -39,11 +39,12 @@ impl Rectangle {
     }
 }
 
-/// Relative gain below which two rectangles count as equally good: rounding must not decide.
+/// Relative gain below which two rectangles count as equally good, so that rounding does not decide
+/// between them.
 const TIE: f64 = 1e-9;
 
 /// The rectangle of least area around a convex polygon (anticlockwise corners), its first side
-/// within 45 degrees of +x. Of equal ones the least turned.
+/// within 45 degrees of +x. Of equal ones it is the least turned.
 pub(crate) fn min_area(hull: &[DVec2]) -> Rectangle {
     let mut best = Best::new(hull, |r| r.size().x * r.size().y);
     let mut longest = (0.0, DVec2::X);
@@ -58,12 +59,12 @@ pub(crate) fn min_area(hull: &[DVec2]) -> Rectangle {
 /// The rectangle of least area around a convex polygon once it is widened to extents in which no texel is
 /// longer than `ratio` times its width. `widened` gives those extents.
 ///
-/// A rectangle that is widened has an area that grows with its longer side alone, so that between two
-/// edges' directions the best one may also be where the limit is just met: there one side is a fixed
+/// The area of a widened rectangle depends on its longer side alone, so that between two edges'
+/// directions the best one may also be where the limit is just met: there one side is a fixed
 /// multiple of the other, as the sides of the least square are equal.
 pub(crate) fn min_area_within(hull: &[DVec2], ratio: f64, widened: impl Fn(DVec2) -> DVec2) -> Rectangle {
     let mut best = Best::new(hull, |r| widened(upright(*r).size()).element_product());
-    // At an eighth of a turn the sides change which way their texels are counted.
+    // At an eighth of a turn the sides swap their texel counts.
     let eighth = DVec2::splat(core::f64::consts::FRAC_1_SQRT_2);
     best.keep(&Rectangle::around(hull, eighth));
     best.keep(&Rectangle::around(hull, -eighth.perp()));
@@ -104,9 +105,10 @@ pub(crate) fn min_square(hull: &[DVec2]) -> Rectangle {
 
 /// The best rectangle so far.
 ///
-/// Of a sliver as thin as rounding the calipers cannot tell which corners they touch, so what they
-/// say is measured before it is believed; and since such a sliver is a line, rectangles along its
-/// longest edge, or about it as the diagonal of a square, are tried besides.
+/// For a sliver as thin as rounding the calipers may find the wrong corners, so each rectangle is
+/// measured again around the points before it is accepted; and since such a sliver is nearly a
+/// line, rectangles along its longest edge, or with it as the diagonal of a square, are tried as
+/// well.
 struct Best<'a, C> {
     hull: &'a [DVec2],
     cost: C,
@@ -138,7 +140,7 @@ struct Calipers<'a> {
     length: f64,
     /// The corners that the lines touch when they turn on: lower (the edge's end), right, upper, left.
     touched: [usize; 4],
-    /// Distance that rounding may make of none.
+    /// Distances below this may be rounding.
     noise: f64,
 }
 
@@ -180,8 +182,9 @@ impl<'a> Calipers<'a> {
         let at = |k: usize| self.hull[(first + k) % n].dot(direction);
         let (mut k, mut most) = if at(known) > at(0) { (known, at(known)) } else { (0, at(0)) };
         let mut next = k + 1;
-        // Of corners as far but for rounding the last one counts: it is touched when the line turns
-        // on. Outlines of views have parallel sides, so this is no rare case.
+        // Of corners that are equally far up to rounding, the last one counts: it is the one
+        // touched when the line turns on. Outlines of views have parallel sides, so this case is
+        // common.
         while next < n && at(next) >= most - self.noise {
             (k, most) = (next, most.max(at(next)));
             next += 1;

@@ -14,7 +14,7 @@ use crate::{DepthConvention, FitError};
 /// What a map must hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Covers {
-    /// The box of the views' corners and nothing more, not even room for rounding or the filter.
+    /// The box of the views' corners alone, without room for rounding or the filter.
     ExactCorners,
     /// The outline of the views' slices, as the light sees them.
     Views,
@@ -25,7 +25,7 @@ pub(crate) enum Covers {
 }
 
 impl Covers {
-    /// Whether the map covers what is shadowed to its very end, wherever the receivers end.
+    /// Whether the map always reaches to the shadow distance, wherever the receivers end.
     pub(crate) const fn whole_distance(self) -> bool {
         matches!(self, Self::ExactCorners | Self::Receivers)
     }
@@ -36,24 +36,24 @@ impl Covers {
 pub(crate) enum Depth {
     /// The XNA sample's own depth: the light at the far side of the box, and twice its depth.
     Doubled,
-    /// At what is covered.
+    /// At the covered region.
     AtCovered,
-    /// This far before what is covered, in metres.
+    /// This far before the covered region, in metres.
     Extended(f64),
-    /// At the box around all casters, as far as it can throw shadows into view.
+    /// At the box around all casters, as far as it can cast shadows into view.
     AtCasterBounds,
-    /// At the first caster that can.
+    /// At the first caster that can cast a shadow into view.
     AtCasters,
 }
 
-/// How one map is fitted: [`FitSettings`] with everything resolved that follows from their kind.
+/// How one map is fitted: [`FitSettings`] with everything resolved that depends on the kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FitRule {
     pub(crate) covers: Covers,
     pub(crate) rectangle: RectangleKind,
     pub(crate) roll: Roll,
     pub(crate) depth: Depth,
-    /// Free texels between what is covered and the map's border.
+    /// Free texels between the covered region and the map's border.
     pub(crate) border: f64,
     /// What the box is enlarged by on all sides, in metres.
     pub(crate) margin: f64,
@@ -98,8 +98,8 @@ impl FitRule {
         })
     }
 
-    /// Extents across the light, in metres, that hold others and keep the texels within the limit;
-    /// `texels` is their number each way.
+    /// Extents across the light, in metres, enlarged so that the texels keep within the limit;
+    /// `texels` is their number along each axis.
     pub(crate) fn limited(&self, size: DVec2, texels: DVec2) -> DVec2 {
         let Some(ratio) = self.max_texel_ratio else { return size };
         size.max(texels * ((size / texels).max_element() / ratio))
@@ -115,13 +115,13 @@ impl FitRule {
         self.covers != Covers::ExactCorners && self.border >= texels
     }
 
-    /// This rule without a border, its near plane at what is covered.
+    /// This rule without a border, its near plane at the covered region.
     pub(crate) const fn without_room(self) -> Self {
         Self { border: 0.0, depth: Depth::AtCovered, ..self }
     }
 }
 
-/// Free texels of settings without a technique: where they set none, what the default filter reaches.
+/// Free texels of settings without a technique: where none are set, the reach of the default filter.
 pub(crate) const fn default_border(settings: &FitSettings) -> f32 {
     match settings.border {
         Some(texels) => texels,
@@ -129,7 +129,7 @@ pub(crate) const fn default_border(settings: &FitSettings) -> f32 {
     }
 }
 
-/// What the settings' caster policy comes to.
+/// The rule of the near plane for the settings' caster policy.
 #[inline]
 fn near_plane(settings: &FitSettings, casters_are_known: bool) -> Depth {
     match settings.casters {

@@ -1,5 +1,5 @@
-//! What of a map can be kept from the last frame, so that static casters are drawn only where the
-//! map is new.
+//! The part of a map that can be kept from the last frame, so that static casters are drawn only
+//! where the map is new.
 //!
 //! A map on the world's grid ([snapped or held](crate::settings::Stabilise), or the
 //! [stable sphere](crate::fits::sphere)) moves by whole texels. [`Scroll::between`] says by how
@@ -16,12 +16,12 @@
 //!
 //! A shifted raster is not bit-equal to a fresh one: the map's translation is rounded to f32 anew
 //! in each frame, which moves edges by up to 0.005 of a texel. Where that matters, [`Tiles`] are
-//! drawn instead: each has one projection for ever, relative to an origin of its own, and covers a
-//! square of the same grid.
+//! drawn instead: the projection of each never changes, is relative to an origin of its own, and
+//! covers a square of the same grid.
 //!
 //! Kept texels must have been drawn with all casters over the map
 //! ([`CasterVolume::of_map`](crate::CasterVolume::of_map)): a swept volume leaves out those that
-//! throw no shadow into the view of **that** frame.
+//! cast no shadow into the view of **that** frame.
 
 use core::ops::Range;
 
@@ -44,7 +44,7 @@ pub struct TexelRect {
     pub size: UVec2,
 }
 
-/// How a map came about from the one before it.
+/// How a map follows from the one before it.
 ///
 /// ```
 /// # use shadowfit::scroll::Scroll;
@@ -64,12 +64,13 @@ pub struct TexelRect {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Scroll {
-    /// Whether nothing of the old map is of use: the light, the map's angle, texel size or
-    /// resolution changed, no texel is in both, the old one was
-    /// [empty](LightFit::is_empty), or one of them lies on no grid.
+    /// Whether nothing of the old map can be kept: the light, the map's angle, texel size or
+    /// resolution changed, no texel is in both, the old one was [empty](LightFit::is_empty), or one
+    /// of them is not on a grid.
     pub is_new: bool,
-    /// Whether the near or the far plane moved, so that the old map's depths mean other distances
-    /// now. They stay while they serve, see [`Stabilise`](crate::settings::Stabilise).
+    /// Whether the near or the far plane moved, so that the old map's depths now mean other
+    /// distances. The planes stay as long as they hold the content, see
+    /// [`Stabilise`](crate::settings::Stabilise).
     pub depth_changed: bool,
     /// What is at texel t now was at texel t + `shift` before, right and down.
     pub shift: IVec2,
@@ -77,7 +78,7 @@ pub struct Scroll {
 }
 
 impl Scroll {
-    /// How a map came about from the same map of an earlier frame.
+    /// How a map follows from the same map of an earlier frame.
     pub fn between(before: &FittedMap, now: &FittedMap) -> Self {
         shift(before, now).map_or_else(
             || Self::new_map(now.fit.resolution),
@@ -90,13 +91,13 @@ impl Scroll {
         )
     }
 
-    /// Whether all of the map must be drawn. Otherwise [`Self::exposed`] is enough for casters that
-    /// stand still.
+    /// Whether all of the map must be drawn. Otherwise it is enough to draw static casters into
+    /// [`Self::exposed`].
     pub const fn is_redraw(&self) -> bool {
         self.is_new || self.depth_changed
     }
 
-    /// What was not in the old map: no, one or two rectangles that do not overlap; the whole of a
+    /// What was not in the old map: none, one or two rectangles that do not overlap, or all of a
     /// new map. A changed depth range does not count here.
     pub fn exposed(&self) -> impl Iterator<Item = TexelRect> {
         self.exposed.into_iter().filter(|rect| rect.size.min_element() > 0)
@@ -108,7 +109,8 @@ impl Scroll {
     }
 }
 
-/// Texels from a map to an earlier one and whether the depth range changed, if they share any.
+/// Shift in texels from a map to an earlier one and whether the depth range changed, if they share
+/// any texel.
 fn shift(before: &FittedMap, now: &FittedMap) -> Option<(IVec2, bool)> {
     let (old, new) = (before.anchor?, now.anchor?);
     let axes = |fit: &LightFit| [0, 1, 2].map(|i| fit.light_from_world.col(i));
@@ -130,7 +132,7 @@ fn shift(before: &FittedMap, now: &FittedMap) -> Option<(IVec2, bool)> {
     Some((by, old.depth != new.depth))
 }
 
-/// The columns, then the rows beside them, that a shift brings into a map.
+/// The columns, then the remaining rows, that a shift brings into a map.
 fn exposed(by: IVec2, resolution: UVec2) -> [TexelRect; 2] {
     let count = UVec2::new(by.x.unsigned_abs(), by.y.unsigned_abs()).min(resolution);
     let kept = resolution - count;
@@ -144,7 +146,7 @@ fn exposed(by: IVec2, resolution: UVec2) -> [TexelRect; 2] {
 /// A square of the world's texel grid with a projection that no camera changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tile {
-    /// Which square it is: columns to the right and rows upward along the map's axes, counted from
+    /// Index of the square: columns to the right and rows upward along the map's axes, counted from
     /// the world's origin.
     pub index: [i64; 2],
     /// Its projection, of `size` × `size` texels. [`LightFit::origin`] is the tile's own, in the
@@ -152,9 +154,9 @@ pub struct Tile {
     /// the same bits for all tiles, and the origin for the same index, as long as the light, the
     /// map's angle, the texel size and the depth range stay as they are.
     pub fit: LightFit,
-    /// Where it goes in the map: the part of it that is inside.
+    /// Where its visible part lies in the map.
     pub map: TexelRect,
-    /// The tile's own texel that goes to the left top of that part.
+    /// The tile's own texel at the left top of that part.
     pub from: UVec2,
 }
 
@@ -201,14 +203,14 @@ pub struct Tiles {
 /// ```
 ///
 /// Tiles are drawn and kept by their index and copied into the map, or looked up themselves. A tile
-/// that is drawn again has the same bits, wherever the camera is, if what it shows has. Its depths
-/// are those of the map.
+/// that is drawn again has the same bits, wherever the camera is, if its casters have not changed.
+/// Its depths are those of the map.
 ///
 /// # Errors
 ///
 /// [`FitError::NotOnGrid`] for a map that is neither snapped nor held nor a sphere's;
-/// [`FitError::OutOfRange`] for a size of 0 or above 65 536 texels, and for an anchor or a fit that
-/// make no sense.
+/// [`FitError::OutOfRange`] for a size of 0 or above 65 536 texels, and for an invalid anchor or
+/// fit.
 pub fn tiles(map: &FittedMap, size: u32) -> Result<Tiles, FitError> {
     checks::within("the size of a tile", f64::from(size), 1.0, f64::from(MAX_TILE))?;
     let anchor = map.anchor.ok_or(FitError::NotOnGrid)?;

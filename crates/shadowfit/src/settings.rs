@@ -32,17 +32,18 @@ macro_rules! setters {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum FitKind {
-    /// The XNA Shadow Mapping sample's `CreateLightViewProjectionMatrix` (Microsoft, 2008), exact:
-    /// tight across the light, twice the depth that is needed, no caster policy.
+    /// The XNA Shadow Mapping sample's `CreateLightViewProjectionMatrix` (Microsoft, 2008),
+    /// reproduced exactly: tight across the light, twice the depth that is needed, no caster
+    /// policy.
     XnaSample,
     /// Axis-aligned box of the camera frustum in the light's axes, with tight depth and the near
     /// plane placed by [`FitSettings::casters`].
     FrustumAabb,
     /// Least rectangle of the camera frustum as seen from the light, turned about it as
-    /// [`FitSettings::rectangle`] says. The tightest without knowledge of the scene.
+    /// [`FitSettings::rectangle`] says. The tightest fit without knowledge of the scene.
     Oriented,
     /// Minimal enclosing sphere of the camera frustum, on a grid of whole texels that is fixed to
-    /// the world: neither moving nor turning the camera makes shadows crawl.
+    /// the world: shadow edges do not crawl when the camera moves or turns.
     Sphere,
     /// Least rectangle of what the camera can see of the receivers' boxes, turned as
     /// [`FitSettings::rectangle`] says. Without boxes it is [`Self::Oriented`]. The default.
@@ -50,7 +51,7 @@ pub enum FitKind {
     Focused,
 }
 
-/// How [`FitKind::Oriented`] and [`FitKind::Focused`] lay a rectangle around what they cover.
+/// Which rectangle [`FitKind::Oriented`] and [`FitKind::Focused`] put around what they cover.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum RectangleKind {
@@ -59,7 +60,7 @@ pub enum RectangleKind {
     /// Of least area. The default.
     #[default]
     MinimumArea,
-    /// With the least longer side, made square: equal texels both ways on a square map.
+    /// The one with the least longer side, made square: square texels on a square map.
     MinimumSquare,
 }
 
@@ -67,20 +68,20 @@ pub enum RectangleKind {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum CasterPolicy {
-    /// At what is covered: casters before it are lost, as in the sample.
+    /// At the covered region: casters before it are lost, as in the sample.
     None,
     /// Moved toward the light by [`FitSettings::caster_extension`].
     Extend,
-    /// At the one box around all casters, clipped to the volume that can throw shadows into view;
+    /// At the one box around all casters, clipped to the volume that can cast shadows into view;
     /// as [`Self::Extend`] where the casters are not known.
     SceneBounds,
-    /// At the first caster that can throw a shadow into view: each box is clipped to that volume.
+    /// At the first caster that can cast a shadow into view: each box is clipped to that volume.
     /// As [`Self::Extend`] where the casters are not known. The default.
     #[default]
     List,
-    /// At what is covered, with the pipeline's depth clamp holding casters before it
-    /// ("pancaking"). Culling still uses the unclamped volume, and filters that need the distance
-    /// to the caster cannot have it.
+    /// At the covered region, with the pipeline's depth clamp keeping casters before it
+    /// ("pancaking"). Culling still uses the unclamped volume, and filters cannot use the distance
+    /// to a clamped caster.
     DepthClamp,
 }
 
@@ -96,12 +97,13 @@ pub struct FitSettings {
     /// Shadows end at this view depth, in metres; at the camera's far plane when that is nearer.
     /// Default: `f32::MAX`, which is always the far plane.
     pub max_distance: f32,
-    /// Enlarges the light's box on all six sides, in metres: the sample's own imperfect cure for
+    /// Enlarges the light's box on all six sides, in metres: the sample's own imperfect remedy for
     /// clipped casters. Default: 0.
     pub margin: f32,
-    /// Free texels between what is covered and the map's border, for the filter to read. Default:
-    /// `None`, what the technique's filter and bias need ([`Technique::border`]); a fit without a
-    /// technique leaves what the default ones need. [`FitKind::XnaSample`] ignores it.
+    /// Free texels between the covered region and the map's border, for the filter to read.
+    /// Default: `None`, which takes what the technique's filter and bias need
+    /// ([`Technique::border`]); a fit without a technique takes what the default filter needs.
+    /// [`FitKind::XnaSample`] ignores it.
     ///
     /// [`Technique::border`]: crate::Technique::border
     pub border: Option<f32>,
@@ -111,8 +113,7 @@ pub struct FitSettings {
     /// How far [`CasterPolicy::Extend`] moves the near plane toward the light, in metres. Default:
     /// 50, which holds most buildings. It also stands in where the casters are not known.
     pub caster_extension: f32,
-    /// Direction in world axes that is up, which the map's axes follow; its length is ignored.
-    /// Default: +y.
+    /// Up direction in world axes, which sets the map's roll; its length is ignored. Default: +y.
     pub up: Vec3,
     /// Greatest ratio of a texel's longer side to its shorter one, 1 or more: long texels make blur
     /// depend on its direction. The rectangle is chosen, and widened, to keep within it.
@@ -144,8 +145,8 @@ impl Default for FitSettings {
 }
 
 impl FitSettings {
-    /// These settings with so many [free texels](Self::border) at the map's border, whatever filter
-    /// and bias are.
+    /// These settings with this number of [free texels](Self::border) at the map's border, for any
+    /// filter and bias.
     #[must_use]
     pub const fn with_border(mut self, texels: f32) -> Self {
         self.border = Some(texels);
@@ -158,15 +159,17 @@ pub const MAX_MAPS: usize = 8;
 
 /// Where one map ends and the next begins, in view depth.
 ///
-/// Where the receivers' boxes are known, all schemes but the manual one are spread over their
-/// depths in view instead of the whole frustum's.
+/// Where the receivers' boxes are known, all schemes but the manual one distribute the maps over
+/// the depths at which receivers are in view, instead of over the whole frustum.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SplitScheme {
-    /// Ranges of equal length, over what is in view or between the
-    /// [bounds of what is visible](crate::FitInput::depth_bounds) if those are known; so are the next two.
+    /// Ranges of equal length, over everything in view or between the [bounds of what is
+    /// visible](crate::FitInput::depth_bounds) if those are known. The next two schemes use the same
+    /// interval.
     Uniform,
-    /// Ranges of equal ratio, as perspective would have it. Spends most maps close to the eye.
+    /// Ranges of equal ratio of far to near depth, which suits perspective. Most maps are then
+    /// close to the eye.
     Logarithmic,
     /// Between both: λ, 0..=1, is the share of the logarithmic splits, the rest is that of the
     /// uniform ones (F. Zhang, H. Sun, L. Xu, L. K. Lun, "Parallel-split shadow maps for large-scale
@@ -174,11 +177,11 @@ pub enum SplitScheme {
     Practical(f32),
     /// View depths in metres at which the maps end, ascending; the last map ends with the shadows.
     Manual([f32; MAX_MAPS - 1]),
-    /// The splits with the least 95% quantile of pixels per texel, by what the receivers' boxes tell
-    /// of what is visible.
+    /// The splits with the least 95% quantile of pixels per texel, with visibility estimated from
+    /// the receivers' boxes.
     FromBoxes,
-    /// The same by the histogram of visible depth that the engine hands in; without one as
-    /// [`Self::FromBoxes`]. The default.
+    /// The same, with visibility from the engine's [histogram](crate::FitInput::histogram) of
+    /// visible depths; without a histogram as [`Self::FromBoxes`]. The default.
     #[default]
     FromHistogram,
 }
@@ -190,12 +193,12 @@ pub enum Stabilise {
     /// Every frame is fitted anew: the finest texels, and shadow edges that crawl.
     Off,
     /// Extents are rounded up to eighths of an octave and the map moves by whole texels of a grid
-    /// that is fixed to the world. With [`FitKind::Sphere`] edges stand perfectly still; other fits
+    /// that is fixed to the world. With [`FitKind::Sphere`] edges do not move at all; other fits
     /// still change when the camera turns.
     Snap,
-    /// A map is kept, its angle included, and moved by whole texels while it covers what it must
-    /// and wastes no more than [`HoldSettings::waste`]. Made anew, it is large enough for the
-    /// movement to come. The default.
+    /// A map is kept, its angle included, and moved by whole texels as long as it covers what it
+    /// must and wastes no more than [`HoldSettings::waste`]. A new map is made large enough for the
+    /// predicted motion. The default.
     #[default]
     Hysteresis,
 }
@@ -207,12 +210,12 @@ pub struct HoldSettings {
     /// Room left around what a new map must cover, as a share of its extent, 0..=10. Default: 0.02.
     pub margin: f32,
     /// A new map also covers what the camera will see if it goes on moving as it did, for as many
-    /// frames as make the map wider by this factor at most, 1..=100. Default: 1.4.
+    /// frames as make the map wider by at most this factor, 1..=100. Default: 1.4.
     pub growth: f32,
-    /// A map is made anew when its texels are larger than they have to be by this factor, 1..=100;
-    /// held splits are chosen anew likewise. Default: 1.8.
+    /// A map is made anew when its texels are larger than necessary by this factor, 1..=100; held
+    /// splits are chosen anew by the same rule. Default: 1.8.
     pub waste: f32,
-    /// Most frames that are looked ahead. Default: 32.
+    /// Greatest number of frames to look ahead. Default: 32.
     pub horizon: u32,
 }
 
@@ -222,19 +225,20 @@ impl Default for HoldSettings {
     }
 }
 
-/// What one of several maps has of its own; what is `None` is as for the others.
+/// Overrides for one of several maps; a field that is `None` is as for all maps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct MapOverride {
-    /// The rule of its fit. Default: `None`, that of [`FitSettings::kind`].
+    /// The rule of its fit. Default: `None`, which takes [`FitSettings::kind`].
     pub kind: Option<FitKind>,
-    /// Its width and height, in texels. Default: `None`, that of [`FitSettings::resolution`].
+    /// Its width and height, in texels. Default: `None`, which takes [`FitSettings::resolution`].
     pub resolution: Option<UVec2>,
 }
 
-/// What a fit is told of the scene's receivers by whoever makes its boxes.
+/// Which boxes of the scene's receivers the engine gives to the fit.
 ///
-/// The fit itself takes whatever boxes it gets: this says what a technique was measured with.
+/// The fit itself uses any boxes that it is given: this setting records what a technique was
+/// measured with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ReceiverSource {
@@ -262,11 +266,11 @@ pub struct BiasSettings {
     /// texel sizes. Default: 0.
     pub normal_offset: f32,
     /// Receiver-plane bias: each comparison of the filter is made with the depth of the receiver's
-    /// own plane where it reads, moved toward the light by the plane's rise over so many texels
-    /// (J. Isidoro, "Shadow mapping: GPU-based tips and techniques", 2006). The reach of one
+    /// own plane where it reads, moved toward the light by the plane's height change over this many
+    /// texels (J. Isidoro, "Shadow mapping: GPU-based tips and techniques", 2006). The reach of one
     /// comparison clears a plane: 0.5 for a single texel, 1 for the hardware's 2×2 and all filters
-    /// made of it. 0 turns it off. Default: 1 and 1/256, by which hardware rounds positions in
-    /// the map.
+    /// built from it. 0 turns it off. Default: 1 + 1/256; the fraction covers the hardware's
+    /// rounding of positions in the map.
     pub receiver_plane: f32,
 }
 

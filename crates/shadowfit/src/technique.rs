@@ -1,4 +1,4 @@
-//! All that decides how the shadows of a sun come out, as one plain type.
+//! Everything that decides how a sun's shadows look, as one plain type.
 //!
 //! [`Technique::default`] is the one to begin with; [`PRESETS`](crate::PRESETS) has others by name.
 
@@ -34,14 +34,15 @@ pub struct Technique {
     /// Share of a map's range of view depths that the next map covers too, for a blend between
     /// them, 0..=1. Default: 0.
     pub overlap: f32,
-    /// What keeps the maps still. Default: [`Stabilise::Hysteresis`].
+    /// What keeps the maps stable. Default: [`Stabilise::Hysteresis`].
     pub stabilise: Stabilise,
     /// Details of [`Stabilise::Hysteresis`], and when held splits are given up. Default:
     /// [`HoldSettings::default`].
     pub hold: HoldSettings,
-    /// What single maps have of their own, the nearest first. Default: nothing.
+    /// Overrides for single maps, the nearest first. Default: none.
     pub overrides: [MapOverride; MAX_MAPS],
-    /// What the fit is told of the scene. Default: [`ReceiverSource::Clusters`].
+    /// Which boxes of the scene's receivers the fit is given. Default:
+    /// [`ReceiverSource::Clusters`].
     pub receivers: ReceiverSource,
     /// Filter of the look-up. Default: [`FilterKind::Pcf5x5`].
     pub filter: FilterKind,

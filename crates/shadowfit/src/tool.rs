@@ -32,7 +32,7 @@ impl Default for LightSettings {
 /// Least and greatest flying speed, in metres a second: from crawling over a chair to crossing a mountain range.
 pub const FLYING_SPEEDS: (f32, f32) = (0.1, 1_000.0);
 
-/// Lens and speed of the free-flying camera. Where it stands is not a setting.
+/// Lens and speed of the free-flying camera. Its position is not a setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct CameraSettings {
@@ -64,7 +64,7 @@ pub struct ViewSettings {
     /// Number of the map that the inset shows, 1..=8 from the nearest; the last one where there are
     /// fewer. Default: 1.
     pub inset_map: u32,
-    /// Tints each point by the map that it reads, see [`MAP_TINTS`](crate::figures::MAP_TINTS).
+    /// Tints each point by the map that it reads; see [`MAP_TINTS`](crate::figures::MAP_TINTS).
     /// Default: no.
     pub tint_maps: bool,
     /// Looks at the camera from outside, with its frustum and the boxes of the maps drawn. Default: no.
@@ -93,7 +93,7 @@ impl Default for ViewSettings {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Settings {
-    /// All that decides how shadows come out.
+    /// Everything that decides how shadows look.
     pub technique: Technique,
     /// The sun.
     pub light: LightSettings,
@@ -152,7 +152,8 @@ impl LightSettings {
     }
 
     /// The settings of a light that travels in `direction` (world axes, any length): azimuth in
-    /// -π..=π, elevation in -π/2..=π/2, the rest as by default. A vertical light has azimuth 0.
+    /// -π..=π, elevation in -π/2..=π/2, the rest with default values. A vertical light has azimuth
+    /// 0.
     ///
     /// # Errors
     ///

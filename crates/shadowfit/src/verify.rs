@@ -1,9 +1,9 @@
 //! A certificate that a map has no holes: every receiver lies in it, and no caster is lost.
 //!
 //! [`verify`] looks at a fit's matrices alone and not at how they came about, so it holds for fits
-//! that were held, moved to another origin, stored or changed. It proves for **all** points of the
-//! receivers what it says, by the corners of each box clipped to the view; the rounding of f32
-//! positions, matrices and shader arithmetic is bounded and must be left free.
+//! that were held, moved to another origin, stored or changed. What it states holds for **all**
+//! points of the receivers, and is proven by the corners of each box clipped to the view; the
+//! rounding of f32 positions, matrices and shader arithmetic is bounded and required as free space.
 //!
 //! ```text
 //!     toward the light
@@ -57,7 +57,7 @@ pub enum Certificate {
         /// A point of it, in world space.
         point: DVec3,
     },
-    /// A part of a caster that can throw a shadow into view lies before the near plane, or cannot
+    /// A part of a caster that can cast a shadow into view lies before the near plane, or cannot
     /// be proven to lie behind it.
     CasterLost {
         /// The part farthest toward the light, in world space.
@@ -74,7 +74,7 @@ impl Certificate {
     }
 }
 
-/// What is left free beyond all that is required. Infinite where there was nothing to require.
+/// The free space beyond all that is required. Infinite where nothing was required.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Margins {
@@ -90,18 +90,18 @@ pub struct Margins {
 ///
 /// - **Receivers** are `input.receivers` clipped to the views' slices between `query.near` and
 ///   `query.far`; the slices themselves where the boxes are not known. Boxes whose
-///   [cone](FitInput::receiver_cones) turns away from the light are passed over as the fits do. A
-///   frustum ends where its corners say; a camera matrix that is rounded otherwise may show a
-///   sliver beyond.
-/// - **Casters** are `input.casters`, whatever policy the fit was made by: those parts that stand
-///   over the receivers' outline, widened by the filter's reach, the rasteriser's snap and the
-///   normal offset. Nothing is proven of casters that are not given.
+///   [cone](FitInput::receiver_cones) turns away from the light are ignored, as in the fits. A
+///   frustum ends at its corners; a camera matrix with other rounding may show a sliver beyond
+///   them.
+/// - **Casters** are `input.casters`, for any caster policy of the fit: those parts that lie over
+///   the receivers' outline, widened by the filter's reach, the rasteriser's snap and the normal
+///   offset. Nothing is proven of casters that are not given.
 /// - **Rounding**: positions are taken as f32 relative to [`LightFit::origin`], multiplied by
 ///   `uv_from_world` and `clip_from_world` in f32 in any order of operations. Positions relative
 ///   to another origin need [`LightFit::relative_to`] first, and a certificate of that.
 ///
-/// World positions are f64, in metres. The fit of the XNA sample has no caster policy, and where
-/// a caster stands before the frustum the certificate says so.
+/// World positions are f64, in metres. The fit of the XNA sample has no caster policy, so the
+/// certificate reports any caster that lies before the frustum.
 ///
 /// ```
 /// use shadowfit::bias::Reach;
@@ -176,9 +176,9 @@ pub struct Margins {
 ///
 /// Those of the views, the light's direction and the boxes as of
 /// [`fit_scene`](crate::fits::fit_scene); [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the
-/// query and for a fit whose matrices are no light's; [`FitError::ZeroResolution`];
-/// [`FitError::NearNotBelowFar`] for a query whose near is above its far (equal ones ask for
-/// nothing); [`FitError::WorkspaceTooSmall`].
+/// query and for a fit whose matrices are not those of a light; [`FitError::ZeroResolution`];
+/// [`FitError::NearNotBelowFar`] for a query whose near is above its far (equal ones require nothing);
+/// [`FitError::WorkspaceTooSmall`].
 pub fn verify(
     input: &FitInput,
     fit: &LightFit,
@@ -267,7 +267,7 @@ impl<'a> Worst<'a> {
         Self { half_spaces, offset, least: [(f64::INFINITY, DVec3::ZERO); 6], any: None }
     }
 
-    /// Takes all that the views see between two depths.
+    /// Adds everything that the views see between two depths.
     fn add_all(&mut self, content: &Content, range: Range) {
         if content.receivers.is_none() {
             content.corners(range).for_each(|corner| self.add(corner));
@@ -277,7 +277,7 @@ impl<'a> Worst<'a> {
         let Ok(()): Result<(), core::convert::Infallible> = all;
     }
 
-    /// Takes a receiver's box clipped to a slice.
+    /// Adds a receiver's box clipped to a slice.
     fn add_box(&mut self, slice: &Slice, min: DVec3, max: DVec3) -> Result<(), core::convert::Infallible> {
         // No part of a box is less inside than its corners.
         let corners = box_corners(min, max);
@@ -290,7 +290,7 @@ impl<'a> Worst<'a> {
         })
     }
 
-    /// Whether a point changes anything.
+    /// Whether a point has less margin at some plane than all before it.
     fn is_worse(&self, p: DVec3) -> bool {
         let p = p + self.offset;
         self.half_spaces.all.iter().any(|half_space| half_space.margin(p) < self.least[half_space.plane as usize].0)

@@ -1,4 +1,4 @@
-//! A view frustum as fits work with it: f64, cut by view depth, clipped against boxes.
+//! A view frustum in the form that fits use: f64, cut by view depth, clipped against boxes.
 //!
 //! The vertices of box ∩ frustum slice lie on three planes each. Those with two or three planes of
 //! the box are ends of the box's edges clipped to the slice, those with two or three planes of the
@@ -70,7 +70,7 @@ pub(crate) struct View {
     corners: [DVec3; 8],
     pub(crate) near: f64,
     pub(crate) far: f64,
-    /// View depth as a plane's distance.
+    /// View depth of a point, as the signed distance from a plane.
     pub(crate) depth: Plane,
     sides: [Plane; 4],
 }
@@ -83,14 +83,15 @@ impl View {
         let forward = frustum.forward.as_dvec3();
         let forward = forward / checks::length(forward);
         let (near, far) = (f64::from(frustum.near), f64::from(frustum.far));
-        // Depths are counted from the near rectangle, whose rounding is the smallest.
+        // Depths are measured from the near rectangle, whose rounding is the smallest.
         let middle = (corners[0] + corners[2]) * 0.5;
         let depth = Plane { normal: forward, d: near - forward.dot(middle) };
         let centre = corners.iter().copied().sum::<DVec3>() * 0.125;
         let mut sides = [depth; 4];
         for (i, side) in sides.iter_mut().enumerate() {
             let next = (i + 1) % 4;
-            // The far rectangle is never the smaller one, so its side has the surer direction.
+            // The far rectangle is never the smaller one, so its side has the more precise
+            // direction.
             let normal = (corners[i + 4] - corners[i]).cross(corners[next + 4] - corners[i + 4]);
             let normal = normal / checks::length(normal);
             let inward = if normal.dot(centre - corners[i + 4]) < 0.0 { -normal } else { normal };
@@ -100,10 +101,10 @@ impl View {
     }
 
     /// Position of a point in the picture: 0..1 from left to right and from top to bottom. The point
-    /// is not before the near plane.
+    /// must not lie before the near plane.
     pub(crate) fn picture_position(&self, p: DVec3) -> [f64; 2] {
-        // Sides 0 to 3 are top, right, bottom, left; each is measured in what the opposite end of
-        // the far rectangle has.
+        // Sides 0 to 3 are top, right, bottom, left; each distance is divided by that of the
+        // opposite end of the far rectangle.
         let share = |one: usize, other: usize, at_other: usize, at_one: usize| {
             let a = self.sides[one].distance(p) / self.sides[one].distance(self.corners[at_other]);
             let b = self.sides[other].distance(p) / self.sides[other].distance(self.corners[at_one]);
@@ -186,8 +187,8 @@ pub(crate) fn box_corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
 }
 
 impl Slice {
-    /// Gives all vertices of box ∩ slice, some of them more than once, and possibly points of its
-    /// edges. Nothing when they do not meet.
+    /// Passes on all vertices of box ∩ slice, some of them more than once, and possibly points of
+    /// its edges. Nothing when they do not meet.
     pub(crate) fn clip<E>(
         &self,
         min: DVec3,

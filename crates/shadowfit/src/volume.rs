@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 
 use crate::axes::LightAxes;
 
-/// What set a plane of a fitted box: where to turn for a tighter fit.
+/// What set a plane of a fitted box: what to change for a tighter fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -15,7 +15,7 @@ pub enum Constraint {
     View,
     /// The box of a receiver.
     Receivers,
-    /// The box of a caster that stands before what is covered.
+    /// The box of a caster that lies before the covered region.
     Casters,
     /// [`FitSettings::caster_extension`](crate::settings::FitSettings::caster_extension).
     CasterExtension,
@@ -61,11 +61,11 @@ pub(crate) struct Grid {
 /// What a box is enlarged by on each side, as a share of the greatest distance from the origin and
 /// the box's own extent together.
 ///
-/// A shader's f32 matrix times an f32 position is off by ten times 2⁻²⁴ of the sum of its terms,
-/// as [`verify`](crate::verify) counts, the matrix's elements by two and the frustum's corners by
-/// two more. The terms of the position sum to no more than its distance d, the translation is no
-/// more than d and half the extent e, and an offset of the texture or clip coordinates adds another
-/// half: 14 d + 12 (d + e), which 28 times 2⁻²⁴ of d + e is more than.
+/// A shader's f32 matrix times an f32 position is off by ten times 2⁻²⁴ of the sum of its terms, as
+/// [`verify`](crate::verify) counts, the matrix's elements by two and the frustum's corners by two
+/// more. The terms of the position sum to no more than its distance d, the translation is no more
+/// than d and half the extent e, and an offset of the texture or clip coordinates adds another
+/// half: 14 d + 12 (d + e), which is less than 28 (d + e).
 pub(crate) const ROUNDING: f64 = 28.0 / 16_777_216.0;
 
 impl Volume {

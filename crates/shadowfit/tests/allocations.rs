@@ -78,7 +78,7 @@ fn no_fit_allocates() {
 }
 
 #[test]
-fn no_cascade_fit_allocates() {
+fn no_fit_of_several_maps_allocates() {
     let (views, objects) = (views(), objects());
     let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
     let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, DIRECTION) };

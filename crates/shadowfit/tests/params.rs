@@ -36,7 +36,7 @@ fn with(values: &[(&str, &str)]) -> Settings {
     settings
 }
 
-/// Settings that between them have a place for every row.
+/// Settings that between them have every row.
 fn starts() -> [Settings; 4] {
     let mut own = Technique::default().with_count(8);
     own.overrides = [MapOverride { resolution: Some(UVec2::splat(512)), ..MapOverride::default() }; MAX_MAPS];
@@ -48,12 +48,12 @@ fn starts() -> [Settings; 4] {
     ]
 }
 
-/// Settings that have a place for the row.
-fn with_place_for(parameter: &Parameter) -> Settings {
+/// Settings in which the row exists.
+fn settings_with(parameter: &Parameter) -> Settings {
     starts().into_iter().find(|start| parameter.is_present(start)).expect(parameter.id)
 }
 
-/// Gives the parameter a value that is not its present one, where the settings have a place for it.
+/// Gives the parameter a value that is not its present one, where the settings have the row.
 fn change(settings: &mut Settings, parameter: &Parameter) {
     match &parameter.kind {
         Kind::Number(number) => {
@@ -188,7 +188,7 @@ fn leaves_of_fit(fit: &FitSettings, leaf: &mut Leaf) {
 #[test]
 fn every_row_changes_the_settings_and_copies_its_value() {
     for parameter in PARAMETERS {
-        let start = with_place_for(parameter);
+        let start = settings_with(parameter);
         let mut settings = start;
         change(&mut settings, parameter);
         assert_ne!(settings, start, "{}", parameter.id);
@@ -202,7 +202,7 @@ fn every_row_changes_the_settings_and_copies_its_value() {
 fn every_field_is_reached_by_a_row() {
     let mut unreached: Vec<String> = leaves(&Settings::default()).into_iter().map(|(name, _)| name).collect();
     for parameter in PARAMETERS {
-        let start = with_place_for(parameter);
+        let start = settings_with(parameter);
         let mut changed = start;
         change(&mut changed, parameter);
         for ((name, before), (_, after)) in leaves(&start).iter().zip(leaves(&changed)) {
@@ -222,7 +222,7 @@ fn every_row_of_a_technique_shows_in_its_rust_code() {
         code
     };
     for parameter in technique_parameters() {
-        let start = with_place_for(parameter);
+        let start = settings_with(parameter);
         let mut changed = start;
         change(&mut changed, parameter);
         assert_ne!(code(&changed), code(&start), "{}", parameter.id);
@@ -232,7 +232,7 @@ fn every_row_of_a_technique_shows_in_its_rust_code() {
 #[test]
 fn rows_of_a_technique_change_nothing_but_the_technique() {
     for parameter in technique_parameters() {
-        let start = with_place_for(parameter);
+        let start = settings_with(parameter);
         let mut changed = start;
         change(&mut changed, parameter);
         let Settings { technique, .. } = changed;
@@ -257,7 +257,7 @@ fn check<T: PartialEq + core::fmt::Debug>(id: &str, get: fn(&Technique) -> T, ex
 }
 
 #[test]
-fn option_names_stand_for_their_variants() {
+fn option_names_select_their_variants() {
     let fits = [
         ("focused", FitKind::Focused),
         ("oriented", FitKind::Oriented),
@@ -360,7 +360,7 @@ fn rows_speak_to_people() {
 #[test]
 fn defaults_and_steps_lie_within_the_ranges() {
     for parameter in PARAMETERS {
-        let settings = with_place_for(parameter);
+        let settings = settings_with(parameter);
         let (min, max, step, values) = match &parameter.kind {
             Kind::Number(number) => (number.min, number.max, number.step, vec![number.get(&settings)]),
             Kind::Optional(optional) => {
@@ -378,7 +378,7 @@ fn defaults_and_steps_lie_within_the_ranges() {
 fn values_survive_text_to_the_bit() {
     for parameter in PARAMETERS {
         for share in [0.0, 0.001, 1.0 / 3.0, 0.5, 0.77, 1.0] {
-            let mut settings = with_place_for(parameter);
+            let mut settings = settings_with(parameter);
             match &parameter.kind {
                 Kind::Number(number) => number.set(&mut settings, number.min + share * (number.max - number.min)),
                 Kind::Optional(optional) => {
@@ -388,7 +388,7 @@ fn values_survive_text_to_the_bit() {
             }
             survives_text(&settings, parameter);
             if let Kind::Optional(params::Optional { unset: Some(_), .. }) = &parameter.kind {
-                survives_text(&with_place_for(parameter), parameter);
+                survives_text(&settings_with(parameter), parameter);
             }
         }
     }
@@ -481,7 +481,7 @@ fn numbers_are_written_short() {
 #[test]
 fn numbers_clamp_and_ignore_what_is_not_finite() {
     for parameter in PARAMETERS {
-        let start = with_place_for(parameter);
+        let start = settings_with(parameter);
         let set = |value: f64| -> Option<(Settings, f64)> {
             let mut settings = start;
             match &parameter.kind {
@@ -513,12 +513,12 @@ fn numbers_clamp_and_ignore_what_is_not_finite() {
 }
 
 #[test]
-fn a_row_without_a_place_is_written_as_nothing_and_ignores_what_it_is_given() {
+fn a_row_that_does_not_exist_is_written_as_nothing_and_ignores_what_it_is_given() {
     for parameter in PARAMETERS {
         for start in starts().into_iter().filter(|start| !parameter.is_present(start)) {
             let mut settings = start;
             change(&mut settings, parameter);
-            parameter.copy(&mut settings, &with_place_for(parameter));
+            parameter.copy(&mut settings, &settings_with(parameter));
             assert_eq!((settings, written(&start, parameter)), (start, String::new()), "{}", parameter.id);
             assert!((parameter.inert)(&start).is_some(), "{} says why", parameter.id);
         }
@@ -645,7 +645,7 @@ fn a_knob_that_says_it_has_no_effect_has_none_and_the_others_have_one() {
         shadowfit::fits::fit_scene(&input, &settings.technique.fit, &mut Workspace::new(&mut storage)).expect("a fit")
     };
     let Kind::Choice(kinds) = &row("fit.kind").kind else { panic!("fits are options") };
-    // Which boxes there are is up to the engine, and y alone is up already, whatever its length.
+    // Which boxes there are is up to the engine, and y alone is up already, at any length.
     let others = ["fit.kind", "fit.receivers", "fit.up_y"];
     for kind in kinds.options {
         for parameter in Group::Fit.parameters().filter(|parameter| !others.contains(&parameter.id)) {
@@ -690,7 +690,7 @@ fn errors_name_the_id_the_value_and_what_is_allowed() {
 }
 
 #[test]
-fn setting_what_has_no_place_is_an_error_that_names_what_to_set_first() {
+fn setting_a_row_that_does_not_exist_is_an_error_that_names_what_to_set_first() {
     for (id, value, first, option) in [
         ("splits.lambda", "0.3", "splits.scheme", "practical"),
         ("splits.manual_1", "3", "splits.scheme", "manual"),

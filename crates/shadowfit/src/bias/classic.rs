@@ -1,4 +1,4 @@
-//! The biases of the classic techniques, as plain depth numbers: what they did, flaws included.
+//! The biases of the classic techniques, as plain depth numbers, flaws included.
 
 use crate::settings::FilterKind;
 use crate::{FitError, checks};
@@ -19,11 +19,11 @@ pub const fn acos_epsilon(filter: FilterKind) -> f32 {
 /// `epsilon / acos(saturate(N·L))` within 0..=[`ACOS_BIAS_LIMIT`], in units of the stored depth;
 /// `cosine` is N·L, `epsilon` usually [`acos_epsilon`].
 ///
-/// A form of the comparison sampler's early days, kept to show its flaw: it is said to stand for
-/// `epsilon · tan(acos N·L)`, but it is *largest* head-on (the limit at 0°, 0.01 at 0.1 rad) and
-/// *least* at grazing light (0.00064 at 90°), where acne is worst. Its source adds it to the depth
-/// of a map that holds back faces; with front faces it has to be subtracted.
-/// [`Bias::slope_depth`](crate::Bias::slope_depth) is what it means to be.
+/// A formula from the early days of comparison samplers, kept to show its flaw: it is meant to
+/// approximate `epsilon · tan(acos N·L)`, but it is *largest* head-on (the limit at 0°, 0.01 at 0.1
+/// rad) and *least* at grazing light (0.00064 at 90°), where acne is worst. Its source adds it to
+/// the depth of a map that holds back faces; with front faces it has to be subtracted.
+/// [`Bias::slope_depth`](crate::Bias::slope_depth) is the correct form.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! How far a filter reads from the point that it is asked for: what every bias is proportional to.
+//! How far a filter reads from the sampled point: every bias is proportional to it.
 
 use glam::Vec2;
 
@@ -25,13 +25,14 @@ pub struct Reach {
     pub disc: Vec2,
 }
 
-/// What hardware adds to every reach, in texels: the rasteriser snaps vertices, and the sampler
-/// texture coordinates, to the nearest 1/256 of a texel.
+/// What hardware rounding adds to every reach, in texels: the rasteriser snaps vertices, and the
+/// sampler texture coordinates, to the nearest 1/256 of a texel.
 pub const HARDWARE_SNAP: f32 = 1.0 / 256.0;
 
-/// Roundings of 2⁻²⁴ that can part what a map stores for a point from what it is compared with,
-/// as a multiple of the farthest distance from the origin in the map's box: four operations a
-/// term, in each of two transforms, on terms that sum to at most twice that distance.
+/// Roundings of 2⁻²⁴ by which the depth that a map stores for a point can differ from the depth
+/// that it is compared with, as a multiple of the farthest distance from the origin in the map's
+/// box: four operations a term, in each of two transforms, on terms that sum to at most twice that
+/// distance.
 const PRECISION_ROUNDINGS: f64 = 16.0;
 
 /// Relative rounding of f32, 2⁻²⁴.
@@ -73,16 +74,16 @@ impl Reach {
         self.taps + self.disc.x.max(self.disc.y)
     }
 
-    /// This reach with what is lost on the way through a GPU: [`HARDWARE_SNAP`] and the rounding
-    /// of f32 texture coordinates at this fit's farthest corner from its origin. With exact
-    /// arithmetic (a ray tracer, a test in f64) the plain reach is enough.
+    /// This reach, enlarged by the rounding of a GPU: [`HARDWARE_SNAP`] and the rounding of f32
+    /// texture coordinates at this fit's farthest corner from its origin. With exact arithmetic (a
+    /// ray tracer, a test in f64) the plain reach is enough.
     #[must_use]
     pub fn on_hardware(self, fit: &LightFit) -> Self {
         let texel = f64::from(fit.texel_size.x.min(fit.texel_size.y));
         Self { taps: self.taps + HARDWARE_SNAP + (rounding(fit) / texel) as f32, ..self }
     }
 
-    /// Refuses what is negative or not finite.
+    /// Refuses reaches that are negative or not finite.
     pub(crate) fn checked(self) -> Result<Self, FitError> {
         checks::within("the reach of the filter's taps", f64::from(self.taps), 0.0, checks::MAX_LENGTH)?;
         for radius in self.disc.to_array() {
@@ -91,8 +92,9 @@ impl Reach {
         Ok(self)
     }
 
-    /// Greatest rise over the texels in reach of a plane that rises by `a` over a texel along u
-    /// and by `b` along v, in the unit of `a` and `b`: a box's and an ellipse's support function.
+    /// Greatest height change, over the texels in reach, of a plane whose height changes by `a` per
+    /// texel along u and by `b` along v, in the unit of `a` and `b`: the support function of a box
+    /// plus that of an ellipse.
     pub(crate) fn rise(self, a: f64, b: f64) -> f64 {
         let (x, y) = (f64::from(self.disc.x) * a, f64::from(self.disc.y) * b);
         f64::from(self.taps) * (a.abs() + b.abs()) + libm::sqrt(x * x + y * y)
@@ -122,7 +124,7 @@ pub const fn reach(filter: FilterKind) -> f32 {
     }
 }
 
-/// What f32 rounding can do to a position in the map's box, in metres.
+/// Greatest f32 rounding error of a position in the map's box, in metres.
 pub(crate) fn rounding(fit: &LightFit) -> f64 {
     let distances = fit.corners().map(|corner| checks::length(corner.as_dvec3()));
     PRECISION_ROUNDINGS * ROUNDING * distances.into_iter().fold(0.0, f64::max)

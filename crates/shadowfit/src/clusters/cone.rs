@@ -9,7 +9,7 @@ impl NormalCone {
     /// A narrow cone around the normals of triangles; not the narrowest.
     pub(super) fn around<'a, I: Iterator<Item = &'a [Vec3; 3]>>(triangles: impl Fn() -> I) -> Self {
         let normals = || triangles().map(area_normal).filter(|normal| *normal != DVec3::ZERO);
-        // The side of the largest triangle, then of the mean, decides which normals are turned round.
+        // The side of the largest triangle, then of the mean, decides which normals are flipped.
         let largest = normals().fold(DVec3::ZERO, |most, n| if n.dot(n) > most.dot(most) { n } else { most });
         let mean = normals().fold(DVec3::ZERO, |sum, n| sum + toward(largest, n / length(n)));
         let axis = (mean / length(mean)).as_vec3();

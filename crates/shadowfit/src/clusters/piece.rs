@@ -23,7 +23,7 @@ pub(super) type Triangle = [Vec3; 3];
 /// Corners of a whole triangle.
 const WHOLE: [DVec2; 3] = [DVec2::ZERO, DVec2::X, DVec2::Y];
 
-/// A triangle or a part of one, in an object that its user knows.
+/// A triangle or a part of one; the caller keeps track of its object.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
     pub(super) aabb: Aabb,
@@ -86,7 +86,8 @@ impl Corners {
         rounded_out(min, max)
     }
 
-    /// Takes over the corners of a piece from `other`, to leave out those of no piece.
+    /// Copies the corners of a piece from `other`, so that only corners of pieces that are still in
+    /// use are kept.
     pub(super) fn adopt(&mut self, outline: Outline, other: &Self) -> Outline {
         if outline.count == 0 {
             return outline;

@@ -1,20 +1,21 @@
-//! Where to cut: slabs along an axis, and the cut between two of them that leaves the least air.
+//! Where to cut: slabs along an axis, and the cut between two of them that leaves the least empty
+//! space.
 //!
 //! Binned splits as of bounding volume hierarchies (Wald, Ingo: "On fast construction of SAH-based
 //! bounding volume hierarchies", 2007), of pieces cut at the planes (Stich, Martin, et al.: "Spatial
 //! splits in bounding volume hierarchies", 2009). Unlike there, a half's cost does not grow with its
-//! number of triangles, because a fit looks at each box once, whatever is in it.
+//! number of triangles, because a fit reads each box once, no matter how many triangles are in it.
 
 use glam::{DVec3, Vec3, Vec3Swizzles as _};
 
 use crate::Aabb;
 
-/// Slabs that a box is cut into along an axis; a cut is tried between each two. More of them did
-/// not make the fits of five measured scenes tighter, 32 took three times as long.
+/// Slabs that a box is cut into along an axis; a cut is tried between each two. More did not make
+/// the fits of five measured scenes tighter, and 32 took three times as long.
 const SLABS: usize = 8;
 
-/// A longest side times an area counts for this share of as much volume, so that flat boxes are cut
-/// where it takes most of their area away.
+/// Weight of longest side times area, relative to volume, in the cost: flat boxes are then cut
+/// where that removes most of their area.
 const AREA_WEIGHT: f64 = 0.01;
 
 /// Boxes of what lies in each slab along an axis.
@@ -66,7 +67,7 @@ impl Slabs {
         }
     }
 
-    /// The coordinate to cut at with what the halves then cost; `None` where all lies in one slab.
+    /// The coordinate to cut at, and the cost of the two halves; `None` where all lies in one slab.
     pub(super) fn best(&self) -> Option<(f64, f32)> {
         let mut above = [Aabb::EMPTY; SLABS];
         let mut aabb = Aabb::EMPTY;
@@ -98,7 +99,7 @@ impl Slabs {
     }
 }
 
-/// What a box costs, in m³: the air that it may hold.
+/// Cost of a box, in m³: the empty space that it may hold.
 fn cost(aabb: &Aabb) -> f64 {
     let size = (aabb.max - aabb.min).as_dvec3();
     size.element_product() + AREA_WEIGHT * sides(size).element_sum() * size.max_element()

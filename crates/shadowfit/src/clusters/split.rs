@@ -1,4 +1,4 @@
-//! Cuts groups of pieces in two, again and again where the most air is left.
+//! Cuts groups of pieces in two, each time the group with the most empty space.
 
 use alloc::collections::BinaryHeap;
 use alloc::vec;
@@ -11,17 +11,18 @@ use super::piece::{Corners, Piece, Triangle};
 use super::slabs::{Slabs, sides};
 use crate::Aabb;
 
-/// Pieces of a group that decide where it is cut. This many serve as well as all.
+/// Pieces of a group that decide where it is cut. This many give cuts as good as all do.
 const SAMPLE: usize = 128;
 
-/// Depth in shares of a box's longest side by which the unfilled part of its sides counts as air.
+/// Depth, as a share of a box's longest side, by which the unfilled part of its sides counts as
+/// empty space.
 const SILHOUETTE_WEIGHT: f64 = 0.1;
 
 /// Share of a side that may be missing by rounding.
 const FILLED: f64 = 1.0 - 1e-3;
 
 /// Corners of cut pieces that may be kept, for each triangle and for each cluster: ten times what
-/// ordinary scenes use. Where large triangles pierce one another everywhere, later cuts leave
+/// ordinary scenes use. Where very many large triangles intersect one another, later cuts leave
 /// pieces whole instead, and the boxes overlap.
 const CORNERS_PER_TRIANGLE: usize = 16;
 const CORNERS_PER_CLUSTER: usize = 64;
@@ -31,9 +32,9 @@ pub(super) struct Group {
     pub(super) object: u32,
     pub(super) pieces: Vec<Piece>,
     aabb: Aabb,
-    /// About how much air is in the box, in m³.
+    /// Estimate of the empty space in the box, in m³.
     air: f64,
-    /// Its slot in [`Splitter::next`], which also decides between equals.
+    /// Its slot in [`Splitter::next`], which also breaks ties.
     slot: usize,
 }
 
@@ -84,7 +85,7 @@ fn middle(aabb: &Aabb) -> Option<(usize, f32)> {
 }
 
 impl Ord for Group {
-    /// More air is greater; of equal ones that with the lesser slot.
+    /// The group with more empty space is greater; of equal ones the one with the lower slot.
     fn cmp(&self, other: &Self) -> Ordering {
         self.air.total_cmp(&other.air).then(other.slot.cmp(&self.slot))
     }
@@ -104,10 +105,11 @@ impl PartialEq for Group {
 
 impl Eq for Group {}
 
-/// About how much air a box holds beside surfaces of so much area across x, y and z, in m³.
+/// Estimate of the empty space in a box, in m³, from the areas of its surfaces projected along x, y
+/// and z.
 ///
-/// Its volume, for surfaces are thin; and where they leave parts of its silhouettes open, as much
-/// more as if the box were a tenth as deep as long. A flat box that is full has none.
+/// It is the box's volume, since surfaces are thin, plus the area of its sides that they leave
+/// uncovered times a tenth of its longest side. A flat box that is full has none.
 fn air(aabb: &Aabb, area: Vec3) -> f64 {
     let size = (aabb.max - aabb.min).as_dvec3();
     let open = (sides(size) * FILLED - area.as_dvec3()).max(DVec3::ZERO);
@@ -143,11 +145,12 @@ struct Splitter<'a> {
     corners: Corners,
     /// How many corners may be kept.
     room: usize,
-    /// Whether they have been, so that pieces are cut no more.
+    /// Whether that number has been reached, so that no more pieces are cut.
     is_full: bool,
-    /// The groups' order: the slot that follows each slot. The last one's is no slot.
+    /// The groups' order: the slot that follows each slot. After the last one comes an index that
+    /// is no slot.
     next: Vec<usize>,
-    /// For the corners of one piece.
+    /// Scratch space for the corners of one piece.
     buffer: Vec<Vec3>,
 }
 
@@ -177,7 +180,7 @@ impl<'a> Splitter<'a> {
         ranks
     }
 
-    /// Both halves of a group, or the group when it holds no air or cannot be cut.
+    /// Both halves of a group, or the group itself when it holds no empty space or cannot be cut.
     fn halves(&mut self, mut group: Group) -> Result<[Group; 2], Group> {
         let triangles = self.objects[group.object as usize];
         let cut = match self.is_full {

@@ -1,10 +1,11 @@
 //! Many shapes against several volumes at once.
 //!
-//! Shapes go in lanes, number by number, so that the compiler turns every loop over them into
-//! vector instructions, on any target. How far a shape reaches along a normal does not depend on
-//! where a plane stands, and the maps of one light share most of their normals: it is worked
-//! out once for each normal. Most shapes lie outside of all volumes, so that a few planes around
-//! all volumes come first, the *screen*, and what passes it is collected until the lanes are full.
+//! Shapes are stored in lanes (structure of arrays), so that the compiler turns every loop over
+//! them into vector instructions, on any target. How far a shape reaches along a normal does not
+//! depend on the plane's distance, and the maps of one light share most of their normals, so it is
+//! computed once for each normal. Most shapes lie outside all volumes, so they are first tested
+//! against a few planes around all volumes, the *screen*; those that pass are collected until the
+//! lanes are full.
 //!
 //! ```text
 //!    shapes ──▶ lanes ──▶ screen ──few──▶ collected ──▶ lanes ──▶ planes of each volume ──▶ masks
@@ -25,13 +26,13 @@ const MAX_PLANES: usize = MAX_VOLUMES * CasterVolume::MAX_PLANES;
 /// Most planes of the screen: a silhouette has no more edges.
 const MAX_SCREEN: usize = 6;
 
-/// Tests shapes against up to eight volumes: bit i of a shape's mask says whether it may throw a
-/// shadow into map i, exactly as the tests of `volumes[i].relative_to(origin)` answer.
+/// Tests shapes against up to eight volumes: bit i of a shape's mask says whether it may cast a
+/// shadow into map i, with exactly the same results as the tests of
+/// `volumes[i].relative_to(origin)`.
 ///
-/// `shapes` are in world axes, in metres, relative to `origin` (for
-/// [`Boxes`](crate::Boxes): `cull(volumes, boxes.origin, boxes.boxes, masks)`). Nothing is done for
-/// shapes past the length of `masks` and for volumes past the eighth; masks past the number of
-/// shapes are left as they are.
+/// `shapes` are in world axes, in metres, relative to `origin` (for [`Boxes`](crate::Boxes):
+/// `cull(volumes, boxes.origin, boxes.boxes, masks)`). Shapes past the length of `masks` and
+/// volumes past the eighth are ignored; masks past the number of shapes are left as they are.
 ///
 /// A call has a fixed cost of about a microsecond for four volumes: give it all shapes at once.
 pub fn cull<S: Bounds>(volumes: &[CasterVolume], origin: DVec3, shapes: &[S], masks: &mut [u8]) {
@@ -45,7 +46,7 @@ pub fn cull<S: Bounds>(volumes: &[CasterVolume], origin: DVec3, shapes: &[S], ma
         waiting.pass(&mut block, chunk, start, masks);
     }
     waiting.flush(&mut block, masks);
-    // What does not fill the lanes is tested at once; no one asks for the lanes behind it.
+    // Shapes that do not fill the lanes are tested directly; the unused lanes are never read.
     let start = count - rest.len();
     waiting.shapes[..rest.len()].copy_from_slice(rest);
     for (waiting, index) in waiting.indices.iter_mut().zip(start..count) {
@@ -63,7 +64,8 @@ struct Waiting<S> {
 }
 
 impl<S: Bounds> Waiting<S> {
-    /// Screens a chunk whose masks begin at `start`: tests it at once or takes what passes.
+    /// Screens a chunk whose masks begin at `start`: tests it directly, or collects the shapes that
+    /// pass.
     fn pass(&mut self, block: &mut Block<S>, chunk: &[S; LANES], start: usize, masks: &mut [u8]) {
         block.load(chunk);
         let passed = block.screen();
@@ -84,7 +86,7 @@ impl<S: Bounds> Waiting<S> {
         }
     }
 
-    /// Tests what waits.
+    /// Tests the collected shapes.
     fn flush(&mut self, block: &mut Block<S>, masks: &mut [u8]) {
         if self.count > 0 {
             block.load(&self.shapes);
@@ -103,7 +105,7 @@ struct Passed {
     count: usize,
 }
 
-/// Shapes in lanes, and what is known of them.
+/// Shapes in lanes, with what has been computed for them.
 struct Block<'a, S: Bounds> {
     table: &'a PlaneTable,
     lanes: S::Lanes,
@@ -111,7 +113,7 @@ struct Block<'a, S: Bounds> {
     reach: Lane,
     /// Least distance to the planes of each volume.
     least: [Lane; MAX_VOLUMES],
-    /// Whether no lane of the last block was inside of the screen.
+    /// Whether all lanes of the last block were outside the screen.
     was_outside: bool,
     /// Plane of the screen to begin with.
     first_plane: usize,
@@ -130,10 +132,11 @@ impl<'a, S: Bounds> Block<'a, S> {
         slacks::<S>(&self.lanes, &mut self.slack);
     }
 
-    /// The lanes that are inside of the screen.
+    /// The lanes that are inside the screen.
     ///
-    /// Neighbours in a list are often neighbours in the world. Where one block was all outside,
-    /// the next one is given up as soon as it is, beginning with the plane that decided the last.
+    /// Neighbours in a list are often neighbours in the world. Where one whole block was outside,
+    /// the next one starts with the plane that decided the last, and stops as soon as all of it is
+    /// outside.
     fn screen(&mut self) -> Passed {
         let screen = &self.table.screen[..self.table.screen_count];
         let least = &mut self.least[0];
@@ -150,7 +153,7 @@ impl<'a, S: Bounds> Block<'a, S> {
         mark(least, &self.slack, 1, &mut bits);
         let mut passed = Passed { lanes: [0; LANES], count: 0 };
         for (lane, bit) in bits.iter().enumerate() {
-            // Written in any case, to be written over: branches would be taken at random.
+            // Written unconditionally and overwritten later: a branch here would be unpredictable.
             passed.lanes[passed.count] = lane as u8;
             passed.count += usize::from(*bit);
         }
@@ -183,8 +186,8 @@ impl<'a, S: Bounds> Block<'a, S> {
     }
 }
 
-// The loops over the lanes. Each is a function of its own: inlined into each other they are taken
-// apart number by number.
+// The loops over the lanes. Each is a function of its own: when they are inlined into each other,
+// the compiler splits them into scalar operations.
 
 #[inline(never)]
 fn gather<S: Bounds>(shapes: &[S; LANES], lanes: &mut S::Lanes) {
@@ -224,16 +227,16 @@ fn mark(least: &Lane, slack: &Lane, bit: u8, bits: &mut [u8; LANES]) {
 /// Whether all lanes are behind a plane.
 #[inline(never)]
 fn are_behind(least: &Lane, slack: &Lane) -> bool {
-    // Counted to the end: leaving at the first one that is not would keep the loop from being vectorised.
+    // Counts all lanes: an early exit would keep the loop from being vectorised.
     least.iter().zip(slack).map(|(least, slack)| u32::from(*least < -*slack)).sum::<u32>() == LANES as u32
 }
 
-/// The lesser of two distances. NaN changes nothing: such a shape counts as touching.
+/// The lesser of two distances. NaN is ignored: such a shape counts as touching.
 fn lesser(least: f32, distance: f32) -> f32 {
     if distance < least { distance } else { least }
 }
 
-/// The planes of all volumes, by their normals.
+/// The planes of all volumes, grouped by normal.
 struct PlaneTable {
     normals: [Vec3; MAX_PLANES],
     normal_count: usize,
@@ -266,7 +269,7 @@ impl PlaneTable {
         table
     }
 
-    /// Where a normal stands in the list, added to it if it is new.
+    /// Index of a normal in the list; adds it if it is new.
     fn normal_index(&mut self, normal: Vec3) -> usize {
         let known = self.normals[..self.normal_count].iter().position(|known| *known == normal);
         known.unwrap_or_else(|| {

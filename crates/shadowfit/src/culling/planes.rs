@@ -1,4 +1,4 @@
-//! The planes of a volume with one layout for all targets, as shaders take them.
+//! The planes of a volume with one layout for all targets, as shaders read them.
 
 use super::volume::CasterVolume;
 
@@ -19,11 +19,11 @@ use super::volume::CasterVolume;
 #[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct CasterPlanes {
-    /// [`CasterVolume::planes`], which are all good to test: those not in use hold everything.
+    /// [`CasterVolume::planes`]. All of them may be tested: everything is inside the unused ones.
     pub planes: [[f32; 4]; CasterVolume::MAX_PLANES],
     /// Number of planes in use.
     pub count: u32,
-    /// What WGSL leaves free at the end of the struct; zero.
+    /// Padding at the end of the struct, as in WGSL; zero.
     pub padding: [u32; 3],
 }
 

@@ -1,22 +1,23 @@
-//! Shapes that are tested against a caster volume, each by how far it reaches along a direction.
+//! Shapes that are tested against a caster volume, each by its support: how far it reaches along a
+//! direction.
 //!
-//! One by one and in lanes they run through the same operations in the same order, so that both
-//! give the same answer to the last bit.
+//! The single and the batched tests use the same operations in the same order, so that both give
+//! the same result to the last bit.
 
 use glam::{Mat4, Vec3};
 
 use crate::Aabb;
 
 /// Rounding that the tests allow for, as a share of the coordinates of shape and plane: 16 · 2⁻²⁴.
-/// A test has at most ten operations in f32; the planes' normals are rounded once and lie by two
-/// roundings more along the light.
+/// A test has at most ten operations in f32; the planes' normals are rounded once, and are off by
+/// two more roundings along the light.
 pub(super) const ROUNDING: f32 = 16.0 / 16_777_216.0;
 
 /// Shapes that are tested together. Loops this long are not unrolled, which keeps them simple
 /// enough for every compiler to vectorise, and all lanes stay in the innermost cache.
 pub(super) const LANES: usize = 64;
 
-/// A sphere around a caster, relative to an origin that its user states.
+/// A sphere around a caster, relative to an origin that the user of the sphere defines.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
@@ -24,12 +25,12 @@ pub(super) const LANES: usize = 64;
 pub struct Sphere {
     /// Centre in world axes, in metres.
     pub centre: Vec3,
-    /// Radius in metres; a sphere with a negative one holds nothing.
+    /// Radius in metres; a sphere with a negative radius is empty.
     pub radius: f32,
 }
 
-/// A box around a caster that may be turned (or sheared), relative to an origin that its user
-/// states.
+/// A box around a caster that may be turned (or sheared), relative to an origin that the user of
+/// the box defines.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
@@ -42,8 +43,8 @@ pub struct OrientedBox {
 }
 
 impl OrientedBox {
-    /// A box of local space where an affine transform puts it. Perspective is not applied; an
-    /// empty box becomes one that touches everything.
+    /// A box in local space, moved by an affine transform. Perspective is not applied; an empty box
+    /// becomes one that touches everything.
     pub fn from_local(world_from_local: &Mat4, local: &Aabb) -> Self {
         if local.is_empty() {
             return Self { centre: Vec3::NAN, half_axes: [Vec3::NAN; 3] };
@@ -70,28 +71,28 @@ mod sealed {
 
     use super::LANES;
 
-    /// What the tests ask of a shape.
+    /// What the tests need of a shape.
     pub trait Shape: Copy {
-        /// Several shapes, number by number.
+        /// Several shapes, as a structure of arrays.
         type Lanes: Lanes<Self>;
 
         /// Greatest n·p of its points.
         fn support(&self, normal: Vec3) -> f32;
 
-        /// Rounding that the support may have; negative infinity where the shape holds no point,
-        /// NaN or infinite where a number of it is.
+        /// Rounding error that the support may have; negative infinity for an empty shape, NaN or
+        /// infinite where one of the shape's numbers is.
         fn slack(&self) -> f32;
     }
 
-    /// The same of several shapes.
+    /// The same for several shapes.
     pub trait Lanes<S>: Default {
         /// Fills the lanes.
         fn gather(&mut self, shapes: &[S; LANES]);
 
-        /// Gives [`Shape::support`] of each lane.
+        /// Passes on [`Shape::support`] of each lane.
         fn support(&self, normal: Vec3, put: impl FnMut(usize, f32));
 
-        /// Gives [`Shape::slack`] of each lane.
+        /// Passes on [`Shape::slack`] of each lane.
         fn slack(&self, put: impl FnMut(usize, f32));
     }
 }
@@ -178,7 +179,7 @@ impl Lanes<Aabb> for AabbLanes {
 
     #[inline]
     fn support(&self, n: Vec3, mut put: impl FnMut(usize, f32)) {
-        // The same corner of all boxes, so that nothing is chosen inside of the loop.
+        // The same corner of all boxes, so that there is no branch inside the loop.
         let x = if n.x < 0.0 { &self.min.x } else { &self.max.x };
         let y = if n.y < 0.0 { &self.min.y } else { &self.max.y };
         let z = if n.z < 0.0 { &self.min.z } else { &self.max.z };

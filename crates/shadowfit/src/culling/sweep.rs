@@ -1,4 +1,4 @@
-//! The volume that can throw shadows into a slice of the view: the slice swept toward the light.
+//! The volume that can cast shadows into a slice of the view: the slice swept toward the light.
 //!
 //! It is bounded by the slice's planes that face away from the light, and by one plane along the
 //! light through each edge of the slice's outline as the light sees it (its silhouette). Nothing
@@ -15,8 +15,8 @@
 //!            facing away: these planes bound the volume below
 //! ```
 //!
-//! Which normals are taken decides only how tight the volume is: every plane is then moved out
-//! until all corners of the slices are inside, and beyond by the reach of the filter.
+//! The choice of normals decides only how tight the volume is: every plane is moved out until all
+//! corners of the slices are inside, and further by the reach of the filter.
 
 use glam::{DVec2, DVec3, Vec3};
 
@@ -40,8 +40,8 @@ pub struct Sweep<'a> {
     /// Reach of the filter. A penumbra search counts as a disc, see [`Reach::over_metres`]; the
     /// texel that a caster's edge is rasterised to is added to it. Default: [`Reach::HARDWARE_2X2`].
     pub reach: Reach,
-    /// How far off the receiver, in any direction, the looked-up point may lie, in metres:
-    /// [`Bias::normal_offset`](crate::Bias::normal_offset), and whatever else moves it.
+    /// How far from the receiver, in any direction, the looked-up point may lie, in metres:
+    /// [`Bias::normal_offset`](crate::Bias::normal_offset), and any other offset of the shader.
     /// Default: 0.
     pub normal_offset: f32,
 }
@@ -53,7 +53,7 @@ impl<'a> Sweep<'a> {
         Self { views, near: f32::MIN, far: f32::MAX, reach: Reach::HARDWARE_2X2, normal_offset: 0.0 }
     }
 
-    /// Refuses what makes no sense.
+    /// Refuses values that are not finite or out of range.
     fn checked(&self) -> Result<(), FitError> {
         let Self { near, far, .. } = *self;
         checks::finite("the sweep's near distance", f64::from(near))?;
@@ -80,13 +80,13 @@ const MAX_OUTLINE: usize = 6;
 const OUTLINE_STORAGE: usize = 256;
 
 impl CasterVolume {
-    /// Every caster that can throw a shadow through a map on what views see of it, relative to the
+    /// Every caster that can cast a shadow through a map on what views see of it, relative to the
     /// fit's origin.
     ///
     /// [`FittedMap::caster_volume`](crate::FittedMap::caster_volume) sweeps the depths of one of several
     /// maps. The depths must be those at which the shader reads this map: by view depth as there, or,
-    /// where the first map that covers a point is read, whatever the map may serve, in doubt
-    /// everything.
+    /// where the shader reads the first map that covers a point, all depths from which this map may be
+    /// read, in doubt the whole range.
     ///
     /// The planes are those of the view's slice that face away from the light, its silhouette
     /// edges swept along the light, the map's far plane and its four sides. For one view that is
@@ -94,13 +94,12 @@ impl CasterVolume {
     /// around them all. No plane bounds the volume toward the light, so that it serves maps with
     /// depth clamp too; [`Self::cut_at_near_plane`] adds the map's own.
     ///
-    /// A range of depths that no view has a part in gives the volume that holds nothing.
+    /// A range of depths in which no view has a part gives the empty volume.
     ///
     /// # Errors
     ///
     /// [`FitError::NoView`]; [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the depths,
-    /// the reach and the offset; [`FitError::NearNotBelowFar`]; those of a frustum that makes no
-    /// sense.
+    /// the reach and the offset; [`FitError::NearNotBelowFar`]; those of an invalid frustum.
     pub fn swept(fit: &LightFit, sweep: &Sweep) -> Result<Self, FitError> {
         sweep.checked()?;
         Ok(Planes { fit, sweep }.volume())
@@ -188,7 +187,7 @@ impl Planes<'_> {
         let mut hull = HullBuilder::new(&mut storage);
         for corner in self.slices().flat_map(|slice| slice.corners) {
             if hull.push(DVec2::new(x.dot(corner), y.dot(corner))).is_err() {
-                // More corners than there is room for: the map's own sides have to do.
+                // More corners than there is room for: the map's own sides are used instead.
                 return;
             }
         }

@@ -13,11 +13,11 @@ use crate::{Aabb, LightFit};
 /// |---|---|
 /// | [`LightFit::caster_volume`] | every caster that the map can store |
 /// | [`CasterVolume::of_map`] | the same, without a near plane where the pipeline clamps depth |
-/// | [`CasterVolume::swept`] | every caster that can throw a shadow into a slice of the view |
+/// | [`CasterVolume::swept`] | every caster that can cast a shadow into a slice of the view |
 ///
 /// A shape is culled when it lies wholly behind one of the planes. That is conservative and not
 /// exact: a shape beyond an edge or a corner of the volume, behind none of the planes, is kept, and
-/// the larger it is the more often. For each 100 boxes that throw a shadow into the view of the
+/// the larger it is the more often. For each 100 boxes that cast a shadow into the view of the
 /// tests' camera, a swept volume keeps at most 7 others when their half extents are up to a tenth
 /// of the view's, and at most 25 when they are up to its half. The map's own box keeps more than
 /// three times as many.
@@ -29,7 +29,7 @@ pub struct CasterVolume {
     pub origin: DVec3,
     /// Planes (n, d) with unit normals that point inward: a point p in world axes, in metres
     /// relative to [`Self::origin`], is inside where n·p + d >= 0 for all of them. Those past
-    /// [`Self::count`] are (0, 0, 0, 1), which everything is inside of.
+    /// [`Self::count`] are (0, 0, 0, 1), and everything is inside those.
     pub planes: [Vec4; Self::MAX_PLANES],
     /// Number of planes in use.
     pub count: u32,
@@ -75,7 +75,7 @@ impl CasterVolume {
     }
 
     /// This volume cut at the near plane of a map, for passes without depth clamp: casters before
-    /// that plane would be drawn for nothing.
+    /// that plane would be clipped, so drawing them is wasted.
     #[must_use]
     pub fn cut_at_near_plane(&self, fit: &LightFit) -> Self {
         let (_, [_, near]) = map_planes(&fit.relative_to(self.origin));
@@ -98,15 +98,15 @@ impl CasterVolume {
     }
 
     /// The same volume with its planes relative to another world position, in metres. The planes
-    /// are moved in f64 and lie outward by the rounding of their normals over that distance, 1e-7
-    /// of it.
+    /// are moved in f64 and are moved outward by the rounding of their normals over that distance,
+    /// 1e-7 of it.
     #[must_use]
     pub fn relative_to(&self, origin: DVec3) -> Self {
         let offset = origin - self.origin;
         let slack = (offset.x.abs() + offset.y.abs() + offset.z.abs()) * NORMAL_ROUNDING;
         let mut volume = Self { origin, ..*self };
         for plane in &mut volume.planes {
-            // Planes without a normal hold all or nothing, wherever they are.
+            // Planes without a normal hold everything or nothing, wherever they are.
             if plane.truncate() != Vec3::ZERO {
                 let moved = f64::from(plane.w) + plane.truncate().as_dvec3().dot(offset) + slack;
                 plane.w = moved as f32;
@@ -128,14 +128,14 @@ impl CasterVolume {
     /// Whether a sphere may touch the volume: centre in world axes relative to [`Self::origin`]
     /// and radius, in metres. A negative radius touches nothing; NaN counts as touching.
     ///
-    /// Known false positives are as of [`Self::intersects_aabb`]; a sphere behind a plane is
-    /// culled exactly.
+    /// Known false positives are those of [`Self::intersects_aabb`]; the test against a single
+    /// plane is exact.
     pub fn intersects_sphere(&self, centre: Vec3, radius: f32) -> bool {
         self.intersects(&Sphere { centre, radius })
     }
 
     /// Whether an oriented box, relative to [`Self::origin`], may touch the volume. NaN counts as
-    /// touching. Known false positives are as of [`Self::intersects_aabb`].
+    /// touching. Known false positives are those of [`Self::intersects_aabb`].
     pub fn intersects_obb(&self, oriented: &OrientedBox) -> bool {
         self.intersects(oriented)
     }
@@ -148,10 +148,10 @@ impl CasterVolume {
 }
 
 impl LightFit {
-    /// Every caster that the map can store: its own box, relative to [`Self::origin`]. Casters
-    /// nearer to the light than its near plane are not among them; with depth clamp they are, see
-    /// [`CasterVolume::of_map`]. [`CasterVolume::swept`] holds only those that can throw a shadow
-    /// into view.
+    /// Every caster that the map can store: the map's own box, relative to [`Self::origin`].
+    /// Casters nearer to the light than the map's near plane are left out; for maps with depth
+    /// clamp see [`CasterVolume::of_map`]. [`CasterVolume::swept`] holds only those that can cast
+    /// a shadow into view.
     pub fn caster_volume(&self) -> CasterVolume {
         CasterVolume::of_map(self, CasterPolicy::None)
     }
@@ -160,7 +160,7 @@ impl LightFit {
 /// Rounding of a unit normal's direction, in f64.
 const NORMAL_ROUNDING: f64 = 2.0 / 16_777_216.0;
 
-/// A plane's d with the rounding that its own part in the test may have.
+/// A plane's d, enlarged by the rounding that it adds to the test.
 pub(super) fn widened(d: f32) -> f32 {
     d + d.abs() * ROUNDING
 }

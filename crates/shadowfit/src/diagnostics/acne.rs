@@ -7,14 +7,15 @@ use crate::bias::{Bias, Reach, SQUARED_SINE_ROUNDING, Slope, depth_precision};
 use crate::depth_storage::DepthStorage;
 use crate::{FitError, LightFit, checks};
 
-/// What is left of a bias once a plane has taken what it needs; negative is what is missing, and
-/// the plane shadows itself in stripes.
+/// Bias less what a plane needs. Where it is negative, so much bias is missing, and the plane
+/// shadows itself in stripes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AcneMargin {
-    /// In metres along the normal: by so much the point could sink into its surface.
+    /// In metres along the normal: the distance by which the point could sink into its surface
+    /// without acne.
     pub metres: f32,
-    /// The same in texel sizes, by the longer side of a texel, as biases are set.
+    /// The same in texels, by the longer side of a texel, as biases are set.
     pub texels: f32,
 }
 

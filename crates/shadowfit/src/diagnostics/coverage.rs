@@ -1,4 +1,4 @@
-//! What a map covers, and how much of it is put to use.
+//! What a map covers, and how much of it is used.
 
 use glam::{DVec2, DVec3, Vec3};
 
@@ -15,22 +15,22 @@ pub enum Coverage {
     Border,
     /// Outside, across the light.
     Aside,
-    /// Outside, nearer to the light than the near plane: it receives no shadow, and throws none.
+    /// Outside, nearer to the light than the near plane: it neither receives nor casts a shadow.
     BeforeNear,
     /// Outside, behind the far plane.
     BehindFar,
 }
 
 impl Coverage {
-    /// Whether the map says anything of the point: [`LightFit::covers`].
+    /// Whether the map can be read for the point: [`LightFit::covers`].
     pub const fn is_inside(self) -> bool {
         matches!(self, Self::Covered | Self::Border)
     }
 }
 
-/// Where a world position, in metres, lies in a map, for a filter of the given [`Reach`]. Inside
-/// is what [`LightFit::covers`] says; a point outside across the light is [`Coverage::Aside`]
-/// whatever its depth.
+/// Where a world position, in metres, lies in a map, for a filter of the given [`Reach`]. Inside is
+/// defined by [`LightFit::covers`]; a point outside across the light is [`Coverage::Aside`] at any
+/// depth.
 ///
 /// # Errors
 ///
@@ -50,7 +50,7 @@ pub fn coverage(fit: &LightFit, reach: impl Into<Reach>, point: DVec3) -> Result
     let outside = (uv - 0.5).abs() - 0.5;
     let aside = outside.x.max(outside.y);
     let along = (depth - 0.5).abs() - 0.5;
-    Ok(if aside > ASIDE_SLACK || aside >= along {
+    Ok(if aside > ASIDE_TOLERANCE || aside >= along {
         Coverage::Aside
     } else if depth < 0.5 {
         Coverage::BeforeNear
@@ -59,16 +59,16 @@ pub fn coverage(fit: &LightFit, reach: impl Into<Reach>, point: DVec3) -> Result
     })
 }
 
-/// Share of the map's extent by which a point may lie beside it by rounding alone; nearer than
-/// that, the greater excess names the side.
-const ASIDE_SLACK: f64 = 1e-6;
+/// Share of the map's extent by which a point may lie beside it by rounding alone; below it, the
+/// side with the greater excess is reported.
+const ASIDE_TOLERANCE: f64 = 1e-6;
 
 /// Share of the map's area, 0..=1, inside the convex hull of `points` as seen by the light: the
-/// corners of a frustum's slice, of the receivers' boxes or of whatever the map is made for. They
-/// are in world axes **relative to the fit's origin**, in metres, in any order; depth does not
-/// count, and what lies outside the map is cut off. Fewer than three points have no area.
+/// corners of a frustum's slice, of the receivers' boxes or of anything else that the map must
+/// cover. They are in world axes **relative to the fit's origin**, in metres, in any order; depth
+/// is ignored, and the part outside the map is cut off. Fewer than three points have no area.
 ///
-/// It is an upper bound of the share that visible points need: they need not fill their hull.
+/// It is an upper bound of the share that visible points use, since they may not fill their hull.
 ///
 /// # Errors
 ///
@@ -86,11 +86,11 @@ pub fn share_of_map(fit: &LightFit, points: &[Vec3]) -> Result<f32, FitError> {
         checks::point("a point of what the map is for", point.as_dvec3())?;
         texture_point(fit, point.as_dvec3())?;
     }
-    // Checked above, so that no point is left out here.
+    // Checked above, so that no point is dropped here.
     let seen = || points.iter().filter_map(|p| texture_point(fit, p.as_dvec3()).ok()).map(|p| DVec2::new(p.x, p.y));
     let (least, greatest) = seen().fold((1.0, 0.0), |(min, max): (f64, f64), p| (min.min(p.x), max.max(p.x)));
     let width = (greatest.min(1.0) - least.max(0.0)).max(0.0);
-    // Above the lower chain lies what is below the upper one of the map upside down.
+    // The area above the lower chain is the area below the upper chain of the flipped map.
     let above = area_below_chain(|| seen().map(|p| DVec2::new(p.x, 1.0 - p.y)));
     Ok((area_below_chain(seen) + above - width).clamp(0.0, 1.0) as f32)
 }

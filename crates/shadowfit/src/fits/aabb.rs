@@ -1,6 +1,6 @@
 //! The axis-aligned box of the camera frustum in the light's axes: the fit that most engines use.
 //! Depth is tight to the frustum, and the near plane is moved toward the light by a caster
-//! extension, since what stands between the light and the frustum throws shadows into it.
+//! extension, since objects between the light and the frustum cast shadows into it.
 //!
 //! ```text
 //!   toward the light

@@ -2,8 +2,8 @@
 //!
 //! Most of a frustum is empty air. Each receiver's box is clipped to the frustum and seen from the
 //! light; the rectangle lies around the outlines of all of them, and depth ends at the lowest one.
-//! No pixel of a receiver lies outside its box, so none is missed; the narrower the boxes hug
-//! the surfaces, the finer the texels, which is why a large mesh is worth cutting into clusters
+//! No pixel of a receiver lies outside its box, so none is missed; the more closely the boxes hug
+//! the surfaces, the finer the texels, which is why it pays to cut a large mesh into clusters
 //! (`Clusters`, with the feature `alloc`).
 
 use glam::Vec3;
@@ -12,8 +12,8 @@ use crate::fits::fit_as;
 use crate::settings::{FitKind, FitSettings};
 use crate::{FitError, LightFit, ViewFrustum};
 
-/// Fits a frustum of whose receivers nothing is known, which is the [oriented](super::oriented)
-/// fit; [`fit_scene`](crate::fits::fit_scene) takes boxes. `direction` is the light's direction of
+/// Fits a frustum without known receivers, which gives the [oriented](super::oriented) fit;
+/// [`fit_scene`](crate::fits::fit_scene) takes boxes. `direction` is the light's direction of
 /// travel in world axes.
 ///
 /// # Errors

@@ -25,11 +25,10 @@ use crate::{FitError, FitInput, LightFit, ViewFrustum, Workspace, checks, grid, 
 /// [`FitSettings::kind`] names.
 ///
 /// The frustum is cut at [`FitSettings::max_distance`] first (`f32::MAX` leaves it whole; infinity
-/// is refused like every number that is not finite). `direction` is the light's
-/// **direction of travel** in world axes (right-handed); sources that speak of the direction
-/// toward the light use the opposite sign. Its length is ignored. Nothing is known of the
-/// scene here: [`fit_scene`] takes boxes, [`MapFitter`](crate::MapFitter) makes several
-/// maps and keeps them still.
+/// is refused like every number that is not finite). `direction` is the light's **direction of
+/// travel** in world axes (right-handed); sources that speak of the direction toward the light use
+/// the opposite sign. Its length is ignored. Nothing is known about the scene here: [`fit_scene`]
+/// takes boxes, [`MapFitter`](crate::MapFitter) makes several maps and keeps them still.
 ///
 /// # Errors
 ///
@@ -40,7 +39,8 @@ pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Re
     let input = FitInput::new(core::slice::from_ref(frustum), direction);
     let (rule, light) = prepare(&input, settings, default_border(settings))?;
     if rule.covers == Covers::ExactCorners {
-        // It looks at nothing but the corners, and is as cheap as the sample's own only without storage.
+        // It uses nothing but the corners, and is as cheap as the sample's own code only without
+        // storage.
         return fit_whole(&Content::of_views(&input), &light, &rule, settings.max_distance, &mut []);
     }
     let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
@@ -65,7 +65,7 @@ pub fn fit_scene(input: &FitInput, settings: &FitSettings, workspace: &mut Works
     fit_whole(&content, &light, &rule, settings.max_distance, points)
 }
 
-/// One map around all that is shadowed.
+/// One map around everything that receives shadows.
 #[inline(always)]
 fn fit_whole(
     content: &Content,
@@ -80,8 +80,8 @@ fn fit_whole(
     LightFit::from_volume(content.origin, &volume, rule.resolution, rule.convention)
 }
 
-/// Checks what all fits take; gives the rule of the settings, with the free texels at the border, and
-/// the light.
+/// Checks the inputs that all fits share; returns the rule of the settings, with the free texels at
+/// the border, and the light.
 #[inline(always)]
 pub(crate) fn prepare(input: &FitInput, settings: &FitSettings, border: f32) -> Result<(FitRule, Light), FitError> {
     if input.views.is_empty() {
@@ -100,7 +100,7 @@ pub(crate) fn prepare(input: &FitInput, settings: &FitSettings, border: f32) -> 
     Ok((rule, Light::new(direction, up, rule.roll)))
 }
 
-/// Whether a fit lies where it is tightest or on the world's grid.
+/// Whether a fit is as tight as possible or lies on the world's grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Placement {
     Tight,
@@ -110,7 +110,7 @@ pub(crate) enum Placement {
 }
 
 /// One map around a range of view depths, from the input to the box that becomes its
-/// [matrices](LightFit::from_volume). The sphere's is always on the grid, the XNA sample's never.
+/// [matrices](LightFit::from_volume). The sphere fit is always on the grid, the XNA sample's never.
 #[inline(always)]
 pub(crate) fn fit_map(
     content: &Content,
@@ -143,7 +143,7 @@ fn add_border(volume: &mut Volume, rule: &FitRule) {
     (volume.min, volume.max) = (volume.min - free.extend(0.0), volume.max + free.extend(0.0));
 }
 
-/// Fits a single frustum by one kind, whatever the settings name.
+/// Fits a single frustum by the given kind; the kind in the settings is ignored.
 pub(crate) fn fit_as(
     kind: FitKind,
     frustum: &ViewFrustum,

@@ -1,9 +1,8 @@
 //! The stable fit: the minimal enclosing sphere of the view, seen from the light.
 //!
-//! A sphere looks the same from every side, so turning the camera does not change the map's
-//! extent; the map's texels lie on a grid that is fixed to the world, so moving it shifts the map
-//! by whole texels. Shadow edges stand perfectly still, at the price of a map that is mostly
-//! outside the view.
+//! A sphere looks the same from every side, so turning the camera does not change the map's extent;
+//! the map's texels lie on a grid that is fixed to the world, so moving it shifts the map by whole
+//! texels. Shadow edges do not move at all, at the price of a map that is mostly outside the view.
 //!
 //! For a symmetric frustum the sphere's centre lies on the axis. With half diagonals r₀ at the
 //! near and r₁ at the far rectangle, L apart, and x from the near one:
@@ -43,12 +42,12 @@ pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Re
 }
 
 /// Centre and radius, in metres, of the minimal sphere around a frustum's corners: the centre in
-/// world axes relative to [`ViewFrustum::origin`]. Exact to 1e-9 of the radius for what the
-/// corners, in f32, say.
+/// world axes relative to [`ViewFrustum::origin`]. Exact to 1e-9 of the radius for the given f32
+/// corners.
 ///
 /// # Errors
 ///
-/// As [`ViewFrustum::slice`] for frusta that no fit can use.
+/// The errors of [`ViewFrustum::slice`] for frusta that no fit can use.
 pub fn enclosing_sphere(frustum: &ViewFrustum) -> Result<(DVec3, f64), FitError> {
     let corners = frustum.checked()?.corners.map(Vec3::as_dvec3);
     let symmetric = SymmetricFrustum::new(&corners);

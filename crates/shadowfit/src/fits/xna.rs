@@ -1,6 +1,7 @@
 //! The fit of the XNA "Shadow Mapping" sample (Microsoft, XNA Creators Club, 2008):
-//! `CreateLightViewProjectionMatrix`, kept exact so that its pictures and flaws can be reproduced.
-//! Tight across the light, twice the depth it needs, and blind to casters outside the frustum.
+//! `CreateLightViewProjectionMatrix`, kept exactly so that its pictures and flaws can be
+//! reproduced. Tight across the light, twice the depth it needs, and blind to casters outside the
+//! frustum.
 //!
 //! The light stands at the centre of the box's x and y at its *minimum* z, which is the face
 //! **away** from where the light comes from, since view space looks along -z; the projection then
@@ -17,9 +18,9 @@
 //! ```
 //!
 //! Deviations from the source, none of which changes a number of its own scene: corners are
-//! relative to the eye and the box is measured in f64 (the source rounds world coordinates to
-//! f32), a vertical light takes another up axis (the source divides by zero), reversed and -1..1
-//! depth are offered, and `margin` is the cure that the source's text suggests.
+//! relative to the eye and the box is measured in f64 (the source rounds world coordinates to f32),
+//! a vertical light takes another up axis (the source divides by zero), reversed and -1..1 depth
+//! are offered, and `margin` is the remedy that the source's text suggests.
 
 use glam::Vec3;
 
@@ -28,8 +29,8 @@ use crate::settings::{FitKind, FitSettings};
 use crate::{FitError, LightFit, ViewFrustum};
 
 /// Fits as the XNA sample does; see the [module](self). `direction` is the light's direction of
-/// travel in world axes. Of the settings the caster policy, the rectangle and the kernel margin
-/// are not used.
+/// travel in world axes. The caster policy, the rectangle and the border of the settings are
+/// ignored.
 ///
 /// # Errors
 ///

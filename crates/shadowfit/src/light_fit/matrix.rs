@@ -1,4 +1,4 @@
-//! Fits from matrices that other code made, so that they can be drawn, culled and judged as those of this crate.
+//! Fits from matrices of other code, so that they can be drawn, culled and evaluated like those of this crate.
 
 use glam::{DMat4, DVec3, UVec2, Vec3};
 
@@ -11,12 +11,13 @@ use crate::{DepthConvention, FitError, LightFit, checks};
 const SKEW: f64 = 1e-4;
 
 impl LightFit {
-    /// The fit that a light's orthographic view-projection stands for: clip space (x right, y up, depth 0..1, plain or
+    /// The fit that equals a light's orthographic view-projection: clip space (x right, y up, depth 0..1, plain or
     /// reversed) from world space in metres. `direction` is the light's direction of travel in world axes, of any
-    /// length; `origin` the world position, in metres, that the fit's own matrices shall be relative to, best one near
+    /// length; `origin` is the world position, in metres, that the fit's own matrices are relative to; choose one near
     /// what is seen.
     ///
-    /// Which depth the matrix has is told from it. A mirrored matrix gives a mirrored light space.
+    /// Whether depth is reversed is read from the matrix. A mirrored matrix gives a mirrored light
+    /// space.
     ///
     /// # Errors
     ///
@@ -70,7 +71,8 @@ impl Rows {
         Ok(rows)
     }
 
-    /// The box that the matrix takes to the clip cube. `travel` is 1 where depth grows with the light's way, else -1.
+    /// The box that the matrix maps to the clip cube. `travel` is 1 where depth grows along the light's direction,
+    /// else -1.
     fn volume(&self, axes: [DVec3; 3], travel: f64) -> Volume {
         let scale = self.axes.map(checks::length);
         let half = DVec3::new(1.0 / scale[0], 1.0 / scale[1], 0.5 / scale[2]);

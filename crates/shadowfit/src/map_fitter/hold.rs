@@ -1,9 +1,9 @@
-//! Maps that are kept while they serve: zero crawl with tight fits.
+//! Maps that are kept as long as they cover what they must: no crawling edges with tight fits.
 //!
-//! A held map keeps its angle and its texel size, and moves by whole texels of the world's grid.
-//! It is given up when what must be covered no longer fits into it, or when a fresh fit would
-//! have much finer texels. The new one is made larger, by what the camera will see if it goes on
-//! as it does, for as long as that costs no more than the rule allow:
+//! A held map keeps its angle and its texel size, and moves by whole texels of the world's grid. It
+//! is given up when what must be covered no longer fits into it, or when a fresh fit would have
+//! much finer texels. The new one is made larger, to hold what the camera will see if its motion
+//! goes on, for as many frames as the settings allow:
 //!
 //! ```text
 //!    ┌─────────────────┐ new map
@@ -29,7 +29,7 @@ use crate::view::Range;
 use crate::volume::{Constraint, Grid, ROUNDING, Volume};
 use crate::{FitError, FitInput, ViewFrustum, Workspace};
 
-/// A map of an earlier frame, in the world's own coordinates.
+/// A map of an earlier frame, in absolute world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct HeldMap {
@@ -75,7 +75,7 @@ pub(crate) fn volume(held: &HeldMap, origin: DVec3) -> Volume {
 }
 
 impl Holder<'_, '_> {
-    /// The map of this frame: the held one if it serves.
+    /// The map of this frame: the held one if it still covers what it must.
     pub(crate) fn hold(
         &self,
         held: Option<HeldMap>,
@@ -170,7 +170,8 @@ impl Holder<'_, '_> {
         let mut frames = self.hold.horizon;
         while let Some(motion) = self.motion.filter(|motion| frames > 0 && !motion.is_still(&self.input.views[0])) {
             let ahead = [motion.after(&self.input.views[0], frames / 2), motion.after(&self.input.views[0], frames)];
-            // Without storage or view to spare nothing is looked ahead: the map serves now all the same.
+            // Without enough storage or views there is no looking ahead; the map is still valid for this
+            // frame.
             let Ok(larger) = self.fit_ahead(&ahead, &plain, slice, points) else { break };
             let (size, old) = (larger.max - larger.min, fresh.max - fresh.min);
             let growth = f64::from(self.hold.growth);
@@ -190,21 +191,21 @@ impl Holder<'_, '_> {
         let anchor = grid::anchor(&map.axes, origin).z;
         let now = (needed.z.0 + anchor, needed.z.1 + anchor);
         let ahead = grid::stabilised_depth(None, (grid.z.0.min(now.0), grid.z.1.max(now.1)), 1.0);
-        // What the next frame would give up is not begun with.
+        // A depth range that the next frame would give up at once is not used.
         map.z = grid::stabilised_depth(Some(ahead), now, f64::from(self.hold.waste));
         map.set_by[5] = needed.near_set_by.unwrap_or(map.set_by[5]);
         Ok(map)
     }
 }
 
-/// What a map must hold in this frame, along its axes and relative to the origin.
+/// What a map must cover in this frame, along its axes and relative to the origin.
 struct Needed {
     across: Rectangle,
     z: (f64, f64),
     near_set_by: Option<Constraint>,
 }
 
-/// Most views that held maps are fitted to, those looked ahead included.
+/// Most views that held maps are fitted to, predicted ones included.
 const MAX_VIEWS: usize = 10;
 
 impl HeldMap {

@@ -11,7 +11,7 @@ mod tool;
 use super::{MIN_FAR_PER_NEAR, Parameter};
 use crate::tool::Settings;
 
-/// Every knob of [`Settings`].
+/// Every parameter of [`Settings`].
 pub static PARAMETERS: &[Parameter] = &[
     fit::KIND,
     fit::RECEIVERS,

@@ -14,7 +14,7 @@ use crate::tool::Settings;
 /// # Errors
 ///
 /// [`ParameterError`], with `settings` untouched: the id is unknown, the value is not one that the
-/// parameter takes, or the parameter [is not there](Parameter::is_present).
+/// parameter takes, or the parameter [does not exist](Parameter::is_present) under these settings.
 pub fn set_from_str<'a>(settings: &mut Settings, id: &'a str, value: &'a str) -> Result<(), ParameterError<'a>> {
     let parameter = parameter(id).ok_or(ParameterError::UnknownId { id })?;
     let value = value.trim();
@@ -54,7 +54,7 @@ fn parse<'a>(parameter: &'static Parameter, value: &'a str, numbers: Numbers) ->
     }
 }
 
-/// Which numbers a knob takes.
+/// Which numbers a parameter takes.
 #[derive(Clone, Copy)]
 struct Numbers {
     min: f64,
@@ -77,8 +77,8 @@ impl From<&Optional> for Numbers {
 /// Writes a parameter's value as [`set_from_str`] reads it, without its unit.
 ///
 /// A number gets the fewest decimals that restore the setting to the bit; one outside its range,
-/// which no text restores, is written with all its digits. One that [is not
-/// there](Parameter::is_present) is written as nothing.
+/// which no text restores, is written with all its digits. A parameter that [does not
+/// exist](Parameter::is_present) under these settings is written as an empty string.
 ///
 /// # Errors
 ///
@@ -105,7 +105,7 @@ pub fn format_value(settings: &Settings, parameter: &Parameter, out: &mut dyn fm
     }
 }
 
-/// How a knob's number is written and read back.
+/// How a parameter's number is written and read back.
 type Access<'a> = (&'a dyn Fn(&mut Settings, f64), &'a dyn Fn(&Settings) -> Option<f64>);
 
 fn write_number(
@@ -134,7 +134,7 @@ fn write_number(
     write!(out, "{value}")
 }
 
-/// Text on the stack: five digits, a point and 17 decimals fit.
+/// A text buffer on the stack: five digits, a point and 17 decimals fit.
 #[derive(Default)]
 struct ShortText {
     bytes: [u8; 32],
@@ -172,7 +172,7 @@ pub enum ParameterError<'a> {
         /// What was given.
         value: &'a str,
     },
-    /// The parameter is no part of a [`Technique`](crate::Technique).
+    /// The parameter is not part of a [`Technique`](crate::Technique).
     NotOfTechnique {
         /// The id that was asked for.
         id: &'a str,
@@ -191,7 +191,7 @@ pub enum ParameterError<'a> {
         /// What was given.
         value: &'a str,
     },
-    /// Another parameter decides whether this one exists, and it does not.
+    /// Another parameter's value means that this one does not exist.
     NotPresent {
         /// The parameter.
         parameter: &'static Parameter,

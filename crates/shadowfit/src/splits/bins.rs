@@ -8,7 +8,7 @@ pub(crate) type Splits = [f32; MAX_MAPS + 1];
 /// Bins of log view depth that the content is sorted into.
 pub(crate) const BINS: usize = 64;
 
-/// Bins at even steps of log view depth.
+/// Bins of equal size in log view depth.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bins {
     pub(super) near: f64,

@@ -1,8 +1,8 @@
-//! How large the map of any run of depth bins would be.
+//! Estimated size of the map for any run of depth bins.
 //!
 //! Each bin keeps the extent of what it holds along fixed directions in the light's plane; a run's
-//! extent is the greatest of its bins', and the best of the rectangles that stand on those
-//! directions tells how large its map will be, without fitting it.
+//! extent is the greatest of its bins', and the best of the rectangles along those directions gives
+//! an estimate of its map's size, without fitting it.
 
 use glam::{DVec2, DVec3, Vec3};
 
@@ -14,7 +14,8 @@ use crate::rule::{Covers, FitRule};
 use crate::settings::RectangleKind;
 use crate::view::Range;
 
-/// Directions over half a turn; the one a quarter turn further on is the other side's.
+/// Directions over half a turn; a rectangle's other side is along the direction a quarter turn
+/// further on.
 const DIRECTIONS: usize = 32;
 
 /// Estimated texel size of the map of each run of bins, in map widths (metres per map).
@@ -23,12 +24,12 @@ pub(super) struct Sizes {
     log: [[f32; BINS]; BINS],
 }
 
-/// What the maps will be made by.
+/// The rule that the maps will be fitted by.
 pub(super) struct Maps<'a, 'b> {
     pub(super) content: &'a Content<'b>,
     pub(super) axes: LightAxes,
     pub(super) rule: &'a FitRule,
-    /// Whether their extents are rounded up to those of the world's grid.
+    /// Whether their extents are rounded up to steps of the world's grid.
     pub(super) is_snapped: bool,
     /// View depths at which the first map begins and the last one ends, in metres.
     pub(super) near: f64,
@@ -167,7 +168,7 @@ impl Dop {
     }
 }
 
-/// Extent that stands for an empty run, in metres.
+/// Extent of an empty run, in metres.
 const SMALLEST: f64 = 1e-6;
 
 /// Unit vectors across the light at even angles over half a turn.

@@ -1,7 +1,7 @@
 //! Where one map ends and the next begins.
 //!
 //! Each map gets a range of view depths of its own. Fixed schemes place the splits by depth alone;
-//! the ones that look at the content place them where the most visible pixels gain.
+//! content-aware schemes place them where the most visible pixels gain.
 
 mod bins;
 mod extents;
@@ -40,7 +40,7 @@ pub(crate) fn practical(near: f64, far: f64, count: usize, lambda: f64) -> Split
     splits
 }
 
-/// Everything a choice of splits depends on.
+/// Everything that the choice of splits depends on.
 pub(crate) struct Chooser<'a, 'b> {
     pub(crate) content: &'a Content<'b>,
     pub(crate) light: Light,
@@ -48,25 +48,26 @@ pub(crate) struct Chooser<'a, 'b> {
     pub(crate) rule: &'a FitRule,
     pub(crate) technique: &'a Technique,
     pub(crate) input: &'a FitInput<'b>,
-    /// What is shadowed at all.
+    /// The view depths that are shadowed at all.
     pub(crate) range: Range,
 }
 
 impl Chooser<'_, '_> {
-    /// The depths between which the maps are spread: those of the receivers in view, if known.
+    /// The depths over which the maps are distributed: those of the receivers in view, if known.
     pub(crate) fn spread(&self) -> (f64, f64) {
         let (near, far) = (f64::from(self.range.near), f64::from(self.range.far));
         let (near, far) = match self.content.depth_range() {
             Some((first, last)) => (first.max(near), last.min(far)),
             None => (near, far),
         };
-        // Logarithms need a positive near end; no view of a scene has more octaves than this.
+        // Logarithms need a positive near end; no practical view has a greater depth ratio than
+        // this.
         let near = near.max(far * NEAREST);
         if near < far { (near, far) } else { (far * 0.5, far) }
     }
 
-    /// The same within the bounds of what is visible, if they are known and the scheme does not
-    /// look at the content by itself.
+    /// The same within the bounds of what is visible, if they are known and the scheme is not
+    /// content-aware itself.
     pub(crate) fn bounded(&self, (near, far): (f64, f64)) -> (f64, f64) {
         let is_fixed = !matches!(self.technique.splits, SplitScheme::FromBoxes | SplitScheme::FromHistogram);
         let Some(bounds) = self.input.depth_bounds.filter(|_| is_fixed) else { return (near, far) };
@@ -83,7 +84,7 @@ impl Chooser<'_, '_> {
             return far;
         }
         let is_held = self.technique.stabilise != Stabilise::Off;
-        let end = if is_held { self.content.farthest().map(|far| far * (1.0 + FAR_SLACK)) } else { None };
+        let end = if is_held { self.content.farthest().map(|far| far * (1.0 + FAR_ROOM)) } else { None };
         end.unwrap_or(spread.1).min(far)
     }
 
@@ -116,7 +117,7 @@ impl Chooser<'_, '_> {
         splits
     }
 
-    /// The splits that suit what is visible.
+    /// The best splits for what is visible.
     fn by_content(&self, spread: (f64, f64)) -> Splits {
         let bins = Bins::new(spread.0, spread.1);
         let (weights, sizes) = (self.weights(&bins), self.sizes(&bins));
@@ -129,8 +130,7 @@ impl Chooser<'_, '_> {
     }
 
     /// Splits of an earlier frame, in which shadows ended at `last_far`, if they hold all of this one's
-    /// depths and not far more. What a camera's matrix loses by rounding moves nothing but their far
-    /// end.
+    /// depths and not far more. The rounding of a camera's matrix changes nothing but their far end.
     pub(crate) fn kept(&self, splits: &Splits, last_far: f32, now: (f64, f64)) -> Option<Splits> {
         let count = self.technique.count as usize;
         let (end, far) = (f64::from(splits[count]), f64::from(self.range.far));
@@ -157,7 +157,8 @@ impl Chooser<'_, '_> {
         (f64::from(near) - f64::from(held)).abs() <= rounding
     }
 
-    /// Whether splits of an earlier frame still do for this one, beside what would be best.
+    /// Whether splits of an earlier frame are still good enough for this one, compared with the
+    /// best ones.
     pub(crate) fn serves(&self, splits: &Splits, held: (f64, f64), now: (f64, f64)) -> bool {
         let count = self.technique.count as usize;
         let waste = f64::from(self.technique.hold.waste);
@@ -177,7 +178,7 @@ impl Chooser<'_, '_> {
         quantile(&bins, &weights, &sizes, &chosen[..=count]) <= best.quality + libm::log2(waste)
     }
 
-    /// The fewest maps whose best splits reach `waste` times the bound of all.
+    /// The fewest maps whose best splits reach `waste` times the bound of the full count.
     pub(crate) fn fewest(&self, waste: f64) -> u32 {
         let (near, far) = self.spread();
         let bins = Bins::new(near, far);
@@ -209,26 +210,26 @@ impl Chooser<'_, '_> {
     }
 }
 
-/// Share of the boxes' guess beside a histogram: what came into view since, and what few samples
-/// missed. Chosen on real scenes, where 0 and 0.6 are both worse by 2%.
+/// Weight of the estimate from boxes beside a histogram, for what came into view since and what few
+/// samples missed. Chosen on real scenes, where 0 and 0.6 are both worse by 2%.
 const GUESS: f64 = 0.3;
 
-/// The same where no boxes are known and all depths are guessed alike: less than what a quantile
-/// leaves out, so that it only decides where the histogram does not.
+/// The same where no boxes are known and all depths have equal weight: less than the share above
+/// the quantile, so that it only decides where the histogram does not.
 const BLIND_GUESS: f64 = 0.02;
 
-/// Share of its view depth that a far plane may be off by: an f32 matrix of plain depth tells it to
-/// 4 · 2⁻²⁴ · far / near, which is this at 65,000 times the near depth.
+/// Relative error of a far plane's view depth: from an f32 matrix of plain depth it is 4 · 2⁻²⁴ ·
+/// far / near, which reaches this value at 65,000 times the near depth.
 const FAR_ROUNDING: f64 = 1.0 / 64.0;
 
-/// The same of a near plane, beside what the eye's distance from the world's origin and the view's
-/// extent cost.
+/// The same for a near plane, in addition to the errors from the eye's distance to the world's
+/// origin and from the view's extent.
 const NEAR_ROUNDING: f64 = 1e-3;
 
 /// Room beyond the farthest receiver that held splits leave, as a share of its distance.
-const FAR_SLACK: f64 = 0.1;
+const FAR_ROOM: f64 = 0.1;
 
-/// Nearest view depth that maps are spread from, as a share of the farthest.
+/// Nearest view depth at which the distribution of maps starts, as a share of the farthest.
 const NEAREST: f64 = 1.0 / 65_536.0;
 
 /// Splits given by hand.

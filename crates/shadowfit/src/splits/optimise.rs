@@ -1,10 +1,10 @@
 //! The splits with the least 95% quantile of pixels per texel.
 //!
-//! A point at view depth z in a map of width S sees S / (resolution · z · pixel angle) pixels per
+//! A point at view depth z in a map of width S has S / (resolution · z · pixel angle) pixels per
 //! texel, so for a bound T on S / z each run of bins leaves those points over the bound that lie
 //! nearer than S / T. Which splits leave the fewest is found exactly by dynamic programming over
 //! the bins (R. Bellman, "On the approximation of curves by line segments using dynamic
-//! programming", 1961); the least T that leaves 5% at most by bisection.
+//! programming", 1961); the least T that leaves at most 5% is found by bisection.
 
 use super::bins::{BINS, Bins, CLASSES, Weights};
 use super::extents::Sizes;
@@ -13,20 +13,21 @@ use crate::settings::MAX_MAPS;
 /// Share of the points that may lie over the bound.
 const OVER: f64 = 0.05;
 
-/// Octaves below the bound of logarithmic splits that are searched for a better one: none has been
-/// seen to be so much better.
+/// Octaves below the bound of logarithmic splits that are searched for a better one: no case was
+/// seen to gain as much.
 const OCTAVES: f64 = 4.0;
 
 /// Bisection steps, each halving what is searched.
 const STEPS: usize = 9;
 
-/// How much a point's log2 error counts beside its being over the bound or not: enough to choose
-/// between splits that leave equally many over it.
+/// Weight of a point's log2 error relative to whether it is over the bound: enough to choose
+/// between splits that leave equally many points over it.
 const MEAN: f64 = 0.01;
 
-/// Octaves that a class counts: by half of what its surfaces need, since they are foreshortened along
-/// one direction, as a rule, and the longer side of a map, which is its size here, lies along another
-/// as often as not. Chosen on ten scenes, where 0, 0.7 and 1 are all worse.
+/// Octaves by which a class shifts the needed texel size: half of what its surfaces need, since they
+/// are usually foreshortened along one direction only, and the longer side of a map, which is its
+/// size here, lies along another one about half of the time. Chosen on ten scenes, where 0, 0.7 and 1
+/// are all worse.
 const PER_CLASS: f64 = 0.5;
 
 /// Bins at which the maps begin; the last one's end follows.
@@ -75,7 +76,7 @@ struct Search<'a> {
     before: [[f64; CLASSES]; BINS + 1],
     /// Weight of all bins before each, and weight times log2 of the depth that needs such texels.
     log_before: [[f64; 2]; BINS + 1],
-    /// Number of classes that hold anything.
+    /// Number of classes that are not empty.
     classes: usize,
 }
 
@@ -122,7 +123,7 @@ impl<'a> Search<'a> {
         weight
     }
 
-    /// Weight of a run's points times their log2 of pixels per texel, but for a constant.
+    /// Weight of a run's points times their log2 of pixels per texel, up to a constant.
     fn error(&self, first: usize, end: usize) -> f64 {
         let [[w0, d0], [w1, d1]] = [self.log_before[first], self.log_before[end]];
         f64::from(self.sizes.log_extent(first, end)) * (w1 - w0) - (d1 - d0)
@@ -149,7 +150,7 @@ impl<'a> Search<'a> {
         least[BINS] <= OVER
     }
 
-    /// The splits that leave the least over the bound and, of those, see the least error.
+    /// The splits that leave the least weight over the bound and, of those, have the least error.
     fn best(&self, count: usize, bound: f64) -> [usize; MAX_MAPS + 1] {
         let mut least = [f64::MAX; BINS + 1];
         least[0] = 0.0;

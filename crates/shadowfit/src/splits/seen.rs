@@ -3,7 +3,7 @@
 use super::bins::{BINS, Bins, CLASSES, Weights};
 use crate::histogram::DepthHistogram;
 
-/// The counts as shares, spread over other bins.
+/// The counts as shares, resampled to other bins.
 pub(super) fn weights(histogram: &DepthHistogram, bins: &Bins) -> Weights {
     let mut weights = [[0.0; CLASSES]; BINS];
     let (near, far) = (f64::from(histogram.near), f64::from(histogram.far));

@@ -1,8 +1,8 @@
-//! Which depths are visible, by what the boxes alone tell: the nearest few boxes along each ray of
-//! a coarse grid, each spread over the depths that the ray is in it.
+//! Which depths are visible, estimated from the boxes alone: the nearest few boxes along each ray
+//! of a coarse grid, each spread over the depths that the ray is in it.
 //!
-//! A box is not its surface, so this is a guess; where it errs, maps are less sharp than they
-//! could be, and nothing else.
+//! A box is not its surface, so this is an estimate; where it is wrong, maps are less sharp than
+//! they could be, and nothing worse.
 
 use glam::DVec3;
 
@@ -18,14 +18,14 @@ const ROWS: usize = 18;
 /// Boxes kept along each ray. A box is mostly air, so what is behind the first one may be seen.
 const LAYERS: usize = 4;
 
-/// How much less each further box counts. Chosen with the two numbers beside it on ten scenes:
-/// counting the first box alone misjudges splits where boxes are loose.
+/// Factor by which each further box counts less. Chosen together with the constants before and
+/// after it on ten scenes: counting the first box alone gives bad splits where boxes are loose.
 const FURTHER: f64 = 0.85;
 
-/// What a ray counts for the boxes that it begins in, which may hold anything up to their ends.
+/// Weight of the boxes that a ray begins in, which may hold a surface anywhere up to their ends.
 const AROUND: f64 = 1.0 / 3.0;
 
-/// Shares of the rays that first meet a box in each bin; even ones where no box is known.
+/// Shares of the rays that first meet a box in each bin; equal shares where no box is known.
 pub(super) fn weights(content: &Content, bins: &Bins) -> Weights {
     let mut spread = Spread { starts: core::array::from_fn(|bin| bins.start(bin)), weights: [[0.0; CLASSES]; BINS] };
     for (view_index, view) in content.views().enumerate() {
@@ -45,13 +45,13 @@ pub(super) fn weights(content: &Content, bins: &Bins) -> Weights {
     }
     let total: f64 = spread.weights.iter().flatten().sum();
     if total == 0.0 {
-        // Each depth alike; of slopes nothing is known.
+        // Equal weight for all depths; slopes are not known.
         return core::array::from_fn(|_| core::array::from_fn(|c| if c == 0 { 1.0 / BINS as f64 } else { 0.0 }));
     }
     spread.weights.map(|classes| classes.map(|weight| weight / total))
 }
 
-/// Stands for no bin.
+/// Marks the absence of a bin.
 const NOWHERE: u8 = u8::MAX;
 
 /// What a ray meets.
@@ -80,13 +80,13 @@ impl Spread {
         let (first, last) = (usize::from(first), usize::from(last));
         let length = |first: usize, last: usize| self.starts[last + 1] - self.starts[first];
         let per_metre = weight / length(first, last);
-        // Boxes tell nothing of slopes, so all are of the first class.
+        // Boxes say nothing about slopes, so all are of the first class.
         if per_metre.is_finite() {
             for bin in first..=last {
                 self.weights[bin][0] += per_metre * length(bin, bin);
             }
         } else {
-            // Depths too near one another to be told apart.
+            // Depths that are too close to distinguish.
             self.weights[first][0] += weight;
         }
     }
@@ -119,7 +119,7 @@ impl Grid {
         [between(half), between(1.0 - half)]
     }
 
-    /// Lets all rays meet a box.
+    /// Intersects all rays with a box.
     fn meet(&self, view: &View, bins: &Bins, min: DVec3, max: DVec3, rays: &mut [Ray; COLUMNS * ROWS]) {
         let Some((columns, rows)) = covered(view, min, max) else { return };
         for row in rows {
@@ -148,7 +148,8 @@ impl Grid {
     }
 }
 
-/// Columns and rows of rays that may meet a box; all of them where it reaches before the picture.
+/// Columns and rows of rays that may meet a box; all of them where it reaches before the near
+/// plane.
 fn covered(view: &View, min: DVec3, max: DVec3) -> Option<(core::ops::Range<usize>, core::ops::Range<usize>)> {
     let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
     for corner in box_corners(min, max) {

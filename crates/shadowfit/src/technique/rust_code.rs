@@ -16,8 +16,8 @@ use crate::settings::{
 
 impl Technique {
     /// Writes the statement `let technique = Technique { … };`, which makes this technique. Fields
-    /// that are as by default are left out. It needs
-    /// `use shadowfit::{*, glam::{UVec2, Vec3}, settings::*};`.
+    /// with their default value are left out. It needs `use shadowfit::{*, glam::{UVec2, Vec3},
+    /// settings::*};`.
     ///
     /// # Errors
     ///
@@ -47,13 +47,13 @@ impl Technique {
     #[cfg(feature = "alloc")]
     pub fn to_rust(&self) -> alloc::string::String {
         let mut code = alloc::string::String::new();
-        // A string takes any text.
+        // Writing to a string never fails.
         let _ = self.write_rust(&mut code);
         code
     }
 }
 
-/// Code under way.
+/// Code that is being written.
 struct Code<'a> {
     out: &'a mut dyn Write,
     /// How many brackets are open.
@@ -72,13 +72,13 @@ impl<'a> Code<'a> {
         (0..self.depth).try_for_each(|_| self.out.write_str("    "))
     }
 
-    /// A struct, of which those fields are written that are not as by default.
+    /// A struct of which only the fields that differ from the default are written.
     fn fields<'c>(&'c mut self, name: &'static str) -> Fields<'c, 'a> {
         Fields { code: self, name, is_begun: false, is_complete: true, result: Ok(()) }
     }
 }
 
-/// A struct under way.
+/// A struct that is being written.
 struct Fields<'c, 'a> {
     code: &'c mut Code<'a>,
     name: &'static str,

@@ -1,4 +1,5 @@
-//! The planes of a map as its matrices have them, with what a shader's arithmetic may lose.
+//! The planes of a map as its matrices define them, with a bound of the rounding in shader
+//! arithmetic.
 //!
 //! A plane is a linear function of the position that is not negative inside; a bound of the
 //! rounding is subtracted from it. The bound is a sum of absolute values, hence convex, so what is
@@ -19,12 +20,12 @@ pub(super) const ROUNDING: f64 = 1.0 / 16_777_216.0;
 /// and their products less than one more.
 const TERM_ROUNDINGS: f64 = 10.0;
 
-/// What the corner of a frustum, or of a box clipped to one, may be off by, as a share of its
-/// distance: the rounding of the frustum's own corners, once for the corner and once for the
-/// plane that it lies in.
+/// Greatest error of the corner of a frustum, or of a box clipped to one, as a share of its
+/// distance: the rounding of the frustum's own corners, once for the corner and once for the plane
+/// that it lies in.
 const CORNER_ROUNDING: f64 = 2.0 * ROUNDING;
 
-/// What a result too small for f32 may be flushed by, in every operation.
+/// Greatest error of flushing to zero a result that is too small for f32, in every operation.
 const FLUSHED: f64 = 16.0 * f32::MIN_POSITIVE as f64;
 
 /// One plane of one of the fit's matrices.
@@ -43,7 +44,7 @@ pub(super) struct HalfSpace {
 }
 
 impl HalfSpace {
-    /// How far inside of what is required a point lies at least, in texels across the light or
+    /// Lower bound of a point's distance inside the required plane, in texels across the light or
     /// metres along it.
     pub(super) fn margin(&self, p: DVec3) -> f64 {
         let terms = self.row * p;

@@ -1,12 +1,12 @@
-//! What is asked of a map.
+//! What a map is required to hold.
 
 use crate::bias::Reach;
 use crate::settings::{CasterPolicy, FitSettings};
 use crate::view::Range;
 use crate::{FitError, FittedMap, Technique, checks};
 
-/// What a map is asked to hold: which receivers read it, how far around them, and whether casters
-/// before the near plane are clipped.
+/// What a map is required to hold: which receivers read it, how far around them, and whether
+/// casters before the near plane are clipped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CoverageQuery {
@@ -14,16 +14,16 @@ pub struct CoverageQuery {
     pub near: f32,
     /// View depth up to which receivers read the map, in metres.
     pub far: f32,
-    /// Reach of the filter: of all texels that it reads, the centres must lie in the map. What a
-    /// sampler loses by [rounding texture coordinates](crate::bias::HARDWARE_SNAP) shifts weights by no more
-    /// than that, so it counts only where [`Reach::on_hardware`] has put it in.
+    /// Reach of the filter: of all texels that it reads, the centres must lie in the map. A sampler's
+    /// [rounding of texture coordinates](crate::bias::HARDWARE_SNAP) only shifts weights by as much, so it
+    /// counts only where [`Reach::on_hardware`] has included it.
     pub reach: Reach,
     /// How far across the light the looked-up point may lie off the receiver, in metres:
     /// [`Bias::normal_offset`](crate::Bias::normal_offset). Along the light it needs no room: what
     /// is looked up before the near plane is lit, as it should be where no caster is lost.
     pub normal_offset: f32,
-    /// How casters before the near plane are treated: [`CasterPolicy::DepthClamp`] loses none.
-    /// The other policies are alike here.
+    /// How casters before the near plane are treated: [`CasterPolicy::DepthClamp`] loses none. The
+    /// other policies make no difference here.
     pub casters: CasterPolicy,
 }
 

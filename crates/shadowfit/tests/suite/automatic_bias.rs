@@ -178,7 +178,7 @@ proptest! {
         }
     }
 
-    /// What is foretold to be clear is clear, however little of the bias is left.
+    /// What is predicted to be free of acne is free of it, however small the margin.
     #[test]
     fn a_margin_of_zero_or_more_means_no_acne(case in any_case(), (share, spare) in (float(0.0, 1.0), float(-0.5, 0.01))) {
         for filter in filters() {

@@ -10,7 +10,7 @@ use shadowfit::{Aabb, Boxes, FitError, FitInput, FittedMaps, LightFit, MapFitter
 
 use crate::support::{DIRECTION, camera, cases};
 
-/// Everything that a fit of a scene is given.
+/// All inputs of a fit of a scene.
 #[derive(Clone, Debug)]
 struct Inputs {
     views: Vec<ViewFrustum>,
@@ -199,7 +199,7 @@ fn each_bad_number_in_each_fit_gives_an_error_or_finite_maps() {
     }
 }
 
-/// Numbers that stand for lengths, places and directions: NaN and infinity are refused, wherever
+/// Numbers that are lengths, positions and directions: NaN and infinity are refused, wherever
 /// they stand.
 #[test]
 fn what_is_not_finite_is_refused_and_leaves_the_fitter_as_it_was() {

@@ -38,7 +38,7 @@ fn any_oriented() -> impl Strategy<Value = OrientedBox> {
         .prop_map(|(centre, a, b, c)| OrientedBox { centre, half_axes: [a, b, c] })
 }
 
-/// Volumes of all sorts: whole and swept maps that share normals, and planes that make no sense.
+/// Volumes of all sorts: whole and swept maps that share normals, and invalid planes.
 fn any_volumes() -> impl Strategy<Value = Vec<CasterVolume>> {
     let scene = (any_camera(), any_direction());
     let any_volume = (scene, 0..6_u8, float(0.0, 1.0), any_vector(1.0), any_number(50.0)).prop_map(

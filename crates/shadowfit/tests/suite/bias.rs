@@ -129,7 +129,7 @@ fn automatic_settings_follow_the_filter_s_reach() {
         let offset = BiasSettings::automatic_normal_offset(filter);
         assert_eq!((offset.normal_offset, offset.receiver_plane), (std::f32::consts::SQRT_2 * e, 0.0));
         let settings = BiasSettings::automatic(filter);
-        // One comparison alone is left to clear, whatever the filter is made of.
+        // Only the reach of one comparison is left to clear, for any filter.
         assert_eq!(settings.receiver_plane, if filter == FilterKind::Point { 0.5 } else { 1.0 } + HARDWARE_SNAP);
         assert_eq!((settings.slope, settings.normal_offset, settings.constant), (0.0, 0.0, offset.constant));
         // The constant covers the precision of an ordinary fit.

@@ -40,7 +40,7 @@ proptest! {
         }
     }
 
-    /// Planes bound the same set as `covers`, away from its 1e-6 slack.
+    /// Planes bound the same set as `covers`, outside its tolerance of 1e-6.
     #[test]
     fn a_point_is_inside_all_planes_where_it_is_covered(
         direction in any_direction(), kind in any_kind(),
@@ -178,14 +178,14 @@ proptest! {
         let moved = volume.relative_to(volume.origin + offset);
         prop_assert_eq!(volume.relative_to(volume.origin), volume);
         let centre = Vec3::new(a, b, c);
-        // Slack of both tests, of the planes' move, and of the moved centre: 1e-6 of 2,000 m a piece.
-        let slack = 0.01;
+        // Rounding of both tests, of the planes' move, and of the moved centre: 1e-6 of 2,000 m a piece.
+        let tolerance = 0.01;
         let centre_moved = (centre.as_dvec3() - offset).as_vec3();
         if volume.intersects_sphere(centre, radius) {
-            prop_assert!(moved.intersects_sphere(centre_moved, radius + slack));
+            prop_assert!(moved.intersects_sphere(centre_moved, radius + tolerance));
         }
         if moved.intersects_sphere(centre_moved, radius) {
-            prop_assert!(volume.intersects_sphere(centre, radius + slack));
+            prop_assert!(volume.intersects_sphere(centre, radius + tolerance));
         }
     }
 }

@@ -1,4 +1,4 @@
-//! No caster that throws a shadow into view is lost: every point of a caster's box that stands
+//! No caster that casts a shadow into view is lost: every point of a caster's box that stands
 //! between the light and a visible point of a receiver lies in the map's depth range, and its box
 //! survives culling.
 
@@ -8,7 +8,7 @@ use shadowfit::settings::{CasterPolicy, FitSettings, Stabilise};
 use shadowfit::{Aabb, Boxes, FitInput, LightFit, MapFitter, Technique, Workspace};
 
 use crate::scenes::{
-    BoxPlan, SceneView, Walk, any_box, any_cascades, any_covering_fit, any_light, any_view, any_walk, share,
+    BoxPlan, SceneView, Walk, any_box, any_covering_fit, any_light, any_technique, any_view, any_walk, share,
 };
 use crate::support::{apply, cases, double};
 
@@ -161,9 +161,9 @@ proptest! {
     /// Boxes stand still in the world while the camera goes on; everything is handed in anew
     /// relative to the eye.
     #[test]
-    fn cascades_keep_all_casters_that_shade_what_is_seen(
+    fn several_maps_keep_all_casters_that_shade_what_is_seen(
         view in any_view(), boxes in solid_boxes(), casters in prop::collection::vec(any_caster(), 1..6),
-        direction in any_light(), settings in any_cascades(), policy in any_policy(), places in any_places(),
+        direction in any_light(), settings in any_technique(), policy in any_policy(), places in any_places(),
         walk in any_walk(),
     ) {
         let settings = Technique { fit: FitSettings { casters: policy, ..settings.fit }, ..settings };

@@ -75,13 +75,13 @@ fn holds_all(clusters: &Clusters, objects: &[Vec<Triangle>], places: &[(f64, f64
     keys.into_iter().all(|(key, corners)| {
         let [a, b, c] = corners.map(Vec3::as_dvec3);
         // Boxes of parts of a triangle may part by the rounding of f64.
-        let slack = 1e-12 * (a.length() + b.length() + c.length());
+        let error = 1e-12 * (a.length() + b.length() + c.length());
         places.iter().all(|&(u, v)| {
             let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
             let p = a + (b - a) * u + (c - a) * v;
             let is_in = |cluster: &usize| {
                 let aabb = clusters.boxes()[*cluster];
-                p.cmpge(aabb.min.as_dvec3() - slack).all() && p.cmple(aabb.max.as_dvec3() + slack).all()
+                p.cmpge(aabb.min.as_dvec3() - error).all() && p.cmple(aabb.max.as_dvec3() + error).all()
             };
             owners.get(&key).is_some_and(|own| own.iter().any(is_in))
         })

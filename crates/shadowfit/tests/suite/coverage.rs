@@ -1,5 +1,5 @@
-//! No holes: whatever a camera sees of a receiver lies in the map that its view depth chooses,
-//! with the filter's margin around it, for every fit but the XNA sample's.
+//! No holes: every point of a receiver that a camera sees lies in the map that its view depth
+//! chooses, with the filter's border around it, for every fit but the XNA sample's.
 //!
 //! Points and matrices are f32, as in a shader. There is no tolerance: the fits leave room for
 //! that rounding.
@@ -11,11 +11,11 @@ use shadowfit::settings::FitKind;
 use shadowfit::{Aabb, Boxes, FitInput, FittedMap, LightFit, MapFitter, Technique, ViewFrustum, Workspace};
 
 use crate::scenes::{
-    BoxPlan, SceneView, any_box, any_cascades, any_covering_fit, any_light, any_view, any_walk, of_camera, share,
+    BoxPlan, SceneView, any_box, any_covering_fit, any_light, any_technique, any_view, any_walk, of_camera, share,
 };
 use crate::support::{any_camera, apply, cases};
 
-/// A point of a view: place in the picture and share of the depth, and whether that is of log
+/// A point of a view: position in the picture and share of the depth, and whether that is of log
 /// depth.
 #[derive(Clone, Copy, Debug)]
 struct Sample {
@@ -62,14 +62,14 @@ fn seen(samples: &[Sample], view: &SceneView, receivers: Option<Boxes>, last: f6
     points
 }
 
-/// Fails unless a shader finds the point in the map, its kernel too.
-fn assert_stored(fit: &LightFit, kernel: f32, point: DVec3) {
+/// Fails unless the point lies in the map as a shader computes it, with the border around it.
+fn assert_stored(fit: &LightFit, border: f32, point: DVec3) {
     let local = (point - fit.origin).as_vec3();
     let uv = apply(&fit.uv_from_world, local);
     let (texel, size) = (uv.truncate().as_dvec2() * fit.resolution.as_dvec2(), fit.resolution.as_dvec2());
-    let margin = DVec2::splat(f64::from(kernel));
+    let margin = DVec2::splat(f64::from(border));
     let is_inside = texel.cmpge(margin).all() && texel.cmple(size - margin).all();
-    assert!(is_inside, "{texel} of {size} less {kernel}, for {local}, texel {}", fit.texel_size);
+    assert!(is_inside, "{texel} of {size} less {border}, for {local}, texel {}", fit.texel_size);
     assert!((0.0..=1.0).contains(&uv.z), "depth {} for {local}, range {}", uv.z, fit.depth_range);
 }
 
@@ -80,7 +80,7 @@ fn chosen(maps: &[FittedMap], depth: f32) -> impl Iterator<Item = &FittedMap> {
     [Some(&maps[first]), next].into_iter().flatten()
 }
 
-/// None, no, one or many boxes, relative to the world's origin or to a place near the eye.
+/// Unknown, no, one or many boxes, relative to the world's origin or to a point near the eye.
 fn any_receivers() -> impl Strategy<Value = (Option<Vec<BoxPlan>>, bool)> {
     let boxes = prop_oneof![
         1 => Just(None),
@@ -164,8 +164,8 @@ proptest! {
     }
 
     #[test]
-    fn cascades_store_what_several_views_see_while_they_walk_and_turn(
-        view in any_view(), plans in any_receivers(), direction in any_light(), settings in any_cascades(),
+    fn several_maps_store_what_several_views_see_while_they_walk_and_turn(
+        view in any_view(), plans in any_receivers(), direction in any_light(), settings in any_technique(),
         (walk, frames) in (any_walk(), 1..6_usize), apart in (any_walk(), 1..=2_usize), samples in any_samples(),
     ) {
         prop_assume!(view.lens.near < f64::from(settings.fit.max_distance));
@@ -186,8 +186,8 @@ proptest! {
     /// The same through the camera of the crate, whose corners are rounded once, with depth ratios
     /// up to 10,000.
     #[test]
-    fn cascades_of_a_camera_store_what_it_sees(
-        camera in any_camera(), plans in any_receivers(), direction in any_light(), settings in any_cascades(),
+    fn several_maps_of_a_camera_store_what_it_sees(
+        camera in any_camera(), plans in any_receivers(), direction in any_light(), settings in any_technique(),
         samples in any_samples(),
     ) {
         prop_assume!(camera.near < settings.fit.max_distance);

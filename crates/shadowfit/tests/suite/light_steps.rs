@@ -70,7 +70,7 @@ fn zero_texels_follow_every_change_and_hold_what_does_not_change() {
 }
 
 #[test]
-fn a_fade_rises_from_nought_to_one_and_joins_the_steps_without_a_jump() {
+fn a_fade_grows_from_zero_to_one_and_joins_the_steps_without_a_jump() {
     let settings = SETTINGS.with_fade(0.5);
     let mut steps = LightSteps::default();
     let mut last = steps.update(sun(0.0), &settings, 0.0).unwrap();

@@ -9,7 +9,7 @@ use shadowfit::{
     Aabb, Boxes, FitInput, FittedMap, FittedMaps, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace,
 };
 
-use crate::scenes::{COVERING, any_cascades, any_light, any_view};
+use crate::scenes::{COVERING, any_light, any_technique, any_view};
 use crate::support::{DIRECTION, any_camera, any_direction, camera, cases};
 
 fn fit_with(fitter: &mut MapFitter, input: &FitInput, settings: &Technique) -> FittedMaps {
@@ -48,7 +48,7 @@ proptest! {
     /// Maps follow each other without a gap, reach from the near plane without an end, and begin
     /// to cover before their range by the overlap's share of the range before.
     #[test]
-    fn ranges_of_maps_ascend_without_gaps(view in any_view(), direction in any_light(), settings in any_cascades()) {
+    fn ranges_of_maps_ascend_without_gaps(view in any_view(), direction in any_light(), settings in any_technique()) {
         prop_assume!(view.lens.near < f64::from(settings.fit.max_distance));
         let views = [view.frustum()];
         let maps = fit_once(&FitInput::new(&views, direction), &settings);
@@ -69,7 +69,7 @@ proptest! {
     }
 
     #[test]
-    fn fixed_schemes_cut_by_their_definitions(camera in any_camera(), direction in any_direction(), count in 1..=8_u32, lambda in crate::support::float(0.0, 1.0)) {
+    fn fixed_schemes_split_by_their_definitions(camera in any_camera(), direction in any_direction(), count in 1..=8_u32, lambda in crate::support::float(0.0, 1.0)) {
         let views = [camera.frustum().unwrap()];
         let input = FitInput::new(&views, direction);
         let (near, far) = (f64::from(camera.near), f64::from(camera.far));
@@ -85,7 +85,7 @@ proptest! {
     /// The first map of a scheme around boxes still begins at the near plane, and the splits are
     /// spread over what is seen of the boxes.
     #[test]
-    fn cuts_are_spread_over_the_depths_of_receivers(count in 2..=8_u32, near in crate::support::float(5.0, 20.0)) {
+    fn splits_are_spread_over_the_depths_of_receivers(count in 2..=8_u32, near in crate::support::float(5.0, 20.0)) {
         let views = [ahead()];
         let boxes = [Aabb::new(Vec3::new(-1.0, -1.0, -60.0), Vec3::new(1.0, 1.0, -near))];
         let input = FitInput { receivers: Some(Boxes { origin: DVec3::ZERO, boxes: &boxes }), ..FitInput::new(&views, DIRECTION) };
@@ -97,7 +97,7 @@ proptest! {
 
     #[test]
     fn reset_equals_a_new_fitter(
-        view in any_view(), other in any_view(), direction in any_light(), settings in any_cascades(),
+        view in any_view(), other in any_view(), direction in any_light(), settings in any_technique(),
     ) {
         prop_assume!(view.lens.near.max(other.lens.near) < f64::from(settings.fit.max_distance));
         let (views, others) = ([view.frustum()], [other.frustum()]);
@@ -114,7 +114,7 @@ proptest! {
     /// While nothing moves nothing changes, but that a held map says so.
     #[test]
     fn maps_stay_bit_for_bit_while_nothing_moves(
-        view in any_view(), direction in any_light(), settings in any_cascades(),
+        view in any_view(), direction in any_light(), settings in any_technique(),
     ) {
         prop_assume!(view.lens.near < f64::from(settings.fit.max_distance));
         let views = [view.frustum()];
@@ -132,10 +132,10 @@ proptest! {
     }
 
     /// By what they model, splits from boxes are no worse than logarithmic ones. Nothing is known of
-    /// receivers here, so every octave of depth counts alike. Cuts stand on 64 bins, each of which
+    /// receivers here, so every octave of depth counts alike. Splits lie on 64 bins, each of which
     /// may cost its own width, and extents are estimated from 32 directions, which may cost 5%.
     #[test]
-    fn cuts_by_content_are_no_worse_than_logarithmic_ones(
+    fn splits_by_content_are_no_worse_than_logarithmic_ones(
         camera in any_camera(), direction in any_direction(), count in 1..=6_u32,
         kind in prop::sample::select(COVERING.to_vec()),
     ) {
@@ -190,7 +190,7 @@ fn ahead() -> ViewFrustum {
 }
 
 #[test]
-fn manual_cuts_are_taken_as_they_are() {
+fn manual_splits_are_taken_as_they_are() {
     let views = [ahead()];
     let given = [1.0, 5.0, 20.0, 50.0, 60.0, 70.0, 80.0];
     for kind in COVERING {
@@ -200,7 +200,7 @@ fn manual_cuts_are_taken_as_they_are() {
 }
 
 #[test]
-fn manual_cuts_outside_of_what_is_shadowed_leave_maps_empty() {
+fn manual_splits_outside_of_what_is_shadowed_leave_maps_empty() {
     let views = [ahead()];
     let given = [0.01, 0.05, 20.0, 50.0, 150.0, 200.0, 300.0];
     for kind in COVERING {
@@ -217,7 +217,7 @@ fn manual_cuts_outside_of_what_is_shadowed_leave_maps_empty() {
 /// A histogram of a narrow band: nearly all pixels see it, so the map that they choose is made for
 /// them, and finer than by logarithmic splits.
 #[test]
-fn a_histogram_with_one_narrow_band_cuts_around_it() {
+fn a_histogram_with_one_narrow_band_splits_around_it() {
     let views = [ahead()];
     let mut bins = vec![0_u32; 64];
     for depth in 0..100 {
@@ -242,7 +242,7 @@ fn a_histogram_with_one_narrow_band_cuts_around_it() {
 
 /// Boxes at two depths: what lies between and beyond them gets no maps of its own.
 #[test]
-fn cuts_from_boxes_are_finer_where_boxes_are() {
+fn splits_from_boxes_are_finer_where_boxes_are() {
     let views = [ahead()];
     let boxes = [
         Aabb::new(Vec3::new(-40.0, -40.0, -22.0), Vec3::new(40.0, 40.0, -20.0)),
@@ -263,7 +263,7 @@ fn cuts_from_boxes_are_finer_where_boxes_are() {
 
 /// Visible from 2 to 20 m only, in a view from 0.1 to 100 m.
 #[test]
-fn fixed_cuts_are_spread_between_the_depth_bounds_and_lose_nothing_outside() {
+fn fixed_splits_are_spread_between_the_depth_bounds_and_lose_nothing_outside() {
     let views = [ahead()];
     let bounds =
         |near, far| FitInput { depth_bounds: Some(DepthBounds { near, far }), ..FitInput::new(&views, DIRECTION) };
@@ -295,7 +295,7 @@ fn fixed_cuts_are_spread_between_the_depth_bounds_and_lose_nothing_outside() {
 
 /// Held splits are made anew when the bounds have left them, and not before.
 #[test]
-fn held_cuts_follow_depth_bounds_that_leave_them() {
+fn held_splits_follow_depth_bounds_that_leave_them() {
     let views = [ahead()];
     let settings = Technique { stabilise: Stabilise::Snap, ..settings(FitKind::Sphere, SplitScheme::Logarithmic, 3) };
     let mut fitter = MapFitter::new();
@@ -357,7 +357,7 @@ fn no_receivers_give_empty_maps_and_no_error() {
 
 /// The lens zooms out of reach of held splits, and in again.
 #[test]
-fn a_far_plane_that_comes_nearer_leaves_held_cuts_without_error() {
+fn a_far_plane_that_comes_nearer_leaves_held_splits_without_error() {
     for kind in COVERING {
         for stabilise in [Stabilise::Snap, Stabilise::Hysteresis] {
             for splits in [SplitScheme::Uniform, SplitScheme::FromBoxes] {

@@ -265,7 +265,7 @@ proptest! {
     fn an_eighth_of_an_octave_scales_snapped_maps_by_just_that(
         view in any_view(), direction in any_light(), eighths in -24_i32..24, kind in any_fit_kind(),
     ) {
-        let cascades = Technique {
+        let technique = Technique {
             fit: settings(kind, RectangleKind::AxisAligned),
             count: 1,
             splits: SplitScheme::Uniform,
@@ -276,7 +276,7 @@ proptest! {
             let views = [scene.frustum];
             let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
             let input = FitInput::new(&views, scene.direction);
-            MapFitter::new().fit(&input, &cascades, &mut Workspace::new(&mut storage)).unwrap()[0].fit.texel_size
+            MapFitter::new().fit(&input, &technique, &mut Workspace::new(&mut storage)).unwrap()[0].fit.texel_size
         };
         let scale = (f64::from(eighths) / 8.0).exp2();
         let here = scene(&view, direction, None);
@@ -362,7 +362,7 @@ proptest! {
         (i, j) in (-5000_i32..5000, -5000_i32..5000),
     ) {
         let fit = settings(kind, RectangleKind::AxisAligned);
-        let cascades = Technique {
+        let technique = Technique {
             fit,
             count: 1,
             splits: SplitScheme::Uniform,
@@ -375,7 +375,7 @@ proptest! {
             let mut storage = vec![DVec2::ZERO; Workspace::required(scene.casters.len(), 1)];
             let receivers = scene.receivers.as_ref().map(|boxes| Boxes { origin, boxes });
             let input = FitInput { receivers, ..FitInput::new(&views, scene.direction) };
-            MapFitter::new().fit(&input, &cascades, &mut Workspace::new(&mut storage)).unwrap()[0].fit
+            MapFitter::new().fit(&input, &technique, &mut Workspace::new(&mut storage)).unwrap()[0].fit
         };
         let a = snapped(&here);
         let [right, up] = [a.light_from_world.row(0), a.light_from_world.row(1)].map(|r| r.truncate().as_dvec3());
@@ -387,7 +387,7 @@ proptest! {
         let origin = here.frustum.origin + step;
         let b = snapped(&Scene { frustum: ViewFrustum { origin, ..here.frustum }, ..here.clone() });
         prop_assert_eq!(a.texel_size, b.texel_size);
-        // The map's middle is rounded to f32, and so is the view's place in f64, 1e-16 of it.
+        // The map's middle is rounded to f32, and so is the view's position in f64, 1e-16 of it.
         let centre = |fit: &LightFit| fit.light_from_world.w_axis.truncate().truncate().as_dvec2();
         let shift = ((centre(&b) - centre(&a)) / texel).abs().max_element();
         let rounding = 2e-7 * centre(&a).abs().max_element() / texel.min_element();

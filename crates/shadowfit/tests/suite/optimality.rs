@@ -1,4 +1,4 @@
-//! Fits that claim to be the least: compared with searches that know nothing of hulls, calipers or
+//! Fits that are defined as the least: compared with searches that know nothing of hulls, calipers or
 //! Welzl's construction.
 
 use proptest::prelude::*;

@@ -1,4 +1,4 @@
-//! There is one technique to begin with, and whatever a newcomer reads first uses it.
+//! One technique is recommended, and everything that a newcomer reads first uses it.
 
 use shadowfit::presets::RECOMMENDED;
 use shadowfit::settings::{

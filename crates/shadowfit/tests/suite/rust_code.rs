@@ -40,7 +40,7 @@ fn samples() -> [Sample; 6] {
     ]
 }
 
-/// No field as by default.
+/// A technique without any default value.
 fn all_fields() -> Technique {
     let own = |kind, side| MapOverride { kind: Some(kind), resolution: Some(UVec2::new(side, 2 * side)) };
     Technique {

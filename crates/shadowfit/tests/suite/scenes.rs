@@ -91,7 +91,7 @@ impl SceneView {
         ViewFrustum::from_world_from_clip_f64(&matrix, self.eye, self.lens.depth, far).unwrap()
     }
 
-    /// A point of the view relative to the eye: place in the picture, 0..1 from the left and from
+    /// A point of the view relative to the eye: position in the picture, 0..1 from the left and from
     /// the bottom, and view depth in metres.
     pub(crate) fn point(&self, x: f64, y: f64, depth: f64) -> DVec3 {
         let [right, up, forward] = self.axes();
@@ -157,7 +157,7 @@ pub(crate) fn any_lens() -> impl Strategy<Value = Lens> {
     )
 }
 
-/// Places 0, 1, 10 and 100 km from the world's origin, give or take a few metres.
+/// Positions 0, 1, 10 and 100 km from the world's origin, give or take a few metres.
 pub(crate) fn any_eye() -> impl Strategy<Value = DVec3> {
     let distance = prop_oneof![Just(0.0), Just(1e3), Just(1e4), Just(1e5)];
     (distance, any_direction(), (double(-9.0, 9.0), double(-9.0, 9.0), double(-9.0, 9.0)))
@@ -175,7 +175,7 @@ pub(crate) fn any_light() -> impl Strategy<Value = Vec3> {
     prop_oneof![8 => any_direction(), 1 => Just(Vec3::NEG_Y), 1 => Just(Vec3::Y), 1 => Just(Vec3::new(0.6, 0.0, -0.8))]
 }
 
-/// A box by its place in a view and its half extents as shares of the view's depth.
+/// A box by its position in a view and its half extents as shares of the view's depth.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BoxPlan {
     place: [f64; 3],
@@ -242,7 +242,7 @@ pub(crate) fn any_splits() -> impl Strategy<Value = SplitScheme> {
     ]
 }
 
-pub(crate) fn any_cascades() -> impl Strategy<Value = Technique> {
+pub(crate) fn any_technique() -> impl Strategy<Value = Technique> {
     let stabilise = prop::sample::select(vec![Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis]);
     let overlap = prop_oneof![Just(0.0), Just(1.0), float(0.0, 0.5)];
     (any_covering_fit(), 1..=8_u32, any_splits(), overlap, stabilise).prop_map(

@@ -72,7 +72,7 @@ fn is_in(rect: &TexelRect, x: u32, y: u32) -> bool {
 
 proptest! {
     /// By brute force: each texel is either kept, and then the shift leads to the one that held the
-    /// same place of the world, or in exactly one strip.
+    /// same point of the world, or in exactly one strip.
     #[test]
     fn shift_and_strips_are_exactly_what_moved_and_what_is_new(
         (x, y) in (-40_i64..40, -40_i64..40), (dx, dy) in (-14_i64..14, -14_i64..14), (w, h) in (1_u32..12, 1_u32..12),

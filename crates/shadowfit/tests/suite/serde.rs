@@ -123,13 +123,13 @@ fn a_fitter_that_was_saved_goes_on_as_the_one_that_was_not() {
 }
 
 #[test]
-fn a_damaged_number_of_cascades_is_no_trouble() {
+fn a_damaged_number_of_maps_is_read_as_the_greatest() {
     let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
     let views = [camera().frustum().unwrap()];
-    let cascades = MapFitter::new()
+    let maps = MapFitter::new()
         .fit(&FitInput::new(&views, DIRECTION), &Technique::default(), &mut Workspace::new(&mut storage))
         .unwrap();
-    let mut json = serde_json::to_value(cascades).unwrap();
+    let mut json = serde_json::to_value(maps).unwrap();
     json["count"] = 1000.into();
     let damaged: shadowfit::FittedMaps = serde_json::from_value(json).unwrap();
     assert_eq!(damaged.len(), shadowfit::settings::MAX_MAPS);

@@ -35,8 +35,8 @@ pub(crate) fn camera() -> PerspectiveCamera {
 /// A plain light.
 pub(crate) const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.4);
 
-/// So many cases for each property unless `PROPTEST_CASES` says otherwise; scenes that a property
-/// does not speak of are passed over, however many.
+/// So many cases for each property unless `PROPTEST_CASES` says otherwise; scenes to which a
+/// property does not apply are skipped without a limit.
 pub(crate) fn cases(count: u32) -> ProptestConfig {
     ProptestConfig { max_global_rejects: u32::MAX, ..ProptestConfig::with_cases(count) }
 }

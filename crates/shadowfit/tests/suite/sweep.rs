@@ -154,7 +154,7 @@ proptest! {
 
     /// Every receiver, moved by the normal offset, read by the filter: the caster over what is read is kept.
     #[test]
-    fn a_caster_that_throws_a_shadow_into_view_is_kept(
+    fn a_caster_that_casts_a_shadow_into_view_is_kept(
         views in any_views(), direction in any_direction(), kind in prop::sample::select(&ALL_KINDS[..]),
         (cut_a, cut_b) in (double(0.0, 1.0), double(0.0, 1.0)), sample in any_sample(),
         (taps, disc, offset) in (float(0.0, 4.0), float(0.0, 8.0), float(0.0, 1.0)),
@@ -256,11 +256,11 @@ proptest! {
 /// A half space: a point p is inside where n·p + d >= 0.
 type HalfSpace = (DVec3, f64);
 
-/// Whether half spaces that bound a volume have a point in common, with `slack` metres to spare: then three of their
+/// Whether half spaces that bound a volume have a point in common, with a `margin` in metres: then three of their
 /// planes meet in a point of all.
-fn meet(planes: &[HalfSpace], slack: f64) -> bool {
-    let inside = |p: DVec3| planes.iter().all(|(n, d)| n.dot(p) + d >= slack - 1e-9);
-    let shifted = |i: usize| (planes[i].0, planes[i].1 - slack);
+fn meet(planes: &[HalfSpace], margin: f64) -> bool {
+    let inside = |p: DVec3| planes.iter().all(|(n, d)| n.dot(p) + d >= margin - 1e-9);
+    let shifted = |i: usize| (planes[i].0, planes[i].1 - margin);
     for i in 0..planes.len() {
         for j in 0..i {
             for k in 0..j {
@@ -319,7 +319,7 @@ fn boxes_around(view: &ViewFrustum, half: f64, count: usize) -> impl Iterator<It
     })
 }
 
-/// How many boxes throw a shadow into view, and how many others are kept.
+/// How many boxes cast a shadow into view, and how many others are kept.
 #[derive(Debug, Default)]
 struct Counts {
     shadowing: usize,
@@ -329,19 +329,19 @@ struct Counts {
 }
 
 impl Counts {
-    /// Boxes drawn in vain for each one that throws a shadow into view.
+    /// Boxes drawn without need for each one that casts a shadow into view.
     fn waste(&self) -> f64 {
         self.kept_in_vain as f64 / self.shadowing as f64
     }
 }
 
-/// Counts, having made sure that no box which throws a shadow into view is culled.
+/// Counts, having made sure that no box which casts a shadow into view is culled.
 fn count(fit: &LightFit, view: &ViewFrustum, half: f64) -> Counts {
     let sweep = Sweep { reach: Reach::taps(0.0), ..Sweep::new(std::slice::from_ref(view)) };
     let volume = CasterVolume::swept(fit, &sweep).unwrap();
     let slice = planes_of(view);
     // What the reach of one texel adds, and rounding.
-    let slack = f64::from(fit.texel_size.max_element()) * 2.0 + 1e-4;
+    let margin = f64::from(fit.texel_size.max_element()) * 2.0 + 1e-4;
     let mut counts = Counts::default();
     for (min, max) in boxes_around(view, half, 4000) {
         let planes: Vec<_> = slice.iter().copied().chain(shadow_of(min, max, fit.direction)).collect();
@@ -349,7 +349,7 @@ fn count(fit: &LightFit, view: &ViewFrustum, half: f64) -> Counts {
         if meet(&planes, 1e-4) {
             counts.shadowing += 1;
             assert!(is_kept, "{min} {max} throws a shadow into view");
-        } else if !meet(&planes, -slack) {
+        } else if !meet(&planes, -margin) {
             counts.others += 1;
             counts.kept_in_vain += usize::from(is_kept);
             counts.kept_in_vain_by_the_map += usize::from(fit.caster_volume().intersects_aabb(min, max));
@@ -438,7 +438,7 @@ fn several_views_share_the_outline_around_them_all() {
     assert!(touches(0.0, 0.0) && touches(10.0, 10.0) && touches(5.0, 5.0) && touches(-1.05, -1.05));
     // Beside the band between them, but in the box around both: 2 √2 m wide, and 0.1 m more.
     assert!(touches(6.0, 4.0) && !touches(6.2, 4.0 - 0.2) && !touches(0.0, 10.0) && !touches(10.0, 0.0));
-    // Below the views nothing throws a shadow into them.
+    // Below the views nothing casts a shadow into them.
     assert!(!volume.intersects_sphere(Vec3::new(0.0, -3.2, 0.0), 0.1));
     assert!(volume.intersects_sphere(Vec3::new(0.0, -2.9, 0.0), 0.1));
 }

@@ -17,8 +17,8 @@ use crate::support::{apply, cases, double};
 const STEP_ROOM: f64 = 1e-5;
 
 /// The exact texel size: extents are eighths of an octave over the texels that the grid leaves.
-pub(crate) fn exact_texel(fit: &LightFit, kernel: f32) -> DVec2 {
-    let usable = fit.resolution.as_dvec2() - (2.0 * f64::from(kernel) + 1.0);
+pub(crate) fn exact_texel(fit: &LightFit, border: f32) -> DVec2 {
+    let usable = fit.resolution.as_dvec2() - (2.0 * f64::from(border) + 1.0);
     let exact = |rounded: f32, usable: f64| {
         let steps = (8.0 * (f64::from(rounded) * usable / (1.0 + STEP_ROOM)).log2()).round();
         let exact = (steps / 8.0).exp2() * (1.0 + STEP_ROOM) / usable;
@@ -28,30 +28,30 @@ pub(crate) fn exact_texel(fit: &LightFit, kernel: f32) -> DVec2 {
     DVec2::new(exact(fit.texel_size.x, usable.x), exact(fit.texel_size.y, usable.y))
 }
 
-/// Place of a world point on the map's grid, in texels right and down from the world's origin,
+/// Position of a world point on the map's grid, in texels right and down from the world's origin,
 /// all in f64 but for the light's axes, which are f32 by definition.
-fn grid_place(fit: &LightFit, texel: DVec2, point: DVec3) -> DVec2 {
+fn grid_position(fit: &LightFit, texel: DVec2, point: DVec3) -> DVec2 {
     let [x, y] = [fit.light_from_world.row(0), fit.light_from_world.row(1)].map(|row| row.truncate().as_dvec3());
     DVec2::new(x.dot(point) / texel.x, -y.dot(point) / texel.y)
 }
 
-/// Place in the map, in texels, as a shader finds it.
-fn shader_place(fit: &LightFit, point: DVec3) -> DVec2 {
+/// Position in the map, in texels, as a shader finds it.
+fn shader_position(fit: &LightFit, point: DVec3) -> DVec2 {
     let uv = apply(&fit.uv_from_world, (point - fit.origin).as_vec3());
     (uv.truncate() * fit.resolution.as_vec2()).as_dvec2()
 }
 
-/// Difference of two places within their texels, in texels.
+/// Difference of two positions within their texels, in texels.
 fn apart(a: DVec2, b: DVec2) -> f64 {
     let d = a - b;
     (d - d.round()).abs().max_element()
 }
 
-fn settings(kind: FitKind, stabilise: Stabilise, count: u32, resolution: u32, kernel: f32) -> Technique {
+fn settings(kind: FitKind, stabilise: Stabilise, count: u32, resolution: u32, border: f32) -> Technique {
     let fit = FitSettings {
         kind,
         rectangle: RectangleKind::MinimumArea,
-        border: Some(kernel),
+        border: Some(border),
         max_distance: f32::MAX,
         resolution: UVec2::splat(resolution),
         ..FitSettings::default()
@@ -101,10 +101,10 @@ fn walk(
             let texel = exact_texel(&map.fit, settings.border());
             // Leaps take the camera to where the points are in no map, which rounds them the more.
             for point in points.iter().filter(|point| map.fit.covers(**point) && old.fit.covers(**point)) {
-                let place = shader_place(&map.fit, *point);
-                let by_grid = apart(place, grid_place(&map.fit, texel, *point));
+                let place = shader_position(&map.fit, *point);
+                let by_grid = apart(place, grid_position(&map.fit, texel, *point));
                 assert!(by_grid <= 0.02, "{by_grid} texels from the f64 chain at {point}");
-                let crawl = if is_kept { apart(place, shader_place(&old.fit, *point)) } else { 0.0 };
+                let crawl = if is_kept { apart(place, shader_position(&old.fit, *point)) } else { 0.0 };
                 assert!(crawl <= 0.005, "{crawl} texels of crawl at {point}");
             }
         }
@@ -142,10 +142,10 @@ proptest! {
     /// Neither movement nor turning changes texel size or phase of a stable map.
     #[test]
     fn spheres_stand_still_while_the_camera_moves_and_turns(
-        view in any_view(), step in any_walk(), direction in any_light(), (count, size, kernel) in any_setup(),
+        view in any_view(), step in any_walk(), direction in any_light(), (count, size, border) in any_setup(),
         places in any_places(),
     ) {
-        let settings = settings(FitKind::Sphere, Stabilise::Snap, count, size, kernel);
+        let settings = settings(FitKind::Sphere, Stabilise::Snap, count, size, border);
         let maps = frame(&mut MapFitter::new(), &view, direction, &settings);
         prop_assume!(!is_on_a_step(&view, &maps, |map| sphere_radius(&view, map)));
         walk(view, step, direction, &settings, &places, |_| true);
@@ -155,24 +155,24 @@ proptest! {
     /// snapped maps stand still.
     #[test]
     fn snapped_boxes_stand_still_while_the_camera_moves(
-        view in any_view(), step in any_walk(), direction in any_light(), (count, size, kernel) in any_setup(),
+        view in any_view(), step in any_walk(), direction in any_light(), (count, size, border) in any_setup(),
         kind in prop::sample::select(vec![FitKind::FrustumAabb, FitKind::Oriented]), places in any_places(),
     ) {
-        let settings = settings(kind, Stabilise::Snap, count, size, kernel);
+        let settings = settings(kind, Stabilise::Snap, count, size, border);
         let step = Walk { turn: 0.0, ..step };
-        // An f64 matrix is rounded by 2e-16 of the eye's place, which may turn a corner's last bit.
+        // An f64 matrix is rounded by 2e-16 of the eye's distance, which may turn a corner's last bit.
         let same = std::iter::successors(Some(view), |view| Some(step.moved(view))).take(7);
         prop_assume!(same.into_iter().all(|later| later.frustum().corners == view.frustum().corners));
         walk(view, step, direction, &settings, &places, |_| true);
     }
 
-    /// Held maps stand still while they are held, whatever the camera does.
+    /// Held maps stand still while they are held, however the camera moves.
     #[test]
     fn held_maps_stand_still_while_the_camera_moves_and_turns(
-        view in any_view(), step in any_walk(), direction in any_light(), (count, size, kernel) in any_setup(),
+        view in any_view(), step in any_walk(), direction in any_light(), (count, size, border) in any_setup(),
         kind in prop::sample::select(COVERING.to_vec()), places in any_places(),
     ) {
-        let settings = settings(kind, Stabilise::Hysteresis, count, size, kernel);
+        let settings = settings(kind, Stabilise::Hysteresis, count, size, border);
         walk(view, step, direction, &settings, &places, |fit| fit.set_by == [Constraint::Held; 6]);
     }
 }

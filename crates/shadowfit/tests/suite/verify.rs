@@ -18,7 +18,7 @@ fn storage(boxes: usize) -> Vec<DVec2> {
     vec![DVec2::ZERO; Workspace::required(boxes, 10)]
 }
 
-/// A box by its place and size, in shares of the view's extent.
+/// A box by its position and size, in shares of the view's extent.
 #[derive(Clone, Copy, Debug)]
 struct Plan {
     centre: DVec3,
@@ -32,7 +32,7 @@ fn any_plan() -> impl Strategy<Value = Plan> {
         .prop_map(|((x, y, z), (a, b, c))| Plan { centre: DVec3::new(x, y, z), half: DVec3::new(a, b, c) })
 }
 
-/// Boxes around a camera, relative to the world's origin or to a place near the eye.
+/// Boxes around a camera, relative to the world's origin or to a point near the eye.
 #[derive(Clone, Debug)]
 struct Scene {
     receivers: Option<Vec<Aabb>>,
@@ -108,7 +108,7 @@ fn any_fit() -> impl Strategy<Value = FitSettings> {
     )
 }
 
-fn any_cascades() -> impl Strategy<Value = Technique> {
+fn any_technique() -> impl Strategy<Value = Technique> {
     let splits = prop_oneof![
         Just(SplitScheme::Uniform),
         Just(SplitScheme::Logarithmic),
@@ -130,7 +130,7 @@ fn any_cascades() -> impl Strategy<Value = Technique> {
     )
 }
 
-/// The reach that a kernel margin is enough for.
+/// The widest reach that a border is enough for.
 fn reach_of(settings: &FitSettings) -> Reach {
     Reach::taps(settings.border.unwrap_or(3.0) + 0.5)
 }
@@ -183,7 +183,7 @@ proptest! {
 
     /// What is proven holds for points that no clipping has found: f32 matrix times f32 position.
     #[test]
-    fn whatever_is_seen_of_a_proven_box_is_inside(
+    fn everything_seen_of_a_proven_box_is_inside(
         camera in any_camera(), plans in any_plans(), direction in any_direction(), fit in any_fit(),
         margin in double(-0.1, 0.1), places in prop::collection::vec((double(0.0, 1.0), double(0.0, 1.0), double(0.0, 1.0)), 16),
     ) {
@@ -214,8 +214,8 @@ proptest! {
     }
 
     #[test]
-    fn cascades_have_no_holes_while_the_camera_walks_and_turns(
-        camera in any_camera(), plans in any_plans(), direction in any_direction(), settings in any_cascades(),
+    fn several_maps_have_no_holes_while_the_camera_walks_and_turns(
+        camera in any_camera(), plans in any_plans(), direction in any_direction(), settings in any_technique(),
         (walk, frames) in (any_walk(), 1..6_usize),
     ) {
         prop_assume!(camera.near < settings.fit.max_distance);
@@ -317,7 +317,7 @@ fn over(x: f32, y: f32, half: f32) -> Aabb {
 }
 
 #[test]
-fn slack_is_what_margins_add() {
+fn the_margins_left_are_those_of_the_settings() {
     let views = [from_above()];
     // 9 m by 5 m in 800 by 400 texels, and half a metre of depth on either side.
     let settings = plain().with_margin(0.5);
@@ -327,22 +327,21 @@ fn slack_is_what_margins_add() {
         casters: Some(Boxes { origin: views[0].origin, boxes: &casters }),
         ..FitInput::new(&views, Vec3::NEG_Y)
     };
-    let Certificate::Proven(slack) = certificate(&input, &fit, &CoverageQuery::of_fit(&settings, Reach::POINT)) else {
-        panic!("{fit:?}");
-    };
+    let query = CoverageQuery::of_fit(&settings, Reach::POINT);
+    let Certificate::Proven(margins) = certificate(&input, &fit, &query) else { panic!("{fit:?}") };
     let expected = [800.0 / 9.0 * 0.5, 800.0 / 9.0 * 0.5, 400.0 / 5.0 * 0.5, 400.0 / 5.0 * 0.5, 0.5, 0.5];
-    for (slack, expected) in slack.planes.into_iter().zip(expected) {
-        assert!((slack / expected - 1.0).abs() < 1e-4, "{slack} {expected}");
+    for (margin, expected) in margins.planes.into_iter().zip(expected) {
+        assert!((margin / expected - 1.0).abs() < 1e-4, "{margin} {expected}");
     }
     // The caster's top is 0.625 m below the eye, the near plane 0.5 m.
-    assert!((slack.casters - 0.125).abs() < 1e-4, "{}", slack.casters);
+    assert!((margins.casters - 0.125).abs() < 1e-4, "{}", margins.casters);
     // The filter takes its reach, from half a texel on, and the normal offset what it is long.
     let query = CoverageQuery::of_fit(&settings, Reach::POINT.over_disc(3.0)).with_normal_offset(0.1);
     let Certificate::Proven(wide) = certificate(&input, &fit, &query) else { panic!("{fit:?}") };
     for (i, per_metre) in [800.0 / 9.0, 800.0 / 9.0, 80.0, 80.0].into_iter().enumerate() {
-        assert!((slack.planes[i] - wide.planes[i] - 3.0 - 0.1 * per_metre).abs() < 1e-3);
+        assert!((margins.planes[i] - wide.planes[i] - 3.0 - 0.1 * per_metre).abs() < 1e-3);
     }
-    assert_eq!(slack.planes[4..], wide.planes[4..]);
+    assert_eq!(margins.planes[4..], wide.planes[4..]);
 }
 
 #[test]
@@ -433,7 +432,7 @@ fn a_near_plane_behind_a_caster_loses_it() {
     let Certificate::CasterLost { point, by } = check(over(3.0, 4.0, 1.0), &query) else { panic!("not lost") };
     assert!((by - 6.0).abs() < 1e-3 && (point.y - origin.y - 5.0).abs() < 1e-9, "{point} by {by}");
     assert!(looked_up(&fit, point).z < 0.0);
-    // Beside the view nothing throws a shadow into it, nor from below.
+    // Beside the view nothing casts a shadow into it, nor from below.
     assert!(check(over(5.1, 4.0, 1.0), &query).is_proven());
     assert!(check(over(0.0, -9.0, 1.0), &query).is_proven());
     // A part over the view counts, and with depth clamp nothing.
@@ -484,10 +483,10 @@ fn receivers_of_a_map_that_nobody_draws_are_found() {
     for (boxes, far) in [(&receivers[..], 1.5), (&receivers[..0], 3.0)] {
         let boxes = Boxes { origin: views[0].origin, boxes };
         let input = FitInput { receivers: Some(boxes), ..input };
-        let Certificate::Proven(slack) = certificate(&input, &fit, &CoverageQuery { far, ..query }) else {
+        let Certificate::Proven(margins) = certificate(&input, &fit, &CoverageQuery { far, ..query }) else {
             panic!("{far}")
         };
-        assert_eq!(slack.planes, [f32::INFINITY; 6]);
+        assert_eq!(margins.planes, [f32::INFINITY; 6]);
     }
 }
 

@@ -1,4 +1,4 @@
-//! The rows of the fit: where the shadow map looks.
+//! The rows of the fit of each map.
 
 use super::{always_active, always_there, pull_near};
 use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
@@ -244,8 +244,8 @@ pub(super) const CASTER_EXTENSION: Parameter = Parameter {
     },
 };
 
-/// Widest border, in texels: more than any filter of the map reaches, and less than the quarter of the smallest map that
-/// a fit accepts.
+/// Widest border, in texels: wider than the reach of any filter, and less than a quarter of the smallest map that the
+/// table allows.
 const WIDEST_BORDER: f64 = 32.0;
 
 pub(super) const BORDER: Parameter = Parameter {

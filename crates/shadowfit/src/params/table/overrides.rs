@@ -1,4 +1,4 @@
-//! The rows of what single maps have of their own.
+//! The rows of the overrides for single maps.
 
 use glam::UVec2;
 
@@ -109,7 +109,7 @@ fn no_such_map<const MAP: usize>(s: &Settings) -> Option<&'static str> {
     (MAP >= s.technique.count as usize).then_some("There is no such map; raise the number of maps.")
 }
 
-/// Why there is no height of a map's own.
+/// Why a map has no height of its own.
 macro_rules! no_resolution {
     ($($number:literal),+) => {
         [$(concat!(

@@ -23,10 +23,10 @@ pub(super) const COUNT: Parameter = Parameter {
     inert: always_active,
 };
 
-/// Share of the logarithmic splits that the practical ones begin with, as most engines have it.
+/// Initial λ of the practical splits, the usual one of other engines.
 const USUAL_LAMBDA: f32 = 0.5;
 
-/// View depths that manual splits begin with, in metres: each twice the one before.
+/// Initial view depths of manual splits, in metres: each twice the one before.
 const USUAL_SPLITS: [f32; MAX_MAPS - 1] = [5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0];
 
 pub(super) const SCHEME: Parameter = Parameter {

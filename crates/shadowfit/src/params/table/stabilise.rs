@@ -1,4 +1,4 @@
-//! The rows of what keeps the maps still.
+//! The rows of the stabilisation.
 
 use super::always_active;
 use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Parameter};

@@ -232,9 +232,10 @@ pub(super) const PLAY: Parameter = Parameter {
     inert: always_active,
 };
 
-/// An angle as a compass shows it: an animated sun keeps counting, its azimuth reads 0 to 360.
+/// An angle as a compass shows it: the azimuth of an animated sun grows without limit, but reads 0
+/// to 360.
 fn turn(degrees: f64) -> f64 {
     // 2π in f32 is a little more than a turn, and setting 360 should read 360.
-    const SLACK: f64 = 1e-4;
-    if (0.0..=360.0 + SLACK).contains(&degrees) { degrees } else { (degrees % 360.0 + 360.0) % 360.0 }
+    const TOLERANCE: f64 = 1e-4;
+    if (0.0..=360.0 + TOLERANCE).contains(&degrees) { degrees } else { (degrees % 360.0 + 360.0) % 360.0 }
 }
