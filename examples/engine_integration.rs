@@ -30,8 +30,8 @@ const DIRECTION: Vec3 = Vec3::new(0.55, -0.7, -0.45);
 
 /// View depth at which shadows end, in metres.
 const SHADOW_DISTANCE: f32 = 50.0;
-/// Bind group of the map's matrix in the shadow pass and of the maps in the shaded one. Any will do: this engine has its
-/// camera at group 0 in every pass.
+/// Bind group of the map's matrix in the shadow pass and of the maps in the shaded one. Any will do: this engine has
+/// its camera at group 0 in every pass.
 const SHADOW_GROUP: u32 = 1;
 
 /// What the engine's passes have in common: a unit cube, placed and scaled by its instance.

@@ -1,8 +1,8 @@
 //! `docs/ARCHITECTURE.md` against the files: it names every module, and no file that is not there.
 //!
-//! A *section* begins with the name of what it is about in backticks, as a heading (``### `shadowfit` ``) or in bold at the
-//! start of a paragraph (``**`shadowfit`**``), and goes on to the next section or heading. Each crate has one by its name.
-//! The examples have one called `examples`, and those that are folders may have one of their own, such as
+//! A *section* begins with the name of what it is about in backticks, as a heading (``### `shadowfit` ``) or in bold at
+//! the start of a paragraph (``**`shadowfit`**``), and goes on to the next section or heading. Each crate has one by
+//! its name. The examples have one called `examples`, and those that are folders may have one of their own, such as
 //! `examples/report`.
 //!
 //! Names of files stand in backticks too. Within its section, a module is named by

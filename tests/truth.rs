@@ -1,5 +1,5 @@
-//! Rendered pictures judged against rays: artefacts that are made on purpose are found and named, and the GPU's verdicts
-//! are those of the processor.
+//! Rendered pictures judged against rays: artefacts that are made on purpose are found and named, and the GPU's
+//! verdicts are those of the CPU.
 
 mod agreement_gpu;
 mod artefacts_gpu;

@@ -48,7 +48,7 @@ pub(crate) struct Args {
 /// Measures, writes both tables, and prints the rows over all frames.
 pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     let mut ranking = Ranking::new(Scenarios::read(&args.scenarios)?);
-    // Measuring takes minutes: a scene without triangles is refused before that.
+    // Measuring takes minutes: a scene whose triangles were not given is refused before that.
     for scene in &ranking.scenarios().scenes {
         args.geometry.file(scene)?;
     }

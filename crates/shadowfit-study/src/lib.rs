@@ -2,9 +2,9 @@
 //! window.
 //!
 //! A [`PreparedScene`] is a scene that can be drawn, traced and fitted to; a [`View`] is a camera and a light. A
-//! [`Technique`](shadowfit::Technique) is all that decides how shadows come out: its [`TechniqueFitter`] makes the maps of a view, and an
-//! [`Evaluator`] draws them and judges the picture. A [`Comparison`] does so for several techniques, and [`tune()`]
-//! searches the best one. The viewer draws and judges through the same fitter and evaluator.
+//! [`Technique`](shadowfit::Technique) is all that decides how shadows come out: its [`TechniqueFitter`] makes the maps
+//! of a view, and an [`Evaluator`] draws them and judges the picture. A [`Comparison`] does so for several techniques,
+//! and [`tune()`] searches the best one. The viewer draws and judges through the same fitter and evaluator.
 
 mod agreement;
 mod boxes;

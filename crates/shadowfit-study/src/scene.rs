@@ -51,8 +51,8 @@ pub struct PreparedScene {
 }
 
 impl PreparedScene {
-    /// Makes a scene ready, in its rest pose. `layout` comes from [`shadowfit_render::Renderer::material_layout`]; those
-    /// of all renderers are alike.
+    /// Makes a scene ready, in its rest pose. `layout` comes from [`shadowfit_render::Renderer::material_layout`];
+    /// those of all renderers are alike.
     ///
     /// # Errors
     ///

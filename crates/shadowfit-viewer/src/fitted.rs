@@ -35,8 +35,8 @@ impl Fitted {
         camera.frustum().and_then(|frustum| frustum.slice(near.max(camera.near), far.min(self.end))).ok()
     }
 
-    /// Index of the map that a point (world space, metres) reads: of those that end beyond its view depth the first that
-    /// covers it.
+    /// Index of the map that a point (world space, metres) reads: of those that end beyond its view depth the first
+    /// that covers it.
     pub(crate) fn read_at(&self, point: DVec3) -> Option<usize> {
         let camera = self.camera?;
         let depth = (point - camera.eye).dot(camera.forward.as_dvec3().normalize());
