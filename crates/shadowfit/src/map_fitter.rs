@@ -155,6 +155,7 @@ impl MapFitter {
 /// ```
 /// # use shadowfit::glam::{DVec2, DVec3, Vec3};
 /// # use shadowfit::*;
+/// use shadowfit::map_fitter::fewest_maps;
 /// # let camera = PerspectiveCamera {
 /// #     eye: DVec3::new(0.0, 1.7, 5.0),
 /// #     forward: Vec3::NEG_Z,
