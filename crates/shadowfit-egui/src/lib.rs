@@ -28,6 +28,7 @@
 
 #![forbid(unsafe_code)]
 
+mod accessibility;
 mod artefact;
 mod figures;
 mod help;

@@ -6,7 +6,7 @@ use shadowfit::figures::{Figures, MAP_TINTS, MapFigures};
 use shadowfit::light_fit::Constraint;
 use shadowfit::settings::MAX_MAPS;
 
-use crate::rows::rename;
+use crate::accessibility::rename;
 use crate::units::{grouped, length, short, size};
 
 /// The tint of a map, and what can be read on it.

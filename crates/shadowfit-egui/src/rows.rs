@@ -8,6 +8,7 @@ use egui::{Checkbox, ComboBox, Response, Slider, SliderClamping, Ui};
 use shadowfit::params::{Choice, Group, Kind, Number, Optional, Parameter, Toggle};
 use shadowfit::tool::Settings;
 
+use crate::accessibility::rename;
 use crate::maps;
 use label::{RESET_WIDTH, reset_button};
 
@@ -211,11 +212,6 @@ fn toggle_control(ui: &mut Ui, row: &Row<'_>, toggle: Toggle, settings: &mut Set
         toggle.set(settings, on);
     }
     row.explain(response);
-}
-
-/// Gives a widget another name for screen readers.
-pub(crate) fn rename(ui: &Ui, response: &Response, name: String) {
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));
 }
 
 fn is_nan(parameter: &Parameter, settings: &Settings) -> bool {

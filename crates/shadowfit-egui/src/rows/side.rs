@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use egui::{ComboBox, Ui};
 use shadowfit::params::Parameter;
 
-use super::rename;
+use crate::accessibility::rename;
 
 /// Width of the closed list, in points: its triangle alone.
 pub(super) const LIST_WIDTH: f32 = 34.0;
