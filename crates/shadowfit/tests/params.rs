@@ -5,16 +5,19 @@ use shadowfit::params::{
     self, Group, Kind, PARAMETERS, Parameter, format_value, set_from_str, set_technique_from_str, technique_parameters,
 };
 use shadowfit::settings::{
-    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapFormat, MapOverride,
-    ReceiverSource, RectangleKind, SplitScheme, Stabilise,
+    CasterPolicy, FilterKind, FitKind, MAX_MAPS, MapFormat, MapOverride, ReceiverSource, RectangleKind, SplitScheme,
+    Stabilise,
 };
-use shadowfit::tool::{CameraSettings, LightSettings, Settings, ViewSettings};
+use shadowfit::tool::Settings;
 use shadowfit::{Aabb, Boxes, DepthConvention, FitInput, PRESETS, PerspectiveCamera, Technique, Workspace};
 
 #[path = "params/any_technique.rs"]
 mod any_technique;
+#[path = "params/leaves.rs"]
+mod leaves;
 
 use any_technique::any_technique;
+use leaves::leaves;
 use proptest::prelude::*;
 
 fn written(settings: &Settings, parameter: &Parameter) -> String {
@@ -81,108 +84,6 @@ fn number(id: &str) -> &'static params::Number {
         Kind::Number(number) => number,
         _ => panic!("{id} is no number"),
     }
-}
-
-/// Every field with its value. Without `..` and `_`, so that a new field or variant does not compile until it stands
-/// here, and the tests below do not pass until a row reaches it.
-fn leaves(settings: &Settings) -> Vec<(String, String)> {
-    let mut all = Vec::new();
-    let mut leaf = |name: &str, value: &dyn core::fmt::Debug| all.push((name.to_owned(), format!("{value:?}")));
-    let Settings { technique, light, camera, view } = settings;
-    leaves_of_technique(technique, &mut leaf);
-    let LightSettings { azimuth, elevation, animate, animate_speed } = light;
-    leaf("light.azimuth", azimuth);
-    leaf("light.elevation", elevation);
-    leaf("light.animate", animate);
-    leaf("light.animate_speed", animate_speed);
-    let CameraSettings { fov_y, near, far, speed } = camera;
-    leaf("camera.fov_y", fov_y);
-    leaf("camera.near", near);
-    leaf("camera.far", far);
-    leaf("camera.speed", speed);
-    let ViewSettings { shadows, inset, inset_map, tint_maps, outside, freeze_fit, play } = view;
-    leaf("view.shadows", shadows);
-    leaf("view.inset", inset);
-    leaf("view.inset_map", inset_map);
-    leaf("view.tint_maps", tint_maps);
-    leaf("view.outside", outside);
-    leaf("view.freeze_fit", freeze_fit);
-    leaf("view.play", play);
-    all
-}
-
-/// Takes the name and the value of a field.
-type Leaf<'a> = dyn FnMut(&str, &dyn core::fmt::Debug) + 'a;
-
-fn leaves_of_technique(technique: &Technique, leaf: &mut Leaf) {
-    let Technique { count, fit, splits, overlap, stabilise, hold, overrides, receivers, filter, bias, format } =
-        technique;
-    leaves_of_fit(fit, leaf);
-    leaf("count", count);
-    let (lambda, ends) = match splits {
-        SplitScheme::Uniform | SplitScheme::Logarithmic | SplitScheme::FromBoxes | SplitScheme::FromHistogram => {
-            (None, None)
-        }
-        SplitScheme::Practical(lambda) => (Some(lambda), None),
-        SplitScheme::Manual(ends) => (None, Some(ends)),
-    };
-    leaf("splits", &core::mem::discriminant(splits));
-    leaf("splits.lambda", &lambda);
-    for map in 0..MAX_MAPS - 1 {
-        leaf(&format!("splits.manual[{map}]"), &ends.map(|ends| ends[map]));
-    }
-    leaf("overlap", overlap);
-    leaf("stabilise", stabilise);
-    let HoldSettings { margin, growth, waste, horizon } = hold;
-    leaf("hold.margin", margin);
-    leaf("hold.growth", growth);
-    leaf("hold.waste", waste);
-    leaf("hold.horizon", horizon);
-    for (map, MapOverride { kind, resolution }) in overrides.iter().enumerate() {
-        leaf(&format!("overrides[{map}].kind"), kind);
-        leaf(&format!("overrides[{map}].resolution.x"), &resolution.map(|own| own.x));
-        leaf(&format!("overrides[{map}].resolution.y"), &resolution.map(|own| own.y));
-    }
-    leaf("receivers", receivers);
-    leaf("filter", filter);
-    let BiasSettings { constant, slope, normal_offset, receiver_plane } = bias;
-    leaf("bias.constant", constant);
-    leaf("bias.slope", slope);
-    leaf("bias.normal_offset", normal_offset);
-    leaf("bias.receiver_plane", receiver_plane);
-    leaf("format", format);
-}
-
-fn leaves_of_fit(fit: &FitSettings, leaf: &mut Leaf) {
-    let FitSettings {
-        kind,
-        rectangle,
-        max_distance,
-        margin,
-        border,
-        casters,
-        caster_extension,
-        up,
-        max_texel_ratio,
-        resolution,
-        depth,
-    } = fit;
-    let Vec3 { x: up_x, y: up_y, z: up_z } = up;
-    let UVec2 { x: width, y: height } = resolution;
-    leaf("fit.kind", kind);
-    leaf("fit.rectangle", rectangle);
-    leaf("fit.max_distance", max_distance);
-    leaf("fit.margin", margin);
-    leaf("fit.border", border);
-    leaf("fit.casters", casters);
-    leaf("fit.caster_extension", caster_extension);
-    leaf("fit.up.x", up_x);
-    leaf("fit.up.y", up_y);
-    leaf("fit.up.z", up_z);
-    leaf("fit.max_texel_ratio", max_texel_ratio);
-    leaf("fit.resolution.x", width);
-    leaf("fit.resolution.y", height);
-    leaf("fit.depth", depth);
 }
 
 #[test]
@@ -582,8 +483,8 @@ fn an_azimuth_that_kept_counting_reads_as_a_compass_angle() {
 }
 
 #[test]
-fn knobs_say_where_they_have_no_effect() {
-    // Knob, a setting with which it has an effect, one that takes it away, and a word of the reason.
+fn parameters_say_where_they_have_no_effect() {
+    // Parameter, a setting with which it has an effect, one that takes it away, and a word of the reason.
     for (id, base, (other, option), word) in [
         ("fit.rectangle", &[][..], ("fit.kind", "xna_sample"), "focused"),
         ("fit.rectangle", &[], ("fit.kind", "frustum_aabb"), "focused"),
@@ -621,7 +522,7 @@ fn knobs_say_where_they_have_no_effect() {
 }
 
 #[test]
-fn a_knob_that_says_it_has_no_effect_has_none_and_the_others_have_one() {
+fn a_parameter_that_says_it_has_no_effect_has_none_and_the_others_have_one() {
     let view = PerspectiveCamera {
         eye: DVec3::ZERO,
         forward: Vec3::new(0.3, -0.2, -0.9),

@@ -1,0 +1,108 @@
+//! Every field of the settings by name, so that tests see which ones the parameter table reaches.
+
+use shadowfit::Technique;
+use shadowfit::glam::{UVec2, Vec3};
+use shadowfit::settings::{BiasSettings, FitSettings, HoldSettings, MAX_MAPS, MapOverride, SplitScheme};
+use shadowfit::tool::{CameraSettings, LightSettings, Settings, ViewSettings};
+
+/// Every field with its value. Without `..` and `_`, so that a new field or variant does not compile until it stands
+/// here, and the tests of the table do not pass until a row reaches it.
+pub(crate) fn leaves(settings: &Settings) -> Vec<(String, String)> {
+    let mut all = Vec::new();
+    let mut leaf = |name: &str, value: &dyn core::fmt::Debug| all.push((name.to_owned(), format!("{value:?}")));
+    let Settings { technique, light, camera, view } = settings;
+    leaves_of_technique(technique, &mut leaf);
+    let LightSettings { azimuth, elevation, animate, animate_speed } = light;
+    leaf("light.azimuth", azimuth);
+    leaf("light.elevation", elevation);
+    leaf("light.animate", animate);
+    leaf("light.animate_speed", animate_speed);
+    let CameraSettings { fov_y, near, far, speed } = camera;
+    leaf("camera.fov_y", fov_y);
+    leaf("camera.near", near);
+    leaf("camera.far", far);
+    leaf("camera.speed", speed);
+    let ViewSettings { shadows, inset, inset_map, tint_maps, outside, freeze_fit, play } = view;
+    leaf("view.shadows", shadows);
+    leaf("view.inset", inset);
+    leaf("view.inset_map", inset_map);
+    leaf("view.tint_maps", tint_maps);
+    leaf("view.outside", outside);
+    leaf("view.freeze_fit", freeze_fit);
+    leaf("view.play", play);
+    all
+}
+
+/// Takes the name and the value of a field.
+type Leaf<'a> = dyn FnMut(&str, &dyn core::fmt::Debug) + 'a;
+
+fn leaves_of_technique(technique: &Technique, leaf: &mut Leaf) {
+    let Technique { count, fit, splits, overlap, stabilise, hold, overrides, receivers, filter, bias, format } =
+        technique;
+    leaves_of_fit(fit, leaf);
+    leaf("count", count);
+    let (lambda, ends) = match splits {
+        SplitScheme::Uniform | SplitScheme::Logarithmic | SplitScheme::FromBoxes | SplitScheme::FromHistogram => {
+            (None, None)
+        }
+        SplitScheme::Practical(lambda) => (Some(lambda), None),
+        SplitScheme::Manual(ends) => (None, Some(ends)),
+    };
+    leaf("splits", &core::mem::discriminant(splits));
+    leaf("splits.lambda", &lambda);
+    for map in 0..MAX_MAPS - 1 {
+        leaf(&format!("splits.manual[{map}]"), &ends.map(|ends| ends[map]));
+    }
+    leaf("overlap", overlap);
+    leaf("stabilise", stabilise);
+    let HoldSettings { margin, growth, waste, horizon } = hold;
+    leaf("hold.margin", margin);
+    leaf("hold.growth", growth);
+    leaf("hold.waste", waste);
+    leaf("hold.horizon", horizon);
+    for (map, MapOverride { kind, resolution }) in overrides.iter().enumerate() {
+        leaf(&format!("overrides[{map}].kind"), kind);
+        leaf(&format!("overrides[{map}].resolution.x"), &resolution.map(|own| own.x));
+        leaf(&format!("overrides[{map}].resolution.y"), &resolution.map(|own| own.y));
+    }
+    leaf("receivers", receivers);
+    leaf("filter", filter);
+    let BiasSettings { constant, slope, normal_offset, receiver_plane } = bias;
+    leaf("bias.constant", constant);
+    leaf("bias.slope", slope);
+    leaf("bias.normal_offset", normal_offset);
+    leaf("bias.receiver_plane", receiver_plane);
+    leaf("format", format);
+}
+
+fn leaves_of_fit(fit: &FitSettings, leaf: &mut Leaf) {
+    let FitSettings {
+        kind,
+        rectangle,
+        max_distance,
+        margin,
+        border,
+        casters,
+        caster_extension,
+        up,
+        max_texel_ratio,
+        resolution,
+        depth,
+    } = fit;
+    let Vec3 { x: up_x, y: up_y, z: up_z } = up;
+    let UVec2 { x: width, y: height } = resolution;
+    leaf("fit.kind", kind);
+    leaf("fit.rectangle", rectangle);
+    leaf("fit.max_distance", max_distance);
+    leaf("fit.margin", margin);
+    leaf("fit.border", border);
+    leaf("fit.casters", casters);
+    leaf("fit.caster_extension", caster_extension);
+    leaf("fit.up.x", up_x);
+    leaf("fit.up.y", up_y);
+    leaf("fit.up.z", up_z);
+    leaf("fit.max_texel_ratio", max_texel_ratio);
+    leaf("fit.resolution.x", width);
+    leaf("fit.resolution.y", height);
+    leaf("fit.depth", depth);
+}
