@@ -8,7 +8,7 @@ use shadowfit_viewer::{Artefact, Stage, StageError};
 
 use crate::support::{assets, files_below, software_gpu};
 
-/// Size of the pictures, in pixels: small, since the driver draws on the processor.
+/// Size of the pictures, in pixels: small, since the driver draws on the CPU.
 const SIZE: [u32; 2] = [64, 36];
 
 /// Scenes that have all three artefacts shown and fixed: one textured and animated, one of many nodes, one with
