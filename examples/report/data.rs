@@ -95,7 +95,7 @@ pub(crate) fn value(columns: &Columns, name: &str) -> Option<f64> {
 /// Which values of a column are the good ones: errors, sizes and times are low in a good technique.
 pub(crate) fn better(column: &str) -> Better {
     match column {
-        "used %" | "still %" => Better::Higher,
+        "used %" | "still %" | "kept %" => Better::Higher,
         "maps" | "frames" | "facing" | "edge zone %" | "grazing %" | "texels" => Better::Neither,
         _ => Better::Lower,
     }

@@ -101,7 +101,7 @@ fn tally(roofs: &[(f32, f32)], maps: &[FitMap], depth_clamp: bool) -> Tally {
 
 /// Measures of how `then` became `now`.
 fn shimmer(then: &FitMap, now: &FitMap) -> Shimmer {
-    let frame = FrameMaps { maps: &[prepared(now)], previous: Some(&[prepared(then)]), depth_clamp: false };
+    let frame = FrameMaps { maps: &[prepared(now)], previous: Some((&Room::frame(), &[prepared(then)])), depth_clamp: false };
     measure(&Room::new(&[]).visible(), &frame).shimmer
 }
 
@@ -194,7 +194,7 @@ fn grazing_surfaces_are_left_out_of_pixels_per_texel_alone() {
     frame.light_dir = (-grazing).to_array();
     let visible = VisiblePoints::trace(&Room::new(&[]).tracer, &frame, 1);
     let maps = [Room::map().measured(grazing)];
-    let tally = measure(&visible, &FrameMaps { maps: &maps, previous: Some(&maps), depth_clamp: false });
+    let tally = measure(&visible, &FrameMaps { maps: &maps, previous: Some((&Room::frame(), &maps)), depth_clamp: false });
     assert_eq!((tally.facing, tally.pixels_per_texel.total(), tally.undersampled), (POINTS, 0, 0));
     assert!(tally.shimmer.points > 0 && tally.used > 0.0);
 }
@@ -274,8 +274,31 @@ fn a_map_that_grows_changes_its_texels_size() {
 fn crawl_needs_the_point_in_the_same_map_of_the_frame_before() {
     let beside = Room::map_around(DVec2::new(40.0, 0.0), 8.0, 8.0);
     assert_eq!(shimmer(&beside, &Room::map()).points, 0);
-    let frame = FrameMaps { maps: &[prepared(&Room::map())], previous: Some(&[]), depth_clamp: false };
+    let frame = FrameMaps { maps: &[prepared(&Room::map())], previous: Some((&Room::frame(), &[])), depth_clamp: false };
     assert_eq!(measure(&Room::new(&[]).visible(), &frame).shimmer, Shimmer::default());
+}
+
+#[test]
+fn points_are_kept_that_read_the_same_texels_of_the_same_map_as_before() {
+    let texel = 8.0 / 1024.0;
+    let small = || FitMap { split_far: 1e9, ..Room::map_around(DVec2::X * texel, 2.0, 8.0) };
+    let kept = |now: &[FitMap], then: &[FitMap], camera: &Frame| {
+        let [now, then] = [now, then].map(|maps| maps.iter().map(prepared).collect::<Vec<_>>());
+        let frame = FrameMaps { maps: &now, previous: Some((camera, &then)), depth_clamp: false };
+        measure(&Room::new(&[]).visible(), &frame).kept
+    };
+    let (all, camera) = (POINTS.div_ceil(23), Room::frame());
+    let moved = |x: f64| [Room::map_around(DVec2::X * x * texel, 8.0, 8.0)];
+    assert_eq!(kept(&moved(3.0), &moved(0.0), &camera), Kept { points: all, kept: all });
+    assert_eq!(kept(&moved(0.3), &moved(0.0), &camera), Kept { points: all, kept: 0 });
+    // Points that go from one map to another are not kept, although no map moved.
+    let both = kept(&[small(), Room::map()], &[small(), Room::map()], &camera);
+    let entered = kept(&[small(), Room::map()], &[Room::map_around(DVec2::X * 50.0, 2.0, 8.0), Room::map()], &camera);
+    assert_eq!((both.points, both.kept, entered.points), (all, all, all));
+    assert!(entered.kept > 0 && entered.kept < all, "{entered:?}");
+    // What was not in view, or had no map, is not counted.
+    assert_eq!(kept(&moved(0.0), &moved(0.0), &Frame { far: 1.0, ..Room::frame() }).points, 0);
+    assert_eq!(kept(&moved(0.0), &[], &camera).points, 0);
 }
 
 #[test]

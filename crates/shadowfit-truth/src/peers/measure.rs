@@ -3,7 +3,8 @@
 use glam::{DVec2, DVec3};
 
 use super::cells::Cells;
-use super::tally::{Shimmer, Tally};
+use super::scenarios::Frame;
+use super::tally::{Kept, Shimmer, Tally};
 use super::visible::{VisiblePoint, VisiblePoints};
 use crate::maps::{MIN_FACING, MapChoice, MapGradients, MeasuredMap, Occluder, choose, pixels_per_texel};
 
@@ -20,9 +21,9 @@ const STILL_SCALE: f64 = 1e-4;
 pub struct FrameMaps<'a> {
     /// Maps, in order of their splits.
     pub maps: &'a [MeasuredMap],
-    /// Maps of the frame before on the same path; `None` for the first frame of a path, which has no
+    /// The frame before on the same path, and its maps; `None` for the first frame of a path, which has no
     /// shimmer.
-    pub previous: Option<&'a [MeasuredMap]>,
+    pub previous: Option<(&'a Frame, &'a [MeasuredMap])>,
     /// Whether the renderer clamps depth, so that casters before the near plane still cast shadows.
     pub depth_clamp: bool,
 }
@@ -45,7 +46,11 @@ pub fn measure(visible: &VisiblePoints, frame: &FrameMaps) -> Tally {
         let sides = jacobian.map(|column| column * visible.pixels_per_ray);
         cells[choice.index].get_or_insert_default().mark(choice.map.size, choice.position.texel, sides);
         if point.number.is_multiple_of(SHIMMER_STEP) {
-            add_shimmer(&mut tally.shimmer, point, (&choice, &gradients), frame.previous);
+            if let Some((camera, maps)) = frame.previous {
+                let moved = movement(point, (&choice, &gradients), maps);
+                add_shimmer(&mut tally.shimmer, moved);
+                add_kept(&mut tally.kept, point, (choice.index, moved), (camera, maps));
+            }
         }
         tally.depth_range += 1.0 / gradients.depth.dot(visible.to_light).abs();
     }
@@ -91,25 +96,57 @@ fn add_pixels_per_texel(tally: &mut Tally, point: &VisiblePoint, choice: &MapCho
     tally.critical.add(pixels_per_texel * (choice.map.size.x * choice.map.size.y).sqrt());
 }
 
-fn add_shimmer(
-    shimmer: &mut Shimmer,
+/// How a point moved in the map that it reads, since the frame before.
+#[derive(Clone, Copy)]
+struct Movement {
+    /// Beyond whole texels, in texels.
+    crawl: f64,
+    /// Relative change of a texel's side.
+    scale: f64,
+}
+
+impl Movement {
+    fn is_still(&self) -> bool {
+        self.crawl < STILL_MOVE && self.scale < STILL_SCALE
+    }
+}
+
+/// How a point moved in the map that it reads; `None` where that map did not hold it in the frame before.
+fn movement(
     point: &VisiblePoint,
     (choice, gradients): (&MapChoice, &MapGradients),
-    previous: Option<&[MeasuredMap]>,
-) {
-    let Some(then) = previous.and_then(|maps| maps.get(choice.index)) else { return };
+    previous: &[MeasuredMap],
+) -> Option<Movement> {
+    let then = previous.get(choice.index)?;
     let position = then.project(point.position);
     if !then.is_inside(&position) {
-        return;
+        return None;
     }
     let moved = choice.position.texel - position.texel;
-    let crawl = (moved - moved.round()).length();
     let texels = |gradients: &MapGradients| texel_density(gradients.u, gradients.v);
-    let change = ((texels(gradients) / texels(&then.gradients(&position))).sqrt() - 1.0).abs();
+    let scale = ((texels(gradients) / texels(&then.gradients(&position))).sqrt() - 1.0).abs();
+    Some(Movement { crawl: (moved - moved.round()).length(), scale })
+}
+
+fn add_shimmer(shimmer: &mut Shimmer, moved: Option<Movement>) {
+    let Some(moved) = moved else { return };
     shimmer.points += 1;
-    shimmer.moved += crawl;
-    shimmer.still += u64::from(crawl < STILL_MOVE && change < STILL_SCALE);
-    shimmer.scaled += change;
+    shimmer.moved += moved.crawl;
+    shimmer.still += u64::from(moved.is_still());
+    shimmer.scaled += moved.scale;
+}
+
+/// Counts whether a point reads the same texels as in the frame before, if it had a map in that frame's view.
+fn add_kept(
+    kept: &mut Kept,
+    point: &VisiblePoint,
+    (index, moved): (usize, Option<Movement>),
+    (camera, previous): (&Frame, &[MeasuredMap]),
+) {
+    let Some(view_depth) = camera.view_depth(point.position) else { return };
+    let Some(then) = choose(previous, view_depth, point.position) else { return };
+    kept.points += 1;
+    kept.kept += u64::from(then.index == index && moved.is_some_and(|moved| moved.is_still()));
 }
 
 /// Texels in a square metre across the light.

@@ -25,5 +25,5 @@ pub use measure::{FrameMaps, measure};
 pub use ranking::Ranking;
 pub use scenarios::{Frame, Ground, Scenarios, Scene};
 pub use table::{FitTable, GroupTally, Row, overall_markdown, readable, to_json, to_markdown};
-pub use tally::{Shimmer, Tally};
+pub use tally::{Kept, Shimmer, Tally};
 pub use visible::{RAYS, VisiblePoint, VisiblePoints};

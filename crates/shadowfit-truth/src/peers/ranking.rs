@@ -112,7 +112,7 @@ impl Ranking {
         let of = |fit: &Fit| {
             let maps = FrameMaps {
                 maps: &fit.maps[frame],
-                previous: previous.map(|previous| fit.maps[previous].as_slice()),
+                previous: previous.map(|previous| (&self.scenarios.frames[previous], fit.maps[previous].as_slice())),
                 depth_clamp: fit.depth_clamp,
             };
             measure(&visible, &maps)

@@ -166,6 +166,17 @@ impl Frame {
         }
     }
 
+    /// View depth of a world position, in metres, where it lies inside the view, near and far included.
+    pub fn view_depth(&self, point: DVec3) -> Option<f64> {
+        let p = self.view_from_world().transform_point3(point);
+        let (depth, tan) = (-p.z, self.tan_half_fov());
+        let is_inside = depth >= self.near
+            && depth <= self.far
+            && p.x.abs() <= depth * tan * self.aspect
+            && p.y.abs() <= depth * tan;
+        is_inside.then_some(depth)
+    }
+
     fn check(&self, element: &impl Fn(&str) -> String) -> Result<(), Problem> {
         let bad = |field: &str, reason: String| Err(Problem::new(element(field), reason));
         check_finite(|| element("view"), &self.view)?;

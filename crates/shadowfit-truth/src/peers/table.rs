@@ -42,6 +42,8 @@ pub struct Row {
     pub shimmer: f64,
     /// Percentage of points that move by less than 0.02 texels and whose texels keep their size.
     pub still: f64,
+    /// Percentage of the points in the view of the frame before that read the same texels as then.
+    pub kept: f64,
     /// Mean relative change of a texel's side between frames, in per cent.
     pub scale: f64,
     /// Mean depth step of a 24-bit map, in micrometres along the light.
@@ -112,6 +114,7 @@ impl Row {
             used: 100.0 * ratio(tally.used, tally.maps),
             shimmer: ratio(tally.shimmer.moved, tally.shimmer.points),
             still: percentage(tally.shimmer.still, tally.shimmer.points),
+            kept: percentage(tally.kept.kept, tally.kept.points),
             scale: 100.0 * ratio(tally.shimmer.scaled, tally.shimmer.points),
             depth: 1e6 * ratio(tally.depth_range, tally.covered()) / DEPTH_STEPS,
             pictures: picture_columns(pictures),
@@ -134,6 +137,7 @@ impl Row {
             ("used %", self.used),
             ("shimmer tx", self.shimmer),
             ("still %", self.still),
+            ("kept %", self.kept),
             ("scale %", self.scale),
             ("depth um", self.depth),
         ];

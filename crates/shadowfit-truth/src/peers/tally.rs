@@ -30,6 +30,8 @@ pub struct Tally {
     pub used: f64,
     /// Crawl between frames.
     pub shimmer: Shimmer,
+    /// Texels that are read again.
+    pub kept: Kept,
     /// Sum over covered points of the metres along the light that depth 0..=1 spans.
     pub depth_range: f64,
 }
@@ -47,6 +49,17 @@ pub struct Shimmer {
     pub scaled: f64,
 }
 
+/// How many points read the same texels as in the frame before. Unlike [`Shimmer::still`] it counts points that
+/// go from one map to another.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Kept {
+    /// Points that were in the view of the frame before, and read some map then.
+    pub points: u64,
+    /// Those of them that read the map with the same index, moved by whole texels, with texels of the same
+    /// size.
+    pub kept: u64,
+}
+
 impl Tally {
     /// Adds the sums of `other`.
     pub fn merge(&mut self, other: &Self) {
@@ -62,6 +75,8 @@ impl Tally {
         self.critical.merge(&other.critical);
         self.used += other.used;
         self.shimmer.merge(other.shimmer);
+        self.kept.points += other.kept.points;
+        self.kept.kept += other.kept.kept;
         self.depth_range += other.depth_range;
     }
 
