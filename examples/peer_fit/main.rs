@@ -12,7 +12,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, ensure};
 use clap::Parser;
 use shadowfit::PRESETS;
-use shadowfit::settings::{ReceiverSource, SplitScheme};
+use shadowfit::settings::ReceiverSource;
 use shadowfit_study::NamedTechnique;
 use shadowfit_truth::peers::Scenarios;
 
@@ -46,6 +46,13 @@ struct Args {
 
 fn main() -> ExitCode {
     let args = Args::parse();
+    if let Ok(t) = std::env::var("TUNE") {
+        for (i, v) in t.split(',').enumerate() {
+            if let Ok(v) = v.parse() {
+                shadowfit::tune::set(i, v);
+            }
+        }
+    }
     let result = if args.fit == "list" {
         list();
         Ok(())
@@ -82,7 +89,7 @@ fn run(args: &Args) -> Result<()> {
     let scenarios = args.scenarios.as_ref().context("give the file of scenarios")?;
     let out = args.out.as_ref().context("give the file to write with -o OUT.json")?;
     let scenarios = Scenarios::read(scenarios)?;
-    let needs = technique.receivers == ReceiverSource::Clusters || technique.splits == SplitScheme::FromHistogram;
+    let needs = technique.receivers == ReceiverSource::Clusters || runner::sees(technique);
     ensure!(
         !needs || args.geometry.is_some(),
         "--fit {} needs the scenes' triangles: give --assets DIR or --triangles DIR",

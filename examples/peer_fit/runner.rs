@@ -6,9 +6,10 @@ use anyhow::{Context, Result};
 use glam::{DVec2, DVec3, Vec3};
 use shadowfit::clusters::Clusters;
 use shadowfit::normal_cone::NormalCone;
-use shadowfit::settings::{ReceiverSource, SplitScheme};
+use shadowfit::need::NeedGrid;
+use shadowfit::settings::{FitKind, MapChoice, NeedSource, ReceiverSource, SplitScheme};
 use shadowfit::{Aabb, Boxes, FitInput, FittedMap, FittedMaps, MapFitter, Technique, ViewFrustum, Workspace};
-use shadowfit_study::{NamedTechnique, SeenDepths, fit_map};
+use shadowfit_study::{NamedTechnique, SeenDepths, SeenNeed, fit_map};
 use shadowfit_truth::Tracer;
 use shadowfit_truth::peers::{FitFile, FitFrame, FitMap, Scenarios, Scene};
 use shadowfit_wgpu::MapFit;
@@ -34,6 +35,7 @@ struct Prepared {
     /// Whether the fitter has to forget what was before.
     is_first: bool,
     depths: Option<SeenDepths>,
+    need: Option<SeenNeed>,
 }
 
 /// Fits every frame of the scenarios.
@@ -42,7 +44,7 @@ pub(crate) fn run(scenarios: &Scenarios, named: &NamedTechnique, source: Option<
     let known: Vec<Known> =
         scenarios.scenes.iter().map(|scene| know(scene, technique, source)).collect::<Result<_>>()?;
     let frames: Vec<Prepared> =
-        (0..scenarios.frames.len()).map(|index| prepare(scenarios, index, &known)).collect::<Result<_>>()?;
+        (0..scenarios.frames.len()).map(|index| prepare(scenarios, index, &known, technique)).collect::<Result<_>>()?;
     let mut times = vec![Vec::with_capacity(BATCHES); frames.len()];
     let mut maps = Vec::new();
     for batch in 0..=BATCHES {
@@ -58,7 +60,7 @@ pub(crate) fn run(scenarios: &Scenarios, named: &NamedTechnique, source: Option<
         .frames
         .iter()
         .zip(&maps)
-        .map(|(frame, (maps, _))| FitFrame { id: frame.id.clone(), maps: maps.iter().map(fit_map_of).collect() });
+        .map(|(frame, (maps, _))| FitFrame { id: frame.id.clone(), maps: fit_maps(maps, technique) });
     let all: Vec<f64> = times.iter().flatten().copied().collect();
     let fastest: Vec<f64> = times.iter().map(|times| times.iter().copied().fold(f64::MAX, f64::min)).collect();
     Ok(FitFile {
@@ -83,8 +85,16 @@ fn know(scene: &Scene, technique: &Technique, source: Option<&Source>) -> Result
         }
         _ => (scene.objects.iter().map(outward).collect(), Vec::new()),
     };
-    let tracer = triangles.filter(|_| technique.splits == SplitScheme::FromHistogram);
+    let tracer = triangles.filter(|_| sees(technique));
     Ok(Known { boxes, cones, tracer: tracer.map(|objects| Tracer::new(objects.into_iter().flatten())) })
+}
+
+/// Whether a technique is told what the frame before showed.
+pub(crate) fn sees(technique: &Technique) -> bool {
+    match technique.fit.kind {
+        FitKind::Windows => technique.need == NeedSource::LastFrame,
+        _ => technique.splits == SplitScheme::FromHistogram,
+    }
 }
 
 /// A box rounded to f32 so that it loses nothing.
@@ -95,7 +105,7 @@ fn outward(bounds: &[f64; 6]) -> Aabb {
     Aabb::new(Vec3::new(down(a), down(b), down(c)), Vec3::new(up(d), up(e), up(f)))
 }
 
-fn prepare(scenarios: &Scenarios, index: usize, known: &[Known]) -> Result<Prepared> {
+fn prepare(scenarios: &Scenarios, index: usize, known: &[Known], technique: &Technique) -> Result<Prepared> {
     let frame = &scenarios.frames[index];
     let before = scenarios.previous(index).map(|before| &scenarios.frames[before]);
     let tracer = known[frame.scene].tracer.as_ref();
@@ -107,6 +117,10 @@ fn prepare(scenarios: &Scenarios, index: usize, known: &[Known]) -> Result<Prepa
         scene: frame.scene,
         is_first: before.is_none(),
         depths: before.zip(tracer).map(|(before, tracer)| SeenDepths::trace(tracer, &before.camera(), direction)),
+        need: before
+            .zip(tracer)
+            .map(|(before, tracer)| SeenNeed::trace(tracer, &before.camera(), direction, &technique.fit))
+            .transpose()?,
     })
 }
 
@@ -123,12 +137,14 @@ fn fit_all(frames: &[Prepared], known: &[Known], technique: &Technique) -> Resul
                 fitter.reset();
             }
             let boxes = Boxes { origin: DVec3::ZERO, boxes: &known[frame.scene].boxes };
+            let need: Vec<NeedGrid> = frame.need.iter().map(SeenNeed::grid).collect();
             let input = FitInput {
                 views: &[frame.view],
                 direction: frame.direction,
                 receivers: Some(boxes),
                 receiver_cones: &known[frame.scene].cones,
                 casters: Some(boxes),
+                need: &need,
                 histogram: frame.depths.as_ref().map(SeenDepths::histogram),
                 ..FitInput::new(&[], frame.direction)
             };
@@ -138,6 +154,21 @@ fn fit_all(frames: &[Prepared], known: &[Known], technique: &Technique) -> Resul
         })
         .collect()
 }
+
+/// The maps of a frame as the fit file has them: in order of their ends, or from the finest on where that is how points
+/// choose.
+fn fit_maps(maps: &FittedMaps, technique: &Technique) -> Vec<FitMap> {
+    let mut fitted: Vec<FitMap> = maps.iter().map(fit_map_of).collect();
+    if technique.choice == MapChoice::Coverage {
+        for map in &mut fitted {
+            map.split_far = NO_END;
+        }
+    }
+    fitted
+}
+
+/// View depth, in metres, that means that a map has no end: fit files have finite numbers only.
+const NO_END: f64 = 1e9;
 
 /// A map as the fit file has it.
 fn fit_map_of(map: &FittedMap) -> FitMap {

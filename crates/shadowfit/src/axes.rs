@@ -73,6 +73,11 @@ impl Light {
         }
     }
 
+    /// Unit direction that is up.
+    pub(crate) fn up(&self) -> DVec3 {
+        self.up
+    }
+
     /// Unit direction of travel.
     pub(crate) fn direction(&self) -> DVec3 {
         self.direction

@@ -212,6 +212,23 @@ impl<'a> Content<'a> {
         }
     }
 
+    /// A receiver's box.
+    pub(crate) fn receiver(&self, index: usize) -> Option<(DVec3, DVec3)> {
+        let receivers = self.receivers.as_ref()?;
+        Some(moved(receivers.boxes.get(index)?, receivers.origin - self.origin))
+    }
+
+    /// As [`Self::each_receiver`], with its index.
+    pub(crate) fn each_receiver_indexed(&self, view: usize, mut visit: impl FnMut(usize, DVec3, DVec3)) {
+        let Some(receivers) = &self.receivers else { return };
+        let offset = receivers.origin - self.origin;
+        let depths = self.depths.chunks(receivers.boxes.len().max(1)).nth(view).unwrap_or_default();
+        for (i, (aabb, _)) in receivers.boxes.iter().zip(depths).enumerate().filter(|(_, (_, depths))| depths.x <= depths.y) {
+            let (min, max) = moved(aabb, offset);
+            visit(i, min, max);
+        }
+    }
+
     /// Corners of the views' slices.
     pub(crate) fn corners(&self, range: Range) -> impl Iterator<Item = DVec3> {
         self.slices(range).flatten()

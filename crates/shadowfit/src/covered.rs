@@ -48,7 +48,7 @@ impl<'a> Covered<'a> {
         match rule.covers {
             Covers::ExactCorners => Self::corners(rule, content, axes, range),
             Covers::Sphere => Self::sphere(rule, content, axes, range),
-            Covers::Views | Covers::Receivers => {
+            Covers::Views | Covers::Receivers | Covers::Windows => {
                 let hull = LightHull::of(rule.covers, content, axes, range, points)?;
                 Ok(Self::hull(rule, content, &hull, range))
             }

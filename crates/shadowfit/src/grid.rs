@@ -40,6 +40,19 @@ pub(crate) fn quantised(length: f64) -> f64 {
     OCTAVE[shorter] * (1.0 + NOISE) * octave
 }
 
+/// 2^(steps/8), exact to rounding; the steps are limited so that it is a normal number.
+pub(crate) fn eighths(steps: i32) -> f64 {
+    let octave = steps.div_euclid(8).clamp(-1022, 1023);
+    OCTAVE[steps.rem_euclid(8) as usize] * f64::from_bits(((octave + 1023) as u64) << 52)
+}
+
+/// The least number of steps for which [`eighths`] is no less than a positive normal length.
+pub(crate) fn eighths_above(length: f64) -> i32 {
+    let octave = ((length.to_bits() >> 52) as i32 & 0x7ff) - 1023;
+    let share = f64::from_bits(length.to_bits() & !EXPONENT | 1.0_f64.to_bits());
+    octave * 8 + OCTAVE[..8].iter().filter(|step| **step < share).count() as i32
+}
+
 /// The bits of an f64's exponent.
 const EXPONENT: u64 = f64::INFINITY.to_bits();
 

@@ -3,6 +3,7 @@
 use glam::{DVec2, Vec3};
 
 use crate::histogram::{DepthBounds, DepthHistogram};
+use crate::need::NeedGrid;
 use crate::normal_cone::NormalCone;
 use crate::{Boxes, ViewFrustum};
 
@@ -59,6 +60,10 @@ pub struct FitInput<'a> {
     /// The depths that the last frame showed, for
     /// [`SplitScheme::FromHistogram`](crate::settings::SplitScheme::FromHistogram).
     pub histogram: Option<DepthHistogram<'a>>,
+    /// What the last frame showed and how fine a texel it asked for, one grid for each picture that was
+    /// drawn with the maps, for [`NeedSource::LastFrame`](crate::settings::NeedSource::LastFrame). Grids of
+    /// another light, or of another size, are ignored.
+    pub need: &'a [NeedGrid<'a>],
     /// Nearest and farthest depth that the last frame showed, if known: uniform, logarithmic and
     /// practical splits are spread between them instead of over all that is in view.
     pub depth_bounds: Option<DepthBounds>,
@@ -74,6 +79,7 @@ impl<'a> FitInput<'a> {
             receiver_cones: &[],
             casters: None,
             histogram: None,
+            need: &[],
             depth_bounds: None,
         }
     }

@@ -144,7 +144,10 @@ pub mod light_steps;
 pub mod map_fitter;
 #[cfg(feature = "mint")]
 pub mod mint;
+pub mod need;
 pub mod normal_cone;
+#[doc(hidden)]
+pub mod tune;
 pub mod params;
 pub mod presets;
 pub mod scroll;
@@ -178,6 +181,7 @@ mod splits;
 mod technique;
 mod view;
 mod volume;
+mod windows;
 
 pub use bias::Bias;
 pub use bounds::{Aabb, Boxes};

@@ -71,7 +71,7 @@ impl<'a> LightHull<'a> {
         points: &'a mut [DVec2],
     ) -> Result<Self, FitError> {
         match covers {
-            Covers::Receivers => Self::of_receivers(content, axes, range, points),
+            Covers::Receivers | Covers::Windows => Self::of_receivers(content, axes, range, points),
             Covers::Views | Covers::Sphere | Covers::ExactCorners => Self::of_views(content, axes, range, points),
         }
     }

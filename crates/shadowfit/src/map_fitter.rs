@@ -15,11 +15,12 @@ use crate::histogram::DepthBounds;
 use crate::maps::{FittedMap, FittedMaps, set_empty_ranges_apart};
 use crate::motion::Motion;
 use crate::rule::FitRule;
-use crate::settings::{BiasSettings, FitSettings, MAX_MAPS, MapOverride, Stabilise};
+use crate::settings::{BiasSettings, FitKind, FitSettings, MAX_MAPS, MapOverride, Stabilise};
 use crate::splits::{Chooser, Splits};
 use crate::view::Range;
 use crate::volume::Volume;
 use crate::{Bias, FitError, FitInput, LightFit, Technique, ViewFrustum, Workspace, checks, grid};
+use crate::windows::{self, HeldWindows};
 use hold::HeldMap;
 
 /// Fits several maps frame by frame.
@@ -29,6 +30,7 @@ pub struct MapFitter {
     splits: Option<HeldSplits>,
     maps: [Option<HeldMap>; MAX_MAPS],
     depths: [Option<HeldDepth>; MAX_MAPS],
+    windows: Option<HeldWindows>,
     last_view: Option<ViewFrustum>,
     /// The light's unit direction of travel that the maps were made for: input that differs from it by
     /// rounding alone changes nothing.
@@ -116,6 +118,27 @@ impl MapFitter {
         // 2. What is seen, and where one map ends and the next begins.
         let (content, points) = Content::new(input, workspace)?;
         let range = whole_range(input, technique.fit.max_distance);
+        if technique.fit.kind == FitKind::Windows {
+            let before = before.and_then(|before| before.windows.as_ref());
+            let frame = windows::Frame { input, technique, content: &content, light, range };
+            let (volumes, held) = frame.fit(|i| *rules.of(i), before, points)?;
+            let maps = maps.take(technique.count as usize);
+            for (i, (map, volume)) in maps.iter_mut().zip(volumes.iter().flatten()).enumerate() {
+                let rule = rules.of(i);
+                map.fit = LightFit::from_volume(content.origin, volume, rule.resolution, rule.convention)?;
+                map.bias = Bias::from_texels(&technique.bias, &map.fit);
+                map.anchor = volume.grid.as_ref().and_then(GridAnchor::of);
+                (map.near, map.far, map.covered_near) = (range.near, range.far, range.near);
+            }
+            *self = Self {
+                windows: Some(held),
+                last_view: Some(input.views[0]),
+                direction: Some(light.direction()),
+                technique: Some(*technique),
+                ..Self::default()
+            };
+            return Ok(());
+        }
         let chooser = Chooser { content: &content, light, rule: &rules.most, technique, input, range };
         let splits = choose_splits(before.and_then(|before| before.splits), &chooser)?;
         // 3. The maps: new ones, or those of the frame before while they serve.

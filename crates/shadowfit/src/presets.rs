@@ -1,7 +1,7 @@
 //! Techniques by name, each with a line that says when to take it.
 
 use crate::Technique;
-use crate::settings::{FitKind, FitSettings, HoldSettings, ReceiverSource, SplitScheme, Stabilise};
+use crate::settings::{FitKind, FitSettings, HoldSettings, NeedSource, ReceiverSource, SplitScheme, Stabilise};
 
 /// A technique by name.
 #[derive(Clone, Copy, Debug)]
@@ -23,7 +23,7 @@ impl Preset {
 }
 
 /// All presets, from the plainest fit to the recommended one.
-pub static PRESETS: [Preset; 10] = [
+pub static PRESETS: [Preset; 13] = [
     Preset {
         name: "xna-1",
         summary: "one map by the XNA sample's rule",
@@ -82,6 +82,24 @@ pub static PRESETS: [Preset; 10] = [
         make: || several(FitKind::Focused, ReceiverSource::Clusters, SplitScheme::FromHistogram, Stabilise::Off),
     },
     Preset {
+        name: "windows-boxes-4",
+        summary: "4 windows, placed by the triangle clusters' boxes in view",
+        advice: "Still and sharp where no depth buffer can be read.",
+        make: || Technique { need: NeedSource::Boxes, ..windows(4) },
+    },
+    Preset {
+        name: "windows-4",
+        summary: "4 windows, placed by what the frame before showed",
+        advice: "Still and sharp.",
+        make: || windows(4),
+    },
+    Preset {
+        name: "windows-8",
+        summary: "8 windows, placed by what the frame before showed",
+        advice: "Still, and the sharpest.",
+        make: || windows(8),
+    },
+    Preset {
         name: RECOMMENDED,
         summary: "as histogram-4, maps held while they serve and moved by whole texels",
         advice: "The one to begin with: nearly as sharp as histogram-4, and nearly as still as stable-4.",
@@ -105,6 +123,11 @@ fn single(kind: FitKind, receivers: ReceiverSource) -> Technique {
 
 fn several(kind: FitKind, receivers: ReceiverSource, splits: SplitScheme, stabilise: Stabilise) -> Technique {
     Technique { fit: FitSettings::default().with_kind(kind), receivers, splits, stabilise, ..Technique::default() }
+}
+
+fn windows(count: u32) -> Technique {
+    let fit = FitSettings::default().with_kind(FitKind::Windows);
+    Technique { count, fit, ..Technique::default() }
 }
 
 #[cfg(test)]

@@ -22,6 +22,8 @@ pub(crate) enum Covers {
     Receivers,
     /// The sphere around the views' slices, always on the world's grid.
     Sphere,
+    /// What [`windows`](crate::windows) choose.
+    Windows,
 }
 
 impl Covers {
@@ -82,6 +84,7 @@ impl FitRule {
                 FitKind::FrustumAabb => (Covers::Views, RectangleKind::AxisAligned, Roll::ShortestArc, near),
                 FitKind::Oriented => (Covers::Views, settings.rectangle, Roll::ShortestArc, near),
                 FitKind::Sphere => (Covers::Sphere, RectangleKind::AxisAligned, Roll::ShortestArc, near),
+                FitKind::Windows => (Covers::Windows, RectangleKind::AxisAligned, Roll::ShortestArc, near),
                 FitKind::Focused => (Covers::Receivers, settings.rectangle, Roll::ShortestArc, near),
             }
         };

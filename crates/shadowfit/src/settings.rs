@@ -49,6 +49,22 @@ pub enum FitKind {
     /// [`FitSettings::rectangle`] says. Without boxes it is [`Self::Oriented`]. The default.
     #[default]
     Focused,
+    /// Squares of the plane across the light, on a grid that is fixed to the world, each where it helps
+    /// most of what is visible ([`fits::windows`](crate::fits::windows)). Read by coverage. All maps of a
+    /// technique are windows or none: in an override it is ignored.
+    Windows,
+}
+
+/// What [`FitKind::Windows`] are placed by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum NeedSource {
+    /// What is visible, estimated from the receivers' boxes.
+    Boxes,
+    /// What the last frame showed, by [`FitInput::need`](crate::FitInput::need); without it as
+    /// [`Self::Boxes`]. The default.
+    #[default]
+    LastFrame,
 }
 
 /// Which rectangle [`FitKind::Oriented`] and [`FitKind::Focused`] put around what they cover.

@@ -4,7 +4,7 @@
 
 use crate::bias::reach;
 use crate::settings::{
-    BiasSettings, FilterKind, FitSettings, HoldSettings, MAX_MAPS, MapFormat, MapOverride, ReceiverSource, SplitScheme,
+    BiasSettings, FilterKind, FitSettings, HoldSettings, MAX_MAPS, MapFormat, MapOverride, NeedSource, ReceiverSource, SplitScheme,
     Stabilise, setters,
 };
 use glam::UVec2;
@@ -48,6 +48,8 @@ pub struct Technique {
     pub filter: FilterKind,
     /// Biases of the look-up. Default: [`BiasSettings::automatic`] for the default filter.
     pub bias: BiasSettings,
+    /// What windows are placed by. Default: [`NeedSource::LastFrame`].
+    pub need: NeedSource,
     /// Storage of the maps. Default: [`MapFormat::Depth32Float`].
     pub format: MapFormat,
 }
@@ -66,6 +68,7 @@ impl Default for Technique {
             receivers: ReceiverSource::default(),
             filter: FilterKind::default(),
             bias: BiasSettings::default(),
+            need: NeedSource::default(),
             format: MapFormat::default(),
         }
     }
@@ -80,6 +83,7 @@ setters!(Technique {
     with_hold hold: HoldSettings,
     with_overrides overrides: [MapOverride; MAX_MAPS],
     with_receivers receivers: ReceiverSource,
+    with_need need: NeedSource,
     with_format format: MapFormat,
 });
 

@@ -10,7 +10,7 @@ use glam::{UVec2, Vec3};
 use super::Technique;
 use crate::DepthConvention;
 use crate::settings::{
-    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MapFormat, MapOverride, ReceiverSource,
+    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MapFormat, MapOverride, NeedSource, ReceiverSource,
     RectangleKind, SplitScheme, Stabilise,
 };
 
@@ -129,7 +129,7 @@ impl Fields<'_, '_> {
 
 impl Expression for Technique {
     fn write(&self, code: &mut Code) -> fmt::Result {
-        let Self { count, fit, splits, overlap, stabilise, hold, overrides, receivers, filter, bias, format } = self;
+        let Self { count, fit, splits, overlap, stabilise, hold, overrides, receivers, filter, bias, need, format } = self;
         let default = Self::default();
         code.fields("Technique")
             .field("count", count, &default.count)
@@ -142,6 +142,7 @@ impl Expression for Technique {
             .field("receivers", receivers, &default.receivers)
             .field("filter", filter, &default.filter)
             .field("bias", bias, &default.bias)
+            .field("need", need, &default.need)
             .field("format", format, &default.format)
             .end()
     }
@@ -308,4 +309,4 @@ macro_rules! plain {
     };
 }
 
-plain!(FitKind, RectangleKind, CasterPolicy, DepthConvention, Stabilise, ReceiverSource, FilterKind, MapFormat);
+plain!(FitKind, RectangleKind, CasterPolicy, DepthConvention, Stabilise, ReceiverSource, NeedSource, FilterKind, MapFormat);
