@@ -96,13 +96,14 @@ fn run(args: &Args) -> Result<()> {
         args.fit
     );
     let source = args.geometry.as_ref().filter(|_| needs);
-    let file = runner::run(&scenarios, &named, source)?;
+    let (file, times) = runner::run(&scenarios, &named, source)?;
     file.write(out)?;
+    let [median, slowest, first] = [times.median, times.slowest, times.first].map(|nanoseconds| nanoseconds * 1e-3);
     println!(
-        "{}: {} frames, {:.1} µs a frame",
+        "{}: {} frames, {median:.1} µs for the median frame, {slowest:.1} µs for the slowest, {first:.1} µs for the \
+         slowest one that begins a path",
         out.display(),
         file.frames.len(),
-        file.ns_per_fit.unwrap_or(0.0) * 1e-3
     );
     Ok(())
 }

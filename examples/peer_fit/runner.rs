@@ -38,8 +38,22 @@ struct Prepared {
     need: Option<SeenNeed>,
 }
 
+/// How long fits took, in nanoseconds: each frame's fastest batch.
+pub(crate) struct Times {
+    /// Median over frames that begin no path.
+    pub(crate) median: f64,
+    /// The slowest of them.
+    pub(crate) slowest: f64,
+    /// The slowest frame that begins a path.
+    pub(crate) first: f64,
+}
+
 /// Fits every frame of the scenarios.
-pub(crate) fn run(scenarios: &Scenarios, named: &NamedTechnique, source: Option<&Source>) -> Result<FitFile> {
+pub(crate) fn run(
+    scenarios: &Scenarios,
+    named: &NamedTechnique,
+    source: Option<&Source>,
+) -> Result<(FitFile, Times)> {
     let technique = &named.technique;
     let known: Vec<Known> =
         scenarios.scenes.iter().map(|scene| know(scene, technique, source)).collect::<Result<_>>()?;
@@ -63,7 +77,13 @@ pub(crate) fn run(scenarios: &Scenarios, named: &NamedTechnique, source: Option<
         .map(|(frame, (maps, _))| FitFrame { id: frame.id.clone(), maps: fit_maps(maps, technique) });
     let all: Vec<f64> = times.iter().flatten().copied().collect();
     let fastest: Vec<f64> = times.iter().map(|times| times.iter().copied().fold(f64::MAX, f64::min)).collect();
-    Ok(FitFile {
+    let slowest = |is_first: bool| {
+        let times = fastest.iter().zip(&frames).filter(|(_, frame)| frame.is_first == is_first);
+        times.map(|(time, _)| *time).fold(0.0, f64::max)
+    };
+    let later = fastest.iter().zip(&frames).filter(|(_, frame)| !frame.is_first).map(|(time, _)| *time);
+    let times = Times { median: median(later.collect()), slowest: slowest(false), first: slowest(true) };
+    let file = FitFile {
         peer: format!("shadowfit {}", named.name),
         language: "Rust".to_owned(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -72,7 +92,8 @@ pub(crate) fn run(scenarios: &Scenarios, named: &NamedTechnique, source: Option<
         ns_per_fit: Some(median(all)),
         ns_quiet: Some(median(fastest)),
         frames: fitted.collect(),
-    })
+    };
+    Ok((file, times))
 }
 
 fn know(scene: &Scene, technique: &Technique, source: Option<&Source>) -> Result<Known> {

@@ -186,6 +186,7 @@ fn dot(a: Vec3, b: Vec3) -> f32 {
 
 /// The plane across a light in which windows are squares.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Plane {
     pub(crate) axes: LightAxes,
     /// Height of a window's texels over their width.

@@ -6,7 +6,7 @@ mod depth;
 mod placement;
 mod plan;
 
-use glam::{DVec2, DVec3, Vec2};
+use glam::{DVec2, DVec3};
 
 use crate::axes::Light;
 use crate::content::Content;
@@ -242,8 +242,4 @@ impl HeldWindows {
 /// Room for rounding around what is held, in metres.
 fn rounding(extent: f64, distance: f64) -> f64 {
     (extent + distance) * ROUNDING
-}
-
-fn plane_size(min: DVec2, max: DVec2) -> Vec2 {
-    (max - min).as_vec2()
 }
