@@ -218,14 +218,15 @@ impl<'a> Content<'a> {
         Some(moved(receivers.boxes.get(index)?, receivers.origin - self.origin))
     }
 
-    /// As [`Self::each_receiver`], with its index.
-    pub(crate) fn each_receiver_indexed(&self, view: usize, mut visit: impl FnMut(usize, DVec3, DVec3)) {
+    /// Passes on each receiver's box that reaches into a view, whether it is dark or not, with its index.
+    pub(crate) fn each_in_view(&self, view: &View, mut visit: impl FnMut(usize, DVec3, DVec3)) {
         let Some(receivers) = &self.receivers else { return };
         let offset = receivers.origin - self.origin;
-        let depths = self.depths.chunks(receivers.boxes.len().max(1)).nth(view).unwrap_or_default();
-        for (i, (aabb, _)) in receivers.boxes.iter().zip(depths).enumerate().filter(|(_, (_, depths))| depths.x <= depths.y) {
+        for (i, aabb) in receivers.boxes.iter().enumerate().filter(|(_, aabb)| !aabb.is_empty()) {
             let (min, max) = moved(aabb, offset);
-            visit(i, min, max);
+            if view.depths(min, max).is_some() {
+                visit(i, min, max);
+            }
         }
     }
 

@@ -131,6 +131,7 @@
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
+extern crate std;
 
 pub mod bias;
 pub mod choice;

@@ -123,8 +123,11 @@ impl NeedSpace {
         if !is_lit {
             return None;
         }
-        let texel = needed_texel(self.project(right), self.project(down));
-        let p = self.project(position);
+        self.cell_of(self.project(position), needed_texel(self.project(right), self.project(down)))
+    }
+
+    /// Index of a place in the plane, in metres, and of the texel that is asked for there.
+    pub(crate) fn cell_of(&self, p: Vec2, texel: f32) -> Option<usize> {
         let mut level = (exponent(texel) - exponent(self.texel)).clamp(0, LEVELS as i32 - 1) as usize;
         // Points so far away that their level has no cell for them count as coarser.
         while level < LEVELS {
@@ -138,6 +141,16 @@ impl NeedSpace {
             level += 1;
         }
         None
+    }
+
+    /// Middle of a cell in the plane, half of its side, and the middle of the texels that are asked for in
+    /// it, in metres.
+    pub(crate) fn cell(&self, index: usize) -> (DVec2, f64, f64) {
+        let (level, y, x) = (index / (SIDE * SIDE), index / SIDE % SIDE, index % SIDE);
+        let scale = f64::from(1_u32 << level);
+        let side = f64::from(self.cell) * scale;
+        let middle = (DVec2::new(x as f64, y as f64) + 0.5 - (SIDE / 2) as f64) * side;
+        (middle, side * 0.5, f64::from(self.texel) * scale * core::f64::consts::SQRT_2)
     }
 
     /// Coordinates in the plane.

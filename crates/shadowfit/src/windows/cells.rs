@@ -1,8 +1,8 @@
 //! The cells of need that windows are placed by, in the plane across the light.
 
-use glam::{DVec2, DVec3, Vec2};
+use glam::{DVec3, Vec2};
 
-use crate::need::{LEVELS, NeedGrid, Plane, SIDE};
+use crate::need::{LEVELS, NeedGrid, NeedSpace, Plane, SIDE};
 
 /// Most cells that are kept; those with the fewest points are left out where there are more.
 pub(super) const MAX_CELLS: usize = 1024;
@@ -14,9 +14,7 @@ pub(super) struct Cell {
     pub(super) middle: Vec2,
     /// Half of its side, in metres.
     pub(super) half: f32,
-    /// Number of points, or a share of it.
-    pub(super) weight: f32,
-    /// What a texel of one metre costs them.
+    /// What a texel of one metre costs its points.
     pub(super) cost: f32,
 }
 
@@ -24,69 +22,132 @@ pub(super) struct Cell {
 pub(super) struct Cells {
     cells: [Cell; MAX_CELLS],
     len: usize,
+}
+
+/// Points by the cells of a space.
+pub(super) struct Counted {
+    /// Index of a cell and number of its points, or a share of it.
+    cells: [(u32, f32); MAX_CELLS],
+    len: usize,
+    /// Places in `cells` plus one by the cells' hash; zero for none.
+    table: [u16; TABLE],
     /// Cells with no more points than this are left out.
     least: f32,
 }
 
+/// Places of the hash table: twice as many as cells.
+const TABLE: usize = 2 * MAX_CELLS;
+
+impl Counted {
+    pub(super) const fn new() -> Self {
+        Self { cells: [(0, 0.0); MAX_CELLS], len: 0, table: [0; TABLE], least: 0.0 }
+    }
+
+    /// Adds points to a cell.
+    pub(super) fn add(&mut self, index: usize, weight: f32) {
+        // NaN is no weight either.
+        let counts = weight > 0.0;
+        if !counts {
+            return;
+        }
+        let key = index as u32;
+        let place = self.place(key);
+        if self.table[place] != 0 {
+            self.cells[usize::from(self.table[place]) - 1].1 += weight;
+        } else if self.len < MAX_CELLS {
+            self.cells[self.len] = (key, weight);
+            self.len += 1;
+            self.table[place] = self.len as u16;
+        } else {
+            self.thin();
+            if self.len < MAX_CELLS {
+                self.add(index, weight);
+            }
+        }
+    }
+
+    /// Where a cell is in the table, or would be.
+    fn place(&self, key: u32) -> usize {
+        let mut place = (key.wrapping_mul(2_654_435_769) >> 21) as usize % TABLE;
+        while self.table[place] != 0 && self.cells[usize::from(self.table[place]) - 1].0 != key {
+            place = (place + 1) % TABLE;
+        }
+        place
+    }
+
+    /// The texel that the share of the points with the finest needs are taken to ask for, over that of
+    /// the finest level.
+    fn finest(&self) -> f32 {
+        let mut levels = [0.0_f32; LEVELS];
+        for (index, weight) in &self.cells[..self.len] {
+            levels[*index as usize / (SIDE * SIDE)] += weight;
+        }
+        if crate::tune::get(15, 0.0) == 1.0 {
+            let t: f32 = levels.iter().sum();
+            std::eprintln!("levels {:?}", levels.map(|l| (l / t * 1000.0) as i32));
+        }
+        let mut rest = levels.iter().sum::<f32>() * crate::tune::get(8, 0.05);
+        for (level, weight) in levels.iter().enumerate() {
+            if rest < *weight {
+                return libm::exp2f(level as f32 + rest / weight);
+            }
+            rest -= weight;
+        }
+        0.0
+    }
+
+    /// Leaves out the cells with the fewest points.
+    fn thin(&mut self) {
+        let total: f32 = self.cells[..self.len].iter().map(|cell| cell.1).sum();
+        self.least = (self.least * 2.0).max(total / MAX_CELLS as f32 * 0.25);
+        let (cells, len) = (self.cells, self.len);
+        (self.len, self.table) = (0, [0; TABLE]);
+        for (key, weight) in cells[..len].iter().filter(|cell| cell.1 > self.least) {
+            let place = self.place(*key);
+            self.cells[self.len] = (*key, *weight);
+            self.len += 1;
+            self.table[place] = self.len as u16;
+        }
+    }
+}
+
 impl Cells {
     pub(super) const fn new() -> Self {
-        const NONE: Cell = Cell { middle: Vec2::ZERO, half: 0.0, weight: 0.0, cost: 0.0 };
-        Self { cells: [NONE; MAX_CELLS], len: 0, least: 0.0 }
+        const NONE: Cell = Cell { middle: Vec2::ZERO, half: 0.0, cost: 0.0 };
+        Self { cells: [NONE; MAX_CELLS], len: 0 }
     }
 
     pub(super) fn as_slice(&self) -> &[Cell] {
         &self.cells[..self.len]
     }
 
-    /// Adds points that lie in a square of the plane and ask for a texel, in metres.
-    pub(super) fn add(&mut self, middle: Vec2, half: f32, weight: f32, texel: f32) {
-        // NaN is no weight either.
-        let counts = weight > self.least;
-        if !counts {
-            return;
-        }
-        if self.len == MAX_CELLS {
-            self.thin();
-            return self.add(middle, half, weight, texel);
-        }
-        let cost = weight * super::cost_of(1.0 / texel);
-        self.cells[self.len] = Cell { middle, half, weight, cost };
-        self.len += 1;
-    }
-
-    /// Leaves out the cells with the fewest points: half of them at least where all have as many.
-    fn thin(&mut self) {
-        let total: f32 = self.as_slice().iter().map(|cell| cell.weight).sum();
-        self.least = (self.least * 2.0).max(total / MAX_CELLS as f32 * 0.25);
-        let mut kept = 0;
-        for i in 0..self.len {
-            if self.cells[i].weight > self.least {
-                self.cells[kept] = self.cells[i];
-                kept += 1;
+    /// Adds points that were counted in a space.
+    pub(super) fn add(&mut self, counted: &Counted, space: &NeedSpace, plane: &Plane, origin: DVec3) {
+        let offset = plane.of(plane.axes.project(space.origin - origin));
+        let finest = counted.finest();
+        for (index, weight) in &counted.cells[..counted.len] {
+            if self.len == MAX_CELLS {
+                return;
             }
+            let (middle, half, texel) = space.cell(*index as usize);
+            let texel = (texel as f32).max(finest * space.texel);
+            let cost = weight * super::cost_of(1.0 / texel);
+            self.cells[self.len] = Cell { middle: (middle + offset).as_vec2(), half: half as f32, cost };
+            self.len += 1;
         }
-        self.len = kept;
     }
 
     /// Adds the cells of a grid.
     pub(super) fn add_grid(&mut self, grid: &NeedGrid, plane: &Plane, origin: DVec3) {
-        let offset = plane.of(plane.axes.project(grid.space.origin - origin));
-        for level in 0..LEVELS {
-            let scale = (1_u32 << level) as f32;
-            let (side, texel) = (f64::from(grid.space.cell * scale), grid.space.texel * scale * MIDDLE);
-            let rows = grid.counts[level * SIDE * SIDE..(level + 1) * SIDE * SIDE].chunks(SIDE);
-            for (y, row) in rows.enumerate() {
-                if row.iter().fold(0, |all, count| all | count) == 0 {
-                    continue;
-                }
-                for (x, count) in row.iter().enumerate().filter(|(_, count)| **count > 0) {
-                    let cell = DVec2::new(x as f64, y as f64) + 0.5 - (SIDE / 2) as f64;
-                    self.add((cell * side + offset).as_vec2(), (side * 0.5) as f32, *count as f32, texel);
-                }
+        let mut counted = Counted::new();
+        for (row, counts) in grid.counts.chunks(SIDE).enumerate() {
+            if counts.iter().fold(0, |all, count| all | count) == 0 {
+                continue;
+            }
+            for (x, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+                counted.add(row * SIDE + x, *count as f32);
             }
         }
+        self.add(&counted, &grid.space, plane, origin);
     }
 }
-
-/// Middle of an octave of texels, over its least one.
-const MIDDLE: f32 = core::f32::consts::SQRT_2;

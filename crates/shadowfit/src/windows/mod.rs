@@ -55,6 +55,8 @@ pub(crate) struct HeldWindows {
     windows: [Window; MAX_MAPS],
     /// The change that was better in the last frame.
     pending: Option<Change>,
+    /// Whether no grid of need was known yet.
+    is_guess: bool,
     /// Number of the next change that is tried.
     turn: u32,
 }
@@ -86,8 +88,8 @@ impl Frame<'_, '_> {
         let anchor = plane.of(plane.axes.project(self.content.origin));
         // 1. What all windows together must hold, and what is visible of it.
         let shadows = Shadows::new(self.content, plane.axes, self.range, points)?;
-        let cells = self.cells(&plane);
-        let before = before.map(|before| before.moved_to(&plane, self.content.origin));
+        let (cells, is_guess) = self.cells(&plane);
+        let before = before.filter(|_| crate::tune::get(4, 0.0) != 1.0).map(|before| before.moved_to(&plane, self.content.origin));
         // 2. The last window, which holds everything.
         let bounds = shadows.bounds(&plane);
         let last = hold_all(before.map(|before| before.windows[count - 1]), bounds, usable[count - 1], border, anchor);
@@ -103,10 +105,14 @@ impl Frame<'_, '_> {
                     held.rects[i] = to_rect(i, &before.windows[i]);
                 }
                 (held.steps[count - 1], held.rects[count - 1]) = (last.steps, to_rect(count - 1, &last));
-                planner.go_on(held, before.pending, before.turn)
+                if before.is_guess && !is_guess {
+                    (planner.settle(held), None, 0)
+                } else {
+                    planner.go_on(held, before.pending, before.turn)
+                }
             }
         };
-        let mut held = HeldWindows { plane, windows: [Window::default(); MAX_MAPS], pending, turn };
+        let mut held = HeldWindows { plane, windows: [Window::default(); MAX_MAPS], pending, turn, is_guess };
         let mut volumes = [None; MAX_MAPS];
         for i in 0..count {
             let mut window = if i == count - 1 {
@@ -126,17 +132,18 @@ impl Frame<'_, '_> {
         Ok((volumes, held))
     }
 
-    fn cells(&self, plane: &Plane) -> Cells {
+    fn cells(&self, plane: &Plane) -> (Cells, bool) {
         let mut cells = Cells::new();
         if self.technique.need == NeedSource::LastFrame {
             for grid in self.input.need.iter().filter(|grid| grid.is_for(plane)) {
                 cells.add_grid(grid, plane, self.content.origin);
             }
         }
-        if cells.as_slice().is_empty() {
-            boxes::add(&mut cells, self.input, self.content, plane);
+        let is_guess = cells.as_slice().is_empty();
+        if is_guess {
+            boxes::add(&mut cells, self.input, self.content, plane, self.light.up(), self.technique.fit.max_distance);
         }
-        cells
+        (cells, is_guess)
     }
 
     /// A window's box, with its depth range.

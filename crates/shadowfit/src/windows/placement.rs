@@ -8,10 +8,10 @@ use glam::Vec2;
 use super::cells::Cell;
 
 /// Squares of the raster in a window's side.
-const ACROSS: usize = 12;
+const ACROSS: usize = 18;
 
 /// Squares of the raster along each axis: more than five windows.
-const RASTER: usize = 64;
+const RASTER: usize = 96;
 
 /// A rectangle of the plane: its least corner and its size, in metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -77,7 +77,7 @@ fn middle(cells: &[Cell], left: &[f32]) -> Vec2 {
 }
 
 /// Cells wider than this many squares of the raster are left out: what they ask for is far coarser.
-const WIDEST: f32 = 12.0;
+const WIDEST: f32 = 18.0;
 
 /// Spreads a cost over the squares of a cell. The table has a free first row and column.
 fn enter(sums: &mut [[f32; RASTER + 1]; RASTER + 1], cell: &Cell, cost: f32, corner: Vec2, pitch: Vec2) {

@@ -69,6 +69,33 @@ impl Planner<'_> {
         plan
     }
 
+    /// The windows of a guess, of which as few are replaced as make it nearly as good as new ones.
+    pub(super) fn settle(&self, held: Plan) -> Plan {
+        let (last, rect) = (held.steps[self.count - 1], held.rects[self.count - 1]);
+        let fresh = self.fresh(last, rect);
+        let enough = self.cost(&fresh) * crate::tune::get(9, 1.1);
+        let mut plan = held;
+        for _ in 1..self.count {
+            if self.cost(&plan) <= enough {
+                return plan;
+            }
+            let mut best = None;
+            for i in 0..self.count - 1 {
+                let mut other = plan;
+                (other.steps[i], other.rects[i]) = (fresh.steps[i], fresh.rects[i]);
+                let cost = self.cost(&other);
+                if other.steps[i] != plan.steps[i] || other.rects[i] != plan.rects[i] {
+                    if self.is_in_order(&other.steps) && best.is_none_or(|(least, _)| cost < least) {
+                        best = Some((cost, other));
+                    }
+                }
+            }
+            let Some((_, other)) = best else { return fresh };
+            plan = other;
+        }
+        if self.cost(&plan) <= enough { plan } else { fresh }
+    }
+
     /// The windows of the frame before, each kept or moved, and at most one of them with other texels.
     pub(super) fn go_on(&self, held: Plan, pending: Option<Change>, turn: u32) -> (Plan, Option<Change>, u32) {
         let mut plan = held;
