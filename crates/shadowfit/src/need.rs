@@ -29,7 +29,7 @@ use crate::{FitError, ViewFrustum, checks, grid};
 pub const LEVELS: usize = 16;
 
 /// Cells of a level along each axis; the eye is in the middle.
-pub const SIDE: usize = 64;
+pub const SIDE: usize = 32;
 
 /// Length of [`NeedGrid::counts`].
 pub const CELLS: usize = LEVELS * SIDE * SIDE;
@@ -39,8 +39,8 @@ pub const CELLS: usize = LEVELS * SIDE * SIDE;
 pub const PIXELS: f32 = 1080.0;
 
 /// Sides of the pixel at a cell's distance that make up a cell: at a distance for which the level is
-/// made, which lies at most [`SIDE`] / 2 cells from the eye, a cell is an eighth of that distance.
-const CELLS_IN_DISTANCE: f32 = 8.0;
+/// made, which lies at most [`SIDE`] / 2 cells from the eye, a cell is a quarter of that distance.
+const CELLS_IN_DISTANCE: f32 = 4.0;
 
 /// Points that the light meets at less than this cosine are left out: they are next to dark, and
 /// would ask for the finest texels of all.

@@ -86,10 +86,13 @@ impl Frame<'_, '_> {
         }
         let border = rule(0).border;
         let anchor = plane.of(plane.axes.project(self.content.origin));
+        let t0 = std::time::Instant::now();
         // 1. What all windows together must hold, and what is visible of it.
         let shadows = Shadows::new(self.content, plane.axes, self.range, points)?;
+        let t1 = std::time::Instant::now();
         let (cells, is_guess) = self.cells(&plane);
         let before = before.filter(|_| crate::tune::get(4, 0.0) != 1.0).map(|before| before.moved_to(&plane, self.content.origin));
+        let t2 = std::time::Instant::now();
         // 2. The last window, which holds everything.
         let bounds = shadows.bounds(&plane);
         let last = hold_all(before.map(|before| before.windows[count - 1]), bounds, usable[count - 1], border, anchor);
@@ -112,6 +115,7 @@ impl Frame<'_, '_> {
                 }
             }
         };
+        let t3 = std::time::Instant::now();
         let mut held = HeldWindows { plane, windows: [Window::default(); MAX_MAPS], pending, turn, is_guess };
         let mut volumes = [None; MAX_MAPS];
         for i in 0..count {
@@ -129,6 +133,8 @@ impl Frame<'_, '_> {
             volumes[i] = Some(volume);
             held.windows[i] = window;
         }
+        let t4 = std::time::Instant::now();
+        if crate::tune::get(15, 0.0) == 2.0 { std::eprintln!("time shadows {:?} cells {:?} plan {:?} volumes {:?} n {}", t1-t0, t2-t1, t3-t2, t4-t3, cells.as_slice().len()); }
         Ok((volumes, held))
     }
 
