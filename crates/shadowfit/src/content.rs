@@ -59,8 +59,8 @@ impl<'a> Content<'a> {
                     let (min, max) = moved(aabb, offset);
                     let to_light = -input.direction.as_dvec3();
                     let faces_away = |cone: &NormalCone| cone.faces_away_from(aabb, eye, to_light);
-                    let is_dark = input.receiver_cones.get(i).is_some_and(faces_away);
-                    let seen = if aabb.is_empty() || is_dark { None } else { view.depths(min, max) };
+                    let seen = if aabb.is_empty() { None } else { view.depths(min, max) };
+                    let seen = seen.filter(|_| !input.receiver_cones.get(i).is_some_and(faces_away));
                     *depths = seen.map_or(OUT_OF_VIEW, |(near, far)| DVec2::new(near, far));
                 }
             }
@@ -201,14 +201,15 @@ impl<'a> Content<'a> {
         Ok(())
     }
 
-    /// Passes on each receiver's box that reaches into one of the views.
-    pub(crate) fn each_receiver(&self, view: usize, mut visit: impl FnMut(DVec3, DVec3)) {
+    /// Passes on each receiver's box that reaches into one of the views, with its least and greatest view
+    /// depth.
+    pub(crate) fn each_receiver(&self, view: usize, mut visit: impl FnMut((f64, f64), DVec3, DVec3)) {
         let Some(receivers) = &self.receivers else { return };
         let offset = receivers.origin - self.origin;
         let depths = self.depths.chunks(receivers.boxes.len().max(1)).nth(view).unwrap_or_default();
-        for (aabb, _) in receivers.boxes.iter().zip(depths).filter(|(_, depths)| depths.x <= depths.y) {
+        for (aabb, depths) in receivers.boxes.iter().zip(depths).filter(|(_, depths)| depths.x <= depths.y) {
             let (min, max) = moved(aabb, offset);
-            visit(min, max);
+            visit((depths.x, depths.y), min, max);
         }
     }
 
@@ -226,6 +227,11 @@ impl<'a> Content<'a> {
 /// Refuses boxes with a coordinate that is not a number or too large; empty ones are allowed.
 fn check(boxes: &Boxes) -> Result<(), FitError> {
     checks::point("the boxes' origin", boxes.origin)?;
+    let limit = checks::MAX_LENGTH as f32;
+    let is_good = |v: Vec3| (v.x.abs() <= limit) & (v.y.abs() <= limit) & (v.z.abs() <= limit);
+    if boxes.boxes.iter().fold(true, |all, aabb| all & is_good(aabb.min) & is_good(aabb.max)) {
+        return Ok(());
+    }
     for aabb in boxes.boxes {
         let is_nan = aabb.min.is_nan() || aabb.max.is_nan();
         if is_nan || !aabb.is_empty() {

@@ -15,12 +15,15 @@ pub(crate) struct Bins {
     pub(super) far: f64,
     pub(super) log_near: f64,
     pub(super) log_step: f64,
+    /// Bins in an octave.
+    per_log: f64,
 }
 
 impl Bins {
     pub(super) fn new(near: f64, far: f64) -> Self {
         let (log_near, log_far) = (libm::log2(near), libm::log2(far));
-        Self { near, far, log_near, log_step: (log_far - log_near) / BINS as f64 }
+        let log_step = (log_far - log_near) / BINS as f64;
+        Self { near, far, log_near, log_step, per_log: 1.0 / log_step }
     }
 
     /// View depth at which a bin begins, in metres.
@@ -39,10 +42,39 @@ impl Bins {
     }
 
     /// The bin of a view depth; depths outside go to the first or the last.
+    #[inline]
     pub(super) fn of(&self, depth: f64) -> usize {
-        let bin = (libm::log2(depth.max(self.near)) - self.log_near) / self.log_step;
-        (bin as usize).min(BINS - 1)
+        let depth = depth.max(self.near);
+        // Away from the beginning of a bin an approximation tells as much.
+        let bin = (approximate_log2(depth) - self.log_near) * self.per_log;
+        let error = APPROXIMATE * self.per_log;
+        let (low, high) = ((bin - error) as usize, (bin + error) as usize);
+        let bin = if low == high { low } else { self.exactly(depth) };
+        bin.min(BINS - 1)
     }
+
+    #[cold]
+    fn exactly(&self, depth: f64) -> usize {
+        ((libm::log2(depth) - self.log_near) / self.log_step) as usize
+    }
+}
+
+/// Greatest error of [`approximate_log2`] and of the steps after it, in octaves.
+const APPROXIMATE: f64 = 1e-6;
+
+/// log2 of a positive normal number to 1e-7: exponent, and the first terms of the series of artanh for the rest,
+/// which lies within √½..√2.
+#[inline]
+fn approximate_log2(x: f64) -> f64 {
+    const MANTISSA: u64 = (1 << 52) - 1;
+    const TWO_BY_LN_2: f64 = 2.0 * core::f64::consts::LOG2_E;
+    let bits = x.to_bits();
+    let (exponent, mantissa) = ((bits >> 52) as i32 - 1023, f64::from_bits(bits & MANTISSA | 1.0_f64.to_bits()));
+    let is_high = mantissa > core::f64::consts::SQRT_2;
+    let (octave, rest) = if is_high { (exponent + 1, mantissa * 0.5) } else { (exponent, mantissa) };
+    let s = (rest - 1.0) / (rest + 1.0);
+    let q = s * s;
+    f64::from(octave) + TWO_BY_LN_2 * s * (1.0 + q * (1.0 / 3.0 + q * (1.0 / 5.0 + q * (1.0 / 7.0))))
 }
 
 /// Classes of foreshortening, an octave each: the first holds surfaces that face both the eye and

@@ -7,6 +7,7 @@
 use glam::{DVec2, DVec3, Vec3};
 
 use super::bins::{BINS, Bins};
+use super::slabs::Slabs;
 use crate::axes::LightAxes;
 use crate::content::Content;
 use crate::grid;
@@ -77,9 +78,13 @@ impl Sizes {
     fn of_rectangles(maps: &Maps, bins: &Bins) -> Self {
         let directions = Directions::new(&maps.axes);
         let mut extents = [Dop::EMPTY; BINS];
-        for (bin, dop) in extents.iter_mut().enumerate() {
-            let range = Range { near: bins.start(bin) as f32, far: bins.start(bin + 1) as f32 };
-            dop.collect(maps, &directions, range);
+        if maps.rule.covers == Covers::Receivers && maps.content.receivers.is_some() {
+            collect_receivers(&mut extents, maps.content, &directions, bins);
+        } else {
+            for (bin, dop) in extents.iter_mut().enumerate() {
+                let range = Range { near: bins.start(bin) as f32, far: bins.start(bin + 1) as f32 };
+                maps.content.corners(range).for_each(|p| dop.add(&directions.along(p)));
+            }
         }
         let mut run = Dop::EMPTY;
         Self::fill(|first, end| {
@@ -90,6 +95,33 @@ impl Sizes {
             let size = run.size(maps.rule);
             if maps.is_snapped { grid::quantised(size) } else { size }
         })
+    }
+}
+
+/// Collects what the map of each bin would hold of the receivers.
+fn collect_receivers(extents: &mut [Dop; BINS], content: &Content, directions: &Directions, bins: &Bins) {
+    for (index, view) in content.views().enumerate() {
+        let slabs = Slabs::new(&view, bins);
+        content.each_receiver(index, |depths, min, max| {
+            let reached = slabs.reached(depths);
+            let (low, high) = directions.extent(min, max);
+            // Bins whose extent the box cannot widen.
+            let mut is_held = [true; BINS + 2];
+            let mut are_all_held = true;
+            for bin in reached.clone() {
+                is_held[bin + 1] = extents[bin].holds(&low, &high);
+                are_all_held &= is_held[bin + 1];
+            }
+            if are_all_held {
+                return;
+            }
+            slabs.clip(min, max, &reached, |bins, p| {
+                if bins.clone().any(|bin| !is_held[bin]) {
+                    let along = directions.along(p);
+                    bins.filter(|bin| !is_held[*bin]).for_each(|bin| extents[bin - 1].add(&along));
+                }
+            });
+        });
     }
 }
 
@@ -105,49 +137,26 @@ impl Dop {
 
     fn union(&self, other: &Self) -> Self {
         Self {
-            min: core::array::from_fn(|i| self.min[i].min(other.min[i])),
-            max: core::array::from_fn(|i| self.max[i].max(other.max[i])),
+            min: core::array::from_fn(|i| lesser(self.min[i], other.min[i])),
+            max: core::array::from_fn(|i| greater(self.max[i], other.max[i])),
         }
     }
 
-    fn push(&mut self, directions: &Directions, p: DVec3) {
-        let p = p.as_vec3();
-        for (i, direction) in directions.world.iter().enumerate() {
-            let along = direction.x * p.x + direction.y * p.y + direction.z * p.z;
-            self.min[i] = self.min[i].min(along);
-            self.max[i] = self.max[i].max(along);
+    /// Widens it to a point's coordinates along the directions.
+    fn add(&mut self, along: &[f32; DIRECTIONS]) {
+        for (i, along) in along.iter().enumerate() {
+            self.min[i] = lesser(self.min[i], *along);
+            self.max[i] = greater(self.max[i], *along);
         }
     }
 
-    /// Whether a box cannot widen this extent.
-    fn holds(&self, directions: &Directions, min: DVec3, max: DVec3) -> bool {
-        let (centre, half) = (((min + max) * 0.5).as_vec3(), ((max - min) * 0.5).as_vec3());
+    /// Whether another extent cannot widen this one.
+    fn holds(&self, low: &[f32; DIRECTIONS], high: &[f32; DIRECTIONS]) -> bool {
         let mut is_inside = true;
-        for (i, direction) in directions.world.iter().enumerate() {
-            let along = direction.x * centre.x + direction.y * centre.y + direction.z * centre.z;
-            let reach = direction.x.abs() * half.x + direction.y.abs() * half.y + direction.z.abs() * half.z;
-            is_inside &= along + reach <= self.max[i] && along - reach >= self.min[i];
+        for i in 0..DIRECTIONS {
+            is_inside &= (high[i] <= self.max[i]) & (low[i] >= self.min[i]);
         }
         is_inside
-    }
-
-    /// Collects what a map of a range would hold.
-    fn collect(&mut self, maps: &Maps, directions: &Directions, range: Range) {
-        let content = maps.content;
-        let Ok(()) = if maps.rule.covers == Covers::Receivers && content.receivers.is_some() {
-            content.receivers_in(range, |_, slice, min, max| {
-                if self.holds(directions, min, max) {
-                    return Ok(());
-                }
-                slice.clip(min, max, &mut |p| {
-                    self.push(directions, p);
-                    Ok::<(), core::convert::Infallible>(())
-                })
-            })
-        } else {
-            content.corners(range).for_each(|p| self.push(directions, p));
-            Ok(())
-        };
     }
 
     /// Longer side of the rectangle around this extent, in metres; tiny where there is none.
@@ -171,9 +180,21 @@ impl Dop {
 /// Extent of an empty run, in metres.
 const SMALLEST: f64 = 1e-6;
 
-/// Unit vectors across the light at even angles over half a turn.
+/// The lesser of two numbers that are not NaN: one instruction for four of them.
+fn lesser(a: f32, b: f32) -> f32 {
+    if b < a { b } else { a }
+}
+
+/// The greater of two numbers that are not NaN.
+fn greater(a: f32, b: f32) -> f32 {
+    if b > a { b } else { a }
+}
+
+/// Unit vectors across the light at even angles over half a turn, coordinate by coordinate.
 struct Directions {
-    world: [Vec3; DIRECTIONS],
+    x: [f32; DIRECTIONS],
+    y: [f32; DIRECTIONS],
+    z: [f32; DIRECTIONS],
 }
 
 impl Directions {
@@ -182,11 +203,33 @@ impl Directions {
         // Turned step by step: two sines for all of them.
         let (sin, cos) = libm::sincos(core::f64::consts::PI / DIRECTIONS as f64);
         let mut turned = DVec2::X;
-        let world = core::array::from_fn(|_| {
+        let world: [Vec3; DIRECTIONS] = core::array::from_fn(|_| {
             let direction = x * turned.x + y * turned.y;
             turned = DVec2::new(turned.x * cos - turned.y * sin, turned.x * sin + turned.y * cos);
             direction.as_vec3()
         });
-        Self { world }
+        Self { x: world.map(|v| v.x), y: world.map(|v| v.y), z: world.map(|v| v.z) }
+    }
+
+    /// Coordinates of a point along all directions.
+    fn along(&self, p: DVec3) -> [f32; DIRECTIONS] {
+        let p = p.as_vec3();
+        let mut along = [0.0; DIRECTIONS];
+        for (i, along) in along.iter_mut().enumerate() {
+            *along = self.x[i] * p.x + self.y[i] * p.y + self.z[i] * p.z;
+        }
+        along
+    }
+
+    /// Least and greatest coordinates of a box along all directions.
+    fn extent(&self, min: DVec3, max: DVec3) -> ([f32; DIRECTIONS], [f32; DIRECTIONS]) {
+        let (centre, half) = (((min + max) * 0.5).as_vec3(), ((max - min) * 0.5).as_vec3());
+        let (mut low, mut high) = ([0.0; DIRECTIONS], [0.0; DIRECTIONS]);
+        for i in 0..DIRECTIONS {
+            let along = self.x[i] * centre.x + self.y[i] * centre.y + self.z[i] * centre.z;
+            let reach = self.x[i].abs() * half.x + self.y[i].abs() * half.y + self.z[i].abs() * half.z;
+            (low[i], high[i]) = (along - reach, along + reach);
+        }
+        (low, high)
     }
 }

@@ -7,6 +7,7 @@ mod bins;
 mod extents;
 mod optimise;
 mod seen;
+mod slabs;
 mod visible;
 
 use crate::axes::Light;

@@ -78,6 +78,34 @@ struct Search<'a> {
     log_before: [[f64; 2]; BINS + 1],
     /// Number of classes that are not empty.
     classes: usize,
+    /// Bins by which each class shifts the needed texel size.
+    shifts: [f64; CLASSES],
+}
+
+/// Weights over a bound of runs of bins, each computed when it is first asked for.
+struct OverTable<'a> {
+    search: &'a Search<'a>,
+    bound: f64,
+    /// By first bin and number of bins less one.
+    weights: [[f64; BINS]; BINS],
+    /// Number of weights of each row that are known.
+    known: [usize; BINS],
+}
+
+impl<'a> OverTable<'a> {
+    fn new(search: &'a Search<'a>, bound: f64) -> Self {
+        Self { search, bound, weights: [[0.0; BINS]; BINS], known: [0; BINS] }
+    }
+
+    /// The weights of the runs from a bin on, by ascending ends.
+    fn next(&mut self, first: usize, end: usize) -> f64 {
+        let length = end - first;
+        while self.known[first] < length {
+            self.weights[first][self.known[first]] = self.search.over(first, first + self.known[first] + 1, self.bound);
+            self.known[first] += 1;
+        }
+        self.weights[first][length - 1]
+    }
 }
 
 impl<'a> Search<'a> {
@@ -93,7 +121,8 @@ impl<'a> Search<'a> {
             }
         }
         let classes = (0..CLASSES).rev().find(|class| before[BINS][*class] > 0.0).map_or(0, |last| last + 1);
-        Self { bins, sizes, before, log_before, classes }
+        let shifts = core::array::from_fn(|class| PER_CLASS * class as f64 / bins.log_step);
+        Self { bins, sizes, before, log_before, classes, shifts }
     }
 
     /// The bound that given splits reach.
@@ -115,7 +144,7 @@ impl<'a> Search<'a> {
         let over = (log_size - bound - self.bins.log_near) / self.bins.log_step;
         let mut weight = 0.0;
         for class in 0..self.classes {
-            let over = (over + PER_CLASS * class as f64 / self.bins.log_step).max(first as f64).min(end as f64);
+            let over = (over + self.shifts[class]).max(first as f64).min(end as f64);
             let whole = over as usize;
             let (at, next) = (self.before[whole][class], self.before[(whole + 1).min(BINS)][class]);
             weight += at + (next - at) * (over - whole as f64) - self.before[first][class];
@@ -133,12 +162,13 @@ impl<'a> Search<'a> {
     fn is_feasible(&self, count: usize, bound: f64) -> bool {
         let mut least = [f64::MAX; BINS + 1];
         least[0] = 0.0;
+        let mut table = OverTable::new(self, bound);
         for map in 0..count {
             let mut next = [f64::MAX; BINS + 1];
             for (first, before) in least.iter().enumerate().take(BINS).skip(map).filter(|(_, before)| **before <= OVER)
             {
                 for (end, next) in next.iter_mut().enumerate().skip(first + 1) {
-                    let total = before + self.over(first, end, bound);
+                    let total = before + table.next(first, end);
                     if total > OVER {
                         break;
                     }
@@ -155,13 +185,17 @@ impl<'a> Search<'a> {
         let mut least = [f64::MAX; BINS + 1];
         least[0] = 0.0;
         let mut from = [[0_u8; BINS + 1]; MAX_MAPS];
+        let mut table = OverTable::new(self, bound);
         for (map, from) in from.iter_mut().enumerate().take(count) {
             let mut next = [f64::MAX; BINS + 1];
+            // The last map holds all that is left.
+            let nearest_end = if map + 1 == count { BINS } else { 0 };
             for (first, before) in
                 least.iter().enumerate().take(BINS).skip(map).filter(|(_, before)| **before < f64::MAX)
             {
-                for end in first + 1..=BINS {
-                    let total = before + self.over(first, end, bound) + MEAN * self.error(first, end);
+                for end in (first + 1).max(nearest_end)..=BINS {
+                    let over = if map + 1 == count { self.over(first, end, bound) } else { table.next(first, end) };
+                    let total = before + over + MEAN * self.error(first, end);
                     if total < next[end] {
                         (next[end], from[end]) = (total, first as u8);
                     }
