@@ -5,6 +5,7 @@ use core::cell::OnceCell;
 use glam::{DVec2, DVec3, Vec3};
 
 use crate::enclosing_sphere::{EnclosingSphere, SymmetricFrustum, minimal};
+use crate::groups::Groups;
 use crate::hull::HullBuilder;
 use crate::normal_cone::NormalCone;
 use crate::view::{Range, Slice, View, moved, slice_corners};
@@ -19,6 +20,8 @@ pub(crate) struct Content<'a> {
     /// Least and greatest view depth of each receiver, view by view; the least is above the
     /// greatest where the box is out of view.
     depths: &'a [DVec2],
+    receiver_groups: Groups<'a>,
+    pub(crate) caster_groups: Groups<'a>,
     symmetric: OnceCell<Option<SymmetricFrustum>>,
 }
 
@@ -39,9 +42,14 @@ impl<'a> Content<'a> {
         'a: 'w,
     {
         let origin = input.views[0].origin;
-        let count = input.receivers.map_or(0, |receivers| receivers.boxes.len());
+        let count_of = |boxes: Option<Boxes>| boxes.map_or(0, |boxes| boxes.boxes.len());
+        let (count, casters) = (count_of(input.receivers), count_of(input.casters));
         let needed = count.saturating_mul(input.views.len());
-        let required = needed.saturating_add(2 * 8 * input.views.len()).saturating_add(HullBuilder::SLACK);
+        let grouped = [Groups::required(count), Groups::required(casters)];
+        let required = needed
+            .saturating_add(2 * 8 * input.views.len())
+            .saturating_add(HullBuilder::SLACK)
+            .saturating_add(grouped[0] + grouped[1]);
         if workspace.storage.len() < required {
             return Err(FitError::WorkspaceTooSmall { given: workspace.storage.len(), required });
         }
@@ -49,20 +57,16 @@ impl<'a> Content<'a> {
             check(boxes)?;
         }
         let (depths, points) = workspace.storage.split_at_mut(needed);
+        let (of_receivers, points) = points.split_at_mut(grouped[0]);
+        let (of_casters, points) = points.split_at_mut(grouped[1]);
+        let groups = |boxes: Option<Boxes<'w>>, storage: &'w mut [DVec2]| {
+            boxes.map_or(Groups::default(), |boxes| Groups::new(&boxes, origin, storage))
+        };
+        let (receiver_groups, caster_groups) =
+            (groups(input.receivers, of_receivers), groups(input.casters, of_casters));
         if let Some(receivers) = &input.receivers {
-            let offset = receivers.origin - origin;
             for (view, depths) in input.views.iter().zip(depths.chunks_mut(count.max(1))) {
-                let eye = view.origin;
-                let view = View::new(view, origin);
-                let eye = eye - receivers.origin;
-                for (i, (aabb, depths)) in receivers.boxes.iter().zip(depths).enumerate() {
-                    let (min, max) = moved(aabb, offset);
-                    let to_light = -input.direction.as_dvec3();
-                    let faces_away = |cone: &NormalCone| cone.faces_away_from(aabb, eye, to_light);
-                    let seen = if aabb.is_empty() { None } else { view.depths(min, max) };
-                    let seen = seen.filter(|_| !input.receiver_cones.get(i).is_some_and(faces_away));
-                    *depths = seen.map_or(OUT_OF_VIEW, |(near, far)| DVec2::new(near, far));
-                }
+                view_depths(input, receivers, &receiver_groups, view, depths);
             }
         }
         let content = Content {
@@ -71,6 +75,8 @@ impl<'a> Content<'a> {
             receivers: input.receivers,
             casters: input.casters,
             depths,
+            receiver_groups,
+            caster_groups,
             symmetric: OnceCell::new(),
         };
         Ok((content, points))
@@ -85,6 +91,8 @@ impl<'a> Content<'a> {
             receivers: None,
             casters: None,
             depths: &[],
+            receiver_groups: Groups::default(),
+            caster_groups: Groups::default(),
             symmetric: OnceCell::new(),
         }
     }
@@ -166,11 +174,20 @@ impl<'a> Content<'a> {
         let receivers = self.receivers.as_ref()?;
         let mut squared = None;
         for view in self.views {
-            let offset = receivers.origin - view.origin;
-            for aabb in receivers.boxes.iter().filter(|aabb| !aabb.is_empty()) {
-                let (min, max) = moved(aabb, offset);
+            let (offset, to_eye) = (receivers.origin - view.origin, self.origin - view.origin);
+            let of_corner = |min: DVec3, max: DVec3| {
                 let corner = min.abs().max(max.abs());
-                squared = Some(corner.dot(corner).max(squared.unwrap_or(0.0)));
+                corner.dot(corner)
+            };
+            for (run, min, max) in self.receiver_groups.runs() {
+                let most = of_corner(min + to_eye, max + to_eye) * (1.0 + 1e-9);
+                if squared.is_some_and(|squared| most < squared) {
+                    continue;
+                }
+                for aabb in receivers.boxes[run].iter().filter(|aabb| !aabb.is_empty()) {
+                    let (min, max) = moved(aabb, offset);
+                    squared = Some(of_corner(min, max).max(squared.unwrap_or(0.0)));
+                }
             }
         }
         squared.map(libm::sqrt)
@@ -191,7 +208,8 @@ impl<'a> Content<'a> {
             if slice.near >= slice.far {
                 continue;
             }
-            for (i, (aabb, depths)) in receivers.boxes.iter().zip(depths).enumerate() {
+            for i in scattered(receivers.boxes.len()) {
+                let (aabb, depths) = (&receivers.boxes[i], depths[i]);
                 if depths.x <= slice.far && depths.y >= slice.near {
                     let (min, max) = moved(aabb, offset);
                     visit(i, &slice, min, max)?;
@@ -222,6 +240,51 @@ impl<'a> Content<'a> {
     pub(crate) fn slices(&self, range: Range) -> impl Iterator<Item = [DVec3; 8]> {
         self.views.iter().filter_map(move |view| slice_corners(view, self.origin, range.near, range.far))
     }
+}
+
+/// Computes the least and greatest depth of each receiver in one view.
+fn view_depths(input: &FitInput, receivers: &Boxes, groups: &Groups, view: &ViewFrustum, depths: &mut [DVec2]) {
+    let origin = input.views[0].origin;
+    let (eye, offset) = (view.origin - receivers.origin, receivers.origin - origin);
+    let view = View::new(view, origin);
+    let to_light = -input.direction.as_dvec3();
+    depths.fill(OUT_OF_VIEW);
+    for (run, min, max) in groups.runs() {
+        if view.depths(min, max).is_none() {
+            continue;
+        }
+        for i in run {
+            let aabb = &receivers.boxes[i];
+            if aabb.is_empty() {
+                continue;
+            }
+            let (min, max) = moved(aabb, offset);
+            let Some((near, far)) = view.depths(min, max) else { continue };
+            let faces_away = |cone: &NormalCone| cone.faces_away_from(aabb, eye, to_light);
+            if !input.receiver_cones.get(i).is_some_and(faces_away) {
+                depths[i] = DVec2::new(near, far);
+            }
+        }
+    }
+}
+
+/// All indices below a count, with large steps between them. Neighbouring boxes tell much the same: the
+/// extent of all is nearly known after a few that lie apart, and the others cannot widen it.
+pub(crate) fn scattered(count: usize) -> impl Iterator<Item = usize> {
+    // The golden ratio leaves no large gaps; steps that divide the count would come back too early.
+    let step = (count * 5 / 8..count).find(|step| is_coprime(*step, count)).unwrap_or(1);
+    let mut index = 0;
+    (0..count).map(move |_| {
+        let next = index + step;
+        core::mem::replace(&mut index, if next >= count { next - count } else { next })
+    })
+}
+
+fn is_coprime(mut a: usize, mut b: usize) -> bool {
+    while b > 0 {
+        (a, b) = (b, a % b);
+    }
+    a == 1
 }
 
 /// Refuses boxes with a coordinate that is not a number or too large; empty ones are allowed.

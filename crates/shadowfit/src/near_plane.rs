@@ -11,7 +11,7 @@
 //!           └───────────────┘
 //! ```
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use crate::axes::LightAxes;
 use crate::content::Content;
@@ -20,7 +20,7 @@ use crate::outline::{Outline, Scratch};
 use crate::rule::{Covers, Depth, FitRule};
 use crate::view::moved;
 use crate::volume::{Constraint, ROUNDING, Volume};
-use crate::{Aabb, Boxes};
+use crate::Boxes;
 
 /// Coordinate of the near plane along the light's z, and what set it if it was not the covered
 /// region.
@@ -74,33 +74,61 @@ pub(crate) fn find(
     reach: f64,
 ) -> NearPlane {
     let casters = content.casters.unwrap_or_default();
-    let over = || Outline::new(axes, outline, reach);
     let (z, set_by) = match depth {
         Depth::AtCovered | Depth::Doubled => return NearPlane { z: covered, set_by: None },
         Depth::Extended(metres) => (covered + metres, Constraint::CasterExtension),
         Depth::AtCasterBounds => {
-            let all = casters.boxes.iter().filter(|b| !b.is_empty()).fold(Aabb::EMPTY, |a, b| a.union(*b));
-            let all = Boxes { boxes: &[all], ..casters };
-            (highest(&over(), &all, content, covered), Constraint::Casters)
+            let all = content.caster_groups.runs().map(|(_, min, max)| (min, max));
+            let all = all.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+            let mut highest = Highest::new(axes, outline, reach, covered);
+            all.into_iter().for_each(|(min, max)| highest.add(min, max));
+            (highest.z, Constraint::Casters)
         }
-        Depth::AtCasters => (highest(&over(), &casters, content, covered), Constraint::Casters),
+        Depth::AtCasters => {
+            let mut highest = Highest::new(axes, outline, reach, covered);
+            highest.add_all(&casters, content);
+            (highest.z, Constraint::Casters)
+        }
     };
     NearPlane { z, set_by: (z > covered).then_some(set_by) }
 }
 
-/// The greatest z of all casters over the outline, or `covered` where none reaches higher.
-fn highest(over: &Outline, casters: &Boxes, content: &Content, covered: f64) -> f64 {
-    let (offset, mut scratch) = (casters.origin - content.origin, Scratch::new());
-    let mut z = covered;
-    for aabb in casters.boxes.iter().filter(|aabb| !aabb.is_empty()) {
-        let (min, max) = moved(aabb, offset);
-        let farthest = min.abs().max(max.abs()).element_sum();
-        let floor = z - farthest * ROUNDING;
-        over.parts_over(min, max, floor, &mut scratch, |corner| {
-            z = z.max(corner.z + corner.abs().element_sum() * ROUNDING);
+/// The greatest z of casters over an outline, or of what is covered where none reaches higher.
+struct Highest<'a> {
+    over: Outline<'a>,
+    scratch: Scratch,
+    z: f64,
+}
+
+impl<'a> Highest<'a> {
+    fn new(axes: &LightAxes, outline: &'a [DVec2], reach: f64, covered: f64) -> Self {
+        Self { over: Outline::new(axes, outline, reach), scratch: Scratch::new(), z: covered }
+    }
+
+    fn add_all(&mut self, casters: &Boxes, content: &Content) {
+        let offset = casters.origin - content.origin;
+        for (run, min, max) in content.caster_groups.runs() {
+            if !self.over.may_hold(min, max, self.floor(min, max)) {
+                continue;
+            }
+            for aabb in casters.boxes[run].iter().filter(|aabb| !aabb.is_empty()) {
+                let (min, max) = moved(aabb, offset);
+                self.add(min, max);
+            }
+        }
+    }
+
+    /// The height that a box must exceed to count.
+    fn floor(&self, min: DVec3, max: DVec3) -> f64 {
+        self.z - min.abs().max(max.abs()).element_sum() * ROUNDING
+    }
+
+    fn add(&mut self, min: DVec3, max: DVec3) {
+        let (floor, z) = (self.floor(min, max), &mut self.z);
+        self.over.parts_over(min, max, floor, &mut self.scratch, |corner| {
+            *z = z.max(corner.z + corner.abs().element_sum() * ROUNDING);
         });
     }
-    z
 }
 
 /// How far outside the outline casters are read by the widest filter that the border allows, in

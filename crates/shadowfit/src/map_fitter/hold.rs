@@ -85,13 +85,22 @@ impl Holder<'_, '_> {
     ) -> Result<HeldMap, FitError> {
         // The border and the near plane depend on the texels of the map that is kept or made.
         let plain = rule.without_room();
-        let fresh = fits::fit_map(self.content, &self.light, &plain, slice, Placement::Tight, points)?;
-        if let Some(held) = held.filter(|held| held.is_of(&fresh, rule))
-            && let Some(kept) = self.keep(&held, &fresh, rule, slice, points)?
-        {
+        let fresh =
+            |points: &mut [DVec2]| fits::fit_map(self.content, &self.light, &plain, slice, Placement::Tight, points);
+        let is_of_light = |held: &HeldMap| held.is_of(&self.light.axes(rule.roll), rule);
+        let Some(held) = held.filter(is_of_light) else { return self.make(&fresh(points)?, rule, slice, points) };
+        let needed = self.needed(&held, rule, slice, points)?;
+        let Some(kept) = self.keep(&held, &needed) else { return self.make(&fresh(points)?, rule, slice, points) };
+        // No rectangle is smaller than the outline in it, so most maps need not be compared with a new one.
+        let waste = f64::from(self.hold.waste);
+        let held_size = held.texel * grid::usable(rule);
+        let held_area = held_size.x * held_size.y;
+        if held_area <= needed.area * (1.0 - SAME_AREA) * waste * waste {
             return Ok(kept);
         }
-        self.make(&fresh, rule, slice, points)
+        let fresh = fresh(points)?;
+        let size = fresh.max - fresh.min;
+        if held_area > size.x * size.y * waste * waste { self.make(&fresh, rule, slice, points) } else { Ok(kept) }
     }
 
     /// A plain fit around what the views see and what they will see in some frames.
@@ -116,35 +125,21 @@ impl Holder<'_, '_> {
         fits::fit_map(&content, &self.light, rule, slice, Placement::Tight, points)
     }
 
-    /// The held map moved by whole texels, if what must be covered fits into it and it is not too
-    /// coarse.
-    fn keep(
-        &self,
-        held: &HeldMap,
-        fresh: &Volume,
-        rule: &FitRule,
-        slice: Range,
-        points: &mut [DVec2],
-    ) -> Result<Option<HeldMap>, FitError> {
-        let needed = self.needed(held, rule, slice, points)?;
-        let size = fresh.max - fresh.min;
-        let held_size = held.texel * grid::usable(rule);
-        let waste = f64::from(self.hold.waste);
-        if held_size.x * held_size.y > size.x * size.y * waste * waste {
-            return Ok(None);
-        }
+    /// The held map moved by whole texels, if what must be covered fits into it.
+    fn keep(&self, held: &HeldMap, needed: &Needed) -> Option<HeldMap> {
         let anchor = grid::anchor(&held.axes, self.input.views[0].origin);
         let low = floor((needed.across.min + anchor.truncate()) / held.texel);
         let high = -floor(-((needed.across.max + anchor.truncate()) / held.texel)) - held.resolution;
         if high.x > low.x || high.y > low.y {
-            return Ok(None);
+            return None;
         }
         let mut kept = *held;
         kept.first = held.first.min(low).max(high);
+        let waste = f64::from(self.hold.waste);
         kept.z = grid::stabilised_depth(Some(held.z), (needed.z.0 + anchor.z, needed.z.1 + anchor.z), waste);
-        kept.is_empty = fresh.is_empty;
+        kept.is_empty = needed.is_empty;
         kept.set_by = [Constraint::Held; 6];
-        Ok(Some(kept))
+        Some(kept)
     }
 
     /// What must be covered and where the near plane must be, along the held axes.
@@ -160,7 +155,8 @@ impl Holder<'_, '_> {
         let reach = near_plane::filter_reach(held.texel, rule, rounding);
         let (low, high) = (hull.z.0 - pad, hull.z.1 + pad);
         let near = near_plane::find(high, &held.axes, hull.outline, self.content, rule.depth, reach);
-        Ok(Needed { across, z: (low, near.z), near_set_by: near.set_by })
+        let (area, is_empty) = (area(hull.outline), hull.is_empty);
+        Ok(Needed { across, z: (low, near.z), near_set_by: near.set_by, area, is_empty })
     }
 
     /// A new map with room for the motion to come.
@@ -203,7 +199,14 @@ struct Needed {
     across: Rectangle,
     z: (f64, f64),
     near_set_by: Option<Constraint>,
+    /// Area of the outline of what must be covered, in square metres.
+    area: f64,
+    /// Whether nothing of it is known to receive.
+    is_empty: bool,
 }
+
+/// Share by which the rounding of a map's axes may change an area.
+const SAME_AREA: f64 = 1e-5;
 
 /// Most views that held maps are fitted to, predicted ones included.
 const MAX_VIEWS: usize = 10;
@@ -222,9 +225,15 @@ impl HeldMap {
     }
 
     /// Whether the map is of the same light and resolution.
-    fn is_of(&self, fresh: &Volume, rule: &FitRule) -> bool {
-        self.axes.z == fresh.axes.z && self.resolution == rule.resolution.as_dvec2()
+    fn is_of(&self, axes: &LightAxes, rule: &FitRule) -> bool {
+        self.axes.z == axes.z && self.resolution == rule.resolution.as_dvec2()
     }
+}
+
+/// Area of a convex outline (anticlockwise), in square metres.
+fn area(outline: &[DVec2]) -> f64 {
+    let Some(first) = outline.first() else { return 0.0 };
+    outline.windows(2).map(|edge| (edge[0] - *first).perp_dot(edge[1] - *first) * 0.5).sum()
 }
 
 fn floor(v: DVec2) -> DVec2 {
