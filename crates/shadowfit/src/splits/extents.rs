@@ -86,15 +86,20 @@ impl Sizes {
                 maps.content.corners(range).for_each(|p| dop.add(&directions.along(p)));
             }
         }
-        let mut run = Dop::EMPTY;
-        Self::fill(|first, end| {
-            if end == first + 1 {
-                run = Dop::EMPTY;
+        let mut log = [[f32::MIN; BINS]; BINS];
+        for end in 1..=BINS {
+            let (mut run, mut size) = (Dop::EMPTY, f32::MIN);
+            for first in (0..end).rev() {
+                // Nearer bins are smaller, and often within what the farther ones span.
+                if !run.holds(&extents[first].min, &extents[first].max) || first + 1 == end {
+                    run = run.union(&extents[first]);
+                    let metres = run.size(maps.rule);
+                    size = libm::log2(if maps.is_snapped { grid::quantised(metres) } else { metres }) as f32;
+                }
+                log[first][end - first - 1] = size;
             }
-            run = run.union(&extents[end - 1]);
-            let size = run.size(maps.rule);
-            if maps.is_snapped { grid::quantised(size) } else { size }
-        })
+        }
+        Self { log }
     }
 }
 
@@ -102,27 +107,47 @@ impl Sizes {
 fn collect_receivers(extents: &mut [Dop; BINS], content: &Content, directions: &Directions, bins: &Bins) {
     for (index, view) in content.views().enumerate() {
         let slabs = Slabs::new(&view, bins);
-        content.each_receiver(index, |depths, min, max| {
-            let reached = slabs.reached(depths);
+        let is_new = |extents: &[Dop; BINS], depths, min, max| {
             let (low, high) = directions.extent(min, max);
-            // Bins whose extent the box cannot widen.
-            let mut is_held = [true; BINS + 2];
-            let mut are_all_held = true;
-            for bin in reached.clone() {
-                is_held[bin + 1] = extents[bin].holds(&low, &high);
-                are_all_held &= is_held[bin + 1];
-            }
-            if are_all_held {
-                return;
-            }
-            slabs.clip(min, max, &reached, |bins, p| {
-                if bins.clone().any(|bin| !is_held[bin]) {
-                    let along = directions.along(p);
-                    bins.filter(|bin| !is_held[*bin]).for_each(|bin| extents[bin - 1].add(&along));
-                }
-            });
-        });
+            slabs.reached(depths).any(|bin| !extents[bin].holds(&low, &high))
+        };
+        content.each_receiver_of_runs(
+            index,
+            &view,
+            extents,
+            |extents, depths, min, max| is_new(extents, depths, min, max),
+            |extents, depths, min, max| collect_box(extents, &slabs, directions, depths, min, max),
+        );
     }
+}
+
+/// Collects what the map of each bin would hold of a box.
+fn collect_box(
+    extents: &mut [Dop; BINS],
+    slabs: &Slabs,
+    directions: &Directions,
+    depths: (f64, f64),
+    min: DVec3,
+    max: DVec3,
+) {
+    let reached = slabs.reached(depths);
+    let (low, high) = directions.extent(min, max);
+    // Bins whose extent the box cannot widen, the first at 1.
+    let mut is_held = [true; BINS + 2];
+    let mut are_all_held = true;
+    for bin in reached.clone() {
+        is_held[bin + 1] = extents[bin].holds(&low, &high);
+        are_all_held &= is_held[bin + 1];
+    }
+    if are_all_held {
+        return;
+    }
+    slabs.clip(min, max, &reached, |bins, p| {
+        if bins.clone().any(|bin| !is_held[bin]) {
+            let along = directions.along(p);
+            bins.filter(|bin| !is_held[*bin]).for_each(|bin| extents[bin - 1].add(&along));
+        }
+    });
 }
 
 /// Least and greatest coordinates along the fixed directions.

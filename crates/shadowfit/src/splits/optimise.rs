@@ -88,23 +88,22 @@ struct OverTable<'a> {
     bound: f64,
     /// By first bin and number of bins less one.
     weights: [[f64; BINS]; BINS],
-    /// Number of weights of each row that are known.
-    known: [usize; BINS],
 }
+
+/// A weight that has not been asked for.
+const UNKNOWN: f64 = f64::MAX;
 
 impl<'a> OverTable<'a> {
     fn new(search: &'a Search<'a>, bound: f64) -> Self {
-        Self { search, bound, weights: [[0.0; BINS]; BINS], known: [0; BINS] }
+        Self { search, bound, weights: [[UNKNOWN; BINS]; BINS] }
     }
 
-    /// The weights of the runs from a bin on, by ascending ends.
-    fn next(&mut self, first: usize, end: usize) -> f64 {
-        let length = end - first;
-        while self.known[first] < length {
-            self.weights[first][self.known[first]] = self.search.over(first, first + self.known[first] + 1, self.bound);
-            self.known[first] += 1;
+    fn over(&mut self, first: usize, end: usize) -> f64 {
+        let weight = &mut self.weights[first][end - first - 1];
+        if *weight == UNKNOWN {
+            *weight = self.search.over(first, end, self.bound);
         }
-        self.weights[first][length - 1]
+        *weight
     }
 }
 
@@ -145,7 +144,7 @@ impl<'a> Search<'a> {
         let mut weight = 0.0;
         for class in 0..self.classes {
             let over = (over + self.shifts[class]).max(first as f64).min(end as f64);
-            let whole = over as usize;
+            let whole = over as i32 as usize;
             let (at, next) = (self.before[whole][class], self.before[(whole + 1).min(BINS)][class]);
             weight += at + (next - at) * (over - whole as f64) - self.before[first][class];
         }
@@ -168,7 +167,7 @@ impl<'a> Search<'a> {
             for (first, before) in least.iter().enumerate().take(BINS).skip(map).filter(|(_, before)| **before <= OVER)
             {
                 for (end, next) in next.iter_mut().enumerate().skip(first + 1) {
-                    let total = before + table.next(first, end);
+                    let total = before + table.over(first, end);
                     if total > OVER {
                         break;
                     }
@@ -194,8 +193,12 @@ impl<'a> Search<'a> {
                 least.iter().enumerate().take(BINS).skip(map).filter(|(_, before)| **before < f64::MAX)
             {
                 for end in (first + 1).max(nearest_end)..=BINS {
-                    let over = if map + 1 == count { self.over(first, end, bound) } else { table.next(first, end) };
-                    let total = before + over + MEAN * self.error(first, end);
+                    let error = MEAN * self.error(first, end);
+                    // No weight is below 0.
+                    if before + error - NOTHING >= next[end] {
+                        continue;
+                    }
+                    let total = before + table.over(first, end) + error;
                     if total < next[end] {
                         (next[end], from[end]) = (total, first as u8);
                     }
@@ -212,6 +215,9 @@ impl<'a> Search<'a> {
         splits
     }
 }
+
+/// More than the rounding of a weight.
+const NOTHING: f64 = 1e-12;
 
 /// Octaves that the bound of given splits is searched in.
 const WIDEST: f64 = 64.0;

@@ -30,7 +30,7 @@ pub(super) fn weights(content: &Content, bins: &Bins) -> Weights {
     let mut spread = Spread { starts: core::array::from_fn(|bin| bins.start(bin)), weights: [[0.0; CLASSES]; BINS] };
     for (view_index, view) in content.views().enumerate() {
         let mut grid = Grid::new(&view);
-        content.each_receiver(view_index, |_, min, max| grid.meet(&view, bins, min, max));
+        content.each_receiver(view_index, |depths, min, max| grid.meet(&view, bins, depths.0, min, max));
         for ray in &grid.rays {
             let mut weight = 1.0;
             for (enter, leave) in ray.layers.into_iter().filter(|layer| layer.0 < NOWHERE) {
@@ -49,6 +49,9 @@ pub(super) fn weights(content: &Content, bins: &Bins) -> Weights {
     }
     spread.weights.map(|classes| classes.map(|weight| weight / total))
 }
+
+/// Room for the rounding of shares of a ray.
+const ROUNDING: f64 = 1e-9;
 
 /// Marks the absence of a bin.
 const NOWHERE: u8 = u8::MAX;
@@ -165,13 +168,17 @@ impl Grid {
         Self { rays, picture: view.picture(), near: view.near, depth: view.far - view.near }
     }
 
-    /// Intersects all rays with a box.
-    fn meet(&mut self, view: &View, bins: &Bins, min: DVec3, max: DVec3) {
+    /// Intersects all rays with a box that begins at a view depth.
+    fn meet(&mut self, view: &View, bins: &Bins, nearest: f64, min: DVec3, max: DVec3) {
         let Some((columns, rows)) = covered(view, &self.picture, min, max) else { return };
         let bin = |t: f64| bins.of(self.near + self.depth * t) as u8;
+        // Shares of a ray are those of the view depth.
+        let nearest = (nearest - self.near) / self.depth - ROUNDING;
         for row in rows {
             for ray in &mut self.rays[row * COLUMNS..][columns.clone()] {
-                if let Some(crossing) = ray.crossing(min, max) {
+                if nearest < ray.enters[LAYERS - 1]
+                    && let Some(crossing) = ray.crossing(min, max)
+                {
                     ray.add(crossing, bin);
                 }
             }
