@@ -59,11 +59,20 @@ impl Bins {
     }
 }
 
-/// Greatest error of [`approximate_log2`] and of the steps after it, in octaves.
-const APPROXIMATE: f64 = 1e-6;
+/// log2 of a positive normal number rounded to f32: that of libm, which is only asked where an approximation
+/// does not tell how it rounds.
+#[inline]
+pub(super) fn log2(x: f64) -> f32 {
+    let near = approximate_log2(x);
+    let (low, high) = ((near - APPROXIMATE) as f32, (near + APPROXIMATE) as f32);
+    if low == high { low } else { libm::log2(x) as f32 }
+}
 
-/// log2 of a positive normal number to 1e-7: exponent, and the first terms of the series of artanh for the rest,
-/// which lies within √½..√2.
+/// Greatest error of [`approximate_log2`], in octaves.
+const APPROXIMATE: f64 = 1e-11;
+
+/// log2 of a positive normal number: exponent, and the first terms of the series of artanh for the rest, which
+/// lies within √½..√2.
 #[inline]
 fn approximate_log2(x: f64) -> f64 {
     const MANTISSA: u64 = (1 << 52) - 1;
@@ -74,8 +83,12 @@ fn approximate_log2(x: f64) -> f64 {
     let (octave, rest) = if is_high { (exponent + 1, mantissa * 0.5) } else { (exponent, mantissa) };
     let s = (rest - 1.0) / (rest + 1.0);
     let q = s * s;
-    f64::from(octave) + TWO_BY_LN_2 * s * (1.0 + q * (1.0 / 3.0 + q * (1.0 / 5.0 + q * (1.0 / 7.0))))
+    let series = SERIES.iter().rev().fold(0.0, |sum, term| sum * q + term);
+    f64::from(octave) + TWO_BY_LN_2 * s * series
 }
+
+/// Terms of artanh(s) / s by powers of s²; the next one is below the error that is allowed.
+const SERIES: [f64; 7] = [1.0, 1.0 / 3.0, 1.0 / 5.0, 1.0 / 7.0, 1.0 / 9.0, 1.0 / 11.0, 1.0 / 13.0];
 
 /// Classes of foreshortening, an octave each: the first holds surfaces that face both the eye and
 /// the light, the others those that need texels half as wide, a quarter, and so on.

@@ -6,7 +6,7 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
-use super::bins::{BINS, Bins};
+use super::bins::{BINS, Bins, log2};
 use super::slabs::Slabs;
 use crate::axes::LightAxes;
 use crate::content::Content;
@@ -57,7 +57,7 @@ impl Sizes {
         let mut log = [[f32::MIN; BINS]; BINS];
         for (first, row) in log.iter_mut().enumerate() {
             for end in first + 1..=BINS {
-                row[end - first - 1] = libm::log2(extent(first, end)) as f32;
+                row[end - first - 1] = log2(extent(first, end));
             }
         }
         Self { log }
@@ -88,15 +88,11 @@ impl Sizes {
         }
         let mut log = [[f32::MIN; BINS]; BINS];
         for end in 1..=BINS {
-            let (mut run, mut size) = (Dop::EMPTY, f32::MIN);
+            let mut run = Dop::EMPTY;
             for first in (0..end).rev() {
-                // Nearer bins are smaller, and often within what the farther ones span.
-                if !run.holds(&extents[first].min, &extents[first].max) || first + 1 == end {
-                    run = run.union(&extents[first]);
-                    let metres = run.size(maps.rule);
-                    size = libm::log2(if maps.is_snapped { grid::quantised(metres) } else { metres }) as f32;
-                }
-                log[first][end - first - 1] = size;
+                run = run.union(&extents[first]);
+                let size = run.size(maps.rule);
+                log[first][end - first - 1] = log2(if maps.is_snapped { grid::quantised(size) } else { size });
             }
         }
         Self { log }
@@ -187,18 +183,22 @@ impl Dop {
     /// Longer side of the rectangle around this extent, in metres; tiny where there is none.
     fn size(&self, rule: &FitRule) -> f64 {
         const QUARTER: usize = DIRECTIONS / 2;
-        let length = |i: usize| f64::from(self.max[i]) - f64::from(self.min[i]);
-        let mut best = (f64::MAX, 0.0);
-        let last = if rule.rectangle == RectangleKind::AxisAligned { 1 } else { QUARTER };
-        for i in 0..last {
-            let (a, b) = (length(i), length(i + QUARTER));
-            let area = rule.max_texel_ratio.map_or(a * b, |ratio| (a * b).max(a.max(b) * a.max(b) / ratio));
-            let cost = if rule.rectangle == RectangleKind::MinimumSquare { a.max(b) } else { area };
-            if cost < best.0 {
-                best = (cost, a.max(b));
-            }
+        let mut lengths = [0.0; DIRECTIONS];
+        for (i, length) in lengths.iter_mut().enumerate() {
+            *length = f64::from(self.max[i]) - f64::from(self.min[i]);
         }
-        best.1.max(SMALLEST)
+        let (sides, others) = lengths.split_at(QUARTER);
+        let mut costs = [0.0; QUARTER];
+        for (i, cost) in costs.iter_mut().enumerate() {
+            let (a, b) = (sides[i], others[i]);
+            let longer = if b > a { b } else { a };
+            let area = rule.max_texel_ratio.map_or(a * b, |ratio| (a * b).max(longer * longer / ratio));
+            *cost = if rule.rectangle == RectangleKind::MinimumSquare { longer } else { area };
+        }
+        let count = if rule.rectangle == RectangleKind::AxisAligned { 1 } else { QUARTER };
+        let least = costs[..count].iter().fold(f64::MAX, |least, cost| if *cost < least { *cost } else { least });
+        let best = costs[..count].iter().position(|cost| *cost == least);
+        best.map_or(0.0, |i| sides[i].max(others[i])).max(SMALLEST)
     }
 }
 

@@ -27,7 +27,7 @@ const AROUND: f64 = 1.0 / 3.0;
 
 /// Shares of the rays that first meet a box in each bin; equal shares where no box is known.
 pub(super) fn weights(content: &Content, bins: &Bins) -> Weights {
-    let mut spread = Spread { starts: core::array::from_fn(|bin| bins.start(bin)), weights: [[0.0; CLASSES]; BINS] };
+    let mut spread = Spread::new(bins);
     for (view_index, view) in content.views().enumerate() {
         let mut grid = Grid::new(&view);
         content.each_receiver(view_index, |depths, min, max| grid.meet(&view, bins, depths.0, min, max));
@@ -42,12 +42,7 @@ pub(super) fn weights(content: &Content, bins: &Bins) -> Weights {
             }
         }
     }
-    let total: f64 = spread.weights.iter().flatten().sum();
-    if total == 0.0 {
-        // Equal weight for all depths; slopes are not known.
-        return core::array::from_fn(|_| core::array::from_fn(|c| if c == 0 { 1.0 / BINS as f64 } else { 0.0 }));
-    }
-    spread.weights.map(|classes| classes.map(|weight| weight / total))
+    spread.shares()
 }
 
 /// Room for the rounding of shares of a ray.
@@ -121,24 +116,44 @@ impl Ray {
 struct Spread {
     /// View depths at which the bins begin and the last one ends, in metres.
     starts: [f64; BINS + 1],
-    weights: Weights,
+    /// Change of the weight in a metre where each bin begins.
+    steps: [f64; BINS + 1],
+    /// Weights of bins that are too short to be divided into metres.
+    whole: [f64; BINS],
 }
 
 impl Spread {
+    fn new(bins: &Bins) -> Self {
+        let starts = core::array::from_fn(|bin| bins.start(bin));
+        Self { starts, steps: [0.0; BINS + 1], whole: [0.0; BINS] }
+    }
+
     /// Adds a weight, evenly over the depths of a range of bins.
     fn add(&mut self, first: u8, last: u8, weight: f64) {
-        let (first, last) = (usize::from(first), usize::from(last));
-        let length = |first: usize, last: usize| self.starts[last + 1] - self.starts[first];
-        let per_metre = weight / length(first, last);
-        // Boxes say nothing about slopes, so all are of the first class.
+        let (first, end) = (usize::from(first), usize::from(last) + 1);
+        let per_metre = weight / (self.starts[end] - self.starts[first]);
         if per_metre.is_finite() {
-            for bin in first..=last {
-                self.weights[bin][0] += per_metre * length(bin, bin);
-            }
+            self.steps[first] += per_metre;
+            self.steps[end] -= per_metre;
         } else {
             // Depths that are too close to distinguish.
-            self.weights[first][0] += weight;
+            self.whole[first] += weight;
         }
+    }
+
+    /// The weights as shares; equal ones where there are none.
+    fn shares(&self) -> Weights {
+        let (mut weights, mut per_metre) = ([[0.0; CLASSES]; BINS], 0.0);
+        // Boxes say nothing about slopes, so all are of the first class.
+        for (bin, weights) in weights.iter_mut().enumerate() {
+            per_metre += self.steps[bin];
+            weights[0] = self.whole[bin] + (per_metre * (self.starts[bin + 1] - self.starts[bin])).max(0.0);
+        }
+        let total: f64 = weights.iter().map(|classes| classes[0]).sum();
+        for weights in &mut weights {
+            weights[0] = if total == 0.0 { 1.0 / BINS as f64 } else { weights[0] / total };
+        }
+        weights
     }
 }
 
