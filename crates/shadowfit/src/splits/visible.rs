@@ -116,44 +116,41 @@ impl Ray {
 struct Spread {
     /// View depths at which the bins begin and the last one ends, in metres.
     starts: [f64; BINS + 1],
-    /// Change of the weight in a metre where each bin begins.
-    steps: [f64; BINS + 1],
-    /// Weights of bins that are too short to be divided into metres.
-    whole: [f64; BINS],
+    /// Lengths of the bins, in metres.
+    lengths: [f64; BINS],
+    weights: [f64; BINS],
 }
 
 impl Spread {
     fn new(bins: &Bins) -> Self {
-        let starts = core::array::from_fn(|bin| bins.start(bin));
-        Self { starts, steps: [0.0; BINS + 1], whole: [0.0; BINS] }
+        let starts: [f64; BINS + 1] = core::array::from_fn(|bin| bins.start(bin));
+        let lengths = core::array::from_fn(|bin| starts[bin + 1] - starts[bin]);
+        Self { starts, lengths, weights: [0.0; BINS] }
     }
 
     /// Adds a weight, evenly over the depths of a range of bins.
     fn add(&mut self, first: u8, last: u8, weight: f64) {
-        let (first, end) = (usize::from(first), usize::from(last) + 1);
-        let per_metre = weight / (self.starts[end] - self.starts[first]);
+        let (first, last) = (usize::from(first), usize::from(last));
+        let per_metre = weight / (self.starts[last + 1] - self.starts[first]);
         if per_metre.is_finite() {
-            self.steps[first] += per_metre;
-            self.steps[end] -= per_metre;
+            for (weight, length) in self.weights[first..=last].iter_mut().zip(&self.lengths[first..=last]) {
+                *weight += per_metre * length;
+            }
         } else {
             // Depths that are too close to distinguish.
-            self.whole[first] += weight;
+            self.weights[first] += weight;
         }
     }
 
     /// The weights as shares; equal ones where there are none.
     fn shares(&self) -> Weights {
-        let (mut weights, mut per_metre) = ([[0.0; CLASSES]; BINS], 0.0);
-        // Boxes say nothing about slopes, so all are of the first class.
-        for (bin, weights) in weights.iter_mut().enumerate() {
-            per_metre += self.steps[bin];
-            weights[0] = self.whole[bin] + (per_metre * (self.starts[bin + 1] - self.starts[bin])).max(0.0);
+        let total: f64 = self.weights.iter().sum();
+        let mut shares = [[0.0; CLASSES]; BINS];
+        for (share, weight) in shares.iter_mut().zip(&self.weights) {
+            // Boxes say nothing about slopes, so all are of the first class.
+            share[0] = if total == 0.0 { 1.0 / BINS as f64 } else { weight / total };
         }
-        let total: f64 = weights.iter().map(|classes| classes[0]).sum();
-        for weights in &mut weights {
-            weights[0] = if total == 0.0 { 1.0 / BINS as f64 } else { weights[0] / total };
-        }
-        weights
+        shares
     }
 }
 
