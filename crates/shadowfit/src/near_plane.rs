@@ -13,6 +13,7 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::Boxes;
 use crate::axes::LightAxes;
 use crate::content::Content;
 use crate::covered::Shadowed;
@@ -20,7 +21,6 @@ use crate::outline::{Outline, Scratch};
 use crate::rule::{Covers, Depth, FitRule};
 use crate::view::moved;
 use crate::volume::{Constraint, ROUNDING, Volume};
-use crate::Boxes;
 
 /// Coordinate of the near plane along the light's z, and what set it if it was not the covered
 /// region.
