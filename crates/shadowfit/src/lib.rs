@@ -45,8 +45,8 @@
 //! }
 //! ```
 //!
-//! A map is drawn with `clip_from_world` and looked up with `uv_from_world`. A point reads the first
-//! map whose [`far`](FittedMap::far) lies beyond its view depth, compares its depth moved by the
+//! A map is drawn with `clip_from_world` and looked up with `uv_from_world`. A point reads the finest
+//! map that holds it ([`FittedMaps::read`]), compares its depth moved by the
 //! [`bias`](FittedMap::bias), and takes positions relative to [`LightFit::origin`], which is the
 //! eye. Boxes need not be exact: one for each object is enough, and without any the maps cover the
 //! whole view. [`Workspace::required`] says how much storage the fits work in, from the number of
@@ -88,6 +88,7 @@
 //! | techniques by name | [`PRESETS`], [`Technique::preset`] |
 //! | a view from a matrix, with its depth convention; both eyes of a headset | [`ViewFrustum`], [`FitInput::views`] |
 //! | one map, from the camera alone or with boxes | [`fit`], [`fits::fit_scene`], one algorithm a module in [`fits`] |
+//! | which map a point reads, by coverage or by view depth | [`choice`], [`FittedMaps::read`] |
 //! | which casters to draw into a map | [`CasterVolume`], [`culling`] for spheres, oriented boxes, whole lists and tighter volumes |
 //! | splits chosen by what the last frame showed | [`histogram`], [`FitInput::histogram`], [`FitInput::depth_bounds`] |
 //! | how many maps are enough | [`map_fitter::fewest_maps`] |
@@ -132,6 +133,7 @@
 extern crate alloc;
 
 pub mod bias;
+pub mod choice;
 #[cfg(feature = "alloc")]
 pub mod clusters;
 pub mod culling;

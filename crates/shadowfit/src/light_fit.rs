@@ -164,6 +164,15 @@ impl LightFit {
         p.cmpge(min - tolerance).all() && p.cmple(max + tolerance).all()
     }
 
+    /// Texels between a world position, in metres, and the nearest of the map's sides; `None` where the
+    /// map does not [cover](Self::covers) it. A hair below 0 within the tolerance of that.
+    pub fn free_texels(&self, point: DVec3) -> Option<f64> {
+        let p = self.project(point);
+        let (min, max) = (self.box_min.as_dvec3(), self.box_max.as_dvec3());
+        let free = (p - min).min(max - p).truncate() / self.texel_size.as_dvec2();
+        self.covers(point).then_some(free.x.min(free.y))
+    }
+
     /// Corners of the box that the map stores, in world axes relative to [`Self::origin`], in
     /// metres: near face, then far face, each left-top, right-top, right-bottom, left-bottom of
     /// the map.

@@ -15,7 +15,7 @@ use crate::histogram::DepthBounds;
 use crate::maps::{FittedMap, FittedMaps, set_empty_ranges_apart};
 use crate::motion::Motion;
 use crate::rule::FitRule;
-use crate::settings::{BiasSettings, FitSettings, MAX_MAPS, MapOverride, Stabilise};
+use crate::settings::{BiasSettings, FitSettings, MAX_BLEND, MAX_MAPS, MapOverride, Stabilise};
 use crate::splits::{Chooser, Splits};
 use crate::view::Range;
 use crate::volume::Volume;
@@ -80,8 +80,8 @@ impl MapFitter {
     /// # Errors
     ///
     /// As [`fit_scene`](crate::fits::fit_scene), for the settings of each map;
-    /// [`FitError::OutOfRange`] for a number of maps outside 1..=8, an overlap or λ outside 0..=1
-    /// and hold settings that are out of range; [`FitError::NearNotBelowFar`] for manual splits
+    /// [`FitError::OutOfRange`] for a number of maps outside 1..=8, an overlap or λ outside 0..=1,
+    /// a blend outside 0..=[`MAX_BLEND`](crate::settings::MAX_BLEND) and hold settings that are out of range; [`FitError::NearNotBelowFar`] for manual splits
     /// that do not ascend. Manual splits before or beyond what is shadowed are not an error: a map
     /// without a range [is empty](LightFit::is_empty). An error leaves the fitter as it was.
     pub fn fit(
@@ -352,6 +352,7 @@ fn check(input: &FitInput, technique: &Technique) -> Result<(Rules, Light), FitE
     let most = MAX_MAPS as f64;
     checks::within("the number of maps", f64::from(technique.count), 1.0, most)?;
     checks::within("the maps' overlap", f64::from(technique.overlap), 0.0, 1.0)?;
+    checks::within("the maps' blend", f64::from(technique.blend), 0.0, f64::from(MAX_BLEND))?;
     let hold = technique.hold;
     checks::within("the hold's margin", f64::from(hold.margin), 0.0, 10.0)?;
     checks::within("the hold's growth", f64::from(hold.growth), 1.0, 100.0)?;

@@ -2,11 +2,14 @@
 
 use core::ops::Deref;
 
+use glam::DVec3;
+
 use crate::bias::{Reach, reach};
+use crate::choice::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth};
 use crate::culling::Sweep;
 use crate::grid::GridAnchor;
 use crate::rule::FitRule;
-use crate::settings::{FitKind, MAX_MAPS};
+use crate::settings::{FitKind, MAX_MAPS, MapChoice};
 use crate::{Bias, CasterVolume, FitError, LightFit, Technique, ViewFrustum};
 
 /// One of several maps.
@@ -17,7 +20,9 @@ pub struct FittedMap {
     pub fit: LightFit,
     /// The technique's biases for this map's texels and depth range.
     pub bias: Bias,
-    /// View depth from which points choose this map, in metres.
+    /// View depth from which points choose this map, in metres, where maps are [read by view
+    /// depth](crate::settings::MapChoice::ViewDepth). By coverage it says for which part of the view the
+    /// map was made.
     pub near: f32,
     /// View depth up to which points choose this map, in metres: they take the first map that ends
     /// beyond them. The last one has no end. Where splits coincide there is no range: such maps end
@@ -90,6 +95,15 @@ impl FittedMap {
     }
 }
 
+impl FittedMap {
+    /// Where points read the map by view depth.
+    pub fn depth_range(&self) -> DepthRange {
+        // A map without a range behind all others is read where those in front leave points out.
+        let far = if self.near == f32::MAX { f32::MAX } else { self.far };
+        DepthRange { blend_near: f64::from(self.covered_near), far: f64::from(far) }
+    }
+}
+
 /// Whether each map of a technique covers all of its slice with what the filter reads around it.
 fn holds_slices(technique: &Technique) -> bool {
     let needed = f64::from(reach(technique.filter) + technique.bias.normal_offset);
@@ -114,6 +128,47 @@ impl FittedMaps {
     pub(crate) fn take(&mut self, count: usize) -> &mut [FittedMap] {
         self.count = count;
         &mut self.maps[..count]
+    }
+}
+
+impl FittedMaps {
+    /// Which maps a point reads, as the shaders of `shadowfit-wgpu` do; `None` where it is lit because
+    /// no map holds it. `point` is a world position, `view_depth` its distance from the eye along the
+    /// view's forward direction, both in metres; the latter counts only by view depth. A point that is
+    /// not finite is held by no map.
+    ///
+    /// ```
+    /// # use shadowfit::glam::{DVec2, DVec3, Vec3};
+    /// # use shadowfit::*;
+    /// # let camera = PerspectiveCamera {
+    /// #     eye: DVec3::new(0.0, 1.7, 5.0),
+    /// #     forward: Vec3::NEG_Z,
+    /// #     up: Vec3::Y,
+    /// #     fov_y: 0.8,
+    /// #     aspect: 16.0 / 9.0,
+    /// #     near: 0.1,
+    /// #     far: 200.0,
+    /// # };
+    /// # let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+    /// # let workspace = &mut Workspace::new(&mut storage);
+    /// let (views, technique) = ([camera.frustum()?], Technique::default());
+    /// let maps = MapFitter::new().fit(&FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2)), &technique, workspace)?;
+    /// let read = maps.read(&technique, DVec3::new(0.0, 1.0, -20.0), 25.0).expect("it is in view");
+    /// println!("map {}, blended into {:?}", read.map, read.blend);
+    /// # assert!(maps[read.main()].fit.covers(DVec3::new(0.0, 1.0, -20.0)));
+    /// # Ok::<(), FitError>(())
+    /// ```
+    pub fn read(&self, technique: &Technique, point: DVec3, view_depth: f64) -> Option<MapRead> {
+        match technique.choice {
+            MapChoice::Coverage => {
+                let order = MapOrder::new(MapChoice::Coverage, self.iter().map(|map| &map.fit));
+                let (reach, blend) = (f64::from(reach(technique.filter)), f64::from(technique.blend));
+                by_coverage(order.iter(), reach, blend, |map| self[map].fit.free_texels(point))
+            }
+            MapChoice::ViewDepth => {
+                by_view_depth(self.iter().map(FittedMap::depth_range), view_depth, |map| self[map].fit.covers(point))
+            }
+        }
     }
 }
 

@@ -186,6 +186,23 @@ pub enum SplitScheme {
     FromHistogram,
 }
 
+/// Which of several maps a point reads; [`crate::choice`] has the rule.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum MapChoice {
+    /// The finest one that holds the point with all that the filter reads around it, whatever the
+    /// point's view depth, blended into the next coarser one toward its border. The default.
+    #[default]
+    Coverage,
+    /// The one in whose range of view depths the point lies, blended into the next one where ranges
+    /// overlap, as other engines do.
+    ViewDepth,
+}
+
+/// Most texels over which maps that are read by coverage may be blended: a quarter of the side of the
+/// smallest map that tools allow, 256.
+pub const MAX_BLEND: f32 = 64.0;
+
 /// Whether and how maps are kept from changing while the camera moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

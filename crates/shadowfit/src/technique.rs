@@ -4,8 +4,8 @@
 
 use crate::bias::reach;
 use crate::settings::{
-    BiasSettings, FilterKind, FitSettings, HoldSettings, MAX_MAPS, MapFormat, MapOverride, ReceiverSource, SplitScheme,
-    Stabilise, setters,
+    BiasSettings, FilterKind, FitSettings, HoldSettings, MAX_MAPS, MapChoice, MapFormat, MapOverride, ReceiverSource,
+    SplitScheme, Stabilise, setters,
 };
 use glam::UVec2;
 
@@ -31,8 +31,14 @@ pub struct Technique {
     /// Where one map ends and the next begins. Default: [`SplitScheme::FromHistogram`], which takes
     /// boxes where no histogram is given.
     pub splits: SplitScheme,
-    /// Share of a map's range of view depths that the next map covers too, for a blend between
-    /// them, 0..=1. Default: 0.
+    /// Which of the maps a point reads. Default: [`MapChoice::Coverage`].
+    pub choice: MapChoice,
+    /// Texels over which a map that is read by [`MapChoice::Coverage`] is blended into the next coarser
+    /// one, inward from the filter's reach to its border, 0..=[`MAX_BLEND`](crate::settings::MAX_BLEND);
+    /// 0 for none. Default: 8.
+    pub blend: f32,
+    /// Share of a map's range of view depths that the next map covers too, for a blend between them
+    /// by [`MapChoice::ViewDepth`], 0..=1. Default: 0.
     pub overlap: f32,
     /// What keeps the maps stable. Default: [`Stabilise::Hysteresis`].
     pub stabilise: Stabilise,
@@ -59,6 +65,8 @@ impl Default for Technique {
             count: 4,
             fit: FitSettings::default(),
             splits: SplitScheme::default(),
+            choice: MapChoice::default(),
+            blend: 8.0,
             overlap: 0.0,
             stabilise: Stabilise::default(),
             hold: HoldSettings::default(),
@@ -75,6 +83,8 @@ setters!(Technique {
     with_count count: u32,
     with_fit fit: FitSettings,
     with_splits splits: SplitScheme,
+    with_choice choice: MapChoice,
+    with_blend blend: f32,
     with_overlap overlap: f32,
     with_stabilise stabilise: Stabilise,
     with_hold hold: HoldSettings,

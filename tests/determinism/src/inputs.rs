@@ -5,8 +5,8 @@ use shadowfit::glam::{DMat4, DVec3, DVec4, UVec2, Vec3};
 use shadowfit::histogram::DepthHistogram;
 use shadowfit::normal_cone::NormalCone;
 use shadowfit::settings::{
-    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapFormat, MapOverride,
-    ReceiverSource, RectangleKind, SplitScheme, Stabilise,
+    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapChoice, MapFormat,
+    MapOverride, ReceiverSource, RectangleKind, SplitScheme, Stabilise,
 };
 use shadowfit::{Aabb, Boxes, DepthConvention, FitError, FitInput, PerspectiveCamera, Technique, ViewFrustum};
 
@@ -206,6 +206,8 @@ pub(crate) fn technique(random: &mut Random, camera: &PerspectiveCamera) -> Tech
         fit: FitSettings { max_distance: f32::MAX, ..fit_settings(random, camera) },
         count: 1 + random.below(5),
         splits: random.pick(&schemes),
+        choice: MapChoice::ViewDepth,
+        blend: 8.0,
         overlap: random.pick(&[0.0, 0.1, 0.5]),
         stabilise: random.pick(&[Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis]),
         hold: HoldSettings { margin: 0.02, growth: 1.4, waste: random.between(1.2, 3.0), horizon: 32 },

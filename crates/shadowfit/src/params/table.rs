@@ -35,6 +35,8 @@ pub static PARAMETERS: &[Parameter] = &[
     splits::MANUAL[4],
     splits::MANUAL[5],
     splits::MANUAL[6],
+    splits::CHOICE,
+    splits::BLEND,
     splits::OVERLAP,
     stabilise::MODE,
     stabilise::MARGIN,

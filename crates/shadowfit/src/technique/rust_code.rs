@@ -10,8 +10,8 @@ use glam::{UVec2, Vec3};
 use super::Technique;
 use crate::DepthConvention;
 use crate::settings::{
-    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MapFormat, MapOverride, ReceiverSource,
-    RectangleKind, SplitScheme, Stabilise,
+    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, MapFormat, MapOverride,
+    ReceiverSource, RectangleKind, SplitScheme, Stabilise,
 };
 
 impl Technique {
@@ -129,12 +129,28 @@ impl Fields<'_, '_> {
 
 impl Expression for Technique {
     fn write(&self, code: &mut Code) -> fmt::Result {
-        let Self { count, fit, splits, overlap, stabilise, hold, overrides, receivers, filter, bias, format } = self;
+        let Self {
+            count,
+            fit,
+            splits,
+            choice,
+            blend,
+            overlap,
+            stabilise,
+            hold,
+            overrides,
+            receivers,
+            filter,
+            bias,
+            format,
+        } = self;
         let default = Self::default();
         code.fields("Technique")
             .field("count", count, &default.count)
             .field("fit", fit, &default.fit)
             .field("splits", splits, &default.splits)
+            .field("choice", choice, &default.choice)
+            .field("blend", blend, &default.blend)
             .field("overlap", overlap, &default.overlap)
             .field("stabilise", stabilise, &default.stabilise)
             .field("hold", hold, &default.hold)
@@ -308,4 +324,14 @@ macro_rules! plain {
     };
 }
 
-plain!(FitKind, RectangleKind, CasterPolicy, DepthConvention, Stabilise, ReceiverSource, FilterKind, MapFormat);
+plain!(
+    FitKind,
+    RectangleKind,
+    CasterPolicy,
+    DepthConvention,
+    MapChoice,
+    Stabilise,
+    ReceiverSource,
+    FilterKind,
+    MapFormat
+);

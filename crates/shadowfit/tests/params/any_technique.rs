@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use shadowfit::glam::{UVec2, Vec3};
 use shadowfit::settings::{
-    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapFormat, MapOverride,
-    ReceiverSource, RectangleKind, SplitScheme, Stabilise,
+    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapChoice, MapFormat,
+    MapOverride, ReceiverSource, RectangleKind, SplitScheme, Stabilise,
 };
 use shadowfit::{DepthConvention, Technique};
 
@@ -111,7 +111,8 @@ pub(crate) fn any_technique() -> impl Strategy<Value = Technique> {
         1..=MAX_MAPS as u32,
         any_fit(),
         any_splits(),
-        0.0_f32..=1.0,
+        any!(MapChoice: Coverage, ViewDepth),
+        (0.0_f32..=64.0, 0.0_f32..=1.0),
         any!(Stabilise: Off, Snap, Hysteresis),
         any_hold(),
         any_overrides(),
@@ -123,10 +124,15 @@ pub(crate) fn any_technique() -> impl Strategy<Value = Technique> {
         any!(MapFormat: Depth32Float, R32Float),
     );
     (maps, look_up).prop_map(
-        |((count, fit, splits, overlap, stabilise, hold, overrides), (receivers, filter, bias, format))| Technique {
+        |(
+            (count, fit, splits, choice, (blend, overlap), stabilise, hold, overrides),
+            (receivers, filter, bias, format),
+        )| Technique {
             count,
             fit,
             splits,
+            choice,
+            blend,
             overlap,
             stabilise,
             hold,

@@ -37,8 +37,21 @@ pub(crate) fn leaves(settings: &Settings) -> Vec<(String, String)> {
 type Leaf<'a> = dyn FnMut(&str, &dyn core::fmt::Debug) + 'a;
 
 fn leaves_of_technique(technique: &Technique, leaf: &mut Leaf) {
-    let Technique { count, fit, splits, overlap, stabilise, hold, overrides, receivers, filter, bias, format } =
-        technique;
+    let Technique {
+        count,
+        fit,
+        splits,
+        choice,
+        blend,
+        overlap,
+        stabilise,
+        hold,
+        overrides,
+        receivers,
+        filter,
+        bias,
+        format,
+    } = technique;
     leaves_of_fit(fit, leaf);
     leaf("count", count);
     let (lambda, ends) = match splits {
@@ -53,6 +66,8 @@ fn leaves_of_technique(technique: &Technique, leaf: &mut Leaf) {
     for map in 0..MAX_MAPS - 1 {
         leaf(&format!("splits.manual[{map}]"), &ends.map(|ends| ends[map]));
     }
+    leaf("choice", choice);
+    leaf("blend", blend);
     leaf("overlap", overlap);
     leaf("stabilise", stabilise);
     let HoldSettings { margin, growth, waste, horizon } = hold;

@@ -100,7 +100,7 @@ fn is_finite(fit: &LightFit) -> bool {
 type Setter = (&'static str, fn(&mut Inputs, f64));
 
 /// Every float but those of the camera, which have tests of their own.
-const SETTERS: [Setter; 44] = [
+const SETTERS: [Setter; 45] = [
     ("view origin x", |i, v| i.views[0].origin.x = v),
     ("view origin y", |i, v| i.views[1].origin.y = v),
     ("near corner", |i, v| i.views[0].corners[1].x = v as f32),
@@ -145,6 +145,7 @@ const SETTERS: [Setter; 44] = [
         i.settings.splits = SplitScheme::Manual([2.0, v as f32, 10.0, 11.0, 12.0, 13.0, 14.0]);
     }),
     ("overlap", |i, v| i.settings.overlap = v as f32),
+    ("blend", |i, v| i.settings.blend = v as f32),
     ("hold margin", |i, v| i.settings.hold.margin = v as f32),
     ("hold growth", |i, v| i.settings.hold.growth = v as f32),
     ("hold waste", |i, v| i.settings.hold.waste = v as f32),
@@ -242,13 +243,15 @@ fn counts_outside_of_one_to_eight_are_refused() {
 
 #[test]
 fn settings_without_meaning_are_refused() {
-    let refused: [Setter; 12] = [
+    let refused: [Setter; 14] = [
         ("lambda above", |i, _| i.settings.splits = SplitScheme::Practical(1.1)),
         ("lambda below", |i, _| i.settings.splits = SplitScheme::Practical(-0.1)),
         ("splits that fall", |i, _| i.settings.splits = SplitScheme::Manual([5.0, 4.0, 6.0, 7.0, 8.0, 9.0, 10.0])),
         ("splits that stay", |i, _| i.settings.splits = SplitScheme::Manual([5.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0])),
         ("overlap above", |i, _| i.settings.overlap = 1.1),
         ("overlap below", |i, _| i.settings.overlap = -0.1),
+        ("blend above", |i, _| i.settings.blend = 64.1),
+        ("blend below", |i, _| i.settings.blend = -0.1),
         ("waste", |i, _| i.settings.hold.waste = 0.9),
         ("growth", |i, _| i.settings.hold.growth = 0.9),
         ("hold margin", |i, _| i.settings.hold.margin = -0.1),

@@ -10,6 +10,7 @@ mod bias;
 mod bytemuck;
 mod caster;
 mod caster_depth;
+mod choice;
 mod clusters;
 mod conventions;
 mod coverage;

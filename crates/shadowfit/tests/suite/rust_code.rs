@@ -59,6 +59,8 @@ fn all_fields() -> Technique {
             depth: DepthConvention::Reversed,
         },
         splits: SplitScheme::Manual([1.0, 2.5, 0.1, 1e-7, 3e9, 16_777_216.0, f32::MAX]),
+        choice: MapChoice::ViewDepth,
+        blend: 2.5,
         overlap: 0.1,
         stabilise: Stabilise::Snap,
         hold: HoldSettings { margin: 0.5, growth: 2.0, waste: 3.0, horizon: 9 },

@@ -1,8 +1,8 @@
-//! The rows of the splits: how many maps there are, and where one ends and the next begins.
+//! The rows of the splits: how many maps there are, where one ends and the next begins, and which one a point reads.
 
 use super::always_active;
 use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
-use crate::settings::{MAX_MAPS, SplitScheme};
+use crate::settings::{MAX_BLEND, MAX_MAPS, MapChoice, SplitScheme};
 
 pub(super) const COUNT: Parameter = Parameter {
     id: "splits.count",
@@ -163,6 +163,60 @@ pub(super) const MANUAL: [Parameter; MAX_MAPS - 1] = [
     manual::<6>("splits.manual_7", "Map 7 ends"),
 ];
 
+pub(super) const CHOICE: Parameter = Parameter {
+    id: "splits.choice",
+    group: Group::Splits,
+    label: "Choice",
+    unit: "",
+    help: "Which of the maps a point reads.",
+    kind: Kind::Choice(Choice {
+        options: &[
+            ChoiceOption {
+                id: "coverage",
+                label: "By coverage",
+                help: "The finest one that holds the point, whatever its distance: sharper, at no cost.",
+            },
+            ChoiceOption {
+                id: "view_depth",
+                label: "By view depth",
+                help: "The one for the point's distance from the camera, as other engines do.",
+            },
+        ],
+        read: |s| match s.technique.choice {
+            MapChoice::Coverage => 0,
+            MapChoice::ViewDepth => 1,
+        },
+        write: |s, index| s.technique.choice = if index == 0 { MapChoice::Coverage } else { MapChoice::ViewDepth },
+    }),
+    inert: |s| (s.technique.count < 2).then_some("One map leaves no choice; raise the number of maps."),
+};
+
+pub(super) const BLEND: Parameter = Parameter {
+    id: "splits.blend",
+    group: Group::Splits,
+    label: "Blend",
+    unit: "texels",
+    help: "Width of the band inside a map's border in which the shader blends from it into the next coarser one. It \
+           hides the line between two maps; 0 turns it off.",
+    kind: Kind::Number(Number {
+        min: 0.0,
+        max: MAX_BLEND as f64,
+        step: 1.0,
+        logarithmic: false,
+        decimals: 1,
+        read: |s| f64::from(s.technique.blend),
+        write: |s, value| s.technique.blend = value as f32,
+    }),
+    inert: |s| match s.technique.choice {
+        _ if s.technique.count < 2 => Some("One map is blended into none; raise the number of maps."),
+        MapChoice::Coverage => None,
+        MapChoice::ViewDepth => Some(
+            "Maps that are read by view depth are blended over the overlap; set Choice to By coverage (splits.choice = \
+             coverage).",
+        ),
+    },
+};
+
 pub(super) const OVERLAP: Parameter = Parameter {
     id: "splits.overlap",
     group: Group::Splits,
@@ -179,5 +233,12 @@ pub(super) const OVERLAP: Parameter = Parameter {
         read: |s| f64::from(s.technique.overlap),
         write: |s, value| s.technique.overlap = value as f32,
     }),
-    inert: |s| (s.technique.count < 2).then_some("One map overlaps with none; raise the number of maps."),
+    inert: |s| match s.technique.choice {
+        _ if s.technique.count < 2 => Some("One map overlaps with none; raise the number of maps."),
+        MapChoice::Coverage => Some(
+            "Maps that are read by coverage are blended toward their borders; set Choice to By view depth (splits.choice \
+             = view_depth).",
+        ),
+        MapChoice::ViewDepth => None,
+    },
 };

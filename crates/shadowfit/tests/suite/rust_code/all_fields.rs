@@ -23,6 +23,8 @@ let technique = Technique {
         16777216.0,
         f32::MAX,
     ]),
+    choice: MapChoice::ViewDepth,
+    blend: 2.5,
     overlap: 0.1,
     stabilise: Stabilise::Snap,
     hold: HoldSettings {

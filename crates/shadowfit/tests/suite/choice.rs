@@ -1,0 +1,170 @@
+//! Which of several maps a point reads.
+
+use proptest::prelude::*;
+use shadowfit::bias::reach;
+use shadowfit::choice::{DepthRange, MapBlend, MapOrder, MapRead, by_coverage, by_view_depth};
+use shadowfit::glam::{DVec2, DVec3, Vec2};
+use shadowfit::settings::{MAX_MAPS, MapChoice};
+use shadowfit::{FitInput, FittedMaps, LightFit, MapFitter, Technique, Workspace};
+
+use crate::scenes::{any_light, any_technique, any_view};
+use crate::support::{DIRECTION, camera, cases, double, float};
+
+fn alone(map: usize) -> MapRead {
+    MapRead { map, blend: None }
+}
+
+fn blended(map: usize, other: usize, weight: f64) -> MapRead {
+    MapRead { map, blend: Some(MapBlend { map: other, weight }) }
+}
+
+/// The maps read, finest first, where so many texels are free; reach 3, blend 8.
+fn read(free: &[Option<f64>]) -> Option<MapRead> {
+    by_coverage(0..free.len(), 3.0, 8.0, |map| free[map])
+}
+
+#[test]
+fn the_finest_map_that_holds_a_point_with_the_filter_is_read() {
+    assert_eq!(read(&[Some(20.0), Some(50.0)]), Some(alone(0)));
+    assert_eq!(read(&[None, Some(50.0), Some(90.0)]), Some(alone(1)));
+    assert_eq!(read(&[Some(2.9), Some(50.0)]), Some(alone(1)));
+    assert_eq!(by_coverage([2, 0, 1], 3.0, 0.0, |_| Some(9.0)), Some(alone(2)));
+}
+
+#[test]
+fn toward_its_border_a_map_gives_way_to_the_next_one_that_holds_the_point() {
+    assert_eq!(read(&[Some(11.0), Some(50.0)]), Some(alone(0)));
+    assert_eq!(read(&[Some(9.0), Some(50.0)]), Some(blended(0, 1, 0.25)));
+    assert_eq!(read(&[Some(3.0), Some(50.0)]), Some(blended(0, 1, 1.0)));
+    // What cannot be read with the filter is passed over, and the second map is not blended again.
+    assert_eq!(read(&[Some(5.0), Some(2.0), None, Some(4.0), Some(50.0)]), Some(blended(0, 3, 0.75)));
+    assert_eq!(read(&[Some(5.0), Some(2.0), None]), Some(alone(0)));
+    assert_eq!(by_coverage(0..2, 3.0, 0.0, |_| Some(3.0)), Some(alone(0)));
+}
+
+#[test]
+fn where_the_filter_fits_nowhere_it_is_clamped_to_the_finest_map_that_holds_the_point() {
+    assert_eq!(read(&[None, Some(1.0), Some(2.0)]), Some(alone(1)));
+    assert_eq!(read(&[None, None]), None);
+    assert_eq!(read(&[]), None);
+}
+
+#[test]
+fn by_view_depth_the_first_map_that_ends_behind_a_point_and_holds_it_is_read() {
+    let ends = [10.0, 20.0, f64::MAX];
+    let at = |depth: f64, held: [bool; 3]| {
+        let ranges = ends.map(|far| DepthRange { blend_near: f64::MAX, far });
+        by_view_depth(ranges, depth, |map| held[map])
+    };
+    assert_eq!([5.0, 10.0, 20.0].map(|depth| at(depth, [true; 3])), [Some(alone(0)), Some(alone(1)), Some(alone(2))]);
+    assert_eq!(at(5.0, [false, false, true]), Some(alone(2)));
+    assert_eq!(at(15.0, [true, false, false]), None);
+    assert_eq!(at(f64::NAN, [true; 3]), None);
+}
+
+#[test]
+fn by_view_depth_maps_are_blended_where_they_overlap() {
+    let at = |depth: f64, holds_next: bool| {
+        let ranges = [(f64::MIN, 10.0), (8.0, 20.0), (20.0, f64::MAX)];
+        let ranges = ranges.map(|(blend_near, far)| DepthRange { blend_near, far });
+        by_view_depth(ranges, depth, |map| map != 1 || holds_next)
+    };
+    assert_eq!([7.0, 8.0].map(|depth| at(depth, true)), [Some(alone(0)); 2]);
+    assert_eq!(at(9.5, true), Some(blended(0, 1, 0.75)));
+    assert_eq!(at(9.5, false), Some(alone(0)));
+    assert_eq!(at(19.9, true), Some(alone(1)));
+}
+
+#[test]
+fn the_map_that_weighs_more_is_the_first_one_unless_the_second_has_more_than_half() {
+    let main = |weight: f64| blended(3, 5, weight).main();
+    assert_eq!([0.0, 0.5, 0.51, 1.0].map(main), [3, 3, 5, 5]);
+}
+
+#[test]
+fn the_order_has_no_more_than_the_greatest_number_of_maps() {
+    let maps = [LightFit::default(); MAX_MAPS + 1];
+    for choice in [MapChoice::Coverage, MapChoice::ViewDepth] {
+        assert!(MapOrder::new(choice, &maps).iter().eq(0..MAX_MAPS));
+    }
+}
+
+proptest! {
+    #[test]
+    fn the_order_is_that_of_areas_and_then_of_indices(sides in prop::collection::vec((1_u8..4, 1_u8..4), 0..9)) {
+        let texel_size = |(x, y)| Vec2::new(f32::from(x), f32::from(y));
+        let maps: Vec<LightFit> =
+            sides.iter().map(|side| LightFit { texel_size: texel_size(*side), ..LightFit::default() }).collect();
+        let mut wanted: Vec<usize> = (0..maps.len()).collect();
+        wanted.sort_by_key(|map| u32::from(sides[*map].0) * u32::from(sides[*map].1));
+        prop_assert!(MapOrder::new(MapChoice::Coverage, &maps).iter().eq(wanted));
+    }
+}
+
+fn fitted(technique: &Technique, input: &FitInput) -> FittedMaps {
+    let mut storage = vec![DVec2::ZERO; Workspace::required(0, 1)];
+    MapFitter::new().fit(input, technique, &mut Workspace::new(&mut storage)).expect("a fit")
+}
+
+#[test]
+fn free_texels_are_counted_from_the_nearest_side() {
+    let camera = camera();
+    let fit = shadowfit::fit(&camera.frustum().expect("a view"), DIRECTION, &Default::default()).expect("a fit");
+    let (size, texel) = (fit.resolution.as_dvec2(), fit.texel_size.as_dvec2());
+    let axis = |row: usize| fit.light_from_world.row(row).truncate().as_dvec3();
+    let [near_left, .., far_right, _] = fit.corners().map(|corner| fit.origin + corner.as_dvec3());
+    let middle = (near_left + far_right) * 0.5;
+    for (texels, expected) in [
+        (DVec2::ZERO, Some(size.min_element() * 0.5)),
+        (DVec2::new(size.x * 0.5 - 7.0, 3.0), Some(7.0)),
+        (DVec2::new(3.0, size.y * -0.5 + 2.5), Some(2.5)),
+        (DVec2::new(0.0, size.y * 0.5 + 0.5), None),
+    ] {
+        let free = fit.free_texels(middle + axis(0) * (texels.x * texel.x) + axis(1) * (texels.y * texel.y));
+        // f32 rows of the matrix, 4 roundings of 2⁻²⁴ of half of a map of 2048 texels.
+        let is_near = match (free, expected) {
+            (Some(free), Some(expected)) => (free - expected).abs() < 1e-3,
+            (free, expected) => free == expected,
+        };
+        assert!(is_near, "{free:?} instead of {expected:?} at {texels}");
+    }
+    assert_eq!(fit.free_texels(DVec3::NAN), None);
+}
+
+proptest! {
+    #![proptest_config(cases(500))]
+
+    /// The definition, in words of its own: maps sorted by area, those that hold the point with the
+    /// filter, else those that hold it.
+    #[test]
+    fn fitted_maps_are_read_by_the_definition(
+        view in any_view(), direction in any_light(), technique in any_technique(), blend in float(0.0, 64.0),
+        places in prop::collection::vec((double(0.0, 1.0), double(0.0, 1.0), double(0.0, 1.0)), 20),
+    ) {
+        prop_assume!(view.lens.near < f64::from(technique.fit.max_distance));
+        let views = [view.frustum()];
+        let technique = technique.with_blend(blend);
+        let maps = fitted(&technique, &FitInput::new(&views, direction));
+        let mut sorted: Vec<usize> = (0..maps.len()).filter(|map| !maps[*map].fit.is_empty).collect();
+        let area = |map: usize| f64::from(maps[map].fit.texel_size.x) * f64::from(maps[map].fit.texel_size.y);
+        sorted.sort_by(|a, b| area(*a).total_cmp(&area(*b)));
+        let corners = views[0].corners.map(|corner| views[0].origin + corner.as_dvec3());
+        for (u, v, w) in places {
+            let across = |side: usize| corners[side].lerp(corners[side + 1], u).lerp(corners[side + 3].lerp(corners[side + 2], u), v);
+            let point = across(0).lerp(across(4), w);
+            let free = |map: usize| maps[map].fit.free_texels(point);
+            let needed = f64::from(reach(technique.filter));
+            let roomy: Vec<usize> =
+                sorted.iter().copied().filter(|map| free(*map).is_some_and(|free| free >= needed)).collect();
+            let clamped = sorted.iter().copied().find(|map| free(*map).is_some());
+            let read = maps.read(&technique, point, 1.0);
+            prop_assert_eq!(read.map(|read| read.map), roomy.first().copied().or(clamped));
+            let Some((first, others)) = roomy.split_first() else { continue };
+            let weight = (free(*first).unwrap_or(0.0) - needed) / f64::from(blend);
+            let second = others.first().filter(|_| weight < 1.0);
+            prop_assert_eq!(read.and_then(|read| read.blend).map(|blend| blend.map), second.copied());
+            let by_depth = maps.read(&technique.with_choice(MapChoice::ViewDepth), point, f64::from(views[0].near));
+            prop_assert!(by_depth.is_none_or(|read| maps[read.map].fit.covers(point)));
+        }
+    }
+}
