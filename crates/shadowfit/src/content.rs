@@ -257,6 +257,30 @@ impl<'a> Content<'a> {
         }
     }
 
+    /// Passes on each receiver's box that reaches into any of the views, with a state: boxes are passed on where
+    /// `is_new` of the bounds of their run is true.
+    pub(crate) fn each_seen_receiver<S>(
+        &self,
+        state: &mut S,
+        is_new: impl Fn(&S, DVec3, DVec3) -> bool,
+        mut visit: impl FnMut(&mut S, DVec3, DVec3),
+    ) {
+        let Some(receivers) = &self.receivers else { return };
+        let offset = receivers.origin - self.origin;
+        for (run, min, max) in self.receiver_groups.runs() {
+            if !is_new(state, min, max) {
+                continue;
+            }
+            for i in run {
+                let is_seen = |depths: &[DVec2]| depths.get(i).is_some_and(|depths| depths.x <= depths.y);
+                if self.depths.chunks(receivers.boxes.len()).any(is_seen) {
+                    let (min, max) = moved(&receivers.boxes[i], offset);
+                    visit(state, min, max);
+                }
+            }
+        }
+    }
+
     /// Corners of the views' slices.
     pub(crate) fn corners(&self, range: Range) -> impl Iterator<Item = DVec3> {
         self.slices(range).flatten()

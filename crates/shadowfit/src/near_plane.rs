@@ -11,7 +11,7 @@
 //!           └───────────────┘
 //! ```
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec2Swizzles};
 
 use crate::Boxes;
 use crate::axes::LightAxes;
@@ -42,14 +42,20 @@ pub(crate) fn place(volume: &mut Volume, rule: &FitRule, shadowed: Shadowed, rou
     let texel = (volume.max - volume.min).truncate() / rule.resolution.as_dvec2();
     let reach = filter_reach(texel, rule, rounding);
     let near = match shadowed {
-        Shadowed::Outline(axes, outline) => find(volume.max.z, &axes, outline, content, rule.depth, reach),
-        Shadowed::WholeMap => {
-            let (min, max) = (volume.min, volume.max);
-            let corners = [(min.x, min.y), (max.x, min.y), (max.x, max.y), (min.x, max.y)];
-            let corners = corners.map(|(x, y)| DVec2::new(x, y));
-            find(volume.max.z, &volume.axes, &corners, content, rule.depth, reach)
+        Shadowed::Outline(axes, outline) if !rule.serves_all => {
+            find(volume.max.z, &axes, outline, content, rule.depth, reach)
+        }
+        _ => {
+            let across = (volume.min.truncate(), volume.max.truncate());
+            find_over(volume.max.z, &volume.axes, across, content, rule.depth, reach)
         }
     };
+    if rule.serves_all {
+        let across = (volume.min.truncate(), volume.max.truncate());
+        let far = find_far(volume.min.z, &volume.axes, across, content);
+        volume.set_by[4] = if far < volume.min.z { Constraint::Receivers } else { volume.set_by[4] };
+        volume.min.z = far;
+    }
     (volume.max.z, volume.set_by[5]) = (near.z, near.set_by.unwrap_or(volume.set_by[5]));
     if rule.covers != Covers::Sphere {
         // The rounding of the depth range, which casters may make far longer than the covered
@@ -93,6 +99,40 @@ pub(crate) fn find(
     NearPlane { z, set_by: (z > covered).then_some(set_by) }
 }
 
+/// [`find`] for all of a map, given as a rectangle across the light.
+pub(crate) fn find_over(
+    covered: f64,
+    axes: &LightAxes,
+    across: (DVec2, DVec2),
+    content: &Content,
+    depth: Depth,
+    reach: f64,
+) -> NearPlane {
+    find(covered, axes, &corners(across), content, depth, reach)
+}
+
+/// Finds the far plane for a map, given as a rectangle across the light, whose covered region begins at `covered`
+/// along the light's z: far enough for the receivers in view over all of the map, since points of all
+/// view depths read it, but no farther than [`FARTHER`] allows.
+pub(crate) fn find_far(covered: f64, axes: &LightAxes, across: (DVec2, DVec2), content: &Content) -> f64 {
+    let longer = (across.1 - across.0).max_element();
+    // Seen from below: the lowest point is the highest there, and x and y change places.
+    let from_below = LightAxes { x: axes.y, y: axes.x, z: -axes.z };
+    let corners = corners((across.0.yx(), across.1.yx()));
+    let mut lowest = Highest::new(&from_below, &corners, 0.0, -covered);
+    content.each_seen_receiver(&mut lowest, |lowest, min, max| lowest.may_rise(min, max), Highest::add);
+    (-lowest.z).max(covered - longer * FARTHER)
+}
+
+/// How far the far plane may lie beyond the covered region, in extents of the map: under a low sun that is as
+/// far as level ground goes on below the map.
+const FARTHER: f64 = 2.0;
+
+/// Corners of a rectangle along the axes, anticlockwise.
+fn corners((min, max): (DVec2, DVec2)) -> [DVec2; 4] {
+    [(min.x, min.y), (max.x, min.y), (max.x, max.y), (min.x, max.y)].map(|(x, y)| DVec2::new(x, y))
+}
+
 /// The greatest z of casters over an outline, or of what is covered where none reaches higher.
 struct Highest<'a> {
     over: Outline<'a>,
@@ -108,7 +148,7 @@ impl<'a> Highest<'a> {
     fn add_all(&mut self, casters: &Boxes, content: &Content) {
         let offset = casters.origin - content.origin;
         for (run, min, max) in content.caster_groups.runs() {
-            if !self.over.may_hold(min, max, self.floor(min, max)) {
+            if !self.may_rise(min, max) {
                 continue;
             }
             for aabb in casters.boxes[run].iter().filter(|aabb| !aabb.is_empty()) {
@@ -116,6 +156,11 @@ impl<'a> Highest<'a> {
                 self.add(min, max);
             }
         }
+    }
+
+    /// Whether a part of a box may lie higher than all so far.
+    fn may_rise(&self, min: DVec3, max: DVec3) -> bool {
+        self.over.may_hold(min, max, self.floor(min, max))
     }
 
     /// The height that a box must exceed to count.

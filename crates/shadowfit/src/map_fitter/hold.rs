@@ -90,7 +90,9 @@ impl Holder<'_, '_> {
         let is_of_light = |held: &HeldMap| held.is_of(&self.light.axes(rule.roll), rule);
         let Some(held) = held.filter(is_of_light) else { return self.make(&fresh(points)?, rule, slice, points) };
         let needed = self.needed(&held, rule, slice, points)?;
-        let Some(kept) = self.keep(&held, &needed) else { return self.make(&fresh(points)?, rule, slice, points) };
+        let Some(kept) = self.keep(&held, &needed, rule) else {
+            return self.make(&fresh(points)?, rule, slice, points);
+        };
         // No rectangle is smaller than the outline in it, so most maps need not be compared with a new one.
         let waste = f64::from(self.hold.waste);
         let held_size = held.texel * grid::usable(rule);
@@ -126,7 +128,7 @@ impl Holder<'_, '_> {
     }
 
     /// The held map moved by whole texels, if what must be covered fits into it.
-    fn keep(&self, held: &HeldMap, needed: &Needed) -> Option<HeldMap> {
+    fn keep(&self, held: &HeldMap, needed: &Needed, rule: &FitRule) -> Option<HeldMap> {
         let anchor = grid::anchor(&held.axes, self.input.views[0].origin);
         let low = floor((needed.across.min + anchor.truncate()) / held.texel);
         let high = -floor(-((needed.across.max + anchor.truncate()) / held.texel)) - held.resolution;
@@ -136,7 +138,8 @@ impl Holder<'_, '_> {
         let mut kept = *held;
         kept.first = held.first.min(low).max(high);
         let waste = f64::from(self.hold.waste);
-        kept.z = grid::stabilised_depth(Some(held.z), (needed.z.0 + anchor.z, needed.z.1 + anchor.z), waste);
+        let (z, _) = self.depths(&kept, needed, rule);
+        kept.z = grid::stabilised_depth(Some(held.z), (z.0 + anchor.z, z.1 + anchor.z), waste);
         kept.is_empty = needed.is_empty;
         kept.set_by = [Constraint::Held; 6];
         Some(kept)
@@ -153,10 +156,26 @@ impl Holder<'_, '_> {
         across.min -= border + pad;
         across.max += border + pad;
         let reach = near_plane::filter_reach(held.texel, rule, rounding);
-        let (low, high) = (hull.z.0 - pad, hull.z.1 + pad);
-        let near = near_plane::find(high, &held.axes, hull.outline, self.content, rule.depth, reach);
+        let mut z = (hull.z.0 - pad, hull.z.1 + pad);
+        let mut near_set_by = None;
+        if !rule.serves_all {
+            let near = near_plane::find(z.1, &held.axes, hull.outline, self.content, rule.depth, reach);
+            (z.1, near_set_by) = (near.z, near.set_by);
+        }
         let (area, is_empty) = (area(hull.outline), hull.is_empty);
-        Ok(Needed { across, z: (low, near.z), near_set_by: near.set_by, area, is_empty })
+        Ok(Needed { across, z, near_set_by, reach, area, is_empty })
+    }
+
+    /// Depths that a map must reach, where it lies by now, and what sets the near one if it is not what is covered.
+    fn depths(&self, map: &HeldMap, needed: &Needed, rule: &FitRule) -> ((f64, f64), Option<Constraint>) {
+        if !rule.serves_all {
+            return (needed.z, needed.near_set_by);
+        }
+        let volume = volume(map, self.content.origin);
+        let across = (volume.min.truncate(), volume.max.truncate());
+        let near = near_plane::find_over(needed.z.1, &map.axes, across, self.content, rule.depth, needed.reach);
+        let far = near_plane::find_far(needed.z.0, &map.axes, across, self.content);
+        ((far, near.z), near.set_by)
     }
 
     /// A new map with room for the motion to come.
@@ -185,11 +204,12 @@ impl Holder<'_, '_> {
         let mut map = HeldMap::new(&volume, grid, rule, fresh);
         let needed = self.needed(&map, rule, slice, points)?;
         let anchor = grid::anchor(&map.axes, origin).z;
-        let now = (needed.z.0 + anchor, needed.z.1 + anchor);
+        let (z, near_set_by) = self.depths(&map, &needed, rule);
+        let now = (z.0 + anchor, z.1 + anchor);
         let ahead = grid::stabilised_depth(None, (grid.z.0.min(now.0), grid.z.1.max(now.1)), 1.0);
         // A depth range that the next frame would give up at once is not used.
         map.z = grid::stabilised_depth(Some(ahead), now, f64::from(self.hold.waste));
-        map.set_by[5] = needed.near_set_by.unwrap_or(map.set_by[5]);
+        map.set_by[5] = near_set_by.unwrap_or(map.set_by[5]);
         Ok(map)
     }
 }
@@ -199,6 +219,8 @@ struct Needed {
     across: Rectangle,
     z: (f64, f64),
     near_set_by: Option<Constraint>,
+    /// How far beside it casters count, in metres.
+    reach: f64,
     /// Area of the outline of what must be covered, in square metres.
     area: f64,
     /// Whether nothing of it is known to receive.
