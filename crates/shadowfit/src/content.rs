@@ -4,6 +4,7 @@ use core::cell::OnceCell;
 
 use glam::{DVec2, DVec3, Vec3};
 
+use crate::axes::LightAxes;
 use crate::enclosing_sphere::{EnclosingSphere, SymmetricFrustum, minimal};
 use crate::groups::Groups;
 use crate::hull::HullBuilder;
@@ -23,6 +24,7 @@ pub(crate) struct Content<'a> {
     receiver_groups: Groups<'a>,
     pub(crate) caster_groups: Groups<'a>,
     symmetric: OnceCell<Option<SymmetricFrustum>>,
+    across: OnceCell<Option<(DVec2, DVec2)>>,
 }
 
 /// Most views that share a stable map.
@@ -78,6 +80,7 @@ impl<'a> Content<'a> {
             receiver_groups,
             caster_groups,
             symmetric: OnceCell::new(),
+            across: OnceCell::new(),
         };
         Ok((content, points))
     }
@@ -94,6 +97,7 @@ impl<'a> Content<'a> {
             receiver_groups: Groups::default(),
             caster_groups: Groups::default(),
             symmetric: OnceCell::new(),
+            across: OnceCell::new(),
         }
     }
 
@@ -191,6 +195,32 @@ impl<'a> Content<'a> {
             }
         }
         squared.map(libm::sqrt)
+    }
+
+    /// Bounds of all receivers across the light, in view or not, along the light's axes. `None` when no receiver is
+    /// known.
+    pub(crate) fn receivers_across(&self, axes: &LightAxes) -> Option<(DVec2, DVec2)> {
+        *self.across.get_or_init(|| {
+            let receivers = self.receivers.as_ref()?;
+            let offset = receivers.origin - self.origin;
+            let (mut low, mut high) = (DVec2::MAX, DVec2::MIN);
+            let across = |min, max| {
+                let (centre, half) = axes.project_box(min, max);
+                ((centre - half).truncate(), (centre + half).truncate())
+            };
+            for (run, min, max) in self.receiver_groups.runs() {
+                let (a, b) = across(min, max);
+                if a.cmpge(low).all() && b.cmple(high).all() {
+                    continue;
+                }
+                for aabb in receivers.boxes[run].iter().filter(|aabb| !aabb.is_empty()) {
+                    let (min, max) = moved(aabb, offset);
+                    let (a, b) = across(min, max);
+                    (low, high) = (low.min(a), high.max(b));
+                }
+            }
+            (low.x <= high.x).then_some((low, high))
+        })
     }
 
     /// Passes on each receiver's box that may reach into a range of view depths, with the slice of
