@@ -123,12 +123,7 @@ impl<'a> Covered<'a> {
 
 /// A box of constant size, no wider than all receivers together and moved to where they are: nothing beyond them is
 /// looked up. Its size is constant as long as that of the receivers is.
-fn within_receivers(
-    (min, max): (DVec3, DVec3),
-    content: &Content,
-    axes: &LightAxes,
-    pad: f64,
-) -> (DVec3, DVec3) {
+fn within_receivers((min, max): (DVec3, DVec3), content: &Content, axes: &LightAxes, pad: f64) -> (DVec3, DVec3) {
     let Some((low, high)) = content.receivers_across(axes) else { return (min, max) };
     let (low, high) = (low - pad, high + pad);
     let size = (max - min).truncate().min(high - low);

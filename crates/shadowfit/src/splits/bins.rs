@@ -5,12 +5,14 @@ use crate::settings::MAX_MAPS;
 /// Splits of all maps, in metres of view depth: map i covers `splits[i]..splits[i + 1]`.
 pub(crate) type Splits = [f32; MAX_MAPS + 1];
 
-/// Bins of log view depth that the content is sorted into.
+/// Most bins of log view depth that the content is sorted into.
 pub(crate) const BINS: usize = 64;
 
 /// Bins of equal size in log view depth.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bins {
+    /// Their number, at most [`BINS`].
+    pub(super) count: usize,
     pub(super) near: f64,
     pub(super) far: f64,
     pub(super) log_near: f64,
@@ -20,17 +22,17 @@ pub(crate) struct Bins {
 }
 
 impl Bins {
-    pub(super) fn new(near: f64, far: f64) -> Self {
+    pub(super) fn new(near: f64, far: f64, count: usize) -> Self {
         let (log_near, log_far) = (libm::log2(near), libm::log2(far));
-        let log_step = (log_far - log_near) / BINS as f64;
-        Self { near, far, log_near, log_step, per_log: 1.0 / log_step }
+        let log_step = (log_far - log_near) / count as f64;
+        Self { count, near, far, log_near, log_step, per_log: 1.0 / log_step }
     }
 
     /// View depth at which a bin begins, in metres.
     pub(super) fn start(&self, bin: usize) -> f64 {
         match bin {
             0 => self.near,
-            BINS => self.far,
+            _ if bin >= self.count => self.far,
             _ => libm::exp2(self.log_near + self.log_step * bin as f64),
         }
     }
@@ -38,7 +40,7 @@ impl Bins {
     /// The bin whose beginning is nearest to a view depth.
     pub(super) fn nearest(&self, depth: f64) -> usize {
         let bin = (libm::log2(depth.max(self.near)) - self.log_near) / self.log_step;
-        (libm::round(bin) as usize).min(BINS)
+        (libm::round(bin) as usize).min(self.count)
     }
 
     /// The bin of a view depth; depths outside go to the first or the last.
@@ -50,7 +52,7 @@ impl Bins {
         let error = APPROXIMATE * self.per_log;
         let (low, high) = ((bin - error) as usize, (bin + error) as usize);
         let bin = if low == high { low } else { self.exactly(depth) };
-        bin.min(BINS - 1)
+        bin.min(self.count - 1)
     }
 
     #[cold]
@@ -96,3 +98,12 @@ pub(crate) const CLASSES: usize = 6;
 
 /// Shares of the visible points in each bin and class.
 pub(crate) type Weights = [[f64; CLASSES]; BINS];
+
+/// Equal weights for all depths of surfaces that face the light.
+pub(crate) fn even(bins: &Bins) -> Weights {
+    let mut weights = [[0.0; CLASSES]; BINS];
+    for classes in &mut weights[..bins.count] {
+        classes[0] = 1.0 / bins.count as f64;
+    }
+    weights
+}

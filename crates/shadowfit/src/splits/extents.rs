@@ -25,6 +25,11 @@ pub(super) struct Sizes {
     log: [[f32; BINS]; BINS],
 }
 
+/// The bin at which the slice of a map ends that is read up to a bin; the first and the last one end as they must.
+pub(super) fn slice_bin(bins: &Bins, bin: usize, beyond: usize) -> usize {
+    if bin == 0 || bin >= bins.count { bin } else { bin.saturating_sub(beyond).max(1) }
+}
+
 /// The rule that the maps will be fitted by.
 pub(super) struct Maps<'a, 'b> {
     pub(super) content: &'a Content<'b>,
@@ -48,15 +53,27 @@ impl Maps<'_, '_> {
 }
 
 impl Sizes {
+    /// The sizes of maps that are read this many bins beyond their slices, by the bins that they are read for.
+    pub(super) fn by_reading(&self, bins: &Bins, beyond: usize) -> Self {
+        let mut log = self.log;
+        for (first, row) in log.iter_mut().enumerate().take(bins.count) {
+            for end in first + 1..=bins.count {
+                let (from, to) = (slice_bin(bins, first, beyond), slice_bin(bins, end, beyond));
+                row[end - first - 1] = self.log_extent(from, to.max(from + 1));
+            }
+        }
+        Self { log }
+    }
+
     /// log2 of the extent of the bins `first..end`, in metres.
     pub(super) fn log_extent(&self, first: usize, end: usize) -> f32 {
         self.log[first][end - first - 1]
     }
 
-    fn fill(mut extent: impl FnMut(usize, usize) -> f64) -> Self {
+    fn fill(bins: &Bins, mut extent: impl FnMut(usize, usize) -> f64) -> Self {
         let mut log = [[f32::MIN; BINS]; BINS];
-        for (first, row) in log.iter_mut().enumerate() {
-            for end in first + 1..=BINS {
+        for (first, row) in log.iter_mut().enumerate().take(bins.count) {
+            for end in first + 1..=bins.count {
                 row[end - first - 1] = log2(extent(first, end));
             }
         }
@@ -65,10 +82,10 @@ impl Sizes {
 
     fn of_spheres(maps: &Maps, bins: &Bins) -> Self {
         let starts: [f64; BINS + 1] = core::array::from_fn(|bin| bins.start(bin));
-        Self::fill(|first, end| {
+        Self::fill(bins, |first, end| {
             // The first map reaches to the near plane.
             let near = if first == 0 { maps.near } else { starts[first] };
-            let far = if end == BINS { maps.end } else { starts[end] };
+            let far = if end == bins.count { maps.end } else { starts[end] };
             let range = Range { near: near as f32, far: far as f32 };
             let radius = maps.content.enclosing_sphere(range).map_or(far, |sphere| sphere.radius);
             grid::quantised(2.0 * radius)
@@ -81,13 +98,13 @@ impl Sizes {
         if maps.rule.covers == Covers::Receivers && maps.content.receivers.is_some() {
             collect_receivers(&mut extents, maps.content, &directions, bins);
         } else {
-            for (bin, dop) in extents.iter_mut().enumerate() {
+            for (bin, dop) in extents.iter_mut().enumerate().take(bins.count) {
                 let range = Range { near: bins.start(bin) as f32, far: bins.start(bin + 1) as f32 };
                 maps.content.corners(range).for_each(|p| dop.add(&directions.along(p)));
             }
         }
         let mut log = [[f32::MIN; BINS]; BINS];
-        for end in 1..=BINS {
+        for end in 1..=bins.count {
             let mut run = Dop::EMPTY;
             for first in (0..end).rev() {
                 run = run.union(&extents[first]);

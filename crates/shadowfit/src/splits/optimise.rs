@@ -40,7 +40,7 @@ pub(super) struct BinSplits {
 /// The best splits into `count` maps.
 pub(super) fn least_quantile(bins: &Bins, weights: &Weights, sizes: &Sizes, count: usize) -> BinSplits {
     let search = Search::new(bins, weights, sizes);
-    let even: [usize; MAX_MAPS + 1] = core::array::from_fn(|i| BINS * i.min(count) / count);
+    let even: [usize; MAX_MAPS + 1] = core::array::from_fn(|i| bins.count * i.min(count) / count);
     let known = search.quantile(&even[..=count]);
     let bound = bisect(known - OCTAVES, known, |bound| search.is_feasible(count, bound));
     BinSplits { bins: search.best(count, bound), quality: bound }
@@ -161,12 +161,12 @@ impl<'a> Search<'a> {
     fn is_feasible(&self, count: usize, bound: f64) -> bool {
         let mut least = [f64::MAX; BINS + 1];
         least[0] = 0.0;
-        let mut table = OverTable::new(self, bound);
+        let (bins, mut table) = (self.bins.count, OverTable::new(self, bound));
         for map in 0..count {
             let mut next = [f64::MAX; BINS + 1];
-            for (first, before) in least.iter().enumerate().take(BINS).skip(map).filter(|(_, before)| **before <= OVER)
+            for (first, before) in least.iter().enumerate().take(bins).skip(map).filter(|(_, before)| **before <= OVER)
             {
-                for (end, next) in next.iter_mut().enumerate().skip(first + 1) {
+                for (end, next) in next.iter_mut().enumerate().take(bins + 1).skip(first + 1) {
                     let total = before + table.over(first, end);
                     if total > OVER {
                         break;
@@ -176,7 +176,7 @@ impl<'a> Search<'a> {
             }
             least = next;
         }
-        least[BINS] <= OVER
+        least[bins] <= OVER
     }
 
     /// The splits that leave the least weight over the bound and, of those, have the least error.
@@ -184,15 +184,15 @@ impl<'a> Search<'a> {
         let mut least = [f64::MAX; BINS + 1];
         least[0] = 0.0;
         let mut from = [[0_u8; BINS + 1]; MAX_MAPS];
-        let mut table = OverTable::new(self, bound);
+        let (bins, mut table) = (self.bins.count, OverTable::new(self, bound));
         for (map, from) in from.iter_mut().enumerate().take(count) {
             let mut next = [f64::MAX; BINS + 1];
             // The last map holds all that is left.
-            let nearest_end = if map + 1 == count { BINS } else { 0 };
+            let nearest_end = if map + 1 == count { bins } else { 0 };
             for (first, before) in
-                least.iter().enumerate().take(BINS).skip(map).filter(|(_, before)| **before < f64::MAX)
+                least.iter().enumerate().take(bins).skip(map).filter(|(_, before)| **before < f64::MAX)
             {
-                for end in (first + 1).max(nearest_end)..=BINS {
+                for end in (first + 1).max(nearest_end)..=bins {
                     let error = MEAN * self.error(first, end);
                     // No weight is below 0.
                     if before + error - NOTHING >= next[end] {
@@ -206,8 +206,8 @@ impl<'a> Search<'a> {
             }
             least = next;
         }
-        let mut splits = [BINS; MAX_MAPS + 1];
-        let mut end = BINS;
+        let mut splits = [bins; MAX_MAPS + 1];
+        let mut end = bins;
         for map in (0..count).rev() {
             end = usize::from(from[map][end]);
             splits[map] = end;

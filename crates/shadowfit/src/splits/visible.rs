@@ -119,13 +119,15 @@ struct Spread {
     /// Lengths of the bins, in metres.
     lengths: [f64; BINS],
     weights: [f64; BINS],
+    /// Number of bins.
+    count: usize,
 }
 
 impl Spread {
     fn new(bins: &Bins) -> Self {
         let starts: [f64; BINS + 1] = core::array::from_fn(|bin| bins.start(bin));
         let lengths = core::array::from_fn(|bin| starts[bin + 1] - starts[bin]);
-        Self { starts, lengths, weights: [0.0; BINS] }
+        Self { starts, lengths, weights: [0.0; BINS], count: bins.count }
     }
 
     /// Adds a weight, evenly over the depths of a range of bins.
@@ -146,9 +148,9 @@ impl Spread {
     fn shares(&self) -> Weights {
         let total: f64 = self.weights.iter().sum();
         let mut shares = [[0.0; CLASSES]; BINS];
-        for (share, weight) in shares.iter_mut().zip(&self.weights) {
+        for (share, weight) in shares.iter_mut().zip(&self.weights).take(self.count) {
             // Boxes say nothing about slopes, so all are of the first class.
-            share[0] = if total == 0.0 { 1.0 / BINS as f64 } else { weight / total };
+            share[0] = if total == 0.0 { 1.0 / self.count as f64 } else { weight / total };
         }
         shares
     }
