@@ -15,7 +15,7 @@ use crate::histogram::DepthBounds;
 use crate::maps::{FittedMap, FittedMaps, set_empty_ranges_apart};
 use crate::motion::Motion;
 use crate::rule::FitRule;
-use crate::settings::{BiasSettings, FitSettings, MAX_BLEND, MAX_MAPS, MapChoice, MapOverride, Stabilise};
+use crate::settings::{BiasSettings, FitSettings, MAX_BLEND, MAX_MAPS, MapOverride, Stabilise};
 use crate::splits::{Chooser, Splits};
 use crate::view::Range;
 use crate::volume::Volume;
@@ -371,7 +371,7 @@ fn check(input: &FitInput, technique: &Technique) -> Result<(Rules, Light), FitE
     }
     let border = technique.border();
     let (mut most, light) = fits::prepare(input, &technique.fit, border)?;
-    most.serves_all = serves_all(technique, &most);
+    most.serves_all = technique.shares_maps() && most.can_be_held();
     let mut own = [None; MAX_MAPS];
     for (map, own) in own.iter_mut().enumerate().take(technique.count as usize) {
         if let Some(settings) = own_settings(technique, map) {
@@ -380,17 +380,11 @@ fn check(input: &FitInput, technique: &Technique) -> Result<(Rules, Light), FitE
                 // All held maps of a frame have one roll.
                 rule.roll = most.roll;
             }
-            rule.serves_all = serves_all(technique, &rule);
+            rule.serves_all = technique.shares_maps() && rule.can_be_held();
             *own = Some(rule);
         }
     }
     Ok((Rules { most, own }, light))
-}
-
-/// Whether points of all view depths may read a map of this rule, or what lies inside it may be seen in later frames.
-fn serves_all(technique: &Technique, rule: &FitRule) -> bool {
-    let is_shared = technique.count > 1 || technique.stabilise != Stabilise::Off;
-    technique.choice == MapChoice::Coverage && is_shared && rule.can_be_held()
 }
 
 /// The settings of a map that differs from the others.

@@ -124,8 +124,12 @@ impl Chooser<'_, '_> {
         let (weights, sizes) = (self.weights(&bins), self.sizes(&bins));
         let BinSplits { bins: chosen, .. } = least_quantile(&bins, &weights, &sizes, self.technique.count as usize);
         let mut splits = [0.0; MAX_MAPS + 1];
+        let (beyond, mut next) = (self.read_beyond(&bins), 0);
         for (split, bin) in splits.iter_mut().zip(chosen) {
-            *split = bins.start(slice_bin(&bins, bin, self.read_beyond(&bins))) as f32;
+            let bin = slice_bin(&bins, bin, beyond).max(next);
+            *split = bins.start(bin) as f32;
+            // Each map has a slice of its own.
+            next = bin + 1;
         }
         self.whole(splits, spread)
     }
@@ -242,7 +246,7 @@ fn mixed(one: &Weights, other: &Weights, share: f64) -> Weights {
 /// Octaves of view depth by which maps that are read by coverage are read beyond their slices, for spheres and for
 /// rectangles: what they hold there need not come from coarser ones. Chosen on fifteen scenes; none and 0.9
 /// make the texels of stable maps coarser by a tenth in the mean.
-const SPHERE_BEYOND: f64 = 0.5;
+const SPHERE_BEYOND: f64 = 0.35;
 const RECTANGLE_BEYOND: f64 = 0.1;
 
 /// Weight of all depths alike beside what is seen from where a path begins, for stable maps, whose splits are held
