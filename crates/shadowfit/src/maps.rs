@@ -88,7 +88,8 @@ impl FittedMap {
     ///
     /// As [`CasterVolume::swept`].
     pub fn caster_volume(&self, views: &[ViewFrustum], technique: &Technique) -> Result<CasterVolume, FitError> {
-        if self.covered_near >= self.far {
+        let is_read = if technique.shares_maps() { !self.fit.is_empty } else { self.covered_near < self.far };
+        if !is_read {
             return Ok(CasterVolume::nowhere(self.fit.origin));
         }
         let near = if holds_slices(technique) { self.covered_near } else { f32::MIN };
