@@ -261,32 +261,6 @@ impl<'a> Content<'a> {
         }
     }
 
-    /// [`Self::each_receiver`] with a state, run by run: boxes are passed on where `is_new` of the bounds of their
-    /// run is true. `view` is that of the number `index`.
-    pub(crate) fn each_receiver_of_runs<S: ?Sized>(
-        &self,
-        index: usize,
-        view: &View,
-        state: &mut S,
-        is_new: impl Fn(&S, (f64, f64), DVec3, DVec3) -> bool,
-        mut visit: impl FnMut(&mut S, (f64, f64), DVec3, DVec3),
-    ) {
-        let Some(receivers) = &self.receivers else { return };
-        let offset = receivers.origin - self.origin;
-        let depths = self.depths.chunks(receivers.boxes.len().max(1)).nth(index).unwrap_or_default();
-        for (run, min, max) in self.receiver_groups.runs() {
-            let seen = view.depths(min, max);
-            if !seen.is_some_and(|depths| is_new(state, depths, min, max)) {
-                continue;
-            }
-            let boxes = receivers.boxes[run.clone()].iter().zip(&depths[run]);
-            for (aabb, depths) in boxes.filter(|(_, depths)| depths.x <= depths.y) {
-                let (min, max) = moved(aabb, offset);
-                visit(state, (depths.x, depths.y), min, max);
-            }
-        }
-    }
-
     /// Passes on each receiver's box that reaches into any of the views, with a state: boxes are passed on where
     /// `is_new` of the bounds of their run is true.
     pub(crate) fn each_seen_receiver<S>(

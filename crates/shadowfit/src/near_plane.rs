@@ -87,7 +87,9 @@ pub(crate) fn find(
             let all = content.caster_groups.runs().map(|(_, min, max)| (min, max));
             let all = all.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
             let mut highest = Highest::new(axes, outline, reach, covered);
-            all.into_iter().for_each(|(min, max)| highest.add(min, max));
+            if let Some((min, max)) = all {
+                highest.add(min, max);
+            }
             (highest.z, Constraint::Casters)
         }
         Depth::AtCasters => {
@@ -120,7 +122,7 @@ pub(crate) fn find_far(covered: f64, axes: &LightAxes, across: (DVec2, DVec2), c
     let from_below = LightAxes { x: axes.y, y: axes.x, z: -axes.z };
     let corners = corners((across.0.yx(), across.1.yx()));
     let mut lowest = Highest::new(&from_below, &corners, 0.0, -covered);
-    content.each_seen_receiver(&mut lowest, |lowest, min, max| lowest.may_rise(min, max), Highest::add);
+    content.each_seen_receiver(&mut lowest, Highest::may_rise, Highest::add);
     (-lowest.z).max(covered - longer * FARTHER)
 }
 

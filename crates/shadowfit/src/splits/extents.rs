@@ -120,17 +120,7 @@ impl Sizes {
 fn collect_receivers(extents: &mut [Dop; BINS], content: &Content, directions: &Directions, bins: &Bins) {
     for (index, view) in content.views().enumerate() {
         let slabs = Slabs::new(&view, bins);
-        let is_new = |extents: &[Dop; BINS], depths, min, max| {
-            let (low, high) = directions.extent(min, max);
-            slabs.reached(depths).any(|bin| !extents[bin].holds(&low, &high))
-        };
-        content.each_receiver_of_runs(
-            index,
-            &view,
-            extents,
-            |extents, depths, min, max| is_new(extents, depths, min, max),
-            |extents, depths, min, max| collect_box(extents, &slabs, directions, depths, min, max),
-        );
+        content.each_receiver(index, |depths, min, max| collect_box(extents, &slabs, directions, depths, min, max));
     }
 }
 
@@ -192,7 +182,9 @@ impl Dop {
     fn holds(&self, low: &[f32; DIRECTIONS], high: &[f32; DIRECTIONS]) -> bool {
         let mut is_inside = true;
         for i in 0..DIRECTIONS {
-            is_inside &= (high[i] <= self.max[i]) & (low[i] >= self.min[i]);
+            // Both without a branch, for four directions at a time.
+            is_inside &= high[i] <= self.max[i];
+            is_inside &= low[i] >= self.min[i];
         }
         is_inside
     }

@@ -94,6 +94,7 @@ struct OverTable<'a> {
 const UNKNOWN: f64 = f64::MAX;
 
 impl<'a> OverTable<'a> {
+    #[expect(clippy::large_stack_arrays, reason = "32 KiB, for the time that it takes to choose splits")]
     fn new(search: &'a Search<'a>, bound: f64) -> Self {
         Self { search, bound, weights: [[UNKNOWN; BINS]; BINS] }
     }

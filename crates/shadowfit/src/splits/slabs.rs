@@ -159,8 +159,8 @@ impl<'a> Body<'a> {
         let crossed_by = |side: usize| self.crossed[side % 4];
         let planes = self.bins.into_iter().fold((usize::MAX, 0), |(a, b), bin| (a.min(bin), b.max(bin)));
         for side in (0..4).filter(|side| crossed_by(*side)) {
-            for plane in planes.0..planes.1 {
-                add(plane..plane + 2, rectangles[plane][side], rectangles[plane][(side + 1) % 4]);
+            for (plane, rectangle) in rectangles.iter().enumerate().take(planes.1).skip(planes.0) {
+                add(plane..plane + 2, rectangle[side], rectangle[(side + 1) % 4]);
             }
             // A corner of the view's cross-sections lies on the side of its number and on that before.
             for bin in reached.clone().filter(|_| crossed_by(side + 3)) {

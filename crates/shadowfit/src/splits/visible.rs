@@ -165,6 +165,7 @@ struct Grid {
 }
 
 impl Grid {
+    #[expect(clippy::large_stack_arrays, reason = "56 KiB, for the time that it takes to look around")]
     fn new(view: &View) -> Self {
         let whole = view.slice(view.near, view.far);
         let corners = |i: usize| [whole.corners[i], whole.corners[i + 1], whole.corners[i + 2], whole.corners[i + 3]];
