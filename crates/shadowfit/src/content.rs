@@ -55,7 +55,8 @@ impl<'a> Content<'a> {
         if workspace.storage.len() < required {
             return Err(FitError::WorkspaceTooSmall { given: workspace.storage.len(), required });
         }
-        for boxes in input.receivers.iter().chain(&input.casters) {
+        let is_same = is_same(input.receivers, input.casters);
+        for boxes in input.receivers.iter().chain(input.casters.iter().filter(|_| !is_same)) {
             check(boxes)?;
         }
         let (depths, points) = workspace.storage.split_at_mut(needed);
@@ -64,8 +65,8 @@ impl<'a> Content<'a> {
         let groups = |boxes: Option<Boxes<'w>>, storage: &'w mut [DVec2]| {
             boxes.map_or(Groups::default(), |boxes| Groups::new(&boxes, origin, storage))
         };
-        let (receiver_groups, caster_groups) =
-            (groups(input.receivers, of_receivers), groups(input.casters, of_casters));
+        let receiver_groups = groups(input.receivers, of_receivers);
+        let caster_groups = if is_same { receiver_groups } else { groups(input.casters, of_casters) };
         if let Some(receivers) = &input.receivers {
             for (view, depths) in input.views.iter().zip(depths.chunks_mut(count.max(1))) {
                 view_depths(input, receivers, &receiver_groups, view, depths);
@@ -339,6 +340,11 @@ fn is_coprime(mut a: usize, mut b: usize) -> bool {
         (a, b) = (b, a % b);
     }
     a == 1
+}
+
+/// Whether receivers and casters are the same boxes in memory.
+fn is_same(receivers: Option<Boxes>, casters: Option<Boxes>) -> bool {
+    receivers.zip(casters).is_some_and(|(a, b)| a.origin == b.origin && core::ptr::eq(a.boxes, b.boxes))
 }
 
 /// Refuses boxes with a coordinate that is not a number or too large; empty ones are allowed.

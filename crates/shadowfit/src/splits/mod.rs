@@ -22,6 +22,7 @@ use crate::{FitError, FitInput, Technique};
 use bins::{BINS, Bins, Weights, even};
 use extents::{Maps, Sizes, slice_bin};
 use optimise::{BinSplits, least_quantile, quantile};
+use visible::RayCount;
 
 pub(crate) use bins::Splits;
 
@@ -223,13 +224,14 @@ impl Chooser<'_, '_> {
     }
 
     fn weights(&self, bins: &Bins) -> Weights {
+        let rays = if self.rule.serves_all { RayCount::COARSE } else { RayCount::FINE };
         let weights = match (self.technique.splits, &self.input.histogram) {
             (SplitScheme::FromHistogram, Some(histogram)) if !histogram.is_empty() => {
-                let (seen, guess) = (seen::weights(histogram, bins), visible::weights(self.content, bins));
+                let (seen, guess) = (seen::weights(histogram, bins), visible::weights(self.content, bins, rays));
                 let share = if self.content.receivers.is_some() { GUESS } else { BLIND_GUESS };
                 mixed(&seen, &guess, share)
             }
-            _ => visible::weights(self.content, bins),
+            _ => visible::weights(self.content, bins, rays),
         };
         if self.rule.serves_all && self.rule.covers == Covers::Sphere {
             return mixed(&weights, &even(bins), UNSEEN);

@@ -10,10 +10,22 @@ use super::bins::{BINS, Bins, CLASSES, Weights};
 use crate::content::Content;
 use crate::view::{Picture, View, box_corners};
 
-/// Rays across the picture.
-const COLUMNS: usize = 32;
-/// Rays down the picture.
-const ROWS: usize = 18;
+/// Rays across and down the picture.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RayCount {
+    columns: usize,
+    rows: usize,
+}
+
+/// Most rays through a picture.
+const MOST_RAYS: usize = RayCount::FINE.columns * RayCount::FINE.rows;
+
+impl RayCount {
+    /// For maps that are read by view depth.
+    pub(super) const FINE: Self = Self { columns: 32, rows: 18 };
+    /// For maps that are read by coverage, whose splits matter less.
+    pub(super) const COARSE: Self = Self { columns: 20, rows: 11 };
+}
 
 /// Boxes kept along each ray. A box is mostly air, so what is behind the first one may be seen.
 const LAYERS: usize = 4;
@@ -26,12 +38,12 @@ const FURTHER: f64 = 0.85;
 const AROUND: f64 = 1.0 / 3.0;
 
 /// Shares of the rays that first meet a box in each bin; equal shares where no box is known.
-pub(super) fn weights(content: &Content, bins: &Bins) -> Weights {
+pub(super) fn weights(content: &Content, bins: &Bins, rays: RayCount) -> Weights {
     let mut spread = Spread::new(bins);
     for (view_index, view) in content.views().enumerate() {
-        let mut grid = Grid::new(&view);
+        let mut grid = Grid::new(&view, rays);
         content.each_receiver(view_index, |depths, min, max| grid.meet(&view, bins, depths.0, min, max));
-        for ray in &grid.rays {
+        for ray in &grid.rays[..rays.columns * rays.rows] {
             let mut weight = 1.0;
             for (enter, leave) in ray.layers.into_iter().filter(|layer| layer.0 < NOWHERE) {
                 spread.add(enter, leave, weight);
@@ -158,7 +170,8 @@ impl Spread {
 
 /// Rays through a picture, from its near to its far rectangle, row by row.
 struct Grid {
-    rays: [Ray; COLUMNS * ROWS],
+    rays: [Ray; MOST_RAYS],
+    count: RayCount,
     picture: Picture,
     near: f64,
     depth: f64,
@@ -166,31 +179,31 @@ struct Grid {
 
 impl Grid {
     #[expect(clippy::large_stack_arrays, reason = "56 KiB, for the time that it takes to look around")]
-    fn new(view: &View) -> Self {
+    fn new(view: &View, count: RayCount) -> Self {
         let whole = view.slice(view.near, view.far);
         let corners = |i: usize| [whole.corners[i], whole.corners[i + 1], whole.corners[i + 2], whole.corners[i + 3]];
         let (start, end) = (corners(0), corners(4));
-        let mut rays = [Ray::new(DVec3::ZERO, DVec3::ZERO); COLUMNS * ROWS];
-        for (row, rays) in rays.chunks_exact_mut(COLUMNS).enumerate() {
-            let [first, last] = ends_of_row(&start, &end, row);
-            let step = 1.0 / (COLUMNS - 1) as f64;
+        let mut rays = [Ray::new(DVec3::ZERO, DVec3::ZERO); MOST_RAYS];
+        for (row, rays) in rays.chunks_exact_mut(count.columns).enumerate().take(count.rows) {
+            let [first, last] = ends_of_row(&start, &end, row, count);
+            let step = 1.0 / (count.columns - 1) as f64;
             let (start_step, end_step) = ((last.0 - first.0) * step, (last.1 - first.1) * step);
             for (column, ray) in rays.iter_mut().enumerate() {
                 let x = column as f64;
                 *ray = Ray::new(first.0 + start_step * x, first.1 + end_step * x);
             }
         }
-        Self { rays, picture: view.picture(), near: view.near, depth: view.far - view.near }
+        Self { rays, count, picture: view.picture(), near: view.near, depth: view.far - view.near }
     }
 
     /// Intersects all rays with a box that begins at a view depth.
     fn meet(&mut self, view: &View, bins: &Bins, nearest: f64, min: DVec3, max: DVec3) {
-        let Some((columns, rows)) = covered(view, &self.picture, min, max) else { return };
+        let Some((columns, rows)) = covered(view, &self.picture, self.count, min, max) else { return };
         let bin = |t: f64| bins.of(self.near + self.depth * t) as u8;
         // Shares of a ray are those of the view depth.
         let nearest = (nearest - self.near) / self.depth - ROUNDING;
         for row in rows {
-            for ray in &mut self.rays[row * COLUMNS..][columns.clone()] {
+            for ray in &mut self.rays[row * self.count.columns..][columns.clone()] {
                 if nearest < ray.enters[LAYERS - 1]
                     && let Some(crossing) = ray.crossing(min, max)
                 {
@@ -202,15 +215,15 @@ impl Grid {
 }
 
 /// The first and the last ray of a row, each from its start to its end.
-fn ends_of_row(start: &[DVec3; 4], end: &[DVec3; 4], row: usize) -> [(DVec3, DVec3); 2] {
-    let y = (row as f64 + 0.5) / ROWS as f64;
+fn ends_of_row(start: &[DVec3; 4], end: &[DVec3; 4], row: usize, count: RayCount) -> [(DVec3, DVec3); 2] {
+    let y = (row as f64 + 0.5) / count.rows as f64;
     // Left-top, right-top, right-bottom, left-bottom.
     let at = |top: usize, bottom: usize| {
         let lerp = |c: &[DVec3; 4]| c[top] * (1.0 - y) + c[bottom] * y;
         (lerp(start), lerp(end))
     };
     let (left, right) = (at(0, 3), at(1, 2));
-    let half = 0.5 / COLUMNS as f64;
+    let half = 0.5 / count.columns as f64;
     let between = |x: f64| (left.0 * (1.0 - x) + right.0 * x, left.1 * (1.0 - x) + right.1 * x);
     [between(half), between(1.0 - half)]
 }
@@ -220,12 +233,13 @@ fn ends_of_row(start: &[DVec3; 4], end: &[DVec3; 4], row: usize) -> [(DVec3, DVe
 fn covered(
     view: &View,
     picture: &Picture,
+    count: RayCount,
     min: DVec3,
     max: DVec3,
 ) -> Option<(core::ops::Range<usize>, core::ops::Range<usize>)> {
     let corners = box_corners(min, max);
     if corners.into_iter().any(|corner| view.depth.distance(corner) < view.near) {
-        return Some((0..COLUMNS, 0..ROWS));
+        return Some((0..count.columns, 0..count.rows));
     }
     let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
     for corner in corners {
@@ -240,5 +254,5 @@ fn covered(
         let last = libm::floor(high[axis] * count as f64 - 0.5).min(count as f64 - 1.0);
         if first > last { None } else { Some(first as usize..last as usize + 1) }
     };
-    Some((range(0, COLUMNS)?, range(1, ROWS)?))
+    Some((range(0, count.columns)?, range(1, count.rows)?))
 }
