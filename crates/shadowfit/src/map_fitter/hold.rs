@@ -23,7 +23,7 @@ use crate::light_hull::LightHull;
 use crate::motion::Motion;
 use crate::near_plane;
 use crate::rectangle::Rectangle;
-use crate::rule::FitRule;
+use crate::rule::{Covers, FitRule};
 use crate::settings::HoldSettings;
 use crate::view::Range;
 use crate::volume::{Constraint, Grid, ROUNDING, Volume};
@@ -84,7 +84,7 @@ impl Holder<'_, '_> {
         points: &mut [DVec2],
     ) -> Result<HeldMap, FitError> {
         // The border and the near plane depend on the texels of the map that is kept or made.
-        let plain = rule.without_room();
+        let plain = trial(&rule.without_room());
         let fresh =
             |points: &mut [DVec2]| fits::fit_map(self.content, &self.light, &plain, slice, Placement::Tight, points);
         let is_of_light = |held: &HeldMap| held.is_of(&self.light.axes(rule.roll), rule);
@@ -178,24 +178,38 @@ impl Holder<'_, '_> {
         ((far, near.z), near.set_by)
     }
 
+    /// What will be covered some frames on, as many as the settings' growth allows; `None` where nothing moves, or
+    /// for lack of storage or views: a map without room is still valid for this frame.
+    fn look_ahead(&self, fresh: &Volume, rule: &FitRule, slice: Range, points: &mut [DVec2]) -> Option<Volume> {
+        let view = &self.input.views[0];
+        let motion = self.motion.filter(|motion| !motion.is_still(view))?;
+        let plain = trial(&FitRule { border: 0.0, ..*rule });
+        let (old, growth) = (fresh.max - fresh.min, f64::from(self.hold.growth));
+        let mut within_growth = |frames: u32| {
+            let ahead = [motion.after(view, frames / 2), motion.after(view, frames)];
+            let larger = self.fit_ahead(&ahead, &plain, slice, points).ok()?;
+            let size = larger.max - larger.min;
+            Some(larger).filter(|_| size.x * size.y <= old.x * old.y * growth * growth)
+        };
+        if !rule.serves_all {
+            return steps_ahead(self.hold.horizon).find_map(within_growth);
+        }
+        // The more frames the larger: the greatest of a few numbers is found by halves.
+        let steps = || core::iter::successors(Some(self.hold.horizon), |n| Some(n / 2)).take_while(|n| *n > 0);
+        let (mut low, mut high, mut found) = (0, steps().count(), None);
+        while low < high {
+            let middle = (low + high) / 2;
+            match steps().nth(middle).and_then(&mut within_growth) {
+                Some(volume) => (high, found) = (middle, Some(volume)),
+                None => low = middle + 1,
+            }
+        }
+        found
+    }
+
     /// A new map with room for the motion to come.
     fn make(&self, fresh: &Volume, rule: &FitRule, slice: Range, points: &mut [DVec2]) -> Result<HeldMap, FitError> {
-        let mut volume = *fresh;
-        let plain = FitRule { border: 0.0, ..*rule };
-        let mut frames = self.hold.horizon;
-        while let Some(motion) = self.motion.filter(|motion| frames > 0 && !motion.is_still(&self.input.views[0])) {
-            let ahead = [motion.after(&self.input.views[0], frames / 2), motion.after(&self.input.views[0], frames)];
-            // Without enough storage or views there is no looking ahead; the map is still valid for this
-            // frame.
-            let Ok(larger) = self.fit_ahead(&ahead, &plain, slice, points) else { break };
-            let (size, old) = (larger.max - larger.min, fresh.max - fresh.min);
-            let growth = f64::from(self.hold.growth);
-            if size.x * size.y <= old.x * old.y * growth * growth {
-                volume = larger;
-                break;
-            }
-            frames = frames * 3 / 4;
-        }
+        let mut volume = self.look_ahead(fresh, rule, slice, points).unwrap_or(*fresh);
         let room = (volume.max - volume.min).truncate() * (0.5 * f64::from(self.hold.margin));
         volume.min -= room.extend(0.0);
         volume.max += room.extend(0.0);
@@ -212,6 +226,17 @@ impl Holder<'_, '_> {
         map.set_by[5] = near_set_by.unwrap_or(map.set_by[5]);
         Ok(map)
     }
+}
+
+/// Numbers of frames to look ahead, each a quarter less than the one before.
+fn steps_ahead(horizon: u32) -> impl Iterator<Item = u32> {
+    core::iter::successors(Some(horizon), |frames| Some(frames / 4 * 3 + frames % 4 * 3 / 4))
+        .take_while(|frames| *frames > 0)
+}
+
+/// A rule for maps whose depths are found later: rectangles need not look at all that lies inside them.
+fn trial(rule: &FitRule) -> FitRule {
+    FitRule { serves_all: rule.serves_all && rule.covers == Covers::Sphere, ..*rule }
 }
 
 /// What a map must cover in this frame, along its axes and relative to the origin.
