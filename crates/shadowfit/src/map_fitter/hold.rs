@@ -198,7 +198,7 @@ impl Holder<'_, '_> {
         let steps = || core::iter::successors(Some(self.hold.horizon), |n| Some(n / 2)).take_while(|n| *n > 0);
         let (mut low, mut high, mut found) = (0, steps().count(), None);
         while low < high {
-            let middle = (low + high) / 2;
+            let middle = usize::midpoint(low, high);
             match steps().nth(middle).and_then(&mut within_growth) {
                 Some(volume) => (high, found) = (middle, Some(volume)),
                 None => low = middle + 1,
