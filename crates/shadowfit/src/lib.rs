@@ -170,6 +170,7 @@ mod enclosing_sphere;
 mod error;
 mod frustum;
 mod grid;
+mod groups;
 mod hull;
 mod input;
 mod light_hull;

@@ -393,7 +393,8 @@ fn check(input: &FitInput, technique: &Technique) -> Result<(Rules, Light), FitE
         checks::finite("a bias", f64::from(bias))?;
     }
     let border = technique.border();
-    let (most, light) = fits::prepare(input, &technique.fit, border)?;
+    let (mut most, light) = fits::prepare(input, &technique.fit, border)?;
+    most.serves_all = technique.shares_maps() && most.can_be_held();
     let mut own = [None; MAX_MAPS];
     for (map, own) in own.iter_mut().enumerate().take(technique.count as usize) {
         if let Some(settings) = own_settings(technique, map) {
@@ -402,6 +403,7 @@ fn check(input: &FitInput, technique: &Technique) -> Result<(Rules, Light), FitE
                 // All held maps of a frame have one roll.
                 rule.roll = most.roll;
             }
+            rule.serves_all = technique.shares_maps() && rule.can_be_held();
             *own = Some(rule);
         }
     }
