@@ -8,7 +8,7 @@ mod extents;
 mod optimise;
 mod seen;
 mod slabs;
-mod visible;
+pub(crate) mod visible;
 
 use crate::axes::Light;
 use crate::checks;

@@ -12,9 +12,9 @@ use crate::view::{Picture, View, box_corners};
 
 /// Rays across and down the picture.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct RayCount {
-    columns: usize,
-    rows: usize,
+pub(crate) struct RayCount {
+    pub(crate) columns: usize,
+    pub(crate) rows: usize,
 }
 
 /// Most rays through a picture.
@@ -22,7 +22,7 @@ const MOST_RAYS: usize = RayCount::FINE.columns * RayCount::FINE.rows;
 
 impl RayCount {
     /// For maps that are read by view depth.
-    pub(super) const FINE: Self = Self { columns: 32, rows: 18 };
+    pub(crate) const FINE: Self = Self { columns: 32, rows: 18 };
     /// For maps that are read by coverage, whose splits matter less.
     pub(super) const COARSE: Self = Self { columns: 20, rows: 11 };
 }
@@ -102,26 +102,26 @@ impl Ray {
             }
         }
     }
+}
 
-    /// Shares of it at which it enters and leaves a box.
-    #[inline]
-    fn crossing(&self, min: DVec3, max: DVec3) -> Option<(f64, f64)> {
-        let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
-        for axis in 0..3 {
-            let (start, along) = (self.start[axis], self.along[axis]);
-            if along == 0.0 {
-                if start < min[axis] || start > max[axis] {
-                    return None;
-                }
-                continue;
+/// Shares of a ray, from its start along a vector, at which it enters and leaves a box.
+#[inline]
+pub(crate) fn crossing(start: DVec3, along: DVec3, min: DVec3, max: DVec3) -> Option<(f64, f64)> {
+    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+    for axis in 0..3 {
+        let (start, along) = (start[axis], along[axis]);
+        if along == 0.0 {
+            if start < min[axis] || start > max[axis] {
+                return None;
             }
-            let (a, b) = ((min[axis] - start) / along, (max[axis] - start) / along);
-            let (first, last) = if a < b { (a, b) } else { (b, a) };
-            enter = if first > enter { first } else { enter };
-            leave = if last < leave { last } else { leave };
+            continue;
         }
-        if enter > leave { None } else { Some((enter, leave)) }
+        let (a, b) = ((min[axis] - start) / along, (max[axis] - start) / along);
+        let (first, last) = if a < b { (a, b) } else { (b, a) };
+        enter = if first > enter { first } else { enter };
+        leave = if last < leave { last } else { leave };
     }
+    if enter > leave { None } else { Some((enter, leave)) }
 }
 
 /// Weights spread over bins.
@@ -205,7 +205,7 @@ impl Grid {
         for row in rows {
             for ray in &mut self.rays[row * self.count.columns..][columns.clone()] {
                 if nearest < ray.enters[LAYERS - 1]
-                    && let Some(crossing) = ray.crossing(min, max)
+                    && let Some(crossing) = crossing(ray.start, ray.along, min, max)
                 {
                     ray.add(crossing, bin);
                 }
@@ -230,7 +230,7 @@ fn ends_of_row(start: &[DVec3; 4], end: &[DVec3; 4], row: usize, count: RayCount
 
 /// Columns and rows of rays that may meet a box; all of them where it reaches before the near
 /// plane.
-fn covered(
+pub(crate) fn covered(
     view: &View,
     picture: &Picture,
     count: RayCount,

@@ -23,7 +23,7 @@ use plan::{Plan, Planner};
 
 /// What a texel that is this many times too wide costs.
 pub(crate) fn cost_of(ratio: f32) -> f32 {
-    let p = crate::tune::get(0, 1.0);
+    let p = crate::tune::get(0, 1.5);
     if p == 1.0 { ratio } else { libm::powf(ratio, p) }
 }
 
@@ -39,13 +39,12 @@ struct Window {
     z: Option<(f64, f64)>,
 }
 
-/// A change of one window's texels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Change {
-    window: usize,
-    by: i32,
-}
+/// Frames for which windows are searched with effort, once it is known what is visible.
+const EFFORT: u8 = 4;
+
+/// Changes that are tried in such a frame, and in others.
+const CHANGES_OF_EFFORT: u32 = 18;
+const CHANGES_AT_REST: u32 = 2;
 
 /// The windows of the last frame.
 #[derive(Clone, Copy, Debug)]
@@ -53,8 +52,12 @@ struct Change {
 pub(crate) struct HeldWindows {
     plane: Plane,
     windows: [Window; MAX_MAPS],
-    /// The change that was better in the last frame.
-    pending: Option<Change>,
+    /// The windows that are sought; their depths are not known.
+    sought: [Window; MAX_MAPS],
+    /// Frames for which the search goes on with effort.
+    effort: u8,
+    /// Cost when the windows were last searched with effort.
+    rest: f32,
     /// Whether no grid of need was known yet.
     is_guess: bool,
     /// Number of the next change that is tried.
@@ -99,39 +102,61 @@ impl Frame<'_, '_> {
         // 3. The others, finest first.
         let planner = Planner { cells: cells.as_slice(), usable: usable.map(DVec2::as_vec2), count };
         let to_rect = |i: usize, window: &Window| rect_of(window, usable[i], border, anchor);
-        let (plan, pending, turn) = match &before {
-            None => (planner.fresh(last.steps, to_rect(count - 1, &last)), None, 0),
+        let rect = to_rect(count - 1, &last);
+        let (mut turn, mut effort, mut rest) = before.as_ref().map_or((0, 0, 0.0), |b| (b.turn, b.effort, b.rest));
+        let (drawn, sought) = match &before {
+            None => {
+                let mut plan = planner.ladder(last.steps, rect);
+                planner.seek(&mut plan, &mut turn, planner.all_changes());
+                (plan, plan)
+            }
             Some(before) => {
-                let mut held = Plan::default();
-                for i in 0..count - 1 {
-                    held.steps[i] = before.windows[i].steps;
-                    held.rects[i] = to_rect(i, &before.windows[i]);
-                }
-                (held.steps[count - 1], held.rects[count - 1]) = (last.steps, to_rect(count - 1, &last));
+                let plan_of = |windows: &[Window; MAX_MAPS]| {
+                    let mut plan = Plan::default();
+                    for i in 0..count {
+                        (plan.steps[i], plan.rects[i]) = (windows[i].steps, to_rect(i, &windows[i]));
+                    }
+                    planner.below(plan, last.steps, rect)
+                };
+                let (mut drawn, mut sought) = (plan_of(&before.windows), plan_of(&before.sought));
                 if before.is_guess && !is_guess {
-                    (planner.settle(held), None, 0)
-                } else {
-                    planner.go_on(held, before.pending, before.turn)
+                    effort = EFFORT;
+                    let ladder = planner.ladder(last.steps, rect);
+                    if planner.cost(&ladder) < planner.cost(&sought) {
+                        sought = ladder;
+                    }
                 }
+                let changes = if effort > 0 { CHANGES_OF_EFFORT } else { CHANGES_AT_REST };
+                planner.seek(&mut sought, &mut turn, changes);
+                planner.keep(&mut drawn);
+                let most = if effort > 0 { count } else { 1 };
+                (planner.follow(drawn, &sought, most), sought)
             }
         };
+        // A scene that has become much harder to serve is searched with effort.
+        let cost = planner.cost(&drawn);
+        effort = effort.saturating_sub(1);
+        if before.is_none() || effort == 1 { rest = cost; }
+        rest = rest.min(cost);
+        let _ = &mut rest;
         let t3 = std::time::Instant::now();
-        let mut held = HeldWindows { plane, windows: [Window::default(); MAX_MAPS], pending, turn, is_guess };
+        let mut held = HeldWindows { plane, windows: [Window::default(); MAX_MAPS], sought: [Window::default(); MAX_MAPS], turn, effort, rest, is_guess };
         let mut volumes = [None; MAX_MAPS];
         for i in 0..count {
             let mut window = if i == count - 1 {
                 last
             } else {
                 let kept = before.as_ref().map(|before| before.windows[i]).filter(|window| {
-                    window.steps == plan.steps[i] && to_rect(i, window) == plan.rects[i]
+                    window.steps == drawn.steps[i] && to_rect(i, window) == drawn.rects[i]
                 });
-                kept.unwrap_or_else(|| window_of(plan.steps[i], &plan.rects[i], border, anchor))
+                kept.unwrap_or_else(|| window_of(drawn.steps[i], &drawn.rects[i], border, anchor))
             };
             let was = before.as_ref().map(|before| before.windows[i]).filter(|was| was.steps == window.steps);
             let z = was.and_then(|was| was.z);
             let volume = self.volume(&mut window, z, &plane, &rule(i), &shadows);
             volumes[i] = Some(volume);
             held.windows[i] = window;
+            held.sought[i] = window_of(sought.steps[i], &sought.rects[i], border, anchor);
         }
         let t4 = std::time::Instant::now();
         if crate::tune::get(15, 0.0) == 2.0 { std::eprintln!("time shadows {:?} cells {:?} plan {:?} volumes {:?} n {}", t1-t0, t2-t1, t3-t2, t4-t3, cells.as_slice().len()); }
@@ -158,7 +183,7 @@ impl Frame<'_, '_> {
         let texel = texel_of(window.steps, plane);
         let min = window.first * texel - anchor.truncate();
         let max = min + texel * rule.resolution.as_dvec2();
-        let (low, high) = shadows.depth(min, max, rule);
+        let (low, high) = shadows.depth(min - texel, max + texel, rule);
         let z = grid::stabilised_depth(z, (low + anchor.z, high + anchor.z), f64::from(self.technique.hold.waste));
         window.z = Some(z);
         let mut volume = Volume {
@@ -230,8 +255,8 @@ fn hold_all(held: Option<Window>, (min, max): (DVec2, DVec2), usable: DVec2, bor
     Window { steps, first: DVec2::new(grid::floor(line.x), grid::floor(line.y)), z: None }
 }
 
-/// Share of the way to the best place that a window moves beyond what it must.
-pub(super) const MOVE_ON: f64 = 0.3;
+/// Share of the way to the middle that the last window moves beyond what it must.
+const MOVE_ON: f64 = 0.3;
 
 impl HeldWindows {
     /// These windows for another light: each keeps its texels, and what it was around.
@@ -239,9 +264,9 @@ impl HeldWindows {
         if self.plane == *plane {
             return *self;
         }
-        let mut moved = Self { plane: *plane, pending: None, ..*self };
+        let mut moved = Self { plane: *plane, ..*self };
         let (old, new) = (self.plane.of(self.plane.axes.project(origin)), plane.of(plane.axes.project(origin)));
-        for window in &mut moved.windows {
+        for window in moved.windows.iter_mut().chain(&mut moved.sought) {
             let texel = grid::eighths(window.steps);
             // Seen from the origin of the fit, a light that turns a little moves little.
             let line = (window.first * texel - old + new) / texel;
