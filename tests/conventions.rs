@@ -135,9 +135,9 @@ fn without_a_fit_everything_is_lit_and_surplus_fits_are_left_out() {
 }
 
 /// A technique with the distance and the resolution of another, which depend on the scene and on what may be spent.
-fn with_extent_of(technique: Technique, other: &Technique) -> Technique {
+fn with_extent_of(technique: &Technique, other: &Technique) -> Technique {
     let fit = technique.fit.with_max_distance(other.fit.max_distance).with_resolution(other.fit.resolution);
-    technique.with_fit(fit)
+    (*technique).with_fit(fit)
 }
 
 #[test]
@@ -178,7 +178,7 @@ fn the_core_s_readme_docs_and_example_begin_with_the_same_code_and_the_default_t
 fn gpu_the_viewer_starts_with_the_recommended_technique() {
     let stage = Stage::new(software_gpu(), builtin::default_scene(), 1).expect("the default scene");
     let start = stage.settings.technique;
-    assert_eq!(start, with_extent_of(Technique::default(), &start));
+    assert_eq!(start, with_extent_of(&Technique::default(), &start));
 }
 
 #[test]

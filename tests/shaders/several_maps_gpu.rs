@@ -231,7 +231,7 @@ fn assert_read(
         if beside.as_flattened().iter().any(|other| which(*other) != which(expected)) {
             continue;
         }
-        let main = expected.map_or(-1, |read| read.main() as i32);
+        let main = expected.map_or(-1, |read| i32::try_from(read.main()).expect("one of eight"));
         assert_eq!(choices[index].map, main, "{point}: {expected:?}");
         let weight = |map: usize| match expected {
             Some(MapRead { blend: Some(blend), .. }) if blend.map == map => blend.weight,

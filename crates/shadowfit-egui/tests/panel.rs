@@ -608,7 +608,7 @@ fn a_technique_that_was_changed_is_called_so() {
 
     let opened = Technique::default().with_overlap(0.2);
     harness.state_mut().settings.technique = opened;
-    harness.state_mut().panel.name_technique("street.toml", opened);
+    harness.state_mut().panel.name_technique("street.toml", &opened);
     harness.run();
     assert_eq!(technique_title(&harness), "street.toml");
     harness.state_mut().settings.technique.overlap = 0.3;

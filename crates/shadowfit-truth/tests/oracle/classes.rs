@@ -237,6 +237,11 @@ fn merged_tallies_are_those_of_both_pictures() {
     assert!((p95 - 4.0).abs() < 4.0 * 0.005 && (p50 - 1.0).abs() < 0.005, "{p50} {p95}");
 }
 
+/// Maps that are read by view depth with one tap.
+fn by_view_depth(maps: &[MeasuredMap]) -> PictureMaps<'_> {
+    PictureMaps { maps, reading: MapReading::ViewDepth, reach: 0.5, depth_clamp: false }
+}
+
 #[test]
 fn crawl_compares_edge_pixels_that_the_maps_of_both_frames_hold() {
     let room = Room::new();
@@ -245,16 +250,13 @@ fn crawl_compares_edge_pixels_that_the_maps_of_both_frames_hold() {
     // One column of the four in the edge zone was lit, and so was one far from it.
     let then: Vec<f32> = (0..PIXELS).map(|p| if [19, 3].contains(&(p % 40)) { 1.0 } else { now[p] }).collect();
     let maps = [map(1, 9.0)];
-    fn before_maps(maps: &[MeasuredMap]) -> PictureMaps<'_> {
-        PictureMaps { maps, reading: MapReading::ViewDepth, reach: 0.5, depth_clamp: false }
-    }
-    let before = MapsBefore { maps: before_maps(&maps), eye: DVec3::Y * 2.0, forward: DVec3::NEG_Y, factors: &then };
+    let before = MapsBefore { maps: by_view_depth(&maps), eye: DVec3::Y * 2.0, forward: DVec3::NEG_Y, factors: &then };
     assert_eq!(crawl(&room.truth, &judged, &now, &before), (10, 40));
     // Two of its columns are beside the maps of the frame before.
     let beside = [shadow_map(DVec3::X * -4.0, DVec3::Y, 8.0, 9.0, 80)];
-    assert_eq!(crawl(&room.truth, &judged, &now, &MapsBefore { maps: before_maps(&beside), ..before }), (10, 20));
+    assert_eq!(crawl(&room.truth, &judged, &now, &MapsBefore { maps: by_view_depth(&beside), ..before }), (10, 20));
     // Or beyond its last split.
     let short = FitMap { split_far: 1.9, ..map_around(DVec3::ZERO, DVec3::Y, 8.0, 9.0, 80) };
     let short = [short.measured(DVec3::Y)];
-    assert_eq!(crawl(&room.truth, &judged, &now, &MapsBefore { maps: before_maps(&short), ..before }), (0, 0));
+    assert_eq!(crawl(&room.truth, &judged, &now, &MapsBefore { maps: by_view_depth(&short), ..before }), (0, 0));
 }
