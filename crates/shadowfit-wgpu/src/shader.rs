@@ -73,9 +73,9 @@ fn choice(descriptor: &ShadowMapDescriptor) -> String {
     let try_map = |entry: u32| {
         let map = map(entry);
         format!(
-            "    if shadowfit_is_open(choice, {entry}, {map}, view_depth) {{
+            "    if shadowfit_is_open(choice, {entry}, view_depth, {map}.far, {map}.blend_near) {{
         let free = shadowfit_free({entry}u, {map}, position);
-        choice = shadowfit_try(choice, {entry}, {map}, view_depth, free);
+        choice = shadowfit_try(choice, {entry}, view_depth, {map}.far, {map}.blend_near, free);
     }}
 "
         )

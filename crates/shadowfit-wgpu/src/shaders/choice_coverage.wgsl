@@ -2,14 +2,14 @@
 // where there is none, the finest that holds it at all. The maps are tried one after the other, the finest first.
 // SHADOWFIT_REACH and SHADOWFIT_BLEND are texels: what the filter reads around a point, and the width of the blend.
 
-// Whether the choice may still change by a map.
-fn shadowfit_is_open(choice: shadowfit_Choice, entry: i32, map: shadowfit_Map, view_depth: f32) -> bool {
+// Whether the choice may still change by a map. far, blend_near: its view depths.
+fn shadowfit_is_open(choice: shadowfit_Choice, entry: i32, view_depth: f32, far: f32, blend_near: f32) -> bool {
     return choice.first < 0 || (choice.second < 0 && choice.weight < 1.0);
 }
 
 // The choice with one more map, of which `free` texels lie around the point.
 fn shadowfit_try(
-    choice: shadowfit_Choice, entry: i32, map: shadowfit_Map, view_depth: f32, free: f32,
+    choice: shadowfit_Choice, entry: i32, view_depth: f32, far: f32, blend_near: f32, free: f32,
 ) -> shadowfit_Choice {
     var next = choice;
     if free >= SHADOWFIT_REACH {
