@@ -17,7 +17,7 @@ use std::path::PathBuf;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
-use shadowfit::settings::{FilterKind, MapFormat};
+use shadowfit::settings::{FilterKind, MapChoice, MapFormat};
 use shadowfit::{CasterVolume, DepthConvention};
 use shadowfit_render::shaders;
 use shadowfit_wgpu::{MAX_MAPS, ShadowMapDescriptor, caster_wgsl, culling_wgsl, receiver_wgsl};
@@ -30,7 +30,9 @@ fn descriptors() -> Vec<ShadowMapDescriptor> {
     for format in [MapFormat::Depth32Float, MapFormat::R32Float] {
         for filter in FilterKind::ALL {
             for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
-                all.push(ShadowMapDescriptor { format, filter, depth, ..Default::default() });
+                for choice in [MapChoice::Coverage, MapChoice::ViewDepth] {
+                    all.push(ShadowMapDescriptor { format, filter, depth, choice, ..Default::default() });
+                }
             }
         }
     }
@@ -48,7 +50,7 @@ fn modules() -> Vec<(String, String)> {
         ("culling piece".to_owned(), culling_wgsl(0)),
     ];
     for map in descriptors() {
-        let kind = format!("{:?} {:?} {:?}", map.format, map.filter, map.depth);
+        let kind = format!("{:?} {:?} {:?} {:?}", map.format, map.filter, map.depth, map.choice);
         all.push((format!("scene, {kind}"), shaders::scene(&map)));
         all.push((format!("probe, {kind}"), shaders::probe(&map)));
         all.push((format!("inset, {kind}"), shaders::inset(&map)));

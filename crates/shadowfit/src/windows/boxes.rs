@@ -38,34 +38,35 @@ struct Ray {
     around: Layer,
 }
 
-/// Adds what the views see of the boxes.
-pub(super) fn add(cells: &mut Cells, input: &FitInput, content: &Content, plane: &Plane, up: DVec3, distance: f32) {
+/// Adds what the views see of the boxes, up to a view depth. `up` is the world's.
+pub(super) fn add(cells: &mut Cells, input: &FitInput, content: &Content, plane: &Plane, (up, distance): (DVec3, f32)) {
     for (view, frustum) in content.views().zip(content.views) {
-        let direction = -plane.axes.z;
-        let Ok(space) = NeedSpace::new(frustum, direction, up.as_vec3(), distance) else { continue };
-        let picture = Picture::new(&view);
+        let Ok(space) = NeedSpace::new(frustum, -plane.axes.z, up.as_vec3(), distance) else { continue };
+        let picture = Picture::new(&view, plane);
         let mut rays = [Ray { layers: [NOTHING; LAYERS], around: NOTHING }; RAYS.columns * RAYS.rows];
         content.each_in_view(&view, |i, min, max| picture.meet(&view, i, (min, max), &mut rays));
         let mut counted = Counted::new();
         let offset = frustum.origin - content.origin;
         for (i, ray) in rays.iter().enumerate() {
             let line = picture.ray(i % RAYS.columns, i / RAYS.columns);
-            let mut weight = 1.0;
-            let count = |layer: &Layer, weight: f32, counted: &mut Counted| -> f32 {
-                let cone = input.receiver_cones.get(layer.index as usize).copied().unwrap_or(NormalCone::ALL);
-                let Some(bounds) = content.receiver(layer.index as usize) else { return 0.0 };
-                picture.count(line, layer, &cone, bounds, &mut |p: DVec3, texel: f64, share: f32| {
-                    let q = plane.of(plane.axes.project(p - offset));
-                    if let Some(cell) = space.cell_of(q.as_vec2(), texel as f32) {
+            // Counts what a ray meets in a box; returns the share of it that goes no farther.
+            let mut count = |layer: &Layer, weight: f32| {
+                let index = layer.index as usize;
+                let cone = input.receiver_cones.get(index).copied().unwrap_or(NormalCone::ALL);
+                let Some(bounds) = content.receiver(index) else { return 0.0 };
+                picture.look(line, layer, (&cone, bounds), |point, texel, share| {
+                    let place = plane.of(plane.axes.project(point - offset)).as_vec2();
+                    if let Some(cell) = space.cell_of(place, texel as f32) {
                         counted.add(cell, weight * share);
                     }
-                }, plane, view.near, view.far)
+                })
             };
-            for layer in ray.layers.iter().take_while(|layer| layer.index != u32::MAX) {
-                weight *= 1.0 - count(layer, weight, &mut counted);
+            let mut weight = 1.0;
+            for layer in ray.layers.iter().take_while(|layer| layer.index != NOTHING.index) {
+                weight *= 1.0 - count(layer, weight);
             }
-            if ray.around.index != u32::MAX {
-                _ = count(&ray.around, AROUND, &mut counted);
+            if ray.around.index != NOTHING.index {
+                count(&ray.around, AROUND);
             }
         }
         cells.add(&counted, FINEST, (&space, plane), content.origin);
@@ -73,7 +74,8 @@ pub(super) fn add(cells: &mut Cells, input: &FitInput, content: &Content, plane:
 }
 
 /// Rays through a picture, from its near to its far rectangle.
-struct Picture {
+struct Picture<'a> {
+    plane: &'a Plane,
     whole: Slice,
     positions: view::Picture,
     right: DVec3,
@@ -82,14 +84,14 @@ struct Picture {
     pixel: f64,
 }
 
-impl Picture {
-    fn new(view: &View) -> Self {
+impl<'a> Picture<'a> {
+    fn new(view: &View, plane: &'a Plane) -> Self {
         let whole = view.slice(view.near, view.far);
         let c = whole.corners;
         let (right, down) = (c[5] - c[4], c[7] - c[4]);
         let height = checks::length(down);
         let (right, down) = (right / checks::length(right), down / height);
-        Self { whole, positions: view.picture(), right, down, pixel: height / (f64::from(PIXELS) * view.far) }
+        Self { plane, whole, positions: view.picture(), right, down, pixel: height / (f64::from(PIXELS) * view.far) }
     }
 
     /// Start and end of a ray.
@@ -124,36 +126,39 @@ impl Picture {
         }
     }
 
-    /// Passes on points of a box that a ray may meet, with the texel that each asks for and its share.
-    #[allow(clippy::too_many_arguments)]
-    fn count(&self, (start, end): (DVec3, DVec3), layer: &Layer, cone: &NormalCone, (min, max): (DVec3, DVec3), emit: &mut impl FnMut(DVec3, f64, f32), plane: &Plane, near: f64, far: f64) -> f32 {
+    /// Passes on points of a box that a ray may meet, with the texel that each asks for and its share; returns
+    /// the share of the ray that ends there.
+    fn look(
+        &self,
+        (start, end): (DVec3, DVec3),
+        layer: &Layer,
+        (cone, (min, max)): (&NormalCone, (DVec3, DVec3)),
+        mut emit: impl FnMut(DVec3, f64, f32),
+    ) -> f32 {
         let along = end - start;
         let (enter, leave) = (f64::from(layer.enter), f64::from(layer.leave));
-        let depth = |t: f64| near + (far - near) * t;
-        if cone.cos_half_angle > FLAT {
-            let normal = cone.axis.as_dvec3();
-            let d = normal.dot(along);
-            let ray = along / (far - near);
-            if d == 0.0 {
-                return BESIDE;
+        let pixel = |t: f64| (self.whole.near + (self.whole.far - self.whole.near) * t) * self.pixel;
+        if cone.cos_half_angle <= FLAT {
+            for share in SAMPLES {
+                let t = enter + (leave - enter) * share;
+                emit(start + along * t, pixel(t), SOLID / SAMPLES.len() as f32);
             }
-            let at = normal.dot((min + max) * 0.5 - start) / d;
-            let hit = if at >= enter && at <= leave { MET } else { BESIDE };
-            if normal.dot(plane.axes.z.as_dvec3()) * -d <= 0.0 {
-                return hit;
-            }
-            let t = at.clamp(enter, leave);
-            let slide = |across: DVec3| across - ray * (across.dot(normal) / ray.dot(normal));
-            let seen = |v: DVec3| plane.of(plane.axes.project(slide(v))).as_vec2();
+            return SOLID;
+        }
+        let normal = cone.axis.as_dvec3();
+        let across = normal.dot(along);
+        let t = normal.dot((min + max) * 0.5 - start) / across;
+        // A ray along the surface meets it nowhere.
+        let met = if t >= enter && t <= leave { MET } else { BESIDE };
+        let is_lit = normal.dot(self.plane.axes.z.as_dvec3()) * -across > 0.0;
+        if is_lit && t.is_finite() {
+            let t = t.clamp(enter, leave);
+            let slide = |v: DVec3| v - along * (v.dot(normal) / across);
+            let seen = |v: DVec3| self.plane.of(self.plane.axes.project(slide(v))).as_vec2();
             let texel = f64::from(needed_texel(seen(self.right), seen(self.down)));
-            emit(start + along * t, texel * depth(t) * self.pixel, hit);
-            return hit;
+            emit(start + along * t, texel * pixel(t), met);
         }
-        for share in SAMPLES {
-            let t = enter + (leave - enter) * share;
-            emit(start + along * t, depth(t) * self.pixel, SOLID / SAMPLES.len() as f32);
-        }
-        SOLID
+        met
     }
 }
 

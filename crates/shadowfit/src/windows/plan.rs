@@ -8,8 +8,8 @@
 use glam::Vec2;
 
 use super::cells::{Cell, MAX_CELLS};
-use super::placement::{self, Rect};
 use super::cost_of;
+use super::placement::{self, Rect};
 use crate::grid;
 use crate::settings::MAX_MAPS;
 
@@ -42,13 +42,18 @@ const CHANGES: [i32; 6] = [4, -4, 8, -8, 2, -2];
 const ROUNDS: u32 = 3;
 
 /// Share of the cost in the best place that a window must hold to stay where it is.
-const HOLDS_: f32 = 0.985;
+const HOLDS: f32 = 0.985;
 
 /// Share of the way to the best place that a window moves beyond what it must.
 const MOVE_ON: f32 = 0.3;
 
-/// Cost of the drawn windows over that of the sought ones up to which they serve.
-const SERVES: f32 = 1.1;
+/// Cost of the drawn windows over that of the sought ones up to which they serve, while it is being
+/// found out what is visible, and once that is known.
+const SERVES: f32 = 1.15;
+const SERVES_AT_REST: f32 = 1.4;
+
+/// Share of the points that every change counts for, at least.
+const FEW: f32 = 0.02;
 
 impl Planner<'_> {
     /// The best of several even ladders of windows in front of the last one.
@@ -124,16 +129,16 @@ impl Planner<'_> {
         }
     }
 
-    /// The drawn windows, of which as few are replaced by those that are sought, and no more than
-    /// `most`, as make them nearly as good.
-    pub(super) fn follow(&self, drawn: Plan, sought: &Plan, most: usize) -> Plan {
+    /// The drawn windows, of which as few are replaced by those that are sought as make them nearly as
+    /// good: one at most unless it is being found out what is visible.
+    pub(super) fn follow(&self, drawn: Plan, sought: &Plan, with_effort: bool) -> Plan {
         let found = self.cost(sought);
-        let enough = found * crate::tune::get(1, SERVES);
-        if most == 1 && self.cost(&drawn) <= found * crate::tune::get(2, 1.25) {
+        let enough = found * SERVES;
+        if !with_effort && self.cost(&drawn) <= found * SERVES_AT_REST {
             return drawn;
         }
         let mut plan = drawn;
-        for _ in 0..most {
+        for _ in 0..if with_effort { self.count } else { 1 } {
             let cost = self.cost(&plan);
             if cost <= enough {
                 return plan;
@@ -145,7 +150,7 @@ impl Planner<'_> {
                 (other.steps[i], other.rects[i]) = (sought.steps[i], sought.rects[i]);
                 let is_new = other != plan && self.is_in_order(&other.steps);
                 // What is gained for each point whose texels change.
-                let gain = (cost - self.cost(&other)) / (readers[i] + crate::tune::get(4, 0.02));
+                let gain = (cost - self.cost(&other)) / (readers[i] + FEW);
                 if is_new && best.is_none_or(|(most, _)| gain > most) {
                     best = Some((gain, other));
                 }
@@ -190,7 +195,7 @@ impl Planner<'_> {
     /// The held place while it holds nearly as much as the best one, else the least move to it.
     fn kept(&self, held: &Rect, left: &Left) -> Rect {
         let best = placement::best(self.cells, left, held.size);
-        let enough = best.cost(self.cells, left) * crate::tune::get(3, HOLDS_);
+        let enough = best.cost(self.cells, left) * HOLDS;
         if held.cost(self.cells, left) >= enough {
             return *held;
         }
@@ -207,6 +212,11 @@ impl Planner<'_> {
             plan.rects[i] = placement::best(self.cells, &left, self.size(i, plan.steps[i]));
             self.take(&plan.rects[i], &mut left);
         }
+    }
+
+    /// The cheaper one of two plans.
+    pub(super) fn better(&self, one: Plan, other: Plan) -> Plan {
+        if self.cost(&other) < self.cost(&one) { other } else { one }
     }
 
     /// What a plan costs.
