@@ -39,6 +39,8 @@ pub(crate) struct HeldWindows {
     /// Those that were drawn, and those that are sought, whose depths are not known.
     drawn: [Window; MAX_MAPS],
     sought: [Window; MAX_MAPS],
+    /// Shares of the cost that the drawn ones held when they were last looked at.
+    holds: [f32; MAX_MAPS],
     /// Number of the next change that is tried.
     turn: u32,
     /// Frames for which the search goes on with effort.
@@ -52,7 +54,7 @@ const EFFORT: u8 = 4;
 
 /// Changes that are tried in such a frame, and in others.
 const CHANGES_OF_EFFORT: u32 = 18;
-const CHANGES_AT_REST: u32 = 2;
+const CHANGES_AT_REST: u32 = 1;
 
 /// One frame's input.
 pub(crate) struct Frame<'a, 'b> {
@@ -150,6 +152,7 @@ fn plan_windows(
     let planner = Planner { cells, usable: lattice.usable.map(DVec2::as_vec2), count };
     let rect = lattice.rect(count - 1, last);
     let (mut turn, mut effort) = before.map_or((0, 0), |before| (before.turn, before.effort));
+    let mut holds = before.map_or([0.0; MAX_MAPS], |before| before.holds);
     let (drawn, sought) = if let Some(before) = before {
         let plan = |windows: &[Window; MAX_MAPS]| {
             let mut plan = Plan::default();
@@ -164,7 +167,7 @@ fn plan_windows(
             sought = planner.better(sought, planner.ladder(last.steps, rect));
         }
         planner.seek(&mut sought, &mut turn, if effort > 0 { CHANGES_OF_EFFORT } else { CHANGES_AT_REST });
-        planner.keep(&mut drawn);
+        planner.keep(&mut drawn, &mut holds, turn);
         (planner.follow(drawn, &sought, effort > 0), sought)
     } else {
         let mut plan = planner.ladder(last.steps, rect);
@@ -175,6 +178,7 @@ fn plan_windows(
         plane: lattice.plane,
         drawn: [Window::default(); MAX_MAPS],
         sought: [Window::default(); MAX_MAPS],
+        holds,
         turn,
         effort: effort.saturating_sub(1),
         is_guess,

@@ -44,6 +44,9 @@ const ROUNDS: u32 = 3;
 /// Share of the cost in the best place that a window must hold to stay where it is.
 const HOLDS: f32 = 0.985;
 
+/// Share of what it held that a window must hold for its best place not to be looked for out of turn.
+const LOOKS: f32 = 0.99;
+
 /// Share of the way to the best place that a window moves beyond what it must.
 const MOVE_ON: f32 = 0.3;
 
@@ -120,11 +123,19 @@ impl Planner<'_> {
         plan
     }
 
-    /// Moves each window that no longer holds most of what it could.
-    pub(super) fn keep(&self, plan: &mut Plan) {
+    /// Moves each window that no longer holds most of what it could. `holds` has the shares of the cost
+    /// that windows held when their best places were last looked for: one window is looked at in each
+    /// turn, and those that hold less than they did.
+    pub(super) fn keep(&self, plan: &mut Plan, holds: &mut [f32; MAX_MAPS], turn: u32) {
         let mut left = [1.0; MAX_CELLS];
         for i in 0..self.count - 1 {
-            plan.rects[i] = self.kept(&plan.rects[i], &left);
+            let all: f32 = self.cells.iter().zip(&left).map(|(cell, left)| cell.cost * left).sum();
+            let share = |rect: &Rect| rect.cost(self.cells, &left) / all;
+            let is_turn = turn as usize % (self.count - 1) == i;
+            if is_turn || share(&plan.rects[i]) < holds[i] * LOOKS {
+                plan.rects[i] = self.kept(&plan.rects[i], &left);
+                holds[i] = share(&plan.rects[i]);
+            }
             self.take(&plan.rects[i], &mut left);
         }
     }
