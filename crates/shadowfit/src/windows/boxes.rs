@@ -167,7 +167,7 @@ impl<'a> Picture<'a> {
 const FINEST: f32 = 0.25;
 
 /// Cosine of the half angle of a cone above which its surfaces count as flat.
-const FLAT: f32 = 0.9;
+const FLAT: f32 = 0.97;
 
 /// Share of the rays through a box that meet a surface in it, where surfaces face everywhere.
 const SOLID: f32 = 0.3;

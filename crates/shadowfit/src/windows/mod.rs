@@ -50,11 +50,16 @@ pub(crate) struct HeldWindows {
 }
 
 /// Frames for which windows are searched with effort, once it is known what is visible.
-const EFFORT: u8 = 4;
+const EFFORT: u8 = 3;
 
 /// Changes that are tried in such a frame, and in others.
-const CHANGES_OF_EFFORT: u32 = 18;
+const CHANGES_OF_EFFORT: u32 = 14;
 const CHANGES_AT_REST: u32 = 1;
+
+/// Cost of the drawn windows over that of the sought ones from which on some are replaced: while the search
+/// goes on with effort, for it may find better ones soon, and after it.
+const SERVES_AT_FIRST: f32 = 1.6;
+const SERVES_AT_REST: f32 = 1.4;
 
 /// One frame's input.
 pub(crate) struct Frame<'a, 'b> {
@@ -165,10 +170,16 @@ fn plan_windows(
         if before.is_guess && !is_guess {
             effort = EFFORT;
             sought = planner.better(sought, planner.ladder(last.steps, rect));
+        } else {
+            planner.seek(&mut sought, &mut turn, if effort > 0 { CHANGES_OF_EFFORT } else { CHANGES_AT_REST });
         }
-        planner.seek(&mut sought, &mut turn, if effort > 0 { CHANGES_OF_EFFORT } else { CHANGES_AT_REST });
         planner.keep(&mut drawn, &mut holds, turn);
-        (planner.follow(drawn, &sought, effort > 0), sought)
+        let (most, at_once) = match effort {
+            0 => (SERVES_AT_REST, 1),
+            1 => (plan::SERVES, count),
+            _ => (SERVES_AT_FIRST, count),
+        };
+        (planner.follow(drawn, &sought, most, at_once), sought)
     } else {
         let mut plan = planner.ladder(last.steps, rect);
         planner.seek(&mut plan, &mut turn, planner.all_changes());

@@ -50,10 +50,8 @@ const LOOKS: f32 = 0.99;
 /// Share of the way to the best place that a window moves beyond what it must.
 const MOVE_ON: f32 = 0.3;
 
-/// Cost of the drawn windows over that of the sought ones up to which they serve, while it is being
-/// found out what is visible, and once that is known.
-const SERVES: f32 = 1.15;
-const SERVES_AT_REST: f32 = 1.4;
+/// Cost of the drawn windows over that of the sought ones up to which no more of them are replaced.
+pub(super) const SERVES: f32 = 1.15;
 
 /// Share of the points that every change counts for, at least.
 const FEW: f32 = 0.02;
@@ -140,16 +138,16 @@ impl Planner<'_> {
         }
     }
 
-    /// The drawn windows, of which as few are replaced by those that are sought as make them nearly as
-    /// good: one at most unless it is being found out what is visible.
-    pub(super) fn follow(&self, drawn: Plan, sought: &Plan, with_effort: bool) -> Plan {
+    /// The drawn windows, while they cost no more than the sought ones times `most`; else as few of them
+    /// replaced, and no more than `count`, as make them nearly as good.
+    pub(super) fn follow(&self, drawn: Plan, sought: &Plan, most: f32, count: usize) -> Plan {
         let found = self.cost(sought);
-        let enough = found * SERVES;
-        if !with_effort && self.cost(&drawn) <= found * SERVES_AT_REST {
+        if self.cost(&drawn) <= found * most {
             return drawn;
         }
+        let enough = found * SERVES;
         let mut plan = drawn;
-        for _ in 0..if with_effort { self.count } else { 1 } {
+        for _ in 0..count {
             let cost = self.cost(&plan);
             if cost <= enough {
                 return plan;
