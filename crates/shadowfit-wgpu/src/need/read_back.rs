@@ -27,8 +27,8 @@ pub(super) struct ReadBack {
 struct Told(Arc<AtomicU8>);
 
 impl Told {
-    fn result(self, result: Result<(), wgpu::BufferAsyncError>) {
-        self.0.store(if result.is_ok() { READABLE } else { FAILED }, Ordering::Release);
+    fn tell(self, readable: bool) {
+        self.0.store(if readable { READABLE } else { FAILED }, Ordering::Release);
     }
 }
 
@@ -80,7 +80,7 @@ impl ReadBack {
         self.state.store(BUSY, Ordering::Release);
         encoder.copy_buffer_to_buffer(counts, 0, &self.buffer, 0, None);
         let told = Told(Arc::clone(&self.state));
-        encoder.map_buffer_on_submit(&self.buffer, wgpu::MapMode::Read, .., move |result| told.result(result));
+        encoder.map_buffer_on_submit(&self.buffer, wgpu::MapMode::Read, .., move |result| told.tell(result.is_ok()));
     }
 
     /// The counts, if they can be read; the buffer is free again then.

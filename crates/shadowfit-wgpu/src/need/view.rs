@@ -116,7 +116,7 @@ impl NeedView {
             size: [width, height],
             step: self.step(),
             pixels: height as f32 / PIXELS,
-            exponent: ((space.texel.to_bits() >> 23) & 0xff) as i32,
+            exponent: ((space.texel.to_bits() >> 23) & 0xff).cast_signed(),
             near: first,
             far,
             bins_per_octave: bins_per_octave as f32,
