@@ -50,8 +50,7 @@ pub(super) fn cuboid(low: Vec3, high: Vec3) -> Vec<Vec3> {
     faces.iter().flat_map(|face| quad(face.map(at))).collect()
 }
 
-/// Draws triangles, relative to the eye, into the view's part of a depth texture. `draw_into` is what they are drawn with, if
-/// not the view's own matrix.
+/// Draws triangles, relative to the eye, into the view's part of a depth texture.
 pub(super) fn draw(gpu: &Gpu, view: &NeedView, triangles: &[Vec3], drawing: &Drawing) -> wgpu::Texture {
     let texture = texture(gpu, drawing);
     let pipeline = pipeline(gpu, view.depth, drawing);
@@ -77,6 +76,11 @@ pub(super) fn draw(gpu: &Gpu, view: &NeedView, triangles: &[Vec3], drawing: &Dra
             }),
             ..Default::default()
         });
+        if positions.is_empty() {
+            drop(pass);
+            gpu.queue.submit([encoder.finish()]);
+            return texture;
+        }
         let [left, top, width, height] = view.rectangle.map(|pixels| pixels as f32);
         pass.set_viewport(left, top, width, height, 0.0, 1.0);
         pass.set_pipeline(&pipeline);

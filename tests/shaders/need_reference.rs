@@ -57,8 +57,10 @@ impl Picture<'_> {
         if normal.dot(space.direction.as_dvec3()) < 0.0 {
             let texel = needed_texel(right.as_vec3(), down.as_vec3(), space.direction);
             let class = (self.pixel_width(depth) / f64::from(texel)).log2() as f32;
-            let bin = DepthHistogram::bin(frustum.near, far, DEPTHS, CLASSES, depth as f32, class);
-            counts.bins[bin.expect("a depth of the view")] += 1;
+            // Views that begin behind the eye have no histogram.
+            if let Some(bin) = DepthHistogram::bin(frustum.near, far, DEPTHS, CLASSES, depth as f32, class) {
+                counts.bins[bin] += 1;
+            }
         }
         if let Some(index) = space.index(position.as_vec3(), normal.as_vec3(), right.as_vec3(), down.as_vec3()) {
             counts.cells[index] += 1;
@@ -86,9 +88,9 @@ impl Picture<'_> {
     /// Depth of a pixel, `None` where nothing is drawn and outside the picture.
     fn depth(&self, x: i32, y: i32) -> Option<f64> {
         let [left, top, width, height] = self.view.rectangle;
-        let is_inside = (0..width.cast_signed()).contains(&x) && (0..height.cast_signed()).contains(&y);
-        let index = (top as usize + y as usize) * self.depths.width as usize + left as usize + x as usize;
-        let depth = is_inside.then(|| self.depths.values[index])?;
+        let (Ok(x), Ok(y)) = (u32::try_from(x), u32::try_from(y)) else { return None };
+        let is_inside = x < width && y < height;
+        let depth = is_inside.then(|| self.depths.values[((top + y) * self.depths.width + left + x) as usize])?;
         (depth != self.view.depth.far()).then_some(f64::from(depth))
     }
 

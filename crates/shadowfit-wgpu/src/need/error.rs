@@ -33,7 +33,7 @@ pub enum NeedPassError {
         /// Width and height of the texture, in pixels.
         texture: [u32; 2],
     },
-    /// The device refused to make what is needed: it is lost, or out of memory. What it said is given.
+    /// The device refused to make what is needed, as when it is out of memory. What it said is given.
     Device(String),
     /// Counts could not be read back: the device is lost.
     Lost,
@@ -75,7 +75,7 @@ impl fmt::Display for NeedPassError {
                 "a picture of {width} × {height} pixels at ({x}, {y}) does not lie in a depth texture of {columns} × {rows}"
             ),
             Self::Device(message) => {
-                write!(f, "what is visible cannot be counted, since the device is lost or out of memory: {message}")
+                write!(f, "what is visible cannot be counted, since the device refused it: {message}")
             }
             Self::Lost => write!(f, "what is visible could not be read back, since the device is lost: open it again"),
         }

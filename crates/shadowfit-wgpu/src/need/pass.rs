@@ -48,7 +48,7 @@ impl NeedPass {
     /// # Errors
     ///
     /// [`NeedPassError::Unsupported`] if the device has no compute shaders or storage buffers, or is OpenGL, whose shaders
-    /// cannot load depth: fit from boxes then. [`NeedPassError::Device`] if it is lost or out of memory.
+    /// cannot load depth: fit from boxes then. [`NeedPassError::Device`] if it is out of memory.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, samples: u32) -> Result<Self, NeedPassError> {
         supported(&device.limits(), device.adapter_info().backend).map_err(NeedPassError::Unsupported)?;
         caught(device, || {
@@ -85,7 +85,8 @@ impl NeedPass {
     ///
     /// # Errors
     ///
-    /// [`NeedPassError`] for the view, the texture, and a lost device. Nothing is recorded then.
+    /// [`NeedPassError`] for the view, the texture, and a device out of memory. Nothing is recorded then. Whether the
+    /// device was lost shows in [`Self::take`].
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -207,7 +208,7 @@ fn supported(limits: &wgpu::Limits, backend: wgpu::Backend) -> Result<(), Unsupp
     }
 }
 
-/// Does work whose errors would otherwise end the program: those of a lost device, and lack of memory.
+/// Does work whose errors would otherwise end the program, such as lack of memory.
 fn caught<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, NeedPassError> {
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
