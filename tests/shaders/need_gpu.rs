@@ -19,7 +19,7 @@ const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.25);
 
 /// Share of the points that rounding may move into a neighbouring cell or bin: the shader computes in f32, the reference
 /// in f64, and depths are those of the same picture.
-const ROUNDING: f64 = 0.005;
+const ROUNDING: f64 = 0.001;
 
 fn camera() -> PerspectiveCamera {
     PerspectiveCamera {

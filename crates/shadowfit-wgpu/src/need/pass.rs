@@ -77,7 +77,8 @@ impl NeedPass {
     }
 
     /// Records the pass and the way back of its counts, after the pass that fills the depth buffer. `depth` is a view of
-    /// the depth aspect of the whole texture, of any depth format, with usage `TEXTURE_BINDING`; `timestamps` may time
+    /// the depth aspect of the whole texture, of any depth format, with usage `TEXTURE_BINDING`, that the pass before it has stored (`StoreOp::Store`);
+    /// `timestamps` may time
     /// the pass.
     ///
     /// Returns whether it was recorded: while as many pictures are on their way as GPUs are ever behind, nothing is, and
