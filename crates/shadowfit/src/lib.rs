@@ -149,13 +149,13 @@ pub mod map_fitter;
 pub mod mint;
 pub mod need;
 pub mod normal_cone;
+#[doc(hidden)]
+pub mod tune;
 pub mod params;
 pub mod presets;
 pub mod scroll;
 pub mod settings;
 pub mod tool;
-#[doc(hidden)]
-pub mod tune;
 pub mod verify;
 
 mod axes;

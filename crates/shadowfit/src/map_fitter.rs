@@ -19,8 +19,8 @@ use crate::settings::{BiasSettings, FitKind, FitSettings, MAX_BLEND, MAX_MAPS, M
 use crate::splits::{Chooser, Splits};
 use crate::view::Range;
 use crate::volume::Volume;
-use crate::windows::{self, HeldWindows};
 use crate::{Bias, FitError, FitInput, LightFit, Technique, ViewFrustum, Workspace, checks, grid};
+use crate::windows::{self, HeldWindows};
 use hold::HeldMap;
 
 /// Fits several maps frame by frame.

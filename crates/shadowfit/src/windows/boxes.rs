@@ -55,21 +55,12 @@ pub(super) fn add(cells: &mut Cells, input: &FitInput, content: &Content, plane:
             let count = |layer: &Layer, weight: f32, counted: &mut Counted| -> f32 {
                 let cone = input.receiver_cones.get(layer.index as usize).copied().unwrap_or(NormalCone::ALL);
                 let Some(bounds) = content.receiver(layer.index as usize) else { return 0.0 };
-                picture.count(
-                    line,
-                    layer,
-                    &cone,
-                    bounds,
-                    &mut |p: DVec3, texel: f64, share: f32| {
-                        let q = plane.of(plane.axes.project(p - offset));
-                        if let Some(cell) = space.cell_of(q.as_vec2(), texel as f32) {
-                            counted.add(cell, weight * share);
-                        }
-                    },
-                    plane,
-                    view.near,
-                    view.far,
-                )
+                picture.count(line, layer, &cone, bounds, &mut |p: DVec3, texel: f64, share: f32| {
+                    let q = plane.of(plane.axes.project(p - offset));
+                    if let Some(cell) = space.cell_of(q.as_vec2(), texel as f32) {
+                        counted.add(cell, weight * share);
+                    }
+                }, plane, view.near, view.far)
             };
             for layer in ray.layers.iter().take_while(|layer| layer.index != u32::MAX) {
                 weight *= 1.0 - count(layer, weight, &mut counted);
@@ -135,17 +126,7 @@ impl Picture {
 
     /// Passes on points of a box that a ray may meet, with the texel that each asks for and its share.
     #[allow(clippy::too_many_arguments)]
-    fn count(
-        &self,
-        (start, end): (DVec3, DVec3),
-        layer: &Layer,
-        cone: &NormalCone,
-        (min, max): (DVec3, DVec3),
-        emit: &mut impl FnMut(DVec3, f64, f32),
-        plane: &Plane,
-        near: f64,
-        far: f64,
-    ) -> f32 {
+    fn count(&self, (start, end): (DVec3, DVec3), layer: &Layer, cone: &NormalCone, (min, max): (DVec3, DVec3), emit: &mut impl FnMut(DVec3, f64, f32), plane: &Plane, near: f64, far: f64) -> f32 {
         let along = end - start;
         let (enter, leave) = (f64::from(layer.enter), f64::from(layer.leave));
         let depth = |t: f64| near + (far - near) * t;
@@ -170,11 +151,7 @@ impl Picture {
         }
         for share in SAMPLES {
             let t = enter + (leave - enter) * share;
-            emit(
-                start + along * t,
-                f64::from(crate::tune::get(7, 0.7)) * depth(t) * self.pixel,
-                crate::tune::get(5, 0.5) / SAMPLES.len() as f32,
-            );
+            emit(start + along * t, f64::from(crate::tune::get(7, 0.7)) * depth(t) * self.pixel, crate::tune::get(5, 0.5) / SAMPLES.len() as f32);
         }
         crate::tune::get(5, 0.5)
     }

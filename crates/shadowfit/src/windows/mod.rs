@@ -91,9 +91,7 @@ impl Frame<'_, '_> {
         let shadows = Shadows::new(self.content, plane.axes, self.range, points)?;
         let t1 = std::time::Instant::now();
         let (cells, is_guess) = self.cells(&plane);
-        let before = before
-            .filter(|_| crate::tune::get(4, 0.0) != 1.0)
-            .map(|before| before.moved_to(&plane, self.content.origin));
+        let before = before.filter(|_| crate::tune::get(4, 0.0) != 1.0).map(|before| before.moved_to(&plane, self.content.origin));
         let t2 = std::time::Instant::now();
         // 2. The last window, which holds everything.
         let bounds = shadows.bounds(&plane);
@@ -124,10 +122,9 @@ impl Frame<'_, '_> {
             let mut window = if i == count - 1 {
                 last
             } else {
-                let kept = before
-                    .as_ref()
-                    .map(|before| before.windows[i])
-                    .filter(|window| window.steps == plan.steps[i] && to_rect(i, window) == plan.rects[i]);
+                let kept = before.as_ref().map(|before| before.windows[i]).filter(|window| {
+                    window.steps == plan.steps[i] && to_rect(i, window) == plan.rects[i]
+                });
                 kept.unwrap_or_else(|| window_of(plan.steps[i], &plan.rects[i], border, anchor))
             };
             let was = before.as_ref().map(|before| before.windows[i]).filter(|was| was.steps == window.steps);
@@ -137,16 +134,7 @@ impl Frame<'_, '_> {
             held.windows[i] = window;
         }
         let t4 = std::time::Instant::now();
-        if crate::tune::get(15, 0.0) == 2.0 {
-            std::eprintln!(
-                "time shadows {:?} cells {:?} plan {:?} volumes {:?} n {}",
-                t1 - t0,
-                t2 - t1,
-                t3 - t2,
-                t4 - t3,
-                cells.as_slice().len()
-            );
-        }
+        if crate::tune::get(15, 0.0) == 2.0 { std::eprintln!("time shadows {:?} cells {:?} plan {:?} volumes {:?} n {}", t1-t0, t2-t1, t3-t2, t4-t3, cells.as_slice().len()); }
         Ok((volumes, held))
     }
 
@@ -165,14 +153,7 @@ impl Frame<'_, '_> {
     }
 
     /// A window's box, with its depth range.
-    fn volume(
-        &self,
-        window: &mut Window,
-        z: Option<(f64, f64)>,
-        plane: &Plane,
-        rule: &FitRule,
-        shadows: &Shadows,
-    ) -> Volume {
+    fn volume(&self, window: &mut Window, z: Option<(f64, f64)>, plane: &Plane, rule: &FitRule, shadows: &Shadows) -> Volume {
         let anchor = grid::anchor(&plane.axes, self.content.origin);
         let texel = texel_of(window.steps, plane);
         let min = window.first * texel - anchor.truncate();
