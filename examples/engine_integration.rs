@@ -240,7 +240,7 @@ impl Engine {
         let mut maps: Vec<MapFit> = fitted.iter().map(MapFit::from).collect();
         let view = MapView::from_eye(camera.eye, camera.forward);
         // Leave out casters whose shadows are not in view. Without this line each map draws all that it can store.
-        MapFit::sweep(&mut maps, &view, &views, self.technique.filter)?;
+        MapFit::sweep(&mut maps, &view, &views, self.shadow_map.descriptor())?;
         self.shadow_map.prepare(&self.queue, &view, &maps)?;
         Ok(())
     }

@@ -36,7 +36,7 @@ fn main() -> Result<(), FitError> {
         for (index, map) in maps.iter().enumerate() {
             let casters = map.caster_volume(&views, &technique)?.relative_to(boxes.origin);
             let drawn = objects.iter().filter(|object| casters.intersects_aabb(object.min, object.max)).count();
-            println!("map {index} serves what is farther than {} m; its texels are {} m", map.near, map.fit.texel_size);
+            println!("map {index} is for what is farther than {} m; its texels are {} m", map.near, map.fit.texel_size);
             println!("  draw {drawn} of {} objects into it with {}", objects.len(), map.fit.clip_from_world);
             println!("  look it up with {}", map.fit.uv_from_world);
             println!("  move the depth that is compared by {}", map.bias.constant_depth);

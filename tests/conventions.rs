@@ -3,7 +3,7 @@
 
 use shadowfit::glam::{DVec3, Mat4, Vec3, Vec4};
 use shadowfit::presets::RECOMMENDED;
-use shadowfit::settings::{BiasSettings, FitSettings};
+use shadowfit::settings::{BiasSettings, FitSettings, MapChoice};
 use shadowfit::tool::{CameraSettings, LightSettings};
 use shadowfit::{Bias, DepthConvention, LightFit, PerspectiveCamera, Technique, fit};
 use shadowfit_render::{Atmosphere, FlyCamera, FrameUniform, Line, box_lines};
@@ -54,7 +54,7 @@ fn the_caster_and_the_receiver_uniform_of_a_fit_meet_in_the_same_texel_and_depth
     for depth in DRAWABLE {
         let fit = fitted(&LightSettings::default(), depth);
         let clip_from_world = matrix(CasterUniform::new(&fit, origin).clip_from_world);
-        let receiver = ReceiverUniform::new(&[map(&fit)], &MapView::from_eye(origin, Vec3::NEG_Z));
+        let receiver = ReceiverUniform::new(&[map(&fit)], &MapView::from_eye(origin, Vec3::NEG_Z), MapChoice::Coverage);
         let uv_from_world = matrix(receiver.maps[0].uv_from_world);
         for corner in fit.corners() {
             let point = (fit.origin + corner.as_dvec3() - origin).as_vec3();
@@ -74,7 +74,8 @@ fn settings_uniforms_and_pictures_all_point_to_the_same_sun() {
         let to_light = -light.direction();
         assert!(to_light.y > 0.0, "a sun above the horizon shines from above");
         let fit = fitted(&light, DepthConvention::ZeroToOne);
-        let receiver = ReceiverUniform::new(&[map(&fit)], &MapView::from_eye(fit.origin, Vec3::NEG_Z));
+        let receiver =
+            ReceiverUniform::new(&[map(&fit)], &MapView::from_eye(fit.origin, Vec3::NEG_Z), MapChoice::Coverage);
         let frame = FrameUniform::new(&camera(), to_light, true, &Atmosphere::default(), [16, 9]);
         assert!(Vec3::from(receiver.to_light).abs_diff_eq(to_light, CLOSE), "{light:?}: {:?}", receiver.to_light);
         assert_eq!(frame.to_light, to_light.to_array(), "{light:?}");
@@ -121,18 +122,22 @@ fn the_camera_s_uniform_has_reversed_depth_and_rays_through_its_pixels() {
 
 #[test]
 fn without_a_fit_everything_is_lit_and_surplus_fits_are_left_out() {
-    let none = ReceiverUniform::new(&[], &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z));
+    let none = ReceiverUniform::new(&[], &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z), MapChoice::Coverage);
     assert_eq!(none.map_count, 0);
     assert_eq!(Vec3::from(none.to_light).length(), 1.0, "a direction that can be used");
     let fit = fitted(&LightSettings::default(), DepthConvention::ZeroToOne);
-    let many = ReceiverUniform::new(&[map(&fit); MAX_MAPS + 3], &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z));
+    let many = ReceiverUniform::new(
+        &[map(&fit); MAX_MAPS + 3],
+        &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z),
+        MapChoice::Coverage,
+    );
     assert_eq!(many.map_count as usize, MAX_MAPS);
 }
 
 /// A technique with the distance and the resolution of another, which depend on the scene and on what may be spent.
-fn with_extent_of(technique: Technique, other: &Technique) -> Technique {
+fn with_extent_of(technique: &Technique, other: &Technique) -> Technique {
     let fit = technique.fit.with_max_distance(other.fit.max_distance).with_resolution(other.fit.resolution);
-    technique.with_fit(fit)
+    (*technique).with_fit(fit)
 }
 
 #[test]
@@ -173,7 +178,7 @@ fn the_core_s_readme_docs_and_example_begin_with_the_same_code_and_the_default_t
 fn gpu_the_viewer_starts_with_the_recommended_technique() {
     let stage = Stage::new(software_gpu(), builtin::default_scene(), 1).expect("the default scene");
     let start = stage.settings.technique;
-    assert_eq!(start, with_extent_of(Technique::default(), &start));
+    assert_eq!(start, with_extent_of(&Technique::default(), &start));
 }
 
 #[test]

@@ -20,7 +20,7 @@ use std::path::PathBuf;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
-use shadowfit::settings::{FilterKind, MapFormat};
+use shadowfit::settings::{FilterKind, MapChoice, MapFormat};
 use shadowfit::{CasterVolume, DepthConvention};
 use shadowfit_render::shaders;
 use shadowfit_wgpu::need::need_wgsl;
@@ -34,7 +34,9 @@ fn descriptors() -> Vec<ShadowMapDescriptor> {
     for format in [MapFormat::Depth32Float, MapFormat::R32Float] {
         for filter in FilterKind::ALL {
             for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
-                all.push(ShadowMapDescriptor { format, filter, depth, ..Default::default() });
+                for choice in [MapChoice::Coverage, MapChoice::ViewDepth] {
+                    all.push(ShadowMapDescriptor { format, filter, depth, choice, ..Default::default() });
+                }
             }
         }
     }
@@ -54,7 +56,7 @@ fn modules() -> Vec<(String, String)> {
         ("need of four samples, compute".to_owned(), need_wgsl(4)),
     ];
     for map in descriptors() {
-        let kind = format!("{:?} {:?} {:?}", map.format, map.filter, map.depth);
+        let kind = format!("{:?} {:?} {:?} {:?}", map.format, map.filter, map.depth, map.choice);
         all.push((format!("scene, {kind}"), shaders::scene(&map)));
         all.push((format!("probe, {kind}"), shaders::probe(&map)));
         all.push((format!("inset, {kind}"), shaders::inset(&map)));

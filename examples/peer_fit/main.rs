@@ -46,13 +46,6 @@ struct Args {
 
 fn main() -> ExitCode {
     let args = Args::parse();
-    if let Ok(t) = std::env::var("TUNE") {
-        for (i, v) in t.split(',').enumerate() {
-            if let Ok(v) = v.parse() {
-                shadowfit::tune::set(i, v);
-            }
-        }
-    }
     let result = if args.fit == "list" {
         list();
         Ok(())

@@ -5,8 +5,8 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use glam::{DVec2, DVec3, Vec3};
 use shadowfit::clusters::Clusters;
-use shadowfit::normal_cone::NormalCone;
 use shadowfit::need::NeedGrid;
+use shadowfit::normal_cone::NormalCone;
 use shadowfit::settings::{FitKind, MapChoice, NeedSource, ReceiverSource, SplitScheme};
 use shadowfit::{Aabb, Boxes, FitInput, FittedMap, FittedMaps, MapFitter, Technique, ViewFrustum, Workspace};
 use shadowfit_study::{NamedTechnique, SeenDepths, SeenNeed, fit_map};
@@ -49,11 +49,7 @@ pub(crate) struct Times {
 }
 
 /// Fits every frame of the scenarios.
-pub(crate) fn run(
-    scenarios: &Scenarios,
-    named: &NamedTechnique,
-    source: Option<&Source>,
-) -> Result<(FitFile, Times)> {
+pub(crate) fn run(scenarios: &Scenarios, named: &NamedTechnique, source: Option<&Source>) -> Result<(FitFile, Times)> {
     let technique = &named.technique;
     let known: Vec<Known> =
         scenarios.scenes.iter().map(|scene| know(scene, technique, source)).collect::<Result<_>>()?;

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use glam::{DVec3, UVec2};
 use indicatif::{ProgressBar, ProgressStyle};
-use shadowfit::settings::{BiasSettings, FilterKind, MapFormat};
-use shadowfit::{Bias, LightFit};
+use shadowfit::settings::{BiasSettings, FilterKind, MapChoice, MapFormat};
+use shadowfit::{Bias, LightFit, Technique};
 use shadowfit_render::{Gpu, Renderer};
 use shadowfit_scene::Scene;
 use shadowfit_study::{Evaluator, Judging, PreparedScene, SharedTruth, View};
@@ -19,6 +19,9 @@ use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
 use crate::drawing::Drawing;
 use crate::geometry::{Corners, Source};
 use crate::interrupt::Interrupt;
+
+/// View depth, in metres, from which on a map counts as one without an end: fit files have finite numbers only.
+const NO_END: f64 = 1e9;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
@@ -204,9 +207,18 @@ fn descriptor(
         maps: most.max(1) as u32,
         format,
         filter,
+        choice: choice(maps),
+        blend: Technique::default().blend,
         depth,
         depth_clamp: file.depth_clamp,
     })
+}
+
+/// How the maps of a file are read: by coverage where no map ends, which is what a file of maps that are no slices of
+/// the view says; else by view depth.
+fn choice(maps: &[Vec<FitMap>]) -> MapChoice {
+    let has_no_end = |map: &FitMap| map.split_far >= NO_END;
+    if maps.iter().flatten().all(has_no_end) { MapChoice::Coverage } else { MapChoice::ViewDepth }
 }
 
 fn view(frame: &Frame, is_first: bool) -> View {

@@ -134,7 +134,9 @@ fn depth_clamp_alone_keeps_a_caster_before_the_near_plane_and_stores_it_there() 
             for depth_clamp in [false, true] {
                 let filter = FilterKind::Point;
                 let resolution = [TEXELS; 2];
-                let descriptor = ShadowMapDescriptor { resolution, maps: 1, format, filter, depth, depth_clamp };
+                let other = ShadowMapDescriptor::default();
+                let descriptor =
+                    ShadowMapDescriptor { resolution, maps: 1, format, filter, depth, depth_clamp, ..other };
                 for (point, answer) in plane().iter().zip(answers_under(BEFORE_THE_NEAR_PLANE, &descriptor)) {
                     let is_kept = depth_clamp && is_under_the_caster(point);
                     let expected = if is_kept { (0.0, near) } else { (1.0, far) };

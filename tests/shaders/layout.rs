@@ -107,9 +107,9 @@ fn every_uniform_has_the_size_and_offsets_of_its_wgsl_struct() {
                 normal_offset,
                 receiver_plane,
                 far,
-                padding_0,
-                padding_1,
-                padding_2,
+                blend_near,
+                layer,
+                padding,
             }
         ),
     );

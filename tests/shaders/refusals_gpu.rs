@@ -2,7 +2,7 @@
 //! the index and the value. And that a refusal changes nothing.
 
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::settings::SplitScheme;
+use shadowfit::settings::{MapChoice, SplitScheme};
 use shadowfit::{Bias, FitError, FitInput, LightFit, MapFitter, PerspectiveCamera, Technique, Workspace};
 use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError};
 
@@ -21,11 +21,14 @@ fn maps(far: &[f32]) -> Vec<MapFit> {
     far.iter().map(|far| MapFit { far: *far, ..MapFit::new(fit(), Bias::default()) }).collect()
 }
 
+fn descriptor(choice: MapChoice) -> ShadowMapDescriptor {
+    ShadowMapDescriptor { maps: LAYERS, resolution: [256; 2], choice, ..ShadowMapDescriptor::default() }
+}
+
 /// Prepares a shadow map with maps for a view along `forward`.
 fn prepared(maps: &[MapFit], forward: Vec3) -> Result<usize, ShadowMapError> {
     let gpu = software_gpu();
-    let descriptor = ShadowMapDescriptor { maps: LAYERS, resolution: [256; 2], ..ShadowMapDescriptor::default() };
-    let mut map = ShadowMap::new(&gpu.device, &descriptor).expect("a possible shadow map");
+    let mut map = ShadowMap::new(&gpu.device, &descriptor(MapChoice::ViewDepth)).expect("a possible shadow map");
     map.prepare(&gpu.queue, &MapView::from_eye(DVec3::ZERO, forward), maps)?;
     Ok(map.volumes().len())
 }
@@ -104,6 +107,24 @@ fn maps_out_of_order_are_an_error_and_those_without_a_range_are_not() {
 }
 
 #[test]
+fn maps_that_are_read_by_coverage_have_no_order() {
+    let gpu = software_gpu();
+    let mut map = ShadowMap::new(&gpu.device, &descriptor(MapChoice::Coverage)).expect("a possible shadow map");
+    let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
+    assert_eq!(map.prepare(&gpu.queue, &view, &maps(&[2.0, 1.0, f32::NAN])), Ok(()));
+}
+
+#[test]
+fn a_blend_that_is_out_of_range_or_no_number_is_an_error() {
+    let gpu = software_gpu();
+    for blend in [-0.1, 64.1, f32::NAN, f32::INFINITY] {
+        let error = ShadowMap::new(&gpu.device, &ShadowMapDescriptor { blend, ..descriptor(MapChoice::Coverage) })
+            .expect_err("no map");
+        assert!(matches!(error, ShadowMapError::Blend(_)) && error.to_string().contains(&blend.to_string()), "{error}");
+    }
+}
+
+#[test]
 fn maps_of_the_core_are_in_order_where_some_of_them_have_no_range() {
     let view = [PerspectiveCamera {
         eye: DVec3::ZERO,
@@ -132,8 +153,7 @@ fn maps_of_the_core_are_in_order_where_some_of_them_have_no_range() {
 #[test]
 fn a_refused_frame_leaves_the_volumes_of_the_last_one() {
     let gpu = software_gpu();
-    let descriptor = ShadowMapDescriptor { maps: LAYERS, resolution: [256; 2], ..ShadowMapDescriptor::default() };
-    let mut map = ShadowMap::new(&gpu.device, &descriptor).expect("a possible shadow map");
+    let mut map = ShadowMap::new(&gpu.device, &descriptor(MapChoice::ViewDepth)).expect("a possible shadow map");
     let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
     map.prepare(&gpu.queue, &view, &maps(&[1.0, 2.0])).expect("good maps");
     let before = map.volumes().to_vec();

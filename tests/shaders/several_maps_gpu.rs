@@ -1,8 +1,10 @@
 //! Several maps of one view: which of them a point reads, maps that are smaller than their layers, and casters at any bind
 //! group.
 
+use shadowfit::bias::reach;
+use shadowfit::choice::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth};
 use shadowfit::glam::{DVec3, UVec2, Vec3};
-use shadowfit::settings::{BiasSettings, FilterKind, FitKind, FitSettings};
+use shadowfit::settings::{BiasSettings, FilterKind, FitKind, FitSettings, MapChoice};
 use shadowfit::{Bias, LightFit, PerspectiveCamera, fit};
 use shadowfit_wgpu::{MAX_MAPS, MapFit, MapView, ShadowMapDescriptor};
 
@@ -50,6 +52,7 @@ fn descriptor(maps: &[MapFit]) -> ShadowMapDescriptor {
         resolution: [256; 2],
         maps: maps.len() as u32,
         filter: FilterKind::Point,
+        choice: MapChoice::ViewDepth,
         ..ShadowMapDescriptor::default()
     }
 }
@@ -180,6 +183,107 @@ fn the_map_index_and_the_view_depth_in_wgsl_are_those_computed_here() {
         }
     }
     assert!(met.iter().all(|count| *count > 15), "outside, then by map: {met:?}");
+}
+
+/// Maps whose order is not that of their texels' sizes, nor of their widths: two of one size, and one that is empty.
+fn crossing_maps() -> [MapFit; 5] {
+    let mut empty = map_to(4.0, 256);
+    empty.is_empty = true;
+    let fits = [map_to(60.0, 256), empty, map_to(8.0, 64), map_to(20.0, 200), map_to(8.0, 64)];
+    fits.map(|fit| map_fit(&fit, f32::MAX))
+}
+
+/// Points all over the maps, relative to the origin.
+fn scattered() -> Vec<Vec3> {
+    let at = |i: u16| {
+        let [a, b, c] = [0.754_877_7, 0.569_840_3, 0.430_159_7].map(|step: f32| (f32::from(i) * step).fract());
+        let depth = 70.0 * c * c;
+        Vec3::new((a - 0.5) * depth * 2.0, (b - 0.5) * depth, 1.0 - depth)
+    };
+    (0..6000).map(at).collect()
+}
+
+/// Asserts that the WGSL reads at points what `read` finds, with the weights that the factors tell: each map in turn is
+/// in shadow. Gives how many points read each map alone, and how many are blended.
+fn assert_read(
+    descriptor: &ShadowMapDescriptor,
+    maps: &[MapFit],
+    points: &[Vec3],
+    read: impl Fn(DVec3) -> Option<MapRead>,
+) -> (Vec<usize>, usize) {
+    let gpu = software_gpu();
+    let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
+    let factors: Vec<Vec<f32>> = (0..maps.len())
+        .map(|shadowed| {
+            let harness = Harness::with_maps(&gpu, descriptor, &view, maps, &lids(maps, shadowed));
+            harness.ask(0, &ground(points)).iter().map(|answer| answer.factor).collect()
+        })
+        .collect();
+    let choices = Harness::with_maps(&gpu, descriptor, &view, maps, &lids(maps, 0)).choices(&ground(points));
+    let (mut alone, mut blended) = (vec![0; maps.len()], 0);
+    for (index, point) in points.iter().enumerate() {
+        let point = point.as_dvec3();
+        let expected = read(point);
+        // Rounding may put a point beside a border of a map, or of a band.
+        let beside =
+            [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * 2e-4).map(|step| [read(point + step), read(point - step)]);
+        let which = |read: Option<MapRead>| read.map(|read| (read.map, read.blend.map(|blend| blend.map), read.main()));
+        if beside.as_flattened().iter().any(|other| which(*other) != which(expected)) {
+            continue;
+        }
+        let main = expected.map_or(-1, |read| i32::try_from(read.main()).expect("one of eight"));
+        assert_eq!(choices[index].map, main, "{point}: {expected:?}");
+        let weight = |map: usize| match expected {
+            Some(MapRead { blend: Some(blend), .. }) if blend.map == map => blend.weight,
+            Some(read) if read.map == map => 1.0 - read.blend.map_or(0.0, |blend| blend.weight),
+            _ => 0.0,
+        };
+        for (map, factors) in factors.iter().enumerate() {
+            let factor = f64::from(factors[index]);
+            // Texture coordinates are rounded to some 2⁻²² of 256 texels, of which the band has eight.
+            assert!((1.0 - factor - weight(map)).abs() < 1e-3, "{point}: {factor} with map {map} of {expected:?}");
+        }
+        match expected {
+            Some(MapRead { map, blend: None }) => alone[map] += 1,
+            Some(_) => blended += 1,
+            None => {}
+        }
+    }
+    (alone, blended)
+}
+
+#[test]
+fn by_coverage_points_read_the_finest_map_that_holds_them_and_the_next_one_toward_its_border() {
+    let maps = crossing_maps();
+    for (filter, blend) in [(FilterKind::Pcf5x5, 8.0), (FilterKind::Point, 0.0), (FilterKind::Pcf3x3, 64.0)] {
+        let descriptor = ShadowMapDescriptor { filter, blend, choice: MapChoice::Coverage, ..descriptor(&maps) };
+        let order = MapOrder::new(MapChoice::Coverage, maps.iter().map(|map| &map.fit));
+        let read = |point: DVec3| {
+            let free = |map: usize| maps[map].fit.free_texels(point);
+            by_coverage(order.iter(), reach(filter).into(), blend.into(), free)
+        };
+        let (alone, blended) = assert_read(&descriptor, &maps, &scattered(), read);
+        println!("{filter:?}, blend {blend}: {alone:?} alone, {blended} blended");
+        // One map is empty, and of two equal ones the last is never the first to hold a point.
+        assert_eq!((alone[1], alone[4]), (0, 0), "{filter:?}");
+        // With the widest blend the smallest map is all band.
+        assert!([0, 3].iter().all(|map| alone[*map] > 30) && (alone[2] > 30 || blend > 32.0), "{filter:?}: {alone:?}");
+        assert_eq!(blended > 30, blend > 0.0, "{filter:?}: {blended}");
+    }
+}
+
+#[test]
+fn by_view_depth_points_are_blended_where_maps_overlap() {
+    let fits = [map_to(5.0, 256), map_to(20.0, 256), map_to(60.0, 256)];
+    let ranges = [(f32::MAX, 4.0), (2.5, 15.0), (9.0, f32::MAX)];
+    let maps: Vec<MapFit> =
+        fits.iter().zip(ranges).map(|(fit, (blend_near, far))| MapFit { blend_near, ..map_fit(fit, far) }).collect();
+    let read = |point: DVec3| {
+        let ranges = ranges.map(|(blend_near, far)| DepthRange { blend_near: blend_near.into(), far: far.into() });
+        by_view_depth(ranges, -point.z, |map| maps[map].fit.covers(point))
+    };
+    let (alone, blended) = assert_read(&descriptor(&maps), &maps, &scattered(), read);
+    assert!(alone.iter().all(|count| *count > 30) && blended > 100, "{alone:?}, {blended} blended");
 }
 
 #[test]

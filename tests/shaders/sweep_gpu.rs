@@ -4,7 +4,7 @@
 use shadowfit::bias::XNA_DEPTH_BIAS;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::settings::{
-    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, MapFormat, SplitScheme, Stabilise,
+    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, MapChoice, MapFormat, SplitScheme, Stabilise,
 };
 use shadowfit::{
     Aabb, Bias, Boxes, DepthConvention, FitInput, LightFit, MapFitter, PerspectiveCamera, Technique, Workspace, fit,
@@ -70,7 +70,8 @@ fn cases() -> Vec<Case> {
     let mut reversed = focused;
     reversed.fit.depth = DepthConvention::Reversed;
     let clamped = maps(FitKind::Focused, SplitScheme::FromBoxes, Stabilise::Off, CasterPolicy::DepthClamp);
-    vec![
+    let by_view_depth = |technique: Technique| technique.with_choice(MapChoice::ViewDepth);
+    let mut all = vec![
         case("focused", focused),
         case("held", maps(FitKind::Focused, SplitScheme::FromBoxes, Stabilise::Hysteresis, list)),
         case("spheres", maps(FitKind::Sphere, SplitScheme::Practical(0.7), Stabilise::Snap, list)),
@@ -81,7 +82,17 @@ fn cases() -> Vec<Case> {
         case("focused, depth clamp", clamped),
         Case { is_narrow: true, ..case("narrow", aabb) },
         case("one map", Technique { count: 1, ..aabb }),
-    ]
+        case("without a blend", focused.with_blend(0.0)),
+    ];
+    let also = ["focused", "boxes of the slices", "boxes of the slices, normal offset", "narrow", "one map"];
+    let others: Vec<Case> = all
+        .iter()
+        .filter(|case| also.contains(&case.name))
+        .map(|case| Case { technique: by_view_depth(case.technique), ..*case })
+        .collect();
+    all.extend(others);
+    all.push(case("overlapping", by_view_depth(aabb.with_overlap(0.3))));
+    all
 }
 
 /// A scene and a place to look at it from.
@@ -161,6 +172,8 @@ fn descriptor(case: &Case) -> ShadowMapDescriptor {
         maps: case.technique.count,
         format: case.format,
         filter: case.filter,
+        choice: case.technique.choice,
+        blend: case.technique.blend,
         depth: case.technique.fit.depth,
         depth_clamp: case.technique.fit.casters == CasterPolicy::DepthClamp,
     }
@@ -223,7 +236,8 @@ fn swept_casters_give_every_pixel_the_same_factor_and_are_fewer() {
                 let frame = Frame::new(&camera, direction, &maps, &atmosphere);
                 let [swept, all] = [Culling::Swept, Culling::AsGiven]
                     .map(|culling| drawn(&gpu, &mut renderer, &mut gpu_scene, &frame, culling));
-                let (count, at) = (different(&swept.pixels, &all.pixels), (case.name, view.name, direction));
+                let at = (case.name, case.technique.choice, view.name, direction);
+                let count = different(&swept.pixels, &all.pixels);
                 assert_eq!(count, 0, "{at:?}: pixels with another factor");
                 let shadowed = all.pixels.iter().flatten().filter(|pixel| pixel.factor < 0.5).count();
                 assert!(shadowed > 300, "{at:?}: {shadowed} pixels in shadow, too few to tell");
@@ -232,7 +246,7 @@ fn swept_casters_give_every_pixel_the_same_factor_and_are_fewer() {
                 whole += casters(&all);
                 assert!(swept.statistics.maps.iter().zip(&all.statistics.maps).all(|(a, b)| a.casters <= b.casters));
             }
-            println!("{}, {}: {kept} of {whole} casters", case.name, view.name);
+            println!("{}, {:?}, {}: {kept} of {whole} casters", case.name, case.technique.choice, view.name);
             assert!(kept < whole, "{}, {}: nothing was left out", case.name, view.name);
         }
     }
@@ -242,10 +256,15 @@ fn swept_casters_give_every_pixel_the_same_factor_and_are_fewer() {
 fn maps_that_are_looked_up_from_another_eye_keep_what_the_picture_shows() {
     let gpu = software_gpu();
     let atmosphere = Atmosphere::default();
-    let case = &cases()[3];
-    let mut renderer = Renderer::new(&gpu, &descriptor(case), 1).expect("a renderer");
+    for case in cases().iter().filter(|case| case.name == "boxes of the slices") {
+        from_other_eyes(&gpu, &atmosphere, case);
+    }
+}
+
+fn from_other_eyes(gpu: &Gpu, atmosphere: &Atmosphere, case: &Case) {
+    let mut renderer = Renderer::new(gpu, &descriptor(case), 1).expect("a renderer");
     let [_, view] = views();
-    let mut scene = GpuScene::new(&gpu, renderer.material_layout(), &view.scene, &view.scene.pose(None, 0.0));
+    let mut scene = GpuScene::new(gpu, renderer.material_layout(), &view.scene, &view.scene.pose(None, 0.0));
     let direction = DIRECTIONS[1].normalize();
     let inner = camera(&view);
     let maps = fitted(case, &inner, &[Aabb::new(Vec3::splat(-70.0), Vec3::splat(70.0))], direction);
@@ -257,10 +276,11 @@ fn maps_that_are_looked_up_from_another_eye_keep_what_the_picture_shows() {
     ] {
         let outer = PerspectiveCamera { eye, forward, ..inner };
         let frame =
-            Frame { choice: Some((inner.eye, inner.forward)), ..Frame::new(&outer, direction, &maps, &atmosphere) };
+            Frame { choice: Some((inner.eye, inner.forward)), ..Frame::new(&outer, direction, &maps, atmosphere) };
         let [swept, all] =
-            [Culling::Swept, Culling::AsGiven].map(|culling| drawn(&gpu, &mut renderer, &mut scene, &frame, culling));
-        assert_eq!(different(&swept.pixels, &all.pixels), 0, "from {eye} along {forward}");
+            [Culling::Swept, Culling::AsGiven].map(|culling| drawn(gpu, &mut renderer, &mut scene, &frame, culling));
+        let choice = case.technique.choice;
+        assert_eq!(different(&swept.pixels, &all.pixels), 0, "{choice:?}, from {eye} along {forward}");
     }
 }
 

@@ -3,7 +3,7 @@
 
 use shadowfit::figures::MAP_TINTS;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::settings::SplitScheme;
+use shadowfit::settings::{MapChoice, SplitScheme};
 use shadowfit::{Bias, FitInput, MapFitter, PerspectiveCamera, Technique, Workspace};
 use shadowfit_render::{Atmosphere, Frame, GpuScene, Overlay, Renderer};
 use shadowfit_scene::Scene;
@@ -75,7 +75,12 @@ fn seen_at(camera: &PerspectiveCamera, maps: &[MapFit], [x, y]: [f64; 2]) -> See
 /// Linear colours of a picture of the floor.
 fn picture(camera: &PerspectiveCamera, maps: &[MapFit], overlay: Overlay) -> Vec<Vec3> {
     let gpu = software_gpu();
-    let descriptor = ShadowMapDescriptor { resolution: [256; 2], maps: 8, ..ShadowMapDescriptor::default() };
+    let descriptor = ShadowMapDescriptor {
+        resolution: [256; 2],
+        maps: 8,
+        choice: MapChoice::ViewDepth,
+        ..ShadowMapDescriptor::default()
+    };
     let mut renderer = Renderer::new(&gpu, &descriptor, 1).expect("a renderer");
     let corner = |x: f32, z: f32| Vec3::new(x * 200.0, 0.0, z * 200.0);
     let floor = [corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];

@@ -26,15 +26,15 @@ fn shares(tally: &PictureTally) -> [f64; 4] {
 #[test]
 fn acne_without_a_bias_is_false_shadow_and_the_automatic_bias_leaves_none() {
     for filter in FilterKind::ALL {
-        let bare = box_on_a_floor().judged(single(FitKind::Focused, filter, NO_BIAS));
+        let bare = box_on_a_floor().judged(&single(FitKind::Focused, filter, NO_BIAS));
         let [acne, ..] = shares(&bare);
-        let cured = box_on_a_floor().judged(single(FitKind::Focused, filter, BiasSettings::automatic(filter)));
+        let cured = box_on_a_floor().judged(&single(FitKind::Focused, filter, BiasSettings::automatic(filter)));
         println!("{filter:?}: {:?} without a bias, {:?} with the automatic one", shares(&bare), shares(&cured));
         assert!(acne > 0.1, "{filter:?}: {acne}");
         assert_eq!((cured.all.false_shadow, cured.all.false_light, cured.all.hole), (0, 0, 0), "{filter:?}");
         // By the normal offset as well, but where it moves a point beside an edge to the other side of it.
         let offset = BiasSettings::automatic_normal_offset(filter);
-        let offset = box_on_a_floor().judged(single(FitKind::Focused, filter, offset));
+        let offset = box_on_a_floor().judged(&single(FitKind::Focused, filter, offset));
         assert!(shares(&offset)[0] < 0.001, "{filter:?}: {:?}", shares(&offset));
     }
 }
@@ -44,8 +44,8 @@ fn a_bias_ten_times_too_large_is_false_light() {
     for filter in FilterKind::ALL {
         let BiasSettings { constant, receiver_plane, .. } = BiasSettings::automatic(filter);
         let bias = BiasSettings { constant: constant * 10.0, receiver_plane: receiver_plane * 10.0, ..NO_BIAS };
-        let tally = wall_on_a_floor().judged(single(FitKind::Focused, filter, bias));
-        let cured = wall_on_a_floor().judged(single(FitKind::Focused, filter, BiasSettings::automatic(filter)));
+        let tally = wall_on_a_floor().judged(&single(FitKind::Focused, filter, bias));
+        let cured = wall_on_a_floor().judged(&single(FitKind::Focused, filter, BiasSettings::automatic(filter)));
         println!("{filter:?}: {:?}, {:?} with a tenth of it", shares(&tally), shares(&cured));
         assert!(shares(&cured)[1] < 0.0002, "{filter:?}: {:?}", shares(&cured));
         assert!(shares(&tally)[1] > 0.001, "{filter:?}: {:?}", shares(&tally));
@@ -60,14 +60,14 @@ fn the_hole_of_the_xna_sample_is_a_hole_and_nothing_else() {
     let view =
         Arrangement::new(objects, Vec3::new(0.0, 2.0, 4.0), Vec3::new(0.0, 0.0, -3.0), Vec3::new(0.02, -0.6, -0.8));
     let filter = FilterKind::Hardware2x2;
-    let holed = view.judged(single(FitKind::XnaSample, filter, BiasSettings::automatic(filter)));
+    let holed = view.judged(&single(FitKind::XnaSample, filter, BiasSettings::automatic(filter)));
     println!("{:?} of {} pixels", shares(&holed), holed.all.facing);
     assert!(holed.share(holed.all.hole) > 0.05, "{:?}", shares(&holed));
     assert_eq!(
         (holed.all.wrong, holed.all.false_shadow, holed.all.false_light, holed.all.edge),
         (holed.all.hole, 0, 0, 0)
     );
-    let cured = view.judged(single(FitKind::Focused, filter, BiasSettings::automatic(filter)));
+    let cured = view.judged(&single(FitKind::Focused, filter, BiasSettings::automatic(filter)));
     assert_eq!((cured.all.hole, cured.all.false_shadow, cured.all.false_light), (0, 0, 0), "{:?}", shares(&cured));
 }
 
@@ -76,7 +76,7 @@ fn the_figures_are_those_of_the_same_scene_turned_moved_and_in_another_unit() {
     let filter = FilterKind::Pcf3x3;
     // By right angles: those of objects turned otherwise have other boxes around them.
     let technique = || single(FitKind::Focused, filter, BiasSettings::automatic(filter));
-    let plain = box_on_a_floor().judged(technique()).columns();
+    let plain = box_on_a_floor().judged(&technique()).columns();
     let turn = Affine3A::from_rotation_translation(
         Quat::from_rotation_y(std::f32::consts::FRAC_PI_2),
         Vec3::new(30.0, -4.0, 12.0),
@@ -88,7 +88,7 @@ fn the_figures_are_those_of_the_same_scene_turned_moved_and_in_another_unit() {
         ("in centimetres", Affine3A::IDENTITY, 100.0),
         ("both", turn, 0.01),
     ] {
-        let moved = box_on_a_floor().moved(&motion, scale).judged(technique()).columns();
+        let moved = box_on_a_floor().moved(&motion, scale).judged(&technique()).columns();
         for ((name, plain), (_, moved)) in plain.iter().zip(&moved) {
             // The map's rectangle is found again but for rounding, so that texels at edges may fall otherwise.
             let allowed = if name.ends_with('%') { 0.1 } else { 0.03 * plain.abs().max(0.1) };
@@ -102,9 +102,9 @@ fn the_figures_are_those_of_the_same_scene_turned_moved_and_in_another_unit() {
 fn a_scene_a_hundred_kilometres_from_the_origin_is_judged_as_at_home() {
     let filter = FilterKind::Pcf3x3;
     let technique = || single(FitKind::Focused, filter, BiasSettings::automatic(filter));
-    let home = box_on_a_floor().judged(technique());
+    let home = box_on_a_floor().judged(&technique());
     // Whole metres, which f32 holds exactly there.
-    let away = box_on_a_floor().judged_away(technique(), Vec3::new(100_000.0, 500.0, -75_000.0));
+    let away = box_on_a_floor().judged_away(&technique(), Vec3::new(100_000.0, 500.0, -75_000.0));
     let [home_shares, away_shares] = [&home, &away].map(shares);
     println!("{home_shares:?} at home, {away_shares:?} away");
     assert!(

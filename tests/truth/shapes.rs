@@ -80,17 +80,17 @@ impl Arrangement {
     }
 
     /// Sums over the picture with a technique.
-    pub(super) fn judged(&self, technique: Technique) -> PictureTally {
+    pub(super) fn judged(&self, technique: &Technique) -> PictureTally {
         self.judged_away(technique, Vec3::ZERO)
     }
 
     /// The same with everything moved by the scene's nodes, in metres.
-    pub(super) fn judged_away(&self, technique: Technique, away: Vec3) -> PictureTally {
+    pub(super) fn judged_away(&self, technique: &Technique, away: Vec3) -> PictureTally {
         let judging = Judging { size: SIZE, ray_offset: self.ray_offset, ..Judging::default() };
         let mut scene = Scene::from_objects("shapes", &self.objects);
         scene.nodes.iter_mut().for_each(|node| node.rest.translation = away);
         let mut comparison = Comparison::new(software_gpu(), scene, judging).expect("a scene");
-        comparison.add(technique).expect("a technique");
+        comparison.add(*technique).expect("a technique");
         let camera = PerspectiveCamera { eye: self.camera.eye + away.as_dvec3(), ..self.camera };
         let view = View { camera, direction: self.direction, is_first: true };
         let outcomes = comparison.frame(&view, &mut SharedTruth::default()).expect("a frame");

@@ -63,7 +63,10 @@ pub(crate) fn selector(
 /// Names of the columns and what they say.
 const COLUMNS: [(&str, &str); 5] = [
     ("Map", "Number of the map, the nearest first, on the colour that Tint by map gives it."),
-    ("From, to", "Distances from the camera, in metres, between which points choose this map."),
+    (
+        "From, to",
+        "Distances from the camera, in metres, that the map is made for. By view depth, points between them read it.",
+    ),
     ("Texel", "Width and height of one texel across the light."),
     ("Depth", "Extent of the map along the light."),
     ("Draws", "Draw calls of the map's shadow pass."),

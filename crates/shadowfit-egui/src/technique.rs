@@ -35,9 +35,9 @@ struct Entry<'a> {
 }
 
 impl Menu {
-    pub(crate) fn open(&mut self, name: String, technique: Technique) {
+    pub(crate) fn open(&mut self, name: String, technique: &Technique) {
         self.chosen.clone_from(&name);
-        self.opened = Some((name, technique));
+        self.opened = Some((name, *technique));
     }
 
     fn entries(&self) -> impl Iterator<Item = Entry<'_>> {

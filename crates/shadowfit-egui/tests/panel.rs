@@ -8,7 +8,7 @@ use egui_kittest::{Harness, Node};
 use shadowfit::figures::{Figures, MapFigures};
 use shadowfit::light_fit::Constraint;
 use shadowfit::params::{Group, Kind, PARAMETERS, Parameter, parameter};
-use shadowfit::settings::{CasterPolicy, FitKind, MAX_MAPS, MapOverride, SplitScheme};
+use shadowfit::settings::{CasterPolicy, FitKind, MAX_MAPS, MapChoice, MapOverride, SplitScheme};
 use shadowfit::tool::Settings;
 use shadowfit::{PRESETS, Technique, glam::UVec2};
 use shadowfit_egui::{Action, Artefact, KEYS, PANEL_WIDTH, Panel, PanelInput, SceneLine, apply_style, help_overlay};
@@ -70,7 +70,7 @@ fn open_harness(host: Host) -> Harness<'static, Host> {
 }
 
 /// Settings under which every row of the table is shown and has an effect, but the one of the other
-/// choice of splits: λ or the manual ones.
+/// choice of splits, λ or the manual ones, and of the other choice of maps, blend or overlap.
 fn everything(splits: SplitScheme) -> Settings {
     let mut settings = Settings::default();
     let technique = &mut settings.technique;
@@ -83,9 +83,12 @@ fn everything(splits: SplitScheme) -> Settings {
     settings
 }
 
-/// The two of them that show all rows together.
+/// The two of them that show all rows together, each of them active in one at least.
 fn all_rows() -> [Settings; 2] {
-    [SplitScheme::Practical(0.5), SplitScheme::Manual([5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0])].map(everything)
+    let mut settings =
+        [SplitScheme::Practical(0.5), SplitScheme::Manual([5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0])].map(everything);
+    settings[1].technique.choice = MapChoice::ViewDepth;
+    settings
 }
 
 /// The control of a parameter, which carries its label; for the map of the inset its first button.
@@ -339,9 +342,13 @@ fn typed_numbers_are_set_in_the_shown_unit_and_clamped() {
 
 #[test]
 fn dragged_sliders_set_and_clamp_every_number() {
+    let by_choice = ["splits.blend", "splits.overlap"];
     for settings in all_rows() {
         for parameter in PARAMETERS.iter().filter(|parameter| parameter.id != INSET_MAP) {
             let Some((_, max, _)) = number(parameter, &settings) else { continue };
+            if by_choice.contains(&parameter.id) && (parameter.inert)(&settings).is_some() {
+                continue;
+            }
             let mut harness = open_harness(Host { settings, ..Host::default() });
             let rect = control(&harness, parameter).rect();
             harness.drag_at(rect.center());
@@ -601,7 +608,7 @@ fn a_technique_that_was_changed_is_called_so() {
 
     let opened = Technique::default().with_overlap(0.2);
     harness.state_mut().settings.technique = opened;
-    harness.state_mut().panel.name_technique("street.toml", opened);
+    harness.state_mut().panel.name_technique("street.toml", &opened);
     harness.run();
     assert_eq!(technique_title(&harness), "street.toml");
     harness.state_mut().settings.technique.overlap = 0.3;

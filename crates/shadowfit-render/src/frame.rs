@@ -16,7 +16,8 @@ pub struct Frame<'a> {
     pub direction: Vec3,
     /// The shadow maps with their biases, in order of their `far`; empty where there is nothing to fit.
     pub maps: &'a [MapFit],
-    /// Eye and unit forward direction (world space, metres) whose view depths choose the map; the
+    /// Eye and unit forward direction (world space, metres) whose view depths choose among maps that are
+    /// read by view depth; the
     /// camera's own where `None`.
     pub choice: Option<(DVec3, Vec3)>,
     /// Which casters are drawn into the maps.

@@ -205,8 +205,8 @@ impl Renderer {
     fn culled(&self, frame: &Frame<'_>, view: &MapView) -> Vec<MapFit> {
         let mut maps = frame.maps.to_vec();
         if frame.culling == Culling::Swept {
-            let filter = self.shadow_map.descriptor().filter;
-            let swept = frame.camera.frustum().and_then(|seen| MapFit::sweep(&mut maps, view, &[seen], filter));
+            let descriptor = self.shadow_map.descriptor();
+            let swept = frame.camera.frustum().and_then(|seen| MapFit::sweep(&mut maps, view, &[seen], descriptor));
             if swept.is_err() {
                 // What an invalid camera sees is unknown: maps get all casters that they can store.
                 for map in &mut maps {

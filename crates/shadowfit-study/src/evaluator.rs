@@ -38,7 +38,7 @@ impl Evaluator {
         Self { renderer, judging, targets: None, picture: None, before: None }
     }
 
-    /// Draws the maps of a view and its shaded picture. Maps are in order of their `far`.
+    /// Draws the maps of a view and its shaded picture.
     ///
     /// # Errors
     ///
@@ -71,7 +71,7 @@ impl Evaluator {
         Ok(pixels?)
     }
 
-    /// Draws the maps of a view (in order of their `far`) and judges the shadows that they give.
+    /// Draws the maps of a view and judges the shadows that they give.
     ///
     /// # Errors
     ///
@@ -95,12 +95,13 @@ impl Evaluator {
         let rays = scene.rays();
         let counted = scene.counted_instances(self.judging.subject_only);
         let counts = |triangle: u32| counted[rays.triangles[triangle as usize].instance as usize];
-        let mut judged = judge(&rays.tracer, truth, &self.seen(&measured_maps), &factors, counts);
+        let mut judged = judge(&rays.tracer, truth, &self.seen(&measured_maps, maps), &factors, counts);
         if let Some(before) = self.before.take().filter(|_| self.judging.crawl) {
             let choice = Some((before.eye, before.forward));
             let factors_before = self::factors(&self.probe(gpu, scene, view, &before.maps, choice)?);
+            let measured_before = measured(&before.maps, view.direction, origin);
             let before = MapsBefore {
-                maps: &measured(&before.maps, view.direction, origin),
+                maps: self.seen(&measured_before, &before.maps),
                 eye: before.eye - origin,
                 forward: before.forward.as_dvec3(),
                 factors: &factors_before,
@@ -157,15 +158,15 @@ impl Evaluator {
         let result = judge(&LiveInput {
             camera: self.judging.pixel_camera(scene, view),
             settings: self.judging.truth_settings(view),
-            maps: self.seen(&measured),
+            maps: self.seen(&measured, maps),
             seen: &targets.view,
         });
         self.targets = Some(targets);
         result
     }
 
-    fn seen<'a>(&self, maps: &'a [MeasuredMap]) -> PictureMaps<'a> {
-        picture_maps(maps, self.renderer.shadow_map().descriptor())
+    fn seen<'a>(&self, maps: &'a [MeasuredMap], fits: &[MapFit]) -> PictureMaps<'a> {
+        picture_maps(maps, fits, self.renderer.shadow_map().descriptor())
     }
 
     /// What each pixel shows. `choice` is the eye and the forward direction that choose the maps, if not the camera's.

@@ -2,8 +2,10 @@
 
 use glam::{DMat4, DVec3, Vec3};
 use shadowfit::bias;
+use shadowfit::choice::MapOrder;
+use shadowfit::settings::MapChoice;
 use shadowfit_truth::peers::FitMap;
-use shadowfit_truth::{MeasuredMap, PictureMaps};
+use shadowfit_truth::{MapReading, MeasuredMap, PictureMaps};
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
 
 /// View depth, in metres, that means that a map has no end: fit files have finite numbers only.
@@ -24,12 +26,25 @@ pub fn fit_map(map: &MapFit) -> FitMap {
 /// travel.
 pub(crate) fn measured(maps: &[MapFit], direction: Vec3, origin: DVec3) -> Vec<MeasuredMap> {
     let from_origin = |map: &MapFit| FitMap { view_proj: clip_from(map, origin).to_cols_array(), ..fit_map(map) };
-    maps.iter().map(|map| from_origin(map).measured(-direction.as_dvec3())).collect()
+    let measured =
+        |map: &MapFit| from_origin(map).measured(-direction.as_dvec3()).with_blend_near(f64::from(map.blend_near));
+    maps.iter().map(measured).collect()
 }
 
-/// How the maps of a shadow map are read.
-pub(crate) fn picture_maps<'a>(maps: &'a [MeasuredMap], descriptor: &ShadowMapDescriptor) -> PictureMaps<'a> {
-    PictureMaps { maps, reach: bias::reach(descriptor.filter), depth_clamp: descriptor.depth_clamp }
+/// How the maps of a shadow map are read: `maps` as the measures take those of `fits`.
+pub(crate) fn picture_maps<'a>(
+    maps: &'a [MeasuredMap],
+    fits: &[MapFit],
+    descriptor: &ShadowMapDescriptor,
+) -> PictureMaps<'a> {
+    let reading = match descriptor.choice {
+        MapChoice::ViewDepth => MapReading::ViewDepth,
+        MapChoice::Coverage => MapReading::Coverage {
+            order: MapOrder::new(MapChoice::Coverage, fits.iter().map(|map| &map.fit)),
+            blend: descriptor.blend,
+        },
+    };
+    PictureMaps { maps, reading, reach: bias::reach(descriptor.filter), depth_clamp: descriptor.depth_clamp }
 }
 
 /// Clip space from positions relative to a world position.

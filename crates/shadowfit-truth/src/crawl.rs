@@ -8,17 +8,18 @@ use rayon::prelude::*;
 
 use crate::class::counts_as_lit;
 use crate::judge::Judged;
-use crate::maps::{MeasuredMap, choose};
+use crate::maps::PictureMaps;
 use crate::truth::Truth;
 
 /// The maps of the frame before, and what they show at the points of this frame.
 #[derive(Clone, Copy, Debug)]
 pub struct MapsBefore<'a> {
-    /// Its maps, in order of their splits.
-    pub maps: &'a [MeasuredMap],
+    /// Its maps, and how they were read.
+    pub maps: PictureMaps<'a>,
     /// Its eye, world space, metres.
     pub eye: DVec3,
-    /// Its unit direction of view, world axes: a point's view depth along it chooses the map.
+    /// Its unit direction of view, world axes: view depths along it choose among maps that are read by
+    /// view depth.
     pub forward: DVec3,
     /// Share of the light that its maps let through at the points of this frame's pixels, 0..=1,
     /// rows from the top.
@@ -42,7 +43,7 @@ pub fn crawl(truth: &Truth, judged: &Judged, factors: &[f32], before: &MapsBefor
         is_here
             && truth.points[pixel].is_some_and(|point| {
                 let view_depth = (point.position - before.eye).dot(before.forward);
-                choose(before.maps, view_depth, point.position).is_some()
+                before.maps.read(view_depth, point.position).is_some()
             })
     };
     (0..factors.len())

@@ -3,13 +3,13 @@
 //!
 //! A picture's filtered shadow factors are compared with the truth. The class of a wrong pixel depends
 //! on the map that it reads: how wide its texels are on screen, and whether it holds an
-//! occluder.
+//! occluder. Of two maps that are blended, it is the one that weighs more.
 
 use rayon::prelude::*;
 
 use crate::class::{Class, counts_as_lit};
 use crate::displacement::displacement;
-use crate::maps::{MIN_FACING, MapChoice, Occluder, PictureMaps, choose, pixels_per_texel};
+use crate::maps::{MIN_FACING, MapChoice, Occluder, PictureMaps, pixels_per_texel};
 use crate::tally::{CountedPixel, PictureTally};
 use crate::tracer::Tracer;
 use crate::truth::{Truth, TruthPoint};
@@ -24,7 +24,7 @@ pub struct Judged {
     pub pixels_per_texel: Vec<f32>,
     /// Whether the pixel lies in the edge zone; `false` where it is not judged.
     pub edge_zone: Vec<bool>,
-    /// Index of the map that is read; 255 stands for all from there on. `None` where no map covers the point or the
+    /// Index of the map that is read, of two the one that weighs more; 255 stands for all from there on. `None` where no map covers the point or the
     /// pixel is not judged.
     pub map_index: Vec<Option<u8>>,
     /// Whether the pixel is judged and counts in the sums.
@@ -89,7 +89,7 @@ pub fn judge(
 
 /// Judges a single pixel.
 fn find(tracer: &Tracer, truth: &Truth, maps: &PictureMaps, factor: f32, pixel: usize, point: &TruthPoint) -> Finding {
-    let choice = choose(maps.maps, point.view_depth, point.position);
+    let choice = maps.main(point.view_depth, point.position);
     let texel_width = choice.as_ref().map(|choice| texel_width(truth, choice, pixel, point));
     let pixels = texel_width.map_or(1.0, |width| width.max(1.0));
     let is_in_edge_zone = truth.is_near_transition(pixel, maps.edge_width() * pixels);

@@ -42,7 +42,7 @@ pub use cut_out::{AlphaImage, CutOut, CutOuts, Wrap};
 pub use displacement::MAX_DISPLACEMENT;
 pub use histogram::Histogram;
 pub use judge::{Judged, judge};
-pub use maps::{MapGradients, MapPosition, MeasuredMap, PictureMaps};
+pub use maps::{MapGradients, MapPosition, MapReading, MeasuredMap, PictureMaps};
 pub use memory::TracerMemory;
 pub use tally::{ClassTally, PictureFigures, PictureTally};
 pub use tracer::{Hit, Tracer, TriangleCountError};

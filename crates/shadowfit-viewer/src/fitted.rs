@@ -6,8 +6,11 @@ use shadowfit::{FittedMaps, PerspectiveCamera, Technique, ViewFrustum};
 /// The maps of a view.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Fitted {
-    /// The camera of the view, whose view depths choose among the maps; `None` where nothing was fitted.
+    /// The camera of the view, whose view depths choose among maps that are read by view depth; `None` where nothing
+    /// was fitted.
     pub(crate) camera: Option<PerspectiveCamera>,
+    /// How the maps are read.
+    pub(crate) technique: Technique,
     /// View depth at which shadows end, in metres.
     pub(crate) end: f32,
     /// The maps, the nearest first.
@@ -16,7 +19,8 @@ pub(crate) struct Fitted {
 
 impl Fitted {
     pub(crate) fn new(camera: PerspectiveCamera, technique: &Technique, maps: &FittedMaps) -> Self {
-        Self { camera: Some(camera), end: camera.far.min(technique.fit.max_distance), maps: *maps }
+        let end = camera.far.min(technique.fit.max_distance);
+        Self { camera: Some(camera), technique: *technique, end, maps: *maps }
     }
 
     /// The part of the view that is shadowed.
@@ -24,7 +28,8 @@ impl Fitted {
         self.between(f32::MIN, f32::MAX)
     }
 
-    /// The part of the view whose points look into a map first; `None` where no point does.
+    /// The part of the view that a map is made for: by view depth its points look into it first. `None` where it has
+    /// none.
     pub(crate) fn slice(&self, map: usize) -> Option<ViewFrustum> {
         let map = self.maps.get(map)?;
         self.between(map.near, map.far)
@@ -35,19 +40,19 @@ impl Fitted {
         camera.frustum().and_then(|frustum| frustum.slice(near.max(camera.near), far.min(self.end))).ok()
     }
 
-    /// Index of the map that a point (world space, metres) reads: of those that end beyond its view depth the first
-    /// that covers it.
+    /// Index of the map that a point (world space, metres) reads, of two the one that weighs more; `None` where no map
+    /// holds it.
     pub(crate) fn read_at(&self, point: DVec3) -> Option<usize> {
         let camera = self.camera?;
         let depth = (point - camera.eye).dot(camera.forward.as_dvec3().normalize());
-        self.maps.iter().position(|map| depth < f64::from(map.far) && map.fit.covers(point))
+        self.maps.read(&self.technique, point, depth).map(|read| read.main())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use glam::{DVec2, Vec3};
-    use shadowfit::settings::SplitScheme;
+    use shadowfit::settings::{MapChoice, SplitScheme};
     use shadowfit::{FitInput, MapFitter, Workspace};
 
     use super::*;
@@ -64,13 +69,18 @@ mod tests {
             far: 300.0,
         };
         let manual = SplitScheme::Manual([10.0, 30.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        let technique = Technique::default().with_count(3).with_splits(manual).with_max_distance(80.0);
+        let technique = Technique::default().with_choice(MapChoice::ViewDepth).with_splits(manual);
+        let technique = technique.with_count(3).with_max_distance(80.0);
         let frustum = [camera.frustum().expect("a frustum")];
         let mut storage = vec![DVec2::ZERO; Workspace::required(0, 3)];
         let input = FitInput::new(&frustum, Vec3::new(0.3, -0.8, 0.2).normalize());
         let maps = MapFitter::new().fit(&input, &technique, &mut Workspace::new(&mut storage)).expect("maps");
         let fitted = Fitted::new(camera, &technique, &maps);
         let at = |depth: f64| fitted.read_at(camera.eye + DVec3::NEG_Z * depth);
+        // By coverage the first map is read wherever it holds the point, which is not only in its slice.
+        let by_coverage = Fitted { technique: technique.with_choice(MapChoice::Coverage), ..fitted.clone() };
+        let finest = |depth: f64| by_coverage.read_at(camera.eye + DVec3::NEG_Z * depth);
+        assert!((10..30).any(|depth| finest(f64::from(depth)) == Some(0)));
         assert_eq!([at(5.0), at(20.0), at(50.0), at(500.0)], [Some(0), Some(1), Some(2), None]);
         let ends = [0, 1, 2, 3].map(|map| fitted.slice(map).map(|slice| [slice.near, slice.far]));
         assert_eq!(ends, [Some([0.5, 10.0]), Some([10.0, 30.0]), Some([30.0, 80.0]), None]);

@@ -69,7 +69,7 @@ impl Interface {
 
     /// Puts a technique that was opened from a file among those of the menu.
     pub(crate) fn name_technique(&mut self, opened: NamedTechnique) {
-        self.panel.name_technique(opened.name, opened.technique);
+        self.panel.name_technique(opened.name, &opened.technique);
     }
 
     /// What the picture was last drawn into.

@@ -255,7 +255,7 @@ impl Stage {
         let fitted = self.fit(target.size);
         let maps: Vec<MapFit> = fitted.maps.iter().map(MapFit::from).collect();
         let seen = self.view(target.size);
-        // A frozen fit was made for another camera, whose view depths still choose among its maps.
+        // A frozen fit was made for another camera, whose view depths may still choose among its maps.
         let view = View { camera: fitted.camera.unwrap_or(seen.camera), ..seen };
         let settings = self.settings.view;
         let outside = settings.outside.then(|| outside::camera(&seen.camera, &fitted));

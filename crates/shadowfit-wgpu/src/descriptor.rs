@@ -1,7 +1,7 @@
-//! What a shadow map is made of: size, count, format, filter and depth convention.
+//! What a shadow map is made of: size, count, format, filter, choice of the map and depth convention.
 
 use shadowfit::glam::UVec2;
-use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MAX_MAPS, MapFormat};
+use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MAX_BLEND, MAX_MAPS, MapChoice, MapFormat};
 use shadowfit::{DepthConvention, Technique};
 
 use crate::ShadowMapError;
@@ -10,7 +10,7 @@ use crate::ShadowMapError;
 pub const RESOLUTIONS: core::ops::RangeInclusive<u32> = 256..=8192;
 
 /// What a [`ShadowMap`](crate::ShadowMap) is made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowMapDescriptor {
     /// Width and height of each map, in texels, within [`RESOLUTIONS`].
     pub resolution: [u32; 2],
@@ -20,6 +20,12 @@ pub struct ShadowMapDescriptor {
     pub format: MapFormat,
     /// Filter of the look-up.
     pub filter: FilterKind,
+    /// Which of the maps a point reads.
+    pub choice: MapChoice,
+    /// Texels over which a map that is read by coverage is blended into the next coarser one, inward from the filter's
+    /// reach to its border, 0..=[`MAX_BLEND`]; 0 for none. By view depth [`MapFit::blend_near`](crate::MapFit::blend_near)
+    /// says where maps are blended.
+    pub blend: f32,
     /// Depth convention of the fits: 0..1, plain or reversed; wgpu has no -1..1.
     pub depth: DepthConvention,
     /// Whether casters before the near plane are kept, flattened onto it ("pancaking"), as fits with
@@ -44,6 +50,8 @@ impl From<&Technique> for ShadowMapDescriptor {
             maps: technique.count,
             format: technique.format,
             filter: technique.filter,
+            choice: technique.choice,
+            blend: technique.blend,
             depth: technique.fit.depth,
             // The XNA sample's fit has no caster policy.
             depth_clamp: technique.fit.casters == CasterPolicy::DepthClamp && technique.fit.kind != FitKind::XnaSample,
@@ -61,6 +69,9 @@ impl ShadowMapDescriptor {
         }
         if !(1..=MAX_MAPS as u32).contains(&self.maps) {
             return Err(ShadowMapError::Maps(self.maps));
+        }
+        if !(0.0..=MAX_BLEND).contains(&self.blend) {
+            return Err(ShadowMapError::Blend(self.blend));
         }
         if self.depth == DepthConvention::NegativeOneToOne {
             return Err(ShadowMapError::Depth(self.depth));

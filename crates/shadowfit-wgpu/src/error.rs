@@ -4,6 +4,7 @@
 use core::fmt;
 
 use shadowfit::glam::Vec3;
+use shadowfit::settings::MAX_BLEND;
 use shadowfit::{DepthConvention, FitError};
 
 use crate::{MAX_MAPS, RESOLUTIONS};
@@ -20,6 +21,8 @@ pub enum ShadowMapError {
     },
     /// Number of maps outside 1..=[`MAX_MAPS`].
     Maps(u32),
+    /// A blend outside 0..=[`MAX_BLEND`], in texels.
+    Blend(f32),
     /// A depth convention that wgpu's clip space does not have.
     Depth(DepthConvention),
     /// Depth clamp on a device without [`wgpu::Features::DEPTH_CLIP_CONTROL`].
@@ -41,7 +44,8 @@ pub enum ShadowMapError {
         /// Number of layers.
         layers: usize,
     },
-    /// The maps' ends do not ascend, or one of them is NaN: points would read the wrong map.
+    /// The ends of maps that are read by view depth do not ascend, or one of them is NaN: points would read the wrong
+    /// map.
     Order {
         /// Index of the first map that ends before the one in front of it.
         index: usize,
@@ -77,6 +81,7 @@ impl fmt::Display for ShadowMapError {
                 RESOLUTIONS.end(),
             ),
             Self::Maps(maps) => write!(f, "{maps} shadow maps: between 1 and {MAX_MAPS} are possible"),
+            Self::Blend(texels) => write!(f, "blend of {texels} texels: 0 to {MAX_BLEND} are possible"),
             Self::Depth(depth) => {
                 write!(f, "depth convention {depth:?}: wgpu's clip space has 0..1, plain or reversed")
             }

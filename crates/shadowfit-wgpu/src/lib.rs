@@ -19,7 +19,7 @@
 //! // Positions in the engine's shaders are relative to the eye.
 //! let view = MapView::from_eye(camera.eye, forward);
 //! // Leave out casters whose shadows are not seen. Without this, each map gets all that it can store.
-//! MapFit::sweep(&mut maps, &view, &[camera.frustum()?], technique.filter)?;
+//! MapFit::sweep(&mut maps, &view, &[camera.frustum()?], map.descriptor())?;
 //! map.prepare(queue, &view, &maps)?;
 //! map.render(encoder, 0, |pass, _map_index, _volume| {
 //!     // The caster uniform is bound at group 0: draw every caster that the volume keeps.

@@ -142,15 +142,15 @@ impl ShadowMap {
         &self.layers[index].caster_group
     }
 
-    /// Writes the uniforms for this frame's maps, in order of their `far`. Positions in the shaders
-    /// are relative to the view's origin. A fit with fewer texels than a layer uses the corner of
+    /// Writes the uniforms for this frame's maps; by view depth they are in order of their `far`. Map i is
+    /// drawn into layer i. Positions in the shaders are relative to the view's origin. A fit with fewer texels than a layer uses the corner of
     /// it. A layer without a map is neither drawn nor read.
     ///
     /// # Errors
     ///
     /// [`ShadowMapError::TooManyFits`] for more fits than layers; [`ShadowMapError::Fit`] if a fit has
-    /// more texels than a layer or another depth convention; [`ShadowMapError::Order`] if the maps'
-    /// ends do not ascend; [`ShadowMapError::Bias`] and [`ShadowMapError::Forward`] for biases that
+    /// more texels than a layer or another depth convention; [`ShadowMapError::Order`] if the
+    /// ends of maps that are read by view depth do not ascend; [`ShadowMapError::Bias`] and [`ShadowMapError::Forward`] for biases that
     /// are not finite and for a direction that is not of unit length. Nothing is written then.
     pub fn prepare(&mut self, queue: &wgpu::Queue, view: &MapView, maps: &[MapFit]) -> Result<(), ShadowMapError> {
         check(&self.descriptor, view, maps)?;
@@ -159,7 +159,7 @@ impl ShadowMap {
             queue.write_buffer(&layer.caster_uniform, 0, bytemuck::bytes_of(&uniform));
             layer.used = map.fit.resolution.to_array();
         }
-        let uniform = ReceiverUniform::new(maps, view);
+        let uniform = ReceiverUniform::new(maps, view, self.descriptor.choice);
         queue.write_buffer(&self.receiver_uniform, 0, bytemuck::bytes_of(&uniform));
         let depth_clamp = self.descriptor.depth_clamp;
         self.volumes.clear();

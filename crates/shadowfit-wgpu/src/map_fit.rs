@@ -2,6 +2,7 @@
 
 use shadowfit::bias::Bias;
 use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::settings::MapChoice;
 use shadowfit::{CasterVolume, DepthConvention, FittedMap, LightFit};
 
 use crate::{ShadowMapDescriptor, ShadowMapError};
@@ -12,9 +13,13 @@ use crate::{ShadowMapDescriptor, ShadowMapError};
 pub struct MapFit {
     /// The map's matrices and box.
     pub fit: LightFit,
-    /// View depth at which it ends, in metres: a point reads the first map that ends beyond its view depth and covers
-    /// it. `f32::MAX` for no end, `f32::MIN` for a map in front of all others that no point reads.
+    /// View depth at which it ends, in metres: by view depth a point reads the first map that ends beyond it and covers
+    /// it. `f32::MAX` for no end, `f32::MIN` for a map in front of all others that no point reads. By coverage it is
+    /// ignored.
     pub far: f32,
+    /// View depth, in metres, from which on points are blended into this map, up to the end of the map in front of it;
+    /// at that end or beyond, such as `f32::MAX`, for no blend. By coverage it is ignored.
+    pub blend_near: f32,
     /// Biases of the look-up, for [`Self::fit`].
     pub bias: Bias,
     /// Casters that are drawn into it; `None` for all that the map can store, which is what maps need that are kept
@@ -25,7 +30,7 @@ pub struct MapFit {
 impl MapFit {
     /// A single map for all view depths, into which every caster that it can store is drawn.
     pub fn new(fit: LightFit, bias: Bias) -> Self {
-        Self { fit, far: f32::MAX, bias, volume: None }
+        Self { fit, far: f32::MAX, blend_near: f32::MAX, bias, volume: None }
     }
 }
 
@@ -42,9 +47,8 @@ impl From<&FittedMap> for MapFit {
     ///
     /// For another [`Bias`], such as [`Bias::automatic`] or [`Bias::fixed`], set [`MapFit::bias`].
     fn from(map: &FittedMap) -> Self {
-        // A map without a range behind all others begins at `f32::MAX`; its end is that of the view.
-        let far = if map.near == f32::MAX { f32::MAX } else { map.far };
-        Self { far, ..Self::new(map.fit, map.bias) }
+        let range = map.depth_range();
+        Self { far: range.far as f32, blend_near: range.blend_near as f32, ..Self::new(map.fit, map.bias) }
     }
 }
 
@@ -87,7 +91,7 @@ pub(crate) fn check(descriptor: &ShadowMapDescriptor, view: &MapView, maps: &[Ma
         check_layer(descriptor, index, &map.fit)?;
         map.bias.checked().map_err(|error| ShadowMapError::Bias { index, error })?;
         // NaN has no order.
-        let is_in_order = map.far >= previous;
+        let is_in_order = map.far >= previous || descriptor.choice == MapChoice::Coverage;
         if !is_in_order {
             return Err(ShadowMapError::Order { index, far: map.far, previous });
         }

@@ -1,7 +1,8 @@
 //! The WGSL of casters and receivers, put together from the pieces in `shaders/`. Every name starts
 //! with `shadowfit_`, so that the text can be pasted into any shader.
 
-use shadowfit::settings::{FilterKind, MapFormat};
+use shadowfit::bias::reach;
+use shadowfit::settings::{FilterKind, MapChoice, MapFormat};
 use shadowfit::{CasterVolume, DepthConvention};
 
 use crate::{MAX_MAPS, ShadowMapDescriptor};
@@ -34,12 +35,12 @@ pub fn culling_wgsl(group: u32) -> String {
 /// | function | gives |
 /// |---|---|
 /// | `shadowfit_factor(position, normal) -> f32` | the filtered share of the light that reaches a point: 1 lit, 0 in shadow, 1 outside every map |
-/// | `shadowfit_map_index(position) -> i32` | the index of the map that `shadowfit_factor` reads there, for tints that show it; -1 outside every map |
-/// | `shadowfit_view_depth(position) -> f32` | the view depth, in metres, that chooses among the maps: the distance from [`MapView::eye`](crate::MapView::eye) along [`MapView::forward`](crate::MapView::forward) |
+/// | `shadowfit_map_index(position) -> i32` | the index of the map that weighs more in `shadowfit_factor` there, for tints that show it; -1 outside every map |
+/// | `shadowfit_view_depth(position) -> f32` | the view depth, in metres, that chooses among maps that are read by view depth: the distance from [`MapView::eye`](crate::MapView::eye) along [`MapView::forward`](crate::MapView::forward) |
 ///
 /// `position` is in world space, metres, relative to the origin of [`crate::ShadowMap::prepare`];
-/// `normal` is the unit geometric normal on the side that is seen. A point reads the first map that
-/// ends beyond its view depth and covers it. Reads bindings 0, 1 and, for depth formats, 2 of
+/// `normal` is the unit geometric normal on the side that is seen. Which map a point reads is
+/// [`ShadowMapDescriptor::choice`], by the rule of [`shadowfit::choice`]. Reads bindings 0, 1 and, for depth formats, 2 of
 /// `group`; no derivatives.
 pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, group: u32) -> String {
     let look_up = match (descriptor.format, descriptor.filter) {
@@ -57,50 +58,56 @@ pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, group: u32) -> String {
         FilterKind::Pcf5x5 => include_str!("shaders/filter_tent_5x5.wgsl"),
     };
     let closer = if descriptor.depth == DepthConvention::Reversed { ">=" } else { "<=" };
-    [include_str!("shaders/receiver.wgsl"), &look_up, filter, &choice(descriptor.maps)]
+    [include_str!("shaders/receiver.wgsl"), &look_up, filter, &choice(descriptor)]
         .concat()
         .replace("GROUP", &group.to_string())
         .replace("MAX_MAPS", &MAX_MAPS.to_string())
         .replace("COMPARE", closer)
 }
 
-/// The search for a point's map: one branch per map, since software rasterisers take twenty times as long for a loop
-/// over an array of uniforms.
-fn choice(maps: u32) -> String {
-    let branches = |found: &dyn Fn(u32) -> String| -> String {
-        let branch = |map: u32| {
-            format!(
-                "    if view_depth < shadowfit_receiver.maps[{map}].far
-        && shadowfit_covers({map}u, shadowfit_receiver.maps[{map}], position) {{
-        return {};
-    }}
-",
-                found(map)
-            )
-        };
-        (0..maps.min(MAX_MAPS as u32)).map(branch).collect()
-    };
-    let compare = |map: u32| {
+/// The search for a point's maps, and a map by its place in the order: one branch per map, since software rasterisers
+/// take twenty times as long for a loop over an array of uniforms.
+fn choice(descriptor: &ShadowMapDescriptor) -> String {
+    let maps = descriptor.maps.clamp(1, MAX_MAPS as u32);
+    let map = |entry: u32| format!("shadowfit_receiver.maps[{entry}]");
+    let try_map = |entry: u32| {
+        let map = map(entry);
         format!(
-            "shadowfit_compare({map}u, shadowfit_receiver.maps[{map}].size,
-            shadowfit_project(shadowfit_receiver.maps[{map}], position, normal))"
+            "    if shadowfit_is_open(choice, {entry}, view_depth, {map}.far, {map}.blend_near) {{
+        let free = shadowfit_free({entry}u, {map}, position);
+        choice = shadowfit_try(choice, {entry}, view_depth, {map}.far, {map}.blend_near, free);
+    }}
+"
         )
     };
+    let entry = |entry: u32| format!("    if entry == {entry} {{\n        return {};\n    }}\n", map(entry));
+    let rule = match descriptor.choice {
+        MapChoice::Coverage => include_str!("shaders/choice_coverage.wgsl"),
+        MapChoice::ViewDepth => include_str!("shaders/choice_view_depth.wgsl"),
+    };
+    let (reach, blend) = (reach(descriptor.filter), descriptor.blend);
     format!(
         "
-// Share of the light that reaches a point: 1 lit, 0 in shadow, 1 outside every map.
-fn shadowfit_factor(position: vec3<f32>, normal: vec3<f32>) -> f32 {{
+const SHADOWFIT_REACH: f32 = {reach:?};
+const SHADOWFIT_BLEND: f32 = {blend:?};
+
+{rule}
+// The maps that a point reads.
+fn shadowfit_choose(position: vec3<f32>) -> shadowfit_Choice {{
     let view_depth = shadowfit_view_depth(position);
-{}    return 1.0;
+    var choice = shadowfit_Choice(-1, -1, 1.0, -1, 0.0);
+{}    choice.first = select(choice.first, choice.clamped, choice.first < 0);
+    return choice;
 }}
 
-// Index of the map that shadowfit_factor reads at a point: -1 outside every map.
-fn shadowfit_map_index(position: vec3<f32>) -> i32 {{
-    let view_depth = shadowfit_view_depth(position);
-{}    return -1;
+// The map at a place in the order.
+fn shadowfit_entry(entry: i32) -> shadowfit_Map {{
+{}    return {};
 }}
-",
-        branches(&compare),
-        branches(&|map| map.to_string()),
+{}",
+        (0..maps).map(try_map).collect::<String>(),
+        (1..maps).map(entry).collect::<String>(),
+        map(0),
+        include_str!("shaders/factor.wgsl"),
     )
 }

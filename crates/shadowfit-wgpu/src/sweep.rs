@@ -6,11 +6,13 @@
 
 use shadowfit::bias::{MIN_COSINE, reach};
 use shadowfit::culling::Sweep;
-use shadowfit::glam::{DVec3, DVec4, Vec3};
-use shadowfit::settings::{CasterPolicy, FilterKind};
+use shadowfit::glam::{DVec2, DVec3, DVec4, Vec3};
+use shadowfit::settings::{CasterPolicy, FilterKind, MapChoice};
 use shadowfit::{CasterVolume, FitError, LightFit, ViewFrustum};
 
-use crate::{MapFit, MapView};
+use crate::{MapFit, MapView, ShadowMapDescriptor};
+
+mod coverage;
 
 /// Greatest rounding error of a view depth in a shader, as a share of it: nine times 2⁻²⁴ of a point's distance, which
 /// in the corner of a wide view is up to seven times its depth.
@@ -23,28 +25,66 @@ const UV_ROUNDING: f64 = 8.0 / 16_777_216.0;
 impl MapFit {
     /// Leaves each map only the casters that can cast a shadow, through this map, on what `views` see: sets
     /// [`MapFit::volume`] of all maps. The shadows in view stay the same. `views` are all that is drawn with these
-    /// maps, up to the cameras' far planes, and `filter` is the one that reads them,
-    /// [`ShadowMapDescriptor::filter`](crate::ShadowMapDescriptor::filter).
+    /// maps, up to the cameras' far planes, and `descriptor` says how they are read:
+    /// [`ShadowMap::descriptor`](crate::ShadowMap::descriptor).
     ///
     /// The volumes serve maps with depth clamp and without. A map that is to be kept for later frames must hold all
     /// casters: set its volume to `None` again.
     ///
-    /// A point reads the first map that ends beyond its view depth and covers it. So a map is read from where the map
-    /// in front of it ends; but if no map in front of it provably covers the whole of some nearer slice of the views,
+    /// By coverage a map serves every point that it holds, unless a finer map provably holds it: points up to some view
+    /// depth, at most.
+    ///
+    /// By view depth a point reads the first map that ends beyond its view depth and covers it. So a map is read from
+    /// where the map in front of it ends, or begins to be blended into it; but if no map in front of it provably covers the whole of some nearer slice of the views,
     /// the map counts as read from that slice on: a map that is fitted to receivers alone does not cover whole
     /// slices, and a point that it leaves out reads the next one.
     ///
     /// # Errors
     ///
     /// Those of [`CasterVolume::swept`]. The maps before the one that fails have their volumes then.
-    pub fn sweep(maps: &mut [Self], view: &MapView, views: &[ViewFrustum], filter: FilterKind) -> Result<(), FitError> {
-        let mismatch = views.iter().map(|frustum| depth_mismatch(view, frustum)).fold(0.0, f64::max);
-        for index in 0..maps.len() {
-            let readers = Readers { maps, view, views, mismatch };
-            maps[index].volume = Some(readers.volume(index, filter)?);
+    pub fn sweep(
+        maps: &mut [Self],
+        view: &MapView,
+        views: &[ViewFrustum],
+        descriptor: &ShadowMapDescriptor,
+    ) -> Result<(), FitError> {
+        let filter = descriptor.filter;
+        match descriptor.choice {
+            MapChoice::Coverage => {
+                let from = coverage::read_from(maps, view, views, descriptor);
+                for (map, near) in maps.iter_mut().zip(from) {
+                    let read = near.map(|near| Slice { near, far: f32::MAX });
+                    map.volume = Some(volume(map, read, views, filter)?);
+                }
+            }
+            MapChoice::ViewDepth => {
+                let mismatch = views.iter().map(|frustum| depth_mismatch(view, frustum)).fold(0.0, f64::max);
+                for index in 0..maps.len() {
+                    let readers = Readers { maps, view, views, mismatch };
+                    let read = readers.read(index).map(|read| readers.widened(read));
+                    maps[index].volume = Some(volume(&maps[index], read, views, filter)?);
+                }
+            }
         }
         Ok(())
     }
+}
+
+/// The casters of a map that the views read at these depths, if at any.
+fn volume(
+    map: &MapFit,
+    read: Option<Slice>,
+    views: &[ViewFrustum],
+    filter: FilterKind,
+) -> Result<CasterVolume, FitError> {
+    let (reach, normal_offset) = (filter.into(), map.bias.normal_offset.abs());
+    let Slice { near, far } = read.unwrap_or(Slice { near: f32::MIN, far: f32::MAX });
+    let volume = CasterVolume::swept(&map.fit, &Sweep { views, near, far, reach, normal_offset })?;
+    Ok(if read.is_some() {
+        lowered(volume, &map.fit, depth_below(map, filter))
+    } else {
+        CasterVolume::nowhere(map.fit.origin)
+    })
 }
 
 /// A range of view depths, in metres.
@@ -54,7 +94,7 @@ struct Slice {
     far: f32,
 }
 
-/// Finds which part of the views reads a map.
+/// Finds which part of the views reads a map by view depth.
 struct Readers<'a> {
     maps: &'a [MapFit],
     view: &'a MapView,
@@ -64,16 +104,6 @@ struct Readers<'a> {
 }
 
 impl Readers<'_> {
-    /// The casters of a map.
-    fn volume(&self, index: usize, filter: FilterKind) -> Result<CasterVolume, FitError> {
-        let map = &self.maps[index];
-        let Some(read) = self.read(index) else { return Ok(CasterVolume::nowhere(map.fit.origin)) };
-        let Slice { near, far } = self.widened(read);
-        let (reach, normal_offset) = (filter.into(), map.bias.normal_offset.abs());
-        let volume = CasterVolume::swept(&map.fit, &Sweep { views: self.views, near, far, reach, normal_offset })?;
-        Ok(lowered(volume, &map.fit, depth_below(map, filter)))
-    }
-
     /// The view depths at which a point may read a map; `None` where none can.
     fn read(&self, index: usize) -> Option<Slice> {
         let is_read_from = |from: &usize| {
@@ -81,7 +111,9 @@ impl Readers<'_> {
             slice.near < slice.far && !(*from..index).any(|map| self.covers(map, slice))
         };
         let first = (0..=index).find(is_read_from)?;
-        Some(Slice { near: self.slice(first).near, far: self.maps[index].far })
+        // Nearer points may be blended into it.
+        let near = self.slice(first).near.min(self.maps[index].blend_near);
+        Some(Slice { near, far: self.maps[index].far })
     }
 
     /// The view depths whose points look into a map first.
@@ -104,25 +136,32 @@ impl Readers<'_> {
     fn covers(&self, index: usize, slice: Slice) -> bool {
         let Slice { near, far } = self.widened(slice);
         let fit = self.maps[index].fit.relative_to(self.view.origin);
-        let covers_part = |frustum: &ViewFrustum| {
-            let offset = frustum.origin - self.view.origin;
-            // A view without a part between these depths has no point to be covered.
-            frustum
-                .slice(near, far)
-                .map_or(true, |part| part.corners.iter().all(|corner| covers(&fit, corner.as_dvec3() + offset)))
-        };
-        self.views.iter().all(covers_part)
+        holds_slice(&fit, self.view, self.views, [near, far], 0.0)
     }
 }
 
-/// Whether a map holds a point, relative to its origin, for any rounding in a shader. The map is convex, so that with
-/// the corners of a slice it holds the slice.
-fn covers(fit: &LightFit, point: DVec3) -> bool {
+/// Whether a map, relative to the view's origin, provably holds everything that the views have between two view depths,
+/// with so many texels around it.
+fn holds_slice(fit: &LightFit, view: &MapView, views: &[ViewFrustum], [near, far]: [f32; 2], free: f64) -> bool {
+    let holds_part = |frustum: &ViewFrustum| {
+        let offset = frustum.origin - view.origin;
+        // A view without a part between these depths has no point to be held.
+        frustum
+            .slice(near, far)
+            .map_or(true, |part| part.corners.iter().all(|corner| covers(fit, corner.as_dvec3() + offset, free)))
+    };
+    views.iter().all(holds_part)
+}
+
+/// Whether a map holds a point, relative to its origin, with so many texels around it, for any rounding in a shader.
+/// The map is convex, so that with the corners of a slice it holds the slice.
+fn covers(fit: &LightFit, point: DVec3, free: f64) -> bool {
     let m = fit.uv_from_world.as_dmat4();
     let terms = [m.x_axis * point.x, m.y_axis * point.y, m.z_axis * point.z, m.w_axis].map(DVec4::truncate);
     let uv: DVec3 = terms.iter().sum();
     let rounding = terms.iter().map(|term| term.abs()).sum::<DVec3>() * UV_ROUNDING;
-    uv.cmpge(rounding).all() && uv.cmple(DVec3::ONE - rounding).all()
+    let border = rounding + (DVec2::splat(free) / fit.resolution.as_dvec2()).extend(0.0);
+    uv.cmpge(border).all() && uv.cmple(DVec3::ONE - border).all()
 }
 
 /// How far the view depth of a point in a frustum may be from that of the shader, which counts it from another eye or
@@ -189,6 +228,10 @@ mod tests {
         ENDS.into_iter().map(map).collect()
     }
 
+    fn by(choice: MapChoice) -> ShadowMapDescriptor {
+        ShadowMapDescriptor { choice, ..ShadowMapDescriptor::default() }
+    }
+
     /// Where each map begins to be read, in metres.
     fn read_from(maps: &[MapFit], views: &[ViewFrustum]) -> Vec<Option<f32>> {
         let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
@@ -220,9 +263,47 @@ mod tests {
         assert_eq!(read_from(&behind, &[frustum(1.1)])[3], Some(f32::MIN));
         let mut maps = behind;
         let map_view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
-        MapFit::sweep(&mut maps, &map_view, &[view], FilterKind::Pcf5x5).expect("a good view");
+        MapFit::sweep(&mut maps, &map_view, &[view], &by(MapChoice::ViewDepth)).expect("a good view");
         let holds = |map: &MapFit| map.volume.is_some_and(|volume| volume.intersects_sphere(Vec3::NEG_Z * 3.0, 1.0));
         assert_eq!(maps.each_ref().map(holds), [true, false, false, false]);
+    }
+
+    #[test]
+    fn by_coverage_a_map_is_read_from_where_no_finer_one_holds_all() {
+        let view = frustum(0.9);
+        let map_view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
+        let [a, b, c] = maps(&view)[..] else { panic!("three maps") };
+        let from = |maps: &[MapFit], views: &[ViewFrustum], blend: f32| {
+            let descriptor = ShadowMapDescriptor { blend, ..by(MapChoice::Coverage) };
+            coverage::read_from(maps, &map_view, views, &descriptor)
+        };
+        // The order is that of the texels' sizes, whatever the order of the maps; a map holds its slice and the filter.
+        let read = from(&[c, a, b], &[view], 0.0);
+        assert_eq!(read[1], Some(f32::MIN));
+        let near = |index: usize, depth: f32| read[index].is_some_and(|from| (from / depth - 1.0).abs() < 1e-2);
+        assert!(near(2, 5.0) && near(0, 20.0), "{read:?}");
+        // With a blend its slice alone is not enough.
+        assert!(from(&[a, b, c], &[view], 8.0)[1].is_some_and(|from| from < 4.9));
+        // Another view, beside the maps.
+        assert_eq!(from(&[a, b, c], &[view, frustum(1.5)], 0.0), [Some(f32::MIN); 3]);
+        // A map of the whole view leaves nothing to coarser ones, and one that is empty holds nothing.
+        let light = fit(&view, DIRECTION, &FitSettings::default()).expect("a fit");
+        let whole = MapFit::new(light, Bias::default());
+        let mut coarse = whole;
+        coarse.fit.texel_size *= 2.0;
+        let held = view.slice(0.1, 59.0).expect("a slice");
+        assert_eq!(from(&[whole, coarse], &[held], 0.0), [Some(f32::MIN), None]);
+        let mut empty = whole;
+        empty.fit.is_empty = true;
+        assert_eq!(from(&[empty, coarse], &[held], 0.0), [None, Some(f32::MIN)]);
+    }
+
+    #[test]
+    fn by_view_depth_a_map_is_read_from_where_the_one_in_front_is_blended_into_it() {
+        let view = frustum(0.9);
+        let mut maps = maps(&view);
+        maps[1].blend_near = 4.0;
+        assert_eq!(read_from(&maps, &[view]), [Some(f32::MIN), Some(4.0), Some(20.0)]);
     }
 
     #[test]
@@ -240,6 +321,8 @@ mod tests {
     fn without_a_view_nothing_can_be_swept() {
         let mut maps = maps(&frustum(0.9));
         let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
-        assert_eq!(MapFit::sweep(&mut maps, &view, &[], FilterKind::Point), Err(FitError::NoView));
+        for choice in [MapChoice::ViewDepth, MapChoice::Coverage] {
+            assert_eq!(MapFit::sweep(&mut maps, &view, &[], &by(choice)), Err(FitError::NoView));
+        }
     }
 }

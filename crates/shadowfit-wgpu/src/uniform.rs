@@ -2,8 +2,10 @@
 //! shaders in the tests, so that the two cannot drift apart.
 
 use bytemuck::{Pod, Zeroable};
+use shadowfit::choice::MapOrder;
 use shadowfit::culling::CasterPlanes;
 use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::settings::MapChoice;
 use shadowfit::{CasterVolume, DepthConvention, LightFit};
 
 use crate::{MAX_MAPS, MapFit, MapView};
@@ -40,14 +42,14 @@ pub struct MapUniform {
     /// Depth bias to be multiplied by the plane's depth change over a texel, in texels, signed
     /// likewise.
     pub receiver_plane: f32,
-    /// View depth at which the map ends, in metres: points from there on do not read it.
+    /// View depth at which the map ends, in metres: by view depth, points from there on do not read it.
     pub far: f32,
+    /// View depth from which points of the map in front are blended into this one, in metres; by view depth.
+    pub blend_near: f32,
+    /// Layer that the map is stored in: its index.
+    pub layer: u32,
     /// Keeps the struct a multiple of 16 bytes.
-    pub padding_0: f32,
-    /// As above.
-    pub padding_1: f32,
-    /// As above.
-    pub padding_2: f32,
+    pub padding: f32,
 }
 
 /// What the look-up reads: `shadowfit_Receiver` in WGSL.
@@ -56,12 +58,11 @@ pub struct MapUniform {
 pub struct ReceiverUniform {
     /// Unit direction toward the light.
     pub to_light: [f32; 3],
-    /// How many of `maps` are in use.
+    /// How many of `maps` points try.
     pub map_count: u32,
     /// View depth of a position relative to the origin, in metres, is `dot(xyz, position) + w`.
     pub view: [f32; 4],
-    /// The maps, in order of their `far`: a point reads the first one that ends beyond its view
-    /// depth and covers it.
+    /// The maps, in the order in which points try them: that of [`shadowfit::choice::MapOrder`].
     pub maps: [MapUniform; MAX_MAPS],
 }
 
@@ -102,7 +103,7 @@ impl CasterUniform {
 }
 
 impl MapUniform {
-    /// The uniform for a map, with positions relative to `origin` (world space, metres).
+    /// The uniform for a map in layer 0, with positions relative to `origin` (world space, metres).
     pub fn new(map: &MapFit, origin: DVec3) -> Self {
         let (fit, bias) = (map.fit.relative_to(origin), map.bias);
         let toward_light = if fit.depth == DepthConvention::Reversed { 1.0 } else { -1.0 };
@@ -117,6 +118,7 @@ impl MapUniform {
             normal_offset: bias.normal_offset,
             receiver_plane: toward_light * bias.receiver_plane,
             far: map.far,
+            blend_near: map.blend_near,
             ..Self::default()
         }
     }
@@ -133,14 +135,15 @@ fn depth_per_texel(fit: &LightFit) -> [Vec3; 2] {
 }
 
 impl ReceiverUniform {
-    /// The uniform for maps of one light, in order of their `far`, with positions relative to the view's origin. Maps
-    /// past [`MAX_MAPS`] are left out; without any, everything is lit.
-    pub fn new(maps: &[MapFit], view: &MapView) -> Self {
+    /// The uniform for maps of one light, with positions relative to the view's origin. Those that no point reads by
+    /// this choice ([`MapOrder`]), and maps past [`MAX_MAPS`], are left out; without any, everything is lit.
+    pub fn new(maps: &[MapFit], view: &MapView, choice: MapChoice) -> Self {
         let mut uniform = Self::default();
-        for (slot, map) in uniform.maps.iter_mut().zip(maps) {
-            *slot = MapUniform::new(map, view.origin);
+        for (slot, index) in uniform.maps.iter_mut().zip(MapOrder::new(choice, maps.iter().map(|map| &map.fit)).iter())
+        {
+            *slot = MapUniform { layer: index as u32, ..MapUniform::new(&maps[index], view.origin) };
+            uniform.map_count += 1;
         }
-        uniform.map_count = maps.len().min(MAX_MAPS) as u32;
         uniform.to_light = maps.first().map_or([0.0, 1.0, 0.0], |map| (-map.fit.direction).to_array());
         let at_origin = view.forward.as_dvec3().dot(view.origin - view.eye) as f32;
         uniform.view = view.forward.extend(at_origin).to_array();

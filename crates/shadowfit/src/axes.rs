@@ -159,6 +159,14 @@ impl LightAxes {
         DVec3::new(x.dot(v), y.dot(v), z.dot(v))
     }
 
+    /// Middle and half the size of a world-space box as it extends along light axes.
+    #[inline]
+    pub(crate) fn project_box(&self, min: DVec3, max: DVec3) -> (DVec3, DVec3) {
+        let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
+        let reach = |axis: glam::Vec3| axis.as_dvec3().abs().dot(half);
+        (self.project(centre), DVec3::new(reach(self.x), reach(self.y), reach(self.z)))
+    }
+
     /// The axes of a `light_from_world` matrix; refuses a matrix that is not a rotation.
     pub(crate) fn of_matrix(light_from_world: &Mat4) -> Result<Self, FitError> {
         let rows = light_from_world.transpose();

@@ -75,22 +75,26 @@ impl MapOrder {
     /// assert!(MapOrder::new(MapChoice::ViewDepth, &maps).iter().eq([0, 1, 2, 3]));
     /// ```
     pub fn new<'a>(choice: MapChoice, maps: impl IntoIterator<Item = &'a LightFit>) -> Self {
+        let area = |fit: &LightFit| f64::from(fit.texel_size.x) * f64::from(fit.texel_size.y);
+        let maps = maps.into_iter();
+        match choice {
+            MapChoice::Coverage => Self::by_area(maps.map(|fit| (!fit.is_empty).then(|| area(fit)))),
+            MapChoice::ViewDepth => Self::by_area(maps.map(|_| Some(1.0))),
+        }
+    }
+
+    /// The order of maps by the areas of their texels, in any unit; those without one are left out.
+    pub fn by_area(areas: impl IntoIterator<Item = Option<f64>>) -> Self {
         let mut order = Self::default();
-        let mut areas = [0.0; MAX_MAPS];
-        for (index, fit) in (0..MAX_MAPS as u8).zip(maps) {
+        let mut sorted = [0.0; MAX_MAPS];
+        for (index, area) in (0..MAX_MAPS as u8).zip(areas) {
+            let Some(area) = area else { continue };
             let mut place = usize::from(order.count);
-            if choice == MapChoice::Coverage {
-                if fit.is_empty {
-                    continue;
-                }
-                let area = f64::from(fit.texel_size.x) * f64::from(fit.texel_size.y);
-                while place > 0 && area < areas[place - 1] {
-                    (areas[place], order.indices[place]) = (areas[place - 1], order.indices[place - 1]);
-                    place -= 1;
-                }
-                areas[place] = area;
+            while place > 0 && area < sorted[place - 1] {
+                (sorted[place], order.indices[place]) = (sorted[place - 1], order.indices[place - 1]);
+                place -= 1;
             }
-            order.indices[place] = index;
+            (sorted[place], order.indices[place]) = (area, index);
             order.count += 1;
         }
         order

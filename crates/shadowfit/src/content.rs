@@ -4,7 +4,9 @@ use core::cell::OnceCell;
 
 use glam::{DVec2, DVec3, Vec3};
 
+use crate::axes::LightAxes;
 use crate::enclosing_sphere::{EnclosingSphere, SymmetricFrustum, minimal};
+use crate::groups::Groups;
 use crate::hull::HullBuilder;
 use crate::normal_cone::NormalCone;
 use crate::view::{Range, Slice, View, moved, slice_corners};
@@ -19,7 +21,10 @@ pub(crate) struct Content<'a> {
     /// Least and greatest view depth of each receiver, view by view; the least is above the
     /// greatest where the box is out of view.
     depths: &'a [DVec2],
+    receiver_groups: Groups<'a>,
+    pub(crate) caster_groups: Groups<'a>,
     symmetric: OnceCell<Option<SymmetricFrustum>>,
+    across: OnceCell<Option<(DVec2, DVec2)>>,
 }
 
 /// Most views that share a stable map.
@@ -39,30 +44,32 @@ impl<'a> Content<'a> {
         'a: 'w,
     {
         let origin = input.views[0].origin;
-        let count = input.receivers.map_or(0, |receivers| receivers.boxes.len());
+        let count_of = |boxes: Option<Boxes>| boxes.map_or(0, |boxes| boxes.boxes.len());
+        let (count, casters) = (count_of(input.receivers), count_of(input.casters));
         let needed = count.saturating_mul(input.views.len());
-        let required = needed.saturating_add(2 * 8 * input.views.len()).saturating_add(HullBuilder::SLACK);
+        let grouped = [Groups::required(count), Groups::required(casters)];
+        let required = needed
+            .saturating_add(2 * 8 * input.views.len())
+            .saturating_add(HullBuilder::SLACK)
+            .saturating_add(grouped[0] + grouped[1]);
         if workspace.storage.len() < required {
             return Err(FitError::WorkspaceTooSmall { given: workspace.storage.len(), required });
         }
-        for boxes in input.receivers.iter().chain(&input.casters) {
+        let is_same = is_same(input.receivers, input.casters);
+        for boxes in input.receivers.iter().chain(input.casters.iter().filter(|_| !is_same)) {
             check(boxes)?;
         }
         let (depths, points) = workspace.storage.split_at_mut(needed);
+        let (of_receivers, points) = points.split_at_mut(grouped[0]);
+        let (of_casters, points) = points.split_at_mut(grouped[1]);
+        let groups = |boxes: Option<Boxes<'w>>, storage: &'w mut [DVec2]| {
+            boxes.map_or(Groups::default(), |boxes| Groups::new(&boxes, origin, storage))
+        };
+        let receiver_groups = groups(input.receivers, of_receivers);
+        let caster_groups = if is_same { receiver_groups } else { groups(input.casters, of_casters) };
         if let Some(receivers) = &input.receivers {
-            let offset = receivers.origin - origin;
             for (view, depths) in input.views.iter().zip(depths.chunks_mut(count.max(1))) {
-                let eye = view.origin;
-                let view = View::new(view, origin);
-                let eye = eye - receivers.origin;
-                for (i, (aabb, depths)) in receivers.boxes.iter().zip(depths).enumerate() {
-                    let (min, max) = moved(aabb, offset);
-                    let to_light = -input.direction.as_dvec3();
-                    let faces_away = |cone: &NormalCone| cone.faces_away_from(aabb, eye, to_light);
-                    let is_dark = input.receiver_cones.get(i).is_some_and(faces_away);
-                    let seen = if aabb.is_empty() || is_dark { None } else { view.depths(min, max) };
-                    *depths = seen.map_or(OUT_OF_VIEW, |(near, far)| DVec2::new(near, far));
-                }
+                view_depths(input, receivers, &receiver_groups, view, depths);
             }
         }
         let content = Content {
@@ -71,7 +78,10 @@ impl<'a> Content<'a> {
             receivers: input.receivers,
             casters: input.casters,
             depths,
+            receiver_groups,
+            caster_groups,
             symmetric: OnceCell::new(),
+            across: OnceCell::new(),
         };
         Ok((content, points))
     }
@@ -85,7 +95,10 @@ impl<'a> Content<'a> {
             receivers: None,
             casters: None,
             depths: &[],
+            receiver_groups: Groups::default(),
+            caster_groups: Groups::default(),
             symmetric: OnceCell::new(),
+            across: OnceCell::new(),
         }
     }
 
@@ -166,14 +179,49 @@ impl<'a> Content<'a> {
         let receivers = self.receivers.as_ref()?;
         let mut squared = None;
         for view in self.views {
-            let offset = receivers.origin - view.origin;
-            for aabb in receivers.boxes.iter().filter(|aabb| !aabb.is_empty()) {
-                let (min, max) = moved(aabb, offset);
+            let (offset, to_eye) = (receivers.origin - view.origin, self.origin - view.origin);
+            let of_corner = |min: DVec3, max: DVec3| {
                 let corner = min.abs().max(max.abs());
-                squared = Some(corner.dot(corner).max(squared.unwrap_or(0.0)));
+                corner.dot(corner)
+            };
+            for (run, min, max) in self.receiver_groups.runs() {
+                let most = of_corner(min + to_eye, max + to_eye) * (1.0 + 1e-9);
+                if squared.is_some_and(|squared| most < squared) {
+                    continue;
+                }
+                for aabb in receivers.boxes[run].iter().filter(|aabb| !aabb.is_empty()) {
+                    let (min, max) = moved(aabb, offset);
+                    squared = Some(of_corner(min, max).max(squared.unwrap_or(0.0)));
+                }
             }
         }
         squared.map(libm::sqrt)
+    }
+
+    /// Bounds of all receivers across the light, in view or not, along the light's axes. `None` when no receiver is
+    /// known.
+    pub(crate) fn receivers_across(&self, axes: &LightAxes) -> Option<(DVec2, DVec2)> {
+        *self.across.get_or_init(|| {
+            let receivers = self.receivers.as_ref()?;
+            let offset = receivers.origin - self.origin;
+            let (mut low, mut high) = (DVec2::MAX, DVec2::MIN);
+            let across = |min, max| {
+                let (centre, half) = axes.project_box(min, max);
+                ((centre - half).truncate(), (centre + half).truncate())
+            };
+            for (run, min, max) in self.receiver_groups.runs() {
+                let (a, b) = across(min, max);
+                if a.cmpge(low).all() && b.cmple(high).all() {
+                    continue;
+                }
+                for aabb in receivers.boxes[run].iter().filter(|aabb| !aabb.is_empty()) {
+                    let (min, max) = moved(aabb, offset);
+                    let (a, b) = across(min, max);
+                    (low, high) = (low.min(a), high.max(b));
+                }
+            }
+            (low.x <= high.x).then_some((low, high))
+        })
     }
 
     /// Passes on each receiver's box that may reach into a range of view depths, with the slice of
@@ -191,7 +239,8 @@ impl<'a> Content<'a> {
             if slice.near >= slice.far {
                 continue;
             }
-            for (i, (aabb, depths)) in receivers.boxes.iter().zip(depths).enumerate() {
+            for i in scattered(receivers.boxes.len()) {
+                let (aabb, depths) = (&receivers.boxes[i], depths[i]);
                 if depths.x <= slice.far && depths.y >= slice.near {
                     let (min, max) = moved(aabb, offset);
                     visit(i, &slice, min, max)?;
@@ -201,14 +250,39 @@ impl<'a> Content<'a> {
         Ok(())
     }
 
-    /// Passes on each receiver's box that reaches into one of the views.
-    pub(crate) fn each_receiver(&self, view: usize, mut visit: impl FnMut(DVec3, DVec3)) {
+    /// Passes on each receiver's box that reaches into one of the views, with its least and greatest view
+    /// depth.
+    pub(crate) fn each_receiver(&self, view: usize, mut visit: impl FnMut((f64, f64), DVec3, DVec3)) {
         let Some(receivers) = &self.receivers else { return };
         let offset = receivers.origin - self.origin;
         let depths = self.depths.chunks(receivers.boxes.len().max(1)).nth(view).unwrap_or_default();
-        for (aabb, _) in receivers.boxes.iter().zip(depths).filter(|(_, depths)| depths.x <= depths.y) {
+        for (aabb, depths) in receivers.boxes.iter().zip(depths).filter(|(_, depths)| depths.x <= depths.y) {
             let (min, max) = moved(aabb, offset);
-            visit(min, max);
+            visit((depths.x, depths.y), min, max);
+        }
+    }
+
+    /// Passes on each receiver's box that reaches into any of the views, with a state: boxes are passed on where
+    /// `is_new` of the bounds of their run is true.
+    pub(crate) fn each_seen_receiver<S>(
+        &self,
+        state: &mut S,
+        is_new: impl Fn(&S, DVec3, DVec3) -> bool,
+        mut visit: impl FnMut(&mut S, DVec3, DVec3),
+    ) {
+        let Some(receivers) = &self.receivers else { return };
+        let offset = receivers.origin - self.origin;
+        for (run, min, max) in self.receiver_groups.runs() {
+            if !is_new(state, min, max) {
+                continue;
+            }
+            for i in run {
+                let is_seen = |depths: &[DVec2]| depths.get(i).is_some_and(|depths| depths.x <= depths.y);
+                if self.depths.chunks(receivers.boxes.len()).any(is_seen) {
+                    let (min, max) = moved(&receivers.boxes[i], offset);
+                    visit(state, min, max);
+                }
+            }
         }
     }
 
@@ -241,9 +315,64 @@ impl<'a> Content<'a> {
     }
 }
 
+/// Computes the least and greatest depth of each receiver in one view.
+fn view_depths(input: &FitInput, receivers: &Boxes, groups: &Groups, view: &ViewFrustum, depths: &mut [DVec2]) {
+    let origin = input.views[0].origin;
+    let (eye, offset) = (view.origin - receivers.origin, receivers.origin - origin);
+    let view = View::new(view, origin);
+    let to_light = -input.direction.as_dvec3();
+    depths.fill(OUT_OF_VIEW);
+    for (run, min, max) in groups.runs() {
+        if view.depths(min, max).is_none() {
+            continue;
+        }
+        for i in run {
+            let aabb = &receivers.boxes[i];
+            if aabb.is_empty() {
+                continue;
+            }
+            let (min, max) = moved(aabb, offset);
+            let Some((near, far)) = view.depths(min, max) else { continue };
+            let faces_away = |cone: &NormalCone| cone.faces_away_from(aabb, eye, to_light);
+            if !input.receiver_cones.get(i).is_some_and(faces_away) {
+                depths[i] = DVec2::new(near, far);
+            }
+        }
+    }
+}
+
+/// All indices below a count, with large steps between them. Neighbouring boxes tell much the same: the
+/// extent of all is nearly known after a few that lie apart, and the others cannot widen it.
+pub(crate) fn scattered(count: usize) -> impl Iterator<Item = usize> {
+    // The golden ratio leaves no large gaps; steps that divide the count would come back too early.
+    let step = (count * 5 / 8..count).find(|step| is_coprime(*step, count)).unwrap_or(1);
+    let mut index = 0;
+    (0..count).map(move |_| {
+        let next = index + step;
+        core::mem::replace(&mut index, if next >= count { next - count } else { next })
+    })
+}
+
+fn is_coprime(mut a: usize, mut b: usize) -> bool {
+    while b > 0 {
+        (a, b) = (b, a % b);
+    }
+    a == 1
+}
+
+/// Whether receivers and casters are the same boxes in memory.
+fn is_same(receivers: Option<Boxes>, casters: Option<Boxes>) -> bool {
+    receivers.zip(casters).is_some_and(|(a, b)| a.origin == b.origin && core::ptr::eq(a.boxes, b.boxes))
+}
+
 /// Refuses boxes with a coordinate that is not a number or too large; empty ones are allowed.
 fn check(boxes: &Boxes) -> Result<(), FitError> {
     checks::point("the boxes' origin", boxes.origin)?;
+    let limit = checks::MAX_LENGTH as f32;
+    let is_good = |v: Vec3| (v.x.abs() <= limit) & (v.y.abs() <= limit) & (v.z.abs() <= limit);
+    if boxes.boxes.iter().fold(true, |all, aabb| all & is_good(aabb.min) & is_good(aabb.max)) {
+        return Ok(());
+    }
     for aabb in boxes.boxes {
         let is_nan = aabb.min.is_nan() || aabb.max.is_nan();
         if is_nan || !aabb.is_empty() {

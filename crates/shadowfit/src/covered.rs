@@ -83,6 +83,7 @@ impl<'a> Covered<'a> {
         let pad = rule.margin + rounding + 2.0 * SYMMETRY * sphere.radius;
         let extent = DVec3::splat(2.0 * (sphere.radius + pad));
         let corners = (centre - extent * 0.5, centre + extent * 0.5);
+        let corners = if rule.serves_all { within_receivers(corners, content, &axes, pad) } else { corners };
         let volume = volume(axes, corners, [Constraint::Sphere; 6], false);
         Ok(Self { volume, rounding, shadowed: Shadowed::WholeMap })
     }
@@ -118,6 +119,17 @@ impl<'a> Covered<'a> {
             shadowed: Shadowed::Outline(hull.axes, hull.outline),
         }
     }
+}
+
+/// A box of constant size, no wider than all receivers together and moved to where they are: nothing beyond them is
+/// looked up. Its size is constant as long as that of the receivers is.
+fn within_receivers((min, max): (DVec3, DVec3), content: &Content, axes: &LightAxes, pad: f64) -> (DVec3, DVec3) {
+    let Some((low, high)) = content.receivers_across(axes) else { return (min, max) };
+    let (low, high) = (low - pad, high + pad);
+    let size = (max - min).truncate().min(high - low);
+    let centre = ((min + max) * 0.5).truncate();
+    let first = (centre - size * 0.5).min(high - size).max(low);
+    (first.extend(min.z), (first + size).extend(max.z))
 }
 
 /// The box as a volume, for the steps that follow.

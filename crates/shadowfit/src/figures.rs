@@ -60,7 +60,8 @@ pub struct Figures {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct MapFigures {
-    /// View depths between which points choose this map, in metres; `None` where none does.
+    /// View depths that this map is made for, in metres, and between which points choose it where maps
+    /// are read by view depth; `None` where there are none.
     pub view_depths: Option<[f32; 2]>,
     /// What set the planes -x, +x, -y, +y, far and near of the map's box, see
     /// [`LightFit::set_by`](crate::LightFit::set_by).

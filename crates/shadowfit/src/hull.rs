@@ -56,6 +56,17 @@ impl<'a> HullBuilder<'a> {
         }) && (0..8).all(|i| p.dot(DIRECTIONS[i]) <= self.reach[i])
     }
 
+    /// [`Self::holds`] for all points of a rectangle along the axes, given by its middle and half its size.
+    pub(crate) fn holds_rectangle(&self, centre: DVec2, half: DVec2) -> bool {
+        if self.len == 0 {
+            return false;
+        }
+        (0..8).all(|i| {
+            let (a, edge) = (self.extremes[i], self.extremes[(i + 1) % 8] - self.extremes[i]);
+            edge.perp_dot(centre - a) >= edge.x.abs() * half.y + edge.y.abs() * half.x
+        }) && (0..8).all(|i| centre.dot(DIRECTIONS[i]) + half.dot(DIRECTIONS[i].abs()) <= self.reach[i])
+    }
+
     /// Adds a point.
     ///
     /// # Errors

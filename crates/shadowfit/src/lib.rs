@@ -35,7 +35,7 @@
 //!         for (index, map) in maps.iter().enumerate() {
 //!             let casters = map.caster_volume(&views, &technique)?.relative_to(boxes.origin);
 //!             let drawn = objects.iter().filter(|object| casters.intersects_aabb(object.min, object.max)).count();
-//!             println!("map {index} serves what is farther than {} m; its texels are {} m", map.near, map.fit.texel_size);
+//!             println!("map {index} is for what is farther than {} m; its texels are {} m", map.near, map.fit.texel_size);
 //!             println!("  draw {drawn} of {} objects into it with {}", objects.len(), map.fit.clip_from_world);
 //!             println!("  look it up with {}", map.fit.uv_from_world);
 //!             println!("  move the depth that is compared by {}", map.bias.constant_depth);
@@ -131,7 +131,6 @@
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
-extern crate std;
 
 pub mod bias;
 pub mod choice;
@@ -149,8 +148,6 @@ pub mod map_fitter;
 pub mod mint;
 pub mod need;
 pub mod normal_cone;
-#[doc(hidden)]
-pub mod tune;
 pub mod params;
 pub mod presets;
 pub mod scroll;
@@ -170,6 +167,7 @@ mod enclosing_sphere;
 mod error;
 mod frustum;
 mod grid;
+mod groups;
 mod hull;
 mod input;
 mod light_hull;

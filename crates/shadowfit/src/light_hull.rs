@@ -48,11 +48,15 @@ impl<'a> Collector<'a> {
     /// Whether a box lies inside what has been collected so far, so that no part of it can change
     /// the hull.
     fn holds(&self, min: DVec3, max: DVec3) -> bool {
-        !self.hull.is_empty()
-            && box_corners(min, max).into_iter().all(|corner| {
-                let q = self.axes.project(corner);
-                q.z >= self.z.0 && q.z <= self.z.1 && self.hull.holds(q.truncate())
-            })
+        if self.hull.is_empty() {
+            return false;
+        }
+        let (centre, half) = self.axes.project_box(min, max);
+        if centre.z - half.z < self.z.0 || centre.z + half.z > self.z.1 {
+            return false;
+        }
+        self.hull.holds_rectangle(centre.truncate(), half.truncate())
+            || box_corners(min, max).into_iter().all(|corner| self.hull.holds(self.axes.project(corner).truncate()))
     }
 
     fn finish(self, is_empty: bool) -> LightHull<'a> {

@@ -19,8 +19,8 @@ use crate::settings::{BiasSettings, FitKind, FitSettings, MAX_BLEND, MAX_MAPS, M
 use crate::splits::{Chooser, Splits};
 use crate::view::Range;
 use crate::volume::Volume;
-use crate::{Bias, FitError, FitInput, LightFit, Technique, ViewFrustum, Workspace, checks, grid};
 use crate::windows::{self, HeldWindows};
+use crate::{Bias, FitError, FitInput, LightFit, Technique, ViewFrustum, Workspace, checks, grid};
 use hold::HeldMap;
 
 /// Fits several maps frame by frame.
@@ -121,7 +121,7 @@ impl MapFitter {
         if technique.fit.kind == FitKind::Windows {
             let before = before.and_then(|before| before.windows.as_ref());
             let frame = windows::Frame { input, technique, content: &content, light, range };
-            let (volumes, held) = frame.fit(|i| *rules.of(i), before, points)?;
+            let (volumes, held) = frame.fit(|i| rules.of(i), before, points)?;
             let maps = maps.take(technique.count as usize);
             for (i, (map, volume)) in maps.iter_mut().zip(volumes.iter().flatten()).enumerate() {
                 let rule = rules.of(i);
@@ -393,7 +393,8 @@ fn check(input: &FitInput, technique: &Technique) -> Result<(Rules, Light), FitE
         checks::finite("a bias", f64::from(bias))?;
     }
     let border = technique.border();
-    let (most, light) = fits::prepare(input, &technique.fit, border)?;
+    let (mut most, light) = fits::prepare(input, &technique.fit, border)?;
+    most.serves_all = technique.shares_maps() && most.can_be_held();
     let mut own = [None; MAX_MAPS];
     for (map, own) in own.iter_mut().enumerate().take(technique.count as usize) {
         if let Some(settings) = own_settings(technique, map) {
@@ -402,6 +403,7 @@ fn check(input: &FitInput, technique: &Technique) -> Result<(Rules, Light), FitE
                 // All held maps of a frame have one roll.
                 rule.roll = most.roll;
             }
+            rule.serves_all = technique.shares_maps() && rule.can_be_held();
             *own = Some(rule);
         }
     }

@@ -39,13 +39,15 @@ pub struct FittedMap {
 impl FittedMap {
     /// Every caster that can cast a shadow through this map on what views see of it, relative to the
     /// fit's origin: the [swept volume](CasterVolume::swept) of the map's depths, for the technique's
-    /// filter and this map's bias. A map without a range has the empty volume.
+    /// filter and this map's bias. A map that no point reads has the empty volume.
     ///
-    /// It is for maps that are drawn anew in each frame and read by view depth. A map that is kept, or
+    /// It is for maps that are drawn anew in each frame. A map that is kept, or
     /// [scrolled](crate::scroll::Scroll), shows casters to later frames too: cull those by
     /// [`CasterVolume::of_map`].
     ///
-    /// A point that its own map does not hold may be read from a later one. Fits hold their slices,
+    /// By coverage a map serves whatever it holds of the views, at any depth, so each is swept over the whole
+    /// of the views; one that [is empty](LightFit::is_empty) is not read and needs no caster. By view depth a
+    /// point that its own map does not hold may be read from a later one. Fits hold their slices,
     /// filter included, so that a map's casters are those of its own depths; where the technique's do
     /// not ([`FitKind::XnaSample`](crate::settings::FitKind::XnaSample), or a border below the filter's reach), each map is swept from the
     /// views' near end.
@@ -85,12 +87,18 @@ impl FittedMap {
     ///
     /// As [`CasterVolume::swept`].
     pub fn caster_volume(&self, views: &[ViewFrustum], technique: &Technique) -> Result<CasterVolume, FitError> {
-        let near = if holds_slices(technique) { self.covered_near } else { f32::MIN };
-        if self.covered_near >= self.far {
+        let (is_read, near, far) = match technique.choice {
+            MapChoice::Coverage => (!self.fit.is_empty, f32::MIN, f32::MAX),
+            MapChoice::ViewDepth if holds_slices(technique) => {
+                (self.covered_near < self.far, self.covered_near, self.far)
+            }
+            MapChoice::ViewDepth => (self.covered_near < self.far, f32::MIN, self.far),
+        };
+        if !is_read {
             return Ok(CasterVolume::nowhere(self.fit.origin));
         }
         let reach = Reach::from(technique.filter);
-        let sweep = Sweep { near, far: self.far, reach, normal_offset: self.bias.normal_offset, ..Sweep::new(views) };
+        let sweep = Sweep { near, far, reach, normal_offset: self.bias.normal_offset, ..Sweep::new(views) };
         CasterVolume::swept(&self.fit, &sweep)
     }
 }

@@ -11,8 +11,9 @@
 //!           └───────────────┘
 //! ```
 
-use glam::DVec2;
+use glam::{DVec2, DVec3, Vec2Swizzles};
 
+use crate::Boxes;
 use crate::axes::LightAxes;
 use crate::content::Content;
 use crate::covered::Shadowed;
@@ -20,7 +21,6 @@ use crate::outline::{Outline, Scratch};
 use crate::rule::{Covers, Depth, FitRule};
 use crate::view::moved;
 use crate::volume::{Constraint, ROUNDING, Volume};
-use crate::{Aabb, Boxes};
 
 /// Coordinate of the near plane along the light's z, and what set it if it was not the covered
 /// region.
@@ -42,14 +42,20 @@ pub(crate) fn place(volume: &mut Volume, rule: &FitRule, shadowed: Shadowed, rou
     let texel = (volume.max - volume.min).truncate() / rule.resolution.as_dvec2();
     let reach = filter_reach(texel, rule, rounding);
     let near = match shadowed {
-        Shadowed::Outline(axes, outline) => find(volume.max.z, &axes, outline, content, rule.depth, reach),
-        Shadowed::WholeMap => {
-            let (min, max) = (volume.min, volume.max);
-            let corners = [(min.x, min.y), (max.x, min.y), (max.x, max.y), (min.x, max.y)];
-            let corners = corners.map(|(x, y)| DVec2::new(x, y));
-            find(volume.max.z, &volume.axes, &corners, content, rule.depth, reach)
+        Shadowed::Outline(axes, outline) if !rule.serves_all => {
+            find(volume.max.z, &axes, outline, content, rule.depth, reach)
+        }
+        _ => {
+            let across = (volume.min.truncate(), volume.max.truncate());
+            find_over(volume.max.z, &volume.axes, across, content, rule.depth, reach)
         }
     };
+    if rule.serves_all {
+        let across = (volume.min.truncate(), volume.max.truncate());
+        let far = find_far(volume.min.z, &volume.axes, across, content);
+        volume.set_by[4] = if far < volume.min.z { Constraint::Receivers } else { volume.set_by[4] };
+        volume.min.z = far;
+    }
     (volume.max.z, volume.set_by[5]) = (near.z, near.set_by.unwrap_or(volume.set_by[5]));
     if rule.covers != Covers::Sphere {
         // The rounding of the depth range, which casters may make far longer than the covered
@@ -74,33 +80,102 @@ pub(crate) fn find(
     reach: f64,
 ) -> NearPlane {
     let casters = content.casters.unwrap_or_default();
-    let over = || Outline::new(axes, outline, reach);
     let (z, set_by) = match depth {
         Depth::AtCovered | Depth::Doubled => return NearPlane { z: covered, set_by: None },
         Depth::Extended(metres) => (covered + metres, Constraint::CasterExtension),
         Depth::AtCasterBounds => {
-            let all = casters.boxes.iter().filter(|b| !b.is_empty()).fold(Aabb::EMPTY, |a, b| a.union(*b));
-            let all = Boxes { boxes: &[all], ..casters };
-            (highest(&over(), &all, content, covered), Constraint::Casters)
+            let all = content.caster_groups.runs().map(|(_, min, max)| (min, max));
+            let all = all.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+            let mut highest = Highest::new(axes, outline, reach, covered);
+            if let Some((min, max)) = all {
+                highest.add(min, max);
+            }
+            (highest.z, Constraint::Casters)
         }
-        Depth::AtCasters => (highest(&over(), &casters, content, covered), Constraint::Casters),
+        Depth::AtCasters => {
+            let mut highest = Highest::new(axes, outline, reach, covered);
+            highest.add_all(&casters, content);
+            (highest.z, Constraint::Casters)
+        }
     };
     NearPlane { z, set_by: (z > covered).then_some(set_by) }
 }
 
-/// The greatest z of all casters over the outline, or `covered` where none reaches higher.
-fn highest(over: &Outline, casters: &Boxes, content: &Content, covered: f64) -> f64 {
-    let (offset, mut scratch) = (casters.origin - content.origin, Scratch::new());
-    let mut z = covered;
-    for aabb in casters.boxes.iter().filter(|aabb| !aabb.is_empty()) {
-        let (min, max) = moved(aabb, offset);
-        let farthest = min.abs().max(max.abs()).element_sum();
-        let floor = z - farthest * ROUNDING;
-        over.parts_over(min, max, floor, &mut scratch, |corner| {
-            z = z.max(corner.z + corner.abs().element_sum() * ROUNDING);
+/// [`find`] for all of a map, given as a rectangle across the light.
+pub(crate) fn find_over(
+    covered: f64,
+    axes: &LightAxes,
+    across: (DVec2, DVec2),
+    content: &Content,
+    depth: Depth,
+    reach: f64,
+) -> NearPlane {
+    find(covered, axes, &corners(across), content, depth, reach)
+}
+
+/// Finds the far plane for a map, given as a rectangle across the light, whose covered region begins at `covered`
+/// along the light's z: far enough for the receivers in view over all of the map, since points of all
+/// view depths read it, but no farther than [`FARTHER`] allows.
+pub(crate) fn find_far(covered: f64, axes: &LightAxes, across: (DVec2, DVec2), content: &Content) -> f64 {
+    let longer = (across.1 - across.0).max_element();
+    // Seen from below: the lowest point is the highest there, and x and y change places.
+    let from_below = LightAxes { x: axes.y, y: axes.x, z: -axes.z };
+    let corners = corners((across.0.yx(), across.1.yx()));
+    let mut lowest = Highest::new(&from_below, &corners, 0.0, -covered);
+    content.each_seen_receiver(&mut lowest, Highest::may_rise, Highest::add);
+    (-lowest.z).max(covered - longer * FARTHER)
+}
+
+/// How far the far plane may lie beyond the covered region, in extents of the map: under a low sun that is as
+/// far as level ground goes on below the map.
+const FARTHER: f64 = 2.0;
+
+/// Corners of a rectangle along the axes, anticlockwise.
+fn corners((min, max): (DVec2, DVec2)) -> [DVec2; 4] {
+    [(min.x, min.y), (max.x, min.y), (max.x, max.y), (min.x, max.y)].map(|(x, y)| DVec2::new(x, y))
+}
+
+/// The greatest z of casters over an outline, or of what is covered where none reaches higher.
+struct Highest<'a> {
+    over: Outline<'a>,
+    scratch: Scratch,
+    z: f64,
+}
+
+impl<'a> Highest<'a> {
+    fn new(axes: &LightAxes, outline: &'a [DVec2], reach: f64, covered: f64) -> Self {
+        Self { over: Outline::new(axes, outline, reach), scratch: Scratch::new(), z: covered }
+    }
+
+    fn add_all(&mut self, casters: &Boxes, content: &Content) {
+        let offset = casters.origin - content.origin;
+        for (run, min, max) in content.caster_groups.runs() {
+            if !self.may_rise(min, max) {
+                continue;
+            }
+            for aabb in casters.boxes[run].iter().filter(|aabb| !aabb.is_empty()) {
+                let (min, max) = moved(aabb, offset);
+                self.add(min, max);
+            }
+        }
+    }
+
+    /// Whether a part of a box may lie higher than all so far.
+    fn may_rise(&self, min: DVec3, max: DVec3) -> bool {
+        self.over.may_hold(min, max, self.floor(min, max))
+    }
+
+    /// The height that a box must exceed to count.
+    fn floor(&self, min: DVec3, max: DVec3) -> f64 {
+        self.z - min.abs().max(max.abs()).element_sum() * ROUNDING
+    }
+
+    fn add(&mut self, min: DVec3, max: DVec3) {
+        let (floor, z) = (self.floor(min, max), &mut self.z);
+        self.over.parts_over(min, max, floor, &mut self.scratch, |corner| {
+            *z = z.max(corner.z + corner.abs().element_sum() * ROUNDING);
         });
     }
-    z
 }
 
 /// How far outside the outline casters are read by the widest filter that the border allows, in

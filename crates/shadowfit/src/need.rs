@@ -224,11 +224,8 @@ impl Plane {
         let sine = direction.dot(up).abs().max(f64::MIN_POSITIVE);
         let shape = libm::pow(sine, SHAPE_POWER).clamp(LEAST_SHAPE, 1.0);
         let steps = libm::round(libm::log2(shape) * 8.0);
-        let axes = if steps == 0.0 {
-            LightAxes::shortest_arc(direction, up)
-        } else {
-            LightAxes::look_at(direction, up)
-        };
+        let axes =
+            if steps == 0.0 { LightAxes::shortest_arc(direction, up) } else { LightAxes::look_at(direction, up) };
         Self { axes, shape: grid::eighths(steps as i32) }
     }
 }

@@ -65,6 +65,21 @@ impl<'a> Outline<'a> {
         Self { axes: *axes, corners, min: min - pad, max: max + pad, pad }
     }
 
+    /// Whether any part of a box may lie over the outline and above `floor`.
+    #[inline]
+    pub(crate) fn may_hold(&self, min: DVec3, max: DVec3, floor: f64) -> bool {
+        let z = self.axes.z.as_dvec3();
+        let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
+        // Most casters lie lower than the highest one found so far.
+        if z.dot(centre) + z.abs().dot(half) <= floor {
+            return false;
+        }
+        let (x, y) = (self.axes.x.as_dvec3(), self.axes.y.as_dvec3());
+        let centre = DVec2::new(x.dot(centre), y.dot(centre));
+        let reach = DVec2::new(x.abs().dot(half), y.abs().dot(half));
+        !((centre - reach).cmpgt(self.max).any() || (centre + reach).cmplt(self.min).any())
+    }
+
     /// Gives all corners of those faces of a box that look toward the light, clipped to the
     /// outline, along the light's axes; nothing if no part of the box is over the outline or if
     /// none reaches above `floor`.
@@ -76,18 +91,10 @@ impl<'a> Outline<'a> {
         scratch: &mut Scratch,
         mut emit: impl FnMut(DVec3),
     ) {
-        let axes = &self.axes;
-        let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
-        let (x, y, z) = (axes.x.as_dvec3(), axes.y.as_dvec3(), axes.z.as_dvec3());
-        // Most casters lie lower than the highest one found so far.
-        if z.dot(centre) + z.abs().dot(half) <= floor {
+        if !self.may_hold(min, max, floor) {
             return;
         }
-        let centre = DVec2::new(x.dot(centre), y.dot(centre));
-        let reach = DVec2::new(x.abs().dot(half), y.abs().dot(half));
-        if (centre - reach).cmpgt(self.max).any() || (centre + reach).cmplt(self.min).any() {
-            return;
-        }
+        let (axes, z) = (&self.axes, self.axes.z.as_dvec3());
         let corners = box_corners(min, max).map(|corner| axes.project(corner));
         for (face, inward) in FACES.into_iter().zip([z.x, -z.x, z.y, -z.y, z.z, -z.z]) {
             // Faces that look away from the light lie below the others.

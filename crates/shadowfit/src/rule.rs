@@ -65,6 +65,8 @@ pub(crate) struct FitRule {
     pub(crate) resolution: UVec2,
     /// Depth convention of the fitted clip space.
     pub(crate) convention: DepthConvention,
+    /// Whether all that lies inside the map may read it, and not its slice of the view alone.
+    pub(crate) serves_all: bool,
 }
 
 impl FitRule {
@@ -98,6 +100,7 @@ impl FitRule {
             max_texel_ratio: Some(settings.max_texel_ratio).filter(|ratio| *ratio < f32::MAX).map(f64::from),
             resolution: settings.resolution,
             convention: settings.depth,
+            serves_all: false,
         })
     }
 

@@ -137,6 +137,13 @@ impl Technique {
         }
     }
 
+    /// Whether more may read a map than the receivers that it is made for: those of other view depths, or of
+    /// later frames.
+    pub(crate) const fn shares_maps(&self) -> bool {
+        let is_shared = self.count > 1 || !matches!(self.stabilise, Stabilise::Off);
+        matches!(self.choice, MapChoice::Coverage) && is_shared
+    }
+
     /// Width and height of a map, in texels.
     pub fn resolution_of(&self, map: usize) -> UVec2 {
         self.overrides.get(map).and_then(|own| own.resolution).unwrap_or(self.fit.resolution)

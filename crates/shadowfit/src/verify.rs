@@ -18,7 +18,7 @@
 mod half_space;
 mod query;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::axes::LightAxes;
 use crate::bias::HARDWARE_SNAP;
@@ -26,7 +26,7 @@ use crate::content::Content;
 use crate::light_hull::LightHull;
 use crate::outline::{Outline, Scratch};
 use crate::rule::Covers;
-use crate::settings::CasterPolicy;
+use crate::settings::{CasterPolicy, MapChoice};
 use crate::view::{Range, Slice, box_corners, moved};
 use crate::{FitError, FitInput, LightFit, Workspace, checks};
 use half_space::{HalfSpaces, ROUNDING};
@@ -95,7 +95,8 @@ pub struct Margins {
 ///   them.
 /// - **Casters** are `input.casters`, for any caster policy of the fit: those parts that lie over
 ///   the receivers' outline, widened by the filter's reach, the rasteriser's snap and the normal
-///   offset. Nothing is proven of casters that are not given.
+///   offset; for maps that are [read by coverage](CoverageQuery::choice) those over any part of the map.
+///   Nothing is proven of casters that are not given.
 /// - **Rounding**: positions are taken as f32 relative to [`LightFit::origin`], multiplied by
 ///   `uv_from_world` and `clip_from_world` in f32 in any order of operations. Positions relative
 ///   to another origin need [`LightFit::relative_to`] first, and a certificate of that.
@@ -204,13 +205,23 @@ pub fn verify(
         return Ok(certificate);
     }
     let mut margins = Margins { planes: receivers.least.map(|(margin, _)| margin as f32), casters: f32::INFINITY };
-    if receivers.any.is_some()
-        && query.casters != CasterPolicy::DepthClamp
-        && content.casters.is_some_and(|casters| !casters.boxes.is_empty())
-    {
-        let hull = LightHull::of(Covers::Receivers, &content, axes, range, points)?;
-        let pad = caster_reach(fit, query, hull.farthest);
-        let (by, point) = nearest_caster(&content, &Outline::new(&axes, hull.outline, pad), &half_spaces, offset);
+    let has_casters = content.casters.is_some_and(|casters| !casters.boxes.is_empty());
+    let is_read = match query.choice {
+        MapChoice::Coverage => !fit.is_empty,
+        MapChoice::ViewDepth => receivers.any.is_some(),
+    };
+    if is_read && has_casters && query.casters != CasterPolicy::DepthClamp {
+        let nearest = |over: Outline| nearest_caster(&content, &over, &half_spaces, offset);
+        let (by, point) = match query.choice {
+            MapChoice::Coverage => {
+                let (corners, distance) = whole_map(fit, &axes, offset);
+                nearest(Outline::new(&axes, &corners, raster_reach(fit, distance)))
+            }
+            MapChoice::ViewDepth => {
+                let hull = LightHull::of(Covers::Receivers, &content, axes, range, points)?;
+                nearest(Outline::new(&axes, hull.outline, caster_reach(fit, query, hull.farthest)))
+            }
+        };
         if by < 0.0 {
             return Ok(Certificate::CasterLost { point: fit.origin + point, by: -by as f32 });
         }
@@ -219,15 +230,38 @@ pub fn verify(
     Ok(Certificate::Proven(margins))
 }
 
+/// All of a map, as an outline along its axes relative to the content's origin, and the greatest distance of it from
+/// the fit's origin. `offset` is from that to the content's.
+fn whole_map(fit: &LightFit, axes: &LightAxes, offset: DVec3) -> ([DVec2; 4], f64) {
+    let (min, max) = fit.clip_box();
+    let moved = fit.light_from_world.w_axis.truncate().as_dvec3();
+    let from = (moved + axes.project(offset)).truncate();
+    let (low, high) = (min.truncate() - from, max.truncate() - from);
+    let corners = [(low.x, low.y), (high.x, low.y), (high.x, high.y), (low.x, high.y)];
+    let farthest = (min - moved).abs().max((max - moved).abs());
+    (corners.map(|(x, y)| DVec2::new(x, y)), checks::length(farthest))
+}
+
 /// How far around the outline casters are read, in metres: the reach of the filter with the
 /// rasteriser's snap, the normal offset, and what rounding may shift both receivers and casters.
 fn caster_reach(fit: &LightFit, query: &CoverageQuery, distance: f64) -> f64 {
+    let reach = query.reach.disc.as_dvec2() + f64::from(query.reach.taps);
+    texels(fit, reach) + f64::from(query.normal_offset) + raster_reach(fit, distance)
+}
+
+/// How far around a map casters are drawn into it, in metres: the rasteriser's snap, and what rounding may shift both
+/// receivers and casters.
+fn raster_reach(fit: &LightFit, distance: f64) -> f64 {
     let size = (fit.box_max - fit.box_min).as_dvec3().truncate();
-    let texel = size / fit.resolution.as_dvec2();
-    let reach = query.reach.disc.as_dvec2() + f64::from(query.reach.taps + HARDWARE_SNAP);
     let rounding = SHIFT_ROUNDINGS * ROUNDING * (distance + size.max_element());
-    let texels = reach * texel;
-    libm::sqrt(texels.dot(texels)) + f64::from(query.normal_offset) + rounding
+    texels(fit, DVec2::splat(f64::from(HARDWARE_SNAP))) + rounding
+}
+
+/// A number of texels along both axes, as a distance in metres.
+fn texels(fit: &LightFit, count: DVec2) -> f64 {
+    let size = (fit.box_max - fit.box_min).as_dvec3().truncate();
+    let texels = count * size / fit.resolution.as_dvec2();
+    libm::sqrt(texels.dot(texels))
 }
 
 /// Roundings that shift a receiver and a caster against each other across the light, as multiples

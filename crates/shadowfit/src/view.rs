@@ -61,6 +61,20 @@ impl Plane {
     pub(crate) fn distance(&self, p: DVec3) -> f64 {
         self.normal.dot(p) + self.d
     }
+
+    /// Distance of a box's farthest corner along the normal.
+    pub(crate) fn farthest(&self, min: DVec3, max: DVec3) -> f64 {
+        let n = self.normal;
+        let x = n.x * if n.x < 0.0 { min.x } else { max.x };
+        let y = n.y * if n.y < 0.0 { min.y } else { max.y };
+        let z = n.z * if n.z < 0.0 { min.z } else { max.z };
+        x + y + z + self.d
+    }
+
+    /// Distance of a box's nearest corner along the normal.
+    pub(crate) fn nearest(&self, min: DVec3, max: DVec3) -> f64 {
+        self.farthest(max, min)
+    }
 }
 
 /// A view frustum relative to the origin that a fit uses for everything.
@@ -72,7 +86,8 @@ pub(crate) struct View {
     pub(crate) far: f64,
     /// View depth of a point, as the signed distance from a plane.
     pub(crate) depth: Plane,
-    sides: [Plane; 4],
+    /// Top, right, bottom, left.
+    pub(crate) sides: [Plane; 4],
 }
 
 impl View {
@@ -100,21 +115,16 @@ impl View {
         Self { corners, near, far, depth, sides }
     }
 
-    /// Position of a point in the picture: 0..1 from left to right and from top to bottom. The point
-    /// must not lie before the near plane.
-    pub(crate) fn picture_position(&self, p: DVec3) -> [f64; 2] {
+    /// Where points are in the picture.
+    pub(crate) fn picture(&self) -> Picture {
         // Sides 0 to 3 are top, right, bottom, left; each distance is divided by that of the
         // opposite end of the far rectangle.
-        let share = |one: usize, other: usize, at_other: usize, at_one: usize| {
-            let a = self.sides[one].distance(p) / self.sides[one].distance(self.corners[at_other]);
-            let b = self.sides[other].distance(p) / self.sides[other].distance(self.corners[at_one]);
-            a / (a + b)
-        };
-        [share(3, 1, 5, 4), share(0, 2, 7, 4)]
+        let side = |side: usize, opposite: usize| (self.sides[side], self.sides[side].distance(self.corners[opposite]));
+        Picture { axes: [[side(3, 5), side(1, 4)], [side(0, 7), side(2, 4)]] }
     }
 
     /// Corners of the rectangle at a view depth.
-    fn rectangle(&self, depth: f64) -> [DVec3; 4] {
+    pub(crate) fn rectangle(&self, depth: f64) -> [DVec3; 4] {
         let t = (depth - self.near) / (self.far - self.near);
         core::array::from_fn(|i| self.corners[i] * (1.0 - t) + self.corners[i + 4] * t)
     }
@@ -133,27 +143,32 @@ impl View {
 
     /// Least and greatest view depth of a box that may touch the frustum; `None` when it does not.
     pub(crate) fn depths(&self, min: DVec3, max: DVec3) -> Option<(f64, f64)> {
-        if self.sides.iter().any(|plane| farthest(plane, min, max) < 0.0) {
+        if self.sides.iter().any(|plane| plane.farthest(min, max) < 0.0) {
             return None;
         }
         let flipped = Plane { normal: -self.depth.normal, d: -self.depth.d };
-        let (least, greatest) = (-farthest(&flipped, min, max), farthest(&self.depth, min, max));
+        let (least, greatest) = (-flipped.farthest(min, max), self.depth.farthest(min, max));
         if least > self.far || greatest < self.near { None } else { Some((least, greatest)) }
     }
 }
 
-/// Distance of a box's farthest corner along a plane's normal.
-fn farthest(plane: &Plane, min: DVec3, max: DVec3) -> f64 {
-    let n = plane.normal;
-    let x = n.x * if n.x < 0.0 { min.x } else { max.x };
-    let y = n.y * if n.y < 0.0 { min.y } else { max.y };
-    let z = n.z * if n.z < 0.0 { min.z } else { max.z };
-    x + y + z + plane.d
+/// Positions in the picture of a view.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Picture {
+    /// The sides at 0 and 1 of both axes, with the distances to divide by.
+    axes: [[(Plane, f64); 2]; 2],
 }
 
-/// Distance of a box's nearest corner along a plane's normal.
-fn nearest(plane: &Plane, min: DVec3, max: DVec3) -> f64 {
-    farthest(plane, max, min)
+impl Picture {
+    /// Position of a point in the picture: 0..1 from left to right and from top to bottom. The point
+    /// must not lie before the near plane.
+    #[inline]
+    pub(crate) fn position(&self, p: DVec3) -> [f64; 2] {
+        self.axes.map(|[(one, most), (other, other_most)]| {
+            let (a, b) = (one.distance(p) / most, other.distance(p) / other_most);
+            a / (a + b)
+        })
+    }
 }
 
 /// A part of a view frustum between two view depths.
@@ -168,7 +183,7 @@ pub(crate) struct Slice {
 
 /// Pairs of corners that an edge joins, for frusta and boxes alike ([`box_corners`] has the same
 /// order).
-const EDGES: [(usize, usize); 12] =
+pub(crate) const EDGES: [(usize, usize); 12] =
     [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)];
 
 /// Corners of a box: the four with the least z around, then the four with the greatest.
@@ -197,55 +212,80 @@ impl Slice {
     ) -> Result<(), E> {
         let mut crossed = [false; 6];
         for (plane, crossed) in self.planes.iter().zip(&mut crossed) {
-            if farthest(plane, min, max) < 0.0 {
+            if plane.farthest(min, max) < 0.0 {
                 return Ok(());
             }
-            *crossed = nearest(plane, min, max) < 0.0;
+            *crossed = plane.nearest(min, max) < 0.0;
         }
         let corners = box_corners(min, max);
         if crossed == [false; 6] {
             return corners.into_iter().try_for_each(emit);
         }
-        for (i, j) in EDGES {
-            if let Some((a, b)) = self.clip_segment(corners[i], corners[j], crossed) {
-                emit(a)?;
-                emit(b)?;
+        // Distances of the corners within the planes that the box crosses.
+        let mut inside = [[0.0; 8]; 6];
+        let mut count = 0;
+        for (plane, _) in self.planes.iter().zip(crossed).filter(|(_, crossed)| *crossed) {
+            inside[count] = corners.map(|corner| plane.distance(corner));
+            count += 1;
+        }
+        let inside = &inside[..count];
+        for (i, corner) in corners.into_iter().enumerate() {
+            if inside.iter().all(|plane| plane[i] >= 0.0) {
+                emit(corner)?;
             }
         }
         for (i, j) in EDGES {
-            if let Some((a, b)) = clip_to_box(self.corners[i], self.corners[j], min, max) {
+            let Some((enter, leave)) = inner_part(inside, i, j) else { continue };
+            if enter > 0.0 {
+                emit(at(corners[i], corners[j], enter))?;
+            }
+            if leave < 1.0 {
+                emit(at(corners[i], corners[j], leave))?;
+            }
+        }
+        // An edge of the slice meets no box that does not cross both of its planes.
+        for ((i, j), (one, other)) in EDGES.into_iter().zip(PLANES_OF_EDGES) {
+            if crossed[one]
+                && crossed[other]
+                && let Some((a, b)) = clip_to_box(self.corners[i], self.corners[j], min, max)
+            {
                 emit(a)?;
                 emit(b)?;
             }
         }
         Ok(())
     }
+}
 
-    /// The part of a segment inside those planes that the box crosses.
-    fn clip_segment(&self, a: DVec3, b: DVec3, crossed: [bool; 6]) -> Option<(DVec3, DVec3)> {
-        let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
-        for (plane, _) in self.planes.iter().zip(crossed).filter(|(_, crossed)| *crossed) {
-            let (da, db) = (plane.distance(a), plane.distance(b));
-            if da < 0.0 && db < 0.0 {
-                return None;
-            }
-            if da < 0.0 {
-                enter = enter.max(da / (da - db));
-            } else if db < 0.0 {
-                leave = leave.min(da / (da - db));
-            }
+/// The planes that each of a slice's [edges](EDGES) lies on.
+const PLANES_OF_EDGES: [(usize, usize); 12] =
+    [(0, 4), (1, 4), (2, 4), (3, 4), (0, 5), (1, 5), (2, 5), (3, 5), (3, 0), (0, 1), (1, 2), (2, 3)];
+
+/// The shares of an edge between which it lies inside planes, by the distances of all corners within each.
+#[inline]
+pub(crate) fn inner_part(inside: &[[f64; 8]], i: usize, j: usize) -> Option<(f64, f64)> {
+    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+    for plane in inside {
+        let (a, b) = (plane[i], plane[j]);
+        if a < 0.0 && b < 0.0 {
+            return None;
         }
-        if enter > leave { None } else { Some((at(a, b, enter), at(a, b, leave))) }
+        if a < 0.0 {
+            enter = enter.max(a / (a - b));
+        } else if b < 0.0 {
+            leave = leave.min(a / (a - b));
+        }
     }
+    if enter > leave { None } else { Some((enter, leave)) }
 }
 
 /// The point of a segment at a share of its length; exact at both ends.
-fn at(a: DVec3, b: DVec3, t: f64) -> DVec3 {
+pub(crate) fn at(a: DVec3, b: DVec3, t: f64) -> DVec3 {
     a * (1.0 - t) + b * t
 }
 
 /// The part of a segment inside a box.
-fn clip_to_box(a: DVec3, b: DVec3, min: DVec3, max: DVec3) -> Option<(DVec3, DVec3)> {
+pub(crate) fn clip_to_box(a: DVec3, b: DVec3, min: DVec3, max: DVec3) -> Option<(DVec3, DVec3)> {
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
     for axis in 0..3 {
         let (start, along) = (a[axis], b[axis] - a[axis]);

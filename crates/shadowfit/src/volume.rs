@@ -21,6 +21,8 @@ pub enum Constraint {
     CasterExtension,
     /// The enclosing sphere of the [stable fit](crate::fits::sphere).
     Sphere,
+    /// Where a [window](crate::settings::FitKind::Windows) stands, and how wide its texels are.
+    Window,
     /// A fit that is held from an earlier frame.
     Held,
 }

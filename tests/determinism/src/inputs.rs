@@ -6,7 +6,7 @@ use shadowfit::histogram::DepthHistogram;
 use shadowfit::normal_cone::NormalCone;
 use shadowfit::settings::{
     BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapChoice, MapFormat,
-    MapOverride, ReceiverSource, RectangleKind, SplitScheme, Stabilise,
+    MapOverride, NeedSource, ReceiverSource, RectangleKind, SplitScheme, Stabilise,
 };
 use shadowfit::{Aabb, Boxes, DepthConvention, FitError, FitInput, PerspectiveCamera, Technique, ViewFrustum};
 
@@ -215,6 +215,7 @@ pub(crate) fn technique(random: &mut Random, camera: &PerspectiveCamera) -> Tech
         receivers: ReceiverSource::Clusters,
         filter: FilterKind::Point,
         bias: BiasSettings { constant: 0.5, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0 },
+        need: NeedSource::LastFrame,
         format: MapFormat::Depth32Float,
     };
     if random.once_in(4) {

@@ -1,11 +1,12 @@
 //! A picture to judge on the GPU, and the uniform that is made of it for the shaders.
 
 use glam::DVec3;
+use shadowfit::choice::MapOrder;
 
 use super::error::GpuTruthError;
 use super::uniform::{JudgeUniform, MAX_MAPS, MapUniform};
 use crate::camera::PixelCamera;
-use crate::maps::{MeasuredMap, PictureMaps};
+use crate::maps::{MapReading, MeasuredMap, PictureMaps};
 use crate::truth::TruthSettings;
 
 /// A picture to judge.
@@ -29,9 +30,16 @@ impl GpuJudgeInput<'_> {
         if settings.sun_radius > 0.0 {
             return Err(GpuTruthError::SoftSun);
         }
+        let (order, blend) = match maps.reading {
+            MapReading::ViewDepth => (MapOrder::by_area(maps.maps.iter().map(|_| Some(1.0))), None),
+            MapReading::Coverage { order, blend } => (order, Some(blend)),
+        };
         let mut uniforms = [MapUniform::default(); MAX_MAPS];
-        for (uniform, map) in uniforms.iter_mut().zip(maps.maps) {
-            *uniform = map_uniform(map, camera.eye);
+        let mut map_count = 0;
+        let read = order.iter().filter_map(|index| Some((index, maps.maps.get(index)?)));
+        for (uniform, (index, map)) in uniforms.iter_mut().zip(read) {
+            *uniform = MapUniform { index: index as u32, ..map_uniform(map, camera.eye) };
+            map_count += 1;
         }
         Ok(JudgeUniform {
             eye: (camera.eye - origin).as_vec3().into(),
@@ -46,10 +54,14 @@ impl GpuJudgeInput<'_> {
             edge_width: maps.edge_width(),
             tan_half_fov: camera.tan_half_fov.as_vec2().into(),
             size: camera.size,
-            map_count: maps.maps.len() as u32,
+            map_count,
             depth_clamp: maps.depth_clamp.into(),
             triangles,
-            padding: 0,
+            by_coverage: blend.is_some().into(),
+            reach: maps.reach,
+            blend: blend.unwrap_or(0.0),
+            padding_0: 0,
+            padding_1: 0,
             maps: uniforms,
         })
     }
@@ -65,6 +77,8 @@ fn map_uniform(map: &MeasuredMap, eye: DVec3) -> MapUniform {
         size: map.size.as_vec2().into(),
         split_far: finite(map.split_far),
         is_reversed: map.is_reversed.into(),
+        blend_near: finite(map.blend_near),
+        ..MapUniform::default()
     }
 }
 

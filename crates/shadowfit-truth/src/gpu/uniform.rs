@@ -90,10 +90,18 @@ pub struct MapUniform {
     pub row_w: [f32; 4],
     /// Texels across and down.
     pub size: [f32; 2],
-    /// View depth below which the map is the first to be read, in metres.
+    /// View depth below which the map is the first to be read, in metres; by view depth.
     pub split_far: f32,
     /// 1 where depth 1 is nearest to the light.
     pub is_reversed: u32,
+    /// View depth from which the map in front is blended into this one, in metres; by view depth.
+    pub blend_near: f32,
+    /// Its index.
+    pub index: u32,
+    /// Unused.
+    pub padding_0: u32,
+    /// Unused.
+    pub padding_1: u32,
 }
 
 /// A picture's camera, light and maps.
@@ -124,14 +132,22 @@ pub struct JudgeUniform {
     pub tan_half_fov: [f32; 2],
     /// Pixels across and down.
     pub size: [u32; 2],
-    /// Number of maps.
+    /// Number of maps that points try.
     pub map_count: u32,
     /// 1 where the maps were drawn with depth clamp.
     pub depth_clamp: u32,
     /// Number of triangles.
     pub triangles: u32,
+    /// 1 where maps are read by coverage.
+    pub by_coverage: u32,
+    /// Texels that the filter reads around a point.
+    pub reach: f32,
+    /// Texels over which a map is blended into the next one, by coverage.
+    pub blend: f32,
     /// Unused.
-    pub padding: u32,
-    /// The maps.
+    pub padding_0: u32,
+    /// Unused.
+    pub padding_1: u32,
+    /// The maps, in the order in which points try them.
     pub maps: [MapUniform; MAX_MAPS],
 }

@@ -8,14 +8,14 @@ use super::measured::{MapPosition, MeasuredMap};
 /// before the near plane and still be in the map: what rounding may move it.
 const OCCLUDER_DEPTH_TOLERANCE: f64 = 1e-6;
 
-/// The map that a point reads, and where the point lies in it.
+/// A map that a point reads, and where the point lies in it.
 pub(crate) struct MapChoice<'a> {
     pub(crate) index: usize,
     pub(crate) map: &'a MeasuredMap,
     pub(crate) position: MapPosition,
 }
 
-/// The first map whose split is beyond the point's view depth; where that one does not hold the
+/// The choice of fit files: the first map whose split is beyond the point's view depth; where that one does not hold the
 /// point, the next later one that does. `None` where no such map holds it.
 pub(crate) fn choose(maps: &[MeasuredMap], view_depth: f64, point: DVec3) -> Option<MapChoice<'_>> {
     maps.iter().enumerate().skip_while(|(_, map)| view_depth >= map.split_far).find_map(|(index, map)| {

@@ -18,8 +18,11 @@ pub struct MeasuredMap {
     rows: [DVec4; 4],
     /// Width and height, in texels.
     pub size: DVec2,
-    /// View depth below which the map is the first to be read, in metres.
+    /// View depth below which the map is the first to be read, in metres; by view depth.
     pub split_far: f64,
+    /// View depth from which points of the map in front are blended into this one, in metres, up to that one's
+    /// `split_far`; by view depth. Infinite for no blend.
+    pub blend_near: f64,
     /// Whether depth 1 is nearest to the light in the matrix; in [`MapPosition::depth`] it is always 0.
     pub is_reversed: bool,
 }
@@ -64,7 +67,13 @@ impl MeasuredMap {
     /// tells whether depth is reversed.
     pub fn new(clip_from_world: &DMat4, size: DVec2, split_far: f64, to_light: DVec3) -> Self {
         let rows = [0, 1, 2, 3].map(|row| clip_from_world.row(row));
-        Self { rows, size, split_far, is_reversed: is_reversed(clip_from_world, to_light) }
+        Self { rows, size, split_far, blend_near: f64::INFINITY, is_reversed: is_reversed(clip_from_world, to_light) }
+    }
+
+    /// This map with points of the map in front blended into it from a view depth on, in metres.
+    #[must_use]
+    pub fn with_blend_near(self, blend_near: f64) -> Self {
+        Self { blend_near, ..self }
     }
 
     /// Rows of clip from positions relative to a point of the world.
@@ -94,6 +103,11 @@ impl MeasuredMap {
     pub fn is_inside(&self, position: &MapPosition) -> bool {
         let depths = -DEPTH_TOLERANCE..=1.0 + DEPTH_TOLERANCE;
         self.is_within_sides(position) && depths.contains(&position.depth)
+    }
+
+    /// Texels between a position and the nearest of the map's sides; negative beside it.
+    pub fn free_texels(&self, position: &MapPosition) -> f64 {
+        position.texel.min(self.size - position.texel).min_element()
     }
 
     /// Gradients at a position in this map.

@@ -10,5 +10,5 @@ mod sampling;
 
 pub(crate) use choice::{MapChoice, Occluder, choose};
 pub use measured::{MapGradients, MapPosition, MeasuredMap};
-pub use picture::PictureMaps;
+pub use picture::{MapReading, PictureMaps};
 pub(crate) use sampling::{MIN_FACING, pixels_per_texel};

@@ -1,13 +1,33 @@
 //! The shadow maps of one picture, and how its shader reads them.
 
+use glam::DVec3;
+use shadowfit::choice::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth};
+
+use super::choice::MapChoice;
 use super::measured::MeasuredMap;
+
+/// Which of the maps of a picture a point reads; [`shadowfit::choice`] has the rules.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MapReading {
+    /// The first one whose split is beyond the point's view depth; where that one does not hold the point, the next
+    /// later one that does. It is blended into the next one from that one's `blend_near` on.
+    ViewDepth,
+    /// The finest one that holds the point with the filter's reach.
+    Coverage {
+        /// The maps that are read, the finest first.
+        order: MapOrder,
+        /// Texels over which a map is blended into the next one toward its border; 0 for none.
+        blend: f32,
+    },
+}
 
 /// The shadow maps of a picture, and how they are read.
 #[derive(Clone, Copy, Debug)]
 pub struct PictureMaps<'a> {
-    /// Maps, in order of their splits. A point reads the first one whose split is beyond its view
-    /// depth; where that one does not hold the point, the next later one that does.
+    /// Maps; by view depth they are in order of their splits.
     pub maps: &'a [MeasuredMap],
+    /// Which of them a point reads.
+    pub reading: MapReading,
     /// Reach of the filter: greatest distance per axis, in texels, from the sample point to the
     /// centre of a texel of non-zero weight (0.5 point, 1 hardware 2×2).
     pub reach: f32,
@@ -16,10 +36,36 @@ pub struct PictureMaps<'a> {
     pub depth_clamp: bool,
 }
 
-impl PictureMaps<'_> {
+impl<'a> PictureMaps<'a> {
     /// Width of the edge zone, in pixels where a texel is no wider than a pixel on screen, otherwise
     /// in texels: the filter's reach and one more, at least 1.5.
     pub fn edge_width(&self) -> f32 {
         (self.reach + 1.0).max(1.5)
+    }
+
+    /// The maps that a point of the world reads, and with which weights; `None` where no map covers it. `view_depth` is
+    /// in metres.
+    pub fn read(&self, view_depth: f64, point: DVec3) -> Option<MapRead> {
+        let free = |index: usize| {
+            let map = self.maps.get(index)?;
+            let position = map.project(point);
+            map.is_inside(&position).then(|| map.free_texels(&position))
+        };
+        match self.reading {
+            MapReading::ViewDepth => {
+                let range = |map: &MeasuredMap| DepthRange { blend_near: map.blend_near, far: map.split_far };
+                by_view_depth(self.maps.iter().map(range), view_depth, |index| free(index).is_some())
+            }
+            MapReading::Coverage { order, blend } => {
+                by_coverage(order.iter(), f64::from(self.reach), f64::from(blend), free)
+            }
+        }
+    }
+
+    /// The map that weighs more of those that a point reads.
+    pub(crate) fn main(&self, view_depth: f64, point: DVec3) -> Option<MapChoice<'a>> {
+        let index = self.read(view_depth, point)?.main();
+        let map = &self.maps[index];
+        Some(MapChoice { index, map, position: map.project(point) })
     }
 }

@@ -101,7 +101,8 @@ fn tally(roofs: &[(f32, f32)], maps: &[FitMap], depth_clamp: bool) -> Tally {
 
 /// Measures of how `then` became `now`.
 fn shimmer(then: &FitMap, now: &FitMap) -> Shimmer {
-    let frame = FrameMaps { maps: &[prepared(now)], previous: Some((&Room::frame(), &[prepared(then)])), depth_clamp: false };
+    let frame =
+        FrameMaps { maps: &[prepared(now)], previous: Some((&Room::frame(), &[prepared(then)])), depth_clamp: false };
     measure(&Room::new(&[]).visible(), &frame).shimmer
 }
 
@@ -194,7 +195,8 @@ fn grazing_surfaces_are_left_out_of_pixels_per_texel_alone() {
     frame.light_dir = (-grazing).to_array();
     let visible = VisiblePoints::trace(&Room::new(&[]).tracer, &frame, 1);
     let maps = [Room::map().measured(grazing)];
-    let tally = measure(&visible, &FrameMaps { maps: &maps, previous: Some((&Room::frame(), &maps)), depth_clamp: false });
+    let tally =
+        measure(&visible, &FrameMaps { maps: &maps, previous: Some((&Room::frame(), &maps)), depth_clamp: false });
     assert_eq!((tally.facing, tally.pixels_per_texel.total(), tally.undersampled), (POINTS, 0, 0));
     assert!(tally.shimmer.points > 0 && tally.used > 0.0);
 }
@@ -274,7 +276,8 @@ fn a_map_that_grows_changes_its_texels_size() {
 fn crawl_needs_the_point_in_the_same_map_of_the_frame_before() {
     let beside = Room::map_around(DVec2::new(40.0, 0.0), 8.0, 8.0);
     assert_eq!(shimmer(&beside, &Room::map()).points, 0);
-    let frame = FrameMaps { maps: &[prepared(&Room::map())], previous: Some((&Room::frame(), &[])), depth_clamp: false };
+    let frame =
+        FrameMaps { maps: &[prepared(&Room::map())], previous: Some((&Room::frame(), &[])), depth_clamp: false };
     assert_eq!(measure(&Room::new(&[]).visible(), &frame).shimmer, Shimmer::default());
 }
 

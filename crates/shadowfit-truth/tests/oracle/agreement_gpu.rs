@@ -3,11 +3,12 @@
 //! The two differ only by rounding: at pixels whose shadow ray passes within micrometres of an edge.
 
 use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
+use shadowfit::choice::MapOrder;
 use shadowfit_truth::gpu::{GpuJudge, GpuJudgeInput, GpuPixel, GpuTracer, GpuTruthError};
 use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{
-    AlphaImage, Class, CutOut, CutOuts, Judged, MeasuredMap, PictureMaps, PixelCamera, Tracer, Truth, TruthSettings,
-    Wrap, judge,
+    AlphaImage, Class, CutOut, CutOuts, Judged, MapReading, MeasuredMap, PictureMaps, PixelCamera, Tracer, Truth,
+    TruthSettings, Wrap, judge,
 };
 
 use super::scenes::{Triangles, cuboid, level, looking_at, map_around, quad, sphere};
@@ -30,6 +31,7 @@ struct Picture {
     camera: PixelCamera,
     settings: TruthSettings,
     maps: Vec<FitMap>,
+    reading: MapReading,
     depth_clamp: bool,
     /// What the GPU's triangles are relative to.
     origin: DVec3,
@@ -53,31 +55,49 @@ impl Picture {
             camera: looking_at(eye, DVec3::Y * 0.4, [203, 117]),
             settings: TruthSettings { max_distance: 30.0, ..TruthSettings::new(to_light) },
             maps: vec![near, map_around(DVec3::ZERO, to_light, 24.0, 3.0, 512)],
+            reading: MapReading::ViewDepth,
             depth_clamp: false,
             origin: DVec3::ZERO,
         }
+    }
+
+    /// The scene under maps that overlap, of several sizes and not in order of these, and one that is not read.
+    fn with_crossing_maps(blend: f32) -> Self {
+        let around = |x: f64, width: f64, texels: u32| map_around(DVec3::X * x, sun(), width, 6.0, texels);
+        let maps = vec![around(0.0, 24.0, 512), around(1.0, 3.0, 400), around(-1.5, 6.0, 300), around(0.5, 8.0, 512)];
+        let texel = |map: &FitMap| 1.0 / map.clip_from_world().row(0).truncate().length() / map.size().x;
+        let areas = maps.iter().enumerate().map(|(index, map)| (index != 1).then(|| texel(map).powi(2)));
+        let order = MapOrder::by_area(areas);
+        assert!(order.iter().eq([3, 2, 0]));
+        let picture = Self::new(boxes(), DVec3::new(-4.0, 3.0, 5.0), sun());
+        Self { maps, reading: MapReading::Coverage { order, blend }, ..picture }
+    }
+
+    fn measured(&self) -> Vec<MeasuredMap> {
+        self.maps.iter().map(|map| map.measured(self.settings.to_light)).collect()
     }
 
     /// Judges the picture twice. Its factors are those of maps that hold the nearest triangle at
     /// each texel's centre, with a bias of a centimetre on the left and of 3 m on the right:
     /// acne, leaks, holes and jagged edges.
     fn judge(&self) -> Both {
-        let maps: Vec<MeasuredMap> = self.maps.iter().map(|map| map.measured(self.settings.to_light)).collect();
+        self.judge_maps(&self.measured())
+    }
+
+    fn judge_maps(&self, maps: &[MeasuredMap]) -> Both {
+        let maps = PictureMaps { maps, reading: self.reading, reach: 1.0, depth_clamp: self.depth_clamp };
         let seen = Truth::seen_by_rays(&self.tracer, &self.camera);
         let truth = Truth::trace(&self.tracer, &self.camera, &self.settings, &seen);
         let factors: Vec<f32> =
             truth.points.iter().map(|point| point.as_ref().map_or(1.0, |point| self.factor(&maps, point))).collect();
-        let maps = PictureMaps { maps: &maps, reach: 1.0, depth_clamp: self.depth_clamp };
         let judged = judge(&self.tracer, &truth, &maps, &factors, |_| true);
         let gpu = self.judge_on_gpu(&maps, &seen, &factors).expect("a picture that the GPU can judge");
         Both { truth, judged, gpu, edge_width: maps.edge_width() }
     }
 
-    fn factor(&self, maps: &[MeasuredMap], point: &shadowfit_truth::TruthPoint) -> f32 {
-        let is_read =
-            |map: &&MeasuredMap| point.view_depth < map.split_far && map.is_inside(&map.project(point.position));
-        let Some(index) = maps.iter().position(|map| is_read(&map)) else { return 1.0 };
-        let (map, clip_from_world) = (&maps[index], DMat4::from_cols_array(&self.maps[index].view_proj));
+    fn factor(&self, maps: &PictureMaps, point: &shadowfit_truth::TruthPoint) -> f32 {
+        let Some(index) = maps.read(point.view_depth, point.position).map(|read| read.main()) else { return 1.0 };
+        let (map, clip_from_world) = (&maps.maps[index], DMat4::from_cols_array(&self.maps[index].view_proj));
         let texel = map.project(point.position).texel.floor() + 0.5;
         let ndc = (texel / map.size - 0.5) * DVec2::new(2.0, -2.0);
         let depth = clip_from_world.project_point3(point.position).z;
@@ -259,6 +279,36 @@ fn maps_of_reversed_depth_are_read_alike() {
 }
 
 #[test]
+fn maps_that_are_read_by_coverage_are_read_alike_whatever_their_order() {
+    let mut named = Vec::new();
+    for blend in [0.0, 8.0, 64.0] {
+        let both = Picture::with_crossing_maps(blend).judge();
+        let counts = both.assert_agreement("crossing");
+        assert!(counts.iter().all(|count| *count >= 20), "{counts:?}");
+        let reads = |map: u8| both.judged.map_index.iter().filter(|read| **read == Some(map)).count();
+        let read = [0, 1, 2, 3].map(reads);
+        assert!(read[1] == 0 && [0, 2, 3].iter().all(|map| read[*map] > 200), "{read:?}");
+        named.push(read);
+    }
+    // The wider the blend, the sooner the coarser map weighs more.
+    assert!(named[0][3] > named[1][3] && named[1][3] > named[2][3], "{named:?}");
+}
+
+#[test]
+fn maps_that_overlap_by_view_depth_are_read_alike() {
+    let picture = Picture::new(boxes(), DVec3::new(-4.0, 3.0, 5.0), sun());
+    let plain = picture.measured();
+    let overlapping = [plain[0], plain[1].with_blend_near(4.5)];
+    let near = |both: &Both| both.judged.map_index.iter().filter(|read| **read == Some(0)).count();
+    let [plain, overlapping] = [&plain[..], &overlapping].map(|maps| {
+        let both = picture.judge_maps(maps);
+        both.assert_agreement("overlapping");
+        near(&both)
+    });
+    assert!(overlapping > 200 && overlapping + 200 < plain, "{overlapping} of {plain}");
+}
+
+#[test]
 fn grazing_light_is_judged_alike() {
     let to_light = DVec3::new(1.0, 0.04, 0.4).normalize();
     Picture::new(boxes(), DVec3::new(-4.0, 3.0, 5.0), to_light).judge().assert_agreement("grazing");
@@ -323,7 +373,7 @@ fn moved_triangles_are_uploaded_again_and_the_texture_stays() {
         tracer.update(&device, &queue, &picture.tracer).expect("a scene that fits");
         let seen = Truth::seen_by_rays(&picture.tracer, &picture.camera);
         let maps = [picture.maps[1].measured(sun())];
-        let maps = PictureMaps { maps: &maps, reach: 0.5, depth_clamp: true };
+        let maps = PictureMaps { maps: &maps, reading: MapReading::ViewDepth, reach: 0.5, depth_clamp: true };
         let texture = seen_texture(&device, &queue, picture.camera.size, &seen, &vec![1.0; seen.len()]);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -362,7 +412,8 @@ fn what_the_gpu_cannot_judge_is_refused_by_its_reason() {
         let mut settings = picture.settings;
         change(&mut settings);
         let camera = PixelCamera { size, ..picture.camera };
-        let maps = PictureMaps { maps: &vec![map; maps], reach: 0.5, depth_clamp: false };
+        let maps =
+            PictureMaps { maps: &vec![map; maps], reading: MapReading::ViewDepth, reach: 0.5, depth_clamp: false };
         let gpu_tracer = GpuTracer::new(&device, &queue, &picture.tracer, DVec3::ZERO).expect("a scene that fits");
         let texture = seen_texture(&device, &queue, [8, 8], &[None; 64], &[1.0; 64]);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());

@@ -1,9 +1,11 @@
 //! Shares of made-up shadow factors: a floor under half a roof, judged to the pixel.
 
 use glam::DVec3;
+use shadowfit::choice::MapOrder;
 use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{
-    Class, Judged, MapsBefore, MeasuredMap, PictureMaps, PictureTally, Tracer, Truth, TruthSettings, crawl, judge,
+    Class, Judged, MapReading, MapsBefore, MeasuredMap, PictureMaps, PictureTally, Tracer, Truth, TruthSettings, crawl,
+    judge,
 };
 
 use super::scenes::{level, looking_down, map_around, shadow_map};
@@ -47,7 +49,7 @@ impl Room {
         counts: impl Fn(u32) -> bool + Sync,
     ) -> Judged {
         let factors: Vec<f32> = (0..PIXELS).map(|pixel| factor(pixel % 40)).collect();
-        let maps = PictureMaps { maps: &[map], reach: 0.5, depth_clamp };
+        let maps = PictureMaps { maps: &[map], reading: MapReading::ViewDepth, reach: 0.5, depth_clamp };
         judge(&self.tracer, &self.truth, &maps, &factors, counts)
     }
 }
@@ -128,10 +130,33 @@ fn points_read_the_first_map_beyond_their_depth_and_classes_name_it() {
     let far = map_around(DVec3::ZERO, DVec3::Y, 8.0, 9.0, 80);
     let maps = [FitMap { split_far: 0.5, ..far.clone() }, map_around(DVec3::X * 4.0, DVec3::Y, 8.0, 9.0, 80), far]
         .map(|map| map.measured(DVec3::Y));
-    let seen = PictureMaps { maps: &maps, reach: 0.5, depth_clamp: false };
+    let seen = PictureMaps { maps: &maps, reading: MapReading::ViewDepth, reach: 0.5, depth_clamp: false };
     let judged = judge(&room.tracer, &room.truth, &seen, &[1.0; PIXELS], |_| true);
     for (pixel, choice) in judged.map_index.iter().enumerate() {
         assert_eq!(*choice, Some(if pixel % 40 < 20 { 2 } else { 1 }));
+    }
+}
+
+#[test]
+fn of_two_maps_the_one_that_weighs_more_names_the_texels_and_the_occluders() {
+    let room = Room::new();
+    // The finer map ends at x = 0.7 and is below the roof; the coarser one has texels of two pixels.
+    let fine = shadow_map(DVec3::X * -3.3, DVec3::Y, 8.0, 1.0, 80);
+    let maps = [map(2, 9.0), fine];
+    let order = MapOrder::by_area([Some(4.0), Some(1.0)]);
+    for (blend, columns) in [(0.0, 22), (8.0, 18)] {
+        let reading = MapReading::Coverage { order, blend };
+        let seen = PictureMaps { maps: &maps, reading, reach: 5.0, depth_clamp: false };
+        let judged = judge(&room.tracer, &room.truth, &seen, &[1.0; PIXELS], |_| true);
+        for pixel in 0..PIXELS {
+            // From here on less than 5 texels are free in the finer one, or less than 5 and half of the blend.
+            let is_fine = pixel % 40 < columns;
+            assert_eq!(judged.map_index[pixel], Some(u8::from(is_fine)), "column {}, blend {blend}", pixel % 40);
+            let texel = if is_fine { 1.0 } else { 2.0 };
+            assert!((judged.pixels_per_texel[pixel] / texel - 1.0).abs() < 1e-3);
+            // The roof is above the finer map.
+            assert_eq!(judged.classes[pixel] == Class::Hole, is_fine && pixel % 40 < 20, "column {}", pixel % 40);
+        }
     }
 }
 
@@ -184,7 +209,7 @@ fn soft_truth_counts_as_it_is_and_is_lit_from_one_half_on() {
     let room = Room::lit_from(DVec3::Y, |settings| (settings.sun_radius, settings.sun_rays) = (0.2, 64));
     let factors: Vec<f32> = room.truth.points.iter().map(|point| point.expect("the floor").lit).collect();
     assert!(factors.iter().any(|factor| (0.1..0.9).contains(factor)));
-    let maps = PictureMaps { maps: &[map(1, 9.0)], reach: 0.5, depth_clamp: false };
+    let maps = PictureMaps { maps: &[map(1, 9.0)], reading: MapReading::ViewDepth, reach: 0.5, depth_clamp: false };
     let tally = judge(&room.tracer, &room.truth, &maps, &factors, |_| true).tally;
     assert_eq!((tally.all.wrong, tally.error), (0, 0.0));
     // A hole is one also where only some of the rays are blocked.
@@ -212,6 +237,11 @@ fn merged_tallies_are_those_of_both_pictures() {
     assert!((p95 - 4.0).abs() < 4.0 * 0.005 && (p50 - 1.0).abs() < 0.005, "{p50} {p95}");
 }
 
+/// Maps that are read by view depth with one tap.
+fn by_view_depth(maps: &[MeasuredMap]) -> PictureMaps<'_> {
+    PictureMaps { maps, reading: MapReading::ViewDepth, reach: 0.5, depth_clamp: false }
+}
+
 #[test]
 fn crawl_compares_edge_pixels_that_the_maps_of_both_frames_hold() {
     let room = Room::new();
@@ -220,13 +250,13 @@ fn crawl_compares_edge_pixels_that_the_maps_of_both_frames_hold() {
     // One column of the four in the edge zone was lit, and so was one far from it.
     let then: Vec<f32> = (0..PIXELS).map(|p| if [19, 3].contains(&(p % 40)) { 1.0 } else { now[p] }).collect();
     let maps = [map(1, 9.0)];
-    let before = MapsBefore { maps: &maps, eye: DVec3::Y * 2.0, forward: DVec3::NEG_Y, factors: &then };
+    let before = MapsBefore { maps: by_view_depth(&maps), eye: DVec3::Y * 2.0, forward: DVec3::NEG_Y, factors: &then };
     assert_eq!(crawl(&room.truth, &judged, &now, &before), (10, 40));
     // Two of its columns are beside the maps of the frame before.
     let beside = [shadow_map(DVec3::X * -4.0, DVec3::Y, 8.0, 9.0, 80)];
-    assert_eq!(crawl(&room.truth, &judged, &now, &MapsBefore { maps: &beside, ..before }), (10, 20));
+    assert_eq!(crawl(&room.truth, &judged, &now, &MapsBefore { maps: by_view_depth(&beside), ..before }), (10, 20));
     // Or beyond its last split.
     let short = FitMap { split_far: 1.9, ..map_around(DVec3::ZERO, DVec3::Y, 8.0, 9.0, 80) };
     let short = [short.measured(DVec3::Y)];
-    assert_eq!(crawl(&room.truth, &judged, &now, &MapsBefore { maps: &short, ..before }), (0, 0));
+    assert_eq!(crawl(&room.truth, &judged, &now, &MapsBefore { maps: by_view_depth(&short), ..before }), (0, 0));
 }

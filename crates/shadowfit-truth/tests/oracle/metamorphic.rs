@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat4, DQuat, DVec3, Vec3};
 use shadowfit_truth::peers::FitMap;
-use shadowfit_truth::{PictureMaps, PictureTally, PixelCamera, Tracer, Truth, TruthSettings, judge};
+use shadowfit_truth::{MapReading, PictureMaps, PictureTally, PixelCamera, Tracer, Truth, TruthSettings, judge};
 
 use super::scenes::{cuboid, level, looking_at, map_around, sphere};
 
@@ -40,7 +40,7 @@ fn tally(motion: DAffine3, scale: f64) -> PictureTally {
             f32::from(u8::from(shifted != (pixel % 31 == 0)))
         })
         .collect();
-    let maps = PictureMaps { maps: &[map], reach: 0.5, depth_clamp: false };
+    let maps = PictureMaps { maps: &[map], reading: MapReading::ViewDepth, reach: 0.5, depth_clamp: false };
     judge(&tracer, &truth, &maps, &factors, |_| true).tally
 }
 

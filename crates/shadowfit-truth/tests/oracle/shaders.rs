@@ -61,7 +61,22 @@ fn every_record_has_the_size_and_offsets_of_its_wgsl_struct() {
         "CutOut" = CutOutRecord { uv_a, uv_b, uv_c, base_alpha, cutoff, alphas, image, wrap, nearest, padding }
     );
     assert_layout!(module, "Image" = ImageRecord { first, width, height, padding });
-    assert_layout!(module, "Map" = MapUniform { row_x, row_y, row_z, row_w, size, split_far, is_reversed });
+    assert_layout!(
+        module,
+        "Map" = MapUniform {
+            row_x,
+            row_y,
+            row_z,
+            row_w,
+            size,
+            split_far,
+            is_reversed,
+            blend_near,
+            index,
+            padding_0,
+            padding_1
+        }
+    );
     assert_layout!(
         module,
         "Judge" = JudgeUniform {
@@ -80,7 +95,11 @@ fn every_record_has_the_size_and_offsets_of_its_wgsl_struct() {
             map_count,
             depth_clamp,
             triangles,
-            padding,
+            by_coverage,
+            reach,
+            blend,
+            padding_0,
+            padding_1,
             maps
         }
     );

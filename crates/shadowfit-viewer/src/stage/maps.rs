@@ -11,7 +11,7 @@ use crate::fitted::Fitted;
 const NO_DEPTH_CLAMP: &str = "this GPU has no depth clamp: the objects place the map's near plane instead";
 
 impl Stage {
-    /// The maps of the present view and settings, in order of their `far`; none where there is nothing to fit, with the
+    /// The maps of the present view and settings; none where there is nothing to fit, with the
     /// reason as [`Self::problem`].
     pub fn maps(&mut self, size: [u32; 2]) -> Vec<MapFit> {
         self.fit(size).maps.iter().map(MapFit::from).collect()
@@ -22,7 +22,7 @@ impl Stage {
         let technique = self.drawable_technique();
         if let Some(frozen) = self.fitted.as_ref().filter(|fitted| self.settings.view.freeze_fit && self.holds(fitted))
         {
-            return frozen.clone();
+            return Fitted { technique, ..frozen.clone() };
         }
         let fitted = self.fit_now(&technique, size).unwrap_or_else(|error| {
             self.problem = Some(format!("no shadow map: {error}"));

@@ -12,11 +12,12 @@ struct shadowfit_Map {
     size: vec2<f32>,
     normal_offset: f32,
     receiver_plane: f32,
-    // View depth at which the map ends: points from there on do not read it.
+    // View depth at which the map ends, and from which the map in front is blended into it; by view depth.
     far: f32,
-    padding_0: f32,
-    padding_1: f32,
-    padding_2: f32,
+    blend_near: f32,
+    // Layer that it is stored in.
+    layer: u32,
+    padding: f32,
 }
 
 struct shadowfit_Receiver {
@@ -24,6 +25,7 @@ struct shadowfit_Receiver {
     map_count: u32,
     // View depth is dot(xyz, position) + w.
     view: vec4<f32>,
+    // In the order in which points try them.
     maps: array<shadowfit_Map, MAX_MAPS>,
 }
 
@@ -67,8 +69,24 @@ fn shadowfit_view_depth(position: vec3<f32>) -> f32 {
     return dot(shadowfit_receiver.view.xyz, position) + shadowfit_receiver.view.w;
 }
 
-// Whether a map is in use, and holds a point.
-fn shadowfit_covers(index: u32, map: shadowfit_Map, position: vec3<f32>) -> bool {
+// Texels between a point and the nearest side of a map; -1 where the map is not in use, or does not hold the point.
+// entry: its place in the order.
+fn shadowfit_free(entry: u32, map: shadowfit_Map, position: vec3<f32>) -> f32 {
     let uv = (map.uv_from_world * vec4<f32>(position, 1.0)).xyz;
-    return index < shadowfit_receiver.map_count && shadowfit_inside(uv);
+    let free = min(uv.xy, vec2<f32>(1.0) - uv.xy) * map.size;
+    let is_held = entry < shadowfit_receiver.map_count && shadowfit_inside(uv);
+    return select(-1.0, min(free.x, free.y), is_held);
+}
+
+// Which maps a point reads, by their places in the order; -1 for none.
+struct shadowfit_Choice {
+    first: i32,
+    // What the first one is blended into.
+    second: i32,
+    // Share of the first one.
+    weight: f32,
+    // By coverage: the first map that holds the point without what the filter reads around it.
+    clamped: i32,
+    // By view depth: where the first map ends.
+    far: f32,
 }

@@ -23,7 +23,7 @@ use crate::light_hull::LightHull;
 use crate::motion::Motion;
 use crate::near_plane;
 use crate::rectangle::Rectangle;
-use crate::rule::FitRule;
+use crate::rule::{Covers, FitRule};
 use crate::settings::HoldSettings;
 use crate::view::Range;
 use crate::volume::{Constraint, Grid, ROUNDING, Volume};
@@ -84,14 +84,25 @@ impl Holder<'_, '_> {
         points: &mut [DVec2],
     ) -> Result<HeldMap, FitError> {
         // The border and the near plane depend on the texels of the map that is kept or made.
-        let plain = rule.without_room();
-        let fresh = fits::fit_map(self.content, &self.light, &plain, slice, Placement::Tight, points)?;
-        if let Some(held) = held.filter(|held| held.is_of(&fresh, rule))
-            && let Some(kept) = self.keep(&held, &fresh, rule, slice, points)?
-        {
+        let plain = trial(&rule.without_room());
+        let fresh =
+            |points: &mut [DVec2]| fits::fit_map(self.content, &self.light, &plain, slice, Placement::Tight, points);
+        let is_of_light = |held: &HeldMap| held.is_of(&self.light.axes(rule.roll), rule);
+        let Some(held) = held.filter(is_of_light) else { return self.make(&fresh(points)?, rule, slice, points) };
+        let needed = self.needed(&held, rule, slice, points)?;
+        let Some(kept) = self.keep(&held, &needed, rule) else {
+            return self.make(&fresh(points)?, rule, slice, points);
+        };
+        // No rectangle is smaller than the outline in it, so most maps need not be compared with a new one.
+        let waste = f64::from(self.hold.waste);
+        let held_size = held.texel * grid::usable(rule);
+        let held_area = held_size.x * held_size.y;
+        if held_area <= needed.area * (1.0 - SAME_AREA) * waste * waste {
             return Ok(kept);
         }
-        self.make(&fresh, rule, slice, points)
+        let fresh = fresh(points)?;
+        let size = fresh.max - fresh.min;
+        if held_area > size.x * size.y * waste * waste { self.make(&fresh, rule, slice, points) } else { Ok(kept) }
     }
 
     /// A plain fit around what the views see and what they will see in some frames.
@@ -116,35 +127,22 @@ impl Holder<'_, '_> {
         fits::fit_map(&content, &self.light, rule, slice, Placement::Tight, points)
     }
 
-    /// The held map moved by whole texels, if what must be covered fits into it and it is not too
-    /// coarse.
-    fn keep(
-        &self,
-        held: &HeldMap,
-        fresh: &Volume,
-        rule: &FitRule,
-        slice: Range,
-        points: &mut [DVec2],
-    ) -> Result<Option<HeldMap>, FitError> {
-        let needed = self.needed(held, rule, slice, points)?;
-        let size = fresh.max - fresh.min;
-        let held_size = held.texel * grid::usable(rule);
-        let waste = f64::from(self.hold.waste);
-        if held_size.x * held_size.y > size.x * size.y * waste * waste {
-            return Ok(None);
-        }
+    /// The held map moved by whole texels, if what must be covered fits into it.
+    fn keep(&self, held: &HeldMap, needed: &Needed, rule: &FitRule) -> Option<HeldMap> {
         let anchor = grid::anchor(&held.axes, self.input.views[0].origin);
         let low = floor((needed.across.min + anchor.truncate()) / held.texel);
         let high = -floor(-((needed.across.max + anchor.truncate()) / held.texel)) - held.resolution;
         if high.x > low.x || high.y > low.y {
-            return Ok(None);
+            return None;
         }
         let mut kept = *held;
         kept.first = held.first.min(low).max(high);
-        kept.z = grid::stabilised_depth(Some(held.z), (needed.z.0 + anchor.z, needed.z.1 + anchor.z), waste);
-        kept.is_empty = fresh.is_empty;
+        let waste = f64::from(self.hold.waste);
+        let (z, _) = self.depths(&kept, needed, rule);
+        kept.z = grid::stabilised_depth(Some(held.z), (z.0 + anchor.z, z.1 + anchor.z), waste);
+        kept.is_empty = needed.is_empty;
         kept.set_by = [Constraint::Held; 6];
-        Ok(Some(kept))
+        Some(kept)
     }
 
     /// What must be covered and where the near plane must be, along the held axes.
@@ -158,29 +156,60 @@ impl Holder<'_, '_> {
         across.min -= border + pad;
         across.max += border + pad;
         let reach = near_plane::filter_reach(held.texel, rule, rounding);
-        let (low, high) = (hull.z.0 - pad, hull.z.1 + pad);
-        let near = near_plane::find(high, &held.axes, hull.outline, self.content, rule.depth, reach);
-        Ok(Needed { across, z: (low, near.z), near_set_by: near.set_by })
+        let mut z = (hull.z.0 - pad, hull.z.1 + pad);
+        let mut near_set_by = None;
+        if !rule.serves_all {
+            let near = near_plane::find(z.1, &held.axes, hull.outline, self.content, rule.depth, reach);
+            (z.1, near_set_by) = (near.z, near.set_by);
+        }
+        let (area, is_empty) = (area(hull.outline), hull.is_empty);
+        Ok(Needed { across, z, near_set_by, reach, area, is_empty })
+    }
+
+    /// Depths that a map must reach, where it lies by now, and what sets the near one if it is not what is covered.
+    fn depths(&self, map: &HeldMap, needed: &Needed, rule: &FitRule) -> ((f64, f64), Option<Constraint>) {
+        if !rule.serves_all {
+            return (needed.z, needed.near_set_by);
+        }
+        let volume = volume(map, self.content.origin);
+        let across = (volume.min.truncate(), volume.max.truncate());
+        let near = near_plane::find_over(needed.z.1, &map.axes, across, self.content, rule.depth, needed.reach);
+        let far = near_plane::find_far(needed.z.0, &map.axes, across, self.content);
+        ((far, near.z), near.set_by)
+    }
+
+    /// What will be covered some frames on, as many as the settings' growth allows; `None` where nothing moves, or
+    /// for lack of storage or views: a map without room is still valid for this frame.
+    fn look_ahead(&self, fresh: &Volume, rule: &FitRule, slice: Range, points: &mut [DVec2]) -> Option<Volume> {
+        let view = &self.input.views[0];
+        let motion = self.motion.filter(|motion| !motion.is_still(view))?;
+        let plain = trial(&FitRule { border: 0.0, ..*rule });
+        let (old, growth) = (fresh.max - fresh.min, f64::from(self.hold.growth));
+        let mut within_growth = |frames: u32| {
+            let ahead = [motion.after(view, frames / 2), motion.after(view, frames)];
+            let larger = self.fit_ahead(&ahead, &plain, slice, points).ok()?;
+            let size = larger.max - larger.min;
+            Some(larger).filter(|_| size.x * size.y <= old.x * old.y * growth * growth)
+        };
+        if !rule.serves_all {
+            return steps_ahead(self.hold.horizon).find_map(within_growth);
+        }
+        // The more frames the larger: the greatest of a few numbers is found by halves.
+        let steps = || core::iter::successors(Some(self.hold.horizon), |n| Some(n / 2)).take_while(|n| *n > 0);
+        let (mut low, mut high, mut found) = (0, steps().count(), None);
+        while low < high {
+            let middle = usize::midpoint(low, high);
+            match steps().nth(middle).and_then(&mut within_growth) {
+                Some(volume) => (high, found) = (middle, Some(volume)),
+                None => low = middle + 1,
+            }
+        }
+        found
     }
 
     /// A new map with room for the motion to come.
     fn make(&self, fresh: &Volume, rule: &FitRule, slice: Range, points: &mut [DVec2]) -> Result<HeldMap, FitError> {
-        let mut volume = *fresh;
-        let plain = FitRule { border: 0.0, ..*rule };
-        let mut frames = self.hold.horizon;
-        while let Some(motion) = self.motion.filter(|motion| frames > 0 && !motion.is_still(&self.input.views[0])) {
-            let ahead = [motion.after(&self.input.views[0], frames / 2), motion.after(&self.input.views[0], frames)];
-            // Without enough storage or views there is no looking ahead; the map is still valid for this
-            // frame.
-            let Ok(larger) = self.fit_ahead(&ahead, &plain, slice, points) else { break };
-            let (size, old) = (larger.max - larger.min, fresh.max - fresh.min);
-            let growth = f64::from(self.hold.growth);
-            if size.x * size.y <= old.x * old.y * growth * growth {
-                volume = larger;
-                break;
-            }
-            frames = frames * 3 / 4;
-        }
+        let mut volume = self.look_ahead(fresh, rule, slice, points).unwrap_or(*fresh);
         let room = (volume.max - volume.min).truncate() * (0.5 * f64::from(self.hold.margin));
         volume.min -= room.extend(0.0);
         volume.max += room.extend(0.0);
@@ -189,13 +218,25 @@ impl Holder<'_, '_> {
         let mut map = HeldMap::new(&volume, grid, rule, fresh);
         let needed = self.needed(&map, rule, slice, points)?;
         let anchor = grid::anchor(&map.axes, origin).z;
-        let now = (needed.z.0 + anchor, needed.z.1 + anchor);
+        let (z, near_set_by) = self.depths(&map, &needed, rule);
+        let now = (z.0 + anchor, z.1 + anchor);
         let ahead = grid::stabilised_depth(None, (grid.z.0.min(now.0), grid.z.1.max(now.1)), 1.0);
         // A depth range that the next frame would give up at once is not used.
         map.z = grid::stabilised_depth(Some(ahead), now, f64::from(self.hold.waste));
-        map.set_by[5] = needed.near_set_by.unwrap_or(map.set_by[5]);
+        map.set_by[5] = near_set_by.unwrap_or(map.set_by[5]);
         Ok(map)
     }
+}
+
+/// Numbers of frames to look ahead, each a quarter less than the one before.
+fn steps_ahead(horizon: u32) -> impl Iterator<Item = u32> {
+    core::iter::successors(Some(horizon), |frames| Some(frames / 4 * 3 + frames % 4 * 3 / 4))
+        .take_while(|frames| *frames > 0)
+}
+
+/// A rule for maps whose depths are found later: rectangles need not look at all that lies inside them.
+fn trial(rule: &FitRule) -> FitRule {
+    FitRule { serves_all: rule.serves_all && rule.covers == Covers::Sphere, ..*rule }
 }
 
 /// What a map must cover in this frame, along its axes and relative to the origin.
@@ -203,7 +244,16 @@ struct Needed {
     across: Rectangle,
     z: (f64, f64),
     near_set_by: Option<Constraint>,
+    /// How far beside it casters count, in metres.
+    reach: f64,
+    /// Area of the outline of what must be covered, in square metres.
+    area: f64,
+    /// Whether nothing of it is known to receive.
+    is_empty: bool,
 }
+
+/// Share by which the rounding of a map's axes may change an area.
+const SAME_AREA: f64 = 1e-5;
 
 /// Most views that held maps are fitted to, predicted ones included.
 const MAX_VIEWS: usize = 10;
@@ -222,9 +272,15 @@ impl HeldMap {
     }
 
     /// Whether the map is of the same light and resolution.
-    fn is_of(&self, fresh: &Volume, rule: &FitRule) -> bool {
-        self.axes.z == fresh.axes.z && self.resolution == rule.resolution.as_dvec2()
+    fn is_of(&self, axes: &LightAxes, rule: &FitRule) -> bool {
+        self.axes.z == axes.z && self.resolution == rule.resolution.as_dvec2()
     }
+}
+
+/// Area of a convex outline (anticlockwise), in square metres.
+fn area(outline: &[DVec2]) -> f64 {
+    let Some(first) = outline.first() else { return 0.0 };
+    outline.windows(2).map(|edge| (edge[0] - *first).perp_dot(edge[1] - *first) * 0.5).sum()
 }
 
 fn floor(v: DVec2) -> DVec2 {

@@ -6,7 +6,8 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
-use super::bins::{BINS, Bins};
+use super::bins::{BINS, Bins, log2};
+use super::slabs::Slabs;
 use crate::axes::LightAxes;
 use crate::content::Content;
 use crate::grid;
@@ -22,6 +23,11 @@ const DIRECTIONS: usize = 32;
 pub(super) struct Sizes {
     /// By first bin and number of bins less one; log2 of metres.
     log: [[f32; BINS]; BINS],
+}
+
+/// The bin at which the slice of a map ends that is read up to a bin; the first and the last one end as they must.
+pub(super) fn slice_bin(bins: &Bins, bin: usize, beyond: usize) -> usize {
+    if bin == 0 || bin >= bins.count { bin } else { bin.saturating_sub(beyond).max(1) }
 }
 
 /// The rule that the maps will be fitted by.
@@ -47,16 +53,28 @@ impl Maps<'_, '_> {
 }
 
 impl Sizes {
+    /// The sizes of maps that are read this many bins beyond their slices, by the bins that they are read for.
+    pub(super) fn by_reading(&self, bins: &Bins, beyond: usize) -> Self {
+        let mut log = self.log;
+        for (first, row) in log.iter_mut().enumerate().take(bins.count) {
+            for end in first + 1..=bins.count {
+                let (from, to) = (slice_bin(bins, first, beyond), slice_bin(bins, end, beyond));
+                row[end - first - 1] = self.log_extent(from, to.max(from + 1));
+            }
+        }
+        Self { log }
+    }
+
     /// log2 of the extent of the bins `first..end`, in metres.
     pub(super) fn log_extent(&self, first: usize, end: usize) -> f32 {
         self.log[first][end - first - 1]
     }
 
-    fn fill(mut extent: impl FnMut(usize, usize) -> f64) -> Self {
+    fn fill(bins: &Bins, mut extent: impl FnMut(usize, usize) -> f64) -> Self {
         let mut log = [[f32::MIN; BINS]; BINS];
-        for (first, row) in log.iter_mut().enumerate() {
-            for end in first + 1..=BINS {
-                row[end - first - 1] = libm::log2(extent(first, end)) as f32;
+        for (first, row) in log.iter_mut().enumerate().take(bins.count) {
+            for end in first + 1..=bins.count {
+                row[end - first - 1] = log2(extent(first, end));
             }
         }
         Self { log }
@@ -64,10 +82,10 @@ impl Sizes {
 
     fn of_spheres(maps: &Maps, bins: &Bins) -> Self {
         let starts: [f64; BINS + 1] = core::array::from_fn(|bin| bins.start(bin));
-        Self::fill(|first, end| {
+        Self::fill(bins, |first, end| {
             // The first map reaches to the near plane.
             let near = if first == 0 { maps.near } else { starts[first] };
-            let far = if end == BINS { maps.end } else { starts[end] };
+            let far = if end == bins.count { maps.end } else { starts[end] };
             let range = Range { near: near as f32, far: far as f32 };
             let radius = maps.content.enclosing_sphere(range).map_or(far, |sphere| sphere.radius);
             grid::quantised(2.0 * radius)
@@ -77,20 +95,62 @@ impl Sizes {
     fn of_rectangles(maps: &Maps, bins: &Bins) -> Self {
         let directions = Directions::new(&maps.axes);
         let mut extents = [Dop::EMPTY; BINS];
-        for (bin, dop) in extents.iter_mut().enumerate() {
-            let range = Range { near: bins.start(bin) as f32, far: bins.start(bin + 1) as f32 };
-            dop.collect(maps, &directions, range);
-        }
-        let mut run = Dop::EMPTY;
-        Self::fill(|first, end| {
-            if end == first + 1 {
-                run = Dop::EMPTY;
+        if maps.rule.covers == Covers::Receivers && maps.content.receivers.is_some() {
+            collect_receivers(&mut extents, maps.content, &directions, bins);
+        } else {
+            for (bin, dop) in extents.iter_mut().enumerate().take(bins.count) {
+                let range = Range { near: bins.start(bin) as f32, far: bins.start(bin + 1) as f32 };
+                maps.content.corners(range).for_each(|p| dop.add(&directions.along(p)));
             }
-            run = run.union(&extents[end - 1]);
-            let size = run.size(maps.rule);
-            if maps.is_snapped { grid::quantised(size) } else { size }
-        })
+        }
+        let mut log = [[f32::MIN; BINS]; BINS];
+        for end in 1..=bins.count {
+            let mut run = Dop::EMPTY;
+            for first in (0..end).rev() {
+                run = run.union(&extents[first]);
+                let size = run.size(maps.rule);
+                log[first][end - first - 1] = log2(if maps.is_snapped { grid::quantised(size) } else { size });
+            }
+        }
+        Self { log }
     }
+}
+
+/// Collects what the map of each bin would hold of the receivers.
+fn collect_receivers(extents: &mut [Dop; BINS], content: &Content, directions: &Directions, bins: &Bins) {
+    for (index, view) in content.views().enumerate() {
+        let slabs = Slabs::new(&view, bins);
+        content.each_receiver(index, |depths, min, max| collect_box(extents, &slabs, directions, depths, min, max));
+    }
+}
+
+/// Collects what the map of each bin would hold of a box.
+fn collect_box(
+    extents: &mut [Dop; BINS],
+    slabs: &Slabs,
+    directions: &Directions,
+    depths: (f64, f64),
+    min: DVec3,
+    max: DVec3,
+) {
+    let reached = slabs.reached(depths);
+    let (low, high) = directions.extent(min, max);
+    // Bins whose extent the box cannot widen, the first at 1.
+    let mut is_held = [true; BINS + 2];
+    let mut are_all_held = true;
+    for bin in reached.clone() {
+        is_held[bin + 1] = extents[bin].holds(&low, &high);
+        are_all_held &= is_held[bin + 1];
+    }
+    if are_all_held {
+        return;
+    }
+    slabs.clip(min, max, &reached, |bins, p| {
+        if bins.clone().any(|bin| !is_held[bin]) {
+            let along = directions.along(p);
+            bins.filter(|bin| !is_held[*bin]).for_each(|bin| extents[bin - 1].add(&along));
+        }
+    });
 }
 
 /// Least and greatest coordinates along the fixed directions.
@@ -105,75 +165,70 @@ impl Dop {
 
     fn union(&self, other: &Self) -> Self {
         Self {
-            min: core::array::from_fn(|i| self.min[i].min(other.min[i])),
-            max: core::array::from_fn(|i| self.max[i].max(other.max[i])),
+            min: core::array::from_fn(|i| lesser(self.min[i], other.min[i])),
+            max: core::array::from_fn(|i| greater(self.max[i], other.max[i])),
         }
     }
 
-    fn push(&mut self, directions: &Directions, p: DVec3) {
-        let p = p.as_vec3();
-        for (i, direction) in directions.world.iter().enumerate() {
-            let along = direction.x * p.x + direction.y * p.y + direction.z * p.z;
-            self.min[i] = self.min[i].min(along);
-            self.max[i] = self.max[i].max(along);
+    /// Widens it to a point's coordinates along the directions.
+    fn add(&mut self, along: &[f32; DIRECTIONS]) {
+        for (i, along) in along.iter().enumerate() {
+            self.min[i] = lesser(self.min[i], *along);
+            self.max[i] = greater(self.max[i], *along);
         }
     }
 
-    /// Whether a box cannot widen this extent.
-    fn holds(&self, directions: &Directions, min: DVec3, max: DVec3) -> bool {
-        let (centre, half) = (((min + max) * 0.5).as_vec3(), ((max - min) * 0.5).as_vec3());
+    /// Whether another extent cannot widen this one.
+    fn holds(&self, low: &[f32; DIRECTIONS], high: &[f32; DIRECTIONS]) -> bool {
         let mut is_inside = true;
-        for (i, direction) in directions.world.iter().enumerate() {
-            let along = direction.x * centre.x + direction.y * centre.y + direction.z * centre.z;
-            let reach = direction.x.abs() * half.x + direction.y.abs() * half.y + direction.z.abs() * half.z;
-            is_inside &= along + reach <= self.max[i] && along - reach >= self.min[i];
+        for i in 0..DIRECTIONS {
+            // Both without a branch, for four directions at a time.
+            is_inside &= high[i] <= self.max[i];
+            is_inside &= low[i] >= self.min[i];
         }
         is_inside
-    }
-
-    /// Collects what a map of a range would hold.
-    fn collect(&mut self, maps: &Maps, directions: &Directions, range: Range) {
-        let content = maps.content;
-        let Ok(()) = if maps.rule.covers == Covers::Receivers && content.receivers.is_some() {
-            content.receivers_in(range, |_, slice, min, max| {
-                if self.holds(directions, min, max) {
-                    return Ok(());
-                }
-                slice.clip(min, max, &mut |p| {
-                    self.push(directions, p);
-                    Ok::<(), core::convert::Infallible>(())
-                })
-            })
-        } else {
-            content.corners(range).for_each(|p| self.push(directions, p));
-            Ok(())
-        };
     }
 
     /// Longer side of the rectangle around this extent, in metres; tiny where there is none.
     fn size(&self, rule: &FitRule) -> f64 {
         const QUARTER: usize = DIRECTIONS / 2;
-        let length = |i: usize| f64::from(self.max[i]) - f64::from(self.min[i]);
-        let mut best = (f64::MAX, 0.0);
-        let last = if rule.rectangle == RectangleKind::AxisAligned { 1 } else { QUARTER };
-        for i in 0..last {
-            let (a, b) = (length(i), length(i + QUARTER));
-            let area = rule.max_texel_ratio.map_or(a * b, |ratio| (a * b).max(a.max(b) * a.max(b) / ratio));
-            let cost = if rule.rectangle == RectangleKind::MinimumSquare { a.max(b) } else { area };
-            if cost < best.0 {
-                best = (cost, a.max(b));
-            }
+        let mut lengths = [0.0; DIRECTIONS];
+        for (i, length) in lengths.iter_mut().enumerate() {
+            *length = f64::from(self.max[i]) - f64::from(self.min[i]);
         }
-        best.1.max(SMALLEST)
+        let (sides, others) = lengths.split_at(QUARTER);
+        let mut costs = [0.0; QUARTER];
+        for (i, cost) in costs.iter_mut().enumerate() {
+            let (a, b) = (sides[i], others[i]);
+            let longer = if b > a { b } else { a };
+            let area = rule.max_texel_ratio.map_or(a * b, |ratio| (a * b).max(longer * longer / ratio));
+            *cost = if rule.rectangle == RectangleKind::MinimumSquare { longer } else { area };
+        }
+        let count = if rule.rectangle == RectangleKind::AxisAligned { 1 } else { QUARTER };
+        let least = costs[..count].iter().fold(f64::MAX, |least, cost| if *cost < least { *cost } else { least });
+        let best = costs[..count].iter().position(|cost| *cost == least);
+        best.map_or(0.0, |i| sides[i].max(others[i])).max(SMALLEST)
     }
 }
 
 /// Extent of an empty run, in metres.
 const SMALLEST: f64 = 1e-6;
 
-/// Unit vectors across the light at even angles over half a turn.
+/// The lesser of two numbers that are not NaN: one instruction for four of them.
+fn lesser(a: f32, b: f32) -> f32 {
+    if b < a { b } else { a }
+}
+
+/// The greater of two numbers that are not NaN.
+fn greater(a: f32, b: f32) -> f32 {
+    if b > a { b } else { a }
+}
+
+/// Unit vectors across the light at even angles over half a turn, coordinate by coordinate.
 struct Directions {
-    world: [Vec3; DIRECTIONS],
+    x: [f32; DIRECTIONS],
+    y: [f32; DIRECTIONS],
+    z: [f32; DIRECTIONS],
 }
 
 impl Directions {
@@ -182,11 +237,33 @@ impl Directions {
         // Turned step by step: two sines for all of them.
         let (sin, cos) = libm::sincos(core::f64::consts::PI / DIRECTIONS as f64);
         let mut turned = DVec2::X;
-        let world = core::array::from_fn(|_| {
+        let world: [Vec3; DIRECTIONS] = core::array::from_fn(|_| {
             let direction = x * turned.x + y * turned.y;
             turned = DVec2::new(turned.x * cos - turned.y * sin, turned.x * sin + turned.y * cos);
             direction.as_vec3()
         });
-        Self { world }
+        Self { x: world.map(|v| v.x), y: world.map(|v| v.y), z: world.map(|v| v.z) }
+    }
+
+    /// Coordinates of a point along all directions.
+    fn along(&self, p: DVec3) -> [f32; DIRECTIONS] {
+        let p = p.as_vec3();
+        let mut along = [0.0; DIRECTIONS];
+        for (i, along) in along.iter_mut().enumerate() {
+            *along = self.x[i] * p.x + self.y[i] * p.y + self.z[i] * p.z;
+        }
+        along
+    }
+
+    /// Least and greatest coordinates of a box along all directions.
+    fn extent(&self, min: DVec3, max: DVec3) -> ([f32; DIRECTIONS], [f32; DIRECTIONS]) {
+        let (centre, half) = (((min + max) * 0.5).as_vec3(), ((max - min) * 0.5).as_vec3());
+        let (mut low, mut high) = ([0.0; DIRECTIONS], [0.0; DIRECTIONS]);
+        for i in 0..DIRECTIONS {
+            let along = self.x[i] * centre.x + self.y[i] * centre.y + self.z[i] * centre.z;
+            let reach = self.x[i].abs() * half.x + self.y[i].abs() * half.y + self.z[i].abs() * half.z;
+            (low[i], high[i]) = (along - reach, along + reach);
+        }
+        (low, high)
     }
 }

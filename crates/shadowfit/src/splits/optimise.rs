@@ -40,7 +40,7 @@ pub(super) struct BinSplits {
 /// The best splits into `count` maps.
 pub(super) fn least_quantile(bins: &Bins, weights: &Weights, sizes: &Sizes, count: usize) -> BinSplits {
     let search = Search::new(bins, weights, sizes);
-    let even: [usize; MAX_MAPS + 1] = core::array::from_fn(|i| BINS * i.min(count) / count);
+    let even: [usize; MAX_MAPS + 1] = core::array::from_fn(|i| bins.count * i.min(count) / count);
     let known = search.quantile(&even[..=count]);
     let bound = bisect(known - OCTAVES, known, |bound| search.is_feasible(count, bound));
     BinSplits { bins: search.best(count, bound), quality: bound }
@@ -78,6 +78,34 @@ struct Search<'a> {
     log_before: [[f64; 2]; BINS + 1],
     /// Number of classes that are not empty.
     classes: usize,
+    /// Bins by which each class shifts the needed texel size.
+    shifts: [f64; CLASSES],
+}
+
+/// Weights over a bound of runs of bins, each computed when it is first asked for.
+struct OverTable<'a> {
+    search: &'a Search<'a>,
+    bound: f64,
+    /// By first bin and number of bins less one.
+    weights: [[f64; BINS]; BINS],
+}
+
+/// A weight that has not been asked for.
+const UNKNOWN: f64 = f64::MAX;
+
+impl<'a> OverTable<'a> {
+    #[expect(clippy::large_stack_arrays, reason = "32 KiB, for the time that it takes to choose splits")]
+    fn new(search: &'a Search<'a>, bound: f64) -> Self {
+        Self { search, bound, weights: [[UNKNOWN; BINS]; BINS] }
+    }
+
+    fn over(&mut self, first: usize, end: usize) -> f64 {
+        let weight = &mut self.weights[first][end - first - 1];
+        if *weight == UNKNOWN {
+            *weight = self.search.over(first, end, self.bound);
+        }
+        *weight
+    }
 }
 
 impl<'a> Search<'a> {
@@ -93,7 +121,8 @@ impl<'a> Search<'a> {
             }
         }
         let classes = (0..CLASSES).rev().find(|class| before[BINS][*class] > 0.0).map_or(0, |last| last + 1);
-        Self { bins, sizes, before, log_before, classes }
+        let shifts = core::array::from_fn(|class| PER_CLASS * class as f64 / bins.log_step);
+        Self { bins, sizes, before, log_before, classes, shifts }
     }
 
     /// The bound that given splits reach.
@@ -115,8 +144,8 @@ impl<'a> Search<'a> {
         let over = (log_size - bound - self.bins.log_near) / self.bins.log_step;
         let mut weight = 0.0;
         for class in 0..self.classes {
-            let over = (over + PER_CLASS * class as f64 / self.bins.log_step).max(first as f64).min(end as f64);
-            let whole = over as usize;
+            let over = (over + self.shifts[class]).max(first as f64).min(end as f64);
+            let whole = over as i32 as usize;
             let (at, next) = (self.before[whole][class], self.before[(whole + 1).min(BINS)][class]);
             weight += at + (next - at) * (over - whole as f64) - self.before[first][class];
         }
@@ -133,12 +162,13 @@ impl<'a> Search<'a> {
     fn is_feasible(&self, count: usize, bound: f64) -> bool {
         let mut least = [f64::MAX; BINS + 1];
         least[0] = 0.0;
+        let (bins, mut table) = (self.bins.count, OverTable::new(self, bound));
         for map in 0..count {
             let mut next = [f64::MAX; BINS + 1];
-            for (first, before) in least.iter().enumerate().take(BINS).skip(map).filter(|(_, before)| **before <= OVER)
+            for (first, before) in least.iter().enumerate().take(bins).skip(map).filter(|(_, before)| **before <= OVER)
             {
-                for (end, next) in next.iter_mut().enumerate().skip(first + 1) {
-                    let total = before + self.over(first, end, bound);
+                for (end, next) in next.iter_mut().enumerate().take(bins + 1).skip(first + 1) {
+                    let total = before + table.over(first, end);
                     if total > OVER {
                         break;
                     }
@@ -147,7 +177,7 @@ impl<'a> Search<'a> {
             }
             least = next;
         }
-        least[BINS] <= OVER
+        least[bins] <= OVER
     }
 
     /// The splits that leave the least weight over the bound and, of those, have the least error.
@@ -155,13 +185,21 @@ impl<'a> Search<'a> {
         let mut least = [f64::MAX; BINS + 1];
         least[0] = 0.0;
         let mut from = [[0_u8; BINS + 1]; MAX_MAPS];
+        let (bins, mut table) = (self.bins.count, OverTable::new(self, bound));
         for (map, from) in from.iter_mut().enumerate().take(count) {
             let mut next = [f64::MAX; BINS + 1];
+            // The last map holds all that is left.
+            let nearest_end = if map + 1 == count { bins } else { 0 };
             for (first, before) in
-                least.iter().enumerate().take(BINS).skip(map).filter(|(_, before)| **before < f64::MAX)
+                least.iter().enumerate().take(bins).skip(map).filter(|(_, before)| **before < f64::MAX)
             {
-                for end in first + 1..=BINS {
-                    let total = before + self.over(first, end, bound) + MEAN * self.error(first, end);
+                for end in (first + 1).max(nearest_end)..=bins {
+                    let error = MEAN * self.error(first, end);
+                    // No weight is below 0.
+                    if before + error - NOTHING >= next[end] {
+                        continue;
+                    }
+                    let total = before + table.over(first, end) + error;
                     if total < next[end] {
                         (next[end], from[end]) = (total, first as u8);
                     }
@@ -169,8 +207,8 @@ impl<'a> Search<'a> {
             }
             least = next;
         }
-        let mut splits = [BINS; MAX_MAPS + 1];
-        let mut end = BINS;
+        let mut splits = [bins; MAX_MAPS + 1];
+        let mut end = bins;
         for map in (0..count).rev() {
             end = usize::from(from[map][end]);
             splits[map] = end;
@@ -178,6 +216,9 @@ impl<'a> Search<'a> {
         splits
     }
 }
+
+/// More than the rounding of a weight.
+const NOTHING: f64 = 1e-12;
 
 /// Octaves that the bound of given splits is searched in.
 const WIDEST: f64 = 64.0;

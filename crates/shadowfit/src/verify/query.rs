@@ -1,7 +1,7 @@
 //! What a map is required to hold.
 
 use crate::bias::Reach;
-use crate::settings::{CasterPolicy, FitSettings};
+use crate::settings::{CasterPolicy, FitSettings, MapChoice};
 use crate::view::Range;
 use crate::{FitError, FittedMap, Technique, checks};
 
@@ -22,6 +22,11 @@ pub struct CoverageQuery {
     /// [`Bias::normal_offset`](crate::Bias::normal_offset). Along the light it needs no room: what
     /// is looked up before the near plane is lit, as it should be where no caster is lost.
     pub normal_offset: f32,
+    /// Which receivers read the map besides those between the view depths. By
+    /// [coverage](MapChoice::Coverage) all that lies inside the map may read it, at any depth and in later
+    /// frames, so that no caster over any part of it may lie before the near plane; by
+    /// [view depth](MapChoice::ViewDepth) only those over the receivers.
+    pub choice: MapChoice,
     /// How casters before the near plane are treated: [`CasterPolicy::DepthClamp`] loses none. The
     /// other policies make no difference here.
     pub casters: CasterPolicy,
@@ -32,14 +37,19 @@ impl CoverageQuery {
     /// shadow distance.
     pub const fn of_fit(settings: &FitSettings, reach: Reach) -> Self {
         let (near, far) = (f32::MIN, settings.max_distance);
-        Self { near, far, reach, normal_offset: 0.0, casters: settings.casters }
+        let choice = MapChoice::ViewDepth;
+        Self { near, far, reach, normal_offset: 0.0, choice, casters: settings.casters }
     }
 
     /// What one of several maps is made for: the receivers from [`FittedMap::covered_near`] to
-    /// [`FittedMap::far`] or the shadow distance.
+    /// [`FittedMap::far`] or the shadow distance. Where maps are read by coverage, proofs for each map of
+    /// a frame are a proof for all: every receiver is held by the map of its own depth, and whichever finer
+    /// map it reads has all of its casters.
     pub const fn of_map(map: &FittedMap, settings: &Technique, reach: Reach) -> Self {
         let far = map.far.min(settings.fit.max_distance);
-        Self { near: map.covered_near.min(far), far, reach, normal_offset: 0.0, casters: settings.fit.casters }
+        let choice = if settings.shares_maps() { MapChoice::Coverage } else { MapChoice::ViewDepth };
+        let near = map.covered_near.min(far);
+        Self { near, far, reach, normal_offset: 0.0, choice, casters: settings.fit.casters }
     }
 
     /// This query with another [`normal_offset`](Self::normal_offset).

@@ -14,9 +14,17 @@ pub(super) struct Cell {
     pub(super) middle: Vec2,
     /// Half of its side, in metres.
     pub(super) half: f32,
+    /// One over its side.
+    pub(super) per_side: f32,
+    /// Number of its points, or a share of it.
+    pub(super) weight: f32,
     /// What a texel of one metre costs its points.
     pub(super) cost: f32,
 }
+
+/// Share of the visible points with the finest needs, whose needs count as no finer than those of the rest:
+/// some surfaces seen at a glance ask for any texel.
+const FINEST: f32 = 0.02;
 
 /// The cells of a frame.
 pub(super) struct Cells {
@@ -41,6 +49,17 @@ const TABLE: usize = 2 * MAX_CELLS;
 impl Counted {
     pub(super) const fn new() -> Self {
         Self { cells: [(0, 0.0); MAX_CELLS], len: 0, table: [0; TABLE], least: 0.0 }
+    }
+
+    /// Adds points to a cell that has none.
+    fn push(&mut self, index: usize, weight: f32) {
+        if self.len == MAX_CELLS {
+            self.thin();
+        }
+        if self.len < MAX_CELLS && weight > self.least {
+            self.cells[self.len] = (index as u32, weight);
+            self.len += 1;
+        }
     }
 
     /// Adds points to a cell.
@@ -77,16 +96,12 @@ impl Counted {
 
     /// The texel that the share of the points with the finest needs are taken to ask for, over that of
     /// the finest level.
-    fn finest(&self) -> f32 {
+    fn finest(&self, share: f32) -> f32 {
         let mut levels = [0.0_f32; LEVELS];
         for (index, weight) in &self.cells[..self.len] {
             levels[*index as usize / (SIDE * SIDE)] += weight;
         }
-        if crate::tune::get(15, 0.0) == 1.0 {
-            let t: f32 = levels.iter().sum();
-            std::eprintln!("levels {:?}", levels.map(|l| (l / t * 1000.0) as i32));
-        }
-        let mut rest = levels.iter().sum::<f32>() * crate::tune::get(8, 0.05);
+        let mut rest = levels.iter().sum::<f32>() * share;
         for (level, weight) in levels.iter().enumerate() {
             if rest < *weight {
                 return libm::exp2f(level as f32 + rest / weight);
@@ -113,7 +128,7 @@ impl Counted {
 
 impl Cells {
     pub(super) const fn new() -> Self {
-        const NONE: Cell = Cell { middle: Vec2::ZERO, half: 0.0, cost: 0.0 };
+        const NONE: Cell = Cell { middle: Vec2::ZERO, half: 0.0, per_side: 0.0, weight: 0.0, cost: 0.0 };
         Self { cells: [NONE; MAX_CELLS], len: 0 }
     }
 
@@ -122,9 +137,9 @@ impl Cells {
     }
 
     /// Adds points that were counted in a space.
-    pub(super) fn add(&mut self, counted: &Counted, space: &NeedSpace, plane: &Plane, origin: DVec3) {
+    pub(super) fn add(&mut self, counted: &Counted, share: f32, (space, plane): (&NeedSpace, &Plane), origin: DVec3) {
         let offset = plane.of(plane.axes.project(space.origin - origin));
-        let finest = counted.finest();
+        let finest = counted.finest(share);
         for (index, weight) in &counted.cells[..counted.len] {
             if self.len == MAX_CELLS {
                 return;
@@ -132,7 +147,13 @@ impl Cells {
             let (middle, half, texel) = space.cell(*index as usize);
             let texel = (texel as f32).max(finest * space.texel);
             let cost = weight * super::cost_of(1.0 / texel);
-            self.cells[self.len] = Cell { middle: (middle + offset).as_vec2(), half: half as f32, cost };
+            self.cells[self.len] = Cell {
+                middle: (middle + offset).as_vec2(),
+                half: half as f32,
+                per_side: (0.5 / half) as f32,
+                weight: *weight,
+                cost,
+            };
             self.len += 1;
         }
     }
@@ -145,9 +166,9 @@ impl Cells {
                 continue;
             }
             for (x, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
-                counted.add(row * SIDE + x, *count as f32);
+                counted.push(row * SIDE + x, *count as f32);
             }
         }
-        self.add(&counted, &grid.space, plane, origin);
+        self.add(&counted, FINEST, (&grid.space, plane), origin);
     }
 }

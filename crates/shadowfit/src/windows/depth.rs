@@ -8,7 +8,7 @@ use crate::content::Content;
 use crate::need::Plane;
 use crate::rule::{Depth, FitRule};
 use crate::view::{Range, moved};
-use crate::volume::ROUNDING;
+use crate::volume::{Constraint, ROUNDING};
 use crate::{Boxes, FitError};
 
 /// Boxes as the light sees them, three elements each: least and greatest x and y, and z.
@@ -86,34 +86,52 @@ impl<'a> Shadows<'a> {
     /// What the last window must hold, with room for rounding, in the plane.
     pub(super) fn bounds(&self, plane: &Plane) -> (DVec2, DVec2) {
         let (min, max) = (plane.of(self.min), plane.of(self.max));
-        let far = min.abs().max(max.abs()).max_element() + self.min.abs().max(self.max.abs()).max_element();
-        let pad = super::rounding(2.0 * (max - min).max_element(), far);
+        let far = |min: f64, max: f64| min.abs().max(max.abs());
+        let farthest = far(min.x, max.x) + far(min.y, max.y) + far(self.min.z, self.max.z);
+        let pad = ((max - min).max_element() * WIDENING + farthest) * ROUNDING;
         (min - pad, max + pad)
     }
 
-    /// Least and greatest z of everything over a rectangle, along the light's axes, in metres.
-    pub(super) fn depth(&self, min: DVec2, max: DVec2, rule: &FitRule) -> (f64, f64) {
+    /// The depths of everything over a rectangle.
+    pub(super) fn depth(&self, (min, max): (DVec2, DVec2), rule: &FitRule) -> WindowDepth {
         let (mut low, mut high) = (f64::MAX, f64::MIN);
-        match self.receivers {
-            Some(boxes) if !self.is_empty => over(boxes, min, max, |z| (low, high) = (low.min(z.x), high.max(z.y))),
-            _ => (low, high) = (self.min.z, self.max.z),
+        if let Some(boxes) = self.receivers.filter(|_| !self.is_empty) {
+            over(boxes, min, max, |z| (low, high) = (low.min(z.x), high.max(z.y)));
         }
+        let (mut far_by, mut near_by) = (Constraint::Receivers, Constraint::Receivers);
         if low > high {
             (low, high) = (self.min.z, self.max.z);
+            (far_by, near_by) = (Constraint::View, Constraint::View);
         }
+        let covered = high;
         match rule.depth {
             Depth::AtCovered | Depth::Doubled => {}
-            Depth::Extended(metres) => high += metres,
+            Depth::Extended(metres) => (high, near_by) = (high + metres, Constraint::CasterExtension),
             Depth::AtCasterBounds | Depth::AtCasters => {
                 over(self.casters.unwrap_or_default(), min, max, |z| high = high.max(z.y));
+                near_by = if high > covered { Constraint::Casters } else { near_by };
             }
         }
-        let far = min.abs().max(max.abs()).max_element() + low.abs().max(high.abs());
-        let pad = ROUNDING * (far + high - low) + rule.margin;
-        let least = 1e-5 * far;
-        (low - pad - least, high + pad)
+        let farthest = min.abs().max(max.abs()).max_element() + low.abs().max(high.abs());
+        let pad = ROUNDING * (farthest + high - low) + rule.margin + farthest * THINNEST;
+        WindowDepth { low: low - pad, high: high + pad, far_by, near_by }
     }
 }
+
+/// A window's depths along the light's axes, in metres, and what set them.
+pub(super) struct WindowDepth {
+    pub(super) low: f64,
+    pub(super) high: f64,
+    pub(super) far_by: Constraint,
+    pub(super) near_by: Constraint,
+}
+
+/// Greatest size of the last window over that of what it must hold: borders of a quarter of its texels on
+/// either side, and the texels of the grid's steps and of what is held.
+const WIDENING: f64 = 4.0;
+
+/// Room at either end of the depths as a share of the distance, so that a flat ground has any.
+const THINNEST: f64 = 1e-5;
 
 /// Passes on the z range of each box that lies over a rectangle.
 fn over(boxes: &[DVec2], min: DVec2, max: DVec2, mut visit: impl FnMut(DVec2)) {

@@ -1,16 +1,22 @@
 //! How fine each window's texels are, and where each stands.
+//!
+//! Two plans are kept: the windows that are drawn, and the ones that are sought. The search changes
+//! one window of the sought plan at a time, frame after frame, and nobody sees it. Drawn windows keep
+//! their texels, and move as little as they can; only where the sought plan is better by enough, as
+//! few of them are replaced as bring most of the gain.
 
 use glam::Vec2;
 
 use super::cells::{Cell, MAX_CELLS};
+use super::cost_of;
 use super::placement::{self, Rect};
-use super::{Change, MOVE_ON, cost_of};
 use crate::grid;
 use crate::settings::MAX_MAPS;
 
 /// Texels and places of all windows, the finest first.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Plan {
+    /// Widths of texels, in eighths of an octave of a metre.
     pub(super) steps: [i32; MAX_MAPS],
     pub(super) rects: [Rect; MAX_MAPS],
 }
@@ -32,113 +38,149 @@ const LADDERS: [i32; 8] = [4, 6, 8, 10, 13, 16, 20, 24];
 /// Changes of a window's texels that are tried, in eighths of an octave.
 const CHANGES: [i32; 6] = [4, -4, 8, -8, 2, -2];
 
-/// Rounds of changes in the first frame.
-const ROUNDS: usize = 3;
+/// Rounds of changes with which a search begins.
+const ROUNDS: u32 = 3;
+
+/// Share of the cost in the best place that a window must hold to stay where it is.
+const HOLDS: f32 = 0.985;
+
+/// Share of the way to the best place that a window moves beyond what it must.
+const MOVE_ON: f32 = 0.3;
+
+/// Cost of the drawn windows over that of the sought ones up to which they serve, while it is being
+/// found out what is visible, and once that is known.
+const SERVES: f32 = 1.15;
+const SERVES_AT_REST: f32 = 1.4;
+
+/// Share of the points that every change counts for, at least.
+const FEW: f32 = 0.02;
 
 impl Planner<'_> {
-    /// New windows in front of a last one.
-    pub(super) fn fresh(&self, last: i32, rect: Rect) -> Plan {
+    /// The best of several even ladders of windows in front of the last one.
+    pub(super) fn ladder(&self, last: i32, rect: Rect) -> Plan {
         let mut best: Option<(f32, Plan)> = None;
         for ratio in LADDERS {
             let mut plan = Plan::default();
             for i in 0..self.count {
-                plan.steps[i] = last - ratio * (self.count - 1 - i) as i32;
+                plan.steps[i] = last.saturating_sub(ratio * (self.count - 1 - i) as i32);
             }
             plan.rects[self.count - 1] = rect;
-            let cost = self.place_from(0, &mut plan);
+            self.place_all(&mut plan);
+            let cost = self.cost(&plan);
             if best.is_none_or(|(least, _)| cost < least) {
                 best = Some((cost, plan));
             }
         }
-        let (mut least, mut plan) = best.unwrap_or_default();
-        for _ in 0..ROUNDS {
-            for window in 0..self.count - 1 {
-                for by in CHANGES {
-                    let mut other = plan;
-                    other.steps[window] += by;
-                    if !self.is_in_order(&other.steps) {
-                        continue;
-                    }
-                    let cost = self.place_from(window, &mut other);
-                    if cost < least {
-                        (least, plan) = (cost, other);
-                    }
+        best.map_or_else(Plan::default, |(_, plan)| plan)
+    }
+
+    /// Searches on from a plan: puts one window where it is best now, and tries changes of single
+    /// windows. `turn` counts the changes that were tried.
+    pub(super) fn seek(&self, plan: &mut Plan, turn: &mut u32, changes: u32) {
+        let others = self.count as u32 - 1;
+        if others == 0 {
+            return;
+        }
+        for _ in 0..changes {
+            let number = *turn % (others * CHANGES.len() as u32);
+            *turn = turn.wrapping_add(1);
+            let (window, change) = ((number % others) as usize, CHANGES[(number / others) as usize]);
+            // A round begins with windows in their best places.
+            let replaced = (number < others).then(|| self.with(plan, window, 0)).flatten();
+            let mut best = (self.cost(plan), None);
+            for other in [replaced, self.with(plan, window, change)].into_iter().flatten() {
+                let cost = self.cost(&other);
+                if cost < best.0 {
+                    best = (cost, Some(other));
                 }
+            }
+            if let (_, Some(other)) = best {
+                *plan = other;
+            }
+        }
+    }
+
+    /// All changes of a few rounds.
+    pub(super) const fn all_changes(&self) -> u32 {
+        ROUNDS * (self.count as u32 - 1) * CHANGES.len() as u32
+    }
+
+    /// A plan for a last window that may have other texels than its own.
+    pub(super) fn below(&self, mut plan: Plan, last: i32, rect: Rect) -> Plan {
+        plan.steps[self.count - 1] = last;
+        plan.rects[self.count - 1] = rect;
+        for i in (0..self.count - 1).rev() {
+            if plan.steps[i] >= plan.steps[i + 1] {
+                plan.steps[i] = plan.steps[i + 1] - 1;
+                let middle = plan.rects[i].min + plan.rects[i].size * 0.5;
+                plan.rects[i].size = self.size(i, plan.steps[i]);
+                plan.rects[i].min = middle - plan.rects[i].size * 0.5;
             }
         }
         plan
     }
 
-    /// The windows of a guess, of which as few are replaced as make it nearly as good as new ones.
-    pub(super) fn settle(&self, held: Plan) -> Plan {
-        let (last, rect) = (held.steps[self.count - 1], held.rects[self.count - 1]);
-        let fresh = self.fresh(last, rect);
-        let enough = self.cost(&fresh) * crate::tune::get(9, 1.1);
-        let mut plan = held;
-        for _ in 1..self.count {
-            if self.cost(&plan) <= enough {
-                return plan;
-            }
-            let mut best = None;
-            for i in 0..self.count - 1 {
-                let mut other = plan;
-                (other.steps[i], other.rects[i]) = (fresh.steps[i], fresh.rects[i]);
-                let cost = self.cost(&other);
-                if other.steps[i] != plan.steps[i] || other.rects[i] != plan.rects[i] {
-                    if self.is_in_order(&other.steps) && best.is_none_or(|(least, _)| cost < least) {
-                        best = Some((cost, other));
-                    }
-                }
-            }
-            let Some((_, other)) = best else { return fresh };
-            plan = other;
-        }
-        if self.cost(&plan) <= enough { plan } else { fresh }
-    }
-
-    /// The windows of the frame before, each kept or moved, and at most one of them with other texels.
-    pub(super) fn go_on(&self, held: Plan, pending: Option<Change>, turn: u32) -> (Plan, Option<Change>, u32) {
-        let mut plan = held;
-        for i in (0..self.count - 1).rev() {
-            plan.steps[i] = plan.steps[i].min(plan.steps[i + 1] - 1);
-            plan.rects[i].size = self.size(i, plan.steps[i]);
-        }
-        let hold = crate::tune::get(1, 0.975);
+    /// Moves each window that no longer holds most of what it could.
+    pub(super) fn keep(&self, plan: &mut Plan) {
         let mut left = [1.0; MAX_CELLS];
         for i in 0..self.count - 1 {
-            plan.rects[i] = self.kept(&plan.rects[i], &left, hold);
+            plan.rects[i] = self.kept(&plan.rects[i], &left);
             self.take(&plan.rects[i], &mut left);
         }
-        let cost = self.cost(&plan);
-        let gain = cost_of(crate::tune::get(2, 1.18));
-        if let Some(change) = pending
-            && let Some((other, its)) = self.changed(&plan, change)
-            && its * gain < cost
-        {
-            return (other, None, turn);
-        }
-        let count = (self.count - 1) * CHANGES.len();
-        let tries = crate::tune::get(3, 2.0) as u32;
-        for t in 0..tries {
-            if count == 0 {
-                break;
-            }
-            let number = (turn.wrapping_add(t)) as usize % count;
-            let change = Change { window: number % (self.count - 1), by: CHANGES[number / (self.count - 1)] };
-            if let Some((_, its)) = self.changed(&plan, change)
-                && its * gain < cost
-            {
-                return (plan, Some(change), turn.wrapping_add(tries));
-            }
-        }
-        (plan, None, turn.wrapping_add(tries))
     }
 
-    /// A plan with other texels of one window, which is put where it is best, and its cost.
-    fn changed(&self, plan: &Plan, change: Change) -> Option<(Plan, f32)> {
+    /// The drawn windows, of which as few are replaced by those that are sought as make them nearly as
+    /// good: one at most unless it is being found out what is visible.
+    pub(super) fn follow(&self, drawn: Plan, sought: &Plan, with_effort: bool) -> Plan {
+        let found = self.cost(sought);
+        let enough = found * SERVES;
+        if !with_effort && self.cost(&drawn) <= found * SERVES_AT_REST {
+            return drawn;
+        }
+        let mut plan = drawn;
+        for _ in 0..if with_effort { self.count } else { 1 } {
+            let cost = self.cost(&plan);
+            if cost <= enough {
+                return plan;
+            }
+            let readers = self.readers(&plan);
+            let mut best: Option<(f32, Plan)> = None;
+            for i in 0..self.count - 1 {
+                let mut other = plan;
+                (other.steps[i], other.rects[i]) = (sought.steps[i], sought.rects[i]);
+                let is_new = other != plan && self.is_in_order(&other.steps);
+                // What is gained for each point whose texels change.
+                let gain = (cost - self.cost(&other)) / (readers[i] + FEW);
+                if is_new && best.is_none_or(|(most, _)| gain > most) {
+                    best = Some((gain, other));
+                }
+            }
+            let Some((_, other)) = best else { return *sought };
+            plan = other;
+        }
+        plan
+    }
+
+    /// Shares of the points that read each window.
+    fn readers(&self, plan: &Plan) -> [f32; MAX_MAPS] {
+        let (mut readers, mut total) = ([0.0; MAX_MAPS], 0.0);
+        for cell in self.cells {
+            let mut left = cell.weight;
+            total += left;
+            for i in 0..self.count - 1 {
+                let share = plan.rects[i].share(cell) * left;
+                readers[i] += share;
+                left -= share;
+            }
+        }
+        readers.map(|share| share / total)
+    }
+
+    /// A plan with other texels of one window, which is put where it is best; `None` where sizes would
+    /// cross.
+    fn with(&self, plan: &Plan, window: usize, change: i32) -> Option<Plan> {
         let mut other = *plan;
-        let Change { window, by } = change;
-        other.steps[window] += by;
+        other.steps[window] += change;
         if !self.is_in_order(&other.steps) {
             return None;
         }
@@ -147,55 +189,54 @@ impl Planner<'_> {
             self.take(rect, &mut left);
         }
         other.rects[window] = placement::best(self.cells, &left, self.size(window, other.steps[window]));
-        let cost = self.cost(&other);
-        Some((other, cost))
+        Some(other)
     }
 
     /// The held place while it holds nearly as much as the best one, else the least move to it.
-    fn kept(&self, held: &Rect, left: &Left, hold: f32) -> Rect {
+    fn kept(&self, held: &Rect, left: &Left) -> Rect {
         let best = placement::best(self.cells, left, held.size);
-        let enough = best.cost(self.cells, left) * hold;
+        let enough = best.cost(self.cells, left) * HOLDS;
         if held.cost(self.cells, left) >= enough {
             return *held;
         }
         let way = best.min - held.min;
         let at = |share: f32| Rect { min: held.min + way * share, size: held.size };
         let share = (1..8).map(|i| i as f32 / 8.0).find(|share| at(*share).cost(self.cells, left) >= enough);
-        share.map_or(best, |share| at(share + (1.0 - share) * MOVE_ON as f32))
+        share.map_or(best, |share| at(share + (1.0 - share) * MOVE_ON))
     }
 
-    /// Puts all windows from one on where they are best; gives the cost of all.
-    fn place_from(&self, first: usize, plan: &mut Plan) -> f32 {
+    /// Puts all windows but the last where they are best.
+    fn place_all(&self, plan: &mut Plan) {
         let mut left = [1.0; MAX_CELLS];
         for i in 0..self.count - 1 {
-            if i >= first {
-                plan.rects[i] = placement::best(self.cells, &left, self.size(i, plan.steps[i]));
-            }
+            plan.rects[i] = placement::best(self.cells, &left, self.size(i, plan.steps[i]));
             self.take(&plan.rects[i], &mut left);
         }
-        self.cost(plan)
+    }
+
+    /// The cheaper one of two plans.
+    pub(super) fn better(&self, one: Plan, other: Plan) -> Plan {
+        if self.cost(&other) < self.cost(&one) { other } else { one }
     }
 
     /// What a plan costs.
-    fn cost(&self, plan: &Plan) -> f32 {
-        let price = |i: usize| cost_of(grid::eighths(plan.steps[i]) as f32);
-        let mut prices = [0.0; MAX_MAPS];
-        for (i, p) in prices.iter_mut().enumerate().take(self.count) {
-            *p = price(i);
-        }
+    pub(super) fn cost(&self, plan: &Plan) -> f32 {
+        let last = self.count - 1;
+        let prices: [f32; MAX_MAPS] = core::array::from_fn(|i| cost_of(grid::eighths(plan.steps[i]) as f32));
         let mut cost = 0.0;
         for cell in self.cells {
-            let mut left = 1.0;
-            for i in 0..self.count - 1 {
+            let (mut left, mut price) = (1.0, 0.0);
+            for i in 0..last {
                 let share = plan.rects[i].share(cell) * left;
-                cost += cell.cost * share * prices[i];
+                price += share * prices[i];
                 left -= share;
             }
-            cost += cell.cost * left * prices[self.count - 1];
+            cost += cell.cost * (price + left * prices[last]);
         }
         cost
     }
 
+    /// Leaves what a window does not hold.
     fn take(&self, rect: &Rect, left: &mut Left) {
         for (cell, left) in self.cells.iter().zip(left) {
             *left *= 1.0 - rect.share(cell);

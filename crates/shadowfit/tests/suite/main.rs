@@ -26,6 +26,7 @@ mod metamorphic;
 mod mint;
 mod optimality;
 mod other_matrices;
+mod read_by_coverage;
 mod recommendation;
 mod rounding;
 mod rust_code;

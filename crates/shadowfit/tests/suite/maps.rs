@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::histogram::{DepthBounds, DepthHistogram};
 use shadowfit::light_fit::Constraint;
-use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, RectangleKind, SplitScheme, Stabilise};
+use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, MapChoice, RectangleKind, SplitScheme, Stabilise};
 use shadowfit::{
     Aabb, Boxes, FitInput, FittedMap, FittedMaps, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace,
 };
@@ -25,7 +25,8 @@ fn fit_once(input: &FitInput, settings: &Technique) -> FittedMaps {
 
 fn settings(kind: FitKind, splits: SplitScheme, count: u32) -> Technique {
     let fit = FitSettings { kind, max_distance: f32::MAX, casters: CasterPolicy::None, ..FitSettings::default() };
-    Technique { fit, count, splits, stabilise: Stabilise::Off, ..Technique::default() }
+    let choice = MapChoice::ViewDepth;
+    Technique { fit, count, splits, choice, stabilise: Stabilise::Off, ..Technique::default() }
 }
 
 /// Ends of all maps but the last.

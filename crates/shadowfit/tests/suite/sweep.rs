@@ -5,7 +5,7 @@ use shadowfit::bias::Reach;
 use shadowfit::culling::Sweep;
 use shadowfit::fits::fit_scene;
 use shadowfit::glam::{DVec2, DVec3, Vec2, Vec3};
-use shadowfit::settings::{FitKind, FitSettings, MapOverride, SplitScheme, Stabilise};
+use shadowfit::settings::{FitKind, FitSettings, MapChoice, MapOverride, SplitScheme, Stabilise};
 use shadowfit::{
     Aabb, Boxes, CasterVolume, FitError, FitInput, LightFit, MapFitter, Technique, ViewFrustum, Workspace,
 };
@@ -200,11 +200,11 @@ proptest! {
         }
     }
 
-    /// Of several maps a point reads the first that ends beyond it and holds it.
+    /// By both choices, and of two maps that are blended.
     #[test]
     fn no_map_of_several_loses_a_caster_by_its_own_volume(
         lens in any_lens(), direction in any_direction(), kinds in (0..5_usize, 0..6_usize),
-        (is_bordered, is_held) in (any::<bool>(), any::<bool>()), overlap in prop::sample::select(vec![0.0, 0.3]),
+        (is_bordered, is_held, choice) in (any::<bool>(), any::<bool>(), prop::sample::select(vec![MapChoice::Coverage, MapChoice::ViewDepth])), overlap in prop::sample::select(vec![0.0, 0.3]),
         points in prop::collection::vec(prop::array::uniform3(double(0.0, 1.0)), 12), half in float(0.001, 0.2),
     ) {
         let views = [lens.frustum(DVec3::new(12.0, 3.0, -40.0))];
@@ -213,6 +213,7 @@ proptest! {
             fit: if is_bordered { fit } else { fit.with_border(0.0) },
             splits: SplitScheme::Practical(0.5),
             stabilise: if is_held { Stabilise::Hysteresis } else { Stabilise::Off },
+            choice,
             overlap,
             ..Technique::default()
         };
@@ -225,14 +226,17 @@ proptest! {
         let (view, to_light) = (&views[0], -direction.as_dvec3());
         for share in points.into_iter().map(DVec3::from_array) {
             let point = point_in(view, f64::from(view.near), f64::from(view.far), share);
-            let depth = (point - view.origin).dot(view.forward.as_dvec3()) as f32;
-            let reads = |map: &&shadowfit::FittedMap| depth < map.far && map.fit.covers(point);
-            let Some(map) = maps.iter().find(reads) else { continue };
-            let volume = map.caster_volume(&views, &technique).unwrap();
-            let over = point + to_light * f64::from(view.far) * share.x - map.fit.origin;
-            let half = Vec3::splat(half * view.far);
-            let centre = over.as_vec3();
-            prop_assert!(volume.intersects_aabb(centre - half, centre + half), "{point} by {:?}", technique.fit.kind);
+            let depth = (point - view.origin).dot(view.forward.as_dvec3());
+            let Some(read) = maps.read(&technique, point, depth) else { continue };
+            for map in [Some(read.map), read.blend.map(|blend| blend.map)].into_iter().flatten() {
+                let map = &maps[map];
+                let volume = map.caster_volume(&views, &technique).unwrap();
+                let over = point + to_light * f64::from(view.far) * share.x - map.fit.origin;
+                let half = Vec3::splat(half * view.far);
+                let centre = over.as_vec3();
+                let kind = technique.fit.kind;
+                prop_assert!(volume.intersects_aabb(centre - half, centre + half), "{point} by {kind:?}, {choice:?}");
+            }
         }
     }
 

@@ -37,7 +37,7 @@ fn is_near_transition(pixel: vec2<u32>, width: f32) -> bool {
     return false;
 }
 
-// Whether the map that is read (its index plus 1) holds none of the point's occluders, or no map is read.
+// Whether the map that is read (its place plus 1) holds none of the point's occluders, or no map is read.
 fn is_hole(pixel: vec2<u32>, map_plus_1: u32) -> bool {
     if map_plus_1 == 0u {
         return true;
@@ -75,10 +75,14 @@ fn class_of(pixel: vec2<u32>, flags: u32, is_in_edge_zone: bool) -> u32 {
         // Without a map no texel is read, and the zone's width is in pixels.
         let texel_width = select(1.0, max(pixel.pixels_per_texel, 1.0), map_plus_1 != 0u);
         let is_in_edge_zone = is_near_transition(id.xy, judge.edge_width * min(texel_width, 1e9));
+        var index_plus_1 = 0u;
+        if map_plus_1 != 0u {
+            index_plus_1 = judge.maps[map_plus_1 - 1u].index + 1u;
+        }
         bits = class_of(id.xy, pixel.flags, is_in_edge_zone)
             | select(0u, 8u, (pixel.flags & LIT) != 0u)
             | select(0u, 16u, is_in_edge_zone)
-            | (map_plus_1 << 8u)
+            | (index_plus_1 << 8u)
             | (select(u32(MAX_STEP), encode_octaves(pixel.pixels_per_texel), map_plus_1 != 0u) << 16u);
     }
     textureStore(classes, id.xy, vec4<u32>(bits, 0u, 0u, 0u));

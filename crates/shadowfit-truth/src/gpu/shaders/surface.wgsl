@@ -70,16 +70,64 @@ fn is_inside(map: Map, at: MapPosition) -> bool {
     return is_within_sides(map, at) && at.depth >= -1e-5 && at.depth <= 1.0 + 1e-5;
 }
 
-// The first map whose split is beyond the point, or the next later one that holds the point; NONE without one.
-fn choose(surface: Surface) -> u32 {
+// Whether the map at a place in the order holds a point.
+fn is_in_map(place: u32, position: vec3<f32>) -> bool {
+    return is_inside(judge.maps[place], project(judge.maps[place], position));
+}
+
+// By view depth: the first map whose split is beyond the point, or the next later one that holds the point; the one
+// behind it where that weighs more. NONE without one.
+fn choose_by_view_depth(view_depth: f32, position: vec3<f32>) -> u32 {
     var is_reached = false;
-    for (var index = 0u; index < judge.map_count; index++) {
-        is_reached = is_reached || surface.view_depth < judge.maps[index].split_far;
-        if is_reached && is_inside(judge.maps[index], project(judge.maps[index], surface.position)) {
-            return index;
+    for (var place = 0u; place < judge.map_count; place++) {
+        let far = judge.maps[place].split_far;
+        is_reached = is_reached || view_depth < far;
+        if is_reached && is_in_map(place, position) {
+            let next = place + 1u;
+            if next < judge.map_count {
+                let near = judge.maps[next].blend_near;
+                if near < far && view_depth - near > 0.5 * (far - near) && is_in_map(next, position) {
+                    return next;
+                }
+            }
+            return place;
         }
     }
     return NONE;
+}
+
+// By coverage: the first map that holds the point with the filter's reach, or the next such one where that weighs more;
+// else the first that holds it. NONE without one.
+fn choose_by_coverage(position: vec3<f32>) -> u32 {
+    var first = NONE;
+    var clamped = NONE;
+    for (var place = 0u; place < judge.map_count; place++) {
+        let map = judge.maps[place];
+        let at = project(map, position);
+        if !is_inside(map, at) {
+            continue;
+        }
+        let free = min(at.texel, map.size - at.texel);
+        let beyond = min(free.x, free.y) - judge.reach;
+        if beyond >= 0.0 {
+            // The first one is read alone, or weighs no less than the next one; or this is the next one.
+            if first != NONE || beyond >= 0.5 * judge.blend {
+                return place;
+            }
+            first = place;
+        } else if clamped == NONE {
+            clamped = place;
+        }
+    }
+    return select(first, clamped, first == NONE);
+}
+
+// The place in the order of the map that weighs more of those that a point reads; NONE without one.
+fn choose(surface: Surface) -> u32 {
+    if judge.by_coverage != 0u {
+        return choose_by_coverage(surface.position);
+    }
+    return choose_by_view_depth(surface.view_depth, surface.position);
 }
 
 // How far a point moves on its tangent plane when its ray is moved by `across` at view depth 1.

@@ -51,6 +51,10 @@ struct Map {
     size: vec2<f32>,
     split_far: f32,
     is_reversed: u32,
+    blend_near: f32,
+    index: u32,
+    padding_0: u32,
+    padding_1: u32,
 }
 
 struct Judge {
@@ -71,7 +75,13 @@ struct Judge {
     map_count: u32,
     depth_clamp: u32,
     triangles: u32,
-    padding: u32,
+    by_coverage: u32,
+    // In texels.
+    reach: f32,
+    blend: f32,
+    padding_0: u32,
+    padding_1: u32,
+    // In the order in which points try them.
     maps: array<Map, 8>,
 }
 
@@ -83,7 +93,7 @@ struct Pixel {
     along_row: u32,
 }
 
-// Bits of Pixel.flags; above them stands the index of the map that is read, plus 1.
+// Bits of Pixel.flags; above them stands the place in the order, plus 1, of the map that is read.
 const JUDGED: u32 = 1u;
 const LIT: u32 = 2u;
 const SEEMS_LIT: u32 = 4u;

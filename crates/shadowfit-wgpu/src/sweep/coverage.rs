@@ -1,0 +1,54 @@
+//! Which part of the views reads a map by coverage: what no finer map provably holds.
+
+use shadowfit::ViewFrustum;
+use shadowfit::bias::reach;
+use shadowfit::choice::MapOrder;
+use shadowfit::settings::MapChoice;
+
+use super::{DEPTH_ROUNDING, holds_slice};
+use crate::{MapFit, MapView, ShadowMapDescriptor};
+
+/// Halvings of the views' depths in the search for what a finer map holds: to a millionth of them.
+const HALVINGS: u32 = 20;
+
+/// For each map the view depths, in metres, from which points of the views read it, in the order of `maps`; `None`
+/// where no point does.
+///
+/// Points nearer than that are held by a finer map, with the filter's reach and the blend, whatever a shader rounds.
+/// From there on a map is read at any depth, wherever it holds a point that the finer ones leave out.
+pub(super) fn read_from(
+    maps: &[MapFit],
+    view: &MapView,
+    views: &[ViewFrustum],
+    descriptor: &ShadowMapDescriptor,
+) -> Vec<Option<f32>> {
+    let free = f64::from(reach(descriptor.filter) + descriptor.blend);
+    let mut from = vec![None; maps.len()];
+    // Up to where the finer maps hold all.
+    let mut held = f32::MIN;
+    for index in MapOrder::new(MapChoice::Coverage, maps.iter().map(|map| &map.fit)).iter() {
+        from[index] = (held < f32::MAX).then_some((held - held.abs() * DEPTH_ROUNDING as f32).max(f32::MIN));
+        held = held_to(&maps[index], view, views, free, held);
+    }
+    from
+}
+
+/// View depth up to which a map holds all that the views have from a depth on, in metres, with so many texels around
+/// it; that depth where it does not.
+fn held_to(map: &MapFit, view: &MapView, views: &[ViewFrustum], free: f64, from: f32) -> f32 {
+    let fit = map.fit.relative_to(view.origin);
+    let holds = |far: f32| holds_slice(&fit, view, views, [from, far], free);
+    let near = views.iter().map(|view| view.near).fold(f32::MAX, f32::min);
+    let far = views.iter().map(|view| view.far).fold(f32::MIN, f32::max);
+    if holds(far) {
+        return f32::MAX;
+    }
+    let near = near.max(from);
+    let (mut held, mut beyond) = (near, far);
+    for _ in 0..HALVINGS {
+        let middle = held + (beyond - held) * 0.5;
+        *(if holds(middle) { &mut held } else { &mut beyond }) = middle;
+    }
+    // Where it holds nothing, no depth has been found.
+    if held > near { held } else { from }
+}

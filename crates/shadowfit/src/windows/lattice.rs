@@ -1,0 +1,109 @@
+//! Windows on the world's grid: how their texel lines become rectangles of the plane, and back.
+//!
+//! Lines are counted from the world's origin in f64, rectangles from the origin of the fit, which is
+//! the eye, so that both are exact wherever the camera is.
+
+use glam::{DVec2, DVec3};
+
+use super::placement::Rect;
+use crate::grid;
+use crate::need::Plane;
+use crate::rule::FitRule;
+use crate::settings::MAX_MAPS;
+
+/// A window, in absolute world coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Window {
+    /// Width of a texel, in eighths of an octave of a metre.
+    pub(super) steps: i32,
+    /// Grid lines of its left and bottom side.
+    pub(super) first: DVec2,
+    /// Far and near plane along the light's z from the world's origin, in metres, if they are known.
+    pub(super) z: Option<(f64, f64)>,
+}
+
+/// The plane across the light as seen from the origin of a fit, and the sizes of its windows.
+pub(super) struct Lattice {
+    pub(super) plane: Plane,
+    /// Position of the origin of the fit in the plane.
+    anchor: DVec2,
+    /// Free texels at the border of each window, and those between the borders.
+    border: [f64; MAX_MAPS],
+    pub(super) usable: [DVec2; MAX_MAPS],
+}
+
+/// Eighths of an octave by which the texels of the last window may be too wide before it is made anew:
+/// about one and a half times.
+const LAST_WASTE: i32 = 5;
+
+/// Share of the way to the middle that the last window moves beyond what it must.
+const MOVE_ON: f64 = 0.3;
+
+impl Lattice {
+    /// `rules` are those of the windows, finest first.
+    pub(super) fn new<'a>(plane: Plane, origin: DVec3, rules: impl Iterator<Item = &'a FitRule>) -> Self {
+        let anchor = plane.of(plane.axes.project(origin));
+        let mut lattice = Self { plane, anchor, border: [0.0; MAX_MAPS], usable: [DVec2::ONE; MAX_MAPS] };
+        for (i, rule) in rules.enumerate().take(MAX_MAPS) {
+            (lattice.border[i], lattice.usable[i]) = (rule.border, grid::usable(rule));
+        }
+        lattice
+    }
+
+    /// Size of a window's texels, in metres.
+    pub(super) fn texel(&self, steps: i32) -> DVec2 {
+        let width = grid::eighths(steps);
+        DVec2::new(width, width * self.plane.shape)
+    }
+
+    /// What a window holds between its borders.
+    pub(super) fn rect(&self, index: usize, window: &Window) -> Rect {
+        let texel = grid::eighths(window.steps);
+        // One texel is lost to the shift onto the grid: half of it on either side.
+        let min = (window.first + self.border[index] + 0.5) * texel - self.anchor;
+        Rect { min: min.as_vec2(), size: (self.usable[index] * texel).as_vec2() }
+    }
+
+    /// The window that holds a rectangle of its size between its borders.
+    pub(super) fn window(&self, index: usize, steps: i32, rect: &Rect) -> Window {
+        self.at(index, steps, rect.min.as_dvec2(), grid::floor)
+    }
+
+    /// The window whose least corner between the borders is about here.
+    fn at(&self, index: usize, steps: i32, min: DVec2, round: impl Fn(f64) -> f64) -> Window {
+        let line = (min + self.anchor) / grid::eighths(steps) - self.border[index];
+        Window { steps, first: DVec2::new(round(line.x), round(line.y)), z: None }
+    }
+
+    /// The last window, which holds a part of the plane: the held one while it serves.
+    pub(super) fn last(&self, index: usize, held: Option<&Window>, (min, max): (DVec2, DVec2)) -> Window {
+        let usable = self.usable[index];
+        let needed = grid::eighths_above(((max - min) / usable).max_element());
+        let is_wasteful = |held: &&Window| held.steps > needed.saturating_add(LAST_WASTE);
+        let held = held.filter(|held| held.steps >= needed && !is_wasteful(held));
+        let steps = held.map_or(needed, |held| held.steps);
+        let size = (usable + 1.0) * grid::eighths(steps);
+        let low = |window: &Window| (window.first + self.border[index]) * grid::eighths(steps) - self.anchor;
+        let holds = |window: &Window| low(window).cmple(min).all() && (low(window) + size).cmpge(max).all();
+        let Some(held) = held else {
+            return self.at(index, steps, (min + max - usable * grid::eighths(steps)) * 0.5, grid::floor);
+        };
+        if holds(held) {
+            return *held;
+        }
+        // The least move, and some of what is left toward the middle.
+        let least = low(held).clamp((max - size).min(min), min);
+        let middle = (min + max - size) * 0.5;
+        let moved = self.at(index, steps, least + (middle - least) * MOVE_ON, libm::ceil);
+        if holds(&moved) { moved } else { self.at(index, steps, (min + max - size) * 0.5, libm::ceil) }
+    }
+
+    /// A window of another plane, which keeps its texels and what it was around as seen from the origin
+    /// of the fit: a light that turns a little moves little there.
+    pub(super) fn turned(&self, window: &Window, from: &Plane, origin: DVec3) -> Window {
+        let texel = grid::eighths(window.steps);
+        let line = window.first + (self.anchor - from.of(from.axes.project(origin))) / texel;
+        Window { first: DVec2::new(grid::floor(line.x), grid::floor(line.y)), z: None, ..*window }
+    }
+}

@@ -1,0 +1,186 @@
+//! Maps that are read by coverage: whichever map a visible point reads has all of its casters, in depth and among what
+//! culling leaves, and the certificate proves it.
+
+use proptest::prelude::*;
+use shadowfit::bias::Reach;
+use shadowfit::glam::{DVec2, DVec3, Vec3};
+use shadowfit::settings::{CasterPolicy, MapChoice};
+use shadowfit::verify::{Certificate, CoverageQuery, verify};
+use shadowfit::{
+    Aabb, Boxes, FitInput, FittedMaps, LightFit, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace,
+};
+
+use crate::scenes::{BoxPlan, any_box, any_light, any_technique, any_view, any_walk, share};
+use crate::support::cases;
+
+/// A receiver's point, and a caster's above it.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    receiver: usize,
+    caster: usize,
+    place: [f64; 3],
+}
+
+fn any_samples() -> impl Strategy<Value = Vec<Sample>> {
+    let one = (0..16_usize, 0..16_usize, [share(), share(), share()]);
+    prop::collection::vec(one.prop_map(|(receiver, caster, place)| Sample { receiver, caster, place }), 48)
+}
+
+fn any_shared_technique() -> impl Strategy<Value = Technique> {
+    let casters = prop::sample::select(vec![CasterPolicy::List, CasterPolicy::SceneBounds]);
+    (any_technique(), casters).prop_map(|(technique, casters)| Technique {
+        fit: technique.fit.with_casters(casters).with_border(technique.fit.border.unwrap_or(0.0).max(4.0)),
+        choice: MapChoice::Coverage,
+        ..technique
+    })
+}
+
+fn input<'a>(views: &'a [ViewFrustum], direction: Vec3, origin: DVec3, boxes: &'a [Aabb]) -> FitInput<'a> {
+    let boxes = Some(Boxes { origin, boxes });
+    FitInput { receivers: boxes, casters: boxes, ..FitInput::new(views, direction) }
+}
+
+/// Where a ray through a point leaves a box behind it and ahead of it.
+fn above(point: DVec3, to_light: DVec3, aabb: &Aabb) -> Option<f64> {
+    let (mut enter, mut leave) = (f64::MIN, f64::MAX);
+    for axis in 0..3 {
+        let (min, max) = (f64::from(aabb.min[axis]), f64::from(aabb.max[axis]));
+        if to_light[axis] == 0.0 {
+            if point[axis] < min || point[axis] > max {
+                return None;
+            }
+            continue;
+        }
+        let (a, b) = ((min - point[axis]) / to_light[axis], (max - point[axis]) / to_light[axis]);
+        (enter, leave) = (enter.max(a.min(b)), leave.min(a.max(b)));
+    }
+    (enter <= leave && leave > 0.0).then_some(leave)
+}
+
+/// Share of a map's depth range before the near plane at which a caster counts as behind it: the rounding of f32.
+const TOLERANCE: f64 = 1e-5;
+
+/// How far a point lies before the map's near plane, as a share of the depth range.
+fn before_near(fit: &LightFit, point: DVec3) -> f64 {
+    let local = (point - fit.origin).as_vec3();
+    let p = fit.light_from_world.as_dmat4().transform_point3(local.as_dvec3());
+    (p.z - f64::from(fit.box_max.z)) / f64::from(fit.depth_range)
+}
+
+/// Checks one frame; gives the number of casters that were found above points that read a map.
+fn check(maps: &FittedMaps, input: &FitInput, technique: &Technique, seen: &[DVec3], samples: &[Sample]) -> usize {
+    let Boxes { origin, boxes } = input.casters.unwrap();
+    let to_light = -input.direction.as_dvec3().normalize();
+    let view = &input.views[0];
+    let mut found = 0;
+    for (point, sample) in seen.iter().zip(samples) {
+        let depth = (*point - view.origin).dot(view.forward.as_dvec3());
+        let read = maps.read(technique, *point, depth).unwrap_or_else(|| panic!("{point} is in no map"));
+        for map in [Some(read.map), read.blend.map(|blend| blend.map)].into_iter().flatten().map(|map| &maps[map]) {
+            let caster = &boxes[sample.caster % boxes.len()];
+            let Some(distance) = above(*point - origin, to_light, caster) else { continue };
+            let occluder = *point + to_light * distance;
+            assert!(
+                before_near(&map.fit, occluder) < TOLERANCE,
+                "{occluder} is before the near plane of {:?}",
+                map.fit
+            );
+            let volume = map.caster_volume(input.views, technique).unwrap();
+            let moved = |v: Vec3| (v.as_dvec3() + origin - volume.origin).as_vec3();
+            assert!(volume.intersects_aabb(moved(caster.min), moved(caster.max)), "{caster:?} is culled");
+            found += 1;
+        }
+    }
+    found
+}
+
+proptest! {
+    #![proptest_config(cases(400))]
+
+    #[test]
+    fn every_caster_above_a_visible_point_is_in_the_map_that_the_point_reads(
+        view in any_view(), direction in any_light(), technique in any_shared_technique(), walk in any_walk(),
+        plans in prop::collection::vec(any_box(), 1..12), samples in any_samples(),
+    ) {
+        prop_assume!(view.lens.near < f64::from(technique.fit.max_distance));
+        let origin = view.eye.round();
+        let boxes: Vec<Aabb> = plans.iter().map(|plan: &BoxPlan| plan.aabb(&view, origin)).collect();
+        let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.len(), 3)];
+        let (mut fitter, mut view) = (MapFitter::new(), view);
+        for _ in 0..3 {
+            let views = [view.frustum()];
+            let input = input(&views, direction, origin, &boxes);
+            let maps = fitter.fit(&input, &technique, &mut Workspace::new(&mut storage)).unwrap();
+            let last = f64::from(technique.fit.max_distance);
+            let points = samples.iter().map(|sample| {
+                let aabb = &boxes[sample.receiver % boxes.len()];
+                let (min, max) = (aabb.min.as_dvec3(), aabb.max.as_dvec3());
+                origin + min + (max - min) * DVec3::from_array(sample.place)
+            });
+            let (seen, samples): (Vec<DVec3>, Vec<Sample>) =
+                points.zip(&samples).filter(|(point, _)| view.sees(*point - view.eye, last)).unzip();
+            check(&maps, &input, &technique, &seen, &samples);
+            view = walk.moved(&view);
+        }
+    }
+
+    #[test]
+    fn the_certificate_proves_maps_that_are_read_by_coverage(
+        view in any_view(), direction in any_light(), technique in any_shared_technique(), walk in any_walk(),
+        plans in prop::collection::vec(any_box(), 0..12),
+    ) {
+        prop_assume!(view.lens.near < f64::from(technique.fit.max_distance));
+        let origin = view.eye.round();
+        let boxes: Vec<Aabb> = plans.iter().map(|plan: &BoxPlan| plan.aabb(&view, origin)).collect();
+        let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.len(), 3)];
+        let (mut fitter, mut view) = (MapFitter::new(), view);
+        for frame in 0..3 {
+            let views = [view.frustum()];
+            let input = input(&views, direction, origin, &boxes);
+            let mut workspace = Workspace::new(&mut storage);
+            let maps = fitter.fit(&input, &technique, &mut workspace).unwrap();
+            for (i, map) in maps.iter().enumerate() {
+                let query = CoverageQuery::of_map(map, &technique, Reach::HARDWARE_2X2);
+                let certificate = verify(&input, &map.fit, &query, &mut workspace).unwrap();
+                prop_assert!(certificate.is_proven(), "frame {frame}, map {i}: {certificate:?} of {map:?}");
+            }
+            view = walk.moved(&view);
+        }
+    }
+}
+
+/// A tower beside the view that stands over a part of the first map: it is lost where the near plane serves the map's
+/// slice alone, and the certificate says so.
+#[test]
+fn a_near_plane_for_the_slice_alone_loses_casters_by_coverage() {
+    let camera = PerspectiveCamera {
+        eye: DVec3::new(0.0, 1.7, 0.0),
+        forward: Vec3::NEG_Z,
+        up: Vec3::Y,
+        fov_y: 1.0,
+        aspect: 1.5,
+        near: 0.1,
+        far: 200.0,
+    };
+    let (views, direction) = ([camera.frustum().unwrap()], Vec3::new(0.2, -1.0, 0.1));
+    let boxes = [
+        Aabb::new(Vec3::new(-100.0, -0.1, -200.0), Vec3::new(100.0, 0.0, 10.0)),
+        Aabb::new(Vec3::new(5.0, 0.0, -4.0), Vec3::new(6.0, 40.0, -3.0)),
+    ];
+    let input = input(&views, direction, DVec3::ZERO, &boxes);
+    let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.len(), 1)];
+    let mut workspace = Workspace::new(&mut storage);
+    let manual = shadowfit::settings::SplitScheme::Manual([12.0, 60.0, 61.0, 62.0, 63.0, 64.0, 65.0]);
+    let mut certificate = |choice| {
+        let technique = Technique::preset("stable-4").unwrap().with_count(3).with_splits(manual).with_choice(choice);
+        // Spheres serve all of their map anyway, rectangles do not.
+        let technique = technique.with_fit(technique.fit.with_kind(shadowfit::settings::FitKind::FrustumAabb));
+        let map = MapFitter::new().fit(&input, &technique, &mut workspace).unwrap()[0];
+        let query = CoverageQuery::of_map(&map, &technique, Reach::HARDWARE_2X2);
+        let query = CoverageQuery { choice: MapChoice::Coverage, ..query };
+        verify(&input, &map.fit, &query, &mut workspace).unwrap()
+    };
+    assert!(certificate(MapChoice::Coverage).is_proven());
+    let lost = certificate(MapChoice::ViewDepth);
+    assert!(matches!(lost, Certificate::CasterLost { by, .. } if by > 10.0), "{lost:?}");
+}
