@@ -64,8 +64,8 @@ fn main() -> ExitCode {
 fn list() {
     for preset in &PRESETS {
         println!(
-            "{:12} {}
-{:12} {}",
+            "{:15} {}
+{:15} {}",
             preset.name, preset.summary, "", preset.advice
         );
     }

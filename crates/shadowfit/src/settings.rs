@@ -133,7 +133,8 @@ pub struct FitSettings {
     pub up: Vec3,
     /// Greatest ratio of a texel's longer side to its shorter one, 1 or more: long texels make blur
     /// depend on its direction. The rectangle is chosen, and widened, to keep within it.
-    /// [`FitKind::XnaSample`] ignores it. Default: `f32::MAX`, no limit.
+    /// [`FitKind::XnaSample`] ignores it, and so does [`FitKind::Windows`], whose texels have a shape that
+    /// the light sets. Default: `f32::MAX`, no limit.
     pub max_texel_ratio: f32,
     /// Width and height of the map, in texels. Default: 2048 × 2048, as Bevy and the cascades of
     /// three.js have it.
