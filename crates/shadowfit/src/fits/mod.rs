@@ -8,6 +8,7 @@ pub mod aabb;
 pub mod focused;
 pub mod oriented;
 pub mod sphere;
+pub mod windows;
 pub mod xna;
 
 use glam::{DVec2, Vec3};
