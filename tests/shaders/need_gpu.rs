@@ -271,6 +271,9 @@ fn counts_carry_the_stamp_of_their_picture_and_only_the_newest_is_given_once() {
         assert_eq!(Counts::from(&seen), need_counts(&gpu, &newest, &texture));
         assert_eq!(pass.take(), Ok(None), "given already");
     }
+    record(&gpu, &mut pass, &first, &texture);
+    pass.reset();
+    assert_eq!(pass.wait(), Ok(None), "forgotten");
 }
 
 fn need_counts(gpu: &Gpu, view: &NeedView, texture: &wgpu::Texture) -> Counts {

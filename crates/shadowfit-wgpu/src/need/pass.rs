@@ -33,6 +33,8 @@ pub struct NeedPass {
     counts: wgpu::Buffer,
     frames: Vec<Frame>,
     recordings: u64,
+    /// Recordings up to the last [`Self::reset`].
+    forgotten: u64,
 }
 
 /// What one picture on its way needs of its own.
@@ -72,6 +74,7 @@ impl NeedPass {
                 counts: buffer(device, COUNTS * size_of::<u32>(), usage),
                 frames: (0..FRAMES).map(|_| frame()).collect(),
                 recordings: 0,
+                forgotten: 0,
             }
         })
     }
@@ -141,6 +144,11 @@ impl NeedPass {
         self.newest()
     }
 
+    /// Forgets the pictures that are on their way: for camera cuts, beside [`MapFitter::reset`](shadowfit::MapFitter::reset).
+    pub fn reset(&mut self) {
+        self.forgotten = self.recordings;
+    }
+
     fn newest(&mut self) -> Result<Option<SeenNeed>, NeedPassError> {
         if self.frames.iter().filter(|frame| frame.read_back.has_failed()).count() > 0 {
             return Err(NeedPassError::Lost);
@@ -160,7 +168,10 @@ impl NeedPass {
             };
             older.into_iter().for_each(ReadBack::release);
         }
-        newest.map(|read_back| read_back.take().ok_or(NeedPassError::Lost)).transpose()
+        let Some(read_back) = newest else { return Ok(None) };
+        let is_wanted = read_back.number() > self.forgotten;
+        let seen = read_back.take().ok_or(NeedPassError::Lost)?;
+        Ok(Some(seen).filter(|_| is_wanted))
     }
 
     /// Refuses what cannot be bound.
