@@ -4,12 +4,12 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 use glam::{DVec2, DVec3, Vec3};
+use shadowfit::choice::MapOrder;
 use shadowfit::clusters::Clusters;
-use shadowfit::need::NeedGrid;
 use shadowfit::normal_cone::NormalCone;
-use shadowfit::settings::{FitKind, MapChoice, NeedSource, ReceiverSource, SplitScheme};
+use shadowfit::settings::{MapChoice, ReceiverSource};
 use shadowfit::{Aabb, Boxes, FitInput, FittedMap, FittedMaps, MapFitter, Technique, ViewFrustum, Workspace};
-use shadowfit_study::{NamedTechnique, SeenDepths, SeenNeed, fit_map};
+use shadowfit_study::{NamedTechnique, Seen, fit_map};
 use shadowfit_truth::Tracer;
 use shadowfit_truth::peers::{FitFile, FitFrame, FitMap, Scenarios, Scene};
 use shadowfit_wgpu::MapFit;
@@ -34,8 +34,8 @@ struct Prepared {
     scene: usize,
     /// Whether the fitter has to forget what was before.
     is_first: bool,
-    depths: Option<SeenDepths>,
-    need: Option<SeenNeed>,
+    /// What the technique is told of the frame before.
+    seen: Option<Seen>,
 }
 
 /// How long fits took, in nanoseconds: each frame's fastest batch.
@@ -102,16 +102,8 @@ fn know(scene: &Scene, technique: &Technique, source: Option<&Source>) -> Result
         }
         _ => (scene.objects.iter().map(outward).collect(), Vec::new()),
     };
-    let tracer = triangles.filter(|_| sees(technique));
+    let tracer = triangles.filter(|_| Seen::is_used_by(technique));
     Ok(Known { boxes, cones, tracer: tracer.map(|objects| Tracer::new(objects.into_iter().flatten())) })
-}
-
-/// Whether a technique is told what the frame before showed.
-pub(crate) fn sees(technique: &Technique) -> bool {
-    match technique.fit.kind {
-        FitKind::Windows => technique.need == NeedSource::LastFrame,
-        _ => technique.splits == SplitScheme::FromHistogram,
-    }
 }
 
 /// A box rounded to f32 so that it loses nothing.
@@ -133,11 +125,10 @@ fn prepare(scenarios: &Scenarios, index: usize, known: &[Known], technique: &Tec
         direction,
         scene: frame.scene,
         is_first: before.is_none(),
-        depths: before.zip(tracer).map(|(before, tracer)| SeenDepths::trace(tracer, &before.camera(), direction)),
-        need: before
-            .zip(tracer)
-            .map(|(before, tracer)| SeenNeed::trace(tracer, &before.camera(), direction, &technique.fit))
-            .transpose()?,
+        seen: match before.zip(tracer) {
+            Some((before, tracer)) => Seen::trace(technique, (tracer, DVec3::ZERO), &before.camera(), direction)?,
+            None => None,
+        },
     })
 }
 
@@ -154,15 +145,15 @@ fn fit_all(frames: &[Prepared], known: &[Known], technique: &Technique) -> Resul
                 fitter.reset();
             }
             let boxes = Boxes { origin: DVec3::ZERO, boxes: &known[frame.scene].boxes };
-            let need: Vec<NeedGrid> = frame.need.iter().map(SeenNeed::grid).collect();
+            let need = frame.seen.as_ref().and_then(Seen::need);
             let input = FitInput {
                 views: &[frame.view],
                 direction: frame.direction,
                 receivers: Some(boxes),
                 receiver_cones: &known[frame.scene].cones,
                 casters: Some(boxes),
-                need: &need,
-                histogram: frame.depths.as_ref().map(SeenDepths::histogram),
+                need: need.as_slice(),
+                histogram: frame.seen.as_ref().and_then(Seen::histogram),
                 ..FitInput::new(&[], frame.direction)
             };
             let start = Instant::now();
@@ -172,16 +163,17 @@ fn fit_all(frames: &[Prepared], known: &[Known], technique: &Technique) -> Resul
         .collect()
 }
 
-/// The maps of a frame as the fit file has them: in order of their ends, or from the finest on where that is how points
-/// choose.
+/// The maps of a frame as the fit file has them, in the order in which points try them: that of their ends, or by
+/// coverage from the finest on, without ends and without those that are empty.
 fn fit_maps(maps: &FittedMaps, technique: &Technique) -> Vec<FitMap> {
-    let mut fitted: Vec<FitMap> = maps.iter().map(fit_map_of).collect();
-    if technique.choice == MapChoice::Coverage {
-        for map in &mut fitted {
-            map.split_far = NO_END;
-        }
+    let choice = technique.map_choice();
+    let fits = maps.iter().map(|map| &map.fit);
+    let in_order = MapOrder::new(choice, fits);
+    let fitted = in_order.iter().map(|index| fit_map_of(&maps[index]));
+    match choice {
+        MapChoice::ViewDepth => fitted.collect(),
+        MapChoice::Coverage => fitted.map(|map| FitMap { split_far: NO_END, ..map }).collect(),
     }
-    fitted
 }
 
 /// View depth, in metres, that means that a map has no end: fit files have finite numbers only.

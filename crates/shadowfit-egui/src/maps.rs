@@ -62,10 +62,14 @@ pub(crate) fn selector(
 
 /// Names of the columns and what they say.
 const COLUMNS: [(&str, &str); 5] = [
-    ("Map", "Number of the map, the nearest first, on the colour that Tint by map gives it."),
     (
-        "From, to",
-        "Distances from the camera, in metres, that the map is made for. By view depth, points between them read it.",
+        "Map",
+        "Number of the map, the nearest first and of windows the finest first, on the colour that Tint by map gives it.",
+    ),
+    (
+        "Made for",
+        "Distances from the camera, in metres, that the map is made for; by view depth, points between them read it. Of \
+         a window, which is made for no distances, the width and height of what it holds across the light.",
     ),
     ("Texel", "Width and height of one texel across the light."),
     ("Depth", "Extent of the map along the light."),
@@ -94,8 +98,10 @@ pub(crate) fn table(ui: &mut Ui, figures: &Figures) {
 
 /// The texts of a map's line behind its number.
 fn cells(figures: &MapFigures) -> [Option<String>; 4] {
+    let is_window = figures.set_by[0] == Constraint::Window;
+    let view_depths = figures.view_depths.map(|[near, far]| format!("{} – {}", short(near), short(far)));
     [
-        figures.view_depths.map(|[near, far]| format!("{} – {}", short(near), short(far))),
+        view_depths.or_else(|| is_window.then(|| size(figures.extent))),
         Some(if figures.is_empty { "empty".into() } else { size(figures.texel_size) }),
         Some(length(figures.depth_range)),
         figures.draws.map(|draws| grouped(draws.into())),
@@ -108,7 +114,7 @@ fn details(map: usize, figures: &MapFigures) -> String {
     let title = if figures.is_empty { ": no receiver is in view" } else { "" };
     let mut lines = vec![
         format!("Map {}{title}", map + 1),
-        format!("Texel: {}", size(figures.texel_size)),
+        format!("Width and height: {}, in texels of {}", size(figures.extent), size(figures.texel_size)),
         format!("Depth range: {}, in steps of {}", length(figures.depth_range), length(figures.depth_step)),
         format!("Sides set by: left {left}, right {right}, bottom {bottom}, top {top}"),
         format!("Near plane (toward the light) set by {near}, far plane by {far}"),
@@ -130,6 +136,7 @@ fn name(constraint: Constraint) -> &'static str {
         Constraint::Casters => "casters",
         Constraint::CasterExtension => "caster extension",
         Constraint::Sphere => "sphere",
+        Constraint::Window => "window",
         Constraint::Held => "held map",
         _ => "other",
     }
@@ -138,6 +145,15 @@ fn name(constraint: Constraint) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_map_is_made_for_distances_and_a_window_for_what_it_holds() {
+        let map = MapFigures { view_depths: Some([0.1, 12.0]), extent: [40.0, 20.0], ..MapFigures::default() };
+        let window = MapFigures { view_depths: None, set_by: [Constraint::Window; 6], ..map };
+        assert_eq!(cells(&map)[0].as_deref(), Some("0.10 – 12.0"));
+        assert_eq!(cells(&window)[0].as_deref(), Some("40.0 × 20.0 m"));
+        assert_eq!(cells(&MapFigures { view_depths: None, ..map })[0], None);
+    }
 
     #[test]
     fn numbers_are_readable_on_their_tints() {
@@ -168,6 +184,7 @@ mod tests {
             ],
             is_empty: true,
             texel_size: [0.03, 0.005],
+            extent: [61.44, 10.24],
             depth_range: 110.0,
             depth_step: 0.000_013,
             casters: Some(14),
@@ -178,7 +195,7 @@ mod tests {
         let text = details(1, &figures);
         for part in [
             "Map 2: no receiver is in view",
-            "3.00 × 0.50 cm",
+            "61.4 × 10.2 m, in texels of 3.00 × 0.50 cm",
             "110 m, in steps of 13.0 µm",
             "left view, right scene, bottom sphere, top held map",
             "Near plane (toward the light) set by casters, far plane by caster extension",

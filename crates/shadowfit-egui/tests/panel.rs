@@ -83,11 +83,12 @@ fn everything(splits: SplitScheme) -> Settings {
     settings
 }
 
-/// The two of them that show all rows together, each of them active in one at least.
-fn all_rows() -> [Settings; 2] {
-    let mut settings =
-        [SplitScheme::Practical(0.5), SplitScheme::Manual([5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0])].map(everything);
+/// Three of them that show all rows together, each of them active in one at least.
+fn all_rows() -> [Settings; 3] {
+    let manual = SplitScheme::Manual([5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0]);
+    let mut settings = [SplitScheme::Practical(0.5), manual, SplitScheme::FromHistogram].map(everything);
     settings[1].technique.choice = MapChoice::ViewDepth;
+    settings[2].technique.fit.kind = FitKind::Windows;
     settings
 }
 
@@ -183,6 +184,7 @@ fn wide_map() -> MapFigures {
         view_depths: Some([888.8, 8888.8]),
         set_by: [Constraint::CasterExtension; 6],
         is_empty: false,
+        extent: [888.8, 888.8],
         texel_size: [0.8888, 0.8888],
         depth_range: 888.8,
         depth_step: 0.000_088_8,
@@ -342,11 +344,11 @@ fn typed_numbers_are_set_in_the_shown_unit_and_clamped() {
 
 #[test]
 fn dragged_sliders_set_and_clamp_every_number() {
-    let by_choice = ["splits.blend", "splits.overlap"];
+    let mut dragged = std::collections::BTreeSet::new();
     for settings in all_rows() {
         for parameter in PARAMETERS.iter().filter(|parameter| parameter.id != INSET_MAP) {
             let Some((_, max, _)) = number(parameter, &settings) else { continue };
-            if by_choice.contains(&parameter.id) && (parameter.inert)(&settings).is_some() {
+            if (parameter.inert)(&settings).is_some() {
                 continue;
             }
             let mut harness = open_harness(Host { settings, ..Host::default() });
@@ -359,7 +361,12 @@ fn dragged_sliders_set_and_clamp_every_number() {
             harness.run();
             let (_, _, value) = number(parameter, &harness.state().settings).expect("it is still there");
             assert!((value - max).abs() <= 1e-6 * max, "{} = {value}", parameter.id);
+            dragged.insert(parameter.id);
         }
+    }
+    let numbers = |settings| PARAMETERS.iter().filter(move |parameter| number(parameter, &settings).is_some());
+    for parameter in all_rows().into_iter().flat_map(numbers).filter(|parameter| parameter.id != INSET_MAP) {
+        assert!(dragged.contains(parameter.id), "{} has no effect anywhere", parameter.id);
     }
 }
 
@@ -384,10 +391,13 @@ fn whole_numbers_are_dragged_and_typed_in_whole_steps() {
 
 #[test]
 fn check_boxes_and_lists_set_their_parameters() {
-    // The focused fit, with which every list of its group has an effect.
-    let settings = everything(SplitScheme::Uniform);
+    // The focused fit, with which every list of its group but that of windows has an effect.
+    let focused = everything(SplitScheme::Uniform);
+    let mut windows = focused;
+    windows.technique.fit.kind = FitKind::Windows;
     let mut harness = open_harness(Host::default());
     for parameter in PARAMETERS {
+        let settings = if parameter.id == "fit.need" { windows } else { focused };
         harness.state_mut().settings = settings;
         harness.run();
         match &parameter.kind {

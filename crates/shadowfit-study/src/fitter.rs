@@ -1,26 +1,28 @@
 //! The only place where a technique's maps are fitted to a scene, view after view.
 
 use glam::DVec2;
-use shadowfit::settings::SplitScheme;
 use shadowfit::{FitError, FittedMaps, MapFitter, Technique, Workspace};
 use shadowfit_wgpu::MapFit;
+use shadowfit_wgpu::need::SeenNeed;
 
-use crate::{PreparedScene, SceneRays, SeenDepths, View};
+use crate::{PreparedScene, SceneRays, Seen, View};
 
 /// Views that a fit works with: held maps are fitted to the views of two frames ahead as well.
 const VIEWS: usize = 3;
 
-/// Fits a technique's maps frame by frame, and remembers what held maps and histograms need of the frame before.
+/// Fits a technique's maps frame by frame, and remembers what held maps, histograms and windows need of the frame before.
 #[derive(Debug)]
 pub struct TechniqueFitter {
-    /// Whether histograms may be of an earlier pose of the scene, in [`Self::fit`]: rays of the present pose take some
-    /// milliseconds more for each hundred thousand triangles whenever the scene has moved. A late histogram costs
+    /// Whether what the frame before showed may be of an earlier pose of the scene, in [`Self::fit`]: rays of the present
+    /// pose take some milliseconds more for each hundred thousand triangles whenever the scene has moved. That costs
     /// sharpness, never coverage.
-    pub takes_late_histograms: bool,
+    pub sees_late: bool,
+    /// Whether [`Self::tell`] tells what the frame before showed, in [`Self::fit`], so that no rays look for it.
+    pub is_told: bool,
     technique: Technique,
     maps: MapFitter,
     fitted: FittedMaps,
-    depths: Option<SeenDepths>,
+    seen: Option<Seen>,
     storage: Vec<DVec2>,
 }
 
@@ -28,11 +30,12 @@ impl TechniqueFitter {
     /// A fitter that remembers no frame.
     pub fn new(technique: Technique) -> Self {
         Self {
-            takes_late_histograms: false,
+            sees_late: false,
+            is_told: false,
             technique,
             maps: MapFitter::new(),
             fitted: FittedMaps::default(),
-            depths: None,
+            seen: None,
             storage: Vec::new(),
         }
     }
@@ -45,7 +48,7 @@ impl TechniqueFitter {
     /// Goes on with a technique; with another one than before the fitter forgets all frames.
     pub fn set_technique(&mut self, technique: &Technique) {
         if self.technique != *technique {
-            *self = Self { takes_late_histograms: self.takes_late_histograms, ..Self::new(*technique) };
+            *self = Self { sees_late: self.sees_late, is_told: self.is_told, ..Self::new(*technique) };
         }
     }
 
@@ -55,14 +58,14 @@ impl TechniqueFitter {
     }
 
     /// The maps of a view on which the camera has just been set, as a running program has them as soon as it has seen
-    /// that view: nothing is held from other views, and the histogram is that of this one.
+    /// that view: nothing is held from other views, and what the frame before showed is this one.
     ///
     /// # Errors
     ///
     /// As [`Self::fit`].
     pub fn fit_alone(&mut self, scene: &PreparedScene, view: &View) -> Result<Vec<MapFit>, FitError> {
         self.maps.reset();
-        self.depths = self.see(scene, view, false)?;
+        self.seen = self.see(scene, view, false)?;
         self.fit_maps(scene, view)
     }
 
@@ -74,11 +77,23 @@ impl TechniqueFitter {
     pub fn fit(&mut self, scene: &PreparedScene, view: &View) -> Result<Vec<MapFit>, FitError> {
         if view.is_first {
             self.maps.reset();
-            self.depths = None;
+            self.seen = None;
         }
         let maps = self.fit_maps(scene, view)?;
-        self.depths = self.see(scene, view, self.takes_late_histograms)?;
+        if !self.is_told {
+            self.seen = self.see(scene, view, self.sees_late)?;
+        }
         Ok(maps)
+    }
+
+    /// Tells what the depth buffer of a picture before the next view showed.
+    pub fn tell(&mut self, seen: SeenNeed) {
+        self.seen = Some(Seen::Picture(seen));
+    }
+
+    /// What the next maps are told of the views before; `None` where the technique is told nothing.
+    pub fn seen(&self) -> Option<&Seen> {
+        self.seen.as_ref()
     }
 
     /// The maps of a view, from what is remembered.
@@ -87,21 +102,24 @@ impl TechniqueFitter {
         self.storage.resize(boxes.required(VIEWS), DVec2::ZERO);
         let frusta = [view.camera.frustum()?];
         let mut input = boxes.input(&frusta, view.direction);
-        input.histogram = self.depths.as_ref().map(SeenDepths::histogram);
+        input.histogram = self.seen.as_ref().and_then(Seen::histogram);
+        let need = self.seen.as_ref().and_then(Seen::need);
+        input.need = need.as_ref().map_or(&[][..], core::slice::from_ref);
         let workspace = &mut Workspace::new(&mut self.storage);
         self.maps.fit_into(&input, &self.technique, workspace, &mut self.fitted)?;
         Ok(self.fitted.iter().map(MapFit::from).collect())
     }
 
-    /// The histogram of a view, where the technique uses one.
-    fn see(&self, scene: &PreparedScene, view: &View, late: bool) -> Result<Option<SeenDepths>, FitError> {
-        if self.technique.splits != SplitScheme::FromHistogram {
+    /// What a view shows, where the technique is told of it.
+    fn see(&self, scene: &PreparedScene, view: &View, late: bool) -> Result<Option<Seen>, FitError> {
+        if !Seen::is_used_by(&self.technique) {
             return Ok(None);
         }
         // A camera that makes no sense sees nothing.
         view.camera.frustum()?;
         let camera = scene.camera_for_rays(&view.camera);
-        let trace = |rays: &SceneRays| SeenDepths::trace(&rays.tracer, &camera, view.direction);
-        Ok(Some(if late { scene.with_late_rays(trace) } else { trace(scene.rays()) }))
+        let trace =
+            |rays: &SceneRays| Seen::trace(&self.technique, (&rays.tracer, scene.origin()), &camera, view.direction);
+        if late { scene.with_late_rays(trace) } else { trace(scene.rays()) }
     }
 }

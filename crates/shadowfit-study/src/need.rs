@@ -59,6 +59,13 @@ impl SeenNeed {
         Ok(Self { space, counts })
     }
 
+    /// The same, counted from another world position: moved by this many metres along each axis.
+    #[must_use]
+    pub fn moved(mut self, by: DVec3) -> Self {
+        self.space.origin += by;
+        self
+    }
+
     /// As fits take it.
     pub fn grid(&self) -> NeedGrid<'_> {
         NeedGrid { space: self.space, counts: &self.counts }

@@ -50,7 +50,7 @@ impl From<&Technique> for ShadowMapDescriptor {
             maps: technique.count,
             format: technique.format,
             filter: technique.filter,
-            choice: technique.choice,
+            choice: technique.map_choice(),
             blend: technique.blend,
             depth: technique.fit.depth,
             // The XNA sample's fit has no caster policy.

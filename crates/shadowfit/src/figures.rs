@@ -61,8 +61,11 @@ pub struct Figures {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct MapFigures {
     /// View depths that this map is made for, in metres, and between which points choose it where maps
-    /// are read by view depth; `None` where there are none.
+    /// are read by view depth; `None` where there are none, as of a
+    /// [window](crate::settings::FitKind::Windows).
     pub view_depths: Option<[f32; 2]>,
+    /// Width and height of what the map holds, across the light, in metres.
+    pub extent: [f32; 2],
     /// What set the planes -x, +x, -y, +y, far and near of the map's box, see
     /// [`LightFit::set_by`](crate::LightFit::set_by).
     pub set_by: [Constraint; 6],
@@ -88,8 +91,10 @@ impl MapFigures {
     pub fn new(map: &FittedMap, end: f32, format: MapFormat) -> Self {
         let FittedMap { fit, near, far, .. } = map;
         let view_depths = [*near, far.min(end)];
+        let is_window = fit.set_by[0] == Constraint::Window;
         Self {
-            view_depths: (view_depths[0] < view_depths[1]).then_some(view_depths),
+            view_depths: (view_depths[0] < view_depths[1] && !is_window).then_some(view_depths),
+            extent: (fit.texel_size * fit.resolution.as_vec2()).to_array(),
             set_by: fit.set_by,
             is_empty: fit.is_empty,
             texel_size: fit.texel_size.to_array(),
@@ -104,7 +109,10 @@ impl MapFigures {
 
 #[cfg(test)]
 mod tests {
+    use glam::{UVec2, Vec2};
+
     use super::*;
+    use crate::LightFit;
 
     #[test]
     fn tints_are_linear_by_the_srgb_curve() {
@@ -124,5 +132,18 @@ mod tests {
         assert_eq!(figures(40.0, f32::MAX).view_depths, Some([40.0, 80.0]));
         assert_eq!(figures(5.0, f32::MIN).view_depths, None);
         assert_eq!(figures(f32::MAX, f32::MAX).view_depths, None);
+    }
+
+    #[test]
+    fn a_window_has_an_extent_and_no_view_depths() {
+        let map = |set_by| {
+            let (texel_size, resolution) = (Vec2::new(0.5, 0.25), UVec2::new(8, 12));
+            let fit = LightFit { set_by: [set_by; 6], texel_size, resolution, ..LightFit::default() };
+            let map = FittedMap { near: 1.0, far: 9.0, fit, ..FittedMap::default() };
+            MapFigures::new(&map, 80.0, MapFormat::default())
+        };
+        let (window, other) = (map(Constraint::Window), map(Constraint::View));
+        assert_eq!((window.view_depths, window.extent), (None, [4.0, 3.0]));
+        assert_eq!((other.view_depths, other.extent), (Some([1.0, 9.0]), [4.0, 3.0]));
     }
 }

@@ -91,6 +91,7 @@
 //! | which map a point reads, by coverage or by view depth | [`choice`], [`FittedMaps::read`] |
 //! | which casters to draw into a map | [`CasterVolume`], [`culling`] for spheres, oriented boxes, whole lists and tighter volumes |
 //! | splits chosen by what the last frame showed | [`histogram`], [`FitInput::histogram`], [`FitInput::depth_bounds`] |
+//! | windows placed by what the last frame showed | [`fits::windows`], [`need`], [`FitInput::need`] |
 //! | how many maps are enough | [`map_fitter::fewest_maps`] |
 //! | boxes that hug large meshes | `clusters` and [`normal_cone`], feature `alloc` |
 //! | static casters drawn only where the map is new | [`scroll`] |

@@ -15,7 +15,7 @@ use crate::histogram::DepthBounds;
 use crate::maps::{FittedMap, FittedMaps, set_empty_ranges_apart};
 use crate::motion::Motion;
 use crate::rule::FitRule;
-use crate::settings::{BiasSettings, FitKind, FitSettings, MAX_BLEND, MAX_MAPS, MapOverride, Stabilise};
+use crate::settings::{BiasSettings, FitSettings, MAX_BLEND, MAX_MAPS, MapOverride, Stabilise};
 use crate::splits::{Chooser, Splits};
 use crate::view::Range;
 use crate::volume::Volume;
@@ -113,12 +113,13 @@ impl MapFitter {
         let (rules, light) = check(input, technique)?;
         let is_continued = self.technique.as_ref() == Some(technique);
         let before = if is_continued { Some(&*self) } else { None };
-        let held_light = before.filter(|_| technique.stabilise != Stabilise::Off).and_then(|before| before.direction);
+        let is_held = technique.stabilise != Stabilise::Off || technique.has_windows();
+        let held_light = before.filter(|_| is_held).and_then(|before| before.direction);
         let light = light.held(held_light);
         // 2. What is seen, and where one map ends and the next begins.
         let (content, points) = Content::new(input, workspace)?;
         let range = whole_range(input, technique.fit.max_distance);
-        if technique.fit.kind == FitKind::Windows {
+        if technique.has_windows() {
             let before = before.and_then(|before| before.windows.as_ref());
             let frame = windows::Frame { input, technique, content: &content, light, range };
             let (volumes, held) = frame.fit(|i| rules.of(i), before, points)?;
@@ -414,7 +415,7 @@ fn check(input: &FitInput, technique: &Technique) -> Result<(Rules, Light), FitE
 fn own_settings(technique: &Technique, map: usize) -> Option<FitSettings> {
     let (own, fit) = (technique.overrides[map], technique.fit);
     (own != MapOverride::default()).then(|| FitSettings {
-        kind: own.kind.unwrap_or(fit.kind),
+        kind: technique.kind_of(map),
         resolution: own.resolution.unwrap_or(fit.resolution),
         ..fit
     })

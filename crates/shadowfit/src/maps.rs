@@ -22,7 +22,7 @@ pub struct FittedMap {
     pub bias: Bias,
     /// View depth from which points choose this map, in metres, where maps are [read by view
     /// depth](crate::settings::MapChoice::ViewDepth). By coverage it says for which part of the view the
-    /// map was made.
+    /// map was made: of [windows](crate::settings::FitKind::Windows) for all of it.
     pub near: f32,
     /// View depth up to which points choose this map, in metres: they take the first map that ends
     /// beyond them. The last one has no end. Where splits coincide there is no range: such maps end
@@ -87,7 +87,7 @@ impl FittedMap {
     ///
     /// As [`CasterVolume::swept`].
     pub fn caster_volume(&self, views: &[ViewFrustum], technique: &Technique) -> Result<CasterVolume, FitError> {
-        let (is_read, near, far) = match technique.choice {
+        let (is_read, near, far) = match technique.map_choice() {
             MapChoice::Coverage => (!self.fit.is_empty, f32::MIN, f32::MAX),
             MapChoice::ViewDepth if holds_slices(technique) => {
                 (self.covered_near < self.far, self.covered_near, self.far)
@@ -119,11 +119,10 @@ fn holds_slices(technique: &Technique) -> bool {
         let rule = FitRule::new(&technique.fit.with_kind(kind), technique.border(), true);
         rule.is_ok_and(|rule| rule.leaves_border(needed))
     };
-    let own = technique.overrides.iter().take(technique.count as usize).filter_map(|own| own.kind);
-    holds(technique.fit.kind) && own.into_iter().all(holds)
+    (0..technique.count as usize).all(|map| holds(technique.kind_of(map)))
 }
 
-/// The maps of one frame, nearest first.
+/// The maps of one frame, nearest first, windows finest first.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FittedMaps {
@@ -167,7 +166,7 @@ impl FittedMaps {
     /// # Ok::<(), FitError>(())
     /// ```
     pub fn read(&self, technique: &Technique, point: DVec3, view_depth: f64) -> Option<MapRead> {
-        match technique.choice {
+        match technique.map_choice() {
             MapChoice::Coverage => {
                 let order = MapOrder::new(MapChoice::Coverage, self.iter().map(|map| &map.fit));
                 let (reach, blend) = (f64::from(reach(technique.filter)), f64::from(technique.blend));

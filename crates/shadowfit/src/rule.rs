@@ -97,7 +97,9 @@ impl FitRule {
             depth,
             border: f64::from(border),
             margin: f64::from(settings.margin),
-            max_texel_ratio: Some(settings.max_texel_ratio).filter(|ratio| *ratio < f32::MAX).map(f64::from),
+            max_texel_ratio: Some(settings.max_texel_ratio)
+                .filter(|ratio| *ratio < f32::MAX && settings.kind != FitKind::Windows)
+                .map(f64::from),
             resolution: settings.resolution,
             convention: settings.depth,
             serves_all: false,

@@ -50,7 +50,7 @@ pub enum FitKind {
     #[default]
     Focused,
     /// Squares of the plane across the light, on a grid that is fixed to the world, each where it helps
-    /// most of what is visible ([`fits::windows`](crate::fits::windows)). Read by coverage. All maps of a
+    /// most of what is visible ([`fits::windows`](crate::fits::windows)). Always read by coverage. All maps of a
     /// technique are windows or none: in an override it is ignored.
     Windows,
 }
@@ -133,7 +133,8 @@ pub struct FitSettings {
     pub up: Vec3,
     /// Greatest ratio of a texel's longer side to its shorter one, 1 or more: long texels make blur
     /// depend on its direction. The rectangle is chosen, and widened, to keep within it.
-    /// [`FitKind::XnaSample`] ignores it. Default: `f32::MAX`, no limit.
+    /// [`FitKind::XnaSample`] ignores it, and so does [`FitKind::Windows`], whose texels have a shape that
+    /// the light sets. Default: `f32::MAX`, no limit.
     pub max_texel_ratio: f32,
     /// Width and height of the map, in texels. Default: 2048 × 2048, as Bevy and the cascades of
     /// three.js have it.
@@ -246,7 +247,7 @@ pub struct HoldSettings {
     /// frames as make the map wider by at most this factor, 1..=100. Default: 1.4.
     pub growth: f32,
     /// A map is made anew when its texels are larger than necessary by this factor, 1..=100; held
-    /// splits are chosen anew by the same rule. Default: 1.8.
+    /// splits and the depths of windows are chosen anew by the same rule. Default: 1.8.
     pub waste: f32,
     /// Greatest number of frames to look ahead. Default: 32.
     pub horizon: u32,
@@ -262,7 +263,8 @@ impl Default for HoldSettings {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct MapOverride {
-    /// The rule of its fit. Default: `None`, which takes [`FitSettings::kind`].
+    /// The rule of its fit. Default: `None`, which takes [`FitSettings::kind`]. It is ignored where either
+    /// of the two is [`FitKind::Windows`].
     pub kind: Option<FitKind>,
     /// Its width and height, in texels. Default: `None`, which takes [`FitSettings::resolution`].
     pub resolution: Option<UVec2>,

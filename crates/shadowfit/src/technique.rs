@@ -4,8 +4,8 @@
 
 use crate::bias::reach;
 use crate::settings::{
-    BiasSettings, FilterKind, FitSettings, HoldSettings, MAX_MAPS, MapChoice, MapFormat, MapOverride, NeedSource,
-    ReceiverSource, SplitScheme, Stabilise, setters,
+    BiasSettings, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapChoice, MapFormat, MapOverride,
+    NeedSource, ReceiverSource, SplitScheme, Stabilise, setters,
 };
 use glam::UVec2;
 
@@ -31,7 +31,8 @@ pub struct Technique {
     /// Where one map ends and the next begins. Default: [`SplitScheme::FromHistogram`], which takes
     /// boxes where no histogram is given.
     pub splits: SplitScheme,
-    /// Which of the maps a point reads. Default: [`MapChoice::Coverage`].
+    /// Which of the maps a point reads; windows are always read by coverage. Default:
+    /// [`MapChoice::Coverage`].
     pub choice: MapChoice,
     /// Texels over which a map that is read by [`MapChoice::Coverage`] is blended into the next coarser
     /// one, inward from the filter's reach to its border, 0..=[`MAX_BLEND`](crate::settings::MAX_BLEND);
@@ -141,7 +142,25 @@ impl Technique {
     /// later frames.
     pub(crate) const fn shares_maps(&self) -> bool {
         let is_shared = self.count > 1 || !matches!(self.stabilise, Stabilise::Off);
-        matches!(self.choice, MapChoice::Coverage) && is_shared
+        matches!(self.map_choice(), MapChoice::Coverage) && is_shared
+    }
+
+    /// Which of the maps a point reads: [`Self::choice`], or by coverage where the maps are
+    /// [windows](FitKind::Windows), which have no ranges of view depths.
+    pub const fn map_choice(&self) -> MapChoice {
+        if self.has_windows() { MapChoice::Coverage } else { self.choice }
+    }
+
+    /// Whether the maps are windows: all of them are or none.
+    pub(crate) const fn has_windows(&self) -> bool {
+        matches!(self.fit.kind, FitKind::Windows)
+    }
+
+    /// The rule of a map's fit: that of its override, unless it or that of all maps is
+    /// [`FitKind::Windows`].
+    pub fn kind_of(&self, map: usize) -> FitKind {
+        let own = self.overrides.get(map).and_then(|own| own.kind);
+        own.filter(|kind| !self.has_windows() && *kind != FitKind::Windows).unwrap_or(self.fit.kind)
     }
 
     /// Width and height of a map, in texels.

@@ -5,8 +5,8 @@ use shadowfit::params::{
     self, Group, Kind, PARAMETERS, Parameter, format_value, set_from_str, set_technique_from_str, technique_parameters,
 };
 use shadowfit::settings::{
-    CasterPolicy, FilterKind, FitKind, MAX_MAPS, MapFormat, MapOverride, ReceiverSource, RectangleKind, SplitScheme,
-    Stabilise,
+    CasterPolicy, FilterKind, FitKind, MAX_MAPS, MapFormat, MapOverride, NeedSource, ReceiverSource, RectangleKind,
+    SplitScheme, Stabilise,
 };
 use shadowfit::tool::Settings;
 use shadowfit::{Aabb, Boxes, DepthConvention, FitInput, PRESETS, PerspectiveCamera, Technique, Workspace};
@@ -161,6 +161,7 @@ fn check<T: PartialEq + core::fmt::Debug>(id: &str, get: fn(&Technique) -> T, ex
 fn option_names_select_their_variants() {
     let fits = [
         ("focused", FitKind::Focused),
+        ("windows", FitKind::Windows),
         ("oriented", FitKind::Oriented),
         ("sphere", FitKind::Sphere),
         ("frustum_aabb", FitKind::FrustumAabb),
@@ -168,11 +169,13 @@ fn option_names_select_their_variants() {
     ];
     check("fit.kind", |t| t.fit.kind, &fits);
     let mut own = vec![("same", None)];
-    own.extend(fits.map(|(id, kind)| (id, Some(kind))));
+    own.extend(fits.into_iter().filter(|(id, _)| *id != "windows").map(|(id, kind)| (id, Some(kind))));
     check("override.map_1_kind", |t| t.overrides[0].kind, &own);
     check("override.map_8_kind", |t| t.overrides[7].kind, &own);
     let receivers = [("clusters", ReceiverSource::Clusters), ("objects", ReceiverSource::Objects)];
     check("fit.receivers", |t| t.receivers, &receivers);
+    let needs = [("last_frame", NeedSource::LastFrame), ("boxes", NeedSource::Boxes)];
+    check("fit.need", |t| t.need, &needs);
     let rectangles = [
         ("minimum_area", RectangleKind::MinimumArea),
         ("minimum_square", RectangleKind::MinimumSquare),
@@ -489,7 +492,10 @@ fn parameters_say_where_they_have_no_effect() {
         ("fit.rectangle", &[][..], ("fit.kind", "xna_sample"), "focused"),
         ("fit.rectangle", &[], ("fit.kind", "frustum_aabb"), "focused"),
         ("fit.rectangle", &[], ("fit.kind", "sphere"), "focused"),
+        ("fit.rectangle", &[], ("fit.kind", "windows"), "focused"),
+        ("fit.need", &[("fit.kind", "windows")], ("fit.kind", "focused"), "Windows"),
         ("fit.casters", &[], ("fit.kind", "xna_sample"), "XNA"),
+        ("fit.max_texel_ratio", &[], ("fit.kind", "windows"), "windows"),
         ("fit.max_texel_ratio", &[], ("fit.kind", "xna_sample"), "XNA"),
         ("fit.max_texel_ratio", &[], ("fit.kind", "sphere"), "sphere"),
         ("fit.max_texel_ratio", &[("map.height", "512")], ("fit.kind", "xna_sample"), "XNA"),
@@ -500,20 +506,29 @@ fn parameters_say_where_they_have_no_effect() {
         ("fit.caster_extension", &[("fit.casters", "extend")], ("fit.casters", "list"), "By extension"),
         ("fit.caster_extension", &[("fit.casters", "extend")], ("fit.casters", "depth_clamp"), "By extension"),
         ("splits.scheme", &[], ("splits.count", "1"), "number of maps"),
+        ("splits.scheme", &[], ("fit.kind", "windows"), "Windows"),
         ("splits.choice", &[], ("splits.count", "1"), "number of maps"),
+        ("splits.choice", &[], ("fit.kind", "windows"), "coverage"),
+        ("splits.blend", &[("splits.choice", "view_depth"), ("fit.kind", "windows")], ("splits.count", "1"), "maps"),
         ("splits.blend", &[], ("splits.count", "1"), "number of maps"),
         ("splits.blend", &[], ("splits.choice", "view_depth"), "By coverage"),
         ("splits.overlap", &[("splits.choice", "view_depth")], ("splits.count", "1"), "number of maps"),
         ("splits.overlap", &[("splits.choice", "view_depth")], ("splits.choice", "coverage"), "By view depth"),
+        ("splits.overlap", &[("splits.choice", "view_depth")], ("fit.kind", "windows"), "Windows"),
         ("splits.lambda", &[("splits.scheme", "practical")], ("splits.count", "1"), "number of maps"),
+        ("splits.lambda", &[("splits.scheme", "practical")], ("fit.kind", "windows"), "Windows"),
         ("splits.lambda", &[("splits.scheme", "practical")], ("splits.scheme", "uniform"), "Practical"),
         ("splits.manual_3", &[("splits.scheme", "manual")], ("splits.count", "3"), "number of maps"),
         ("splits.manual_3", &[("splits.scheme", "manual")], ("splits.scheme", "from_boxes"), "Manual"),
+        ("splits.manual_3", &[("splits.scheme", "manual")], ("fit.kind", "windows"), "Windows"),
+        ("stabilise.mode", &[], ("fit.kind", "windows"), "Windows"),
         ("stabilise.margin", &[], ("stabilise.mode", "snap"), "Stabilise"),
+        ("stabilise.margin", &[], ("fit.kind", "windows"), "Windows"),
         ("stabilise.growth", &[], ("stabilise.mode", "off"), "Stabilise"),
         ("stabilise.horizon", &[], ("stabilise.mode", "snap"), "Stabilise"),
         ("stabilise.waste", &[], ("stabilise.mode", "off"), "Stabilise"),
         ("override.map_4_kind", &[], ("splits.count", "3"), "number of maps"),
+        ("override.map_4_kind", &[], ("fit.kind", "windows"), "windows"),
         ("override.map_4_resolution", &[], ("splits.count", "3"), "number of maps"),
         ("override.map_4_height", &[("override.map_4_resolution", "512")], ("splits.count", "3"), "number of maps"),
     ] {
@@ -550,8 +565,9 @@ fn a_parameter_that_says_it_has_no_effect_has_none_and_the_others_have_one() {
         shadowfit::fits::fit_scene(&input, &settings.technique.fit, &mut Workspace::new(&mut storage)).expect("a fit")
     };
     let Kind::Choice(kinds) = &row("fit.kind").kind else { panic!("fits are options") };
-    // Which boxes there are is up to the engine, and y alone is up already, at any length.
-    let others = ["fit.kind", "fit.receivers", "fit.up_y"];
+    // Which boxes there are is up to the engine, one map alone holds all that is in view wherever it is needed, and y
+    // alone is up already, at any length.
+    let others = ["fit.kind", "fit.receivers", "fit.need", "fit.up_y"];
     for kind in kinds.options {
         for parameter in Group::Fit.parameters().filter(|parameter| !others.contains(&parameter.id)) {
             let mut settings = with(&[("fit.kind", kind.id)]);

@@ -34,7 +34,7 @@ impl Stage {
 
     fn fit_now(&mut self, technique: &Technique, size: [u32; 2]) -> Result<Fitted, FitError> {
         let view = self.view(size);
-        self.fitter.takes_late_histograms = self.plays();
+        self.fitter.sees_late = self.plays();
         let goes_on = self.fitted.as_ref().and_then(|fitted| fitted.camera).is_some_and(|last| {
             let same_lens = PerspectiveCamera { eye: last.eye, forward: last.forward, ..view.camera } == last;
             same_lens && self.fitter.technique() == technique
@@ -43,6 +43,7 @@ impl Stage {
             self.fitter.fit(&self.scene, &view)?;
         } else {
             self.fitter.set_technique(technique);
+            self.forget_pictures();
             self.fitter.fit_alone(&self.scene, &view)?;
         }
         Ok(Fitted::new(view.camera, technique, self.fitter.fitted()))

@@ -15,6 +15,7 @@ use crate::tool::Settings;
 pub static PARAMETERS: &[Parameter] = &[
     fit::KIND,
     fit::RECEIVERS,
+    fit::NEED,
     fit::RECTANGLE,
     fit::MAX_TEXEL_RATIO,
     fit::MAX_DISTANCE,

@@ -6,7 +6,7 @@ use proptest::sample::select;
 use shadowfit::glam::{UVec2, Vec3};
 use shadowfit::settings::{
     BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapChoice, MapFormat,
-    MapOverride, ReceiverSource, RectangleKind, SplitScheme, Stabilise,
+    MapOverride, NeedSource, ReceiverSource, RectangleKind, SplitScheme, Stabilise,
 };
 use shadowfit::{DepthConvention, Technique};
 
@@ -19,7 +19,12 @@ macro_rules! any {
 }
 
 fn any_kind() -> impl Strategy<Value = FitKind> {
-    any!(FitKind: XnaSample, FrustumAabb, Oriented, Sphere, Focused)
+    any!(FitKind: XnaSample, FrustumAabb, Oriented, Sphere, Focused, Windows)
+}
+
+/// A fit that a single map may have.
+fn any_own_kind() -> impl Strategy<Value = FitKind> {
+    any_kind().prop_filter("windows are the maps of a whole technique", |kind| *kind != FitKind::Windows)
 }
 
 fn any_resolution() -> impl Strategy<Value = UVec2> {
@@ -101,7 +106,7 @@ fn any_bias() -> impl Strategy<Value = BiasSettings> {
 }
 
 fn any_overrides() -> impl Strategy<Value = [MapOverride; MAX_MAPS]> {
-    let own = (option::of(any_kind()), option::of(any_resolution()));
+    let own = (option::of(any_own_kind()), option::of(any_resolution()));
     prop::array::uniform8(own.prop_map(|(kind, resolution)| MapOverride { kind, resolution }))
 }
 
@@ -121,12 +126,13 @@ pub(crate) fn any_technique() -> impl Strategy<Value = Technique> {
         any!(ReceiverSource: Objects, Clusters),
         any!(FilterKind: Point, Hardware2x2, Pcf3x3, Pcf5x5),
         any_bias(),
+        any!(NeedSource: LastFrame, Boxes),
         any!(MapFormat: Depth32Float, R32Float),
     );
     (maps, look_up).prop_map(
         |(
             (count, fit, splits, choice, (blend, overlap), stabilise, hold, overrides),
-            (receivers, filter, bias, format),
+            (receivers, filter, bias, need, format),
         )| Technique {
             count,
             fit,
@@ -140,6 +146,7 @@ pub(crate) fn any_technique() -> impl Strategy<Value = Technique> {
             receivers,
             filter,
             bias,
+            need,
             format,
         },
     )

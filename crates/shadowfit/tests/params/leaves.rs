@@ -50,6 +50,7 @@ fn leaves_of_technique(technique: &Technique, leaf: &mut Leaf) {
         receivers,
         filter,
         bias,
+        need,
         format,
     } = technique;
     leaves_of_fit(fit, leaf);
@@ -87,6 +88,7 @@ fn leaves_of_technique(technique: &Technique, leaf: &mut Leaf) {
     leaf("bias.slope", slope);
     leaf("bias.normal_offset", normal_offset);
     leaf("bias.receiver_plane", receiver_plane);
+    leaf("need", need);
     leaf("format", format);
 }
 

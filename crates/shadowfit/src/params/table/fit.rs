@@ -2,25 +2,31 @@
 
 use super::{always_active, always_there, pull_near};
 use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
-use crate::settings::{CasterPolicy, FitKind, ReceiverSource, RectangleKind};
+use crate::settings::{CasterPolicy, FitKind, NeedSource, ReceiverSource, RectangleKind};
 
 /// The fits in the order of their options.
-pub(super) const FIT_KINDS: [FitKind; 5] =
-    [FitKind::Focused, FitKind::Oriented, FitKind::Sphere, FitKind::FrustumAabb, FitKind::XnaSample];
+const FIT_KINDS: [FitKind; 6] =
+    [FitKind::Focused, FitKind::Windows, FitKind::Oriented, FitKind::Sphere, FitKind::FrustumAabb, FitKind::XnaSample];
 
 pub(super) const KIND: Parameter = Parameter {
     id: "fit.kind",
     group: Group::Fit,
     label: "Fit",
     unit: "",
-    help: "The rule that decides where a shadow map looks. Focused has the finest texels, the sphere the calmest edges. \
-           The frustum box is the plainest; the XNA sample's rule loses casters outside the view.",
+    help: "The rule that decides where a shadow map looks. Focused is sharp, windows are sharp and still, the sphere is \
+           coarser and as still. The frustum box is the plainest; the XNA sample's rule loses casters outside the view.",
     kind: Kind::Choice(Choice {
         options: &[
             ChoiceOption {
                 id: "focused",
                 label: "Focused on the scene",
                 help: "The least rectangle around what the camera sees of the scene's boxes: the finest texels.",
+            },
+            ChoiceOption {
+                id: "windows",
+                label: "Windows",
+                help: "Rectangles on a grid of texels that is fixed to the world, each where it helps most of what is \
+                       visible. They need no splits: sharp, and still when the camera moves or turns.",
             },
             ChoiceOption {
                 id: "oriented",
@@ -73,6 +79,38 @@ pub(super) const RECEIVERS: Parameter = Parameter {
         },
     }),
     inert: always_active,
+};
+
+pub(super) const NEED: Parameter = Parameter {
+    id: "fit.need",
+    group: Group::Fit,
+    label: "Windows placed by",
+    unit: "",
+    help: "What says where fine texels are needed. A wrong guess costs sharpness and nothing else.",
+    kind: Kind::Choice(Choice {
+        options: &[
+            ChoiceOption {
+                id: "last_frame",
+                label: "What is visible",
+                help: "What the frame before showed; where that is not known, as By boxes.",
+            },
+            ChoiceOption {
+                id: "boxes",
+                label: "By boxes",
+                help: "What is visible of the scene's boxes, as an estimate: needs no depth buffer.",
+            },
+        ],
+        read: |s| match s.technique.need {
+            NeedSource::LastFrame => 0,
+            NeedSource::Boxes => 1,
+        },
+        write: |s, index| {
+            s.technique.need = if index == 0 { NeedSource::LastFrame } else { NeedSource::Boxes };
+        },
+    }),
+    inert: |s| {
+        (s.technique.fit.kind != FitKind::Windows).then_some("Only windows are placed by it; set Fit to Windows.")
+    },
 };
 
 /// The rectangles in the order of their options.
@@ -130,6 +168,9 @@ pub(super) const MAX_TEXEL_RATIO: Parameter = Parameter {
     }),
     inert: |s| match s.technique.fit.kind {
         FitKind::XnaSample => Some("The XNA sample's fit has no limit to its texels' shape; choose another fit."),
+        FitKind::Windows => {
+            Some("The texels of windows have a shape that the light's height sets; choose another fit.")
+        }
         FitKind::Sphere if s.technique.fit.resolution.x == s.technique.fit.resolution.y => {
             Some("The texels of the stable sphere are as long as wide already; choose another fit.")
         }

@@ -3,11 +3,14 @@
 use glam::UVec2;
 
 use super::always_there;
-use super::fit::FIT_KINDS;
 use super::map::SIDES;
 use crate::params::{Choice, ChoiceOption, Group, Kind, Optional, Parameter};
-use crate::settings::MAX_MAPS;
+use crate::settings::{FitKind, MAX_MAPS};
 use crate::tool::Settings;
+
+/// The fits that a single map may have, in the order of their options: windows are the maps of a whole technique.
+const KINDS: [FitKind; 5] =
+    [FitKind::Focused, FitKind::Oriented, FitKind::Sphere, FitKind::FrustumAabb, FitKind::XnaSample];
 
 /// The three rows of a map.
 const fn rows<const MAP: usize>(ids: [&'static str; 3], labels: [&'static str; 3]) -> [Parameter; 3] {
@@ -32,13 +35,16 @@ const fn kind<const MAP: usize>(id: &'static str, label: &'static str) -> Parame
             ],
             read: |s| {
                 let own = s.technique.overrides[MAP].kind;
-                own.map_or(0, |own| 1 + FIT_KINDS.iter().position(|kind| *kind == own).unwrap_or(0))
+                KINDS.iter().position(|kind| Some(*kind) == own).map_or(0, |index| index + 1)
             },
             write: |s, index| {
-                s.technique.overrides[MAP].kind = index.checked_sub(1).and_then(|index| FIT_KINDS.get(index)).copied();
+                s.technique.overrides[MAP].kind = index.checked_sub(1).and_then(|index| KINDS.get(index)).copied();
             },
         }),
-        inert: no_such_map::<MAP>,
+        inert: |s| match s.technique.fit.kind {
+            FitKind::Windows => Some("All maps are windows; choose another fit."),
+            _ => no_such_map::<MAP>(s),
+        },
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::always_active;
 use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
-use crate::settings::{MAX_BLEND, MAX_MAPS, MapChoice, SplitScheme};
+use crate::settings::{FitKind, MAX_BLEND, MAX_MAPS, MapChoice, SplitScheme};
 
 pub(super) const COUNT: Parameter = Parameter {
     id: "splits.count",
@@ -82,7 +82,13 @@ pub(super) const SCHEME: Parameter = Parameter {
             };
         },
     }),
-    inert: |s| (s.technique.count < 2).then_some("One map has no splits; raise the number of maps."),
+    inert: |s| match s.technique.fit.kind {
+        FitKind::Windows => {
+            Some("Windows are no slices of the view, so there is nothing to split; choose another fit.")
+        }
+        _ if s.technique.count < 2 => Some("One map has no splits; raise the number of maps."),
+        _ => None,
+    },
 };
 
 pub(super) const LAMBDA: Parameter = Parameter {
@@ -146,6 +152,7 @@ const fn manual<const MAP: usize>(id: &'static str, label: &'static str) -> Para
             },
         }),
         inert: |s| match s.technique.splits {
+            SplitScheme::Manual(_) if (SCHEME.inert)(s).is_some() => (SCHEME.inert)(s),
             SplitScheme::Manual(_) if MAP + 1 < s.technique.count as usize => None,
             SplitScheme::Manual(_) => Some("There is no such map; raise the number of maps."),
             _ => Some("The splits are chosen by a rule; set Splits to Manual (splits.scheme = manual)."),
@@ -188,7 +195,11 @@ pub(super) const CHOICE: Parameter = Parameter {
         },
         write: |s, index| s.technique.choice = if index == 0 { MapChoice::Coverage } else { MapChoice::ViewDepth },
     }),
-    inert: |s| (s.technique.count < 2).then_some("One map leaves no choice; raise the number of maps."),
+    inert: |s| match s.technique.fit.kind {
+        _ if s.technique.count < 2 => Some("One map leaves no choice; raise the number of maps."),
+        FitKind::Windows => Some("Windows are always read by coverage; choose another fit."),
+        _ => None,
+    },
 };
 
 pub(super) const BLEND: Parameter = Parameter {
@@ -207,7 +218,7 @@ pub(super) const BLEND: Parameter = Parameter {
         read: |s| f64::from(s.technique.blend),
         write: |s, value| s.technique.blend = value as f32,
     }),
-    inert: |s| match s.technique.choice {
+    inert: |s| match s.technique.map_choice() {
         _ if s.technique.count < 2 => Some("One map is blended into none; raise the number of maps."),
         MapChoice::Coverage => None,
         MapChoice::ViewDepth => Some(
@@ -234,6 +245,9 @@ pub(super) const OVERLAP: Parameter = Parameter {
         write: |s, value| s.technique.overlap = value as f32,
     }),
     inert: |s| match s.technique.choice {
+        _ if s.technique.fit.kind == FitKind::Windows => {
+            Some("Windows are blended toward their borders, over the blend; choose another fit.")
+        }
         _ if s.technique.count < 2 => Some("One map overlaps with none; raise the number of maps."),
         MapChoice::Coverage => Some(
             "Maps that are read by coverage are blended toward their borders; set Choice to By view depth (splits.choice \

@@ -1,8 +1,7 @@
 //! The rows of the stabilisation.
 
-use super::always_active;
 use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Parameter};
-use crate::settings::Stabilise;
+use crate::settings::{FitKind, Stabilise};
 use crate::tool::Settings;
 
 pub(super) const MODE: Parameter = Parameter {
@@ -40,7 +39,7 @@ pub(super) const MODE: Parameter = Parameter {
             };
         },
     }),
-    inert: always_active,
+    inert: windows_are_still,
 };
 
 pub(super) const MARGIN: Parameter = Parameter {
@@ -86,8 +85,8 @@ pub(super) const WASTE: Parameter = Parameter {
     group: Group::Stabilise,
     label: "Waste",
     unit: "×",
-    help: "A kept map is made anew once its texels are larger than they have to be by this factor, and kept splits are \
-           likewise. Lower is sharper, higher is calmer.",
+    help: "A kept map is made anew once its texels are larger than they have to be by this factor, and kept splits and \
+           the depths of windows are likewise. Lower is sharper, higher is calmer.",
     kind: Kind::Number(Number {
         min: 1.0,
         max: 100.0,
@@ -97,8 +96,9 @@ pub(super) const WASTE: Parameter = Parameter {
         read: |s| f64::from(s.technique.hold.waste),
         write: |s, value| s.technique.hold.waste = value as f32,
     }),
-    inert: |s| {
-        (s.technique.stabilise == Stabilise::Off).then_some("Nothing is kept from frame to frame; turn on Stabilise.")
+    inert: |s| match (s.technique.fit.kind, s.technique.stabilise) {
+        (FitKind::Windows, _) | (_, Stabilise::Snap | Stabilise::Hysteresis) => None,
+        (_, Stabilise::Off) => Some("Nothing is kept from frame to frame; turn on Stabilise."),
     },
 };
 
@@ -121,6 +121,12 @@ pub(super) const HORIZON: Parameter = Parameter {
 };
 
 fn only_held(s: &Settings) -> Option<&'static str> {
-    (s.technique.stabilise != Stabilise::Hysteresis)
-        .then_some("Only kept maps look ahead; set Stabilise to Keep while it serves.")
+    let is_held = s.technique.stabilise == Stabilise::Hysteresis;
+    windows_are_still(s)
+        .or_else(|| (!is_held).then_some("Only kept maps look ahead; set Stabilise to Keep while it serves."))
+}
+
+fn windows_are_still(s: &Settings) -> Option<&'static str> {
+    (s.technique.fit.kind == FitKind::Windows)
+        .then_some("Windows stay where they are by a rule of their own; choose another fit.")
 }

@@ -177,7 +177,7 @@ pub(super) const INSET_MAP: Parameter = Parameter {
     group: Group::View,
     label: "Map in the inset",
     unit: "",
-    help: "Which map the inset shows, map 1 being the nearest.",
+    help: "Which map the inset shows, map 1 being the nearest, or the finest window.",
     kind: Kind::Number(Number {
         min: 1.0,
         max: MAX_MAPS as f64,
