@@ -123,3 +123,55 @@ impl TechniqueFitter {
         if late { scene.with_late_rays(trace) } else { trace(scene.rays()) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec3, Vec3};
+    use shadowfit::{FittedMaps, PerspectiveCamera};
+    use shadowfit_render::{AdapterChoice, Gpu, Renderer};
+    use shadowfit_scene::builtin::default_scene;
+    use shadowfit_wgpu::ShadowMapDescriptor;
+
+    use super::*;
+
+    fn scene() -> PreparedScene {
+        let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
+        let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::default(), 1).expect("a renderer");
+        PreparedScene::new(&gpu, renderer.material_layout(), default_scene()).expect("the default scene")
+    }
+
+    fn view(z: f64, is_first: bool) -> View {
+        let camera = PerspectiveCamera {
+            eye: DVec3::new(3.0, 2.0, z),
+            forward: Vec3::new(-0.3, -0.2, -0.9),
+            up: Vec3::Y,
+            fov_y: 0.8,
+            aspect: 1.6,
+            near: 0.1,
+            far: 150.0,
+        };
+        View { camera, direction: Vec3::new(0.4, -0.7, 0.3).normalize(), is_first }
+    }
+
+    #[test]
+    fn gpu_windows_are_placed_by_the_frame_before_and_those_of_a_picture_alone_by_itself() {
+        let scene = scene();
+        let fitter = |name: &str| TechniqueFitter::new(Technique::preset(name).expect("a preset"));
+        let alone = |name: &str| {
+            let mut fitter = fitter(name);
+            fitter.fit_alone(&scene, &view(9.0, false)).expect("maps");
+            *fitter.fitted()
+        };
+        let along = |name: &str| -> Vec<FittedMaps> {
+            let mut fitter = fitter(name);
+            let frames = [view(9.0, true), view(8.9, false), view(8.8, false)];
+            let fit = |view: &View| fitter.fit(&scene, view).map(|_| *fitter.fitted()).expect("maps");
+            frames.iter().map(fit).collect()
+        };
+        let (seen, estimated) = (along("windows-4"), along("windows-boxes-4"));
+        assert_ne!(alone("windows-4"), alone("windows-boxes-4"), "the picture's own needs count");
+        assert_eq!(seen[0], estimated[0], "the first frame knows the boxes alone");
+        assert_eq!(seen[0], alone("windows-boxes-4"));
+        assert_ne!(seen[1], estimated[1], "the next one knows what the first one showed");
+    }
+}

@@ -70,3 +70,38 @@ impl Seen {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+
+    #[test]
+    fn each_technique_is_told_what_it_uses_in_world_positions() {
+        let corner = |x: f32, z: f32| Vec3::new(x, 0.0, z);
+        let ground = [corner(-50.0, 50.0), corner(50.0, 50.0), corner(0.0, -50.0)];
+        let tracer = Tracer::new([ground]);
+        let camera = PerspectiveCamera {
+            eye: DVec3::new(0.0, 2.0, 5.0),
+            forward: Vec3::NEG_Z,
+            up: Vec3::Y,
+            fov_y: 0.8,
+            aspect: 1.6,
+            near: 0.1,
+            far: 150.0,
+        };
+        let origin = DVec3::new(1e5, 0.0, -2e5);
+        let seen = |name: &str| {
+            let technique = Technique::preset(name).expect("a preset");
+            Seen::trace(&technique, (&tracer, origin), &camera, Vec3::NEG_Y).expect("a camera that makes sense")
+        };
+        assert_eq!(["clusters-4", "stable-4", "windows-boxes-4"].map(seen), [None, None, None]);
+        let [histogram, windows] = ["histogram-4", "windows-4"].map(|name| seen(name).expect("it is told"));
+        assert!(histogram.histogram().expect("for splits").bins.iter().sum::<u32>() > 100);
+        assert_eq!(histogram.need(), None);
+        let need = windows.need().expect("for windows");
+        assert_eq!((need.space.origin, windows.histogram()), (origin + camera.eye, None));
+        assert!(need.counts.iter().sum::<u32>() > 100);
+    }
+}

@@ -2,7 +2,8 @@
 //! the scene at hand, and the setting that cures it.
 //!
 //! Several maps keep their fit, their splits and what holds them still: only what prevents the artefact is changed. A
-//! single map is fitted by the rule that shows the artefact best.
+//! single map is fitted by the rule that shows the artefact best. Windows, which cannot be made coarse, give way to
+//! focused maps where the artefact takes coarse texels.
 
 use core::f32::consts::{PI, TAU};
 
@@ -332,6 +333,9 @@ struct Coarse {
 /// Makes texels as large as wanted: with the frustum that a single map has to hold, with the margin around each of
 /// several.
 fn coarsen(search: &ViewSearch<'_>, camera: &PerspectiveCamera, settings: &mut Settings, wanted: &Coarse) {
+    if settings.technique.fit.kind == FitKind::Windows {
+        settings.technique.fit.kind = FitKind::Focused;
+    }
     let is_single = settings.technique.count == 1;
     let with = |amount: f32| {
         let mut settings = *settings;

@@ -108,7 +108,9 @@ fn snapped(axes: &LightAxes, min: DVec3, max: DVec3, origin: DVec3, rule: &FitRu
     let mut size = DVec2::new(width, if size.y == size.x { width } else { quantised(size.y) });
     if rule.max_texel_ratio.is_some() {
         let limited = rule.limited(size, usable);
-        size = size.max(DVec2::new(quantised(limited.x), quantised(limited.y)));
+        let stepped = size.max(DVec2::new(quantised(limited.x), quantised(limited.y)));
+        // The step above the limit may be too long the other way. The limit itself follows from a step too.
+        size = if rule.limited(stepped, usable) == stepped { stepped } else { limited };
     }
     let texel = size / usable;
     let line = (min.truncate() - pad + anchor.truncate()) / texel - border;

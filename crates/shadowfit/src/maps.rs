@@ -24,8 +24,8 @@ pub struct FittedMap {
     /// depth](crate::settings::MapChoice::ViewDepth). By coverage it says for which part of the view the
     /// map was made: of [windows](crate::settings::FitKind::Windows) for all of it.
     pub near: f32,
-    /// View depth up to which points choose this map, in metres: they take the first map that ends
-    /// beyond them. The last one has no end. Where splits coincide there is no range: such maps end
+    /// View depth up to which points choose this map by view depth, in metres: they take the first map that
+    /// ends beyond them. Of slices the last one has no end. Where splits coincide there is no range: such maps end
     /// at `f32::MIN` before all others, and begin at `f32::MAX` after them.
     pub far: f32,
     /// View depth from which this map covers what is seen, in metres: before `near` where the

@@ -141,7 +141,8 @@ impl Technique {
     /// Whether more may read a map than the receivers that it is made for: those of other view depths, or of
     /// later frames.
     pub(crate) const fn shares_maps(&self) -> bool {
-        let is_shared = self.count > 1 || !matches!(self.stabilise, Stabilise::Off);
+        let is_kept = !matches!(self.stabilise, Stabilise::Off) || self.has_windows();
+        let is_shared = self.count > 1 || is_kept;
         matches!(self.map_choice(), MapChoice::Coverage) && is_shared
     }
 

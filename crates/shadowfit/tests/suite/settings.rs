@@ -1,12 +1,14 @@
 //! The sun's angles, and what follows from a technique's settings.
 
 use proptest::prelude::*;
-use shadowfit::Technique;
-use shadowfit::glam::{UVec2, Vec3};
-use shadowfit::settings::{BiasSettings, FilterKind, FitSettings, MapFormat};
+use shadowfit::glam::{DVec2, UVec2, Vec3};
+use shadowfit::settings::{
+    BiasSettings, FilterKind, FitKind, FitSettings, MAX_MAPS, MapChoice, MapFormat, MapOverride, SplitScheme, Stabilise,
+};
 use shadowfit::tool::{CameraSettings, LightSettings, Settings, ViewSettings};
+use shadowfit::{FitInput, FittedMaps, MapFitter, Technique, Workspace};
 
-use crate::support::any_direction;
+use crate::support::{DIRECTION, any_direction, camera};
 
 fn light(azimuth: f32, elevation: f32) -> Vec3 {
     LightSettings::default().with_azimuth(azimuth).with_elevation(elevation).direction()
@@ -87,5 +89,60 @@ fn a_map_of_its_own_resolution_has_it_and_the_others_have_that_of_the_fit() {
     assert_eq!(technique.resolution_of(2), UVec2::splat(256));
     for map in [0, 1, 3, 7, 8, usize::MAX] {
         assert_eq!(technique.resolution_of(map), UVec2::new(1024, 512), "map {map}");
+    }
+}
+
+/// The maps of three frames of a camera that flies on.
+fn fitted(technique: &Technique) -> Vec<FittedMaps> {
+    let mut storage = [DVec2::ZERO; Workspace::required(0, 3)];
+    let (mut fitter, mut camera) = (MapFitter::new(), camera());
+    let mut next = || {
+        camera.eye.x += 0.7;
+        let views = [camera.frustum().expect("a frustum")];
+        fitter.fit(&FitInput::new(&views, DIRECTION), technique, &mut Workspace::new(&mut storage)).expect("maps")
+    };
+    [(); 3].map(|()| next()).to_vec()
+}
+
+#[test]
+fn windows_of_an_override_are_ignored_and_so_are_other_kinds_where_all_maps_are_windows() {
+    let own = |kind| [MapOverride { kind: Some(kind), resolution: None }; MAX_MAPS];
+    let windows = Technique::preset("windows-4").expect("a preset");
+    for kind in [FitKind::Sphere, FitKind::XnaSample, FitKind::Windows] {
+        let with_own = windows.with_overrides(own(kind));
+        assert_eq!(fitted(&with_own), fitted(&windows), "{kind:?}");
+        assert_eq!(with_own.kind_of(0), FitKind::Windows);
+    }
+    let focused = Technique::preset("focused-4").expect("a preset");
+    assert_eq!(fitted(&focused.with_overrides(own(FitKind::Windows))), fitted(&focused));
+    let spheres = focused.with_overrides(own(FitKind::Sphere));
+    assert_eq!((spheres.kind_of(3), focused.kind_of(MAX_MAPS)), (FitKind::Sphere, FitKind::Focused));
+    assert_ne!(fitted(&spheres), fitted(&focused));
+}
+
+#[test]
+fn what_has_no_effect_on_windows_has_none() {
+    let windows = Technique::preset("windows-4").expect("a preset");
+    let same = |name: &str, other: Technique| assert_eq!(fitted(&other), fitted(&windows), "{name}");
+    same("splits", windows.with_splits(SplitScheme::Uniform));
+    same("overlap", windows.with_overlap(0.5));
+    same("choice", windows.with_choice(MapChoice::ViewDepth));
+    same("stabilise", windows.with_stabilise(Stabilise::Off));
+    same("margin, growth, horizon", windows.with_hold(windows.hold.with_margin(1.0).with_growth(3.0).with_horizon(7)));
+    same("texel ratio", windows.with_fit(windows.fit.with_max_texel_ratio(1.0)));
+    assert_ne!(fitted(&windows.with_fit(windows.fit.with_border(9.0))), fitted(&windows));
+}
+
+#[test]
+fn windows_are_read_by_coverage_whatever_the_choice() {
+    let technique = Technique::preset("windows-4").expect("a preset").with_choice(MapChoice::ViewDepth);
+    assert_eq!(technique.map_choice(), MapChoice::Coverage);
+    let by_depth = Technique::default().with_choice(MapChoice::ViewDepth);
+    assert_eq!((by_depth.map_choice(), Technique::default().map_choice()), (MapChoice::ViewDepth, MapChoice::Coverage));
+    let maps = fitted(&technique)[0];
+    let by_coverage = technique.with_choice(MapChoice::Coverage);
+    for depth in 1..150 {
+        let point = maps[0].fit.origin + (camera().forward.normalize() * depth as f32).as_dvec3();
+        assert_eq!(maps.read(&technique, point, depth.into()), maps.read(&by_coverage, point, depth.into()));
     }
 }
