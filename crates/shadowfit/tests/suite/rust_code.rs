@@ -77,6 +77,7 @@ fn all_fields() -> Technique {
         receivers: ReceiverSource::Objects,
         filter: FilterKind::Hardware2x2,
         bias: BiasSettings { constant: 1.0 / 3.0, slope: 0.2, normal_offset: 1e-9, receiver_plane: 1.5 },
+        need: NeedSource::LastFrame,
         format: MapFormat::R32Float,
     }
 }

@@ -75,6 +75,7 @@ let technique = Technique {
         normal_offset: 1e-9,
         receiver_plane: 1.5,
     },
+    need: NeedSource::LastFrame,
     format: MapFormat::R32Float,
 };
 technique
