@@ -128,7 +128,9 @@ impl MapFitter {
                 map.fit = LightFit::from_volume(content.origin, volume, rule.resolution, rule.convention)?;
                 map.bias = Bias::from_texels(&technique.bias, &map.fit);
                 map.anchor = volume.grid.as_ref().and_then(GridAnchor::of);
-                (map.near, map.far, map.covered_near) = (range.near, range.far, range.near);
+                // Only the last one holds all that is seen between any depths.
+                let covered_near = if i + 1 < technique.count as usize { range.far } else { range.near };
+                (map.near, map.far, map.covered_near) = (range.near, range.far, covered_near);
             }
             *self = Self {
                 windows: Some(held),
@@ -413,8 +415,10 @@ fn check(input: &FitInput, technique: &Technique) -> Result<(Rules, Light), FitE
 /// The settings of a map that differs from the others.
 fn own_settings(technique: &Technique, map: usize) -> Option<FitSettings> {
     let (own, fit) = (technique.overrides[map], technique.fit);
+    // All maps are windows or none.
+    let kind = own.kind.filter(|_| fit.kind != FitKind::Windows).unwrap_or(fit.kind);
     (own != MapOverride::default()).then(|| FitSettings {
-        kind: own.kind.unwrap_or(fit.kind),
+        kind,
         resolution: own.resolution.unwrap_or(fit.resolution),
         ..fit
     })

@@ -88,6 +88,8 @@ impl FittedMap {
     /// As [`CasterVolume::swept`].
     pub fn caster_volume(&self, views: &[ViewFrustum], technique: &Technique) -> Result<CasterVolume, FitError> {
         let (is_read, near, far) = match technique.choice {
+            // Windows serve whatever they hold, by view depth too.
+            _ if technique.fit.kind == FitKind::Windows => (!self.fit.is_empty, f32::MIN, f32::MAX),
             MapChoice::Coverage => (!self.fit.is_empty, f32::MIN, f32::MAX),
             MapChoice::ViewDepth if holds_slices(technique) => {
                 (self.covered_near < self.far, self.covered_near, self.far)

@@ -22,6 +22,15 @@ pub(super) struct Cell {
     pub(super) cost: f32,
 }
 
+impl Cell {
+    /// Whether sums over all cells stay finite: a grid that was never filled may hold any numbers.
+    fn is_usable(&self) -> bool {
+        let moment = (self.middle.abs().max_element() + self.half + 1.0) * self.cost * MAX_CELLS as f32;
+        // The second element may be NaN where the first one is not.
+        self.middle.is_finite() && moment.is_finite() && self.per_side.is_finite()
+    }
+}
+
 /// Share of the visible points with the finest needs, whose needs count as no finer than those of the rest:
 /// some surfaces seen at a glance ask for any texel.
 const FINEST: f32 = 0.02;
@@ -146,15 +155,17 @@ impl Cells {
             }
             let (middle, half, texel) = space.cell(*index as usize);
             let texel = (texel as f32).max(finest * space.texel);
-            let cost = weight * super::cost_of(1.0 / texel);
-            self.cells[self.len] = Cell {
+            let cell = Cell {
                 middle: (middle + offset).as_vec2(),
                 half: half as f32,
                 per_side: (0.5 / half) as f32,
                 weight: *weight,
-                cost,
+                cost: weight * super::cost_of(1.0 / texel),
             };
-            self.len += 1;
+            if cell.is_usable() {
+                self.cells[self.len] = cell;
+                self.len += 1;
+            }
         }
     }
 

@@ -131,13 +131,15 @@ struct Run {
     technique: Technique,
     fitter: MapFitter,
     need: Option<Need>,
+    /// The view and the light that the grid of need is of.
+    seen: Option<(ViewFrustum, Vec3)>,
     storage: Vec<DVec2>,
 }
 
 impl Run {
     fn new(world: World, technique: Technique) -> Self {
         let storage = vec![DVec2::ZERO; Workspace::required(world.boxes.len(), 1)];
-        Self { world, technique, fitter: MapFitter::new(), need: None, storage }
+        Self { world, technique, fitter: MapFitter::new(), need: None, seen: None, storage }
     }
 
     fn frame(&mut self, view: &SceneView, direction: Vec3) -> FittedMaps {
@@ -145,9 +147,11 @@ impl Run {
         let need: Vec<NeedGrid> = self.need.iter().map(Need::grid).collect();
         let input = self.world.input(&views, direction, &need);
         let maps = self.fitter.fit(&input, &self.technique, &mut Workspace::new(&mut self.storage)).unwrap();
-        let distance = f64::from(self.technique.fit.max_distance);
-        let hits = hits(view, self.world.origin, &self.world.boxes, distance);
-        self.need = Some(Need::of(view, &hits, direction, &self.technique));
+        if self.seen.replace((views[0], direction)) != Some((views[0], direction)) {
+            let distance = f64::from(self.technique.fit.max_distance);
+            let hits = hits(view, self.world.origin, &self.world.boxes, distance);
+            self.need = Some(Need::of(view, &hits, direction, &self.technique));
+        }
         maps
     }
 }

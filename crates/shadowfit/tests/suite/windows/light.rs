@@ -79,7 +79,7 @@ fn nothing_is_uncovered_while_the_light_goes_round() {
     for (off, up) in [(0.0, Vec3::Y), (1e-7, Vec3::Y), (0.3, Vec3::Y), (0.0, Vec3::Z), (0.2, Vec3::new(0.3, 0.7, -0.2))] {
         let technique = windows(4, 256);
         let mut run = Run::new(world.clone(), technique.with_fit(technique.fit.with_up(up)));
-        for degrees in -180..180_i16 {
+        for degrees in (-180..180_i16).step_by(if off == 0.0 && up == Vec3::Y { 1 } else { 5 }) {
             let maps = run.frame(&view, sun(f64::from(degrees).to_radians(), off));
             let last = &maps[3].fit;
             assert!(seen.iter().all(|point| last.free_texels(*point).is_some_and(|free| free > 2.0)), "at {degrees}°");

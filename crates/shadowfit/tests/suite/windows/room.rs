@@ -31,7 +31,7 @@ fn room_on_a_plain() -> World {
     ];
     for i in 0..40_u8 {
         let (a, r) = (f32::from(i) * 2.4, 12.0 + f32::from(i) * 6.0);
-        let (x, z, s) = (r * a.cos(), r * a.sin(), 1.0 + f32::from(i * 7 % 5));
+        let (x, z, s) = (r * a.cos(), r * a.sin(), 1.0 + f32::from(i % 5));
         boxes.push(Aabb::new(Vec3::new(x - s, 0.0, z - s), Vec3::new(x + s, 1.5 * s, z + s)));
     }
     World { origin: DVec3::ZERO, boxes }

@@ -7,7 +7,7 @@ use shadowfit::{Aabb, CasterVolume, FittedMap, Technique};
 use super::{Run, World, entry, street_view, windows};
 
 /// A side of the maps, in texels: few, since each is compared with all boxes.
-const SIDE: u32 = 64;
+const SIDE: u32 = 40;
 
 /// Boxes at random on a ground, some of them high up.
 fn heap() -> World {
@@ -92,7 +92,7 @@ fn what_is_not_exposed_need_not_be_drawn_anew() {
         let (world, technique) = (heap(), windows(count, SIDE));
         let mut run = Run::new(world.clone(), technique);
         let (mut before, mut compared, mut shifted): (Option<Vec<Drawn>>, usize, usize) = (None, 0, 0);
-        for frame in 0..60_u16 {
+        for frame in 0..40_u16 {
             let f = f64::from(frame);
             let eye = DVec3::new(-20.0 + f * 0.6, 3.0, 25.0 - f * 0.4);
             let view = street_view(eye, Vec3::new(0.4 + 0.01 * f32::from(frame), -0.2, -1.0));
@@ -119,6 +119,6 @@ fn what_is_not_exposed_need_not_be_drawn_anew() {
             }
             before = Some(now);
         }
-        assert!(compared > 50_000 && shifted >= 10, "{compared} texels of {shifted} shifted windows were compared");
+        assert!(compared > 20_000 && shifted >= 10, "{compared} texels of {shifted} shifted windows were compared");
     }
 }
