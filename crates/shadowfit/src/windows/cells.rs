@@ -2,6 +2,7 @@
 
 use glam::{DVec3, Vec2};
 
+use super::placement::Rect;
 use crate::need::{LEVELS, NeedGrid, NeedSpace, Plane, SIDE};
 
 /// Most cells that are kept; those with the fewest points are left out where there are more.
@@ -143,6 +144,21 @@ impl Cells {
 
     pub(super) fn as_slice(&self) -> &[Cell] {
         &self.cells[..self.len]
+    }
+
+    /// Leaves out cells that are farther from the last window than its own size: nothing is seen there, and a
+    /// grid that was never filled may put them anywhere.
+    pub(super) fn keep_near(&mut self, last: &Rect) {
+        let (low, high) = (last.min - last.size, last.min + last.size * 2.0);
+        let mut kept = 0;
+        for i in 0..self.len {
+            let middle = self.cells[i].middle;
+            if middle.cmpge(low).all() && middle.cmple(high).all() {
+                self.cells[kept] = self.cells[i];
+                kept += 1;
+            }
+        }
+        self.len = kept;
     }
 
     /// Adds points that were counted in a space.

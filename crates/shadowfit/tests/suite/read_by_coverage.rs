@@ -68,7 +68,13 @@ fn before_near(fit: &LightFit, point: DVec3) -> f64 {
 }
 
 /// Checks one frame; gives the number of casters that were found above points that read a map.
-pub(crate) fn check(maps: &FittedMaps, input: &FitInput, technique: &Technique, seen: &[DVec3], samples: &[Sample]) -> usize {
+pub(crate) fn check(
+    maps: &FittedMaps,
+    input: &FitInput,
+    technique: &Technique,
+    seen: &[DVec3],
+    samples: &[Sample],
+) -> usize {
     let Boxes { origin, boxes } = input.casters.unwrap();
     let to_light = -input.direction.as_dvec3().normalize();
     let view = &input.views[0];

@@ -78,8 +78,12 @@ fn hits(view: &SceneView, origin: DVec3, boxes: &[Aabb], distance: f64) -> Vec<H
             let (start, along) = ray(x, y);
             start + along * (normal.dot(point - start) / normal.dot(along)) - point
         };
-        (depth <= distance.min(lens.far))
-            .then(|| Hit { point, normal, right: beside(x + across, y), down: beside(x, y - pixel) })
+        (depth <= distance.min(lens.far)).then(|| Hit {
+            point,
+            normal,
+            right: beside(x + across, y),
+            down: beside(x, y - pixel),
+        })
     };
     all.filter_map(hit).collect()
 }

@@ -74,7 +74,7 @@ fn a_near_plane_that_is_cut_is_found_in_every_window_under_the_tower() {
     let view = super::street_view(DVec3::new(0.0, 1.7, 0.0), Vec3::NEG_Z);
     let (views, direction) = ([view.frustum()], Vec3::new(0.2, -1.0, 0.1));
     let ground = [Aabb::new(Vec3::new(-100.0, -0.1, -200.0), Vec3::new(100.0, 0.0, 10.0))];
-    let tower = [ground[0], Aabb::new(Vec3::new(-1.0, 0.0, -5.0), Vec3::new(1.0, 40.0, -3.0))];
+    let tower = [ground[0], Aabb::new(Vec3::new(-1.0, 0.0, -5.0), Vec3::new(1.0, 300.0, -3.0))];
     let (receivers, casters) = [&ground[..], &tower].map(|boxes| Some(Boxes { origin: DVec3::ZERO, boxes })).into();
     let input = FitInput { receivers, casters, ..FitInput::new(&views, direction) };
     let mut storage = vec![DVec2::ZERO; Workspace::required(tower.len(), 1)];

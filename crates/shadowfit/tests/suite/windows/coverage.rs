@@ -92,7 +92,13 @@ fn assert_covered(maps: &FittedMaps, technique: &Technique, point: DVec3, view_d
 }
 
 /// Samples a view, and what it sees of boxes: world positions and view depths.
-fn visible(view: &SceneView, origin: DVec3, boxes: Option<&[Aabb]>, last: f64, places: &[[f64; 3]]) -> Vec<(DVec3, f64)> {
+fn visible(
+    view: &SceneView,
+    origin: DVec3,
+    boxes: Option<&[Aabb]>,
+    last: f64,
+    places: &[[f64; 3]],
+) -> Vec<(DVec3, f64)> {
     let far = last.min(view.lens.far);
     let in_view = places.iter().map(|[x, y, z]| {
         // As many points in each octave of depth.

@@ -55,7 +55,8 @@ fn a_step_of_the_light_keeps_sizes_and_roughly_the_places() {
                     // The point in the middle of the window, as far along the light as the eye is.
                     let rows = old.fit.light_from_world.transpose();
                     let t = old.fit.light_from_world.w_axis.truncate();
-                    let middle = old.fit.origin - (rows.x_axis.truncate() * t.x + rows.y_axis.truncate() * t.y).as_dvec3();
+                    let middle =
+                        old.fit.origin - (rows.x_axis.truncate() * t.x + rows.y_axis.truncate() * t.y).as_dvec3();
                     let uv = map.fit.uv_from_world.transform_point3((middle - map.fit.origin).as_vec3());
                     moved.push((f64::from(uv.x) - 0.5).abs().max((f64::from(uv.y) - 0.5).abs()));
                 }
@@ -76,7 +77,8 @@ fn nothing_is_uncovered_while_the_light_goes_round() {
     let world = town();
     let seen: Vec<DVec3> =
         hits(&view, world.origin, &world.boxes, f64::MAX).iter().map(|hit| view.eye + hit.point).collect();
-    for (off, up) in [(0.0, Vec3::Y), (1e-7, Vec3::Y), (0.3, Vec3::Y), (0.0, Vec3::Z), (0.2, Vec3::new(0.3, 0.7, -0.2))] {
+    for (off, up) in [(0.0, Vec3::Y), (1e-7, Vec3::Y), (0.3, Vec3::Y), (0.0, Vec3::Z), (0.2, Vec3::new(0.3, 0.7, -0.2))]
+    {
         let technique = windows(4, 256);
         let mut run = Run::new(world.clone(), technique.with_fit(technique.fit.with_up(up)));
         for degrees in (-180..180_i16).step_by(if off == 0.0 && up == Vec3::Y { 1 } else { 5 }) {

@@ -47,7 +47,8 @@ impl Drawn {
         let t = fit.light_from_world.w_axis.truncate().as_dvec3();
         let (range, near) = (f64::from(fit.depth_range), f64::from(fit.box_max.z));
         let size = fit.texel_size.as_dvec2();
-        let across = DVec2::new(f64::from(fit.box_min.x) + texel.x * size.x, f64::from(fit.box_max.y) - texel.y * size.y);
+        let across =
+            DVec2::new(f64::from(fit.box_min.x) + texel.x * size.x, f64::from(fit.box_max.y) - texel.y * size.y);
         // The ray begins far before the near plane; what it meets there would be clipped.
         let start = |z_of: f64| x * (across.x - t.x) + y * (across.y - t.y) + z * (z_of - t.z);
         let begin = near + 1e3;

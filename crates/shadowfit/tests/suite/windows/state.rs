@@ -25,7 +25,8 @@ fn reset_forgets_all_earlier_frames() {
         run.frame(&walk(frame), LIGHT);
     }
     let need = run.need.clone();
-    let kept = Run { world: town(), storage: run.storage.clone(), ..Run { fitter: run.fitter.clone(), need, ..run_of(4) } };
+    let kept =
+        Run { world: town(), storage: run.storage.clone(), ..Run { fitter: run.fitter.clone(), need, ..run_of(4) } };
     run.fitter.reset();
     let mut fresh = Run { fitter: MapFitter::new(), need: kept.need.clone(), ..run_of(4) };
     let (reset, fresh) = (run.frame(&walk(60), LIGHT), fresh.frame(&walk(60), LIGHT));
@@ -92,14 +93,17 @@ fn too_little_storage_is_an_error_and_what_is_required_is_enough() {
     let (world, views) = (town(), [walk(0).frustum(), walk(30).frustum()]);
     let input = world.input(&views, LIGHT, &[]);
     let required = Workspace::required(world.boxes.len(), views.len());
-    let fit = |len: usize| MapFitter::new().fit(&input, &windows(8, 64), &mut Workspace::new(&mut vec![DVec2::ZERO; len]));
+    let fit =
+        |len: usize| MapFitter::new().fit(&input, &windows(8, 64), &mut Workspace::new(&mut vec![DVec2::ZERO; len]));
     let whole = fit(required).unwrap();
     let mut refused = 0;
     for len in (0..required).step_by(61).chain([required - 1]) {
         match fit(len) {
             Ok(maps) => assert_eq!(maps, whole, "{len} elements"),
             Err(error) => {
-                assert!(matches!(error, FitError::WorkspaceTooSmall { given, required } if given <= len && required > given));
+                assert!(
+                    matches!(error, FitError::WorkspaceTooSmall { given, required } if given <= len && required > given)
+                );
                 refused += 1;
             }
         }
@@ -160,8 +164,10 @@ fn finest(maps: &FittedMaps, point: DVec3) -> f32 {
 /// Two players far apart: with a grid for each both have fine texels, with one's alone the other has the last window's.
 #[test]
 fn each_view_is_served_by_its_own_grid() {
-    let players =
-        [street_view(DVec3::new(-110.0, 1.7, -110.0), Vec3::NEG_Z), street_view(DVec3::new(110.0, 1.7, 120.0), Vec3::X)];
+    let players = [
+        street_view(DVec3::new(-110.0, 1.7, -110.0), Vec3::NEG_Z),
+        street_view(DVec3::new(110.0, 1.7, 120.0), Vec3::X),
+    ];
     let (world, technique) = (town(), windows(6, 1024));
     let views: Vec<ViewFrustum> = players.iter().map(SceneView::frustum).collect();
     let seen = players.map(|view| hits(&view, DVec3::ZERO, &world.boxes, f64::MAX));

@@ -107,8 +107,9 @@ fn a_walk_through_a_town_moves_no_texel_up_to_100_km_from_the_origin() {
             street_view(offset + DVec3::new(12.0 + f * 0.03, 1.7, 20.0 - f * 0.08), Vec3::new(turn, -0.1, -1.0))
         };
         let direction = Vec3::new(0.5, -0.6, 0.3);
-        let points: Vec<DVec3> =
-            (0..200_u16).map(|i| offset + DVec3::new(f64::from(i % 20) * 4.0 - 30.0, 0.1, -f64::from(i / 20) * 6.0)).collect();
+        let points: Vec<DVec3> = (0..200_u16)
+            .map(|i| offset + DVec3::new(f64::from(i % 20) * 4.0 - 30.0, 0.1, -f64::from(i / 20) * 6.0))
+            .collect();
         let first = run.frame(&at(0), direction);
         let (mut before, mut compared) = (first, 0);
         for frame in 1..90 {
