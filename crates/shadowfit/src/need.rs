@@ -111,7 +111,7 @@ impl NeedSpace {
     }
 
     /// Index into [`NeedGrid::counts`] of a visible point; `None` for one that does not count,
-    /// because it is turned away from the light or too near the edge of it.
+    /// because it is turned away from the light or too near the edge of it, or not finite.
     ///
     /// `position` is relative to [`Self::origin`], in metres; `normal` is the surface's geometric unit
     /// normal on the side of the eye; `right` and `down` are how far the point moves on its surface, in
@@ -120,7 +120,7 @@ impl NeedSpace {
         let facing = -dot(normal, self.direction);
         // NaN is turned away too.
         let is_lit = facing >= MIN_FACING;
-        if !is_lit {
+        if !is_lit || !(normal.is_finite() && right.is_finite() && down.is_finite()) {
             return None;
         }
         self.cell_of(self.project(position), needed_texel(self.project(right), self.project(down)))

@@ -87,10 +87,11 @@ impl Frame<'_, '_> {
         let before = before.map(|before| before.in_plane(&lattice, origin));
         // 2. What all windows together must hold, and what is visible of it.
         let shadows = Shadows::new(self.content, plane.axes, self.range, points)?;
-        let (cells, is_guess) = self.cells(&plane);
+        let (mut cells, is_guess) = self.cells(&plane);
         // 3. The last window, which holds everything, then the others.
         let last =
             lattice.last(count - 1, before.as_ref().map(|before| &before.drawn[count - 1]), shadows.bounds(&plane));
+        cells.keep_near(&lattice.rect(count - 1, &last));
         let mut held = plan_windows(&lattice, (count, &last), cells.as_slice(), before.as_ref(), is_guess);
         // 4. Their depths, held while they serve.
         let mut volumes = [None; MAX_MAPS];

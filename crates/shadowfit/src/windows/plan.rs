@@ -35,6 +35,10 @@ type Left = [f32; MAX_CELLS];
 /// Ratios of the texels of neighbours with which a search begins, in eighths of an octave.
 const LADDERS: [i32; 8] = [4, 6, 8, 10, 13, 16, 20, 24];
 
+/// How much finer than the last window's the first one's texels may be, in eighths of an octave: more than the
+/// octaves of a grid of need, and little enough that all its lines are exact.
+const FINEST: i32 = 20 * 8;
+
 /// Changes of a window's texels that are tried, in eighths of an octave.
 const CHANGES: [i32; 6] = [4, -4, 8, -8, 2, -2];
 
@@ -111,8 +115,9 @@ impl Planner<'_> {
         plan.steps[self.count - 1] = last;
         plan.rects[self.count - 1] = rect;
         for i in (0..self.count - 1).rev() {
-            if plan.steps[i] >= plan.steps[i + 1] {
-                plan.steps[i] = plan.steps[i + 1] - 1;
+            let steps = plan.steps[i].max(last.saturating_sub(FINEST)).min(plan.steps[i + 1] - 1);
+            if steps != plan.steps[i] {
+                plan.steps[i] = steps;
                 let middle = plan.rects[i].min + plan.rects[i].size * 0.5;
                 plan.rects[i].size = self.size(i, plan.steps[i]);
                 plan.rects[i].min = middle - plan.rects[i].size * 0.5;
@@ -257,6 +262,7 @@ impl Planner<'_> {
     }
 
     fn is_in_order(&self, steps: &[i32; MAX_MAPS]) -> bool {
-        steps[..self.count].windows(2).all(|pair| pair[0] < pair[1])
+        let is_fine = steps[self.count - 1].saturating_sub(steps[0]) > FINEST;
+        !is_fine && steps[..self.count].windows(2).all(|pair| pair[0] < pair[1])
     }
 }
