@@ -35,8 +35,8 @@
 //! # }
 //! ```
 //!
-//! After a camera cut, drop what was seen and what is on its way ([`NeedPass::reset`]); what is kept costs sharpness, never
-//! coverage. For several views that share the maps, such as a split screen, make a pass for each.
+//! After a camera cut, drop what was seen and what is on its way ([`NeedPass::reset`]); what is kept costs sharpness,
+//! never coverage. For several views that share the maps, such as a split screen, make a pass for each.
 //!
 //! # Precision
 //!

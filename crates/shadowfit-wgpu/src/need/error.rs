@@ -7,7 +7,8 @@ use shadowfit::{DepthConvention, FitError};
 /// Why a [`NeedPass`](super::NeedPass) could not be made, or could not count a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NeedPassError {
-    /// The device cannot run the pass at all: fit with [`FitInput::need`](shadowfit::FitInput::need) left empty, from boxes.
+    /// The device cannot run the pass at all: fit with [`FitInput::need`](shadowfit::FitInput::need) left empty, from
+    /// boxes.
     Unsupported(Unsupported),
     /// The view, the light or the distance.
     Fit(FitError),

@@ -11,8 +11,8 @@ use super::read_back::ReadBack;
 use super::seen::{CLASSES, COUNTS, DEPTHS, SeenNeed};
 use super::view::{NeedUniform, NeedView};
 
-/// Pictures that may be on their way back at once: graphics APIs let the CPU be up to three frames ahead, and one more is
-/// being recorded.
+/// Pictures that may be on their way back at once: graphics APIs let the CPU be up to three frames ahead, and one more
+/// is being recorded.
 const FRAMES: usize = 4;
 
 /// Threads of a workgroup, as in the WGSL.
@@ -49,8 +49,8 @@ impl NeedPass {
     ///
     /// # Errors
     ///
-    /// [`NeedPassError::Unsupported`] if the device has no compute shaders or storage buffers, or is OpenGL, whose shaders
-    /// cannot load depth: fit from boxes then. [`NeedPassError::Device`] if it is out of memory.
+    /// [`NeedPassError::Unsupported`] if the device has no compute shaders or storage buffers, or is OpenGL, whose
+    /// shaders cannot load depth: fit from boxes then. [`NeedPassError::Device`] if it is out of memory.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, samples: u32) -> Result<Self, NeedPassError> {
         supported(&device.limits(), device.adapter_info().backend).map_err(NeedPassError::Unsupported)?;
         caught(device, || {
@@ -79,13 +79,12 @@ impl NeedPass {
         })
     }
 
-    /// Records the pass and the way back of its counts, after the pass that fills the depth buffer. `depth` is a view of
-    /// the depth aspect of the whole texture, of any depth format, with usage `TEXTURE_BINDING`, that the pass before it has stored (`StoreOp::Store`);
-    /// `timestamps` may time
-    /// the pass.
+    /// Records the pass and the way back of its counts, after the pass that fills the depth buffer. `depth` is a view
+    /// of the depth aspect of the whole texture, of any depth format, with usage `TEXTURE_BINDING`, that the pass
+    /// before it has stored (`StoreOp::Store`); `timestamps` may time the pass.
     ///
-    /// Returns whether it was recorded: while as many pictures are on their way as GPUs are ever behind, nothing is, and
-    /// fits go on with what they have.
+    /// Returns whether it was recorded: while as many pictures are on their way as GPUs are ever behind, nothing is,
+    /// and fits go on with what they have.
     ///
     /// # Errors
     ///
@@ -133,8 +132,8 @@ impl NeedPass {
         self.newest()
     }
 
-    /// As [`Self::take`] for the picture that was submitted last, for which it waits: for headless runs and tests, whose
-    /// pictures have to be the same each time.
+    /// As [`Self::take`] for the picture that was submitted last, for which it waits: for headless runs and tests,
+    /// whose pictures have to be the same each time.
     ///
     /// # Errors
     ///
@@ -144,7 +143,8 @@ impl NeedPass {
         self.newest()
     }
 
-    /// Forgets the pictures that are on their way: for camera cuts, beside [`MapFitter::reset`](shadowfit::MapFitter::reset).
+    /// Forgets the pictures that are on their way: for camera cuts, beside
+    /// [`MapFitter::reset`](shadowfit::MapFitter::reset).
     pub fn reset(&mut self) {
         self.forgotten = self.recordings;
     }

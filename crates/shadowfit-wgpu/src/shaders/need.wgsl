@@ -1,6 +1,6 @@
 // What a depth buffer shows: which texel each visible point asks for, by its place across the light, and how far away
-// it is. The twin of `NeedSpace::index` and `DepthHistogram::bin`. In front of it stand the constants CELLS, LEVELS, SIDE,
-// DEPTHS, CLASSES, MIN_FACING, and DepthTexture, the depth texture's type.
+// it is. The twin of `NeedSpace::index` and `DepthHistogram::bin`. In front of it stand the constants CELLS, LEVELS,
+// SIDE, DEPTHS, CLASSES, MIN_FACING, and DepthTexture, the depth texture's type.
 
 struct Need {
     // Homogeneous position relative to the eye from a pixel's column and row, and its depth minus the far plane's.
@@ -69,8 +69,9 @@ fn depth_at(pixel: vec2<i32>) -> f32 {
     return textureLoad(depths, vec2<i32>(need.corner) + pixel, 0) - need.far_depth;
 }
 
-// Change of depth from a pixel to the next along an axis on the surface that it shows, which is the same everywhere on a
-// plane. It is taken from the neighbour that is nearer in depth, so that what lies behind a silhouette does not count.
+// Change of depth from a pixel to the next along an axis on the surface that it shows, which is the same everywhere on
+// a plane. It is taken from the neighbour that is nearer in depth, so that what lies behind a silhouette does not
+// count.
 fn change(pixel: vec2<i32>, axis: vec2<i32>, depth: f32) -> f32 {
     let next = depth_at(pixel + axis);
     let previous = depth_at(pixel - axis);
@@ -104,7 +105,8 @@ fn cell_of(place: vec2<f32>, texel: f32) -> u32 {
     let half_side = f32(SIDE / 2u);
     let cells = place / need.cell;
     let reach = max(abs(cells.x), abs(cells.y)) / half_side;
-    // Points so far away that their level has no cell for them count as coarser: they lie within the power of two above.
+    // Points so far away that their level has no cell for them count as coarser: they lie within the power of two
+    // above.
     let asked = clamp(exponent(texel) - need.exponent, 0, LEVELS - 1);
     let level = max(asked, exponent(reach) - 126);
     if level >= LEVELS {
