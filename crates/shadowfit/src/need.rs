@@ -120,7 +120,8 @@ impl NeedSpace {
         let facing = -dot(normal, self.direction);
         // NaN is turned away too.
         let is_lit = facing >= MIN_FACING;
-        if !is_lit || !(normal.is_finite() && right.is_finite() && down.is_finite()) {
+        let is_point = is_lit && normal.is_finite() && right.is_finite() && down.is_finite();
+        if !is_point {
             return None;
         }
         self.cell_of(self.project(position), needed_texel(self.project(right), self.project(down)))

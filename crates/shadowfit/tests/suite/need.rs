@@ -25,8 +25,8 @@ fn on_ground(space: &NeedSpace, x: f32, z: f32, pixel: f32) -> Option<usize> {
     space.index(Vec3::new(x, -2.0, z), Vec3::Y, Vec3::X * pixel, Vec3::Z * pixel)
 }
 
-const fn index(level: usize, row: usize, column: usize) -> Option<usize> {
-    Some((level * SIDE + row) * SIDE + column)
+const fn index(level: usize, row: usize, column: usize) -> usize {
+    (level * SIDE + row) * SIDE + column
 }
 
 #[test]
@@ -34,29 +34,29 @@ fn points_count_in_the_cells_that_hand_finds() {
     assert_eq!((LEVELS, SIDE, CELLS), (16, 32, 16_384));
     let cases = [
         // The eye is in the middle: at the corner of cells 15 and 16.
-        ((0.0, 0.0, 0.0015), index(0, 16, 16)),
-        ((-0.01, 0.01, 0.0015), index(0, 15, 15)),
+        ((0.0, 0.0, 0.0015), Some(index(0, 16, 16))),
+        ((-0.01, 0.01, 0.0015), Some(index(0, 15, 15))),
         // 0.3 m are 1.2 cells of 0.25 m to the right, -0.6 m along z are 2.4 cells up.
-        ((0.3, -0.6, 0.0015), index(0, 18, 17)),
+        ((0.3, -0.6, 0.0015), Some(index(0, 18, 17))),
         // The outermost cells of level 0 end at 16 · 0.25 m = 4 m.
-        ((3.99, 3.99, 0.0015), index(0, 0, 31)),
-        ((-3.99, -3.99, 0.0015), index(0, 31, 0)),
+        ((3.99, 3.99, 0.0015), Some(index(0, 0, 31))),
+        ((-3.99, -3.99, 0.0015), Some(index(0, 31, 0))),
         // Beyond that a point counts as coarser: 5 m are 10 cells of 0.5 m.
-        ((5.0, 0.0, 0.0015), index(1, 16, 26)),
+        ((5.0, 0.0, 0.0015), Some(index(1, 16, 26))),
         // 100 m are 12.5 cells of 8 m, the first that reach as far: those of 4 m end at 64 m.
-        ((-100.0, 0.0, 0.0015), index(5, 16, 3)),
+        ((-100.0, 0.0, 0.0015), Some(index(5, 16, 3))),
         // Nothing is finer than level 0, however near.
-        ((0.3, -0.6, 1e-6), index(0, 18, 17)),
-        ((0.3, -0.6, 0.0), index(0, 18, 17)),
+        ((0.3, -0.6, 1e-6), Some(index(0, 18, 17))),
+        ((0.3, -0.6, 0.0), Some(index(0, 18, 17))),
         // Octaves: 1/1024 m is the first of level 0, 2/1024 the first of level 1 with its cells of 0.5 m.
-        ((0.3, -0.6, 1.0 / 1024.0), index(0, 18, 17)),
-        ((0.3, -0.6, 1.999 / 1024.0), index(0, 18, 17)),
-        ((0.3, -0.6, 2.0 / 1024.0), index(1, 17, 16)),
-        ((0.3, -0.6, 3.9 / 1024.0), index(1, 17, 16)),
-        ((0.3, -0.6, 4.0 / 1024.0), index(2, 16, 16)),
+        ((0.3, -0.6, 1.0 / 1024.0), Some(index(0, 18, 17))),
+        ((0.3, -0.6, 1.999 / 1024.0), Some(index(0, 18, 17))),
+        ((0.3, -0.6, 2.0 / 1024.0), Some(index(1, 17, 16))),
+        ((0.3, -0.6, 3.9 / 1024.0), Some(index(1, 17, 16))),
+        ((0.3, -0.6, 4.0 / 1024.0), Some(index(2, 16, 16))),
         // Nothing is coarser than level 15, from 32 m, whose cells of 8192 m reach 131,072 m.
-        ((1e5, 0.0, 33.0), index(15, 16, 28)),
-        ((1e5, 0.0, 1e6), index(15, 16, 28)),
+        ((1e5, 0.0, 33.0), Some(index(15, 16, 28))),
+        ((1e5, 0.0, 1e6), Some(index(15, 16, 28))),
         ((131_073.0, 0.0, 33.0), None),
         ((2e5, 0.0, 0.0015), None),
     ];
@@ -69,19 +69,19 @@ fn points_count_in_the_cells_that_hand_finds() {
 fn the_finer_axis_of_the_texel_counts() {
     let count = |right, down| space().index(Vec3::ZERO, Vec3::Y, right, down);
     // 1.5 mm along x and 100 mm along z: the least singular value is the former.
-    assert_eq!(count(Vec3::X * 0.0015, Vec3::Z * 0.1), index(0, 16, 16));
-    assert_eq!(count(Vec3::X * 0.1, Vec3::Z * 0.0015), index(0, 16, 16));
+    assert_eq!(count(Vec3::X * 0.0015, Vec3::Z * 0.1), Some(index(0, 16, 16)));
+    assert_eq!(count(Vec3::X * 0.1, Vec3::Z * 0.0015), Some(index(0, 16, 16)));
     // A square turned by 45° is as large as before: 0.003 √2 · √½ · … = 3 mm in both directions.
     let half = 0.003 * core::f32::consts::FRAC_1_SQRT_2;
-    assert_eq!(count(Vec3::new(half, 0.0, half), Vec3::new(-half, 0.0, half)), index(1, 16, 16));
+    assert_eq!(count(Vec3::new(half, 0.0, half), Vec3::new(-half, 0.0, half)), Some(index(1, 16, 16)));
     // Along one line only, the other axis asks for any texel.
-    assert_eq!(count(Vec3::X, Vec3::X), index(0, 16, 16));
+    assert_eq!(count(Vec3::X, Vec3::X), Some(index(0, 16, 16)));
     // What moves along the light does not move in the plane.
-    assert_eq!(count(Vec3::new(0.0015, 9.0, 0.0), Vec3::new(0.0, -9.0, 0.0015)), index(0, 16, 16));
+    assert_eq!(count(Vec3::new(0.0015, 9.0, 0.0), Vec3::new(0.0, -9.0, 0.0015)), Some(index(0, 16, 16)));
     // A plane whose second axis is twice as long halves the texel there: 2 · 0.8 mm.
     let space = NeedSpace { y: Vec3::NEG_Z * 2.0, ..space() };
-    assert_eq!(space.index(Vec3::ZERO, Vec3::Y, Vec3::X * 0.01, Vec3::Z * 0.0008), index(0, 16, 16));
-    assert_eq!(space.index(Vec3::ZERO, Vec3::Y, Vec3::X * 0.01, Vec3::Z * 0.0012), index(1, 16, 16));
+    assert_eq!(space.index(Vec3::ZERO, Vec3::Y, Vec3::X * 0.01, Vec3::Z * 0.0008), Some(index(0, 16, 16)));
+    assert_eq!(space.index(Vec3::ZERO, Vec3::Y, Vec3::X * 0.01, Vec3::Z * 0.0012), Some(index(1, 16, 16)));
 }
 
 #[test]

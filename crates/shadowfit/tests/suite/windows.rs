@@ -102,7 +102,7 @@ impl Need {
         let space = NeedSpace::new(&view.frustum(), direction, fit.up, fit.max_distance).unwrap();
         let mut counts = vec![0; CELLS];
         for hit in hits {
-            let [point, normal, right, down] = [hit.point, hit.normal, hit.right, hit.down].map(|v| v.as_vec3());
+            let [point, normal, right, down] = [hit.point, hit.normal, hit.right, hit.down].map(DVec3::as_vec3);
             if let Some(cell) = space.index(point, normal, right, down) {
                 counts[cell] += 1;
             }
@@ -141,9 +141,9 @@ struct Run {
 }
 
 impl Run {
-    fn new(world: World, technique: Technique) -> Self {
+    fn new(world: World, technique: &Technique) -> Self {
         let storage = vec![DVec2::ZERO; Workspace::required(world.boxes.len(), 1)];
-        Self { world, technique, fitter: MapFitter::new(), need: None, seen: None, storage }
+        Self { world, technique: *technique, fitter: MapFitter::new(), need: None, seen: None, storage }
     }
 
     fn frame(&mut self, view: &SceneView, direction: Vec3) -> FittedMaps {

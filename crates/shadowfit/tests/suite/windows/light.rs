@@ -15,7 +15,7 @@ fn sun(angle: f64, off: f64) -> Vec3 {
 fn a_light_that_differs_by_rounding_changes_nothing() {
     let view = street_view(DVec3::new(12.0, 1.7, 20.0), Vec3::new(0.2, -0.1, -1.0));
     for light in [Vec3::new(0.3, -0.8, 0.4), Vec3::NEG_Y, sun(1.3, 0.2)] {
-        let (mut run, mut other) = (Run::new(town(), windows(4, 1024)), Run::new(town(), windows(4, 1024)));
+        let (mut run, mut other) = (Run::new(town(), &windows(4, 1024)), Run::new(town(), &windows(4, 1024)));
         for frame in 0..40_u8 {
             let next = |v: f32, i: u8| if (frame + i).is_multiple_of(3) { v.next_up() } else { v };
             // The grid's light is rounded too.
@@ -39,7 +39,7 @@ fn a_step_of_the_light_keeps_sizes_and_roughly_the_places() {
     let settings = LightStepSettings::default().with_texels(1.0).with_extent(1024.0);
     let view = street_view(DVec3::new(12.0, 1.7, 20.0), Vec3::new(0.2, -0.1, -1.0));
     for begin in [0.2, 0.9] {
-        let (mut run, mut steps) = (Run::new(town(), windows(4, 1024)), LightSteps::default());
+        let (mut run, mut steps) = (Run::new(town(), &windows(4, 1024)), LightSteps::default());
         let mut before = None;
         let (mut taken, mut moved, mut resized) = (0, Vec::new(), 0);
         for frame in 0..160_u16 {
@@ -80,7 +80,7 @@ fn nothing_is_uncovered_while_the_light_goes_round() {
     for (off, up) in [(0.0, Vec3::Y), (1e-7, Vec3::Y), (0.3, Vec3::Y), (0.0, Vec3::Z), (0.2, Vec3::new(0.3, 0.7, -0.2))]
     {
         let technique = windows(4, 256);
-        let mut run = Run::new(world.clone(), technique.with_fit(technique.fit.with_up(up)));
+        let mut run = Run::new(world.clone(), &technique.with_fit(technique.fit.with_up(up)));
         for degrees in (-180..180_i16).step_by(if off == 0.0 && up == Vec3::Y { 1 } else { 5 }) {
             let maps = run.frame(&view, sun(f64::from(degrees).to_radians(), off));
             let last = &maps[3].fit;
@@ -93,7 +93,7 @@ fn nothing_is_uncovered_while_the_light_goes_round() {
 #[test]
 fn nothing_is_uncovered_where_light_and_camera_leap() {
     let world = town();
-    let mut run = Run::new(world.clone(), windows(6, 256));
+    let mut run = Run::new(world.clone(), &windows(6, 256));
     for frame in 0..60_u16 {
         let f = f64::from(frame);
         let turn = DQuat::from_euler(shadowfit::glam::EulerRot::XYZ, f * 2.4, f * 1.1, f * 0.7);

@@ -92,7 +92,7 @@ fn windows_follow_out_of_a_small_room_onto_a_plain_and_back() {
     for (light, count) in
         [(Vec3::new(0.5, -0.8, 0.3), 4), (Vec3::new(0.8, -0.4, 0.3), 4), (Vec3::new(0.5, -0.8, 0.3), 8)]
     {
-        let mut run = Run::new(room_on_a_plain(), windows(count, 2048));
+        let mut run = Run::new(room_on_a_plain(), &windows(count, 2048));
         for _ in 0..60 {
             run.frame(&table, light);
         }
@@ -104,7 +104,7 @@ fn windows_follow_out_of_a_small_room_onto_a_plain_and_back() {
                 let forward = from.forward.as_dvec3().lerp(to.forward.as_dvec3(), share) + DVec3::X * 1e-3;
                 run.frame(&street_view(from.eye.lerp(to.eye, share), forward.as_vec3()), light);
             }
-            let mut anew = Run::new(room_on_a_plain(), run.technique);
+            let mut anew = Run::new(room_on_a_plain(), &run.technique);
             let fresh = (0..ANEW).map(|_| anew.frame(&to, light)).last().unwrap();
             let fresh = quantile(&fresh, &anew, &to, light);
             let mut ratios = (0..STAY).map(|_| {

@@ -54,10 +54,10 @@ proptest! {
         let boxes: Vec<Aabb> = plans.iter().map(|plan| plan.aabb(&view, origin)).collect();
         let size = |v: Vec3| v * by as f32;
         let larger = boxes.iter().map(|b| Aabb::new(size(b.min), size(b.max))).collect();
-        let mut run = Run::new(World { origin, boxes }, technique);
+        let mut run = Run::new(World { origin, boxes }, &technique);
         let extension = technique.fit.caster_extension * by as f32;
         let in_unit = Technique { fit: technique.fit.with_caster_extension(extension), ..technique };
-        let mut other = Run::new(World { origin: origin * by, boxes: larger }, in_unit);
+        let mut other = Run::new(World { origin: origin * by, boxes: larger }, &in_unit);
         for view in walked {
             let (maps, scaled_maps) = (run.frame(&view, direction), other.frame(&scaled(&view, by), direction));
             prop_assert!(is_scaled(&maps, &scaled_maps, by), "{maps:?} {scaled_maps:?}");

@@ -91,7 +91,7 @@ fn compare(old: &Drawn, now: &Drawn, scroll: &Scroll) -> usize {
 fn what_is_not_exposed_need_not_be_drawn_anew() {
     for (direction, count) in [(Vec3::new(0.3, -0.8, 0.4), 4), (Vec3::new(0.9, -0.3, 0.2), 3), (Vec3::NEG_Y, 2)] {
         let (world, technique) = (heap(), windows(count, SIDE));
-        let mut run = Run::new(world.clone(), technique);
+        let mut run = Run::new(world.clone(), &technique);
         let (mut before, mut compared, mut shifted): (Option<Vec<Drawn>>, usize, usize) = (None, 0, 0);
         for frame in 0..40_u16 {
             let f = f64::from(frame);

@@ -33,7 +33,7 @@ fn nothing_changes_in_a_town_where_the_camera_stands_still() {
         for direction in [Vec3::new(0.3, -0.8, 0.4), Vec3::new(1.0, -0.2, 0.1), Vec3::NEG_Y] {
             for forward in [Vec3::new(0.0, -0.1, -1.0), Vec3::new(1.0, -0.6, 0.3)] {
                 let view = street_view(DVec3::new(12.0, 6.0, 20.0), forward);
-                let (last, changes) = settle(&mut Run::new(town(), technique), &view, direction);
+                let (last, changes) = settle(&mut Run::new(town(), &technique), &view, direction);
                 assert!(last < SEARCH, "frame {last} changed, {changes} did: {direction} {forward} {technique:?}");
                 println!("{changes} changes, the last in frame {last}");
             }
@@ -53,7 +53,7 @@ proptest! {
         let origin = view.eye.round();
         let boxes = plans.iter().map(|plan| plan.aabb(&view, origin)).collect();
         let technique: Technique = technique;
-        let (last, changes) = settle(&mut Run::new(World { origin, boxes }, technique), &view, direction);
+        let (last, changes) = settle(&mut Run::new(World { origin, boxes }, &technique), &view, direction);
         prop_assert!(last < SEARCH, "frame {last} changed, {changes} did");
     }
 }

@@ -15,7 +15,7 @@ fn walk(frame: u16) -> SceneView {
 }
 
 fn run_of(count: u32) -> Run {
-    Run::new(town(), windows(count, 1024))
+    Run::new(town(), &windows(count, 1024))
 }
 
 #[test]

@@ -80,7 +80,7 @@ proptest! {
         let origin = view.eye.round();
         let boxes = plans.iter().map(|plan| plan.aabb(&view, origin)).collect();
         let points: Vec<DVec3> = places.iter().map(|[x, y, z]| view.eye + view.point(*x, *y, view.lens.far * z)).collect();
-        let mut run = Run::new(World { origin, boxes }, technique);
+        let mut run = Run::new(World { origin, boxes }, &technique);
         let (mut view, mut eye) = (view, view.eye);
         let first = run.frame(&view, direction);
         let mut before = first;
@@ -100,7 +100,7 @@ fn a_walk_through_a_town_moves_no_texel_up_to_100_km_from_the_origin() {
     for far_out in [0.0, 1e3, 1e4, 1e5] {
         let offset = DVec3::new(far_out, 0.0, -far_out);
         let world = World { origin: offset, ..town() };
-        let mut run = Run::new(world, windows(4, 1024));
+        let mut run = Run::new(world, &windows(4, 1024));
         let at = |frame: u16| {
             let f = f64::from(frame);
             let turn = (f * 0.004).sin() as f32;
@@ -138,7 +138,7 @@ fn at_most_one_window_but_the_last_changes_its_size_in_a_frame() {
         (windows(8, 1024), Vec3::new(0.9, -0.3, 0.2)),
         (Technique::preset("windows-boxes-4").unwrap(), Vec3::new(0.3, -0.8, 0.4)),
     ] {
-        let mut run = Run::new(town(), technique);
+        let mut run = Run::new(town(), &technique);
         let at = |frame: u16| {
             let a = f64::from(frame) * 0.01;
             let eye = DVec3::new(40.0 * a.sin(), 1.7 + 10.0 * (1.0 - (a * 3.0).cos()), 40.0 * a.cos());
