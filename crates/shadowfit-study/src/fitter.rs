@@ -104,7 +104,7 @@ impl TechniqueFitter {
         let mut input = boxes.input(&frusta, view.direction);
         input.histogram = self.seen.as_ref().and_then(Seen::histogram);
         let need = self.seen.as_ref().and_then(Seen::need);
-        input.need = need.as_ref().map_or(&[][..], core::slice::from_ref);
+        input.need = need.as_slice();
         let workspace = &mut Workspace::new(&mut self.storage);
         self.maps.fit_into(&input, &self.technique, workspace, &mut self.fitted)?;
         Ok(self.fitted.iter().map(MapFit::from).collect())

@@ -43,6 +43,7 @@ pub(super) fn add(cells: &mut Cells, input: &FitInput, content: &Content, plane:
     for (view, frustum) in content.views().zip(content.views) {
         let Ok(space) = NeedSpace::new(frustum, -plane.axes.z, up.as_vec3(), distance) else { continue };
         let picture = Picture::new(&view, plane);
+        #[expect(clippy::large_stack_arrays, reason = "36 KiB, for the time that it takes to look around")]
         let mut rays = [Ray { layers: [NOTHING; LAYERS], around: NOTHING }; RAYS.columns * RAYS.rows];
         content.each_in_view(&view, |i, min, max| picture.meet(&view, i, (min, max), &mut rays));
         let mut counted = Counted::new();

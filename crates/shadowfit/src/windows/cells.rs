@@ -137,6 +137,7 @@ impl Counted {
 }
 
 impl Cells {
+    #[expect(clippy::large_stack_arrays, reason = "24 KiB, for the time of a fit")]
     pub(super) const fn new() -> Self {
         const NONE: Cell = Cell { middle: Vec2::ZERO, half: 0.0, per_side: 0.0, weight: 0.0, cost: 0.0 };
         Self { cells: [NONE; MAX_CELLS], len: 0 }

@@ -45,6 +45,8 @@ pub(crate) struct HeldWindows {
     turn: u32,
     /// Frames for which the search goes on with effort.
     effort: u8,
+    /// Frames since one was replaced.
+    age: u8,
     /// Whether no grid of need was known yet.
     is_guess: bool,
 }
@@ -56,10 +58,14 @@ const EFFORT: u8 = 3;
 const CHANGES_OF_EFFORT: u32 = 14;
 const CHANGES_AT_REST: u32 = 1;
 
-/// Cost of the drawn windows over that of the sought ones from which on some are replaced: while the search
-/// goes on with effort, for it may find better ones soon, and after it.
+/// Cost of the drawn windows over that of the sought ones from which on some are replaced while the search
+/// goes on with effort, for it may find better ones soon.
 const SERVES_AT_FIRST: f32 = 1.6;
-const SERVES_AT_REST: f32 = 1.4;
+
+/// What that ratio is more for windows of which one has just been replaced, and the frames after which it is no more:
+/// changes are rare while the scene changes, and nothing is left as it is for ever.
+const SERVES_LONGER: f32 = 0.25;
+const OLD: u8 = 60;
 
 /// One frame's input.
 pub(crate) struct Frame<'a, 'b> {
@@ -158,12 +164,13 @@ fn plan_windows(
     let planner = Planner { cells, usable: lattice.usable.map(DVec2::as_vec2), count };
     let rect = lattice.rect(count - 1, last);
     let (mut turn, mut effort) = before.map_or((0, 0), |before| (before.turn, before.effort));
+    let mut age = 0;
     let mut holds = before.map_or([0.0; MAX_MAPS], |before| before.holds);
     let (drawn, sought) = if let Some(before) = before {
         let plan = |windows: &[Window; MAX_MAPS]| {
             let mut plan = Plan::default();
-            for i in 0..count {
-                (plan.steps[i], plan.rects[i]) = (windows[i].steps, lattice.rect(i, &windows[i]));
+            for (i, window) in windows.iter().enumerate().take(count) {
+                (plan.steps[i], plan.rects[i]) = (window.steps, lattice.rect(i, window));
             }
             planner.below(plan, last.steps, rect)
         };
@@ -176,11 +183,13 @@ fn plan_windows(
         }
         planner.keep(&mut drawn, &mut holds, turn);
         let (most, at_once) = match effort {
-            0 => (SERVES_AT_REST, 1),
+            0 => (plan::SERVES + SERVES_LONGER * (1.0 - f32::from(before.age) / f32::from(OLD)), 1),
             1 => (plan::SERVES, count),
             _ => (SERVES_AT_FIRST, count),
         };
-        (planner.follow(drawn, &sought, most, at_once), sought)
+        let followed = planner.follow(drawn, &sought, most, at_once);
+        age = if followed == drawn { before.age.saturating_add(1).min(OLD) } else { 0 };
+        (followed, sought)
     } else {
         let mut plan = planner.ladder(last.steps, rect);
         planner.seek(&mut plan, &mut turn, planner.all_changes());
@@ -193,6 +202,7 @@ fn plan_windows(
         holds,
         turn,
         effort: effort.saturating_sub(1),
+        age,
         is_guess,
     };
     for i in 0..count {

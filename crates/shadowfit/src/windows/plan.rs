@@ -67,7 +67,7 @@ impl Planner<'_> {
         for ratio in LADDERS {
             let mut plan = Plan::default();
             for i in 0..self.count {
-                plan.steps[i] = last.saturating_sub(ratio * (self.count - 1 - i) as i32);
+                plan.steps[i] = last.saturating_sub(ratio * i32::from((self.count - 1 - i) as u8));
             }
             plan.rects[self.count - 1] = rect;
             self.place_all(&mut plan);
@@ -131,13 +131,13 @@ impl Planner<'_> {
     /// turn, and those that hold less than they did.
     pub(super) fn keep(&self, plan: &mut Plan, holds: &mut [f32; MAX_MAPS], turn: u32) {
         let mut left = [1.0; MAX_CELLS];
-        for i in 0..self.count - 1 {
+        for (i, holds) in holds.iter_mut().enumerate().take(self.count - 1) {
             let all: f32 = self.cells.iter().zip(&left).map(|(cell, left)| cell.cost * left).sum();
             let share = |rect: &Rect| rect.cost(self.cells, &left) / all;
             let is_turn = turn as usize % (self.count - 1) == i;
-            if is_turn || share(&plan.rects[i]) < holds[i] * LOOKS {
+            if is_turn || share(&plan.rects[i]) < *holds * LOOKS {
                 plan.rects[i] = self.kept(&plan.rects[i], &left);
-                holds[i] = share(&plan.rects[i]);
+                *holds = share(&plan.rects[i]);
             }
             self.take(&plan.rects[i], &mut left);
         }
@@ -159,12 +159,12 @@ impl Planner<'_> {
             }
             let readers = self.readers(&plan);
             let mut best: Option<(f32, Plan)> = None;
-            for i in 0..self.count - 1 {
+            for (i, readers) in readers.iter().enumerate().take(self.count - 1) {
                 let mut other = plan;
                 (other.steps[i], other.rects[i]) = (sought.steps[i], sought.rects[i]);
                 let is_new = other != plan && self.is_in_order(&other.steps);
                 // What is gained for each point whose texels change.
-                let gain = (cost - self.cost(&other)) / (readers[i] + FEW);
+                let gain = (cost - self.cost(&other)) / (readers + FEW);
                 if is_new && best.is_none_or(|(most, _)| gain > most) {
                     best = Some((gain, other));
                 }
@@ -181,9 +181,9 @@ impl Planner<'_> {
         for cell in self.cells {
             let mut left = cell.weight;
             total += left;
-            for i in 0..self.count - 1 {
-                let share = plan.rects[i].share(cell) * left;
-                readers[i] += share;
+            for (readers, rect) in readers.iter_mut().zip(&plan.rects[..self.count - 1]) {
+                let share = rect.share(cell) * left;
+                *readers += share;
                 left -= share;
             }
         }
@@ -240,9 +240,9 @@ impl Planner<'_> {
         let mut cost = 0.0;
         for cell in self.cells {
             let (mut left, mut price) = (1.0, 0.0);
-            for i in 0..last {
-                let share = plan.rects[i].share(cell) * left;
-                price += share * prices[i];
+            for (rect, its) in plan.rects[..last].iter().zip(&prices) {
+                let share = rect.share(cell) * left;
+                price += share * its;
                 left -= share;
             }
             cost += cell.cost * (price + left * prices[last]);
