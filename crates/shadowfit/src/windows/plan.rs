@@ -165,11 +165,11 @@ impl Planner<'_> {
                 let is_new = other != plan && self.is_in_order(&other.steps);
                 // What is gained for each point whose texels change.
                 let gain = (cost - self.cost(&other)) / (readers + FEW);
-                if is_new && best.is_none_or(|(most, _)| gain > most) {
+                if is_new && gain > 0.0 && best.is_none_or(|(most, _)| gain > most) {
                     best = Some((gain, other));
                 }
             }
-            let Some((_, other)) = best else { return *sought };
+            let Some((_, other)) = best else { return if count > 1 { *sought } else { plan } };
             plan = other;
         }
         plan
