@@ -1,11 +1,14 @@
 //! The WGSL of the workspace: every file is used and valid, names and features stay within what engines can paste, and
-//! the uniforms lie in memory as the shaders read them. What the shaders compute is compared in [`parity_gpu`]
-//! and [`culling_gpu`].
+//! the uniforms lie in memory as the shaders read them. What the shaders compute is compared in [`parity_gpu`],
+//! [`culling_gpu`] and [`need_gpu`].
 
 mod culling_gpu;
 mod exact_counts_gpu;
 mod harness;
 mod layout;
+mod need_gpu;
+mod need_picture;
+mod need_reference;
 mod parity_gpu;
 mod refusals_gpu;
 mod several_maps_gpu;
@@ -20,6 +23,7 @@ use naga::{Module, ShaderStage};
 use shadowfit::settings::{FilterKind, MapChoice, MapFormat};
 use shadowfit::{CasterVolume, DepthConvention};
 use shadowfit_render::shaders;
+use shadowfit_wgpu::need::need_wgsl;
 use shadowfit_wgpu::{MAX_MAPS, ShadowMapDescriptor, caster_wgsl, culling_wgsl, receiver_wgsl};
 
 use crate::support::workspace;
@@ -48,6 +52,8 @@ fn modules() -> Vec<(String, String)> {
         ("mip".to_owned(), shaders::mip()),
         ("caster piece".to_owned(), caster_wgsl(0)),
         ("culling piece".to_owned(), culling_wgsl(0)),
+        ("need, compute".to_owned(), need_wgsl(1)),
+        ("need of four samples, compute".to_owned(), need_wgsl(4)),
     ];
     for map in descriptors() {
         let kind = format!("{:?} {:?} {:?} {:?}", map.format, map.filter, map.depth, map.choice);
@@ -133,10 +139,11 @@ fn every_module_is_valid_and_probes_alone_need_an_optional_capability() {
 
 #[test]
 fn every_module_has_the_entry_points_of_its_passes() {
-    let both = [ShaderStage::Vertex, ShaderStage::Fragment];
     for (name, source) in modules().iter().filter(|(name, _)| !name.contains("piece")) {
         let module = parse(name, source);
-        for stage in both {
+        let draws: &[ShaderStage] = &[ShaderStage::Vertex, ShaderStage::Fragment];
+        let stages = if name.contains("compute") { &[ShaderStage::Compute] } else { draws };
+        for &stage in stages {
             assert!(module.entry_points.iter().any(|entry| entry.stage == stage), "{name} has no {stage:?} stage");
         }
     }

@@ -5,6 +5,7 @@ use core::mem::offset_of;
 use naga::{Binding, Module, StructMember, TypeInner};
 use shadowfit::culling::CasterPlanes;
 use shadowfit_render::{FrameUniform, InsetUniform, InstanceData, LineVertex, MaterialUniform, shaders};
+use shadowfit_wgpu::need::{NeedUniform, need_wgsl};
 use shadowfit_wgpu::{
     CasterUniform, CullingUniform, MAX_MAPS, MapUniform, ReceiverUniform, ShadowMapDescriptor, culling_wgsl,
 };
@@ -127,6 +128,32 @@ fn the_volumes_of_the_culling_uniform_lie_as_in_wgsl() {
 }
 
 #[test]
+fn the_uniform_of_the_need_pass_lies_as_in_wgsl() {
+    let need = layout!(
+        "Need" = NeedUniform {
+            world_from_pixel,
+            view,
+            direction,
+            far_depth,
+            x,
+            cell,
+            y,
+            shape,
+            corner,
+            size,
+            step,
+            pixels,
+            exponent,
+            near,
+            far,
+            bins_per_octave,
+            pixel_width,
+        }
+    );
+    assert_same(&parse("need", &need_wgsl(1)), &need);
+}
+
+#[test]
 fn the_maps_of_the_receiver_uniform_are_as_many_and_as_far_apart_in_both_languages() {
     let module = parse("scene", &shaders::scene(&ShadowMapDescriptor::default()));
     let (members, _) = reflected(&module, "shadowfit_Receiver");
@@ -138,7 +165,8 @@ fn the_maps_of_the_receiver_uniform_are_as_many_and_as_far_apart_in_both_languag
 
 #[test]
 fn every_uniform_of_every_module_is_one_whose_layout_is_compared() {
-    let compared = ["shadowfit_Caster", "shadowfit_Culling", "shadowfit_Receiver", "Frame", "Material", "Inset"];
+    let compared =
+        ["shadowfit_Caster", "shadowfit_Culling", "shadowfit_Receiver", "Frame", "Material", "Inset", "Need"];
     for (name, source) in super::modules() {
         let module = parse(&name, &source);
         let uniforms = module.global_variables.iter().filter(|(_, global)| global.space == naga::AddressSpace::Uniform);

@@ -166,7 +166,7 @@ impl Renderer {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("probe"),
                 color_attachments: &[Some(color_attachment(&targets.view, None, wgpu::Color::TRANSPARENT))],
-                depth_stencil_attachment: Some(depth_attachment(&targets.depth)),
+                depth_stencil_attachment: Some(depth_attachment(&targets.depth, wgpu::StoreOp::Discard)),
                 ..Default::default()
             });
             self.draw_scene(&mut pass, scene, &plan.opaque, |part| self.pipelines.probe(part));
@@ -257,7 +257,7 @@ impl Renderer {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
             color_attachments: &[Some(color)],
-            depth_stencil_attachment: Some(depth_attachment(&target.depth_view)),
+            depth_stencil_attachment: Some(depth_attachment(&target.depth_view, wgpu::StoreOp::Store)),
             timestamp_writes: query.as_ref().and_then(wgpu_profiler::GpuProfilerQuery::render_pass_timestamp_writes),
             ..Default::default()
         });
@@ -374,10 +374,10 @@ fn color_attachment<'a>(
 }
 
 /// The camera's depth, reversed: cleared to the far value 0.
-fn depth_attachment(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+fn depth_attachment(view: &wgpu::TextureView, store: wgpu::StoreOp) -> wgpu::RenderPassDepthStencilAttachment<'_> {
     wgpu::RenderPassDepthStencilAttachment {
         view,
-        depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+        depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store }),
         stencil_ops: None,
     }
 }

@@ -35,6 +35,12 @@ impl RenderTarget {
         Self { size, color, color_view, multisampled, depth_view }
     }
 
+    /// The depth buffer of what was drawn last, of as many samples as the target: reversed, 0 where there is sky. Shaders
+    /// can load it.
+    pub fn depth_view(&self) -> &wgpu::TextureView {
+        &self.depth_view
+    }
+
     /// A view of the encoded bytes, for user interfaces.
     pub fn encoded_view(&self) -> wgpu::TextureView {
         self.color.create_view(&wgpu::TextureViewDescriptor { format: Some(ENCODED_FORMAT), ..Default::default() })
@@ -76,7 +82,12 @@ impl fmt::Display for ReadError {
 impl core::error::Error for ReadError {}
 
 fn attachment(device: &wgpu::Device, size: [u32; 2], format: wgpu::TextureFormat, samples: u32) -> wgpu::Texture {
-    let readable = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
+    // Of several samples nobody reads the colours before they are resolved.
+    let readable = match (samples, format) {
+        (1, _) => wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC,
+        (_, DEPTH_FORMAT) => wgpu::TextureUsages::TEXTURE_BINDING,
+        _ => wgpu::TextureUsages::empty(),
+    };
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some("render target"),
         size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
@@ -84,8 +95,7 @@ fn attachment(device: &wgpu::Device, size: [u32; 2], format: wgpu::TextureFormat
         sample_count: samples,
         dimension: wgpu::TextureDimension::D2,
         format,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-            | if samples == 1 { readable } else { wgpu::TextureUsages::empty() },
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | readable,
         view_formats: if format == COLOR_FORMAT { &[ENCODED_FORMAT] } else { &[] },
     })
 }

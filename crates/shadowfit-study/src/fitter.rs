@@ -3,6 +3,7 @@
 use glam::DVec2;
 use shadowfit::{FitError, FittedMaps, MapFitter, Technique, Workspace};
 use shadowfit_wgpu::MapFit;
+use shadowfit_wgpu::need::SeenNeed;
 
 use crate::{PreparedScene, SceneRays, Seen, View};
 
@@ -16,6 +17,8 @@ pub struct TechniqueFitter {
     /// pose take some milliseconds more for each hundred thousand triangles whenever the scene has moved. That costs
     /// sharpness, never coverage.
     pub sees_late: bool,
+    /// Whether [`Self::tell`] tells what the frame before showed, in [`Self::fit`], so that no rays look for it.
+    pub is_told: bool,
     technique: Technique,
     maps: MapFitter,
     fitted: FittedMaps,
@@ -28,6 +31,7 @@ impl TechniqueFitter {
     pub fn new(technique: Technique) -> Self {
         Self {
             sees_late: false,
+            is_told: false,
             technique,
             maps: MapFitter::new(),
             fitted: FittedMaps::default(),
@@ -44,7 +48,7 @@ impl TechniqueFitter {
     /// Goes on with a technique; with another one than before the fitter forgets all frames.
     pub fn set_technique(&mut self, technique: &Technique) {
         if self.technique != *technique {
-            *self = Self { sees_late: self.sees_late, ..Self::new(*technique) };
+            *self = Self { sees_late: self.sees_late, is_told: self.is_told, ..Self::new(*technique) };
         }
     }
 
@@ -76,8 +80,20 @@ impl TechniqueFitter {
             self.seen = None;
         }
         let maps = self.fit_maps(scene, view)?;
-        self.seen = self.see(scene, view, self.sees_late)?;
+        if !self.is_told {
+            self.seen = self.see(scene, view, self.sees_late)?;
+        }
         Ok(maps)
+    }
+
+    /// Tells what the depth buffer of a picture before the next view showed.
+    pub fn tell(&mut self, seen: SeenNeed) {
+        self.seen = Some(Seen::Picture(seen));
+    }
+
+    /// What the next maps are told of the views before; `None` where the technique is told nothing.
+    pub fn seen(&self) -> Option<&Seen> {
+        self.seen.as_ref()
     }
 
     /// The maps of a view, from what is remembered.
@@ -88,7 +104,7 @@ impl TechniqueFitter {
         let mut input = boxes.input(&frusta, view.direction);
         input.histogram = self.seen.as_ref().and_then(Seen::histogram);
         let need = self.seen.as_ref().and_then(Seen::need);
-        input.need = need.as_ref().map_or(&[][..], core::slice::from_ref);
+        input.need = need.as_slice();
         let workspace = &mut Workspace::new(&mut self.storage);
         self.maps.fit_into(&input, &self.technique, workspace, &mut self.fitted)?;
         Ok(self.fitted.iter().map(MapFit::from).collect())

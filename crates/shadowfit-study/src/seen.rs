@@ -6,6 +6,7 @@ use shadowfit::need::NeedGrid;
 use shadowfit::settings::{FitKind, NeedSource, SplitScheme};
 use shadowfit::{FitError, PerspectiveCamera, Technique};
 use shadowfit_truth::Tracer;
+use shadowfit_wgpu::need;
 
 use crate::{SeenDepths, SeenNeed};
 
@@ -16,6 +17,8 @@ pub enum Seen {
     Depths(SeenDepths),
     /// For windows.
     Need(SeenNeed),
+    /// For both, from the depth buffer of a picture.
+    Picture(need::SeenNeed),
 }
 
 impl Seen {
@@ -53,6 +56,7 @@ impl Seen {
     pub fn histogram(&self) -> Option<DepthHistogram<'_>> {
         match self {
             Self::Depths(depths) => Some(depths.histogram()),
+            Self::Picture(seen) => Some(seen.histogram()),
             Self::Need(_) => None,
         }
     }
@@ -61,6 +65,7 @@ impl Seen {
     pub fn need(&self) -> Option<NeedGrid<'_>> {
         match self {
             Self::Need(need) => Some(need.grid()),
+            Self::Picture(seen) => Some(seen.grid()),
             Self::Depths(_) => None,
         }
     }

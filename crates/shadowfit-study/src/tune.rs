@@ -114,7 +114,7 @@ pub fn tune(
     let mut best = start(budget);
     let mut tally = measure(comparison, views, &mut truths, &best)?;
     let mut error = weights.error(&tally);
-    let mut tried = vec![in_effect(best)];
+    let mut tried = vec![in_effect(&best)];
     let mut steps = vec![Step { what: "the start".to_owned(), error, tally: tally.clone(), is_kept: true }];
     let mut goes_on = progress(1, most);
     for changes in rounds {
@@ -124,10 +124,10 @@ pub fn tune(
         for change in changes {
             let mut candidate = from;
             (change.apply)(&mut candidate);
-            if !goes_on || tried.contains(&in_effect(candidate)) {
+            if !goes_on || tried.contains(&in_effect(&candidate)) {
                 continue;
             }
-            tried.push(in_effect(candidate));
+            tried.push(in_effect(&candidate));
             let found = measure(comparison, views, &mut truths, &candidate).with_context(|| change.what.clone())?;
             let new_error = weights.error(&found);
             steps.push(Step { what: change.what, error: new_error, tally: found.clone(), is_kept: false });
@@ -146,14 +146,14 @@ pub fn tune(
 }
 
 /// A technique without what has no effect on its maps: of windows that of splits, stabilisation and rectangle.
-fn in_effect(technique: Technique) -> Technique {
+fn in_effect(technique: &Technique) -> Technique {
     if technique.fit.kind != FitKind::Windows {
-        return technique;
+        return *technique;
     }
     let Technique { splits, overlap, stabilise, hold, fit, .. } = Technique::default();
     let fit = technique.fit.with_rectangle(fit.rectangle);
     let hold = hold.with_waste(technique.hold.waste);
-    Technique { splits, overlap, stabilise, hold, fit, choice: technique.map_choice(), ..technique }
+    Technique { splits, overlap, stabilise, hold, fit, choice: technique.map_choice(), ..*technique }
 }
 
 /// The recommended technique, within the budget.
@@ -311,10 +311,10 @@ mod tests {
     fn splits_and_stillness_of_windows_are_not_tried() {
         let with = |kind| Technique::default().with_fit(Technique::default().fit.with_kind(kind));
         let changed = |kind| with(kind).with_splits(SplitScheme::Uniform).with_stabilise(Stabilise::Off);
-        assert_eq!(in_effect(changed(FitKind::Windows)), in_effect(with(FitKind::Windows)));
-        assert_ne!(in_effect(changed(FitKind::Focused)), in_effect(with(FitKind::Focused)));
+        assert_eq!(in_effect(&changed(FitKind::Windows)), in_effect(&with(FitKind::Windows)));
+        assert_ne!(in_effect(&changed(FitKind::Focused)), in_effect(&with(FitKind::Focused)));
         let fewer = with(FitKind::Windows).with_count(3);
-        assert_eq!(in_effect(fewer), fewer);
+        assert_eq!(in_effect(&fewer), fewer);
     }
 
     #[test]

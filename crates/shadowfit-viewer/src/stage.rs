@@ -4,6 +4,7 @@ mod figures;
 mod home;
 mod inset;
 mod judge;
+mod last_picture;
 mod maps;
 
 use core::fmt;
@@ -14,6 +15,7 @@ use shadowfit_egui::Artefact;
 use shadowfit_render::{Culling, FlyCamera, FlyInput, Gpu, Overlay, RenderTarget, Renderer, Statistics};
 use shadowfit_scene::Scene;
 use shadowfit_study::{Evaluator, FrameOptions, Judging, NothingToDraw, PreparedScene, TechniqueFitter, View};
+use shadowfit_wgpu::need::NeedPass;
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor, ShadowMapError};
 
 use crate::fitted::Fitted;
@@ -83,6 +85,8 @@ pub struct Stage {
     shown: Option<Shown>,
     /// What was fitted last; fitted anew unless it is frozen.
     fitted: Option<Fitted>,
+    /// Reads what the last pictures showed; rays find it where there is none.
+    need_pass: Option<NeedPass>,
     problem: Option<String>,
     notice: Option<&'static str>,
     statistics: Statistics,
@@ -114,6 +118,7 @@ impl Stage {
             before_artefact: None,
             shown: None,
             fitted: None,
+            need_pass: None,
             problem: None,
             notice: None,
             statistics: Statistics::default(),
@@ -252,6 +257,7 @@ impl Stage {
     /// Draws the present view into a target.
     pub fn draw(&mut self, target: &RenderTarget) {
         self.problem = None;
+        self.take_last_picture();
         let fitted = self.fit(target.size);
         let maps: Vec<MapFit> = fitted.maps.iter().map(MapFit::from).collect();
         let seen = self.view(target.size);
@@ -275,7 +281,12 @@ impl Stage {
             sight: Some(self.sight(outside.as_ref())),
         };
         match self.evaluator.draw(&self.gpu, &mut self.scene, &view, &maps, &options, target) {
-            Ok(statistics) => self.statistics = statistics,
+            Ok(statistics) => {
+                self.statistics = statistics;
+                if from_elsewhere.is_none() {
+                    self.record_picture(&view, target);
+                }
+            }
             Err(error) => self.problem = Some(error.to_string()),
         }
     }

@@ -130,6 +130,7 @@ impl Running {
         let surface = Surface::new(instance, window.clone(), surface, &gpu)?;
         let samples = if gpu.is_software() { SOFTWARE_SAMPLES } else { GPU_SAMPLES };
         let mut stage = Stage::new(gpu, scene, samples)?;
+        stage.read_depths(samples);
         let technique = arguments.apply(&mut stage.settings)?;
         stage.animation = arguments.animation;
         stage.set_home();

@@ -32,6 +32,7 @@ mod descriptor;
 mod error;
 mod map;
 mod map_fit;
+pub mod need;
 mod shader;
 mod sweep;
 mod uniform;

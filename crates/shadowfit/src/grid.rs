@@ -50,7 +50,7 @@ pub(crate) fn eighths(steps: i32) -> f64 {
 pub(crate) fn eighths_above(length: f64) -> i32 {
     let octave = ((length.to_bits() >> 52) as i32 & 0x7ff) - 1023;
     let share = f64::from_bits(length.to_bits() & !EXPONENT | 1.0_f64.to_bits());
-    octave * 8 + OCTAVE[..8].iter().filter(|step| **step < share).count() as i32
+    octave * 8 + i32::from(OCTAVE[..8].iter().filter(|step| **step < share).count() as u8)
 }
 
 /// The bits of an f64's exponent.

@@ -129,7 +129,9 @@ impl MapFitter {
                 map.fit = LightFit::from_volume(content.origin, volume, rule.resolution, rule.convention)?;
                 map.bias = Bias::from_texels(&technique.bias, &map.fit);
                 map.anchor = volume.grid.as_ref().and_then(GridAnchor::of);
-                (map.near, map.far, map.covered_near) = (range.near, range.far, range.near);
+                // Only the last one holds all that is seen between any depths.
+                let covered_near = if i + 1 < technique.count as usize { range.far } else { range.near };
+                (map.near, map.far, map.covered_near) = (range.near, range.far, covered_near);
             }
             *self = Self {
                 windows: Some(held),

@@ -29,7 +29,8 @@ pub struct FittedMap {
     /// at `f32::MIN` before all others, and begin at `f32::MAX` after them.
     pub far: f32,
     /// View depth from which this map covers what is seen, in metres: before `near` where the
-    /// maps overlap.
+    /// maps overlap. The end of its range for a [window](crate::settings::FitKind::Windows) that is not the
+    /// last one, since it need not hold all of any depth.
     pub covered_near: f32,
     /// Where the map lies on the world's grid, if it does: what [`Scroll`](crate::scroll::Scroll) and
     /// [tiles](crate::scroll::tiles) are made from.

@@ -111,7 +111,7 @@ impl NeedSpace {
     }
 
     /// Index into [`NeedGrid::counts`] of a visible point; `None` for one that does not count,
-    /// because it is turned away from the light or too near the edge of it.
+    /// because it is turned away from the light or too near the edge of it, or not finite.
     ///
     /// `position` is relative to [`Self::origin`], in metres; `normal` is the surface's geometric unit
     /// normal on the side of the eye; `right` and `down` are how far the point moves on its surface, in
@@ -120,7 +120,8 @@ impl NeedSpace {
         let facing = -dot(normal, self.direction);
         // NaN is turned away too.
         let is_lit = facing >= MIN_FACING;
-        if !is_lit {
+        let is_point = is_lit && normal.is_finite() && right.is_finite() && down.is_finite();
+        if !is_point {
             return None;
         }
         self.cell_of(self.project(position), needed_texel(self.project(right), self.project(down)))
@@ -128,7 +129,7 @@ impl NeedSpace {
 
     /// Index of a place in the plane, in metres, and of the texel that is asked for there.
     pub(crate) fn cell_of(&self, p: Vec2, texel: f32) -> Option<usize> {
-        let mut level = (exponent(texel) - exponent(self.texel)).clamp(0, LEVELS as i32 - 1) as usize;
+        let mut level = (exponent(texel) - exponent(self.texel)).clamp(0, i32::from(LEVELS as u8 - 1)) as usize;
         // Points so far away that their level has no cell for them count as coarser.
         while level < LEVELS {
             let cells = p / (self.cell * (1_u32 << level) as f32);
@@ -185,7 +186,7 @@ pub(crate) fn needed_texel(a: Vec2, b: Vec2) -> f32 {
 
 /// The exponent of the power of two at or below a positive normal number; that of zero is far below all.
 fn exponent(x: f32) -> i32 {
-    ((x.to_bits() >> 23) & 0xff) as i32
+    ((x.to_bits() >> 23) & 0xff).cast_signed()
 }
 
 /// The power of two at or below a positive number.

@@ -5,6 +5,7 @@ use shadowfit::bias::Reach;
 use shadowfit::culling::{OrientedBox, Sphere, Sweep, cull};
 use shadowfit::fits::fit_scene;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
+use shadowfit::need::{CELLS, NeedGrid, NeedSpace};
 use shadowfit::scroll::{Scroll, tiles};
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, MAX_MAPS, RectangleKind, SplitScheme, Stabilise};
 use shadowfit::verify::{CoverageQuery, verify};
@@ -95,6 +96,33 @@ fn no_fit_of_several_maps_allocates() {
                     assert_eq!(maps.expect("a good scene").len(), 4);
                 }
             }
+        }
+    }
+}
+
+/// With a grid of need and without, in the first frames, whose search takes most effort, and in later ones.
+#[test]
+fn no_fit_of_windows_allocates() {
+    let (views, objects) = (views(), objects());
+    let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
+    let mut counts = vec![0; CELLS];
+    let space = NeedSpace::new(&views[0], DIRECTION, Vec3::Y, f32::MAX).expect("a good view");
+    for i in 0..4000_u16 {
+        let (x, z) = (f32::from(i % 80) * 0.5 - 20.0, -f32::from(i / 80) * 2.0);
+        let pixel = 0.001 * (1.0 - z);
+        let place = Vec3::new(x, -1.7, z);
+        let cell = without_allocation("a cell", || space.index(place, Vec3::Y, Vec3::X * pixel, Vec3::Z * pixel));
+        counts[cell.expect("it is lit")] += 1;
+    }
+    let grids = [NeedGrid { space, counts: &counts }];
+    let known = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, DIRECTION) };
+    let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), views.len())];
+    for name in ["windows-boxes-4", "windows-4", "windows-8"] {
+        let (technique, mut fitter) = (Technique::preset(name).expect("a preset"), MapFitter::new());
+        for need in [&[][..], &grids, &grids, &grids, &[], &grids] {
+            let (input, mut workspace) = (FitInput { need, ..known }, Workspace::new(&mut storage));
+            let maps = without_allocation(name, || fitter.fit(&input, &technique, &mut workspace));
+            assert_eq!(maps.expect("a good scene").len(), technique.count as usize);
         }
     }
 }

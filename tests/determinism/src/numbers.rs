@@ -9,7 +9,7 @@ use shadowfit::diagnostics::DepthStorage;
 use shadowfit::fits::fit_scene;
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec2, Vec3};
 use shadowfit::settings::{BiasSettings, CasterPolicy};
-use shadowfit::{Bias, CasterVolume, FitError, LightFit, MapFitter, Workspace};
+use shadowfit::{Bias, CasterVolume, FitError, FittedMap, LightFit, MapFitter, Workspace};
 
 use crate::inputs::{Scene, fit_settings, technique};
 use crate::random::Random;
@@ -53,14 +53,7 @@ impl Run {
         for _ in 0..FRAMES {
             let maps = fitter.fit(&scene.input(), &settings, &mut Workspace::new(&mut self.storage))?;
             for map in maps.iter() {
-                self.numbers.fit(&map.fit);
-                self.numbers.f32s(&[map.near, map.far, map.covered_near]);
-                if let Some(anchor) = map.anchor {
-                    for line in anchor.first {
-                        self.numbers.bits(line.cast_unsigned());
-                    }
-                    self.numbers.f64s(&[anchor.texel.x, anchor.texel.y, anchor.depth[0], anchor.depth[1]]);
-                }
+                self.numbers.map(map);
             }
             scene.advance(&mut self.random)?;
         }
@@ -106,20 +99,36 @@ impl Run {
 }
 
 /// FNV-1a over the bits of numbers (G. Fowler, L. C. Noll, K.-P. Vo: "The FNV non-cryptographic hash algorithm").
-struct Numbers(u64);
+pub(crate) struct Numbers(u64);
 
 impl Numbers {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self(0xcbf2_9ce4_8422_2325)
     }
 
-    fn bits(&mut self, bits: u64) {
+    pub(crate) fn value(&self) -> u64 {
+        self.0
+    }
+
+    /// One of several maps.
+    pub(crate) fn map(&mut self, map: &FittedMap) {
+        self.fit(&map.fit);
+        self.f32s(&[map.near, map.far, map.covered_near]);
+        if let Some(anchor) = map.anchor {
+            for line in anchor.first {
+                self.bits(line.cast_unsigned());
+            }
+            self.f64s(&[anchor.texel.x, anchor.texel.y, anchor.depth[0], anchor.depth[1]]);
+        }
+    }
+
+    pub(crate) fn bits(&mut self, bits: u64) {
         for byte in bits.to_le_bytes() {
             self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
         }
     }
 
-    fn f32s(&mut self, numbers: &[f32]) {
+    pub(crate) fn f32s(&mut self, numbers: &[f32]) {
         for number in numbers {
             self.bits(u64::from(number.to_bits()));
         }

@@ -1,6 +1,6 @@
 //! The hash over all fits on the machine that runs the tests.
 
-use shadowfit_determinism::{FITS, HASH, NUMBERS, Outcome, numbers, outcome};
+use shadowfit_determinism::{FITS, HASH, NUMBERS, Outcome, WINDOWS, numbers, outcome, windows};
 
 #[test]
 fn ten_thousand_fits_have_the_same_bits_as_everywhere_else() {
@@ -14,4 +14,10 @@ fn ten_thousand_fits_have_the_same_bits_as_everywhere_else() {
 fn the_same_settings_give_the_same_numbers_as_ever() {
     let hash = numbers();
     assert_eq!(hash, NUMBERS, "the hash over the numbers is {hash:#018x}: engines get other numbers");
+}
+
+#[test]
+fn windows_and_what_else_is_read_by_coverage_have_the_same_numbers_as_everywhere_else() {
+    let hash = windows();
+    assert_eq!(hash, WINDOWS, "the hash over windows is {hash:#018x}; pin it if they were changed on purpose");
 }

@@ -45,12 +45,10 @@ pub fn measure(visible: &VisiblePoints, frame: &FrameMaps) -> Tally {
         add_pixels_per_texel(&mut tally, point, &choice, jacobian);
         let sides = jacobian.map(|column| column * visible.pixels_per_ray);
         cells[choice.index].get_or_insert_default().mark(choice.map.size, choice.position.texel, sides);
-        if point.number.is_multiple_of(SHIMMER_STEP) {
-            if let Some((camera, maps)) = frame.previous {
-                let moved = movement(point, (&choice, &gradients), maps);
-                add_shimmer(&mut tally.shimmer, moved);
-                add_kept(&mut tally.kept, point, (choice.index, moved), (camera, maps));
-            }
+        if let Some((camera, maps)) = frame.previous.filter(|_| point.number.is_multiple_of(SHIMMER_STEP)) {
+            let moved = movement(point, (&choice, &gradients), maps);
+            add_shimmer(&mut tally.shimmer, moved);
+            add_kept(&mut tally.kept, point, (choice.index, moved), (camera, maps));
         }
         tally.depth_range += 1.0 / gradients.depth.dot(visible.to_light).abs();
     }

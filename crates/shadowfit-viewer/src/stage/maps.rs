@@ -43,6 +43,7 @@ impl Stage {
             self.fitter.fit(&self.scene, &view)?;
         } else {
             self.fitter.set_technique(technique);
+            self.forget_pictures();
             self.fitter.fit_alone(&self.scene, &view)?;
         }
         Ok(Fitted::new(view.camera, technique, self.fitter.fitted()))

@@ -43,6 +43,7 @@ pub(super) fn add(cells: &mut Cells, input: &FitInput, content: &Content, plane:
     for (view, frustum) in content.views().zip(content.views) {
         let Ok(space) = NeedSpace::new(frustum, -plane.axes.z, up.as_vec3(), distance) else { continue };
         let picture = Picture::new(&view, plane);
+        #[expect(clippy::large_stack_arrays, reason = "36 KiB, for the time that it takes to look around")]
         let mut rays = [Ray { layers: [NOTHING; LAYERS], around: NOTHING }; RAYS.columns * RAYS.rows];
         content.each_in_view(&view, |i, min, max| picture.meet(&view, i, (min, max), &mut rays));
         let mut counted = Counted::new();
@@ -167,7 +168,7 @@ impl<'a> Picture<'a> {
 const FINEST: f32 = 0.25;
 
 /// Cosine of the half angle of a cone above which its surfaces count as flat.
-const FLAT: f32 = 0.9;
+const FLAT: f32 = 0.97;
 
 /// Share of the rays through a box that meet a surface in it, where surfaces face everywhere.
 const SOLID: f32 = 0.3;

@@ -2,6 +2,7 @@
 
 use glam::{DVec3, Vec2};
 
+use super::placement::Rect;
 use crate::need::{LEVELS, NeedGrid, NeedSpace, Plane, SIDE};
 
 /// Most cells that are kept; those with the fewest points are left out where there are more.
@@ -20,6 +21,15 @@ pub(super) struct Cell {
     pub(super) weight: f32,
     /// What a texel of one metre costs its points.
     pub(super) cost: f32,
+}
+
+impl Cell {
+    /// Whether sums over all cells stay finite: a grid that was never filled may hold any numbers.
+    fn is_usable(&self) -> bool {
+        let moment = (self.middle.abs().max_element() + self.half + 1.0) * self.cost * MAX_CELLS as f32;
+        // The second element may be NaN where the first one is not.
+        self.middle.is_finite() && moment.is_finite() && self.per_side.is_finite()
+    }
 }
 
 /// Share of the visible points with the finest needs, whose needs count as no finer than those of the rest:
@@ -127,6 +137,7 @@ impl Counted {
 }
 
 impl Cells {
+    #[expect(clippy::large_stack_arrays, reason = "24 KiB, for the time of a fit")]
     pub(super) const fn new() -> Self {
         const NONE: Cell = Cell { middle: Vec2::ZERO, half: 0.0, per_side: 0.0, weight: 0.0, cost: 0.0 };
         Self { cells: [NONE; MAX_CELLS], len: 0 }
@@ -134,6 +145,21 @@ impl Cells {
 
     pub(super) fn as_slice(&self) -> &[Cell] {
         &self.cells[..self.len]
+    }
+
+    /// Leaves out cells that are farther from the last window than its own size: nothing is seen there, and a
+    /// grid that was never filled may put them anywhere.
+    pub(super) fn keep_near(&mut self, last: &Rect) {
+        let (low, high) = (last.min - last.size, last.min + last.size * 2.0);
+        let mut kept = 0;
+        for i in 0..self.len {
+            let middle = self.cells[i].middle;
+            if middle.cmpge(low).all() && middle.cmple(high).all() {
+                self.cells[kept] = self.cells[i];
+                kept += 1;
+            }
+        }
+        self.len = kept;
     }
 
     /// Adds points that were counted in a space.
@@ -146,15 +172,17 @@ impl Cells {
             }
             let (middle, half, texel) = space.cell(*index as usize);
             let texel = (texel as f32).max(finest * space.texel);
-            let cost = weight * super::cost_of(1.0 / texel);
-            self.cells[self.len] = Cell {
+            let cell = Cell {
                 middle: (middle + offset).as_vec2(),
                 half: half as f32,
                 per_side: (0.5 / half) as f32,
                 weight: *weight,
-                cost,
+                cost: weight * super::cost_of(1.0 / texel),
             };
-            self.len += 1;
+            if cell.is_usable() {
+                self.cells[self.len] = cell;
+                self.len += 1;
+            }
         }
     }
 

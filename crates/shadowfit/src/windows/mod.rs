@@ -39,20 +39,33 @@ pub(crate) struct HeldWindows {
     /// Those that were drawn, and those that are sought, whose depths are not known.
     drawn: [Window; MAX_MAPS],
     sought: [Window; MAX_MAPS],
+    /// Shares of the cost that the drawn ones held when they were last looked at.
+    holds: [f32; MAX_MAPS],
     /// Number of the next change that is tried.
     turn: u32,
     /// Frames for which the search goes on with effort.
     effort: u8,
+    /// Frames since one was replaced.
+    age: u8,
     /// Whether no grid of need was known yet.
     is_guess: bool,
 }
 
 /// Frames for which windows are searched with effort, once it is known what is visible.
-const EFFORT: u8 = 4;
+const EFFORT: u8 = 3;
 
 /// Changes that are tried in such a frame, and in others.
-const CHANGES_OF_EFFORT: u32 = 18;
-const CHANGES_AT_REST: u32 = 2;
+const CHANGES_OF_EFFORT: u32 = 14;
+const CHANGES_AT_REST: u32 = 1;
+
+/// Cost of the drawn windows over that of the sought ones from which on some are replaced while the search
+/// goes on with effort, for it may find better ones soon.
+const SERVES_AT_FIRST: f32 = 1.6;
+
+/// What that ratio is more for windows of which one has just been replaced, and the frames after which it is no more:
+/// changes are rare while the scene changes, and nothing is left as it is for ever.
+const SERVES_LONGER: f32 = 0.25;
+const OLD: u8 = 60;
 
 /// One frame's input.
 pub(crate) struct Frame<'a, 'b> {
@@ -80,10 +93,11 @@ impl Frame<'_, '_> {
         let before = before.map(|before| before.in_plane(&lattice, origin));
         // 2. What all windows together must hold, and what is visible of it.
         let shadows = Shadows::new(self.content, plane.axes, self.range, points)?;
-        let (cells, is_guess) = self.cells(&plane);
+        let (mut cells, is_guess) = self.cells(&plane);
         // 3. The last window, which holds everything, then the others.
         let last =
             lattice.last(count - 1, before.as_ref().map(|before| &before.drawn[count - 1]), shadows.bounds(&plane));
+        cells.keep_near(&lattice.rect(count - 1, &last));
         let mut held = plan_windows(&lattice, (count, &last), cells.as_slice(), before.as_ref(), is_guess);
         // 4. Their depths, held while they serve.
         let mut volumes = [None; MAX_MAPS];
@@ -150,11 +164,13 @@ fn plan_windows(
     let planner = Planner { cells, usable: lattice.usable.map(DVec2::as_vec2), count };
     let rect = lattice.rect(count - 1, last);
     let (mut turn, mut effort) = before.map_or((0, 0), |before| (before.turn, before.effort));
+    let mut age = 0;
+    let mut holds = before.map_or([0.0; MAX_MAPS], |before| before.holds);
     let (drawn, sought) = if let Some(before) = before {
         let plan = |windows: &[Window; MAX_MAPS]| {
             let mut plan = Plan::default();
-            for i in 0..count {
-                (plan.steps[i], plan.rects[i]) = (windows[i].steps, lattice.rect(i, &windows[i]));
+            for (i, window) in windows.iter().enumerate().take(count) {
+                (plan.steps[i], plan.rects[i]) = (window.steps, lattice.rect(i, window));
             }
             planner.below(plan, last.steps, rect)
         };
@@ -162,10 +178,18 @@ fn plan_windows(
         if before.is_guess && !is_guess {
             effort = EFFORT;
             sought = planner.better(sought, planner.ladder(last.steps, rect));
+        } else {
+            planner.seek(&mut sought, &mut turn, if effort > 0 { CHANGES_OF_EFFORT } else { CHANGES_AT_REST });
         }
-        planner.seek(&mut sought, &mut turn, if effort > 0 { CHANGES_OF_EFFORT } else { CHANGES_AT_REST });
-        planner.keep(&mut drawn);
-        (planner.follow(drawn, &sought, effort > 0), sought)
+        planner.keep(&mut drawn, &mut holds, turn);
+        let (most, at_once) = match effort {
+            0 => (plan::SERVES + SERVES_LONGER * (1.0 - f32::from(before.age) / f32::from(OLD)), 1),
+            1 => (plan::SERVES, count),
+            _ => (SERVES_AT_FIRST, count),
+        };
+        let followed = planner.follow(drawn, &sought, most, at_once);
+        age = if followed == drawn { before.age.saturating_add(1).min(OLD) } else { 0 };
+        (followed, sought)
     } else {
         let mut plan = planner.ladder(last.steps, rect);
         planner.seek(&mut plan, &mut turn, planner.all_changes());
@@ -175,8 +199,10 @@ fn plan_windows(
         plane: lattice.plane,
         drawn: [Window::default(); MAX_MAPS],
         sought: [Window::default(); MAX_MAPS],
+        holds,
         turn,
         effort: effort.saturating_sub(1),
+        age,
         is_guess,
     };
     for i in 0..count {

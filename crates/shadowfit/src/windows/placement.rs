@@ -11,7 +11,7 @@ use super::cells::Cell;
 const ACROSS: usize = 16;
 
 /// Squares of the raster along each axis: five windows.
-const RASTER: usize = 80;
+const RASTER: usize = 64;
 
 /// Squares at which a window may begin.
 const PLACES: usize = RASTER - ACROSS + 1;

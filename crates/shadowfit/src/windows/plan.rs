@@ -35,6 +35,10 @@ type Left = [f32; MAX_CELLS];
 /// Ratios of the texels of neighbours with which a search begins, in eighths of an octave.
 const LADDERS: [i32; 8] = [4, 6, 8, 10, 13, 16, 20, 24];
 
+/// How much finer than the last window's the first one's texels may be, in eighths of an octave: more than the
+/// octaves of a grid of need, and little enough that all its lines are exact.
+const FINEST: i32 = 20 * 8;
+
 /// Changes of a window's texels that are tried, in eighths of an octave.
 const CHANGES: [i32; 6] = [4, -4, 8, -8, 2, -2];
 
@@ -44,13 +48,14 @@ const ROUNDS: u32 = 3;
 /// Share of the cost in the best place that a window must hold to stay where it is.
 const HOLDS: f32 = 0.985;
 
+/// Share of what it held that a window must hold for its best place not to be looked for out of turn.
+const LOOKS: f32 = 0.99;
+
 /// Share of the way to the best place that a window moves beyond what it must.
 const MOVE_ON: f32 = 0.3;
 
-/// Cost of the drawn windows over that of the sought ones up to which they serve, while it is being
-/// found out what is visible, and once that is known.
-const SERVES: f32 = 1.15;
-const SERVES_AT_REST: f32 = 1.4;
+/// Cost of the drawn windows over that of the sought ones up to which no more of them are replaced.
+pub(super) const SERVES: f32 = 1.15;
 
 /// Share of the points that every change counts for, at least.
 const FEW: f32 = 0.02;
@@ -62,7 +67,7 @@ impl Planner<'_> {
         for ratio in LADDERS {
             let mut plan = Plan::default();
             for i in 0..self.count {
-                plan.steps[i] = last.saturating_sub(ratio * (self.count - 1 - i) as i32);
+                plan.steps[i] = last.saturating_sub(ratio * i32::from((self.count - 1 - i) as u8));
             }
             plan.rects[self.count - 1] = rect;
             self.place_all(&mut plan);
@@ -110,8 +115,9 @@ impl Planner<'_> {
         plan.steps[self.count - 1] = last;
         plan.rects[self.count - 1] = rect;
         for i in (0..self.count - 1).rev() {
-            if plan.steps[i] >= plan.steps[i + 1] {
-                plan.steps[i] = plan.steps[i + 1] - 1;
+            let steps = plan.steps[i].max(last.saturating_sub(FINEST)).min(plan.steps[i + 1] - 1);
+            if steps != plan.steps[i] {
+                plan.steps[i] = steps;
                 let middle = plan.rects[i].min + plan.rects[i].size * 0.5;
                 plan.rects[i].size = self.size(i, plan.steps[i]);
                 plan.rects[i].min = middle - plan.rects[i].size * 0.5;
@@ -120,37 +126,45 @@ impl Planner<'_> {
         plan
     }
 
-    /// Moves each window that no longer holds most of what it could.
-    pub(super) fn keep(&self, plan: &mut Plan) {
+    /// Moves each window that no longer holds most of what it could. `holds` has the shares of the cost
+    /// that windows held when their best places were last looked for: one window is looked at in each
+    /// turn, and those that hold less than they did.
+    pub(super) fn keep(&self, plan: &mut Plan, holds: &mut [f32; MAX_MAPS], turn: u32) {
         let mut left = [1.0; MAX_CELLS];
-        for i in 0..self.count - 1 {
-            plan.rects[i] = self.kept(&plan.rects[i], &left);
+        for (i, holds) in holds.iter_mut().enumerate().take(self.count - 1) {
+            let all: f32 = self.cells.iter().zip(&left).map(|(cell, left)| cell.cost * left).sum();
+            let share = |rect: &Rect| rect.cost(self.cells, &left) / all;
+            let is_turn = turn as usize % (self.count - 1) == i;
+            if is_turn || share(&plan.rects[i]) < *holds * LOOKS {
+                plan.rects[i] = self.kept(&plan.rects[i], &left);
+                *holds = share(&plan.rects[i]);
+            }
             self.take(&plan.rects[i], &mut left);
         }
     }
 
-    /// The drawn windows, of which as few are replaced by those that are sought as make them nearly as
-    /// good: one at most unless it is being found out what is visible.
-    pub(super) fn follow(&self, drawn: Plan, sought: &Plan, with_effort: bool) -> Plan {
+    /// The drawn windows, while they cost no more than the sought ones times `most`; else as few of them
+    /// replaced, and no more than `count`, as make them nearly as good.
+    pub(super) fn follow(&self, drawn: Plan, sought: &Plan, most: f32, count: usize) -> Plan {
         let found = self.cost(sought);
-        let enough = found * SERVES;
-        if !with_effort && self.cost(&drawn) <= found * SERVES_AT_REST {
+        if self.cost(&drawn) <= found * most {
             return drawn;
         }
+        let enough = found * SERVES;
         let mut plan = drawn;
-        for _ in 0..if with_effort { self.count } else { 1 } {
+        for _ in 0..count {
             let cost = self.cost(&plan);
             if cost <= enough {
                 return plan;
             }
             let readers = self.readers(&plan);
             let mut best: Option<(f32, Plan)> = None;
-            for i in 0..self.count - 1 {
+            for (i, readers) in readers.iter().enumerate().take(self.count - 1) {
                 let mut other = plan;
                 (other.steps[i], other.rects[i]) = (sought.steps[i], sought.rects[i]);
                 let is_new = other != plan && self.is_in_order(&other.steps);
                 // What is gained for each point whose texels change.
-                let gain = (cost - self.cost(&other)) / (readers[i] + FEW);
+                let gain = (cost - self.cost(&other)) / (readers + FEW);
                 if is_new && best.is_none_or(|(most, _)| gain > most) {
                     best = Some((gain, other));
                 }
@@ -167,9 +181,9 @@ impl Planner<'_> {
         for cell in self.cells {
             let mut left = cell.weight;
             total += left;
-            for i in 0..self.count - 1 {
-                let share = plan.rects[i].share(cell) * left;
-                readers[i] += share;
+            for (readers, rect) in readers.iter_mut().zip(&plan.rects[..self.count - 1]) {
+                let share = rect.share(cell) * left;
+                *readers += share;
                 left -= share;
             }
         }
@@ -226,9 +240,9 @@ impl Planner<'_> {
         let mut cost = 0.0;
         for cell in self.cells {
             let (mut left, mut price) = (1.0, 0.0);
-            for i in 0..last {
-                let share = plan.rects[i].share(cell) * left;
-                price += share * prices[i];
+            for (rect, its) in plan.rects[..last].iter().zip(&prices) {
+                let share = rect.share(cell) * left;
+                price += share * its;
                 left -= share;
             }
             cost += cell.cost * (price + left * prices[last]);
@@ -248,6 +262,7 @@ impl Planner<'_> {
     }
 
     fn is_in_order(&self, steps: &[i32; MAX_MAPS]) -> bool {
-        steps[..self.count].windows(2).all(|pair| pair[0] < pair[1])
+        let is_fine = steps[self.count - 1].saturating_sub(steps[0]) > FINEST;
+        !is_fine && steps[..self.count].windows(2).all(|pair| pair[0] < pair[1])
     }
 }

@@ -24,6 +24,7 @@ mod maps;
 mod metamorphic;
 #[cfg(feature = "mint")]
 mod mint;
+mod need;
 mod optimality;
 mod other_matrices;
 mod read_by_coverage;
@@ -43,4 +44,5 @@ mod texel_ratio;
 mod tightness;
 mod unprojection;
 mod verify;
+mod windows;
 mod xna_cases;

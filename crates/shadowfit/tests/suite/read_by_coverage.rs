@@ -15,13 +15,13 @@ use crate::support::cases;
 
 /// A receiver's point, and a caster's above it.
 #[derive(Clone, Copy, Debug)]
-struct Sample {
-    receiver: usize,
+pub(crate) struct Sample {
+    pub(crate) receiver: usize,
     caster: usize,
-    place: [f64; 3],
+    pub(crate) place: [f64; 3],
 }
 
-fn any_samples() -> impl Strategy<Value = Vec<Sample>> {
+pub(crate) fn any_samples() -> impl Strategy<Value = Vec<Sample>> {
     let one = (0..16_usize, 0..16_usize, [share(), share(), share()]);
     prop::collection::vec(one.prop_map(|(receiver, caster, place)| Sample { receiver, caster, place }), 48)
 }
@@ -35,13 +35,13 @@ fn any_shared_technique() -> impl Strategy<Value = Technique> {
     })
 }
 
-fn input<'a>(views: &'a [ViewFrustum], direction: Vec3, origin: DVec3, boxes: &'a [Aabb]) -> FitInput<'a> {
+pub(crate) fn input<'a>(views: &'a [ViewFrustum], direction: Vec3, origin: DVec3, boxes: &'a [Aabb]) -> FitInput<'a> {
     let boxes = Some(Boxes { origin, boxes });
     FitInput { receivers: boxes, casters: boxes, ..FitInput::new(views, direction) }
 }
 
 /// Where a ray through a point leaves a box behind it and ahead of it.
-fn above(point: DVec3, to_light: DVec3, aabb: &Aabb) -> Option<f64> {
+pub(crate) fn above(point: DVec3, to_light: DVec3, aabb: &Aabb) -> Option<f64> {
     let (mut enter, mut leave) = (f64::MIN, f64::MAX);
     for axis in 0..3 {
         let (min, max) = (f64::from(aabb.min[axis]), f64::from(aabb.max[axis]));
@@ -68,7 +68,13 @@ fn before_near(fit: &LightFit, point: DVec3) -> f64 {
 }
 
 /// Checks one frame; gives the number of casters that were found above points that read a map.
-fn check(maps: &FittedMaps, input: &FitInput, technique: &Technique, seen: &[DVec3], samples: &[Sample]) -> usize {
+pub(crate) fn check(
+    maps: &FittedMaps,
+    input: &FitInput,
+    technique: &Technique,
+    seen: &[DVec3],
+    samples: &[Sample],
+) -> usize {
     let Boxes { origin, boxes } = input.casters.unwrap();
     let to_light = -input.direction.as_dvec3().normalize();
     let view = &input.views[0];

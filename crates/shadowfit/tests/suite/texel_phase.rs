@@ -30,19 +30,19 @@ pub(crate) fn exact_texel(fit: &LightFit, border: f32) -> DVec2 {
 
 /// Position of a world point on the map's grid, in texels right and down from the world's origin,
 /// all in f64 but for the light's axes, which are f32 by definition.
-fn grid_position(fit: &LightFit, texel: DVec2, point: DVec3) -> DVec2 {
+pub(crate) fn grid_position(fit: &LightFit, texel: DVec2, point: DVec3) -> DVec2 {
     let [x, y] = [fit.light_from_world.row(0), fit.light_from_world.row(1)].map(|row| row.truncate().as_dvec3());
     DVec2::new(x.dot(point) / texel.x, -y.dot(point) / texel.y)
 }
 
 /// Position in the map, in texels, as a shader finds it.
-fn shader_position(fit: &LightFit, point: DVec3) -> DVec2 {
+pub(crate) fn shader_position(fit: &LightFit, point: DVec3) -> DVec2 {
     let uv = apply(&fit.uv_from_world, (point - fit.origin).as_vec3());
     (uv.truncate() * fit.resolution.as_vec2()).as_dvec2()
 }
 
 /// Difference of two positions within their texels, in texels.
-fn apart(a: DVec2, b: DVec2) -> f64 {
+pub(crate) fn apart(a: DVec2, b: DVec2) -> f64 {
     let d = a - b;
     (d - d.round()).abs().max_element()
 }

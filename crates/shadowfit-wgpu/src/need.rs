@@ -1,0 +1,61 @@
+//! What the last frame showed, for fits that put their maps where it helps most: a compute pass over the depth buffer.
+//!
+//! [`NeedPass`] counts the visible points that face the light: by their place across the light and the texel that they
+//! ask for (the grid of need of [`shadowfit::need`], for windows), and by view depth and foreshortening (the
+//! [`DepthHistogram`](shadowfit::histogram::DepthHistogram)). Position and slope of a point come from the depths of its
+//! pixel and of the neighbours. Nothing waits for the GPU: counts come back a frame or two late, which fits allow for.
+//!
+//! ```no_run
+//! # fn demo(device: &wgpu::Device, queue: &wgpu::Queue, depth: &wgpu::TextureView, size: [u32; 2],
+//! #         camera: &shadowfit::PerspectiveCamera, direction: shadowfit::glam::Vec3)
+//! #         -> Result<(), Box<dyn std::error::Error>> {
+//! use shadowfit::{DepthConvention, FitInput, Technique};
+//! use shadowfit_wgpu::need::{NeedPass, NeedView};
+//!
+//! let technique = Technique::default();
+//! let mut need = NeedPass::new(device, queue, 1).ok(); // without it fits take boxes
+//! let mut seen = None;
+//! loop {
+//!     // The newest counts that are there; those of the frame before until then.
+//!     if let Some(pass) = &mut need {
+//!         seen = pass.take()?.or(seen);
+//!     }
+//!     let views = [camera.frustum()?];
+//!     let grids: Vec<_> = seen.iter().map(|seen| seen.grid()).collect();
+//!     let histogram = seen.as_ref().map(|seen| seen.histogram());
+//!     let input = FitInput { need: &grids, histogram, ..FitInput::new(&views, direction) };
+//!     // Fit the maps, draw them and the scene as ever, and then:
+//!     let mut encoder = device.create_command_encoder(&Default::default());
+//!     if let Some(pass) = &mut need {
+//!         let view = NeedView::from_camera(camera, DepthConvention::Reversed, direction, &technique.fit, size)?;
+//!         pass.record(&mut encoder, depth, &view, None)?;
+//!     }
+//!     queue.submit([encoder.finish()]);
+//! }
+//! # }
+//! ```
+//!
+//! After a camera cut, drop what was seen and what is on its way ([`NeedPass::reset`]); what is kept costs sharpness,
+//! never coverage. For several views that share the maps, such as a split screen, make a pass for each.
+//!
+//! # Precision
+//!
+//! Slopes come from differences of neighbouring depths. Reversed `Depth32Float` is exact enough at any distance; plain
+//! depth of 24 or 32 bits with a near plane at a tenth of a metre is for some hundred metres; 16 bits are not beyond a
+//! few. Of multisampled textures the first sample is read, which lies less than half a pixel beside the pixel's centre.
+//!
+//! # Where it does not run
+//!
+//! Devices without compute shaders and storage buffers (WebGL2), and OpenGL, whose shaders cannot load depth textures.
+//! [`NeedPass::new`] says so, and fits take boxes: leave [`FitInput::need`](shadowfit::FitInput::need) empty.
+
+mod error;
+mod pass;
+mod read_back;
+mod seen;
+mod view;
+
+pub use error::{NeedPassError, Unsupported};
+pub use pass::{NeedPass, need_wgsl};
+pub use seen::{CLASSES, DEPTHS, SeenNeed};
+pub use view::{NeedUniform, NeedView};

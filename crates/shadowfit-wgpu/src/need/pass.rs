@@ -1,0 +1,333 @@
+//! The pass itself: pipeline, dispatch, and what comes back.
+
+use core::future::Future;
+use core::pin::pin;
+use core::task::{Context, Poll, Waker};
+
+use shadowfit::need::{CELLS, LEVELS, MIN_FACING, SIDE};
+
+use super::error::{NeedPassError, Unsupported};
+use super::read_back::ReadBack;
+use super::seen::{CLASSES, COUNTS, DEPTHS, SeenNeed};
+use super::view::{NeedUniform, NeedView};
+
+/// Pictures that may be on their way back at once: graphics APIs let the CPU be up to three frames ahead, and one more
+/// is being recorded.
+const FRAMES: usize = 4;
+
+/// Threads of a workgroup, as in the WGSL.
+const WORKGROUP_THREADS: u32 = 256;
+/// Points along a side of a workgroup's square, as in the WGSL.
+const SQUARE: u32 = 32;
+/// Bytes of a workgroup's own memory, as in the WGSL.
+const WORKGROUP_BYTES: u32 = 2 * 4 * WORKGROUP_THREADS;
+
+/// Counts what a depth buffer shows: see the [module](super).
+#[derive(Debug)]
+pub struct NeedPass {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    samples: u32,
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::ComputePipeline,
+    counts: wgpu::Buffer,
+    frames: Vec<Frame>,
+    recordings: u64,
+    /// Recordings up to the last [`Self::reset`].
+    forgotten: u64,
+}
+
+/// What one picture on its way needs of its own.
+#[derive(Debug)]
+struct Frame {
+    uniform: wgpu::Buffer,
+    read_back: ReadBack,
+}
+
+impl NeedPass {
+    /// A pass for depth textures of `samples` per pixel.
+    ///
+    /// # Errors
+    ///
+    /// [`NeedPassError::Unsupported`] if the device has no compute shaders or storage buffers, or is OpenGL, whose
+    /// shaders cannot load depth: fit from boxes then. [`NeedPassError::Device`] if it is out of memory.
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, samples: u32) -> Result<Self, NeedPassError> {
+        supported(&device.limits(), device.adapter_info().backend).map_err(NeedPassError::Unsupported)?;
+        caught(device, || {
+            let layout = layout(device, samples > 1);
+            let pipeline = pipeline(device, &layout, samples);
+            let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+            let frame = || Frame {
+                uniform: buffer(
+                    device,
+                    size_of::<NeedUniform>(),
+                    wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                ),
+                read_back: ReadBack::new(device),
+            };
+            Self {
+                device: device.clone(),
+                queue: queue.clone(),
+                samples,
+                layout,
+                pipeline,
+                counts: buffer(device, COUNTS * size_of::<u32>(), usage),
+                frames: (0..FRAMES).map(|_| frame()).collect(),
+                recordings: 0,
+                forgotten: 0,
+            }
+        })
+    }
+
+    /// Records the pass and the way back of its counts, after the pass that fills the depth buffer. `depth` is a view
+    /// of the depth aspect of the whole texture, of any depth format, with usage `TEXTURE_BINDING`, that the pass
+    /// before it has stored (`StoreOp::Store`); `timestamps` may time the pass.
+    ///
+    /// Returns whether it was recorded: while as many pictures are on their way as GPUs are ever behind, nothing is,
+    /// and fits go on with what they have.
+    ///
+    /// # Errors
+    ///
+    /// [`NeedPassError`] for the view, the texture, and a device out of memory. Nothing is recorded then. Whether the
+    /// device was lost shows in [`Self::take`].
+    pub fn record(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        depth: &wgpu::TextureView,
+        view: &NeedView,
+        timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
+    ) -> Result<bool, NeedPassError> {
+        self.check_texture(depth.texture(), view.rectangle)?;
+        let stamp = view.stamp()?;
+        let uniform = view.uniform(&stamp)?;
+        let Some(frame) = self.frames.iter_mut().find(|frame| frame.read_back.is_free()) else { return Ok(false) };
+        let group = caught(&self.device, || {
+            self.queue.write_buffer(&frame.uniform, 0, bytemuck::bytes_of(&uniform));
+            group(&self.device, &self.layout, &frame.uniform, depth, &self.counts)
+        })?;
+        encoder.clear_buffer(&self.counts, 0, None);
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some("shadowfit need"),
+                timestamp_writes: timestamps,
+            });
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, &group, &[]);
+            let [x, y] = uniform.size.map(|side| side.div_ceil(uniform.step * SQUARE));
+            pass.dispatch_workgroups(x, y, 1);
+        }
+        self.recordings += 1;
+        frame.read_back.record(encoder, &self.counts, stamp, self.recordings);
+        Ok(true)
+    }
+
+    /// The newest picture that the GPU has finished, once; `None` while there is none. Never waits.
+    ///
+    /// # Errors
+    ///
+    /// [`NeedPassError::Lost`] if the device was lost.
+    pub fn take(&mut self) -> Result<Option<SeenNeed>, NeedPassError> {
+        // Only looks; whether anything is finished shows below.
+        let _status = self.device.poll(wgpu::PollType::Poll);
+        self.newest()
+    }
+
+    /// As [`Self::take`] for the picture that was submitted last, for which it waits: for headless runs and tests,
+    /// whose pictures have to be the same each time.
+    ///
+    /// # Errors
+    ///
+    /// [`NeedPassError::Lost`] if the device was lost or does not answer.
+    pub fn wait(&mut self) -> Result<Option<SeenNeed>, NeedPassError> {
+        self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|_| NeedPassError::Lost)?;
+        self.newest()
+    }
+
+    /// Forgets the pictures that are on their way: for camera cuts, beside
+    /// [`MapFitter::reset`](shadowfit::MapFitter::reset).
+    pub fn reset(&mut self) {
+        self.forgotten = self.recordings;
+    }
+
+    fn newest(&mut self) -> Result<Option<SeenNeed>, NeedPassError> {
+        if self.frames.iter().filter(|frame| frame.read_back.has_failed()).count() > 0 {
+            return Err(NeedPassError::Lost);
+        }
+        let readable = self.frames.iter_mut().map(|frame| &mut frame.read_back).filter(|frame| frame.is_readable());
+        let mut newest: Option<&mut ReadBack> = None;
+        for read_back in readable {
+            let older = match newest.take() {
+                Some(other) if other.number() > read_back.number() => {
+                    newest = Some(other);
+                    Some(read_back)
+                }
+                other => {
+                    newest = Some(read_back);
+                    other
+                }
+            };
+            older.into_iter().for_each(ReadBack::release);
+        }
+        let Some(read_back) = newest else { return Ok(None) };
+        let is_wanted = read_back.number() > self.forgotten;
+        let seen = read_back.take().ok_or(NeedPassError::Lost)?;
+        Ok(Some(seen).filter(|_| is_wanted))
+    }
+
+    /// Refuses what cannot be bound.
+    fn check_texture(&self, texture: &wgpu::Texture, rectangle: [u32; 4]) -> Result<(), NeedPassError> {
+        let (format, samples, usage) = (texture.format(), texture.sample_count(), texture.usage());
+        let is_readable = usage.contains(wgpu::TextureUsages::TEXTURE_BINDING) && format.has_depth_aspect();
+        if !is_readable || samples != self.samples {
+            return Err(NeedPassError::Texture { format, samples, usage, expected_samples: self.samples });
+        }
+        let size = [texture.width(), texture.height()];
+        let [left, top, width, height] = rectangle;
+        let is_inside = |start: u32, side: u32, whole: u32| side > 0 && start <= whole && side <= whole - start;
+        if is_inside(left, width, size[0]) && is_inside(top, height, size[1]) {
+            Ok(())
+        } else {
+            Err(NeedPassError::Rectangle { rectangle, texture: size })
+        }
+    }
+}
+
+/// The WGSL of the pass for depth textures of a number of samples per pixel.
+pub fn need_wgsl(samples: u32) -> String {
+    let texture = if samples > 1 { "texture_depth_multisampled_2d" } else { "texture_depth_2d" };
+    format!(
+        "alias DepthTexture = {texture};
+const CELLS: u32 = {CELLS}u;
+const LEVELS: i32 = {LEVELS};
+const SIDE: u32 = {SIDE}u;
+const DEPTHS: u32 = {DEPTHS}u;
+const CLASSES: u32 = {CLASSES}u;
+const MIN_FACING: f32 = {MIN_FACING};
+{}",
+        include_str!("../shaders/need.wgsl")
+    )
+}
+
+/// Whether a device can run the pass.
+fn supported(limits: &wgpu::Limits, backend: wgpu::Backend) -> Result<(), Unsupported> {
+    let has_compute = limits.max_storage_buffers_per_shader_stage > 0
+        && limits.max_compute_invocations_per_workgroup >= WORKGROUP_THREADS
+        && limits.max_compute_workgroup_storage_size >= WORKGROUP_BYTES;
+    match (has_compute, backend) {
+        (false, _) => Err(Unsupported::Compute),
+        (true, wgpu::Backend::Gl) => Err(Unsupported::DepthLoads),
+        (true, _) => Ok(()),
+    }
+}
+
+/// Does work whose errors would otherwise end the program, such as lack of memory.
+fn caught<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, NeedPassError> {
+    let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+    let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let result = work();
+    match now(validation.pop()).or(now(memory.pop())) {
+        Some(error) => Err(NeedPassError::Device(error.to_string())),
+        None => Ok(result),
+    }
+}
+
+/// What a future gives at once: errors are known at once but in browsers, where they are reported later.
+fn now<T>(future: impl Future<Output = Option<T>>) -> Option<T> {
+    match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
+        Poll::Ready(result) => result,
+        Poll::Pending => None,
+    }
+}
+
+fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
+    let buffer = |binding: u32, ty: wgpu::BufferBindingType| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+        count: None,
+    };
+    let texture = wgpu::BindGroupLayoutEntry {
+        binding: 1,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Depth,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled,
+        },
+        count: None,
+    };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("shadowfit need"),
+        entries: &[
+            buffer(0, wgpu::BufferBindingType::Uniform),
+            texture,
+            buffer(2, wgpu::BufferBindingType::Storage { read_only: false }),
+        ],
+    })
+}
+
+fn pipeline(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, samples: u32) -> wgpu::ComputePipeline {
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("shadowfit need"),
+        source: wgpu::ShaderSource::Wgsl(need_wgsl(samples).into()),
+    });
+    let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("shadowfit need"),
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    });
+    device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("shadowfit need"),
+        layout: Some(&pipeline_layout),
+        module: &module,
+        entry_point: Some("count_need"),
+        compilation_options: Default::default(),
+        cache: None,
+    })
+}
+
+fn group(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    uniform: &wgpu::Buffer,
+    depth: &wgpu::TextureView,
+    counts: &wgpu::Buffer,
+) -> wgpu::BindGroup {
+    let entry = |binding: u32, resource| wgpu::BindGroupEntry { binding, resource };
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("shadowfit need"),
+        layout,
+        entries: &[
+            entry(0, uniform.as_entire_binding()),
+            entry(1, wgpu::BindingResource::TextureView(depth)),
+            entry(2, counts.as_entire_binding()),
+        ],
+    })
+}
+
+fn buffer(device: &wgpu::Device, bytes: usize, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("shadowfit need"),
+        size: bytes as u64,
+        usage,
+        mapped_at_creation: false,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn devices_without_compute_or_loads_of_depth_are_refused_with_what_to_do() {
+        let limits = wgpu::Limits::default();
+        assert_eq!(supported(&limits, wgpu::Backend::Vulkan), Ok(()));
+        assert_eq!(supported(&limits, wgpu::Backend::Gl), Err(Unsupported::DepthLoads));
+        let without = wgpu::Limits::downlevel_webgl2_defaults();
+        assert_eq!(supported(&without, wgpu::Backend::Gl), Err(Unsupported::Compute));
+        for lack in [Unsupported::Compute, Unsupported::DepthLoads] {
+            let text = NeedPassError::Unsupported(lack).to_string();
+            assert!(text.contains("this device cannot") && text.ends_with("fit from boxes"), "{text}");
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! The way of the counts back to the CPU, without waiting: a few buffers that take turns.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use super::seen::{COUNTS, SeenNeed, Stamp};
+
+/// Can be recorded into.
+const FREE: u8 = 0;
+/// Recorded; the GPU is not done with it.
+const BUSY: u8 = 1;
+/// Can be read.
+const READABLE: u8 = 2;
+/// The device was lost.
+const FAILED: u8 = 3;
+
+/// A buffer of counts on their way back.
+#[derive(Debug)]
+pub(super) struct ReadBack {
+    buffer: wgpu::Buffer,
+    state: Arc<AtomicU8>,
+    /// What was recorded last, and the how manieth recording it was.
+    recorded: Option<(Stamp, u64)>,
+}
+
+/// Is told when the buffer can be read. An encoder that is dropped instead of submitted drops it untold.
+struct Told(Arc<AtomicU8>);
+
+impl Told {
+    fn tell(self, readable: bool) {
+        self.0.store(if readable { READABLE } else { FAILED }, Ordering::Release);
+    }
+}
+
+impl Drop for Told {
+    fn drop(&mut self) {
+        let _told = self.0.compare_exchange(BUSY, FREE, Ordering::AcqRel, Ordering::Relaxed);
+    }
+}
+
+impl ReadBack {
+    pub(super) fn new(device: &wgpu::Device) -> Self {
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("shadowfit need read back"),
+            size: (COUNTS * size_of::<u32>()) as u64,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        Self { buffer, state: Arc::new(AtomicU8::new(FREE)), recorded: None }
+    }
+
+    pub(super) fn is_free(&self) -> bool {
+        self.state.load(Ordering::Acquire) == FREE
+    }
+
+    /// Whether it can be read.
+    pub(super) fn is_readable(&self) -> bool {
+        self.state.load(Ordering::Acquire) == READABLE
+    }
+
+    /// Whether the device was lost; only once.
+    pub(super) fn has_failed(&self) -> bool {
+        self.state.compare_exchange(FAILED, FREE, Ordering::AcqRel, Ordering::Relaxed).is_ok()
+    }
+
+    /// The how manieth recording it holds.
+    pub(super) fn number(&self) -> u64 {
+        self.recorded.map_or(0, |(_, number)| number)
+    }
+
+    /// Records the way back of counts.
+    pub(super) fn record(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        counts: &wgpu::Buffer,
+        stamp: Stamp,
+        number: u64,
+    ) {
+        self.recorded = Some((stamp, number));
+        self.state.store(BUSY, Ordering::Release);
+        encoder.copy_buffer_to_buffer(counts, 0, &self.buffer, 0, None);
+        let told = Told(Arc::clone(&self.state));
+        encoder.map_buffer_on_submit(&self.buffer, wgpu::MapMode::Read, .., move |result| told.tell(result.is_ok()));
+    }
+
+    /// The counts, if they can be read; the buffer is free again then.
+    pub(super) fn take(&mut self) -> Option<SeenNeed> {
+        let (stamp, _) = self.recorded.take().filter(|_| self.is_readable())?;
+        let counts = self.buffer.get_mapped_range(..).ok().map(|mapped| bytemuck::pod_collect_to_vec(&mapped));
+        self.release();
+        Some(SeenNeed { stamp, counts: counts? })
+    }
+
+    /// Gives the buffer back without reading it.
+    pub(super) fn release(&mut self) {
+        self.buffer.unmap();
+        self.state.store(FREE, Ordering::Release);
+    }
+}

@@ -1,0 +1,194 @@
+// What a depth buffer shows: which texel each visible point asks for, by its place across the light, and how far away
+// it is. The twin of `NeedSpace::index` and `DepthHistogram::bin`. In front of it stand the constants CELLS, LEVELS,
+// SIDE, DEPTHS, CLASSES, MIN_FACING, and DepthTexture, the depth texture's type.
+
+struct Need {
+    // Homogeneous position relative to the eye from a pixel's column and row, and its depth minus the far plane's.
+    world_from_pixel: mat4x4<f32>,
+    // View depth of a position relative to the eye, in metres, is dot(xyz, position) + w.
+    view: vec4<f32>,
+    direction: vec3<f32>,
+    far_depth: f32,
+    x: vec3<f32>,
+    cell: f32,
+    y: vec3<f32>,
+    // Length of y is one over this.
+    shape: f32,
+    // First pixel of the picture, and its width and height.
+    corner: vec2<u32>,
+    size: vec2<u32>,
+    // Pixels from one point to the next, across and down.
+    step: u32,
+    // Sides of this picture's pixels that make up one of a picture of the height that needs are counted in.
+    pixels: f32,
+    // Exponent of the finest level's texel.
+    exponent: i32,
+    // Depths of the histogram's bins, in metres, and bins per factor of two.
+    near: f32,
+    far: f32,
+    bins_per_octave: f32,
+    // Width of a pixel that faces the eye, in metres: at the eye, and what it grows by per metre of view depth.
+    pixel_width: vec2<f32>,
+}
+
+@group(0) @binding(0) var<uniform> need: Need;
+@group(0) @binding(1) var depths: DepthTexture;
+// The cells of the grid, then the bins of the histogram.
+@group(0) @binding(2) var<storage, read_write> counts: array<atomic<u32>, CELLS + DEPTHS * CLASSES>;
+
+// Threads along a side of a workgroup; each looks at PARTS² points.
+const THREADS: u32 = 16u;
+const PARTS: u32 = 2u;
+
+// Neighbouring points mostly count in the same few cells, so a workgroup counts them first: in slots, by a key that is
+// the index plus 1.
+const SLOTS: u32 = THREADS * THREADS;
+const SLOT_BITS: u32 = 8u;
+var<workgroup> keys: array<atomic<u32>, SLOTS>;
+var<workgroup> tallies: array<atomic<u32>, SLOTS>;
+
+// More than depths can differ by.
+const NOTHING: f32 = 2.0;
+
+fn count(index: u32) {
+    // Multiplicative hashing: 2³² divided by the golden ratio spreads neighbours evenly.
+    let slot = (index * 0x9E3779B9u) >> (32u - SLOT_BITS);
+    let found = atomicCompareExchangeWeak(&keys[slot], 0u, index + 1u);
+    if found.exchanged || found.old_value == index + 1u {
+        atomicAdd(&tallies[slot], 1u);
+    } else {
+        atomicAdd(&counts[index], 1u);
+    }
+}
+
+// Depth of a pixel minus that of the far plane; 0 where nothing is drawn, and outside the picture.
+fn depth_at(pixel: vec2<i32>) -> f32 {
+    if any(pixel < vec2<i32>(0)) || any(pixel >= vec2<i32>(need.size)) {
+        return 0.0;
+    }
+    return textureLoad(depths, vec2<i32>(need.corner) + pixel, 0) - need.far_depth;
+}
+
+// Change of depth from a pixel to the next along an axis on the surface that it shows, which is the same everywhere on
+// a plane. It is taken from the neighbour that is nearer in depth, so that what lies behind a silhouette does not
+// count.
+fn change(pixel: vec2<i32>, axis: vec2<i32>, depth: f32) -> f32 {
+    let next = depth_at(pixel + axis);
+    let previous = depth_at(pixel - axis);
+    let after = select(NOTHING, next - depth, next != 0.0);
+    let before = select(NOTHING, depth - previous, previous != 0.0);
+    return select(before, after, abs(after) <= abs(before));
+}
+
+fn exponent(x: f32) -> i32 {
+    return i32((bitcast<u32>(x) >> 23u) & 0xffu);
+}
+
+fn power_of_two(power: i32) -> f32 {
+    return bitcast<f32>(u32(power + 127) << 23u);
+}
+
+// Side of the widest square texel with which a point shows no more than one pixel per texel: the least singular value.
+fn needed_texel(a: vec2<f32>, b: vec2<f32>) -> f32 {
+    let half_sum = (dot(a, a) + dot(b, b)) * 0.5;
+    let difference = (dot(a, a) - dot(b, b)) * 0.5;
+    let ab = dot(a, b);
+    let greatest = half_sum + sqrt(difference * difference + ab * ab);
+    if greatest > 0.0 {
+        return abs(a.x * b.y - a.y * b.x) / sqrt(greatest);
+    }
+    return 0.0;
+}
+
+// Index of the cell of a place across the light and of the texel that is asked for there; CELLS if there is none.
+fn cell_of(place: vec2<f32>, texel: f32) -> u32 {
+    let half_side = f32(SIDE / 2u);
+    let cells = place / need.cell;
+    let reach = max(abs(cells.x), abs(cells.y)) / half_side;
+    // Points so far away that their level has no cell for them count as coarser: they lie within the power of two
+    // above.
+    let asked = clamp(exponent(texel) - need.exponent, 0, LEVELS - 1);
+    let level = max(asked, exponent(reach) - 126);
+    if level >= LEVELS {
+        return CELLS;
+    }
+    let at = min(vec2<u32>(cells * power_of_two(-level) + half_side), vec2<u32>(SIDE - 1u));
+    return (u32(level) * SIDE + at.y) * SIDE + at.x;
+}
+
+// Index of a view depth's bin, for the texel that is asked for there across the light.
+fn bin_of(depth: f32, texel: f32) -> u32 {
+    let bin = min(u32(log2(depth / need.near) * need.bins_per_octave), DEPTHS - 1u);
+    // The octave is rounded to the nearest.
+    let finer = (need.pixel_width.x + need.pixel_width.y * depth) / texel;
+    let class_index = clamp(exponent(finer * sqrt(2.0)) - 127, 0, i32(CLASSES) - 1);
+    return u32(class_index) * DEPTHS + bin;
+}
+
+fn see(pixel: vec2<i32>) {
+    let depth = depth_at(pixel);
+    if depth == 0.0 {
+        return;
+    }
+    let across = change(pixel, vec2<i32>(1, 0), depth);
+    let along = change(pixel, vec2<i32>(0, 1), depth);
+    if across == NOTHING || along == NOTHING {
+        return;
+    }
+    let m = need.world_from_pixel;
+    let homogeneous = m * vec4<f32>(vec2<f32>(pixel), depth, 1.0);
+    let position = homogeneous.xyz / homogeneous.w;
+    let view_depth = dot(need.view.xyz, position) + need.view.w;
+    // Shadows end there.
+    if !(view_depth < need.far) {
+        return;
+    }
+    // Derivatives of the position on the surface's plane, for one pixel to the right and one down, and along the ray.
+    let scale = need.pixels / homogeneous.w;
+    let right_change = m[0] + m[2] * across;
+    let down_change = m[1] + m[2] * along;
+    let right = (right_change.xyz - position * right_change.w) * scale;
+    let down = (down_change.xyz - position * down_change.w) * scale;
+    let ray = (m[2].xyz - position * m[2].w) / homogeneous.w;
+
+    // The normal on the side of the eye.
+    let perpendicular = cross(right, down);
+    let is_behind = dot(perpendicular, ray) * dot(ray, need.view.xyz) > 0.0;
+    let facing = select(-1.0, 1.0, is_behind) * dot(perpendicular, need.direction);
+    let length = length(perpendicular);
+    if !(facing > 0.0) || !(length > 0.0) {
+        return;
+    }
+    let a = vec2<f32>(dot(need.x, right), dot(need.y, right));
+    let b = vec2<f32>(dot(need.x, down), dot(need.y, down));
+    if view_depth >= need.near {
+        let stretch = vec2<f32>(1.0, need.shape);
+        count(CELLS + bin_of(view_depth, needed_texel(a * stretch, b * stretch)));
+    }
+    if facing >= MIN_FACING * length {
+        let index = cell_of(vec2<f32>(dot(need.x, position), dot(need.y, position)), needed_texel(a, b));
+        if index < CELLS {
+            count(index);
+        }
+    }
+}
+
+@compute @workgroup_size(THREADS, THREADS)
+fn count_need(
+    @builtin(workgroup_id) square: vec3<u32>,
+    @builtin(local_invocation_id) thread: vec3<u32>,
+    @builtin(local_invocation_index) slot: u32,
+) {
+    for (var part = 0u; part < PARTS * PARTS; part += 1u) {
+        let within = vec2<u32>(part % PARTS, part / PARTS) * THREADS + thread.xy;
+        let pixel = (square.xy * (THREADS * PARTS) + within) * need.step + need.step / 2u;
+        if all(pixel < need.size) {
+            see(vec2<i32>(pixel));
+        }
+    }
+    workgroupBarrier();
+    let tally = atomicLoad(&tallies[slot]);
+    if tally > 0u {
+        atomicAdd(&counts[atomicLoad(&keys[slot]) - 1u], tally);
+    }
+}

@@ -1,0 +1,200 @@
+//! The grid of need: which cell a visible point counts in, by hand and at any scale.
+
+use proptest::prelude::*;
+use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::need::{CELLS, LEVELS, MIN_FACING, NeedSpace, SIDE};
+use shadowfit::{FitError, PerspectiveCamera};
+
+use crate::scenes::any_light;
+use crate::support::{any_camera, any_direction, cases, float};
+
+/// A light straight down; cells of a quarter of a metre for texels of 1/1024 to 2/1024 m.
+fn space() -> NeedSpace {
+    NeedSpace {
+        origin: DVec3::ZERO,
+        direction: Vec3::NEG_Y,
+        x: Vec3::X,
+        y: Vec3::NEG_Z,
+        texel: 1.0 / 1024.0,
+        cell: 0.25,
+    }
+}
+
+/// A point of level ground that moves by so many metres for a pixel.
+fn on_ground(space: &NeedSpace, x: f32, z: f32, pixel: f32) -> Option<usize> {
+    space.index(Vec3::new(x, -2.0, z), Vec3::Y, Vec3::X * pixel, Vec3::Z * pixel)
+}
+
+const fn index(level: usize, row: usize, column: usize) -> usize {
+    (level * SIDE + row) * SIDE + column
+}
+
+#[test]
+fn points_count_in_the_cells_that_hand_finds() {
+    assert_eq!((LEVELS, SIDE, CELLS), (16, 32, 16_384));
+    let cases = [
+        // The eye is in the middle: at the corner of cells 15 and 16.
+        ((0.0, 0.0, 0.0015), Some(index(0, 16, 16))),
+        ((-0.01, 0.01, 0.0015), Some(index(0, 15, 15))),
+        // 0.3 m are 1.2 cells of 0.25 m to the right, -0.6 m along z are 2.4 cells up.
+        ((0.3, -0.6, 0.0015), Some(index(0, 18, 17))),
+        // The outermost cells of level 0 end at 16 · 0.25 m = 4 m.
+        ((3.99, 3.99, 0.0015), Some(index(0, 0, 31))),
+        ((-3.99, -3.99, 0.0015), Some(index(0, 31, 0))),
+        // Beyond that a point counts as coarser: 5 m are 10 cells of 0.5 m.
+        ((5.0, 0.0, 0.0015), Some(index(1, 16, 26))),
+        // 100 m are 12.5 cells of 8 m, the first that reach as far: those of 4 m end at 64 m.
+        ((-100.0, 0.0, 0.0015), Some(index(5, 16, 3))),
+        // Nothing is finer than level 0, however near.
+        ((0.3, -0.6, 1e-6), Some(index(0, 18, 17))),
+        ((0.3, -0.6, 0.0), Some(index(0, 18, 17))),
+        // Octaves: 1/1024 m is the first of level 0, 2/1024 the first of level 1 with its cells of 0.5 m.
+        ((0.3, -0.6, 1.0 / 1024.0), Some(index(0, 18, 17))),
+        ((0.3, -0.6, 1.999 / 1024.0), Some(index(0, 18, 17))),
+        ((0.3, -0.6, 2.0 / 1024.0), Some(index(1, 17, 16))),
+        ((0.3, -0.6, 3.9 / 1024.0), Some(index(1, 17, 16))),
+        ((0.3, -0.6, 4.0 / 1024.0), Some(index(2, 16, 16))),
+        // Nothing is coarser than level 15, from 32 m, whose cells of 8192 m reach 131,072 m.
+        ((1e5, 0.0, 33.0), Some(index(15, 16, 28))),
+        ((1e5, 0.0, 1e6), Some(index(15, 16, 28))),
+        ((131_073.0, 0.0, 33.0), None),
+        ((2e5, 0.0, 0.0015), None),
+    ];
+    for ((x, z, pixel), expected) in cases {
+        assert_eq!(on_ground(&space(), x, z, pixel), expected, "({x}, {z}), {pixel} m for a pixel");
+    }
+}
+
+#[test]
+fn the_finer_axis_of_the_texel_counts() {
+    let count = |right, down| space().index(Vec3::ZERO, Vec3::Y, right, down);
+    // 1.5 mm along x and 100 mm along z: the least singular value is the former.
+    assert_eq!(count(Vec3::X * 0.0015, Vec3::Z * 0.1), Some(index(0, 16, 16)));
+    assert_eq!(count(Vec3::X * 0.1, Vec3::Z * 0.0015), Some(index(0, 16, 16)));
+    // A square turned by 45° is as large as before: 0.003 √2 · √½ · … = 3 mm in both directions.
+    let half = 0.003 * core::f32::consts::FRAC_1_SQRT_2;
+    assert_eq!(count(Vec3::new(half, 0.0, half), Vec3::new(-half, 0.0, half)), Some(index(1, 16, 16)));
+    // Along one line only, the other axis asks for any texel.
+    assert_eq!(count(Vec3::X, Vec3::X), Some(index(0, 16, 16)));
+    // What moves along the light does not move in the plane.
+    assert_eq!(count(Vec3::new(0.0015, 9.0, 0.0), Vec3::new(0.0, -9.0, 0.0015)), Some(index(0, 16, 16)));
+    // A plane whose second axis is twice as long halves the texel there: 2 · 0.8 mm.
+    let space = NeedSpace { y: Vec3::NEG_Z * 2.0, ..space() };
+    assert_eq!(space.index(Vec3::ZERO, Vec3::Y, Vec3::X * 0.01, Vec3::Z * 0.0008), Some(index(0, 16, 16)));
+    assert_eq!(space.index(Vec3::ZERO, Vec3::Y, Vec3::X * 0.01, Vec3::Z * 0.0012), Some(index(1, 16, 16)));
+}
+
+#[test]
+fn points_turned_from_the_light_or_nearly_so_do_not_count() {
+    let facing = |cosine: f32| {
+        let normal = Vec3::new((1.0 - cosine * cosine).sqrt(), cosine, 0.0);
+        space().index(Vec3::ZERO, normal, Vec3::X, Vec3::Z).is_some()
+    };
+    for (cosine, counts) in [
+        (1.0, true),
+        (0.1, true),
+        (MIN_FACING, true),
+        (MIN_FACING * 0.999, false),
+        (0.0, false),
+        (-0.5, false),
+        (-1.0, false),
+    ] {
+        assert_eq!(facing(cosine), counts, "{cosine}");
+    }
+}
+
+#[test]
+fn numbers_that_are_none_count_nowhere() {
+    let good = [Vec3::ZERO, Vec3::Y, Vec3::X * 0.01, Vec3::Z * 0.01];
+    let [position, normal, right, down] = good;
+    assert!(space().index(position, normal, right, down).is_some());
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        for (vector, axis) in (0..4).flat_map(|vector| (0..3).map(move |axis| (vector, axis))) {
+            let mut all = good;
+            all[vector][axis] = bad;
+            let [position, normal, right, down] = all;
+            assert_eq!(space().index(position, normal, right, down), None, "{bad} in {vector}, {axis}");
+        }
+    }
+}
+
+#[test]
+fn a_space_of_bad_input_is_an_error() {
+    let camera = crate::support::camera();
+    let view = camera.frustum().unwrap();
+    let new = |direction, up, distance| NeedSpace::new(&view, direction, up, distance);
+    assert!(new(Vec3::NEG_Y, Vec3::Y, f32::MAX).is_ok());
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        assert!(new(Vec3::NEG_Y, Vec3::Y, bad).is_err(), "{bad}");
+        for axis in 0..3 {
+            let mut vector = Vec3::new(0.3, -0.8, 0.4);
+            vector[axis] = bad;
+            assert!(new(vector, Vec3::Y, f32::MAX).is_err() && new(Vec3::NEG_Y, vector, f32::MAX).is_err());
+            let mut view = view;
+            view.corners[5][axis] = bad;
+            assert!(NeedSpace::new(&view, Vec3::NEG_Y, Vec3::Y, f32::MAX).is_err());
+        }
+    }
+    assert!(new(Vec3::ZERO, Vec3::Y, f32::MAX).is_err());
+    assert!(new(Vec3::NEG_Y, Vec3::ZERO, f32::MAX).is_err());
+    assert!(matches!(new(Vec3::NEG_Y, Vec3::Y, camera.near), Err(FitError::NearNotBelowFar { .. })));
+}
+
+proptest! {
+    #![proptest_config(cases(1000))]
+
+    /// Powers of two scale without rounding, so that centimetres and kilometres count in the same cells.
+    #[test]
+    fn scenes_of_another_unit_count_in_the_same_cells(
+        camera in any_camera(), direction in any_light(), octaves in -12..12_i32,
+        places in prop::collection::vec((float(-1.0, 1.0), float(-1.0, 1.0), float(-1.0, 1.0), float(-14.0, 0.0)), 16),
+        normal in any_direction(), right in any_direction(), down in any_direction(),
+    ) {
+        let scale = f64::from(octaves).exp2();
+        let scaled = PerspectiveCamera {
+            eye: camera.eye * scale,
+            near: camera.near * scale as f32,
+            far: camera.far * scale as f32,
+            ..camera
+        };
+        let [one, other] =
+            [camera, scaled].map(|c| NeedSpace::new(&c.frustum().unwrap(), direction, Vec3::Y, f32::MAX).unwrap());
+        prop_assert_eq!(other.texel, one.texel * scale as f32);
+        prop_assert_eq!(other.cell, one.cell * scale as f32);
+        prop_assert_eq!((one.x, one.y, one.direction), (other.x, other.y, other.direction));
+        for (x, y, z, size) in places {
+            let (p, pixel) = (Vec3::new(x, y, z) * camera.far, size.exp2() * camera.far);
+            let index = |space: &NeedSpace, k: f32| space.index(p * k, normal, right * (pixel * k), down * (pixel * k));
+            prop_assert_eq!(index(&one, 1.0), index(&other, scale as f32));
+        }
+    }
+
+    /// The sixteen octaves end where a pixel of the far end does, and a cell is a quarter of the distance that its
+    /// level is made for, so that what is in view has a cell of its octave or hardly coarser.
+    #[test]
+    fn what_is_in_view_counts_by_its_octave(
+        camera in any_camera(), direction in any_light(), (x, y) in (float(-1.0, 1.0), float(-1.0, 1.0)),
+        octaves in float(0.0, 8.0),
+    ) {
+        let view = camera.frustum().unwrap();
+        let space = NeedSpace::new(&view, direction, Vec3::Y, f32::MAX).unwrap();
+        let depth = (camera.far / octaves.exp2()).max(camera.near);
+        let [forward, up] = [camera.forward, camera.up].map(Vec3::normalize);
+        let side = forward.cross(up).normalize();
+        let above = side.cross(forward);
+        let height = (camera.fov_y * 0.5).tan() * depth;
+        // A surface that faces the light and has the pixel's height along both axes of the plane.
+        let pixel = 2.0 * height / shadowfit::need::PIXELS;
+        let p = forward * depth + side * (x * height) + above * (y * height);
+        let (a, b) = (space.x * pixel, space.y.normalize() * (pixel / space.y.length()));
+        // What lies farther away in the plane than twice the far end's distance may have none.
+        let farthest = space.x.dot(p).abs().max(space.y.dot(p).abs());
+        prop_assume!(farthest < 2.0 * camera.far);
+        let index = space.index(p, -space.direction, a, b).expect("it has a cell");
+        let level = (pixel / space.texel).log2();
+        // Rounding may choose the other side of an octave's end. In the corners of a picture, and where the plane's
+        // second axis is up to four times as long, points may be too far away for their level's cells.
+        let (found, least) = ((index / (SIDE * SIDE)) as f32, level.floor().min((level - 1e-4).floor()));
+        prop_assert!(found >= least.max(0.0) && found <= level.max(0.0) + 2.0, "level {found} for {level}");
+    }
+}

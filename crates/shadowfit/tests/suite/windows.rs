@@ -1,0 +1,206 @@
+//! Windows: what they promise whatever camera, light and grid of need are, by what comes out of a [`MapFitter`].
+
+mod content;
+mod coverage;
+mod light;
+mod room;
+mod scaled;
+mod scrolled;
+mod settled;
+mod state;
+mod still;
+
+use proptest::prelude::*;
+use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
+use shadowfit::need::{CELLS, NeedGrid, NeedSpace, PIXELS};
+use shadowfit::settings::{
+    CasterPolicy, FilterKind, FitKind, FitSettings, MAX_MAPS, MapOverride, NeedSource, Stabilise,
+};
+use shadowfit::{Aabb, Boxes, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace};
+
+use crate::scenes::{SceneView, any_depth, of_camera};
+use crate::support::{any_direction, float};
+
+/// Rays across and down the picture, as those of the frame before.
+const COLUMNS: u16 = 64;
+const ROWS: u16 = 36;
+
+/// A visible point, and how far it moves on its surface for a pixel of a picture that is [`PIXELS`] high.
+#[derive(Clone, Copy, Debug)]
+struct Hit {
+    /// Relative to the eye, as the rest in world axes.
+    point: DVec3,
+    normal: DVec3,
+    right: DVec3,
+    down: DVec3,
+}
+
+/// Where a ray enters a box, as a multiple of its direction, and the normal there; `None` from inside.
+fn entry((start, along): (DVec3, DVec3), (min, max): (DVec3, DVec3)) -> Option<(f64, DVec3)> {
+    let (mut enter, mut leave, mut normal) = (f64::MIN, f64::MAX, DVec3::ZERO);
+    for axis in 0..3 {
+        let (s, d) = (start[axis], along[axis]);
+        if d == 0.0 {
+            if s < min[axis] || s > max[axis] {
+                return None;
+            }
+            continue;
+        }
+        let (a, b) = ((min[axis] - s) / d, (max[axis] - s) / d);
+        if a.min(b) > enter {
+            (enter, normal) = (a.min(b), DVec3::ZERO);
+            normal[axis] = -d.signum();
+        }
+        leave = leave.min(a.max(b));
+    }
+    (enter <= leave && enter > 0.0).then_some((enter, normal))
+}
+
+/// What a view sees of boxes by 64 × 36 rays, up to a view depth in metres.
+fn hits(view: &SceneView, origin: DVec3, boxes: &[Aabb], distance: f64) -> Vec<Hit> {
+    let lens = &view.lens;
+    let boxes: Vec<(DVec3, DVec3)> =
+        boxes.iter().map(|b| [b.min, b.max].map(|v| v.as_dvec3() + origin - view.eye).into()).collect();
+    let ray = |x: f64, y: f64| {
+        let start = view.point(x, y, 0.0);
+        (start, view.point(x, y, 1.0) - start)
+    };
+    let pixel = 1.0 / f64::from(PIXELS);
+    let across = pixel * (lens.top - lens.bottom) / (lens.right - lens.left);
+    let all = (0..COLUMNS).flat_map(|x| (0..ROWS).map(move |y| (x, y)));
+    let hit = |(x, y): (u16, u16)| {
+        let (x, y) = ((f64::from(x) + 0.5) / f64::from(COLUMNS), (f64::from(y) + 0.5) / f64::from(ROWS));
+        let (start, along) = ray(x, y);
+        let met = boxes.iter().filter_map(|b| entry((start, along), *b)).filter(|(depth, _)| *depth >= lens.near);
+        let (depth, normal) = met.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let point = start + along * depth;
+        let beside = |x: f64, y: f64| {
+            let (start, along) = ray(x, y);
+            start + along * (normal.dot(point - start) / normal.dot(along)) - point
+        };
+        (depth <= distance.min(lens.far)).then(|| Hit {
+            point,
+            normal,
+            right: beside(x + across, y),
+            down: beside(x, y - pixel),
+        })
+    };
+    all.filter_map(hit).collect()
+}
+
+/// A grid of need and its counts.
+#[derive(Clone, Debug)]
+struct Need {
+    space: NeedSpace,
+    counts: Vec<u32>,
+}
+
+impl Need {
+    /// What a frame asks for, by [`hits`].
+    fn of(view: &SceneView, hits: &[Hit], direction: Vec3, technique: &Technique) -> Self {
+        let fit = &technique.fit;
+        let space = NeedSpace::new(&view.frustum(), direction, fit.up, fit.max_distance).unwrap();
+        let mut counts = vec![0; CELLS];
+        for hit in hits {
+            let [point, normal, right, down] = [hit.point, hit.normal, hit.right, hit.down].map(DVec3::as_vec3);
+            if let Some(cell) = space.index(point, normal, right, down) {
+                counts[cell] += 1;
+            }
+        }
+        Self { space, counts }
+    }
+
+    fn grid(&self) -> NeedGrid<'_> {
+        NeedGrid { space: self.space, counts: &self.counts }
+    }
+}
+
+/// Boxes around the world's origin or another one.
+#[derive(Clone, Debug)]
+struct World {
+    origin: DVec3,
+    boxes: Vec<Aabb>,
+}
+
+impl World {
+    fn input<'a>(&'a self, views: &'a [ViewFrustum], direction: Vec3, need: &'a [NeedGrid<'a>]) -> FitInput<'a> {
+        let boxes = Some(Boxes { origin: self.origin, boxes: &self.boxes });
+        FitInput { receivers: boxes, casters: boxes, need, ..FitInput::new(views, direction) }
+    }
+}
+
+/// One camera in a world, fitted frame by frame with what the frame before showed.
+struct Run {
+    world: World,
+    technique: Technique,
+    fitter: MapFitter,
+    need: Option<Need>,
+    /// The view and the light that the grid of need is of.
+    seen: Option<(ViewFrustum, Vec3)>,
+    storage: Vec<DVec2>,
+}
+
+impl Run {
+    fn new(world: World, technique: &Technique) -> Self {
+        let storage = vec![DVec2::ZERO; Workspace::required(world.boxes.len(), 1)];
+        Self { world, technique: *technique, fitter: MapFitter::new(), need: None, seen: None, storage }
+    }
+
+    fn frame(&mut self, view: &SceneView, direction: Vec3) -> FittedMaps {
+        let views = [view.frustum()];
+        let need: Vec<NeedGrid> = self.need.iter().map(Need::grid).collect();
+        let input = self.world.input(&views, direction, &need);
+        let maps = self.fitter.fit(&input, &self.technique, &mut Workspace::new(&mut self.storage)).unwrap();
+        if self.seen.replace((views[0], direction)) != Some((views[0], direction)) {
+            let distance = f64::from(self.technique.fit.max_distance);
+            let hits = hits(view, self.world.origin, &self.world.boxes, distance);
+            self.need = Some(Need::of(view, &hits, direction, &self.technique));
+        }
+        maps
+    }
+}
+
+/// Houses on a square of ground around the world's origin.
+fn town() -> World {
+    let ground = Aabb::new(Vec3::new(-150.0, -1.0, -150.0), Vec3::new(150.0, 0.0, 150.0));
+    let house = |i: u16| {
+        let (x, z) = (f32::from(i % 10) * 28.0 - 140.0, f32::from(i / 10) * 28.0 - 140.0);
+        Aabb::new(Vec3::new(x, 0.0, z), Vec3::new(x + 8.0, 4.0 + f32::from(i * 37 % 11), z + 11.0))
+    };
+    World { origin: DVec3::ZERO, boxes: std::iter::once(ground).chain((0..100).map(house)).collect() }
+}
+
+/// A camera at eye height that looks along a direction.
+fn street_view(eye: DVec3, forward: Vec3) -> SceneView {
+    let (fov_y, aspect) = (0.9, 16.0 / 9.0);
+    of_camera(&PerspectiveCamera { eye, forward, up: Vec3::Y, fov_y, aspect, near: 0.1, far: 300.0 })
+}
+
+/// The preset's technique with maps of this many texels across.
+fn windows(count: u32, side: u32) -> Technique {
+    let fit = FitSettings::default().with_kind(FitKind::Windows).with_max_distance(f32::MAX);
+    Technique { count, fit, ..Technique::preset("windows-4").unwrap() }.with_resolution(side, side)
+}
+
+/// Settings of windows of every kind.
+fn any_windows() -> impl Strategy<Value = Technique> {
+    let size = || prop::sample::select(vec![64_u32, 300, 1024, 2048]);
+    let own = || prop_oneof![3 => Just(None), 1 => (size(), size()).prop_map(|(w, h)| Some(UVec2::new(w, h)))];
+    let up = prop_oneof![2 => Just(Vec3::Y), 1 => Just(Vec3::Z), 1 => any_direction()];
+    let border = prop_oneof![2 => Just(None), 1 => float(0.0, 8.0).prop_map(Some)];
+    let casters = prop::sample::select(vec![CasterPolicy::List, CasterPolicy::SceneBounds]);
+    let keeps = prop::sample::select(vec![Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis]);
+    let need = prop::sample::select(vec![NeedSource::LastFrame, NeedSource::LastFrame, NeedSource::Boxes]);
+    let fit = (up, border, casters, prop_oneof![2 => Just(f32::MAX), 1 => float(3.0, 500.0)], any_depth());
+    let look_up = (prop::sample::select(FilterKind::ALL.to_vec()), keeps, need);
+    let overrides = prop::array::uniform8(own());
+    (1..=8_u32, (size(), size()), overrides, fit, look_up).prop_map(
+        |(count, (width, height), own, (up, border, casters, max_distance, depth), (filter, stabilise, need))| {
+            let fit = FitSettings { up, border, casters, max_distance, depth, ..windows(count, 1024).fit };
+            let overrides: [MapOverride; MAX_MAPS] = own.map(|resolution| MapOverride { kind: None, resolution });
+            Technique { fit, count, overrides, stabilise, need, ..Technique::default() }
+                .with_filter(filter)
+                .with_resolution(width, height)
+        },
+    )
+}

@@ -1,0 +1,127 @@
+//! What a point reads is complete: depth ranges, culling and the certificate of windows.
+
+use proptest::prelude::*;
+use shadowfit::bias::Reach;
+use shadowfit::glam::{DVec2, DVec3, Vec3};
+use shadowfit::settings::CasterPolicy;
+use shadowfit::verify::{Certificate, CoverageQuery, verify};
+use shadowfit::{Aabb, Boxes, FitInput, FittedMap, MapFitter, Technique, Workspace};
+
+use super::{Need, World, any_windows, hits, windows};
+use crate::read_by_coverage::{Sample, any_samples, check};
+use crate::scenes::{any_box, any_light, any_view, any_walk};
+use crate::support::cases;
+
+proptest! {
+    #![proptest_config(cases(250))]
+
+    #[test]
+    fn every_caster_above_a_visible_point_is_in_the_window_that_the_point_reads(
+        view in any_view(), direction in any_light(), technique in any_windows(), walk in any_walk(),
+        plans in prop::collection::vec(any_box(), 1..12), samples in any_samples(),
+    ) {
+        prop_assume!(view.lens.near < f64::from(technique.fit.max_distance));
+        let origin = view.eye.round();
+        let world = World { origin, boxes: plans.iter().map(|plan| plan.aabb(&view, origin)).collect() };
+        let mut run = super::Run::new(world.clone(), &technique);
+        let mut view = view;
+        let last = f64::from(technique.fit.max_distance);
+        for _ in 0..5 {
+            let maps = run.frame(&view, direction);
+            let points = samples.iter().map(|sample| {
+                let aabb = &world.boxes[sample.receiver % world.boxes.len()];
+                let (min, max) = (aabb.min.as_dvec3(), aabb.max.as_dvec3());
+                origin + min + (max - min) * DVec3::from_array(sample.place)
+            });
+            let (seen, samples): (Vec<DVec3>, Vec<Sample>) =
+                points.zip(&samples).filter(|(point, _)| view.sees(*point - view.eye, last)).unzip();
+            let views = [view.frustum()];
+            check(&maps, &world.input(&views, direction, &[]), &technique, &seen, &samples);
+            view = walk.moved(&view);
+        }
+    }
+
+    /// The last window is proven to hold all that is seen, and every one to have all casters over it.
+    #[test]
+    fn the_certificate_proves_windows(
+        view in any_view(), direction in any_light(), technique in any_windows(), walk in any_walk(),
+        plans in prop::collection::vec(any_box(), 0..12),
+    ) {
+        prop_assume!(view.lens.near < f64::from(technique.fit.max_distance));
+        let technique = technique.with_fit(technique.fit.with_border(technique.fit.border.unwrap_or(4.0).max(2.0)));
+        let origin = view.eye.round();
+        let world = World { origin, boxes: plans.iter().map(|plan| plan.aabb(&view, origin)).collect() };
+        let mut run = super::Run::new(world.clone(), &technique);
+        let mut view = view;
+        let mut storage = vec![DVec2::ZERO; Workspace::required(world.boxes.len(), 1)];
+        for frame in 0..5 {
+            let maps = run.frame(&view, direction);
+            let views = [view.frustum()];
+            for (i, map) in maps.iter().enumerate() {
+                let query = CoverageQuery::of_map(map, &technique, Reach::HARDWARE_2X2);
+                let input = world.input(&views, direction, &[]);
+                let certificate = verify(&input, &map.fit, &query, &mut Workspace::new(&mut storage)).unwrap();
+                prop_assert!(certificate.is_proven(), "frame {frame}, map {i}: {certificate:?} of {map:?}");
+            }
+            view = walk.moved(&view);
+        }
+    }
+}
+
+/// A tower that receives nothing itself: its top is lost where the near plane is at the receivers.
+#[test]
+fn a_near_plane_that_is_cut_is_found_in_every_window_under_the_tower() {
+    let view = super::street_view(DVec3::new(0.0, 1.7, 0.0), Vec3::new(0.0, -0.3, -1.0));
+    let (views, direction) = ([view.frustum()], Vec3::NEG_Y);
+    let ground = [Aabb::new(Vec3::new(-100.0, -0.1, -200.0), Vec3::new(100.0, 0.0, 10.0))];
+    let tower = [ground[0], Aabb::new(Vec3::new(-1.0, 0.0, -8.0), Vec3::new(1.0, 100.0, -6.0))];
+    let (receivers, casters) = [&ground[..], &tower].map(|boxes| Some(Boxes { origin: DVec3::ZERO, boxes })).into();
+    let input = FitInput { receivers, casters, ..FitInput::new(&views, direction) };
+    let mut storage = vec![DVec2::ZERO; Workspace::required(tower.len(), 1)];
+    let mut workspace = Workspace::new(&mut storage);
+    // Whether a window has the tower's foot, and its certificate.
+    let mut certificates = |policy| -> Vec<(bool, Certificate)> {
+        let technique = windows(4, 1024);
+        let technique = technique.with_fit(technique.fit.with_casters(policy));
+        let maps = MapFitter::new().fit(&input, &technique, &mut workspace).unwrap();
+        let proof = |map: &FittedMap| {
+            let query = CoverageQuery::of_map(map, &technique, Reach::HARDWARE_2X2);
+            let foot = map.fit.free_texels(DVec3::new(0.0, -0.05, -7.0));
+            (foot.is_some(), verify(&input, &map.fit, &query, &mut workspace).unwrap())
+        };
+        maps.iter().map(proof).collect()
+    };
+    assert!(certificates(CasterPolicy::List).iter().all(|(_, certificate)| certificate.is_proven()));
+    let cut = certificates(CasterPolicy::None);
+    assert!(cut.iter().filter(|(is_under, _)| *is_under).count() >= 2, "{cut:?}");
+    for (is_under, certificate) in cut {
+        // The depth range over the ground alone is no longer than a few metres.
+        let is_lost = matches!(certificate, Certificate::CasterLost { by, .. } if by > 95.0);
+        assert!(is_lost || !is_under, "{certificate:?}");
+    }
+}
+
+/// A kind that a single map names is no window's business, nor are the casters that it would lose.
+#[test]
+fn other_kinds_in_overrides_change_nothing() {
+    use shadowfit::settings::{FitKind, MapOverride};
+    let (town, view) = (super::town(), super::street_view(DVec3::new(3.0, 1.7, 8.0), Vec3::new(0.5, -0.2, -1.0)));
+    let views = [view.frustum()];
+    let direction = Vec3::new(0.3, -0.8, 0.4);
+    let hits = hits(&view, town.origin, &town.boxes, f64::MAX);
+    let mut storage = vec![DVec2::ZERO; Workspace::required(town.boxes.len(), 1)];
+    let mut fit = |technique: &Technique| {
+        let need = Need::of(&view, &hits, direction, technique);
+        let grids = [need.grid()];
+        // The houses receive nothing, so that only casters move the near plane.
+        let receivers = Some(Boxes { origin: town.origin, boxes: &town.boxes[..1] });
+        let input = FitInput { receivers, ..town.input(&views, direction, &grids) };
+        MapFitter::new().fit(&input, technique, &mut Workspace::new(&mut storage)).unwrap()
+    };
+    let plain = windows(4, 512);
+    for kind in [FitKind::XnaSample, FitKind::Sphere, FitKind::Focused, FitKind::Windows] {
+        let mut technique = plain;
+        technique.overrides = [MapOverride { kind: Some(kind), resolution: None }; 8];
+        assert_eq!(fit(&technique), fit(&plain), "{kind:?}");
+    }
+}

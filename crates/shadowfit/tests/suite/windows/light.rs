@@ -1,0 +1,108 @@
+//! Windows under a light that is rounded, that steps, and that goes through the vertical.
+
+use shadowfit::FittedMaps;
+use shadowfit::glam::{DQuat, DVec3, Vec3};
+use shadowfit::light_steps::{LightStepSettings, LightSteps};
+
+use super::{Run, hits, street_view, town, windows};
+
+/// A sun that goes round over the sky: at an angle past the zenith, in radians, off the plane of its turn by a share.
+fn sun(angle: f64, off: f64) -> Vec3 {
+    DVec3::new(angle.sin(), -angle.cos(), off).normalize().as_vec3()
+}
+
+#[test]
+fn a_light_that_differs_by_rounding_changes_nothing() {
+    let view = street_view(DVec3::new(12.0, 1.7, 20.0), Vec3::new(0.2, -0.1, -1.0));
+    for light in [Vec3::new(0.3, -0.8, 0.4), Vec3::NEG_Y, sun(1.3, 0.2)] {
+        let (mut run, mut other) = (Run::new(town(), &windows(4, 1024)), Run::new(town(), &windows(4, 1024)));
+        for frame in 0..40_u8 {
+            let next = |v: f32, i: u8| if (frame + i).is_multiple_of(3) { v.next_up() } else { v };
+            // The grid's light is rounded too.
+            let rounded = Vec3::new(next(light.x, 0), next(light.y, 1), next(light.z, 2));
+            let first = if frame == 0 { light } else { rounded };
+            let (plain, rounded) = (run.frame(&view, light), other.frame(&view, first));
+            let same = |a: &FittedMaps, b: &FittedMaps| {
+                a.iter().zip(b.iter()).all(|(a, b)| a.anchor == b.anchor && a.fit == b.fit && a.bias == b.bias)
+            };
+            assert!(same(&plain, &rounded), "frame {frame} of {light}");
+        }
+    }
+}
+
+/// Share of a window's side by which its middle may move when the light steps by about a tenth of a degree: half the
+/// share of a raster's square, by which places are tried.
+const MOVED: f64 = 1.0 / 32.0;
+
+#[test]
+fn a_step_of_the_light_keeps_sizes_and_roughly_the_places() {
+    let settings = LightStepSettings::default().with_texels(1.0).with_extent(1024.0);
+    let view = street_view(DVec3::new(12.0, 1.7, 20.0), Vec3::new(0.2, -0.1, -1.0));
+    for begin in [0.2, 0.9] {
+        let (mut run, mut steps) = (Run::new(town(), &windows(4, 1024)), LightSteps::default());
+        let mut before = None;
+        let (mut taken, mut moved, mut resized) = (0, Vec::new(), 0);
+        for frame in 0..160_u16 {
+            // After a while in which the search settles.
+            let angle = begin + f64::from(frame.saturating_sub(60)) * 1e-4;
+            let light = steps.update(sun(angle, 0.2), &settings, 0.016).unwrap().direction;
+            let now = run.frame(&view, light);
+            if let Some((old_light, old)) = before.replace((light, now)).filter(|(old, _)| *old != light) {
+                taken += 1;
+                assert!(f64::from((light - old_light).length()) < 0.003, "{light} after {old_light}");
+                for (old, map) in old.iter().zip(now.iter()) {
+                    resized += usize::from(old.fit.texel_size.x != map.fit.texel_size.x);
+                    // The point in the middle of the window, as far along the light as the eye is.
+                    let rows = old.fit.light_from_world.transpose();
+                    let t = old.fit.light_from_world.w_axis.truncate();
+                    let middle =
+                        old.fit.origin - (rows.x_axis.truncate() * t.x + rows.y_axis.truncate() * t.y).as_dvec3();
+                    let uv = map.fit.uv_from_world.transform_point3((middle - map.fit.origin).as_vec3());
+                    moved.push((f64::from(uv.x) - 0.5).abs().max((f64::from(uv.y) - 0.5).abs()));
+                }
+            }
+        }
+        assert!(taken >= 4, "{taken} steps");
+        assert_eq!(resized, 0, "windows changed their sizes with the light's steps");
+        moved.sort_by(f64::total_cmp);
+        let (median, most) = (moved[moved.len() / 2], moved[moved.len() - 1]);
+        assert!(median < MOVED / 4.0 && most < MOVED, "middles moved by {median} and at most {most} of a side");
+    }
+}
+
+/// A whole day and night in steps of a degree, through the zenith and just beside it.
+#[test]
+fn nothing_is_uncovered_while_the_light_goes_round() {
+    let view = street_view(DVec3::new(12.0, 1.7, 20.0), Vec3::new(0.2, -0.2, -1.0));
+    let world = town();
+    let seen: Vec<DVec3> =
+        hits(&view, world.origin, &world.boxes, f64::MAX).iter().map(|hit| view.eye + hit.point).collect();
+    for (off, up) in [(0.0, Vec3::Y), (1e-7, Vec3::Y), (0.3, Vec3::Y), (0.0, Vec3::Z), (0.2, Vec3::new(0.3, 0.7, -0.2))]
+    {
+        let technique = windows(4, 256);
+        let mut run = Run::new(world.clone(), &technique.with_fit(technique.fit.with_up(up)));
+        for degrees in (-180..180_i16).step_by(if off == 0.0 && up == Vec3::Y { 1 } else { 5 }) {
+            let maps = run.frame(&view, sun(f64::from(degrees).to_radians(), off));
+            let last = &maps[3].fit;
+            assert!(seen.iter().all(|point| last.free_texels(*point).is_some_and(|free| free > 2.0)), "at {degrees}°");
+        }
+    }
+}
+
+/// Lights that leap anywhere, and the camera with them.
+#[test]
+fn nothing_is_uncovered_where_light_and_camera_leap() {
+    let world = town();
+    let mut run = Run::new(world.clone(), &windows(6, 256));
+    for frame in 0..60_u16 {
+        let f = f64::from(frame);
+        let turn = DQuat::from_euler(shadowfit::glam::EulerRot::XYZ, f * 2.4, f * 1.1, f * 0.7);
+        let eye = DVec3::new((f * 1.7).sin() * 100.0, 2.0 + f, (f * 2.3).cos() * 100.0);
+        let view = street_view(eye, (turn * DVec3::new(0.1, -0.5, -1.0)).as_vec3());
+        let maps = run.frame(&view, (turn * DVec3::NEG_X).as_vec3());
+        for hit in hits(&view, world.origin, &world.boxes, f64::MAX) {
+            let free = maps[5].fit.free_texels(view.eye + hit.point);
+            assert!(free.is_some_and(|free| free > 2.0), "{free:?} texels in frame {frame}");
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! Out of a small room onto a plain and back: sizes follow a change of scene.
+
+use shadowfit::glam::{DVec2, DVec3, Vec3};
+use shadowfit::{Aabb, FittedMaps};
+
+use super::{Hit, Run, World, hits, street_view, windows};
+use crate::scenes::SceneView;
+
+/// A room of 5 by 4 m with a door and furniture, on a plain with boxes up to 250 m away.
+fn room_on_a_plain() -> World {
+    let b = |min: [f32; 3], max: [f32; 3]| Aabb::new(Vec3::from_array(min), Vec3::from_array(max));
+    let mut boxes = vec![
+        b([-300.0, -1.0, -300.0], [300.0, 0.0, 300.0]),
+        // Three walls, and a fourth in front with a door of 1 m; no roof, so that the sun comes in.
+        b([-2.6, 0.0, -2.1], [2.6, 2.4, -2.0]),
+        b([-2.6, 0.0, -2.0], [-2.5, 2.4, 2.0]),
+        b([2.5, 0.0, -2.0], [2.6, 2.4, 2.0]),
+        b([-2.6, 0.0, 2.0], [-0.5, 2.4, 2.1]),
+        b([0.5, 0.0, 2.0], [2.6, 2.4, 2.1]),
+        // A table on four legs, two chairs, a shelf, and small things on the table.
+        b([-1.6, 0.70, -1.4], [-0.2, 0.75, -0.6]),
+        b([-1.55, 0.0, -1.35], [-1.5, 0.7, -1.3]),
+        b([-0.3, 0.0, -1.35], [-0.25, 0.7, -1.3]),
+        b([-1.55, 0.0, -0.7], [-1.5, 0.7, -0.65]),
+        b([-0.3, 0.0, -0.7], [-0.25, 0.7, -0.65]),
+        b([-1.1, 0.0, -0.4], [-0.7, 0.45, 0.0]),
+        b([0.1, 0.0, -1.2], [0.5, 0.45, -0.8]),
+        b([1.9, 0.0, -1.9], [2.4, 1.9, -0.9]),
+        b([-1.2, 0.75, -1.1], [-1.1, 0.87, -1.0]),
+        b([-0.8, 0.75, -1.2], [-0.5, 0.78, -1.0]),
+    ];
+    for i in 0..40_u8 {
+        let (a, r) = (f32::from(i) * 2.4, 12.0 + f32::from(i) * 6.0);
+        let (x, z, s) = (r * a.cos(), r * a.sin(), 1.0 + f32::from(i % 5));
+        boxes.push(Aabb::new(Vec3::new(x - s, 0.0, z - s), Vec3::new(x + s, 1.5 * s, z + s)));
+    }
+    World { origin: DVec3::ZERO, boxes }
+}
+
+/// Pixels of a picture that is 1080 high for a texel along the worse axis: one over the least singular value of how
+/// far a point moves in the map for a pixel.
+fn pixels_per_texel(maps: &FittedMaps, run: &Run, view: &SceneView, hit: &Hit) -> Option<f64> {
+    let read = maps.read(&run.technique, view.eye + hit.point, hit.point.dot(view.axes()[2]))?;
+    let fit = &maps[read.main()].fit;
+    let rows = fit.light_from_world.transpose();
+    let texels = |v: DVec3| {
+        let [x, y] = [rows.x_axis, rows.y_axis].map(|row| row.truncate().as_dvec3().dot(v));
+        DVec2::new(x, y) / fit.texel_size.as_dvec2()
+    };
+    let (a, b) = (texels(hit.right), texels(hit.down));
+    let (half, diff) =
+        ((a.length_squared() + b.length_squared()) * 0.5, (a.length_squared() - b.length_squared()) * 0.5);
+    let greatest = (half + (diff * diff + a.dot(b) * a.dot(b)).sqrt()).sqrt();
+    Some(greatest / a.perp_dot(b).abs())
+}
+
+/// The 95% quantile over what is seen and turned to the light.
+fn quantile(maps: &FittedMaps, run: &Run, view: &SceneView, light: Vec3) -> f64 {
+    let is_lit = |hit: &Hit| -hit.normal.dot(light.as_dvec3().normalize()) >= f64::from(shadowfit::need::MIN_FACING);
+    let seen = hits(view, run.world.origin, &run.world.boxes, f64::MAX);
+    let mut all: Vec<f64> = seen
+        .iter()
+        .filter(|hit| is_lit(hit))
+        .map(|hit| pixels_per_texel(maps, run, view, hit).expect("covered"))
+        .collect();
+    all.sort_by(f64::total_cmp);
+    all[all.len() * 19 / 20]
+}
+
+/// Frames for which the camera stays where it is, and within which it must be as sharp as what begins anew.
+const STAY: usize = 90;
+
+/// Frames that a fitter has which begins anew, until its search has ended.
+const ANEW: usize = 90;
+
+/// Greatest 95% quantile of pixels per texel over that of a fitter that begins anew: what is aimed at.
+const TARGET: f64 = 1.25;
+
+/// What is reached so far, in the worst of the stations below: 1.67 (8 windows on the plain). To be lowered to the
+/// target as the search gets better, never raised.
+const REACHED: f64 = 1.7;
+
+#[test]
+fn windows_follow_out_of_a_small_room_onto_a_plain_and_back() {
+    let table = street_view(DVec3::new(0.8, 1.6, 1.0), Vec3::new(-0.9, -0.5, -1.0));
+    let corner = street_view(DVec3::new(-1.8, 1.2, 1.2), Vec3::new(1.0, -0.3, -0.9));
+    let plain = street_view(DVec3::new(0.0, 1.7, 12.0), Vec3::new(0.3, -0.05, 1.0));
+    let tower = street_view(DVec3::new(0.0, 25.0, 30.0), Vec3::new(-0.5, -0.2, 1.0));
+    let stations =
+        [("table", table), ("corner", corner), ("plain", plain), ("height", tower), ("plain", plain), ("table", table)];
+    let (mut missed, mut failures) = (Vec::new(), Vec::new());
+    for (light, count) in
+        [(Vec3::new(0.5, -0.8, 0.3), 4), (Vec3::new(0.8, -0.4, 0.3), 4), (Vec3::new(0.5, -0.8, 0.3), 8)]
+    {
+        let mut run = Run::new(room_on_a_plain(), &windows(count, 2048));
+        for _ in 0..60 {
+            run.frame(&table, light);
+        }
+        let mut from = table;
+        for (name, to) in stations {
+            // On foot: a second's way.
+            for i in 1..=60_u8 {
+                let share = f64::from(i) / 60.0;
+                let forward = from.forward.as_dvec3().lerp(to.forward.as_dvec3(), share) + DVec3::X * 1e-3;
+                run.frame(&street_view(from.eye.lerp(to.eye, share), forward.as_vec3()), light);
+            }
+            let mut anew = Run::new(room_on_a_plain(), &run.technique);
+            let fresh = (0..ANEW).map(|_| anew.frame(&to, light)).last().unwrap();
+            let fresh = quantile(&fresh, &anew, &to, light);
+            let mut ratios = (0..STAY).map(|_| {
+                let maps = run.frame(&to, light);
+                quantile(&maps, &run, &to, light) / fresh
+            });
+            let (first, last) = (ratios.next().unwrap(), ratios.last().unwrap());
+            let line =
+                format!("{count} windows, {name}: {first:.2} on arrival, {last:.2} after {STAY} frames, of {fresh:.2}");
+            println!("{line}");
+            missed.extend((last > TARGET).then_some(line.clone()));
+            failures.extend((last > REACHED).then_some(line));
+            from = to;
+        }
+    }
+    println!("above {TARGET} times what begins anew: {missed:#?}");
+    assert!(failures.is_empty(), "above {REACHED} times what begins anew: {failures:#?}");
+}

@@ -1,0 +1,59 @@
+//! A camera that stands still: from some frame on nothing changes.
+
+use proptest::prelude::*;
+use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::settings::NeedSource;
+use shadowfit::{FittedMaps, Technique};
+
+use super::{Run, World, any_windows, street_view, town, windows};
+use crate::scenes::{SceneView, any_box, any_light, any_view};
+use crate::support::cases;
+
+/// Frames within which the search must have ended, and those for which nothing may change then.
+const SEARCH: u32 = 400;
+const REST: u32 = 200;
+
+/// Runs a camera that stands still; gives the last frame in which any map changed, and how many did.
+fn settle(run: &mut Run, view: &SceneView, direction: Vec3) -> (u32, u32) {
+    let mut before: Option<FittedMaps> = None;
+    let (mut last, mut changes) = (0, 0);
+    for frame in 0..SEARCH + REST {
+        let now = run.frame(view, direction);
+        if before.is_some_and(|before| before != now) {
+            (last, changes) = (frame, changes + 1);
+        }
+        before = Some(now);
+    }
+    (last, changes)
+}
+
+#[test]
+fn nothing_changes_in_a_town_where_the_camera_stands_still() {
+    for technique in [windows(4, 1024), windows(8, 1024), windows(4, 1024).with_need(NeedSource::Boxes)] {
+        for direction in [Vec3::new(0.3, -0.8, 0.4), Vec3::new(1.0, -0.2, 0.1), Vec3::NEG_Y] {
+            for forward in [Vec3::new(0.0, -0.1, -1.0), Vec3::new(1.0, -0.6, 0.3)] {
+                let view = street_view(DVec3::new(12.0, 6.0, 20.0), forward);
+                let (last, changes) = settle(&mut Run::new(town(), &technique), &view, direction);
+                assert!(last < SEARCH, "frame {last} changed, {changes} did: {direction} {forward} {technique:?}");
+                println!("{changes} changes, the last in frame {last}");
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(cases(16))]
+
+    #[test]
+    fn nothing_changes_in_any_scene_where_the_camera_stands_still(
+        view in any_view(), direction in any_light(), technique in any_windows(),
+        plans in prop::collection::vec(any_box(), 1..10),
+    ) {
+        prop_assume!(view.lens.near < f64::from(technique.fit.max_distance));
+        let origin = view.eye.round();
+        let boxes = plans.iter().map(|plan| plan.aabb(&view, origin)).collect();
+        let technique: Technique = technique;
+        let (last, changes) = settle(&mut Run::new(World { origin, boxes }, &technique), &view, direction);
+        prop_assert!(last < SEARCH, "frame {last} changed, {changes} did");
+    }
+}

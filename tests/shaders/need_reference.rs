@@ -1,0 +1,120 @@
+//! What the compute pass over a depth buffer counts, in plain Rust and f64: positions by the inverse of the matrix, the
+//! surface's plane by differences, cells and bins by the core.
+
+use shadowfit::glam::{DMat4, DVec3};
+use shadowfit::histogram::{DepthHistogram, needed_texel};
+use shadowfit::need::{CELLS, NeedSpace, PIXELS};
+use shadowfit_wgpu::need::{CLASSES, DEPTHS, NeedView};
+
+/// Share of a pixel over which movements are measured.
+const SHARE: f64 = 1e-3;
+
+/// The depths of a texture, rows from the top.
+pub(super) struct Depths {
+    pub(super) width: u32,
+    pub(super) values: Vec<f32>,
+}
+
+/// What is counted.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Counts {
+    pub(super) cells: Vec<u32>,
+    pub(super) bins: Vec<u32>,
+}
+
+/// A picture whose pixels are turned into points.
+struct Picture<'a> {
+    view: &'a NeedView,
+    depths: &'a Depths,
+    world_from_clip: DMat4,
+}
+
+/// Counts every `step`-th pixel across and down.
+pub(super) fn count(view: &NeedView, depths: &Depths, step: u32) -> Counts {
+    let picture = Picture { view, depths, world_from_clip: view.clip_from_world.as_dmat4().inverse() };
+    let space = NeedSpace::new(&view.frustum, view.direction, view.up, view.max_distance).expect("a good view");
+    let mut counts = Counts { cells: vec![0; CELLS], bins: vec![0; DEPTHS * CLASSES] };
+    let [_, _, width, height] = view.rectangle;
+    for y in (step / 2..height).step_by(step as usize) {
+        for x in (step / 2..width).step_by(step as usize) {
+            picture.count(x.cast_signed(), y.cast_signed(), &space, &mut counts);
+        }
+    }
+    counts
+}
+
+impl Picture<'_> {
+    fn count(&self, x: i32, y: i32, space: &NeedSpace, counts: &mut Counts) {
+        let Some([position, right, down]) = self.point(x, y) else { return };
+        let (frustum, far) = (&self.view.frustum, self.view.frustum.far.min(self.view.max_distance));
+        let forward = frustum.forward.as_dvec3();
+        let depth = forward.dot(position - frustum.corners[0].as_dvec3()) + f64::from(frustum.near);
+        if depth >= f64::from(far) {
+            return;
+        }
+        let normal = right.cross(down).normalize();
+        let normal = if normal.dot(self.ray(x, y)) > 0.0 { -normal } else { normal };
+        if normal.dot(space.direction.as_dvec3()) < 0.0 {
+            let texel = needed_texel(right.as_vec3(), down.as_vec3(), space.direction);
+            let class = (self.pixel_width(depth) / f64::from(texel)).log2() as f32;
+            // Views that begin behind the eye have no histogram.
+            if let Some(bin) = DepthHistogram::bin(frustum.near, far, DEPTHS, CLASSES, depth as f32, class) {
+                counts.bins[bin] += 1;
+            }
+        }
+        if let Some(index) = space.index(position.as_vec3(), normal.as_vec3(), right.as_vec3(), down.as_vec3()) {
+            counts.cells[index] += 1;
+        }
+    }
+
+    /// Position of a pixel's point relative to the eye, and its movements on its surface for a pixel to the right and one
+    /// down of a picture that is [`PIXELS`] high.
+    fn point(&self, x: i32, y: i32) -> Option<[DVec3; 3]> {
+        let depth = self.depth(x, y)?;
+        let [across, along] = [(1, 0), (0, 1)].map(|(i, j)| {
+            let next = self.depth(x + i, y + j).map(|next| next - depth);
+            let previous = self.depth(x - i, y - j).map(|previous| depth - previous);
+            [next, previous].into_iter().flatten().min_by(|a, b| a.abs().total_cmp(&b.abs()))
+        });
+        let (x, y) = (f64::from(x), f64::from(y));
+        let scale = f64::from(self.view.rectangle[3]) / f64::from(PIXELS) / (2.0 * SHARE);
+        let moved = |i: f64, j: f64, change: f64| {
+            let at = |share: f64| self.unproject(x + share * i, y + share * j, depth + share * change);
+            (at(SHARE) - at(-SHARE)) * scale
+        };
+        Some([self.unproject(x, y, depth), moved(1.0, 0.0, across?), moved(0.0, 1.0, along?)])
+    }
+
+    /// Depth of a pixel, `None` where nothing is drawn and outside the picture.
+    fn depth(&self, x: i32, y: i32) -> Option<f64> {
+        let [left, top, width, height] = self.view.rectangle;
+        let (Ok(x), Ok(y)) = (u32::try_from(x), u32::try_from(y)) else { return None };
+        let is_inside = x < width && y < height;
+        let depth = is_inside.then(|| self.depths.values[((top + y) * self.depths.width + left + x) as usize])?;
+        (depth != self.view.depth.far()).then_some(f64::from(depth))
+    }
+
+    fn unproject(&self, x: f64, y: f64, depth: f64) -> DVec3 {
+        let [_, _, width, height] = self.view.rectangle.map(f64::from);
+        self.world_from_clip.project_point3(DVec3::new(
+            (x + 0.5) / width * 2.0 - 1.0,
+            1.0 - (y + 0.5) / height * 2.0,
+            depth,
+        ))
+    }
+
+    /// Direction of view through a pixel, away from the eye.
+    fn ray(&self, x: i32, y: i32) -> DVec3 {
+        let at = |depth: f64| self.unproject(f64::from(x), f64::from(y), depth);
+        let ray = at(0.6) - at(0.4);
+        if ray.dot(self.view.frustum.forward.as_dvec3()) < 0.0 { -ray } else { ray }
+    }
+
+    /// Width of a pixel that faces the eye at a view depth, of a picture that is [`PIXELS`] high, in metres.
+    fn pixel_width(&self, depth: f64) -> f64 {
+        let frustum = &self.view.frustum;
+        let height = |top: usize, bottom: usize| f64::from((frustum.corners[top] - frustum.corners[bottom]).length());
+        let share = (depth - f64::from(frustum.near)) / f64::from(frustum.far - frustum.near);
+        (height(0, 3) * (1.0 - share) + height(4, 7) * share) / f64::from(PIXELS)
+    }
+}
