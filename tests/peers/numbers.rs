@@ -6,7 +6,7 @@ use shadowfit_truth::peers::{FitFile, Ranking, Row, Scenarios};
 use super::geometry::Source;
 use crate::support::{assets, peers};
 
-/// Rows of scene zdm2 in the README beside the fit files, in the order of [`Row::columns`].
+/// Rows of scene zdm2 in the README beside the fit files, in the order of [`Row::columns`] without [`UNPUBLISHED`].
 const ROWS: [(&str, [f64; 15]); 5] = [
     ("xna", [1.0, 0.0, 45.9, 45.9, 5.09, 8.52, 8.95, 100.0, 751_561.0, 406_844.0, 1.29, 0.353, 0.0, 0.561, 14.4]),
     ("three-csm", [4.0, 0.0, 0.0, 0.0, 2.91, 5.94, 6.36, 100.0, 125_855.0, 63_728.0, 2.41, 0.0003, 100.0, 0.0, 119.0]),
@@ -20,6 +20,9 @@ const ROWS: [(&str, [f64; 15]); 5] = [
     ),
     ("bevy", [4.0, 0.0, 0.0, 61.9, 2.69, 5.61, 6.02, 100.0, 99_711.0, 50_672.0, 2.85, 0.0003, 100.0, 0.0, 0.994]),
 ];
+
+/// The column that is published for all scenes together only.
+const UNPUBLISHED: &str = "kept %";
 
 /// Critical resolutions of the same fits at light elevations of 15, 45 and 80 degrees.
 const CRITICAL: [[f64; 3]; 5] = [
@@ -50,7 +53,8 @@ fn the_published_numbers_of_five_peers_are_found_again_to_the_last_digit() {
 }
 
 fn assert_row(peer: &str, row: &Row, published: [f64; 15]) {
-    for ((column, found), published) in row.columns().into_iter().zip(published) {
+    let found = row.columns().into_iter().filter(|(column, _)| *column != UNPUBLISHED);
+    for ((column, found), published) in found.zip(published) {
         // Published with three digits, at most four decimals, resolutions whole; rounded to five decimals before that.
         let last_digit = if column.starts_with("crit") { 1.0 } else { 10f64.powf(published.log10().floor() - 2.0) };
         let allowed = 0.5 * last_digit.clamp(1e-4, 1.0) + 0.5e-5;

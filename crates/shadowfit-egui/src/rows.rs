@@ -42,8 +42,8 @@ impl Row<'_> {
     }
 }
 
-/// Whether a parameter gets a row under these settings: not one of another choice of splits, and none
-/// of a map that is not there.
+/// Whether a parameter gets a row under these settings: not one of another choice of splits, none of a map
+/// that is not there, and none for a single map's fit where all maps are windows.
 pub(crate) fn is_shown(parameter: &Parameter, settings: &Settings) -> bool {
     let belongs_to_a_choice = matches!(&parameter.kind, Kind::Optional(optional) if optional.unset.is_none());
     let goes_when_inert = belongs_to_a_choice || parameter.group == Group::Override;
