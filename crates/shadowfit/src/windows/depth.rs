@@ -88,8 +88,7 @@ impl<'a> Shadows<'a> {
         let (min, max) = (plane.of(self.min), plane.of(self.max));
         let far = |min: f64, max: f64| min.abs().max(max.abs());
         let farthest = far(min.x, max.x) + far(min.y, max.y) + far(self.min.z, self.max.z);
-        // Twice, for the corners of further views, which are rounded relative to eyes of their own.
-        let pad = ((max - min).max_element() * WIDENING + farthest) * (2.0 * ROUNDING);
+        let pad = ((max - min).max_element() * WIDENING + farthest) * ROUNDING;
         (min - pad, max + pad)
     }
 

@@ -86,8 +86,9 @@ impl Lattice {
         let size = (usable + 1.0) * grid::eighths(steps);
         let low = |window: &Window| (window.first + self.border[index]) * grid::eighths(steps) - self.anchor;
         let holds = |window: &Window| low(window).cmple(min).all() && (low(window) + size).cmpge(max).all();
+        let around = || self.at(index, steps, (min + max - usable * grid::eighths(steps)) * 0.5, grid::floor);
         let Some(held) = held else {
-            return self.at(index, steps, (min + max - usable * grid::eighths(steps)) * 0.5, grid::floor);
+            return around();
         };
         if holds(held) {
             return *held;
@@ -96,7 +97,7 @@ impl Lattice {
         let least = low(held).clamp((max - size).min(min), min);
         let middle = (min + max - size) * 0.5;
         let moved = self.at(index, steps, least + (middle - least) * MOVE_ON, libm::ceil);
-        if holds(&moved) { moved } else { self.at(index, steps, (min + max - size) * 0.5, libm::ceil) }
+        if holds(&moved) { moved } else { around() }
     }
 
     /// A window of another plane, which keeps its texels and what it was around as seen from the origin
