@@ -83,8 +83,8 @@ impl MapFitter {
     ///
     /// As [`fit_scene`](crate::fits::fit_scene), for the settings of each map;
     /// [`FitError::OutOfRange`] for a number of maps outside 1..=8, an overlap or λ outside 0..=1,
-    /// a blend outside 0..=[`MAX_BLEND`](crate::settings::MAX_BLEND) and hold settings that are out of range; [`FitError::NearNotBelowFar`] for manual splits
-    /// that do not ascend. Manual splits before or beyond what is shadowed are not an error: a map
+    /// a blend outside 0..=[`MAX_BLEND`] and hold settings that are out of range;
+    /// [`FitError::NearNotBelowFar`] for manual splits that do not ascend. Manual splits before or beyond what is shadowed are not an error: a map
     /// without a range [is empty](LightFit::is_empty). An error leaves the fitter as it was.
     pub fn fit(
         &mut self,
