@@ -8,38 +8,27 @@ use crate::need::{LEVELS, NeedGrid, NeedSpace, Plane, SIDE};
 /// Most cells that are kept; those with the fewest points are left out where there are more.
 pub(super) const MAX_CELLS: usize = 1024;
 
-/// A square of the plane, and what the points in it ask for.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Cell {
-    /// Its middle, relative to the origin of the fit, in metres of the plane.
-    pub(super) middle: Vec2,
-    /// Half of its side, in metres.
-    pub(super) half: f32,
-    /// One over its side.
-    pub(super) per_side: f32,
-    /// Number of its points, or a share of it.
-    pub(super) weight: f32,
-    /// What a texel of one metre costs its points.
-    pub(super) cost: f32,
-}
-
-impl Cell {
-    /// Whether sums over all cells stay finite: a grid that was never filled may hold any numbers.
-    fn is_usable(&self) -> bool {
-        let moment = (self.middle.abs().max_element() + self.half + 1.0) * self.cost * MAX_CELLS as f32;
-        // The second element may be NaN where the first one is not.
-        self.middle.is_finite() && moment.is_finite() && self.per_side.is_finite()
-    }
-}
+/// A number for each cell.
+pub(super) type PerCell = [f32; MAX_CELLS];
 
 /// Share of the visible points with the finest needs, whose needs count as no finer than those of the rest:
 /// some surfaces seen at a glance ask for any texel.
 const FINEST: f32 = 0.02;
 
-/// The cells of a frame.
+/// The cells of a frame: squares of the plane, and what the points in them ask for. They lie in columns, so that four
+/// at a time are computed with.
 pub(super) struct Cells {
-    cells: [Cell; MAX_CELLS],
-    len: usize,
+    /// Middles, relative to the origin of the fit, in metres of the plane.
+    pub(super) x: PerCell,
+    pub(super) y: PerCell,
+    /// Halves of the sides, in metres, and one over the sides.
+    pub(super) half: PerCell,
+    per_side: PerCell,
+    /// Numbers of points, or shares of them.
+    pub(super) weight: PerCell,
+    /// What a texel of one metre costs the points.
+    pub(super) cost: PerCell,
+    pub(super) len: usize,
 }
 
 /// Points by the cells of a space.
@@ -139,12 +128,8 @@ impl Counted {
 impl Cells {
     #[expect(clippy::large_stack_arrays, reason = "24 KiB, for the time of a fit")]
     pub(super) const fn new() -> Self {
-        const NONE: Cell = Cell { middle: Vec2::ZERO, half: 0.0, per_side: 0.0, weight: 0.0, cost: 0.0 };
-        Self { cells: [NONE; MAX_CELLS], len: 0 }
-    }
-
-    pub(super) fn as_slice(&self) -> &[Cell] {
-        &self.cells[..self.len]
+        const NONE: PerCell = [0.0; MAX_CELLS];
+        Self { x: NONE, y: NONE, half: NONE, per_side: NONE, weight: NONE, cost: NONE, len: 0 }
     }
 
     /// Leaves out cells that are farther from the last window than its own size: nothing is seen there, and a
@@ -153,9 +138,12 @@ impl Cells {
         let (low, high) = (last.min - last.size, last.min + last.size * 2.0);
         let mut kept = 0;
         for i in 0..self.len {
-            let middle = self.cells[i].middle;
+            let middle = Vec2::new(self.x[i], self.y[i]);
             if middle.cmpge(low).all() && middle.cmple(high).all() {
-                self.cells[kept] = self.cells[i];
+                for column in [&mut self.x, &mut self.y, &mut self.half, &mut self.per_side] {
+                    column[kept] = column[i];
+                }
+                (self.weight[kept], self.cost[kept]) = (self.weight[i], self.cost[i]);
                 kept += 1;
             }
         }
@@ -172,15 +160,15 @@ impl Cells {
             }
             let (middle, half, texel) = space.cell(*index as usize);
             let texel = (texel as f32).max(finest * space.texel);
-            let cell = Cell {
-                middle: (middle + offset).as_vec2(),
-                half: half as f32,
-                per_side: (0.5 / half) as f32,
-                weight: *weight,
-                cost: weight * super::cost_of(1.0 / texel),
-            };
-            if cell.is_usable() {
-                self.cells[self.len] = cell;
+            let (middle, half, per_side) = ((middle + offset).as_vec2(), half as f32, (0.5 / half) as f32);
+            let cost = weight * super::cost_of(1.0 / texel);
+            // Sums over all cells stay finite: a grid that was never filled may hold any numbers.
+            let moment = (middle.abs().max_element() + half + 1.0) * cost * MAX_CELLS as f32;
+            // The greatest element may be a number where one is NaN.
+            if middle.is_finite() && moment.is_finite() && per_side.is_finite() {
+                let i = self.len;
+                (self.x[i], self.y[i], self.half[i], self.per_side[i]) = (middle.x, middle.y, half, per_side);
+                (self.weight[i], self.cost[i]) = (*weight, cost);
                 self.len += 1;
             }
         }
@@ -199,4 +187,45 @@ impl Cells {
         }
         self.add(&counted, FINEST, (&grid.space, plane), origin);
     }
+
+    /// Shares of the cells that lie in a rectangle.
+    pub(super) fn shares(&self, rect: &Rect, shares: &mut PerCell) {
+        let (min, max) = (rect.min, rect.min + rect.size);
+        let over = |middle: f32, (half, per_side): (f32, f32), (min, max): (f32, f32)| {
+            let (low, high) = (greater(middle - half, min), lesser(middle + half, max));
+            lesser(greater((high - low) * per_side, 0.0), 1.0)
+        };
+        let n = self.len;
+        let cells = self.x[..n].iter().zip(&self.y[..n]).zip(self.half[..n].iter().zip(&self.per_side[..n]));
+        for (share, ((x, y), (half, per_side))) in shares[..n].iter_mut().zip(cells) {
+            *share = over(*x, (*half, *per_side), (min.x, max.x)) * over(*y, (*half, *per_side), (min.y, max.y));
+        }
+    }
+
+    /// Sum of a number of each cell, which also depends on another one, in an order of its own.
+    pub(super) fn sum(&self, of: &PerCell, other: &PerCell, value: impl Fn(f32, f32) -> f32) -> f32 {
+        const LANES: usize = 8;
+        let (of, other) = (&of[..self.len], &other[..self.len]);
+        let mut sums = [0.0; LANES];
+        let (of_lanes, other_lanes) = (of.chunks_exact(LANES), other.chunks_exact(LANES));
+        let rest = of_lanes.remainder().iter().zip(other_lanes.remainder());
+        let rest: f32 = rest.map(|(of, other)| value(*of, *other)).sum();
+        for (of, other) in of_lanes.zip(other_lanes) {
+            for (sum, (of, other)) in sums.iter_mut().zip(of.iter().zip(other)) {
+                *sum += value(*of, *other);
+            }
+        }
+        sums.iter().sum::<f32>() + rest
+    }
+}
+
+/// The lesser and the greater one of two numbers, in one instruction each; the second one where one is NaN.
+#[inline(always)]
+const fn lesser(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+const fn greater(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }

@@ -98,7 +98,7 @@ impl Frame<'_, '_> {
         let last =
             lattice.last(count - 1, before.as_ref().map(|before| &before.drawn[count - 1]), shadows.bounds(&plane));
         cells.keep_near(&lattice.rect(count - 1, &last));
-        let mut held = plan_windows(&lattice, (count, &last), cells.as_slice(), before.as_ref(), is_guess);
+        let mut held = plan_windows(&lattice, (count, &last), &cells, before.as_ref(), is_guess);
         // 4. Their depths, held while they serve.
         let mut volumes = [None; MAX_MAPS];
         for (i, volume) in volumes.iter_mut().enumerate().take(count) {
@@ -118,7 +118,7 @@ impl Frame<'_, '_> {
                 cells.add_grid(grid, plane, self.content.origin);
             }
         }
-        let is_guess = cells.as_slice().is_empty();
+        let is_guess = cells.len == 0;
         if is_guess {
             boxes::add(&mut cells, self.input, self.content, plane, (self.light.up(), self.range.far));
         }
@@ -157,7 +157,7 @@ impl Frame<'_, '_> {
 fn plan_windows(
     lattice: &Lattice,
     (count, last): (usize, &Window),
-    cells: &[cells::Cell],
+    cells: &Cells,
     before: Option<&HeldWindows>,
     is_guess: bool,
 ) -> HeldWindows {

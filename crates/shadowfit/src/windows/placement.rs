@@ -5,7 +5,7 @@
 
 use glam::Vec2;
 
-use super::cells::Cell;
+use super::cells::{Cells, PerCell};
 
 /// Squares of the raster in a window's side: the sums are doubled four times.
 const ACROSS: usize = 16;
@@ -19,6 +19,12 @@ const PLACES: usize = RASTER - ACROSS + 1;
 /// Cells wider than this many squares of the raster are left out: what they ask for is far coarser.
 const WIDEST: f32 = 16.0;
 
+/// Squares that such a cell may touch in a row, in groups of four.
+const TOUCHED: usize = 20;
+
+/// Length of a row, with room for what a cell in the last square touches.
+const ROW: usize = RASTER + TOUCHED;
+
 /// A rectangle of the plane: its least corner and its size, in metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -27,39 +33,20 @@ pub(super) struct Rect {
     pub(super) size: Vec2,
 }
 
-impl Rect {
-    /// Share of a cell that lies inside.
-    #[inline(always)]
-    pub(super) fn share(&self, cell: &Cell) -> f32 {
-        let max = self.min + self.size;
-        let over = |middle: f32, min: f32, max: f32| {
-            let (low, high) = ((middle - cell.half).max(min), (middle + cell.half).min(max));
-            ((high - low) * cell.per_side).clamp(0.0, 1.0)
-        };
-        over(cell.middle.x, self.min.x, max.x) * over(cell.middle.y, self.min.y, max.y)
-    }
-
-    /// Cost of what lies inside, of the shares of the cells that are left.
-    pub(super) fn cost(&self, cells: &[Cell], left: &[f32]) -> f32 {
-        cells.iter().zip(left).map(|(cell, left)| cell.cost * left * self.share(cell)).sum()
-    }
-}
-
 /// Costs by squares, row by row.
-type Raster = [[f32; RASTER]; RASTER];
+type Raster = [[f32; ROW]; RASTER];
 
-/// The rectangle of a size with the greatest cost inside, to the nearest sixteenth of its size.
-pub(super) fn best(cells: &[Cell], left: &[f32], size: Vec2) -> Rect {
+/// The rectangle of a size with the greatest cost inside, to the nearest sixteenth of its size. `left` are the shares
+/// of the cells that are left.
+pub(super) fn best(cells: &Cells, left: &PerCell, size: Vec2) -> Rect {
     let pitch = size / ACROSS as f32;
     let corner = middle(cells, left) - pitch * (RASTER / 2) as f32;
-    let mut sums: Raster = [[0.0; RASTER]; RASTER];
-    for (cell, left) in cells.iter().zip(left) {
-        enter(&mut sums, cell, cell.cost * left, (corner, pitch));
-    }
+    let mut sums: Raster = [[0.0; ROW]; RASTER];
+    enter(&mut sums, cells, left, (corner, pitch));
     sum_squares(&mut sums);
     let (mut most, mut at) = (f32::MIN, (0, 0));
     for (y, row) in sums[..PLACES].iter().enumerate() {
-        let highest = row[..PLACES].iter().fold(f32::MIN, |highest, sum| highest.max(*sum));
+        let highest = row[..PLACES].iter().fold(f32::MIN, |highest, sum| if *sum > highest { *sum } else { highest });
         if highest > most {
             most = highest;
             at = (row[..PLACES].iter().position(|sum| *sum == highest).unwrap_or(0), y);
@@ -74,7 +61,7 @@ fn sum_squares(sums: &mut Raster) {
     while length < ACROSS {
         for y in 0..RASTER - length {
             let (low, high) = sums.split_at_mut(y + length);
-            for (sum, other) in low[y].iter_mut().zip(&high[0]) {
+            for (sum, other) in low[y][..RASTER].iter_mut().zip(&high[0][..RASTER]) {
                 *sum += other;
             }
         }
@@ -84,7 +71,7 @@ fn sum_squares(sums: &mut Raster) {
         let mut length = 1;
         while length < ACROSS {
             let before = *row;
-            for (sum, other) in row.iter_mut().zip(&before[length..]) {
+            for (sum, other) in row[..RASTER].iter_mut().zip(&before[length..]) {
                 *sum += other;
             }
             length *= 2;
@@ -93,33 +80,44 @@ fn sum_squares(sums: &mut Raster) {
 }
 
 /// Middle of the costs.
-fn middle(cells: &[Cell], left: &[f32]) -> Vec2 {
+fn middle(cells: &Cells, left: &PerCell) -> Vec2 {
     let (mut sum, mut total) = (Vec2::ZERO, 0.0);
-    for (cell, left) in cells.iter().zip(left) {
-        let cost = cell.cost * left;
-        (sum, total) = (sum + cell.middle * cost, total + cost);
+    for (i, left) in left.iter().enumerate().take(cells.len) {
+        let cost = cells.cost[i] * left;
+        (sum, total) = (sum + Vec2::new(cells.x[i], cells.y[i]) * cost, total + cost);
     }
     if total > 0.0 { sum / total } else { Vec2::ZERO }
 }
 
-/// Spreads a cost over the squares of a cell.
-#[inline(always)]
-fn enter(sums: &mut Raster, cell: &Cell, cost: f32, (corner, pitch): (Vec2, Vec2)) {
-    let (low, high) = ((cell.middle - cell.half - corner) / pitch, (cell.middle + cell.half - corner) / pitch);
+/// Spreads the costs over the squares of the cells.
+fn enter(sums: &mut Raster, cells: &Cells, left: &PerCell, (corner, pitch): (Vec2, Vec2)) {
+    let per_pitch = Vec2::ONE / pitch;
     let size = RASTER as f32;
-    let is_beside = high.min_element() <= 0.0 || low.max_element() >= size;
-    // NaN is left out too.
-    let is_wide = (high - low).max_element() > WIDEST;
-    if cost <= 0.0 || is_beside || is_wide {
-        return;
-    }
-    let per_square = cost / ((high.x - low.x) * (high.y - low.y));
-    let range = |low: f32, high: f32| (low.max(0.0) as usize)..RASTER.min(high.min(size) as usize + 1);
-    for y in range(low.y, high.y) {
-        let height = (high.y.min(y as f32 + 1.0) - low.y.max(y as f32)).max(0.0) * per_square;
-        for x in range(low.x, high.x) {
-            let width = (high.x.min(x as f32 + 1.0) - low.x.max(x as f32)).max(0.0);
-            sums[y][x] += height * width;
+    for (i, left) in left.iter().enumerate().take(cells.len) {
+        let cost = cells.cost[i] * left;
+        let from_corner = Vec2::new(cells.x[i], cells.y[i]) - corner;
+        let (low, high) = ((from_corner - cells.half[i]) * per_pitch, (from_corner + cells.half[i]) * per_pitch);
+        let is_in = high.x > 0.0 && high.y > 0.0 && low.x < size && low.y < size;
+        let sides = high - low;
+        // Also for NaN.
+        if !(cost > 0.0 && is_in && sides.x <= WIDEST && sides.y <= WIDEST) {
+            continue;
+        }
+        let per_square = cost / (sides.x * sides.y);
+        let range = |low: f32, high: f32| (low.max(0.0) as usize)..RASTER.min(high as usize + 1);
+        let columns = range(low.x, high.x);
+        let groups = (columns.len() + 3) / 4 * 4;
+        let mut widths = [0.0; TOUCHED];
+        for (x, width) in widths[..groups].iter_mut().enumerate() {
+            let left = (columns.start + x) as f32;
+            *width = (high.x.min(left + 1.0) - low.x.max(left)).max(0.0) * per_square;
+        }
+        for y in range(low.y, high.y) {
+            let height = (high.y.min(y as f32 + 1.0) - low.y.max(y as f32)).max(0.0);
+            let row = &mut sums[y][columns.start..columns.start + groups];
+            for (sum, width) in row.iter_mut().zip(&widths[..groups]) {
+                *sum += width * height;
+            }
         }
     }
 }

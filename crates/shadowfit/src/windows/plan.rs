@@ -5,9 +5,11 @@
 //! their texels, and move as little as they can; only where the sought plan is better by enough, as
 //! few of them are replaced as bring most of the gain.
 
+use core::ops::Range;
+
 use glam::Vec2;
 
-use super::cells::{Cell, MAX_CELLS};
+use super::cells::{Cells, MAX_CELLS, PerCell};
 use super::cost_of;
 use super::placement::{self, Rect};
 use crate::grid;
@@ -23,14 +25,20 @@ pub(super) struct Plan {
 
 /// What windows are planned by.
 pub(super) struct Planner<'a> {
-    pub(super) cells: &'a [Cell],
+    pub(super) cells: &'a Cells,
     /// Texels of each window between its borders.
     pub(super) usable: [Vec2; MAX_MAPS],
     pub(super) count: usize,
 }
 
-/// Shares of the cells that finer windows leave.
-type Left = [f32; MAX_CELLS];
+/// What some windows leave to coarser ones.
+#[derive(Clone)]
+struct Served {
+    /// Shares of the cells that none of them holds.
+    left: PerCell,
+    /// What those that they hold cost, over what a texel of one metre costs.
+    price: PerCell,
+}
 
 /// Ratios of the texels of neighbours with which a search begins, in eighths of an octave.
 const LADDERS: [i32; 8] = [4, 6, 8, 10, 13, 16, 20, 24];
@@ -86,21 +94,18 @@ impl Planner<'_> {
         if others == 0 {
             return;
         }
+        let mut cost = self.cost(plan);
         for _ in 0..changes {
             let number = *turn % (others * CHANGES.len() as u32);
             *turn = turn.wrapping_add(1);
             let (window, change) = ((number % others) as usize, CHANGES[(number / others) as usize]);
+            let served = self.served(plan, window);
             // A round begins with windows in their best places.
-            let replaced = (number < others).then(|| self.with(plan, window, 0)).flatten();
-            let mut best = (self.cost(plan), None);
-            for other in [replaced, self.with(plan, window, change)].into_iter().flatten() {
-                let cost = self.cost(&other);
-                if cost < best.0 {
-                    best = (cost, Some(other));
+            let replaced = (number < others).then(|| self.with(plan, &served, window, 0)).flatten();
+            for (other, its) in [replaced, self.with(plan, &served, window, change)].into_iter().flatten() {
+                if its < cost {
+                    (*plan, cost) = (other, its);
                 }
-            }
-            if let (_, Some(other)) = best {
-                *plan = other;
             }
         }
     }
@@ -132,8 +137,8 @@ impl Planner<'_> {
     pub(super) fn keep(&self, plan: &mut Plan, holds: &mut [f32; MAX_MAPS], turn: u32) {
         let mut left = [1.0; MAX_CELLS];
         for (i, holds) in holds.iter_mut().enumerate().take(self.count - 1) {
-            let all: f32 = self.cells.iter().zip(&left).map(|(cell, left)| cell.cost * left).sum();
-            let share = |rect: &Rect| rect.cost(self.cells, &left) / all;
+            let all = self.cells.sum(&self.cells.cost, &left, |cost, left| cost * left);
+            let share = |rect: &Rect| self.held(rect, &left) / all;
             let is_turn = turn as usize % (self.count - 1) == i;
             if is_turn || share(&plan.rects[i]) < *holds * LOOKS {
                 plan.rects[i] = self.kept(&plan.rects[i], &left);
@@ -177,45 +182,43 @@ impl Planner<'_> {
 
     /// Shares of the points that read each window.
     fn readers(&self, plan: &Plan) -> [f32; MAX_MAPS] {
-        let (mut readers, mut total) = ([0.0; MAX_MAPS], 0.0);
-        for cell in self.cells {
-            let mut left = cell.weight;
-            total += left;
-            for (readers, rect) in readers.iter_mut().zip(&plan.rects[..self.count - 1]) {
-                let share = rect.share(cell) * left;
-                *readers += share;
-                left -= share;
+        let points = |left: &PerCell| self.cells.sum(&self.cells.weight, left, |weight, left| weight * left);
+        let mut left = [1.0; MAX_CELLS];
+        let all = points(&left);
+        let mut rest = all;
+        core::array::from_fn(|i| {
+            let before = rest;
+            if i < self.count - 1 {
+                self.take(&plan.rects[i], &mut left);
+                rest = points(&left);
             }
-        }
-        readers.map(|share| share / total)
+            (before - rest) / all
+        })
     }
 
-    /// A plan with other texels of one window, which is put where it is best; `None` where sizes would
-    /// cross.
-    fn with(&self, plan: &Plan, window: usize, change: i32) -> Option<Plan> {
+    /// A plan with other texels of one window, which is put where it is best, and its cost; `None` where sizes would
+    /// cross. `served` is what finer windows do.
+    fn with(&self, plan: &Plan, served: &Served, window: usize, change: i32) -> Option<(Plan, f32)> {
         let mut other = *plan;
         other.steps[window] += change;
         if !self.is_in_order(&other.steps) {
             return None;
         }
-        let mut left = [1.0; MAX_CELLS];
-        for rect in &other.rects[..window] {
-            self.take(rect, &mut left);
-        }
-        other.rects[window] = placement::best(self.cells, &left, self.size(window, other.steps[window]));
-        Some(other)
+        other.rects[window] = placement::best(self.cells, &served.left, self.size(window, other.steps[window]));
+        let cost = self.cost_beyond(served.clone(), &other, window);
+        Some((other, cost))
     }
 
     /// The held place while it holds nearly as much as the best one, else the least move to it.
-    fn kept(&self, held: &Rect, left: &Left) -> Rect {
+    fn kept(&self, held: &Rect, left: &PerCell) -> Rect {
         let best = placement::best(self.cells, left, held.size);
-        let enough = best.cost(self.cells, left) * HOLDS;
-        if held.cost(self.cells, left) >= enough {
+        let enough = self.held(&best, left) * HOLDS;
+        if self.held(held, left) >= enough {
             return *held;
         }
         let way = best.min - held.min;
         let at = |share: f32| Rect { min: held.min + way * share, size: held.size };
-        let share = (1..8).map(|i| i as f32 / 8.0).find(|share| at(*share).cost(self.cells, left) >= enough);
+        let share = (1..8).map(|i| i as f32 / 8.0).find(|share| self.held(&at(*share), left) >= enough);
         share.map_or(best, |share| at(share + (1.0 - share) * MOVE_ON))
     }
 
@@ -235,25 +238,58 @@ impl Planner<'_> {
 
     /// What a plan costs.
     pub(super) fn cost(&self, plan: &Plan) -> f32 {
-        let last = self.count - 1;
-        let prices: [f32; MAX_MAPS] = core::array::from_fn(|i| cost_of(grid::eighths(plan.steps[i]) as f32));
-        let mut cost = 0.0;
-        for cell in self.cells {
-            let (mut left, mut price) = (1.0, 0.0);
-            for (rect, its) in plan.rects[..last].iter().zip(&prices) {
-                let share = rect.share(cell) * left;
-                price += share * its;
-                left -= share;
-            }
-            cost += cell.cost * (price + left * prices[last]);
+        self.cost_beyond(self.served(plan, 0), plan, 0)
+    }
+
+    /// What a plan costs of which some windows are served.
+    fn cost_beyond(&self, mut served: Served, plan: &Plan, first: usize) -> f32 {
+        self.serve(&mut served, plan, first..self.count - 1);
+        let last = price_of(plan.steps[self.count - 1]);
+        for (price, left) in served.price.iter_mut().zip(&served.left) {
+            *price += left * last;
         }
-        cost
+        self.cells.sum(&self.cells.cost, &served.price, |cost, price| cost * price)
+    }
+
+    /// What the first windows of a plan leave.
+    fn served(&self, plan: &Plan, windows: usize) -> Served {
+        let mut served = Served { left: [1.0; MAX_CELLS], price: [0.0; MAX_CELLS] };
+        self.serve(&mut served, plan, 0..windows);
+        served
+    }
+
+    /// Serves what more windows hold.
+    fn serve(&self, served: &mut Served, plan: &Plan, windows: Range<usize>) {
+        let mut shares = [0.0; MAX_CELLS];
+        for i in windows {
+            self.cells.shares(&plan.rects[i], &mut shares);
+            let its = price_of(plan.steps[i]);
+            let n = self.cells.len;
+            let all = served.price[..n].iter_mut().zip(&mut served.left[..n]);
+            for ((price, left), share) in all.zip(&shares[..n]) {
+                let taken = share * *left;
+                *price += taken * its;
+                *left -= taken;
+            }
+        }
+    }
+
+    /// Cost of what lies inside, of the shares of the cells that are left.
+    fn held(&self, rect: &Rect, left: &PerCell) -> f32 {
+        let mut shares = [0.0; MAX_CELLS];
+        self.cells.shares(rect, &mut shares);
+        for (share, left) in shares.iter_mut().zip(left) {
+            *share *= left;
+        }
+        self.cells.sum(&self.cells.cost, &shares, |cost, share| cost * share)
     }
 
     /// Leaves what a window does not hold.
-    fn take(&self, rect: &Rect, left: &mut Left) {
-        for (cell, left) in self.cells.iter().zip(left) {
-            *left *= 1.0 - rect.share(cell);
+    fn take(&self, rect: &Rect, left: &mut PerCell) {
+        let mut shares = [0.0; MAX_CELLS];
+        self.cells.shares(rect, &mut shares);
+        for (left, share) in left.iter_mut().zip(&shares) {
+            *left -= share * *left;
         }
     }
 
@@ -265,4 +301,9 @@ impl Planner<'_> {
         let is_fine = steps[self.count - 1].saturating_sub(steps[0]) > FINEST;
         !is_fine && steps[..self.count].windows(2).all(|pair| pair[0] < pair[1])
     }
+}
+
+/// What a point that asks for texels of one metre costs in a window.
+fn price_of(steps: i32) -> f32 {
+    cost_of(grid::eighths(steps) as f32)
 }
