@@ -221,11 +221,11 @@ impl Cells {
 
 /// The lesser and the greater one of two numbers, in one instruction each; the second one where one is NaN.
 #[inline(always)]
-const fn lesser(a: f32, b: f32) -> f32 {
+pub(super) const fn lesser(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
 #[inline(always)]
-const fn greater(a: f32, b: f32) -> f32 {
+pub(super) const fn greater(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }

@@ -5,7 +5,7 @@
 
 use glam::Vec2;
 
-use super::cells::{Cells, PerCell};
+use super::cells::{Cells, PerCell, greater, lesser};
 
 /// Squares of the raster in a window's side: the sums are doubled four times.
 const ACROSS: usize = 16;
@@ -21,6 +21,7 @@ const WIDEST: f32 = 16.0;
 
 /// Squares that such a cell may touch in a row, in groups of four.
 const TOUCHED: usize = 20;
+const GROUP: usize = 4;
 
 /// Length of a row, with room for what a cell in the last square touches.
 const ROW: usize = RASTER + TOUCHED;
@@ -104,19 +105,25 @@ fn enter(sums: &mut Raster, cells: &Cells, left: &PerCell, (corner, pitch): (Vec
             continue;
         }
         let per_square = cost / (sides.x * sides.y);
-        let range = |low: f32, high: f32| (low.max(0.0) as usize)..RASTER.min(high as usize + 1);
-        let columns = range(low.x, high.x);
-        let groups = (columns.len() + 3) / 4 * 4;
-        let mut widths = [0.0; TOUCHED];
-        for (x, width) in widths[..groups].iter_mut().enumerate() {
-            let left = (columns.start + x) as f32;
-            *width = (high.x.min(left + 1.0) - low.x.max(left)).max(0.0) * per_square;
+        let (x, y) = (greater(low.x, 0.0) as u32, greater(low.y, 0.0) as u32);
+        let (columns, rows) = (high.x as u32 - x, (high.y as u32).min(RASTER as u32 - 1) - y);
+        let mut widths = [[0.0_f32; GROUP]; TOUCHED / GROUP];
+        let groups = columns as usize / GROUP + 1;
+        let mut at = x as f32;
+        for group in &mut widths[..groups] {
+            for (width, k) in group.iter_mut().zip([0.0, 1.0, 2.0, 3.0]) {
+                let (low, high) = (greater(low.x, at + k), lesser(high.x, at + k + 1.0));
+                *width = greater(high - low, 0.0) * per_square;
+            }
+            at += GROUP as f32;
         }
-        for y in range(low.y, high.y) {
-            let height = (high.y.min(y as f32 + 1.0) - low.y.max(y as f32)).max(0.0);
-            let row = &mut sums[y][columns.start..columns.start + groups];
-            for (sum, width) in row.iter_mut().zip(&widths[..groups]) {
-                *sum += width * height;
+        for y in y..=y + rows {
+            let height = lesser(high.y, y as f32 + 1.0) - greater(low.y, y as f32);
+            let row = &mut sums[y as usize][x as usize..][..groups * GROUP];
+            for (sums, widths) in row.chunks_exact_mut(GROUP).zip(&widths) {
+                for (sum, width) in sums.iter_mut().zip(widths) {
+                    *sum += width * height;
+                }
             }
         }
     }
