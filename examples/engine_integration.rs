@@ -121,6 +121,7 @@ struct Engine {
     technique: Technique,
     fitter: MapFitter,
     shadow_map: ShadowMap,
+    /// Reads the depth buffer, where the GPU can; and what it found last.
     need_pass: Option<NeedPass>,
     seen: Option<SeenNeed>,
     caster_pipeline: wgpu::RenderPipeline,
@@ -248,8 +249,8 @@ impl Engine {
     /// most exact. What an earlier frame showed, as far as it has come back, says where fine texels help; the fitter
     /// keeps the maps still while the camera moves.
     fn fit_maps(&mut self, camera: &PerspectiveCamera, blocks: &[Block]) -> Result<()> {
-        if let Some(seen) = self.need_pass.as_mut().map(NeedPass::take).transpose()?.flatten() {
-            self.seen = Some(seen);
+        if let Some(pass) = &mut self.need_pass {
+            self.seen = pass.take()?.or(self.seen.take());
         }
         let grids: Vec<NeedGrid> = self.seen.iter().map(SeenNeed::grid).collect();
         let views = [camera.frustum()?];
@@ -342,14 +343,11 @@ impl Engine {
         camera: &PerspectiveCamera,
         depth: &wgpu::TextureView,
     ) -> Result<()> {
-        let Some(pass) = &mut self.need_pass else { return Ok(()) };
         let (fit, size) = (&self.technique.fit, [SIZE.width, SIZE.height]);
-        pass.record(
-            encoder,
-            depth,
-            &NeedView::from_camera(camera, DepthConvention::ZeroToOne, DIRECTION, fit, size)?,
-            None,
-        )?;
+        let view = NeedView::from_camera(camera, DepthConvention::ZeroToOne, DIRECTION, fit, size)?;
+        if let Some(pass) = &mut self.need_pass {
+            pass.record(encoder, depth, &view, None)?;
+        }
         Ok(())
     }
 
