@@ -78,7 +78,7 @@ pub static PRESETS: [Preset; 13] = [
     Preset {
         name: "histogram-4",
         summary: "as clusters-4, splits from a histogram of the visible depth of the frame before",
-        advice: "The fewest wrong pixels in each frame; edges crawl when the camera moves.",
+        advice: "The fewest wrong pixels that four maps have in each frame; edges crawl when the camera moves.",
         make: || several(FitKind::Focused, ReceiverSource::Clusters, SplitScheme::FromHistogram, Stabilise::Off),
     },
     Preset {
