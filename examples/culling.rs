@@ -38,7 +38,7 @@ struct Args {
     #[command(flatten)]
     geometry: Source,
     /// Techniques, by name or as TOML files
-    #[arg(long = "technique", value_name = "NAME|FILE", default_values = ["calm-4", "histogram-4"])]
+    #[arg(long = "technique", value_name = "NAME|FILE", default_values = ["windows-4", "histogram-4"])]
     techniques: Vec<String>,
     /// What is culled as a whole
     #[arg(long, value_enum, default_value = "clusters")]

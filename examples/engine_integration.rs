@@ -1,19 +1,22 @@
 //! A small wgpu engine of its own that takes its sun shadows from `shadowfit` and `shadowfit-wgpu` and nothing else of
-//! this workspace: own vertex buffers, own pipelines, own WGSL. It draws one picture without a window.
+//! this workspace: own vertex buffers, own pipelines, own WGSL. It walks a few frames without a window, and the last
+//! one is the picture.
 //!
 //! ```sh
 //! cargo run --example engine_integration              # writes out/engine_integration.png
 //! cargo run --example engine_integration -- some.png
 //! ```
 //!
-//! What the engine has to do is marked with STEP 1 to STEP 6. The scene stands 50 km from the world's origin, to show
+//! What the engine has to do is marked with STEP 1 to STEP 7. The scene stands 50 km from the world's origin, to show
 //! that shadows stand still there: shaders get positions relative to the eye.
 
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use shadowfit::glam::{DVec2, DVec3, Vec3};
+use shadowfit::need::NeedGrid;
 use shadowfit::{Aabb, Boxes, DepthConvention, FitInput, MapFitter, PerspectiveCamera, Technique, Workspace};
+use shadowfit_wgpu::need::{NeedPass, NeedView, SeenNeed};
 use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
 use wgpu::util::DeviceExt;
 
@@ -23,6 +26,9 @@ const SAMPLES: u32 = 4;
 const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 const SKY: wgpu::Color = wgpu::Color { r: 0.35, g: 0.55, b: 0.85, a: 1.0 };
+/// Frames until the picture, and metres that the camera walks in each.
+const FRAMES: u32 = 8;
+const STEP: f32 = 0.02;
 /// Middle of the scene in world space, in metres.
 const PLACE: DVec3 = DVec3::new(50_000.0, 0.0, -20_000.0);
 /// The way the sun's light travels.
@@ -115,6 +121,9 @@ struct Engine {
     technique: Technique,
     fitter: MapFitter,
     shadow_map: ShadowMap,
+    /// Reads the depth buffer, where the GPU can; and what it found last.
+    need_pass: Option<NeedPass>,
+    seen: Option<SeenNeed>,
     caster_pipeline: wgpu::RenderPipeline,
     scene_pipeline: wgpu::RenderPipeline,
     camera_uniform: wgpu::Buffer,
@@ -124,7 +133,7 @@ struct Engine {
 
 fn main() -> Result<()> {
     let path = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("out/engine_integration.png"), PathBuf::from);
-    let camera = PerspectiveCamera {
+    let mut camera = PerspectiveCamera {
         eye: PLACE + DVec3::new(-3.0, 5.5, 14.5),
         forward: Vec3::new(0.12, -0.26, -1.0).normalize(),
         up: Vec3::Y,
@@ -134,7 +143,12 @@ fn main() -> Result<()> {
         far: 200.0,
     };
     let mut engine = pollster::block_on(Engine::new())?;
-    let pixels = engine.draw(&camera, &blocks())?;
+    let blocks = blocks();
+    let mut pixels = engine.draw(&camera, &blocks)?;
+    for _ in 1..FRAMES {
+        camera.eye += (camera.forward * STEP).as_dvec3();
+        pixels = engine.draw(&camera, &blocks)?;
+    }
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     }
@@ -171,10 +185,12 @@ impl Engine {
         let adapter = instance.request_adapter(&wgpu::RequestAdapterOptions::default()).await?;
         let (device, queue) = adapter.request_device(&wgpu::DeviceDescriptor::default()).await?;
 
-        // STEP 1: choose a technique and make its shadow maps. The recommended one has four of 2048² texels with 32-bit
-        // depth, and a tent of 5×5.
+        // STEP 1: choose a technique and make its shadow maps, and the pass that reads the engine's depth buffer for the
+        // next frame's. The recommended technique has four maps of 2048² texels with 32-bit depth, and a tent of 5×5.
         let technique = Technique::default().with_max_distance(SHADOW_DISTANCE);
         let shadow_map = ShadowMap::new(&device, &ShadowMapDescriptor::from(&technique))?;
+        // OpenGL cannot: maps are placed by the boxes then, which is slower and less sharp.
+        let need_pass = NeedPass::new(&device, &queue, SAMPLES).ok();
 
         let camera_uniform = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("camera"),
@@ -202,6 +218,8 @@ impl Engine {
             technique,
             fitter,
             shadow_map,
+            need_pass,
+            seen: None,
             caster_pipeline,
             scene_pipeline,
             camera_uniform,
@@ -221,20 +239,26 @@ impl Engine {
 
         let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         self.shadow_pass(&mut encoder, camera.eye, blocks, &instances);
-        let picture = self.scene_pass(&mut encoder, blocks.len() as u32, &instances);
+        let (picture, depth) = self.scene_pass(&mut encoder, blocks.len() as u32, &instances);
+        self.read_depth(&mut encoder, camera, &depth)?;
         self.read(encoder, &picture)
     }
 
     /// STEP 4: each frame, fit the maps to what the camera sees of the scene's boxes and hand them over, each with its
     /// bias, and with the origin that positions in the engine's shaders are relative to: here the eye, where f32 is
-    /// most exact. The fitter keeps the maps still while the camera moves.
+    /// most exact. What an earlier frame showed, as far as it has come back, says where fine texels help; the fitter
+    /// keeps the maps still while the camera moves.
     fn fit_maps(&mut self, camera: &PerspectiveCamera, blocks: &[Block]) -> Result<()> {
+        if let Some(pass) = &mut self.need_pass {
+            self.seen = pass.take()?.or(self.seen.take());
+        }
+        let grids: Vec<NeedGrid> = self.seen.iter().map(SeenNeed::grid).collect();
         let views = [camera.frustum()?];
         let objects: Vec<Aabb> = blocks.iter().map(|block| block.bounds(PLACE)).collect();
         let boxes = Boxes { origin: PLACE, boxes: &objects };
-        let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, DIRECTION) };
-        // Maps that are held look ahead: room for two views more than there are.
-        let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), 3)];
+        let input =
+            FitInput { receivers: Some(boxes), casters: Some(boxes), need: &grids, ..FitInput::new(&views, DIRECTION) };
+        let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), views.len())];
         let fitted = self.fitter.fit(&input, &self.technique, &mut Workspace::new(&mut storage))?;
 
         let mut maps: Vec<MapFit> = fitted.iter().map(MapFit::from).collect();
@@ -275,7 +299,13 @@ impl Engine {
         });
     }
 
-    fn scene_pass(&self, encoder: &mut wgpu::CommandEncoder, count: u32, instances: &wgpu::Buffer) -> wgpu::Texture {
+    /// The picture, and a view of its depth buffer.
+    fn scene_pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        count: u32,
+        instances: &wgpu::Buffer,
+    ) -> (wgpu::Texture, wgpu::TextureView) {
         let picture = self.target(COLOR, 1);
         let [view, multisampled, depth] = [&picture, &self.target(COLOR, SAMPLES), &self.target(DEPTH, SAMPLES)]
             .map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
@@ -289,7 +319,7 @@ impl Engine {
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &depth,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Discard }),
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
                 stencil_ops: None,
             }),
             ..Default::default()
@@ -302,7 +332,23 @@ impl Engine {
         pass.set_vertex_buffer(1, instances.slice(..));
         pass.draw(0..36, 0..count);
         drop(pass);
-        picture
+        (picture, depth)
+    }
+
+    /// STEP 7: count what the picture shows, for the fits of the next frames. The depth buffer must be stored and be a
+    /// texture that shaders can read. Nothing waits: the counts come back a frame or two late.
+    fn read_depth(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        camera: &PerspectiveCamera,
+        depth: &wgpu::TextureView,
+    ) -> Result<()> {
+        let (fit, size) = (&self.technique.fit, [SIZE.width, SIZE.height]);
+        let view = NeedView::from_camera(camera, DepthConvention::ZeroToOne, DIRECTION, fit, size)?;
+        if let Some(pass) = &mut self.need_pass {
+            pass.record(encoder, depth, &view, None)?;
+        }
+        Ok(())
     }
 
     fn target(&self, format: wgpu::TextureFormat, samples: u32) -> wgpu::Texture {
@@ -314,7 +360,7 @@ impl Engine {
             dimension: wgpu::TextureDimension::D2,
             format,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                | if samples == 1 { wgpu::TextureUsages::COPY_SRC } else { wgpu::TextureUsages::empty() },
+                | if samples == 1 { wgpu::TextureUsages::COPY_SRC } else { wgpu::TextureUsages::TEXTURE_BINDING },
             view_formats: &[],
         })
     }

@@ -29,14 +29,17 @@ fn main() -> Result<(), FitError> {
             far: 200.0,
         };
         let views = [camera.frustum()?];
-        let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, sun) };
+        // In `need` goes what the last frame's depth buffer showed; without it, as here, placing the maps takes longer.
+        let need = &[];
+        let input = FitInput { receivers: Some(boxes), casters: Some(boxes), need, ..FitInput::new(&views, sun) };
         let maps = fitter.fit(&input, &technique, &mut Workspace::new(&mut storage))?;
 
         println!("frame {frame}: positions are relative to the eye, {}", camera.eye);
         for (index, map) in maps.iter().enumerate() {
             let casters = map.caster_volume(&views, &technique)?.relative_to(boxes.origin);
             let drawn = objects.iter().filter(|object| casters.intersects_aabb(object.min, object.max)).count();
-            println!("map {index} is for what is farther than {} m; its texels are {} m", map.near, map.fit.texel_size);
+            let size = map.fit.box_max - map.fit.box_min;
+            println!("map {index} is {} m wide and {} m high; its texels are {} m", size.x, size.y, map.fit.texel_size);
             println!("  draw {drawn} of {} objects into it with {}", objects.len(), map.fit.clip_from_world);
             println!("  look it up with {}", map.fit.uv_from_world);
             println!("  move the depth that is compared by {}", map.bias.constant_depth);

@@ -1,6 +1,6 @@
-//! Proofs instead of pictures: every map of every frame of a camera flight is proven to have no holes, the depths that
-//! the last frame showed make splits sharper without putting that at risk, and fewer maps are taken where they are as
-//! good. No GPU, no window.
+//! Proofs instead of pictures: every map of every frame of a camera flight is proven to have no holes. Of maps that are
+//! slices of the view, the depths that the last frame showed make splits sharper without putting that at risk, and fewer
+//! are taken where they are as good. No GPU, no window.
 //!
 //! ```sh
 //! cargo run --example prove_it
@@ -10,7 +10,7 @@ use shadowfit::bias::Reach;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::histogram::DepthBounds;
 use shadowfit::map_fitter::fewest_maps;
-use shadowfit::settings::SplitScheme;
+use shadowfit::settings::{FitKind, SplitScheme};
 use shadowfit::verify::{Certificate, CoverageQuery, Margins, verify};
 use shadowfit::{
     Aabb, Boxes, FitError, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace,
@@ -44,19 +44,20 @@ fn main() -> Result<(), FitError> {
 
     let views = [camera(0).frustum()?];
     let input = input(&views, boxes);
-    let count = fewest_maps(&input, &technique, 1.5, &mut workspace)?;
-    println!("{count} maps instead of {} make texels at most 1.5 times as coarse", technique.count);
+    let slices = technique.with_fit(technique.fit.with_kind(FitKind::Focused));
+    let count = fewest_maps(&input, &slices, 1.5, &mut workspace)?;
+    println!("{count} slices instead of {} make texels at most 1.5 times as coarse", slices.count);
 
     // Where no boxes say what is visible: without bounds, with those that a reduction of the last depth buffer gives,
     // and with wrong ones, as after a camera cut.
-    let logarithmic = technique.with_splits(SplitScheme::Logarithmic);
+    let logarithmic = slices.with_splits(SplitScheme::Logarithmic);
     for depth_bounds in [None, Some((9.0, 60.0)), Some((1.0, 2.0))] {
         let depth_bounds = depth_bounds.map(|(near, far)| DepthBounds { near, far });
         let input = FitInput { receivers: None, depth_bounds, ..input };
         let maps = MapFitter::new().fit(&input, &logarithmic, &mut workspace)?;
         let ends: Vec<f32> = maps.iter().rev().skip(1).rev().map(|map| map.far).collect();
         let is_proven = certificates(&input, &logarithmic, &maps, &mut workspace)?.iter().all(Certificate::is_proven);
-        println!("{depth_bounds:?}: maps end at {ends:?} m, no holes: {is_proven}");
+        println!("{depth_bounds:?}: slices end at {ends:?} m, no holes: {is_proven}");
     }
     Ok(())
 }

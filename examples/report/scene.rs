@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use image::RgbaImage;
 use indicatif::{ProgressBar, ProgressStyle};
+use shadowfit::presets::RECOMMENDED;
 use shadowfit_study::{NamedTechnique, SharedTruth, ensure_judged};
 use shadowfit_truth::PictureTally;
 use shadowfit_wgpu::MapFit;
@@ -16,14 +17,15 @@ use crate::job::{Job, JobFrame, Prepared};
 use crate::overlay::overlay;
 use crate::write::Output;
 
-/// Techniques that are compared when none is named: the sample's, and this project's own from stable to sharp.
-const DEFAULT_TECHNIQUES: [&str; 4] = ["xna-1", "stable-4", "clusters-4", "histogram-4"];
+/// Techniques that are compared when none is named: the sample's, this project's own stable and sharp slices, and the
+/// recommended one.
+const DEFAULT_TECHNIQUES: [&str; 4] = ["xna-1", "stable-4", "histogram-4", RECOMMENDED];
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
     job: Job,
-    /// Technique, by name or as a TOML file; give it once for each [default: xna-1, stable-4, clusters-4, histogram-4]
+    /// Technique, by name or as a TOML file; give it once for each [default: xna-1, stable-4, histogram-4, windows-4]
     #[arg(long = "technique", alias = "config", value_name = "NAME|FILE.toml")]
     techniques: Vec<String>,
     /// Width and height of all maps, in texels [default: what the techniques say]

@@ -163,7 +163,14 @@ fn impossible_maps_keep_the_old_one_and_say_why() {
 fn absurd_places_of_the_eye_are_drawn_without_a_panic() {
     let mut stage = stage();
     let places = [f64::NAN, f64::INFINITY, 1e300, 1e30, 1e15, -1e7].map(DVec3::splat);
-    for kind in [FitKind::FrustumAabb, FitKind::XnaSample, FitKind::Oriented, FitKind::Sphere, FitKind::Focused] {
+    for kind in [
+        FitKind::FrustumAabb,
+        FitKind::XnaSample,
+        FitKind::Oriented,
+        FitKind::Sphere,
+        FitKind::Focused,
+        FitKind::Windows,
+    ] {
         for eye in places {
             for angle in [f32::NAN, f32::INFINITY, 0.0, 1e30] {
                 stage.reset();

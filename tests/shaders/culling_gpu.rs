@@ -65,7 +65,7 @@ fn volumes() -> Vec<CasterVolume> {
     };
     let views = [camera.frustum().expect("a good camera")];
     let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-    let settings = Technique { count: 2, ..Technique::default() };
+    let settings = Technique::preset("calm-4").expect("a preset").with_count(2);
     let input = FitInput::new(&views, Vec3::new(0.4, -0.8, 0.3));
     let maps = MapFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("a good view");
     let sweep = |near, far| Sweep { near, far, ..Sweep::new(&views) };

@@ -140,7 +140,8 @@ fn maps_of_the_core_are_in_order_where_some_of_them_have_no_range() {
     for ends in [[10.0, 50.0], [-5.0, 10.0], [40.0, 50.0], [-5.0, -1.0]] {
         let mut manual = [100.0; 7];
         manual[..2].copy_from_slice(&ends);
-        let mut settings = Technique { count: LAYERS, splits: SplitScheme::Manual(manual), ..Technique::default() };
+        let slices = Technique::preset("calm-4").expect("a preset");
+        let mut settings = slices.with_count(LAYERS).with_splits(SplitScheme::Manual(manual));
         settings.fit.resolution = UVec2::splat(256);
         let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
         let input = FitInput::new(&view, Vec3::new(0.3, -0.8, 0.2));

@@ -34,7 +34,8 @@ fn camera() -> PerspectiveCamera {
 
 /// Eight maps of the camera's view, and no end of the floor before that of the last one.
 fn maps(camera: &PerspectiveCamera) -> Vec<MapFit> {
-    let mut settings = Technique { count: 8, splits: SplitScheme::Manual(ENDS), ..Technique::default() };
+    let slices = Technique::preset("calm-4").expect("a preset");
+    let mut settings = slices.with_count(8).with_splits(SplitScheme::Manual(ENDS));
     (settings.fit.max_distance, settings.fit.resolution) = (LAST_END, shadowfit::glam::UVec2::splat(256));
     let views = [camera.frustum().expect("a camera")];
     let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];

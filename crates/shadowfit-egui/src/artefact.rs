@@ -73,14 +73,15 @@ impl Artefact {
             }
             Self::Aliasing => {
                 "Each map is laid closely around what is seen, without a margin, so that its texels are spent there; \
-                 a single map also ends its shadows where little is seen. Maps that were small are larger, and the \
-                 filter blends neighbouring texels."
+                 a single map also ends its shadows where little is seen. Windows, which cannot be made coarse and \
+                 gave way to focused maps, are back. Maps that were small are larger, and the filter blends \
+                 neighbouring texels."
             }
             Self::ClippingHole => {
                 "The near plane of each map is moved toward the light to the first caster that can throw a shadow \
                  into view, so that casters outside the view are drawn into the map. A single map is also fitted to \
-                 what is seen of the scene. With several maps the size of the texels stays, and only the depth range \
-                 grows."
+                 what is seen of the scene. Slices of the view keep the size of their texels, and only the depth \
+                 range grows. Windows hold every caster over them, so they gave way to focused maps, and are back."
             }
         }
     }

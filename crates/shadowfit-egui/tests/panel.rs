@@ -69,14 +69,14 @@ fn open_harness(host: Host) -> Harness<'static, Host> {
     harness
 }
 
-/// Settings under which every row of the table is shown and has an effect, but the one of the other
+/// Settings of slices under which every row of the table is shown and has an effect, but the one of the other
 /// choice of splits, λ or the manual ones, and of the other choice of maps, blend or overlap.
 fn everything(splits: SplitScheme) -> Settings {
     let mut settings = Settings::default();
     let technique = &mut settings.technique;
     (technique.count, technique.splits) = (MAX_MAPS as u32, splits);
     technique.overrides = [MapOverride { resolution: Some(UVec2::new(1024, 512)), ..MapOverride::default() }; MAX_MAPS];
-    technique.fit.resolution = UVec2::new(2048, 1024);
+    (technique.fit.kind, technique.fit.resolution) = (FitKind::Focused, UVec2::new(2048, 1024));
     (technique.fit.max_distance, technique.fit.border) = (100.0, Some(3.0));
     technique.fit.casters = CasterPolicy::Extend;
     settings.light.animate = true;
@@ -483,6 +483,7 @@ fn resolutions_have_a_list_of_powers_of_two() {
 fn lambda_is_shown_with_practical_splits_alone_and_splits_with_manual_ones() {
     let shown = |harness: &Harness<'_, Host>, id: &str| query_control(harness, parameter(id).expect(id)).is_some();
     let mut harness = open_harness(Host::default());
+    harness.state_mut().settings.technique.fit.kind = FitKind::Focused;
     for (splits, lambda, manual) in [
         (SplitScheme::FromHistogram, false, false),
         (SplitScheme::Practical(0.7), true, false),

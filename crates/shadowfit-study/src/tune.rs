@@ -178,7 +178,7 @@ fn fits() -> Vec<Change> {
         ("least rectangles of the frustum", FitKind::Oriented, ReceiverSource::Clusters),
         ("spheres around the frustum's slices", FitKind::Sphere, ReceiverSource::Clusters),
         ("least rectangles around the objects in view", FitKind::Focused, ReceiverSource::Objects),
-        ("windows", FitKind::Windows, ReceiverSource::Clusters),
+        ("least rectangles around the clusters in view", FitKind::Focused, ReceiverSource::Clusters),
     ];
     let change = |(what, kind, receivers)| {
         Change::new(what, move |technique: &mut Technique| {

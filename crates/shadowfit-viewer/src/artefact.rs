@@ -2,8 +2,9 @@
 //! the scene at hand, and the setting that cures it.
 //!
 //! Several maps keep their fit, their splits and what holds them still: only what prevents the artefact is changed. A
-//! single map is fitted by the rule that shows the artefact best. Windows, which cannot be made coarse, give way to
-//! focused maps where the artefact takes coarse texels.
+//! single map is fitted by the rule that shows the artefact best. Windows, which cannot be made coarse and hold every
+//! caster over them, give way to focused maps, and come back with the cures of aliasing and holes. Acne is cured at the
+//! size of texels that shows it.
 
 use core::f32::consts::{PI, TAU};
 
@@ -70,11 +71,15 @@ pub(crate) fn show(stage: &mut Stage, artefact: Artefact) -> bool {
     found
 }
 
-/// Applies the cure of an artefact on show.
-pub(crate) fn fix(stage: &mut Stage, artefact: Artefact) {
+/// Applies the cure of an artefact on show; `before` is the technique from before it was shown.
+pub(crate) fn fix(stage: &mut Stage, artefact: Artefact, before: &Technique) {
     let seen = farthest_seen(stage);
     let technique = &mut stage.settings.technique;
     let is_single = technique.count == 1;
+    let gave_way = !is_single && technique.fit.kind == FitKind::Focused && before.fit.kind == FitKind::Windows;
+    if gave_way && artefact != Artefact::Acne {
+        technique.fit.kind = FitKind::Windows;
+    }
     match artefact {
         // Enough for planes and creases, and nothing else changed.
         Artefact::Acne => {
@@ -164,7 +169,7 @@ fn show_acne(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) ->
     let distance = camera.eye.as_vec3().distance(place.center);
     let none = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0 };
     settings.technique =
-        alone_or_as_it_is(settings.technique, FitKind::XnaSample).with_look_up(FilterKind::Point, none);
+        alone_or_as_slices(settings.technique, FitKind::XnaSample).with_look_up(FilterKind::Point, none);
     let texel = place.picture_height(distance) * ACNE_TEXEL;
     let middle = camera.eye.as_vec3() + camera.forward * distance;
     coarsen(search, &camera, settings, &Coarse { point: middle, texel, least: distance + place.radius });
@@ -201,7 +206,7 @@ fn show_aliasing(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings
     let middle = search.look(&camera)[(GRID[0] * GRID[1] / 2 + GRID[0] / 2) as usize];
     let distance = middle.map_or(height * 2.0, |seen| seen.distance);
     let point = middle.map_or(camera.eye.as_vec3() + camera.forward * distance, |seen| seen.position);
-    settings.technique = alone_or_as_it_is(settings.technique, FitKind::FrustumAabb).with_filter(FilterKind::Point);
+    settings.technique = alone_or_as_slices(settings.technique, FitKind::FrustumAabb).with_filter(FilterKind::Point);
     if settings.technique.count == 1 {
         settings.technique.fit.resolution = UVec2::splat(SHOWN_RESOLUTION);
     }
@@ -213,7 +218,7 @@ fn show_aliasing(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings
 /// Between the subject and its shadow: the shadow is in view, what throws it is not in the map.
 fn show_hole(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) -> (PerspectiveCamera, bool) {
     let technique = &mut settings.technique;
-    *technique = alone_or_as_it_is(*technique, FitKind::XnaSample).with_filter(technique.filter);
+    *technique = alone_or_as_slices(*technique, FitKind::XnaSample).with_filter(technique.filter);
     technique.fit.margin = 0.0;
     technique.fit.casters = CasterPolicy::None;
     if technique.count == 1 {
@@ -248,10 +253,12 @@ fn show_hole(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) ->
     best(&place.lens, candidates, score)
 }
 
-/// A single map fitted by another rule, with no margin; several maps as they are.
-fn alone_or_as_it_is(mut technique: Technique, kind: FitKind) -> Technique {
+/// A single map fitted by another rule, with no margin; several windows as focused maps; other maps as they are.
+fn alone_or_as_slices(mut technique: Technique, kind: FitKind) -> Technique {
     if technique.count == 1 {
         technique.fit = technique.fit.with_kind(kind).with_margin(0.0);
+    } else if technique.fit.kind == FitKind::Windows {
+        technique.fit.kind = FitKind::Focused;
     }
     technique
 }
@@ -333,9 +340,6 @@ struct Coarse {
 /// Makes texels as large as wanted: with the frustum that a single map has to hold, with the margin around each of
 /// several.
 fn coarsen(search: &ViewSearch<'_>, camera: &PerspectiveCamera, settings: &mut Settings, wanted: &Coarse) {
-    if settings.technique.fit.kind == FitKind::Windows {
-        settings.technique.fit.kind = FitKind::Focused;
-    }
     let is_single = settings.technique.count == 1;
     let with = |amount: f32| {
         let mut settings = *settings;

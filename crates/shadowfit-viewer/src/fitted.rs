@@ -69,7 +69,8 @@ mod tests {
             far: 300.0,
         };
         let manual = SplitScheme::Manual([10.0, 30.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        let technique = Technique::default().with_choice(MapChoice::ViewDepth).with_splits(manual);
+        let slices = Technique::preset("calm-4").expect("a preset");
+        let technique = slices.with_choice(MapChoice::ViewDepth).with_splits(manual);
         let technique = technique.with_count(3).with_max_distance(80.0);
         let frustum = [camera.frustum().expect("a frustum")];
         let mut storage = vec![DVec2::ZERO; Workspace::required(0, 3)];

@@ -240,7 +240,8 @@ impl Stage {
         if self.shown.is_none_or(|shown| shown.artefact != artefact) {
             self.show_artefact(artefact);
         }
-        artefact::fix(self, artefact);
+        let before = self.before_artefact.unwrap_or((self.settings, self.camera)).0.technique;
+        artefact::fix(self, artefact, &before);
         self.shown = Some(Shown { artefact, fixed: true });
     }
 

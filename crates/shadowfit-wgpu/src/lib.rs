@@ -14,7 +14,8 @@
 //! let caster = caster_wgsl(0); // goes into the engine's vertex shader of the shadow pass, as @group(0)
 //! let receiver = receiver_wgsl(map.descriptor(), 1); // goes into its fragment shader, as @group(1)
 //!
-//! // Each frame: the maps as `shadowfit::MapFitter` fitted them, nearest first.
+//! // Each frame: the maps as `shadowfit::MapFitter` fitted them, nearest first. It wants to know what the last frame
+//! // showed, which the module `need` finds.
 //! let mut maps: Vec<MapFit> = fitted.iter().map(MapFit::from).collect();
 //! // Positions in the engine's shaders are relative to the eye.
 //! let view = MapView::from_eye(camera.eye, forward);

@@ -35,7 +35,7 @@ fn views() -> [ViewFrustum; 1] {
 
 fn fitted() -> FittedMaps {
     let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-    let settings = Technique { count: 4, ..Technique::default() };
+    let settings = Technique::preset("calm-4").expect("a preset");
     let settings = Technique { fit: settings.fit.with_max_distance(200.0), ..settings };
     let (views, direction) = (views(), Vec3::new(0.4, -0.8, 0.3));
     let input = FitInput::new(&views, direction);

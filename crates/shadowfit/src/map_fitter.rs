@@ -169,9 +169,10 @@ impl MapFitter {
     }
 }
 
-/// The fewest maps that are enough: the least count, up to that of the technique, for which the 95%
-/// quantile of pixels per texel with the best splits is at most `waste` times that with the
-/// technique's count.
+/// The fewest slices of the view that are enough: the least count, up to that of the technique, for
+/// which the 95% quantile of pixels per texel with the best splits is at most `waste` times that with
+/// the technique's count. Of [windows](crate::settings::FitKind::Windows), which are no slices, it says
+/// nothing.
 ///
 /// What is visible is taken from the histogram where the technique's splits use one, else estimated from the
 /// boxes; other split schemes count as [`SplitScheme::FromBoxes`](crate::settings::SplitScheme::FromBoxes)
@@ -195,7 +196,7 @@ impl MapFitter {
 /// # let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
 /// # let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
 /// # let mut workspace = Workspace::new(&mut storage);
-/// let technique = Technique::default().with_count(8);
+/// let technique = Technique::preset("calm-4").unwrap().with_count(8);
 /// let count = fewest_maps(&input, &technique, 1.5, &mut workspace)?;
 /// assert!(count < 8); // the last ones would make texels less than 1.5 times as fine
 /// let maps = MapFitter::new().fit(&input, &technique.with_count(count), &mut workspace)?;

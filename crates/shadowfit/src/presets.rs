@@ -78,37 +78,40 @@ pub static PRESETS: [Preset; 13] = [
     Preset {
         name: "histogram-4",
         summary: "as clusters-4, splits from a histogram of the visible depth of the frame before",
-        advice: "The fewest wrong pixels in each frame; edges crawl when the camera moves.",
+        advice: "The fewest wrong pixels that four maps have in each frame; edges crawl when the camera moves.",
         make: || several(FitKind::Focused, ReceiverSource::Clusters, SplitScheme::FromHistogram, Stabilise::Off),
+    },
+    Preset {
+        name: "calm-4",
+        summary: "as histogram-4, maps held while they serve and moved by whole texels",
+        advice: "Where maps must be slices of the view, as for engines that read them by view depth: nearly as still as \
+                 stable-4, and sharper.",
+        make: || several(FitKind::Focused, ReceiverSource::Clusters, SplitScheme::FromHistogram, Stabilise::Hysteresis),
     },
     Preset {
         name: "windows-boxes-4",
         summary: "4 windows, placed by the triangle clusters' boxes in view",
-        advice: "Still and sharp where no depth buffer can be read.",
-        make: || Technique { need: NeedSource::Boxes, ..windows(4) },
-    },
-    Preset {
-        name: "windows-4",
-        summary: "4 windows, placed by what the frame before showed",
-        advice: "Still and sharp.",
-        make: || windows(4),
+        advice: "As windows-4 where no depth buffer can be read, as in OpenGL: less sharp, and slower to place.",
+        make: || Technique { need: NeedSource::Boxes, ..Technique::default() },
     },
     Preset {
         name: "windows-8",
         summary: "8 windows, placed by what the frame before showed",
-        advice: "Still, and the sharpest.",
-        make: || windows(8),
+        advice: "The sharpest, for twice the passes and the memory of windows-4.",
+        make: || Technique { count: 8, ..Technique::default() },
     },
     Preset {
         name: RECOMMENDED,
-        summary: "as histogram-4, maps held while they serve and moved by whole texels",
-        advice: "The one to begin with: nearly as sharp as histogram-4, and nearly as still as stable-4.",
+        summary: "4 windows, placed by what the frame before showed",
+        advice: "The one to begin with: as sharp as the sharpest of the others, edges hardly ever crawl, and maps can be \
+                 kept from frame to frame instead of drawn anew. Give it the depth buffer of the frame before \
+                 (shadowfit-wgpu has a pass for that).",
         make: Technique::default,
     },
 ];
 
 /// Name of the preset that is [`Technique::default`].
-pub const RECOMMENDED: &str = "calm-4";
+pub const RECOMMENDED: &str = "windows-4";
 
 impl Technique {
     /// The technique of the preset with this name, or `None` where [`PRESETS`] has no such name.
@@ -123,11 +126,6 @@ fn single(kind: FitKind, receivers: ReceiverSource) -> Technique {
 
 fn several(kind: FitKind, receivers: ReceiverSource, splits: SplitScheme, stabilise: Stabilise) -> Technique {
     Technique { fit: FitSettings::default().with_kind(kind), receivers, splits, stabilise, ..Technique::default() }
-}
-
-fn windows(count: u32) -> Technique {
-    let fit = FitSettings::default().with_kind(FitKind::Windows);
-    Technique { count, fit, ..Technique::default() }
 }
 
 #[cfg(test)]

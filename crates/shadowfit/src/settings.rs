@@ -46,12 +46,14 @@ pub enum FitKind {
     /// the world: shadow edges do not crawl when the camera moves or turns.
     Sphere,
     /// Least rectangle of what the camera can see of the receivers' boxes, turned as
-    /// [`FitSettings::rectangle`] says. Without boxes it is [`Self::Oriented`]. The default.
+    /// [`FitSettings::rectangle`] says. Without boxes it is [`Self::Oriented`]. The default for a single
+    /// map that is fitted by itself.
     #[default]
     Focused,
     /// Squares of the plane across the light, on a grid that is fixed to the world, each where it helps
     /// most of what is visible ([`fits::windows`](crate::fits::windows)). Always read by coverage. All maps of a
-    /// technique are windows or none: in an override it is ignored.
+    /// technique are windows or none: in an override it is ignored. The default for a
+    /// [technique](crate::Technique).
     Windows,
 }
 
@@ -102,11 +104,13 @@ pub enum CasterPolicy {
 }
 
 /// How one map is fitted to what it covers. The defaults are those of the
-/// [recommended technique](crate::Technique).
+/// [recommended technique](crate::Technique), except for the kind: windows take several maps and the
+/// frames before, and these are also the settings of a [single map](crate::fit).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct FitSettings {
-    /// The rule of the fit. Default: [`FitKind::Focused`].
+    /// The rule of the fit. Default: [`FitKind::Focused`]; that of a [`Technique`](crate::Technique) has
+    /// [`FitKind::Windows`].
     pub kind: FitKind,
     /// Rectangle of the fits that may turn. Default: [`RectangleKind::MinimumArea`].
     pub rectangle: RectangleKind,

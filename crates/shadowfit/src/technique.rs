@@ -26,7 +26,8 @@ mod rust_code;
 pub struct Technique {
     /// Number of maps, 1..=8. Default: 4, as Bevy and Babylon.js have it.
     pub count: u32,
-    /// The fit of all maps. Default: [`FitSettings::default`].
+    /// The fit of all maps. Default: [`FitSettings::default`] with [`FitKind::Windows`].
+    /// A fit that is read by the feature `serde` without its kind is one of [`FitKind::Focused`].
     pub fit: FitSettings,
     /// Where one map ends and the next begins. Default: [`SplitScheme::FromHistogram`], which takes
     /// boxes where no histogram is given.
@@ -62,11 +63,11 @@ pub struct Technique {
 }
 
 impl Default for Technique {
-    /// The preset `calm-4`: the best all round.
+    /// The preset `windows-4`: the best all round.
     fn default() -> Self {
         Self {
             count: 4,
-            fit: FitSettings::default(),
+            fit: FitSettings::default().with_kind(FitKind::Windows),
             splits: SplitScheme::default(),
             choice: MapChoice::default(),
             blend: 8.0,

@@ -154,7 +154,7 @@ fn no_certificate_and_no_scrolling_allocates() {
 fn no_culling_allocates() {
     let (views, boxes) = (views(), objects());
     let mut storage = [DVec2::ZERO; Workspace::required(0, 2)];
-    let settings = Technique { count: 4, ..Technique::default() };
+    let settings = Technique::preset("calm-4").expect("a preset");
     let input = FitInput::new(&views, DIRECTION);
     let maps = MapFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("good views");
     let mut volumes = [CasterVolume::everywhere(DVec3::ZERO); MAX_MAPS];

@@ -487,7 +487,7 @@ fn an_azimuth_that_kept_counting_reads_as_a_compass_angle() {
 
 #[test]
 fn parameters_say_where_they_have_no_effect() {
-    // Parameter, a setting with which it has an effect, one that takes it away, and a word of the reason.
+    // Parameter, settings of slices with which it has an effect, one that takes it away, and a word of the reason.
     for (id, base, (other, option), word) in [
         ("fit.rectangle", &[][..], ("fit.kind", "xna_sample"), "focused"),
         ("fit.rectangle", &[], ("fit.kind", "frustum_aabb"), "focused"),
@@ -532,7 +532,7 @@ fn parameters_say_where_they_have_no_effect() {
         ("override.map_4_resolution", &[], ("splits.count", "3"), "number of maps"),
         ("override.map_4_height", &[("override.map_4_resolution", "512")], ("splits.count", "3"), "number of maps"),
     ] {
-        let mut settings = with(base);
+        let mut settings = with(&[&[("fit.kind", "focused")], base].concat());
         assert_eq!((row(id).inert)(&settings), None, "{id}");
         set_from_str(&mut settings, other, option).expect("an option");
         let reason = (row(id).inert)(&settings);

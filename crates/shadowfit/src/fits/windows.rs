@@ -1,5 +1,6 @@
 //! Windows: maps that are no slices of the view, but squares of the plane across the light, each put
-//! where it helps most of what is visible. Sharp, and still.
+//! where it helps most of what is visible. Sharp, and still: the
+//! [recommended technique](crate::Technique) has four of them.
 //!
 //! ```text
 //!   ┌───────────────────────────────────┐ last window: every receiver in view

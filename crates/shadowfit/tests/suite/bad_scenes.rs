@@ -43,7 +43,7 @@ fn good() -> Inputs {
         bounds: DepthBounds { near: 1.0, far: 50.0 },
         bins: vec![1, 5, 9, 2, 0, 3],
         classes: 2,
-        settings: Technique { count: 3, ..Technique::default() },
+        settings: Technique::preset("calm-4").unwrap().with_count(3),
         storage: Workspace::required(2, 2),
     }
 }
@@ -177,8 +177,8 @@ const VALUES: [f64; 22] = [
     f32::MIN as f64,
 ];
 
-const KINDS: [FitKind; 5] =
-    [FitKind::XnaSample, FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
+const KINDS: [FitKind; 6] =
+    [FitKind::XnaSample, FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused, FitKind::Windows];
 
 const STABILISE: [Stabilise; 3] = [Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis];
 
@@ -206,12 +206,17 @@ fn each_bad_number_in_each_fit_gives_an_error_or_finite_maps() {
 fn what_is_not_finite_is_refused_and_leaves_the_fitter_as_it_was() {
     let harmless = ["cone axis", "cone angle", "histogram near", "histogram far", "histogram bin", "histogram bins"];
     let integers = ["histogram classes", "resolution", "count", "hold horizon"];
-    for stabilise in STABILISE {
+    let of_splits = ["lambda", "first manual split", "second manual split"];
+    let cases = STABILISE.map(|stabilise| (FitKind::Focused, stabilise)).into_iter();
+    for (kind, stabilise) in cases.chain([(FitKind::Windows, Stabilise::Off)]) {
         for (name, set) in SETTERS.into_iter().filter(|(name, _)| !harmless.contains(name) && !integers.contains(name))
         {
+            if kind == FitKind::Windows && of_splits.contains(&name) {
+                continue;
+            }
             for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
                 let mut before = good();
-                before.settings.stabilise = stabilise;
+                (before.settings.fit.kind, before.settings.stabilise) = (kind, stabilise);
                 let mut bad = before.clone();
                 set(&mut bad, value);
                 // An infinite corner makes a box that holds nothing, which is allowed.

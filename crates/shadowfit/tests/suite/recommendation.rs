@@ -2,7 +2,8 @@
 
 use shadowfit::presets::RECOMMENDED;
 use shadowfit::settings::{
-    BiasSettings, FilterKind, FitSettings, HoldSettings, MapFormat, ReceiverSource, SplitScheme, Stabilise,
+    BiasSettings, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, MapFormat, NeedSource, ReceiverSource,
+    SplitScheme, Stabilise,
 };
 use shadowfit::tool::Settings;
 use shadowfit::{PRESETS, Technique};
@@ -17,7 +18,10 @@ fn the_default_technique_is_the_recommended_preset() {
 #[test]
 fn the_defaults_of_its_parts_are_those_of_the_technique() {
     let technique = Technique::default();
-    assert_eq!(technique.fit, FitSettings::default());
+    // A single map, which has no frame before, is no window.
+    assert_eq!((technique.fit.kind, FitSettings::default().kind), (FitKind::Windows, FitKind::Focused));
+    assert_eq!(technique.fit, FitSettings::default().with_kind(FitKind::Windows));
+    assert_eq!((technique.choice, technique.need), (MapChoice::default(), NeedSource::default()));
     assert_eq!(technique.hold, HoldSettings::default());
     assert_eq!(technique.bias, BiasSettings::default());
     assert_eq!(technique.bias, BiasSettings::automatic(technique.filter));

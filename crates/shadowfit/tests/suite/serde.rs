@@ -103,7 +103,7 @@ fn lights_that_step_go_on() {
 
 #[test]
 fn a_fitter_that_was_saved_goes_on_as_the_one_that_was_not() {
-    let settings = Technique::default().with_stabilise(Stabilise::Hysteresis);
+    let settings = Technique::preset("calm-4").unwrap();
     let mut storage = [DVec2::ZERO; Workspace::required(0, 4)];
     let mut fit = |fitter: &mut MapFitter, frame: u8| {
         let mut camera = camera();

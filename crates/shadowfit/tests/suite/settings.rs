@@ -137,8 +137,9 @@ fn what_has_no_effect_on_windows_has_none() {
 fn windows_are_read_by_coverage_whatever_the_choice() {
     let technique = Technique::preset("windows-4").expect("a preset").with_choice(MapChoice::ViewDepth);
     assert_eq!(technique.map_choice(), MapChoice::Coverage);
-    let by_depth = Technique::default().with_choice(MapChoice::ViewDepth);
-    assert_eq!((by_depth.map_choice(), Technique::default().map_choice()), (MapChoice::ViewDepth, MapChoice::Coverage));
+    let slices = Technique::preset("focused-4").expect("a preset");
+    let by_depth = slices.with_choice(MapChoice::ViewDepth);
+    assert_eq!((by_depth.map_choice(), slices.map_choice()), (MapChoice::ViewDepth, MapChoice::Coverage));
     let maps = fitted(&technique)[0];
     let by_coverage = technique.with_choice(MapChoice::Coverage);
     for depth in 1..150 {

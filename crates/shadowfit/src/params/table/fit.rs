@@ -13,7 +13,7 @@ pub(super) const KIND: Parameter = Parameter {
     group: Group::Fit,
     label: "Fit",
     unit: "",
-    help: "The rule that decides where a shadow map looks. Focused is sharp, windows are sharp and still, the sphere is \
+    help: "The rule that decides where a shadow map looks. Windows are sharp and still, focused maps as sharp, the sphere \
            coarser and as still. The frustum box is the plainest; the XNA sample's rule loses casters outside the view.",
     kind: Kind::Choice(Choice {
         options: &[

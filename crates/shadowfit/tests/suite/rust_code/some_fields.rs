@@ -1,6 +1,7 @@
 {
 let technique = Technique {
     fit: FitSettings {
+        kind: FitKind::Windows,
         max_distance: f32::MIN,
         ..FitSettings::default()
     },
