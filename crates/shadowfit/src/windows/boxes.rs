@@ -165,7 +165,7 @@ impl<'a> Picture<'a> {
 
 /// Share of the points with the finest needs, whose needs count as no finer than those of the rest: estimates from
 /// boxes find too many near the eye.
-const FINEST: f32 = 0.25;
+const FINEST: f32 = 0.1;
 
 /// Cosine of the half angle of a cone above which its surfaces count as flat.
 const FLAT: f32 = 0.97;

@@ -52,7 +52,7 @@ pub(crate) struct HeldWindows {
 }
 
 /// Frames for which windows are searched with effort, once it is known what is visible.
-const EFFORT: u8 = 3;
+const EFFORT: u8 = 1;
 
 /// Changes that are tried in such a frame, and in others.
 const CHANGES_OF_EFFORT: u32 = 14;
@@ -177,7 +177,7 @@ fn plan_windows(
         let (mut drawn, mut sought) = (plan(&before.drawn), plan(&before.sought));
         if before.is_guess && !is_guess {
             effort = EFFORT;
-            sought = planner.better(sought, planner.ladder(last.steps, rect));
+            sought = planner.better(sought, planner.ladder(last.steps, rect)); planner.seek(&mut sought, &mut turn, 24);
         } else {
             planner.seek(&mut sought, &mut turn, if effort > 0 { CHANGES_OF_EFFORT } else { CHANGES_AT_REST });
         }

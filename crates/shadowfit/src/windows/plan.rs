@@ -41,7 +41,7 @@ struct Served {
 }
 
 /// Ratios of the texels of neighbours with which a search begins, in eighths of an octave.
-const LADDERS: [i32; 8] = [4, 6, 8, 10, 13, 16, 20, 24];
+const LADDERS: [i32; 6] = [4, 7, 10, 13, 17, 22];
 
 /// How much finer than the last window's the first one's texels may be, in eighths of an octave: more than the
 /// octaves of a grid of need, and little enough that all its lines are exact.
@@ -138,7 +138,7 @@ impl Planner<'_> {
         let mut left = [1.0; MAX_CELLS];
         for (i, holds) in holds.iter_mut().enumerate().take(self.count - 1) {
             let all = self.cells.sum(&self.cells.cost, &left, |cost, left| cost * left);
-            let share = |rect: &Rect| self.held(rect, &left) / all;
+            let share = |rect: &Rect| if all > 0.0 { self.held(rect, &left) / all } else { 1.0 };
             let is_turn = turn as usize % (self.count - 1) == i;
             if is_turn || share(&plan.rects[i]) < *holds * LOOKS {
                 plan.rects[i] = self.kept(&plan.rects[i], &left);
