@@ -177,7 +177,7 @@ fn plan_windows(
         let (mut drawn, mut sought) = (plan(&before.drawn), plan(&before.sought));
         if before.is_guess && !is_guess {
             effort = EFFORT;
-            sought = planner.better(sought, planner.ladder(last.steps, rect)); planner.seek(&mut sought, &mut turn, 24);
+            sought = planner.better(sought, planner.ladder(last.steps, rect)); planner.seek(&mut sought, &mut turn, 16);
         } else {
             planner.seek(&mut sought, &mut turn, if effort > 0 { CHANGES_OF_EFFORT } else { CHANGES_AT_REST });
         }

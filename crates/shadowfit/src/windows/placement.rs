@@ -1,13 +1,13 @@
 //! Where a window holds most of what is left to be served.
 //!
 //! The cost of all cells is entered into a raster, of which the sum over every square as large as the
-//! window is found by doubling: of 2, 4, 8 and 16 rows, then of as many columns.
+//! window is found in steps: of 4 and of 16 rows, then of as many columns.
 
 use glam::Vec2;
 
 use super::cells::{Cells, PerCell, greater, lesser};
 
-/// Squares of the raster in a window's side: the sums are doubled four times.
+/// Squares of the raster in a window's side: four times four.
 const ACROSS: usize = 16;
 
 /// Squares of the raster along each axis: five windows.
@@ -44,10 +44,12 @@ pub(super) fn best(cells: &Cells, left: &PerCell, size: Vec2) -> Rect {
     let corner = middle(cells, left) - pitch * (RASTER / 2) as f32;
     let mut sums: Raster = [[0.0; ROW]; RASTER];
     enter(&mut sums, cells, left, (corner, pitch));
-    sum_squares(&mut sums);
+    sum_rows(&mut sums, 1);
+    sum_rows(&mut sums, 4);
     let (mut most, mut at) = (f32::MIN, (0, 0));
     for (y, row) in sums[..PLACES].iter().enumerate() {
-        let highest = row[..PLACES].iter().fold(f32::MIN, |highest, sum| if *sum > highest { *sum } else { highest });
+        let row = sum_columns::<4>(&sum_columns::<1>(row));
+        let highest = row[..PLACES].iter().fold(f32::MIN, |highest, sum| greater(*sum, highest));
         if highest > most {
             most = highest;
             at = (row[..PLACES].iter().position(|sum| *sum == highest).unwrap_or(0), y);
@@ -56,28 +58,25 @@ pub(super) fn best(cells: &Cells, left: &PerCell, size: Vec2) -> Rect {
     Rect { min: corner + Vec2::new(at.0 as f32, at.1 as f32) * pitch, size }
 }
 
-/// Replaces each square by the sum over [`ACROSS`] squares to the right of and above it.
-fn sum_squares(sums: &mut Raster) {
-    let mut length = 1;
-    while length < ACROSS {
-        for y in 0..RASTER - length {
-            let (low, high) = sums.split_at_mut(y + length);
-            for (sum, other) in low[y][..RASTER].iter_mut().zip(&high[0][..RASTER]) {
-                *sum += other;
-            }
-        }
-        length *= 2;
-    }
-    for row in &mut sums[..PLACES] {
-        let mut length = 1;
-        while length < ACROSS {
-            let before = *row;
-            for (sum, other) in row[..RASTER].iter_mut().zip(&before[length..]) {
-                *sum += other;
-            }
-            length *= 2;
+/// Adds to each row three that follow at a distance.
+fn sum_rows(sums: &mut Raster, distance: usize) {
+    for y in 0..RASTER - 3 * distance {
+        let [row, one, two, three] = [0, 1, 2, 3].map(|k| y + k * distance);
+        let (low, high) = sums.split_at_mut(one);
+        let others = high[0].iter().zip(&high[two - one]).zip(&high[three - one]);
+        for (sum, ((one, two), three)) in low[row].iter_mut().zip(others) {
+            *sum += one + two + three;
         }
     }
+}
+
+/// Sums of each square of a row and three that follow at a distance.
+fn sum_columns<const DISTANCE: usize>(row: &[f32; ROW]) -> [f32; ROW] {
+    let mut sums = [0.0; ROW];
+    for (x, sum) in sums[..RASTER - 3 * DISTANCE].iter_mut().enumerate() {
+        *sum = row[x] + row[x + DISTANCE] + row[x + 2 * DISTANCE] + row[x + 3 * DISTANCE];
+    }
+    sums
 }
 
 /// Middle of the costs.

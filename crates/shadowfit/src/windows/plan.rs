@@ -63,7 +63,7 @@ const LOOKS: f32 = 0.99;
 const MOVE_ON: f32 = 0.3;
 
 /// Cost of the drawn windows over that of the sought ones up to which no more of them are replaced.
-pub(super) const SERVES: f32 = 1.15;
+pub(super) const SERVES: f32 = 1.1;
 
 /// Share of the points that every change counts for, at least.
 const FEW: f32 = 0.02;
