@@ -36,33 +36,28 @@ fn cost_of(ratio: f32) -> f32 {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct HeldWindows {
     plane: Plane,
-    /// Those that were drawn, and those that are sought, whose depths are not known.
+    /// Those that were drawn, those that are sought, and those that are sought anew, whose depths are not known.
     drawn: [Window; MAX_MAPS],
     sought: [Window; MAX_MAPS],
+    anew: [Window; MAX_MAPS],
     /// Shares of the cost that the drawn ones held when they were last looked at.
     holds: [f32; MAX_MAPS],
-    /// Number of the next change that is tried.
+    /// Numbers of the changes that were tried of those that are sought, and of those that are sought anew.
     turn: u32,
-    /// Frames for which the search goes on with effort.
-    effort: u8,
+    turn_anew: u32,
     /// Frames since one was replaced.
     age: u8,
     /// Whether no grid of need was known yet.
     is_guess: bool,
 }
 
-/// Frames for which windows are searched with effort, once it is known what is visible.
-const EFFORT: u8 = 1;
+/// Rounds of changes that are tried for a first frame.
+const ROUNDS_AT_FIRST: u32 = 3;
 
-/// Changes that are tried in such a frame, and in others.
-const CHANGES_OF_EFFORT: u32 = 14;
-const CHANGES_AT_REST: u32 = 1;
+/// Windows for each change that is tried in a frame.
+const WINDOWS_PER_CHANGE: u32 = 4;
 
-/// Cost of the drawn windows over that of the sought ones from which on some are replaced while the search
-/// goes on with effort, for it may find better ones soon.
-const SERVES_AT_FIRST: f32 = 1.6;
-
-/// What that ratio is more for windows of which one has just been replaced, and the frames after which it is no more:
+/// What the ratio of [`plan::SERVES`] is more for windows of which one has just been replaced, and the frames after which it is no more:
 /// changes are rare while the scene changes, and nothing is left as it is for ever.
 const SERVES_LONGER: f32 = 0.25;
 const OLD: u8 = 60;
@@ -163,10 +158,10 @@ fn plan_windows(
 ) -> HeldWindows {
     let planner = Planner { cells, usable: lattice.usable.map(DVec2::as_vec2), count };
     let rect = lattice.rect(count - 1, last);
-    let (mut turn, mut effort) = before.map_or((0, 0), |before| (before.turn, before.effort));
+    let (mut turn, mut turn_anew) = before.map_or((0, 0), |before| (before.turn, before.turn_anew));
     let mut age = 0;
     let mut holds = before.map_or([0.0; MAX_MAPS], |before| before.holds);
-    let (drawn, sought) = if let Some(before) = before {
+    let (drawn, sought, anew) = if let Some(before) = before {
         let plan = |windows: &[Window; MAX_MAPS]| {
             let mut plan = Plan::default();
             for (i, window) in windows.iter().enumerate().take(count) {
@@ -174,34 +169,41 @@ fn plan_windows(
             }
             planner.below(plan, last.steps, rect)
         };
-        let (mut drawn, mut sought) = (plan(&before.drawn), plan(&before.sought));
-        if before.is_guess && !is_guess {
-            effort = EFFORT;
-            sought = planner.better(sought, planner.ladder(last.steps, rect)); planner.seek(&mut sought, &mut turn, 16);
+        let (mut drawn, mut sought, mut anew) = (plan(&before.drawn), plan(&before.sought), plan(&before.anew));
+        let changes = (count as u32).div_ceil(WINDOWS_PER_CHANGE);
+        let is_told = before.is_guess && !is_guess;
+        if is_told {
+            sought = planner.better(sought, planner.ladder(last.steps, rect));
+            planner.seek(&mut sought, &mut turn, planner.round());
+            turn_anew = turn;
+        } else if turn_anew >= turn {
+            planner.seek(&mut sought, &mut turn, changes);
+        } else if turn_anew % planner.round().max(1) == 0 {
+            sought = planner.better(sought, anew);
+            anew = planner.ladder(last.steps, rect);
+            turn_anew = turn_anew.wrapping_add(changes);
         } else {
-            planner.seek(&mut sought, &mut turn, if effort > 0 { CHANGES_OF_EFFORT } else { CHANGES_AT_REST });
+            planner.seek(&mut anew, &mut turn_anew, changes);
         }
         planner.keep(&mut drawn, &mut holds, turn);
-        let (most, at_once) = match effort {
-            0 => (plan::SERVES + SERVES_LONGER * (1.0 - f32::from(before.age) / f32::from(OLD)), 1),
-            1 => (plan::SERVES, count),
-            _ => (SERVES_AT_FIRST, count),
-        };
-        let followed = planner.follow(drawn, &sought, most, at_once);
+        let young = SERVES_LONGER * (1.0 - f32::from(before.age) / f32::from(OLD));
+        let followed = planner.follow(drawn, &sought, plan::SERVES + if is_told { 0.0 } else { young }, is_told);
         age = if followed == drawn { before.age.saturating_add(1).min(OLD) } else { 0 };
-        (followed, sought)
+        (followed, sought, anew)
     } else {
         let mut plan = planner.ladder(last.steps, rect);
-        planner.seek(&mut plan, &mut turn, planner.all_changes());
-        (plan, plan)
+        planner.seek(&mut plan, &mut turn, ROUNDS_AT_FIRST * planner.round());
+        turn_anew = turn;
+        (plan, plan, plan)
     };
     let mut windows = HeldWindows {
         plane: lattice.plane,
         drawn: [Window::default(); MAX_MAPS],
         sought: [Window::default(); MAX_MAPS],
+        anew: [Window::default(); MAX_MAPS],
         holds,
         turn,
-        effort: effort.saturating_sub(1),
+        turn_anew,
         age,
         is_guess,
     };
@@ -211,6 +213,7 @@ fn plan_windows(
         let kept = before.map(|before| &before.drawn[i]).filter(stays);
         windows.drawn[i] = kept.map_or_else(|| lattice.window(i, drawn.steps[i], &drawn.rects[i]), |kept| *kept);
         windows.sought[i] = lattice.window(i, sought.steps[i], &sought.rects[i]);
+        windows.anew[i] = lattice.window(i, anew.steps[i], &anew.rects[i]);
     }
     windows.drawn[count - 1] = *last;
     windows
@@ -223,6 +226,7 @@ impl HeldWindows {
             return *self;
         }
         let turned = |window: Window| lattice.turned(&window, &self.plane, origin);
-        Self { plane: lattice.plane, drawn: self.drawn.map(turned), sought: self.sought.map(turned), ..*self }
+        let [drawn, sought, anew] = [self.drawn, self.sought, self.anew].map(|windows| windows.map(turned));
+        Self { plane: lattice.plane, drawn, sought, anew, ..*self }
     }
 }

@@ -50,9 +50,6 @@ const FINEST: i32 = 20 * 8;
 /// Changes of a window's texels that are tried, in eighths of an octave.
 const CHANGES: [i32; 6] = [4, -4, 8, -8, 2, -2];
 
-/// Rounds of changes with which a search begins.
-const ROUNDS: u32 = 3;
-
 /// Share of the cost in the best place that a window must hold to stay where it is.
 const HOLDS: f32 = 0.985;
 
@@ -64,6 +61,10 @@ const MOVE_ON: f32 = 0.3;
 
 /// Cost of the drawn windows over that of the sought ones up to which no more of them are replaced.
 pub(super) const SERVES: f32 = 1.1;
+
+/// Cost of the drawn windows over that of the sought ones from which on they are replaced at once: the scene is another
+/// one.
+const FAR: f32 = 2.0;
 
 /// Share of the points that every change counts for, at least.
 const FEW: f32 = 0.02;
@@ -110,9 +111,9 @@ impl Planner<'_> {
         }
     }
 
-    /// All changes of a few rounds.
-    pub(super) const fn all_changes(&self) -> u32 {
-        ROUNDS * (self.count as u32 - 1) * CHANGES.len() as u32
+    /// Number of all changes of all windows but the last.
+    pub(super) const fn round(&self) -> u32 {
+        (self.count as u32 - 1) * CHANGES.len() as u32
     }
 
     /// A plan for a last window that may have other texels than its own.
@@ -148,20 +149,17 @@ impl Planner<'_> {
         }
     }
 
-    /// The drawn windows, while they cost no more than the sought ones times `most`; else as few of them
-    /// replaced, and no more than `count`, as make them nearly as good.
-    pub(super) fn follow(&self, drawn: Plan, sought: &Plan, most: f32, count: usize) -> Plan {
+    /// The drawn windows, while they cost no more than the sought ones times `most`; else some of them replaced: as few
+    /// as make them nearly as good where `at_once`, else the one that gains most.
+    pub(super) fn follow(&self, drawn: Plan, sought: &Plan, most: f32, at_once: bool) -> Plan {
         let found = self.cost(sought);
-        if self.cost(&drawn) <= found * most {
+        let mut cost = self.cost(&drawn);
+        if cost <= found * most {
             return drawn;
         }
-        let enough = found * SERVES;
+        let is_far = cost > found * FAR;
         let mut plan = drawn;
-        for _ in 0..count {
-            let cost = self.cost(&plan);
-            if cost <= enough {
-                return plan;
-            }
+        while cost > found * SERVES {
             let readers = self.readers(&plan);
             let mut best: Option<(f32, Plan)> = None;
             for (i, readers) in readers.iter().enumerate().take(self.count - 1) {
@@ -174,8 +172,13 @@ impl Planner<'_> {
                     best = Some((gain, other));
                 }
             }
-            let Some((_, other)) = best else { return if count > 1 { *sought } else { plan } };
+            // No single one may gain, or sizes would cross.
+            let Some((_, other)) = best else { return *sought };
             plan = other;
+            if !at_once && !is_far {
+                return plan;
+            }
+            cost = self.cost(&plan);
         }
         plan
     }

@@ -76,9 +76,9 @@ const ANEW: usize = 90;
 /// Greatest 95% quantile of pixels per texel over that of a fitter that begins anew: what is aimed at.
 const TARGET: f64 = 1.25;
 
-/// What is reached so far, in the worst of the stations below: 2.53 (8 windows at a height), of 18 of which 7 are above
+/// What is reached so far, in the worst of the stations below: 1.41 (4 windows back on the plain), of 18 of which 2 are above
 /// the target. To be lowered to the target as the search gets better.
-const REACHED: f64 = 2.6;
+const REACHED: f64 = 1.45;
 
 #[test]
 fn windows_follow_out_of_a_small_room_onto_a_plain_and_back() {
