@@ -179,8 +179,8 @@ impl Canvas {
 
     /// Many dots of a diameter in pixels, as one element.
     pub(super) fn dots(&mut self, centres: impl IntoIterator<Item = DVec2>, diameter: f64, colour: &'static str) {
-        let dots: String = centres.into_iter().map(|p| format!("M{},{}h0", rounded(p.x), rounded(p.y))).collect();
-        let mut node = Path::new().set("d", dots);
+        let dots: Vec<String> = centres.into_iter().map(|p| format!("M{},{}h0", rounded(p.x), rounded(p.y))).collect();
+        let mut node = Path::new().set("d", dots.concat());
         stroke(colour, diameter).put(&mut node);
         self.document.append(node);
     }

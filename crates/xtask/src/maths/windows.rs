@@ -48,7 +48,7 @@ const OCTAVES: [&str; 6] = ["#4a0010", "#b5131b", "#ef5a1f", "#fb9d3f", "#f3c35f
 const FINEST: f32 = 1.0 / 512.0;
 
 pub(super) fn draw() -> Result<String> {
-    let mut walk = Walk::new(Technique::default());
+    let mut walk = Walk::new(&Technique::default());
     for _ in 1..STILL {
         walk.step(0.0)?;
     }
@@ -138,7 +138,7 @@ impl Step {
 
 /// Frames one after the other, each fitted with what the one before it showed.
 pub(super) struct Walk {
-    pub(super) technique: Technique,
+    technique: Technique,
     fitter: MapFitter,
     storage: Vec<DVec2>,
     /// The points that the last frame showed, and the space that they were counted in.
@@ -146,9 +146,9 @@ pub(super) struct Walk {
 }
 
 impl Walk {
-    pub(super) fn new(technique: Technique) -> Self {
+    pub(super) fn new(technique: &Technique) -> Self {
         let storage = vec![DVec2::ZERO; Workspace::required(STREET.len(), 1)];
-        Self { technique, fitter: MapFitter::new(), storage, need: None }
+        Self { technique: *technique, fitter: MapFitter::new(), storage, need: None }
     }
 
     pub(super) fn step(&mut self, heading: f64) -> Result<Step> {

@@ -30,7 +30,7 @@ pub(super) fn draw() -> Result<String> {
     let mut canvas = Canvas::new(388.0, "A turning camera's windows, and slices that are as sharp or stand as still");
     for (i, preset) in ["windows-4", "focused-4", "stable-4"].into_iter().enumerate() {
         let technique = Technique::preset(preset).context("no such preset")?;
-        let steps = turn(technique)?;
+        let steps = turn(&technique)?;
         let left = 20.0 + 232.0 * i as f64;
         let (low, high) = (DVec2::new(left, 38.0), DVec2::new(left + SIDE, 38.0 + SIDE));
         let look = steps[0].look();
@@ -47,7 +47,7 @@ pub(super) fn draw() -> Result<String> {
 }
 
 /// The frames of the turn.
-fn turn(technique: Technique) -> Result<Vec<Step>> {
+fn turn(technique: &Technique) -> Result<Vec<Step>> {
     let mut walk = Walk::new(technique);
     let heading = |frame: usize| TURN * (frame.saturating_sub(FRAMES) as f64 - FRAMES as f64 * 0.5);
     (0..=2 * FRAMES).map(|frame| walk.step(heading(frame))).skip(FRAMES).collect()
