@@ -31,6 +31,10 @@ pub(crate) struct Args {
     /// Width and height of all maps, in texels [default: what the techniques say]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(256..=8192))]
     resolution: Option<u32>,
+    /// Frame that is drawn with every technique, such as `path/3`; give it once for each [default: the worst, a middling
+    /// and the best one]
+    #[arg(long = "picture", value_name = "FRAME")]
+    pictures: Vec<String>,
     /// Folder for the report
     #[arg(short, value_name = "DIR")]
     out: PathBuf,
@@ -50,6 +54,7 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<bool> {
     for technique in &techniques {
         job.comparison.add(technique.clone())?;
     }
+    let asked = frames_named(&args.pictures, &job.frames)?;
     // Nothing is written before all input has been read.
     let output = Output::create(&args.out)?;
     let mut measured: Vec<Measured> = techniques.iter().map(|_| Measured::default()).collect();
@@ -68,7 +73,8 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<bool> {
     let mut run = report(args, &job, &techniques, &measured);
     // The tables first: pictures take a while, and may fail for want of room.
     output.write_report(&run, &job.path)?;
-    draw_pictures(&mut job, &measured, &output, &mut run)?;
+    let drawn = if asked.is_empty() { telling_frames(&run) } else { asked };
+    draw_pictures(&mut job, &measured, &output, &mut run, &drawn)?;
     output.write_report(&run, &job.path)?;
     print!("{}", crate::tables::to_markdown(&run));
     println!("\n{}: index.html, report.md, report.json, pictures and plots", args.out.display());
@@ -179,9 +185,16 @@ fn columns<'a>(tallies: impl IntoIterator<Item = &'a PictureTally>) -> Columns {
     pool(tallies).columns().into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
-/// Draws the worst, a middling and the best frame with every technique, from the maps that they had then.
-fn draw_pictures(job: &mut Prepared, measured: &[Measured], output: &Output, run: &mut Run) -> Result<()> {
-    for index in telling_frames(run) {
+/// Draws some frames with every technique, from the maps that they had then.
+fn draw_pictures(
+    job: &mut Prepared,
+    measured: &[Measured],
+    output: &Output,
+    run: &mut Run,
+    frames: &[usize],
+) -> Result<()> {
+    // A run that was interrupted may not have come as far.
+    for &index in frames.iter().filter(|index| **index < run.frames.len()) {
         pose(job, index);
         let frame = job.frames[index].clone();
         let mut truth = SharedTruth::default();
@@ -206,6 +219,20 @@ fn draw_pictures(job: &mut Prepared, measured: &[Measured], output: &Output, run
         }
     }
     Ok(())
+}
+
+/// The places of frames in the path, by their names.
+fn frames_named(names: &[String], frames: &[JobFrame]) -> Result<Vec<usize>> {
+    let place = |name: &String| {
+        let place = frames.iter().position(|frame| frame.name == *name);
+        place.with_context(|| match (frames.first(), frames.last()) {
+            (Some(first), Some(last)) => {
+                format!("--picture {name}: the path has no such frame, only {} to {}", first.name, last.name)
+            }
+            _ => format!("--picture {name}: the path has no frames"),
+        })
+    };
+    names.iter().map(place).collect()
 }
 
 /// The frames with the most, a median and the least wrong pixels, over all techniques.

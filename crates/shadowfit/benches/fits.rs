@@ -8,6 +8,7 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use shadowfit::clusters::Clusters;
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec2, Vec3, Vec3Swizzles, Vec4};
+use shadowfit::need::{CELLS, NeedGrid, NeedSpace, PIXELS};
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, SplitScheme, Stabilise};
 use shadowfit::{Aabb, Boxes, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, Workspace, fit};
 
@@ -256,6 +257,82 @@ fn focused(c: &mut Criterion) {
     group.finish();
 }
 
+/// Frames of a walk along a circle, 18 cm and 0.7 degrees apart. After the last one comes the first.
+const WALK: usize = 512;
+
+/// The camera of a frame of the walk, which looks ahead.
+fn walk(frame: usize) -> PerspectiveCamera {
+    let (sin, cos) = (std::f64::consts::TAU * frame as f64 / WALK as f64).sin_cos();
+    let forward = DVec3::new(-sin, -0.1, cos).as_vec3();
+    PerspectiveCamera { eye: DVec3::new(15.0 * cos, 1.7, 15.0 * sin), forward, ..camera(&mut 0.0) }
+}
+
+/// Rays across and down the picture, by which need is counted.
+const RAYS: (usize, usize) = (48, 27);
+
+/// What a camera sees of boxes, counted as from its depth buffer.
+fn need(camera: &PerspectiveCamera, boxes: &[Aabb]) -> (NeedSpace, Vec<u32>) {
+    let view = camera.frustum().expect("a good camera");
+    let space = NeedSpace::new(&view, DIRECTION, Vec3::Y, f32::MAX).expect("a good view");
+    let [left_top, right_top, _, left_bottom] = [4, 5, 6, 7].map(|i| view.corners[i] / view.far);
+    let (across, down) = (right_top - left_top, left_bottom - left_top);
+    let mut counts = vec![0; CELLS];
+    for i in 0..RAYS.0 * RAYS.1 {
+        let (x, y) = ((i % RAYS.0) as f32 + 0.5, (i / RAYS.0) as f32 + 0.5);
+        let ray = left_top + across * (x / RAYS.0 as f32) + down * (y / RAYS.1 as f32);
+        let hits = boxes.iter().filter_map(|aabb| hit(camera.eye.as_vec3(), ray, aabb));
+        let Some((depth, normal)) = hits.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
+        let step = |edge: Vec3| {
+            let moved = ray + edge / PIXELS;
+            moved * (normal.dot(ray) * depth / normal.dot(moved)) - ray * depth
+        };
+        if let Some(cell) = space.index(ray * depth, normal, step(across / camera.aspect), step(down)) {
+            counts[cell] += 1;
+        }
+    }
+    (space, counts)
+}
+
+/// Where a ray meets a box, in lengths of the ray, and the face's normal.
+fn hit(eye: Vec3, ray: Vec3, aabb: &Aabb) -> Option<(f32, Vec3)> {
+    let (a, b) = ((aabb.min - eye) / ray, (aabb.max - eye) / ray);
+    let (enter, leave) = (a.min(b), a.max(b).min_element());
+    let axis = enter.max_position();
+    let normal = Vec3::AXES[axis] * -ray[axis].signum();
+    (enter[axis] > 0.0 && enter[axis] < leave).then_some((enter[axis], normal))
+}
+
+/// Presets along a walk: windows with what the frame before showed and without, and the stillest slices beside them.
+fn windows(c: &mut Criterion) {
+    let mut group = c.benchmark_group("4 windows beside stable maps");
+    for (count, name) in [(200, "200 boxes"), (1024, "1024 boxes")] {
+        let boxes = objects(count);
+        let needs: Vec<_> = (0..WALK).map(|frame| need(&walk(frame), &boxes)).collect();
+        let boxes = Boxes { origin: DVec3::ZERO, boxes: &boxes };
+        let mut storage = vec![DVec2::ZERO; Workspace::required(count, 4)];
+        for preset in ["windows-4", "windows-boxes-4", "stable-4"] {
+            let technique = Technique::preset(preset).expect("a preset");
+            let mut fitter = MapFitter::new();
+            let mut frame = 0;
+            group.bench_function(format!("{name}, {preset}"), |b| {
+                b.iter(|| {
+                    let (space, counts) = &needs[frame];
+                    frame = (frame + 1) % WALK;
+                    let views = [walk(frame).frustum().expect("a good camera")];
+                    let input = FitInput {
+                        receivers: Some(boxes),
+                        casters: Some(boxes),
+                        need: &[NeedGrid { space: *space, counts }],
+                        ..FitInput::new(&views, DIRECTION)
+                    };
+                    fitter.fit(&input, black_box(&technique), &mut Workspace::new(&mut storage)).expect("a good fit")
+                });
+            });
+        }
+    }
+    group.finish();
+}
+
 /// A wavy plain of 2 · n² triangles.
 fn terrain(n: usize) -> Vec<[Vec3; 3]> {
     let at = |i: usize, j: usize| {
@@ -282,5 +359,5 @@ fn clusters(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, against_xna, against_bevy, focused, clusters);
+criterion_group!(benches, against_xna, against_bevy, focused, windows, clusters);
 criterion_main!(benches);

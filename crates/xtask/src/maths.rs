@@ -20,6 +20,8 @@ mod scene;
 mod sphere;
 mod splits;
 mod visible_splits;
+mod windows;
+mod windows_pan;
 mod xna;
 
 use anyhow::{Context, Result};
@@ -33,7 +35,7 @@ const IMAGES: &str = "docs/images/maths";
 type Picture = (&'static str, fn() -> Result<String>);
 
 /// All pictures, in the order of the page.
-const PICTURES: [Picture; 14] = [
+const PICTURES: [Picture; 16] = [
     ("family", family::draw),
     ("axes", axes::draw),
     ("xna", xna::draw),
@@ -44,6 +46,8 @@ const PICTURES: [Picture; 14] = [
     ("near_plane", near_plane::draw),
     ("splits", splits::draw),
     ("visible_splits", visible_splits::draw),
+    ("windows", windows::draw),
+    ("windows_pan", windows_pan::draw),
     ("hold", hold::draw),
     ("culling", culling::draw),
     ("bias", bias::draw),

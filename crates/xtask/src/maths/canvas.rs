@@ -5,7 +5,7 @@
 use shadowfit::glam::DVec2;
 use svg::Document;
 use svg::node::Node;
-use svg::node::element::{Circle, Line, Polygon, Polyline, Rectangle, Text as TextElement, Title};
+use svg::node::element::{Circle, Line, Path, Polygon, Polyline, Rectangle, Text as TextElement, Title};
 
 /// Width of every picture, in pixels: that of a page's text on GitHub, nearly.
 pub(super) const WIDTH: f64 = 720.0;
@@ -112,6 +112,21 @@ impl Canvas {
         format!("{}\n", self.document)
     }
 
+    /// Draws what shows only inside a rectangle of the page.
+    pub(super) fn clipped(&mut self, min: DVec2, max: DVec2, draw: impl FnOnce(&mut Self)) {
+        let size = max - min;
+        // An SVG element inside another one hides what is outside of it.
+        let document = Document::new()
+            .set("x", min.x)
+            .set("y", min.y)
+            .set("width", size.x)
+            .set("height", size.y)
+            .set("viewBox", (min.x, min.y, size.x, size.y));
+        let mut inner = Self { document };
+        draw(&mut inner);
+        self.document.append(inner.document);
+    }
+
     /// A label in plain ink.
     pub(super) fn label(&mut self, at: DVec2, side: Side, text: &str) {
         self.text(at, side, INK, text);
@@ -159,6 +174,14 @@ impl Canvas {
     pub(super) fn path(&mut self, points: impl IntoIterator<Item = DVec2>, paint: Paint) {
         let mut node = Polyline::new().set("points", joined(points));
         paint.put(&mut node);
+        self.document.append(node);
+    }
+
+    /// Many dots of a diameter in pixels, as one element.
+    pub(super) fn dots(&mut self, centres: impl IntoIterator<Item = DVec2>, diameter: f64, colour: &'static str) {
+        let dots: Vec<String> = centres.into_iter().map(|p| format!("M{},{}h0", rounded(p.x), rounded(p.y))).collect();
+        let mut node = Path::new().set("d", dots.concat());
+        stroke(colour, diameter).put(&mut node);
         self.document.append(node);
     }
 

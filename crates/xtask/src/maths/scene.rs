@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use shadowfit::fits::fit_scene;
-use shadowfit::glam::{DVec2, DVec3, Vec3, Vec4};
+use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3, Vec4};
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, SplitScheme, Stabilise};
 use shadowfit::{Aabb, Boxes, FitInput, LightFit, PerspectiveCamera, Technique, ViewFrustum, Workspace};
 
@@ -175,4 +175,67 @@ pub(super) fn hull(points: &[DVec2]) -> Vec<DVec2> {
     chain(&mut sorted.iter().copied());
     chain(&mut sorted.iter().rev().copied());
     out
+}
+
+/// A visible point.
+pub(super) struct Visible {
+    /// Position relative to the eye.
+    pub(super) point: Vec3,
+    /// Of the surface, on the side of the eye.
+    pub(super) normal: Vec3,
+    /// View depth, in metres.
+    pub(super) depth: f64,
+    /// How far the point moves on its surface from one pixel to the next.
+    pub(super) right: Vec3,
+    pub(super) down: Vec3,
+}
+
+/// What a camera sees of boxes in a picture of `size` pixels, by rays through places in it, from 0 to 1 across and down.
+pub(super) fn visible(
+    camera: &PerspectiveCamera,
+    boxes: &[Aabb],
+    places: impl Iterator<Item = DVec2>,
+    size: UVec2,
+) -> Result<Vec<Visible>> {
+    let frustum = camera.frustum()?;
+    let corner = |i: usize| frustum.corners[i + 4].as_dvec3() / f64::from(camera.far);
+    let (across, downward) = (corner(1) - corner(0), corner(3) - corner(0));
+    let mut out = Vec::new();
+    for place in places {
+        let ray = corner(0) + across * place.x + downward * place.y;
+        let Some((depth, normal)) = boxes.iter().filter_map(|aabb| hit(camera.eye, ray, aabb)).reduce(nearer) else {
+            continue;
+        };
+        if depth >= f64::from(camera.far) {
+            continue;
+        }
+        let step = |edge: DVec3, pixels: u32| {
+            let moved = ray + edge / f64::from(pixels);
+            let other = moved * (normal.dot(ray) * depth / normal.dot(moved));
+            (other - ray * depth).as_vec3()
+        };
+        let (right, down) = (step(across, size.x), step(downward, size.y));
+        out.push(Visible { point: (ray * depth).as_vec3(), normal: normal.as_vec3(), depth, right, down });
+    }
+    Ok(out)
+}
+
+fn nearer(a: (f64, DVec3), b: (f64, DVec3)) -> (f64, DVec3) {
+    if b.0 < a.0 { b } else { a }
+}
+
+/// Share of a ray at which it meets a box, and the face's normal.
+fn hit(eye: DVec3, ray: DVec3, aabb: &Aabb) -> Option<(f64, DVec3)> {
+    let (mut enter, mut leave, mut face) = (0.0_f64, f64::MAX, DVec3::ZERO);
+    for axis in 0..3 {
+        let to = |plane: f32| (f64::from(plane) - eye[axis]) / ray[axis];
+        let (a, b) = (to(aabb.min[axis]), to(aabb.max[axis]));
+        if a.min(b) > enter {
+            enter = a.min(b);
+            face = DVec3::ZERO;
+            face[axis] = if ray[axis] > 0.0 { -1.0 } else { 1.0 };
+        }
+        leave = leave.min(a.max(b));
+    }
+    (enter < leave && face != DVec3::ZERO).then_some((enter, face))
 }

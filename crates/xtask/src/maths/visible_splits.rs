@@ -8,7 +8,7 @@ use shadowfit::settings::{SplitScheme, Stabilise};
 use shadowfit::{Aabb, DepthConvention, FitInput, FittedMaps, PerspectiveCamera};
 
 use super::canvas::{BLUE, Canvas, Frame, GREY, INK, RED, SKY, Side, fill, stroke};
-use super::scene::{boxes, plain_maps};
+use super::scene::{Visible, boxes, plain_maps, visible};
 use super::splits::{MAPS, cascades};
 
 /// Where the sun travels.
@@ -88,53 +88,19 @@ pub(super) fn draw() -> Result<String> {
 
 /// What the camera sees of the boxes, sunny sides only.
 fn look_around(camera: &PerspectiveCamera) -> Result<Vec<Sample>> {
-    let frustum = camera.frustum()?;
-    let corner = |i: usize| frustum.corners[i + 4].as_dvec3() / f64::from(FAR);
-    let pixel = (corner(0).y - corner(3).y).abs() / f64::from(PICTURE.y);
-    let mut samples = Vec::new();
-    for i in 0..SAMPLES.0 * SAMPLES.1 {
-        let (x, y) = (f64::from(i % SAMPLES.0) + 0.5, f64::from(i / SAMPLES.0) + 0.5);
-        let (x, y) = (x / f64::from(SAMPLES.0), y / f64::from(SAMPLES.1));
-        let across = (corner(1) - corner(0)) * x;
-        let ray = corner(0) + across + (corner(3) - corner(0)) * y;
-        let Some((depth, normal)) = SQUARE.iter().filter_map(|aabb| hit(camera.eye, ray, aabb)).reduce(nearer) else {
-            continue;
-        };
-        if depth >= f64::from(FAR) || normal.dot(LIGHT.as_dvec3()) >= 0.0 {
-            continue;
-        }
-        // What one pixel to the right and one down are on the surface.
-        let step = |edge: DVec3, pixels: u32| {
-            let moved = ray + edge / f64::from(pixels);
-            let other = moved * (normal.dot(ray) * depth / normal.dot(moved));
-            (other - ray * depth).as_vec3()
-        };
-        let (right, down) = (step(corner(1) - corner(0), PICTURE.x), step(corner(3) - corner(0), PICTURE.y));
-        let texel = f64::from(needed_texel(right, down, LIGHT.normalize()));
-        let class = libm::log2(depth * pixel / texel) as f32;
-        samples.push(Sample { point: ray * depth, normal: normal.as_vec3(), depth: depth as f32, class });
-    }
-    Ok(samples)
-}
-
-fn nearer(a: (f64, DVec3), b: (f64, DVec3)) -> (f64, DVec3) {
-    if b.0 < a.0 { b } else { a }
-}
-
-/// Share of a ray at which it meets a box, and the face's normal.
-fn hit(eye: DVec3, ray: DVec3, aabb: &Aabb) -> Option<(f64, DVec3)> {
-    let (mut enter, mut leave, mut face) = (0.0_f64, f64::MAX, DVec3::ZERO);
-    for axis in 0..3 {
-        let to = |plane: f32| (f64::from(plane) - eye[axis]) / ray[axis];
-        let (a, b) = (to(aabb.min[axis]), to(aabb.max[axis]));
-        if a.min(b) > enter {
-            enter = a.min(b);
-            face = DVec3::ZERO;
-            face[axis] = if ray[axis] > 0.0 { -1.0 } else { 1.0 };
-        }
-        leave = leave.min(a.max(b));
-    }
-    (enter < leave && face != DVec3::ZERO).then_some((enter, face))
+    let light = LIGHT.normalize();
+    let pixel = 2.0 * libm::tan(f64::from(camera.fov_y) * 0.5) / f64::from(PICTURE.y);
+    let count = DVec2::new(f64::from(SAMPLES.0), f64::from(SAMPLES.1));
+    let places = (0..SAMPLES.0 * SAMPLES.1)
+        .map(|i| (DVec2::new(f64::from(i % SAMPLES.0), f64::from(i / SAMPLES.0)) + 0.5) / count);
+    let lit = visible(camera, &SQUARE, places, PICTURE)?.into_iter().filter(|seen| seen.normal.dot(LIGHT) < 0.0);
+    Ok(lit
+        .map(|Visible { point, normal, depth, right, down }| {
+            let texel = f64::from(needed_texel(right, down, light));
+            let class = libm::log2(depth * pixel / texel) as f32;
+            Sample { point: point.as_dvec3(), normal, depth: depth as f32, class }
+        })
+        .collect())
 }
 
 /// The 95% quantile of pixels per texel over the samples.

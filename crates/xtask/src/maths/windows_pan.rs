@@ -1,0 +1,106 @@
+//! A turning camera: windows beside slices that are as sharp, and beside slices that stand as still.
+
+use anyhow::{Context, Result};
+use shadowfit::diagnostics::pixels_per_texel;
+use shadowfit::glam::{DVec2, DVec3, IVec2};
+use shadowfit::scroll::Scroll;
+use shadowfit::{DepthConvention, Technique};
+
+use super::canvas::{Canvas, Frame, GREY, INK, RED, Side, stroke};
+use super::scene::{Look, draw_box, hull};
+use super::splits::MAPS;
+use super::windows::{PICTURE, STREET, Step, Walk, eye};
+
+/// Frames of the turn, after as many that the camera stands still.
+const FRAMES: usize = 60;
+
+/// Frames from one that is drawn to the next.
+const DRAWN: usize = 30;
+
+/// Turn of the camera from frame to frame, in degrees.
+const TURN: f64 = 0.25;
+
+/// Side of a panel in pixels.
+const SIDE: f64 = 216.0;
+
+/// Metres up to which the panels show the plane.
+const REACH: f64 = 52.0;
+
+pub(super) fn draw() -> Result<String> {
+    let mut canvas = Canvas::new(388.0, "A turning camera's windows, and slices that are as sharp or stand as still");
+    for (i, preset) in ["windows-4", "focused-4", "stable-4"].into_iter().enumerate() {
+        let technique = Technique::preset(preset).context("no such preset")?;
+        let steps = turn(&technique)?;
+        let left = 20.0 + 232.0 * i as f64;
+        let (low, high) = (DVec2::new(left, 38.0), DVec2::new(left + SIDE, 38.0 + SIDE));
+        let look = steps[0].look();
+        let middle = DVec2::new(-3.0, 20.0);
+        let frame = Frame::scaled(middle, (low + high) * 0.5, SIDE / REACH);
+        canvas.clipped(low, high, |canvas| panel(canvas, &steps, &look, &frame));
+        canvas.rectangle(low, high, stroke(GREY, 1.0));
+        canvas.bold(DVec2::new(left, 26.0), Side::Right, INK, preset);
+        figures(&mut canvas, &technique, &steps, DVec2::new(left, 38.0 + SIDE))?;
+    }
+    let note = "The camera turns by 15° in 60 frames; thin: the maps of frames 0 and 30, thick: of frame 60";
+    canvas.small(DVec2::new(20.0, 374.0), Side::Right, INK, note);
+    Ok(canvas.finish())
+}
+
+/// The frames of the turn.
+fn turn(technique: &Technique) -> Result<Vec<Step>> {
+    let mut walk = Walk::new(technique);
+    let heading = |frame: usize| TURN * (frame.saturating_sub(FRAMES) as f64 - FRAMES as f64 * 0.5);
+    (0..=2 * FRAMES).map(|frame| walk.step(heading(frame))).skip(FRAMES).collect()
+}
+
+/// The maps of some frames on top of each other.
+fn panel(canvas: &mut Canvas, steps: &[Step], look: &Look, frame: &Frame) {
+    for aabb in &STREET[1..] {
+        draw_box(canvas, frame, &look.aabb(aabb));
+    }
+    for (i, step) in steps.iter().enumerate().step_by(DRAWN) {
+        let width = if i == FRAMES { 2.8 } else { 1.1 };
+        for (map, colour) in step.maps.iter().zip(MAPS).rev() {
+            canvas.polygon(hull(&look.map(&map.fit)).into_iter().map(|p| frame.at(p)), stroke(colour, width));
+        }
+    }
+    eye(canvas, frame.at(look.relative(DVec3::ZERO)));
+}
+
+/// What became of the maps from frame to frame, and how sharp they are.
+fn figures(canvas: &mut Canvas, technique: &Technique, steps: &[Step], corner: DVec2) -> Result<()> {
+    let pairs = steps.windows(2).flat_map(|pair| pair[0].maps.iter().zip(pair[1].maps.iter()));
+    let scrolls: Vec<Scroll> = pairs.map(|(before, now)| Scroll::between(before, now)).collect();
+    let is_still = |scroll: &&Scroll| !scroll.is_new && scroll.shift == IVec2::ZERO;
+    let lines = [
+        (scrolls.iter().filter(is_still).count(), "stay where they are"),
+        (scrolls.iter().filter(|scroll| !scroll.is_new && scroll.shift != IVec2::ZERO).count(), "move by whole texels"),
+        (scrolls.iter().filter(|scroll| scroll.is_new).count(), "have other texels"),
+    ];
+    for (i, (count, what)) in lines.into_iter().enumerate() {
+        let at = corner + DVec2::new(44.0, 24.0 + 22.0 * i as f64);
+        let share = count as f64 / scrolls.len() as f64 * 100.0;
+        canvas.bold(at, Side::Left, INK, &format!("{share:.0}%"));
+        canvas.label(at + DVec2::new(8.0, 0.0), Side::Right, what);
+    }
+    let at = corner + DVec2::new(44.0, 94.0);
+    canvas.bold(at, Side::Left, RED, &format!("{:.1}", mean(technique, steps)?));
+    canvas.text(at + DVec2::new(8.0, 0.0), Side::Right, RED, "pixels per texel, mean");
+    Ok(())
+}
+
+/// The mean of pixels per texel over the points of the frames that are drawn.
+fn mean(technique: &Technique, steps: &[Step]) -> Result<f64> {
+    let mut pixels: Vec<f64> = Vec::new();
+    for step in steps.iter().step_by(DRAWN) {
+        let clip_from_world = step.camera.clip_from_world(DepthConvention::ZeroToOne);
+        for seen in step.seen.iter().filter(|seen| step.octave(seen).is_some()) {
+            let point = step.camera.eye + seen.point.as_dvec3();
+            let read = step.maps.read(technique, point, seen.depth).context("a point in no map")?;
+            let fit = &step.maps[read.main()].fit;
+            let found = pixels_per_texel(fit, &clip_from_world, PICTURE, seen.point, seen.normal)?;
+            pixels.extend(found.map(|found| f64::from(found.worse_axis)));
+        }
+    }
+    Ok(pixels.iter().sum::<f64>() / pixels.len() as f64)
+}
