@@ -126,7 +126,6 @@ impl Counted {
 }
 
 impl Cells {
-    #[expect(clippy::large_stack_arrays, reason = "24 KiB, for the time of a fit")]
     pub(super) const fn new() -> Self {
         const NONE: PerCell = [0.0; MAX_CELLS];
         Self { x: NONE, y: NONE, half: NONE, per_side: NONE, weight: NONE, cost: NONE, len: 0 }

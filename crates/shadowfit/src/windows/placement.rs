@@ -42,6 +42,7 @@ type Raster = [[f32; ROW]; RASTER];
 pub(super) fn best(cells: &Cells, left: &PerCell, size: Vec2) -> Rect {
     let pitch = size / ACROSS as f32;
     let corner = middle(cells, left) - pitch * (RASTER / 2) as f32;
+    #[expect(clippy::large_stack_arrays, reason = "21 KiB, for the time of a search")]
     let mut sums: Raster = [[0.0; ROW]; RASTER];
     enter(&mut sums, cells, left, (corner, pitch));
     sum_rows(&mut sums, 1);

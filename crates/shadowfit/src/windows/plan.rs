@@ -62,10 +62,6 @@ const MOVE_ON: f32 = 0.3;
 /// Cost of the drawn windows over that of the sought ones up to which no more of them are replaced.
 pub(super) const SERVES: f32 = 1.1;
 
-/// Cost of the drawn windows over that of the sought ones from which on they are replaced at once: the scene is another
-/// one.
-const FAR: f32 = 2.0;
-
 /// Share of the points that every change counts for, at least.
 const FEW: f32 = 0.02;
 
@@ -157,7 +153,6 @@ impl Planner<'_> {
         if cost <= found * most {
             return drawn;
         }
-        let is_far = cost > found * FAR;
         let mut plan = drawn;
         while cost > found * SERVES {
             let readers = self.readers(&plan);
@@ -165,17 +160,17 @@ impl Planner<'_> {
             for (i, readers) in readers.iter().enumerate().take(self.count - 1) {
                 let mut other = plan;
                 (other.steps[i], other.rects[i]) = (sought.steps[i], sought.rects[i]);
-                let is_new = other != plan && self.is_in_order(&other.steps);
+                let is_new = other.steps != plan.steps && self.is_in_order(&other.steps);
                 // What is gained for each point whose texels change.
                 let gain = (cost - self.cost(&other)) / (readers + FEW);
-                if is_new && gain > 0.0 && best.is_none_or(|(most, _)| gain > most) {
+                if is_new && best.is_none_or(|(most, _)| gain > most) {
                     best = Some((gain, other));
                 }
             }
-            // No single one may gain, or sizes would cross.
-            let Some((_, other)) = best else { return *sought };
+            // One that gains nothing alone makes way for others; places are looked after by `keep`.
+            let Some((_, other)) = best else { return plan };
             plan = other;
-            if !at_once && !is_far {
+            if !at_once {
                 return plan;
             }
             cost = self.cost(&plan);
