@@ -146,7 +146,8 @@ impl Planner<'_> {
     }
 
     /// The drawn windows, while they cost no more than the sought ones times `most`; else some of them replaced: as few
-    /// as make them nearly as good where `at_once`, else the one that gains most.
+    /// as make them nearly as good where `at_once`, else the one of other texels that gains most, or loses least: it
+    /// makes way for others.
     pub(super) fn follow(&self, drawn: Plan, sought: &Plan, most: f32, at_once: bool) -> Plan {
         let found = self.cost(sought);
         let mut cost = self.cost(&drawn);
@@ -160,15 +161,15 @@ impl Planner<'_> {
             for (i, readers) in readers.iter().enumerate().take(self.count - 1) {
                 let mut other = plan;
                 (other.steps[i], other.rects[i]) = (sought.steps[i], sought.rects[i]);
-                let is_new = other.steps != plan.steps && self.is_in_order(&other.steps);
+                let is_new = if at_once { other != plan } else { other.steps != plan.steps };
                 // What is gained for each point whose texels change.
                 let gain = (cost - self.cost(&other)) / (readers + FEW);
-                if is_new && best.is_none_or(|(most, _)| gain > most) {
+                let may_be = is_new && self.is_in_order(&other.steps) && (gain > 0.0 || !at_once);
+                if may_be && best.is_none_or(|(most, _)| gain > most) {
                     best = Some((gain, other));
                 }
             }
-            // One that gains nothing alone makes way for others; places are looked after by `keep`.
-            let Some((_, other)) = best else { return plan };
+            let Some((_, other)) = best else { return if at_once { *sought } else { plan } };
             plan = other;
             if !at_once {
                 return plan;
