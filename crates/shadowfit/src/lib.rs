@@ -58,7 +58,7 @@
 //! [`Technique::default`] is the one to begin with: [windows](fits::windows), which are sharp and hardly
 //! ever make an edge crawl. Give it the [grid of need](need) of the frame before, which `shadowfit-wgpu`
 //! counts in the depth buffer by a compute pass. Without a grid the fit looks through the boxes in each
-//! frame: texels are a sixth wider, and with a thousand boxes a fit takes three times as long or more.
+//! frame: texels are a third wider, and with a thousand boxes a fit takes three times as long or more.
 //! [`PRESETS`] has other techniques by name, each with a line that says when to take it. The repository's
 //! `docs/MATHS.md` derives every fit, with pictures.
 //!
