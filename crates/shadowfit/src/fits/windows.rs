@@ -29,9 +29,11 @@
 //! sum small. Since t and s are separate factors, the best place for a window of a given size is where
 //! the sum of s^(-3/2) over the points inside, those in finer windows left out, is greatest, whatever
 //! its texels; all places are compared by sums over a raster. The sizes are searched one at a time,
-//! frame after frame, in a plan that nobody sees. The windows that are drawn move as little as they can,
-//! when they hold less than 98.5% of what they could, and one of them is replaced by its counterpart
-//! in the plan when the plan is better by a quarter in texels.
+//! frame after frame, in a plan that nobody sees, and in a second one that begins anew again and again. The
+//! windows that are drawn move as little as they can, when they hold less than 98.5% of what they could, and
+//! one of them is replaced by its counterpart in the plan when they cost 1.35 times as much as the plan, or 1.1
+//! times for a second at 60 frames a second. Only in the frame in which it becomes known what is visible may
+//! more of them be replaced at once.
 //!
 //! **Whole.** The last window holds the boxes of all receivers in view, and every window's depth range
 //! holds all receivers' and casters' boxes over it, seen or not: what stands still need not be drawn

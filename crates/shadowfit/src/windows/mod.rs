@@ -57,8 +57,8 @@ const ROUNDS_AT_FIRST: u32 = 3;
 /// Windows for each change that is tried in a frame.
 const WINDOWS_PER_CHANGE: u32 = 4;
 
-/// What the ratio of [`plan::SERVES`] is more for windows of which one has just been replaced, and the frames after which it is no more:
-/// changes are rare while the scene changes, and nothing is left as it is for ever.
+/// What the ratio of [`plan::SERVES`] is more for windows of which one has just been replaced, and the frames after
+/// which it is no more: changes are rare while the scene changes, and nothing is left as it is for ever.
 const SERVES_LONGER: f32 = 0.25;
 const OLD: u8 = 60;
 
