@@ -103,23 +103,24 @@ fn lights_that_step_go_on() {
 
 #[test]
 fn a_fitter_that_was_saved_goes_on_as_the_one_that_was_not() {
-    let settings = Technique::preset("calm-4").unwrap();
-    let mut storage = [DVec2::ZERO; Workspace::required(0, 4)];
-    let mut fit = |fitter: &mut MapFitter, frame: u8| {
-        let mut camera = camera();
-        camera.eye.x += f64::from(frame) * 0.3;
-        let views: [ViewFrustum; 1] = [camera.frustum().unwrap()];
-        fitter.fit(&FitInput::new(&views, DIRECTION), &settings, &mut Workspace::new(&mut storage)).unwrap()
-    };
-    let mut fitter = MapFitter::new();
-    for frame in 0..3 {
-        survives(&fit(&mut fitter, frame));
+    for settings in [Technique::preset("calm-4").unwrap(), Technique::default()] {
+        let mut storage = [DVec2::ZERO; Workspace::required(0, 4)];
+        let mut fit = |fitter: &mut MapFitter, frame: u8| {
+            let mut camera = camera();
+            camera.eye.x += f64::from(frame) * 0.3;
+            let views: [ViewFrustum; 1] = [camera.frustum().unwrap()];
+            fitter.fit(&FitInput::new(&views, DIRECTION), &settings, &mut Workspace::new(&mut storage)).unwrap()
+        };
+        let mut fitter = MapFitter::new();
+        for frame in 0..3 {
+            survives(&fit(&mut fitter, frame));
+        }
+        let mut other = read_back(&fitter);
+        for frame in 3..12 {
+            assert_eq!(fit(&mut fitter, frame), fit(&mut other, frame), "frame {frame}");
+        }
+        assert_ne!(fit(&mut MapFitter::new(), 11), fit(&mut fitter, 11), "the state matters");
     }
-    let mut other = read_back(&fitter);
-    for frame in 3..12 {
-        assert_eq!(fit(&mut fitter, frame), fit(&mut other, frame), "frame {frame}");
-    }
-    assert_ne!(fit(&mut MapFitter::new(), 11), fit(&mut fitter, 11), "the state matters");
 }
 
 #[test]
