@@ -298,7 +298,7 @@ fn uniform_buffer(device: &wgpu::Device, size: usize) -> wgpu::Buffer {
 fn comparison_sampler(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> wgpu::Sampler {
     let filter = match descriptor.filter {
         FilterKind::Point => wgpu::FilterMode::Nearest,
-        FilterKind::Hardware2x2 | FilterKind::Pcf3x3 | FilterKind::Pcf5x5 => wgpu::FilterMode::Linear,
+        _ => wgpu::FilterMode::Linear,
     };
     device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("shadowfit comparison"),

@@ -44,18 +44,18 @@ pub fn culling_wgsl(group: u32) -> String {
 /// `group`; no derivatives.
 pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, group: u32) -> String {
     let look_up = match (descriptor.format, descriptor.filter) {
-        (MapFormat::Depth32Float, _) => include_str!("shaders/compare_depth.wgsl").to_owned(),
-        (MapFormat::R32Float, FilterKind::Point) => {
+        (MapFormat::Depth32Float | MapFormat::Depth16Unorm, _) => include_str!("shaders/compare_depth.wgsl").to_owned(),
+        (_, FilterKind::Point) => {
             [include_str!("shaders/compare_float.wgsl"), include_str!("shaders/compare_float_point.wgsl")].concat()
         }
-        (MapFormat::R32Float, _) => {
+        (_, _) => {
             [include_str!("shaders/compare_float.wgsl"), include_str!("shaders/compare_float_2x2.wgsl")].concat()
         }
     };
     let filter = match descriptor.filter {
         FilterKind::Point | FilterKind::Hardware2x2 => include_str!("shaders/filter_single.wgsl"),
         FilterKind::Pcf3x3 => include_str!("shaders/filter_tent_3x3.wgsl"),
-        FilterKind::Pcf5x5 => include_str!("shaders/filter_tent_5x5.wgsl"),
+        _ => include_str!("shaders/filter_tent_5x5.wgsl"),
     };
     let closer = if descriptor.depth == DepthConvention::Reversed { ">=" } else { "<=" };
     [include_str!("shaders/receiver.wgsl"), &look_up, filter, &choice(descriptor)]

@@ -217,6 +217,7 @@ impl BiasSettings {
             slope: 0.0,
             normal_offset: 0.0,
             receiver_plane: one_comparison.taps + HARDWARE_SNAP,
+            depth_steps: 1.0,
         }
     }
 
@@ -228,6 +229,7 @@ impl BiasSettings {
             slope: 0.0,
             normal_offset: automatic_normal_offset(reach(filter)),
             receiver_plane: 0.0,
+            depth_steps: 1.0,
         }
     }
 }

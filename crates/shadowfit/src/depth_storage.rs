@@ -23,7 +23,10 @@ pub enum DepthStorage {
 impl From<MapFormat> for DepthStorage {
     fn from(format: MapFormat) -> Self {
         match format {
-            MapFormat::Depth32Float | MapFormat::R32Float => Self::Float32,
+            MapFormat::Depth32Float | MapFormat::R32Float | MapFormat::Rgba8Packed => Self::Float32,
+            MapFormat::Depth16Unorm => Self::Unorm16,
+            MapFormat::R16Float => Self::Float16,
+            MapFormat::R8Grey => Self::Unorm8,
         }
     }
 }

@@ -140,6 +140,9 @@ pub struct FitSettings {
     /// [`FitKind::XnaSample`] ignores it, and so does [`FitKind::Windows`], whose texels have a shape that
     /// the light sets. Default: `f32::MAX`, no limit.
     pub max_texel_ratio: f32,
+    /// Least width of a texel, in metres; 0 for no limit. A map that would have finer ones is made larger.
+    /// [`FitKind::XnaSample`] ignores it. Default: 0.
+    pub least_texel: f32,
     /// Width and height of the map, in texels. Default: 2048 × 2048, as Bevy and the cascades of
     /// three.js have it.
     pub resolution: UVec2,
@@ -159,6 +162,7 @@ impl Default for FitSettings {
             caster_extension: 50.0,
             up: Vec3::Y,
             max_texel_ratio: f32::MAX,
+            least_texel: 0.0,
             resolution: UVec2::splat(2048),
             depth: DepthConvention::ZeroToOne,
         }
@@ -311,6 +315,9 @@ pub struct BiasSettings {
     /// built from it. 0 turns it off. Default: 1 + 1/256; the fraction covers the hardware's
     /// rounding of positions in the map.
     pub receiver_plane: f32,
+    /// Constant depth bias in steps of the map's format, for formats coarser than a 32-bit float: one
+    /// covers what storing and comparing a depth can round. Default: 1.
+    pub depth_steps: f32,
 }
 
 impl Default for BiasSettings {
@@ -333,11 +340,82 @@ pub enum FilterKind {
     /// Tent of 5×5 hardware look-ups (36 texels), by nine of them. The default.
     #[default]
     Pcf5x5,
+    /// Tent of 7×7 hardware look-ups (64 texels), by sixteen of them.
+    Pcf7x7,
+    /// 8 hardware look-ups spread evenly over a disc of the technique's [softness](Softness), turned from
+    /// pixel to pixel (H. Vogel, "A better way to construct the sunflower head", 1979).
+    Vogel8,
+    /// The same with 16 look-ups.
+    Vogel16,
+    /// The same with 32 look-ups.
+    Vogel32,
+    /// A disc as wide as the penumbra of the casters above the point, by the angle of the sun
+    /// (percentage-closer soft shadows: R. Fernando, 2005). It needs the distance to the caster, so
+    /// maps cannot be depth-clamped.
+    Pcss,
 }
 
 impl FilterKind {
     /// All filters, the narrowest first.
-    pub const ALL: [Self; 4] = [Self::Point, Self::Hardware2x2, Self::Pcf3x3, Self::Pcf5x5];
+    pub const ALL: [Self; 9] = [
+        Self::Point,
+        Self::Hardware2x2,
+        Self::Pcf3x3,
+        Self::Pcf5x5,
+        Self::Pcf7x7,
+        Self::Vogel8,
+        Self::Vogel16,
+        Self::Vogel32,
+        Self::Pcss,
+    ];
+
+    /// Whether its width is the technique's [softness](Softness), and not a number of texels.
+    pub const fn is_soft(self) -> bool {
+        matches!(self, Self::Vogel8 | Self::Vogel16 | Self::Vogel32 | Self::Pcss)
+    }
+}
+
+/// How wide the filters are whose width is no number of texels ([`FilterKind::is_soft`]).
+///
+/// It is the same across the light for all maps, so that penumbrae agree where one map meets the
+/// next, and stay when a fit changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+pub struct Softness {
+    /// What the width follows from. Default: the angle of the sun as seen from the earth.
+    pub radius: SoftRadius,
+    /// Least radius of a filter, in texels, 0..=64: a finer penumbra than a map can show is made this wide.
+    /// Default: 1.
+    pub floor: f32,
+    /// Greatest radius of a filter, in texels, 1..=64. Maps have no finer texels than this allows
+    /// ([`Technique::least_texel`](crate::Technique::least_texel)), so that no map needs a huge filter.
+    /// Default: 16.
+    pub ceiling: f32,
+}
+
+/// What the width of a [soft filter](Softness) follows from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum SoftRadius {
+    /// Radius of the penumbra across the light, in metres.
+    Metres(f32),
+    /// Angular radius of the sun, in radians.
+    SunAngle(f32),
+}
+
+/// Angular radius of the sun as seen from the earth, in radians: half of 0.533°.
+pub const SUN_RADIUS: f32 = 0.004_65;
+
+impl Default for SoftRadius {
+    fn default() -> Self {
+        Self::SunAngle(SUN_RADIUS)
+    }
+}
+
+impl Default for Softness {
+    fn default() -> Self {
+        Self { radius: SoftRadius::default(), floor: 1.0, ceiling: 16.0 }
+    }
 }
 
 /// Texture format that stores the depths.
@@ -347,9 +425,30 @@ pub enum MapFormat {
     /// 32-bit float depth attachment, compared by the sampler. The default.
     #[default]
     Depth32Float,
+    /// 16-bit depth attachment, compared by the sampler: half the memory, and steps of 1/65,535 of the
+    /// map's depth range.
+    Depth16Unorm,
     /// One 32-bit float colour channel with a depth buffer of its own, compared by hand (the XNA
     /// sample's form).
     R32Float,
+    /// The same with a 16-bit float, of 11 significant bits: the sample's second choice.
+    R16Float,
+    /// The bits of a 32-bit float in the four channels of an 8-bit colour: the sample's third choice. It
+    /// comes back bit for bit.
+    Rgba8Packed,
+    /// Depth as one 8-bit grey: 256 steps over the map's depth range, to show why that is too coarse.
+    R8Grey,
+}
+
+impl MapFormat {
+    /// All formats, depth attachments first.
+    pub const ALL: [Self; 6] =
+        [Self::Depth32Float, Self::Depth16Unorm, Self::R32Float, Self::R16Float, Self::Rgba8Packed, Self::R8Grey];
+
+    /// Whether it is a depth attachment, which samplers compare; others are colours, compared by hand.
+    pub const fn is_depth(self) -> bool {
+        matches!(self, Self::Depth32Float | Self::Depth16Unorm)
+    }
 }
 
 setters!(FitSettings {
@@ -361,6 +460,7 @@ setters!(FitSettings {
     with_up up: Vec3,
     with_caster_extension caster_extension: f32,
     with_max_texel_ratio max_texel_ratio: f32,
+    with_least_texel least_texel: f32,
     with_resolution resolution: UVec2,
     with_depth depth: DepthConvention,
 });
@@ -377,6 +477,13 @@ setters!(BiasSettings {
     with_slope slope: f32,
     with_normal_offset normal_offset: f32,
     with_receiver_plane receiver_plane: f32,
+    with_depth_steps depth_steps: f32,
+});
+
+setters!(Softness {
+    with_radius radius: SoftRadius,
+    with_floor floor: f32,
+    with_ceiling ceiling: f32,
 });
 
 pub(crate) use setters;

@@ -5,7 +5,7 @@
 use crate::bias::reach;
 use crate::settings::{
     BiasSettings, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapChoice, MapFormat, MapOverride,
-    NeedSource, ReceiverSource, SplitScheme, Stabilise, setters,
+    NeedSource, ReceiverSource, Softness, SplitScheme, Stabilise, setters,
 };
 use glam::UVec2;
 
@@ -54,6 +54,11 @@ pub struct Technique {
     pub receivers: ReceiverSource,
     /// Filter of the look-up. Default: [`FilterKind::Pcf5x5`].
     pub filter: FilterKind,
+    /// Width of the filters that are [soft](FilterKind::is_soft). Default: [`Softness::default`].
+    pub softness: Softness,
+    /// Share of the shadow distance over which shadows fade out toward its end, 0..=1. Only where
+    /// [`FitSettings::max_distance`] is set. Default: 0.
+    pub fade: f32,
     /// Biases of the look-up. Default: [`BiasSettings::automatic`] for the default filter.
     pub bias: BiasSettings,
     /// What windows are placed by. Default: [`NeedSource::LastFrame`].
@@ -77,6 +82,8 @@ impl Default for Technique {
             overrides: [MapOverride::default(); MAX_MAPS],
             receivers: ReceiverSource::default(),
             filter: FilterKind::default(),
+            softness: Softness::default(),
+            fade: 0.0,
             bias: BiasSettings::default(),
             need: NeedSource::default(),
             format: MapFormat::default(),
@@ -97,6 +104,8 @@ setters!(Technique {
     with_receivers receivers: ReceiverSource,
     with_need need: NeedSource,
     with_format format: MapFormat,
+    with_softness softness: Softness,
+    with_fade fade: f32,
 });
 
 impl Technique {

@@ -121,6 +121,9 @@ pub const fn reach(filter: FilterKind) -> f32 {
         FilterKind::Hardware2x2 => Reach::HARDWARE_2X2.taps,
         FilterKind::Pcf3x3 => Reach::kernel(3).taps,
         FilterKind::Pcf5x5 => Reach::kernel(5).taps,
+        FilterKind::Pcf7x7 => Reach::kernel(7).taps,
+        // Their look-ups, without the disc that they are spread over.
+        FilterKind::Vogel8 | FilterKind::Vogel16 | FilterKind::Vogel32 | FilterKind::Pcss => Reach::HARDWARE_2X2.taps,
     }
 }
 

@@ -11,7 +11,7 @@ use super::Technique;
 use crate::DepthConvention;
 use crate::settings::{
     BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, MapFormat, MapOverride,
-    NeedSource, ReceiverSource, RectangleKind, SplitScheme, Stabilise,
+    NeedSource, ReceiverSource, RectangleKind, SoftRadius, Softness, SplitScheme, Stabilise,
 };
 
 impl Technique {
@@ -141,6 +141,8 @@ impl Expression for Technique {
             overrides,
             receivers,
             filter,
+            softness,
+            fade,
             bias,
             need,
             format,
@@ -158,6 +160,8 @@ impl Expression for Technique {
             .field("overrides", overrides, &default.overrides)
             .field("receivers", receivers, &default.receivers)
             .field("filter", filter, &default.filter)
+            .field("softness", softness, &default.softness)
+            .field("fade", fade, &default.fade)
             .field("bias", bias, &default.bias)
             .field("need", need, &default.need)
             .field("format", format, &default.format)
@@ -177,6 +181,7 @@ impl Expression for FitSettings {
             caster_extension,
             up,
             max_texel_ratio,
+            least_texel,
             resolution,
             depth,
         } = self;
@@ -191,6 +196,7 @@ impl Expression for FitSettings {
             .field("caster_extension", caster_extension, &default.caster_extension)
             .field("up", up, &default.up)
             .field("max_texel_ratio", max_texel_ratio, &default.max_texel_ratio)
+            .field("least_texel", least_texel, &default.least_texel)
             .field("resolution", resolution, &default.resolution)
             .field("depth", depth, &default.depth)
             .end()
@@ -212,14 +218,36 @@ impl Expression for HoldSettings {
 
 impl Expression for BiasSettings {
     fn write(&self, code: &mut Code) -> fmt::Result {
-        let Self { constant, slope, normal_offset, receiver_plane } = self;
+        let Self { constant, slope, normal_offset, receiver_plane, depth_steps } = self;
         let default = Self::default();
         code.fields("BiasSettings")
             .field("constant", constant, &default.constant)
             .field("slope", slope, &default.slope)
             .field("normal_offset", normal_offset, &default.normal_offset)
             .field("receiver_plane", receiver_plane, &default.receiver_plane)
+            .field("depth_steps", depth_steps, &default.depth_steps)
             .end()
+    }
+}
+
+impl Expression for Softness {
+    fn write(&self, code: &mut Code) -> fmt::Result {
+        let Self { radius, floor, ceiling } = self;
+        let default = Self::default();
+        code.fields("Softness")
+            .field("radius", radius, &default.radius)
+            .field("floor", floor, &default.floor)
+            .field("ceiling", ceiling, &default.ceiling)
+            .end()
+    }
+}
+
+impl Expression for SoftRadius {
+    fn write(&self, code: &mut Code) -> fmt::Result {
+        match self {
+            Self::Metres(metres) => call("SoftRadius::Metres", metres, code),
+            Self::SunAngle(radians) => call("SoftRadius::SunAngle", radians, code),
+        }
     }
 }
 

@@ -84,11 +84,8 @@ pub(super) const FORMAT: Parameter = Parameter {
                        sample has it.",
             },
         ],
-        read: |s| match s.technique.format {
-            MapFormat::Depth32Float => 0,
-            MapFormat::R32Float => 1,
-        },
-        write: |s, index| s.technique.format = if index == 0 { MapFormat::Depth32Float } else { MapFormat::R32Float },
+        read: |s| MapFormat::ALL.iter().position(|format| *format == s.technique.format).unwrap_or(0),
+        write: |s, index| s.technique.format = MapFormat::ALL.get(index).copied().unwrap_or_default(),
     }),
     inert: always_active,
 };
