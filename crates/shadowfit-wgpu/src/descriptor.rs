@@ -1,7 +1,7 @@
 //! What a shadow map is made of: size, count, format, filter, choice of the map and depth convention.
 
 use shadowfit::glam::UVec2;
-use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MAX_BLEND, MAX_MAPS, MapChoice, MapFormat};
+use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MAX_BLEND, MAX_MAPS, MapChoice, MapFormat, Softness};
 use shadowfit::{DepthConvention, Technique};
 
 use crate::ShadowMapError;
@@ -20,6 +20,8 @@ pub struct ShadowMapDescriptor {
     pub format: MapFormat,
     /// Filter of the look-up.
     pub filter: FilterKind,
+    /// Width of the filters that are soft.
+    pub softness: Softness,
     /// Which of the maps a point reads.
     pub choice: MapChoice,
     /// Texels over which a map that is read by coverage is blended into the next coarser one, inward from the filter's
@@ -50,6 +52,7 @@ impl From<&Technique> for ShadowMapDescriptor {
             maps: technique.count,
             format: technique.format,
             filter: technique.filter,
+            softness: technique.softness,
             choice: technique.map_choice(),
             blend: technique.blend,
             depth: technique.fit.depth,

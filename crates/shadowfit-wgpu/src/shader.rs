@@ -48,9 +48,7 @@ pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, group: u32) -> String {
         (_, FilterKind::Point) => {
             [include_str!("shaders/compare_float.wgsl"), include_str!("shaders/compare_float_point.wgsl")].concat()
         }
-        (_, _) => {
-            [include_str!("shaders/compare_float.wgsl"), include_str!("shaders/compare_float_2x2.wgsl")].concat()
-        }
+        (_, _) => [include_str!("shaders/compare_float.wgsl"), include_str!("shaders/compare_float_2x2.wgsl")].concat(),
     };
     let filter = match descriptor.filter {
         FilterKind::Point | FilterKind::Hardware2x2 => include_str!("shaders/filter_single.wgsl"),

@@ -160,6 +160,7 @@ pub mod params;
 pub mod presets;
 pub mod scroll;
 pub mod settings;
+pub mod softness;
 pub mod tool;
 pub mod verify;
 

@@ -392,6 +392,7 @@ fn check(input: &FitInput, technique: &Technique) -> Result<(Rules, Light), FitE
             return Err(FitError::NearNotBelowFar { near, far });
         }
     }
+    technique.softness.checked()?;
     let BiasSettings { constant, slope, normal_offset, receiver_plane, depth_steps: _ } = technique.bias;
     for bias in [constant, slope, normal_offset, receiver_plane] {
         checks::finite("a bias", f64::from(bias))?;
