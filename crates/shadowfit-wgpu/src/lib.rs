@@ -29,19 +29,24 @@
 //! # Ok(()) }
 //! ```
 
+mod cache;
 mod descriptor;
 mod error;
+mod layers;
 mod map;
 mod map_fit;
 pub mod need;
 mod shader;
+mod sun_shadows;
 mod sweep;
 mod uniform;
 
+pub use cache::{Casters, UpdateSchedule};
 pub use descriptor::{RESOLUTIONS, ShadowMapDescriptor};
 pub use error::ShadowMapError;
 pub use map::ShadowMap;
 pub use map_fit::{MapFit, MapView};
 pub use shader::{caster_wgsl, culling_wgsl, receiver_wgsl};
 pub use shadowfit::settings::MAX_MAPS;
+pub use sun_shadows::{ShadowPass, ShadowPiece, SunFrame, SunShadows, SunShadowsError};
 pub use uniform::{CasterUniform, CullingUniform, MapUniform, ReceiverUniform};

@@ -189,6 +189,7 @@ mod rectangle;
 mod rule;
 mod splits;
 mod technique;
+mod texel_rect;
 mod view;
 mod volume;
 mod windows;

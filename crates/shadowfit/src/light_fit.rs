@@ -198,6 +198,13 @@ impl LightFit {
         (min, max)
     }
 
+    /// Centre and half extents in light space of a box relative to [`Self::origin`], from its own, in f64.
+    pub(crate) fn project_box(&self, centre: DVec3, half: DVec3) -> (DVec3, DVec3) {
+        let m = &self.light_from_world;
+        let columns = [m.x_axis, m.y_axis, m.z_axis].map(|column| column.truncate().as_dvec3().abs());
+        (self.project(self.origin + centre), columns[0] * half.x + columns[1] * half.y + columns[2] * half.z)
+    }
+
     /// Light space from an absolute world position, in f64.
     fn project(&self, point: DVec3) -> DVec3 {
         let m = &self.light_from_world;

@@ -14,6 +14,8 @@
 //!   └───────────┴──┘
 //! ```
 //!
+//! The kept texels stay where they are stored: the map [wraps around](StoredRect) in its layer.
+//!
 //! A shifted raster is not bit-equal to a fresh one: the map's translation is rounded to f32 anew
 //! in each frame, which moves edges by up to 0.005 of a texel. Where that matters, [`Tiles`] are
 //! drawn instead: the projection of each never changes, is relative to an origin of its own, and
@@ -22,6 +24,8 @@
 //! Kept texels must have been drawn with all casters over the map
 //! ([`CasterVolume::of_map`](crate::CasterVolume::of_map)): a swept volume leaves out those that
 //! cast no shadow into the view of **that** frame.
+
+mod wrap;
 
 use core::ops::Range;
 
@@ -32,35 +36,36 @@ use crate::grid::MAX_LINE;
 use crate::volume::{Constraint, Volume};
 use crate::{FitError, FittedMap, LightFit, checks};
 
+pub use self::wrap::StoredRect;
 pub use crate::grid::GridAnchor;
-
-/// A rectangle of texels. Texture rows count downward from the top, as in
-/// [`uv_from_world`](LightFit::uv_from_world).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct TexelRect {
-    /// Its left top texel.
-    pub min: UVec2,
-    /// Its width and height, in texels.
-    pub size: UVec2,
-}
+pub use crate::texel_rect::TexelRect;
 
 /// How a map follows from the one before it.
 ///
+/// Texels stay where they are stored, and what comes in takes the place of what left
+/// ([`StoredRect`]):
+///
 /// ```
-/// # use shadowfit::scroll::Scroll;
+/// # use shadowfit::glam::UVec2;
+/// # use shadowfit::scroll::{Scroll, StoredRect};
 /// # use shadowfit::FittedMap;
-/// # fn draw_all() {} fn copy_within_the_map(_: i32, _: i32) {} fn draw_in(_: u32, _: u32, _: u32, _: u32) {}
-/// fn draw_static_casters(before: &FittedMap, now: &FittedMap) {
+/// # fn clear_and_draw_all() {} fn clear_and_draw(_: StoredRect) {}
+/// /// Draws the static casters, and returns the wrap that the look-up adds to its texels.
+/// fn draw_static_casters(before: &FittedMap, now: &FittedMap, wrap_before: UVec2) -> UVec2 {
 ///     let scroll = Scroll::between(before, now);
+///     let size = now.fit.resolution;
+///     let wrap = scroll.wrap(wrap_before, size);
 ///     if scroll.is_redraw() {
-///         return draw_all();
+///         clear_and_draw_all();
+///     } else {
+///         for piece in scroll.exposed().flat_map(|strip| strip.stored(wrap, size)) {
+///             clear_and_draw(piece); // its `stored` is a scissor rectangle, its `viewport()` begins the viewport
+///         }
 ///     }
-///     copy_within_the_map(scroll.shift.x, scroll.shift.y);
-///     for strip in scroll.exposed() {
-///         draw_in(strip.min.x, strip.min.y, strip.size.x, strip.size.y); // a scissor rectangle
-///     }
+///     wrap
 /// }
-/// # draw_static_casters(&FittedMap::default(), &FittedMap::default());
+/// # let wrap = draw_static_casters(&FittedMap::default(), &FittedMap::default(), UVec2::ZERO);
+/// # assert_eq!(wrap, UVec2::ZERO);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Scroll {

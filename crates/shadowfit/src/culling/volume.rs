@@ -4,6 +4,7 @@ use glam::{DVec3, Vec3, Vec4};
 
 use super::shapes::{Bounds, OrientedBox, ROUNDING, Sphere};
 use crate::settings::CasterPolicy;
+use crate::texel_rect::TexelRect;
 use crate::{Aabb, LightFit};
 
 /// A convex volume that holds casters of one map, as planes: plain data, for the CPU and for
@@ -70,6 +71,26 @@ impl CasterVolume {
         volume.push(far);
         if casters != CasterPolicy::DepthClamp {
             volume.push(near);
+        }
+        volume
+    }
+
+    /// As [`Self::of_map`], of the casters that can be drawn into a part of the map, with a texel around it for the
+    /// rasteriser's rounding.
+    pub fn of_part(fit: &LightFit, casters: CasterPolicy, part: TexelRect) -> Self {
+        let (mut sides, [far, near]) = map_planes(fit);
+        let end = (part.min + part.size).as_dvec2() + 1.0;
+        let (first, size) = (part.min.as_dvec2() - 1.0, fit.resolution.as_dvec2());
+        // Texels that each side moves inward: left, right, bottom, top; rows count downward.
+        let inward = [first.x, size.x - end.x, size.y - end.y, first.y];
+        let texel = fit.texel_size.as_dvec2();
+        for ((side, texels), texel) in sides.iter_mut().zip(inward).zip([texel.x, texel.x, texel.y, texel.y]) {
+            side.w = (f64::from(side.w) - texels * texel) as f32;
+        }
+        let mut volume = Self::everywhere(fit.origin);
+        let near = (casters != CasterPolicy::DepthClamp).then_some(near);
+        for plane in sides.into_iter().chain([far]).chain(near) {
+            volume.push(plane);
         }
         volume
     }

@@ -1,0 +1,271 @@
+//! The static casters' own layers, and how the shown ones are mended from them.
+//!
+//! WebGPU copies depth textures as a whole only, so parts are cleared and mended by drawing: a triangle within a
+//! scissor rectangle, or the outlines of boxes.
+
+use shadowfit::Aabb;
+use shadowfit::scroll::TexelRect;
+
+use crate::cache::{FramePlan, Layer, PassPlan};
+use crate::{ShadowMap, ShadowMapError};
+
+/// Draws into parts of depth maps.
+#[derive(Debug)]
+pub(crate) struct Layers {
+    clear: wgpu::RenderPipeline,
+    fixed: Option<StaticLayers>,
+}
+
+/// Layers of the static casters alone, as many as the shadow map has.
+#[derive(Debug)]
+struct StaticLayers {
+    /// What each is drawn into, and read from.
+    layers: Vec<(wgpu::TextureView, wgpu::BindGroup)>,
+    mend: wgpu::RenderPipeline,
+    mend_boxes: wgpu::RenderPipeline,
+    boxes: wgpu::Buffer,
+}
+
+/// What opens a pass of the plan.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Opening<'a> {
+    pub(crate) map: &'a ShadowMap,
+    pub(crate) plan: &'a FramePlan,
+    /// Bind group that the engine's casters take the map's matrix from.
+    pub(crate) group: u32,
+}
+
+/// Vertices of a box.
+const BOX_VERTICES: u32 = 36;
+
+impl Layers {
+    pub(crate) fn new(device: &wgpu::Device, map: &ShadowMap) -> Self {
+        let module = module(device, &[include_str!("shaders/clear.wgsl")], map);
+        Self { clear: pipeline(device, map, &Shape::new("shadowfit clear", &module, "vs_clear")), fixed: None }
+    }
+
+    /// Whether a device can read depth textures in shaders, as mending needs it: OpenGL cannot.
+    pub(crate) fn can_mend(device: &wgpu::Device) -> bool {
+        device.adapter_info().backend != wgpu::Backend::Gl
+    }
+
+    /// Makes the static casters' layers, if they are not there.
+    pub(crate) fn split(&mut self, device: &wgpu::Device, map: &ShadowMap) -> Result<(), ShadowMapError> {
+        if self.fixed.is_none() {
+            self.fixed = Some(crate::map::caught(device, || StaticLayers::new(device, map))?);
+        }
+        Ok(())
+    }
+
+    /// Uploads what a frame's passes read.
+    pub(crate) fn prepare(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, plan: &FramePlan) {
+        let Some(fixed) = &mut self.fixed else { return };
+        let boxes: &[Aabb] = &plan.boxes;
+        if boxes.is_empty() {
+            return;
+        }
+        if size_of_val(boxes) as u64 > fixed.boxes.size() {
+            fixed.boxes = box_buffer(device, boxes.len().next_power_of_two());
+        }
+        let floats: Vec<[f32; 6]> =
+            boxes.iter().map(|b| [b.min.x, b.min.y, b.min.z, b.max.x, b.max.y, b.max.z]).collect();
+        queue.write_buffer(&fixed.boxes, 0, bytemuck::cast_slice(&floats));
+    }
+
+    /// Opens a pass, and clears and mends what it begins with.
+    pub(crate) fn begin<'encoder>(
+        &self,
+        encoder: &'encoder mut wgpu::CommandEncoder,
+        opening: Opening<'_>,
+        pass: &PassPlan,
+        timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) -> wgpu::RenderPass<'encoder> {
+        let Opening { map, plan, group } = opening;
+        let fixed = self.fixed.as_ref().map(|fixed| &fixed.layers[pass.map]);
+        if pass.layer == Layer::Shown && pass.clears {
+            return map.begin_pass(encoder, pass.map, group, timestamps);
+        }
+        let view = match (pass.layer, fixed) {
+            (Layer::Static, Some((view, _))) => view,
+            _ => map.depth_attachment(pass.map),
+        };
+        let load = if pass.clears { wgpu::LoadOp::Clear(map.far_depth()) } else { wgpu::LoadOp::Load };
+        let mut opened = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("shadowfit map"),
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view,
+                depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            timestamp_writes: timestamps,
+            ..Default::default()
+        });
+        if !pass.cleared.is_empty() {
+            opened.set_pipeline(&self.clear);
+            fill(&mut opened, &plan.rects[pass.cleared.clone()]);
+        }
+        if let Some(fixed) = &self.fixed {
+            fixed.mend(&mut opened, map, plan, pass);
+        }
+        opened.set_bind_group(group, map.caster_group(pass.map), &[]);
+        opened
+    }
+}
+
+/// Draws a triangle over each rectangle.
+fn fill(pass: &mut wgpu::RenderPass<'_>, rects: &[TexelRect]) {
+    for rect in rects {
+        pass.set_scissor_rect(rect.min.x, rect.min.y, rect.size.x, rect.size.y);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+impl StaticLayers {
+    fn new(device: &wgpu::Device, map: &ShadowMap) -> Self {
+        let descriptor = map.descriptor();
+        let format = map.depth_stencil_state().format;
+        let texture = crate::map::texture(device, descriptor, format);
+        let layout = layout(device);
+        let layer = |index: u32| {
+            let view = texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2),
+                base_array_layer: index,
+                array_layer_count: Some(1),
+                ..Default::default()
+            });
+            let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("shadowfit static casters"),
+                layout: &layout,
+                entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&view) }],
+            });
+            (view, group)
+        };
+        let pieces = [include_str!("shaders/clear.wgsl"), include_str!("shaders/mend.wgsl")];
+        let module = module(device, &pieces, map);
+        let layouts = [&layout, map.caster_layout()];
+        let mend = Shape { fragment: Some("fs_mend"), layouts: &layouts, ..Shape::new("shadowfit mend", &module, "vs_clear") };
+        let boxes = Shape { entry: "vs_mend_box", is_boxes: true, ..mend };
+        Self {
+            layers: (0..descriptor.maps).map(layer).collect(),
+            mend: pipeline(device, map, &mend),
+            mend_boxes: pipeline(device, map, &boxes),
+            boxes: box_buffer(device, 16),
+        }
+    }
+
+    /// Takes rectangles and boxes of the shown layer from the static casters' layer.
+    fn mend(&self, opened: &mut wgpu::RenderPass<'_>, map: &ShadowMap, plan: &FramePlan, pass: &PassPlan) {
+        if pass.mended.is_empty() && pass.mended_boxes.is_empty() {
+            return;
+        }
+        opened.set_bind_group(0, &self.layers[pass.map].1, &[]);
+        opened.set_bind_group(1, map.caster_group(pass.map), &[]);
+        if !pass.mended.is_empty() {
+            opened.set_pipeline(&self.mend);
+            fill(opened, &plan.rects[pass.mended.clone()]);
+        }
+        if !pass.mended_boxes.is_empty() {
+            let [width, height] = map.descriptor().resolution;
+            opened.set_scissor_rect(0, 0, width, height);
+            opened.set_pipeline(&self.mend_boxes);
+            opened.set_vertex_buffer(0, self.boxes.slice(..));
+            let size = pass.size.as_vec2();
+            for view in &plan.views[pass.views.clone()] {
+                opened.set_viewport(view.x as f32, view.y as f32, size.x, size.y, 0.0, 1.0);
+                opened.draw(0..BOX_VERTICES, pass.mended_boxes.start as u32..pass.mended_boxes.end as u32);
+            }
+        }
+    }
+}
+
+/// What differs between the pipelines.
+#[derive(Clone, Copy, Debug)]
+struct Shape<'a> {
+    label: &'a str,
+    module: &'a wgpu::ShaderModule,
+    entry: &'a str,
+    fragment: Option<&'a str>,
+    layouts: &'a [&'a wgpu::BindGroupLayout],
+    is_boxes: bool,
+}
+
+impl<'a> Shape<'a> {
+    fn new(label: &'a str, module: &'a wgpu::ShaderModule, entry: &'a str) -> Self {
+        Self { label, module, entry, fragment: None, layouts: &[], is_boxes: false }
+    }
+}
+
+fn module(device: &wgpu::Device, pieces: &[&str], map: &ShadowMap) -> wgpu::ShaderModule {
+    let source = pieces.concat().replace("FAR", &format!("{:?}", map.far_depth()));
+    device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("shadowfit layers"),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    })
+}
+
+fn pipeline(device: &wgpu::Device, map: &ShadowMap, shape: &Shape<'_>) -> wgpu::RenderPipeline {
+    let layouts: Vec<_> = shape.layouts.iter().map(|layout| Some(*layout)).collect();
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(shape.label),
+        bind_group_layouts: &layouts,
+        immediate_size: 0,
+    });
+    let boxes = [Some(wgpu::VertexBufferLayout {
+        array_stride: 24,
+        step_mode: wgpu::VertexStepMode::Instance,
+        attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3],
+    })];
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(shape.label),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: shape.module,
+            entry_point: Some(shape.entry),
+            compilation_options: Default::default(),
+            buffers: if shape.is_boxes { &boxes } else { &[] },
+        },
+        // The front sides of a box are its whole outline.
+        primitive: wgpu::PrimitiveState {
+            cull_mode: shape.is_boxes.then_some(wgpu::Face::Back),
+            ..Default::default()
+        },
+        depth_stencil: Some(wgpu::DepthStencilState {
+            depth_compare: Some(wgpu::CompareFunction::Always),
+            ..map.depth_stencil_state()
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: shape.fragment.map(|entry| wgpu::FragmentState {
+            module: shape.module,
+            entry_point: Some(entry),
+            compilation_options: Default::default(),
+            targets: &[],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("shadowfit static casters"),
+        entries: &[wgpu::BindGroupLayoutEntry {
+            binding: 0,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Depth,
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            count: None,
+        }],
+    })
+}
+
+fn box_buffer(device: &wgpu::Device, boxes: usize) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("shadowfit mended boxes"),
+        size: (boxes * size_of::<[f32; 6]>()) as u64,
+        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}

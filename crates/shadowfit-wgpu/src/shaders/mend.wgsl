@@ -1,0 +1,30 @@
+// Takes the static casters' depths back into the shown layer, where something that moves was drawn over them. Comes
+// after clear.wgsl, whose triangle mends rectangles.
+
+@group(0) @binding(0) var static_depth: texture_depth_2d;
+
+@group(1) @binding(0) var<uniform> clip_from_world: mat4x4<f32>;
+
+// The sides of a box: its corners' bits, two triangles a side, counter-clockwise from outside.
+const CORNERS: array<u32, 36> = array<u32, 36>(
+    0u, 4u, 6u, 0u, 6u, 2u, 1u, 3u, 7u, 1u, 7u, 5u,
+    0u, 1u, 5u, 0u, 5u, 4u, 2u, 6u, 7u, 2u, 7u, 3u,
+    0u, 2u, 3u, 0u, 3u, 1u, 4u, 5u, 7u, 4u, 7u, 6u,
+);
+
+// The outline of a box as seen by the light, flat within the range of depths.
+@vertex
+fn vs_mend_box(
+    @builtin(vertex_index) index: u32, @location(0) box_min: vec3<f32>, @location(1) box_max: vec3<f32>,
+) -> @builtin(position) vec4<f32> {
+    var corners = CORNERS;
+    let bits = corners[index];
+    let is_max = vec3<bool>((bits & 1u) != 0u, (bits & 2u) != 0u, (bits & 4u) != 0u);
+    let clip = clip_from_world * vec4<f32>(select(box_min, box_max, is_max), 1.0);
+    return vec4<f32>(clip.xy, 0.5, 1.0);
+}
+
+@fragment
+fn fs_mend(@builtin(position) at: vec4<f32>) -> @builtin(frag_depth) f32 {
+    return textureLoad(static_depth, vec2<i32>(at.xy), 0);
+}

@@ -1,0 +1,61 @@
+//! Why a sun's shadows cannot be made or fitted.
+
+use core::fmt;
+
+use shadowfit::FitError;
+
+use crate::ShadowMapError;
+use crate::need::NeedPassError;
+
+/// Why [`SunShadows`](crate::SunShadows) could not do what they were asked to.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SunShadowsError {
+    /// Views, light, boxes or technique make no sense.
+    Fit(FitError),
+    /// The maps cannot be made, or not hold what was fitted.
+    Map(ShadowMapError),
+    /// The depth buffer cannot be read.
+    Need(NeedPassError),
+    /// No frame was fitted yet.
+    NoFrame,
+}
+
+impl fmt::Display for SunShadowsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Fit(error) => write!(f, "the sun's shadows cannot be fitted: {error}"),
+            Self::Map(error) => write!(f, "the sun's shadow maps: {error}"),
+            Self::Need(error) => write!(f, "what the picture shows cannot be counted: {error}"),
+            Self::NoFrame => f.write_str("the sun's shadows have no frame yet: call update first"),
+        }
+    }
+}
+
+impl core::error::Error for SunShadowsError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Fit(error) => Some(error),
+            Self::Map(error) => Some(error),
+            Self::Need(error) => Some(error),
+            Self::NoFrame => None,
+        }
+    }
+}
+
+impl From<FitError> for SunShadowsError {
+    fn from(error: FitError) -> Self {
+        Self::Fit(error)
+    }
+}
+
+impl From<ShadowMapError> for SunShadowsError {
+    fn from(error: ShadowMapError) -> Self {
+        Self::Map(error)
+    }
+}
+
+impl From<NeedPassError> for SunShadowsError {
+    fn from(error: NeedPassError) -> Self {
+        Self::Need(error)
+    }
+}

@@ -1,0 +1,60 @@
+//! What an engine says of a frame.
+
+use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::normal_cone::NormalCone;
+use shadowfit::{Boxes, FitInput, ViewFrustum};
+
+use crate::{Casters, MapView};
+
+/// A frame, as [`SunShadows::update`](crate::SunShadows::update) takes it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SunFrame<'a> {
+    /// What is drawn with the shadows: one view, or several that share the maps (both eyes of a headset, split screen).
+    pub views: &'a [ViewFrustum],
+    /// World position that all positions in the shaders are relative to, in metres. The first view's eye is most exact;
+    /// zero suits engines whose shaders take world space.
+    pub origin: DVec3,
+    /// **Direction of travel** of the sun's light in world axes, of any length.
+    pub direction: Vec3,
+    /// Boxes around everything that receives shadows; `None` if they are not known.
+    pub receivers: Option<Boxes<'a>>,
+    /// Cones around the normals of each receiver's surfaces, or empty, as [`FitInput::receiver_cones`].
+    pub receiver_cones: &'a [NormalCone],
+    /// Everything that casts shadows.
+    pub casters: Casters<'a>,
+}
+
+impl<'a> SunFrame<'a> {
+    /// A frame whose shaders take positions relative to the first view's eye.
+    pub fn new(views: &'a [ViewFrustum], direction: Vec3, receivers: Boxes<'a>, casters: Casters<'a>) -> Self {
+        let origin = views.first().map_or(DVec3::ZERO, |view| view.origin);
+        Self { views, origin, direction, receivers: Some(receivers), receiver_cones: &[], casters }
+    }
+
+    /// This frame with positions in the shaders relative to another origin, in world space, in metres.
+    #[must_use]
+    pub const fn with_origin(mut self, origin: DVec3) -> Self {
+        self.origin = origin;
+        self
+    }
+
+    /// What the fits take.
+    pub(crate) fn input(&self) -> FitInput<'a> {
+        FitInput {
+            receivers: self.receivers,
+            receiver_cones: self.receiver_cones,
+            casters: Some(self.casters.boxes),
+            ..FitInput::new(self.views, self.direction)
+        }
+    }
+
+    /// Boxes that the fits work with: receivers or casters, whichever are more.
+    pub(crate) fn boxes(&self) -> usize {
+        self.casters.boxes.boxes.len().max(self.receivers.map_or(0, |receivers| receivers.boxes.len()))
+    }
+
+    pub(crate) fn map_view(&self) -> MapView {
+        let (eye, forward) = self.views.first().map_or((self.origin, Vec3::NEG_Z), |view| (view.origin, view.forward));
+        MapView { origin: self.origin, eye, forward }
+    }
+}

@@ -1,0 +1,108 @@
+//! What is to be drawn in a frame, for the engine to draw.
+
+use super::SunShadows;
+use crate::cache::{FramePlan, PassPlan, PiecePlan};
+use crate::layers::Opening;
+
+/// A pass into a map. Where a map is kept as it is there is none.
+#[derive(Clone, Copy, Debug)]
+pub struct ShadowPass<'a> {
+    plan: &'a FramePlan,
+    pass: &'a PassPlan,
+}
+
+/// A part of a pass: what is drawn with one viewport and within one scissor rectangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShadowPiece<'a> {
+    /// Number of the map.
+    pub map: usize,
+    /// Left, top, width and height of the viewport, in texels. It may begin outside the texture: maps wrap around in
+    /// their layers.
+    pub viewport: [f32; 4],
+    /// Left, top, width and height of the scissor rectangle, in texels.
+    pub scissor: [u32; 4],
+    /// The casters to draw, by number, nearest to the light first, so that what lies behind others costs least.
+    pub casters: &'a [u32],
+}
+
+impl<'a> ShadowPass<'a> {
+    /// Number of the map.
+    pub fn map(&self) -> usize {
+        self.pass.map
+    }
+
+    /// Whether the layer is cleared as a whole, because nothing of it can be kept.
+    pub fn is_cleared(&self) -> bool {
+        self.pass.clears
+    }
+
+    /// Its parts.
+    pub fn pieces(&self) -> impl ExactSizeIterator<Item = ShadowPiece<'a>> + use<'a> {
+        let (plan, pass) = (self.plan, self.pass);
+        plan.pieces[pass.pieces.clone()].iter().map(move |piece| shadow_piece(plan, pass, piece))
+    }
+
+    /// Texels within the scissor rectangles: those that are drawn at most.
+    pub fn texels(&self) -> u64 {
+        let pieces = self.pieces();
+        pieces.map(|piece| u64::from(piece.scissor[2]) * u64::from(piece.scissor[3])).sum()
+    }
+}
+
+fn shadow_piece<'a>(plan: &'a FramePlan, pass: &PassPlan, piece: &PiecePlan) -> ShadowPiece<'a> {
+    let (first, stored) = (piece.part.viewport(), piece.part.stored);
+    ShadowPiece {
+        map: pass.map,
+        viewport: [first.x as f32, first.y as f32, pass.size.x as f32, pass.size.y as f32],
+        scissor: [stored.min.x, stored.min.y, stored.size.x, stored.size.y],
+        casters: &plan.casters[piece.casters.clone()],
+    }
+}
+
+impl ShadowPiece<'_> {
+    /// Sets viewport and scissor rectangle.
+    pub fn set(&self, pass: &mut wgpu::RenderPass<'_>) {
+        let [x, y, width, height] = self.viewport;
+        pass.set_viewport(x, y, width, height, 0.0, 1.0);
+        let [x, y, width, height] = self.scissor;
+        pass.set_scissor_rect(x, y, width, height);
+    }
+}
+
+impl SunShadows {
+    /// The passes of this frame, in the order in which they must be drawn.
+    pub fn passes(&self) -> impl ExactSizeIterator<Item = ShadowPass<'_>> {
+        self.plan.passes.iter().map(|pass| ShadowPass { plan: &self.plan, pass })
+    }
+
+    /// Records all passes of this frame. `draw` is called for each part that has casters: it sets the engine's
+    /// pipeline and buffers, and draws the part's casters. The map's matrix is bound at `group`; viewport and scissor
+    /// rectangle are set, and must stay.
+    pub fn render(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        group: u32,
+        mut draw: impl FnMut(&mut wgpu::RenderPass<'_>, &ShadowPiece<'_>),
+    ) {
+        for pass in self.passes() {
+            let mut opened = self.begin_pass(encoder, &pass, group, None);
+            for piece in pass.pieces().filter(|piece| !piece.casters.is_empty()) {
+                piece.set(&mut opened);
+                draw(&mut opened, &piece);
+            }
+        }
+    }
+
+    /// Opens a pass, for engines that schedule passes themselves: cleared or mended, with the map's matrix bound at
+    /// `group`. Each of its pieces is then [set](ShadowPiece::set) and drawn.
+    pub fn begin_pass<'encoder>(
+        &self,
+        encoder: &'encoder mut wgpu::CommandEncoder,
+        pass: &ShadowPass<'_>,
+        group: u32,
+        timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) -> wgpu::RenderPass<'encoder> {
+        let opening = Opening { map: &self.map, plan: pass.plan, group };
+        self.layers.begin(encoder, opening, pass.pass, timestamps)
+    }
+}
