@@ -61,6 +61,8 @@ pub enum ShadowMapError {
         /// Which of its biases, and the value.
         error: FitError,
     },
+    /// A view makes no sense.
+    View(FitError),
     /// The view's forward direction is not of unit length, to a thousandth: view depths would be scaled by it.
     Forward {
         /// The direction.
@@ -107,6 +109,7 @@ impl fmt::Display for ShadowMapError {
                  far, nearest first"
             ),
             Self::Bias { index, error } => write!(f, "map {index}: {error}"),
+            Self::View(error) => write!(f, "what the maps are read from: {error}"),
             Self::Forward { forward, length } => {
                 write!(f, "the view's forward direction {forward} has length {length}: normalise it")
             }

@@ -143,7 +143,8 @@ impl StaticLayers {
         let pieces = [include_str!("shaders/clear.wgsl"), include_str!("shaders/mend.wgsl")];
         let module = module(device, &pieces, map);
         let layouts = [&layout, map.caster_layout()];
-        let mend = Shape { fragment: Some("fs_mend"), layouts: &layouts, ..Shape::new("shadowfit mend", &module, "vs_clear") };
+        let mend =
+            Shape { fragment: Some("fs_mend"), layouts: &layouts, ..Shape::new("shadowfit mend", &module, "vs_clear") };
         let boxes = Shape { entry: "vs_mend_box", is_boxes: true, ..mend };
         Self {
             layers: (0..descriptor.maps).map(layer).collect(),
@@ -225,10 +226,7 @@ fn pipeline(device: &wgpu::Device, map: &ShadowMap, shape: &Shape<'_>) -> wgpu::
             buffers: if shape.is_boxes { &boxes } else { &[] },
         },
         // The front sides of a box are its whole outline.
-        primitive: wgpu::PrimitiveState {
-            cull_mode: shape.is_boxes.then_some(wgpu::Face::Back),
-            ..Default::default()
-        },
+        primitive: wgpu::PrimitiveState { cull_mode: shape.is_boxes.then_some(wgpu::Face::Back), ..Default::default() },
         depth_stencil: Some(wgpu::DepthStencilState {
             depth_compare: Some(wgpu::CompareFunction::Always),
             ..map.depth_stencil_state()

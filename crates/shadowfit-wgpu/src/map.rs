@@ -142,6 +142,11 @@ impl ShadowMap {
         &self.layers[index].caster_group
     }
 
+    /// What a map's depths are drawn into.
+    pub(crate) fn depth_attachment(&self, index: usize) -> &wgpu::TextureView {
+        &self.layers[index].depth
+    }
+
     /// Writes the uniforms for this frame's maps; by view depth they are in order of their `far`. Map i is
     /// drawn into layer i. Positions in the shaders are relative to the view's origin. A fit with fewer texels than a layer uses the corner of
     /// it. A layer without a map is neither drawn nor read.
@@ -231,7 +236,7 @@ impl ShadowMap {
 }
 
 /// The casters that are drawn into a map.
-fn volume(map: &MapFit, depth_clamp: bool) -> CasterVolume {
+pub(crate) fn volume(map: &MapFit, depth_clamp: bool) -> CasterVolume {
     let casters = if depth_clamp { CasterPolicy::DepthClamp } else { CasterPolicy::None };
     match map.volume {
         None => CasterVolume::of_map(&map.fit, casters),
@@ -267,7 +272,11 @@ impl Layer {
     }
 }
 
-fn texture(device: &wgpu::Device, descriptor: &ShadowMapDescriptor, format: wgpu::TextureFormat) -> wgpu::Texture {
+pub(crate) fn texture(
+    device: &wgpu::Device,
+    descriptor: &ShadowMapDescriptor,
+    format: wgpu::TextureFormat,
+) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some("shadowfit map"),
         size: wgpu::Extent3d {
@@ -380,4 +389,8 @@ fn receiver_group(
         layout,
         entries: &entries[..used],
     })
+}
+
+pub(crate) fn caught<T>(_device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, ShadowMapError> {
+    Ok(work())
 }

@@ -1,7 +1,8 @@
 //! What a frame hands to a shadow map: the fitted maps with their biases and casters, and the view that reads them.
 
 use shadowfit::bias::Bias;
-use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::glam::{DVec3, UVec2, Vec3};
+use shadowfit::scroll::{GridAnchor, Scroll};
 use shadowfit::settings::MapChoice;
 use shadowfit::{CasterVolume, DepthConvention, FittedMap, LightFit};
 
@@ -25,12 +26,25 @@ pub struct MapFit {
     /// Casters that are drawn into it; `None` for all that the map can store, which is what maps need that are kept
     /// for later frames. [`Self::sweep`] leaves only those that can cast a shadow into view.
     pub volume: Option<CasterVolume>,
+    /// Where the map lies on the world's grid, if it does: what can be kept of it follows from that.
+    pub anchor: Option<GridAnchor>,
+    /// Where the map's left top texel is stored in its layer, in texels.
+    pub wrap: UVec2,
 }
 
 impl MapFit {
     /// A single map for all view depths, into which every caster that it can store is drawn.
     pub fn new(fit: LightFit, bias: Bias) -> Self {
-        Self { fit, far: f32::MAX, blend_near: f32::MAX, bias, volume: None }
+        Self { fit, far: f32::MAX, blend_near: f32::MAX, bias, volume: None, anchor: None, wrap: UVec2::ZERO }
+    }
+}
+
+impl MapFit {
+    /// How this map follows from an earlier one of the same number.
+    pub fn scroll_from(&self, before: &Self) -> Scroll {
+        let [before, now] =
+            [before, self].map(|map| FittedMap { fit: map.fit, anchor: map.anchor, ..FittedMap::default() });
+        Scroll::between(&before, &now)
     }
 }
 
@@ -48,7 +62,8 @@ impl From<&FittedMap> for MapFit {
     /// For another [`Bias`], such as [`Bias::automatic`] or [`Bias::fixed`], set [`MapFit::bias`].
     fn from(map: &FittedMap) -> Self {
         let range = map.depth_range();
-        Self { far: range.far as f32, blend_near: range.blend_near as f32, ..Self::new(map.fit, map.bias) }
+        let (far, blend_near) = (range.far as f32, range.blend_near as f32);
+        Self { far, blend_near, anchor: map.anchor, ..Self::new(map.fit, map.bias) }
     }
 }
 

@@ -1,31 +1,22 @@
 //! The shadows of one sun, from camera and boxes to bind group: the one object that an engine needs.
 //!
 //! ```text
-//!   update(frame) ──▶ fits ──▶ cache ──▶ passes: the engine draws casters by number
-//!        ▲                                              │
-//!        └── record_need(depth buffer) ◀── its own passes with receiver_group() and the WGSL
+//!   update(frame) ──▶ fits ──▶ what can be kept ──▶ passes: the engine draws casters by number
+//!        ▲                                                        │
+//!        └──── record_need(depth buffer) ◀──── its own passes with receiver_group() and the WGSL
 //! ```
 
 mod error;
-mod frame;
-mod passes;
 
-use shadowfit::bias::Reach;
-use shadowfit::choice::MapOrder;
-use shadowfit::glam::{DVec2, DVec3, Mat4};
+use shadowfit::glam::{DVec2, DVec3, Mat4, Vec3};
 use shadowfit::need::NeedGrid;
-use shadowfit::settings::MapChoice;
 use shadowfit::verify::{Certificate, CoverageQuery, verify};
-use shadowfit::{Aabb, CasterVolume, DepthConvention, FittedMap, FittedMaps, MapFitter, Technique, ViewFrustum, Workspace};
+use shadowfit::{Aabb, DepthConvention, FittedMap, FittedMaps, MapFitter, Technique, ViewFrustum, Workspace};
 
-use crate::cache::{CacheFrame, CacheSettings, FramePlan, MapCache};
-use crate::layers::Layers;
 use crate::need::{NeedPass, NeedPassError, NeedView, SeenNeed};
-use crate::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, UpdateSchedule};
+use crate::{KeptMaps, MapFit, ShadowMap, ShadowMapDescriptor, ShadowPass, ShadowPiece, SunFrame, UpdateSchedule};
 
 pub use error::SunShadowsError;
-pub use frame::SunFrame;
-pub use passes::{ShadowPass, ShadowPiece};
 
 /// Views that a fit works with: held maps are fitted to the views of two frames ahead as well.
 const VIEWS_AHEAD: usize = 2;
@@ -38,20 +29,10 @@ pub struct SunShadows {
     device: wgpu::Device,
     queue: wgpu::Queue,
     technique: Technique,
-    /// Which maps may wait for another frame.
-    pub schedule: UpdateSchedule,
-    /// Whether what stands still is kept from frame to frame. Pictures are the same either way.
-    pub keeps: bool,
     fitter: MapFitter,
     fitted: FittedMaps,
     storage: Vec<DVec2>,
-    map: ShadowMap,
-    layers: Layers,
-    cache: MapCache,
-    plan: FramePlan,
-    /// What is read in this frame.
-    shown: Vec<FittedMap>,
-    maps: Vec<MapFit>,
+    maps: KeptMaps,
     need: Need,
     last: Option<LastFrame>,
 }
@@ -70,7 +51,7 @@ struct Need {
 #[derive(Clone, Copy, Debug)]
 struct LastFrame {
     view: ViewFrustum,
-    direction: shadowfit::glam::Vec3,
+    direction: Vec3,
 }
 
 impl SunShadows {
@@ -82,37 +63,14 @@ impl SunShadows {
     /// [`SunShadowsError::Map`] if the maps cannot be made on this device: their size, number, format or filter, or too
     /// little memory.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, technique: &Technique) -> Result<Self, SunShadowsError> {
-        Self::with_descriptor(device, queue, technique, &ShadowMapDescriptor::from(technique))
-    }
-
-    /// As [`Self::new`], with maps of a descriptor that differs from the technique's in what only the GPU needs.
-    ///
-    /// # Errors
-    ///
-    /// As [`Self::new`].
-    pub fn with_descriptor(
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        technique: &Technique,
-        descriptor: &ShadowMapDescriptor,
-    ) -> Result<Self, SunShadowsError> {
-        let map = ShadowMap::new(device, descriptor)?;
-        let layers = Layers::new(device, &map);
         Ok(Self {
             device: device.clone(),
             queue: queue.clone(),
             technique: *technique,
-            schedule: UpdateSchedule::default(),
-            keeps: true,
             fitter: MapFitter::new(),
             fitted: FittedMaps::default(),
             storage: Vec::new(),
-            map,
-            layers,
-            cache: MapCache::default(),
-            plan: FramePlan::default(),
-            shown: Vec::new(),
-            maps: Vec::new(),
+            maps: KeptMaps::new(device, &ShadowMapDescriptor::from(technique))?,
             need: Need::default(),
             last: None,
         })
@@ -125,39 +83,47 @@ impl SunShadows {
 
     /// The maps on the GPU: layouts and states for the engine's pipelines.
     pub fn map(&self) -> &ShadowMap {
-        &self.map
+        self.maps.map()
     }
 
-    /// The maps that are read in this frame, those that wait as they were drawn.
-    pub fn fitted(&self) -> &[FittedMap] {
-        &self.shown
+    /// The maps that were fitted to this frame.
+    pub fn fitted(&self) -> &FittedMaps {
+        &self.fitted
+    }
+
+    /// The drawing half: what is kept, and the passes.
+    pub fn kept(&self) -> &KeptMaps {
+        &self.maps
     }
 
     /// The bind group that [`receiver_wgsl`](crate::receiver_wgsl) reads.
     pub fn receiver_group(&self) -> &wgpu::BindGroup {
-        self.map.receiver_group()
+        self.maps.map().receiver_group()
     }
 
-    /// Goes on with another technique, and returns whether the engine's pipelines and WGSL must be made anew, and the
-    /// receiver's bind group be bound anew. On an error everything stays as it is.
+    /// Has maps wait for other frames; see [`UpdateSchedule`].
+    pub fn set_schedule(&mut self, schedule: UpdateSchedule) {
+        self.maps.schedule = schedule;
+    }
+
+    /// Whether what stands still is kept from frame to frame, as it is by default. Pictures are the same either way.
+    pub fn set_keeps(&mut self, keeps: bool) {
+        self.maps.keeps = keeps;
+    }
+
+    /// Goes on with another technique, and returns whether the maps were made anew: then the engine's pipelines and its
+    /// WGSL must be made anew too. On an error everything stays as it is.
     ///
     /// # Errors
     ///
     /// As [`Self::new`].
     pub fn set_technique(&mut self, technique: &Technique) -> Result<bool, SunShadowsError> {
-        let descriptor = ShadowMapDescriptor { ..ShadowMapDescriptor::from(technique) };
-        let is_new = descriptor != *self.map.descriptor();
+        let descriptor = ShadowMapDescriptor::from(technique);
+        let is_new = descriptor != *self.map().descriptor();
         if is_new {
-            let (schedule, keeps) = (self.schedule, self.keeps);
-            let need = core::mem::take(&mut self.need);
-            let anew = Self::with_descriptor(&self.device, &self.queue, technique, &descriptor);
-            match anew {
-                Ok(anew) => *self = Self { schedule, keeps, need, ..anew },
-                Err(error) => {
-                    self.need = need;
-                    return Err(error);
-                }
-            }
+            let mut maps = KeptMaps::new(&self.device, &descriptor)?;
+            (maps.schedule, maps.keeps) = (self.maps.schedule, self.maps.keeps);
+            self.maps = maps;
         }
         self.technique = *technique;
         Ok(is_new)
@@ -166,7 +132,7 @@ impl SunShadows {
     /// Forgets all earlier frames: after a camera cut, or when a new level begins.
     pub fn reset(&mut self) {
         self.fitter.reset();
-        self.cache.reset();
+        self.maps.invalidate_all();
         self.need.seen = None;
         if let Some(pass) = &mut self.need.pass {
             pass.reset();
@@ -176,12 +142,12 @@ impl SunShadows {
     /// Has static casters in a box, in metres relative to an origin in world space, drawn anew in the next frame: where
     /// one changed its shape, and not its box.
     pub fn invalidate(&mut self, aabb: &Aabb, origin: DVec3) {
-        self.cache.invalidate(aabb, origin);
+        self.maps.invalidate(aabb, origin);
     }
 
     /// Has all maps drawn anew in the next frame, such as after a frame whose passes were not submitted.
     pub fn invalidate_all(&mut self) {
-        self.cache.reset();
+        self.maps.invalidate_all();
     }
 
     /// Fits the maps to a frame, finds what must be drawn of them, and writes the uniforms. [`Self::passes`] then has
@@ -190,104 +156,77 @@ impl SunShadows {
     /// # Errors
     ///
     /// [`SunShadowsError::Fit`] for views, light and boxes that make no sense; [`SunShadowsError::Map`] for maps that the
-    /// layers cannot hold; [`SunShadowsError::Need`] if the device was lost. There is nothing to draw then, and the maps
-    /// are those of the frame before.
+    /// layers cannot hold; [`SunShadowsError::Need`] if the device was lost. There is nothing to draw then, and the
+    /// shaders read what they read before.
     pub fn update(&mut self, queue: &wgpu::Queue, frame: &SunFrame<'_>) -> Result<(), SunShadowsError> {
-        self.plan = FramePlan::default();
-        // 1. The maps, by what earlier frames showed.
+        self.maps.skip();
+        if let Some(pass) = &mut self.need.pass {
+            self.need.seen = pass.take()?.or(self.need.seen.take());
+        }
         self.fit(frame)?;
-        // 2. Which of them are drawn now, and which are read as they are.
-        self.cache.settings = self.cache_settings();
-        self.cache.schedule = self.schedule;
-        let cached = CacheFrame {
-            fitted: &self.fitted,
-            casters: &frame.casters,
-            coarsest: self.coarsest(),
-            direction: frame.direction,
-            origin: frame.origin,
-        };
-        let choice = self.cache.choose(&cached);
-        if self.cache.is_split() && self.layers.split(&self.device, &self.map).is_err() {
-            // Without memory for layers of their own, static casters are drawn with what moves.
-            self.keeps = false;
-            self.cache.reset();
-            return self.update(queue, frame);
-        }
-        // 3. The casters of each, and the passes.
-        self.shown.clone_from(&choice.maps);
-        self.maps.clear();
-        self.maps.extend(choice.maps.iter().map(MapFit::from));
-        let view = frame.map_view();
-        MapFit::sweep(&mut self.maps, &view, frame.views, self.map.descriptor())?;
-        let clamps = self.map.descriptor().depth_clamp;
-        let volumes: Vec<CasterVolume> = self.maps.iter().map(|map| crate::map::volume(map, clamps)).collect();
-        self.cache.plan(&choice, &cached, &volumes, &mut self.plan);
-        // 4. What the shaders read.
-        for (index, map) in self.maps.iter_mut().enumerate() {
-            map.wrap = self.cache.wrap(index);
-        }
-        self.map.prepare(queue, &view, &self.maps)?;
-        self.layers.prepare(&self.device, queue, &self.plan);
+        let maps: Vec<MapFit> = self.fitted.iter().map(MapFit::from).collect();
+        self.maps.update(queue, frame, &maps)?;
         self.last = frame.views.first().map(|view| LastFrame { view: *view, direction: frame.direction });
         Ok(())
     }
 
     fn fit(&mut self, frame: &SunFrame<'_>) -> Result<(), SunShadowsError> {
-        if let Some(pass) = &mut self.need.pass {
-            self.need.seen = pass.take()?.or(self.need.seen.take());
-        }
-        let grids: Vec<NeedGrid<'_>> = self.need.seen.iter().map(SeenNeed::grid).collect();
+        let seen = self.need.seen.as_ref();
+        let grids: Vec<NeedGrid<'_>> = seen.map(SeenNeed::grid).into_iter().collect();
         let mut input = frame.input();
-        input.need = &grids;
-        input.histogram = self.need.seen.as_ref().and_then(SeenNeed::histogram);
-        let boxes = frame.boxes();
-        self.storage.resize(Workspace::required(boxes, frame.views.len() + VIEWS_AHEAD), DVec2::ZERO);
-        let workspace = &mut Workspace::new(&mut self.storage);
-        self.fitter.fit_into(&input, &self.technique, workspace, &mut self.fitted)?;
+        (input.need, input.histogram) = (&grids, seen.map(SeenNeed::histogram));
+        self.storage.resize(Workspace::required(frame.boxes(), frame.views.len() + VIEWS_AHEAD), DVec2::ZERO);
+        self.fitter.fit_into(&input, &self.technique, &mut Workspace::new(&mut self.storage), &mut self.fitted)?;
         Ok(())
     }
 
-    fn cache_settings(&self) -> CacheSettings {
-        let descriptor = self.map.descriptor();
-        CacheSettings {
-            // Colours are drawn with a depth buffer that is not stored.
-            keeps: self.keeps && descriptor.format.is_depth(),
-            can_mend: Layers::can_mend(&self.device),
-            depth_clamp: descriptor.depth_clamp,
-            by_coverage: self.technique.map_choice() == MapChoice::Coverage,
-            layer: descriptor.resolution.into(),
-        }
+    /// The passes of this frame, in the order in which they must be drawn.
+    pub fn passes(&self) -> impl ExactSizeIterator<Item = ShadowPass<'_>> {
+        self.maps.passes()
     }
 
-    /// The map that holds what the others leave out.
-    fn coarsest(&self) -> Option<usize> {
-        MapOrder::new(self.technique.map_choice(), self.fitted.iter().map(|map| &map.fit)).iter().last()
+    /// Records all passes of this frame; see [`KeptMaps::render`].
+    pub fn render(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        group: u32,
+        draw: impl FnMut(&mut wgpu::RenderPass<'_>, &ShadowPiece<'_>),
+    ) {
+        self.maps.render(encoder, group, draw);
     }
 
-    /// Proves that no map of this frame has a hole, as of the frame that was given to [`Self::update`]: for debug
-    /// assertions. The first map that fails decides.
+    /// Opens a pass, for engines that schedule passes themselves; see [`KeptMaps::begin_pass`].
+    pub fn begin_pass<'encoder>(
+        &self,
+        encoder: &'encoder mut wgpu::CommandEncoder,
+        pass: &ShadowPass<'_>,
+        group: u32,
+        timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) -> wgpu::RenderPass<'encoder> {
+        self.maps.begin_pass(encoder, pass, group, timestamps)
+    }
+
+    /// Proves that no map has a hole, for the frame that was given to [`Self::update`]: for debug assertions. The first map
+    /// that fails decides.
     ///
     /// # Errors
     ///
     /// [`SunShadowsError::Fit`] as [`verify`].
     pub fn verify(&mut self, frame: &SunFrame<'_>) -> Result<Certificate, SunShadowsError> {
         let input = frame.input();
-        let by_coverage = self.technique.map_choice() == MapChoice::Coverage;
-        let coarsest = self.coarsest();
-        let mut certificate = None;
-        for (index, map) in self.shown.iter().enumerate() {
-            let reach: Reach = self.technique.softness.reach_in(self.technique.filter, &map.fit);
-            let query =
-                CoverageQuery::of_map(map, &self.technique, reach).with_normal_offset(map.bias.normal_offset);
+        let mut certificate = Err(SunShadowsError::NoFrame);
+        for (fitted, read) in self.fitted.iter().zip(self.maps.maps()) {
+            // A map that waits is read as it was drawn.
+            let map = FittedMap { fit: read.fit, bias: read.bias, ..*fitted };
+            let reach = self.technique.softness.reach_in(self.technique.filter, &map.fit);
+            let query = CoverageQuery::of_map(&map, &self.technique, reach).with_normal_offset(map.bias.normal_offset);
             let found = verify(&input, &map.fit, &query, &mut Workspace::new(&mut self.storage))?;
             if !found.is_proven() {
                 return Ok(found);
             }
-            if certificate.is_none() || !by_coverage || coarsest == Some(index) {
-                certificate = Some(found);
-            }
+            certificate = Ok(found);
         }
-        certificate.ok_or(SunShadowsError::NoFrame)
+        certificate
     }
 
     /// Counts what a picture shows, for the fits of the next frames: after the pass that fills the depth buffer. `depth`

@@ -146,7 +146,11 @@ impl KnownCasters {
 
 /// Where a box begins as seen from the light, in metres along the direction toward it.
 fn height(aabb: &Aabb, to_light: Vec3) -> f32 {
-    if aabb.is_empty() { f32::MIN } else { aabb.max.max(aabb.min).dot(to_light.max(Vec3::ZERO)) + aabb.min.dot(to_light.min(Vec3::ZERO)) }
+    if aabb.is_empty() {
+        f32::MIN
+    } else {
+        aabb.max.max(aabb.min).dot(to_light.max(Vec3::ZERO)) + aabb.min.dot(to_light.min(Vec3::ZERO))
+    }
 }
 
 fn sort(numbers: &mut [u32], heights: &[f32]) {

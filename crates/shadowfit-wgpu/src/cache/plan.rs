@@ -6,10 +6,11 @@ use shadowfit::culling::cull;
 use shadowfit::glam::{DVec3, IVec2, UVec2};
 use shadowfit::scroll::{StoredRect, TexelRect};
 use shadowfit::settings::CasterPolicy;
-use shadowfit::{Aabb, CasterVolume, FittedMap};
+use shadowfit::{Aabb, CasterVolume};
 
 use super::casters::{KnownCasters, WorldBox};
 use super::{CacheSettings, Casters, Decision, KeptMap};
+use crate::MapFit;
 
 /// Volumes that casters are tested against at once: the bits of a mask.
 const VOLUMES: usize = 8;
@@ -83,7 +84,7 @@ impl FramePlan {
 pub(super) struct Drawing<'a> {
     pub(super) index: usize,
     /// The map that is read.
-    pub(super) fitted: &'a FittedMap,
+    pub(super) fitted: &'a MapFit,
     pub(super) known: &'a KnownCasters,
     pub(super) casters: &'a Casters<'a>,
     /// What positions in the shaders are relative to, in world space, in metres.
@@ -147,8 +148,7 @@ impl Drawing<'_> {
         let first_rect = plan.rects.len();
         let size = self.fitted.fit.resolution;
         let whole = [self.whole()];
-        let parts: Vec<StoredRect> =
-            rects.unwrap_or(&whole).iter().flat_map(|rect| rect.stored(wrap, size)).collect();
+        let parts: Vec<StoredRect> = rects.unwrap_or(&whole).iter().flat_map(|rect| rect.stored(wrap, size)).collect();
         for parts in parts.chunks(VOLUMES) {
             self.cull_static(parts, plan);
         }

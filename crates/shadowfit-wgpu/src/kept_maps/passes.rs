@@ -1,6 +1,6 @@
 //! What is to be drawn in a frame, for the engine to draw.
 
-use super::SunShadows;
+use super::KeptMaps;
 use crate::cache::{FramePlan, PassPlan, PiecePlan};
 use crate::layers::Opening;
 
@@ -69,7 +69,12 @@ impl ShadowPiece<'_> {
     }
 }
 
-impl SunShadows {
+impl KeptMaps {
+    /// Nothing is to be drawn.
+    pub(crate) fn skip(&mut self) {
+        self.plan = FramePlan::default();
+    }
+
     /// The passes of this frame, in the order in which they must be drawn.
     pub fn passes(&self) -> impl ExactSizeIterator<Item = ShadowPass<'_>> {
         self.plan.passes.iter().map(|pass| ShadowPass { plan: &self.plan, pass })
