@@ -5,6 +5,7 @@
 mod culling_gpu;
 mod exact_counts_gpu;
 mod harness;
+mod kept_maps_gpu;
 mod layout;
 mod need_gpu;
 mod need_picture;

@@ -1,0 +1,302 @@
+//! A town of blocks, a walk through it, and an engine of a few lines that draws it twice.
+
+use shadowfit::glam::{DVec2, DVec3, Vec3};
+use shadowfit::verify::{CoverageQuery, verify};
+use shadowfit::{Aabb, Boxes, DepthConvention, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, Workspace};
+use shadowfit_render::{AdapterChoice, Gpu};
+use shadowfit_wgpu::{Casters, KeptMaps, MapFit, ShadowMapDescriptor, SunFrame, caster_wgsl};
+use wgpu::util::DeviceExt;
+
+/// Where the town lies, far from the world's origin.
+const PLACE: DVec3 = DVec3::new(12_000.0, 40.0, -7_000.0);
+
+const CASTER: &str = "
+@vertex fn vs(
+    @location(0) corner: vec3<f32>, @location(1) centre: vec3<f32>, @location(2) half_size: vec3<f32>,
+) -> @builtin(position) vec4<f32> {
+    return shadowfit_caster_position(centre + corner * half_size);
+}
+";
+
+/// A block of the town.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Block {
+    /// World space, in metres.
+    pub(super) centre: DVec3,
+    /// Half its size, in metres; negative for one that is not there.
+    pub(super) half: Vec3,
+    /// Where it stands when it does not bob, in metres.
+    height: f64,
+}
+
+/// The casters.
+#[derive(Debug)]
+pub(super) struct Town {
+    pub(super) blocks: Vec<Block>,
+    pub(super) moves: Vec<bool>,
+}
+
+impl Town {
+    /// Every tenth block moves.
+    pub(super) fn new() -> Self {
+        let mut town = Self::still();
+        town.moves = (0..town.blocks.len()).map(|number| number % 10 == 9).collect();
+        town
+    }
+
+    /// Nothing moves.
+    pub(super) fn still() -> Self {
+        let block = |x: f64, y: f64, z: f64, half: Vec3| Block {
+            centre: PLACE + DVec3::new(x, y, z),
+            half,
+            height: PLACE.y + y,
+        };
+        let mut blocks = vec![block(0.0, -0.5, 0.0, Vec3::new(80.0, 0.5, 80.0))];
+        for i in 0..240_u32 {
+            // Low-discrepancy places.
+            let place = |base: f64| (f64::from(i) * base).fract() * 120.0 - 60.0;
+            let half = Vec3::new(
+                0.3 + (i % 7) as f32 * 0.25,
+                0.4 + (i % 11) as f32 * 0.3,
+                0.3 + (i % 5) as f32 * 0.35,
+            );
+            blocks.push(block(place(0.754_877_67), f64::from(half.y), place(0.569_840_3), half));
+        }
+        Self { blocks, moves: Vec::new() }
+    }
+
+    /// Moves what moves by half a metre, once a second.
+    pub(super) fn bob(&mut self, frame: u32) {
+        for (number, (block, moves)) in self.blocks.iter_mut().zip(&self.moves).enumerate() {
+            if *moves {
+                let phase = f64::from(frame) / 60.0 + number as f64 * 0.37;
+                block.centre.y = block.height + 0.5 * (phase * core::f64::consts::TAU).sin();
+            }
+        }
+    }
+
+    fn boxes(&self, origin: DVec3) -> Vec<Aabb> {
+        let aabb = |block: &Block| {
+            let centre = (block.centre - origin).as_vec3();
+            Aabb::new(centre - block.half, centre + block.half)
+        };
+        self.blocks.iter().map(aabb).collect()
+    }
+}
+
+/// A camera and a light.
+#[derive(Debug)]
+pub(super) struct Walk {
+    pub(super) eye: DVec3,
+    pub(super) forward: Vec3,
+    pub(super) direction: Vec3,
+}
+
+impl Walk {
+    pub(super) fn new() -> Self {
+        let direction = Vec3::new(0.45, -0.8, 0.3).normalize();
+        Self { eye: PLACE + DVec3::new(-20.0, 1.7, 25.0), forward: Vec3::NEG_Z, direction }
+    }
+
+    /// 1.5 m and 10 degrees a second, 60 frames a second; every fourth second twice as fast.
+    pub(super) fn go_on(&mut self, frame: u32) {
+        let angle = (frame as f32 / 6.0).to_radians() + 0.4 * (frame as f32 * 0.05).sin();
+        self.forward = Vec3::new(angle.sin(), -0.12, -angle.cos()).normalize();
+        let speed = if frame / 60 % 4 == 3 { 3.0 } else { 1.5 };
+        self.eye += (self.forward.with_y(0.0).normalize() * speed / 60.0).as_dvec3();
+    }
+
+    fn camera(&self) -> PerspectiveCamera {
+        PerspectiveCamera {
+            eye: self.eye,
+            forward: self.forward,
+            up: Vec3::Y,
+            fov_y: 0.9,
+            aspect: 16.0 / 9.0,
+            near: 0.1,
+            far: 150.0,
+        }
+    }
+}
+
+/// What one way of drawing drew.
+#[derive(Debug, Default)]
+pub(super) struct Drawn {
+    /// Depths of each map, as they are looked up.
+    pub(super) maps: Vec<Vec<f32>>,
+    pub(super) passes: usize,
+    pub(super) cleared: usize,
+    pub(super) drawn: u64,
+}
+
+/// Two sets of the same maps.
+pub(super) struct Engine {
+    gpu: Gpu,
+    pub(super) kept: KeptMaps,
+    pub(super) anew: KeptMaps,
+    fitter: MapFitter,
+    fitted: FittedMaps,
+    pipeline: wgpu::RenderPipeline,
+    cube: wgpu::Buffer,
+}
+
+impl Engine {
+    pub(super) fn new(technique: &Technique) -> Self {
+        let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
+        let descriptor = ShadowMapDescriptor::from(technique);
+        let maps = || KeptMaps::new(&gpu.device, &descriptor).expect("maps");
+        let (kept, anew) = (maps(), maps());
+        let pipeline = pipeline(&gpu, &kept);
+        let cube = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: None,
+            contents: bytemuck::cast_slice(&cube()),
+            usage: wgpu::BufferUsages::VERTEX,
+        });
+        let (fitter, fitted) = (MapFitter::new(), FittedMaps::default());
+        Self { gpu, kept, anew, fitter, fitted, pipeline, cube }
+    }
+
+    /// Draws a frame with both.
+    pub(super) fn draw(&mut self, technique: &Technique, town: &Town, walk: &Walk) -> [Drawn; 2] {
+        let views = [walk.camera().frustum().expect("a camera")];
+        // Boxes relative to the moving eye, as engines have them: they round anew in each frame.
+        let boxes = town.boxes(walk.eye);
+        let boxes = Boxes { origin: walk.eye, boxes: &boxes };
+        let casters = Casters { boxes, moves: &town.moves };
+        let frame = SunFrame::new(&views, walk.direction, boxes, casters);
+        let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, walk.direction) };
+        let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.boxes.len(), 3)];
+        let workspace = &mut Workspace::new(&mut storage);
+        self.fitter.fit_into(&input, technique, workspace, &mut self.fitted).expect("maps");
+        let maps: Vec<MapFit> = self.fitted.iter().map(MapFit::from).collect();
+        let centres: Vec<[Vec3; 2]> =
+            town.blocks.iter().map(|block| [(block.centre - walk.eye).as_vec3(), block.half]).collect();
+        let instances = self.gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: None,
+            contents: bytemuck::cast_slice(&centres),
+            usage: wgpu::BufferUsages::VERTEX,
+        });
+        let Self { gpu, kept, anew, pipeline, cube, .. } = self;
+        [kept, anew].map(|target| {
+            target.update(&gpu.queue, &frame, &maps).expect("a good frame");
+            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            target.render(&mut encoder, 0, |pass, piece| {
+                pass.set_pipeline(pipeline);
+                pass.set_vertex_buffer(0, cube.slice(..));
+                pass.set_vertex_buffer(1, instances.slice(..));
+                for caster in piece.casters {
+                    pass.draw(0..36, *caster..caster + 1);
+                }
+            });
+            gpu.queue.submit([encoder.finish()]);
+            Drawn {
+                maps: unwrapped(gpu, target),
+                passes: target.passes().len(),
+                cleared: target.passes().filter(|pass| pass.is_cleared()).count(),
+                drawn: target.passes().map(|pass| pass.texels()).sum(),
+            }
+        })
+    }
+
+    /// Every map that is read holds what it must, those that wait too.
+    pub(super) fn assert_proven(&self, technique: &Technique, town: &Town, walk: &Walk) {
+        let views = [walk.camera().frustum().expect("a camera")];
+        let boxes = town.boxes(walk.eye);
+        let boxes = Boxes { origin: walk.eye, boxes: &boxes };
+        let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, walk.direction) };
+        let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.boxes.len(), 3)];
+        for (fitted, read) in self.fitted.iter().zip(self.kept.maps()) {
+            let map = shadowfit::FittedMap { fit: read.fit, ..*fitted };
+            let query = CoverageQuery::of_map(&map, technique, technique.filter.into());
+            let certificate = verify(&input, &map.fit, &query, &mut Workspace::new(&mut storage)).expect("a good frame");
+            assert!(certificate.is_proven(), "{certificate:?}");
+        }
+    }
+}
+
+/// The maps of a frame as they are looked up, without their wrap.
+fn unwrapped(gpu: &Gpu, maps: &KeptMaps) -> Vec<Vec<f32>> {
+    let texture = maps.map().view().texture();
+    let size = texture.size();
+    let bytes = u64::from(size.width * size.height * size.depth_or_array_layers) * 4;
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: bytes,
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(size.width * 4),
+        rows_per_image: Some(size.height),
+    };
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
+        size,
+    );
+    gpu.queue.submit([encoder.finish()]);
+    buffer.slice(..).map_async(wgpu::MapMode::Read, |result| result.expect("the maps can be read"));
+    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
+    let mapped = buffer.slice(..).get_mapped_range().expect("the maps are mapped");
+    let depths: Vec<f32> = bytemuck::pod_collect_to_vec(&mapped);
+    let layer = |(index, map): (usize, &MapFit)| {
+        let used = map.fit.resolution;
+        let texels = (0..used.y).flat_map(move |y| (0..used.x).map(move |x| (x, y)));
+        let stored = |(x, y): (u32, u32)| {
+            let [x, y] = [(x + map.wrap.x) % used.x, (y + map.wrap.y) % used.y];
+            depths[((index as u32 * size.height + y) * size.width + x) as usize]
+        };
+        texels.map(stored).collect()
+    };
+    maps.maps().iter().enumerate().map(layer).collect()
+}
+
+fn pipeline(gpu: &Gpu, maps: &KeptMaps) -> wgpu::RenderPipeline {
+    let map = maps.map();
+    assert_ne!(map.descriptor().depth, DepthConvention::NegativeOneToOne);
+    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: None,
+        source: wgpu::ShaderSource::Wgsl((caster_wgsl(0) + CASTER).into()),
+    });
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: &[Some(map.caster_layout())],
+        immediate_size: 0,
+    });
+    let buffer = |stride, step_mode, attributes| {
+        Some(wgpu::VertexBufferLayout { array_stride: stride, step_mode, attributes })
+    };
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: None,
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("vs"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[
+                buffer(12, wgpu::VertexStepMode::Vertex, &wgpu::vertex_attr_array![0 => Float32x3]),
+                buffer(24, wgpu::VertexStepMode::Instance, &wgpu::vertex_attr_array![1 => Float32x3, 2 => Float32x3]),
+            ],
+        },
+        primitive: map.primitive_state(),
+        depth_stencil: Some(map.depth_stencil_state()),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: None,
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+/// The triangles of a cube of half extent 1.
+fn cube() -> Vec<[f32; 3]> {
+    let normals = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
+    let faces = normals.map(|normal| {
+        let right = Vec3::new(normal.y, normal.z, normal.x);
+        let up = normal.cross(right);
+        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+            .map(|(u, v)| (normal + right * u + up * v).to_array())
+    });
+    faces.concat()
+}

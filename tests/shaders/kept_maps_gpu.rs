@@ -1,0 +1,183 @@
+//! Maps of which is kept what stands still hold what maps hold that are drawn anew: frame after frame, while the camera
+//! walks and turns, casters move, start, stop and vanish, and the light steps.
+
+#[path = "kept_maps/town.rs"]
+mod town;
+
+use shadowfit::glam::{DVec3, UVec2, Vec3};
+use shadowfit::settings::{FitKind, MapFormat};
+use shadowfit::{DepthConvention, Technique};
+use shadowfit_wgpu::{KeptMaps, UpdateSchedule};
+
+use town::{Engine, Town, Walk};
+
+/// Greatest difference of depths that count as equal, and the least share of texels that must be.
+const DEPTH: f32 = 1e-5;
+const SHARE: f64 = 0.9999;
+
+/// Maps of this many texels a side: the software adapter draws them hundreds of times.
+const SIDE: u32 = 256;
+
+fn technique(name: &str) -> Technique {
+    Technique::preset(name).expect("a preset").with_resolution(SIDE, SIDE).with_max_distance(60.0)
+}
+
+/// What a run found.
+#[derive(Debug, Default)]
+struct Found {
+    texels: u64,
+    unequal: u64,
+    /// Texels that were drawn by both.
+    kept_drawn: u64,
+    anew_drawn: u64,
+    /// Frames in which a map was cleared as a whole.
+    cleared: usize,
+}
+
+/// Draws each frame twice, with what is kept and anew, and compares the maps.
+fn run(technique: &Technique, frames: u32, mut step: impl FnMut(u32, &mut Town, &mut Walk, &mut KeptMaps)) -> Found {
+    let mut engine = Engine::new(technique);
+    let (mut town, mut walk, mut found) = (Town::new(), Walk::new(), Found::default());
+    for frame in 0..frames {
+        step(frame, &mut town, &mut walk, &mut engine.kept);
+        engine.anew.invalidate_all();
+        let [kept, anew] = engine.draw(technique, &town, &walk);
+        found.kept_drawn += kept.drawn;
+        found.anew_drawn += anew.drawn;
+        found.cleared += usize::from(frame > 0 && kept.cleared > 0);
+        for (map, (a, b)) in kept.maps.iter().zip(&anew.maps).enumerate() {
+            let unequal = a.iter().zip(b).filter(|(a, b)| (*a - *b).abs() > DEPTH).count() as u64;
+            let share = unequal as f64 / a.len() as f64;
+            assert!(share <= 5e-3, "frame {frame}, map {map}: {unequal} of {} texels differ", a.len());
+            found.texels += a.len() as u64;
+            found.unequal += unequal;
+        }
+    }
+    let equal = 1.0 - found.unequal as f64 / found.texels as f64;
+    println!("equal {equal}, {found:?}");
+    assert!(equal >= SHARE, "{equal}: {found:?}");
+    found
+}
+
+#[test]
+fn gpu_kept_windows_hold_what_windows_drawn_anew_hold() {
+    let found = run(&technique("windows-4"), 150, |frame, town, walk, _| {
+        walk.go_on(frame);
+        town.bob(frame);
+    });
+    assert!(found.kept_drawn * 4 < found.anew_drawn, "{found:?}");
+}
+
+#[test]
+fn gpu_kept_spheres_and_held_rectangles_hold_what_maps_drawn_anew_hold() {
+    for name in ["stable-4", "calm-4"] {
+        let technique = technique(name).with_format(MapFormat::Depth32Float);
+        run(&technique, 60, |frame, town, walk, _| {
+            walk.go_on(frame);
+            town.bob(frame);
+        });
+    }
+}
+
+#[test]
+fn gpu_reversed_depth_is_kept_too() {
+    let mut technique = technique("windows-4");
+    technique.fit.depth = DepthConvention::Reversed;
+    run(&technique, 40, |frame, town, walk, _| {
+        walk.go_on(frame);
+        town.bob(frame);
+    });
+}
+
+#[test]
+fn gpu_casters_that_change_are_drawn_where_they_were_and_where_they_are() {
+    run(&technique("windows-4"), 120, |frame, town, walk, _| {
+        walk.go_on(frame / 2);
+        town.bob(frame);
+        let last = town.blocks.len() - 1;
+        match frame % 12 {
+            // One is set elsewhere, one starts to move or stops, one vanishes or comes back, two change numbers.
+            3 => town.blocks[frame as usize * 7 % last].centre += DVec3::new(1.5, 0.3, -0.7),
+            5 => {
+                let moves = &mut town.moves[frame as usize * 5 % last];
+                *moves = !*moves;
+            }
+            8 => town.blocks[frame as usize * 11 % last].half *= -1.0,
+            10 => town.blocks.swap(frame as usize * 3 % last, last),
+            _ => {}
+        }
+    });
+}
+
+#[test]
+fn gpu_a_light_that_steps_and_a_camera_that_jumps_leave_nothing_behind() {
+    run(&technique("windows-4"), 60, |frame, town, walk, kept| {
+        walk.go_on(frame);
+        town.bob(frame);
+        if frame % 20 == 7 {
+            walk.direction = Vec3::new(0.4, -0.8, 0.01 * frame as f32).normalize();
+        }
+        if frame % 20 == 13 {
+            walk.eye += DVec3::new(17.0, 0.0, -9.0);
+            kept.invalidate_all();
+        }
+    });
+}
+
+#[test]
+fn gpu_maps_smaller_than_their_layer_are_kept_while_they_stay() {
+    let mut technique = technique("windows-4");
+    technique.overrides[1].resolution = Some(UVec2::new(192, 128));
+    run(&technique, 40, |frame, town, walk, _| {
+        walk.go_on(frame / 3);
+        town.bob(frame);
+    });
+}
+
+#[test]
+fn gpu_what_stands_still_is_not_drawn_again() {
+    let technique = technique("windows-4");
+    let mut engine = Engine::new(&technique);
+    let (town, walk) = (Town::still(), Walk::new());
+    let [first, _] = engine.draw(&technique, &town, &walk);
+    assert_eq!(first.passes, 4);
+    let frames: Vec<usize> = (0..40).map(|_| engine.draw(&technique, &town, &walk)[0].passes).collect();
+    // Windows are sought anew for some frames, then they are settled.
+    assert_eq!(frames[30..], [0; 10], "{frames:?}");
+}
+
+#[test]
+fn gpu_maps_that_wait_are_read_as_they_were_drawn_and_have_their_turn() {
+    let technique = technique("windows-4");
+    let schedule = UpdateSchedule::Every([1, 2, 4, 4, 1, 1, 1, 1]);
+    let mut engine = Engine::new(&technique);
+    engine.kept.schedule = schedule;
+    let (mut town, mut walk) = (Town::new(), Walk::new());
+    let mut drawn = [0; 4];
+    for frame in 0..64 {
+        walk.go_on(frame);
+        town.bob(frame);
+        engine.draw(&technique, &town, &walk);
+        let mut passes = [false; 4];
+        for pass in engine.kept.passes() {
+            passes[pass.map()] = true;
+        }
+        for (count, is_drawn) in drawn.iter_mut().zip(passes) {
+            *count += usize::from(is_drawn);
+        }
+        engine.assert_proven(&technique, &town, &walk);
+    }
+    assert!(drawn[0] >= 60 && drawn[1] <= 48 && drawn[2] <= 40, "{drawn:?}");
+    assert!(drawn.iter().all(|count| *count >= 16), "{drawn:?}");
+}
+
+#[test]
+fn gpu_a_single_map_is_kept_by_the_same_rules() {
+    let mut technique = technique("windows-4").with_count(1);
+    technique.fit.kind = FitKind::Sphere;
+    technique.stabilise = shadowfit::settings::Stabilise::Snap;
+    run(&technique, 40, |frame, town, walk, _| {
+        walk.go_on(frame);
+        town.bob(frame);
+    });
+}
