@@ -28,6 +28,7 @@ use casters::{KnownCasters, WorldBox};
 use schedule::Candidate;
 
 pub use casters::Casters;
+pub use plan::PassContent;
 pub(crate) use plan::{FramePlan, Layer, PassPlan, PiecePlan};
 pub use schedule::UpdateSchedule;
 

@@ -4,7 +4,7 @@ use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::verify::{CoverageQuery, verify};
 use shadowfit::{Aabb, Boxes, DepthConvention, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, Workspace};
 use shadowfit_render::{AdapterChoice, Gpu};
-use shadowfit_wgpu::{Casters, KeptMaps, MapFit, ShadowMapDescriptor, SunFrame, caster_wgsl};
+use shadowfit_wgpu::{Casters, KeptMaps, MapFit, PassContent, ShadowMapDescriptor, SunFrame, caster_wgsl};
 use wgpu::util::DeviceExt;
 
 /// Where the town lies, far from the world's origin.
@@ -193,7 +193,7 @@ impl Engine {
                 maps: unwrapped(gpu, target),
                 passes: target.passes().len(),
                 cleared: target.passes().filter(|pass| pass.is_cleared()).count(),
-                drawn: target.passes().map(|pass| pass.texels()).sum(),
+                drawn: target.passes().filter(|pass| pass.content() != PassContent::Moving).map(|pass| pass.texels()).sum(),
             }
         })
     }

@@ -27,10 +27,22 @@ pub(crate) enum Layer {
     Static,
 }
 
+/// What a pass draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PassContent {
+    /// All casters of shadows in view, static and moving.
+    All,
+    /// Static casters, seen or not, where the map is new or one of them changed.
+    Static,
+    /// Moving casters, over the static ones.
+    Moving,
+}
+
 /// A pass.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PassPlan {
     pub(crate) map: usize,
+    pub(crate) content: PassContent,
     pub(crate) layer: Layer,
     /// Whether the layer is cleared; else it is loaded.
     pub(crate) clears: bool,
@@ -138,7 +150,7 @@ impl Drawing<'_> {
         let part = StoredRect { window: self.whole(), stored: self.whole() };
         let piece = plan.pieces.len();
         plan.pieces.push(PiecePlan { part, casters: first..plan.casters.len() });
-        self.pass(plan, Layer::Shown, true, piece);
+        self.pass(plan, (PassContent::All, Layer::Shown, true), piece);
     }
 
     /// A pass with the static casters: into some rectangles, or into all of the layer.
@@ -155,7 +167,7 @@ impl Drawing<'_> {
         if rects.is_some() {
             plan.rects.extend(parts.iter().map(|part| part.stored));
         }
-        self.pass(plan, layer, rects.is_none(), piece);
+        self.pass(plan, (PassContent::Static, layer, rects.is_none()), piece);
         if let Some(pass) = plan.passes.last_mut() {
             pass.cleared = first_rect..plan.rects.len();
         }
@@ -203,7 +215,7 @@ impl Drawing<'_> {
             return;
         }
         let last_view = plan.views.len();
-        self.pass(plan, Layer::Shown, false, piece);
+        self.pass(plan, (PassContent::Moving, Layer::Shown, false), piece);
         if let Some(pass) = plan.passes.last_mut() {
             pass.mended = first_rect..last_rect;
             pass.mended_boxes = first_box..last_box;
@@ -259,9 +271,10 @@ impl Drawing<'_> {
         Aabb::new(aabb.min - around, aabb.max + around)
     }
 
-    fn pass(&self, plan: &mut FramePlan, layer: Layer, clears: bool, first_piece: usize) {
+    fn pass(&self, plan: &mut FramePlan, (content, layer, clears): (PassContent, Layer, bool), first_piece: usize) {
         plan.passes.push(PassPlan {
             map: self.index,
+            content,
             layer,
             clears,
             cleared: 0..0,

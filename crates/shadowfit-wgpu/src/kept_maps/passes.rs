@@ -1,7 +1,7 @@
 //! What is to be drawn in a frame, for the engine to draw.
 
 use super::KeptMaps;
-use crate::cache::{FramePlan, PassPlan, PiecePlan};
+use crate::cache::{FramePlan, PassContent, PassPlan, PiecePlan};
 use crate::layers::Opening;
 
 /// A pass into a map. Where a map is kept as it is there is none.
@@ -29,6 +29,11 @@ impl<'a> ShadowPass<'a> {
     /// Number of the map.
     pub fn map(&self) -> usize {
         self.pass.map
+    }
+
+    /// What it draws.
+    pub fn content(&self) -> PassContent {
+        self.pass.content
     }
 
     /// Whether the layer is cleared as a whole, because nothing of it can be kept.
