@@ -67,7 +67,7 @@ fn answers(format: MapFormat, filter: FilterKind, depth: DepthConvention) -> Vec
 }
 
 fn answers_under(height: f32, descriptor: &ShadowMapDescriptor) -> Vec<Answer> {
-    let bias = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0 };
+    let bias = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };
     let (gpu, fit) = (software_gpu(), box_fit(descriptor.depth));
     Harness::new(&gpu, descriptor, DVec3::ZERO, &[fit], &bias, &[caster(height)]).ask(0, &plane())
 }

@@ -106,4 +106,4 @@ pub(super) fn single(kind: FitKind, filter: FilterKind, bias: BiasSettings) -> T
 
 /// No bias at all.
 pub(super) const NO_BIAS: BiasSettings =
-    BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0 };
+    BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };

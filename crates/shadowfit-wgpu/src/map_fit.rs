@@ -1,7 +1,7 @@
 //! What a frame hands to a shadow map: the fitted maps with their biases and casters, and the view that reads them.
 
 use shadowfit::bias::Bias;
-use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::glam::{DVec3, UVec2, Vec3};
 use shadowfit::settings::MapChoice;
 use shadowfit::{CasterVolume, DepthConvention, FittedMap, LightFit};
 
@@ -25,12 +25,16 @@ pub struct MapFit {
     /// Casters that are drawn into it; `None` for all that the map can store, which is what maps need that are kept
     /// for later frames. [`Self::sweep`] leaves only those that can cast a shadow into view.
     pub volume: Option<CasterVolume>,
+    /// Where the map's first texel is stored in its layer, in texels: texel t at (t + wrap) mod size, so that a map that
+    /// moves keeps what it still covers where it is. Only for fits with as many texels as a layer. Zero for maps
+    /// that lie as they are.
+    pub wrap: UVec2,
 }
 
 impl MapFit {
     /// A single map for all view depths, into which every caster that it can store is drawn.
     pub fn new(fit: LightFit, bias: Bias) -> Self {
-        Self { fit, far: f32::MAX, blend_near: f32::MAX, bias, volume: None }
+        Self { fit, far: f32::MAX, blend_near: f32::MAX, bias, volume: None, wrap: UVec2::ZERO }
     }
 }
 
@@ -61,6 +65,9 @@ pub struct MapView {
     pub eye: DVec3,
     /// Unit direction in which that eye looks, world axes.
     pub forward: Vec3,
+    /// Number of the frame, by which the pattern of [soft filters](shadowfit::settings::FilterKind::is_soft) moves, for
+    /// temporal antialiasing that averages over frames; 0 in each frame for a pattern that stays.
+    pub frame: u32,
 }
 
 /// How far the length of [`MapView::forward`] may be from 1: the rounding of a direction that was normalised in f32 and
@@ -70,7 +77,7 @@ const UNIT_TOLERANCE: f32 = 1e-3;
 impl MapView {
     /// Positions and view depths relative to an eye that looks along `forward` (unit, world axes).
     pub fn from_eye(eye: DVec3, forward: Vec3) -> Self {
-        Self { origin: eye, eye, forward }
+        Self { origin: eye, eye, forward, frame: 0 }
     }
 }
 
@@ -89,6 +96,7 @@ pub(crate) fn check(descriptor: &ShadowMapDescriptor, view: &MapView, maps: &[Ma
     let mut previous = f32::MIN;
     for (index, map) in maps.iter().enumerate() {
         check_layer(descriptor, index, &map.fit)?;
+        check_wrap(descriptor, index, map)?;
         map.bias.checked().map_err(|error| ShadowMapError::Bias { index, error })?;
         // NaN has no order.
         let is_in_order = map.far >= previous || descriptor.choice == MapChoice::Coverage;
@@ -106,4 +114,14 @@ fn check_layer(descriptor: &ShadowMapDescriptor, index: usize, fit: &LightFit) -
     let fit = (fit.resolution.to_array(), fit.depth);
     let suits = fit.1 == map.1 && fit.0.iter().zip(&map.0).all(|(fit, layer)| (1..=*layer).contains(fit));
     if suits { Ok(()) } else { Err(ShadowMapError::Fit { index, fit, map }) }
+}
+
+/// Refuses a map that cannot wrap around in its layer.
+fn check_wrap(descriptor: &ShadowMapDescriptor, index: usize, map: &MapFit) -> Result<(), ShadowMapError> {
+    let (wrap, fit) = (map.wrap, map.fit.resolution);
+    let is_whole = fit.to_array() == descriptor.resolution && wrap.cmplt(fit).all();
+    if wrap == UVec2::ZERO || is_whole {
+        return Ok(());
+    }
+    Err(ShadowMapError::Wrap { index, wrap: wrap.to_array(), fit: fit.to_array(), map: descriptor.resolution })
 }
