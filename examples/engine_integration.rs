@@ -17,7 +17,7 @@ use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::need::NeedGrid;
 use shadowfit::{Aabb, Boxes, DepthConvention, FitInput, MapFitter, PerspectiveCamera, Technique, Workspace};
 use shadowfit_wgpu::need::{NeedPass, NeedView, SeenNeed};
-use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
+use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgsl};
 use wgpu::util::DeviceExt;
 
 /// Size of the picture, in pixels; rows of a multiple of 64 pixels are read back without padding.
@@ -387,7 +387,10 @@ impl Engine {
 /// STEP 2: a pipeline for the casters, with the engine's own vertices, the map's depth state and, for colour formats,
 /// its colour target. The map's matrix is at a bind group of the engine's choice. Both sides of the casters are drawn.
 fn caster_pipeline(device: &wgpu::Device, camera: &wgpu::BindGroupLayout, map: &ShadowMap) -> wgpu::RenderPipeline {
-    let module = module(device, [caster_wgsl(SHADOW_GROUP).as_str(), VERTEX_WGSL, CASTER_WGSL].concat());
+    let module = module(
+        device,
+        [caster_wgsl(map.descriptor(), &WgslOptions::group(SHADOW_GROUP)).as_str(), VERTEX_WGSL, CASTER_WGSL].concat(),
+    );
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some("caster"),
         bind_group_layouts: &[Some(camera), Some(map.caster_layout())],
@@ -414,7 +417,7 @@ fn caster_pipeline(device: &wgpu::Device, camera: &wgpu::BindGroupLayout, map: &
 /// STEP 3: paste the look-up into the engine's own shader, in a bind group of its choice, and put the map's layout
 /// into the pipeline.
 fn scene_pipeline(device: &wgpu::Device, camera: &wgpu::BindGroupLayout, map: &ShadowMap) -> wgpu::RenderPipeline {
-    let receiver = receiver_wgsl(map.descriptor(), SHADOW_GROUP);
+    let receiver = receiver_wgsl(map.descriptor(), &WgslOptions::group(SHADOW_GROUP));
     let module = module(device, [receiver.as_str(), VERTEX_WGSL, SCENE_WGSL].concat());
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some("scene"),

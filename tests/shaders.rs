@@ -25,14 +25,14 @@ use shadowfit::settings::{FilterKind, MapChoice, MapFormat};
 use shadowfit::{CasterVolume, DepthConvention};
 use shadowfit_render::shaders;
 use shadowfit_wgpu::need::need_wgsl;
-use shadowfit_wgpu::{MAX_MAPS, ShadowMapDescriptor, caster_wgsl, culling_wgsl, receiver_wgsl};
+use shadowfit_wgpu::{MAX_MAPS, ShadowMapDescriptor, WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl};
 
 use crate::support::workspace;
 
 /// Every shadow map that the look-up's WGSL differs for.
 fn descriptors() -> Vec<ShadowMapDescriptor> {
     let mut all = Vec::new();
-    for format in [MapFormat::Depth32Float, MapFormat::R32Float] {
+    for format in MapFormat::ALL {
         for filter in FilterKind::ALL {
             for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
                 for choice in [MapChoice::Coverage, MapChoice::ViewDepth] {
@@ -48,20 +48,23 @@ fn descriptors() -> Vec<ShadowMapDescriptor> {
 fn modules() -> Vec<(String, String)> {
     let mut all = vec![
         ("sky".to_owned(), shaders::sky()),
-        ("caster".to_owned(), shaders::caster()),
         ("lines".to_owned(), shaders::lines()),
         ("mip".to_owned(), shaders::mip()),
-        ("caster piece".to_owned(), caster_wgsl(0)),
-        ("culling piece".to_owned(), culling_wgsl(0)),
+        ("culling piece".to_owned(), culling_wgsl(&WgslOptions::group(0))),
         ("need, compute".to_owned(), need_wgsl(1)),
         ("need of four samples, compute".to_owned(), need_wgsl(4)),
     ];
+    for format in MapFormat::ALL {
+        let map = ShadowMapDescriptor { format, ..Default::default() };
+        all.push((format!("caster, {format:?}"), shaders::caster(&map)));
+        all.push((format!("caster piece, {format:?}"), caster_wgsl(&map, &WgslOptions::group(0))));
+    }
     for map in descriptors() {
         let kind = format!("{:?} {:?} {:?} {:?}", map.format, map.filter, map.depth, map.choice);
         all.push((format!("scene, {kind}"), shaders::scene(&map)));
         all.push((format!("probe, {kind}"), shaders::probe(&map)));
         all.push((format!("inset, {kind}"), shaders::inset(&map)));
-        all.push((format!("receiver piece, {kind}"), receiver_wgsl(&map, 1)));
+        all.push((format!("receiver piece, {kind}"), receiver_wgsl(&map, &WgslOptions::group(1))));
     }
     all
 }
@@ -96,7 +99,8 @@ fn filled(text: &str) -> Vec<String> {
                     .replace("GROUP", group)
                     .replace("MAX_MAPS", &MAX_MAPS.to_string())
                     .replace("MAX_PLANES", &CasterVolume::MAX_PLANES.to_string())
-                    .replace("COMPARE", closer),
+                    .replace("COMPARE", closer)
+                    .replace("BINDING_", ""),
             );
         }
     }
@@ -171,7 +175,7 @@ fn the_pieces_for_engines_name_nothing_without_their_prefix() {
 #[test]
 fn the_look_up_needs_uniforms_and_sampled_textures_only_and_no_derivatives() {
     for map in descriptors() {
-        let source = receiver_wgsl(&map, 1);
+        let source = receiver_wgsl(&map, &WgslOptions::group(1));
         let module = parse("receiver", &source);
         for (_, global) in module.global_variables.iter() {
             let allowed = matches!(global.space, naga::AddressSpace::Uniform | naga::AddressSpace::Handle);
@@ -200,7 +204,7 @@ fn the_look_up_needs_uniforms_and_sampled_textures_only_and_no_derivatives() {
 fn the_look_up_reads_the_bind_group_that_it_is_told_to() {
     for map in descriptors() {
         for group in [0, 1, 3] {
-            let module = parse("receiver", &receiver_wgsl(&map, group));
+            let module = parse("receiver", &receiver_wgsl(&map, &WgslOptions::group(group)));
             let mut bindings: Vec<u32> = Vec::new();
             for (_, global) in module.global_variables.iter() {
                 let binding = global.binding.as_ref().expect("every global is bound");
@@ -208,7 +212,7 @@ fn the_look_up_reads_the_bind_group_that_it_is_told_to() {
                 bindings.push(binding.binding);
             }
             bindings.sort_unstable();
-            let expected: &[u32] = if map.format == MapFormat::Depth32Float { &[0, 1, 2] } else { &[0, 1] };
+            let expected: &[u32] = if map.format.is_depth() { &[0, 1, 2] } else { &[0, 1] };
             assert_eq!(bindings, expected, "{map:?}");
         }
     }

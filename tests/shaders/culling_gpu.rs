@@ -5,7 +5,7 @@ use shadowfit::culling::{OrientedBox, Sphere, Sweep, cull};
 use shadowfit::glam::{DVec2, DVec3, Mat3, Vec3};
 use shadowfit::{Aabb, CasterVolume, FitInput, MapFitter, PerspectiveCamera, Technique, Workspace};
 use shadowfit_render::Gpu;
-use shadowfit_wgpu::{CullingUniform, culling_wgsl};
+use shadowfit_wgpu::{CullingUniform, WgslOptions, culling_wgsl};
 use wgpu::util::DeviceExt;
 
 use crate::support::software_gpu;
@@ -103,7 +103,7 @@ fn ask(gpu: &Gpu, uniform: &CullingUniform, shapes: &[Shape]) -> Vec<[u32; 4]> {
     let device = &gpu.device;
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: None,
-        source: wgpu::ShaderSource::Wgsl((culling_wgsl(0) + SHADER).into()),
+        source: wgpu::ShaderSource::Wgsl((culling_wgsl(&WgslOptions::group(0)) + SHADER).into()),
     });
     let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: None,

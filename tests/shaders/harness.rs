@@ -5,7 +5,7 @@ use shadowfit::glam::{DVec3, Vec2, Vec3};
 use shadowfit::settings::BiasSettings;
 use shadowfit::{Bias, LightFit};
 use shadowfit_render::Gpu;
-use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
+use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgsl};
 
 /// A point that is asked about: position relative to the origin, in metres, and unit normal.
 #[repr(C)]
@@ -43,13 +43,32 @@ pub(super) const ROW: u32 = 256;
 /// Format of a picture of answers.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
-/// Casters at plain positions, and the depth again as colour for the formats that need it.
+/// Casters at plain positions, as a depth format wants them, and where fragment shaders clamp.
 const CASTER: &str = "
-@vertex fn vs(@location(0) position: vec3<f32>) -> @builtin(position) vec4<f32> {
-    return shadowfit_caster_position(position);
+struct Caster {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) depth: f32,
 }
-@fragment fn fs(@builtin(position) position: vec4<f32>) -> @location(0) f32 {
-    return saturate(position.z);
+@vertex fn vs(@location(0) position: vec3<f32>) -> Caster {
+    return Caster(shadowfit_caster_position(position), shadowfit_caster_depth(position));
+}
+@fragment fn fs_clamped(in: Caster) -> @builtin(frag_depth) f32 {
+    return shadowfit_clamped_depth(in.depth);
+}
+";
+
+/// The colour for the formats that need one.
+const CASTER_COLOR: &str = "
+struct Color {
+    @location(0) color: vec4<f32>,
+    @builtin(frag_depth) depth: f32,
+}
+@fragment fn fs_color(in: Caster) -> @location(0) vec4<f32> {
+    return shadowfit_caster_color(in.clip.z);
+}
+@fragment fn fs_clamped_color(in: Caster) -> Color {
+    let depth = shadowfit_clamped_depth(in.depth);
+    return Color(shadowfit_caster_color(depth), depth);
 }
 ";
 
@@ -178,7 +197,7 @@ impl<'a> Harness<'a> {
             .replace("ROWS", &format!("{rows}.0"))
             .replace("vec2<f32>(ROW", &format!("vec2<f32>({ROW}.0"))
             .replace("ROW", &format!("{ROW}u"));
-        let module = module(self.gpu, receiver_wgsl(self.map.descriptor(), 0) + &source);
+        let module = module(self.gpu, receiver_wgsl(self.map.descriptor(), &WgslOptions::group(0)) + &source);
         let pipeline = receiver_pipeline(self.gpu, self.map.receiver_layout(), &module);
         let targets = [(); 2].map(|()| target(self.gpu, rows));
         let views = [0, 1].map(|index: usize| targets[index].create_view(&wgpu::TextureViewDescriptor::default()));
@@ -237,8 +256,15 @@ fn layout(gpu: &Gpu, group: u32, layout: &wgpu::BindGroupLayout) -> wgpu::Pipeli
 }
 
 fn caster_pipeline(gpu: &Gpu, map: &ShadowMap, group: u32) -> wgpu::RenderPipeline {
-    let module = module(gpu, caster_wgsl(group) + CASTER);
     let color = [map.color_target()];
+    let pieces = if color[0].is_some() { [CASTER, CASTER_COLOR] } else { [CASTER, ""] };
+    let module = module(gpu, caster_wgsl(map.descriptor(), &WgslOptions::group(group)) + &pieces.concat());
+    let entry = match (color[0].is_some(), map.clamps_in_fragment()) {
+        (false, false) => None,
+        (false, true) => Some("fs_clamped"),
+        (true, false) => Some("fs_color"),
+        (true, true) => Some("fs_clamped_color"),
+    };
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: None,
         layout: Some(&layout(gpu, group, map.caster_layout())),
@@ -255,11 +281,11 @@ fn caster_pipeline(gpu: &Gpu, map: &ShadowMap, group: u32) -> wgpu::RenderPipeli
         primitive: map.primitive_state(),
         depth_stencil: Some(map.depth_stencil_state()),
         multisample: wgpu::MultisampleState::default(),
-        fragment: color[0].is_some().then(|| wgpu::FragmentState {
+        fragment: entry.map(|entry| wgpu::FragmentState {
             module: &module,
-            entry_point: Some("fs"),
+            entry_point: Some(entry),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &color,
+            targets: if color[0].is_some() { &color } else { &[] },
         }),
         multiview_mask: None,
         cache: None,

@@ -7,7 +7,8 @@ use shadowfit::culling::CasterPlanes;
 use shadowfit_render::{FrameUniform, InsetUniform, InstanceData, LineVertex, MaterialUniform, shaders};
 use shadowfit_wgpu::need::{NeedUniform, need_wgsl};
 use shadowfit_wgpu::{
-    CasterUniform, CullingUniform, MAX_MAPS, MapUniform, ReceiverUniform, ShadowMapDescriptor, culling_wgsl,
+    CasterUniform, CullingUniform, MAX_MAPS, MapUniform, ReceiverUniform, ShadowMapDescriptor, WgslOptions,
+    culling_wgsl,
 };
 
 use super::parse;
@@ -56,7 +57,7 @@ fn assert_same(module: &Module, layout: &Layout) {
 #[test]
 fn every_uniform_has_the_size_and_offsets_of_its_wgsl_struct() {
     let map = ShadowMapDescriptor::default();
-    let caster = parse("caster", &shaders::caster());
+    let caster = parse("caster", &shaders::caster(&ShadowMapDescriptor::default()));
     let scene = parse("scene", &shaders::scene(&map));
     let inset = parse("inset", &shaders::inset(&map));
     let material = layout!(
@@ -90,7 +91,12 @@ fn every_uniform_has_the_size_and_offsets_of_its_wgsl_struct() {
             map_tints,
         }
     );
-    assert_same(&caster, &layout!("shadowfit_Caster" = CasterUniform { clip_from_world }));
+    assert_same(
+        &caster,
+        &layout!(
+            "shadowfit_Caster" = CasterUniform { clip_from_world, clamps_in_fragment, padding_0, padding_1, padding_2 }
+        ),
+    );
     assert_same(&caster, &material);
     assert_same(&scene, &material);
     assert_same(&scene, &frame);
@@ -109,17 +115,40 @@ fn every_uniform_has_the_size_and_offsets_of_its_wgsl_struct() {
                 far,
                 blend_near,
                 layer,
-                padding,
+                padding_0,
+                wrap,
+                disc,
+                penumbra,
+                padding_1,
+                padding_2,
             }
         ),
     );
-    assert_same(&scene, &layout!("shadowfit_Receiver" = ReceiverUniform { to_light, map_count, view, maps }));
+    assert_same(
+        &scene,
+        &layout!(
+            "shadowfit_Receiver" = ReceiverUniform {
+                to_light,
+                map_count,
+                view,
+                fade_near,
+                fade_width,
+                least_disc,
+                greatest_disc,
+                frame_shift,
+                padding_0,
+                padding_1,
+                padding_2,
+                maps,
+            }
+        ),
+    );
     assert_same(&inset, &layout!("Inset" = InsetUniform { rectangle, depth_range, map, padding }));
 }
 
 #[test]
 fn the_volumes_of_the_culling_uniform_lie_as_in_wgsl() {
-    let culling = parse("culling", &culling_wgsl(0));
+    let culling = parse("culling", &culling_wgsl(&WgslOptions::group(0)));
     assert_same(&culling, &layout!("shadowfit_CasterPlanes" = CasterPlanes { planes, count, padding }));
     assert_same(
         &culling,
@@ -203,7 +232,7 @@ fn instances_in_the_buffer_are_what_the_vertex_shaders_read() {
     let ends =
         [rows, rows + 16, rows + 32, offset_of!(InstanceData, first_triangle), offset_of!(InstanceData, padding)];
     assert_eq!(packed(&scene, &at_locations(&scene, "SceneIn", &[5, 6, 7, 8])), ends);
-    let caster = parse("caster", &shaders::caster());
+    let caster = parse("caster", &shaders::caster(&ShadowMapDescriptor::default()));
     assert_eq!(packed(&caster, &at_locations(&caster, "CasterIn", &[5, 6, 7])), ends[..4]);
     assert_eq!(size_of::<InstanceData>() % 16, 0);
 }
@@ -211,7 +240,7 @@ fn instances_in_the_buffer_are_what_the_vertex_shaders_read() {
 #[test]
 fn casters_read_each_location_with_the_type_that_the_scene_reads_there() {
     let scene = parse("scene", &shaders::scene(&ShadowMapDescriptor::default()));
-    let caster = parse("caster", &shaders::caster());
+    let caster = parse("caster", &shaders::caster(&ShadowMapDescriptor::default()));
     for member in reflected(&caster, "CasterIn").0 {
         let Some(Binding::Location { location, .. }) = member.binding else { continue };
         let other = at_locations(&scene, "SceneIn", &[location])[0];

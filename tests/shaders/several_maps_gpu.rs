@@ -11,7 +11,8 @@ use shadowfit_wgpu::{MAX_MAPS, MapFit, MapView, ShadowMapDescriptor};
 use super::harness::{Choice, Harness, Point};
 use crate::support::software_gpu;
 
-const NO_BIAS: BiasSettings = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };
+const NO_BIAS: BiasSettings =
+    BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };
 /// The light's direction of travel.
 const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.2);
 
@@ -150,7 +151,7 @@ fn the_map_index_and_the_view_depth_in_wgsl_are_those_computed_here() {
     let fits = [map_to(5.0, 256), map_to(20.0, 256), map_to(60.0, 256)];
     let maps: Vec<MapFit> = fits.iter().zip([4.0, 15.0, 50.0]).map(|(fit, far)| map_fit(fit, far)).collect();
     let (origin, eye) = (DVec3::new(1.0, -0.5, 2.0), DVec3::new(-0.5, 0.25, 1.0));
-    let view = MapView { origin, eye, forward };
+    let view = MapView { origin, eye, forward, frame: 0 };
     let harness = Harness::with_maps(&gpu, &descriptor(&maps), &view, &maps, &lids(&maps, 0));
     // In front of the eye and behind it, in view and beside it.
     let positions: Vec<Vec3> = (0..4000)

@@ -100,13 +100,15 @@ impl PartKey {
 impl Pipelines {
     pub(crate) fn new(device: &wgpu::Device, layouts: &Layouts, map: &ShadowMap, samples: u32) -> Self {
         let maker = Maker { device, samples };
-        let caster = maker.module("caster", shaders::caster());
+        let caster = maker.module("caster", shaders::caster(map.descriptor()));
         let scene = maker.module("scene", shaders::scene(map.descriptor()));
         let caster_layout = maker.layout(&[map.caster_layout(), &layouts.material]);
         let scene_layout = maker.layout(&[&layouts.frame, map.receiver_layout(), &layouts.material]);
-        let [plain_entry, masked_entry] = match map.color_target() {
-            Some(_) => [Some("fs_caster_depth"), Some("fs_caster_masked_depth")],
-            None => [None, Some("fs_caster_masked")],
+        let [plain_entry, masked_entry] = match (map.color_target().is_some(), map.clamps_in_fragment()) {
+            (false, false) => [None, Some("fs_caster_masked")],
+            (false, true) => [Some("fs_caster_clamped"), Some("fs_caster_masked_clamped")],
+            (true, false) => [Some("fs_caster_color"), Some("fs_caster_masked_color")],
+            (true, true) => [Some("fs_caster_clamped_color"), Some("fs_caster_masked_clamped_color")],
         };
         let caster_pipeline = |entry| maker.caster(&caster_layout, &caster, entry, map);
         Self {

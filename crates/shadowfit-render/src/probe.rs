@@ -32,7 +32,7 @@ pub struct Probe {
 }
 
 /// Why a frame could not be probed.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ProbeError {
     /// A fit does not suit the shadow map.
     ShadowMap(ShadowMapError),

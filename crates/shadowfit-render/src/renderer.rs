@@ -85,7 +85,9 @@ impl Renderer {
             return Ok(());
         }
         self.shadow_map = ShadowMap::new(&gpu.device, descriptor)?;
-        let same_shaders = ShadowMapDescriptor { resolution: descriptor.resolution, ..old } == *descriptor;
+        // What the shaders read from uniforms may differ.
+        let ShadowMapDescriptor { resolution, fade, .. } = *descriptor;
+        let same_shaders = ShadowMapDescriptor { resolution, fade, ..old } == *descriptor;
         if !same_shaders {
             self.pipelines = Pipelines::new(&gpu.device, &self.layouts, &self.shadow_map, self.samples);
         }
@@ -187,7 +189,7 @@ impl Renderer {
     ) -> Result<Plan, ShadowMapError> {
         let origin = frame.camera.eye;
         let (eye, forward) = frame.choice.unwrap_or((origin, frame.camera.forward.normalize()));
-        let view = MapView { origin, eye, forward };
+        let view = MapView { origin, eye, forward, frame: 0 };
         self.shadow_map.prepare(&gpu.queue, &view, &self.culled(frame, &view))?;
         let uniform = FrameUniform::new(frame.camera, -frame.direction, frame.shadows, frame.atmosphere, size)
             .with_overlay(frame.overlay);

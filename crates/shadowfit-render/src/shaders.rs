@@ -1,6 +1,6 @@
 //! The shader modules, put together from the pieces in `shaders/` and the shadow map's own WGSL.
 
-use shadowfit_wgpu::{ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
+use shadowfit_wgpu::{ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgsl};
 
 /// Bind group of the map's matrix in the shadow pass.
 pub const CASTER_GROUP: u32 = 0;
@@ -12,11 +12,12 @@ const FRAME: &str = include_str!("shaders/frame.wgsl");
 const MATERIAL: &str = include_str!("shaders/material.wgsl");
 
 /// The pieces as they lie in the folder, for tests that look for files which no module uses.
-pub const PIECES: [(&str, &str); 9] = [
+pub const PIECES: [(&str, &str); 10] = [
     ("frame.wgsl", FRAME),
     ("material.wgsl", MATERIAL),
     ("sky.wgsl", include_str!("shaders/sky.wgsl")),
     ("caster.wgsl", include_str!("shaders/caster.wgsl")),
+    ("caster_color.wgsl", include_str!("shaders/caster_color.wgsl")),
     ("scene.wgsl", include_str!("shaders/scene.wgsl")),
     ("probe.wgsl", include_str!("shaders/probe.wgsl")),
     ("lines.wgsl", include_str!("shaders/lines.wgsl")),
@@ -30,15 +31,23 @@ pub fn sky() -> String {
 }
 
 /// The shadow pass: group 0 is the shadow map's, group 1 the material's.
-pub fn caster() -> String {
-    [caster_wgsl(CASTER_GROUP), MATERIAL.replace("MATERIAL_GROUP", "1"), include_str!("shaders/caster.wgsl").to_owned()]
-        .concat()
+pub fn caster(shadow_map: &ShadowMapDescriptor) -> String {
+    let color = if shadow_map.format.is_depth() { "" } else { include_str!("shaders/caster_color.wgsl") };
+    let material = MATERIAL.replace("MATERIAL_GROUP", "1");
+    let shadow_map = caster_wgsl(shadow_map, &WgslOptions::group(CASTER_GROUP));
+    [&shadow_map, &material, include_str!("shaders/caster.wgsl"), color].concat()
 }
 
 /// The shaded pass: frame, shadow map and material are groups 0, 1 and 2.
 pub fn scene(shadow_map: &ShadowMapDescriptor) -> String {
     let material = MATERIAL.replace("MATERIAL_GROUP", "2");
-    [FRAME, &receiver_wgsl(shadow_map, SHADOW_GROUP), &material, include_str!("shaders/scene.wgsl")].concat()
+    [
+        FRAME,
+        &receiver_wgsl(shadow_map, &WgslOptions::group(SHADOW_GROUP)),
+        &material,
+        include_str!("shaders/scene.wgsl"),
+    ]
+    .concat()
 }
 
 /// The probe pass, with the groups of the shaded one; it needs the primitive index. The directive that enables it
@@ -54,7 +63,7 @@ pub fn lines() -> String {
 
 /// The shadow map's inset: frame, shadow map and inset are groups 0, 1 and 2.
 pub fn inset(shadow_map: &ShadowMapDescriptor) -> String {
-    [FRAME, &receiver_wgsl(shadow_map, SHADOW_GROUP), include_str!("shaders/inset.wgsl")].concat()
+    [FRAME, &receiver_wgsl(shadow_map, &WgslOptions::group(SHADOW_GROUP)), include_str!("shaders/inset.wgsl")].concat()
 }
 
 /// Texture levels.

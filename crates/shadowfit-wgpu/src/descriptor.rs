@@ -2,6 +2,7 @@
 
 use shadowfit::glam::UVec2;
 use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MAX_BLEND, MAX_MAPS, MapChoice, MapFormat, Softness};
+use shadowfit::softness::MAX_RADIUS;
 use shadowfit::{DepthConvention, Technique};
 
 use crate::ShadowMapError;
@@ -22,6 +23,9 @@ pub struct ShadowMapDescriptor {
     pub filter: FilterKind,
     /// Width of the filters that are soft.
     pub softness: Softness,
+    /// View depth from which on shadows fade, and the one where they have vanished, in metres; both `f32::MAX` for
+    /// shadows that end with their maps. What lies beyond is lit.
+    pub fade: [f32; 2],
     /// Which of the maps a point reads.
     pub choice: MapChoice,
     /// Texels over which a map that is read by coverage is blended into the next coarser one, inward from the filter's
@@ -31,9 +35,11 @@ pub struct ShadowMapDescriptor {
     /// Depth convention of the fits: 0..1, plain or reversed; wgpu has no -1..1.
     pub depth: DepthConvention,
     /// Whether casters before the near plane are kept, flattened onto it ("pancaking"), as fits with
-    /// [`CasterPolicy::DepthClamp`] need it. The device needs
-    /// [`wgpu::Features::DEPTH_CLIP_CONTROL`].
+    /// [`CasterPolicy::DepthClamp`] need it. On devices without [`wgpu::Features::DEPTH_CLIP_CONTROL`] the
+    /// engine's fragment shaders do it: [`ShadowMap::clamps_in_fragment`](crate::ShadowMap::clamps_in_fragment).
     pub depth_clamp: bool,
+    /// First binding of the bind groups of casters and receivers; the others follow it. Default: 0.
+    pub first_binding: u32,
 }
 
 impl Default for ShadowMapDescriptor {
@@ -53,17 +59,25 @@ impl From<&Technique> for ShadowMapDescriptor {
             format: technique.format,
             filter: technique.filter,
             softness: technique.softness,
+            fade: fade(technique),
             choice: technique.map_choice(),
             blend: technique.blend,
             depth: technique.fit.depth,
             // The XNA sample's fit has no caster policy.
             depth_clamp: technique.fit.casters == CasterPolicy::DepthClamp && technique.fit.kind != FitKind::XnaSample,
+            first_binding: 0,
         }
     }
 }
 
+/// View depths between which the shadows of a technique fade.
+fn fade(technique: &Technique) -> [f32; 2] {
+    let (end, share) = (technique.fit.max_distance, technique.fade);
+    if share > 0.0 && end < f32::MAX { [end * (1.0 - share.min(1.0)), end] } else { [f32::MAX; 2] }
+}
+
 impl ShadowMapDescriptor {
-    /// Refuses a descriptor that the device does not support.
+    /// Refuses a descriptor that makes no shadow map, or none on this device.
     pub(crate) fn check(&self, device: &wgpu::Device) -> Result<(), ShadowMapError> {
         let device_limit = device.limits().max_texture_dimension_2d;
         let resolution = self.resolution;
@@ -79,9 +93,92 @@ impl ShadowMapDescriptor {
         if self.depth == DepthConvention::NegativeOneToOne {
             return Err(ShadowMapError::Depth(self.depth));
         }
-        if self.depth_clamp && !device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL) {
-            return Err(ShadowMapError::DepthClamp);
+        let [near, far] = self.fade;
+        // NaN has no order, and infinity no difference.
+        if !(near <= far && near.is_finite() && far.is_finite()) {
+            return Err(ShadowMapError::Fade(self.fade));
+        }
+        let Softness { floor, ceiling, .. } = self.softness;
+        if !(0.0..=ceiling).contains(&floor) || !(1.0..=MAX_RADIUS).contains(&ceiling) {
+            return Err(ShadowMapError::Softness { floor, ceiling });
+        }
+        let tangent = self.softness.tangent();
+        if !(0.0..f32::INFINITY).contains(&tangent) {
+            return Err(ShadowMapError::SoftRadius(tangent));
+        }
+        self.check_pcss(device.adapter_info().backend)
+    }
+
+    /// Refuses to look for casters' distances where there are none, or where shaders cannot read them.
+    fn check_pcss(&self, backend: wgpu::Backend) -> Result<(), ShadowMapError> {
+        if self.filter != FilterKind::Pcss {
+            return Ok(());
+        }
+        if self.depth_clamp {
+            return Err(ShadowMapError::PcssDepthClamp);
+        }
+        if self.format.is_depth() && backend == wgpu::Backend::Gl {
+            return Err(ShadowMapError::PcssDepthLoads(self.format));
         }
         Ok(())
+    }
+
+    /// Format of the texture that shaders read.
+    pub(crate) fn texture_format(&self) -> wgpu::TextureFormat {
+        match self.format {
+            MapFormat::Depth32Float => wgpu::TextureFormat::Depth32Float,
+            MapFormat::Depth16Unorm => wgpu::TextureFormat::Depth16Unorm,
+            MapFormat::R32Float => wgpu::TextureFormat::R32Float,
+            MapFormat::R16Float => wgpu::TextureFormat::R16Float,
+            MapFormat::Rgba8Packed => wgpu::TextureFormat::Rgba8Unorm,
+            MapFormat::R8Grey => wgpu::TextureFormat::R8Unorm,
+        }
+    }
+
+    /// Format of the depth attachment: the map itself, or what lies beside a colour.
+    pub(crate) fn depth_format(&self) -> wgpu::TextureFormat {
+        if self.format.is_depth() { self.texture_format() } else { wgpu::TextureFormat::Depth32Float }
+    }
+
+    /// Binding of the uniform, the texture (1) or the sampler (2).
+    pub(crate) fn binding(&self, index: u32) -> u32 {
+        self.first_binding.saturating_add(index)
+    }
+
+    /// The colour that stores a depth of 0 or 1 in a colour format.
+    pub(crate) fn color_of(&self, depth: f32) -> wgpu::Color {
+        if self.format != MapFormat::Rgba8Packed {
+            return wgpu::Color { r: depth.into(), g: 0.0, b: 0.0, a: 1.0 };
+        }
+        let [r, g, b, a] = depth.to_bits().to_le_bytes().map(|byte| f64::from(byte) / 255.0);
+        wgpu::Color { r, g, b, a }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shadows_fade_over_the_technique_s_share_of_the_shadow_distance_if_there_is_one() {
+        let mut technique = Technique::default().with_fade(0.25);
+        technique.fit.max_distance = 80.0;
+        assert_eq!(ShadowMapDescriptor::from(&technique).fade, [60.0, 80.0]);
+        assert_eq!(ShadowMapDescriptor::from(&technique.with_fade(0.0)).fade, [f32::MAX; 2]);
+        technique.fit.max_distance = f32::MAX;
+        assert_eq!(ShadowMapDescriptor::from(&technique).fade, [f32::MAX; 2]);
+    }
+
+    #[test]
+    fn pcss_is_refused_without_the_casters_distances_and_says_what_to_do() {
+        let pcss = ShadowMapDescriptor { filter: FilterKind::Pcss, ..ShadowMapDescriptor::default() };
+        assert_eq!(pcss.check_pcss(wgpu::Backend::Vulkan), Ok(()));
+        let clamped = ShadowMapDescriptor { depth_clamp: true, ..pcss };
+        let error = clamped.check_pcss(wgpu::Backend::Vulkan).expect_err("clamped casters have no distance");
+        assert!(error.to_string().contains("caster policy"), "{error}");
+        let error = pcss.check_pcss(wgpu::Backend::Gl).expect_err("no loads of depth");
+        assert!(error.to_string().contains("Depth32Float") && error.to_string().contains("R32Float"), "{error}");
+        let color = ShadowMapDescriptor { format: MapFormat::R32Float, ..pcss };
+        assert_eq!(color.check_pcss(wgpu::Backend::Gl), Ok(()));
     }
 }

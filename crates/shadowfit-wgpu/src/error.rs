@@ -4,13 +4,14 @@
 use core::fmt;
 
 use shadowfit::glam::Vec3;
-use shadowfit::settings::MAX_BLEND;
+use shadowfit::settings::{MAX_BLEND, MapFormat};
+use shadowfit::softness::MAX_RADIUS;
 use shadowfit::{DepthConvention, FitError};
 
 use crate::{MAX_MAPS, RESOLUTIONS};
 
 /// Why a [`ShadowMap`](crate::ShadowMap) could not be made or prepared.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ShadowMapError {
     /// Width or height outside [`RESOLUTIONS`] or above the device's limit, which is given.
     Resolution {
@@ -25,8 +26,52 @@ pub enum ShadowMapError {
     Blend(f32),
     /// A depth convention that wgpu's clip space does not have.
     Depth(DepthConvention),
-    /// Depth clamp on a device without [`wgpu::Features::DEPTH_CLIP_CONTROL`].
-    DepthClamp,
+    /// Radii of soft filters that are not 0 ≤ floor ≤ ceiling, with a ceiling of 1 to [`MAX_RADIUS`] texels.
+    Softness {
+        /// [`Softness::floor`](shadowfit::settings::Softness::floor), in texels.
+        floor: f32,
+        /// [`Softness::ceiling`](shadowfit::settings::Softness::ceiling), in texels.
+        ceiling: f32,
+    },
+    /// A softness that is negative or no number, as the tangent of the sun's angular radius.
+    SoftRadius(f32),
+    /// View depths of a fade that do not ascend or are not finite, in metres.
+    Fade([f32; 2]),
+    /// PCSS with depth clamp: a clamped caster has lost its distance.
+    PcssDepthClamp,
+    /// PCSS with a depth format on OpenGL, whose shaders cannot read depth as a number.
+    PcssDepthLoads(MapFormat),
+    /// A format that this device cannot draw to or read.
+    Format {
+        /// The format.
+        format: MapFormat,
+        /// What the device lacks.
+        why: String,
+    },
+    /// The device has not enough memory for the maps.
+    OutOfMemory {
+        /// Their width and height, in texels.
+        resolution: [u32; 2],
+        /// Number of maps.
+        maps: u32,
+        /// Their format.
+        format: MapFormat,
+    },
+    /// The device refused to make a resource, with its own words.
+    Device(String),
+    /// A prefix that no name in WGSL can begin with.
+    Prefix(String),
+    /// A map that wraps around beyond its layer, or that does not fill it.
+    Wrap {
+        /// Index of the map.
+        index: usize,
+        /// Where its first texel is to be stored, in texels.
+        wrap: [u32; 2],
+        /// Its width and height, in texels.
+        fit: [u32; 2],
+        /// Those of the layer.
+        map: [u32; 2],
+    },
     /// A fit has more texels than a layer, or another depth convention: biases and comparisons
     /// would be wrong.
     Fit {
@@ -87,10 +132,47 @@ impl fmt::Display for ShadowMapError {
             Self::Depth(depth) => {
                 write!(f, "depth convention {depth:?}: wgpu's clip space has 0..1, plain or reversed")
             }
-            Self::DepthClamp => write!(
+            Self::Softness { floor, ceiling } => write!(
                 f,
-                "depth clamp: this device has no DEPTH_CLIP_CONTROL; let the fit place its near plane by another caster \
-                 policy"
+                "soft filters of {floor} to {ceiling} texels: the floor must be 0 to the ceiling, and that 1 to \
+                 {MAX_RADIUS}"
+            ),
+            Self::SoftRadius(tangent) => {
+                write!(f, "softness of {tangent} m of penumbra per metre: it must be a number that is not negative")
+            }
+            Self::Fade([near, far]) => {
+                write!(
+                    f,
+                    "shadows that fade from view depth {near} m to {far} m: both must be finite, the nearer first"
+                )
+            }
+            Self::PcssDepthClamp => write!(
+                f,
+                "PCSS with depth clamp: casters before the near plane have lost their distance; let the fit place its \
+                 near plane by another caster policy, or take another filter"
+            ),
+            Self::PcssDepthLoads(format) => write!(
+                f,
+                "PCSS with {format:?}: OpenGL's shaders cannot read a depth texture as numbers; take R32Float"
+            ),
+            Self::Format { format, why } => write!(
+                f,
+                "this device cannot use {format:?} as a shadow map: {why}; take Depth32Float, which every device has"
+            ),
+            Self::OutOfMemory { resolution: [width, height], maps, format } => write!(
+                f,
+                "the device is out of memory for {maps} maps of {width} × {height} texels in {format:?}: take fewer, \
+                 smaller or coarser ones"
+            ),
+            Self::Device(error) => write!(f, "the device cannot make the shadow map: {error}"),
+            Self::Prefix(prefix) => write!(
+                f,
+                "names in WGSL cannot begin with {prefix:?}: take ASCII letters, digits and underscores, a letter first"
+            ),
+            Self::Wrap { index, wrap, fit, map } => write!(
+                f,
+                "map {index} of {fit:?} texels is to begin at {wrap:?} in a layer of {map:?}: only a map that fills its \
+                 layer wraps around, and it begins inside"
             ),
             Self::Fit { index, fit, map } => write!(
                 f,

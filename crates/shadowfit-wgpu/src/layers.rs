@@ -6,8 +6,9 @@
 use shadowfit::Aabb;
 use shadowfit::scroll::TexelRect;
 
+use crate::ShadowMap;
 use crate::cache::{FramePlan, Layer, PassPlan};
-use crate::{ShadowMap, ShadowMapError};
+use crate::caught::caught;
 
 /// Draws into parts of depth maps.
 #[derive(Debug)]
@@ -50,9 +51,9 @@ impl Layers {
     }
 
     /// Makes the static casters' layers, if they are not there.
-    pub(crate) fn split(&mut self, device: &wgpu::Device, map: &ShadowMap) -> Result<(), ShadowMapError> {
+    pub(crate) fn split(&mut self, device: &wgpu::Device, map: &ShadowMap) -> Result<(), wgpu::Error> {
         if self.fixed.is_none() {
-            self.fixed = Some(crate::map::caught(device, || StaticLayers::new(device, map))?);
+            self.fixed = Some(caught(device, || StaticLayers::new(device, map))?);
         }
         Ok(())
     }
@@ -197,7 +198,10 @@ impl<'a> Shape<'a> {
 }
 
 fn module(device: &wgpu::Device, pieces: &[&str], map: &ShadowMap) -> wgpu::ShaderModule {
-    let source = pieces.concat().replace("FAR", &format!("{:?}", map.far_depth()));
+    let source = pieces
+        .concat()
+        .replace("FAR", &format!("{:?}", map.far_depth()))
+        .replace("BINDING", &map.descriptor().first_binding.to_string());
     device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("shadowfit layers"),
         source: wgpu::ShaderSource::Wgsl(source.into()),

@@ -7,12 +7,13 @@
 //! #         fitted: &shadowfit::FittedMaps, camera: &shadowfit::PerspectiveCamera,
 //! #         forward: shadowfit::glam::Vec3) -> Result<(), Box<dyn std::error::Error>> {
 //! use shadowfit::Technique;
-//! use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, caster_wgsl, receiver_wgsl};
+//! use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgsl};
 //!
 //! let technique = Technique::default(); // four maps
 //! let mut map = ShadowMap::new(device, &ShadowMapDescriptor::from(&technique))?;
-//! let caster = caster_wgsl(0); // goes into the engine's vertex shader of the shadow pass, as @group(0)
-//! let receiver = receiver_wgsl(map.descriptor(), 1); // goes into its fragment shader, as @group(1)
+//! // Goes into the engine's vertex shader of the shadow pass, as @group(0), and into its fragment shader, as @group(1).
+//! let caster = caster_wgsl(map.descriptor(), &WgslOptions::group(0));
+//! let receiver = receiver_wgsl(map.descriptor(), &WgslOptions::group(1));
 //!
 //! // Each frame: the maps as `shadowfit::MapFitter` fitted them, nearest first. It wants to know what the last frame
 //! // showed, which the module `need` finds.
@@ -30,6 +31,7 @@
 //! ```
 
 mod cache;
+mod caught;
 mod descriptor;
 mod error;
 mod kept_maps;
@@ -38,6 +40,7 @@ mod map;
 mod map_fit;
 pub mod need;
 mod shader;
+mod stored_part;
 mod sun_frame;
 mod sun_shadows;
 mod sweep;
@@ -49,8 +52,9 @@ pub use error::ShadowMapError;
 pub use kept_maps::{KeptMaps, ShadowPass, ShadowPiece};
 pub use map::ShadowMap;
 pub use map_fit::{MapFit, MapView};
-pub use shader::{caster_wgsl, culling_wgsl, receiver_wgsl};
+pub use shader::{WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl};
 pub use shadowfit::settings::MAX_MAPS;
+pub use stored_part::StoredPart;
 pub use sun_frame::SunFrame;
 pub use sun_shadows::{SunShadows, SunShadowsError};
 pub use uniform::{CasterUniform, CullingUniform, MapUniform, ReceiverUniform};

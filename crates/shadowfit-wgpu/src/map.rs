@@ -1,16 +1,19 @@
 //! The shadow map as a GPU resource: textures, clears, bind groups, and one pass per map.
 
-use shadowfit::settings::{CasterPolicy, FilterKind, MapFormat};
+use shadowfit::glam::UVec2;
+use shadowfit::settings::{CasterPolicy, FilterKind};
 use shadowfit::{CasterVolume, DepthConvention};
 
+use crate::caught::caught;
 use crate::map_fit::check;
 use crate::uniform::{CasterUniform, ReceiverUniform};
-use crate::{MapFit, MapView, ShadowMapDescriptor, ShadowMapError};
+use crate::{MapFit, MapView, ShadowMapDescriptor, ShadowMapError, StoredPart};
 
 /// Shadow maps of one light: equal layers of one texture array, their passes and bind groups.
 #[derive(Debug)]
 pub struct ShadowMap {
     descriptor: ShadowMapDescriptor,
+    clamps_in_fragment: bool,
     layers: Vec<Layer>,
     view: wgpu::TextureView,
     caster_layout: wgpu::BindGroupLayout,
@@ -29,8 +32,9 @@ struct Layer {
     color: Option<wgpu::TextureView>,
     caster_uniform: wgpu::Buffer,
     caster_group: wgpu::BindGroup,
-    /// Width and height of the corner that the present map uses, in texels.
-    used: [u32; 2],
+    /// Width and height of the corner that the present map uses, and where its first texel is stored, in texels.
+    used: UVec2,
+    wrap: UVec2,
 }
 
 impl ShadowMap {
@@ -38,19 +42,20 @@ impl ShadowMap {
     ///
     /// # Errors
     ///
-    /// [`ShadowMapError`] if the resolution, the number of maps, the depth convention or depth clamp
-    /// is not possible.
+    /// [`ShadowMapError`] if the descriptor is not possible, or not on this device.
     pub fn new(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> Result<Self, ShadowMapError> {
         descriptor.check(device)?;
-        let caster_layout = caster_layout(device);
+        let textures = Textures::new(device, descriptor)?;
+        caught(device, || Self::with_textures(device, descriptor, &textures))
+            .map_err(|error| ShadowMapError::Device(error.to_string()))
+    }
+
+    fn with_textures(device: &wgpu::Device, descriptor: &ShadowMapDescriptor, textures: &Textures) -> Self {
+        let caster_layout = caster_layout(device, descriptor);
         let receiver_layout = receiver_layout(device, descriptor);
-        let depth_texture = texture(device, descriptor, wgpu::TextureFormat::Depth32Float);
-        let color_texture = (descriptor.format == MapFormat::R32Float)
-            .then(|| texture(device, descriptor, wgpu::TextureFormat::R32Float));
-        let layers = (0..descriptor.maps)
-            .map(|index| Layer::new(device, &caster_layout, &depth_texture, color_texture.as_ref(), index))
-            .collect();
-        let view = color_texture.as_ref().unwrap_or(&depth_texture).create_view(&wgpu::TextureViewDescriptor {
+        let layers =
+            (0..descriptor.maps).map(|index| Layer::new(device, descriptor, &caster_layout, textures, index)).collect();
+        let view = textures.read().create_view(&wgpu::TextureViewDescriptor {
             label: Some("shadowfit map"),
             dimension: Some(wgpu::TextureViewDimension::D2Array),
             ..Default::default()
@@ -58,8 +63,10 @@ impl ShadowMap {
         let receiver_uniform = uniform_buffer(device, size_of::<ReceiverUniform>());
         let sampler = comparison_sampler(device, descriptor);
         let receiver_group = receiver_group(device, descriptor, &receiver_layout, &receiver_uniform, &view, &sampler);
-        Ok(Self {
+        let has_clamp = device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL);
+        Self {
             descriptor: *descriptor,
+            clamps_in_fragment: descriptor.depth_clamp && !has_clamp,
             layers,
             view,
             caster_layout,
@@ -67,7 +74,7 @@ impl ShadowMap {
             receiver_group,
             receiver_uniform,
             volumes: Vec::new(),
-        })
+        }
     }
 
     /// What the map was made of.
@@ -99,7 +106,7 @@ impl ShadowMap {
     /// where the map is read, in the same way for every format.
     pub fn depth_stencil_state(&self) -> wgpu::DepthStencilState {
         wgpu::DepthStencilState {
-            format: wgpu::TextureFormat::Depth32Float,
+            format: self.descriptor.depth_format(),
             depth_write_enabled: Some(true),
             depth_compare: Some(match self.descriptor.depth {
                 DepthConvention::Reversed => wgpu::CompareFunction::GreaterEqual,
@@ -111,16 +118,25 @@ impl ShadowMap {
     }
 
     /// Primitive state of the engine's caster pipelines, of triangle lists: both sides are drawn, and
-    /// depth is clamped where the descriptor says so.
+    /// depth is clamped where the descriptor says so and the device can.
     pub fn primitive_state(&self) -> wgpu::PrimitiveState {
-        wgpu::PrimitiveState { unclipped_depth: self.descriptor.depth_clamp, ..Default::default() }
+        let unclipped_depth = self.descriptor.depth_clamp && !self.clamps_in_fragment;
+        wgpu::PrimitiveState { unclipped_depth, ..Default::default() }
     }
 
-    /// Colour target of the engine's caster pipelines, if the format has one. Their fragment
-    /// shader then writes `saturate(@builtin(position).z)` to location 0: depth clamp leaves that
-    /// value as it is, outside 0..1 for casters before the near plane.
+    /// Colour target of the engine's caster pipelines, if the format has one. Their fragment shader then writes
+    /// `shadowfit_caster_color` of z of `@builtin(position)` to location 0, or, where it [clamps
+    /// depth](Self::clamps_in_fragment), of the clamped depth.
     pub fn color_target(&self) -> Option<wgpu::ColorTargetState> {
-        (self.descriptor.format == MapFormat::R32Float).then(|| wgpu::TextureFormat::R32Float.into())
+        (!self.descriptor.format.is_depth()).then(|| self.descriptor.texture_format().into())
+    }
+
+    /// Whether the engine's caster pipelines have to clamp depth, since the device has no
+    /// [`wgpu::Features::DEPTH_CLIP_CONTROL`]. Their vertex shader then passes on `shadowfit_caster_depth(position)`
+    /// as a varying, and their fragment shader writes `shadowfit_clamped_depth` of it to `@builtin(frag_depth)`:
+    /// `shadowfit_caster_position` has a depth there that is never clipped, and tells nothing.
+    pub fn clamps_in_fragment(&self) -> bool {
+        self.clamps_in_fragment
     }
 
     /// Volumes of the prepared maps' casters, relative to the origin of [`Self::prepare`].
@@ -155,16 +171,18 @@ impl ShadowMap {
     ///
     /// [`ShadowMapError::TooManyFits`] for more fits than layers; [`ShadowMapError::Fit`] if a fit has
     /// more texels than a layer or another depth convention; [`ShadowMapError::Order`] if the
-    /// ends of maps that are read by view depth do not ascend; [`ShadowMapError::Bias`] and [`ShadowMapError::Forward`] for biases that
+    /// ends of maps that are read by view depth do not ascend; [`ShadowMapError::Wrap`] if a map wraps around beyond its
+    /// layer or does not fill it; [`ShadowMapError::Bias`] and [`ShadowMapError::Forward`] for biases that
     /// are not finite and for a direction that is not of unit length. Nothing is written then.
     pub fn prepare(&mut self, queue: &wgpu::Queue, view: &MapView, maps: &[MapFit]) -> Result<(), ShadowMapError> {
         check(&self.descriptor, view, maps)?;
         for (layer, map) in self.layers.iter_mut().zip(maps) {
-            let uniform = CasterUniform::new(&map.fit, view.origin);
+            let clamps_in_fragment = self.clamps_in_fragment.into();
+            let uniform = CasterUniform { clamps_in_fragment, ..CasterUniform::new(&map.fit, view.origin) };
             queue.write_buffer(&layer.caster_uniform, 0, bytemuck::bytes_of(&uniform));
-            layer.used = map.fit.resolution.to_array();
+            (layer.used, layer.wrap) = (map.fit.resolution, map.wrap);
         }
-        let uniform = ReceiverUniform::new(maps, view, self.descriptor.choice);
+        let uniform = ReceiverUniform::new(maps, view, &self.descriptor);
         queue.write_buffer(&self.receiver_uniform, 0, bytemuck::bytes_of(&uniform));
         let depth_clamp = self.descriptor.depth_clamp;
         self.volumes.clear();
@@ -174,7 +192,8 @@ impl ShadowMap {
 
     /// Records one pass a prepared map: cleared to the far value, the map's [`Self::caster_group`]
     /// bound at `group`, then `draw(pass, map index, volume)`, which draws every caster that the
-    /// volume (relative to the origin) keeps.
+    /// volume (relative to the origin) keeps. For a map that [wraps around](MapFit::wrap) it is called for each of its
+    /// [`Self::parts`].
     pub fn render(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -183,12 +202,26 @@ impl ShadowMap {
     ) {
         for (index, volume) in self.volumes.iter().enumerate() {
             let mut pass = self.begin_pass(encoder, index, group, None);
-            draw(&mut pass, index, volume);
+            for part in self.parts(index) {
+                part.set(&mut pass);
+                draw(&mut pass, index, volume);
+            }
         }
     }
 
+    /// Parts in which a map is drawn: one, or up to four for a map that [wraps around](MapFit::wrap).
+    ///
+    /// # Panics
+    ///
+    /// If `index` is not below the descriptor's number of maps.
+    pub fn parts(&self, index: usize) -> impl Iterator<Item = StoredPart> {
+        let layer = &self.layers[index];
+        StoredPart::all(layer.used, layer.wrap)
+    }
+
     /// Opens the pass of one map, for engines that schedule passes themselves: cleared, with the
-    /// map's [`Self::caster_group`] bound at `group`, and the viewport set.
+    /// map's [`Self::caster_group`] bound at `group`, and the viewport set. A map that [wraps around](MapFit::wrap) has
+    /// to be drawn once for each of its [`Self::parts`], with [`StoredPart::set`].
     ///
     /// # Panics
     ///
@@ -207,7 +240,7 @@ impl ShadowMap {
             depth_slice: None,
             resolve_target: None,
             ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color { r: far.into(), g: 0.0, b: 0.0, a: 1.0 }),
+                load: wgpu::LoadOp::Clear(self.descriptor.color_of(far)),
                 store: wgpu::StoreOp::Store,
             },
         });
@@ -229,8 +262,7 @@ impl ShadowMap {
             multiview_mask: None,
         });
         pass.set_bind_group(group, &layer.caster_group, &[]);
-        let [width, height] = layer.used;
-        pass.set_viewport(0.0, 0.0, width as f32, height as f32, 0.0, 1.0);
+        pass.set_viewport(0.0, 0.0, layer.used.x as f32, layer.used.y as f32, 0.0, 1.0);
         pass
     }
 }
@@ -248,9 +280,9 @@ pub(crate) fn volume(map: &MapFit, depth_clamp: bool) -> CasterVolume {
 impl Layer {
     fn new(
         device: &wgpu::Device,
+        descriptor: &ShadowMapDescriptor,
         layout: &wgpu::BindGroupLayout,
-        depth: &wgpu::Texture,
-        color: Option<&wgpu::Texture>,
+        textures: &Textures,
         index: u32,
     ) -> Self {
         let view = |texture: &wgpu::Texture| {
@@ -265,12 +297,59 @@ impl Layer {
         let caster_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("shadowfit caster"),
             layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: caster_uniform.as_entire_binding() }],
+            entries: &[wgpu::BindGroupEntry {
+                binding: descriptor.binding(0),
+                resource: caster_uniform.as_entire_binding(),
+            }],
         });
-        let used = [depth.width(), depth.height()];
-        Self { depth: view(depth), color: color.map(view), caster_uniform, caster_group, used }
+        Self {
+            depth: view(&textures.depth),
+            color: textures.color.as_ref().map(view),
+            caster_uniform,
+            caster_group,
+            used: descriptor.resolution.into(),
+            wrap: UVec2::ZERO,
+        }
     }
 }
+
+/// What the maps are stored in.
+struct Textures {
+    depth: wgpu::Texture,
+    /// Colours of colour formats.
+    color: Option<wgpu::Texture>,
+}
+
+impl Textures {
+    fn new(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> Result<Self, ShadowMapError> {
+        let ShadowMapDescriptor { resolution, maps, format, .. } = *descriptor;
+        let why = |why: String| ShadowMapError::Format { format, why };
+        let features = descriptor.texture_format().guaranteed_format_features(device.features());
+        let missing = USAGES - features.allowed_usages;
+        if !missing.is_empty() {
+            return Err(why(format!("{:?} has no {missing:?}", descriptor.texture_format())));
+        }
+        // Devices below WebGPU's level may lack more than that says.
+        caught(device, || Self {
+            depth: texture(device, descriptor, descriptor.depth_format()),
+            color: (!format.is_depth()).then(|| texture(device, descriptor, descriptor.texture_format())),
+        })
+        .map_err(|error| match error {
+            wgpu::Error::OutOfMemory { .. } => ShadowMapError::OutOfMemory { resolution, maps, format },
+            error => why(error.to_string()),
+        })
+    }
+
+    /// The one that shaders read.
+    fn read(&self) -> &wgpu::Texture {
+        self.color.as_ref().unwrap_or(&self.depth)
+    }
+}
+
+/// What the textures are used for.
+const USAGES: wgpu::TextureUsages = wgpu::TextureUsages::RENDER_ATTACHMENT
+    .union(wgpu::TextureUsages::TEXTURE_BINDING)
+    .union(wgpu::TextureUsages::COPY_SRC);
 
 pub(crate) fn texture(
     device: &wgpu::Device,
@@ -288,9 +367,7 @@ pub(crate) fn texture(
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-            | wgpu::TextureUsages::TEXTURE_BINDING
-            | wgpu::TextureUsages::COPY_SRC,
+        usage: USAGES,
         view_formats: &[],
     })
 }
@@ -313,6 +390,9 @@ fn comparison_sampler(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -
         label: Some("shadowfit comparison"),
         mag_filter: filter,
         min_filter: filter,
+        // Maps may wrap around; look-ups in others stay half a texel inside.
+        address_mode_u: wgpu::AddressMode::Repeat,
+        address_mode_v: wgpu::AddressMode::Repeat,
         compare: Some(match descriptor.depth {
             DepthConvention::Reversed => wgpu::CompareFunction::GreaterEqual,
             _ => wgpu::CompareFunction::LessEqual,
@@ -321,9 +401,9 @@ fn comparison_sampler(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -
     })
 }
 
-fn uniform_entry(visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+fn uniform_entry(descriptor: &ShadowMapDescriptor, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
-        binding: 0,
+        binding: descriptor.binding(0),
         visibility,
         ty: wgpu::BindingType::Buffer {
             ty: wgpu::BufferBindingType::Uniform,
@@ -334,17 +414,17 @@ fn uniform_entry(visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
     }
 }
 
-fn caster_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+fn caster_layout(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> wgpu::BindGroupLayout {
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("shadowfit caster"),
-        entries: &[uniform_entry(wgpu::ShaderStages::VERTEX)],
+        entries: &[uniform_entry(descriptor, wgpu::ShaderStages::VERTEX)],
     })
 }
 
 fn receiver_layout(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> wgpu::BindGroupLayout {
-    let is_depth = descriptor.format == MapFormat::Depth32Float;
+    let is_depth = descriptor.format.is_depth();
     let texture = wgpu::BindGroupLayoutEntry {
-        binding: 1,
+        binding: descriptor.binding(1),
         visibility: wgpu::ShaderStages::FRAGMENT,
         ty: wgpu::BindingType::Texture {
             sample_type: if is_depth {
@@ -358,12 +438,12 @@ fn receiver_layout(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> w
         count: None,
     };
     let sampler = wgpu::BindGroupLayoutEntry {
-        binding: 2,
+        binding: descriptor.binding(2),
         visibility: wgpu::ShaderStages::FRAGMENT,
         ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
         count: None,
     };
-    let entries = [uniform_entry(wgpu::ShaderStages::FRAGMENT), texture, sampler];
+    let entries = [uniform_entry(descriptor, wgpu::ShaderStages::FRAGMENT), texture, sampler];
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("shadowfit receiver"),
         entries: &entries[..if is_depth { 3 } else { 2 }],
@@ -379,18 +459,14 @@ fn receiver_group(
     sampler: &wgpu::Sampler,
 ) -> wgpu::BindGroup {
     let entries = [
-        wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
-        wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(view) },
-        wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(sampler) },
+        wgpu::BindGroupEntry { binding: descriptor.binding(0), resource: uniform.as_entire_binding() },
+        wgpu::BindGroupEntry { binding: descriptor.binding(1), resource: wgpu::BindingResource::TextureView(view) },
+        wgpu::BindGroupEntry { binding: descriptor.binding(2), resource: wgpu::BindingResource::Sampler(sampler) },
     ];
-    let used = if descriptor.format == MapFormat::Depth32Float { 3 } else { 2 };
+    let used = if descriptor.format.is_depth() { 3 } else { 2 };
     device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("shadowfit receiver"),
         layout,
         entries: &entries[..used],
     })
-}
-
-pub(crate) fn caught<T>(_device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, ShadowMapError> {
-    Ok(work())
 }

@@ -28,7 +28,9 @@ pub struct MapFit {
     pub volume: Option<CasterVolume>,
     /// Where the map lies on the world's grid, if it does: what can be kept of it follows from that.
     pub anchor: Option<GridAnchor>,
-    /// Where the map's left top texel is stored in its layer, in texels.
+    /// Where the map's first texel is stored in its layer, in texels: texel t at (t + wrap) mod size, so that a map that
+    /// moves keeps what it still covers where it is. Only for fits with as many texels as a layer. Zero for maps
+    /// that lie as they are.
     pub wrap: UVec2,
 }
 
@@ -76,6 +78,9 @@ pub struct MapView {
     pub eye: DVec3,
     /// Unit direction in which that eye looks, world axes.
     pub forward: Vec3,
+    /// Number of the frame, by which the pattern of [soft filters](shadowfit::settings::FilterKind::is_soft) moves, for
+    /// temporal antialiasing that averages over frames; 0 in each frame for a pattern that stays.
+    pub frame: u32,
 }
 
 /// How far the length of [`MapView::forward`] may be from 1: the rounding of a direction that was normalised in f32 and
@@ -85,7 +90,7 @@ const UNIT_TOLERANCE: f32 = 1e-3;
 impl MapView {
     /// Positions and view depths relative to an eye that looks along `forward` (unit, world axes).
     pub fn from_eye(eye: DVec3, forward: Vec3) -> Self {
-        Self { origin: eye, eye, forward }
+        Self { origin: eye, eye, forward, frame: 0 }
     }
 }
 
@@ -104,6 +109,7 @@ pub(crate) fn check(descriptor: &ShadowMapDescriptor, view: &MapView, maps: &[Ma
     let mut previous = f32::MIN;
     for (index, map) in maps.iter().enumerate() {
         check_layer(descriptor, index, &map.fit)?;
+        check_wrap(descriptor, index, map)?;
         map.bias.checked().map_err(|error| ShadowMapError::Bias { index, error })?;
         // NaN has no order.
         let is_in_order = map.far >= previous || descriptor.choice == MapChoice::Coverage;
@@ -121,4 +127,14 @@ fn check_layer(descriptor: &ShadowMapDescriptor, index: usize, fit: &LightFit) -
     let fit = (fit.resolution.to_array(), fit.depth);
     let suits = fit.1 == map.1 && fit.0.iter().zip(&map.0).all(|(fit, layer)| (1..=*layer).contains(fit));
     if suits { Ok(()) } else { Err(ShadowMapError::Fit { index, fit, map }) }
+}
+
+/// Refuses a map that cannot wrap around in its layer.
+fn check_wrap(descriptor: &ShadowMapDescriptor, index: usize, map: &MapFit) -> Result<(), ShadowMapError> {
+    let (wrap, fit) = (map.wrap, map.fit.resolution);
+    let is_whole = fit.to_array() == descriptor.resolution && wrap.cmplt(fit).all();
+    if wrap == UVec2::ZERO || is_whole {
+        return Ok(());
+    }
+    Err(ShadowMapError::Wrap { index, wrap: wrap.to_array(), fit: fit.to_array(), map: descriptor.resolution })
 }

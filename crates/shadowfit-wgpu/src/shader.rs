@@ -1,66 +1,157 @@
-//! The WGSL of casters and receivers, put together from the pieces in `shaders/`. Every name starts
-//! with `shadowfit_`, so that the text can be pasted into any shader.
+//! The WGSL of casters and receivers, put together from the pieces in `shaders/`. Every name starts with a prefix, so
+//! that the text can be pasted into any shader, and that of several suns into one.
 
-use shadowfit::bias::reach;
 use shadowfit::settings::{FilterKind, MapChoice, MapFormat};
+use shadowfit::softness::LOOK_UP_SQUARE;
 use shadowfit::{CasterVolume, DepthConvention};
 
-use crate::{MAX_MAPS, ShadowMapDescriptor};
+use crate::{MAX_MAPS, ShadowMapDescriptor, ShadowMapError};
 
-/// WGSL for vertex shaders of the shadow pass: `shadowfit_caster_position(position) -> vec4<f32>`,
-/// where `position` is in world space, metres, relative to the origin of
-/// [`crate::ShadowMap::prepare`].
+/// Look-ups over the disc of [`FilterKind::Pcss`].
+const PCSS_TAPS: u32 = 24;
+
+/// How the WGSL fits into an engine's shader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WgslOptions<'a> {
+    /// Bind group that it reads; any will do.
+    pub group: u32,
+    /// What all its names begin with, before an underscore: with `sun` the function `shadowfit_factor` is called
+    /// `sun_factor` and constants begin with `SUN_`. Prefixes in one shader differ in more than case. With what is no
+    /// identifier the WGSL is not valid; [`Self::with_prefix`] refuses that.
+    pub prefix: &'a str,
+}
+
+impl WgslOptions<'_> {
+    /// The usual prefix.
+    pub const PREFIX: &'static str = "shadowfit";
+
+    /// Bind group `group` and the prefix `shadowfit`.
+    pub const fn group(group: u32) -> Self {
+        Self { group, prefix: Self::PREFIX }
+    }
+
+    /// The same with another prefix: ASCII letters, digits and underscores, with a letter first.
+    ///
+    /// # Errors
+    ///
+    /// [`ShadowMapError::Prefix`] for anything else.
+    pub fn with_prefix(self, prefix: &str) -> Result<WgslOptions<'_>, ShadowMapError> {
+        let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        if prefix.starts_with(|c: char| c.is_ascii_alphabetic()) && prefix.chars().all(is_word) {
+            Ok(WgslOptions { group: self.group, prefix })
+        } else {
+            Err(ShadowMapError::Prefix(prefix.to_owned()))
+        }
+    }
+
+    /// The pieces with group, bindings and names filled in.
+    fn fill(&self, pieces: &str, first_binding: u32) -> String {
+        let mut text = pieces
+            .replace("GROUP", &self.group.to_string())
+            .replace("MAX_MAPS", &MAX_MAPS.to_string())
+            .replace("MAX_PLANES", &CasterVolume::MAX_PLANES.to_string());
+        for binding in 0..3 {
+            text = text.replace(&format!("BINDING_{binding}"), &first_binding.saturating_add(binding).to_string());
+        }
+        if self.prefix == Self::PREFIX {
+            return text;
+        }
+        text.replace("shadowfit_", &format!("{}_", self.prefix))
+            .replace("SHADOWFIT_", &format!("{}_", self.prefix.to_ascii_uppercase()))
+    }
+}
+
+/// WGSL for the shadow pass:
 ///
-/// It reads binding 0 of `group`, which may be any: [`crate::ShadowMap::render`] and
-/// [`crate::ShadowMap::begin_pass`] bind the map's [`caster_group`](crate::ShadowMap::caster_group)
-/// where they are told to.
-pub fn caster_wgsl(group: u32) -> String {
-    include_str!("shaders/caster.wgsl").replace("GROUP", &group.to_string())
+/// | function | gives |
+/// |---|---|
+/// | `shadowfit_caster_position(position) -> vec4<f32>` | for vertex shaders: the clip position |
+/// | `shadowfit_caster_color(depth) -> vec4<f32>` | only for colour formats, for fragment shaders: what to write to the [`color_target`](crate::ShadowMap::color_target), from z of `@builtin(position)` or the clamped depth |
+/// | `shadowfit_caster_depth(position) -> f32` | for vertex shaders where [the fragment shader clamps](crate::ShadowMap::clamps_in_fragment): a varying, interpolated as it is |
+/// | `shadowfit_clamped_depth(depth) -> f32` | for fragment shaders there: what to write to `@builtin(frag_depth)`, from that varying |
+///
+/// `position` is in world space, metres, relative to the origin of [`crate::ShadowMap::prepare`].
+///
+/// It reads binding [`ShadowMapDescriptor::first_binding`] of the group: [`crate::ShadowMap::render`] and
+/// [`crate::ShadowMap::begin_pass`] bind the map's [`caster_group`](crate::ShadowMap::caster_group) where they are told
+/// to.
+pub fn caster_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) -> String {
+    let color = match descriptor.format {
+        MapFormat::Depth32Float | MapFormat::Depth16Unorm => "",
+        MapFormat::R32Float | MapFormat::R16Float | MapFormat::R8Grey => include_str!("shaders/color_float.wgsl"),
+        MapFormat::Rgba8Packed => include_str!("shaders/color_packed.wgsl"),
+    };
+    options.fill(&[include_str!("shaders/caster.wgsl"), color].concat(), descriptor.first_binding)
 }
 
 /// WGSL for shaders that cull casters: `shadowfit_cull_box(min, max) -> u32`, whose bit i says whether the box may cast
 /// a shadow into map i, and `shadowfit_touches_box`, `_sphere` and `_oriented_box` for one map. They are the twins of
 /// [`shadowfit::culling::cull`] and of the tests of [`shadowfit::CasterVolume`].
 ///
-/// Reads a [`crate::CullingUniform`] at binding 0 of `group`.
-pub fn culling_wgsl(group: u32) -> String {
-    include_str!("shaders/culling.wgsl")
-        .replace("GROUP", &group.to_string())
-        .replace("MAX_MAPS", &MAX_MAPS.to_string())
-        .replace("MAX_PLANES", &CasterVolume::MAX_PLANES.to_string())
+/// Reads a [`crate::CullingUniform`] at binding 0 of the group.
+pub fn culling_wgsl(options: &WgslOptions<'_>) -> String {
+    options.fill(include_str!("shaders/culling.wgsl"), 0)
 }
 
 /// WGSL for fragment shaders that receive shadows:
 ///
 /// | function | gives |
 /// |---|---|
-/// | `shadowfit_factor(position, normal) -> f32` | the filtered share of the light that reaches a point: 1 lit, 0 in shadow, 1 outside every map |
-/// | `shadowfit_map_index(position) -> i32` | the index of the map that weighs more in `shadowfit_factor` there, for tints that show it; -1 outside every map |
-/// | `shadowfit_view_depth(position) -> f32` | the view depth, in metres, that chooses among maps that are read by view depth: the distance from [`MapView::eye`](crate::MapView::eye) along [`MapView::forward`](crate::MapView::forward) |
+/// | `shadowfit_factor_at(position, normal, pixel) -> f32` | the filtered share of the light that reaches a point: 1 lit, 0 in shadow, 1 outside every map. `pixel` is xy of the fragment's `@builtin(position)`: filters that spread look-ups over a disc turn it from pixel to pixel, others ignore it |
+/// | `shadowfit_factor(position, normal) -> f32` | the same without turning the discs: their look-ups then show as bands instead of noise |
+/// | `shadowfit_map_index(position) -> i32` | the index of the map that weighs more in the factor there, for tints that show it; -1 outside every map |
+/// | `shadowfit_view_depth(position) -> f32` | the view depth, in metres, that chooses among maps that are read by view depth and that shadows fade by: the distance from [`MapView::eye`](crate::MapView::eye) along [`MapView::forward`](crate::MapView::forward) |
+/// | `shadowfit_stored(map, texel) -> f32` | the depth that a map, by its index, holds at a texel (`vec2<i32>`), for views of the map |
 ///
 /// `position` is in world space, metres, relative to the origin of [`crate::ShadowMap::prepare`];
 /// `normal` is the unit geometric normal on the side that is seen. Which map a point reads is
-/// [`ShadowMapDescriptor::choice`], by the rule of [`shadowfit::choice`]. Reads bindings 0, 1 and, for depth formats, 2 of
-/// `group`; no derivatives.
-pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, group: u32) -> String {
-    let look_up = match (descriptor.format, descriptor.filter) {
-        (MapFormat::Depth32Float | MapFormat::Depth16Unorm, _) => include_str!("shaders/compare_depth.wgsl").to_owned(),
-        (_, FilterKind::Point) => {
-            [include_str!("shaders/compare_float.wgsl"), include_str!("shaders/compare_float_point.wgsl")].concat()
-        }
-        (_, _) => [include_str!("shaders/compare_float.wgsl"), include_str!("shaders/compare_float_2x2.wgsl")].concat(),
+/// [`ShadowMapDescriptor::choice`], by the rule of [`shadowfit::choice`]. Reads the bindings from
+/// [`ShadowMapDescriptor::first_binding`] on, two of them and for depth formats three; no derivatives.
+pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) -> String {
+    let texel = match descriptor.format {
+        MapFormat::Depth32Float | MapFormat::Depth16Unorm => include_str!("shaders/texel_depth.wgsl"),
+        MapFormat::R32Float | MapFormat::R16Float | MapFormat::R8Grey => include_str!("shaders/texel_float.wgsl"),
+        MapFormat::Rgba8Packed => include_str!("shaders/texel_packed.wgsl"),
     };
-    let filter = match descriptor.filter {
-        FilterKind::Point | FilterKind::Hardware2x2 => include_str!("shaders/filter_single.wgsl"),
-        FilterKind::Pcf3x3 => include_str!("shaders/filter_tent_3x3.wgsl"),
-        _ => include_str!("shaders/filter_tent_5x5.wgsl"),
+    let look_up = match (descriptor.format.is_depth(), descriptor.filter) {
+        (true, _) => [include_str!("shaders/compare_depth.wgsl"), ""],
+        (false, FilterKind::Point) => {
+            [include_str!("shaders/compare_float.wgsl"), include_str!("shaders/compare_float_point.wgsl")]
+        }
+        (false, _) => [include_str!("shaders/compare_float.wgsl"), include_str!("shaders/compare_float_2x2.wgsl")],
     };
     let closer = if descriptor.depth == DepthConvention::Reversed { ">=" } else { "<=" };
-    [include_str!("shaders/receiver.wgsl"), &look_up, filter, &choice(descriptor)]
-        .concat()
-        .replace("GROUP", &group.to_string())
-        .replace("MAX_MAPS", &MAX_MAPS.to_string())
-        .replace("COMPARE", closer)
+    let pieces = [
+        include_str!("shaders/receiver.wgsl"),
+        texel,
+        include_str!("shaders/stored.wgsl"),
+        &look_up.concat(),
+        &filter(descriptor.filter),
+        &choice(descriptor),
+        include_str!("shaders/turn.wgsl"),
+        include_str!("shaders/factor.wgsl"),
+    ];
+    options.fill(&pieces.concat().replace("COMPARE", closer), descriptor.first_binding)
+}
+
+/// How a filter gathers its look-ups.
+fn filter(filter: FilterKind) -> String {
+    let disc = |taps: u32, file: &str| {
+        let constants = format!(
+            "const SHADOWFIT_TAPS: u32 = {taps}u;\nconst SHADOWFIT_LOOK_UP_SQUARE: f32 = {LOOK_UP_SQUARE:?};\n\n"
+        );
+        [&constants, include_str!("shaders/disc.wgsl"), file].concat()
+    };
+    match filter {
+        FilterKind::Point | FilterKind::Hardware2x2 => include_str!("shaders/filter_single.wgsl").to_owned(),
+        FilterKind::Pcf3x3 => include_str!("shaders/filter_tent_3x3.wgsl").to_owned(),
+        FilterKind::Pcf5x5 => include_str!("shaders/filter_tent_5x5.wgsl").to_owned(),
+        FilterKind::Pcf7x7 => include_str!("shaders/filter_tent_7x7.wgsl").to_owned(),
+        FilterKind::Vogel8 => disc(8, include_str!("shaders/filter_vogel.wgsl")),
+        FilterKind::Vogel16 => disc(16, include_str!("shaders/filter_vogel.wgsl")),
+        FilterKind::Vogel32 => disc(32, include_str!("shaders/filter_vogel.wgsl")),
+        FilterKind::Pcss => disc(PCSS_TAPS, include_str!("shaders/filter_pcss.wgsl")),
+    }
 }
 
 /// The search for a point's maps, and a map by its place in the order: one branch per map, since software rasterisers
@@ -79,11 +170,17 @@ fn choice(descriptor: &ShadowMapDescriptor) -> String {
         )
     };
     let entry = |entry: u32| format!("    if entry == {entry} {{\n        return {};\n    }}\n", map(entry));
+    let wrap = |entry: u32| {
+        let map = map(entry);
+        format!(
+            "    if {entry}u < shadowfit_receiver.map_count && {map}.layer == layer {{\n        return {map}.wrap;\n    }}\n"
+        )
+    };
     let rule = match descriptor.choice {
         MapChoice::Coverage => include_str!("shaders/choice_coverage.wgsl"),
         MapChoice::ViewDepth => include_str!("shaders/choice_view_depth.wgsl"),
     };
-    let (reach, blend) = (reach(descriptor.filter), descriptor.blend);
+    let (reach, blend) = (descriptor.softness.reach(descriptor.filter), descriptor.blend);
     format!(
         "
 const SHADOWFIT_REACH: f32 = {reach:?};
@@ -102,10 +199,15 @@ fn shadowfit_choose(position: vec3<f32>) -> shadowfit_Choice {{
 fn shadowfit_entry(entry: i32) -> shadowfit_Map {{
 {}    return {};
 }}
-{}",
+
+// Where the first texel of a map lies in its layer.
+fn shadowfit_wrap(layer: u32) -> vec2<f32> {{
+{}    return vec2<f32>(0.0);
+}}
+",
         (0..maps).map(try_map).collect::<String>(),
         (1..maps).map(entry).collect::<String>(),
         map(0),
-        include_str!("shaders/factor.wgsl"),
+        (0..maps).map(wrap).collect::<String>(),
     )
 }

@@ -22,13 +22,16 @@ pub struct SunFrame<'a> {
     pub receiver_cones: &'a [NormalCone],
     /// Everything that casts shadows.
     pub casters: Casters<'a>,
+    /// Number of the frame, by which soft filters are turned in each frame, for temporal anti-aliasing; 0 in every frame
+    /// for the same pattern.
+    pub number: u32,
 }
 
 impl<'a> SunFrame<'a> {
     /// A frame whose shaders take positions relative to the first view's eye.
     pub fn new(views: &'a [ViewFrustum], direction: Vec3, receivers: Boxes<'a>, casters: Casters<'a>) -> Self {
         let origin = views.first().map_or(DVec3::ZERO, |view| view.origin);
-        Self { views, origin, direction, receivers: Some(receivers), receiver_cones: &[], casters }
+        Self { views, origin, direction, receivers: Some(receivers), receiver_cones: &[], casters, number: 0 }
     }
 
     /// This frame with positions in the shaders relative to another origin, in world space, in metres.
@@ -55,6 +58,6 @@ impl<'a> SunFrame<'a> {
 
     pub(crate) fn map_view(&self) -> MapView {
         let (eye, forward) = self.views.first().map_or((self.origin, Vec3::NEG_Z), |view| (view.origin, view.forward));
-        MapView { origin: self.origin, eye, forward }
+        MapView { origin: self.origin, eye, forward, frame: self.number }
     }
 }

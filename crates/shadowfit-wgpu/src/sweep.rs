@@ -4,10 +4,10 @@
 //! in the part of the view that reads it, swept toward the light. Which part that is follows from the order in which
 //! shaders look for a map.
 
-use shadowfit::bias::{MIN_COSINE, reach};
+use shadowfit::bias::{MIN_COSINE, Reach};
 use shadowfit::culling::Sweep;
 use shadowfit::glam::{DVec2, DVec3, DVec4, Vec3};
-use shadowfit::settings::{CasterPolicy, FilterKind, MapChoice};
+use shadowfit::settings::{CasterPolicy, MapChoice};
 use shadowfit::{CasterVolume, FitError, LightFit, ViewFrustum};
 
 use crate::{MapFit, MapView, ShadowMapDescriptor};
@@ -48,13 +48,12 @@ impl MapFit {
         views: &[ViewFrustum],
         descriptor: &ShadowMapDescriptor,
     ) -> Result<(), FitError> {
-        let filter = descriptor.filter;
         match descriptor.choice {
             MapChoice::Coverage => {
                 let from = coverage::read_from(maps, view, views, descriptor);
                 for (map, near) in maps.iter_mut().zip(from) {
                     let read = near.map(|near| Slice { near, far: f32::MAX });
-                    map.volume = Some(volume(map, read, views, filter)?);
+                    map.volume = Some(volume(map, read, views, descriptor)?);
                 }
             }
             MapChoice::ViewDepth => {
@@ -62,7 +61,7 @@ impl MapFit {
                 for index in 0..maps.len() {
                     let readers = Readers { maps, view, views, mismatch };
                     let read = readers.read(index).map(|read| readers.widened(read));
-                    maps[index].volume = Some(volume(&maps[index], read, views, filter)?);
+                    maps[index].volume = Some(volume(&maps[index], read, views, descriptor)?);
                 }
             }
         }
@@ -75,13 +74,14 @@ fn volume(
     map: &MapFit,
     read: Option<Slice>,
     views: &[ViewFrustum],
-    filter: FilterKind,
+    descriptor: &ShadowMapDescriptor,
 ) -> Result<CasterVolume, FitError> {
-    let (reach, normal_offset) = (filter.into(), map.bias.normal_offset.abs());
+    let reach = descriptor.softness.reach_in(descriptor.filter, &map.fit);
+    let normal_offset = map.bias.normal_offset.abs();
     let Slice { near, far } = read.unwrap_or(Slice { near: f32::MIN, far: f32::MAX });
     let volume = CasterVolume::swept(&map.fit, &Sweep { views, near, far, reach, normal_offset })?;
     Ok(if read.is_some() {
-        lowered(volume, &map.fit, depth_below(map, filter))
+        lowered(volume, &map.fit, depth_below(map, reach))
     } else {
         CasterVolume::nowhere(map.fit.origin)
     })
@@ -175,13 +175,14 @@ fn depth_mismatch(view: &MapView, frustum: &ViewFrustum) -> f64 {
 /// How far below a point, along the light, the map may be compared with, in metres. The receiver's plane is compared at
 /// its own depth wherever the filter looks, and falls by the tangent of its slope; biases that are negative move the
 /// point itself.
-fn depth_below(map: &MapFit, filter: FilterKind) -> f64 {
+fn depth_below(map: &MapFit, reach: Reach) -> f64 {
     let tangent = 1.0 / f64::from(MIN_COSINE);
     let (bias, range) = (map.bias, f64::from(map.fit.depth_range));
     let away = |bias: f32| f64::from((-bias).max(0.0));
     let texel = map.fit.texel_size.as_dvec2().length();
     // Look-ups lie a texel less far away than the texels that they read; at the map's border they move by half of one.
-    let aside = f64::from((reach(filter) - 1.0).max(0.5)) * texel + f64::from(bias.normal_offset.abs());
+    let disc = (reach.disc * map.fit.texel_size).max_element();
+    let aside = f64::from((reach.taps - 1.0).max(0.5)) * texel + f64::from(disc + bias.normal_offset.abs());
     let plane = if bias.receiver_plane == 0.0 { 0.0 } else { aside + away(bias.receiver_plane) * texel };
     (away(bias.constant_depth) + away(bias.slope_depth) * tangent) * range + plane * tangent
 }
@@ -309,7 +310,9 @@ mod tests {
     #[test]
     fn a_view_that_counts_its_depths_from_elsewhere_is_off_by_as_much() {
         let frustum = frustum(0.9);
-        let from = |eye: DVec3, forward: Vec3| depth_mismatch(&MapView { origin: DVec3::ZERO, eye, forward }, &frustum);
+        let from = |eye: DVec3, forward: Vec3| {
+            depth_mismatch(&MapView { eye, ..MapView::from_eye(DVec3::ZERO, forward) }, &frustum)
+        };
         assert_eq!(from(DVec3::ZERO, Vec3::NEG_Z), 0.0);
         // The other eye of a headset sees the same depths.
         assert_eq!(from(DVec3::X * 0.03, Vec3::NEG_Z), 0.0);

@@ -4,11 +4,16 @@
 use bytemuck::{Pod, Zeroable};
 use shadowfit::choice::MapOrder;
 use shadowfit::culling::CasterPlanes;
-use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::settings::MapChoice;
+use shadowfit::glam::{DVec3, Vec2, Vec3};
+use shadowfit::settings::Softness;
 use shadowfit::{CasterVolume, DepthConvention, LightFit};
 
-use crate::{MAX_MAPS, MapFit, MapView};
+use crate::{MAX_MAPS, MapFit, MapView, ShadowMapDescriptor};
+
+/// Pixels by which the pattern that turns discs moves from frame to frame, and frames after which it begins again
+/// (J. Jimenez, "Next generation post processing in Call of Duty: Advanced Warfare", 2014).
+const FRAME_SHIFT: f32 = 5.588_238;
+const FRAMES: u32 = 64;
 
 /// What the shadow pass's vertex shader reads: `shadowfit_Caster` in WGSL.
 #[repr(C)]
@@ -16,6 +21,14 @@ use crate::{MAX_MAPS, MapFit, MapView};
 pub struct CasterUniform {
     /// Clip space of the map from world positions relative to the origin.
     pub clip_from_world: [[f32; 4]; 4],
+    /// 1 where fragment shaders clamp depth, since the device does not.
+    pub clamps_in_fragment: u32,
+    /// Keeps the struct a multiple of 16 bytes.
+    pub padding_0: u32,
+    /// As above.
+    pub padding_1: u32,
+    /// As above.
+    pub padding_2: u32,
 }
 
 /// What the look-up reads for one map: `shadowfit_Map` in WGSL.
@@ -48,8 +61,20 @@ pub struct MapUniform {
     pub blend_near: f32,
     /// Layer that the map is stored in: its index.
     pub layer: u32,
+    /// Puts the next field at a multiple of 8 bytes.
+    pub padding_0: u32,
+    /// Where the map's first texel lies in its layer, in texels: the rest follows it, and wraps around.
+    pub wrap: [f32; 2],
+    /// Radii along u and v of the disc that look-ups are spread over, in texels: the greatest where it follows the
+    /// caster.
+    pub disc: [f32; 2],
+    /// Radii of the penumbra in texels, for each unit of stored depth from the caster to its shadow; negative with
+    /// reversed depth.
+    pub penumbra: [f32; 2],
     /// Keeps the struct a multiple of 16 bytes.
-    pub padding: f32,
+    pub padding_1: u32,
+    /// As above.
+    pub padding_2: u32,
 }
 
 /// What the look-up reads: `shadowfit_Receiver` in WGSL.
@@ -62,6 +87,22 @@ pub struct ReceiverUniform {
     pub map_count: u32,
     /// View depth of a position relative to the origin, in metres, is `dot(xyz, position) + w`.
     pub view: [f32; 4],
+    /// View depth from which on shadows fade, in metres.
+    pub fade_near: f32,
+    /// Metres over which they do.
+    pub fade_width: f32,
+    /// Radius that discs have at least, in texels.
+    pub least_disc: f32,
+    /// Radius that discs have at most, in texels.
+    pub greatest_disc: f32,
+    /// Pixels by which the pattern that turns discs is moved in this frame.
+    pub frame_shift: f32,
+    /// Keeps the maps at a multiple of 16 bytes.
+    pub padding_0: u32,
+    /// As above.
+    pub padding_1: u32,
+    /// As above.
+    pub padding_2: u32,
     /// The maps, in the order in which points try them: that of [`shadowfit::choice::MapOrder`].
     pub maps: [MapUniform; MAX_MAPS],
 }
@@ -98,13 +139,15 @@ impl CullingUniform {
 impl CasterUniform {
     /// The uniform for a fit, with positions relative to `origin` (world space, metres).
     pub fn new(fit: &LightFit, origin: DVec3) -> Self {
-        Self { clip_from_world: fit.relative_to(origin).clip_from_world.to_cols_array_2d() }
+        Self { clip_from_world: fit.relative_to(origin).clip_from_world.to_cols_array_2d(), ..Self::default() }
     }
 }
 
 impl MapUniform {
-    /// The uniform for a map in layer 0, with positions relative to `origin` (world space, metres).
-    pub fn new(map: &MapFit, origin: DVec3) -> Self {
+    /// The uniform for a map in layer 0, with positions relative to `origin` (world space, metres), read as `descriptor`
+    /// says.
+    pub fn new(map: &MapFit, origin: DVec3, descriptor: &ShadowMapDescriptor) -> Self {
+        let ShadowMapDescriptor { filter, softness, .. } = descriptor;
         let (fit, bias) = (map.fit.relative_to(origin), map.bias);
         let toward_light = if fit.depth == DepthConvention::Reversed { 1.0 } else { -1.0 };
         let [u, v] = if bias.receiver_plane == 0.0 { [Vec3::ZERO; 2] } else { depth_per_texel(&fit) };
@@ -119,6 +162,9 @@ impl MapUniform {
             receiver_plane: toward_light * bias.receiver_plane,
             far: map.far,
             blend_near: map.blend_near,
+            wrap: map.wrap.as_vec2().to_array(),
+            disc: softness.texels(*filter, &fit).to_array(),
+            penumbra: (Vec2::splat(-toward_light * softness.tangent() * fit.depth_range) / fit.texel_size).to_array(),
             ..Self::default()
         }
     }
@@ -136,12 +182,21 @@ fn depth_per_texel(fit: &LightFit) -> [Vec3; 2] {
 
 impl ReceiverUniform {
     /// The uniform for maps of one light, with positions relative to the view's origin. Those that no point reads by
-    /// this choice ([`MapOrder`]), and maps past [`MAX_MAPS`], are left out; without any, everything is lit.
-    pub fn new(maps: &[MapFit], view: &MapView, choice: MapChoice) -> Self {
-        let mut uniform = Self::default();
-        for (slot, index) in uniform.maps.iter_mut().zip(MapOrder::new(choice, maps.iter().map(|map| &map.fit)).iter())
-        {
-            *slot = MapUniform { layer: index as u32, ..MapUniform::new(&maps[index], view.origin) };
+    /// the descriptor's choice ([`MapOrder`]), and maps past [`MAX_MAPS`], are left out; without any, everything is lit.
+    pub fn new(maps: &[MapFit], view: &MapView, descriptor: &ShadowMapDescriptor) -> Self {
+        let [fade_near, fade_far] = descriptor.fade;
+        let Softness { floor, ceiling, .. } = descriptor.softness;
+        let mut uniform = Self {
+            fade_near,
+            fade_width: fade_far - fade_near,
+            least_disc: floor,
+            greatest_disc: ceiling,
+            frame_shift: (view.frame % FRAMES) as f32 * FRAME_SHIFT,
+            ..Self::default()
+        };
+        let order = MapOrder::new(descriptor.choice, maps.iter().map(|map| &map.fit));
+        for (slot, index) in uniform.maps.iter_mut().zip(order.iter()) {
+            *slot = MapUniform { layer: index as u32, ..MapUniform::new(&maps[index], view.origin, descriptor) };
             uniform.map_count += 1;
         }
         uniform.to_light = maps.first().map_or([0.0, 1.0, 0.0], |map| (-map.fit.direction).to_array());

@@ -2,9 +2,11 @@
 
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::verify::{CoverageQuery, verify};
-use shadowfit::{Aabb, Boxes, DepthConvention, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, Workspace};
+use shadowfit::{
+    Aabb, Boxes, DepthConvention, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, Workspace,
+};
 use shadowfit_render::{AdapterChoice, Gpu};
-use shadowfit_wgpu::{Casters, KeptMaps, MapFit, PassContent, ShadowMapDescriptor, SunFrame, caster_wgsl};
+use shadowfit_wgpu::{Casters, KeptMaps, MapFit, PassContent, ShadowMapDescriptor, SunFrame, WgslOptions, caster_wgsl};
 use wgpu::util::DeviceExt;
 
 /// Where the town lies, far from the world's origin.
@@ -55,11 +57,7 @@ impl Town {
         for i in 0..240_u32 {
             // Low-discrepancy places.
             let place = |base: f64| (f64::from(i) * base).fract() * 120.0 - 60.0;
-            let half = Vec3::new(
-                0.3 + (i % 7) as f32 * 0.25,
-                0.4 + (i % 11) as f32 * 0.3,
-                0.3 + (i % 5) as f32 * 0.35,
-            );
+            let half = Vec3::new(0.3 + (i % 7) as f32 * 0.25, 0.4 + (i % 11) as f32 * 0.3, 0.3 + (i % 5) as f32 * 0.35);
             blocks.push(block(place(0.754_877_67), f64::from(half.y), place(0.569_840_3), half));
         }
         Self { blocks, moves: Vec::new() }
@@ -193,7 +191,11 @@ impl Engine {
                 maps: unwrapped(gpu, target),
                 passes: target.passes().len(),
                 cleared: target.passes().filter(|pass| pass.is_cleared()).count(),
-                drawn: target.passes().filter(|pass| pass.content() != PassContent::Moving).map(|pass| pass.texels()).sum(),
+                drawn: target
+                    .passes()
+                    .filter(|pass| pass.content() != PassContent::Moving)
+                    .map(|pass| pass.texels())
+                    .sum(),
             }
         })
     }
@@ -208,7 +210,8 @@ impl Engine {
         for (fitted, read) in self.fitted.iter().zip(self.kept.maps()) {
             let map = shadowfit::FittedMap { fit: read.fit, ..*fitted };
             let query = CoverageQuery::of_map(&map, technique, technique.filter.into());
-            let certificate = verify(&input, &map.fit, &query, &mut Workspace::new(&mut storage)).expect("a good frame");
+            let certificate =
+                verify(&input, &map.fit, &query, &mut Workspace::new(&mut storage)).expect("a good frame");
             assert!(certificate.is_proven(), "{certificate:?}");
         }
     }
@@ -258,16 +261,15 @@ fn pipeline(gpu: &Gpu, maps: &KeptMaps) -> wgpu::RenderPipeline {
     assert_ne!(map.descriptor().depth, DepthConvention::NegativeOneToOne);
     let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: None,
-        source: wgpu::ShaderSource::Wgsl((caster_wgsl(0) + CASTER).into()),
+        source: wgpu::ShaderSource::Wgsl((caster_wgsl(map.descriptor(), &WgslOptions::group(0)) + CASTER).into()),
     });
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: None,
         bind_group_layouts: &[Some(map.caster_layout())],
         immediate_size: 0,
     });
-    let buffer = |stride, step_mode, attributes| {
-        Some(wgpu::VertexBufferLayout { array_stride: stride, step_mode, attributes })
-    };
+    let buffer =
+        |stride, step_mode, attributes| Some(wgpu::VertexBufferLayout { array_stride: stride, step_mode, attributes });
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: None,
         layout: Some(&layout),

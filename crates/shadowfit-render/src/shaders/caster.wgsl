@@ -1,4 +1,4 @@
-// The shadow pass: positions by shadowfit, alpha cut-outs, and the depth for colour formats.
+// The shadow pass: positions by shadowfit, and alpha cut-outs.
 
 struct CasterIn {
     @location(0) position: vec3<f32>,
@@ -13,13 +13,14 @@ struct CasterOut {
     @builtin(position) clip: vec4<f32>,
     @location(0) uv: vec2<f32>,
     @location(1) alpha: f32,
+    @location(2) depth: f32,
 }
 
 @vertex
 fn vs_caster(in: CasterIn) -> CasterOut {
     let local = vec4<f32>(in.position, 1.0);
     let world = vec3<f32>(dot(in.row0, local), dot(in.row1, local), dot(in.row2, local));
-    return CasterOut(shadowfit_caster_position(world), in.uv, in.color.a);
+    return CasterOut(shadowfit_caster_position(world), in.uv, in.color.a, shadowfit_caster_depth(world));
 }
 
 @fragment
@@ -29,16 +30,16 @@ fn fs_caster_masked(in: CasterOut) {
     }
 }
 
-// Depth clamp holds the depth buffer's depth within 0..1, but not the position's that a shader reads.
+// Where the device cannot clamp depth.
 @fragment
-fn fs_caster_depth(in: CasterOut) -> @location(0) f32 {
-    return saturate(in.clip.z);
+fn fs_caster_clamped(in: CasterOut) -> @builtin(frag_depth) f32 {
+    return shadowfit_clamped_depth(in.depth);
 }
 
 @fragment
-fn fs_caster_masked_depth(in: CasterOut) -> @location(0) f32 {
+fn fs_caster_masked_clamped(in: CasterOut) -> @builtin(frag_depth) f32 {
     if is_cut_out(in.uv, in.alpha) {
         discard;
     }
-    return saturate(in.clip.z);
+    return shadowfit_clamped_depth(in.depth);
 }

@@ -3,7 +3,7 @@
 // The triangle's number plus one, and the bits of the shadow factor.
 fn probed(in: SceneOut, triangle: u32) -> vec2<u32> {
     let geometric = geometric_normal(in.position, dpdx(in.position), dpdy(in.position));
-    let factor = shadowfit_factor(in.position, geometric);
+    let factor = shadowfit_factor_at(in.position, geometric, in.clip.xy);
     return vec2<u32>(in.first_triangle + triangle + 1u, bitcast<u32>(factor));
 }
 

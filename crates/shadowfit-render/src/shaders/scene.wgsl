@@ -116,7 +116,7 @@ fn shaded(in: SceneOut) -> vec4<f32> {
     let geometric = geometric_normal(in.position, dpdx(in.position), dpdy(in.position));
     let normal = shading_normal(in, geometric, texel);
     let to_eye = -normalize(in.position);
-    let factor = mix(1.0, shadowfit_factor(in.position, geometric), frame.shadows);
+    let factor = mix(1.0, shadowfit_factor_at(in.position, geometric, in.clip.xy), frame.shadows);
     // A surface that faces away from the sun is dark whatever its interpolated normal says.
     let facing = smoothstep(0.0, 0.08, dot(geometric, frame.to_light));
     let sunlight = frame.sun * (factor * facing);

@@ -1,9 +1,5 @@
 //! The pass itself: pipeline, dispatch, and what comes back.
 
-use core::future::Future;
-use core::pin::pin;
-use core::task::{Context, Poll, Waker};
-
 use shadowfit::need::{CELLS, LEVELS, MIN_FACING, SIDE};
 
 use super::error::{NeedPassError, Unsupported};
@@ -222,21 +218,7 @@ fn supported(limits: &wgpu::Limits, backend: wgpu::Backend) -> Result<(), Unsupp
 
 /// Does work whose errors would otherwise end the program, such as lack of memory.
 fn caught<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, NeedPassError> {
-    let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-    let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
-    let result = work();
-    match now(validation.pop()).or(now(memory.pop())) {
-        Some(error) => Err(NeedPassError::Device(error.to_string())),
-        None => Ok(result),
-    }
-}
-
-/// What a future gives at once: errors are known at once but in browsers, where they are reported later.
-fn now<T>(future: impl Future<Output = Option<T>>) -> Option<T> {
-    match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
-        Poll::Ready(result) => result,
-        Poll::Pending => None,
-    }
+    crate::caught::caught(device, work).map_err(|error| NeedPassError::Device(error.to_string()))
 }
 
 fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {

@@ -1,21 +1,42 @@
 
 // Share of the light that a map lets through, by its place in the order.
-fn shadowfit_read(entry: i32, position: vec3<f32>, normal: vec3<f32>) -> f32 {
-    let map = shadowfit_entry(entry);
-    return shadowfit_compare(map.layer, map.size, shadowfit_project(map, position, normal));
+fn shadowfit_read(entry: i32, position: vec3<f32>, normal: vec3<f32>, turn: f32) -> f32 {
+    return shadowfit_compare(shadowfit_project(shadowfit_entry(entry), position, normal), turn);
+}
+
+// How far shadows have faded at a point: 0 not at all, 1 gone.
+fn shadowfit_faded(position: vec3<f32>) -> f32 {
+    let beyond = shadowfit_view_depth(position) - shadowfit_receiver.fade_near;
+    if beyond <= 0.0 {
+        return 0.0;
+    }
+    // The smallest width is that of a hard end.
+    let share = saturate(beyond / max(shadowfit_receiver.fade_width, 1e-30));
+    return share * share * (3.0 - 2.0 * share);
+}
+
+// Share of the light that reaches a point through the maps, with the look-ups over discs turned by an angle in radians.
+fn shadowfit_turned(position: vec3<f32>, normal: vec3<f32>, turn: f32) -> f32 {
+    let faded = shadowfit_faded(position);
+    let choice = shadowfit_choose(position);
+    if choice.first < 0 || faded >= 1.0 {
+        return 1.0;
+    }
+    var factor = shadowfit_read(choice.first, position, normal, turn);
+    if choice.second >= 0 {
+        factor = mix(shadowfit_read(choice.second, position, normal, turn), factor, choice.weight);
+    }
+    return mix(factor, 1.0, faded);
 }
 
 // Share of the light that reaches a point: 1 lit, 0 in shadow, 1 outside every map.
 fn shadowfit_factor(position: vec3<f32>, normal: vec3<f32>) -> f32 {
-    let choice = shadowfit_choose(position);
-    if choice.first < 0 {
-        return 1.0;
-    }
-    let factor = shadowfit_read(choice.first, position, normal);
-    if choice.second < 0 {
-        return factor;
-    }
-    return mix(shadowfit_read(choice.second, position, normal), factor, choice.weight);
+    return shadowfit_turned(position, normal, 0.0);
+}
+
+// The same, with the look-ups over discs turned from pixel to pixel. pixel: xy of the fragment's builtin position.
+fn shadowfit_factor_at(position: vec3<f32>, normal: vec3<f32>, pixel: vec2<f32>) -> f32 {
+    return shadowfit_turned(position, normal, shadowfit_turn(pixel));
 }
 
 // Index of the map that weighs more in shadowfit_factor at a point: -1 outside every map.

@@ -1,4 +1,4 @@
 // One look-up at the point itself.
-fn shadowfit_compare(map: u32, size: vec2<f32>, projected: shadowfit_Projected) -> f32 {
-    return shadowfit_look_up(map, size, projected.texel, projected);
+fn shadowfit_compare(projected: shadowfit_Projected, turn: f32) -> f32 {
+    return shadowfit_look_up(projected.texel, projected);
 }

@@ -2,7 +2,7 @@
 // pairs of them give the same sum (after I. Castano, "Shadow mapping summary", 2013).
 //
 //   texel weights, u right of the pair's left centre:   1-u   2-u | 1+u    u     (over 4)
-fn shadowfit_compare(map: u32, size: vec2<f32>, projected: shadowfit_Projected) -> f32 {
+fn shadowfit_compare(projected: shadowfit_Projected, turn: f32) -> f32 {
     let base = floor(projected.texel - vec2<f32>(0.5));
     let t = projected.texel - vec2<f32>(0.5) - base;
     // Centre of a pair's left texel, and the weights of the pairs.
@@ -11,9 +11,7 @@ fn shadowfit_compare(map: u32, size: vec2<f32>, projected: shadowfit_Projected) 
     let w1 = 1.0 + 2.0 * t;
     let p0 = centre - vec2<f32>(1.0) + (2.0 - t) / w0;
     let p1 = centre + vec2<f32>(1.0) + t / w1;
-    let top = w0.x * shadowfit_look_up(map, size, p0, projected)
-        + w1.x * shadowfit_look_up(map, size, vec2<f32>(p1.x, p0.y), projected);
-    let bottom = w0.x * shadowfit_look_up(map, size, vec2<f32>(p0.x, p1.y), projected)
-        + w1.x * shadowfit_look_up(map, size, p1, projected);
+    let top = w0.x * shadowfit_look_up(p0, projected) + w1.x * shadowfit_look_up(vec2<f32>(p1.x, p0.y), projected);
+    let bottom = w0.x * shadowfit_look_up(vec2<f32>(p0.x, p1.y), projected) + w1.x * shadowfit_look_up(p1, projected);
     return (w0.y * top + w1.y * bottom) / 16.0;
 }

@@ -3,7 +3,7 @@
 
 @group(0) @binding(0) var static_depth: texture_depth_2d;
 
-@group(1) @binding(0) var<uniform> clip_from_world: mat4x4<f32>;
+@group(1) @binding(BINDING) var<uniform> clip_from_world: mat4x4<f32>;
 
 // The sides of a box: its corners' bits, two triangles a side, counter-clockwise from outside.
 const CORNERS: array<u32, 36> = array<u32, 36>(

@@ -1,4 +1,4 @@
-// The engine's fragment shader calls shadowfit_factor for every visible point.
+// The engine's fragment shader calls shadowfit_factor_at for every visible point.
 
 struct shadowfit_Map {
     uv_from_world: mat4x4<f32>,
@@ -17,7 +17,15 @@ struct shadowfit_Map {
     blend_near: f32,
     // Layer that it is stored in.
     layer: u32,
-    padding: f32,
+    padding_0: u32,
+    // Where the map's first texel lies in its layer, in texels: the rest follows it, and wraps around.
+    wrap: vec2<f32>,
+    // Radii along u and v of the disc that look-ups are spread over, in texels: the greatest where it follows the caster.
+    disc: vec2<f32>,
+    // Radii of the penumbra in texels, for each unit of stored depth from the caster to its shadow.
+    penumbra: vec2<f32>,
+    padding_1: u32,
+    padding_2: u32,
 }
 
 struct shadowfit_Receiver {
@@ -25,24 +33,42 @@ struct shadowfit_Receiver {
     map_count: u32,
     // View depth is dot(xyz, position) + w.
     view: vec4<f32>,
+    // View depth from which on shadows fade, in metres, and over how many they do.
+    fade_near: f32,
+    fade_width: f32,
+    // Radii that discs have at least and at most, in texels.
+    least_disc: f32,
+    greatest_disc: f32,
+    // Pixels by which the pattern that turns discs is moved in this frame.
+    frame_shift: f32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
     // In the order in which points try them.
     maps: array<shadowfit_Map, MAX_MAPS>,
 }
 
-@group(GROUP) @binding(0) var<uniform> shadowfit_receiver: shadowfit_Receiver;
+@group(GROUP) @binding(BINDING_0) var<uniform> shadowfit_receiver: shadowfit_Receiver;
 
 // Below this cosine (89.4 degrees from the light) the slope's tangent is held, so that a grazing
 // surface gets a finite bias; it receives next to no light anyway.
 const SHADOWFIT_MIN_COSINE: f32 = 0.01;
 
-// Where a point is looked up.
+// Where a point is looked up in a map, and what the look-up needs of the map.
 struct shadowfit_Projected {
     // Texels from the map's left and top.
     texel: vec2<f32>,
-    // Biased depth.
+    // Depth, and biased depth.
+    surface: f32,
     depth: f32,
     // Change of the depth of the point's plane over one texel along u and v.
     gradient: vec2<f32>,
+    // As in the map.
+    layer: u32,
+    size: vec2<f32>,
+    wrap: vec2<f32>,
+    disc: vec2<f32>,
+    penumbra: vec2<f32>,
 }
 
 // Whether texture coordinates and depth lie inside the map.
@@ -60,7 +86,8 @@ fn shadowfit_project(map: shadowfit_Map, position: vec3<f32>, normal: vec3<f32>)
     let gradient = vec2<f32>(dot(map.depth_per_texel_u, normal), dot(map.depth_per_texel_v, normal)) / cosine;
     let rise = map.receiver_plane * (abs(gradient.x) + abs(gradient.y));
     let depth = uv.z + map.constant_depth + map.slope_depth * sine / cosine + rise;
-    return shadowfit_Projected(uv.xy * map.size, depth, gradient);
+    return shadowfit_Projected(
+        uv.xy * map.size, uv.z, depth, gradient, map.layer, map.size, map.wrap, map.disc, map.penumbra);
 }
 
 // View depth of a point: its distance from the eye along the view's forward direction, in metres. Negative behind it.

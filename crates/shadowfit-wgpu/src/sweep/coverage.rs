@@ -1,7 +1,6 @@
 //! Which part of the views reads a map by coverage: what no finer map provably holds.
 
 use shadowfit::ViewFrustum;
-use shadowfit::bias::reach;
 use shadowfit::choice::MapOrder;
 use shadowfit::settings::MapChoice;
 
@@ -22,7 +21,7 @@ pub(super) fn read_from(
     views: &[ViewFrustum],
     descriptor: &ShadowMapDescriptor,
 ) -> Vec<Option<f32>> {
-    let free = f64::from(reach(descriptor.filter) + descriptor.blend);
+    let free = f64::from(descriptor.softness.reach(descriptor.filter) + descriptor.blend);
     let mut from = vec![None; maps.len()];
     // Up to where the finer maps hold all.
     let mut held = f32::MIN;

@@ -1,0 +1,24 @@
+//! Errors of a device that would otherwise end the program, as results.
+
+use core::future::Future;
+use core::pin::pin;
+use core::task::{Context, Poll, Waker};
+
+/// Does work that may find the device out of memory, or unable to do it.
+pub(crate) fn caught<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, wgpu::Error> {
+    let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+    let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let result = work();
+    match now(validation.pop()).or(now(memory.pop())) {
+        Some(error) => Err(error),
+        None => Ok(result),
+    }
+}
+
+/// What a future gives at once: errors are known at once but in browsers, where they are reported later.
+fn now<T>(future: impl Future<Output = Option<T>>) -> Option<T> {
+    match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
+        Poll::Ready(result) => result,
+        Poll::Pending => None,
+    }
+}

@@ -1,0 +1,4 @@
+// A disc that is as wide everywhere.
+fn shadowfit_compare(projected: shadowfit_Projected, turn: f32) -> f32 {
+    return shadowfit_disc(projected.disc, projected, turn);
+}
