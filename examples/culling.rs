@@ -140,7 +140,7 @@ impl Sums {
         (view, maps): (&View, &[MapFit]),
     ) -> Result<()> {
         let atmosphere = Atmosphere::default();
-        for (sums, culling) in [(&mut self.whole, Culling::AsGiven), (&mut self.swept, Culling::Swept)] {
+        for (sums, culling) in [(&mut self.whole, Culling::WholeMap), (&mut self.swept, Culling::Swept)] {
             let frame = Frame { culling, ..Frame::new(&view.camera, view.direction, maps, &atmosphere) };
             let statistics = renderer.draw(gpu, scene, &frame, target)?;
             for (sum, map) in sums.iter_mut().zip(&statistics.maps) {

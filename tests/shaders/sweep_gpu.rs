@@ -234,7 +234,7 @@ fn swept_casters_give_every_pixel_the_same_factor_and_are_fewer() {
             for direction in DIRECTIONS.map(Vec3::normalize) {
                 let maps = fitted(&case, &camera, &boxes, direction);
                 let frame = Frame::new(&camera, direction, &maps, &atmosphere);
-                let [swept, all] = [Culling::Swept, Culling::AsGiven]
+                let [swept, all] = [Culling::Swept, Culling::WholeMap]
                     .map(|culling| drawn(&gpu, &mut renderer, &mut gpu_scene, &frame, culling));
                 let at = (case.name, case.technique.choice, view.name, direction);
                 let count = different(&swept.pixels, &all.pixels);
@@ -278,7 +278,7 @@ fn from_other_eyes(gpu: &Gpu, atmosphere: &Atmosphere, case: &Case) {
         let frame =
             Frame { choice: Some((inner.eye, inner.forward)), ..Frame::new(&outer, direction, &maps, atmosphere) };
         let [swept, all] =
-            [Culling::Swept, Culling::AsGiven].map(|culling| drawn(gpu, &mut renderer, &mut scene, &frame, culling));
+            [Culling::Swept, Culling::WholeMap].map(|culling| drawn(gpu, &mut renderer, &mut scene, &frame, culling));
         let choice = case.technique.choice;
         assert_eq!(different(&swept.pixels, &all.pixels), 0, "{choice:?}, from {eye} along {forward}");
     }
@@ -303,7 +303,7 @@ fn real_scenes_get_the_same_factor_in_every_pixel() {
                 let (camera, direction) = (frame.camera(), DVec3::from_array(frame.light_dir).as_vec3());
                 let maps = fitted(case, &camera, &boxes, direction);
                 let shown = Frame::new(&camera, direction, &maps, &atmosphere);
-                let [swept, all] = [Culling::Swept, Culling::AsGiven]
+                let [swept, all] = [Culling::Swept, Culling::WholeMap]
                     .map(|culling| drawn(&gpu, &mut renderer, &mut gpu_scene, &shown, culling));
                 assert_eq!(different(&swept.pixels, &all.pixels), 0, "{}, {}", frame.id, case.name);
                 compared += swept.pixels.iter().flatten().count();

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use shadowfit::PerspectiveCamera;
-use shadowfit_wgpu::{MAX_MAPS, MapFit};
+use shadowfit_wgpu::{Culling, MAX_MAPS, MapFit};
 
 use crate::Line;
 use crate::uniform::Atmosphere;
@@ -50,16 +50,6 @@ impl<'a> Frame<'a> {
             inset: None,
         }
     }
-}
-
-/// Which casters are drawn into the maps. The picture is the same either way.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Culling {
-    /// Those that can cast a shadow on what the picture shows, by [`MapFit::sweep`].
-    #[default]
-    Swept,
-    /// Those in [`MapFit::volume`]; where that is `None`, all that the map can store.
-    AsGiven,
 }
 
 /// What is overlaid on the shaded surfaces.

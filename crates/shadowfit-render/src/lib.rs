@@ -6,6 +6,7 @@
 //! the world's origin. Right-handed, y up, metres; the camera's depth is reversed (near 1, far 0).
 
 pub mod camera;
+mod casters;
 mod frame;
 mod gpu;
 mod lines;
@@ -20,12 +21,13 @@ mod timer;
 mod uniform;
 
 pub use camera::{FlyCamera, FlyInput};
-pub use frame::{Culling, Frame, Inset, MapStatistics, Overlay, Statistics};
+pub use frame::{Frame, Inset, MapStatistics, Overlay, Statistics};
 pub use gpu::{AdapterChoice, Gpu, GpuError};
 pub use lines::{Line, box_lines};
 pub use probe::{Probe, ProbeError, ProbePixel, ProbeTargets};
 pub use renderer::Renderer;
 pub use scene::GpuScene;
+pub use shadowfit_wgpu::Culling;
 pub use target::{ReadError, RenderTarget};
 pub use timer::PassTimes;
 pub use uniform::{Atmosphere, FrameUniform, InsetUniform, InstanceData, LineVertex, MaterialUniform};

@@ -1,10 +1,13 @@
 //! One frame: shadow pass, shaded pass, sky, lines and inset.
 
 use glam::{DVec3, Mat4};
-use shadowfit::CasterVolume;
-use shadowfit_wgpu::{MAX_MAPS, MapFit, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError};
+use shadowfit::ViewFrustum;
+use shadowfit_wgpu::{
+    Casters, Culling, KeptMaps, MAX_MAPS, ShadowMap, ShadowMapDescriptor, ShadowMapError, ShadowPiece, SunFrame,
+};
 
-use crate::frame::{Culling, Frame, MapStatistics, Statistics};
+use crate::casters::CasterDraw;
+use crate::frame::{Frame, MapStatistics, Statistics};
 use crate::pipelines::{Layouts, Pipelines};
 use crate::probe::{Probe, ProbeError, ProbeTargets};
 use crate::scene::{Draw, GpuScene, Part, in_frustum};
@@ -19,7 +22,7 @@ use crate::{Gpu, Line};
 pub struct Renderer {
     layouts: Layouts,
     pipelines: Pipelines,
-    shadow_map: ShadowMap,
+    maps: KeptMaps,
     samples: u32,
     frame_uniform: wgpu::Buffer,
     frame_group: wgpu::BindGroup,
@@ -31,7 +34,8 @@ pub struct Renderer {
 
 /// The draws of a frame's passes.
 struct Plan {
-    shadow: Vec<Vec<Draw>>,
+    /// Of each piece of each shadow pass, in their order.
+    shadow: Vec<Vec<CasterDraw>>,
     opaque: Vec<Draw>,
     blended: Vec<Draw>,
 }
@@ -45,15 +49,16 @@ impl Renderer {
     pub fn new(gpu: &Gpu, shadow_map: &ShadowMapDescriptor, samples: u32) -> Result<Self, ShadowMapError> {
         let device = &gpu.device;
         let layouts = Layouts::new(device);
-        let shadow_map = ShadowMap::new(device, shadow_map)?;
-        let pipelines = Pipelines::new(device, &layouts, &shadow_map, samples);
+        let mut maps = KeptMaps::new(device, shadow_map)?;
+        maps.keeps = false;
+        let pipelines = Pipelines::new(device, &layouts, maps.map(), samples);
         let (frame_uniform, frame_group) = uniform(device, &layouts.frame, size_of::<FrameUniform>());
         let (inset_uniform, inset_group) = uniform(device, &layouts.inset, size_of::<InsetUniform>());
         let line_buffer = line_buffer(device, 64);
         Ok(Self {
             layouts,
             pipelines,
-            shadow_map,
+            maps,
             samples,
             frame_uniform,
             frame_group,
@@ -71,7 +76,23 @@ impl Renderer {
 
     /// The current shadow map.
     pub fn shadow_map(&self) -> &ShadowMap {
-        &self.shadow_map
+        self.maps.map()
+    }
+
+    /// Whether static casters are kept in the maps from frame to frame; off at first, so that pictures do not depend on
+    /// what was drawn before.
+    pub fn set_keeps(&mut self, keeps: bool) {
+        self.maps.keeps = keeps;
+    }
+
+    /// The maps, with what was drawn of them in the last frame.
+    pub fn kept_maps(&self) -> &KeptMaps {
+        &self.maps
+    }
+
+    /// Has all maps drawn anew in the next frame.
+    pub fn invalidate_maps(&mut self) {
+        self.maps.invalidate_all();
     }
 
     /// Makes the shadow map anew if its descriptor differs. On an error the old one stays.
@@ -80,16 +101,18 @@ impl Renderer {
     ///
     /// [`ShadowMapError`] if the new one cannot be made.
     pub fn set_shadow_map(&mut self, gpu: &Gpu, descriptor: &ShadowMapDescriptor) -> Result<(), ShadowMapError> {
-        let old = *self.shadow_map.descriptor();
+        let old = *self.shadow_map().descriptor();
         if old == *descriptor {
             return Ok(());
         }
-        self.shadow_map = ShadowMap::new(&gpu.device, descriptor)?;
+        let mut maps = KeptMaps::new(&gpu.device, descriptor)?;
+        maps.keeps = self.maps.keeps;
+        self.maps = maps;
         // What the shaders read from uniforms may differ.
         let ShadowMapDescriptor { resolution, fade, .. } = *descriptor;
         let same_shaders = ShadowMapDescriptor { resolution, fade, ..old } == *descriptor;
         if !same_shaders {
-            self.pipelines = Pipelines::new(&gpu.device, &self.layouts, &self.shadow_map, self.samples);
+            self.pipelines = Pipelines::new(&gpu.device, &self.layouts, self.maps.map(), self.samples);
         }
         Ok(())
     }
@@ -126,7 +149,7 @@ impl Renderer {
         self.timer.resolve(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
         self.timer.end_frame(gpu);
-        Ok(statistics(scene, &plan))
+        Ok(self.statistics(scene, &plan))
     }
 
     /// Draws a frame's shadow decisions and reads them back.
@@ -188,9 +211,7 @@ impl Renderer {
         size: [u32; 2],
     ) -> Result<Plan, ShadowMapError> {
         let origin = frame.camera.eye;
-        let (eye, forward) = frame.choice.unwrap_or((origin, frame.camera.forward.normalize()));
-        let view = MapView { origin, eye, forward, frame: 0 };
-        self.shadow_map.prepare(&gpu.queue, &view, &self.culled(frame, &view))?;
+        self.update_maps(gpu, scene, frame)?;
         let uniform = FrameUniform::new(frame.camera, -frame.direction, frame.shadows, frame.atmosphere, size)
             .with_overlay(frame.overlay);
         gpu.queue.write_buffer(&self.frame_uniform, 0, bytemuck::bytes_of(&uniform));
@@ -200,23 +221,65 @@ impl Renderer {
             gpu.queue.write_buffer(&self.inset_uniform, 0, bytemuck::bytes_of(&uniform));
         }
         self.write_lines(gpu, origin, frame.lines);
-        Ok(plan(gpu, scene, frame, &uniform, self.shadow_map.volumes()))
+        Ok(self.plan(gpu, scene, frame, &uniform))
     }
 
-    /// The maps, each with the casters that the frame's culling keeps for it.
-    fn culled(&self, frame: &Frame<'_>, view: &MapView) -> Vec<MapFit> {
-        let mut maps = frame.maps.to_vec();
-        if frame.culling == Culling::Swept {
-            let descriptor = self.shadow_map.descriptor();
-            let swept = frame.camera.frustum().and_then(|seen| MapFit::sweep(&mut maps, view, &[seen], descriptor));
-            if swept.is_err() {
-                // What an invalid camera sees is unknown: maps get all casters that they can store.
-                for map in &mut maps {
-                    map.volume = None;
-                }
-            }
+    /// Finds what is to be drawn into the maps.
+    fn update_maps(&mut self, gpu: &Gpu, scene: &GpuScene, frame: &Frame<'_>) -> Result<(), ShadowMapError> {
+        let (eye, forward) = frame.choice.unwrap_or((frame.camera.eye, frame.camera.forward.normalize()));
+        // What an invalid camera sees is unknown: maps get all casters that they can store.
+        let seen: Option<ViewFrustum> = frame.camera.frustum().ok();
+        self.maps.culling = if seen.is_some() { frame.culling } else { Culling::WholeMap };
+        let casters: Casters<'_> = scene.casters();
+        let sun = SunFrame {
+            eye,
+            forward,
+            receivers: None,
+            ..SunFrame::new(seen.as_slice(), frame.direction, casters.boxes, casters)
+        };
+        self.maps.update(&gpu.queue, &sun.with_origin(frame.camera.eye), frame.maps)
+    }
+
+    /// Decides what each pass draws and uploads the instances.
+    fn plan(&self, gpu: &Gpu, scene: &mut GpuScene, frame: &Frame<'_>, uniform: &FrameUniform) -> Plan {
+        scene.begin_frame(frame.camera.eye);
+        let mut shadow = Vec::new();
+        for piece in self.maps.passes().flat_map(|pass| pass.pieces()) {
+            let mut draws = Vec::new();
+            scene.caster_draws(piece.casters, &mut draws);
+            shadow.push(draws);
         }
-        maps
+        let seen = in_frustum(Mat4::from_cols_array_2d(&uniform.clip_from_world));
+        let mut opaque = scene.visible(|_, bounds| seen(bounds), Part::casts);
+        // Near things first, so that what they hide is never shaded.
+        opaque.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let mut blended = scene.visible(|_, bounds| seen(bounds), |part| !part.casts());
+        blended.sort_by(|a, b| b.distance.total_cmp(&a.distance));
+        scene.end_frame(gpu);
+        Plan { shadow, opaque, blended }
+    }
+
+    fn statistics(&self, scene: &GpuScene, plan: &Plan) -> Statistics {
+        let mut maps = [MapStatistics::default(); MAX_MAPS];
+        let pieces = self.maps.passes().flat_map(|pass| pass.pieces());
+        for (piece, draws) in pieces.zip(&plan.shadow) {
+            let map = &mut maps[piece.map];
+            map.casters += piece.casters.len() as u32;
+            map.draws += draws.len() as u32;
+            map.triangles +=
+                draws.iter().map(|draw| (draw.indices.len() / 3 * draw.instances.len()) as u64).sum::<u64>();
+        }
+        let triangles = |draws: &[Draw]| -> u64 {
+            let of = |draw: &Draw| u64::from(scene.parts[draw.part].index_count / 3) * draw.instances.len() as u64;
+            draws.iter().map(of).sum()
+        };
+        Statistics {
+            shadow_draws: maps.iter().map(|map| map.draws).sum(),
+            shadow_triangles: maps.iter().map(|map| map.triangles).sum(),
+            scene_draws: (plan.opaque.len() + plan.blended.len()) as u32,
+            scene_triangles: triangles(&plan.opaque) + triangles(&plan.blended),
+            maps,
+        }
     }
 
     fn write_lines(&mut self, gpu: &Gpu, eye: DVec3, lines: &[Line]) {
@@ -229,17 +292,36 @@ impl Renderer {
     }
 
     fn shadow_passes(&self, encoder: &mut wgpu::CommandEncoder, scene: &GpuScene, plan: &Plan) {
-        for (map, draws) in plan.shadow.iter().enumerate() {
+        let mut pieces = plan.shadow.iter();
+        for pass in self.maps.passes() {
             let query = self.timer.begin(Pass::Shadow, encoder);
             let timestamps = query.as_ref().and_then(wgpu_profiler::GpuProfilerQuery::render_pass_timestamp_writes);
-            let mut pass = self.shadow_map.begin_pass(encoder, map, CASTER_GROUP, timestamps);
-            for draw in draws {
-                let part = &scene.parts[draw.part];
-                pass.set_pipeline(self.pipelines.caster(part));
-                draw_part(&mut pass, scene, draw, 1);
+            let mut opened = self.maps.begin_pass(encoder, &pass, CASTER_GROUP, timestamps);
+            for (piece, draws) in pass.pieces().zip(&mut pieces) {
+                self.draw_piece(&mut opened, scene, &piece, draws);
             }
-            drop(pass);
+            drop(opened);
             self.timer.end(query, encoder);
+        }
+    }
+
+    fn draw_piece(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        scene: &GpuScene,
+        piece: &ShadowPiece<'_>,
+        draws: &[CasterDraw],
+    ) {
+        piece.set(pass);
+        for draw in draws {
+            let part = &scene.parts[draw.part];
+            pass.set_pipeline(self.pipelines.caster(part));
+            pass.set_bind_group(1, &scene.materials[part.material], &[]);
+            pass.set_vertex_buffer(0, part.motion.slice(..));
+            pass.set_vertex_buffer(1, part.surface.slice(..));
+            pass.set_vertex_buffer(2, scene.instance_buffer.slice(..));
+            pass.set_index_buffer(part.caster_indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(draw.indices.clone(), 0, draw.instances.start as u32..draw.instances.end as u32);
         }
     }
 
@@ -284,7 +366,7 @@ impl Renderer {
         pipeline: impl Fn(&Part) -> &'a wgpu::RenderPipeline,
     ) {
         pass.set_bind_group(0, &self.frame_group, &[]);
-        pass.set_bind_group(1, self.shadow_map.receiver_group(), &[]);
+        pass.set_bind_group(1, self.shadow_map().receiver_group(), &[]);
         for draw in draws {
             pass.set_pipeline(pipeline(&scene.parts[draw.part]));
             draw_part(pass, scene, draw, 2);
@@ -304,26 +386,10 @@ impl Renderer {
         });
         pass.set_pipeline(&self.pipelines.inset);
         pass.set_bind_group(0, &self.frame_group, &[]);
-        pass.set_bind_group(1, self.shadow_map.receiver_group(), &[]);
+        pass.set_bind_group(1, self.shadow_map().receiver_group(), &[]);
         pass.set_bind_group(2, &self.inset_group, &[]);
         pass.draw(0..4, 0..1);
     }
-}
-
-/// Decides what each pass draws and uploads the instances.
-fn plan(gpu: &Gpu, scene: &mut GpuScene, frame: &Frame<'_>, uniform: &FrameUniform, volumes: &[CasterVolume]) -> Plan {
-    scene.begin_frame(frame.camera.eye);
-    let masks = scene.cull(volumes);
-    let of_map = |map: usize| scene.visible(|instance, _| masks[instance] >> map & 1 == 1, Part::casts);
-    let shadow = (0..volumes.len()).map(of_map).collect();
-    let seen = in_frustum(Mat4::from_cols_array_2d(&uniform.clip_from_world));
-    let mut opaque = scene.visible(|_, bounds| seen(bounds), Part::casts);
-    // Near things first, so that what they hide is never shaded.
-    opaque.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-    let mut blended = scene.visible(|_, bounds| seen(bounds), |part| !part.casts());
-    blended.sort_by(|a, b| b.distance.total_cmp(&a.distance));
-    scene.end_frame(gpu);
-    Plan { shadow, opaque, blended }
 }
 
 fn draw_part(pass: &mut wgpu::RenderPass<'_>, scene: &GpuScene, draw: &Draw, material_group: u32) {
@@ -334,31 +400,6 @@ fn draw_part(pass: &mut wgpu::RenderPass<'_>, scene: &GpuScene, draw: &Draw, mat
     pass.set_vertex_buffer(2, scene.instance_buffer.slice(..));
     pass.set_index_buffer(part.indices.slice(..), wgpu::IndexFormat::Uint32);
     pass.draw_indexed(0..part.index_count, 0, draw.instances.clone());
-}
-
-fn statistics(scene: &GpuScene, plan: &Plan) -> Statistics {
-    let casters = |draws: &[Draw]| {
-        draws.iter().fold(MapStatistics::default(), |sum, draw| {
-            let instances = draw.instances.len() as u32;
-            let triangles = u64::from(scene.parts[draw.part].index_count / 3) * u64::from(instances);
-            MapStatistics {
-                casters: sum.casters + instances,
-                draws: sum.draws + 1,
-                triangles: sum.triangles + triangles,
-            }
-        })
-    };
-    let mut maps = [MapStatistics::default(); MAX_MAPS];
-    for (map, draws) in maps.iter_mut().zip(&plan.shadow) {
-        *map = casters(draws);
-    }
-    Statistics {
-        shadow_draws: maps.iter().map(|map| map.draws).sum(),
-        shadow_triangles: maps.iter().map(|map| map.triangles).sum(),
-        scene_draws: (plan.opaque.len() + plan.blended.len()) as u32,
-        scene_triangles: casters(&plan.opaque).triangles + casters(&plan.blended).triangles,
-        maps,
-    }
 }
 
 fn color_attachment<'a>(

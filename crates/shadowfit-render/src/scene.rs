@@ -3,10 +3,12 @@
 //! tracers see exactly the same triangles.
 
 use glam::{DVec3, Mat4, Vec3, Vec4};
-use shadowfit::{Aabb, CasterVolume};
+use shadowfit::Aabb;
 use shadowfit_scene::{AlphaMode, Instance, Pose, Primitive, Scene};
+use shadowfit_wgpu::Casters;
 
 use crate::Gpu;
+use crate::casters::{CasterDraw, Cluster, SceneCasters, clustered, transformed};
 use crate::material::upload_materials;
 use crate::uniform::InstanceData;
 
@@ -16,6 +18,7 @@ pub struct GpuScene {
     pub(crate) parts: Vec<Part>,
     pub(crate) materials: Vec<wgpu::BindGroup>,
     instances: Vec<SceneInstance>,
+    casters: SceneCasters,
     /// Origin of the current frame's positions, in world space, in metres.
     eye: DVec3,
     /// Bounds of all instances, relative to the eye.
@@ -31,6 +34,9 @@ pub(crate) struct Part {
     pub(crate) surface: wgpu::Buffer,
     pub(crate) indices: wgpu::Buffer,
     pub(crate) index_count: u32,
+    /// Its triangles in the order of their clusters, for the shadow passes.
+    pub(crate) caster_indices: wgpu::Buffer,
+    clusters: Vec<Cluster>,
     pub(crate) material: usize,
     pub(crate) alpha: AlphaMode,
     pub(crate) double_sided: bool,
@@ -74,16 +80,18 @@ impl GpuScene {
             let deforms = is_deformed(scene, instance);
             let key = (instance.mesh, instance.primitive, mirrored, if deforms { index } else { usize::MAX });
             let part = *shared.entry(key).or_insert_with(|| {
-                parts.push(Part::new(gpu, scene, primitive, mirrored));
+                parts.push(Part::new(gpu, scene, primitive, (mirrored, deforms)));
                 parts.len() - 1
             });
             parts[part].members.push(index);
         }
         let count = instances.len();
+        let casters = casters(scene, &instances, &parts);
         let mut gpu_scene = Self {
             parts,
             materials: upload_materials(gpu, layout, scene),
             instances: numbered(scene, instances),
+            casters,
             eye: DVec3::ZERO,
             boxes: Vec::new(),
             data: Vec::new(),
@@ -110,6 +118,16 @@ impl GpuScene {
                 entry.bounds = local.map_or(Aabb::EMPTY, |local| transformed(&local, &entry.world_from_mesh));
             }
         }
+        let (parts, instances) = (&self.parts, &self.instances);
+        self.casters.set_boxes(|part, instance, cluster| {
+            let (clusters, instance) = (&parts[part].clusters, &instances[instance]);
+            // What deforms is one cluster, whose bounds are those of its pose.
+            if clusters.len() == 1 {
+                instance.bounds
+            } else {
+                transformed(&clusters[cluster].bounds, &instance.world_from_mesh)
+            }
+        });
     }
 
     /// Starts a frame's instance list, for positions relative to `eye` (world space, metres).
@@ -122,11 +140,21 @@ impl GpuScene {
         self.boxes.extend(boxes.map(|bounds| shadowfit::Aabb::new(relative(bounds.min), relative(bounds.max))));
     }
 
-    /// For each instance the maps that it may cast a shadow into: bit i for volume i, relative to the frame's eye.
-    pub(crate) fn cull(&self, volumes: &[CasterVolume]) -> Vec<u8> {
-        let mut masks = vec![0; self.boxes.len()];
-        shadowfit::culling::cull(volumes, self.eye, &self.boxes, &mut masks);
-        masks
+    /// Everything that casts shadows, by number, in world space. What has an animation, or hangs on it, counts as moving.
+    pub fn casters(&self) -> Casters<'_> {
+        self.casters.by_number()
+    }
+
+    /// Adds casters, nearest to the light first, and returns their draws.
+    pub(crate) fn caster_draws(&mut self, numbers: &[u32], draws: &mut Vec<CasterDraw>) {
+        let Self { parts, instances, casters, data, eye, .. } = self;
+        let indices = |part: usize, cluster: usize| parts[part].clusters[cluster].indices.clone();
+        let add = |instance: usize| {
+            let SceneInstance { world_from_mesh, first_triangle, .. } = &instances[instance];
+            data.push(instance_data(world_from_mesh, *eye, *first_triangle));
+            data.len() - 1
+        };
+        casters.draws(numbers, indices, add, draws);
     }
 
     /// Adds the instances that a pass sees, and returns its draws. `keep` is asked with the
@@ -182,7 +210,7 @@ impl GpuScene {
 }
 
 impl Part {
-    fn new(gpu: &Gpu, scene: &Scene, primitive: &Primitive, mirrored: bool) -> Self {
+    fn new(gpu: &Gpu, scene: &Scene, primitive: &Primitive, (mirrored, deforms): (bool, bool)) -> Self {
         let material = &scene.materials[primitive.material];
         let motion = interleave_motion(&primitive.positions, &primitive.normals, &primitive.tangents);
         let mut surface = Vec::with_capacity(primitive.positions.len() * SURFACE_FLOATS);
@@ -192,11 +220,14 @@ impl Part {
             surface.extend(color.to_array());
         }
         let vertex = wgpu::BufferUsages::VERTEX;
+        let (caster_indices, clusters) = clustered(&primitive.positions, &primitive.indices, deforms);
         Self {
             motion: filled_buffer(gpu, vertex, bytemuck::cast_slice(&motion)),
             surface: filled_buffer(gpu, vertex, bytemuck::cast_slice(&surface)),
             indices: filled_buffer(gpu, wgpu::BufferUsages::INDEX, bytemuck::cast_slice(&primitive.indices)),
             index_count: primitive.indices.len() as u32,
+            caster_indices: filled_buffer(gpu, wgpu::BufferUsages::INDEX, bytemuck::cast_slice(&caster_indices)),
+            clusters,
             material: primitive.material,
             alpha: material.alpha,
             double_sided: material.double_sided,
@@ -240,6 +271,27 @@ fn numbered(scene: &Scene, instances: Vec<Instance>) -> Vec<SceneInstance> {
     instances.into_iter().map(number).collect()
 }
 
+/// The casters of a scene: blended surfaces cast nothing.
+fn casters(scene: &Scene, instances: &[Instance], parts: &[Part]) -> SceneCasters {
+    let moves = animated(scene);
+    let mut casters = SceneCasters::default();
+    for (index, part) in parts.iter().enumerate().filter(|(_, part)| part.casts()) {
+        for &member in &part.members {
+            let moves = moves[instances[member].node] || is_deformed(scene, &instances[member]);
+            casters.push(index, member, part.clusters.len(), moves);
+        }
+    }
+    casters
+}
+
+/// Whether each node has an animation, or hangs on a node that has one.
+fn animated(scene: &Scene) -> Vec<bool> {
+    let channels = || scene.animations.iter().flat_map(|animation| &animation.channels);
+    let roots: std::collections::HashSet<usize> = channels().map(|channel| channel.node).collect();
+    let is_moved = |node: usize| roots.iter().any(|root| scene.is_descendant(node, *root));
+    (0..scene.nodes.len()).map(is_moved).collect()
+}
+
 fn is_deformed(scene: &Scene, instance: &Instance) -> bool {
     let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
     scene.instance_skin(instance).is_some() || !primitive.morphs.is_empty()
@@ -253,14 +305,6 @@ fn interleave_motion(positions: &[Vec3], normals: &[Vec3], tangents: &[Vec4]) ->
         motion.extend(tangents.get(index).copied().unwrap_or(Vec4::ZERO).to_array());
     }
     motion
-}
-
-fn transformed(bounds: &Aabb, matrix: &Mat4) -> Aabb {
-    let center = matrix.transform_point3((bounds.min + bounds.max) * 0.5);
-    let half = (bounds.max - bounds.min) * 0.5;
-    let axis = |column: Vec4| column.truncate().abs();
-    let reach = axis(matrix.x_axis) * half.x + axis(matrix.y_axis) * half.y + axis(matrix.z_axis) * half.z;
-    Aabb { min: center - reach, max: center + reach }
 }
 
 fn instance_data(world_from_mesh: &Mat4, eye: DVec3, first_triangle: u32) -> InstanceData {

@@ -274,7 +274,7 @@ impl Stage {
             outside: from_elsewhere,
             // Maps that are themselves looked at from elsewhere hold all their casters, not only those of this
             // picture's shadows.
-            culling: if from_elsewhere.is_some() { Culling::AsGiven } else { Culling::Swept },
+            culling: if from_elsewhere.is_some() { Culling::WholeMap } else { Culling::Swept },
             overlay: if settings.tint_maps { Overlay::MapTint } else { Overlay::None },
             lines: &lines,
             inset: inset.map(|map| inset::inset(shown, &map.fit, &self.bounds(), target.size)),

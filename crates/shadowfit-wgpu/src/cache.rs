@@ -42,6 +42,19 @@ const MAX_CHANGES: usize = 64;
 /// the casters of one frame alone, which are fewer.
 const NEVER_KEPT: u8 = 2;
 
+/// Which casters are drawn into maps. Pictures are the same either way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Culling {
+    /// Into maps that are drawn anew, and of those that move, casters that can cast a shadow into view
+    /// ([`MapFit::sweep`]); into maps that are kept, those that the map can store. The default.
+    #[default]
+    Swept,
+    /// Those that the map can store.
+    WholeMap,
+    /// All, for comparison.
+    Off,
+}
+
 /// How maps are kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct CacheSettings {
@@ -49,6 +62,8 @@ pub(crate) struct CacheSettings {
     pub(crate) keeps: bool,
     /// Whether static casters can have layers of their own.
     pub(crate) can_mend: bool,
+    /// Which casters are drawn.
+    pub(crate) culling: Culling,
     /// Whether depth is clamped at the near plane.
     pub(crate) depth_clamp: bool,
     /// Whether points read maps by coverage.

@@ -10,7 +10,7 @@ use shadowfit::{Aabb, CasterVolume};
 
 use crate::cache::{CacheFrame, CacheSettings, FramePlan, MapCache};
 use crate::layers::Layers;
-use crate::{MapFit, ShadowMap, ShadowMapDescriptor, ShadowMapError, SunFrame, UpdateSchedule};
+use crate::{Culling, MapFit, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, SunFrame, UpdateSchedule};
 
 pub use passes::{ShadowPass, ShadowPiece};
 
@@ -21,6 +21,8 @@ pub struct KeptMaps {
     pub schedule: UpdateSchedule,
     /// Whether what stands still is kept; else every map is drawn anew in every frame. Pictures are the same either way.
     pub keeps: bool,
+    /// Which casters are drawn.
+    pub culling: Culling,
     device: wgpu::Device,
     map: ShadowMap,
     layers: Layers,
@@ -42,6 +44,7 @@ impl KeptMaps {
         Ok(Self {
             schedule: UpdateSchedule::default(),
             keeps: true,
+            culling: Culling::default(),
             device: device.clone(),
             map,
             layers,
@@ -109,9 +112,7 @@ impl KeptMaps {
         }
         // 2. The casters of each, and the passes.
         self.maps.clone_from(&choice.maps);
-        MapFit::sweep(&mut self.maps, &view, frame.views, self.map.descriptor()).map_err(ShadowMapError::View)?;
-        let clamps = self.map.descriptor().depth_clamp;
-        let volumes: Vec<CasterVolume> = self.maps.iter().map(|map| crate::map::volume(map, clamps)).collect();
+        let volumes = self.volumes(frame, &view)?;
         self.cache.plan(&choice, &cached, &volumes, &mut self.plan);
         // 3. What the shaders read.
         for (index, map) in self.maps.iter_mut().enumerate() {
@@ -122,12 +123,29 @@ impl KeptMaps {
         Ok(())
     }
 
+    /// Casters of each map for what is in view, relative to the maps' origin.
+    fn volumes(&mut self, frame: &SunFrame<'_>, view: &MapView) -> Result<Vec<CasterVolume>, ShadowMapError> {
+        for map in &mut self.maps {
+            map.volume = match self.culling {
+                Culling::Off => Some(CasterVolume::everywhere(map.fit.origin)),
+                Culling::Swept | Culling::WholeMap => None,
+            };
+        }
+        let descriptor = self.map.descriptor();
+        if self.culling == Culling::Swept {
+            MapFit::sweep(&mut self.maps, view, frame.views, descriptor).map_err(ShadowMapError::View)?;
+        }
+        let is_uncut = self.culling == Culling::Off || descriptor.depth_clamp;
+        Ok(self.maps.iter().map(|map| crate::map::volume(map, is_uncut)).collect())
+    }
+
     fn cache_settings(&self) -> CacheSettings {
         let descriptor = self.map.descriptor();
         CacheSettings {
             // Colours are drawn with a depth buffer that is not stored.
             keeps: self.keeps && descriptor.format.is_depth(),
             can_mend: Layers::can_mend(&self.device),
+            culling: self.culling,
             depth_clamp: descriptor.depth_clamp,
             by_coverage: descriptor.choice == MapChoice::Coverage,
             layer: descriptor.resolution.into(),

@@ -46,7 +46,7 @@ mod sun_shadows;
 mod sweep;
 mod uniform;
 
-pub use cache::{Casters, PassContent, UpdateSchedule};
+pub use cache::{Casters, Culling, PassContent, UpdateSchedule};
 pub use descriptor::{RESOLUTIONS, ShadowMapDescriptor};
 pub use error::ShadowMapError;
 pub use kept_maps::{KeptMaps, ShadowPass, ShadowPiece};

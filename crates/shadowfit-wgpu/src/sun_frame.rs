@@ -11,6 +11,11 @@ use crate::{Casters, MapView};
 pub struct SunFrame<'a> {
     /// What is drawn with the shadows: one view, or several that share the maps (both eyes of a headset, split screen).
     pub views: &'a [ViewFrustum],
+    /// World position of the eye from which view depths are counted, in metres: where maps are read by view depth, and
+    /// where shadows fade.
+    pub eye: DVec3,
+    /// Unit direction in which that eye looks, world axes.
+    pub forward: Vec3,
     /// World position that all positions in the shaders are relative to, in metres. The first view's eye is most exact;
     /// zero suits engines whose shaders take world space.
     pub origin: DVec3,
@@ -30,8 +35,18 @@ pub struct SunFrame<'a> {
 impl<'a> SunFrame<'a> {
     /// A frame whose shaders take positions relative to the first view's eye.
     pub fn new(views: &'a [ViewFrustum], direction: Vec3, receivers: Boxes<'a>, casters: Casters<'a>) -> Self {
-        let origin = views.first().map_or(DVec3::ZERO, |view| view.origin);
-        Self { views, origin, direction, receivers: Some(receivers), receiver_cones: &[], casters, number: 0 }
+        let (eye, forward) = views.first().map_or((DVec3::ZERO, Vec3::NEG_Z), |view| (view.origin, view.forward));
+        Self {
+            views,
+            eye,
+            forward,
+            origin: eye,
+            direction,
+            receivers: Some(receivers),
+            receiver_cones: &[],
+            casters,
+            number: 0,
+        }
     }
 
     /// This frame with positions in the shaders relative to another origin, in world space, in metres.
@@ -57,7 +72,7 @@ impl<'a> SunFrame<'a> {
     }
 
     pub(crate) fn map_view(&self) -> MapView {
-        let (eye, forward) = self.views.first().map_or((self.origin, Vec3::NEG_Z), |view| (view.origin, view.forward));
-        MapView { origin: self.origin, eye, forward, frame: self.number }
+        let Self { origin, eye, forward, number, .. } = *self;
+        MapView { origin, eye, forward, frame: number }
     }
 }

@@ -9,7 +9,7 @@ use shadowfit::settings::CasterPolicy;
 use shadowfit::{Aabb, CasterVolume};
 
 use super::casters::{KnownCasters, WorldBox};
-use super::{CacheSettings, Casters, Decision, KeptMap};
+use super::{CacheSettings, Casters, Culling, Decision, KeptMap};
 use crate::MapFit;
 
 /// Volumes that casters are tested against at once: the bits of a mask.
@@ -260,6 +260,9 @@ impl Drawing<'_> {
 
     /// All casters over a part of the map, seen or not.
     fn volume(&self, part: TexelRect) -> CasterVolume {
+        if self.settings.culling == Culling::Off {
+            return CasterVolume::everywhere(self.fitted.fit.origin);
+        }
         let casters = if self.settings.depth_clamp { CasterPolicy::DepthClamp } else { CasterPolicy::None };
         CasterVolume::of_part(&self.fitted.fit, casters, part)
     }

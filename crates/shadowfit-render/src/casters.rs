@@ -1,0 +1,218 @@
+//! What casts shadows in a scene, by number: instances, and of large meshes clusters of their triangles, so that
+//! culling and the order along the light reach into them.
+
+use core::ops::Range;
+
+use glam::{DVec3, Mat4, Vec3};
+use shadowfit::{Aabb, Boxes};
+use shadowfit_wgpu::Casters;
+
+/// Most triangles of a cluster. Smaller ones are culled better, and cost more draw calls.
+const CLUSTER_TRIANGLES: usize = 512;
+
+/// Runs into which the casters of a pass are cut, nearest to the light first: within one they are grouped by what they
+/// are drawn with. More would hide more, and cost more draw calls.
+const RUNS: usize = 16;
+
+/// A part of a primitive's index buffer.
+#[derive(Clone, Debug)]
+pub(crate) struct Cluster {
+    pub(crate) indices: Range<u32>,
+    /// In the space of the mesh, in metres.
+    pub(crate) bounds: Aabb,
+}
+
+/// Something that casts: an instance, or a cluster of one.
+#[derive(Clone, Copy, Debug)]
+struct Caster {
+    part: u32,
+    instance: u32,
+    cluster: u32,
+}
+
+/// Casters that are drawn at once.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct CasterDraw {
+    pub(crate) part: usize,
+    pub(crate) indices: Range<u32>,
+    /// Instances of the scene, in the order of their data.
+    pub(crate) instances: Range<usize>,
+}
+
+/// All casters of a scene.
+#[derive(Debug, Default)]
+pub(crate) struct SceneCasters {
+    casters: Vec<Caster>,
+    boxes: Vec<Aabb>,
+    moves: Vec<bool>,
+    /// Casters of the run that is grouped, with what they are grouped by.
+    run: Vec<Caster>,
+}
+
+impl SceneCasters {
+    /// Adds an instance of a part.
+    pub(crate) fn push(&mut self, part: usize, instance: usize, clusters: usize, moves: bool) {
+        for cluster in 0..clusters as u32 {
+            self.casters.push(Caster { part: part as u32, instance: instance as u32, cluster });
+            self.boxes.push(Aabb::EMPTY);
+            self.moves.push(moves);
+        }
+    }
+
+    /// Sets all boxes, in world space, in metres: `bounds` gives that of a part's instance and cluster.
+    pub(crate) fn set_boxes(&mut self, bounds: impl Fn(usize, usize, usize) -> Aabb) {
+        for (aabb, caster) in self.boxes.iter_mut().zip(&self.casters) {
+            *aabb = bounds(caster.part as usize, caster.instance as usize, caster.cluster as usize);
+        }
+    }
+
+    /// The casters by number, in world space.
+    pub(crate) fn by_number(&self) -> Casters<'_> {
+        Casters { boxes: Boxes { origin: DVec3::ZERO, boxes: &self.boxes }, moves: &self.moves }
+    }
+
+    /// Groups casters, nearest to the light first, into draw calls. `indices` are those of a part's cluster, `instances`
+    /// is called with an instance for each of those that are added.
+    pub(crate) fn draws(
+        &mut self,
+        numbers: &[u32],
+        indices: impl Fn(usize, usize) -> Range<u32>,
+        mut add: impl FnMut(usize) -> usize,
+        out: &mut Vec<CasterDraw>,
+    ) {
+        for run in numbers.chunks(numbers.len().div_ceil(RUNS).max(1)) {
+            self.run.clear();
+            self.run.extend(run.iter().map(|number| self.casters[*number as usize]));
+            self.run.sort_unstable_by_key(|caster| (caster.part, caster.instance, caster.cluster));
+            let first_of_run = out.len();
+            let mut last_instance = u32::MAX;
+            for caster in &self.run {
+                let is_same = caster.instance == last_instance;
+                last_instance = caster.instance;
+                let range = indices(caster.part as usize, caster.cluster as usize);
+                match out[first_of_run..].last_mut().filter(|last| last.part == caster.part as usize) {
+                    // The next cluster of the same instance.
+                    Some(last) if is_same && last.indices.end == range.start && last.instances.len() == 1 => {
+                        last.indices.end = range.end;
+                    }
+                    // The same triangles once more, for another instance.
+                    Some(last) if !is_same && last.indices == range => {
+                        last.instances.end = add(caster.instance as usize) + 1
+                    }
+                    _ => {
+                        let slot = add(caster.instance as usize);
+                        out.push(CasterDraw { part: caster.part as usize, indices: range, instances: slot..slot + 1 });
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The triangles of a mesh in clusters: reordered indices, and the clusters. A mesh that deforms is one.
+pub(crate) fn clustered(positions: &[Vec3], indices: &[u32], deforms: bool) -> (Vec<u32>, Vec<Cluster>) {
+    let mut triangles: Vec<[u32; 3]> = indices.as_chunks::<3>().0.to_vec();
+    let mut clusters = Vec::new();
+    if deforms {
+        let bounds = bounds(positions, &triangles);
+        clusters.push(Cluster { indices: 0..indices.len() as u32, bounds });
+    } else {
+        split(positions, &mut triangles, 0, &mut clusters);
+    }
+    (triangles.into_flattened(), clusters)
+}
+
+/// Cuts triangles in two at the median of their middles along the longest side, until they are few.
+fn split(positions: &[Vec3], triangles: &mut [[u32; 3]], first: u32, clusters: &mut Vec<Cluster>) {
+    if triangles.len() <= CLUSTER_TRIANGLES {
+        let bounds = bounds(positions, triangles);
+        clusters.push(Cluster { indices: first..first + triangles.len() as u32 * 3, bounds });
+        return;
+    }
+    let middle = |triangle: &[u32; 3]| triangle.iter().map(|index| positions[*index as usize]).sum::<Vec3>();
+    let size = Aabb::from_points(triangles.iter().map(middle)).map_or(Vec3::ZERO, |middles| middles.size());
+    let axis = size.max_position();
+    let half = triangles.len() / 2;
+    triangles.select_nth_unstable_by(half, |a, b| middle(a)[axis].total_cmp(&middle(b)[axis]));
+    let (low, high) = triangles.split_at_mut(half);
+    split(positions, low, first, clusters);
+    split(positions, high, first + half as u32 * 3, clusters);
+}
+
+fn bounds(positions: &[Vec3], triangles: &[[u32; 3]]) -> Aabb {
+    Aabb::from_points(triangles.as_flattened().iter().map(|index| positions[*index as usize])).unwrap_or(Aabb::EMPTY)
+}
+
+/// The world box of a box in the space of a mesh.
+pub(crate) fn transformed(bounds: &Aabb, matrix: &Mat4) -> Aabb {
+    if bounds.is_empty() {
+        return Aabb::EMPTY;
+    }
+    let center = matrix.transform_point3((bounds.min + bounds.max) * 0.5);
+    let half = (bounds.max - bounds.min) * 0.5;
+    let axis = |column: glam::Vec4| column.truncate().abs();
+    let reach = axis(matrix.x_axis) * half.x + axis(matrix.y_axis) * half.y + axis(matrix.z_axis) * half.z;
+    Aabb { min: center - reach, max: center + reach }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clusters_hold_every_triangle_once_and_their_boxes_hold_them() {
+        let positions: Vec<Vec3> = (0..3000)
+            .map(|i| {
+                let i = i as f32;
+                Vec3::new((i * 0.754_877).fract() * 40.0, (i * 0.569_84).fract(), (i * 0.31).fract() * 20.0)
+            })
+            .collect();
+        let indices: Vec<u32> = (0..2998).flat_map(|i| [i, i + 1, i + 2]).collect();
+        let (reordered, clusters) = clustered(&positions, &indices, false);
+        let sorted = |indices: &[u32]| {
+            let mut triangles = indices.as_chunks::<3>().0.to_vec();
+            triangles.sort_unstable();
+            triangles
+        };
+        assert_eq!(sorted(&reordered), sorted(&indices));
+        assert_eq!(clusters.len(), 8);
+        let mut next = 0;
+        for cluster in &clusters {
+            assert_eq!(cluster.indices.start, next);
+            next = cluster.indices.end;
+            let corners = reordered[cluster.indices.start as usize..next as usize].iter();
+            let (min, max) = (cluster.bounds.min, cluster.bounds.max);
+            assert!(corners.map(|i| positions[*i as usize]).all(|p| p.cmpge(min).all() && p.cmple(max).all()));
+        }
+        assert_eq!(next as usize, indices.len());
+        assert_eq!(clustered(&positions, &indices, true).1.len(), 1);
+    }
+
+    #[test]
+    fn draws_join_neighbouring_clusters_and_instances_of_the_same_triangles() {
+        let mut casters = SceneCasters::default();
+        // A large mesh of four clusters, and three instances of a small one.
+        casters.push(0, 0, 4, false);
+        for instance in 1..4 {
+            casters.push(1, instance, 1, false);
+        }
+        let indices = |part: usize, cluster: usize| {
+            if part == 0 { cluster as u32 * 30..cluster as u32 * 30 + 30 } else { 0..6 }
+        };
+        let mut added = Vec::new();
+        let mut draws = Vec::new();
+        let numbers = [5, 1, 4, 0, 6, 3];
+        // One run each: nothing is joined.
+        casters.draws(&numbers, indices, |i| (added.push(i), added.len() - 1).1, &mut draws);
+        assert_eq!((draws.len(), added.as_slice()), (6, [2, 0, 1, 0, 3, 0].as_slice()));
+        // Many numbers make runs of several.
+        let numbers: Vec<u32> = numbers.iter().copied().cycle().take(6 * RUNS).collect();
+        (added.clear(), draws.clear());
+        casters.draws(&numbers, indices, |i| (added.push(i), added.len() - 1).1, &mut draws);
+        assert_eq!(draws.len(), 3 * RUNS);
+        let expected = [(0, 0..60, 1), (0, 90..120, 1), (1, 0..6, 3)];
+        for (draw, (part, indices, instances)) in draws.iter().zip(expected) {
+            assert_eq!((draw.part, &draw.indices, draw.instances.len()), (part, &indices, instances));
+        }
+    }
+}
