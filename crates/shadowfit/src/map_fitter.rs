@@ -14,7 +14,7 @@ use crate::grid::GridAnchor;
 use crate::histogram::DepthBounds;
 use crate::maps::{FittedMap, FittedMaps, set_empty_ranges_apart};
 use crate::motion::Motion;
-use crate::rule::FitRule;
+use crate::rule::{FitRule, check_least_texel};
 use crate::settings::{
     BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, MAX_BLEND, MAX_DEPTH_STEPS, MAX_MAPS, MapOverride,
     Stabilise,
@@ -419,6 +419,8 @@ fn check_numbers(technique: &Technique) -> Result<(), FitError> {
     checks::within("the hold's growth", f64::from(hold.growth), 1.0, 100.0)?;
     checks::within("the hold's waste", f64::from(hold.waste), 1.0, 100.0)?;
     technique.softness.checked()?;
+    // The least texel of the maps is the greater of two, which would hide a bad one.
+    check_least_texel(&technique.fit)?;
     checks::within("the shadows' fade", f64::from(technique.fade), 0.0, 1.0)?;
     let BiasSettings { constant, slope, normal_offset, receiver_plane, depth_steps } = technique.bias;
     for bias in [constant, slope, normal_offset, receiver_plane] {

@@ -157,6 +157,12 @@ fn near_plane(settings: &FitSettings, casters_are_known: bool) -> Depth {
     }
 }
 
+/// Checks the least texel of a fit's settings.
+pub(crate) fn check_least_texel(settings: &FitSettings) -> Result<(), FitError> {
+    checks::within("the fit's least texel", f64::from(settings.least_texel), 0.0, MAX_LENGTH)?;
+    Ok(())
+}
+
 /// Checks the numbers of a fit's settings.
 #[inline]
 fn check(settings: &FitSettings, border: f32) -> Result<(), FitError> {
@@ -170,7 +176,7 @@ fn check(settings: &FitSettings, border: f32) -> Result<(), FitError> {
     checks::within("the fit's greatest texel ratio", ratio, 1.0, f64::from(f32::MAX))?;
     let widest = f64::from(settings.resolution.min_element()) * 0.25;
     checks::within("the fit's border", f64::from(border), 0.0, widest)?;
-    checks::within("the fit's least texel", f64::from(settings.least_texel), 0.0, MAX_LENGTH)?;
+    check_least_texel(settings)?;
     checks::finite("the maximum shadow distance", f64::from(settings.max_distance))?;
     Ok(())
 }

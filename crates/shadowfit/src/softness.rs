@@ -91,8 +91,9 @@ impl Softness {
                 checks::within("the sun's angular radius", f64::from(radians), 0.0, core::f64::consts::FRAC_PI_4)?;
             }
         }
-        checks::within("the least radius of the filter", f64::from(self.floor), 0.0, f64::from(self.ceiling))?;
-        checks::within("the greatest radius of the filter", f64::from(self.ceiling), 1.0, f64::from(MAX_RADIUS))?;
+        let ceiling = f64::from(self.ceiling);
+        let ceiling = checks::within("the greatest radius of the filter", ceiling, 1.0, f64::from(MAX_RADIUS))?;
+        checks::within("the least radius of the filter", f64::from(self.floor), 0.0, ceiling)?;
         Ok(())
     }
 }

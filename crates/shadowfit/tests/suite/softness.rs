@@ -64,12 +64,12 @@ fn variance(radius: f64, texel: f64) -> f64 {
     sum / weight * texel * texel
 }
 
-/// Radius of the disc that blurs as much, in metres.
 #[test]
 fn penumbrae_are_as_wide_in_maps_of_other_texels() {
     let softness = metres(0.1).with_floor(0.0).with_ceiling(64.0);
     for texel in [0.002_f32, 0.01, 0.03, 0.05, 0.1, 0.12] {
         let radius = softness.texels(FilterKind::Vogel16, &with_texels(Vec2::splat(texel))).x;
+        // Radius of the disc that blurs as much, in metres.
         let whole = 2.0 * variance(radius.into(), texel.into()).sqrt();
         assert!((whole / 0.1 - 1.0).abs() < 0.01, "{texel}: {whole}");
     }
@@ -99,9 +99,10 @@ fn discs_keep_within_the_floor_and_the_ceiling_on_either_axis() {
 #[test]
 fn a_least_texel_is_the_greater_of_what_is_set_and_what_the_ceiling_asks_for() {
     let soft = Technique::default().with_filter(FilterKind::Vogel16).with_softness(metres(0.8));
-    assert_eq!(soft.least_texel(), 0.05);
+    assert!((soft.least_texel() / 0.05 - 1.0).abs() < 1e-6);
     let set = |metres| FitSettings::default().with_least_texel(metres);
-    assert_eq!((soft.with_fit(set(0.01)).least_texel(), soft.with_fit(set(0.2)).least_texel()), (0.05, 0.2));
+    assert_eq!(soft.with_fit(set(0.01)).least_texel(), soft.least_texel());
+    assert_eq!(soft.with_fit(set(0.2)).least_texel(), 0.2);
     assert_eq!(soft.with_filter(FilterKind::Pcf7x7).least_texel(), 0.0);
     assert_eq!((soft.with_filter(FilterKind::Pcf7x7).reach(), soft.reach()), (4.0, 17.0));
 }
@@ -112,13 +113,13 @@ fn no_limit_and_one_that_is_met_anyway_give_the_same_map() {
     for kind in [FitKind::XnaSample, FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused] {
         let plain = exact(kind);
         let free = shadowfit::fit(&frustum, DIRECTION, &plain).unwrap();
-        let met = plain.with_least_texel(free.texel_size.min_element() * 0.99);
+        // The sphere's texels are up to an eighth of an octave wider than they must be.
+        let met = plain.with_least_texel(free.texel_size.min_element() * 0.9);
         assert_eq!(shadowfit::fit(&frustum, DIRECTION, &met).unwrap(), free, "{kind:?}");
         let limited = plain.with_least_texel(free.texel_size.max_element() * 3.0);
         let wide = shadowfit::fit(&frustum, DIRECTION, &limited).unwrap();
         assert_eq!(wide == free, kind == FitKind::XnaSample, "{kind:?}");
         let share = wide.texel_size.min_element() / limited.least_texel;
-        // The sphere is on a grid, in steps of an eighth of an octave.
         assert!(kind == FitKind::XnaSample || (1.0 - 1e-5..1.1).contains(&share), "{kind:?}: {share}");
     }
 }
