@@ -213,6 +213,7 @@ fn descriptor(
         blend: Technique::default().blend,
         depth,
         depth_clamp: file.depth_clamp,
+        ..ShadowMapDescriptor::default()
     })
 }
 

@@ -16,10 +16,11 @@ const RUNS: usize = 16;
 
 /// A part of a primitive's index buffer.
 #[derive(Clone, Debug)]
-pub(crate) struct Cluster {
-    pub(crate) indices: Range<u32>,
-    /// In the space of the mesh, in metres.
-    pub(crate) bounds: Aabb,
+pub struct Cluster {
+    /// The part.
+    pub indices: Range<u32>,
+    /// In the space of the positions, in metres.
+    pub bounds: Aabb,
 }
 
 /// Something that casts: an instance, or a cluster of one.
@@ -109,8 +110,9 @@ impl SceneCasters {
     }
 }
 
-/// The triangles of a mesh in clusters: reordered indices, and the clusters. A mesh that deforms is one.
-pub(crate) fn clustered(positions: &[Vec3], indices: &[u32], deforms: bool) -> (Vec<u32>, Vec<Cluster>) {
+/// The triangles of a mesh in clusters of a few hundred: reordered indices, and the clusters. A mesh that deforms is one
+/// cluster. Indices past the positions panic.
+pub fn clustered(positions: &[Vec3], indices: &[u32], deforms: bool) -> (Vec<u32>, Vec<Cluster>) {
     let mut triangles: Vec<[u32; 3]> = indices.as_chunks::<3>().0.to_vec();
     let mut clusters = Vec::new();
     if deforms {

@@ -21,6 +21,7 @@ mod timer;
 mod uniform;
 
 pub use camera::{FlyCamera, FlyInput};
+pub use casters::{Cluster, clustered};
 pub use frame::{Frame, Inset, MapStatistics, Overlay, Statistics};
 pub use gpu::{AdapterChoice, Gpu, GpuError};
 pub use lines::{Line, box_lines};

@@ -14,7 +14,9 @@ use shadowfit::verify::{Certificate, CoverageQuery, verify};
 use shadowfit::{Aabb, DepthConvention, FittedMap, FittedMaps, MapFitter, Technique, ViewFrustum, Workspace};
 
 use crate::need::{NeedPass, NeedPassError, NeedView, SeenNeed};
-use crate::{KeptMaps, MapFit, ShadowMap, ShadowMapDescriptor, ShadowPass, ShadowPiece, SunFrame, UpdateSchedule};
+use crate::{
+    Culling, KeptMaps, MapFit, ShadowMap, ShadowMapDescriptor, ShadowPass, ShadowPiece, SunFrame, UpdateSchedule,
+};
 
 pub use error::SunShadowsError;
 
@@ -111,6 +113,11 @@ impl SunShadows {
         self.maps.keeps = keeps;
     }
 
+    /// Which casters are drawn; see [`Culling`]. Pictures are the same either way.
+    pub fn set_culling(&mut self, culling: Culling) {
+        self.maps.culling = culling;
+    }
+
     /// Goes on with another technique, and returns whether the maps were made anew: then the engine's pipelines and its
     /// WGSL must be made anew too. On an error everything stays as it is.
     ///
@@ -122,7 +129,7 @@ impl SunShadows {
         let is_new = descriptor != *self.map().descriptor();
         if is_new {
             let mut maps = KeptMaps::new(&self.device, &descriptor)?;
-            (maps.schedule, maps.keeps) = (self.maps.schedule, self.maps.keeps);
+            (maps.schedule, maps.keeps, maps.culling) = (self.maps.schedule, self.maps.keeps, self.maps.culling);
             self.maps = maps;
         }
         self.technique = *technique;

@@ -1,0 +1,41 @@
+//! Culling of many instances, half of which can cast no shadow into view.
+
+use anyhow::Result;
+use shadowfit_wgpu::Culling;
+
+use crate::Bench;
+use crate::passes::with_culling;
+use crate::scene::BenchScene;
+use crate::table::{Table, ms, share};
+
+/// Instances of the field.
+const INSTANCES: u16 = 10_000;
+
+pub(crate) fn time(bench: &Bench) -> Result<Table> {
+    let scene = BenchScene::field(INSTANCES);
+    let ways = [("no culling", Culling::Off), ("whole maps", Culling::WholeMap), ("swept volumes", Culling::Swept)];
+    let mut rows = Vec::new();
+    let mut unit = [0.0; 3];
+    for (name, culling) in ways {
+        let taken = with_culling(bench, &scene, culling)?;
+        unit = if rows.is_empty() { taken } else { unit };
+        let [gpu, cpu, draws] = taken;
+        rows.push(vec![
+            name.to_owned(),
+            ms(gpu),
+            share(gpu, unit[0]),
+            ms(cpu),
+            share(cpu, unit[1]),
+            format!("{draws:.0}"),
+        ]);
+    }
+    Ok(Table {
+        title: "Culling",
+        note: format!(
+            "{INSTANCES} boxes, a draw call each, half of them behind the eye and away from the sun; all maps drawn anew. \
+             CPU is fit, culling and encoding."
+        ),
+        columns: ["culling", "GPU", "of none", "CPU", "of none", "draws"].map(str::to_owned).to_vec(),
+        rows,
+    })
+}

@@ -1,0 +1,89 @@
+//! The look-up by each filter and format.
+
+use anyhow::Result;
+use shadowfit::Technique;
+use shadowfit::settings::{FilterKind, MapFormat};
+
+use crate::Bench;
+use crate::engine::Engine;
+use crate::fullscreen::Fullscreen;
+use crate::scene::BenchScene;
+use crate::table::{Table, ms, share};
+use crate::timer::{Timer, median};
+
+/// Frames until windows are settled.
+const SETTLED: usize = 60;
+
+/// A filter by its name in the parameter table, and the format of its maps.
+const CASES: [(&str, FilterKind, MapFormat); 11] = [
+    ("hardware 2×2", FilterKind::Hardware2x2, MapFormat::Depth32Float),
+    ("point", FilterKind::Point, MapFormat::Depth32Float),
+    ("PCF 3×3", FilterKind::Pcf3x3, MapFormat::Depth32Float),
+    ("PCF 5×5", FilterKind::Pcf5x5, MapFormat::Depth32Float),
+    ("PCF 7×7", FilterKind::Pcf7x7, MapFormat::Depth32Float),
+    ("Vogel disc, 8", FilterKind::Vogel8, MapFormat::Depth32Float),
+    ("Vogel disc, 16", FilterKind::Vogel16, MapFormat::Depth32Float),
+    ("Vogel disc, 32", FilterKind::Vogel32, MapFormat::Depth32Float),
+    ("PCSS", FilterKind::Pcss, MapFormat::Depth32Float),
+    ("PCF 5×5, Depth16Unorm", FilterKind::Pcf5x5, MapFormat::Depth16Unorm),
+    ("PCF 5×5, R32Float", FilterKind::Pcf5x5, MapFormat::R32Float),
+];
+
+pub(crate) fn time(bench: &Bench, scene: &BenchScene) -> Result<Table> {
+    let mut rows = Vec::new();
+    let mut unit = 0.0;
+    for (name, filter, format) in CASES {
+        let (whole, positions) = of_filter(bench, scene, filter, format)?;
+        unit = if rows.is_empty() { whole } else { unit };
+        rows.push(vec![name.to_owned(), ms(whole), share(whole, unit), ms(whole - positions)]);
+    }
+    Ok(Table {
+        title: "Filters",
+        note: format!(
+            "A triangle over 1920 × 1080 pixels of the {} that takes positions from the depth buffer and computes \
+             `shadowfit_factor_at` alone, as a whole, of that with the hardware's 2×2, and without the time of positions \
+             and normals.",
+            scene.name
+        ),
+        columns: ["filter", "time", "of 2×2", "look-up alone"].map(str::to_owned).to_vec(),
+        rows,
+    })
+}
+
+/// Times of the pass, and of the same without the look-up.
+fn of_filter(bench: &Bench, scene: &BenchScene, filter: FilterKind, format: MapFormat) -> Result<(f64, f64)> {
+    let gpu = &bench.gpu;
+    let technique = Technique::default().with_filter(filter).with_format(format).with_resolution(bench.map, bench.map);
+    let mut engine = Engine::new(gpu, scene, &technique)?;
+    let timer = Timer::new(gpu);
+    let frames = if gpu.is_software() { 3 } else { SETTLED };
+    for _ in 0..frames {
+        engine.update(0)?;
+        let camera = engine.camera(0);
+        timer.frame(gpu, |encoder, _| {
+            engine.shadow_passes(encoder, None);
+            engine.seen_pass(encoder, &camera)
+        })?;
+    }
+    let camera = engine.camera(0);
+    let whole = Fullscreen::new(gpu, Some(engine.sun.map()), &camera, &engine.depth);
+    let bare = Fullscreen::new(gpu, None, &camera, &engine.depth);
+    let mut times = [Vec::new(), Vec::new()];
+    for frame in 0..bench.frames + bench.frames / 5 {
+        let both = [
+            timer.frame(gpu, |encoder, times| {
+                whole.record(encoder, Some(engine.sun.map()), times);
+                Ok(())
+            })?,
+            timer.frame(gpu, |encoder, times| {
+                bare.record(encoder, None, times);
+                Ok(())
+            })?,
+        ];
+        if frame >= bench.frames / 5 {
+            times.iter_mut().zip(both).for_each(|(times, time)| times.push(time));
+        }
+    }
+    let [whole, positions] = times.map(median);
+    Ok((whole, positions))
+}

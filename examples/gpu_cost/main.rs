@@ -1,0 +1,128 @@
+//! What shadows cost on a GPU: passes drawn anew and kept, culling, filters, the pass over the depth buffer, rays.
+//!
+//! ```sh
+//! cargo run --release --example gpu_cost                                   # the built-in scene
+//! cargo run --release --example gpu_cost -- scene.glb --out cost.md        # with a scene of its own
+//! cargo xtask bench --gpu scene.glb                                        # the same, into docs/BENCHMARKS.md
+//! ```
+//!
+//! A small engine with its own buffers and pipelines draws each scene through `SunShadows` while a camera walks at
+//! 1.5 m/s and turns by 10° a second, 60 frames a second, and every tenth node bobs by half a metre once a second. Times
+//! are medians by the GPU's clock, from the begin of a frame's first shadow pass to the end of the last one.
+
+mod engine;
+mod field;
+mod filters;
+mod fullscreen;
+mod passes;
+mod rays;
+mod scene;
+mod table;
+mod timer;
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, ensure};
+use clap::Parser;
+use shadowfit_render::{AdapterChoice, Gpu};
+
+use scene::BenchScene;
+use table::Table;
+
+#[derive(Parser)]
+#[command(about = "Times shadows on the GPU")]
+struct Args {
+    /// glTF files, beside the built-in scene
+    scenes: Vec<PathBuf>,
+    /// Frames that are timed of each way of drawing, after a fifth as many to warm up; 240, on software adapters 5
+    #[arg(long)]
+    frames: Option<usize>,
+    /// Where the tables are written, as Markdown
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Draw on the software adapter, whatever GPU there is
+    #[arg(long)]
+    software: bool,
+    /// Width and height of the maps, in texels
+    #[arg(long, default_value_t = 2048)]
+    map: u32,
+    /// Only these parts
+    #[arg(long, value_enum, num_args = 1..)]
+    only: Vec<Part>,
+}
+
+/// What is timed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Part {
+    /// Shadow passes, drawn anew and kept
+    Passes,
+    /// Orders, formats and rectangles that lower the fill
+    Fill,
+    /// The look-up by each filter
+    Filters,
+    /// Culling of 10,000 instances
+    Culling,
+    /// The pass over the depth buffer
+    Need,
+    /// Rays and classes on the GPU
+    Rays,
+}
+
+/// What all parts share.
+struct Bench {
+    gpu: Gpu,
+    frames: usize,
+    map: u32,
+}
+
+/// Frames on a GPU, and on software adapters, whose times say little.
+const FRAMES: usize = 240;
+const SOFTWARE_FRAMES: usize = 5;
+
+fn main() -> Result<()> {
+    let args = Args::parse();
+    let choice = if args.software { AdapterChoice::Software } else { AdapterChoice::Any };
+    let gpu = pollster::block_on(Gpu::headless(choice))?;
+    ensure!(
+        gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY),
+        "{} cannot time its passes: it has no timestamp queries",
+        gpu.name()
+    );
+    let usual = if gpu.is_software() { SOFTWARE_FRAMES } else { FRAMES };
+    let bench = Bench { frames: args.frames.unwrap_or(usual).max(1), map: args.map, gpu };
+    let mut scenes = vec![BenchScene::built_in()];
+    for file in &args.scenes {
+        scenes.push(BenchScene::load(file).with_context(|| format!("{}: cannot be drawn", file.display()))?);
+    }
+    let wants = |part: Part| args.only.is_empty() || args.only.contains(&part);
+    let mut tables: Vec<Table> = Vec::new();
+    if wants(Part::Passes) {
+        tables.push(passes::time(&bench, &scenes)?);
+    }
+    if wants(Part::Fill) {
+        tables.push(passes::time_fill(&bench, &scenes)?);
+    }
+    if wants(Part::Culling) {
+        tables.push(field::time(&bench)?);
+    }
+    if wants(Part::Filters) {
+        tables.push(filters::time(&bench, &scenes[0])?);
+    }
+    if wants(Part::Need) {
+        tables.push(passes::time_need(&bench, &scenes)?);
+    }
+    if wants(Part::Rays) {
+        tables.push(rays::time(&bench, &args.scenes)?);
+    }
+    let maps = format!("{0} × {0}", bench.map);
+    let mut text =
+        format!("Measured on {}, four maps of {maps} texels unless a row says otherwise.\n", bench.gpu.name());
+    for table in &tables {
+        text += &format!("\n{table}");
+    }
+    print!("{text}");
+    if let Some(out) = &args.out {
+        std::fs::write(out, &text).with_context(|| format!("{}: cannot be written", out.display()))?;
+    }
+    Ok(())
+}

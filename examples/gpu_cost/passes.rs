@@ -1,0 +1,289 @@
+//! Shadow passes: drawn anew and kept, with and without culling, and what lowers their fill.
+
+use std::time::Instant;
+
+use anyhow::Result;
+use shadowfit::scroll::TexelRect;
+use shadowfit::settings::MapFormat;
+use shadowfit::{Aabb, Technique};
+use shadowfit_wgpu::need::{NeedPass, NeedView};
+use shadowfit_wgpu::{Culling, ShadowMap, ShadowMapDescriptor, UpdateSchedule};
+
+use crate::Bench;
+use crate::engine::{Engine, SIZE};
+use crate::scene::BenchScene;
+use crate::table::{Table, ms, share};
+use crate::timer::{Timer, median};
+
+/// A way of drawing the maps.
+#[derive(Clone, Copy, PartialEq)]
+struct Way {
+    name: &'static str,
+    keeps: bool,
+    culling: Culling,
+    schedule: UpdateSchedule,
+}
+
+/// Far maps in every second, fourth and eighth frame.
+const FAR_MAPS_LATER: UpdateSchedule = UpdateSchedule::Every([1, 2, 4, 8, 1, 1, 1, 1]);
+
+const WAYS: [Way; 5] = [
+    way("anew, swept volumes", false, Culling::Swept),
+    way("anew, whole maps", false, Culling::WholeMap),
+    way("anew, no culling", false, Culling::Off),
+    way("kept", true, Culling::Swept),
+    Way { schedule: FAR_MAPS_LATER, ..way("kept, far maps later", true, Culling::Swept) },
+];
+
+const fn way(name: &'static str, keeps: bool, culling: Culling) -> Way {
+    Way { name, keeps, culling, schedule: UpdateSchedule::EveryFrame }
+}
+
+/// What a way of drawing took.
+#[derive(Default)]
+struct Taken {
+    gpu: Vec<f64>,
+    cpu: Vec<f64>,
+    texels: Vec<f64>,
+    draws: Vec<f64>,
+    /// Frames in which a whole layer was cleared.
+    cleared: usize,
+}
+
+impl Bench {
+    fn technique(&self) -> Technique {
+        Technique::default().with_resolution(self.map, self.map)
+    }
+
+    /// Frames before those that are timed, in which windows settle.
+    fn warm_up(&self) -> usize {
+        if self.gpu.is_software() { 3 } else { self.frames / 5 + 30 }
+    }
+}
+
+/// Frames of a scene along its walk, drawn in one way.
+fn walk(bench: &Bench, scene: &BenchScene, way: Way) -> Result<Taken> {
+    let gpu = &bench.gpu;
+    let mut engine = Engine::new(gpu, scene, &bench.technique())?;
+    engine.sun.set_keeps(way.keeps);
+    engine.sun.set_culling(way.culling);
+    engine.sun.set_schedule(way.schedule);
+    let timer = Timer::new(gpu);
+    let mut taken = Taken::default();
+    for frame in 0..bench.frames + bench.warm_up() {
+        let camera = engine.camera(frame);
+        engine.move_casters(frame);
+        let begin = Instant::now();
+        engine.fit(&camera)?;
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        engine.shadow_passes(&mut encoder, None);
+        let recorded = encoder.finish();
+        let cpu = begin.elapsed().as_secs_f64() * 1e3;
+        drop(recorded);
+        let time = timer.frame(gpu, |encoder, times| {
+            engine.shadow_passes(encoder, Some(times));
+            Ok(())
+        })?;
+        timer.frame(gpu, |encoder, _| engine.seen_pass(encoder, &camera))?;
+        engine.sun.wait_for_need()?;
+        if frame >= bench.warm_up() {
+            let pieces = || engine.sun.passes().flat_map(|pass| pass.pieces());
+            taken.gpu.push(time);
+            taken.cpu.push(cpu);
+            taken.texels.push(engine.sun.passes().map(|pass| pass.texels()).sum::<u64>() as f64);
+            taken.draws.push(pieces().map(|piece| piece.casters.len()).sum::<usize>() as f64);
+            taken.cleared += usize::from(engine.sun.passes().any(|pass| pass.is_cleared()));
+        }
+    }
+    Ok(taken)
+}
+
+/// Drawn anew and kept.
+pub(crate) fn time(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
+    let mut rows = Vec::new();
+    for scene in scenes {
+        let mut unit = 0.0;
+        for way in WAYS {
+            let taken = walk(bench, scene, way)?;
+            let mean = taken.gpu.iter().sum::<f64>() / taken.gpu.len() as f64;
+            let (cleared, frames) = (taken.cleared, taken.gpu.len());
+            let gpu = median(taken.gpu);
+            unit = if way == WAYS[0] { gpu } else { unit };
+            rows.push(vec![
+                format!("{}, {}", scene.name, way.name),
+                ms(gpu),
+                share(gpu, unit),
+                ms(mean),
+                ms(median(taken.cpu)),
+                format!("{:.0}", median(taken.draws)),
+                format!("{cleared} of {frames}"),
+            ]);
+        }
+        let bare = median(bare_passes(bench, scene, Bare { order: Order::AsStored, ..BARE })?);
+        rows.push(vec![
+            format!("{}, bare passes", scene.name),
+            ms(bare),
+            share(bare, unit),
+            String::new(),
+            String::new(),
+            String::new(),
+            String::new(),
+        ]);
+    }
+    let columns = ["scene, way", "GPU, median", "of anew", "GPU, mean", "CPU", "draws", "frames with a whole map"];
+    Ok(Table {
+        title: "Shadow passes",
+        note: "Along the walk. CPU is fit, culling and encoding up to `finish`. Bare passes are cleared depth-only passes \
+               with the matrices and casters of the first row, in the order of their numbers; the other rows draw what \
+               is nearest to the light first."
+            .to_owned(),
+        columns: columns.map(str::to_owned).to_vec(),
+        rows,
+    })
+}
+
+/// Order of the casters.
+#[derive(Clone, Copy, PartialEq)]
+enum Order {
+    AsStored,
+    NearestFirst,
+    FarthestFirst,
+}
+
+/// Passes that an engine would write by itself.
+#[derive(Clone, Copy, PartialEq)]
+struct Bare {
+    order: Order,
+    format: MapFormat,
+    /// Whether they are cut to the rectangle that the view covers.
+    is_cut: bool,
+    /// Whether the maps have a quarter of the texels.
+    is_quarter: bool,
+    is_empty: bool,
+}
+
+const BARE: Bare = Bare {
+    order: Order::NearestFirst,
+    format: MapFormat::Depth32Float,
+    is_cut: false,
+    is_quarter: false,
+    is_empty: false,
+};
+
+/// Times of passes with the matrices of the walk.
+fn bare_passes(bench: &Bench, scene: &BenchScene, bare: Bare) -> Result<Vec<f64>> {
+    let gpu = &bench.gpu;
+    let side = if bare.is_quarter { bench.map / 2 } else { bench.map };
+    let technique = bench.technique().with_format(bare.format).with_resolution(side, side);
+    let mut engine = Engine::new(gpu, scene, &technique)?;
+    engine.sun.set_keeps(false);
+    let mut map = ShadowMap::new(&gpu.device, &ShadowMapDescriptor::from(&technique))?;
+    let timer = Timer::new(gpu);
+    let mut times = Vec::new();
+    for frame in 0..bench.frames + bench.warm_up() {
+        let camera = engine.camera(frame);
+        engine.move_casters(frame);
+        engine.fit(&camera)?;
+        let (maps, view) = engine.maps();
+        map.prepare(&gpu.queue, &view, &maps)?;
+        let corners = camera.frustum()?.corners;
+        let seen = Aabb::from_points(corners).unwrap_or_default();
+        let time = timer.frame(gpu, |encoder, times| {
+            for shadow in engine.sun.passes() {
+                let mut pass = map.begin_pass(encoder, shadow.map(), 0, times.pass());
+                let mut casters: Vec<u32> = shadow.pieces().flat_map(|piece| piece.casters).copied().collect();
+                match bare.order {
+                    Order::NearestFirst => {}
+                    Order::FarthestFirst => casters.reverse(),
+                    Order::AsStored => casters.sort_unstable(),
+                }
+                if bare.is_cut {
+                    let rect = TexelRect::of_box(&maps[shadow.map()].fit, &seen, camera.eye);
+                    pass.set_scissor_rect(rect.min.x, rect.min.y, rect.size.x, rect.size.y);
+                }
+                engine.draw(&mut pass, if bare.is_empty { &[] } else { &casters });
+            }
+            Ok(())
+        })?;
+        timer.frame(gpu, |encoder, _| {
+            engine.shadow_passes(encoder, None);
+            engine.seen_pass(encoder, &camera)
+        })?;
+        engine.sun.wait_for_need()?;
+        if frame >= bench.warm_up() {
+            times.push(time);
+        }
+    }
+    Ok(times)
+}
+
+/// What lowers the fill of maps that are drawn anew.
+pub(crate) fn time_fill(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
+    let ways = [
+        ("casters as stored", Bare { order: Order::AsStored, ..BARE }),
+        ("nearest to the light first", BARE),
+        ("farthest first", Bare { order: Order::FarthestFirst, ..BARE }),
+        ("nearest first, Depth16Unorm", Bare { format: MapFormat::Depth16Unorm, ..BARE }),
+        ("nearest first, cut to the view", Bare { is_cut: true, ..BARE }),
+        ("nearest first, a quarter of the texels", Bare { is_quarter: true, ..BARE }),
+        ("empty", Bare { is_empty: true, ..BARE }),
+    ];
+    let mut rows = Vec::new();
+    for scene in scenes {
+        let mut unit = 0.0;
+        for (name, bare) in ways {
+            let time = median(bare_passes(bench, scene, bare)?);
+            unit = if rows.len() % ways.len() == 0 { time } else { unit };
+            rows.push(vec![format!("{}, {name}", scene.name), ms(time), share(time, unit)]);
+        }
+    }
+    Ok(Table {
+        title: "Fill",
+        note: "Bare passes, every map drawn anew, with the casters of shadows in view.".to_owned(),
+        columns: ["scene, way", "time", "of the first"].map(str::to_owned).to_vec(),
+        rows,
+    })
+}
+
+/// The pass over the depth buffer.
+pub(crate) fn time_need(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
+    let gpu = &bench.gpu;
+    let mut rows = Vec::new();
+    for scene in scenes {
+        let mut engine = Engine::new(gpu, scene, &bench.technique())?;
+        let mut pass = NeedPass::new(&gpu.device, &gpu.queue, 1)?;
+        let timer = Timer::new(gpu);
+        let mut times = Vec::new();
+        for frame in 0..bench.frames + bench.frames / 5 {
+            engine.move_casters(frame);
+            let camera = engine.camera(frame);
+            engine.fit(&camera)?;
+            timer.frame(gpu, |encoder, _| engine.seen_pass(encoder, &camera))?;
+            let settings = engine.sun.technique().fit;
+            let direction = BenchScene::direction();
+            let depth = shadowfit::DepthConvention::Reversed;
+            let view = NeedView::from_camera(&camera, depth, direction, &settings, SIZE)?;
+            let time = timer.frame(gpu, |encoder, times| {
+                pass.record(encoder, &engine.depth, &view, times.compute())?;
+                Ok(())
+            })?;
+            pass.wait()?;
+            if frame >= bench.frames / 5 {
+                times.push(time);
+            }
+        }
+        rows.push(vec![scene.name.clone(), ms(median(times))]);
+    }
+    Ok(Table {
+        title: "The grid of need",
+        note: "The compute pass that counts what a depth buffer of 1920 × 1080 pixels shows.".to_owned(),
+        columns: ["scene", "time"].map(str::to_owned).to_vec(),
+        rows,
+    })
+}
+
+/// Frames of a scene, drawn anew with one kind of culling: times on the GPU and on the CPU.
+pub(crate) fn with_culling(bench: &Bench, scene: &BenchScene, culling: Culling) -> Result<[f64; 3]> {
+    let taken = walk(bench, scene, way("", false, culling))?;
+    Ok([taken.gpu, taken.cpu, taken.draws].map(median))
+}

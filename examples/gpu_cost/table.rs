@@ -1,0 +1,33 @@
+//! Tables of what was timed.
+
+use core::fmt;
+
+/// A table with a heading and a line that says what it shows.
+#[derive(Debug)]
+pub(crate) struct Table {
+    pub(crate) title: &'static str,
+    pub(crate) note: String,
+    pub(crate) columns: Vec<String>,
+    pub(crate) rows: Vec<Vec<String>>,
+}
+
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "### {}\n\n{}\n", self.title, self.note)?;
+        writeln!(f, "| {} |", self.columns.join(" | "))?;
+        let rule: Vec<&str> = (0..self.columns.len()).map(|column| if column == 0 { "---" } else { "---:" }).collect();
+        writeln!(f, "|{}|", rule.join("|"))?;
+        self.rows.iter().try_for_each(|row| writeln!(f, "| {} |", row.join(" | ")))
+    }
+}
+
+/// A time with three digits, in milliseconds.
+pub(crate) fn ms(time: f64) -> String {
+    let decimals = if time < 1.0 { 3 } else { 2 };
+    format!("{time:.decimals$} ms")
+}
+
+/// A share of another time.
+pub(crate) fn share(time: f64, of: f64) -> String {
+    format!("{:.2}", time / of)
+}
