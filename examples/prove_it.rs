@@ -6,7 +6,6 @@
 //! cargo run --example prove_it
 //! ```
 
-use shadowfit::bias::Reach;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::histogram::DepthBounds;
 use shadowfit::map_fitter::fewest_maps;
@@ -72,7 +71,7 @@ fn certificates(
 ) -> Result<Vec<Certificate>, FitError> {
     let mut certificates = Vec::new();
     for map in maps.iter() {
-        let query = CoverageQuery::of_map(map, technique, Reach::from(technique.filter))
+        let query = CoverageQuery::of_map(map, technique, technique.reach_in(&map.fit))
             .with_normal_offset(map.bias.normal_offset);
         certificates.push(verify(input, &map.fit, &query, workspace)?);
     }

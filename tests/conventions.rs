@@ -3,7 +3,7 @@
 
 use shadowfit::glam::{DVec3, Mat4, Vec3, Vec4};
 use shadowfit::presets::RECOMMENDED;
-use shadowfit::settings::{BiasSettings, FitKind, FitSettings, MapChoice};
+use shadowfit::settings::{BiasSettings, FitKind, FitSettings, MapChoice, MapFormat};
 use shadowfit::tool::{CameraSettings, LightSettings};
 use shadowfit::{Bias, DepthConvention, LightFit, PerspectiveCamera, Technique, fit};
 use shadowfit_render::{Atmosphere, FlyCamera, FrameUniform, Line, box_lines};
@@ -41,7 +41,7 @@ fn fitted(light: &LightSettings, depth: DepthConvention) -> LightFit {
 }
 
 fn map(fit: &LightFit) -> MapFit {
-    MapFit::new(*fit, Bias::from_texels(&BiasSettings::default(), fit))
+    MapFit::new(*fit, Bias::from_texels(&BiasSettings::default(), MapFormat::Depth32Float, fit))
 }
 
 fn matrix(columns: [[f32; 4]; 4]) -> Mat4 {
@@ -87,10 +87,10 @@ fn settings_uniforms_and_pictures_all_point_to_the_same_sun() {
 
 #[test]
 fn biases_move_the_receiver_toward_the_light_in_both_depth_conventions() {
-    let bias = BiasSettings { constant: 1.0, slope: 2.0, normal_offset: 3.0, receiver_plane: 4.0 };
+    let bias = BiasSettings { constant: 1.0, slope: 2.0, normal_offset: 3.0, receiver_plane: 4.0, depth_steps: 1.0 };
     for (depth, toward_light) in [(DepthConvention::ZeroToOne, -1.0), (DepthConvention::Reversed, 1.0)] {
         let fit = fitted(&LightSettings::default(), depth);
-        let map = MapUniform::new(&MapFit::new(fit, Bias::from_texels(&bias, &fit)), fit.origin);
+        let map = MapUniform::new(&MapFit::new(fit, Bias::from_texels(&bias, MapFormat::Depth32Float, &fit)), fit.origin);
         let depth_of = |point: Vec3| matrix(map.uv_from_world).transform_point3(point).z;
         let lifted = depth_of(-fit.direction) - depth_of(Vec3::ZERO);
         assert!(lifted * toward_light > 0.0, "{depth:?}");

@@ -207,6 +207,7 @@ fn descriptor(
         maps: most.max(1) as u32,
         format,
         filter,
+        softness: Technique::default().softness,
         choice: choice(maps),
         blend: Technique::default().blend,
         depth,
@@ -226,11 +227,11 @@ fn view(frame: &Frame, is_first: bool) -> View {
     View { camera: frame.camera(), direction, is_first }
 }
 
-fn map_fits(maps: &[FitMap], view: &View, bias: &BiasSettings) -> Result<Vec<MapFit>> {
+fn map_fits(maps: &[FitMap], view: &View, bias: &BiasSettings, format: MapFormat) -> Result<Vec<MapFit>> {
     let far = |split: f64| if split >= f64::from(view.camera.far) { f32::MAX } else { split as f32 };
     let fitted = |map: &FitMap| {
         let fit = light_fit(map, view)?;
-        Ok(MapFit { far: far(map.split_far), ..MapFit::new(fit, Bias::from_texels(bias, &fit)) })
+        Ok(MapFit { far: far(map.split_far), ..MapFit::new(fit, Bias::from_texels(bias, format, &fit)) })
     };
     maps.iter().map(fitted).collect()
 }

@@ -128,7 +128,8 @@ impl<'a> Harness<'a> {
         bias: &BiasSettings,
         casters: &[Vec<Vec3>],
     ) -> Self {
-        let maps: Vec<MapFit> = fits.iter().map(|fit| MapFit::new(*fit, Bias::from_texels(bias, fit))).collect();
+        let map = |fit: &LightFit| MapFit::new(*fit, Bias::from_texels(bias, descriptor.format, fit));
+        let maps: Vec<MapFit> = fits.iter().map(map).collect();
         Self::with_maps(gpu, descriptor, &MapView::from_eye(origin, Vec3::NEG_Z), &maps, casters)
     }
 

@@ -22,7 +22,7 @@ const MIN_COSINE: f64 = 0.01;
 const TOLERANCE: f64 = 16.0 * 3.0 / 16_777_216.0;
 
 /// Biases that are large and all different, so that none can stand in for another.
-const BIAS: BiasSettings = BiasSettings { constant: 3.0, slope: 1.5, normal_offset: 2.0, receiver_plane: 1.25, depth_steps: 0.0 };
+const BIAS: BiasSettings = BiasSettings { constant: 3.0, slope: 1.5, normal_offset: 2.0, receiver_plane: 1.25, depth_steps: 1.0 };
 
 /// Numbers in 0..1 that fill the cube evenly: the fractional parts of multiples of the powers of the plastic number's
 /// kin (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018).
@@ -80,7 +80,7 @@ fn uv(fit: &LightFit, position: DVec3) -> DVec3 {
 
 /// What `shadowfit_project` promises, from the core's own `Bias`.
 fn projected(fit: &LightFit, point: &Point) -> DVec3 {
-    let bias = Bias::from_texels(&BIAS, fit);
+    let bias = Bias::from_texels(&BIAS, MapFormat::Depth32Float, fit);
     let (position, normal) = (Vec3::from(point.position).as_dvec3(), Vec3::from(point.normal).as_dvec3());
     let cosine = normal.dot(-fit.direction.as_dvec3()).clamp(MIN_COSINE, 1.0);
     let sine = (1.0 - cosine * cosine).sqrt();

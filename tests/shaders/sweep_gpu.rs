@@ -39,7 +39,7 @@ struct Case {
 }
 
 fn in_texels(fit: &LightFit, filter: FilterKind) -> Bias {
-    Bias::from_texels(&BiasSettings::automatic(filter), fit)
+    Bias::from_texels(&BiasSettings::automatic(filter), MapFormat::Depth32Float, fit)
 }
 
 fn automatic(fit: &LightFit, filter: FilterKind) -> Bias {

@@ -1,7 +1,7 @@
 //! Each artefact alone, made on purpose: it is counted as what it is, and its cure brings the count to nothing.
 
 use shadowfit::glam::{Affine3A, Quat, Vec3};
-use shadowfit::settings::{BiasSettings, FilterKind, FitKind};
+use shadowfit::settings::{BiasSettings, FilterKind, FitKind, Softness};
 use shadowfit_truth::PictureTally;
 
 use super::shapes::{Arrangement, NO_BIAS, floor, single, solid};
@@ -33,7 +33,7 @@ fn acne_without_a_bias_is_false_shadow_and_the_automatic_bias_leaves_none() {
         assert!(acne > 0.1, "{filter:?}: {acne}");
         assert_eq!((cured.all.false_shadow, cured.all.false_light, cured.all.hole), (0, 0, 0), "{filter:?}");
         // By the normal offset as well, but where it moves a point beside an edge to the other side of it.
-        let offset = BiasSettings::automatic_normal_offset(filter);
+        let offset = BiasSettings::automatic_normal_offset(filter, &Softness::default());
         let offset = box_on_a_floor().judged(&single(FitKind::Focused, filter, offset));
         assert!(shares(&offset)[0] < 0.001, "{filter:?}: {:?}", shares(&offset));
     }

@@ -167,7 +167,7 @@ fn show_acne(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) ->
     };
     let (camera, found) = best(&place.lens, candidates, |camera| score(camera) as f32);
     let distance = camera.eye.as_vec3().distance(place.center);
-    let none = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0 };
+    let none = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };
     settings.technique =
         alone_or_as_slices(settings.technique, FitKind::XnaSample).with_look_up(FilterKind::Point, none);
     let texel = place.picture_height(distance) * ACNE_TEXEL;

@@ -34,7 +34,7 @@ use glam::{DVec3, Vec2, Vec3, Vec4};
 pub use self::classic::{ACOS_BIAS_LIMIT, XNA_DEPTH_BIAS, acos_bias, acos_epsilon};
 pub use self::reach::{HARDWARE_SNAP, Reach, reach};
 use crate::depth_storage::{DepthStorage, depth_step};
-use crate::settings::{BiasSettings, FilterKind};
+use crate::settings::{BiasSettings, FilterKind, Softness};
 use crate::{DepthConvention, FitError, LightFit, checks};
 
 /// Biases ready for a shader. With θ the angle between the geometric normal and the direction
@@ -87,13 +87,18 @@ pub(crate) const SQUARED_SINE_ROUNDING: f64 = 4.0 / 16_777_216.0;
 const SINE_ROUNDING: f64 = 5e-4;
 
 impl Bias {
-    /// Converts biases in texels for one fit. Texels that are not square count with their longer
+    /// Converts biases in texels for one fit, and those in steps of how its map stores depths, which may be given as
+    /// the [`MapFormat`](crate::settings::MapFormat). Texels that are not square count with their longer
     /// side, which is conservative against acne. Settings that are not finite give biases that are
     /// not finite; [`Self::checked`] refuses those.
-    pub fn from_texels(settings: &BiasSettings, fit: &LightFit) -> Self {
+    ///
+    /// Of the [steps](BiasSettings::depth_steps) only what they are coarser than those of a 32-bit float counts: the
+    /// rounding of those is a part of the constant in texels.
+    pub fn from_texels(settings: &BiasSettings, storage: impl Into<DepthStorage>, fit: &LightFit) -> Self {
         let texel = fit.texel_size.x.max(fit.texel_size.y);
+        let steps = settings.depth_steps * (depth_step(storage, 1.0) - depth_step(DepthStorage::Float32, 1.0));
         Self {
-            constant_depth: settings.constant * texel / fit.depth_range,
+            constant_depth: settings.constant * texel / fit.depth_range + steps,
             slope_depth: settings.slope * texel / fit.depth_range,
             normal_offset: settings.normal_offset * texel,
             receiver_plane: settings.receiver_plane,
@@ -206,7 +211,8 @@ impl BiasSettings {
     /// stays within 65536 texel sizes of the origin; [`Bias::automatic`] has no such limit.
     /// Geometric normals are assumed.
     ///
-    /// It is the receiver-plane form, which needs to cover only the reach of one comparison. Compared
+    /// It is the receiver-plane form, which needs to cover only the reach of one comparison, so that a wider disc of
+    /// a soft filter needs no more. Compared
     /// with ray tracing, with [`FilterKind::Pcf5x5`], it leaves a tenth (fine texels) to two fifths
     /// (coarse ones) of the wrong pixels that the [normal offset](Self::automatic_normal_offset)
     /// leaves.
@@ -221,13 +227,14 @@ impl BiasSettings {
         }
     }
 
-    /// As [`Self::automatic`], by an offset along the normal over the filter's whole reach, for
-    /// shaders without a receiver-plane bias.
-    pub fn automatic_normal_offset(filter: FilterKind) -> Self {
+    /// As [`Self::automatic`], by an offset along the normal over the filter's whole reach in any map, for
+    /// shaders without a receiver-plane bias: of a [soft](FilterKind::is_soft) filter over the
+    /// [ceiling](Softness::ceiling) of its disc, which is far.
+    pub fn automatic_normal_offset(filter: FilterKind, softness: &Softness) -> Self {
         Self {
             constant: PRECISION_TEXELS,
             slope: 0.0,
-            normal_offset: automatic_normal_offset(reach(filter)),
+            normal_offset: automatic_normal_offset(softness.reach(filter)),
             receiver_plane: 0.0,
             depth_steps: 1.0,
         }

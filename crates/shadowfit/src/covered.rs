@@ -79,11 +79,13 @@ impl<'a> Covered<'a> {
     fn sphere(rule: &FitRule, content: &Content, axes: LightAxes, range: Range) -> Result<Self, FitError> {
         let sphere = content.enclosing_sphere(range)?;
         let centre = axes.project(sphere.centre);
-        let rounding = ROUNDING * (3.0 * sphere.radius + checks::length(sphere.centre));
+        let longest = (2.0 * sphere.radius).max(rule.least_size.max_element());
+        let rounding = ROUNDING * (1.5 * longest + checks::length(sphere.centre));
         let pad = rule.margin + rounding + 2.0 * SYMMETRY * sphere.radius;
         let extent = DVec3::splat(2.0 * (sphere.radius + pad));
         let corners = (centre - extent * 0.5, centre + extent * 0.5);
         let corners = if rule.serves_all { within_receivers(corners, content, &axes, pad) } else { corners };
+        let corners = no_smaller(corners, rule.least_size);
         let volume = volume(axes, corners, [Constraint::Sphere; 6], false);
         Ok(Self { volume, rounding, shadowed: Shadowed::WholeMap })
     }
@@ -103,11 +105,11 @@ impl<'a> Covered<'a> {
         let longest = rectangle.size().max_element();
         // The rounding of the map itself, which the border widens.
         let widening = resolution / texels;
-        let rounding = (rectangle.size() * widening + hull.farthest) * ROUNDING;
+        let rounding = (rectangle.size().max(rule.least_size) * widening + hull.farthest) * ROUNDING;
         let pad = rounding + rule.margin;
         let thinnest = longest.max(hull.farthest) * THINNEST;
         let (min, max) = widened(rectangle.min - pad, rectangle.max + pad, DVec2::splat(thinnest));
-        let (min, max) = widened(min, max, rule.limited(max - min, texels));
+        let (min, max) = widened(min, max, rule.limited((max - min).max(rule.least_size), texels));
         let z_pad = (hull.z.1 - hull.z.0 + hull.farthest) * ROUNDING + rule.margin;
         let (z_min, z_max) = (DVec2::splat(hull.z.0 - z_pad), DVec2::splat(hull.z.1 + z_pad));
         let (z_min, z_max) = widened(z_min, z_max, DVec2::splat(thinnest));
@@ -130,6 +132,12 @@ fn within_receivers((min, max): (DVec3, DVec3), content: &Content, axes: &LightA
     let centre = ((min + max) * 0.5).truncate();
     let first = (centre - size * 0.5).min(high - size).max(low);
     (first.extend(min.z), (first + size).extend(max.z))
+}
+
+/// A box widened across the light about its middle.
+fn no_smaller((min, max): (DVec3, DVec3), least: DVec2) -> (DVec3, DVec3) {
+    let (low, high) = widened(min.truncate(), max.truncate(), least);
+    (low.extend(min.z), high.extend(max.z))
 }
 
 /// The box as a volume, for the steps that follow.

@@ -9,6 +9,7 @@ use glam::{UVec2, Vec3};
 
 use crate::DepthConvention;
 use crate::number::{Number, Numbers};
+use crate::settings::FilterKind;
 
 /// Why a frustum or a fit could not be made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,6 +105,12 @@ pub enum FitError {
     },
     /// The map does not lie on the world's texel grid.
     NotOnGrid,
+    /// A filter needs the distances of casters, and the maps clamp depths
+    /// ([`CasterPolicy::DepthClamp`](crate::settings::CasterPolicy::DepthClamp)), which loses them.
+    ClampedCasters {
+        /// The filter.
+        filter: FilterKind,
+    },
     /// The shadow map has no texels.
     ZeroResolution {
         /// The resolution asked for, in texels.
@@ -164,6 +171,11 @@ impl fmt::Display for FitError {
             Self::NotOnGrid => {
                 write!(f, "the map is on no grid; stabilise it by snapping or hysteresis, or take the sphere")
             }
+            Self::ClampedCasters { filter } => write!(
+                f,
+                "the filter {filter:?} needs the distance of each caster, which depth clamp loses; choose another \
+                 caster policy, such as List, or another filter"
+            ),
             Self::ZeroResolution { resolution } => {
                 write!(
                     f,

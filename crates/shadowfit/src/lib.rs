@@ -68,7 +68,7 @@
 //!
 //! ```
 //! use shadowfit::glam::{DVec3, Vec3};
-//! use shadowfit::settings::{BiasSettings, FilterKind, FitSettings};
+//! use shadowfit::settings::{BiasSettings, FilterKind, FitSettings, MapFormat};
 //! use shadowfit::{Bias, PerspectiveCamera, fit};
 //!
 //! let camera = PerspectiveCamera {
@@ -82,7 +82,7 @@
 //! };
 //! let settings = FitSettings::default().with_max_distance(30.0);
 //! let map = fit(&camera.frustum()?, Vec3::new(0.3, -0.8, 0.2), &settings)?;
-//! let bias = Bias::from_texels(&BiasSettings::automatic(FilterKind::Pcf5x5), &map);
+//! let bias = Bias::from_texels(&BiasSettings::automatic(FilterKind::Pcf5x5), MapFormat::Depth32Float, &map);
 //! println!("{} {} {}", map.clip_from_world, map.uv_from_world, bias.constant_depth);
 //! # Ok::<(), shadowfit::FitError>(())
 //! ```

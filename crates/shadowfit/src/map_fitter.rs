@@ -14,8 +14,11 @@ use crate::grid::GridAnchor;
 use crate::histogram::DepthBounds;
 use crate::maps::{FittedMap, FittedMaps, set_empty_ranges_apart};
 use crate::motion::Motion;
-use crate::rule::FitRule;
-use crate::settings::{BiasSettings, FitSettings, MAX_BLEND, MAX_MAPS, MapOverride, Stabilise};
+use crate::rule::{FitRule, check_least_texel};
+use crate::settings::{
+    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, MAX_BLEND, MAX_DEPTH_STEPS, MAX_MAPS, MapOverride,
+    Stabilise,
+};
 use crate::splits::{Chooser, Splits};
 use crate::view::Range;
 use crate::volume::Volume;
@@ -83,7 +86,8 @@ impl MapFitter {
     ///
     /// As [`fit_scene`](crate::fits::fit_scene), for the settings of each map;
     /// [`FitError::OutOfRange`] for a number of maps outside 1..=8, an overlap or λ outside 0..=1,
-    /// a blend outside 0..=[`MAX_BLEND`] and hold settings that are out of range;
+    /// a blend outside 0..=[`MAX_BLEND`], and hold settings, softness, fade or depth steps that are out of range;
+    /// [`FitError::ClampedCasters`] for a filter that depth clamp leaves without the distances that it needs;
     /// [`FitError::NearNotBelowFar`] for manual splits that do not ascend. Manual splits before or beyond what is shadowed are not an error: a map
     /// without a range [is empty](LightFit::is_empty). An error leaves the fitter as it was.
     pub fn fit(
@@ -127,7 +131,7 @@ impl MapFitter {
             for (i, (map, volume)) in maps.iter_mut().zip(volumes.iter().flatten()).enumerate() {
                 let rule = rules.of(i);
                 map.fit = LightFit::from_volume(content.origin, volume, rule.resolution, rule.convention)?;
-                map.bias = Bias::from_texels(&technique.bias, &map.fit);
+                map.bias = Bias::from_texels(&technique.bias, technique.format, &map.fit);
                 map.anchor = volume.grid.as_ref().and_then(GridAnchor::of);
                 // Only the last one holds all that is seen between any depths.
                 let covered_near = if i + 1 < technique.count as usize { range.far } else { range.near };
@@ -342,7 +346,7 @@ impl Frame<'_, '_> {
         let (rule, slice) = (self.rules.of(i), self.slice_range(i));
         let is_empty = is_empty(self.content.views, slice);
         map.fit = LightFit::from_volume(self.content.origin, volume, rule.resolution, rule.convention)?;
-        map.bias = Bias::from_texels(&self.technique.bias, &map.fit);
+        map.bias = Bias::from_texels(&self.technique.bias, self.technique.format, &map.fit);
         map.fit.is_empty |= is_empty;
         map.anchor = volume.grid.as_ref().and_then(GridAnchor::of);
         (map.near, map.far) = (self.splits[i], self.splits[i + 1]);
@@ -376,14 +380,7 @@ const DEPTH_ROUNDING: f32 = 64.0 / 16_777_216.0;
 
 /// Checks an input and a technique; gives the rules of its maps, and the light.
 fn check(input: &FitInput, technique: &Technique) -> Result<(Rules, Light), FitError> {
-    let most = MAX_MAPS as f64;
-    checks::within("the number of maps", f64::from(technique.count), 1.0, most)?;
-    checks::within("the maps' overlap", f64::from(technique.overlap), 0.0, 1.0)?;
-    checks::within("the maps' blend", f64::from(technique.blend), 0.0, f64::from(MAX_BLEND))?;
-    let hold = technique.hold;
-    checks::within("the hold's margin", f64::from(hold.margin), 0.0, 10.0)?;
-    checks::within("the hold's growth", f64::from(hold.growth), 1.0, 100.0)?;
-    checks::within("the hold's waste", f64::from(hold.waste), 1.0, 100.0)?;
+    check_numbers(technique)?;
     if let Some(DepthBounds { near, far }) = input.depth_bounds {
         for bound in [near, far] {
             checks::finite("a depth bound", f64::from(bound))?;
@@ -392,17 +389,13 @@ fn check(input: &FitInput, technique: &Technique) -> Result<(Rules, Light), FitE
             return Err(FitError::NearNotBelowFar { near, far });
         }
     }
-    technique.softness.checked()?;
-    let BiasSettings { constant, slope, normal_offset, receiver_plane, depth_steps: _ } = technique.bias;
-    for bias in [constant, slope, normal_offset, receiver_plane] {
-        checks::finite("a bias", f64::from(bias))?;
-    }
     let border = technique.border();
-    let (mut most, light) = fits::prepare(input, &technique.fit, border)?;
+    let (mut most, light) = fits::prepare(input, &own_settings(technique, None), border)?;
     most.serves_all = technique.shares_maps() && most.can_be_held();
     let mut own = [None; MAX_MAPS];
     for (map, own) in own.iter_mut().enumerate().take(technique.count as usize) {
-        if let Some(settings) = own_settings(technique, map) {
+        if technique.overrides[map] != MapOverride::default() {
+            let settings = own_settings(technique, Some(map));
             let mut rule = FitRule::new(&settings, border, input.casters.is_some())?;
             if technique.stabilise == Stabilise::Hysteresis && rule.can_be_held() {
                 // All held maps of a frame have one roll.
@@ -415,12 +408,39 @@ fn check(input: &FitInput, technique: &Technique) -> Result<(Rules, Light), FitE
     Ok((Rules { most, own }, light))
 }
 
-/// The settings of a map that differs from the others.
-fn own_settings(technique: &Technique, map: usize) -> Option<FitSettings> {
-    let (own, fit) = (technique.overrides[map], technique.fit);
-    (own != MapOverride::default()).then(|| FitSettings {
-        kind: technique.kind_of(map),
-        resolution: own.resolution.unwrap_or(fit.resolution),
-        ..fit
-    })
+/// Checks the numbers of a technique that are not those of its fit, and what does not go together.
+fn check_numbers(technique: &Technique) -> Result<(), FitError> {
+    let most = MAX_MAPS as f64;
+    checks::within("the number of maps", f64::from(technique.count), 1.0, most)?;
+    checks::within("the maps' overlap", f64::from(technique.overlap), 0.0, 1.0)?;
+    checks::within("the maps' blend", f64::from(technique.blend), 0.0, f64::from(MAX_BLEND))?;
+    let hold = technique.hold;
+    checks::within("the hold's margin", f64::from(hold.margin), 0.0, 10.0)?;
+    checks::within("the hold's growth", f64::from(hold.growth), 1.0, 100.0)?;
+    checks::within("the hold's waste", f64::from(hold.waste), 1.0, 100.0)?;
+    technique.softness.checked()?;
+    // The least texel of the maps is the greater of two, which would hide a bad one.
+    check_least_texel(&technique.fit)?;
+    checks::within("the shadows' fade", f64::from(technique.fade), 0.0, 1.0)?;
+    let BiasSettings { constant, slope, normal_offset, receiver_plane, depth_steps } = technique.bias;
+    for bias in [constant, slope, normal_offset, receiver_plane] {
+        checks::finite("a bias", f64::from(bias))?;
+    }
+    checks::within("the bias in depth steps", f64::from(depth_steps), 0.0, f64::from(MAX_DEPTH_STEPS))?;
+    // The XNA sample's fit has no caster policy.
+    let clamps = technique.fit.casters == CasterPolicy::DepthClamp && technique.fit.kind != FitKind::XnaSample;
+    if technique.filter == FilterKind::Pcss && clamps {
+        return Err(FitError::ClampedCasters { filter: technique.filter });
+    }
+    Ok(())
+}
+
+/// The settings of a map, or those of all maps without an override of their own.
+fn own_settings(technique: &Technique, map: Option<usize>) -> FitSettings {
+    FitSettings {
+        kind: map.map_or(technique.fit.kind, |map| technique.kind_of(map)),
+        resolution: map.map_or(technique.fit.resolution, |map| technique.resolution_of(map)),
+        least_texel: technique.least_texel(),
+        ..technique.fit
+    }
 }

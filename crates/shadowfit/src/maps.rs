@@ -4,7 +4,6 @@ use core::ops::Deref;
 
 use glam::DVec3;
 
-use crate::bias::{Reach, reach};
 use crate::choice::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth};
 use crate::culling::Sweep;
 use crate::grid::GridAnchor;
@@ -40,7 +39,7 @@ pub struct FittedMap {
 impl FittedMap {
     /// Every caster that can cast a shadow through this map on what views see of it, relative to the
     /// fit's origin: the [swept volume](CasterVolume::swept) of the map's depths, for the technique's
-    /// filter and this map's bias. A map that no point reads has the empty volume.
+    /// filter, as wide as it is in this map, and this map's bias. A map that no point reads has the empty volume.
     ///
     /// It is for maps that are drawn anew in each frame. A map that is kept, or
     /// [scrolled](crate::scroll::Scroll), shows casters to later frames too: cull those by
@@ -98,7 +97,7 @@ impl FittedMap {
         if !is_read {
             return Ok(CasterVolume::nowhere(self.fit.origin));
         }
-        let reach = Reach::from(technique.filter);
+        let reach = technique.reach_in(&self.fit);
         let sweep = Sweep { near, far, reach, normal_offset: self.bias.normal_offset, ..Sweep::new(views) };
         CasterVolume::swept(&self.fit, &sweep)
     }
@@ -115,7 +114,7 @@ impl FittedMap {
 
 /// Whether each map of a technique covers all of its slice with what the filter reads around it.
 fn holds_slices(technique: &Technique) -> bool {
-    let needed = f64::from(reach(technique.filter) + technique.bias.normal_offset);
+    let needed = f64::from(technique.reach() + technique.bias.normal_offset);
     let holds = |kind: FitKind| {
         let rule = FitRule::new(&technique.fit.with_kind(kind), technique.border(), true);
         rule.is_ok_and(|rule| rule.leaves_border(needed))
@@ -170,7 +169,7 @@ impl FittedMaps {
         match technique.map_choice() {
             MapChoice::Coverage => {
                 let order = MapOrder::new(MapChoice::Coverage, self.iter().map(|map| &map.fit));
-                let (reach, blend) = (f64::from(reach(technique.filter)), f64::from(technique.blend));
+                let (reach, blend) = (f64::from(technique.reach()), f64::from(technique.blend));
                 by_coverage(order.iter(), reach, blend, |map| self[map].fit.free_texels(point))
             }
             MapChoice::ViewDepth => {

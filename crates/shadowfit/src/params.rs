@@ -267,6 +267,8 @@ pub enum Group {
     Stabilise,
     /// What a shadow map stores and how it is read.
     Map,
+    /// How wide soft filters are.
+    Softness,
     /// Biases against self-shadowing.
     Bias,
     /// Overrides for single maps.
@@ -281,11 +283,12 @@ pub enum Group {
 
 impl Group {
     /// All groups, in the order that they are shown.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Fit,
         Self::Splits,
         Self::Stabilise,
         Self::Map,
+        Self::Softness,
         Self::Bias,
         Self::Override,
         Self::Light,
@@ -305,6 +308,7 @@ impl Group {
             Self::Splits => "splits",
             Self::Stabilise => "stabilise",
             Self::Map => "map",
+            Self::Softness => "softness",
             Self::Bias => "bias",
             Self::Override => "override",
             Self::Light => "light",
@@ -320,6 +324,7 @@ impl Group {
             Self::Splits => "Maps and splits",
             Self::Stabilise => "Stabilise",
             Self::Map => "Shadow map",
+            Self::Softness => "Soft edges",
             Self::Bias => "Bias",
             Self::Override => "Single maps",
             Self::Light => "Light",
@@ -335,6 +340,7 @@ impl Group {
             Self::Splits => "How many maps share the view, and at which distances one ends and the next begins.",
             Self::Stabilise => "Whether maps stay where they are while the camera moves, so that edges do not crawl.",
             Self::Map => "How large a shadow map is, what it stores and how it is read.",
+            Self::Softness => "How wide the edges of shadows are with filters whose width is no number of texels.",
             Self::Bias => {
                 "How far the comparison is moved so that a surface does not shadow itself. Too little leaves \
                  acne, too much detaches shadows from their casters."

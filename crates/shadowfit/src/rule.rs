@@ -61,6 +61,10 @@ pub(crate) struct FitRule {
     pub(crate) margin: f64,
     /// Greatest ratio of a texel's sides, if there is a limit.
     pub(crate) max_texel_ratio: Option<f64>,
+    /// Least width of a texel along either side, in metres; 0 for no limit.
+    pub(crate) least_texel: f64,
+    /// Least extents of what is covered, in metres: those of the texels between the borders.
+    pub(crate) least_size: DVec2,
     /// Width and height of the map, in texels.
     pub(crate) resolution: UVec2,
     /// Depth convention of the fitted clip space.
@@ -90,6 +94,7 @@ impl FitRule {
                 FitKind::Focused => (Covers::Receivers, settings.rectangle, Roll::ShortestArc, near),
             }
         };
+        let least_texel = if covers == Covers::ExactCorners { 0.0 } else { f64::from(settings.least_texel) };
         Ok(Self {
             covers,
             rectangle,
@@ -100,13 +105,15 @@ impl FitRule {
             max_texel_ratio: Some(settings.max_texel_ratio)
                 .filter(|ratio| *ratio < f32::MAX && settings.kind != FitKind::Windows)
                 .map(f64::from),
+            least_texel,
+            least_size: (settings.resolution.as_dvec2() - 2.0 * f64::from(border)) * least_texel,
             resolution: settings.resolution,
             convention: settings.depth,
             serves_all: false,
         })
     }
 
-    /// Extents across the light, in metres, enlarged so that the texels keep within the limit;
+    /// Extents across the light, in metres, enlarged so that the texels keep within the limit of their ratio;
     /// `texels` is their number along each axis.
     pub(crate) fn limited(&self, size: DVec2, texels: DVec2) -> DVec2 {
         let Some(ratio) = self.max_texel_ratio else { return size };
@@ -123,7 +130,7 @@ impl FitRule {
         self.covers != Covers::ExactCorners && self.border >= texels
     }
 
-    /// This rule without a border, its near plane at the covered region.
+    /// This rule without a border, its near plane at the covered region. What it covers is no smaller than with one.
     pub(crate) const fn without_room(self) -> Self {
         Self { border: 0.0, depth: Depth::AtCovered, ..self }
     }
@@ -150,6 +157,12 @@ fn near_plane(settings: &FitSettings, casters_are_known: bool) -> Depth {
     }
 }
 
+/// Checks the least texel of a fit's settings.
+pub(crate) fn check_least_texel(settings: &FitSettings) -> Result<(), FitError> {
+    checks::within("the fit's least texel", f64::from(settings.least_texel), 0.0, MAX_LENGTH)?;
+    Ok(())
+}
+
 /// Checks the numbers of a fit's settings.
 #[inline]
 fn check(settings: &FitSettings, border: f32) -> Result<(), FitError> {
@@ -163,6 +176,7 @@ fn check(settings: &FitSettings, border: f32) -> Result<(), FitError> {
     checks::within("the fit's greatest texel ratio", ratio, 1.0, f64::from(f32::MAX))?;
     let widest = f64::from(settings.resolution.min_element()) * 0.25;
     checks::within("the fit's border", f64::from(border), 0.0, widest)?;
+    check_least_texel(settings)?;
     checks::finite("the maximum shadow distance", f64::from(settings.max_distance))?;
     Ok(())
 }

@@ -140,8 +140,9 @@ pub struct FitSettings {
     /// [`FitKind::XnaSample`] ignores it, and so does [`FitKind::Windows`], whose texels have a shape that
     /// the light sets. Default: `f32::MAX`, no limit.
     pub max_texel_ratio: f32,
-    /// Least width of a texel, in metres; 0 for no limit. A map that would have finer ones is made larger.
-    /// [`FitKind::XnaSample`] ignores it. Default: 0.
+    /// Least width of a texel, in metres; 0 for no limit. A map that would have finer ones is made larger, around its
+    /// middle. [`FitKind::XnaSample`] ignores it; a soft filter may ask for more
+    /// ([`Technique::least_texel`](crate::Technique::least_texel)). Default: 0.
     pub least_texel: f32,
     /// Width and height of the map, in texels. Default: 2048 × 2048, as Bevy and the cascades of
     /// three.js have it.
@@ -315,8 +316,9 @@ pub struct BiasSettings {
     /// built from it. 0 turns it off. Default: 1 + 1/256; the fraction covers the hardware's
     /// rounding of positions in the map.
     pub receiver_plane: f32,
-    /// Constant depth bias in steps of the map's format, for formats coarser than a 32-bit float: one
-    /// covers what storing and comparing a depth can round. Default: 1.
+    /// Constant depth bias in [steps](crate::diagnostics::depth_step) of the map's format beyond those of a 32-bit
+    /// float, 0..=16: one covers what storing and comparing a depth can round. Formats of 32 bits ignore it.
+    /// Default: 1.
     pub depth_steps: f32,
 }
 
@@ -375,6 +377,9 @@ impl FilterKind {
     }
 }
 
+/// Greatest [`BiasSettings::depth_steps`].
+pub const MAX_DEPTH_STEPS: f32 = 16.0;
+
 /// How wide the filters are whose width is no number of texels ([`FilterKind::is_soft`]).
 ///
 /// It is the same across the light for all maps, so that penumbrae agree where one map meets the
@@ -397,7 +402,8 @@ pub struct Softness {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SoftRadius {
-    /// Radius of the penumbra across the light, in metres.
+    /// Radius of the penumbra across the light, in metres, of a shadow
+    /// [5 m](crate::softness::USUAL_DISTANCE) from its caster; [`FilterKind::Pcss`] scales it with the distance.
     Metres(f32),
     /// Angular radius of the sun, in radians.
     SunAngle(f32),

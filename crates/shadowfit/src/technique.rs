@@ -2,7 +2,8 @@
 //!
 //! [`Technique::default`] is the one to begin with; [`PRESETS`](crate::PRESETS) has others by name.
 
-use crate::bias::reach;
+use crate::LightFit;
+use crate::bias::Reach;
 use crate::settings::{
     BiasSettings, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapChoice, MapFormat, MapOverride,
     NeedSource, ReceiverSource, Softness, SplitScheme, Stabilise, setters,
@@ -52,12 +53,14 @@ pub struct Technique {
     /// Which boxes of the scene's receivers the fit is given. Default:
     /// [`ReceiverSource::Clusters`].
     pub receivers: ReceiverSource,
-    /// Filter of the look-up. Default: [`FilterKind::Pcf5x5`].
+    /// Filter of the look-up. Default: [`FilterKind::Pcf5x5`]. [`FilterKind::Pcss`] needs maps that keep the
+    /// distances of casters: not [`CasterPolicy::DepthClamp`](crate::settings::CasterPolicy::DepthClamp).
     pub filter: FilterKind,
-    /// Width of the filters that are [soft](FilterKind::is_soft). Default: [`Softness::default`].
+    /// Width of the filters that are [soft](FilterKind::is_soft); the others ignore it. It also says how fine
+    /// texels may be ([`Self::least_texel`]). Default: [`Softness::default`].
     pub softness: Softness,
-    /// Share of the shadow distance over which shadows fade out toward its end, 0..=1. Only where
-    /// [`FitSettings::max_distance`] is set. Default: 0.
+    /// Share of the shadow distance over which shadows fade out toward its end, 0..=1: 0.1 begins at nine tenths
+    /// of it. It is ignored where [`FitSettings::max_distance`] is `f32::MAX`. Default: 0, shadows end at once.
     pub fade: f32,
     /// Biases of the look-up. Default: [`BiasSettings::automatic`] for the default filter.
     pub bias: BiasSettings,
@@ -144,8 +147,28 @@ impl Technique {
         match self.fit.border {
             Some(texels) => texels,
             // The looked-up point moves across the light by the offset at most.
-            None => reach(self.filter) + self.bias.normal_offset,
+            None => self.reach() + self.bias.normal_offset,
         }
+    }
+
+    /// Greatest reach of the filter per axis, in texels, in any map: of a soft filter that of one look-up and the
+    /// [ceiling](Softness::ceiling) of its disc. The border and the choice by coverage go by it, so that they do not
+    /// change with the texels of a map.
+    pub const fn reach(&self) -> f32 {
+        self.softness.reach(self.filter)
+    }
+
+    /// Reach of the filter in one map, in its texels: for caster volumes, certificates and biases. Of
+    /// [`FilterKind::Pcss`] it is that of the widest penumbra.
+    pub fn reach_in(&self, fit: &LightFit) -> Reach {
+        self.softness.reach_in(self.filter, fit)
+    }
+
+    /// Least width of a texel, in metres; 0 for no limit. It is [`FitSettings::least_texel`], or more where a
+    /// [soft](FilterKind::is_soft) filter would reach over more texels than its [ceiling](Softness::ceiling).
+    /// Each map's fit but [`FitKind::XnaSample`] respects it.
+    pub fn least_texel(&self) -> f32 {
+        self.fit.least_texel.max(self.softness.least_texel(self.filter))
     }
 
     /// Whether more may read a map than the receivers that it is made for: those of other view depths, or of

@@ -6,7 +6,7 @@ use shadowfit::params::{
 };
 use shadowfit::settings::{
     CasterPolicy, FilterKind, FitKind, MAX_MAPS, MapFormat, MapOverride, NeedSource, ReceiverSource, RectangleKind,
-    SplitScheme, Stabilise,
+    SoftRadius, SplitScheme, Stabilise,
 };
 use shadowfit::tool::Settings;
 use shadowfit::{Aabb, Boxes, DepthConvention, FitInput, PRESETS, PerspectiveCamera, Technique, Workspace};
@@ -40,7 +40,7 @@ fn with(values: &[(&str, &str)]) -> Settings {
 }
 
 /// Settings that between them have every row.
-fn starts() -> [Settings; 4] {
+fn starts() -> [Settings; 5] {
     let mut own = Technique::default().with_count(8);
     own.overrides = [MapOverride { resolution: Some(UVec2::splat(512)), ..MapOverride::default() }; MAX_MAPS];
     [
@@ -48,6 +48,7 @@ fn starts() -> [Settings; 4] {
         Settings::default().with_technique(own),
         with(&[("splits.scheme", "practical")]),
         with(&[("splits.scheme", "manual")]),
+        with(&[("softness.measure", "metres")]),
     ]
 }
 
@@ -201,15 +202,29 @@ fn option_names_select_their_variants() {
     check("splits.scheme", |t| t.splits, &splits);
     let modes = [("hysteresis", Stabilise::Hysteresis), ("snap", Stabilise::Snap), ("off", Stabilise::Off)];
     check("stabilise.mode", |t| t.stabilise, &modes);
-    let formats = [("depth32float", MapFormat::Depth32Float), ("r32float", MapFormat::R32Float)];
+    let formats = [
+        ("depth32float", MapFormat::Depth32Float),
+        ("depth16_unorm", MapFormat::Depth16Unorm),
+        ("r32float", MapFormat::R32Float),
+        ("r16_float", MapFormat::R16Float),
+        ("rgba8_packed", MapFormat::Rgba8Packed),
+        ("r8_grey", MapFormat::R8Grey),
+    ];
     check("map.format", |t| t.format, &formats);
     let filters = [
         ("point", FilterKind::Point),
         ("hardware_2x2", FilterKind::Hardware2x2),
         ("pcf_3x3", FilterKind::Pcf3x3),
         ("pcf_5x5", FilterKind::Pcf5x5),
+        ("pcf_7x7", FilterKind::Pcf7x7),
+        ("vogel_8", FilterKind::Vogel8),
+        ("vogel_16", FilterKind::Vogel16),
+        ("vogel_32", FilterKind::Vogel32),
+        ("pcss", FilterKind::Pcss),
     ];
     check("map.filter", |t| t.filter, &filters);
+    let measured = |t: &Technique| matches!(t.softness.radius, SoftRadius::Metres(_));
+    check("softness.measure", measured, &[("sun_angle", false), ("metres", true)]);
     let depths = [
         ("zero_to_one", DepthConvention::ZeroToOne),
         ("reversed", DepthConvention::Reversed),
@@ -320,8 +335,13 @@ fn all_defaults_survive_text_in_any_order() {
         for parameter in there() {
             set_from_str(&mut forward, parameter.id, &written(&defaults, parameter)).expect(parameter.id);
         }
-        for parameter in there().rev() {
-            set_from_str(&mut backward, parameter.id, &written(&defaults, parameter)).expect(parameter.id);
+        let set = |settings: &mut Settings, parameter: &'static Parameter| {
+            set_from_str(settings, parameter.id, &written(&defaults, parameter)).map_err(|error| error.to_string())
+        };
+        // A row that only another one brings about waits for it.
+        let waiting: Vec<_> = there().rev().filter(|parameter| set(&mut backward, parameter).is_err()).collect();
+        for parameter in waiting {
+            set(&mut backward, parameter).expect(parameter.id);
         }
         assert_eq!((forward, backward), (defaults, defaults));
     }
@@ -476,6 +496,37 @@ fn near_far_and_shadow_distance_move_each_other() {
 }
 
 #[test]
+fn the_least_and_the_greatest_radius_move_each_other() {
+    let mut settings = with(&[("softness.floor", "20")]);
+    let radii = |settings: &Settings| (settings.technique.softness.floor, settings.technique.softness.ceiling);
+    assert_eq!(radii(&settings), (20.0, 20.0));
+    number("softness.ceiling").set(&mut settings, 3.0);
+    assert_eq!(radii(&settings), (3.0, 3.0));
+    number("softness.ceiling").set(&mut settings, 8.0);
+    assert_eq!(radii(&settings), (3.0, 8.0));
+}
+
+#[test]
+fn softness_keeps_its_width_when_it_is_measured_otherwise() {
+    let mut settings = with(&[("softness.angle", "2")]);
+    let width = |settings: &Settings| settings.technique.softness.metres(FilterKind::Vogel8);
+    let before = width(&settings);
+    for measure in ["metres", "sun_angle", "metres"] {
+        set_from_str(&mut settings, "softness.measure", measure).expect("a measure");
+        assert!((width(&settings) / before - 1.0).abs() < 1e-6, "{measure}");
+    }
+    assert!((written(&settings, row("softness.metres")).parse::<f32>().expect("a number") - before).abs() < 1e-6);
+}
+
+#[test]
+fn another_filter_by_its_row_leaves_the_bias_as_it_is() {
+    let before = Settings::default();
+    for filter in ["point", "pcf_7x7", "vogel_16", "pcss"] {
+        assert_eq!(with(&[("map.filter", filter)]).technique.bias, before.technique.bias, "{filter}");
+    }
+}
+
+#[test]
 fn an_azimuth_that_kept_counting_reads_as_a_compass_angle() {
     let mut settings = Settings::default();
     for (degrees, shown) in [(-90.0, 270.0), (370.0, 10.0), (3690.0, 90.0), (359.0, 359.0), (0.0, 0.0)] {
@@ -500,6 +551,22 @@ fn parameters_say_where_they_have_no_effect() {
         ("fit.max_texel_ratio", &[], ("fit.kind", "sphere"), "sphere"),
         ("fit.max_texel_ratio", &[("map.height", "512")], ("fit.kind", "xna_sample"), "XNA"),
         ("fit.border", &[], ("fit.kind", "xna_sample"), "XNA"),
+        ("fit.least_texel", &[], ("fit.kind", "xna_sample"), "XNA"),
+        ("softness.measure", &[("map.filter", "pcss")], ("map.filter", "pcf_7x7"), "Filter"),
+        ("softness.angle", &[("map.filter", "vogel_8")], ("map.filter", "point"), "Filter"),
+        ("softness.angle", &[("map.filter", "vogel_8")], ("softness.measure", "metres"), "Angle of the sun"),
+        (
+            "softness.metres",
+            &[("map.filter", "vogel_16"), ("softness.measure", "metres")],
+            ("softness.measure", "sun_angle"),
+            "Metres",
+        ),
+        ("softness.floor", &[("map.filter", "vogel_32")], ("map.filter", "hardware_2x2"), "Filter"),
+        ("softness.ceiling", &[("map.filter", "pcss")], ("map.filter", "pcf_3x3"), "Filter"),
+        ("map.fade", &[("fit.max_distance", "50")], ("fit.max_distance", "far_plane"), "Shadow distance"),
+        ("bias.depth_steps", &[("map.format", "depth16_unorm")], ("map.format", "depth32float"), "Format"),
+        ("bias.depth_steps", &[("map.format", "r16_float")], ("map.format", "r32float"), "Format"),
+        ("bias.depth_steps", &[("map.format", "r8_grey")], ("map.format", "rgba8_packed"), "Format"),
         ("fit.caster_extension", &[("fit.casters", "extend")], ("fit.kind", "xna_sample"), "XNA"),
         ("fit.caster_extension", &[("fit.casters", "extend")], ("fit.casters", "none"), "By extension"),
         ("fit.caster_extension", &[("fit.casters", "extend")], ("fit.casters", "scene_bounds"), "By extension"),
@@ -614,6 +681,7 @@ fn errors_name_the_id_the_value_and_what_is_allowed() {
 fn setting_a_row_that_does_not_exist_is_an_error_that_names_what_to_set_first() {
     for (id, value, first, option) in [
         ("splits.lambda", "0.3", "splits.scheme", "practical"),
+        ("softness.metres", "0.3", "softness.measure", "metres"),
         ("splits.manual_1", "3", "splits.scheme", "manual"),
         ("splits.manual_7", "300", "splits.scheme", "manual"),
         ("override.map_1_height", "256", "override.map_1_resolution", "512"),

@@ -6,7 +6,7 @@ use shadowfit::histogram::DepthHistogram;
 use shadowfit::normal_cone::NormalCone;
 use shadowfit::settings::{
     BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapChoice, MapFormat,
-    MapOverride, NeedSource, ReceiverSource, RectangleKind, SplitScheme, Stabilise,
+    MapOverride, NeedSource, ReceiverSource, RectangleKind, Softness, SplitScheme, Stabilise,
 };
 use shadowfit::{Aabb, Boxes, DepthConvention, FitError, FitInput, PerspectiveCamera, Technique, ViewFrustum};
 
@@ -179,6 +179,7 @@ pub(crate) fn fit_settings(random: &mut Random, camera: &PerspectiveCamera) -> F
         caster_extension: camera.far * random.between(0.0, 2.0),
         up: random.pick(&[Vec3::Y, Vec3::Z, Vec3::new(0.3, 0.7, -0.2)]),
         max_texel_ratio: f32::MAX,
+        least_texel: 0.0,
         resolution: random.pick(&[UVec2::splat(2048), UVec2::new(1024, 512), UVec2::new(333, 4096)]),
         depth: random.pick(&DEPTHS),
     }
@@ -214,7 +215,9 @@ pub(crate) fn technique(random: &mut Random, camera: &PerspectiveCamera) -> Tech
         overrides: [MapOverride::default(); MAX_MAPS],
         receivers: ReceiverSource::Clusters,
         filter: FilterKind::Point,
-        bias: BiasSettings { constant: 0.5, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0 },
+        softness: Softness::default(),
+        fade: 0.0,
+        bias: BiasSettings { constant: 0.5, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 1.0 },
         need: NeedSource::LastFrame,
         format: MapFormat::Depth32Float,
     };

@@ -70,9 +70,10 @@ impl Run {
             slope: random.between(0.0, 3.0),
             normal_offset: random.between(0.0, 2.0),
             receiver_plane: random.between(0.0, 2.0),
+            depth_steps: 1.0,
         };
         for bias in [
-            Bias::from_texels(&settings, fit),
+            Bias::from_texels(&settings, DepthStorage::Float32, fit),
             Bias::automatic(reach, storage, fit)?,
             Bias::automatic_receiver_plane(reach, storage, fit)?,
         ] {

@@ -9,7 +9,8 @@ use crate::{FitError, LightFit, checks};
 ///
 /// They lie within [`Self::taps`] per axis of a look-up, and the look-ups within the ellipse
 /// [`Self::disc`] around the sampled point. A number converts to the reach with these taps and no
-/// disc, a [`FilterKind`] to its [`reach`].
+/// disc, a [`FilterKind`] to its [`reach`], which leaves out the disc of a [soft](FilterKind::is_soft) one:
+/// [`Technique::reach_in`](crate::Technique::reach_in) has that of a technique's filter in a map.
 ///
 /// ```text
 ///   ┌───────┐  taps = E      ╭───────╮  disc = r, and each of the look-ups
@@ -107,6 +108,7 @@ impl From<f32> for Reach {
     }
 }
 
+/// The reach of one look-up, without the disc of a [soft](FilterKind::is_soft) filter.
 impl From<FilterKind> for Reach {
     fn from(filter: FilterKind) -> Self {
         Self::taps(reach(filter))
@@ -114,7 +116,9 @@ impl From<FilterKind> for Reach {
 }
 
 /// Reach E of a filter: the greatest distance along one axis from the sampled point to a texel
-/// centre of non-zero weight, in texels.
+/// centre of non-zero weight, in texels. Of a [soft](FilterKind::is_soft) filter it is that of one of its look-ups: the
+/// disc over which they are spread is [`Softness`](crate::settings::Softness)'s, and
+/// [`Technique::reach`](crate::Technique::reach) has both.
 pub const fn reach(filter: FilterKind) -> f32 {
     match filter {
         FilterKind::Point => Reach::POINT.taps,
@@ -122,7 +126,6 @@ pub const fn reach(filter: FilterKind) -> f32 {
         FilterKind::Pcf3x3 => Reach::kernel(3).taps,
         FilterKind::Pcf5x5 => Reach::kernel(5).taps,
         FilterKind::Pcf7x7 => Reach::kernel(7).taps,
-        // Their look-ups, without the disc that they are spread over.
         FilterKind::Vogel8 | FilterKind::Vogel16 | FilterKind::Vogel32 | FilterKind::Pcss => Reach::HARDWARE_2X2.taps,
     }
 }

@@ -4,6 +4,7 @@ mod bias;
 mod fit;
 mod map;
 mod overrides;
+mod softness;
 mod splits;
 mod stabilise;
 mod tool;
@@ -18,6 +19,7 @@ pub static PARAMETERS: &[Parameter] = &[
     fit::NEED,
     fit::RECTANGLE,
     fit::MAX_TEXEL_RATIO,
+    fit::LEAST_TEXEL,
     fit::MAX_DISTANCE,
     fit::CASTERS,
     fit::CASTER_EXTENSION,
@@ -48,11 +50,18 @@ pub static PARAMETERS: &[Parameter] = &[
     map::HEIGHT,
     map::FORMAT,
     map::FILTER,
+    map::FADE,
     map::DEPTH,
+    softness::MEASURE,
+    softness::ANGLE,
+    softness::METRES,
+    softness::FLOOR,
+    softness::CEILING,
     bias::CONSTANT,
     bias::SLOPE,
     bias::NORMAL_OFFSET,
     bias::RECEIVER_PLANE,
+    bias::DEPTH_STEPS,
     overrides::MAPS[0][0],
     overrides::MAPS[0][1],
     overrides::MAPS[0][2],

@@ -31,6 +31,8 @@ pub(super) struct Lattice {
     /// Free texels at the border of each window, and those between the borders.
     border: [f64; MAX_MAPS],
     pub(super) usable: [DVec2; MAX_MAPS],
+    /// Least width of a window's texels, in eighths of an octave of a metre.
+    pub(super) least: i32,
 }
 
 /// Eighths of an octave by which the texels of the last window may be too wide before it is made anew:
@@ -44,9 +46,14 @@ impl Lattice {
     /// `rules` are those of the windows, finest first.
     pub(super) fn new<'a>(plane: Plane, origin: DVec3, rules: impl Iterator<Item = &'a FitRule>) -> Self {
         let anchor = plane.of(plane.axes.project(origin));
-        let mut lattice = Self { plane, anchor, border: [0.0; MAX_MAPS], usable: [DVec2::ONE; MAX_MAPS] };
+        let (border, usable) = ([0.0; MAX_MAPS], [DVec2::ONE; MAX_MAPS]);
+        let mut lattice = Self { plane, anchor, border, usable, least: i32::MIN };
         for (i, rule) in rules.enumerate().take(MAX_MAPS) {
             (lattice.border[i], lattice.usable[i]) = (rule.border, grid::usable(rule));
+            if rule.least_texel > 0.0 {
+                // Along the plane's height texels are shorter than wide.
+                lattice.least = lattice.least.max(grid::eighths_above(rule.least_texel / plane.shape));
+            }
         }
         lattice
     }
@@ -79,7 +86,9 @@ impl Lattice {
     /// The last window, which holds a part of the plane: the held one while it serves.
     pub(super) fn last(&self, index: usize, held: Option<&Window>, (min, max): (DVec2, DVec2)) -> Window {
         let usable = self.usable[index];
-        let needed = grid::eighths_above(((max - min) / usable).max_element());
+        // Each of the finer windows has other texels.
+        let least = self.least.saturating_add(index as i32);
+        let needed = grid::eighths_above(((max - min) / usable).max_element()).max(least);
         let is_wasteful = |held: &&Window| held.steps > needed.saturating_add(LAST_WASTE);
         let held = held.filter(|held| held.steps >= needed && !is_wasteful(held));
         let steps = held.map_or(needed, |held| held.steps);

@@ -156,7 +156,7 @@ fn plan_windows(
     before: Option<&HeldWindows>,
     is_guess: bool,
 ) -> HeldWindows {
-    let planner = Planner { cells, usable: lattice.usable.map(DVec2::as_vec2), count };
+    let planner = Planner { cells, usable: lattice.usable.map(DVec2::as_vec2), least: lattice.least, count };
     let rect = lattice.rect(count - 1, last);
     let (mut turn, mut turn_anew) = before.map_or((0, 0), |before| (before.turn, before.turn_anew));
     let mut age = 0;

@@ -28,6 +28,8 @@ pub(super) struct Planner<'a> {
     pub(super) cells: &'a Cells,
     /// Texels of each window between its borders.
     pub(super) usable: [Vec2; MAX_MAPS],
+    /// Least width of texels, in eighths of an octave of a metre.
+    pub(super) least: i32,
     pub(super) count: usize,
 }
 
@@ -72,7 +74,8 @@ impl Planner<'_> {
         for ratio in LADDERS {
             let mut plan = Plan::default();
             for i in 0..self.count {
-                plan.steps[i] = last.saturating_sub(ratio * i32::from((self.count - 1 - i) as u8));
+                let even = last.saturating_sub(ratio * i32::from((self.count - 1 - i) as u8));
+                plan.steps[i] = even.max(self.least_of(i));
             }
             plan.rects[self.count - 1] = rect;
             self.place_all(&mut plan);
@@ -117,7 +120,8 @@ impl Planner<'_> {
         plan.steps[self.count - 1] = last;
         plan.rects[self.count - 1] = rect;
         for i in (0..self.count - 1).rev() {
-            let steps = plan.steps[i].max(last.saturating_sub(FINEST)).min(plan.steps[i + 1] - 1);
+            let least = self.least_of(i).max(last.saturating_sub(FINEST));
+            let steps = plan.steps[i].max(least).min(plan.steps[i + 1] - 1);
             if steps != plan.steps[i] {
                 plan.steps[i] = steps;
                 let middle = plan.rects[i].min + plan.rects[i].size * 0.5;
@@ -296,8 +300,13 @@ impl Planner<'_> {
         self.usable[window] * grid::eighths(steps) as f32
     }
 
+    /// Least texels of a window, which are coarser than those of the ones before it.
+    fn least_of(&self, window: usize) -> i32 {
+        self.least.saturating_add(i32::from(window as u8))
+    }
+
     fn is_in_order(&self, steps: &[i32; MAX_MAPS]) -> bool {
-        let is_fine = steps[self.count - 1].saturating_sub(steps[0]) > FINEST;
+        let is_fine = steps[self.count - 1].saturating_sub(steps[0]) > FINEST || steps[0] < self.least;
         !is_fine && steps[..self.count].windows(2).all(|pair| pair[0] < pair[1])
     }
 }

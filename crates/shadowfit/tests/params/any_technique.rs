@@ -6,7 +6,7 @@ use proptest::sample::select;
 use shadowfit::glam::{UVec2, Vec3};
 use shadowfit::settings::{
     BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapChoice, MapFormat,
-    MapOverride, NeedSource, ReceiverSource, RectangleKind, SplitScheme, Stabilise,
+    MapOverride, NeedSource, ReceiverSource, RectangleKind, SoftRadius, Softness, SplitScheme, Stabilise,
 };
 use shadowfit::{DepthConvention, Technique};
 
@@ -64,13 +64,13 @@ fn any_fit() -> impl Strategy<Value = FitSettings> {
         option::of(0.0_f32..=32.0),
         0.0_f32..=1e4,
         prop::array::uniform3(-1.0_f32..=1.0).prop_map(Vec3::from),
-        prop_oneof![Just(f32::MAX), 1.0_f32..=64.0],
+        (prop_oneof![Just(f32::MAX), 1.0_f32..=64.0], prop_oneof![Just(0.0), 0.0_f32..=10.0]),
         any_resolution(),
     );
     (rule, sizes).prop_map(
         |(
             (kind, rectangle, casters, depth),
-            (max_distance, margin, border, caster_extension, up, max_texel_ratio, resolution),
+            (max_distance, margin, border, caster_extension, up, (max_texel_ratio, least_texel), resolution),
         )| {
             FitSettings {
                 kind,
@@ -82,6 +82,7 @@ fn any_fit() -> impl Strategy<Value = FitSettings> {
                 caster_extension,
                 up,
                 max_texel_ratio,
+                least_texel,
                 resolution,
                 depth,
             }
@@ -97,11 +98,29 @@ fn any_hold() -> impl Strategy<Value = HoldSettings> {
 fn any_bias() -> impl Strategy<Value = BiasSettings> {
     // Down to a millionth of a texel.
     let texels = || (-20.0_f32..=4.0).prop_map(f32::exp2);
-    (texels(), texels(), texels(), texels()).prop_map(|(constant, slope, normal_offset, receiver_plane)| BiasSettings {
-        constant,
-        slope,
-        normal_offset,
-        receiver_plane,
+    (texels(), texels(), texels(), texels(), 0.0_f32..=16.0).prop_map(
+        |(constant, slope, normal_offset, receiver_plane, depth_steps)| BiasSettings {
+            constant,
+            slope,
+            normal_offset,
+            receiver_plane,
+            depth_steps,
+        },
+    )
+}
+
+fn any_softness() -> impl Strategy<Value = Softness> {
+    const _: fn(SoftRadius) = |value| match value {
+        SoftRadius::Metres(_) | SoftRadius::SunAngle(_) => (),
+    };
+    let radius = prop_oneof![
+        (0.0_f32..=10.0).prop_map(SoftRadius::Metres),
+        (0.0_f32..=0.5).prop_map(SoftRadius::SunAngle),
+    ];
+    (radius, 1.0_f32..=32.0, 0.0_f32..=1.0).prop_map(|(radius, ceiling, share)| Softness {
+        radius,
+        floor: share * ceiling,
+        ceiling,
     })
 }
 
@@ -124,15 +143,16 @@ pub(crate) fn any_technique() -> impl Strategy<Value = Technique> {
     );
     let look_up = (
         any!(ReceiverSource: Objects, Clusters),
-        any!(FilterKind: Point, Hardware2x2, Pcf3x3, Pcf5x5),
+        any!(FilterKind: Point, Hardware2x2, Pcf3x3, Pcf5x5, Pcf7x7, Vogel8, Vogel16, Vogel32, Pcss),
+        (any_softness(), 0.0_f32..=1.0),
         any_bias(),
         any!(NeedSource: LastFrame, Boxes),
-        any!(MapFormat: Depth32Float, R32Float),
+        any!(MapFormat: Depth32Float, Depth16Unorm, R32Float, R16Float, Rgba8Packed, R8Grey),
     );
     (maps, look_up).prop_map(
         |(
             (count, fit, splits, choice, (blend, overlap), stabilise, hold, overrides),
-            (receivers, filter, bias, need, format),
+            (receivers, filter, (softness, fade), bias, need, format),
         )| Technique {
             count,
             fit,
@@ -145,6 +165,8 @@ pub(crate) fn any_technique() -> impl Strategy<Value = Technique> {
             overrides,
             receivers,
             filter,
+            softness,
+            fade,
             bias,
             need,
             format,

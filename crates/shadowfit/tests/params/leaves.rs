@@ -2,7 +2,9 @@
 
 use shadowfit::Technique;
 use shadowfit::glam::{UVec2, Vec3};
-use shadowfit::settings::{BiasSettings, FitSettings, HoldSettings, MAX_MAPS, MapOverride, SplitScheme};
+use shadowfit::settings::{
+    BiasSettings, FitSettings, HoldSettings, MAX_MAPS, MapOverride, SoftRadius, Softness, SplitScheme,
+};
 use shadowfit::tool::{CameraSettings, LightSettings, Settings, ViewSettings};
 
 /// Every field with its value. Without `..` and `_`, so that a new field or variant does not compile until it stands
@@ -49,6 +51,8 @@ fn leaves_of_technique(technique: &Technique, leaf: &mut Leaf) {
         overrides,
         receivers,
         filter,
+        softness,
+        fade,
         bias,
         need,
         format,
@@ -83,7 +87,19 @@ fn leaves_of_technique(technique: &Technique, leaf: &mut Leaf) {
     }
     leaf("receivers", receivers);
     leaf("filter", filter);
-    let BiasSettings { constant, slope, normal_offset, receiver_plane } = bias;
+    let Softness { radius, floor, ceiling } = softness;
+    let (metres, angle) = match radius {
+        SoftRadius::Metres(metres) => (Some(metres), None),
+        SoftRadius::SunAngle(angle) => (None, Some(angle)),
+    };
+    leaf("softness.radius", &core::mem::discriminant(radius));
+    leaf("softness.metres", &metres);
+    leaf("softness.angle", &angle);
+    leaf("softness.floor", floor);
+    leaf("softness.ceiling", ceiling);
+    leaf("fade", fade);
+    let BiasSettings { constant, slope, normal_offset, receiver_plane, depth_steps } = bias;
+    leaf("bias.depth_steps", depth_steps);
     leaf("bias.constant", constant);
     leaf("bias.slope", slope);
     leaf("bias.normal_offset", normal_offset);
@@ -103,6 +119,7 @@ fn leaves_of_fit(fit: &FitSettings, leaf: &mut Leaf) {
         caster_extension,
         up,
         max_texel_ratio,
+        least_texel,
         resolution,
         depth,
     } = fit;
@@ -119,6 +136,7 @@ fn leaves_of_fit(fit: &FitSettings, leaf: &mut Leaf) {
     leaf("fit.up.y", up_y);
     leaf("fit.up.z", up_z);
     leaf("fit.max_texel_ratio", max_texel_ratio);
+    leaf("fit.least_texel", least_texel);
     leaf("fit.resolution.x", width);
     leaf("fit.resolution.y", height);
     leaf("fit.depth", depth);

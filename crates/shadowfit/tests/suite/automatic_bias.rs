@@ -11,7 +11,7 @@ use proptest::strategy::Union;
 use shadowfit::bias::{MIN_COSINE, depth_gradient, depth_precision, normal_offset};
 use shadowfit::diagnostics::{DepthStorage, acne_margin, depth_step_at};
 use shadowfit::glam::{DMat3, DVec2, DVec3, UVec2, Vec3};
-use shadowfit::settings::FitKind;
+use shadowfit::settings::{BiasSettings, FitKind, MapFormat};
 use shadowfit::{Bias, DepthConvention, LightFit};
 
 use crate::filters::{Filter, filters};
@@ -62,6 +62,14 @@ impl<'a> Stored<'a> {
         // Formats round to the nearest of equal steps from 0.
         (0.0..=1.0).contains(&depth).then(|| (depth / step(depth)).round() * step(depth))
     }
+}
+
+/// What a format can make of a depth: the nearest of its values, or the next one to either side where hardware only
+/// cuts or raises.
+fn rounded(storage: DepthStorage, depth: f64) -> [f64; 3] {
+    let step = f64::from(depth_step_at(storage, 1.0, depth as f32).unwrap());
+    let steps = depth / step;
+    [steps.round(), steps.floor(), steps.ceil()].map(|steps| (steps * step).clamp(0.0, 1.0))
 }
 
 /// A point of a plane under a fit, and the normal on the light's side.
@@ -158,6 +166,39 @@ fn any_case() -> impl Strategy<Value = Case> {
             Case { fit, point, normal: (slope * tangent - fit.direction).normalize() }
         },
     )
+}
+
+/// Whether a plane that faces the light shadows itself at any of a thousand depths of a fit's range, with a number of
+/// depth steps and no other bias, however the format rounds the stored depth.
+fn has_bands(fit: &LightFit, format: MapFormat, depth_steps: f32) -> bool {
+    let settings = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps };
+    let bias = f64::from(Bias::from_texels(&settings, format, fit).constant_depth);
+    // The rounding of a 32-bit float, which the constant in texels covers.
+    let float = f64::from(f32::EPSILON) * 0.5;
+    let is_reversed = fit.depth == DepthConvention::Reversed;
+    (0..1000).map(|i| (f64::from(i) + 0.377) / 1000.0).any(|depth| {
+        let stored = rounded(format.into(), depth).into_iter();
+        if is_reversed {
+            stored.fold(0.0, f64::max) > depth + bias + float
+        } else {
+            stored.fold(1.0, f64::min) < depth - bias - float
+        }
+    })
+}
+
+#[test]
+fn one_depth_step_clears_a_plane_in_every_coarse_format_and_none_does_not() {
+    for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
+        let camera = crate::support::camera();
+        let settings = exact(FitKind::FrustumAabb).with_depth(depth).with_caster_extension(300.0);
+        let fit = fitted(&camera, crate::support::DIRECTION, &settings);
+        for format in MapFormat::ALL {
+            assert!(!has_bands(&fit, format, 1.0), "{format:?} {depth:?}");
+            let is_coarse = DepthStorage::from(format) != DepthStorage::Float32;
+            assert_eq!(has_bands(&fit, format, 0.0), is_coarse, "{format:?} {depth:?}");
+            assert_eq!(has_bands(&fit, format, 0.9), is_coarse, "{format:?} {depth:?}: it is no larger than it must be");
+        }
+    }
 }
 
 proptest! {

@@ -6,7 +6,7 @@ use shadowfit::bias::{Reach, acos_bias, depth_gradient, normal_offset, receiver_
 use shadowfit::diagnostics::{DepthStorage, acne_margin, coverage, depth_step_at, share_of_map};
 use shadowfit::glam::{DVec3, Vec2, Vec3};
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
-use shadowfit::settings::{BiasSettings, FitKind};
+use shadowfit::settings::{BiasSettings, FitKind, MapFormat};
 use shadowfit::{Bias, FitError, LightFit};
 
 use crate::support::{DIRECTION, camera, cases, exact, fitted};
@@ -173,10 +173,15 @@ fn values_without_meaning_are_refused() {
 
 #[test]
 fn bias_settings_that_are_not_finite_are_refused_once_converted() {
-    let sets: [fn(BiasSettings, f32) -> BiasSettings; 3] =
-        [BiasSettings::with_constant, BiasSettings::with_slope, BiasSettings::with_normal_offset];
+    let sets: [fn(BiasSettings, f32) -> BiasSettings; 5] = [
+        BiasSettings::with_constant,
+        BiasSettings::with_slope,
+        BiasSettings::with_normal_offset,
+        BiasSettings::with_receiver_plane,
+        BiasSettings::with_depth_steps,
+    ];
     for set in sets {
-        let bias = |value| Bias::from_texels(&set(BiasSettings::default(), value), &fit());
+        let bias = |value| Bias::from_texels(&set(BiasSettings::default(), value), MapFormat::Depth16Unorm, &fit());
         for value in NOT_FINITE {
             assert!(matches!(bias(value).checked(), Err(FitError::NotFinite { .. })), "{value}");
         }

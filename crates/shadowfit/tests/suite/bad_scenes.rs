@@ -5,7 +5,9 @@ use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Mat4, UVec2, Vec3};
 use shadowfit::histogram::{DepthBounds, DepthHistogram};
 use shadowfit::normal_cone::NormalCone;
-use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, MapOverride, RectangleKind, SplitScheme, Stabilise};
+use shadowfit::settings::{
+    CasterPolicy, FilterKind, FitKind, FitSettings, MapOverride, RectangleKind, SoftRadius, SplitScheme, Stabilise,
+};
 use shadowfit::{Aabb, Boxes, FitError, FitInput, FittedMaps, LightFit, MapFitter, Technique, ViewFrustum, Workspace};
 
 use crate::support::{DIRECTION, camera, cases};
@@ -100,7 +102,7 @@ fn is_finite(fit: &LightFit) -> bool {
 type Setter = (&'static str, fn(&mut Inputs, f64));
 
 /// Every float but those of the camera, which have tests of their own.
-const SETTERS: [Setter; 45] = [
+const SETTERS: [Setter; 57] = [
     ("view origin x", |i, v| i.views[0].origin.x = v),
     ("view origin y", |i, v| i.views[1].origin.y = v),
     ("near corner", |i, v| i.views[0].corners[1].x = v as f32),
@@ -149,6 +151,20 @@ const SETTERS: [Setter; 45] = [
     ("hold margin", |i, v| i.settings.hold.margin = v as f32),
     ("hold growth", |i, v| i.settings.hold.growth = v as f32),
     ("hold waste", |i, v| i.settings.hold.waste = v as f32),
+    ("softness in metres", |i, v| i.settings.softness.radius = SoftRadius::Metres(v as f32)),
+    ("softness by angle", |i, v| i.settings.softness.radius = SoftRadius::SunAngle(v as f32)),
+    ("softness floor", |i, v| i.settings.softness.floor = v as f32),
+    ("softness ceiling", |i, v| i.settings.softness.ceiling = v as f32),
+    ("softness of PCSS", |i, v| {
+        (i.settings.filter, i.settings.softness.radius) = (FilterKind::Pcss, SoftRadius::Metres(v as f32));
+    }),
+    ("fade", |i, v| i.settings.fade = v as f32),
+    ("least texel", |i, v| i.settings.fit.least_texel = v as f32),
+    ("constant bias", |i, v| i.settings.bias.constant = v as f32),
+    ("slope-scaled bias", |i, v| i.settings.bias.slope = v as f32),
+    ("normal offset", |i, v| i.settings.bias.normal_offset = v as f32),
+    ("receiver-plane bias", |i, v| i.settings.bias.receiver_plane = v as f32),
+    ("depth steps", |i, v| i.settings.bias.depth_steps = v as f32),
     ("hold horizon", |i, v| i.settings.hold.horizon = v as u32),
 ];
 
@@ -248,7 +264,7 @@ fn counts_outside_of_one_to_eight_are_refused() {
 
 #[test]
 fn settings_without_meaning_are_refused() {
-    let refused: [Setter; 14] = [
+    let refused: [Setter; 27] = [
         ("lambda above", |i, _| i.settings.splits = SplitScheme::Practical(1.1)),
         ("lambda below", |i, _| i.settings.splits = SplitScheme::Practical(-0.1)),
         ("splits that fall", |i, _| i.settings.splits = SplitScheme::Manual([5.0, 4.0, 6.0, 7.0, 8.0, 9.0, 10.0])),
@@ -257,6 +273,21 @@ fn settings_without_meaning_are_refused() {
         ("overlap below", |i, _| i.settings.overlap = -0.1),
         ("blend above", |i, _| i.settings.blend = 64.1),
         ("blend below", |i, _| i.settings.blend = -0.1),
+        ("fade above", |i, _| i.settings.fade = 1.1),
+        ("fade below", |i, _| i.settings.fade = -0.1),
+        ("least texel", |i, _| i.settings.fit.least_texel = -0.1),
+        ("least texel above", |i, _| i.settings.fit.least_texel = 1e19),
+        ("depth steps above", |i, _| i.settings.bias.depth_steps = 16.1),
+        ("depth steps below", |i, _| i.settings.bias.depth_steps = -0.1),
+        ("softness below", |i, _| i.settings.softness.radius = SoftRadius::Metres(-0.1)),
+        ("softness above", |i, _| i.settings.softness.radius = SoftRadius::Metres(1001.0)),
+        ("a sun below", |i, _| i.settings.softness.radius = SoftRadius::SunAngle(-0.1)),
+        ("a sun above", |i, _| i.settings.softness.radius = SoftRadius::SunAngle(0.8)),
+        ("a ceiling below the floor", |i, _| {
+            (i.settings.softness.floor, i.settings.softness.ceiling) = (4.1, 4.0);
+        }),
+        ("ceiling below", |i, _| (i.settings.softness.floor, i.settings.softness.ceiling) = (0.0, 0.9)),
+        ("ceiling above", |i, _| i.settings.softness.ceiling = 64.1),
         ("waste", |i, _| i.settings.hold.waste = 0.9),
         ("growth", |i, _| i.settings.hold.growth = 0.9),
         ("hold margin", |i, _| i.settings.hold.margin = -0.1),
@@ -270,6 +301,26 @@ fn settings_without_meaning_are_refused() {
         let mut inputs = good();
         set(&mut inputs, 0.0);
         assert!(inputs.fit(&mut MapFitter::new()).is_err(), "{name}");
+    }
+}
+
+#[test]
+fn penumbrae_by_distance_are_refused_where_depth_clamp_loses_the_distance() {
+    for kind in KINDS {
+        for (casters, filter) in [
+            (CasterPolicy::DepthClamp, FilterKind::Pcss),
+            (CasterPolicy::DepthClamp, FilterKind::Vogel16),
+            (CasterPolicy::List, FilterKind::Pcss),
+        ] {
+            let mut inputs = good();
+            (inputs.settings.fit.kind, inputs.settings.fit.casters, inputs.settings.filter) = (kind, casters, filter);
+            // The XNA sample's fit has no caster policy.
+            let is_refused =
+                casters == CasterPolicy::DepthClamp && filter == FilterKind::Pcss && kind != FitKind::XnaSample;
+            let result = inputs.fit(&mut MapFitter::new());
+            let refusal = matches!(result, Err(FitError::ClampedCasters { filter: FilterKind::Pcss }));
+            assert!(refusal == is_refused && result.is_ok() != is_refused, "{kind:?} {casters:?} {filter:?}: {result:?}");
+        }
     }
 }
 

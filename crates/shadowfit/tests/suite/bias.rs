@@ -7,10 +7,10 @@ use shadowfit::bias::{
 };
 use shadowfit::diagnostics::DepthStorage;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
-use shadowfit::settings::{BiasSettings, FilterKind, FitKind, MapFormat};
+use shadowfit::settings::{BiasSettings, FilterKind, FitKind, MapFormat, SoftRadius, Softness};
 use shadowfit::{Bias, LightFit};
 
-use crate::filters::filters;
+use crate::filters::{Filter, filters};
 use crate::support::{DIRECTION, any_camera, any_direction, any_kind, apply, camera, double, exact, fitted, float};
 
 /// A plane z = slope · (x, y) in light space, metres, and its geometry.
@@ -35,20 +35,20 @@ impl Plane {
 
     /// Least clearance, in metres along the light, of a point of the plane that is lifted by
     /// `offset` · sin θ along the normal, above all texel centres of the filter; negative is acne.
-    fn clearance(&self, at: DVec2, texel: f64, offset: f64, filter: FilterKind) -> f64 {
+    fn clearance(&self, at: DVec2, texel: f64, offset: f64, filter: &Filter) -> f64 {
         let (normal, sine) = self.normal();
         let lifted = at.extend(self.height(at)) + normal * (offset * sine);
         let texels = lifted.truncate() / texel;
-        // Texel centres that the filter reads, each way from the first.
-        let (first, count) = match filter {
-            FilterKind::Point => (texels.floor() + 0.5, 1),
-            FilterKind::Hardware2x2 => ((texels - 0.5).floor() + 0.5, 2),
-            FilterKind::Pcf3x3 => ((texels - 0.5).floor() - 0.5, 4),
-            FilterKind::Pcf5x5 => ((texels - 0.5).floor() - 1.5, 6),
-        };
-        let centres = (0..count * count).map(|i| first + DVec2::new(f64::from(i % count), f64::from(i / count)));
-        centres.map(|c| lifted.z - self.height(c * texel)).fold(f64::INFINITY, f64::min)
+        filter.texels(texels).map(|c| lifted.z - self.height(c * texel)).fold(f64::INFINITY, f64::min)
     }
+}
+
+/// A disc of up to three and a half texels for the filters that have one.
+const SOFTNESS: Softness = Softness { radius: SoftRadius::Metres(1.0), floor: 1.0, ceiling: 3.5 };
+
+/// All kinds of filters and what they read.
+fn kinds() -> Vec<(FilterKind, Filter)> {
+    FilterKind::ALL.into_iter().map(|kind| (kind, Filter::of_kind(kind, &SOFTNESS))).collect()
 }
 
 proptest! {
@@ -58,10 +58,10 @@ proptest! {
         theta in double(0.0, 1.5), azimuth in double(0.0, 6.3), texel in double(0.01, 10.0), (x, y) in (double(-100.0, 100.0), double(-100.0, 100.0)),
     ) {
         let plane = Plane::new(theta, azimuth);
-        for filter in FilterKind::ALL {
-            let texels = f64::from(plane_normal_offset(reach(filter), azimuth as f32));
+        for (kind, filter) in kinds() {
+            let texels = f64::from(plane_normal_offset(SOFTNESS.reach(kind), azimuth as f32));
             // The offset itself is f32.
-            let least = plane.clearance(DVec2::new(x, y), texel, texels * texel * (1.0 + 1e-6), filter);
+            let least = plane.clearance(DVec2::new(x, y), texel, texels * texel * (1.0 + 1e-6), &filter);
             prop_assert!(least >= -1e-9 * texel * plane.slope.length(), "{least:e}");
         }
     }
@@ -92,15 +92,18 @@ proptest! {
 
 #[test]
 fn five_percent_less_than_the_plane_offset_leaves_acne() {
-    for filter in FilterKind::ALL {
+    for (kind, filter) in kinds() {
         for azimuth in [0.0, 0.3, 0.785, 1.2, 2.5, 4.0, 5.5] {
             let plane = Plane::new(1.2, azimuth);
-            let offset = 0.95 * f64::from(plane_normal_offset(reach(filter), azimuth as f32));
-            let worst = (0..10_000)
-                .map(|i| DVec2::new(f64::from(i % 100), f64::from(i / 100)) * 0.0101)
-                .map(|at| plane.clearance(at, 1.0, offset, filter))
+            // A disc reaches as far at all azimuths, the box of a look-up farther along its diagonals.
+            let disc = f64::from(SOFTNESS.reach(kind) - reach(kind));
+            let offset = 0.95 * (disc + f64::from(plane_normal_offset(reach(kind), azimuth as f32)));
+            let side = if kind.is_soft() { 30 } else { 100 };
+            let worst = (0..side * side)
+                .map(|i| DVec2::new(f64::from(i % side), f64::from(i / side)) * (1.01 / f64::from(side)))
+                .map(|at| plane.clearance(at, 1.0, offset, &filter))
                 .fold(f64::INFINITY, f64::min);
-            assert!(worst < 0.0, "{filter:?} at {azimuth}: {worst}");
+            assert!(worst < 0.0, "{kind:?} at {azimuth}: {worst}");
         }
     }
 }
@@ -111,8 +114,12 @@ fn texels_become_depth_and_metres_by_the_longer_side() {
     let fit: LightFit = fitted(&camera(), DIRECTION, &settings);
     let texel = fit.texel_size.max_element();
     assert!(fit.texel_size.min_element() < texel);
-    let bias =
-        Bias::from_texels(&BiasSettings { constant: 0.5, slope: 2.0, normal_offset: 3.0, receiver_plane: 0.7 }, &fit);
+    let settings =
+        BiasSettings { constant: 0.5, slope: 2.0, normal_offset: 3.0, receiver_plane: 0.7, depth_steps: 2.0 };
+    for format in [MapFormat::R32Float, MapFormat::Rgba8Packed] {
+        assert_eq!(Bias::from_texels(&settings, format, &fit), Bias::from_texels(&settings, MapFormat::default(), &fit));
+    }
+    let bias = Bias::from_texels(&settings, MapFormat::default(), &fit);
     assert_eq!(bias.constant_depth, 0.5 * texel / fit.depth_range);
     assert_eq!(bias.slope_depth, 2.0 * texel / fit.depth_range);
     assert_eq!(bias.normal_offset, 3.0 * texel);
@@ -125,17 +132,21 @@ fn texels_become_depth_and_metres_by_the_longer_side() {
 
 #[test]
 fn automatic_settings_follow_the_filter_s_reach() {
-    for (filter, e) in FilterKind::ALL.into_iter().zip([0.5, 1.0, 2.0, 3.0]) {
-        let offset = BiasSettings::automatic_normal_offset(filter);
+    let softness = Softness::default().with_ceiling(8.0);
+    for (filter, e) in FilterKind::ALL.into_iter().zip([0.5, 1.0, 2.0, 3.0, 4.0, 9.0, 9.0, 9.0, 9.0]) {
+        let offset = BiasSettings::automatic_normal_offset(filter, &softness);
         assert_eq!((offset.normal_offset, offset.receiver_plane), (std::f32::consts::SQRT_2 * e, 0.0));
         let settings = BiasSettings::automatic(filter);
         // Only the reach of one comparison is left to clear, for any filter.
         assert_eq!(settings.receiver_plane, if filter == FilterKind::Point { 0.5 } else { 1.0 } + HARDWARE_SNAP);
         assert_eq!((settings.slope, settings.normal_offset, settings.constant), (0.0, 0.0, offset.constant));
-        // The constant covers the precision of an ordinary fit.
+        // The constant and one step of the format cover the precision of an ordinary fit.
         let fit = fitted(&camera(), DIRECTION, &exact(FitKind::FrustumAabb).with_caster_extension(1000.0));
-        let settings = Bias::from_texels(&settings, &fit);
-        assert!(settings.constant_depth >= Bias::automatic(filter, MapFormat::default(), &fit).unwrap().constant_depth);
+        for format in MapFormat::ALL {
+            let settings = Bias::from_texels(&settings, format, &fit);
+            let least = Bias::automatic(filter, format, &fit).unwrap().constant_depth;
+            assert!(settings.constant_depth >= least, "{filter:?} {format:?}: {settings:?} {least}");
+        }
     }
 }
 
@@ -167,8 +178,9 @@ fn reaches_are_what_their_filters_read() {
         assert!(greatest <= reach && greatest > 0.97 * reach, "{}: {greatest} of {reach}", filter.name);
     }
     assert_eq!([1, 3, 5, 7].map(|taps| Reach::kernel(taps).per_axis()), [1.0, 2.0, 3.0, 4.0]);
-    let of_kinds = [Reach::POINT, Reach::HARDWARE_2X2, Reach::kernel(3), Reach::kernel(5)];
-    assert_eq!(FilterKind::ALL.map(Reach::from), of_kinds);
+    let tents = [3, 5, 7].map(Reach::kernel);
+    let of_kinds = [Reach::POINT, Reach::HARDWARE_2X2].into_iter().chain(tents).chain([Reach::HARDWARE_2X2; 4]);
+    assert_eq!(FilterKind::ALL.map(Reach::from).to_vec(), of_kinds.collect::<Vec<_>>());
     let fit =
         LightFit { texel_size: Vec2::new(0.5, 0.25), ..fitted(&camera(), DIRECTION, &exact(FitKind::FrustumAabb)) };
     assert_eq!(Reach::POINT.over_metres(1.0, &fit).disc, Vec2::new(2.0, 4.0));

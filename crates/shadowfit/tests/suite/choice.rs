@@ -1,7 +1,6 @@
 //! Which of several maps a point reads.
 
 use proptest::prelude::*;
-use shadowfit::bias::reach;
 use shadowfit::choice::{DepthRange, MapBlend, MapOrder, MapRead, by_coverage, by_view_depth};
 use shadowfit::glam::{DVec2, DVec3, Vec2};
 use shadowfit::settings::{MAX_MAPS, MapChoice};
@@ -153,7 +152,7 @@ proptest! {
             let across = |side: usize| corners[side].lerp(corners[side + 1], u).lerp(corners[side + 3].lerp(corners[side + 2], u), v);
             let point = across(0).lerp(across(4), w);
             let free = |map: usize| maps[map].fit.free_texels(point);
-            let needed = f64::from(reach(technique.filter));
+            let needed = f64::from(technique.reach());
             let roomy: Vec<usize> =
                 sorted.iter().copied().filter(|map| free(*map).is_some_and(|free| free >= needed)).collect();
             let clamped = sorted.iter().copied().find(|map| free(*map).is_some());

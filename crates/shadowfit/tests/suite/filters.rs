@@ -2,6 +2,7 @@
 
 use shadowfit::bias::Reach;
 use shadowfit::glam::DVec2;
+use shadowfit::settings::{FilterKind, Softness};
 
 /// What one look-up of a filter reads.
 #[derive(Clone, Copy)]
@@ -51,6 +52,34 @@ impl Filter {
         Self { name, reach: Reach::kernel(taps), look_up: LookUp::Bilinear, offsets }
     }
 
+    /// Look-ups spread evenly over a disc (H. Vogel, 1979), turned as they are from pixel to pixel.
+    fn vogel(name: &'static str, count: u8, radius: f32, turns: u8) -> Self {
+        let turn = |turn: u8| {
+            (0..count).map(move |i| {
+                let angle = f64::from(i) * 2.399_963 + f64::from(turn) / f64::from(turns) * core::f64::consts::TAU;
+                DVec2::from_angle(angle) * ((f64::from(i) + 0.5) / f64::from(count)).sqrt() * f64::from(radius)
+            })
+        };
+        let offsets = (0..turns).flat_map(turn).collect();
+        Self { name, reach: Reach::HARDWARE_2X2.over_disc(radius), look_up: LookUp::Bilinear, offsets }
+    }
+
+    /// A kind of filter, with the widest disc that a softness allows.
+    pub(crate) fn of_kind(kind: FilterKind, softness: &Softness) -> Self {
+        let one = |look_up| Self { name: "one", reach: kind.into(), look_up, offsets: vec![DVec2::ZERO] };
+        let vogel = |count| Self::vogel("Vogel", count, softness.ceiling, 32);
+        match kind {
+            FilterKind::Point => one(LookUp::Nearest),
+            FilterKind::Hardware2x2 => one(LookUp::Bilinear),
+            FilterKind::Pcf3x3 => Self::kernel("3x3", 3),
+            FilterKind::Pcf5x5 => Self::kernel("5x5", 5),
+            FilterKind::Pcf7x7 => Self::kernel("7x7", 7),
+            FilterKind::Vogel8 => vogel(8),
+            FilterKind::Vogel16 | FilterKind::Pcss => vogel(16),
+            FilterKind::Vogel32 => vogel(32),
+        }
+    }
+
     /// A disc: its rim, and as many look-ups inside.
     fn disc(name: &'static str, reach: Reach, look_up: LookUp) -> Self {
         let radii = reach.disc.as_dvec2();
@@ -77,6 +106,7 @@ pub(crate) fn filters() -> Vec<Filter> {
         Filter::kernel("7x7", 7),
         Filter::disc("disc of nearest texels", Reach::POINT.over_disc(2.5), LookUp::Nearest),
         Filter::disc("disc of 2x2", Reach::HARDWARE_2X2.over_disc(2.5), LookUp::Bilinear),
+        Filter::vogel("Vogel disc", 16, 2.5, 8),
         Filter::disc("ellipse of nearest texels", ellipse, LookUp::Nearest),
     ]
 }

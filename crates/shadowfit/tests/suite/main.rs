@@ -38,6 +38,7 @@ mod self_shadowing;
 mod serde;
 mod settings;
 mod support;
+mod softness;
 mod sweep;
 mod texel_phase;
 mod texel_ratio;

@@ -1,6 +1,5 @@
 //! What is held from frame to frame stays although every input is rounded otherwise in each.
 
-use shadowfit::bias::Reach;
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec3};
 use shadowfit::histogram::DepthHistogram;
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
@@ -114,7 +113,7 @@ fn fly(way: Way, technique: &Technique, knows_boxes: bool, mut visit: impl FnMut
         let mut workspace = Workspace::new(&mut storage);
         let maps = fitter.fit(&input, technique, &mut workspace).unwrap();
         for map in maps.iter() {
-            let query = CoverageQuery::of_map(map, technique, Reach::from(technique.filter))
+            let query = CoverageQuery::of_map(map, technique, technique.reach_in(&map.fit))
                 .with_normal_offset(map.bias.normal_offset);
             let certificate = verify(&input, &map.fit, &query, &mut workspace).unwrap();
             assert!(certificate.is_proven(), "{way:?}: {certificate:?}");

@@ -55,6 +55,7 @@ fn all_fields() -> Technique {
             caster_extension: 7.0,
             up: Vec3::new(0.0, -0.0, 1.0),
             max_texel_ratio: 3.0,
+            least_texel: 0.001,
             resolution: UVec2::new(1024, 512),
             depth: DepthConvention::Reversed,
         },
@@ -75,8 +76,10 @@ fn all_fields() -> Technique {
             own(FitKind::Sphere, 1),
         ],
         receivers: ReceiverSource::Objects,
-        filter: FilterKind::Hardware2x2,
-        bias: BiasSettings { constant: 1.0 / 3.0, slope: 0.2, normal_offset: 1e-9, receiver_plane: 1.5 },
+        filter: FilterKind::Vogel8,
+        softness: Softness { radius: SoftRadius::Metres(0.1), floor: 0.5, ceiling: 8.0 },
+        fade: 0.2,
+        bias: BiasSettings { constant: 1.0 / 3.0, slope: 0.2, normal_offset: 1e-9, receiver_plane: 1.5, depth_steps: 0.5 },
         need: NeedSource::Boxes,
         format: MapFormat::R32Float,
     }
@@ -87,6 +90,7 @@ fn some_fields() -> Technique {
     let mut technique = Technique::default().with_splits(SplitScheme::Practical(0.7)).with_max_distance(f32::MIN);
     technique.hold.horizon = 60;
     technique.bias.slope = 1.0;
+    technique.softness.radius = SoftRadius::SunAngle(0.01);
     technique.overrides[1].kind = Some(FitKind::Sphere);
     technique.overrides[3].resolution = Some(UVec2::splat(1024));
     technique

@@ -223,6 +223,7 @@ pub(crate) fn any_covering_fit() -> impl Strategy<Value = FitSettings> {
             caster_extension: 0.0,
             up,
             max_texel_ratio: f32::MAX,
+            least_texel: 0.0,
             resolution: UVec2::new(width, height),
             depth,
         },

@@ -3,7 +3,8 @@
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, UVec2, Vec3};
 use shadowfit::settings::{
-    BiasSettings, FilterKind, FitKind, FitSettings, MAX_MAPS, MapChoice, MapFormat, MapOverride, SplitScheme, Stabilise,
+    BiasSettings, FilterKind, FitKind, FitSettings, MAX_MAPS, MapChoice, MapFormat, MapOverride, SoftRadius, Softness,
+    SplitScheme, Stabilise,
 };
 use shadowfit::tool::{CameraSettings, LightSettings, Settings, ViewSettings};
 use shadowfit::{FitInput, FittedMaps, MapFitter, Technique, Workspace};
@@ -58,9 +59,12 @@ proptest! {
 
 #[test]
 fn with_methods_change_their_field_only() {
-    let bias =
-        BiasSettings::default().with_constant(1.0).with_slope(2.0).with_normal_offset(3.0).with_receiver_plane(4.0);
-    assert_eq!(bias, BiasSettings { constant: 1.0, slope: 2.0, normal_offset: 3.0, receiver_plane: 4.0 });
+    let bias = BiasSettings::default().with_constant(1.0).with_slope(2.0).with_normal_offset(3.0);
+    let bias = bias.with_receiver_plane(4.0).with_depth_steps(5.0);
+    let written = BiasSettings { constant: 1.0, slope: 2.0, normal_offset: 3.0, receiver_plane: 4.0, depth_steps: 5.0 };
+    assert_eq!(bias, written);
+    let softness = Softness::default().with_radius(SoftRadius::Metres(0.1)).with_floor(0.5).with_ceiling(8.0);
+    assert_eq!(softness, Softness { radius: SoftRadius::Metres(0.1), floor: 0.5, ceiling: 8.0 });
     let camera = CameraSettings::default().with_near(1.0);
     assert_eq!(camera, CameraSettings { near: 1.0, ..CameraSettings::default() });
     let view = ViewSettings::default().with_inset(false);
@@ -76,10 +80,12 @@ fn another_filter_brings_its_bias_and_its_border() {
     let technique = Technique::default().with_filter(FilterKind::Point);
     assert_eq!(technique.bias, BiasSettings::automatic(FilterKind::Point));
     assert_eq!((technique.border(), Technique::default().border()), (0.5, 3.0));
-    let offset = BiasSettings::automatic_normal_offset(FilterKind::Point);
+    let offset = BiasSettings::automatic_normal_offset(FilterKind::Point, &Softness::default());
     let moved = technique.with_look_up(FilterKind::Point, offset);
     assert_eq!(moved.border(), 0.5 + offset.normal_offset, "the looked-up point moves by the offset");
     assert_eq!(moved.with_fit(FitSettings::default().with_border(7.0)).border(), 7.0, "what is set stays");
+    let soft = Technique::default().with_filter(FilterKind::Vogel16);
+    assert_eq!((soft.reach(), soft.border()), (17.0, 17.0), "a look-up over the widest disc");
 }
 
 #[test]

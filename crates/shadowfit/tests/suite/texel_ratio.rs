@@ -84,7 +84,7 @@ proptest! {
             let Ok(maps) = fitter.fit(&input, &technique, &mut Workspace::new(&mut storage)) else { return Ok(()) };
             for map in maps.iter() {
                 prop_assert!(ratio(&map.fit) <= limit * (1.0 + 1e-5), "{} of {limit}", ratio(&map.fit));
-                let query = CoverageQuery::of_map(map, &technique, technique.filter.into());
+                let query = CoverageQuery::of_map(map, &technique, technique.reach_in(&map.fit));
                 let certificate = verify(&input, &map.fit, &query, &mut Workspace::new(&mut storage)).unwrap();
                 prop_assert!(certificate.is_proven(), "{certificate:?}");
             }

@@ -1,7 +1,9 @@
 //! The rows of the biases.
 
 use super::always_active;
+use crate::diagnostics::DepthStorage;
 use crate::params::{Group, Kind, Number, Parameter};
+use crate::settings::MAX_DEPTH_STEPS;
 
 pub(super) const CONSTANT: Parameter = Parameter {
     id: "bias.constant",
@@ -48,7 +50,7 @@ pub(super) const NORMAL_OFFSET: Parameter = Parameter {
     unit: "texels",
     help: "Looks the shadow up a little above the surface, along its normal, and higher where the light grazes. The \
            cure for acne in shaders that have no receiver plane: 0.71 texels are enough for the point filter, 1.42 for \
-           2×2, 2.83 for 3×3 and 4.24 for 5×5, on any slope.",
+           2×2, 2.83 for 3×3, 4.24 for 5×5 and 5.66 for 7×7, on any slope.",
     kind: Kind::Number(Number {
         min: 0.0,
         max: 16.0,
@@ -79,4 +81,26 @@ pub(super) const RECEIVER_PLANE: Parameter = Parameter {
         write: |s, value| s.technique.bias.receiver_plane = value as f32,
     }),
     inert: always_active,
+};
+
+pub(super) const DEPTH_STEPS: Parameter = Parameter {
+    id: "bias.depth_steps",
+    group: Group::Bias,
+    label: "Depth steps",
+    unit: "steps",
+    help: "Moves the compared depth toward the light by this many steps of the map's format, as coarse as it stores \
+           depths. 1 clears the bands of acne that a coarse format leaves; more only helps where hardware rounds badly.",
+    kind: Kind::Number(Number {
+        min: 0.0,
+        max: MAX_DEPTH_STEPS as f64,
+        step: 0.1,
+        logarithmic: false,
+        decimals: 2,
+        read: |s| f64::from(s.technique.bias.depth_steps),
+        write: |s, value| s.technique.bias.depth_steps = value as f32,
+    }),
+    inert: |s| {
+        (DepthStorage::from(s.technique.format) == DepthStorage::Float32)
+            .then_some("The format's steps are too fine to matter; choose a coarser Format (map.format).")
+    },
 };

@@ -178,6 +178,27 @@ pub(super) const MAX_TEXEL_RATIO: Parameter = Parameter {
     },
 };
 
+pub(super) const LEAST_TEXEL: Parameter = Parameter {
+    id: "fit.least_texel",
+    group: Group::Fit,
+    label: "Least texel",
+    unit: "m",
+    help: "Maps have no finer texels than this; 0 is no limit. It keeps edges alike where the camera comes close, and a \
+           map that may be coarser covers more and moves less. Soft filters set a limit of their own.",
+    kind: Kind::Number(Number {
+        min: 0.0,
+        max: 10.0,
+        step: 0.001,
+        logarithmic: true,
+        decimals: 4,
+        read: |s| f64::from(s.technique.fit.least_texel),
+        write: |s, value| s.technique.fit.least_texel = value as f32,
+    }),
+    inert: |s| {
+        (s.technique.fit.kind == FitKind::XnaSample).then_some("The XNA sample's fit has no such limit; choose another fit.")
+    },
+};
+
 pub(super) const MAX_DISTANCE: Parameter = Parameter {
     id: "fit.max_distance",
     group: Group::Fit,
@@ -285,8 +306,8 @@ pub(super) const CASTER_EXTENSION: Parameter = Parameter {
     },
 };
 
-/// Widest border, in texels: wider than the reach of any filter, and less than a quarter of the smallest map that the
-/// table allows.
+/// Widest border, in texels: wider than the reach of filters but for the softest, and less than a quarter of the smallest
+/// map that the table allows.
 const WIDEST_BORDER: f64 = 32.0;
 
 pub(super) const BORDER: Parameter = Parameter {

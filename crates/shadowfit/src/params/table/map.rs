@@ -68,8 +68,9 @@ pub(super) const FORMAT: Parameter = Parameter {
     group: Group::Map,
     label: "Format",
     unit: "",
-    help: "The texture format that stores the depths. Both hold 32-bit floats and give the same shadows; the \
-           colour format shows what the comparison costs without a comparison sampler.",
+    help: "The texture format that stores the depths. Those with 32 bits give the same shadows; coarser ones take less \
+           memory, and need a larger bias (Depth steps). Colour formats are compared in the shader, as the XNA sample \
+           does.",
     kind: Kind::Choice(Choice {
         options: &[
             ChoiceOption {
@@ -78,10 +79,32 @@ pub(super) const FORMAT: Parameter = Parameter {
                 help: "A depth texture, compared by the sampler.",
             },
             ChoiceOption {
+                id: "depth16_unorm",
+                label: "Depth 16-bit",
+                help: "A depth texture of half the memory, with 65,536 steps over the map's depth.",
+            },
+            ChoiceOption {
                 id: "r32float",
                 label: "Colour 32-bit float",
                 help: "One colour channel with a depth buffer of its own, compared in the shader, as the XNA \
                        sample has it.",
+            },
+            ChoiceOption {
+                id: "r16_float",
+                label: "Colour 16-bit float",
+                help: "The same with a 16-bit float, the XNA sample's second choice: 2,048 steps over the far half of \
+                       the map's depth.",
+            },
+            ChoiceOption {
+                id: "rgba8_packed",
+                label: "Packed in four channels",
+                help: "A 32-bit float in the four channels of an ordinary colour, the XNA sample's third choice: works \
+                       everywhere, and loses nothing.",
+            },
+            ChoiceOption {
+                id: "r8_grey",
+                label: "8-bit grey",
+                help: "256 steps over the map's depth: far too coarse, as the bands of acne show.",
             },
         ],
         read: |s| MapFormat::ALL.iter().position(|format| *format == s.technique.format).unwrap_or(0),
@@ -121,11 +144,61 @@ pub(super) const FILTER: Parameter = Parameter {
                 help: "A tent over 36 texels, in nine hardware look-ups: edges are smooth, and shadows thinner than two \
                        texels fade.",
             },
+            ChoiceOption {
+                id: "pcf_7x7",
+                label: "PCF 7×7",
+                help: "A tent over 64 texels, in sixteen hardware look-ups: smoother still, and shadows thinner than \
+                       three texels fade.",
+            },
+            ChoiceOption {
+                id: "vogel_8",
+                label: "Vogel disc, 8 look-ups",
+                help: "Look-ups spread over a disc as wide as the softness says, turned from pixel to pixel: edges are \
+                       as soft near and far, with some noise.",
+            },
+            ChoiceOption {
+                id: "vogel_16",
+                label: "Vogel disc, 16 look-ups",
+                help: "The same with less noise.",
+            },
+            ChoiceOption {
+                id: "vogel_32",
+                label: "Vogel disc, 32 look-ups",
+                help: "The same with the least noise, and twice the cost.",
+            },
+            ChoiceOption {
+                id: "pcss",
+                label: "PCSS",
+                help: "A disc as wide as the distance to the caster makes the edge: sharp where a shadow begins, soft \
+                       far from what casts it. The dearest. It cannot be had with depth clamp.",
+            },
         ],
         read: |s| FilterKind::ALL.iter().position(|filter| *filter == s.technique.filter).unwrap_or(0),
         write: |s, index| s.technique.filter = FilterKind::ALL.get(index).copied().unwrap_or_default(),
     }),
     inert: always_active,
+};
+
+pub(super) const FADE: Parameter = Parameter {
+    id: "map.fade",
+    group: Group::Map,
+    label: "Fade out",
+    unit: "",
+    help: "Share of the shadow distance over which shadows fade away before its end: 0.1 is the last tenth. 0 ends them \
+           at a line.",
+    kind: Kind::Number(Number {
+        min: 0.0,
+        max: 1.0,
+        step: 0.05,
+        logarithmic: false,
+        decimals: 2,
+        read: |s| f64::from(s.technique.fade),
+        write: |s, value| s.technique.fade = value as f32,
+    }),
+    inert: |s| {
+        (s.technique.fit.max_distance == f32::MAX)
+            .then_some("Shadows end with the view; set Shadow distance to a number (fit.max_distance = 100).")
+    },
 };
 
 pub(super) const DEPTH: Parameter = Parameter {

@@ -26,6 +26,10 @@ let technique = Technique {
         MapOverride::default(),
         MapOverride::default(),
     ],
+    softness: Softness {
+        radius: SoftRadius::SunAngle(0.01),
+        ..Softness::default()
+    },
     bias: BiasSettings {
         slope: 1.0,
         ..BiasSettings::default()

@@ -1,7 +1,6 @@
 //! Nothing is ever uncovered: a wrong grid of need costs sharpness only.
 
 use proptest::prelude::*;
-use shadowfit::bias::reach;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::need::{CELLS, NeedGrid, NeedSpace};
 use shadowfit::{Aabb, Boxes, FitInput, FittedMaps, MapFitter, Technique, ViewFrustum, Workspace};
@@ -85,7 +84,7 @@ const ROUNDING: f64 = 1e-3;
 /// Fails unless the last window holds a visible point with all that the filter reads, and the point reads a window.
 fn assert_covered(maps: &FittedMaps, technique: &Technique, point: DVec3, view_depth: f64) {
     let last = &maps[maps.len() - 1].fit;
-    let needed = f64::from(reach(technique.filter).min(technique.border())) - ROUNDING;
+    let needed = f64::from(technique.reach().min(technique.border())) - ROUNDING;
     let free = last.free_texels(point).unwrap_or(f64::MIN);
     assert!(free >= needed, "{point} has {free} of {needed} texels to the border of {last:?}");
     assert!(maps.read(technique, point, view_depth).is_some(), "{point} reads nothing");

@@ -2,7 +2,9 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::Vec3;
-use shadowfit::{Aabb, FittedMaps, Technique};
+use shadowfit::settings::SoftRadius;
+use shadowfit::softness::USUAL_DISTANCE;
+use shadowfit::{Aabb, FittedMaps};
 
 use super::{Run, World, any_windows};
 use crate::scenes::{Lens, SceneView, any_box, any_light, any_view, any_walk};
@@ -44,6 +46,10 @@ proptest! {
     ) {
         let by = f64::from(octaves * 2).exp2();
         let technique = technique.with_max_distance(f32::MAX);
+        // A sun's angle makes penumbrae that are metres wide, whatever the unit.
+        let metres = technique.softness.tangent() * USUAL_DISTANCE;
+        let soft = |metres| technique.softness.with_radius(SoftRadius::Metres(metres));
+        let technique = technique.with_softness(soft(metres));
         prop_assume!(!view.lens.is_infinite);
         // A frustum's corners come from the inverse of a matrix, which may round otherwise.
         let corners = |view: &SceneView| view.frustum().corners;
@@ -56,7 +62,8 @@ proptest! {
         let larger = boxes.iter().map(|b| Aabb::new(size(b.min), size(b.max))).collect();
         let mut run = Run::new(World { origin, boxes }, &technique);
         let extension = technique.fit.caster_extension * by as f32;
-        let in_unit = Technique { fit: technique.fit.with_caster_extension(extension), ..technique };
+        let fit = technique.fit.with_caster_extension(extension);
+        let in_unit = technique.with_fit(fit).with_softness(soft(metres * by as f32));
         let mut other = Run::new(World { origin: origin * by, boxes: larger }, &in_unit);
         for view in walked {
             let (maps, scaled_maps) = (run.frame(&view, direction), other.frame(&scaled(&view, by), direction));
