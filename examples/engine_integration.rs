@@ -387,7 +387,10 @@ impl Engine {
 /// STEP 2: a pipeline for the casters, with the engine's own vertices, the map's depth state and, for colour formats,
 /// its colour target. The map's matrix is at a bind group of the engine's choice. Both sides of the casters are drawn.
 fn caster_pipeline(device: &wgpu::Device, camera: &wgpu::BindGroupLayout, map: &ShadowMap) -> wgpu::RenderPipeline {
-    let module = module(device, [caster_wgsl(map.descriptor(), &WgslOptions::group(SHADOW_GROUP)).as_str(), VERTEX_WGSL, CASTER_WGSL].concat());
+    let module = module(
+        device,
+        [caster_wgsl(map.descriptor(), &WgslOptions::group(SHADOW_GROUP)).as_str(), VERTEX_WGSL, CASTER_WGSL].concat(),
+    );
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some("caster"),
         bind_group_layouts: &[Some(camera), Some(map.caster_layout())],

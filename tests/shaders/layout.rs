@@ -7,7 +7,8 @@ use shadowfit::culling::CasterPlanes;
 use shadowfit_render::{FrameUniform, InsetUniform, InstanceData, LineVertex, MaterialUniform, shaders};
 use shadowfit_wgpu::need::{NeedUniform, need_wgsl};
 use shadowfit_wgpu::{
-    CasterUniform, CullingUniform, MAX_MAPS, MapUniform, ReceiverUniform, ShadowMapDescriptor, WgslOptions, culling_wgsl,
+    CasterUniform, CullingUniform, MAX_MAPS, MapUniform, ReceiverUniform, ShadowMapDescriptor, WgslOptions,
+    culling_wgsl,
 };
 
 use super::parse;
@@ -90,7 +91,12 @@ fn every_uniform_has_the_size_and_offsets_of_its_wgsl_struct() {
             map_tints,
         }
     );
-    assert_same(&caster, &layout!("shadowfit_Caster" = CasterUniform { clip_from_world, clamps_in_fragment, padding_0, padding_1, padding_2 }));
+    assert_same(
+        &caster,
+        &layout!(
+            "shadowfit_Caster" = CasterUniform { clip_from_world, clamps_in_fragment, padding_0, padding_1, padding_2 }
+        ),
+    );
     assert_same(&caster, &material);
     assert_same(&scene, &material);
     assert_same(&scene, &frame);

@@ -41,7 +41,13 @@ pub fn caster(shadow_map: &ShadowMapDescriptor) -> String {
 /// The shaded pass: frame, shadow map and material are groups 0, 1 and 2.
 pub fn scene(shadow_map: &ShadowMapDescriptor) -> String {
     let material = MATERIAL.replace("MATERIAL_GROUP", "2");
-    [FRAME, &receiver_wgsl(shadow_map, &WgslOptions::group(SHADOW_GROUP)), &material, include_str!("shaders/scene.wgsl")].concat()
+    [
+        FRAME,
+        &receiver_wgsl(shadow_map, &WgslOptions::group(SHADOW_GROUP)),
+        &material,
+        include_str!("shaders/scene.wgsl"),
+    ]
+    .concat()
 }
 
 /// The probe pass, with the groups of the shaded one; it needs the primitive index. The directive that enables it

@@ -139,7 +139,10 @@ impl fmt::Display for ShadowMapError {
                 write!(f, "softness of {tangent} m of penumbra per metre: it must be a number that is not negative")
             }
             Self::Fade([near, far]) => {
-                write!(f, "shadows that fade from view depth {near} m to {far} m: both must be finite, the nearer first")
+                write!(
+                    f,
+                    "shadows that fade from view depth {near} m to {far} m: both must be finite, the nearer first"
+                )
             }
             Self::PcssDepthClamp => write!(
                 f,

@@ -2,7 +2,7 @@
 //! that the text can be pasted into any shader, and that of several suns into one.
 
 use shadowfit::settings::{FilterKind, MapChoice, MapFormat};
-use shadowfit::softness::LOOK_UP_VARIANCE;
+use shadowfit::softness::LOOK_UP_SQUARE;
 use shadowfit::{CasterVolume, DepthConvention};
 
 use crate::{MAX_MAPS, ShadowMapDescriptor, ShadowMapError};
@@ -138,7 +138,7 @@ pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>
 fn filter(filter: FilterKind) -> String {
     let disc = |taps: u32, file: &str| {
         let constants = format!(
-            "const SHADOWFIT_TAPS: u32 = {taps}u;\nconst SHADOWFIT_LOOK_UP_VARIANCE: f32 = {LOOK_UP_VARIANCE:?};\n\n"
+            "const SHADOWFIT_TAPS: u32 = {taps}u;\nconst SHADOWFIT_LOOK_UP_SQUARE: f32 = {LOOK_UP_SQUARE:?};\n\n"
         );
         [&constants, include_str!("shaders/disc.wgsl"), file].concat()
     };
@@ -172,7 +172,9 @@ fn choice(descriptor: &ShadowMapDescriptor) -> String {
     let entry = |entry: u32| format!("    if entry == {entry} {{\n        return {};\n    }}\n", map(entry));
     let wrap = |entry: u32| {
         let map = map(entry);
-        format!("    if {entry}u < shadowfit_receiver.map_count && {map}.layer == layer {{\n        return {map}.wrap;\n    }}\n")
+        format!(
+            "    if {entry}u < shadowfit_receiver.map_count && {map}.layer == layer {{\n        return {map}.wrap;\n    }}\n"
+        )
     };
     let rule = match descriptor.choice {
         MapChoice::Coverage => include_str!("shaders/choice_coverage.wgsl"),

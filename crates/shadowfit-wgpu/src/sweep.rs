@@ -310,7 +310,9 @@ mod tests {
     #[test]
     fn a_view_that_counts_its_depths_from_elsewhere_is_off_by_as_much() {
         let frustum = frustum(0.9);
-        let from = |eye: DVec3, forward: Vec3| depth_mismatch(&MapView { eye, ..MapView::from_eye(DVec3::ZERO, forward) }, &frustum);
+        let from = |eye: DVec3, forward: Vec3| {
+            depth_mismatch(&MapView { eye, ..MapView::from_eye(DVec3::ZERO, forward) }, &frustum)
+        };
         assert_eq!(from(DVec3::ZERO, Vec3::NEG_Z), 0.0);
         // The other eye of a headset sees the same depths.
         assert_eq!(from(DVec3::X * 0.03, Vec3::NEG_Z), 0.0);

@@ -45,7 +45,7 @@ fn shadowfit_compare(projected: shadowfit_Projected, turn: f32) -> f32 {
     }
     let radius = found.x / found.y * projected.penumbra;
     // Look-ups blur by themselves, which is taken off.
-    let own = sqrt(max(radius * radius - vec2<f32>(SHADOWFIT_LOOK_UP_VARIANCE), vec2<f32>(0.0)));
+    let own = sqrt(max(radius * radius - vec2<f32>(SHADOWFIT_LOOK_UP_SQUARE), vec2<f32>(0.0)));
     let least = vec2<f32>(shadowfit_receiver.least_disc);
     return shadowfit_disc(clamp(own, least, vec2<f32>(shadowfit_receiver.greatest_disc)), projected, turn);
 }
