@@ -85,9 +85,10 @@ impl Renderer {
             return Ok(());
         }
         self.shadow_map = ShadowMap::new(&gpu.device, descriptor)?;
-        // What the shaders read from uniforms may differ.
-        let ShadowMapDescriptor { resolution, fade, .. } = *descriptor;
-        let same_shaders = ShadowMapDescriptor { resolution, fade, ..old } == *descriptor;
+        // What the shaders read from uniforms may differ; the greatest radius of a filter is a constant in them.
+        let ShadowMapDescriptor { resolution, fade, softness, .. } = *descriptor;
+        let softness = softness.with_ceiling(old.softness.ceiling);
+        let same_shaders = ShadowMapDescriptor { resolution, fade, softness, ..old } == *descriptor;
         if !same_shaders {
             self.pipelines = Pipelines::new(&gpu.device, &self.layouts, &self.shadow_map, self.samples);
         }
