@@ -90,7 +90,8 @@ fn biases_move_the_receiver_toward_the_light_in_both_depth_conventions() {
     let bias = BiasSettings { constant: 1.0, slope: 2.0, normal_offset: 3.0, receiver_plane: 4.0, depth_steps: 1.0 };
     for (depth, toward_light) in [(DepthConvention::ZeroToOne, -1.0), (DepthConvention::Reversed, 1.0)] {
         let fit = fitted(&LightSettings::default(), depth);
-        let map = MapUniform::new(&MapFit::new(fit, Bias::from_texels(&bias, MapFormat::Depth32Float, &fit)), fit.origin);
+        let map =
+            MapUniform::new(&MapFit::new(fit, Bias::from_texels(&bias, MapFormat::Depth32Float, &fit)), fit.origin);
         let depth_of = |point: Vec3| matrix(map.uv_from_world).transform_point3(point).z;
         let lifted = depth_of(-fit.direction) - depth_of(Vec3::ZERO);
         assert!(lifted * toward_light > 0.0, "{depth:?}");

@@ -102,7 +102,8 @@ impl Drawing {
     /// The biases asked for, or those that clear planes with a filter.
     pub(crate) fn bias(&self, filter: FilterKind) -> Result<BiasSettings> {
         let Some(text) = &self.bias else { return Ok(BiasSettings::automatic(filter)) };
-        let zero = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };
+        let zero =
+            BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };
         let mut technique = Technique { bias: zero, ..Technique::default() };
         for part in text.split(',').filter(|part| !part.is_empty()) {
             let (name, value) =

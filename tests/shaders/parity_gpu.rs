@@ -22,7 +22,8 @@ const MIN_COSINE: f64 = 0.01;
 const TOLERANCE: f64 = 16.0 * 3.0 / 16_777_216.0;
 
 /// Biases that are large and all different, so that none can stand in for another.
-const BIAS: BiasSettings = BiasSettings { constant: 3.0, slope: 1.5, normal_offset: 2.0, receiver_plane: 1.25, depth_steps: 1.0 };
+const BIAS: BiasSettings =
+    BiasSettings { constant: 3.0, slope: 1.5, normal_offset: 2.0, receiver_plane: 1.25, depth_steps: 1.0 };
 
 /// Numbers in 0..1 that fill the cube evenly: the fractional parts of multiples of the powers of the plastic number's
 /// kin (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018).

@@ -11,7 +11,8 @@ use shadowfit_wgpu::{MAX_MAPS, MapFit, MapView, ShadowMapDescriptor};
 use super::harness::{Choice, Harness, Point};
 use crate::support::software_gpu;
 
-const NO_BIAS: BiasSettings = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };
+const NO_BIAS: BiasSettings =
+    BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };
 /// The light's direction of travel.
 const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.2);
 

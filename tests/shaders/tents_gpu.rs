@@ -9,7 +9,8 @@ use super::exact_counts_gpu::box_fit;
 use super::harness::{Harness, Point, ROW};
 use crate::support::software_gpu;
 
-const NO_BIAS: BiasSettings = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };
+const NO_BIAS: BiasSettings =
+    BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };
 
 /// Whether a texel is covered: squares of 1 to 3 texels in no order.
 fn is_covered(x: i32, y: i32) -> bool {

@@ -195,7 +195,8 @@ fn biases() -> Vec<Change> {
             technique.bias = BiasSettings::automatic_normal_offset(technique.filter, &technique.softness);
         }),
         Change::new("no bias", |technique| {
-            technique.bias = BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };
+            technique.bias =
+                BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };
         }),
     ]
 }

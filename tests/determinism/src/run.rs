@@ -100,7 +100,11 @@ impl Run {
         let settings =
             BiasSettings { constant: random.scale(-2, 1), slope: random.between(0.0, 3.0), ..Default::default() };
         let bias = Bias::automatic(reach, storage, fit)?;
-        let biases = (Bias::from_texels(&settings, DepthStorage::Float32, fit), bias, Bias::automatic_receiver_plane(reach, storage, fit)?);
+        let biases = (
+            Bias::from_texels(&settings, DepthStorage::Float32, fit),
+            bias,
+            Bias::automatic_receiver_plane(reach, storage, fit)?,
+        );
         let normal = random.vector();
         self.hash.add(&(biases, biases.0.on_plane(fit, normal)?, biases.2.on_plane(fit, normal)?));
         self.hash.add(&(normal_offset(fit, reach, normal)?, receiver_plane_depth(fit, reach, normal)?));

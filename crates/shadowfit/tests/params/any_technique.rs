@@ -113,10 +113,8 @@ fn any_softness() -> impl Strategy<Value = Softness> {
     const _: fn(SoftRadius) = |value| match value {
         SoftRadius::Metres(_) | SoftRadius::SunAngle(_) => (),
     };
-    let radius = prop_oneof![
-        (0.0_f32..=10.0).prop_map(SoftRadius::Metres),
-        (0.0_f32..=0.5).prop_map(SoftRadius::SunAngle),
-    ];
+    let radius =
+        prop_oneof![(0.0_f32..=10.0).prop_map(SoftRadius::Metres), (0.0_f32..=0.5).prop_map(SoftRadius::SunAngle),];
     (radius, 1.0_f32..=32.0, 0.0_f32..=1.0).prop_map(|(radius, ceiling, share)| Softness {
         radius,
         floor: share * ceiling,

@@ -196,7 +196,11 @@ fn one_depth_step_clears_a_plane_in_every_coarse_format_and_none_does_not() {
             assert!(!has_bands(&fit, format, 1.0), "{format:?} {depth:?}");
             let is_coarse = DepthStorage::from(format) != DepthStorage::Float32;
             assert_eq!(has_bands(&fit, format, 0.0), is_coarse, "{format:?} {depth:?}");
-            assert_eq!(has_bands(&fit, format, 0.9), is_coarse, "{format:?} {depth:?}: it is no larger than it must be");
+            assert_eq!(
+                has_bands(&fit, format, 0.9),
+                is_coarse,
+                "{format:?} {depth:?}: it is no larger than it must be"
+            );
         }
     }
 }

@@ -319,7 +319,10 @@ fn penumbrae_by_distance_are_refused_where_depth_clamp_loses_the_distance() {
                 casters == CasterPolicy::DepthClamp && filter == FilterKind::Pcss && kind != FitKind::XnaSample;
             let result = inputs.fit(&mut MapFitter::new());
             let refusal = matches!(result, Err(FitError::ClampedCasters { filter: FilterKind::Pcss }));
-            assert!(refusal == is_refused && result.is_ok() != is_refused, "{kind:?} {casters:?} {filter:?}: {result:?}");
+            assert!(
+                refusal == is_refused && result.is_ok() != is_refused,
+                "{kind:?} {casters:?} {filter:?}: {result:?}"
+            );
         }
     }
 }

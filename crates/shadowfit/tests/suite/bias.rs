@@ -117,7 +117,10 @@ fn texels_become_depth_and_metres_by_the_longer_side() {
     let settings =
         BiasSettings { constant: 0.5, slope: 2.0, normal_offset: 3.0, receiver_plane: 0.7, depth_steps: 2.0 };
     for format in [MapFormat::R32Float, MapFormat::Rgba8Packed] {
-        assert_eq!(Bias::from_texels(&settings, format, &fit), Bias::from_texels(&settings, MapFormat::default(), &fit));
+        assert_eq!(
+            Bias::from_texels(&settings, format, &fit),
+            Bias::from_texels(&settings, MapFormat::default(), &fit)
+        );
     }
     let bias = Bias::from_texels(&settings, MapFormat::default(), &fit);
     assert_eq!(bias.constant_depth, 0.5 * texel / fit.depth_range);

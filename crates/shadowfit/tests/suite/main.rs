@@ -37,8 +37,8 @@ mod self_shadowing;
 #[cfg(feature = "serde")]
 mod serde;
 mod settings;
-mod support;
 mod softness;
+mod support;
 mod sweep;
 mod texel_phase;
 mod texel_ratio;

@@ -79,7 +79,13 @@ fn all_fields() -> Technique {
         filter: FilterKind::Vogel8,
         softness: Softness { radius: SoftRadius::Metres(0.1), floor: 0.5, ceiling: 8.0 },
         fade: 0.2,
-        bias: BiasSettings { constant: 1.0 / 3.0, slope: 0.2, normal_offset: 1e-9, receiver_plane: 1.5, depth_steps: 0.5 },
+        bias: BiasSettings {
+            constant: 1.0 / 3.0,
+            slope: 0.2,
+            normal_offset: 1e-9,
+            receiver_plane: 1.5,
+            depth_steps: 0.5,
+        },
         need: NeedSource::Boxes,
         format: MapFormat::R32Float,
     }

@@ -193,12 +193,19 @@ fn any_windows() -> impl Strategy<Value = Technique> {
     let need = prop::sample::select(vec![NeedSource::LastFrame, NeedSource::LastFrame, NeedSource::Boxes]);
     let fit = (up, border, casters, prop_oneof![2 => Just(f32::MAX), 1 => float(3.0, 500.0)], any_depth());
     // The widest disc and its look-ups leave half of the smallest map.
-    let radius = prop_oneof![float(0.0, 0.5).prop_map(SoftRadius::Metres), float(0.0, 0.1).prop_map(SoftRadius::SunAngle)];
+    let radius =
+        prop_oneof![float(0.0, 0.5).prop_map(SoftRadius::Metres), float(0.0, 0.1).prop_map(SoftRadius::SunAngle)];
     let softness = (radius, float(1.0, 14.0)).prop_map(|(radius, ceiling)| Softness { radius, floor: 1.0, ceiling });
     let look_up = ((prop::sample::select(FilterKind::ALL.to_vec()), softness), keeps, need);
     let overrides = prop::array::uniform8(own());
     (1..=8_u32, (size(), size()), overrides, fit, look_up).prop_map(
-        |(count, (width, height), own, (up, border, casters, max_distance, depth), ((filter, softness), stabilise, need))| {
+        |(
+            count,
+            (width, height),
+            own,
+            (up, border, casters, max_distance, depth),
+            ((filter, softness), stabilise, need),
+        )| {
             let fit = FitSettings { up, border, casters, max_distance, depth, ..windows(count, 1024).fit };
             let overrides: [MapOverride; MAX_MAPS] = own.map(|resolution| MapOverride { kind: None, resolution });
             Technique { fit, count, overrides, softness, stabilise, need, ..Technique::default() }

@@ -195,7 +195,8 @@ pub(super) const LEAST_TEXEL: Parameter = Parameter {
         write: |s, value| s.technique.fit.least_texel = value as f32,
     }),
     inert: |s| {
-        (s.technique.fit.kind == FitKind::XnaSample).then_some("The XNA sample's fit has no such limit; choose another fit.")
+        (s.technique.fit.kind == FitKind::XnaSample)
+            .then_some("The XNA sample's fit has no such limit; choose another fit.")
     },
 };
 

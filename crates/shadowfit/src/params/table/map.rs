@@ -156,11 +156,7 @@ pub(super) const FILTER: Parameter = Parameter {
                 help: "Look-ups spread over a disc as wide as the softness says, turned from pixel to pixel: edges are \
                        as soft near and far, with some noise.",
             },
-            ChoiceOption {
-                id: "vogel_16",
-                label: "Vogel disc, 16 look-ups",
-                help: "The same with less noise.",
-            },
+            ChoiceOption { id: "vogel_16", label: "Vogel disc, 16 look-ups", help: "The same with less noise." },
             ChoiceOption {
                 id: "vogel_32",
                 label: "Vogel disc, 32 look-ups",

@@ -17,7 +17,8 @@ const LARGEST_SUN: f64 = 30.0;
 
 /// Why the softness has no effect, or `None` where it has one.
 fn for_soft_filters(s: &Settings) -> Option<&'static str> {
-    let reason = "The filter's width is a number of texels; set Filter to a Vogel disc or to PCSS (map.filter = vogel_16).";
+    let reason =
+        "The filter's width is a number of texels; set Filter to a Vogel disc or to PCSS (map.filter = vogel_16).";
     (!s.technique.filter.is_soft()).then_some(reason)
 }
 
