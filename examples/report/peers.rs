@@ -104,6 +104,7 @@ struct Pictures {
     gpu: Gpu,
     every: u32,
     bias: BiasSettings,
+    format: MapFormat,
     fits: Vec<Drawn>,
 }
 
@@ -131,7 +132,7 @@ impl Pictures {
             Ok(Drawn { name: file.peer.clone(), evaluator, maps })
         });
         let fits = fits.collect::<Result<Vec<_>>>()?;
-        Ok(Self { gpu, every: args.every, bias, fits })
+        Ok(Self { gpu, every: args.every, bias, format: args.drawing.format(), fits })
     }
 
     /// Whether a frame is drawn. Those of quick looks are not neighbours, so that they have no crawl.
@@ -165,7 +166,7 @@ impl Pictures {
             let view = view(frame, is_first);
             let mut truth = SharedTruth::default();
             for (fit, drawn) in self.fits.iter_mut().enumerate() {
-                let maps = map_fits(&drawn.maps[index], &view, &self.bias)
+                let maps = map_fits(&drawn.maps[index], &view, &self.bias, self.format)
                     .with_context(|| format!("{}: frame {}: cannot be drawn", drawn.name, frame.id))?;
                 let judged = drawn.evaluator.judge(&self.gpu, &mut prepared, &view, &maps, &mut truth)?;
                 ranking.add_picture(fit, index, &judged.tally);

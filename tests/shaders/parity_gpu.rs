@@ -1,7 +1,7 @@
 //! The look-up's formulas in WGSL against their twins in Rust: projection, biases, choice of the map, comparison.
 
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::settings::{BiasSettings, FilterKind, FitSettings, MapChoice, MapFormat};
+use shadowfit::settings::{BiasSettings, FilterKind, FitSettings, MapChoice, MapFormat, Softness};
 use shadowfit::{Bias, DepthConvention, LightFit, PerspectiveCamera, fit};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
@@ -128,6 +128,7 @@ fn cases() -> impl Iterator<Item = ShadowMapDescriptor> {
         maps: 2,
         format,
         filter: FilterKind::Point,
+        softness: Softness::default(),
         choice: MapChoice::ViewDepth,
         blend: 0.0,
         depth,

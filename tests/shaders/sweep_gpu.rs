@@ -178,6 +178,7 @@ fn descriptor(case: &Case) -> ShadowMapDescriptor {
         maps: case.technique.count,
         format: case.format,
         filter: case.filter,
+        softness: case.technique.softness,
         choice: case.technique.choice,
         blend: case.technique.blend,
         depth: case.technique.fit.depth,

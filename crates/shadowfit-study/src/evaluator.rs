@@ -91,7 +91,8 @@ impl Evaluator {
         let truth = truth.or_trace(scene, view, &self.judging, &pixels);
         let factors = factors(&pixels);
         let origin = scene.origin();
-        let measured_maps = measured(maps, view.direction, origin);
+        let descriptor = *self.renderer.shadow_map().descriptor();
+        let measured_maps = measured(maps, &descriptor, view.direction, origin);
         let rays = scene.rays();
         let counted = scene.counted_instances(self.judging.subject_only);
         let counts = |triangle: u32| counted[rays.triangles[triangle as usize].instance as usize];
@@ -99,7 +100,7 @@ impl Evaluator {
         if let Some(before) = self.before.take().filter(|_| self.judging.crawl) {
             let choice = Some((before.eye, before.forward));
             let factors_before = self::factors(&self.probe(gpu, scene, view, &before.maps, choice)?);
-            let measured_before = measured(&before.maps, view.direction, origin);
+            let measured_before = measured(&before.maps, &descriptor, view.direction, origin);
             let before = MapsBefore {
                 maps: self.seen(&measured_before, &before.maps),
                 eye: before.eye - origin,
@@ -154,7 +155,8 @@ impl Evaluator {
         judge: impl FnOnce(&LiveInput<'_>) -> Result<T>,
     ) -> Result<T> {
         let targets = self.draw_probe(gpu, scene, view, maps, None)?;
-        let measured = measured(maps, view.direction, scene.origin());
+        let descriptor = self.renderer.shadow_map().descriptor();
+        let measured = measured(maps, descriptor, view.direction, scene.origin());
         let result = judge(&LiveInput {
             camera: self.judging.pixel_camera(scene, view),
             settings: self.judging.truth_settings(view),

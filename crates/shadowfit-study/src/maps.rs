@@ -1,7 +1,6 @@
 //! Fitted maps as the measures of `shadowfit-truth` take them.
 
 use glam::{DMat4, DVec3, Vec3};
-use shadowfit::bias;
 use shadowfit::choice::MapOrder;
 use shadowfit::settings::MapChoice;
 use shadowfit_truth::peers::FitMap;
@@ -22,12 +21,20 @@ pub fn fit_map(map: &MapFit) -> FitMap {
     }
 }
 
-/// Maps as the measures take them, for positions relative to a world position. `direction` is the light's direction of
-/// travel.
-pub(crate) fn measured(maps: &[MapFit], direction: Vec3, origin: DVec3) -> Vec<MeasuredMap> {
+/// Maps of a descriptor as the measures take them, for positions relative to a world position. `direction` is the light's
+/// direction of travel.
+pub(crate) fn measured(
+    maps: &[MapFit],
+    descriptor: &ShadowMapDescriptor,
+    direction: Vec3,
+    origin: DVec3,
+) -> Vec<MeasuredMap> {
     let from_origin = |map: &MapFit| FitMap { view_proj: clip_from(map, origin).to_cols_array(), ..fit_map(map) };
-    let measured =
-        |map: &MapFit| from_origin(map).measured(-direction.as_dvec3()).with_blend_near(f64::from(map.blend_near));
+    let measured = |map: &MapFit| {
+        let reach = descriptor.softness.reach_in(descriptor.filter, &map.fit).per_axis();
+        let measured = from_origin(map).measured(-direction.as_dvec3());
+        measured.with_blend_near(f64::from(map.blend_near)).with_reach(reach)
+    };
     maps.iter().map(measured).collect()
 }
 
@@ -44,7 +51,8 @@ pub(crate) fn picture_maps<'a>(
             blend: descriptor.blend,
         },
     };
-    PictureMaps { maps, reading, reach: bias::reach(descriptor.filter), depth_clamp: descriptor.depth_clamp }
+    let reach = descriptor.softness.reach(descriptor.filter);
+    PictureMaps { maps, reading, reach, depth_clamp: descriptor.depth_clamp }
 }
 
 /// Clip space from positions relative to a world position.

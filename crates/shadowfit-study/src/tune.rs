@@ -192,7 +192,7 @@ fn fits() -> Vec<Change> {
 fn biases() -> Vec<Change> {
     vec![
         Change::new("an offset along the normal", |technique| {
-            technique.bias = BiasSettings::automatic_normal_offset(technique.filter);
+            technique.bias = BiasSettings::automatic_normal_offset(technique.filter, &technique.softness);
         }),
         Change::new("no bias", |technique| {
             technique.bias =
@@ -201,20 +201,29 @@ fn biases() -> Vec<Change> {
     ]
 }
 
-/// Filters, each with the bias of the present kind that it needs.
+/// Filters whose widths are numbers of texels, each with the bias of the present kind that it needs. Truth has a hard
+/// sun, to which soft ones only add noise.
 fn filters() -> Vec<Change> {
-    let names = ["one comparison", "2×2 comparison", "a tent of 3×3", "a tent of 5×5"];
+    let filters = [
+        ("one comparison", FilterKind::Point),
+        ("2×2 comparison", FilterKind::Hardware2x2),
+        ("a tent of 3×3", FilterKind::Pcf3x3),
+        ("a tent of 5×5", FilterKind::Pcf5x5),
+        ("a tent of 7×7", FilterKind::Pcf7x7),
+    ];
     let change = |(what, filter): (&str, FilterKind)| {
         Change::new(what, move |technique: &mut Technique| {
+            let softness = technique.softness;
+            let offset = |filter| BiasSettings::automatic_normal_offset(filter, &softness);
             if technique.bias == BiasSettings::automatic(technique.filter) {
                 technique.bias = BiasSettings::automatic(filter);
-            } else if technique.bias == BiasSettings::automatic_normal_offset(technique.filter) {
-                technique.bias = BiasSettings::automatic_normal_offset(filter);
+            } else if technique.bias == offset(technique.filter) {
+                technique.bias = offset(filter);
             }
             technique.filter = filter;
         })
     };
-    names.into_iter().zip(FilterKind::ALL).map(change).collect()
+    filters.into_iter().map(change).collect()
 }
 
 fn splits() -> Vec<Change> {

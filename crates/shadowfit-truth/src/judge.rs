@@ -92,7 +92,8 @@ fn find(tracer: &Tracer, truth: &Truth, maps: &PictureMaps, factor: f32, pixel: 
     let choice = maps.main(point.view_depth, point.position);
     let texel_width = choice.as_ref().map(|choice| texel_width(truth, choice, pixel, point));
     let pixels = texel_width.map_or(1.0, |width| width.max(1.0));
-    let is_in_edge_zone = truth.is_near_transition(pixel, maps.edge_width() * pixels);
+    let is_in_edge_zone =
+        truth.is_near_transition(pixel, maps.edge_width(choice.as_ref().map(|choice| choice.index)) * pixels);
     let class = match (counts_as_lit(point.lit), counts_as_lit(factor)) {
         (true, true) | (false, false) => Class::Right,
         (false, true) if is_hole(tracer, truth, maps, choice.as_ref(), pixel, point) => Class::Hole,

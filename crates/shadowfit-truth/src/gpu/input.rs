@@ -38,7 +38,8 @@ impl GpuJudgeInput<'_> {
         let mut map_count = 0;
         let read = order.iter().filter_map(|index| Some((index, maps.maps.get(index)?)));
         for (uniform, (index, map)) in uniforms.iter_mut().zip(read) {
-            *uniform = MapUniform { index: index as u32, ..map_uniform(map, camera.eye) };
+            let edge_width = maps.edge_width(Some(index));
+            *uniform = MapUniform { index: index as u32, edge_width, ..map_uniform(map, camera.eye) };
             map_count += 1;
         }
         Ok(JudgeUniform {
@@ -51,7 +52,7 @@ impl GpuJudgeInput<'_> {
             forward: camera.forward.as_vec3().into(),
             max_distance: finite(settings.max_distance),
             to_light: settings.to_light.as_vec3().into(),
-            edge_width: maps.edge_width(),
+            edge_width: maps.edge_width(None),
             tan_half_fov: camera.tan_half_fov.as_vec2().into(),
             size: camera.size,
             map_count,

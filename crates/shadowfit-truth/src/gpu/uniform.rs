@@ -98,10 +98,10 @@ pub struct MapUniform {
     pub blend_near: f32,
     /// Its index.
     pub index: u32,
+    /// Width of the edge zone where it is read: in pixels, or in texels where those are wider than pixels on screen.
+    pub edge_width: f32,
     /// Unused.
-    pub padding_0: u32,
-    /// Unused.
-    pub padding_1: u32,
+    pub padding: u32,
 }
 
 /// A picture's camera, light and maps.
@@ -126,7 +126,7 @@ pub struct JudgeUniform {
     pub max_distance: f32,
     /// Unit direction toward the light.
     pub to_light: [f32; 3],
-    /// Width of the edge zone: in pixels, or in texels where those are wider than pixels on screen.
+    /// Width of the edge zone where no map is read, in pixels.
     pub edge_width: f32,
     /// Tangents of half of the fields of view.
     pub tan_half_fov: [f32; 2],

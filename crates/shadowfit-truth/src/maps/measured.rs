@@ -23,6 +23,9 @@ pub struct MeasuredMap {
     /// View depth from which points of the map in front are blended into this one, in metres, up to that one's
     /// `split_far`; by view depth. Infinite for no blend.
     pub blend_near: f64,
+    /// Reach of the filter in this map where it is not that of [all maps](super::PictureMaps::reach), as of soft
+    /// filters: greatest distance per axis, in texels.
+    pub reach: Option<f32>,
     /// Whether depth 1 is nearest to the light in the matrix; in [`MapPosition::depth`] it is always 0.
     pub is_reversed: bool,
 }
@@ -67,13 +70,20 @@ impl MeasuredMap {
     /// tells whether depth is reversed.
     pub fn new(clip_from_world: &DMat4, size: DVec2, split_far: f64, to_light: DVec3) -> Self {
         let rows = [0, 1, 2, 3].map(|row| clip_from_world.row(row));
-        Self { rows, size, split_far, blend_near: f64::INFINITY, is_reversed: is_reversed(clip_from_world, to_light) }
+        let is_reversed = is_reversed(clip_from_world, to_light);
+        Self { rows, size, split_far, blend_near: f64::INFINITY, reach: None, is_reversed }
     }
 
     /// This map with points of the map in front blended into it from a view depth on, in metres.
     #[must_use]
     pub fn with_blend_near(self, blend_near: f64) -> Self {
         Self { blend_near, ..self }
+    }
+
+    /// This map with a reach of the filter of its own, in texels, which sets the width of its edge zone.
+    #[must_use]
+    pub fn with_reach(self, reach: f32) -> Self {
+        Self { reach: Some(reach), ..self }
     }
 
     /// Rows of clip from positions relative to a point of the world.

@@ -29,7 +29,8 @@ pub struct PictureMaps<'a> {
     /// Which of them a point reads.
     pub reading: MapReading,
     /// Reach of the filter: greatest distance per axis, in texels, from the sample point to the
-    /// centre of a texel of non-zero weight (0.5 point, 1 hardware 2×2).
+    /// centre of a texel of non-zero weight (0.5 point, 1 hardware 2×2). The choice by coverage goes by it; the edge
+    /// zone does where a map has no [reach of its own](MeasuredMap::reach).
     pub reach: f32,
     /// Whether the maps were drawn with depth clamp, so that they also hold casters before their
     /// near plane.
@@ -37,10 +38,12 @@ pub struct PictureMaps<'a> {
 }
 
 impl<'a> PictureMaps<'a> {
-    /// Width of the edge zone, in pixels where a texel is no wider than a pixel on screen, otherwise
-    /// in texels: the filter's reach and one more, at least 1.5.
-    pub fn edge_width(&self) -> f32 {
-        (self.reach + 1.0).max(1.5)
+    /// Width of the edge zone where a point reads a map, in pixels where a texel is no wider than a pixel on screen,
+    /// otherwise in texels: the filter's reach in that map and one more, at least 1.5. Where no map is read (`None`),
+    /// or one of which there is none, it is that of [`Self::reach`].
+    pub fn edge_width(&self, map: Option<usize>) -> f32 {
+        let own = map.and_then(|map| self.maps.get(map)?.reach);
+        (own.unwrap_or(self.reach) + 1.0).max(1.5)
     }
 
     /// The maps that a point of the world reads, and with which weights; `None` where no map covers it. `view_depth` is

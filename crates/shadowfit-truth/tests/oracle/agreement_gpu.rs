@@ -42,7 +42,8 @@ struct Both {
     truth: Truth,
     judged: Judged,
     gpu: Vec<GpuPixel>,
-    edge_width: f32,
+    /// Width of the edge zone of each pixel.
+    edge_widths: Vec<f32>,
 }
 
 impl Picture {
@@ -92,7 +93,8 @@ impl Picture {
             truth.points.iter().map(|point| point.as_ref().map_or(1.0, |point| self.factor(&maps, point))).collect();
         let judged = judge(&self.tracer, &truth, &maps, &factors, |_| true);
         let gpu = self.judge_on_gpu(&maps, &seen, &factors).expect("a picture that the GPU can judge");
-        Both { truth, judged, gpu, edge_width: maps.edge_width() }
+        let edge_widths = judged.map_index.iter().map(|map| maps.edge_width(map.map(usize::from))).collect();
+        Both { truth, judged, gpu, edge_widths }
     }
 
     fn factor(&self, maps: &PictureMaps, point: &shadowfit_truth::TruthPoint) -> f32 {
@@ -206,7 +208,7 @@ impl Both {
             }
             let texel_width =
                 self.judged.map_index[pixel].map_or(1.0, |_| self.judged.pixels_per_texel[pixel].max(1.0));
-            let reach = f64::from(self.edge_width * texel_width);
+            let reach = f64::from(self.edge_widths[pixel] * texel_width);
             let is_near = |other: &usize| position(*other).distance(position(pixel)) <= reach * 1.01 + 1.5;
             let is_tie = (f64::from(self.truth.transition_distance(pixel)) / reach - 1.0).abs() < 1e-3;
             assert!(is_tie || differing.iter().any(is_near), "{name}: the edge zone differs at {}", position(pixel));
@@ -306,6 +308,23 @@ fn maps_that_overlap_by_view_depth_are_read_alike() {
         near(&both)
     });
     assert!(overlapping > 200 && overlapping + 200 < plain, "{overlapping} of {plain}");
+}
+
+#[test]
+fn edge_zones_are_as_wide_as_each_map_s_own_reach() {
+    let picture = Picture::new(boxes(), DVec3::new(-4.0, 3.0, 5.0), sun());
+    let plain = picture.measured();
+    let wide = [plain[0].with_reach(6.0), plain[1].with_reach(0.5)];
+    let zones = |both: &Both, map: u8| {
+        let read = both.judged.map_index.iter().zip(&both.judged.edge_zone);
+        read.filter(|(read, is_in_zone)| **read == Some(map) && **is_in_zone).count()
+    };
+    let [plain, wide] = [&plain[..], &wide].map(|maps| {
+        let both = picture.judge_maps(maps);
+        both.assert_agreement("own reach");
+        [zones(&both, 0), zones(&both, 1)]
+    });
+    assert!(wide[0] > plain[0] && wide[1] < plain[1], "{wide:?} {plain:?}");
 }
 
 #[test]

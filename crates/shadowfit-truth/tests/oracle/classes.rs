@@ -101,6 +101,13 @@ fn coarse_texels_widen_the_edge_zone_by_their_width_on_screen() {
 }
 
 #[test]
+fn a_filter_that_reaches_farther_in_a_map_widens_the_edge_zone_there() {
+    // 3 and 1 texels of a pixel: columns up to 4 pixels from the border.
+    let judged = Room::new().judge(|_| 0.0, map(1, 9.0).with_reach(3.0), false);
+    assert_eq!(columns(&judged.tally), [16, 0, 0, 4, 20]);
+}
+
+#[test]
 fn a_roof_inside_the_map_that_casts_nothing_is_false_light() {
     assert_eq!(columns(&Room::new().judge(|_| 1.0, map(1, 9.0), false).tally), [0, 18, 0, 2, 20]);
 }

@@ -73,8 +73,8 @@ fn every_record_has_the_size_and_offsets_of_its_wgsl_struct() {
             is_reversed,
             blend_near,
             index,
-            padding_0,
-            padding_1
+            edge_width,
+            padding
         }
     );
     assert_layout!(

@@ -74,11 +74,13 @@ fn class_of(pixel: vec2<u32>, flags: u32, is_in_edge_zone: bool) -> u32 {
         let map_plus_1 = pixel.flags >> MAP_SHIFT;
         // Without a map no texel is read, and the zone's width is in pixels.
         let texel_width = select(1.0, max(pixel.pixels_per_texel, 1.0), map_plus_1 != 0u);
-        let is_in_edge_zone = is_near_transition(id.xy, judge.edge_width * min(texel_width, 1e9));
+        var edge_width = judge.edge_width;
         var index_plus_1 = 0u;
         if map_plus_1 != 0u {
+            edge_width = judge.maps[map_plus_1 - 1u].edge_width;
             index_plus_1 = judge.maps[map_plus_1 - 1u].index + 1u;
         }
+        let is_in_edge_zone = is_near_transition(id.xy, edge_width * min(texel_width, 1e9));
         bits = class_of(id.xy, pixel.flags, is_in_edge_zone)
             | select(0u, 8u, (pixel.flags & LIT) != 0u)
             | select(0u, 16u, is_in_edge_zone)

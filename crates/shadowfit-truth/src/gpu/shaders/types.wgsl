@@ -53,8 +53,9 @@ struct Map {
     is_reversed: u32,
     blend_near: f32,
     index: u32,
-    padding_0: u32,
-    padding_1: u32,
+    // Of the edge zone where it is read: in pixels, or in texels where those are wider than pixels on screen.
+    edge_width: f32,
+    padding: u32,
 }
 
 struct Judge {
@@ -68,7 +69,7 @@ struct Judge {
     forward: vec3<f32>,
     max_distance: f32,
     to_light: vec3<f32>,
-    // In pixels, or in texels where those are wider than pixels on screen.
+    // Of the edge zone where no map is read, in pixels.
     edge_width: f32,
     tan_half_fov: vec2<f32>,
     size: vec2<u32>,
