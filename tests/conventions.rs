@@ -3,7 +3,7 @@
 
 use shadowfit::glam::{DVec3, Mat4, Vec3, Vec4};
 use shadowfit::presets::RECOMMENDED;
-use shadowfit::settings::{BiasSettings, FitKind, FitSettings, MapChoice, MapFormat};
+use shadowfit::settings::{BiasSettings, FitKind, FitSettings, MapFormat};
 use shadowfit::tool::{CameraSettings, LightSettings};
 use shadowfit::{Bias, DepthConvention, LightFit, PerspectiveCamera, Technique, fit};
 use shadowfit_render::{Atmosphere, FlyCamera, FrameUniform, Line, box_lines};
@@ -54,7 +54,11 @@ fn the_caster_and_the_receiver_uniform_of_a_fit_meet_in_the_same_texel_and_depth
     for depth in DRAWABLE {
         let fit = fitted(&LightSettings::default(), depth);
         let clip_from_world = matrix(CasterUniform::new(&fit, origin).clip_from_world);
-        let receiver = ReceiverUniform::new(&[map(&fit)], &MapView::from_eye(origin, Vec3::NEG_Z), MapChoice::Coverage);
+        let receiver = ReceiverUniform::new(
+            &[map(&fit)],
+            &MapView::from_eye(origin, Vec3::NEG_Z),
+            &ShadowMapDescriptor::default(),
+        );
         let uv_from_world = matrix(receiver.maps[0].uv_from_world);
         for corner in fit.corners() {
             let point = (fit.origin + corner.as_dvec3() - origin).as_vec3();
@@ -74,8 +78,11 @@ fn settings_uniforms_and_pictures_all_point_to_the_same_sun() {
         let to_light = -light.direction();
         assert!(to_light.y > 0.0, "a sun above the horizon shines from above");
         let fit = fitted(&light, DepthConvention::ZeroToOne);
-        let receiver =
-            ReceiverUniform::new(&[map(&fit)], &MapView::from_eye(fit.origin, Vec3::NEG_Z), MapChoice::Coverage);
+        let receiver = ReceiverUniform::new(
+            &[map(&fit)],
+            &MapView::from_eye(fit.origin, Vec3::NEG_Z),
+            &ShadowMapDescriptor::default(),
+        );
         let frame = FrameUniform::new(&camera(), to_light, true, &Atmosphere::default(), [16, 9]);
         assert!(Vec3::from(receiver.to_light).abs_diff_eq(to_light, CLOSE), "{light:?}: {:?}", receiver.to_light);
         assert_eq!(frame.to_light, to_light.to_array(), "{light:?}");
@@ -90,8 +97,8 @@ fn biases_move_the_receiver_toward_the_light_in_both_depth_conventions() {
     let bias = BiasSettings { constant: 1.0, slope: 2.0, normal_offset: 3.0, receiver_plane: 4.0, depth_steps: 1.0 };
     for (depth, toward_light) in [(DepthConvention::ZeroToOne, -1.0), (DepthConvention::Reversed, 1.0)] {
         let fit = fitted(&LightSettings::default(), depth);
-        let map =
-            MapUniform::new(&MapFit::new(fit, Bias::from_texels(&bias, MapFormat::Depth32Float, &fit)), fit.origin);
+        let map = MapFit::new(fit, Bias::from_texels(&bias, MapFormat::Depth32Float, &fit));
+        let map = MapUniform::new(&map, fit.origin, &ShadowMapDescriptor::default());
         let depth_of = |point: Vec3| matrix(map.uv_from_world).transform_point3(point).z;
         let lifted = depth_of(-fit.direction) - depth_of(Vec3::ZERO);
         assert!(lifted * toward_light > 0.0, "{depth:?}");
@@ -123,14 +130,14 @@ fn the_camera_s_uniform_has_reversed_depth_and_rays_through_its_pixels() {
 
 #[test]
 fn without_a_fit_everything_is_lit_and_surplus_fits_are_left_out() {
-    let none = ReceiverUniform::new(&[], &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z), MapChoice::Coverage);
+    let none = ReceiverUniform::new(&[], &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z), &ShadowMapDescriptor::default());
     assert_eq!(none.map_count, 0);
     assert_eq!(Vec3::from(none.to_light).length(), 1.0, "a direction that can be used");
     let fit = fitted(&LightSettings::default(), DepthConvention::ZeroToOne);
     let many = ReceiverUniform::new(
         &[map(&fit); MAX_MAPS + 3],
         &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z),
-        MapChoice::Coverage,
+        &ShadowMapDescriptor::default(),
     );
     assert_eq!(many.map_count as usize, MAX_MAPS);
 }

@@ -2,8 +2,12 @@
 //! the uniforms lie in memory as the shaders read them. What the shaders compute is compared in [`parity_gpu`],
 //! [`culling_gpu`] and [`need_gpu`].
 
+mod acne_gpu;
+mod clamp_gpu;
 mod culling_gpu;
 mod exact_counts_gpu;
+mod fade_gpu;
+mod formats_gpu;
 mod harness;
 mod kept_maps_gpu;
 mod layout;
@@ -11,11 +15,14 @@ mod need_gpu;
 mod need_picture;
 mod need_reference;
 mod parity_gpu;
+mod penumbra_gpu;
+mod prefixes;
 mod refusals_gpu;
 mod several_maps_gpu;
 mod sweep_gpu;
 mod tents_gpu;
 mod tint_gpu;
+mod wrap_gpu;
 
 use std::path::PathBuf;
 

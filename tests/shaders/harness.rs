@@ -103,6 +103,14 @@ const LOOK_UP: &str = "
 }
 ";
 
+/// What [`Harness::turned`] asks.
+const TURNED: &str = "
+@fragment fn fs(in: Varying) -> Answer {
+    let factor = shadowfit_factor_at(in.position, in.normal, in.clip.xy);
+    return Answer(vec4<f32>(factor, 0.0, 0.0, 0.0), vec4<f32>(0.0));
+}
+";
+
 /// What [`Harness::choices`] asks.
 const CHOICE: &str = "
 @fragment fn fs(in: Varying) -> Answer {
@@ -183,6 +191,18 @@ impl<'a> Harness<'a> {
         projected.iter().zip(&stored).map(answer).collect()
     }
 
+    /// `shadowfit_factor_at` for points, at most [`ROW`]² of them; point i is pixel (i mod [`ROW`], i / [`ROW`]).
+    pub(super) fn turned(&self, points: &[Point]) -> Vec<f32> {
+        let [factors, _] = self.draw(TURNED, points);
+        factors.iter().map(|factor| factor[0]).collect()
+    }
+
+    /// The stored depths of a map of [`ROW`]² texels, rows from the top.
+    pub(super) fn stored(&self, index: u32) -> Vec<f32> {
+        let nowhere = vec![Point { position: [0.0; 3], normal: [0.0, 1.0, 0.0] }; (ROW * ROW) as usize];
+        self.ask(index, &nowhere).iter().map(|answer| answer.stored).collect()
+    }
+
     /// Asks the WGSL which map it reads at points, at most [`ROW`]² of them.
     pub(super) fn choices(&self, points: &[Point]) -> Vec<Choice> {
         let [choices, _] = self.draw(CHOICE, points);
@@ -226,7 +246,7 @@ impl<'a> Harness<'a> {
         }
         self.gpu.queue.submit([encoder.finish()]);
         targets.each_ref().map(|texture| {
-            let mut answers = read(self.gpu, texture, rows);
+            let mut answers = read(self.gpu, texture);
             answers.truncate(points.len());
             answers
         })
@@ -345,11 +365,12 @@ fn target(gpu: &Gpu, rows: u32) -> wgpu::Texture {
     })
 }
 
-/// Waits for a picture of answers. A row of [`ROW`] pixels of 16 bytes needs no padding.
-fn read(gpu: &Gpu, texture: &wgpu::Texture, rows: u32) -> Vec<[f32; 4]> {
+/// Waits for a picture of answers. Rows of a multiple of 16 pixels of 16 bytes need no padding.
+pub(super) fn read(gpu: &Gpu, texture: &wgpu::Texture) -> Vec<[f32; 4]> {
+    let (row, rows) = (texture.width() * 16, texture.height());
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
-        size: u64::from(ROW * 16 * rows),
+        size: u64::from(row * rows),
         usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
         mapped_at_creation: false,
     });
@@ -358,7 +379,7 @@ fn read(gpu: &Gpu, texture: &wgpu::Texture, rows: u32) -> Vec<[f32; 4]> {
         texture.as_image_copy(),
         wgpu::TexelCopyBufferInfo {
             buffer: &buffer,
-            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(ROW * 16), rows_per_image: None },
+            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None },
         },
         texture.size(),
     );

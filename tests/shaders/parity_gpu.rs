@@ -1,7 +1,7 @@
 //! The look-up's formulas in WGSL against their twins in Rust: projection, biases, choice of the map, comparison.
 
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::settings::{BiasSettings, FilterKind, FitSettings, MapChoice, MapFormat};
+use shadowfit::settings::{BiasSettings, FilterKind, FitSettings, MapChoice, MapFormat, Softness};
 use shadowfit::{Bias, DepthConvention, LightFit, PerspectiveCamera, fit};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
@@ -23,7 +23,7 @@ const TOLERANCE: f64 = 16.0 * 3.0 / 16_777_216.0;
 
 /// Biases that are large and all different, so that none can stand in for another.
 const BIAS: BiasSettings =
-    BiasSettings { constant: 3.0, slope: 1.5, normal_offset: 2.0, receiver_plane: 1.25, depth_steps: 0.0 };
+    BiasSettings { constant: 3.0, slope: 1.5, normal_offset: 2.0, receiver_plane: 1.25, depth_steps: 1.0 };
 
 /// Numbers in 0..1 that fill the cube evenly: the fractional parts of multiples of the powers of the plastic number's
 /// kin (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018).
@@ -128,6 +128,7 @@ fn cases() -> impl Iterator<Item = ShadowMapDescriptor> {
         maps: 2,
         format,
         filter: FilterKind::Point,
+        softness: Softness::default(),
         choice: MapChoice::ViewDepth,
         blend: 0.0,
         depth,

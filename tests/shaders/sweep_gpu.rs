@@ -83,6 +83,12 @@ fn cases() -> Vec<Case> {
         Case { is_narrow: true, ..case("narrow", aabb) },
         case("one map", Technique { count: 1, ..aabb }),
         case("without a blend", focused.with_blend(0.0)),
+        Case { filter: FilterKind::Vogel16, ..case("focused, soft", focused) },
+        Case {
+            filter: FilterKind::Pcss,
+            format: MapFormat::R16Float,
+            ..case("focused, wide as its penumbrae", focused)
+        },
     ];
     let also = ["focused", "boxes of the slices", "boxes of the slices, normal offset", "narrow", "one map"];
     let others: Vec<Case> = all
@@ -172,10 +178,12 @@ fn descriptor(case: &Case) -> ShadowMapDescriptor {
         maps: case.technique.count,
         format: case.format,
         filter: case.filter,
+        softness: case.technique.softness,
         choice: case.technique.choice,
         blend: case.technique.blend,
         depth: case.technique.fit.depth,
         depth_clamp: case.technique.fit.casters == CasterPolicy::DepthClamp,
+        ..ShadowMapDescriptor::default()
     }
 }
 

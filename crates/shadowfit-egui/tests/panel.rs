@@ -8,7 +8,9 @@ use egui_kittest::{Harness, Node};
 use shadowfit::figures::{Figures, MapFigures};
 use shadowfit::light_fit::Constraint;
 use shadowfit::params::{Group, Kind, PARAMETERS, Parameter, parameter};
-use shadowfit::settings::{CasterPolicy, FitKind, MAX_MAPS, MapChoice, MapOverride, SplitScheme};
+use shadowfit::settings::{
+    CasterPolicy, FilterKind, FitKind, MAX_MAPS, MapChoice, MapFormat, MapOverride, SoftRadius, SplitScheme,
+};
 use shadowfit::tool::Settings;
 use shadowfit::{PRESETS, Technique, glam::UVec2};
 use shadowfit_egui::{Action, Artefact, KEYS, PANEL_WIDTH, Panel, PanelInput, SceneLine, apply_style, help_overlay};
@@ -70,7 +72,8 @@ fn open_harness(host: Host) -> Harness<'static, Host> {
 }
 
 /// Settings of slices under which every row of the table is shown and has an effect, but the one of the other
-/// choice of splits, λ or the manual ones, and of the other choice of maps, blend or overlap.
+/// choice of splits, λ or the manual ones, of the other choice of maps, blend or overlap, and of the other measure of
+/// softness.
 fn everything(splits: SplitScheme) -> Settings {
     let mut settings = Settings::default();
     let technique = &mut settings.technique;
@@ -79,6 +82,8 @@ fn everything(splits: SplitScheme) -> Settings {
     (technique.fit.kind, technique.fit.resolution) = (FitKind::Focused, UVec2::new(2048, 1024));
     (technique.fit.max_distance, technique.fit.border) = (100.0, Some(3.0));
     technique.fit.casters = CasterPolicy::Extend;
+    // Their softness and the steps of their depths count.
+    (technique.filter, technique.format) = (FilterKind::Vogel16, MapFormat::Depth16Unorm);
     settings.light.animate = true;
     settings
 }
@@ -89,6 +94,7 @@ fn all_rows() -> [Settings; 3] {
     let mut settings = [SplitScheme::Practical(0.5), manual, SplitScheme::FromHistogram].map(everything);
     settings[1].technique.choice = MapChoice::ViewDepth;
     settings[2].technique.fit.kind = FitKind::Windows;
+    settings[2].technique.softness.radius = SoftRadius::Metres(0.05);
     settings
 }
 

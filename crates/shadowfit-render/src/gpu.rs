@@ -122,7 +122,8 @@ impl Gpu {
         self.adapter.get_info().name
     }
 
-    /// Whether shadow maps can clamp depth, see [`shadowfit_wgpu::ShadowMapDescriptor::depth_clamp`].
+    /// Whether the device clamps depth by itself; where it does not, fragment shaders do, see
+    /// [`shadowfit_wgpu::ShadowMapDescriptor::depth_clamp`].
     pub fn has_depth_clamp(&self) -> bool {
         self.device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL)
     }

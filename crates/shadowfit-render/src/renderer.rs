@@ -108,9 +108,10 @@ impl Renderer {
         let mut maps = KeptMaps::new(&gpu.device, descriptor)?;
         maps.keeps = self.maps.keeps;
         self.maps = maps;
-        // What the shaders read from uniforms may differ.
-        let ShadowMapDescriptor { resolution, fade, .. } = *descriptor;
-        let same_shaders = ShadowMapDescriptor { resolution, fade, ..old } == *descriptor;
+        // What the shaders read from uniforms may differ; the greatest radius of a filter is a constant in them.
+        let ShadowMapDescriptor { resolution, fade, softness, .. } = *descriptor;
+        let softness = softness.with_ceiling(old.softness.ceiling);
+        let same_shaders = ShadowMapDescriptor { resolution, fade, softness, ..old } == *descriptor;
         if !same_shaders {
             self.pipelines = Pipelines::new(&gpu.device, &self.layouts, self.maps.map(), self.samples);
         }

@@ -120,76 +120,31 @@ pub enum ShadowMapError {
 impl fmt::Display for ShadowMapError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Resolution { resolution: [width, height], device_limit } => write!(
-                f,
-                "shadow map of {width} × {height} texels: each side must be {} to {} texels, and this device allows \
-                 at most {device_limit}",
-                RESOLUTIONS.start(),
-                RESOLUTIONS.end(),
-            ),
+            Self::Resolution { resolution, device_limit } => write_resolution(f, *resolution, *device_limit),
             Self::Maps(maps) => write!(f, "{maps} shadow maps: between 1 and {MAX_MAPS} are possible"),
             Self::Blend(texels) => write!(f, "blend of {texels} texels: 0 to {MAX_BLEND} are possible"),
             Self::Depth(depth) => {
                 write!(f, "depth convention {depth:?}: wgpu's clip space has 0..1, plain or reversed")
             }
-            Self::Softness { floor, ceiling } => write!(
-                f,
-                "soft filters of {floor} to {ceiling} texels: the floor must be 0 to the ceiling, and that 1 to \
-                 {MAX_RADIUS}"
-            ),
+            Self::Softness { floor, ceiling } => write_softness(f, *floor, *ceiling),
             Self::SoftRadius(tangent) => {
                 write!(f, "softness of {tangent} m of penumbra per metre: it must be a number that is not negative")
             }
-            Self::Fade([near, far]) => {
-                write!(
-                    f,
-                    "shadows that fade from view depth {near} m to {far} m: both must be finite, the nearer first"
-                )
+            Self::Fade(fade) => write_fade(f, *fade),
+            Self::PcssDepthClamp => f.write_str(PCSS_DEPTH_CLAMP),
+            Self::PcssDepthLoads(format) => {
+                write!(f, "PCSS with {format:?}: OpenGL's shaders cannot read depth textures as numbers; take R32Float")
             }
-            Self::PcssDepthClamp => write!(
-                f,
-                "PCSS with depth clamp: casters before the near plane have lost their distance; let the fit place its \
-                 near plane by another caster policy, or take another filter"
-            ),
-            Self::PcssDepthLoads(format) => write!(
-                f,
-                "PCSS with {format:?}: OpenGL's shaders cannot read a depth texture as numbers; take R32Float"
-            ),
-            Self::Format { format, why } => write!(
-                f,
-                "this device cannot use {format:?} as a shadow map: {why}; take Depth32Float, which every device has"
-            ),
-            Self::OutOfMemory { resolution: [width, height], maps, format } => write!(
-                f,
-                "the device is out of memory for {maps} maps of {width} × {height} texels in {format:?}: take fewer, \
-                 smaller or coarser ones"
-            ),
+            Self::Format { format, why } => {
+                write!(f, "this device cannot use {format:?} for shadow maps: {why}; take Depth32Float, which all have")
+            }
+            Self::OutOfMemory { resolution, maps, format } => write_out_of_memory(f, *resolution, *maps, *format),
             Self::Device(error) => write!(f, "the device cannot make the shadow map: {error}"),
-            Self::Prefix(prefix) => write!(
-                f,
-                "names in WGSL cannot begin with {prefix:?}: take ASCII letters, digits and underscores, a letter first"
-            ),
-            Self::Wrap { index, wrap, fit, map } => write!(
-                f,
-                "map {index} of {fit:?} texels is to begin at {wrap:?} in a layer of {map:?}: only a map that fills its \
-                 layer wraps around, and it begins inside"
-            ),
-            Self::Fit { index, fit, map } => write!(
-                f,
-                "fit {index} was made for {:?} texels and depth {:?}, the shadow map has {:?} and {:?}: give both the \
-                 same depth, and the map no fewer texels",
-                fit.0, fit.1, map.0, map.1,
-            ),
-            Self::TooManyFits { fits, layers } => write!(
-                f,
-                "fits given: {fits}, layers of the shadow map: {layers}; make the shadow map with as many maps as there \
-                 are fits"
-            ),
-            Self::Order { index, far, previous } => write!(
-                f,
-                "map {index} ends at view depth {far} m, the one in front of it at {previous} m: sort the maps by their \
-                 far, nearest first"
-            ),
+            Self::Prefix(prefix) => write_prefix(f, prefix),
+            Self::Wrap { index, wrap, fit, map } => write_wrap(f, *index, *wrap, [*fit, *map]),
+            Self::Fit { index, fit, map } => write_fit(f, *index, *fit, *map),
+            Self::TooManyFits { fits, layers } => write_too_many(f, *fits, *layers),
+            Self::Order { index, far, previous } => write_order(f, *index, *far, *previous),
             Self::Bias { index, error } => write!(f, "map {index}: {error}"),
             Self::View(error) => write!(f, "what the maps are read from: {error}"),
             Self::Forward { forward, length } => {
@@ -200,3 +155,77 @@ impl fmt::Display for ShadowMapError {
 }
 
 impl core::error::Error for ShadowMapError {}
+
+const PCSS_DEPTH_CLAMP: &str = "PCSS with depth clamp: casters before the near plane have lost their distance; let the \
+                                fit place its near plane by another caster policy, or take another filter";
+
+fn write_resolution(f: &mut fmt::Formatter<'_>, [width, height]: [u32; 2], device_limit: u32) -> fmt::Result {
+    let (least, greatest) = (RESOLUTIONS.start(), RESOLUTIONS.end());
+    write!(
+        f,
+        "shadow map of {width} × {height} texels: each side must be {least} to {greatest} texels, and this device allows \
+         at most {device_limit}"
+    )
+}
+
+fn write_softness(f: &mut fmt::Formatter<'_>, floor: f32, ceiling: f32) -> fmt::Result {
+    write!(
+        f,
+        "soft filters of {floor} to {ceiling} texels: the floor must be 0 to the ceiling, and that 1 to {MAX_RADIUS}"
+    )
+}
+
+fn write_fade(f: &mut fmt::Formatter<'_>, [near, far]: [f32; 2]) -> fmt::Result {
+    write!(f, "shadows that fade from view depth {near} m to {far} m: both must be finite, the nearer first")
+}
+
+fn write_out_of_memory(
+    f: &mut fmt::Formatter<'_>,
+    [width, height]: [u32; 2],
+    maps: u32,
+    format: MapFormat,
+) -> fmt::Result {
+    write!(
+        f,
+        "the device is out of memory for {maps} maps of {width} × {height} texels in {format:?}: take fewer, smaller or \
+         coarser ones"
+    )
+}
+
+fn write_prefix(f: &mut fmt::Formatter<'_>, prefix: &str) -> fmt::Result {
+    write!(f, "names in WGSL cannot begin with {prefix:?}: take ASCII letters, digits and underscores, a letter first")
+}
+
+fn write_wrap(f: &mut fmt::Formatter<'_>, index: usize, wrap: [u32; 2], [fit, map]: [[u32; 2]; 2]) -> fmt::Result {
+    write!(
+        f,
+        "map {index} of {fit:?} texels is to begin at {wrap:?} in a layer of {map:?}: only a map that fills its layer \
+         wraps around, and it begins inside"
+    )
+}
+
+type Kind = ([u32; 2], DepthConvention);
+
+fn write_fit(f: &mut fmt::Formatter<'_>, index: usize, fit: Kind, map: Kind) -> fmt::Result {
+    write!(
+        f,
+        "fit {index} was made for {:?} texels and depth {:?}, the shadow map has {:?} and {:?}: give both the same \
+         depth, and the map no fewer texels",
+        fit.0, fit.1, map.0, map.1,
+    )
+}
+
+fn write_too_many(f: &mut fmt::Formatter<'_>, fits: usize, layers: usize) -> fmt::Result {
+    write!(
+        f,
+        "fits given: {fits}, layers of the shadow map: {layers}; make the shadow map with as many maps as there are fits"
+    )
+}
+
+fn write_order(f: &mut fmt::Formatter<'_>, index: usize, far: f32, previous: f32) -> fmt::Result {
+    write!(
+        f,
+        "map {index} ends at view depth {far} m, the one in front of it at {previous} m: sort the maps by their far, \
+         nearest first"
+    )
+}

@@ -28,7 +28,10 @@ impl StoredPart {
     /// The parts of a map of `size` texels whose texel t is stored at (t + wrap) mod size: one to four.
     pub fn all(size: UVec2, wrap: UVec2) -> impl Iterator<Item = Self> {
         // Per axis: where the map begins, and the first and last texel of the layer that are seen of it there.
-        let pieces = |size: u32, wrap: u32| [(wrap as i32, wrap, size), (wrap as i32 - size as i32, 0, wrap)];
+        let pieces = |size: u32, wrap: u32| {
+            let begin = wrap.cast_signed();
+            [(begin, wrap, size), (begin - size.cast_signed(), 0, wrap)]
+        };
         let (across, down) = (pieces(size.x, wrap.x), pieces(size.y, wrap.y));
         let pairs = (0..4).map(move |index| (across[index % 2], down[index / 2]));
         pairs.filter(|(x, y)| x.1 < x.2 && y.1 < y.2).map(move |(x, y)| Self {
@@ -67,7 +70,8 @@ mod tests {
                     let holding: Vec<&StoredPart> = parts.iter().filter(holds).collect();
                     assert_eq!(holding.len(), 1, "{wrap}: {x}, {y}");
                     let origin = holding[0].origin;
-                    assert_eq!([origin[0] + x as i32, origin[1] + y as i32], [stored.x as i32, stored.y as i32]);
+                    let at = [x, y].map(u32::cast_signed);
+                    assert_eq!([origin[0] + at[0], origin[1] + at[1]], stored.to_array().map(u32::cast_signed));
                 }
             }
         }

@@ -171,11 +171,7 @@ impl fmt::Display for FitError {
             Self::NotOnGrid => {
                 write!(f, "the map is on no grid; stabilise it by snapping or hysteresis, or take the sphere")
             }
-            Self::ClampedCasters { filter } => write!(
-                f,
-                "the filter {filter:?} needs the distance of each caster, which depth clamp loses; choose another \
-                 caster policy, such as List, or another filter"
-            ),
+            Self::ClampedCasters { filter } => write_clamped(f, filter),
             Self::ZeroResolution { resolution } => {
                 write!(
                     f,
@@ -185,6 +181,14 @@ impl fmt::Display for FitError {
             }
         }
     }
+}
+
+fn write_clamped(f: &mut fmt::Formatter<'_>, filter: FilterKind) -> fmt::Result {
+    write!(
+        f,
+        "the filter {filter:?} needs the distance of each caster, which depth clamp loses; choose another caster \
+         policy, such as List, or another filter"
+    )
 }
 
 fn write_depth(f: &mut fmt::Formatter<'_>, named: DepthConvention, is_reversed: bool) -> fmt::Result {

@@ -202,6 +202,16 @@ fn option_names_select_their_variants() {
     check("splits.scheme", |t| t.splits, &splits);
     let modes = [("hysteresis", Stabilise::Hysteresis), ("snap", Stabilise::Snap), ("off", Stabilise::Off)];
     check("stabilise.mode", |t| t.stabilise, &modes);
+    let depths = [
+        ("zero_to_one", DepthConvention::ZeroToOne),
+        ("reversed", DepthConvention::Reversed),
+        ("negative_one_to_one", DepthConvention::NegativeOneToOne),
+    ];
+    check("map.depth", |t| t.fit.depth, &depths);
+}
+
+#[test]
+fn names_of_formats_and_filters_select_them() {
     let formats = [
         ("depth32float", MapFormat::Depth32Float),
         ("depth16_unorm", MapFormat::Depth16Unorm),
@@ -225,12 +235,6 @@ fn option_names_select_their_variants() {
     check("map.filter", |t| t.filter, &filters);
     let measured = |t: &Technique| matches!(t.softness.radius, SoftRadius::Metres(_));
     check("softness.measure", measured, &[("sun_angle", false), ("metres", true)]);
-    let depths = [
-        ("zero_to_one", DepthConvention::ZeroToOne),
-        ("reversed", DepthConvention::Reversed),
-        ("negative_one_to_one", DepthConvention::NegativeOneToOne),
-    ];
-    check("map.depth", |t| t.fit.depth, &depths);
 }
 
 #[test]
@@ -536,6 +540,39 @@ fn an_azimuth_that_kept_counting_reads_as_a_compass_angle() {
     }
 }
 
+/// Checks that a parameter of slices has an effect with some values, and says with a word why it has none once another one
+/// is set.
+fn loses_its_effect(id: &str, base: &[(&str, &str)], (other, option): (&str, &str), word: &str) {
+    let mut settings = with(&[&[("fit.kind", "focused")], base].concat());
+    assert_eq!((row(id).inert)(&settings), None, "{id}");
+    set_from_str(&mut settings, other, option).expect("an option");
+    let reason = (row(id).inert)(&settings);
+    assert!(reason.is_some_and(|reason| reason.contains(word)), "{id} with {other}={option}: {reason:?}");
+}
+
+#[test]
+fn what_only_some_filters_and_formats_use_says_where_it_has_no_effect() {
+    for (id, base, set, word) in [
+        ("softness.measure", &[("map.filter", "pcss")][..], ("map.filter", "pcf_7x7"), "Filter"),
+        ("softness.angle", &[("map.filter", "vogel_8")], ("map.filter", "point"), "Filter"),
+        ("softness.angle", &[("map.filter", "vogel_8")], ("softness.measure", "metres"), "Angle of the sun"),
+        (
+            "softness.metres",
+            &[("map.filter", "vogel_16"), ("softness.measure", "metres")],
+            ("softness.measure", "sun_angle"),
+            "Metres",
+        ),
+        ("softness.floor", &[("map.filter", "vogel_32")], ("map.filter", "hardware_2x2"), "Filter"),
+        ("softness.ceiling", &[("map.filter", "pcss")], ("map.filter", "pcf_3x3"), "Filter"),
+        ("map.fade", &[("fit.max_distance", "50")], ("fit.max_distance", "far_plane"), "Shadow distance"),
+        ("bias.depth_steps", &[("map.format", "depth16_unorm")], ("map.format", "depth32float"), "Format"),
+        ("bias.depth_steps", &[("map.format", "r16_float")], ("map.format", "r32float"), "Format"),
+        ("bias.depth_steps", &[("map.format", "r8_grey")], ("map.format", "rgba8_packed"), "Format"),
+    ] {
+        loses_its_effect(id, base, set, word);
+    }
+}
+
 #[test]
 fn parameters_say_where_they_have_no_effect() {
     // Parameter, settings of slices with which it has an effect, one that takes it away, and a word of the reason.
@@ -552,21 +589,6 @@ fn parameters_say_where_they_have_no_effect() {
         ("fit.max_texel_ratio", &[("map.height", "512")], ("fit.kind", "xna_sample"), "XNA"),
         ("fit.border", &[], ("fit.kind", "xna_sample"), "XNA"),
         ("fit.least_texel", &[], ("fit.kind", "xna_sample"), "XNA"),
-        ("softness.measure", &[("map.filter", "pcss")], ("map.filter", "pcf_7x7"), "Filter"),
-        ("softness.angle", &[("map.filter", "vogel_8")], ("map.filter", "point"), "Filter"),
-        ("softness.angle", &[("map.filter", "vogel_8")], ("softness.measure", "metres"), "Angle of the sun"),
-        (
-            "softness.metres",
-            &[("map.filter", "vogel_16"), ("softness.measure", "metres")],
-            ("softness.measure", "sun_angle"),
-            "Metres",
-        ),
-        ("softness.floor", &[("map.filter", "vogel_32")], ("map.filter", "hardware_2x2"), "Filter"),
-        ("softness.ceiling", &[("map.filter", "pcss")], ("map.filter", "pcf_3x3"), "Filter"),
-        ("map.fade", &[("fit.max_distance", "50")], ("fit.max_distance", "far_plane"), "Shadow distance"),
-        ("bias.depth_steps", &[("map.format", "depth16_unorm")], ("map.format", "depth32float"), "Format"),
-        ("bias.depth_steps", &[("map.format", "r16_float")], ("map.format", "r32float"), "Format"),
-        ("bias.depth_steps", &[("map.format", "r8_grey")], ("map.format", "rgba8_packed"), "Format"),
         ("fit.caster_extension", &[("fit.casters", "extend")], ("fit.kind", "xna_sample"), "XNA"),
         ("fit.caster_extension", &[("fit.casters", "extend")], ("fit.casters", "none"), "By extension"),
         ("fit.caster_extension", &[("fit.casters", "extend")], ("fit.casters", "scene_bounds"), "By extension"),
@@ -599,11 +621,7 @@ fn parameters_say_where_they_have_no_effect() {
         ("override.map_4_resolution", &[], ("splits.count", "3"), "number of maps"),
         ("override.map_4_height", &[("override.map_4_resolution", "512")], ("splits.count", "3"), "number of maps"),
     ] {
-        let mut settings = with(&[&[("fit.kind", "focused")], base].concat());
-        assert_eq!((row(id).inert)(&settings), None, "{id}");
-        set_from_str(&mut settings, other, option).expect("an option");
-        let reason = (row(id).inert)(&settings);
-        assert!(reason.is_some_and(|reason| reason.contains(word)), "{id} with {other}={option}: {reason:?}");
+        loses_its_effect(id, base, (other, option), word);
     }
 }
 

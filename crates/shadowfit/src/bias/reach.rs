@@ -122,11 +122,12 @@ impl From<FilterKind> for Reach {
 pub const fn reach(filter: FilterKind) -> f32 {
     match filter {
         FilterKind::Point => Reach::POINT.taps,
-        FilterKind::Hardware2x2 => Reach::HARDWARE_2X2.taps,
+        FilterKind::Hardware2x2 | FilterKind::Vogel8 | FilterKind::Vogel16 | FilterKind::Vogel32 | FilterKind::Pcss => {
+            Reach::HARDWARE_2X2.taps
+        }
         FilterKind::Pcf3x3 => Reach::kernel(3).taps,
         FilterKind::Pcf5x5 => Reach::kernel(5).taps,
         FilterKind::Pcf7x7 => Reach::kernel(7).taps,
-        FilterKind::Vogel8 | FilterKind::Vogel16 | FilterKind::Vogel32 | FilterKind::Pcss => Reach::HARDWARE_2X2.taps,
     }
 }
 

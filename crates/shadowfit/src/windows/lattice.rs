@@ -87,7 +87,7 @@ impl Lattice {
     pub(super) fn last(&self, index: usize, held: Option<&Window>, (min, max): (DVec2, DVec2)) -> Window {
         let usable = self.usable[index];
         // Each of the finer windows has other texels.
-        let least = self.least.saturating_add(index as i32);
+        let least = self.least.saturating_add(i32::from(index as u8));
         let needed = grid::eighths_above(((max - min) / usable).max_element()).max(least);
         let is_wasteful = |held: &&Window| held.steps > needed.saturating_add(LAST_WASTE);
         let held = held.filter(|held| held.steps >= needed && !is_wasteful(held));

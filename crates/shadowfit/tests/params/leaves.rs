@@ -87,6 +87,19 @@ fn leaves_of_technique(technique: &Technique, leaf: &mut Leaf) {
     }
     leaf("receivers", receivers);
     leaf("filter", filter);
+    leaves_of_softness(softness, leaf);
+    leaf("fade", fade);
+    let BiasSettings { constant, slope, normal_offset, receiver_plane, depth_steps } = bias;
+    leaf("bias.depth_steps", depth_steps);
+    leaf("bias.constant", constant);
+    leaf("bias.slope", slope);
+    leaf("bias.normal_offset", normal_offset);
+    leaf("bias.receiver_plane", receiver_plane);
+    leaf("need", need);
+    leaf("format", format);
+}
+
+fn leaves_of_softness(softness: &Softness, leaf: &mut Leaf) {
     let Softness { radius, floor, ceiling } = softness;
     let (metres, angle) = match radius {
         SoftRadius::Metres(metres) => (Some(metres), None),
@@ -97,15 +110,6 @@ fn leaves_of_technique(technique: &Technique, leaf: &mut Leaf) {
     leaf("softness.angle", &angle);
     leaf("softness.floor", floor);
     leaf("softness.ceiling", ceiling);
-    leaf("fade", fade);
-    let BiasSettings { constant, slope, normal_offset, receiver_plane, depth_steps } = bias;
-    leaf("bias.depth_steps", depth_steps);
-    leaf("bias.constant", constant);
-    leaf("bias.slope", slope);
-    leaf("bias.normal_offset", normal_offset);
-    leaf("bias.receiver_plane", receiver_plane);
-    leaf("need", need);
-    leaf("format", format);
 }
 
 fn leaves_of_fit(fit: &FitSettings, leaf: &mut Leaf) {

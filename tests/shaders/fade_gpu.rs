@@ -1,0 +1,49 @@
+//! Shadows that fade before the shadow distance, so that they do not end at an edge.
+
+use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::settings::FilterKind;
+use shadowfit::{Bias, DepthConvention, LightFit};
+use shadowfit_wgpu::{MapFit, MapView, ShadowMapDescriptor};
+
+use super::exact_counts_gpu::box_fit;
+use super::harness::{Harness, Point, ROW};
+use crate::support::software_gpu;
+
+/// A triangle before the whole map, at the near plane.
+fn lid(fit: &LightFit) -> Vec<Vec3> {
+    let c = fit.corners();
+    let (right, below) = (c[1] - c[0], c[3] - c[0]);
+    let start = c[0] + (c[4] - c[0]) * 0.01 - right - below;
+    vec![start, start + right * 5.0, start + below * 5.0]
+}
+
+/// Factors of points in shadow at view depths of 0.1 to 9.9 m, by the fade.
+fn factors(fade: [f32; 2]) -> Vec<(f32, f32)> {
+    let gpu = software_gpu();
+    let fit = box_fit(DepthConvention::ZeroToOne);
+    let filter = FilterKind::Hardware2x2;
+    let map = ShadowMapDescriptor { resolution: [ROW; 2], maps: 1, filter, fade, ..Default::default() };
+    let view = MapView::from_eye(DVec3::new(0.0, 0.0, 5.0), Vec3::NEG_Z);
+    let harness = Harness::with_maps(&gpu, &map, &view, &[MapFit::new(fit, Bias::default())], &[lid(&fit)]);
+    let depths: Vec<f32> = (0..99_u16).map(|step| (f32::from(step) + 1.0) * 0.1).collect();
+    let point = |depth: &f32| Point { position: [0.0, 0.0, -depth], normal: [0.0, 1.0, 0.0] };
+    let answers = harness.ask(0, &depths.iter().map(point).collect::<Vec<Point>>());
+    depths.into_iter().zip(answers.iter().map(|answer| answer.factor)).collect()
+}
+
+#[test]
+fn shadows_fade_smoothly_between_the_two_view_depths_and_points_beyond_are_lit() {
+    for (depth, factor) in factors([3.0, 7.0]) {
+        let share = ((depth - 3.0) / 4.0).clamp(0.0, 1.0);
+        let expected = share * share * (3.0 - 2.0 * share);
+        assert!((factor - expected).abs() < 1e-5, "at {depth} m: {factor}, not {expected}");
+    }
+}
+
+#[test]
+fn without_a_fade_shadows_reach_as_far_as_their_maps_and_one_of_no_width_is_an_end() {
+    assert!(factors([f32::MAX; 2]).iter().all(|(_, factor)| *factor == 0.0));
+    for (depth, factor) in factors([5.05; 2]) {
+        assert_eq!(factor, if depth < 5.05 { 0.0 } else { 1.0 }, "at {depth} m");
+    }
+}

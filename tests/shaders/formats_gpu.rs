@@ -1,0 +1,197 @@
+//! Depths come back from packed colours bit for bit, through a real pass and a real shader.
+
+use shadowfit::DepthConvention;
+use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::settings::{FilterKind, MapFormat};
+use shadowfit_render::Gpu;
+use shadowfit_wgpu::{
+    MapFit, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, WgslOptions, caster_wgsl, receiver_wgsl,
+};
+
+use super::exact_counts_gpu::box_fit;
+use super::harness::read;
+use crate::support::software_gpu;
+
+/// Width and height of the map: a million texels.
+const SIDE: u32 = 1024;
+/// Bits of 1.
+const ONE: u32 = 0x3f80_0000;
+/// Bits of the least number that is not denormal.
+const NORMAL: u32 = 0x0080_0000;
+
+/// Writes to each texel a depth of its own, the last of them 1.
+const WRITE: &str = "
+@vertex fn vs(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    let at = vec2<f32>(f32((index << 1u) & 2u), f32(index & 2u));
+    return vec4<f32>(at * 2.0 - 1.0, 0.5, 1.0);
+}
+@fragment fn fs(@builtin(position) pixel: vec4<f32>) -> @location(0) vec4<f32> {
+    return shadowfit_caster_color(bitcast<f32>(bits_of(u32(pixel.y) * SIDE + u32(pixel.x))));
+}
+";
+
+/// Reads them as bits, in two halves that f32 holds.
+const READ: &str = "
+@vertex fn vs(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    let at = vec2<f32>(f32((index << 1u) & 2u), f32(index & 2u));
+    return vec4<f32>(at * 2.0 - 1.0, 0.5, 1.0);
+}
+@fragment fn fs(@builtin(position) pixel: vec4<f32>) -> @location(0) vec4<f32> {
+    let bits = bitcast<u32>(shadowfit_stored(0u, vec2<i32>(pixel.xy)));
+    return vec4<f32>(f32(bits & 0xffffu), f32(bits >> 16u), 0.0, 0.0);
+}
+";
+
+/// Spreads 2²⁰ numbers over the bits from 0 to 1; the last one is 1.
+fn bits_of(index: u32) -> u32 {
+    if index == SIDE * SIDE - 1 { ONE } else { index * 1015 }
+}
+
+const BITS_OF: &str = "
+fn bits_of(index: u32) -> u32 {
+    return select(index * 1015u, 0x3f800000u, index == SIDE * SIDE - 1u);
+}
+";
+
+fn pipeline(
+    gpu: &Gpu,
+    source: String,
+    layout: &wgpu::BindGroupLayout,
+    depth: Option<wgpu::DepthStencilState>,
+    target: wgpu::ColorTargetState,
+) -> wgpu::RenderPipeline {
+    let source = source.replace("SIDE", &format!("{SIDE}u"));
+    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: None,
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    });
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: None,
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("vs"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: depth,
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("fs"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(target)],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+/// The bits that a shader reads in each texel.
+fn read_bits(gpu: &Gpu, map: &ShadowMap) -> Vec<u32> {
+    let format = wgpu::TextureFormat::Rgba32Float;
+    let target = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: SIDE, height: SIDE, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    });
+    let source = receiver_wgsl(map.descriptor(), &WgslOptions::group(0)) + READ;
+    let pipeline = pipeline(gpu, source, map.receiver_layout(), None, format.into());
+    let view = target.create_view(&wgpu::TextureViewDescriptor::default());
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations::default(),
+            })],
+            ..Default::default()
+        });
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, map.receiver_group(), &[]);
+        pass.draw(0..3, 0..1);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    read(gpu, &target).iter().map(|[low, high, ..]| *low as u32 | (*high as u32) << 16).collect()
+}
+
+#[test]
+fn a_million_packed_depths_come_back_bit_for_bit_and_denormals_as_they_are_or_as_zero() {
+    let gpu = software_gpu();
+    let fit = box_fit(DepthConvention::ZeroToOne);
+    let (format, filter) = (MapFormat::Rgba8Packed, FilterKind::Point);
+    let descriptor = ShadowMapDescriptor { resolution: [SIDE; 2], maps: 1, format, filter, ..Default::default() };
+    let mut map = ShadowMap::new(&gpu.device, &descriptor).expect("a possible shadow map");
+    let whole = shadowfit::LightFit { resolution: [SIDE; 2].into(), ..fit };
+    let maps = [MapFit::new(whole, shadowfit::Bias::default())];
+    map.prepare(&gpu.queue, &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z), &maps).expect("a good map");
+    let source = [&caster_wgsl(&descriptor, &WgslOptions::group(0)), BITS_OF, WRITE].concat();
+    let target = map.color_target().expect("a colour format");
+    let write = pipeline(&gpu, source, map.caster_layout(), Some(map.depth_stencil_state()), target);
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    map.render(&mut encoder, 0, |pass, _, _| {
+        pass.set_pipeline(&write);
+        pass.draw(0..3, 0..1);
+    });
+    gpu.queue.submit([encoder.finish()]);
+    let (mut exact, mut flushed) = (0, 0);
+    for (index, bits) in (0..).zip(read_bits(&gpu, &map)) {
+        let written = bits_of(index);
+        let is_flushed = written < NORMAL && bits == 0;
+        assert!(bits == written || is_flushed, "{written:#x} came back as {bits:#x}");
+        exact += usize::from(bits == written);
+        flushed += usize::from(is_flushed && written != 0);
+    }
+    println!("{exact} depths came back exactly, {flushed} denormal ones as zero");
+    assert!(exact > 1_000_000, "{exact}");
+}
+
+#[test]
+fn an_empty_map_is_far_in_every_format_and_depth() {
+    let gpu = software_gpu();
+    for format in MapFormat::ALL {
+        for (depth, far) in [(DepthConvention::ZeroToOne, ONE), (DepthConvention::Reversed, 0)] {
+            let descriptor =
+                ShadowMapDescriptor { resolution: [SIDE; 2], maps: 1, format, depth, ..Default::default() };
+            let mut map = ShadowMap::new(&gpu.device, &descriptor).expect("a possible shadow map");
+            let maps = [MapFit::new(box_fit(depth), shadowfit::Bias::default())];
+            map.prepare(&gpu.queue, &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z), &maps).expect("a good map");
+            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            map.render(&mut encoder, 0, |_, _, _| {});
+            gpu.queue.submit([encoder.finish()]);
+            assert!(read_bits(&gpu, &map).iter().all(|bits| *bits == far), "{format:?} {depth:?}");
+        }
+    }
+}
+
+#[test]
+fn settings_of_filters_that_make_no_picture_are_refused_with_their_numbers() {
+    let gpu = software_gpu();
+    let made = |descriptor: ShadowMapDescriptor| ShadowMap::new(&gpu.device, &descriptor).map(|_| ());
+    let plain = ShadowMapDescriptor { resolution: [256; 2], ..ShadowMapDescriptor::default() };
+    let clamped = ShadowMapDescriptor { filter: FilterKind::Pcss, depth_clamp: true, ..plain };
+    assert_eq!(made(clamped), Err(ShadowMapError::PcssDepthClamp));
+    for fade in [[5.0, 4.0], [f32::NAN, 4.0], [0.0, f32::INFINITY]] {
+        let error = made(ShadowMapDescriptor { fade, ..plain }).expect_err("no fade");
+        assert!(error.to_string().contains(&format!("{} m", fade[0])), "{error}");
+    }
+    for (floor, ceiling) in [(-1.0, 16.0), (17.0, 16.0), (0.0, 65.0), (0.0, 0.5), (f32::NAN, 16.0), (1.0, f32::NAN)] {
+        let softness = plain.softness.with_floor(floor).with_ceiling(ceiling);
+        let error = made(ShadowMapDescriptor { softness, ..plain }).expect_err("no radii");
+        assert!(matches!(error, ShadowMapError::Softness { .. }), "{floor}, {ceiling}: {error}");
+        assert!(error.to_string().contains(&format!("{floor} to {ceiling} texels")), "{error}");
+    }
+}

@@ -1,0 +1,118 @@
+//! Maps that are stored shifted in their layers: each point gets the factor that it gets from the map as it is.
+
+use shadowfit::glam::{DVec3, UVec2, Vec3};
+use shadowfit::settings::{FilterKind, MapFormat, SoftRadius, Softness};
+use shadowfit::{Bias, DepthConvention, LightFit};
+use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError};
+
+use super::exact_counts_gpu::box_fit;
+use super::harness::{Harness, Point, ROW};
+use crate::support::software_gpu;
+
+/// Where the map begins in its layer: beside, above, and both, far in and at the last texel.
+const WRAPS: [[u32; 2]; 4] = [[100, 0], [0, 37], [200, 131], [1, ROW - 1]];
+
+/// Squares of three texels over the whole map, at two heights.
+fn casters(fit: &LightFit) -> Vec<Vec3> {
+    let corners = fit.corners();
+    let (right, down) = ((corners[1] - corners[0]) / ROW as f32, (corners[3] - corners[0]) / ROW as f32);
+    let square = |(x, y): (u32, u32)| {
+        let height = if (x + y) % 2 == 0 { 0.3 } else { 0.6 };
+        let start = corners[0] + (corners[4] - corners[0]) * height;
+        let at = |dx: u32, dy: u32| start + right * (x + dx) as f32 + down * (y + dy) as f32;
+        [at(0, 0), at(3, 0), at(3, 3), at(0, 0), at(3, 3), at(0, 3)]
+    };
+    let all = (0..ROW).step_by(4).flat_map(|y| (0..ROW).step_by(4).map(move |x| (x, y)));
+    all.filter(|(x, y)| (x * 7 + y * 13) % 5 < 2).flat_map(square).collect()
+}
+
+/// Points all over the map below the squares, up to its very borders.
+fn points(fit: &LightFit) -> Vec<Point> {
+    let corners = fit.corners();
+    let (right, down, away) = (corners[1] - corners[0], corners[3] - corners[0], corners[4] - corners[0]);
+    let share = |step: u16| (f32::from(step) / 99.0).clamp(1e-6, 1.0 - 1e-6);
+    let point = |i: u16| {
+        let position = corners[0] + right * share(i % 100) + down * share(i / 100) + away * 0.9;
+        Point { position: position.to_array(), normal: [0.0, 1.0, 0.0] }
+    };
+    (0..10_000).map(point).collect()
+}
+
+/// A map of a whole layer that is stored shifted.
+fn harness<'a>(gpu: &'a shadowfit_render::Gpu, map: &ShadowMapDescriptor, wrap: [u32; 2]) -> Harness<'a> {
+    let fit = box_fit(map.depth);
+    let maps = [MapFit { wrap: wrap.into(), ..MapFit::new(fit, Bias::default()) }];
+    Harness::with_maps(gpu, map, &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z), &maps, &[casters(&fit)])
+}
+
+/// Compares a shifted map with the one as it is, for all filters of a format.
+fn assert_same(format: MapFormat, depth: DepthConvention) {
+    let gpu = software_gpu();
+    let points = points(&box_fit(depth));
+    // By hand weights come from the position in the map. A sampler takes them from the position in the layer, which f32
+    // rounds to 2⁻¹⁷ of a texel here, in each axis.
+    let tolerance = if format.is_depth() { 4e-5 } else { 1e-6 };
+    for filter in FilterKind::ALL {
+        let softness = Softness::default().with_radius(SoftRadius::Metres(0.2));
+        let map = ShadowMapDescriptor {
+            resolution: [ROW; 2],
+            maps: 1,
+            format,
+            filter,
+            depth,
+            softness,
+            ..Default::default()
+        };
+        let plain = harness(&gpu, &map, [0, 0]);
+        let (stored, factors) = (plain.stored(0), plain.turned(&points));
+        let shadowed = factors.iter().filter(|factor| **factor < 0.9).count();
+        assert!((1000..9900).contains(&shadowed), "{filter:?}: {shadowed} points in shadow or beside one");
+        for wrap in WRAPS {
+            let shifted = harness(&gpu, &map, wrap);
+            let differ = shifted.stored(0).iter().zip(&stored).filter(|(a, b)| (*a - *b).abs() > 1e-6).count();
+            assert_eq!(differ, 0, "{format:?} {filter:?} at {wrap:?}: texels of the map are others");
+            for (point, (a, b)) in points.iter().zip(shifted.turned(&points).iter().zip(&factors)) {
+                assert!((a - b).abs() <= tolerance, "{format:?} {filter:?} at {wrap:?}, {point:?}: {a}, not {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn depth_textures_give_the_same_factors_wherever_the_map_begins() {
+    assert_same(MapFormat::Depth32Float, DepthConvention::ZeroToOne);
+    assert_same(MapFormat::Depth16Unorm, DepthConvention::Reversed);
+}
+
+#[test]
+fn float_textures_give_the_same_factors_wherever_the_map_begins() {
+    assert_same(MapFormat::R32Float, DepthConvention::Reversed);
+    assert_same(MapFormat::R16Float, DepthConvention::ZeroToOne);
+}
+
+#[test]
+fn byte_textures_give_the_same_factors_wherever_the_map_begins() {
+    assert_same(MapFormat::Rgba8Packed, DepthConvention::ZeroToOne);
+    assert_same(MapFormat::R8Grey, DepthConvention::Reversed);
+}
+
+#[test]
+fn a_map_that_does_not_fill_its_layer_or_begins_outside_cannot_wrap_around() {
+    let gpu = software_gpu();
+    let map = |resolution| ShadowMapDescriptor { resolution, maps: 2, ..ShadowMapDescriptor::default() };
+    let fit = box_fit(DepthConvention::ZeroToOne);
+    let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
+    for (layer, wrap, is_possible) in [
+        ([ROW; 2], [255, 255], true),
+        ([ROW; 2], [256, 0], false),
+        ([ROW; 2], [0, 1000], false),
+        ([512, ROW], [1, 0], false),
+        ([512, ROW], [0, 0], true),
+    ] {
+        let mut shadow_map = ShadowMap::new(&gpu.device, &map(layer)).expect("a possible shadow map");
+        let wrapped = MapFit { wrap: UVec2::from(wrap), ..MapFit::new(fit, Bias::default()) };
+        let prepared = shadow_map.prepare(&gpu.queue, &view, &[MapFit::new(fit, Bias::default()), wrapped]);
+        let refused = Err(ShadowMapError::Wrap { index: 1, wrap, fit: [ROW; 2], map: layer });
+        assert_eq!(prepared, if is_possible { Ok(()) } else { refused }, "{wrap:?} in {layer:?}");
+    }
+}
