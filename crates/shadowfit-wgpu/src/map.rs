@@ -1,13 +1,14 @@
 //! The shadow map as a GPU resource: textures, clears, bind groups, and one pass per map.
 
 use shadowfit::glam::UVec2;
+use shadowfit::scroll::{StoredRect, TexelRect};
 use shadowfit::settings::{CasterPolicy, FilterKind};
 use shadowfit::{CasterVolume, DepthConvention};
 
 use crate::caught::caught;
 use crate::map_fit::check;
 use crate::uniform::{CasterUniform, ReceiverUniform};
-use crate::{MapFit, MapView, ShadowMapDescriptor, ShadowMapError, StoredPart};
+use crate::{MapFit, MapView, ShadowMapDescriptor, ShadowMapError};
 
 /// Shadow maps of one light: equal layers of one texture array, their passes and bind groups.
 #[derive(Debug)]
@@ -202,8 +203,9 @@ impl ShadowMap {
     ) {
         for (index, volume) in self.volumes.iter().enumerate() {
             let mut pass = self.begin_pass(encoder, index, group, None);
+            let size = self.layers[index].used;
             for part in self.parts(index) {
-                part.set(&mut pass);
+                set_part(&mut pass, &part, size);
                 draw(&mut pass, index, volume);
             }
         }
@@ -214,14 +216,15 @@ impl ShadowMap {
     /// # Panics
     ///
     /// If `index` is not below the descriptor's number of maps.
-    pub fn parts(&self, index: usize) -> impl Iterator<Item = StoredPart> {
+    pub fn parts(&self, index: usize) -> impl Iterator<Item = StoredRect> {
         let layer = &self.layers[index];
-        StoredPart::all(layer.used, layer.wrap)
+        TexelRect::all(layer.used).stored(layer.wrap, layer.used)
     }
 
     /// Opens the pass of one map, for engines that schedule passes themselves: cleared, with the
     /// map's [`Self::caster_group`] bound at `group`, and the viewport set. A map that [wraps around](MapFit::wrap) has
-    /// to be drawn once for each of its [`Self::parts`], with [`StoredPart::set`].
+    /// to be drawn once for each of its [`Self::parts`]: with a viewport of the map's size that begins at
+    /// [`StoredRect::viewport`], within the scissor rectangle [`StoredRect::stored`].
     ///
     /// # Panics
     ///
@@ -265,6 +268,13 @@ impl ShadowMap {
         pass.set_viewport(0.0, 0.0, layer.used.x as f32, layer.used.y as f32, 0.0, 1.0);
         pass
     }
+}
+
+/// Sets viewport and scissor rectangle of a part of a map of the given size.
+pub(crate) fn set_part(pass: &mut wgpu::RenderPass<'_>, part: &StoredRect, size: UVec2) {
+    let (first, size, rect) = (part.viewport().as_vec2(), size.as_vec2(), part.stored);
+    pass.set_viewport(first.x, first.y, size.x, size.y, 0.0, 1.0);
+    pass.set_scissor_rect(rect.min.x, rect.min.y, rect.size.x, rect.size.y);
 }
 
 /// The casters that are drawn into a map.
