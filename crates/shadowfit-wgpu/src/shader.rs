@@ -8,7 +8,7 @@ use shadowfit::{CasterVolume, DepthConvention};
 use crate::{MAX_MAPS, ShadowMapDescriptor, ShadowMapError};
 
 /// Look-ups over the disc of [`FilterKind::Pcss`].
-const PCSS_TAPS: u32 = 24;
+const PCSS_TAPS: u32 = 16;
 
 /// How the WGSL fits into an engine's shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -126,6 +126,7 @@ pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>
         texel,
         include_str!("shaders/stored.wgsl"),
         &look_up.concat(),
+        include_str!("shaders/look_up.wgsl"),
         &filter(descriptor.filter),
         &choice(descriptor),
         include_str!("shaders/turn.wgsl"),
@@ -140,7 +141,8 @@ fn filter(filter: FilterKind) -> String {
         let constants = format!(
             "const SHADOWFIT_TAPS: u32 = {taps}u;\nconst SHADOWFIT_LOOK_UP_SQUARE: f32 = {LOOK_UP_SQUARE:?};\n\n"
         );
-        [&constants, include_str!("shaders/disc.wgsl"), file].concat()
+        let disc = include_str!("shaders/disc.wgsl").replace("DISC_TAPS", &disc_taps(taps));
+        [&constants, &disc, file].concat()
     };
     match filter {
         FilterKind::Point | FilterKind::Hardware2x2 => include_str!("shaders/filter_single.wgsl").to_owned(),
@@ -152,6 +154,17 @@ fn filter(filter: FilterKind) -> String {
         FilterKind::Vogel32 => disc(32, include_str!("shaders/filter_vogel.wgsl")),
         FilterKind::Pcss => disc(PCSS_TAPS, include_str!("shaders/filter_pcss.wgsl")),
     }
+}
+
+/// The look-ups over a disc one by one, so that their places are constants.
+fn disc_taps(taps: u32) -> String {
+    let golden = core::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    let tap = |index: u32| {
+        let (radius, angle) = (((f64::from(index) + 0.5) / f64::from(taps)).sqrt(), f64::from(index) * golden);
+        let (x, y) = ((radius * angle.cos()) as f32, (radius * angle.sin()) as f32);
+        format!("        sum += shadowfit_disc_tap(disc, vec2<f32>({x:?}, {y:?}), projected);")
+    };
+    (0..taps).map(tap).collect::<Vec<_>>().join("\n")
 }
 
 /// The search for a point's maps, and a map by its place in the order: one branch per map, since software rasterisers

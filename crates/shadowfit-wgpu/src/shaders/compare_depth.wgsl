@@ -3,13 +3,12 @@
 
 @group(GROUP) @binding(BINDING_2) var shadowfit_sampler: sampler_comparison;
 
-// One look-up at a position in the map, in texels, with the depth of the point's plane there.
-fn shadowfit_look_up(texel: vec2<f32>, projected: shadowfit_Projected) -> f32 {
-    // Not nearer to the border of what is in use than half a texel: the sampler would read beyond it.
-    let inside = clamp(texel, vec2<f32>(0.5), projected.size - vec2<f32>(0.5));
-    let depth = projected.depth + dot(projected.gradient, inside - projected.texel);
-    let shifted = inside + projected.wrap;
-    let stored = select(shifted, shifted - projected.size, shifted >= projected.size);
-    let uv = stored / vec2<f32>(textureDimensions(shadowfit_texture));
-    return textureSampleCompareLevel(shadowfit_texture, shadowfit_sampler, uv, i32(projected.layer), saturate(depth));
+// What a texel is in the coordinates of look-ups: a share of the layer.
+fn shadowfit_unit() -> vec2<f32> {
+    return vec2<f32>(1.0) / vec2<f32>(textureDimensions(shadowfit_texture));
+}
+
+// One look-up at coordinates of the layer, of which a map's first repetition may begin before it.
+fn shadowfit_look_up_at(at: vec2<f32>, depth: f32, projected: shadowfit_Projected) -> f32 {
+    return textureSampleCompareLevel(shadowfit_texture, shadowfit_sampler, at, i32(projected.layer), saturate(depth));
 }

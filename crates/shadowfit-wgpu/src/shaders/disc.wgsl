@@ -8,14 +8,39 @@ fn shadowfit_golden(direction: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(direction.x * turn.x - direction.y * turn.y, direction.x * turn.y + direction.y * turn.x);
 }
 
+// A disc that lies inside its map: where its middle is stored, its axes, and what the plane's depth changes by along them.
+struct shadowfit_Disc {
+    at: vec2<f32>,
+    a: vec2<f32>,
+    b: vec2<f32>,
+    rise: vec2<f32>,
+}
+
+// A look-up at a place in the unit disc.
+fn shadowfit_disc_tap(disc: shadowfit_Disc, place: vec2<f32>, projected: shadowfit_Projected) -> f32 {
+    return shadowfit_look_up_at(
+        disc.at + disc.a * place.x + disc.b * place.y, projected.depth + dot(disc.rise, place), projected);
+}
+
 // Mean of the look-ups over an ellipse around the point. radii: along u and v, in texels. turn: in radians.
 fn shadowfit_disc(radii: vec2<f32>, projected: shadowfit_Projected, turn: f32) -> f32 {
     var direction = vec2<f32>(cos(turn), sin(turn));
     var sum = 0.0;
-    for (var tap = 0u; tap < SHADOWFIT_TAPS; tap += 1u) {
-        let radius = sqrt((f32(tap) + 0.5) / f32(SHADOWFIT_TAPS));
-        sum += shadowfit_look_up(projected.texel + radii * radius * direction, projected);
-        direction = shadowfit_golden(direction);
+    let least = radii + vec2<f32>(0.5);
+    if all(projected.texel >= least) && all(projected.texel <= projected.size - least) {
+        let a = radii * direction;
+        let b = radii * vec2<f32>(-direction.y, direction.x);
+        let at = vec2<f32>(
+            shadowfit_along_u(projected.texel.x, projected).x, shadowfit_along_v(projected.texel.y, projected).x);
+        let rise = vec2<f32>(dot(projected.gradient, a), dot(projected.gradient, b));
+        let disc = shadowfit_Disc(at, a * projected.unit, b * projected.unit, rise);
+DISC_TAPS
+    } else {
+        for (var tap = 0u; tap < SHADOWFIT_TAPS; tap += 1u) {
+            let radius = sqrt((f32(tap) + 0.5) / f32(SHADOWFIT_TAPS));
+            sum += shadowfit_look_up(projected.texel + radii * radius * direction, projected);
+            direction = shadowfit_golden(direction);
+        }
     }
     return sum / f32(SHADOWFIT_TAPS);
 }

@@ -5,7 +5,7 @@
 // that a small penumbra is found within the wide disc that the highest casters ask for.
 
 // Texels that the search looks at.
-const SHADOWFIT_SEARCH: u32 = 32u;
+const SHADOWFIT_SEARCH: u32 = 16u;
 // Radius at which it begins, in texels: the point's own texel.
 const SHADOWFIT_SEARCH_START: f32 = 0.5;
 // What a look-up reads beside the disc's edge counts as well, in texels.
@@ -23,11 +23,12 @@ fn shadowfit_casters(projected: shadowfit_Projected, turn: f32) -> vec2<f32> {
     for (var tap = 0u; tap < SHADOWFIT_SEARCH; tap += 1u) {
         let texel = clamp(floor(projected.texel + projected.disc * radius * direction), vec2<f32>(0.0), last);
         let offset = texel + vec2<f32>(0.5) - projected.texel;
-        let stored = shadowfit_texel(texel, projected);
+        let stored = shadowfit_stored_texel(texel + projected.wrap, projected);
         let distance = projected.surface - stored;
         // The penumbra of a caster at this distance, or the least disc.
         let cone = max(distance * projected.penumbra, vec2<f32>(shadowfit_receiver.least_disc));
-        let is_within = length(offset / (cone + SHADOWFIT_SEARCH_BESIDE)) <= 1.0;
+        let place = offset / (cone + SHADOWFIT_SEARCH_BESIDE);
+        let is_within = dot(place, place) <= 1.0;
         let is_lit = saturate(projected.depth + dot(projected.gradient, offset)) COMPARE stored;
         if is_within && !is_lit {
             found += vec2<f32>(distance, 1.0);

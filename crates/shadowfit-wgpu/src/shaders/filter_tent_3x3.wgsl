@@ -11,7 +11,11 @@ fn shadowfit_compare(projected: shadowfit_Projected, turn: f32) -> f32 {
     let w1 = 1.0 + 2.0 * t;
     let p0 = centre - vec2<f32>(1.0) + (2.0 - t) / w0;
     let p1 = centre + vec2<f32>(1.0) + t / w1;
-    let top = w0.x * shadowfit_look_up(p0, projected) + w1.x * shadowfit_look_up(vec2<f32>(p1.x, p0.y), projected);
-    let bottom = w0.x * shadowfit_look_up(vec2<f32>(p0.x, p1.y), projected) + w1.x * shadowfit_look_up(p1, projected);
+    let u0 = shadowfit_along_u(p0.x, projected);
+    let u1 = shadowfit_along_u(p1.x, projected);
+    let v0 = shadowfit_along_v(p0.y, projected);
+    let v1 = shadowfit_along_v(p1.y, projected);
+    let top = w0.x * shadowfit_tap(u0, v0, projected) + w1.x * shadowfit_tap(u1, v0, projected);
+    let bottom = w0.x * shadowfit_tap(u0, v1, projected) + w1.x * shadowfit_tap(u1, v1, projected);
     return (w0.y * top + w1.y * bottom) / 16.0;
 }

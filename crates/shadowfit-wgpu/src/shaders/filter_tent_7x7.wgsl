@@ -2,11 +2,20 @@
 // between pairs of them give the same sum (after I. Castano, "Shadow mapping summary", 2013).
 //
 //   texel weights, u right of the second pair's right centre:   1-u   2-u | 3-u   4-u | 3+u   2+u | 1+u    u     (over 16)
-fn shadowfit_tent_row(x: vec4<f32>, weights: vec4<f32>, y: f32, projected: shadowfit_Projected) -> f32 {
-    return weights.x * shadowfit_look_up(vec2<f32>(x.x, y), projected)
-        + weights.y * shadowfit_look_up(vec2<f32>(x.y, y), projected)
-        + weights.z * shadowfit_look_up(vec2<f32>(x.z, y), projected)
-        + weights.w * shadowfit_look_up(vec2<f32>(x.w, y), projected);
+struct shadowfit_Columns {
+    u0: vec2<f32>,
+    u1: vec2<f32>,
+    u2: vec2<f32>,
+    u3: vec2<f32>,
+    weights: vec4<f32>,
+}
+
+fn shadowfit_tent_row(columns: shadowfit_Columns, y: f32, projected: shadowfit_Projected) -> f32 {
+    let v = shadowfit_along_v(y, projected);
+    return columns.weights.x * shadowfit_tap(columns.u0, v, projected)
+        + columns.weights.y * shadowfit_tap(columns.u1, v, projected)
+        + columns.weights.z * shadowfit_tap(columns.u2, v, projected)
+        + columns.weights.w * shadowfit_tap(columns.u3, v, projected);
 }
 
 fn shadowfit_compare(projected: shadowfit_Projected, turn: f32) -> f32 {
@@ -22,10 +31,11 @@ fn shadowfit_compare(projected: shadowfit_Projected, turn: f32) -> f32 {
     let p1 = centre - vec2<f32>(1.0) + (4.0 - t) / w1;
     let p2 = centre + vec2<f32>(1.0) + (2.0 + t) / w2;
     let p3 = centre + vec2<f32>(3.0) + t / w3;
-    let x = vec4<f32>(p0.x, p1.x, p2.x, p3.x);
-    let weights = vec4<f32>(w0.x, w1.x, w2.x, w3.x);
-    return (w0.y * shadowfit_tent_row(x, weights, p0.y, projected)
-        + w1.y * shadowfit_tent_row(x, weights, p1.y, projected)
-        + w2.y * shadowfit_tent_row(x, weights, p2.y, projected)
-        + w3.y * shadowfit_tent_row(x, weights, p3.y, projected)) / 256.0;
+    let columns = shadowfit_Columns(
+        shadowfit_along_u(p0.x, projected), shadowfit_along_u(p1.x, projected), shadowfit_along_u(p2.x, projected),
+        shadowfit_along_u(p3.x, projected), vec4<f32>(w0.x, w1.x, w2.x, w3.x));
+    return (w0.y * shadowfit_tent_row(columns, p0.y, projected)
+        + w1.y * shadowfit_tent_row(columns, p1.y, projected)
+        + w2.y * shadowfit_tent_row(columns, p2.y, projected)
+        + w3.y * shadowfit_tent_row(columns, p3.y, projected)) / 256.0;
 }

@@ -69,6 +69,8 @@ struct shadowfit_Projected {
     wrap: vec2<f32>,
     disc: vec2<f32>,
     penumbra: vec2<f32>,
+    // What a texel is in the coordinates of look-ups.
+    unit: vec2<f32>,
 }
 
 // Whether texture coordinates and depth lie inside the map.
@@ -87,7 +89,7 @@ fn shadowfit_project(map: shadowfit_Map, position: vec3<f32>, normal: vec3<f32>)
     let rise = map.receiver_plane * (abs(gradient.x) + abs(gradient.y));
     let depth = uv.z + map.constant_depth + map.slope_depth * sine / cosine + rise;
     return shadowfit_Projected(
-        uv.xy * map.size, uv.z, depth, gradient, map.layer, map.size, map.wrap, map.disc, map.penumbra);
+        uv.xy * map.size, uv.z, depth, gradient, map.layer, map.size, map.wrap, map.disc, map.penumbra, shadowfit_unit());
 }
 
 // View depth of a point: its distance from the eye along the view's forward direction, in metres. Negative behind it.
