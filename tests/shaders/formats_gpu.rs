@@ -55,7 +55,7 @@ fn bits_of(index: u32) -> u32 {
 
 fn pipeline(
     gpu: &Gpu,
-    source: String,
+    source: &str,
     layout: &wgpu::BindGroupLayout,
     depth: Option<wgpu::DepthStencilState>,
     target: wgpu::ColorTargetState,
@@ -107,7 +107,7 @@ fn read_bits(gpu: &Gpu, map: &ShadowMap) -> Vec<u32> {
         view_formats: &[],
     });
     let source = receiver_wgsl(map.descriptor(), &WgslOptions::group(0)) + READ;
-    let pipeline = pipeline(gpu, source, map.receiver_layout(), None, format.into());
+    let pipeline = pipeline(gpu, &source, map.receiver_layout(), None, format.into());
     let view = target.create_view(&wgpu::TextureViewDescriptor::default());
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
