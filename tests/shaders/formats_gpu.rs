@@ -55,7 +55,7 @@ fn bits_of(index: u32) -> u32 {
 
 fn pipeline(
     gpu: &Gpu,
-    source: String,
+    source: &str,
     layout: &wgpu::BindGroupLayout,
     depth: Option<wgpu::DepthStencilState>,
     target: wgpu::ColorTargetState,
@@ -107,7 +107,7 @@ fn read_bits(gpu: &Gpu, map: &ShadowMap) -> Vec<u32> {
         view_formats: &[],
     });
     let source = receiver_wgsl(map.descriptor(), &WgslOptions::group(0)) + READ;
-    let pipeline = pipeline(gpu, source, map.receiver_layout(), None, format.into());
+    let pipeline = pipeline(gpu, &source, map.receiver_layout(), None, format.into());
     let view = target.create_view(&wgpu::TextureViewDescriptor::default());
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
@@ -140,7 +140,7 @@ fn a_million_packed_depths_come_back_bit_for_bit_and_denormals_as_they_are_or_as
     map.prepare(&gpu.queue, &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z), &maps).expect("a good map");
     let source = [&caster_wgsl(&descriptor, &WgslOptions::group(0)), BITS_OF, WRITE].concat();
     let target = map.color_target().expect("a colour format");
-    let write = pipeline(&gpu, source, map.caster_layout(), Some(map.depth_stencil_state()), target);
+    let write = pipeline(&gpu, &source, map.caster_layout(), Some(map.depth_stencil_state()), target);
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     map.render(&mut encoder, 0, |pass, _, _| {
         pass.set_pipeline(&write);
