@@ -32,7 +32,9 @@ use shadowfit::settings::{FilterKind, MapChoice, MapFormat};
 use shadowfit::{CasterVolume, DepthConvention};
 use shadowfit_render::shaders;
 use shadowfit_wgpu::need::need_wgsl;
-use shadowfit_wgpu::{MAX_MAPS, ShadowMapDescriptor, WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl};
+use shadowfit_wgpu::{
+    MAX_MAPS, ShadowMapDescriptor, WgslOptions, caster_wgsl, culling_wgsl, layers_wgsl, receiver_wgsl,
+};
 
 use crate::support::workspace;
 
@@ -65,6 +67,10 @@ fn modules() -> Vec<(String, String)> {
         let map = ShadowMapDescriptor { format, ..Default::default() };
         all.push((format!("caster, {format:?}"), shaders::caster(&map)));
         all.push((format!("caster piece, {format:?}"), caster_wgsl(&map, &WgslOptions::group(0))));
+    }
+    for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
+        let [clear, mend] = layers_wgsl(&ShadowMapDescriptor { depth, ..Default::default() });
+        all.extend([(format!("clear, {depth:?}"), clear), (format!("mend, {depth:?}"), mend)]);
     }
     for map in descriptors() {
         let kind = format!("{:?} {:?} {:?} {:?}", map.format, map.filter, map.depth, map.choice);
@@ -107,6 +113,7 @@ fn filled(text: &str) -> Vec<String> {
                     .replace("MAX_MAPS", &MAX_MAPS.to_string())
                     .replace("MAX_PLANES", &CasterVolume::MAX_PLANES.to_string())
                     .replace("COMPARE", closer)
+                    .replace("FAR", if closer == ">=" { "0.0" } else { "1.0" })
                     .replace("BINDING_", ""),
             );
         }
@@ -154,7 +161,12 @@ fn every_module_has_the_entry_points_of_its_passes() {
     for (name, source) in modules().iter().filter(|(name, _)| !name.contains("piece")) {
         let module = parse(name, source);
         let draws: &[ShaderStage] = &[ShaderStage::Vertex, ShaderStage::Fragment];
-        let stages = if name.contains("compute") { &[ShaderStage::Compute] } else { draws };
+        let stages = match name.as_str() {
+            name if name.contains("compute") => &[ShaderStage::Compute],
+            // Depth alone, from vertices.
+            name if name.contains("clear") => &[ShaderStage::Vertex],
+            _ => draws,
+        };
         for &stage in stages {
             assert!(module.entry_points.iter().any(|entry| entry.stage == stage), "{name} has no {stage:?} stage");
         }

@@ -49,9 +49,8 @@ fn harness<'a>(gpu: &'a shadowfit_render::Gpu, map: &ShadowMapDescriptor, wrap: 
 fn assert_same(format: MapFormat, depth: DepthConvention) {
     let gpu = software_gpu();
     let points = points(&box_fit(depth));
-    // By hand weights come from the position in the map. A sampler takes them from the position in the layer, which f32
-    // rounds to 2⁻¹⁷ of a texel here, in each axis.
-    let tolerance = if format.is_depth() { 4e-5 } else { 1e-6 };
+    // Weights come from the position in the layer, which f32 rounds to 2⁻¹⁷ of a texel here, in each axis.
+    let tolerance = 4e-5;
     for filter in FilterKind::ALL {
         let softness = Softness::default().with_radius(SoftRadius::Metres(0.2));
         let map = ShadowMapDescriptor {

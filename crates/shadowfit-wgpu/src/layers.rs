@@ -3,12 +3,12 @@
 //! WebGPU copies depth textures as a whole only, so parts are cleared and mended by drawing: a triangle within a
 //! scissor rectangle, or the outlines of boxes.
 
-use shadowfit::Aabb;
 use shadowfit::scroll::TexelRect;
+use shadowfit::{Aabb, DepthConvention};
 
-use crate::ShadowMap;
 use crate::cache::{FramePlan, Layer, PassPlan};
 use crate::caught::caught;
+use crate::{ShadowMap, ShadowMapDescriptor, WgslOptions, caster_wgsl};
 
 /// Draws into parts of depth maps.
 #[derive(Debug)]
@@ -41,7 +41,8 @@ const BOX_VERTICES: u32 = 36;
 
 impl Layers {
     pub(crate) fn new(device: &wgpu::Device, map: &ShadowMap) -> Self {
-        let module = module(device, &[include_str!("shaders/clear.wgsl")], map);
+        let [clear, _] = layers_wgsl(map.descriptor());
+        let module = module(device, clear);
         Self { clear: pipeline(device, map, &Shape::new("shadowfit clear", &module, "vs_clear")), fixed: None }
     }
 
@@ -141,8 +142,8 @@ impl StaticLayers {
             });
             (view, group)
         };
-        let pieces = [include_str!("shaders/clear.wgsl"), include_str!("shaders/mend.wgsl")];
-        let module = module(device, &pieces, map);
+        let [_, mend] = layers_wgsl(descriptor);
+        let module = module(device, mend);
         let layouts = [&layout, map.caster_layout()];
         let mend =
             Shape { fragment: Some("fs_mend"), layouts: &layouts, ..Shape::new("shadowfit mend", &module, "vs_clear") };
@@ -197,11 +198,17 @@ impl<'a> Shape<'a> {
     }
 }
 
-fn module(device: &wgpu::Device, pieces: &[&str], map: &ShadowMap) -> wgpu::ShaderModule {
-    let source = pieces
-        .concat()
-        .replace("FAR", &format!("{:?}", map.far_depth()))
-        .replace("BINDING", &map.descriptor().first_binding.to_string());
+/// The WGSL that clears parts of depth maps, and that takes parts of them from the static casters' layers: for tests that
+/// validate it. The second part needs a device that can read depth textures in shaders.
+pub fn layers_wgsl(descriptor: &ShadowMapDescriptor) -> [String; 2] {
+    let far = if descriptor.depth == DepthConvention::Reversed { "0.0" } else { "1.0" };
+    let clear = include_str!("shaders/clear.wgsl").replace("FAR", far);
+    let caster = caster_wgsl(descriptor, &WgslOptions::group(1));
+    let mend = [&caster, &clear, include_str!("shaders/mend.wgsl")].concat();
+    [clear, mend]
+}
+
+fn module(device: &wgpu::Device, source: String) -> wgpu::ShaderModule {
     device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("shadowfit layers"),
         source: wgpu::ShaderSource::Wgsl(source.into()),

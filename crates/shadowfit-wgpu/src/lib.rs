@@ -49,6 +49,7 @@ pub use cache::{Casters, Culling, PassContent, UpdateSchedule};
 pub use descriptor::{RESOLUTIONS, ShadowMapDescriptor};
 pub use error::ShadowMapError;
 pub use kept_maps::{KeptMaps, ShadowPass, ShadowPiece};
+pub use layers::layers_wgsl;
 pub use map::ShadowMap;
 pub use map_fit::{MapFit, MapView};
 pub use shader::{WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl};

@@ -141,8 +141,7 @@ fn filter(filter: FilterKind) -> String {
         let constants = format!(
             "const SHADOWFIT_TAPS: u32 = {taps}u;\nconst SHADOWFIT_LOOK_UP_SQUARE: f32 = {LOOK_UP_SQUARE:?};\n\n"
         );
-        let disc = include_str!("shaders/disc.wgsl").replace("DISC_TAPS", &disc_taps(taps));
-        [&constants, &disc, file].concat()
+        [&constants, include_str!("shaders/disc.wgsl"), &disc_taps(taps), file].concat()
     };
     match filter {
         FilterKind::Point | FilterKind::Hardware2x2 => include_str!("shaders/filter_single.wgsl").to_owned(),
@@ -162,9 +161,19 @@ fn disc_taps(taps: u32) -> String {
     let tap = |index: u32| {
         let (radius, angle) = (((f64::from(index) + 0.5) / f64::from(taps)).sqrt(), f64::from(index) * golden);
         let (x, y) = ((radius * angle.cos()) as f32, (radius * angle.sin()) as f32);
-        format!("        sum += shadowfit_disc_tap(disc, vec2<f32>({x:?}, {y:?}), projected);")
+        format!("    sum += shadowfit_disc_tap(disc, vec2<f32>({x:?}, {y:?}), projected);\n")
     };
-    (0..taps).map(tap).collect::<Vec<_>>().join("\n")
+    format!(
+        "
+// Sum of the look-ups over a disc that lies inside its map.
+fn shadowfit_disc_taps(disc: shadowfit_Disc, projected: shadowfit_Projected) -> f32 {{
+    var sum = 0.0;
+{}    return sum;
+}}
+
+",
+        (0..taps).map(tap).collect::<String>()
+    )
 }
 
 /// The search for a point's maps, and a map by its place in the order: one branch per map, since software rasterisers

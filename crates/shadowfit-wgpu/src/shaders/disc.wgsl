@@ -34,7 +34,7 @@ fn shadowfit_disc(radii: vec2<f32>, projected: shadowfit_Projected, turn: f32) -
             shadowfit_along_u(projected.texel.x, projected).x, shadowfit_along_v(projected.texel.y, projected).x);
         let rise = vec2<f32>(dot(projected.gradient, a), dot(projected.gradient, b));
         let disc = shadowfit_Disc(at, a * projected.unit, b * projected.unit, rise);
-DISC_TAPS
+        sum = shadowfit_disc_taps(disc, projected);
     } else {
         for (var tap = 0u; tap < SHADOWFIT_TAPS; tap += 1u) {
             let radius = sqrt((f32(tap) + 0.5) / f32(SHADOWFIT_TAPS));

@@ -5,7 +5,7 @@
 // that a small penumbra is found within the wide disc that the highest casters ask for.
 
 // Texels that the search looks at.
-const SHADOWFIT_SEARCH: u32 = 16u;
+const SHADOWFIT_SEARCH: u32 = 24u;
 // Radius at which it begins, in texels: the point's own texel.
 const SHADOWFIT_SEARCH_START: f32 = 0.5;
 // What a look-up reads beside the disc's edge counts as well, in texels.

@@ -1,9 +1,7 @@
 // Takes the static casters' depths back into the shown layer, where something that moves was drawn over them. Comes
-// after clear.wgsl, whose triangle mends rectangles.
+// after the caster's WGSL and after clear.wgsl, whose triangle mends rectangles.
 
 @group(0) @binding(0) var static_depth: texture_depth_2d;
-
-@group(1) @binding(BINDING) var<uniform> clip_from_world: mat4x4<f32>;
 
 // The sides of a box: its corners' bits, two triangles a side, counter-clockwise from outside.
 const CORNERS: array<u32, 36> = array<u32, 36>(
@@ -20,7 +18,7 @@ fn vs_mend_box(
     var corners = CORNERS;
     let bits = corners[index];
     let is_max = vec3<bool>((bits & 1u) != 0u, (bits & 2u) != 0u, (bits & 4u) != 0u);
-    let clip = clip_from_world * vec4<f32>(select(box_min, box_max, is_max), 1.0);
+    let clip = shadowfit_caster_position(select(box_min, box_max, is_max));
     return vec4<f32>(clip.xy, 0.5, 1.0);
 }
 
