@@ -24,6 +24,12 @@ const CASTER: &str = "
 }
 ";
 
+const COLOR: &str = "
+@fragment fn fs(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
+    return shadowfit_caster_color(at.z);
+}
+";
+
 const SEEN: &str = "
 @group(0) @binding(0) var<uniform> clip_from_world: mat4x4<f32>;
 @vertex fn vs(@location(0) position: vec3<f32>, @location(1) offset: vec3<f32>) -> @builtin(position) vec4<f32> {
@@ -218,8 +224,11 @@ pub(crate) fn uniform_layout(device: &wgpu::Device, visibility: wgpu::ShaderStag
 }
 
 fn caster_pipeline(device: &wgpu::Device, map: &ShadowMap) -> wgpu::RenderPipeline {
-    let source = caster_wgsl(map.descriptor(), &WgslOptions::group(0)) + CASTER;
-    pipeline(device, source, map.caster_layout(), (map.primitive_state(), map.depth_stencil_state()))
+    let color = [map.color_target()];
+    let has_color = color[0].is_some();
+    let source = caster_wgsl(map.descriptor(), &WgslOptions::group(0)) + CASTER + if has_color { COLOR } else { "" };
+    let states = (map.primitive_state(), map.depth_stencil_state(), &color[..usize::from(has_color)]);
+    pipeline(device, source, map.caster_layout(), states)
 }
 
 fn seen_pipeline(device: &wgpu::Device, layout: &wgpu::BindGroupLayout) -> wgpu::RenderPipeline {
@@ -230,14 +239,14 @@ fn seen_pipeline(device: &wgpu::Device, layout: &wgpu::BindGroupLayout) -> wgpu:
         stencil: wgpu::StencilState::default(),
         bias: wgpu::DepthBiasState::default(),
     };
-    pipeline(device, SEEN.to_owned(), layout, (wgpu::PrimitiveState::default(), depth))
+    pipeline(device, SEEN.to_owned(), layout, (wgpu::PrimitiveState::default(), depth, &[]))
 }
 
 fn pipeline(
     device: &wgpu::Device,
     source: String,
     layout: &wgpu::BindGroupLayout,
-    (primitive, depth): (wgpu::PrimitiveState, wgpu::DepthStencilState),
+    (primitive, depth, targets): (wgpu::PrimitiveState, wgpu::DepthStencilState, &[Option<wgpu::ColorTargetState>]),
 ) -> wgpu::RenderPipeline {
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: None,
@@ -264,7 +273,12 @@ fn pipeline(
         primitive,
         depth_stencil: Some(depth),
         multisample: wgpu::MultisampleState::default(),
-        fragment: None,
+        fragment: (!targets.is_empty()).then(|| wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("fs"),
+            compilation_options: Default::default(),
+            targets,
+        }),
         multiview_mask: None,
         cache: None,
     })

@@ -95,32 +95,35 @@ fn main() -> Result<()> {
         scenes.push(BenchScene::load(file).with_context(|| format!("{}: cannot be drawn", file.display()))?);
     }
     let wants = |part: Part| args.only.is_empty() || args.only.contains(&part);
-    let mut tables: Vec<Table> = Vec::new();
+    let mut text = format!(
+        "Measured on {}, four maps of {1} × {1} texels unless a row says otherwise.\n",
+        bench.gpu.name(),
+        bench.map
+    );
+    print!("{text}");
+    let mut add = |table: Table| {
+        let table = format!("\n{table}");
+        print!("{table}");
+        text += &table;
+    };
     if wants(Part::Passes) {
-        tables.push(passes::time(&bench, &scenes)?);
+        add(passes::time(&bench, &scenes)?);
     }
     if wants(Part::Fill) {
-        tables.push(passes::time_fill(&bench, &scenes)?);
+        add(passes::time_fill(&bench, &scenes)?);
     }
     if wants(Part::Culling) {
-        tables.push(field::time(&bench)?);
+        add(field::time(&bench)?);
     }
     if wants(Part::Filters) {
-        tables.push(filters::time(&bench, &scenes[0])?);
+        add(filters::time(&bench, &scenes[0])?);
     }
     if wants(Part::Need) {
-        tables.push(passes::time_need(&bench, &scenes)?);
+        add(passes::time_need(&bench, &scenes)?);
     }
     if wants(Part::Rays) {
-        tables.push(rays::time(&bench, &args.scenes)?);
+        add(rays::time(&bench, &args.scenes)?);
     }
-    let maps = format!("{0} × {0}", bench.map);
-    let mut text =
-        format!("Measured on {}, four maps of {maps} texels unless a row says otherwise.\n", bench.gpu.name());
-    for table in &tables {
-        text += &format!("\n{table}");
-    }
-    print!("{text}");
     if let Some(out) = &args.out {
         std::fs::write(out, &text).with_context(|| format!("{}: cannot be written", out.display()))?;
     }
