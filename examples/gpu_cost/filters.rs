@@ -14,28 +14,42 @@ use crate::timer::{Timer, median};
 /// Frames until windows are settled.
 const SETTLED: usize = 60;
 
-/// A filter by its name in the parameter table, and the format of its maps.
-const CASES: [(&str, FilterKind, MapFormat); 11] = [
-    ("hardware 2×2", FilterKind::Hardware2x2, MapFormat::Depth32Float),
-    ("point", FilterKind::Point, MapFormat::Depth32Float),
-    ("PCF 3×3", FilterKind::Pcf3x3, MapFormat::Depth32Float),
-    ("PCF 5×5", FilterKind::Pcf5x5, MapFormat::Depth32Float),
-    ("PCF 7×7", FilterKind::Pcf7x7, MapFormat::Depth32Float),
-    ("Vogel disc, 8", FilterKind::Vogel8, MapFormat::Depth32Float),
-    ("Vogel disc, 16", FilterKind::Vogel16, MapFormat::Depth32Float),
-    ("Vogel disc, 32", FilterKind::Vogel32, MapFormat::Depth32Float),
-    ("PCSS", FilterKind::Pcss, MapFormat::Depth32Float),
-    ("PCF 5×5, Depth16Unorm", FilterKind::Pcf5x5, MapFormat::Depth16Unorm),
-    ("PCF 5×5, R32Float", FilterKind::Pcf5x5, MapFormat::R32Float),
+/// What is looked up, and how.
+struct Case {
+    name: &'static str,
+    filter: FilterKind,
+    format: MapFormat,
+    /// Whether discs are turned from pixel to pixel.
+    is_turned: bool,
+}
+
+const fn case(name: &'static str, filter: FilterKind, format: MapFormat) -> Case {
+    Case { name, filter, format, is_turned: true }
+}
+
+const CASES: [Case; 13] = [
+    case("hardware 2×2", FilterKind::Hardware2x2, MapFormat::Depth32Float),
+    case("point", FilterKind::Point, MapFormat::Depth32Float),
+    case("PCF 3×3", FilterKind::Pcf3x3, MapFormat::Depth32Float),
+    case("PCF 5×5", FilterKind::Pcf5x5, MapFormat::Depth32Float),
+    case("PCF 7×7", FilterKind::Pcf7x7, MapFormat::Depth32Float),
+    case("Vogel disc, 8", FilterKind::Vogel8, MapFormat::Depth32Float),
+    case("Vogel disc, 16", FilterKind::Vogel16, MapFormat::Depth32Float),
+    case("Vogel disc, 32", FilterKind::Vogel32, MapFormat::Depth32Float),
+    case("PCSS", FilterKind::Pcss, MapFormat::Depth32Float),
+    Case { is_turned: false, ..case("Vogel disc, 16, not turned", FilterKind::Vogel16, MapFormat::Depth32Float) },
+    case("Vogel disc, 16, Depth16Unorm", FilterKind::Vogel16, MapFormat::Depth16Unorm),
+    case("PCF 5×5, Depth16Unorm", FilterKind::Pcf5x5, MapFormat::Depth16Unorm),
+    case("PCF 5×5, R32Float", FilterKind::Pcf5x5, MapFormat::R32Float),
 ];
 
 pub(crate) fn time(bench: &Bench, scene: &BenchScene) -> Result<Table> {
     let mut rows = Vec::new();
     let mut unit = 0.0;
-    for (name, filter, format) in CASES {
-        let (whole, positions) = of_filter(bench, scene, filter, format)?;
+    for case in CASES {
+        let (whole, positions) = of_filter(bench, scene, &case)?;
         unit = if rows.is_empty() { whole } else { unit };
-        rows.push(vec![name.to_owned(), ms(whole), share(whole, unit), ms(whole - positions)]);
+        rows.push(vec![case.name.to_owned(), ms(whole), share(whole, unit), ms(whole - positions)]);
     }
     Ok(Table {
         title: "Filters",
@@ -51,9 +65,10 @@ pub(crate) fn time(bench: &Bench, scene: &BenchScene) -> Result<Table> {
 }
 
 /// Times of the pass, and of the same without the look-up.
-fn of_filter(bench: &Bench, scene: &BenchScene, filter: FilterKind, format: MapFormat) -> Result<(f64, f64)> {
+fn of_filter(bench: &Bench, scene: &BenchScene, case: &Case) -> Result<(f64, f64)> {
     let gpu = &bench.gpu;
-    let technique = Technique::default().with_filter(filter).with_format(format).with_resolution(bench.map, bench.map);
+    let technique =
+        Technique::default().with_filter(case.filter).with_format(case.format).with_resolution(bench.map, bench.map);
     let mut engine = Engine::new(gpu, scene, &technique)?;
     let timer = Timer::new(gpu);
     let frames = if gpu.is_software() { 3 } else { SETTLED };
@@ -66,7 +81,7 @@ fn of_filter(bench: &Bench, scene: &BenchScene, filter: FilterKind, format: MapF
         })?;
     }
     let camera = engine.camera(0);
-    let whole = Fullscreen::new(gpu, Some(engine.sun.map()), &camera, &engine.depth);
+    let whole = Fullscreen::new(gpu, Some((engine.sun.map(), case.is_turned)), &camera, &engine.depth);
     let bare = Fullscreen::new(gpu, None, &camera, &engine.depth);
     let mut times = [Vec::new(), Vec::new()];
     for frame in 0..bench.frames + bench.frames / 5 {

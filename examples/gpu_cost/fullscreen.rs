@@ -40,10 +40,11 @@ pub(crate) struct Fullscreen {
 }
 
 impl Fullscreen {
-    /// The pass that looks up a map at the positions of a depth buffer; without one it takes positions alone.
+    /// The pass that looks up a map at the positions of a depth buffer, its discs turned from pixel to pixel or not; without
+    /// a map it takes positions alone.
     pub(crate) fn new(
         gpu: &Gpu,
-        map: Option<&ShadowMap>,
+        map: Option<(&ShadowMap, bool)>,
         camera: &PerspectiveCamera,
         depth: &wgpu::TextureView,
     ) -> Self {
@@ -121,11 +122,14 @@ fn depth_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
 
 fn pipeline(
     device: &wgpu::Device,
-    map: Option<&ShadowMap>,
+    map: Option<(&ShadowMap, bool)>,
     layouts: &[wgpu::BindGroupLayout; 2],
 ) -> wgpu::RenderPipeline {
     let (receiver, look_up) = match map {
-        Some(map) => (receiver_wgsl(map.descriptor(), &WgslOptions::group(2)), "shadowfit_factor_at(p, normal, at.xy)"),
+        Some((map, is_turned)) => (
+            receiver_wgsl(map.descriptor(), &WgslOptions::group(2)),
+            if is_turned { "shadowfit_factor_at(p, normal, at.xy)" } else { "shadowfit_factor(p, normal)" },
+        ),
         None => (String::new(), "normal.x + p.x"),
     };
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -133,7 +137,7 @@ fn pipeline(
         source: wgpu::ShaderSource::Wgsl((receiver + &SHADER.replace("LOOK_UP", look_up)).into()),
     });
     let mut groups = vec![Some(&layouts[0]), Some(&layouts[1])];
-    groups.extend(map.map(|map| Some(map.receiver_layout())));
+    groups.extend(map.map(|(map, _)| Some(map.receiver_layout())));
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: None,
         bind_group_layouts: &groups,

@@ -5,7 +5,7 @@
 // that a small penumbra is found within the wide disc that the highest casters ask for.
 
 // Texels that the search looks at.
-const SHADOWFIT_SEARCH: u32 = 24u;
+const SHADOWFIT_SEARCH: u32 = 20u;
 // Radius at which it begins, in texels: the point's own texel.
 const SHADOWFIT_SEARCH_START: f32 = 0.5;
 // What a look-up reads beside the disc's edge counts as well, in texels.
@@ -27,8 +27,10 @@ fn shadowfit_casters(projected: shadowfit_Projected, turn: f32) -> vec2<f32> {
         let distance = projected.surface - stored;
         // The penumbra of a caster at this distance, or the least disc.
         let cone = max(distance * projected.penumbra, vec2<f32>(shadowfit_receiver.least_disc));
-        let place = offset / (cone + SHADOWFIT_SEARCH_BESIDE);
-        let is_within = dot(place, place) <= 1.0;
+        // Within the ellipse of these radii, without a division.
+        let radii = cone + SHADOWFIT_SEARCH_BESIDE;
+        let place = offset * radii.yx;
+        let is_within = dot(place, place) <= radii.x * radii.x * radii.y * radii.y;
         let is_lit = saturate(projected.depth + dot(projected.gradient, offset)) COMPARE stored;
         if is_within && !is_lit {
             found += vec2<f32>(distance, 1.0);
