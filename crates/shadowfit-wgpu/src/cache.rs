@@ -200,6 +200,16 @@ impl MapCache {
         self.maps[map].wrap
     }
 
+    /// Whether the passes depend on what is in view: static casters alone do not.
+    pub(crate) fn needs_volumes(&self, choice: &Choice) -> bool {
+        let has_moving = self.is_split && !self.known.moving.is_empty();
+        choice.decisions.iter().any(|decision| match decision {
+            Decision::Wait => false,
+            Decision::DrawAnew => true,
+            Decision::Keep { .. } | Decision::Renew => has_moving,
+        })
+    }
+
     /// Step 3: the passes. `volumes` hold the casters of each map for what is in view, relative to the maps' origin.
     pub(crate) fn plan(
         &mut self,
@@ -217,7 +227,7 @@ impl MapCache {
                 known: &self.known,
                 casters: frame.casters,
                 origin: frame.origin,
-                in_view: &volumes[index],
+                in_view: volumes.get(index),
                 settings: &self.settings,
                 is_split: self.is_split,
             };

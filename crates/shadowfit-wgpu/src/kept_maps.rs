@@ -91,7 +91,7 @@ impl KeptMaps {
         frame: &SunFrame<'_>,
         fitted: &[MapFit],
     ) -> Result<(), ShadowMapError> {
-        self.plan = FramePlan::default();
+        self.skip();
         let view = frame.map_view();
         crate::map_fit::check(self.map.descriptor(), &view, fitted)?;
         // 1. Which of them are drawn now, and which are read as they are.
@@ -112,7 +112,7 @@ impl KeptMaps {
         }
         // 2. The casters of each, and the passes.
         self.maps.clone_from(&choice.maps);
-        let volumes = self.volumes(frame, &view)?;
+        let volumes = if self.cache.needs_volumes(&choice) { self.volumes(frame, &view)? } else { Vec::new() };
         self.cache.plan(&choice, &cached, &volumes, &mut self.plan);
         // 3. What the shaders read.
         for (index, map) in self.maps.iter_mut().enumerate() {

@@ -82,7 +82,7 @@ pub(crate) struct FramePlan {
 }
 
 impl FramePlan {
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.passes.clear();
         self.pieces.clear();
         self.casters.clear();
@@ -101,8 +101,8 @@ pub(super) struct Drawing<'a> {
     pub(super) casters: &'a Casters<'a>,
     /// What positions in the shaders are relative to, in world space, in metres.
     pub(super) origin: DVec3,
-    /// Casters of shadows in view.
-    pub(super) in_view: &'a CasterVolume,
+    /// Casters of shadows in view; `None` where nothing is drawn by it.
+    pub(super) in_view: Option<&'a CasterVolume>,
     pub(super) settings: &'a CacheSettings,
     pub(super) is_split: bool,
 }
@@ -143,7 +143,7 @@ impl Drawing<'_> {
         let masks = &mut plan.masks;
         masks.clear();
         masks.resize(boxes.boxes.len(), 0);
-        cull(&[*self.in_view], boxes.origin, boxes.boxes, masks);
+        cull(&[self.in_view()], boxes.origin, boxes.boxes, masks);
         let kept = |number: &u32| masks[*number as usize] != 0;
         let [fixed, moving] = [&self.known.fixed, &self.known.moving].map(|list| list.iter().copied().filter(kept));
         plan.casters.extend(self.known.merged(fixed, moving));
@@ -228,7 +228,7 @@ impl Drawing<'_> {
         let boxes = self.casters.boxes;
         plan.moving_boxes.clear();
         plan.moving_boxes.extend(self.known.moving.iter().map(|number| boxes.boxes[*number as usize]));
-        let mut volumes = vec![*self.in_view];
+        let mut volumes = vec![self.in_view()];
         volumes.extend(parts.iter().map(|part| self.volume(part.window)));
         plan.masks.clear();
         plan.masks.resize(plan.moving_boxes.len(), 0);
@@ -251,6 +251,11 @@ impl Drawing<'_> {
                 });
             }
         }
+    }
+
+    /// Casters of shadows in view; without it all.
+    fn in_view(&self) -> CasterVolume {
+        self.in_view.copied().unwrap_or(CasterVolume::everywhere(self.fitted.fit.origin))
     }
 
     /// All texels of the map.

@@ -77,7 +77,7 @@ impl ShadowPiece<'_> {
 impl KeptMaps {
     /// Nothing is to be drawn.
     pub(crate) fn skip(&mut self) {
-        self.plan = FramePlan::default();
+        self.plan.clear();
     }
 
     /// The passes of this frame, in the order in which they must be drawn.

@@ -7,8 +7,8 @@ use shadowfit::settings::MapChoice;
 use super::{DEPTH_ROUNDING, holds_slice};
 use crate::{MapFit, MapView, ShadowMapDescriptor};
 
-/// Halvings of the views' depths in the search for what a finer map holds: to a millionth of them.
-const HALVINGS: u32 = 20;
+/// Halvings of the views' depths in the search for what a finer map holds: to a four thousandth of them.
+const HALVINGS: u32 = 12;
 
 /// For each map the view depths, in metres, from which points of the views read it, in the order of `maps`; `None`
 /// where no point does.
