@@ -1,4 +1,5 @@
-//! `cargo xtask bench`: measures the core crate and publishes times and ratios in docs/BENCHMARKS.md.
+//! `cargo xtask bench`: measures the core crate, and with `--gpu` what shadows cost on a GPU, and publishes times and
+//! ratios in docs/BENCHMARKS.md.
 //!
 //! Times mean little on another machine; ratios of one run do, so every group that has a hand-written counterpart
 //! shows them.
@@ -13,9 +14,12 @@ use serde::Deserialize;
 
 use crate::process;
 
-/// Where the table stands in the page; what lies between is replaced.
-const BEGIN: &str = "<!-- measured: begin -->";
-const END: &str = "<!-- measured: end -->";
+/// Where the tables of the core and of the GPU stand in the page; what lies between is replaced.
+const CORE: [&str; 2] = ["<!-- measured: begin -->", "<!-- measured: end -->"];
+const GPU: [&str; 2] = ["<!-- measured on a GPU: begin -->", "<!-- measured on a GPU: end -->"];
+/// Chooses the GPU's tables, and takes them from a file that the example `gpu_cost` wrote on another machine.
+const ON_GPU: &str = "--gpu";
+const FROM: &str = "--from";
 /// How the counterpart of a group is called, at the beginning of its name.
 const COUNTERPART: &str = "by hand";
 
@@ -46,6 +50,28 @@ struct Measured {
 
 /// Measures and writes the page.
 pub(crate) fn bench(args: &[String]) -> Result<()> {
+    match args.split_first() {
+        Some((first, args)) if first == ON_GPU => bench_gpu(args),
+        _ => bench_core(args),
+    }
+}
+
+/// Runs the example `gpu_cost` with the arguments, or takes what it wrote elsewhere.
+fn bench_gpu(args: &[String]) -> Result<()> {
+    let written = process::root().join("target/gpu_cost.md");
+    let file = match args {
+        [from, file] if from == FROM => Path::new(file),
+        _ => {
+            let example = ["--release", "--example", "gpu_cost", "--", "--out"];
+            process::run(process::cargo("run").args(example).arg(&written).args(args))?;
+            &written
+        }
+    };
+    let tables = fs::read_to_string(file).with_context(|| format!("{}: cannot be read", file.display()))?;
+    publish(GPU, &format!("{}\n", tables.trim_end()))
+}
+
+fn bench_core(args: &[String]) -> Result<()> {
     let folder = process::root().join("target/criterion");
     if folder.exists() {
         fs::remove_dir_all(&folder).with_context(|| format!("{}: cannot be emptied", folder.display()))?;
@@ -54,13 +80,18 @@ pub(crate) fn bench(args: &[String]) -> Result<()> {
     let mut groups = BTreeMap::new();
     collect(&folder, &mut groups)?;
     ensure!(!groups.is_empty(), "{}: no measurement was found", folder.display());
-    let page = process::root().join("docs/BENCHMARKS.md");
-    let text = fs::read_to_string(&page).with_context(|| format!("{}: cannot be read", page.display()))?;
-    let (before, rest) = text.split_once(BEGIN).with_context(|| format!("{}: has no {BEGIN}", page.display()))?;
-    let (_, after) = rest.split_once(END).with_context(|| format!("{}: has no {END}", page.display()))?;
     let table = table(&groups);
     print!("{table}");
-    fs::write(&page, format!("{before}{BEGIN}\n{table}{END}{after}"))
+    publish(CORE, &table)
+}
+
+/// Replaces what stands between two marks of the page.
+fn publish([begin, end]: [&str; 2], table: &str) -> Result<()> {
+    let page = process::root().join("docs/BENCHMARKS.md");
+    let text = fs::read_to_string(&page).with_context(|| format!("{}: cannot be read", page.display()))?;
+    let (before, rest) = text.split_once(begin).with_context(|| format!("{}: has no {begin}", page.display()))?;
+    let (_, after) = rest.split_once(end).with_context(|| format!("{}: has no {end}", page.display()))?;
+    fs::write(&page, format!("{before}{begin}\n{table}{end}{after}"))
         .with_context(|| format!("{}: cannot be written", page.display()))
 }
 

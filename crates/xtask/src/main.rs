@@ -47,10 +47,12 @@ enum Task {
     Gallery,
     /// Draw the pictures of docs/MATHS.md again, with the fits of the core crate.
     Maths,
-    /// Measure the core crate and write the times and ratios into docs/BENCHMARKS.md.
+    /// Measure the core crate, or with `--gpu` what shadows cost on a GPU, and write the times and ratios into
+    /// docs/BENCHMARKS.md.
     #[command(disable_help_flag = true)]
     Bench {
-        /// Arguments of the benches, for example part of a name or `--quick`.
+        /// Arguments of the benches, for example part of a name or `--quick`; after `--gpu` those of the example
+        /// `gpu_cost`, for example glTF files, or `--from FILE` for what it wrote on another machine.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<String>,
     },

@@ -65,10 +65,6 @@ impl Stage {
             self.problem = Some("depth -1 to 1 is OpenGL's: wgpu draws the map with 0 to 1 instead".to_owned());
             technique.fit.depth = DepthConvention::ZeroToOne;
         }
-        if ShadowMapDescriptor::from(&technique).depth_clamp && !self.gpu.has_depth_clamp() {
-            self.problem = Some(NO_DEPTH_CLAMP.to_owned());
-            technique.fit.casters = CasterPolicy::List;
-        }
         let wanted = ShadowMapDescriptor::from(&technique);
         if let Err(error) = self.evaluator.renderer.set_shadow_map(&self.gpu, &wanted) {
             self.problem = Some(error.to_string());

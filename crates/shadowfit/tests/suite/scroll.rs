@@ -7,8 +7,8 @@ use shadowfit::glam::{DQuat, DVec2, DVec3, UVec2, Vec3};
 use shadowfit::scroll::{GridAnchor, Scroll, TexelRect, Tile, tiles};
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, RectangleKind, SplitScheme, Stabilise};
 use shadowfit::{
-    Aabb, Boxes, DepthConvention, FitError, FitInput, FittedMap, FittedMaps, LightFit, MapFitter, PerspectiveCamera,
-    Technique, Workspace,
+    Aabb, Boxes, CasterVolume, DepthConvention, FitError, FitInput, FittedMap, FittedMaps, LightFit, MapFitter,
+    PerspectiveCamera, Technique, Workspace,
 };
 
 use crate::support::{DIRECTION, any_direction, camera, double};
@@ -298,4 +298,105 @@ fn maps_on_no_grid_have_no_tiles_and_bad_ones_are_errors() {
     }
     let far = GridAnchor { first: [i64::MIN, i64::MAX], ..anchor };
     assert!(tiles(&FittedMap { anchor: Some(far), ..good }, 64).is_err());
+}
+
+proptest! {
+    /// By brute force: a part of a map is stored texel by texel at (t + wrap) modulo the size, each once, in pieces whose
+    /// viewport leads from the one to the other.
+    #[test]
+    fn a_part_of_a_map_is_stored_wrapped_around_texel_by_texel(
+        (w, h) in (1_u32..12, 1_u32..12), (x, y) in (0_u32..12, 0_u32..12), (dx, dy) in (0_u32..14, 0_u32..14),
+        (wx, wy) in (0_u32..12, 0_u32..12),
+    ) {
+        let size = UVec2::new(w, h);
+        let wrap = UVec2::new(wx % w, wy % h);
+        let part = TexelRect { min: UVec2::new(x, y), size: UVec2::new(dx, dy) };
+        let mut found = HashMap::new();
+        for piece in part.stored(wrap, size) {
+            prop_assert_eq!(piece.window.size, piece.stored.size);
+            for column in 0..piece.stored.size.x {
+                for row in 0..piece.stored.size.y {
+                    let at = UVec2::new(column, row);
+                    let stored = piece.stored.min + at;
+                    prop_assert!(stored.cmplt(size).all());
+                    prop_assert_eq!(stored.as_ivec2(), (piece.window.min + at).as_ivec2() + piece.viewport());
+                    prop_assert!(found.insert(piece.window.min + at, stored).is_none());
+                }
+            }
+        }
+        let inside = part.intersection(TexelRect::all(size));
+        prop_assert_eq!(found.len() as u64, inside.area());
+        for (texel, stored) in found {
+            prop_assert!(is_in(&inside, texel.x, texel.y));
+            prop_assert_eq!(stored, (texel + wrap) % size);
+        }
+    }
+
+    /// Frame after frame, what both maps hold stays where it is stored.
+    #[test]
+    fn kept_texels_stay_where_they_are_stored(
+        shifts in prop::collection::vec((-9_i64..9, -9_i64..9), 1..20), (w, h) in (1_u32..12, 1_u32..12),
+    ) {
+        let size = UVec2::new(w, h);
+        let (mut before, mut wrap) = (plain_map([40, -70], size), UVec2::ZERO);
+        for (dx, dy) in shifts {
+            let [x, y] = before.anchor.unwrap().first;
+            let now = plain_map([x + dx, y + dy], size);
+            let scroll = Scroll::between(&before, &now);
+            let next = scroll.wrap(wrap, size);
+            prop_assert!(next.cmplt(size).all());
+            if scroll.is_redraw() {
+                prop_assert_eq!(next, UVec2::ZERO);
+            } else {
+                for column in 0..w {
+                    for row in 0..h {
+                        let now = UVec2::new(column, row);
+                        let old = now.as_ivec2() + scroll.shift;
+                        if old.cmpge(shadowfit::glam::IVec2::ZERO).all() && old.as_uvec2().cmplt(size).all() {
+                            prop_assert_eq!((now + next) % size, (old.as_uvec2() + wrap) % size);
+                        }
+                    }
+                }
+            }
+            (before, wrap) = (now, next);
+        }
+    }
+
+    /// The texels of a box hold its corners and all between them; casters over a part of a map are those of its texels.
+    #[test]
+    fn the_texels_of_a_box_hold_it_and_parts_of_a_map_keep_the_casters_over_them(
+        direction in any_direction(), centre in prop::array::uniform3(-30.0_f32..30.0),
+        half in prop::array::uniform3(0.0_f32..8.0),
+    ) {
+        let (centre, half) = (Vec3::from(centre), Vec3::from(half));
+        let aabb = Aabb::new(centre - half, centre + half);
+        let origin = DVec3::new(1000.0, -3.0, 500.0);
+        let mut camera = camera();
+        camera.eye = origin;
+        let fit = shadowfit::fit(&camera.frustum().unwrap(), direction, &FitSettings::default().with_max_distance(40.0)).unwrap();
+        let rect = TexelRect::of_box(&fit, &aabb, origin);
+        let volume = CasterVolume::of_part(&fit, CasterPolicy::DepthClamp, rect);
+        let size = fit.resolution.as_vec2();
+        for corner in aabb.corners() {
+            let uv = fit.uv_from_world.transform_point3(corner).truncate() * size;
+            let is_over = uv.cmpge(shadowfit::glam::Vec2::ZERO).all() && uv.cmple(size).all();
+            if is_over {
+                let texel = uv.as_uvec2().min(fit.resolution - 1);
+                prop_assert!(is_in(&rect, texel.x, texel.y), "{rect:?} {texel}");
+                prop_assert!(volume.intersects_sphere(corner, 0.0) || uv.x.is_nan());
+            }
+        }
+        if rect.is_empty() {
+            prop_assert!(!CasterVolume::of_part(&fit, CasterPolicy::DepthClamp, TexelRect::all(fit.resolution))
+                .intersects_sphere(centre, 0.0));
+        }
+    }
+}
+
+#[test]
+fn an_empty_box_has_no_texels_and_one_beside_the_map_none_either() {
+    let fit = shadowfit::fit(&camera().frustum().unwrap(), DIRECTION, &FitSettings::default()).unwrap();
+    assert!(TexelRect::of_box(&fit, &Aabb::EMPTY, fit.origin).is_empty());
+    let far = Aabb::new(Vec3::splat(1e5), Vec3::splat(1e5 + 1.0));
+    assert!(TexelRect::of_box(&fit, &far, fit.origin).is_empty());
 }
