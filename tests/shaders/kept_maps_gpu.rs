@@ -42,8 +42,8 @@ fn run(technique: &Technique, frames: u32, mut step: impl FnMut(u32, &mut Town, 
         step(frame, &mut town, &mut walk, &mut engine.kept);
         engine.anew.invalidate_all();
         let [kept, anew] = engine.draw(technique, &town, &walk);
-        found.kept_drawn += kept.drawn;
-        found.anew_drawn += anew.drawn;
+        found.kept_drawn += kept.texels;
+        found.anew_drawn += anew.texels;
         found.cleared += usize::from(frame > 0 && kept.cleared > 0);
         for (map, (a, b)) in kept.maps.iter().zip(&anew.maps).enumerate() {
             let unequal = a.iter().zip(b).filter(|(a, b)| (*a - *b).abs() > DEPTH).count() as u64;

@@ -98,7 +98,7 @@ impl SceneCasters {
                     }
                     // The same triangles once more, for another instance.
                     Some(last) if !is_same && last.indices == range => {
-                        last.instances.end = add(caster.instance as usize) + 1
+                        last.instances.end = add(caster.instance as usize) + 1;
                     }
                     _ => {
                         let slot = add(caster.instance as usize);
@@ -209,7 +209,8 @@ mod tests {
         assert_eq!((draws.len(), added.as_slice()), (6, [2, 0, 1, 0, 3, 0].as_slice()));
         // Many numbers make runs of several.
         let numbers: Vec<u32> = numbers.iter().copied().cycle().take(6 * RUNS).collect();
-        (added.clear(), draws.clear());
+        added.clear();
+        draws.clear();
         casters.draws(&numbers, indices, |i| (added.push(i), added.len() - 1).1, &mut draws);
         assert_eq!(draws.len(), 3 * RUNS);
         let expected = [(0, 0..60, 1), (0, 90..120, 1), (1, 0..6, 3)];

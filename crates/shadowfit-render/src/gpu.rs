@@ -122,12 +122,6 @@ impl Gpu {
         self.adapter.get_info().name
     }
 
-    /// Whether the device clamps depth by itself; where it does not, fragment shaders do, see
-    /// [`shadowfit_wgpu::ShadowMapDescriptor::depth_clamp`].
-    pub fn has_depth_clamp(&self) -> bool {
-        self.device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL)
-    }
-
     /// Whether pictures are drawn by the CPU.
     pub fn is_software(&self) -> bool {
         self.adapter.get_info().device_type == wgpu::DeviceType::Cpu

@@ -132,6 +132,7 @@ impl Stage {
     /// [`StageError`] if the scene is empty.
     pub fn set_scene(&mut self, scene: Scene) -> Result<(), StageError> {
         self.scene = PreparedScene::new(&self.gpu, self.evaluator.renderer.material_layout(), scene)?;
+        self.evaluator.renderer.invalidate_maps();
         self.home = home::home(&self.scene);
         (self.settings, self.camera) = self.home;
         (self.seconds, self.shown, self.before_artefact, self.fitted) = (0.0, None, None, None);

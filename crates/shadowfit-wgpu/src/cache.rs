@@ -19,7 +19,7 @@ mod schedule;
 
 use shadowfit::glam::{DVec3, IVec2, UVec2, Vec3};
 use shadowfit::scroll::TexelRect;
-use shadowfit::settings::MAX_MAPS;
+use shadowfit::settings::{MAX_MAPS, MapChoice};
 use shadowfit::{Aabb, CasterVolume};
 
 use crate::MapFit;
@@ -66,8 +66,8 @@ pub(crate) struct CacheSettings {
     pub(crate) culling: Culling,
     /// Whether depth is clamped at the near plane.
     pub(crate) depth_clamp: bool,
-    /// Whether points read maps by coverage.
-    pub(crate) by_coverage: bool,
+    /// Which maps points read.
+    pub(crate) choice: MapChoice,
     /// Width and height of the layers, in texels.
     pub(crate) layer: UVec2,
 }
@@ -171,7 +171,8 @@ impl MapCache {
             let decision = map.decide(fitted, &self.settings, has_moving && !self.is_split);
             let texels = decision.texels(fitted) + u64::from(has_moving);
             if texels > 0 {
-                let is_due = !map.may_wait(fitted, self.settings.by_coverage && frame.coarsest != Some(index));
+                let is_due =
+                    !map.may_wait(fitted, self.settings.choice == MapChoice::Coverage && frame.coarsest != Some(index));
                 candidates.push(Candidate { map: index, age: self.frame - map.frame, texels, is_due });
             }
             map.fitted = Some(*fitted);

@@ -5,7 +5,6 @@ mod passes;
 
 use shadowfit::choice::MapOrder;
 use shadowfit::glam::DVec3;
-use shadowfit::settings::MapChoice;
 use shadowfit::{Aabb, CasterVolume};
 
 use crate::cache::{CacheFrame, CacheSettings, FramePlan, MapCache};
@@ -147,7 +146,7 @@ impl KeptMaps {
             can_mend: Layers::can_mend(&self.device),
             culling: self.culling,
             depth_clamp: descriptor.depth_clamp,
-            by_coverage: descriptor.choice == MapChoice::Coverage,
+            choice: descriptor.choice,
             layer: descriptor.resolution.into(),
         }
     }

@@ -124,7 +124,7 @@ pub(super) struct Drawn {
     pub(super) maps: Vec<Vec<f32>>,
     pub(super) passes: usize,
     pub(super) cleared: usize,
-    pub(super) drawn: u64,
+    pub(super) texels: u64,
 }
 
 /// Two sets of the same maps.
@@ -190,8 +190,8 @@ impl Engine {
             Drawn {
                 maps: unwrapped(gpu, target),
                 passes: target.passes().len(),
-                cleared: target.passes().filter(|pass| pass.is_cleared()).count(),
-                drawn: target
+                cleared: target.passes().filter(ShadowPass::is_cleared).count(),
+                texels: target
                     .passes()
                     .filter(|pass| pass.content() != PassContent::Moving)
                     .map(|pass| pass.texels())

@@ -11,8 +11,9 @@ impl Stage {
     /// From now on, what the last picture showed comes from its depth buffer, of `samples` per pixel, and not from
     /// rays: for pictures that follow each other in a window. It comes a frame or two late, whenever the GPU is done
     /// with it, so that pictures need not be the same each time. Rays go on where the GPU cannot do it, and find what a
-    /// view shows that follows no other.
+    /// view shows that follows no other. What stands still is kept in the shadow maps, too.
     pub fn read_depths(&mut self, samples: u32) {
+        self.evaluator.renderer.set_keeps(true);
         self.need_pass = NeedPass::new(&self.gpu.device, &self.gpu.queue, samples).ok();
         self.fitter.is_told = self.need_pass.is_some();
     }

@@ -7,9 +7,6 @@ use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
 use super::Stage;
 use crate::fitted::Fitted;
 
-/// Shown when the GPU lacks what a caster policy needs.
-const NO_DEPTH_CLAMP: &str = "this GPU has no depth clamp: the objects place the map's near plane instead";
-
 impl Stage {
     /// The maps of the present view and settings; none where there is nothing to fit, with the
     /// reason as [`Self::problem`].
