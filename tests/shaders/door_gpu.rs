@@ -205,3 +205,23 @@ fn gpu_maps_of_another_size_or_number_are_refused_by_the_drawing_half() {
     assert_eq!(kept.passes().len(), 4);
     quiet.assert("maps of another size");
 }
+
+#[test]
+fn gpu_a_proof_fails_where_shaders_take_positions_from_too_far_away() {
+    let device = Device::from(software_gpu());
+    let quiet = Quiet::new(&device);
+    let mut sun = SunShadows::new(&device.device, &device.queue, &technique()).expect("maps");
+    let nothing = frame_of(&[], SUN, &BOXES);
+    assert_eq!(sun.verify(&nothing), Err(SunShadowsError::NoFrame));
+    // The f32 numbers there are half a metre apart.
+    let place = DVec3::X * 8_000_000.0;
+    let views = [ViewFrustum { origin: EYE + place, ..camera(EYE).frustum().expect("a camera") }];
+    let boxes = Boxes { origin: place, boxes: &BOXES };
+    let frame = SunFrame::new(&views, SUN, boxes, Casters::fixed(boxes));
+    for (frame, is_proven) in [(frame, true), (frame.with_origin(DVec3::ZERO), false)] {
+        sun.update(&device.queue, &frame).expect("a good frame");
+        let certificate = sun.verify(&frame).expect("a good frame");
+        assert_eq!(certificate.is_proven(), is_proven, "{certificate:?}");
+    }
+    quiet.assert("proofs");
+}
