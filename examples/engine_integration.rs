@@ -1,499 +1,335 @@
-//! A small wgpu engine of its own that takes its sun shadows from `shadowfit` and `shadowfit-wgpu` and nothing else of
-//! this workspace: own vertex buffers, own pipelines, own WGSL. It walks a few frames without a window, and the last
-//! one is the picture.
+//! A small wgpu engine of its own that takes its sun shadows from `shadowfit-wgpu`: four maps, placed by what the picture
+//! shows, drawn once and kept where nothing moves. It walks a few frames without a window, and the last one is the
+//! picture.
 //!
 //! ```sh
 //! cargo run --example engine_integration              # writes out/engine_integration.png
 //! cargo run --example engine_integration -- some.png
 //! ```
 //!
-//! What the engine has to do is marked with STEP 1 to STEP 7. The scene stands 50 km from the world's origin, to show
-//! that shadows stand still there: shaders get positions relative to the eye.
+//! The engine is not made for shadowfit: its maths is the crate ultraviolet, whose types pass through mint; its shaders
+//! take f32 positions relative to the kilometre of the world that the camera is in; its depth is reversed and without a
+//! far plane; it draws four samples a pixel of HDR colours, which a pass of its own maps to the screen. The scene stands
+//! 50 km from the world's origin, to show that shadows stand still there.
+//!
+//! What the engine has to do for its shadows is marked with STEP 1 to STEP 10: each part begins at its comment and ends at
+//! the next empty line. A test counts these lines.
+
+#[path = "engine_integration/gpu.rs"]
+mod gpu;
+#[path = "engine_integration/scene.rs"]
+mod scene;
 
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
-use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::need::NeedGrid;
-use shadowfit::{Aabb, Boxes, DepthConvention, FitInput, MapFitter, PerspectiveCamera, Technique, Workspace};
-use shadowfit_wgpu::need::{NeedPass, NeedView, SeenNeed};
-use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgsl};
-use wgpu::util::DeviceExt;
+use ultraviolet::projection::rh_yup::perspective_reversed_infinite_z_wgpu_dx_gl as perspective;
+use ultraviolet::{DVec3, Mat4, Vec3, Vec4};
 
-/// Size of the picture, in pixels; rows of a multiple of 64 pixels are read back without padding.
-const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 960, height: 540, depth_or_array_layers: 1 };
-const SAMPLES: u32 = 4;
-const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
-const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-const SKY: wgpu::Color = wgpu::Color { r: 0.35, g: 0.55, b: 0.85, a: 1.0 };
-/// Frames until the picture, and metres that the camera walks in each.
-const FRAMES: u32 = 8;
-const STEP: f32 = 0.02;
-/// Middle of the scene in world space, in metres.
-const PLACE: DVec3 = DVec3::new(50_000.0, 0.0, -20_000.0);
+use gpu::{DEPTH, Gpu, HDR, Pipeline, SAMPLES, SIZE, SRGB};
+use scene::{PLACE, Scene, relative};
+
+// STEP 1: take the two crates; the first one with its feature `mint`, if the engine's maths is not glam.
+use shadowfit::mint::{dvec3, frustum_from_eye_from_clip, mat4, vec3};
+use shadowfit::{Aabb, Boxes, DepthConvention, Technique};
+use shadowfit_wgpu::{Casters, SunFrame, SunShadows, WgslOptions, caster_wgsl, receiver_wgsl};
+
+/// Frames until the picture.
+const FRAMES: u32 = 12;
 /// The way the sun's light travels.
-const DIRECTION: Vec3 = Vec3::new(0.55, -0.7, -0.45);
+const SUNLIGHT: Vec3 = Vec3 { x: 0.72, y: -0.55, z: -0.28 };
+/// View depth up to which the sun's light is blocked, in metres.
+const DISTANCE: f32 = 90.0;
 
-/// View depth at which shadows end, in metres.
-const SHADOW_DISTANCE: f32 = 50.0;
-/// Bind group of the map's matrix in the shadow pass and of the maps in the shaded one. Any will do: this engine has
-/// its camera at group 0 in every pass.
-const SHADOW_GROUP: u32 = 1;
-
-/// What the engine's passes have in common: a unit cube, placed and scaled by its instance.
-const VERTEX_WGSL: &str = "
+/// The engine's vertices: a mesh, placed and scaled by its instance, relative to the cell of the world.
+const VERTEX: &str = "
 struct Vertex {
     @location(0) corner: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) center: vec3<f32>,
     @location(3) half_size: vec3<f32>,
-    @location(4) color: vec3<f32>,
-}
-
-// Relative to the eye, in metres.
-fn position(vertex: Vertex) -> vec3<f32> {
-    return vertex.center + vertex.corner * vertex.half_size;
+    @location(4) color: vec4<f32>,
 }
 ";
 
-/// The shadow pass: all that shadowfit asks of it is the position.
-const CASTER_WGSL: &str = "
-@vertex
-fn vs_caster(vertex: Vertex) -> @builtin(position) vec4<f32> {
-    return shadowfit_caster_position(position(vertex));
+// STEP 3: a vertex shader for the casters; all that is asked of it is the position.
+const CASTER: &str = "
+@vertex fn vs(vertex: Vertex) -> @builtin(position) vec4<f32> {
+    return shadowfit_caster_position(vertex.center + vertex.corner * vertex.half_size);
 }
 ";
 
-/// The shaded pass: the sun's part of the light is multiplied by `shadowfit_factor`.
-const SCENE_WGSL: &str = "
+/// Draws HDR colours; alpha is where something is.
+const SHADED: &str = "
 struct Camera {
-    clip_from_world: mat4x4<f32>,
+    clip_from_cell: mat4x4<f32>,
+    eye: vec4<f32>,
     to_light: vec4<f32>,
 }
-
 @group(0) @binding(0) var<uniform> camera: Camera;
 
 struct Varyings {
     @builtin(position) clip: vec4<f32>,
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
-    @location(2) color: vec3<f32>,
+    @location(2) color: vec4<f32>,
 }
 
-@vertex
-fn vs_scene(vertex: Vertex) -> Varyings {
-    let position = position(vertex);
-    let clip = camera.clip_from_world * vec4<f32>(position, 1.0);
-    return Varyings(clip, position, vertex.normal, vertex.color);
+@vertex fn vs(vertex: Vertex) -> Varyings {
+    let position = vertex.center + vertex.corner * vertex.half_size;
+    let clip = camera.clip_from_cell * vec4<f32>(position, 1.0);
+    return Varyings(clip, position, vertex.normal / vertex.half_size, vertex.color);
 }
 
-@fragment
-fn fs_scene(in: Varyings) -> @location(0) vec4<f32> {
+@fragment fn fs(in: Varyings) -> @location(0) vec4<f32> {
     let normal = normalize(in.normal);
-    let sun = saturate(dot(normal, camera.to_light.xyz)) * shadowfit_factor(in.position, normal);
-    let sky = mix(0.06, 0.16, normal.y * 0.5 + 0.5);
-    return vec4<f32>(in.color * (sun * vec3<f32>(0.95, 0.88, 0.75) + sky * vec3<f32>(0.7, 0.95, 1.4)), 1.0);
+    let distance = length(in.position - camera.eye.xyz);
+    let tile = vec2<i32>(floor(in.position.xz / 2.0));
+    let contrast = in.color.a * exp(-distance / 40.0) * step(0.5, normal.y);
+    let color = in.color.rgb * (1.0 + contrast * f32(((tile.x + tile.y) & 1) * 2 - 1));
+    var sun = vec3<f32>(9.5, 7.6, 5.2) * saturate(dot(normal, camera.to_light.xyz));
+    // STEP 6: the sun's part of the light is multiplied by what of it arrives.
+    sun *= shadowfit_factor(in.position, normal);
+
+    let sky = mix(vec3<f32>(0.55, 0.42, 0.30), vec3<f32>(0.75, 1.05, 1.70), normal.y * 0.5 + 0.5);
+    let haze = 1.0 - exp(-max(distance - 30.0, 0.0) / 260.0);
+    return vec4<f32>(mix(color * (sun + sky), vec3<f32>(2.2, 2.5, 2.9), haze), 1.0);
 }
 ";
 
-/// A box of the scene.
-struct Block {
-    /// World space, in metres.
-    center: DVec3,
-    /// Half its size, in metres.
-    half_size: Vec3,
-    /// Linear colour.
-    color: [f32; 3],
+/// Maps HDR colours to the screen, over a sky. The curve is Krzysztof Narkowicz's fit of ACES, 2015.
+const TONE: &str = "
+@group(0) @binding(0) var hdr: texture_2d<f32>;
+
+@vertex fn vs(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    return vec4<f32>(vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
 }
 
-impl Block {
-    /// Its bounds relative to a place in world space, in metres. The difference is taken in f64.
-    fn bounds(&self, origin: DVec3) -> Aabb {
-        let center = (self.center - origin).as_vec3();
-        Aabb::new(center - self.half_size, center + self.half_size)
+@fragment fn fs(@builtin(position) pixel: vec4<f32>) -> @location(0) vec4<f32> {
+    let texel = textureLoad(hdr, vec2<i32>(pixel.xy), 0);
+    let height = saturate(1.0 - pixel.y / f32(textureDimensions(hdr).y) * 2.0);
+    let sky = mix(vec3<f32>(2.2, 2.5, 2.9), vec3<f32>(0.55, 1.05, 2.4), sqrt(height));
+    let x = (texel.rgb + sky * (1.0 - texel.a)) * 0.15;
+    return vec4<f32>(saturate(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14)), 1.0);
+}
+";
+
+/// The camera.
+struct Camera {
+    /// World space, in metres.
+    eye: DVec3,
+    forward: Vec3,
+}
+
+impl Camera {
+    /// Clip space from positions relative to the eye.
+    fn clip_from_eye(&self) -> Mat4 {
+        let turn = Mat4::look_at(Vec3::zero(), self.forward, Vec3::unit_y());
+        perspective(0.75, SIZE.width as f32 / SIZE.height as f32, 0.1) * turn
+    }
+
+    /// The kilometre of the world that the camera is in: what positions in shaders are relative to.
+    fn cell(&self) -> DVec3 {
+        self.eye.map(|x| (x / 1024.0).floor() * 1024.0)
     }
 }
 
-/// The engine: its own buffers and pipelines, and the shadow map beside them.
+/// What is drawn into.
+struct Targets {
+    multisampled: wgpu::TextureView,
+    depth: wgpu::TextureView,
+    hdr: wgpu::TextureView,
+    picture: wgpu::TextureView,
+}
+
 struct Engine {
-    device: wgpu::Device,
-    queue: wgpu::Queue,
-    technique: Technique,
-    fitter: MapFitter,
-    shadow_map: ShadowMap,
-    /// Reads the depth buffer, where the GPU can; and what it found last.
-    need_pass: Option<NeedPass>,
-    seen: Option<SeenNeed>,
-    caster_pipeline: wgpu::RenderPipeline,
-    scene_pipeline: wgpu::RenderPipeline,
+    gpu: Gpu,
+    scene: Scene,
+    targets: Targets,
     camera_uniform: wgpu::Buffer,
     camera_group: wgpu::BindGroup,
-    cube: wgpu::Buffer,
+    scene_pipeline: wgpu::RenderPipeline,
+    tone: (wgpu::RenderPipeline, wgpu::BindGroup),
+    // STEP 2: one object for each sun, and a pipeline for what blocks its light.
+    sun: SunShadows,
+    caster_pipeline: wgpu::RenderPipeline,
 }
 
 fn main() -> Result<()> {
     let path = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("out/engine_integration.png"), PathBuf::from);
-    let mut camera = PerspectiveCamera {
-        eye: PLACE + DVec3::new(-3.0, 5.5, 14.5),
-        forward: Vec3::new(0.12, -0.26, -1.0).normalize(),
-        up: Vec3::Y,
-        fov_y: 0.8,
-        aspect: SIZE.width as f32 / SIZE.height as f32,
-        near: 0.1,
-        far: 200.0,
-    };
-    let mut engine = pollster::block_on(Engine::new())?;
-    let blocks = blocks();
-    let mut pixels = engine.draw(&camera, &blocks)?;
-    for _ in 1..FRAMES {
-        camera.eye += (camera.forward * STEP).as_dvec3();
-        pixels = engine.draw(&camera, &blocks)?;
+    let forward = Vec3::new(0.26, -0.14, -1.0).normalized();
+    let mut camera = Camera { eye: PLACE + DVec3::new(-8.0, 3.4, 15.5), forward };
+    let mut engine = Engine::new(pollster::block_on(Gpu::open())?)?;
+    for frame in 0..FRAMES {
+        camera.eye += DVec3::new(0.02, 0.0, -0.02);
+        let drawn = engine.draw(&camera, frame)?;
+        println!("frame {frame}: {drawn} draws into the maps, of {} objects", engine.scene.objects.len());
     }
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     }
+    let pixels = engine.gpu.read(&engine.targets.picture)?;
     image::save_buffer(&path, &pixels, SIZE.width, SIZE.height, image::ColorType::Rgba8)
         .with_context(|| format!("cannot write {}", path.display()))?;
     println!("wrote {}", path.display());
     Ok(())
 }
 
-/// A floor, a gate, a crate, a row of posts, and a tower that is out of the picture but whose shadow is in it.
-fn blocks() -> Vec<Block> {
-    let block = |center: [f64; 3], size: [f32; 3], color| Block {
-        center: PLACE + DVec3::from(center),
-        half_size: Vec3::from(size) * 0.5,
-        color,
-    };
-    let mut blocks = vec![
-        block([0.0, -0.25, 0.0], [60.0, 0.5, 60.0], [0.42, 0.38, 0.30]),
-        block([-3.0, 2.0, 0.0], [1.0, 4.0, 1.0], [0.70, 0.64, 0.52]),
-        block([3.0, 2.0, 0.0], [1.0, 4.0, 1.0], [0.70, 0.64, 0.52]),
-        block([0.0, 4.4, 0.0], [8.0, 0.8, 1.4], [0.60, 0.16, 0.09]),
-        block([5.5, 0.75, 4.0], [1.5, 1.5, 1.5], [0.10, 0.28, 0.55]),
-        block([-15.0, 6.0, 9.0], [2.0, 12.0, 2.0], [0.70, 0.64, 0.52]),
-    ];
-    blocks.extend(
-        (0..9).map(|index| block([f64::from(index) * 2.0 - 8.0, 0.6, -5.0], [0.25, 1.2, 0.25], [0.16, 0.36, 0.12])),
-    );
-    blocks
-}
-
 impl Engine {
-    async fn new() -> Result<Self> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
-        let adapter = instance.request_adapter(&wgpu::RequestAdapterOptions::default()).await?;
-        let (device, queue) = adapter.request_device(&wgpu::DeviceDescriptor::default()).await?;
-
-        // STEP 1: choose a technique and make its shadow maps, and the pass that reads the engine's depth buffer for the
-        // next frame's. The recommended technique has four maps of 2048² texels with 32-bit depth, and a tent of 5×5.
-        let technique = Technique::default().with_max_distance(SHADOW_DISTANCE);
-        let shadow_map = ShadowMap::new(&device, &ShadowMapDescriptor::from(&technique))?;
-        // OpenGL cannot: maps are placed by the boxes then, which is slower and less sharp.
-        let need_pass = NeedPass::new(&device, &queue, SAMPLES).ok();
-
-        let camera_uniform = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("camera"),
-            size: size_of::<[f32; 20]>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
+    fn new(gpu: Gpu) -> Result<Self> {
+        let scene = Scene::new(&gpu);
+        let uniform = wgpu::BufferBindingType::Uniform;
+        let camera_layout =
+            gpu.layout(wgpu::BindingType::Buffer { ty: uniform, has_dynamic_offset: false, min_binding_size: None });
+        let camera_uniform = gpu.buffer(&[0; 96], wgpu::BufferUsages::UNIFORM);
+        let camera_group = gpu.group(&camera_layout, camera_uniform.as_entire_binding());
+        let targets = Targets {
+            multisampled: gpu.target(HDR, SAMPLES),
+            depth: gpu.target(DEPTH, SAMPLES),
+            hdr: gpu.target(HDR, 1),
+            picture: gpu.target(SRGB, 1),
+        };
+        let tone_layout = gpu.layout(wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
         });
-        let camera_layout = camera_layout(&device);
-        let camera_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("camera"),
-            layout: &camera_layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: camera_uniform.as_entire_binding() }],
-        });
-        let cube = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("cube"),
-            contents: bytemuck::cast_slice(&cube()),
-            usage: wgpu::BufferUsages::VERTEX,
-        });
-        let caster_pipeline = caster_pipeline(&device, &camera_layout, &shadow_map);
-        let scene_pipeline = scene_pipeline(&device, &camera_layout, &shadow_map);
-        let fitter = MapFitter::new();
-        Ok(Self {
-            device,
-            queue,
-            technique,
-            fitter,
-            shadow_map,
-            need_pass,
-            seen: None,
-            caster_pipeline,
-            scene_pipeline,
-            camera_uniform,
-            camera_group,
-            cube,
-        })
+        let tone_group = gpu.group(&tone_layout, wgpu::BindingResource::TextureView(&targets.hdr));
+        let tone = (tone_pipeline(&gpu, &tone_layout), tone_group);
+
+        // STEP 2: choose a technique. The recommended one has four maps of 2048² texels and a tent of 5×5.
+        let technique = Technique::default().with_max_distance(DISTANCE);
+        let sun = SunShadows::new(&gpu.device, &gpu.queue, &technique)?;
+
+        // STEP 4: a pipeline for the casters, with the engine's own vertices and the map's states. The map's matrix is
+        // at a bind group of the engine's choice, and nothing but depth is written.
+        let map = sun.map();
+        let wgsl = [&caster_wgsl(map.descriptor(), &WgslOptions::group(0)), VERTEX, CASTER].concat();
+        let states = (map.primitive_state(), map.depth_stencil_state());
+        let caster_pipeline = gpu.depth_pipeline(wgsl, map.caster_layout(), &Scene::LAYOUT, states);
+
+        // STEP 5: paste the look-up into the engine's own shader, and put the maps' layout into its pipeline.
+        let look_up = receiver_wgsl(sun.map().descriptor(), &WgslOptions::group(1));
+        let groups = [Some(&camera_layout), Some(sun.map().receiver_layout())];
+
+        let scene_pipeline = scene_pipeline(&gpu, look_up, &groups);
+        // STEP 2: the engine keeps both.
+        Ok(Self { gpu, scene, targets, camera_uniform, camera_group, scene_pipeline, tone, sun, caster_pipeline })
     }
 
-    /// Draws a picture and returns its sRGB pixels.
-    fn draw(&mut self, camera: &PerspectiveCamera, blocks: &[Block]) -> Result<Vec<u8>> {
-        self.fit_maps(camera, blocks)?;
-        let clip_from_world = camera.clip_from_world(DepthConvention::ZeroToOne).to_cols_array();
-        let to_light = (-DIRECTION.normalize()).extend(0.0).to_array();
-        self.queue.write_buffer(&self.camera_uniform, 0, bytemuck::cast_slice(&clip_from_world));
-        self.queue.write_buffer(&self.camera_uniform, 64, bytemuck::cast_slice(&to_light));
-        let instances = self.instances(camera.eye, blocks);
+    /// Draws a frame, and returns the number of draws into the maps.
+    fn draw(&mut self, camera: &Camera, number: u32) -> Result<usize> {
+        let (cell, clip_from_eye) = (camera.cell(), camera.clip_from_eye());
+        self.scene.update(&self.gpu.queue, cell, number);
+        self.write_camera(camera);
+        // STEP 7: each frame, tell the sun what is seen, what casts and receives shadows, and what of it moves: boxes
+        // with an origin. Positions in the shaders are relative to the cell.
+        let eye_from_clip = clip_from_eye.inversed();
+        let views = [frustum_from_eye_from_clip(eye_from_clip, camera.eye, DepthConvention::Reversed, DISTANCE)?];
+        let boxes: Vec<Aabb> = self.scene.bounds(cell).map(|[min, max]| Aabb::new(vec3(min), vec3(max))).collect();
+        let boxes = Boxes { origin: dvec3(cell), boxes: &boxes };
+        let casters = Casters { boxes, moves: &self.scene.moves };
+        let frame = SunFrame::new(&views, vec3(SUNLIGHT), boxes, casters).with_origin(dvec3(cell));
+        self.sun.update(&self.gpu.queue, &frame)?;
+        debug_assert!(self.sun.verify(&frame)?.is_proven(), "a map has a hole");
 
-        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.shadow_pass(&mut encoder, camera.eye, blocks, &instances);
-        let (picture, depth) = self.scene_pass(&mut encoder, blocks.len() as u32, &instances);
-        self.read_depth(&mut encoder, camera, &depth)?;
-        self.read(encoder, &picture)
-    }
-
-    /// STEP 4: each frame, fit the maps to what the camera sees of the scene's boxes and hand them over, each with its
-    /// bias, and with the origin that positions in the engine's shaders are relative to: here the eye, where f32 is
-    /// most exact. What an earlier frame showed, as far as it has come back, says where fine texels help; the fitter
-    /// keeps the maps still while the camera moves.
-    fn fit_maps(&mut self, camera: &PerspectiveCamera, blocks: &[Block]) -> Result<()> {
-        if let Some(pass) = &mut self.need_pass {
-            self.seen = pass.take()?.or(self.seen.take());
-        }
-        let grids: Vec<NeedGrid> = self.seen.iter().map(SeenNeed::grid).collect();
-        let views = [camera.frustum()?];
-        let objects: Vec<Aabb> = blocks.iter().map(|block| block.bounds(PLACE)).collect();
-        let boxes = Boxes { origin: PLACE, boxes: &objects };
-        let input =
-            FitInput { receivers: Some(boxes), casters: Some(boxes), need: &grids, ..FitInput::new(&views, DIRECTION) };
-        let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), views.len())];
-        let fitted = self.fitter.fit(&input, &self.technique, &mut Workspace::new(&mut storage))?;
-
-        let mut maps: Vec<MapFit> = fitted.iter().map(MapFit::from).collect();
-        let view = MapView::from_eye(camera.eye, camera.forward);
-        // Leave out casters whose shadows are not in view. Without this line each map draws all that it can store.
-        MapFit::sweep(&mut maps, &view, &views, self.shadow_map.descriptor())?;
-        self.shadow_map.prepare(&self.queue, &view, &maps)?;
-        Ok(())
-    }
-
-    /// The blocks with their centres relative to the eye. The difference is taken in f64.
-    fn instances(&self, eye: DVec3, blocks: &[Block]) -> wgpu::Buffer {
-        let instances: Vec<[[f32; 3]; 3]> = blocks
-            .iter()
-            .map(|block| [(block.center - eye).as_vec3().to_array(), block.half_size.to_array(), block.color])
-            .collect();
-        self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("instances"),
-            contents: bytemuck::cast_slice(&instances),
-            usage: wgpu::BufferUsages::VERTEX,
-        })
-    }
-
-    /// STEP 5: draw the casters into each map. The pass comes cleared, with the map's matrix bound.
-    fn shadow_pass(&self, encoder: &mut wgpu::CommandEncoder, eye: DVec3, blocks: &[Block], instances: &wgpu::Buffer) {
-        self.shadow_map.render(encoder, SHADOW_GROUP, |pass, _map, volume| {
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        let mut drawn = 0;
+        // STEP 8: draw casters by number, where a map is new or something moves. Passes come cleared, with the map's
+        // matrix bound.
+        self.sun.render(&mut encoder, 0, |pass, piece| {
             pass.set_pipeline(&self.caster_pipeline);
-            pass.set_bind_group(0, &self.camera_group, &[]);
-            pass.set_vertex_buffer(0, self.cube.slice(..));
-            pass.set_vertex_buffer(1, instances.slice(..));
-            for (index, block) in (0u32..).zip(blocks) {
-                // The volume, like all positions, is relative to the eye.
-                let bounds = block.bounds(eye);
-                if volume.intersects_aabb(bounds.min, bounds.max) {
-                    pass.draw(0..36, index..index + 1);
-                }
-            }
+            drawn += self.scene.draw(pass, piece.casters.iter().copied());
         });
+
+        self.scene_pass(&mut encoder);
+        // STEP 10: count what the depth buffer shows, for the next frames. Nothing waits for it.
+        self.sun.record_need(&mut encoder, &self.targets.depth, mat4(clip_from_eye), DepthConvention::Reversed)?;
+
+        self.tone_pass(&mut encoder);
+        self.gpu.queue.submit([encoder.finish()]);
+        Ok(drawn)
     }
 
-    /// The picture, and a view of its depth buffer.
-    fn scene_pass(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        count: u32,
-        instances: &wgpu::Buffer,
-    ) -> (wgpu::Texture, wgpu::TextureView) {
-        let picture = self.target(COLOR, 1);
-        let [view, multisampled, depth] = [&picture, &self.target(COLOR, SAMPLES), &self.target(DEPTH, SAMPLES)]
-            .map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
+    fn write_camera(&self, camera: &Camera) {
+        let eye = relative(camera.eye, camera.cell());
+        let clip_from_cell = camera.clip_from_eye() * Mat4::from_translation(-eye);
+        let to_light = Vec4::from(-SUNLIGHT.normalized());
+        let queue = &self.gpu.queue;
+        queue.write_buffer(&self.camera_uniform, 0, clip_from_cell.as_byte_slice());
+        queue.write_buffer(&self.camera_uniform, 64, Vec4::from(eye).as_byte_slice());
+        queue.write_buffer(&self.camera_uniform, 80, to_light.as_byte_slice());
+    }
+
+    fn scene_pass(&self, encoder: &mut wgpu::CommandEncoder) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &multisampled,
+                view: &self.targets.multisampled,
                 depth_slice: None,
-                resolve_target: Some(&view),
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(SKY), store: wgpu::StoreOp::Discard },
+                resolve_target: Some(&self.targets.hdr),
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Discard,
+                },
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &depth,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
+                view: &self.targets.depth,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
                 stencil_ops: None,
             }),
             ..Default::default()
         });
         pass.set_pipeline(&self.scene_pipeline);
         pass.set_bind_group(0, &self.camera_group, &[]);
-        // STEP 6: bind the maps where the pasted WGSL looks for them.
-        pass.set_bind_group(SHADOW_GROUP, self.shadow_map.receiver_group(), &[]);
-        pass.set_vertex_buffer(0, self.cube.slice(..));
-        pass.set_vertex_buffer(1, instances.slice(..));
-        pass.draw(0..36, 0..count);
-        drop(pass);
-        (picture, depth)
+        // STEP 9: bind the maps where the pasted WGSL looks for them.
+        pass.set_bind_group(1, self.sun.receiver_group(), &[]);
+
+        self.scene.draw(&mut pass, 0..self.scene.objects.len() as u32);
     }
 
-    /// STEP 7: count what the picture shows, for the fits of the next frames. The depth buffer must be stored and be a
-    /// texture that shaders can read. Nothing waits: the counts come back a frame or two late.
-    fn read_depth(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        camera: &PerspectiveCamera,
-        depth: &wgpu::TextureView,
-    ) -> Result<()> {
-        let (fit, size) = (&self.technique.fit, [SIZE.width, SIZE.height]);
-        let view = NeedView::from_camera(camera, DepthConvention::ZeroToOne, DIRECTION, fit, size)?;
-        if let Some(pass) = &mut self.need_pass {
-            pass.record(encoder, depth, &view, None)?;
-        }
-        Ok(())
-    }
-
-    fn target(&self, format: wgpu::TextureFormat, samples: u32) -> wgpu::Texture {
-        self.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("target"),
-            size: SIZE,
-            mip_level_count: 1,
-            sample_count: samples,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                | if samples == 1 { wgpu::TextureUsages::COPY_SRC } else { wgpu::TextureUsages::TEXTURE_BINDING },
-            view_formats: &[],
-        })
-    }
-
-    /// Submits the frame, waits for it and copies its pixels.
-    fn read(&self, mut encoder: wgpu::CommandEncoder, picture: &wgpu::Texture) -> Result<Vec<u8>> {
-        let row = SIZE.width * 4;
-        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("read back"),
-            size: u64::from(row * SIZE.height),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
+    fn tone_pass(&self, encoder: &mut wgpu::CommandEncoder) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("tone mapping"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &self.targets.picture,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
         });
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
-        let destination = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
-        encoder.copy_texture_to_buffer(picture.as_image_copy(), destination, SIZE);
-        self.queue.submit([encoder.finish()]);
-        buffer.slice(..).map_async(wgpu::MapMode::Read, |_| {});
-        self.device.poll(wgpu::PollType::wait_indefinitely())?;
-        Ok(buffer.slice(..).get_mapped_range()?.to_vec())
+        pass.set_pipeline(&self.tone.0);
+        pass.set_bind_group(0, &self.tone.1, &[]);
+        pass.draw(0..3, 0..1);
     }
 }
 
-/// STEP 2: a pipeline for the casters, with the engine's own vertices, the map's depth state and, for colour formats,
-/// its colour target. The map's matrix is at a bind group of the engine's choice. Both sides of the casters are drawn.
-fn caster_pipeline(device: &wgpu::Device, camera: &wgpu::BindGroupLayout, map: &ShadowMap) -> wgpu::RenderPipeline {
-    let module = module(
-        device,
-        [caster_wgsl(map.descriptor(), &WgslOptions::group(SHADOW_GROUP)).as_str(), VERTEX_WGSL, CASTER_WGSL].concat(),
-    );
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("caster"),
-        bind_group_layouts: &[Some(camera), Some(map.caster_layout())],
-        immediate_size: 0,
-    });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("caster"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("vs_caster"),
-            compilation_options: Default::default(),
-            buffers: &vertex_buffers(),
-        },
-        primitive: map.primitive_state(),
-        depth_stencil: Some(map.depth_stencil_state()),
-        multisample: wgpu::MultisampleState::default(),
-        fragment: None, // The default format is a depth texture: nothing but depth is written.
-        multiview_mask: None,
-        cache: None,
-    })
-}
-
-/// STEP 3: paste the look-up into the engine's own shader, in a bind group of its choice, and put the map's layout
-/// into the pipeline.
-fn scene_pipeline(device: &wgpu::Device, camera: &wgpu::BindGroupLayout, map: &ShadowMap) -> wgpu::RenderPipeline {
-    let receiver = receiver_wgsl(map.descriptor(), &WgslOptions::group(SHADOW_GROUP));
-    let module = module(device, [receiver.as_str(), VERTEX_WGSL, SCENE_WGSL].concat());
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("scene"),
-        bind_group_layouts: &[Some(camera), Some(map.receiver_layout())],
-        immediate_size: 0,
-    });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("scene"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("vs_scene"),
-            compilation_options: Default::default(),
-            buffers: &vertex_buffers(),
-        },
+/// The shaded pass's pipeline, with WGSL that its own is pasted behind.
+fn scene_pipeline(gpu: &Gpu, pasted: String, groups: &[Option<&wgpu::BindGroupLayout>]) -> wgpu::RenderPipeline {
+    gpu.pipeline(Pipeline {
+        wgsl: pasted + VERTEX + SHADED,
+        groups,
+        vertices: &Scene::LAYOUT,
         primitive: wgpu::PrimitiveState { cull_mode: Some(wgpu::Face::Back), ..Default::default() },
-        depth_stencil: Some(wgpu::DepthStencilState {
+        depth: Some(wgpu::DepthStencilState {
             format: DEPTH,
             depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Less),
+            depth_compare: Some(wgpu::CompareFunction::Greater),
             stencil: Default::default(),
             bias: Default::default(),
         }),
-        multisample: wgpu::MultisampleState { count: SAMPLES, ..Default::default() },
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("fs_scene"),
-            compilation_options: Default::default(),
-            targets: &[Some(COLOR.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
+        color: Some((HDR, SAMPLES)),
     })
 }
 
-fn camera_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("camera"),
-        entries: &[wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
-            count: None,
-        }],
+fn tone_pipeline(gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> wgpu::RenderPipeline {
+    gpu.pipeline(Pipeline {
+        wgsl: TONE.to_owned(),
+        groups: &[Some(layout)],
+        vertices: &[],
+        primitive: wgpu::PrimitiveState::default(),
+        depth: None,
+        color: Some((SRGB, 1)),
     })
-}
-
-fn module(device: &wgpu::Device, wgsl: String) -> wgpu::ShaderModule {
-    device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: None,
-        source: wgpu::ShaderSource::Wgsl(wgsl.into()),
-    })
-}
-
-/// Corners and normals from one buffer, instances from another.
-fn vertex_buffers() -> [Option<wgpu::VertexBufferLayout<'static>>; 2] {
-    const CUBE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
-    const INSTANCE: [wgpu::VertexAttribute; 3] =
-        wgpu::vertex_attr_array![2 => Float32x3, 3 => Float32x3, 4 => Float32x3];
-    [(wgpu::VertexStepMode::Vertex, 24, &CUBE[..]), (wgpu::VertexStepMode::Instance, 36, &INSTANCE[..])].map(
-        |(step_mode, array_stride, attributes)| Some(wgpu::VertexBufferLayout { array_stride, step_mode, attributes }),
-    )
-}
-
-/// The cube from -1 to 1: 36 corners with normals, counter-clockwise seen from outside.
-fn cube() -> Vec<[[f32; 3]; 2]> {
-    let normals = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
-    let faces = normals.map(|normal| {
-        let right = Vec3::new(normal.y, normal.z, normal.x);
-        let up = normal.cross(right);
-        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
-            .map(|(u, v)| [(normal + right * u + up * v).to_array(), normal.to_array()])
-    });
-    faces.concat()
 }

@@ -8,6 +8,7 @@ mod artefacts;
 mod conventions;
 mod fits;
 mod golden;
+mod integration;
 mod peers;
 mod reports_gpu;
 mod robustness;

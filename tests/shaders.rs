@@ -5,6 +5,7 @@
 mod acne_gpu;
 mod clamp_gpu;
 mod culling_gpu;
+mod door_gpu;
 mod exact_counts_gpu;
 mod fade_gpu;
 mod formats_gpu;

@@ -1,34 +1,77 @@
-//! Directional-light shadow maps for any wgpu renderer: the resource, its passes, and the WGSL
-//! that looks it up. It imposes no scene, window or material system: the engine draws its casters
-//! in a callback and pastes the WGSL into its own shaders.
+//! Directional-light shadow maps for any wgpu renderer. The engine keeps its scene, its materials and its passes: it gives
+//! boxes and a camera, draws casters by number, and pastes WGSL into its own shaders.
+//!
+//! # One object, one loop
+//!
+//! [`SunShadows`] holds the shadows of one sun. It fits the maps, finds what has to be drawn of them, keeps what stands
+//! still from frame to frame, and reads from the depth buffer where fine texels help:
 //!
 //! ```no_run
-//! # fn demo(device: &wgpu::Device, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder,
-//! #         fitted: &shadowfit::FittedMaps, camera: &shadowfit::PerspectiveCamera,
-//! #         forward: shadowfit::glam::Vec3) -> Result<(), Box<dyn std::error::Error>> {
-//! use shadowfit::Technique;
-//! use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgsl};
+//! # struct Engine { moves: Vec<bool>, pipeline: wgpu::RenderPipeline, depth: wgpu::TextureView }
+//! # impl Engine {
+//! #     fn frames(&self) -> Vec<shadowfit::PerspectiveCamera> { Vec::new() }
+//! #     fn boxes(&self) -> Vec<shadowfit::Aabb> { Vec::new() }
+//! #     fn draw_caster(&self, _: &mut wgpu::RenderPass<'_>, _: u32) {}
+//! #     fn draw_picture(&self, _: &mut wgpu::CommandEncoder, _: &wgpu::BindGroup) {}
+//! # }
+//! # fn demo(engine: &Engine, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<(), Box<dyn std::error::Error>> {
+//! use shadowfit::glam::{DVec3, Vec3};
+//! use shadowfit::{Boxes, DepthConvention, Technique};
+//! use shadowfit_wgpu::{Casters, SunFrame, SunShadows, WgslOptions, caster_wgsl, receiver_wgsl};
 //!
-//! let technique = Technique::default(); // four maps
-//! let mut map = ShadowMap::new(device, &ShadowMapDescriptor::from(&technique))?;
-//! // Goes into the engine's vertex shader of the shadow pass, as @group(0), and into its fragment shader, as @group(1).
-//! let caster = caster_wgsl(map.descriptor(), &WgslOptions::group(0));
-//! let receiver = receiver_wgsl(map.descriptor(), &WgslOptions::group(1));
+//! let mut sun = SunShadows::new(device, queue, &Technique::default())?; // four maps of 2048² texels
+//! // For the vertex shader of the shadow pass, at @group(0), and for the fragment shader of the picture, at @group(1).
+//! let caster = caster_wgsl(sun.map().descriptor(), &WgslOptions::group(0));
+//! let receiver = receiver_wgsl(sun.map().descriptor(), &WgslOptions::group(1));
+//! // The engine's pipelines take `primitive_state()`, `depth_stencil_state()` and the layouts from `sun.map()`.
 //!
-//! // Each frame: the maps as `shadowfit::MapFitter` fitted them, nearest first. It wants to know what the last frame
-//! // showed, which the module `need` finds.
-//! let mut maps: Vec<MapFit> = fitted.iter().map(MapFit::from).collect();
-//! // Positions in the engine's shaders are relative to the eye.
-//! let view = MapView::from_eye(camera.eye, forward);
-//! // Leave out casters whose shadows are not seen. Without this, each map gets all that it can store.
-//! MapFit::sweep(&mut maps, &view, &[camera.frustum()?], map.descriptor())?;
-//! map.prepare(queue, &view, &maps)?;
-//! map.render(encoder, 0, |pass, _map_index, _volume| {
-//!     // The caster uniform is bound at group 0: draw every caster that the volume keeps.
-//!     pass.draw(0..3, 0..1);
-//! });
+//! for camera in engine.frames() {
+//!     let views = [camera.frustum()?];
+//!     let objects = engine.boxes();
+//!     let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
+//!     let casters = Casters { boxes, moves: &engine.moves };
+//!     // Positions in the shaders are relative to the eye; `with_origin` takes another place.
+//!     let frame = SunFrame::new(&views, Vec3::new(0.3, -0.8, 0.2), boxes, casters);
+//!     sun.update(queue, &frame)?;
+//!
+//!     let mut encoder = device.create_command_encoder(&Default::default());
+//!     sun.render(&mut encoder, 0, |pass, piece| {
+//!         pass.set_pipeline(&engine.pipeline);
+//!         for number in piece.casters {
+//!             engine.draw_caster(pass, *number);
+//!         }
+//!     });
+//!     engine.draw_picture(&mut encoder, sun.receiver_group());
+//!     let depth = DepthConvention::Reversed;
+//!     sun.record_need(&mut encoder, &engine.depth, camera.clip_from_world(depth), depth)?;
+//!     queue.submit([encoder.finish()]);
+//! }
 //! # Ok(()) }
 //! ```
+//!
+//! | name | is |
+//! |---|---|
+//! | [`SunShadows`] | the shadows of one sun: one object for each |
+//! | [`SunFrame`], [`Casters`] | what an engine says of a frame: views, light, boxes, and which of them move |
+//! | [`ShadowPiece`] | what is to be drawn: casters by number, viewport, scissor rectangle |
+//! | [`ShadowPass`], [`PassContent`] | a pass, for engines that schedule passes themselves |
+//! | [`caster_wgsl`], [`receiver_wgsl`], [`WgslOptions`] | the WGSL, for any bind group and with any prefix |
+//! | [`UpdateSchedule`], [`Culling`] | which maps may wait for another frame, and which casters are left out |
+//! | [`SunShadowsError`] | why a technique or a frame is refused; what was drawn before stays |
+//!
+//! The example `engine_integration` of the repository is a whole engine around this loop, and its guide
+//! (`docs/INTEGRATION.md`) goes through it step by step.
+//!
+//! # Every step by itself
+//!
+//! - [`KeptMaps`] is the drawing half, for engines that fit their maps by themselves: it takes a [`MapFit`] for each map,
+//!   keeps what stands still, and lists the same passes.
+//! - [`ShadowMap`] is what both draw into: textures, layouts, bind groups, states for pipelines, and a pass for each map
+//!   that draws it anew. [`ShadowMapDescriptor`] says what it is made of, [`MapView`] from where it is read, and
+//!   [`MapFit::sweep`] which casters throw shadows into view.
+//! - [`need`] counts what a depth buffer shows.
+//! - [`culling_wgsl`] with [`CullingUniform`] culls casters on the GPU. [`CasterUniform`], [`ReceiverUniform`] and
+//!   [`MapUniform`] are what the other WGSL reads, for engines that bind it themselves.
 
 mod cache;
 mod caught;

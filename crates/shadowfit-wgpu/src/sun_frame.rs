@@ -2,7 +2,7 @@
 
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::normal_cone::NormalCone;
-use shadowfit::{Boxes, FitInput, ViewFrustum};
+use shadowfit::{Boxes, FitError, FitInput, ViewFrustum};
 
 use crate::{Casters, MapView};
 
@@ -54,6 +54,16 @@ impl<'a> SunFrame<'a> {
     pub const fn with_origin(mut self, origin: DVec3) -> Self {
         self.origin = origin;
         self
+    }
+
+    /// Refuses what neither the fits nor the maps look at, and shaders would be given.
+    pub(crate) fn check(&self) -> Result<(), FitError> {
+        for (input, point) in [("the frame's eye", self.eye), ("the frame's origin", self.origin)] {
+            if let Some(value) = point.to_array().into_iter().find(|value| !value.is_finite()) {
+                return Err(FitError::NotFinite { input, value });
+            }
+        }
+        Ok(())
     }
 
     /// What the fits take.

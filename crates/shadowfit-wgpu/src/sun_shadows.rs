@@ -49,7 +49,7 @@ struct Need {
     seen: Option<SeenNeed>,
 }
 
-/// What [`SunShadows::record_need`] takes from the frame.
+/// What [`SunShadows::record_need`] takes from a frame that was fitted.
 #[derive(Clone, Copy, Debug)]
 struct LastFrame {
     view: ViewFrustum,
@@ -167,6 +167,8 @@ impl SunShadows {
     /// shaders read what they read before.
     pub fn update(&mut self, queue: &wgpu::Queue, frame: &SunFrame<'_>) -> Result<(), SunShadowsError> {
         self.maps.skip();
+        self.last = None;
+        frame.check()?;
         if let Some(pass) = &mut self.need.pass {
             self.need.seen = pass.take()?.or(self.need.seen.take());
         }
@@ -214,17 +216,17 @@ impl SunShadows {
     }
 
     /// Proves that no map has a hole, for the frame that was given to [`Self::update`]: for debug assertions. The first map
-    /// that fails decides.
+    /// that fails decides. It counts in that shaders round positions relative to [`SunFrame::origin`].
     ///
     /// # Errors
     ///
-    /// [`SunShadowsError::Fit`] as [`verify`].
+    /// [`SunShadowsError::Fit`] as [`verify`]; [`SunShadowsError::NoFrame`] before the first frame.
     pub fn verify(&mut self, frame: &SunFrame<'_>) -> Result<Certificate, SunShadowsError> {
         let input = frame.input();
         let mut certificate = Err(SunShadowsError::NoFrame);
         for (fitted, read) in self.fitted.iter().zip(self.maps.maps()) {
-            // A map that waits is read as it was drawn.
-            let map = FittedMap { fit: read.fit, bias: read.bias, ..*fitted };
+            // A map that waits is read as it was drawn. Shaders round positions relative to the frame's origin.
+            let map = FittedMap { fit: read.fit.relative_to(frame.origin), bias: read.bias, ..*fitted };
             let reach = self.technique.softness.reach_in(self.technique.filter, &map.fit);
             let query = CoverageQuery::of_map(&map, &self.technique, reach).with_normal_offset(map.bias.normal_offset);
             let found = verify(&input, &map.fit, &query, &mut Workspace::new(&mut self.storage))?;
@@ -242,12 +244,11 @@ impl SunShadows {
     /// eye, [`ViewFrustum::origin`] of the first view.
     ///
     /// Returns whether it was recorded: never on devices that cannot count, such as OpenGL's, where maps are placed by the
-    /// boxes, nor while many pictures are still on their way.
+    /// boxes; nor for a frame that [`Self::update`] refused, nor while many pictures are still on their way.
     ///
     /// # Errors
     ///
-    /// [`SunShadowsError::NoFrame`] before the first [`Self::update`]; [`SunShadowsError::Need`] for the matrix, the
-    /// texture, and a device out of memory.
+    /// [`SunShadowsError::Need`] for the matrix, the texture, and a device out of memory.
     pub fn record_need(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -255,7 +256,7 @@ impl SunShadows {
         clip_from_world: Mat4,
         convention: DepthConvention,
     ) -> Result<bool, SunShadowsError> {
-        let Some(LastFrame { view, direction }) = self.last else { return Err(SunShadowsError::NoFrame) };
+        let Some(LastFrame { view, direction }) = self.last else { return Ok(false) };
         let texture = depth.texture();
         let Some(pass) = self.need.pass(&self.device, &self.queue, texture.sample_count())? else { return Ok(false) };
         let seen = NeedView {

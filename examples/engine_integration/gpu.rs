@@ -1,0 +1,153 @@
+//! What this engine has of wgpu: a device, targets, pipelines, and pixels that are read back.
+
+use anyhow::Result;
+use wgpu::util::DeviceExt;
+
+/// Size of the picture, in pixels; rows of a multiple of 64 pixels are read back without padding.
+pub(crate) const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 960, height: 540, depth_or_array_layers: 1 };
+
+/// Samples of a pixel.
+pub(crate) const SAMPLES: u32 = 4;
+
+/// Linear colours of any brightness.
+pub(crate) const HDR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
+/// What the picture is written as.
+pub(crate) const SRGB: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+
+/// Depth is reversed: 1 near, 0 far.
+pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// A device.
+pub(crate) struct Gpu {
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
+}
+
+/// A pipeline from one text of WGSL with the entry points `vs` and, with a colour, `fs`.
+pub(crate) struct Pipeline<'a> {
+    pub(crate) wgsl: String,
+    pub(crate) groups: &'a [Option<&'a wgpu::BindGroupLayout>],
+    pub(crate) vertices: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    pub(crate) primitive: wgpu::PrimitiveState,
+    pub(crate) depth: Option<wgpu::DepthStencilState>,
+    /// Format and samples; `None` for depth alone.
+    pub(crate) color: Option<(wgpu::TextureFormat, u32)>,
+}
+
+impl Gpu {
+    /// The default adapter.
+    pub(crate) async fn open() -> Result<Self> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let adapter = instance.request_adapter(&wgpu::RequestAdapterOptions::default()).await?;
+        let (device, queue) = adapter.request_device(&wgpu::DeviceDescriptor::default()).await?;
+        Ok(Self { device, queue })
+    }
+
+    pub(crate) fn pipeline(&self, pipeline: Pipeline<'_>) -> wgpu::RenderPipeline {
+        let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: None,
+            source: wgpu::ShaderSource::Wgsl(pipeline.wgsl.into()),
+        });
+        let layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: pipeline.groups,
+            immediate_size: 0,
+        });
+        let targets = [pipeline.color.map(|(format, _)| format.into())];
+        self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: None,
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vs"),
+                compilation_options: Default::default(),
+                buffers: pipeline.vertices,
+            },
+            primitive: pipeline.primitive,
+            depth_stencil: pipeline.depth,
+            multisample: wgpu::MultisampleState {
+                count: pipeline.color.map_or(1, |(_, samples)| samples),
+                ..Default::default()
+            },
+            fragment: pipeline.color.is_some().then_some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fs"),
+                compilation_options: Default::default(),
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+
+    /// A pipeline that writes nothing but depth.
+    pub(crate) fn depth_pipeline(
+        &self,
+        wgsl: String,
+        group: &wgpu::BindGroupLayout,
+        vertices: &[Option<wgpu::VertexBufferLayout<'_>>],
+        (primitive, depth): (wgpu::PrimitiveState, wgpu::DepthStencilState),
+    ) -> wgpu::RenderPipeline {
+        let groups = &[Some(group)];
+        self.pipeline(Pipeline { wgsl, groups, vertices, primitive, depth: Some(depth), color: None })
+    }
+
+    /// A layout of one binding, at 0.
+    pub(crate) fn layout(&self, ty: wgpu::BindingType) -> wgpu::BindGroupLayout {
+        self.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: None,
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+                ty,
+                count: None,
+            }],
+        })
+    }
+
+    pub(crate) fn group(&self, layout: &wgpu::BindGroupLayout, resource: wgpu::BindingResource) -> wgpu::BindGroup {
+        let entries = &[wgpu::BindGroupEntry { binding: 0, resource }];
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries })
+    }
+
+    pub(crate) fn buffer(&self, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        let usage = usage | wgpu::BufferUsages::COPY_DST;
+        self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+    }
+
+    /// A view of a new target of the picture's size.
+    pub(crate) fn target(&self, format: wgpu::TextureFormat, sample_count: u32) -> wgpu::TextureView {
+        let read = if format == SRGB { wgpu::TextureUsages::COPY_SRC } else { wgpu::TextureUsages::TEXTURE_BINDING };
+        let texture = self.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: SIZE,
+            mip_level_count: 1,
+            sample_count,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | read,
+            view_formats: &[],
+        });
+        texture.create_view(&wgpu::TextureViewDescriptor::default())
+    }
+
+    /// Waits for all work, and copies the pixels of the picture.
+    pub(crate) fn read(&self, picture: &wgpu::TextureView) -> Result<Vec<u8>> {
+        let row = SIZE.width * 4;
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: u64::from(row * SIZE.height),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
+        let destination = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.copy_texture_to_buffer(picture.texture().as_image_copy(), destination, SIZE);
+        self.queue.submit([encoder.finish()]);
+        buffer.slice(..).map_async(wgpu::MapMode::Read, |_| {});
+        self.device.poll(wgpu::PollType::wait_indefinitely())?;
+        Ok(buffer.slice(..).get_mapped_range()?.to_vec())
+    }
+}

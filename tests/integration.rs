@@ -1,0 +1,136 @@
+//! What an engine has to write for its shadows: how many lines of the example `engine_integration` they are, and that the
+//! guide and the READMEs show code that stands in the examples and in tested docs.
+//!
+//! The lines of a step begin after a comment with its number (`// STEP 3: ...`), and end at the next empty line, or where
+//! a brace closes that was opened before the step. Comments do not count.
+
+use std::path::Path;
+
+use crate::support::workspace;
+
+/// Most lines that the steps may have together.
+const MOST_LINES: usize = 35;
+
+/// Words of code that has to do with shadows.
+const WORDS: [&str; 6] = ["shadow", "caster", "self.sun", "sun.", "sun:", "receiver"];
+
+fn read(path: impl AsRef<Path>) -> String {
+    let path = workspace().join(path);
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// Whether a line holds nothing but a comment.
+fn is_comment(line: &str) -> bool {
+    line.trim_start().starts_with("//")
+}
+
+fn indentation(line: &str) -> usize {
+    line.len() - line.trim_start().len()
+}
+
+/// Lines of code of the steps, with their numbers, and all other lines of code.
+fn steps(text: &str) -> (Vec<(u32, &str)>, Vec<&str>) {
+    let (mut inside, mut outside) = (Vec::new(), Vec::new());
+    let mut step: Option<(u32, usize)> = None;
+    for line in text.lines() {
+        let number = line.split_once("// STEP ").and_then(|(_, rest)| rest.split_once(':')?.0.parse().ok());
+        if let Some(number) = number {
+            step = Some((number, indentation(line)));
+        }
+        let ends = |(_, start): &(u32, usize)| line.trim().is_empty() || indentation(line) < *start;
+        step = step.filter(|step| !ends(step));
+        match step {
+            _ if is_comment(line) || line.trim().is_empty() => {}
+            Some((number, _)) => inside.push((number, line)),
+            None => outside.push(line),
+        }
+    }
+    (inside, outside)
+}
+
+#[test]
+fn an_engine_writes_at_most_35_lines_for_its_shadows() {
+    let example = read("examples/engine_integration.rs");
+    let (steps, _) = steps(&example);
+    let mut numbers: Vec<u32> = steps.iter().map(|(number, _)| *number).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    assert_eq!(numbers, (1..=10).collect::<Vec<u32>>(), "the steps of the example");
+    println!("{} lines", steps.len());
+    assert!(steps.len() <= MOST_LINES, "{} lines: {steps:#?}", steps.len());
+}
+
+#[test]
+fn no_line_outside_of_the_steps_has_to_do_with_shadows() {
+    for file in ["engine_integration.rs", "engine_integration/gpu.rs", "engine_integration/scene.rs"] {
+        let text = read(Path::new("examples").join(file));
+        for line in steps(&text).1 {
+            let lower = line.to_lowercase();
+            assert!(!WORDS.iter().any(|word| lower.contains(word)), "{file}: {line}");
+        }
+    }
+}
+
+#[test]
+fn a_step_ends_at_an_empty_line_or_where_an_earlier_brace_closes() {
+    let text = "a\n// STEP 1: why\n// and how\nb\n\nc\n{\n    // STEP 2: x\n    d {\n        e\n    }\n}\nf\n";
+    let (inside, outside) = steps(text);
+    assert_eq!(inside, [(1, "b"), (2, "    d {"), (2, "        e"), (2, "    }")]);
+    assert_eq!(outside, ["a", "c", "{", "}", "f"]);
+}
+
+/// The fenced blocks of a document, with their languages and trimmed lines.
+fn blocks(text: &str) -> Vec<(String, Vec<String>)> {
+    let mut blocks: Vec<(String, Vec<String>)> = Vec::new();
+    let mut is_open = false;
+    for line in text.lines() {
+        match (line.trim_start().strip_prefix("```"), is_open) {
+            (Some(language), false) => {
+                blocks.push((language.to_owned(), Vec::new()));
+                is_open = true;
+            }
+            (Some(_), true) => is_open = false,
+            (None, true) => blocks.last_mut().expect("an open block").1.push(line.trim().to_owned()),
+            (None, false) => {}
+        }
+    }
+    blocks
+}
+
+/// Whether lines stand one after another in a text.
+fn stands_in(lines: &[String], text: &[String]) -> bool {
+    !lines.is_empty() && text.windows(lines.len()).any(|window| window == lines)
+}
+
+fn trimmed(text: &str) -> Vec<String> {
+    text.lines().map(|line| line.trim().to_owned()).collect()
+}
+
+#[test]
+fn every_block_of_code_in_the_integration_guide_stands_in_an_example() {
+    let examples = ["engine_integration", "fit_once", "still_maps"];
+    let examples = examples.map(|name| trimmed(&read(format!("examples/{name}.rs"))));
+    let blocks = blocks(&read("docs/INTEGRATION.md"));
+    assert!(blocks.len() >= 10, "the guide has {} blocks", blocks.len());
+    for (language, lines) in blocks {
+        assert!(["rust", "wgsl"].contains(&language.as_str()), "a block of {language:?}");
+        let found = examples.iter().any(|example| stands_in(&lines, example));
+        assert!(found, "no example has these lines:\n{}", lines.join("\n"));
+    }
+}
+
+#[test]
+fn the_readme_of_shadowfit_wgpu_shows_code_that_its_docs_test() {
+    let docs = read("crates/shadowfit-wgpu/src/lib.rs");
+    let docs: String = docs
+        .lines()
+        .filter_map(|line| line.strip_prefix("//!"))
+        .filter(|line| !line.starts_with(" # ") && *line != " #")
+        .flat_map(|line| [line, "\n"])
+        .collect();
+    let readme = blocks(&read("crates/shadowfit-wgpu/README.md"));
+    assert!(!readme.is_empty(), "the README shows no code");
+    for (_, lines) in readme {
+        assert!(stands_in(&lines, &trimmed(&docs)), "the docs do not have these lines:\n{}", lines.join("\n"));
+    }
+}

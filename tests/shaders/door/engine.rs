@@ -1,0 +1,328 @@
+//! An engine of a few lines: boxes that cast, a ground that is looked up from above, and a device that reports no error.
+
+use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::{Aabb, Boxes, PerspectiveCamera, ViewFrustum};
+use shadowfit_render::Gpu;
+use shadowfit_wgpu::{Casters, SunFrame, SunShadows, WgslOptions, caster_wgsl, receiver_wgsl};
+use wgpu::util::DeviceExt;
+
+use crate::support::software_gpu;
+
+/// The camera's eye.
+pub(super) const EYE: DVec3 = DVec3::new(0.0, 6.0, 9.0);
+
+/// The ways that two suns' light travels.
+pub(super) const SUN: Vec3 = Vec3::new(0.5, -1.0, 0.0);
+pub(super) const MOON: Vec3 = Vec3::new(-0.5, -1.0, 0.0);
+
+/// The ground, a block over its middle, and a post at its side.
+pub(super) const BOXES: [Aabb; 3] = [
+    Aabb { min: Vec3::new(-10.0, -0.5, -10.0), max: Vec3::new(10.0, 0.0, 10.0) },
+    Aabb { min: Vec3::new(-0.75, 1.5, -0.75), max: Vec3::new(0.75, 2.5, 0.75) },
+    Aabb { min: Vec3::new(-6.0, 0.0, -4.0), max: Vec3::new(-5.0, 2.0, -3.0) },
+];
+
+/// Pixels along a side of a picture, and metres of the ground.
+const SIDE: u32 = 64;
+const GROUND: f32 = 16.0;
+
+const CASTER: &str = "
+@vertex fn vs_PREFIX(
+    @location(0) corner: vec3<f32>, @location(1) low: vec3<f32>, @location(2) high: vec3<f32>,
+) -> @builtin(position) vec4<f32> {
+    return PREFIX_caster_position(mix(low, high, corner));
+}
+";
+
+const GROUND_WGSL: &str = "
+@vertex fn vs(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    return vec4<f32>(vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
+}
+@fragment fn fs(@builtin(position) pixel: vec4<f32>) -> @location(0) vec4<f32> {
+    let place = (pixel.xy / SIDE - 0.5) * GROUND;
+    let position = vec3<f32>(place.x, 0.0, place.y);
+    let normal = vec3<f32>(0.0, 1.0, 0.0);
+    return vec4<f32>(FACTORS);
+}
+";
+
+pub(super) fn camera(eye: DVec3) -> PerspectiveCamera {
+    PerspectiveCamera {
+        eye,
+        forward: (-eye).as_vec3().normalize(),
+        up: Vec3::Y,
+        fov_y: 1.2,
+        aspect: 1.5,
+        near: 0.1,
+        far: 60.0,
+    }
+}
+
+/// A frame of boxes that stand still, all of which cast and receive. Positions in shaders are world space.
+pub(super) fn frame_of<'a>(views: &'a [ViewFrustum], direction: Vec3, boxes: &'a [Aabb]) -> SunFrame<'a> {
+    let boxes = Boxes { origin: DVec3::ZERO, boxes };
+    SunFrame::new(views, direction, boxes, Casters::fixed(boxes)).with_origin(DVec3::ZERO)
+}
+
+/// A device.
+pub(super) struct Device {
+    pub(super) device: wgpu::Device,
+    pub(super) queue: wgpu::Queue,
+}
+
+impl From<Gpu> for Device {
+    fn from(gpu: Gpu) -> Self {
+        Self { device: gpu.device, queue: gpu.queue }
+    }
+}
+
+impl Device {
+    /// The software adapter with no more than WebGL2 has.
+    pub(super) fn with_webgl2_limits() -> Self {
+        let (device, queue) = pollster::block_on(software_gpu().adapter.request_device(&wgpu::DeviceDescriptor {
+            required_limits: wgpu::Limits::downlevel_webgl2_defaults(),
+            ..Default::default()
+        }))
+        .expect("a device of fewer limits");
+        assert_eq!(device.features(), wgpu::Features::empty());
+        assert_eq!(device.limits().max_compute_workgroups_per_dimension, 0);
+        Self { device, queue }
+    }
+
+    /// A view of a depth buffer.
+    pub(super) fn depth_texture(&self) -> wgpu::TextureView {
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT;
+        self.texture(wgpu::TextureFormat::Depth32Float, usage).create_view(&wgpu::TextureViewDescriptor::default())
+    }
+
+    fn texture(&self, format: wgpu::TextureFormat, usage: wgpu::TextureUsages) -> wgpu::Texture {
+        self.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: SIDE, height: SIDE, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        })
+    }
+
+    fn module(&self, wgsl: String) -> wgpu::ShaderModule {
+        let source = wgpu::ShaderSource::Wgsl(wgsl.into());
+        self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source })
+    }
+
+    fn vertices(&self, vertices: &[Vec3]) -> wgpu::Buffer {
+        self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: None,
+            contents: bytemuck::cast_slice(vertices),
+            usage: wgpu::BufferUsages::VERTEX,
+        })
+    }
+
+    fn layout(&self, groups: &[Option<&wgpu::BindGroupLayout>]) -> wgpu::PipelineLayout {
+        self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: groups,
+            immediate_size: 0,
+        })
+    }
+}
+
+/// Takes note of what a device reports.
+pub(super) struct Quiet {
+    memory: wgpu::ErrorScopeGuard,
+    validation: wgpu::ErrorScopeGuard,
+    internal: wgpu::ErrorScopeGuard,
+}
+
+impl Quiet {
+    pub(super) fn new(device: &Device) -> Self {
+        let scope = |filter| device.device.push_error_scope(filter);
+        let memory = scope(wgpu::ErrorFilter::OutOfMemory);
+        let validation = scope(wgpu::ErrorFilter::Validation);
+        Self { memory, validation, internal: scope(wgpu::ErrorFilter::Internal) }
+    }
+
+    /// Nothing was reported.
+    pub(super) fn assert(self, what: &str) {
+        for scope in [self.internal, self.validation, self.memory] {
+            let error = pollster::block_on(scope.pop());
+            assert!(error.is_none(), "{what}: {error:?}");
+        }
+    }
+}
+
+/// How the WGSL of a sun fits into a shader.
+fn options(group: u32, prefix: &str) -> WgslOptions<'_> {
+    WgslOptions::group(group).with_prefix(prefix).expect("a prefix")
+}
+
+/// Draws the casters of up to three suns, and the ground by their factors.
+pub(super) struct Painter {
+    casters: Vec<wgpu::RenderPipeline>,
+    ground: wgpu::RenderPipeline,
+    cube: wgpu::Buffer,
+}
+
+/// Factors of each sun over the ground.
+pub(super) struct Picture(Vec<[u8; 4]>);
+
+impl Picture {
+    /// At a place of the ground, in metres.
+    pub(super) fn at(&self, place: [f32; 2]) -> [u8; 4] {
+        let [x, y] = place.map(|metres| ((metres / GROUND + 0.5) * SIDE as f32) as usize);
+        self.0[y * SIDE as usize + x]
+    }
+}
+
+impl Painter {
+    /// Pipelines for suns with the prefixes of their names, whose texts stand in one module.
+    pub(super) fn new(device: &Device, suns: &[(&SunShadows, &'static str)]) -> Self {
+        let caster = |(sun, prefix): &(&SunShadows, &str)| {
+            caster_wgsl(sun.map().descriptor(), &options(0, prefix)) + &CASTER.replace("PREFIX", prefix)
+        };
+        let module = device.module(suns.iter().map(caster).collect());
+        let casters = suns.iter().map(|(sun, prefix)| caster_pipeline(device, &module, sun, prefix)).collect();
+        let receivers = (0..).zip(suns);
+        let receivers =
+            receivers.map(|(group, (sun, prefix))| receiver_wgsl(sun.map().descriptor(), &options(group, prefix)));
+        let mut factors: Vec<String> =
+            suns.iter().map(|(_, prefix)| format!("{prefix}_factor(position, normal)")).collect();
+        factors.resize(4, "1.0".to_owned());
+        let ground = GROUND_WGSL
+            .replace("FACTORS", &factors.join(", "))
+            .replace("SIDE", &format!("{SIDE}.0"))
+            .replace("GROUND", &format!("{GROUND:?}"));
+        let module = device.module(receivers.collect::<String>() + &ground);
+        let groups: Vec<_> = suns.iter().map(|(sun, _)| Some(sun.map().receiver_layout())).collect();
+        let ground = ground_pipeline(device, &module, &device.layout(&groups));
+        Self { casters, ground, cube: device.vertices(&cube()) }
+    }
+
+    /// Draws a frame of suns, each with the boxes that were given to it.
+    pub(super) fn draw(&self, device: &Device, suns: &[(&SunShadows, &[Aabb])]) -> Picture {
+        let mut encoder = device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        for ((sun, boxes), pipeline) in suns.iter().zip(&self.casters) {
+            let corners: Vec<Vec3> = boxes.iter().flat_map(|aabb| [aabb.min, aabb.max]).collect();
+            let instances = device.vertices(if corners.is_empty() { &[Vec3::ZERO; 2] } else { &corners });
+            sun.render(&mut encoder, 0, |pass, piece| {
+                pass.set_pipeline(pipeline);
+                pass.set_vertex_buffer(0, self.cube.slice(..));
+                pass.set_vertex_buffer(1, instances.slice(..));
+                for number in piece.casters {
+                    pass.draw(0..36, *number..number + 1);
+                }
+            });
+        }
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
+        let picture = device.texture(wgpu::TextureFormat::Rgba8Unorm, usage);
+        let view = picture.create_view(&wgpu::TextureViewDescriptor::default());
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.ground);
+        for (group, (sun, _)) in (0..).zip(suns) {
+            pass.set_bind_group(group, sun.receiver_group(), &[]);
+        }
+        pass.draw(0..3, 0..1);
+        drop(pass);
+        read(device, encoder, &picture)
+    }
+}
+
+/// Submits what was recorded, and waits for the picture.
+fn read(device: &Device, mut encoder: wgpu::CommandEncoder, picture: &wgpu::Texture) -> Picture {
+    let buffer = device.device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: u64::from(SIDE * SIDE * 4),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SIDE * 4), rows_per_image: None };
+    let destination = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+    encoder.copy_texture_to_buffer(picture.as_image_copy(), destination, picture.size());
+    device.queue.submit([encoder.finish()]);
+    buffer.slice(..).map_async(wgpu::MapMode::Read, |result| result.expect("the picture can be read"));
+    device.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
+    let mapped = buffer.slice(..).get_mapped_range().expect("the picture is mapped");
+    Picture(bytemuck::pod_collect_to_vec(&mapped))
+}
+
+fn caster_pipeline(
+    device: &Device,
+    module: &wgpu::ShaderModule,
+    sun: &SunShadows,
+    prefix: &str,
+) -> wgpu::RenderPipeline {
+    let map = sun.map();
+    let layout = device.layout(&[Some(map.caster_layout())]);
+    let buffer =
+        |array_stride, step_mode, attributes| Some(wgpu::VertexBufferLayout { array_stride, step_mode, attributes });
+    device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: None,
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some(&format!("vs_{prefix}")),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[
+                buffer(12, wgpu::VertexStepMode::Vertex, &wgpu::vertex_attr_array![0 => Float32x3]),
+                buffer(24, wgpu::VertexStepMode::Instance, &wgpu::vertex_attr_array![1 => Float32x3, 2 => Float32x3]),
+            ],
+        },
+        primitive: map.primitive_state(),
+        depth_stencil: Some(map.depth_stencil_state()),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: None,
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+fn ground_pipeline(
+    device: &Device,
+    module: &wgpu::ShaderModule,
+    layout: &wgpu::PipelineLayout,
+) -> wgpu::RenderPipeline {
+    device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: None,
+        layout: Some(layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("vs"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some("fs"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(wgpu::TextureFormat::Rgba8Unorm.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+/// The triangles of a cube from 0 to 1, of any winding.
+fn cube() -> Vec<Vec3> {
+    let face = |axis: usize, side: f32| {
+        [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[u, v]| {
+            let mut corner = [0.0; 3];
+            (corner[axis], corner[(axis + 1) % 3], corner[(axis + 2) % 3]) = (side, u, v);
+            Vec3::from(corner)
+        })
+    };
+    (0..3).flat_map(|axis| [face(axis, 0.0), face(axis, 1.0)]).flatten().collect()
+}
