@@ -110,6 +110,26 @@ fn gpu_casters_that_change_are_drawn_where_they_were_and_where_they_are() {
 }
 
 #[test]
+fn gpu_the_first_caster_that_moves_finds_all_that_stood_still_before() {
+    run(&technique("windows-4"), 40, |frame, town, walk, _| {
+        walk.go_on(frame / 4);
+        if frame == 0 {
+            *town = Town::still();
+        }
+        if frame == 12 {
+            town.moves = vec![false, true, true];
+        }
+        if frame == 25 {
+            town.moves.clear();
+        }
+        if frame == 33 {
+            town.moves = vec![false, false, true];
+        }
+        town.bob(frame);
+    });
+}
+
+#[test]
 fn gpu_a_light_that_steps_and_a_camera_that_jumps_leave_nothing_behind() {
     run(&technique("windows-4"), 60, |frame, town, walk, kept| {
         walk.go_on(frame);

@@ -152,7 +152,7 @@ impl MapCache {
     /// Has a part of the world, in metres relative to an origin, drawn anew in all maps.
     pub(crate) fn invalidate(&mut self, aabb: &Aabb, origin: DVec3) {
         let changed = WorldBox { min: origin + aabb.min.as_dvec3(), max: origin + aabb.max.as_dvec3() };
-        for map in &mut self.maps {
+        for map in self.maps.iter_mut().filter(|map| map.changed.len() <= MAX_CHANGES) {
             map.changed.push(changed);
         }
     }
@@ -161,7 +161,12 @@ impl MapCache {
     pub(crate) fn choose(&mut self, frame: &CacheFrame<'_>) -> Choice {
         let mut changed = Vec::new();
         self.known.update(frame.casters, frame.direction, &mut changed);
-        self.is_split |= self.settings.can_mend && self.settings.keeps && !self.known.moving.is_empty();
+        let splits = self.settings.can_mend && self.settings.keeps && !self.known.moving.is_empty();
+        if splits && !self.is_split {
+            self.is_split = true;
+            // The layers of the static casters are empty.
+            self.maps.iter_mut().for_each(|map| map.is_kept = false);
+        }
         self.frame += 1;
         let has_moving = !self.known.moving.is_empty();
         let mut candidates = Vec::new();

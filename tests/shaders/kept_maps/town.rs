@@ -6,7 +6,9 @@ use shadowfit::{
     Aabb, Boxes, DepthConvention, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, Workspace,
 };
 use shadowfit_render::{AdapterChoice, Gpu};
-use shadowfit_wgpu::{Casters, KeptMaps, MapFit, PassContent, ShadowMapDescriptor, SunFrame, WgslOptions, caster_wgsl};
+use shadowfit_wgpu::{
+    Casters, KeptMaps, MapFit, PassContent, ShadowMapDescriptor, ShadowPass, SunFrame, WgslOptions, caster_wgsl,
+};
 use wgpu::util::DeviceExt;
 
 /// Where the town lies, far from the world's origin.
