@@ -118,7 +118,8 @@ fn main() -> Result<()> {
     let mut text =
         format!("Measured on {}, four maps of {maps} texels unless a row says otherwise.\n", bench.gpu.name());
     for table in &tables {
-        text += &format!("\n{table}");
+        text += "\n";
+        text += &table.to_string();
     }
     print!("{text}");
     if let Some(out) = &args.out {

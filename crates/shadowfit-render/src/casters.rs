@@ -98,7 +98,7 @@ impl SceneCasters {
                     }
                     // The same triangles once more, for another instance.
                     Some(last) if !is_same && last.indices == range => {
-                        last.instances.end = add(caster.instance as usize) + 1
+                        last.instances.end = add(caster.instance as usize) + 1;
                     }
                     _ => {
                         let slot = add(caster.instance as usize);
