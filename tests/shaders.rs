@@ -34,7 +34,7 @@ use shadowfit::{CasterVolume, DepthConvention};
 use shadowfit_render::shaders;
 use shadowfit_wgpu::need::need_wgsl;
 use shadowfit_wgpu::{
-    MAX_MAPS, ShadowMapDescriptor, WgslOptions, caster_wgsl, culling_wgsl, layers_wgsl, receiver_wgsl,
+    MAX_MAPS, ShadowMapDescriptor, WgslOptions, caster_wgsl, culling_wgsl, layers_wgsl, receiver_wgsl, stored_wgsl,
 };
 
 use crate::support::workspace;
@@ -78,7 +78,10 @@ fn modules() -> Vec<(String, String)> {
         all.push((format!("scene, {kind}"), shaders::scene(&map)));
         all.push((format!("probe, {kind}"), shaders::probe(&map)));
         all.push((format!("inset, {kind}"), shaders::inset(&map)));
-        all.push((format!("receiver piece, {kind}"), receiver_wgsl(&map, &WgslOptions::group(1))));
+        let receiver = receiver_wgsl(&map, &WgslOptions::group(1));
+        let stored = stored_wgsl(&map, &WgslOptions::group(1));
+        all.push((format!("receiver piece with views, {kind}"), receiver.clone() + &stored));
+        all.push((format!("receiver piece, {kind}"), receiver));
     }
     all
 }
@@ -217,6 +220,37 @@ fn the_look_up_needs_uniforms_and_sampled_textures_only_and_no_derivatives() {
                 assert!(!derives, "{map:?}: {:?} takes derivatives", function.name);
             }
         }
+    }
+}
+
+/// A fragment shader alone in its module, of which wgpu translates all functions.
+const SHADED: &str = "
+@fragment fn fs(@builtin(position) at: vec4<f32>, @location(0) position: vec3<f32>) -> @location(0) vec4<f32> {
+    let factor = shadowfit_factor_at(position, vec3<f32>(0.0, 1.0, 0.0), at.xy);
+    return vec4<f32>(factor, f32(shadowfit_map_index(position)), 0.0, 1.0);
+}
+";
+
+#[test]
+fn the_look_up_can_be_translated_for_webgl2_but_where_pcss_reads_depth_as_numbers() {
+    use naga::back::glsl;
+    for map in descriptors() {
+        let source = receiver_wgsl(&map, &WgslOptions::group(0)) + SHADED;
+        let module = parse("receiver", &source);
+        let info =
+            Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).expect("it is valid");
+        let options = glsl::Options { version: glsl::Version::new_gles(300), ..Default::default() };
+        let pipeline = glsl::PipelineOptions {
+            shader_stage: ShaderStage::Fragment,
+            entry_point: "fs".to_owned(),
+            multiview: None,
+        };
+        let mut text = String::new();
+        let policies = naga::proc::BoundsCheckPolicies::default();
+        let translated = glsl::Writer::new(&mut text, &module, &info, &options, &pipeline, policies)
+            .and_then(|mut writer| writer.write());
+        let reads_depth = map.format.is_depth() && map.filter == FilterKind::Pcss;
+        assert_eq!(translated.is_ok(), !reads_depth, "{map:?}: {:?}", translated.err());
     }
 }
 

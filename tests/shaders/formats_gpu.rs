@@ -6,6 +6,7 @@ use shadowfit::settings::{FilterKind, MapFormat};
 use shadowfit_render::Gpu;
 use shadowfit_wgpu::{
     MapFit, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, WgslOptions, caster_wgsl, receiver_wgsl,
+    stored_wgsl,
 };
 
 use super::exact_counts_gpu::box_fit;
@@ -106,7 +107,8 @@ fn read_bits(gpu: &Gpu, map: &ShadowMap) -> Vec<u32> {
         usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
         view_formats: &[],
     });
-    let source = receiver_wgsl(map.descriptor(), &WgslOptions::group(0)) + READ;
+    let options = WgslOptions::group(0);
+    let source = receiver_wgsl(map.descriptor(), &options) + &stored_wgsl(map.descriptor(), &options) + READ;
     let pipeline = pipeline(gpu, &source, map.receiver_layout(), None, format.into());
     let view = target.create_view(&wgpu::TextureViewDescriptor::default());
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

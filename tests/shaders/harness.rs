@@ -5,7 +5,9 @@ use shadowfit::glam::{DVec3, Vec2, Vec3};
 use shadowfit::settings::BiasSettings;
 use shadowfit::{Bias, LightFit};
 use shadowfit_render::Gpu;
-use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgsl};
+use shadowfit_wgpu::{
+    MapFit, MapView, ShadowMap, ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgsl, stored_wgsl,
+};
 
 /// A point that is asked about: position relative to the origin, in metres, and unit normal.
 #[repr(C)]
@@ -217,7 +219,8 @@ impl<'a> Harness<'a> {
             .replace("ROWS", &format!("{rows}.0"))
             .replace("vec2<f32>(ROW", &format!("vec2<f32>({ROW}.0"))
             .replace("ROW", &format!("{ROW}u"));
-        let module = module(self.gpu, receiver_wgsl(self.map.descriptor(), &WgslOptions::group(0)) + &source);
+        let (map, options) = (self.map.descriptor(), WgslOptions::group(0));
+        let module = module(self.gpu, receiver_wgsl(map, &options) + &stored_wgsl(map, &options) + &source);
         let pipeline = receiver_pipeline(self.gpu, self.map.receiver_layout(), &module);
         let targets = [(); 2].map(|()| target(self.gpu, rows));
         let views = [0, 1].map(|index: usize| targets[index].create_view(&wgpu::TextureViewDescriptor::default()));

@@ -1,6 +1,6 @@
 //! The shader modules, put together from the pieces in `shaders/` and the shadow map's own WGSL.
 
-use shadowfit_wgpu::{ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgsl};
+use shadowfit_wgpu::{ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgsl, stored_wgsl};
 
 /// Bind group of the map's matrix in the shadow pass.
 pub const CASTER_GROUP: u32 = 0;
@@ -63,7 +63,9 @@ pub fn lines() -> String {
 
 /// The shadow map's inset: frame, shadow map and inset are groups 0, 1 and 2.
 pub fn inset(shadow_map: &ShadowMapDescriptor) -> String {
-    [FRAME, &receiver_wgsl(shadow_map, &WgslOptions::group(SHADOW_GROUP)), include_str!("shaders/inset.wgsl")].concat()
+    let options = WgslOptions::group(SHADOW_GROUP);
+    let (receiver, stored) = (receiver_wgsl(shadow_map, &options), stored_wgsl(shadow_map, &options));
+    [FRAME, &receiver, &stored, include_str!("shaders/inset.wgsl")].concat()
 }
 
 /// Texture levels.

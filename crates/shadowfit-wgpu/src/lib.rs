@@ -95,7 +95,7 @@ pub use kept_maps::{KeptMaps, ShadowPass, ShadowPiece};
 pub use layers::layers_wgsl;
 pub use map::ShadowMap;
 pub use map_fit::{MapFit, MapView};
-pub use shader::{WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl};
+pub use shader::{WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl, stored_wgsl};
 pub use shadowfit::settings::MAX_MAPS;
 pub use sun_frame::SunFrame;
 pub use sun_shadows::{SunShadows, SunShadowsError};

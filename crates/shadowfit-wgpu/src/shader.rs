@@ -101,18 +101,15 @@ pub fn culling_wgsl(options: &WgslOptions<'_>) -> String {
 /// | `shadowfit_factor(position, normal) -> f32` | the same without turning the discs: their look-ups then show as bands instead of noise |
 /// | `shadowfit_map_index(position) -> i32` | the index of the map that weighs more in the factor there, for tints that show it; -1 outside every map |
 /// | `shadowfit_view_depth(position) -> f32` | the view depth, in metres, that chooses among maps that are read by view depth and that shadows fade by: the distance from [`MapView::eye`](crate::MapView::eye) along [`MapView::forward`](crate::MapView::forward) |
-/// | `shadowfit_stored(map, texel) -> f32` | the depth that a map, by its index, holds at a texel (`vec2<i32>`), for views of the map |
 ///
 /// `position` is in world space, metres, relative to the origin of [`crate::ShadowMap::prepare`];
 /// `normal` is the unit geometric normal on the side that is seen. Which map a point reads is
 /// [`ShadowMapDescriptor::choice`], by the rule of [`shadowfit::choice`]. Reads the bindings from
 /// [`ShadowMapDescriptor::first_binding`] on, two of them and for depth formats three; no derivatives.
 pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) -> String {
-    let texel = match descriptor.format {
-        MapFormat::Depth32Float | MapFormat::Depth16Unorm => include_str!("shaders/texel_depth.wgsl"),
-        MapFormat::R32Float | MapFormat::R16Float | MapFormat::R8Grey => include_str!("shaders/texel_float.wgsl"),
-        MapFormat::Rgba8Packed => include_str!("shaders/texel_packed.wgsl"),
-    };
+    let (texture, load) = texture(descriptor.format);
+    let texel =
+        if loads_texels(descriptor) { [load, include_str!("shaders/texel.wgsl")].concat() } else { String::new() };
     let look_up = match (descriptor.format.is_depth(), descriptor.filter) {
         (true, _) => [include_str!("shaders/compare_depth.wgsl"), ""],
         (false, FilterKind::Point) => {
@@ -123,8 +120,8 @@ pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>
     let closer = if descriptor.depth == DepthConvention::Reversed { ">=" } else { "<=" };
     let pieces = [
         include_str!("shaders/receiver.wgsl"),
-        texel,
-        include_str!("shaders/stored.wgsl"),
+        texture,
+        &texel,
         &look_up.concat(),
         include_str!("shaders/look_up.wgsl"),
         &filter(descriptor.filter),
@@ -133,6 +130,50 @@ pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>
         include_str!("shaders/factor.wgsl"),
     ];
     options.fill(&pieces.concat().replace("COMPARE", closer), descriptor.first_binding)
+}
+
+/// WGSL for views of the maps, after that of [`receiver_wgsl`]: `shadowfit_stored(map, texel) -> f32` is the depth that a
+/// map, by its index, holds at a texel (`vec2<i32>`). Depth formats need a device whose shaders can read depth textures as
+/// numbers, which OpenGL's cannot.
+pub fn stored_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) -> String {
+    let maps = descriptor.maps.clamp(1, MAX_MAPS as u32);
+    let wrap = |entry: u32| {
+        let map = format!("shadowfit_receiver.maps[{entry}]");
+        format!(
+            "    if {entry}u < shadowfit_receiver.map_count && {map}.layer == layer {{\n        return {map}.wrap;\n    }}\n"
+        )
+    };
+    let wraps = format!(
+        "
+// Where the first texel of a map lies in its layer.
+fn shadowfit_wrap(layer: u32) -> vec2<f32> {{
+{}    return vec2<f32>(0.0);
+}}
+",
+        (0..maps).map(wrap).collect::<String>()
+    );
+    let load = if loads_texels(descriptor) { "" } else { texture(descriptor.format).1 };
+    options.fill(&[load, &wraps, include_str!("shaders/stored.wgsl")].concat(), descriptor.first_binding)
+}
+
+/// Whether the look-up reads texels by itself.
+fn loads_texels(descriptor: &ShadowMapDescriptor) -> bool {
+    !descriptor.format.is_depth() || descriptor.filter == FilterKind::Pcss
+}
+
+/// The texture of a format, and how a texel of it is read.
+fn texture(format: MapFormat) -> (&'static str, &'static str) {
+    match format {
+        MapFormat::Depth32Float | MapFormat::Depth16Unorm => {
+            (include_str!("shaders/texture_depth.wgsl"), include_str!("shaders/texel_depth.wgsl"))
+        }
+        MapFormat::R32Float | MapFormat::R16Float | MapFormat::R8Grey => {
+            (include_str!("shaders/texture_color.wgsl"), include_str!("shaders/texel_float.wgsl"))
+        }
+        MapFormat::Rgba8Packed => {
+            (include_str!("shaders/texture_color.wgsl"), include_str!("shaders/texel_packed.wgsl"))
+        }
+    }
 }
 
 /// How a filter gathers its look-ups.
@@ -192,12 +233,6 @@ fn choice(descriptor: &ShadowMapDescriptor) -> String {
         )
     };
     let entry = |entry: u32| format!("    if entry == {entry} {{\n        return {};\n    }}\n", map(entry));
-    let wrap = |entry: u32| {
-        let map = map(entry);
-        format!(
-            "    if {entry}u < shadowfit_receiver.map_count && {map}.layer == layer {{\n        return {map}.wrap;\n    }}\n"
-        )
-    };
     let rule = match descriptor.choice {
         MapChoice::Coverage => include_str!("shaders/choice_coverage.wgsl"),
         MapChoice::ViewDepth => include_str!("shaders/choice_view_depth.wgsl"),
@@ -221,15 +256,9 @@ fn shadowfit_choose(position: vec3<f32>) -> shadowfit_Choice {{
 fn shadowfit_entry(entry: i32) -> shadowfit_Map {{
 {}    return {};
 }}
-
-// Where the first texel of a map lies in its layer.
-fn shadowfit_wrap(layer: u32) -> vec2<f32> {{
-{}    return vec2<f32>(0.0);
-}}
 ",
         (0..maps).map(try_map).collect::<String>(),
         (1..maps).map(entry).collect::<String>(),
         map(0),
-        (0..maps).map(wrap).collect::<String>(),
     )
 }

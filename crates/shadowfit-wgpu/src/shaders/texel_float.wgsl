@@ -1,8 +1,5 @@
-// Texels of a colour texture whose first channel is the depth.
 
-@group(GROUP) @binding(BINDING_1) var shadowfit_texture: texture_2d_array<f32>;
-
-// The depth at a texel of a layer, as it is stored.
+// The depth at a texel of a layer of a colour texture, as it is stored: the first channel.
 fn shadowfit_load(layer: u32, texel: vec2<i32>) -> f32 {
     return textureLoad(shadowfit_texture, texel, i32(layer), 0).x;
 }
