@@ -6,6 +6,10 @@
 use std::path::{Path, PathBuf};
 
 use image::RgbImage;
+use shadowfit::Technique;
+use shadowfit::glam::DVec3;
+use shadowfit::settings::{FilterKind, MapFormat, SoftRadius};
+use shadowfit_render::FlyCamera;
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_viewer::{Artefact, Stage};
 
@@ -21,8 +25,34 @@ const MAX_BYTES: u64 = 128 * 1024;
 const SAMPLES: u32 = 4;
 
 /// Every golden.
-const NAMES: [&str; 9] =
-    ["final", "inset", "outside", "acne", "acne-fixed", "aliasing", "aliasing-fixed", "hole", "hole-fixed"];
+const NAMES: [&str; 20] = [
+    "final",
+    "inset",
+    "outside",
+    "acne",
+    "acne-fixed",
+    "aliasing",
+    "aliasing-fixed",
+    "hole",
+    "hole-fixed",
+    "filter-point",
+    "filter-hardware-2x2",
+    "filter-pcf-3x3",
+    "filter-pcf-5x5",
+    "filter-pcf-7x7",
+    "filter-vogel-8",
+    "filter-vogel-16",
+    "filter-vogel-32",
+    "filter-pcss",
+    "format-depth16-unorm",
+    "format-r8-grey",
+];
+
+/// Angular radius of the sun of the filters' pictures, in radians: 2°, so that soft edges show.
+const LARGE_SUN: f32 = 0.035;
+
+/// Width and height of the maps of the filters' pictures, in texels: a texel is a few pixels, so that filters differ.
+const COARSE: u32 = 512;
 
 /// Mean difference allowed, in levels of 255 over all channels. The same driver draws the same bits; another version of
 /// it may round a shaded value the other way, which is one level, in some pixels.
@@ -62,6 +92,29 @@ fn aliasing_and_its_fix_are_as_they_were() {
 #[test]
 fn the_hole_and_its_fix_are_as_they_were() {
     check_artefact(Artefact::ClippingHole, ["hole", "hole-fixed"]);
+}
+
+#[test]
+fn shadows_by_each_filter_are_as_they_were() {
+    let mut stage = stage_of_a_long_shadow();
+    let names = NAMES.iter().filter(|name| name.starts_with("filter-"));
+    let drawn = FilterKind::ALL.into_iter().zip(names).map(|(filter, name)| {
+        stage.settings.technique = stage.settings.technique.with_filter(filter);
+        check(&mut stage, name);
+        name.trim_start_matches("filter-").replace(['-', '_'], "")
+    });
+    let drawn: Vec<String> = drawn.collect();
+    // Each name is that of its filter, and none is left out.
+    assert_eq!(drawn, FilterKind::ALL.map(|filter| format!("{filter:?}").to_lowercase()));
+}
+
+#[test]
+fn shadows_in_coarse_formats_are_as_they_were() {
+    let mut stage = stage_of_a_long_shadow();
+    for (format, name) in [(MapFormat::Depth16Unorm, "format-depth16-unorm"), (MapFormat::R8Grey, "format-r8-grey")] {
+        stage.settings.technique = stage.settings.technique.with_format(format);
+        check(&mut stage, name);
+    }
 }
 
 #[test]
@@ -108,6 +161,20 @@ fn stage() -> Stage {
     let mut stage = Stage::new(software_gpu(), default_scene(), SAMPLES).expect("the default scene can be shown");
     stage.settings.view.play = false;
     stage.set_home();
+    stage
+}
+
+/// The figure's shadow on the floor, from its feet, where edges are hard, to its head, and behind it that of the upper
+/// half of a pole of seven metres: by a sun large enough for soft edges to show, in maps coarse enough for filters to
+/// differ.
+fn stage_of_a_long_shadow() -> Stage {
+    let mut stage = stage();
+    stage.settings.view.inset = false;
+    stage.settings.camera.fov_y = 0.36;
+    stage.camera = FlyCamera::look_at(DVec3::new(-3.2, 2.4, 1.6), DVec3::new(-0.62, 0.1, -0.72));
+    let technique = Technique::default().with_resolution(COARSE, COARSE);
+    let softness = technique.softness.with_radius(SoftRadius::SunAngle(LARGE_SUN));
+    stage.settings.technique = technique.with_softness(softness);
     stage
 }
 

@@ -117,6 +117,20 @@ fn a_moving_scene_and_a_sun_with_a_radius_are_judged_too() {
 }
 
 #[test]
+fn filters_are_compared_side_by_side_on_every_nth_frame() {
+    let scratch = Scratch::new("filters");
+    let arguments = ["courtyard", "--path", "path.toml", "--technique", "focused-1", "--resolution", "512"];
+    let filters = ["--filters", "point,pcss", "--every", "2", "-o", "out"];
+    succeeded(&scratch.report(&[&arguments[..], &filters].concat()));
+    let report = scratch.json("out/report.json");
+    let techniques = report["techniques"].as_array().expect("a list");
+    let names: Vec<&str> = techniques.iter().filter_map(|technique| technique["name"].as_str()).collect();
+    assert_eq!(names, ["focused-1 point", "focused-1 pcss"]);
+    assert_eq!(report["frames"].as_array().map(Vec::len), Some(1), "of two");
+    assert_ne!(techniques[0]["overall"]["mean error %"], techniques[1]["overall"]["mean error %"]);
+}
+
+#[test]
 fn what_import_notes_of_a_scene_is_said_and_stands_in_the_report() {
     let scratch = Scratch::new("notes");
     scratch.file("notes.gltf", SCENE_WITH_NOTES);

@@ -15,7 +15,8 @@ pub(crate) struct Drawing {
         long,
         value_name = "NAME",
         value_parser = filter,
-        help = "Filter of the look-up: point, hardware_2x2, pcf_3x3 or pcf_5x5 [default: the technique's, or pcf_5x5]"
+        help = "Filter of the look-up, such as pcf_3x3 or vogel_16; the viewer's --parameters lists them under map.filter \
+                [default: the technique's, or pcf_5x5]"
     )]
     filter: Option<FilterKind>,
     #[arg(
@@ -147,4 +148,9 @@ fn filter(text: &str) -> Result<FilterKind> {
     let mut technique = Technique::default();
     params::set_technique_from_str(&mut technique, "map.filter", text).map_err(|error| anyhow::anyhow!("{error}"))?;
     Ok(technique.filter)
+}
+
+/// The filter of a name, with that name.
+pub(crate) fn named_filter(text: &str) -> Result<(String, FilterKind)> {
+    Ok((text.trim().to_owned(), filter(text.trim())?))
 }

@@ -6,11 +6,13 @@ use anyhow::{Context, Result};
 use image::RgbaImage;
 use indicatif::{ProgressBar, ProgressStyle};
 use shadowfit::presets::RECOMMENDED;
+use shadowfit::settings::FilterKind;
 use shadowfit_study::{NamedTechnique, SharedTruth, ensure_judged};
 use shadowfit_truth::PictureTally;
 use shadowfit_wgpu::MapFit;
 
 use crate::data::{Columns, FrameInfo, FramePictures, Run, TechniqueRun};
+use crate::drawing::{Drawing, named_filter};
 use crate::heat::heat;
 use crate::interrupt::Interrupt;
 use crate::job::{Job, JobFrame, Prepared};
@@ -28,6 +30,18 @@ pub(crate) struct Args {
     /// Technique, by name or as a TOML file; give it once for each [default: xna-1, stable-4, histogram-4, windows-4]
     #[arg(long = "technique", alias = "config", value_name = "NAME|FILE.toml")]
     techniques: Vec<String>,
+    #[arg(
+        long,
+        value_name = "NAME,...",
+        value_delimiter = ',',
+        value_parser = named_filter,
+        conflicts_with = "filter",
+        help = "Compare filters: every technique once with each of them, and with the bias that it needs"
+    )]
+    filters: Vec<(String, FilterKind)>,
+    /// Measure every Nth frame of the path: a quick look, in which what maps keep from frame to frame counts for less
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    every: u32,
     /// Width and height of all maps, in texels [default: what the techniques say]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(256..=8192))]
     resolution: Option<u32>,
@@ -51,6 +65,7 @@ struct Measured {
 pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<bool> {
     let techniques = techniques(args)?;
     let mut job = args.job.prepare()?;
+    job.frames = every(&job.frames, args.every);
     for technique in &techniques {
         job.comparison.add(technique.clone())?;
     }
@@ -88,16 +103,45 @@ fn techniques(args: &Args) -> Result<Vec<NamedTechnique>> {
         args.techniques.iter().map(String::as_str).collect()
     };
     let drawing = &args.job.drawing;
-    names
-        .into_iter()
-        .map(|name| {
-            let technique = drawing.changed(NamedTechnique::find(name)?)?;
-            Ok(match args.resolution {
+    let mut techniques = Vec::new();
+    for name in names {
+        let found = NamedTechnique::find(name)?;
+        for named in with_filters(&found, &args.filters, drawing)? {
+            let technique = drawing.changed(named)?;
+            techniques.push(match args.resolution {
                 Some(texels) => technique.with_resolution(texels),
                 None => technique,
-            })
-        })
-        .collect()
+            });
+        }
+    }
+    Ok(techniques)
+}
+
+/// Every so manieth frame of each group, the first ones included.
+fn every(frames: &[JobFrame], step: u32) -> Vec<JobFrame> {
+    let mut place = 0_u32;
+    let is_taken = |frame: &&JobFrame| {
+        place = if frame.view.is_first { 0 } else { place + 1 };
+        place.is_multiple_of(step)
+    };
+    frames.iter().filter(is_taken).cloned().collect()
+}
+
+/// A technique with each of some filters, named after them too; as it is where there are none.
+fn with_filters(
+    named: &NamedTechnique,
+    filters: &[(String, FilterKind)],
+    drawing: &Drawing,
+) -> Result<Vec<NamedTechnique>> {
+    if filters.is_empty() {
+        return Ok(vec![named.clone()]);
+    }
+    let with_filter = |(filter_name, filter): &(String, FilterKind)| {
+        let technique = named.technique.with_look_up(*filter, drawing.bias(*filter)?);
+        let name = format!("{} {filter_name}", named.name);
+        Ok(NamedTechnique { name, technique, ..named.clone() })
+    };
+    filters.iter().map(with_filter).collect()
 }
 
 /// Refuses to report on pictures in which nothing is judged. One that was interrupted may have none.

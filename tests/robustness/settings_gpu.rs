@@ -1,9 +1,9 @@
 //! Settings that no panel would allow: every number in turn NaN, infinite, zero, negative, tiny and huge.
 
-use shadowfit::DepthConvention;
 use shadowfit::glam::{DVec3, UVec2};
-use shadowfit::settings::{CasterPolicy, FitKind};
+use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MapFormat, SoftRadius, Softness};
 use shadowfit::tool::Settings;
+use shadowfit::{DepthConvention, Technique};
 use shadowfit_render::FlyInput;
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_scene::{Mesh, Scene};
@@ -17,6 +17,9 @@ const SIZE: [u32; 2] = [64, 36];
 /// Most triangles of a mesh that is drawn.
 const MOST_TRIANGLES: usize = 300;
 
+/// Techniques that are drawn at random.
+const ROUNDS: usize = 24;
+
 /// What each number becomes.
 const ABSURD: [f32; 9] =
     [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -1.0, f32::MIN_POSITIVE, f32::MAX, f32::MIN, 1e-20];
@@ -25,7 +28,7 @@ const ABSURD: [f32; 9] =
 type Field = (&'static str, fn(&mut Settings, f32));
 
 /// Every number that is a float.
-const FIELDS: [Field; 15] = [
+const FIELDS: [Field; 26] = [
     ("fit.max_distance", |s, x| s.technique.fit.max_distance = x),
     ("fit.margin", |s, x| s.technique.fit.margin = x),
     ("fit.border", |s, x| s.technique.fit.border = Some(x)),
@@ -33,6 +36,23 @@ const FIELDS: [Field; 15] = [
     ("bias.constant", |s, x| s.technique.bias.constant = x),
     ("bias.slope", |s, x| s.technique.bias.slope = x),
     ("bias.normal_offset", |s, x| s.technique.bias.normal_offset = x),
+    ("bias.receiver_plane", |s, x| s.technique.bias.receiver_plane = x),
+    ("bias.depth_steps", |s, x| {
+        s.technique.format = MapFormat::Depth16Unorm;
+        s.technique.bias.depth_steps = x;
+    }),
+    ("fit.least_texel", |s, x| s.technique.fit.least_texel = x),
+    ("map.fade", |s, x| {
+        s.technique.fit.max_distance = 20.0;
+        s.technique.fade = x;
+    }),
+    ("softness.metres", |s, x| soft(s, FilterKind::Vogel16).radius = SoftRadius::Metres(x)),
+    ("softness.metres of pcss", |s, x| soft(s, FilterKind::Pcss).radius = SoftRadius::Metres(x)),
+    ("softness.angle", |s, x| soft(s, FilterKind::Vogel8).radius = SoftRadius::SunAngle(x)),
+    ("softness.angle of pcss", |s, x| soft(s, FilterKind::Pcss).radius = SoftRadius::SunAngle(x)),
+    ("softness.floor", |s, x| soft(s, FilterKind::Vogel16).floor = x),
+    ("softness.ceiling", |s, x| soft(s, FilterKind::Pcss).ceiling = x),
+    ("softness of a filter that ignores it", |s, x| soft(s, FilterKind::Pcf5x5).floor = x),
     ("light.azimuth", |s, x| s.light.azimuth = x),
     ("light.elevation", |s, x| s.light.elevation = x),
     ("light.animate_speed", |s, x| s.light.animate_speed = x),
@@ -45,7 +65,7 @@ const FIELDS: [Field; 15] = [
 ];
 
 /// The fields whose NaN cannot be fitted or looked up with, so that the stage has to say so.
-const REFUSED: [&str; 14] = [
+const REFUSED: [&str; 24] = [
     "fit.max_distance",
     "fit.margin",
     "fit.border",
@@ -54,6 +74,16 @@ const REFUSED: [&str; 14] = [
     "bias.slope",
     "bias.normal_offset",
     "bias.receiver_plane",
+    "bias.depth_steps",
+    "fit.least_texel",
+    "map.fade",
+    "softness.metres",
+    "softness.metres of pcss",
+    "softness.angle",
+    "softness.angle of pcss",
+    "softness.floor",
+    "softness.ceiling",
+    "softness of a filter that ignores it",
     "light.azimuth",
     "light.elevation",
     "camera.fov_y",
@@ -61,6 +91,12 @@ const REFUSED: [&str; 14] = [
     "camera.far",
     "camera.near and far",
 ];
+
+/// The softness of settings with a filter.
+fn soft(settings: &mut Settings, filter: FilterKind) -> &mut Softness {
+    settings.technique = settings.technique.with_filter(filter);
+    &mut settings.technique.softness
+}
 
 /// The default scene without what has many triangles: hundreds of frames are drawn here.
 fn light_scene() -> Scene {
@@ -114,6 +150,66 @@ fn every_absurd_number_is_drawn_without_a_panic_and_refused_fits_are_told() {
     stage.reset();
     frame(&mut stage);
     assert_eq!(stage.problem(), None, "after all that a reset brings the picture back");
+}
+
+#[test]
+fn random_soft_filters_fades_and_formats_are_drawn_or_refused_with_a_reason() {
+    let mut stage = stage();
+    let mut random = Random(7);
+    let mut drawn = 0;
+    for round in 0..ROUNDS {
+        stage.reset();
+        let technique = random_technique(&mut random, &stage.settings.technique);
+        stage.settings.technique = technique;
+        let picture = stage.target(SIZE);
+        stage.draw(&picture);
+        match stage.problem() {
+            Some(problem) => {
+                println!("{round}: {problem}");
+                assert!(problem.len() > 20, "{round}: {technique:?}: {problem}");
+            }
+            None => drawn += 1,
+        }
+    }
+    // If next to nothing were possible, the test would say little.
+    assert!(drawn * 4 > ROUNDS, "{drawn} of {ROUNDS}");
+}
+
+/// Any filter and format, with a softness, a fade and a least texel out of, at and beyond their ranges.
+fn random_technique(random: &mut Random, technique: &Technique) -> Technique {
+    let mut technique = technique
+        .with_filter(random.one_of(&FilterKind::ALL))
+        .with_format(random.one_of(&MapFormat::ALL))
+        .with_max_distance(random.one_of(&[0.5, 20.0, f32::MAX]))
+        .with_fade(random.one_of(&[0.0, 1e-20, 0.1, 1.0, 1.5]))
+        .with_softness(Softness {
+            radius: random.one_of(&[
+                SoftRadius::Metres(0.0),
+                SoftRadius::Metres(0.1),
+                SoftRadius::Metres(1000.0),
+                SoftRadius::SunAngle(0.0),
+                SoftRadius::SunAngle(0.03),
+                SoftRadius::SunAngle(0.785),
+            ]),
+            floor: random.one_of(&[0.0, 1.0, 8.0]),
+            ceiling: random.one_of(&[1.0, 16.0, 40.0, 64.0]),
+        });
+    technique.fit.kind = random.one_of(&[FitKind::Windows, FitKind::Focused, FitKind::Sphere, FitKind::XnaSample]);
+    technique.fit.least_texel = random.one_of(&[0.0, 1e-30, 0.01, 5.0, 1e6]);
+    technique.bias.depth_steps = random.one_of(&[0.0, 1.0, 16.0]);
+    technique
+}
+
+/// Numbers that look random and are the same in every run (G. Marsaglia, "Xorshift RNGs", 2003).
+struct Random(u64);
+
+impl Random {
+    fn one_of<T: Copy>(&mut self, values: &[T]) -> T {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        values[(self.0 >> 33) as usize % values.len()]
+    }
 }
 
 #[test]

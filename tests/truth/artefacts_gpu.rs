@@ -1,7 +1,8 @@
 //! Each artefact alone, made on purpose: it is counted as what it is, and its cure brings the count to nothing.
 
+use shadowfit::Technique;
 use shadowfit::glam::{Affine3A, Quat, Vec3};
-use shadowfit::settings::{BiasSettings, FilterKind, FitKind, Softness};
+use shadowfit::settings::{BiasSettings, FilterKind, FitKind, MapFormat, Softness};
 use shadowfit_truth::PictureTally;
 
 use super::shapes::{Arrangement, NO_BIAS, floor, single, solid};
@@ -17,6 +18,11 @@ fn box_on_a_floor() -> Arrangement {
 fn wall_on_a_floor() -> Arrangement {
     let objects = vec![floor(8.0), solid(Vec3::new(-2.0, 0.0, -0.01), Vec3::new(2.0, 2.0, 0.01))];
     Arrangement::new(objects, Vec3::new(-1.0, 4.0, -6.0), Vec3::new(-0.5, 0.5, -1.0), Vec3::new(-0.2, -0.7, -0.5))
+}
+
+/// A map in a format, of texels so fine that its depths' steps are what matters.
+fn in_format(format: MapFormat, filter: FilterKind, bias: BiasSettings) -> Technique {
+    single(FitKind::Focused, filter, bias).with_resolution(2048, 2048).with_format(format)
 }
 
 fn shares(tally: &PictureTally) -> [f64; 4] {
@@ -37,6 +43,30 @@ fn acne_without_a_bias_is_false_shadow_and_the_automatic_bias_leaves_none() {
         let offset = box_on_a_floor().judged(&single(FitKind::Focused, filter, offset));
         assert!(shares(&offset)[0] < 0.001, "{filter:?}: {:?}", shares(&offset));
     }
+}
+
+#[test]
+fn the_automatic_bias_leaves_no_false_shadow_in_any_format() {
+    for format in MapFormat::ALL {
+        // One of each kind: a texel, a tent, and a disc that searches for casters.
+        for filter in [FilterKind::Point, FilterKind::Pcf5x5, FilterKind::Pcss] {
+            let tally = box_on_a_floor().judged(&in_format(format, filter, BiasSettings::automatic(filter)));
+            println!("{format:?} {filter:?}: {:?}", shares(&tally));
+            assert_eq!((tally.all.false_shadow, tally.all.hole), (0, 0), "{format:?} {filter:?}");
+        }
+    }
+}
+
+#[test]
+fn eight_bits_of_depth_have_acne_without_their_steps_in_the_bias() {
+    let filter = FilterKind::Hardware2x2;
+    let without = BiasSettings { depth_steps: 0.0, ..BiasSettings::automatic(filter) };
+    let [fine, grey] = [MapFormat::Depth32Float, MapFormat::R8Grey].map(|format| {
+        let tally = box_on_a_floor().judged(&in_format(format, filter, without));
+        println!("{format:?}: {:?}", shares(&tally));
+        shares(&tally)[0]
+    });
+    assert!(fine == 0.0 && grey > 0.01, "{fine} {grey}");
 }
 
 #[test]
