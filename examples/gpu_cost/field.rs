@@ -30,7 +30,7 @@ pub(crate) fn time(bench: &Bench) -> Result<Table> {
         ]);
     }
     Ok(Table {
-        title: "Culling",
+        title: "Culling of 10,000 boxes",
         note: format!(
             "{INSTANCES} boxes, a draw call each, half of them behind the eye and away from the sun; all maps drawn anew. \
              CPU is fit, culling and encoding."

@@ -52,7 +52,7 @@ pub(crate) fn time(bench: &Bench, scene: &BenchScene) -> Result<Table> {
         rows.push(vec![case.name.to_owned(), ms(whole), share(whole, unit), ms(whole - positions)]);
     }
     Ok(Table {
-        title: "Filters",
+        title: "The look-up",
         note: format!(
             "A triangle over 1920 × 1080 pixels of the {} that takes positions from the depth buffer and computes \
              `shadowfit_factor_at` alone, as a whole, of that with the hardware's 2×2, and without the time of positions \
