@@ -43,8 +43,8 @@ struct Args {
     /// Draw on the software adapter, whatever GPU there is
     #[arg(long)]
     software: bool,
-    /// Width and height of the maps, in texels
-    #[arg(long, default_value_t = 2048)]
+    /// Width and height of the maps, in texels; some are drawn at half of it
+    #[arg(long, default_value_t = 2048, value_parser = clap::value_parser!(u32).range(512..=8192))]
     map: u32,
     /// Only these parts
     #[arg(long, value_enum, num_args = 1..)]
