@@ -11,6 +11,7 @@ mod fade_gpu;
 mod formats_gpu;
 mod harness;
 mod kept_maps_gpu;
+mod kept_scene_gpu;
 mod layout;
 mod need_gpu;
 mod need_picture;
