@@ -6,7 +6,7 @@ use shadowfit::settings::MAX_MAPS;
 ///
 /// A map that waits is read as it was drawn, with its own matrices. It never waits where a receiver would be left out or
 /// a caster lost: when the light has turned, when its depth range no longer holds what it must, and, of the map that
-/// must hold everything that the others leave out, when it has moved.
+/// must hold everything that the others leave out, when it has moved. Maps that are not kept never wait.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum UpdateSchedule {
     /// Every map in every frame. The default.
