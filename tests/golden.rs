@@ -9,6 +9,7 @@ use image::RgbImage;
 use shadowfit::Technique;
 use shadowfit::glam::DVec3;
 use shadowfit::settings::{FilterKind, MapFormat, SoftRadius};
+use shadowfit::tool::{InsetMaps, ViewMode};
 use shadowfit_render::FlyCamera;
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_viewer::{Artefact, Stage};
@@ -71,11 +72,11 @@ const AMPLIFIED: u8 = 8;
 #[test]
 fn final_inset_and_outside_view_are_as_they_were() {
     let mut stage = stage();
-    stage.settings.view.inset = false;
+    stage.settings.view.inset = InsetMaps::Off;
     check(&mut stage, "final");
-    stage.settings.view.inset = true;
+    stage.settings.view.inset = InsetMaps::One;
     check(&mut stage, "inset");
-    stage.settings.view.outside = true;
+    stage.settings.view.mode = ViewMode::Outside;
     check(&mut stage, "outside");
 }
 
@@ -169,7 +170,7 @@ fn stage() -> Stage {
 /// differ.
 fn stage_of_a_long_shadow() -> Stage {
     let mut stage = stage();
-    stage.settings.view.inset = false;
+    stage.settings.view.inset = InsetMaps::Off;
     stage.settings.camera.fov_y = 0.36;
     stage.camera = FlyCamera::look_at(DVec3::new(-3.2, 2.4, 1.6), DVec3::new(-0.62, 0.1, -0.72));
     let technique = Technique::default().with_resolution(COARSE, COARSE);
@@ -181,10 +182,10 @@ fn stage_of_a_long_shadow() -> Stage {
 fn check_artefact(artefact: Artefact, [shown, fixed]: [&str; 2]) {
     let mut stage = stage();
     stage.show_artefact(artefact);
-    stage.settings.view.inset = false;
+    stage.settings.view.inset = InsetMaps::Off;
     check(&mut stage, shown);
     stage.fix_artefact(artefact);
-    stage.settings.view.inset = false;
+    stage.settings.view.inset = InsetMaps::Off;
     check(&mut stage, fixed);
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use shadowfit::tool::InsetMaps;
 use shadowfit_scene::{Scene, SceneError, load_gltf};
 use shadowfit_truth::PictureTally;
 use shadowfit_viewer::{Artefact, Stage, StageError};
@@ -78,7 +79,7 @@ fn every_scene_of_the_collection_is_drawn_and_judged() {
         };
         match stage.set_scene(scene) {
             Ok(()) => {
-                stage.settings.view.inset = false;
+                stage.settings.view.inset = InsetMaps::Off;
                 draw_and_judge(&mut stage, &name);
                 drawn += 1;
             }
@@ -111,7 +112,7 @@ fn artefacts_of_real_scenes_are_shown_and_fixed_without_a_problem() {
 
 /// Whether the picture of a time of the animation differs from that of its start.
 fn moves(stage: &mut Stage, seconds: f32) -> bool {
-    stage.settings.view.inset = false;
+    stage.settings.view.inset = InsetMaps::Off;
     let picture = stage.target(SIZE);
     let mut draw_at = |time| {
         stage.set_time(time);

@@ -2,7 +2,7 @@
 
 use shadowfit::glam::{DVec3, UVec2};
 use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MapFormat, SoftRadius, Softness};
-use shadowfit::tool::Settings;
+use shadowfit::tool::{Settings, ViewMode};
 use shadowfit::{DepthConvention, Technique};
 use shadowfit_render::FlyInput;
 use shadowfit_scene::builtin::default_scene;
@@ -132,7 +132,7 @@ fn every_absurd_number_is_drawn_without_a_panic_and_refused_fits_are_told() {
         for (name, write) in FIELDS {
             for value in ABSURD {
                 stage.reset();
-                stage.settings.view.outside = outside;
+                stage.settings.view.mode = if outside { ViewMode::Outside } else { ViewMode::Final };
                 stage.settings.light.animate = true;
                 write(&mut stage.settings, value);
                 let picture = stage.target(SIZE);

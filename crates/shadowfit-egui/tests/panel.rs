@@ -11,7 +11,7 @@ use shadowfit::params::{Group, Kind, PARAMETERS, Parameter, parameter};
 use shadowfit::settings::{
     CasterPolicy, FilterKind, FitKind, MAX_MAPS, MapChoice, MapFormat, MapOverride, SoftRadius, SplitScheme,
 };
-use shadowfit::tool::Settings;
+use shadowfit::tool::{InsetMaps, Settings};
 use shadowfit::{PRESETS, Technique, glam::UVec2};
 use shadowfit_egui::{Action, Artefact, KEYS, PANEL_WIDTH, Panel, PanelInput, SceneLine, apply_style, help_overlay};
 
@@ -707,7 +707,7 @@ fn the_inset_shows_any_map_that_there_is() {
     let toggled = harness.get_by_label(&inset_button(2)).accesskit_node().toggled();
     assert_eq!(toggled, Some(egui::accesskit::Toggled::True), "fewer maps show the last one");
 
-    harness.state_mut().settings.view.inset = false;
+    harness.state_mut().settings.view.inset = InsetMaps::Off;
     harness.run();
     assert!(harness.get_by_label(&inset_button(1)).accesskit_node().is_disabled());
 }

@@ -10,7 +10,7 @@ use core::f32::consts::{PI, TAU};
 
 use glam::{DVec3, UVec2, Vec3};
 use shadowfit::settings::{BiasSettings, CasterPolicy, FilterKind, FitKind};
-use shadowfit::tool::Settings;
+use shadowfit::tool::{Settings, ViewMode};
 use shadowfit::{Aabb, PerspectiveCamera, Technique};
 use shadowfit_egui::Artefact;
 use shadowfit_render::FlyCamera;
@@ -47,7 +47,7 @@ const ASPECT: f32 = 16.0 / 9.0;
 /// Moves camera and settings to show an artefact; returns `false` where no view of the scene shows it.
 pub(crate) fn show(stage: &mut Stage, artefact: Artefact) -> bool {
     stage.settings.view.play = false;
-    stage.settings.view.outside = false;
+    stage.settings.view.mode = ViewMode::Final;
     stage.settings.view.freeze_fit = false;
     stage.settings.view.shadows = true;
     stage.settings.light.animate = false;

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
+use shadowfit::tool::{InsetMaps, ViewMode};
 use shadowfit_egui::Artefact;
 use shadowfit_render::Gpu;
 
@@ -64,21 +65,21 @@ pub fn render_pictures(stage: &mut Stage, folder: &Path, size: [u32; 2]) -> Resu
         stage.set_time(PICTURE_TIME);
     }
     let inset = stage.settings.view.inset;
-    stage.settings.view.inset = false;
+    stage.settings.view.inset = InsetMaps::Off;
     save(stage, "final")?;
-    stage.settings.view.inset = true;
+    stage.settings.view.inset = InsetMaps::One;
     save(stage, "inset")?;
     stage.settings.view.inset = inset;
-    stage.settings.view.outside = true;
+    stage.settings.view.mode = ViewMode::Outside;
     save(stage, "outside")?;
     for (artefact, name) in
         [(Artefact::Acne, "acne"), (Artefact::Aliasing, "aliasing"), (Artefact::ClippingHole, "hole")]
     {
         stage.show_artefact(artefact);
-        stage.settings.view.inset = false;
+        stage.settings.view.inset = InsetMaps::Off;
         save(stage, name)?;
         stage.fix_artefact(artefact);
-        stage.settings.view.inset = false;
+        stage.settings.view.inset = InsetMaps::Off;
         save(stage, &format!("{name}-fixed"))?;
     }
     stage.reset();

@@ -9,7 +9,7 @@ mod maps;
 
 use core::fmt;
 
-use shadowfit::tool::Settings;
+use shadowfit::tool::{InsetMaps, Settings, ViewMode};
 use shadowfit::{Aabb, PerspectiveCamera};
 use shadowfit_egui::Artefact;
 use shadowfit_render::{Culling, FlyCamera, FlyInput, Gpu, Overlay, RenderTarget, Renderer, Statistics};
@@ -183,11 +183,7 @@ impl Stage {
     /// Moves camera, sun and animation on by `seconds`.
     pub fn update(&mut self, input: &FlyInput, seconds: f32) {
         self.camera.update(&mut self.settings.camera, input, seconds);
-        if self.settings.light.animate {
-            let light = &mut self.settings.light;
-            let turned = light.azimuth + light.animate_speed * seconds;
-            light.azimuth = (turned + core::f32::consts::PI).rem_euclid(core::f32::consts::TAU) - core::f32::consts::PI;
-        }
+        self.settings.light.advance(seconds);
         if self.plays() {
             self.set_time(self.seconds + seconds);
         }
@@ -266,17 +262,18 @@ impl Stage {
         // A frozen fit was made for another camera, whose view depths may still choose among its maps.
         let view = View { camera: fitted.camera.unwrap_or(seen.camera), ..seen };
         let settings = self.settings.view;
-        let outside = settings.outside.then(|| outside::camera(&seen.camera, &fitted));
+        let is_outside = settings.mode == ViewMode::Outside;
+        let outside = is_outside.then(|| outside::camera(&seen.camera, &fitted));
         let from_elsewhere = outside.or_else(|| (view.camera != seen.camera).then_some(seen.camera));
-        let lines = if settings.outside { outside::lines(&fitted) } else { Vec::new() };
+        let lines = if is_outside { outside::lines(&fitted) } else { Vec::new() };
         let shown = settings.inset_index(maps.len() as u32);
-        let inset = maps.get(shown).filter(|_| settings.inset);
+        let inset = maps.get(shown).filter(|_| settings.inset != InsetMaps::Off);
         let options = FrameOptions {
             outside: from_elsewhere,
             // Maps that are themselves looked at from elsewhere hold all their casters, not only those of this
             // picture's shadows.
             culling: if from_elsewhere.is_some() { Culling::WholeMap } else { Culling::Swept },
-            overlay: if settings.tint_maps { Overlay::MapTint } else { Overlay::None },
+            overlay: if settings.mode == ViewMode::Maps { Overlay::MapTint } else { Overlay::None },
             lines: &lines,
             inset: inset.map(|map| inset::inset(shown, &map.fit, &self.bounds(), target.size)),
             shadows: settings.shadows,

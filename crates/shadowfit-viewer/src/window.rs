@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use anyhow::{Context, Result, anyhow};
+use shadowfit::tool::{InsetMaps, ViewMode};
 use shadowfit_egui::{Action, Artefact};
 use shadowfit_render::Gpu;
 use winit::application::ApplicationHandler;
@@ -210,8 +211,16 @@ impl Running {
         match code {
             KeyCode::Escape => return true,
             KeyCode::Space => view.play = !view.play,
-            KeyCode::KeyO => view.outside = !view.outside,
-            KeyCode::KeyI => view.inset = !view.inset,
+            KeyCode::KeyO => {
+                view.mode = if view.mode == ViewMode::Outside { ViewMode::Final } else { ViewMode::Outside };
+            }
+            KeyCode::KeyI => {
+                view.inset = match view.inset {
+                    InsetMaps::Off => InsetMaps::One,
+                    InsetMaps::One => InsetMaps::All,
+                    InsetMaps::All => InsetMaps::Off,
+                }
+            }
             KeyCode::KeyL => self.stage.settings.light.animate = !self.stage.settings.light.animate,
             KeyCode::Digit1 => self.act(Action::ShowArtefact(Artefact::Acne)),
             KeyCode::Digit2 => self.act(Action::ShowArtefact(Artefact::Aliasing)),

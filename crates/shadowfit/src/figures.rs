@@ -1,7 +1,11 @@
 //! The figures that a tool shows live: plain numbers, filled in by the code that measures them, and
-//! the tints that tell maps apart in pictures and tables.
+//! the colours that tell maps, errors and pixels per texel apart in pictures, legends and tables.
+
+mod legend;
 
 use glam::Vec3;
+
+pub use legend::{ERROR_COLORS, PIXELS_PER_TEXEL_COLORS, pixels_per_texel_color};
 
 use crate::diagnostics::depth_step;
 use crate::maps::FittedMap;
@@ -26,7 +30,12 @@ pub const MAP_TINTS: [[u8; 3]; MAX_MAPS] = [
 
 /// [`MAP_TINTS`] as linear red, green and blue, 0..=1, in which shaders compute.
 pub fn linear_map_tints() -> [Vec3; MAX_MAPS] {
-    MAP_TINTS.map(|tint| Vec3::from(tint.map(|byte| linear(f32::from(byte) / 255.0))))
+    MAP_TINTS.map(linear_color)
+}
+
+/// A colour of sRGB bytes as linear red, green and blue, 0..=1, in which shaders compute.
+pub fn linear_color(srgb: [u8; 3]) -> Vec3 {
+    Vec3::from(srgb.map(|byte| linear(f32::from(byte) / 255.0)))
 }
 
 /// The sRGB transfer function (IEC 61966-2-1), from an encoded value to a linear one, both 0..=1.
@@ -54,6 +63,43 @@ pub struct Figures {
     pub shadow_draws: Option<u32>,
     /// Triangles drawn into all maps.
     pub shadow_triangles: Option<u64>,
+    /// Texels of the maps that were drawn in this frame, kept ones left out.
+    pub shadow_texels: Option<u64>,
+    /// GPU time of judging the picture against rays, in milliseconds.
+    pub judge_ms: Option<f32>,
+    /// The last picture that was judged against rays.
+    pub judged: Option<JudgedFigures>,
+    /// The same of the other technique, where two are compared.
+    pub judged_other: Option<JudgedFigures>,
+}
+
+/// Figures of a picture that was judged against rays. Shares are in per cent, 0..=100, of the pixels that
+/// face the light within the shadow distance; `None` means not measured, never zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+pub struct JudgedFigures {
+    /// Pixels whose verdict, lit or not, differs from the truth, edges included.
+    pub wrong: f32,
+    /// Lit in truth and dark in the picture, away from edges: acne.
+    pub false_shadow: f32,
+    /// Dark in truth and lit in the picture, away from edges, though the caster is in the map.
+    pub false_light: f32,
+    /// Dark in truth and lit in the picture, because the caster is not in the map.
+    pub hole: f32,
+    /// Wrong within the zone around true edges that the map's texels explain: aliasing.
+    pub edge: f32,
+    /// Mean difference between the filtered share of the light and the truth, in per cent of full light.
+    pub mean_error: f32,
+    /// Pixels that no map covers.
+    pub uncovered: f32,
+    /// Quantiles 50%, 95% and 99% of the pixels per texel along the worse axis.
+    pub pixels_per_texel: Option<[f32; 3]>,
+    /// Pixels near edges whose verdict changed only because the maps moved, in per cent of those compared.
+    pub crawl: Option<f32>,
+    /// How long ago the picture was drawn, in seconds.
+    pub age: f32,
+    /// Width and height of the picture, in pixels.
+    pub size: [u32; 2],
 }
 
 /// Live figures of one map. `None` means not measured, never zero.
@@ -83,6 +129,12 @@ pub struct MapFigures {
     pub draws: Option<u32>,
     /// Triangles drawn into it.
     pub triangles: Option<u64>,
+    /// Texels of it that were drawn in this frame.
+    pub texels: Option<u64>,
+    /// GPU time of its shadow passes, in milliseconds.
+    pub pass_ms: Option<f32>,
+    /// Share of its area that lies beside what it is made for, 0..=1.
+    pub waste: Option<f32>,
 }
 
 impl MapFigures {
@@ -103,6 +155,9 @@ impl MapFigures {
             casters: None,
             draws: None,
             triangles: None,
+            texels: None,
+            pass_ms: None,
+            waste: None,
         }
     }
 }

@@ -12,22 +12,35 @@ use crate::{FitError, Technique, checks};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct LightSettings {
+    /// Hour of the day by the sun, within [`DAY`], whose sun is used instead of the two angles; `None`
+    /// for these. Default: `None`.
+    pub hour: Option<f32>,
     /// Compass angle of the point that the light comes from, in radians from +z toward +x. Default:
     /// 0.6.
     pub azimuth: f32,
     /// Angle of the sun above the horizon, in radians. Default: 0.75.
     pub elevation: f32,
-    /// Whether the sun circles the vertical. Default: no.
+    /// Whether the sun moves: over the day where there is an hour, else around the vertical. Default:
+    /// no.
     pub animate: bool,
-    /// Speed of that circle, in radians a second. Default: 0.1.
+    /// Speed at which it moves, in radians a second. Default: 0.1.
     pub animate_speed: f32,
 }
 
 impl Default for LightSettings {
     fn default() -> Self {
-        Self { azimuth: 0.6, elevation: 0.75, animate: false, animate_speed: 0.1 }
+        Self { hour: None, azimuth: 0.6, elevation: 0.75, animate: false, animate_speed: 0.1 }
     }
 }
+
+/// Hours at which the sun rises and sets: an equinox.
+pub const DAY: (f32, f32) = (6.0, 18.0);
+
+/// Latitude of the day's sun, in radians: 40° north, so that noon is 50° high.
+const LATITUDE: f64 = 40.0 * core::f64::consts::PI / 180.0;
+
+/// Angle that the sun turns in an hour, in radians.
+const TURN_IN_AN_HOUR: f64 = core::f64::consts::PI / 12.0;
 
 /// Least and greatest flying speed, in metres a second: from crawling over a chair to crossing a mountain range.
 pub const FLYING_SPEEDS: (f32, f32) = (0.1, 1_000.0);
@@ -52,23 +65,101 @@ impl Default for CameraSettings {
     }
 }
 
+/// What a picture shows of a scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum ViewMode {
+    /// The shaded scene with the shadows of the maps.
+    #[default]
+    Final,
+    /// The shaded scene with the shadows that rays find.
+    Truth,
+    /// The final picture in grey, and each wrong pixel in the
+    /// [colour of its class](crate::figures::ERROR_COLORS).
+    Error,
+    /// Screen pixels per texel along the worse axis, as
+    /// [colours](crate::figures::pixels_per_texel_color).
+    PixelsPerTexel,
+    /// The map that each point reads, in its [tint](crate::figures::MAP_TINTS).
+    Maps,
+    /// The texels of the maps, drawn on the surfaces that read them.
+    TexelGrid,
+    /// The scene as the light sees it, with the grid of need and the outlines of the maps over it.
+    Need,
+    /// All maps side by side, with what was kept in them, what was drawn anew and what moves.
+    Updates,
+    /// The camera from outside, with its frustum, the boxes of the maps, and what casts into them.
+    Outside,
+}
+
+impl ViewMode {
+    /// All of them, in the order that they are shown.
+    pub const ALL: [Self; 9] = [
+        Self::Final,
+        Self::Truth,
+        Self::Error,
+        Self::PixelsPerTexel,
+        Self::Maps,
+        Self::TexelGrid,
+        Self::Need,
+        Self::Updates,
+        Self::Outside,
+    ];
+
+    /// Whether rays are needed to show it.
+    pub const fn is_judged(self) -> bool {
+        matches!(self, Self::Truth | Self::Error)
+    }
+}
+
+/// Which shadow maps are shown in a corner of the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum InsetMaps {
+    /// None.
+    Off,
+    /// The one of [`ViewSettings::inset_map`].
+    #[default]
+    One,
+    /// All, one above the other.
+    All,
+}
+
+/// How wrong pixels are marked in any view.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum ErrorMarks {
+    /// Not at all.
+    #[default]
+    Off,
+    /// Areas of wrong pixels are outlined in the colour of their class.
+    Outline,
+    /// Wrong pixels blink in the colour of their class.
+    Blink,
+}
+
 /// What a tool draws over or instead of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent switch of the panel")]
 pub struct ViewSettings {
+    /// What the picture shows. Default: the final picture.
+    pub mode: ViewMode,
+    /// How wrong pixels are marked. Default: not at all.
+    pub marks: ErrorMarks,
     /// Whether shadows are drawn at all. Default: yes.
     pub shadows: bool,
-    /// Shows one of the shadow maps in a corner. Default: yes.
-    pub inset: bool,
+    /// Which of the shadow maps are shown in a corner. Default: one.
+    pub inset: InsetMaps,
     /// Number of the map that the inset shows, 1..=8 from the nearest; the last one where there are
     /// fewer. Default: 1.
     pub inset_map: u32,
-    /// Tints each point by the map that it reads; see [`MAP_TINTS`](crate::figures::MAP_TINTS).
-    /// Default: no.
-    pub tint_maps: bool,
-    /// Looks at the camera from outside, with its frustum and the boxes of the maps drawn. Default: no.
-    pub outside: bool,
+    /// Stored depths that insets show as black and as white, 0..=1; `None` for the range in which the
+    /// scene lies. Default: `None`.
+    pub inset_depths: Option<[f32; 2]>,
+    /// Whether the view from outside is shown beside the picture as well. Default: no.
+    pub outside_beside: bool,
     /// Keeps the current fit while the camera flies on. Default: no.
     pub freeze_fit: bool,
     /// Plays the scene's animation. Default: yes.
@@ -78,11 +169,13 @@ pub struct ViewSettings {
 impl Default for ViewSettings {
     fn default() -> Self {
         Self {
+            mode: ViewMode::Final,
+            marks: ErrorMarks::Off,
             shadows: true,
-            inset: true,
+            inset: InsetMaps::One,
             inset_map: 1,
-            tint_maps: false,
-            outside: false,
+            inset_depths: None,
+            outside_beside: false,
             freeze_fit: false,
             play: true,
         }
@@ -104,6 +197,7 @@ pub struct Settings {
 }
 
 setters!(LightSettings {
+    with_hour hour: Option<f32>,
     with_azimuth azimuth: f32,
     with_elevation elevation: f32,
     with_animate animate: bool,
@@ -118,11 +212,13 @@ setters!(CameraSettings {
 });
 
 setters!(ViewSettings {
+    with_mode mode: ViewMode,
+    with_marks marks: ErrorMarks,
     with_shadows shadows: bool,
-    with_inset inset: bool,
+    with_inset inset: InsetMaps,
     with_inset_map inset_map: u32,
-    with_tint_maps tint_maps: bool,
-    with_outside outside: bool,
+    with_inset_depths inset_depths: Option<[f32; 2]>,
+    with_outside_beside outside_beside: bool,
     with_freeze_fit freeze_fit: bool,
     with_play play: bool,
 });
@@ -146,9 +242,38 @@ impl LightSettings {
     /// sun, so the negative of the direction toward the light. Angles that are not finite give a
     /// vector that every fit refuses.
     pub fn direction(&self) -> Vec3 {
+        if let Some(hour) = self.hour {
+            return sun_at(hour);
+        }
         let (sin_azimuth, cos_azimuth) = libm::sincos(f64::from(self.azimuth));
         let (sin_elevation, cos_elevation) = libm::sincos(f64::from(self.elevation));
         Vec3::new((-cos_elevation * sin_azimuth) as f32, -sin_elevation as f32, (-cos_elevation * cos_azimuth) as f32)
+    }
+
+    /// The same sun by its angles, without an hour: what a tool shows beside the hour.
+    #[must_use]
+    pub fn by_angles(&self) -> Self {
+        match (self.hour, Self::from_direction(self.direction())) {
+            (Some(_), Ok(light)) => Self { azimuth: light.azimuth, elevation: light.elevation, hour: None, ..*self },
+            _ => Self { hour: None, ..*self },
+        }
+    }
+
+    /// Moves an animated sun on by `seconds`: over the day and from its evening to its morning where there
+    /// is an hour, else around the vertical. A sun that is not animated stays.
+    pub fn advance(&mut self, seconds: f32) {
+        use core::f32::consts::{PI, TAU};
+        if !self.animate {
+            return;
+        }
+        let turned = self.animate_speed * seconds;
+        match &mut self.hour {
+            Some(hour) => {
+                let next = *hour - DAY.0 + turned / TURN_IN_AN_HOUR as f32;
+                *hour = DAY.0 + modulo(next, DAY.1 - DAY.0);
+            }
+            None => self.azimuth = modulo(self.azimuth + turned + PI, TAU) - PI,
+        }
     }
 
     /// The settings of a light that travels in `direction` (world axes, any length): azimuth in
@@ -168,4 +293,17 @@ impl LightSettings {
             ..Self::default()
         })
     }
+}
+
+/// Direction of travel of the day's light at an hour: from the east, +x, over the south, +z, to the west.
+fn sun_at(hour: f32) -> Vec3 {
+    let (sin, cos) = libm::sincos((f64::from(hour) - 12.0) * TURN_IN_AN_HOUR);
+    let (sin_latitude, cos_latitude) = libm::sincos(LATITUDE);
+    Vec3::new(sin as f32, (-cos_latitude * cos) as f32, (-sin_latitude * cos) as f32)
+}
+
+/// The rest of a division by a positive number, 0 or more.
+fn modulo(value: f32, by: f32) -> f32 {
+    let rest = libm::fmodf(value, by);
+    if rest < 0.0 { rest + by } else { rest }
 }

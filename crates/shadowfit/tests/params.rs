@@ -48,7 +48,7 @@ fn starts() -> [Settings; 5] {
         Settings::default().with_technique(own),
         with(&[("splits.scheme", "practical")]),
         with(&[("splits.scheme", "manual")]),
-        with(&[("softness.measure", "metres")]),
+        with(&[("softness.measure", "metres"), ("view.inset_black", "0")]),
     ]
 }
 
@@ -400,7 +400,10 @@ fn numbers_are_written_short() {
         ("override.map_1_height", ""),
         ("override.map_2_resolution", "512"),
         ("override.map_2_height", "square"),
-        ("view.inset", "true"),
+        ("view.inset", "one"),
+        ("view.play", "true"),
+        ("view.mode", "final"),
+        ("light.hour", "by_angles"),
     ] {
         assert_eq!(written(&settings, row(id)), text, "{id}");
     }
@@ -684,7 +687,7 @@ fn errors_name_the_id_the_value_and_what_is_allowed() {
         ("fit.max_distance", "0", &["fit.max_distance", "0", "1 to 100000 m, or far_plane"]),
         ("fit.casters", "some", &["fit.casters", "some", "list, extend, scene_bounds, depth_clamp, none"]),
         ("splits.lambda", "2", &["splits.lambda", "2", "0 to 1"]),
-        ("view.inset", "maybe", &["view.inset", "maybe", "true or false"]),
+        ("view.play", "maybe", &["view.play", "maybe", "true or false"]),
     ] {
         let mut settings = Settings::default();
         let message = set_from_str(&mut settings, id, value).expect_err(value).to_string();
@@ -700,6 +703,7 @@ fn setting_a_row_that_does_not_exist_is_an_error_that_names_what_to_set_first() 
     for (id, value, first, option) in [
         ("splits.lambda", "0.3", "splits.scheme", "practical"),
         ("softness.metres", "0.3", "softness.measure", "metres"),
+        ("view.inset_white", "0.5", "view.inset_black", "0.25"),
         ("splits.manual_1", "3", "splits.scheme", "manual"),
         ("splits.manual_7", "300", "splits.scheme", "manual"),
         ("override.map_1_height", "256", "override.map_1_resolution", "512"),
@@ -728,6 +732,6 @@ fn a_technique_takes_its_own_rows_and_says_which_these_are() {
 
 #[test]
 fn values_may_be_surrounded_by_spaces() {
-    let settings = with(&[("view.inset", " off "), ("camera.speed", "\t12.5\n"), ("fit.border", " auto")]);
-    assert!(!settings.view.inset && settings.camera.speed == 12.5);
+    let settings = with(&[("view.play", " off "), ("camera.speed", "\t12.5\n"), ("fit.border", " auto")]);
+    assert!(!settings.view.play && settings.camera.speed == 12.5);
 }

@@ -14,7 +14,8 @@ pub(crate) fn leaves(settings: &Settings) -> Vec<(String, String)> {
     let mut leaf = |name: &str, value: &dyn core::fmt::Debug| all.push((name.to_owned(), format!("{value:?}")));
     let Settings { technique, light, camera, view } = settings;
     leaves_of_technique(technique, &mut leaf);
-    let LightSettings { azimuth, elevation, animate, animate_speed } = light;
+    let LightSettings { hour, azimuth, elevation, animate, animate_speed } = light;
+    leaf("light.hour", hour);
     leaf("light.azimuth", azimuth);
     leaf("light.elevation", elevation);
     leaf("light.animate", animate);
@@ -24,12 +25,15 @@ pub(crate) fn leaves(settings: &Settings) -> Vec<(String, String)> {
     leaf("camera.near", near);
     leaf("camera.far", far);
     leaf("camera.speed", speed);
-    let ViewSettings { shadows, inset, inset_map, tint_maps, outside, freeze_fit, play } = view;
+    let ViewSettings { mode, marks, shadows, inset, inset_map, inset_depths, outside_beside, freeze_fit, play } = view;
+    leaf("view.mode", mode);
+    leaf("view.marks", marks);
     leaf("view.shadows", shadows);
     leaf("view.inset", inset);
     leaf("view.inset_map", inset_map);
-    leaf("view.tint_maps", tint_maps);
-    leaf("view.outside", outside);
+    leaf("view.inset_depths.0", &inset_depths.map(|[black, _]| black));
+    leaf("view.inset_depths.1", &inset_depths.map(|[_, white]| white));
+    leaf("view.outside_beside", outside_beside);
     leaf("view.freeze_fit", freeze_fit);
     leaf("view.play", play);
     all

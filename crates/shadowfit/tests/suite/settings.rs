@@ -58,6 +58,36 @@ proptest! {
 }
 
 #[test]
+fn the_sun_rises_in_the_east_stands_in_the_south_at_noon_and_sets_in_the_west() {
+    let toward = |hour: f32| -LightSettings::default().with_hour(Some(hour)).direction();
+    let (sin, cos) = 50_f32.to_radians().sin_cos();
+    for (hour, expected) in [(6.0, Vec3::X), (12.0, Vec3::new(0.0, sin, cos)), (18.0, Vec3::NEG_X)] {
+        assert!((toward(hour) - expected).length() < 1e-6, "{hour}: {}", toward(hour));
+    }
+    let angles = LightSettings::default().with_hour(Some(12.0)).by_angles();
+    assert!(angles.hour.is_none() && angles.azimuth.abs() < 1e-6);
+    assert!((angles.elevation.to_degrees() - 50.0).abs() < 1e-4, "{}", angles.elevation.to_degrees());
+}
+
+#[test]
+fn an_animated_sun_circles_or_passes_over_the_day_and_a_still_one_stays() {
+    use core::f32::consts::{FRAC_PI_2, PI};
+    let moved = |light: LightSettings, seconds: f32| {
+        let mut light = light;
+        light.advance(seconds);
+        light
+    };
+    let still = LightSettings::default();
+    assert_eq!(moved(still, 5.0), still);
+    let circling = still.with_animate(true).with_animate_speed(FRAC_PI_2).with_azimuth(PI - 0.1);
+    assert!((moved(circling, 1.0).azimuth - (-FRAC_PI_2 - 0.1)).abs() < 1e-5);
+    // A right angle is six hours, and the night has none.
+    let day = circling.with_hour(Some(16.0));
+    assert!((moved(day, 1.0).hour.unwrap() - 10.0).abs() < 1e-5);
+    assert_eq!(moved(day, 1.0).azimuth, day.azimuth);
+}
+
+#[test]
 fn with_methods_change_their_field_only() {
     let bias = BiasSettings::default().with_constant(1.0).with_slope(2.0).with_normal_offset(3.0);
     let bias = bias.with_receiver_plane(4.0).with_depth_steps(5.0);
@@ -67,7 +97,7 @@ fn with_methods_change_their_field_only() {
     assert_eq!(softness, Softness { radius: SoftRadius::Metres(0.1), floor: 0.5, ceiling: 8.0 });
     let camera = CameraSettings::default().with_near(1.0);
     assert_eq!(camera, CameraSettings { near: 1.0, ..CameraSettings::default() });
-    let view = ViewSettings::default().with_inset(false);
+    let view = ViewSettings::default().with_play(false);
     let technique = Technique::default().with_look_up(FilterKind::Point, bias).with_format(MapFormat::R32Float);
     let expected = Technique { bias, filter: FilterKind::Point, format: MapFormat::R32Float, ..Technique::default() };
     assert_eq!(technique, expected);

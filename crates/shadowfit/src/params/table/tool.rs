@@ -1,9 +1,40 @@
 //! The rows of the tools' settings: sun, camera and what is drawn.
 
-use super::{always_active, pull_near};
-use crate::params::{Group, Kind, MIN_FAR_PER_NEAR, Number, Parameter, Toggle};
+use super::{always_active, always_there, pull_near};
+use crate::params::{Choice, ChoiceOption, Group, Kind, MIN_FAR_PER_NEAR, Number, Optional, Parameter, Toggle};
 use crate::settings::MAX_MAPS;
-use crate::tool::FLYING_SPEEDS;
+use crate::tool::{DAY, ErrorMarks, FLYING_SPEEDS, InsetMaps, Settings, ViewMode};
+
+pub(super) const HOUR: Parameter = Parameter {
+    id: "light.hour",
+    group: Group::Light,
+    label: "Time of day",
+    unit: "h",
+    help: "Moves the sun as on a day in spring: it rises at 6 in the east (+x), stands 50 degrees high in the south (+z) \
+           at 12, and sets at 18 in the west.",
+    kind: Kind::Optional(Optional {
+        min: DAY.0 as f64,
+        max: DAY.1 as f64,
+        step: 0.1,
+        logarithmic: false,
+        decimals: 2,
+        unset: Some(ChoiceOption {
+            id: "by_angles",
+            label: "By angles",
+            help: "The sun stands where azimuth and elevation say.",
+        }),
+        initial: 10.0,
+        present: always_there,
+        read: |s| s.light.hour.map(f64::from),
+        write: |s, value| s.light.hour = value.map(|hour| hour as f32),
+    }),
+    inert: always_active,
+};
+
+/// Why the angles have no effect, or `None` where they have one.
+fn by_angles(s: &Settings) -> Option<&'static str> {
+    s.light.hour.map(|_| "The sun stands where the time of day says; set Time of day to By angles.")
+}
 
 pub(super) const AZIMUTH: Parameter = Parameter {
     id: "light.azimuth",
@@ -20,7 +51,7 @@ pub(super) const AZIMUTH: Parameter = Parameter {
         read: |s| turn(f64::from(s.light.azimuth).to_degrees()),
         write: |s, value| s.light.azimuth = value.to_radians() as f32,
     }),
-    inert: always_active,
+    inert: by_angles,
 };
 
 pub(super) const ELEVATION: Parameter = Parameter {
@@ -39,7 +70,7 @@ pub(super) const ELEVATION: Parameter = Parameter {
         read: |s| f64::from(s.light.elevation).to_degrees(),
         write: |s, value| s.light.elevation = value.to_radians() as f32,
     }),
-    inert: always_active,
+    inert: by_angles,
 };
 
 pub(super) const ANIMATE: Parameter = Parameter {
@@ -47,7 +78,8 @@ pub(super) const ANIMATE: Parameter = Parameter {
     group: Group::Light,
     label: "Animate",
     unit: "",
-    help: "Lets the sun circle the vertical. Watch the shadow edges crawl while the fit turns with it.",
+    help: "Lets the sun circle the vertical, or pass over the day where a time of day is set. Watch the shadow edges \
+           crawl while the fit turns with it.",
     kind: Kind::Toggle(Toggle { read: |s| s.light.animate, write: |s, on| s.light.animate = on }),
     inert: always_active,
 };
@@ -57,7 +89,7 @@ pub(super) const ANIMATE_SPEED: Parameter = Parameter {
     group: Group::Light,
     label: "Speed of the sun",
     unit: "deg/s",
-    help: "How fast the sun circles while it is animated. The real one turns 0.004 degrees a second.",
+    help: "How fast the sun moves while it is animated. The real one turns 0.004 degrees a second.",
     kind: Kind::Number(Number {
         min: 0.0,
         max: 180.0,
@@ -162,13 +194,98 @@ pub(super) const SHADOWS: Parameter = Parameter {
     inert: always_active,
 };
 
+pub(super) const MODE: Parameter = Parameter {
+    id: "view.mode",
+    group: Group::View,
+    label: "View",
+    unit: "",
+    help: "What the picture shows of the scene.",
+    kind: Kind::Choice(Choice {
+        options: &[
+            ChoiceOption { id: "final", label: "Final", help: "The scene with the shadows of the maps." },
+            ChoiceOption {
+                id: "truth",
+                label: "Truth",
+                help: "The scene with the shadows that rays find: what the final picture should look like.",
+            },
+            ChoiceOption {
+                id: "error",
+                label: "Errors",
+                help: "The final picture in grey, and each pixel that rays prove wrong in the colour of its class.",
+            },
+            ChoiceOption {
+                id: "pixels_per_texel",
+                label: "Pixels per texel",
+                help: "How many screen pixels a shadow texel covers: red where texels can be seen, blue where they are \
+                       finer than the picture needs.",
+            },
+            ChoiceOption {
+                id: "maps",
+                label: "Maps",
+                help: "Which map each point reads, in the colours of the table of the maps.",
+            },
+            ChoiceOption {
+                id: "texel_grid",
+                label: "Texel grid",
+                help: "The texels of the maps on the surfaces that read them.",
+            },
+            ChoiceOption {
+                id: "need",
+                label: "Need",
+                help: "The scene as the light sees it: where the picture asks for how fine a texel, and the maps laid \
+                       over it.",
+            },
+            ChoiceOption {
+                id: "updates",
+                label: "Map updates",
+                help: "All maps side by side: what was kept in them, what was drawn anew, and what moves.",
+            },
+            ChoiceOption {
+                id: "outside",
+                label: "Outside",
+                help: "The camera from outside, with its frustum and the boxes of the maps drawn. A caster outside a \
+                       map's box throws no shadow there.",
+            },
+        ],
+        read: |s| ViewMode::ALL.iter().position(|mode| *mode == s.view.mode).unwrap_or(0),
+        write: |s, index| s.view.mode = ViewMode::ALL[index],
+    }),
+    inert: always_active,
+};
+
+pub(super) const MARKS: Parameter = Parameter {
+    id: "view.marks",
+    group: Group::View,
+    label: "Mark wrong pixels",
+    unit: "",
+    help: "Marks the pixels that rays prove wrong, in the colour of their class, in any view.",
+    kind: Kind::Choice(Choice {
+        options: &[
+            ChoiceOption { id: "off", label: "Off", help: "Nothing is marked." },
+            ChoiceOption { id: "outline", label: "Outline", help: "Areas of wrong pixels are outlined." },
+            ChoiceOption { id: "blink", label: "Blink", help: "Wrong pixels blink." },
+        ],
+        read: |s| s.view.marks as usize,
+        write: |s, index| s.view.marks = [ErrorMarks::Off, ErrorMarks::Outline, ErrorMarks::Blink][index],
+    }),
+    inert: always_active,
+};
+
 pub(super) const INSET: Parameter = Parameter {
     id: "view.inset",
     group: Group::View,
     label: "Shadow map inset",
     unit: "",
-    help: "Shows one of the shadow maps itself in a corner: how much of it is used and what is missing from it.",
-    kind: Kind::Toggle(Toggle { read: |s| s.view.inset, write: |s, on| s.view.inset = on }),
+    help: "Shows shadow maps themselves in a corner: how much of them is used and what is missing from them.",
+    kind: Kind::Choice(Choice {
+        options: &[
+            ChoiceOption { id: "off", label: "Off", help: "No map is shown." },
+            ChoiceOption { id: "one", label: "One map", help: "One map is shown." },
+            ChoiceOption { id: "all", label: "All maps", help: "All maps are shown, one above the other." },
+        ],
+        read: |s| s.view.inset as usize,
+        write: |s, index| s.view.inset = [InsetMaps::Off, InsetMaps::One, InsetMaps::All][index],
+    }),
     inert: always_active,
 };
 
@@ -187,27 +304,82 @@ pub(super) const INSET_MAP: Parameter = Parameter {
         read: |s| f64::from(s.view.inset_map),
         write: |s, value| s.view.inset_map = value as u32,
     }),
-    inert: |s| (!s.view.inset).then_some("There is no inset; turn on Shadow map inset."),
+    inert: |s| match s.view.inset {
+        InsetMaps::One => None,
+        InsetMaps::Off => Some("There is no inset; set Shadow map inset to One map."),
+        InsetMaps::All => Some("All maps are shown; set Shadow map inset to One map."),
+    },
 };
 
-pub(super) const TINT_MAPS: Parameter = Parameter {
-    id: "view.tint_maps",
+/// Why the depths of insets have no effect, or `None` where they have one.
+fn with_inset(s: &Settings) -> Option<&'static str> {
+    (s.view.inset == InsetMaps::Off).then_some("There is no inset; turn on Shadow map inset.")
+}
+
+pub(super) const INSET_BLACK: Parameter = Parameter {
+    id: "view.inset_black",
     group: Group::View,
-    label: "Tint by map",
+    label: "Black at depth",
     unit: "",
-    help: "Tints each point by the map that it reads, in the colours of the table of the maps.",
-    kind: Kind::Toggle(Toggle { read: |s| s.view.tint_maps, write: |s, on| s.view.tint_maps = on }),
-    inert: always_active,
+    help: "Stored depth that insets show as black.",
+    kind: Kind::Optional(Optional {
+        min: 0.0,
+        max: 1.0,
+        step: 0.01,
+        logarithmic: false,
+        decimals: 3,
+        unset: Some(ChoiceOption {
+            id: "automatic",
+            label: "Automatic",
+            help: "Black and white are the depths between which the scene lies in the map.",
+        }),
+        initial: 0.0,
+        present: always_there,
+        read: |s| s.view.inset_depths.map(|[black, _]| f64::from(black)),
+        write: |s, value| {
+            let white = s.view.inset_depths.map_or(1.0, |[_, white]| white);
+            s.view.inset_depths = value.map(|black| [black as f32, white]);
+        },
+    }),
+    inert: with_inset,
 };
 
-pub(super) const OUTSIDE: Parameter = Parameter {
-    id: "view.outside",
+pub(super) const INSET_WHITE: Parameter = Parameter {
+    id: "view.inset_white",
     group: Group::View,
-    label: "Outside view",
+    label: "White at depth",
     unit: "",
-    help: "Looks at the camera from outside, with its frustum and the boxes of the maps drawn. A caster outside \
-           a map's box throws no shadow there.",
-    kind: Kind::Toggle(Toggle { read: |s| s.view.outside, write: |s, on| s.view.outside = on }),
+    help: "Stored depth that insets show as white. Below the one of black, near and far are swapped.",
+    kind: Kind::Optional(Optional {
+        min: 0.0,
+        max: 1.0,
+        step: 0.01,
+        logarithmic: false,
+        decimals: 3,
+        unset: None,
+        initial: 0.5,
+        present: |s| s.view.inset_depths.is_some(),
+        read: |s| s.view.inset_depths.map(|[_, white]| f64::from(white)),
+        write: |s, value| {
+            if let (Some([_, white]), Some(value)) = (&mut s.view.inset_depths, value) {
+                *white = value as f32;
+            }
+        },
+    }),
+    inert: |s| match s.view.inset_depths {
+        Some(_) => with_inset(s),
+        None => Some("Black and white follow from the scene; set Black at depth to a number (view.inset_black = 0)."),
+    },
+};
+
+pub(super) const OUTSIDE_BESIDE: Parameter = Parameter {
+    id: "view.outside_beside",
+    group: Group::View,
+    label: "Outside view beside",
+    unit: "",
+    help: "Shows the view from outside beside the picture: the camera's frustum, the boxes of the maps, and the casters \
+           that are in none of them.",
+    kind: Kind::Toggle(Toggle { read: |s| s.view.outside_beside, write: |s, on| s.view.outside_beside = on }),
     inert: always_active,
 };
 
