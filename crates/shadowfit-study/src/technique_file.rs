@@ -109,7 +109,7 @@ impl NamedTechnique {
                     .map_err(|error| anyhow!("{error}"))?;
             }
         }
-        refuse_the_rest(&file)?;
+        refuse_the_rest(&file, Group::is_technique)?;
         Ok(Self { name, summary, technique })
     }
 
@@ -138,18 +138,18 @@ impl NamedTechnique {
 }
 
 /// Whether a parameter gets a line: settings of single maps only where there are any.
-fn is_written(parameter: &Parameter, settings: &Settings) -> bool {
+pub(crate) fn is_written(parameter: &Parameter, settings: &Settings) -> bool {
     let is_default = parameter.is_equal(settings, &Settings::default());
     parameter.is_present(settings) && !(parameter.group == Group::Override && is_default)
 }
 
 /// A parameter's name in its group.
-fn key(parameter: &Parameter) -> &'static str {
+pub(crate) fn key(parameter: &Parameter) -> &'static str {
     parameter.id.split_once('.').map_or(parameter.id, |(_, key)| key)
 }
 
 /// A parameter's value as TOML has it: a number, true or false, or an option's id in quotes.
-fn value_of(parameter: &Parameter, settings: &Settings) -> String {
+pub(crate) fn value_of(parameter: &Parameter, settings: &Settings) -> String {
     let mut text = String::new();
     // Writing to a String cannot fail.
     let _ = params::format_value(settings, parameter, &mut text);
@@ -158,7 +158,7 @@ fn value_of(parameter: &Parameter, settings: &Settings) -> String {
 }
 
 /// A TOML value as the parameter table reads it.
-fn text_of(value: &Value) -> Result<String> {
+pub(crate) fn text_of(value: &Value) -> Result<String> {
     Ok(match value {
         Value::String(text) => text.clone(),
         Value::Integer(number) => number.to_string(),
@@ -168,14 +168,15 @@ fn text_of(value: &Value) -> Result<String> {
     })
 }
 
-/// Refuses what is left of a file: tables and keys that no technique has.
-fn refuse_the_rest(file: &toml::Table) -> Result<()> {
-    let groups: Vec<&str> = Group::ALL.into_iter().filter(|group| group.is_technique()).map(Group::id).collect();
+/// Refuses what is left of a file: tables and keys that are not of the groups which it `has`.
+pub(crate) fn refuse_the_rest(file: &toml::Table, has: impl Fn(Group) -> bool) -> Result<()> {
+    let groups: Vec<Group> = Group::ALL.into_iter().filter(|group| has(*group)).collect();
     for (name, value) in file {
-        let known = groups.iter().find(|group| *group == name);
-        ensure!(known.is_some(), "there is no group {name:?}; there are {}", groups.join(", "));
+        let known = groups.iter().find(|group| group.id() == name);
+        let names = || groups.iter().map(|group| group.id()).collect::<Vec<_>>().join(", ");
+        let group = known.with_context(|| format!("there is no group {name:?}; there are {}", names()))?;
         if let Some(key) = value.as_table().and_then(|group| group.keys().next()) {
-            let keys: Vec<&str> = technique_parameters().filter(|row| row.group.id() == name).map(self::key).collect();
+            let keys: Vec<&str> = group.parameters().map(self::key).collect();
             bail!("there is no parameter {name}.{key}; under [{name}] there are {}", keys.join(", "));
         }
         ensure!(value.is_table(), "{name} is {value}; give a table");

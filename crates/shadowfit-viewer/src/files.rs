@@ -1,19 +1,32 @@
-//! Writing pictures so that nothing half-written is left behind.
+//! Writing files so that nothing half-written is left behind, and pictures that know how they were made.
 
 use std::fs::File;
-use std::io::BufWriter;
-use std::path::Path;
+use std::io::{BufReader, BufWriter};
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 
-/// Writes sRGB pixels (four bytes each, rows from the top) as an opaque PNG: to a file beside the
-/// target first, which then takes its name.
-pub(crate) fn write_png(path: &Path, size: [u32; 2], rgba: &[u8]) -> Result<()> {
+/// Keyword of the text of a picture that holds the viewer's settings.
+const SETTINGS_KEYWORD: &str = "shadowfit settings";
+
+/// Writes sRGB pixels (four bytes each, rows from the top) as an opaque PNG, with the settings that it was made with as
+/// text.
+pub(crate) fn write_png(path: &Path, size: [u32; 2], rgba: &[u8], settings: Option<&str>) -> Result<()> {
     let rgb: Vec<u8> = rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
-    let image = image::RgbImage::from_raw(size[0], size[1], rgb).context("a picture with a wrong number of bytes")?;
-    let unfinished = path.with_extension("png.part");
-    let written = encode(&image, &unfinished).and_then(|()| Ok(std::fs::rename(&unfinished, path)?));
+    whole(path, |unfinished| encode(unfinished, size, &rgb, settings))
+}
+
+/// Writes a file whole or not at all.
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+    whole(path, |unfinished| Ok(std::fs::write(unfinished, bytes)?))
+}
+
+/// Has a file written beside the target first, which then takes its name.
+fn whole(path: &Path, write: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".part");
+    let unfinished = path.with_file_name(name);
+    let written = write(&unfinished).and_then(|()| Ok(std::fs::rename(&unfinished, path)?));
     if written.is_err() {
         // The first error is the one worth telling.
         let _ = std::fs::remove_file(&unfinished);
@@ -22,9 +35,64 @@ pub(crate) fn write_png(path: &Path, size: [u32; 2], rgba: &[u8]) -> Result<()> 
 }
 
 /// Encodes as small as the format allows: pictures are written rarely and kept long.
-fn encode(image: &image::RgbImage, path: &Path) -> Result<()> {
-    let file = BufWriter::new(File::create(path)?);
-    let encoder = PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::Adaptive);
-    image.write_with_encoder(encoder)?;
-    Ok(())
+fn encode(path: &Path, [width, height]: [u32; 2], rgb: &[u8], settings: Option<&str>) -> Result<()> {
+    let mut encoder = png::Encoder::new(BufWriter::new(File::create(path)?), width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    encoder.set_compression(png::Compression::High);
+    if let Some(settings) = settings {
+        encoder.add_itxt_chunk(SETTINGS_KEYWORD.to_owned(), settings.to_owned())?;
+    }
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(rgb)?;
+    Ok(writer.finish()?)
+}
+
+/// The settings that a picture of the viewer was made with; `None` for any other picture.
+///
+/// # Errors
+///
+/// If the file cannot be read or is no PNG.
+pub(crate) fn settings_of_png(path: &Path) -> Result<Option<String>> {
+    let file = BufReader::new(File::open(path)?);
+    let reader = png::Decoder::new(file).read_info()?;
+    let texts = &reader.info().utf8_text;
+    let text = texts.iter().find(|text| text.keyword == SETTINGS_KEYWORD);
+    Ok(text.map(png::text_metadata::ITXtChunk::get_text).transpose()?)
+}
+
+/// The first name that no file in the working folder has: `shadowfit-001.png`.
+pub(crate) fn free_name(extension: &str) -> PathBuf {
+    let name = |number: u32| PathBuf::from(format!("shadowfit-{number:03}.{extension}"));
+    (1..).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_keeps_its_pixels_and_its_settings() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("picture.png");
+        let pixels = [10, 20, 30, 255, 40, 50, 60, 255];
+        for settings in [None, Some("version = 1\n# θ\n")] {
+            write_png(&path, [2, 1], &pixels, settings).expect("written");
+            assert_eq!(settings_of_png(&path).expect("a picture").as_deref(), settings);
+            let mut reader = png::Decoder::new(BufReader::new(File::open(&path).expect("it is there")))
+                .read_info()
+                .expect("a picture");
+            let mut read = vec![0; reader.output_buffer_size().expect("a small picture")];
+            reader.next_frame(&mut read).expect("pixels");
+            assert_eq!(read, [10, 20, 30, 40, 50, 60]);
+        }
+        assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing half-written is left");
+    }
+
+    #[test]
+    fn a_folder_that_is_not_there_is_an_error_with_the_path() {
+        let error = write_whole(Path::new("no/such/folder/file.txt"), b"x").expect_err("there is no folder");
+        assert!(format!("{error:#}").contains("no/such/folder/file.txt"), "{error:#}");
+    }
 }

@@ -55,13 +55,26 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
 /// # Errors
 /// As [`load_gltf`], and if the file has no such scene.
 pub fn load_gltf_scene(path: &Path, scene: Option<usize>) -> Result<Scene, SceneError> {
+    load_gltf_with_progress(path, scene, &|_| ())
+}
+
+/// The same, and tells the share that is loaded, 0..=1, now and then: nodes with a mesh, whose images are loaded with
+/// them, out of all that there are.
+///
+/// # Errors
+/// As [`load_gltf_scene`].
+pub fn load_gltf_with_progress(
+    path: &Path,
+    scene: Option<usize>,
+    progress: &dyn Fn(f32),
+) -> Result<Scene, SceneError> {
     let mut source = container::read(path)?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let binary = source.binary.take();
     let tree = nodes::collect(&source.root, scene).map_err(|problem| problem.at(path))?;
     check_not_empty(&source.root, &tree, path)?;
     let reader = Reader::new(&source.root, binary, folder);
-    let mut imported = import(&source, &reader, tree, folder).map_err(|problem| problem.at(path))?;
+    let mut imported = import(&source, &reader, tree, folder, progress).map_err(|problem| problem.at(path))?;
     imported.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Ok(imported)
 }
@@ -76,14 +89,20 @@ fn check_not_empty(root: &Root, tree: &Tree, path: &Path) -> Result<(), SceneErr
     Err(SceneError::Empty { path: path.to_owned(), reason: reason.to_owned(), hint })
 }
 
-fn import(source: &Source, reader: &Reader, mut tree: Tree, folder: &Path) -> Result<Scene, Problem> {
+fn import(
+    source: &Source,
+    reader: &Reader,
+    mut tree: Tree,
+    folder: &Path,
+    progress: &dyn Fn(f32),
+) -> Result<Scene, Problem> {
     let root = &source.root;
     let mut notes = Notes::default();
     if !source.ignored_extensions.is_empty() {
         notes.add(format!("extensions ignored: {}", source.ignored_extensions.join(", ")));
     }
     let mut nodes = std::mem::take(&mut tree.nodes);
-    let (meshes, materials) = meshes(root, reader, &tree, &mut nodes, folder, &mut notes)?;
+    let (meshes, materials) = meshes(root, reader, &tree, &mut nodes, (folder, progress), &mut notes)?;
     let skins = skins(root, reader, &tree, &mut nodes, &meshes)?;
     tree.nodes = nodes;
     let animations = Animations { root, reader, tree: &tree, nodes: &tree.nodes, meshes: &meshes };
@@ -105,13 +124,15 @@ fn meshes<'a>(
     reader: &'a Reader<'a>,
     tree: &Tree,
     nodes: &mut [Node],
-    folder: &'a Path,
+    (folder, progress): (&'a Path, &dyn Fn(f32)),
     notes: &mut Notes,
 ) -> Result<(Vec<Mesh>, Materials<'a>), Problem> {
     let mut materials = Materials::new(root, reader, folder);
     let mut meshes = Vec::new();
     let mut loaded = HashMap::new();
-    for (node, &index) in nodes.iter_mut().zip(&tree.file_index) {
+    let count = nodes.len();
+    for (done, (node, &index)) in nodes.iter_mut().zip(&tree.file_index).enumerate() {
+        progress(done as f32 / count as f32);
         let Some(mesh) = root.nodes[index].mesh else { continue };
         node.mesh = match loaded.entry(mesh.value()) {
             Entry::Occupied(known) => Some(*known.get()),

@@ -1,0 +1,325 @@
+//! What is kept from one start to the next: a readable file with a version, in the place where a system keeps such
+//! files.
+//!
+//! A first start without a file is ordinary. A file that makes no sense is set aside under another name, and a person
+//! is told; nothing overwrites it.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use etcetera::BaseStrategy;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use shadowfit::Technique;
+use shadowfit::tool::Settings;
+use shadowfit_egui::Theme;
+use shadowfit_render::FlyCamera;
+use shadowfit_study::{NamedTechnique, settings_from_toml, settings_to_toml};
+
+use crate::files::write_whole;
+use crate::source::SceneSource;
+
+/// Version of the file; one of a later version is set aside.
+const VERSION: u32 = 1;
+/// Files that are remembered.
+const MOST_RECENT: usize = 8;
+
+/// Everything that is kept.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Saved {
+    pub(crate) theme: Theme,
+    /// The scene on show, which the settings and the camera are of.
+    pub(crate) scene: SceneSource,
+    pub(crate) settings: Settings,
+    pub(crate) camera: Option<FlyCamera>,
+    /// The other technique and the place of the bar, where two are compared.
+    pub(crate) other: Option<(Technique, f32)>,
+    /// Files that were opened, the last one first.
+    pub(crate) recent: Vec<PathBuf>,
+    pub(crate) bookmarks: Vec<Bookmark>,
+    pub(crate) presets: Vec<NamedTechnique>,
+}
+
+/// A view of a scene under a number.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Bookmark {
+    /// Its key, 1 to 9.
+    pub(crate) key: u8,
+    pub(crate) scene: String,
+    #[serde(flatten)]
+    view: SavedView,
+}
+
+/// Position in metres, angles in degrees.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct SavedView {
+    position: [f64; 3],
+    yaw: f32,
+    pitch: f32,
+}
+
+impl From<FlyCamera> for SavedView {
+    fn from(camera: FlyCamera) -> Self {
+        let [yaw, pitch] = [camera.yaw, camera.pitch].map(f32::to_degrees);
+        Self { position: camera.position.to_array(), yaw, pitch }
+    }
+}
+
+impl SavedView {
+    /// `None` where a number is not finite.
+    fn camera(self) -> Option<FlyCamera> {
+        let mut camera = FlyCamera { position: DVec3::from_array(self.position), yaw: self.yaw.to_radians(), pitch: 0.0 };
+        camera.pitch = self.pitch.to_radians().clamp(-shadowfit_render::camera::MAX_PITCH, shadowfit_render::camera::MAX_PITCH);
+        (camera.position.is_finite() && camera.yaw.is_finite() && camera.pitch.is_finite()).then_some(camera)
+    }
+}
+
+impl Bookmark {
+    pub(crate) fn new(key: u8, scene: &SceneSource, camera: FlyCamera) -> Self {
+        Self { key, scene: scene.text(), view: camera.into() }
+    }
+
+    pub(crate) fn camera(&self) -> Option<FlyCamera> {
+        self.view.camera()
+    }
+}
+
+/// The part of the file above the settings.
+#[derive(Debug, Serialize, Deserialize)]
+struct Head {
+    version: u32,
+    #[serde(default)]
+    theme: Theme,
+    #[serde(default)]
+    scene: String,
+    #[serde(default)]
+    recent: Vec<PathBuf>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    split: Option<f32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    camera: Option<SavedView>,
+    #[serde(default)]
+    bookmark: Vec<Bookmark>,
+}
+
+impl Saved {
+    /// Puts a file at the front of those that were opened last.
+    pub(crate) fn remember(&mut self, path: &Path) {
+        self.recent.retain(|recent| recent != path);
+        self.recent.insert(0, path.to_owned());
+        self.recent.truncate(MOST_RECENT);
+    }
+
+    /// The text of the file.
+    pub(crate) fn to_toml(&self) -> Result<String> {
+        let head = Head {
+            version: VERSION,
+            theme: self.theme,
+            scene: self.scene.text(),
+            recent: self.recent.clone(),
+            split: self.other.map(|(_, split)| split),
+            camera: self.camera.map(SavedView::from),
+            bookmark: self.bookmarks.clone(),
+        };
+        let mut text = String::from("# What the shadowfit viewer had when it was last closed.\n\n");
+        text.push_str(&toml::to_string(&head)?);
+        text.push('\n');
+        text.push_str(&settings_to_toml(&self.settings, "settings."));
+        if let Some((other, _)) = self.other {
+            text.push_str(&technique_to_toml(&other, "other."));
+        }
+        for preset in &self.presets {
+            let name = toml::Value::from(preset.name.as_str());
+            let _ = writeln!(text, "[presets.{name}]\n");
+            text.push_str(&technique_to_toml(&preset.technique, &format!("presets.{name}.")));
+        }
+        Ok(text)
+    }
+
+    /// What a text says.
+    pub(crate) fn from_toml(text: &str) -> Result<Self> {
+        let mut file: toml::Table = toml::from_str(text)?;
+        match file.get("version").and_then(toml::Value::as_integer) {
+            Some(version) if version == i64::from(VERSION) => {}
+            Some(version) => bail!("it has version {version}, and this viewer reads version {VERSION}"),
+            None => bail!("it has no version"),
+        }
+        let mut table = |name: &str| match file.remove(name) {
+            Some(toml::Value::Table(table)) => Ok(Some(table)),
+            Some(_) => bail!("{name} is no table"),
+            None => Ok(None),
+        };
+        let (settings, other, presets) = (table("settings")?, table("other")?, table("presets")?);
+        let head: Head = toml::Value::Table(file).try_into()?;
+        let mut saved = Self {
+            theme: head.theme,
+            scene: SceneSource::from_text(&head.scene),
+            camera: head.camera.and_then(SavedView::camera),
+            recent: head.recent,
+            bookmarks: head.bookmark,
+            ..Self::default()
+        };
+        if let Some(settings) = settings {
+            settings_from_toml(&settings, &mut saved.settings).context("settings")?;
+        }
+        if let Some(other) = other {
+            saved.other = Some((technique(&other).context("other")?, head.split.unwrap_or(0.5)));
+        }
+        for (name, preset) in presets.unwrap_or_default() {
+            let table = preset.as_table().with_context(|| format!("presets.{name} is no table"))?;
+            let technique = technique(table).with_context(|| format!("presets.{name}"))?;
+            saved.presets.push(NamedTechnique { name, ..technique.into() });
+        }
+        Ok(saved)
+    }
+}
+
+/// The tables of a technique, their names behind a prefix.
+fn technique_to_toml(technique: &Technique, prefix: &str) -> String {
+    let all = settings_to_toml(&Settings::default().with_technique(*technique), prefix);
+    let is_technique = |table: &&str| {
+        let groups = shadowfit::params::Group::ALL;
+        groups.iter().any(|group| group.is_technique() && table.starts_with(&format!("[{prefix}{}]", group.id())))
+    };
+    all.split_inclusive("\n\n").filter(is_technique).collect()
+}
+
+fn technique(table: &toml::Table) -> Result<Technique> {
+    let mut settings = Settings::default();
+    settings_from_toml(table, &mut settings)?;
+    Ok(settings.technique)
+}
+
+/// The file that everything is kept in.
+#[derive(Clone, Debug)]
+pub(crate) struct Store {
+    path: PathBuf,
+    /// What it holds, so that nothing is written without need.
+    written: Option<String>,
+}
+
+impl Store {
+    /// That of a person on this system; `None` where a system has no place for such files.
+    pub(crate) fn of_person() -> Option<Self> {
+        let folders = etcetera::choose_base_strategy().ok()?;
+        Some(Self::at(folders.config_dir().join("shadowfit").join("viewer.toml")))
+    }
+
+    pub(crate) fn at(path: PathBuf) -> Self {
+        Self { path, written: None }
+    }
+
+    /// What is there, and what a person has to be told about it. Without a file everything is as in a first start.
+    pub(crate) fn load(&mut self) -> (Option<Saved>, Option<String>) {
+        let text = match std::fs::read(&self.path) {
+            Ok(bytes) => String::from_utf8(bytes).context("it is no text"),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return (None, None),
+            Err(error) => return (None, Some(format!("{} cannot be read: {error}", self.path.display()))),
+        };
+        match text.and_then(|text| Saved::from_toml(&text)) {
+            Ok(saved) => (Some(saved), None),
+            Err(error) => (None, Some(self.set_aside(&error))),
+        }
+    }
+
+    /// Gives the file another name, and says so.
+    fn set_aside(&mut self, error: &anyhow::Error) -> String {
+        let aside = (1..)
+            .map(|number| self.path.with_extension(format!("damaged-{number}.toml")))
+            .find(|path| !path.exists())
+            .unwrap_or_else(|| self.path.clone());
+        let what = format!("The saved settings make no sense: {error:#}.");
+        match std::fs::rename(&self.path, &aside) {
+            Ok(()) => format!("{what} They are set aside as {}, and the viewer starts afresh.", aside.display()),
+            Err(error) => {
+                // It must not be overwritten.
+                self.path = aside;
+                format!("{what} They stay where they are, since they cannot be renamed: {error}.")
+            }
+        }
+    }
+
+    /// Writes what has changed.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be written; the old file stays.
+    pub(crate) fn save(&mut self, saved: &Saved) -> Result<()> {
+        let text = saved.to_toml()?;
+        if self.written.as_ref() == Some(&text) {
+            return Ok(());
+        }
+        if let Some(folder) = self.path.parent() {
+            std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+        }
+        write_whole(&self.path, text.as_bytes())?;
+        self.written = Some(text);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn saved() -> Saved {
+        let camera = FlyCamera { position: DVec3::new(1e5, 2.0, -3.5), yaw: 0.5, pitch: -0.25 };
+        let mut saved = Saved {
+            theme: Theme::Light,
+            scene: SceneSource::from_text("some/town.glb"),
+            camera: Some(camera),
+            other: Some((Technique::preset("stable-4").expect("a preset"), 0.25)),
+            ..Saved::default()
+        };
+        saved.settings.technique = Technique::preset("calm-4").expect("a preset");
+        saved.settings.light.hour = Some(9.5);
+        saved.bookmarks.push(Bookmark::new(3, &saved.scene, camera));
+        saved.presets.push(NamedTechnique { name: "my \"best\" one".to_owned(), ..saved.settings.technique.into() });
+        saved.remember(Path::new("a.glb"));
+        saved.remember(Path::new("b.glb"));
+        saved.remember(Path::new("a.glb"));
+        saved
+    }
+
+    #[test]
+    fn everything_comes_back_at_the_next_start() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("deep").join("viewer.toml");
+        let mut store = Store::at(path.clone());
+        assert_eq!(store.load(), (None, None), "a first start is ordinary");
+        let saved = saved();
+        assert_eq!(saved.recent, [PathBuf::from("a.glb"), PathBuf::from("b.glb")]);
+        store.save(&saved).expect("written");
+        let (read, message) = Store::at(path).load();
+        let read = read.expect("what was written");
+        assert_eq!(message, None);
+        // Angles are written in degrees, which rounds them.
+        let near = |a: Option<FlyCamera>, b: Option<FlyCamera>| {
+            let (a, b) = (a.expect("a camera"), b.expect("a camera"));
+            a.position == b.position && (a.yaw - b.yaw).abs() < 1e-6 && (a.pitch - b.pitch).abs() < 1e-6
+        };
+        assert!(near(read.camera, saved.camera) && near(read.bookmarks[0].camera(), saved.camera));
+        let same = Saved { camera: saved.camera, bookmarks: saved.bookmarks.clone(), ..read };
+        assert_eq!(same, saved);
+    }
+
+    #[test]
+    fn a_damaged_file_is_set_aside_and_told_and_never_overwritten() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("viewer.toml");
+        let damaged = ["", "version = 99", "version = 1\n[settings.bias]\nconstant = \"x\"", "\u{0}\u{1}", "version"];
+        for (round, text) in damaged.into_iter().enumerate() {
+            std::fs::write(&path, text).expect("written");
+            let mut store = Store::at(path.clone());
+            let (read, message) = store.load();
+            let message = message.expect("a person is told");
+            assert!(read.is_none() && message.contains("damaged"), "{message}");
+            let aside = folder.path().join(format!("viewer.damaged-{}.toml", round + 1));
+            assert_eq!(std::fs::read_to_string(aside).expect("it is there"), text);
+            store.save(&saved()).expect("a new one");
+        }
+        std::fs::write(&path, [0xff, 0xfe, 0x00]).expect("written");
+        assert!(Store::at(path).load().1.expect("no text").contains("no text"));
+    }
+}

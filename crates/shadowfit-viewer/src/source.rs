@@ -1,0 +1,92 @@
+//! Where a scene comes from.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Result, bail};
+use shadowfit_scene::builtin::BuiltinScene;
+use shadowfit_scene::Scene;
+
+/// A built-in scene or a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum SceneSource {
+    BuiltIn(BuiltinScene),
+    File { path: PathBuf, index: Option<usize> },
+}
+
+impl Default for SceneSource {
+    fn default() -> Self {
+        Self::BuiltIn(BuiltinScene::default())
+    }
+}
+
+impl SceneSource {
+    /// What a text names: a built-in scene by its name, or a file.
+    pub(crate) fn from_text(text: &str) -> Self {
+        match BuiltinScene::from_id(text) {
+            Some(scene) if !Path::new(text).exists() => Self::BuiltIn(scene),
+            _ => Self::file(text),
+        }
+    }
+
+    pub(crate) fn file(path: impl Into<PathBuf>) -> Self {
+        Self::File { path: path.into(), index: None }
+    }
+
+    /// The same with one of the file's scenes.
+    ///
+    /// # Errors
+    ///
+    /// For a built-in scene and an index other than 0.
+    pub(crate) fn with_index(self, index: Option<usize>) -> Result<Self> {
+        match (self, index) {
+            (Self::File { path, .. }, index) => Ok(Self::File { path, index }),
+            (built_in, None | Some(0)) => Ok(built_in),
+            (_, Some(index)) => bail!("--scene-index {index}: a built-in scene is the only one; name a file"),
+        }
+    }
+
+    /// What [`Self::from_text`] reads.
+    pub(crate) fn text(&self) -> String {
+        match self {
+            Self::BuiltIn(scene) => scene.id().to_owned(),
+            Self::File { path, .. } => path.display().to_string(),
+        }
+    }
+
+    /// Its name for people.
+    pub(crate) fn label(&self) -> String {
+        match self {
+            Self::BuiltIn(scene) => scene.label().to_owned(),
+            Self::File { path, .. } => path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
+        }
+    }
+
+    /// Loads the scene, and tells the share that is loaded now and then.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be loaded, or has no such scene.
+    pub(crate) fn load(&self, progress: &dyn Fn(f32)) -> Result<Scene> {
+        Ok(match self {
+            Self::BuiltIn(scene) => scene.build(),
+            Self::File { path, index } => shadowfit_scene::load_gltf_with_progress(path, *index, progress)?,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn built_in_scenes_go_by_name_and_everything_else_is_a_file() {
+        for scene in BuiltinScene::ALL {
+            assert_eq!(SceneSource::from_text(scene.id()), SceneSource::BuiltIn(scene));
+            assert_eq!(SceneSource::BuiltIn(scene).text(), scene.id());
+        }
+        let file = SceneSource::from_text("town/kenney.glb");
+        assert_eq!((file.text().as_str(), file.label().as_str()), ("town/kenney.glb", "kenney.glb"));
+        assert!(SceneSource::default().with_index(Some(1)).is_err());
+        assert_eq!(file.with_index(Some(2)).expect("files have scenes").text(), "town/kenney.glb");
+    }
+}
