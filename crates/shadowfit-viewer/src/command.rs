@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use glam::DVec3;
 use shadowfit::tool::ViewMode;
-use shadowfit_egui::Artefact;
+use shadowfit_egui::{Action, Artefact};
 
+use crate::saved::Theme;
 use crate::source::SceneSource;
 
 /// Something to do.
@@ -31,6 +32,8 @@ pub(crate) enum Command {
     ShowArtefact(Artefact),
     /// Cures the artefact on show.
     Fix,
+    /// Stops showing an artefact; settings and camera stay.
+    CloseArtefact,
     /// Compares two techniques, or stops it.
     Compare(Toggle),
     /// Where the bar between both pictures stands, as a share of the width.
@@ -79,6 +82,8 @@ pub(crate) enum Command {
     Window(PathBuf),
     /// Saves the plotted figures.
     SaveFigures(Option<PathBuf>),
+    /// Saves this text, figures as comma-separated values.
+    SaveCsv(String),
     /// Copies the technique as Rust code.
     CopyRust,
     /// Copies the command line that starts with these settings.
@@ -112,6 +117,37 @@ impl Toggle {
             Self::On => true,
             Self::Off => false,
             Self::Other => !on,
+        }
+    }
+}
+
+impl From<Action> for Command {
+    fn from(action: Action) -> Self {
+        match action {
+            Action::ShowArtefact(artefact) => Self::ShowArtefact(artefact),
+            Action::FixArtefact(_) => Self::Fix,
+            Action::CloseArtefact => Self::CloseArtefact,
+            Action::StartCompare => Self::Compare(Toggle::On),
+            Action::StopCompare => Self::Compare(Toggle::Off),
+            Action::SwapSides => Self::SwapSides,
+            Action::CopyToOther => Self::CopyToOther,
+            Action::StartTune => Self::StartTune,
+            Action::CancelTune => Self::CancelTune,
+            Action::ApplyTune => Self::ApplyTune,
+            Action::DiscardTune => Self::DiscardTune,
+            Action::Undo => Self::Undo,
+            Action::Redo => Self::Redo,
+            Action::SavePreset(name) => Self::SavePreset(name),
+            Action::DeletePreset(name) => Self::DeletePreset(name),
+            Action::CopyRust => Self::CopyRust,
+            Action::CopyCommandLine => Self::CopyCommandLine,
+            Action::SaveCsv(text) => Self::SaveCsv(text),
+            Action::Screenshot => Self::Picture(None),
+            Action::Reset => Self::Reset,
+            Action::ResetCamera => Self::ResetCamera,
+            Action::SetTheme(theme) => Self::SetTheme(theme.into()),
+            // Whatever is new: the help says which keys there are.
+            _ => Self::ToggleHelp,
         }
     }
 }

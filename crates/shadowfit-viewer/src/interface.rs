@@ -1,203 +1,156 @@
-//! Picture and panel laid out by egui, the same in the window and in headless pictures.
+//! Picture, bars and panel laid out by egui, the same in the window and in headless pictures.
 
-use egui::{CentralPanel, Color32, Frame, MouseWheelUnit, Pos2, Rect, Sense, Ui};
-use egui_wgpu::{Renderer as EguiRenderer, RendererOptions, ScreenDescriptor};
+mod bar;
+mod paint;
+mod picture;
+mod timeline;
+
+use egui::{CentralPanel, Frame, Ui};
 use glam::Vec2;
-use shadowfit_egui::{Action, PANEL_WIDTH, Panel, PanelInput, SceneLine};
-use shadowfit_render::RenderTarget;
-use shadowfit_study::NamedTechnique;
+use shadowfit::figures::Figures;
+use shadowfit_egui::{Changes, Compare, PANEL_WIDTH, Panel, PanelInput, SceneLine, ShownArtefact, Tune, UserPreset};
 
+use crate::command::Command;
+use crate::saved::Saved;
 use crate::stage::Stage;
 
-/// Scroll travel that counts as one notch of the wheel, in points, for devices that scroll
-/// smoothly.
-const POINTS_PER_NOTCH: f32 = 50.0;
+use paint::Painter;
+pub(crate) use paint::Layout;
+pub(crate) use picture::Pictures;
 
-/// egui, the panel, and the picture between them.
+/// egui, the panel, and the pictures between them.
 pub(crate) struct Interface {
     pub(crate) context: egui::Context,
-    renderer: EguiRenderer,
+    painter: Painter,
     panel: Panel,
-    picture: RenderTarget,
-    texture: egui::TextureId,
+    pub(crate) pictures: Pictures,
     pub(crate) help_open: bool,
-    pub(crate) panel_hidden: bool,
+    /// Whether bars and panel are hidden.
+    pub(crate) bare: bool,
+    /// Whether the panel edits the second of two techniques.
+    pub(crate) edits_other: bool,
     /// Time of the last frame, in milliseconds.
     pub(crate) frame_ms: Option<f32>,
+}
+
+/// What the interface shows beside the stage.
+pub(crate) struct Shows<'a> {
+    pub(crate) saved: &'a Saved,
+    pub(crate) presets: &'a [UserPreset],
+    pub(crate) tune: Tune<'a>,
+    pub(crate) changes: Changes<'a>,
     /// A readable message, such as where a screenshot was saved.
-    pub(crate) message: Option<String>,
+    pub(crate) message: Option<&'a str>,
+    /// The scene that is being loaded, and the share of it that is done.
+    pub(crate) loading: Option<(&'a str, f32)>,
+    /// Whether an artefact is being searched.
+    pub(crate) is_searching: bool,
+    /// Whether there is a scene to show.
+    pub(crate) has_scene: bool,
 }
 
 /// What a frame of the interface asks for.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Asked {
-    pub(crate) action: Option<Action>,
+    pub(crate) commands: Vec<Command>,
     /// Mouse drag over the picture, in pixels.
     pub(crate) drag: Vec2,
     /// Wheel notches over the picture.
     pub(crate) wheel: f32,
+    /// Where the pointer rests on the picture, as shares of its width and height from the top left.
+    pub(crate) hover: Option<[f32; 2]>,
 }
 
 impl Interface {
     /// An interface that is painted to a surface of the given format.
     pub(crate) fn new(stage: &Stage, format: wgpu::TextureFormat) -> Self {
-        let gpu = stage.gpu();
         let context = egui::Context::default();
-        shadowfit_egui::apply_style(&context);
-        let mut renderer = EguiRenderer::new(&gpu.device, format, RendererOptions::default());
-        let picture = stage.target([16, 16]);
-        let texture = renderer.register_native_texture(&gpu.device, &picture.encoded_view(), wgpu::FilterMode::Nearest);
+        shadowfit_egui::apply_theme(&context, egui::ThemePreference::Dark);
+        let mut painter = Painter::new(&stage.gpu().device, format);
+        let pictures = Pictures::new(stage, &mut painter);
         let mut interface = Self {
             context,
-            renderer,
+            painter,
             panel: Panel::new(),
-            picture,
-            texture,
+            pictures,
             help_open: false,
-            panel_hidden: false,
+            bare: false,
+            edits_other: false,
             frame_ms: None,
-            message: None,
         };
         interface.scene_changed(stage);
         interface
     }
 
-    /// Takes the settings of a newly opened scene as what resets go back to.
+    /// Takes the settings that a scene was opened with as what resets go back to.
     pub(crate) fn scene_changed(&mut self, stage: &Stage) {
-        self.panel.defaults = stage.settings;
+        self.panel.defaults = stage.home_settings();
+        self.edits_other = false;
     }
 
-    /// Puts a technique that was opened from a file among those of the menu.
-    pub(crate) fn name_technique(&mut self, opened: NamedTechnique) {
-        self.panel.name_technique(opened.name, &opened.technique);
+    /// The panel, which keeps the plotted figures.
+    pub(crate) fn panel(&mut self) -> &mut Panel {
+        &mut self.panel
     }
 
-    /// What the picture was last drawn into.
-    pub(crate) fn picture(&self) -> &RenderTarget {
-        &self.picture
-    }
-
-    /// Lays out a frame, draws the picture, and paints both to `target` of `size` pixels.
-    pub(crate) fn frame(
+    /// Lays out a frame: bars, panel and picture. The pictures get the sizes of their places.
+    pub(crate) fn layout(
         &mut self,
         stage: &mut Stage,
+        shows: &Shows<'_>,
         raw_input: egui::RawInput,
-        target: &wgpu::TextureView,
-        size: [u32; 2],
-    ) -> (Asked, egui::PlatformOutput) {
+    ) -> (Asked, Layout, egui::PlatformOutput) {
         let mut asked = Asked::default();
-        let mut picture_size = self.picture.size;
         let context = self.context.clone();
-        let output = context.run_ui(raw_input, |ui| picture_size = self.layout(ui, stage, &mut asked));
-        if picture_size != self.picture.size {
-            self.picture = stage.target(picture_size);
-            self.renderer.update_egui_texture_from_wgpu_texture(
-                &stage.gpu().device,
-                &self.picture.encoded_view(),
-                wgpu::FilterMode::Nearest,
-                self.texture,
-            );
-        }
-        stage.draw(&self.picture);
-        self.paint(stage, output.shapes, output.textures_delta, output.pixels_per_point, target, size);
-        (asked, output.platform_output)
+        let mut output = context.run_ui(raw_input, |ui| self.show(ui, stage, shows, &mut asked));
+        self.pictures.fit_places(stage, &mut self.painter);
+        self.painter.take(stage.gpu(), &mut output.textures_delta);
+        let jobs = context.tessellate(output.shapes, output.pixels_per_point);
+        (asked, Layout { jobs, pixels_per_point: output.pixels_per_point }, output.platform_output)
     }
 
-    /// Panel on the right, picture in the rest; returns the picture's size in pixels.
-    fn layout(&mut self, ui: &mut Ui, stage: &mut Stage, asked: &mut Asked) -> [u32; 2] {
-        if !self.panel_hidden {
+    /// Paints a frame that was laid out to `target` of `size` pixels.
+    pub(crate) fn paint(&mut self, stage: &Stage, layout: &Layout, target: &wgpu::TextureView, size: [u32; 2]) {
+        self.painter.paint(stage.gpu(), layout, target, size);
+    }
+
+    fn show(&mut self, ui: &mut Ui, stage: &mut Stage, shows: &Shows<'_>, asked: &mut Asked) {
+        if !self.bare {
+            bar::show(ui, stage, shows, asked);
+            timeline::show(ui, stage, self.frame_ms, asked);
             egui::Panel::right("tuning").exact_size(PANEL_WIDTH).resizable(false).show(ui, |ui| {
-                asked.action = self.show_panel(ui, stage);
+                self.show_panel(ui, stage, shows, asked);
             });
         }
-        let texture = self.texture;
-        let size = CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
-            let rect = ui.available_rect_before_wrap();
-            let response = ui.allocate_rect(rect, Sense::click_and_drag());
-            let pixels = ui.pixels_per_point();
-            if response.dragged() {
-                let delta = response.drag_delta() * pixels;
-                asked.drag = Vec2::new(delta.x, delta.y);
-            }
-            if response.clicked() {
-                ui.memory_mut(egui::Memory::stop_text_input);
-            }
-            if response.contains_pointer() {
-                asked.wheel = wheel_notches(ui);
-            }
-            let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
-            ui.painter().image(texture, rect, whole, Color32::WHITE);
-            [(rect.width() * pixels).round() as u32, (rect.height() * pixels).round() as u32]
-        });
+        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| self.pictures.show(ui, stage, shows, asked));
         let context = ui.ctx().clone();
         shadowfit_egui::help_overlay(&context, &mut self.help_open);
-        size.inner.map(|side| side.max(1))
     }
 
-    fn show_panel(&mut self, ui: &mut Ui, stage: &mut Stage) -> Option<Action> {
-        let mut figures = stage.figures(self.picture.size);
-        figures.frame_ms = self.frame_ms;
+    fn show_panel(&mut self, ui: &mut Ui, stage: &mut Stage, shows: &Shows<'_>, asked: &mut Asked) {
+        let figures: Figures = stage.figures(self.pictures.size(), self.frame_ms);
+        let (name, notes) = (stage.scene().name.clone(), stage.scene().notes.clone());
+        let scene = SceneLine { name: &name, triangles: stage.prepared_scene().triangles(), notes: &notes };
+        let message = stage.problem().map(str::to_owned).or_else(|| shows.message.map(str::to_owned));
+        let (narration, changes) = (stage.narration().to_owned(), stage.cure_changes().to_vec());
         let shown = stage.shown();
-        let name = stage.scene().name.clone();
-        let notes = stage.scene().notes.clone();
-        let message = stage.problem().or(stage.notice()).map(str::to_owned).or_else(|| self.message.clone());
-        let input = PanelInput {
-            figures: &figures,
-            scene: SceneLine { name: &name, triangles: stage.prepared_scene().triangles(), notes: &notes },
-            artefact: shown.map(|shown| shown.artefact),
-            artefact_fixed: shown.is_some_and(|shown| shown.fixed),
-            message: message.as_deref(),
-            settings: &mut stage.settings,
-        };
-        self.panel.show(ui, input).action
-    }
-
-    fn paint(
-        &mut self,
-        stage: &Stage,
-        shapes: Vec<egui::epaint::ClippedShape>,
-        mut textures: egui::TexturesDelta,
-        pixels_per_point: f32,
-        target: &wgpu::TextureView,
-        size: [u32; 2],
-    ) {
-        let gpu = stage.gpu();
-        let jobs = self.context.tessellate(shapes, pixels_per_point);
-        for (id, deltas) in &textures.set {
-            for delta in deltas {
-                self.renderer.update_texture(&gpu.device, &gpu.queue, *id, delta);
-            }
-        }
-        let screen = ScreenDescriptor { size_in_pixels: size, pixels_per_point };
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let commands = self.renderer.update_buffers(&gpu.device, &gpu.queue, &mut encoder, &jobs, &screen);
-        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("interface"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: target,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
-            })],
-            ..Default::default()
+        let artefact = shown.map(|shown| ShownArtefact {
+            artefact: shown.artefact,
+            fixed: shown.fixed,
+            narration: &narration,
+            changes: &changes,
         });
-        self.renderer.render(&mut pass.forget_lifetime(), &jobs, &screen);
-        gpu.queue.submit(commands.into_iter().chain([encoder.finish()]));
-        for id in &textures.free {
-            self.renderer.free_texture(id);
-        }
-        // All applied; egui asks to be told so.
-        textures.clear();
+        let (settings, other) = stage.settings_and_other();
+        let compare = other.map(|other| Compare { other, edits_other: &mut self.edits_other });
+        let input = PanelInput {
+            artefact,
+            compare,
+            tune: shows.tune,
+            changes: shows.changes,
+            presets: shows.presets,
+            message: message.as_deref(),
+            ..PanelInput::new(settings, &figures, scene)
+        };
+        asked.commands.extend(self.panel.show(ui, input).action.map(Command::from));
     }
-}
-
-/// Notches that the wheel was turned in this frame.
-fn wheel_notches(ui: &Ui) -> f32 {
-    ui.input(|input| {
-        input.events.iter().fold(0.0, |notches, event| match event {
-            egui::Event::MouseWheel { unit: MouseWheelUnit::Point, delta, .. } => notches + delta.y / POINTS_PER_NOTCH,
-            egui::Event::MouseWheel { delta, .. } => notches + delta.y,
-            _ => notches,
-        })
-    })
 }

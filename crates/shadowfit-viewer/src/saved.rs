@@ -8,12 +8,12 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
+use egui::ThemePreference;
 use etcetera::BaseStrategy;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use shadowfit::Technique;
 use shadowfit::tool::Settings;
-use shadowfit_egui::Theme;
 use shadowfit_render::FlyCamera;
 use shadowfit_study::{NamedTechnique, settings_from_toml, settings_to_toml};
 
@@ -24,6 +24,36 @@ use crate::source::SceneSource;
 const VERSION: u32 = 1;
 /// Files that are remembered.
 const MOST_RECENT: usize = 8;
+
+/// Dark or light, as the file says it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Theme {
+    #[default]
+    Dark,
+    Light,
+    System,
+}
+
+impl From<Theme> for ThemePreference {
+    fn from(theme: Theme) -> Self {
+        match theme {
+            Theme::Dark => Self::Dark,
+            Theme::Light => Self::Light,
+            Theme::System => Self::System,
+        }
+    }
+}
+
+impl From<ThemePreference> for Theme {
+    fn from(theme: ThemePreference) -> Self {
+        match theme {
+            ThemePreference::Dark => Self::Dark,
+            ThemePreference::Light => Self::Light,
+            ThemePreference::System => Self::System,
+        }
+    }
+}
 
 /// Everything that is kept.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -19,11 +19,12 @@ use anyhow::{Context, Result, anyhow, bail, ensure};
 use glam::DVec3;
 use shadowfit::params;
 use shadowfit::tool::Settings;
-use shadowfit_egui::{Artefact, Theme};
+use shadowfit_egui::Artefact;
 use shadowfit_study::NamedTechnique;
 
 use crate::command::{Command, Toggle};
 use crate::keys::Chord;
+use crate::saved::Theme;
 use crate::source::SceneSource;
 
 /// An action of a script.

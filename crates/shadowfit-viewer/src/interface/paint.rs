@@ -1,0 +1,70 @@
+//! egui's shapes painted by wgpu.
+
+use egui::{ClippedPrimitive, TextureId, TexturesDelta};
+use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
+use shadowfit_render::{Gpu, RenderTarget};
+
+/// Paints egui's shapes, and the pictures of the stage as textures among them.
+pub(crate) struct Painter {
+    renderer: Renderer,
+    /// Textures that the last layout used for the last time.
+    unused: Vec<TextureId>,
+}
+
+/// A frame that was laid out, ready to be painted.
+pub(crate) struct Layout {
+    pub(crate) jobs: Vec<ClippedPrimitive>,
+    pub(crate) pixels_per_point: f32,
+}
+
+impl Painter {
+    pub(crate) fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
+        Self { renderer: Renderer::new(device, format, RendererOptions::default()), unused: Vec::new() }
+    }
+
+    /// A picture as a texture of egui.
+    pub(crate) fn register(&mut self, gpu: &Gpu, picture: &RenderTarget) -> TextureId {
+        self.renderer.register_native_texture(&gpu.device, &picture.encoded_view(), wgpu::FilterMode::Nearest)
+    }
+
+    /// Puts another picture in the place of one.
+    pub(crate) fn replace(&mut self, gpu: &Gpu, texture: TextureId, picture: &RenderTarget) {
+        let (view, filter) = (picture.encoded_view(), wgpu::FilterMode::Nearest);
+        self.renderer.update_egui_texture_from_wgpu_texture(&gpu.device, &view, filter, texture);
+    }
+
+    /// Takes over the textures of a layout, which is to be painted next.
+    pub(crate) fn take(&mut self, gpu: &Gpu, textures: &mut TexturesDelta) {
+        for id in self.unused.drain(..) {
+            self.renderer.free_texture(&id);
+        }
+        for (id, deltas) in &textures.set {
+            for delta in deltas {
+                self.renderer.update_texture(&gpu.device, &gpu.queue, *id, delta);
+            }
+        }
+        self.unused.extend(&textures.free);
+        // All applied; egui asks to be told so.
+        textures.clear();
+    }
+
+    /// Paints to `target` of `size` pixels.
+    pub(crate) fn paint(&mut self, gpu: &Gpu, layout: &Layout, target: &wgpu::TextureView, size: [u32; 2]) {
+        let Layout { jobs, pixels_per_point } = layout;
+        let screen = ScreenDescriptor { size_in_pixels: size, pixels_per_point: *pixels_per_point };
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let commands = self.renderer.update_buffers(&gpu.device, &gpu.queue, &mut encoder, jobs, &screen);
+        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("interface"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: target,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        self.renderer.render(&mut pass.forget_lifetime(), jobs, &screen);
+        gpu.queue.submit(commands.into_iter().chain([encoder.finish()]));
+    }
+}

@@ -1,0 +1,262 @@
+//! The place of the picture: what the stage draws, the bar between two techniques, the view from outside beside it,
+//! and what is written over them.
+
+use egui::{
+    Align2, Color32, CornerRadius, CursorIcon, FontId, Pos2, Rect, Response, Sense, Stroke, StrokeKind, TextStyle, Ui,
+    UiBuilder, Vec2,
+};
+use shadowfit::tool::ViewMode;
+use shadowfit_render::RenderTarget;
+
+use super::paint::Painter;
+use super::{Asked, Shows};
+use crate::command::Command;
+use crate::stage::Stage;
+
+/// Scroll travel that counts as one notch of the wheel, in points, for devices that scroll smoothly.
+const POINTS_PER_NOTCH: f32 = 50.0;
+/// Width of the picture from outside, as a share of the picture's.
+const BESIDE: f32 = 0.42;
+/// Distance of what lies over the picture from its edge, in points.
+const MARGIN: f32 = 12.0;
+/// Width of what is taken hold of around the bar between two pictures, in points.
+const GRIP: f32 = 12.0;
+
+/// A picture of the stage with the texture that egui shows it by.
+struct Shot {
+    target: RenderTarget,
+    texture: egui::TextureId,
+    /// Size that its place has, in pixels.
+    wanted: [u32; 2],
+}
+
+impl Shot {
+    fn new(stage: &Stage, painter: &mut Painter) -> Self {
+        let target = stage.target([16, 16]);
+        let texture = painter.register(stage.gpu(), &target);
+        Self { target, texture, wanted: [16, 16] }
+    }
+
+    fn fit_place(&mut self, stage: &Stage, painter: &mut Painter) {
+        if self.wanted != self.target.size {
+            self.target = stage.target(self.wanted);
+            painter.replace(stage.gpu(), self.texture, &self.target);
+        }
+    }
+}
+
+/// The pictures of the stage: that of the first technique, that of the second one, and the view from outside.
+pub(crate) struct Pictures {
+    main: Shot,
+    other: Shot,
+    beside: Shot,
+}
+
+impl Pictures {
+    pub(super) fn new(stage: &Stage, painter: &mut Painter) -> Self {
+        let mut shot = || Shot::new(stage, painter);
+        Self { main: shot(), other: shot(), beside: shot() }
+    }
+
+    /// Size of the picture, in pixels.
+    pub(crate) fn size(&self) -> [u32; 2] {
+        self.main.wanted
+    }
+
+    /// Draws all that is on show.
+    pub(crate) fn draw(&mut self, stage: &mut Stage) {
+        stage.draw(&self.main.target);
+        if stage.is_comparing() {
+            stage.draw_other(&self.other.target);
+        }
+        if stage.settings.view.outside_beside {
+            stage.draw_beside(&self.beside.target);
+        }
+    }
+
+    /// The picture as it is on show, both halves where two techniques are compared: sRGB pixels, four bytes each, rows
+    /// from the top.
+    pub(crate) fn read(&self, stage: &Stage) -> anyhow::Result<Vec<u8>> {
+        let mut pixels = self.main.target.read(stage.gpu())?;
+        if stage.is_comparing() {
+            let other = self.other.target.read(stage.gpu())?;
+            let width = self.main.target.size[0] as usize;
+            let from = ((stage.split * width as f32).round() as usize).min(width);
+            for (row, other) in pixels.chunks_exact_mut(width * 4).zip(other.chunks_exact(width * 4)) {
+                row[from * 4..].copy_from_slice(&other[from * 4..]);
+            }
+        }
+        Ok(pixels)
+    }
+
+    /// Makes the pictures as large as their places.
+    pub(super) fn fit_places(&mut self, stage: &Stage, painter: &mut Painter) {
+        self.main.fit_place(stage, painter);
+        if stage.is_comparing() {
+            self.other.wanted = self.main.wanted;
+            self.other.fit_place(stage, painter);
+        }
+        if stage.settings.view.outside_beside {
+            self.beside.fit_place(stage, painter);
+        }
+    }
+
+    /// Shows the pictures in the whole of `ui`.
+    pub(super) fn show(&mut self, ui: &mut Ui, stage: &mut Stage, shows: &Shows<'_>, asked: &mut Asked) {
+        let rect = ui.available_rect_before_wrap();
+        let response = ui.allocate_rect(rect, Sense::click_and_drag());
+        self.main.wanted = pixels(ui, rect.size());
+        pointer(ui, &response, rect, asked);
+        let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+        ui.painter().image(self.main.texture, rect, whole, Color32::WHITE);
+        if stage.is_comparing() {
+            self.show_other(ui, stage, rect, asked);
+        }
+        if !shows.has_scene {
+            ui.painter().rect_filled(rect, CornerRadius::ZERO, ui.visuals().extreme_bg_color);
+        } else {
+            over(ui, stage, rect);
+            if stage.settings.view.outside_beside {
+                self.show_beside(ui, rect);
+            }
+        }
+        loading(ui, shows, rect);
+        if let (Some(card), Some(at)) = (stage.why(), response.hover_pos()) {
+            why(ui, &card, at);
+        }
+    }
+
+    /// The picture of the second technique, right of the bar, which can be dragged.
+    fn show_other(&mut self, ui: &mut Ui, stage: &mut Stage, rect: Rect, asked: &mut Asked) {
+        let x = rect.left() + rect.width() * stage.split;
+        let right = Rect::from_min_max(Pos2::new(x, rect.top()), rect.max);
+        let uv = Rect::from_min_max(Pos2::new(stage.split, 0.0), Pos2::new(1.0, 1.0));
+        ui.painter().image(self.other.texture, right, uv, Color32::WHITE);
+        let grip = Rect::from_center_size(Pos2::new(x, rect.center().y), Vec2::new(GRIP, rect.height()));
+        let bar = ui.interact(grip, ui.id().with("split"), Sense::drag()).on_hover_cursor(CursorIcon::ResizeHorizontal);
+        let name = "Bar between A and B";
+        bar.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Splitter, true, name));
+        if bar.dragged() && rect.width() > 1.0 {
+            asked.commands.push(Command::Split(stage.split + bar.drag_delta().x / rect.width()));
+        }
+        let (dark, bright) = (Stroke::new(4.0, Color32::from_black_alpha(120)), Stroke::new(2.0, Color32::WHITE));
+        for stroke in [dark, bright] {
+            ui.painter().vline(x, rect.y_range(), stroke);
+        }
+        ui.painter().circle(Pos2::new(x, rect.center().y), 9.0, Color32::WHITE, dark);
+        let [a, b] = stage.side_names();
+        let y = rect.top() + MARGIN;
+        label(ui, Pos2::new(x - MARGIN, y), Align2::RIGHT_TOP, &format!("A  {a}"));
+        label(ui, Pos2::new(x + MARGIN, y), Align2::LEFT_TOP, &format!("B  {b}"));
+    }
+
+    /// The view from outside, in the upper right corner.
+    fn show_beside(&mut self, ui: &mut Ui, rect: Rect) {
+        let width = rect.width() * BESIDE;
+        let size = Vec2::new(width, width * 0.62);
+        let min = Pos2::new(rect.right() - size.x - MARGIN, rect.top() + MARGIN);
+        let place = Rect::from_min_size(min, size);
+        self.beside.wanted = pixels(ui, size);
+        let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+        let painter = ui.painter();
+        painter.image(self.beside.texture, place, whole, Color32::WHITE);
+        let frame = Stroke::new(1.5, Color32::from_white_alpha(200));
+        painter.rect_stroke(place, CornerRadius::same(4), frame, StrokeKind::Outside);
+        let text = "From outside: what is grey is in no map";
+        label(ui, place.left_bottom() + Vec2::new(8.0, -8.0), Align2::LEFT_BOTTOM, text);
+    }
+}
+
+/// Size of a place, in pixels.
+fn pixels(ui: &Ui, size: Vec2) -> [u32; 2] {
+    let scale = ui.pixels_per_point();
+    [size.x, size.y].map(|side| ((side * scale).round() as u32).max(1))
+}
+
+/// What the pointer does on the picture.
+fn pointer(ui: &Ui, response: &Response, rect: Rect, asked: &mut Asked) {
+    let scale = ui.pixels_per_point();
+    let share = |at: Pos2| [(at.x - rect.left()) / rect.width(), (at.y - rect.top()) / rect.height()];
+    if response.dragged() {
+        let delta = response.drag_delta() * scale;
+        asked.drag = glam::Vec2::new(delta.x, delta.y);
+    }
+    if response.clicked() {
+        ui.memory_mut(egui::Memory::stop_text_input);
+    }
+    if response.double_clicked()
+        && let Some(at) = response.interact_pointer_pos()
+    {
+        asked.commands.push(Command::Focus(share(at)));
+    }
+    if response.contains_pointer() {
+        asked.wheel = wheel_notches(ui);
+        asked.hover = response.hover_pos().filter(|_| !response.dragged()).map(share);
+    }
+}
+
+/// Notches that the wheel was turned in this frame.
+fn wheel_notches(ui: &Ui) -> f32 {
+    ui.input(|input| {
+        input.events.iter().fold(0.0, |notches, event| match event {
+            egui::Event::MouseWheel { unit: egui::MouseWheelUnit::Point, delta, .. } => {
+                notches + delta.y / POINTS_PER_NOTCH
+            }
+            egui::Event::MouseWheel { delta, .. } => notches + delta.y,
+            _ => notches,
+        })
+    })
+}
+
+/// The legend of the view, in the upper left corner.
+fn over(ui: &mut Ui, stage: &Stage, rect: Rect) {
+    let view = &stage.settings.view;
+    let area = Rect::from_min_max(rect.min + Vec2::splat(MARGIN), rect.max - Vec2::splat(MARGIN));
+    let mut over = ui.new_child(UiBuilder::new().max_rect(area));
+    shadowfit_egui::legend(&mut over, view, stage.judged_figures(), stage.settings.technique.count);
+    if view.mode == ViewMode::Final && !view.shadows {
+        label(ui, rect.left_top() + Vec2::splat(MARGIN), Align2::LEFT_TOP, "Shadows are off");
+    }
+}
+
+/// How far a scene is, and that an artefact is being searched.
+fn loading(ui: &mut Ui, shows: &Shows<'_>, rect: Rect) {
+    let Some((name, share)) = shows.loading.or(shows.is_searching.then_some(("the best view", 0.0))) else { return };
+    let size = Vec2::new(300.0_f32.min(rect.width()), 64.0);
+    let place = Rect::from_center_size(rect.center(), size);
+    let mut card = ui.new_child(UiBuilder::new().max_rect(place));
+    egui::Frame::popup(ui.style()).show(&mut card, |ui| {
+        ui.set_width(size.x - 24.0);
+        if shows.is_searching {
+            ui.horizontal(|ui| {
+                ui.spinner();
+                ui.label("Looking for the best view…");
+            });
+        } else {
+            ui.label(format!("Loading {name}"));
+            ui.add(egui::ProgressBar::new(share).show_percentage().animate(true));
+        }
+    });
+    // The bar moves on its own.
+    ui.ctx().request_repaint();
+}
+
+/// The card of the pixel under the pointer, beside it and within the picture.
+fn why(ui: &Ui, card: &shadowfit_egui::WhyCard, at: Pos2) {
+    egui::Area::new(ui.id().with("why"))
+        .order(egui::Order::Tooltip)
+        .fixed_pos(at + Vec2::splat(18.0))
+        .constrain(true)
+        .interactable(false)
+        .show(ui.ctx(), |ui| shadowfit_egui::why_card(ui, card));
+}
+
+/// A line of text on a dark ground, readable on any picture.
+fn label(ui: &Ui, at: Pos2, anchor: Align2, text: &str) {
+    let font: FontId = TextStyle::Body.resolve(ui.style());
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, Color32::WHITE);
+    let padding = Vec2::new(8.0, 4.0);
+    let place = anchor.anchor_size(at, galley.size() + 2.0 * padding);
+    ui.painter().rect_filled(place, CornerRadius::same(5), Color32::from_black_alpha(170));
+    ui.painter().galley(place.min + padding, galley, Color32::WHITE);
+}
