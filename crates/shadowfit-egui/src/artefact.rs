@@ -1,11 +1,11 @@
 //! The three artefacts of shadow maps: what they are called, why they happen and what cures them;
 //! and the part of the panel that shows and fixes them.
 
-use egui::{
-    Align2, Button, Color32, Frame, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, Vec2, WidgetInfo,
-};
+use egui::{Align, Button, Label, Layout, RichText, Ui};
 
-use crate::Action;
+use crate::theme::Palette;
+use crate::widgets::{Icon, KeyButton, caption, card, icon_button, main_button};
+use crate::{Action, ShownArtefact};
 
 /// What can be wrong with a shadow-mapped picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -31,12 +31,21 @@ impl Artefact {
         }
     }
 
+    /// Name for a narrow button.
+    const fn short_label(self) -> &'static str {
+        match self {
+            Self::Acne => "acne",
+            Self::Aliasing => "aliasing",
+            Self::ClippingHole => "hole",
+        }
+    }
+
     /// Key that shows it, see [`KEYS`](crate::KEYS).
     pub const fn key(self) -> &'static str {
         match self {
-            Self::Acne => "1",
-            Self::Aliasing => "2",
-            Self::ClippingHole => "3",
+            Self::Acne => "Z",
+            Self::Aliasing => "X",
+            Self::ClippingHole => "C",
         }
     }
 
@@ -88,62 +97,60 @@ impl Artefact {
 }
 
 /// The buttons, and the card of the artefact that is shown.
-pub(crate) fn show(ui: &mut Ui, shown: Option<Artefact>, fixed: bool, action: &mut Option<Action>) {
-    ui.label(RichText::new("Show an artefact").strong());
+pub(crate) fn show(ui: &mut Ui, shown: Option<&ShownArtefact<'_>>, action: &mut Option<Action>) {
     ui.columns_const(|columns: &mut [Ui; 3]| {
         for (ui, artefact) in columns.iter_mut().zip(Artefact::ALL) {
-            if button(ui, artefact, shown == Some(artefact)) {
+            let accessible_name = format!("Show {}", artefact.label().to_lowercase());
+            let button = KeyButton {
+                name: &format!("Show {}", artefact.short_label()),
+                accessible_name: &accessible_name,
+                key: artefact.key(),
+                is_selected: shown.is_some_and(|shown| shown.artefact == artefact),
+            };
+            if button.show(ui).on_hover_text(artefact.explanation()).clicked() {
                 *action = Some(Action::ShowArtefact(artefact));
             }
         }
     });
-    if let Some(artefact) = shown {
-        ui.add_space(2.0);
-        card(ui, artefact, fixed, action);
+    if let Some(shown) = shown {
+        show_card(ui, shown, action);
     }
-    ui.add_space(4.0);
 }
 
-/// A button with its key under its name: painted here, since egui's buttons hold one line of one
-/// size.
-fn button(ui: &mut Ui, artefact: Artefact, selected: bool) -> bool {
-    let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 42.0), Sense::click());
-    let name = format!("Show {}", artefact.label().to_lowercase());
-    response.widget_info(|| WidgetInfo::selected(Role::Button, true, selected, &name));
-    if ui.is_rect_visible(rect) {
-        let visuals = ui.style().interact_selectable(&response, selected);
-        let (fill, stroke) = (visuals.weak_bg_fill, visuals.bg_stroke);
-        ui.painter().rect(rect, visuals.corner_radius, fill, stroke, StrokeKind::Inside);
-        let line = |offset: f32, text: &str, style: TextStyle| {
-            let at = rect.center() + Vec2::new(0.0, offset);
-            ui.painter().text(at, Align2::CENTER_CENTER, text, style.resolve(ui.style()), visuals.text_color());
-        };
-        line(-8.0, artefact.label(), TextStyle::Button);
-        line(10.0, artefact.key(), TextStyle::Small);
-    }
-    response.on_hover_text(artefact.explanation()).clicked()
-}
-
-fn card(ui: &mut Ui, artefact: Artefact, fixed: bool, action: &mut Option<Action>) {
-    let accent = if fixed { Color32::from_rgb(88, 166, 104) } else { Color32::from_rgb(214, 131, 56) };
-    Frame::group(ui.style()).stroke(Stroke::new(1.5, accent)).show(ui, |ui| {
-        ui.set_width(ui.available_width());
-        let title = if fixed { format!("{}: fixed", artefact.label()) } else { artefact.label().to_owned() };
-        ui.label(RichText::new(title).strong().color(accent));
+fn show_card(ui: &mut Ui, shown: &ShownArtefact<'_>, action: &mut Option<Action>) {
+    let ShownArtefact { artefact, fixed, narration, changes: changed } = *shown;
+    let palette = Palette::of(ui);
+    let accent = if fixed { palette.success } else { palette.warning };
+    card(ui, Some(accent), |ui| {
+        ui.horizontal(|ui| {
+            let title = if fixed { format!("{}: fixed", artefact.label()) } else { artefact.label().to_owned() };
+            ui.label(RichText::new(title).color(accent));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                if icon_button(ui, Icon::Close, "Close the artefact", "Ends the demonstration.").clicked() {
+                    *action = Some(Action::CloseArtefact);
+                }
+            });
+        });
+        if !narration.is_empty() {
+            ui.add(Label::new(RichText::new(narration).strong()).wrap());
+        }
         let text = if fixed { artefact.cure() } else { artefact.explanation() };
-        ui.add(egui::Label::new(text).wrap());
+        ui.add(Label::new(text).wrap());
         ui.add_space(2.0);
-        let size = Vec2::new(ui.available_width(), 30.0);
         if fixed {
-            if ui.add_sized(size, Button::new("Show again")).clicked() {
+            changes(ui, changed);
+            if ui.add_sized([ui.available_width(), 28.0], Button::new("Show again")).clicked() {
                 *action = Some(Action::ShowArtefact(artefact));
             }
-        } else {
-            let text = RichText::new("Fix (F)").strong().color(Color32::WHITE);
-            let fix = Button::new(text).fill(Color32::from_rgb(46, 112, 66));
-            if ui.add_sized(size, fix).on_hover_text(artefact.cure()).clicked() {
-                *action = Some(Action::FixArtefact(artefact));
-            }
+        } else if main_button(ui, "Fix", "F", palette.success_fill).on_hover_text(artefact.cure()).clicked() {
+            *action = Some(Action::FixArtefact(artefact));
         }
     });
+}
+
+/// What was changed, a line each.
+pub(crate) fn changes(ui: &mut Ui, changes: &[String]) {
+    for change in changes {
+        caption(ui, &format!("• {change}"));
+    }
 }

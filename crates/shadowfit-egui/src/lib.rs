@@ -1,60 +1,89 @@
 //! The shadow tuning panel, embeddable in any [egui] application.
 //!
-//! It edits a [`Settings`], shows a [`Figures`] live, and asks its host for what only the host can
-//! do (moving the camera, taking a picture) by returning an [`Action`]. Its controls come from
-//! [`shadowfit::params`], so that a new parameter gets a control without further code.
+//! It edits a [`Settings`], shows a [`Figures`](shadowfit::figures::Figures) live, and asks its host for what only the
+//! host can do (moving the camera, judging the picture, taking a picture) by returning an [`Action`]. Its controls come
+//! from [`shadowfit::params`], so that a new parameter gets a control without further code.
 //!
 //! ```
 //! use shadowfit::figures::Figures;
 //! use shadowfit::tool::Settings;
-//! use shadowfit_egui::{PANEL_WIDTH, Panel, PanelInput, SceneLine};
+//! use shadowfit_egui::{Action, PANEL_WIDTH, Panel, PanelInput, SceneLine};
 //!
-//! # fn host(ui: &mut egui::Ui, panel: &mut Panel, settings: &mut Settings) {
-//! egui::Panel::right("shadows").exact_size(PANEL_WIDTH).show(ui, |ui| {
-//!     let input = PanelInput {
-//!         settings,
-//!         figures: &Figures::default(),
-//!         scene: SceneLine { name: "Courtyard", triangles: 262_144, notes: &[] },
-//!         artefact: None,
-//!         artefact_fixed: false,
-//!         message: None,
-//!     };
-//!     if let Some(action) = panel.show(ui, input).action {
-//!         println!("{action:?}");
-//!     }
-//! });
-//! # }
+//! # fn show(_: shadowfit_egui::Artefact) {}
+//! // Once: both themes, and the one that the system prefers.
+//! fn start(ctx: &egui::Context) -> Panel {
+//!     shadowfit_egui::apply_theme(ctx, egui::ThemePreference::System);
+//!     Panel::new()
+//! }
+//!
+//! // Each frame: the panel at the right, the bar of views above the picture.
+//! fn frame(ui: &mut egui::Ui, panel: &mut Panel, settings: &mut Settings, figures: &Figures) {
+//!     egui::Panel::right("shadows").exact_size(PANEL_WIDTH).resizable(false).show(ui, |ui| {
+//!         let scene = SceneLine { name: "Courtyard", triangles: 262_144, notes: &[] };
+//!         match panel.show(ui, PanelInput::new(settings, figures, scene)).action {
+//!             Some(Action::ShowArtefact(artefact)) => show(artefact),
+//!             Some(Action::SetTheme(theme)) => ui.ctx().set_theme(theme),
+//!             Some(action) => println!("{action:?}"),
+//!             None => {}
+//!         }
+//!     });
+//!     egui::Panel::top("views").show(ui, |ui| shadowfit_egui::view_bar(ui, &mut settings.view));
+//!     egui::CentralPanel::default().show(ui, |ui| {
+//!         let picture = ui.max_rect();
+//!         shadowfit_egui::legend_overlay(ui.ctx(), picture, &settings.view, figures);
+//!     });
+//! }
 //! ```
 
 #![forbid(unsafe_code)]
 
 mod accessibility;
 mod artefact;
+mod classes;
+mod compare;
 mod figures;
+mod header;
 mod help;
+mod history;
+mod input;
+mod legend;
 mod maps;
+mod parameters;
+mod plots;
+mod quality;
 mod rows;
-mod style;
 mod technique;
+mod theme;
+mod tune;
 mod units;
+mod views;
+mod why;
+mod widgets;
 
 use std::collections::BTreeSet;
 
-use egui::{RichText, ScrollArea, Sense, TextStyle, Ui, Vec2};
+use egui::{ScrollArea, Ui};
 use shadowfit::Technique;
-use shadowfit::figures::Figures;
-use shadowfit::params::Group;
+use shadowfit::params::Parameter;
 use shadowfit::tool::Settings;
 
+use parameters::{Rows, TOOL_GROUPS, technique_groups};
+use widgets::{Section, caption};
+
 pub use artefact::Artefact;
-pub use help::{KEYS, KeyHelp, help_overlay};
-pub use style::apply_style;
+pub use classes::PixelClass;
+pub use help::{KEYS, KeyGroup, KeyHelp, help_overlay};
+pub use input::{Action, Changes, Compare, PanelInput, PanelOutput, Part, SceneLine, ShownArtefact, Tune, UserPreset};
+pub use legend::{MAP_UPDATE_COLORS, has_legend, legend, legend_overlay};
+pub use theme::apply_theme;
+pub use views::view_bar;
+pub use why::{WhyCard, why_card, why_overlay};
 
 /// Width that the panel is laid out for, in points, margins included.
 pub const PANEL_WIDTH: f32 = 360.0;
 
-/// The tuning panel. Keep one for as long as its host lives: it remembers the plotted times
-/// and the name of the technique.
+/// The tuning panel. Keep one for as long as its host lives: it remembers the plotted figures and the names of the
+/// techniques.
 #[derive(Clone, Debug, Default)]
 pub struct Panel {
     /// What the reset button of a parameter goes back to. A host that begins with settings of its
@@ -62,60 +91,11 @@ pub struct Panel {
     pub defaults: Settings,
     /// Ids of parameters that the host does not use and that get no control.
     pub hidden: BTreeSet<&'static str>,
+    /// Parts that the host does not use and that are not shown.
+    pub hidden_parts: BTreeSet<Part>,
     technique: technique::Menu,
-    frame_times: figures::History,
-}
-
-/// What the panel shows and edits in one frame.
-#[derive(Debug)]
-pub struct PanelInput<'a> {
-    /// The settings that the controls edit.
-    pub settings: &'a mut Settings,
-    /// The figures of the last frame.
-    pub figures: &'a Figures,
-    /// What is being looked at.
-    pub scene: SceneLine<'a>,
-    /// The artefact that is being shown, if any.
-    pub artefact: Option<Artefact>,
-    /// Whether its cure is applied.
-    pub artefact_fixed: bool,
-    /// A readable message, such as the outcome of the last action.
-    pub message: Option<&'a str>,
-}
-
-/// The scene, in a line.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SceneLine<'a> {
-    /// Its name.
-    pub name: &'a str,
-    /// Number of its triangles.
-    pub triangles: u64,
-    /// Notes about it, such as parts that could not be shown.
-    pub notes: &'a [String],
-}
-
-/// What the person asked for in this frame, beside the settings.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct PanelOutput {
-    /// The request, if any.
-    pub action: Option<Action>,
-}
-
-/// A request to the host.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Action {
-    /// Move camera and settings so that the artefact is plainly visible.
-    ShowArtefact(Artefact),
-    /// Apply the artefact's cure.
-    FixArtefact(Artefact),
-    /// Put settings and camera back to where they began.
-    Reset,
-    /// Put the camera back to where it began.
-    ResetCamera,
-    /// Save the picture.
-    Screenshot,
-    /// Show the table of the keys, see [`help_overlay`].
-    OpenHelp,
+    plots: plots::Plots,
+    search: String,
 }
 
 impl Panel {
@@ -131,84 +111,121 @@ impl Panel {
         self
     }
 
+    /// Leaves out these parts, so that their actions are never asked for.
+    #[must_use]
+    pub fn without(mut self, parts: impl IntoIterator<Item = Part>) -> Self {
+        self.hidden_parts.extend(parts);
+        self
+    }
+
     /// Names the technique of the settings after a file or whatever else the host opened it from. The
     /// menu of techniques shows that name and, once the technique is changed, offers it again.
     pub fn name_technique(&mut self, name: impl Into<String>, technique: &Technique) {
         self.technique.open(name.into(), technique);
     }
 
-    /// Shows the panel in the whole of `ui`, with a scroll bar when it is higher than that. Call
-    /// it once a frame.
-    pub fn show(&mut self, ui: &mut Ui, input: PanelInput<'_>) -> PanelOutput {
-        let PanelInput { settings, figures, scene, artefact, artefact_fixed, message } = input;
+    /// Whether the host uses a part.
+    pub(crate) fn has(&self, part: Part) -> bool {
+        !self.hidden_parts.contains(&part)
+    }
+
+    /// Shows the panel in the whole of `ui`: its top, and the rest with a scroll bar where it is higher than that.
+    /// Call it once a frame.
+    pub fn show(&mut self, ui: &mut Ui, mut input: PanelInput<'_>) -> PanelOutput {
         let mut action = None;
-        self.frame_times.push(figures.frame_ms);
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            ui.visuals_mut().collapsing_header_frame = true;
-            header(ui, &scene, message, &mut action);
-            ui.separator();
-            artefact::show(ui, artefact, artefact_fixed, &mut action);
-            section(ui, "Figures", true, |ui| {
-                figures::show(ui, figures);
-                self.frame_times.plot(ui);
-            });
-            ui.add_space(6.0);
-            self.technique.show(ui, &mut settings.technique);
-            for group in Group::ALL {
-                self.group(ui, group, settings);
-            }
-        });
+        if self.has(Part::Plots) {
+            self.plots.history.push(ui.input(|input| input.time), input.figures);
+        }
+        header::show(ui, self, &input.scene, input.changes, input.message, &mut action);
+        ui.separator();
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| self.contents(ui, &mut input, &mut action));
+        if let Some(action) = &action {
+            let edits_other = input.compare.as_ref().is_some_and(|compare| *compare.edits_other);
+            self.technique.follow(action, edits_other);
+        }
         PanelOutput { action }
     }
 
-    fn group(&self, ui: &mut Ui, group: Group, settings: &mut Settings) {
-        let mut rows = group.parameters().filter(|parameter| !self.hidden.contains(parameter.id)).peekable();
-        if rows.peek().is_none() {
-            return;
+    fn contents(&mut self, ui: &mut Ui, input: &mut PanelInput<'_>, action: &mut Option<Action>) {
+        if self.has(Part::Artefacts) {
+            artefact::show(ui, input.artefact.as_ref(), action);
         }
-        let open = !matches!(group, Group::Override | Group::Camera);
-        section(ui, group.label(), open, |ui| {
-            for parameter in rows {
-                // Asked row by row, since each may change what the next ones are.
-                if rows::is_shown(parameter, settings) {
-                    rows::show(ui, parameter, settings, &self.defaults);
-                }
+        if self.has(Part::Quality) {
+            quality::show(ui, input.figures, input.compare.is_some());
+        }
+        if self.has(Part::Tune) {
+            tune::show(ui, &input.tune, action);
+        }
+        ui.add_space(4.0);
+        self.technique_head(ui, input, action);
+        Rows::search_field(ui, &mut self.search);
+        if self.search.trim().is_empty() {
+            self.sections(ui, input, action);
+        } else {
+            self.found(ui, input);
+        }
+    }
+
+    /// What chooses the technique as a whole: the side, and the menu.
+    fn technique_head(&mut self, ui: &mut Ui, input: &mut PanelInput<'_>, action: &mut Option<Action>) {
+        let mut side = 0;
+        match &mut input.compare {
+            Some(compare) => {
+                compare::tabs(ui, compare, action);
+                side = usize::from(*compare.edits_other);
             }
-        })
-        .on_hover_text(group.help());
+            None if self.has(Part::Compare) => compare::start(ui, action),
+            None => {
+                widgets::title(ui, "Technique");
+            }
+        }
+        let saved = self.has(Part::UserPresets).then_some(input.presets);
+        let menu = &mut self.technique;
+        edit(input, |settings| menu.show(ui, &mut settings.technique, side, saved, action));
+    }
+
+    /// The rows that are used most, the groups of the technique, the figures, and what only tools have.
+    fn sections(&mut self, ui: &mut Ui, input: &mut PanelInput<'_>, action: &mut Option<Action>) {
+        let hidden = &self.hidden;
+        let rows = Rows { defaults: &self.defaults, has: &|parameter: &Parameter| !hidden.contains(parameter.id) };
+        edit(input, |settings| {
+            rows.quick(ui, settings);
+            ui.add_space(4.0);
+            rows.groups(ui, technique_groups(), settings);
+        });
+        let summary = figures::summary(input.figures);
+        let help = "What each map holds and costs, and what the passes take.";
+        Section { title: "Figures", help, summary: &summary, is_open: false }
+            .show(ui, |ui| figures::show(ui, input.figures));
+        if !self.hidden_parts.contains(&Part::Plots) {
+            let plots = &mut self.plots;
+            Section { title: "Plots", help: "The figures of the last minute.", summary: "", is_open: false }
+                .show(ui, |ui| plots.show(ui, action));
+        }
+        rows.groups(ui, TOOL_GROUPS, input.settings);
+    }
+
+    /// The rows that the search finds.
+    fn found(&self, ui: &mut Ui, input: &mut PanelInput<'_>) {
+        let rows = Rows { defaults: &self.defaults, has: &|parameter| !self.hidden.contains(parameter.id) };
+        let of_technique: Vec<_> = technique_groups().collect();
+        let mut count = 0;
+        edit(input, |settings| count += rows.found(ui, &self.search, &of_technique, settings));
+        count += rows.found(ui, &self.search, &TOOL_GROUPS, input.settings);
+        if count == 0 {
+            caption(ui, "No setting that has an effect now has this in its name or help.");
+        }
     }
 }
 
-fn section(ui: &mut Ui, title: &str, open: bool, contents: impl FnOnce(&mut Ui)) -> egui::Response {
-    ui.add_space(2.0);
-    egui::CollapsingHeader::new(RichText::new(title).strong())
-        .default_open(open)
-        .show_unindented(ui, contents)
-        .header_response
-}
-
-fn header(ui: &mut Ui, scene: &SceneLine<'_>, message: Option<&str>, action: &mut Option<Action>) {
-    ui.heading("Shadow tuning");
-    ui.add(egui::Label::new(format!("{}, {} triangles", scene.name, units::grouped(scene.triangles))).wrap());
-    for note in scene.notes {
-        ui.add(egui::Label::new(RichText::new(note).color(ui.visuals().warn_fg_color)).wrap());
+/// Edits the settings with the technique of the side that the controls are for.
+fn edit(input: &mut PanelInput<'_>, change: impl FnOnce(&mut Settings)) {
+    let mut other = input.compare.as_mut().filter(|compare| *compare.edits_other).map(|compare| &mut *compare.other);
+    if let Some(other) = &mut other {
+        std::mem::swap(&mut input.settings.technique, *other);
     }
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        for (label, help, asked) in [
-            ("Reset", "Puts settings and camera back to where they began (R).", Action::Reset),
-            ("Reset camera", "Puts the camera back to where it began.", Action::ResetCamera),
-            ("Screenshot", "Saves the picture (P).", Action::Screenshot),
-            ("Help", "Shows the table of the keys (H or F1).", Action::OpenHelp),
-        ] {
-            if ui.button(label).on_hover_text(help).clicked() {
-                *action = Some(asked);
-            }
-        }
-    });
-    match message {
-        Some(message) => ui.add(egui::Label::new(RichText::new(message).color(ui.visuals().hyperlink_color)).wrap()),
-        // The line stays free, so that a message does not push what is below it.
-        None => ui.allocate_response(Vec2::new(0.0, ui.text_style_height(&TextStyle::Body)), Sense::hover()),
-    };
+    change(input.settings);
+    if let Some(other) = &mut other {
+        std::mem::swap(&mut input.settings.technique, *other);
+    }
 }

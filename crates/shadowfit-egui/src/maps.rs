@@ -1,34 +1,28 @@
 //! What tells maps apart: their numbers on their tints, the table of their figures, and the buttons
 //! that choose one.
 
-use egui::{Button, Color32, CornerRadius, Grid, Response, RichText, Role, Sense, Stroke, Ui, Vec2, WidgetInfo};
+use egui::{Button, Color32, Grid, Response, RichText, Role, Stroke, Ui, WidgetInfo};
 use shadowfit::figures::{Figures, MAP_TINTS, MapFigures};
 use shadowfit::light_fit::Constraint;
 use shadowfit::settings::MAX_MAPS;
 
 use crate::accessibility::rename;
-use crate::units::{grouped, length, short, size};
+use crate::quality::known;
+use crate::theme::contrast;
+use crate::units::{brief_count, grouped, length, short, size};
+use crate::widgets::{badge, color};
 
 /// The tint of a map, and what can be read on it.
 fn colours(map: usize) -> (Color32, Color32) {
-    let [r, g, b] = MAP_TINTS[map % MAX_MAPS];
-    // Rec. 709 weights of the encoded values: enough to choose between black and white.
-    let brightness = 0.2126 * f32::from(r) + 0.7152 * f32::from(g) + 0.0722 * f32::from(b);
-    (Color32::from_rgb(r, g, b), if brightness > 128.0 { Color32::BLACK } else { Color32::WHITE })
+    let tint = color(MAP_TINTS[map % MAX_MAPS]);
+    let is_light = contrast(tint, Color32::BLACK) > contrast(tint, Color32::WHITE);
+    (tint, if is_light { Color32::BLACK } else { Color32::WHITE })
 }
 
 /// The number of a map on its tint.
-fn badge(ui: &mut Ui, map: usize) -> Response {
+pub(crate) fn badge_of(ui: &mut Ui, map: usize) -> Response {
     let (tint, text) = colours(map);
-    let (rect, response) = ui.allocate_exact_size(Vec2::new(22.0, 16.0), Sense::hover());
-    let name = format!("Map {}", map + 1);
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &name));
-    if ui.is_rect_visible(rect) {
-        ui.painter().rect_filled(rect, CornerRadius::same(3), tint);
-        let font = egui::TextStyle::Button.resolve(ui.style());
-        ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, (map + 1).to_string(), font, text);
-    }
-    response
+    badge(ui, &(map + 1).to_string(), [tint, text], &format!("Map {}", map + 1))
 }
 
 /// A button for each of `count` maps, with the one of `selected` filled; returns the index of the one
@@ -60,11 +54,14 @@ pub(crate) fn selector(
     clicked
 }
 
-/// Names of the columns and what they say.
-const COLUMNS: [(&str, &str); 5] = [
+/// A column: its name and what it says.
+type Column = (&'static str, &'static str);
+
+/// What the maps hold.
+const HOLD: [Column; 5] = [
     (
         "Map",
-        "Number of the map, the nearest first and of windows the finest first, on the colour that Tint by map gives it.",
+        "Number of the map, the nearest first and of windows the finest first, on the colour that the view of maps gives it.",
     ),
     (
         "Made for",
@@ -73,38 +70,68 @@ const COLUMNS: [(&str, &str); 5] = [
     ),
     ("Texel", "Width and height of one texel across the light."),
     ("Depth", "Extent of the map along the light."),
-    ("Draws", "Draw calls of the map's shadow pass."),
+    ("Waste", "Share of the map's area that lies beside what it is made for."),
 ];
 
-/// One line for each map; hovering it says all that is known of the map.
-pub(crate) fn table(ui: &mut Ui, figures: &Figures) {
+/// What the maps cost.
+const COST: [Column; 5] = [
+    HOLD[0],
+    ("Draws", "Draw calls of the map's shadow pass."),
+    ("Triangles", "Triangles drawn into the map."),
+    ("Texels drawn", "Texels of the map that were drawn in this frame; the others were kept."),
+    ("Pass", "GPU time of the map's shadow passes."),
+];
+
+/// Two tables with a line for each map: what it holds and what it costs. Hovering a line says all that is known.
+pub(crate) fn tables(ui: &mut Ui, figures: &Figures) {
+    table(ui, "What the maps hold", HOLD, figures, held);
+    ui.add_space(4.0);
+    table(ui, "What the maps cost", COST, figures, costs);
+}
+
+fn table(
+    ui: &mut Ui,
+    title: &str,
+    columns: [Column; 5],
+    figures: &Figures,
+    cells: fn(&MapFigures) -> [Option<String>; 4],
+) {
     let maps = figures.maps.iter().enumerate().filter_map(|(map, figures)| Some((map, figures.as_ref()?)));
-    Grid::new("maps").num_columns(COLUMNS.len()).spacing([10.0, 3.0]).min_col_width(0.0).striped(true).show(ui, |ui| {
-        for (name, help) in COLUMNS {
-            ui.label(RichText::new(name).small()).on_hover_text(help);
+    Grid::new(title).num_columns(columns.len()).spacing([10.0, 3.0]).min_col_width(0.0).show(ui, |ui| {
+        for (name, help) in columns {
+            ui.label(RichText::new(name).small().weak()).on_hover_text(help);
         }
         ui.end_row();
         for (map, figures) in maps {
             let details = details(map, figures);
-            badge(ui, map).on_hover_text(&details);
+            badge_of(ui, map).on_hover_text(&details);
             for text in cells(figures) {
-                let text = text.map_or_else(|| RichText::new("—").weak(), |text| RichText::new(text).strong());
-                ui.label(text).on_hover_text(&details);
+                ui.label(known(text).small()).on_hover_text(&details);
             }
             ui.end_row();
         }
     });
 }
 
-/// The texts of a map's line behind its number.
-fn cells(figures: &MapFigures) -> [Option<String>; 4] {
+/// What a map holds, behind its number.
+fn held(figures: &MapFigures) -> [Option<String>; 4] {
     let is_window = figures.set_by[0] == Constraint::Window;
     let view_depths = figures.view_depths.map(|[near, far]| format!("{} – {}", short(near), short(far)));
     [
         view_depths.or_else(|| is_window.then(|| size(figures.extent))),
         Some(if figures.is_empty { "empty".into() } else { size(figures.texel_size) }),
         Some(length(figures.depth_range)),
+        figures.waste.map(|waste| format!("{:.0}\u{a0}%", 100.0 * waste)),
+    ]
+}
+
+/// What a map costs, behind its number.
+fn costs(figures: &MapFigures) -> [Option<String>; 4] {
+    [
         figures.draws.map(|draws| grouped(draws.into())),
+        figures.triangles.map(|triangles| brief_count(triangles as f64)),
+        figures.texels.map(|texels| brief_count(texels as f64)),
+        figures.pass_ms.map(|ms| format!("{ms:.2}\u{a0}ms")),
     ]
 }
 
@@ -123,6 +150,7 @@ fn details(map: usize, figures: &MapFigures) -> String {
         ("Casters kept", figures.casters.map(u64::from)),
         ("Draw calls", figures.draws.map(u64::from)),
         ("Triangles", figures.triangles),
+        ("Texels drawn", figures.texels),
     ];
     lines.extend(drawn.iter().filter_map(|(name, count)| Some(format!("{name}: {}", grouped((*count)?)))));
     lines.join("\n")
@@ -150,24 +178,17 @@ mod tests {
     fn a_map_is_made_for_distances_and_a_window_for_what_it_holds() {
         let map = MapFigures { view_depths: Some([0.1, 12.0]), extent: [40.0, 20.0], ..MapFigures::default() };
         let window = MapFigures { view_depths: None, set_by: [Constraint::Window; 6], ..map };
-        assert_eq!(cells(&map)[0].as_deref(), Some("0.10 – 12.0"));
-        assert_eq!(cells(&window)[0].as_deref(), Some("40.0 × 20.0 m"));
-        assert_eq!(cells(&MapFigures { view_depths: None, ..map })[0], None);
+        assert_eq!(held(&map)[0].as_deref(), Some("0.10 – 12.0"));
+        assert_eq!(held(&window)[0].as_deref(), Some("40.0 × 20.0 m"));
+        assert_eq!(held(&MapFigures { view_depths: None, ..map })[0], None);
     }
 
     #[test]
     fn numbers_are_readable_on_their_tints() {
-        /// Relative luminance of an sRGB colour (WCAG 2.1).
-        fn luminance(colour: Color32) -> f32 {
-            let [r, g, b, _] = egui::Rgba::from(colour).to_array();
-            0.2126 * r + 0.7152 * g + 0.0722 * b
-        }
         for map in 0..MAX_MAPS {
             let (tint, text) = colours(map);
-            let (a, b) = (luminance(tint), luminance(text));
-            let contrast = (a.max(b) + 0.05) / (a.min(b) + 0.05);
-            // What WCAG asks of bold or large text.
-            assert!(contrast >= 3.0, "map {}: {contrast}", map + 1);
+            let ratio = contrast(tint, text);
+            assert!(ratio >= 4.5, "map {}: {ratio}", map + 1);
         }
     }
 

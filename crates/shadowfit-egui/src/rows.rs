@@ -10,9 +10,7 @@ use shadowfit::tool::Settings;
 
 use crate::accessibility::rename;
 use crate::maps;
-use label::{RESET_WIDTH, reset_button};
-
-pub(crate) use label::label;
+use label::{RESET_WIDTH, label, reset_button};
 
 /// Width of the number field with its unit, in points.
 const VALUE_WIDTH: f32 = 92.0;
@@ -27,11 +25,13 @@ struct Row<'a> {
     help: String,
     /// Why it has no effect.
     reason: Option<&'static str>,
+    /// Its group, where the row stands outside of it and would not be understood.
+    context: &'static str,
 }
 
 impl Row<'_> {
     fn label(&self, ui: &mut Ui) -> Response {
-        self.explain(label(ui, self.parameter.label))
+        self.explain(label(ui, self.parameter.label, self.context))
     }
 
     fn explain(&self, response: Response) -> Response {
@@ -50,10 +50,30 @@ pub(crate) fn is_shown(parameter: &Parameter, settings: &Settings) -> bool {
     parameter.is_present(settings) && !(goes_when_inert && (parameter.inert)(settings).is_some())
 }
 
+/// The rows of parameters that are shown, each of which may change what the next ones are.
+pub(crate) fn show_all(
+    ui: &mut Ui,
+    parameters: impl IntoIterator<Item = &'static Parameter>,
+    settings: &mut Settings,
+    defaults: &Settings,
+) {
+    for parameter in parameters {
+        if is_shown(parameter, settings) {
+            show(ui, parameter, settings, defaults, "");
+        }
+    }
+}
+
 /// The row of a parameter. A double click on its label resets it, as the button does; a number that
 /// is NaN, which no slider can show, resets itself.
-pub(crate) fn show(ui: &mut Ui, parameter: &Parameter, settings: &mut Settings, defaults: &Settings) {
-    let row = Row { parameter, help: help(parameter, defaults), reason: (parameter.inert)(settings) };
+pub(crate) fn show(
+    ui: &mut Ui,
+    parameter: &Parameter,
+    settings: &mut Settings,
+    defaults: &Settings,
+    context: &'static str,
+) {
+    let row = Row { parameter, help: help(parameter, defaults), reason: (parameter.inert)(settings), context };
     let mut reset = is_nan(parameter, settings);
     ui.push_id(parameter.id, |ui| {
         let line = ui.horizontal(|ui| {

@@ -1,10 +1,12 @@
 //! The menu of techniques by name: the presets, and the one that the host opened.
 
 use egui::text::LayoutJob;
-use egui::{Button, ComboBox, RectAlign, Response, TextFormat, TextStyle, Tooltip, Ui};
+use egui::{Button, ComboBox, Key, RectAlign, Response, TextEdit, TextFormat, TextStyle, Tooltip, Ui, Vec2};
 use shadowfit::{PRESETS, Technique};
 
-use crate::rows;
+use crate::accessibility::rename;
+use crate::widgets::{Icon, icon_button};
+use crate::{Action, UserPreset};
 
 /// What the menu does.
 const HELP: &str = "Sets everything from Fit to Single maps as a technique by name has it, and keeps shadow distance, \
@@ -16,14 +18,19 @@ const WIDTH: f32 = 320.0;
 /// Most of the screen's height that the open menu takes.
 const HEIGHT: f32 = 0.6;
 
+/// Most characters of the name of a saved technique.
+const MAX_NAME: usize = 40;
+
 /// What a technique is called that was not chosen from the menu.
 const CUSTOM: &str = "custom";
 
-/// The name that was chosen last, and the technique that the host opened.
+/// The names that were chosen last, of A and of B, and the technique that the host opened.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Menu {
-    chosen: String,
+    chosen: [String; 2],
     opened: Option<(String, Technique)>,
+    /// The name that a technique is about to be saved under, while the field for it is shown.
+    name: Option<String>,
 }
 
 /// A technique of the menu.
@@ -32,70 +39,132 @@ struct Entry<'a> {
     summary: &'a str,
     advice: &'a str,
     technique: Technique,
+    /// Whether a person saved it, and can delete it.
+    is_saved: bool,
 }
 
 impl Menu {
     pub(crate) fn open(&mut self, name: String, technique: &Technique) {
-        self.chosen.clone_from(&name);
+        self.chosen[0].clone_from(&name);
         self.opened = Some((name, *technique));
     }
 
-    fn entries(&self) -> impl Iterator<Item = Entry<'_>> {
+    /// Takes the names along with what is about to be done with the techniques.
+    pub(crate) fn follow(&mut self, action: &Action, edits_other: bool) {
+        match action {
+            Action::SwapSides => self.chosen.swap(0, 1),
+            Action::StartCompare => self.chosen[1] = self.chosen[0].clone(),
+            Action::CopyToOther => {
+                let from = usize::from(edits_other);
+                self.chosen[1 - from] = self.chosen[from].clone();
+            }
+            _ => {}
+        }
+    }
+
+    fn entries<'a>(&'a self, saved: &'a [UserPreset]) -> impl Iterator<Item = Entry<'a>> {
         let opened = self.opened.iter().map(|(name, technique)| Entry {
             name,
             summary: "as it was opened",
             advice: "Goes back to the technique that was opened.",
             technique: *technique,
+            is_saved: false,
+        });
+        let saved = saved.iter().map(|preset| Entry {
+            name: &preset.name,
+            summary: "saved by you",
+            advice: "A technique that you saved.",
+            technique: preset.technique,
+            is_saved: true,
         });
         let presets = PRESETS.iter().map(|preset| Entry {
             name: preset.name,
             summary: preset.summary,
             advice: preset.advice,
             technique: preset.technique(),
+            is_saved: false,
         });
-        opened.chain(presets)
+        opened.chain(saved).chain(presets)
     }
 
-    /// The menu, as a row of its own.
-    pub(crate) fn show(&mut self, ui: &mut Ui, technique: &mut Technique) {
+    /// The menu, as a line of its own; `can_save` adds the button that saves the technique by a name.
+    pub(crate) fn show(
+        &mut self,
+        ui: &mut Ui,
+        technique: &mut Technique,
+        side: usize,
+        saved: Option<&[UserPreset]>,
+        action: &mut Option<Action>,
+    ) {
         let now = *technique;
-        let current = self.entries().find(|entry| of_scene(entry.technique, &now) == now);
+        let presets = saved.unwrap_or_default();
+        let current = self.entries(presets).find(|entry| of_scene(entry.technique, &now) == now);
         let name = current.as_ref().map(|entry| entry.name.to_owned());
         let help = match &current {
             Some(entry) => format!("{}: {}. {}\n\n{HELP}", entry.name, entry.summary, entry.advice),
             None => HELP.to_owned(),
         };
         if let Some(name) = &name {
-            self.chosen.clone_from(name);
+            self.chosen[side].clone_from(name);
         }
-        let title = name.clone().unwrap_or_else(|| self.changed());
+        let title = name.clone().unwrap_or_else(|| self.changed(side));
         let mut chosen = None;
         ui.horizontal(|ui| {
-            let label = rows::label(ui, "Technique").on_hover_text(&help);
-            let width = ui.available_width();
+            let kept = if saved.is_some() { 30.0 } else { 0.0 };
+            let width = ui.available_width() - kept;
             let height = HEIGHT * ui.ctx().content_rect().height();
-            let list = ComboBox::from_id_salt("technique").width(width).height(height).selected_text(title);
+            let list = ComboBox::from_id_salt("technique").width(width).height(height).selected_text(title).truncate();
             let list = list.show_ui(ui, |ui| {
                 ui.set_width(WIDTH);
                 ui.spacing_mut().item_spacing.y = 0.0;
                 ui.spacing_mut().button_padding.y = 1.0;
-                for entry in self.entries() {
-                    if option(ui, &entry, name.as_deref() == Some(entry.name)).clicked() {
+                for entry in self.entries(presets) {
+                    if line(ui, &entry, name.as_deref() == Some(entry.name), action) {
                         chosen = Some((entry.name.to_owned(), entry.technique));
                     }
                 }
             });
-            list.response.labelled_by(label.id).on_hover_text(help);
+            rename(ui, &list.response, "Technique".to_owned());
+            list.response.on_hover_text(help);
+            let help = "Saves the technique under a name of its own.";
+            if saved.is_some() && icon_button(ui, Icon::Save, "Save the technique", help).clicked() {
+                self.name = if self.name.is_some() { None } else { Some(String::new()) };
+            }
         });
+        self.name_field(ui, action);
         if let Some((name, preset)) = chosen {
-            self.chosen = name;
+            self.chosen[side] = name;
             *technique = of_scene(preset, &now);
         }
     }
 
+    /// The field for the name that the technique is saved under, while it is asked for.
+    fn name_field(&mut self, ui: &mut Ui, action: &mut Option<Action>) {
+        let Some(name) = &mut self.name else { return };
+        let mut is_done = false;
+        ui.horizontal(|ui| {
+            let width = ui.available_width() - 124.0;
+            let field = TextEdit::singleline(name).hint_text("Name").char_limit(MAX_NAME).desired_width(width);
+            let field = ui.add(field);
+            rename(ui, &field, "Name of the technique".to_owned());
+            let is_entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+            let name = name.trim();
+            let save = ui.add_enabled(!name.is_empty(), Button::new("Save"));
+            if (save.clicked() || is_entered) && !name.is_empty() {
+                *action = Some(Action::SavePreset(name.to_owned()));
+                is_done = true;
+            }
+            is_done |= ui.button("Cancel").clicked();
+        });
+        if is_done {
+            self.name = None;
+        }
+    }
+
     /// What a technique is called that is not in the menu.
-    fn changed(&self) -> String {
-        format!("{}, changed", if self.chosen.is_empty() { CUSTOM } else { &self.chosen })
+    fn changed(&self, side: usize) -> String {
+        let chosen = &self.chosen[side];
+        format!("{}, changed", if chosen.is_empty() { CUSTOM } else { chosen })
     }
 }
 
@@ -108,15 +177,44 @@ fn of_scene(mut technique: Technique, other: &Technique) -> Technique {
     technique
 }
 
-/// A line of the menu: the name, and below it in a few words what it is.
-fn option(ui: &mut Ui, entry: &Entry<'_>, is_selected: bool) -> Response {
+/// A line of the menu, with a button that deletes it where a person saved it; returns whether it was chosen.
+fn line(ui: &mut Ui, entry: &Entry<'_>, is_selected: bool, action: &mut Option<Action>) -> bool {
+    if !entry.is_saved {
+        return option(ui, entry, is_selected, ui.available_width()).clicked();
+    }
+    ui.horizontal(|ui| {
+        let width = ui.available_width() - 30.0;
+        let is_chosen = option(ui, entry, is_selected, width).clicked();
+        let name = format!("Delete {}", entry.name);
+        if icon_button(ui, Icon::Delete, &name, "Deletes this saved technique.").clicked() {
+            *action = Some(Action::DeletePreset(entry.name.to_owned()));
+        }
+        is_chosen
+    })
+    .inner
+}
+
+/// The name, and below it in a few words what it is.
+fn option(ui: &mut Ui, entry: &Entry<'_>, is_selected: bool, width: f32) -> Response {
     let mut text = LayoutJob::default();
     let format =
         |style: TextStyle, color| TextFormat { font_id: style.resolve(ui.style()), color, ..Default::default() };
-    text.append(entry.name, 0.0, format(TextStyle::Button, ui.visuals().strong_text_color()));
+    let (strong, weak) = if is_selected {
+        let on_fill = ui.visuals().selection.stroke.color;
+        (on_fill, on_fill)
+    } else {
+        (ui.visuals().strong_text_color(), ui.visuals().weak_text_color())
+    };
+    text.append(entry.name, 0.0, format(TextStyle::Button, strong));
     text.append("\n", 0.0, TextFormat::default());
-    text.append(entry.summary, 0.0, format(TextStyle::Small, ui.visuals().text_color()));
-    let response = ui.add(Button::selectable(is_selected, text).wrap());
+    text.append(entry.summary, 0.0, format(TextStyle::Small, weak));
+    text.wrap.max_width = width;
+    let response = ui
+        .scope(|ui| {
+            ui.set_max_width(width);
+            ui.add(Button::selectable(is_selected, text).wrap().min_size(Vec2::new(width, 0.0)))
+        })
+        .inner;
     // Beside the line: below it, it would lie on the next ones.
     let mut tooltip = Tooltip::for_enabled(&response);
     tooltip.popup = tooltip.popup.align(RectAlign::LEFT_START);

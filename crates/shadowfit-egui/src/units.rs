@@ -21,6 +21,31 @@ pub(crate) fn short(value: f32) -> String {
     format!("{value:.decimals$}")
 }
 
+/// A share in per cent, with two digits where it is below 10.
+pub(crate) fn percent(share: f32) -> String {
+    format!("{}\u{a0}%", percent_number(share))
+}
+
+/// The number of a share in per cent, without its sign.
+pub(crate) fn percent_number(share: f32) -> String {
+    match share {
+        s if s > 0.0 && s < 0.005 => "<\u{2009}0.01".to_owned(),
+        s if s < 9.995 => format!("{s:.2}"),
+        s => format!("{s:.1}"),
+    }
+}
+
+/// A count in thousands, millions or milliards of its own unit, with three digits.
+pub(crate) fn brief_count(count: f64) -> String {
+    let (scale, suffix) = match count.abs() {
+        c if c >= 999.5e6 => (1e-9, "\u{a0}G"),
+        c if c >= 999.5e3 => (1e-6, "\u{a0}M"),
+        c if c >= 999.5 => (1e-3, "\u{a0}k"),
+        _ => return format!("{count:.0}"),
+    };
+    format!("{}{suffix}", short((count * scale) as f32))
+}
+
 /// The unit in which a length reads best, and how many of it are a metre.
 fn unit(metres: f32) -> (&'static str, f32) {
     match metres.abs() {
@@ -54,6 +79,22 @@ mod tests {
     fn counts_are_grouped_by_thousands() {
         for (count, text) in [(0, "0"), (999, "999"), (1000, "1 000"), (262_144, "262 144"), (1_000_000, "1 000 000")] {
             assert_eq!(grouped(count).replace('\u{a0}', " "), text);
+        }
+    }
+
+    #[test]
+    fn small_shares_are_not_rounded_to_nothing() {
+        let shares = [(0.0, "0.00 %"), (0.001, "< 0.01 %"), (0.125, "0.12 %"), (2.134, "2.13 %"), (42.34, "42.3 %")];
+        for (share, text) in shares {
+            assert_eq!(percent(share).replace(['\u{a0}', '\u{2009}'], " "), text);
+        }
+    }
+
+    #[test]
+    fn large_counts_are_brief() {
+        for (count, text) in [(0.0, "0"), (999.0, "999"), (4096.0, "4.10 k"), (4_194_304.0, "4.19 M"), (2e9, "2.00 G")]
+        {
+            assert_eq!(brief_count(count).replace('\u{a0}', " "), text);
         }
     }
 

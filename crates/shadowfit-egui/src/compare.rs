@@ -1,0 +1,56 @@
+//! Two techniques, A | B: which of them the controls edit, and what is done with both.
+
+use egui::{Align, Button, Layout, RichText, Ui};
+
+use crate::theme::Palette;
+use crate::widgets::{Icon, icon_button, title};
+use crate::{Action, Compare};
+
+/// The heading of the techniques, with a button that begins the comparison.
+pub(crate) fn start(ui: &mut Ui, action: &mut Option<Action>) {
+    ui.horizontal(|ui| {
+        title(ui, "Technique");
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let weak = ui.visuals().weak_text_color();
+            let button = Button::new(("Compare A | B", RichText::new("B").small().color(weak)));
+            let response =
+                ui.add(button).on_hover_text("Shows two techniques beside each other; B begins as a copy of A.");
+            crate::accessibility::rename(ui, &response, "Compare A | B".to_owned());
+            if response.clicked() {
+                *action = Some(Action::StartCompare);
+            }
+        });
+    });
+}
+
+/// The tabs of A and B.
+pub(crate) fn tabs(ui: &mut Ui, compare: &mut Compare<'_>, action: &mut Option<Action>) {
+    let palette = Palette::of(ui);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        for (name, is_other, color) in [("A", false, palette.accent), ("B", true, palette.second)] {
+            let is_edited = *compare.edits_other == is_other;
+            let text = format!("Technique {name}");
+            let color = if is_edited { palette.on_accent } else { color };
+            let button = Button::selectable(is_edited, RichText::new(&text).color(color)).frame_when_inactive(true);
+            let response = ui.add_sized([100.0, ui.spacing().interact_size.y], button);
+            if response.on_hover_text(format!("The controls edit technique {name}.")).clicked() {
+                *compare.edits_other = is_other;
+            }
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.spacing_mut().item_spacing.x = 1.0;
+            let [from, to] = if *compare.edits_other { ["B", "A"] } else { ["A", "B"] };
+            let copy = format!("Copy {from} to {to}");
+            for (icon, name, help, asked) in [
+                (Icon::Close, "Stop comparing", "Shows A alone (B).", Action::StopCompare),
+                (Icon::Copy, &copy, "Makes both techniques the same.", Action::CopyToOther),
+                (Icon::Swap, "Swap A and B", "Swaps the two techniques.", Action::SwapSides),
+            ] {
+                if icon_button(ui, icon, name, &format!("{name}. {help}")).clicked() {
+                    *action = Some(asked);
+                }
+            }
+        });
+    });
+}

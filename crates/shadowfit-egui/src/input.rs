@@ -1,0 +1,225 @@
+//! What a host gives the panel in each frame, and what the panel gives back.
+
+use egui::ThemePreference;
+use shadowfit::Technique;
+use shadowfit::figures::{Figures, JudgedFigures};
+use shadowfit::tool::Settings;
+
+use crate::Artefact;
+
+/// What the panel shows and edits in one frame. Begin with [`PanelInput::new`] and set what the host has besides.
+#[derive(Debug)]
+pub struct PanelInput<'a> {
+    /// The settings that the controls edit.
+    pub settings: &'a mut Settings,
+    /// The figures of the last frame.
+    pub figures: &'a Figures,
+    /// What is being looked at.
+    pub scene: SceneLine<'a>,
+    /// The artefact that is being shown, if any.
+    pub artefact: Option<ShownArtefact<'a>>,
+    /// The second technique, where two are compared.
+    pub compare: Option<Compare<'a>>,
+    /// How far the search for better settings is.
+    pub tune: Tune<'a>,
+    /// What can be undone and done again.
+    pub changes: Changes<'a>,
+    /// Techniques that a person saved, in the order that they are offered.
+    pub presets: &'a [UserPreset],
+    /// A readable message, such as the outcome of the last action.
+    pub message: Option<&'a str>,
+}
+
+impl<'a> PanelInput<'a> {
+    /// A panel of the settings, figures and scene alone.
+    pub fn new(settings: &'a mut Settings, figures: &'a Figures, scene: SceneLine<'a>) -> Self {
+        Self {
+            settings,
+            figures,
+            scene,
+            artefact: None,
+            compare: None,
+            tune: Tune::Idle,
+            changes: Changes::default(),
+            presets: &[],
+            message: None,
+        }
+    }
+}
+
+/// The scene, in a line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SceneLine<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// Number of its triangles.
+    pub triangles: u64,
+    /// Notes about it, such as parts that could not be shown.
+    pub notes: &'a [String],
+}
+
+/// An artefact that is being shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShownArtefact<'a> {
+    /// Which one.
+    pub artefact: Artefact,
+    /// Whether its cure is applied.
+    pub fixed: bool,
+    /// What to look for in this scene and view, in a sentence or two; empty where there is nothing to add.
+    pub narration: &'a str,
+    /// What the cure changed, a line each, such as "Constant bias: 0 → 1 texel".
+    pub changes: &'a [String],
+}
+
+impl<'a> ShownArtefact<'a> {
+    /// An artefact without a cure, with a sentence about this scene and view.
+    pub fn new(artefact: Artefact, narration: &'a str) -> Self {
+        Self { artefact, fixed: false, narration, changes: &[] }
+    }
+}
+
+/// The other one of two techniques, A | B: A is that of the settings, B is [`Self::other`].
+#[derive(Debug)]
+pub struct Compare<'a> {
+    /// Technique B.
+    pub other: &'a mut Technique,
+    /// Whether the controls edit B. The panel sets it when a person chooses a side.
+    pub edits_other: &'a mut bool,
+}
+
+/// How far a search for settings with a lower error is. Errors are in per cent, as those of [`JudgedFigures`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Tune<'a> {
+    /// None was begun.
+    #[default]
+    Idle,
+    /// It is running.
+    Running {
+        /// Techniques that were judged so far.
+        tried: u32,
+        /// Most that are judged.
+        at_most: u32,
+        /// Error of the technique that it began with.
+        start_error: f32,
+        /// Least error so far.
+        best_error: f32,
+        /// What is being tried, in a few words, such as "Constant bias 1.5 texels".
+        what: &'a str,
+    },
+    /// It has ended.
+    Done {
+        /// Figures of the technique that it began with.
+        before: JudgedFigures,
+        /// Figures of the best one.
+        after: JudgedFigures,
+        /// What the best one changes, a line each; empty where none was better.
+        changes: &'a [String],
+        /// Whether the settings have the changes.
+        is_applied: bool,
+    },
+    /// It could not be done, with the reason.
+    Failed(&'a str),
+}
+
+/// What the next undo and redo would do, by name, such as "Constant bias"; `None` where there is nothing to do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Changes<'a> {
+    /// What would be undone.
+    pub undo: Option<&'a str>,
+    /// What would be done again.
+    pub redo: Option<&'a str>,
+}
+
+/// A technique that a person saved by name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UserPreset {
+    /// Its name.
+    pub name: String,
+    /// The technique.
+    pub technique: Technique,
+}
+
+/// What the person asked for in this frame, beside the settings.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PanelOutput {
+    /// The request, if any.
+    pub action: Option<Action>,
+}
+
+/// A request to the host.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Action {
+    /// Move camera and settings so that the artefact is plainly visible.
+    ShowArtefact(Artefact),
+    /// Apply the artefact's cure.
+    FixArtefact(Artefact),
+    /// Stop showing the artefact; settings and camera stay as they are.
+    CloseArtefact,
+    /// Show two techniques beside each other; B begins as a copy of A.
+    StartCompare,
+    /// Show A alone.
+    StopCompare,
+    /// Swap A and B.
+    SwapSides,
+    /// Copy the technique that the controls edit to the other side.
+    CopyToOther,
+    /// Begin the search for settings with a lower error.
+    StartTune,
+    /// End the search early; what it found so far counts.
+    CancelTune,
+    /// Take over what the search found.
+    ApplyTune,
+    /// Forget what the search found. Where it was applied, the settings stay.
+    DiscardTune,
+    /// Undo the last change.
+    Undo,
+    /// Do again what was undone.
+    Redo,
+    /// Save the technique that the controls edit under this name, in place of one that has it.
+    SavePreset(String),
+    /// Delete the saved technique of this name.
+    DeletePreset(String),
+    /// Copy the technique as Rust code.
+    CopyRust,
+    /// Copy the command line that draws this picture.
+    CopyCommandLine,
+    /// Save this text, the plotted figures as comma-separated values, to a file.
+    SaveCsv(String),
+    /// Save the picture.
+    Screenshot,
+    /// Put settings and camera back to where they began.
+    Reset,
+    /// Put the camera back to where it began.
+    ResetCamera,
+    /// Show the table of the keys, see [`help_overlay`](crate::help_overlay).
+    OpenHelp,
+    /// Use the dark or the light theme, or that of the system: [`egui::Context::set_theme`] does it.
+    SetTheme(ThemePreference),
+}
+
+/// A part of the panel that a host can leave out, see [`Panel::without`](crate::Panel::without).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Part {
+    /// The buttons that show an artefact, and their card.
+    Artefacts,
+    /// The figures of the picture against rays.
+    Quality,
+    /// The search for better settings.
+    Tune,
+    /// Two techniques, A | B.
+    Compare,
+    /// Saving and deleting techniques by name.
+    UserPresets,
+    /// Undo and redo.
+    Undo,
+    /// Copying as Rust code or as a command line.
+    Copy,
+    /// Saving the picture.
+    Screenshot,
+    /// The choice of dark and light.
+    Theme,
+    /// The plots over time.
+    Plots,
+}

@@ -1,0 +1,165 @@
+//! What the colours of a view mean.
+
+use egui::{
+    Align2, Area, Color32, Context, CornerRadius, Frame, Id, Mesh, Order, Pos2, Rect, RichText, Role, Sense, Shape,
+    TextStyle, Ui, Vec2, WidgetInfo,
+};
+use shadowfit::figures::{Figures, MAP_TINTS, PIXELS_PER_TEXEL_COLORS, pixels_per_texel_color};
+use shadowfit::tool::{ErrorMarks, ViewMode, ViewSettings};
+
+use crate::classes::shares;
+use crate::units::percent;
+use crate::widgets::{caption, color, swatch};
+
+/// Colours of the view of map updates, as sRGB bytes: texels that were kept, those drawn anew, and what moves.
+pub const MAP_UPDATE_COLORS: [[u8; 3]; 3] = [[86, 180, 233], [230, 159, 0], [204, 121, 167]];
+
+/// What [`MAP_UPDATE_COLORS`] stand for.
+const MAP_UPDATES: [(&str, &str); 3] = [
+    ("kept", "Texels that stay as they were drawn in an earlier frame."),
+    ("drawn anew", "Texels that were drawn in this frame."),
+    ("moves", "Casters that move, and are drawn over what is kept."),
+];
+
+/// Width of the scale of pixels per texel, in points.
+const RAMP_WIDTH: f32 = 216.0;
+
+/// Whether the view has colours to explain, with its marks: [`legend`] shows nothing otherwise.
+pub fn has_legend(view: &ViewSettings) -> bool {
+    let is_coloured = !matches!(view.mode, ViewMode::Final | ViewMode::Truth | ViewMode::TexelGrid | ViewMode::Outside);
+    is_coloured || view.marks != ErrorMarks::Off
+}
+
+/// What the colours of the view mean: the classes of wrong pixels with their shares, the scale of pixels per texel,
+/// the tints of the maps, or what was drawn of them.
+pub fn legend(ui: &mut Ui, view: &ViewSettings, figures: &Figures) {
+    match view.mode {
+        ViewMode::PixelsPerTexel => ramp(ui, "pixels per texel"),
+        ViewMode::Need => {
+            ramp(ui, "pixels per texel where the picture looks");
+            maps(ui, figures);
+        }
+        ViewMode::Maps => maps(ui, figures),
+        ViewMode::Updates => updates(ui),
+        _ => {}
+    }
+    if view.mode == ViewMode::Error || view.marks != ErrorMarks::Off {
+        classes(ui, figures);
+    }
+}
+
+/// The [`legend`] on a ground of its own, in the lower left corner of `picture`, or nothing where the view has no
+/// colours to explain.
+pub fn legend_overlay(ctx: &Context, picture: Rect, view: &ViewSettings, figures: &Figures) {
+    /// Distance from the edges of the picture, in points.
+    const MARGIN: f32 = 10.0;
+    if !has_legend(view) {
+        return;
+    }
+    Area::new(Id::unique("shadowfit legend"))
+        .order(Order::Middle)
+        .interactable(false)
+        .pivot(Align2::LEFT_BOTTOM)
+        .fixed_pos(picture.left_bottom() + Vec2::new(MARGIN, -MARGIN))
+        .constrain_to(picture)
+        .show(ctx, |ui| {
+            ui.set_max_width((picture.width() - 2.0 * MARGIN).max(0.0));
+            Frame::popup(ui.style()).show(ui, |ui| legend(ui, view, figures));
+        });
+}
+
+/// A colour, what it stands for, and a value.
+fn entry(ui: &mut Ui, fill: Color32, name: &str, value: Option<String>, help: &str) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 5.0;
+        swatch(ui, fill);
+        ui.label(RichText::new(name).small()).on_hover_text(help);
+        if let Some(value) = value {
+            ui.label(RichText::new(value).small().strong());
+        }
+    });
+}
+
+fn classes(ui: &mut Ui, figures: &Figures) {
+    let (a, b) = (figures.judged.as_ref().map(shares), figures.judged_other.as_ref().map(shares));
+    let entries = shares(&Default::default());
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 10.0;
+        for (index, (class, fill, _)) in entries.into_iter().enumerate() {
+            let value = match (a, b) {
+                (Some(a), Some(b)) => Some(format!("{} | {}", percent(a[index].2), percent(b[index].2))),
+                (Some(a), None) => Some(percent(a[index].2)),
+                (None, _) => None,
+            };
+            entry(ui, fill, &class.label().to_lowercase(), value, class.help());
+        }
+    });
+}
+
+fn maps(ui: &mut Ui, figures: &Figures) {
+    let there = figures.maps.iter().zip(MAP_TINTS).enumerate().filter(|(_, (map, _))| map.is_some());
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 10.0;
+        for (map, (_, tint)) in there {
+            entry(ui, color(tint), &format!("map {}", map + 1), None, "Read from this map; map 1 is the nearest.");
+        }
+    });
+}
+
+fn updates(ui: &mut Ui) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 10.0;
+        for ((name, help), fill) in MAP_UPDATES.into_iter().zip(MAP_UPDATE_COLORS) {
+            entry(ui, color(fill), name, None, help);
+        }
+    });
+}
+
+/// The scale of pixels per texel, with a tick at each octave.
+fn ramp(ui: &mut Ui, title: &str) {
+    /// Steps that the colours are drawn in.
+    const STEPS: usize = 48;
+    caption(ui, title);
+    let small = TextStyle::Small.resolve(ui.style());
+    let size = Vec2::new(RAMP_WIDTH, 12.0 + ui.text_style_height(&TextStyle::Small));
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Colours of 1/8 to 8 pixels per texel"));
+    // Half a tick's number stands out at both ends.
+    let bar = Rect::from_min_max(rect.min + Vec2::new(10.0, 0.0), Pos2::new(rect.right() - 10.0, rect.top() + 10.0));
+    let octaves = PIXELS_PER_TEXEL_COLORS.len() - 1;
+    let mut mesh = Mesh::default();
+    for step in 0..=STEPS {
+        let share = step as f32 / STEPS as f32;
+        let fill = color(pixels_per_texel_color(PIXELS_PER_TEXEL_COLORS[0].0 * (share * octaves as f32).exp2()));
+        let x = egui::lerp(bar.x_range(), share);
+        mesh.colored_vertex(Pos2::new(x, bar.top()), fill);
+        mesh.colored_vertex(Pos2::new(x, bar.bottom()), fill);
+        if step > 0 {
+            let last = mesh.vertices.len() as u32 - 1;
+            mesh.add_triangle(last - 3, last - 2, last - 1);
+            mesh.add_triangle(last - 2, last - 1, last);
+        }
+    }
+    let line = ui.visuals().widgets.noninteractive.bg_stroke;
+    ui.painter().add(Shape::mesh(mesh));
+    ui.painter().rect_stroke(bar, CornerRadius::ZERO, line, egui::StrokeKind::Outside);
+    for (index, label) in ["1/8", "1/4", "1/2", "1", "2", "4", "8"].into_iter().enumerate() {
+        let at = Pos2::new(egui::lerp(bar.x_range(), index as f32 / octaves as f32), bar.bottom() + 2.0);
+        ui.painter().text(at, Align2::CENTER_TOP, label, small.clone(), ui.visuals().text_color());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn views_with_colours_or_marks_have_a_legend() {
+        let with = [ViewMode::Error, ViewMode::PixelsPerTexel, ViewMode::Maps, ViewMode::Need, ViewMode::Updates];
+        for mode in ViewMode::ALL {
+            let view = ViewSettings { mode, ..ViewSettings::default() };
+            assert_eq!(has_legend(&view), with.contains(&mode), "{mode:?}");
+            assert!(has_legend(&ViewSettings { marks: ErrorMarks::Outline, ..view }));
+        }
+    }
+}

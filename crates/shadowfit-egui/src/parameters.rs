@@ -1,0 +1,127 @@
+//! The controls of the settings: those that are used most, a search, and the groups.
+
+use egui::{TextEdit, Ui};
+use shadowfit::params::{Group, Parameter, parameter};
+use shadowfit::tool::Settings;
+
+use crate::accessibility::rename;
+use crate::rows;
+use crate::widgets::{Icon, Section, caption, icon_button};
+
+/// Ids of the parameters that stand before all groups, and not in theirs.
+const QUICK: [&str; 6] =
+    ["fit.kind", "splits.count", "map.resolution", "fit.max_distance", "map.filter", "bias.constant"];
+
+/// The groups that tools alone have, in the order that they are shown.
+pub(crate) const TOOL_GROUPS: [Group; 3] = [Group::Light, Group::Camera, Group::View];
+
+/// What the rows are shown with.
+pub(crate) struct Rows<'a> {
+    /// What resets go back to.
+    pub(crate) defaults: &'a Settings,
+    /// Whether a parameter gets a row at all.
+    pub(crate) has: &'a dyn Fn(&Parameter) -> bool,
+}
+
+impl Rows<'_> {
+    /// The field for the search.
+    pub(crate) fn search_field(ui: &mut Ui, search: &mut String) {
+        ui.horizontal(|ui| {
+            let (rect, _) = ui.allocate_exact_size(egui::Vec2::splat(18.0), egui::Sense::hover());
+            let color = ui.visuals().weak_text_color();
+            Icon::Search.paint(ui.painter(), rect, egui::Stroke::new(1.25, color));
+            let width = ui.available_width() - 30.0;
+            let field = ui.add(TextEdit::singleline(search).hint_text("Search all settings").desired_width(width));
+            rename(ui, &field, "Search all settings".to_owned());
+            let clear = ui.add_enabled_ui(!search.is_empty(), |ui| {
+                icon_button(ui, Icon::Close, "Clear the search", "Shows all settings again.")
+            });
+            if clear.inner.clicked() {
+                search.clear();
+            }
+        });
+    }
+
+    /// The rows that are used most.
+    pub(crate) fn quick(&self, ui: &mut Ui, settings: &mut Settings) {
+        for parameter in QUICK.into_iter().filter_map(parameter).filter(|parameter| (self.has)(parameter)) {
+            if rows::is_shown(parameter, settings) {
+                let context = if parameter.group == Group::Bias { "bias" } else { "" };
+                rows::show(ui, parameter, settings, self.defaults, context);
+            }
+        }
+    }
+
+    /// A section for each of these groups.
+    pub(crate) fn groups(&self, ui: &mut Ui, groups: impl IntoIterator<Item = Group>, settings: &mut Settings) {
+        for group in groups {
+            let is_here = |parameter: &&Parameter| (self.has)(parameter) && !QUICK.contains(&parameter.id);
+            let is_changed = |parameter: &&Parameter| !parameter.is_equal(settings, self.defaults);
+            if !group.parameters().any(|parameter| is_here(&parameter)) {
+                continue;
+            }
+            let changed = group.parameters().filter(is_here).filter(is_changed).count();
+            let summary = if changed > 0 { format!("{changed} changed") } else { String::new() };
+            Section { title: group.label(), help: group.help(), summary: &summary, is_open: false }.show(ui, |ui| {
+                rows::show_all(ui, group.parameters().filter(is_here), settings, self.defaults);
+            });
+        }
+    }
+
+    /// The rows that a search finds in these groups; returns how many there are.
+    pub(crate) fn found(&self, ui: &mut Ui, search: &str, groups: &[Group], settings: &mut Settings) -> usize {
+        let words = search.to_lowercase();
+        let mut count = 0;
+        for group in groups {
+            let found = group.parameters().filter(|parameter| (self.has)(parameter) && matches(parameter, &words));
+            let found: Vec<_> = found.filter(|parameter| rows::is_shown(parameter, settings)).collect();
+            if !found.is_empty() {
+                caption(ui, group.label()).on_hover_text(group.help());
+                count += found.len();
+                rows::show_all(ui, found, settings, self.defaults);
+            }
+        }
+        count
+    }
+}
+
+/// Groups of the technique.
+pub(crate) fn technique_groups() -> impl Iterator<Item = Group> {
+    Group::ALL.into_iter().filter(|group| group.is_technique())
+}
+
+/// Whether every word of a search, in lower case, is in the name, id, group or help of a parameter.
+fn matches(parameter: &Parameter, words: &str) -> bool {
+    let texts = [parameter.label, parameter.id, parameter.group.label(), parameter.help].map(str::to_lowercase);
+    words.split_whitespace().all(|word| texts.iter().any(|text| text.contains(word)))
+}
+
+#[cfg(test)]
+mod tests {
+    use shadowfit::params::PARAMETERS;
+
+    use super::*;
+
+    #[test]
+    fn the_quick_parameters_are_in_the_table_and_of_a_technique() {
+        for id in QUICK {
+            assert!(parameter(id).is_some_and(|parameter| parameter.group.is_technique()), "{id}");
+        }
+    }
+
+    #[test]
+    fn a_search_looks_at_names_ids_groups_and_help_word_by_word() {
+        let found = |words: &str| PARAMETERS.iter().filter(|parameter| matches(parameter, words)).map(|p| p.id);
+        assert!(found("slope").any(|id| id == "bias.slope"));
+        assert!(found("bias.sl").eq(["bias.slope"]));
+        assert!(found("texels bias").all(|id| id != "light.azimuth"));
+        assert!(found("peter-panning").any(|id| id == "bias.slope"));
+        assert_eq!(found("nonsense").count(), 0);
+        assert_eq!(found("").count(), PARAMETERS.len());
+    }
+
+    #[test]
+    fn every_group_is_shown_once() {
+        assert!(technique_groups().chain(TOOL_GROUPS).eq(Group::ALL));
+    }
+}

@@ -1,0 +1,215 @@
+//! The figures over time, one plot at a time.
+
+use egui::{Color32, ComboBox, RichText, Ui, Vec2};
+use egui_plot::{HLine, Line, Plot, PlotPoints};
+use shadowfit::figures::{ERROR_COLORS, MAP_TINTS};
+
+use crate::Action;
+use crate::accessibility::rename;
+use crate::history::{History, SERIES};
+use crate::theme::{Palette, readable};
+use crate::units::brief_count;
+use crate::widgets::{caption, color, swatch};
+
+/// Height of the plot, in points.
+const HEIGHT: f32 = 150.0;
+
+/// Least time that a plot shows, in seconds.
+const LEAST_SECONDS: f64 = 10.0;
+
+/// A frame at 60 Hz, in milliseconds: the line to stay below.
+const SMOOTH_MS: f64 = 1000.0 / 60.0;
+
+/// Some of the series, in one plot.
+struct Choice {
+    name: &'static str,
+    help: &'static str,
+    series: &'static [&'static str],
+}
+
+/// The plots, in the order that they are offered.
+const PLOTS: [Choice; 7] = [
+    Choice {
+        name: "Wrong pixels",
+        help: "Wrong pixels and their classes, in per cent of the judged ones.",
+        series: &["wrong", "false shadow", "false light", "hole", "edge"],
+    },
+    Choice {
+        name: "Wrong pixels, A | B",
+        help: "Wrong pixels of both techniques, in per cent of the judged ones.",
+        series: &["wrong", "wrong of B"],
+    },
+    Choice {
+        name: "Mean error",
+        help: "Mean difference of the light from the truth, in per cent of full light.",
+        series: &["mean error", "mean error of B"],
+    },
+    Choice {
+        name: "Crawl",
+        help: "Pixels near edges that changed only because the maps moved, in per cent of those compared.",
+        series: &["crawl"],
+    },
+    Choice {
+        name: "Pixels per texel",
+        help: "Screen pixels per texel that 95% of the picture stay below.",
+        series: &["pixels per texel 95%"],
+    },
+    Choice {
+        name: "Time of passes",
+        help: "GPU time of the passes, and time of the whole frame. Line: a frame at 60 Hz.",
+        series: &["shadow passes", "scene pass", "judging", "frame"],
+    },
+    Choice {
+        name: "Texels drawn",
+        help: "Texels of the maps that were drawn, kept ones left out.",
+        series: &["texels drawn"],
+    },
+];
+
+/// Which plot is shown, and the figures.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Plots {
+    pub(crate) history: History,
+    chosen: usize,
+}
+
+impl Plots {
+    /// Choice, plot, legend with the last values, and buttons.
+    pub(crate) fn show(&mut self, ui: &mut Ui, action: &mut Option<Action>) {
+        let mut chosen = self.chosen;
+        let list = ComboBox::from_id_salt("plot").width(ui.available_width()).selected_text(PLOTS[chosen].name);
+        let list = list.show_ui(ui, |ui| {
+            for (index, plot) in PLOTS.iter().enumerate() {
+                ui.selectable_value(&mut chosen, index, plot.name).on_hover_text(plot.help);
+            }
+        });
+        rename(ui, &list.response, "Plot".to_owned());
+        self.chosen = chosen;
+        let plot = &PLOTS[chosen];
+        list.response.on_hover_text(plot.help);
+        let lines: Vec<(usize, Color32)> = plot.series.iter().map(|name| line(ui, name)).collect();
+        self.plot(ui, plot, &lines);
+        legend(ui, &self.history, &lines);
+        self.buttons(ui, action);
+    }
+
+    fn plot(&self, ui: &mut Ui, choice: &Choice, lines: &[(usize, Color32)]) {
+        let greatest =
+            lines.iter().flat_map(|(series, _)| self.history.points(*series)).map(|[_, y]| y).fold(0.0, f64::max);
+        let seconds = self.history.seconds().max(LEAST_SECONDS);
+        let unit = SERIES[lines[0].0].unit;
+        let has_limit = unit == "ms";
+        let top = if has_limit { (1.1 * greatest).max(1.2 * SMOOTH_MS) } else { (1.1 * greatest).max(1e-3) };
+        let weak = ui.visuals().weak_text_color();
+        Plot::new(("plot", choice.name))
+            .height(HEIGHT)
+            .allow_drag(false)
+            .allow_zoom(false)
+            .allow_scroll(false)
+            .allow_boxed_zoom(false)
+            .allow_axis_zoom_drag(false)
+            .set_margin_fraction(Vec2::ZERO)
+            .default_x_bounds(-seconds, 0.0)
+            .default_y_bounds(0.0, top)
+            .auto_bounds(false)
+            .reset()
+            .y_axis_min_width(34.0)
+            .x_axis_formatter(|mark, _| if mark.value == 0.0 { "now".into() } else { format!("{} s", mark.value) })
+            .y_axis_formatter(move |mark, _| axis_value(mark.value, unit))
+            .show(ui, |plot| {
+                if has_limit {
+                    plot.hline(HLine::new("60 Hz", SMOOTH_MS).color(weak).allow_hover(false));
+                }
+                for (series, color) in lines {
+                    let points: PlotPoints<'_> = self.history.points(*series).collect();
+                    plot.line(Line::new(SERIES[*series].name, points).color(*color).width(1.5));
+                }
+            });
+        if self.history.is_empty() {
+            caption(ui, "Nothing was measured yet.");
+        }
+    }
+
+    fn buttons(&mut self, ui: &mut Ui, action: &mut Option<Action>) {
+        ui.horizontal(|ui| {
+            let (pause, help) = if self.history.is_paused {
+                ("Resume", "Goes on plotting.")
+            } else {
+                ("Pause", "Stops plotting, to study what is there.")
+            };
+            if ui.button(pause).on_hover_text(help).clicked() {
+                self.history.is_paused = !self.history.is_paused;
+            }
+            if ui.button("Clear").on_hover_text("Forgets all that was plotted.").clicked() {
+                self.history.clear();
+            }
+            let save = ui.add_enabled(!self.history.is_empty(), egui::Button::new("Save CSV"));
+            if save.on_hover_text("Saves all figures of the last minute as comma-separated values.").clicked() {
+                *action = Some(Action::SaveCsv(self.history.to_csv()));
+            }
+        });
+    }
+}
+
+/// A value at an axis, with its unit.
+fn axis_value(value: f64, unit: &str) -> String {
+    match unit {
+        "texels" => brief_count(value),
+        _ => format!("{value} {unit}"),
+    }
+}
+
+/// The index of a series, and its colour in a plot.
+fn line(ui: &Ui, name: &str) -> (usize, Color32) {
+    let palette = Palette::of(ui);
+    let index = SERIES.iter().position(|series| series.name == name).unwrap_or(0);
+    let fill = match name {
+        "false shadow" => color(ERROR_COLORS[0]),
+        "false light" => color(ERROR_COLORS[1]),
+        "hole" => color(ERROR_COLORS[2]),
+        "edge" => color(ERROR_COLORS[3]),
+        "wrong" | "frame" => palette.strong,
+        "wrong of B" | "mean error of B" | "scene pass" => palette.second,
+        "judging" => color(MAP_TINTS[4]),
+        _ => palette.accent,
+    };
+    (index, readable(fill, ui.visuals().extreme_bg_color))
+}
+
+fn legend(ui: &mut Ui, history: &History, lines: &[(usize, Color32)]) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = Vec2::new(10.0, 2.0);
+        for (series, color) in lines {
+            let shown = &SERIES[*series];
+            let value = history.last(*series).map_or("—".to_owned(), |value| match shown.unit {
+                "texels" => brief_count(f64::from(value)),
+                unit => format!("{value:.2} {unit}"),
+            });
+            ui.horizontal(|ui| {
+                ui.spacing_mut().item_spacing.x = 4.0;
+                swatch(ui, *color);
+                ui.label(RichText::new(shown.name).small().weak());
+                ui.label(RichText::new(value).small().strong());
+            });
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_plot_shows_series_of_one_unit_and_every_series_is_in_a_plot() {
+        let find = |name: &str| SERIES.iter().position(|series| series.name == name).expect("a series");
+        let mut seen = [false; SERIES.len()];
+        for plot in &PLOTS {
+            let unit = SERIES[find(plot.series[0])].unit;
+            for name in plot.series {
+                assert_eq!(SERIES[find(name)].unit, unit, "{}", plot.name);
+                seen[find(name)] = true;
+            }
+        }
+        assert_eq!(seen, [true; SERIES.len()]);
+    }
+}

@@ -1,0 +1,184 @@
+//! How wrong the picture is, against rays: of one technique, or of two beside each other.
+
+use egui::text::LayoutJob;
+use egui::{
+    Align, Color32, CornerRadius, Grid, Layout, Rect, Response, RichText, Role, Sense, StrokeKind, TextFormat,
+    TextStyle, Ui, Vec2, WidgetInfo,
+};
+use shadowfit::figures::{Figures, JudgedFigures};
+
+use crate::classes::shares;
+use crate::theme::{Palette, figure_font};
+use crate::units::{percent, percent_number};
+use crate::widgets::{caption, card, swatch, title};
+
+/// From this age on, in seconds, a judgement says how old it is.
+const OLD: f32 = 0.15;
+
+/// What is said of the whole.
+const WRONG_HELP: &str = "Pixels whose verdict, lit or not, differs from that of rays, in per cent of those that face the \
+                          light within the shadow distance. Edges count.";
+
+/// A figure that is no class: name, help, value.
+type Figure = (&'static str, &'static str, fn(&JudgedFigures) -> Option<String>);
+
+/// The figures below the classes.
+const FIGURES: [Figure; 3] = [
+    (
+        "Mean error",
+        "Mean difference between the filtered share of the light and the truth, in per cent of full light.",
+        |judged| Some(percent(judged.mean_error)),
+    ),
+    (
+        "Crawl",
+        "Pixels near edges whose verdict changed only because the maps moved, in per cent of those compared: edges that \
+         crawl while the camera flies.",
+        |judged| judged.crawl.map(percent),
+    ),
+    (
+        "Pixels per texel",
+        "Screen pixels that a texel covers, along its worse axis, in the worst hundredth of the picture (99% quantile). \
+         Above 1, texels can be seen.",
+        |judged| judged.pixels_per_texel.map(|[_, _, worst]| format!("{worst:.2}")),
+    ),
+];
+
+/// The card.
+pub(crate) fn show(ui: &mut Ui, figures: &Figures, is_compared: bool) {
+    card(ui, None, |ui| {
+        ui.horizontal(|ui| {
+            title(ui, "Quality").on_hover_text("The picture against rays, which find every shadow exactly.");
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| age(ui, figures.judged.as_ref()));
+        });
+        match (&figures.judged, &figures.judged_other) {
+            (None, _) => {
+                caption(ui, "No picture has been judged against rays yet.");
+            }
+            (Some(a), b) if is_compared => two(ui, a, b.as_ref()),
+            (Some(judged), _) => one(ui, judged),
+        }
+    });
+}
+
+fn age(ui: &mut Ui, judged: Option<&JudgedFigures>) {
+    if let Some(judged) = judged.filter(|judged| judged.age >= OLD) {
+        let text = if judged.age < 60.0 { format!("{:.1} s", judged.age) } else { "a minute or more".to_owned() };
+        ui.label(RichText::new(format!("judged {text} ago")).small().weak());
+    }
+}
+
+fn one(ui: &mut Ui, judged: &JudgedFigures) {
+    wrong(ui, judged, Palette::of(ui).strong);
+    bar(ui, judged, judged.wrong);
+    let columns = 2;
+    let gap = 14.0;
+    let width = (ui.available_width() - gap) / columns as f32;
+    Grid::new("classes").num_columns(columns).min_col_width(width).max_col_width(width).spacing([gap, 3.0]).show(
+        ui,
+        |ui| {
+            for (index, (class, fill, share)) in shares(judged).into_iter().enumerate() {
+                ui.horizontal(|ui| {
+                    swatch(ui, fill);
+                    ui.label(RichText::new(class.label()).small()).on_hover_text(class.help());
+                    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                        ui.label(RichText::new(percent(share)).small().strong()).on_hover_text(class.help());
+                    });
+                });
+                if index % columns == columns - 1 {
+                    ui.end_row();
+                }
+            }
+        },
+    );
+    ui.add_space(4.0);
+    ui.columns_const(|columns: &mut [Ui; 3]| {
+        for (ui, (name, help, value)) in columns.iter_mut().zip(FIGURES) {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            ui.label(RichText::new(name).small().weak()).on_hover_text(help);
+            ui.label(known(value(judged))).on_hover_text(help);
+        }
+    });
+}
+
+fn two(ui: &mut Ui, a: &JudgedFigures, b: Option<&JudgedFigures>) {
+    let palette = Palette::of(ui);
+    let sides = [("A", Some(a), palette.accent), ("B", b, palette.second)];
+    // Bars of one scale.
+    let full = b.map_or(a.wrong, |b| b.wrong.max(a.wrong));
+    ui.columns_const(|columns: &mut [Ui; 2]| {
+        for (ui, (name, judged, color)) in columns.iter_mut().zip(sides) {
+            ui.label(RichText::new(name).color(color));
+            match judged {
+                Some(judged) => {
+                    wrong(ui, judged, color);
+                    bar(ui, judged, full);
+                }
+                None => {
+                    caption(ui, "not judged yet");
+                }
+            }
+        }
+    });
+    let value = |ui: &mut Ui, text: Option<String>, help: &str| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(known(text)).on_hover_text(help));
+    };
+    let width = 72.0;
+    let gap = 8.0;
+    let name_width = ui.available_width() - 2.0 * (width + gap);
+    Grid::new("two").num_columns(3).min_col_width(width).spacing([gap, 2.0]).striped(false).show(ui, |ui| {
+        let others = b.map(shares);
+        for (index, (class, fill, share)) in shares(a).into_iter().enumerate() {
+            ui.horizontal(|ui| {
+                ui.set_min_width(name_width);
+                swatch(ui, fill);
+                ui.label(RichText::new(class.label()).small()).on_hover_text(class.help());
+            });
+            value(ui, Some(percent(share)), class.help());
+            value(ui, others.map(|others| percent(others[index].2)), class.help());
+            ui.end_row();
+        }
+        for (name, help, read) in FIGURES {
+            ui.label(RichText::new(name).small().weak()).on_hover_text(help);
+            value(ui, read(a), help);
+            value(ui, b.and_then(read), help);
+            ui.end_row();
+        }
+    });
+}
+
+/// A value, or a dash where it was not measured.
+pub(crate) fn known(value: Option<String>) -> RichText {
+    value.map_or_else(|| RichText::new("—").weak(), |value| RichText::new(value).strong())
+}
+
+/// The share of wrong pixels, large.
+fn wrong(ui: &mut Ui, judged: &JudgedFigures, color: Color32) -> Response {
+    let mut job = LayoutJob::default();
+    let format = |font_id, color| TextFormat { font_id, color, valign: Align::BOTTOM, ..TextFormat::default() };
+    job.append(&percent_number(judged.wrong), 0.0, format(figure_font(ui), color));
+    let small = format(TextStyle::Body.resolve(ui.style()), ui.visuals().weak_text_color());
+    job.append("\u{a0}% wrong", 0.0, small);
+    ui.label(job).on_hover_text(WRONG_HELP)
+}
+
+/// The classes of wrong pixels beside each other, `full` per cent wide.
+fn bar(ui: &mut Ui, judged: &JudgedFigures, full: f32) -> Response {
+    let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 8.0), Sense::hover());
+    let shares = shares(judged);
+    let text = shares.map(|(class, _, share)| format!("{} {}", class.label(), percent(share))).join(", ");
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("Wrong pixels: {text}")));
+    if ui.is_rect_visible(rect) {
+        let radius = CornerRadius::same(3);
+        ui.painter().rect_filled(rect, radius, ui.visuals().extreme_bg_color);
+        let mut left = rect.left();
+        for (_, fill, share) in shares {
+            let width = if full > 0.0 { (share / full).clamp(0.0, 1.0) * rect.width() } else { 0.0 };
+            let right = (left + width).min(rect.right());
+            ui.painter().rect_filled(Rect::from_x_y_ranges(left..=right, rect.y_range()), CornerRadius::ZERO, fill);
+            left = right;
+        }
+        let line = ui.visuals().widgets.noninteractive.bg_stroke;
+        ui.painter().rect_stroke(rect, radius, line, StrokeKind::Outside);
+    }
+    response.on_hover_text(text)
+}

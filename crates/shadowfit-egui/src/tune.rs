@@ -1,0 +1,107 @@
+//! The card of the search for settings with a lower error.
+
+use egui::{Label, ProgressBar, RichText, Ui};
+use shadowfit::figures::JudgedFigures;
+
+use crate::theme::Palette;
+use crate::units::percent;
+use crate::widgets::{caption, card, main_button, title};
+use crate::{Action, Tune};
+
+const HELP: &str = "Tries biases, filters and fits on this view, judges each against rays, and keeps what has the least \
+                    error. Nothing changes until you apply it.";
+
+/// The card.
+pub(crate) fn show(ui: &mut Ui, tune: &Tune<'_>, action: &mut Option<Action>) {
+    let palette = Palette::of(ui);
+    let accent = match tune {
+        Tune::Idle => None,
+        Tune::Running { .. } => Some(palette.accent),
+        Tune::Done { .. } => Some(palette.success),
+        Tune::Failed(_) => Some(palette.error),
+    };
+    card(ui, accent, |ui| match *tune {
+        Tune::Idle => {
+            title(ui, "Auto-tune").on_hover_text(HELP);
+            caption(ui, "Searches the settings with the least error in this view.");
+            start(ui, "Auto-tune", action);
+        }
+        Tune::Running { tried, at_most, start_error, best_error, what } => {
+            title(ui, "Auto-tune: searching").on_hover_text(HELP);
+            let share = tried as f32 / at_most.max(1) as f32;
+            let bar = ProgressBar::new(share).desired_height(8.0).fill(palette.accent_fill);
+            let response = ui.add(bar);
+            crate::accessibility::rename(ui, &response, "Progress of the search".to_owned());
+            ui.label(RichText::new(from_to(start_error, best_error)).strong());
+            caption(ui, &format!("{tried} of at most {at_most} tried; now {what}"));
+            if ui.button("Cancel").on_hover_text("Ends the search; what it found so far counts.").clicked() {
+                *action = Some(Action::CancelTune);
+            }
+        }
+        Tune::Done { before, after, changes, is_applied } => done(ui, [&before, &after], changes, is_applied, action),
+        Tune::Failed(reason) => {
+            ui.label(RichText::new("Auto-tune failed").color(palette.error));
+            ui.add(Label::new(reason).wrap());
+            start(ui, "Try again", action);
+        }
+    });
+}
+
+fn done(
+    ui: &mut Ui,
+    [before, after]: [&JudgedFigures; 2],
+    changes: &[String],
+    is_applied: bool,
+    action: &mut Option<Action>,
+) {
+    let palette = Palette::of(ui);
+    let is_better = !changes.is_empty();
+    let text = match (is_better, is_applied) {
+        (false, _) => "Auto-tune: nothing better found",
+        (true, false) => "Auto-tune: better settings found",
+        (true, true) => "Auto-tune: applied",
+    };
+    ui.label(RichText::new(text).color(palette.success));
+    ui.label(RichText::new(format!("Wrong pixels {}", from_to(before.wrong, after.wrong))).strong());
+    caption(ui, &format!("Mean error {}", from_to(before.mean_error, after.mean_error)));
+    crate::artefact::changes(ui, changes);
+    ui.add_space(2.0);
+    if is_better && !is_applied {
+        ui.columns_const(|[apply, discard]: &mut [Ui; 2]| {
+            if main_button(apply, "Apply", "", palette.accent_fill).clicked() {
+                *action = Some(Action::ApplyTune);
+            }
+            close(discard, "Discard", action);
+        });
+    } else {
+        ui.columns_const(|[again, discard]: &mut [Ui; 2]| {
+            let button = wide(again, "Tune again");
+            if button.on_hover_text(format!("{HELP} (T)")).clicked() {
+                *action = Some(Action::StartTune);
+            }
+            close(discard, "Close", action);
+        });
+    }
+}
+
+fn from_to(from: f32, to: f32) -> String {
+    format!("{} → {}", percent(from), percent(to))
+}
+
+fn start(ui: &mut Ui, text: &str, action: &mut Option<Action>) {
+    let fill = Palette::of(ui).accent_fill;
+    if main_button(ui, text, "T", fill).on_hover_text(HELP).clicked() {
+        *action = Some(Action::StartTune);
+    }
+}
+
+fn close(ui: &mut Ui, text: &str, action: &mut Option<Action>) {
+    if wide(ui, text).on_hover_text("Forgets what the search found; the settings stay.").clicked() {
+        *action = Some(Action::DiscardTune);
+    }
+}
+
+fn wide(ui: &mut Ui, text: &str) -> egui::Response {
+    let size = [ui.available_width(), 28.0];
+    ui.add_sized(size, egui::Button::new(text))
+}

@@ -1,0 +1,66 @@
+//! The bar of views, for over the picture.
+
+use egui::{Button, Response, RichText, Ui};
+use shadowfit::params::{Choice, ChoiceOption, Kind, parameter};
+use shadowfit::tool::{ViewMode, ViewSettings};
+
+use crate::accessibility::rename;
+use crate::theme::Palette;
+
+/// Id of the parameter that names and explains the views.
+const MODE: &str = "view.mode";
+
+/// A button for each view, with its name and its key, 1..=9 in the order of [`ViewMode::ALL`]; the chosen one is
+/// filled. It wraps where the line is too narrow. Returns the response of the whole bar, which is
+/// [changed](Response::changed) when another view was chosen.
+pub fn view_bar(ui: &mut Ui, view: &mut ViewSettings) -> Response {
+    let before = view.mode;
+    let mut bar = ui
+        .horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = egui::Vec2::splat(3.0);
+            ui.spacing_mut().button_padding.x = 6.0;
+            for (index, mode) in ViewMode::ALL.into_iter().enumerate() {
+                if button(ui, option(mode), index + 1, mode == view.mode).clicked() {
+                    view.mode = mode;
+                }
+            }
+        })
+        .response;
+    if view.mode != before {
+        bar.mark_changed();
+    }
+    bar
+}
+
+fn button(ui: &mut Ui, option: &ChoiceOption, key: usize, is_selected: bool) -> Response {
+    let palette = Palette::of(ui);
+    let weak = if is_selected { palette.on_accent } else { palette.weak };
+    let name = RichText::new(option.label);
+    let key_text = RichText::new(key.to_string()).small().color(weak);
+    let button = Button::selectable(is_selected, (name, key_text)).frame_when_inactive(true);
+    let response = ui.add(button).on_hover_text(format!("{} ({key})", option.help));
+    rename(ui, &response, format!("View: {}", option.label));
+    response
+}
+
+/// The name and the help of a view, from the table of parameters.
+pub(crate) fn option(mode: ViewMode) -> &'static ChoiceOption {
+    let index = ViewMode::ALL.iter().position(|each| *each == mode).unwrap_or(0);
+    match parameter(MODE).map(|parameter| &parameter.kind) {
+        Some(Kind::Choice(Choice { options, .. })) => &options[index.min(options.len() - 1)],
+        _ => unreachable!("the views are a choice of the table"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_view_has_a_name_of_its_own() {
+        let mut labels: Vec<&str> = ViewMode::ALL.into_iter().map(|mode| option(mode).label).collect();
+        labels.dedup();
+        assert_eq!(labels.len(), ViewMode::ALL.len());
+        assert_eq!(option(ViewMode::Outside).label, "Outside");
+    }
+}

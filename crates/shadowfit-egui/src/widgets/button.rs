@@ -1,0 +1,70 @@
+//! Buttons that egui has not: with an icon alone, with a key under the name, joined to a bar.
+
+use egui::{
+    Align2, Button, Color32, Response, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, Vec2, WidgetInfo,
+};
+
+use super::Icon;
+use crate::accessibility::rename;
+use crate::theme::Palette;
+
+/// Width and height of a button that shows an icon alone, in points.
+const ICON_BUTTON: f32 = 24.0;
+
+/// A button that shows an icon, has a name for screen readers, and help.
+pub(crate) fn icon_button(ui: &mut Ui, icon: Icon, name: &str, help: &str) -> Response {
+    let (rect, response) = ui.allocate_exact_size(Vec2::splat(ICON_BUTTON), Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, ui.is_enabled(), name));
+    if ui.is_rect_visible(rect) {
+        let visuals = ui.style().interact(&response);
+        if response.hovered() || response.has_focus() {
+            let rect = rect.shrink(1.0);
+            ui.painter().rect(rect, visuals.corner_radius, visuals.weak_bg_fill, visuals.bg_stroke, StrokeKind::Inside);
+        }
+        icon.paint(ui.painter(), rect, Stroke::new(1.25, visuals.text_color()));
+    }
+    response.on_hover_text(help).on_disabled_hover_text(help)
+}
+
+/// The main button of a card, over its whole width.
+pub(crate) fn main_button(ui: &mut Ui, text: &str, key: &str, fill: Color32) -> Response {
+    let on_fill = Palette::of(ui).on_accent;
+    let mut button = Button::new(RichText::new(text).color(on_fill)).fill(fill);
+    if !key.is_empty() {
+        button = button.shortcut_text(RichText::new(key).color(on_fill));
+    }
+    let size = Vec2::new(ui.available_width(), 28.0);
+    let response = ui.add_sized(size, button.stroke(Stroke::NONE));
+    rename(ui, &response, text.to_owned());
+    response
+}
+
+/// A button with its key under its name.
+pub(crate) struct KeyButton<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) accessible_name: &'a str,
+    pub(crate) key: &'a str,
+    pub(crate) is_selected: bool,
+}
+
+impl KeyButton<'_> {
+    /// As wide as there is room.
+    pub(crate) fn show(&self, ui: &mut Ui) -> Response {
+        let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 42.0), Sense::click());
+        response.widget_info(|| {
+            WidgetInfo::selected(Role::Button, ui.is_enabled(), self.is_selected, self.accessible_name)
+        });
+        if ui.is_rect_visible(rect) {
+            let visuals = ui.style().interact_selectable(&response, self.is_selected);
+            let weak = if self.is_selected { visuals.text_color() } else { ui.visuals().weak_text_color() };
+            ui.painter().rect(rect, visuals.corner_radius, visuals.weak_bg_fill, visuals.bg_stroke, StrokeKind::Inside);
+            let line = |offset: f32, text: &str, style: TextStyle, color| {
+                let at = rect.center() + Vec2::new(0.0, offset);
+                ui.painter().text(at, Align2::CENTER_CENTER, text, style.resolve(ui.style()), color);
+            };
+            line(-8.0, self.name, TextStyle::Button, visuals.text_color());
+            line(10.0, self.key, TextStyle::Small, weak);
+        }
+        response
+    }
+}

@@ -1,0 +1,20 @@
+//! A frame around what belongs together.
+
+use egui::{Color32, CornerRadius, Frame, InnerResponse, Margin, Stroke, Ui};
+
+use crate::theme::CARD_RADIUS;
+
+/// A card as wide as there is room, with an outline of `accent` where it asks for attention.
+pub(crate) fn card<R>(ui: &mut Ui, accent: Option<Color32>, contents: impl FnOnce(&mut Ui) -> R) -> InnerResponse<R> {
+    let border = ui.visuals().widgets.noninteractive.bg_stroke;
+    let stroke = accent.map_or(border, |accent| Stroke::new(1.0, accent));
+    Frame::new()
+        .fill(ui.visuals().faint_bg_color)
+        .stroke(stroke)
+        .corner_radius(CornerRadius::same(CARD_RADIUS))
+        .inner_margin(Margin::symmetric(10, 8))
+        .show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            contents(ui)
+        })
+}
