@@ -73,7 +73,8 @@ impl LiveTruth {
 
     fn submit(&mut self, gpu: &Gpu, input: &LiveInput<'_>) -> Result<()> {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let judged = GpuJudgeInput { camera: &input.camera, settings: &input.settings, maps: &input.maps };
+        let judged =
+            GpuJudgeInput { camera: &input.camera, settings: &input.settings, maps: &input.maps, before: None };
         self.judge.judge(&gpu.device, &gpu.queue, &mut encoder, &self.tracer, input.seen, &judged)?;
         gpu.queue.submit([encoder.finish()]);
         Ok(())

@@ -52,10 +52,22 @@ pub enum GpuTruthError {
         /// Size of the camera's picture, in pixels.
         camera: [u32; 2],
     },
+    /// The picture of the frame before's factors and the camera have different sizes.
+    #[error(
+        "the texture of the factors of the frame before has {}×{} pixels and the camera {}×{}: draw it with the camera \
+         of this frame",
+        before[0], before[1], camera[0], camera[1]
+    )]
+    BeforeSize {
+        /// Size of the texture, in pixels.
+        before: [u32; 2],
+        /// Size of the camera's picture, in pixels.
+        camera: [u32; 2],
+    },
     /// No picture was judged before its classes were read.
     #[error("no picture was judged yet: call `GpuJudge::judge` and submit its encoder before reading")]
     NotJudged,
-    /// The classes cannot be read back.
-    #[error("the classes cannot be read back from the device, which was lost or ran out of memory: open it again")]
+    /// The classes or their tally cannot be read back.
+    #[error("what was judged cannot be read back from the device, which was lost or ran out of memory: open it again")]
     Read,
 }

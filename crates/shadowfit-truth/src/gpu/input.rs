@@ -4,7 +4,7 @@ use glam::DVec3;
 use shadowfit::choice::MapOrder;
 
 use super::error::GpuTruthError;
-use super::uniform::{JudgeUniform, MAX_MAPS, MapUniform};
+use super::uniform::{BeforeUniform, JudgeUniform, MAX_MAPS, MapUniform};
 use crate::camera::PixelCamera;
 use crate::maps::{MapReading, MeasuredMap, PictureMaps};
 use crate::truth::TruthSettings;
@@ -18,30 +18,35 @@ pub struct GpuJudgeInput<'a> {
     pub settings: &'a TruthSettings,
     /// The maps, at most [`MAX_MAPS`].
     pub maps: &'a PictureMaps<'a>,
+    /// The maps of the frame before, whose verdicts are compared for [`GpuTally::crawl_compared`](super::GpuTally);
+    /// `None` compares nothing.
+    pub before: Option<GpuBefore<'a>>,
+}
+
+/// The maps of the frame before, and what they show at the points of this frame, as
+/// [`MapsBefore`](crate::MapsBefore) has them.
+#[derive(Clone, Copy, Debug)]
+pub struct GpuBefore<'a> {
+    /// Its maps, at most [`MAX_MAPS`], and how they were read.
+    pub maps: &'a PictureMaps<'a>,
+    /// Its eye, world space, metres.
+    pub eye: DVec3,
+    /// Its unit direction of view, world axes: view depths along it choose among maps that are read by view depth.
+    pub forward: DVec3,
+    /// An `Rg32Uint` of this frame's camera, as [`GpuJudge::judge`](super::GpuJudge::judge) takes it: the second number
+    /// has the bits of the factor that the maps of the frame before give to this frame's point. The first one is
+    /// ignored.
+    pub seen: &'a wgpu::TextureView,
 }
 
 impl GpuJudgeInput<'_> {
     /// The uniform of the picture, for triangles that are stored relative to `origin`.
     pub(crate) fn uniform(&self, origin: DVec3, triangles: u32) -> Result<JudgeUniform, GpuTruthError> {
-        let Self { camera, settings, maps } = self;
-        if maps.maps.len() > MAX_MAPS {
-            return Err(GpuTruthError::TooManyMaps(maps.maps.len()));
-        }
+        let Self { camera, settings, maps, before } = self;
         if settings.sun_radius > 0.0 {
             return Err(GpuTruthError::SoftSun);
         }
-        let (order, blend) = match maps.reading {
-            MapReading::ViewDepth => (MapOrder::by_area(maps.maps.iter().map(|_| Some(1.0))), None),
-            MapReading::Coverage { order, blend } => (order, Some(blend)),
-        };
-        let mut uniforms = [MapUniform::default(); MAX_MAPS];
-        let mut map_count = 0;
-        let read = order.iter().filter_map(|index| Some((index, maps.maps.get(index)?)));
-        for (uniform, (index, map)) in uniforms.iter_mut().zip(read) {
-            let edge_width = maps.edge_width(Some(index));
-            *uniform = MapUniform { index: index as u32, edge_width, ..map_uniform(map, camera.eye) };
-            map_count += 1;
-        }
+        let read = ReadMaps::new(maps, camera.eye)?;
         Ok(JudgeUniform {
             eye: (camera.eye - origin).as_vec3().into(),
             near: finite(camera.near),
@@ -55,16 +60,63 @@ impl GpuJudgeInput<'_> {
             edge_width: maps.edge_width(None),
             tan_half_fov: camera.tan_half_fov.as_vec2().into(),
             size: camera.size,
-            map_count,
+            map_count: read.count,
             depth_clamp: maps.depth_clamp.into(),
             triangles,
-            by_coverage: blend.is_some().into(),
+            by_coverage: read.blend.is_some().into(),
             reach: maps.reach,
-            blend: blend.unwrap_or(0.0),
+            blend: read.blend.unwrap_or(0.0),
             padding_0: 0,
             padding_1: 0,
-            maps: uniforms,
+            maps: read.uniforms,
+            before: before.map_or(Ok(BeforeUniform::default()), |before| before.uniform(camera.eye))?,
         })
+    }
+}
+
+impl GpuBefore<'_> {
+    /// The uniform for points relative to this frame's `eye`.
+    fn uniform(&self, eye: DVec3) -> Result<BeforeUniform, GpuTruthError> {
+        let read = ReadMaps::new(self.maps, eye)?;
+        Ok(BeforeUniform {
+            forward: self.forward.as_vec3().into(),
+            eye_depth: finite((eye - self.eye).dot(self.forward)),
+            map_count: read.count,
+            by_coverage: read.blend.is_some().into(),
+            padding_0: 0,
+            padding_1: 0,
+            maps: read.uniforms,
+        })
+    }
+}
+
+/// Maps in the order in which points try them.
+struct ReadMaps {
+    uniforms: [MapUniform; MAX_MAPS],
+    count: u32,
+    /// Texels over which a map is blended into the next one, by coverage; `None` by view depth.
+    blend: Option<f32>,
+}
+
+impl ReadMaps {
+    /// The maps for positions relative to `eye`.
+    fn new(maps: &PictureMaps, eye: DVec3) -> Result<Self, GpuTruthError> {
+        if maps.maps.len() > MAX_MAPS {
+            return Err(GpuTruthError::TooManyMaps(maps.maps.len()));
+        }
+        let (order, blend) = match maps.reading {
+            MapReading::ViewDepth => (MapOrder::by_area(maps.maps.iter().map(|_| Some(1.0))), None),
+            MapReading::Coverage { order, blend } => (order, Some(blend)),
+        };
+        let mut uniforms = [MapUniform::default(); MAX_MAPS];
+        let mut count = 0;
+        let read = order.iter().filter_map(|index| Some((index, maps.maps.get(index)?)));
+        for (uniform, (index, map)) in uniforms.iter_mut().zip(read) {
+            let edge_width = maps.edge_width(Some(index));
+            *uniform = MapUniform { index: index as u32, edge_width, ..map_uniform(map, eye) };
+            count += 1;
+        }
+        Ok(Self { uniforms, count, blend })
     }
 }
 

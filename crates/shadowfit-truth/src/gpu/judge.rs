@@ -1,9 +1,12 @@
-//! The three passes that judge a picture, and the texture that they fill.
+//! The three passes that judge a picture, the texture that they fill, and a fourth one that sums it.
 
 use super::error::GpuTruthError;
 use super::input::GpuJudgeInput;
+use super::pipeline::{STORAGE, TEXTURE, UNIFORM, group, group_layout, pipeline};
 use super::pixel::GpuPixel;
 use super::shader;
+use super::tally::GpuTally;
+use super::tally_pass::{TallyInput, TallyPass};
 use super::tracer::{GpuTracer, scene_layout};
 use super::uniform::JudgeUniform;
 
@@ -14,6 +17,13 @@ const SQUARE: u32 = 8;
 /// A texture's rows begin at multiples of this in a buffer, in bytes; wgpu requires it.
 const ROW_ALIGNMENT: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
 
+/// The texture of classes, to be written.
+const CLASSES: wgpu::BindingType = wgpu::BindingType::StorageTexture {
+    access: wgpu::StorageTextureAccess::WriteOnly,
+    format: wgpu::TextureFormat::R32Uint,
+    view_dimension: wgpu::TextureViewDimension::D2,
+};
+
 /// Judges pictures on the GPU.
 #[derive(Debug)]
 pub struct GpuJudge {
@@ -21,6 +31,9 @@ pub struct GpuJudge {
     pipelines: [wgpu::ComputePipeline; 3],
     uniform: wgpu::Buffer,
     target: Option<Target>,
+    tally: TallyPass,
+    /// Number of pictures that were recorded.
+    pictures: u64,
 }
 
 /// The buffer and the texture that have the size of the picture.
@@ -35,35 +48,17 @@ struct Target {
 impl GpuJudge {
     /// Makes the pipelines.
     pub fn new(device: &wgpu::Device) -> Self {
-        let layout = judge_layout(device);
+        let layout = group_layout(device, "judged picture", [UNIFORM, TEXTURE, STORAGE, CLASSES]);
         let scene = scene_layout(device);
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("truth"),
-            bind_group_layouts: &[Some(&scene), Some(&layout)],
-            immediate_size: 0,
-        });
         let passes = [("trace", shader::truth()), ("rows", shader::rows()), ("classify", shader::classes())];
-        let pipelines = passes.map(|(entry, source)| {
-            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(entry),
-                source: wgpu::ShaderSource::Wgsl(source.into()),
-            });
-            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(entry),
-                layout: Some(&pipeline_layout),
-                module: &module,
-                entry_point: Some(entry),
-                compilation_options: Default::default(),
-                cache: None,
-            })
-        });
+        let pipelines = passes.map(|pass| pipeline(device, &[Some(&scene), Some(&layout)], pass));
         let uniform = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("judge"),
             size: size_of::<JudgeUniform>() as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        Self { layout, pipelines, uniform, target: None }
+        Self { layout, pipelines, uniform, target: None, tally: TallyPass::new(device), pictures: 0 }
     }
 
     /// Records the passes that judge a picture, and returns the texture that they fill (see
@@ -71,12 +66,15 @@ impl GpuJudge {
     /// of the camera's size: the index of the tracer's triangle plus 1 (0 for the sky), and the bits
     /// of the filtered factor, an f32.
     ///
+    /// The sums of the picture are recorded as well, for [`Self::take`]. A picture that is recorded while the sums of
+    /// three others are on their way is judged and not summed.
+    ///
     /// Submit the encoder before the next picture is recorded, which overwrites this one.
     ///
     /// # Errors
     ///
-    /// When the sizes of `seen` and the camera differ, the picture is too large for the device, there
-    /// are more than [`MAX_MAPS`](super::MAX_MAPS) maps, or the sun has a radius.
+    /// When the sizes of `seen` or [`GpuBefore::seen`](super::GpuBefore::seen) and the camera differ, the picture is
+    /// too large for the device, there are more than [`MAX_MAPS`](super::MAX_MAPS) maps, or the sun has a radius.
     pub fn judge(
         &mut self,
         device: &wgpu::Device,
@@ -87,9 +85,13 @@ impl GpuJudge {
         input: &GpuJudgeInput,
     ) -> Result<&wgpu::Texture, GpuTruthError> {
         let size = input.camera.size;
-        let texture = seen.texture();
-        if [texture.width(), texture.height()] != size {
-            return Err(GpuTruthError::Size { seen: [texture.width(), texture.height()], camera: size });
+        let seen_before = input.before.map_or(seen, |before| before.seen);
+        let [here, before] = [seen, seen_before].map(|view| [view.texture().width(), view.texture().height()]);
+        if here != size {
+            return Err(GpuTruthError::Size { seen: here, camera: size });
+        }
+        if before != size {
+            return Err(GpuTruthError::BeforeSize { before, camera: size });
         }
         let uniform = input.uniform(tracer.origin(), tracer.triangles())?;
         let target = match self.target.take() {
@@ -97,7 +99,13 @@ impl GpuJudge {
             _ => Target::new(device, size)?,
         };
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
-        let group = judge_group(device, &self.layout, &self.uniform, seen, &target);
+        let resources = [
+            self.uniform.as_entire_binding(),
+            wgpu::BindingResource::TextureView(seen),
+            target.pixels.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&target.view),
+        ];
+        let group = group(device, "judged picture", &self.layout, resources);
         let squares = size.map(|side| side.div_ceil(SQUARE));
         let [trace, rows, classify] = &self.pipelines;
         for (pipeline, [x, y]) in [(trace, squares), (rows, [size[1], 1]), (classify, squares)] {
@@ -107,7 +115,27 @@ impl GpuJudge {
             pass.set_bind_group(1, &group, &[]);
             pass.dispatch_workgroups(x, y, 1);
         }
-        Ok(&self.target.insert(target).classes)
+        self.pictures += 1;
+        let (picture, uniform, target) = (self.pictures, &self.uniform, &*self.target.insert(target));
+        let (pixels, classes) = (&target.pixels, &target.view);
+        let summed = TallyInput { picture, size, uniform, seen, pixels, classes, seen_before };
+        self.tally.record(device, encoder, &summed);
+        Ok(&target.classes)
+    }
+
+    /// Number of pictures that were recorded, which is also the number of the last one.
+    pub fn pictures(&self) -> u64 {
+        self.pictures
+    }
+
+    /// The sums of the newest picture that the GPU has finished, once; `None` while there is none. Never waits: frame by
+    /// frame, it gives those of a picture some frames back, which [`GpuTally::picture`] names.
+    ///
+    /// # Errors
+    ///
+    /// [`GpuTruthError::Read`] if the device is lost or has no memory left.
+    pub fn take(&mut self, device: &wgpu::Device) -> Result<Option<GpuTally>, GpuTruthError> {
+        self.tally.take(device)
     }
 
     /// The texture of the last picture's classes; `None` before the first picture.
@@ -178,48 +206,4 @@ impl Target {
         let view = classes.create_view(&wgpu::TextureViewDescriptor::default());
         Ok(Self { size, pixels, classes, view })
     }
-}
-
-/// Layout of a picture's bind group.
-fn judge_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let entry =
-        |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None };
-    let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
-    let seen = wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Uint,
-        view_dimension: wgpu::TextureViewDimension::D2,
-        multisampled: false,
-    };
-    let classes = wgpu::BindingType::StorageTexture {
-        access: wgpu::StorageTextureAccess::WriteOnly,
-        format: wgpu::TextureFormat::R32Uint,
-        view_dimension: wgpu::TextureViewDimension::D2,
-    };
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("judged picture"),
-        entries: &[
-            entry(0, buffer(wgpu::BufferBindingType::Uniform)),
-            entry(1, seen),
-            entry(2, buffer(wgpu::BufferBindingType::Storage { read_only: false })),
-            entry(3, classes),
-        ],
-    })
-}
-
-fn judge_group(
-    device: &wgpu::Device,
-    layout: &wgpu::BindGroupLayout,
-    uniform: &wgpu::Buffer,
-    seen: &wgpu::TextureView,
-    target: &Target,
-) -> wgpu::BindGroup {
-    let resources = [
-        uniform.as_entire_binding(),
-        wgpu::BindingResource::TextureView(seen),
-        target.pixels.as_entire_binding(),
-        wgpu::BindingResource::TextureView(&target.view),
-    ];
-    let entries: Vec<_> =
-        (0u32..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
-    device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("judged picture"), layout, entries: &entries })
 }

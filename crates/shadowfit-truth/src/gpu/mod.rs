@@ -1,20 +1,30 @@
 //! The same classes from compute passes, for pictures that are judged while they are looked at.
 //!
 //! [`GpuTracer`] holds a tracer's triangles and hierarchy, and [`GpuJudge`] fills a texture with the
-//! class of each pixel, without reading anything back. It uses only what every WebGPU device has. The
-//! CPU's [`crate::judge()`] is the reference; the GPU follows the same rules in f32.
+//! class of each pixel and sums the picture. Nothing has to be read back; the sums, [`GpuTally`], come
+//! back by themselves some frames later. It uses only what every WebGPU device has. The CPU's
+//! [`crate::judge()`] and [`crate::PictureTally`] are the reference; the GPU follows the same rules in
+//! f32.
 
 mod error;
 mod input;
 mod judge;
+mod pipeline;
 mod pixel;
+mod read_back;
 pub mod shader;
+mod tally;
+mod tally_pass;
 mod tracer;
 mod uniform;
 
 pub use error::GpuTruthError;
-pub use input::GpuJudgeInput;
+pub use input::{GpuBefore, GpuJudgeInput};
 pub use judge::GpuJudge;
 pub use pixel::GpuPixel;
+pub use tally::GpuTally;
 pub use tracer::GpuTracer;
-pub use uniform::{CutOutRecord, ImageRecord, JudgeUniform, MAX_MAPS, MapUniform, NodeRecord, TriangleRecord};
+pub use uniform::{
+    BeforeUniform, CutOutRecord, ImageRecord, JudgeUniform, MAX_MAPS, MapUniform, NodeRecord, TallyRecord,
+    TriangleRecord,
+};

@@ -104,6 +104,26 @@ pub struct MapUniform {
     pub padding: u32,
 }
 
+/// The maps of the frame before.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct BeforeUniform {
+    /// Its unit direction of view.
+    pub forward: [f32; 3],
+    /// View depth of this frame's eye in it, in metres.
+    pub eye_depth: f32,
+    /// Number of maps that points try; 0 where no frame before is compared.
+    pub map_count: u32,
+    /// 1 where maps are read by coverage.
+    pub by_coverage: u32,
+    /// Unused.
+    pub padding_0: u32,
+    /// Unused.
+    pub padding_1: u32,
+    /// The maps, in the order in which points try them. Their rows are of positions relative to this frame's eye.
+    pub maps: [MapUniform; MAX_MAPS],
+}
+
 /// A picture's camera, light and maps.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -150,4 +170,41 @@ pub struct JudgeUniform {
     pub padding_1: u32,
     /// The maps, in the order in which points try them.
     pub maps: [MapUniform; MAX_MAPS],
+    /// The maps of the frame before.
+    pub before: BeforeUniform,
+}
+
+/// Sums over a judged picture.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct TallyRecord {
+    /// Pixels by [`crate::Class`] as a number.
+    pub all: [u32; 6],
+    /// The grazing ones of them.
+    pub grazing: [u32; 6],
+    /// Pixels that the light reaches in truth.
+    pub lit: u32,
+    /// Pixels in the edge zone.
+    pub edge_zone: u32,
+    /// Pixels that no map covers.
+    pub uncovered: u32,
+    /// Pixels in `bins` with more than one pixel per texel.
+    pub undersampled: u32,
+    /// Pixels that are compared with the frame before.
+    pub crawl_compared: u32,
+    /// Those of them whose verdict differs.
+    pub crawl_different: u32,
+    /// Low word of the sum of errors, in steps of [`Self::ERROR_ONE`].
+    pub error_low: u32,
+    /// High word of it.
+    pub error_high: u32,
+    /// Pixels by pixels per texel, in [bins](super::GpuTally::pixels_per_texel).
+    pub bins: [u32; TallyRecord::BINS],
+}
+
+impl TallyRecord {
+    /// Bins of pixels per texel.
+    pub const BINS: usize = 1024;
+    /// Steps of an error of 1: 2^20, so that the 1024 pixels of a workgroup's square fit in a word.
+    pub const ERROR_ONE: u32 = 1 << 20;
 }

@@ -8,13 +8,13 @@ use shadowfit_truth::gpu::{GpuJudge, GpuJudgeInput, GpuPixel, GpuTracer, GpuTrut
 use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{
     AlphaImage, Class, CutOut, CutOuts, Judged, MapReading, MeasuredMap, PictureMaps, PixelCamera, Tracer, Truth,
-    TruthSettings, Wrap, judge,
+    TruthPoint, TruthSettings, Wrap, judge,
 };
 
 use super::scenes::{Triangles, cuboid, level, looking_at, map_around, quad, sphere};
 
 /// The software adapter, so that the numbers are the same on every machine.
-fn device() -> (wgpu::Device, wgpu::Queue) {
+pub(crate) fn device() -> (wgpu::Device, wgpu::Queue) {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
     descriptor.backends = wgpu::Backends::PRIMARY;
     let instance = wgpu::Instance::new(descriptor);
@@ -26,15 +26,15 @@ fn device() -> (wgpu::Device, wgpu::Queue) {
 }
 
 /// A picture that both judge.
-struct Picture {
-    tracer: Tracer,
-    camera: PixelCamera,
-    settings: TruthSettings,
-    maps: Vec<FitMap>,
-    reading: MapReading,
+pub(crate) struct Picture {
+    pub(crate) tracer: Tracer,
+    pub(crate) camera: PixelCamera,
+    pub(crate) settings: TruthSettings,
+    pub(crate) maps: Vec<FitMap>,
+    pub(crate) reading: MapReading,
     depth_clamp: bool,
     /// What the GPU's triangles are relative to.
-    origin: DVec3,
+    pub(crate) origin: DVec3,
 }
 
 /// The results of both.
@@ -49,7 +49,7 @@ struct Both {
 impl Picture {
     /// A scene under a light, with a near and a far map of 512 texels. No side of the picture is a whole
     /// number of workgroups.
-    fn new(triangles: Triangles, eye: DVec3, to_light: DVec3) -> Self {
+    pub(crate) fn new(triangles: Triangles, eye: DVec3, to_light: DVec3) -> Self {
         let near = FitMap { split_far: 6.0, ..map_around(DVec3::ZERO, to_light, 6.0, 4.0, 512) };
         Self {
             tracer: Tracer::new(triangles),
@@ -63,7 +63,7 @@ impl Picture {
     }
 
     /// The scene under maps that overlap, of several sizes and not in order of these, and one that is not read.
-    fn with_crossing_maps(blend: f32) -> Self {
+    pub(crate) fn with_crossing_maps(blend: f32) -> Self {
         let around = |x: f64, width: f64, texels: u32| map_around(DVec3::X * x, sun(), width, 6.0, texels);
         let maps = vec![around(0.0, 24.0, 512), around(1.0, 3.0, 400), around(-1.5, 6.0, 300), around(0.5, 8.0, 512)];
         let texel = |map: &FitMap| 1.0 / map.clip_from_world().row(0).truncate().length() / map.size().x;
@@ -74,7 +74,7 @@ impl Picture {
         Self { maps, reading: MapReading::Coverage { order, blend }, ..picture }
     }
 
-    fn measured(&self) -> Vec<MeasuredMap> {
+    pub(crate) fn measured(&self) -> Vec<MeasuredMap> {
         self.maps.iter().map(|map| map.measured(self.settings.to_light)).collect()
     }
 
@@ -86,18 +86,28 @@ impl Picture {
     }
 
     fn judge_maps(&self, maps: &[MeasuredMap]) -> Both {
-        let maps = PictureMaps { maps, reading: self.reading, reach: 1.0, depth_clamp: self.depth_clamp };
+        let maps = self.picture_maps(maps);
         let seen = Truth::seen_by_rays(&self.tracer, &self.camera);
         let truth = Truth::trace(&self.tracer, &self.camera, &self.settings, &seen);
-        let factors: Vec<f32> =
-            truth.points.iter().map(|point| point.as_ref().map_or(1.0, |point| self.factor(&maps, point))).collect();
+        let factors = self.factors(&maps, &truth);
         let judged = judge(&self.tracer, &truth, &maps, &factors, |_| true);
         let gpu = self.judge_on_gpu(&maps, &seen, &factors).expect("a picture that the GPU can judge");
         let edge_widths = judged.map_index.iter().map(|map| maps.edge_width(map.map(usize::from))).collect();
         Both { truth, judged, gpu, edge_widths }
     }
 
-    fn factor(&self, maps: &PictureMaps, point: &shadowfit_truth::TruthPoint) -> f32 {
+    /// How the maps are read.
+    pub(crate) fn picture_maps<'a>(&self, maps: &'a [MeasuredMap]) -> PictureMaps<'a> {
+        PictureMaps { maps, reading: self.reading, reach: 1.0, depth_clamp: self.depth_clamp }
+    }
+
+    /// The factor of each pixel; the sky is lit.
+    pub(crate) fn factors(&self, maps: &PictureMaps, truth: &Truth) -> Vec<f32> {
+        let factor = |point: &Option<TruthPoint>| point.as_ref().map_or(1.0, |point| self.factor(maps, point));
+        truth.points.iter().map(factor).collect()
+    }
+
+    fn factor(&self, maps: &PictureMaps, point: &TruthPoint) -> f32 {
         let Some(index) = maps.read(point.view_depth, point.position).map(|read| read.main()) else { return 1.0 };
         let (map, clip_from_world) = (&maps.maps[index], DMat4::from_cols_array(&self.maps[index].view_proj));
         let texel = map.project(point.position).texel.floor() + 0.5;
@@ -128,7 +138,7 @@ impl Picture {
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut gpu = GpuJudge::new(&device);
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let input = GpuJudgeInput { camera: &self.camera, settings: &self.settings, maps };
+        let input = GpuJudgeInput { camera: &self.camera, settings: &self.settings, maps, before: None };
         gpu.judge(&device, &queue, &mut encoder, &tracer, &view, &input)?;
         queue.submit([encoder.finish()]);
         gpu.read(&device, &queue)
@@ -136,7 +146,7 @@ impl Picture {
 }
 
 /// The picture of triangles and factors that a renderer would have drawn.
-fn seen_texture(
+pub(crate) fn seen_texture(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
     [width, height]: [u32; 2],
@@ -216,11 +226,11 @@ impl Both {
     }
 }
 
-fn sun() -> DVec3 {
+pub(crate) fn sun() -> DVec3 {
     DVec3::new(0.5, 0.7, 0.3).normalize()
 }
 
-fn boxes() -> Triangles {
+pub(crate) fn boxes() -> Triangles {
     let ground = level(0.0, [-15.0, -15.0], [15.0, 16.1]);
     let boxes = (0..12u32).flat_map(|index| {
         let angle = index as f32 * 2.4;
@@ -396,7 +406,7 @@ fn moved_triangles_are_uploaded_again_and_the_texture_stays() {
         let texture = seen_texture(&device, &queue, picture.camera.size, &seen, &vec![1.0; seen.len()]);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let input = GpuJudgeInput { camera: &picture.camera, settings: &picture.settings, maps: &maps };
+        let input = GpuJudgeInput { camera: &picture.camera, settings: &picture.settings, maps: &maps, before: None };
         let classes = gpu.judge(&device, &queue, &mut encoder, &tracer, &view, &input).expect("a picture");
         textures.push(classes.clone());
         queue.submit([encoder.finish()]);
@@ -437,7 +447,7 @@ fn what_the_gpu_cannot_judge_is_refused_by_its_reason() {
         let texture = seen_texture(&device, &queue, [8, 8], &[None; 64], &[1.0; 64]);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let input = GpuJudgeInput { camera: &camera, settings: &settings, maps: &maps };
+        let input = GpuJudgeInput { camera: &camera, settings: &settings, maps: &maps, before: None };
         GpuJudge::new(&device).judge(&device, &queue, &mut encoder, &gpu_tracer, &view, &input).err()
     };
     assert_eq!(judge(&|_| (), 8, [8, 8]), None);

@@ -8,3 +8,5 @@ mod scenes;
 #[cfg(feature = "gpu")]
 mod shaders;
 mod shadows;
+#[cfg(feature = "gpu")]
+mod tally_gpu;

@@ -5,11 +5,12 @@ use core::mem::offset_of;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Module, TypeInner};
 use shadowfit_truth::gpu::{
-    CutOutRecord, ImageRecord, JudgeUniform, MAX_MAPS, MapUniform, NodeRecord, TriangleRecord, shader,
+    BeforeUniform, CutOutRecord, ImageRecord, JudgeUniform, MAX_MAPS, MapUniform, NodeRecord, TallyRecord,
+    TriangleRecord, shader,
 };
 
-fn modules() -> [(&'static str, String); 3] {
-    [("truth", shader::truth()), ("rows", shader::rows()), ("classes", shader::classes())]
+fn modules() -> [(&'static str, String); 4] {
+    [("truth", shader::truth()), ("rows", shader::rows()), ("classes", shader::classes()), ("tally", shader::tally())]
 }
 
 fn parse(name: &str, source: &str) -> Module {
@@ -29,7 +30,7 @@ fn every_wgsl_file_is_part_of_a_pass() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/src/gpu/shaders");
     let files: Vec<_> =
         std::fs::read_dir(folder).expect("the folder").map(|file| file.expect("a file").path()).collect();
-    assert!(files.len() >= 3, "{files:?}");
+    assert!(files.len() >= 4, "{files:?}");
     for file in files {
         let text = std::fs::read_to_string(&file).expect("the file's text");
         assert!(modules().iter().any(|(_, source)| source.contains(&text)), "{} is not used", file.display());
@@ -100,7 +101,33 @@ fn every_record_has_the_size_and_offsets_of_its_wgsl_struct() {
             blend,
             padding_0,
             padding_1,
-            maps
+            maps,
+            before
+        }
+    );
+    assert_layout!(
+        module,
+        "Before" = BeforeUniform { forward, eye_depth, map_count, by_coverage, padding_0, padding_1, maps }
+    );
+}
+
+#[test]
+fn the_tally_has_the_size_and_offsets_of_its_wgsl_struct() {
+    let module = parse("tally", &shader::tally());
+    assert_layout!(
+        module,
+        "Tally" = TallyRecord {
+            all,
+            grazing,
+            lit,
+            edge_zone,
+            uncovered,
+            undersampled,
+            crawl_compared,
+            crawl_different,
+            error_low,
+            error_high,
+            bins
         }
     );
 }

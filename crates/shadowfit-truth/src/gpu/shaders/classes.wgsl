@@ -1,5 +1,7 @@
 // Third pass: the edge zone, from the rows' distances, and the class of each pixel.
 
+@group(1) @binding(3) var classes: texture_storage_2d<r32uint, write>;
+
 const RIGHT: u32 = 1u;
 const FALSE_SHADOW: u32 = 2u;
 const FALSE_LIGHT: u32 = 3u;

@@ -130,6 +130,18 @@ fn choose(surface: Surface) -> u32 {
     return choose_by_view_depth(surface.view_depth, surface.position);
 }
 
+// Whether one of the maps that a point would have read in the frame before covers it.
+fn is_covered_before(position: vec3<f32>) -> bool {
+    let view_depth = dot(position, judge.before.forward) + judge.before.eye_depth;
+    for (var place = 0u; place < judge.before.map_count; place++) {
+        let map = judge.before.maps[place];
+        if (judge.before.by_coverage != 0u || view_depth < map.split_far) && is_inside(map, project(map, position)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 // How far a point moves on its tangent plane when its ray is moved by `across` at view depth 1.
 fn slide(surface: Surface, across: vec3<f32>) -> vec3<f32> {
     let along = dot(across, surface.normal) / dot(surface.ray, surface.normal);

@@ -1,4 +1,5 @@
-// First pass: the truth of each pixel by one shadow ray, the map that it reads, and pixels per texel in it.
+// First pass: the truth of each pixel by one shadow ray, the map that it reads, and pixels per texel in it; whether it
+// is grazing, and covered in the frame before. MIN_FACING is written by Rust.
 
 @compute @workgroup_size(8, 8) fn trace(@builtin(global_invocation_id) id: vec3<u32>) {
     if any(id.xy >= judge.size) {
@@ -11,7 +12,9 @@
         if surface.facing > 0.0 && surface.view_depth <= judge.max_distance {
             let without_map = Receiver(NONE, vec3<f32>(0.0), 0.0);
             let is_lit = !is_occluded(ray_origin(surface), judge.to_light, without_map);
-            pixel.flags = JUDGED | select(0u, LIT, is_lit) | select(0u, SEEMS_LIT, bitcast<f32>(drawn.y) >= 0.5);
+            pixel.flags = JUDGED | select(0u, LIT, is_lit) | select(0u, SEEMS_LIT, bitcast<f32>(drawn.y) >= 0.5)
+                | select(0u, GRAZING, surface.facing < MIN_FACING)
+                | select(0u, COVERED_BEFORE, is_covered_before(surface.position));
             pixel.pixels_per_texel = FAR;
             let map = choose(surface);
             if map != NONE {

@@ -58,6 +58,20 @@ struct Map {
     padding: u32,
 }
 
+// The maps of the frame before.
+struct Before {
+    // Its unit direction of view.
+    forward: vec3<f32>,
+    // View depth of this frame's eye in it.
+    eye_depth: f32,
+    map_count: u32,
+    by_coverage: u32,
+    padding_0: u32,
+    padding_1: u32,
+    // Their rows are of positions relative to this frame's eye.
+    maps: array<Map, 8>,
+}
+
 struct Judge {
     // Relative to the origin.
     eye: vec3<f32>,
@@ -84,6 +98,7 @@ struct Judge {
     padding_1: u32,
     // In the order in which points try them.
     maps: array<Map, 8>,
+    before: Before,
 }
 
 struct Pixel {
@@ -98,7 +113,9 @@ struct Pixel {
 const JUDGED: u32 = 1u;
 const LIT: u32 = 2u;
 const SEEMS_LIT: u32 = 4u;
-const MAP_SHIFT: u32 = 4u;
+const GRAZING: u32 = 8u;
+const COVERED_BEFORE: u32 = 16u;
+const MAP_SHIFT: u32 = 8u;
 
 // Greater than any pixels per texel or distance that matters; used where the CPU uses infinity.
 const FAR: f32 = 3.0e38;
@@ -117,7 +134,6 @@ const NONE: u32 = 0xffffffffu;
 // Triangle's index plus 1 (0 for the sky), and the bits of the filtered factor.
 @group(1) @binding(1) var seen: texture_2d<u32>;
 @group(1) @binding(2) var<storage, read_write> pixels: array<Pixel>;
-@group(1) @binding(3) var classes: texture_storage_2d<r32uint, write>;
 
 fn pixel_index(pixel: vec2<u32>) -> u32 {
     return pixel.y * judge.size.x + pixel.x;
