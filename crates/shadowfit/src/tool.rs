@@ -146,6 +146,9 @@ pub enum ErrorMarks {
 pub struct ViewSettings {
     /// What the picture shows. Default: the final picture.
     pub mode: ViewMode,
+    /// Whether pictures are judged against rays all the time, and not only where the view shows it. Default:
+    /// yes.
+    pub judge: bool,
     /// How wrong pixels are marked. Default: not at all.
     pub marks: ErrorMarks,
     /// Whether shadows are drawn at all. Default: yes.
@@ -170,6 +173,7 @@ impl Default for ViewSettings {
     fn default() -> Self {
         Self {
             mode: ViewMode::Final,
+            judge: true,
             marks: ErrorMarks::Off,
             shadows: true,
             inset: InsetMaps::One,
@@ -213,6 +217,7 @@ setters!(CameraSettings {
 
 setters!(ViewSettings {
     with_mode mode: ViewMode,
+    with_judge judge: bool,
     with_marks marks: ErrorMarks,
     with_shadows shadows: bool,
     with_inset inset: InsetMaps,

@@ -1,33 +1,58 @@
-//! The shadow map in a corner of the picture.
+//! Shadow maps in a corner of the picture.
+
+use std::ops::Range;
 
 use glam::Vec3;
+use shadowfit::figures::linear_map_tints;
+use shadowfit::settings::MAX_MAPS;
 use shadowfit::{Aabb, LightFit};
 use shadowfit_render::Inset;
+use shadowfit_wgpu::MapFit;
 
-/// Width of a picture, in pixels, from which on the inset has its full size; smaller pictures have a smaller one.
+/// Width of a picture, in pixels, from which on insets have their full size; smaller pictures have smaller ones.
 const FULL_WIDTH: f32 = 960.0;
-/// Full size of the inset, in pixels.
+/// Full size of an inset, in pixels.
 const SIZE: [f32; 2] = [300.0, 200.0];
-/// Distance of the inset from the picture's corner, in pixels, at full size.
+/// Distance of insets from the picture's corner and from each other, in pixels, at full size.
 const MARGIN: f32 = 12.0;
+/// Height that stays free above several insets, as a share of the picture's.
+const FREE: f32 = 0.12;
 
 /// Lines along the light, from side to side of a map, on which its depths are looked at.
 const LINES: u8 = 9;
 
-/// A map in the lower left corner of a picture of `size` pixels, with the depths of the scene over it stretched to grey.
-pub(super) fn inset(map: usize, fit: &LightFit, bounds: &Aabb, size: [u32; 2]) -> Inset {
-    let scale = (size[0] as f32 / FULL_WIDTH).min(1.0);
-    let [width, height] = SIZE.map(|side| (side * scale).round());
+/// Maps in the lower left corner of a picture of `size` pixels, the first one lowest. `depth_range` are the stored depths
+/// shown as black and white; those between which the scene lies if `None`.
+pub(super) fn insets(
+    shown: Range<usize>,
+    maps: &[MapFit],
+    bounds: &Aabb,
+    depth_range: Option<[f32; 2]>,
+    size: [u32; 2],
+) -> Vec<Inset> {
+    let picture = size.map(|side| side as f32);
+    let scale = (picture[0] / FULL_WIDTH).min(1.0);
     let margin = (MARGIN * scale).round();
-    Inset {
-        rectangle: [margin, size[1] as f32 - height - margin, width, height],
-        depth_range: depths(fit, bounds).unwrap_or([0.0, 1.0]),
-        map: map as u32,
-    }
+    // Several are as high as there is room for.
+    let room = (picture[1] * (1.0 - FREE) - margin) / shown.len().max(1) as f32 - margin;
+    let height = (SIZE[1] * scale).round().min(room.floor()).max(1.0);
+    let width = (height * SIZE[0] / SIZE[1]).round();
+    let inset = |(place, index): (usize, usize)| {
+        let map: &MapFit = maps.get(index)?;
+        let top = picture[1] - (place + 1) as f32 * (height + margin);
+        let depth_range = depth_range.or_else(|| depths(&map.fit, bounds)).unwrap_or([0.0, 1.0]);
+        Some(Inset { rectangle: [margin, top, width, height], depth_range, map: index as u32, border: tint(index) })
+    };
+    shown.enumerate().filter_map(inset).collect()
+}
+
+/// Colour of a map's frame, linear.
+pub(super) fn tint(map: usize) -> Vec3 {
+    linear_map_tints()[map % MAX_MAPS]
 }
 
 /// Least and greatest depth of a map at which the scene's box lies over it: a window is deep, and holds little of that.
-fn depths(fit: &LightFit, bounds: &Aabb) -> Option<[f32; 2]> {
+pub(super) fn depths(fit: &LightFit, bounds: &Aabb) -> Option<[f32; 2]> {
     let world_from_uv = fit.uv_from_world.inverse();
     let [min, max] = [bounds.min, bounds.max].map(|corner| (corner.as_dvec3() - fit.origin).as_vec3());
     let place = |line: u8| f32::from(line) / f32::from(LINES - 1);
@@ -49,6 +74,24 @@ mod tests {
     use glam::{DVec3, Mat4};
 
     use super::*;
+
+    #[test]
+    fn any_number_of_maps_fits_into_the_picture_without_touching() {
+        let maps = vec![MapFit::from(LightFit::default()); MAX_MAPS];
+        let bounds = Aabb::new(Vec3::ZERO, Vec3::ONE);
+        for count in 1..=MAX_MAPS {
+            for size in [[960, 540], [320, 180], [1280, 300]] {
+                let insets = insets(0..count, &maps, &bounds, None, size);
+                assert_eq!(insets.len(), count);
+                for pair in insets.windows(2) {
+                    assert!(pair[1].rectangle[1] + pair[1].rectangle[3] < pair[0].rectangle[1], "{pair:?}");
+                }
+                assert!(insets.iter().all(|inset| inset.rectangle[1] > 0.0 && inset.rectangle[3] >= 1.0), "{insets:?}");
+            }
+        }
+        let one = insets(3..4, &maps, &bounds, Some([0.25, 0.5]), [960, 540]);
+        assert_eq!((one[0].map, one[0].rectangle, one[0].depth_range), (3, [12.0, 328.0, 300.0, 200.0], [0.25, 0.5]));
+    }
 
     #[test]
     fn grey_goes_over_the_scene_over_the_map_and_not_over_all_of_its_depth() {

@@ -96,6 +96,7 @@ pub static PARAMETERS: &[Parameter] = &[
     tool::FAR,
     tool::SPEED,
     tool::MODE,
+    tool::JUDGE,
     tool::MARKS,
     tool::SHADOWS,
     tool::INSET,

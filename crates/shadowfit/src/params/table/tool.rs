@@ -253,6 +253,20 @@ pub(super) const MODE: Parameter = Parameter {
     inert: always_active,
 };
 
+pub(super) const JUDGE: Parameter = Parameter {
+    id: "view.judge",
+    group: Group::View,
+    label: "Judge live",
+    unit: "",
+    help: "Compares the picture with rays all the time, for the figures of its quality. Off, it is done only where the view \
+           or the marks show it: a graphics card hardly notices, but without one it takes a part of the CPU.",
+    kind: Kind::Toggle(Toggle { read: |s| s.view.judge, write: |s, on| s.view.judge = on }),
+    inert: |s| {
+        let is_shown = s.view.mode.is_judged() || s.view.marks != ErrorMarks::Off;
+        is_shown.then_some("The view shows how wrong the picture is, so that it is judged anyway.")
+    },
+};
+
 pub(super) const MARKS: Parameter = Parameter {
     id: "view.marks",
     group: Group::View,

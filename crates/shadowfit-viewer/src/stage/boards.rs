@@ -1,0 +1,72 @@
+//! All maps side by side over the whole picture, with what was kept in them, what was drawn anew, and what moves.
+
+use shadowfit::Aabb;
+use shadowfit::figures::linear_color;
+use shadowfit_egui::MAP_UPDATE_COLORS;
+use shadowfit_render::{Inset, MapUpdate, Quad};
+use shadowfit_wgpu::{MapFit, PassContent};
+
+use super::inset::{depths, tint};
+
+/// Gap between maps and around them, as a share of the picture's height.
+const GAP: f32 = 0.03;
+/// Height that the picture's upper edge keeps free for what is written there, as a share of it.
+const HEAD: f32 = 0.06;
+/// Strength of the colour over a part of a map.
+const FILL: f32 = 0.35;
+
+/// The maps in their places.
+pub(super) struct Boards {
+    pub(super) insets: Vec<Inset>,
+    /// Texels across and down of each map.
+    sizes: Vec<[f32; 2]>,
+}
+
+impl Boards {
+    /// As large as the picture of `size` pixels allows.
+    pub(super) fn new(maps: &[MapFit], bounds: &Aabb, depth_range: Option<[f32; 2]>, size: [u32; 2]) -> Self {
+        let [width, height] = size.map(|side| side as f32);
+        let gap = (GAP * height).round();
+        let free = [width, height - HEAD * height];
+        let count = maps.len().max(1);
+        // The number of columns that leaves each map the largest square.
+        let side = |columns: usize| {
+            let rows = count.div_ceil(columns);
+            let [w, h] = [columns, rows];
+            ((free[0] - gap) / w as f32).min((free[1] - gap) / h as f32) - gap
+        };
+        let columns = (1..=count).max_by(|a, b| side(*a).total_cmp(&side(*b))).unwrap_or(1);
+        let side = side(columns).max(1.0).floor();
+        let rows = count.div_ceil(columns);
+        let left = (free[0] - columns as f32 * (side + gap) + gap) * 0.5;
+        let top = HEAD * height + (free[1] - rows as f32 * (side + gap) + gap) * 0.5;
+        let insets = maps.iter().enumerate().map(|(index, map)| {
+            let (column, row) = (index % columns, index / columns);
+            let corner = [left + column as f32 * (side + gap), top + row as f32 * (side + gap)].map(f32::round);
+            let depth_range = depth_range.or_else(|| depths(&map.fit, bounds)).unwrap_or([0.0, 1.0]);
+            let resolution = map.fit.resolution.as_vec2();
+            let [w, h] = (resolution / resolution.max_element() * side).to_array();
+            Inset { rectangle: [corner[0], corner[1], w, h], depth_range, map: index as u32, border: tint(index) }
+        });
+        let sizes = maps.iter().map(|map| map.fit.resolution.as_vec2().to_array()).collect();
+        Self { insets: insets.collect(), sizes }
+    }
+
+    /// What was kept: each map in the colour of what is kept; and over it what was drawn.
+    pub(super) fn quads(&self, updates: &[MapUpdate]) -> Vec<Quad> {
+        let color = |[kept, drawn, moving]: [u8; 3]| linear_color([kept, drawn, moving]).extend(FILL);
+        let [kept, drawn, moving] = MAP_UPDATE_COLORS.map(color);
+        let mut quads: Vec<Quad> = self.insets.iter().map(|inset| Quad::rectangle(inset.rectangle, kept * 0.4)).collect();
+        for update in updates {
+            let (Some(inset), Some(size)) = (self.insets.get(update.map), self.sizes.get(update.map)) else { continue };
+            let [x, y, w, h] = inset.rectangle;
+            let scale = [w / size[0], h / size[1]];
+            let (min, extent) = (update.rectangle.min.as_vec2(), update.rectangle.size.as_vec2());
+            let place = [x + min.x * scale[0], y + min.y * scale[1], extent.x * scale[0], extent.y * scale[1]];
+            let color = if matches!(update.content, PassContent::Moving) { moving } else { drawn };
+            quads.push(Quad::rectangle(place, color));
+            quads.extend(Quad::outline(place, 1.5, color.truncate().extend(1.0)));
+        }
+        quads
+    }
+}

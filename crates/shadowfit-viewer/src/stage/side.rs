@@ -1,0 +1,374 @@
+//! A technique on the stage: its maps, what draws them, and what judges the picture.
+
+use shadowfit::settings::{CasterPolicy, MapOverride};
+use shadowfit::tool::{ErrorMarks, InsetMaps, Settings, ViewMode};
+use shadowfit::{DepthConvention, FitError, LightFit, PerspectiveCamera, Technique};
+use shadowfit_render::{Culling, Gpu, Marks, Overlay, RenderTarget, Renderer, Statistics};
+use shadowfit_study::{Evaluator, FrameOptions, Judging, PreparedScene, Seen, TechniqueFitter, View};
+use shadowfit_wgpu::need::{NeedPass, NeedView};
+use shadowfit_wgpu::{MapFit, ShadowMapDescriptor, ShadowMapError};
+
+use super::live::Live;
+use super::{boards, inset, need_view};
+use crate::fitted::Fitted;
+use crate::outside;
+
+/// A technique's maps, and what draws and judges them.
+#[derive(Debug)]
+pub(super) struct Side {
+    pub(super) fitter: TechniqueFitter,
+    pub(super) evaluator: Evaluator,
+    /// What was fitted last; fitted anew unless it is frozen.
+    pub(super) fitted: Option<Fitted>,
+    pub(super) statistics: Statistics,
+    pub(super) live: Live,
+    /// Reads what the last pictures showed; rays find it where there is none.
+    need_pass: Option<NeedPass>,
+    /// Why the settings cannot be shown as they are.
+    pub(super) problem: Option<String>,
+}
+
+/// What is to be drawn.
+pub(super) struct Shot<'a> {
+    pub(super) gpu: &'a Gpu,
+    pub(super) scene: &'a mut PreparedScene,
+    /// With the technique of the side.
+    pub(super) settings: &'a Settings,
+    pub(super) camera: PerspectiveCamera,
+    /// Distance that the haze suits, in metres.
+    pub(super) sight: f32,
+    /// Whether an animation moves the scene from frame to frame.
+    pub(super) plays: bool,
+    /// Part of the picture that is drawn: x, y, width and height in pixels; all of it if `None`.
+    pub(super) scissor: Option<[u32; 4]>,
+    /// Strength of blinking marks at this time, 0..=1.
+    pub(super) blink: f32,
+}
+
+impl Shot<'_> {
+    /// The view as it is fitted and judged.
+    pub(super) fn view(&self) -> View {
+        View { camera: self.camera, direction: self.settings.light.direction(), is_first: false }
+    }
+
+    /// Whether rays are asked for.
+    fn wants_rays(&self) -> bool {
+        let view = &self.settings.view;
+        view.judge || view.mode.is_judged() || view.marks != ErrorMarks::Off
+    }
+}
+
+impl Side {
+    /// A side whose pictures have `samples` per pixel.
+    ///
+    /// # Errors
+    ///
+    /// [`ShadowMapError`] if the shadow map cannot be made.
+    pub(super) fn new(gpu: &Gpu, technique: Technique, samples: u32) -> Result<Self, ShadowMapError> {
+        let renderer = Renderer::new(gpu, &ShadowMapDescriptor::from(&technique), samples)?;
+        Ok(Self {
+            fitter: TechniqueFitter::new(technique),
+            evaluator: Evaluator::new(renderer, Judging { crawl: false, ..Judging::default() }),
+            fitted: None,
+            statistics: Statistics::default(),
+            live: Live::new(gpu),
+            need_pass: None,
+            problem: None,
+        })
+    }
+
+    /// From now on, what the last picture showed comes from its depth buffer, of `samples` per pixel, and not from
+    /// rays: for pictures that follow each other in a window. It comes a frame or two late, whenever the GPU is done
+    /// with it, so that pictures need not be the same each time. Rays go on where the GPU cannot do it, and find what a
+    /// view shows that follows no other. What stands still is kept in the shadow maps, too.
+    pub(super) fn read_depths(&mut self, gpu: &Gpu, samples: u32) {
+        self.evaluator.renderer.set_keeps(true);
+        self.need_pass = NeedPass::new(&gpu.device, &gpu.queue, samples).ok();
+        self.fitter.is_told = self.need_pass.is_some();
+        self.fitter.rays = shadowfit_study::RayUse::IfReady;
+    }
+
+    /// Forgets all frames: the scene is another one.
+    pub(super) fn scene_changed(&mut self) {
+        self.evaluator.renderer.invalidate_maps();
+        self.fitted = None;
+        self.forget_pictures();
+        self.live.forget();
+    }
+
+    /// Starts again with a view that is unrelated to the one before; a frozen fit stays.
+    pub(super) fn cut(&mut self, is_frozen: bool) {
+        self.fitted = self.fitted.take().filter(|_| is_frozen);
+    }
+
+    /// Fits the view, unless what was fitted last is frozen.
+    pub(super) fn fit(&mut self, shot: &mut Shot<'_>) -> Fitted {
+        let technique = self.drawable_technique(shot);
+        let is_frozen = shot.settings.view.freeze_fit;
+        if let Some(frozen) = self.fitted.as_ref().filter(|fitted| is_frozen && self.holds(fitted)) {
+            return Fitted { technique, ..frozen.clone() };
+        }
+        let fitted = self.fit_now(&technique, shot).unwrap_or_else(|error| {
+            self.problem = Some(format!("no shadow map: {error}"));
+            Fitted::default()
+        });
+        self.fitted = Some(fitted.clone());
+        fitted
+    }
+
+    fn fit_now(&mut self, technique: &Technique, shot: &Shot<'_>) -> Result<Fitted, FitError> {
+        let view = shot.view();
+        self.fitter.sees_late = shot.plays;
+        let goes_on = self.fitted.as_ref().and_then(|fitted| fitted.camera).is_some_and(|last| {
+            let same_lens = PerspectiveCamera { eye: last.eye, forward: last.forward, ..view.camera } == last;
+            same_lens && self.fitter.technique() == technique
+        });
+        if goes_on {
+            self.fitter.fit(shot.scene, &view)?;
+        } else {
+            self.fitter.set_technique(technique);
+            self.forget_pictures();
+            self.fitter.fit_alone(shot.scene, &view)?;
+        }
+        Ok(Fitted::new(view.camera, technique, self.fitter.fitted()))
+    }
+
+    /// Whether the shadow map as it is can take fitted maps.
+    fn holds(&self, fitted: &Fitted) -> bool {
+        let map = self.evaluator.renderer.shadow_map().descriptor();
+        let fits_into_a_layer =
+            |fit: &LightFit| fit.resolution.cmple(map.resolution.into()).all() && fit.depth == map.depth;
+        fitted.maps.len() <= map.maps as usize && fitted.maps.iter().all(|map| fits_into_a_layer(&map.fit))
+    }
+
+    /// The technique of the settings as far as it can be drawn, and its shadow map made. Where that is impossible, the
+    /// old one stays and is fitted to, and [`Self::problem`] says why.
+    fn drawable_technique(&mut self, shot: &Shot<'_>) -> Technique {
+        let mut technique = shot.settings.technique;
+        if technique.fit.depth == DepthConvention::NegativeOneToOne {
+            self.problem = Some("depth -1 to 1 is OpenGL's: wgpu draws the map with 0 to 1 instead".to_owned());
+            technique.fit.depth = DepthConvention::ZeroToOne;
+        }
+        let wanted = ShadowMapDescriptor::from(&technique);
+        if let Err(error) = self.evaluator.renderer.set_shadow_map(shot.gpu, &wanted) {
+            self.problem = Some(error.to_string());
+            let map = self.evaluator.renderer.shadow_map().descriptor();
+            technique.count = technique.count.min(map.maps);
+            technique.overrides = technique.overrides.map(|own| MapOverride { resolution: None, ..own });
+            let fit = &mut technique.fit;
+            (fit.resolution, fit.depth) = (map.resolution.into(), map.depth);
+            if fit.casters == CasterPolicy::DepthClamp && !map.depth_clamp {
+                fit.casters = CasterPolicy::List;
+            }
+        }
+        technique
+    }
+
+    /// Tells the fitter what has come back of the last pictures.
+    fn take_last_picture(&mut self) {
+        let Some(pass) = &mut self.need_pass else { return };
+        match pass.take() {
+            Ok(Some(seen)) if Seen::is_used_by(self.fitter.technique()) => self.fitter.tell(seen),
+            Ok(_) => {}
+            // The device is lost, which is said where pictures are read or presented.
+            Err(_) => (self.need_pass, self.fitter.is_told) = (None, false),
+        }
+    }
+
+    /// Reads the picture of a view that has just been drawn, if the technique is told of it.
+    fn record_picture(&mut self, gpu: &Gpu, view: &View, target: &RenderTarget) {
+        let technique = self.fitter.technique();
+        let Some(pass) = self.need_pass.as_mut().filter(|_| Seen::is_used_by(technique)) else { return };
+        // A camera without a frustum has no maps either, which is said there.
+        let depth = DepthConvention::Reversed;
+        let Ok(picture) = NeedView::from_camera(&view.camera, depth, view.direction, &technique.fit, target.size)
+        else {
+            return;
+        };
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        if pass.record(&mut encoder, target.depth_view(), &picture, None) == Ok(true) {
+            gpu.queue.submit([encoder.finish()]);
+        }
+    }
+
+    /// Forgets the pictures on their way: the next view follows none of them.
+    fn forget_pictures(&mut self) {
+        if let Some(pass) = &mut self.need_pass {
+            pass.reset();
+        }
+    }
+
+    /// Fits, judges and draws the view that the settings ask for.
+    pub(super) fn draw(&mut self, shot: &mut Shot<'_>, target: &RenderTarget) {
+        self.problem = None;
+        self.take_last_picture();
+        let before = self.fitted.take();
+        self.fitted.clone_from(&before);
+        let fitted = self.fit(shot);
+        let maps: Vec<MapFit> = fitted.maps.iter().map(MapFit::from).collect();
+        let seen = shot.view();
+        // A frozen fit was made for another camera, whose view depths may still choose among its maps.
+        let view = View { camera: fitted.camera.unwrap_or(seen.camera), ..seen };
+        let is_frozen = view.camera != seen.camera;
+        let mut maps_stay = false;
+        if shot.wants_rays() && !is_frozen {
+            let judged = self.live.judge(&mut self.evaluator, shot, &view, (&maps, before.as_ref()), target.size);
+            match judged {
+                Ok(drawn) => maps_stay = drawn,
+                Err(error) => self.problem = Some(format!("{error:#}")),
+            }
+        }
+        match shot.settings.view.mode {
+            ViewMode::Outside => self.draw_outside(shot, &fitted, &maps, target),
+            ViewMode::Need => self.draw_need(shot, &fitted, &maps, target),
+            ViewMode::Updates => self.draw_boards(shot, &view, &maps, target),
+            mode => self.draw_view(shot, &view, &maps, (overlay(mode), maps_stay), target),
+        }
+        if !is_frozen && !matches!(shot.settings.view.mode, ViewMode::Outside | ViewMode::Need) {
+            self.record_picture(shot.gpu, &view, target);
+        }
+    }
+
+    /// Draws what the camera sees.
+    fn draw_view(
+        &mut self,
+        shot: &mut Shot<'_>,
+        view: &View,
+        maps: &[MapFit],
+        (overlay, maps_stay): (Overlay, bool),
+        target: &RenderTarget,
+    ) {
+        let settings = &shot.settings.view;
+        let from_elsewhere = (view.camera != shot.camera).then_some(shot.camera);
+        let shown = match settings.inset {
+            InsetMaps::Off => 0..0,
+            InsetMaps::One => {
+                let index = settings.inset_index(maps.len() as u32);
+                index..(index + 1).min(maps.len())
+            }
+            InsetMaps::All => 0..maps.len(),
+        };
+        let bounds = shot.scene.bounds();
+        let insets = inset::insets(shown, maps, &bounds, settings.inset_depths, target.size);
+        let judged = self.live.picture();
+        let marks = (settings.marks != ErrorMarks::Off && judged.is_some()).then(|| Marks {
+            outline: settings.marks == ErrorMarks::Outline,
+            strength: if settings.marks == ErrorMarks::Blink { shot.blink } else { 1.0 },
+            classes: [true; 4],
+        });
+        let options = FrameOptions {
+            outside: from_elsewhere,
+            // Maps that are themselves looked at from elsewhere hold all their casters, not only those of this
+            // picture's shadows.
+            culling: if from_elsewhere.is_some() { Culling::WholeMap } else { Culling::Swept },
+            overlay,
+            judged,
+            marks,
+            insets: &insets,
+            shadows: settings.shadows,
+            sight: Some(shot.sight),
+            maps_stay,
+            scissor: shot.scissor,
+            ..FrameOptions::default()
+        };
+        let drawn = self.evaluator.draw(shot.gpu, shot.scene, view, maps, &options, target);
+        self.take_statistics(drawn, maps_stay);
+    }
+
+    fn take_statistics(&mut self, drawn: Result<Statistics, ShadowMapError>, maps_stay: bool) {
+        match drawn {
+            Ok(statistics) if maps_stay => {
+                // What was drawn into the maps was drawn by the judge.
+                self.statistics = Statistics {
+                    scene_draws: statistics.scene_draws,
+                    scene_triangles: statistics.scene_triangles,
+                    ..self.evaluator.drawn_maps()
+                };
+            }
+            Ok(statistics) => self.statistics = statistics,
+            Err(error) => self.problem = Some(error.to_string()),
+        }
+    }
+
+    /// Draws the camera, its maps and what casts into them, from outside.
+    pub(super) fn draw_outside(
+        &mut self,
+        shot: &mut Shot<'_>,
+        fitted: &Fitted,
+        maps: &[MapFit],
+        target: &RenderTarget,
+    ) {
+        let seen = shot.camera;
+        let aspect = target.size[0] as f32 / target.size[1] as f32;
+        let camera = PerspectiveCamera { aspect, ..outside::camera(&PerspectiveCamera { aspect, ..seen }, fitted) };
+        let descriptor = *self.evaluator.renderer.shadow_map().descriptor();
+        let lines = outside::lines(fitted, maps, &descriptor);
+        let view = View { camera: fitted.camera.unwrap_or(seen), ..shot.view() };
+        let options = FrameOptions {
+            outside: Some(camera),
+            culling: Culling::WholeMap,
+            overlay: Overlay::Casters,
+            lines: &lines,
+            shadows: shot.settings.view.shadows,
+            sight: Some(camera.far.max(shot.sight)),
+            scissor: shot.scissor,
+            ..FrameOptions::default()
+        };
+        let drawn = self.evaluator.draw(shot.gpu, shot.scene, &view, maps, &options, target);
+        self.take_statistics(drawn, false);
+    }
+
+    /// Draws the scene as the light sees it, with the grid of need and the outlines of the maps.
+    fn draw_need(&mut self, shot: &mut Shot<'_>, fitted: &Fitted, maps: &[MapFit], target: &RenderTarget) {
+        let shown = shot.settings.view.inset_index(maps.len() as u32);
+        let Some(from_light) = need_view::FromLight::new(fitted, shown, shot.scene.bounds(), target.size) else {
+            return self.draw_view(shot, &shot.view(), maps, (Overlay::None, false), target);
+        };
+        let need = self.fitter.seen().and_then(Seen::need);
+        let quads = need_view::quads(&from_light, fitted, need);
+        let lines = need_view::lines(fitted);
+        let options = FrameOptions {
+            outside: Some(from_light.camera),
+            culling: Culling::WholeMap,
+            quads: &quads,
+            lines: &lines,
+            shadows: shot.settings.view.shadows,
+            // No haze between the light and the scene.
+            sight: Some(f32::MAX),
+            scissor: shot.scissor,
+            ..FrameOptions::default()
+        };
+        let view = View { camera: fitted.camera.unwrap_or(shot.camera), ..shot.view() };
+        let drawn = self.evaluator.draw(shot.gpu, shot.scene, &view, maps, &options, target);
+        self.take_statistics(drawn, false);
+    }
+
+    /// Draws all maps side by side, with what of them was drawn in this frame.
+    fn draw_boards(&mut self, shot: &mut Shot<'_>, view: &View, maps: &[MapFit], target: &RenderTarget) {
+        let bounds = shot.scene.bounds();
+        let boards = boards::Boards::new(maps, &bounds, shot.settings.view.inset_depths, target.size);
+        // Those of the frame before: what this one draws is known when it is drawn.
+        let quads = boards.quads(&self.evaluator.renderer.map_updates());
+        let options = FrameOptions {
+            insets: &boards.insets,
+            quads: &quads,
+            sight: Some(shot.sight),
+            scissor: shot.scissor,
+            ..FrameOptions::default()
+        };
+        let drawn = self.evaluator.draw(shot.gpu, shot.scene, view, maps, &options, target);
+        self.take_statistics(drawn, false);
+    }
+}
+
+/// What is laid over the surfaces in a view of the camera.
+fn overlay(mode: ViewMode) -> Overlay {
+    match mode {
+        ViewMode::Truth => Overlay::Truth,
+        ViewMode::Error => Overlay::Error,
+        ViewMode::PixelsPerTexel => Overlay::PixelsPerTexel,
+        ViewMode::Maps => Overlay::MapTint,
+        ViewMode::TexelGrid => Overlay::TexelGrid,
+        _ => Overlay::None,
+    }
+}
