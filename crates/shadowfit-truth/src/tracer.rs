@@ -1,6 +1,7 @@
 //! Rays against triangles, through the bounding volume hierarchy of the `obvhs` crate.
 
 use std::fmt;
+use std::sync::Arc;
 use std::time::Duration;
 
 use glam::{DVec3, Vec3, Vec3A};
@@ -14,21 +15,22 @@ use crate::memory::TracerMemory;
 
 /// Says whether a triangle, given by its index, is opaque at a point with these weights of its second
 /// and third corner.
-type AlphaTest = Box<dyn Fn(u32, [f32; 2]) -> bool + Send + Sync>;
+type AlphaTest = Arc<dyn Fn(u32, [f32; 2]) -> bool + Send + Sync>;
 
 /// A refitted hierarchy is rebuilt when its cost has grown by more than this factor since it was
 /// built. The time of a ray grows about as the cost does, and a build takes as long as many thousands
 /// of rays.
 const MAX_COST_GROWTH: f32 = 1.5;
 
-/// Triangles, and a hierarchy through which rays find those that they meet.
+/// Triangles, and a hierarchy through which rays find those that they meet. A clone copies both, and shares the cut-outs.
+#[derive(Clone)]
 pub struct Tracer {
     triangles: Vec<Triangle>,
     bvh: Option<Bvh2>,
     /// Cost of a ray when the hierarchy was built.
     built_cost: f32,
     alpha_test: Option<AlphaTest>,
-    cut_outs: CutOuts,
+    cut_outs: Arc<CutOuts>,
 }
 
 /// Where a ray met a triangle.
@@ -67,7 +69,7 @@ impl Tracer {
         let triangles: Vec<Triangle> = triangles.into_iter().map(triangle).collect();
         let bvh = build(&triangles);
         let built_cost = bvh.as_ref().map_or(0.0, cost);
-        Self { triangles, bvh, built_cost, alpha_test: None, cut_outs: CutOuts::default() }
+        Self { triangles, bvh, built_cost, alpha_test: None, cut_outs: Arc::default() }
     }
 
     /// Moves all triangles, given in their order (world space, metres): for animated scenes. The
@@ -104,7 +106,7 @@ impl Tracer {
     /// stops a ray, with the weights of its second and third corner at the hit.
     #[must_use]
     pub fn with_alpha_test(mut self, is_opaque: impl Fn(u32, [f32; 2]) -> bool + Send + Sync + 'static) -> Self {
-        self.alpha_test = Some(Box::new(is_opaque));
+        self.alpha_test = Some(Arc::new(is_opaque));
         self
     }
 
@@ -112,7 +114,7 @@ impl Tracer {
     /// both must find the triangle opaque.
     #[must_use]
     pub fn with_cut_outs(mut self, cut_outs: CutOuts) -> Self {
-        self.cut_outs = cut_outs;
+        self.cut_outs = Arc::new(cut_outs);
         self
     }
 
