@@ -22,7 +22,8 @@ type AlphaTest = Arc<dyn Fn(u32, [f32; 2]) -> bool + Send + Sync>;
 /// of rays.
 const MAX_COST_GROWTH: f32 = 1.5;
 
-/// Triangles, and a hierarchy through which rays find those that they meet. A clone copies both, and shares the cut-outs.
+/// Triangles, and a hierarchy through which rays find those that they meet. A clone copies both, and shares
+/// the images of cut-outs.
 #[derive(Clone)]
 pub struct Tracer {
     triangles: Vec<Triangle>,
@@ -30,7 +31,7 @@ pub struct Tracer {
     /// Cost of a ray when the hierarchy was built.
     built_cost: f32,
     alpha_test: Option<AlphaTest>,
-    cut_outs: Arc<CutOuts>,
+    cut_outs: CutOuts,
 }
 
 /// Where a ray met a triangle.
@@ -69,7 +70,7 @@ impl Tracer {
         let triangles: Vec<Triangle> = triangles.into_iter().map(triangle).collect();
         let bvh = build(&triangles);
         let built_cost = bvh.as_ref().map_or(0.0, cost);
-        Self { triangles, bvh, built_cost, alpha_test: None, cut_outs: Arc::default() }
+        Self { triangles, bvh, built_cost, alpha_test: None, cut_outs: CutOuts::default() }
     }
 
     /// Moves all triangles, given in their order (world space, metres): for animated scenes. The
@@ -114,7 +115,7 @@ impl Tracer {
     /// both must find the triangle opaque.
     #[must_use]
     pub fn with_cut_outs(mut self, cut_outs: CutOuts) -> Self {
-        self.cut_outs = Arc::new(cut_outs);
+        self.cut_outs = cut_outs;
         self
     }
 

@@ -8,3 +8,4 @@ mod scenes;
 #[cfg(feature = "gpu")]
 mod shaders;
 mod shadows;
+mod single_pixels;
