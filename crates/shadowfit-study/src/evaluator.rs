@@ -1,16 +1,19 @@
 //! The only place where a technique's pictures are drawn and judged.
 
+use std::sync::Arc;
+
 use anyhow::Result;
 use glam::{DVec3, Vec3};
 use shadowfit_render::{Frame, Gpu, ProbePixel, ProbeTargets, RenderTarget, Renderer, Statistics};
+use shadowfit_truth::Judged;
 use shadowfit_truth::gpu::GpuPixel;
-use shadowfit_truth::{Judged, MapsBefore, MeasuredMap, PictureMaps, crawl, judge};
 use shadowfit_wgpu::{MapFit, ShadowMapError};
 
 use crate::frame::frame;
 use crate::live::{LiveInput, LiveTruth};
 use crate::maps::{measured, picture_maps};
-use crate::{FrameOptions, Judging, PreparedScene, SharedTruth, View};
+use crate::picture::{FrameBefore, Picture, factors};
+use crate::{FrameOptions, JudgeJob, Judging, PreparedScene, SceneRays, SharedTruth, View};
 
 /// Draws a technique's maps and the scene shadowed by them, and judges the picture.
 #[derive(Debug)]
@@ -88,30 +91,65 @@ impl Evaluator {
             self.before = None;
         }
         let pixels = self.probe(gpu, scene, view, maps, None)?;
-        let truth = truth.or_trace(scene, view, &self.judging, &pixels);
-        let factors = factors(&pixels);
-        let origin = scene.origin();
-        let descriptor = *self.renderer.shadow_map().descriptor();
-        let measured_maps = measured(maps, &descriptor, view.direction, origin);
-        let rays = scene.rays();
+        let before = self.frame_before(gpu, scene, view)?;
         let counted = scene.counted_instances(self.judging.subject_only);
-        let counts = |triangle: u32| counted[rays.triangles[triangle as usize].instance as usize];
-        let mut judged = judge(&rays.tracer, truth, &self.seen(&measured_maps, maps), &factors, counts);
-        if let Some(before) = self.before.take().filter(|_| self.judging.crawl) {
-            let choice = Some((before.eye, before.forward));
-            let factors_before = self::factors(&self.probe(gpu, scene, view, &before.maps, choice)?);
-            let measured_before = measured(&before.maps, &descriptor, view.direction, origin);
-            let before = MapsBefore {
-                maps: self.seen(&measured_before, &before.maps),
-                eye: before.eye - origin,
-                forward: before.forward.as_dvec3(),
-                factors: &factors_before,
-            };
-            judged.tally.add_crawl(crawl(truth, &judged, &factors, &before));
+        let picture = Picture {
+            rays: scene.rays(),
+            view,
+            judging: &self.judging,
+            maps,
+            descriptor: self.renderer.shadow_map().descriptor(),
+            counted: &counted,
+        };
+        let judged = picture.judge(truth.or_trace(|| picture.trace(&pixels)), &factors(&pixels), before.as_ref());
+        self.remember(view, maps);
+        Ok(judged)
+    }
+
+    /// What [`BackgroundJudge`](crate::BackgroundJudge) needs of a view: draws its maps and its probe, waits for them, and
+    /// leaves the rest to the job. As for [`Self::judge`], crawl is measured against the view before.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::judge`].
+    pub fn judge_job(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut PreparedScene,
+        view: &View,
+        maps: &[MapFit],
+        rays: Arc<SceneRays>,
+    ) -> Result<JudgeJob> {
+        if view.is_first {
+            self.before = None;
         }
+        let pixels = self.probe(gpu, scene, view, maps, None)?;
+        let before = self.frame_before(gpu, scene, view)?;
+        self.remember(view, maps);
+        Ok(JudgeJob {
+            rays,
+            pixels,
+            view: *view,
+            judging: self.judging,
+            maps: maps.to_vec(),
+            descriptor: *self.renderer.shadow_map().descriptor(),
+            counted: scene.counted_instances(self.judging.subject_only),
+            before,
+        })
+    }
+
+    /// The maps of the view before, and what they show at the points of this one, if crawl is measured.
+    fn frame_before(&mut self, gpu: &Gpu, scene: &mut PreparedScene, view: &View) -> Result<Option<FrameBefore>> {
+        let Some(Before { maps, eye, forward }) = self.before.take().filter(|_| self.judging.crawl) else {
+            return Ok(None);
+        };
+        let factors = factors(&self.probe(gpu, scene, view, &maps, Some((eye, forward)))?);
+        Ok(Some(FrameBefore { maps, eye, forward, factors }))
+    }
+
+    fn remember(&mut self, view: &View, maps: &[MapFit]) {
         let forward = view.camera.forward.normalize();
         self.before = Some(Before { maps: maps.to_vec(), eye: view.camera.eye, forward });
-        Ok(judged)
     }
 
     /// Draws a view and judges it on the GPU. All pixels count there, whatever [`Judging::subject_only`] says.
@@ -158,17 +196,13 @@ impl Evaluator {
         let descriptor = self.renderer.shadow_map().descriptor();
         let measured = measured(maps, descriptor, view.direction, scene.origin());
         let result = judge(&LiveInput {
-            camera: self.judging.pixel_camera(scene, view),
+            camera: self.judging.pixel_camera(scene.origin(), view),
             settings: self.judging.truth_settings(view),
-            maps: self.seen(&measured, maps),
+            maps: picture_maps(&measured, maps, descriptor),
             seen: &targets.view,
         });
         self.targets = Some(targets);
         result
-    }
-
-    fn seen<'a>(&self, maps: &'a [MeasuredMap], fits: &[MapFit]) -> PictureMaps<'a> {
-        picture_maps(maps, fits, self.renderer.shadow_map().descriptor())
     }
 
     /// What each pixel shows. `choice` is the eye and the forward direction that choose the maps, if not the camera's.
@@ -203,9 +237,4 @@ impl Evaluator {
         self.renderer.draw_probe(gpu, &mut scene.gpu_scene, &frame, &targets)?;
         Ok(targets)
     }
-}
-
-/// The shadow factor of each pixel; the sky is lit.
-fn factors(pixels: &[Option<ProbePixel>]) -> Vec<f32> {
-    pixels.iter().map(|pixel| pixel.map_or(1.0, |pixel| pixel.factor)).collect()
 }

@@ -5,18 +5,30 @@ use shadowfit::{FitError, FittedMaps, MapFitter, Technique, Workspace};
 use shadowfit_wgpu::MapFit;
 use shadowfit_wgpu::need::SeenNeed;
 
-use crate::{PreparedScene, SceneRays, Seen, View};
+use crate::{PreparedScene, Seen, View};
 
 /// Views that a fit works with: held maps are fitted to the views of two frames ahead as well.
 const VIEWS: usize = 3;
 
+/// Which rays find what the frame before showed, for techniques that are told.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RayUse {
+    /// Those of the scene's present pose, which are made where they are not there.
+    #[default]
+    Wait,
+    /// In [`TechniqueFitter::fit`] those of an earlier pose too, where those of the present one are not there; some are
+    /// made only where there are none at all. That costs sharpness, never coverage.
+    Late,
+    /// Only those that are there, of whichever pose: none are ever made. Without any, the fit goes on by the scene's
+    /// boxes alone.
+    IfReady,
+}
+
 /// Fits a technique's maps frame by frame, and remembers what held maps, histograms and windows need of the frame before.
 #[derive(Debug)]
 pub struct TechniqueFitter {
-    /// Whether what the frame before showed may be of an earlier pose of the scene, in [`Self::fit`]: rays of the present
-    /// pose take some milliseconds more for each hundred thousand triangles whenever the scene has moved. That costs
-    /// sharpness, never coverage.
-    pub sees_late: bool,
+    /// Which rays find what a view shows.
+    pub rays: RayUse,
     /// Whether [`Self::tell`] tells what the frame before showed, in [`Self::fit`], so that no rays look for it.
     pub is_told: bool,
     technique: Technique,
@@ -30,7 +42,7 @@ impl TechniqueFitter {
     /// A fitter that remembers no frame.
     pub fn new(technique: Technique) -> Self {
         Self {
-            sees_late: false,
+            rays: RayUse::default(),
             is_told: false,
             technique,
             maps: MapFitter::new(),
@@ -48,7 +60,7 @@ impl TechniqueFitter {
     /// Goes on with a technique; with another one than before the fitter forgets all frames.
     pub fn set_technique(&mut self, technique: &Technique) {
         if self.technique != *technique {
-            *self = Self { sees_late: self.sees_late, is_told: self.is_told, ..Self::new(*technique) };
+            *self = Self { rays: self.rays, is_told: self.is_told, ..Self::new(*technique) };
         }
     }
 
@@ -65,7 +77,7 @@ impl TechniqueFitter {
     /// As [`Self::fit`].
     pub fn fit_alone(&mut self, scene: &PreparedScene, view: &View) -> Result<Vec<MapFit>, FitError> {
         self.maps.reset();
-        self.seen = self.see(scene, view, false)?;
+        self.seen = self.see(scene, view, self.rays == RayUse::IfReady)?;
         self.fit_maps(scene, view)
     }
 
@@ -81,7 +93,7 @@ impl TechniqueFitter {
         }
         let maps = self.fit_maps(scene, view)?;
         if !self.is_told {
-            self.seen = self.see(scene, view, self.sees_late)?;
+            self.seen = self.see(scene, view, self.rays != RayUse::Wait)?;
         }
         Ok(maps)
     }
@@ -110,17 +122,21 @@ impl TechniqueFitter {
         Ok(self.fitted.iter().map(MapFit::from).collect())
     }
 
-    /// What a view shows, where the technique is told of it.
+    /// What a view shows, where the technique is told of it; `late` takes rays of an earlier pose too.
     fn see(&self, scene: &PreparedScene, view: &View, late: bool) -> Result<Option<Seen>, FitError> {
         if !Seen::is_used_by(&self.technique) {
             return Ok(None);
         }
         // A camera that makes no sense sees nothing.
         view.camera.frustum()?;
+        let latest = if late { scene.latest_rays() } else { None };
+        let rays = match latest {
+            Some((rays, _)) => rays,
+            None if self.rays == RayUse::IfReady => return Ok(None),
+            None => scene.shared_rays(),
+        };
         let camera = scene.camera_for_rays(&view.camera);
-        let trace =
-            |rays: &SceneRays| Seen::trace(&self.technique, (&rays.tracer, scene.origin()), &camera, view.direction);
-        if late { scene.with_late_rays(trace) } else { trace(scene.rays()) }
+        Seen::trace(&self.technique, (&rays.tracer, scene.origin()), &camera, view.direction)
     }
 }
 
@@ -173,5 +189,32 @@ mod tests {
         assert_eq!(seen[0], estimated[0], "the first frame knows the boxes alone");
         assert_eq!(seen[0], alone("windows-boxes-4"));
         assert_ne!(seen[1], estimated[1], "the next one knows what the first one showed");
+    }
+    #[test]
+    fn gpu_without_waiting_the_boxes_place_windows_until_rays_are_there() {
+        let mut scene = scene();
+        let fit = |scene: &PreparedScene, name: &str, rays: RayUse| {
+            let mut fitter = TechniqueFitter::new(Technique::preset(name).expect("a preset"));
+            fitter.rays = rays;
+            fitter.fit_alone(scene, &view(9.0, false)).expect("maps");
+            *fitter.fitted()
+        };
+        let by_boxes = fit(&scene, "windows-boxes-4", RayUse::IfReady);
+        for name in ["windows-4", "histogram-4"] {
+            let mut fitter = TechniqueFitter::new(Technique::preset(name).expect("a preset"));
+            fitter.rays = RayUse::IfReady;
+            for z in [9.0, 8.9] {
+                fitter.fit(&scene, &view(z, false)).expect("maps");
+            }
+            assert!(fitter.seen().is_none() && scene.latest_rays().is_none(), "{name}");
+        }
+        assert_eq!(fit(&scene, "windows-4", RayUse::IfReady), by_boxes);
+        scene.request_rays();
+        while !scene.take_rays() {
+            std::thread::yield_now();
+        }
+        let by_rays = fit(&scene, "windows-4", RayUse::IfReady);
+        assert_ne!(by_rays, by_boxes);
+        assert_eq!(by_rays, fit(&scene, "windows-4", RayUse::Wait));
     }
 }

@@ -1,9 +1,10 @@
 //! How pictures are judged, and the truth that all techniques of a frame share.
 
-use shadowfit_render::ProbePixel;
+use glam::DVec3;
+use shadowfit::PerspectiveCamera;
 use shadowfit_truth::{PixelCamera, Truth, TruthSettings};
 
-use crate::{PreparedScene, View};
+use crate::View;
 
 /// How pictures are judged.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,9 +41,10 @@ impl Judging {
         }
     }
 
-    /// The rays of a view's pixels, relative to the origin of the scene's rays.
-    pub(crate) fn pixel_camera(&self, scene: &PreparedScene, view: &View) -> PixelCamera {
-        PixelCamera::new(&scene.camera_for_rays(&view.camera), self.size)
+    /// The rays of a view's pixels, relative to the world position `origin`, in metres, that of the scene's rays.
+    pub(crate) fn pixel_camera(&self, origin: DVec3, view: &View) -> PixelCamera {
+        let camera = PerspectiveCamera { eye: view.camera.eye - origin, ..view.camera };
+        PixelCamera::new(&camera, self.size)
     }
 }
 
@@ -56,18 +58,8 @@ impl SharedTruth {
         self.0.as_ref()
     }
 
-    /// The truth, traced from what a probe has seen unless it is there already.
-    pub(crate) fn or_trace(
-        &mut self,
-        scene: &PreparedScene,
-        view: &View,
-        judging: &Judging,
-        pixels: &[Option<ProbePixel>],
-    ) -> &Truth {
-        self.0.get_or_insert_with(|| {
-            let seen: Vec<Option<u32>> = pixels.iter().map(|pixel| pixel.map(|pixel| pixel.triangle)).collect();
-            let camera = judging.pixel_camera(scene, view);
-            Truth::trace(&scene.rays().tracer, &camera, &judging.truth_settings(view), &seen)
-        })
+    /// The truth, traced unless it is there already.
+    pub(crate) fn or_trace(&mut self, trace: impl FnOnce() -> Truth) -> &Truth {
+        self.0.get_or_insert_with(trace)
     }
 }

@@ -7,6 +7,7 @@
 //! and [`tune()`] searches the best one. The viewer draws and judges through the same fitter and evaluator.
 
 mod agreement;
+mod background_judge;
 mod boxes;
 mod comparison;
 mod evaluator;
@@ -17,6 +18,8 @@ mod judging;
 mod live;
 mod maps;
 mod need;
+mod picture;
+mod posed_rays;
 mod rays;
 mod scene;
 mod seen;
@@ -26,15 +29,17 @@ mod tune;
 mod view;
 
 pub use agreement::Agreement;
+pub use background_judge::{BackgroundJudge, JudgeJob, JudgedPicture};
 pub use comparison::{Comparison, Outcome, ensure_judged};
 pub use evaluator::Evaluator;
-pub use fitter::TechniqueFitter;
+pub use fitter::{RayUse, TechniqueFitter};
 pub use frame::FrameOptions;
 pub use histogram::SeenDepths;
 pub use judging::{Judging, SharedTruth};
 pub use live::LiveTruth;
 pub use maps::fit_map;
 pub use need::SeenNeed;
+pub use picture::FrameBefore;
 pub use rays::SceneRays;
 pub use scene::{NothingToDraw, PreparedScene};
 pub use seen::Seen;

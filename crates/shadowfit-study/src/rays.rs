@@ -7,7 +7,7 @@ use shadowfit_truth::{AlphaImage, CutOut, CutOuts, Tracer, Wrap};
 
 /// The casters of a scene in one pose. Blended surfaces cast nothing and are left out, as in the
 /// shadow pass.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct SceneRays {
     /// Answers rays; triangle numbers are those of `triangles`.
     pub tracer: Tracer,

@@ -1,7 +1,8 @@
-//! A scene made ready: uploaded, with boxes for fits, and with rays that are made when they are first needed.
+//! A scene made ready: uploaded, with boxes for fits, and with rays that are made when they are first needed or on a
+//! thread.
 
-use core::cell::{OnceCell, RefCell};
 use core::fmt;
+use std::sync::Arc;
 
 use glam::DVec3;
 use shadowfit::settings::ReceiverSource;
@@ -11,6 +12,7 @@ use shadowfit_scene::{AlphaMode, Instance, Pose, Scene};
 
 use crate::SceneRays;
 use crate::boxes::SceneBoxes;
+use crate::posed_rays::{Posed, PosedRays};
 
 /// Greatest coordinate of a scene's middle, in metres, up to which its rays are relative to the world's own origin: f32
 /// positions are that near to it exact to about a tenth of the rays' offset of a millimetre.
@@ -35,23 +37,36 @@ impl fmt::Display for NothingToDraw {
 impl core::error::Error for NothingToDraw {}
 
 /// A scene in a pose, ready to be drawn, traced and fitted to.
+///
+/// Whoever can wait asks for its [`rays`](Self::rays). Whoever draws pictures that follow each other asks in each frame
+/// for what there is, and a thread makes what is missing:
+///
+/// ```no_run
+/// # fn frame(scene: &mut shadowfit_study::PreparedScene) {
+/// scene.take_rays();
+/// scene.request_rays();
+/// if let Some((rays, is_of_present_pose)) = scene.latest_rays() {
+///     println!("{} triangles, of this very pose: {is_of_present_pose}", rays.triangles.len());
+/// }
+/// # }
+/// ```
+///
+/// It can be made on one thread and used on another.
 #[derive(Debug)]
 pub struct PreparedScene {
     /// On the GPU.
     pub(crate) gpu_scene: GpuScene,
-    scene: Scene,
+    scene: Arc<Scene>,
     pose: Pose,
     bounds: Aabb,
     clusters: SceneBoxes,
     objects: SceneBoxes,
     origin: DVec3,
-    rays: OnceCell<SceneRays>,
-    /// Rays of an earlier pose, which take less time to be moved than new ones to be made.
-    earlier_rays: RefCell<Option<SceneRays>>,
+    rays: PosedRays,
 }
 
 impl PreparedScene {
-    /// Makes a scene ready, in its rest pose. `layout` comes from [`shadowfit_render::Renderer::material_layout`];
+    /// Makes a scene ready, in its rest pose, with boxes and without rays. `layout` comes from [`shadowfit_render::Renderer::material_layout`];
     /// those of all renderers are alike.
     ///
     /// # Errors
@@ -69,33 +84,40 @@ impl PreparedScene {
         }
         Ok(Self {
             gpu_scene,
-            scene,
+            scene: Arc::new(scene),
             pose,
             bounds,
             clusters,
             objects,
             origin: origin_of(&bounds),
-            rays: OnceCell::new(),
-            earlier_rays: RefCell::default(),
+            rays: PosedRays::default(),
         })
     }
 
-    /// Poses the scene at a time of an animation, in seconds; in its rest pose where it has no such animation.
+    /// Poses the scene at a time of an animation, in seconds; in its rest pose where it has no such animation. In the pose
+    /// that it already has, all stays as it is.
     pub fn set_time(&mut self, gpu: &Gpu, animation: usize, seconds: f32) {
-        self.pose = self.scene.pose(Some(animation), seconds);
+        let pose = self.scene.pose(Some(animation), seconds);
+        if pose == self.pose {
+            return;
+        }
+        self.pose = pose;
         self.gpu_scene.set_pose(gpu, &self.scene, &self.pose);
         for boxes in [&mut self.clusters, &mut self.objects] {
             boxes.set_pose(|index| self.gpu_scene.instance_bounds(index));
         }
         self.bounds = self.gpu_scene.bounds().unwrap_or(self.bounds);
-        if let Some(rays) = self.rays.take() {
-            *self.earlier_rays.get_mut() = Some(rays);
-        }
+        self.rays.change_pose();
     }
 
     /// The scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
+    }
+
+    /// The scene, for threads that go on with it.
+    pub fn shared_scene(&self) -> Arc<Scene> {
+        Arc::clone(&self.scene)
     }
 
     /// Where its nodes are at present.
@@ -119,26 +141,43 @@ impl PreparedScene {
         self.origin
     }
 
-    /// The casters in their present pose, for rays: made when first asked for after the pose has changed.
+    /// The casters in their present pose, for rays, for callers that can wait: made when first asked for after the pose
+    /// has changed, which takes a tenth of a second or more for each million triangles.
     pub fn rays(&self) -> &SceneRays {
-        self.rays.get_or_init(|| match self.earlier_rays.take() {
-            Some(mut rays) => {
-                rays.set_pose(&self.scene, &self.pose);
-                rays
-            }
-            None => SceneRays::from_origin(&self.scene, &self.pose, self.origin),
-        })
+        self.rays.get_or_make(self.posed())
     }
 
-    /// Calls a function with rays of the present pose if they exist, else with those of an earlier pose, which cost
-    /// nothing while the scene moves; new ones are made only where there are none at all.
-    pub(crate) fn with_late_rays<T>(&self, call: impl FnOnce(&SceneRays) -> T) -> T {
-        let earlier = self.earlier_rays.borrow();
-        if let (None, Some(rays)) = (self.rays.get(), &*earlier) {
-            return call(rays);
-        }
-        drop(earlier);
-        call(self.rays())
+    /// The same, for threads that go on with them.
+    pub fn shared_rays(&self) -> Arc<SceneRays> {
+        Arc::clone(self.rays.get_or_make(self.posed()))
+    }
+
+    /// The rays of the present pose, if they are there. Nothing is made.
+    pub fn ready_rays(&self) -> Option<Arc<SceneRays>> {
+        self.rays.ready()
+    }
+
+    /// The latest rays that there are, and whether they are of the present pose. Nothing is made.
+    pub fn latest_rays(&self) -> Option<(Arc<SceneRays>, bool)> {
+        self.rays.latest()
+    }
+
+    /// Has a thread make the rays of the present pose, which [`Self::take_rays`] takes in a later frame. Nothing happens
+    /// where they are there already, or while a thread still makes those of an earlier pose: asked in each frame of an
+    /// animation, it makes rays one after the other, which lag behind by a frame or a few.
+    pub fn request_rays(&mut self) {
+        let Self { rays, scene, pose, origin, .. } = self;
+        rays.request(Posed { scene, pose, origin: *origin });
+    }
+
+    /// Takes the rays that a thread has made, without waiting for them, and returns whether there were any. Those of an
+    /// earlier pose count too: [`Self::latest_rays`] has them.
+    pub fn take_rays(&mut self) -> bool {
+        self.rays.take()
+    }
+
+    fn posed(&self) -> Posed<'_> {
+        Posed { scene: &self.scene, pose: &self.pose, origin: self.origin }
     }
 
     /// A camera as rays see it: relative to their origin.
@@ -165,8 +204,8 @@ impl PreparedScene {
         self.scene.instances().iter().map(triangles).sum()
     }
 
-    /// Whether each instance counts in sums: all, or those of the scene's subject if it has one.
-    pub(crate) fn counted_instances(&self, subject_only: bool) -> Vec<bool> {
+    /// Whether each of the scene's instances counts in sums: all do, or those of its subject if it has one.
+    pub fn counted_instances(&self, subject_only: bool) -> Vec<bool> {
         let root = self.scene.subject.filter(|_| subject_only);
         let counts = |node| root.is_none_or(|root| self.scene.is_descendant(node, root));
         self.scene.instances().iter().map(|instance| counts(instance.node)).collect()
@@ -206,6 +245,29 @@ mod tests {
         let vertices =
             |rays: &SceneRays| -> Vec<_> { (0..rays.tracer.len()).map(|i| rays.tracer.normal(i as u32)).collect() };
         assert_eq!(vertices(prepared.rays()), vertices(&anew));
+    }
+
+    #[test]
+    fn a_scene_can_be_made_on_one_thread_and_used_on_another() {
+        fn assert_send<T: Send>() {}
+        assert_send::<PreparedScene>();
+        assert_send::<Result<PreparedScene, NothingToDraw>>();
+    }
+
+    #[test]
+    fn gpu_a_scene_is_made_without_rays_and_only_another_pose_makes_them_late() {
+        let (gpu, prepared) = prepared(default_scene());
+        let mut prepared = prepared.expect("the default scene");
+        assert!(prepared.latest_rays().is_none());
+        prepared.request_rays();
+        prepared.rays();
+        let is_ready = |prepared: &PreparedScene| prepared.ready_rays().is_some();
+        assert!(is_ready(&prepared));
+        let animation_that_is_not_there = 99;
+        prepared.set_time(&gpu, animation_that_is_not_there, 1.0);
+        assert!(is_ready(&prepared), "it is the same pose");
+        prepared.set_time(&gpu, 0, 0.8);
+        assert!(!is_ready(&prepared) && prepared.latest_rays().is_some_and(|(_, is_present)| !is_present));
     }
 
     #[test]

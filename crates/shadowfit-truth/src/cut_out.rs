@@ -4,6 +4,7 @@
 //! a hole. The image is sampled at its finest level, by bilinear interpolation or at the nearest texel.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
@@ -24,12 +25,12 @@ pub enum Wrap {
     Mirror = 2,
 }
 
-/// The alpha of an image, at least one texel.
+/// The alpha of an image, at least one texel. Clones share it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AlphaImage {
     width: u32,
     height: u32,
-    alpha: Vec<u8>,
+    alpha: Arc<[u8]>,
 }
 
 impl AlphaImage {
@@ -38,7 +39,7 @@ impl AlphaImage {
     pub fn new(width: u32, height: u32, alpha: Vec<u8>) -> Option<Self> {
         let texels = (width as usize).checked_mul(height as usize)?;
         let fits = texels > 0 && texels == alpha.len() && width.max(height) <= 1 << 24;
-        fits.then_some(Self { width, height, alpha })
+        fits.then(|| Self { width, height, alpha: alpha.into() })
     }
 
     /// Width and height, in texels.

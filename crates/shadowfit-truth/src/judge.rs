@@ -9,7 +9,8 @@ use rayon::prelude::*;
 
 use crate::class::{Class, counts_as_lit};
 use crate::displacement::displacement;
-use crate::maps::{MIN_FACING, MapChoice, Occluder, PictureMaps, pixels_per_texel};
+use crate::maps::{MIN_FACING, PictureMaps};
+use crate::pixel::{PixelFinding, PixelTruth};
 use crate::tally::{CountedPixel, PictureTally};
 use crate::tracer::Tracer;
 use crate::truth::{Truth, TruthPoint};
@@ -33,19 +34,6 @@ pub struct Judged {
     pub tally: PictureTally,
 }
 
-/// The result for a single pixel.
-struct Finding {
-    class: Class,
-    pixels_per_texel: f32,
-    is_in_edge_zone: bool,
-    map_index: Option<u8>,
-}
-
-impl Finding {
-    const NOT_JUDGED: Self =
-        Self { class: Class::NotJudged, pixels_per_texel: f32::NAN, is_in_edge_zone: false, map_index: None };
-}
-
 /// Judges a picture that was shadowed by `maps`.
 ///
 /// `factors` holds the share of the light that the filtered maps let through at each pixel, 0..=1,
@@ -66,12 +54,44 @@ pub fn judge(
     factors: &[f32],
     counts: impl Fn(u32) -> bool + Sync,
 ) -> Judged {
+    judged(tracer, truth, maps, factors, counts, || true)
+}
+
+/// As [`judge()`], for as long as `goes_on` says so, which is asked at every pixel; `None` as soon as it does not. Once
+/// it has said no, it must not say yes again.
+///
+/// # Panics
+///
+/// As [`judge()`].
+pub fn judge_while(
+    tracer: &Tracer,
+    truth: &Truth,
+    maps: &PictureMaps,
+    factors: &[f32],
+    counts: impl Fn(u32) -> bool + Sync,
+    goes_on: impl Fn() -> bool + Sync,
+) -> Option<Judged> {
+    let judged = judged(tracer, truth, maps, factors, counts, &goes_on);
+    goes_on().then_some(judged)
+}
+
+fn judged(
+    tracer: &Tracer,
+    truth: &Truth,
+    maps: &PictureMaps,
+    factors: &[f32],
+    counts: impl Fn(u32) -> bool + Sync,
+    goes_on: impl Fn() -> bool + Sync,
+) -> Judged {
     assert_eq!(factors.len(), truth.points.len(), "as many factors as pixels");
-    let findings: Vec<Finding> = (0..factors.len())
+    let rays = PixelTruth { tracer, camera: &truth.camera, settings: &truth.settings };
+    let findings: Vec<PixelFinding> = (0..factors.len())
         .into_par_iter()
         .map(|pixel| match &truth.points[pixel] {
-            Some(point) if point.is_judged => find(tracer, truth, maps, factors[pixel], pixel, point),
-            _ => Finding::NOT_JUDGED,
+            Some(point) if point.is_judged && goes_on() => {
+                rays.find(maps, factors[pixel], pixel, point, |width| truth.is_near_transition(pixel, width))
+            }
+            _ => PixelFinding::NOT_JUDGED,
         })
         .collect();
     let counted = |point: &Option<TruthPoint>| point.is_some_and(|point| point.is_judged && counts(point.triangle));
@@ -85,57 +105,6 @@ pub fn judge(
     };
     judged.tally = sums(truth, &judged, factors);
     judged
-}
-
-/// Judges a single pixel.
-fn find(tracer: &Tracer, truth: &Truth, maps: &PictureMaps, factor: f32, pixel: usize, point: &TruthPoint) -> Finding {
-    let choice = maps.main(point.view_depth, point.position);
-    let texel_width = choice.as_ref().map(|choice| texel_width(truth, choice, pixel, point));
-    let pixels = texel_width.map_or(1.0, |width| width.max(1.0));
-    let is_in_edge_zone =
-        truth.is_near_transition(pixel, maps.edge_width(choice.as_ref().map(|choice| choice.index)) * pixels);
-    let class = match (counts_as_lit(point.lit), counts_as_lit(factor)) {
-        (true, true) | (false, false) => Class::Right,
-        (false, true) if is_hole(tracer, truth, maps, choice.as_ref(), pixel, point) => Class::Hole,
-        _ if is_in_edge_zone => Class::Edge,
-        (true, false) => Class::FalseShadow,
-        (false, true) => Class::FalseLight,
-    };
-    Finding {
-        class,
-        pixels_per_texel: texel_width.unwrap_or(f32::INFINITY),
-        is_in_edge_zone,
-        map_index: choice.map(|choice| u8::try_from(choice.index).unwrap_or(u8::MAX)),
-    }
-}
-
-/// Pixels per texel along the worse axis, in the map that the point reads; infinite where the surface
-/// is edge-on to the light.
-fn texel_width(truth: &Truth, choice: &MapChoice, pixel: usize, point: &TruthPoint) -> f32 {
-    let steps = truth.camera.pixel_steps(truth.camera.ray_of(pixel), point.normal, point.view_depth);
-    let pixels = pixels_per_texel(choice.map.gradients(&choice.position).texels_per_step(steps)) as f32;
-    if pixels.is_nan() { f32::INFINITY } else { pixels }
-}
-
-/// Whether the map that is read holds none of the point's occluders, or no map is read.
-fn is_hole(
-    tracer: &Tracer,
-    truth: &Truth,
-    maps: &PictureMaps,
-    choice: Option<&MapChoice>,
-    pixel: usize,
-    point: &TruthPoint,
-) -> bool {
-    let Some(choice) = choice else { return true };
-    let mut is_held = false;
-    truth.for_each_occluder(tracer, point, truth.blocked_ray(tracer, pixel, point), |occluder| {
-        is_held |= match choice.occluder(occluder) {
-            Occluder::Inside => true,
-            Occluder::BeforeNear => maps.depth_clamp,
-            Occluder::Outside => false,
-        };
-    });
-    !is_held
 }
 
 /// Sums over the pixels that count.

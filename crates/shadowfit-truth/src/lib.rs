@@ -12,6 +12,7 @@
 //! ```text
 //! crawl
 //! gpu      judge
+//!          pixel
 //! peers    truth
 //! displacement  tally  tracer
 //! camera  class  cut_out  distances  histogram  maps  memory  sun
@@ -30,6 +31,7 @@ mod judge;
 mod maps;
 mod memory;
 pub mod peers;
+mod pixel;
 mod sun;
 mod tally;
 mod tracer;
@@ -41,9 +43,10 @@ pub use crawl::{MapsBefore, crawl};
 pub use cut_out::{AlphaImage, CutOut, CutOuts, Wrap};
 pub use displacement::MAX_DISPLACEMENT;
 pub use histogram::Histogram;
-pub use judge::{Judged, judge};
+pub use judge::{Judged, judge, judge_while};
 pub use maps::{MapGradients, MapPosition, MapReading, MeasuredMap, PictureMaps};
 pub use memory::TracerMemory;
+pub use pixel::{PixelFinding, PixelTruth};
 pub use tally::{ClassTally, PictureFigures, PictureTally};
 pub use tracer::{Hit, Tracer, TriangleCountError};
-pub use truth::{Truth, TruthPoint, TruthSettings};
+pub use truth::{Occluder, Truth, TruthPoint, TruthSettings};

@@ -1,6 +1,7 @@
 //! Rays against triangles, through the bounding volume hierarchy of the `obvhs` crate.
 
 use std::fmt;
+use std::sync::Arc;
 use std::time::Duration;
 
 use glam::{DVec3, Vec3, Vec3A};
@@ -14,14 +15,16 @@ use crate::memory::TracerMemory;
 
 /// Says whether a triangle, given by its index, is opaque at a point with these weights of its second
 /// and third corner.
-type AlphaTest = Box<dyn Fn(u32, [f32; 2]) -> bool + Send + Sync>;
+type AlphaTest = Arc<dyn Fn(u32, [f32; 2]) -> bool + Send + Sync>;
 
 /// A refitted hierarchy is rebuilt when its cost has grown by more than this factor since it was
 /// built. The time of a ray grows about as the cost does, and a build takes as long as many thousands
 /// of rays.
 const MAX_COST_GROWTH: f32 = 1.5;
 
-/// Triangles, and a hierarchy through which rays find those that they meet.
+/// Triangles, and a hierarchy through which rays find those that they meet. A clone copies both, and shares
+/// the images of cut-outs.
+#[derive(Clone)]
 pub struct Tracer {
     triangles: Vec<Triangle>,
     bvh: Option<Bvh2>,
@@ -104,7 +107,7 @@ impl Tracer {
     /// stops a ray, with the weights of its second and third corner at the hit.
     #[must_use]
     pub fn with_alpha_test(mut self, is_opaque: impl Fn(u32, [f32; 2]) -> bool + Send + Sync + 'static) -> Self {
-        self.alpha_test = Some(Box::new(is_opaque));
+        self.alpha_test = Some(Arc::new(is_opaque));
         self
     }
 

@@ -87,18 +87,41 @@ impl Truth {
     ///
     /// If `seen` does not have one element for each pixel.
     pub fn trace(tracer: &Tracer, camera: &PixelCamera, settings: &TruthSettings, seen: &[Option<u32>]) -> Self {
+        Self::traced(tracer, camera, settings, seen, || true)
+    }
+
+    /// As [`Self::trace`], for as long as `goes_on` says so, which is asked at every pixel; `None` as soon as it does
+    /// not. Once it has said no, it must not say yes again.
+    ///
+    /// # Panics
+    ///
+    /// As [`Self::trace`].
+    pub fn trace_while(
+        tracer: &Tracer,
+        camera: &PixelCamera,
+        settings: &TruthSettings,
+        seen: &[Option<u32>],
+        goes_on: impl Fn() -> bool + Sync,
+    ) -> Option<Self> {
+        let truth = Self::traced(tracer, camera, settings, seen, &goes_on);
+        goes_on().then_some(truth)
+    }
+
+    fn traced(
+        tracer: &Tracer,
+        camera: &PixelCamera,
+        settings: &TruthSettings,
+        seen: &[Option<u32>],
+        goes_on: impl Fn() -> bool + Sync,
+    ) -> Self {
         assert_eq!(seen.len(), camera.pixels(), "one triangle or `None` for each pixel");
-        let sun = Sun::new(settings.to_light, settings.sun_radius, settings.sun_rays);
+        let sun = settings.sun();
         let points: Vec<Option<TruthPoint>> = seen
             .par_iter()
             .enumerate()
             .map(|(pixel, seen)| {
-                let triangle = seen.filter(|triangle| (*triangle as usize) < tracer.len())?;
-                let mut point = visible_point(tracer, camera, settings, pixel, triangle);
-                if point.is_judged {
-                    point.lit = lit_share(tracer, settings, &sun, pixel, &point);
-                }
-                Some(point)
+                let triangle = seen.filter(|triangle| (*triangle as usize) < tracer.len() && goes_on())?;
+                Some(point(tracer, (camera, settings), &sun, pixel, triangle))
             })
             .collect();
         let mut truth = Self { camera: *camera, settings: *settings, points, transition_squares: Vec::new() };
@@ -110,13 +133,7 @@ impl Truth {
     /// The nearest triangle at each pixel between the near and the far plane, by rays, for pictures
     /// without a rasteriser. A ray whose nearest triangle is out of that range sees the sky.
     pub fn seen_by_rays(tracer: &Tracer, camera: &PixelCamera) -> Vec<Option<u32>> {
-        let see = |pixel| {
-            let ray = camera.ray_of(pixel);
-            let hit = tracer.first_hit(camera.eye.as_vec3(), ray.as_vec3())?;
-            let depth = tracer.refine(hit, tracer.plane_normal(hit.triangle), camera.eye, ray);
-            (camera.near..=camera.far).contains(&depth).then_some(hit.triangle)
-        };
-        (0..camera.pixels()).into_par_iter().map(see).collect()
+        (0..camera.pixels()).into_par_iter().map(|pixel| seen_by_ray(tracer, camera, pixel)).collect()
     }
 
     /// Whether at least half of the light reaches a pixel, given by its index in the rows from the
@@ -137,21 +154,84 @@ impl Truth {
     }
 
     /// Whether the distance to a transition is at most `width`, in pixels.
-    ///
-    /// In f32 and without a root: the whole square is compared with that of `width` less half a pixel,
-    /// so that another implementation, such as the GPU's, finds exactly the same pixels.
     pub(crate) fn is_near_transition(&self, pixel: usize, width: f32) -> bool {
-        let square = self.transition_squares[pixel];
-        let reach = width - 0.5;
-        square != NONE_MARKED && square as f32 <= reach * reach
+        is_within(self.transition_squares[pixel], width)
+    }
+
+    fn is_transition(&self, pixel: [usize; 2]) -> bool {
+        let size = self.camera.size.map(|side| side as usize);
+        is_transition(size, |[x, y]| self.verdict(y * size[0] + x), pixel)
+    }
+}
+
+/// Whether a pixel borders on one with another verdict, side by side or one above the other; both must be judged.
+pub(crate) fn is_transition(
+    [width, height]: [usize; 2],
+    verdict: impl Fn([usize; 2]) -> Option<bool>,
+    [x, y]: [usize; 2],
+) -> bool {
+    let Some(here) = verdict([x, y]) else { return false };
+    let differs = |x: usize, y: usize| verdict([x, y]).is_some_and(|there| there != here);
+    (x > 0 && differs(x - 1, y))
+        || (x + 1 < width && differs(x + 1, y))
+        || (y > 0 && differs(x, y - 1))
+        || (y + 1 < height && differs(x, y + 1))
+}
+
+/// Whether the square of a distance to a transition is that of at most `width` pixels.
+///
+/// In f32 and without a root: the whole square is compared with that of `width` less half a pixel,
+/// so that another implementation, such as the GPU's, finds exactly the same pixels.
+pub(crate) fn is_within(square: u32, width: f32) -> bool {
+    let reach = width - 0.5;
+    square != NONE_MARKED && square as f32 <= reach * reach
+}
+
+/// The nearest triangle at a pixel between the near and the far plane.
+pub(crate) fn seen_by_ray(tracer: &Tracer, camera: &PixelCamera, pixel: usize) -> Option<u32> {
+    let ray = camera.ray_of(pixel);
+    let hit = tracer.first_hit(camera.eye.as_vec3(), ray.as_vec3())?;
+    let depth = tracer.refine(hit, tracer.plane_normal(hit.triangle), camera.eye, ray);
+    (camera.near..=camera.far).contains(&depth).then_some(hit.triangle)
+}
+
+/// What a pixel shows of a triangle, and how much light reaches it.
+pub(crate) fn point(
+    tracer: &Tracer,
+    (camera, settings): (&PixelCamera, &TruthSettings),
+    sun: &Sun,
+    pixel: usize,
+    triangle: u32,
+) -> TruthPoint {
+    let mut point = visible_point(tracer, camera, settings, pixel, triangle);
+    if point.is_judged {
+        point.lit = lit_share(tracer, settings, sun, pixel, &point);
+    }
+    point
+}
+
+/// Something between a point and the light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Occluder {
+    /// Where it is met, moved along the normal as far as the ray's start was; world space, metres.
+    pub position: DVec3,
+    /// Distance from the point along the ray toward the light, in metres.
+    pub distance: f64,
+    /// Index of the tracer's triangle.
+    pub triangle: u32,
+}
+
+impl TruthSettings {
+    /// The sun that rays are cast to.
+    pub(crate) fn sun(&self) -> Sun {
+        Sun::new(self.to_light, self.sun_radius, self.sun_rays)
     }
 
     /// Direction of a ray from a shadowed point that is blocked: the one toward the sun's centre, or
     /// the first blocked one where that one is free.
-    pub(crate) fn blocked_ray(&self, tracer: &Tracer, pixel: usize, point: &TruthPoint) -> DVec3 {
-        let settings = &self.settings;
-        let sun = Sun::new(settings.to_light, settings.sun_radius, settings.sun_rays);
-        let origin = ray_origin(settings, point).as_vec3();
+    fn blocked_ray(&self, tracer: &Tracer, pixel: usize, point: &TruthPoint) -> DVec3 {
+        let sun = self.sun();
+        let origin = ray_origin(self, point).as_vec3();
         let is_blocked = |direction: &DVec3| tracer.is_occluded(origin, direction.as_vec3());
         let centre = sun.centre();
         if sun.rays() == 1 || is_blocked(&centre) {
@@ -160,30 +240,20 @@ impl Truth {
         sun.directions(pixel).find(is_blocked).unwrap_or(centre)
     }
 
-    /// Calls `visit` with every occluder of a judged point along a ray, world space, metres.
+    /// Calls `visit` with every occluder of a judged point along a ray that is blocked, in no order.
     pub(crate) fn for_each_occluder(
         &self,
         tracer: &Tracer,
+        pixel: usize,
         point: &TruthPoint,
-        direction: DVec3,
-        mut visit: impl FnMut(DVec3),
+        mut visit: impl FnMut(Occluder),
     ) {
-        let origin = ray_origin(&self.settings, point);
+        let direction = self.blocked_ray(tracer, pixel, point);
+        let origin = ray_origin(self, point);
         tracer.for_each_hit(origin.as_vec3(), direction.as_vec3(), |hit: Hit| {
             let distance = tracer.refine(hit, tracer.plane_normal(hit.triangle), origin, direction);
-            visit(point.position + direction * distance);
+            visit(Occluder { position: point.position + direction * distance, distance, triangle: hit.triangle });
         });
-    }
-
-    fn is_transition(&self, [x, y]: [usize; 2]) -> bool {
-        let [width, height] = self.camera.size.map(|side| side as usize);
-        let here = self.verdict(y * width + x);
-        let differs = |x: usize, y: usize| matches!((here, self.verdict(y * width + x)), (Some(here), Some(there)) if here != there);
-        here.is_some()
-            && ((x > 0 && differs(x - 1, y))
-                || (x + 1 < width && differs(x + 1, y))
-                || (y > 0 && differs(x, y - 1))
-                || (y + 1 < height && differs(x, y + 1)))
     }
 }
 

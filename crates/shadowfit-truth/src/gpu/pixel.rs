@@ -47,7 +47,24 @@ impl GpuPixel {
             pixels_per_texel: if class == Class::NotJudged { f32::NAN } else { decode_octaves((bits >> 16) as u16) },
         }
     }
+
+    /// Encodes a pixel as the passes do, for textures that are filled from the CPU. Indices of maps from 15 on have no
+    /// bits and count as 14.
+    pub fn to_bits(self) -> u32 {
+        if self.class == Class::NotJudged {
+            return 0;
+        }
+        let map = self.map_index.map_or(0, |index| u32::from(index).min(MOST_MAP_INDEX) + 1);
+        let octaves = if map == 0 { NO_OCTAVES } else { encode_octaves(self.pixels_per_texel) };
+        let flags = u32::from(self.is_lit) << 3 | u32::from(self.is_in_edge_zone) << 4;
+        self.class as u32 | flags | map << 8 | u32::from(octaves) << 16
+    }
 }
+
+/// Greatest index of a map that the texture has bits for.
+const MOST_MAP_INDEX: u32 = 14;
+/// What stands for pixels per texel where no map is read.
+const NO_OCTAVES: u16 = u16::MAX;
 
 /// Steps of an octave in the texture.
 const OCTAVE: f32 = 256.0;
@@ -60,6 +77,15 @@ const MAX_OCTAVE: f32 = 127.0;
 fn decode_octaves(bits: u16) -> f32 {
     let octaves = (f32::from(bits) - ONE) / OCTAVE;
     if octaves >= MAX_OCTAVE { f32::INFINITY } else { octaves.exp2() }
+}
+
+/// The bits of pixels per texel, which are at least 0; those of infinity for what is not a number.
+fn encode_octaves(pixels_per_texel: f32) -> u16 {
+    if pixels_per_texel.is_nan() {
+        return NO_OCTAVES;
+    }
+    let steps = (pixels_per_texel.log2() * OCTAVE).round() + ONE;
+    steps.clamp(0.0, f32::from(u16::MAX)) as u16
 }
 
 #[cfg(test)]
@@ -88,5 +114,29 @@ mod tests {
     #[test]
     fn pixels_per_texel_are_octaves_from_their_middle() {
         assert_eq!([32768, 33024, 32640, 65535].map(decode_octaves), [1.0, 2.0, 0.5f32.sqrt(), f32::INFINITY]);
+    }
+
+    #[test]
+    fn what_is_encoded_is_decoded_to_the_same() {
+        let pixel = GpuPixel {
+            class: Class::FalseLight,
+            is_lit: false,
+            is_in_edge_zone: true,
+            map_index: Some(3),
+            pixels_per_texel: 0.125,
+        };
+        let others = [
+            GpuPixel { class: Class::Right, is_lit: true, is_in_edge_zone: false, ..pixel },
+            GpuPixel { map_index: Some(0), pixels_per_texel: f32::INFINITY, ..pixel },
+            GpuPixel { map_index: None, pixels_per_texel: f32::INFINITY, ..pixel },
+        ];
+        for pixel in others.into_iter().chain([pixel]) {
+            assert_eq!(GpuPixel::from_bits(pixel.to_bits()), pixel);
+        }
+        assert_eq!(pixel.to_bits(), 3 | 16 | (4 << 8) | ((32768 - 3 * 256) << 16));
+        assert_eq!(GpuPixel { class: Class::NotJudged, ..pixel }.to_bits(), 0);
+        let near = GpuPixel { pixels_per_texel: 7.3, ..pixel };
+        let decoded = GpuPixel::from_bits(near.to_bits()).pixels_per_texel;
+        assert!((decoded / 7.3 - 1.0).abs() < 0.0014, "{decoded}");
     }
 }

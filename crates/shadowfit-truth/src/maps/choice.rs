@@ -26,7 +26,7 @@ pub(crate) fn choose(maps: &[MeasuredMap], view_depth: f64, point: DVec3) -> Opt
 
 /// Where an occluder is, for a point that reads a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Occluder {
+pub(crate) enum OccluderPlace {
     /// Beside the map, or behind the point.
     Outside,
     /// Before the near plane: drawn only where depth is clamped.
@@ -37,14 +37,14 @@ pub(crate) enum Occluder {
 
 impl MapChoice<'_> {
     /// Where an occluder of the point, world space, lies.
-    pub(crate) fn occluder(&self, occluder: DVec3) -> Occluder {
+    pub(crate) fn occluder(&self, occluder: DVec3) -> OccluderPlace {
         let position = self.map.project(occluder);
         if !self.map.is_within_sides(&position) || position.depth > self.position.depth + OCCLUDER_DEPTH_TOLERANCE {
-            Occluder::Outside
+            OccluderPlace::Outside
         } else if position.depth >= -OCCLUDER_DEPTH_TOLERANCE {
-            Occluder::Inside
+            OccluderPlace::Inside
         } else {
-            Occluder::BeforeNear
+            OccluderPlace::BeforeNear
         }
     }
 }

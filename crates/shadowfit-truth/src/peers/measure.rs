@@ -6,7 +6,7 @@ use super::cells::Cells;
 use super::scenarios::Frame;
 use super::tally::{Kept, Shimmer, Tally};
 use super::visible::{VisiblePoint, VisiblePoints};
-use crate::maps::{MIN_FACING, MapChoice, MapGradients, MeasuredMap, Occluder, choose, pixels_per_texel};
+use crate::maps::{MIN_FACING, MapChoice, MapGradients, MeasuredMap, OccluderPlace, choose, pixels_per_texel};
 
 /// Every 23rd visible point is looked up in the frame before. It shares no factor with the 320 rays of
 /// a row, so that points in all columns are.
@@ -71,9 +71,9 @@ fn add_occluders(
     let (mut is_drawn, mut is_in) = (false, false);
     for occluder in visible.occluders_of(point) {
         match choice.occluder(occluder) {
-            Occluder::Outside => {}
-            Occluder::BeforeNear => is_drawn = true,
-            Occluder::Inside => {
+            OccluderPlace::Outside => {}
+            OccluderPlace::BeforeNear => is_drawn = true,
+            OccluderPlace::Inside => {
                 (is_drawn, is_in) = (true, true);
                 break;
             }

@@ -9,4 +9,5 @@ mod scenes;
 mod shaders;
 mod shadows;
 #[cfg(feature = "gpu")]
+mod single_pixels;
 mod tally_gpu;

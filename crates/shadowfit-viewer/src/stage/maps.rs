@@ -2,6 +2,7 @@
 
 use shadowfit::settings::{CasterPolicy, MapOverride};
 use shadowfit::{DepthConvention, FitError, LightFit, PerspectiveCamera, Technique};
+use shadowfit_study::RayUse;
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
 
 use super::Stage;
@@ -31,7 +32,7 @@ impl Stage {
 
     fn fit_now(&mut self, technique: &Technique, size: [u32; 2]) -> Result<Fitted, FitError> {
         let view = self.view(size);
-        self.fitter.sees_late = self.plays();
+        self.fitter.rays = if self.plays() { RayUse::Late } else { RayUse::Wait };
         let goes_on = self.fitted.as_ref().and_then(|fitted| fitted.camera).is_some_and(|last| {
             let same_lens = PerspectiveCamera { eye: last.eye, forward: last.forward, ..view.camera } == last;
             same_lens && self.fitter.technique() == technique
