@@ -17,7 +17,7 @@ const MOST_TRIANGLES: usize = 6_000_000;
 const FARTHEST: f32 = 1e18;
 
 /// Boxes of a scene in its present pose, in world space.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct SceneBoxes {
     /// Of all that is drawn: those of the clusters, then one for each instance that moves.
     receivers: Vec<Aabb>,

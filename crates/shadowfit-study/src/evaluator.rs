@@ -6,7 +6,7 @@ use anyhow::Result;
 use glam::{DVec3, Vec3};
 use shadowfit_render::{Frame, Gpu, ProbePixel, ProbeTargets, RenderTarget, Renderer, Statistics};
 use shadowfit_truth::Judged;
-use shadowfit_truth::gpu::GpuPixel;
+use shadowfit_truth::gpu::{GpuBefore, GpuPixel};
 use shadowfit_wgpu::{MapFit, ShadowMapError};
 
 use crate::frame::frame;
@@ -23,6 +23,8 @@ pub struct Evaluator {
     /// How pictures are judged.
     pub judging: Judging,
     targets: Option<ProbeTargets>,
+    /// Of the maps of the frame before.
+    targets_before: Option<ProbeTargets>,
     picture: Option<RenderTarget>,
     before: Option<Before>,
 }
@@ -38,7 +40,7 @@ struct Before {
 impl Evaluator {
     /// An evaluator that has judged nothing yet.
     pub fn new(renderer: Renderer, judging: Judging) -> Self {
-        Self { renderer, judging, targets: None, picture: None, before: None }
+        Self { renderer, judging, targets: None, targets_before: None, picture: None, before: None }
     }
 
     /// Draws the maps of a view and its shaded picture.
@@ -184,6 +186,61 @@ impl Evaluator {
         self.with_live_input(gpu, scene, view, maps, |input| live.time(gpu, input, repeats))
     }
 
+    /// Draws a view's maps and its probe, and has the GPU judge it, without waiting: [`LiveTruth::classes`] is the picture
+    /// of classes, and [`LiveTruth::take`] has its sums some frames later. The maps are left as a picture of the same view
+    /// needs them. Crawl is measured against the view before, if [`Judging::crawl`] says so.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::judge_live`].
+    pub fn judge_in_place(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut PreparedScene,
+        view: &View,
+        maps: &[MapFit],
+        live: &mut LiveTruth,
+    ) -> Result<()> {
+        let before = self.before.take().filter(|_| self.judging.crawl && !view.is_first);
+        let targets = match &before {
+            Some(Before { maps, eye, forward }) => {
+                let targets = self.targets_before.take();
+                Some(self.draw_probe_into(gpu, scene, (view, maps, Some((*eye, *forward))), targets)?)
+            }
+            None => None,
+        };
+        let seen = self.draw_probe(gpu, scene, view, maps, None)?;
+        let descriptor = self.renderer.shadow_map().descriptor();
+        let measure = |maps: &[MapFit]| measured(maps, descriptor, view.direction, scene.origin());
+        let here = measure(maps);
+        let there = before.as_ref().map_or_else(Vec::new, |before| measure(&before.maps));
+        let maps_before = before.as_ref().map(|before| picture_maps(&there, &before.maps, descriptor));
+        let before = before.as_ref().zip(maps_before.as_ref()).zip(targets.as_ref());
+        live.submit(
+            gpu,
+            &LiveInput {
+                camera: self.judging.pixel_camera(scene.origin(), view),
+                settings: self.judging.truth_settings(view),
+                maps: picture_maps(&here, maps, descriptor),
+                seen: &seen.view,
+                before: before.map(|((before, maps), targets)| GpuBefore {
+                    maps,
+                    eye: before.eye - scene.origin(),
+                    forward: before.forward.as_dvec3(),
+                    seen: &targets.view,
+                }),
+            },
+        )?;
+        (self.targets, self.targets_before) = (Some(seen), targets.or(self.targets_before.take()));
+        self.remember(view, maps);
+        Ok(())
+    }
+
+    /// Remembers a view that was drawn and not judged: crawl is measured against it.
+    pub fn note_view(&mut self, view: &View, maps: &[MapFit]) {
+        self.remember(view, maps);
+    }
+
     fn with_live_input<T>(
         &mut self,
         gpu: &Gpu,
@@ -200,6 +257,7 @@ impl Evaluator {
             settings: self.judging.truth_settings(view),
             maps: picture_maps(&measured, maps, descriptor),
             seen: &targets.view,
+            before: None,
         });
         self.targets = Some(targets);
         result
@@ -229,7 +287,19 @@ impl Evaluator {
         maps: &[MapFit],
         choice: Option<(DVec3, Vec3)>,
     ) -> Result<ProbeTargets> {
-        let kept = self.targets.take().filter(|targets| targets.size == self.judging.size);
+        let kept = self.targets.take();
+        self.draw_probe_into(gpu, scene, (view, maps, choice), kept)
+    }
+
+    /// The same into these targets where they have the right size, else into new ones.
+    fn draw_probe_into(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut PreparedScene,
+        (view, maps, choice): (&View, &[MapFit], Option<(DVec3, Vec3)>),
+        targets: Option<ProbeTargets>,
+    ) -> Result<ProbeTargets> {
+        let kept = targets.filter(|targets| targets.size == self.judging.size);
         let targets = kept.unwrap_or_else(|| ProbeTargets::new(&gpu.device, self.judging.size));
         let options = FrameOptions::default();
         let atmosphere = options.atmosphere(view);

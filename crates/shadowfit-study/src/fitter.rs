@@ -5,7 +5,7 @@ use shadowfit::{FitError, FittedMaps, MapFitter, Technique, Workspace};
 use shadowfit_wgpu::MapFit;
 use shadowfit_wgpu::need::SeenNeed;
 
-use crate::{PreparedScene, Seen, View};
+use crate::{PosedScene, Seen, View};
 
 /// Views that a fit works with: held maps are fitted to the views of two frames ahead as well.
 const VIEWS: usize = 3;
@@ -75,7 +75,7 @@ impl TechniqueFitter {
     /// # Errors
     ///
     /// As [`Self::fit`].
-    pub fn fit_alone(&mut self, scene: &PreparedScene, view: &View) -> Result<Vec<MapFit>, FitError> {
+    pub fn fit_alone(&mut self, scene: &PosedScene, view: &View) -> Result<Vec<MapFit>, FitError> {
         self.maps.reset();
         self.seen = self.see(scene, view, self.rays == RayUse::IfReady)?;
         self.fit_maps(scene, view)
@@ -86,7 +86,7 @@ impl TechniqueFitter {
     /// # Errors
     ///
     /// When the camera or the settings make no sense.
-    pub fn fit(&mut self, scene: &PreparedScene, view: &View) -> Result<Vec<MapFit>, FitError> {
+    pub fn fit(&mut self, scene: &PosedScene, view: &View) -> Result<Vec<MapFit>, FitError> {
         if view.is_first {
             self.maps.reset();
             self.seen = None;
@@ -109,7 +109,7 @@ impl TechniqueFitter {
     }
 
     /// The maps of a view, from what is remembered.
-    fn fit_maps(&mut self, scene: &PreparedScene, view: &View) -> Result<Vec<MapFit>, FitError> {
+    fn fit_maps(&mut self, scene: &PosedScene, view: &View) -> Result<Vec<MapFit>, FitError> {
         let boxes = scene.boxes(self.technique.receivers);
         self.storage.resize(boxes.required(VIEWS), DVec2::ZERO);
         let frusta = [view.camera.frustum()?];
@@ -123,7 +123,7 @@ impl TechniqueFitter {
     }
 
     /// What a view shows, where the technique is told of it; `late` takes rays of an earlier pose too.
-    fn see(&self, scene: &PreparedScene, view: &View, late: bool) -> Result<Option<Seen>, FitError> {
+    fn see(&self, scene: &PosedScene, view: &View, late: bool) -> Result<Option<Seen>, FitError> {
         if !Seen::is_used_by(&self.technique) {
             return Ok(None);
         }
@@ -147,6 +147,8 @@ mod tests {
     use shadowfit_render::{AdapterChoice, Gpu, Renderer};
     use shadowfit_scene::builtin::default_scene;
     use shadowfit_wgpu::ShadowMapDescriptor;
+
+    use crate::PreparedScene;
 
     use super::*;
 

@@ -41,7 +41,7 @@ pub use maps::fit_map;
 pub use need::SeenNeed;
 pub use picture::FrameBefore;
 pub use rays::SceneRays;
-pub use scene::{NothingToDraw, PreparedScene};
+pub use scene::{NothingToDraw, PosedScene, PreparedScene};
 pub use seen::Seen;
 pub use settings_file::{settings_from_toml, settings_to_toml};
 pub use technique_file::NamedTechnique;

@@ -5,7 +5,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use glam::DVec3;
 use shadowfit_render::Gpu;
-use shadowfit_truth::gpu::{GpuJudge, GpuJudgeInput, GpuPixel, GpuTracer};
+use shadowfit_truth::gpu::{GpuBefore, GpuJudge, GpuJudgeInput, GpuPixel, GpuTally, GpuTracer};
 use shadowfit_truth::{PictureMaps, PixelCamera, TruthSettings};
 
 use crate::PreparedScene;
@@ -23,6 +23,8 @@ pub(crate) struct LiveInput<'a> {
     pub(crate) settings: TruthSettings,
     pub(crate) maps: PictureMaps<'a>,
     pub(crate) seen: &'a wgpu::TextureView,
+    /// What the maps of the frame before show at the same points.
+    pub(crate) before: Option<GpuBefore<'a>>,
 }
 
 impl LiveTruth {
@@ -51,6 +53,25 @@ impl LiveTruth {
         self.tracer.bytes()
     }
 
+    /// The classes of the last picture that was judged, an `R32Uint` texture of [`GpuPixel`]s; `None` before the first.
+    pub fn classes(&self) -> Option<&wgpu::Texture> {
+        self.judge.classes()
+    }
+
+    /// Number of pictures that were judged.
+    pub fn pictures(&self) -> u64 {
+        self.judge.pictures()
+    }
+
+    /// The sums of the newest picture that the GPU has finished, once, some frames late; `None` while there is none.
+    ///
+    /// # Errors
+    ///
+    /// When the device is lost.
+    pub fn take(&mut self, gpu: &Gpu) -> Result<Option<GpuTally>> {
+        Ok(self.judge.take(&gpu.device)?)
+    }
+
     pub(crate) fn judge(&mut self, gpu: &Gpu, input: &LiveInput<'_>) -> Result<Vec<GpuPixel>> {
         self.submit(gpu, input)?;
         Ok(self.judge.read(&gpu.device, &gpu.queue)?)
@@ -71,10 +92,10 @@ impl LiveTruth {
         Ok(start.elapsed().as_secs_f64() * 1e3 / f64::from(repeats.max(1)))
     }
 
-    fn submit(&mut self, gpu: &Gpu, input: &LiveInput<'_>) -> Result<()> {
+    pub(crate) fn submit(&mut self, gpu: &Gpu, input: &LiveInput<'_>) -> Result<()> {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let judged =
-            GpuJudgeInput { camera: &input.camera, settings: &input.settings, maps: &input.maps, before: None };
+            GpuJudgeInput { camera: &input.camera, settings: &input.settings, maps: &input.maps, before: input.before };
         self.judge.judge(&gpu.device, &gpu.queue, &mut encoder, &self.tracer, input.seen, &judged)?;
         gpu.queue.submit([encoder.finish()]);
         Ok(())

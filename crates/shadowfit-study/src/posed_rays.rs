@@ -87,6 +87,11 @@ impl PosedRays {
         self.present.get().cloned()
     }
 
+    /// The rays of the present pose alone, for another thread.
+    pub(crate) fn snapshot(&self) -> Self {
+        Self { present: self.ready().map_or_else(OnceLock::new, OnceLock::from), ..Self::default() }
+    }
+
     /// The latest rays that are there, and whether they are of the present pose.
     pub(crate) fn latest(&self) -> Option<(Arc<SceneRays>, bool)> {
         let earlier = || self.others().earlier.as_ref().map(|earlier| (Arc::clone(&earlier.rays), false));

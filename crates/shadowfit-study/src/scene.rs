@@ -56,6 +56,12 @@ impl core::error::Error for NothingToDraw {}
 pub struct PreparedScene {
     /// On the GPU.
     pub(crate) gpu_scene: GpuScene,
+    posed: PosedScene,
+}
+
+/// A scene in a pose, ready to be traced and fitted to: all of a [`PreparedScene`] that needs no GPU.
+#[derive(Debug)]
+pub struct PosedScene {
     scene: Arc<Scene>,
     pose: Pose,
     bounds: Aabb,
@@ -82,8 +88,7 @@ impl PreparedScene {
         for boxes in [&mut clusters, &mut objects] {
             boxes.set_pose(|index| gpu_scene.instance_bounds(index));
         }
-        Ok(Self {
-            gpu_scene,
+        let posed = PosedScene {
             scene: Arc::new(scene),
             pose,
             bounds,
@@ -91,23 +96,55 @@ impl PreparedScene {
             objects,
             origin: origin_of(&bounds),
             rays: PosedRays::default(),
-        })
+        };
+        Ok(Self { gpu_scene, posed })
     }
 
     /// Poses the scene at a time of an animation, in seconds; in its rest pose where it has no such animation. In the pose
     /// that it already has, all stays as it is.
     pub fn set_time(&mut self, gpu: &Gpu, animation: usize, seconds: f32) {
-        let pose = self.scene.pose(Some(animation), seconds);
-        if pose == self.pose {
+        let Self { gpu_scene, posed } = self;
+        let pose = posed.scene.pose(Some(animation), seconds);
+        if pose == posed.pose {
             return;
         }
-        self.pose = pose;
-        self.gpu_scene.set_pose(gpu, &self.scene, &self.pose);
-        for boxes in [&mut self.clusters, &mut self.objects] {
-            boxes.set_pose(|index| self.gpu_scene.instance_bounds(index));
+        posed.pose = pose;
+        gpu_scene.set_pose(gpu, &posed.scene, &posed.pose);
+        for boxes in [&mut posed.clusters, &mut posed.objects] {
+            boxes.set_pose(|index| gpu_scene.instance_bounds(index));
         }
-        self.bounds = self.gpu_scene.bounds().unwrap_or(self.bounds);
-        self.rays.change_pose();
+        posed.bounds = gpu_scene.bounds().unwrap_or(posed.bounds);
+        posed.rays.change_pose();
+    }
+}
+
+impl core::ops::Deref for PreparedScene {
+    type Target = PosedScene;
+
+    fn deref(&self) -> &PosedScene {
+        &self.posed
+    }
+}
+
+impl core::ops::DerefMut for PreparedScene {
+    fn deref_mut(&mut self) -> &mut PosedScene {
+        &mut self.posed
+    }
+}
+
+impl PosedScene {
+    /// The scene in its present pose for a thread of its own, with the rays that are there.
+    #[must_use]
+    pub fn snapshot(&self) -> Self {
+        Self {
+            scene: Arc::clone(&self.scene),
+            pose: self.pose.clone(),
+            bounds: self.bounds,
+            clusters: self.clusters.clone(),
+            objects: self.objects.clone(),
+            origin: self.origin,
+            rays: self.rays.snapshot(),
+        }
     }
 
     /// The scene.

@@ -14,8 +14,9 @@ use shadowfit::tool::{Settings, ViewMode};
 use shadowfit::{Aabb, PerspectiveCamera, Technique};
 use shadowfit_egui::Artefact;
 use shadowfit_render::FlyCamera;
+use shadowfit_study::PosedScene;
 
-use crate::stage::Stage;
+use crate::narration;
 use crate::view_search::{GRID, Seen, Shadow, ViewSearch, aimed};
 
 /// Height of a shadow texel on screen when acne is shown, as a share of the picture's height: a few
@@ -44,37 +45,62 @@ const STEPS: u32 = 24;
 /// Aspect that candidates are judged with.
 const ASPECT: f32 = 16.0 / 9.0;
 
-/// Moves camera and settings to show an artefact; returns `false` where no view of the scene shows it.
-pub(crate) fn show(stage: &mut Stage, artefact: Artefact) -> bool {
-    stage.settings.view.play = false;
-    stage.settings.view.mode = ViewMode::Final;
-    stage.settings.view.freeze_fit = false;
-    stage.settings.view.shadows = true;
-    stage.settings.light.animate = false;
-    let light = stage.settings.light.direction();
-    let scene = stage.prepared_scene();
-    let origin = scene.origin();
-    let subject = relative_to(origin, &scene.subject_bounds());
-    let has_subject = scene.scene().subject.is_some();
-    let lens = scene.camera_for_rays(&lens(stage));
-    let mut settings = stage.settings;
-    let search = ViewSearch::new(scene, light);
-    let place = Place::new(&search, light, subject, has_subject, lens);
-    let (camera, found) = match artefact {
-        Artefact::Acne => show_acne(&search, &place, &mut settings),
-        Artefact::Aliasing => show_aliasing(&search, &place, &mut settings),
-        Artefact::ClippingHole => show_hole(&search, &place, &mut settings),
-    };
-    stage.settings = settings;
-    let eye = origin + camera.eye;
-    stage.camera = FlyCamera::look_at(eye, eye + camera.forward.as_dvec3());
-    found
+/// What a search for the view of an artefact begins with; it can be sent to a thread.
+#[derive(Debug)]
+pub(crate) struct Search {
+    pub(crate) artefact: Artefact,
+    pub(crate) scene: PosedScene,
+    pub(crate) settings: Settings,
+    /// The present camera with its lens.
+    pub(crate) lens: PerspectiveCamera,
+}
+
+/// A view of an artefact.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Found {
+    pub(crate) artefact: Artefact,
+    pub(crate) settings: Settings,
+    pub(crate) camera: FlyCamera,
+    /// Whether it shows the artefact; where no view does, this one is the next best.
+    pub(crate) shows: bool,
+    /// What to look for, in a sentence about this scene.
+    pub(crate) narration: String,
+}
+
+impl Search {
+    /// Looks for the view and the settings that show the artefact best.
+    pub(crate) fn run(mut self) -> Found {
+        let view = &mut self.settings.view;
+        (view.mode, view.play, view.freeze_fit, view.shadows) = (ViewMode::Final, false, false, true);
+        self.settings.light.animate = false;
+        let light = self.settings.light.direction();
+        let scene = &self.scene;
+        let origin = scene.origin();
+        let subject = relative_to(origin, &scene.subject_bounds());
+        let has_subject = scene.scene().subject.is_some();
+        let lens = scene.camera_for_rays(&PerspectiveCamera { aspect: ASPECT, ..self.lens });
+        let mut settings = self.settings;
+        let search = ViewSearch::new(scene, light);
+        let place = Place::new(&search, light, subject, has_subject, lens);
+        let (camera, shows) = match self.artefact {
+            Artefact::Acne => show_acne(&search, &place, &mut settings),
+            Artefact::Aliasing => show_aliasing(&search, &place, &mut settings),
+            Artefact::ClippingHole => show_hole(&search, &place, &mut settings),
+        };
+        let eye = origin + camera.eye;
+        Found {
+            artefact: self.artefact,
+            narration: narration::tell(self.artefact, &search, &camera, &settings),
+            settings,
+            camera: FlyCamera::look_at(eye, eye + camera.forward.as_dvec3()),
+            shows,
+        }
+    }
 }
 
 /// Applies the cure of an artefact on show; `before` is the technique from before it was shown.
-pub(crate) fn fix(stage: &mut Stage, artefact: Artefact, before: &Technique) {
-    let seen = farthest_seen(stage);
-    let technique = &mut stage.settings.technique;
+/// `seen` is the distance beyond which hardly anything is seen, in metres, from [`farthest_seen`].
+pub(crate) fn fix(technique: &mut Technique, artefact: Artefact, before: &Technique, seen: Option<f32>) {
     let is_single = technique.count == 1;
     let gave_way = !is_single && technique.fit.kind == FitKind::Focused && before.fit.kind == FitKind::Windows;
     if gave_way && artefact != Artefact::Acne {
@@ -372,19 +398,13 @@ fn coarsen(search: &ViewSearch<'_>, camera: &PerspectiveCamera, settings: &mut S
 }
 
 /// Distance beyond which hardly anything is seen, in metres.
-fn farthest_seen(stage: &Stage) -> Option<f32> {
-    let scene = stage.prepared_scene();
-    let light = stage.settings.light.direction();
-    let pixels = ViewSearch::new(scene, light).look(&scene.camera_for_rays(&lens(stage)));
+pub(crate) fn farthest_seen(scene: &PosedScene, light: Vec3, camera: &PerspectiveCamera) -> Option<f32> {
+    let camera = PerspectiveCamera { aspect: ASPECT, ..*camera };
+    let pixels = ViewSearch::new(scene, light).look(&scene.camera_for_rays(&camera));
     let mut distances: Vec<f32> = pixels.iter().flatten().map(|seen| seen.distance).collect();
     distances.sort_by(f32::total_cmp);
     let index = (distances.len() as f32 * 0.98) as usize;
     Some(distances.get(index)? * 1.1)
-}
-
-/// The present camera, with the aspect that candidates are judged with.
-fn lens(stage: &Stage) -> PerspectiveCamera {
-    PerspectiveCamera { aspect: ASPECT, ..stage.perspective([1, 1]) }
 }
 
 /// A world-space box relative to a world position, in metres.

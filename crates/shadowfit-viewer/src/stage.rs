@@ -1,38 +1,32 @@
-//! What the viewer shows, without a window: scene, camera, settings, animation, artefact, renderer.
+//! What the viewer shows, without a window: scene, camera, settings, animation, artefact, and one technique or two.
 
+mod boards;
+mod compare;
 mod figures;
 mod home;
 mod inset;
 mod judge;
-mod last_picture;
-mod maps;
+mod live;
+mod need_view;
+mod shown;
+mod side;
+mod why;
+
+#[cfg(test)]
+mod depth_tests;
 
 use core::fmt;
 
-use shadowfit::tool::{InsetMaps, Settings, ViewMode};
+use shadowfit::tool::Settings;
 use shadowfit::{Aabb, PerspectiveCamera};
-use shadowfit_egui::Artefact;
-use shadowfit_render::{Culling, FlyCamera, FlyInput, Gpu, Overlay, RenderTarget, Renderer, Statistics};
+use shadowfit_render::{FlyCamera, FlyInput, Gpu, RenderTarget};
 use shadowfit_scene::Scene;
-use shadowfit_study::{Evaluator, FrameOptions, Judging, NothingToDraw, PreparedScene, TechniqueFitter, View};
-use shadowfit_wgpu::need::NeedPass;
-use shadowfit_wgpu::{MapFit, ShadowMapDescriptor, ShadowMapError};
+use shadowfit_study::{NothingToDraw, PreparedScene, View};
+use shadowfit_wgpu::{MapFit, ShadowMapError};
 
-use crate::fitted::Fitted;
-use crate::{artefact, outside};
-
-/// Shown when no view of a scene shows an artefact.
-const NOT_FOUND: &str =
-    "No place in this scene shows this well: nothing throws a shadow on a surface that faces the light.";
-
-/// The artefact on show.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shown {
-    /// Which one.
-    pub artefact: Artefact,
-    /// Whether its cure has been applied.
-    pub fixed: bool,
-}
+use compare::Other;
+pub use shown::Shown;
+use side::{Shot, Side};
 
 /// Why a stage could not be set up.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,28 +63,30 @@ impl From<ShadowMapError> for StageError {
 /// Scene, camera and settings, and what draws them.
 #[derive(Debug)]
 pub struct Stage {
-    /// Everything that the panel edits.
+    /// Everything that the panel edits; its technique is that of the first side.
     pub settings: Settings,
     /// Where the eye is.
     pub camera: FlyCamera,
     /// Which animation plays, if the scene has it.
     pub animation: usize,
+    /// Where the bar between two techniques stands, as a share of the picture's width.
+    pub split: f32,
     gpu: Gpu,
+    samples: u32,
     scene: PreparedScene,
-    fitter: TechniqueFitter,
-    evaluator: Evaluator,
+    side: Side,
+    other: Option<Other>,
     seconds: f32,
+    /// Seconds since the stage was set up, for what blinks.
+    clock: f32,
     home: (Settings, FlyCamera),
-    before_artefact: Option<(Settings, FlyCamera)>,
-    shown: Option<Shown>,
-    /// What was fitted last; fitted anew unless it is frozen.
-    fitted: Option<Fitted>,
-    /// Reads what the last pictures showed; rays find it where there is none.
-    need_pass: Option<NeedPass>,
-    problem: Option<String>,
-    notice: Option<&'static str>,
-    statistics: Statistics,
+    artefact: shown::ArtefactShow,
+    why: why::Asked,
+    reads_depths: bool,
 }
+
+/// How often marks blink, in turns a second.
+const BLINKS: f32 = 1.2;
 
 impl Stage {
     /// Sets up a scene with settings that suit its size, seen by its own camera or from a position
@@ -100,28 +96,25 @@ impl Stage {
     ///
     /// [`StageError`] if the scene is empty or the shadow map impossible.
     pub fn new(gpu: Gpu, scene: Scene, samples: u32) -> Result<Self, StageError> {
-        let technique = Settings::default().technique;
-        let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::from(&technique), samples)?;
-        let scene = PreparedScene::new(&gpu, renderer.material_layout(), scene)?;
-        let evaluator = Evaluator::new(renderer, Judging { crawl: false, ..Judging::default() });
+        let side = Side::new(&gpu, Settings::default().technique, samples)?;
+        let scene = PreparedScene::new(&gpu, side.evaluator.renderer.material_layout(), scene)?;
         let home = home::home(&scene);
         Ok(Self {
             settings: home.0,
             camera: home.1,
             animation: 0,
+            split: 0.5,
             gpu,
+            samples,
             scene,
-            fitter: TechniqueFitter::new(technique),
-            evaluator,
+            side,
+            other: None,
             seconds: 0.0,
+            clock: 0.0,
             home,
-            before_artefact: None,
-            shown: None,
-            fitted: None,
-            need_pass: None,
-            problem: None,
-            notice: None,
-            statistics: Statistics::default(),
+            artefact: shown::ArtefactShow::default(),
+            why: why::Asked::default(),
+            reads_depths: false,
         })
     }
 
@@ -131,13 +124,38 @@ impl Stage {
     ///
     /// [`StageError`] if the scene is empty.
     pub fn set_scene(&mut self, scene: Scene) -> Result<(), StageError> {
-        self.scene = PreparedScene::new(&self.gpu, self.evaluator.renderer.material_layout(), scene)?;
-        self.evaluator.renderer.invalidate_maps();
+        self.set_prepared(PreparedScene::new(&self.gpu, self.material_layout(), scene)?);
+        Ok(())
+    }
+
+    /// Shows a scene that was made ready elsewhere, with [`Self::material_layout`].
+    pub fn set_prepared(&mut self, scene: PreparedScene) {
+        self.scene = scene;
         self.home = home::home(&self.scene);
         (self.settings, self.camera) = self.home;
-        (self.seconds, self.shown, self.before_artefact, self.fitted) = (0.0, None, None, None);
-        self.notice = None;
-        Ok(())
+        (self.seconds, self.animation) = (0.0, 0);
+        self.artefact = shown::ArtefactShow::default();
+        self.why = why::Asked::default();
+        self.other = None;
+        self.side.scene_changed();
+    }
+
+    /// Layout of the scene's materials, for scenes that are made ready elsewhere.
+    pub fn material_layout(&self) -> &wgpu::BindGroupLayout {
+        self.side.evaluator.renderer.material_layout()
+    }
+
+    /// From now on, what the last picture showed comes from its depth buffer and not from rays: for pictures that follow
+    /// each other in a window. It comes a frame or two late, whenever the GPU is done with it, so that pictures need not
+    /// be the same each time. What stands still is kept in the shadow maps, too, and nothing waits for rays.
+    pub fn read_depths(&mut self) {
+        self.reads_depths = true;
+        self.side.read_depths(&self.gpu, self.samples);
+    }
+
+    /// From now on, whatever a picture needs of rays is waited for: for pictures that are made one by one.
+    pub fn wait_for_rays(&mut self) {
+        self.side.live.waits = true;
     }
 
     /// The scene on show.
@@ -162,28 +180,25 @@ impl Stage {
 
     /// A target of the given width and height, in pixels, that this stage can draw into.
     pub fn target(&self, size: [u32; 2]) -> RenderTarget {
-        self.evaluator.renderer.target(&self.gpu, size)
-    }
-
-    /// The artefact on show, if any.
-    pub fn shown(&self) -> Option<Shown> {
-        self.shown
+        self.side.evaluator.renderer.target(&self.gpu, size)
     }
 
     /// Why the settings cannot be shown as they are, as a readable line.
     pub fn problem(&self) -> Option<&str> {
-        self.problem.as_deref()
+        let other = self.other.as_ref().and_then(Other::problem);
+        self.side.problem.as_deref().or(other)
     }
 
-    /// A readable note about what is shown, such as that no view of the scene shows the artefact.
-    pub fn notice(&self) -> Option<&str> {
-        self.notice
+    /// The settings that the scene was opened with.
+    pub fn home_settings(&self) -> Settings {
+        self.home.0
     }
 
     /// Moves camera, sun and animation on by `seconds`.
     pub fn update(&mut self, input: &FlyInput, seconds: f32) {
         self.camera.update(&mut self.settings.camera, input, seconds);
         self.settings.light.advance(seconds);
+        self.clock += seconds;
         if self.plays() {
             self.set_time(self.seconds + seconds);
         }
@@ -200,46 +215,41 @@ impl Stage {
         self.scene.set_time(&self.gpu, self.animation, seconds);
     }
 
+    /// Time of the animation, in seconds.
+    pub fn seconds(&self) -> f32 {
+        self.seconds
+    }
+
+    /// How long the animation takes, in seconds; `None` without one.
+    pub fn duration(&self) -> Option<f32> {
+        self.scene().animations.get(self.animation).map(|animation| animation.duration)
+    }
+
     /// Back to the settings and the view that the scene was opened with.
     pub fn reset(&mut self) {
         (self.settings, self.camera) = self.home;
-        (self.shown, self.before_artefact, self.fitted, self.notice) = (None, None, None, None);
+        self.artefact = shown::ArtefactShow::default();
+        self.side.fitted = None;
     }
 
     /// Back to the view that the scene was opened with; settings stay.
     pub fn reset_camera(&mut self) {
-        self.camera = self.home.1;
-        self.cut();
+        self.set_camera(self.home.1);
     }
 
-    /// Starts again with a view that is unrelated to the one before; a frozen fit stays.
-    fn cut(&mut self) {
-        self.fitted = self.fitted.take().filter(|_| self.settings.view.freeze_fit);
+    /// Puts the camera somewhere else: the next view follows none of those before.
+    pub fn set_camera(&mut self, camera: FlyCamera) {
+        self.camera = camera;
+        let is_frozen = self.settings.view.freeze_fit;
+        self.side.cut(is_frozen);
+        if let Some(other) = &mut self.other {
+            other.cut(is_frozen);
+        }
     }
 
     /// Takes the present settings and view as those to go back to.
     pub fn set_home(&mut self) {
         self.home = (self.settings, self.camera);
-    }
-
-    /// Moves camera and settings so that an artefact is plainly visible.
-    pub fn show_artefact(&mut self, artefact: Artefact) {
-        let before = self.before_artefact.unwrap_or((self.settings, self.camera));
-        self.before_artefact = Some(before);
-        (self.settings, self.camera) = before;
-        self.fitted = None;
-        self.notice = (!artefact::show(self, artefact)).then_some(NOT_FOUND);
-        self.shown = Some(Shown { artefact, fixed: false });
-    }
-
-    /// Cures an artefact: shows it first if it is not on show.
-    pub fn fix_artefact(&mut self, artefact: Artefact) {
-        if self.shown.is_none_or(|shown| shown.artefact != artefact) {
-            self.show_artefact(artefact);
-        }
-        let before = self.before_artefact.unwrap_or((self.settings, self.camera)).0.technique;
-        artefact::fix(self, artefact, &before);
-        self.shown = Some(Shown { artefact, fixed: true });
     }
 
     /// The camera with its lens, for a picture of the given size.
@@ -252,47 +262,57 @@ impl Stage {
         View { camera: self.perspective(size), direction: self.settings.light.direction(), is_first: false }
     }
 
-    /// Draws the present view into a target.
-    pub fn draw(&mut self, target: &RenderTarget) {
-        self.problem = None;
-        self.take_last_picture();
-        let fitted = self.fit(target.size);
-        let maps: Vec<MapFit> = fitted.maps.iter().map(MapFit::from).collect();
-        let seen = self.view(target.size);
-        // A frozen fit was made for another camera, whose view depths may still choose among its maps.
-        let view = View { camera: fitted.camera.unwrap_or(seen.camera), ..seen };
-        let settings = self.settings.view;
-        let is_outside = settings.mode == ViewMode::Outside;
-        let outside = is_outside.then(|| outside::camera(&seen.camera, &fitted));
-        let from_elsewhere = outside.or_else(|| (view.camera != seen.camera).then_some(seen.camera));
-        let lines = if is_outside { outside::lines(&fitted) } else { Vec::new() };
-        let shown = settings.inset_index(maps.len() as u32);
-        let inset = maps.get(shown).filter(|_| settings.inset != InsetMaps::Off);
-        let options = FrameOptions {
-            outside: from_elsewhere,
-            // Maps that are themselves looked at from elsewhere hold all their casters, not only those of this
-            // picture's shadows.
-            culling: if from_elsewhere.is_some() { Culling::WholeMap } else { Culling::Swept },
-            overlay: if settings.mode == ViewMode::Maps { Overlay::MapTint } else { Overlay::None },
-            lines: &lines,
-            inset: inset.map(|map| inset::inset(shown, &map.fit, &self.bounds(), target.size)),
-            shadows: settings.shadows,
-            sight: Some(self.sight(outside.as_ref())),
-        };
-        match self.evaluator.draw(&self.gpu, &mut self.scene, &view, &maps, &options, target) {
-            Ok(statistics) => {
-                self.statistics = statistics;
-                if from_elsewhere.is_none() {
-                    self.record_picture(&view, target);
-                }
-            }
-            Err(error) => self.problem = Some(error.to_string()),
-        }
+    /// The maps of the present view and settings; none where there is nothing to fit, with the
+    /// reason as [`Self::problem`].
+    pub fn maps(&mut self, size: [u32; 2]) -> Vec<MapFit> {
+        let (side, mut shot) = self.shot(size);
+        side.fit(&mut shot).maps.iter().map(MapFit::from).collect()
     }
 
-    /// Distance that the haze suits, in metres: that of the scene's first view, so that no demonstration changes it.
-    fn sight(&self, outside: Option<&PerspectiveCamera>) -> f32 {
-        let visible = self.home.0.camera.far;
-        outside.map_or(visible, |camera| camera.far.max(visible))
+    /// Draws the present view into a target: of two techniques the first one's, up to the bar.
+    pub fn draw(&mut self, target: &RenderTarget) {
+        if self.side.fitter.rays == shadowfit_study::RayUse::IfReady {
+            // What fits and figures read when it is there.
+            self.scene.take_rays();
+            self.scene.request_rays();
+        }
+        let split = self.other.is_some().then(|| compare::left_part(self.split, target.size));
+        let (side, mut shot) = self.shot(target.size);
+        shot.scissor = split;
+        side.draw(&mut shot, target);
+    }
+
+    /// Draws the camera, the maps and what casts into them from outside, whatever the view is.
+    pub fn draw_beside(&mut self, target: &RenderTarget) {
+        let (side, mut shot) = self.shot(target.size);
+        let Some(fitted) = side.fitted.clone() else { return };
+        let maps: Vec<MapFit> = fitted.maps.iter().map(MapFit::from).collect();
+        let statistics = side.statistics;
+        side.draw_outside(&mut shot, &fitted, &maps, target);
+        side.statistics = statistics;
+    }
+
+    /// The first side, and what it is to draw into a picture of a size.
+    fn shot(&mut self, size: [u32; 2]) -> (&mut Side, Shot<'_>) {
+        let camera = self.perspective(size);
+        let (plays, blink) = (self.plays(), self.blink());
+        let shot = Shot {
+            gpu: &self.gpu,
+            scene: &mut self.scene,
+            settings: &self.settings,
+            camera,
+            // That of the scene's first view, so that no demonstration changes the haze.
+            sight: self.home.0.camera.far,
+            plays,
+            seconds: self.seconds,
+            scissor: None,
+            blink,
+        };
+        (&mut self.side, shot)
+    }
+
+    /// Strength of blinking marks at present, 0..=1.
+    fn blink(&self) -> f32 {
+        0.5 - 0.5 * (self.clock * BLINKS * core::f32::consts::TAU).cos()
     }
 }

@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Vec3};
 use shadowfit::{Aabb, PerspectiveCamera, Technique};
-use shadowfit_study::{PreparedScene, TechniqueFitter, View};
+use shadowfit_study::{PosedScene, TechniqueFitter, View};
 use shadowfit_truth::Tracer;
 
 use crate::fitted::Fitted;
@@ -39,7 +39,7 @@ pub(crate) struct Shadow {
 
 /// A scene under one light.
 pub(crate) struct ViewSearch<'a> {
-    scene: &'a PreparedScene,
+    scene: &'a PosedScene,
     tracer: &'a Tracer,
     /// Direction of travel of the light.
     pub(crate) direction: Vec3,
@@ -48,7 +48,7 @@ pub(crate) struct ViewSearch<'a> {
 }
 
 impl<'a> ViewSearch<'a> {
-    pub(crate) fn new(scene: &'a PreparedScene, direction: Vec3) -> Self {
+    pub(crate) fn new(scene: &'a PosedScene, direction: Vec3) -> Self {
         let bounds = scene.bounds();
         let offset = (bounds.max - bounds.min).length() * RAY_OFFSET;
         Self { scene, tracer: &scene.rays().tracer, direction, to_light: -direction, offset }

@@ -8,6 +8,6 @@ mod scenes;
 #[cfg(feature = "gpu")]
 mod shaders;
 mod shadows;
-#[cfg(feature = "gpu")]
 mod single_pixels;
+#[cfg(feature = "gpu")]
 mod tally_gpu;

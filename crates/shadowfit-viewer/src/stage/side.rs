@@ -4,7 +4,7 @@ use shadowfit::settings::{CasterPolicy, MapOverride};
 use shadowfit::tool::{ErrorMarks, InsetMaps, Settings, ViewMode};
 use shadowfit::{DepthConvention, FitError, LightFit, PerspectiveCamera, Technique};
 use shadowfit_render::{Culling, Gpu, Marks, Overlay, RenderTarget, Renderer, Statistics};
-use shadowfit_study::{Evaluator, FrameOptions, Judging, PreparedScene, Seen, TechniqueFitter, View};
+use shadowfit_study::{Evaluator, FrameOptions, Judging, PreparedScene, RayUse, Seen, TechniqueFitter, View};
 use shadowfit_wgpu::need::{NeedPass, NeedView};
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor, ShadowMapError};
 
@@ -41,6 +41,8 @@ pub(super) struct Shot<'a> {
     pub(super) plays: bool,
     /// Part of the picture that is drawn: x, y, width and height in pixels; all of it if `None`.
     pub(super) scissor: Option<[u32; 4]>,
+    /// Time of the scene's animation, in seconds.
+    pub(super) seconds: f32,
     /// Strength of blinking marks at this time, 0..=1.
     pub(super) blink: f32,
 }
@@ -85,7 +87,7 @@ impl Side {
         self.evaluator.renderer.set_keeps(true);
         self.need_pass = NeedPass::new(&gpu.device, &gpu.queue, samples).ok();
         self.fitter.is_told = self.need_pass.is_some();
-        self.fitter.rays = shadowfit_study::RayUse::IfReady;
+        self.fitter.rays = RayUse::IfReady;
     }
 
     /// Forgets all frames: the scene is another one.
@@ -118,7 +120,9 @@ impl Side {
 
     fn fit_now(&mut self, technique: &Technique, shot: &Shot<'_>) -> Result<Fitted, FitError> {
         let view = shot.view();
-        self.fitter.sees_late = shot.plays;
+        if self.fitter.rays != RayUse::IfReady {
+            self.fitter.rays = if shot.plays { RayUse::Late } else { RayUse::Wait };
+        }
         let goes_on = self.fitted.as_ref().and_then(|fitted| fitted.camera).is_some_and(|last| {
             let same_lens = PerspectiveCamera { eye: last.eye, forward: last.forward, ..view.camera } == last;
             same_lens && self.fitter.technique() == technique
@@ -202,8 +206,6 @@ impl Side {
     pub(super) fn draw(&mut self, shot: &mut Shot<'_>, target: &RenderTarget) {
         self.problem = None;
         self.take_last_picture();
-        let before = self.fitted.take();
-        self.fitted.clone_from(&before);
         let fitted = self.fit(shot);
         let maps: Vec<MapFit> = fitted.maps.iter().map(MapFit::from).collect();
         let seen = shot.view();
@@ -212,7 +214,7 @@ impl Side {
         let is_frozen = view.camera != seen.camera;
         let mut maps_stay = false;
         if shot.wants_rays() && !is_frozen {
-            let judged = self.live.judge(&mut self.evaluator, shot, &view, (&maps, before.as_ref()), target.size);
+            let judged = self.live.judge(&mut self.evaluator, shot, &view, &maps, target.size);
             match judged {
                 Ok(drawn) => maps_stay = drawn,
                 Err(error) => self.problem = Some(format!("{error:#}")),

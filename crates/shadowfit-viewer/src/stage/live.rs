@@ -1,0 +1,267 @@
+//! Pictures judged against rays while they are shown: on a graphics card each one, where it is drawn; without one as
+//! often as a thread is done with the one before.
+
+use std::time::Instant;
+
+use anyhow::{Result, anyhow};
+use shadowfit::figures::JudgedFigures;
+use shadowfit::tool::ErrorMarks;
+use shadowfit::{PerspectiveCamera, Technique};
+use shadowfit_render::{Gpu, JudgedPicture};
+use shadowfit_study::{BackgroundJudge, Evaluator, LiveTruth, View};
+use shadowfit_truth::PictureFigures;
+use shadowfit_wgpu::MapFit;
+
+use super::side::Shot;
+
+/// Width of a picture that a thread judges, in pixels: enough for every artefact, and judged in a fraction of a second.
+const BACKGROUND_WIDTH: u32 = 480;
+/// How long a view must have stood still before a thread judges it, in seconds, unless it is asked for.
+const STILL: f32 = 0.3;
+/// How often a view that does not stand still is judged by a thread, in seconds.
+const MOVING: f32 = 2.0;
+/// Most triangles that are moved to a new pose within a frame, so that no frame stops for it.
+const MOST_POSED: usize = 150_000;
+/// Frames whose time is remembered until their sums come back.
+const FRAMES: usize = 8;
+
+/// What is judged: where any of it differs, a picture is another one.
+#[derive(Clone, Debug, PartialEq)]
+struct Key {
+    camera: PerspectiveCamera,
+    technique: Technique,
+    direction: glam::Vec3,
+    seconds: f32,
+}
+
+/// A picture that was judged, with its classes as a texture.
+#[derive(Debug)]
+struct Judged {
+    key: Key,
+    view: wgpu::TextureView,
+    size: [u32; 2],
+}
+
+/// The judge of a side's pictures.
+#[derive(Debug, Default)]
+pub(super) struct Live {
+    on_gpu: bool,
+    gpu: Option<LiveTruth>,
+    background: Option<BackgroundJudge>,
+    /// What the thread judges at present.
+    started: Option<(Key, Instant)>,
+    judged: Option<Judged>,
+    figures: Option<(PictureFigures, [u32; 2], Instant)>,
+    /// When each of the last pictures was drawn, by its number.
+    drawn: Vec<(u64, Instant)>,
+    /// The view of the frame before, and since when it has been the same.
+    last: Option<(Key, Instant)>,
+    /// Time of the scene's pose that the GPU's rays have.
+    posed: Option<f32>,
+    /// Pictures are judged at once, as scripts and headless pictures need it.
+    pub(super) waits: bool,
+}
+
+impl Live {
+    pub(super) fn new(gpu: &Gpu) -> Self {
+        Self { on_gpu: !gpu.is_software(), ..Self::default() }
+    }
+
+    /// Forgets all pictures: the scene is another one.
+    pub(super) fn forget(&mut self) {
+        let Self { on_gpu, waits, .. } = *self;
+        // What a thread is at is given up.
+        *self = Self { on_gpu, waits, ..Self::default() };
+    }
+
+    /// The picture that was judged last.
+    pub(super) fn picture(&self) -> Option<JudgedPicture<'_>> {
+        let judged = self.judged.as_ref()?;
+        Some(JudgedPicture { classes: &judged.view, size: judged.size, camera: judged.key.camera })
+    }
+
+    /// The figures that came back last.
+    pub(super) fn figures(&self) -> Option<JudgedFigures> {
+        let (figures, size, drawn) = self.figures.as_ref()?;
+        Some(judged_figures(figures, *size, drawn.elapsed().as_secs_f32()))
+    }
+
+    /// Whether what was judged last is the view that was drawn last, and its figures are there.
+    pub(super) fn is_up_to_date(&self) -> bool {
+        let (Some(judged), Some((last, _))) = (&self.judged, &self.last) else { return false };
+        judged.key == *last && self.figures.is_some()
+    }
+
+    /// Judges the view that is about to be drawn, and takes what has been judged. Returns whether the maps were drawn for
+    /// it, so that the picture needs them no more.
+    ///
+    /// # Errors
+    ///
+    /// When the adapter cannot tell triangles apart, or the scene is too large for it.
+    pub(super) fn judge(
+        &mut self,
+        evaluator: &mut Evaluator,
+        shot: &mut Shot<'_>,
+        view: &View,
+        maps: &[MapFit],
+        size: [u32; 2],
+    ) -> Result<bool> {
+        let key = Key {
+            camera: view.camera,
+            technique: shot.settings.technique,
+            direction: view.direction,
+            seconds: shot.seconds,
+        };
+        let since = match &self.last {
+            Some((last, since)) if *last == key => *since,
+            _ => Instant::now(),
+        };
+        self.last = Some((key.clone(), since));
+        self.take(shot.gpu)?;
+        if shot.scene.ready_rays().is_none() && !self.pose_rays(shot) {
+            return Ok(false);
+        }
+        if self.on_gpu {
+            return self.judge_on_gpu(evaluator, shot, (view, key), maps, size);
+        }
+        let is_asked = shot.settings.view.mode.is_judged() || shot.settings.view.marks != ErrorMarks::Off;
+        let pause = since.elapsed().as_secs_f32();
+        let waited = self.started.as_ref().map_or(f32::MAX, |(_, started)| started.elapsed().as_secs_f32());
+        let is_due = self.waits || is_asked || pause >= STILL || waited >= MOVING;
+        let is_known = self.judged.as_ref().is_some_and(|judged| judged.key == key);
+        if is_known || !is_due || self.background.as_ref().is_some_and(BackgroundJudge::is_busy) {
+            return Ok(false);
+        }
+        self.start(evaluator, shot, (view, key), maps, size)
+    }
+
+    /// Rays of the present pose, at once where that takes no time worth telling; else a thread makes them for a later
+    /// frame. Returns whether they are there.
+    fn pose_rays(&self, shot: &mut Shot<'_>) -> bool {
+        let is_small = shot.scene.latest_rays().is_some_and(|(rays, _)| rays.triangles.len() <= MOST_POSED);
+        if self.waits || is_small {
+            shot.scene.rays();
+            return true;
+        }
+        shot.scene.request_rays();
+        shot.scene.take_rays();
+        shot.scene.ready_rays().is_some()
+    }
+
+    fn judge_on_gpu(
+        &mut self,
+        evaluator: &mut Evaluator,
+        shot: &mut Shot<'_>,
+        (view, key): (&View, Key),
+        maps: &[MapFit],
+        size: [u32; 2],
+    ) -> Result<bool> {
+        let live = match self.gpu.take() {
+            Some(mut live) => {
+                if self.posed != Some(shot.seconds) {
+                    live.set_pose(shot.gpu, shot.scene)?;
+                }
+                live
+            }
+            None => LiveTruth::new(shot.gpu, shot.scene)?,
+        };
+        self.posed = Some(shot.seconds);
+        let live = self.gpu.insert(live);
+        evaluator.judging.size = size;
+        evaluator.judging.crawl = true;
+        evaluator.judge_in_place(shot.gpu, shot.scene, view, maps, live)?;
+        if self.drawn.len() == FRAMES {
+            self.drawn.remove(0);
+        }
+        self.drawn.push((live.pictures(), Instant::now()));
+        let classes = live.classes().ok_or_else(|| anyhow!("the picture was not judged"))?;
+        self.judged = Some(Judged { key, view: classes.create_view(&Default::default()), size });
+        Ok(true)
+    }
+
+    /// Draws what the thread needs, and starts it.
+    fn start(
+        &mut self,
+        evaluator: &mut Evaluator,
+        shot: &mut Shot<'_>,
+        (view, key): (&View, Key),
+        maps: &[MapFit],
+        size: [u32; 2],
+    ) -> Result<bool> {
+        let Some(rays) = shot.scene.ready_rays() else { return Ok(false) };
+        let scale = (BACKGROUND_WIDTH as f32 / size[0] as f32).min(1.0);
+        evaluator.judging.size =
+            if self.waits { size } else { size.map(|side| ((side as f32 * scale).round() as u32).max(1)) };
+        evaluator.judging.crawl = !self.waits;
+        let job = evaluator.judge_job(shot.gpu, shot.scene, view, maps, rays)?;
+        let measures_crawl = job.before.is_some();
+        let mut background = match self.background.take() {
+            Some(background) => background,
+            None => BackgroundJudge::new()?,
+        };
+        background.start(job);
+        self.background = Some(background);
+        self.started = Some((key, Instant::now()));
+        if self.waits {
+            while self.background.as_ref().is_some_and(BackgroundJudge::is_busy) && self.started.is_some() {
+                std::thread::sleep(std::time::Duration::from_millis(1));
+                self.take(shot.gpu)?;
+            }
+        }
+        // The probe of the maps before took the place of those of this view.
+        Ok(!measures_crawl)
+    }
+
+    /// Takes what has been judged.
+    fn take(&mut self, gpu: &Gpu) -> Result<()> {
+        if let Some(tally) = self.gpu.as_mut().map(|live| live.take(gpu)).transpose()?.flatten() {
+            let drawn = self.drawn.iter().find(|(picture, _)| *picture == tally.picture);
+            let size = self.judged.as_ref().map_or([0, 0], |judged| judged.size);
+            let since = drawn.map_or_else(Instant::now, |(_, at)| *at);
+            self.figures = tally.figures().map(|figures| (figures, size, since));
+        }
+        let Some(found) = self.background.as_mut().and_then(BackgroundJudge::take) else { return Ok(()) };
+        let Some((key, started)) = self.started.take() else { return Ok(()) };
+        let found = found?;
+        let size = found.judging.size;
+        self.figures = found.judged.tally.figures().map(|figures| (figures, size, started));
+        self.judged = Some(Judged { key, view: upload(gpu, &found.classes, size), size });
+        Ok(())
+    }
+}
+
+/// Classes as a texture.
+fn upload(gpu: &Gpu, classes: &[u32], size: [u32; 2]) -> wgpu::TextureView {
+    let extent = wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 };
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("classes"),
+        size: extent,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R32Uint,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let bytes: Vec<u8> = classes.iter().flat_map(|bits| bits.to_le_bytes()).collect();
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size[0] * 4), rows_per_image: None };
+    gpu.queue.write_texture(texture.as_image_copy(), &bytes, layout, extent);
+    texture.create_view(&Default::default())
+}
+
+/// Figures as panels have them.
+pub(super) fn judged_figures(figures: &PictureFigures, size: [u32; 2], age: f32) -> JudgedFigures {
+    JudgedFigures {
+        wrong: figures.wrong as f32,
+        false_shadow: figures.false_shadow as f32,
+        false_light: figures.false_light as f32,
+        hole: figures.hole as f32,
+        edge: figures.edge as f32,
+        mean_error: figures.mean_error as f32,
+        uncovered: figures.uncovered as f32,
+        pixels_per_texel: figures.pixels_per_texel.map(|quantiles| quantiles.map(|value| value as f32)),
+        crawl: figures.crawl.map(|crawl| crawl as f32),
+        age,
+        size,
+    }
+}
