@@ -82,7 +82,7 @@ impl GpuTally {
         let [p50, p95, p99] = [0.5, 0.95, 0.99].map(|q| self.quantile(q));
         sums.figures().map(|figures| PictureFigures {
             pixels_per_texel: p50.zip(p95).zip(p99).map(|((p50, p95), p99)| [p50, p95, p99]),
-            undersampled: (covered > 0).then(|| 100.0 * self.undersampled as f64 / covered as f64),
+            undersampled: (covered > 0).then(|| 100.0 * (self.undersampled as f64 / covered as f64)),
             ..figures
         })
     }
