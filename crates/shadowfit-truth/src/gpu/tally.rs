@@ -87,8 +87,8 @@ impl GpuTally {
         })
     }
 
-    /// The quantile `q`, 0..=1, of pixels per texel: the middle of the first bin at which the count reaches ceil(q n) of
-    /// the n pixels. `None` without pixels, infinite in the last bin.
+    /// The quantile `q`, 0..=1, of pixels per texel: the middle of the first bin at which the count reaches ceil(q n)
+    /// of the n pixels. `None` without pixels, infinite in the last bin.
     fn quantile(&self, q: f64) -> Option<f64> {
         let covered: u64 = self.pixels_per_texel.iter().sum();
         let wanted = ((q * covered as f64).ceil() as u64).max(1);
