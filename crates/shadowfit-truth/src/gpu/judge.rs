@@ -128,8 +128,8 @@ impl GpuJudge {
         self.pictures
     }
 
-    /// The sums of the newest picture that the GPU has finished, once; `None` while there is none. Never waits: frame by
-    /// frame, it gives those of a picture some frames back, which [`GpuTally::picture`] names.
+    /// The sums of the newest picture that the GPU has finished, once; `None` while there is none. Never waits: called
+    /// each frame, it gives the sums of a picture a few frames back, which [`GpuTally::picture`] names.
     ///
     /// # Errors
     ///

@@ -82,13 +82,13 @@ impl GpuTally {
         let [p50, p95, p99] = [0.5, 0.95, 0.99].map(|q| self.quantile(q));
         sums.figures().map(|figures| PictureFigures {
             pixels_per_texel: p50.zip(p95).zip(p99).map(|((p50, p95), p99)| [p50, p95, p99]),
-            undersampled: (covered > 0).then(|| 100.0 * self.undersampled as f64 / covered as f64),
+            undersampled: (covered > 0).then(|| 100.0 * (self.undersampled as f64 / covered as f64)),
             ..figures
         })
     }
 
-    /// The quantile `q`, 0..=1, of pixels per texel: the middle of the first bin at which the count reaches ceil(q n) of
-    /// the n pixels. `None` without pixels, infinite in the last bin.
+    /// The quantile `q`, 0..=1, of pixels per texel: the middle of the first bin at which the count reaches ceil(q n)
+    /// of the n pixels. `None` without pixels, infinite in the last bin.
     fn quantile(&self, q: f64) -> Option<f64> {
         let covered: u64 = self.pixels_per_texel.iter().sum();
         let wanted = ((q * covered as f64).ceil() as u64).max(1);

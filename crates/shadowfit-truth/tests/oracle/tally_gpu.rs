@@ -264,15 +264,15 @@ fn a_picture_in_which_nothing_is_judged_has_no_figures() {
     assert_eq!((tally.picture, tally.all.facing, tally.figures()), (1, 0, None));
 }
 
-/// The picture with maps half a metre off, of other widths.
+/// The picture with maps half a metre off, of other widths and splits.
 fn before_of(seen: &Picture) -> Picture {
     let mut before = picture();
     before.reading = seen.reading;
-    let moved = |(map, width): (&FitMap, f64)| FitMap {
-        split_far: map.split_far,
+    let moved = |(width, split_far): (f64, f64)| FitMap {
+        split_far,
         ..map_around(DVec3::new(0.5, 0.0, 0.1), sun(), width, 6.0, 300)
     };
-    before.maps = seen.maps.iter().zip([6.0, 20.0, 5.0, 7.0]).map(moved).collect();
+    before.maps = [(6.0, 5.0), (20.0, 7.5), (5.0, 7.5), (7.0, 7.5)].map(moved).to_vec();
     before
 }
 
@@ -283,7 +283,7 @@ fn crawl_is_counted_as_on_the_cpu_at_points_that_both_frames_maps_hold() {
         let measured = before.measured();
         let rays = Truth::seen_by_rays(&seen.tracer, &seen.camera);
         let truth = Truth::trace(&seen.tracer, &seen.camera, &seen.settings, &rays);
-        let forward = (seen.camera.forward + DVec3::Y * 0.1).normalize();
+        let forward = (seen.camera.forward + DVec3::Y * 0.3).normalize();
         let before = Before {
             maps: &measured,
             eye: seen.camera.eye - seen.camera.forward * 0.7,
@@ -301,7 +301,7 @@ fn crawl_is_counted_as_on_the_cpu_at_points_that_both_frames_maps_hold() {
             assert!(found.abs_diff(wanted) as f64 <= 0.005 * wanted as f64 + 1.0, "{reading}: {found}, not {wanted}");
         }
         let crawl = both.tally.figures().and_then(|figures| figures.crawl).expect("compared");
-        assert_eq!(crawl, 100.0 * found[1] as f64 / found[0] as f64);
+        assert_eq!(crawl, 100.0 * (found[1] as f64 / found[0] as f64));
         both.assert_sums_of_texture(reading);
     }
 }

@@ -28,7 +28,7 @@ var<workgroup> sums: Tally;
 const SIDE: u32 = 16u;
 const LANES: u32 = 256u;
 const CLASSES: u32 = 6u;
-// Of the classes' texture: its step that stands for 1 pixel per texel, and the steps of a bin, of which 32 are an octave.
+// Of the classes' texture: its step that stands for 1 pixel per texel, and the steps of a bin, 32 bins an octave.
 const ONE: u32 = 32768u;
 const BIN_STEPS: u32 = 8u;
 
