@@ -3,7 +3,7 @@
 
 use egui::{Align, Button, Label, Layout, RichText, Ui};
 
-use crate::theme::Palette;
+use crate::theme::{Palette, has_arrows};
 use crate::widgets::{Icon, KeyButton, caption, card, icon_button, main_button};
 use crate::{Action, ShownArtefact};
 
@@ -150,7 +150,9 @@ fn show_card(ui: &mut Ui, shown: &ShownArtefact<'_>, action: &mut Option<Action>
 
 /// What was changed, a line each.
 pub(crate) fn changes(ui: &mut Ui, changes: &[String]) {
+    let has_arrows = has_arrows(ui);
     for change in changes {
+        let change = if has_arrows { change.clone() } else { change.replace('→', "to") };
         caption(ui, &format!("• {change}"));
     }
 }

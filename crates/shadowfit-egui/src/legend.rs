@@ -1,15 +1,15 @@
 //! What the colours of a view mean.
 
 use egui::{
-    Align2, Area, Color32, Context, CornerRadius, Frame, Id, Mesh, Order, Pos2, Rect, RichText, Role, Sense, Shape,
-    TextStyle, Ui, Vec2, WidgetInfo,
+    Align2, Area, Context, CornerRadius, Frame, Id, Mesh, Order, Pos2, Rect, Role, Sense, Shape, TextStyle, Ui, Vec2,
+    WidgetInfo,
 };
 use shadowfit::figures::{Figures, MAP_TINTS, PIXELS_PER_TEXEL_COLORS, pixels_per_texel_color};
 use shadowfit::tool::{ErrorMarks, ViewMode, ViewSettings};
 
 use crate::classes::shares;
 use crate::units::percent;
-use crate::widgets::{caption, color, swatch};
+use crate::widgets::{caption, color, color_entry};
 
 /// Colours of the view of map updates, as sRGB bytes: texels that were kept, those drawn anew, and what moves.
 pub const MAP_UPDATE_COLORS: [[u8; 3]; 3] = [[86, 180, 233], [230, 159, 0], [204, 121, 167]];
@@ -68,49 +68,44 @@ pub fn legend_overlay(ctx: &Context, picture: Rect, view: &ViewSettings, figures
         });
 }
 
-/// A colour, what it stands for, and a value.
-fn entry(ui: &mut Ui, fill: Color32, name: &str, value: Option<String>, help: &str) {
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 5.0;
-        swatch(ui, fill);
-        ui.label(RichText::new(name).small()).on_hover_text(help);
-        if let Some(value) = value {
-            ui.label(RichText::new(value).small().strong());
-        }
+/// A line of entries, which wraps.
+fn line(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = Vec2::new(12.0, 3.0);
+        ui.spacing_mut().interact_size.y = 0.0;
+        contents(ui);
     });
 }
 
 fn classes(ui: &mut Ui, figures: &Figures) {
     let (a, b) = (figures.judged.as_ref().map(shares), figures.judged_other.as_ref().map(shares));
     let entries = shares(&Default::default());
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 10.0;
+    line(ui, |ui| {
         for (index, (class, fill, _)) in entries.into_iter().enumerate() {
             let value = match (a, b) {
                 (Some(a), Some(b)) => Some(format!("{} | {}", percent(a[index].2), percent(b[index].2))),
                 (Some(a), None) => Some(percent(a[index].2)),
                 (None, _) => None,
             };
-            entry(ui, fill, &class.label().to_lowercase(), value, class.help());
+            color_entry(ui, fill, &class.label().to_lowercase(), value.as_deref()).on_hover_text(class.help());
         }
     });
 }
 
 fn maps(ui: &mut Ui, figures: &Figures) {
     let there = figures.maps.iter().zip(MAP_TINTS).enumerate().filter(|(_, (map, _))| map.is_some());
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 10.0;
+    line(ui, |ui| {
         for (map, (_, tint)) in there {
-            entry(ui, color(tint), &format!("map {}", map + 1), None, "Read from this map; map 1 is the nearest.");
+            let help = "Read from this map; map 1 is the nearest.";
+            color_entry(ui, color(tint), &format!("map {}", map + 1), None).on_hover_text(help);
         }
     });
 }
 
 fn updates(ui: &mut Ui) {
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 10.0;
+    line(ui, |ui| {
         for ((name, help), fill) in MAP_UPDATES.into_iter().zip(MAP_UPDATE_COLORS) {
-            entry(ui, color(fill), name, None, help);
+            color_entry(ui, color(fill), name, None).on_hover_text(help);
         }
     });
 }

@@ -1,6 +1,6 @@
 //! The controls of the settings: those that are used most, a search, and the groups.
 
-use egui::{TextEdit, Ui};
+use egui::{Margin, Rect, Stroke, TextEdit, Ui, Vec2};
 use shadowfit::params::{Group, Parameter, parameter};
 use shadowfit::tool::Settings;
 
@@ -27,16 +27,15 @@ impl Rows<'_> {
     /// The field for the search.
     pub(crate) fn search_field(ui: &mut Ui, search: &mut String) {
         ui.horizontal(|ui| {
-            let (rect, _) = ui.allocate_exact_size(egui::Vec2::splat(18.0), egui::Sense::hover());
-            let color = ui.visuals().weak_text_color();
-            Icon::Search.paint(ui.painter(), rect, egui::Stroke::new(1.25, color));
-            let width = ui.available_width() - 30.0;
-            let field = ui.add(TextEdit::singleline(search).hint_text("Search all settings").desired_width(width));
+            let margin = Margin { left: 26, ..Margin::from(ui.spacing().button_padding) };
+            let width = ui.available_width() - 30.0 - f32::from(margin.left + margin.right);
+            let field = TextEdit::singleline(search).hint_text("Search all settings").margin(margin);
+            let field = ui.add(field.desired_width(width));
+            let icon = Rect::from_center_size(field.rect.left_center() + Vec2::new(14.0, 0.0), Vec2::ZERO);
+            Icon::Search.paint(ui.painter(), icon, Stroke::new(1.25, ui.visuals().weak_text_color()));
             rename(ui, &field, "Search all settings".to_owned());
-            let clear = ui.add_enabled_ui(!search.is_empty(), |ui| {
-                icon_button(ui, Icon::Close, "Clear the search", "Shows all settings again.")
-            });
-            if clear.inner.clicked() {
+            let is_empty = search.is_empty();
+            if !is_empty && icon_button(ui, Icon::Close, "Clear the search", "Shows all settings again.").clicked() {
                 search.clear();
             }
         });
@@ -111,13 +110,15 @@ mod tests {
 
     #[test]
     fn a_search_looks_at_names_ids_groups_and_help_word_by_word() {
-        let found = |words: &str| PARAMETERS.iter().filter(|parameter| matches(parameter, words)).map(|p| p.id);
-        assert!(found("slope").any(|id| id == "bias.slope"));
-        assert!(found("bias.sl").eq(["bias.slope"]));
-        assert!(found("texels bias").all(|id| id != "light.azimuth"));
-        assert!(found("peter-panning").any(|id| id == "bias.slope"));
-        assert_eq!(found("nonsense").count(), 0);
-        assert_eq!(found("").count(), PARAMETERS.len());
+        let found = |words: &str| -> Vec<&str> {
+            PARAMETERS.iter().filter(|parameter| matches(parameter, words)).map(|parameter| parameter.id).collect()
+        };
+        assert!(found("slope").contains(&"bias.slope"));
+        assert_eq!(found("bias.sl"), ["bias.slope"]);
+        assert!(!found("texels bias").contains(&"light.azimuth"));
+        assert!(found("peter-panning").contains(&"bias.slope"));
+        assert_eq!(found("nonsense").len(), 0);
+        assert_eq!(found("").len(), PARAMETERS.len());
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The figures over time, one plot at a time.
 
-use egui::{Color32, ComboBox, RichText, Ui, Vec2};
-use egui_plot::{HLine, Line, Plot, PlotPoints};
+use egui::{Color32, ComboBox, Ui, Vec2};
+use egui_plot::{GridMark, HLine, Line, Plot, PlotPoints};
 use shadowfit::figures::{ERROR_COLORS, MAP_TINTS};
 
 use crate::Action;
@@ -9,7 +9,7 @@ use crate::accessibility::rename;
 use crate::history::{History, SERIES};
 use crate::theme::{Palette, readable};
 use crate::units::brief_count;
-use crate::widgets::{caption, color, swatch};
+use crate::widgets::{caption, color, color_entry};
 
 /// Height of the plot, in points.
 const HEIGHT: f32 = 150.0;
@@ -101,6 +101,7 @@ impl Plots {
         let has_limit = unit == "ms";
         let top = if has_limit { (1.1 * greatest).max(1.2 * SMOOTH_MS) } else { (1.1 * greatest).max(1e-3) };
         let weak = ui.visuals().weak_text_color();
+        let line = ui.visuals().widgets.noninteractive.bg_stroke.color;
         Plot::new(("plot", choice.name))
             .height(HEIGHT)
             .allow_drag(false)
@@ -114,7 +115,10 @@ impl Plots {
             .auto_bounds(false)
             .reset()
             .y_axis_min_width(34.0)
-            .x_axis_formatter(|mark, _| if mark.value == 0.0 { "now".into() } else { format!("{} s", mark.value) })
+            .x_grid_spacer(move |_| grid(seconds))
+            .y_grid_spacer(move |_| grid(top))
+            .grid_color(line.gamma_multiply(0.8))
+            .x_axis_formatter(move |mark, _| time_value(mark.value, seconds))
             .y_axis_formatter(move |mark, _| axis_value(mark.value, unit))
             .show(ui, |plot| {
                 if has_limit {
@@ -151,12 +155,42 @@ impl Plots {
     }
 }
 
+/// Lines of a grid over a range from 0, or to 0 for a negative direction: three to six of them, at round numbers.
+fn grid(range: f64) -> Vec<GridMark> {
+    let step = round_step(range);
+    let count = (range / step) as i32;
+    (-count..=count).map(|index| GridMark { value: f64::from(index) * step, step_size: step }).collect()
+}
+
+/// The least of 1, 2 and 5, times a power of ten, of which at most five fit in a range.
+fn round_step(range: f64) -> f64 {
+    let power = 10.0_f64.powf((range / 5.0).log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].map(|step| step * power).into_iter().find(|step| range / step <= 5.0);
+    step.unwrap_or(range)
+}
+
+/// A time at the axis, in seconds before now.
+fn time_value(time: f64, range: f64) -> String {
+    match time {
+        0.0 => "now".to_owned(),
+        // The first one would stand in the corner of the other axis.
+        _ if time < -0.97 * range => String::new(),
+        _ => format!("{time:.0} s"),
+    }
+}
+
 /// A value at an axis, with its unit.
 fn axis_value(value: f64, unit: &str) -> String {
     match unit {
         "texels" => brief_count(value),
-        _ => format!("{value} {unit}"),
+        _ => format!("{} {unit}", short_number(value)),
     }
+}
+
+/// A round number without the dust of its binary fraction.
+fn short_number(value: f64) -> String {
+    let text = format!("{value:.3}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// The index of a series, and its colour in a plot.
@@ -178,19 +212,15 @@ fn line(ui: &Ui, name: &str) -> (usize, Color32) {
 
 fn legend(ui: &mut Ui, history: &History, lines: &[(usize, Color32)]) {
     ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = Vec2::new(10.0, 2.0);
-        for (series, color) in lines {
-            let shown = &SERIES[*series];
-            let value = history.last(*series).map_or("—".to_owned(), |value| match shown.unit {
+        ui.spacing_mut().item_spacing = Vec2::new(12.0, 3.0);
+        ui.spacing_mut().interact_size.y = 0.0;
+        for (index, color) in lines {
+            let series = &SERIES[*index];
+            let value = history.last(*index).map_or("—".to_owned(), |value| match series.unit {
                 "texels" => brief_count(f64::from(value)),
-                unit => format!("{value:.2} {unit}"),
+                unit => format!("{value:.2}\u{a0}{unit}"),
             });
-            ui.horizontal(|ui| {
-                ui.spacing_mut().item_spacing.x = 4.0;
-                swatch(ui, *color);
-                ui.label(RichText::new(shown.name).small().weak());
-                ui.label(RichText::new(value).small().strong());
-            });
+            color_entry(ui, *color, series.name, Some(&value));
         }
     });
 }
@@ -198,6 +228,15 @@ fn legend(ui: &mut Ui, history: &History, lines: &[(usize, Color32)]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn grids_have_a_few_lines_at_round_numbers() {
+        for (range, step) in [(10.0, 2.0), (20.0, 5.0), (60.0, 20.0), (0.7, 0.2), (3.0, 1.0), (5e6, 1e6)] {
+            let found = round_step(range);
+            assert!((found - step).abs() < 1e-9 * step, "{range}: {found}");
+        }
+        assert!(grid(10.0).iter().any(|mark| mark.value == -4.0));
+    }
 
     #[test]
     fn every_plot_shows_series_of_one_unit_and_every_series_is_in_a_plot() {

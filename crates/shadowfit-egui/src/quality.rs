@@ -36,7 +36,7 @@ const FIGURES: [Figure; 3] = [
         |judged| judged.crawl.map(percent),
     ),
     (
-        "Pixels per texel",
+        "Pixels per texel 99%",
         "Screen pixels that a texel covers, along its worse axis, in the worst hundredth of the picture (99% quantile). \
          Above 1, texels can be seen.",
         |judged| judged.pixels_per_texel.map(|[_, _, worst]| format!("{worst:.2}")),
@@ -70,6 +70,7 @@ fn age(ui: &mut Ui, judged: Option<&JudgedFigures>) {
 fn one(ui: &mut Ui, judged: &JudgedFigures) {
     wrong(ui, judged, Palette::of(ui).strong);
     bar(ui, judged, judged.wrong);
+    ui.spacing_mut().interact_size.y = 0.0;
     let columns = 2;
     let gap = 14.0;
     let width = (ui.available_width() - gap) / columns as f32;
@@ -90,14 +91,21 @@ fn one(ui: &mut Ui, judged: &JudgedFigures) {
             }
         },
     );
-    ui.add_space(4.0);
-    ui.columns_const(|columns: &mut [Ui; 3]| {
-        for (ui, (name, help, value)) in columns.iter_mut().zip(FIGURES) {
-            ui.spacing_mut().item_spacing.y = 0.0;
-            ui.label(RichText::new(name).small().weak()).on_hover_text(help);
-            ui.label(known(value(judged))).on_hover_text(help);
-        }
-    });
+    ui.add_space(3.0);
+    Grid::new("figures")
+        .num_columns(FIGURES.len())
+        .min_col_width(0.26 * ui.available_width())
+        .spacing([gap, 1.0])
+        .show(ui, |ui| {
+            for (name, help, _) in FIGURES {
+                ui.label(RichText::new(name).small().weak()).on_hover_text(help);
+            }
+            ui.end_row();
+            for (_, help, value) in FIGURES {
+                ui.label(known(value(judged))).on_hover_text(help);
+            }
+            ui.end_row();
+        });
 }
 
 fn two(ui: &mut Ui, a: &JudgedFigures, b: Option<&JudgedFigures>) {
@@ -119,13 +127,14 @@ fn two(ui: &mut Ui, a: &JudgedFigures, b: Option<&JudgedFigures>) {
             }
         }
     });
+    ui.spacing_mut().interact_size.y = 0.0;
     let value = |ui: &mut Ui, text: Option<String>, help: &str| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(known(text)).on_hover_text(help));
     };
     let width = 72.0;
     let gap = 8.0;
     let name_width = ui.available_width() - 2.0 * (width + gap);
-    Grid::new("two").num_columns(3).min_col_width(width).spacing([gap, 2.0]).striped(false).show(ui, |ui| {
+    Grid::new("two").num_columns(3).min_col_width(width).spacing([gap, 3.0]).show(ui, |ui| {
         let others = b.map(shares);
         for (index, (class, fill, share)) in shares(a).into_iter().enumerate() {
             ui.horizontal(|ui| {

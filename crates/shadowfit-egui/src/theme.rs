@@ -4,10 +4,11 @@
 
 mod palette;
 
+use egui::epaint::text::{FontData, FontInsert, FontPriority, InsertFontFamily};
 use egui::style::{HandleShape, ScrollStyle, Selection, WidgetVisuals, Widgets};
 use egui::{
-    Color32, Context, CornerRadius, FontFamily, FontId, Margin, Stroke, Style, TextStyle, Theme, ThemePreference, Ui,
-    Vec2, Visuals,
+    Color32, Context, CornerRadius, FontDefinitions, FontFamily, FontId, Margin, Stroke, Style, TextStyle, Theme,
+    ThemePreference, Ui, Vec2, Visuals,
 };
 
 pub(crate) use palette::{Palette, contrast, readable};
@@ -36,7 +37,24 @@ pub fn apply_theme(ctx: &Context, theme: impl Into<ThemePreference>) {
             style.visuals = visuals(theme, palette);
         });
     }
+    add_arrows(ctx);
     ctx.set_theme(theme);
+}
+
+/// Lets text have arrows, as in "0 → 1 texel": egui's font for text has none, that for code has them.
+fn add_arrows(ctx: &Context) {
+    /// Name of egui's font for code, whose license lets it be used so.
+    const CODE_FONT: &str = "Hack";
+    if let Some(font) = FontDefinitions::default().font_data.get(CODE_FONT) {
+        let after_all = InsertFontFamily { family: FontFamily::Proportional, priority: FontPriority::Lowest };
+        ctx.add_font(FontInsert::new("shadowfit arrows", FontData::clone(font), vec![after_all]));
+    }
+}
+
+/// Whether text can have arrows, as it can with [`apply_theme`].
+pub(crate) fn has_arrows(ui: &Ui) -> bool {
+    let font = TextStyle::Body.resolve(ui.style());
+    ui.ctx().fonts_mut(|fonts| fonts.has_glyph(&font, '→'))
 }
 
 /// Sizes and distances, the same in both themes.
@@ -79,7 +97,7 @@ fn visuals(theme: Theme, palette: &Palette) -> Visuals {
     visuals.window_corner_radius = radius;
     visuals.menu_corner_radius = radius;
     visuals.text_cursor.stroke.color = palette.accent;
-    visuals.handle_shape = HandleShape::Circle;
+    visuals.handle_shape = HandleShape::Rect { aspect_ratio: 0.5 };
     visuals.slider_trailing_fill = true;
     visuals
 }

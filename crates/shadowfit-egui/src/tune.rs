@@ -3,7 +3,7 @@
 use egui::{Label, ProgressBar, RichText, Ui};
 use shadowfit::figures::JudgedFigures;
 
-use crate::theme::Palette;
+use crate::theme::{Palette, has_arrows};
 use crate::units::percent;
 use crate::widgets::{caption, card, main_button, title};
 use crate::{Action, Tune};
@@ -22,9 +22,14 @@ pub(crate) fn show(ui: &mut Ui, tune: &Tune<'_>, action: &mut Option<Action>) {
     };
     card(ui, accent, |ui| match *tune {
         Tune::Idle => {
-            title(ui, "Auto-tune").on_hover_text(HELP);
-            caption(ui, "Searches the settings with the least error in this view.");
-            start(ui, "Auto-tune", action);
+            ui.horizontal(|ui| {
+                ui.vertical(|ui| {
+                    ui.set_width(ui.available_width() - 110.0);
+                    title(ui, "Auto-tune").on_hover_text(HELP);
+                    caption(ui, "Finds the settings with the least error in this view.");
+                });
+                start(ui, "Auto-tune", action);
+            });
         }
         Tune::Running { tried, at_most, start_error, best_error, what } => {
             title(ui, "Auto-tune: searching").on_hover_text(HELP);
@@ -32,7 +37,7 @@ pub(crate) fn show(ui: &mut Ui, tune: &Tune<'_>, action: &mut Option<Action>) {
             let bar = ProgressBar::new(share).desired_height(8.0).fill(palette.accent_fill);
             let response = ui.add(bar);
             crate::accessibility::rename(ui, &response, "Progress of the search".to_owned());
-            ui.label(RichText::new(from_to(start_error, best_error)).strong());
+            ui.label(RichText::new(from_to(ui, start_error, best_error)).strong());
             caption(ui, &format!("{tried} of at most {at_most} tried; now {what}"));
             if ui.button("Cancel").on_hover_text("Ends the search; what it found so far counts.").clicked() {
                 *action = Some(Action::CancelTune);
@@ -62,8 +67,8 @@ fn done(
         (true, true) => "Auto-tune: applied",
     };
     ui.label(RichText::new(text).color(palette.success));
-    ui.label(RichText::new(format!("Wrong pixels {}", from_to(before.wrong, after.wrong))).strong());
-    caption(ui, &format!("Mean error {}", from_to(before.mean_error, after.mean_error)));
+    ui.label(RichText::new(format!("Wrong pixels {}", from_to(ui, before.wrong, after.wrong))).strong());
+    caption(ui, &format!("Mean error {}", from_to(ui, before.mean_error, after.mean_error)));
     crate::artefact::changes(ui, changes);
     ui.add_space(2.0);
     if is_better && !is_applied {
@@ -84,8 +89,9 @@ fn done(
     }
 }
 
-fn from_to(from: f32, to: f32) -> String {
-    format!("{} → {}", percent(from), percent(to))
+fn from_to(ui: &Ui, from: f32, to: f32) -> String {
+    let arrow = if has_arrows(ui) { "→" } else { "to" };
+    format!("{} {arrow} {}", percent(from), percent(to))
 }
 
 fn start(ui: &mut Ui, text: &str, action: &mut Option<Action>) {

@@ -29,12 +29,11 @@ pub(crate) fn icon_button(ui: &mut Ui, icon: Icon, name: &str, help: &str) -> Re
 /// The main button of a card, over its whole width.
 pub(crate) fn main_button(ui: &mut Ui, text: &str, key: &str, fill: Color32) -> Response {
     let on_fill = Palette::of(ui).on_accent;
-    let mut button = Button::new(RichText::new(text).color(on_fill)).fill(fill);
-    if !key.is_empty() {
-        button = button.shortcut_text(RichText::new(key).color(on_fill));
-    }
+    let name = RichText::new(text).color(on_fill);
+    let button =
+        if key.is_empty() { Button::new(name) } else { Button::new((name, RichText::new(key).small().color(on_fill))) };
     let size = Vec2::new(ui.available_width(), 28.0);
-    let response = ui.add_sized(size, button.stroke(Stroke::NONE));
+    let response = ui.add_sized(size, button.fill(fill).stroke(Stroke::NONE));
     rename(ui, &response, text.to_owned());
     response
 }

@@ -1,6 +1,11 @@
 //! Small patches of colour, with and without text on them.
 
-use egui::{Align2, Color32, CornerRadius, Response, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, Vec2, WidgetInfo};
+use egui::{
+    Align2, Color32, CornerRadius, Rect, Response, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, Vec2, WidgetInfo,
+};
+
+/// Width and height of a square of a colour, in points.
+const SWATCH: f32 = 10.0;
 
 /// A colour of sRGB bytes.
 pub(crate) fn color([r, g, b]: [u8; 3]) -> Color32 {
@@ -9,10 +14,40 @@ pub(crate) fn color([r, g, b]: [u8; 3]) -> Color32 {
 
 /// A square of a colour, with a thin line around it, so that it is seen on any ground.
 pub(crate) fn swatch(ui: &mut Ui, color: Color32) -> Response {
-    let (rect, response) = ui.allocate_exact_size(Vec2::splat(10.0), Sense::hover());
+    let (rect, response) = ui.allocate_exact_size(Vec2::splat(SWATCH), Sense::hover());
     if ui.is_rect_visible(rect) {
-        let line = Stroke::new(1.0, ui.visuals().weak_text_color().gamma_multiply(0.6));
-        ui.painter().rect(rect, CornerRadius::same(2), color, line, StrokeKind::Inside);
+        paint_swatch(ui, rect, color);
+    }
+    response
+}
+
+fn paint_swatch(ui: &Ui, rect: Rect, color: Color32) {
+    let line = Stroke::new(1.0, ui.visuals().weak_text_color().gamma_multiply(0.6));
+    ui.painter().rect(rect, CornerRadius::same(2), color, line, StrokeKind::Inside);
+}
+
+/// A colour, what it stands for, and a value: one widget, so that a line of them wraps.
+pub(crate) fn color_entry(ui: &mut Ui, fill: Color32, name: &str, value: Option<&str>) -> Response {
+    /// Distances between the square, the name and the value, in points.
+    const GAP: f32 = 5.0;
+    let font = TextStyle::Small.resolve(ui.style());
+    let (weak, strong) = (ui.visuals().text_color(), ui.visuals().strong_text_color());
+    let name_galley = ui.painter().layout_no_wrap(name.to_owned(), font.clone(), weak);
+    let value_galley = value.map(|value| ui.painter().layout_no_wrap(value.to_owned(), font, strong));
+    let value_width = value_galley.as_ref().map_or(0.0, |galley| GAP + galley.size().x);
+    let size = Vec2::new(SWATCH + GAP + name_galley.size().x + value_width, name_galley.size().y);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    let text = value.map_or_else(|| name.to_owned(), |value| format!("{name} {value}"));
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &text));
+    if ui.is_rect_visible(rect) {
+        let square = Rect::from_center_size(rect.left_center() + Vec2::new(0.5 * SWATCH, 0.0), Vec2::splat(SWATCH));
+        paint_swatch(ui, square, fill);
+        let left = rect.left_top() + Vec2::new(SWATCH + GAP, 0.0);
+        let after = left + Vec2::new(name_galley.size().x + GAP, 0.0);
+        ui.painter().galley(left, name_galley, weak);
+        if let Some(galley) = value_galley {
+            ui.painter().galley(after, galley, strong);
+        }
     }
     response
 }

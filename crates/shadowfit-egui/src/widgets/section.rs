@@ -4,7 +4,7 @@ use egui::collapsing_header::{CollapsingState, paint_default_icon};
 use egui::{Align2, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, Vec2, WidgetInfo};
 
 /// Height of the heading of a section, in points.
-const HEIGHT: f32 = 28.0;
+const HEIGHT: f32 = 27.0;
 
 /// Width of the triangle before the heading, in points.
 const INDENT: f32 = 18.0;
