@@ -3,8 +3,9 @@
 
 use glam::{DVec3, Vec3, Vec4};
 use shadowfit::figures::linear_map_tints;
-use shadowfit::{LightFit, PerspectiveCamera};
+use shadowfit::{CasterVolume, LightFit, PerspectiveCamera};
 use shadowfit_render::{Line, box_lines};
+use shadowfit_wgpu::{MapFit, MapView, ShadowMapDescriptor};
 
 use crate::fitted::Fitted;
 
@@ -20,9 +21,68 @@ const ROOM: f32 = 1.1;
 /// Length of the arrow along the light, as a share of half the diagonal of the box's face.
 const ARROW: f32 = 0.4;
 
-/// The slices of the view, and for each map that some point reads its box and an arrow along the light's direction of
-/// travel into it, in the map's tint. The view is drawn as far as the maps reach.
-pub(crate) fn lines(fitted: &Fitted) -> Vec<Line> {
+/// How much of a tint the edges of a culling volume have.
+const VOLUME_SHARE: f32 = 0.45;
+
+/// The slices of the view, and for each map that some point reads its box, an arrow along the light's direction of
+/// travel into it, and the volume of the casters that it needs, in the map's tint. The view is drawn as far as the maps
+/// reach.
+pub(crate) fn lines(fitted: &Fitted, maps: &[MapFit], descriptor: &ShadowMapDescriptor) -> Vec<Line> {
+    let mut lines = boxes(fitted);
+    let (Some(camera), Some(frustum)) = (fitted.camera, fitted.frustum()) else { return lines };
+    let mut swept = maps.to_vec();
+    let view = MapView::from_eye(camera.eye, camera.forward.normalize());
+    if MapFit::sweep(&mut swept, &view, &[frustum], descriptor).is_ok() {
+        for (map, tint) in swept.iter().zip(linear_map_tints()) {
+            let color = (tint * VOLUME_SHARE).extend(1.0);
+            let Some(volume) = &map.volume else { continue };
+            // Toward the light a volume has no end of its own.
+            let end = map.fit.corners().map(|corner| corner.dot(map.fit.direction));
+            let end = end.into_iter().fold(f32::MAX, f32::min);
+            lines.extend(volume_edges(&volume.relative_to(map.fit.origin), map.fit.direction, end, color));
+        }
+    }
+    lines
+}
+
+/// Edges of a volume, cut where it is nearer to the light than `end`, in metres along it from the volume's origin.
+fn volume_edges(volume: &CasterVolume, direction: Vec3, end: f32, color: Vec4) -> Vec<Line> {
+    let mut planes = volume.active_planes().to_vec();
+    planes.push(direction.extend(-end));
+    let mut edges = Vec::new();
+    for (first, a) in planes.iter().enumerate() {
+        for b in &planes[first + 1..] {
+            let along = a.truncate().cross(b.truncate());
+            if along.length_squared() < 1e-8 {
+                continue;
+            }
+            // A point on both planes.
+            let at = (b.truncate() * a.w - a.truncate() * b.w).cross(along) / along.length_squared();
+            let (mut from, mut to) = (f32::NEG_INFINITY, f32::INFINITY);
+            for plane in &planes {
+                let (slope, height) = (plane.truncate().dot(along), plane.truncate().dot(at) + plane.w);
+                if slope.abs() < 1e-6 * along.length() {
+                    // Planes that the edge lies in keep all of it, within rounding.
+                    if height < -1e-3 * (1.0 + at.length()) {
+                        to = f32::NEG_INFINITY;
+                    }
+                } else if slope > 0.0 {
+                    from = from.max(-height / slope);
+                } else {
+                    to = to.min(-height / slope);
+                }
+            }
+            if from < to && from.is_finite() && to.is_finite() {
+                let ends = [from, to].map(|share| volume.origin + (at + along * share).as_dvec3());
+                edges.push(Line { ends, color });
+            }
+        }
+    }
+    edges
+}
+
+/// The slices of the view, and the boxes of the maps with an arrow each.
+fn boxes(fitted: &Fitted) -> Vec<Line> {
     let mut lines = Vec::new();
     let reach = reach(fitted);
     for (index, (map, tint)) in fitted.maps.iter().zip(linear_map_tints()).enumerate() {
@@ -128,7 +188,7 @@ mod tests {
         assert_eq!(fitted.maps.len(), 4);
         let outside = camera(&fitted.camera.expect("a camera"), &fitted);
         let clip = outside.clip_from_world(shadowfit::DepthConvention::Reversed);
-        let ends: Vec<DVec3> = lines(&fitted).iter().flat_map(|line| line.ends).collect();
+        let ends: Vec<DVec3> = boxes(&fitted).iter().flat_map(|line| line.ends).collect();
         assert_eq!(ends.len(), 4 * 2 * (12 + 12 + 3), "a slice, a box and an arrow for each map");
         for end in ends {
             let point = clip * (end - outside.eye).as_vec3().extend(1.0);

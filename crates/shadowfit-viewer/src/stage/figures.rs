@@ -1,39 +1,57 @@
 //! The live figures of the stage's frames.
 
 use glam::{DVec3, Vec3};
-use shadowfit::figures::{Figures, MapFigures};
+use shadowfit::figures::{Figures, JudgedFigures, MapFigures};
 use shadowfit::{DepthConvention, LightFit, PerspectiveCamera, diagnostics};
 
 use super::Stage;
 use crate::fitted::Fitted;
 
 impl Stage {
-    /// The live figures of the last frame, for a picture of the given size.
-    pub fn figures(&mut self, size: [u32; 2]) -> Figures {
-        let fitted = match &self.fitted {
+    /// The live figures of the last frame, for a picture of the given size; `frame_ms` is how long a whole frame took.
+    pub fn figures(&mut self, size: [u32; 2], frame_ms: Option<f32>) -> Figures {
+        let (side, mut shot) = self.shot(size);
+        let fitted = match &side.fitted {
             Some(fitted) => fitted.clone(),
-            None => self.fit(size),
+            None => side.fit(&mut shot),
         };
-        let (statistics, times) = (self.statistics, self.evaluator.renderer.pass_times());
+        let (statistics, times) = (side.statistics, side.evaluator.renderer.pass_times());
+        let format = self.settings.technique.format;
         let mut figures = Figures {
+            frame_ms,
             shadow_pass_ms: times.shadow_ms,
             scene_pass_ms: times.scene_ms,
+            judge_ms: times.probe_ms,
             shadow_draws: Some(statistics.shadow_draws),
             shadow_triangles: Some(statistics.shadow_triangles),
+            shadow_texels: Some(statistics.shadow_texels),
+            judged: self.judged_figures(),
+            judged_other: self.other_figures(),
             ..Figures::default()
         };
-        for ((figures, map), drawn) in figures.maps.iter_mut().zip(fitted.maps.iter()).zip(&statistics.maps) {
+        let drawn = statistics.maps.iter().zip(times.maps_ms);
+        for ((index, figures), (map, (drawn, ms))) in
+            figures.maps.iter_mut().enumerate().zip(fitted.maps.iter().zip(drawn))
+        {
             *figures = Some(MapFigures {
                 casters: Some(drawn.casters),
                 draws: Some(drawn.draws),
                 triangles: Some(drawn.triangles),
-                ..MapFigures::new(map, fitted.end, self.settings.technique.format)
+                texels: Some(drawn.texels),
+                pass_ms: ms,
+                waste: waste(&fitted, index),
+                ..MapFigures::new(map, fitted.end, format)
             });
         }
         if let Some((map, pixels_per_texel)) = self.ahead(&fitted, size) {
             (figures.map_ahead, figures.pixels_per_texel) = (Some(map as u32), pixels_per_texel);
         }
         figures
+    }
+
+    /// Figures of the picture that was judged last.
+    pub fn judged_figures(&self) -> Option<JudgedFigures> {
+        self.side.live.figures()
     }
 
     /// The map that is read where the middle of the picture meets the scene, and its pixels per texel there. Left open
@@ -43,7 +61,7 @@ impl Stage {
             return None;
         }
         let camera = self.perspective(size);
-        let rays = self.scene.rays();
+        let rays = self.scene.ready_rays()?;
         let eye = self.scene.camera_for_rays(&camera).eye;
         let hit = rays.tracer.first_hit(eye.as_vec3(), camera.forward)?;
         let normal = rays.tracer.normal(hit.triangle);
@@ -51,6 +69,13 @@ impl Stage {
         let map = fitted.read_at(camera.eye + DVec3::from(point))?;
         Some((map, pixels_per_texel(&fitted.maps[map].fit, &camera, size, point, normal)))
     }
+}
+
+/// Share of a map's area beside the part of the view that it is made for; `None` where it is made for none.
+fn waste(fitted: &Fitted, map: usize) -> Option<f32> {
+    let slice = fitted.slice(map)?;
+    let fit = fitted.maps.get(map)?.fit.relative_to(slice.origin);
+    diagnostics::share_of_map(&fit, &slice.corners).ok().map(|share| 1.0 - share.min(1.0))
 }
 
 /// Pixels per texel along the worse axis at a point relative to the eye.

@@ -26,12 +26,13 @@ impl Stage {
         let maps = self.maps(size);
         // The picture of one moment, whatever was judged before.
         let view = View { is_first: true, ..self.view(size) };
-        self.evaluator.judging = Judging { size, subject_only, ..self.evaluator.judging };
+        let evaluator = &mut self.side.evaluator;
+        evaluator.judging = Judging { size, subject_only, crawl: false, ..evaluator.judging };
         let mut truth = SharedTruth::default();
-        match self.evaluator.judge(&self.gpu, &mut self.scene, &view, &maps, &mut truth) {
+        match evaluator.judge(&self.gpu, &mut self.scene, &view, &maps, &mut truth) {
             Ok(judged) => Some((truth, judged)),
             Err(error) => {
-                self.problem = Some(format!("{error:#}"));
+                self.side.problem = Some(format!("{error:#}"));
                 None
             }
         }

@@ -1,0 +1,162 @@
+//! Two techniques side by side: the second one has maps, a renderer and a judge of its own, and everything else in
+//! common with the first.
+
+use shadowfit::Technique;
+use shadowfit::figures::JudgedFigures;
+use shadowfit::tool::Settings;
+use shadowfit_render::RenderTarget;
+
+use super::Stage;
+use super::side::{Shot, Side};
+
+/// Least share of the picture that either side keeps.
+const LEAST: f32 = 0.02;
+
+/// The second technique.
+#[derive(Debug)]
+pub(super) struct Other {
+    pub(super) technique: Technique,
+    side: Side,
+}
+
+impl Other {
+    pub(super) fn problem(&self) -> Option<&str> {
+        self.side.problem.as_deref()
+    }
+
+    pub(super) fn cut(&mut self, is_frozen: bool) {
+        self.side.cut(is_frozen);
+    }
+}
+
+impl Stage {
+    /// Whether two techniques are compared.
+    pub fn is_comparing(&self) -> bool {
+        self.other.is_some()
+    }
+
+    /// The second of two techniques.
+    pub fn other_technique(&self) -> Option<Technique> {
+        self.other.as_ref().map(|other| other.technique)
+    }
+
+    /// Compares the technique of the settings with another one, or with none.
+    pub fn compare_with(&mut self, technique: Option<Technique>) {
+        let Some(technique) = technique else {
+            self.other = None;
+            return;
+        };
+        if let Some(other) = &mut self.other {
+            other.technique = technique;
+            return;
+        }
+        match Side::new(&self.gpu, technique, self.samples) {
+            Ok(mut side) => {
+                side.live.waits = self.side.live.waits;
+                if self.reads_depths {
+                    side.read_depths(&self.gpu, self.samples);
+                }
+                self.other = Some(Other { technique, side });
+            }
+            Err(error) => self.side.problem = Some(error.to_string()),
+        }
+    }
+
+    /// Swaps both techniques.
+    pub fn swap_sides(&mut self) {
+        if let Some(other) = &mut self.other {
+            std::mem::swap(&mut self.settings.technique, &mut other.technique);
+            std::mem::swap(&mut self.side, &mut other.side);
+        }
+    }
+
+    /// Moves the bar between both pictures.
+    pub fn set_split(&mut self, share: f32) {
+        if share.is_finite() {
+            self.split = share.clamp(LEAST, 1.0 - LEAST);
+        }
+    }
+
+    /// The settings, and the second technique where two are compared, to be edited.
+    pub fn settings_and_other(&mut self) -> (&mut Settings, Option<&mut Technique>) {
+        (&mut self.settings, self.other.as_mut().map(|other| &mut other.technique))
+    }
+
+    /// Draws the second technique's picture into a target, from the bar on.
+    pub fn draw_other(&mut self, target: &RenderTarget) {
+        let scissor = right_part(self.split, target.size);
+        let (camera, plays, blink) = (self.perspective(target.size), self.plays(), self.blink());
+        let Some(other) = &mut self.other else { return };
+        let settings = Settings { technique: other.technique, ..self.settings };
+        let mut shot = Shot {
+            gpu: &self.gpu,
+            scene: &mut self.scene,
+            settings: &settings,
+            camera,
+            sight: self.home.0.camera.far,
+            plays,
+            seconds: self.seconds,
+            scissor: Some(scissor),
+            blink,
+        };
+        other.side.draw(&mut shot, target);
+    }
+
+    /// Figures of the second technique's picture.
+    pub(super) fn other_figures(&self) -> Option<JudgedFigures> {
+        self.other.as_ref().and_then(|other| other.side.live.figures())
+    }
+
+    /// Whether both pictures on show have been judged.
+    pub fn is_judged(&self) -> bool {
+        self.side.live.is_up_to_date() && self.other.as_ref().is_none_or(|other| other.side.live.is_up_to_date())
+    }
+
+    /// What both techniques are called: by the name of a preset where they are one.
+    pub fn side_names(&self) -> [String; 2] {
+        let other = self.other.as_ref().map_or(self.settings.technique, |other| other.technique);
+        [self.settings.technique, other].map(|technique| {
+            let is_same = |preset: &&shadowfit::presets::Preset| {
+                let mut named = preset.technique();
+                named.fit.max_distance = technique.fit.max_distance;
+                named.fit.caster_extension = technique.fit.caster_extension;
+                named.fit.resolution = technique.fit.resolution;
+                named == technique
+            };
+            let preset = shadowfit::PRESETS.iter().find(is_same);
+            preset.map_or_else(|| format!("{} maps", technique.count), |preset| preset.name.to_owned())
+        })
+    }
+}
+
+/// Column at which the bar stands, in pixels.
+fn column(split: f32, width: u32) -> u32 {
+    ((split * width as f32).round() as u32).clamp(1, width.saturating_sub(1).max(1))
+}
+
+/// The part of a picture left of the bar: x, y, width and height in pixels.
+pub(super) fn left_part(split: f32, [width, height]: [u32; 2]) -> [u32; 4] {
+    [0, 0, column(split, width), height]
+}
+
+/// The part right of the bar, and a column of pixels under it.
+fn right_part(split: f32, [width, height]: [u32; 2]) -> [u32; 4] {
+    let from = column(split, width).saturating_sub(1);
+    [from, 0, width - from, height]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_parts_cover_the_picture_wherever_the_bar_stands() {
+        for width in [1, 2, 37, 1280] {
+            for split in [0.0, 0.02, 0.5, 0.98, 1.0] {
+                let ([_, _, left, _], [from, _, right, _]) =
+                    (left_part(split, [width, 9]), right_part(split, [width, 9]));
+                assert!(left >= 1 && right >= 1 && from <= left && from + right == width, "{width} at {split}");
+            }
+        }
+    }
+}

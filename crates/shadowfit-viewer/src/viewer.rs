@@ -1,0 +1,265 @@
+//! The viewer without a window: scene, interface, commands, and what goes on in the background. The window and the
+//! headless mode put frames around it.
+
+mod commands;
+mod opening;
+mod start;
+
+use std::collections::VecDeque;
+use std::path::PathBuf;
+use std::sync::mpsc::Receiver;
+
+use anyhow::Result;
+use egui::RawInput;
+use shadowfit_egui::{Changes, UserPreset};
+
+use crate::artefact::Found;
+use crate::command::Command;
+use crate::files::write_png;
+use crate::input::Input;
+use crate::interface::{Asked, Interface, Layout, Shows};
+use crate::keys::Chord;
+use crate::loading::Loading;
+use crate::playback::{Deed, Doing, Player};
+use crate::saved::{Saved, Store};
+use crate::source::SceneSource;
+use crate::stage::Stage;
+use crate::tuning::Tuning;
+use crate::undo::{History, State};
+
+pub(crate) use start::Start;
+
+/// How often what is kept is written, in seconds.
+const SAVE_EVERY: f64 = 5.0;
+/// Weight of the newest frame in the frame time shown.
+const FRAME_TIME_WEIGHT: f32 = 0.1;
+
+/// Everything of the viewer but its window.
+pub(crate) struct Viewer {
+    pub(crate) stage: Stage,
+    pub(crate) interface: Interface,
+    pub(crate) input: Input,
+    pub(crate) player: Player,
+    start: Start,
+    source: SceneSource,
+    /// Whether there is a scene to show.
+    has_scene: bool,
+    loading: Option<Loading>,
+    searching: Option<Receiver<Found>>,
+    chooser: Option<Receiver<Option<PathBuf>>>,
+    tuning: Tuning,
+    history: History,
+    saved: Saved,
+    store: Option<Store>,
+    presets: Vec<UserPreset>,
+    message: Option<String>,
+    /// Seconds since the start.
+    clock: f64,
+    saved_at: f64,
+    commands: VecDeque<Command>,
+    /// Pictures of the whole window that were asked for.
+    shots: Vec<PathBuf>,
+    pub(crate) wishes: Wishes,
+    /// Why it ends with an error.
+    pub(crate) failure: Option<anyhow::Error>,
+}
+
+/// What the viewer wants of its window.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Wishes {
+    pub(crate) quit: bool,
+    pub(crate) resize: Option<[u32; 2]>,
+    pub(crate) new_title: bool,
+}
+
+impl Viewer {
+    /// A viewer whose frames are painted to a surface of a format. `stage` has a scene that is not shown until the one
+    /// of the start is there.
+    pub(crate) fn new(stage: Stage, format: wgpu::TextureFormat, start: Start, store: Option<Store>) -> Self {
+        let mut viewer = Self {
+            interface: Interface::new(&stage, format),
+            stage,
+            input: Input::default(),
+            player: Player::new(start.script.clone()),
+            source: SceneSource::default(),
+            start,
+            has_scene: false,
+            loading: None,
+            searching: None,
+            chooser: None,
+            tuning: Tuning::default(),
+            history: History::default(),
+            saved: Saved::default(),
+            store,
+            presets: Vec::new(),
+            message: None,
+            clock: 0.0,
+            saved_at: 0.0,
+            commands: VecDeque::new(),
+            shots: Vec::new(),
+            wishes: Wishes::default(),
+            failure: None,
+        };
+        viewer.restore();
+        viewer
+    }
+
+    /// Handles a key.
+    pub(crate) fn key(&mut self, chord: Chord, pressed: bool, is_repeat: bool) {
+        // Control makes other things of the keys that fly.
+        if !chord.ctrl || !pressed {
+            self.input.key(chord.key, pressed);
+        }
+        if pressed && !is_repeat {
+            self.commands.extend(chord.command());
+        }
+    }
+
+    /// Whether keys go to what has the focus in the panel.
+    pub(crate) fn types(&self) -> bool {
+        self.interface.context.egui_wants_keyboard_input()
+    }
+
+    /// Lays a frame out, does what is asked for and draws: the frame after it shows what was done. Time since the frame
+    /// before is in seconds.
+    pub(crate) fn frame(&mut self, mut raw_input: RawInput, seconds: f32) -> (Layout, egui::PlatformOutput) {
+        self.clock += f64::from(seconds);
+        let old = self.interface.frame_ms.unwrap_or(seconds * 1e3);
+        self.interface.frame_ms = Some(old + (seconds * 1e3 - old) * FRAME_TIME_WEIGHT);
+        self.play(&mut raw_input, seconds);
+        self.take_background();
+        let (asked, layout, output) = self.lay_out(raw_input);
+        if self.has_scene {
+            self.stage.ask_why(asked.hover, self.interface.pictures.size());
+            self.interface.pictures.draw(&mut self.stage);
+        }
+        let mut fly = self.input.fly();
+        (fly.drag, fly.wheel) = (asked.drag, asked.wheel);
+        self.stage.update(&fly, seconds);
+        self.commands.extend(asked.commands);
+        while let Some(command) = self.commands.pop_front() {
+            self.run(command);
+        }
+        self.history.feed(self.clock, &self.state());
+        if self.clock - self.saved_at > SAVE_EVERY {
+            self.save();
+        }
+        (layout, output)
+    }
+
+    fn lay_out(&mut self, raw_input: RawInput) -> (Asked, Layout, egui::PlatformOutput) {
+        let loading = self.loading.as_ref().map(|loading| (loading.source.label(), loading.share()));
+        let shows = Shows {
+            saved: &self.saved,
+            presets: &self.presets,
+            tune: self.tuning.shown(),
+            changes: Changes { undo: self.history.undo_name(), redo: self.history.redo_name() },
+            message: self.message.as_deref(),
+            loading: loading.as_ref().map(|(name, share)| (name.as_str(), *share)),
+            is_searching: self.searching.is_some(),
+            has_scene: self.has_scene,
+        };
+        self.interface.layout(&mut self.stage, &shows, raw_input)
+    }
+
+    /// Paints a frame that was laid out to `target` of `size` pixels, and saves it where that was asked for.
+    pub(crate) fn paint(&mut self, layout: &Layout, target: &wgpu::TextureView, size: [u32; 2]) {
+        self.interface.paint(&self.stage, layout, target, size);
+        for path in std::mem::take(&mut self.shots) {
+            let saved = self.save_window(layout, &path, size);
+            self.tell(saved.map(|()| format!("Saved {}", path.display())));
+        }
+    }
+
+    /// Saves a frame as a picture.
+    fn save_window(&mut self, layout: &Layout, path: &std::path::Path, size: [u32; 2]) -> Result<()> {
+        let whole = self.stage.window_target(size, self.interface.format());
+        self.interface.paint(&self.stage, layout, &whole.view, size);
+        write_png(path, size, &whole.read(self.stage.gpu())?, Some(&self.text_of_settings()?))
+    }
+
+    /// Plays the script on.
+    fn play(&mut self, raw_input: &mut RawInput, seconds: f32) {
+        let size = raw_input.screen_rect.map_or([0.0; 2], |rect| [rect.width(), rect.height()]);
+        let doing = Doing {
+            is_loading: self.loading.is_some() || !self.has_scene,
+            is_searching: self.searching.is_some(),
+            is_judged: self.has_scene && self.stage.is_judged(),
+            is_tuning: self.tuning.is_running(),
+            size,
+        };
+        for deed in self.player.advance(seconds, &doing) {
+            match deed {
+                Deed::Do(command) => self.commands.push_back(command),
+                Deed::Key(chord, pressed) if pressed && self.types() => raw_input.events.extend(typed(chord)),
+                Deed::Key(chord, pressed) => self.key(chord, pressed, false),
+                Deed::Pointer(event) => raw_input.events.push(event),
+                Deed::Resize(size) => self.wishes.resize = Some(size),
+                Deed::Drop(path) => self.commands.push_back(Command::OpenFile(path)),
+                Deed::Say(text) => eprintln!("{text}"),
+            }
+        }
+    }
+
+    /// Takes what has been done in the background.
+    fn take_background(&mut self) {
+        self.take_scene();
+        if let Some(searching) = &self.searching {
+            match searching.try_recv() {
+                Ok(found) => {
+                    self.searching = None;
+                    self.stage.show_found(found);
+                }
+                Err(std::sync::mpsc::TryRecvError::Empty) => {}
+                Err(std::sync::mpsc::TryRecvError::Disconnected) => {
+                    self.searching = None;
+                    self.message = Some("The search for a view ended without one; this is a bug of the viewer".to_owned());
+                }
+            }
+        }
+        if let Some(chosen) = self.chooser.as_ref().map(Receiver::try_recv)
+            && chosen != Err(std::sync::mpsc::TryRecvError::Empty)
+        {
+            self.chooser = None;
+            self.commands.extend(chosen.ok().flatten().map(Command::OpenFile));
+        }
+        self.tuning.take();
+    }
+
+    /// All that a change can change.
+    fn state(&self) -> State {
+        State { settings: self.stage.settings, other: self.stage.other_technique(), shown: self.stage.shown() }
+    }
+
+    /// Shows the outcome of an action.
+    fn tell(&mut self, outcome: Result<String>) {
+        self.message = Some(outcome.unwrap_or_else(|error| format!("{error:#}")));
+    }
+
+    /// Title of the window.
+    pub(crate) fn title(&self) -> String {
+        format!("shadowfit: {} ({})", self.source.label(), self.stage.gpu().name())
+    }
+
+    /// Whether the scene of the start is on show.
+    pub(crate) fn is_ready(&self) -> bool {
+        self.has_scene
+    }
+}
+
+/// A key as egui takes it, for what has the focus.
+fn typed(chord: Chord) -> Option<egui::Event> {
+    use winit::keyboard::KeyCode;
+    let key = match chord.key {
+        KeyCode::Enter => egui::Key::Enter,
+        KeyCode::Escape => egui::Key::Escape,
+        KeyCode::Tab => egui::Key::Tab,
+        KeyCode::Backspace => egui::Key::Backspace,
+        KeyCode::Delete => egui::Key::Delete,
+        KeyCode::ArrowLeft => egui::Key::ArrowLeft,
+        KeyCode::ArrowRight => egui::Key::ArrowRight,
+        _ => return None,
+    };
+    let modifiers = egui::Modifiers { ctrl: chord.ctrl, shift: chord.shift, command: chord.ctrl, ..Default::default() };
+    Some(egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers })
+}

@@ -1,0 +1,319 @@
+//! What each command does.
+
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, channel};
+
+use anyhow::{Context, Result, anyhow};
+use shadowfit::Technique;
+use shadowfit::params;
+use shadowfit::tool::{ErrorMarks, InsetMaps, ViewMode};
+use shadowfit_egui::{Artefact, UserPreset};
+use shadowfit_render::FlyCamera;
+use shadowfit_study::{NamedTechnique, settings_to_toml};
+
+use super::Viewer;
+use crate::command::{Command, Toggle};
+use crate::export::command_line;
+use crate::files::{free_name, write_png, write_whole};
+use crate::saved::Bookmark;
+use crate::undo::State;
+
+/// Technique that the present one is compared with at first, or the other one where it is that already.
+const COMPARED: [&str; 2] = ["stable-4", "windows-4"];
+/// How far before a thing the camera stops when it flies to it, as a share of its distance.
+const FOCUS: f64 = 0.6;
+
+impl Viewer {
+    /// Does something.
+    pub(super) fn run(&mut self, command: Command) {
+        let view = &mut self.stage.settings.view;
+        match command {
+            Command::View(mode) => view.mode = mode,
+            Command::ToggleOutside => {
+                view.mode = if view.mode == ViewMode::Outside { ViewMode::Final } else { ViewMode::Outside };
+            }
+            Command::NextMarks => {
+                view.marks = match view.marks {
+                    ErrorMarks::Off => ErrorMarks::Outline,
+                    ErrorMarks::Outline => ErrorMarks::Blink,
+                    ErrorMarks::Blink => ErrorMarks::Off,
+                }
+            }
+            Command::NextInset => {
+                view.inset = match view.inset {
+                    InsetMaps::Off => InsetMaps::One,
+                    InsetMaps::One => InsetMaps::All,
+                    InsetMaps::All => InsetMaps::Off,
+                }
+            }
+            Command::ToggleFreeze => view.freeze_fit = !view.freeze_fit,
+            Command::TogglePlay => view.play = !view.play,
+            Command::ToggleSun => self.stage.settings.light.animate = !self.stage.settings.light.animate,
+            Command::Scrub(seconds) if seconds.is_finite() => {
+                view.play = false;
+                self.stage.set_time(seconds.max(0.0));
+            }
+            Command::ToggleHelp => self.interface.help_open = !self.interface.help_open,
+            Command::TogglePanel => self.interface.bare = !self.interface.bare,
+            Command::SetTheme(theme) => {
+                self.saved.theme = theme;
+                self.interface.context.set_theme(theme);
+            }
+            Command::Quit => self.wishes.quit = true,
+            // Everything else needs a scene.
+            _ if !self.has_scene => {}
+            command => self.run_on_scene(command),
+        }
+    }
+
+    fn run_on_scene(&mut self, command: Command) {
+        match command {
+            Command::ShowArtefact(artefact) => self.search(artefact),
+            Command::Fix => self.fix(),
+            Command::CloseArtefact => self.stage.close_artefact(),
+            Command::Compare(toggle) => self.compare(toggle),
+            Command::Split(share) => self.stage.set_split(share),
+            Command::SwapSides => self.stage.swap_sides(),
+            Command::CopyToOther => self.copy_to_other(),
+            Command::Undo => self.go_back(),
+            Command::Redo => self.go_forward(),
+            Command::Reset => {
+                self.stage.reset();
+                self.stage.compare_with(None);
+            }
+            Command::ResetCamera => self.stage.reset_camera(),
+            Command::LookAt(eye, target) => self.stage.set_camera(FlyCamera::look_at(eye, target)),
+            Command::Focus(at) => self.focus(at),
+            Command::SetBookmark(key) => self.set_bookmark(key),
+            Command::GoToBookmark(key) => self.go_to_bookmark(key),
+            Command::StartTune => self.start_tune(),
+            Command::CancelTune => self.tuning.cancel(),
+            Command::ApplyTune => {
+                if let Some(technique) = self.tuning.apply() {
+                    self.stage.settings.technique = technique;
+                }
+            }
+            Command::DiscardTune => self.tuning.discard(),
+            command => self.run_with_files(command),
+        }
+    }
+
+    fn run_with_files(&mut self, command: Command) {
+        let outcome = match command {
+            Command::Open(source) => return self.open(source),
+            Command::OpenFile(path) => return self.open_file(&path),
+            Command::ChooseFile => return self.choose_file(),
+            Command::Window(path) => return self.shots.push(path),
+            Command::Set(id, value) => self.set(&id, &value),
+            Command::Technique(name) => self.take_technique(&name),
+            Command::Picture(path) => self.save_picture(path),
+            Command::SaveFigures(path) => {
+                let text = self.interface.panel().history_csv();
+                self.save_text(path, &text)
+            }
+            Command::SaveCsv(text) => self.save_text(None, &text),
+            Command::CopyRust => {
+                let code = self.edited_technique().to_rust();
+                self.interface.context.copy_text(code);
+                Ok("Copied the technique as Rust code".to_owned())
+            }
+            Command::CopyCommandLine => {
+                let line = command_line(&self.source, &self.stage.settings, &self.stage.home_settings());
+                self.interface.context.copy_text(line);
+                Ok("Copied the command line".to_owned())
+            }
+            Command::SavePreset(name) => self.save_preset(&name),
+            Command::DeletePreset(name) => {
+                self.saved.presets.retain(|preset| preset.name != name);
+                self.presets.retain(|preset| preset.name != name);
+                Ok(format!("Deleted {name}"))
+            }
+            _ => return,
+        };
+        self.tell(outcome);
+    }
+
+    /// Looks for the view of an artefact on a thread.
+    fn search(&mut self, artefact: Artefact) {
+        let search = self.stage.search(artefact);
+        let (sender, receiver) = channel();
+        let work = move || {
+            // Nobody waits any more where another artefact was asked for.
+            let _ = sender.send(search.run());
+        };
+        if std::thread::Builder::new().name("search".to_owned()).spawn(work).is_ok() {
+            self.searching = Some(receiver);
+        }
+    }
+
+    fn fix(&mut self) {
+        if let Some(shown) = self.stage.shown().filter(|_| self.searching.is_none()) {
+            self.stage.fix_artefact(shown.artefact);
+        }
+    }
+
+    fn compare(&mut self, toggle: Toggle) {
+        let now = self.stage.settings.technique;
+        let other = toggle.apply(self.stage.is_comparing()).then(|| {
+            let known = self.stage.other_technique();
+            known.unwrap_or_else(|| COMPARED.iter().find_map(|name| another(name, &now)).unwrap_or(now))
+        });
+        self.stage.compare_with(other);
+        self.interface.edits_other &= self.stage.is_comparing();
+    }
+
+    fn copy_to_other(&mut self) {
+        let edits_other = self.interface.edits_other;
+        let (settings, other) = self.stage.settings_and_other();
+        match other {
+            Some(other) if edits_other => settings.technique = *other,
+            Some(other) => *other = settings.technique,
+            None => {}
+        }
+    }
+
+    fn go_back(&mut self) {
+        let now = self.state();
+        if let Some(state) = self.history.undo(&now) {
+            self.restore_state(&state);
+        }
+    }
+
+    fn go_forward(&mut self) {
+        let now = self.state();
+        if let Some(state) = self.history.redo(&now) {
+            self.restore_state(&state);
+        }
+    }
+
+    fn restore_state(&mut self, state: &State) {
+        self.stage.settings = state.settings;
+        self.stage.compare_with(state.other);
+        self.stage.restore_shown(state.shown);
+    }
+
+    /// Flies to what is at a point of the picture.
+    fn focus(&mut self, at: [f32; 2]) {
+        let Some(target) = self.stage.pick(at, self.interface.pictures.size()) else { return };
+        let eye = self.stage.camera.position;
+        self.stage.set_camera(FlyCamera::look_at(eye + (target - eye) * FOCUS, target));
+    }
+
+    fn set_bookmark(&mut self, key: u8) {
+        let bookmark = Bookmark::new(key, &self.source, self.stage.camera);
+        self.saved.bookmarks.retain(|other| other.key != key || other.scene != bookmark.scene);
+        self.saved.bookmarks.push(bookmark);
+        self.message = Some(format!("Bookmark {key}: Ctrl+{key} comes back here"));
+    }
+
+    fn go_to_bookmark(&mut self, key: u8) {
+        let scene = self.source.text();
+        let known = self.saved.bookmarks.iter().find(|bookmark| bookmark.key == key && bookmark.scene == scene);
+        match known.and_then(Bookmark::camera) {
+            Some(camera) => self.stage.set_camera(camera),
+            None => self.message = Some(format!("No bookmark {key} in this scene; Ctrl+Shift+{key} sets it")),
+        }
+    }
+
+    fn start_tune(&mut self) {
+        let views = self.stage.views_to_tune(self.interface.pictures.size());
+        let choice = self.start.arguments.adapter();
+        let scene = self.stage.prepared_scene().shared_scene();
+        self.tuning.start(choice, scene, self.stage.settings, views, (self.stage.animation, self.stage.seconds()));
+    }
+
+    fn set(&mut self, id: &str, value: &str) -> Result<String> {
+        let settings = &mut self.stage.settings;
+        params::set_from_str(settings, id, value).map_err(|error| anyhow!("{error}"))?;
+        Ok(format!("{id} = {value}"))
+    }
+
+    fn take_technique(&mut self, name: &str) -> Result<String> {
+        let named = NamedTechnique::find(name)?;
+        let fit = self.stage.settings.technique.fit;
+        self.stage.settings.technique = named.technique;
+        if NamedTechnique::preset(name).is_some() {
+            let own = &mut self.stage.settings.technique.fit;
+            (own.max_distance, own.caster_extension) = (fit.max_distance, fit.caster_extension);
+        }
+        Ok(format!("Technique {}", named.name))
+    }
+
+    /// The technique that the panel edits.
+    fn edited_technique(&self) -> Technique {
+        let other = self.stage.other_technique().filter(|_| self.interface.edits_other);
+        other.unwrap_or(self.stage.settings.technique)
+    }
+
+    /// Saves the picture, without bars and panel.
+    fn save_picture(&mut self, path: Option<PathBuf>) -> Result<String> {
+        let path = path.unwrap_or_else(|| free_name("png"));
+        let pixels = self.interface.pictures.read(&self.stage)?;
+        write_png(&path, self.interface.pictures.size(), &pixels, Some(&self.text_of_settings()?))?;
+        Ok(format!("Saved {}", path.display()))
+    }
+
+    #[expect(clippy::unused_self, reason = "beside the other things that are saved")]
+    fn save_text(&self, path: Option<PathBuf>, text: &str) -> Result<String> {
+        let path = path.unwrap_or_else(|| free_name("csv"));
+        write_whole(&path, text.as_bytes())?;
+        Ok(format!("Saved {}", path.display()))
+    }
+
+    /// What a picture carries: the scene and all settings, as [`Self::open_picture`] reads them.
+    pub(super) fn text_of_settings(&self) -> Result<String> {
+        let scene = toml::Value::from(self.source.text());
+        let line = command_line(&self.source, &self.stage.settings, &self.stage.home_settings());
+        let line = toml::Value::from(line);
+        let settings = settings_to_toml(&self.stage.settings, "settings.");
+        Ok(format!("scene = {scene}\ncommand = {line}\n\n{settings}"))
+    }
+
+    fn save_preset(&mut self, name: &str) -> Result<String> {
+        let name = name.trim();
+        let is_built_in = NamedTechnique::preset(name).is_some();
+        let named = NamedTechnique { name: name.to_owned(), ..self.edited_technique().into() };
+        // What no file can hold could not be read back.
+        named.to_toml().context("this technique cannot be saved")?;
+        if name.is_empty() || is_built_in {
+            return Err(anyhow!("a preset needs a name of its own, and {name:?} is none"));
+        }
+        self.saved.presets.retain(|preset| preset.name != name);
+        self.presets.retain(|preset| preset.name != name);
+        self.presets.push(preset(&named));
+        self.saved.presets.push(named);
+        Ok(format!("Saved the technique as {name}"))
+    }
+
+    /// Has a person choose a file, with the system's dialog on a thread.
+    fn choose_file(&mut self) {
+        if self.chooser.is_none() {
+            self.chooser = dialog();
+        }
+    }
+}
+
+/// A preset, unless it is the present technique but for what suits the scene.
+fn another(name: &str, now: &Technique) -> Option<Technique> {
+    let mut technique = NamedTechnique::preset(name)?.technique;
+    technique.fit.max_distance = now.fit.max_distance;
+    technique.fit.caster_extension = now.fit.caster_extension;
+    technique.fit.resolution = now.fit.resolution;
+    (technique != *now).then_some(technique)
+}
+
+/// A saved technique as the panel takes it.
+pub(super) fn preset(named: &NamedTechnique) -> UserPreset {
+    UserPreset { name: named.name.clone(), technique: named.technique }
+}
+
+fn dialog() -> Option<Receiver<Option<PathBuf>>> {
+    let (sender, receiver) = channel();
+    let work = move || {
+        let dialog = rfd::FileDialog::new().set_title("Open").add_filter("Scenes", &["glb", "gltf"]);
+        let dialog = dialog.add_filter("Techniques and screenshots", &["toml", "png"]);
+        // Nobody waits once the viewer has ended.
+        let _ = sender.send(dialog.pick_file());
+    };
+    std::thread::Builder::new().name("file dialog".to_owned()).spawn(work).ok().map(|_| receiver)
+}
