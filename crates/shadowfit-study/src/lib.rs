@@ -26,6 +26,7 @@ mod seen;
 mod technique_file;
 mod tune;
 mod view;
+mod why;
 
 pub use agreement::Agreement;
 pub use background_judge::{BackgroundJudge, JudgeJob, JudgedPicture};
@@ -45,3 +46,4 @@ pub use seen::Seen;
 pub use technique_file::NamedTechnique;
 pub use tune::{Budget, Step, Tuned, Weights, tune};
 pub use view::View;
+pub use why::{StoredTexels, Why, WhyInput, why};
