@@ -27,6 +27,7 @@ mod settings_file;
 mod technique_file;
 mod tune;
 mod view;
+mod why;
 
 pub use agreement::Agreement;
 pub use background_judge::{BackgroundJudge, JudgeJob, JudgedPicture};
@@ -47,3 +48,4 @@ pub use settings_file::{settings_from_toml, settings_to_toml};
 pub use technique_file::NamedTechnique;
 pub use tune::{Budget, Step, Tuned, Weights, tune};
 pub use view::View;
+pub use why::{StoredTexels, Why, WhyInput, why};

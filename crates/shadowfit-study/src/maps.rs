@@ -8,7 +8,7 @@ use shadowfit_truth::{MapReading, MeasuredMap, PictureMaps};
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
 
 /// View depth, in metres, that means that a map has no end: fit files have finite numbers only.
-const NO_END: f64 = 1e9;
+pub(crate) const NO_END: f64 = 1e9;
 
 /// A map as fit files have it: the f32 matrix that the renderer gets, made absolute in f64.
 pub fn fit_map(map: &MapFit) -> FitMap {

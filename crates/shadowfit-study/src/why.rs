@@ -1,0 +1,227 @@
+//! Why a pixel is lit or dark, and right or wrong: what its point reads, what is compared, and the reason in words.
+//!
+//! The class is the judge's own; the reasons follow from a few rays more. Which map is read and why is told in
+//! `map_reason`, how it is looked up in `look_up`, and the rest in `reason`.
+
+mod look_up;
+mod map_reason;
+mod reason;
+mod words;
+
+use glam::{DVec2, DVec3, Vec3};
+use shadowfit::Technique;
+use shadowfit::choice::MapRead;
+use shadowfit_scene::Scene;
+use shadowfit_truth::{Class, Occluder, PictureMaps, PixelFinding, PixelTruth, TruthPoint};
+use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
+
+use self::look_up::{LookUp, Tap};
+use crate::maps::{measured, picture_maps};
+use crate::{Judging, SceneRays, View};
+
+/// A pixel to ask about, and all that its shadow follows from.
+#[derive(Clone, Copy, Debug)]
+pub struct WhyInput<'a> {
+    /// The scene, whose nodes give things their names.
+    pub scene: &'a Scene,
+    /// Its rays, in the pose that is seen.
+    pub rays: &'a SceneRays,
+    /// Camera and light of the picture.
+    pub view: &'a View,
+    /// Size of the picture in pixels, and how it is judged.
+    pub judging: &'a Judging,
+    /// The pixel, from the left and from the top of the picture, in pixels; fractions are dropped.
+    pub pixel: [f32; 2],
+    /// The technique that made the maps.
+    pub technique: &'a Technique,
+    /// The maps that the picture was drawn with.
+    pub maps: &'a [MapFit],
+    /// What they were drawn into.
+    pub descriptor: &'a ShadowMapDescriptor,
+    /// Share of the light at the pixel as it was drawn, 0..=1, such as a probe gives it; `None` takes what one comparison
+    /// with the point's own texel gives.
+    pub factor: Option<f32>,
+    /// What the map stores around the look-up, if it was read back; rays find it otherwise.
+    pub stored: Option<StoredTexels>,
+}
+
+/// Texels of a map that were read back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StoredTexels {
+    /// The middle one, from the left and from the top of the map: whole texels of [`Why::texel`]. A map that
+    /// [is stored shifted](MapFit::wrap) has it elsewhere in its layer.
+    pub texel: [u32; 2],
+    /// Its depth and those of the eight around it, rows from the top, as the map stores them: 0..=1, plain or reversed.
+    /// Not a number beyond the map.
+    pub depths: [[f32; 3]; 3],
+}
+
+impl StoredTexels {
+    /// The depth of a texel, if it is one of these.
+    fn depth(&self, texel: DVec2) -> Option<f32> {
+        let [x, y] = [0, 1].map(|axis| texel[axis] - f64::from(self.texel[axis]) + 1.0);
+        let is_here = (0.0..3.0).contains(&x) && (0.0..3.0).contains(&y);
+        is_here.then(|| self.depths[y as usize][x as usize]).filter(|depth| !depth.is_nan())
+    }
+}
+
+/// Why a pixel is lit or dark, and right or wrong.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Why {
+    /// What is seen; world space, metres.
+    pub position: DVec3,
+    /// Unit geometric normal on the side of the eye, world axes.
+    pub normal: Vec3,
+    /// Distance from the eye, in metres.
+    pub distance: f32,
+    /// Index of the map that is read, of two the one that weighs more; `None` where no map holds the point.
+    pub map: Option<usize>,
+    /// Where it is looked up in that map, with the bias's offset, in texels from the left and from the top. `None` without
+    /// a map, and on a surface that is turned away from the light.
+    pub texel: Option<[f32; 2]>,
+    /// Depth that is compared, bias and all, as the map stores depths: 0..=1, plain or reversed.
+    pub compared: Option<f32>,
+    /// The same in metres from the map's near plane along the light; less than 0 before it.
+    pub compared_metres: Option<f32>,
+    /// Depth that the map stores at that texel, as it was read or as rays find it; that of a cleared map where it stores
+    /// nothing.
+    pub stored: Option<f32>,
+    /// The same in metres from the map's near plane along the light; `None` where it stores nothing.
+    pub stored_metres: Option<f32>,
+    /// Screen pixels per shadow texel along the worse axis; `None` without a map, and where the surface is edge-on to the
+    /// light.
+    pub pixels_per_texel: Option<f32>,
+    /// How the pixel compares with the truth. The judge of pictures says the same, but for edge zones wider than
+    /// [`PixelTruth::judge`] looks at.
+    pub class: Class,
+    /// Whether the light reaches it in truth.
+    pub is_lit: bool,
+    /// The share of the light that it was judged by, 0..=1: as it was given, or as one comparison gives it. `None` on a
+    /// surface that is not judged, if none was given.
+    pub factor: Option<f32>,
+    /// Which map is read, and why that one: "map 2 of 4: the finest that holds this point; map 1 ends 3.1 m to the left of
+    /// it".
+    pub map_reason: String,
+    /// Why it is lit or dark, and right or wrong: "lit by mistake: its occluder, "roof", stands 3.2 m before the near plane
+    /// of map 2".
+    pub reason: String,
+}
+
+/// All that is known of a pixel. Positions are relative to the origin of the rays, in metres.
+pub(crate) struct At<'a> {
+    input: &'a WhyInput<'a>,
+    truth: PixelTruth<'a>,
+    maps: &'a PictureMaps<'a>,
+    /// The pixel's index in the rows from the top.
+    pixel: usize,
+    point: TruthPoint,
+    read: Option<MapRead>,
+    look_up: Option<(LookUp<'a>, Tap)>,
+    factor: Option<f32>,
+    finding: PixelFinding,
+}
+
+/// Says why a pixel is lit or dark, and right or wrong; `None` for the sky and beyond the picture.
+///
+/// It casts a few dozen rays, as many as the filter reads texels, and at a wrong pixel up to a hundred thousand more to
+/// look for the shadow's true edge: from microseconds to some tens of milliseconds.
+///
+/// ```no_run
+/// # use shadowfit::Technique;
+/// # use shadowfit_study::{Judging, PreparedScene, View, WhyInput, why};
+/// # use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
+/// # fn click(scene: &PreparedScene, view: &View, technique: &Technique, maps: &[MapFit], pixel: [f32; 2]) {
+/// let Some(rays) = scene.ready_rays() else { return };
+/// let found = why(&WhyInput {
+///     scene: scene.scene(),
+///     rays: &rays,
+///     view,
+///     judging: &Judging { size: [1280, 720], ..Judging::default() },
+///     pixel,
+///     technique,
+///     maps,
+///     descriptor: &ShadowMapDescriptor::from(technique),
+///     factor: None,
+///     stored: None,
+/// });
+/// match found {
+///     Some(why) => println!("{}\n{}", why.reason, why.map_reason),
+///     None => println!("the sky"),
+/// }
+/// # }
+/// ```
+pub fn why(input: &WhyInput<'_>) -> Option<Why> {
+    let WhyInput { rays, view, judging, maps, descriptor, .. } = *input;
+    let camera = judging.pixel_camera(rays.origin, view);
+    let pixel = pixel_index(input.pixel, judging.size)?;
+    let settings = judging.truth_settings(view);
+    let truth = PixelTruth { tracer: &rays.tracer, camera: &camera, settings: &settings };
+    let point = truth.point(pixel)?;
+    let measured = measured(maps, descriptor, view.direction, rays.origin);
+    let picture = picture_maps(&measured, maps, descriptor);
+    let read = picture.read(point.view_depth, point.position);
+    let look_up = read.filter(|_| point.facing > 0.0).and_then(|read| {
+        let map = read.main();
+        let look_up = LookUp::new(&maps[map], &measured[map], descriptor, &point)?;
+        let centre = look_up.centre(&rays.tracer, input.stored.as_ref());
+        Some((look_up, centre))
+    });
+    let predicted = || point.is_judged.then(|| look_up.as_ref().map_or(1.0, |(_, centre)| lit(centre)));
+    let factor = input.factor.or_else(predicted);
+    let finding = truth.judge(&picture, factor.unwrap_or(1.0), pixel, &point);
+    Some(At { input, truth, maps: &picture, pixel, point, read, look_up, factor, finding }.why())
+}
+
+/// Share of the light that one comparison gives.
+fn lit(tap: &Tap) -> f32 {
+    if tap.is_dark() { 0.0 } else { 1.0 }
+}
+
+/// A pixel's index in the rows from the top, if it is in the picture.
+fn pixel_index(pixel: [f32; 2], [width, height]: [u32; 2]) -> Option<usize> {
+    let is_inside = (0.0..width as f32).contains(&pixel[0]) && (0.0..height as f32).contains(&pixel[1]);
+    is_inside.then(|| pixel[1] as usize * width as usize + pixel[0] as usize)
+}
+
+impl At<'_> {
+    /// What stands between the point and the sun, seen from the point itself and not from where its ray starts.
+    fn occluders(&self) -> Vec<Occluder> {
+        let mut occluders = self.truth.occluders(self.pixel, &self.point);
+        for occluder in &mut occluders {
+            let direction = (occluder.position - self.point.position).normalize_or_zero();
+            let normal = self.truth.tracer.normal(occluder.triangle).as_dvec3();
+            let corner = self.truth.tracer.corners(occluder.triangle)[0].as_dvec3();
+            let distance = normal.dot(corner - self.point.position) / normal.dot(direction);
+            // A plane along the ray has none.
+            if distance.is_finite() {
+                (occluder.position, occluder.distance) = (self.point.position + direction * distance, distance);
+            }
+        }
+        occluders
+    }
+
+    fn why(&self) -> Why {
+        let Self { point, look_up, finding, .. } = self;
+        let looked_up = look_up.as_ref();
+        Why {
+            position: self.input.rays.origin + point.position,
+            normal: point.normal.as_vec3(),
+            distance: (point.position - self.truth.camera.eye).length() as f32,
+            map: self.read.map(|read| read.main()),
+            texel: looked_up.map(|(look_up, _)| look_up.texel.as_vec2().to_array()),
+            compared: looked_up.map(|(look_up, _)| look_up.depth(Some(look_up.compared))),
+            compared_metres: looked_up.map(|(look_up, _)| look_up.compared as f32),
+            stored: looked_up.map(|(look_up, centre)| look_up.depth(centre.stored)),
+            stored_metres: looked_up.and_then(|(_, centre)| Some(centre.stored? as f32)),
+            pixels_per_texel: Some(finding.pixels_per_texel).filter(|pixels| pixels.is_finite()),
+            class: finding.class,
+            is_lit: point.verdict() == Some(true),
+            factor: self.factor,
+            map_reason: map_reason::map_reason(self),
+            reason: reason::reason(self),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

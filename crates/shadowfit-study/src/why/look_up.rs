@@ -1,0 +1,159 @@
+//! How a point is looked up in its map: where, with which depth, and what the texels around it store, found by rays.
+//!
+//! ```text
+//!   near plane ──────┬───────┬───────┬─────  depths are metres from here, along the light
+//!                    │       │       │
+//!                    │ tap   │   ░░░░░░░░░  stored: what a ray through the texel's centre meets first
+//!                    ▼       ▼
+//!   compared  · · · · · · ·╳· · · · · · · ·  the point's depth less the bias
+//!   surface  ───────────────●──────────────
+//! ```
+
+use glam::{DVec2, DVec3};
+use shadowfit::bias::MIN_COSINE;
+use shadowfit::{DepthConvention, LightFit};
+use shadowfit_truth::{MeasuredMap, Tracer, TruthPoint};
+use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
+
+use super::StoredTexels;
+
+/// How far before the near plane rays begin that look for what a clamped depth keeps, in metres: farther than any
+/// scene reaches whose rays are exact.
+const BEFORE_NEAR: f64 = 1e4;
+/// Most texels each way that the filter is followed over.
+const MOST_TEXELS: f64 = 32.0;
+
+/// A point's look-up in a map. Positions are relative to the origin of the rays, in metres; depths are metres from the
+/// near plane along the light.
+pub(super) struct LookUp<'a> {
+    pub(super) fit: &'a LightFit,
+    /// Where it is looked up, in texels from the left and from the top.
+    pub(super) texel: DVec2,
+    /// Depth of the point itself.
+    pub(super) surface: f64,
+    /// Depth that is compared.
+    pub(super) compared: f64,
+    /// How far the look-up is moved along the normal.
+    pub(super) offset: f64,
+    /// Change of the compared depth for a texel to the right and for one down.
+    slope: DVec2,
+    /// Where on the near plane the look-up lies, and the way from there for a texel to the right and for one down.
+    near: DVec3,
+    steps: [DVec3; 2],
+    /// Texels each way that the filter reads.
+    reach: f64,
+    depth_clamp: bool,
+}
+
+/// A texel that the filter reads.
+#[derive(Clone, Copy)]
+pub(super) struct Tap {
+    /// From the look-up to the texel's centre, in texels to the right and down.
+    pub(super) away: DVec2,
+    /// Depth that it stores; `None` where it stores nothing.
+    pub(super) stored: Option<f64>,
+    /// The triangle that it stores, as far as rays know.
+    pub(super) triangle: Option<u32>,
+    /// Depth that is compared with it.
+    pub(super) compared: f64,
+}
+
+impl Tap {
+    /// Whether the comparison says shadow.
+    pub(super) fn is_dark(&self) -> bool {
+        self.stored.is_some_and(|stored| stored < self.compared)
+    }
+}
+
+impl<'a> LookUp<'a> {
+    /// `None` where the bias makes no sense on the point's plane.
+    pub(super) fn new(
+        map: &'a MapFit,
+        measured: &MeasuredMap,
+        descriptor: &ShadowMapDescriptor,
+        point: &TruthPoint,
+    ) -> Option<Self> {
+        let fit = &map.fit;
+        let plane = map.bias.on_plane(fit, point.normal.as_vec3()).ok()?;
+        let (offset, range) = (f64::from(plane.offset), f64::from(fit.depth_range));
+        let looked_up = measured.project(point.position + point.normal * offset);
+        let [x, y, z] = [0, 1, 2].map(|row| fit.light_from_world.row(row).truncate().as_dvec3());
+        let steps = [x * f64::from(fit.texel_size.x), -y * f64::from(fit.texel_size.y)];
+        let depth = looked_up.depth * range;
+        let cosine = point.normal.dot(z).max(f64::from(MIN_COSINE));
+        let has_slope = map.bias.receiver_plane != 0.0;
+        let slope = DVec2::new(point.normal.dot(steps[0]), point.normal.dot(steps[1])) / cosine;
+        Some(Self {
+            fit,
+            texel: looked_up.texel,
+            surface: measured.project(point.position).depth * range,
+            compared: depth - f64::from(plane.depth) * range,
+            offset,
+            slope: if has_slope { slope } else { DVec2::ZERO },
+            near: point.position + point.normal * offset + z * depth,
+            steps,
+            reach: f64::from(descriptor.softness.reach_in(descriptor.filter, fit).per_axis()).min(MOST_TEXELS),
+            depth_clamp: descriptor.depth_clamp,
+        })
+    }
+
+    /// By how much the bias moves the comparison toward the light, in metres.
+    pub(super) fn bias(&self) -> f64 {
+        self.surface - self.compared
+    }
+
+    /// The greater side of a texel, in metres.
+    pub(super) fn texel_width(&self) -> f64 {
+        f64::from(self.fit.texel_size.max_element())
+    }
+
+    /// The texel in which the look-up lies, with the depth that it stores: as it was read, else as rays find it.
+    pub(super) fn centre(&self, tracer: &Tracer, stored: Option<&StoredTexels>) -> Tap {
+        self.tap(tracer, stored, self.texel.floor())
+    }
+
+    /// All texels whose centres lie within the filter's reach.
+    pub(super) fn taps(&self, tracer: &Tracer, stored: Option<&StoredTexels>) -> Vec<Tap> {
+        let first = (self.texel - self.reach - 0.5).ceil().max(DVec2::ZERO);
+        let last = (self.texel + self.reach - 0.5).floor().min(self.fit.resolution.as_dvec2() - 1.0);
+        let [width, height] = (last - first + 1.0).max(DVec2::ZERO).to_array().map(|side| side as u32);
+        let texel = |index: u32| first + DVec2::new(f64::from(index % width), f64::from(index / width));
+        (0..width * height).map(|index| self.tap(tracer, stored, texel(index))).collect()
+    }
+
+    fn tap(&self, tracer: &Tracer, stored: Option<&StoredTexels>, texel: DVec2) -> Tap {
+        let away = texel + 0.5 - self.texel;
+        let found = self.met(tracer, away);
+        let read = stored.and_then(|stored| stored.depth(texel)).map(|depth| self.metres(depth));
+        // What was read has nothing in it at the far plane.
+        let is_something = |metres: &f64| *metres < f64::from(self.fit.depth_range) * (1.0 - f64::from(f32::EPSILON));
+        Tap {
+            away,
+            stored: read.map_or(found.map(|found| found.0), |read| Some(read).filter(is_something)),
+            triangle: found.map(|found| found.1),
+            compared: self.compared + self.slope.dot(away),
+        }
+    }
+
+    /// Depth and triangle that a ray along the light meets first.
+    fn met(&self, tracer: &Tracer, away: DVec2) -> Option<(f64, u32)> {
+        let before = if self.depth_clamp { BEFORE_NEAR } else { 0.0 };
+        let direction = self.fit.direction.as_dvec3();
+        let origin = self.near + self.steps[0] * away.x + self.steps[1] * away.y - direction * before;
+        let hit = tracer.first_hit(origin.as_vec3(), direction.as_vec3())?;
+        let depth = (f64::from(hit.distance) - before).max(0.0);
+        (depth <= f64::from(self.fit.depth_range)).then_some((depth, hit.triangle))
+    }
+
+    /// Metres from the near plane of a stored depth.
+    fn metres(&self, depth: f32) -> f64 {
+        let from_near = if self.fit.depth == DepthConvention::Reversed { 1.0 - depth } else { depth };
+        f64::from(from_near) * f64::from(self.fit.depth_range)
+    }
+
+    /// The stored depth of metres from the near plane; that of a cleared map for `None`.
+    pub(super) fn depth(&self, metres: Option<f64>) -> f32 {
+        let from_near = metres.map_or(1.0, |metres| metres / f64::from(self.fit.depth_range)) as f32;
+        if self.fit.depth == DepthConvention::Reversed { 1.0 - from_near } else { from_near }
+    }
+}
