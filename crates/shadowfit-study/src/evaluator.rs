@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use anyhow::Result;
 use glam::{DVec3, Vec3};
-use shadowfit_render::{Frame, Gpu, ProbePixel, ProbeTargets, RenderTarget, Renderer, Statistics};
+use shadowfit_render::{Frame, Gpu, PixelRead, ProbePixel, ProbeTargets, RenderTarget, Renderer, Statistics};
 use shadowfit_truth::Judged;
 use shadowfit_truth::gpu::{GpuBefore, GpuPixel};
 use shadowfit_wgpu::{MapFit, ShadowMapError};
@@ -27,6 +27,8 @@ pub struct Evaluator {
     targets_before: Option<ProbeTargets>,
     picture: Option<RenderTarget>,
     before: Option<Before>,
+    /// The maps that were drawn last.
+    drawn: Vec<MapFit>,
 }
 
 /// The maps of the frame before, and the eye and forward direction that chose among them.
@@ -40,7 +42,7 @@ struct Before {
 impl Evaluator {
     /// An evaluator that has judged nothing yet.
     pub fn new(renderer: Renderer, judging: Judging) -> Self {
-        Self { renderer, judging, targets: None, targets_before: None, picture: None, before: None }
+        Self { renderer, judging, targets: None, targets_before: None, picture: None, before: None, drawn: Vec::new() }
     }
 
     /// Draws the maps of a view and its shaded picture.
@@ -59,7 +61,39 @@ impl Evaluator {
     ) -> Result<Statistics, ShadowMapError> {
         let atmosphere = options.atmosphere(view);
         let frame = frame(view, maps, options, &atmosphere);
-        self.renderer.draw(gpu, &mut scene.gpu_scene, &frame, picture)
+        let drawn = self.renderer.draw(gpu, &mut scene.gpu_scene, &frame, picture)?;
+        self.drawn.clear();
+        self.drawn.extend_from_slice(maps);
+        Ok(drawn)
+    }
+
+    /// Begins to read what a pixel of a view shows, and the depths around a texel of a map, without waiting. The view is the
+    /// one that was drawn last: its maps are read as they are. The pixel is counted from the top left of a picture of
+    /// `size`, the texel from the top left of the map.
+    ///
+    /// # Errors
+    ///
+    /// When the device cannot tell triangles apart.
+    pub fn read_pixel(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut PreparedScene,
+        view: &View,
+        (pixel, size): ([u32; 2], [u32; 2]),
+        texel: (u32, [u32; 2]),
+    ) -> Result<PixelRead> {
+        let options = FrameOptions { maps_stay: true, ..FrameOptions::default() };
+        let atmosphere = options.atmosphere(view);
+        let maps = std::mem::take(&mut self.drawn);
+        let frame = frame(view, &maps, &options, &atmosphere);
+        let read = self.renderer.probe_pixel(gpu, &mut scene.gpu_scene, &frame, (pixel, size), texel);
+        self.drawn = maps;
+        Ok(read?)
+    }
+
+    /// The maps that were drawn last.
+    pub fn drawn_fits(&self) -> &[MapFit] {
+        &self.drawn
     }
 
     /// The shaded picture of a view, in the size that is judged: sRGB pixels, four bytes each, rows from the top.

@@ -107,6 +107,11 @@ impl ViewMode {
         Self::Outside,
     ];
 
+    /// Whether it shows what the camera sees, and not the maps, or the scene from elsewhere.
+    pub const fn shows_camera(self) -> bool {
+        !matches!(self, Self::Need | Self::Updates | Self::Outside)
+    }
+
     /// Whether rays are needed to show it.
     pub const fn is_judged(self) -> bool {
         matches!(self, Self::Truth | Self::Error)

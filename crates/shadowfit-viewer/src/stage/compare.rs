@@ -4,7 +4,8 @@
 use shadowfit::Technique;
 use shadowfit::figures::JudgedFigures;
 use shadowfit::tool::Settings;
-use shadowfit_render::RenderTarget;
+use shadowfit_render::{Gpu, RenderTarget};
+use shadowfit_study::PreparedScene;
 
 use super::Stage;
 use super::side::{Shot, Side};
@@ -100,6 +101,25 @@ impl Stage {
             blink,
         };
         other.side.draw(&mut shot, target);
+    }
+
+    /// A side and its technique.
+    pub(super) fn side_at(&self, in_other: bool) -> Option<(&Side, Technique)> {
+        if !in_other {
+            return Some((&self.side, self.settings.technique));
+        }
+        self.other.as_ref().map(|other| (&other.side, other.technique))
+    }
+
+    /// Does something with a side.
+    pub(super) fn with_side<T>(
+        &mut self,
+        in_other: bool,
+        work: impl FnOnce(&mut Side, &Gpu, &mut PreparedScene) -> T,
+    ) -> Option<T> {
+        let Self { side, other, gpu, scene, .. } = self;
+        let side = if in_other { &mut other.as_mut()?.side } else { side };
+        Some(work(side, gpu, scene))
     }
 
     /// Figures of the second technique's picture.

@@ -1,0 +1,222 @@
+//! Why the pixel under the pointer is as it is: asked when the pointer rests, answered by a thread, and shown until it
+//! moves on.
+
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::Arc;
+use std::time::Instant;
+
+use glam::DVec3;
+use shadowfit::{PerspectiveCamera, Technique};
+use shadowfit_egui::{PixelClass, WhyCard};
+use shadowfit_render::PixelRead;
+use shadowfit_scene::Scene;
+use shadowfit_study::{Judging, SceneRays, StoredTexels, View, Why, WhyInput, why};
+use shadowfit_truth::Class;
+use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
+
+use super::Stage;
+
+/// How long the pointer must rest, in seconds.
+const REST: f32 = 0.25;
+/// How far a resting pointer may move, as a share of the picture.
+const SLACK: f32 = 0.001;
+
+/// What is asked about a pixel.
+#[derive(Clone, Debug)]
+struct Question {
+    scene: Arc<Scene>,
+    rays: Arc<SceneRays>,
+    view: View,
+    judging: Judging,
+    pixel: [f32; 2],
+    technique: Technique,
+    maps: Vec<MapFit>,
+    descriptor: ShadowMapDescriptor,
+    factor: Option<f32>,
+    stored: Option<StoredTexels>,
+}
+
+impl Question {
+    fn answer(&self) -> Option<Why> {
+        why(&WhyInput {
+            scene: &self.scene,
+            rays: &self.rays,
+            view: &self.view,
+            judging: &self.judging,
+            pixel: self.pixel,
+            technique: &self.technique,
+            maps: &self.maps,
+            descriptor: &self.descriptor,
+            factor: self.factor,
+            stored: self.stored,
+        })
+    }
+}
+
+/// Where an answer stands.
+#[derive(Debug)]
+enum Step {
+    /// A thread finds which texel is read.
+    Finding(Question, Receiver<Option<Why>>),
+    /// The GPU reads the pixel and the texels around that one.
+    Reading(Question, PixelRead, [u32; 2]),
+    /// A thread finds the reason.
+    Answering(Receiver<Option<Why>>),
+    Done,
+}
+
+/// The pixel that is asked about.
+#[derive(Debug, Default)]
+pub(super) struct Asked {
+    /// Place of the pointer, the camera, and since when both have been the same.
+    at: Option<([f32; 2], PerspectiveCamera, Instant)>,
+    step: Option<Step>,
+    why: Option<Why>,
+}
+
+impl Stage {
+    /// Asks why the pixel is as it is at which the pointer rests: shares of the picture's width and height from the top
+    /// left. Call it once a frame.
+    pub fn ask_why(&mut self, hover: Option<[f32; 2]>, size: [u32; 2]) {
+        let camera = self.perspective(size);
+        let same = |old: [f32; 2], new: [f32; 2]| (0..2).all(|axis| (old[axis] - new[axis]).abs() <= SLACK);
+        let rests = match (hover, &self.why.at) {
+            (Some(new), Some((old, at, since))) if same(*old, new) && *at == camera => since.elapsed().as_secs_f32() >= REST,
+            (new, _) => {
+                self.why = Asked { at: new.map(|new| (new, camera, Instant::now())), ..Asked::default() };
+                false
+            }
+        };
+        if !rests || !self.settings.view.mode.shows_camera() {
+            return;
+        }
+        let step = self.why.step.take();
+        self.why.step = match step {
+            None => self.question(hover.unwrap_or_default(), size).map(|question| {
+                let answer = think(question.clone());
+                Step::Finding(question, answer)
+            }),
+            Some(step) => Some(self.go_on(step)),
+        };
+    }
+
+    /// The answer, once it is there.
+    pub fn why(&self) -> Option<WhyCard<'_>> {
+        let why = self.why.why.as_ref()?;
+        Some(WhyCard {
+            class: class(why.class),
+            reason: &why.reason,
+            map_reason: &why.map_reason,
+            position: Some(why.position.to_array()),
+            map: why.map.map(|map| map as u32),
+            texel: why.texel.map(|texel| texel.map(|at| at.max(0.0) as u32)),
+            stored_depth: why.stored,
+            compared_depth: why.compared,
+            pixels_per_texel: why.pixels_per_texel,
+        })
+    }
+
+    fn question(&self, at: [f32; 2], size: [u32; 2]) -> Option<Question> {
+        let in_other = self.is_comparing() && at[0] > self.split;
+        let (side, technique) = self.side_at(in_other)?;
+        let fitted = side.fitted.as_ref()?;
+        Some(Question {
+            scene: self.scene.shared_scene(),
+            rays: self.scene.ready_rays()?,
+            view: self.view(size),
+            judging: Judging { size, ..Judging::default() },
+            pixel: [at[0] * size[0] as f32, at[1] * size[1] as f32],
+            technique,
+            maps: side.evaluator.drawn_fits().to_vec(),
+            descriptor: *side.evaluator.renderer.shadow_map().descriptor(),
+            factor: None,
+            stored: None,
+        })
+        .filter(|_| fitted.camera.is_some())
+    }
+
+    fn go_on(&mut self, step: Step) -> Step {
+        match step {
+            Step::Finding(question, answer) => match answer.try_recv() {
+                Ok(found) => {
+                    let texel = found.as_ref().and_then(|why| Some((why.map?, why.texel?)));
+                    self.why.why = found;
+                    self.read_pixel(question, texel)
+                }
+                Err(TryRecvError::Empty) => Step::Finding(question, answer),
+                Err(TryRecvError::Disconnected) => Step::Done,
+            },
+            Step::Reading(mut question, mut read, texel) => match read.take(&self.gpu) {
+                None => Step::Reading(question, read, texel),
+                Some(Ok(facts)) => {
+                    question.factor = facts.pixel.map(|pixel| pixel.factor);
+                    question.stored = facts.stored.map(|depths| StoredTexels { texel, depths });
+                    Step::Answering(think(question))
+                }
+                // The device is lost, which is said where pictures are presented.
+                Some(Err(_)) => Step::Done,
+            },
+            Step::Answering(answer) => match answer.try_recv() {
+                Ok(found) => {
+                    self.why.why = found;
+                    Step::Done
+                }
+                Err(TryRecvError::Empty) => Step::Answering(answer),
+                Err(TryRecvError::Disconnected) => Step::Done,
+            },
+            Step::Done => Step::Done,
+        }
+    }
+
+    /// Has the GPU read the pixel, and the map around the texel that it reads.
+    fn read_pixel(&mut self, question: Question, texel: Option<(usize, [f32; 2])>) -> Step {
+        let Some((map, texel)) = texel else { return Step::Done };
+        let texel = texel.map(|at| at.max(0.0) as u32);
+        let in_other = question.pixel[0] > self.split * question.judging.size[0] as f32 && self.is_comparing();
+        let pixel = question.pixel.map(|at| at as u32);
+        let read = self.with_side(in_other, |side, gpu, scene| {
+            side.evaluator.read_pixel(gpu, scene, &question.view, (pixel, question.judging.size), (map as u32, texel))
+        });
+        match read {
+            Some(Ok(read)) => Step::Reading(question, read, texel),
+            _ => Step::Done,
+        }
+    }
+
+    /// World position of what is at a point of the picture, in metres.
+    pub fn pick(&self, at: [f32; 2], size: [u32; 2]) -> Option<DVec3> {
+        let rays = self.scene.ready_rays()?;
+        let camera = self.perspective(size);
+        let half = (camera.fov_y * 0.5).tan();
+        let forward = camera.forward.normalize();
+        let right = forward.cross(camera.up).normalize();
+        let up = right.cross(forward);
+        let [x, y] = [at[0] * 2.0 - 1.0, 1.0 - at[1] * 2.0];
+        let ray = (forward + right * (x * half * camera.aspect) + up * (y * half)).normalize();
+        let hit = rays.tracer.first_hit((camera.eye - rays.origin).as_vec3(), ray)?;
+        Some(camera.eye + (ray * hit.distance).as_dvec3())
+    }
+}
+
+/// Answers on a thread.
+fn think(question: Question) -> Receiver<Option<Why>> {
+    let (sender, answer) = channel();
+    let work = move || {
+        // Nobody waits once the pointer has moved on.
+        let _ = sender.send(question.answer());
+    };
+    // Without a thread the channel is closed, and there is no answer.
+    let _ = std::thread::Builder::new().name("why".to_owned()).spawn(work);
+    answer
+}
+
+fn class(class: Class) -> Option<PixelClass> {
+    match class {
+        Class::NotJudged => None,
+        Class::Right => Some(PixelClass::Right),
+        Class::FalseShadow => Some(PixelClass::FalseShadow),
+        Class::FalseLight => Some(PixelClass::FalseLight),
+        Class::Hole => Some(PixelClass::Hole),
+        Class::Edge => Some(PixelClass::Edge),
+    }
+}
