@@ -1,16 +1,17 @@
 //! Collects meshes and nodes into a scene.
 
-use glam::{Quat, Vec3};
+use glam::{Mat3, Quat, Vec3};
 
-use super::palette::{self, Paint};
 use super::solid::Solid;
-use super::textures;
-use crate::{Mesh, Node, Primitive, Scene, Transform};
+use crate::{Image, Lens, Material, Mesh, Node, Primitive, Scene, SceneCamera, Sun, Transform};
 
 /// Crease angle of round bodies, in radians: everything but right-angled edges is smooth.
 pub(super) const SMOOTH: f32 = 1.2;
 /// Crease angle of cut stone and carpentry, in radians.
 pub(super) const CRISP: f32 = 0.6;
+
+/// Distance of the near plane of every start view, in metres: nearer than anything one can walk up to.
+const NEAR: f32 = 0.1;
 
 /// A scene under construction.
 pub(super) struct Builder {
@@ -19,14 +20,9 @@ pub(super) struct Builder {
 }
 
 impl Builder {
-    /// An empty scene with all materials and images.
-    pub(super) fn new(name: &str) -> Self {
-        let scene = Scene {
-            name: name.to_owned(),
-            materials: palette::materials(),
-            images: textures::images(),
-            ..Scene::default()
-        };
+    /// A scene of materials and images alone.
+    pub(super) fn new(name: &str, materials: Vec<Material>, images: Vec<Image>) -> Self {
+        let scene = Scene { name: name.to_owned(), materials, images, ..Scene::default() };
         Self { scene }
     }
 
@@ -38,8 +34,8 @@ impl Builder {
     }
 
     /// Adds a mesh of one solid.
-    pub(super) fn solid(&mut self, name: &str, solid: &Solid, paint: Paint, crease: f32) -> usize {
-        self.mesh(name, vec![solid.primitive(paint.index(), crease)])
+    pub(super) fn solid(&mut self, name: &str, solid: &Solid, paint: impl Into<usize>, crease: f32) -> usize {
+        self.mesh(name, vec![solid.primitive(paint.into(), crease)])
     }
 
     /// Adds a node and returns its index.
@@ -68,4 +64,24 @@ impl Builder {
         let rest = Transform { translation: at, rotation: Quat::from_rotation_y(yaw), ..Transform::default() };
         self.node(name, None, rest, None)
     }
+
+    /// Adds the start view: a camera at `eye` that looks at `target`, world positions in metres, with a vertical field
+    /// of view in radians and a far plane in metres.
+    pub(super) fn start_view(&mut self, (eye, target): (Vec3, Vec3), fov_y: f32, far: f32) {
+        let back = (eye - target).normalize();
+        let right = Vec3::Y.cross(back).normalize();
+        let rotation = Quat::from_mat3(&Mat3::from_cols(right, back.cross(right), back));
+        let rest = Transform { translation: eye, rotation, ..Transform::default() };
+        let node = self.node("start view", None, rest, None);
+        let lens = Lens::Perspective { fov_y, near: NEAR, far: Some(far) };
+        self.scene.cameras.push(SceneCamera { name: "start view".to_owned(), node, lens });
+    }
+}
+
+/// Sunlight from `azimuth` (from +z toward +x) and `elevation` above the horizon, in radians.
+pub(super) fn sunlight(azimuth: f32, elevation: f32) -> Sun {
+    let (sin, cos) = azimuth.sin_cos();
+    let flat = elevation.cos();
+    let to_sun = Vec3::new(sin * flat, elevation.sin(), cos * flat);
+    Sun { direction: -to_sun, color: Vec3::new(1.0, 0.95, 0.87), intensity: 80_000.0 }
 }

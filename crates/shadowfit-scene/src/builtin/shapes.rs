@@ -218,6 +218,11 @@ pub(super) fn rounded_box(half: Vec3, radius: f32, steps: usize) -> Solid {
     weld(&solid)
 }
 
+/// A box between two corners with slightly rounded edges.
+pub(super) fn block(low: Vec3, high: Vec3, edge: f32) -> Solid {
+    rounded_box((high - low) / 2.0, edge, 1).moved((low + high) / 2.0)
+}
+
 /// Adds one face of a rounded box, not yet welded to its neighbours.
 fn add_box_face(solid: &mut Solid, line: &[(f32, f32)], axis: usize, sign: f32, inner: Vec3, radius: f32) {
     let first = solid.positions.len() as u32;
@@ -322,6 +327,23 @@ impl Arch {
         faces.push([right, right_top, high(segments)]);
         extrude(&outline, &faces, self.depth)
     }
+}
+
+/// A box between two corners with sharp edges: for what is thin, or far off.
+pub(super) fn plank(low: Vec3, high: Vec3) -> Solid {
+    let outline = [(low.x, low.y), (high.x, low.y), (high.x, high.y), (low.x, high.y)];
+    extrude(&outline, &[[0, 1, 2], [0, 2, 3]], high.z - low.z).moved(Vec3::Z * (low.z + high.z) / 2.0)
+}
+
+/// A wall across z between `height` and a lower edge, whose points are listed with ascending x.
+pub(super) fn wall_over(edge: &[(f32, f32)], height: f32, depth: f32) -> Solid {
+    let count = edge.len() as u32;
+    let mut outline = edge.to_vec();
+    outline.extend(edge.iter().rev().map(|point| (point.0, height)));
+    let above = |index: u32| 2 * count - 1 - index;
+    let faces = |index: u32| [[index, index + 1, above(index + 1)], [index, above(index + 1), above(index)]];
+    let faces: Vec<_> = (0..count - 1).flat_map(faces).collect();
+    extrude(&outline, &faces, depth)
 }
 
 /// A prism about z = 0 from a counter-clockwise outline and the triangles that fill it.

@@ -57,6 +57,11 @@ impl Solid {
     /// Drawable form: faces that meet at less than `crease` radians (below π/2) share a smooth
     /// normal. Texture coordinates are metres, projected along the normal's greatest axis.
     pub(super) fn primitive(&self, material: usize, crease: f32) -> Primitive {
+        self.primitive_with(material, crease, |vertex, normal| projected(self.positions[vertex], normal))
+    }
+
+    /// As [`Self::primitive`], with texture coordinates from the vertex's index and its normal.
+    pub(super) fn primitive_with(&self, material: usize, crease: f32, uv: impl Fn(usize, Vec3) -> Vec2) -> Primitive {
         let corners = Corners::new(self);
         let threshold = crease.cos();
         let mut primitive = Primitive { material, ..Primitive::default() };
@@ -68,7 +73,10 @@ impl Solid {
                 let known = groups.iter().find(|group| group.0 == mask).map(|group| group.1);
                 let index = known.unwrap_or_else(|| {
                     let normal = corners.normal(vertex, mask);
-                    push_vertex(&mut primitive, self.positions[vertex], normal)
+                    primitive.positions.push(self.positions[vertex]);
+                    primitive.normals.push(normal);
+                    primitive.uvs.push(uv(vertex, normal));
+                    primitive.positions.len() as u32 - 1
                 });
                 if known.is_none() {
                     groups.push((mask, index));
@@ -80,20 +88,16 @@ impl Solid {
     }
 }
 
-/// Appends a vertex whose texture coordinates are projected along the normal's greatest axis.
-fn push_vertex(primitive: &mut Primitive, position: Vec3, normal: Vec3) -> u32 {
+/// Texture coordinates of a position, in metres, projected along the normal's greatest axis.
+fn projected(position: Vec3, normal: Vec3) -> Vec2 {
     let size = normal.abs();
-    let uv = if size.y >= size.x && size.y >= size.z {
+    if size.y >= size.x && size.y >= size.z {
         Vec2::new(position.x, position.z)
     } else if size.x >= size.z {
         Vec2::new(position.z, -position.y)
     } else {
         Vec2::new(position.x, -position.y)
-    };
-    primitive.positions.push(position);
-    primitive.normals.push(normal);
-    primitive.uvs.push(uv);
-    primitive.positions.len() as u32 - 1
+    }
 }
 
 /// The triangle corners at each vertex, and the area vectors of the faces.

@@ -7,12 +7,12 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 
 use glam::{Affine3A, Quat, Vec3};
 
-use super::build::{CRISP, SMOOTH};
 use super::character::{ANKLE, Joint, TOE};
 use super::palette::Paint;
-use super::shapes::{capsule, ellipsoid, limb, loft, rounded_box, section, torus, tube};
-use super::solid::Solid;
 use crate::Primitive;
+use crate::builtin::build::{CRISP, SMOOTH};
+use crate::builtin::shapes::{Section, capsule, ellipsoid, limb, loft, rounded_box, section, torus, tube};
+use crate::builtin::solid::Solid;
 
 /// A mesh: the joints that carry it, its name, its primitives.
 pub(super) type Part = (&'static [Joint], &'static str, Vec<Primitive>);
@@ -164,7 +164,7 @@ fn shin() -> Vec<Primitive> {
 }
 
 /// A loft along +z instead of +y; its sections' `cz` is the depth of the centre below the joint.
-fn along_z(sections: &[super::shapes::Section], floor: f32) -> Solid {
+fn along_z(sections: &[Section], floor: f32) -> Solid {
     let mut solid = loft(sections, 2.3, 3, 28).transformed(Affine3A::from_rotation_x(FRAC_PI_2));
     for position in &mut solid.positions {
         position.y = position.y.max(floor);

@@ -4,10 +4,10 @@ use std::f32::consts::TAU;
 
 use glam::{Quat, Vec2, Vec3};
 
-use super::build::{Builder, CRISP, SMOOTH};
 use super::palette::Paint;
-use super::shapes::{Arch, lathe, modulated_lathe, rounded_box};
-use super::solid::Solid;
+use crate::builtin::build::{Builder, CRISP, SMOOTH};
+use crate::builtin::shapes::{Arch, block, ellipsoid, lathe, modulated_lathe};
+use crate::builtin::solid::Solid;
 use crate::{Primitive, Transform};
 
 /// Side of the floor, in metres.
@@ -17,7 +17,7 @@ const FLOOR_QUADS: usize = 24;
 /// Height of the loggia's platform above the floor.
 const PLATFORM: f32 = 0.45;
 /// Height of a column with base and capital.
-pub(super) const COLUMN: f32 = 3.5;
+const COLUMN: f32 = 3.5;
 /// Middle of the loggia along x.
 const MIDDLE: f32 = 1.0;
 /// Half of the platform's width.
@@ -60,11 +60,6 @@ fn floor() -> Primitive {
         }
     }
     primitive
-}
-
-/// A box between two corners with slightly rounded edges.
-pub(super) fn block(low: Vec3, high: Vec3, edge: f32) -> Solid {
-    rounded_box((high - low) / 2.0, edge, 1).moved((low + high) / 2.0)
 }
 
 /// A fluted column on a square foot, with a square slab above its capital.
@@ -196,7 +191,7 @@ fn free_columns(builder: &mut Builder, column: usize) {
     let group = builder.group("free columns", Vec3::ZERO, 0.0);
     let stand = block(Vec3::new(-0.42, -0.01, -0.42), Vec3::new(0.42, 0.3, 0.42), 0.012);
     let stand = builder.solid("pedestal", &stand, Paint::Stone, CRISP);
-    let ball = super::shapes::ellipsoid(Vec3::splat(0.3), 36, 22);
+    let ball = ellipsoid(Vec3::splat(0.3), 36, 22);
     let ball = builder.solid("ball", &ball, Paint::Bronze, SMOOTH);
     for at in [Vec3::new(-5.2, 0.0, -1.2), Vec3::new(8.6, 0.0, -1.6)] {
         builder.place(group, stand, at, 0.0);

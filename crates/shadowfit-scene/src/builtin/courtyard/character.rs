@@ -5,8 +5,8 @@
 
 use glam::Vec3;
 
-use super::build::Builder;
 use super::{body, face, walk};
+use crate::builtin::build::Builder;
 
 /// Length of the upper arm, in metres.
 pub(super) const UPPER_ARM: f32 = 0.27;

@@ -8,11 +8,11 @@ use std::f32::consts::{PI, TAU};
 use glam::{Affine3A, Quat, Vec2, Vec3};
 
 use super::body::Part;
-use super::build::SMOOTH;
 use super::character::Joint;
 use super::palette::Paint;
-use super::shapes::{capsule, ellipsoid, loft, section, torus, tube};
-use super::solid::Solid;
+use crate::builtin::build::SMOOTH;
+use crate::builtin::shapes::{capsule, ellipsoid, loft, section, torus, tube};
+use crate::builtin::solid::Solid;
 
 /// Point that the rays start from, in the head's axes: between the temples.
 const CENTRE: Vec3 = Vec3::new(0.0, 0.14, 0.0);

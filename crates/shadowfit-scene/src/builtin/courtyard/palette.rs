@@ -1,4 +1,4 @@
-//! The materials of the built-in scene.
+//! The courtyard's materials.
 
 use glam::{Vec3, Vec4};
 
@@ -39,6 +39,12 @@ impl Paint {
     /// Index into the scene's materials.
     pub(super) const fn index(self) -> usize {
         self as usize
+    }
+}
+
+impl From<Paint> for usize {
+    fn from(paint: Paint) -> Self {
+        paint.index()
     }
 }
 

@@ -4,12 +4,11 @@ use std::f32::consts::TAU;
 
 use glam::{Affine3A, Quat, Vec3};
 
-use super::architecture::block;
-use super::build::{Builder, CRISP, SMOOTH};
 use super::palette::Paint;
-use super::shapes::{ellipsoid, lathe, modulated_lathe, rounded_box, torus};
-use super::solid::Solid;
-use super::textures::hash;
+use crate::builtin::build::{Builder, CRISP, SMOOTH};
+use crate::builtin::pixels::hash;
+use crate::builtin::shapes::{block, ellipsoid, lathe, modulated_lathe, rounded_box, torus};
+use crate::builtin::solid::Solid;
 
 /// Where the fence stands along x.
 const FENCE_X: f32 = 4.7;

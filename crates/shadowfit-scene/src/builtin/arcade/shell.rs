@@ -1,0 +1,187 @@
+//! The gallery's shell: floor, rear and end walls, the wall over the arches, the groin vault and the roof.
+
+use std::f32::consts::{FRAC_PI_2, PI};
+
+use glam::{Affine3A, Vec3};
+
+use super::palette::Paint;
+use super::{BAY, BAYS, END, HALF, ROW, SPRING, START, THICK, bay_middles, column_places};
+use crate::builtin::build::{Builder, CRISP};
+use crate::builtin::shapes::{Arch, block, extrude, wall_over};
+use crate::builtin::solid::Solid;
+
+/// Radius of the arches between the columns, in metres: less than half a bay by half of an abacus.
+const ARCH: f32 = 1.3;
+/// Rise of the vault above the height at which it springs, in metres.
+const RISE: f32 = 1.55;
+/// Height of the walls, in metres: above the vault's crown.
+const WALL: f32 = 4.75;
+/// Height of the red foot of the walls, in metres.
+const DADO: f32 = 0.85;
+/// Segments of an arch and of a bay of the vault.
+const SEGMENTS: usize = 16;
+/// Crease of vaults, in radians: less than between the two barrels at a groin near its crown, and more than between
+/// segments.
+const GROIN: f32 = 0.2;
+
+/// Adds the shell.
+pub(super) fn build(builder: &mut Builder) {
+    let group = builder.group("gallery", Vec3::ZERO, 0.0);
+    let mut add = |name: &str, solid: &Solid, paint: Paint, crease: f32| {
+        let mesh = builder.solid(name, solid, paint, crease);
+        builder.place(group, mesh, Vec3::ZERO, 0.0);
+    };
+    add("floor", &block(Vec3::new(-2.5, -0.5, END - 0.7), Vec3::new(3.1, 0.0, START + 0.7), 0.01), Paint::Tiles, CRISP);
+    let step = block(Vec3::new(2.9, -0.6, END - 1.2), Vec3::new(3.5, -0.15, START + 1.2), 0.01);
+    add("step", &step, Paint::Stone, CRISP);
+    let rear = block(Vec3::new(-HALF - 0.55, -0.5, END - 0.6), Vec3::new(-HALF, WALL, START + 0.6), 0.01);
+    add("rear wall", &rear, Paint::Plaster, CRISP);
+    let dado = block(Vec3::new(-HALF - 0.1, -0.05, END - 0.1), Vec3::new(-HALF + 0.018, DADO, START + 0.1), 0.006);
+    add("dado", &dado, Paint::Dado, CRISP);
+    let rail =
+        block(Vec3::new(-HALF - 0.1, DADO - 0.03, END - 0.1), Vec3::new(-HALF + 0.04, DADO + 0.03, START), 0.012);
+    add("dado rail", &rail, Paint::Stone, CRISP);
+    add("vault", &vault(), Paint::Vault, GROIN);
+    add("arcade wall", &arcade_wall(BAYS).moved(Vec3::new(ROW, SPRING, 0.0)), Paint::Stone, CRISP);
+    add("roof", &roof(), Paint::Roof, CRISP);
+    ends(builder, group);
+    ribs(builder, group);
+}
+
+/// The wall over the arches: `bays` arches along z from [`START`], on columns whose tops are at y = 0, about x = 0.
+pub(super) fn arcade_wall(bays: usize) -> Solid {
+    let mut edge = vec![(0.0, 0.0)];
+    for bay in 0..bays {
+        let middle = BAY * (bay as f32 + 0.5);
+        edge.extend((0..=SEGMENTS).map(|step| {
+            let (sin, cos) = (step as f32 / SEGMENTS as f32 * PI).sin_cos();
+            (middle - cos * ARCH, sin.max(0.0) * ARCH)
+        }));
+    }
+    edge.push((BAY * bays as f32, 0.0));
+    let wall = wall_over(&edge, WALL - SPRING, THICK);
+    // Along x becomes along -z.
+    wall.transformed(Affine3A::from_rotation_y(FRAC_PI_2)).moved(Vec3::Z * START)
+}
+
+/// Height of a vault at a share of -1..1 of the half width of one of its barrels.
+fn barrel(share: f32) -> f32 {
+    RISE * (1.0 - share * share).max(0.0).sqrt()
+}
+
+/// The groin vault: where two barrels cross, the higher one bounds the room. Flat above, so that nothing leaks through.
+fn vault() -> Solid {
+    // Places along a half circle crowd where it is steep, so that its segments are even.
+    let share = |step: usize| -(step as f32 / SEGMENTS as f32 * PI).cos();
+    let (columns, rows) = (SEGMENTS + 1, SEGMENTS * BAYS + 1);
+    let mut solid = Solid::default();
+    for row in 0..rows {
+        let along = share(row % SEGMENTS);
+        let z = START - BAY * ((row / SEGMENTS) as f32 + 0.5 * (along + 1.0));
+        for column in 0..columns {
+            let across = share(column);
+            // The edges stand in the walls.
+            let x = across * (HALF + 0.05);
+            solid.positions.push(Vec3::new(x, SPRING + barrel(across).max(barrel(along)), z));
+        }
+    }
+    let below = solid.positions.len() as u32;
+    for row in 0..rows {
+        for column in [0, columns - 1] {
+            let edge = solid.positions[row * columns + column];
+            solid.positions.push(edge.with_y(WALL - 0.12));
+        }
+    }
+    let triangles = &mut solid.triangles;
+    let at = |row: usize, column: usize| (row * columns + column) as u32;
+    let top = |row: usize, side: u32| below + 2 * row as u32 + side;
+    for row in 0..rows - 1 {
+        for column in 0..columns - 1 {
+            let [a, b, c, d] = [at(row, column), at(row, column + 1), at(row + 1, column + 1), at(row + 1, column)];
+            // Diagonals follow the groins, which cross in the middle of a bay.
+            let is_even = (row % SEGMENTS < SEGMENTS / 2) == (column < SEGMENTS / 2);
+            triangles.extend(if is_even { [[a, d, c], [a, c, b]] } else { [[b, a, d], [b, d, c]] });
+        }
+        let (left, right) = ([at(row, 0), at(row + 1, 0)], [at(row, columns - 1), at(row + 1, columns - 1)]);
+        let [a, b, c, d] = [top(row, 0), top(row, 1), top(row + 1, 1), top(row + 1, 0)];
+        triangles.extend([[a, b, c], [a, c, d], [left[0], a, d], [left[0], d, left[1]]]);
+        triangles.extend([[right[0], right[1], c], [right[0], c, b]]);
+    }
+    for column in 0..columns - 1 {
+        triangles.push([top(0, 0), at(0, column), at(0, column + 1)]);
+        triangles.push([top(rows - 1, 0), at(rows - 1, column + 1), at(rows - 1, column)]);
+    }
+    triangles.push([top(0, 0), at(0, columns - 1), top(0, 1)]);
+    triangles.push([top(rows - 1, 0), top(rows - 1, 1), at(rows - 1, columns - 1)]);
+    solid
+}
+
+/// Ribs across the vault, from pilasters at the rear wall to the columns.
+fn ribs(builder: &mut Builder, group: usize) {
+    let arc = |width: f32, rise: f32| {
+        move |step: usize| {
+            let (sin, cos) = (step as f32 / SEGMENTS as f32 * PI).sin_cos();
+            (cos * width, sin.max(0.0) * rise)
+        }
+    };
+    let (outer, inner) = (arc(HALF + 0.04, RISE + 0.06), arc(HALF - 0.13, RISE - 0.13));
+    let mut outline: Vec<(f32, f32)> = (0..=SEGMENTS).map(outer).collect();
+    outline.extend((0..=SEGMENTS).rev().map(inner));
+    let last = 2 * SEGMENTS as u32 + 1;
+    let faces: Vec<[u32; 3]> =
+        (0..SEGMENTS as u32).flat_map(|a| [[a, a + 1, last - a - 1], [a, last - a - 1, last - a]]).collect();
+    let rib = extrude(&outline, &faces, 0.42);
+    let rib = builder.solid("rib", &rib, Paint::Stone, CRISP);
+    let shaft = block(Vec3::new(-0.1, -0.02, -0.21), Vec3::new(0.12, SPRING - 0.1, 0.21), 0.01);
+    let foot = block(Vec3::new(-0.1, -0.02, -0.26), Vec3::new(0.17, 0.22, 0.26), 0.015);
+    let head = block(Vec3::new(-0.1, SPRING - 0.16, -0.27), Vec3::new(0.2, SPRING + 0.02, 0.27), 0.02);
+    let collar = block(Vec3::new(-0.1, SPRING - 0.3, -0.235), Vec3::new(0.145, SPRING - 0.25, 0.235), 0.012);
+    let pilaster = builder.solid("pilaster", &shaft.with(foot).with(head).with(collar), Paint::Stone, CRISP);
+    for z in column_places() {
+        builder.place(group, rib, Vec3::new(0.0, SPRING, z), 0.0);
+        builder.place(group, pilaster, Vec3::new(-HALF, 0.0, z), 0.0);
+    }
+}
+
+/// The walls at both ends: an open doorway far ahead, a closed door behind the eye.
+fn ends(builder: &mut Builder, group: usize) {
+    let doorway = Arch { width: 2.0 * HALF + 1.2, height: WALL, depth: 0.55, radius: 1.05, spring: 2.1 };
+    let wall = builder.solid("end wall", &doorway.solid(24), Paint::Plaster, CRISP);
+    builder.place(group, wall, Vec3::new(0.0, -0.005, END - 0.2), 0.0);
+    builder.place(group, wall, Vec3::new(0.0, -0.005, START + 0.2), 0.0);
+    side_door(builder, group);
+    let frame = Arch { width: 2.6, height: 3.5, depth: 0.7, radius: 1.0, spring: 2.1 };
+    let frame = builder.solid("doorway", &frame.solid(24), Paint::Stone, CRISP);
+    builder.place(group, frame, Vec3::new(0.0, -0.01, END - 0.2), 0.0);
+    let door = block(Vec3::new(-1.2, -0.02, -0.06), Vec3::new(1.2, 3.3, 0.06), 0.01);
+    let door = builder.solid("door", &door, Paint::Timber, CRISP);
+    builder.place(group, door, Vec3::new(0.0, 0.0, START + 0.2), 0.0);
+}
+
+/// A closed door in the rear wall, under a stone arch that stands out from it.
+fn side_door(builder: &mut Builder, group: usize) {
+    let frame = Arch { width: 1.9, height: 2.75, depth: 0.34, radius: 0.68, spring: 1.72 };
+    let frame = builder.solid("side doorway", &frame.solid(20), Paint::Stone, CRISP);
+    let leaf = |from: f32| block(Vec3::new(from, 0.0, -0.03), Vec3::new(from + 0.28, 2.42, 0.03), 0.012);
+    let mut leaves = (0..5).map(|index| leaf(-0.7 + 0.28 * index as f32)).reduce(Solid::with).unwrap_or_default();
+    for height in [0.35, 1.75] {
+        leaves = leaves.with(block(Vec3::new(-0.66, height, 0.0), Vec3::new(0.66, height + 0.12, 0.05), 0.008));
+    }
+    let leaves = builder.solid("side door", &leaves, Paint::Timber, CRISP);
+    let z = START - 4.5 * BAY;
+    builder.place(group, frame, Vec3::new(-HALF, -0.01, z), FRAC_PI_2);
+    builder.place(group, leaves, Vec3::new(-HALF + 0.05, 0.01, z), FRAC_PI_2);
+}
+
+/// A lean-to roof that falls toward the garden and hangs over the wall.
+fn roof() -> Solid {
+    let outline =
+        [(-HALF - 0.8, WALL - 0.05), (HALF + 1.1, WALL - 0.05), (HALF + 1.1, WALL + 0.07), (-HALF - 0.8, WALL + 1.5)];
+    let length = START - END + 1.6;
+    extrude(&outline, &[[0, 1, 2], [0, 2, 3]], length).moved(Vec3::Z * (START + END) / 2.0)
+}
+
+/// Where lanterns hang: the crowns of every second arch, from the start on.
+pub(super) fn arch_crowns() -> impl Iterator<Item = Vec3> {
+    bay_middles().skip(3).step_by(2).map(|z| Vec3::new(ROW, SPRING + ARCH, z))
+}

@@ -1,0 +1,42 @@
+//! Materials in few words, for the palettes of the scenes.
+
+use glam::Vec3;
+
+use crate::{AlphaMode, Material, Texture, Wrap};
+
+/// Alpha below which a cut-out has a hole: half, so that filtered outlines keep their size.
+const CUTOFF: f32 = 0.5;
+
+/// A material without metal, of a linear colour.
+pub(super) fn matt(name: &str, [r, g, b]: [f32; 3], roughness: f32) -> Material {
+    Material { name: name.to_owned(), base_color: glam::Vec4::new(r, g, b, 1.0), roughness, ..Material::default() }
+}
+
+/// `material` with an image that spans this many metres of texture coordinate along u and v, and repeats.
+pub(super) fn tiled(mut material: Material, image: usize, metres: [f32; 2]) -> Material {
+    material.base_color_texture = Some(texture(image, metres, Wrap::Repeat));
+    material
+}
+
+/// `material` with an image that repeats mirrored along u, for surfaces that close on themselves.
+pub(super) fn wrapped(mut material: Material, image: usize, metres: [f32; 2]) -> Material {
+    material.base_color_texture = Some(texture(image, metres, Wrap::Mirror));
+    material
+}
+
+/// `material` as a sheet with two sides, cut out by the alpha of an image that spans texture coordinates 0..1.
+pub(super) fn cut_out(mut material: Material, image: usize) -> Material {
+    material.base_color_texture = Some(texture(image, [1.0; 2], Wrap::Clamp));
+    material.alpha = AlphaMode::Mask { cutoff: CUTOFF };
+    material.double_sided = true;
+    material
+}
+
+fn texture(image: usize, [across, along]: [f32; 2], wrap: Wrap) -> Texture {
+    Texture {
+        image,
+        wrap: [wrap, if wrap == Wrap::Mirror { Wrap::Repeat } else { wrap }],
+        nearest: false,
+        uv_from_texcoord: [Vec3::new(1.0 / across, 0.0, 0.0), Vec3::new(0.0, 1.0 / along, 0.0)],
+    }
+}

@@ -1,0 +1,42 @@
+//! The forest: thin trunks and cut-out leaves over a floor of dappled light.
+//!
+//! Trunks of 0.1 to 0.5 m are a few texels of a far map, branches and leaves less than one; bark turns away from the
+//! sun at every angle. In animation 0, "wind", boughs near the start view sway, and with them their shadows.
+
+mod floor;
+mod palette;
+mod textures;
+mod trees;
+mod undergrowth;
+
+use glam::Vec3;
+
+use super::build::{Builder, sunlight};
+use super::motion::looped;
+use crate::Scene;
+
+/// Direction of the sun from +z toward +x, in radians: ahead of the start view and to its left, so that the shadows of
+/// trunks come toward the eye.
+const SUN_AZIMUTH: f32 = -1.82;
+/// Height of the sun above the horizon, in radians: high enough for light to reach the floor between the crowns.
+const SUN_ELEVATION: f32 = 0.72;
+/// Vertical field of view of the start view, in radians.
+const FOV_Y: f32 = 0.82;
+/// Far plane of the start view, in metres: beyond the last trees, near enough for haze between them.
+const FAR: f32 = 90.0;
+/// Time of a gust and the lull after it, in seconds.
+const WIND_TIME: f32 = 8.0;
+
+/// The scene.
+pub(super) fn build() -> Scene {
+    let mut builder = Builder::new("forest", palette::materials(), textures::images());
+    floor::build(&mut builder);
+    let trees = trees::build(&mut builder);
+    undergrowth::build(&mut builder);
+    builder.start_view((Vec3::new(-0.7, 1.55, 4.6), Vec3::new(0.15, 1.95, -4.0)), FOV_Y, FAR);
+    let mut scene = builder.scene;
+    scene.subject = Some(trees.greatest);
+    scene.animations = vec![looped("wind", WIND_TIME, trees.sway)];
+    scene.sun = Some(sunlight(SUN_AZIMUTH, SUN_ELEVATION));
+    scene
+}

@@ -1,0 +1,294 @@
+//! The trees: trunks with boughs, each bough a shared mesh of wood and cards of leaves.
+
+use std::f32::consts::TAU;
+
+use glam::{Quat, Vec3};
+
+use super::WIND_TIME;
+use super::floor::{on_floor, path_distance};
+use super::palette::Paint;
+use crate::builtin::build::Builder;
+use crate::builtin::flora::{Card, Cards, Dice, Limbs};
+use crate::builtin::motion::rotations;
+use crate::{Channel, Transform};
+
+/// Distance between neighbouring trees, in metres, before each is moved a little.
+const SPACING: f32 = 3.9;
+/// Trees along a side of the grid.
+const ROWS: i32 = 19;
+/// Trees farther from the start view than this are simpler, in metres.
+const FAR: f32 = 11.5;
+/// Boughs of a far tree.
+const FAR_BOUGHS: usize = 7;
+/// Boughs nearer to the start view than this sway, in metres.
+const SWAYS: f32 = 12.0;
+/// Clear distance at both sides of the path's middle, in metres.
+const CLEAR: f32 = 1.7;
+/// Angle between one bough and the next higher one, in radians: the golden angle, which shades the least.
+const GOLDEN: f32 = 2.399_963;
+/// Height of a bough's trunk at which its shape is told, in metres: all trunks are modelled 10 m tall.
+const HEIGHT: f32 = 10.0;
+
+/// What the rest of the scene has to know of the trees.
+pub(super) struct Trees {
+    /// Node of the greatest one, near the start view.
+    pub(super) greatest: usize,
+    /// How boughs sway in the wind.
+    pub(super) sway: Vec<Channel>,
+}
+
+/// Shared meshes.
+struct Meshes {
+    /// Trunks near the view, by kind (beech, birch) and shape.
+    trunks: [[usize; 2]; 2],
+    /// Boughs near the view, by kind and shape.
+    boughs: [[usize; 3]; 2],
+    /// Whole trees far off, by kind and shape.
+    far: [[usize; 2]; 2],
+}
+
+/// A tree that stands somewhere.
+struct Tree {
+    at: Vec3,
+    is_birch: bool,
+    /// Scale of the trunk across and along.
+    scale: [f32; 2],
+    yaw: f32,
+    boughs: usize,
+    /// Share of the height at which the boughs begin.
+    lowest: f32,
+    /// Size of the lowest bough.
+    spread: f32,
+}
+
+/// Adds all trees.
+pub(super) fn build(builder: &mut Builder) -> Trees {
+    let meshes = meshes(builder);
+    let group = builder.group("trees", Vec3::ZERO, 0.0);
+    let mut sway = Vec::new();
+    let mut dice = Dice::new(1);
+    let great = Tree {
+        at: on_floor(1.75, -2.6),
+        is_birch: false,
+        scale: [2.1, 1.3],
+        yaw: 0.5,
+        boughs: 13,
+        lowest: 0.30,
+        spread: 1.7,
+    };
+    let greatest = plant(builder, &meshes, group, &great, &mut dice, &mut sway);
+    let sapling = Tree {
+        at: on_floor(-2.7, 0.6),
+        is_birch: true,
+        scale: [0.28, 0.30],
+        yaw: 0.0,
+        boughs: 8,
+        lowest: 0.28,
+        spread: 0.62,
+    };
+    plant(builder, &meshes, group, &sapling, &mut dice, &mut sway);
+    for row in 0..ROWS * ROWS {
+        let place = |index: i32, dice: &mut Dice| ((index - ROWS / 2) as f32 + dice.between(-0.36, 0.36)) * SPACING;
+        let (x, z) = (place(row % ROWS, &mut dice), place(row / ROWS, &mut dice) - 6.0);
+        let tree = tree(x, z, &mut dice);
+        if grows(x, z) {
+            plant(builder, &meshes, group, &tree, &mut dice, &mut sway);
+        }
+    }
+    Trees { greatest, sway }
+}
+
+/// Whether a tree may stand here: off the path, in the wood, and neither before the eye nor in the great one.
+fn grows(x: f32, z: f32) -> bool {
+    let round = (x * x + (z + 6.0) * (z + 6.0)).sqrt();
+    let from_eye = (x * x + (z - 4.6) * (z - 4.6)).sqrt();
+    let from_great = ((x - 1.75).powi(2) + (z + 2.6).powi(2)).sqrt();
+    path_distance(x, z) > CLEAR && round < 33.0 && from_eye > 3.6 && from_great > 3.0
+}
+
+/// A tree of random kind and size.
+fn tree(x: f32, z: f32, dice: &mut Dice) -> Tree {
+    let is_birch = dice.roll() < 0.42;
+    let girth = if is_birch { dice.between(0.5, 0.95) } else { dice.between(0.6, 1.5) };
+    Tree {
+        at: on_floor(x, z),
+        is_birch,
+        scale: [girth, dice.between(0.85, 1.2)],
+        yaw: dice.roll() * TAU,
+        boughs: 7,
+        lowest: dice.between(0.42, 0.6),
+        spread: dice.between(0.85, 1.2),
+    }
+}
+
+/// Adds a tree and returns its node.
+fn plant(
+    builder: &mut Builder,
+    meshes: &Meshes,
+    group: usize,
+    tree: &Tree,
+    dice: &mut Dice,
+    sway: &mut Vec<Channel>,
+) -> usize {
+    let kind = usize::from(tree.is_birch);
+    let distance = tree.at.distance(Vec3::new(0.0, 0.0, 4.6));
+    let shape = (dice.roll() * 2.0) as usize;
+    let [across, along] = tree.scale;
+    let size = Vec3::new(across, along, across);
+    let rest = Transform { translation: tree.at, rotation: Quat::from_rotation_y(tree.yaw), ..Transform::default() };
+    if distance > FAR {
+        // A far crown is as wide as that of other trees, however thin its trunk.
+        let scale = Vec3::new(across.max(0.8), along, across.max(0.8));
+        let name = ["far beech", "far birch"][kind];
+        return builder.node(name, Some(group), Transform { scale, ..rest }, Some(meshes.far[kind][shape]));
+    }
+    let root = builder.node(["beech", "birch"][kind], Some(group), rest, None);
+    builder.place_scaled(root, meshes.trunks[kind][shape], Vec3::ZERO, size);
+    for index in 0..tree.boughs {
+        let t = index as f32 / (tree.boughs - 1) as f32;
+        let at = trunk_middle(shape, tree.lowest + (0.97 - tree.lowest) * t) * size;
+        let size = tree.spread * (1.0 - 0.45 * t) * dice.between(0.85, 1.15);
+        let rotation = bough_turn(index, t, dice);
+        let bough = builder.place_scaled(root, meshes.boughs[kind][index % 3], at, Vec3::splat(size));
+        builder.scene.nodes[bough].rest.rotation = rotation;
+        if distance < SWAYS {
+            sway.push(swaying(bough, rotation, size, dice));
+        }
+    }
+    root
+}
+
+/// How a bough is turned: around the trunk, and up, more so toward the top (`t` is 1).
+fn bough_turn(index: usize, t: f32, dice: &mut Dice) -> Quat {
+    let up = -0.05 + 1.15 * t * t + dice.between(-0.1, 0.1);
+    let turn = index as f32 * GOLDEN + dice.between(-0.3, 0.3);
+    Quat::from_rotation_y(turn) * Quat::from_rotation_x(-up)
+}
+
+/// A bough that swings with the wind, smaller ones farther and faster.
+fn swaying(node: usize, rest: Quat, size: f32, dice: &mut Dice) -> Channel {
+    let (late, beat) = (dice.roll() * TAU, if size < 0.8 { 4.0 } else { 3.0 });
+    rotations(node, WIND_TIME, 32, |phase| {
+        let gust = 0.55 + 0.45 * (phase - 0.6).sin();
+        let nod = 0.045 * gust * (beat * phase + late).sin() + 0.025 * (phase + late * 0.3).sin();
+        let swing = 0.05 * gust * ((beat - 1.0) * phase + late * 1.7).sin();
+        Quat::from_rotation_y(swing) * rest * Quat::from_rotation_x(nod)
+    })
+}
+
+/// Middle of a trunk at a share of its height.
+fn trunk_middle(shape: usize, share: f32) -> Vec3 {
+    let bend = [0.16, -0.22][shape];
+    let x = bend * (share * 4.2).sin() * share.min(0.7);
+    Vec3::new(x, share * HEIGHT, 0.6 * bend * (share * 6.5).cos() * share - 0.6 * bend * share)
+}
+
+/// Makes the shared meshes.
+fn meshes(builder: &mut Builder) -> Meshes {
+    let kinds = [("beech", Paint::Bark, Paint::Leaves), ("birch", Paint::Birch, Paint::BirchLeaves)];
+    let trunks = kinds.map(|(name, bark, _)| {
+        [0, 1].map(|shape| {
+            let mut limbs = Limbs::default();
+            trunk(&mut limbs, shape, 20, &SHARES);
+            builder.mesh(&format!("{name} trunk"), vec![limbs.primitive(bark)])
+        })
+    });
+    let boughs = kinds.map(|(name, _, leaves)| {
+        [21, 22, 23].map(|seed| {
+            let primitives = bough(leaves, seed);
+            builder.mesh(&format!("{name} bough"), primitives)
+        })
+    });
+    let far = kinds.map(|(name, bark, leaves)| {
+        [0, 1].map(|shape| {
+            let primitives = far_tree(shape, bark, leaves);
+            builder.mesh(&format!("far {name}"), primitives)
+        })
+    });
+    Meshes { trunks, boughs, far }
+}
+
+/// Shares of the height at which a trunk near the view has a ring: closest where the roots spread.
+const SHARES: [f32; 13] = [-0.05, -0.01, 0.01, 0.025, 0.05, 0.1, 0.2, 0.32, 0.45, 0.6, 0.75, 0.9, 1.0];
+/// The same for a trunk far off.
+const FAR_SHARES: [f32; 5] = [-0.04, 0.0, 0.04, 0.4, 1.0];
+
+/// Adds a trunk 10 m tall and 0.3 m thick, with roots that spread where it meets the floor.
+fn trunk(limbs: &mut Limbs, shape: usize, segments: usize, shares: &[f32]) {
+    let path: Vec<Vec3> = shares.iter().map(|&share| trunk_middle(shape, share)).collect();
+    let last = (shares.len() - 1) as f32;
+    limbs.add(&path, segments, |turn, t| {
+        let share = shares[(t * last).round() as usize];
+        let flare = (-share.max(-0.01) * 26.0).exp() * (0.55 + 0.4 * (5.0 * turn + shape as f32).cos());
+        let lumps = 1.0 + 0.045 * (3.0 * turn + 31.0 * share).sin() + 0.03 * (7.0 * turn - 17.0 * share).sin();
+        0.15 * (1.0 - 0.82 * share.max(0.0)) * lumps + 0.13 * flare
+    });
+}
+
+/// A whole tree for far off: fewer and larger leaves.
+fn far_tree(shape: usize, bark: Paint, leaves: Paint) -> Vec<crate::Primitive> {
+    let mut dice = Dice::new(29 + shape as u32);
+    let mut limbs = Limbs::default();
+    let mut cards = Cards::new(leaves, 1);
+    trunk(&mut limbs, shape, 6, &FAR_SHARES);
+    for index in 0..FAR_BOUGHS {
+        let t = index as f32 / (FAR_BOUGHS - 1) as f32;
+        let at = trunk_middle(shape, 0.42 + 0.55 * t);
+        let turn = bough_turn(index, t, &mut dice);
+        let length = 2.3 * (1.0 - 0.45 * t);
+        let ahead = turn * Vec3::Z;
+        limbs.add(&[at, at + ahead * length], 3, |_, t| 0.04 * (1.0 - 0.8 * t));
+        for step in 0..9 {
+            let base = at + ahead * length * (0.3 + 0.08 * step as f32);
+            let lean = if step % 2 == 0 { 1.0 } else { -1.0 } * dice.between(0.2, 1.3);
+            let out = turn * Vec3::new(lean.sin(), dice.between(-0.1, 0.3), lean.cos()).normalize();
+            let size = dice.between(0.9, 1.25);
+            let half = Quat::from_axis_angle(out, dice.between(-0.7, 0.7)) * (turn * Vec3::Y).cross(out).normalize();
+            let card = Card { base, reach: out * size, half: half * 0.45 * size, droop: Vec3::Y * -0.2 * size };
+            cards.add(&card, Vec3::Y, 0.3);
+        }
+    }
+    vec![limbs.primitive(bark), cards.primitive]
+}
+
+/// A bough of about 2 m that grows from the origin along +z: wood, and leaves in flat sprays.
+fn bough(leaves: Paint, seed: u32) -> Vec<crate::Primitive> {
+    let mut dice = Dice::new(seed);
+    let mut limbs = Limbs::default();
+    let mut cards = Cards::new(leaves, 2);
+    let wave = dice.between(-0.2, 0.2);
+    let middle = |t: f32| Vec3::new(wave * (t * 3.5).sin(), 0.55 * t - 0.42 * t * t, 2.0 * t);
+    let path: Vec<Vec3> = (0..=5).map(|step| middle(step as f32 / 5.0 - 0.02)).collect();
+    limbs.add(&path, 5, |_, t| 0.032 * (1.0 - 0.85 * t));
+    for index in 0..5 {
+        let t = 0.22 + 0.16 * index as f32;
+        let side = if index % 2 == 0 { 1.0 } else { -1.0 };
+        let turn = side * dice.between(0.7, 1.0);
+        let length = 1.15 * (1.05 - t) + 0.15;
+        let out = Vec3::new(turn.sin(), dice.between(0.0, 0.25), turn.cos());
+        let from = middle(t);
+        let end = from + out * length - Vec3::Y * 0.12 * length;
+        limbs.add(&[from, end], 3, |_, t| 0.014 * (1.0 - 0.7 * t));
+        for step in 0..4 {
+            let along = 0.3 + 0.25 * step as f32;
+            let lean = turn + dice.between(-0.7, 0.7);
+            spray(&mut cards, from.lerp(end, along), lean, &mut dice);
+        }
+    }
+    for step in 0..6 {
+        let t = 0.45 + 0.1 * step as f32;
+        let lean = if step == 5 { 0.0 } else { dice.between(-0.9, 0.9) };
+        spray(&mut cards, middle(t), lean, &mut dice);
+    }
+    vec![limbs.primitive(Paint::Bark), cards.primitive]
+}
+
+/// Adds a twig of leaves at a point, turned by `lean` from the bough's direction.
+fn spray(cards: &mut Cards, at: Vec3, lean: f32, dice: &mut Dice) {
+    let length = dice.between(0.5, 0.72);
+    let out = Vec3::new(lean.sin(), dice.between(-0.15, 0.35), lean.cos()).normalize();
+    let roll = Quat::from_axis_angle(out, dice.between(-0.6, 0.6));
+    let half = roll * Vec3::Y.cross(out).normalize() * (0.45 * length);
+    let droop = Vec3::Y * -dice.between(0.05, 0.2) * length;
+    cards.add(&Card { base: at, reach: out * length, half, droop }, Vec3::Y, 0.3);
+}

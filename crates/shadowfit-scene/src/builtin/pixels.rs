@@ -1,0 +1,67 @@
+//! What the scenes' images are drawn with: fixed pseudo-random values, tileable noise, a loop over pixels.
+
+use crate::Image;
+
+/// Cells along a side of the noise, a power of two.
+pub(super) const NOISE_CELLS: u32 = 64;
+
+/// A fixed pseudo-random value in 0..1 for a lattice point.
+pub(super) fn hash(x: u32, y: u32) -> f32 {
+    let mut h = x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77);
+    h = (h ^ (h >> 15)).wrapping_mul(0x2C1B_3C6D);
+    h = (h ^ (h >> 12)).wrapping_mul(0x297A_2D39);
+    ((h ^ (h >> 15)) >> 8) as f32 / 16_777_216.0
+}
+
+/// Smooth tileable noise in -1..1, from a table of hashed values.
+pub(super) struct Noise(Vec<f32>);
+
+impl Noise {
+    /// Fills the table.
+    pub(super) fn new() -> Self {
+        let cells = 0..NOISE_CELLS * NOISE_CELLS;
+        Self(cells.map(|cell| hash(cell, 17) * 2.0 - 1.0).collect())
+    }
+
+    /// Values along x at a height `y` in cells.
+    pub(super) fn row(&self, y: f32) -> NoiseRow {
+        let top = y as u32;
+        let values = |row: u32| {
+            let start = ((row % NOISE_CELLS) * NOISE_CELLS) as usize;
+            &self.0[start..start + NOISE_CELLS as usize]
+        };
+        let mix = |(a, b): (&f32, &f32)| a + (b - a) * (y - top as f32);
+        NoiseRow(values(top).iter().zip(values(top + 1)).map(mix).collect())
+    }
+}
+
+/// A row of [`Noise`].
+pub(super) struct NoiseRow(Vec<f32>);
+
+impl NoiseRow {
+    /// Value at a position in cells.
+    pub(super) fn at(&self, x: f32) -> f32 {
+        let column = x as u32;
+        let left = self.0[(column % NOISE_CELLS) as usize];
+        let right = self.0[((column + 1) % NOISE_CELLS) as usize];
+        left + (right - left) * (x - column as f32)
+    }
+}
+
+/// Draws a square image of `size` pixels; `row` gives for each y what gives for each x a colour in
+/// sRGB and an alpha, 0..255.
+pub(super) fn draw<Row: Fn(u32) -> [f32; 4]>(name: &str, size: u32, row: impl Fn(u32) -> Row) -> Image {
+    let mut rgba = Vec::with_capacity((size * size * 4) as usize);
+    for y in 0..size {
+        let pixel = row(y);
+        for x in 0..size {
+            rgba.extend_from_slice(&pixel(x).map(|value| value as u8));
+        }
+    }
+    Image { name: name.to_owned(), width: size, height: size, rgba }
+}
+
+/// `color` made lighter or darker by `light` of 0..255.
+pub(super) fn shade([r, g, b]: [f32; 3], light: f32) -> [f32; 4] {
+    [r + light, g + light * 0.97, b + light * 0.9, 255.0]
+}
