@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, anyhow};
 use clap::Parser;
 use shadowfit::params::{self, Kind, Parameter};
 use shadowfit::tool::Settings;
@@ -10,13 +10,18 @@ use shadowfit_render::AdapterChoice;
 use shadowfit_scene::Scene;
 use shadowfit_study::NamedTechnique;
 
+use crate::script::{self, Step};
+use crate::source::SceneSource;
+use crate::viewer::check_animation;
+
 /// Fly through a scene under one sun, and show, measure and cure shadow acne, aliasing and
 /// clipping holes.
 #[derive(Clone, Debug, Parser)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of the command line")]
 #[command(name = "viewer", version, after_help = "Press H in the window for its keys.")]
 pub struct Arguments {
-    /// glTF scene (.gltf or .glb); without one, the built-in courtyard.
+    /// Scene: a glTF file (.gltf or .glb), or courtyard, plain, arcade or forest, which are built in. Without one the
+    /// scene of the last time, at first the courtyard.
     pub scene: Option<PathBuf>,
 
     /// Which of the file's scenes; its default one if not given.
@@ -47,6 +52,23 @@ pub struct Arguments {
     #[arg(long)]
     pub parameters: bool,
 
+    /// Plays a list of actions, a line each; `--actions` lists them. Without a window it takes the place of the picture
+    /// set, and the files that it saves are put into the folder of `--headless`.
+    #[arg(long, value_name = "FILE")]
+    pub script: Option<PathBuf>,
+
+    /// Lists the actions of scripts, and ends.
+    #[arg(long)]
+    pub actions: bool,
+
+    /// Keeps settings, camera and bookmarks in this file instead of the person's own one.
+    #[arg(long, value_name = "FILE", conflicts_with = "no_state")]
+    pub state: Option<PathBuf>,
+
+    /// Neither restores what was kept from the last time nor keeps anything.
+    #[arg(long)]
+    pub no_state: bool,
+
     /// Starts with the animation stopped.
     #[arg(long)]
     pub no_play: bool,
@@ -67,6 +89,10 @@ pub(crate) fn parse() -> Arguments {
         print!("{}", parameter_list());
         std::process::exit(0);
     }
+    if arguments.actions {
+        print!("{}", action_list());
+        std::process::exit(0);
+    }
     arguments
 }
 
@@ -77,19 +103,23 @@ impl Arguments {
     ///
     /// If the file cannot be loaded, or has no scene or animation of the index asked for.
     pub fn load_scene(&self) -> Result<Scene> {
-        let scene = match (&self.scene, self.scene_index) {
-            (Some(path), index) => shadowfit_scene::load_gltf_scene(path, index)?,
-            (None, None | Some(0)) => shadowfit_scene::builtin::default_scene(),
-            (None, Some(index)) => bail!("--scene-index {index}: the built-in scene is the only one; name a file"),
-        };
-        let animations = scene.animations.len();
-        // Index 0 is the default, which is accepted for a scene without animations.
-        if self.animation >= animations.max(1) {
-            let there =
-                if animations == 1 { "is 1 animation".to_owned() } else { format!("are {animations} animations") };
-            bail!("--animation {}: there {there} in {}, counted from 0", self.animation, scene.name);
-        }
+        let scene = self.source()?.unwrap_or_default().load(&|_| ())?;
+        check_animation(self.animation, scene.animations.len(), &scene.name)?;
         Ok(scene)
+    }
+
+    /// The scene that the arguments name, if any.
+    pub(crate) fn source(&self) -> Result<Option<SceneSource>> {
+        let named = self.scene.as_deref().map(|text| SceneSource::from_text(&text.to_string_lossy()));
+        if named.is_none() && self.scene_index.is_none() {
+            return Ok(None);
+        }
+        named.unwrap_or_default().with_index(self.scene_index).map(Some)
+    }
+
+    /// The script that the arguments name; nothing without one.
+    pub(crate) fn steps(&self) -> Result<Vec<Step>> {
+        Ok(self.script.as_deref().map(script::read).transpose()?.unwrap_or_default())
     }
 
     /// The adapter that the arguments ask for.
@@ -152,6 +182,16 @@ fn parameter_list() -> String {
         // A parameter that exists only with a choice of another one has no value until then.
         let value = if parameter.is_present(&defaults) { format!("={value}") } else { String::new() };
         let _ = writeln!(list, "{}{value}  ({})\n    {}", parameter.id, range(parameter), parameter.help);
+    }
+    list
+}
+
+fn action_list() -> String {
+    use std::fmt::Write;
+    let mut list = String::new();
+    for (name, takes, help) in script::ACTIONS {
+        // Writing to a String cannot fail.
+        let _ = writeln!(list, "{:<38} {help}", format!("{name} {takes}"));
     }
     list
 }

@@ -1,108 +1,213 @@
-//! The picture set: the views of the window, rendered to PNG files without one.
+//! Frames without a window: the picture set, and scripts.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
-use anyhow::{Context, Result};
-use shadowfit::tool::{InsetMaps, ViewMode};
-use shadowfit_egui::Artefact;
+use anyhow::{Context, Result, anyhow};
+use egui::{Pos2, RawInput, Rect, vec2};
+use shadowfit::tool::{ErrorMarks, InsetMaps, ViewMode};
+use shadowfit_egui::{Artefact, Changes, Tune};
 use shadowfit_render::Gpu;
 
 use crate::cli::Arguments;
 use crate::files::write_png;
-use crate::interface::Interface;
+use crate::interface::{Canvas, Interface, Shows};
+use crate::saved::Saved;
 use crate::stage::Stage;
+use crate::viewer::{Start, Viewer};
 
 /// Samples per pixel of headless pictures.
 const SAMPLES: u32 = 4;
 /// Time of the animation at which the pictures are taken, in seconds.
 const PICTURE_TIME: f32 = 0.0;
+/// Time of a frame of a script, in seconds.
+const FRAME: f32 = 1.0 / 60.0;
+/// Frames that egui takes until a layout stands.
+const SETTLING: u32 = 4;
+/// Format of headless frames.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// Technique that the split picture compares with the present one.
+const COMPARED: &str = "stable-4";
 
-/// Renders the picture set that the arguments ask for and says where it is. What import noted of the scene goes to the
-/// standard error.
+/// Renders what the arguments ask for and says where it is. What import noted of the scene goes to the standard error.
+/// Nothing is restored from the last time, and nothing is kept for the next one.
 pub(crate) fn run(arguments: &Arguments, folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    if arguments.script.is_some() {
+        return play(arguments, folder);
+    }
     let scene = arguments.load_scene()?;
     if let Some(file) = &arguments.scene {
         scene.warnings(file).for_each(|warning| eprintln!("{warning}"));
     }
     let gpu = pollster::block_on(Gpu::headless(arguments.adapter()))?;
     let mut stage = Stage::new(gpu, scene, SAMPLES)?;
-    arguments.apply(&mut stage.settings)?;
+    let mut settings = stage.settings;
+    arguments.apply(&mut settings)?;
+    stage.settings = settings;
     stage.animation = arguments.animation;
     stage.set_home();
     let written = render_pictures(&mut stage, folder, arguments.size)?;
-    println!(
-        "{} pictures of {} by {}, in {}:",
-        written.len(),
-        stage.scene().name,
-        stage.gpu().name(),
-        folder.display()
-    );
+    let (name, gpu) = (&stage.scene().name, stage.gpu().name());
+    println!("{} pictures of {name} by {gpu}, in {}:", written.len(), folder.display());
     for path in written {
         println!("  {}", path.file_name().unwrap_or_default().to_string_lossy());
     }
     Ok(())
 }
 
-/// Renders the views of a stage into a folder, which is made if it is missing: the final view, each
-/// artefact shown and fixed, the view from outside, and the whole interface. Returns the files.
+/// Plays a script in frames that nobody sees; the files that it saves are put into the folder.
+fn play(arguments: &Arguments, folder: &Path) -> Result<()> {
+    let start = Start::new(arguments)?.saving_into(folder);
+    let gpu = pollster::block_on(Gpu::headless(arguments.adapter()))?;
+    let mut stage = Stage::empty(gpu, SAMPLES)?;
+    stage.read_depths();
+    stage.wait_for_rays();
+    let mut viewer = Viewer::new(stage, FORMAT, start, None);
+    let mut size = arguments.size;
+    let mut canvas = Canvas::new(&viewer.stage.gpu().device, size, FORMAT);
+    let mut clock = 0.0;
+    while !viewer.player.is_done() && !viewer.wishes.quit {
+        let (layout, _) = viewer.frame(input(size, clock), FRAME);
+        viewer.paint(&layout, &canvas.view, size);
+        clock += f64::from(FRAME);
+        if let Some(wanted) = viewer.wishes.resize.take() {
+            size = wanted;
+            canvas = Canvas::new(&viewer.stage.gpu().device, size, FORMAT);
+        }
+        if viewer.is_waiting() {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+    match viewer.failure.take() {
+        Some(failure) => Err(failure),
+        None if viewer.player.failed => Err(anyhow!("the script did not end as it should")),
+        None => Ok(()),
+    }
+}
+
+/// What egui is told of a window of a size in pixels, at a time in seconds.
+fn input(size: [u32; 2], clock: f64) -> RawInput {
+    RawInput {
+        screen_rect: Some(Rect::from_min_size(Pos2::ZERO, vec2(size[0] as f32, size[1] as f32))),
+        time: Some(clock),
+        ..Default::default()
+    }
+}
+
+/// Pictures on their way into a folder.
+struct Album<'a> {
+    stage: &'a mut Stage,
+    interface: Interface,
+    folder: &'a Path,
+    size: [u32; 2],
+    canvas: Canvas,
+    written: Vec<PathBuf>,
+}
+
+/// Renders the views of a stage into a folder, which is made if it is missing: every view, the inset, two techniques side
+/// by side, each artefact shown, marked and fixed, and the whole interface dark and light. Returns the files.
 ///
 /// # Errors
 ///
 /// If a file cannot be written.
 pub fn render_pictures(stage: &mut Stage, folder: &Path, size: [u32; 2]) -> Result<Vec<PathBuf>> {
     std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
-    let target = stage.target(size);
-    let mut written = Vec::new();
-    let mut save = |stage: &mut Stage, name: &str| -> Result<()> {
-        stage.draw(&target);
-        let path = folder.join(name).with_extension("png");
-        write_png(&path, size, &target.read(stage.gpu())?)?;
-        written.push(path);
-        Ok(())
-    };
     stage.reset();
+    stage.wait_for_rays();
     if stage.settings.view.play {
         stage.set_time(PICTURE_TIME);
     }
-    let inset = stage.settings.view.inset;
-    stage.settings.view.inset = InsetMaps::Off;
-    save(stage, "final")?;
-    stage.settings.view.inset = InsetMaps::One;
-    save(stage, "inset")?;
-    stage.settings.view.inset = inset;
-    stage.settings.view.mode = ViewMode::Outside;
-    save(stage, "outside")?;
-    for (artefact, name) in
-        [(Artefact::Acne, "acne"), (Artefact::Aliasing, "aliasing"), (Artefact::ClippingHole, "hole")]
-    {
-        stage.show_artefact(artefact);
-        stage.settings.view.inset = InsetMaps::Off;
-        save(stage, name)?;
-        stage.fix_artefact(artefact);
-        stage.settings.view.inset = InsetMaps::Off;
-        save(stage, &format!("{name}-fixed"))?;
-    }
-    stage.reset();
-    stage.show_artefact(Artefact::Acne);
-    let path = folder.join("viewer.png");
-    render_interface(stage, &path, size)?;
-    written.push(path);
-    stage.reset();
-    Ok(written)
+    let canvas = Canvas::new(&stage.gpu().device, size, FORMAT);
+    let interface = Interface::new(stage, FORMAT);
+    let mut album = Album { stage, interface, folder, size, canvas, written: Vec::new() };
+    album.views()?;
+    album.artefacts()?;
+    album.windows()?;
+    album.stage.reset();
+    Ok(album.written)
 }
 
-/// Renders panel and picture as the window shows them.
-fn render_interface(stage: &mut Stage, path: &Path, size: [u32; 2]) -> Result<()> {
-    let format = wgpu::TextureFormat::Rgba8Unorm;
-    let mut interface = Interface::new(stage, format);
-    let whole = stage.target(size);
-    let input = || egui::RawInput {
-        screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(size[0] as f32, size[1] as f32))),
-        ..Default::default()
-    };
-    // egui settles its layout over a few frames.
-    for _ in 0..4 {
-        interface.frame(stage, input(), &whole.encoded_view(), size);
+impl Album<'_> {
+    /// Every view by its name.
+    fn views(&mut self) -> Result<()> {
+        self.interface.bare = true;
+        let names = ["final", "truth", "errors", "pixels-per-texel", "maps", "texel-grid", "need", "updates", "outside"];
+        for (mode, name) in ViewMode::ALL.into_iter().zip(names) {
+            self.stage.settings.view.mode = mode;
+            self.stage.settings.view.inset = InsetMaps::Off;
+            self.save(name)?;
+        }
+        self.stage.settings.view.mode = ViewMode::Final;
+        for (inset, name) in [(InsetMaps::One, "inset"), (InsetMaps::All, "inset-all")] {
+            self.stage.settings.view.inset = inset;
+            self.save(name)?;
+        }
+        self.stage.settings.view.inset = InsetMaps::Off;
+        self.stage.settings.view.mode = ViewMode::Error;
+        self.stage.compare_with(shadowfit::Technique::preset(COMPARED));
+        self.save("split")?;
+        self.stage.compare_with(None);
+        self.stage.reset();
+        Ok(())
     }
-    write_png(path, size, &whole.read(stage.gpu())?)
+
+    /// Each artefact as it is shown, with its wrong pixels marked, and cured.
+    fn artefacts(&mut self) -> Result<()> {
+        for (artefact, name) in
+            [(Artefact::Acne, "acne"), (Artefact::Aliasing, "aliasing"), (Artefact::ClippingHole, "hole")]
+        {
+            self.stage.show_artefact(artefact);
+            self.stage.settings.view.inset = InsetMaps::Off;
+            self.save(name)?;
+            self.stage.settings.view.marks = ErrorMarks::Outline;
+            self.save(&format!("{name}-marked"))?;
+            self.stage.settings.view.marks = ErrorMarks::Off;
+            self.stage.fix_artefact(artefact);
+            self.save(&format!("{name}-fixed"))?;
+        }
+        self.stage.reset();
+        Ok(())
+    }
+
+    /// The whole interface.
+    fn windows(&mut self) -> Result<()> {
+        self.interface.bare = false;
+        for (theme, name) in [(egui::Theme::Dark, "viewer"), (egui::Theme::Light, "viewer-light")] {
+            self.interface.context.set_theme(theme);
+            self.stage.reset();
+            self.stage.show_artefact(Artefact::Acne);
+            self.stage.settings.view.marks = ErrorMarks::Outline;
+            self.save(name)?;
+        }
+        Ok(())
+    }
+
+    /// Draws until the layout stands, and saves.
+    fn save(&mut self, name: &str) -> Result<()> {
+        let saved = Saved::default();
+        let shows = Shows {
+            saved: &saved,
+            presets: &[],
+            tune: Tune::Idle,
+            changes: Changes::default(),
+            message: None,
+            loading: None,
+            is_searching: false,
+            has_scene: true,
+        };
+        for frame in 0..SETTLING {
+            let clock = f64::from(frame) * f64::from(FRAME);
+            let (_, layout, _) = self.interface.layout(self.stage, &shows, input(self.size, clock));
+            // What is judged comes back with the next frame.
+            if frame + 2 >= SETTLING {
+                self.interface.pictures.draw(self.stage);
+            }
+            self.interface.paint(self.stage, &layout, &self.canvas.view, self.size);
+        }
+        let path = self.folder.join(name).with_extension("png");
+        write_png(&path, self.size, &self.canvas.read(self.stage.gpu())?, None)?;
+        self.written.push(path);
+        Ok(())
+    }
 }

@@ -15,7 +15,7 @@ use crate::saved::Saved;
 use crate::stage::Stage;
 
 use paint::Painter;
-pub(crate) use paint::Layout;
+pub(crate) use paint::{Canvas, Layout};
 pub(crate) use picture::Pictures;
 
 /// egui, the panel, and the pictures between them.
@@ -31,6 +31,9 @@ pub(crate) struct Interface {
     pub(crate) edits_other: bool,
     /// Time of the last frame, in milliseconds.
     pub(crate) frame_ms: Option<f32>,
+    format: wgpu::TextureFormat,
+    /// Those of the last frame.
+    figures: Figures,
 }
 
 /// What the interface shows beside the stage.
@@ -77,6 +80,8 @@ impl Interface {
             bare: false,
             edits_other: false,
             frame_ms: None,
+            format,
+            figures: Figures::default(),
         };
         interface.scene_changed(stage);
         interface
@@ -86,6 +91,11 @@ impl Interface {
     pub(crate) fn scene_changed(&mut self, stage: &Stage) {
         self.panel.defaults = stage.home_settings();
         self.edits_other = false;
+    }
+
+    /// Format of what it is painted to.
+    pub(crate) fn format(&self) -> wgpu::TextureFormat {
+        self.format
     }
 
     /// The panel, which keeps the plotted figures.
@@ -115,6 +125,7 @@ impl Interface {
     }
 
     fn show(&mut self, ui: &mut Ui, stage: &mut Stage, shows: &Shows<'_>, asked: &mut Asked) {
+        self.figures = stage.figures(self.pictures.size(), self.frame_ms);
         if !self.bare {
             bar::show(ui, stage, shows, asked);
             timeline::show(ui, stage, self.frame_ms, asked);
@@ -122,18 +133,19 @@ impl Interface {
                 self.show_panel(ui, stage, shows, asked);
             });
         }
-        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| self.pictures.show(ui, stage, shows, asked));
+        let figures = &self.figures;
+        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| self.pictures.show(ui, stage, (shows, figures), asked));
         let context = ui.ctx().clone();
         shadowfit_egui::help_overlay(&context, &mut self.help_open);
     }
 
     fn show_panel(&mut self, ui: &mut Ui, stage: &mut Stage, shows: &Shows<'_>, asked: &mut Asked) {
-        let figures: Figures = stage.figures(self.pictures.size(), self.frame_ms);
         let (name, notes) = (stage.scene().name.clone(), stage.scene().notes.clone());
         let scene = SceneLine { name: &name, triangles: stage.prepared_scene().triangles(), notes: &notes };
         let message = stage.problem().map(str::to_owned).or_else(|| shows.message.map(str::to_owned));
         let (narration, changes) = (stage.narration().to_owned(), stage.cure_changes().to_vec());
         let shown = stage.shown();
+        let figures = self.figures;
         let artefact = shown.map(|shown| ShownArtefact {
             artefact: shown.artefact,
             fixed: shown.fixed,

@@ -4,6 +4,8 @@
 
 mod artefact;
 mod cli;
+mod command;
+mod export;
 mod files;
 mod fitted;
 #[cfg(feature = "gamepad")]
@@ -11,9 +13,20 @@ mod gamepad;
 mod headless;
 mod input;
 mod interface;
+mod keys;
+mod loading;
+mod monkey;
+mod narration;
 mod outside;
+mod playback;
+mod saved;
+mod script;
+mod source;
 mod stage;
+mod tuning;
+mod undo;
 mod view_search;
+mod viewer;
 mod window;
 
 use std::process::ExitCode;

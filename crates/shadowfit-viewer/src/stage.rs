@@ -118,6 +118,12 @@ impl Stage {
         })
     }
 
+    /// A stage with nothing worth showing on it, until [`Self::set_prepared`] brings a scene.
+    pub(crate) fn empty(gpu: Gpu, samples: u32) -> Result<Self, StageError> {
+        let triangle = [glam::Vec3::ZERO, glam::Vec3::X, glam::Vec3::Z];
+        Self::new(gpu, Scene::from_objects("empty", &[&[triangle]]), samples)
+    }
+
     /// Shows another scene. On an error the old one stays.
     ///
     /// # Errors

@@ -17,7 +17,7 @@ use crate::artefact::Found;
 use crate::command::Command;
 use crate::files::write_png;
 use crate::input::Input;
-use crate::interface::{Asked, Interface, Layout, Shows};
+use crate::interface::{Asked, Canvas, Interface, Layout, Shows};
 use crate::keys::Chord;
 use crate::loading::Loading;
 use crate::playback::{Deed, Doing, Player};
@@ -27,6 +27,7 @@ use crate::stage::Stage;
 use crate::tuning::Tuning;
 use crate::undo::{History, State};
 
+pub(crate) use opening::check_animation;
 pub(crate) use start::Start;
 
 /// How often what is kept is written, in seconds.
@@ -115,6 +116,11 @@ impl Viewer {
         }
     }
 
+    /// Has something done in the next frame.
+    pub(crate) fn ask(&mut self, command: Command) {
+        self.commands.push_back(command);
+    }
+
     /// Whether keys go to what has the focus in the panel.
     pub(crate) fn types(&self) -> bool {
         self.interface.context.egui_wants_keyboard_input()
@@ -173,7 +179,7 @@ impl Viewer {
 
     /// Saves a frame as a picture.
     fn save_window(&mut self, layout: &Layout, path: &std::path::Path, size: [u32; 2]) -> Result<()> {
-        let whole = self.stage.window_target(size, self.interface.format());
+        let whole = Canvas::new(&self.stage.gpu().device, size, self.interface.format());
         self.interface.paint(&self.stage, layout, &whole.view, size);
         write_png(path, size, &whole.read(self.stage.gpu())?, Some(&self.text_of_settings()?))
     }

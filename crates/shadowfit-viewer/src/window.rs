@@ -1,37 +1,34 @@
 //! The window: surface, events, frames.
 
-use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, anyhow};
-use shadowfit::tool::{InsetMaps, ViewMode};
-use shadowfit_egui::{Action, Artefact};
 use shadowfit_render::Gpu;
 use winit::application::ApplicationHandler;
 use winit::dpi::PhysicalSize;
 use winit::event::{ElementState, KeyEvent, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
-use winit::keyboard::{KeyCode, PhysicalKey};
+use winit::keyboard::{ModifiersState, PhysicalKey};
 use winit::window::{Window, WindowId};
 
 use crate::cli::Arguments;
-use crate::files::write_png;
-use crate::input::Input;
-use crate::interface::Interface;
+use crate::command::Command;
+use crate::keys::Chord;
+use crate::saved::Store;
 use crate::stage::Stage;
+use crate::viewer::{Start, Viewer};
 
 /// Samples per pixel: software rasterisers pay for each.
 const GPU_SAMPLES: u32 = 4;
 const SOFTWARE_SAMPLES: u32 = 1;
 /// Frames between two lines of `--log-frames`.
 const LOG_EVERY: u64 = 60;
-/// Weight of the newest frame in the frame time shown.
-const FRAME_TIME_WEIGHT: f32 = 0.1;
 
 /// Runs the viewer in a window until it is closed.
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let start = Start::new(arguments)?;
     let event_loop = EventLoop::new().map_err(|error| {
         anyhow!(
             "no window can be opened: {error}. Start the viewer in a graphical session, or under `xvfb-run` for a \
@@ -39,13 +36,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         )
     })?;
     event_loop.set_control_flow(ControlFlow::Poll);
-    let mut app = App { arguments: arguments.clone(), running: None, result: Ok(()) };
+    let mut app = App { start: Some(start), running: None, result: Ok(()) };
     event_loop.run_app(&mut app).context("the window's event loop failed")?;
     app.result
 }
 
 struct App {
-    arguments: Arguments,
+    start: Option<Start>,
     running: Option<Running>,
     result: Result<()>,
 }
@@ -54,17 +51,25 @@ struct App {
 struct Running {
     window: Arc<Window>,
     surface: Surface,
-    stage: Stage,
-    interface: Interface,
+    viewer: Viewer,
     egui: egui_winit::State,
-    input: Input,
+    modifiers: ModifiersState,
     #[cfg(feature = "gamepad")]
     gamepads: crate::gamepad::Gamepads,
     device_lost: Arc<AtomicBool>,
     last_frame: Instant,
+    log: Option<Log>,
+}
+
+/// What `--log-frames` tells.
+struct Log {
+    start: Instant,
     frames: u64,
-    screenshots: u32,
-    log_frames: bool,
+    is_ready: bool,
+    /// Longest time that a frame kept the window from answering, waits for the GPU aside, since the last line.
+    longest: Duration,
+    /// The same since the start.
+    longest_of_all: Duration,
 }
 
 /// The surface that frames are presented on.
@@ -81,11 +86,10 @@ struct Surface {
 
 impl ApplicationHandler for App {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
-        if self.running.is_none() {
-            match Running::start(event_loop, &self.arguments) {
-                Ok(running) => self.running = Some(running),
-                Err(error) => self.stop(event_loop, Err(error)),
-            }
+        let Some(start) = self.start.take() else { return };
+        match Running::start(event_loop, start) {
+            Ok(running) => self.running = Some(running),
+            Err(error) => self.stop(event_loop, Err(error)),
         }
     }
 
@@ -94,7 +98,10 @@ impl ApplicationHandler for App {
         let stop = match event {
             WindowEvent::CloseRequested => Some(Ok(())),
             WindowEvent::RedrawRequested => running.frame().transpose(),
-            event => running.event(&event).then_some(Ok(())),
+            event => {
+                running.event(&event);
+                None
+            }
         };
         if let Some(result) = stop {
             self.stop(event_loop, result);
@@ -102,27 +109,47 @@ impl ApplicationHandler for App {
     }
 
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
-        if let Some(running) = &self.running {
+        if let Some(running) = &mut self.running {
             let visible = running.surface.has_area && running.window.is_minimized() != Some(true);
-            event_loop.set_control_flow(if visible { ControlFlow::Poll } else { ControlFlow::Wait });
+            // A script goes on whether its window is seen or not.
+            let goes_on = visible || !running.viewer.player.is_done();
+            event_loop.set_control_flow(if goes_on { ControlFlow::Poll } else { ControlFlow::Wait });
             if visible {
                 running.window.request_redraw();
+            } else if goes_on {
+                std::thread::sleep(HIDDEN_FRAME);
+                if let Some(result) = running.frame().transpose() {
+                    self.stop(event_loop, result);
+                }
             }
         }
     }
 }
 
+/// Time of a frame that nobody sees.
+const HIDDEN_FRAME: Duration = Duration::from_millis(16);
+
 impl App {
     fn stop(&mut self, event_loop: &ActiveEventLoop, result: Result<()>) {
-        self.result = result;
-        self.running = None;
+        if let Some(mut running) = self.running.take() {
+            running.viewer.save();
+            self.result = match running.viewer.failure.take() {
+                Some(failure) => Err(failure),
+                None if running.viewer.player.failed => Err(anyhow!("the script did not end as it should")),
+                None => result,
+            };
+            running.tell_longest();
+        } else {
+            self.result = result;
+        }
         event_loop.exit();
     }
 }
 
 impl Running {
-    fn start(event_loop: &ActiveEventLoop, arguments: &Arguments) -> Result<Self> {
-        let scene = arguments.load_scene()?;
+    fn start(event_loop: &ActiveEventLoop, start: Start) -> Result<Self> {
+        let begin = Instant::now();
+        let arguments = &start.arguments;
         let window = open_window(event_loop, arguments.size)?;
         let instance = Gpu::instance();
         let surface = instance.create_surface(window.clone()).context("the window cannot be drawn on")?;
@@ -130,158 +157,59 @@ impl Running {
         let device_lost = watch_device(&gpu);
         let surface = Surface::new(instance, window.clone(), surface, &gpu)?;
         let samples = if gpu.is_software() { SOFTWARE_SAMPLES } else { GPU_SAMPLES };
-        let mut stage = Stage::new(gpu, scene, samples)?;
-        stage.read_depths(samples);
-        let technique = arguments.apply(&mut stage.settings)?;
-        stage.animation = arguments.animation;
-        stage.set_home();
-        let mut interface = Interface::new(&stage, surface.configuration.format);
-        if let Some(technique) = technique {
-            interface.name_technique(technique);
-        }
+        let mut stage = Stage::empty(gpu, samples)?;
+        stage.read_depths();
+        let log = arguments.log_frames.then(|| Log::new(begin));
+        let store = match (&arguments.state, arguments.no_state) {
+            (_, true) => None,
+            (Some(path), _) => Some(Store::at(path.clone())),
+            (None, false) => Store::of_person(),
+        };
+        let viewer = Viewer::new(stage, surface.configuration.format, start, store);
         let egui = egui_winit::State::new(
-            interface.context.clone(),
+            viewer.interface.context.clone(),
             egui::ViewportId::ROOT,
             &window,
             Some(window.scale_factor() as f32),
             None,
-            Some(stage.gpu().device.limits().max_texture_dimension_2d as usize),
+            Some(viewer.stage.gpu().device.limits().max_texture_dimension_2d as usize),
         );
-        let running = Self {
+        Ok(Self {
             window,
             surface,
-            stage,
-            interface,
+            viewer,
             egui,
-            input: Input::default(),
+            modifiers: ModifiersState::default(),
             #[cfg(feature = "gamepad")]
             gamepads: crate::gamepad::Gamepads::new(),
             device_lost,
             last_frame: Instant::now(),
-            frames: 0,
-            screenshots: 0,
-            log_frames: arguments.log_frames,
-        };
-        running.set_title();
-        Ok(running)
+            log,
+        })
     }
 
-    fn set_title(&self) {
-        self.window.set_title(&format!("shadowfit: {} ({})", self.stage.scene().name, self.stage.gpu().name()));
-    }
-
-    /// Handles an event; `true` asks to quit.
-    fn event(&mut self, event: &WindowEvent) -> bool {
+    fn event(&mut self, event: &WindowEvent) {
         match event {
-            WindowEvent::Resized(size) => self.surface.resize(self.stage.gpu(), *size),
-            WindowEvent::Focused(false) => self.input.release_all(),
-            WindowEvent::DroppedFile(path) => self.open(path),
-            WindowEvent::KeyboardInput { event, .. } => return self.key(event),
+            WindowEvent::Resized(size) => self.surface.resize(self.viewer.stage.gpu(), *size),
+            WindowEvent::Focused(false) => self.viewer.input.release_all(),
+            WindowEvent::ModifiersChanged(modifiers) => self.modifiers = modifiers.state(),
+            WindowEvent::DroppedFile(path) => self.viewer.ask(Command::OpenFile(path.clone())),
+            WindowEvent::KeyboardInput { event, .. } if !self.is_for_panel(event) => return self.key(event),
             _ => {}
         }
         // What egui makes of it comes back with the next frame.
         let _ = self.egui.on_window_event(&self.window, event);
-        false
     }
 
-    /// Handles a key; `true` asks to quit.
-    fn key(&mut self, event: &KeyEvent) -> bool {
-        let PhysicalKey::Code(code) = event.physical_key else { return false };
-        let pressed = event.state == ElementState::Pressed;
-        // Typing into a field is not flying, but a release must always arrive.
-        if self.interface.context.egui_wants_keyboard_input() && pressed {
-            let window_event = WindowEvent::KeyboardInput {
-                device_id: winit::event::DeviceId::dummy(),
-                event: event.clone(),
-                is_synthetic: false,
-            };
-            let _ = self.egui.on_window_event(&self.window, &window_event);
-            return false;
-        }
-        self.input.key(code, pressed);
-        if pressed && !event.repeat {
-            return self.command(code);
-        }
-        false
+    /// Whether a key goes to what has the focus in the panel: typing is not flying, but a release must always arrive.
+    fn is_for_panel(&self, event: &KeyEvent) -> bool {
+        event.state == ElementState::Pressed && self.viewer.types()
     }
 
-    /// What a key does at once; `true` asks to quit.
-    fn command(&mut self, code: KeyCode) -> bool {
-        let view = &mut self.stage.settings.view;
-        match code {
-            KeyCode::Escape => return true,
-            KeyCode::Space => view.play = !view.play,
-            KeyCode::KeyO => {
-                view.mode = if view.mode == ViewMode::Outside { ViewMode::Final } else { ViewMode::Outside };
-            }
-            KeyCode::KeyI => {
-                view.inset = match view.inset {
-                    InsetMaps::Off => InsetMaps::One,
-                    InsetMaps::One => InsetMaps::All,
-                    InsetMaps::All => InsetMaps::Off,
-                }
-            }
-            KeyCode::KeyL => self.stage.settings.light.animate = !self.stage.settings.light.animate,
-            KeyCode::Digit1 => self.act(Action::ShowArtefact(Artefact::Acne)),
-            KeyCode::Digit2 => self.act(Action::ShowArtefact(Artefact::Aliasing)),
-            KeyCode::Digit3 => self.act(Action::ShowArtefact(Artefact::ClippingHole)),
-            KeyCode::KeyF => {
-                if let Some(shown) = self.stage.shown() {
-                    self.act(Action::FixArtefact(shown.artefact));
-                }
-            }
-            KeyCode::KeyR => self.act(Action::Reset),
-            KeyCode::KeyP => self.act(Action::Screenshot),
-            KeyCode::KeyH | KeyCode::F1 => self.interface.help_open = !self.interface.help_open,
-            KeyCode::Tab => self.interface.panel_hidden = !self.interface.panel_hidden,
-            _ => {}
-        }
-        false
-    }
-
-    fn act(&mut self, action: Action) {
-        self.interface.message = None;
-        match action {
-            Action::ShowArtefact(artefact) => self.stage.show_artefact(artefact),
-            Action::FixArtefact(artefact) => self.stage.fix_artefact(artefact),
-            Action::Reset => self.stage.reset(),
-            Action::ResetCamera => self.stage.reset_camera(),
-            Action::OpenHelp => self.interface.help_open = true,
-            Action::Screenshot => self.screenshot(),
-        }
-    }
-
-    /// Saves the picture, without the panel, under the first free name in the working folder.
-    fn screenshot(&mut self) {
-        let path = loop {
-            self.screenshots += 1;
-            let path = std::path::PathBuf::from(format!("shadowfit-{:03}.png", self.screenshots));
-            if !path.exists() {
-                break path;
-            }
-        };
-        let picture = self.interface.picture();
-        let pixels = picture.read(self.stage.gpu()).map_err(anyhow::Error::from);
-        let saved = pixels.and_then(|pixels| write_png(&path, picture.size, &pixels));
-        self.interface.message = Some(match saved {
-            Ok(()) => format!("Saved {}", path.display()),
-            Err(error) => format!("{error:#}"),
-        });
-    }
-
-    /// Opens a dropped file; on an error the old scene stays and the panel tells why.
-    fn open(&mut self, path: &Path) {
-        let opened = shadowfit_scene::load_gltf(path)
-            .map_err(anyhow::Error::from)
-            .and_then(|scene| Ok(self.stage.set_scene(scene)?));
-        match opened {
-            Ok(()) => {
-                self.interface.message = None;
-                self.interface.scene_changed(&self.stage);
-                self.set_title();
-            }
-            Err(error) => self.interface.message = Some(format!("{error:#}")),
-        }
+    fn key(&mut self, event: &KeyEvent) {
+        let PhysicalKey::Code(key) = event.physical_key else { return };
+        let chord = Chord { key, ctrl: self.modifiers.control_key(), shift: self.modifiers.shift_key() };
+        self.viewer.key(chord, event.state == ElementState::Pressed, event.repeat);
     }
 
     /// Draws a frame; `Some` asks to quit.
@@ -291,48 +219,70 @@ impl Running {
         }
         let seconds = self.last_frame.elapsed().as_secs_f32();
         self.last_frame = Instant::now();
-        let old = self.interface.frame_ms.unwrap_or(seconds * 1e3);
-        self.interface.frame_ms = Some(old + (seconds * 1e3 - old) * FRAME_TIME_WEIGHT);
         #[cfg(feature = "gamepad")]
         {
             let (sticks, quits) = self.gamepads.poll();
-            self.input.sticks = sticks;
-            if quits {
-                return Ok(Some(()));
-            }
+            self.viewer.input.sticks = sticks;
+            self.viewer.wishes.quit |= quits;
         }
-        let Some(texture) = self.surface.acquire(self.stage.gpu())? else {
-            return Ok(None);
-        };
-        let view = texture.texture.create_view(&Default::default());
+        let texture = self.surface.acquire(self.viewer.stage.gpu())?;
+        let begin = Instant::now();
+        let waited = shadowfit_render::waited();
         let raw_input = self.egui.take_egui_input(&self.window);
-        let size = [self.surface.configuration.width, self.surface.configuration.height];
-        let (asked, output) = self.interface.frame(&mut self.stage, raw_input, &view, size);
+        let (layout, output) = self.viewer.frame(raw_input, seconds);
         self.egui.handle_platform_output(&self.window, output);
-        self.window.pre_present_notify();
-        self.stage.gpu().queue.present(texture);
-        let mut fly = self.input.fly();
-        (fly.drag, fly.wheel) = (asked.drag, asked.wheel);
-        self.stage.update(&fly, seconds);
-        if let Some(action) = asked.action {
-            self.act(action);
+        if let Some(texture) = texture {
+            let view = texture.texture.create_view(&Default::default());
+            let size = [self.surface.configuration.width, self.surface.configuration.height];
+            self.viewer.paint(&layout, &view, size);
+            self.log_frame(begin.elapsed().saturating_sub(shadowfit_render::waited() - waited));
+            self.window.pre_present_notify();
+            self.viewer.stage.gpu().queue.present(texture);
         }
-        self.log_frame();
-        Ok(None)
+        let wishes = std::mem::take(&mut self.viewer.wishes);
+        if let Some([width, height]) = wishes.resize {
+            // The window answers with an event of its new size, sooner or later.
+            let _ = self.window.request_inner_size(PhysicalSize::new(width, height));
+        }
+        if wishes.new_title {
+            self.window.set_title(&self.viewer.title());
+        }
+        Ok(wishes.quit.then_some(()))
     }
 
-    fn log_frame(&mut self) {
-        self.frames += 1;
-        if !self.log_frames {
-            return;
+    fn log_frame(&mut self, busy: Duration) {
+        let Some(log) = &mut self.log else { return };
+        log.frames += 1;
+        log.longest = log.longest.max(busy);
+        log.longest_of_all = log.longest_of_all.max(busy);
+        let title = self.viewer.title();
+        if !log.is_ready && self.viewer.is_ready() {
+            log.is_ready = true;
+            eprintln!("ready: {title} after {:.2} s", log.start.elapsed().as_secs_f32());
         }
-        if self.frames == 1 {
-            eprintln!("ready: {} on {}", self.stage.scene().name, self.stage.gpu().name());
-        }
-        if self.frames.is_multiple_of(LOG_EVERY) {
-            eprintln!("frame {}: {:.1} ms", self.frames, self.interface.frame_ms.unwrap_or(0.0));
+        if log.frames.is_multiple_of(LOG_EVERY) {
+            let frame = self.viewer.interface.frame_ms.unwrap_or(0.0);
+            eprintln!("frame {}: {frame:.1} ms, longest block {:.1} ms", log.frames, ms(log.longest));
+            log.longest = Duration::ZERO;
         }
     }
+
+    /// Tells at the end what `--log-frames` asks for.
+    fn tell_longest(&self) {
+        if let Some(log) = &self.log {
+            eprintln!("{} frames, longest block {:.1} ms", log.frames, ms(log.longest_of_all));
+        }
+    }
+}
+
+impl Log {
+    fn new(start: Instant) -> Self {
+        Self { start, frames: 0, is_ready: false, longest: Duration::ZERO, longest_of_all: Duration::ZERO }
+    }
+}
+
+fn ms(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e3
 }
 
 impl Surface {

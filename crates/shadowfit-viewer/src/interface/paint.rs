@@ -2,7 +2,7 @@
 
 use egui::{ClippedPrimitive, TextureId, TexturesDelta};
 use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
-use shadowfit_render::{Gpu, RenderTarget};
+use shadowfit_render::{Gpu, ReadError, RenderTarget, read_texture};
 
 /// Paints egui's shapes, and the pictures of the stage as textures among them.
 pub(crate) struct Painter {
@@ -66,5 +66,43 @@ impl Painter {
         });
         self.renderer.render(&mut pass.forget_lifetime(), jobs, &screen);
         gpu.queue.submit(commands.into_iter().chain([encoder.finish()]));
+    }
+}
+
+/// A texture that a frame is painted to, to be read.
+pub(crate) struct Canvas {
+    texture: wgpu::Texture,
+    pub(crate) view: wgpu::TextureView,
+    size: [u32; 2],
+}
+
+impl Canvas {
+    /// Of a format of four bytes, red or blue first.
+    pub(crate) fn new(device: &wgpu::Device, size: [u32; 2], format: wgpu::TextureFormat) -> Self {
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("canvas"),
+            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&Default::default());
+        Self { texture, view, size }
+    }
+
+    /// The pixels, red first, four bytes each, rows from the top.
+    ///
+    /// # Errors
+    ///
+    /// If the device was lost.
+    pub(crate) fn read(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadError> {
+        let mut pixels = read_texture(gpu, &self.texture, self.size, 4)?;
+        if self.texture.format().remove_srgb_suffix() == wgpu::TextureFormat::Bgra8Unorm {
+            pixels.chunks_exact_mut(4).for_each(|pixel| pixel.swap(0, 2));
+        }
+        Ok(pixels)
     }
 }

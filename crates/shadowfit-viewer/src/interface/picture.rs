@@ -9,6 +9,8 @@ use shadowfit::tool::ViewMode;
 use shadowfit_render::RenderTarget;
 
 use super::paint::Painter;
+use shadowfit::figures::Figures;
+
 use super::{Asked, Shows};
 use crate::command::Command;
 use crate::stage::Stage;
@@ -102,7 +104,13 @@ impl Pictures {
     }
 
     /// Shows the pictures in the whole of `ui`.
-    pub(super) fn show(&mut self, ui: &mut Ui, stage: &mut Stage, shows: &Shows<'_>, asked: &mut Asked) {
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        stage: &mut Stage,
+        (shows, figures): (&Shows<'_>, &Figures),
+        asked: &mut Asked,
+    ) {
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         self.main.wanted = pixels(ui, rect.size());
@@ -115,14 +123,14 @@ impl Pictures {
         if !shows.has_scene {
             ui.painter().rect_filled(rect, CornerRadius::ZERO, ui.visuals().extreme_bg_color);
         } else {
-            over(ui, stage, rect);
+            over(ui, stage, figures, rect);
             if stage.settings.view.outside_beside {
                 self.show_beside(ui, rect);
             }
         }
         loading(ui, shows, rect);
         if let (Some(card), Some(at)) = (stage.why(), response.hover_pos()) {
-            why(ui, &card, at);
+            shadowfit_egui::why_overlay(ui.ctx(), at, &card);
         }
     }
 
@@ -208,12 +216,10 @@ fn wheel_notches(ui: &Ui) -> f32 {
     })
 }
 
-/// The legend of the view, in the upper left corner.
-fn over(ui: &mut Ui, stage: &Stage, rect: Rect) {
+/// What is written over the picture: the legend of the view.
+fn over(ui: &Ui, stage: &Stage, figures: &Figures, rect: Rect) {
     let view = &stage.settings.view;
-    let area = Rect::from_min_max(rect.min + Vec2::splat(MARGIN), rect.max - Vec2::splat(MARGIN));
-    let mut over = ui.new_child(UiBuilder::new().max_rect(area));
-    shadowfit_egui::legend(&mut over, view, stage.judged_figures(), stage.settings.technique.count);
+    shadowfit_egui::legend_overlay(ui.ctx(), rect, view, figures);
     if view.mode == ViewMode::Final && !view.shadows {
         label(ui, rect.left_top() + Vec2::splat(MARGIN), Align2::LEFT_TOP, "Shadows are off");
     }
@@ -239,16 +245,6 @@ fn loading(ui: &mut Ui, shows: &Shows<'_>, rect: Rect) {
     });
     // The bar moves on its own.
     ui.ctx().request_repaint();
-}
-
-/// The card of the pixel under the pointer, beside it and within the picture.
-fn why(ui: &Ui, card: &shadowfit_egui::WhyCard, at: Pos2) {
-    egui::Area::new(ui.id().with("why"))
-        .order(egui::Order::Tooltip)
-        .fixed_pos(at + Vec2::splat(18.0))
-        .constrain(true)
-        .interactable(false)
-        .show(ui.ctx(), |ui| shadowfit_egui::why_card(ui, card));
 }
 
 /// A line of text on a dark ground, readable on any picture.

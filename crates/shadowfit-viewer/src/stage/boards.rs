@@ -3,8 +3,8 @@
 use shadowfit::Aabb;
 use shadowfit::figures::linear_color;
 use shadowfit_egui::MAP_UPDATE_COLORS;
-use shadowfit_render::{Inset, MapUpdate, Quad};
-use shadowfit_wgpu::{MapFit, PassContent};
+use shadowfit_render::{Inset, MapUpdate, Quad, UpdateContent};
+use shadowfit_wgpu::MapFit;
 
 use super::inset::{depths, tint};
 
@@ -54,16 +54,16 @@ impl Boards {
 
     /// What was kept: each map in the colour of what is kept; and over it what was drawn.
     pub(super) fn quads(&self, updates: &[MapUpdate]) -> Vec<Quad> {
-        let color = |[kept, drawn, moving]: [u8; 3]| linear_color([kept, drawn, moving]).extend(FILL);
+        let color = |color: [u8; 3]| linear_color(color).extend(FILL);
         let [kept, drawn, moving] = MAP_UPDATE_COLORS.map(color);
         let mut quads: Vec<Quad> = self.insets.iter().map(|inset| Quad::rectangle(inset.rectangle, kept * 0.4)).collect();
         for update in updates {
             let (Some(inset), Some(size)) = (self.insets.get(update.map), self.sizes.get(update.map)) else { continue };
             let [x, y, w, h] = inset.rectangle;
             let scale = [w / size[0], h / size[1]];
-            let (min, extent) = (update.rectangle.min.as_vec2(), update.rectangle.size.as_vec2());
+            let (min, extent) = (update.rect.min.as_vec2(), update.rect.size.as_vec2());
             let place = [x + min.x * scale[0], y + min.y * scale[1], extent.x * scale[0], extent.y * scale[1]];
-            let color = if matches!(update.content, PassContent::Moving) { moving } else { drawn };
+            let color = if update.content == UpdateContent::Moving { moving } else { drawn };
             quads.push(Quad::rectangle(place, color));
             quads.extend(Quad::outline(place, 1.5, color.truncate().extend(1.0)));
         }

@@ -1,6 +1,6 @@
 //! The scene as the light sees it: how fine a texel the picture asks for, cell by cell, and the maps over it.
 
-use glam::{DVec3, Vec3, Vec4};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 use shadowfit::figures::{linear_color, linear_map_tints, pixels_per_texel_color};
 use shadowfit::need::{LEVELS, NeedGrid, SIDE};
 use shadowfit::{Aabb, DepthConvention, LightFit, PerspectiveCamera};
@@ -57,11 +57,11 @@ impl FromLight {
     }
 
     /// Where a world position is in the picture, in pixels.
-    fn pixel(&self, point: DVec3) -> [f32; 2] {
+    fn pixel(&self, point: DVec3) -> Vec2 {
         let clip = self.camera.clip_from_world(DepthConvention::Reversed);
         let at = clip * (point - self.camera.eye).as_vec3().extend(1.0);
         let [x, y] = [at.x / at.w, at.y / at.w];
-        [(x * 0.5 + 0.5) * self.size[0], (0.5 - y * 0.5) * self.size[1]]
+        Vec2::new((x * 0.5 + 0.5) * self.size[0], (0.5 - y * 0.5) * self.size[1])
     }
 }
 

@@ -32,14 +32,10 @@ impl Start {
     /// If they name a script that makes no sense, a parameter or a technique that there is not, or a scene of an index
     /// that a built-in one has not.
     pub(crate) fn new(arguments: &Arguments) -> anyhow::Result<Self> {
-        let named = arguments.scene.as_deref().map(|text| SceneSource::from_text(&text.to_string_lossy()));
-        let source = match (named, arguments.scene_index) {
-            (None, None) => None,
-            (source, index) => Some(source.unwrap_or_default().with_index(index)?),
-        };
+        let source = arguments.source()?;
         // What is wrong with them is told at once.
         arguments.apply(&mut Settings::default())?;
-        let script = arguments.script.as_deref().map(crate::script::read).transpose()?.unwrap_or_default();
+        let script = arguments.steps()?;
         Ok(Self { arguments: arguments.clone(), source, script, kept: None, is_pending: true })
     }
 }
