@@ -44,6 +44,6 @@ pub use rays::SceneRays;
 pub use scene::{NothingToDraw, PreparedScene};
 pub use seen::Seen;
 pub use technique_file::NamedTechnique;
-pub use tune::{Budget, Step, Tuned, Weights, tune};
+pub use tune::{Budget, Progress, Step, TuneScope, TuneSettings, Tuned, Weights, tune};
 pub use view::View;
 pub use why::{StoredTexels, Why, WhyInput, why};
