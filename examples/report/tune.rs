@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
-use shadowfit_study::{Budget, Tuned, View, Weights, tune};
+use shadowfit_study::{Budget, TuneSettings, Tuned, View, Weights, tune};
 
 use crate::interrupt::Interrupt;
 use crate::job::Job;
@@ -48,14 +48,17 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     let mut job = args.job.prepare()?;
     let views = picked(&job.frames.iter().map(|frame| frame.view).collect::<Vec<_>>(), args.frames as usize);
     let budget = Budget { maps: args.maps, resolution: args.resolution };
-    let progress = ProgressBar::new(0);
-    progress.set_style(ProgressStyle::with_template("{wide_bar} {pos}/{len} tried, {eta} left")?);
-    let tuned = tune(&mut job.comparison, &views, budget, &args.weights, &mut |tried, most| {
-        progress.set_length(most as u64);
-        progress.set_position(tried as u64);
+    let settings = TuneSettings { weights: args.weights, ..TuneSettings::within(budget) };
+    let bar = ProgressBar::new(0);
+    let template = "{wide_bar} {pos}/{len} tried, {eta} left, {msg}";
+    bar.set_style(ProgressStyle::with_template(template)?);
+    let tuned = tune(&mut job.comparison, &views, &settings, &mut |progress| {
+        bar.set_length(progress.at_most as u64);
+        bar.set_position(progress.tried as u64);
+        bar.set_message(format!("error {:.4} of {:.4}", progress.best_error, progress.start_error));
         !interrupt.is_requested()
     })?;
-    progress.finish_and_clear();
+    bar.finish_and_clear();
     fs::create_dir_all(&args.out).with_context(|| format!("{}: cannot be made", args.out.display()))?;
     let steps = steps(&tuned);
     for (name, text) in [

@@ -46,6 +46,6 @@ pub use scene::{NothingToDraw, PosedScene, PreparedScene};
 pub use seen::Seen;
 pub use settings_file::{settings_from_toml, settings_to_toml};
 pub use technique_file::NamedTechnique;
-pub use tune::{Budget, Step, Tuned, Weights, tune};
+pub use tune::{Budget, Progress, Step, TuneScope, TuneSettings, Tuned, Weights, tune};
 pub use view::View;
 pub use why::{StoredTexels, Why, WhyInput, why};

@@ -3,13 +3,16 @@
 //! One thing is changed at a time, in a fixed order, and kept when it helps: the same scene, path and GPU always give
 //! the same result, and the gain of each change is known.
 
-use anyhow::{Context, Result, ensure};
-use shadowfit::Technique;
-use shadowfit::settings::{
-    BiasSettings, FilterKind, FitKind, HoldSettings, ReceiverSource, RectangleKind, SplitScheme, Stabilise,
-};
-use shadowfit_truth::PictureTally;
+mod changes;
 
+use anyhow::{Context, Error, Result, ensure};
+use shadowfit::settings::FitKind;
+use shadowfit::{FitError, Technique};
+use shadowfit_render::ProbeError;
+use shadowfit_truth::PictureTally;
+use shadowfit_wgpu::ShadowMapError;
+
+use self::changes::{Change, rounds};
 use crate::{Comparison, NamedTechnique, SharedTruth, View, ensure_judged};
 
 /// How much each error of a technique counts: weights of shares in per cent.
@@ -57,6 +60,51 @@ pub struct Budget {
     pub resolution: u32,
 }
 
+/// What a search may change.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TuneScope {
+    /// All but the size of the maps, and their number only to fewer.
+    #[default]
+    Everything,
+    /// Bias and filter alone: the maps and their fit stay as they are. A [soft](shadowfit::settings::FilterKind::is_soft)
+    /// filter stays too, since the truth has a hard sun.
+    BiasAndFilter,
+}
+
+/// Where a search begins, what it may change, and what it looks for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TuneSettings {
+    /// The technique that it begins with, whose number and size of maps are the budget. Default: the recommended one.
+    pub start: Technique,
+    /// What it may change. Default: everything.
+    pub scope: TuneScope,
+    /// How much each error counts. Default: [`Weights::default`].
+    pub weights: Weights,
+}
+
+impl TuneSettings {
+    /// A search for the best technique of a budget, which begins with the recommended one.
+    pub fn within(budget: Budget) -> Self {
+        let start = Technique::default().with_count(budget.maps);
+        Self { start: start.with_resolution(budget.resolution, budget.resolution), ..Self::default() }
+    }
+}
+
+/// How far a search is, after each technique that it has tried.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Progress {
+    /// Techniques tried, the first one included.
+    pub tried: usize,
+    /// Most that will be tried.
+    pub at_most: usize,
+    /// Least weighted error so far.
+    pub best_error: f64,
+    /// That of the technique that the search began with.
+    pub start_error: f64,
+    /// What was changed last.
+    pub what: String,
+}
+
 /// A change that was tried.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
@@ -83,19 +131,43 @@ pub struct Tuned {
     pub stopped_early: bool,
 }
 
-/// A change that may help.
-struct Change {
-    what: String,
-    apply: Box<dyn Fn(&mut Technique)>,
+/// A search under way.
+struct Search<'a> {
+    comparison: &'a mut Comparison,
+    views: &'a [View],
+    truths: Vec<SharedTruth>,
+    weights: &'a Weights,
+    at_most: usize,
+    /// All that was tried, without what has no effect.
+    tried: Vec<Technique>,
+    steps: Vec<Step>,
+    best: Technique,
+    /// Place of the best one in the steps.
+    best_step: usize,
 }
 
-impl Change {
-    fn new(what: impl Into<String>, apply: impl Fn(&mut Technique) + 'static) -> Self {
-        Self { what: what.into(), apply: Box::new(apply) }
-    }
-}
-
-/// Searches. `progress(tried, at most)` is called after each candidate, and stops the search when it answers `false`.
+/// Searches. `progress` is called after each technique that was tried, and stops the search when it answers `false`.
+///
+/// It can run on a thread of its own, with a comparison that has a [`Gpu`](shadowfit_render::Gpu) of its own:
+///
+/// ```no_run
+/// # use std::sync::mpsc::{Receiver, channel};
+/// # use shadowfit::Technique;
+/// # use shadowfit_study::{Comparison, Progress, Tuned, TuneScope, TuneSettings, View, tune};
+/// # fn begin(mut comparison: Comparison, views: Vec<View>, present: Technique) -> Receiver<Progress> {
+/// let settings = TuneSettings { start: present, scope: TuneScope::BiasAndFilter, ..TuneSettings::default() };
+/// let (sender, progress) = channel();
+/// std::thread::spawn(move || {
+///     // Whoever no longer listens stops the search.
+///     let tuned = tune(&mut comparison, &views, &settings, &mut |progress| sender.send(progress.clone()).is_ok());
+///     // ...
+/// #   drop(tuned);
+/// });
+/// # progress
+/// # }
+/// ```
+///
+/// A change that the fit or the shadow map refuses is passed over.
 ///
 /// # Errors
 ///
@@ -103,46 +175,106 @@ impl Change {
 pub fn tune(
     comparison: &mut Comparison,
     views: &[View],
-    budget: Budget,
-    weights: &Weights,
-    progress: &mut dyn FnMut(usize, usize) -> bool,
+    settings: &TuneSettings,
+    progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Tuned> {
     ensure!(!views.is_empty(), "there is no frame to tune for");
-    let mut truths: Vec<SharedTruth> = views.iter().map(|_| SharedTruth::default()).collect();
-    let rounds = rounds(budget);
-    let most = 1 + rounds.iter().map(Vec::len).sum::<usize>();
-    let mut best = start(budget);
-    let mut tally = measure(comparison, views, &mut truths, &best)?;
-    let mut error = weights.error(&tally);
-    let mut tried = vec![in_effect(&best)];
-    let mut steps = vec![Step { what: "the start".to_owned(), error, tally: tally.clone(), is_kept: true }];
-    let mut goes_on = progress(1, most);
+    let rounds = rounds(&settings.start, settings.scope);
+    let mut search = Search {
+        comparison,
+        views,
+        truths: views.iter().map(|_| SharedTruth::default()).collect(),
+        weights: &settings.weights,
+        at_most: 1 + rounds.iter().map(Vec::len).sum::<usize>(),
+        tried: Vec::new(),
+        steps: Vec::new(),
+        best: settings.start,
+        best_step: 0,
+    };
+    search.measure(&settings.start, "the start")?;
+    search.steps[0].is_kept = true;
+    let mut goes_on = progress(&search.progress("the start"));
     for changes in rounds {
         // The best of each round is kept.
-        let from = best;
-        let mut kept = None;
+        let from = search.best;
         for change in changes {
-            let mut candidate = from;
-            (change.apply)(&mut candidate);
-            if !goes_on || tried.contains(&in_effect(&candidate)) {
-                continue;
+            if goes_on && search.try_change(&from, &change)? {
+                goes_on = progress(&search.progress(&change.what));
             }
-            tried.push(in_effect(&candidate));
-            let found = measure(comparison, views, &mut truths, &candidate).with_context(|| change.what.clone())?;
-            let new_error = weights.error(&found);
-            steps.push(Step { what: change.what, error: new_error, tally: found.clone(), is_kept: false });
-            if new_error < error {
-                (error, tally, best, kept) = (new_error, found, candidate, Some(steps.len() - 1));
-            }
-            goes_on = progress(steps.len(), most);
         }
-        if let Some(kept) = kept {
-            steps[kept].is_kept = true;
+        let best = search.best_step;
+        search.steps[best].is_kept = true;
+    }
+    Ok(search.end(settings, !goes_on))
+}
+
+impl Search<'_> {
+    /// Tries a change, and returns whether it was one.
+    fn try_change(&mut self, from: &Technique, change: &Change) -> Result<bool> {
+        let mut candidate = *from;
+        (change.apply)(&mut candidate);
+        if self.tried.contains(&in_effect(&candidate)) {
+            return Ok(false);
+        }
+        match self.measure(&candidate, &change.what) {
+            Err(error) if is_refusal(&error) => {}
+            result => result.with_context(|| change.what.clone())?,
+        }
+        Ok(true)
+    }
+
+    /// Measures a technique, which becomes the best one if its error is less.
+    fn measure(&mut self, technique: &Technique, what: &str) -> Result<()> {
+        self.tried.push(in_effect(technique));
+        let tally = self.sums(technique)?;
+        let error = self.weights.error(&tally);
+        let is_first = self.steps.is_empty();
+        if is_first || error < self.steps[self.best_step].error {
+            (self.best, self.best_step) = (*technique, self.steps.len());
+        }
+        self.steps.push(Step { what: what.to_owned(), error, tally, is_kept: false });
+        Ok(())
+    }
+
+    /// Sums over all frames.
+    fn sums(&mut self, technique: &Technique) -> Result<PictureTally> {
+        self.comparison.clear();
+        self.comparison.add(*technique)?;
+        let mut tally = PictureTally::default();
+        for (view, truth) in self.views.iter().zip(&mut self.truths) {
+            for outcome in self.comparison.frame(view, truth)? {
+                tally.merge(&outcome.judged.tally);
+            }
+        }
+        self.comparison.clear();
+        ensure_judged(&tally)?;
+        Ok(tally)
+    }
+
+    fn progress(&self, what: &str) -> Progress {
+        Progress {
+            tried: self.tried.len(),
+            at_most: self.at_most,
+            best_error: self.steps[self.best_step].error,
+            start_error: self.steps[0].error,
+            what: what.to_owned(),
         }
     }
-    let summary = format!("the least error found with {} maps of {} texels", budget.maps, budget.resolution);
-    let technique = NamedTechnique { name: "tuned".to_owned(), summary, technique: best };
-    Ok(Tuned { technique, tally, steps, stopped_early: !goes_on })
+
+    fn end(self, settings: &TuneSettings, stopped_early: bool) -> Tuned {
+        let [width, height] = settings.start.fit.resolution.to_array();
+        let size = if width == height { width.to_string() } else { format!("{width} × {height}") };
+        let summary = format!("the least error found with {} maps of {size} texels", settings.start.count);
+        let technique = NamedTechnique { name: "tuned".to_owned(), summary, technique: self.best };
+        Tuned { technique, tally: self.steps[self.best_step].tally.clone(), steps: self.steps, stopped_early }
+    }
+}
+
+/// Whether a technique was refused, and not the machine at fault.
+fn is_refusal(error: &Error) -> bool {
+    error.is::<FitError>()
+        || error.is::<ShadowMapError>()
+        || matches!(error.downcast_ref(), Some(ProbeError::ShadowMap(_)))
 }
 
 /// A technique without what has no effect on its maps: of windows that of splits, stabilisation and rectangle.
@@ -156,166 +288,20 @@ fn in_effect(technique: &Technique) -> Technique {
     Technique { splits, overlap, stabilise, hold, fit, choice: technique.map_choice(), ..*technique }
 }
 
-/// The recommended technique, within the budget.
-fn start(budget: Budget) -> Technique {
-    Technique::default().with_count(budget.maps).with_resolution(budget.resolution, budget.resolution)
-}
-
-/// The changes that are tried, round by round: what matters most comes first.
-fn rounds(budget: Budget) -> Vec<Vec<Change>> {
-    let mut rounds = vec![fits(), biases(), filters()];
-    if budget.maps > 1 {
-        rounds.push(splits());
-        rounds.push(counts(budget.maps));
-    }
-    rounds.extend([stillness(), rectangles(), fine_biases(), filters()]);
-    rounds
-}
-
-fn fits() -> Vec<Change> {
-    let kinds = [
-        ("boxes of the frustum's slices", FitKind::FrustumAabb, ReceiverSource::Clusters),
-        ("least rectangles of the frustum", FitKind::Oriented, ReceiverSource::Clusters),
-        ("spheres around the frustum's slices", FitKind::Sphere, ReceiverSource::Clusters),
-        ("least rectangles around the objects in view", FitKind::Focused, ReceiverSource::Objects),
-        ("least rectangles around the clusters in view", FitKind::Focused, ReceiverSource::Clusters),
-    ];
-    let change = |(what, kind, receivers)| {
-        Change::new(what, move |technique: &mut Technique| {
-            technique.fit.kind = kind;
-            technique.receivers = receivers;
-        })
-    };
-    kinds.into_iter().map(change).collect()
-}
-
-fn biases() -> Vec<Change> {
-    vec![
-        Change::new("an offset along the normal", |technique| {
-            technique.bias = BiasSettings::automatic_normal_offset(technique.filter, &technique.softness);
-        }),
-        Change::new("no bias", |technique| {
-            technique.bias =
-                BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };
-        }),
-    ]
-}
-
-/// Filters whose widths are numbers of texels, each with the bias of the present kind that it needs. Truth has a hard
-/// sun, to which soft ones only add noise.
-fn filters() -> Vec<Change> {
-    let filters = [
-        ("one comparison", FilterKind::Point),
-        ("2×2 comparison", FilterKind::Hardware2x2),
-        ("a tent of 3×3", FilterKind::Pcf3x3),
-        ("a tent of 5×5", FilterKind::Pcf5x5),
-        ("a tent of 7×7", FilterKind::Pcf7x7),
-    ];
-    let change = |(what, filter): (&str, FilterKind)| {
-        Change::new(what, move |technique: &mut Technique| {
-            let softness = technique.softness;
-            let offset = |filter| BiasSettings::automatic_normal_offset(filter, &softness);
-            if technique.bias == BiasSettings::automatic(technique.filter) {
-                technique.bias = BiasSettings::automatic(filter);
-            } else if technique.bias == offset(technique.filter) {
-                technique.bias = offset(filter);
-            }
-            technique.filter = filter;
-        })
-    };
-    filters.into_iter().map(change).collect()
-}
-
-fn splits() -> Vec<Change> {
-    let schemes = [
-        ("uniform splits", SplitScheme::Uniform),
-        ("practical splits, 0.8", SplitScheme::Practical(0.8)),
-        ("logarithmic splits", SplitScheme::Logarithmic),
-        ("splits from the boxes", SplitScheme::FromBoxes),
-    ];
-    let change = |(what, splits)| Change::new(what, move |technique: &mut Technique| technique.splits = splits);
-    schemes.into_iter().map(change).collect()
-}
-
-fn counts(maps: u32) -> Vec<Change> {
-    let fewer = (1..maps).rev().take(2);
-    let change =
-        |count| Change::new(format!("{count} maps only"), move |technique: &mut Technique| technique.count = count);
-    fewer.map(change).collect()
-}
-
-fn stillness() -> Vec<Change> {
-    vec![
-        Change::new("maps fitted anew in each frame", |technique| technique.stabilise = Stabilise::Off),
-        Change::new("maps on a grid of whole texels", |technique| technique.stabilise = Stabilise::Snap),
-        Change::new("maps held longer", |technique| technique.hold = HoldSettings::default().with_waste(3.0)),
-        Change::new("maps held for a shorter time", |technique| {
-            technique.hold = HoldSettings::default().with_waste(1.3).with_growth(1.2);
-        }),
-    ]
-}
-
-fn rectangles() -> Vec<Change> {
-    let kinds = [
-        ("rectangles along the light's axes", RectangleKind::AxisAligned),
-        ("least squares instead of rectangles", RectangleKind::MinimumSquare),
-    ];
-    let change = |(what, kind)| Change::new(what, move |technique: &mut Technique| technique.fit.rectangle = kind);
-    kinds.into_iter().map(change).collect()
-}
-
-/// Small moves away from the bias that is provably enough.
-fn fine_biases() -> Vec<Change> {
-    let scaled = |what: &str, scale: f32| {
-        Change::new(what, move |technique: &mut Technique| {
-            technique.bias.receiver_plane *= scale;
-            technique.bias.normal_offset *= scale;
-        })
-    };
-    vec![
-        scaled("half the bias", 0.5),
-        scaled("three quarters of the bias", 0.75),
-        scaled("one and a half times the bias", 1.5),
-        Change::new("a constant bias of half a texel", |technique| technique.bias.constant = 0.5),
-    ]
-}
-
-/// Sums over all frames.
-fn measure(
-    comparison: &mut Comparison,
-    views: &[View],
-    truths: &mut [SharedTruth],
-    technique: &Technique,
-) -> Result<PictureTally> {
-    comparison.clear();
-    comparison.add(*technique)?;
-    let mut tally = PictureTally::default();
-    for (view, truth) in views.iter().zip(truths) {
-        for outcome in comparison.frame(view, truth)? {
-            tally.merge(&outcome.judged.tally);
-        }
-    }
-    comparison.clear();
-    ensure_judged(&tally)?;
-    Ok(tally)
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use std::sync::mpsc::channel;
+    use std::thread;
+
+    use glam::{DVec3, Vec3};
+    use shadowfit::PerspectiveCamera;
+    use shadowfit::settings::{BiasSettings, CasterPolicy, FilterKind, SplitScheme, Stabilise};
+    use shadowfit_render::{AdapterChoice, Gpu};
+    use shadowfit_scene::Scene;
     use shadowfit_truth::ClassTally;
 
-    #[test]
-    fn every_change_but_those_to_what_is_already_so_makes_another_technique() {
-        let start = start(Budget { maps: 4, resolution: 1024 });
-        let changes: Vec<Change> = rounds(Budget { maps: 4, resolution: 1024 }).into_iter().flatten().collect();
-        assert!(changes.len() > 20, "{}", changes.len());
-        for change in changes {
-            let mut changed = start;
-            (change.apply)(&mut changed);
-            assert!(changed != start || change.what == "a tent of 5×5", "{}", change.what);
-        }
-    }
+    use super::*;
+    use crate::Judging;
 
     #[test]
     fn splits_and_stillness_of_windows_are_not_tried() {
@@ -328,19 +314,10 @@ mod tests {
     }
 
     #[test]
-    fn the_search_starts_with_the_recommended_technique() {
-        let start = start(Budget { maps: 4, resolution: 1024 });
-        assert_eq!(start, Technique::default().with_resolution(1024, 1024));
-    }
-
-    #[test]
-    fn a_change_of_the_filter_takes_the_bias_along() {
-        let mut technique = Technique {
-            bias: BiasSettings::automatic(FilterKind::Pcf3x3),
-            ..start(Budget { maps: 1, resolution: 512 })
-        };
-        (filters()[0].apply)(&mut technique);
-        assert_eq!((technique.filter, technique.bias), (FilterKind::Point, BiasSettings::automatic(FilterKind::Point)));
+    fn the_search_within_a_budget_starts_with_the_recommended_technique() {
+        let settings = TuneSettings::within(Budget { maps: 4, resolution: 1024 });
+        assert_eq!(settings.start, Technique::default().with_resolution(1024, 1024));
+        assert_eq!(settings.scope, TuneScope::Everything);
     }
 
     #[test]
@@ -366,5 +343,117 @@ mod tests {
         ] {
             assert!((weights.error(&tally) - error).abs() < 1e-9, "{weights:?}: {}", weights.error(&tally));
         }
+    }
+
+    /// A floor and a slanted board over it.
+    fn scene() -> Scene {
+        let at = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
+        let quad = |[a, b, c, d]: [Vec3; 4]| vec![[a, b, c], [a, c, d]];
+        let floor = quad([at(-9.0, 0.0, -9.0), at(-9.0, 0.0, 9.7), at(9.0, 0.0, 9.7), at(9.0, 0.0, -9.0)]);
+        let board = quad([at(-1.0, 0.2, -1.0), at(-1.0, 0.2, 1.0), at(1.0, 1.9, 1.0), at(1.0, 1.9, -1.0)]);
+        Scene::from_objects("board", &[floor, board])
+    }
+
+    fn views() -> Vec<View> {
+        let view = |x: f64, is_first| View {
+            camera: PerspectiveCamera {
+                eye: DVec3::new(x, 3.0, 6.0),
+                forward: Vec3::new(0.0, -0.4, -0.9).normalize(),
+                up: Vec3::Y,
+                fov_y: 0.8,
+                aspect: 16.0 / 9.0,
+                near: 0.1,
+                far: 40.0,
+            },
+            direction: Vec3::new(0.5, -0.7, -0.2).normalize(),
+            is_first,
+        };
+        vec![view(0.0, true), view(0.05, false)]
+    }
+
+    fn comparison() -> Comparison {
+        let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
+        let judging = Judging { size: [96, 54], ..Judging::default() };
+        Comparison::new(gpu, scene(), judging).expect("a scene")
+    }
+
+    /// Coarse maps without a bias, which have acne.
+    fn bad() -> Technique {
+        let none =
+            BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };
+        let technique = Technique::preset("clusters-4").expect("a preset").with_count(2).with_resolution(512, 256);
+        technique.with_look_up(FilterKind::Point, none)
+    }
+
+    #[test]
+    fn gpu_a_search_on_a_thread_tells_how_far_it_is_and_keeps_the_maps_that_it_began_with() {
+        let settings = TuneSettings { start: bad(), scope: TuneScope::BiasAndFilter, ..TuneSettings::default() };
+        let (sender, receiver) = channel();
+        let mut comparison = comparison();
+        let search = thread::spawn(move || {
+            tune(&mut comparison, &views(), &settings, &mut |progress| sender.send(progress.clone()).is_ok())
+        });
+        let progress: Vec<Progress> = receiver.iter().collect();
+        let tuned = search.join().expect("no panic").expect("tuned");
+        let found = tuned.technique.technique;
+        assert_eq!(found.with_look_up(bad().filter, bad().bias), bad());
+        assert_eq!(tuned.technique.summary, "the least error found with 2 maps of 512 × 256 texels");
+        assert!(!tuned.stopped_early && progress.len() == tuned.steps.len());
+        for (index, (told, step)) in progress.iter().zip(&tuned.steps).enumerate() {
+            assert_eq!((told.tried, &told.what, told.start_error), (index + 1, &step.what, tuned.steps[0].error));
+            assert!(told.tried <= told.at_most && told.best_error <= told.start_error);
+        }
+        let last = progress.last().expect("some");
+        assert_eq!(last.best_error, settings.weights.error(&tuned.tally));
+        assert!(last.best_error < 0.5 * last.start_error, "{last:?}");
+        assert!(tuned.steps.iter().any(|step| step.is_kept && step.error == last.best_error));
+    }
+
+    #[test]
+    fn gpu_a_search_that_is_stopped_has_the_best_so_far_and_goes_no_farther() {
+        let settings = TuneSettings { start: bad(), ..TuneSettings::default() };
+        let mut told = 0;
+        let mut stop_at_two = |progress: &Progress| {
+            told = progress.tried;
+            progress.tried < 2
+        };
+        let tuned = tune(&mut comparison(), &views(), &settings, &mut stop_at_two).expect("stopped, not failed");
+        assert!(tuned.stopped_early && tuned.steps.len() == 2 && told == 2);
+        let least = tuned.steps.iter().map(|step| step.error).fold(f64::INFINITY, f64::min);
+        assert_eq!(settings.weights.error(&tuned.tally), least);
+    }
+
+    #[test]
+    fn gpu_changes_that_are_refused_are_passed_over_and_a_start_that_is_refused_is_an_error() {
+        let mut comparison = comparison();
+        let mut search = Search {
+            comparison: &mut comparison,
+            views: &views(),
+            truths: views().iter().map(|_| SharedTruth::default()).collect(),
+            weights: &Weights::default(),
+            at_most: 9,
+            tried: Vec::new(),
+            steps: Vec::new(),
+            best: bad(),
+            best_step: 0,
+        };
+        search.measure(&bad(), "the start").expect("measured");
+        let impossible = Change::new("blockers in clamped maps", |technique: &mut Technique| {
+            (technique.filter, technique.fit.casters) = (FilterKind::Pcss, CasterPolicy::DepthClamp);
+        });
+        let no_maps =
+            Change::new("no resolution", |technique: &mut Technique| technique.fit.resolution = glam::UVec2::ZERO);
+        for change in [impossible, no_maps] {
+            assert!(search.try_change(&bad(), &change).expect("passed over"), "{}", change.what);
+            assert_eq!((search.steps.len(), search.best), (1, bad()));
+        }
+        let settings = TuneSettings { start: bad().with_resolution(1, 1), ..TuneSettings::default() };
+        assert!(tune(&mut comparison, &views(), &settings, &mut |_| true).is_err());
+    }
+
+    #[test]
+    fn a_search_can_run_on_a_thread() {
+        fn assert_send<T: Send>() {}
+        assert_send::<(Comparison, TuneSettings, Progress, Result<Tuned>)>();
     }
 }
