@@ -25,7 +25,9 @@ use shadowfit_study::{NothingToDraw, PreparedScene, View};
 use shadowfit_wgpu::{MapFit, ShadowMapError};
 
 use compare::Other;
+pub(crate) use live::judged_figures;
 pub use shown::Shown;
+pub(crate) use shown::changes;
 use side::{Shot, Side};
 
 /// Why a stage could not be set up.
@@ -85,6 +87,13 @@ pub struct Stage {
     reads_depths: bool,
 }
 
+/// Views that a technique is tuned for.
+const TUNE_VIEWS: u32 = 4;
+/// Flight from one of them to the next, in seconds at the camera's speed.
+const TUNE_STEP: f32 = 0.02;
+/// Turn from one of them to the next, in radians.
+const TUNE_TURN: f32 = 0.004;
+
 /// How often marks blink, in turns a second.
 const BLINKS: f32 = 1.2;
 
@@ -121,7 +130,7 @@ impl Stage {
     /// A stage with nothing worth showing on it, until [`Self::set_prepared`] brings a scene.
     pub(crate) fn empty(gpu: Gpu, samples: u32) -> Result<Self, StageError> {
         let triangle = [glam::Vec3::ZERO, glam::Vec3::X, glam::Vec3::Z];
-        Self::new(gpu, Scene::from_objects("empty", &[&[triangle]]), samples)
+        Self::new(gpu, Scene::from_objects("empty", &[vec![triangle]]), samples)
     }
 
     /// Shows another scene. On an error the old one stays.
@@ -266,6 +275,21 @@ impl Stage {
     /// The present view as it is fitted and judged, for a picture of the given size.
     fn view(&self, size: [u32; 2]) -> View {
         View { camera: self.perspective(size), direction: self.settings.light.direction(), is_first: false }
+    }
+
+    /// Views to tune a technique for: the present one, and those of a short flight from it, so that crawl is measured too.
+    pub(crate) fn views_to_tune(&self, size: [u32; 2]) -> Vec<View> {
+        let direction = self.settings.light.direction();
+        let step = self.settings.camera.speed * TUNE_STEP;
+        let views = (0..TUNE_VIEWS).map(|index| {
+            let mut camera = self.camera;
+            let along = camera.right() * 0.6 + camera.forward() * 0.4;
+            camera.position += (along * (step * index as f32)).as_dvec3();
+            camera.yaw += TUNE_TURN * index as f32;
+            let camera = camera.perspective(&self.settings.camera, size[0] as f32 / size[1] as f32);
+            View { camera, direction, is_first: index == 0 }
+        });
+        views.collect()
     }
 
     /// The maps of the present view and settings; none where there is nothing to fit, with the

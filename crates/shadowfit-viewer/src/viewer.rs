@@ -247,6 +247,11 @@ impl Viewer {
         format!("shadowfit: {} ({})", self.source.label(), self.stage.gpu().name())
     }
 
+    /// Whether something goes on in the background that a script may wait for.
+    pub(crate) fn is_waiting(&self) -> bool {
+        self.loading.is_some() || self.searching.is_some() || self.tuning.is_running()
+    }
+
     /// Whether the scene of the start is on show.
     pub(crate) fn is_ready(&self) -> bool {
         self.has_scene

@@ -250,7 +250,7 @@ fn upload(gpu: &Gpu, classes: &[u32], size: [u32; 2]) -> wgpu::TextureView {
 }
 
 /// Figures as panels have them.
-pub(super) fn judged_figures(figures: &PictureFigures, size: [u32; 2], age: f32) -> JudgedFigures {
+pub(crate) fn judged_figures(figures: &PictureFigures, size: [u32; 2], age: f32) -> JudgedFigures {
     JudgedFigures {
         wrong: figures.wrong as f32,
         false_shadow: figures.false_shadow as f32,

@@ -16,6 +16,7 @@ use crate::command::{Command, Toggle};
 use crate::export::command_line;
 use crate::files::{free_name, write_png, write_whole};
 use crate::saved::Bookmark;
+use crate::tuning::Task;
 use crate::undo::State;
 
 /// Technique that the present one is compared with at first, or the other one where it is that already.
@@ -90,7 +91,7 @@ impl Viewer {
             Command::CancelTune => self.tuning.cancel(),
             Command::ApplyTune => {
                 if let Some(technique) = self.tuning.apply() {
-                    self.stage.settings.technique = technique;
+                    *self.edited() = technique;
                 }
             }
             Command::DiscardTune => self.tuning.discard(),
@@ -103,7 +104,7 @@ impl Viewer {
             Command::Open(source) => return self.open(source),
             Command::OpenFile(path) => return self.open_file(&path),
             Command::ChooseFile => return self.choose_file(),
-            Command::Window(path) => return self.shots.push(path),
+            Command::Window(path) => return self.shots.push(self.start.place(path)),
             Command::Set(id, value) => self.set(&id, &value),
             Command::Technique(name) => self.take_technique(&name),
             Command::Picture(path) => self.save_picture(path),
@@ -163,12 +164,12 @@ impl Viewer {
     }
 
     fn copy_to_other(&mut self) {
+        let edited = self.edited_technique();
         let edits_other = self.interface.edits_other;
-        let (settings, other) = self.stage.settings_and_other();
-        match other {
-            Some(other) if edits_other => settings.technique = *other,
-            Some(other) => *other = settings.technique,
-            None => {}
+        match self.stage.settings_and_other() {
+            (settings, Some(_)) if edits_other => settings.technique = edited,
+            (_, Some(other)) => *other = edited,
+            _ => {}
         }
     }
 
@@ -216,10 +217,14 @@ impl Viewer {
     }
 
     fn start_tune(&mut self) {
-        let views = self.stage.views_to_tune(self.interface.pictures.size());
-        let choice = self.start.arguments.adapter();
-        let scene = self.stage.prepared_scene().shared_scene();
-        self.tuning.start(choice, scene, self.stage.settings, views, (self.stage.animation, self.stage.seconds()));
+        let technique = self.edited_technique();
+        self.tuning.start(Task {
+            adapter: self.start.arguments.adapter(),
+            scene: self.stage.prepared_scene().shared_scene(),
+            pose: (self.stage.animation, self.stage.seconds()),
+            settings: self.stage.settings.with_technique(technique),
+            views: self.stage.views_to_tune(self.interface.pictures.size()),
+        });
     }
 
     fn set(&mut self, id: &str, value: &str) -> Result<String> {
@@ -245,17 +250,26 @@ impl Viewer {
         other.unwrap_or(self.stage.settings.technique)
     }
 
+    /// The same, to be changed.
+    fn edited(&mut self) -> &mut Technique {
+        let edits_other = self.interface.edits_other;
+        let (settings, other) = self.stage.settings_and_other();
+        match other {
+            Some(other) if edits_other => other,
+            _ => &mut settings.technique,
+        }
+    }
+
     /// Saves the picture, without bars and panel.
     fn save_picture(&mut self, path: Option<PathBuf>) -> Result<String> {
-        let path = path.unwrap_or_else(|| free_name("png"));
+        let path = path.map_or_else(|| free_name("png"), |path| self.start.place(path));
         let pixels = self.interface.pictures.read(&self.stage)?;
         write_png(&path, self.interface.pictures.size(), &pixels, Some(&self.text_of_settings()?))?;
         Ok(format!("Saved {}", path.display()))
     }
 
-    #[expect(clippy::unused_self, reason = "beside the other things that are saved")]
     fn save_text(&self, path: Option<PathBuf>, text: &str) -> Result<String> {
-        let path = path.unwrap_or_else(|| free_name("csv"));
+        let path = path.map_or_else(|| free_name("csv"), |path| self.start.place(path));
         write_whole(&path, text.as_bytes())?;
         Ok(format!("Saved {}", path.display()))
     }

@@ -1,5 +1,7 @@
 //! How the viewer starts: arguments, and what was kept from the last time.
 
+use std::path::{Path, PathBuf};
+
 use shadowfit::tool::Settings;
 use shadowfit_render::FlyCamera;
 use shadowfit_study::NamedTechnique;
@@ -22,6 +24,8 @@ pub(crate) struct Start {
     pub(super) kept: Option<(SceneSource, Settings, Option<FlyCamera>)>,
     /// Whether the scene of the start is still on its way.
     pub(super) is_pending: bool,
+    /// Folder of files that are asked for by a relative path; the working folder if `None`.
+    folder: Option<PathBuf>,
 }
 
 impl Start {
@@ -36,7 +40,18 @@ impl Start {
         // What is wrong with them is told at once.
         arguments.apply(&mut Settings::default())?;
         let script = arguments.steps()?;
-        Ok(Self { arguments: arguments.clone(), source, script, kept: None, is_pending: true })
+        Ok(Self { arguments: arguments.clone(), source, script, kept: None, is_pending: true, folder: None })
+    }
+
+    /// Puts the files that a script saves into a folder.
+    #[must_use]
+    pub(crate) fn saving_into(self, folder: &Path) -> Self {
+        Self { folder: Some(folder.to_owned()), ..self }
+    }
+
+    /// Where a file is saved.
+    pub(super) fn place(&self, path: PathBuf) -> PathBuf {
+        self.folder.as_ref().map_or(path.clone(), |folder| folder.join(path))
     }
 }
 

@@ -1,0 +1,186 @@
+//! Auto-tune: the search for a technique with less error, on a thread with a graphics device of its own.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+
+use anyhow::{Context, Result, anyhow};
+use shadowfit::Technique;
+use shadowfit::figures::JudgedFigures;
+use shadowfit::tool::Settings;
+use shadowfit_egui::Tune;
+use shadowfit_render::{AdapterChoice, Gpu};
+use shadowfit_scene::Scene;
+use shadowfit_study::{Comparison, Judging, Progress, TuneScope, TuneSettings, Tuned, View, tune};
+
+use crate::stage::{changes, judged_figures};
+
+/// Size of the pictures that are judged, in pixels: enough for every artefact.
+const SIZE: [u32; 2] = [480, 270];
+
+/// What a search works on.
+#[derive(Debug)]
+pub(crate) struct Task {
+    pub(crate) adapter: AdapterChoice,
+    pub(crate) scene: Arc<Scene>,
+    /// Animation and its time, in seconds.
+    pub(crate) pose: (usize, f32),
+    pub(crate) settings: Settings,
+    pub(crate) views: Vec<View>,
+}
+
+/// What comes from the thread.
+#[derive(Debug)]
+enum News {
+    Progress(Progress),
+    Done(Box<Result<Tuned>>),
+}
+
+/// A search that has ended.
+#[derive(Debug)]
+struct Outcome {
+    technique: Technique,
+    before: JudgedFigures,
+    after: JudgedFigures,
+    changes: Vec<String>,
+    is_applied: bool,
+}
+
+/// Where the search stands.
+#[derive(Debug, Default)]
+enum State {
+    #[default]
+    Idle,
+    Running {
+        settings: Box<Settings>,
+        progress: Option<Progress>,
+        news: Receiver<News>,
+        is_cancelled: Arc<AtomicBool>,
+    },
+    Done(Box<Outcome>),
+    Failed(String),
+}
+
+/// The search for a better technique.
+#[derive(Debug, Default)]
+pub(crate) struct Tuning(State);
+
+impl Tuning {
+    /// Begins, unless a search is under way.
+    pub(crate) fn start(&mut self, task: Task) {
+        if self.is_running() {
+            return;
+        }
+        let (sender, news) = channel();
+        let is_cancelled = Arc::new(AtomicBool::new(false));
+        let settings = Box::new(task.settings);
+        let flag = Arc::clone(&is_cancelled);
+        let work = move || {
+            let tuned = task.run(&mut |progress| {
+                sender.send(News::Progress(progress.clone())).is_ok() && !flag.load(Ordering::Relaxed)
+            });
+            // Nobody listens once the viewer has ended.
+            let _ = sender.send(News::Done(Box::new(tuned)));
+        };
+        self.0 = match std::thread::Builder::new().name("tuning".to_owned()).spawn(work) {
+            Ok(_) => State::Running { settings, progress: None, news, is_cancelled },
+            Err(error) => State::Failed(format!("no thread could be started: {error}")),
+        };
+    }
+
+    pub(crate) fn is_running(&self) -> bool {
+        matches!(self.0, State::Running { .. })
+    }
+
+    /// Stops the search; what it has found so far counts.
+    pub(crate) fn cancel(&mut self) {
+        if let State::Running { is_cancelled, .. } = &self.0 {
+            is_cancelled.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// Forgets what was found.
+    pub(crate) fn discard(&mut self) {
+        if !self.is_running() {
+            self.0 = State::Idle;
+        }
+    }
+
+    /// What was found, to be taken over.
+    pub(crate) fn apply(&mut self) -> Option<Technique> {
+        let State::Done(outcome) = &mut self.0 else { return None };
+        outcome.is_applied = true;
+        Some(outcome.technique)
+    }
+
+    /// Takes what the thread has told.
+    pub(crate) fn take(&mut self) {
+        let State::Running { settings, progress, news, .. } = &mut self.0 else { return };
+        let ended = loop {
+            match news.try_recv() {
+                Ok(News::Progress(new)) => *progress = Some(new),
+                Ok(News::Done(result)) => break *result,
+                Err(TryRecvError::Empty) => return,
+                Err(TryRecvError::Disconnected) => break Err(anyhow!("the search ended unexpectedly")),
+            }
+        };
+        self.0 = match ended.and_then(|tuned| outcome(&tuned, settings)) {
+            Ok(outcome) => State::Done(Box::new(outcome)),
+            Err(error) => State::Failed(format!("{error:#}")),
+        };
+    }
+
+    /// As the panel shows it.
+    pub(crate) fn shown(&self) -> Tune<'_> {
+        match &self.0 {
+            State::Idle => Tune::Idle,
+            State::Running { progress: None, .. } => {
+                let what = "getting ready";
+                Tune::Running { tried: 0, at_most: 1, start_error: f32::NAN, best_error: f32::NAN, what }
+            }
+            State::Running { progress: Some(progress), .. } => Tune::Running {
+                tried: progress.tried as u32,
+                at_most: progress.at_most as u32,
+                start_error: progress.start_error as f32,
+                best_error: progress.best_error as f32,
+                what: &progress.what,
+            },
+            State::Done(outcome) => Tune::Done {
+                before: outcome.before,
+                after: outcome.after,
+                changes: &outcome.changes,
+                is_applied: outcome.is_applied,
+            },
+            State::Failed(reason) => Tune::Failed(reason),
+        }
+    }
+}
+
+impl Task {
+    fn run(self, progress: &mut dyn FnMut(&Progress) -> bool) -> Result<Tuned> {
+        let gpu = pollster::block_on(Gpu::headless(self.adapter))?;
+        let scene = Scene::clone(&self.scene);
+        let judging = Judging { size: SIZE, ..Judging::default() };
+        let mut comparison = Comparison::new(gpu, scene, judging)?;
+        comparison.set_time(self.pose.0, self.pose.1);
+        let start = self.settings.technique;
+        let settings = TuneSettings { start, scope: TuneScope::Everything, ..TuneSettings::default() };
+        tune(&mut comparison, &self.views, &settings, progress)
+    }
+}
+
+fn outcome(tuned: &Tuned, settings: &Settings) -> Result<Outcome> {
+    let figures = |tally: &shadowfit_truth::PictureTally| {
+        let figures = tally.figures().context("nothing in view faces the light")?;
+        Ok::<_, anyhow::Error>(judged_figures(&figures, SIZE, 0.0))
+    };
+    let before = tuned.steps.first().context("nothing was tried")?;
+    let technique = tuned.technique.technique;
+    Ok(Outcome {
+        technique,
+        before: figures(&before.tally)?,
+        after: figures(&tuned.tally)?,
+        changes: changes(settings, &settings.with_technique(technique)),
+        is_applied: false,
+    })
+}
