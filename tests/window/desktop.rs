@@ -45,9 +45,10 @@ pub(super) struct Desktop {
 }
 
 impl Desktop {
-    /// Starts the server on a display number that is free, and empties the folder of screenshots.
-    pub(super) fn start() -> Self {
-        let shots = target_folder().join("window-test");
+    /// Starts the server on a display number that is free, and empties the folder of screenshots, which is that of the
+    /// test `name`.
+    pub(super) fn start(name: &str) -> Self {
+        let shots = target_folder().join("window-test").join(name);
         let _ = std::fs::remove_dir_all(&shots);
         std::fs::create_dir_all(&shots).unwrap_or_else(|error| panic!("{}: {error}", shots.display()));
         let mut command = Command::new("Xvfb");
@@ -61,6 +62,11 @@ impl Desktop {
         BufReader::new(output).read_line(&mut number).expect("Xvfb says its display number");
         assert!(!number.trim().is_empty(), "Xvfb ended at once; run `Xvfb :99` to see why");
         Self { _server: server, display: format!(":{}", number.trim()), shots, count: Cell::new(0) }
+    }
+
+    /// A file of the test's own.
+    pub(super) fn file(&self, name: &str) -> PathBuf {
+        self.shots.join(name)
     }
 
     /// Takes a screenshot and keeps it under a numbered name that holds `name`.
