@@ -124,6 +124,11 @@ impl Panel {
         self.technique.open(name.into(), technique);
     }
 
+    /// The plotted figures as comma-separated values, as [`Action::SaveCsv`] has them.
+    pub fn figures_csv(&self) -> String {
+        self.plots.history.to_csv()
+    }
+
     /// Whether the host uses a part.
     pub(crate) fn has(&self, part: Part) -> bool {
         !self.hidden_parts.contains(&part)

@@ -16,7 +16,7 @@ pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth3
 pub struct RenderTarget {
     /// Width and height, in pixels.
     pub size: [u32; 2],
-    color: wgpu::Texture,
+    pub(crate) color: wgpu::Texture,
     pub(crate) color_view: wgpu::TextureView,
     pub(crate) multisampled: Option<wgpu::TextureView>,
     pub(crate) depth_view: wgpu::TextureView,
@@ -84,6 +84,10 @@ impl core::error::Error for ReadError {}
 fn attachment(device: &wgpu::Device, size: [u32; 2], format: wgpu::TextureFormat, samples: u32) -> wgpu::Texture {
     // Of several samples nobody reads the colours before they are resolved.
     let readable = match (samples, format) {
+        // Parts of pictures are copied into them.
+        (1, COLOR_FORMAT) => {
+            wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST
+        }
         (1, _) => wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC,
         (_, DEPTH_FORMAT) => wgpu::TextureUsages::TEXTURE_BINDING,
         _ => wgpu::TextureUsages::empty(),
@@ -100,8 +104,21 @@ fn attachment(device: &wgpu::Device, size: [u32; 2], format: wgpu::TextureFormat
     })
 }
 
-/// Copies a texture to the CPU, without the row padding; waits for the GPU.
-pub(crate) fn read_texture(
+std::thread_local! {
+    static WAITED: std::cell::Cell<std::time::Duration> = const { std::cell::Cell::new(std::time::Duration::ZERO) };
+}
+
+/// How long this thread has waited for the GPU in read-backs so far, to be told apart from its own work.
+pub fn waited() -> std::time::Duration {
+    WAITED.get()
+}
+
+/// Copies a texture of a `size` in pixels to the CPU, rows from the top without padding; waits for the GPU.
+///
+/// # Errors
+///
+/// [`ReadError`] if the device was lost or does not answer.
+pub fn read_texture(
     gpu: &Gpu,
     texture: &wgpu::Texture,
     size: [u32; 2],
@@ -127,7 +144,10 @@ pub(crate) fn read_texture(
     );
     gpu.queue.submit([encoder.finish()]);
     buffer.slice(..).map_async(wgpu::MapMode::Read, |_| {});
-    gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|_| ReadError::Unfinished)?;
+    let begin = std::time::Instant::now();
+    let polled = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+    WAITED.set(WAITED.get() + begin.elapsed());
+    polled.map_err(|_| ReadError::Unfinished)?;
     // A device that was lost leaves the buffer unmapped.
     let mapped = buffer.slice(..).get_mapped_range().map_err(|_| ReadError::Lost)?;
     Ok(mapped.chunks(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect())

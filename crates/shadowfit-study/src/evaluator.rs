@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use anyhow::Result;
 use glam::{DVec3, Vec3};
-use shadowfit_render::{Frame, Gpu, PixelRead, ProbePixel, ProbeTargets, RenderTarget, Renderer, Statistics};
+use shadowfit_render::{
+    Frame, Gpu, PixelQuery, PixelRead, ProbePixel, ProbeTargets, RenderTarget, Renderer, Statistics,
+};
 use shadowfit_truth::Judged;
 use shadowfit_truth::gpu::{GpuBefore, GpuPixel};
 use shadowfit_wgpu::{MapFit, ShadowMapError};
@@ -68,8 +70,7 @@ impl Evaluator {
     }
 
     /// Begins to read what a pixel of a view shows, and the depths around a texel of a map, without waiting. The view is the
-    /// one that was drawn last: its maps are read as they are. The pixel is counted from the top left of a picture of
-    /// `size`, the texel from the top left of the map.
+    /// one that was drawn last: its maps are read as they are.
     ///
     /// # Errors
     ///
@@ -79,16 +80,12 @@ impl Evaluator {
         gpu: &Gpu,
         scene: &mut PreparedScene,
         view: &View,
-        (pixel, size): ([u32; 2], [u32; 2]),
-        texel: (u32, [u32; 2]),
+        query: &PixelQuery,
     ) -> Result<PixelRead> {
         let options = FrameOptions { maps_stay: true, ..FrameOptions::default() };
         let atmosphere = options.atmosphere(view);
-        let maps = std::mem::take(&mut self.drawn);
-        let frame = frame(view, &maps, &options, &atmosphere);
-        let read = self.renderer.probe_pixel(gpu, &mut scene.gpu_scene, &frame, (pixel, size), texel);
-        self.drawn = maps;
-        Ok(read?)
+        let frame = frame(view, &self.drawn, &options, &atmosphere);
+        Ok(self.renderer.probe_pixel(gpu, &mut scene.gpu_scene, &frame, query)?)
     }
 
     /// The maps that were drawn last.

@@ -134,7 +134,9 @@ impl Interface {
             });
         }
         let figures = &self.figures;
-        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| self.pictures.show(ui, stage, (shows, figures), asked));
+        CentralPanel::default()
+            .frame(Frame::NONE)
+            .show(ui, |ui| self.pictures.show(ui, stage, (shows, figures), asked));
         let context = ui.ctx().clone();
         shadowfit_egui::help_overlay(&context, &mut self.help_open);
     }

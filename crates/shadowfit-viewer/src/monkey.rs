@@ -84,7 +84,12 @@ impl MonkeyRun {
         files.sort();
         let unwanted = |chord: &Chord| matches!(chord.command(), Some(Command::Quit | Command::ChooseFile));
         let with_modifiers = |chord: Chord| {
-            [chord, Chord { ctrl: true, ..chord }, Chord { shift: true, ..chord }, Chord { ctrl: true, shift: true, ..chord }]
+            [
+                chord,
+                Chord { ctrl: true, ..chord },
+                Chord { shift: true, ..chord },
+                Chord { ctrl: true, shift: true, ..chord },
+            ]
         };
         Self {
             random: Random(monkey.seed),
@@ -128,7 +133,9 @@ impl MonkeyRun {
     fn rest(&mut self, phase: Phase, deeds: &mut Vec<Deed>) {
         deeds.extend(self.held.drain(..).map(|chord| Deed::Key(chord, false)));
         deeds.push(Deed::Resize(SIZES[0]));
-        for command in [Command::Compare(crate::command::Toggle::Off), Command::CancelTune, Command::Open(SceneSource::default())] {
+        for command in
+            [Command::Compare(crate::command::Toggle::Off), Command::CancelTune, Command::Open(SceneSource::default())]
+        {
             deeds.push(Deed::Do(command));
         }
         self.phase = phase;

@@ -79,7 +79,8 @@ impl Player {
             self.under = self.go_on(under, seconds, doing, &mut deeds);
         }
         // One step a frame, so that each sees what the one before has done.
-        if self.under.is_none() && deeds.is_empty()
+        if self.under.is_none()
+            && deeds.is_empty()
             && let Some(step) = self.steps.pop_front()
         {
             self.under = begin(step, &mut deeds);
@@ -174,7 +175,13 @@ pub(crate) fn clicks(at: [f32; 2], times: u32) -> impl Iterator<Item = Deed> {
 pub(crate) fn wheel(notches: f32) -> Deed {
     let (unit, phase) = (egui::MouseWheelUnit::Line, egui::TouchPhase::Move);
     let delta = egui::Vec2::new(0.0, notches);
-    Deed::Pointer(Event::MouseWheel { unit, delta, phase, modifiers: Modifiers::NONE })
+    Deed::Pointer(Event::MouseWheel {
+        unit,
+        delta,
+        phase,
+        modifiers: Modifiers::NONE,
+        source: egui::MouseWheelSource::Unknown,
+    })
 }
 
 /// A frame of a drag.
@@ -209,7 +216,13 @@ mod tests {
     #[test]
     fn steps_follow_each_other_and_wait_as_long_as_they_say() {
         let view = |mode| Step::Do(Command::View(mode));
-        let steps = vec![view(ViewMode::Truth), Step::Wait(0.25), view(ViewMode::Error), Step::Frames(2), view(ViewMode::Final)];
+        let steps = vec![
+            view(ViewMode::Truth),
+            Step::Wait(0.25),
+            view(ViewMode::Error),
+            Step::Frames(2),
+            view(ViewMode::Final),
+        ];
         let seen: Vec<usize> = play(steps, 12, &Doing::default()).iter().map(Vec::len).collect();
         assert_eq!(seen, [1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0]);
     }

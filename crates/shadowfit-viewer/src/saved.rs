@@ -99,8 +99,10 @@ impl From<FlyCamera> for SavedView {
 impl SavedView {
     /// `None` where a number is not finite.
     fn camera(self) -> Option<FlyCamera> {
-        let mut camera = FlyCamera { position: DVec3::from_array(self.position), yaw: self.yaw.to_radians(), pitch: 0.0 };
-        camera.pitch = self.pitch.to_radians().clamp(-shadowfit_render::camera::MAX_PITCH, shadowfit_render::camera::MAX_PITCH);
+        let mut camera =
+            FlyCamera { position: DVec3::from_array(self.position), yaw: self.yaw.to_radians(), pitch: 0.0 };
+        camera.pitch =
+            self.pitch.to_radians().clamp(-shadowfit_render::camera::MAX_PITCH, shadowfit_render::camera::MAX_PITCH);
         (camera.position.is_finite() && camera.yaw.is_finite() && camera.pitch.is_finite()).then_some(camera)
     }
 }

@@ -198,7 +198,9 @@ impl Words<'_> {
             "doubleclick" => Step::Click(self.numbers()?, 2),
             "drag" => self.numbers().map(|[a, b, c, d]| Step::Drag([a, b], [c, d]))?,
             "wheel" => self.numbers().map(|[notches]| Step::Wheel(notches))?,
-            "resize" => self.numbers::<2>().map(|size| Step::Resize(size.map(|side| side.clamp(1.0, 8192.0) as u32)))?,
+            "resize" => {
+                self.numbers::<2>().map(|size| Step::Resize(size.map(|side| side.clamp(1.0, 8192.0) as u32)))?
+            }
             "wait" => self.numbers().map(|[seconds]| Step::Wait(seconds))?,
             "frames" => self.numbers().map(|[frames]| Step::Frames(frames as u32))?,
             "await" => Step::Await(self.awaited()?),

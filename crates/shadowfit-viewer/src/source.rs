@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
-use shadowfit_scene::builtin::BuiltinScene;
 use shadowfit_scene::Scene;
+use shadowfit_scene::builtin::BuiltinScene;
 
 /// A built-in scene or a file.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -219,7 +219,8 @@ impl Viewer {
                 Err(std::sync::mpsc::TryRecvError::Empty) => {}
                 Err(std::sync::mpsc::TryRecvError::Disconnected) => {
                     self.searching = None;
-                    self.message = Some("The search for a view ended without one; this is a bug of the viewer".to_owned());
+                    self.message =
+                        Some("The search for a view ended without one; this is a bug of the viewer".to_owned());
                 }
             }
         }

@@ -63,11 +63,7 @@ pub fn load_gltf_scene(path: &Path, scene: Option<usize>) -> Result<Scene, Scene
 ///
 /// # Errors
 /// As [`load_gltf_scene`].
-pub fn load_gltf_with_progress(
-    path: &Path,
-    scene: Option<usize>,
-    progress: &dyn Fn(f32),
-) -> Result<Scene, SceneError> {
+pub fn load_gltf_with_progress(path: &Path, scene: Option<usize>, progress: &dyn Fn(f32)) -> Result<Scene, SceneError> {
     let mut source = container::read(path)?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let binary = source.binary.take();

@@ -141,7 +141,8 @@ impl Pictures {
         let uv = Rect::from_min_max(Pos2::new(stage.split, 0.0), Pos2::new(1.0, 1.0));
         ui.painter().image(self.other.texture, right, uv, Color32::WHITE);
         let grip = Rect::from_center_size(Pos2::new(x, rect.center().y), Vec2::new(GRIP, rect.height()));
-        let bar = ui.interact(grip, ui.id().with("split"), Sense::drag()).on_hover_cursor(CursorIcon::ResizeHorizontal);
+        let bar =
+            ui.interact(grip, ui.scope_id().with("split"), Sense::drag()).on_hover_cursor(CursorIcon::ResizeHorizontal);
         let name = "Bar between A and B";
         bar.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Splitter, true, name));
         if bar.dragged() && rect.width() > 1.0 {

@@ -56,7 +56,8 @@ impl Boards {
     pub(super) fn quads(&self, updates: &[MapUpdate]) -> Vec<Quad> {
         let color = |color: [u8; 3]| linear_color(color).extend(FILL);
         let [kept, drawn, moving] = MAP_UPDATE_COLORS.map(color);
-        let mut quads: Vec<Quad> = self.insets.iter().map(|inset| Quad::rectangle(inset.rectangle, kept * 0.4)).collect();
+        let mut quads: Vec<Quad> =
+            self.insets.iter().map(|inset| Quad::rectangle(inset.rectangle, kept * 0.4)).collect();
         for update in updates {
             let (Some(inset), Some(size)) = (self.insets.get(update.map), self.sizes.get(update.map)) else { continue };
             let [x, y, w, h] = inset.rectangle;

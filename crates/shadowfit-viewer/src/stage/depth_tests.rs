@@ -1,12 +1,12 @@
 //! What windows are told of the pictures before: rays and depth buffers agree.
 
-use shadowfit_render::RenderTarget;
-use shadowfit_study::Seen;
 use shadowfit::Technique;
 use shadowfit::need::{LEVELS, NeedGrid};
 use shadowfit::settings::{FitKind, NeedSource};
+use shadowfit_render::RenderTarget;
 use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_scene::builtin::default_scene;
+use shadowfit_study::Seen;
 
 use super::*;
 
@@ -35,7 +35,7 @@ fn a_view_that_follows_no_other_is_seen_by_rays_and_the_next_ones_by_pictures_wh
     for samples in [1, 4] {
         let mut stage = Stage::new(gpu.clone(), default_scene(), samples).expect("the default scene");
         stage.prepared_scene().rays();
-            stage.read_depths();
+        stage.read_depths();
         let technique = Technique { need: NeedSource::LastFrame, ..stage.settings.technique };
         stage.settings.technique = Technique { fit: technique.fit.with_kind(FitKind::Windows), ..technique };
         let target = stage.target([640, 360]);

@@ -274,19 +274,11 @@ impl Side {
             ..FrameOptions::default()
         };
         let drawn = self.evaluator.draw(shot.gpu, shot.scene, view, maps, &options, target);
-        self.take_statistics(drawn, maps_stay);
+        self.take_statistics(drawn);
     }
 
-    fn take_statistics(&mut self, drawn: Result<Statistics, ShadowMapError>, maps_stay: bool) {
+    fn take_statistics(&mut self, drawn: Result<Statistics, ShadowMapError>) {
         match drawn {
-            Ok(statistics) if maps_stay => {
-                // What was drawn into the maps was drawn by the judge.
-                self.statistics = Statistics {
-                    scene_draws: statistics.scene_draws,
-                    scene_triangles: statistics.scene_triangles,
-                    ..self.evaluator.drawn_maps()
-                };
-            }
             Ok(statistics) => self.statistics = statistics,
             Err(error) => self.problem = Some(error.to_string()),
         }
@@ -317,7 +309,7 @@ impl Side {
             ..FrameOptions::default()
         };
         let drawn = self.evaluator.draw(shot.gpu, shot.scene, &view, maps, &options, target);
-        self.take_statistics(drawn, false);
+        self.take_statistics(drawn);
     }
 
     /// Draws the scene as the light sees it, with the grid of need and the outlines of the maps.
@@ -342,7 +334,7 @@ impl Side {
         };
         let view = View { camera: fitted.camera.unwrap_or(shot.camera), ..shot.view() };
         let drawn = self.evaluator.draw(shot.gpu, shot.scene, &view, maps, &options, target);
-        self.take_statistics(drawn, false);
+        self.take_statistics(drawn);
     }
 
     /// Draws all maps side by side, with what of them was drawn in this frame.
@@ -359,7 +351,7 @@ impl Side {
             ..FrameOptions::default()
         };
         let drawn = self.evaluator.draw(shot.gpu, shot.scene, view, maps, &options, target);
-        self.take_statistics(drawn, false);
+        self.take_statistics(drawn);
     }
 }
 

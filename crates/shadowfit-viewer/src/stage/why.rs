@@ -1,14 +1,14 @@
 //! Why the pixel under the pointer is as it is: asked when the pointer rests, answered by a thread, and shown until it
 //! moves on.
 
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::Arc;
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::Instant;
 
 use glam::DVec3;
 use shadowfit::{PerspectiveCamera, Technique};
 use shadowfit_egui::{PixelClass, WhyCard};
-use shadowfit_render::PixelRead;
+use shadowfit_render::{PixelQuery, PixelRead, TexelBlock};
 use shadowfit_scene::Scene;
 use shadowfit_study::{Judging, SceneRays, StoredTexels, View, Why, WhyInput, why};
 use shadowfit_truth::Class;
@@ -81,7 +81,9 @@ impl Stage {
         let camera = self.perspective(size);
         let same = |old: [f32; 2], new: [f32; 2]| (0..2).all(|axis| (old[axis] - new[axis]).abs() <= SLACK);
         let rests = match (hover, &self.why.at) {
-            (Some(new), Some((old, at, since))) if same(*old, new) && *at == camera => since.elapsed().as_secs_f32() >= REST,
+            (Some(new), Some((old, at, since))) if same(*old, new) && *at == camera => {
+                since.elapsed().as_secs_f32() >= REST
+            }
             (new, _) => {
                 self.why = Asked { at: new.map(|new| (new, camera, Instant::now())), ..Asked::default() };
                 false
@@ -149,8 +151,8 @@ impl Stage {
             Step::Reading(mut question, mut read, texel) => match read.take(&self.gpu) {
                 None => Step::Reading(question, read, texel),
                 Some(Ok(facts)) => {
-                    question.factor = facts.pixel.map(|pixel| pixel.factor);
-                    question.stored = facts.stored.map(|depths| StoredTexels { texel, depths });
+                    question.factor = facts.seen.map(|pixel| pixel.factor);
+                    question.stored = stored(&facts.depths, texel);
                     Step::Answering(think(question))
                 }
                 // The device is lost, which is said where pictures are presented.
@@ -172,11 +174,12 @@ impl Stage {
     fn read_pixel(&mut self, question: Question, texel: Option<(usize, [f32; 2])>) -> Step {
         let Some((map, texel)) = texel else { return Step::Done };
         let texel = texel.map(|at| at.max(0.0) as u32);
-        let in_other = question.pixel[0] > self.split * question.judging.size[0] as f32 && self.is_comparing();
-        let pixel = question.pixel.map(|at| at as u32);
-        let read = self.with_side(in_other, |side, gpu, scene| {
-            side.evaluator.read_pixel(gpu, scene, &question.view, (pixel, question.judging.size), (map as u32, texel))
-        });
+        let size = question.judging.size;
+        let in_other = self.is_comparing() && question.pixel[0] > self.split * size[0] as f32;
+        let block = TexelBlock { map, texel: texel.map(u32::cast_signed), radius: 1 };
+        let query = PixelQuery { size, pixel: question.pixel.map(|at| at as u32), texels: Some(block) };
+        let read =
+            self.with_side(in_other, |side, gpu, scene| side.evaluator.read_pixel(gpu, scene, &question.view, &query));
         match read {
             Some(Ok(read)) => Step::Reading(question, read, texel),
             _ => Step::Done,
@@ -196,6 +199,13 @@ impl Stage {
         let hit = rays.tracer.first_hit((camera.eye - rays.origin).as_vec3(), ray)?;
         Some(camera.eye + (ray * hit.distance).as_dvec3())
     }
+}
+
+/// The nine depths around a texel.
+fn stored(depths: &[f32], texel: [u32; 2]) -> Option<StoredTexels> {
+    let depths: [f32; 9] = depths.try_into().ok()?;
+    let row = |row: usize| [depths[row * 3], depths[row * 3 + 1], depths[row * 3 + 2]];
+    Some(StoredTexels { texel, depths: [row(0), row(1), row(2)] })
 }
 
 /// Answers on a thread.

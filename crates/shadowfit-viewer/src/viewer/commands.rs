@@ -109,7 +109,7 @@ impl Viewer {
             Command::Technique(name) => self.take_technique(&name),
             Command::Picture(path) => self.save_picture(path),
             Command::SaveFigures(path) => {
-                let text = self.interface.panel().history_csv();
+                let text = self.interface.panel().figures_csv();
                 self.save_text(path, &text)
             }
             Command::SaveCsv(text) => self.save_text(None, &text),

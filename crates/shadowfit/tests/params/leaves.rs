@@ -25,7 +25,8 @@ pub(crate) fn leaves(settings: &Settings) -> Vec<(String, String)> {
     leaf("camera.near", near);
     leaf("camera.far", far);
     leaf("camera.speed", speed);
-    let ViewSettings { mode, judge, marks, shadows, inset, inset_map, inset_depths, outside_beside, freeze_fit, play } = view;
+    let ViewSettings { mode, judge, marks, shadows, inset, inset_map, inset_depths, outside_beside, freeze_fit, play } =
+        view;
     leaf("view.mode", mode);
     leaf("view.judge", judge);
     leaf("view.marks", marks);
