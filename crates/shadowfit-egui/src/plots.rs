@@ -9,7 +9,7 @@ use crate::accessibility::rename;
 use crate::history::{History, SERIES};
 use crate::theme::{Palette, readable};
 use crate::units::brief_count;
-use crate::widgets::{caption, color, color_entry};
+use crate::widgets::{caption, color, color_entry, color_line};
 
 /// Height of the plot, in points.
 const HEIGHT: f32 = 150.0;
@@ -119,7 +119,7 @@ impl Plots {
             .auto_bounds(false)
             .reset()
             .y_axis_min_width(34.0)
-            .label_formatter(move |hover| hovered(hover, unit))
+            .label_formatter(move |hover| Some(hovered(hover, unit)))
             .x_grid_spacer(move |_| grid(-seconds))
             .y_grid_spacer(move |_| grid(top))
             .grid_color(line.gamma_multiply(0.8))
@@ -185,14 +185,13 @@ fn time_value(time: f64, range: f64) -> String {
     }
 }
 
-/// What a point says that the pointer is near.
-fn hovered(hover: &HoverPosition<'_>, unit: &str) -> Option<String> {
-    match hover {
-        HoverPosition::NearDataPoint { plot_name, position, .. } => {
-            Some(format!("{plot_name}\n{}\n{:.1} s ago", with_unit(position.y, unit), -position.x))
-        }
-        HoverPosition::Elsewhere { .. } => None,
-    }
+/// What stands beside the pointer: value and time, and the name of the series whose point is near.
+fn hovered(hover: &HoverPosition<'_>, unit: &str) -> String {
+    let (name, position) = match hover {
+        HoverPosition::NearDataPoint { plot_name, position, .. } => (format!("{plot_name}\n"), position),
+        HoverPosition::Elsewhere { position } => (String::new(), position),
+    };
+    format!("{name}{}\n{:.1} s ago", with_unit(position.y, unit), -position.x)
 }
 
 /// A value with its unit, with two decimals or as a brief count.
@@ -235,9 +234,7 @@ fn line(ui: &Ui, name: &str) -> (usize, Color32) {
 }
 
 fn legend(ui: &mut Ui, history: &History, lines: &[(usize, Color32)]) {
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = Vec2::new(12.0, 3.0);
-        ui.spacing_mut().interact_size.y = 0.0;
+    color_line(ui, |ui| {
         for (index, color) in lines {
             let series = &SERIES[*index];
             let value = history.last(*index).map(|value| with_unit(f64::from(value), series.unit));

@@ -26,6 +26,15 @@ fn paint_swatch(ui: &Ui, rect: Rect, color: Color32) {
     ui.painter().rect(rect, CornerRadius::same(2), color, line, StrokeKind::Inside);
 }
 
+/// A line of [`color_entry`]s, which wraps.
+pub(crate) fn color_line(ui: &mut Ui, entries: impl FnOnce(&mut Ui)) {
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing = Vec2::new(12.0, 3.0);
+        ui.spacing_mut().interact_size.y = 0.0;
+        ui.horizontal_wrapped(entries);
+    });
+}
+
 /// A colour, what it stands for, and a value: one widget, so that a line of them wraps.
 pub(crate) fn color_entry(ui: &mut Ui, fill: Color32, name: &str, value: Option<&str>) -> Response {
     /// Distances between the square, the name and the value, in points.

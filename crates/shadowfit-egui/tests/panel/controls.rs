@@ -108,12 +108,14 @@ fn typed_numbers_are_set_in_the_shown_unit_and_clamped() {
 fn dragged_sliders_set_and_clamp_every_number() {
     let mut dragged = BTreeSet::new();
     for settings in all_rows() {
+        let mut harness = open_harness(Host { settings, ..Host::default() });
         for parameter in PARAMETERS.iter().filter(|parameter| parameter.id != INSET_MAP) {
             let Some((_, max, _)) = number(parameter, &settings) else { continue };
             if (parameter.inert)(&settings).is_some() {
                 continue;
             }
-            let mut harness = open_harness(Host { settings, ..Host::default() });
+            harness.state_mut().settings = settings;
+            harness.run();
             let rect = control(&harness, parameter).rect();
             harness.drag_at(rect.center());
             harness.run();

@@ -1,4 +1,4 @@
-//! Golden pictures of the panel, drawn by the software adapter where there is one.
+//! Golden pictures of the panel, drawn by the software adapter whatever GPU is present.
 //!
 //! A missing golden fails. `SHADOWFIT_UPDATE_GOLDENS=1` writes them anew, as `cargo xtask golden` does. On a failure
 //! `NAME.actual.png` and `NAME.diff.png` lie beside `NAME.png`.
@@ -12,6 +12,7 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use shadowfit_egui::PANEL_WIDTH;
 
 use crate::host::{Host, builder};
+use crate::renderer::SoftwareRenderer;
 use crate::states::{busy, play, session};
 
 /// Most bytes that a golden may have.
@@ -32,7 +33,7 @@ const DIFFERENT_PIXELS: usize = 60;
 /// A harness that draws.
 fn drawn(host: Host, theme: Theme) -> Harness<'static, Host> {
     builder(Vec2::new(PANEL_WIDTH, HEIGHT), theme, 1.0)
-        .wgpu()
+        .renderer(SoftwareRenderer::new())
         .with_render_cursor(false)
         .build_ui_state(|ui, host: &mut Host| host.show(ui), host)
 }

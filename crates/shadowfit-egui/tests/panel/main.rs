@@ -8,5 +8,6 @@ mod golden;
 mod host;
 mod layout;
 mod overlays;
+mod renderer;
 mod states;
 mod techniques;
