@@ -11,12 +11,8 @@ pub(crate) fn start(ui: &mut Ui, action: &mut Option<Action>) {
     ui.horizontal(|ui| {
         title(ui, "Technique");
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let weak = ui.visuals().weak_text_color();
-            let button = Button::new(("Compare A | B", RichText::new("B").small().color(weak)));
-            let response =
-                ui.add(button).on_hover_text("Shows two techniques beside each other; B begins as a copy of A.");
-            crate::accessibility::rename(ui, &response, "Compare A | B".to_owned());
-            if response.clicked() {
+            let help = "Shows two techniques beside each other; B begins as a copy of A (B).";
+            if ui.button("Compare A | B").on_hover_text(help).clicked() {
                 *action = Some(Action::StartCompare);
             }
         });

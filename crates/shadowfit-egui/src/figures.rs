@@ -47,6 +47,8 @@ pub(crate) fn summary(figures: &Figures) -> String {
 }
 
 pub(crate) fn show(ui: &mut Ui, figures: &Figures) {
+    // Lines of text alone.
+    ui.spacing_mut().interact_size.y = 0.0;
     let gap = 12.0;
     let half = 0.5 * (ui.available_width() - gap);
     if figures.maps.iter().any(Option::is_some) {

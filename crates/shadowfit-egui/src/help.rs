@@ -1,6 +1,6 @@
 //! The table of the keys.
 
-use egui::{Align2, Context, Grid, RichText, Ui, Vec2, Window};
+use egui::{Align2, Context, Grid, RichText, ScrollArea, Ui, Vec2, Window};
 
 use crate::widgets::caption;
 
@@ -68,7 +68,7 @@ pub const KEYS: &[KeyGroup] = &[
         heading: "Picture",
         keys: &[
             key("B", "compare A | B"),
-            key("M", "mark wrong pixels: off, outline, blink"),
+            key("M", "mark wrong pixels"),
             key("I", "shadow map inset"),
             key("O", "outside view"),
             key("G", "freeze the fit"),
@@ -107,7 +107,7 @@ pub const KEYS: &[KeyGroup] = &[
 ];
 
 /// Which groups of [`KEYS`] stand below each other, by their number in each column.
-const COLUMNS: [usize; 3] = [2, 2, 4];
+const COLUMNS: [usize; 3] = [2, 3, 3];
 
 /// Width of a column, in points.
 const COLUMN: f32 = 300.0;
@@ -129,11 +129,15 @@ pub fn help_overlay(ctx: &Context, open: &mut bool) {
         .anchor(Align2::CENTER_CENTER, Vec2::ZERO)
         .resizable(false)
         .collapsible(false)
-        .vscroll(true)
         .default_width(if is_wide { width } else { COLUMN })
-        .default_height(room.y)
-        .max_height(room.y - TITLE_HEIGHT)
-        .show(ctx, |ui| if is_wide { columns(ui) } else { column(ui, KEYS) });
+        .show(ctx, |ui| {
+            // Lines of text alone.
+            ui.spacing_mut().interact_size.y = 0.0;
+            ScrollArea::vertical()
+                .max_height(room.y - TITLE_HEIGHT)
+                .min_scrolled_height(room.y - TITLE_HEIGHT)
+                .show(ui, |ui| if is_wide { columns(ui) } else { column(ui, KEYS) });
+        });
 }
 
 fn columns(ui: &mut Ui) {
@@ -156,14 +160,14 @@ fn column(ui: &mut Ui, groups: &[KeyGroup]) {
     const KEY_WIDTH: f32 = 112.0;
     for group in groups {
         caption(ui, group.heading);
-        Grid::new(group.heading).num_columns(2).min_col_width(KEY_WIDTH).spacing([12.0, 3.0]).show(ui, |ui| {
+        Grid::new(group.heading).num_columns(2).min_col_width(KEY_WIDTH).spacing([12.0, 5.0]).show(ui, |ui| {
             for line in group.keys {
                 ui.label(RichText::new(line.keys).strong());
                 ui.label(line.does);
                 ui.end_row();
             }
         });
-        ui.add_space(10.0);
+        ui.add_space(12.0);
     }
 }
 

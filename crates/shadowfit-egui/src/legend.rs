@@ -9,7 +9,7 @@ use shadowfit::tool::{ErrorMarks, ViewMode, ViewSettings};
 
 use crate::classes::shares;
 use crate::units::percent;
-use crate::widgets::{caption, color, color_entry};
+use crate::widgets::{caption, color, color_entry, color_line};
 
 /// Colours of the view of map updates, as sRGB bytes: texels that were kept, those drawn anew, and what moves.
 pub const MAP_UPDATE_COLORS: [[u8; 3]; 3] = [[86, 180, 233], [230, 159, 0], [204, 121, 167]];
@@ -68,19 +68,10 @@ pub fn legend_overlay(ctx: &Context, picture: Rect, view: &ViewSettings, figures
         });
 }
 
-/// A line of entries, which wraps.
-fn line(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = Vec2::new(12.0, 3.0);
-        ui.spacing_mut().interact_size.y = 0.0;
-        contents(ui);
-    });
-}
-
 fn classes(ui: &mut Ui, figures: &Figures) {
     let (a, b) = (figures.judged.as_ref().map(shares), figures.judged_other.as_ref().map(shares));
     let entries = shares(&Default::default());
-    line(ui, |ui| {
+    color_line(ui, |ui| {
         for (index, (class, fill, _)) in entries.into_iter().enumerate() {
             let value = match (a, b) {
                 (Some(a), Some(b)) => Some(format!("{} | {}", percent(a[index].2), percent(b[index].2))),
@@ -94,7 +85,7 @@ fn classes(ui: &mut Ui, figures: &Figures) {
 
 fn maps(ui: &mut Ui, figures: &Figures) {
     let there = figures.maps.iter().zip(MAP_TINTS).enumerate().filter(|(_, (map, _))| map.is_some());
-    line(ui, |ui| {
+    color_line(ui, |ui| {
         for (map, (_, tint)) in there {
             let help = "Read from this map; map 1 is the nearest.";
             color_entry(ui, color(tint), &format!("map {}", map + 1), None).on_hover_text(help);
@@ -103,7 +94,7 @@ fn maps(ui: &mut Ui, figures: &Figures) {
 }
 
 fn updates(ui: &mut Ui) {
-    line(ui, |ui| {
+    color_line(ui, |ui| {
         for ((name, help), fill) in MAP_UPDATES.into_iter().zip(MAP_UPDATE_COLORS) {
             color_entry(ui, color(fill), name, None).on_hover_text(help);
         }

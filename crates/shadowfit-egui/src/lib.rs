@@ -64,7 +64,7 @@ use std::collections::BTreeSet;
 
 use egui::{ScrollArea, Ui};
 use shadowfit::Technique;
-use shadowfit::params::Parameter;
+use shadowfit::params::{Parameter, parameter};
 use shadowfit::tool::Settings;
 
 use parameters::{Rows, TOOL_GROUPS, technique_groups};
@@ -207,7 +207,7 @@ impl Panel {
             Section { title: "Plots", help: "The figures of the last minute.", summary: "", is_open: false }
                 .show(ui, |ui| plots.show(ui, action));
         }
-        rows.groups(ui, TOOL_GROUPS, input.settings);
+        edit_shared(input, |settings| rows.groups(ui, TOOL_GROUPS, settings));
     }
 
     /// The rows that the search finds.
@@ -216,10 +216,24 @@ impl Panel {
         let of_technique: Vec<_> = technique_groups().collect();
         let mut count = 0;
         edit(input, |settings| count += rows.found(ui, &self.search, &of_technique, settings));
-        count += rows.found(ui, &self.search, &TOOL_GROUPS, input.settings);
+        edit_shared(input, |settings| count += rows.found(ui, &self.search, &TOOL_GROUPS, settings));
         if count == 0 {
             caption(ui, "No setting that has an effect now has this in its name or help.");
         }
+    }
+}
+
+/// Edits what both techniques share. The near plane moves the shadow distance, and so it does that of both.
+fn edit_shared(input: &mut PanelInput<'_>, change: impl FnOnce(&mut Settings)) {
+    let near = input.settings.camera.near;
+    change(input.settings);
+    if input.settings.camera.near != near
+        && let Some(compare) = &mut input.compare
+        && let Some(parameter) = parameter("camera.near")
+    {
+        let mut other = input.settings.with_technique(*compare.other);
+        parameter.copy(&mut other, input.settings);
+        *compare.other = other.technique;
     }
 }
 

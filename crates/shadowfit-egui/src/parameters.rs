@@ -28,7 +28,7 @@ impl Rows<'_> {
     pub(crate) fn search_field(ui: &mut Ui, search: &mut String) {
         ui.horizontal(|ui| {
             let margin = Margin { left: 26, ..Margin::from(ui.spacing().button_padding) };
-            let width = ui.available_width() - 30.0 - f32::from(margin.left + margin.right);
+            let width = ui.available_width() - 30.0;
             let field = TextEdit::singleline(search).hint_text("Search all settings").margin(margin);
             let field = ui.add(field.desired_width(width));
             let icon = Rect::from_center_size(field.rect.left_center() + Vec2::new(14.0, 0.0), Vec2::ZERO);

@@ -1,7 +1,7 @@
 //! The figures over time, one plot at a time.
 
 use egui::{Color32, ComboBox, Ui, Vec2};
-use egui_plot::{GridMark, HLine, Line, Plot, PlotPoints};
+use egui_plot::{GridMark, HLine, HoverPosition, Line, Plot, PlotPoints};
 use shadowfit::figures::{ERROR_COLORS, MAP_TINTS};
 
 use crate::Action;
@@ -9,10 +9,13 @@ use crate::accessibility::rename;
 use crate::history::{History, SERIES};
 use crate::theme::{Palette, readable};
 use crate::units::brief_count;
-use crate::widgets::{caption, color, color_entry};
+use crate::widgets::{caption, color, color_entry, color_line};
 
 /// Height of the plot, in points.
 const HEIGHT: f32 = 150.0;
+
+/// Room for the half of the last time below the plot, in points.
+const RIGHT_MARGIN: f32 = 14.0;
 
 /// Least time that a plot shows, in seconds.
 const LEAST_SECONDS: f64 = 10.0;
@@ -104,6 +107,7 @@ impl Plots {
         let line = ui.visuals().widgets.noninteractive.bg_stroke.color;
         Plot::new(("plot", choice.name))
             .height(HEIGHT)
+            .width(ui.available_width() - RIGHT_MARGIN)
             .allow_drag(false)
             .allow_zoom(false)
             .allow_scroll(false)
@@ -115,7 +119,8 @@ impl Plots {
             .auto_bounds(false)
             .reset()
             .y_axis_min_width(34.0)
-            .x_grid_spacer(move |_| grid(seconds))
+            .label_formatter(move |hover| Some(hovered(hover, unit)))
+            .x_grid_spacer(move |_| grid(-seconds))
             .y_grid_spacer(move |_| grid(top))
             .grid_color(line.gamma_multiply(0.8))
             .x_axis_formatter(move |mark, _| time_value(mark.value, seconds))
@@ -155,11 +160,12 @@ impl Plots {
     }
 }
 
-/// Lines of a grid over a range from 0, or to 0 for a negative direction: three to six of them, at round numbers.
+/// Lines of a grid from 0 to a range that may be negative: three to six of them, at round numbers.
 fn grid(range: f64) -> Vec<GridMark> {
-    let step = round_step(range);
-    let count = (range / step) as i32;
-    (-count..=count).map(|index| GridMark { value: f64::from(index) * step, step_size: step }).collect()
+    let step = round_step(range.abs());
+    let count = (range.abs() / step) as i32;
+    let mark = |index: i32| GridMark { value: f64::from(index) * step * range.signum(), step_size: step };
+    (0..=count).map(mark).collect()
 }
 
 /// The least of 1, 2 and 5, times a power of ten, of which at most five fit in a range.
@@ -176,6 +182,23 @@ fn time_value(time: f64, range: f64) -> String {
         // The first one would stand in the corner of the other axis.
         _ if time < -0.97 * range => String::new(),
         _ => format!("{time:.0} s"),
+    }
+}
+
+/// What stands beside the pointer: value and time, and the name of the series whose point is near.
+fn hovered(hover: &HoverPosition<'_>, unit: &str) -> String {
+    let (name, position) = match hover {
+        HoverPosition::NearDataPoint { plot_name, position, .. } => (format!("{plot_name}\n"), position),
+        HoverPosition::Elsewhere { position } => (String::new(), position),
+    };
+    format!("{name}{}\n{:.1} s ago", with_unit(position.y, unit), -position.x)
+}
+
+/// A value with its unit, with two decimals or as a brief count.
+fn with_unit(value: f64, unit: &str) -> String {
+    match unit {
+        "texels" => brief_count(value),
+        _ => format!("{value:.2}\u{a0}{unit}"),
     }
 }
 
@@ -211,15 +234,11 @@ fn line(ui: &Ui, name: &str) -> (usize, Color32) {
 }
 
 fn legend(ui: &mut Ui, history: &History, lines: &[(usize, Color32)]) {
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = Vec2::new(12.0, 3.0);
-        ui.spacing_mut().interact_size.y = 0.0;
+    color_line(ui, |ui| {
         for (index, color) in lines {
             let series = &SERIES[*index];
-            let value = history.last(*index).map_or("—".to_owned(), |value| match series.unit {
-                "texels" => brief_count(f64::from(value)),
-                unit => format!("{value:.2}\u{a0}{unit}"),
-            });
+            let value = history.last(*index).map(|value| with_unit(f64::from(value), series.unit));
+            let value = value.unwrap_or_else(|| "—".to_owned());
             color_entry(ui, *color, series.name, Some(&value));
         }
     });
@@ -235,7 +254,7 @@ mod tests {
             let found = round_step(range);
             assert!((found - step).abs() < 1e-9 * step, "{range}: {found}");
         }
-        assert!(grid(10.0).iter().any(|mark| mark.value == -4.0));
+        assert!(grid(-10.0).iter().map(|mark| mark.value).eq([0.0, -2.0, -4.0, -6.0, -8.0, -10.0]));
     }
 
     #[test]

@@ -10,7 +10,7 @@ use shadowfit::figures::{Figures, JudgedFigures};
 use crate::classes::shares;
 use crate::theme::{Palette, figure_font};
 use crate::units::{percent, percent_number};
-use crate::widgets::{caption, card, swatch, title};
+use crate::widgets::{ValueRow, caption, card, title};
 
 /// From this age on, in seconds, a judgement says how old it is.
 const OLD: f32 = 0.15;
@@ -70,32 +70,18 @@ fn age(ui: &mut Ui, judged: Option<&JudgedFigures>) {
 fn one(ui: &mut Ui, judged: &JudgedFigures) {
     wrong(ui, judged, Palette::of(ui).strong);
     bar(ui, judged, judged.wrong);
-    ui.spacing_mut().interact_size.y = 0.0;
-    let columns = 2;
-    let gap = 14.0;
-    let width = (ui.available_width() - gap) / columns as f32;
-    Grid::new("classes").num_columns(columns).min_col_width(width).max_col_width(width).spacing([gap, 3.0]).show(
-        ui,
-        |ui| {
-            for (index, (class, fill, share)) in shares(judged).into_iter().enumerate() {
-                ui.horizontal(|ui| {
-                    swatch(ui, fill);
-                    ui.label(RichText::new(class.label()).small()).on_hover_text(class.help());
-                    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                        ui.label(RichText::new(percent(share)).small().strong()).on_hover_text(class.help());
-                    });
-                });
-                if index % columns == columns - 1 {
-                    ui.end_row();
-                }
-            }
-        },
-    );
+    ui.spacing_mut().item_spacing.x = 16.0;
+    ui.columns_const(|columns: &mut [Ui; 2]| {
+        for (index, (class, fill, share)) in shares(judged).into_iter().enumerate() {
+            row(&mut columns[index % 2], Some(fill), class.label(), class.help(), &[Some(percent(share))]);
+        }
+    });
     ui.add_space(3.0);
-    Grid::new("figures")
+    ui.spacing_mut().interact_size.y = 0.0;
+    Grid::new("quality figures")
         .num_columns(FIGURES.len())
         .min_col_width(0.26 * ui.available_width())
-        .spacing([gap, 1.0])
+        .spacing([14.0, 1.0])
         .show(ui, |ui| {
             for (name, help, _) in FIGURES {
                 ui.label(RichText::new(name).small().weak()).on_hover_text(help);
@@ -127,32 +113,24 @@ fn two(ui: &mut Ui, a: &JudgedFigures, b: Option<&JudgedFigures>) {
             }
         }
     });
-    ui.spacing_mut().interact_size.y = 0.0;
-    let value = |ui: &mut Ui, text: Option<String>, help: &str| {
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(known(text)).on_hover_text(help));
-    };
-    let width = 72.0;
-    let gap = 8.0;
-    let name_width = ui.available_width() - 2.0 * (width + gap);
-    Grid::new("two").num_columns(3).min_col_width(width).spacing([gap, 3.0]).show(ui, |ui| {
-        let others = b.map(shares);
-        for (index, (class, fill, share)) in shares(a).into_iter().enumerate() {
-            ui.horizontal(|ui| {
-                ui.set_min_width(name_width);
-                swatch(ui, fill);
-                ui.label(RichText::new(class.label()).small()).on_hover_text(class.help());
-            });
-            value(ui, Some(percent(share)), class.help());
-            value(ui, others.map(|others| percent(others[index].2)), class.help());
-            ui.end_row();
-        }
-        for (name, help, read) in FIGURES {
-            ui.label(RichText::new(name).small().weak()).on_hover_text(help);
-            value(ui, read(a), help);
-            value(ui, b.and_then(read), help);
-            ui.end_row();
-        }
-    });
+    ui.add_space(2.0);
+    let others = b.map(shares);
+    for (index, (class, fill, share)) in shares(a).into_iter().enumerate() {
+        let other = others.map(|others| percent(others[index].2));
+        row(ui, Some(fill), class.label(), class.help(), &[Some(percent(share)), other]);
+    }
+    ui.separator();
+    for (name, help, read) in FIGURES {
+        row(ui, None, name, help, &[read(a), b.and_then(read)]);
+    }
+}
+
+/// A line of a table, close below the last one.
+fn row(ui: &mut Ui, fill: Option<Color32>, name: &str, help: &str, values: &[Option<String>]) {
+    /// Width of a column of values, in points.
+    const WIDTH: f32 = 72.0;
+    ui.spacing_mut().item_spacing.y = 0.0;
+    ValueRow { fill, name, values, width: WIDTH }.show(ui).on_hover_text(help);
 }
 
 /// A value, or a dash where it was not measured.

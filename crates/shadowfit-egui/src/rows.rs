@@ -88,21 +88,17 @@ pub(crate) fn show(
             && optional.unset.is_some()
             && optional.get(settings).is_some()
         {
-            ui.add_enabled_ui(row.reason.is_none(), |ui| second_line(ui, &row, optional, settings, label.as_ref()));
+            ui.add_enabled_ui(row.reason.is_none(), |ui| second_line(ui, &row, optional, settings, &label));
         }
-        reset |= label.is_some_and(|label| label.double_clicked());
+        reset |= label.double_clicked();
     });
     if reset {
         parameter.copy(settings, defaults);
     }
 }
 
-/// Label and control, or for a number that need not be there its check box; returns the label.
-fn first_line(ui: &mut Ui, row: &Row<'_>, settings: &mut Settings) -> Option<Response> {
-    if let Kind::Toggle(toggle) = &row.parameter.kind {
-        toggle_control(ui, row, *toggle, settings);
-        return None;
-    }
+/// Label and control, for a number that need not be there its check box; returns the label.
+fn first_line(ui: &mut Ui, row: &Row<'_>, settings: &mut Settings) -> Response {
     let label = row.label(ui);
     match &row.parameter.kind {
         Kind::Number(number) if row.parameter.id == INSET_MAP => {
@@ -134,14 +130,14 @@ fn first_line(ui: &mut Ui, row: &Row<'_>, settings: &mut Settings) -> Option<Res
             (None, None) => {}
         },
         Kind::Choice(choice) => choice_control(ui, row, choice, settings, &label),
-        Kind::Toggle(_) => {}
+        Kind::Toggle(toggle) => toggle_control(ui, row, *toggle, settings),
     }
-    Some(label)
+    label
 }
 
 /// Slider and field of a number that need not be there, while it is.
-fn second_line(ui: &mut Ui, row: &Row<'_>, optional: &Optional, settings: &mut Settings, label: Option<&Response>) {
-    let (Some(value), Some(label)) = (optional.get(settings), label) else { return };
+fn second_line(ui: &mut Ui, row: &Row<'_>, optional: &Optional, settings: &mut Settings, label: &Response) {
+    let Some(value) = optional.get(settings) else { return };
     ui.horizontal(|ui| {
         ui.add_space(ui.spacing().icon_width);
         if let Some(value) = number_control(ui, row, &Scale::from(optional), value, label) {
@@ -227,10 +223,11 @@ fn choice_control(ui: &mut Ui, row: &Row<'_>, choice: &Choice, settings: &mut Se
 
 fn toggle_control(ui: &mut Ui, row: &Row<'_>, toggle: Toggle, settings: &mut Settings) {
     let mut on = toggle.get(settings);
-    let response = ui.add(Checkbox::new(&mut on, row.parameter.label));
+    let response = ui.add(Checkbox::without_text(&mut on));
     if response.changed() {
         toggle.set(settings, on);
     }
+    rename(ui, &response, row.parameter.label.to_owned());
     row.explain(response);
 }
 

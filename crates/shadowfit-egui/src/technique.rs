@@ -53,13 +53,17 @@ impl Menu {
     pub(crate) fn follow(&mut self, action: &Action, edits_other: bool) {
         match action {
             Action::SwapSides => self.chosen.swap(0, 1),
-            Action::StartCompare => self.chosen[1] = self.chosen[0].clone(),
+            Action::StartCompare => self.copy_name(0),
             Action::CopyToOther => {
-                let from = usize::from(edits_other);
-                self.chosen[1 - from] = self.chosen[from].clone();
+                self.copy_name(usize::from(edits_other));
             }
             _ => {}
         }
+    }
+
+    fn copy_name(&mut self, from: usize) {
+        let [a, b] = &mut self.chosen;
+        if from == 0 { b.clone_from(a) } else { a.clone_from(b) }
     }
 
     fn entries<'a>(&'a self, saved: &'a [UserPreset]) -> impl Iterator<Item = Entry<'a>> {
@@ -184,12 +188,12 @@ fn line(ui: &mut Ui, entry: &Entry<'_>, is_selected: bool, action: &mut Option<A
     }
     ui.horizontal(|ui| {
         let width = ui.available_width() - 30.0;
-        let is_chosen = option(ui, entry, is_selected, width).clicked();
+        let chosen = ui.vertical(|ui| option(ui, entry, is_selected, width).clicked());
         let name = format!("Delete {}", entry.name);
         if icon_button(ui, Icon::Delete, &name, "Deletes this saved technique.").clicked() {
             *action = Some(Action::DeletePreset(entry.name.to_owned()));
         }
-        is_chosen
+        chosen.inner
     })
     .inner
 }
@@ -208,13 +212,8 @@ fn option(ui: &mut Ui, entry: &Entry<'_>, is_selected: bool, width: f32) -> Resp
     text.append(entry.name, 0.0, format(TextStyle::Button, strong));
     text.append("\n", 0.0, TextFormat::default());
     text.append(entry.summary, 0.0, format(TextStyle::Small, weak));
-    text.wrap.max_width = width;
-    let response = ui
-        .scope(|ui| {
-            ui.set_max_width(width);
-            ui.add(Button::selectable(is_selected, text).wrap().min_size(Vec2::new(width, 0.0)))
-        })
-        .inner;
+    ui.set_max_width(width);
+    let response = ui.add(Button::selectable(is_selected, text).wrap().min_size(Vec2::new(width, 0.0)));
     // Beside the line: below it, it would lie on the next ones.
     let mut tooltip = Tooltip::for_enabled(&response);
     tooltip.popup = tooltip.popup.align(RectAlign::LEFT_START);

@@ -64,7 +64,8 @@ pub fn why_card(ui: &mut Ui, why: &WhyCard<'_>) {
         caption(ui, why.map_reason);
     }
     ui.add_space(2.0);
-    Grid::new("why").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
+    ui.spacing_mut().interact_size.y = 0.0;
+    Grid::new("why").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
         if let Some(map) = why.map {
             ui.label(RichText::new("Map").small().weak());
             maps::badge_of(ui, map as usize);

@@ -8,7 +8,7 @@ use shadowfit::params::Parameter;
 use crate::accessibility::rename;
 
 /// Width of the closed list, in points: its triangle alone.
-pub(super) const LIST_WIDTH: f32 = 34.0;
+pub(super) const LIST_WIDTH: f32 = 38.0;
 
 /// Whether a parameter is a width or a height of a map: those are the ones in whole texels.
 pub(super) fn is_side(parameter: &Parameter, decimals: usize) -> bool {

@@ -26,6 +26,15 @@ fn paint_swatch(ui: &Ui, rect: Rect, color: Color32) {
     ui.painter().rect(rect, CornerRadius::same(2), color, line, StrokeKind::Inside);
 }
 
+/// A line of [`color_entry`]s, which wraps.
+pub(crate) fn color_line(ui: &mut Ui, entries: impl FnOnce(&mut Ui)) {
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing = Vec2::new(12.0, 3.0);
+        ui.spacing_mut().interact_size.y = 0.0;
+        ui.horizontal_wrapped(entries);
+    });
+}
+
 /// A colour, what it stands for, and a value: one widget, so that a line of them wraps.
 pub(crate) fn color_entry(ui: &mut Ui, fill: Color32, name: &str, value: Option<&str>) -> Response {
     /// Distances between the square, the name and the value, in points.
@@ -50,6 +59,42 @@ pub(crate) fn color_entry(ui: &mut Ui, fill: Color32, name: &str, value: Option<
         }
     }
     response
+}
+
+/// A name with values in columns of `width` at its right, and with the square of a colour before it: one widget.
+pub(crate) struct ValueRow<'a> {
+    pub(crate) fill: Option<Color32>,
+    pub(crate) name: &'a str,
+    pub(crate) values: &'a [Option<String>],
+    pub(crate) width: f32,
+}
+
+impl ValueRow<'_> {
+    /// As wide as there is room. A value that is not known is a dash.
+    pub(crate) fn show(&self, ui: &mut Ui) -> Response {
+        let small = TextStyle::Small.resolve(ui.style());
+        let height = ui.text_style_height(&TextStyle::Small) + 3.0;
+        let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), height), Sense::hover());
+        let text = |value: &Option<String>| value.clone().unwrap_or_else(|| "—".to_owned());
+        let all = self.values.iter().map(text).collect::<Vec<_>>().join(", ");
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{} {all}", self.name)));
+        if ui.is_rect_visible(rect) {
+            let mut left = rect.left_center();
+            if let Some(fill) = self.fill {
+                let square = Rect::from_center_size(left + Vec2::new(0.5 * SWATCH, 0.0), Vec2::splat(SWATCH));
+                paint_swatch(ui, square, fill);
+                left.x += SWATCH + 6.0;
+            }
+            ui.painter().text(left, Align2::LEFT_CENTER, self.name, small.clone(), ui.visuals().text_color());
+            for (index, value) in self.values.iter().rev().enumerate() {
+                let color =
+                    if value.is_some() { ui.visuals().strong_text_color() } else { ui.visuals().weak_text_color() };
+                let right = rect.right_center() - Vec2::new(index as f32 * self.width, 0.0);
+                ui.painter().text(right, Align2::RIGHT_CENTER, text(value), small.clone(), color);
+            }
+        }
+        response
+    }
 }
 
 /// A short text on a patch of colour.

@@ -1,80 +1,28 @@
-//! The panel, driven through its accessibility tree as a person would drive it: no drawing, no GPU.
-//! The harness itself fails on a widget without a name and on a glyph that egui's fonts lack.
+//! The controls of the parameters.
 
+use std::collections::BTreeSet;
+
+use egui::Vec2;
 use egui::accesskit::Role;
-use egui::{Key, Rect, Vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
-use shadowfit::figures::{Figures, MapFigures};
-use shadowfit::light_fit::Constraint;
-use shadowfit::params::{Group, Kind, PARAMETERS, Parameter, parameter};
+use shadowfit::glam::UVec2;
+use shadowfit::params::{Group, Kind, PARAMETERS, parameter};
 use shadowfit::settings::{
     CasterPolicy, FilterKind, FitKind, MAX_MAPS, MapChoice, MapFormat, MapOverride, SoftRadius, SplitScheme,
 };
 use shadowfit::tool::{InsetMaps, Settings};
-use shadowfit::{PRESETS, Technique, glam::UVec2};
-use shadowfit_egui::{Action, Artefact, KEYS, PANEL_WIDTH, Panel, PanelInput, SceneLine, apply_style, help_overlay};
+use shadowfit_egui::Panel;
 
-/// Higher than all that the panel holds, so that nothing is scrolled out of view.
-const HEIGHT: f32 = 3400.0;
-
-#[derive(Default)]
-struct Host {
-    panel: Panel,
-    settings: Settings,
-    figures: Figures,
-    notes: Vec<String>,
-    message: Option<&'static str>,
-    artefact: Option<Artefact>,
-    fixed: bool,
-    help: bool,
-    actions: Vec<Action>,
-    content_width: f32,
-}
-
-impl Host {
-    fn show(&mut self, ui: &mut egui::Ui) {
-        let input = PanelInput {
-            settings: &mut self.settings,
-            figures: &self.figures,
-            scene: SceneLine { name: "Courtyard", triangles: 262_144, notes: &self.notes },
-            artefact: self.artefact,
-            artefact_fixed: self.fixed,
-            message: self.message,
-        };
-        self.actions.extend(self.panel.show(ui, input).action);
-        self.content_width = ui.min_rect().right();
-        help_overlay(ui.ctx(), &mut self.help);
-    }
-}
-
-fn harness(host: Host) -> Harness<'static, Host> {
-    Harness::builder()
-        .with_size(Vec2::new(PANEL_WIDTH, HEIGHT))
-        .with_context_setup(apply_style)
-        // Fast enough for double clicks, and steps enough for the groups to open.
-        .with_step_dt(0.05)
-        .with_max_steps(100)
-        .build_ui_state(|ui, host: &mut Host| host.show(ui), host)
-}
-
-/// With every group open.
-fn open_harness(host: Host) -> Harness<'static, Host> {
-    let mut harness = harness(host);
-    for group in Group::ALL {
-        let first = group.parameters().next().expect("no group is empty");
-        if harness.query_all_by_label(first.label).next().is_none() {
-            harness.get_by_label(group.label()).click();
-            harness.run();
-        }
-    }
-    harness
-}
+use crate::host::{
+    Host, INSET_MAP, control, harness, harness_with, inset_button, number, open_harness, query_control, type_into,
+    unset_box, wait_for_the_tooltip,
+};
 
 /// Settings of slices under which every row of the table is shown and has an effect, but the one of the other
 /// choice of splits, λ or the manual ones, of the other choice of maps, blend or overlap, and of the other measure of
 /// softness.
-fn everything(splits: SplitScheme) -> Settings {
+pub(crate) fn everything(splits: SplitScheme) -> Settings {
     let mut settings = Settings::default();
     let technique = &mut settings.technique;
     (technique.count, technique.splits) = (MAX_MAPS as u32, splits);
@@ -85,91 +33,24 @@ fn everything(splits: SplitScheme) -> Settings {
     // Their softness and the steps of their depths count.
     (technique.filter, technique.format) = (FilterKind::Vogel16, MapFormat::Depth16Unorm);
     settings.light.animate = true;
+    settings.view.inset_depths = Some([0.1, 0.9]);
     settings
 }
 
 /// Three of them that show all rows together, each of them active in one at least.
-fn all_rows() -> [Settings; 3] {
+pub(crate) fn all_rows() -> [Settings; 3] {
     let manual = SplitScheme::Manual([5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0]);
     let mut settings = [SplitScheme::Practical(0.5), manual, SplitScheme::FromHistogram].map(everything);
     settings[1].technique.choice = MapChoice::ViewDepth;
     settings[2].technique.fit.kind = FitKind::Windows;
     settings[2].technique.softness.radius = SoftRadius::Metres(0.05);
+    settings[2].light.hour = Some(10.0);
     settings
-}
-
-/// The control of a parameter, which carries its label; for the map of the inset its first button.
-fn query_control<'a>(harness: &'a Harness<'_, Host>, parameter: &Parameter) -> Option<Node<'a>> {
-    let (role, label) = match &parameter.kind {
-        Kind::Number(_) if parameter.id == INSET_MAP => (Role::RadioButton, inset_button(1)),
-        Kind::Number(_) => (Role::Slider, parameter.label.to_owned()),
-        Kind::Optional(optional) => match optional.unset {
-            Some(unset) if optional.get(&harness.state().settings).is_none() => {
-                (Role::CheckBox, format!("{}: {}", parameter.label, unset.label))
-            }
-            _ => (Role::Slider, parameter.label.to_owned()),
-        },
-        Kind::Choice(_) => (Role::ComboBox, parameter.label.to_owned()),
-        Kind::Toggle(_) => (Role::CheckBox, parameter.label.to_owned()),
-    };
-    find(harness, role, &label)
-}
-
-/// The only widget of a role and name, if there is one.
-fn find<'a>(harness: &'a Harness<'_, Host>, role: Role, label: &str) -> Option<Node<'a>> {
-    let mut found =
-        harness.query_all_by_role(role).filter(|node| node.accesskit_node().label().as_deref() == Some(label));
-    let first = found.next();
-    assert!(found.next().is_none(), "there are several of {label}");
-    first
-}
-
-fn control<'a>(harness: &'a Harness<'_, Host>, parameter: &Parameter) -> Node<'a> {
-    query_control(harness, parameter).unwrap_or_else(|| panic!("{} has no control", parameter.id))
-}
-
-const INSET_MAP: &str = "view.inset_map";
-
-fn inset_button(map: usize) -> String {
-    format!("Show map {map} in the inset")
-}
-
-/// Least and greatest value of a number, whether it has to be there or not, and its value.
-fn number(parameter: &Parameter, settings: &Settings) -> Option<(f64, f64, f64)> {
-    match &parameter.kind {
-        Kind::Number(number) => Some((number.min, number.max, number.get(settings))),
-        Kind::Optional(optional) => optional.get(settings).map(|value| (optional.min, optional.max, value)),
-        Kind::Choice(_) | Kind::Toggle(_) => None,
-    }
-}
-
-/// The check box of a number that need not be there.
-fn unset_box<'a>(harness: &'a Harness<'_, Host>, parameter: &Parameter) -> Node<'a> {
-    let Kind::Optional(optional) = &parameter.kind else { panic!("{} is always there", parameter.id) };
-    let unset = optional.unset.expect("it has a name for no number");
-    find(harness, Role::CheckBox, &format!("{}: {}", parameter.label, unset.label)).expect(parameter.id)
-}
-
-fn number_field<'a>(harness: &'a Harness<'_, Host>, id: &str) -> Node<'a> {
-    harness.get_by_role_and_label(Role::SpinButton, parameter(id).expect(id).label)
-}
-
-fn type_into(harness: &mut Harness<'_, Host>, id: &str, text: &str) {
-    number_field(harness, id).focus();
-    harness.run();
-    number_field(harness, id).type_text(text);
-    harness.run();
-    harness.key_press(Key::Enter);
-    harness.run();
-}
-
-fn wait_for_the_tooltip(harness: &mut Harness<'_, Host>) {
-    harness.run_steps(30);
 }
 
 #[test]
 fn every_parameter_has_a_control_with_its_label() {
-    let mut seen = std::collections::BTreeSet::new();
+    let mut seen = BTreeSet::new();
     for settings in all_rows() {
         let harness = open_harness(Host { settings, ..Host::default() });
         for parameter in PARAMETERS {
@@ -183,87 +64,6 @@ fn every_parameter_has_a_control_with_its_label() {
         }
     }
     assert_eq!(seen.len(), PARAMETERS.len());
-}
-
-/// A map with the widest figures of a real scene.
-fn wide_map() -> MapFigures {
-    MapFigures {
-        view_depths: Some([888.8, 8888.8]),
-        set_by: [Constraint::CasterExtension; 6],
-        is_empty: false,
-        extent: [888.8, 888.8],
-        texel_size: [0.8888, 0.8888],
-        depth_range: 888.8,
-        depth_step: 0.000_088_8,
-        casters: Some(8888),
-        draws: Some(8888),
-        triangles: Some(8_888_888),
-    }
-}
-
-fn widest_host() -> Host {
-    let mut host = Host { artefact: Some(Artefact::ClippingHole), ..Host::default() };
-    host.notes = vec!["The texture 'bark.ktx2' has a compression that is not supported; it is drawn grey.".into()];
-    host.message = Some("Saved the picture as shadowfit-2026-07-02-12-30-00.png in the current folder.");
-    host.figures = Figures {
-        maps: [Some(wide_map()); MAX_MAPS],
-        map_ahead: Some(7),
-        pixels_per_texel: Some(12.34),
-        frame_ms: Some(16.7),
-        shadow_pass_ms: Some(0.4),
-        scene_pass_ms: Some(1.25),
-        shadow_draws: Some(123),
-        shadow_triangles: Some(1_234_567),
-    };
-    host
-}
-
-#[test]
-fn everything_fits_the_panel_width() {
-    for settings in all_rows() {
-        let mut host = Host { settings, ..widest_host() };
-        // The widest values, all changed so that the reset buttons show.
-        for parameter in PARAMETERS {
-            match &parameter.kind {
-                Kind::Number(number) => number.set(&mut host.settings, number.max),
-                Kind::Optional(optional) if optional.unset.is_none() => {
-                    optional.set(&mut host.settings, Some(optional.max));
-                }
-                // Not its greatest, which the width has, and which is as wide.
-                Kind::Optional(optional) => optional.set(&mut host.settings, Some(0.999 * optional.max)),
-                Kind::Choice(choice) if parameter.id != "splits.scheme" => {
-                    choice.set(&mut host.settings, usize::from(choice.get(&Settings::default()) == 0));
-                }
-                Kind::Choice(_) => {}
-                Kind::Toggle(toggle) => toggle.set(&mut host.settings, !toggle.get(&Settings::default())),
-            }
-        }
-        assert_fits(&open_harness(host));
-    }
-}
-
-fn assert_fits(harness: &Harness<'_, Host>) {
-    let width = harness.state().content_width;
-    assert!(width <= PANEL_WIDTH, "the content is {width} points wide");
-    for parameter in PARAMETERS {
-        let reset = format!("Reset {}", parameter.label);
-        let list = format!("{}: powers of two", parameter.label);
-        let labels = harness.query_all_by_role(Role::Label).filter(|n| n.value().as_deref() == Some(parameter.label));
-        let widgets: Vec<Rect> = labels
-            .chain(query_control(harness, parameter))
-            .chain(find(harness, Role::SpinButton, parameter.label))
-            .chain(find(harness, Role::ComboBox, &list))
-            .chain(find(harness, Role::Button, &reset))
-            .map(|node| node.rect())
-            .collect();
-        for (index, rect) in widgets.iter().enumerate() {
-            assert!(rect.right() <= PANEL_WIDTH, "{}", parameter.id);
-            for other in &widgets[..index] {
-                let overlap = rect.intersect(*other);
-                assert!(!overlap.is_positive(), "{}: {overlap:?}", parameter.id);
-            }
-        }
-    }
 }
 
 #[test]
@@ -290,51 +90,6 @@ fn a_setting_that_is_nan_goes_back_to_its_default() {
 }
 
 #[test]
-fn each_artefact_button_asks_to_show_its_artefact() {
-    for artefact in Artefact::ALL {
-        let mut harness = harness(Host::default());
-        let label = format!("Show {}", artefact.label().to_lowercase());
-        harness.get_by_role_and_label(Role::Button, &label).click();
-        harness.run();
-        assert_eq!(harness.state().actions, [Action::ShowArtefact(artefact)]);
-    }
-}
-
-#[test]
-fn the_card_explains_then_fixes_then_shows_again() {
-    for artefact in Artefact::ALL {
-        let mut harness = harness(Host { artefact: Some(artefact), ..Host::default() });
-        harness.get_by_label(artefact.explanation());
-        harness.get_by_role_and_label(Role::Button, "Fix (F)").click();
-        harness.run();
-        assert_eq!(harness.state().actions, [Action::FixArtefact(artefact)]);
-
-        harness.state_mut().fixed = true;
-        harness.run();
-        harness.get_by_label(artefact.cure());
-        assert!(harness.query_by_label(artefact.explanation()).is_none());
-        harness.get_by_role_and_label(Role::Button, "Show again").click();
-        harness.run();
-        assert_eq!(harness.state().actions[1..], [Action::ShowArtefact(artefact)]);
-    }
-}
-
-#[test]
-fn the_buttons_of_the_header_ask_their_host() {
-    for (label, action) in [
-        ("Reset", Action::Reset),
-        ("Reset camera", Action::ResetCamera),
-        ("Screenshot", Action::Screenshot),
-        ("Help", Action::OpenHelp),
-    ] {
-        let mut harness = harness(Host::default());
-        harness.get_by_role_and_label(Role::Button, label).click();
-        harness.run();
-        assert_eq!(harness.state().actions, [action]);
-    }
-}
-
-#[test]
 fn typed_numbers_are_set_in_the_shown_unit_and_clamped() {
     let mut harness = open_harness(Host::default());
     type_into(&mut harness, "bias.normal_offset", "1.5");
@@ -351,14 +106,16 @@ fn typed_numbers_are_set_in_the_shown_unit_and_clamped() {
 
 #[test]
 fn dragged_sliders_set_and_clamp_every_number() {
-    let mut dragged = std::collections::BTreeSet::new();
+    let mut dragged = BTreeSet::new();
     for settings in all_rows() {
+        let mut harness = open_harness(Host { settings, ..Host::default() });
         for parameter in PARAMETERS.iter().filter(|parameter| parameter.id != INSET_MAP) {
             let Some((_, max, _)) = number(parameter, &settings) else { continue };
             if (parameter.inert)(&settings).is_some() {
                 continue;
             }
-            let mut harness = open_harness(Host { settings, ..Host::default() });
+            harness.state_mut().settings = settings;
+            harness.run();
             let rect = control(&harness, parameter).rect();
             harness.drag_at(rect.center());
             harness.run();
@@ -414,7 +171,9 @@ fn check_boxes_and_lists_set_their_parameters() {
                 let next = choice.options[(choice.get(&settings) + 1) % choice.options.len()].label;
                 control(&harness, parameter).click();
                 harness.run();
-                let option = harness.get_all_by_label_contains(next).next_back().expect("the popup is last");
+                let is_option =
+                    |node: &Node<'_>| node.accesskit_node().label().is_some_and(|label| label.contains(next));
+                let option = harness.query_all_by_role(Role::Button).rfind(is_option).expect("an option");
                 option.click();
             }
         }
@@ -585,113 +344,8 @@ fn hovering_a_control_shows_help_range_and_default() {
 }
 
 #[test]
-fn the_menu_of_techniques_sets_all_but_distance_and_resolution() {
-    let mut settings = Settings::default();
-    settings.technique.fit.max_distance = 60.0;
-    settings.technique.fit.resolution = UVec2::new(1024, 512);
-    settings.technique.bias.slope = 3.0;
-    settings.camera.speed = 7.0;
-    let mut harness = harness(Host { settings, ..Host::default() });
-    for preset in &PRESETS {
-        harness.get_by_role_and_label(Role::ComboBox, "Technique").click();
-        harness.run();
-        let option = format!("{}\n{}", preset.name, preset.summary);
-        harness.get_by_role_and_label(Role::Button, &option).scroll_to_me();
-        harness.run();
-        harness.get_by_role_and_label(Role::Button, &option).click();
-        harness.run();
-        let technique = preset.technique().with_max_distance(60.0).with_resolution(1024, 512);
-        assert_eq!(harness.state().settings, settings.with_technique(technique), "{}", preset.name);
-        assert_eq!(technique_title(&harness), preset.name);
-    }
-}
-
-#[test]
-fn a_technique_in_the_menu_explains_when_to_take_it() {
-    let mut harness = harness(Host::default());
-    harness.get_by_role_and_label(Role::ComboBox, "Technique").click();
-    harness.run();
-    let preset = PRESETS[5];
-    harness.get_by_role_and_label(Role::Button, &format!("{}\n{}", preset.name, preset.summary)).hover();
-    wait_for_the_tooltip(&mut harness);
-    assert!(harness.query_by_label_contains(preset.advice).is_some());
-}
-
-#[test]
-fn a_technique_that_was_changed_is_called_so() {
-    let mut harness = harness(Host::default());
-    assert_eq!(technique_title(&harness), shadowfit::presets::RECOMMENDED);
-    let technique = &mut harness.state_mut().settings.technique;
-    technique.overlap = 0.1;
-    harness.run();
-    assert_eq!(technique_title(&harness), format!("{}, changed", shadowfit::presets::RECOMMENDED));
-
-    let opened = Technique::default().with_overlap(0.2);
-    harness.state_mut().settings.technique = opened;
-    harness.state_mut().panel.name_technique("street.toml", &opened);
-    harness.run();
-    assert_eq!(technique_title(&harness), "street.toml");
-    harness.state_mut().settings.technique.overlap = 0.3;
-    harness.run();
-    assert_eq!(technique_title(&harness), "street.toml, changed");
-    harness.get_by_role_and_label(Role::ComboBox, "Technique").click();
-    harness.run();
-    harness.get_by_role_and_label(Role::Button, "street.toml\nas it was opened").click();
-    harness.run();
-    assert_eq!(harness.state().settings.technique, opened);
-
-    let settings = Settings::default().with_technique(Technique::default().with_overlap(0.4));
-    let harness = self::harness(Host { settings, ..Host::default() });
-    assert_eq!(technique_title(&harness), "custom, changed");
-}
-
-/// What the closed menu of techniques says.
-fn technique_title(harness: &Harness<'_, Host>) -> String {
-    harness.get_by_role_and_label(Role::ComboBox, "Technique").value().expect("it has a text")
-}
-
-#[test]
-fn figures_that_were_not_measured_are_dashes() {
-    let mut harness = harness(Host::default());
-    assert_eq!(harness.query_all_by_label("—").count(), 6);
-    assert!(harness.query_by_label("Map 1").is_none());
-    harness.state_mut().figures.shadow_triangles = Some(1_234_567);
-    harness.state_mut().figures.frame_ms = Some(5.0);
-    harness.state_mut().figures.maps[0] = Some(MapFigures::default());
-    harness.run();
-    // Distances and draws of the map are not known.
-    assert_eq!(harness.query_all_by_label("—").count(), 6);
-    harness.get_by_label("1\u{a0}234\u{a0}567");
-    harness.get_by_label("5.00 ms, 200 Hz");
-}
-
-#[test]
-fn each_map_has_a_line_of_figures_that_tells_more_when_hovered() {
-    let mut harness = harness(Host::default());
-    for count in [1, 4, MAX_MAPS] {
-        for (map, figures) in harness.state_mut().figures.maps.iter_mut().enumerate() {
-            *figures = (map < count).then(|| MapFigures { draws: Some(700 + map as u32), ..wide_map() });
-        }
-        harness.run();
-        for map in 1..=MAX_MAPS {
-            assert_eq!(harness.query_by_label(&format!("Map {map}")).is_some(), map <= count, "{map} of {count}");
-            assert_eq!(harness.query_by_label(&(699 + map).to_string()).is_some(), map <= count, "{map} of {count}");
-        }
-    }
-    harness.state_mut().figures.maps[1] = Some(MapFigures { is_empty: true, ..wide_map() });
-    (harness.state_mut().figures.pixels_per_texel, harness.state_mut().figures.map_ahead) = (Some(1.5), Some(2));
-    harness.run();
-    harness.get_by_label("1.50 on map 3");
-    harness.get_by_label("empty").hover();
-    wait_for_the_tooltip(&mut harness);
-    let details = harness.get_by_label_contains("Map 2: no receiver is in view");
-    let text = details.accesskit_node().label().or(details.value()).expect("a text");
-    assert!(text.contains("left caster extension") && text.contains("Triangles: 8\u{a0}888\u{a0}888"), "{text}");
-}
-
-#[test]
 fn the_inset_shows_any_map_that_there_is() {
-    let mut harness = harness(Host::default());
+    let mut harness = harness_with(Host::default(), "View");
     let is_there = |harness: &Harness<'_, Host>, map| {
         harness.query_by_role_and_label(Role::RadioButton, &inset_button(map)).is_some()
     };
@@ -712,45 +366,41 @@ fn the_inset_shows_any_map_that_there_is() {
     assert!(harness.get_by_label(&inset_button(1)).accesskit_node().is_disabled());
 }
 
-#[test]
-fn the_header_names_scene_notes_and_message() {
-    let notes = vec!["One texture is missing.".to_owned()];
-    let harness = harness(Host { notes, message: Some("Saved."), ..Host::default() });
-    harness.get_by_label("Courtyard, 262\u{a0}144 triangles");
-    harness.get_by_label("One texture is missing.");
-    harness.get_by_label("Saved.");
-}
-
-#[test]
-fn the_help_lists_every_key_and_closes() {
-    let mut harness = Harness::builder()
-        .with_size(Vec2::new(600.0, 700.0))
-        .build_ui_state(|ui, open: &mut bool| help_overlay(ui.ctx(), open), true);
-    for line in KEYS {
-        harness.get_all_by_label(line.keys).next().expect(line.keys);
-        harness.get_all_by_label(line.does).next().expect(line.does);
-    }
-    harness.get_by_role_and_label(Role::Button, "Close window").click();
+/// Types into the field of the search.
+fn search(harness: &mut Harness<'_, Host>, text: &str) {
+    harness.get_by_role_and_label(Role::TextInput, "Search all settings").focus();
     harness.run();
-    assert!(!*harness.state());
-    assert!(harness.query_by_label(KEYS[0].keys).is_none());
+    harness.get_by_role_and_label(Role::TextInput, "Search all settings").type_text(text);
+    harness.run();
 }
 
 #[test]
-fn the_help_fits_a_low_screen_and_scrolls() {
-    let harness = Harness::builder()
-        .with_size(Vec2::new(400.0, 300.0))
-        .build_ui_state(|ui, open: &mut bool| help_overlay(ui.ctx(), open), true);
-    let title = harness.get_by_role_and_label(Role::Button, "Close window").rect();
-    assert!(title.top() >= 0.0, "the title bar is cut off: {title:?}");
-    let last = harness.get_by_label(KEYS[KEYS.len() - 1].does).rect();
-    assert!(last.top() > 300.0, "the last line should wait to be scrolled to: {last:?}");
+fn a_search_shows_the_rows_that_it_finds_under_their_groups_and_nothing_else() {
+    let mut harness = harness(Host::default());
+    let is_shown = |harness: &Harness<'_, Host>, id: &str| query_control(harness, parameter(id).expect(id)).is_some();
+    search(&mut harness, "slope");
+    assert!(is_shown(&harness, "bias.slope") && !is_shown(&harness, "fit.kind"));
+    harness.get_by_label("Bias");
+    type_into(&mut harness, "bias.slope", "2");
+    assert_eq!(harness.state().settings.technique.bias.slope, 2.0);
+    harness.get_by_role_and_label(Role::Button, "Clear the search").click();
+    harness.run();
+    assert!(is_shown(&harness, "fit.kind") && !is_shown(&harness, "bias.slope"));
+    // What tools alone have is found too.
+    search(&mut harness, "sun light.an");
+    assert!(is_shown(&harness, "light.animate") && !is_shown(&harness, "light.elevation"));
+    harness.get_by_role_and_label(Role::Button, "Clear the search").click();
+    harness.run();
+    search(&mut harness, "nonsense");
+    harness.get_by_label("No setting that has an effect now has this in its name or help.");
 }
 
 #[test]
-fn the_artefact_keys_are_in_the_table() {
-    for artefact in Artefact::ALL {
-        let line = KEYS.iter().find(|line| line.keys == artefact.key()).expect("each artefact has a key");
-        assert!(line.does.contains(&artefact.label().to_lowercase()), "{}", line.does);
-    }
+fn a_folded_group_says_how_many_of_its_rows_were_changed() {
+    let mut settings = Settings::default();
+    (settings.technique.bias.slope, settings.technique.bias.normal_offset) = (1.0, 1.0);
+    let harness = harness(Host { settings, ..Host::default() });
+    let bias = harness.get_by_role_and_label(Role::DisclosureTriangle, "Bias").rect();
+    let drawn = crate::layout::texts(&harness).into_iter().find(|(_, text)| text == "2 changed");
+    assert!(drawn.is_some_and(|(rect, _)| bias.contains_rect(rect)));
 }

@@ -1,4 +1,4 @@
-//! Golden pictures of the panel, drawn by the software adapter where there is one.
+//! Golden pictures of the panel, drawn by the software adapter whatever GPU is present.
 //!
 //! A missing golden fails. `SHADOWFIT_UPDATE_GOLDENS=1` writes them anew, as `cargo xtask golden` does. On a failure
 //! `NAME.actual.png` and `NAME.diff.png` lie beside `NAME.png`.
@@ -8,9 +8,11 @@ use std::path::{Path, PathBuf};
 use egui::{Theme, Vec2};
 use egui_kittest::{Harness, SnapshotOptions, try_image_snapshot_options};
 use image::RgbaImage;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use shadowfit_egui::PANEL_WIDTH;
 
 use crate::host::{Host, builder};
+use crate::renderer::SoftwareRenderer;
 use crate::states::{busy, play, session};
 
 /// Most bytes that a golden may have.
@@ -31,7 +33,7 @@ const DIFFERENT_PIXELS: usize = 60;
 /// A harness that draws.
 fn drawn(host: Host, theme: Theme) -> Harness<'static, Host> {
     builder(Vec2::new(PANEL_WIDTH, HEIGHT), theme, 1.0)
-        .wgpu()
+        .renderer(SoftwareRenderer::new())
         .with_render_cursor(false)
         .build_ui_state(|ui, host: &mut Host| host.show(ui), host)
 }
@@ -102,6 +104,14 @@ fn options(folder: &Path) -> SnapshotOptions {
     SnapshotOptions::new().output_path(folder).threshold(DIFFERENT).max_failed_pixels(DIFFERENT_PIXELS)
 }
 
+/// Saves a picture as small as it gets, without its opacity.
+fn save(picture: &RgbaImage, path: &Path) {
+    let file = std::fs::File::create(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let encoder = PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::Adaptive);
+    let rgb = image::DynamicImage::ImageRgba8(picture.clone()).to_rgb8();
+    rgb.write_with_encoder(encoder).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+}
+
 /// Draws the panel and compares it with its golden, or writes the golden.
 fn check(name: &str, harness: &mut Harness<'_, Host>) {
     assert!(NAMES.contains(&name), "{name} is missing in the list of goldens");
@@ -109,7 +119,7 @@ fn check(name: &str, harness: &mut Harness<'_, Host>) {
     let picture = harness.render().unwrap_or_else(|error| panic!("{name}: {error}"));
     if updates() {
         std::fs::create_dir_all(folder()).expect("the folder of the goldens");
-        picture.save(folder().join(name).with_extension("png")).unwrap_or_else(|error| panic!("{name}: {error}"));
+        save(&picture, &folder().join(name).with_extension("png"));
     } else if let Err(reason) = try_image_snapshot_options(&picture, name, &options(&folder())) {
         // Named as the other goldens of the workspace name theirs; absent where the picture could not be written.
         let _ = std::fs::rename(folder().join(format!("{name}.new.png")), folder().join(format!("{name}.actual.png")));

@@ -6,7 +6,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, HarnessBuilder, Node};
 use shadowfit::Technique;
 use shadowfit::figures::Figures;
-use shadowfit::params::{Kind, PARAMETERS, Parameter, parameter};
+use shadowfit::params::{Kind, Parameter, parameter};
 use shadowfit::tool::Settings;
 use shadowfit_egui::{
     Action, Artefact, Changes, Compare, PANEL_WIDTH, Panel, PanelInput, SceneLine, ShownArtefact, Tune, UserPreset,
@@ -196,9 +196,4 @@ pub(crate) fn press(harness: &mut Harness<'_, Host>, name: &str) {
 
 pub(crate) fn wait_for_the_tooltip<State>(harness: &mut Harness<'_, State>) {
     harness.run_steps(30);
-}
-
-/// The parameters that are there under these settings and not left out as having no effect.
-pub(crate) fn shown_parameters(settings: &Settings) -> impl Iterator<Item = &'static Parameter> {
-    PARAMETERS.iter().filter(|parameter| parameter.is_present(settings))
 }

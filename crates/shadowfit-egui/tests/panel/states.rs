@@ -43,7 +43,7 @@ pub(crate) fn judged_better() -> JudgedFigures {
 }
 
 fn map(index: usize) -> MapFigures {
-    let scale = 4.0_f32.powi(index as i32);
+    let scale = 4.0_f32.powf(index as f32);
     MapFigures {
         view_depths: Some([0.1 + 6.0 * (scale - 1.0), 0.1 + 6.0 * (4.0 * scale - 1.0)]),
         set_by: [Constraint::Receivers; 6],

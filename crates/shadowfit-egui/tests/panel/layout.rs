@@ -1,0 +1,189 @@
+//! Nothing is cut off, in any state, theme and scale.
+
+use egui::accesskit::Role;
+use egui::epaint::{ClippedShape, Shape};
+use egui::{Rect, Theme, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use shadowfit::params::{Kind, PARAMETERS};
+use shadowfit::settings::SplitScheme;
+use shadowfit::tool::Settings;
+use shadowfit_egui::{Artefact, PANEL_WIDTH, Tune};
+
+use crate::controls::{all_rows, everything};
+use crate::host::{HEIGHT, Host, builder, find, harness_of, open_harness, open_sections, query_control};
+use crate::states::{busy, session, tune_done, wide_judged, widest};
+
+/// How far text may reach beyond what clips it, in points: the rounding of its place.
+const SLACK: f32 = 1.0;
+
+/// Every text that is drawn is drawn whole: none reaches beyond its clip rectangle, and none was shortened. Texts that
+/// are scrolled out of view are left out.
+pub(crate) fn assert_no_text_is_clipped<State>(harness: &Harness<'_, State>, state: &str) {
+    let mut texts = 0;
+    for ClippedShape { clip_rect, shape, .. } in &harness.output().shapes {
+        visit(shape, &mut |rect, text, is_shortened| {
+            if !rect.intersect(*clip_rect).is_positive() {
+                return;
+            }
+            texts += 1;
+            assert!(!is_shortened, "{state}: {text:?} is shortened");
+            let allowed = clip_rect.x_range().expand(SLACK);
+            let is_whole = allowed.contains(rect.left()) && allowed.contains(rect.right());
+            assert!(is_whole, "{state}: {text:?} at {rect:?} is cut off by {clip_rect:?}");
+        });
+    }
+    assert!(texts > 0, "{state}: no text was found");
+}
+
+/// Every text that is drawn, with its place.
+pub(crate) fn texts<State>(harness: &Harness<'_, State>) -> Vec<(Rect, String)> {
+    let mut texts = Vec::new();
+    for ClippedShape { shape, .. } in &harness.output().shapes {
+        visit(shape, &mut |rect, text, _| texts.push((rect, text.to_owned())));
+    }
+    texts
+}
+
+/// The place of each text of a shape, what it says, and whether it was shortened.
+fn visit(shape: &Shape, found: &mut impl FnMut(Rect, &str, bool)) {
+    match shape {
+        Shape::Vec(shapes) => shapes.iter().for_each(|shape| visit(shape, found)),
+        Shape::Text(text) if !text.galley.text().is_empty() => {
+            found(text.visual_bounding_rect(), text.galley.text(), text.galley.elided);
+        }
+        _ => {}
+    }
+}
+
+fn set_widest(settings: &mut Settings) {
+    for parameter in PARAMETERS {
+        match &parameter.kind {
+            Kind::Number(number) => number.set(settings, number.max),
+            Kind::Optional(optional) if optional.unset.is_none() => optional.set(settings, Some(optional.max)),
+            // Not its greatest, which the width has, and which is as wide.
+            Kind::Optional(optional) => optional.set(settings, Some(0.999 * optional.max)),
+            Kind::Choice(choice) if parameter.id != "splits.scheme" => {
+                choice.set(settings, usize::from(choice.get(&Settings::default()) == 0));
+            }
+            Kind::Choice(_) => {}
+            Kind::Toggle(toggle) => toggle.set(settings, !toggle.get(&Settings::default())),
+        }
+    }
+}
+
+#[test]
+fn everything_fits_the_panel_width() {
+    for settings in all_rows() {
+        let mut host = Host { settings, ..widest() };
+        // The controls of A, whose rows are those of the settings.
+        host.compare = None;
+        // The widest values, all changed so that the reset buttons show.
+        set_widest(&mut host.settings);
+        assert_fits(&open_harness(host));
+    }
+}
+
+fn assert_fits(harness: &Harness<'_, Host>) {
+    let (right, panel) = (harness.state().content_right, harness.state().panel_rect.expect("it was shown"));
+    assert!(panel.width() <= PANEL_WIDTH && right <= panel.right(), "the content ends at {right} of {panel:?}");
+    for parameter in PARAMETERS {
+        let reset = format!("Reset {}", parameter.label);
+        let list = format!("{}: powers of two", parameter.label);
+        let labels = harness.query_all_by_role(Role::Label).filter(|n| n.value().as_deref() == Some(parameter.label));
+        let labels: Vec<_> = labels.filter(|node| node.rect().left() < 100.0).collect();
+        let widgets: Vec<Rect> = labels
+            .into_iter()
+            .take(1)
+            .chain(query_control(harness, parameter))
+            .chain(find(harness, Role::SpinButton, parameter.label))
+            .chain(find(harness, Role::ComboBox, &list))
+            .chain(find(harness, Role::Button, &reset))
+            .map(|node| node.rect())
+            .collect();
+        for (index, rect) in widgets.iter().enumerate() {
+            assert!(rect.right() <= PANEL_WIDTH, "{}", parameter.id);
+            for other in &widgets[..index] {
+                let overlap = rect.intersect(*other);
+                assert!(!overlap.is_positive(), "{}: {overlap:?}", parameter.id);
+            }
+        }
+    }
+}
+
+/// The panel in every state that has a look of its own.
+fn all_states() -> Vec<(&'static str, Host)> {
+    let mut states = vec![("new", Host::default()), ("session", session()), ("busy", busy()), ("widest", widest())];
+    for artefact in Artefact::ALL {
+        for fixed in [false, true] {
+            let mut host = busy();
+            (host.shown.artefact, host.shown.fixed) = (Some(artefact), fixed);
+            host.shown.changes = crate::states::changed();
+            states.push(("an artefact", host));
+        }
+    }
+    let running = Tune::Running {
+        tried: 188,
+        at_most: 240,
+        start_error: 88.8,
+        best_error: 22.2,
+        what: "Constant bias 1.50 texels",
+    };
+    let worse = Tune::Done { before: wide_judged(), after: wide_judged(), changes: &[], is_applied: false };
+    for tune in [running, tune_done(true), worse, Tune::Failed("The picture has no pixel that faces the light.")] {
+        states.push(("tune", Host { tune, ..session() }));
+    }
+    let mut one_judged = busy();
+    one_judged.figures.judged_other = None;
+    states.push(("B is not judged yet", one_judged));
+    states
+}
+
+#[test]
+fn no_text_is_clipped_in_any_state_theme_or_scale() {
+    for (theme, scale) in [(Theme::Dark, 1.0), (Theme::Light, 1.0), (Theme::Dark, 2.0)] {
+        for (name, mut host) in all_states() {
+            host.settings = everything(SplitScheme::Practical(0.5));
+            // The longest names of saved techniques are shortened in the menu's button.
+            let mut harness = harness_of(host, theme, scale, HEIGHT);
+            open_sections(&mut harness);
+            assert_no_text_is_clipped(&harness, &format!("{name}, {theme:?}, scale {scale}"));
+            assert_fits(&harness);
+        }
+    }
+}
+
+#[test]
+fn a_long_message_wraps() {
+    let harness = harness_of(widest(), Theme::Light, 1.0, HEIGHT);
+    let message = harness.state().message.expect("one");
+    assert!(harness.get_by_label(message).rect().height() > 25.0);
+}
+
+#[test]
+fn the_panel_scrolls_in_a_low_window_and_keeps_its_top() {
+    let mut harness = builder(Vec2::new(1280.0, 400.0), Theme::Dark, 1.0)
+        .build_ui_state(|ui, host: &mut Host| host.show(ui), session());
+    let help = harness.get_by_role_and_label(Role::Button, "Help").rect();
+    harness.get_by_role_and_label(Role::DisclosureTriangle, "View").scroll_to_me();
+    harness.run();
+    let view = harness.get_by_role_and_label(Role::DisclosureTriangle, "View").rect();
+    assert!(view.bottom() <= 400.0, "{view:?}");
+    assert_eq!(harness.get_by_role_and_label(Role::Button, "Help").rect(), help);
+}
+
+#[test]
+fn sections_stay_as_a_person_left_them() {
+    let mut harness = harness_of(session(), Theme::Dark, 1.0, HEIGHT);
+    let is_open = |harness: &Harness<'_, Host>| {
+        let section = harness.get_by_role_and_label(Role::DisclosureTriangle, "Light");
+        section.accesskit_node().data().is_expanded()
+    };
+    assert_eq!(is_open(&harness), Some(false));
+    harness.get_by_role_and_label(Role::DisclosureTriangle, "Light").click();
+    harness.run();
+    harness.state_mut().message = Some("Something else happened.");
+    harness.state_mut().compare = busy().compare;
+    harness.run();
+    assert_eq!(is_open(&harness), Some(true));
+}
