@@ -47,7 +47,7 @@ fn tiles() -> Image {
             }
             let [column, row] = [a as u32 % 8, b as u32 % 8];
             // The image repeats after as many tiles along x as along y.
-            let id = |a: u32, b: u32| ((a + b) / 2 % 4, (a + 8 - b) / 2 % 4);
+            let id = |a: u32, b: u32| (a.midpoint(b) % 4, a.midpoint(8 - b) % 4);
             let own = hash(id(column, row).0, 60 + id(column, row).1) - 0.5;
             let light = 13.0 * own + 5.0 * clouds.at(px * cell) + 3.0 * grain;
             if (column + row) % 2 == 0 {
