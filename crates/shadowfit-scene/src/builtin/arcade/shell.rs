@@ -16,12 +16,14 @@ const ARCH: f32 = 1.3;
 const RISE: f32 = 1.55;
 /// Height of the walls, in metres: above the vault's crown.
 const WALL: f32 = 4.75;
+/// Depth of the house behind the rear wall, in metres: what falls through the wall meets no ground beyond it.
+const HOUSE: f32 = 9.5;
 /// Height of the red foot of the walls, in metres.
 const DADO: f32 = 0.85;
 /// Segments of an arch and of a bay of the vault.
 const SEGMENTS: usize = 16;
-/// Crease of vaults, in radians: less than between the two barrels at a groin near its crown, and more than between
-/// segments.
+/// Crease of the vault, in radians: just more than between two segments of a barrel, so that groins stay sharp until
+/// near the crown.
 const GROIN: f32 = 0.2;
 
 /// Adds the shell.
@@ -34,7 +36,7 @@ pub(super) fn build(builder: &mut Builder) {
     add("floor", &block(Vec3::new(-2.5, -0.5, END - 0.7), Vec3::new(3.1, 0.0, START + 0.7), 0.01), Paint::Tiles, CRISP);
     let step = block(Vec3::new(2.9, -0.6, END - 1.2), Vec3::new(3.5, -0.15, START + 1.2), 0.01);
     add("step", &step, Paint::Stone, CRISP);
-    let rear = block(Vec3::new(-HALF - 0.55, -0.5, END - 0.6), Vec3::new(-HALF, WALL, START + 0.6), 0.01);
+    let rear = block(Vec3::new(-HALF - HOUSE, -0.5, END - 0.6), Vec3::new(-HALF, WALL, START + 0.6), 0.01);
     add("rear wall", &rear, Paint::Plaster, CRISP);
     let dado = block(Vec3::new(-HALF - 0.2, -0.05, END - 0.1), Vec3::new(-HALF + 0.018, DADO, START + 0.1), 0.006);
     add("dado", &dado, Paint::Dado, CRISP);
@@ -176,15 +178,16 @@ fn side_door(builder: &mut Builder, group: usize) {
     builder.place(group, leaves, Vec3::new(-HALF + 0.05, 0.01, z), FRAC_PI_2);
 }
 
-/// A lean-to roof that falls toward the garden and hangs over the wall.
+/// A roof over gallery and house, which hangs over the arcade's wall.
 fn roof() -> Solid {
-    let outline =
-        [(-HALF - 0.8, WALL - 0.05), (HALF + 1.1, WALL - 0.05), (HALF + 1.1, WALL + 0.07), (-HALF - 0.8, WALL + 1.5)];
+    let [eaves, back] = [HALF + 1.1, -HALF - HOUSE - 0.5];
+    let ridge = (f32::midpoint(eaves, back), WALL + 2.4);
+    let outline = [(back, WALL - 0.05), (eaves, WALL - 0.05), (eaves, WALL + 0.07), ridge, (back, WALL + 0.07)];
     let length = START - END + 1.6;
-    extrude(&outline, &[[0, 1, 2], [0, 2, 3]], length).moved(Vec3::Z * (START + END) / 2.0)
+    extrude(&outline, &[[0, 1, 2], [0, 2, 3], [0, 3, 4]], length).moved(Vec3::Z * (START + END) / 2.0)
 }
 
-/// Where lanterns hang: the crowns of every second arch, from the start on.
+/// Where lanterns hang: the crowns of every second arch ahead of the start view.
 pub(super) fn arch_crowns() -> impl Iterator<Item = Vec3> {
     bay_middles().skip(3).step_by(2).map(|z| Vec3::new(ROW, SPRING + ARCH, z))
 }

@@ -15,7 +15,7 @@ pub(super) enum Picture {
     Twig,
 }
 
-/// Metres that the image of the floor spans: a square of four diagonals of tiles.
+/// Metres that the image of the floor spans.
 pub(super) const TILES_METRES: f32 = 2.4;
 /// Pixels along a side of the floor's image: 5 mm each.
 const TILES_SIZE: u32 = 512;
@@ -86,7 +86,7 @@ fn stone() -> Image {
     })
 }
 
-/// Rows of round roof tiles, three across and two along.
+/// Rows of round roof tiles, four across and two along.
 fn roof() -> Image {
     let size = SIZE as f32;
     draw("roof tiles", SIZE, |y| {
