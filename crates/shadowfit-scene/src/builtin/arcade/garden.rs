@@ -160,6 +160,11 @@ fn wing_across(builder: &mut Builder, group: usize) {
     };
     shell("platform across", Vec3::new(-4.6, -0.6, -half), Vec3::new(0.55, 0.0, half), Paint::Stone);
     shell("rear wall across", Vec3::new(-4.9, -0.5, -half), Vec3::new(-4.3, 5.6, half), Paint::Plaster);
+    for end in [-1.0, 1.0] {
+        let z = end * (half - 0.27);
+        let (low, high) = (Vec3::new(-4.6, -0.5, z - 0.25), Vec3::new(0.28, 4.66, z + 0.25));
+        shell("end wall across", low, high, Paint::Plaster);
+    }
     shell("ceiling across", Vec3::new(-4.6, 4.35, -half), Vec3::new(0.2, 4.7, half), Paint::Vault);
     let slope = block(Vec3::new(-5.3, -0.06, -half - 0.3), Vec3::new(0.95, 0.06, half + 0.3), 0.02);
     let slope = builder.solid("roof across", &slope, Paint::Roof, CRISP);

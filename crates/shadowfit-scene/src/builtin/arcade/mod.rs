@@ -1,8 +1,8 @@
 //! The arcade: a vaulted gallery seen from inside, with sunlight that falls between its columns.
 //!
 //! What casts is mostly out of the picture: vault, roof, and the columns behind the eye. Light leaks show where walls,
-//! vault and floor meet in the dark, and vessels, benches and columns stand in contact shadows. In animation 0, "swing",
-//! the lanterns that hang in the arches swing, and with them their shadows.
+//! vault and floor meet in the dark, and vessels, benches and columns stand in contact shadows. In animation 0,
+//! "swing", the lanterns that hang in the arches swing, and with them their shadows.
 
 mod columns;
 mod furniture;

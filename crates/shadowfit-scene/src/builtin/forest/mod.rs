@@ -1,8 +1,8 @@
 //! The forest: thin trunks and cut-out leaves over a floor of dappled light.
 //!
 //! Trunks of 0.1 to 0.5 m are a few texels of a far map, branches and leaves less than one; bark turns away from the
-//! sun at every angle; the subject is an old stump by the path. In animation 0, "wind", boughs near the start view sway,
-//! and with them their shadows.
+//! sun at every angle; the subject is an old stump by the path. In animation 0, "wind", boughs near the start view
+//! sway, and with them their shadows.
 
 mod floor;
 mod palette;

@@ -1,8 +1,8 @@
 //! The plain: stones at the feet, a mill below, a tower far off, under a low sun.
 //!
-//! One view holds blades of grass and hills a kilometre away, so that a single map is either too coarse in front or too
-//! short behind. The tower's shadow falls 90 m across the fields toward the view. In animation 0, "turn", the sails of the mill turn, and
-//! their shadow sweeps over the slope.
+//! One view holds blades of grass and hills a kilometre away, so that a single map is either too coarse in front or
+//! too short behind. The tower's shadow falls 90 m across the fields toward the view. In animation 0, "turn", the
+//! sails of the mill turn, and their shadow sweeps over the slope.
 
 mod far;
 mod land;
