@@ -77,11 +77,9 @@ impl BuiltinScene {
     /// What it shows, as a sentence for people who tune shadows.
     pub const fn help(self) -> &'static str {
         match self {
-            Self::Courtyard => {
-                "A walking figure among columns, posts and a lattice: a bit of every difficulty, at the size of a room."
-            }
+            Self::Courtyard => "A walking figure among columns, posts and a lattice: a little of every difficulty.",
             Self::Plain => {
-                "Stones at the feet and a tower hundreds of metres away under a low sun: range, split distances and \
+                "Stones and grass at the feet, a mill and a far tower under a low sun: range, split distances and \
                  the aliasing of long shadows."
             }
             Self::Arcade => {

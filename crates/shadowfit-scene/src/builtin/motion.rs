@@ -11,8 +11,8 @@ pub(super) fn looped(name: &str, duration: f32, channels: Vec<Channel>) -> Anima
     Animation { name: name.to_owned(), duration, channels }
 }
 
-/// Rotations of a node at `keys` even times of a loop of `duration` seconds: `turn` gives that of a phase of 0..2π, and
-/// must give the same rotation for both ends.
+/// Rotations of a node at `keys` even times of a loop of `duration` seconds: `turn` gives that of a phase of 0..2π,
+/// and must give the same rotation for both ends.
 pub(super) fn rotations(node: usize, duration: f32, keys: usize, turn: impl Fn(f32) -> Quat) -> Channel {
     let share = |key: usize| key as f32 / keys as f32;
     let mut values: Vec<Quat> = (0..keys).map(|key| turn(share(key) * TAU)).collect();

@@ -7,13 +7,13 @@ use glam::{Quat, Vec3};
 use super::columns::{round, square};
 use super::palette::Paint;
 use super::shell::arcade_wall;
-use super::{BAY, END, GARDEN, SPRING, START};
-use crate::Transform;
+use super::{BAY, END, GARDEN, HALF, SPRING, START};
 use crate::builtin::build::{Builder, CRISP, SMOOTH};
 use crate::builtin::flora::Dice;
 use crate::builtin::pixels::hash;
 use crate::builtin::shapes::{block, ellipsoid, lathe, modulated_lathe, rounded_box};
 use crate::builtin::sheet::ground;
+use crate::{Primitive, Transform};
 
 /// Middle of the garden, in metres.
 const MIDDLE: Vec3 = Vec3::new(9.6, GARDEN, -6.0);
@@ -25,14 +25,23 @@ const BAYS_ACROSS: usize = 9;
 /// Adds the garden.
 pub(super) fn build(builder: &mut Builder) {
     let group = builder.group("garden", Vec3::ZERO, 0.0);
-    let lines: Vec<f32> = (0..=10).map(|step| -60.0 + 12.0 * step as f32).collect();
-    let gravel = ground(Paint::Gravel.into(), [&lines, &lines], |_, _| GARDEN, |_| Vec3::ONE);
+    let gravel = gravel();
     let gravel = builder.mesh("gravel", vec![gravel]);
     builder.node("gravel", None, Transform::default(), Some(gravel));
     beds(builder, group);
     fountain(builder, group);
     cypresses(builder, group);
     wing_across(builder, group);
+}
+
+/// Gravel on all sides of the gallery and its house, but not below them.
+fn gravel() -> Primitive {
+    let (xs, zs) = ([-60.0, -HALF - 9.0, 3.2, 20.0, 60.0], [-60.0, END - 0.4, START + 0.4, 60.0]);
+    let mut gravel = ground(Paint::Gravel.into(), [&xs, &zs], |_, _| GARDEN, |_| Vec3::ONE);
+    // The cell in the second row and the second column, two triangles each.
+    let cell = (xs.len() - 1 + 1) * 6;
+    gravel.indices.drain(cell..cell + 6);
+    gravel
 }
 
 /// Lawns framed by hedges, with balls of box at their corners, around a crossing of paths.
@@ -151,6 +160,11 @@ fn wing_across(builder: &mut Builder, group: usize) {
     };
     shell("platform across", Vec3::new(-4.6, -0.6, -half), Vec3::new(0.55, 0.0, half), Paint::Stone);
     shell("rear wall across", Vec3::new(-4.9, -0.5, -half), Vec3::new(-4.3, 5.6, half), Paint::Plaster);
+    for end in [-1.0, 1.0] {
+        let z = end * (half - 0.27);
+        let (low, high) = (Vec3::new(-4.6, -0.5, z - 0.25), Vec3::new(0.28, 4.66, z + 0.25));
+        shell("end wall across", low, high, Paint::Plaster);
+    }
     shell("ceiling across", Vec3::new(-4.6, 4.35, -half), Vec3::new(0.2, 4.7, half), Paint::Vault);
     let slope = block(Vec3::new(-5.3, -0.06, -half - 0.3), Vec3::new(0.95, 0.06, half + 0.3), 0.02);
     let slope = builder.solid("roof across", &slope, Paint::Roof, CRISP);

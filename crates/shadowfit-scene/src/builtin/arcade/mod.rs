@@ -1,7 +1,7 @@
 //! The arcade: a vaulted gallery seen from inside, with sunlight that falls between its columns.
 //!
-//! What casts is mostly out of the picture: vault, roof, and the columns behind the eye. Walls and vault are as thick as
-//! a wrong bias may leak through, and vessels, benches and columns meet the floor in contact shadows. In animation 0,
+//! What casts is mostly out of the picture: vault, roof, and the columns behind the eye. Light leaks show where walls,
+//! vault and floor meet in the dark, and vessels, benches and columns stand in contact shadows. In animation 0,
 //! "swing", the lanterns that hang in the arches swing, and with them their shadows.
 
 mod columns;

@@ -16,12 +16,14 @@ const ARCH: f32 = 1.3;
 const RISE: f32 = 1.55;
 /// Height of the walls, in metres: above the vault's crown.
 const WALL: f32 = 4.75;
+/// Depth of the house behind the rear wall, in metres: what falls through the wall meets no ground beyond it.
+const HOUSE: f32 = 9.5;
 /// Height of the red foot of the walls, in metres.
 const DADO: f32 = 0.85;
 /// Segments of an arch and of a bay of the vault.
 const SEGMENTS: usize = 16;
-/// Crease of vaults, in radians: less than between the two barrels at a groin near its crown, and more than between
-/// segments.
+/// Crease of the vault, in radians: just more than between two segments of a barrel, so that groins stay sharp until
+/// near the crown.
 const GROIN: f32 = 0.2;
 
 /// Adds the shell.
@@ -34,12 +36,12 @@ pub(super) fn build(builder: &mut Builder) {
     add("floor", &block(Vec3::new(-2.5, -0.5, END - 0.7), Vec3::new(3.1, 0.0, START + 0.7), 0.01), Paint::Tiles, CRISP);
     let step = block(Vec3::new(2.9, -0.6, END - 1.2), Vec3::new(3.5, -0.15, START + 1.2), 0.01);
     add("step", &step, Paint::Stone, CRISP);
-    let rear = block(Vec3::new(-HALF - 0.55, -0.5, END - 0.6), Vec3::new(-HALF, WALL, START + 0.6), 0.01);
+    let rear = block(Vec3::new(-HALF - HOUSE, -0.5, END - 0.6), Vec3::new(-HALF, WALL, START + 0.6), 0.01);
     add("rear wall", &rear, Paint::Plaster, CRISP);
-    let dado = block(Vec3::new(-HALF - 0.1, -0.05, END - 0.1), Vec3::new(-HALF + 0.018, DADO, START + 0.1), 0.006);
+    let dado = block(Vec3::new(-HALF - 0.2, -0.05, END - 0.1), Vec3::new(-HALF + 0.018, DADO, START + 0.1), 0.006);
     add("dado", &dado, Paint::Dado, CRISP);
     let rail =
-        block(Vec3::new(-HALF - 0.1, DADO - 0.03, END - 0.1), Vec3::new(-HALF + 0.04, DADO + 0.03, START), 0.012);
+        block(Vec3::new(-HALF - 0.24, DADO - 0.03, END - 0.1), Vec3::new(-HALF + 0.04, DADO + 0.03, START), 0.012);
     add("dado rail", &rail, Paint::Stone, CRISP);
     add("vault", &vault(), Paint::Vault, GROIN);
     add("arcade wall", &arcade_wall(BAYS).moved(Vec3::new(ROW, SPRING, 0.0)), Paint::Stone, CRISP);
@@ -50,7 +52,8 @@ pub(super) fn build(builder: &mut Builder) {
 
 /// The wall over the arches: `bays` arches along z from [`START`], on columns whose tops are at y = 0, about x = 0.
 pub(super) fn arcade_wall(bays: usize) -> Solid {
-    let mut edge = vec![(0.0, 0.0)];
+    // The ends stand a little into the walls across.
+    let mut edge = vec![(-0.05, 0.0)];
     for bay in 0..bays {
         let middle = BAY * (bay as f32 + 0.5);
         edge.extend((0..=SEGMENTS).map(|step| {
@@ -58,7 +61,7 @@ pub(super) fn arcade_wall(bays: usize) -> Solid {
             (middle - cos * ARCH, sin.max(0.0) * ARCH)
         }));
     }
-    edge.push((BAY * bays as f32, 0.0));
+    edge.push((BAY * bays as f32 + 0.05, 0.0));
     let wall = wall_over(&edge, WALL - SPRING, THICK);
     // Along x becomes along -z.
     wall.transformed(Affine3A::from_rotation_y(FRAC_PI_2)).moved(Vec3::Z * START)
@@ -107,12 +110,14 @@ fn vault() -> Solid {
         triangles.extend([[a, b, c], [a, c, d], [left[0], a, d], [left[0], d, left[1]]]);
         triangles.extend([[right[0], right[1], c], [right[0], c, b]]);
     }
+    // Each half of an end's arch is seen from the upper corner at its side.
     for column in 0..columns - 1 {
-        triangles.push([top(0, 0), at(0, column), at(0, column + 1)]);
-        triangles.push([top(rows - 1, 0), at(rows - 1, column + 1), at(rows - 1, column)]);
+        let side = u32::from(column >= columns / 2);
+        triangles.push([top(0, side), at(0, column), at(0, column + 1)]);
+        triangles.push([top(rows - 1, side), at(rows - 1, column + 1), at(rows - 1, column)]);
     }
-    triangles.push([top(0, 0), at(0, columns - 1), top(0, 1)]);
-    triangles.push([top(rows - 1, 0), top(rows - 1, 1), at(rows - 1, columns - 1)]);
+    triangles.push([top(0, 0), at(0, columns / 2), top(0, 1)]);
+    triangles.push([top(rows - 1, 0), top(rows - 1, 1), at(rows - 1, columns / 2)]);
     solid
 }
 
@@ -133,9 +138,9 @@ fn ribs(builder: &mut Builder, group: usize) {
     let rib = extrude(&outline, &faces, 0.42);
     let rib = builder.solid("rib", &rib, Paint::Stone, CRISP);
     let shaft = block(Vec3::new(-0.1, -0.02, -0.21), Vec3::new(0.12, SPRING - 0.1, 0.21), 0.01);
-    let foot = block(Vec3::new(-0.1, -0.02, -0.26), Vec3::new(0.17, 0.22, 0.26), 0.015);
-    let head = block(Vec3::new(-0.1, SPRING - 0.16, -0.27), Vec3::new(0.2, SPRING + 0.02, 0.27), 0.02);
-    let collar = block(Vec3::new(-0.1, SPRING - 0.3, -0.235), Vec3::new(0.145, SPRING - 0.25, 0.235), 0.012);
+    let foot = block(Vec3::new(-0.12, -0.02, -0.26), Vec3::new(0.17, 0.22, 0.26), 0.015);
+    let head = block(Vec3::new(-0.14, SPRING - 0.16, -0.27), Vec3::new(0.2, SPRING + 0.02, 0.27), 0.02);
+    let collar = block(Vec3::new(-0.16, SPRING - 0.3, -0.235), Vec3::new(0.145, SPRING - 0.25, 0.235), 0.012);
     let pilaster = builder.solid("pilaster", &shaft.with(foot).with(head).with(collar), Paint::Stone, CRISP);
     for z in column_places() {
         builder.place(group, rib, Vec3::new(0.0, SPRING, z), 0.0);
@@ -173,15 +178,16 @@ fn side_door(builder: &mut Builder, group: usize) {
     builder.place(group, leaves, Vec3::new(-HALF + 0.05, 0.01, z), FRAC_PI_2);
 }
 
-/// A lean-to roof that falls toward the garden and hangs over the wall.
+/// A roof over gallery and house, which hangs over the arcade's wall.
 fn roof() -> Solid {
-    let outline =
-        [(-HALF - 0.8, WALL - 0.05), (HALF + 1.1, WALL - 0.05), (HALF + 1.1, WALL + 0.07), (-HALF - 0.8, WALL + 1.5)];
+    let [eaves, back] = [HALF + 1.1, -HALF - HOUSE - 0.5];
+    let ridge = (f32::midpoint(eaves, back), WALL + 2.4);
+    let outline = [(back, WALL - 0.05), (eaves, WALL - 0.05), (eaves, WALL + 0.07), ridge, (back, WALL + 0.07)];
     let length = START - END + 1.6;
-    extrude(&outline, &[[0, 1, 2], [0, 2, 3]], length).moved(Vec3::Z * (START + END) / 2.0)
+    extrude(&outline, &[[0, 1, 2], [0, 2, 3], [0, 3, 4]], length).moved(Vec3::Z * (START + END) / 2.0)
 }
 
-/// Where lanterns hang: the crowns of every second arch, from the start on.
+/// Where lanterns hang: the crowns of every second arch ahead of the start view.
 pub(super) fn arch_crowns() -> impl Iterator<Item = Vec3> {
     bay_middles().skip(3).step_by(2).map(|z| Vec3::new(ROW, SPRING + ARCH, z))
 }

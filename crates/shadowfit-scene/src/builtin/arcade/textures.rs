@@ -15,7 +15,7 @@ pub(super) enum Picture {
     Twig,
 }
 
-/// Metres that the image of the floor spans: a square of four diagonals of tiles.
+/// Metres that the image of the floor spans.
 pub(super) const TILES_METRES: f32 = 2.4;
 /// Pixels along a side of the floor's image: 5 mm each.
 const TILES_SIZE: u32 = 512;
@@ -47,7 +47,7 @@ fn tiles() -> Image {
             }
             let [column, row] = [a as u32 % 8, b as u32 % 8];
             // The image repeats after as many tiles along x as along y.
-            let id = |a: u32, b: u32| ((a + b) / 2 % 4, (a + 8 - b) / 2 % 4);
+            let id = |a: u32, b: u32| (a.midpoint(b) % 4, a.midpoint(8 - b) % 4);
             let own = hash(id(column, row).0, 60 + id(column, row).1) - 0.5;
             let light = 13.0 * own + 5.0 * clouds.at(px * cell) + 3.0 * grain;
             if (column + row) % 2 == 0 {
@@ -86,7 +86,7 @@ fn stone() -> Image {
     })
 }
 
-/// Rows of round roof tiles, three across and two along.
+/// Rows of round roof tiles, four across and two along.
 fn roof() -> Image {
     let size = SIZE as f32;
     draw("roof tiles", SIZE, |y| {

@@ -40,22 +40,22 @@ impl Leaf {
         let power = if t < self.widest { 0.6 } else { 0.85 };
         self.half * toward.max(0.0).powf(power)
     }
+}
 
-    /// Share of the length, and signed distance from the midrib, of the nearest point of it.
-    fn nearest(&self, ribs: &[Vec2; PIECES + 1], at: Vec2) -> (f32, f32) {
-        let mut nearest = (0.0, f32::MAX);
-        for piece in 0..PIECES {
-            let (a, b) = (ribs[piece], ribs[piece + 1]);
-            let along = b - a;
-            let t = ((at - a).dot(along) / along.length_squared()).clamp(0.0, 1.0);
-            let away = at - a - along * t;
-            if away.length_squared() < nearest.1 * nearest.1 {
-                let side = if along.perp_dot(away) < 0.0 { -1.0 } else { 1.0 };
-                nearest = ((piece as f32 + t) / PIECES as f32, side * away.length());
-            }
+/// Share of the length, and signed distance from the midrib, of the point of it that is nearest to `at`.
+fn nearest(ribs: &[Vec2; PIECES + 1], at: Vec2) -> (f32, f32) {
+    let mut nearest = (0.0, f32::MAX);
+    for piece in 0..PIECES {
+        let (a, b) = (ribs[piece], ribs[piece + 1]);
+        let along = b - a;
+        let t = ((at - a).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+        let away = at - a - along * t;
+        if away.length_squared() < nearest.1 * nearest.1 {
+            let side = if along.perp_dot(away) < 0.0 { -1.0 } else { 1.0 };
+            nearest = ((piece as f32 + t) / PIECES as f32, side * away.length());
         }
-        nearest
     }
+    nearest
 }
 
 /// An image of leaves under construction.
@@ -83,7 +83,7 @@ impl Sheet {
         for y in pixel(1.0 - high.y)..pixel(1.0 - low.y) {
             for x in pixel(low.x + 0.5)..pixel(high.x + 0.5) {
                 let at = (Vec2::new(x as f32, y as f32) + 0.5) / SIZE as f32;
-                let (t, side) = leaf.nearest(&ribs, Vec2::new(at.x - 0.5, 1.0 - at.y));
+                let (t, side) = nearest(&ribs, Vec2::new(at.x - 0.5, 1.0 - at.y));
                 let half = leaf.half_width(t);
                 let alpha = (127.5 + (half - side.abs()) * SIZE as f32 * EDGE).clamp(0.0, 255.0);
                 let index = (y * SIZE + x) as usize;

@@ -1,6 +1,6 @@
 //! The forest floor: gentle waves, a trodden path, stones, a fallen trunk.
 
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec2, Vec3};
 
 use super::palette::Paint;
 use crate::Transform;
@@ -32,8 +32,8 @@ pub(super) fn path_distance(x: f32, z: f32) -> f32 {
     (x - 1.5 * (0.17 * z + 0.55).sin()).abs()
 }
 
-/// Adds the floor and what lies on it.
-pub(super) fn build(builder: &mut Builder) {
+/// Adds the floor and what lies on it, and returns the node of the old stump.
+pub(super) fn build(builder: &mut Builder) -> usize {
     let lines = graded(HALF, CELLS, 3.4);
     let color = |at: Vec3| {
         let trodden = (1.0 - path_distance(at.x, at.z) / (PATH_HALF * 1.4)).max(0.0);
@@ -49,11 +49,48 @@ pub(super) fn build(builder: &mut Builder) {
     stones(builder, group);
     fallen_trunk(builder, group);
     mushrooms(builder, group);
+    stump(builder, group)
 }
 
 /// A point on the floor.
 pub(super) fn on_floor(x: f32, z: f32) -> Vec3 {
     Vec3::new(x, height(x, z), z)
+}
+
+/// An old stump by the path: round bark in the sun, roots, and a broken hollow top.
+fn stump(builder: &mut Builder, group: usize) -> usize {
+    let outline = [
+        (0.50, -0.15),
+        (0.50, 0.0),
+        (0.42, 0.05),
+        (0.37, 0.13),
+        (0.335, 0.28),
+        (0.32, 0.5),
+        (0.31, 0.72),
+        (0.315, 0.9),
+        (0.305, 1.0),
+        (0.25, 1.02),
+        (0.18, 0.84),
+        (0.0, 0.80),
+    ];
+    let segments = 40;
+    let shape = |turn: f32, y: f32| {
+        let roots = 0.36 * (-y.max(0.0) * 7.0).exp() * (5.0 * turn + 0.6).cos();
+        1.0 + roots + 0.035 * (4.0 * turn + 5.0 * y).sin() + 0.02 * (11.0 * turn - 3.0 * y).sin()
+    };
+    let mut solid = modulated_lathe(&outline, segments, shape);
+    for position in solid.positions.iter_mut().filter(|position| position.y > 0.86) {
+        // Splinters: the rim is as ragged as the trunk broke.
+        let turn = position.x.atan2(position.z);
+        position.y += 0.11 * (2.0 * turn + 0.8).sin() + 0.06 * (7.0 * turn).sin() + 0.035 * (13.0 * turn).cos();
+    }
+    let bark = solid.primitive_with(Paint::Bark.into(), SMOOTH, |vertex, _| {
+        let at = solid.positions[vertex];
+        // There and back around, as on other trunks.
+        Vec2::new(at.x.atan2(at.z).abs() * 0.35, -at.y)
+    });
+    let stump = builder.mesh("stump", vec![bark]);
+    builder.place(group, stump, on_floor(2.15, -0.55), 2.1)
 }
 
 /// Mossy stones, half sunk.
@@ -70,8 +107,8 @@ fn stones(builder: &mut Builder, group: usize) {
     for (x, z, size, yaw) in [
         (-2.05, 0.9, 0.42, 0.4),
         (-2.75, 0.35, 0.26, 2.0),
-        (2.9, -0.6, 0.5, 1.1),
-        (3.6, -1.3, 0.3, 0.1),
+        (3.55, -0.9, 0.42, 1.1),
+        (0.62, -1.75, 0.24, 0.1),
         (-1.9, -6.5, 0.55, 2.6),
         (2.6, -9.0, 0.7, 0.9),
         (-4.6, -11.0, 0.8, 1.7),

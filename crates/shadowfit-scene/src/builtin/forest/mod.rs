@@ -1,7 +1,8 @@
 //! The forest: thin trunks and cut-out leaves over a floor of dappled light.
 //!
 //! Trunks of 0.1 to 0.5 m are a few texels of a far map, branches and leaves less than one; bark turns away from the
-//! sun at every angle. In animation 0, "wind", boughs near the start view sway, and with them their shadows.
+//! sun at every angle; the subject is an old stump by the path. In animation 0, "wind", boughs near the start view
+//! sway, and with them their shadows.
 
 mod floor;
 mod palette;
@@ -30,13 +31,13 @@ const WIND_TIME: f32 = 8.0;
 /// The scene.
 pub(super) fn build() -> Scene {
     let mut builder = Builder::new("forest", palette::materials(), textures::images());
-    floor::build(&mut builder);
-    let trees = trees::build(&mut builder);
+    let stump = floor::build(&mut builder);
+    let sway = trees::build(&mut builder);
     undergrowth::build(&mut builder);
     builder.start_view((Vec3::new(-0.7, 1.55, 4.6), Vec3::new(0.15, 1.95, -4.0)), FOV_Y, FAR);
     let mut scene = builder.scene;
-    scene.subject = Some(trees.greatest);
-    scene.animations = vec![looped("wind", WIND_TIME, trees.sway)];
+    scene.subject = Some(stump);
+    scene.animations = vec![looped("wind", WIND_TIME, sway)];
     scene.sun = Some(sunlight(SUN_AZIMUTH, SUN_ELEVATION));
     scene
 }

@@ -59,7 +59,7 @@ fn floor() -> Image {
 
 /// Draws a leaf at a random place, across the edges of the image where it lies there.
 fn fallen_leaf(image: &mut Image, dice: &mut Dice) {
-    let size = FLOOR_SIZE as i32;
+    let size = FLOOR_SIZE.cast_signed();
     let middle = Vec2::new(dice.roll(), dice.roll()) * FLOOR_SIZE as f32;
     let ahead = Vec2::from_angle(dice.between(0.0, std::f32::consts::TAU));
     let half_length = dice.between(5.0, 10.5);

@@ -26,16 +26,8 @@ const SWAYS: f32 = 12.0;
 const CLEAR: f32 = 1.7;
 /// Angle between one bough and the next higher one, in radians: the golden angle, which shades the least.
 const GOLDEN: f32 = 2.399_963;
-/// Height of a bough's trunk at which its shape is told, in metres: all trunks are modelled 10 m tall.
+/// Height that trunks are modelled with, in metres; scale makes them differ.
 const HEIGHT: f32 = 10.0;
-
-/// What the rest of the scene has to know of the trees.
-pub(super) struct Trees {
-    /// Node of the greatest one, near the start view.
-    pub(super) greatest: usize,
-    /// How boughs sway in the wind.
-    pub(super) sway: Vec<Channel>,
-}
 
 /// Shared meshes.
 struct Meshes {
@@ -61,8 +53,8 @@ struct Tree {
     spread: f32,
 }
 
-/// Adds all trees.
-pub(super) fn build(builder: &mut Builder) -> Trees {
+/// Adds all trees and returns how their boughs sway in the wind.
+pub(super) fn build(builder: &mut Builder) -> Vec<Channel> {
     let meshes = meshes(builder);
     let group = builder.group("trees", Vec3::ZERO, 0.0);
     let mut sway = Vec::new();
@@ -76,7 +68,7 @@ pub(super) fn build(builder: &mut Builder) -> Trees {
         lowest: 0.30,
         spread: 1.7,
     };
-    let greatest = plant(builder, &meshes, group, &great, &mut dice, &mut sway);
+    plant(builder, &meshes, group, &great, &mut dice, &mut sway);
     let sapling = Tree {
         at: on_floor(-2.7, 0.6),
         is_birch: true,
@@ -95,7 +87,7 @@ pub(super) fn build(builder: &mut Builder) -> Trees {
             plant(builder, &meshes, group, &tree, &mut dice, &mut sway);
         }
     }
-    Trees { greatest, sway }
+    sway
 }
 
 /// Whether a tree may stand here: off the path, in the wood, and neither before the eye nor in the great one.
@@ -121,15 +113,8 @@ fn tree(x: f32, z: f32, dice: &mut Dice) -> Tree {
     }
 }
 
-/// Adds a tree and returns its node.
-fn plant(
-    builder: &mut Builder,
-    meshes: &Meshes,
-    group: usize,
-    tree: &Tree,
-    dice: &mut Dice,
-    sway: &mut Vec<Channel>,
-) -> usize {
+/// Adds a tree, and how its boughs sway if it is near.
+fn plant(builder: &mut Builder, meshes: &Meshes, group: usize, tree: &Tree, dice: &mut Dice, sway: &mut Vec<Channel>) {
     let kind = usize::from(tree.is_birch);
     let distance = tree.at.distance(Vec3::new(0.0, 0.0, 4.6));
     let shape = (dice.roll() * 2.0) as usize;
@@ -140,7 +125,8 @@ fn plant(
         // A far crown is as wide as that of other trees, however thin its trunk.
         let scale = Vec3::new(across.max(0.8), along, across.max(0.8));
         let name = ["far beech", "far birch"][kind];
-        return builder.node(name, Some(group), Transform { scale, ..rest }, Some(meshes.far[kind][shape]));
+        builder.node(name, Some(group), Transform { scale, ..rest }, Some(meshes.far[kind][shape]));
+        return;
     }
     let root = builder.node(["beech", "birch"][kind], Some(group), rest, None);
     builder.place_scaled(root, meshes.trunks[kind][shape], Vec3::ZERO, size);
@@ -155,7 +141,6 @@ fn plant(
             sway.push(swaying(bough, rotation, size, dice));
         }
     }
-    root
 }
 
 /// How a bough is turned: around the trunk, and up, more so toward the top (`t` is 1).

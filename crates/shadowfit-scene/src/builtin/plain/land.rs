@@ -12,7 +12,7 @@ use crate::builtin::sheet::{graded, ground};
 const HALF: f32 = 1000.0;
 /// Cells along a side of the land.
 const CELLS: usize = 84;
-/// How much finer the cells are where one stands: 1.2 m there, 70 m at the edge.
+/// Exponent by which cells grow from where one stands to the edge: 1.7 m there, 120 m at the edge.
 const GROWTH: f32 = 4.9;
 /// Height of the brow above the plain, in metres: enough to look down on shadows 150 m away.
 const BROW: f32 = 13.0;

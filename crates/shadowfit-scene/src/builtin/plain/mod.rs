@@ -1,8 +1,8 @@
 //! The plain: stones at the feet, a mill below, a tower far off, under a low sun.
 //!
-//! One view holds grains of 10 cm and hills a kilometre away, so that a map is either too coarse in front or too short
-//! behind. The tower's shadow comes 100 m toward the view. In animation 0, "turn", the sails of the mill turn, and
-//! their shadow sweeps over the slope.
+//! One view holds blades of grass and hills a kilometre away, so that a single map is either too coarse in front or
+//! too short behind. The tower's shadow falls 90 m across the fields toward the view. In animation 0, "turn", the
+//! sails of the mill turn, and their shadow sweeps over the slope.
 
 mod far;
 mod land;
@@ -22,7 +22,8 @@ use land::on_land;
 
 /// Direction of the sun from +z toward +x, in radians: ahead of the start view and to its left, just out of sight.
 const SUN_AZIMUTH: f32 = -2.44;
-/// Height of the sun above the horizon, in radians: shadows are almost three times as long as things are tall.
+/// Height of the sun above the horizon, in radians: shadows are two and a half times as long as things are
+/// tall.
 const SUN_ELEVATION: f32 = 0.375;
 /// Vertical field of view of the start view, in radians.
 const FOV_Y: f32 = 0.785;

@@ -199,7 +199,7 @@ fn sheep(builder: &mut Builder, group: usize) {
     let sheep = builder.mesh("sheep", primitives);
     for (x, z, yaw) in [
         (1.9, -8.3, 0.9),
-        (3.0, -9.6, 2.6),
+        (3.5, -9.4, 2.3),
         (-8.5, -62.0, -1.1),
         (4.0, -66.0, 1.6),
         (-2.5, -58.0, -2.2),

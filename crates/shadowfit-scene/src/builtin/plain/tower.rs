@@ -40,7 +40,7 @@ pub(super) fn build(builder: &mut Builder) {
     let slit = |y: f32, radius: f32| plank(Vec3::new(-0.22, y, radius - 0.8), Vec3::new(0.22, y + 1.5, radius + 0.05));
     let slits = (0..5).map(|index| {
         let y = 5.0 + 3.4 * index as f32;
-        around(&slit(y, 3.55 - 0.026 * y), 0.4 + 1.1 * index as f32)
+        around(&slit(y, 3.63 - 0.041 * y), 0.4 + 1.1 * index as f32)
     });
     let windows = (0..6).map(|index| around(&slit(CROWN + 1.9, 2.0), index as f32 / 6.0 * TAU));
     let primitives = vec![

@@ -1,0 +1,134 @@
+//! Surfaces of all scenes: arrays that agree, normals on the outer side, closed solids, textures that exist.
+
+use std::collections::HashMap;
+
+use super::{all, drawn, primitives, triangles};
+use crate::builtin::BuiltinScene;
+use crate::{AlphaMode, Primitive, Scene};
+
+/// Grounds: open sheets that face up.
+const GROUNDS: [(BuiltinScene, &str); 4] = [
+    (BuiltinScene::Courtyard, "floor"),
+    (BuiltinScene::Plain, "land"),
+    (BuiltinScene::Arcade, "gravel"),
+    (BuiltinScene::Forest, "forest floor"),
+];
+
+/// Whether a primitive is a sheet of leaves or grass: cut out, with two sides. The courtyard's lattice is solid.
+fn is_foliage(scene: &Scene, primitive: &Primitive) -> bool {
+    let material = &scene.materials[primitive.material];
+    material.double_sided && material.name != "lattice"
+}
+
+#[test]
+fn vertex_arrays_agree_and_every_index_is_in_range() {
+    for (builtin, scene) in all() {
+        for (name, primitive) in primitives(&scene) {
+            let count = primitive.positions.len();
+            assert_eq!((primitive.normals.len(), primitive.uvs.len()), (count, count), "{builtin:?}: {name}");
+            assert!(primitive.colors.is_empty() || primitive.colors.len() == count, "{builtin:?}: {name}");
+            assert!(primitive.indices.iter().all(|&index| (index as usize) < count), "{builtin:?}: {name}");
+            assert_eq!(primitive.indices.len() % 3, 0, "{builtin:?}: {name}");
+            assert!(primitive.material < scene.materials.len(), "{builtin:?}: {name}");
+        }
+    }
+}
+
+#[test]
+fn every_material_is_used_and_its_texture_exists_and_is_small() {
+    for (builtin, scene) in all() {
+        let textures = || scene.materials.iter().filter_map(|material| material.base_color_texture);
+        assert!(textures().all(|texture| texture.image < scene.images.len()), "{builtin:?}");
+        for (index, image) in scene.images.iter().enumerate() {
+            assert_eq!(image.rgba.len(), (image.width * image.height * 4) as usize, "{builtin:?}: {}", image.name);
+            assert!(image.width.is_power_of_two() && image.width <= 1024, "{builtin:?}: {}", image.name);
+            assert!(textures().any(|texture| texture.image == index), "{builtin:?}: {} is not used", image.name);
+        }
+        for (index, material) in scene.materials.iter().enumerate() {
+            let is_used = primitives(&scene).any(|(_, primitive)| primitive.material == index);
+            assert!(is_used, "{builtin:?}: {} is not used", material.name);
+        }
+    }
+}
+
+#[test]
+fn every_triangle_has_area_and_unit_normals_on_its_outer_side() {
+    for (builtin, scene) in all() {
+        for (name, primitive) in primitives(&scene) {
+            for corners in triangles(primitive) {
+                let [a, b, c] = corners.map(|index| primitive.positions[index]);
+                let area = (b - a).cross(c - a);
+                // A hundredth of a square millimetre, twice.
+                assert!(area.length() > 2e-8, "{builtin:?}: {name}: {a} {b} {c}");
+                for index in corners {
+                    let normal = primitive.normals[index];
+                    assert!((normal.length() - 1.0).abs() < 1e-4, "{builtin:?}: {name}: {normal}");
+                    assert!(normal.dot(area) > 0.0, "{builtin:?}: {name}: {normal} at {a}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn every_solid_is_closed_and_faces_outwards() {
+    for (builtin, scene) in all() {
+        let solids = primitives(&scene)
+            .filter(|(name, primitive)| !GROUNDS.contains(&(builtin, name)) && !is_foliage(&scene, primitive));
+        for (name, primitive) in solids {
+            let key = |index: usize| primitive.positions[index].to_array().map(|value| (value + 0.0).to_bits());
+            let mut edges: HashMap<_, i32> = HashMap::new();
+            let mut volume = 0.0;
+            for [a, b, c] in triangles(primitive) {
+                let [pa, pb, pc] = [a, b, c].map(|index| primitive.positions[index]);
+                volume += pa.dot(pb.cross(pc));
+                for (from, to) in [(a, b), (b, c), (c, a)] {
+                    *edges.entry((key(from), key(to))).or_default() += 1;
+                    *edges.entry((key(to), key(from))).or_default() -= 1;
+                }
+            }
+            // Each edge is passed as often one way as the other.
+            assert!(edges.values().all(|&count| count == 0), "{builtin:?}: {name} has an open edge");
+            assert!(volume > 0.0, "{builtin:?}: {name} is inside out");
+        }
+    }
+}
+
+#[test]
+fn grounds_are_there_and_face_up() {
+    for (builtin, mesh) in GROUNDS {
+        let scene = builtin.build();
+        let ground = primitives(&scene).find(|(name, _)| *name == mesh).expect(mesh).1;
+        assert!(ground.normals.iter().all(|normal| normal.y > 0.5), "{builtin:?}");
+    }
+}
+
+#[test]
+fn thousands_of_cut_out_leaves_make_the_forest() {
+    let scene = BuiltinScene::Forest.build();
+    let count = |wanted: &dyn Fn(&Primitive) -> bool| -> usize {
+        let instances = scene.instances();
+        let primitive = |instance: &crate::Instance| &scene.meshes[instance.mesh].primitives[instance.primitive];
+        instances.iter().map(primitive).filter(|p| wanted(p)).map(|p| p.indices.len() / 3).sum()
+    };
+    let leaves = count(&|primitive| is_foliage(&scene, primitive));
+    assert!(leaves > 20_000 && leaves < drawn(&scene, None), "{leaves}");
+}
+
+#[test]
+fn foliage_is_masked_and_neither_a_full_square_nor_dust() {
+    for (builtin, scene) in all() {
+        for material in scene.materials.iter().filter(|m| m.double_sided && m.name != "lattice") {
+            assert!(matches!(material.alpha, AlphaMode::Mask { .. }), "{builtin:?}: {}", material.name);
+            let image = &scene.images[material.base_color_texture.expect("a texture").image];
+            let (width, covered) = (image.width as usize, |pixel: usize| image.rgba[pixel * 4 + 3] >= 128);
+            let pixels = image.rgba.len() / 4;
+            let share = (0..pixels).filter(|&pixel| covered(pixel)).count() as f32 / pixels as f32;
+            assert!((0.15..0.75).contains(&share), "{builtin:?}: {}: {share}", image.name);
+            // Noise changes at every second pixel, leaves only at their outlines.
+            let changes =
+                (1..pixels).filter(|pixel| pixel % width != 0 && covered(*pixel) != covered(pixel - 1)).count();
+            assert!((changes as f32) < 0.15 * pixels as f32, "{builtin:?}: {}: {changes}", image.name);
+        }
+    }
+}
