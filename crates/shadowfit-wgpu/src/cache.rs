@@ -206,6 +206,16 @@ impl MapCache {
         self.maps[map].wrap
     }
 
+    /// Whether the layer of a map holds all static casters over it.
+    pub(crate) fn is_kept(&self, map: usize) -> bool {
+        self.maps.get(map).is_some_and(|map| map.is_kept)
+    }
+
+    /// Moving casters that the layer of a map holds.
+    pub(crate) fn moving(&self, map: usize) -> &[WorldBox] {
+        self.maps.get(map).map_or(&[], |map| &map.moving)
+    }
+
     /// Whether the passes depend on what is in view: static casters alone do not.
     pub(crate) fn needs_volumes(&self, choice: &Choice) -> bool {
         let has_moving = self.is_split && !self.known.moving.is_empty();

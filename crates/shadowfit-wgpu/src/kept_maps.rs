@@ -2,6 +2,7 @@
 //! that fit their maps by themselves.
 
 mod passes;
+mod updates;
 
 use shadowfit::choice::MapOrder;
 use shadowfit::glam::DVec3;
@@ -12,6 +13,7 @@ use crate::layers::Layers;
 use crate::{Culling, MapFit, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, SunFrame, UpdateSchedule};
 
 pub use passes::{ShadowPass, ShadowPiece};
+pub use updates::{MapUpdate, UpdateContent};
 
 /// The shadow maps of one light, with what is kept of them from frame to frame.
 #[derive(Debug)]
@@ -29,6 +31,8 @@ pub struct KeptMaps {
     plan: FramePlan,
     /// What is read in this frame.
     maps: Vec<MapFit>,
+    /// What the boxes of its plan are relative to, in world space, in metres.
+    origin: DVec3,
 }
 
 impl KeptMaps {
@@ -50,6 +54,7 @@ impl KeptMaps {
             cache: MapCache::default(),
             plan: FramePlan::default(),
             maps: Vec::new(),
+            origin: DVec3::ZERO,
         })
     }
 
@@ -110,6 +115,7 @@ impl KeptMaps {
             return self.update(queue, frame, fitted);
         }
         // 2. The casters of each, and the passes.
+        self.origin = frame.origin;
         self.maps.clone_from(&choice.maps);
         let volumes = if self.cache.needs_volumes(&choice) { self.volumes(frame, &view)? } else { Vec::new() };
         self.cache.plan(&choice, &cached, &volumes, &mut self.plan);

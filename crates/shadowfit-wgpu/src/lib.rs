@@ -55,6 +55,7 @@
 //! | [`SunFrame`], [`Casters`] | what an engine says of a frame: views, light, boxes, and which of them move |
 //! | [`ShadowPiece`] | what is to be drawn: casters by number, viewport, scissor rectangle |
 //! | [`ShadowPass`], [`PassContent`] | a pass, for engines that schedule passes themselves |
+//! | [`MapUpdate`], [`UpdateContent`] | a rectangle that a frame draws, for tools that show it |
 //! | [`caster_wgsl`], [`receiver_wgsl`], [`WgslOptions`] | the WGSL, for any bind group and with any prefix |
 //! | [`UpdateSchedule`], [`Culling`] | which maps may wait for another frame, and which casters are left out |
 //! | [`SunShadowsError`] | why a technique or a frame is refused; what was drawn before stays |
@@ -91,7 +92,7 @@ mod uniform;
 pub use cache::{Casters, Culling, PassContent, UpdateSchedule};
 pub use descriptor::{RESOLUTIONS, ShadowMapDescriptor};
 pub use error::ShadowMapError;
-pub use kept_maps::{KeptMaps, ShadowPass, ShadowPiece};
+pub use kept_maps::{KeptMaps, MapUpdate, ShadowPass, ShadowPiece, UpdateContent};
 pub use layers::layers_wgsl;
 pub use map::ShadowMap;
 pub use map_fit::{MapFit, MapView};
