@@ -72,6 +72,14 @@ impl SceneCasters {
         Casters { boxes: Boxes { origin: DVec3::ZERO, boxes: &self.boxes }, moves: &self.moves }
     }
 
+    /// Adds each caster's mask to that of its instance; `None` stays for instances that cast nothing.
+    pub(crate) fn merge_masks(&self, masks: &[u8], of_instances: &mut [Option<u8>]) {
+        for (caster, mask) in self.casters.iter().zip(masks) {
+            let merged = &mut of_instances[caster.instance as usize];
+            *merged = Some(merged.unwrap_or(0) | mask);
+        }
+    }
+
     /// Groups casters, nearest to the light first, into draw calls. `indices` are those of a part's cluster, `instances`
     /// is called with an instance for each of those that are added.
     pub(crate) fn draws(

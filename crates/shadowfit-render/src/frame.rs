@@ -1,11 +1,11 @@
-//! What a frame shows, and what was drawn for it: plain data.
+//! What a frame shows: plain data.
 
 use glam::{DVec3, Vec3};
 use shadowfit::PerspectiveCamera;
-use shadowfit_wgpu::{Culling, MAX_MAPS, MapFit};
+use shadowfit_wgpu::{Culling, MapFit};
 
-use crate::Line;
 use crate::uniform::Atmosphere;
+use crate::{Inset, JudgedPicture, Line, Marks, Overlay, Quad};
 
 /// What a frame shows.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +16,10 @@ pub struct Frame<'a> {
     pub direction: Vec3,
     /// The shadow maps with their biases, in order of their `far`; empty where there is nothing to fit.
     pub maps: &'a [MapFit],
+    /// Whether the maps are used as they were drawn last: nothing is drawn into them, [`Self::maps`] and
+    /// [`Self::culling`] are ignored, and positions are looked up from this frame's camera. For the probe of a frame and its
+    /// picture in turn, and for further pictures of the same maps.
+    pub maps_stay: bool,
     /// Eye and unit forward direction (world space, metres) whose view depths choose among maps that are
     /// read by view depth; the
     /// camera's own where `None`.
@@ -26,12 +30,21 @@ pub struct Frame<'a> {
     pub shadows: bool,
     /// Colours of sun and sky.
     pub atmosphere: &'a Atmosphere,
-    /// What is overlaid on the shaded surfaces.
+    /// What the surfaces show.
     pub overlay: Overlay,
+    /// A picture that was judged against rays, for overlays and marks that show how the shadows were judged.
+    pub judged: Option<JudgedPicture<'a>>,
+    /// Marks of its wrong pixels, whatever the surfaces show.
+    pub marks: Option<Marks>,
     /// Lines drawn over the scene.
     pub lines: &'a [Line],
-    /// Shadow map shown in a corner.
-    pub inset: Option<Inset>,
+    /// Shadow maps shown in the picture.
+    pub insets: &'a [Inset],
+    /// Coloured quadrilaterals over picture and insets, each drawn over those before it.
+    pub quads: &'a [Quad],
+    /// Left, top, width and height of the part of the picture that is drawn, in pixels; all of it where `None`. The rest
+    /// of the picture stays as it was. Where the depth buffer is read, and in probes, the rest is as the sky.
+    pub scissor: Option<[u32; 4]>,
 }
 
 impl<'a> Frame<'a> {
@@ -41,61 +54,23 @@ impl<'a> Frame<'a> {
             camera,
             direction,
             maps,
+            maps_stay: false,
             choice: None,
             culling: Culling::default(),
             shadows: true,
             atmosphere,
             overlay: Overlay::default(),
+            judged: None,
+            marks: None,
             lines: &[],
-            inset: None,
+            insets: &[],
+            quads: &[],
+            scissor: None,
         }
     }
-}
 
-/// What is overlaid on the shaded surfaces.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Overlay {
-    /// Nothing.
-    #[default]
-    None,
-    /// Surfaces are tinted by the map that they read, in the colours [`MAP_TINTS`](shadowfit::figures::MAP_TINTS). What no map
-    /// covers keeps its own colour.
-    MapTint,
-}
-
-/// Where and how the shadow map is shown in the picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Inset {
-    /// Left, top, width and height, in pixels.
-    pub rectangle: [f32; 4],
-    /// Stored depths shown as black and white.
-    pub depth_range: [f32; 2],
-    /// Index of the map that is shown.
-    pub map: u32,
-}
-
-/// What a frame drew.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Statistics {
-    /// Draw calls of all shadow passes.
-    pub shadow_draws: u32,
-    /// Triangles of all shadow passes.
-    pub shadow_triangles: u64,
-    /// Draw calls of the shaded pass.
-    pub scene_draws: u32,
-    /// Triangles of the shaded pass.
-    pub scene_triangles: u64,
-    /// What was drawn into each map; zeros past the number of maps.
-    pub maps: [MapStatistics; MAX_MAPS],
-}
-
-/// What was drawn into one map.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct MapStatistics {
-    /// Instances that were not culled.
-    pub casters: u32,
-    /// Draw calls for them.
-    pub draws: u32,
-    /// Their triangles.
-    pub triangles: u64,
+    /// Eye and unit forward direction from which view depths are counted.
+    pub(crate) fn chooser(&self) -> (DVec3, Vec3) {
+        self.choice.unwrap_or((self.camera.eye, self.camera.forward.normalize()))
+    }
 }

@@ -5,30 +5,50 @@
 //! Everything on the GPU is relative to the camera's eye, so that pictures stay steady far from
 //! the world's origin. Right-handed, y up, metres; the camera's depth is reversed (near 1, far 0).
 
+mod attachment;
+mod bindings;
 pub mod camera;
 mod casters;
 mod frame;
 mod gpu;
+mod inset;
+mod judged;
 mod lines;
+mod marks;
 mod material;
+mod overlay;
 mod pipelines;
+mod pixel;
 mod probe;
+mod quad;
 mod renderer;
 mod scene;
 pub mod shaders;
+mod statistics;
 mod target;
 mod timer;
 mod uniform;
+mod vertex_buffer;
 
 pub use camera::{FlyCamera, FlyInput};
 pub use casters::{Cluster, clustered};
-pub use frame::{Frame, Inset, MapStatistics, Overlay, Statistics};
+pub use frame::Frame;
 pub use gpu::{AdapterChoice, Gpu, GpuError};
+pub use inset::Inset;
+pub use judged::JudgedPicture;
 pub use lines::{Line, box_lines};
+pub use marks::Marks;
+pub use overlay::Overlay;
+pub use pixel::{PixelFacts, PixelQuery, PixelRead, TexelBlock};
 pub use probe::{Probe, ProbeError, ProbePixel, ProbeTargets};
+pub use quad::Quad;
 pub use renderer::Renderer;
 pub use scene::GpuScene;
-pub use shadowfit_wgpu::Culling;
+pub use shadowfit_wgpu::{Culling, MapUpdate, UpdateContent};
+pub use statistics::{MapStatistics, Statistics};
 pub use target::{ReadError, RenderTarget};
 pub use timer::PassTimes;
-pub use uniform::{Atmosphere, FrameUniform, InsetUniform, InstanceData, LineVertex, MaterialUniform};
+pub use uniform::{
+    Atmosphere, BlockUniform, FrameUniform, InsetVertex, InstanceData, JudgedUniform, LineVertex, MarksUniform,
+    MaterialUniform, QuadVertex,
+};

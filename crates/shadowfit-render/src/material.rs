@@ -4,9 +4,8 @@ use std::collections::HashMap;
 
 use shadowfit_scene::{Image, Material, Scene, Texture, Wrap};
 
-use crate::Gpu;
-use crate::shaders;
 use crate::uniform::MaterialUniform;
+use crate::{Gpu, bindings, shaders};
 
 /// Anisotropy of the texture filter: floors seen at a grazing angle stay sharp. Software adapters do without: Mesa's
 /// visits every texel that a pixel covers, which takes seconds for a single sliver seen edge-on.
@@ -14,23 +13,10 @@ const ANISOTROPY: u16 = 8;
 
 /// Layout of a material's bind group, the same in the shaded and the shadow pass.
 pub(crate) fn material_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let entry =
-        |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
-    let texture = wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Float { filterable: true },
-        view_dimension: wgpu::TextureViewDimension::D2,
-        multisampled: false,
-    };
+    let texture = bindings::texture(wgpu::TextureSampleType::Float { filterable: true }, false);
     let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-    let uniform = wgpu::BindingType::Buffer {
-        ty: wgpu::BufferBindingType::Uniform,
-        has_dynamic_offset: false,
-        min_binding_size: None,
-    };
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("material"),
-        entries: &[entry(0, uniform), entry(1, texture), entry(2, sampler), entry(3, texture), entry(4, sampler)],
-    })
+    let types = [bindings::UNIFORM, texture, sampler, texture, sampler];
+    bindings::layout(device, "material", wgpu::ShaderStages::FRAGMENT, &types)
 }
 
 /// Makes the bind group of every material of a scene.
@@ -66,28 +52,19 @@ impl<'a> Uploader<'a> {
 
     fn material(&mut self, layout: &wgpu::BindGroupLayout, material: &Material) -> wgpu::BindGroup {
         let device = &self.gpu.device;
-        let uniform = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("material"),
-            size: size_of::<MaterialUniform>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let uniform = bindings::uniform_buffer::<MaterialUniform>(device, "material");
         self.gpu.queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&MaterialUniform::new(material)));
         let base = self.view(material.base_color_texture, true);
         let normal = self.view(material.normal_texture, false);
         let samplers = [material.base_color_texture, material.normal_texture].map(|t| sampler(self.gpu, t));
-        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-        device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some(&material.name),
-            layout,
-            entries: &[
-                entry(0, uniform.as_entire_binding()),
-                entry(1, wgpu::BindingResource::TextureView(&base)),
-                entry(2, wgpu::BindingResource::Sampler(&samplers[0])),
-                entry(3, wgpu::BindingResource::TextureView(&normal)),
-                entry(4, wgpu::BindingResource::Sampler(&samplers[1])),
-            ],
-        })
+        let resources = [
+            uniform.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&base),
+            wgpu::BindingResource::Sampler(&samplers[0]),
+            wgpu::BindingResource::TextureView(&normal),
+            wgpu::BindingResource::Sampler(&samplers[1]),
+        ];
+        bindings::group(device, &material.name, layout, &resources)
     }
 }
 

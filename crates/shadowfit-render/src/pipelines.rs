@@ -1,5 +1,7 @@
 //! The render pipelines, and the layouts that they share. Those that read the shadow map are made
-//! anew when its descriptor changes.
+//! anew when its descriptor changes, and those of overlays when they are first shown.
+
+mod maker;
 
 use std::collections::HashMap;
 
@@ -7,18 +9,20 @@ use shadowfit_scene::AlphaMode;
 use shadowfit_wgpu::ShadowMap;
 
 use crate::material::material_layout;
+use crate::pixel::BLOCK_FORMAT;
 use crate::probe::PROBE_FORMAT;
 use crate::scene::Part;
-use crate::shaders;
-use crate::target::{COLOR_FORMAT, DEPTH_FORMAT};
-use crate::uniform::{InstanceData, LineVertex};
+use crate::uniform::{InsetVertex, LineVertex, QuadVertex};
+use crate::{Overlay, bindings, shaders};
+
+pub(crate) use maker::{BLENDED_COLOR, COLOR, InstanceNumber, Maker, Shape, part_buffers};
 
 /// Bind group layouts of this crate.
 #[derive(Debug)]
 pub(crate) struct Layouts {
-    pub(crate) frame: wgpu::BindGroupLayout,
+    /// A uniform: of a frame, or of a pass that needs no frame.
+    pub(crate) uniform: wgpu::BindGroupLayout,
     pub(crate) material: wgpu::BindGroupLayout,
-    pub(crate) inset: wgpu::BindGroupLayout,
 }
 
 /// What selects a part's pipeline, in every pass.
@@ -37,33 +41,24 @@ pub(crate) struct Pipelines {
     pub(crate) sky: wgpu::RenderPipeline,
     pub(crate) lines: wgpu::RenderPipeline,
     pub(crate) inset: wgpu::RenderPipeline,
+    pub(crate) quads: wgpu::RenderPipeline,
     caster: wgpu::RenderPipeline,
     caster_masked: wgpu::RenderPipeline,
     scene: HashMap<PartKey, wgpu::RenderPipeline>,
     probe: HashMap<PartKey, wgpu::RenderPipeline>,
+    overlays: HashMap<(Overlay, PartKey), wgpu::RenderPipeline>,
+    modules: HashMap<Overlay, wgpu::ShaderModule>,
+    /// Made for the first block of texels that is read.
+    block: Option<wgpu::RenderPipeline>,
+    samples: u32,
 }
 
 impl Layouts {
     pub(crate) fn new(device: &wgpu::Device) -> Self {
-        let uniform = |label, visibility| {
-            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some(label),
-                entries: &[wgpu::BindGroupLayoutEntry {
-                    binding: 0,
-                    visibility,
-                    ty: wgpu::BindingType::Buffer {
-                        ty: wgpu::BufferBindingType::Uniform,
-                        has_dynamic_offset: false,
-                        min_binding_size: None,
-                    },
-                    count: None,
-                }],
-            })
-        };
+        let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT;
         Self {
-            frame: uniform("frame", wgpu::ShaderStages::VERTEX_FRAGMENT),
+            uniform: bindings::layout(device, "uniform", visibility, &[bindings::UNIFORM]),
             material: material_layout(device),
-            inset: uniform("inset", wgpu::ShaderStages::VERTEX_FRAGMENT),
         }
     }
 }
@@ -103,7 +98,7 @@ impl Pipelines {
         let caster = maker.module("caster", shaders::caster(map.descriptor()));
         let scene = maker.module("scene", shaders::scene(map.descriptor()));
         let caster_layout = maker.layout(&[map.caster_layout(), &layouts.material]);
-        let scene_layout = maker.layout(&[&layouts.frame, map.receiver_layout(), &layouts.material]);
+        let scene_layout = maker.layout(&[&layouts.uniform, map.receiver_layout(), &layouts.material]);
         let [plain_entry, masked_entry] = match (map.color_target().is_some(), map.clamps_in_fragment()) {
             (false, false) => [None, Some("fs_caster_masked")],
             (false, true) => [Some("fs_caster_clamped"), Some("fs_caster_masked_clamped")],
@@ -111,15 +106,50 @@ impl Pipelines {
             (true, true) => [Some("fs_caster_clamped_color"), Some("fs_caster_masked_clamped_color")],
         };
         let caster_pipeline = |entry| maker.caster(&caster_layout, &caster, entry, map);
+        let entries = ["fs_scene", "fs_scene_masked"];
         Self {
             sky: maker.sky(layouts),
             lines: maker.lines(layouts),
             inset: maker.inset(layouts, map),
+            quads: maker.quads(layouts),
             caster: caster_pipeline(plain_entry),
             caster_masked: caster_pipeline(masked_entry),
-            scene: PartKey::all().map(|key| (key, maker.scene(&scene_layout, &scene, key))).collect(),
+            scene: PartKey::all().map(|key| (key, maker.scene(&scene_layout, &scene, entries, key))).collect(),
             probe: maker.probes(&scene_layout, map),
+            overlays: HashMap::new(),
+            modules: HashMap::new(),
+            block: None,
+            samples,
         }
+    }
+
+    /// Makes those pipelines of an overlay that parts need and that are not there yet. `layouts` are those of the shaded
+    /// pass's bind groups.
+    pub(crate) fn add_overlay(
+        &mut self,
+        device: &wgpu::Device,
+        layouts: &[&wgpu::BindGroupLayout],
+        map: &ShadowMap,
+        (overlay, parts): (Overlay, &[Part]),
+    ) {
+        let maker = Maker { device, samples: self.samples };
+        let mut layout = None;
+        for key in parts.iter().map(PartKey::of) {
+            if overlay == Overlay::None || self.overlays.contains_key(&(overlay, key)) {
+                continue;
+            }
+            let make = || maker.module("overlay", shaders::overlay(map.descriptor(), overlay));
+            let module = self.modules.entry(overlay).or_insert_with(make);
+            let layout = layout.get_or_insert_with(|| maker.layout(layouts));
+            let pipeline = maker.overlay(layout, module, overlay, key);
+            self.overlays.insert((overlay, key), pipeline);
+        }
+    }
+
+    /// Pipeline of the pass that reads a block of texels.
+    pub(crate) fn block(&mut self, device: &wgpu::Device, layouts: &Layouts, map: &ShadowMap) -> &wgpu::RenderPipeline {
+        let maker = Maker { device, samples: self.samples };
+        self.block.get_or_insert_with(|| maker.block(layouts, map))
     }
 
     /// Pipeline of the shadow pass. Casters are double-sided.
@@ -128,8 +158,9 @@ impl Pipelines {
     }
 
     /// Pipeline of the shaded pass.
-    pub(crate) fn scene(&self, part: &Part) -> &wgpu::RenderPipeline {
-        &self.scene[&PartKey::of(part)]
+    pub(crate) fn scene(&self, part: &Part, overlay: Overlay) -> &wgpu::RenderPipeline {
+        let key = PartKey::of(part);
+        self.overlays.get(&(overlay, key)).unwrap_or_else(|| &self.scene[&key])
     }
 
     /// Whether the device can draw the probe pass.
@@ -143,76 +174,7 @@ impl Pipelines {
     }
 }
 
-struct Maker<'a> {
-    device: &'a wgpu::Device,
-    samples: u32,
-}
-
-/// What differs between the pipelines of the camera's passes.
-struct Shape<'a> {
-    label: &'a str,
-    layout: &'a wgpu::PipelineLayout,
-    module: &'a wgpu::ShaderModule,
-    entries: [&'a str; 2],
-    buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
-    targets: &'a [Option<wgpu::ColorTargetState>],
-    topology: wgpu::PrimitiveTopology,
-    cull_mode: Option<wgpu::Face>,
-    depth: Option<(bool, wgpu::CompareFunction)>,
-    samples: u32,
-}
-
 impl Maker<'_> {
-    fn module(&self, label: &str, source: String) -> wgpu::ShaderModule {
-        self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(label),
-            source: wgpu::ShaderSource::Wgsl(source.into()),
-        })
-    }
-
-    fn layout(&self, groups: &[&wgpu::BindGroupLayout]) -> wgpu::PipelineLayout {
-        let groups: Vec<_> = groups.iter().map(|group| Some(*group)).collect();
-        self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: None,
-            bind_group_layouts: &groups,
-            immediate_size: 0,
-        })
-    }
-
-    fn pipeline(&self, shape: &Shape<'_>) -> wgpu::RenderPipeline {
-        self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(shape.label),
-            layout: Some(shape.layout),
-            vertex: wgpu::VertexState {
-                module: shape.module,
-                entry_point: Some(shape.entries[0]),
-                compilation_options: Default::default(),
-                buffers: shape.buffers,
-            },
-            primitive: wgpu::PrimitiveState {
-                topology: shape.topology,
-                cull_mode: shape.cull_mode,
-                ..Default::default()
-            },
-            depth_stencil: shape.depth.map(|(write, compare)| wgpu::DepthStencilState {
-                format: DEPTH_FORMAT,
-                depth_write_enabled: Some(write),
-                depth_compare: Some(compare),
-                stencil: Default::default(),
-                bias: Default::default(),
-            }),
-            multisample: wgpu::MultisampleState { count: shape.samples, ..Default::default() },
-            fragment: Some(wgpu::FragmentState {
-                module: shape.module,
-                entry_point: Some(shape.entries[1]),
-                compilation_options: Default::default(),
-                targets: shape.targets,
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
-    }
-
     fn caster(
         &self,
         layout: &wgpu::PipelineLayout,
@@ -228,7 +190,7 @@ impl Maker<'_> {
                 module,
                 entry_point: Some("vs_caster"),
                 compilation_options: Default::default(),
-                buffers: &part_buffers(),
+                buffers: &part_buffers(InstanceNumber::FirstTriangle),
             },
             primitive: map.primitive_state(),
             depth_stencil: Some(map.depth_stencil_state()),
@@ -244,22 +206,42 @@ impl Maker<'_> {
         })
     }
 
-    fn scene(&self, layout: &wgpu::PipelineLayout, module: &wgpu::ShaderModule, key: PartKey) -> wgpu::RenderPipeline {
+    /// `entries` are those of the fragment shader, the second for cut-outs.
+    fn scene(
+        &self,
+        layout: &wgpu::PipelineLayout,
+        module: &wgpu::ShaderModule,
+        entries: [&str; 2],
+        key: PartKey,
+    ) -> wgpu::RenderPipeline {
+        self.part(layout, module, entries, (key, InstanceNumber::FirstTriangle))
+    }
+
+    fn overlay(
+        &self,
+        layout: &wgpu::PipelineLayout,
+        module: &wgpu::ShaderModule,
+        overlay: Overlay,
+        key: PartKey,
+    ) -> wgpu::RenderPipeline {
+        let number = if overlay == Overlay::Casters { InstanceNumber::Holder } else { InstanceNumber::FirstTriangle };
+        self.part(layout, module, ["fs_overlay", "fs_overlay_masked"], (key, number))
+    }
+
+    fn part(
+        &self,
+        layout: &wgpu::PipelineLayout,
+        module: &wgpu::ShaderModule,
+        [plain, masked]: [&str; 2],
+        (key, number): (PartKey, InstanceNumber),
+    ) -> wgpu::RenderPipeline {
         self.pipeline(&Shape {
-            label: "scene",
-            layout,
-            module,
-            entries: ["vs_scene", if key.masked { "fs_scene_masked" } else { "fs_scene" }],
-            buffers: &part_buffers(),
-            targets: &[Some(wgpu::ColorTargetState {
-                format: COLOR_FORMAT,
-                blend: key.blended.then_some(wgpu::BlendState::ALPHA_BLENDING),
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-            topology: wgpu::PrimitiveTopology::TriangleList,
+            buffers: &part_buffers(number),
+            targets: if key.blended { &BLENDED_COLOR } else { &COLOR },
             cull_mode: key.cull_mode(),
             depth: Some((!key.blended, wgpu::CompareFunction::GreaterEqual)),
             samples: self.samples,
+            ..Shape::new("scene", layout, module, ["vs_scene", if key.masked { masked } else { plain }])
         })
     }
 
@@ -273,85 +255,74 @@ impl Maker<'_> {
     }
 
     fn probe(&self, layout: &wgpu::PipelineLayout, module: &wgpu::ShaderModule, key: PartKey) -> wgpu::RenderPipeline {
+        let entry = if key.masked { "fs_probe_masked" } else { "fs_probe" };
         self.pipeline(&Shape {
-            label: "probe",
-            layout,
-            module,
-            entries: ["vs_scene", if key.masked { "fs_probe_masked" } else { "fs_probe" }],
-            buffers: &part_buffers(),
+            buffers: &part_buffers(InstanceNumber::FirstTriangle),
             targets: &[Some(PROBE_FORMAT.into())],
-            topology: wgpu::PrimitiveTopology::TriangleList,
             cull_mode: key.cull_mode(),
             depth: Some((true, wgpu::CompareFunction::GreaterEqual)),
-            samples: 1,
+            ..Shape::new("probe", layout, module, ["vs_scene", entry])
         })
     }
 
     fn sky(&self, layouts: &Layouts) -> wgpu::RenderPipeline {
+        let (layout, module) = (self.layout(&[&layouts.uniform]), self.module("sky", shaders::sky()));
         self.pipeline(&Shape {
-            label: "sky",
-            layout: &self.layout(&[&layouts.frame]),
-            module: &self.module("sky", shaders::sky()),
-            entries: ["vs_sky", "fs_sky"],
-            buffers: &[],
-            targets: &[Some(COLOR_FORMAT.into())],
-            topology: wgpu::PrimitiveTopology::TriangleList,
-            cull_mode: None,
             depth: Some((false, wgpu::CompareFunction::GreaterEqual)),
             samples: self.samples,
+            ..Shape::new("sky", &layout, &module, ["vs_sky", "fs_sky"])
         })
     }
 
     fn lines(&self, layouts: &Layouts) -> wgpu::RenderPipeline {
+        let (layout, module) = (self.layout(&[&layouts.uniform]), self.module("lines", shaders::lines()));
+        let attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x4, 2 => Float32x3, 3 => Float32x4];
         self.pipeline(&Shape {
-            label: "lines",
-            layout: &self.layout(&[&layouts.frame]),
-            module: &self.module("lines", shaders::lines()),
-            entries: ["vs_line", "fs_line"],
-            buffers: &[Some(wgpu::VertexBufferLayout {
-                array_stride: 2 * size_of::<LineVertex>() as u64,
-                step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x4, 2 => Float32x3, 3 => Float32x4],
-            })],
-            targets: &[Some(wgpu::ColorTargetState {
-                format: COLOR_FORMAT,
-                blend: Some(wgpu::BlendState::ALPHA_BLENDING),
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-            topology: wgpu::PrimitiveTopology::TriangleList,
-            cull_mode: None,
+            buffers: &[Some(instances::<[LineVertex; 2]>(&attributes))],
+            targets: &BLENDED_COLOR,
             depth: Some((false, wgpu::CompareFunction::Always)),
             samples: self.samples,
+            ..Shape::new("lines", &layout, &module, ["vs_line", "fs_line"])
         })
     }
 
     fn inset(&self, layouts: &Layouts, map: &ShadowMap) -> wgpu::RenderPipeline {
+        let layout = self.layout(&[&layouts.uniform, map.receiver_layout()]);
+        let module = self.module("inset", shaders::inset(map.descriptor()));
+        let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x2, 2 => Uint32, 3 => Float32x3];
         self.pipeline(&Shape {
-            label: "inset",
-            layout: &self.layout(&[&layouts.frame, map.receiver_layout(), &layouts.inset]),
-            module: &self.module("inset", shaders::inset(map.descriptor())),
-            entries: ["vs_inset", "fs_inset"],
-            buffers: &[],
-            targets: &[Some(COLOR_FORMAT.into())],
+            buffers: &[Some(instances::<InsetVertex>(&attributes))],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
-            cull_mode: None,
-            depth: None,
-            samples: 1,
+            ..Shape::new("inset", &layout, &module, ["vs_inset", "fs_inset"])
+        })
+    }
+
+    fn block(&self, layouts: &Layouts, map: &ShadowMap) -> wgpu::RenderPipeline {
+        let layout = self.layout(&[&layouts.uniform, map.receiver_layout()]);
+        let module = self.module("texels", shaders::block(map.descriptor()));
+        self.pipeline(&Shape {
+            targets: &[Some(BLOCK_FORMAT.into())],
+            ..Shape::new("texels", &layout, &module, ["vs_screen", "fs_block"])
+        })
+    }
+
+    fn quads(&self, layouts: &Layouts) -> wgpu::RenderPipeline {
+        let (layout, module) = (self.layout(&[&layouts.uniform]), self.module("quads", shaders::quads()));
+        let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4];
+        self.pipeline(&Shape {
+            buffers: &[Some(instances::<QuadVertex>(&attributes))],
+            targets: &BLENDED_COLOR,
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            ..Shape::new("quads", &layout, &module, ["vs_quad", "fs_quad"])
         })
     }
 }
 
-/// The three vertex streams of a part: what deforms, what does not, and the instances.
-fn part_buffers() -> [Option<wgpu::VertexBufferLayout<'static>>; 3] {
-    const MOTION: [wgpu::VertexAttribute; 3] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4];
-    const SURFACE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![3 => Float32x2, 4 => Float32x4];
-    const INSTANCE: [wgpu::VertexAttribute; 4] =
-        wgpu::vertex_attr_array![5 => Float32x4, 6 => Float32x4, 7 => Float32x4, 8 => Uint32];
-    let stream =
-        |array_stride, step_mode, attributes| Some(wgpu::VertexBufferLayout { array_stride, step_mode, attributes });
-    [
-        stream(40, wgpu::VertexStepMode::Vertex, &MOTION),
-        stream(24, wgpu::VertexStepMode::Vertex, &SURFACE),
-        stream(size_of::<InstanceData>() as u64, wgpu::VertexStepMode::Instance, &INSTANCE),
-    ]
+/// A stream of packed instances.
+fn instances<T>(attributes: &[wgpu::VertexAttribute]) -> wgpu::VertexBufferLayout<'_> {
+    wgpu::VertexBufferLayout {
+        array_stride: size_of::<T>() as u64,
+        step_mode: wgpu::VertexStepMode::Instance,
+        attributes,
+    }
 }

@@ -5,8 +5,8 @@ use core::fmt;
 
 use shadowfit_wgpu::ShadowMapError;
 
-use crate::Gpu;
 use crate::target::{DEPTH_FORMAT, ReadError, read_texture};
+use crate::{Gpu, bindings};
 
 /// Format of the probe's target: the triangle's number plus one (0 is the sky), and the bits of the factor.
 pub(crate) const PROBE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
@@ -19,6 +19,13 @@ pub struct ProbePixel {
     pub triangle: u32,
     /// Filtered share of the light, 0..=1, as shaded.
     pub factor: f32,
+}
+
+impl ProbePixel {
+    /// A pixel of the target; `None` for the sky.
+    pub(crate) fn of([triangle, factor]: [u32; 2]) -> Option<Self> {
+        Some(Self { triangle: triangle.checked_sub(1)?, factor: f32::from_bits(factor) })
+    }
 }
 
 /// All pixels of a picture, rows from the top; `None` where the sky is seen. Blended surfaces are
@@ -75,7 +82,7 @@ impl core::error::Error for ProbeError {}
 pub struct ProbeTargets {
     /// Width and height, in pixels.
     pub size: [u32; 2],
-    texture: wgpu::Texture,
+    pub(crate) texture: wgpu::Texture,
     /// The pixels: x is the triangle's number plus one (0 is the sky), y the bits of the f32 factor.
     pub view: wgpu::TextureView,
     pub(crate) depth: wgpu::TextureView,
@@ -87,16 +94,8 @@ impl ProbeTargets {
         let limit = device.limits().max_texture_dimension_2d;
         let size = size.map(|side| side.clamp(1, limit));
         let texture = |format, usage| {
-            device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("probe"),
-                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: usage | wgpu::TextureUsages::RENDER_ATTACHMENT,
-                view_formats: &[],
-            })
+            let usage = usage | wgpu::TextureUsages::RENDER_ATTACHMENT;
+            bindings::plain_texture(device, "probe", size, format, usage)
         };
         let readable = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
         let pixels = texture(PROBE_FORMAT, readable);
@@ -112,9 +111,7 @@ impl ProbeTargets {
     /// [`ReadError`] if the device was lost or does not answer.
     pub fn read(&self, gpu: &Gpu) -> Result<Probe, ReadError> {
         let bytes = read_texture(gpu, &self.texture, self.size, 8)?;
-        let pixels = bytemuck::pod_collect_to_vec::<u8, [u32; 2]>(&bytes).into_iter().map(|[triangle, factor]| {
-            Some(ProbePixel { triangle: triangle.checked_sub(1)?, factor: f32::from_bits(factor) })
-        });
+        let pixels = bytemuck::pod_collect_to_vec::<u8, [u32; 2]>(&bytes).into_iter().map(ProbePixel::of);
         Ok(Probe { size: self.size, pixels: pixels.collect() })
     }
 }

@@ -1,21 +1,27 @@
-//! One frame: shadow pass, shaded pass, sky, lines and inset.
+//! One frame: shadow passes, shaded pass, and what lies over the picture.
 
-use glam::{DVec3, Mat4};
-use shadowfit::ViewFrustum;
-use shadowfit_wgpu::{
-    Casters, Culling, KeptMaps, MAX_MAPS, ShadowMap, ShadowMapDescriptor, ShadowMapError, ShadowPiece, SunFrame,
-};
+mod maps;
+mod over;
+mod picture;
+mod pixel;
+mod plan;
 
-use crate::casters::CasterDraw;
-use crate::frame::{Frame, MapStatistics, Statistics};
+use shadowfit_wgpu::{KeptMaps, MAX_MAPS, MapUpdate, ShadowMap, ShadowMapDescriptor, ShadowMapError};
+
+use crate::frame::Frame;
+use crate::judged::JudgedInput;
+use crate::marks::MarkPasses;
 use crate::pipelines::{Layouts, Pipelines};
 use crate::probe::{Probe, ProbeError, ProbeTargets};
-use crate::scene::{Draw, GpuScene, Part, in_frustum};
-use crate::shaders::CASTER_GROUP;
+use crate::scene::GpuScene;
+use crate::statistics::{MapStatistics, Statistics};
 use crate::target::RenderTarget;
-use crate::timer::{Pass, PassTimer, PassTimes};
-use crate::uniform::{FrameUniform, InsetUniform, LineVertex};
-use crate::{Gpu, Line};
+use crate::timer::{PassTimer, PassTimes};
+use crate::uniform::{FrameUniform, InsetVertex, LineVertex, QuadVertex};
+use crate::vertex_buffer::VertexBuffer;
+use crate::{Gpu, Inset, Line, Quad, bindings};
+
+use plan::Plan;
 
 /// Draws scenes; owns the shadow map and every pipeline.
 #[derive(Debug)]
@@ -26,18 +32,19 @@ pub struct Renderer {
     samples: u32,
     frame_uniform: wgpu::Buffer,
     frame_group: wgpu::BindGroup,
-    inset_uniform: wgpu::Buffer,
-    inset_group: wgpu::BindGroup,
-    line_buffer: wgpu::Buffer,
+    judged: JudgedInput,
+    lines: VertexBuffer,
+    insets: VertexBuffer,
+    quads: VertexBuffer,
+    /// Made for the first marks.
+    marks: Option<MarkPasses>,
+    /// What parts of multisampled pictures are resolved into.
+    part: Option<wgpu::Texture>,
+    /// What single pixels are probed in.
+    pixel_targets: Option<ProbeTargets>,
+    /// What was drawn into the maps since the last picture.
+    drawn: [MapStatistics; MAX_MAPS],
     timer: PassTimer,
-}
-
-/// The draws of a frame's passes.
-struct Plan {
-    /// Of each piece of each shadow pass, in their order.
-    shadow: Vec<Vec<CasterDraw>>,
-    opaque: Vec<Draw>,
-    blended: Vec<Draw>,
 }
 
 impl Renderer {
@@ -52,9 +59,9 @@ impl Renderer {
         let mut maps = KeptMaps::new(device, shadow_map)?;
         maps.keeps = false;
         let pipelines = Pipelines::new(device, &layouts, maps.map(), samples);
-        let (frame_uniform, frame_group) = uniform(device, &layouts.frame, size_of::<FrameUniform>());
-        let (inset_uniform, inset_group) = uniform(device, &layouts.inset, size_of::<InsetUniform>());
-        let line_buffer = line_buffer(device, 64);
+        let frame_uniform = bindings::uniform_buffer::<FrameUniform>(device, "frame");
+        let resources = [frame_uniform.as_entire_binding()];
+        let frame_group = bindings::group(device, "frame", &layouts.uniform, &resources);
         Ok(Self {
             layouts,
             pipelines,
@@ -62,9 +69,14 @@ impl Renderer {
             samples,
             frame_uniform,
             frame_group,
-            inset_uniform,
-            inset_group,
-            line_buffer,
+            judged: JudgedInput::new(device),
+            lines: VertexBuffer::new(device, "lines"),
+            insets: VertexBuffer::new(device, "insets"),
+            quads: VertexBuffer::new(device, "quads"),
+            marks: None,
+            part: None,
+            pixel_targets: None,
+            drawn: Default::default(),
             timer: PassTimer::new(device),
         })
     }
@@ -88,6 +100,13 @@ impl Renderer {
     /// The maps, with what was drawn of them in the last frame.
     pub fn kept_maps(&self) -> &KeptMaps {
         &self.maps
+    }
+
+    /// The rectangles of the maps that were drawn or mended in the last frame whose maps did not
+    /// [stay](Frame::maps_stay), in the order in which they were drawn. Whether a map is kept is
+    /// [`KeptMaps::is_kept`] of [`Self::kept_maps`].
+    pub fn map_updates(&self) -> Vec<MapUpdate> {
+        self.maps.updates()
     }
 
     /// Has all maps drawn anew in the next frame.
@@ -128,7 +147,8 @@ impl Renderer {
         RenderTarget::new(&gpu.device, size, self.samples)
     }
 
-    /// Draws a frame into a target and submits it.
+    /// Draws a frame into a target and submits it. Where the maps [stay](Frame::maps_stay) the statistics have what was
+    /// drawn into them since the last picture, such as for a probe of the same frame.
     ///
     /// # Errors
     ///
@@ -143,14 +163,12 @@ impl Renderer {
         let plan = self.prepare(gpu, scene, frame, target.size)?;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.shadow_passes(&mut encoder, scene, &plan);
-        self.scene_pass(&mut encoder, scene, &plan, target, frame.lines.len() as u32);
-        if frame.inset.is_some() && !frame.maps.is_empty() {
-            self.inset_pass(&mut encoder, target);
-        }
+        self.scene_pass(gpu, &mut encoder, scene, &plan, target);
+        self.over_pass(gpu, &mut encoder, frame, &plan, target);
         self.timer.resolve(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
         self.timer.end_frame(gpu);
-        Ok(self.statistics(scene, &plan))
+        Ok(plan.statistics(scene, core::mem::take(&mut self.drawn)))
     }
 
     /// Draws a frame's shadow decisions and reads them back.
@@ -170,7 +188,8 @@ impl Renderer {
         Ok(targets.read(gpu)?)
     }
 
-    /// Draws a frame's shadow decisions, to be read on the GPU.
+    /// Draws a frame's shadow decisions, to be read on the GPU. A picture of the same frame may follow, for which the maps
+    /// [stay](Frame::maps_stay).
     ///
     /// # Errors
     ///
@@ -185,21 +204,15 @@ impl Renderer {
         if !self.pipelines.can_probe() {
             return Err(ProbeError::NoPrimitiveIndex);
         }
-        let plan = self.prepare(gpu, scene, frame, targets.size)?;
+        // A probe shows no overlay.
+        let frame = Frame { overlay: crate::Overlay::None, ..*frame };
+        let plan = self.prepare(gpu, scene, &frame, targets.size)?;
+        self.timer.begin_probe(gpu, frame.maps_stay);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.shadow_passes(&mut encoder, scene, &plan);
-        {
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("probe"),
-                color_attachments: &[Some(color_attachment(&targets.view, None, wgpu::Color::TRANSPARENT))],
-                depth_stencil_attachment: Some(depth_attachment(&targets.depth, wgpu::StoreOp::Discard)),
-                ..Default::default()
-            });
-            self.draw_scene(&mut pass, scene, &plan.opaque, |part| self.pipelines.probe(part));
-        }
+        self.probe_pass(&mut encoder, scene, &plan, targets, true);
         self.timer.resolve(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
-        self.timer.end_frame(gpu);
         Ok(())
     }
 
@@ -211,241 +224,17 @@ impl Renderer {
         frame: &Frame<'_>,
         size: [u32; 2],
     ) -> Result<Plan, ShadowMapError> {
-        let origin = frame.camera.eye;
-        self.update_maps(gpu, scene, frame)?;
-        let uniform = FrameUniform::new(frame.camera, -frame.direction, frame.shadows, frame.atmosphere, size)
-            .with_overlay(frame.overlay);
+        let eye = frame.camera.eye;
+        self.prepare_maps(gpu, scene, frame)?;
+        self.prepare_overlay(gpu, scene, frame.overlay);
+        let uniform = FrameUniform::new(frame.camera, -frame.direction, frame.shadows, frame.atmosphere, size);
         gpu.queue.write_buffer(&self.frame_uniform, 0, bytemuck::bytes_of(&uniform));
-        if let Some(inset) = frame.inset {
-            let uniform =
-                InsetUniform { rectangle: inset.rectangle, depth_range: inset.depth_range, map: inset.map, padding: 0 };
-            gpu.queue.write_buffer(&self.inset_uniform, 0, bytemuck::bytes_of(&uniform));
-        }
-        self.write_lines(gpu, origin, frame.lines);
-        Ok(self.plan(gpu, scene, frame, &uniform))
+        let lines: Vec<[LineVertex; 2]> = frame.lines.iter().map(|line: &Line| line.vertices(eye)).collect();
+        self.lines.write(gpu, &lines);
+        // Without maps there is nothing to show.
+        let insets = if self.maps.maps().is_empty() { &[] } else { frame.insets };
+        self.insets.write(gpu, &insets.iter().map(Inset::vertex).collect::<Vec<InsetVertex>>());
+        self.quads.write(gpu, &frame.quads.iter().map(Quad::vertex).collect::<Vec<QuadVertex>>());
+        Ok(self.plan(gpu, scene, frame, (&uniform, size)))
     }
-
-    /// Finds what is to be drawn into the maps.
-    fn update_maps(&mut self, gpu: &Gpu, scene: &GpuScene, frame: &Frame<'_>) -> Result<(), ShadowMapError> {
-        let (eye, forward) = frame.choice.unwrap_or((frame.camera.eye, frame.camera.forward.normalize()));
-        // What an invalid camera sees is unknown: maps get all casters that they can store.
-        let seen: Option<ViewFrustum> = frame.camera.frustum().ok();
-        self.maps.culling = if seen.is_some() { frame.culling } else { Culling::WholeMap };
-        let casters: Casters<'_> = scene.casters();
-        let sun = SunFrame {
-            eye,
-            forward,
-            receivers: None,
-            ..SunFrame::new(seen.as_slice(), frame.direction, casters.boxes, casters)
-        };
-        self.maps.update(&gpu.queue, &sun.with_origin(frame.camera.eye), frame.maps)
-    }
-
-    /// Decides what each pass draws and uploads the instances.
-    fn plan(&self, gpu: &Gpu, scene: &mut GpuScene, frame: &Frame<'_>, uniform: &FrameUniform) -> Plan {
-        scene.begin_frame(frame.camera.eye);
-        let mut shadow = Vec::new();
-        for piece in self.maps.passes().flat_map(|pass| pass.pieces()) {
-            let mut draws = Vec::new();
-            scene.caster_draws(piece.casters, &mut draws);
-            shadow.push(draws);
-        }
-        let seen = in_frustum(Mat4::from_cols_array_2d(&uniform.clip_from_world));
-        let mut opaque = scene.visible(|_, bounds| seen(bounds), Part::casts);
-        // Near things first, so that what they hide is never shaded.
-        opaque.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-        let mut blended = scene.visible(|_, bounds| seen(bounds), |part| !part.casts());
-        blended.sort_by(|a, b| b.distance.total_cmp(&a.distance));
-        scene.end_frame(gpu);
-        Plan { shadow, opaque, blended }
-    }
-
-    fn statistics(&self, scene: &GpuScene, plan: &Plan) -> Statistics {
-        let mut maps = [MapStatistics::default(); MAX_MAPS];
-        let pieces = self.maps.passes().flat_map(|pass| pass.pieces());
-        for (piece, draws) in pieces.zip(&plan.shadow) {
-            let map = &mut maps[piece.map];
-            map.casters += piece.casters.len() as u32;
-            map.draws += draws.len() as u32;
-            map.triangles +=
-                draws.iter().map(|draw| (draw.indices.len() / 3 * draw.instances.len()) as u64).sum::<u64>();
-        }
-        let triangles = |draws: &[Draw]| -> u64 {
-            let of = |draw: &Draw| u64::from(scene.parts[draw.part].index_count / 3) * draw.instances.len() as u64;
-            draws.iter().map(of).sum()
-        };
-        Statistics {
-            shadow_draws: maps.iter().map(|map| map.draws).sum(),
-            shadow_triangles: maps.iter().map(|map| map.triangles).sum(),
-            scene_draws: (plan.opaque.len() + plan.blended.len()) as u32,
-            scene_triangles: triangles(&plan.opaque) + triangles(&plan.blended),
-            maps,
-        }
-    }
-
-    fn write_lines(&mut self, gpu: &Gpu, eye: DVec3, lines: &[Line]) {
-        let vertices: Vec<[LineVertex; 2]> = lines.iter().map(|line| line.vertices(eye)).collect();
-        let bytes: &[u8] = bytemuck::cast_slice(&vertices);
-        if bytes.len() as u64 > self.line_buffer.size() {
-            self.line_buffer = line_buffer(&gpu.device, lines.len().next_power_of_two());
-        }
-        gpu.queue.write_buffer(&self.line_buffer, 0, bytes);
-    }
-
-    fn shadow_passes(&self, encoder: &mut wgpu::CommandEncoder, scene: &GpuScene, plan: &Plan) {
-        let mut pieces = plan.shadow.iter();
-        for pass in self.maps.passes() {
-            let query = self.timer.begin(Pass::Shadow, encoder);
-            let timestamps = query.as_ref().and_then(wgpu_profiler::GpuProfilerQuery::render_pass_timestamp_writes);
-            let mut opened = self.maps.begin_pass(encoder, &pass, CASTER_GROUP, timestamps);
-            for (piece, draws) in pass.pieces().zip(&mut pieces) {
-                self.draw_piece(&mut opened, scene, &piece, draws);
-            }
-            drop(opened);
-            self.timer.end(query, encoder);
-        }
-    }
-
-    fn draw_piece(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        scene: &GpuScene,
-        piece: &ShadowPiece<'_>,
-        draws: &[CasterDraw],
-    ) {
-        piece.set(pass);
-        for draw in draws {
-            let part = &scene.parts[draw.part];
-            pass.set_pipeline(self.pipelines.caster(part));
-            pass.set_bind_group(1, &scene.materials[part.material], &[]);
-            pass.set_vertex_buffer(0, part.motion.slice(..));
-            pass.set_vertex_buffer(1, part.surface.slice(..));
-            pass.set_vertex_buffer(2, scene.instance_buffer.slice(..));
-            pass.set_index_buffer(part.caster_indices.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(draw.indices.clone(), 0, draw.instances.start as u32..draw.instances.end as u32);
-        }
-    }
-
-    fn scene_pass(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        scene: &GpuScene,
-        plan: &Plan,
-        target: &RenderTarget,
-        lines: u32,
-    ) {
-        let query = self.timer.begin(Pass::Scene, encoder);
-        let color = match &target.multisampled {
-            Some(view) => color_attachment(view, Some(&target.color_view), wgpu::Color::BLACK),
-            None => color_attachment(&target.color_view, None, wgpu::Color::BLACK),
-        };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("scene"),
-            color_attachments: &[Some(color)],
-            depth_stencil_attachment: Some(depth_attachment(&target.depth_view, wgpu::StoreOp::Store)),
-            timestamp_writes: query.as_ref().and_then(wgpu_profiler::GpuProfilerQuery::render_pass_timestamp_writes),
-            ..Default::default()
-        });
-        self.draw_scene(&mut pass, scene, &plan.opaque, |part| self.pipelines.scene(part));
-        pass.set_pipeline(&self.pipelines.sky);
-        pass.draw(0..3, 0..1);
-        self.draw_scene(&mut pass, scene, &plan.blended, |part| self.pipelines.scene(part));
-        if lines > 0 {
-            pass.set_pipeline(&self.pipelines.lines);
-            pass.set_vertex_buffer(0, self.line_buffer.slice(..));
-            pass.draw(0..6, 0..lines);
-        }
-        drop(pass);
-        self.timer.end(query, encoder);
-    }
-
-    fn draw_scene<'a>(
-        &'a self,
-        pass: &mut wgpu::RenderPass<'_>,
-        scene: &GpuScene,
-        draws: &[Draw],
-        pipeline: impl Fn(&Part) -> &'a wgpu::RenderPipeline,
-    ) {
-        pass.set_bind_group(0, &self.frame_group, &[]);
-        pass.set_bind_group(1, self.shadow_map().receiver_group(), &[]);
-        for draw in draws {
-            pass.set_pipeline(pipeline(&scene.parts[draw.part]));
-            draw_part(pass, scene, draw, 2);
-        }
-    }
-
-    fn inset_pass(&self, encoder: &mut wgpu::CommandEncoder, target: &RenderTarget) {
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("inset"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &target.color_view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
-            })],
-            ..Default::default()
-        });
-        pass.set_pipeline(&self.pipelines.inset);
-        pass.set_bind_group(0, &self.frame_group, &[]);
-        pass.set_bind_group(1, self.shadow_map().receiver_group(), &[]);
-        pass.set_bind_group(2, &self.inset_group, &[]);
-        pass.draw(0..4, 0..1);
-    }
-}
-
-fn draw_part(pass: &mut wgpu::RenderPass<'_>, scene: &GpuScene, draw: &Draw, material_group: u32) {
-    let part = &scene.parts[draw.part];
-    pass.set_bind_group(material_group, &scene.materials[part.material], &[]);
-    pass.set_vertex_buffer(0, part.motion.slice(..));
-    pass.set_vertex_buffer(1, part.surface.slice(..));
-    pass.set_vertex_buffer(2, scene.instance_buffer.slice(..));
-    pass.set_index_buffer(part.indices.slice(..), wgpu::IndexFormat::Uint32);
-    pass.draw_indexed(0..part.index_count, 0, draw.instances.clone());
-}
-
-fn color_attachment<'a>(
-    view: &'a wgpu::TextureView,
-    resolve_target: Option<&'a wgpu::TextureView>,
-    clear: wgpu::Color,
-) -> wgpu::RenderPassColorAttachment<'a> {
-    let store = if resolve_target.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
-    wgpu::RenderPassColorAttachment {
-        view,
-        depth_slice: None,
-        resolve_target,
-        ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store },
-    }
-}
-
-/// The camera's depth, reversed: cleared to the far value 0.
-fn depth_attachment(view: &wgpu::TextureView, store: wgpu::StoreOp) -> wgpu::RenderPassDepthStencilAttachment<'_> {
-    wgpu::RenderPassDepthStencilAttachment {
-        view,
-        depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store }),
-        stencil_ops: None,
-    }
-}
-
-fn uniform(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, size: usize) -> (wgpu::Buffer, wgpu::BindGroup) {
-    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: size as u64,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout,
-        entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
-    });
-    (buffer, group)
-}
-
-fn line_buffer(device: &wgpu::Device, lines: usize) -> wgpu::Buffer {
-    device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("lines"),
-        size: (lines * 2 * size_of::<LineVertex>()) as u64,
-        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    })
 }

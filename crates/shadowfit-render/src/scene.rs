@@ -24,6 +24,8 @@ pub struct GpuScene {
     /// Bounds of all instances, relative to the eye.
     boxes: Vec<shadowfit::Aabb>,
     data: Vec<InstanceData>,
+    /// [`InstanceData::holder`] of each instance, in frames that show them; else empty.
+    holders: Vec<u32>,
     pub(crate) instance_buffer: wgpu::Buffer,
 }
 
@@ -95,6 +97,7 @@ impl GpuScene {
             eye: DVec3::ZERO,
             boxes: Vec::new(),
             data: Vec::new(),
+            holders: Vec::new(),
             instance_buffer: instance_buffer(&gpu.device, count.max(1)),
         };
         gpu_scene.set_pose(gpu, scene, pose);
@@ -133,6 +136,7 @@ impl GpuScene {
     /// Starts a frame's instance list, for positions relative to `eye` (world space, metres).
     pub(crate) fn begin_frame(&mut self, eye: DVec3) {
         self.data.clear();
+        self.holders.clear();
         self.eye = eye;
         let relative = |point: Vec3| (point.as_dvec3() - eye).as_vec3();
         let boxes = self.instances.iter().map(|instance| instance.bounds);
@@ -143,6 +147,21 @@ impl GpuScene {
     /// Everything that casts shadows, by number, in world space. What has an animation, or hangs on it, counts as moving.
     pub fn casters(&self) -> Casters<'_> {
         self.casters.by_number()
+    }
+
+    /// Sets which maps hold the casters of this frame: bit i of a caster's mask stands for map i.
+    pub(crate) fn set_holders(&mut self, masks: &[u8]) {
+        self.holders.clear();
+        self.holders.resize(self.instances.len(), 0);
+        let mut of_instances = vec![None; self.instances.len()];
+        self.casters.merge_masks(masks, &mut of_instances);
+        for (holder, mask) in self.holders.iter_mut().zip(of_instances) {
+            *holder = match mask {
+                None => 0,
+                Some(0) => 1,
+                Some(mask) => 2 + u8::trailing_zeros(mask),
+            };
+        }
     }
 
     /// Adds casters, nearest to the light first, and returns their draws.
@@ -172,7 +191,9 @@ impl GpuScene {
                 let (instance, bounds) = (&self.instances[member], &self.boxes[member]);
                 if !bounds.is_empty() && keep(member, bounds) {
                     distance = distance.min(((bounds.min + bounds.max) * 0.5).length());
-                    self.data.push(instance_data(&instance.world_from_mesh, self.eye, instance.first_triangle));
+                    let data = instance_data(&instance.world_from_mesh, self.eye, instance.first_triangle);
+                    let holder = self.holders.get(member).copied().unwrap_or(0);
+                    self.data.push(InstanceData { holder, ..data });
                 }
             }
             let instances = start..self.data.len() as u32;
@@ -313,7 +334,8 @@ fn instance_data(world_from_mesh: &Mat4, eye: DVec3, first_triangle: u32) -> Ins
     InstanceData {
         rows: [relative.row(0).to_array(), relative.row(1).to_array(), relative.row(2).to_array()],
         first_triangle,
-        padding: [0; 3],
+        holder: 0,
+        padding: [0; 2],
     }
 }
 

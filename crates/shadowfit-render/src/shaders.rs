@@ -1,6 +1,11 @@
 //! The shader modules, put together from the pieces in `shaders/` and the shadow map's own WGSL.
 
+use core::fmt::Write as _;
+
+use shadowfit::figures::{ERROR_COLORS, PIXELS_PER_TEXEL_COLORS, linear_color};
 use shadowfit_wgpu::{ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgsl, stored_wgsl};
+
+use crate::Overlay;
 
 /// Bind group of the map's matrix in the shadow pass.
 pub const CASTER_GROUP: u32 = 0;
@@ -10,9 +15,13 @@ pub const SHADOW_GROUP: u32 = 1;
 
 const FRAME: &str = include_str!("shaders/frame.wgsl");
 const MATERIAL: &str = include_str!("shaders/material.wgsl");
+const OVERLAY: &str = include_str!("shaders/overlay.wgsl");
+const JUDGED: &str = include_str!("shaders/judged.wgsl");
+const MARK: &str = include_str!("shaders/mark.wgsl");
+const SCREEN: &str = include_str!("shaders/screen.wgsl");
 
 /// The pieces as they lie in the folder, for tests that look for files which no module uses.
-pub const PIECES: [(&str, &str); 10] = [
+pub const PIECES: [(&str, &str); 24] = [
     ("frame.wgsl", FRAME),
     ("material.wgsl", MATERIAL),
     ("sky.wgsl", include_str!("shaders/sky.wgsl")),
@@ -23,6 +32,20 @@ pub const PIECES: [(&str, &str); 10] = [
     ("lines.wgsl", include_str!("shaders/lines.wgsl")),
     ("inset.wgsl", include_str!("shaders/inset.wgsl")),
     ("mip.wgsl", include_str!("shaders/mip.wgsl")),
+    ("quads.wgsl", include_str!("shaders/quads.wgsl")),
+    ("overlay.wgsl", OVERLAY),
+    ("judged.wgsl", JUDGED),
+    ("screen.wgsl", SCREEN),
+    ("map_tint.wgsl", overlay_file(Overlay::MapTint)),
+    ("pixels_per_texel.wgsl", overlay_file(Overlay::PixelsPerTexel)),
+    ("texel_grid.wgsl", overlay_file(Overlay::TexelGrid)),
+    ("truth.wgsl", overlay_file(Overlay::Truth)),
+    ("error.wgsl", overlay_file(Overlay::Error)),
+    ("casters.wgsl", overlay_file(Overlay::Casters)),
+    ("mark.wgsl", MARK),
+    ("mark_rows.wgsl", include_str!("shaders/mark_rows.wgsl")),
+    ("marks.wgsl", include_str!("shaders/marks.wgsl")),
+    ("block.wgsl", include_str!("shaders/block.wgsl")),
 ];
 
 /// The sky.
@@ -61,7 +84,88 @@ pub fn lines() -> String {
     [FRAME, include_str!("shaders/lines.wgsl")].concat()
 }
 
-/// The shadow map's inset: frame, shadow map and inset are groups 0, 1 and 2.
+/// The shaded pass of an overlay, with its groups; a judged picture is group 3.
+pub fn overlay(shadow_map: &ShadowMapDescriptor, overlay: Overlay) -> String {
+    let judged = if overlay.is_judged() { in_group(JUDGED, 3) + &error_colors() } else { String::new() };
+    let scale = if overlay == Overlay::PixelsPerTexel { octave_color() } else { String::new() };
+    [&scene(shadow_map), OVERLAY, &judged, &scale, overlay_file(overlay)].concat()
+}
+
+/// The file of an overlay, whose `overlaid` colours a visible point.
+const fn overlay_file(overlay: Overlay) -> &'static str {
+    match overlay {
+        Overlay::None => "",
+        Overlay::MapTint => include_str!("shaders/map_tint.wgsl"),
+        Overlay::PixelsPerTexel => include_str!("shaders/pixels_per_texel.wgsl"),
+        Overlay::TexelGrid => include_str!("shaders/texel_grid.wgsl"),
+        Overlay::Truth => include_str!("shaders/truth.wgsl"),
+        Overlay::Error => include_str!("shaders/error.wgsl"),
+        Overlay::Casters => include_str!("shaders/casters.wgsl"),
+    }
+}
+
+/// A piece whose bindings are in a group.
+fn in_group(piece: &str, group: u32) -> String {
+    piece.replace("GROUP", &group.to_string())
+}
+
+/// Linear colour of a class of wrong pixels.
+fn error_colors() -> String {
+    let mut text =
+        "\n// Linear colour of a class of wrong pixels.\nfn error_color(kind: u32) -> vec3<f32> {\n".to_owned();
+    for (class, color) in (2..).zip(ERROR_COLORS.map(linear_color)) {
+        let _infallible = writeln!(
+            text,
+            "    if kind == {class}u {{ return vec3<f32>({:?}, {:?}, {:?}); }}",
+            color.x, color.y, color.z
+        );
+    }
+    text + "    return vec3<f32>(0.0);\n}\n"
+}
+
+/// Colour of pixels per texel by their octave, 0 at one pixel per texel: encoded, as the scale is interpolated.
+fn octave_color() -> String {
+    let mut text =
+        "\n// Encoded colour of a number of octaves from one pixel per texel.\nfn octave_color(octaves: f32) -> vec3<f32> {\n"
+            .to_owned();
+    let encoded = |color: [u8; 3]| {
+        let [r, g, b] = color.map(|byte| f32::from(byte) / 255.0);
+        format!("vec3<f32>({r:?}, {g:?}, {b:?})")
+    };
+    let [first, ..] = PIXELS_PER_TEXEL_COLORS;
+    let _infallible = writeln!(text, "    var color = {};", encoded(first.1));
+    for [(from, _), (_, color)] in PIXELS_PER_TEXEL_COLORS.array_windows() {
+        let (from, color) = (from.log2(), encoded(*color));
+        let _infallible = writeln!(text, "    color = mix(color, {color}, saturate(octaves - ({from:?})));");
+    }
+    text + "    return color;\n}\n"
+}
+
+/// The first pass of marks: a judged picture is group 0, depth of as many samples per pixel and marks are group 1.
+pub fn mark_rows(samples: u32) -> String {
+    let texture = if samples > 1 { "texture_depth_multisampled_2d" } else { "texture_depth_2d" };
+    let alias = format!("alias SceneDepth = {texture};\n");
+    [&alias, SCREEN, &in_group(JUDGED, 0), &in_group(MARK, 1), include_str!("shaders/mark_rows.wgsl")].concat()
+}
+
+/// The second pass of marks: marks and what the first pass found are group 0.
+pub fn marks() -> String {
+    [SCREEN, &in_group(MARK, 0), &error_colors(), include_str!("shaders/marks.wgsl")].concat()
+}
+
+/// Filled quadrilaterals.
+pub fn quads() -> String {
+    [FRAME, include_str!("shaders/quads.wgsl")].concat()
+}
+
+/// Depths of a block of texels: the block is group 0, the shadow map group 1.
+pub fn block(shadow_map: &ShadowMapDescriptor) -> String {
+    let options = WgslOptions::group(SHADOW_GROUP);
+    let (receiver, stored) = (receiver_wgsl(shadow_map, &options), stored_wgsl(shadow_map, &options));
+    [SCREEN, &receiver, &stored, include_str!("shaders/block.wgsl")].concat()
+}
+
+/// The shadow map's insets: frame and shadow map are groups 0 and 1.
 pub fn inset(shadow_map: &ShadowMapDescriptor) -> String {
     let options = WgslOptions::group(SHADOW_GROUP);
     let (receiver, stored) = (receiver_wgsl(shadow_map, &options), stored_wgsl(shadow_map, &options));

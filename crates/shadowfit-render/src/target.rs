@@ -16,7 +16,7 @@ pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth3
 pub struct RenderTarget {
     /// Width and height, in pixels.
     pub size: [u32; 2],
-    color: wgpu::Texture,
+    pub(crate) color: wgpu::Texture,
     pub(crate) color_view: wgpu::TextureView,
     pub(crate) multisampled: Option<wgpu::TextureView>,
     pub(crate) depth_view: wgpu::TextureView,
@@ -84,6 +84,10 @@ impl core::error::Error for ReadError {}
 fn attachment(device: &wgpu::Device, size: [u32; 2], format: wgpu::TextureFormat, samples: u32) -> wgpu::Texture {
     // Of several samples nobody reads the colours before they are resolved.
     let readable = match (samples, format) {
+        // Parts of pictures are copied into them.
+        (1, COLOR_FORMAT) => {
+            wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST
+        }
         (1, _) => wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC,
         (_, DEPTH_FORMAT) => wgpu::TextureUsages::TEXTURE_BINDING,
         _ => wgpu::TextureUsages::empty(),

@@ -2,23 +2,35 @@
 
 use std::fmt;
 
-use wgpu_profiler::{GpuProfiler, GpuProfilerQuery, GpuProfilerSettings};
+use shadowfit_wgpu::MAX_MAPS;
+use wgpu_profiler::{GpuProfiler, GpuProfilerQuery, GpuProfilerSettings, GpuTimerQueryResult};
 
 use crate::Gpu;
 
 /// A timed pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pass {
-    Shadow,
+    /// Into a map, by its number.
+    Shadow(usize),
+    Probe,
     Scene,
+    /// The shaded pass of a further picture of maps that a frame before it drew.
+    Again,
 }
 
-/// Times of the last frame that the GPU has finished, in milliseconds; `None` where the adapter
-/// has no timestamps.
+/// Times of the last frame that the GPU has finished, in milliseconds; `None` for passes that it had none of, and where the
+/// adapter has no timestamps.
+///
+/// A frame ends with its picture; a probe that is drawn before it belongs to it. Further pictures of the same maps
+/// ([`Frame::maps_stay`](crate::Frame::maps_stay)) are not timed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PassTimes {
     /// All shadow passes together.
     pub shadow_ms: Option<f32>,
+    /// The shadow passes of each map.
+    pub maps_ms: [Option<f32>; MAX_MAPS],
+    /// The probe pass.
+    pub probe_ms: Option<f32>,
     /// The shaded pass.
     pub scene_ms: Option<f32>,
 }
@@ -27,6 +39,9 @@ pub struct PassTimes {
 pub(crate) struct PassTimer {
     profiler: Option<GpuProfiler>,
     pub(crate) times: PassTimes,
+    /// Whether the frame that is open has a probe, and whether maps were drawn for it.
+    has_probe: bool,
+    has_maps: bool,
 }
 
 impl fmt::Debug for PassTimer {
@@ -35,12 +50,38 @@ impl fmt::Debug for PassTimer {
     }
 }
 
+/// Labels of the passes into the maps.
+const SHADOW_LABELS: [&str; MAX_MAPS] =
+    ["shadow 0", "shadow 1", "shadow 2", "shadow 3", "shadow 4", "shadow 5", "shadow 6", "shadow 7"];
+
 impl Pass {
-    const fn label(self) -> &'static str {
+    fn label(self) -> &'static str {
         match self {
-            Self::Shadow => "shadow",
+            Self::Shadow(map) => SHADOW_LABELS[map % MAX_MAPS],
+            Self::Probe => "probe",
             Self::Scene => "scene",
+            Self::Again => "scene again",
         }
+    }
+}
+
+impl PassTimes {
+    /// Times of a frame. What it lacks is left as it was where the frame is only a further picture of the same maps.
+    fn of(results: &[GpuTimerQueryResult], before: Self) -> Self {
+        let milliseconds = |pass: Pass| {
+            let ranges = results.iter().filter(|result| result.label == pass.label());
+            let seconds: f64 = ranges.filter_map(|result| result.time.as_ref()).map(|t| t.end - t.start).sum();
+            (seconds > 0.0).then_some((seconds * 1e3) as f32)
+        };
+        let maps_ms = core::array::from_fn(|map| milliseconds(Pass::Shadow(map)));
+        let times = Self {
+            shadow_ms: maps_ms.into_iter().flatten().reduce(|sum, map| sum + map),
+            maps_ms,
+            probe_ms: milliseconds(Pass::Probe),
+            scene_ms: milliseconds(Pass::Scene),
+        };
+        let is_further = results.iter().any(|result| result.label == Pass::Again.label());
+        if is_further { Self { probe_ms: times.probe_ms.or(before.probe_ms), ..before } } else { times }
     }
 }
 
@@ -48,7 +89,20 @@ impl PassTimer {
     pub(crate) fn new(device: &wgpu::Device) -> Self {
         let has_timestamps = device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
         let profiler = has_timestamps.then(|| GpuProfiler::new(device, GpuProfilerSettings::default()).ok()).flatten();
-        Self { profiler, times: PassTimes::default() }
+        Self { profiler, times: PassTimes::default(), has_probe: false, has_maps: false }
+    }
+
+    /// A probe comes next. One without a picture after it is a frame of its own.
+    pub(crate) fn begin_probe(&mut self, gpu: &Gpu, maps_stay: bool) {
+        if self.has_probe {
+            self.end_frame(gpu);
+        }
+        (self.has_probe, self.has_maps) = (true, !maps_stay);
+    }
+
+    /// What the shaded pass of a frame is timed as.
+    pub(crate) fn scene(&self, maps_stay: bool) -> Pass {
+        if maps_stay && !self.has_maps { Pass::Again } else { Pass::Scene }
     }
 
     /// Reserves the timestamps of a pass.
@@ -63,7 +117,7 @@ impl PassTimer {
         }
     }
 
-    /// Records the read-back of the frame's timestamps: the last thing before it is submitted.
+    /// Records the read-back of the timestamps: the last thing before an encoder is submitted.
     pub(crate) fn resolve(&mut self, encoder: &mut wgpu::CommandEncoder) {
         if let Some(profiler) = &mut self.profiler {
             profiler.resolve_queries(encoder);
@@ -72,6 +126,7 @@ impl PassTimer {
 
     /// Closes a submitted frame and takes the times of those that are finished.
     pub(crate) fn end_frame(&mut self, gpu: &Gpu) {
+        (self.has_probe, self.has_maps) = (false, false);
         let Some(profiler) = &mut self.profiler else { return };
         // On a lost device there are no times; reading the picture returns an error.
         let _unreported = gpu.without_reports();
@@ -82,12 +137,7 @@ impl PassTimer {
         }
         let period = gpu.queue.get_timestamp_period();
         while let Some(results) = profiler.process_finished_frame(period) {
-            let milliseconds = |pass: Pass| {
-                let ranges = results.iter().filter(|result| result.label == pass.label());
-                let seconds: f64 = ranges.filter_map(|result| result.time.as_ref()).map(|t| t.end - t.start).sum();
-                (seconds > 0.0).then_some((seconds * 1e3) as f32)
-            };
-            self.times = PassTimes { shadow_ms: milliseconds(Pass::Shadow), scene_ms: milliseconds(Pass::Scene) };
+            self.times = PassTimes::of(&results, self.times);
         }
     }
 }

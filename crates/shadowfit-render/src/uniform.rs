@@ -8,8 +8,6 @@ use shadowfit::{DepthConvention, PerspectiveCamera};
 use shadowfit_scene::{Material, Texture};
 use shadowfit_wgpu::MAX_MAPS;
 
-use crate::Overlay;
-
 /// Colours of sun and sky, linear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Atmosphere {
@@ -36,10 +34,6 @@ impl Default for Atmosphere {
         }
     }
 }
-
-/// Share of a map's tint in a surface's colour: strong enough to identify the map, and weak enough that shadows
-/// stay clear under it.
-const TINT_SHARE: f32 = 0.35;
 
 /// What every shader of a frame reads: `Frame` in WGSL.
 #[repr(C)]
@@ -71,7 +65,7 @@ pub struct FrameUniform {
     pub viewport: [f32; 2],
     /// Keeps the struct a multiple of 16 bytes.
     pub padding: [f32; 2],
-    /// Linear [`MAP_TINTS`](shadowfit::figures::MAP_TINTS), and as alpha their share in a surface's colour: 0 without the overlay.
+    /// Linear [`MAP_TINTS`](shadowfit::figures::MAP_TINTS), for overlays; alpha is 1.
     pub map_tints: [[f32; 4]; MAX_MAPS],
 }
 
@@ -100,18 +94,8 @@ impl FrameUniform {
             ground: sky.ground.extend(0.0).to_array(),
             viewport: viewport.map(|side| side as f32),
             padding: [0.0; 2],
-            map_tints: [[0.0; 4]; MAX_MAPS],
+            map_tints: linear_map_tints().map(|tint| tint.extend(1.0).to_array()),
         }
-    }
-
-    /// The same with an overlay.
-    #[must_use]
-    pub fn with_overlay(self, overlay: Overlay) -> Self {
-        let share = match overlay {
-            Overlay::None => 0.0,
-            Overlay::MapTint => TINT_SHARE,
-        };
-        Self { map_tints: linear_map_tints().map(|tint| tint.extend(share).to_array()), ..self }
     }
 }
 
@@ -170,8 +154,11 @@ pub struct InstanceData {
     pub rows: [[f32; 4]; 3],
     /// Number of the instance's first triangle in the scene, for probes.
     pub first_triangle: u32,
+    /// The map that holds it, for [`Overlay::Casters`](crate::Overlay::Casters): its index plus 2, 1 if no map does, 0 for
+    /// what casts nothing.
+    pub holder: u32,
     /// Keeps the struct a multiple of 16 bytes.
-    pub padding: [u32; 3],
+    pub padding: [u32; 2],
 }
 
 /// One end of a line, relative to the eye, with linear colour.
@@ -184,16 +171,74 @@ pub struct LineVertex {
     pub color: [f32; 4],
 }
 
-/// What the shadow-map inset reads: `Inset` in WGSL.
+/// An inset in a vertex buffer, as an instance.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub struct InsetUniform {
+pub struct InsetVertex {
     /// Left, top, width and height of the inset in the picture, in pixels.
     pub rectangle: [f32; 4],
     /// Stored depths shown as black and as white.
     pub depth_range: [f32; 2],
     /// Which map is shown.
     pub map: u32,
+    /// Linear colour of its frame.
+    pub border: [f32; 3],
+}
+
+/// A quadrilateral in a vertex buffer, as an instance.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct QuadVertex {
+    /// The first two corners, in pixels.
+    pub first: [f32; 4],
+    /// The other two.
+    pub second: [f32; 4],
+    /// Linear colour and alpha.
+    pub color: [f32; 4],
+}
+
+/// Where surfaces and pixels are found in a judged picture: `Judged` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct JudgedUniform {
+    /// Clip space of the judged camera from world positions relative to the frame's eye.
+    pub clip_from_world: [[f32; 4]; 4],
+    /// The same from the frame's normalised device coordinates, with its reversed depth.
+    pub clip_from_ndc: [[f32; 4]; 4],
+    /// Width and height of the judged picture, in pixels.
+    pub size: [f32; 2],
+    /// Its pixels for each pixel of the frame where both have the same camera; 0 where they do not.
+    pub scale: [f32; 2],
+}
+
+/// How wrong pixels are marked: `Marks` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct MarksUniform {
+    /// Opacity, 0..=1.
+    pub strength: f32,
+    /// 1 for outlines, 0 for filled marks.
+    pub outline: u32,
+    /// Classes that are marked: bit i for class i.
+    pub classes: u32,
     /// Keeps the struct a multiple of 16 bytes.
     pub padding: u32,
+}
+
+/// Which texels of a map are read back: `Block` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct BlockUniform {
+    /// Left top texel of the block.
+    pub first: [i32; 2],
+    /// Last texel of the map, at its right bottom.
+    pub last: [i32; 2],
+    /// Index of the map.
+    pub map: u32,
+    /// Keeps the struct a multiple of 16 bytes.
+    pub padding_0: u32,
+    /// As above.
+    pub padding_1: u32,
+    /// As above.
+    pub padding_2: u32,
 }

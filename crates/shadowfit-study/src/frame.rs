@@ -2,7 +2,7 @@
 
 use shadowfit::PerspectiveCamera;
 use shadowfit::tool::CameraSettings;
-use shadowfit_render::{Atmosphere, Culling, Frame, Inset, Line, Overlay};
+use shadowfit_render::{Atmosphere, Culling, Frame, Inset, JudgedPicture, Line, Marks, Overlay, Quad};
 use shadowfit_wgpu::MapFit;
 
 use crate::View;
@@ -15,12 +15,22 @@ pub struct FrameOptions<'a> {
     pub outside: Option<PerspectiveCamera>,
     /// Which casters are drawn into the maps.
     pub culling: Culling,
-    /// What is laid over the shaded surfaces.
+    /// What the surfaces show.
     pub overlay: Overlay,
+    /// A judged picture, for overlays and marks that show how the shadows were judged.
+    pub judged: Option<JudgedPicture<'a>>,
+    /// Marks of its wrong pixels.
+    pub marks: Option<Marks>,
     /// Lines drawn over the scene.
     pub lines: &'a [Line],
-    /// Shadow map shown in a corner.
-    pub inset: Option<Inset>,
+    /// Shadow maps shown in the picture.
+    pub insets: &'a [Inset],
+    /// Coloured quadrilaterals over picture and insets.
+    pub quads: &'a [Quad],
+    /// Left, top, width and height of the part of the picture that is drawn, in pixels; all of it if `None`.
+    pub scissor: Option<[u32; 4]>,
+    /// Whether the maps are used as they were drawn last, and none is drawn.
+    pub maps_stay: bool,
     /// Whether shadows are drawn.
     pub shadows: bool,
     /// Distance that the haze suits, in metres: it grows as dense there as the default haze at the default camera's far
@@ -34,8 +44,13 @@ impl Default for FrameOptions<'_> {
             outside: None,
             culling: Culling::default(),
             overlay: Overlay::default(),
+            judged: None,
+            marks: None,
             lines: &[],
-            inset: None,
+            insets: &[],
+            quads: &[],
+            scissor: None,
+            maps_stay: false,
             shadows: true,
             sight: None,
         }
@@ -64,9 +79,14 @@ pub(crate) fn frame<'a>(
         choice: options.outside.map(|_| (view.camera.eye, view.camera.forward.normalize())),
         culling: options.culling,
         overlay: options.overlay,
+        judged: options.judged,
+        marks: options.marks,
         shadows: options.shadows,
         lines: options.lines,
-        inset: options.inset,
+        insets: options.insets,
+        quads: options.quads,
+        scissor: options.scissor,
+        maps_stay: options.maps_stay,
         ..Frame::new(camera, view.direction, maps, atmosphere)
     }
 }

@@ -268,6 +268,7 @@ impl Stage {
         let lines = if is_outside { outside::lines(&fitted) } else { Vec::new() };
         let shown = settings.inset_index(maps.len() as u32);
         let inset = maps.get(shown).filter(|_| settings.inset != InsetMaps::Off);
+        let inset = inset.map(|map| inset::inset(shown, &map.fit, &self.bounds(), target.size));
         let options = FrameOptions {
             outside: from_elsewhere,
             // Maps that are themselves looked at from elsewhere hold all their casters, not only those of this
@@ -275,9 +276,10 @@ impl Stage {
             culling: if from_elsewhere.is_some() { Culling::WholeMap } else { Culling::Swept },
             overlay: if settings.mode == ViewMode::Maps { Overlay::MapTint } else { Overlay::None },
             lines: &lines,
-            inset: inset.map(|map| inset::inset(shown, &map.fit, &self.bounds(), target.size)),
+            insets: inset.as_slice(),
             shadows: settings.shadows,
             sight: Some(self.sight(outside.as_ref())),
+            ..FrameOptions::default()
         };
         match self.evaluator.draw(&self.gpu, &mut self.scene, &view, &maps, &options, target) {
             Ok(statistics) => {

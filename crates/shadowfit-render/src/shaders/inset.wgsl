@@ -1,32 +1,39 @@
-// The shadow map in a corner of the picture, its depths stretched to grey.
+// Shadow maps in the picture, their depths stretched to grey.
 
-struct Inset {
-    rectangle: vec4<f32>,
-    depth_range: vec2<f32>,
-    map: u32,
-    padding: u32,
+struct InsetIn {
+    @builtin(vertex_index) corner: u32,
+    @location(0) rectangle: vec4<f32>,
+    @location(1) depth_range: vec2<f32>,
+    @location(2) map: u32,
+    @location(3) border: vec3<f32>,
 }
 
-@group(2) @binding(0) var<uniform> inset: Inset;
+struct InsetOut {
+    @builtin(position) pixel: vec4<f32>,
+    @location(0) @interpolate(flat) rectangle: vec4<f32>,
+    @location(1) @interpolate(flat) depth_range: vec2<f32>,
+    @location(2) @interpolate(flat) map: u32,
+    @location(3) @interpolate(flat) border: vec3<f32>,
+}
 
 const FRAME_PIXELS: f32 = 1.0;
 
 @vertex
-fn vs_inset(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    let corner = vec2<f32>(f32(index & 1u), f32(index >> 1u));
-    let pixel = inset.rectangle.xy + corner * inset.rectangle.zw;
+fn vs_inset(in: InsetIn) -> InsetOut {
+    let corner = vec2<f32>(f32(in.corner & 1u), f32(in.corner >> 1u));
+    let pixel = in.rectangle.xy + corner * in.rectangle.zw;
     let ndc = pixel / frame.viewport * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0);
-    return vec4<f32>(ndc, 0.0, 1.0);
+    return InsetOut(vec4<f32>(ndc, 0.0, 1.0), in.rectangle, in.depth_range, in.map, in.border);
 }
 
 @fragment
-fn fs_inset(@builtin(position) pixel: vec4<f32>) -> @location(0) vec4<f32> {
-    let at = pixel.xy - inset.rectangle.xy;
-    let border = min(min(at.x, at.y), min(inset.rectangle.z - at.x, inset.rectangle.w - at.y));
+fn fs_inset(in: InsetOut) -> @location(0) vec4<f32> {
+    let at = in.pixel.xy - in.rectangle.xy;
+    let border = min(min(at.x, at.y), min(in.rectangle.z - at.x, in.rectangle.w - at.y));
     let size = vec2<f32>(textureDimensions(shadowfit_texture));
-    let depth = shadowfit_stored(inset.map, vec2<i32>(at / inset.rectangle.zw * size));
-    let gray = (depth - inset.depth_range.x) / (inset.depth_range.y - inset.depth_range.x);
+    let depth = shadowfit_stored(in.map, vec2<i32>(at / in.rectangle.zw * size));
+    let gray = (depth - in.depth_range.x) / (in.depth_range.y - in.depth_range.x);
     // Squared, since the target encodes: equal depth steps are then nearly equal steps to the eye.
     let shade = saturate(gray) * saturate(gray);
-    return select(vec4<f32>(vec3<f32>(shade), 1.0), vec4<f32>(0.9, 0.9, 0.9, 1.0), border < FRAME_PIXELS);
+    return vec4<f32>(select(vec3<f32>(shade), in.border, border < FRAME_PIXELS), 1.0);
 }

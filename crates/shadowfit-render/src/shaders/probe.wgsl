@@ -4,7 +4,7 @@
 fn probed(in: SceneOut, triangle: u32) -> vec2<u32> {
     let geometric = geometric_normal(in.position, dpdx(in.position), dpdy(in.position));
     let factor = shadowfit_factor_at(in.position, geometric, in.clip.xy);
-    return vec2<u32>(in.first_triangle + triangle + 1u, bitcast<u32>(factor));
+    return vec2<u32>(in.number + triangle + 1u, bitcast<u32>(factor));
 }
 
 @fragment

@@ -9,7 +9,8 @@ struct SceneIn {
     @location(5) row0: vec4<f32>,
     @location(6) row1: vec4<f32>,
     @location(7) row2: vec4<f32>,
-    @location(8) first_triangle: u32,
+    // Of the instance: its first triangle, or for the overlay of casters the map that holds it.
+    @location(8) number: u32,
 }
 
 struct SceneOut {
@@ -19,7 +20,7 @@ struct SceneOut {
     @location(2) tangent: vec4<f32>,
     @location(3) uv: vec2<f32>,
     @location(4) color: vec4<f32>,
-    @location(5) @interpolate(flat) first_triangle: u32,
+    @location(5) @interpolate(flat) number: u32,
 }
 
 @vertex
@@ -42,7 +43,7 @@ fn vs_scene(in: SceneIn) -> SceneOut {
     out.tangent = vec4<f32>(tangent, in.tangent.w * mirror);
     out.uv = in.uv;
     out.color = in.color;
-    out.first_triangle = in.first_triangle;
+    out.number = in.number;
     return out;
 }
 
@@ -99,32 +100,48 @@ fn ambient(base: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     return base * light * (1.0 - material.metallic * 0.6) + mirrored;
 }
 
-// Colour with the tint of the map that a point reads, where the frame asks for it.
-fn with_map_tint(color: vec3<f32>, position: vec3<f32>) -> vec3<f32> {
-    if frame.map_tints[0].a == 0.0 {
-        return color;
-    }
-    let map = shadowfit_map_index(position);
-    let tint = frame.map_tints[max(map, 0)];
-    return select(color, mix(color, tint.rgb, tint.a), map >= 0);
+// What shading knows of a visible point.
+struct Surface {
+    // Base colour and alpha.
+    base: vec4<f32>,
+    // Unit normal of the triangle, on the side that the eye sees, and the one that is shaded.
+    geometric: vec3<f32>,
+    normal: vec3<f32>,
+    to_eye: vec3<f32>,
+}
+
+// Called where control flow is uniform: it takes derivatives.
+fn surface_of(in: SceneOut) -> Surface {
+    let texel = textureSample(normal_texture, normal_sampler, transformed_uv(material.normal_uv, in.uv)).xyz;
+    let base = base_color(in.uv) * in.color;
+    let geometric = geometric_normal(in.position, dpdx(in.position), dpdy(in.position));
+    return Surface(base, geometric, shading_normal(in, geometric, texel), -normalize(in.position));
+}
+
+// Share of the sun's light that the maps let through to a visible point.
+fn mapped_factor(in: SceneOut, surface: Surface) -> f32 {
+    return mix(1.0, shadowfit_factor_at(in.position, surface.geometric, in.clip.xy), frame.shadows);
+}
+
+// Colour of a visible point that a share of the sun's light reaches.
+fn lit(in: SceneOut, surface: Surface, factor: f32) -> vec3<f32> {
+    // A surface that faces away from the sun is dark whatever its interpolated normal says.
+    let facing = smoothstep(0.0, 0.08, dot(surface.geometric, frame.to_light));
+    let sunlight = frame.sun * (factor * facing);
+    let radiance = reflectance(surface.base.rgb, surface.normal, surface.to_eye, frame.to_light) * sunlight
+        + ambient(surface.base.rgb, surface.normal, surface.to_eye)
+        + material.emissive;
+    return tone_map(with_haze(radiance, in.position));
+}
+
+fn opacity(surface: Surface) -> f32 {
+    return mix(1.0, surface.base.a, material.blended);
 }
 
 // Colour of a visible point. Called where control flow is uniform: it takes derivatives.
 fn shaded(in: SceneOut) -> vec4<f32> {
-    let texel = textureSample(normal_texture, normal_sampler, transformed_uv(material.normal_uv, in.uv)).xyz;
-    let base = base_color(in.uv) * in.color;
-    let geometric = geometric_normal(in.position, dpdx(in.position), dpdy(in.position));
-    let normal = shading_normal(in, geometric, texel);
-    let to_eye = -normalize(in.position);
-    let factor = mix(1.0, shadowfit_factor_at(in.position, geometric, in.clip.xy), frame.shadows);
-    // A surface that faces away from the sun is dark whatever its interpolated normal says.
-    let facing = smoothstep(0.0, 0.08, dot(geometric, frame.to_light));
-    let sunlight = frame.sun * (factor * facing);
-    let radiance = reflectance(base.rgb, normal, to_eye, frame.to_light) * sunlight
-        + ambient(base.rgb, normal, to_eye)
-        + material.emissive;
-    let color = with_map_tint(tone_map(with_haze(radiance, in.position)), in.position);
-    return vec4<f32>(color, mix(1.0, base.a, material.blended));
+    let surface = surface_of(in);
+    return vec4<f32>(lit(in, surface, mapped_factor(in, surface)), opacity(surface));
 }
 
 // Cut-outs have entry points of their own: a shader that may discard is run before the depth test.

@@ -23,6 +23,7 @@ pub(super) fn inset(map: usize, fit: &LightFit, bounds: &Aabb, size: [u32; 2]) -
         rectangle: [margin, size[1] as f32 - height - margin, width, height],
         depth_range: depths(fit, bounds).unwrap_or([0.0, 1.0]),
         map: map as u32,
+        border: Inset::BORDER,
     }
 }
 

@@ -1,0 +1,28 @@
+//! Shadow maps shown in the picture.
+
+use glam::Vec3;
+
+use crate::uniform::InsetVertex;
+
+/// Where and how a shadow map is shown in the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inset {
+    /// Left, top, width and height, in pixels.
+    pub rectangle: [f32; 4],
+    /// Stored depths shown as black and white.
+    pub depth_range: [f32; 2],
+    /// Index of the map that is shown.
+    pub map: u32,
+    /// Linear colour of the frame of one pixel around it, which lies inside the rectangle.
+    pub border: Vec3,
+}
+
+impl Inset {
+    /// Linear colour of a frame that stands out from most pictures.
+    pub const BORDER: Vec3 = Vec3::splat(0.9);
+
+    pub(crate) fn vertex(&self) -> InsetVertex {
+        let Self { rectangle, depth_range, map, border } = *self;
+        InsetVertex { rectangle, depth_range, map, border: border.to_array() }
+    }
+}

@@ -1,0 +1,140 @@
+//! Marks of wrong pixels over any view: a pass finds the nearest wrong pixel in each row, and a second one draws from
+//! these what lies within a few pixels of one.
+
+use crate::judged::JudgedInput;
+use crate::pipelines::{Maker, Shape};
+use crate::target::{COLOR_FORMAT, RenderTarget};
+use crate::uniform::MarksUniform;
+use crate::{Gpu, bindings, shaders};
+
+/// How wrong pixels of a [`JudgedPicture`](crate::JudgedPicture) are marked, in the
+/// [colours of their classes](shadowfit::figures::ERROR_COLORS).
+///
+/// The picture's pixels are looked up in the judged one as surfaces are: by their depth where the cameras differ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Marks {
+    /// Whether areas of wrong pixels are outlined, three pixels away from them, so that a single one has a ring around
+    /// it; else they are filled, with a pixel around them.
+    pub outline: bool,
+    /// Opacity, 0..=1, which may change from frame to frame so that marks blink.
+    pub strength: f32,
+    /// Which classes are marked: false shadow, false light, hole, edge.
+    pub classes: [bool; 4],
+}
+
+impl Default for Marks {
+    /// All classes, outlined.
+    fn default() -> Self {
+        Self { outline: true, strength: 1.0, classes: [true; 4] }
+    }
+}
+
+/// Nearest wrong pixels by row: bits 0 to 3 their distance, 4 to 7 their class; 0 for none.
+const ROWS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Uint;
+
+/// Pipelines and buffers of the two passes.
+#[derive(Debug)]
+pub(crate) struct MarkPasses {
+    rows_layout: wgpu::BindGroupLayout,
+    marks_layout: wgpu::BindGroupLayout,
+    rows: wgpu::RenderPipeline,
+    marks: wgpu::RenderPipeline,
+    uniform: wgpu::Buffer,
+    nearest: Option<([u32; 2], wgpu::TextureView)>,
+}
+
+/// The second pass, ready to be drawn over the picture.
+#[derive(Debug)]
+pub(crate) struct PreparedMarks {
+    pipeline: wgpu::RenderPipeline,
+    group: wgpu::BindGroup,
+}
+
+impl MarkPasses {
+    /// For targets of `samples` per pixel.
+    pub(crate) fn new(device: &wgpu::Device, judged: &JudgedInput, samples: u32) -> Self {
+        let layout = |sampled, multisampled| {
+            let types = [bindings::UNIFORM, bindings::texture(sampled, multisampled)];
+            bindings::layout(device, "marks", wgpu::ShaderStages::FRAGMENT, &types)
+        };
+        let rows_layout = layout(wgpu::TextureSampleType::Depth, samples > 1);
+        let marks_layout = layout(wgpu::TextureSampleType::Uint, false);
+        let maker = Maker { device, samples: 1 };
+        let rows_groups = maker.layout(&[&judged.layout, &rows_layout]);
+        let rows_module = maker.module("mark rows", shaders::mark_rows(samples));
+        let rows = maker.pipeline(&Shape {
+            targets: &[Some(ROWS_FORMAT.into())],
+            ..Shape::new("mark rows", &rows_groups, &rows_module, ["vs_screen", "fs_mark_rows"])
+        });
+        let (marks_groups, marks_module) = (maker.layout(&[&marks_layout]), maker.module("marks", shaders::marks()));
+        let blend = Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
+        let marks = maker.pipeline(&Shape {
+            targets: &[Some(wgpu::ColorTargetState { blend, ..COLOR_FORMAT.into() })],
+            ..Shape::new("marks", &marks_groups, &marks_module, ["vs_screen", "fs_marks"])
+        });
+        let uniform = bindings::uniform_buffer::<MarksUniform>(device, "marks");
+        Self { rows_layout, marks_layout, rows, marks, uniform, nearest: None }
+    }
+
+    /// Records the first pass, once the scene is drawn. `judged` is the frame's bind group.
+    pub(crate) fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        marks: &Marks,
+        judged: &wgpu::BindGroup,
+        target: &RenderTarget,
+    ) -> PreparedMarks {
+        gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&MarksUniform::new(marks)));
+        let nearest = self.nearest(gpu, target.size);
+        let group = |layout, view| {
+            let resources = [self.uniform.as_entire_binding(), wgpu::BindingResource::TextureView(view)];
+            bindings::group(&gpu.device, "marks", layout, &resources)
+        };
+        let rows = group(&self.rows_layout, &target.depth_view);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("mark rows"),
+            color_attachments: &[Some(crate::attachment::cleared(&nearest, None, wgpu::Color::TRANSPARENT))],
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.rows);
+        pass.set_bind_group(0, judged, &[]);
+        pass.set_bind_group(1, &rows, &[]);
+        pass.draw(0..3, 0..1);
+        PreparedMarks { pipeline: self.marks.clone(), group: group(&self.marks_layout, &nearest) }
+    }
+
+    /// The texture between the passes, of the target's size.
+    fn nearest(&mut self, gpu: &Gpu, size: [u32; 2]) -> wgpu::TextureView {
+        let kept = self.nearest.take().filter(|(of, _)| *of == size);
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+        let make = || bindings::plain_texture(&gpu.device, "mark rows", size, ROWS_FORMAT, usage);
+        let view = kept.map_or_else(|| make().create_view(&Default::default()), |(_, view)| view);
+        self.nearest = Some((size, view.clone()));
+        view
+    }
+}
+
+impl PreparedMarks {
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+impl MarksUniform {
+    /// The uniform of marks.
+    pub fn new(marks: &Marks) -> Self {
+        let bit = |class: usize| if marks.classes[class] { 1 << (class + FIRST_WRONG) } else { 0 };
+        Self {
+            strength: marks.strength.clamp(0.0, 1.0),
+            outline: marks.outline.into(),
+            classes: (0..4).map(bit).sum(),
+            padding: 0,
+        }
+    }
+}
+
+/// The number of the first class of wrong pixels, false shadow.
+const FIRST_WRONG: usize = 2;

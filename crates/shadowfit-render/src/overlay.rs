@@ -1,0 +1,40 @@
+//! What surfaces show instead of their plain shading.
+
+/// What the surfaces show. Each but [`Overlay::None`] has shaders of its own, which are made when it is first shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Overlay {
+    /// Their shading alone.
+    #[default]
+    None,
+    /// The map that each point reads, in the colours [`MAP_TINTS`](shadowfit::figures::MAP_TINTS); where it reads two,
+    /// both mixed by their weights. What no map covers keeps its own colour.
+    MapTint,
+    /// Screen pixels per texel along the worse axis
+    /// ([`pixels_per_texel`](shadowfit::diagnostics::pixels_per_texel)) of the map that weighs more in a point's shadow, as
+    /// [`pixels_per_texel_color`](shadowfit::figures::pixels_per_texel_color), darker where there is less light. What no
+    /// map covers is hatched in grey.
+    PixelsPerTexel,
+    /// The texels of the map that weighs more in a point's shadow, as a checkerboard with lines in the map's tint. Where
+    /// a texel is less than about two pixels wide it fades to the flat tint. What no map covers keeps its own colour.
+    TexelGrid,
+    /// The shadows that rays found ([`Frame::judged`](crate::Frame::judged)). What was not judged, though it faces the
+    /// light, has the maps' shadows and is hatched.
+    Truth,
+    /// The picture in dim grey, and wrong pixels of [`Frame::judged`](crate::Frame::judged) in the
+    /// [colours of their classes](shadowfit::figures::ERROR_COLORS).
+    Error,
+    /// Which casters the maps hold: an instance has the tint of the first map that holds it, or is cold and dark if it is
+    /// in none. Blended surfaces, which cast nothing, are grey.
+    Casters,
+}
+
+impl Overlay {
+    /// All that have shaders of their own.
+    pub const ALL: [Self; 6] =
+        [Self::MapTint, Self::PixelsPerTexel, Self::TexelGrid, Self::Truth, Self::Error, Self::Casters];
+
+    /// Whether it shows a judged picture.
+    pub const fn is_judged(self) -> bool {
+        matches!(self, Self::Truth | Self::Error)
+    }
+}

@@ -1,0 +1,158 @@
+//! How pipelines are made: what differs between them, and the vertex streams of the scene's parts.
+
+use core::mem::offset_of;
+
+use crate::target::{COLOR_FORMAT, DEPTH_FORMAT};
+use crate::uniform::InstanceData;
+
+/// Makes modules, layouts and pipelines.
+#[derive(Clone, Copy)]
+pub(crate) struct Maker<'a> {
+    pub(crate) device: &'a wgpu::Device,
+    /// Samples per pixel of the camera's passes.
+    pub(crate) samples: u32,
+}
+
+/// What differs between the pipelines.
+pub(crate) struct Shape<'a> {
+    pub(crate) label: &'a str,
+    pub(crate) layout: &'a wgpu::PipelineLayout,
+    pub(crate) module: &'a wgpu::ShaderModule,
+    pub(crate) entries: [&'a str; 2],
+    pub(crate) buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    pub(crate) targets: &'a [Option<wgpu::ColorTargetState>],
+    pub(crate) topology: wgpu::PrimitiveTopology,
+    pub(crate) cull_mode: Option<wgpu::Face>,
+    /// Whether depth is written, and how it is compared.
+    pub(crate) depth: Option<(bool, wgpu::CompareFunction)>,
+    pub(crate) samples: u32,
+}
+
+/// The target of passes that draw opaque colours.
+pub(crate) const COLOR: [Option<wgpu::ColorTargetState>; 1] =
+    [Some(wgpu::ColorTargetState { format: COLOR_FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL })];
+
+/// The target of passes that draw colours over others by their alpha.
+pub(crate) const BLENDED_COLOR: [Option<wgpu::ColorTargetState>; 1] = [Some(wgpu::ColorTargetState {
+    format: COLOR_FORMAT,
+    blend: Some(wgpu::BlendState::ALPHA_BLENDING),
+    write_mask: wgpu::ColorWrites::ALL,
+})];
+
+impl<'a> Shape<'a> {
+    /// Triangles of one sample without vertices, depth or blending: what fills the picture.
+    pub(crate) fn new(
+        label: &'a str,
+        layout: &'a wgpu::PipelineLayout,
+        module: &'a wgpu::ShaderModule,
+        entries: [&'a str; 2],
+    ) -> Self {
+        Self {
+            label,
+            layout,
+            module,
+            entries,
+            buffers: &[],
+            targets: &COLOR,
+            topology: wgpu::PrimitiveTopology::TriangleList,
+            cull_mode: None,
+            depth: None,
+            samples: 1,
+        }
+    }
+}
+
+impl Maker<'_> {
+    pub(crate) fn module(&self, label: &str, source: String) -> wgpu::ShaderModule {
+        self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(label),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        })
+    }
+
+    pub(crate) fn layout(&self, groups: &[&wgpu::BindGroupLayout]) -> wgpu::PipelineLayout {
+        let groups: Vec<_> = groups.iter().map(|group| Some(*group)).collect();
+        self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: &groups,
+            immediate_size: 0,
+        })
+    }
+
+    pub(crate) fn pipeline(&self, shape: &Shape<'_>) -> wgpu::RenderPipeline {
+        self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(shape.label),
+            layout: Some(shape.layout),
+            vertex: wgpu::VertexState {
+                module: shape.module,
+                entry_point: Some(shape.entries[0]),
+                compilation_options: Default::default(),
+                buffers: shape.buffers,
+            },
+            primitive: wgpu::PrimitiveState {
+                topology: shape.topology,
+                cull_mode: shape.cull_mode,
+                ..Default::default()
+            },
+            depth_stencil: shape.depth.map(|(write, compare)| wgpu::DepthStencilState {
+                format: DEPTH_FORMAT,
+                depth_write_enabled: Some(write),
+                depth_compare: Some(compare),
+                stencil: Default::default(),
+                bias: Default::default(),
+            }),
+            multisample: wgpu::MultisampleState { count: shape.samples, ..Default::default() },
+            fragment: Some(wgpu::FragmentState {
+                module: shape.module,
+                entry_point: Some(shape.entries[1]),
+                compilation_options: Default::default(),
+                targets: shape.targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
+
+/// What shaders read as an instance's number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum InstanceNumber {
+    /// That of its first triangle.
+    FirstTriangle,
+    /// The map that holds it.
+    Holder,
+}
+
+/// The three vertex streams of a part: what deforms, what does not, and the instances.
+pub(crate) fn part_buffers(number: InstanceNumber) -> [Option<wgpu::VertexBufferLayout<'static>>; 3] {
+    const MOTION: [wgpu::VertexAttribute; 3] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4];
+    const SURFACE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![3 => Float32x2, 4 => Float32x4];
+    const FIRST_TRIANGLE: [wgpu::VertexAttribute; 4] = instance(offset_of!(InstanceData, first_triangle));
+    const HOLDER: [wgpu::VertexAttribute; 4] = instance(offset_of!(InstanceData, holder));
+    let stream =
+        |array_stride, step_mode, attributes| Some(wgpu::VertexBufferLayout { array_stride, step_mode, attributes });
+    let instance = match number {
+        InstanceNumber::FirstTriangle => &FIRST_TRIANGLE,
+        InstanceNumber::Holder => &HOLDER,
+    };
+    [
+        stream(40, wgpu::VertexStepMode::Vertex, &MOTION),
+        stream(24, wgpu::VertexStepMode::Vertex, &SURFACE),
+        stream(size_of::<InstanceData>() as u64, wgpu::VertexStepMode::Instance, instance),
+    ]
+}
+
+/// Rows of the transform, and the number at an offset.
+const fn instance(number: usize) -> [wgpu::VertexAttribute; 4] {
+    const ROW: usize = size_of::<[f32; 4]>();
+    const ROWS: usize = offset_of!(InstanceData, rows);
+    const fn attribute(location: u32, format: wgpu::VertexFormat, offset: usize) -> wgpu::VertexAttribute {
+        wgpu::VertexAttribute { format, offset: offset as u64, shader_location: location }
+    }
+    [
+        attribute(5, wgpu::VertexFormat::Float32x4, ROWS),
+        attribute(6, wgpu::VertexFormat::Float32x4, ROWS + ROW),
+        attribute(7, wgpu::VertexFormat::Float32x4, ROWS + 2 * ROW),
+        attribute(8, wgpu::VertexFormat::Uint32, number),
+    ]
+}

@@ -1,0 +1,75 @@
+//! The shadow passes.
+
+use shadowfit::ViewFrustum;
+use shadowfit_wgpu::{Casters, Culling, MapView, ShadowMapError, ShadowPiece, SunFrame};
+use wgpu_profiler::GpuProfilerQuery;
+
+use super::{Plan, Renderer};
+use crate::Gpu;
+use crate::casters::CasterDraw;
+use crate::frame::Frame;
+use crate::scene::GpuScene;
+use crate::shaders::CASTER_GROUP;
+use crate::timer::Pass;
+
+impl Renderer {
+    /// Finds what is to be drawn into the maps, and writes what they are looked up by.
+    pub(super) fn prepare_maps(
+        &mut self,
+        gpu: &Gpu,
+        scene: &GpuScene,
+        frame: &Frame<'_>,
+    ) -> Result<(), ShadowMapError> {
+        let (eye, forward) = frame.chooser();
+        let origin = frame.camera.eye;
+        if frame.maps_stay {
+            return self.maps.look_from(&gpu.queue, &MapView { origin, ..MapView::from_eye(eye, forward) });
+        }
+        // What an invalid camera sees is unknown: maps get all casters that they can store.
+        let seen: Option<ViewFrustum> = frame.camera.frustum().ok();
+        self.maps.culling = if seen.is_some() { frame.culling } else { Culling::WholeMap };
+        let casters: Casters<'_> = scene.casters();
+        let sun = SunFrame {
+            eye,
+            forward,
+            receivers: None,
+            ..SunFrame::new(seen.as_slice(), frame.direction, casters.boxes, casters)
+        };
+        self.maps.update(&gpu.queue, &sun.with_origin(origin), frame.maps)
+    }
+
+    pub(super) fn shadow_passes(&self, encoder: &mut wgpu::CommandEncoder, scene: &GpuScene, plan: &Plan) {
+        let Some(shadow) = &plan.shadow else { return };
+        let mut pieces = shadow.iter();
+        for pass in self.maps.passes() {
+            let query = self.timer.begin(Pass::Shadow(pass.map()), encoder);
+            let timestamps = query.as_ref().and_then(GpuProfilerQuery::render_pass_timestamp_writes);
+            let mut opened = self.maps.begin_pass(encoder, &pass, CASTER_GROUP, timestamps);
+            for (piece, draws) in pass.pieces().zip(&mut pieces) {
+                self.draw_piece(&mut opened, scene, &piece, draws);
+            }
+            drop(opened);
+            self.timer.end(query, encoder);
+        }
+    }
+
+    fn draw_piece(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        scene: &GpuScene,
+        piece: &ShadowPiece<'_>,
+        draws: &[CasterDraw],
+    ) {
+        piece.set(pass);
+        for draw in draws {
+            let part = &scene.parts[draw.part];
+            pass.set_pipeline(self.pipelines.caster(part));
+            pass.set_bind_group(1, &scene.materials[part.material], &[]);
+            pass.set_vertex_buffer(0, part.motion.slice(..));
+            pass.set_vertex_buffer(1, part.surface.slice(..));
+            pass.set_vertex_buffer(2, scene.instance_buffer.slice(..));
+            pass.set_index_buffer(part.caster_indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(draw.indices.clone(), 0, draw.instances.start as u32..draw.instances.end as u32);
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! The passes that draw the scene as the camera sees it: shaded, and as a probe.
+
+use wgpu_profiler::GpuProfilerQuery;
+
+use super::{Plan, Renderer};
+use crate::attachment::{cleared, depth, drawn_over};
+use crate::probe::ProbeTargets;
+use crate::scene::{Draw, GpuScene, Part};
+use crate::target::{COLOR_FORMAT, RenderTarget};
+use crate::timer::Pass;
+use crate::{Gpu, Overlay, bindings};
+
+/// Bind groups of the material and of a judged picture.
+const MATERIAL_GROUP: u32 = 2;
+const JUDGED_GROUP: u32 = 3;
+
+impl Renderer {
+    /// Makes what an overlay needs that is not there yet.
+    pub(super) fn prepare_overlay(&mut self, gpu: &Gpu, scene: &GpuScene, overlay: Overlay) {
+        let map = self.maps.map();
+        let layouts = [&self.layouts.uniform, map.receiver_layout(), &self.layouts.material, &self.judged.layout];
+        let used = if overlay.is_judged() { 4 } else { 3 };
+        self.pipelines.add_overlay(&gpu.device, &layouts[..used], map, (overlay, &scene.parts));
+    }
+
+    pub(super) fn scene_pass(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &GpuScene,
+        plan: &Plan,
+        target: &RenderTarget,
+    ) {
+        // Resolving writes whole pictures: a part is resolved elsewhere, and copied.
+        let resolved = plan.part.filter(|_| target.multisampled.is_some()).map(|part| {
+            let texture = self.part_texture(gpu, target.size);
+            (part, texture.create_view(&Default::default()), texture)
+        });
+        let resolve_target = resolved.as_ref().map_or(&target.color_view, |(_, view, _)| view);
+        let color = match &target.multisampled {
+            Some(view) => cleared(view, Some(resolve_target), wgpu::Color::BLACK),
+            None if plan.part.is_some() => drawn_over(&target.color_view),
+            None => cleared(&target.color_view, None, wgpu::Color::BLACK),
+        };
+        let query = self.timer.begin(plan.timed, encoder);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("scene"),
+            color_attachments: &[Some(color)],
+            depth_stencil_attachment: Some(depth(&target.depth_view, wgpu::StoreOp::Store)),
+            timestamp_writes: query.as_ref().and_then(GpuProfilerQuery::render_pass_timestamp_writes),
+            ..Default::default()
+        });
+        self.draw_picture(&mut pass, scene, plan);
+        drop(pass);
+        self.timer.end(query, encoder);
+        if let Some((part, _, texture)) = &resolved {
+            copy_part(encoder, texture, &target.color, *part);
+        }
+    }
+
+    fn draw_picture(&self, pass: &mut wgpu::RenderPass<'_>, scene: &GpuScene, plan: &Plan) {
+        let pipeline = |part: &Part| self.pipelines.scene(part, plan.overlay);
+        set_part(pass, plan);
+        if let Some(judged) = plan.judged.as_ref().filter(|_| plan.overlay.is_judged()) {
+            pass.set_bind_group(JUDGED_GROUP, judged, &[]);
+        }
+        self.draw_scene(pass, scene, &plan.opaque, pipeline);
+        pass.set_pipeline(&self.pipelines.sky);
+        pass.draw(0..3, 0..1);
+        self.draw_scene(pass, scene, &plan.blended, pipeline);
+        self.lines.draw(pass, &self.pipelines.lines, 6);
+    }
+
+    /// Draws what each pixel shows and how it is lit, timed or not.
+    pub(super) fn probe_pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &GpuScene,
+        plan: &Plan,
+        targets: &ProbeTargets,
+        is_timed: bool,
+    ) {
+        let query = if is_timed { self.timer.begin(Pass::Probe, encoder) } else { None };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("probe"),
+            color_attachments: &[Some(cleared(&targets.view, None, wgpu::Color::TRANSPARENT))],
+            depth_stencil_attachment: Some(depth(&targets.depth, wgpu::StoreOp::Discard)),
+            timestamp_writes: query.as_ref().and_then(GpuProfilerQuery::render_pass_timestamp_writes),
+            ..Default::default()
+        });
+        set_part(&mut pass, plan);
+        self.draw_scene(&mut pass, scene, &plan.opaque, |part| self.pipelines.probe(part));
+        drop(pass);
+        self.timer.end(query, encoder);
+    }
+
+    fn draw_scene<'a>(
+        &'a self,
+        pass: &mut wgpu::RenderPass<'_>,
+        scene: &GpuScene,
+        draws: &[Draw],
+        pipeline: impl Fn(&Part) -> &'a wgpu::RenderPipeline,
+    ) {
+        pass.set_bind_group(0, &self.frame_group, &[]);
+        pass.set_bind_group(1, self.shadow_map().receiver_group(), &[]);
+        for draw in draws {
+            pass.set_pipeline(pipeline(&scene.parts[draw.part]));
+            draw_part(pass, scene, draw);
+        }
+    }
+
+    /// What a part of a picture of the given size is resolved into.
+    fn part_texture(&mut self, gpu: &Gpu, [width, height]: [u32; 2]) -> wgpu::Texture {
+        let kept = self.part.take().filter(|texture| (texture.width(), texture.height()) == (width, height));
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
+        let make = || bindings::plain_texture(&gpu.device, "part of a picture", [width, height], COLOR_FORMAT, usage);
+        self.part.insert(kept.unwrap_or_else(make)).clone()
+    }
+}
+
+/// Cuts a pass to the part of the picture that is drawn.
+pub(super) fn set_part(pass: &mut wgpu::RenderPass<'_>, plan: &Plan) {
+    if let Some([x, y, width, height]) = plan.part {
+        pass.set_scissor_rect(x, y, width, height);
+    }
+}
+
+fn copy_part(
+    encoder: &mut wgpu::CommandEncoder,
+    from: &wgpu::Texture,
+    to: &wgpu::Texture,
+    [x, y, width, height]: [u32; 4],
+) {
+    let at = |texture| wgpu::TexelCopyTextureInfo {
+        texture,
+        mip_level: 0,
+        origin: wgpu::Origin3d { x, y, z: 0 },
+        aspect: wgpu::TextureAspect::All,
+    };
+    encoder.copy_texture_to_texture(at(from), at(to), wgpu::Extent3d { width, height, depth_or_array_layers: 1 });
+}
+
+fn draw_part(pass: &mut wgpu::RenderPass<'_>, scene: &GpuScene, draw: &Draw) {
+    let part = &scene.parts[draw.part];
+    pass.set_bind_group(MATERIAL_GROUP, &scene.materials[part.material], &[]);
+    pass.set_vertex_buffer(0, part.motion.slice(..));
+    pass.set_vertex_buffer(1, part.surface.slice(..));
+    pass.set_vertex_buffer(2, scene.instance_buffer.slice(..));
+    pass.set_index_buffer(part.indices.slice(..), wgpu::IndexFormat::Uint32);
+    pass.draw_indexed(0..part.index_count, 0, draw.instances.clone());
+}

@@ -1,0 +1,105 @@
+//! What each pass of a frame draws.
+
+use glam::Mat4;
+
+use super::Renderer;
+use crate::attachment::{part, part_from_whole};
+use crate::casters::CasterDraw;
+use crate::frame::Frame;
+use crate::scene::{Draw, GpuScene, Part, in_frustum};
+use crate::statistics::{MapStatistics, Statistics};
+use crate::timer::Pass;
+use crate::uniform::FrameUniform;
+use crate::{Gpu, Overlay};
+use shadowfit_wgpu::MAX_MAPS;
+
+/// The draws of a frame's passes.
+pub(super) struct Plan {
+    /// Of each piece of each shadow pass, in their order; `None` where the maps stay.
+    pub(super) shadow: Option<Vec<Vec<CasterDraw>>>,
+    pub(super) opaque: Vec<Draw>,
+    pub(super) blended: Vec<Draw>,
+    pub(super) overlay: Overlay,
+    /// The judged picture's bind group, where it is shown.
+    pub(super) judged: Option<wgpu::BindGroup>,
+    /// Left, top, width and height of the part that is drawn, in pixels, if it is not all of the picture.
+    pub(super) part: Option<[u32; 4]>,
+    /// What the shaded pass is timed as.
+    pub(super) timed: Pass,
+}
+
+impl Renderer {
+    /// Decides what each pass draws and uploads the instances. `uniform` is that of a picture of `size` pixels.
+    pub(super) fn plan(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut GpuScene,
+        frame: &Frame<'_>,
+        (uniform, size): (&FrameUniform, [u32; 2]),
+    ) -> Plan {
+        scene.begin_frame(frame.camera.eye);
+        let shadow = (!frame.maps_stay).then(|| self.plan_maps(scene));
+        if frame.overlay == Overlay::Casters {
+            let masks = self.maps.holders(&scene.casters());
+            scene.set_holders(&masks);
+        }
+        let part = frame.scissor.map(|scissor| part(Some(scissor), size));
+        let clip_from_world = Mat4::from_cols_array_2d(&uniform.clip_from_world);
+        let seen = in_frustum(part.map_or(Mat4::IDENTITY, |part| part_from_whole(part, size)) * clip_from_world);
+        let mut opaque = scene.visible(|_, bounds| seen(bounds), Part::casts);
+        // Near things first, so that what they hide is never shaded.
+        opaque.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let mut blended = scene.visible(|_, bounds| seen(bounds), |part| !part.casts());
+        blended.sort_by(|a, b| b.distance.total_cmp(&a.distance));
+        scene.end_frame(gpu);
+        let shows_judged = frame.overlay.is_judged() || (frame.marks.is_some() && frame.judged.is_some());
+        Plan {
+            shadow,
+            opaque,
+            blended,
+            overlay: frame.overlay,
+            judged: shows_judged.then(|| self.judged.bind(gpu, frame, size)),
+            part,
+            timed: self.timer.scene(frame.maps_stay),
+        }
+    }
+
+    /// The draws of the shadow passes' pieces, which are counted.
+    fn plan_maps(&mut self, scene: &mut GpuScene) -> Vec<Vec<CasterDraw>> {
+        let mut shadow = Vec::new();
+        let mut drawn = [MapStatistics::default(); MAX_MAPS];
+        for piece in self.maps.passes().flat_map(|pass| pass.pieces()) {
+            let mut draws: Vec<CasterDraw> = Vec::new();
+            scene.caster_draws(piece.casters, &mut draws);
+            let map = &mut drawn[piece.map];
+            map.casters += piece.casters.len() as u32;
+            map.draws += draws.len() as u32;
+            map.triangles +=
+                draws.iter().map(|draw| (draw.indices.len() / 3 * draw.instances.len()) as u64).sum::<u64>();
+            shadow.push(draws);
+        }
+        for update in self.maps.updates() {
+            drawn[update.map].texels += update.rect.area();
+        }
+        self.drawn = drawn;
+        shadow
+    }
+}
+
+impl Plan {
+    /// What the frame drew. `maps`: into the maps.
+    pub(super) fn statistics(&self, scene: &GpuScene, maps: [MapStatistics; MAX_MAPS]) -> Statistics {
+        let triangles = |draws: &[Draw]| -> u64 {
+            let of = |draw: &Draw| u64::from(scene.parts[draw.part].index_count / 3) * draw.instances.len() as u64;
+            draws.iter().map(of).sum()
+        };
+        Statistics {
+            shadow_draws: maps.iter().map(|map| map.draws).sum(),
+            shadow_triangles: maps.iter().map(|map| map.triangles).sum(),
+            shadow_texels: maps.iter().map(|map| map.texels).sum(),
+            scene_draws: (self.opaque.len() + self.blended.len()) as u32,
+            scene_triangles: triangles(&self.opaque) + triangles(&self.blended),
+            maps,
+        }
+    }
+}

@@ -1,0 +1,23 @@
+// Surfaces by whether a map holds them as casters. Comes after overlay.wgsl.
+
+// Numbers of instances: what casts nothing, what no map holds, and what the first map holds.
+const CASTS_NOTHING: u32 = 0u;
+const HELD_BY_NONE: u32 = 1u;
+const HELD_BY_FIRST: u32 = 2u;
+
+// What no map holds.
+const COLD: vec3<f32> = vec3<f32>(0.20, 0.27, 0.38);
+
+fn overlaid(in: SceneOut) -> vec4<f32> {
+    let surface = surface_of(in);
+    let color = lit(in, surface, mapped_factor(in, surface));
+    let gray = luminance(color);
+    var shown = vec3<f32>(gray);
+    if in.number == HELD_BY_NONE {
+        shown = COLD * (0.1 + 0.9 * gray);
+    } else if in.number >= HELD_BY_FIRST {
+        let tint = frame.map_tints[min(in.number - HELD_BY_FIRST, 7u)].rgb;
+        shown = mix(tint * (0.12 + 1.5 * gray), color, 0.25);
+    }
+    return vec4<f32>(shown, opacity(surface));
+}

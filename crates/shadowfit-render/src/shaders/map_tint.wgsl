@@ -1,0 +1,23 @@
+// Surfaces in the tint of the map that they read, mixed where they read two. Comes after overlay.wgsl.
+
+fn tint_read(position: vec3<f32>) -> vec4<f32> {
+    let choice = shadowfit_choose(position);
+    if choice.first < 0 {
+        return vec4<f32>(0.0);
+    }
+    let first = frame.map_tints[shadowfit_entry(choice.first).layer];
+    if choice.second < 0 {
+        return first;
+    }
+    return mix(frame.map_tints[shadowfit_entry(choice.second).layer], first, choice.weight);
+}
+
+fn overlaid(in: SceneOut) -> vec4<f32> {
+    let surface = surface_of(in);
+    let color = lit(in, surface, mapped_factor(in, surface));
+    let tint = tint_read(in.position);
+    // The tint as if it were the surface's colour, with some of the picture's own.
+    let brightness = luminance(color);
+    let tinted = mix(tint.rgb * (0.12 + 1.5 * brightness), color, 0.25);
+    return vec4<f32>(mix(color, tinted, tint.a), opacity(surface));
+}

@@ -1,0 +1,69 @@
+// What overlays share. Each has a function `overlaid` that colours a visible point; comes after scene.wgsl.
+
+@fragment
+fn fs_overlay(in: SceneOut) -> @location(0) vec4<f32> {
+    return overlaid(in);
+}
+
+@fragment
+fn fs_overlay_masked(in: SceneOut) -> @location(0) vec4<f32> {
+    let color = overlaid(in);
+    if is_cut_out(in.uv, in.color.a) {
+        discard;
+    }
+    return color;
+}
+
+// Brightness of a linear colour (ITU-R BT.709).
+fn luminance(color: vec3<f32>) -> f32 {
+    return dot(color, vec3<f32>(0.2126, 0.7152, 0.0722));
+}
+
+// Linear colour from an encoded one (sRGB).
+fn decoded(color: vec3<f32>) -> vec3<f32> {
+    return select(pow((color + 0.055) / 1.055, vec3<f32>(2.4)), color / 12.92, color <= vec3<f32>(0.04045));
+}
+
+// Thin diagonal lines, 1 on a line and 0 between them, with smooth edges. pixel: in the picture.
+fn hatching(pixel: vec2<f32>) -> f32 {
+    // Pixels between two lines, and the width of one, measured along a row.
+    let period = 8.0;
+    let width = 2.0;
+    let place = fract((pixel.x + pixel.y) / period) * period;
+    return saturate(1.0 - abs(place - 0.5 * period) + 0.5 * width);
+}
+
+// The map that weighs more in a point's shadow, by its place in the order; -1 outside every map.
+fn place_read(position: vec3<f32>) -> i32 {
+    let choice = shadowfit_choose(position);
+    let is_second = choice.second >= 0 && choice.weight < 0.5;
+    return select(choice.first, choice.second, is_second);
+}
+
+// Light on a surface without a colour of its own, 0..1: what shows forms and shadows under an overlay.
+fn relief(surface: Surface, factor: f32) -> f32 {
+    let facing = smoothstep(0.0, 0.08, dot(surface.geometric, frame.to_light));
+    let sun = saturate(dot(surface.normal, frame.to_light)) * facing * factor;
+    let sky = surface.normal.y * 0.5 + 0.5;
+    return sqrt(saturate(0.18 + 0.32 * sky + 0.5 * sun));
+}
+
+// How far a point's place in a map moves from one pixel to the next, in texels.
+struct Footprint {
+    right: vec2<f32>,
+    down: vec2<f32>,
+}
+
+// How far a visible point moves on its tangent plane when its ray moves by `across` at a view depth of 1.
+fn slide(position: vec3<f32>, normal: vec3<f32>, across: vec3<f32>) -> vec3<f32> {
+    let moved = across * dot(position, frame.ray_forward.xyz);
+    return moved - position * (dot(moved, normal) / dot(position, normal));
+}
+
+fn footprint(map: shadowfit_Map, position: vec3<f32>, normal: vec3<f32>) -> Footprint {
+    let to_right = slide(position, normal, frame.ray_right.xyz * (2.0 / frame.viewport.x));
+    let to_down = slide(position, normal, frame.ray_up.xyz * (-2.0 / frame.viewport.y));
+    let right = (map.uv_from_world * vec4<f32>(to_right, 0.0)).xy * map.size;
+    let down = (map.uv_from_world * vec4<f32>(to_down, 0.0)).xy * map.size;
+    return Footprint(right, down);
+}
