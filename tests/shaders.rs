@@ -32,7 +32,7 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
 use shadowfit::settings::{FilterKind, MapChoice, MapFormat};
 use shadowfit::{CasterVolume, DepthConvention};
-use shadowfit_render::shaders;
+use shadowfit_render::{Overlay, shaders};
 use shadowfit_wgpu::need::need_wgsl;
 use shadowfit_wgpu::{
     MAX_MAPS, ShadowMapDescriptor, WgslOptions, caster_wgsl, culling_wgsl, layers_wgsl, receiver_wgsl, stored_wgsl,
@@ -61,6 +61,10 @@ fn modules() -> Vec<(String, String)> {
         ("sky".to_owned(), shaders::sky()),
         ("lines".to_owned(), shaders::lines()),
         ("mip".to_owned(), shaders::mip()),
+        ("quads".to_owned(), shaders::quads()),
+        ("mark rows".to_owned(), shaders::mark_rows(1)),
+        ("mark rows of four samples".to_owned(), shaders::mark_rows(4)),
+        ("marks".to_owned(), shaders::marks()),
         ("culling piece".to_owned(), culling_wgsl(&WgslOptions::group(0))),
         ("need, compute".to_owned(), need_wgsl(1)),
         ("need of four samples, compute".to_owned(), need_wgsl(4)),
@@ -79,6 +83,10 @@ fn modules() -> Vec<(String, String)> {
         all.push((format!("scene, {kind}"), shaders::scene(&map)));
         all.push((format!("probe, {kind}"), shaders::probe(&map)));
         all.push((format!("inset, {kind}"), shaders::inset(&map)));
+        all.push((format!("block, {kind}"), shaders::block(&map)));
+        for overlay in Overlay::ALL {
+            all.push((format!("overlay {overlay:?}, {kind}"), shaders::overlay(&map, overlay)));
+        }
         let receiver = receiver_wgsl(&map, &WgslOptions::group(1));
         let stored = stored_wgsl(&map, &WgslOptions::group(1));
         all.push((format!("receiver piece with views, {kind}"), receiver.clone() + &stored));
@@ -110,7 +118,7 @@ fn parse(name: &str, source: &str) -> Module {
 /// A file's text with its placeholders filled in, in every way that a module may.
 fn filled(text: &str) -> Vec<String> {
     let mut all = Vec::new();
-    for group in ["0", "1", "2"] {
+    for group in ["0", "1", "2", "3"] {
         for closer in ["<=", ">="] {
             all.push(
                 text.replace("MATERIAL_GROUP", group)

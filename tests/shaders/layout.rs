@@ -4,7 +4,10 @@ use core::mem::offset_of;
 
 use naga::{Binding, Module, StructMember, TypeInner};
 use shadowfit::culling::CasterPlanes;
-use shadowfit_render::{FrameUniform, InsetUniform, InstanceData, LineVertex, MaterialUniform, shaders};
+use shadowfit_render::{
+    BlockUniform, FrameUniform, InsetVertex, InstanceData, JudgedUniform, LineVertex, MarksUniform, MaterialUniform,
+    Overlay, QuadVertex, shaders,
+};
 use shadowfit_wgpu::need::{NeedUniform, need_wgsl};
 use shadowfit_wgpu::{
     CasterUniform, CullingUniform, MAX_MAPS, MapUniform, ReceiverUniform, ShadowMapDescriptor, WgslOptions,
@@ -59,7 +62,6 @@ fn every_uniform_has_the_size_and_offsets_of_its_wgsl_struct() {
     let map = ShadowMapDescriptor::default();
     let caster = parse("caster", &shaders::caster(&ShadowMapDescriptor::default()));
     let scene = parse("scene", &shaders::scene(&map));
-    let inset = parse("inset", &shaders::inset(&map));
     let material = layout!(
         "Material" = MaterialUniform {
             base_color,
@@ -100,7 +102,21 @@ fn every_uniform_has_the_size_and_offsets_of_its_wgsl_struct() {
     assert_same(&caster, &material);
     assert_same(&scene, &material);
     assert_same(&scene, &frame);
-    assert_same(&inset, &layout!("Inset" = InsetUniform { rectangle, depth_range, map, padding }));
+}
+
+#[test]
+fn what_overlays_marks_and_blocks_of_texels_read_lies_as_in_wgsl() {
+    let map = ShadowMapDescriptor::default();
+    let judged = layout!("Judged" = JudgedUniform { clip_from_world, clip_from_ndc, size, scale });
+    assert_same(&parse("truth", &shaders::overlay(&map, Overlay::Truth)), &judged);
+    assert_same(&parse("error", &shaders::overlay(&map, Overlay::Error)), &judged);
+    let rows = parse("mark rows", &shaders::mark_rows(1));
+    assert_same(&rows, &judged);
+    let marks = layout!("Marks" = MarksUniform { strength, outline, classes, padding });
+    assert_same(&rows, &marks);
+    assert_same(&parse("marks", &shaders::marks()), &marks);
+    let block = layout!("Block" = BlockUniform { first, last, map, padding_0, padding_1, padding_2 });
+    assert_same(&parse("block", &shaders::block(&map)), &block);
 }
 
 #[test]
@@ -199,8 +215,17 @@ fn the_maps_of_the_receiver_uniform_are_as_many_and_as_far_apart_in_both_languag
 
 #[test]
 fn every_uniform_of_every_module_is_one_whose_layout_is_compared() {
-    let compared =
-        ["shadowfit_Caster", "shadowfit_Culling", "shadowfit_Receiver", "Frame", "Material", "Inset", "Need"];
+    let compared = [
+        "shadowfit_Caster",
+        "shadowfit_Culling",
+        "shadowfit_Receiver",
+        "Frame",
+        "Material",
+        "Judged",
+        "Marks",
+        "Block",
+        "Need",
+    ];
     for (name, source) in super::modules() {
         let module = parse(&name, &source);
         let uniforms = module.global_variables.iter().filter(|(_, global)| global.space == naga::AddressSpace::Uniform);
@@ -234,8 +259,7 @@ fn packed(module: &Module, members: &[&StructMember]) -> Vec<usize> {
 fn instances_in_the_buffer_are_what_the_vertex_shaders_read() {
     let scene = parse("scene", &shaders::scene(&ShadowMapDescriptor::default()));
     let rows = offset_of!(InstanceData, rows);
-    let ends =
-        [rows, rows + 16, rows + 32, offset_of!(InstanceData, first_triangle), offset_of!(InstanceData, padding)];
+    let ends = [rows, rows + 16, rows + 32, offset_of!(InstanceData, first_triangle), offset_of!(InstanceData, holder)];
     assert_eq!(packed(&scene, &at_locations(&scene, "SceneIn", &[5, 6, 7, 8])), ends);
     let caster = parse("caster", &shaders::caster(&ShadowMapDescriptor::default()));
     assert_eq!(packed(&caster, &at_locations(&caster, "CasterIn", &[5, 6, 7])), ends[..4]);
@@ -261,4 +285,17 @@ fn the_two_ends_of_a_line_are_what_the_vertex_shader_reads() {
         (offset_of!(LineVertex, position), offset_of!(LineVertex, color), size_of::<LineVertex>());
     let ends = [position, color, size, size + color, 2 * size];
     assert_eq!(packed(&module, &at_locations(&module, "LineIn", &[0, 1, 2, 3])), ends);
+}
+
+#[test]
+fn insets_and_quadrilaterals_in_the_buffers_are_what_the_vertex_shaders_read() {
+    let inset = parse("inset", &shaders::inset(&ShadowMapDescriptor::default()));
+    let rectangle = offset_of!(InsetVertex, rectangle);
+    let [depth_range, map] = [offset_of!(InsetVertex, depth_range), offset_of!(InsetVertex, map)];
+    let ends = [rectangle, depth_range, map, offset_of!(InsetVertex, border), size_of::<InsetVertex>()];
+    assert_eq!(packed(&inset, &at_locations(&inset, "InsetIn", &[0, 1, 2, 3])), ends);
+    let quads = parse("quads", &shaders::quads());
+    let [first, second] = [offset_of!(QuadVertex, first), offset_of!(QuadVertex, second)];
+    let ends = [first, second, offset_of!(QuadVertex, color), size_of::<QuadVertex>()];
+    assert_eq!(packed(&quads, &at_locations(&quads, "QuadIn", &[0, 1, 2])), ends);
 }

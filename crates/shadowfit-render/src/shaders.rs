@@ -112,11 +112,11 @@ fn in_group(piece: &str, group: u32) -> String {
 /// Linear colour of a class of wrong pixels.
 fn error_colors() -> String {
     let mut text =
-        "\n// Linear colour of a class of wrong pixels.\nfn error_color(verdict: u32) -> vec3<f32> {\n".to_owned();
+        "\n// Linear colour of a class of wrong pixels.\nfn error_color(kind: u32) -> vec3<f32> {\n".to_owned();
     for (class, color) in (2..).zip(ERROR_COLORS.map(linear_color)) {
         let _infallible = writeln!(
             text,
-            "    if verdict == {class}u {{ return vec3<f32>({:?}, {:?}, {:?}); }}",
+            "    if kind == {class}u {{ return vec3<f32>({:?}, {:?}, {:?}); }}",
             color.x, color.y, color.z
         );
     }

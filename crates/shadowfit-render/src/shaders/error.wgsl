@@ -1,13 +1,13 @@
-// The picture in dim grey, and its wrong pixels in the colour of their verdict. Comes after overlay.wgsl and judged.wgsl.
+// The picture in dim grey, and its wrong pixels in the colour of their class. Comes after overlay.wgsl and judged.wgsl.
 
 // Brightness of what is not wrong.
 const DIMMED: f32 = 0.4;
 
 fn overlaid(in: SceneOut) -> vec4<f32> {
     let surface = surface_of(in);
-    let verdict = judged_of(in.position, in.clip.xy) & CLASS;
+    let kind = judged_of(in.position, in.clip.xy) & CLASS;
     let gray = vec3<f32>(DIMMED * luminance(lit(in, surface, mapped_factor(in, surface))));
     // The judged picture shows what lies behind blended surfaces.
-    let is_wrong = verdict >= FIRST_WRONG && material.blended == 0.0;
-    return vec4<f32>(select(gray, error_color(verdict), is_wrong), opacity(surface));
+    let is_wrong = kind >= FIRST_WRONG && material.blended == 0.0;
+    return vec4<f32>(select(gray, error_color(kind), is_wrong), opacity(surface));
 }

@@ -2,7 +2,7 @@
 
 @group(1) @binding(1) var depths: SceneDepth;
 
-// The verdict of a pixel that is marked; 0 for others.
+// The class of a pixel that is marked; 0 for others.
 fn marked_class(pixel: vec2<i32>, size: vec2<i32>) -> u32 {
     if any(pixel < vec2<i32>(0)) || any(pixel >= size) {
         return 0u;
@@ -20,20 +20,20 @@ fn marked_class(pixel: vec2<i32>, size: vec2<i32>) -> u32 {
         let ndc = at / vec2<f32>(size) * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0);
         bits = judged_at_clip(judged.clip_from_ndc * vec4<f32>(ndc, depth, 1.0));
     }
-    let verdict = bits & CLASS;
-    return select(0u, verdict, (marks.classes >> verdict & 1u) != 0u);
+    let kind = bits & CLASS;
+    return select(0u, kind, (marks.classes >> kind & 1u) != 0u);
 }
 
-// The verdict, shifted by four bits, plus the distance in pixels; 0 where none is near.
+// The class, shifted by four bits, plus the distance in pixels; 0 where none is near.
 @fragment
 fn fs_mark_rows(@builtin(position) at: vec4<f32>) -> @location(0) u32 {
     let pixel = vec2<i32>(at.xy);
     let size = vec2<i32>(textureDimensions(depths));
     for (var step = 0; step <= REACH; step++) {
-        let verdict = max(
+        let kind = max(
             marked_class(pixel - vec2<i32>(step, 0), size), marked_class(pixel + vec2<i32>(step, 0), size));
-        if verdict != 0u {
-            return verdict << 4u | u32(step);
+        if kind != 0u {
+            return kind << 4u | u32(step);
         }
     }
     return 0u;

@@ -22,7 +22,7 @@ fn fs_marks(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
     let pixel = vec2<i32>(at.xy);
     let height = i32(textureDimensions(nearest).y);
     var least = (REACH + 1) * (REACH + 1);
-    var verdict = 0u;
+    var kind = 0u;
     for (var step = -REACH; step <= REACH; step++) {
         let row = pixel.y + step;
         let found = textureLoad(nearest, vec2<i32>(pixel.x, clamp(row, 0, height - 1)), 0).x;
@@ -30,10 +30,10 @@ fn fs_marks(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
         let square = across * across + step * step;
         if found != 0u && row >= 0 && row < height && square < least {
             least = square;
-            verdict = found >> 4u;
+            kind = found >> 4u;
         }
     }
-    if verdict == 0u {
+    if kind == 0u {
         discard;
     }
     let away = sqrt(f32(least));
@@ -43,5 +43,5 @@ fn fs_marks(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
     let fill = saturate(FILLED + 1.0 - away);
     let cover = select(fill, line, is_outline);
     let dark = select(0.0, border * (1.0 - line), is_outline);
-    return vec4<f32>(error_color(verdict) * cover, cover + dark) * marks.strength;
+    return vec4<f32>(error_color(kind) * cover, cover + dark) * marks.strength;
 }

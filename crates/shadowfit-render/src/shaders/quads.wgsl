@@ -20,14 +20,14 @@ struct QuadOut {
 }
 
 // What lies this far inside of an edge is not cut by it, in pixels.
-const FAR_INSIDE: f32 = 1e6;
+const WELL_INSIDE: f32 = 1e6;
 
 // The edge from a to b. turn: 1 where the corners turn from x to y, -1 where they turn the other way.
 fn edge(a: vec2<f32>, b: vec2<f32>, turn: f32) -> vec3<f32> {
     let along = b - a;
     let size = length(along);
     if size < 1e-6 {
-        return vec3<f32>(0.0, 0.0, FAR_INSIDE);
+        return vec3<f32>(0.0, 0.0, WELL_INSIDE);
     }
     let inward = vec2<f32>(-along.y, along.x) * (turn / size);
     return vec3<f32>(inward, -dot(inward, a));
