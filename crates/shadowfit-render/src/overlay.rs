@@ -14,8 +14,9 @@ pub enum Overlay {
     /// [`pixels_per_texel_color`](shadowfit::figures::pixels_per_texel_color), darker where there is less light. What no
     /// map covers is hatched in grey.
     PixelsPerTexel,
-    /// The texels of the map that weighs more in a point's shadow, as a checkerboard with lines in the map's tint. Where
-    /// a texel is less than about two pixels wide it fades to the flat tint. What no map covers keeps its own colour.
+    /// The texels of the map that weighs more in a point's shadow, as a checkerboard with lines in the map's tint; where
+    /// they are less than six pixels wide, blocks of 4, 16, 64 and so on texels a side. What no map covers keeps its own
+    /// colour.
     TexelGrid,
     /// The shadows that rays found ([`Frame::judged`](crate::Frame::judged)). What was not judged, though it faces the
     /// light, has the maps' shadows and is hatched.

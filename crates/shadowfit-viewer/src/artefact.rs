@@ -34,6 +34,10 @@ const HOLE_DISTANCE: f32 = 4.0;
 const LARGE_REACH: f32 = 0.3;
 /// Share of the picture that should still show a shadow when the hole is shown.
 const KEPT_SHADOW: f32 = 0.1;
+/// How much more a hole counts where the shadow that is left breaks off at it, and the number of coarse pixels of that
+/// break from which on it counts whole.
+const BREAK: f32 = 1.5;
+const BREAKS: f32 = 5.0;
 /// Resolution of a single map, in texels, when aliasing is shown.
 const SHOWN_RESOLUTION: u32 = 2048;
 /// The same after aliasing is fixed.
@@ -251,10 +255,13 @@ fn show_hole(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) ->
         technique.fit.max_distance = place.radius * HOLE_DISTANCE;
     }
     let targets = spread(&place.shadows, 4);
+    // Where the shadow begins, too: a caster of which only the foot is in view has a shadow that breaks off.
+    let base = Vec3::new(place.center.x, place.bounds.min.y, place.center.z);
     let candidates = targets.iter().flat_map(|shadow| {
-        let reach = shadow.reach;
-        let distances = [reach * 0.7, reach, reach * 1.3];
-        around(shadow.receiver, -search.direction, &around_the_clock(), &[0.4, 0.7], &distances)
+        [shadow.receiver, (shadow.receiver + base) * 0.5].into_iter().flat_map(move |target| {
+            let distances = [0.7, 1.0, 1.3, 1.8, 2.6].map(|reaches| shadow.reach * reaches);
+            around(target, -search.direction, &around_the_clock(), &[0.4, 0.7], &distances)
+        })
     });
     let mut most = 0.0_f32;
     let score = |camera: &PerspectiveCamera| {
@@ -262,17 +269,22 @@ fn show_hole(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) ->
         if is_blocked(&pixels, place.radius * 0.6) {
             return 0.0;
         }
-        let is_shadowed = |seen: &&Seen| search.facing(seen) > 0.0 && search.is_shadowed(seen);
-        let shadowed: Vec<&Seen> = pixels.iter().flatten().filter(is_shadowed).collect();
-        // Not worth a fit where a hole in all of the shadow would be smaller than one that was found.
-        if shadowed.len() as f32 <= most {
+        let is_shadowed = |seen: &Seen| search.facing(seen) > 0.0 && search.is_shadowed(seen);
+        let shadowed: Vec<Option<&Seen>> =
+            pixels.iter().map(|seen| seen.as_ref().filter(|seen| is_shadowed(seen))).collect();
+        let count = shadowed.iter().flatten().count() as f32;
+        // Not worth a fit where a hole in all of the shadow would be less than one that was found.
+        if count * (1.0 + BREAK) <= most {
             return 0.0;
         }
         let Some(fitted) = search.fit(technique, camera) else { return 0.0 };
-        let holes = shadowed.iter().filter(|seen| search.is_hole(seen, &fitted)).count();
+        let holes: Vec<Option<bool>> =
+            shadowed.iter().map(|seen| seen.map(|seen| search.is_hole(seen, &fitted))).collect();
+        let hole = holes.iter().filter(|hole| **hole == Some(true)).count() as f32;
         // A large hole, but a shadow that breaks off says more than one that is missing whole.
-        let kept = (shadowed.len() - holes) as f32 / (pixels.len() as f32 * KEPT_SHADOW);
-        let score = holes as f32 * (0.2 + 0.8 * kept.min(1.0));
+        let kept = (count - hole) / (pixels.len() as f32 * KEPT_SHADOW);
+        let breaks = edges(&holes) as f32 / BREAKS;
+        let score = hole * (0.1 + 0.9 * kept.min(1.0) + BREAK * breaks.min(1.0));
         most = most.max(score);
         score
     };

@@ -120,6 +120,8 @@ pub fn render_pictures(stage: &mut Stage, folder: &Path, size: [u32; 2]) -> Resu
     }
     let canvas = Canvas::new(&stage.gpu().device, size, FORMAT);
     let interface = Interface::new(stage, FORMAT);
+    // Nothing is caught half faded in.
+    interface.context.all_styles_mut(|style| style.animation_time = 0.0);
     let mut album = Album { stage, interface, folder, size, canvas, written: Vec::new() };
     album.views()?;
     album.artefacts()?;

@@ -57,7 +57,7 @@ fn volume_edges(volume: &CasterVolume, direction: Vec3, end: f32, color: Vec4) -
                 continue;
             }
             // A point on both planes.
-            let at = (b.truncate() * a.w - a.truncate() * b.w).cross(along) / along.length_squared();
+            let at = (a.truncate() * b.w - b.truncate() * a.w).cross(along) / along.length_squared();
             let (mut from, mut to) = (f32::NEG_INFINITY, f32::INFINITY);
             for plane in &planes {
                 let (slope, height) = (plane.truncate().dot(along), plane.truncate().dot(at) + plane.w);

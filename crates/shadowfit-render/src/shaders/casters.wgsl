@@ -17,7 +17,7 @@ fn overlaid(in: SceneOut) -> vec4<f32> {
         shown = COLD * (0.1 + 0.9 * gray);
     } else if in.number >= HELD_BY_FIRST {
         let tint = frame.map_tints[min(in.number - HELD_BY_FIRST, 7u)].rgb;
-        shown = mix(tint * (0.12 + 1.5 * gray), color, 0.25);
+        shown = mix(tint * (0.12 + 1.5 * gray), color, 0.6);
     }
     return vec4<f32>(shown, opacity(surface));
 }

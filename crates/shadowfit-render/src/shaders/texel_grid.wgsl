@@ -1,8 +1,7 @@
 // The texels of the map that a point reads, drawn on its surface. Comes after overlay.wgsl.
 
-// Texels this many pixels wide begin to show, and from there on show fully.
-const FIRST_PIXELS: f32 = 2.0;
-const FULL_PIXELS: f32 = 5.0;
+// Least width, in pixels, that is drawn: where texels are narrower, blocks of 4, 16, 64... texels a side are.
+const LEAST_PIXELS: f32 = 6.0;
 // Brightness of the darker texels and of the lines between texels, as a share of the brighter ones'.
 const DARKER: f32 = 0.62;
 const LINE: f32 = 0.35;
@@ -29,13 +28,15 @@ fn overlaid(in: SceneOut) -> vec4<f32> {
     }
     let map = shadowfit_entry(place);
     let step = footprint(map, in.position, surface.geometric);
-    let width = max(abs(step.right) + abs(step.down), vec2<f32>(1e-6));
-    let texel = (map.uv_from_world * vec4<f32>(in.position, 1.0)).xy * map.size + map.wrap;
-    let clear = smoothstep(vec2<f32>(FIRST_PIXELS), vec2<f32>(FULL_PIXELS), 1.0 / width);
+    let texels = max(abs(step.right) + abs(step.down), vec2<f32>(1e-6));
+    let level = ceil(0.5 * log2(max(LEAST_PIXELS * max(texels.x, texels.y), 1.0)));
+    let block = exp2(2.0 * level);
+    let width = texels / block;
+    let at = ((map.uv_from_world * vec4<f32>(in.position, 1.0)).xy * map.size + map.wrap) / block;
 
-    let waves = wave(texel, width) * clear;
+    let waves = wave(at, width);
     let checker = mix(DARKER, 1.0, 0.5 - 0.5 * waves.x * waves.y);
-    let line = lines(texel, width) * clear;
+    let line = lines(at, width);
     let pattern = checker * mix(1.0, LINE, max(line.x, line.y));
     let tint = frame.map_tints[map.layer].rgb * (0.12 + 1.5 * luminance(color));
     return vec4<f32>(mix(tint, color, 0.2) * pattern, opacity(surface));

@@ -18,7 +18,7 @@ use crate::stage::Stage;
 /// Scroll travel that counts as one notch of the wheel, in points, for devices that scroll smoothly.
 const POINTS_PER_NOTCH: f32 = 50.0;
 /// Width of the picture from outside, as a share of the picture's.
-const BESIDE: f32 = 0.42;
+const BESIDE: f32 = 0.36;
 /// Distance of what lies over the picture from its edge, in points.
 const MARGIN: f32 = 12.0;
 /// Width of what is taken hold of around the bar between two pictures, in points.

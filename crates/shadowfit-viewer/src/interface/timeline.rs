@@ -47,7 +47,7 @@ fn animation(ui: &mut Ui, stage: &mut Stage, asked: &mut Asked) {
 fn day(ui: &mut Ui, stage: &mut Stage, asked: &mut Asked) {
     let light = &mut stage.settings.light;
     let help = "Lets the sun move (L)";
-    if ui.add(Button::selectable(light.animate, "☀")).on_hover_text(help).clicked() {
+    if ui.add(Button::selectable(light.animate, "Sun")).on_hover_text(help).clicked() {
         asked.commands.push(Command::ToggleSun);
     }
     let mut hour = light.hour.unwrap_or(12.0);

@@ -1,5 +1,6 @@
 //! All maps side by side over the whole picture, with what was kept in them, what was drawn anew, and what moves.
 
+use glam::Vec4;
 use shadowfit::Aabb;
 use shadowfit::figures::linear_color;
 use shadowfit_egui::MAP_UPDATE_COLORS;
@@ -12,6 +13,8 @@ use super::inset::{depths, tint};
 const GAP: f32 = 0.03;
 /// Height that the picture's upper edge keeps free for what is written there, as a share of it.
 const HEAD: f32 = 0.06;
+/// Strength of the colour over a map that is kept.
+const KEPT: f32 = 0.12;
 /// Strength of the colour over a part of a map.
 const FILL: f32 = 0.35;
 
@@ -20,7 +23,12 @@ pub(super) struct Boards {
     pub(super) insets: Vec<Inset>,
     /// Texels across and down of each map.
     sizes: Vec<[f32; 2]>,
+    /// Of the picture, in pixels.
+    size: [f32; 2],
 }
+
+/// What is around the maps, linear.
+const GROUND: Vec4 = Vec4::new(0.006, 0.007, 0.009, 1.0);
 
 impl Boards {
     /// As large as the picture of `size` pixels allows.
@@ -35,7 +43,8 @@ impl Boards {
             let [w, h] = [columns, rows];
             ((free[0] - gap) / w as f32).min((free[1] - gap) / h as f32) - gap
         };
-        let columns = (1..=count).max_by(|a, b| side(*a).total_cmp(&side(*b))).unwrap_or(1);
+        // Of two the one with fewer columns.
+        let columns = (1..=count).rev().max_by(|a, b| side(*a).total_cmp(&side(*b))).unwrap_or(1);
         let side = side(columns).max(1.0).floor();
         let rows = count.div_ceil(columns);
         let left = (free[0] - columns as f32 * (side + gap) + gap) * 0.5;
@@ -49,15 +58,38 @@ impl Boards {
             Inset { rectangle: [corner[0], corner[1], w, h], depth_range, map: index as u32, border: tint(index) }
         });
         let sizes = maps.iter().map(|map| map.fit.resolution.as_vec2().to_array()).collect();
-        Self { insets: insets.collect(), sizes }
+        Self { insets: insets.collect(), sizes, size: [width, height] }
+    }
+
+    /// Covers the picture but for the maps: a band above each row of them and below the last, and what is beside them.
+    fn ground(&self) -> Vec<Quad> {
+        let [width, height] = self.size;
+        let mut quads = Vec::new();
+        let mut below = 0.0;
+        for row in self.insets.chunk_by(|a, b| a.rectangle[1] == b.rectangle[1]) {
+            let top = row[0].rectangle[1];
+            let bottom = row.iter().map(|inset| top + inset.rectangle[3]).fold(top, f32::max);
+            quads.push([0.0, below, width, top - below]);
+            let mut right = 0.0;
+            for inset in row {
+                let [x, y, w, h] = inset.rectangle;
+                quads.push([right, top, x - right, bottom - top]);
+                quads.push([x, y + h, w, bottom - y - h]);
+                right = x + w;
+            }
+            quads.push([right, top, width - right, bottom - top]);
+            below = bottom;
+        }
+        quads.push([0.0, below, width, height - below]);
+        quads.into_iter().map(|rectangle| Quad::rectangle(rectangle, GROUND)).collect()
     }
 
     /// What was kept: each map in the colour of what is kept; and over it what was drawn.
     pub(super) fn quads(&self, updates: &[MapUpdate]) -> Vec<Quad> {
         let color = |color: [u8; 3]| linear_color(color).extend(FILL);
         let [kept, drawn, moving] = MAP_UPDATE_COLORS.map(color);
-        let mut quads: Vec<Quad> =
-            self.insets.iter().map(|inset| Quad::rectangle(inset.rectangle, kept * 0.4)).collect();
+        let mut quads = self.ground();
+        quads.extend(self.insets.iter().map(|inset| Quad::rectangle(inset.rectangle, kept.truncate().extend(KEPT))));
         for update in updates {
             let (Some(inset), Some(size)) = (self.insets.get(update.map), self.sizes.get(update.map)) else { continue };
             let [x, y, w, h] = inset.rectangle;

@@ -72,12 +72,13 @@ pub(super) fn depths(fit: &LightFit, bounds: &Aabb) -> Option<[f32; 2]> {
 #[cfg(test)]
 mod tests {
     use glam::{DVec3, Mat4};
+    use shadowfit::FittedMap;
 
     use super::*;
 
     #[test]
     fn any_number_of_maps_fits_into_the_picture_without_touching() {
-        let maps = vec![MapFit::from(LightFit::default()); MAX_MAPS];
+        let maps = vec![MapFit::from(&FittedMap::default()); MAX_MAPS];
         let bounds = Aabb::new(Vec3::ZERO, Vec3::ONE);
         for count in 1..=MAX_MAPS {
             for size in [[960, 540], [320, 180], [1280, 300]] {

@@ -14,7 +14,9 @@ const FOV_Y: f32 = 0.01;
 /// How much more is seen than the map that fills the picture, as a factor.
 const ROOM: f32 = 1.25;
 /// Strength of the colour over a cell.
-const FILL: f32 = 0.55;
+const FILL: f32 = 0.8;
+/// How much the scene under the cells is darkened.
+const SHADE: f32 = 0.6;
 /// Share of all counted points that a cell must hold to be shown.
 const LEAST_SHARE: f32 = 2e-4;
 
@@ -73,7 +75,8 @@ pub(super) fn quads(from_light: &FromLight, fitted: &Fitted, need: Option<NeedGr
     let total: u32 = need.counts.iter().sum();
     let least = (total as f32 * LEAST_SHARE).max(1.0);
     let up = space.y / space.y.length_squared();
-    let mut quads = Vec::new();
+    let [width, height] = from_light.size;
+    let mut quads = vec![Quad::rectangle([0.0, 0.0, width, height], Vec4::new(0.0, 0.0, 0.0, SHADE))];
     for level in (0..LEVELS).rev() {
         let side = space.cell * (1_u32 << level) as f32;
         let texel = space.texel * (1_u32 << level) as f32 * core::f32::consts::SQRT_2;
