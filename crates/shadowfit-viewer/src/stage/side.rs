@@ -132,6 +132,7 @@ impl Side {
         } else {
             self.fitter.set_technique(technique);
             self.forget_pictures();
+            self.evaluator.forget_view();
             self.fitter.fit_alone(shot.scene, &view)?;
         }
         Ok(Fitted::new(view.camera, technique, self.fitter.fitted()))
@@ -228,6 +229,7 @@ impl Side {
         }
         if !is_frozen && !matches!(shot.settings.view.mode, ViewMode::Outside | ViewMode::Need) {
             self.record_picture(shot.gpu, &view, target);
+            self.evaluator.note_view(&view, &maps);
         }
     }
 
