@@ -208,7 +208,6 @@ fn gpu_the_pixel_under_a_resting_pointer_is_explained() {
     until(&mut viewer, "rays", |viewer| viewer.stage.prepared_scene().ready_rays().is_some());
     let size = viewer.interface.pictures.size();
     for _ in 0..6000 {
-        frame(&mut viewer);
         viewer.stage.ask_why(Some([0.5, 0.9]), size);
         if viewer.stage.why().is_some_and(|card| card.stored_depth.is_some()) {
             break;
