@@ -13,14 +13,9 @@ fn marked_class(pixel: vec2<i32>, size: vec2<i32>) -> u32 {
         return 0u;
     }
     let at = vec2<f32>(pixel) + 0.5;
-    var bits = 0u;
-    if judged.scale.x > 0.0 {
-        bits = judged_at(at * judged.scale);
-    } else {
-        let ndc = at / vec2<f32>(size) * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0);
-        bits = judged_at_clip(judged.clip_from_ndc * vec4<f32>(ndc, depth, 1.0));
-    }
-    let kind = bits & CLASS;
+    let ndc = at / vec2<f32>(size) * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0);
+    let position = judged.world_from_ndc * vec4<f32>(ndc, depth, 1.0);
+    let kind = judged_of(position.xyz / position.w, at) & CLASS;
     return select(0u, kind, (marks.classes >> kind & 1u) != 0u);
 }
 

@@ -33,8 +33,10 @@ fn overlaid(in: SceneOut) -> vec4<f32> {
     let texel = (map.uv_from_world * vec4<f32>(in.position, 1.0)).xy * map.size + map.wrap;
     let clear = smoothstep(vec2<f32>(FIRST_PIXELS), vec2<f32>(FULL_PIXELS), 1.0 / width);
 
+    // A checkerboard; stripes where texels are clear along one axis alone.
     let waves = wave(texel, width) * clear;
-    let checker = mix(DARKER, 1.0, 0.5 - 0.5 * waves.x * waves.y);
+    let both = mix(waves.x * (1.0 - clear.y) + waves.y * (1.0 - clear.x), waves.x * waves.y, clear.x * clear.y);
+    let checker = mix(DARKER, 1.0, 0.5 - 0.5 * both);
     let line = lines(texel, width) * clear;
     let pattern = checker * mix(1.0, LINE, max(line.x, line.y));
     let tint = frame.map_tints[map.layer].rgb * (0.12 + 1.5 * luminance(color));
