@@ -109,6 +109,13 @@ impl Gpu {
         Ok(Self { adapter, device, queue })
     }
 
+    /// Submits work. Where the CPU itself draws, that may take until what was submitted before is drawn, which
+    /// [`waited`](crate::waited) tells apart.
+    pub fn submit(&self, commands: impl IntoIterator<Item = wgpu::CommandBuffer>) {
+        let commands: Vec<wgpu::CommandBuffer> = commands.into_iter().collect();
+        crate::target::waiting(|| self.queue.submit(commands));
+    }
+
     /// Until what it returns is dropped, errors of the device are not reported to its handler, which ends the program:
     /// everything created on a lost device is invalid. The result of the work shows whether it failed.
     pub(crate) fn without_reports(&self) -> Unreported {

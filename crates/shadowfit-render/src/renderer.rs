@@ -166,7 +166,7 @@ impl Renderer {
         self.scene_pass(gpu, &mut encoder, scene, &plan, target);
         self.over_pass(gpu, &mut encoder, frame, &plan, target);
         self.timer.resolve(&mut encoder);
-        gpu.queue.submit([encoder.finish()]);
+        gpu.submit([encoder.finish()]);
         self.timer.end_frame(gpu);
         Ok(plan.statistics(scene, core::mem::take(&mut self.drawn)))
     }
@@ -212,7 +212,7 @@ impl Renderer {
         self.shadow_passes(&mut encoder, scene, &plan);
         self.probe_pass(&mut encoder, scene, &plan, targets, true);
         self.timer.resolve(&mut encoder);
-        gpu.queue.submit([encoder.finish()]);
+        gpu.submit([encoder.finish()]);
         Ok(())
     }
 

@@ -108,7 +108,15 @@ std::thread_local! {
     static WAITED: std::cell::Cell<std::time::Duration> = const { std::cell::Cell::new(std::time::Duration::ZERO) };
 }
 
-/// How long this thread has waited for the GPU in read-backs so far, to be told apart from its own work.
+/// Does something that waits for the GPU.
+pub(crate) fn waiting<T>(wait: impl FnOnce() -> T) -> T {
+    let begin = std::time::Instant::now();
+    let result = wait();
+    WAITED.set(WAITED.get() + begin.elapsed());
+    result
+}
+
+/// How long this thread has waited for the GPU so far, in read-backs and submissions, to be told apart from its own work.
 pub fn waited() -> std::time::Duration {
     WAITED.get()
 }
@@ -142,12 +150,9 @@ pub fn read_texture(
         },
         wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
     );
-    gpu.queue.submit([encoder.finish()]);
+    gpu.submit([encoder.finish()]);
     buffer.slice(..).map_async(wgpu::MapMode::Read, |_| {});
-    let begin = std::time::Instant::now();
-    let polled = gpu.device.poll(wgpu::PollType::wait_indefinitely());
-    WAITED.set(WAITED.get() + begin.elapsed());
-    polled.map_err(|_| ReadError::Unfinished)?;
+    waiting(|| gpu.device.poll(wgpu::PollType::wait_indefinitely())).map_err(|_| ReadError::Unfinished)?;
     // A device that was lost leaves the buffer unmapped.
     let mapped = buffer.slice(..).get_mapped_range().map_err(|_| ReadError::Lost)?;
     Ok(mapped.chunks(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect())

@@ -97,7 +97,7 @@ impl LiveTruth {
         let judged =
             GpuJudgeInput { camera: &input.camera, settings: &input.settings, maps: &input.maps, before: input.before };
         self.judge.judge(&gpu.device, &gpu.queue, &mut encoder, &self.tracer, input.seen, &judged)?;
-        gpu.queue.submit([encoder.finish()]);
+        gpu.submit([encoder.finish()]);
         Ok(())
     }
 }

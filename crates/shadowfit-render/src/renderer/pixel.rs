@@ -45,7 +45,7 @@ impl Renderer {
         if let Some(block) = block {
             self.block_pass(gpu, &mut encoder, &block, read.buffer());
         }
-        gpu.queue.submit([encoder.finish()]);
+        gpu.submit([encoder.finish()]);
         read.map();
         self.pixel_targets = Some(targets);
         Ok(read)

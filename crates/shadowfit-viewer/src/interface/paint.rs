@@ -65,7 +65,7 @@ impl Painter {
             ..Default::default()
         });
         self.renderer.render(&mut pass.forget_lifetime(), jobs, &screen);
-        gpu.queue.submit(commands.into_iter().chain([encoder.finish()]));
+        gpu.submit(commands.into_iter().chain([encoder.finish()]));
     }
 }
 

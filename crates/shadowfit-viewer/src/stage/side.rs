@@ -192,7 +192,7 @@ impl Side {
         };
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         if pass.record(&mut encoder, target.depth_view(), &picture, None) == Ok(true) {
-            gpu.queue.submit([encoder.finish()]);
+            gpu.submit([encoder.finish()]);
         }
     }
 
