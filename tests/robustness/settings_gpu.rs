@@ -121,7 +121,7 @@ fn stage() -> Stage {
 fn frame(stage: &mut Stage) {
     let picture = stage.target(SIZE);
     stage.draw(&picture);
-    let _ = stage.figures(SIZE);
+    let _ = stage.figures(SIZE, None);
     stage.update(&FlyInput::default(), 0.016);
 }
 
@@ -142,7 +142,7 @@ fn every_absurd_number_is_drawn_without_a_panic_and_refused_fits_are_told() {
                     let problem = problem.unwrap_or_else(|| panic!("{name} = {value}: no word about it"));
                     assert!(problem.len() > 20, "{name} = {value}: {problem}");
                 }
-                let _ = stage.figures(SIZE);
+                let _ = stage.figures(SIZE, None);
                 stage.update(&FlyInput::default(), 0.016);
             }
         }

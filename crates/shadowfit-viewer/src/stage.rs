@@ -318,7 +318,7 @@ impl Stage {
         let Some(fitted) = side.fitted.clone() else { return };
         let maps: Vec<MapFit> = fitted.maps.iter().map(MapFit::from).collect();
         let statistics = side.statistics;
-        side.draw_outside(&mut shot, &fitted, &maps, target);
+        side.draw_outside(&mut shot, (&fitted, &maps, true), target);
         side.statistics = statistics;
     }
 

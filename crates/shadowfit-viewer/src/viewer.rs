@@ -4,6 +4,8 @@
 mod commands;
 mod opening;
 mod start;
+#[cfg(test)]
+mod tests;
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -53,7 +55,7 @@ pub(crate) struct Viewer {
     saved: Saved,
     store: Option<Store>,
     presets: Vec<UserPreset>,
-    message: Option<String>,
+    message: Option<Message>,
     /// Seconds since the start.
     clock: f64,
     saved_at: f64,
@@ -64,6 +66,15 @@ pub(crate) struct Viewer {
     /// Why it ends with an error.
     pub(crate) failure: Option<anyhow::Error>,
 }
+
+/// A readable line, and since when it has been shown, in seconds since the start.
+struct Message {
+    text: String,
+    since: f64,
+}
+
+/// How long a line is shown, in seconds.
+const MESSAGE_TIME: f64 = 8.0;
 
 /// What the viewer wants of its window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -132,6 +143,7 @@ impl Viewer {
         self.clock += f64::from(seconds);
         let old = self.interface.frame_ms.unwrap_or(seconds * 1e3);
         self.interface.frame_ms = Some(old + (seconds * 1e3 - old) * FRAME_TIME_WEIGHT);
+        self.message.take_if(|message| self.clock - message.since > MESSAGE_TIME);
         self.play(&mut raw_input, seconds);
         self.take_background();
         let (asked, layout, output) = self.lay_out(raw_input);
@@ -160,7 +172,7 @@ impl Viewer {
             presets: &self.presets,
             tune: self.tuning.shown(),
             changes: Changes { undo: self.history.undo_name(), redo: self.history.redo_name() },
-            message: self.message.as_deref(),
+            message: self.message.as_ref().map(|message| message.text.as_str()),
             loading: loading.as_ref().map(|(name, share)| (name.as_str(), *share)),
             is_searching: self.searching.is_some(),
             has_scene: self.has_scene,
@@ -219,8 +231,7 @@ impl Viewer {
                 Err(std::sync::mpsc::TryRecvError::Empty) => {}
                 Err(std::sync::mpsc::TryRecvError::Disconnected) => {
                     self.searching = None;
-                    self.message =
-                        Some("The search for a view ended without one; this is a bug of the viewer".to_owned());
+                    self.say("The search for a view ended without one; this is a bug of the viewer");
                 }
             }
         }
@@ -240,7 +251,12 @@ impl Viewer {
 
     /// Shows the outcome of an action.
     fn tell(&mut self, outcome: Result<String>) {
-        self.message = Some(outcome.unwrap_or_else(|error| format!("{error:#}")));
+        self.say(outcome.unwrap_or_else(|error| format!("{error:#}")));
+    }
+
+    /// Shows a line for a while.
+    fn say(&mut self, text: impl Into<String>) {
+        self.message = Some(Message { text: text.into(), since: self.clock });
     }
 
     /// Title of the window.

@@ -221,7 +221,7 @@ impl Side {
             }
         }
         match shot.settings.view.mode {
-            ViewMode::Outside => self.draw_outside(shot, &fitted, &maps, target),
+            ViewMode::Outside => self.draw_outside(shot, (&fitted, &maps, false), target),
             ViewMode::Need => self.draw_need(shot, &fitted, &maps, target),
             ViewMode::Updates => self.draw_boards(shot, &view, &maps, target),
             mode => self.draw_view(shot, &view, &maps, (overlay(mode), maps_stay), target),
@@ -284,12 +284,12 @@ impl Side {
         }
     }
 
-    /// Draws the camera, its maps and what casts into them, from outside.
+    /// Draws the camera, its maps and what casts into them, from outside. `maps_stay` where the maps were just drawn for
+    /// the camera itself.
     pub(super) fn draw_outside(
         &mut self,
         shot: &mut Shot<'_>,
-        fitted: &Fitted,
-        maps: &[MapFit],
+        (fitted, maps, maps_stay): (&Fitted, &[MapFit], bool),
         target: &RenderTarget,
     ) {
         let seen = shot.camera;
@@ -302,6 +302,7 @@ impl Side {
             outside: Some(camera),
             culling: Culling::WholeMap,
             overlay: Overlay::Casters,
+            maps_stay,
             lines: &lines,
             shadows: shot.settings.view.shadows,
             sight: Some(camera.far.max(shot.sight)),

@@ -204,7 +204,7 @@ impl Viewer {
         let bookmark = Bookmark::new(key, &self.source, self.stage.camera);
         self.saved.bookmarks.retain(|other| other.key != key || other.scene != bookmark.scene);
         self.saved.bookmarks.push(bookmark);
-        self.message = Some(format!("Bookmark {key}: Ctrl+{key} comes back here"));
+        self.say(format!("Bookmark {key}: Ctrl+{key} comes back here"));
     }
 
     fn go_to_bookmark(&mut self, key: u8) {
@@ -212,7 +212,7 @@ impl Viewer {
         let known = self.saved.bookmarks.iter().find(|bookmark| bookmark.key == key && bookmark.scene == scene);
         match known.and_then(Bookmark::camera) {
             Some(camera) => self.stage.set_camera(camera),
-            None => self.message = Some(format!("No bookmark {key} in this scene; Ctrl+Shift+{key} sets it")),
+            None => self.say(format!("No bookmark {key} in this scene; Ctrl+Shift+{key} sets it")),
         }
     }
 

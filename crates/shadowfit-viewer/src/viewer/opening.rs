@@ -58,7 +58,7 @@ impl Viewer {
                 self.failure = Some(error);
                 self.wishes.quit = true;
             }
-            Err(error) => self.message = Some(format!("{error:#}")),
+            Err(error) => self.say(format!("{error:#}")),
         }
     }
 

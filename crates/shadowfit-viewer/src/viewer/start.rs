@@ -59,7 +59,11 @@ impl Viewer {
     /// Takes up where the last time ended, and begins to load the scene.
     pub(super) fn restore(&mut self) {
         let (saved, message) = self.store.as_mut().map_or((None, None), Store::load);
-        self.message = message;
+        if let Some(message) = message {
+            // Whoever starts it in a terminal sees it there, too.
+            eprintln!("{message}");
+            self.say(message);
+        }
         let saved = saved.unwrap_or_default();
         let source = self.start.source.clone().unwrap_or_else(|| {
             let is_there = |path: &std::path::Path| path.exists();
@@ -123,7 +127,7 @@ impl Viewer {
         self.saved.other = self.stage.other_technique().map(|other| (other, self.stage.split));
         if let Err(error) = store.save(&self.saved) {
             // Told once, and not every few seconds.
-            self.message = Some(format!("Settings cannot be saved: {error:#}"));
+            self.say(format!("Settings cannot be saved: {error:#}"));
             self.store = None;
         }
     }

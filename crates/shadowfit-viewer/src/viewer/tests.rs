@@ -1,0 +1,219 @@
+//! The viewer frame by frame, on the software adapter and without a window: what is kept and what yields to what, undo,
+//! comparison, artefacts and tuning as commands ask for them.
+
+use std::path::Path;
+use std::time::Duration;
+
+use clap::Parser;
+use egui::{Pos2, RawInput, Rect, vec2};
+use shadowfit::Technique;
+use shadowfit::settings::FitKind;
+use shadowfit::tool::ViewMode;
+use shadowfit_egui::{Artefact, Tune};
+use shadowfit_render::{AdapterChoice, Gpu};
+
+use super::{Start, Viewer};
+use crate::cli::Arguments;
+use crate::command::{Command, Toggle};
+use crate::saved::{Saved, Store, Theme};
+use crate::source::SceneSource;
+use crate::stage::Stage;
+
+const SIZE: [u32; 2] = [640, 360];
+const FRAME: f32 = 1.0 / 30.0;
+
+fn viewer(arguments: &[&str], store: Option<&Path>) -> Viewer {
+    let all = ["viewer", "--software", "--no-play", "--set", "map.resolution=512"];
+    let arguments = Arguments::parse_from(all.iter().chain(arguments));
+    let start = Start::new(&arguments).expect("arguments that make sense");
+    let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
+    let mut stage = Stage::empty(gpu, 1).expect("a stage");
+    stage.read_depths();
+    let store = store.map(|path| Store::at(path.to_owned()));
+    Viewer::new(stage, wgpu::TextureFormat::Rgba8Unorm, start, store)
+}
+
+fn frame(viewer: &mut Viewer) {
+    let screen_rect = Some(Rect::from_min_size(Pos2::ZERO, vec2(SIZE[0] as f32, SIZE[1] as f32)));
+    let input = RawInput { screen_rect, time: Some(viewer.clock), ..Default::default() };
+    let _ = viewer.frame(input, FRAME);
+}
+
+/// Draws frames until something is so.
+fn until(viewer: &mut Viewer, what: &str, is_so: impl Fn(&Viewer) -> bool) {
+    for _ in 0..6000 {
+        frame(viewer);
+        assert!(viewer.failure.is_none(), "{:?}", viewer.failure);
+        if is_so(viewer) {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    panic!("{what} never happens");
+}
+
+fn ready(arguments: &[&str], store: Option<&Path>) -> Viewer {
+    let mut viewer = viewer(arguments, store);
+    until(&mut viewer, "the scene", Viewer::is_ready);
+    viewer
+}
+
+fn run(viewer: &mut Viewer, command: Command) {
+    viewer.ask(command);
+    frame(viewer);
+}
+
+#[test]
+fn gpu_what_is_saved_comes_back_and_yields_to_the_technique_and_that_to_set() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("viewer.toml");
+    let mut first = ready(&["plain"], Some(&path));
+    run(&mut first, Command::Technique("calm-4".to_owned()));
+    run(&mut first, Command::Set("bias.constant".to_owned(), "0.75".to_owned()));
+    run(&mut first, Command::SetTheme(Theme::Light));
+    run(&mut first, Command::SetBookmark(4));
+    run(&mut first, Command::SavePreset("mine".to_owned()));
+    let (technique, camera) = (first.stage.settings.technique, first.stage.camera);
+    first.save();
+    drop(first);
+
+    let mut second = ready(&[], Some(&path));
+    assert_eq!(second.source, SceneSource::from_text("plain"), "the scene of the last time");
+    assert_eq!(second.stage.settings.technique, technique);
+    assert!((second.stage.camera.position - camera.position).length() < 1e-9);
+    assert_eq!((second.saved.theme, second.presets.len()), (Theme::Light, 1));
+    run(&mut second, Command::Reset);
+    assert_eq!(
+        second.stage.settings.technique.fit.kind,
+        FitKind::Windows,
+        "a reset goes to the start, not to the file"
+    );
+    drop(second);
+
+    let third = ready(&["--technique", "stable-4", "--set", "bias.constant=0.25"], Some(&path));
+    let mut expected = Technique::preset("stable-4").expect("a preset").with_resolution(512, 512);
+    expected.bias.constant = 0.25;
+    let fit = third.stage.settings.technique.fit;
+    (expected.fit.max_distance, expected.fit.caster_extension) = (fit.max_distance, fit.caster_extension);
+    assert_eq!(third.stage.settings.technique, expected);
+    assert_eq!(third.source, SceneSource::from_text("plain"));
+    drop(third);
+
+    let (kept, _) = Store::at(path).load();
+    assert_eq!(kept.map(|kept: Saved| kept.bookmarks.len()), Some(1));
+}
+
+#[test]
+fn gpu_a_first_scene_that_cannot_be_loaded_ends_the_viewer_and_a_later_one_is_told() {
+    let mut broken = viewer(&["no/such/scene.glb"], None);
+    for _ in 0..2000 {
+        frame(&mut broken);
+        if broken.wishes.quit {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    let error = format!("{:#}", broken.failure.take().expect("it ends with an error"));
+    assert!(error.contains("no/such/scene.glb"), "{error}");
+
+    let mut viewer = ready(&[], None);
+    run(&mut viewer, Command::OpenFile("no/such/scene.glb".into()));
+    until(&mut viewer, "a message", |viewer| viewer.message.is_some());
+    assert!(!viewer.wishes.quit && viewer.source == SceneSource::default());
+}
+
+#[test]
+fn gpu_changes_are_taken_back_one_by_one() {
+    let mut viewer = ready(&[], None);
+    let pause = |viewer: &mut Viewer| (0..60).for_each(|_| frame(viewer));
+    pause(&mut viewer);
+    let before = viewer.stage.settings;
+    for (id, value) in [("map.filter", "point"), ("splits.count", "2")] {
+        run(&mut viewer, Command::Set(id.to_owned(), value.to_owned()));
+        pause(&mut viewer);
+    }
+    run(&mut viewer, Command::Undo);
+    assert_eq!(viewer.stage.settings.technique.count, 4);
+    assert_ne!(viewer.stage.settings, before);
+    run(&mut viewer, Command::Undo);
+    assert_eq!(viewer.stage.settings, before);
+    run(&mut viewer, Command::Redo);
+    run(&mut viewer, Command::Redo);
+    assert_eq!(viewer.stage.settings.technique.count, 2);
+}
+
+#[test]
+fn gpu_two_techniques_are_drawn_judged_and_swapped() {
+    let mut viewer = ready(&["--technique", "xna-1"], None);
+    run(&mut viewer, Command::Compare(Toggle::On));
+    run(&mut viewer, Command::View(ViewMode::Error));
+    until(&mut viewer, "both are judged", |viewer| viewer.stage.is_judged());
+    let wrong = |viewer: &mut Viewer| {
+        let figures = viewer.stage.figures(SIZE, None);
+        [figures.judged, figures.judged_other].map(|judged| judged.expect("it was judged").wrong)
+    };
+    let [a, b] = wrong(&mut viewer);
+    assert!(a > 2.0 * b, "one map of the sample is wrong in {a} %, four maps in {b} %");
+    let [technique, other] = [Some(viewer.stage.settings.technique), viewer.stage.other_technique()];
+    run(&mut viewer, Command::SwapSides);
+    assert_eq!([Some(viewer.stage.settings.technique), viewer.stage.other_technique()], [other, technique]);
+    run(&mut viewer, Command::Compare(Toggle::Off));
+    assert!(!viewer.stage.is_comparing());
+}
+
+#[test]
+fn gpu_an_artefact_is_found_on_a_thread_shown_told_and_fixed() {
+    let mut viewer = ready(&[], None);
+    run(&mut viewer, Command::ShowArtefact(Artefact::Acne));
+    until(&mut viewer, "acne", |viewer| viewer.stage.shown().is_some());
+    assert!(viewer.stage.narration().contains("texel"), "{}", viewer.stage.narration());
+    run(&mut viewer, Command::Fix);
+    assert_eq!(viewer.stage.shown().map(|shown| shown.fixed), Some(true));
+    assert!(viewer.stage.cure_changes().iter().any(|line| line.contains('→')), "{:?}", viewer.stage.cure_changes());
+}
+
+#[test]
+fn gpu_a_search_for_a_technique_can_be_stopped_and_taken_over() {
+    let mut viewer = ready(&["--technique", "xna-1"], None);
+    run(&mut viewer, Command::StartTune);
+    let tried = |viewer: &Viewer| matches!(viewer.tuning.shown(), Tune::Running { tried, .. } if tried >= 3);
+    until(&mut viewer, "three techniques", tried);
+    run(&mut viewer, Command::CancelTune);
+    until(&mut viewer, "the end", |viewer| !viewer.tuning.is_running());
+    let Tune::Done { before, after, .. } = viewer.tuning.shown() else { panic!("{:?}", viewer.tuning.shown()) };
+    assert!(after.wrong <= before.wrong, "{} % after {} %", after.wrong, before.wrong);
+    let technique = viewer.stage.settings.technique;
+    run(&mut viewer, Command::ApplyTune);
+    assert_ne!(viewer.stage.settings.technique, technique);
+}
+
+#[test]
+fn gpu_a_picture_brings_its_settings_back_when_it_is_opened() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("picture.png");
+    let mut viewer = ready(&[], None);
+    run(&mut viewer, Command::Set("bias.slope".to_owned(), "1.25".to_owned()));
+    let settings = viewer.stage.settings;
+    run(&mut viewer, Command::Picture(Some(path.clone())));
+    run(&mut viewer, Command::Reset);
+    assert_ne!(viewer.stage.settings, settings);
+    run(&mut viewer, Command::OpenFile(path));
+    assert_eq!(viewer.stage.settings, settings);
+}
+
+#[test]
+fn gpu_the_pixel_under_a_resting_pointer_is_explained() {
+    let mut viewer = ready(&[], None);
+    until(&mut viewer, "rays", |viewer| viewer.stage.prepared_scene().ready_rays().is_some());
+    let size = viewer.interface.pictures.size();
+    for _ in 0..6000 {
+        frame(&mut viewer);
+        viewer.stage.ask_why(Some([0.5, 0.9]), size);
+        if viewer.stage.why().is_some_and(|card| card.stored_depth.is_some()) {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    let card = viewer.stage.why().expect("the ground is there");
+    assert!(card.map.is_some() && card.reason.len() > 10 && card.map_reason.contains("map"), "{card:?}");
+}
