@@ -103,12 +103,13 @@ fn linear(bytes: [u8; 3]) -> Vec3 {
     }))
 }
 
-/// The map whose tint a colour was moved to; `None` where it was not moved.
+/// The map in whose tint a colour is shown; `None` where it is as it was.
 fn tint_of(plain: Vec3, tinted: Vec3) -> Option<usize> {
-    let moved = tinted - plain;
-    let toward = |map: usize| moved.normalize_or_zero().dot((linear(MAP_TINTS[map]) - plain).normalize_or_zero());
-    let nearest = (0..MAP_TINTS.len()).max_by(|a, b| toward(*a).total_cmp(&toward(*b)));
-    nearest.filter(|_| moved.length() > 0.02)
+    let luminance = plain.dot(Vec3::new(0.2126, 0.7152, 0.0722));
+    let shown = |map: usize| linear(MAP_TINTS[map]) * (0.12 + 1.5 * luminance) * 0.75 + plain * 0.25;
+    let difference = |map: usize| shown(map).min(Vec3::ONE).distance(tinted);
+    let nearest = (0..MAP_TINTS.len()).min_by(|a, b| difference(*a).total_cmp(&difference(*b)));
+    nearest.filter(|_| tinted.distance(plain) > 0.02)
 }
 
 #[test]

@@ -10,7 +10,9 @@ use crate::{Gpu, bindings, shaders};
 /// How wrong pixels of a [`JudgedPicture`](crate::JudgedPicture) are marked, in the
 /// [colours of their classes](shadowfit::figures::ERROR_COLORS).
 ///
-/// The picture's pixels are looked up in the judged one as surfaces are: by their depth where the cameras differ.
+/// Where the frame has the judged camera, its pixels are those of the judged picture. Where it has another, each pixel is
+/// looked up by its depth, so that marks stick to the surfaces; in a [part](crate::Frame::scissor) of a picture, areas then
+/// end at its border.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Marks {
     /// Whether areas of wrong pixels are outlined, three pixels away from them, so that a single one has a ring around

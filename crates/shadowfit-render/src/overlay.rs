@@ -24,8 +24,8 @@ pub enum Overlay {
     /// The picture in dim grey, and wrong pixels of [`Frame::judged`](crate::Frame::judged) in the
     /// [colours of their classes](shadowfit::figures::ERROR_COLORS).
     Error,
-    /// Which casters the maps hold: an instance has the tint of the first map that holds it, or is cold and dark if it is
-    /// in none. Blended surfaces, which cast nothing, are grey.
+    /// Which casters the maps hold: an instance has the tint of the first map that holds it, or is dark and hatched if it
+    /// is in none. Blended surfaces, which cast nothing, are grey.
     Casters,
 }
 
@@ -33,6 +33,11 @@ impl Overlay {
     /// All that have shaders of their own.
     pub const ALL: [Self; 6] =
         [Self::MapTint, Self::PixelsPerTexel, Self::TexelGrid, Self::Truth, Self::Error, Self::Casters];
+
+    /// Whether the sky is grey behind it, since its colours have a meaning that a blue sky has not.
+    pub const fn has_gray_sky(self) -> bool {
+        matches!(self, Self::PixelsPerTexel | Self::Error | Self::Casters)
+    }
 
     /// Whether it shows a judged picture.
     pub const fn is_judged(self) -> bool {

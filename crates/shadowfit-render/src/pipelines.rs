@@ -38,7 +38,8 @@ pub(crate) struct PartKey {
 /// Pipelines of every pass.
 #[derive(Debug)]
 pub(crate) struct Pipelines {
-    pub(crate) sky: wgpu::RenderPipeline,
+    sky: wgpu::RenderPipeline,
+    sky_gray: Option<wgpu::RenderPipeline>,
     pub(crate) lines: wgpu::RenderPipeline,
     pub(crate) inset: wgpu::RenderPipeline,
     pub(crate) quads: wgpu::RenderPipeline,
@@ -108,7 +109,8 @@ impl Pipelines {
         let caster_pipeline = |entry| maker.caster(&caster_layout, &caster, entry, map);
         let entries = ["fs_scene", "fs_scene_masked"];
         Self {
-            sky: maker.sky(layouts),
+            sky: maker.sky(layouts, "fs_sky"),
+            sky_gray: None,
             lines: maker.lines(layouts),
             inset: maker.inset(layouts, map),
             quads: maker.quads(layouts),
@@ -123,27 +125,39 @@ impl Pipelines {
         }
     }
 
-    /// Makes those pipelines of an overlay that parts need and that are not there yet. `layouts` are those of the shaded
-    /// pass's bind groups.
+    /// Makes those pipelines of an overlay that parts need and that are not there yet.
     pub(crate) fn add_overlay(
         &mut self,
         device: &wgpu::Device,
-        layouts: &[&wgpu::BindGroupLayout],
+        (layouts, judged): (&Layouts, &wgpu::BindGroupLayout),
         map: &ShadowMap,
         (overlay, parts): (Overlay, &[Part]),
     ) {
+        if overlay == Overlay::None {
+            return;
+        }
         let maker = Maker { device, samples: self.samples };
+        if overlay.has_gray_sky() {
+            self.sky_gray.get_or_insert_with(|| maker.sky(layouts, "fs_sky_gray"));
+        }
+        let groups = [&layouts.uniform, map.receiver_layout(), &layouts.material, judged];
+        let groups = &groups[..if overlay.is_judged() { 4 } else { 3 }];
         let mut layout = None;
         for key in parts.iter().map(PartKey::of) {
-            if overlay == Overlay::None || self.overlays.contains_key(&(overlay, key)) {
+            if self.overlays.contains_key(&(overlay, key)) {
                 continue;
             }
             let make = || maker.module("overlay", shaders::overlay(map.descriptor(), overlay));
             let module = self.modules.entry(overlay).or_insert_with(make);
-            let layout = layout.get_or_insert_with(|| maker.layout(layouts));
+            let layout = layout.get_or_insert_with(|| maker.layout(groups));
             let pipeline = maker.overlay(layout, module, overlay, key);
             self.overlays.insert((overlay, key), pipeline);
         }
+    }
+
+    /// Pipeline of the sky behind an overlay.
+    pub(crate) fn sky(&self, overlay: Overlay) -> &wgpu::RenderPipeline {
+        self.sky_gray.as_ref().filter(|_| overlay.has_gray_sky()).unwrap_or(&self.sky)
     }
 
     /// Pipeline of the pass that reads a block of texels.
@@ -265,12 +279,12 @@ impl Maker<'_> {
         })
     }
 
-    fn sky(&self, layouts: &Layouts) -> wgpu::RenderPipeline {
+    fn sky(&self, layouts: &Layouts, entry: &str) -> wgpu::RenderPipeline {
         let (layout, module) = (self.layout(&[&layouts.uniform]), self.module("sky", shaders::sky()));
         self.pipeline(&Shape {
             depth: Some((false, wgpu::CompareFunction::GreaterEqual)),
             samples: self.samples,
-            ..Shape::new("sky", &layout, &module, ["vs_sky", "fs_sky"])
+            ..Shape::new("sky", &layout, &module, ["vs_sky", entry])
         })
     }
 

@@ -100,8 +100,13 @@ impl ProbeTargets {
         let readable = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
         let pixels = texture(PROBE_FORMAT, readable);
         let view = pixels.create_view(&Default::default());
-        let depth = texture(DEPTH_FORMAT, wgpu::TextureUsages::empty()).create_view(&Default::default());
+        let depth = texture(DEPTH_FORMAT, wgpu::TextureUsages::TEXTURE_BINDING).create_view(&Default::default());
         Self { size, texture: pixels, view, depth }
+    }
+
+    /// The depth buffer of the probe that was drawn last: reversed, 0 where there is sky. Shaders can load it.
+    pub fn depth_view(&self) -> &wgpu::TextureView {
+        &self.depth
     }
 
     /// Waits for the probe and reads it.

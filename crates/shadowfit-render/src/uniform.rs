@@ -203,12 +203,19 @@ pub struct QuadVertex {
 pub struct JudgedUniform {
     /// Clip space of the judged camera from world positions relative to the frame's eye.
     pub clip_from_world: [[f32; 4]; 4],
-    /// The same from the frame's normalised device coordinates, with its reversed depth.
-    pub clip_from_ndc: [[f32; 4]; 4],
+    /// Homogeneous world positions relative to the frame's eye from its normalised device coordinates, with its reversed
+    /// depth.
+    pub world_from_ndc: [[f32; 4]; 4],
     /// Width and height of the judged picture, in pixels.
     pub size: [f32; 2],
     /// Its pixels for each pixel of the frame where both have the same camera; 0 where they do not.
     pub scale: [f32; 2],
+    /// View depth of the judged camera's near plane, in metres; 0 where its depth buffer is not known.
+    pub near: f32,
+    /// That of its far plane.
+    pub far: f32,
+    /// Keeps the struct a multiple of 16 bytes.
+    pub padding: [f32; 2],
 }
 
 /// How wrong pixels are marked: `Marks` in WGSL.

@@ -272,6 +272,11 @@ impl Evaluator {
         self.remember(view, maps);
     }
 
+    /// Forgets the view before: the next one follows none, and its crawl is not measured.
+    pub fn forget_view(&mut self) {
+        self.before = None;
+    }
+
     fn with_live_input<T>(
         &mut self,
         gpu: &Gpu,

@@ -17,10 +17,8 @@ const JUDGED_GROUP: u32 = 3;
 impl Renderer {
     /// Makes what an overlay needs that is not there yet.
     pub(super) fn prepare_overlay(&mut self, gpu: &Gpu, scene: &GpuScene, overlay: Overlay) {
-        let map = self.maps.map();
-        let layouts = [&self.layouts.uniform, map.receiver_layout(), &self.layouts.material, &self.judged.layout];
-        let used = if overlay.is_judged() { 4 } else { 3 };
-        self.pipelines.add_overlay(&gpu.device, &layouts[..used], map, (overlay, &scene.parts));
+        let layouts = (&self.layouts, &self.judged.layout);
+        self.pipelines.add_overlay(&gpu.device, layouts, self.maps.map(), (overlay, &scene.parts));
     }
 
     pub(super) fn scene_pass(
@@ -65,7 +63,7 @@ impl Renderer {
             pass.set_bind_group(JUDGED_GROUP, judged, &[]);
         }
         self.draw_scene(pass, scene, &plan.opaque, pipeline);
-        pass.set_pipeline(&self.pipelines.sky);
+        pass.set_pipeline(self.pipelines.sky(plan.overlay));
         pass.draw(0..3, 0..1);
         self.draw_scene(pass, scene, &plan.blended, pipeline);
         self.lines.draw(pass, &self.pipelines.lines, 6);
@@ -84,7 +82,7 @@ impl Renderer {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("probe"),
             color_attachments: &[Some(cleared(&targets.view, None, wgpu::Color::TRANSPARENT))],
-            depth_stencil_attachment: Some(depth(&targets.depth, wgpu::StoreOp::Discard)),
+            depth_stencil_attachment: Some(depth(&targets.depth, wgpu::StoreOp::Store)),
             timestamp_writes: query.as_ref().and_then(GpuProfilerQuery::render_pass_timestamp_writes),
             ..Default::default()
         });

@@ -59,7 +59,7 @@ impl Renderer {
         let view = texture.create_view(&Default::default());
         let uniform = bindings::uniform_buffer::<BlockUniform>(&gpu.device, "texels");
         let last = self.maps.maps()[block.map].fit.resolution.as_ivec2() - 1;
-        let reach = (side / 2) as i32;
+        let reach = (side / 2).cast_signed();
         let first = block.texel.map(|texel| texel.saturating_sub(reach));
         let data = BlockUniform { first, last: last.to_array(), map: block.map as u32, ..BlockUniform::default() };
         gpu.queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&data));

@@ -1,18 +1,23 @@
 // A picture that was judged against rays: which of its pixels shows a point, and how it was judged.
 
 struct Judged {
-    // Clip space of the judged camera, from positions relative to the frame's eye, and from the frame's normalised
-    // device coordinates.
+    // Clip space of the judged camera from positions relative to the frame's eye.
     clip_from_world: mat4x4<f32>,
-    clip_from_ndc: mat4x4<f32>,
+    // Homogeneous positions relative to the frame's eye from its normalised device coordinates.
+    world_from_ndc: mat4x4<f32>,
     // Width and height, in pixels.
     size: vec2<f32>,
     // Its pixels for each of the frame's where the cameras are the same; else 0.
     scale: vec2<f32>,
+    // View depths of its near and far plane, in metres; 0 where its depth is not looked at.
+    near: f32,
+    far: f32,
+    padding: vec2<f32>,
 }
 
 @group(GROUP) @binding(0) var<uniform> judged: Judged;
 @group(GROUP) @binding(1) var classes: texture_2d<u32>;
+@group(GROUP) @binding(2) var judged_depths: texture_depth_2d;
 
 // The bits of `Class`, and that of light in truth. 0 is a pixel that was not judged; wrong ones follow the right ones.
 const CLASS: u32 = 7u;
@@ -25,10 +30,33 @@ fn judged_at(pixel: vec2<f32>) -> u32 {
     return select(0u, textureLoad(classes, vec2<i32>(pixel), 0).x, is_inside);
 }
 
-// The bits at a place in the judged camera's clip space; 0 behind it.
+// Share by which view depths may differ that are of the same surface.
+const SAME_DEPTH: f32 = 0.01;
+
+// View depth of what the judged picture shows at a pixel, in metres.
+fn judged_view_depth(pixel: vec2<i32>) -> f32 {
+    let depth = textureLoad(judged_depths, pixel, 0);
+    return judged.near * judged.far / (judged.near + depth * (judged.far - judged.near));
+}
+
+// Whether the judged camera saw a point at a view depth, and not another surface: it differs from the pixel's by no more
+// than that of a slanted surface does from one pixel to the next.
+fn is_seen(at: vec2<f32>, view_depth: f32) -> bool {
+    let pixel = vec2<i32>(at);
+    let middle = judged_view_depth(pixel);
+    let before = vec2<f32>(judged_view_depth(pixel - vec2<i32>(1, 0)), judged_view_depth(pixel - vec2<i32>(0, 1)));
+    let after = vec2<f32>(judged_view_depth(pixel + vec2<i32>(1, 0)), judged_view_depth(pixel + vec2<i32>(0, 1)));
+    // Of both sides the lesser: the other one may lie beyond an edge.
+    let slope = min(abs(before - middle), abs(after - middle));
+    let is_same = abs(view_depth - middle) <= slope.x + slope.y + SAME_DEPTH * middle;
+    // Without branches: Mesa's software rasteriser (22.3) crashes where too many depend on uniforms.
+    return is_same | (judged.near == 0.0);
+}
+
+// The bits at a place in the judged camera's clip space; 0 behind it, and where it did not see the point.
 fn judged_at_clip(clip: vec4<f32>) -> u32 {
     let pixel = (clip.xy / clip.w * vec2<f32>(0.5, -0.5) + 0.5) * judged.size;
-    return select(0u, judged_at(pixel), clip.w > 0.0);
+    return select(0u, judged_at(pixel), (clip.w > 0.0) & is_seen(pixel, clip.w));
 }
 
 // The bits of a visible point. pixel: in the frame.

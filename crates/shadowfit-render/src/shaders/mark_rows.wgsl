@@ -2,25 +2,26 @@
 
 @group(1) @binding(1) var depths: SceneDepth;
 
+// The bits of a pixel of the frame.
+fn judged_pixel(pixel: vec2<i32>, size: vec2<i32>) -> u32 {
+    let at = vec2<f32>(pixel) + 0.5;
+    if judged.scale.x > 0.0 {
+        return judged_at(at * judged.scale);
+    }
+    let depth = textureLoad(depths, pixel, 0);
+    let ndc = at / vec2<f32>(size) * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0);
+    let position = judged.world_from_ndc * vec4<f32>(ndc, depth, 1.0);
+    let bits = judged_of(position.xyz / position.w, at);
+    // The far plane is sky.
+    return select(0u, bits, depth > 0.0);
+}
+
 // The class of a pixel that is marked; 0 for others.
 fn marked_class(pixel: vec2<i32>, size: vec2<i32>) -> u32 {
     if any(pixel < vec2<i32>(0)) || any(pixel >= size) {
         return 0u;
     }
-    let depth = textureLoad(depths, pixel, 0);
-    // The far plane: sky.
-    if depth <= 0.0 {
-        return 0u;
-    }
-    let at = vec2<f32>(pixel) + 0.5;
-    var bits = 0u;
-    if judged.scale.x > 0.0 {
-        bits = judged_at(at * judged.scale);
-    } else {
-        let ndc = at / vec2<f32>(size) * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0);
-        bits = judged_at_clip(judged.clip_from_ndc * vec4<f32>(ndc, depth, 1.0));
-    }
-    let kind = bits & CLASS;
+    let kind = judged_pixel(pixel, size) & CLASS;
     return select(0u, kind, (marks.classes >> kind & 1u) != 0u);
 }
 

@@ -26,11 +26,10 @@ fn decoded(color: vec3<f32>) -> vec3<f32> {
 
 // Thin diagonal lines, 1 on a line and 0 between them, with smooth edges. pixel: in the picture.
 fn hatching(pixel: vec2<f32>) -> f32 {
-    // Pixels between two lines, and the width of one, measured along a row.
+    // Pixels between two lines, measured along a row.
     let period = 8.0;
-    let width = 2.0;
     let place = fract((pixel.x + pixel.y) / period) * period;
-    return saturate(1.0 - abs(place - 0.5 * period) + 0.5 * width);
+    return saturate(1.5 - abs(place - 0.5 * period));
 }
 
 // The map that weighs more in a point's shadow, by its place in the order; -1 outside every map.

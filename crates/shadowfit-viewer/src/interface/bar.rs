@@ -34,7 +34,7 @@ pub(super) fn show(ui: &mut Ui, stage: &mut Stage, shows: &Shows<'_>, asked: &mu
 /// The menu of scenes: built in, opened before, and from a file.
 fn scenes(ui: &mut Ui, shows: &Shows<'_>, asked: &mut Asked) {
     let open = |asked: &mut Asked, source| asked.commands.push(Command::Open(source));
-    MenuButton::new("Scene ▾").ui(ui, |ui| {
+    MenuButton::new("Scene").ui(ui, |ui| {
         for scene in BuiltinScene::ALL {
             if ui.button(scene.label()).on_hover_text(scene.help()).clicked() {
                 open(asked, SceneSource::BuiltIn(scene));

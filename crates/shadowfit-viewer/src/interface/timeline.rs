@@ -7,6 +7,9 @@ use super::Asked;
 use crate::command::Command;
 use crate::stage::Stage;
 
+/// Least change of the time that counts as one, in seconds.
+const SCRUB_STEP: f32 = 0.006;
+
 pub(super) fn show(ui: &mut Ui, stage: &mut Stage, frame_ms: Option<f32>, asked: &mut Asked) {
     egui::Panel::bottom("timeline").show(ui, |ui| {
         ui.add_space(2.0);
@@ -35,10 +38,12 @@ fn animation(ui: &mut Ui, stage: &mut Stage, asked: &mut Asked) {
     if ui.add(Button::new(icon).min_size(egui::vec2(28.0, 0.0))).on_hover_text(help).clicked() {
         asked.commands.push(Command::TogglePlay);
     }
-    let mut seconds = stage.seconds() % duration.max(1e-3);
+    let now = stage.seconds() % duration.max(1e-3);
+    let mut seconds = now;
     let slider = Slider::new(&mut seconds, 0.0..=duration).fixed_decimals(2).suffix(" s").trailing_fill(true);
     let response = ui.add(slider).on_hover_text("Time of the animation; dragging it poses the scene");
-    if response.changed() {
+    // A slider rounds what it shows, which is no wish.
+    if response.changed() && (seconds - now).abs() > SCRUB_STEP {
         asked.commands.push(Command::Scrub(seconds));
     }
 }
@@ -51,9 +56,10 @@ fn day(ui: &mut Ui, stage: &mut Stage, asked: &mut Asked) {
         asked.commands.push(Command::ToggleSun);
     }
     let mut hour = light.hour.unwrap_or(12.0);
+    let is_set = light.hour.is_some();
     let clock = |hour: f64, _: std::ops::RangeInclusive<usize>| {
         let minutes = (hour * 60.0).round() as u32;
-        format!("{}:{:02}", minutes / 60, minutes % 60)
+        if is_set { format!("{}:{:02}", minutes / 60, minutes % 60) } else { "by angles".to_owned() }
     };
     let slider = Slider::new(&mut hour, DAY.0..=DAY.1).custom_formatter(clock).trailing_fill(true);
     let help = "Time of day: sunrise at 6, noon at 12, sunset at 18. Azimuth and elevation in the panel are used until it \

@@ -77,7 +77,7 @@ impl Live {
     /// The picture that was judged last.
     pub(super) fn picture(&self) -> Option<JudgedPicture<'_>> {
         let judged = self.judged.as_ref()?;
-        Some(JudgedPicture { classes: &judged.view, size: judged.size, camera: judged.key.camera })
+        Some(JudgedPicture { classes: &judged.view, size: judged.size, camera: judged.key.camera, depth: None })
     }
 
     /// The figures that came back last.

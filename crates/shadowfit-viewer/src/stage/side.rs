@@ -53,10 +53,10 @@ impl Shot<'_> {
         View { camera: self.camera, direction: self.settings.light.direction(), is_first: false }
     }
 
-    /// Whether rays are asked for.
-    fn wants_rays(&self) -> bool {
+    /// Whether rays are asked for. Pictures that are made one by one are judged only where they show it.
+    fn wants_rays(&self, goes_on: bool) -> bool {
         let view = &self.settings.view;
-        view.judge || view.mode.is_judged() || view.marks != ErrorMarks::Off
+        (view.judge && goes_on) || view.mode.is_judged() || view.marks != ErrorMarks::Off
     }
 }
 
@@ -132,6 +132,7 @@ impl Side {
         } else {
             self.fitter.set_technique(technique);
             self.forget_pictures();
+            self.evaluator.forget_view();
             self.fitter.fit_alone(shot.scene, &view)?;
         }
         Ok(Fitted::new(view.camera, technique, self.fitter.fitted()))
@@ -213,7 +214,7 @@ impl Side {
         let view = View { camera: fitted.camera.unwrap_or(seen.camera), ..seen };
         let is_frozen = view.camera != seen.camera;
         let mut maps_stay = false;
-        if shot.wants_rays() && !is_frozen {
+        if shot.wants_rays(self.need_pass.is_some() || self.live.waits) && !is_frozen {
             let judged = self.live.judge(&mut self.evaluator, shot, &view, &maps, target.size);
             match judged {
                 Ok(drawn) => maps_stay = drawn,
@@ -228,6 +229,7 @@ impl Side {
         }
         if !is_frozen && !matches!(shot.settings.view.mode, ViewMode::Outside | ViewMode::Need) {
             self.record_picture(shot.gpu, &view, target);
+            self.evaluator.note_view(&view, &maps);
         }
     }
 

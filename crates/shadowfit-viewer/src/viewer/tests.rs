@@ -79,7 +79,8 @@ fn gpu_what_is_saved_comes_back_and_yields_to_the_technique_and_that_to_set() {
 
     let mut second = ready(&[], Some(&path));
     assert_eq!(second.source, SceneSource::from_text("plain"), "the scene of the last time");
-    assert_eq!(second.stage.settings.technique, technique);
+    let technique = technique.with_resolution(512, 512);
+    assert_eq!(second.stage.settings.technique, technique, "but for what the arguments set");
     assert!((second.stage.camera.position - camera.position).length() < 1e-9);
     assert_eq!((second.saved.theme, second.presets.len()), (Theme::Light, 1));
     run(&mut second, Command::Reset);
@@ -207,7 +208,6 @@ fn gpu_the_pixel_under_a_resting_pointer_is_explained() {
     until(&mut viewer, "rays", |viewer| viewer.stage.prepared_scene().ready_rays().is_some());
     let size = viewer.interface.pictures.size();
     for _ in 0..6000 {
-        frame(&mut viewer);
         viewer.stage.ask_why(Some([0.5, 0.9]), size);
         if viewer.stage.why().is_some_and(|card| card.stored_depth.is_some()) {
             break;
