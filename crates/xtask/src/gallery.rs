@@ -5,10 +5,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use image::RgbImage;
+use image::codecs::png::{self, CompressionType, PngEncoder};
 use image::imageops::{self, FilterType};
 
+use crate::machine::Machine;
 use crate::process;
 use crate::run;
 use crate::setup::{self, Purpose};
@@ -18,6 +20,35 @@ const IMAGES: &str = "docs/images";
 
 /// Size of a picture of the docs in pixels: half of full HD each way, wide enough to see single shadow texels.
 const SIZE: &str = "960x540";
+
+/// The script that makes the pictures of the viewer's tour, relative to the workspace's folder.
+const TOUR: &str = "docs/tour.txt";
+
+/// Size of the viewer's window at the beginning of the tour, in pixels.
+const WINDOW: &str = "1280x720";
+
+/// Those of the viewer's own set of pictures that the docs show.
+const SHOWN: [&str; 13] = [
+    "final",
+    "maps",
+    "outside",
+    "inset-all",
+    "split",
+    "acne",
+    "acne-marked",
+    "acne-fixed",
+    "aliasing",
+    "aliasing-fixed",
+    "hole",
+    "hole-marked",
+    "hole-fixed",
+];
+
+/// Most bytes of a picture of the docs, which every clone of the repository holds.
+const MOST_BYTES: u64 = 500_000;
+
+/// Most bits that a colour channel may lose for that: steps of eight levels of 255 are still hard to see.
+const MOST_BITS: u32 = 3;
 
 /// The view that errors are shown in, relative to the workspace's folder.
 const ERROR_VIEW: &str = "docs/report.toml";
@@ -59,12 +90,81 @@ const GAP: u32 = 5;
 pub(crate) fn gallery() -> Result<()> {
     let machine = setup::prepare(Purpose::Pictures)?;
     let images = process::root().join(IMAGES);
-    process::run(run::viewer(&machine).arg("--headless").arg(&images).args(["--size", SIZE, "--software"]))?;
+    tour(&machine, &images)?;
+    own_set(&machine, &images)?;
     errors(&images)?;
     shadows(&images)?;
     edges(&images)?;
     run::say_where(&images);
     Ok(())
+}
+
+/// The pictures of the viewer's tour, whatever its script saves.
+fn tour(machine: &Machine, images: &Path) -> Result<()> {
+    let folder = empty_folder("tour")?;
+    let mut viewer = run::viewer(machine);
+    viewer.arg("--headless").arg(&folder).arg("--script").arg(process::root().join(TOUR));
+    process::run(viewer.args(["--size", WINDOW, "--software"]))?;
+    for entry in fs::read_dir(&folder).with_context(|| format!("{}: cannot be read", folder.display()))? {
+        let file = entry?.path();
+        if file.extension().is_some_and(|extension| extension == "png") {
+            publish(&file, &images.join(file.file_name().unwrap_or_default()))?;
+        }
+    }
+    Ok(())
+}
+
+/// Those of the viewer's own set of pictures that the docs show.
+fn own_set(machine: &Machine, images: &Path) -> Result<()> {
+    let folder = empty_folder("set")?;
+    let mut viewer = run::viewer(machine);
+    viewer.arg("--headless").arg(&folder).arg("courtyard");
+    process::run(viewer.args(["--size", SIZE, "--software"]))?;
+    for name in SHOWN {
+        let file = format!("{name}.png");
+        publish(&folder.join(&file), &images.join(&file))?;
+    }
+    Ok(())
+}
+
+/// An empty folder below `target`, for pictures of which not all are shown as they are.
+fn empty_folder(name: &str) -> Result<PathBuf> {
+    let folder = process::root().join("target/gallery").join(name);
+    if folder.exists() {
+        fs::remove_dir_all(&folder).with_context(|| format!("{}: cannot be removed", folder.display()))?;
+    }
+    fs::create_dir_all(&folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
+    Ok(folder)
+}
+
+/// Copies a picture to the docs. One that is too large loses the lowest bits of its colours, which compress worst and are
+/// seen least, until it is not.
+fn publish(from: &Path, to: &Path) -> Result<()> {
+    fs::copy(from, to).with_context(|| format!("{}: cannot be copied", from.display()))?;
+    for bits in 1..=MOST_BITS {
+        if bytes(to)? <= MOST_BYTES {
+            return Ok(());
+        }
+        let mut picture = open(from)?;
+        for value in picture.iter_mut() {
+            *value &= u8::MAX << bits;
+        }
+        save_small(&picture, to)?;
+    }
+    ensure!(bytes(to)? <= MOST_BYTES, "{}: more than {MOST_BYTES} bytes; make it smaller", to.display());
+    Ok(())
+}
+
+fn bytes(file: &Path) -> Result<u64> {
+    let data = fs::metadata(file).with_context(|| format!("{}: cannot be read", file.display()))?;
+    Ok(data.len())
+}
+
+/// Saves a picture in as few bytes as its format allows.
+fn save_small(picture: &RgbImage, file: &Path) -> Result<()> {
+    let written = fs::File::create(file).with_context(|| format!("{}: cannot be made", file.display()))?;
+    let encoder = PngEncoder::new_with_quality(written, CompressionType::Best, png::FilterType::Adaptive);
+    picture.write_with_encoder(encoder).with_context(|| format!("{}: cannot be written", file.display()))
 }
 
 /// The errors and the texels of techniques in one view, as the report marks them.
