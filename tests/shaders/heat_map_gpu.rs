@@ -88,8 +88,8 @@ fn steps(picture: &[[u8; 3]], rows: core::ops::Range<usize>) -> Vec<u8> {
 }
 
 #[test]
-fn texels_show_where_they_are_wide_and_leave_no_pattern_where_they_are_not() {
-    for (resolution, distance, is_shown) in [(256, 120.0, true), (4096, 20.0, false)] {
+fn texels_show_where_they_are_wide_and_blocks_of_them_where_they_are_not() {
+    for (resolution, distance) in [(256, 120.0), (4096, 20.0)] {
         let technique = Technique::preset("focused-1").expect("a preset").with_max_distance(distance);
         let (mut pictures, seen) = Pictures::of(&technique.with_resolution(resolution, resolution), 1, floor());
         let drawn = pictures.picture(&Frame { overlay: Overlay::TexelGrid, ..seen.frame() });
@@ -97,7 +97,8 @@ fn texels_show_where_they_are_wide_and_leave_no_pattern_where_they_are_not() {
         let steps = steps(&drawn, 70..90);
         let large = steps.iter().filter(|step| **step > 12).count();
         println!("{resolution}: {large} of {}", steps.len());
-        assert_eq!(large * 10 > steps.len(), is_shown, "{resolution}: {large} of {}", steps.len());
-        assert!(is_shown || large == 0, "{large} steps");
+        assert!(large * 20 > steps.len(), "{resolution}: there is no grid, {large} of {}", steps.len());
+        // Nothing narrower than six pixels is drawn, which has two steps and a line of two more at most.
+        assert!(large * 3 < steps.len() * 2, "{resolution}: the grid is finer than pixels, {large} of {}", steps.len());
     }
 }

@@ -1,4 +1,4 @@
-//! Gamepads: the left stick moves, the right stick looks, BACK quits.
+//! Gamepads: the left stick moves, the right stick looks, the triggers sink and rise, BACK quits.
 
 use gilrs::{Axis, Button, EventType, Gilrs};
 use glam::{Vec2, Vec3};
@@ -17,7 +17,7 @@ impl Gamepads {
         Self { gilrs: Gilrs::new().ok() }
     }
 
-    /// Movement and turn by the sticks, and whether BACK was pressed.
+    /// Movement and turn by sticks and triggers, and whether BACK was pressed.
     pub(crate) fn poll(&mut self) -> ((Vec3, Vec2), bool) {
         let Some(gilrs) = &mut self.gilrs else { return Default::default() };
         let mut quits = false;
@@ -27,7 +27,9 @@ impl Gamepads {
         let mut sticks = (Vec3::ZERO, Vec2::ZERO);
         for (_, gamepad) in gilrs.gamepads() {
             let value = |axis| beyond_dead_zone(gamepad.value(axis));
-            sticks.0 += Vec3::new(value(Axis::LeftStickX), 0.0, value(Axis::LeftStickY));
+            let pressed = |button| gamepad.button_data(button).map_or(0.0, |data| beyond_dead_zone(data.value()));
+            let rise = pressed(Button::RightTrigger2) - pressed(Button::LeftTrigger2);
+            sticks.0 += Vec3::new(value(Axis::LeftStickX), rise, value(Axis::LeftStickY));
             sticks.1 += Vec2::new(value(Axis::RightStickX), value(Axis::RightStickY));
         }
         (sticks, quits)

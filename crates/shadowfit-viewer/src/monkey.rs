@@ -17,6 +17,8 @@ const PACE: f32 = 0.06;
 const WARM_UP: f32 = 0.25;
 /// Sizes of windows, in pixels.
 const SIZES: [[u32; 2]; 6] = [[1280, 720], [640, 360], [960, 600], [1, 1], [333, 777], [1024, 300]];
+/// Largest file that is dropped, in bytes: others are loaded for so long that nothing else is tried.
+const LARGEST: u64 = 20_000_000;
 /// Seconds that the scene is left alone before memory is measured.
 const REST: f32 = 3.0;
 
@@ -81,6 +83,7 @@ pub(crate) struct MonkeyRun {
 impl MonkeyRun {
     pub(crate) fn new(monkey: &Monkey) -> Self {
         let mut files: Vec<PathBuf> = monkey.files.iter().flat_map(|folder| files_below(folder.as_ref())).collect();
+        files.retain(|file| std::fs::metadata(file).is_ok_and(|data| data.len() <= LARGEST));
         files.sort();
         let unwanted = |chord: &Chord| matches!(chord.command(), Some(Command::Quit | Command::ChooseFile));
         let with_modifiers = |chord: Chord| {

@@ -190,7 +190,8 @@ impl Running {
 
     fn event(&mut self, event: &WindowEvent) {
         match event {
-            WindowEvent::Resized(size) => self.surface.resize(self.viewer.stage.gpu(), *size),
+            // The surface follows with the next frame, however many sizes come before it.
+            WindowEvent::Resized(size) => self.surface.expect(*size),
             WindowEvent::Focused(false) => self.viewer.input.release_all(),
             WindowEvent::ModifiersChanged(modifiers) => self.modifiers = modifiers.state(),
             WindowEvent::DroppedFile(path) => self.viewer.ask(Command::OpenFile(path.clone())),
@@ -299,12 +300,20 @@ impl Surface {
         Ok(Self { instance, window, handle, is_stale: false, configuration, has_area })
     }
 
+    /// Takes note of a new size of the window.
+    fn expect(&mut self, size: PhysicalSize<u32>) {
+        self.has_area = size.width > 0 && size.height > 0;
+        self.is_stale = true;
+    }
+
     fn resize(&mut self, gpu: &Gpu, size: PhysicalSize<u32>) {
         self.has_area = size.width > 0 && size.height > 0;
         if self.has_area {
             let limit = gpu.device.limits().max_texture_dimension_2d;
             self.configuration.width = size.width.min(limit);
             self.configuration.height = size.height.min(limit);
+            // A surface can only be configured once all work on it is done, and does not wait long for that by itself.
+            let _lost_is_told_elsewhere = gpu.device.poll(wgpu::PollType::wait_indefinitely());
             self.handle.configure(&gpu.device, &self.configuration);
             self.is_stale = false;
         }
