@@ -65,7 +65,7 @@ pub(crate) fn settings_of_png(path: &Path) -> Result<Option<String>> {
 /// The first name that no file in the working folder has: `shadowfit-001.png`.
 pub(crate) fn free_name(extension: &str) -> PathBuf {
     let name = |number: u32| PathBuf::from(format!("shadowfit-{number:03}.{extension}"));
-    (1..).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(0))
+    (1..=u32::from(u16::MAX)).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(0))
 }
 
 #[cfg(test)]

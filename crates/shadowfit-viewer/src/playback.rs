@@ -135,8 +135,8 @@ fn begin(step: Step, deeds: &mut Vec<Deed>) -> Option<Under> {
     match step {
         Step::Do(command @ (Command::Window(_) | Command::Picture(_))) => return Some(Under::Save(command, SETTLING)),
         Step::Do(command) => deeds.push(Deed::Do(command)),
-        Step::Press(chord) => return hold(chord, 0.0, deeds),
-        Step::Hold(chord, seconds) => return hold(chord, seconds, deeds),
+        Step::Press(chord) => return Some(hold(chord, 0.0, deeds)),
+        Step::Hold(chord, seconds) => return Some(hold(chord, seconds, deeds)),
         Step::Type(text) => deeds.push(Deed::Pointer(Event::Text(text))),
         Step::Hover(at) => deeds.push(moved(at)),
         Step::Click(at, times) => deeds.extend(clicks(at, times)),
@@ -152,9 +152,9 @@ fn begin(step: Step, deeds: &mut Vec<Deed>) -> Option<Under> {
     None
 }
 
-fn hold(chord: Chord, seconds: f32, deeds: &mut Vec<Deed>) -> Option<Under> {
+fn hold(chord: Chord, seconds: f32, deeds: &mut Vec<Deed>) -> Under {
     deeds.push(Deed::Key(chord, true));
-    Some(Under::Release(chord, seconds))
+    Under::Release(chord, seconds)
 }
 
 fn moved([x, y]: [f32; 2]) -> Deed {

@@ -257,7 +257,7 @@ impl Store {
 
     /// Gives the file another name, and says so.
     fn set_aside(&mut self, error: &anyhow::Error) -> String {
-        let aside = (1..)
+        let aside = (1..=u16::MAX)
             .map(|number| self.path.with_extension(format!("damaged-{number}.toml")))
             .find(|path| !path.exists())
             .unwrap_or_else(|| self.path.clone());

@@ -105,7 +105,7 @@ impl Stage {
     ///
     /// [`StageError`] if the scene is empty or the shadow map impossible.
     pub fn new(gpu: Gpu, scene: Scene, samples: u32) -> Result<Self, StageError> {
-        let side = Side::new(&gpu, Settings::default().technique, samples)?;
+        let side = Side::new(&gpu, &Settings::default().technique, samples)?;
         let scene = PreparedScene::new(&gpu, side.evaluator.renderer.material_layout(), scene)?;
         let home = home::home(&scene);
         Ok(Self {

@@ -193,7 +193,7 @@ impl Viewer {
     fn save_window(&mut self, layout: &Layout, path: &std::path::Path, size: [u32; 2]) -> Result<()> {
         let whole = Canvas::new(&self.stage.gpu().device, size, self.interface.format());
         self.interface.paint(&self.stage, layout, &whole.view, size);
-        write_png(path, size, &whole.read(self.stage.gpu())?, Some(&self.text_of_settings()?))
+        write_png(path, size, &whole.read(self.stage.gpu())?, Some(&self.text_of_settings()))
     }
 
     /// Plays the script on.

@@ -236,7 +236,7 @@ impl Running {
             let view = texture.texture.create_view(&Default::default());
             let size = [self.surface.configuration.width, self.surface.configuration.height];
             self.viewer.paint(&layout, &view, size);
-            self.log_frame(begin.elapsed().saturating_sub(shadowfit_render::waited() - waited));
+            self.log_frame(begin.elapsed().saturating_sub(shadowfit_render::waited().saturating_sub(waited)));
             self.window.pre_present_notify();
             self.viewer.stage.gpu().queue.present(texture);
         }

@@ -120,13 +120,13 @@ impl Pictures {
         if stage.is_comparing() {
             self.show_other(ui, stage, rect, asked);
         }
-        if !shows.has_scene {
-            ui.painter().rect_filled(rect, CornerRadius::ZERO, ui.visuals().extreme_bg_color);
-        } else {
+        if shows.has_scene {
             over(ui, stage, figures, rect);
             if stage.settings.view.outside_beside {
                 self.show_beside(ui, rect);
             }
+        } else {
+            ui.painter().rect_filled(rect, CornerRadius::ZERO, ui.visuals().extreme_bg_color);
         }
         loading(ui, shows, rect);
         if let (Some(card), Some(at)) = (stage.why(), response.hover_pos()) {

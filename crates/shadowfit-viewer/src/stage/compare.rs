@@ -51,7 +51,7 @@ impl Stage {
             other.technique = technique;
             return;
         }
-        match Side::new(&self.gpu, technique, self.samples) {
+        match Side::new(&self.gpu, &technique, self.samples) {
             Ok(mut side) => {
                 side.live.waits = self.side.live.waits;
                 if self.reads_depths {

@@ -66,10 +66,10 @@ impl Side {
     /// # Errors
     ///
     /// [`ShadowMapError`] if the shadow map cannot be made.
-    pub(super) fn new(gpu: &Gpu, technique: Technique, samples: u32) -> Result<Self, ShadowMapError> {
-        let renderer = Renderer::new(gpu, &ShadowMapDescriptor::from(&technique), samples)?;
+    pub(super) fn new(gpu: &Gpu, technique: &Technique, samples: u32) -> Result<Self, ShadowMapError> {
+        let renderer = Renderer::new(gpu, &ShadowMapDescriptor::from(technique), samples)?;
         Ok(Self {
-            fitter: TechniqueFitter::new(technique),
+            fitter: TechniqueFitter::new(*technique),
             evaluator: Evaluator::new(renderer, Judging { crawl: false, ..Judging::default() }),
             fitted: None,
             statistics: Statistics::default(),

@@ -264,7 +264,7 @@ impl Viewer {
     fn save_picture(&mut self, path: Option<PathBuf>) -> Result<String> {
         let path = path.map_or_else(|| free_name("png"), |path| self.start.place(path));
         let pixels = self.interface.pictures.read(&self.stage)?;
-        write_png(&path, self.interface.pictures.size(), &pixels, Some(&self.text_of_settings()?))?;
+        write_png(&path, self.interface.pictures.size(), &pixels, Some(&self.text_of_settings()))?;
         Ok(format!("Saved {}", path.display()))
     }
 
@@ -275,12 +275,12 @@ impl Viewer {
     }
 
     /// What a picture carries: the scene and all settings, as [`Self::open_picture`] reads them.
-    pub(super) fn text_of_settings(&self) -> Result<String> {
+    pub(super) fn text_of_settings(&self) -> String {
         let scene = toml::Value::from(self.source.text());
         let line = command_line(&self.source, &self.stage.settings, &self.stage.home_settings());
         let line = toml::Value::from(line);
         let settings = settings_to_toml(&self.stage.settings, "settings.");
-        Ok(format!("scene = {scene}\ncommand = {line}\n\n{settings}"))
+        format!("scene = {scene}\ncommand = {line}\n\n{settings}")
     }
 
     fn save_preset(&mut self, name: &str) -> Result<String> {

@@ -95,7 +95,7 @@ impl Viewer {
             return Ok(technique);
         }
         let home = self.stage.home_settings();
-        let mut settings = if source == self.source { kept } else { of_scene(kept, &home) };
+        let mut settings = if source == self.source { kept } else { of_scene(&kept, &home) };
         // What is saved yields to the arguments.
         arguments.apply(&mut settings)?;
         self.stage.settings = settings;
@@ -134,8 +134,8 @@ impl Viewer {
 }
 
 /// Settings of another scene, with the lengths and the light of this one.
-fn of_scene(kept: Settings, home: &Settings) -> Settings {
-    let mut settings = Settings { light: home.light, camera: home.camera, ..kept };
+fn of_scene(kept: &Settings, home: &Settings) -> Settings {
+    let mut settings = Settings { light: home.light, camera: home.camera, ..*kept };
     settings.technique.fit.max_distance = home.technique.fit.max_distance;
     settings.technique.fit.caster_extension = home.technique.fit.caster_extension;
     settings
