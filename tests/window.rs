@@ -30,8 +30,8 @@ const CHANGED: f32 = 1.0;
 /// Mean difference, in levels of 255, up to which two pictures count as the same.
 const SAME: f32 = 0.1;
 
-/// How long a picture must stay the same to count as at rest: some frames of a software driver.
-const STILL: Duration = Duration::from_millis(400);
+/// How long a picture must stay the same to count as at rest: some frames of a software driver on a busy machine.
+const STILL: Duration = Duration::from_millis(1500);
 
 /// How long a frame, or a change that takes some frames, may take: a software driver, two cores, a cold shader cache.
 const PATIENCE: Duration = Duration::from_mins(1);

@@ -171,7 +171,7 @@ impl Pictures {
         painter.image(self.beside.texture, place, whole, Color32::WHITE);
         let frame = Stroke::new(1.5, Color32::from_white_alpha(200));
         painter.rect_stroke(place, CornerRadius::same(4), frame, StrokeKind::Outside);
-        let text = "From outside: what is grey is in no map";
+        let text = "Hatched: in no map";
         label(ui, place.left_bottom() + Vec2::new(8.0, -8.0), Align2::LEFT_BOTTOM, text);
     }
 }
