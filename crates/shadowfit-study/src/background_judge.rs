@@ -39,7 +39,7 @@ pub struct JudgeJob {
     /// What they were drawn into.
     pub descriptor: ShadowMapDescriptor,
     /// Whether each of the scene's instances counts in sums:
-    /// [`PreparedScene::counted_instances`](crate::PreparedScene::counted_instances).
+    /// [`PosedScene::counted_instances`](crate::PosedScene::counted_instances).
     pub counted: Vec<bool>,
     /// The frame before; `None` where crawl is not measured.
     pub before: Option<FrameBefore>,

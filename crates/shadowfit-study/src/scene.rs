@@ -38,7 +38,7 @@ impl core::error::Error for NothingToDraw {}
 
 /// A scene in a pose, ready to be drawn, traced and fitted to.
 ///
-/// Whoever can wait asks for its [`rays`](Self::rays). Whoever draws pictures that follow each other asks in each frame
+/// Whoever can wait asks for its [`rays`](PosedScene::rays). Whoever draws pictures that follow each other asks in each frame
 /// for what there is, and a thread makes what is missing:
 ///
 /// ```no_run

@@ -59,9 +59,15 @@ fn judged_at_clip(clip: vec4<f32>) -> u32 {
     return select(0u, judged_at(pixel), (clip.w > 0.0) & is_seen(pixel, clip.w));
 }
 
-// The bits of a visible point. pixel: in the frame.
+// Whether the judged camera is the frame's. The middle of a pixel is never 0; without it the branch would depend on
+// uniforms alone, for which Mesa's software rasteriser (22.3) makes a new shader with each draw, and keeps them all.
+fn is_same_camera(pixel: vec2<f32>) -> bool {
+    return pixel.x * judged.scale.x > 0.0;
+}
+
+// The bits of a visible point. pixel: the middle of one of the frame's.
 fn judged_of(position: vec3<f32>, pixel: vec2<f32>) -> u32 {
-    if judged.scale.x > 0.0 {
+    if is_same_camera(pixel) {
         return judged_at(pixel * judged.scale);
     }
     return judged_at_clip(judged.clip_from_world * vec4<f32>(position, 1.0));

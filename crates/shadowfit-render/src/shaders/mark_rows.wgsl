@@ -5,7 +5,7 @@
 // The bits of a pixel of the frame.
 fn judged_pixel(pixel: vec2<i32>, size: vec2<i32>) -> u32 {
     let at = vec2<f32>(pixel) + 0.5;
-    if judged.scale.x > 0.0 {
+    if is_same_camera(at) {
         return judged_at(at * judged.scale);
     }
     let depth = textureLoad(depths, pixel, 0);
