@@ -312,10 +312,11 @@ impl Surface {
             let limit = gpu.device.limits().max_texture_dimension_2d;
             self.configuration.width = size.width.min(limit);
             self.configuration.height = size.height.min(limit);
-            // A surface can only be configured once all work on it is done, and does not wait long for that by itself.
-            let _lost_is_told_elsewhere = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+            // A surface can only be configured while the GPU is idle. Where the thread that loads a scene submits work just
+            // then, that fails, the surface stays as it was, and the next frame tries again.
+            let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
             self.handle.configure(&gpu.device, &self.configuration);
-            self.is_stale = false;
+            self.is_stale = pollster::block_on(scope.pop()).is_some();
         }
     }
 
