@@ -28,6 +28,15 @@ pub(crate) fn depth(view: &wgpu::TextureView, store: wgpu::StoreOp) -> wgpu::Ren
     }
 }
 
+/// The camera's depth as it was drawn before.
+pub(crate) fn kept_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    wgpu::RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store }),
+        stencil_ops: None,
+    }
+}
+
 /// The part of a scissor rectangle (left, top, width, height, in pixels) that lies in a picture; all of it without one.
 pub(crate) fn part(scissor: Option<[u32; 4]>, size: [u32; 2]) -> [u32; 4] {
     let Some([x, y, width, height]) = scissor else { return [0, 0, size[0], size[1]] };

@@ -43,7 +43,7 @@ pub struct Frame<'a> {
     /// Coloured quadrilaterals over picture and insets, each drawn over those before it.
     pub quads: &'a [Quad],
     /// Left, top, width and height of the part of the picture that is drawn, in pixels; all of it where `None`. The rest
-    /// of the picture stays as it was. Where the depth buffer is read, and in probes, the rest is as the sky.
+    /// of the picture and of its depth buffer stays as it was; in probes it is as the sky.
     pub scissor: Option<[u32; 4]>,
 }
 

@@ -11,8 +11,8 @@ use crate::{Gpu, bindings, shaders};
 /// [colours of their classes](shadowfit::figures::ERROR_COLORS).
 ///
 /// Where the frame has the judged camera, its pixels are those of the judged picture. Where it has another, each pixel is
-/// looked up by its depth, so that marks stick to the surfaces; in a [part](crate::Frame::scissor) of a picture, areas then
-/// end at its border.
+/// looked up by its depth, so that marks stick to the surfaces; in a [part](crate::Frame::scissor) of a picture, what lies
+/// beyond its border is as it was drawn before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Marks {
     /// Whether areas of wrong pixels are outlined, three pixels away from them, so that a single one has a ring around

@@ -38,6 +38,8 @@ pub(crate) struct PartKey {
 /// Pipelines of every pass.
 #[derive(Debug)]
 pub(crate) struct Pipelines {
+    /// Clears colour and depth of a part of a picture.
+    pub(crate) clear: wgpu::RenderPipeline,
     sky: wgpu::RenderPipeline,
     sky_gray: Option<wgpu::RenderPipeline>,
     pub(crate) lines: wgpu::RenderPipeline,
@@ -109,6 +111,7 @@ impl Pipelines {
         let caster_pipeline = |entry| maker.caster(&caster_layout, &caster, entry, map);
         let entries = ["fs_scene", "fs_scene_masked"];
         Self {
+            clear: maker.clear(),
             sky: maker.sky(layouts, "fs_sky"),
             sky_gray: None,
             lines: maker.lines(layouts),
@@ -276,6 +279,15 @@ impl Maker<'_> {
             cull_mode: key.cull_mode(),
             depth: Some((true, wgpu::CompareFunction::GreaterEqual)),
             ..Shape::new("probe", layout, module, ["vs_scene", entry])
+        })
+    }
+
+    fn clear(&self) -> wgpu::RenderPipeline {
+        let (layout, module) = (self.layout(&[]), self.module("clear", shaders::clear()));
+        self.pipeline(&Shape {
+            depth: Some((true, wgpu::CompareFunction::Always)),
+            samples: self.samples,
+            ..Shape::new("clear", &layout, &module, ["vs_screen", "fs_clear"])
         })
     }
 

@@ -21,7 +21,7 @@ const MARK: &str = include_str!("shaders/mark.wgsl");
 const SCREEN: &str = include_str!("shaders/screen.wgsl");
 
 /// The pieces as they lie in the folder, for tests that look for files which no module uses.
-pub const PIECES: [(&str, &str); 24] = [
+pub const PIECES: [(&str, &str); 25] = [
     ("frame.wgsl", FRAME),
     ("material.wgsl", MATERIAL),
     ("sky.wgsl", include_str!("shaders/sky.wgsl")),
@@ -36,6 +36,7 @@ pub const PIECES: [(&str, &str); 24] = [
     ("overlay.wgsl", OVERLAY),
     ("judged.wgsl", JUDGED),
     ("screen.wgsl", SCREEN),
+    ("clear.wgsl", include_str!("shaders/clear.wgsl")),
     ("map_tint.wgsl", overlay_file(Overlay::MapTint)),
     ("pixels_per_texel.wgsl", overlay_file(Overlay::PixelsPerTexel)),
     ("texel_grid.wgsl", overlay_file(Overlay::TexelGrid)),
@@ -77,6 +78,11 @@ pub fn scene(shadow_map: &ShadowMapDescriptor) -> String {
 /// must come first.
 pub fn probe(shadow_map: &ShadowMapDescriptor) -> String {
     ["enable primitive_index;\n", &scene(shadow_map), include_str!("shaders/probe.wgsl")].concat()
+}
+
+/// What clears a part of a picture.
+pub fn clear() -> String {
+    [SCREEN, include_str!("shaders/clear.wgsl")].concat()
 }
 
 /// Lines of the world.

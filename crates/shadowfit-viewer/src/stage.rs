@@ -299,7 +299,7 @@ impl Stage {
         side.fit(&mut shot).maps.iter().map(MapFit::from).collect()
     }
 
-    /// Draws the present view into a target: of two techniques the first one's, up to the bar.
+    /// Draws the present view into a target: of two techniques the first one up to the bar, and the second one from there.
     pub fn draw(&mut self, target: &RenderTarget) {
         if self.side.fitter.rays == shadowfit_study::RayUse::IfReady {
             // What fits and figures read when it is there.
@@ -310,6 +310,12 @@ impl Stage {
         let (side, mut shot) = self.shot(target.size);
         shot.scissor = split;
         side.draw(&mut shot, target);
+        self.draw_other(target);
+        // Both techniques are told of the whole picture.
+        self.side.read_picture(&self.gpu, target);
+        if let Some(other) = &mut self.other {
+            other.read_picture(&self.gpu, target);
+        }
     }
 
     /// Draws the camera, the maps and what casts into them from outside, whatever the view is.

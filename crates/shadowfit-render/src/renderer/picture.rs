@@ -3,7 +3,7 @@
 use wgpu_profiler::GpuProfilerQuery;
 
 use super::{Plan, Renderer};
-use crate::attachment::{cleared, depth, drawn_over};
+use crate::attachment::{cleared, depth, drawn_over, kept_depth};
 use crate::probe::ProbeTargets;
 use crate::scene::{Draw, GpuScene, Part};
 use crate::target::{COLOR_FORMAT, RenderTarget};
@@ -44,7 +44,10 @@ impl Renderer {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
             color_attachments: &[Some(color)],
-            depth_stencil_attachment: Some(depth(&target.depth_view, wgpu::StoreOp::Store)),
+            depth_stencil_attachment: Some(match plan.part {
+                Some(_) => kept_depth(&target.depth_view),
+                None => depth(&target.depth_view, wgpu::StoreOp::Store),
+            }),
             timestamp_writes: query.as_ref().and_then(GpuProfilerQuery::render_pass_timestamp_writes),
             ..Default::default()
         });
@@ -59,6 +62,10 @@ impl Renderer {
     fn draw_picture(&self, pass: &mut wgpu::RenderPass<'_>, scene: &GpuScene, plan: &Plan) {
         let pipeline = |part: &Part| self.pipelines.scene(part, plan.overlay);
         set_part(pass, plan);
+        if plan.part.is_some() {
+            pass.set_pipeline(&self.pipelines.clear);
+            pass.draw(0..3, 0..1);
+        }
         if let Some(judged) = plan.judged.as_ref().filter(|_| plan.overlay.is_judged()) {
             pass.set_bind_group(JUDGED_GROUP, judged, &[]);
         }

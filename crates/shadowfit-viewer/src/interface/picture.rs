@@ -47,17 +47,16 @@ impl Shot {
     }
 }
 
-/// The pictures of the stage: that of the first technique, that of the second one, and the view from outside.
+/// The pictures of the stage: that of one technique or of two, and the view from outside.
 pub(crate) struct Pictures {
     main: Shot,
-    other: Shot,
     beside: Shot,
 }
 
 impl Pictures {
     pub(super) fn new(stage: &Stage, painter: &mut Painter) -> Self {
         let mut shot = || Shot::new(stage, painter);
-        Self { main: shot(), other: shot(), beside: shot() }
+        Self { main: shot(), beside: shot() }
     }
 
     /// Size of the picture, in pixels.
@@ -68,9 +67,6 @@ impl Pictures {
     /// Draws all that is on show.
     pub(crate) fn draw(&mut self, stage: &mut Stage) {
         stage.draw(&self.main.target);
-        if stage.is_comparing() {
-            stage.draw_other(&self.other.target);
-        }
         if stage.settings.view.outside_beside {
             stage.draw_beside(&self.beside.target);
         }
@@ -79,25 +75,12 @@ impl Pictures {
     /// The picture as it is on show, both halves where two techniques are compared: sRGB pixels, four bytes each, rows
     /// from the top.
     pub(crate) fn read(&self, stage: &Stage) -> anyhow::Result<Vec<u8>> {
-        let mut pixels = self.main.target.read(stage.gpu())?;
-        if stage.is_comparing() {
-            let other = self.other.target.read(stage.gpu())?;
-            let width = self.main.target.size[0] as usize;
-            let from = ((stage.split * width as f32).round() as usize).min(width);
-            for (row, other) in pixels.chunks_exact_mut(width * 4).zip(other.chunks_exact(width * 4)) {
-                row[from * 4..].copy_from_slice(&other[from * 4..]);
-            }
-        }
-        Ok(pixels)
+        Ok(self.main.target.read(stage.gpu())?)
     }
 
     /// Makes the pictures as large as their places.
     pub(super) fn fit_places(&mut self, stage: &Stage, painter: &mut Painter) {
         self.main.fit_place(stage, painter);
-        if stage.is_comparing() {
-            self.other.wanted = self.main.wanted;
-            self.other.fit_place(stage, painter);
-        }
         if stage.settings.view.outside_beside {
             self.beside.fit_place(stage, painter);
         }
@@ -118,7 +101,7 @@ impl Pictures {
         let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
         ui.painter().image(self.main.texture, rect, whole, Color32::WHITE);
         if stage.is_comparing() {
-            self.show_other(ui, stage, rect, asked);
+            show_bar(ui, stage, rect, asked);
         }
         if shows.has_scene {
             over(ui, stage, figures, rect);
@@ -132,31 +115,6 @@ impl Pictures {
         if let (Some(card), Some(at)) = (stage.why(), response.hover_pos()) {
             shadowfit_egui::why_overlay(ui.ctx(), at, &card);
         }
-    }
-
-    /// The picture of the second technique, right of the bar, which can be dragged.
-    fn show_other(&mut self, ui: &mut Ui, stage: &mut Stage, rect: Rect, asked: &mut Asked) {
-        let x = rect.left() + rect.width() * stage.split;
-        let right = Rect::from_min_max(Pos2::new(x, rect.top()), rect.max);
-        let uv = Rect::from_min_max(Pos2::new(stage.split, 0.0), Pos2::new(1.0, 1.0));
-        ui.painter().image(self.other.texture, right, uv, Color32::WHITE);
-        let grip = Rect::from_center_size(Pos2::new(x, rect.center().y), Vec2::new(GRIP, rect.height()));
-        let bar =
-            ui.interact(grip, ui.scope_id().with("split"), Sense::drag()).on_hover_cursor(CursorIcon::ResizeHorizontal);
-        let name = "Bar between A and B";
-        bar.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Splitter, true, name));
-        if bar.dragged() && rect.width() > 1.0 {
-            asked.commands.push(Command::Split(stage.split + bar.drag_delta().x / rect.width()));
-        }
-        let (dark, bright) = (Stroke::new(4.0, Color32::from_black_alpha(120)), Stroke::new(2.0, Color32::WHITE));
-        for stroke in [dark, bright] {
-            ui.painter().vline(x, rect.y_range(), stroke);
-        }
-        ui.painter().circle(Pos2::new(x, rect.center().y), 9.0, Color32::WHITE, dark);
-        let [a, b] = stage.side_names();
-        let y = rect.top() + MARGIN;
-        label(ui, Pos2::new(x - MARGIN, y), Align2::RIGHT_TOP, &format!("A  {a}"));
-        label(ui, Pos2::new(x + MARGIN, y), Align2::LEFT_TOP, &format!("B  {b}"));
     }
 
     /// The view from outside, in the upper right corner.
@@ -174,6 +132,28 @@ impl Pictures {
         let text = "Hatched: in no map";
         label(ui, place.left_bottom() + Vec2::new(8.0, -8.0), Align2::LEFT_BOTTOM, text);
     }
+}
+
+/// The bar between two techniques, which can be dragged, and their names.
+fn show_bar(ui: &Ui, stage: &Stage, rect: Rect, asked: &mut Asked) {
+    let x = rect.left() + rect.width() * stage.split;
+    let grip = Rect::from_center_size(Pos2::new(x, rect.center().y), Vec2::new(GRIP, rect.height()));
+    let bar =
+        ui.interact(grip, ui.scope_id().with("split"), Sense::drag()).on_hover_cursor(CursorIcon::ResizeHorizontal);
+    let name = "Bar between A and B";
+    bar.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Splitter, true, name));
+    if bar.dragged() && rect.width() > 1.0 {
+        asked.commands.push(Command::Split(stage.split + bar.drag_delta().x / rect.width()));
+    }
+    let (dark, bright) = (Stroke::new(4.0, Color32::from_black_alpha(120)), Stroke::new(2.0, Color32::WHITE));
+    for stroke in [dark, bright] {
+        ui.painter().vline(x, rect.y_range(), stroke);
+    }
+    ui.painter().circle(Pos2::new(x, rect.center().y), 9.0, Color32::WHITE, dark);
+    let [a, b] = stage.side_names();
+    let y = rect.top() + MARGIN;
+    label(ui, Pos2::new(x - MARGIN, y), Align2::RIGHT_TOP, &format!("A  {a}"));
+    label(ui, Pos2::new(x + MARGIN, y), Align2::LEFT_TOP, &format!("B  {b}"));
 }
 
 /// Size of a place, in pixels.

@@ -25,6 +25,10 @@ impl Other {
         self.side.problem.as_deref()
     }
 
+    pub(super) fn read_picture(&mut self, gpu: &Gpu, target: &RenderTarget) {
+        self.side.read_picture(gpu, target);
+    }
+
     pub(super) fn cut(&mut self, is_frozen: bool) {
         self.side.cut(is_frozen);
     }
@@ -84,7 +88,7 @@ impl Stage {
     }
 
     /// Draws the second technique's picture into a target, from the bar on.
-    pub fn draw_other(&mut self, target: &RenderTarget) {
+    pub(super) fn draw_other(&mut self, target: &RenderTarget) {
         let scissor = right_part(self.split, target.size);
         let (camera, plays, blink) = (self.perspective(target.size), self.plays(), self.blink());
         let Some(other) = &mut self.other else { return };

@@ -29,15 +29,43 @@ fn draw(stage: &mut Stage, target: &RenderTarget) {
     stage.gpu().device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
 }
 
+/// The default scene, seen by windows that are told of their last picture.
+fn told_by_pictures(gpu: &Gpu, samples: u32) -> Stage {
+    let mut stage = Stage::new(gpu.clone(), default_scene(), samples).expect("the default scene");
+    stage.prepared_scene().rays();
+    stage.read_depths();
+    let technique = Technique { need: NeedSource::LastFrame, ..stage.settings.technique };
+    stage.settings.technique = Technique { fit: technique.fit.with_kind(FitKind::Windows), ..technique };
+    stage
+}
+
+#[test]
+fn of_two_techniques_both_are_told_of_the_whole_picture() {
+    let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
+    for samples in [1, 4] {
+        let mut stage = told_by_pictures(&gpu, samples);
+        let target = stage.target([320, 180]);
+        draw(&mut stage, &target);
+        draw(&mut stage, &target);
+        let (is_picture, alone) = told(&stage);
+        assert!(is_picture);
+        stage.compare_with(Some(Technique { count: 3, ..stage.settings.technique }));
+        stage.set_split(0.2);
+        for _ in 0..3 {
+            draw(&mut stage, &target);
+        }
+        for swaps in 0..2 {
+            assert_eq!(told(&stage), (true, alone.clone()), "{samples} samples, swapped {swaps} times");
+            stage.swap_sides();
+        }
+    }
+}
+
 #[test]
 fn a_view_that_follows_no_other_is_seen_by_rays_and_the_next_ones_by_pictures_which_agree() {
     let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
     for samples in [1, 4] {
-        let mut stage = Stage::new(gpu.clone(), default_scene(), samples).expect("the default scene");
-        stage.prepared_scene().rays();
-        stage.read_depths();
-        let technique = Technique { need: NeedSource::LastFrame, ..stage.settings.technique };
-        stage.settings.technique = Technique { fit: technique.fit.with_kind(FitKind::Windows), ..technique };
+        let mut stage = told_by_pictures(&gpu, samples);
         let target = stage.target([640, 360]);
         draw(&mut stage, &target);
         let (is_picture, by_rays) = told(&stage);

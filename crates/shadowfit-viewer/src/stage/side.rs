@@ -24,6 +24,8 @@ pub(super) struct Side {
     pub(super) live: Live,
     /// Reads what the last pictures showed; rays find it where there is none.
     need_pass: Option<NeedPass>,
+    /// The view that was drawn last, until its picture is read.
+    unread: Option<View>,
     /// Why the settings cannot be shown as they are.
     pub(super) problem: Option<String>,
 }
@@ -75,6 +77,7 @@ impl Side {
             statistics: Statistics::default(),
             live: Live::new(gpu),
             need_pass: None,
+            unread: None,
             problem: None,
         })
     }
@@ -180,8 +183,9 @@ impl Side {
         }
     }
 
-    /// Reads the picture of a view that has just been drawn, if the technique is told of it.
-    fn record_picture(&mut self, gpu: &Gpu, view: &View, target: &RenderTarget) {
+    /// Reads the picture that has just been drawn, if the technique is told of it.
+    pub(super) fn read_picture(&mut self, gpu: &Gpu, target: &RenderTarget) {
+        let Some(view) = self.unread.take() else { return };
         let technique = self.fitter.technique();
         let Some(pass) = self.need_pass.as_mut().filter(|_| Seen::is_used_by(technique)) else { return };
         // A camera without a frustum has no maps either, which is said there.
@@ -228,7 +232,7 @@ impl Side {
             mode => self.draw_view(shot, &view, &maps, (overlay(mode), maps_stay), target),
         }
         if !is_frozen && !matches!(shot.settings.view.mode, ViewMode::Outside | ViewMode::Need) {
-            self.record_picture(shot.gpu, &view, target);
+            self.unread = Some(view);
             self.evaluator.note_view(&view, &maps);
         }
     }
