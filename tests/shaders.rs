@@ -65,6 +65,7 @@ fn modules() -> Vec<(String, String)> {
     let mut all = vec![
         ("sky".to_owned(), shaders::sky()),
         ("lines".to_owned(), shaders::lines()),
+        ("clear".to_owned(), shaders::clear()),
         ("mip".to_owned(), shaders::mip()),
         ("quads".to_owned(), shaders::quads()),
         ("mark rows".to_owned(), shaders::mark_rows(1)),

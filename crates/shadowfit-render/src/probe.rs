@@ -49,6 +49,11 @@ pub enum ProbeError {
     Read(ReadError),
 }
 
+/// Whether a device can tell triangles apart.
+pub(crate) fn can_probe(device: &wgpu::Device) -> bool {
+    device.features().contains(wgpu::Features::PRIMITIVE_INDEX)
+}
+
 impl From<ReadError> for ProbeError {
     fn from(error: ReadError) -> Self {
         Self::Read(error)

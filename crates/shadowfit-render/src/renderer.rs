@@ -11,8 +11,8 @@ use shadowfit_wgpu::{KeptMaps, MAX_MAPS, MapUpdate, ShadowMap, ShadowMapDescript
 use crate::frame::Frame;
 use crate::judged::JudgedInput;
 use crate::marks::MarkPasses;
-use crate::pipelines::{Layouts, Pipelines};
-use crate::probe::{Probe, ProbeError, ProbeTargets};
+use crate::pipelines::{Drawn, Layouts, Maker, MapPipelines, Pipelines};
+use crate::probe::{Probe, ProbeError, ProbeTargets, can_probe};
 use crate::scene::GpuScene;
 use crate::statistics::{MapStatistics, Statistics};
 use crate::target::RenderTarget;
@@ -132,7 +132,8 @@ impl Renderer {
         let softness = softness.with_ceiling(old.softness.ceiling);
         let same_shaders = ShadowMapDescriptor { resolution, fade, softness, ..old } == *descriptor;
         if !same_shaders {
-            self.pipelines = Pipelines::new(&gpu.device, &self.layouts, self.maps.map(), self.samples);
+            let maker = Maker { device: &gpu.device, samples: self.samples };
+            self.pipelines.of_map = MapPipelines::new(&maker, &self.layouts, self.maps.map());
         }
         Ok(())
     }
@@ -160,7 +161,7 @@ impl Renderer {
         frame: &Frame<'_>,
         target: &RenderTarget,
     ) -> Result<Statistics, ShadowMapError> {
-        let plan = self.prepare(gpu, scene, frame, target.size)?;
+        let plan = self.prepare(gpu, scene, (frame, Drawn::Shaded(frame.overlay)), target.size)?;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.shadow_passes(&mut encoder, scene, &plan);
         self.scene_pass(gpu, &mut encoder, scene, &plan, target);
@@ -201,12 +202,12 @@ impl Renderer {
         frame: &Frame<'_>,
         targets: &ProbeTargets,
     ) -> Result<(), ProbeError> {
-        if !self.pipelines.can_probe() {
+        if !can_probe(&gpu.device) {
             return Err(ProbeError::NoPrimitiveIndex);
         }
         // A probe shows no overlay.
         let frame = Frame { overlay: crate::Overlay::None, ..*frame };
-        let plan = self.prepare(gpu, scene, &frame, targets.size)?;
+        let plan = self.prepare(gpu, scene, (&frame, Drawn::Probe), targets.size)?;
         self.timer.begin_probe(gpu, frame.maps_stay);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.shadow_passes(&mut encoder, scene, &plan);
@@ -221,12 +222,12 @@ impl Renderer {
         &mut self,
         gpu: &Gpu,
         scene: &mut GpuScene,
-        frame: &Frame<'_>,
+        (frame, drawn): (&Frame<'_>, Drawn),
         size: [u32; 2],
     ) -> Result<Plan, ShadowMapError> {
         let eye = frame.camera.eye;
         self.prepare_maps(gpu, scene, frame)?;
-        self.prepare_overlay(gpu, scene, frame.overlay);
+        self.prepare_parts(gpu, scene, drawn);
         let uniform = FrameUniform::new(frame.camera, -frame.direction, frame.shadows, frame.atmosphere, size);
         gpu.queue.write_buffer(&self.frame_uniform, 0, bytemuck::bytes_of(&uniform));
         let lines: Vec<[LineVertex; 2]> = frame.lines.iter().map(|line: &Line| line.vertices(eye)).collect();

@@ -213,7 +213,7 @@ impl MonkeyRun {
 }
 
 /// Bytes of memory that the process holds; `None` where the system does not tell as Linux does.
-fn memory() -> Option<u64> {
+pub(crate) fn memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
     let kilobytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;

@@ -14,6 +14,8 @@ mod why;
 
 #[cfg(test)]
 mod depth_tests;
+#[cfg(test)]
+mod memory_tests;
 
 use core::fmt;
 

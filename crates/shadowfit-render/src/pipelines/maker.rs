@@ -156,3 +156,12 @@ const fn instance(number: usize) -> [wgpu::VertexAttribute; 4] {
         attribute(8, wgpu::VertexFormat::Uint32, number),
     ]
 }
+
+/// A stream of packed instances.
+pub(crate) fn instances<T>(attributes: &[wgpu::VertexAttribute]) -> wgpu::VertexBufferLayout<'_> {
+    wgpu::VertexBufferLayout {
+        array_stride: size_of::<T>() as u64,
+        step_mode: wgpu::VertexStepMode::Instance,
+        attributes,
+    }
+}

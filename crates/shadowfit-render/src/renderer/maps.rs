@@ -63,7 +63,7 @@ impl Renderer {
         piece.set(pass);
         for draw in draws {
             let part = &scene.parts[draw.part];
-            pass.set_pipeline(self.pipelines.caster(part));
+            pass.set_pipeline(self.pipelines.of_map.caster(part));
             pass.set_bind_group(1, &scene.materials[part.material], &[]);
             pass.set_vertex_buffer(0, part.motion.slice(..));
             pass.set_vertex_buffer(1, part.surface.slice(..));

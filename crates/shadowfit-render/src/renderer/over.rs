@@ -33,7 +33,7 @@ impl Renderer {
         }
         pass.set_bind_group(0, &self.frame_group, &[]);
         pass.set_bind_group(1, self.shadow_map().receiver_group(), &[]);
-        self.insets.draw(&mut pass, &self.pipelines.inset, 4);
+        self.insets.draw(&mut pass, &self.pipelines.of_map.inset, 4);
         self.quads.draw(&mut pass, &self.pipelines.quads, 4);
     }
 

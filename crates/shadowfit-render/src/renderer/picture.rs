@@ -4,21 +4,22 @@ use wgpu_profiler::GpuProfilerQuery;
 
 use super::{Plan, Renderer};
 use crate::attachment::{cleared, depth, drawn_over, kept_depth};
+use crate::pipelines::Drawn;
 use crate::probe::ProbeTargets;
 use crate::scene::{Draw, GpuScene, Part};
 use crate::target::{COLOR_FORMAT, RenderTarget};
 use crate::timer::Pass;
-use crate::{Gpu, Overlay, bindings};
+use crate::{Gpu, bindings};
 
 /// Bind groups of the material and of a judged picture.
 const MATERIAL_GROUP: u32 = 2;
 const JUDGED_GROUP: u32 = 3;
 
 impl Renderer {
-    /// Makes what an overlay needs that is not there yet.
-    pub(super) fn prepare_overlay(&mut self, gpu: &Gpu, scene: &GpuScene, overlay: Overlay) {
+    /// Makes what the scene's parts need to be drawn that is not there yet.
+    pub(super) fn prepare_parts(&mut self, gpu: &Gpu, scene: &GpuScene, drawn: Drawn) {
         let layouts = (&self.layouts, &self.judged.layout);
-        self.pipelines.add_overlay(&gpu.device, layouts, self.maps.map(), (overlay, &scene.parts));
+        self.pipelines.of_map.add(&gpu.device, layouts, self.maps.map(), (drawn, &scene.parts));
     }
 
     pub(super) fn scene_pass(
@@ -60,7 +61,7 @@ impl Renderer {
     }
 
     fn draw_picture(&self, pass: &mut wgpu::RenderPass<'_>, scene: &GpuScene, plan: &Plan) {
-        let pipeline = |part: &Part| self.pipelines.scene(part, plan.overlay);
+        let pipeline = |part: &Part| self.pipelines.of_map.part(part, Drawn::Shaded(plan.overlay));
         set_part(pass, plan);
         if plan.part.is_some() {
             pass.set_pipeline(&self.pipelines.clear);
@@ -94,7 +95,7 @@ impl Renderer {
             ..Default::default()
         });
         set_part(&mut pass, plan);
-        self.draw_scene(&mut pass, scene, &plan.opaque, |part| self.pipelines.probe(part));
+        self.draw_scene(&mut pass, scene, &plan.opaque, |part| self.pipelines.of_map.part(part, Drawn::Probe));
         drop(pass);
         self.timer.end(query, encoder);
     }

@@ -3,8 +3,9 @@
 use super::Renderer;
 use crate::attachment::cleared;
 use crate::frame::Frame;
+use crate::pipelines::Drawn;
 use crate::pixel::{BLOCK_FORMAT, PixelQuery, PixelRead, ROW, TexelBlock};
-use crate::probe::{ProbeError, ProbeTargets};
+use crate::probe::{ProbeError, ProbeTargets, can_probe};
 use crate::scene::GpuScene;
 use crate::uniform::BlockUniform;
 use crate::{Gpu, bindings};
@@ -23,7 +24,7 @@ impl Renderer {
         frame: &Frame<'_>,
         query: &PixelQuery,
     ) -> Result<PixelRead, ProbeError> {
-        if !self.pipelines.can_probe() {
+        if !can_probe(&gpu.device) {
             return Err(ProbeError::NoPrimitiveIndex);
         }
         let kept = self.pixel_targets.take().filter(|targets| targets.size == query.size);
@@ -36,7 +37,7 @@ impl Renderer {
             scissor: Some([x, y, 1, 1]),
             ..Frame::new(frame.camera, frame.direction, &[], frame.atmosphere)
         };
-        let plan = self.prepare(gpu, scene, &frame, targets.size)?;
+        let plan = self.prepare(gpu, scene, (&frame, Drawn::Probe), targets.size)?;
         let block = query.texels.filter(|block| block.map < self.maps.maps().len());
         let read = PixelRead::new(&gpu.device, *query, block.is_some());
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -70,7 +71,7 @@ impl Renderer {
             color_attachments: &[Some(cleared(&view, None, wgpu::Color::TRANSPARENT))],
             ..Default::default()
         });
-        pass.set_pipeline(self.pipelines.block(&gpu.device, &self.layouts, self.maps.map()));
+        pass.set_pipeline(self.pipelines.of_map.block(&gpu.device, &self.layouts, self.maps.map()));
         pass.set_bind_group(0, &group, &[]);
         pass.set_bind_group(1, self.maps.map().receiver_group(), &[]);
         pass.draw(0..3, 0..1);

@@ -1,0 +1,220 @@
+//! Pipelines that read or draw the shadow map.
+
+use std::collections::HashMap;
+
+use shadowfit_scene::AlphaMode;
+use shadowfit_wgpu::ShadowMap;
+
+use super::{BLENDED_COLOR, COLOR, InstanceNumber, Layouts, Maker, Shape, instances, part_buffers};
+use crate::pixel::BLOCK_FORMAT;
+use crate::probe::PROBE_FORMAT;
+use crate::scene::Part;
+use crate::uniform::InsetVertex;
+use crate::{Overlay, shaders};
+
+/// What the parts of a scene are drawn as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Drawn {
+    /// A picture with an overlay.
+    Shaded(Overlay),
+    /// A probe.
+    Probe,
+}
+
+/// What selects a part's pipeline, in every pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent property of the part")]
+struct PartKey {
+    masked: bool,
+    blended: bool,
+    double_sided: bool,
+    mirrored: bool,
+}
+
+/// Pipelines that read or draw the shadow map.
+#[derive(Debug)]
+pub(crate) struct MapPipelines {
+    pub(crate) inset: wgpu::RenderPipeline,
+    caster: wgpu::RenderPipeline,
+    caster_masked: wgpu::RenderPipeline,
+    /// Made when the first part is drawn that needs it.
+    parts: HashMap<(Drawn, PartKey), wgpu::RenderPipeline>,
+    modules: HashMap<Drawn, wgpu::ShaderModule>,
+    /// Made for the first block of texels that is read.
+    block: Option<wgpu::RenderPipeline>,
+    samples: u32,
+}
+
+impl PartKey {
+    fn of(part: &Part) -> Self {
+        Self {
+            masked: matches!(part.alpha, AlphaMode::Mask { .. }),
+            blended: part.alpha == AlphaMode::Blend,
+            double_sided: part.double_sided,
+            mirrored: part.mirrored,
+        }
+    }
+
+    /// Back faces of single-sided parts are left out; a mirrored part's back is its front.
+    fn cull_mode(self) -> Option<wgpu::Face> {
+        match (self.double_sided, self.mirrored) {
+            (true, _) => None,
+            (false, false) => Some(wgpu::Face::Back),
+            (false, true) => Some(wgpu::Face::Front),
+        }
+    }
+}
+
+impl MapPipelines {
+    pub(crate) fn new(maker: &Maker<'_>, layouts: &Layouts, map: &ShadowMap) -> Self {
+        let caster = maker.module("caster", shaders::caster(map.descriptor()));
+        let caster_layout = maker.layout(&[map.caster_layout(), &layouts.material]);
+        let [plain_entry, masked_entry] = match (map.color_target().is_some(), map.clamps_in_fragment()) {
+            (false, false) => [None, Some("fs_caster_masked")],
+            (false, true) => [Some("fs_caster_clamped"), Some("fs_caster_masked_clamped")],
+            (true, false) => [Some("fs_caster_color"), Some("fs_caster_masked_color")],
+            (true, true) => [Some("fs_caster_clamped_color"), Some("fs_caster_masked_clamped_color")],
+        };
+        let caster_pipeline = |entry| maker.caster(&caster_layout, &caster, entry, map);
+        Self {
+            inset: maker.inset(layouts, map),
+            caster: caster_pipeline(plain_entry),
+            caster_masked: caster_pipeline(masked_entry),
+            parts: HashMap::new(),
+            modules: HashMap::new(),
+            block: None,
+            samples: maker.samples,
+        }
+    }
+
+    /// Makes those pipelines that parts need to be drawn and that are not there yet.
+    pub(crate) fn add(
+        &mut self,
+        device: &wgpu::Device,
+        (layouts, judged): (&Layouts, &wgpu::BindGroupLayout),
+        map: &ShadowMap,
+        (drawn, parts): (Drawn, &[Part]),
+    ) {
+        let maker = Maker { device, samples: self.samples };
+        let is_judged = matches!(drawn, Drawn::Shaded(overlay) if overlay.is_judged());
+        let groups = [&layouts.uniform, map.receiver_layout(), &layouts.material, judged];
+        let groups = &groups[..if is_judged { 4 } else { 3 }];
+        for key in parts.iter().map(PartKey::of) {
+            if self.parts.contains_key(&(drawn, key)) {
+                continue;
+            }
+            let module = self.modules.entry(drawn).or_insert_with(|| maker.drawn(drawn, map));
+            let pipeline = maker.part(&maker.layout(groups), module, (drawn, key));
+            self.parts.insert((drawn, key), pipeline);
+        }
+    }
+
+    /// Pipeline that [`Self::add`] has made for a part.
+    pub(crate) fn part(&self, part: &Part, drawn: Drawn) -> &wgpu::RenderPipeline {
+        &self.parts[&(drawn, PartKey::of(part))]
+    }
+
+    /// Pipeline of the pass that reads a block of texels.
+    pub(crate) fn block(&mut self, device: &wgpu::Device, layouts: &Layouts, map: &ShadowMap) -> &wgpu::RenderPipeline {
+        let maker = Maker { device, samples: self.samples };
+        self.block.get_or_insert_with(|| maker.block(layouts, map))
+    }
+
+    /// Pipeline of the shadow pass. Casters are double-sided.
+    pub(crate) fn caster(&self, part: &Part) -> &wgpu::RenderPipeline {
+        if PartKey::of(part).masked { &self.caster_masked } else { &self.caster }
+    }
+}
+
+impl Maker<'_> {
+    fn drawn(&self, drawn: Drawn, map: &ShadowMap) -> wgpu::ShaderModule {
+        let source = match drawn {
+            Drawn::Shaded(Overlay::None) => shaders::scene(map.descriptor()),
+            Drawn::Shaded(overlay) => shaders::overlay(map.descriptor(), overlay),
+            Drawn::Probe => shaders::probe(map.descriptor()),
+        };
+        self.module("parts", source)
+    }
+
+    /// The pipeline of parts with a key.
+    fn part(
+        &self,
+        layout: &wgpu::PipelineLayout,
+        module: &wgpu::ShaderModule,
+        (drawn, key): (Drawn, PartKey),
+    ) -> wgpu::RenderPipeline {
+        let [plain, masked] = match drawn {
+            Drawn::Shaded(Overlay::None) => ["fs_scene", "fs_scene_masked"],
+            Drawn::Shaded(_) => ["fs_overlay", "fs_overlay_masked"],
+            Drawn::Probe => ["fs_probe", "fs_probe_masked"],
+        };
+        let number = match drawn {
+            Drawn::Shaded(Overlay::Casters) => InstanceNumber::Holder,
+            _ => InstanceNumber::FirstTriangle,
+        };
+        let probe = [Some(PROBE_FORMAT.into())];
+        let (targets, samples) = match drawn {
+            Drawn::Probe => (&probe, 1),
+            Drawn::Shaded(_) => (if key.blended { &BLENDED_COLOR } else { &COLOR }, self.samples),
+        };
+        self.pipeline(&Shape {
+            buffers: &part_buffers(number),
+            targets,
+            cull_mode: key.cull_mode(),
+            depth: Some((!key.blended, wgpu::CompareFunction::GreaterEqual)),
+            samples,
+            ..Shape::new("parts", layout, module, ["vs_scene", if key.masked { masked } else { plain }])
+        })
+    }
+
+    fn caster(
+        &self,
+        layout: &wgpu::PipelineLayout,
+        module: &wgpu::ShaderModule,
+        entry: Option<&str>,
+        map: &ShadowMap,
+    ) -> wgpu::RenderPipeline {
+        let color = [map.color_target()];
+        self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("caster"),
+            layout: Some(layout),
+            vertex: wgpu::VertexState {
+                module,
+                entry_point: Some("vs_caster"),
+                compilation_options: Default::default(),
+                buffers: &part_buffers(InstanceNumber::FirstTriangle),
+            },
+            primitive: map.primitive_state(),
+            depth_stencil: Some(map.depth_stencil_state()),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: entry.map(|entry| wgpu::FragmentState {
+                module,
+                entry_point: Some(entry),
+                compilation_options: Default::default(),
+                targets: if color[0].is_some() { &color } else { &[] },
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+
+    fn inset(&self, layouts: &Layouts, map: &ShadowMap) -> wgpu::RenderPipeline {
+        let layout = self.layout(&[&layouts.uniform, map.receiver_layout()]);
+        let module = self.module("inset", shaders::inset(map.descriptor()));
+        let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x2, 2 => Uint32, 3 => Float32x3];
+        self.pipeline(&Shape {
+            buffers: &[Some(instances::<InsetVertex>(&attributes))],
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            ..Shape::new("inset", &layout, &module, ["vs_inset", "fs_inset"])
+        })
+    }
+
+    fn block(&self, layouts: &Layouts, map: &ShadowMap) -> wgpu::RenderPipeline {
+        let layout = self.layout(&[&layouts.uniform, map.receiver_layout()]);
+        let module = self.module("texels", shaders::block(map.descriptor()));
+        self.pipeline(&Shape {
+            targets: &[Some(BLOCK_FORMAT.into())],
+            ..Shape::new("texels", &layout, &module, ["vs_screen", "fs_block"])
+        })
+    }
+}
