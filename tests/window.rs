@@ -138,7 +138,11 @@ fn every_artefact_has_a_picture_of_its_own(desktop: &Desktop, viewer: &Viewer) {
             viewer.press(key);
             let shown = desktop.wait_for(PATIENCE, |shot| shot.difference(&previous, PICTURE) > SAME);
             assert!(shown.is_some(), "{key} ({name}) changes nothing since {}\n{}", previous.file(), viewer.log());
-            previous = settled(desktop, &name);
+            let settled = settled(desktop, &name);
+            // What was seen first may be the card that says that the view is being looked for.
+            let difference = settled.difference(&previous, PICTURE);
+            assert!(difference > SAME, "{key} ({name}) shows the same as {}\n{}", previous.file(), viewer.log());
+            previous = settled;
         }
     }
 }
@@ -149,6 +153,8 @@ fn a_resized_window_is_filled_and_still_flies(desktop: &Desktop, viewer: &Viewer
         viewer.resize(size);
         let name = format!("resized-{}x{}", size.0, size.1);
         if size.0 < PICTURE.x + PICTURE.width {
+            let gone = desktop.wait_for(PATIENCE, |shot| !shot.is_painted(PICTURE));
+            assert!(gone.is_some(), "the window does not become {size:?}: {}", desktop.shoot(&name).file());
             continue;
         }
         // The right edge and the lower edge: where a surface that kept its old size leaves the window unpainted.

@@ -11,7 +11,7 @@ pub(crate) fn start(ui: &mut Ui, action: &mut Option<Action>) {
     ui.horizontal(|ui| {
         title(ui, "Technique");
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let help = "Shows two techniques beside each other; B begins as a copy of A (B).";
+            let help = "Shows two techniques beside each other; B begins with a preset (B).";
             if ui.button("Compare A | B").on_hover_text(help).clicked() {
                 *action = Some(Action::StartCompare);
             }

@@ -93,7 +93,11 @@ pub const KEYS: &[KeyGroup] = &[
     },
     KeyGroup {
         heading: "Window",
-        keys: &[key("Tab", "hide or show the panel"), key("H or F1", "this help"), key("Esc", "quit")],
+        keys: &[
+            key("Tab", "hide or show the panel"),
+            key("H or F1", "this help"),
+            key("Esc", "close a menu or this help; else quit"),
+        ],
     },
     KeyGroup {
         heading: "Gamepad",

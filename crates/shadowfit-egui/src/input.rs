@@ -156,7 +156,7 @@ pub enum Action {
     FixArtefact(Artefact),
     /// Stop showing the artefact; settings and camera stay as they are.
     CloseArtefact,
-    /// Show two techniques beside each other; B begins as a copy of A.
+    /// Show two techniques beside each other; the host chooses what B begins with.
     StartCompare,
     /// Show A alone.
     StopCompare,

@@ -27,7 +27,12 @@ const RAMP_WIDTH: f32 = 216.0;
 /// Whether the view has colours to explain, with its marks: [`legend`] shows nothing otherwise.
 pub fn has_legend(view: &ViewSettings) -> bool {
     let is_coloured = !matches!(view.mode, ViewMode::Final | ViewMode::Truth | ViewMode::TexelGrid | ViewMode::Outside);
-    is_coloured || view.marks != ErrorMarks::Off
+    is_coloured || has_marks(view)
+}
+
+/// Whether wrong pixels are marked: where the camera's picture is shown.
+fn has_marks(view: &ViewSettings) -> bool {
+    view.marks != ErrorMarks::Off && view.mode.shows_camera()
 }
 
 /// What the colours of the view mean: the classes of wrong pixels with their shares, the scale of pixels per texel,
@@ -43,12 +48,12 @@ pub fn legend(ui: &mut Ui, view: &ViewSettings, figures: &Figures) {
         ViewMode::Updates => updates(ui),
         _ => {}
     }
-    if view.mode == ViewMode::Error || view.marks != ErrorMarks::Off {
+    if view.mode == ViewMode::Error || has_marks(view) {
         classes(ui, figures);
     }
 }
 
-/// The [`legend`] on a ground of its own, in the lower left corner of `picture`, or nothing where the view has no
+/// The [`legend`] on a ground of its own, in the lower right corner of `picture`, or nothing where the view has no
 /// colours to explain.
 pub fn legend_overlay(ctx: &Context, picture: Rect, view: &ViewSettings, figures: &Figures) {
     /// Distance from the edges of the picture, in points.
@@ -59,8 +64,8 @@ pub fn legend_overlay(ctx: &Context, picture: Rect, view: &ViewSettings, figures
     Area::new(Id::unique("shadowfit legend"))
         .order(Order::Middle)
         .interactable(false)
-        .pivot(Align2::LEFT_BOTTOM)
-        .fixed_pos(picture.left_bottom() + Vec2::new(MARGIN, -MARGIN))
+        .pivot(Align2::RIGHT_BOTTOM)
+        .fixed_pos(picture.right_bottom() - Vec2::splat(MARGIN))
         .constrain_to(picture)
         .show(ctx, |ui| {
             ui.set_max_width((picture.width() - 2.0 * MARGIN).max(0.0));

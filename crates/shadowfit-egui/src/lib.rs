@@ -70,6 +70,7 @@ use shadowfit::tool::Settings;
 use parameters::{Rows, TOOL_GROUPS, technique_groups};
 use widgets::{Section, caption};
 
+pub use accessibility::rename;
 pub use artefact::Artefact;
 pub use classes::PixelClass;
 pub use help::{KEYS, KeyGroup, KeyHelp, help_overlay};
@@ -78,6 +79,7 @@ pub use legend::{MAP_UPDATE_COLORS, has_legend, legend, legend_overlay};
 pub use theme::apply_theme;
 pub use views::view_bar;
 pub use why::{WhyCard, why_card, why_overlay};
+pub use widgets::{Icon, icon_button};
 
 /// Width that the panel is laid out for, in points, margins included.
 pub const PANEL_WIDTH: f32 = 360.0;

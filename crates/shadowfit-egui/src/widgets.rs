@@ -6,8 +6,9 @@ mod chip;
 mod icon;
 mod section;
 
-pub(crate) use button::{KeyButton, icon_button, main_button};
+pub use button::icon_button;
+pub(crate) use button::{KeyButton, main_button};
 pub(crate) use card::card;
 pub(crate) use chip::{ValueRow, badge, color, color_entry, color_line, swatch};
-pub(crate) use icon::Icon;
+pub use icon::Icon;
 pub(crate) use section::{Section, caption, title};

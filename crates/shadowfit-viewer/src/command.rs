@@ -100,6 +100,8 @@ pub(crate) enum Command {
     SetTheme(Theme),
     /// Ends the viewer.
     Quit,
+    /// Closes the menu or the help that is open; ends the viewer where none is.
+    Escape,
 }
 
 /// On, off, or the other one.

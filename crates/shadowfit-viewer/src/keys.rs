@@ -113,7 +113,7 @@ impl Chord {
             (None, false, _) => {}
         }
         Some(match self.key {
-            KeyCode::Escape => Command::Quit,
+            KeyCode::Escape => Command::Escape,
             KeyCode::Space => Command::TogglePlay,
             KeyCode::KeyO => Command::ToggleOutside,
             KeyCode::KeyI => Command::NextInset,
@@ -175,7 +175,7 @@ mod tests {
         let mut seen: Vec<(Command, Chord)> = Vec::new();
         for chord in Chord::all().flat_map(|chord| [chord, Chord { ctrl: true, ..chord }]) {
             let Some(command) = chord.command() else { continue };
-            let twice = [Command::ToggleHelp, Command::Quit];
+            let twice = [Command::ToggleHelp];
             let known = seen.iter().find(|(other, _)| *other == command);
             assert!(known.is_none() || twice.contains(&command), "{chord:?} and {known:?}");
             seen.push((command, chord));

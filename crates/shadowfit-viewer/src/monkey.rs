@@ -85,7 +85,8 @@ impl MonkeyRun {
         let mut files: Vec<PathBuf> = monkey.files.iter().flat_map(|folder| files_below(folder.as_ref())).collect();
         files.retain(|file| std::fs::metadata(file).is_ok_and(|data| data.len() <= LARGEST));
         files.sort();
-        let unwanted = |chord: &Chord| matches!(chord.command(), Some(Command::Quit | Command::ChooseFile));
+        let unwanted =
+            |chord: &Chord| matches!(chord.command(), Some(Command::Quit | Command::Escape | Command::ChooseFile));
         let with_modifiers = |chord: Chord| {
             [
                 chord,

@@ -11,8 +11,8 @@ use crate::theme::Palette;
 /// Width and height of a button that shows an icon alone, in points.
 const ICON_BUTTON: f32 = 24.0;
 
-/// A button that shows an icon, has a name for screen readers, and help.
-pub(crate) fn icon_button(ui: &mut Ui, icon: Icon, name: &str, help: &str) -> Response {
+/// A button that shows an icon, has a name for screen readers, and help: for bars beside the panel that should look like it.
+pub fn icon_button(ui: &mut Ui, icon: Icon, name: &str, help: &str) -> Response {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(ICON_BUTTON), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, ui.is_enabled(), name));
     if ui.is_rect_visible(rect) {

@@ -6,7 +6,7 @@ use egui::{Painter, Pos2, Rect, Shape, Stroke, Vec2};
 
 /// What a button without text shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Icon {
+pub enum Icon {
     /// An arrow back.
     Undo,
     /// An arrow forward.
@@ -31,6 +31,10 @@ pub(crate) enum Icon {
     Swap,
     /// A magnifying glass.
     Search,
+    /// A triangle that points to the right.
+    Play,
+    /// Two bars.
+    Pause,
 }
 
 impl Icon {
@@ -55,12 +59,7 @@ impl Icon {
                 line(&[(0.95, -0.45), (0.95, 0.75), (-0.95, 0.75), (-0.95, -0.45)]);
                 painter.circle_stroke(at(0.0, 0.12), 0.34 * RADIUS, stroke);
             }
-            Self::Theme => {
-                painter.circle_stroke(rect.center(), 0.8 * RADIUS, stroke);
-                let half =
-                    (0..=12).map(|step| rect.center() + 0.8 * RADIUS * Vec2::angled(TAU * (step as f32 / 24.0 - 0.25)));
-                painter.add(Shape::convex_polygon(half.collect(), stroke.color, Stroke::NONE));
-            }
+            Self::Theme => theme(painter, rect.center(), 0.8 * RADIUS, stroke),
             Self::Help => {
                 let hook = (0..=10)
                     .map(|step| at(0.0, -0.35) + 0.42 * RADIUS * Vec2::angled(TAU * (0.5 + step as f32 * 0.065)));
@@ -85,12 +84,28 @@ impl Icon {
                 line(&[(0.9, -0.4), (-0.9, -0.4), (-0.5, -0.8)]);
                 line(&[(-0.9, 0.4), (0.9, 0.4), (0.5, 0.8)]);
             }
+            Self::Play => {
+                let corners = vec![at(-0.45, -0.7), at(0.75, 0.0), at(-0.45, 0.7)];
+                painter.add(Shape::convex_polygon(corners, stroke.color, Stroke::NONE));
+            }
+            Self::Pause => {
+                for x in [-0.55, 0.15] {
+                    painter.rect_filled(Rect::from_min_max(at(x, -0.7), at(x + 0.4, 0.7)), 0.0, stroke.color);
+                }
+            }
             Self::Search => {
                 painter.circle_stroke(at(-0.15, -0.15), 0.55 * RADIUS, stroke);
                 line(&[(0.25, 0.25), (0.8, 0.8)]);
             }
         }
     }
+}
+
+/// A circle, half of it filled.
+fn theme(painter: &Painter, center: Pos2, radius: f32, stroke: Stroke) {
+    painter.circle_stroke(center, radius, stroke);
+    let half = (0..=12).map(|step| center + radius * Vec2::angled(TAU * (step as f32 / 24.0 - 0.25)));
+    painter.add(Shape::convex_polygon(half.collect(), stroke.color, Stroke::NONE));
 }
 
 /// An arrow that bends back to the left, or with a side of -1 to the right.

@@ -206,22 +206,24 @@ fn over(ui: &Ui, stage: &Stage, figures: &Figures, rect: Rect) {
     }
 }
 
-/// How far a scene is, and that an artefact is being searched.
+/// How far a scene is, or that an artefact is being searched.
 fn loading(ui: &mut Ui, shows: &Shows<'_>, rect: Rect) {
-    let Some((name, share)) = shows.loading.or(shows.is_searching.then_some(("the best view", 0.0))) else { return };
+    if shows.loading.is_none() && !shows.is_searching {
+        return;
+    }
     let size = Vec2::new(300.0_f32.min(rect.width()), 64.0);
     let place = Rect::from_center_size(rect.center(), size);
     let mut card = ui.new_child(UiBuilder::new().max_rect(place));
     egui::Frame::popup(ui.style()).show(&mut card, |ui| {
         ui.set_width(size.x - 24.0);
-        if shows.is_searching {
+        if let Some((name, share)) = shows.loading {
+            ui.label(format!("Loading {name}"));
+            ui.add(egui::ProgressBar::new(share).show_percentage().animate(true));
+        } else {
             ui.horizontal(|ui| {
                 ui.spinner();
                 ui.label("Looking for the best view…");
             });
-        } else {
-            ui.label(format!("Loading {name}"));
-            ui.add(egui::ProgressBar::new(share).show_percentage().animate(true));
         }
     });
     // The bar moves on its own.

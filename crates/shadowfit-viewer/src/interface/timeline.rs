@@ -2,6 +2,7 @@
 
 use egui::{Button, DragValue, RichText, Slider, Ui};
 use shadowfit::tool::DAY;
+use shadowfit_egui::{Icon, icon_button, rename};
 
 use super::Asked;
 use crate::command::Command;
@@ -31,17 +32,20 @@ pub(super) fn show(ui: &mut Ui, stage: &mut Stage, frame_ms: Option<f32>, asked:
 /// Play, pause, and the time of the animation.
 fn animation(ui: &mut Ui, stage: &mut Stage, asked: &mut Asked) {
     let Some(duration) = stage.duration() else {
-        ui.add_enabled(false, Button::new("▶")).on_disabled_hover_text("This scene has no animation");
+        ui.add_enabled_ui(false, |ui| icon_button(ui, Icon::Play, "Play", "This scene has no animation"));
         return;
     };
-    let (icon, help) = if stage.settings.view.play { ("⏸", "Pause (Space)") } else { ("▶", "Play (Space)") };
-    if ui.add(Button::new(icon).min_size(egui::vec2(28.0, 0.0))).on_hover_text(help).clicked() {
+    let plays = stage.settings.view.play;
+    let (icon, name) = if plays { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
+    let help = format!("{name} (Space)");
+    if icon_button(ui, icon, name, &help).clicked() {
         asked.commands.push(Command::TogglePlay);
     }
     let now = stage.seconds() % duration.max(1e-3);
     let mut seconds = now;
     let slider = Slider::new(&mut seconds, 0.0..=duration).fixed_decimals(2).suffix(" s").trailing_fill(true);
     let response = ui.add(slider).on_hover_text("Time of the animation; dragging it poses the scene");
+    rename(ui, &response, "Time of the animation".to_owned());
     // A slider rounds what it shows, which is no wish.
     if response.changed() && (seconds - now).abs() > SCRUB_STEP {
         asked.commands.push(Command::Scrub(seconds));
@@ -64,10 +68,13 @@ fn day(ui: &mut Ui, stage: &mut Stage, asked: &mut Asked) {
     let slider = Slider::new(&mut hour, DAY.0..=DAY.1).custom_formatter(clock).trailing_fill(true);
     let help = "Time of day: sunrise at 6, noon at 12, sunset at 18. Azimuth and elevation in the panel are used until it \
                 is moved.";
-    if ui.add(slider).on_hover_text(help).changed() {
+    let response = ui.add(slider).on_hover_text(help);
+    rename(ui, &response, "Time of day".to_owned());
+    if response.changed() {
         light.hour = Some(hour);
     }
-    if light.hour.is_some() && ui.small_button("×").on_hover_text("Back to azimuth and elevation").clicked() {
+    let help = "Back to azimuth and elevation";
+    if light.hour.is_some() && icon_button(ui, Icon::Close, "Sun by angles", help).clicked() {
         light.hour = None;
     }
 }
@@ -76,5 +83,6 @@ fn day(ui: &mut Ui, stage: &mut Stage, asked: &mut Asked) {
 fn speed(ui: &mut Ui, stage: &mut Stage) {
     let (least, most) = shadowfit::tool::FLYING_SPEEDS;
     let speed = DragValue::new(&mut stage.settings.camera.speed).range(least..=most).speed(0.05).suffix(" m/s");
-    ui.add(speed.max_decimals(1)).on_hover_text("Flying speed (wheel over the picture)");
+    let response = ui.add(speed.max_decimals(1)).on_hover_text("Flying speed (wheel over the picture)");
+    rename(ui, &response, "Flying speed".to_owned());
 }

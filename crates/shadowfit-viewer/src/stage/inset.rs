@@ -21,14 +21,15 @@ const FREE: f32 = 0.12;
 /// Lines along the light, from side to side of a map, on which its depths are looked at.
 const LINES: u8 = 9;
 
-/// Maps in the lower left corner of a picture of `size` pixels, the first one lowest. `depth_range` are the stored depths
+/// Maps in the lower left corner of the part from the column `left` on of a picture of `size` pixels, the first one lowest.
+/// `depth_range` are the stored depths
 /// shown as black and white; those between which the scene lies if `None`.
 pub(super) fn insets(
     shown: Range<usize>,
     maps: &[MapFit],
     bounds: &Aabb,
     depth_range: Option<[f32; 2]>,
-    size: [u32; 2],
+    (left, size): (u32, [u32; 2]),
 ) -> Vec<Inset> {
     let picture = size.map(|side| side as f32);
     let scale = (picture[0] / FULL_WIDTH).min(1.0);
@@ -41,7 +42,12 @@ pub(super) fn insets(
         let map: &MapFit = maps.get(index)?;
         let top = picture[1] - (place + 1) as f32 * (height + margin);
         let depth_range = depth_range.or_else(|| depths(&map.fit, bounds)).unwrap_or([0.0, 1.0]);
-        Some(Inset { rectangle: [margin, top, width, height], depth_range, map: index as u32, border: tint(index) })
+        Some(Inset {
+            rectangle: [left as f32 + margin, top, width, height],
+            depth_range,
+            map: index as u32,
+            border: tint(index),
+        })
     };
     shown.enumerate().filter_map(inset).collect()
 }
@@ -82,7 +88,7 @@ mod tests {
         let bounds = Aabb::new(Vec3::ZERO, Vec3::ONE);
         for count in 1..=MAX_MAPS {
             for size in [[960, 540], [320, 180], [1280, 300]] {
-                let insets = insets(0..count, &maps, &bounds, None, size);
+                let insets = insets(0..count, &maps, &bounds, None, (0, size));
                 assert_eq!(insets.len(), count);
                 for pair in insets.windows(2) {
                     assert!(pair[1].rectangle[1] + pair[1].rectangle[3] < pair[0].rectangle[1], "{pair:?}");
@@ -90,8 +96,8 @@ mod tests {
                 assert!(insets.iter().all(|inset| inset.rectangle[1] > 0.0 && inset.rectangle[3] >= 1.0), "{insets:?}");
             }
         }
-        let one = insets(3..4, &maps, &bounds, Some([0.25, 0.5]), [960, 540]);
-        assert_eq!((one[0].map, one[0].rectangle, one[0].depth_range), (3, [12.0, 328.0, 300.0, 200.0], [0.25, 0.5]));
+        let one = insets(3..4, &maps, &bounds, Some([0.25, 0.5]), (100, [960, 540]));
+        assert_eq!((one[0].map, one[0].rectangle, one[0].depth_range), (3, [112.0, 328.0, 300.0, 200.0], [0.25, 0.5]));
     }
 
     #[test]

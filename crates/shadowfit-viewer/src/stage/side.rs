@@ -257,7 +257,8 @@ impl Side {
             InsetMaps::All => 0..maps.len(),
         };
         let bounds = shot.scene.bounds();
-        let insets = inset::insets(shown, maps, &bounds, settings.inset_depths, target.size);
+        let left = shot.scissor.map_or(0, |[x, ..]| x);
+        let insets = inset::insets(shown, maps, &bounds, settings.inset_depths, (left, target.size));
         let judged = self.live.picture();
         let marks = (settings.marks != ErrorMarks::Off && judged.is_some()).then(|| Marks {
             outline: settings.marks == ErrorMarks::Outline,

@@ -60,10 +60,22 @@ impl Viewer {
                 self.saved.theme = theme;
                 self.interface.context.set_theme(theme);
             }
+            Command::Escape => self.escape(),
             Command::Quit => self.wishes.quit = true,
             // Everything else needs a scene.
             _ if !self.has_scene => {}
             command => self.run_on_scene(command),
+        }
+    }
+
+    fn escape(&mut self) {
+        let context = &self.interface.context;
+        if egui::Popup::is_any_open(context) {
+            egui::Popup::close_all(context);
+        } else if self.interface.help_open {
+            self.interface.help_open = false;
+        } else {
+            self.wishes.quit = true;
         }
     }
 

@@ -272,7 +272,7 @@ pub(super) const MARKS: Parameter = Parameter {
     group: Group::View,
     label: "Mark wrong pixels",
     unit: "",
-    help: "Marks the pixels that rays prove wrong, in the colour of their class, in any view.",
+    help: "Marks the pixels that rays prove wrong, in the colour of their class, in the views of the camera.",
     kind: Kind::Choice(Choice {
         options: &[
             ChoiceOption { id: "off", label: "Off", help: "Nothing is marked." },
