@@ -84,7 +84,7 @@ pub const KEYS: &[KeyGroup] = &[
         heading: "Settings and files",
         keys: &[
             key("Ctrl+Z", "undo"),
-            key("Ctrl+Shift+Z", "redo"),
+            key("Ctrl+Shift+Z or Ctrl+Y", "redo"),
             key("R", "reset"),
             key("K", "copy as Rust code"),
             key("P", "screenshot"),
@@ -93,7 +93,7 @@ pub const KEYS: &[KeyGroup] = &[
     },
     KeyGroup {
         heading: "Window",
-        keys: &[key("Tab", "hide or show the panel"), key("H or F1", "this help"), key("Esc", "quit")],
+        keys: &[key("Tab", "hide or show the panel"), key("H or F1", "this help"), key("Esc or Ctrl+Q", "quit")],
     },
     KeyGroup {
         heading: "Gamepad",
