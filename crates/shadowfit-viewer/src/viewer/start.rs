@@ -70,10 +70,7 @@ impl Viewer {
             self.say(message);
         }
         let saved = saved.unwrap_or_default();
-        let source = self.start.source.clone().unwrap_or_else(|| match &saved.scene {
-            SceneSource::File { path, .. } if !path.is_file() => SceneSource::default(),
-            source => source.clone(),
-        });
+        let source = self.start.source.clone().unwrap_or_else(|| saved.scene.clone());
         if self.store.is_some() {
             self.start.kept = Some((saved.scene.clone(), saved.settings, saved.camera));
         }

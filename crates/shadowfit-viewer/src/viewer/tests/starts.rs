@@ -32,12 +32,13 @@ fn gpu_a_damaged_file_is_told_in_the_panel_once_the_scene_is_there() {
 #[test]
 fn gpu_a_scene_of_the_last_time_that_went_bad_gives_way_to_the_built_in_one() {
     let folder = tempfile::tempdir().expect("a folder");
-    let bad = folder.path().join("bad.glb");
-    std::fs::write(&bad, "no scene").expect("written");
-    let path = saved(folder.path(), &bad.display().to_string());
-    let viewer = ready(&[], Some(&path));
-    assert_eq!(viewer.source, SceneSource::default());
-    assert!(message(&viewer).contains("bad.glb"), "{:?}", message(&viewer));
+    std::fs::write(folder.path().join("bad.glb"), "no scene").expect("written");
+    for name in ["bad.glb", "gone.glb"] {
+        let path = saved(folder.path(), &folder.path().join(name).display().to_string());
+        let viewer = ready(&[], Some(&path));
+        assert_eq!(viewer.source, SceneSource::default());
+        assert!(message(&viewer).contains(name), "{:?}", message(&viewer));
+    }
 }
 
 #[test]
