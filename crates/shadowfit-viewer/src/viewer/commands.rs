@@ -63,7 +63,11 @@ impl Viewer {
             }
             Command::Quit => self.wishes.quit = true,
             // Everything else needs a scene.
-            _ if !self.has_scene => {}
+            _ if !self.has_scene => {
+                if self.line.is_some() {
+                    self.tell(Err(anyhow!("there is no scene yet; let the script begin with `await loaded`")));
+                }
+            }
             command => self.run_on_scene(command),
         }
     }

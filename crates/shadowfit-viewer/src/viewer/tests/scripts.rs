@@ -27,6 +27,7 @@ fn gpu_a_line_that_cannot_be_done_fails_the_script_and_the_rest_is_played() {
         assert!(viewer.player.failed, "{bad}");
         assert_eq!(viewer.stage.settings.technique.count, 2, "{bad}");
     }
+    assert!(play(folder.path(), "set splits.count 2\nawait loaded\n").player.failed, "there is no scene yet");
     let good = play(folder.path(), "await loaded\nset bias.constant 1\nbookmark 7\ngoto 7\npicture a.png\n");
     assert!(!good.player.failed);
     assert!(folder.path().join("a.png").is_file());
