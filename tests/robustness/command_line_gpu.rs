@@ -177,6 +177,50 @@ fn a_folder_that_cannot_be_written_is_named_and_left_as_it_was() {
 }
 
 #[test]
+fn the_picture_set_is_whole_and_what_was_saved_stays_as_it_was() {
+    let scratch = Scratch::new("pictures");
+    let kept = scratch.0.join("config/shadowfit/viewer.toml");
+    std::fs::create_dir_all(kept.parent().expect("a folder")).expect("new folders");
+    let text = "version = 1\nscene = \"plain\"\n[settings.splits]\ncount = 2\n";
+    std::fs::write(&kept, text).expect("written");
+    let mut command = Command::new(viewer_program());
+    command.current_dir(&scratch.0).env("XDG_CONFIG_HOME", scratch.0.join("config"));
+    command.args(["--software", "--size", "96x64", "--headless", "out"]);
+    let output = command.output().expect("the viewer starts");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{message}");
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(!said.contains("plain"), "the scene of the last time is not restored: {said}");
+    assert_eq!(std::fs::read_to_string(&kept).expect("it is there"), text);
+    let files = scratch.files();
+    let (pictures, others): (Vec<_>, Vec<_>) = files.iter().partition(|path| path.starts_with(scratch.0.join("out")));
+    assert!(pictures.len() >= 18, "{} pictures", pictures.len());
+    assert!(pictures.iter().all(|path| path.extension().is_some_and(|extension| extension == "png")));
+    assert_eq!(others, [&kept]);
+}
+
+#[test]
+fn a_script_without_a_window_saves_into_the_folder_and_ends_by_how_its_lines_went() {
+    let scratch = Scratch::new("script");
+    let good = "await loaded\ntechnique stable-4\nwindow whole.png\npicture alone.png\nfigures figures.csv\n";
+    scratch.file("good.txt", good.as_bytes());
+    let output = run(&scratch.0, &["--headless", "out", "--script", "good.txt"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let names: Vec<_> = scratch.files().iter().filter_map(|path| path.file_name().map(ToOwned::to_owned)).collect();
+    for name in ["whole.png", "alone.png", "figures.csv"] {
+        assert!(scratch.0.join("out").join(name).is_file(), "{name} is not in {names:?}");
+    }
+    assert_eq!(names.len(), 4, "nothing else is saved: {names:?}");
+    for line in ["set splits.count 99", "open missing.glb", "window no/such/folder/whole.png"] {
+        scratch.file("bad.txt", format!("await loaded\n\n{line}\nview truth\n").as_bytes());
+        let output = run(&scratch.0, &["--headless", "out", "--script", "bad.txt"]);
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(REFUSED), "{line}: {message}");
+        assert!(message.contains(&format!("error: bad.txt:3: {line}: ")), "{message}");
+    }
+}
+
+#[test]
 fn help_version_and_parameters_end_with_success() {
     let scratch = Scratch::new("help");
     for (flag, word) in [("--help", "--headless"), ("--version", "viewer"), ("--parameters", "bias.normal_offset")] {

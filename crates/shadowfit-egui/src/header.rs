@@ -51,7 +51,12 @@ fn buttons(ui: &mut Ui, panel: &Panel, changes: Changes<'_>, action: &mut Option
     if panel.has(Part::Copy) {
         let items = [
             ("Copy as Rust code", "K", "Copies the technique as Rust code.", Action::CopyRust),
-            ("Copy the command line", "", "Copies the command that draws this picture.", Action::CopyCommandLine),
+            (
+                "Copy the command line",
+                "",
+                "Copies the command that starts with this scene and these settings.",
+                Action::CopyCommandLine,
+            ),
         ];
         menu(ui, Icon::Copy, "Copy", "Copies the settings, to use them elsewhere.", items, action);
     }

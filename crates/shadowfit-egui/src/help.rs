@@ -84,7 +84,7 @@ pub const KEYS: &[KeyGroup] = &[
         heading: "Settings and files",
         keys: &[
             key("Ctrl+Z", "undo"),
-            key("Ctrl+Shift+Z", "redo"),
+            key("Ctrl+Shift+Z or Ctrl+Y", "redo"),
             key("R", "reset"),
             key("K", "copy as Rust code"),
             key("P", "screenshot"),
@@ -97,6 +97,7 @@ pub const KEYS: &[KeyGroup] = &[
             key("Tab", "hide or show the panel"),
             key("H or F1", "this help"),
             key("Esc", "close a menu or this help; else quit"),
+            key("Ctrl+Q", "quit"),
         ],
     },
     KeyGroup {

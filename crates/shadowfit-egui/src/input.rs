@@ -99,7 +99,7 @@ pub enum Tune<'a> {
         tried: u32,
         /// Most that are judged.
         at_most: u32,
-        /// Error of the technique that it began with.
+        /// Error of the technique that it began with; NaN until it was judged, and nothing but `what` is shown.
         start_error: f32,
         /// Least error so far.
         best_error: f32,
@@ -182,7 +182,7 @@ pub enum Action {
     DeletePreset(String),
     /// Copy the technique as Rust code.
     CopyRust,
-    /// Copy the command line that draws this picture.
+    /// Copy the command line that starts with this scene and these settings.
     CopyCommandLine,
     /// Save this text, the plotted figures as comma-separated values, to a file.
     SaveCsv(String),

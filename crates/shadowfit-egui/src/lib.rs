@@ -120,7 +120,7 @@ impl Panel {
         self
     }
 
-    /// Names the technique of the settings after a file or whatever else the host opened it from. The
+    /// Names the technique that the controls edit after a file or whatever else the host opened it from. The
     /// menu of techniques shows that name and, once the technique is changed, offers it again.
     pub fn name_technique(&mut self, name: impl Into<String>, technique: &Technique) {
         self.technique.open(name.into(), technique);

@@ -28,6 +28,8 @@ const CUSTOM: &str = "custom";
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Menu {
     chosen: [String; 2],
+    /// Which of both was shown last.
+    side: usize,
     opened: Option<(String, Technique)>,
     /// The name that a technique is about to be saved under, while the field for it is shown.
     name: Option<String>,
@@ -45,8 +47,12 @@ struct Entry<'a> {
 
 impl Menu {
     pub(crate) fn open(&mut self, name: String, technique: &Technique) {
-        self.chosen[0].clone_from(&name);
-        self.opened = Some((name, *technique));
+        self.chosen[self.side].clone_from(&name);
+        let is_it = |preset: &&shadowfit::presets::Preset| of_scene(&preset.technique(), technique) == *technique;
+        // A preset is in the menu already.
+        if !PRESETS.iter().filter(is_it).any(|preset| preset.name == name) {
+            self.opened = Some((name, *technique));
+        }
     }
 
     /// Takes the names along with what is about to be done with the techniques.
@@ -100,9 +106,10 @@ impl Menu {
         saved: Option<&[UserPreset]>,
         action: &mut Option<Action>,
     ) {
+        self.side = side;
         let now = *technique;
         let presets = saved.unwrap_or_default();
-        let current = self.entries(presets).find(|entry| of_scene(entry.technique, &now) == now);
+        let current = self.entries(presets).find(|entry| of_scene(&entry.technique, &now) == now);
         let name = current.as_ref().map(|entry| entry.name.to_owned());
         let help = match &current {
             Some(entry) => format!("{}: {}. {}\n\n{HELP}", entry.name, entry.summary, entry.advice),
@@ -138,7 +145,7 @@ impl Menu {
         self.name_field(ui, action);
         if let Some((name, preset)) = chosen {
             self.chosen[side] = name;
-            *technique = of_scene(preset, &now);
+            *technique = of_scene(&preset, &now);
         }
     }
 
@@ -174,11 +181,9 @@ impl Menu {
 
 /// A technique with the shadow distance, the caster extension and the resolution of another one:
 /// those depend on the scene and the machine.
-fn of_scene(mut technique: Technique, other: &Technique) -> Technique {
-    technique.fit.max_distance = other.fit.max_distance;
-    technique.fit.caster_extension = other.fit.caster_extension;
-    technique.fit.resolution = other.fit.resolution;
-    technique
+fn of_scene(technique: &Technique, other: &Technique) -> Technique {
+    let [width, height] = other.fit.resolution.to_array();
+    technique.with_lengths_of(other).with_resolution(width, height)
 }
 
 /// A line of the menu, with a button that deletes it where a person saved it; returns whether it was chosen.

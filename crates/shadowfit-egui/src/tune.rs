@@ -37,8 +37,12 @@ pub(crate) fn show(ui: &mut Ui, tune: &Tune<'_>, action: &mut Option<Action>) {
             let bar = ProgressBar::new(share).desired_height(8.0).fill(palette.accent_fill);
             let response = ui.add(bar);
             crate::accessibility::rename(ui, &response, "Progress of the search".to_owned());
-            ui.label(RichText::new(from_to(ui, start_error, best_error)).strong());
-            caption(ui, &format!("{tried} of at most {at_most} tried; now {what}"));
+            if start_error.is_finite() {
+                ui.label(RichText::new(from_to(ui, start_error, best_error)).strong());
+                caption(ui, &format!("{tried} of at most {at_most} tried; now {what}"));
+            } else {
+                caption(ui, what);
+            }
             if ui.button("Cancel").on_hover_text("Ends the search; what it found so far counts.").clicked() {
                 *action = Some(Action::CancelTune);
             }

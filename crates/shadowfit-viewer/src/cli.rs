@@ -2,15 +2,16 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result, anyhow, bail};
 use clap::Parser;
-use shadowfit::params::{self, Kind, Parameter};
+use shadowfit::Technique;
+use shadowfit::params::{self, Kind, Parameter, ParameterError};
 use shadowfit::tool::Settings;
 use shadowfit_render::AdapterChoice;
 use shadowfit_scene::Scene;
 use shadowfit_study::NamedTechnique;
 
-use crate::script::{self, Step};
+use crate::script::{self, Line};
 use crate::source::SceneSource;
 use crate::viewer::check_animation;
 
@@ -118,7 +119,7 @@ impl Arguments {
     }
 
     /// The script that the arguments name; nothing without one.
-    pub(crate) fn steps(&self) -> Result<Vec<Step>> {
+    pub(crate) fn lines(&self) -> Result<Vec<Line>> {
         Ok(self.script.as_deref().map(script::read).transpose()?.unwrap_or_default())
     }
 
@@ -128,40 +129,64 @@ impl Arguments {
     }
 
     /// Applies the `--technique`, `--set` and `--no-play` arguments, in this order. A preset keeps the shadow distance
-    /// and the caster extension of the settings, which suit the scene; a file has its own. Returns what was opened from
-    /// a file.
+    /// and the caster extension of the settings, which suit the scene; a file has its own. Returns the technique that was
+    /// opened.
     ///
     /// # Errors
     ///
     /// If there is no such technique or parameter, or a value is not possible.
     pub fn apply(&self, settings: &mut Settings) -> Result<Option<NamedTechnique>> {
-        let opened = self.technique.as_deref().map(|technique| open_technique(technique, settings)).transpose()?;
+        self.apply_unless(settings, |_| false)
+    }
+
+    /// As [`Self::apply`], but without the values of parameters that exist only with a choice that these settings have
+    /// not made.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such technique or parameter, or a value is possible with none.
+    pub(crate) fn apply_what_is_there(&self, settings: &mut Settings) -> Result<Option<NamedTechnique>> {
+        self.apply_unless(settings, |error| matches!(error, ParameterError::NotPresent { .. }))
+    }
+
+    fn apply_unless(
+        &self,
+        settings: &mut Settings,
+        is_ignored: impl Fn(&ParameterError<'_>) -> bool,
+    ) -> Result<Option<NamedTechnique>> {
+        let find = |text: &String| find_technique(text, &settings.technique).context("--technique");
+        let opened = self.technique.as_ref().map(find).transpose()?;
+        if let Some(opened) = &opened {
+            settings.technique = opened.technique;
+        }
         for assignment in &self.set {
             let (id, value) = assignment
                 .split_once('=')
                 .ok_or_else(|| anyhow!("--set {assignment}: expected ID=VALUE, e.g. bias.normal_offset=1.5"))?;
-            params::set_from_str(settings, id.trim(), value.trim())
-                .map_err(|error| anyhow!("{error}"))
-                .with_context(|| format!("--set {assignment}"))?;
+            match params::set_from_str(settings, id.trim(), value.trim()) {
+                Err(error) if !is_ignored(&error) => bail!("--set {assignment}: {error}"),
+                Ok(()) | Err(_) => {}
+            }
         }
         if self.no_play {
             settings.view.play = false;
         }
-        Ok(opened.flatten())
+        Ok(opened)
     }
 }
 
-/// Takes a preset with the lengths that suit the scene, or a file as it is, which is returned then.
-fn open_technique(text: &str, settings: &mut Settings) -> Result<Option<NamedTechnique>> {
-    let opened = NamedTechnique::find(text).context("--technique")?;
-    let of_scene = settings.technique.fit;
-    settings.technique = opened.technique;
-    if NamedTechnique::preset(text).is_none() {
-        return Ok(Some(opened));
+/// A preset by its name, with the lengths of the present technique, which suit the scene; or the technique of a file, as
+/// it is.
+///
+/// # Errors
+///
+/// If there is no such preset, or the file cannot be read or makes no sense.
+pub(crate) fn find_technique(text: &str, now: &Technique) -> Result<NamedTechnique> {
+    let mut named = NamedTechnique::find(text)?;
+    if NamedTechnique::preset(text).is_some() {
+        named.technique = named.technique.with_lengths_of(now);
     }
-    let fit = &mut settings.technique.fit;
-    (fit.max_distance, fit.caster_extension) = (of_scene.max_distance, of_scene.caster_extension);
-    Ok(None)
+    Ok(named)
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {
@@ -236,6 +261,19 @@ mod tests {
     }
 
     #[test]
+    fn a_value_that_needs_another_choice_is_refused_only_where_that_choice_is_known() {
+        let mut settings = Settings::default();
+        let lambda = Arguments::parse_from(["viewer", "--set", "splits.lambda=0.7", "--set", "bias.constant=0.5"]);
+        assert!(lambda.apply(&mut settings.clone()).is_err(), "the default splits have no lambda");
+        lambda.apply_what_is_there(&mut settings).expect("practical splits may come from the saved settings");
+        assert_eq!(settings.technique.bias.constant, 0.5);
+        for bad in ["splits.lambda", "splits.lambda=much", "splits.lambda=7", "no.such=1"] {
+            let arguments = Arguments::parse_from(["viewer", "--set", bad]);
+            assert!(arguments.apply_what_is_there(&mut settings).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
     fn presets_keep_the_lengths_of_the_scene_and_files_have_their_own() {
         let mut scene = Settings::default();
         (scene.technique.fit.max_distance, scene.technique.fit.caster_extension) = (80.0, 7.0);
@@ -246,9 +284,9 @@ mod tests {
         };
         let preset = NamedTechnique::preset("stable-4").expect("a preset");
         let (technique, opened) = apply(&["stable-4", "--set", "splits.count=3"]).expect("a preset");
-        let mut expected = preset.technique.with_max_distance(80.0).with_count(3);
-        expected.fit.caster_extension = 7.0;
-        assert_eq!((technique, opened), (expected, None), "--set comes after --technique");
+        let expected = preset.technique.with_lengths_of(&scene.technique);
+        assert_eq!(technique, expected.with_count(3), "--set comes after --technique");
+        assert_eq!(opened.map(|opened| (opened.name, opened.technique)), Some(("stable-4".to_owned(), expected)));
 
         let folder = std::env::temp_dir().join(format!("shadowfit-viewer-techniques-{}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a folder");

@@ -123,9 +123,10 @@ impl Toggle {
     }
 }
 
-impl From<Action> for Command {
-    fn from(action: Action) -> Self {
-        match action {
+impl Command {
+    /// What a button of the panel asks for; `None` for what this viewer does not know yet.
+    pub(crate) fn from_action(action: Action) -> Option<Self> {
+        Some(match action {
             Action::ShowArtefact(artefact) => Self::ShowArtefact(artefact),
             Action::FixArtefact(_) => Self::Fix,
             Action::CloseArtefact => Self::CloseArtefact,
@@ -148,8 +149,8 @@ impl From<Action> for Command {
             Action::Reset => Self::Reset,
             Action::ResetCamera => Self::ResetCamera,
             Action::SetTheme(theme) => Self::SetTheme(theme.into()),
-            // Whatever is new: the help says which keys there are.
-            _ => Self::ToggleHelp,
-        }
+            Action::OpenHelp => Self::ToggleHelp,
+            _ => return None,
+        })
     }
 }

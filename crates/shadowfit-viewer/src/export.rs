@@ -7,15 +7,22 @@ use shadowfit::tool::Settings;
 
 use crate::source::SceneSource;
 
-/// The command line that opens a scene with these settings. `home` are the settings that the scene is opened with:
-/// only what differs from them is written.
-pub(crate) fn command_line(source: &SceneSource, settings: &Settings, home: &Settings) -> String {
+/// The command line that opens a scene with one of its animations and these settings, whatever was saved. `own` are the
+/// settings that the scene is opened with when nothing else is asked for: only what differs from them is written.
+pub(crate) fn command_line(source: &SceneSource, animation: usize, settings: &Settings, own: &Settings) -> String {
     let mut line = String::from("viewer");
     if *source != SceneSource::default() {
         let _ = write!(line, " {}", quoted(&source.text()));
     }
+    line.push_str(" --no-state");
+    if let Some(index) = source.index() {
+        let _ = write!(line, " --scene-index {index}");
+    }
+    if animation > 0 {
+        let _ = write!(line, " --animation {animation}");
+    }
     // Parameters that only others bring about come after these in the table.
-    let mut reached = *home;
+    let mut reached = *own;
     for parameter in PARAMETERS.iter().filter(|parameter| parameter.is_present(settings)) {
         if !parameter.is_equal(settings, &reached) {
             let mut value = String::new();
@@ -53,14 +60,18 @@ mod tests {
         settings.technique = settings.technique.with_count(3).with_splits(SplitScheme::Practical(0.25));
         settings.technique.bias.constant = 0.7;
         (settings.light.hour, settings.view.inset_depths) = (Some(8.5), Some([0.25, 0.5]));
-        let line = command_line(&SceneSource::from_text("a town.glb"), &settings, &home);
-        assert!(line.starts_with("viewer 'a town.glb' --set "), "{line}");
-        let words = line.replace("'a town.glb'", "a-town.glb");
+        let town = SceneSource::from_text("a town.glb").with_index(Some(2)).expect("files have scenes");
+        let line = command_line(&town, 1, &settings, &home);
+        let path = quoted(&town.text());
+        let start = format!("viewer {path} --no-state --scene-index 2 --animation 1 --set ");
+        assert!(path.starts_with('\'') && line.starts_with(&start), "{line}");
+        let words = line.replace(&path, "a-town.glb");
         let arguments = Arguments::try_parse_from(words.split(' ')).expect("a command line");
+        assert!(arguments.no_state && arguments.scene_index == Some(2) && arguments.animation == 1);
         let mut read = home;
         arguments.apply(&mut read).expect("settings");
         assert_eq!(read, settings);
-        assert_eq!(command_line(&SceneSource::default(), &home, &home), "viewer");
+        assert_eq!(command_line(&SceneSource::default(), 0, &home, &home), "viewer --no-state");
     }
 
     #[test]

@@ -62,9 +62,9 @@ pub(crate) fn settings_of_png(path: &Path) -> Result<Option<String>> {
     Ok(text.map(png::text_metadata::ITXtChunk::get_text).transpose()?)
 }
 
-/// The first name that no file in the working folder has: `shadowfit-001.png`.
-pub(crate) fn free_name(extension: &str) -> PathBuf {
-    let name = |number: u32| PathBuf::from(format!("shadowfit-{number:03}.{extension}"));
+/// The first name that no file in a folder has: `shadowfit-001.png`. The empty path is the working folder.
+pub(crate) fn free_name(folder: &Path, extension: &str) -> PathBuf {
+    let name = |number: u32| folder.join(format!("shadowfit-{number:03}.{extension}"));
     (1..=u32::from(u16::MAX)).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(0))
 }
 

@@ -14,7 +14,7 @@ use crate::files::write_png;
 use crate::interface::{Canvas, Interface, Shows};
 use crate::saved::Saved;
 use crate::stage::Stage;
-use crate::viewer::{Start, Viewer};
+use crate::viewer::{Start, Viewer, compared_with};
 
 /// Samples per pixel of headless pictures.
 const SAMPLES: u32 = 4;
@@ -26,8 +26,6 @@ const FRAME: f32 = 1.0 / 60.0;
 const SETTLING: u32 = 4;
 /// Format of headless frames.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
-/// Technique that the split picture compares with the present one.
-const COMPARED: &str = "stable-4";
 
 /// Renders what the arguments ask for and says where it is. What import noted of the scene goes to the standard error.
 /// Nothing is restored from the last time, and nothing is kept for the next one.
@@ -67,7 +65,7 @@ fn play(arguments: &Arguments, folder: &Path) -> Result<()> {
     let mut size = arguments.size;
     let mut canvas = Canvas::new(&viewer.stage.gpu().device, size, FORMAT);
     let mut clock = 0.0;
-    while !viewer.player.is_done() && !viewer.wishes.quit {
+    while !viewer.has_played() && !viewer.wishes.quit {
         let (layout, _) = viewer.frame(input(size, clock), FRAME);
         viewer.paint(&layout, &canvas.view, size);
         clock += f64::from(FRAME);
@@ -148,7 +146,7 @@ impl Album<'_> {
         }
         self.stage.settings.view.inset = InsetMaps::Off;
         self.stage.settings.view.mode = ViewMode::Error;
-        self.stage.compare_with(shadowfit::Technique::preset(COMPARED));
+        self.stage.compare_with(Some(compared_with(&self.stage.settings.technique)));
         self.save("split")?;
         self.stage.compare_with(None);
         self.stage.reset();

@@ -165,6 +165,6 @@ impl Interface {
             message: message.as_deref(),
             ..PanelInput::new(settings, &figures, scene)
         };
-        asked.commands.extend(self.panel.show(ui, input).action.map(Command::from));
+        asked.commands.extend(self.panel.show(ui, input).action.and_then(Command::from_action));
     }
 }

@@ -170,6 +170,35 @@ mod tests {
         }
     }
 
+    /// The chords of a line of the table of the keys.
+    fn chords(keys: &str) -> Vec<Chord> {
+        let one = |text: &str| {
+            let text = text.trim().to_lowercase().replace("esc", "escape");
+            Chord::from_text(&text).unwrap_or_else(|| panic!("{keys:?}: {text:?}"))
+        };
+        match keys.split_once("1 … 9") {
+            Some((modifiers, _)) => (1..=9).map(|digit| one(&format!("{modifiers}{digit}"))).collect(),
+            None => keys.split(" or ").map(one).collect(),
+        }
+    }
+
+    #[test]
+    fn the_table_of_the_keys_has_every_key_that_does_something_at_once_and_no_other() {
+        let groups = shadowfit_egui::KEYS.iter().filter(|group| !["Fly", "Gamepad"].contains(&group.heading));
+        let listed: Vec<Chord> = groups.flat_map(|group| group.keys).flat_map(|key| chords(key.keys)).collect();
+        for chord in &listed {
+            assert!(chord.command().is_some(), "{chord:?} is listed and does nothing");
+        }
+        let with_modifiers =
+            |chord: Chord| [chord, Chord { ctrl: true, ..chord }, Chord { ctrl: true, shift: true, ..chord }];
+        for chord in Chord::all().flat_map(with_modifiers) {
+            let Some(command) = chord.command() else { continue };
+            // Shift beside Control matters to some keys only.
+            let same = |other: &Chord| other.key == chord.key && other.command().as_ref() == Some(&command);
+            assert!(listed.iter().any(same), "{chord:?} is not listed");
+        }
+    }
+
     #[test]
     fn no_two_keys_do_the_same_but_those_that_are_meant_to() {
         let mut seen: Vec<(Command, Chord)> = Vec::new();

@@ -18,6 +18,8 @@ const STEPS: f32 = 1000.0;
 /// A scene on its way.
 pub(crate) struct Loading {
     pub(crate) source: SceneSource,
+    /// The line of a script that asked for it.
+    pub(crate) line: Option<String>,
     /// In steps.
     done: Arc<AtomicU32>,
     result: Receiver<Result<PreparedScene>>,
@@ -25,7 +27,7 @@ pub(crate) struct Loading {
 
 impl Loading {
     /// Begins. `layout` is that of the scene's materials.
-    pub(crate) fn start(source: SceneSource, gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> Self {
+    pub(crate) fn start(source: SceneSource, line: Option<String>, gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> Self {
         let (sender, result) = channel();
         let done = Arc::new(AtomicU32::new(0));
         let work = {
@@ -38,7 +40,7 @@ impl Loading {
         };
         // Where no thread can be made, the channel is closed, which is told as the end of the thread.
         let _ = std::thread::Builder::new().name("loading".to_owned()).spawn(work);
-        Self { source, done, result }
+        Self { source, line, done, result }
     }
 
     /// Share that is done, 0..=1.

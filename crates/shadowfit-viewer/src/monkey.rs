@@ -76,8 +76,6 @@ pub(crate) struct MonkeyRun {
     held: Vec<Chord>,
     /// Bytes at the first measurement.
     memory: Option<u64>,
-    /// Whether memory could not be told.
-    pub(crate) failed: bool,
 }
 
 impl MonkeyRun {
@@ -106,7 +104,6 @@ impl MonkeyRun {
             keys: Chord::all().flat_map(with_modifiers).filter(|chord| !unwanted(chord)).collect(),
             held: Vec::new(),
             memory: None,
-            failed: false,
         }
     }
 

@@ -8,7 +8,7 @@ use egui::{Event, Modifiers, PointerButton, Pos2};
 use crate::command::Command;
 use crate::keys::Chord;
 use crate::monkey::MonkeyRun;
-use crate::script::{Awaited, Step};
+use crate::script::{Awaited, Line, Step};
 
 /// Seconds that a script waits for something before it goes on and says so.
 const PATIENCE: f32 = 600.0;
@@ -57,19 +57,32 @@ enum Under {
 /// A script being played.
 #[derive(Debug, Default)]
 pub(crate) struct Player {
-    steps: VecDeque<Step>,
+    lines: VecDeque<Line>,
+    /// Where the line stands that is being played.
+    place: String,
     under: Option<Under>,
     /// Whether something went wrong that a script should not end well with.
     pub(crate) failed: bool,
 }
 
 impl Player {
-    pub(crate) fn new(steps: Vec<Step>) -> Self {
-        Self { steps: steps.into(), ..Self::default() }
+    pub(crate) fn new(lines: Vec<Line>) -> Self {
+        Self { lines: lines.into(), ..Self::default() }
     }
 
     pub(crate) fn is_done(&self) -> bool {
-        self.steps.is_empty() && self.under.is_none()
+        self.lines.is_empty() && self.under.is_none()
+    }
+
+    /// Whether random actions are under way.
+    pub(crate) fn is_random(&self) -> bool {
+        matches!(self.under, Some(Under::Monkey(_)))
+    }
+
+    /// Where the line stands that asks for what is to be done in this frame; `None` for random actions, some of which
+    /// are meant to fail.
+    pub(crate) fn place(&self) -> Option<String> {
+        (!self.is_random()).then(|| self.place.clone())
     }
 
     /// What is to be done in this frame, which follows the one before after a number of seconds.
@@ -81,9 +94,10 @@ impl Player {
         // One step a frame, so that each sees what the one before has done.
         if self.under.is_none()
             && deeds.is_empty()
-            && let Some(step) = self.steps.pop_front()
+            && let Some(line) = self.lines.pop_front()
         {
-            self.under = begin(step, &mut deeds);
+            self.place = line.place;
+            self.under = begin(line.step, &mut deeds);
         }
         deeds
     }
@@ -104,11 +118,7 @@ impl Player {
                 None
             }
             Under::Save(command, left) => Some(Under::Save(command, left - 1)),
-            Under::Monkey(mut run) => {
-                let goes_on = run.advance(seconds, doing, deeds);
-                self.failed |= run.failed;
-                goes_on.then_some(Under::Monkey(run))
-            }
+            Under::Monkey(mut run) => run.advance(seconds, doing, deeds).then_some(Under::Monkey(run)),
         }
     }
 
@@ -123,7 +133,9 @@ impl Player {
         }
         if waited > PATIENCE {
             self.failed = true;
-            deeds.push(Deed::Say(format!("the script waited {PATIENCE:.0} s for {what:?}, and goes on without")));
+            let place = &self.place;
+            deeds
+                .push(Deed::Say(format!("error: {place}: it did not come within {PATIENCE:.0} s; the script goes on")));
             return None;
         }
         Some(Under::Await(what, waited))
@@ -208,8 +220,12 @@ mod tests {
 
     const FRAME: f32 = 0.1;
 
+    fn player(steps: Vec<Step>) -> Player {
+        Player::new((1..).zip(steps).map(|(number, step)| Line { step, place: format!("script:{number}") }).collect())
+    }
+
     fn play(steps: Vec<Step>, frames: usize, doing: &Doing) -> Vec<Vec<Deed>> {
-        let mut player = Player::new(steps);
+        let mut player = player(steps);
         (0..frames).map(|_| player.advance(FRAME, doing)).collect()
     }
 
@@ -239,17 +255,18 @@ mod tests {
 
     #[test]
     fn waiting_ends_when_the_thing_is_done_or_patience_is() {
-        let mut player = Player::new(vec![Step::Await(Awaited::Loaded), Step::Do(Command::Quit)]);
+        let mut player = player(vec![Step::Await(Awaited::Loaded), Step::Do(Command::Quit)]);
         let loading = Doing { is_loading: true, ..Doing::default() };
         for _ in 0..5 {
             assert_eq!(player.advance(FRAME, &loading), []);
         }
         assert_eq!(player.advance(FRAME, &Doing::default()), [Deed::Do(Command::Quit)]);
         assert!(player.is_done() && !player.failed);
-        let mut player = Player::new(vec![Step::Await(Awaited::Tuned)]);
+        assert_eq!(player.place().as_deref(), Some("script:2"), "what it asked for");
+        let mut player = self::player(vec![Step::Await(Awaited::Tuned)]);
         let tuning = Doing { is_tuning: true, ..Doing::default() };
         player.advance(FRAME, &tuning);
-        assert!(matches!(player.advance(2.0 * PATIENCE, &tuning)[..], [Deed::Say(_)]));
+        assert!(matches!(&player.advance(2.0 * PATIENCE, &tuning)[..], [Deed::Say(text)] if text.contains("script:1")));
         assert!(player.failed);
     }
 
@@ -264,6 +281,22 @@ mod tests {
         assert_eq!(deeds(1), deeds(1));
         assert_ne!(deeds(1), deeds(2));
         assert!(deeds(3).len() > 10);
-        assert!(!deeds(3).contains(&Deed::Do(Command::Quit)));
+    }
+
+    #[test]
+    fn a_monkey_neither_quits_nor_opens_a_dialog_and_its_failures_are_nobodys() {
+        let mut player = player(vec![Step::Monkey(Monkey { seconds: 600.0, seed: 5, files: None })]);
+        let doing = Doing { size: [800.0, 600.0], ..Doing::default() };
+        let mut keys = 0;
+        for _ in 0..2000 {
+            for deed in player.advance(FRAME, &doing) {
+                assert!(player.is_random() && player.place().is_none());
+                let Deed::Key(chord, _) = deed else { continue };
+                keys += 1;
+                let unwanted = matches!(chord.command(), Some(Command::Quit | Command::ChooseFile));
+                assert!(!unwanted, "{chord:?}");
+            }
+        }
+        assert!(keys > 500, "{keys} keys");
     }
 }

@@ -76,7 +76,9 @@ pub(crate) struct Saved {
 pub(crate) struct Bookmark {
     /// Its key, 1 to 9.
     pub(crate) key: u8,
-    pub(crate) scene: String,
+    scene: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    scene_index: Option<usize>,
     #[serde(flatten)]
     view: SavedView,
 }
@@ -109,7 +111,12 @@ impl SavedView {
 
 impl Bookmark {
     pub(crate) fn new(key: u8, scene: &SceneSource, camera: FlyCamera) -> Self {
-        Self { key, scene: scene.text(), view: camera.into() }
+        Self { key, scene: scene.text(), scene_index: scene.index(), view: camera.into() }
+    }
+
+    /// Whether it is of a key and a scene.
+    pub(crate) fn is_of(&self, key: u8, scene: &SceneSource) -> bool {
+        (self.key, &self.scene, self.scene_index) == (key, &scene.text(), scene.index())
     }
 
     pub(crate) fn camera(&self) -> Option<FlyCamera> {
@@ -125,6 +132,8 @@ struct Head {
     theme: Theme,
     #[serde(default)]
     scene: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    scene_index: Option<usize>,
     #[serde(default)]
     recent: Vec<PathBuf>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -149,6 +158,7 @@ impl Saved {
             version: VERSION,
             theme: self.theme,
             scene: self.scene.text(),
+            scene_index: self.scene.index(),
             recent: self.recent.clone(),
             split: self.other.map(|(_, split)| split),
             camera: self.camera.map(SavedView::from),
@@ -186,7 +196,7 @@ impl Saved {
         let head: Head = toml::Value::Table(file).try_into()?;
         let mut saved = Self {
             theme: head.theme,
-            scene: SceneSource::from_text(&head.scene),
+            scene: SceneSource::from_text(&head.scene).with_index(head.scene_index)?,
             camera: head.camera.and_then(SavedView::camera),
             recent: head.recent,
             bookmarks: head.bookmark,
@@ -299,7 +309,7 @@ mod tests {
         let camera = FlyCamera { position: DVec3::new(1e5, 2.0, -3.5), yaw: 0.5, pitch: -0.25 };
         let mut saved = Saved {
             theme: Theme::Light,
-            scene: SceneSource::from_text("some/town.glb"),
+            scene: SceneSource::from_text("some/town.glb").with_index(Some(1)).expect("files have scenes"),
             camera: Some(camera),
             other: Some((Technique::preset("stable-4").expect("a preset"), 0.25)),
             ..Saved::default()
@@ -332,6 +342,9 @@ mod tests {
             a.position == b.position && (a.yaw - b.yaw).abs() < 1e-6 && (a.pitch - b.pitch).abs() < 1e-6
         };
         assert!(near(read.camera, saved.camera) && near(read.bookmarks[0].camera(), saved.camera));
+        assert!(read.bookmarks[0].is_of(3, &saved.scene), "{:?}", read.bookmarks);
+        let first = SceneSource::from_text("some/town.glb");
+        assert!(!read.bookmarks[0].is_of(3, &first), "a bookmark is of one of the file's scenes");
         let same = Saved { camera: saved.camera, bookmarks: saved.bookmarks.clone(), ..read };
         assert_eq!(same, saved);
     }

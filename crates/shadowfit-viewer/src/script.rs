@@ -51,6 +51,14 @@ pub(crate) enum Step {
     Monkey(Monkey),
 }
 
+/// A line of a script.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Line {
+    pub(crate) step: Step,
+    /// File, number and text, for messages.
+    pub(crate) place: String,
+}
+
 /// What a script waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Awaited {
@@ -124,17 +132,18 @@ pub(crate) const ACTIONS: &[(&str, &str, &str)] = &[
 /// # Errors
 ///
 /// For a line that is no action, with the name of the file, the number of the line and what would be one.
-pub(crate) fn read(path: &Path) -> Result<Vec<Step>> {
+pub(crate) fn read(path: &Path) -> Result<Vec<Line>> {
     let name = path.display();
     let text = std::fs::read_to_string(path).with_context(|| format!("the script {name} cannot be read"))?;
-    let mut steps = Vec::new();
+    let mut lines = Vec::new();
     for (number, line) in (1..).zip(text.lines()) {
         let line = line.split_once(" #").map_or(line, |(line, _)| line).trim();
         if !line.is_empty() && !line.starts_with('#') {
-            steps.push(parse(line).with_context(|| format!("{name}:{number}: {line}"))?);
+            let place = format!("{name}:{number}: {line}");
+            lines.push(Line { step: parse(line).with_context(|| place.clone())?, place });
         }
     }
-    Ok(steps)
+    Ok(lines)
 }
 
 /// Reads a line.
@@ -349,7 +358,9 @@ mod tests {
                     set bias.constant 0.5\nhold w 0.5\ndrag 1 2 3 4\nmonkey 5 7 some folder\nwindow a b.png\nquit\n";
         let (_folder, path) = write(text);
         let chord = Chord::from_text("w").expect("a key");
-        let steps = read(&path).expect("a script");
+        let lines = read(&path).expect("a script");
+        assert!(lines[1].place.ends_with("script.txt:4: await loaded"), "{}", lines[1].place);
+        let steps: Vec<Step> = lines.into_iter().map(|line| line.step).collect();
         let expected = [
             Step::Do(Command::Open(SceneSource::from_text("forest"))),
             Step::Await(Awaited::Loaded),

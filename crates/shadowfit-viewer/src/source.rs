@@ -23,13 +23,16 @@ impl SceneSource {
     /// What a text names: a built-in scene by its name, or a file.
     pub(crate) fn from_text(text: &str) -> Self {
         match BuiltinScene::from_id(text) {
-            Some(scene) if !Path::new(text).exists() => Self::BuiltIn(scene),
+            Some(scene) if !Path::new(text).is_file() => Self::BuiltIn(scene),
             _ => Self::file(text),
         }
     }
 
+    /// A file, by a path that names the same one whatever the working folder is.
     pub(crate) fn file(path: impl Into<PathBuf>) -> Self {
-        Self::File { path: path.into(), index: None }
+        let path = path.into();
+        // An empty path has no absolute one, and cannot be loaded either.
+        Self::File { path: std::path::absolute(&path).unwrap_or(path), index: None }
     }
 
     /// The same with one of the file's scenes.
@@ -45,7 +48,15 @@ impl SceneSource {
         }
     }
 
-    /// What [`Self::from_text`] reads.
+    /// Which of the file's scenes; `None` for its default one and for a built-in scene.
+    pub(crate) fn index(&self) -> Option<usize> {
+        match self {
+            Self::BuiltIn(_) => None,
+            Self::File { index, .. } => *index,
+        }
+    }
+
+    /// What [`Self::from_text`] reads; [`Self::index`] is besides.
     pub(crate) fn text(&self) -> String {
         match self {
             Self::BuiltIn(scene) => scene.id().to_owned(),
@@ -85,8 +96,10 @@ mod tests {
             assert_eq!(SceneSource::BuiltIn(scene).text(), scene.id());
         }
         let file = SceneSource::from_text("town/kenney.glb");
-        assert_eq!((file.text().as_str(), file.label().as_str()), ("town/kenney.glb", "kenney.glb"));
+        let path = std::env::current_dir().expect("a working folder").join("town/kenney.glb");
+        assert_eq!((file.text(), file.label().as_str()), (path.display().to_string(), "kenney.glb"));
         assert!(SceneSource::default().with_index(Some(1)).is_err());
-        assert_eq!(file.with_index(Some(2)).expect("files have scenes").text(), "town/kenney.glb");
+        let second = file.clone().with_index(Some(2)).expect("files have scenes");
+        assert_eq!((second.text(), second.index()), (file.text(), Some(2)));
     }
 }

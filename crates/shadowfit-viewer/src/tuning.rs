@@ -27,6 +27,8 @@ pub(crate) struct Task {
     pub(crate) pose: (usize, f32),
     pub(crate) settings: Settings,
     pub(crate) views: Vec<View>,
+    /// Whether the technique is that of side B.
+    pub(crate) is_of_other: bool,
 }
 
 /// What comes from the thread.
@@ -63,7 +65,11 @@ enum State {
 
 /// The search for a better technique.
 #[derive(Debug, Default)]
-pub(crate) struct Tuning(State);
+pub(crate) struct Tuning {
+    state: State,
+    /// Whether the technique that was searched from is that of side B now.
+    pub(crate) is_of_other: bool,
+}
 
 impl Tuning {
     /// Begins, unless a search is under way.
@@ -71,6 +77,7 @@ impl Tuning {
         if self.is_running() {
             return;
         }
+        self.is_of_other = task.is_of_other;
         let (sender, news) = channel();
         let is_cancelled = Arc::new(AtomicBool::new(false));
         let settings = Box::new(task.settings);
@@ -82,19 +89,19 @@ impl Tuning {
             // Nobody listens once the viewer has ended.
             let _ = sender.send(News::Done(Box::new(tuned)));
         };
-        self.0 = match std::thread::Builder::new().name("tuning".to_owned()).spawn(work) {
+        self.state = match std::thread::Builder::new().name("tuning".to_owned()).spawn(work) {
             Ok(_) => State::Running { settings, progress: None, news, is_cancelled },
             Err(error) => State::Failed(format!("no thread could be started: {error}")),
         };
     }
 
     pub(crate) fn is_running(&self) -> bool {
-        matches!(self.0, State::Running { .. })
+        matches!(self.state, State::Running { .. })
     }
 
     /// Stops the search; what it has found so far counts.
     pub(crate) fn cancel(&mut self) {
-        if let State::Running { is_cancelled, .. } = &self.0 {
+        if let State::Running { is_cancelled, .. } = &self.state {
             is_cancelled.store(true, Ordering::Relaxed);
         }
     }
@@ -102,20 +109,20 @@ impl Tuning {
     /// Forgets what was found.
     pub(crate) fn discard(&mut self) {
         if !self.is_running() {
-            self.0 = State::Idle;
+            self.state = State::Idle;
         }
     }
 
     /// What was found, to be taken over.
     pub(crate) fn apply(&mut self) -> Option<Technique> {
-        let State::Done(outcome) = &mut self.0 else { return None };
+        let State::Done(outcome) = &mut self.state else { return None };
         outcome.is_applied = true;
         Some(outcome.technique)
     }
 
     /// Takes what the thread has told.
     pub(crate) fn take(&mut self) {
-        let State::Running { settings, progress, news, .. } = &mut self.0 else { return };
+        let State::Running { settings, progress, news, .. } = &mut self.state else { return };
         let ended = loop {
             match news.try_recv() {
                 Ok(News::Progress(new)) => *progress = Some(new),
@@ -124,7 +131,7 @@ impl Tuning {
                 Err(TryRecvError::Disconnected) => break Err(anyhow!("the search ended unexpectedly")),
             }
         };
-        self.0 = match ended.and_then(|tuned| outcome(&tuned, settings)) {
+        self.state = match ended.and_then(|tuned| outcome(&tuned, settings)) {
             Ok(outcome) => State::Done(Box::new(outcome)),
             Err(error) => State::Failed(format!("{error:#}")),
         };
@@ -132,10 +139,10 @@ impl Tuning {
 
     /// As the panel shows it.
     pub(crate) fn shown(&self) -> Tune<'_> {
-        match &self.0 {
+        match &self.state {
             State::Idle => Tune::Idle,
             State::Running { progress: None, .. } => {
-                let what = "getting ready";
+                let what = "Getting ready: a device of its own, and the scene";
                 Tune::Running { tried: 0, at_most: 1, start_error: f32::NAN, best_error: f32::NAN, what }
             }
             State::Running { progress: Some(progress), .. } => Tune::Running {

@@ -13,7 +13,9 @@ use std::sync::mpsc::Receiver;
 
 use anyhow::Result;
 use egui::RawInput;
+use shadowfit::tool::Settings;
 use shadowfit_egui::{Changes, UserPreset};
+use tempfile::TempDir;
 
 use crate::artefact::Found;
 use crate::command::Command;
@@ -29,6 +31,7 @@ use crate::stage::Stage;
 use crate::tuning::Tuning;
 use crate::undo::{History, State};
 
+pub(crate) use commands::compared_with;
 pub(crate) use opening::check_animation;
 pub(crate) use start::Start;
 
@@ -45,6 +48,8 @@ pub(crate) struct Viewer {
     pub(crate) player: Player,
     start: Start,
     source: SceneSource,
+    /// The settings that the scene is opened with when nothing else is asked for.
+    own_settings: Settings,
     /// Whether there is a scene to show.
     has_scene: bool,
     loading: Option<Loading>,
@@ -59,12 +64,28 @@ pub(crate) struct Viewer {
     /// Seconds since the start.
     clock: f64,
     saved_at: f64,
-    commands: VecDeque<Command>,
-    /// Pictures of the whole window that were asked for.
-    shots: Vec<PathBuf>,
+    commands: VecDeque<Request>,
+    /// The line of a script that asked for what is being done.
+    line: Option<String>,
+    /// Pictures of the whole window that were asked for, and the lines of a script that did.
+    shots: Vec<(PathBuf, Option<String>)>,
+    /// Where random actions save, removed at the end: a person's folder must not be filled by them.
+    litter: Option<TempDir>,
     pub(crate) wishes: Wishes,
     /// Why it ends with an error.
     pub(crate) failure: Option<anyhow::Error>,
+}
+
+/// Something to do, and the line of a script that asks for it.
+struct Request {
+    command: Command,
+    line: Option<String>,
+}
+
+impl From<Command> for Request {
+    fn from(command: Command) -> Self {
+        Self { command, line: None }
+    }
 }
 
 /// A readable line, and since when it has been shown, in seconds since the start.
@@ -94,6 +115,7 @@ impl Viewer {
             input: Input::default(),
             player: Player::new(start.script.clone()),
             source: SceneSource::default(),
+            own_settings: Settings::default(),
             start,
             has_scene: false,
             loading: None,
@@ -108,7 +130,9 @@ impl Viewer {
             clock: 0.0,
             saved_at: 0.0,
             commands: VecDeque::new(),
+            line: None,
             shots: Vec::new(),
+            litter: None,
             wishes: Wishes::default(),
             failure: None,
         };
@@ -118,18 +142,22 @@ impl Viewer {
 
     /// Handles a key.
     pub(crate) fn key(&mut self, chord: Chord, pressed: bool, is_repeat: bool) {
+        let command = chord.command().filter(|_| pressed && !is_repeat);
+        self.commands.extend(command.map(Request::from));
+        self.hold(chord, pressed);
+    }
+
+    /// Takes note of a key that is held.
+    fn hold(&mut self, chord: Chord, pressed: bool) {
         // Control makes other things of the keys that fly.
         if !chord.ctrl || !pressed {
             self.input.key(chord.key, pressed);
-        }
-        if pressed && !is_repeat {
-            self.commands.extend(chord.command());
         }
     }
 
     /// Has something done in the next frame.
     pub(crate) fn ask(&mut self, command: Command) {
-        self.commands.push_back(command);
+        self.commands.push_back(command.into());
     }
 
     /// Whether keys go to what has the focus in the panel.
@@ -143,7 +171,8 @@ impl Viewer {
         self.clock += f64::from(seconds);
         let old = self.interface.frame_ms.unwrap_or(seconds * 1e3);
         self.interface.frame_ms = Some(old + (seconds * 1e3 - old) * FRAME_TIME_WEIGHT);
-        self.message.take_if(|message| self.clock - message.since > MESSAGE_TIME);
+        // What is told at the start waits for the panel to be seen.
+        self.message.take_if(|message| self.has_scene && self.clock - message.since > MESSAGE_TIME);
         self.play(&mut raw_input, seconds);
         self.take_background();
         let (asked, layout, output) = self.lay_out(raw_input);
@@ -154,11 +183,15 @@ impl Viewer {
         let mut fly = self.input.fly();
         (fly.drag, fly.wheel) = (asked.drag, asked.wheel);
         self.stage.update(&fly, seconds);
-        self.commands.extend(asked.commands);
-        while let Some(command) = self.commands.pop_front() {
-            self.run(command);
+        self.commands.extend(asked.commands.into_iter().map(Request::from));
+        while let Some(request) = self.commands.pop_front() {
+            self.line = request.line;
+            self.run(request.command);
         }
-        self.history.feed(self.clock, &self.state());
+        self.line = None;
+        if self.has_scene {
+            self.history.feed(self.clock, &self.state());
+        }
         if self.clock - self.saved_at > SAVE_EVERY {
             self.save();
         }
@@ -183,10 +216,12 @@ impl Viewer {
     /// Paints a frame that was laid out to `target` of `size` pixels, and saves it where that was asked for.
     pub(crate) fn paint(&mut self, layout: &Layout, target: &wgpu::TextureView, size: [u32; 2]) {
         self.interface.paint(&self.stage, layout, target, size);
-        for path in std::mem::take(&mut self.shots) {
+        for (path, line) in std::mem::take(&mut self.shots) {
             let saved = self.save_window(layout, &path, size);
+            self.line = line;
             self.tell(saved.map(|()| format!("Saved {}", path.display())));
         }
+        self.line = None;
     }
 
     /// Saves a frame as a picture.
@@ -206,14 +241,20 @@ impl Viewer {
             is_tuning: self.tuning.is_running(),
             size,
         };
-        for deed in self.player.advance(seconds, &doing) {
+        let deeds = self.player.advance(seconds, &doing);
+        let line = self.player.place();
+        let request = |command| Request { command, line: line.clone() };
+        for deed in deeds {
             match deed {
-                Deed::Do(command) => self.commands.push_back(command),
+                Deed::Do(command) => self.commands.push_back(request(command)),
                 Deed::Key(chord, pressed) if pressed && self.types() => raw_input.events.extend(typed(chord)),
-                Deed::Key(chord, pressed) => self.key(chord, pressed, false),
+                Deed::Key(chord, pressed) => {
+                    self.commands.extend(chord.command().filter(|_| pressed).map(request));
+                    self.hold(chord, pressed);
+                }
                 Deed::Pointer(event) => raw_input.events.push(event),
                 Deed::Resize(size) => self.wishes.resize = Some(size),
-                Deed::Drop(path) => self.commands.push_back(Command::OpenFile(path)),
+                Deed::Drop(path) => self.commands.push_back(request(Command::OpenFile(path))),
                 Deed::Say(text) => eprintln!("{text}"),
             }
         }
@@ -239,7 +280,7 @@ impl Viewer {
             && chosen != Err(std::sync::mpsc::TryRecvError::Empty)
         {
             self.chooser = None;
-            self.commands.extend(chosen.ok().flatten().map(Command::OpenFile));
+            self.commands.extend(chosen.ok().flatten().map(|path| Request::from(Command::OpenFile(path))));
         }
         self.tuning.take();
     }
@@ -249,9 +290,16 @@ impl Viewer {
         State { settings: self.stage.settings, other: self.stage.other_technique(), shown: self.stage.shown() }
     }
 
-    /// Shows the outcome of an action.
+    /// Shows the outcome of an action. Where it failed and a line of the script asked for it, the script has failed, too.
     fn tell(&mut self, outcome: Result<String>) {
-        self.say(outcome.unwrap_or_else(|error| format!("{error:#}")));
+        let text = outcome.unwrap_or_else(|error| {
+            if let Some(line) = &self.line {
+                eprintln!("error: {line}: {error:#}");
+                self.player.failed = true;
+            }
+            format!("{error:#}")
+        });
+        self.say(text);
     }
 
     /// Shows a line for a while.
@@ -267,6 +315,11 @@ impl Viewer {
     /// Whether something goes on in the background that a script may wait for.
     pub(crate) fn is_waiting(&self) -> bool {
         self.loading.is_some() || self.searching.is_some() || self.tuning.is_running()
+    }
+
+    /// Whether the script is at its end, and no scene is on its way that it asked for.
+    pub(crate) fn has_played(&self) -> bool {
+        self.player.is_done() && self.loading.is_none()
     }
 
     /// Whether the scene of the start is on show.

@@ -141,6 +141,15 @@ impl Technique {
         self
     }
 
+    /// This technique with the lengths of another one, in metres: how far shadows reach
+    /// ([`FitSettings::max_distance`]) and how far toward the light casters count
+    /// ([`FitSettings::caster_extension`]). They suit a scene, so that another technique for the same scene keeps them.
+    #[must_use]
+    pub const fn with_lengths_of(mut self, other: &Self) -> Self {
+        (self.fit.max_distance, self.fit.caster_extension) = (other.fit.max_distance, other.fit.caster_extension);
+        self
+    }
+
     /// Free texels at the border of each map: [`FitSettings::border`] where it is set, else what the
     /// filter and the normal offset can reach.
     pub const fn border(&self) -> f32 {

@@ -129,8 +129,16 @@ fn all_states() -> Vec<(&'static str, Host)> {
         best_error: 22.2,
         what: "Constant bias 1.50 texels",
     };
+    let begun = Tune::Running {
+        tried: 0,
+        at_most: 1,
+        start_error: f32::NAN,
+        best_error: f32::NAN,
+        what: "Getting ready: a device of its own, and the scene",
+    };
     let worse = Tune::Done { before: wide_judged(), after: wide_judged(), changes: &[], is_applied: false };
-    for tune in [running, tune_done(true), worse, Tune::Failed("The picture has no pixel that faces the light.")] {
+    for tune in [begun, running, tune_done(true), worse, Tune::Failed("The picture has no pixel that faces the light.")]
+    {
         states.push(("tune", Host { tune, ..session() }));
     }
     let mut one_judged = busy();

@@ -75,6 +75,14 @@ fn a_technique_that_was_changed_is_called_so() {
     choose(&mut harness, "street.toml", "as it was opened");
     assert_eq!(harness.state().settings.technique, opened);
 
+    let preset = Technique::preset("stable-4").expect("a preset");
+    harness.state_mut().settings.technique = preset.with_overlap(0.3);
+    harness.state_mut().panel.name_technique("stable-4", &preset);
+    harness.run();
+    assert_eq!(title(&harness), "stable-4, changed", "as it was opened by an argument, say");
+    open_menu(&mut harness);
+    assert_eq!(harness.query_all_by_label_contains("stable-4\n").count(), 1, "a preset is in the menu already");
+
     let settings = Settings::default().with_technique(Technique::default().with_overlap(0.4));
     assert_eq!(title(&self::harness(Host { settings, ..Host::default() })), "custom, changed");
 }

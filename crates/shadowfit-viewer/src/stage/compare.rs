@@ -141,11 +141,8 @@ impl Stage {
         let other = self.other.as_ref().map_or(self.settings.technique, |other| other.technique);
         [self.settings.technique, other].map(|technique| {
             let is_same = |preset: &&shadowfit::presets::Preset| {
-                let mut named = preset.technique();
-                named.fit.max_distance = technique.fit.max_distance;
-                named.fit.caster_extension = technique.fit.caster_extension;
-                named.fit.resolution = technique.fit.resolution;
-                named == technique
+                let [width, height] = technique.fit.resolution.to_array();
+                preset.technique().with_lengths_of(&technique).with_resolution(width, height) == technique
             };
             let preset = shadowfit::PRESETS.iter().find(is_same);
             preset.map_or_else(|| format!("{} maps", technique.count), |preset| preset.name.to_owned())

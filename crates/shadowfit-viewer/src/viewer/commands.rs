@@ -1,6 +1,6 @@
 //! What each command does.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 
 use anyhow::{Context, Result, anyhow};
@@ -12,6 +12,7 @@ use shadowfit_render::FlyCamera;
 use shadowfit_study::{NamedTechnique, settings_to_toml};
 
 use super::Viewer;
+use crate::cli::find_technique;
 use crate::command::{Command, Toggle};
 use crate::export::command_line;
 use crate::files::{free_name, write_png, write_whole};
@@ -21,7 +22,7 @@ use crate::undo::State;
 
 /// Technique that the present one is compared with at first, or the other one where it is that already.
 const COMPARED: [&str; 2] = ["stable-4", "windows-4"];
-/// How far before a thing the camera stops when it flies to it, as a share of its distance.
+/// How far toward a thing the camera flies, as a share of its distance.
 const FOCUS: f64 = 0.6;
 
 impl Viewer {
@@ -63,7 +64,11 @@ impl Viewer {
             Command::Escape => self.escape(),
             Command::Quit => self.wishes.quit = true,
             // Everything else needs a scene.
-            _ if !self.has_scene => {}
+            _ if !self.has_scene => {
+                if self.line.is_some() {
+                    self.tell(Err(anyhow!("there is no scene yet; let the script begin with `await loaded`")));
+                }
+            }
             command => self.run_on_scene(command),
         }
     }
@@ -86,26 +91,26 @@ impl Viewer {
             Command::CloseArtefact => self.stage.close_artefact(),
             Command::Compare(toggle) => self.compare(toggle),
             Command::Split(share) => self.stage.set_split(share),
-            Command::SwapSides => self.stage.swap_sides(),
+            Command::SwapSides => {
+                self.stage.swap_sides();
+                self.tuning.is_of_other ^= self.stage.is_comparing();
+            }
             Command::CopyToOther => self.copy_to_other(),
             Command::Undo => self.go_back(),
             Command::Redo => self.go_forward(),
             Command::Reset => {
+                self.searching = None;
                 self.stage.reset();
                 self.stage.compare_with(None);
+                self.interface.edits_other = false;
             }
             Command::ResetCamera => self.stage.reset_camera(),
             Command::LookAt(eye, target) => self.stage.set_camera(FlyCamera::look_at(eye, target)),
             Command::Focus(at) => self.focus(at),
             Command::SetBookmark(key) => self.set_bookmark(key),
-            Command::GoToBookmark(key) => self.go_to_bookmark(key),
             Command::StartTune => self.start_tune(),
             Command::CancelTune => self.tuning.cancel(),
-            Command::ApplyTune => {
-                if let Some(technique) = self.tuning.apply() {
-                    *self.edited() = technique;
-                }
-            }
+            Command::ApplyTune => self.apply_tune(),
             Command::DiscardTune => self.tuning.discard(),
             command => self.run_with_files(command),
         }
@@ -116,9 +121,12 @@ impl Viewer {
             Command::Open(source) => return self.open(source),
             Command::OpenFile(path) => return self.open_file(&path),
             Command::ChooseFile => return self.choose_file(),
-            Command::Window(path) => return self.shots.push(self.start.place(path)),
+            Command::Window(path) => return self.shots.push((self.start.place(path), self.line.clone())),
+            Command::GoToBookmark(key) => self.go_to_bookmark(key),
             Command::Set(id, value) => self.set(&id, &value),
-            Command::Technique(name) => self.take_technique(&name),
+            Command::Technique(name) => {
+                find_technique(&name, &self.edited_technique()).map(|named| self.take_technique(named))
+            }
             Command::Picture(path) => self.save_picture(path),
             Command::SaveFigures(path) => {
                 let text = self.interface.panel().figures_csv();
@@ -131,8 +139,7 @@ impl Viewer {
                 Ok("Copied the technique as Rust code".to_owned())
             }
             Command::CopyCommandLine => {
-                let line = command_line(&self.source, &self.stage.settings, &self.stage.home_settings());
-                self.interface.context.copy_text(line);
+                self.interface.context.copy_text(self.command_line());
                 Ok("Copied the command line".to_owned())
             }
             Command::SavePreset(name) => self.save_preset(&name),
@@ -169,7 +176,7 @@ impl Viewer {
         let now = self.stage.settings.technique;
         let other = toggle.apply(self.stage.is_comparing()).then(|| {
             let known = self.stage.other_technique();
-            known.unwrap_or_else(|| COMPARED.iter().find_map(|name| another(name, &now)).unwrap_or(now))
+            known.unwrap_or_else(|| compared_with(&now))
         });
         self.stage.compare_with(other);
         self.interface.edits_other &= self.stage.is_comparing();
@@ -214,18 +221,16 @@ impl Viewer {
 
     fn set_bookmark(&mut self, key: u8) {
         let bookmark = Bookmark::new(key, &self.source, self.stage.camera);
-        self.saved.bookmarks.retain(|other| other.key != key || other.scene != bookmark.scene);
+        self.saved.bookmarks.retain(|other| !other.is_of(key, &self.source));
         self.saved.bookmarks.push(bookmark);
         self.say(format!("Bookmark {key}: Ctrl+{key} comes back here"));
     }
 
-    fn go_to_bookmark(&mut self, key: u8) {
-        let scene = self.source.text();
-        let known = self.saved.bookmarks.iter().find(|bookmark| bookmark.key == key && bookmark.scene == scene);
-        match known.and_then(Bookmark::camera) {
-            Some(camera) => self.stage.set_camera(camera),
-            None => self.say(format!("No bookmark {key} in this scene; Ctrl+Shift+{key} sets it")),
-        }
+    fn go_to_bookmark(&mut self, key: u8) -> Result<String> {
+        let known = self.saved.bookmarks.iter().find(|bookmark| bookmark.is_of(key, &self.source));
+        let none = || format!("No bookmark {key} in this scene; Ctrl+Shift+{key} sets it");
+        self.stage.set_camera(known.and_then(Bookmark::camera).with_context(none)?);
+        Ok(format!("Bookmark {key}"))
     }
 
     fn start_tune(&mut self) {
@@ -236,34 +241,52 @@ impl Viewer {
             pose: (self.stage.animation, self.stage.seconds()),
             settings: self.stage.settings.with_technique(technique),
             views: self.stage.views_to_tune(self.interface.pictures.size()),
+            is_of_other: self.interface.edits_other && self.stage.is_comparing(),
         });
     }
 
+    /// Takes what was found over to the side that it was searched for.
+    fn apply_tune(&mut self) {
+        let is_of_other = self.tuning.is_of_other;
+        let side = match self.stage.settings_and_other() {
+            (_, None) if is_of_other => {
+                return self.say("Technique B, which this was found for, is not shown any more");
+            }
+            (_, Some(other)) if is_of_other => other,
+            (settings, _) => &mut settings.technique,
+        };
+        if let Some(technique) = self.tuning.apply() {
+            *side = technique;
+        }
+    }
+
     fn set(&mut self, id: &str, value: &str) -> Result<String> {
-        let settings = &mut self.stage.settings;
-        params::set_from_str(settings, id, value).map_err(|error| anyhow!("{error}"))?;
+        let is_technique = params::parameter(id).is_some_and(|parameter| parameter.group.is_technique());
+        let set = if is_technique {
+            params::set_technique_from_str(self.edited(), id, value)
+        } else {
+            params::set_from_str(&mut self.stage.settings, id, value)
+        };
+        set.map_err(|error| anyhow!("{error}"))?;
         Ok(format!("{id} = {value}"))
     }
 
-    fn take_technique(&mut self, name: &str) -> Result<String> {
-        let named = NamedTechnique::find(name)?;
-        let fit = self.stage.settings.technique.fit;
-        self.stage.settings.technique = named.technique;
-        if NamedTechnique::preset(name).is_some() {
-            let own = &mut self.stage.settings.technique.fit;
-            (own.max_distance, own.caster_extension) = (fit.max_distance, fit.caster_extension);
-        }
-        Ok(format!("Technique {}", named.name))
+    /// Takes a technique for the side that the panel edits.
+    pub(super) fn take_technique(&mut self, named: NamedTechnique) -> String {
+        *self.edited() = named.technique;
+        let told = format!("Technique {}", named.name);
+        self.interface.panel().name_technique(named.name, &named.technique);
+        told
     }
 
     /// The technique that the panel edits.
-    fn edited_technique(&self) -> Technique {
+    pub(super) fn edited_technique(&self) -> Technique {
         let other = self.stage.other_technique().filter(|_| self.interface.edits_other);
         other.unwrap_or(self.stage.settings.technique)
     }
 
     /// The same, to be changed.
-    fn edited(&mut self) -> &mut Technique {
+    pub(super) fn edited(&mut self) -> &mut Technique {
         let edits_other = self.interface.edits_other;
         let (settings, other) = self.stage.settings_and_other();
         match other {
@@ -274,14 +297,26 @@ impl Viewer {
 
     /// Saves the picture, without bars and panel.
     fn save_picture(&mut self, path: Option<PathBuf>) -> Result<String> {
-        let path = path.map_or_else(|| free_name("png"), |path| self.start.place(path));
+        let path = self.place(path, "png")?;
         let pixels = self.interface.pictures.read(&self.stage)?;
         write_png(&path, self.interface.pictures.size(), &pixels, Some(&self.text_of_settings()))?;
         Ok(format!("Saved {}", path.display()))
     }
 
-    fn save_text(&self, path: Option<PathBuf>, text: &str) -> Result<String> {
-        let path = path.map_or_else(|| free_name("csv"), |path| self.start.place(path));
+    /// Where a file is saved, under a name of its own if none is given.
+    fn place(&mut self, path: Option<PathBuf>, extension: &str) -> Result<PathBuf> {
+        if let Some(path) = path {
+            return Ok(self.start.place(path));
+        }
+        if self.player.is_random() && self.start.folder().is_none() {
+            let litter = self.litter.take().map_or_else(tempfile::tempdir, Ok)?;
+            return Ok(free_name(self.litter.insert(litter).path(), extension));
+        }
+        Ok(free_name(self.start.folder().unwrap_or(Path::new("")), extension))
+    }
+
+    fn save_text(&mut self, path: Option<PathBuf>, text: &str) -> Result<String> {
+        let path = self.place(path, "csv")?;
         write_whole(&path, text.as_bytes())?;
         Ok(format!("Saved {}", path.display()))
     }
@@ -289,10 +324,14 @@ impl Viewer {
     /// What a picture carries: the scene and all settings, as [`Self::open_picture`] reads them.
     pub(super) fn text_of_settings(&self) -> String {
         let scene = toml::Value::from(self.source.text());
-        let line = command_line(&self.source, &self.stage.settings, &self.stage.home_settings());
-        let line = toml::Value::from(line);
+        let line = toml::Value::from(self.command_line());
         let settings = settings_to_toml(&self.stage.settings, "settings.");
         format!("scene = {scene}\ncommand = {line}\n\n{settings}")
+    }
+
+    /// The command line that starts with this scene and these settings.
+    fn command_line(&self) -> String {
+        command_line(&self.source, self.stage.animation, &self.stage.settings, &self.own_settings)
     }
 
     fn save_preset(&mut self, name: &str) -> Result<String> {
@@ -319,13 +358,12 @@ impl Viewer {
     }
 }
 
-/// A preset, unless it is the present technique but for what suits the scene.
-fn another(name: &str, now: &Technique) -> Option<Technique> {
-    let mut technique = NamedTechnique::preset(name)?.technique;
-    technique.fit.max_distance = now.fit.max_distance;
-    technique.fit.caster_extension = now.fit.caster_extension;
-    technique.fit.resolution = now.fit.resolution;
-    (technique != *now).then_some(technique)
+/// The technique that another one is compared with at first: a preset with the lengths and the resolution of that one.
+pub(crate) fn compared_with(now: &Technique) -> Technique {
+    let [width, height] = now.fit.resolution.to_array();
+    let presets = COMPARED.iter().filter_map(|name| Technique::preset(name));
+    let mut suited = presets.map(|preset| preset.with_lengths_of(now).with_resolution(width, height));
+    suited.find(|technique| technique != now).unwrap_or(*now)
 }
 
 /// A saved technique as the panel takes it.

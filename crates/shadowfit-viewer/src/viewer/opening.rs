@@ -9,11 +9,14 @@ use super::Viewer;
 use crate::files::settings_of_png;
 use crate::loading::Loading;
 use crate::source::SceneSource;
+use crate::tuning::Tuning;
+use crate::undo::History;
 
 impl Viewer {
     /// Begins to load a scene; the present one stays until it is there.
     pub(super) fn open(&mut self, source: SceneSource) {
-        self.loading = Some(Loading::start(source, self.stage.gpu(), self.stage.material_layout()));
+        let line = self.line.clone();
+        self.loading = Some(Loading::start(source, line, self.stage.gpu(), self.stage.material_layout()));
     }
 
     /// Opens whatever a file is.
@@ -21,7 +24,7 @@ impl Viewer {
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         let opened = match extension.as_str() {
             "png" => self.open_picture(path),
-            "toml" => self.open_technique(path),
+            "toml" => NamedTechnique::read(path).map(|named| self.take_technique(named)),
             _ => {
                 self.open(SceneSource::file(path));
                 return;
@@ -30,35 +33,41 @@ impl Viewer {
         self.tell(opened.with_context(|| format!("{} cannot be opened", path.display())));
     }
 
-    /// Takes the settings that a screenshot was made with.
+    /// Takes the settings that a screenshot was made with: the technique for the side that the panel edits.
     fn open_picture(&mut self, path: &Path) -> Result<String> {
         let text = settings_of_png(path)?.ok_or_else(|| anyhow!("it has no settings of the viewer"))?;
         let table: toml::Table = toml::from_str(&text)?;
         let settings = table.get("settings").and_then(toml::Value::as_table);
-        let mut read = self.stage.settings;
+        let mut read = self.stage.settings.with_technique(self.edited_technique());
         settings_from_toml(settings.context("it has no settings")?, &mut read)?;
-        self.stage.settings = read;
+        self.stage.settings = read.with_technique(self.stage.settings.technique);
+        *self.edited() = read.technique;
         Ok(format!("Settings of {}", path.display()))
     }
 
-    fn open_technique(&mut self, path: &Path) -> Result<String> {
-        let named = NamedTechnique::read(path)?;
-        self.stage.settings.technique = named.technique;
-        self.interface.panel().name_technique(named.name.clone(), &named.technique);
-        Ok(format!("Technique {}", named.name))
-    }
-
-    /// Shows the scene that has been loaded; on an error the old one stays, and without one the viewer ends.
+    /// Shows the scene that has been loaded. On an error the old one stays; at the start the built-in one is opened in
+    /// place of that of the last time, and the viewer ends where the arguments name the scene.
     pub(super) fn take_scene(&mut self) {
         let Some(result) = self.loading.as_ref().and_then(Loading::take) else { return };
         let Some(loading) = self.loading.take() else { return };
+        let is_of_last_time = self.start.source.is_none() && loading.source != SceneSource::default();
         match result {
             Ok(prepared) => self.show(loading.source, prepared),
+            Err(error) if self.start.is_pending && is_of_last_time => {
+                let message = format!("The scene of the last time cannot be opened: {error:#}");
+                eprintln!("{message}");
+                self.say(message);
+                self.open(SceneSource::default());
+            }
             Err(error) if self.start.is_pending => {
                 self.failure = Some(error);
                 self.wishes.quit = true;
             }
-            Err(error) => self.say(format!("{error:#}")),
+            Err(error) => {
+                self.line = loading.line;
+                self.tell(Err(error));
+                self.line = None;
+            }
         }
     }
 
@@ -70,15 +79,20 @@ impl Viewer {
         let animations = prepared.scene().animations.len();
         let name = prepared.scene().name.clone();
         self.source = source;
+        // What is under way, and what can be taken back, is of the scene before.
         self.searching = None;
-        self.message = None;
+        self.tuning = Tuning::default();
+        self.history = History::default();
         let view = self.stage.settings.view;
         let comparing = self.stage.other_technique();
         let technique = self.stage.settings.technique;
         self.stage.set_prepared(prepared);
+        self.own_settings = self.stage.settings;
         self.has_scene = true;
         self.wishes.new_title = true;
         if is_first {
+            // What was told meanwhile is read from now on.
+            self.message.iter_mut().for_each(|message| message.since = self.clock);
             match check_animation(self.start.arguments.animation, animations, &name).and_then(|()| self.set_up()) {
                 Ok(Some(named)) => self.interface.panel().name_technique(named.name, &named.technique),
                 Ok(None) => {}
@@ -88,13 +102,11 @@ impl Viewer {
                 }
             }
         } else {
+            self.message = None;
             // Another scene is looked at in the same way, with lengths and light of its own.
-            let fit = self.stage.settings.technique.fit;
-            self.stage.settings.technique = technique;
-            let own = &mut self.stage.settings.technique.fit;
-            (own.max_distance, own.caster_extension) = (fit.max_distance, fit.caster_extension);
+            self.stage.settings.technique = technique.with_lengths_of(&self.own_settings.technique);
             self.stage.settings.view = view;
-            self.stage.compare_with(comparing);
+            self.stage.compare_with(comparing.map(|other| other.with_lengths_of(&self.own_settings.technique)));
         }
         self.interface.scene_changed(&self.stage);
     }

@@ -10,7 +10,7 @@ use super::Viewer;
 use crate::cli::Arguments;
 use crate::command::Command;
 use crate::saved::{Saved, Store};
-use crate::script::Step;
+use crate::script::Line;
 use crate::source::SceneSource;
 
 /// What the arguments ask for.
@@ -19,7 +19,7 @@ pub(crate) struct Start {
     pub(crate) arguments: Arguments,
     /// The scene that they name, if any.
     pub(crate) source: Option<SceneSource>,
-    pub(crate) script: Vec<Step>,
+    pub(crate) script: Vec<Line>,
     /// Settings, camera and comparison of the last time, until the scene of the start is there.
     pub(super) kept: Option<(SceneSource, Settings, Option<FlyCamera>)>,
     /// Whether the scene of the start is still on its way.
@@ -37,9 +37,9 @@ impl Start {
     /// that a built-in one has not.
     pub(crate) fn new(arguments: &Arguments) -> anyhow::Result<Self> {
         let source = arguments.source()?;
-        // What is wrong with them is told at once.
-        arguments.apply(&mut Settings::default())?;
-        let script = arguments.steps()?;
+        // What is wrong with them is told at once, but for what depends on the settings of the last time.
+        arguments.apply_what_is_there(&mut Settings::default())?;
+        let script = arguments.lines()?;
         Ok(Self { arguments: arguments.clone(), source, script, kept: None, is_pending: true, folder: None })
     }
 
@@ -47,6 +47,11 @@ impl Start {
     #[must_use]
     pub(crate) fn saving_into(self, folder: &Path) -> Self {
         Self { folder: Some(folder.to_owned()), ..self }
+    }
+
+    /// Where files are saved that are asked for by a relative path; the working folder if `None`.
+    pub(super) fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
     }
 
     /// Where a file is saved.
@@ -65,13 +70,7 @@ impl Viewer {
             self.say(message);
         }
         let saved = saved.unwrap_or_default();
-        let source = self.start.source.clone().unwrap_or_else(|| {
-            let is_there = |path: &std::path::Path| path.exists();
-            match &saved.scene {
-                SceneSource::File { path, .. } if !is_there(path) => SceneSource::default(),
-                source => source.clone(),
-            }
-        });
+        let source = self.start.source.clone().unwrap_or_else(|| saved.scene.clone());
         if self.store.is_some() {
             self.start.kept = Some((saved.scene.clone(), saved.settings, saved.camera));
         }
@@ -86,23 +85,28 @@ impl Viewer {
         self.start.is_pending = false;
         let arguments = self.start.arguments.clone();
         self.stage.animation = arguments.animation;
-        let mut settings = self.stage.settings;
-        let technique = arguments.apply(&mut settings)?;
-        self.stage.settings = settings;
-        self.stage.set_home();
-        let Some((source, kept, camera)) = self.start.kept.take() else { return Ok(technique) };
-        if !self.saved_is_there() {
+        let kept = self.start.kept.take().filter(|_| self.saved_is_there());
+        let mut home = self.own_settings;
+        let Some((source, kept, camera)) = kept else {
+            let technique = arguments.apply(&mut home)?;
+            self.stage.settings = home;
+            self.stage.set_home();
             return Ok(technique);
-        }
-        let home = self.stage.home_settings();
+        };
+        // What a reset goes back to: nothing that was saved, and of the arguments what has a meaning without it.
+        arguments.apply_what_is_there(&mut home)?;
+        self.stage.settings = home;
+        self.stage.set_home();
         let mut settings = if source == self.source { kept } else { of_scene(&kept, &home) };
         // What is saved yields to the arguments.
-        arguments.apply(&mut settings)?;
+        let technique = arguments.apply(&mut settings)?;
         self.stage.settings = settings;
         if let Some(camera) = camera.filter(|_| source == self.source) {
             self.stage.set_camera(camera);
         }
         if let Some((other, split)) = self.saved.other {
+            let is_of_it = source == self.source;
+            let other = if is_of_it { other } else { other.with_lengths_of(&self.own_settings.technique) };
             self.stage.compare_with(Some(other));
             self.stage.set_split(split);
         }
@@ -118,7 +122,8 @@ impl Viewer {
     pub(crate) fn save(&mut self) {
         self.saved_at = self.clock;
         let Some(store) = &mut self.store else { return };
-        if !self.has_scene || self.start.is_pending {
+        // A start that failed has not shown anything worth keeping.
+        if !self.has_scene || self.start.is_pending || self.failure.is_some() {
             return;
         }
         self.saved.scene = self.source.clone();
@@ -135,8 +140,6 @@ impl Viewer {
 
 /// Settings of another scene, with the lengths and the light of this one.
 fn of_scene(kept: &Settings, home: &Settings) -> Settings {
-    let mut settings = Settings { light: home.light, camera: home.camera, ..*kept };
-    settings.technique.fit.max_distance = home.technique.fit.max_distance;
-    settings.technique.fit.caster_extension = home.technique.fit.caster_extension;
-    settings
+    let technique = kept.technique.with_lengths_of(&home.technique);
+    Settings { light: home.light, camera: home.camera, technique, ..*kept }
 }

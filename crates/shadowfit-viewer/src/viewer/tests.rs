@@ -19,6 +19,11 @@ use crate::saved::{Saved, Store, Theme};
 use crate::source::SceneSource;
 use crate::stage::Stage;
 
+mod scenes;
+mod scripts;
+mod sides;
+mod starts;
+
 const SIZE: [u32; 2] = [640, 360];
 const FRAME: f32 = 1.0 / 30.0;
 
@@ -37,6 +42,18 @@ fn frame(viewer: &mut Viewer) {
     let screen_rect = Some(Rect::from_min_size(Pos2::ZERO, vec2(SIZE[0] as f32, SIZE[1] as f32)));
     let input = RawInput { screen_rect, time: Some(viewer.clock), ..Default::default() };
     let _ = viewer.frame(input, FRAME);
+}
+
+/// Draws frames until what is under way has ended, whatever comes of it.
+fn settle(viewer: &mut Viewer, is_over: impl Fn(&Viewer) -> bool) {
+    for _ in 0..6000 {
+        frame(viewer);
+        if is_over(viewer) {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    panic!("it goes on and on");
 }
 
 /// Draws frames until something is so.

@@ -119,6 +119,18 @@ fn another_filter_brings_its_bias_and_its_border() {
 }
 
 #[test]
+fn the_lengths_of_another_technique_are_the_shadow_distance_and_the_caster_extension_alone() {
+    let mut scene = Technique::default().with_max_distance(80.0).with_count(2);
+    scene.fit.caster_extension = 7.0;
+    for preset in shadowfit::PRESETS {
+        let suited = preset.technique().with_lengths_of(&scene);
+        let lengths = (suited.fit.max_distance, suited.fit.caster_extension);
+        assert_eq!(lengths, (80.0, 7.0), "{}", preset.name);
+        assert_eq!(suited.with_lengths_of(&preset.technique()), preset.technique(), "{}", preset.name);
+    }
+}
+
+#[test]
 fn a_map_of_its_own_resolution_has_it_and_the_others_have_that_of_the_fit() {
     let mut technique = Technique::default().with_resolution(1024, 512);
     technique.overrides[2].resolution = Some(UVec2::splat(256));
