@@ -18,6 +18,10 @@ use crate::stage::{changes, judged_figures};
 /// Size of the pictures that are judged, in pixels: enough for every artefact.
 const SIZE: [u32; 2] = [480, 270];
 
+/// What is told while there are no figures.
+const GETTING_READY: &str = "Getting ready: a device of its own, and the scene";
+const ENDING: &str = "Ending the search of the scene before";
+
 /// What a search works on.
 #[derive(Debug)]
 pub(crate) struct Task {
@@ -58,6 +62,8 @@ enum State {
         progress: Option<Progress>,
         news: Receiver<News>,
         is_cancelled: Arc<AtomicBool>,
+        /// Whether nobody wants what comes of it.
+        is_abandoned: bool,
     },
     Done(Box<Outcome>),
     Failed(String),
@@ -90,7 +96,7 @@ impl Tuning {
             let _ = sender.send(News::Done(Box::new(tuned)));
         };
         self.state = match std::thread::Builder::new().name("tuning".to_owned()).spawn(work) {
-            Ok(_) => State::Running { settings, progress: None, news, is_cancelled },
+            Ok(_) => State::Running { settings, progress: None, news, is_cancelled, is_abandoned: false },
             Err(error) => State::Failed(format!("no thread could be started: {error}")),
         };
     }
@@ -103,6 +109,15 @@ impl Tuning {
     pub(crate) fn cancel(&mut self) {
         if let State::Running { is_cancelled, .. } = &self.state {
             is_cancelled.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// Forgets what was found, and ends a search that runs, whatever it finds: its thread and device take a moment.
+    pub(crate) fn abandon(&mut self) {
+        self.cancel();
+        self.discard();
+        if let State::Running { is_abandoned, .. } = &mut self.state {
+            *is_abandoned = true;
         }
     }
 
@@ -122,7 +137,7 @@ impl Tuning {
 
     /// Takes what the thread has told.
     pub(crate) fn take(&mut self) {
-        let State::Running { settings, progress, news, .. } = &mut self.state else { return };
+        let State::Running { settings, progress, news, is_abandoned, .. } = &mut self.state else { return };
         let ended = loop {
             match news.try_recv() {
                 Ok(News::Progress(new)) => *progress = Some(new),
@@ -131,6 +146,10 @@ impl Tuning {
                 Err(TryRecvError::Disconnected) => break Err(anyhow!("the search ended unexpectedly")),
             }
         };
+        if *is_abandoned {
+            self.state = State::Idle;
+            return;
+        }
         self.state = match ended.and_then(|tuned| outcome(&tuned, settings)) {
             Ok(outcome) => State::Done(Box::new(outcome)),
             Err(error) => State::Failed(format!("{error:#}")),
@@ -141,10 +160,8 @@ impl Tuning {
     pub(crate) fn shown(&self) -> Tune<'_> {
         match &self.state {
             State::Idle => Tune::Idle,
-            State::Running { progress: None, .. } => {
-                let what = "Getting ready: a device of its own, and the scene";
-                Tune::Running { tried: 0, at_most: 1, start_error: f32::NAN, best_error: f32::NAN, what }
-            }
+            State::Running { is_abandoned: true, .. } => without_figures(ENDING),
+            State::Running { progress: None, .. } => without_figures(GETTING_READY),
             State::Running { progress: Some(progress), .. } => Tune::Running {
                 tried: progress.tried as u32,
                 at_most: progress.at_most as u32,
@@ -161,6 +178,10 @@ impl Tuning {
             State::Failed(reason) => Tune::Failed(reason),
         }
     }
+}
+
+fn without_figures(what: &str) -> Tune<'_> {
+    Tune::Running { tried: 0, at_most: 1, start_error: f32::NAN, best_error: f32::NAN, what }
 }
 
 impl Task {

@@ -9,7 +9,6 @@ use super::Viewer;
 use crate::files::settings_of_png;
 use crate::loading::Loading;
 use crate::source::SceneSource;
-use crate::tuning::Tuning;
 use crate::undo::History;
 
 impl Viewer {
@@ -81,7 +80,7 @@ impl Viewer {
         self.source = source;
         // What is under way, and what can be taken back, is of the scene before.
         self.searching = None;
-        self.tuning = Tuning::default();
+        self.tuning.abandon();
         self.history = History::default();
         let view = self.stage.settings.view;
         let comparing = self.stage.other_technique();

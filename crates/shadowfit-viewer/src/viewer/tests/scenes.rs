@@ -23,8 +23,8 @@ fn gpu_a_search_for_a_technique_ends_with_its_scene() {
     run(&mut viewer, Command::StartTune);
     assert!(viewer.tuning.is_running());
     run(&mut viewer, Command::Open(SceneSource::from_text("plain")));
-    until(&mut viewer, "the plain", |viewer| viewer.loading.is_none());
-    assert_eq!(viewer.tuning.shown(), Tune::Idle);
+    until(&mut viewer, "the end of the search", |viewer| viewer.loading.is_none() && !viewer.tuning.is_running());
+    assert_eq!(viewer.tuning.shown(), Tune::Idle, "nothing is offered that was found for another scene");
 }
 
 #[test]
