@@ -72,7 +72,7 @@ const MONKEY_SECONDS: u32 = 25;
 const MONKEY_GROWTH: f64 = 96.0;
 /// The same for a short run, whose first part is over before all that is made once has been made: pipelines, the textures
 /// of scenes, the maps of a second technique.
-const SHORT_GROWTH: f64 = 400.0;
+const SHORT_GROWTH: f64 = 1000.0;
 /// Seconds from which on a run is not short.
 const LONG: u32 = 300;
 

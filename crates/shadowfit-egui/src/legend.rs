@@ -150,7 +150,8 @@ mod tests {
         for mode in ViewMode::ALL {
             let view = ViewSettings { mode, ..ViewSettings::default() };
             assert_eq!(has_legend(&view), with.contains(&mode), "{mode:?}");
-            assert!(has_legend(&ViewSettings { marks: ErrorMarks::Outline, ..view }));
+            let marked = ViewSettings { marks: ErrorMarks::Outline, ..view };
+            assert_eq!(has_legend(&marked), with.contains(&mode) || mode.shows_camera(), "{mode:?}");
         }
     }
 }

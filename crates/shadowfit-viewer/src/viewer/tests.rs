@@ -19,6 +19,7 @@ use crate::saved::{Saved, Store, Theme};
 use crate::source::SceneSource;
 use crate::stage::Stage;
 
+mod bars;
 mod scenes;
 mod scripts;
 mod sides;
