@@ -4,10 +4,12 @@
 use shadowfit::glam::{DVec3, Vec2, Vec3, Vec4};
 use shadowfit::settings::{FilterKind, MapChoice};
 use shadowfit::{PerspectiveCamera, Technique};
-use shadowfit_render::{Culling, Frame, Inset, JudgedPicture, Marks, Overlay, ProbeTargets, Quad, Statistics};
+use shadowfit_render::{
+    Culling, Frame, Inset, JudgedPicture, Marks, Overlay, ProbeTargets, Quad, Statistics, classes_texture,
+};
 use shadowfit_scene::Scene;
 
-use super::pictures::{Pictures, SIZE, classes, encoded, linear, random};
+use super::pictures::{Pictures, SIZE, encoded, linear, random};
 
 const WIDTH: usize = SIZE[0] as usize;
 
@@ -68,7 +70,7 @@ fn a_part_of_a_picture_is_drawn_as_in_the_whole_and_the_rest_stays() {
     for samples in [1, 4] {
         let (mut pictures, seen) = Pictures::new(&technique(), samples);
         let drawn: Vec<u32> = random(WIDTH * SIZE[1] as usize, 40).collect();
-        let view = classes(&pictures.gpu, &drawn);
+        let view = classes_texture(&pictures.gpu, &drawn, SIZE);
         let insets = [Inset { rectangle: [50.0, 10.0, 40.0, 30.0], depth_range: [0.0, 1.0], map: 0, border: Vec3::X }];
         let quads = [Quad::rectangle([60.5, 30.0, 50.0, 30.0], Vec4::new(0.0, 1.0, 0.5, 0.5))];
         let judged = Some(JudgedPicture { classes: &view, size: SIZE, camera: seen.camera, depth: None });
@@ -193,7 +195,7 @@ fn every_overlay_can_be_drawn_with_every_kind_of_map() {
         let scene = Scene::from_objects("floor", &[vec![[a, b, c], [a, c, d]]]);
         let (mut pictures, seen) = Pictures::of(&technique.with_filter(filter).with_choice(choice), 1, scene);
         let drawn: Vec<u32> = random(WIDTH * SIZE[1] as usize, 16).collect();
-        let view = classes(&pictures.gpu, &drawn);
+        let view = classes_texture(&pictures.gpu, &drawn, SIZE);
         let camera = PerspectiveCamera { eye: seen.camera.eye + DVec3::new(0.1, 0.0, 0.1), ..seen.camera };
         let judged = Some(JudgedPicture { classes: &view, size: SIZE, camera, depth: None });
         let plain = pictures.picture(&seen.frame());

@@ -3,9 +3,9 @@
 use shadowfit::figures::ERROR_COLORS;
 use shadowfit::glam::{DVec2, DVec3, UVec2};
 use shadowfit::{DepthConvention, PerspectiveCamera, Technique};
-use shadowfit_render::{Frame, JudgedPicture, Marks, Overlay, ProbeTargets};
+use shadowfit_render::{Frame, JudgedPicture, Marks, Overlay, ProbeTargets, classes_texture};
 
-use super::pictures::{Pictures, SIZE, Seen, bits, classes, linear, random};
+use super::pictures::{Pictures, SIZE, Seen, bits, linear, random};
 
 const PIXELS: usize = (SIZE[0] * SIZE[1]) as usize;
 
@@ -31,7 +31,7 @@ fn through_the_judged_camera_every_surface_has_the_class_of_its_own_pixel() {
     let (mut pictures, seen) = pictures(1);
     let probe = pictures.probe(&seen.frame());
     let drawn: Vec<u32> = random(PIXELS, 6).collect();
-    let view = classes(&pictures.gpu, &drawn);
+    let view = classes_texture(&pictures.gpu, &drawn, SIZE);
     let frame = Frame { overlay: Overlay::Error, judged: Some(judged(&view, &seen.camera)), ..seen.frame() };
     let picture = pictures.picture(&frame);
     let mut wrong = 0;
@@ -54,7 +54,7 @@ fn through_another_camera_every_surface_has_the_class_of_the_pixel_that_showed_i
     // Each triangle has a class of its own.
     let class = |triangle: u32| 2 + triangle.wrapping_mul(0x9E37_79B1) % 7 % 4;
     let bits: Vec<u32> = shown.pixels.iter().map(|pixel| pixel.map_or(0, |pixel| class(pixel.triangle))).collect();
-    let view = classes(&pictures.gpu, &bits);
+    let view = classes_texture(&pictures.gpu, &bits, SIZE);
     let probe = pictures.probe(&seen.frame());
     let judged = JudgedPicture { classes: &view, size: SIZE, camera: before, depth: Some(of_before.depth_view()) };
     let frame = Frame { overlay: Overlay::Error, judged: Some(judged), ..seen.frame() };
@@ -92,7 +92,7 @@ fn truth_shades_with_the_light_of_rays_and_with_that_of_the_maps_where_nothing_w
     let lit = pictures.picture(&Frame { shadows: false, ..seen.frame() });
     let plain = pictures.picture(&seen.frame());
     let mut truth = |bits: u32| {
-        let view = classes(&pictures.gpu, &vec![bits; PIXELS]);
+        let view = classes_texture(&pictures.gpu, &vec![bits; PIXELS], SIZE);
         let frame = Frame { overlay: Overlay::Truth, judged: Some(judged(&view, &seen.camera)), ..seen.frame() };
         pictures.picture(&frame)
     };
@@ -118,7 +118,7 @@ fn marked(samples: u32, marks: Marks, same_camera: bool) -> (Vec<[u8; 3]>, Vec<[
     let pixel = 60 * SIZE[0] as usize + 70;
     let mut drawn = vec![1; PIXELS];
     drawn[pixel] = 3;
-    let view = classes(&pictures.gpu, &drawn);
+    let view = classes_texture(&pictures.gpu, &drawn, SIZE);
     let plain = pictures.picture(&seen.frame());
     // A camera that sees the same and is not the same.
     let camera = PerspectiveCamera { far: if same_camera { seen.camera.far } else { 130.0 }, ..seen.camera };

@@ -137,24 +137,6 @@ pub(super) fn bits(class: u32, is_lit: bool) -> u32 {
     class | if is_lit { 8 } else { 0 }
 }
 
-/// A texture of classes of the pictures' size.
-pub(super) fn classes(gpu: &Gpu, bits: &[u32]) -> wgpu::TextureView {
-    let extent = wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 };
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("classes"),
-        size: extent,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::R32Uint,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
-    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SIZE[0] * 4), rows_per_image: None };
-    gpu.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(bits), layout, extent);
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
-}
-
 /// A linear channel from an sRGB byte, and back without rounding.
 pub(super) fn linear(byte: u8) -> f32 {
     let encoded = f32::from(byte) / 255.0;

@@ -136,6 +136,9 @@ fn show_card(ui: &mut Ui, shown: &ShownArtefact<'_>, action: &mut Option<Action>
         }
         let text = if fixed { artefact.cure() } else { artefact.explanation() };
         ui.add(Label::new(text).wrap());
+        if !fixed {
+            caption(ui, "M marks the wrong pixels.");
+        }
         ui.add_space(2.0);
         if fixed {
             changes(ui, changed);

@@ -35,7 +35,7 @@ pub use casters::{Cluster, clustered};
 pub use frame::Frame;
 pub use gpu::{AdapterChoice, Gpu, GpuError};
 pub use inset::Inset;
-pub use judged::JudgedPicture;
+pub use judged::{JudgedPicture, classes_texture};
 pub use lines::{Line, box_lines};
 pub use marks::Marks;
 pub use overlay::Overlay;

@@ -47,7 +47,7 @@ pub struct JudgeJob {
 
 /// A judged picture.
 #[derive(Clone, Debug)]
-pub struct JudgedPicture {
+pub struct JudgeResult {
     /// The verdicts, and the sums as [`Judged::tally`].
     pub judged: Judged,
     /// The same as a texture of classes has them, rows from the top: the bits of a [`GpuPixel`] for each pixel, ready to
@@ -87,7 +87,7 @@ pub struct BackgroundJudge {
 #[derive(Debug)]
 struct Work {
     is_given_up: Arc<AtomicBool>,
-    result: Receiver<Result<JudgedPicture>>,
+    result: Receiver<Result<JudgeResult>>,
 }
 
 impl Drop for Work {
@@ -141,7 +141,7 @@ impl BackgroundJudge {
     /// # Errors
     ///
     /// When the job does not fit together, or the judge failed at it.
-    pub fn take(&mut self) -> Option<Result<JudgedPicture>> {
+    pub fn take(&mut self) -> Option<Result<JudgeResult>> {
         let result = match self.work.as_ref()?.result.try_recv() {
             Err(TryRecvError::Empty) => return None,
             Ok(result) => result,
@@ -154,7 +154,7 @@ impl BackgroundJudge {
 
 impl JudgeJob {
     /// Judges the picture for as long as `goes_on` says so.
-    fn judge(&self, goes_on: impl Fn() -> bool + Sync) -> Result<JudgedPicture> {
+    fn judge(&self, goes_on: impl Fn() -> bool + Sync) -> Result<JudgeResult> {
         let start = Instant::now();
         self.check()?;
         let picture = Picture {
@@ -172,7 +172,7 @@ impl JudgeJob {
         let truth = picture.trace_while(&self.pixels, &goes_on);
         let (classes, judged) = truth.as_ref().and_then(judge).context("judging was given up")?;
         let seconds = start.elapsed().as_secs_f32();
-        Ok(JudgedPicture { judged, classes, view: self.view, judging: self.judging, seconds })
+        Ok(JudgeResult { judged, classes, view: self.view, judging: self.judging, seconds })
     }
 
     /// Refuses lists that do not belong together.
@@ -247,7 +247,7 @@ mod tests {
         fn job(&mut self, view: &View) -> JudgeJob {
             let maps = self.fitter.fit(&self.scene, view).expect("maps");
             let rays = self.scene.shared_rays();
-            self.evaluator.judge_job(&self.gpu, &mut self.scene, view, &maps, rays).expect("a job")
+            self.evaluator.judge_job(&self.gpu, &mut self.scene, view, &maps, rays).expect("a job").0
         }
 
         fn judge(&mut self, view: &View) -> Judged {
@@ -270,7 +270,7 @@ mod tests {
         View { camera, direction: Vec3::new(0.4, -0.7, 0.3).normalize(), is_first }
     }
 
-    fn wait(judge: &mut BackgroundJudge) -> Result<JudgedPicture> {
+    fn wait(judge: &mut BackgroundJudge) -> Result<JudgeResult> {
         loop {
             if let Some(result) = judge.take() {
                 return result;
@@ -312,7 +312,9 @@ mod tests {
         let given_up = job.judge(|| false).expect_err("nothing was judged");
         assert_eq!(given_up.to_string(), "judging was given up");
         judge.start(job);
+        let is_given_up = judge.work.as_ref().map(|work| Arc::clone(&work.is_given_up)).expect("it works");
         judge.give_up();
+        assert!(is_given_up.load(Ordering::Relaxed), "the threads are told");
         assert!(!judge.is_busy() && judge.take().is_none());
     }
 

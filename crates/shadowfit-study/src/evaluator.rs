@@ -135,12 +135,14 @@ impl Evaluator {
             counted: &counted,
         };
         let judged = picture.judge(truth.or_trace(|| picture.trace(&pixels)), &factors(&pixels), before.as_ref());
-        self.remember(view, maps);
+        self.note_view(view, maps);
         Ok(judged)
     }
 
     /// What [`BackgroundJudge`](crate::BackgroundJudge) needs of a view: draws its maps and its probe, waits for them, and
-    /// leaves the rest to the job. As for [`Self::judge`], crawl is measured against the view before.
+    /// leaves the rest to the job. As for [`Self::judge`], crawl is measured against the view before. With it comes the
+    /// probe, whose [depth buffer](ProbeTargets::depth_view) tells a later frame which surfaces the picture shows
+    /// ([`JudgedPicture::depth`](shadowfit_render::JudgedPicture::depth)).
     ///
     /// # Errors
     ///
@@ -152,14 +154,15 @@ impl Evaluator {
         view: &View,
         maps: &[MapFit],
         rays: Arc<SceneRays>,
-    ) -> Result<JudgeJob> {
+    ) -> Result<(JudgeJob, ProbeTargets)> {
         if view.is_first {
             self.before = None;
         }
-        let pixels = self.probe(gpu, scene, view, maps, None)?;
+        let seen = self.draw_probe(gpu, scene, view, maps, None)?;
+        let pixels = seen.read(gpu)?.pixels;
         let before = self.frame_before(gpu, scene, view)?;
-        self.remember(view, maps);
-        Ok(JudgeJob {
+        self.note_view(view, maps);
+        let job = JudgeJob {
             rays,
             pixels,
             view: *view,
@@ -168,7 +171,8 @@ impl Evaluator {
             descriptor: *self.renderer.shadow_map().descriptor(),
             counted: scene.counted_instances(self.judging.subject_only),
             before,
-        })
+        };
+        Ok((job, seen))
     }
 
     /// The maps of the view before, and what they show at the points of this one, if crawl is measured.
@@ -178,11 +182,6 @@ impl Evaluator {
         };
         let factors = factors(&self.probe(gpu, scene, view, &maps, Some((eye, forward)))?);
         Ok(Some(FrameBefore { maps, eye, forward, factors }))
-    }
-
-    fn remember(&mut self, view: &View, maps: &[MapFit]) {
-        let forward = view.camera.forward.normalize();
-        self.before = Some(Before { maps: maps.to_vec(), eye: view.camera.eye, forward });
     }
 
     /// Draws a view and judges it on the GPU. All pixels count there, whatever [`Judging::subject_only`] says.
@@ -263,13 +262,14 @@ impl Evaluator {
             },
         )?;
         (self.targets, self.targets_before) = (Some(seen), targets.or(self.targets_before.take()));
-        self.remember(view, maps);
+        self.note_view(view, maps);
         Ok(())
     }
 
-    /// Remembers a view that was drawn and not judged: crawl is measured against it.
+    /// Takes a view as the one before: crawl is measured against it. Views that are judged are noted by themselves.
     pub fn note_view(&mut self, view: &View, maps: &[MapFit]) {
-        self.remember(view, maps);
+        let forward = view.camera.forward.normalize();
+        self.before = Some(Before { maps: maps.to_vec(), eye: view.camera.eye, forward });
     }
 
     /// Forgets the view before: the next one follows none, and its crawl is not measured.

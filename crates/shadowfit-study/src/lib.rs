@@ -30,7 +30,7 @@ mod view;
 mod why;
 
 pub use agreement::Agreement;
-pub use background_judge::{BackgroundJudge, JudgeJob, JudgedPicture};
+pub use background_judge::{BackgroundJudge, JudgeJob, JudgeResult};
 pub use comparison::{Comparison, Outcome, ensure_judged};
 pub use evaluator::Evaluator;
 pub use fitter::{RayUse, TechniqueFitter};

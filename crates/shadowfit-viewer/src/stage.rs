@@ -15,6 +15,8 @@ mod why;
 #[cfg(test)]
 mod depth_tests;
 #[cfg(test)]
+mod live_tests;
+#[cfg(test)]
 mod memory_tests;
 
 use core::fmt;
@@ -29,7 +31,7 @@ use shadowfit_wgpu::{MapFit, ShadowMapError};
 use compare::Other;
 pub(crate) use live::judged_figures;
 pub use shown::Shown;
-pub(crate) use shown::changes;
+pub(crate) use shown::{ArtefactShow, changes};
 use side::{Shot, Side};
 
 /// Why a stage could not be set up.
@@ -81,10 +83,10 @@ pub struct Stage {
     side: Side,
     other: Option<Other>,
     seconds: f32,
-    /// Seconds since the stage was set up, for what blinks.
+    /// Seconds of all frames since the stage was set up, for what blinks, rests or grows old.
     clock: f32,
     home: (Settings, FlyCamera),
-    artefact: shown::ArtefactShow,
+    artefact: ArtefactShow,
     why: why::Asked,
     reads_depths: bool,
 }
@@ -123,7 +125,7 @@ impl Stage {
             seconds: 0.0,
             clock: 0.0,
             home,
-            artefact: shown::ArtefactShow::default(),
+            artefact: ArtefactShow::default(),
             why: why::Asked::default(),
             reads_depths: false,
         })
@@ -151,7 +153,7 @@ impl Stage {
         self.home = home::home(&self.scene);
         (self.settings, self.camera) = self.home;
         (self.seconds, self.animation) = (0.0, 0);
-        self.artefact = shown::ArtefactShow::default();
+        self.artefact = ArtefactShow::default();
         self.why = why::Asked::default();
         self.other = None;
         self.side.scene_changed();
@@ -245,7 +247,7 @@ impl Stage {
     /// Back to the settings and the view that the scene was opened with.
     pub fn reset(&mut self) {
         (self.settings, self.camera) = self.home;
-        self.artefact = shown::ArtefactShow::default();
+        self.artefact = ArtefactShow::default();
         self.side.fitted = None;
     }
 
@@ -344,6 +346,7 @@ impl Stage {
             plays,
             seconds: self.seconds,
             scissor: None,
+            clock: self.clock,
             blink,
         };
         (&mut self.side, shot)

@@ -5,7 +5,7 @@ use shadowfit::Technique;
 use shadowfit::params::PARAMETERS;
 use shadowfit::tool::Settings;
 
-use crate::stage::Shown;
+use crate::stage::ArtefactShow;
 
 /// All that a change can change; the camera is where a person flew it.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,7 +13,7 @@ pub(crate) struct State {
     pub(crate) settings: Settings,
     /// The technique that the first one is compared with.
     pub(crate) other: Option<Technique>,
-    pub(crate) shown: Option<Shown>,
+    pub(crate) artefact: ArtefactShow,
 }
 
 impl State {
@@ -48,7 +48,7 @@ impl State {
         if self.other != other.other {
             names.push("comparison");
         }
-        if self.shown != other.shown && names.is_empty() {
+        if self.artefact != other.artefact && names.is_empty() {
             names.push("artefact");
         }
         match names[..] {
@@ -123,7 +123,7 @@ mod tests {
 
     fn state(count: u32) -> State {
         let settings = Settings::default().with_technique(Technique::default().with_count(count));
-        State { settings, other: None, shown: None }
+        State { settings, other: None, artefact: ArtefactShow::default() }
     }
 
     #[test]

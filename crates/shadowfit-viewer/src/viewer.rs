@@ -287,7 +287,8 @@ impl Viewer {
 
     /// All that a change can change.
     fn state(&self) -> State {
-        State { settings: self.stage.settings, other: self.stage.other_technique(), shown: self.stage.shown() }
+        let stage = &self.stage;
+        State { settings: stage.settings, other: stage.other_technique(), artefact: stage.artefact_show().clone() }
     }
 
     /// Shows the outcome of an action. Where it failed and a line of the script asked for it, the script has failed, too.

@@ -491,7 +491,7 @@ fn gpu_classes_are_those_of_the_judge_on_a_picture_of_the_default_scene() {
         let mut evaluator = Evaluator::new(renderer, judging);
         let maps = TechniqueFitter::new(technique).fit_alone(&scene, &view).expect("maps");
         let rays = scene.shared_rays();
-        let job = evaluator.judge_job(&gpu, &mut scene, &view, &maps, rays.clone()).expect("a picture");
+        let (job, _) = evaluator.judge_job(&gpu, &mut scene, &view, &maps, rays.clone()).expect("a picture");
         let truth = &mut SharedTruth::default();
         let judged = evaluator.judge(&gpu, &mut scene, &view, &maps, truth).expect("judged");
         let (mut asked, mut same) = (0u32, 0u32);

@@ -102,6 +102,7 @@ impl Stage {
             plays,
             seconds: self.seconds,
             scissor: Some(scissor),
+            clock: self.clock,
             blink,
         };
         other.side.draw(&mut shot, target);
@@ -128,7 +129,7 @@ impl Stage {
 
     /// Figures of the second technique's picture.
     pub(super) fn other_figures(&self) -> Option<JudgedFigures> {
-        self.other.as_ref().and_then(|other| other.side.live.figures())
+        self.other.as_ref().and_then(|other| other.side.live.figures(self.clock))
     }
 
     /// Whether both pictures on show have been judged.

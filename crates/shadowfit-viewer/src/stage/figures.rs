@@ -51,7 +51,7 @@ impl Stage {
 
     /// Figures of the picture that was judged last.
     pub fn judged_figures(&self) -> Option<JudgedFigures> {
-        self.side.live.figures()
+        self.side.live.figures(self.clock)
     }
 
     /// The map that is read where the middle of the picture meets the scene, and its pixels per texel there. Left open

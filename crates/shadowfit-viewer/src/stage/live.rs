@@ -1,13 +1,11 @@
 //! Pictures judged against rays while they are shown: on a graphics card each one, where it is drawn; without one as
 //! often as a thread is done with the one before.
 
-use std::time::Instant;
-
 use anyhow::{Result, anyhow};
 use shadowfit::figures::JudgedFigures;
 use shadowfit::tool::ErrorMarks;
 use shadowfit::{PerspectiveCamera, Technique};
-use shadowfit_render::{Gpu, JudgedPicture};
+use shadowfit_render::{Gpu, JudgedPicture, ProbeTargets, classes_texture};
 use shadowfit_study::{BackgroundJudge, Evaluator, LiveTruth, View};
 use shadowfit_truth::PictureFigures;
 use shadowfit_wgpu::MapFit;
@@ -25,13 +23,15 @@ const MOST_POSED: usize = 150_000;
 /// Frames whose time is remembered until their sums come back.
 const FRAMES: usize = 8;
 
-/// What is judged: where any of it differs, a picture is another one.
+/// What a picture shows: where any of it differs, it is another one.
 #[derive(Clone, Debug, PartialEq)]
-struct Key {
-    camera: PerspectiveCamera,
-    technique: Technique,
-    direction: glam::Vec3,
-    seconds: f32,
+pub(super) struct Key {
+    pub(super) camera: PerspectiveCamera,
+    pub(super) technique: Technique,
+    /// Of the light's travel.
+    pub(super) direction: glam::Vec3,
+    /// Time of the scene's animation, in seconds.
+    pub(super) seconds: f32,
 }
 
 /// A picture that was judged, with its classes as a texture.
@@ -40,22 +40,44 @@ struct Judged {
     key: Key,
     view: wgpu::TextureView,
     size: [u32; 2],
+    /// What it was judged by, whose depth buffer tells which surfaces it shows; `None` where the next frame judges anew.
+    seen: Option<ProbeTargets>,
+}
+
+/// A picture whose sums are on their way.
+#[derive(Debug)]
+struct Drawn {
+    key: Key,
+    size: [u32; 2],
+    /// When it was drawn, by the stage's clock in seconds.
+    at: f32,
+}
+
+/// The sums of a picture.
+#[derive(Debug)]
+struct Sums {
+    of: Drawn,
+    /// None of a picture in which nothing counts, such as one of the sky.
+    figures: Option<PictureFigures>,
 }
 
 /// The judge of a side's pictures.
 #[derive(Debug, Default)]
 pub(super) struct Live {
-    on_gpu: bool,
+    /// Whether the GPU judges each frame.
+    pub(super) on_gpu: bool,
     gpu: Option<LiveTruth>,
     background: Option<BackgroundJudge>,
-    /// What the thread judges at present.
-    started: Option<(Key, Instant)>,
+    /// What the thread judges at present, and the probe that it judges.
+    started: Option<(Drawn, ProbeTargets)>,
+    /// When the thread was last given a picture, by the stage's clock in seconds.
+    begun: Option<f32>,
     judged: Option<Judged>,
-    figures: Option<(PictureFigures, [u32; 2], Instant)>,
-    /// When each of the last pictures was drawn, by its number.
-    drawn: Vec<(u64, Instant)>,
-    /// The view of the frame before, and since when it has been the same.
-    last: Option<(Key, Instant)>,
+    sums: Option<Sums>,
+    /// The last pictures that the GPU was given, by their numbers.
+    drawn: Vec<(u64, Drawn)>,
+    /// The view of the frame before, and since when it has been the same, by the stage's clock in seconds.
+    last: Option<(Key, f32)>,
     /// Time of the scene's pose that the GPU's rays have.
     posed: Option<f32>,
     /// Pictures are judged at once, as scripts and headless pictures need it.
@@ -77,19 +99,26 @@ impl Live {
     /// The picture that was judged last.
     pub(super) fn picture(&self) -> Option<JudgedPicture<'_>> {
         let judged = self.judged.as_ref()?;
-        Some(JudgedPicture { classes: &judged.view, size: judged.size, camera: judged.key.camera, depth: None })
+        let depth = judged.seen.as_ref().map(ProbeTargets::depth_view);
+        Some(JudgedPicture { classes: &judged.view, size: judged.size, camera: judged.key.camera, depth })
     }
 
-    /// The figures that came back last.
-    pub(super) fn figures(&self) -> Option<JudgedFigures> {
-        let (figures, size, drawn) = self.figures.as_ref()?;
-        Some(judged_figures(figures, *size, drawn.elapsed().as_secs_f32()))
+    /// The figures that came back last, at a time of the stage's clock in seconds.
+    pub(super) fn figures(&self, clock: f32) -> Option<JudgedFigures> {
+        let Sums { of, figures } = self.sums.as_ref()?;
+        Some(judged_figures(figures.as_ref()?, of.size, clock - of.at))
     }
 
-    /// Whether what was judged last is the view that was drawn last, and its figures are there.
+    /// Whether what was judged last is the view that was drawn last, and its sums are there.
     pub(super) fn is_up_to_date(&self) -> bool {
-        let (Some(judged), Some((last, _))) = (&self.judged, &self.last) else { return false };
-        judged.key == *last && self.figures.is_some()
+        let (Some(judged), Some(sums), Some((last, _))) = (&self.judged, &self.sums, &self.last) else { return false };
+        judged.key == *last && sums.of.key == *last
+    }
+
+    /// Whether no thread judges a picture.
+    #[cfg(test)]
+    pub(super) fn is_idle(&self) -> bool {
+        !self.background.as_ref().is_some_and(BackgroundJudge::is_busy)
     }
 
     /// Judges the view that is about to be drawn, and takes what has been judged. Returns whether the maps were drawn for
@@ -114,7 +143,7 @@ impl Live {
         };
         let since = match &self.last {
             Some((last, since)) if *last == key => *since,
-            _ => Instant::now(),
+            _ => shot.clock,
         };
         self.last = Some((key.clone(), since));
         self.take(shot.gpu)?;
@@ -125,9 +154,8 @@ impl Live {
             return self.judge_on_gpu(evaluator, shot, (view, key), maps, size);
         }
         let is_asked = shot.settings.view.mode.is_judged() || shot.settings.view.marks != ErrorMarks::Off;
-        let pause = since.elapsed().as_secs_f32();
-        let waited = self.started.as_ref().map_or(f32::MAX, |(_, started)| started.elapsed().as_secs_f32());
-        let is_due = self.waits || is_asked || pause >= STILL || waited >= MOVING;
+        let waited = self.begun.map_or(f32::MAX, |begun| shot.clock - begun);
+        let is_due = self.waits || is_asked || shot.clock - since >= STILL || waited >= MOVING;
         let is_known = self.judged.as_ref().is_some_and(|judged| judged.key == key);
         if is_known || !is_due || self.background.as_ref().is_some_and(BackgroundJudge::is_busy) {
             return Ok(false);
@@ -173,9 +201,13 @@ impl Live {
         if self.drawn.len() == FRAMES {
             self.drawn.remove(0);
         }
-        self.drawn.push((live.pictures(), Instant::now()));
+        self.drawn.push((live.pictures(), Drawn { key: key.clone(), size, at: shot.clock }));
         let classes = live.classes().ok_or_else(|| anyhow!("the picture was not judged"))?;
-        self.judged = Some(Judged { key, view: classes.create_view(&Default::default()), size });
+        self.judged = Some(Judged { key, view: classes.create_view(&Default::default()), size, seen: None });
+        if self.waits {
+            shot.gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
+            self.take(shot.gpu)?;
+        }
         Ok(true)
     }
 
@@ -193,15 +225,17 @@ impl Live {
         evaluator.judging.size =
             if self.waits { size } else { size.map(|side| ((side as f32 * scale).round() as u32).max(1)) };
         evaluator.judging.crawl = !self.waits;
-        let job = evaluator.judge_job(shot.gpu, shot.scene, view, maps, rays)?;
+        let (job, seen) = evaluator.judge_job(shot.gpu, shot.scene, view, maps, rays)?;
         let measures_crawl = job.before.is_some();
+        let size = job.judging.size;
         let mut background = match self.background.take() {
             Some(background) => background,
             None => BackgroundJudge::new()?,
         };
         background.start(job);
         self.background = Some(background);
-        self.started = Some((key, Instant::now()));
+        self.started = Some((Drawn { key, size, at: shot.clock }, seen));
+        self.begun = Some(shot.clock);
         if self.waits {
             while self.background.as_ref().is_some_and(BackgroundJudge::is_busy) && self.started.is_some() {
                 std::thread::sleep(std::time::Duration::from_millis(1));
@@ -215,38 +249,21 @@ impl Live {
     /// Takes what has been judged.
     fn take(&mut self, gpu: &Gpu) -> Result<()> {
         if let Some(tally) = self.gpu.as_mut().map(|live| live.take(gpu)).transpose()?.flatten() {
-            let drawn = self.drawn.iter().find(|(picture, _)| *picture == tally.picture);
-            let size = self.judged.as_ref().map_or([0, 0], |judged| judged.size);
-            let since = drawn.map_or_else(Instant::now, |(_, at)| *at);
-            self.figures = tally.figures().map(|figures| (figures, size, since));
+            let place = self.drawn.iter().position(|(picture, _)| *picture == tally.picture);
+            // Those before it were overtaken.
+            let of = place.and_then(|place| self.drawn.drain(..=place).next_back());
+            if let Some((_, of)) = of {
+                self.sums = Some(Sums { of, figures: tally.figures() });
+            }
         }
         let Some(found) = self.background.as_mut().and_then(BackgroundJudge::take) else { return Ok(()) };
-        let Some((key, started)) = self.started.take() else { return Ok(()) };
+        let Some((of, seen)) = self.started.take() else { return Ok(()) };
         let found = found?;
-        let size = found.judging.size;
-        self.figures = found.judged.tally.figures().map(|figures| (figures, size, started));
-        self.judged = Some(Judged { key, view: upload(gpu, &found.classes, size), size });
+        let view = classes_texture(gpu, &found.classes, of.size);
+        self.judged = Some(Judged { key: of.key.clone(), view, size: of.size, seen: Some(seen) });
+        self.sums = Some(Sums { of, figures: found.judged.tally.figures() });
         Ok(())
     }
-}
-
-/// Classes as a texture.
-fn upload(gpu: &Gpu, classes: &[u32], size: [u32; 2]) -> wgpu::TextureView {
-    let extent = wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 };
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("classes"),
-        size: extent,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::R32Uint,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
-    let bytes: Vec<u8> = classes.iter().flat_map(|bits| bits.to_le_bytes()).collect();
-    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size[0] * 4), rows_per_image: None };
-    gpu.queue.write_texture(texture.as_image_copy(), &bytes, layout, extent);
-    texture.create_view(&Default::default())
 }
 
 /// Figures as panels have them.

@@ -1,7 +1,8 @@
 //! The artefact on show: from the search for its view to its cure.
 
-use shadowfit::params::{PARAMETERS, format_value};
-use shadowfit::tool::{ErrorMarks, Settings};
+use shadowfit::Technique;
+use shadowfit::params::{Kind, PARAMETERS, Parameter};
+use shadowfit::tool::Settings;
 use shadowfit_egui::Artefact;
 use shadowfit_render::FlyCamera;
 
@@ -22,10 +23,12 @@ pub struct Shown {
 }
 
 /// The artefact on show, and what was there before it.
-#[derive(Debug, Default)]
-pub(super) struct ArtefactShow {
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct ArtefactShow {
     shown: Option<Shown>,
     before: Option<(Settings, FlyCamera)>,
+    /// The technique that shows or fixes it, until a person takes another one.
+    technique: Technique,
     found: bool,
     narration: String,
     changes: Vec<String>,
@@ -62,21 +65,35 @@ impl Stage {
 
     /// What the search for the view of an artefact begins with; it can be run on a thread.
     pub(crate) fn search(&self, artefact: Artefact) -> Search {
-        let (settings, camera) = self.artefact.before.unwrap_or((self.settings, self.camera));
+        let (settings, camera) = self.before_artefact();
         let lens = camera.perspective(&settings.camera, 1.0);
         Search { artefact, scene: self.scene.snapshot(), settings, lens }
     }
 
-    /// Shows what was found. What a person sees beside the picture stays as it is.
+    /// Present settings without what an artefact on show set, and the camera from before it. Where the technique was
+    /// changed since, that and the present camera are what the next artefact follows.
+    fn before_artefact(&self) -> (Settings, FlyCamera) {
+        let mut settings = self.settings;
+        match self.artefact.before.filter(|_| self.settings.technique == self.artefact.technique) {
+            Some((before, camera)) => {
+                take_shown(&mut settings, &before);
+                (settings, camera)
+            }
+            None => (settings, self.camera),
+        }
+    }
+
+    /// Shows what was found. All that does not show it stays as it is.
     pub(crate) fn show_found(&mut self, found: Found) {
-        let before = self.artefact.before.unwrap_or((self.settings, self.camera));
-        self.settings = found.settings;
+        let before = self.before_artefact();
+        take_shown(&mut self.settings, &found.settings);
         self.settings.view.outside_beside |= found.artefact == Artefact::ClippingHole;
         self.set_camera(found.camera);
         self.side.fitted = None;
         self.artefact = ArtefactShow {
             shown: Some(Shown { artefact: found.artefact, fixed: false }),
             before: Some(before),
+            technique: found.settings.technique,
             found: found.shows,
             narration: found.narration,
             changes: Vec::new(),
@@ -95,43 +112,88 @@ impl Stage {
         artefact::fix(&mut self.settings.technique, artefact, &before, seen);
         self.artefact.changes = changes(&shown, &self.settings);
         self.artefact.shown = Some(Shown { artefact, fixed: true });
+        self.artefact.technique = self.settings.technique;
     }
 
     /// Stops showing an artefact; settings and camera stay.
     pub fn close_artefact(&mut self) {
         self.artefact = ArtefactShow::default();
-        self.settings.view.marks = ErrorMarks::Off;
     }
 
-    /// Says which artefact is on show, as it was before a change was taken back.
-    pub(crate) fn restore_shown(&mut self, shown: Option<Shown>) {
-        if shown.is_none() {
-            self.artefact = ArtefactShow::default();
-        }
-        self.artefact.shown = shown;
+    /// All that is told about the artefact on show.
+    pub(crate) fn artefact_show(&self) -> &ArtefactShow {
+        &self.artefact
     }
+
+    /// Tells about an artefact what was told before a change was taken back.
+    pub(crate) fn restore_artefact(&mut self, show: ArtefactShow) {
+        self.artefact = show;
+    }
+}
+
+/// Takes over all that showing an artefact sets.
+fn take_shown(settings: &mut Settings, from: &Settings) {
+    settings.technique = from.technique;
+    settings.camera.far = from.camera.far;
+    settings.light.animate = from.light.animate;
+    let (view, from) = (&mut settings.view, &from.view);
+    (view.mode, view.play, view.freeze_fit) = (from.mode, from.play, from.freeze_fit);
+    (view.shadows, view.outside_beside) = (from.shadows, from.outside_beside);
 }
 
 /// What is different in the settings, a line for each parameter: "Constant bias: 0 → 1 texels".
 pub(crate) fn changes(before: &Settings, after: &Settings) -> Vec<String> {
-    let text = |settings: &Settings, parameter| {
-        let mut text = String::new();
-        // Writing to a String cannot fail.
-        let _ = format_value(settings, parameter, &mut text);
-        text
-    };
     let differs = PARAMETERS.iter().filter(|parameter| !parameter.is_equal(before, after));
     differs
         .map(|parameter| {
-            let (from, to) = (text(before, parameter), text(after, parameter));
+            let (from, to) = (value(before, parameter), value(after, parameter));
             format!("{}: {from} → {to} {}", parameter.label, parameter.unit).trim_end().to_owned()
         })
         .collect()
 }
 
+/// A value as people read it, without its unit.
+fn value(settings: &Settings, parameter: &Parameter) -> String {
+    let number = |value: f64| format!("{value:.3}").trim_end_matches('0').trim_end_matches('.').to_owned();
+    match &parameter.kind {
+        Kind::Number(kind) => number(kind.get(settings)),
+        Kind::Optional(kind) => {
+            kind.get(settings).map_or_else(|| kind.unset.map_or("none", |unset| unset.label).to_owned(), number)
+        }
+        Kind::Choice(kind) => kind.options.get(kind.get(settings)).map_or("", |option| option.label).to_owned(),
+        Kind::Toggle(kind) => if kind.get(settings) { "on" } else { "off" }.to_owned(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use shadowfit::settings::FitKind;
+    use shadowfit_render::{AdapterChoice, Gpu};
+    use shadowfit_scene::builtin::default_scene;
+
     use super::*;
+
+    #[test]
+    fn what_changed_while_an_artefact_was_searched_or_on_show_stays() {
+        let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
+        let mut stage = Stage::new(gpu, default_scene(), 1).expect("the default scene");
+        stage.settings.technique.fit = stage.settings.technique.fit.with_kind(FitKind::Windows);
+        let first = stage.settings;
+        let found = stage.search(Artefact::ClippingHole).run();
+        stage.settings.light.azimuth += 0.5;
+        stage.show_found(found);
+        assert_eq!(stage.settings.light.azimuth, first.light.azimuth + 0.5);
+        assert_ne!(stage.settings.technique, first.technique);
+        // A second artefact follows the technique from before the first one.
+        stage.settings.camera.fov_y *= 1.1;
+        let (before, _) = stage.before_artefact();
+        assert_eq!((before.technique, before.view), (first.technique, first.view));
+        assert_eq!((before.light.azimuth, before.camera.fov_y), (first.light.azimuth + 0.5, first.camera.fov_y * 1.1));
+        // Unless a person has taken another one.
+        stage.settings.technique = first.technique.with_count(2);
+        let (before, camera) = stage.before_artefact();
+        assert_eq!((before, camera), (stage.settings, stage.camera));
+    }
 
     #[test]
     fn changes_are_told_with_name_values_and_unit() {
@@ -140,5 +202,22 @@ mod tests {
         after.technique.bias.normal_offset = 1.5;
         assert_eq!(changes(&before, &after), ["Normal offset: 0 → 1.5 texels"]);
         assert!(changes(&before, &before).is_empty());
+    }
+
+    #[test]
+    fn changes_have_the_names_of_the_menus_and_three_decimals_at_most() {
+        let mut before = Settings::default();
+        (before.technique.fit.kind, before.technique.bias.receiver_plane) = (FitKind::Sphere, 1.003_906_2);
+        before.view.shadows = true;
+        let mut after = before;
+        (after.technique.fit.kind, after.technique.bias.receiver_plane) = (FitKind::Focused, 0.501_953_1);
+        after.view.shadows = false;
+        let lines = changes(&before, &after);
+        assert_eq!(lines.len(), 3, "{lines:?}");
+        for line in
+            ["Fit: Stable sphere → Focused on the scene", "Receiver plane: 1.004 → 0.502 texels", "Shadows: on → off"]
+        {
+            assert!(lines.iter().any(|told| told == line), "{line} in {lines:?}");
+        }
     }
 }

@@ -45,6 +45,8 @@ pub(super) struct Shot<'a> {
     pub(super) scissor: Option<[u32; 4]>,
     /// Time of the scene's animation, in seconds.
     pub(super) seconds: f32,
+    /// The stage's clock, in seconds.
+    pub(super) clock: f32,
     /// Strength of blinking marks at this time, 0..=1.
     pub(super) blink: f32,
 }
@@ -228,7 +230,7 @@ impl Side {
         match shot.settings.view.mode {
             ViewMode::Outside => self.draw_outside(shot, (&fitted, &maps, false), target),
             ViewMode::Need => self.draw_need(shot, &fitted, &maps, target),
-            ViewMode::Updates => self.draw_boards(shot, &view, &maps, target),
+            ViewMode::Updates => self.draw_boards(shot, (&view, &maps, maps_stay), target),
             mode => self.draw_view(shot, &view, &maps, (overlay(mode), maps_stay), target),
         }
         if !is_frozen && !matches!(shot.settings.view.mode, ViewMode::Outside | ViewMode::Need) {
@@ -345,15 +347,21 @@ impl Side {
         self.take_statistics(drawn);
     }
 
-    /// Draws all maps side by side, with what of them was drawn in this frame.
-    fn draw_boards(&mut self, shot: &mut Shot<'_>, view: &View, maps: &[MapFit], target: &RenderTarget) {
+    /// Draws all maps side by side, with what of them was drawn. `maps_stay` where that was done for the judge.
+    fn draw_boards(
+        &mut self,
+        shot: &mut Shot<'_>,
+        (view, maps, maps_stay): (&View, &[MapFit], bool),
+        target: &RenderTarget,
+    ) {
         let bounds = shot.scene.bounds();
         let boards = boards::Boards::new(maps, &bounds, shot.settings.view.inset_depths, target.size);
-        // Those of the frame before: what this one draws is known when it is drawn.
+        // Those of the frame before, unless the maps stay: what this one draws is known when it is drawn.
         let quads = boards.quads(&self.evaluator.renderer.map_updates());
         let options = FrameOptions {
             insets: &boards.insets,
             quads: &quads,
+            maps_stay,
             sight: Some(shot.sight),
             scissor: shot.scissor,
             ..FrameOptions::default()

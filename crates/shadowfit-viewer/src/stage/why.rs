@@ -3,10 +3,9 @@
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::time::Instant;
 
 use glam::DVec3;
-use shadowfit::{PerspectiveCamera, Technique};
+use shadowfit::Technique;
 use shadowfit_egui::{PixelClass, WhyCard};
 use shadowfit_render::{PixelQuery, PixelRead, TexelBlock};
 use shadowfit_scene::Scene;
@@ -15,6 +14,7 @@ use shadowfit_truth::Class;
 use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
 
 use super::Stage;
+use super::live::Key;
 
 /// How long the pointer must rest, in seconds.
 const REST: f32 = 0.25;
@@ -68,33 +68,32 @@ enum Step {
 /// The pixel that is asked about.
 #[derive(Debug, Default)]
 pub(super) struct Asked {
-    /// Place of the pointer, the camera, and since when both have been the same.
-    at: Option<([f32; 2], PerspectiveCamera, Instant)>,
+    /// Place of the pointer, what the picture shows, and since when both have been the same, by the stage's clock in
+    /// seconds.
+    at: Option<([f32; 2], Key, f32)>,
     step: Option<Step>,
     why: Option<Why>,
 }
 
 impl Stage {
-    /// Asks why the pixel is as it is at which the pointer rests: shares of the picture's width and height from the top
-    /// left. Call it once a frame.
+    /// Asks why the pixel is as it is at which the pointer rests while the picture stands still: shares of its width and
+    /// height from the top left. Call it once a frame.
     pub fn ask_why(&mut self, hover: Option<[f32; 2]>, size: [u32; 2]) {
-        let camera = self.perspective(size);
+        let asked = hover.and_then(|hover| Some((hover, self.shown_at(hover, size)?)));
         let same = |old: [f32; 2], new: [f32; 2]| (0..2).all(|axis| (old[axis] - new[axis]).abs() <= SLACK);
-        let rests = match (hover, &self.why.at) {
-            (Some(new), Some((old, at, since))) if same(*old, new) && *at == camera => {
-                since.elapsed().as_secs_f32() >= REST
+        let at = match (asked, &self.why.at) {
+            (Some((at, shown)), Some((old, before, since))) if same(*old, at) && *before == shown => {
+                (self.clock - since >= REST).then_some(at)
             }
-            (new, _) => {
-                self.why = Asked { at: new.map(|new| (new, camera, Instant::now())), ..Asked::default() };
-                false
+            (asked, _) => {
+                self.why = Asked { at: asked.map(|(at, shown)| (at, shown, self.clock)), ..Asked::default() };
+                None
             }
         };
-        if !rests || !self.settings.view.mode.shows_camera() {
-            return;
-        }
+        let Some(at) = at else { return };
         let step = self.why.step.take();
         self.why.step = match step {
-            None => self.question(hover.unwrap_or_default(), size).map(|question| {
+            None => self.question(at, size).map(|question| {
                 let answer = think(question.clone());
                 Step::Finding(question, answer)
             }),
@@ -116,6 +115,14 @@ impl Stage {
             compared_depth: why.compared,
             pixels_per_texel: why.pixels_per_texel,
         })
+    }
+
+    /// What the picture shows at a point, where it is the camera's own.
+    fn shown_at(&self, at: [f32; 2], size: [u32; 2]) -> Option<Key> {
+        let in_other = self.is_comparing() && at[0] > self.split;
+        let (_, technique) = self.side_at(in_other).filter(|_| self.settings.view.mode.shows_camera())?;
+        let View { camera, direction, .. } = self.view(size);
+        Some(Key { camera, technique, direction, seconds: self.seconds })
     }
 
     fn question(&self, at: [f32; 2], size: [u32; 2]) -> Option<Question> {

@@ -195,25 +195,28 @@ impl Viewer {
     fn go_back(&mut self) {
         let now = self.state();
         if let Some(state) = self.history.undo(&now) {
-            self.restore_state(&state);
+            self.restore_state(state);
         }
     }
 
     fn go_forward(&mut self) {
         let now = self.state();
         if let Some(state) = self.history.redo(&now) {
-            self.restore_state(&state);
+            self.restore_state(state);
         }
     }
 
-    fn restore_state(&mut self, state: &State) {
+    fn restore_state(&mut self, state: State) {
         self.stage.settings = state.settings;
         self.stage.compare_with(state.other);
-        self.stage.restore_shown(state.shown);
+        self.stage.restore_artefact(state.artefact);
     }
 
-    /// Flies to what is at a point of the picture.
+    /// Flies to what is at a point of the picture, where that is the camera's own.
     fn focus(&mut self, at: [f32; 2]) {
+        if !self.stage.settings.view.mode.shows_camera() {
+            return;
+        }
         let Some(target) = self.stage.pick(at, self.interface.pictures.size()) else { return };
         let eye = self.stage.camera.position;
         self.stage.set_camera(FlyCamera::look_at(eye + (target - eye) * FOCUS, target));

@@ -10,7 +10,7 @@ use shadowfit::Technique;
 use shadowfit::settings::FitKind;
 use shadowfit::tool::ViewMode;
 use shadowfit_egui::{Artefact, Tune};
-use shadowfit_render::{AdapterChoice, Gpu};
+use shadowfit_render::{AdapterChoice, FlyInput, Gpu};
 
 use super::{Start, Viewer};
 use crate::cli::Arguments;
@@ -192,6 +192,24 @@ fn gpu_an_artefact_is_found_on_a_thread_shown_told_and_fixed() {
 }
 
 #[test]
+fn gpu_the_card_of_an_artefact_comes_back_as_it_was_and_marks_outlast_it() {
+    let mut viewer = ready(&[], None);
+    let pause = |viewer: &mut Viewer| (0..60).for_each(|_| frame(viewer));
+    pause(&mut viewer);
+    run(&mut viewer, Command::ShowArtefact(Artefact::Acne));
+    until(&mut viewer, "acne", |viewer| viewer.stage.shown().is_some());
+    run(&mut viewer, Command::NextMarks);
+    pause(&mut viewer);
+    let card = viewer.stage.artefact_show().clone();
+    run(&mut viewer, Command::CloseArtefact);
+    assert_ne!(viewer.stage.settings.view.marks, shadowfit::tool::ErrorMarks::Off);
+    pause(&mut viewer);
+    run(&mut viewer, Command::Undo);
+    assert_eq!(*viewer.stage.artefact_show(), card);
+    assert!(viewer.stage.narration().contains("texel") && viewer.stage.notice().is_none());
+}
+
+#[test]
 fn gpu_a_search_for_a_technique_can_be_stopped_and_taken_over() {
     let mut viewer = ready(&["--technique", "xna-1"], None);
     run(&mut viewer, Command::StartTune);
@@ -224,9 +242,10 @@ fn gpu_a_picture_brings_its_settings_back_when_it_is_opened() {
 fn gpu_the_pixel_under_a_resting_pointer_is_explained() {
     let mut viewer = ready(&[], None);
     until(&mut viewer, "rays", |viewer| viewer.stage.prepared_scene().ready_rays().is_some());
-    let size = viewer.interface.pictures.size();
+    let (size, at) = (viewer.interface.pictures.size(), Some([0.5, 0.9]));
     for _ in 0..6000 {
-        viewer.stage.ask_why(Some([0.5, 0.9]), size);
+        viewer.stage.ask_why(at, size);
+        viewer.stage.update(&FlyInput::default(), FRAME);
         if viewer.stage.why().is_some_and(|card| card.stored_depth.is_some()) {
             break;
         }
@@ -234,4 +253,20 @@ fn gpu_the_pixel_under_a_resting_pointer_is_explained() {
     }
     let card = viewer.stage.why().expect("the ground is there");
     assert!(card.map.is_some() && card.reason.len() > 10 && card.map_reason.contains("map"), "{card:?}");
+    viewer.stage.settings.technique.bias.constant += 1.0;
+    viewer.stage.ask_why(at, size);
+    assert_eq!(viewer.stage.why(), None, "another technique");
+}
+
+#[test]
+fn gpu_a_click_flies_nowhere_where_the_picture_is_not_the_cameras() {
+    let mut viewer = ready(&[], None);
+    until(&mut viewer, "rays", |viewer| viewer.stage.prepared_scene().ready_rays().is_some());
+    let camera = viewer.stage.camera;
+    run(&mut viewer, Command::View(ViewMode::Outside));
+    run(&mut viewer, Command::Focus([0.5, 0.9]));
+    assert_eq!(viewer.stage.camera, camera);
+    run(&mut viewer, Command::View(ViewMode::Error));
+    run(&mut viewer, Command::Focus([0.5, 0.9]));
+    assert_ne!(viewer.stage.camera, camera);
 }

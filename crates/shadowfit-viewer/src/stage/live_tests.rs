@@ -1,0 +1,133 @@
+//! When pictures are judged, and of which one the figures are: by the GPU in each frame, and by threads now and then.
+
+use shadowfit::tool::ViewMode;
+use shadowfit_render::{AdapterChoice, FlyInput, Gpu, RenderTarget, UpdateContent};
+use shadowfit_scene::builtin::default_scene;
+
+use super::*;
+
+const SIZE: [u32; 2] = [160, 90];
+
+/// The default scene, judged by the GPU in each frame or by threads.
+fn stage(on_gpu: bool) -> (Stage, RenderTarget) {
+    let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
+    let mut stage = Stage::new(gpu, default_scene(), 1).expect("the default scene");
+    stage.prepared_scene().rays();
+    stage.read_depths();
+    stage.settings.technique = stage.settings.technique.with_resolution(256, 256);
+    stage.settings.view.play = false;
+    stage.side.live.on_gpu = on_gpu;
+    let target = stage.target(SIZE);
+    (stage, target)
+}
+
+/// Lets the stage's clock go on while nothing moves.
+fn wait(stage: &mut Stage, seconds: f32) {
+    stage.update(&FlyInput::default(), seconds);
+}
+
+fn draw(stage: &mut Stage, target: &RenderTarget) {
+    stage.draw(target);
+    assert_eq!(stage.problem(), None);
+}
+
+/// Draws the same frame until it is judged.
+fn judge(stage: &mut Stage, target: &RenderTarget) {
+    for _ in 0..6000 {
+        draw(stage, target);
+        if stage.is_judged() {
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    panic!("it is never judged");
+}
+
+/// Another view: a step to the side.
+fn step(stage: &mut Stage) {
+    stage.camera.position.x += 0.01;
+}
+
+#[test]
+fn gpu_figures_of_an_older_picture_are_not_those_of_the_view() {
+    let (mut stage, target) = stage(true);
+    judge(&mut stage, &target);
+    let wrong = |stage: &Stage| stage.judged_figures().expect("it was judged").wrong;
+    let fine = wrong(&stage);
+    stage.settings.technique.count = 1;
+    draw(&mut stage, &target);
+    assert!(!stage.is_judged(), "its sums are on their way");
+    assert_eq!(wrong(&stage), fine, "those of the picture before");
+    judge(&mut stage, &target);
+    assert!(wrong(&stage) > fine * 1.5, "{} %, then {fine} %", wrong(&stage));
+}
+
+#[test]
+fn gpu_a_picture_that_is_waited_for_has_its_figures_at_once() {
+    for on_gpu in [true, false] {
+        let (mut stage, target) = stage(on_gpu);
+        stage.wait_for_rays();
+        for _ in 0..2 {
+            draw(&mut stage, &target);
+            assert!(stage.is_judged() && stage.judged_figures().is_some(), "on the GPU: {on_gpu}");
+            step(&mut stage);
+        }
+    }
+}
+
+#[test]
+fn gpu_the_age_of_figures_is_told_by_the_clock_of_the_stage() {
+    let (mut stage, target) = stage(false);
+    stage.wait_for_rays();
+    draw(&mut stage, &target);
+    std::thread::sleep(std::time::Duration::from_millis(20));
+    let age = |stage: &Stage| stage.judged_figures().expect("it was judged").age;
+    assert_eq!(age(&stage), 0.0);
+    wait(&mut stage, 1.5);
+    assert_eq!(age(&stage), 1.5);
+}
+
+#[test]
+fn gpu_threads_judge_a_moving_view_every_two_seconds_and_one_after_the_other_where_errors_are_shown() {
+    let (mut stage, target) = stage(false);
+    judge(&mut stage, &target);
+    // Whether a step of so many seconds has the next picture judged.
+    let is_begun = |stage: &mut Stage, seconds: f32| {
+        wait(stage, seconds);
+        step(stage);
+        draw(stage, &target);
+        !stage.side.live.is_idle()
+    };
+    for _ in 0..9 {
+        assert!(!is_begun(&mut stage, 0.2));
+    }
+    assert!(is_begun(&mut stage, 0.3), "two seconds after the last one");
+    judge_what_is_begun(&mut stage, &target);
+    assert!(!is_begun(&mut stage, 0.2));
+    wait(&mut stage, 0.4);
+    draw(&mut stage, &target);
+    assert!(!stage.side.live.is_idle(), "the view stood still");
+    judge_what_is_begun(&mut stage, &target);
+    stage.settings.view.mode = ViewMode::Error;
+    assert!(is_begun(&mut stage, 0.01));
+    let picture = stage.side.live.picture().expect("one was judged");
+    assert!(picture.depth.is_some(), "it tells which surfaces it shows");
+}
+
+/// Draws the same frame until the threads are done.
+fn judge_what_is_begun(stage: &mut Stage, target: &RenderTarget) {
+    while !stage.side.live.is_idle() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        draw(stage, target);
+    }
+}
+
+#[test]
+fn gpu_maps_that_are_drawn_for_the_judge_are_not_shown_as_kept() {
+    let (mut stage, target) = stage(true);
+    stage.settings.view.mode = ViewMode::Updates;
+    draw(&mut stage, &target);
+    let drawn = stage.side.evaluator.renderer.map_updates();
+    let maps = stage.settings.technique.count as usize;
+    assert_eq!(drawn.iter().filter(|update| update.content == UpdateContent::Static).count(), maps, "{drawn:?}");
+}
