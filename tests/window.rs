@@ -7,6 +7,7 @@
 mod desktop;
 mod shot;
 
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use desktop::{Desktop, Viewer, missing_tools};
@@ -81,7 +82,7 @@ fn random_keys_clicks_drags_resizes_and_files_neither_stop_the_viewer_nor_leak()
     let Some(desktop) = desktop("monkey") else { return };
     let seconds = std::env::var("SHADOWFIT_MONKEY_SECONDS").ok().and_then(|text| text.parse().ok());
     let seconds: u32 = seconds.unwrap_or(MONKEY_SECONDS);
-    let files = crate::support::assets().unwrap_or_else(|| desktop.file("no-files"));
+    let files = crate::support::assets().unwrap_or_else(|| few_files(&desktop));
     let script = desktop.file("monkey.txt");
     let text = format!(
         "await loaded\nset map.resolution 512\nset view.judge on\nmonkey {seconds} 1 {}\nquit\n",
@@ -104,6 +105,29 @@ fn random_keys_clicks_drags_resizes_and_files_neither_stop_the_viewer_nor_leak()
     let growth = growth.unwrap_or_else(|| panic!("no growth was measured: {report}"));
     let most = if seconds < LONG { SHORT_GROWTH } else { MONKEY_GROWTH };
     assert!(growth < most, "memory grows: {report}");
+}
+
+/// A folder with files to drop where there are no others: a scene, a technique, and what looks like a scene and is none.
+fn few_files(desktop: &Desktop) -> PathBuf {
+    /// A triangle, ten metres wide.
+    const SCENE: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[10,1,10]}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],
+        "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAAAgQQAAAAAAAAAAAAAAAAAAgD8AACBB"}]}"#;
+    let folder = desktop.file("files");
+    std::fs::create_dir_all(&folder).expect("a folder for the files");
+    let files: [(&str, &[u8]); 5] = [
+        ("triangle.gltf", SCENE.as_bytes()),
+        ("filter.toml", b"[map]\nfilter = \"pcf_3x3\"\n"),
+        ("cut.glb", b"glTF\x02\0\0\0\xff\xff\xff\x7f"),
+        ("empty.glb", b""),
+        ("text.gltf", b"no scene"),
+    ];
+    for (name, bytes) in files {
+        std::fs::write(folder.join(name), bytes).expect("the file is written");
+    }
+    folder
 }
 
 #[test]

@@ -7,6 +7,7 @@ use egui::{
 };
 use shadowfit::tool::ViewMode;
 use shadowfit_render::RenderTarget;
+use shadowfit_study::Seen;
 
 use super::paint::Painter;
 use shadowfit::figures::Figures;
@@ -201,9 +202,13 @@ fn wheel_notches(ui: &Ui) -> f32 {
 fn over(ui: &Ui, stage: &Stage, figures: &Figures, rect: Rect) {
     let view = &stage.settings.view;
     shadowfit_egui::legend_overlay(ui.ctx(), rect, view, figures);
-    if view.mode == ViewMode::Final && !view.shadows {
-        label(ui, rect.left_top() + Vec2::splat(MARGIN), Align2::LEFT_TOP, "Shadows are off");
-    }
+    let note = match view.mode {
+        ViewMode::Final if !view.shadows => "Shadows are off",
+        // Maps of other techniques are laid without counting what the picture shows.
+        ViewMode::Need if !Seen::is_used_by(&stage.settings.technique) => "This technique does not look at the need",
+        _ => return,
+    };
+    label(ui, rect.left_top() + Vec2::splat(MARGIN), Align2::LEFT_TOP, note);
 }
 
 /// How far a scene is, or that an artefact is being searched.
