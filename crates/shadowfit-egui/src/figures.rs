@@ -26,7 +26,11 @@ fn lines(figures: &Figures) -> [Line; 8] {
         ),
         ("Shadow passes", figures.shadow_pass_ms.map(time), "GPU time of drawing all shadow maps."),
         ("Scene pass", figures.scene_pass_ms.map(time), "GPU time of drawing the picture."),
-        ("Judging", figures.judge_ms.map(time), "GPU time of judging the picture against rays."),
+        (
+            "Judging",
+            figures.judge_ms.map(time),
+            "GPU time of judging the picture: finding what each pixel shows, and casting rays where no thread does.",
+        ),
         (
             "Shadow draws",
             figures.shadow_draws.map(|draws| grouped(draws.into())),

@@ -19,27 +19,20 @@ pub(crate) fn drawn_over(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttac
     wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
 }
 
-/// The camera's depth, reversed: cleared to the far value 0.
-pub(crate) fn depth(view: &wgpu::TextureView, store: wgpu::StoreOp) -> wgpu::RenderPassDepthStencilAttachment<'_> {
-    wgpu::RenderPassDepthStencilAttachment {
-        view,
-        depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store }),
-        stencil_ops: None,
-    }
+/// The camera's depth, reversed: cleared to the far value 0, and kept.
+pub(crate) fn depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store };
+    wgpu::RenderPassDepthStencilAttachment { view, depth_ops: Some(ops), stencil_ops: None }
 }
 
 /// The camera's depth as it was drawn before.
 pub(crate) fn kept_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
-    wgpu::RenderPassDepthStencilAttachment {
-        view,
-        depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store }),
-        stencil_ops: None,
-    }
+    let ops = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
+    wgpu::RenderPassDepthStencilAttachment { view, depth_ops: Some(ops), stencil_ops: None }
 }
 
-/// The part of a scissor rectangle (left, top, width, height, in pixels) that lies in a picture; all of it without one.
-pub(crate) fn part(scissor: Option<[u32; 4]>, size: [u32; 2]) -> [u32; 4] {
-    let Some([x, y, width, height]) = scissor else { return [0, 0, size[0], size[1]] };
+/// The part of a scissor rectangle (left, top, width, height, in pixels) that lies in a picture.
+pub(crate) fn part([x, y, width, height]: [u32; 4], size: [u32; 2]) -> [u32; 4] {
     let [x, y] = [x.min(size[0]), y.min(size[1])];
     [x, y, width.min(size[0] - x), height.min(size[1] - y)]
 }
@@ -64,9 +57,8 @@ mod tests {
 
     #[test]
     fn a_part_ends_with_its_picture() {
-        assert_eq!(part(None, [64, 32]), [0, 0, 64, 32]);
-        assert_eq!(part(Some([60, 8, 64, u32::MAX]), [64, 32]), [60, 8, 4, 24]);
-        assert_eq!(part(Some([99, 99, 4, 4]), [64, 32]), [64, 32, 0, 0]);
+        assert_eq!(part([60, 8, 64, u32::MAX], [64, 32]), [60, 8, 4, 24]);
+        assert_eq!(part([99, 99, 4, 4], [64, 32]), [64, 32, 0, 0]);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use shadowfit_scene::{Image, Material, Scene, Texture, Wrap};
 
+use crate::attachment::cleared;
 use crate::uniform::MaterialUniform;
 use crate::{Gpu, bindings, shaders};
 
@@ -204,23 +205,13 @@ impl LevelMaker {
             })
         };
         let source = view(level - 1);
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&source) },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&self.sampler) },
-            ],
-        });
+        let resources = [wgpu::BindingResource::TextureView(&source), wgpu::BindingResource::Sampler(&self.sampler)];
+        let layout = pipeline.get_bind_group_layout(0);
+        let group = bindings::group(&gpu.device, "texture level", &layout, &resources);
         let target = view(level);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("texture level"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &target,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
-            })],
+            color_attachments: &[Some(cleared(&target, None, wgpu::Color::BLACK))],
             ..Default::default()
         });
         pass.set_pipeline(pipeline);

@@ -161,6 +161,7 @@ impl Renderer {
         frame: &Frame<'_>,
         target: &RenderTarget,
     ) -> Result<Statistics, ShadowMapError> {
+        self.timer.begin_picture(gpu, frame.maps_stay);
         let plan = self.prepare(gpu, scene, (frame, Drawn::Shaded(frame.overlay)), target.size)?;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.shadow_passes(&mut encoder, scene, &plan);
@@ -169,7 +170,7 @@ impl Renderer {
         self.timer.resolve(&mut encoder);
         gpu.submit([encoder.finish()]);
         self.timer.end_frame(gpu);
-        Ok(plan.statistics(scene, core::mem::take(&mut self.drawn)))
+        Ok(plan.statistics(core::mem::take(&mut self.drawn)))
     }
 
     /// Draws a frame's shadow decisions and reads them back.

@@ -176,12 +176,12 @@ impl GpuScene {
         casters.draws(numbers, indices, add, draws);
     }
 
-    /// Adds the instances that a pass sees, and returns its draws. `keep` is asked with the
-    /// instance's index and its bounds relative to the frame's eye.
+    /// Adds the instances that a pass sees, and returns its draws. `keep` is asked with an instance's bounds relative to
+    /// the frame's eye.
     pub(crate) fn visible(
         &mut self,
-        mut keep: impl FnMut(usize, &shadowfit::Aabb) -> bool,
-        mut takes: impl FnMut(&Part) -> bool,
+        keep: impl Fn(&shadowfit::Aabb) -> bool,
+        takes: impl Fn(&Part) -> bool,
     ) -> Vec<Draw> {
         let mut draws = Vec::new();
         for (part_index, part) in self.parts.iter().enumerate().filter(|(_, part)| takes(part)) {
@@ -189,7 +189,7 @@ impl GpuScene {
             let mut distance = f32::INFINITY;
             for &member in &part.members {
                 let (instance, bounds) = (&self.instances[member], &self.boxes[member]);
-                if !bounds.is_empty() && keep(member, bounds) {
+                if !bounds.is_empty() && keep(bounds) {
                     distance = distance.min(((bounds.min + bounds.max) * 0.5).length());
                     let data = instance_data(&instance.world_from_mesh, self.eye, instance.first_triangle);
                     let holder = self.holders.get(member).copied().unwrap_or(0);

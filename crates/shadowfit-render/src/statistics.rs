@@ -13,8 +13,6 @@ pub struct Statistics {
     pub shadow_texels: u64,
     /// Draw calls of the shaded pass.
     pub scene_draws: u32,
-    /// Triangles of the shaded pass.
-    pub scene_triangles: u64,
     /// What was drawn into each map; zeros past the number of maps.
     pub maps: [MapStatistics; MAX_MAPS],
 }
@@ -22,7 +20,8 @@ pub struct Statistics {
 /// What was drawn into one map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MapStatistics {
-    /// Instances that were not culled.
+    /// Casters that were drawn: [clusters](crate::clustered) of the instances' triangles. One that lies in several
+    /// rectangles counts in each.
     pub casters: u32,
     /// Draw calls for them.
     pub draws: u32,

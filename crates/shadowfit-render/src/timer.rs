@@ -21,8 +21,9 @@ pub(crate) enum Pass {
 /// Times of the last frame that the GPU has finished, in milliseconds; `None` for passes that it had none of, and where the
 /// adapter has no timestamps.
 ///
-/// A frame ends with its picture; a probe that is drawn before it belongs to it. Further pictures of the same maps
-/// ([`Frame::maps_stay`](crate::Frame::maps_stay)) are not timed.
+/// A frame ends with its picture. A probe that is drawn before it belongs to it where the maps
+/// [stay](crate::Frame::maps_stay); of any other probe only its own pass is timed. Further pictures of the same maps are
+/// not timed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PassTimes {
     /// All shadow passes together.
@@ -50,6 +51,9 @@ impl fmt::Debug for PassTimer {
     }
 }
 
+/// Frames that wait for the GPU at most: each picture may have one or two probes that are frames of their own.
+const PENDING: usize = 9;
+
 /// Labels of the passes into the maps.
 const SHADOW_LABELS: [&str; MAX_MAPS] =
     ["shadow 0", "shadow 1", "shadow 2", "shadow 3", "shadow 4", "shadow 5", "shadow 6", "shadow 7"];
@@ -66,7 +70,7 @@ impl Pass {
 }
 
 impl PassTimes {
-    /// Times of a frame. What it lacks is left as it was where the frame is only a further picture of the same maps.
+    /// Times of a frame. What it lacks is left as it was where it has no picture, or only a further one of the same maps.
     fn of(results: &[GpuTimerQueryResult], before: Self) -> Self {
         let milliseconds = |pass: Pass| {
             let ranges = results.iter().filter(|result| result.label == pass.label());
@@ -80,15 +84,16 @@ impl PassTimes {
             probe_ms: milliseconds(Pass::Probe),
             scene_ms: milliseconds(Pass::Scene),
         };
-        let is_further = results.iter().any(|result| result.label == Pass::Again.label());
-        if is_further { Self { probe_ms: times.probe_ms.or(before.probe_ms), ..before } } else { times }
+        let is_whole = results.iter().any(|result| result.label == Pass::Scene.label());
+        if is_whole { times } else { Self { probe_ms: times.probe_ms.or(before.probe_ms), ..before } }
     }
 }
 
 impl PassTimer {
     pub(crate) fn new(device: &wgpu::Device) -> Self {
         let has_timestamps = device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
-        let profiler = has_timestamps.then(|| GpuProfiler::new(device, GpuProfilerSettings::default()).ok()).flatten();
+        let settings = GpuProfilerSettings { max_num_pending_frames: PENDING, ..GpuProfilerSettings::default() };
+        let profiler = has_timestamps.then(|| GpuProfiler::new(device, settings).ok()).flatten();
         Self { profiler, times: PassTimes::default(), has_probe: false, has_maps: false }
     }
 
@@ -98,6 +103,13 @@ impl PassTimer {
             self.end_frame(gpu);
         }
         (self.has_probe, self.has_maps) = (true, !maps_stay);
+    }
+
+    /// A picture comes next. One whose maps are drawn for it is a frame of its own.
+    pub(crate) fn begin_picture(&mut self, gpu: &Gpu, maps_stay: bool) {
+        if self.has_probe && !maps_stay {
+            self.end_frame(gpu);
+        }
     }
 
     /// What the shaded pass of a frame is timed as.

@@ -9,7 +9,7 @@ use anyhow::{Context, Result, anyhow};
 use shadowfit::params::{self, Group, PARAMETERS};
 use shadowfit::tool::Settings;
 
-use crate::technique_file::{is_written, key, refuse_the_rest, text_of, value_of};
+use crate::technique_file::{key, refuse_the_rest, text_of, value_of};
 
 /// Settings as TOML text that [`settings_from_toml`] reads: a table for each group, its name behind `prefix`, such as
 /// `settings.`.
@@ -19,7 +19,7 @@ pub fn settings_to_toml(settings: &Settings, prefix: &str) -> String {
     let mut text = String::new();
     for group in Group::ALL {
         let _ = writeln!(text, "[{prefix}{}]", group.id());
-        for parameter in group.parameters().filter(|parameter| is_written(parameter, settings)) {
+        for parameter in group.parameters().filter(|parameter| parameter.is_present(settings)) {
             let value = value_of(parameter, settings);
             if !["NaN", "inf", "-inf"].contains(&value.trim_matches('"')) {
                 let _ = writeln!(text, "{} = {value}", key(parameter));
@@ -54,7 +54,7 @@ pub fn settings_from_toml(table: &toml::Table, settings: &mut Settings) -> Resul
 
 #[cfg(test)]
 mod tests {
-    use shadowfit::settings::SplitScheme;
+    use shadowfit::settings::{FitKind, SplitScheme};
     use shadowfit::tool::{ErrorMarks, ViewMode};
 
     use super::*;
@@ -77,6 +77,21 @@ mod tests {
         assert_eq!(read, settings);
         // A person who reads the file finds names, and not numbers of variants.
         assert!(text.contains("[settings.view]") && text.contains("mode = \"error\""), "{text}");
+    }
+
+    #[test]
+    fn a_file_of_maps_without_overrides_takes_those_of_others_away() {
+        let settings = Settings::default();
+        let file = table(&settings_to_toml(&settings, ""));
+        let mut read = settings;
+        read.technique.overrides[1].resolution = Some(glam::uvec2(1024, 512));
+        read.technique.overrides[2].kind = Some(FitKind::Sphere);
+        settings_from_toml(&file, &mut read).expect("what was written");
+        assert_eq!(read, settings);
+        let mut own = settings;
+        own.technique.overrides[1].resolution = Some(glam::uvec2(2048, 1024));
+        settings_from_toml(&table(&settings_to_toml(&own, "")), &mut read).expect("what was written");
+        assert_eq!(read, own);
     }
 
     #[test]

@@ -138,7 +138,7 @@ impl NamedTechnique {
 }
 
 /// Whether a parameter gets a line: settings of single maps only where there are any.
-pub(crate) fn is_written(parameter: &Parameter, settings: &Settings) -> bool {
+fn is_written(parameter: &Parameter, settings: &Settings) -> bool {
     let is_default = parameter.is_equal(settings, &Settings::default());
     parameter.is_present(settings) && !(parameter.group == Group::Override && is_default)
 }

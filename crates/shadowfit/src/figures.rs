@@ -65,7 +65,8 @@ pub struct Figures {
     pub shadow_triangles: Option<u64>,
     /// Texels of the maps that were drawn in this frame, kept ones left out.
     pub shadow_texels: Option<u64>,
-    /// GPU time of judging the picture against rays, in milliseconds.
+    /// GPU time of judging the picture against rays, in milliseconds: of the pass that finds what each pixel shows, and of
+    /// those that judge it where the GPU does.
     pub judge_ms: Option<f32>,
     /// The last picture that was judged against rays.
     pub judged: Option<JudgedFigures>,

@@ -47,7 +47,7 @@ impl Renderer {
             color_attachments: &[Some(color)],
             depth_stencil_attachment: Some(match plan.part {
                 Some(_) => kept_depth(&target.depth_view),
-                None => depth(&target.depth_view, wgpu::StoreOp::Store),
+                None => depth(&target.depth_view),
             }),
             timestamp_writes: query.as_ref().and_then(GpuProfilerQuery::render_pass_timestamp_writes),
             ..Default::default()
@@ -90,7 +90,7 @@ impl Renderer {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("probe"),
             color_attachments: &[Some(cleared(&targets.view, None, wgpu::Color::TRANSPARENT))],
-            depth_stencil_attachment: Some(depth(&targets.depth, wgpu::StoreOp::Store)),
+            depth_stencil_attachment: Some(depth(&targets.depth)),
             timestamp_writes: query.as_ref().and_then(GpuProfilerQuery::render_pass_timestamp_writes),
             ..Default::default()
         });

@@ -43,13 +43,13 @@ impl Renderer {
             let masks = self.maps.holders(&scene.casters());
             scene.set_holders(&masks);
         }
-        let part = frame.scissor.map(|scissor| part(Some(scissor), size));
+        let part = frame.scissor.map(|scissor| part(scissor, size));
         let clip_from_world = Mat4::from_cols_array_2d(&uniform.clip_from_world);
         let seen = in_frustum(part.map_or(Mat4::IDENTITY, |part| part_from_whole(part, size)) * clip_from_world);
-        let mut opaque = scene.visible(|_, bounds| seen(bounds), Part::casts);
+        let mut opaque = scene.visible(&seen, Part::casts);
         // Near things first, so that what they hide is never shaded.
         opaque.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-        let mut blended = scene.visible(|_, bounds| seen(bounds), |part| !part.casts());
+        let mut blended = scene.visible(&seen, |part| !part.casts());
         blended.sort_by(|a, b| b.distance.total_cmp(&a.distance));
         scene.end_frame(gpu);
         let shows_judged = frame.overlay.is_judged() || (frame.marks.is_some() && frame.judged.is_some());
@@ -88,17 +88,12 @@ impl Renderer {
 
 impl Plan {
     /// What the frame drew. `maps`: into the maps.
-    pub(super) fn statistics(&self, scene: &GpuScene, maps: [MapStatistics; MAX_MAPS]) -> Statistics {
-        let triangles = |draws: &[Draw]| -> u64 {
-            let of = |draw: &Draw| u64::from(scene.parts[draw.part].index_count / 3) * draw.instances.len() as u64;
-            draws.iter().map(of).sum()
-        };
+    pub(super) fn statistics(&self, maps: [MapStatistics; MAX_MAPS]) -> Statistics {
         Statistics {
             shadow_draws: maps.iter().map(|map| map.draws).sum(),
             shadow_triangles: maps.iter().map(|map| map.triangles).sum(),
             shadow_texels: maps.iter().map(|map| map.texels).sum(),
             scene_draws: (self.opaque.len() + self.blended.len()) as u32,
-            scene_triangles: triangles(&self.opaque) + triangles(&self.blended),
             maps,
         }
     }

@@ -58,8 +58,8 @@ pub fn load_gltf_scene(path: &Path, scene: Option<usize>) -> Result<Scene, Scene
     load_gltf_with_progress(path, scene, &|_| ())
 }
 
-/// The same, and tells the share that is loaded, 0..=1, now and then: nodes with a mesh, whose images are loaded with
-/// them, out of all that there are.
+/// The same, and tells the share that is loaded now and then, from 0 to 1: nodes, with the meshes and images that they
+/// draw, out of all that there are.
 ///
 /// # Errors
 /// As [`load_gltf_scene`].
@@ -140,6 +140,7 @@ fn meshes<'a>(
             }
         };
     }
+    progress(1.0);
     Ok((meshes, materials))
 }
 

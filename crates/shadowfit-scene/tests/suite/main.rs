@@ -6,6 +6,7 @@
 mod assets;
 mod build;
 mod hostile;
+mod progress;
 mod small_broken;
 mod small_images;
 mod small_motion;

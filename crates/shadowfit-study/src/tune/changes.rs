@@ -29,11 +29,11 @@ pub(super) fn rounds(start: &Technique, scope: TuneScope) -> Vec<Vec<Change>> {
     }
 }
 
-fn everything(maps: u32) -> Vec<Vec<Change>> {
+fn everything(count: u32) -> Vec<Vec<Change>> {
     let mut rounds = vec![fits(), biases(), filters()];
-    if maps > 1 {
+    if count > 1 {
         rounds.push(splits());
-        rounds.push(counts(maps));
+        rounds.push(counts(count));
     }
     rounds.extend([stillness(), rectangles(), fine_biases(), filters()]);
     rounds
@@ -107,10 +107,15 @@ fn splits() -> Vec<Change> {
     schemes.into_iter().map(change).collect()
 }
 
-fn counts(maps: u32) -> Vec<Change> {
-    let fewer = (1..maps).rev().take(2);
+/// A number of maps in words.
+pub(super) fn maps(count: u32) -> String {
+    if count == 1 { "1 map".to_owned() } else { format!("{count} maps") }
+}
+
+fn counts(most: u32) -> Vec<Change> {
+    let fewer = (1..most).rev().take(2);
     let change =
-        |count| Change::new(format!("{count} maps only"), move |technique: &mut Technique| technique.count = count);
+        |count| Change::new(format!("{} only", maps(count)), move |technique: &mut Technique| technique.count = count);
     fewer.map(change).collect()
 }
 

@@ -5,6 +5,7 @@ use super::input::GpuJudgeInput;
 use super::pipeline::{STORAGE, TEXTURE, UNIFORM, group, group_layout, pipeline};
 use super::pixel::GpuPixel;
 use super::shader;
+use super::stopwatch::Stopwatch;
 use super::tally::GpuTally;
 use super::tally_pass::{TallyInput, TallyPass};
 use super::tracer::{GpuTracer, scene_layout};
@@ -32,6 +33,7 @@ pub struct GpuJudge {
     uniform: wgpu::Buffer,
     target: Option<Target>,
     tally: TallyPass,
+    stopwatch: Option<Stopwatch>,
     /// Number of pictures that were recorded.
     pictures: u64,
 }
@@ -58,7 +60,8 @@ impl GpuJudge {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        Self { layout, pipelines, uniform, target: None, tally: TallyPass::new(device), pictures: 0 }
+        let (tally, stopwatch) = (TallyPass::new(device), Stopwatch::new(device));
+        Self { layout, pipelines, uniform, target: None, tally, stopwatch, pictures: 0 }
     }
 
     /// Records the passes that judge a picture, and returns the texture that they fill (see
@@ -108,8 +111,10 @@ impl GpuJudge {
         let group = group(device, "judged picture", &self.layout, resources);
         let squares = size.map(|side| side.div_ceil(SQUARE));
         let [trace, rows, classify] = &self.pipelines;
+        let mut begin = self.stopwatch.as_ref().map(Stopwatch::begin);
         for (pipeline, [x, y]) in [(trace, squares), (rows, [size[1], 1]), (classify, squares)] {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            let timestamp_writes = begin.take();
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
             pass.set_pipeline(pipeline);
             pass.set_bind_group(0, tracer.group(), &[]);
             pass.set_bind_group(1, &group, &[]);
@@ -118,7 +123,8 @@ impl GpuJudge {
         self.pictures += 1;
         let (picture, uniform, target) = (self.pictures, &self.uniform, &*self.target.insert(target));
         let (pixels, classes) = (&target.pixels, &target.view);
-        let summed = TallyInput { picture, size, uniform, seen, pixels, classes, seen_before };
+        let (stopwatch, period) = (self.stopwatch.as_ref(), queue.get_timestamp_period());
+        let summed = TallyInput { picture, size, uniform, seen, pixels, classes, seen_before, stopwatch, period };
         self.tally.record(device, encoder, &summed);
         Ok(&target.classes)
     }

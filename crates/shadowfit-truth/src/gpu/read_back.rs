@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
 use super::error::GpuTruthError;
+use super::stopwatch::Ticks;
 use super::uniform::TallyRecord;
 
 /// Buffers that take turns: the GPU works on one picture while another waits in line and the CPU reads a third.
@@ -17,6 +18,12 @@ const BUSY: u8 = 1;
 const READABLE: u8 = 2;
 /// The device was lost.
 const FAILED: u8 = 3;
+
+/// What comes back of a picture: its number, its sums, and when it was judged, zeros where that was not timed.
+pub(super) type Back = (u64, TallyRecord, Ticks);
+
+/// Bytes of the sums; the times come after them.
+const SUMS: u64 = size_of::<TallyRecord>() as u64;
 
 /// The buffers.
 #[derive(Debug)]
@@ -32,18 +39,22 @@ pub(super) struct ReadBack {
 }
 
 /// Is told when the buffer can be read. An encoder that is dropped instead of submitted drops it untold.
-struct Told(Arc<AtomicU8>);
+struct Told(Option<Arc<AtomicU8>>);
 
 impl Told {
-    fn tell(self, is_readable: bool) {
-        self.0.store(if is_readable { READABLE } else { FAILED }, Ordering::Release);
+    fn tell(mut self, is_readable: bool) {
+        if let Some(state) = self.0.take() {
+            state.store(if is_readable { READABLE } else { FAILED }, Ordering::Release);
+        }
     }
 }
 
 impl Drop for Told {
     fn drop(&mut self) {
-        // Only where it was not told: a state that is not busy any more stays.
-        let _ = self.0.compare_exchange(BUSY, FREE, Ordering::AcqRel, Ordering::Relaxed);
+        // Only where it was not told: once it is, the buffer may be read and recorded into again by another thread.
+        if let Some(state) = &self.0 {
+            state.store(FREE, Ordering::Release);
+        }
     }
 }
 
@@ -59,8 +70,8 @@ impl ReadBacks {
         self.0.iter_mut().find(|read_back| read_back.is(FREE))
     }
 
-    /// Sums of the newest finished picture and its number, once.
-    pub(super) fn take(&mut self) -> Result<Option<(u64, TallyRecord)>, GpuTruthError> {
+    /// What came back of the newest finished picture, once.
+    pub(super) fn take(&mut self) -> Result<Option<Back>, GpuTruthError> {
         // All of them are asked, so that a lost device is told once.
         if self.0.iter().filter(|read_back| read_back.has_failed()).count() > 0 {
             return Err(GpuTruthError::Read);
@@ -82,7 +93,7 @@ impl ReadBack {
     fn new(device: &wgpu::Device) -> Self {
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("tally on its way back"),
-            size: size_of::<TallyRecord>() as u64,
+            size: SUMS + size_of::<Ticks>() as u64,
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
@@ -98,25 +109,59 @@ impl ReadBack {
         self.state.compare_exchange(FAILED, FREE, Ordering::AcqRel, Ordering::Relaxed).is_ok()
     }
 
-    /// Records the way back of a picture's sums.
-    pub(super) fn record(&mut self, encoder: &mut wgpu::CommandEncoder, sums: &wgpu::Buffer, picture: u64) {
+    /// Records the way back of a picture's sums, and of its times if they are taken.
+    pub(super) fn record(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        (sums, ticks): (&wgpu::Buffer, Option<&wgpu::Buffer>),
+        picture: u64,
+    ) {
         self.picture = picture;
         self.state.store(BUSY, Ordering::Release);
         encoder.copy_buffer_to_buffer(sums, 0, &self.buffer, 0, None);
-        let told = Told(Arc::clone(&self.state));
+        if let Some(ticks) = ticks {
+            encoder.copy_buffer_to_buffer(ticks, 0, &self.buffer, SUMS, None);
+        }
+        let told = Told(Some(Arc::clone(&self.state)));
         encoder.map_buffer_on_submit(&self.buffer, wgpu::MapMode::Read, .., move |result| told.tell(result.is_ok()));
     }
 
-    /// The number of the picture and its sums; the buffer is free again then.
-    fn take(&mut self) -> Result<(u64, TallyRecord), GpuTruthError> {
-        let record = self.buffer.get_mapped_range(..).ok().map(|mapped| bytemuck::pod_read_unaligned(&mapped));
+    /// What came back; the buffer is free again then.
+    fn take(&mut self) -> Result<Back, GpuTruthError> {
+        let read = |mapped: wgpu::BufferView| {
+            let (sums, ticks) = mapped.split_at(SUMS as usize);
+            (self.picture, bytemuck::pod_read_unaligned(sums), bytemuck::pod_read_unaligned(ticks))
+        };
+        let back = self.buffer.get_mapped_range(..).ok().map(read);
         self.release();
-        record.map(|record| (self.picture, record)).ok_or(GpuTruthError::Read)
+        back.ok_or(GpuTruthError::Read)
     }
 
     /// Gives the buffer back.
     fn release(&mut self) {
         self.buffer.unmap();
         self.state.store(FREE, Ordering::Release);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_buffer_is_freed_only_where_nobody_was_told() {
+        let state = Arc::new(AtomicU8::new(BUSY));
+        drop(Told(Some(Arc::clone(&state))));
+        assert_eq!(state.load(Ordering::Acquire), FREE);
+        for (is_readable, wanted) in [(true, READABLE), (false, FAILED)] {
+            Told(Some(Arc::clone(&state))).tell(is_readable);
+            assert_eq!(state.load(Ordering::Acquire), wanted);
+        }
+        // What was told is done with the buffer, whoever uses it next.
+        let mut told = Told(Some(Arc::clone(&state)));
+        told.0.take();
+        state.store(BUSY, Ordering::Release);
+        drop(told);
+        assert_eq!(state.load(Ordering::Acquire), BUSY);
     }
 }

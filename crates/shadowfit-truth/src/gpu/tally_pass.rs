@@ -4,6 +4,7 @@ use super::error::GpuTruthError;
 use super::pipeline::{STORAGE, TEXTURE, UNIFORM, group, group_layout, pipeline};
 use super::read_back::ReadBacks;
 use super::shader;
+use super::stopwatch::{Stopwatch, milliseconds};
 use super::tally::GpuTally;
 use super::uniform::TallyRecord;
 
@@ -17,6 +18,8 @@ pub(super) struct TallyPass {
     pipeline: wgpu::ComputePipeline,
     sums: wgpu::Buffer,
     read_backs: ReadBacks,
+    /// Nanoseconds of a tick.
+    period: f32,
 }
 
 /// What the pass reads.
@@ -30,6 +33,10 @@ pub(super) struct TallyInput<'a> {
     pub(super) classes: &'a wgpu::TextureView,
     /// Any texture of the size where no frame before is compared.
     pub(super) seen_before: &'a wgpu::TextureView,
+    /// Times the passes up to this one.
+    pub(super) stopwatch: Option<&'a Stopwatch>,
+    /// Nanoseconds of its ticks.
+    pub(super) period: f32,
 }
 
 impl TallyPass {
@@ -43,7 +50,7 @@ impl TallyPass {
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         });
-        Self { layout, pipeline, sums, read_backs: ReadBacks::new(device) }
+        Self { layout, pipeline, sums, read_backs: ReadBacks::new(device), period: 1.0 }
     }
 
     /// Records the sums of a picture and their way back; nothing where all buffers are on their way.
@@ -60,13 +67,16 @@ impl TallyPass {
         let group = group(device, "summed picture", &self.layout, resources);
         encoder.clear_buffer(&self.sums, 0, None);
         {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            let timestamp_writes = input.stopwatch.map(Stopwatch::end);
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(1, &group, &[]);
             let [x, y] = input.size.map(|side| side.div_ceil(SQUARE));
             pass.dispatch_workgroups(x, y, 1);
         }
-        read_back.record(encoder, &self.sums, input.picture);
+        let ticks = input.stopwatch.map(|stopwatch| stopwatch.ticks(encoder));
+        read_back.record(encoder, (&self.sums, ticks), input.picture);
+        self.period = input.period;
     }
 
     /// The newest finished picture's sums, once.
@@ -74,6 +84,9 @@ impl TallyPass {
         // Only looks; whether anything is finished shows in the buffers.
         let _ = device.poll(wgpu::PollType::Poll);
         let newest = self.read_backs.take()?;
-        Ok(newest.map(|(picture, record)| GpuTally::new(picture, &record)))
+        Ok(newest.map(|(picture, record, ticks)| GpuTally {
+            milliseconds: milliseconds(ticks, self.period),
+            ..GpuTally::new(picture, &record)
+        }))
     }
 }

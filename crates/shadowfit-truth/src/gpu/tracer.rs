@@ -3,6 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::error::GpuTruthError;
+use super::pipeline::{buffer, group, group_layout};
 use super::uniform::{CutOutRecord, ImageRecord, NodeRecord, TriangleRecord};
 use crate::cut_out::{CutOut, CutOuts};
 use crate::tracer::Tracer;
@@ -13,6 +14,9 @@ const MAX_DEPTH: usize = 64;
 /// What each buffer holds, for its label and for errors; the order is that of the bindings.
 const CONTENTS: [&str; 6] =
     ["hierarchy nodes", "triangles", "triangle indices", "cut-outs", "cut-out images", "cut-out texels"];
+
+/// Label of the bind group and its layout.
+const LABEL: &str = "traced scene";
 
 /// A tracer's scene on the GPU.
 #[derive(Debug)]
@@ -56,15 +60,8 @@ impl GpuTracer {
             index += 1;
             buffer
         });
-        let entries: Vec<_> = (0u32..)
-            .zip(&buffers)
-            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
-            .collect();
-        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("traced scene"),
-            layout: &scene_layout(device),
-            entries: &entries,
-        });
+        let resources = buffers.each_ref().map(wgpu::Buffer::as_entire_binding);
+        let group = group(device, LABEL, &scene_layout(device), resources);
         Ok(Self { buffers, group, origin, triangles: tracer.len() as u32 })
     }
 
@@ -109,17 +106,7 @@ impl GpuTracer {
 
 /// Layout of the scene's bind group.
 pub(crate) fn scene_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let entries = [0, 1, 2, 3, 4, 5].map(|binding| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Storage { read_only: true },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
-    });
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("traced scene"), entries: &entries })
+    group_layout(device, LABEL, CONTENTS.map(|_| buffer(wgpu::BufferBindingType::Storage { read_only: true })))
 }
 
 /// The bytes of the buffers. None is empty, since an empty buffer cannot be bound.

@@ -16,12 +16,13 @@ impl Stage {
             None => side.fit(&mut shot),
         };
         let (statistics, times) = (side.statistics, side.evaluator.renderer.pass_times());
+        let judge_ms = times.probe_ms.map(|probe| probe + side.live.gpu_ms().unwrap_or(0.0));
         let format = self.settings.technique.format;
         let mut figures = Figures {
             frame_ms,
             shadow_pass_ms: times.shadow_ms,
             scene_pass_ms: times.scene_ms,
-            judge_ms: times.probe_ms,
+            judge_ms,
             shadow_draws: Some(statistics.shadow_draws),
             shadow_triangles: Some(statistics.shadow_triangles),
             shadow_texels: Some(statistics.shadow_texels),

@@ -59,6 +59,8 @@ struct Sums {
     of: Drawn,
     /// None of a picture in which nothing counts, such as one of the sky.
     figures: Option<PictureFigures>,
+    /// How long the GPU judged it, in milliseconds; `None` where it does not, or is not timed.
+    gpu_ms: Option<f32>,
 }
 
 /// The judge of a side's pictures.
@@ -105,8 +107,13 @@ impl Live {
 
     /// The figures that came back last, at a time of the stage's clock in seconds.
     pub(super) fn figures(&self, clock: f32) -> Option<JudgedFigures> {
-        let Sums { of, figures } = self.sums.as_ref()?;
+        let Sums { of, figures, .. } = self.sums.as_ref()?;
         Some(judged_figures(figures.as_ref()?, of.size, clock - of.at))
+    }
+
+    /// How long the GPU judged the picture whose figures came back last, in milliseconds, after its probe was drawn.
+    pub(super) fn gpu_ms(&self) -> Option<f32> {
+        self.sums.as_ref()?.gpu_ms
     }
 
     /// Whether what was judged last is the view that was drawn last, and its sums are there.
@@ -253,7 +260,7 @@ impl Live {
             // Those before it were overtaken.
             let of = place.and_then(|place| self.drawn.drain(..=place).next_back());
             if let Some((_, of)) = of {
-                self.sums = Some(Sums { of, figures: tally.figures() });
+                self.sums = Some(Sums { of, figures: tally.figures(), gpu_ms: tally.milliseconds });
             }
         }
         let Some(found) = self.background.as_mut().and_then(BackgroundJudge::take) else { return Ok(()) };
@@ -261,7 +268,7 @@ impl Live {
         let found = found?;
         let view = classes_texture(gpu, &found.classes, of.size);
         self.judged = Some(Judged { key: of.key.clone(), view, size: of.size, seen: Some(seen) });
-        self.sums = Some(Sums { of, figures: found.judged.tally.figures() });
+        self.sums = Some(Sums { of, figures: found.judged.tally.figures(), gpu_ms: None });
         Ok(())
     }
 }

@@ -56,6 +56,8 @@ fn gpu_figures_of_an_older_picture_are_not_those_of_the_view() {
     let fine = wrong(&stage);
     stage.settings.technique.count = 1;
     draw(&mut stage, &target);
+    let judging = stage.side.live.gpu_ms();
+    assert!(judging.is_some_and(|ms| ms > 0.0), "its passes are timed");
     assert!(!stage.is_judged(), "its sums are on their way");
     assert_eq!(wrong(&stage), fine, "those of the picture before");
     judge(&mut stage, &target);

@@ -24,17 +24,22 @@ pub(super) struct ReadBack {
 }
 
 /// Is told when the buffer can be read. An encoder that is dropped instead of submitted drops it untold.
-struct Told(Arc<AtomicU8>);
+struct Told(Option<Arc<AtomicU8>>);
 
 impl Told {
-    fn tell(self, readable: bool) {
-        self.0.store(if readable { READABLE } else { FAILED }, Ordering::Release);
+    fn tell(mut self, readable: bool) {
+        if let Some(state) = self.0.take() {
+            state.store(if readable { READABLE } else { FAILED }, Ordering::Release);
+        }
     }
 }
 
 impl Drop for Told {
     fn drop(&mut self) {
-        let _told = self.0.compare_exchange(BUSY, FREE, Ordering::AcqRel, Ordering::Relaxed);
+        // Only where it was not told: once it is, the buffer may be read and recorded into again by another thread.
+        if let Some(state) = &self.0 {
+            state.store(FREE, Ordering::Release);
+        }
     }
 }
 
@@ -79,7 +84,7 @@ impl ReadBack {
         self.recorded = Some((stamp, number));
         self.state.store(BUSY, Ordering::Release);
         encoder.copy_buffer_to_buffer(counts, 0, &self.buffer, 0, None);
-        let told = Told(Arc::clone(&self.state));
+        let told = Told(Some(Arc::clone(&self.state)));
         encoder.map_buffer_on_submit(&self.buffer, wgpu::MapMode::Read, .., move |result| told.tell(result.is_ok()));
     }
 
@@ -95,5 +100,27 @@ impl ReadBack {
     pub(super) fn release(&mut self) {
         self.buffer.unmap();
         self.state.store(FREE, Ordering::Release);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_buffer_is_freed_only_where_nobody_was_told() {
+        let state = Arc::new(AtomicU8::new(BUSY));
+        drop(Told(Some(Arc::clone(&state))));
+        assert_eq!(state.load(Ordering::Acquire), FREE);
+        for (is_readable, wanted) in [(true, READABLE), (false, FAILED)] {
+            Told(Some(Arc::clone(&state))).tell(is_readable);
+            assert_eq!(state.load(Ordering::Acquire), wanted);
+        }
+        // What was told is done with the buffer, whoever uses it next.
+        let mut told = Told(Some(Arc::clone(&state)));
+        told.0.take();
+        state.store(BUSY, Ordering::Release);
+        drop(told);
+        assert_eq!(state.load(Ordering::Acquire), BUSY);
     }
 }

@@ -327,7 +327,8 @@ pub(super) const INSET_MAP: Parameter = Parameter {
 
 /// Why the depths of insets have no effect, or `None` where they have one.
 fn with_inset(s: &Settings) -> Option<&'static str> {
-    (s.view.inset == InsetMaps::Off).then_some("There is no inset; turn on Shadow map inset.")
+    let is_shown = s.view.inset != InsetMaps::Off || s.view.mode == ViewMode::Updates;
+    (!is_shown).then_some("No map is shown; turn on Shadow map inset, or set View to Map updates.")
 }
 
 pub(super) const INSET_BLACK: Parameter = Parameter {
@@ -418,8 +419,8 @@ pub(super) const PLAY: Parameter = Parameter {
     inert: always_active,
 };
 
-/// An angle as a compass shows it: the azimuth of an animated sun grows without limit, but reads 0
-/// to 360.
+/// An angle as a compass shows it, 0 to 360: the azimuth of an animated sun is kept in -180 to 180, and settings that were
+/// filled by hand may have any.
 fn turn(degrees: f64) -> f64 {
     // 2π in f32 is a little more than a turn, and setting 360 should read 360.
     const TOLERANCE: f64 = 1e-4;
