@@ -32,7 +32,7 @@ const CHANGED: f32 = 1.0;
 const SAME: f32 = 0.1;
 
 /// How long a picture must stay the same to count as at rest: some frames of a software driver on a busy machine.
-const STILL: Duration = Duration::from_millis(1500);
+const STILL: Duration = Duration::from_millis(2500);
 
 /// How long a frame, or a change that takes some frames, may take: a software driver, two cores, a cold shader cache.
 const PATIENCE: Duration = Duration::from_mins(1);
