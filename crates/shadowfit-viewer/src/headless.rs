@@ -200,8 +200,8 @@ impl Album<'_> {
         for frame in 0..SETTLING {
             let clock = f64::from(frame) * f64::from(FRAME);
             let (_, layout, _) = self.interface.layout(self.stage, &shows, input(self.size, clock));
-            // What is judged comes back with the next frame.
-            if frame + 2 >= SETTLING {
+            // What is judged comes back with the next frame, and a legend lies in its corner in the one after that.
+            if (SETTLING - 3..SETTLING - 1).contains(&frame) {
                 self.interface.pictures.draw(self.stage);
             }
             self.interface.paint(self.stage, &layout, &self.canvas.view, self.size);
