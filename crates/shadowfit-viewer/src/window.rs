@@ -234,7 +234,8 @@ impl Running {
         self.egui.handle_platform_output(&self.window, output);
         if let Some(texture) = texture {
             let view = texture.texture.create_view(&Default::default());
-            let size = [self.surface.configuration.width, self.surface.configuration.height];
+            // Of the old size where the surface could not be configured yet.
+            let size = [texture.texture.width(), texture.texture.height()];
             self.viewer.paint(&layout, &view, size);
             self.log_frame(begin.elapsed().saturating_sub(shadowfit_render::waited().saturating_sub(waited)));
             self.window.pre_present_notify();

@@ -131,7 +131,7 @@ pub enum InsetMaps {
     All,
 }
 
-/// How wrong pixels are marked in any view.
+/// How wrong pixels are marked in views of the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ErrorMarks {
