@@ -61,6 +61,23 @@ pub(super) fn draw<Row: Fn(u32) -> [f32; 4]>(name: &str, size: u32, row: impl Fn
     Image { name: name.to_owned(), width: size, height: size, rgba }
 }
 
+/// As [`draw`], with noise: `color` gives for each x and y a colour, of values of the noise at the pixel, one for each of
+/// `scales`. At a scale of 1 the image spans [`NOISE_CELLS`].
+pub(super) fn draw_noisy<const N: usize>(
+    name: &str,
+    size: u32,
+    scales: [f32; N],
+    color: impl Fn(u32, u32, [f32; N]) -> [f32; 4],
+) -> Image {
+    let noise = Noise::new();
+    let cell = NOISE_CELLS as f32 / size as f32;
+    let color = &color;
+    draw(name, size, |y| {
+        let rows = scales.map(|scale| noise.row(y as f32 * cell * scale));
+        move |x| color(x, y, std::array::from_fn(|index| rows[index].at(x as f32 * cell * scales[index])))
+    })
+}
+
 /// `color` made lighter or darker by `light` of 0..255.
 pub(super) fn shade([r, g, b]: [f32; 3], light: f32) -> [f32; 4] {
     [r + light, g + light * 0.97, b + light * 0.9, 255.0]

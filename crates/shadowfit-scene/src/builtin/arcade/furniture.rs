@@ -8,7 +8,7 @@ use super::palette::Paint;
 use super::shell::arch_crowns;
 use super::{HALF, SWING_TIME, bay_middles};
 use crate::builtin::build::{Builder, CRISP, SMOOTH};
-use crate::builtin::flora::{Card, Cards, Dice, Limbs};
+use crate::builtin::flora::{Card, Cards, Dice, GOLDEN_ANGLE, Limbs};
 use crate::builtin::motion::rotations;
 use crate::builtin::shapes::{block, capsule, lathe, torus};
 use crate::builtin::solid::Solid;
@@ -68,7 +68,7 @@ fn agave(at: Vec3, size: f32) -> Primitive {
     let mut dice = Dice::new(40);
     let mut limbs = Limbs::default();
     for index in 0..17 {
-        let turn = index as f32 * 2.4;
+        let turn = index as f32 * GOLDEN_ANGLE;
         let steep = 0.35 + 0.065 * index as f32;
         let out = Vec3::new(turn.sin(), 0.0, turn.cos());
         let length = size * dice.between(0.42, 0.52);
@@ -119,7 +119,7 @@ fn pots(builder: &mut Builder, group: usize) {
     let mut leaves = Cards::new(Paint::Blossom, 2);
     let mut dice = Dice::new(44);
     for index in 0..46 {
-        let turn = index as f32 * 2.4;
+        let turn = index as f32 * GOLDEN_ANGLE;
         let height = 1.0 - 2.0 * (index as f32 + 0.5) / 46.0;
         let flat = (1.0 - height * height).sqrt();
         let out = Vec3::new(turn.sin() * flat, height, turn.cos() * flat);

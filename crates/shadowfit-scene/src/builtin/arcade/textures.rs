@@ -2,7 +2,7 @@
 
 use crate::Image;
 use crate::builtin::flora::twig;
-use crate::builtin::pixels::{NOISE_CELLS, Noise, draw, hash, shade};
+use crate::builtin::pixels::{NOISE_CELLS, Noise, draw, draw_noisy, hash, shade};
 
 /// An image, by its index in the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,28 +61,16 @@ fn tiles() -> Image {
 
 /// Lime plaster: soft clouds with a few paler patches, near white so that materials tint it.
 fn plaster() -> Image {
-    let noise = &Noise::new();
-    let cell = NOISE_CELLS as f32 / SIZE as f32;
-    draw("plaster", SIZE, |y| {
-        let rows = [0.125, 0.5, 4.0].map(|scale| noise.row(y as f32 * cell * scale));
-        move |x| {
-            let at = |row: usize, scale: f32| rows[row].at(x as f32 * cell * scale);
-            shade([236.0, 236.0, 236.0], 7.0 * at(0, 0.125) + 5.0 * at(1, 0.5) + 4.0 * at(2, 4.0))
-        }
+    draw_noisy("plaster", SIZE, [0.125, 0.5, 4.0], |_, _, [patches, clouds, grains]| {
+        shade([236.0, 236.0, 236.0], 7.0 * patches + 5.0 * clouds + 4.0 * grains)
     })
 }
 
 /// Limestone: coarse grain with pits.
 fn stone() -> Image {
-    let noise = &Noise::new();
-    let cell = NOISE_CELLS as f32 / SIZE as f32;
-    draw("stone", SIZE, |y| {
-        let (clouds, grains) = (noise.row(y as f32 * cell * 0.25), noise.row(y as f32 * cell * 3.0));
-        move |x| {
-            let grain = grains.at(x as f32 * cell * 3.0);
-            let pit = if grain > 0.78 { -22.0 } else { 0.0 };
-            shade([206.0, 198.0, 184.0], 10.0 * clouds.at(x as f32 * cell * 0.25) + 9.0 * grain + pit)
-        }
+    draw_noisy("stone", SIZE, [0.25, 3.0], |_, _, [cloud, grain]| {
+        let pit = if grain > 0.78 { -22.0 } else { 0.0 };
+        shade([206.0, 198.0, 184.0], 10.0 * cloud + 9.0 * grain + pit)
     })
 }
 

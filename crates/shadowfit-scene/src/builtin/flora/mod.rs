@@ -12,6 +12,10 @@ pub(super) use limbs::Limbs;
 
 use super::pixels::hash;
 
+/// Turn from one leaf or branch to the next that spreads any number of them evenly around: the golden angle, rounded, in
+/// radians.
+pub(super) const GOLDEN_ANGLE: f32 = 2.4;
+
 /// Fixed pseudo-random numbers, one after the other.
 pub(super) struct Dice {
     seed: u32,

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use crate::Image;
 use crate::builtin::flora::{Dice, bark, fern, grass, twig};
-use crate::builtin::pixels::{NOISE_CELLS, Noise, draw};
+use crate::builtin::pixels::{NOISE_CELLS, Noise, draw, draw_noisy};
 
 /// An image, by its index in the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,14 +41,9 @@ pub(super) fn images() -> Vec<Image> {
 
 /// Earth under brown leaves.
 fn floor() -> Image {
-    let noise = &Noise::new();
-    let cell = NOISE_CELLS as f32 / FLOOR_SIZE as f32;
-    let mut image = draw("floor", FLOOR_SIZE, |y| {
-        let (clouds, grains) = (noise.row(y as f32 * cell * 0.25), noise.row(y as f32 * cell * 4.0));
-        move |x| {
-            let light = 8.0 * clouds.at(x as f32 * cell * 0.25) + 12.0 * grains.at(x as f32 * cell * 4.0);
-            [96.0 + light, 76.0 + light * 0.9, 54.0 + light * 0.7, 255.0]
-        }
+    let mut image = draw_noisy("floor", FLOOR_SIZE, [0.25, 4.0], |_, _, [cloud, grain]| {
+        let light = 8.0 * cloud + 12.0 * grain;
+        [96.0 + light, 76.0 + light * 0.9, 54.0 + light * 0.7, 255.0]
     });
     let mut dice = Dice::new(31);
     for _ in 0..LITTER {
@@ -97,18 +92,12 @@ fn fallen_leaf(image: &mut Image, dice: &mut Dice) {
 
 /// Grey stone with patches of moss.
 fn stone() -> Image {
-    let noise = &Noise::new();
-    let cell = NOISE_CELLS as f32 / BARK_SIZE as f32;
-    draw("stone", BARK_SIZE, |y| {
-        let (clouds, grains) = (noise.row(y as f32 * cell * 0.25), noise.row(y as f32 * cell * 2.0));
-        move |x| {
-            let (cloud, grain) = (clouds.at(x as f32 * cell * 0.25), grains.at(x as f32 * cell * 2.0));
-            let light = 14.0 * grain;
-            if cloud + 0.25 * grain > 0.05 {
-                [84.0 + light, 102.0 + light, 46.0 + light * 0.6, 255.0]
-            } else {
-                [134.0 + light, 130.0 + light, 120.0 + light, 255.0]
-            }
+    draw_noisy("stone", BARK_SIZE, [0.25, 2.0], |_, _, [cloud, grain]| {
+        let light = 14.0 * grain;
+        if cloud + 0.25 * grain > 0.05 {
+            [84.0 + light, 102.0 + light, 46.0 + light * 0.6, 255.0]
+        } else {
+            [134.0 + light, 130.0 + light, 120.0 + light, 255.0]
         }
     })
 }

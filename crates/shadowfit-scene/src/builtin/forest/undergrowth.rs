@@ -7,7 +7,7 @@ use glam::{Quat, Vec3};
 use super::floor::{on_floor, path_distance};
 use super::palette::Paint;
 use crate::builtin::build::Builder;
-use crate::builtin::flora::{Card, Cards, Dice};
+use crate::builtin::flora::{Card, Cards, Dice, GOLDEN_ANGLE};
 
 /// Clumps of plants of one kind that are tried; those on the path or in a trunk are left out.
 const CLUMPS: usize = 150;
@@ -65,7 +65,7 @@ fn bush() -> crate::Primitive {
     let mut cards = Cards::new(Paint::Leaves, 1);
     for index in 0..BUSH_CARDS {
         let height = (index as f32 + 0.5) / BUSH_CARDS as f32;
-        let turn = index as f32 * 2.4;
+        let turn = index as f32 * GOLDEN_ANGLE;
         let out = Vec3::new(turn.sin(), 1.5 * height - 0.35, turn.cos()).normalize();
         let across = Quat::from_axis_angle(out, dice.between(-0.9, 0.9)) * Vec3::Y.cross(out).normalize();
         let base = Vec3::new(0.0, 0.2 + 0.7 * height, 0.0) + out * dice.between(0.05, 0.5);

@@ -7,7 +7,7 @@ use glam::{Quat, Vec3};
 use super::land::on_land;
 use super::palette::Paint;
 use crate::builtin::build::{Builder, CRISP, SMOOTH};
-use crate::builtin::flora::Dice;
+use crate::builtin::flora::{Dice, GOLDEN_ANGLE};
 use crate::builtin::shapes::{extrude, lathe, modulated_lathe, plank};
 
 /// Adds what lies far off.
@@ -54,7 +54,7 @@ fn farms(builder: &mut Builder, group: usize) {
     let house = builder.mesh("house", primitives);
     let mut dice = Dice::new(110);
     let village = (0..16).map(|index| {
-        let turn = index as f32 * 2.4;
+        let turn = index as f32 * GOLDEN_ANGLE;
         let away = 9.0 * (index as f32 + 1.0).sqrt();
         (95.0 + away * turn.sin() * 1.6, -330.0 + away * turn.cos())
     });

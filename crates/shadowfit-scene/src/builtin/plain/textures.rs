@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::Image;
 use crate::builtin::flora::{bark, grass, twig};
-use crate::builtin::pixels::{NOISE_CELLS, Noise, draw, hash, shade};
+use crate::builtin::pixels::{draw_noisy, hash, shade};
 
 /// An image, by its index in the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,50 +32,32 @@ pub(super) fn images() -> Vec<Image> {
 
 /// Short strokes of turf, near white, so that the land's colours tint them.
 fn turf() -> Image {
-    let noise = &Noise::new();
-    let cell = NOISE_CELLS as f32 / LAND_SIZE as f32;
-    draw("turf", LAND_SIZE, |y| {
-        let rows = [0.5, 2.0, 8.0].map(|scale| noise.row(y as f32 * cell * scale));
-        move |x| {
-            let at = |row: usize, scale: f32| rows[row].at(x as f32 * cell * scale);
-            let stroke = hash(x / 2 + 7 * (y / 7), 90 + y / 7) - 0.5;
-            shade([206.0, 206.0, 200.0], 14.0 * at(0, 0.5) + 16.0 * at(1, 2.0) + 14.0 * at(2, 8.0) + 34.0 * stroke)
-        }
+    draw_noisy("turf", LAND_SIZE, [0.5, 2.0, 8.0], |x, y, [clouds, tufts, grains]| {
+        let stroke = hash(x / 2 + 7 * (y / 7), 90 + y / 7) - 0.5;
+        shade([206.0, 206.0, 200.0], 14.0 * clouds + 16.0 * tufts + 14.0 * grains + 34.0 * stroke)
     })
 }
 
 /// Weathered stone with lichen.
 fn stone() -> Image {
-    let noise = &Noise::new();
-    let cell = NOISE_CELLS as f32 / SIZE as f32;
-    draw("stone", SIZE, |y| {
-        let (clouds, grains) = (noise.row(y as f32 * cell * 0.25), noise.row(y as f32 * cell * 2.0));
-        move |x| {
-            let (cloud, grain) = (clouds.at(x as f32 * cell * 0.25), grains.at(x as f32 * cell * 2.0));
-            let light = 12.0 * cloud + 15.0 * grain;
-            if grain - 0.3 * cloud > 0.86 { [212.0, 190.0, 118.0, 255.0] } else { shade([194.0, 190.0, 180.0], light) }
-        }
+    draw_noisy("stone", SIZE, [0.25, 2.0], |_, _, [cloud, grain]| {
+        let light = 12.0 * cloud + 15.0 * grain;
+        if grain - 0.3 * cloud > 0.86 { [212.0, 190.0, 118.0, 255.0] } else { shade([194.0, 190.0, 180.0], light) }
     })
 }
 
 /// Courses of rough blocks.
 fn masonry() -> Image {
-    let noise = &Noise::new();
-    let cell = NOISE_CELLS as f32 / SIZE as f32;
     let (course, length) = (SIZE as f32 / 8.0, SIZE as f32 / 4.0);
-    draw("masonry", SIZE, |y| {
-        let grains = noise.row(y as f32 * cell * 2.0);
+    draw_noisy("masonry", SIZE, [2.0], |x, y, [grain]| {
         let row = (y as f32 / course) as u32;
         let dy = (y as f32 % course).min(course - y as f32 % course);
-        move |x| {
-            let along = x as f32 / length + 0.37 * hash(row, 3) + if row % 2 == 1 { 0.5 } else { 0.0 };
-            let across = along.fract().min(1.0 - along.fract()) * length;
-            let grain = grains.at(x as f32 * cell * 2.0);
-            let own = hash(along as u32 % 4, 50 + row) - 0.5;
-            if across.min(dy) < 1.3 {
-                return shade([138.0, 128.0, 114.0], 8.0 * grain);
-            }
-            shade([196.0, 186.0, 168.0], 36.0 * own + 12.0 * grain)
+        let along = x as f32 / length + 0.37 * hash(row, 3) + if row % 2 == 1 { 0.5 } else { 0.0 };
+        let across = along.fract().min(1.0 - along.fract()) * length;
+        let own = hash(along as u32 % 4, 50 + row) - 0.5;
+        if across.min(dy) < 1.3 {
+            return shade([138.0, 128.0, 114.0], 8.0 * grain);
         }
+        shade([196.0, 186.0, 168.0], 36.0 * own + 12.0 * grain)
     })
 }

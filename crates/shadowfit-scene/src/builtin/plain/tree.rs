@@ -5,7 +5,7 @@ use glam::{Quat, Vec3};
 use super::land::on_land;
 use super::palette::Paint;
 use crate::builtin::build::Builder;
-use crate::builtin::flora::{Card, Cards, Dice, Limbs};
+use crate::builtin::flora::{Card, Cards, Dice, GOLDEN_ANGLE, Limbs};
 
 /// Branches, and clouds of leaves at their ends.
 const BRANCHES: usize = 15;
@@ -26,7 +26,7 @@ pub(super) fn build(builder: &mut Builder, group: usize) {
     });
     for index in 0..BRANCHES {
         let share = 0.45 + 0.55 * index as f32 / (BRANCHES - 1) as f32;
-        let turn = index as f32 * 2.4;
+        let turn = index as f32 * GOLDEN_ANGLE;
         let from = trunk(share);
         // All branches are swept along with the wind.
         let out = Vec3::new(0.45 + 0.6 * turn.sin(), 0.42 + 0.25 * (turn * 1.3).cos(), 0.85 * turn.cos());
