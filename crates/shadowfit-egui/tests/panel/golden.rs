@@ -22,7 +22,7 @@ const MAX_BYTES: u64 = 128 * 1024;
 const HEIGHT: f32 = 900.0;
 
 /// Every golden.
-const NAMES: [&str; 4] = ["dark", "light", "dark-busy", "light-plots"];
+const NAMES: [&str; 5] = ["dark", "light", "dark-busy", "light-plots", "dark-twice"];
 
 /// The distance of colours, weighted for the eye, from which on a pixel counts as different; and how many may be: the
 /// same driver draws the same bits, another version of it may round the edge of a glyph the other way. A control that
@@ -32,7 +32,11 @@ const DIFFERENT_PIXELS: usize = 60;
 
 /// A harness that draws.
 fn drawn(host: Host, theme: Theme) -> Harness<'static, Host> {
-    builder(Vec2::new(PANEL_WIDTH, HEIGHT), theme, 1.0)
+    drawn_at(host, theme, HEIGHT, 1.0)
+}
+
+fn drawn_at(host: Host, theme: Theme, height: f32, scale: f32) -> Harness<'static, Host> {
+    builder(Vec2::new(PANEL_WIDTH, height), theme, scale)
         .renderer(SoftwareRenderer::new())
         .with_render_cursor(false)
         .build_ui_state(|ui, host: &mut Host| host.show(ui), host)
@@ -47,6 +51,11 @@ fn the_panel_at_rest_is_as_it_was() {
 #[test]
 fn an_artefact_two_techniques_and_a_search_are_as_they_were() {
     check("dark-busy", &mut drawn(busy(), Theme::Dark));
+}
+
+#[test]
+fn the_panel_on_a_screen_of_twice_the_pixels_is_as_it_was() {
+    check("dark-twice", &mut drawn_at(busy(), Theme::Dark, 0.5 * HEIGHT, 2.0));
 }
 
 #[test]
