@@ -80,6 +80,8 @@ struct Surface {
     /// Whether the surface should be configured anew before the next frame.
     is_stale: bool,
     configuration: wgpu::SurfaceConfiguration,
+    /// Size of the textures that it gives, in pixels: what it was configured to last.
+    size: [u32; 2],
     /// Whether the window has an area to draw on.
     has_area: bool,
 }
@@ -234,9 +236,7 @@ impl Running {
         self.egui.handle_platform_output(&self.window, output);
         if let Some(texture) = texture {
             let view = texture.texture.create_view(&Default::default());
-            // Of the old size where the surface could not be configured yet.
-            let size = [texture.texture.width(), texture.texture.height()];
-            self.viewer.paint(&layout, &view, size);
+            self.viewer.paint(&layout, &view, self.surface.size);
             self.log_frame(begin.elapsed().saturating_sub(shadowfit_render::waited().saturating_sub(waited)));
             self.window.pre_present_notify();
             self.viewer.stage.gpu().queue.present(texture);
@@ -298,7 +298,8 @@ impl Surface {
         configuration.present_mode = wgpu::PresentMode::AutoVsync;
         handle.configure(&gpu.device, &configuration);
         let has_area = size.width > 0 && size.height > 0;
-        Ok(Self { instance, window, handle, is_stale: false, configuration, has_area })
+        let size = [configuration.width, configuration.height];
+        Ok(Self { instance, window, handle, is_stale: false, configuration, size, has_area })
     }
 
     /// Takes note of a new size of the window.
@@ -314,10 +315,14 @@ impl Surface {
             self.configuration.width = size.width.min(limit);
             self.configuration.height = size.height.min(limit);
             // A surface can only be configured while the GPU is idle. Where the thread that loads a scene submits work just
-            // then, that fails, the surface stays as it was, and the next frame tries again.
+            // then, that fails, the surface stays as it was, and the next frame tries again. Its textures then tell of the
+            // size that they do not have (wgpu 30), so the size is kept here.
             let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
             self.handle.configure(&gpu.device, &self.configuration);
             self.is_stale = pollster::block_on(scope.pop()).is_some();
+            if !self.is_stale {
+                self.size = [self.configuration.width, self.configuration.height];
+            }
         }
     }
 

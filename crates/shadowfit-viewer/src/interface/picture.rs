@@ -220,7 +220,7 @@ fn loading(ui: &mut Ui, shows: &Shows<'_>, rect: Rect) {
     let place = Rect::from_center_size(rect.center(), size);
     let mut card = ui.new_child(UiBuilder::new().max_rect(place));
     egui::Frame::popup(ui.style()).show(&mut card, |ui| {
-        ui.set_width(size.x - 24.0);
+        ui.set_width((size.x - 24.0).max(0.0));
         if let Some((name, share)) = shows.loading {
             ui.label(format!("Loading {name}"));
             ui.add(egui::ProgressBar::new(share).show_percentage().animate(true));
@@ -243,4 +243,34 @@ fn label(ui: &Ui, at: Pos2, anchor: Align2, text: &str) {
     let place = anchor.anchor_size(at, galley.size() + 2.0 * padding);
     ui.painter().rect_filled(place, CornerRadius::same(5), Color32::from_black_alpha(170));
     ui.painter().galley(place.min + padding, galley, Color32::WHITE);
+}
+
+#[cfg(test)]
+mod tests {
+    use shadowfit_egui::{Changes, Tune};
+
+    use super::*;
+    use crate::saved::Saved;
+
+    #[test]
+    fn a_place_too_small_for_the_progress_of_loading_is_no_error() {
+        let saved = Saved::default();
+        let shows = Shows {
+            saved: &saved,
+            presets: &[],
+            tune: Tune::Idle,
+            changes: Changes::default(),
+            message: None,
+            loading: Some(("a scene with a long name", 0.5)),
+            is_searching: false,
+            has_scene: true,
+        };
+        for side in [1.0, 20.0, 400.0] {
+            let place = Rect::from_min_size(Pos2::ZERO, Vec2::splat(side));
+            let input = egui::RawInput { screen_rect: Some(place), ..Default::default() };
+            let mut output = egui::Context::default().run_ui(input, |ui| loading(ui, &shows, place));
+            // Nothing is painted; egui asks to be told so.
+            output.textures_delta.clear();
+        }
+    }
 }
