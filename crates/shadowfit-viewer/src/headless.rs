@@ -6,7 +6,7 @@ use std::time::Duration;
 use anyhow::{Context, Result, anyhow};
 use egui::{Pos2, RawInput, Rect, vec2};
 use shadowfit::tool::{ErrorMarks, InsetMaps, ViewMode};
-use shadowfit_egui::{Artefact, Changes, Tune};
+use shadowfit_egui::Artefact;
 use shadowfit_render::Gpu;
 
 use crate::cli::Arguments;
@@ -187,16 +187,7 @@ impl Album<'_> {
     /// Draws until the layout stands, and saves.
     fn save(&mut self, name: &str) -> Result<()> {
         let saved = Saved::default();
-        let shows = Shows {
-            saved: &saved,
-            presets: &[],
-            tune: Tune::Idle,
-            changes: Changes::default(),
-            message: None,
-            loading: None,
-            is_searching: false,
-            has_scene: true,
-        };
+        let shows = Shows::at_rest(&saved);
         for frame in 0..SETTLING {
             let clock = f64::from(frame) * f64::from(FRAME);
             let (_, layout, _) = self.interface.layout(self.stage, &shows, input(self.size, clock));

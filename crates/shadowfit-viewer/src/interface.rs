@@ -52,6 +52,22 @@ pub(crate) struct Shows<'a> {
     pub(crate) has_scene: bool,
 }
 
+impl<'a> Shows<'a> {
+    /// A scene with nothing under way, and nothing to say.
+    pub(crate) fn at_rest(saved: &'a Saved) -> Self {
+        Self {
+            saved,
+            presets: &[],
+            tune: Tune::Idle,
+            changes: Changes::default(),
+            message: None,
+            loading: None,
+            is_searching: false,
+            has_scene: true,
+        }
+    }
+}
+
 /// What a frame of the interface asks for.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Asked {

@@ -80,8 +80,8 @@ struct Surface {
     /// Whether the surface should be configured anew before the next frame.
     is_stale: bool,
     configuration: wgpu::SurfaceConfiguration,
-    /// Size of the textures that it gives, in pixels: what it was configured to last.
-    size: [u32; 2],
+    /// Size of the textures that it gives, in pixels: what it was configured to last, if it ever was.
+    size: Option<[u32; 2]>,
     /// Whether the window has an area to draw on.
     has_area: bool,
 }
@@ -234,9 +234,9 @@ impl Running {
         let raw_input = self.egui.take_egui_input(&self.window);
         let (layout, output) = self.viewer.frame(raw_input, seconds);
         self.egui.handle_platform_output(&self.window, output);
-        if let Some(texture) = texture {
+        if let Some((texture, size)) = texture {
             let view = texture.texture.create_view(&Default::default());
-            self.viewer.paint(&layout, &view, self.surface.size);
+            self.viewer.paint(&layout, &view, size);
             self.log_frame(begin.elapsed().saturating_sub(shadowfit_render::waited().saturating_sub(waited)));
             self.window.pre_present_notify();
             self.viewer.stage.gpu().queue.present(texture);
@@ -298,7 +298,7 @@ impl Surface {
         configuration.present_mode = wgpu::PresentMode::AutoVsync;
         handle.configure(&gpu.device, &configuration);
         let has_area = size.width > 0 && size.height > 0;
-        let size = [configuration.width, configuration.height];
+        let size = Some([configuration.width, configuration.height]);
         Ok(Self { instance, window, handle, is_stale: false, configuration, size, has_area })
     }
 
@@ -321,26 +321,24 @@ impl Surface {
             self.handle.configure(&gpu.device, &self.configuration);
             self.is_stale = pollster::block_on(scope.pop()).is_some();
             if !self.is_stale {
-                self.size = [self.configuration.width, self.configuration.height];
+                self.size = Some([self.configuration.width, self.configuration.height]);
             }
         }
     }
 
-    /// The next frame's texture; `None` while there is nothing to draw on.
-    fn acquire(&mut self, gpu: &Gpu) -> Result<Option<wgpu::SurfaceTexture>> {
+    /// The next frame's texture and its size in pixels; `None` while there is nothing to draw on.
+    fn acquire(&mut self, gpu: &Gpu) -> Result<Option<(wgpu::SurfaceTexture, [u32; 2])>> {
         use wgpu::CurrentSurfaceTexture as Current;
         if self.is_stale {
             self.resize(gpu, self.window.inner_size());
         }
-        if !self.has_area {
-            return Ok(None);
-        }
+        let Some(size) = self.size.filter(|_| self.has_area) else { return Ok(None) };
         match self.handle.get_current_texture() {
-            Current::Success(texture) => Ok(Some(texture)),
+            Current::Success(texture) => Ok(Some((texture, size))),
             Current::Suboptimal(texture) => {
                 // It can still be shown; the next one should fit again.
                 self.is_stale = true;
-                Ok(Some(texture))
+                Ok(Some((texture, size)))
             }
             Current::Outdated => {
                 self.is_stale = true;
@@ -349,7 +347,7 @@ impl Surface {
             Current::Lost => {
                 self.handle =
                     self.instance.create_surface(self.window.clone()).context("the window's surface was lost")?;
-                self.is_stale = true;
+                (self.is_stale, self.size) = (true, None);
                 Ok(None)
             }
             Current::Timeout | Current::Occluded => Ok(None),

@@ -5,13 +5,12 @@ use egui::{
     Align2, Color32, CornerRadius, CursorIcon, FontId, Pos2, Rect, Response, Sense, Stroke, StrokeKind, TextStyle, Ui,
     UiBuilder, Vec2,
 };
+use shadowfit::figures::Figures;
 use shadowfit::tool::ViewMode;
 use shadowfit_render::RenderTarget;
 use shadowfit_study::Seen;
 
 use super::paint::Painter;
-use shadowfit::figures::Figures;
-
 use super::{Asked, Shows};
 use crate::command::Command;
 use crate::stage::Stage;
@@ -247,24 +246,13 @@ fn label(ui: &Ui, at: Pos2, anchor: Align2, text: &str) {
 
 #[cfg(test)]
 mod tests {
-    use shadowfit_egui::{Changes, Tune};
-
     use super::*;
     use crate::saved::Saved;
 
     #[test]
     fn a_place_too_small_for_the_progress_of_loading_is_no_error() {
         let saved = Saved::default();
-        let shows = Shows {
-            saved: &saved,
-            presets: &[],
-            tune: Tune::Idle,
-            changes: Changes::default(),
-            message: None,
-            loading: Some(("a scene with a long name", 0.5)),
-            is_searching: false,
-            has_scene: true,
-        };
+        let shows = Shows { loading: Some(("a scene with a long name", 0.5)), ..Shows::at_rest(&saved) };
         for side in [1.0, 20.0, 400.0] {
             let place = Rect::from_min_size(Pos2::ZERO, Vec2::splat(side));
             let input = egui::RawInput { screen_rect: Some(place), ..Default::default() };

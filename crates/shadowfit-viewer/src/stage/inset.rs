@@ -22,8 +22,7 @@ const FREE: f32 = 0.12;
 const LINES: u8 = 9;
 
 /// Maps in the lower left corner of the part from the column `left` on of a picture of `size` pixels, the first one lowest.
-/// `depth_range` are the stored depths
-/// shown as black and white; those between which the scene lies if `None`.
+/// `depth_range` are the stored depths shown as black and white; those between which the scene lies if `None`.
 pub(super) fn insets(
     shown: Range<usize>,
     maps: &[MapFit],
