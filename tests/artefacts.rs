@@ -74,6 +74,36 @@ fn gpu_acne_covers_the_character_and_its_fix_clears_it() {
     }
 }
 
+/// Share of the picture that a shadow map darkens.
+fn shadowed(stage: &mut Stage) -> f64 {
+    let target = stage.target(SIZE);
+    let [with, without] = [true, false].map(|shadows| {
+        stage.settings.view.shadows = shadows;
+        stage.draw(&target);
+        assert_eq!(stage.problem(), None);
+        target.read(stage.gpu()).expect("a picture")
+    });
+    stage.settings.view.shadows = true;
+    let differs = |(a, b): (&[u8], &[u8])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 8);
+    let differing = with.chunks_exact(4).zip(without.chunks_exact(4)).filter(|pair| differs(*pair)).count();
+    differing as f64 / f64::from(SIZE[0] * SIZE[1])
+}
+
+#[test]
+fn gpu_a_clipping_hole_breaks_off_a_shadow_whenever_it_is_shown() {
+    let mut stage = stage("windows-4");
+    for seconds in [0.0, 3.3, 11.0] {
+        stage.reset();
+        stage.set_time(seconds);
+        show(&mut stage, Artefact::ClippingHole);
+        let hole = share_of_picture(&judged(&mut stage, false), Class::Hole);
+        let left = shadowed(&mut stage);
+        println!("{seconds} s: hole {hole}, shadow left {left}");
+        assert!(hole >= 0.05 && left >= 0.05, "{seconds} s: hole {hole}, shadow left {left}");
+        assert!(stage.narration().starts_with("The shadow breaks off"), "{seconds} s: {}", stage.narration());
+    }
+}
+
 #[test]
 fn gpu_a_clipping_hole_shows_and_its_fix_closes_it() {
     for technique in TECHNIQUES {

@@ -32,6 +32,8 @@ const CREASE_BIAS: f32 = 1.0;
 const HOLE_DISTANCE: f32 = 4.0;
 /// Reach of a long shadow, in radii of the scene, from which on the scene is shown as a whole.
 const LARGE_REACH: f32 = 0.3;
+/// Share of the picture from which on a larger hole shows no more.
+const LARGE_HOLE: f32 = 0.15;
 /// Share of the picture that should still show a shadow when the hole is shown.
 const KEPT_SHADOW: f32 = 0.1;
 /// How much more a hole counts where the shadow that is left breaks off at it, and the number of coarse pixels of that
@@ -269,22 +271,20 @@ fn show_hole(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) ->
         if is_blocked(&pixels, place.radius * 0.6) {
             return 0.0;
         }
-        let is_shadowed = |seen: &Seen| search.facing(seen) > 0.0 && search.is_shadowed(seen);
-        let shadowed: Vec<Option<&Seen>> =
-            pixels.iter().map(|seen| seen.as_ref().filter(|seen| is_shadowed(seen))).collect();
+        let shadowed = search.shadowed(&pixels);
         let count = shadowed.iter().flatten().count() as f32;
+        let large = pixels.len() as f32 * LARGE_HOLE;
         // Not worth a fit where a hole in all of the shadow would be less than one that was found.
-        if count * (1.0 + BREAK) <= most {
+        if count.min(large) * (1.0 + BREAK) <= most {
             return 0.0;
         }
         let Some(fitted) = search.fit(technique, camera) else { return 0.0 };
-        let holes: Vec<Option<bool>> =
-            shadowed.iter().map(|seen| seen.map(|seen| search.is_hole(seen, &fitted))).collect();
+        let holes = search.holes(&shadowed, &fitted);
         let hole = holes.iter().filter(|hole| **hole == Some(true)).count() as f32;
         // A large hole, but a shadow that breaks off says more than one that is missing whole.
         let kept = (count - hole) / (pixels.len() as f32 * KEPT_SHADOW);
         let breaks = edges(&holes) as f32 / BREAKS;
-        let score = hole * (0.1 + 0.9 * kept.min(1.0) + BREAK * breaks.min(1.0));
+        let score = hole.min(large) * (0.1 + 0.9 * kept.min(1.0) + BREAK * breaks.min(1.0));
         most = most.max(score);
         score
     };

@@ -13,13 +13,11 @@ pub(crate) fn tell(
     camera: &PerspectiveCamera,
     settings: &Settings,
 ) -> String {
-    let middle = search.look(camera)[(GRID[0] * GRID[1] / 2 + GRID[0] / 2) as usize];
-    let fitted = search.fit(&settings.technique, camera);
-    let seen = middle.zip(fitted).and_then(|(seen, fitted)| {
-        let map = fitted.read_at(search.world(seen.position.as_dvec3()))?;
-        Some((map, fitted.maps[map].fit, seen))
-    });
-    let Some((map, fit, seen)) = seen else { return String::new() };
+    let picture = search.look(camera);
+    let middle = picture[(GRID[0] * GRID[1] / 2 + GRID[0] / 2) as usize];
+    let Some((seen, fitted)) = middle.zip(search.fit(&settings.technique, camera)) else { return String::new() };
+    let Some(map) = fitted.read_at(search.world(seen.position.as_dvec3())) else { return String::new() };
+    let fit = fitted.maps[map].fit;
     let texel = length(fit.texel_size.max_element());
     // Pixels of a picture 720 high that the texel covers where it is looked at head-on.
     let pixels = fit.texel_size.max_element() / (2.0 * (camera.fov_y * 0.5).tan() * seen.distance) * 720.0;
@@ -34,13 +32,20 @@ pub(crate) fn tell(
              pixels here; each stair is one texel.",
             map + 1
         ),
-        Artefact::ClippingHole => format!(
-            "The shadow breaks off, though nothing ends there. Map {} reaches {} along the light and no farther toward \
-             the sun than what the camera sees; what throws the missing part stands outside its box, as the view from \
-             outside shows.",
-            map + 1,
-            length(fit.depth_range)
-        ),
+        Artefact::ClippingHole => {
+            let is_left = search.holes(&search.shadowed(&picture), &fitted).contains(&Some(false));
+            let [told, missing] = if is_left {
+                ["The shadow breaks off, though nothing ends there.", "the missing part"]
+            } else {
+                ["A shadow should fall here, and none is there.", "it"]
+            };
+            format!(
+                "{told} Map {} reaches {} along the light and no farther toward the sun than what the camera sees; what \
+                 throws {missing} stands outside its box, as the view from outside shows.",
+                map + 1,
+                length(fit.depth_range)
+            )
+        }
     }
 }
 

@@ -101,8 +101,19 @@ impl<'a> ViewSearch<'a> {
         self.tracer.is_occluded(seen.position + seen.normal * self.offset, self.to_light)
     }
 
+    /// Those points of a coarse picture that face the light and are in shadow.
+    pub(crate) fn shadowed<'p>(&self, pixels: &'p [Option<Seen>]) -> Vec<Option<&'p Seen>> {
+        let is_shadowed = |seen: &&Seen| self.facing(seen) > 0.0 && self.is_shadowed(seen);
+        pixels.iter().map(|seen| seen.as_ref().filter(is_shadowed)).collect()
+    }
+
+    /// Which of the points in shadow lie in a hole.
+    pub(crate) fn holes(&self, shadowed: &[Option<&Seen>], fitted: &Fitted) -> Vec<Option<bool>> {
+        shadowed.iter().map(|seen| seen.map(|seen| self.is_hole(seen, fitted))).collect()
+    }
+
     /// Whether a seen point is in shadow by casters that are all outside the map that it reads.
-    pub(crate) fn is_hole(&self, seen: &Seen, fitted: &Fitted) -> bool {
+    fn is_hole(&self, seen: &Seen, fitted: &Fitted) -> bool {
         let origin = seen.position + seen.normal * self.offset;
         let Some(map) = fitted.read_at(self.world(origin.as_dvec3())) else { return false };
         let fit = &fitted.maps[map].fit;
