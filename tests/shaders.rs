@@ -37,6 +37,7 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
 use shadowfit::settings::{FilterKind, MapChoice, MapFormat};
 use shadowfit::{CasterVolume, DepthConvention};
+use shadowfit_render::samples::{SampleFormat, ShadingKind, TestKind};
 use shadowfit_render::{Overlay, shaders};
 use shadowfit_wgpu::need::need_wgsl;
 use shadowfit_wgpu::{
@@ -84,6 +85,7 @@ fn modules() -> Vec<(String, String)> {
         let [clear, mend] = layers_wgsl(&ShadowMapDescriptor { depth, ..Default::default() });
         all.extend([(format!("clear, {depth:?}"), clear), (format!("mend, {depth:?}"), mend)]);
     }
+    all.extend(sample_modules());
     for map in descriptors() {
         let kind = format!("{:?} {:?} {:?} {:?}", map.format, map.filter, map.depth, map.choice);
         all.push((format!("scene, {kind}"), shaders::scene(&map)));
@@ -101,11 +103,29 @@ fn modules() -> Vec<(String, String)> {
     all
 }
 
+/// Every module of the classic samples.
+fn sample_modules() -> Vec<(String, String)> {
+    use shaders::samples;
+    let mut all = vec![("samples' casters".to_owned(), samples::caster())];
+    let formats = [SampleFormat::R32Float, SampleFormat::Rgba8Packed, SampleFormat::Depth32];
+    for format in formats {
+        all.push((format!("samples' inset, {format:?}"), samples::inset(format)));
+        for test in TestKind::ALL.into_iter().filter(|test| test.can_read(format)) {
+            all.push((format!("probe of samples, {format:?} {test:?}"), samples::probe(format, test)));
+            for shading in ShadingKind::ALL {
+                all.push((format!("sample, {format:?} {test:?} {shading:?}"), samples::shaded(format, test, shading)));
+            }
+        }
+    }
+    all
+}
+
 /// Every WGSL file below the crates, with its text.
 fn files() -> Vec<(PathBuf, String)> {
     let crates = std::fs::read_dir(workspace().join("crates")).expect("the crates' folder");
+    let shaders = crates.map(|entry| entry.expect("a crate's folder").path().join("src/shaders"));
     let mut files = Vec::new();
-    for folder in crates.map(|entry| entry.expect("a crate's folder").path().join("src/shaders")) {
+    for folder in shaders.flat_map(|folder| [folder.join("samples"), folder]) {
         for entry in std::fs::read_dir(folder).into_iter().flatten() {
             let path = entry.expect("a shader file").path();
             if path.extension().is_some_and(|extension| extension == "wgsl") {
@@ -153,14 +173,18 @@ fn every_wgsl_file_stands_whole_in_some_module() {
 
 #[test]
 fn the_renderer_lists_exactly_the_files_of_its_folder() {
-    let mut listed: Vec<&str> = shaders::PIECES.map(|(name, _)| name).to_vec();
-    listed.sort_unstable();
     let folder = workspace().join("crates/shadowfit-render/src/shaders");
-    let of_folder = files().into_iter().filter(|(path, _)| path.starts_with(&folder));
-    let mut present: Vec<String> =
-        of_folder.map(|(path, _)| path.file_name().expect("a name").to_string_lossy().into_owned()).collect();
-    present.sort();
-    assert_eq!(listed, present);
+    for (pieces, folder) in
+        [(&shaders::PIECES[..], folder.clone()), (&shaders::samples::PIECES, folder.join("samples"))]
+    {
+        let mut listed: Vec<&str> = pieces.iter().map(|(name, _)| *name).collect();
+        listed.sort_unstable();
+        let of_folder = files().into_iter().filter(|(path, _)| path.parent() == Some(&folder));
+        let mut present: Vec<String> =
+            of_folder.map(|(path, _)| path.file_name().expect("a name").to_string_lossy().into_owned()).collect();
+        present.sort();
+        assert_eq!(listed, present);
+    }
 }
 
 #[test]

@@ -204,6 +204,36 @@ impl GpuScene {
         draws
     }
 
+    /// Adds all instances on nodes that are wanted, and returns their draws; blended surfaces are left out.
+    pub(crate) fn drawn_of(&mut self, wants: impl Fn(usize) -> bool) -> Vec<Draw> {
+        let mut draws = Vec::new();
+        for (part_index, part) in self.parts.iter().enumerate().filter(|(_, part)| part.casts()) {
+            let start = self.data.len() as u32;
+            let members = part.members.iter().map(|member| &self.instances[*member]);
+            let wanted = members.filter(|member| wants(member.instance.node));
+            self.data
+                .extend(wanted.map(|member| instance_data(&member.world_from_mesh, self.eye, member.first_triangle)));
+            let instances = start..self.data.len() as u32;
+            if !instances.is_empty() {
+                draws.push(Draw { part: part_index, instances, distance: 0.0 });
+            }
+        }
+        draws
+    }
+
+    /// Draws a part, with its material as a bind group where one is wanted.
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, draw: &Draw, material_group: Option<u32>) {
+        let part = &self.parts[draw.part];
+        if let Some(group) = material_group {
+            pass.set_bind_group(group, &self.materials[part.material], &[]);
+        }
+        pass.set_vertex_buffer(0, part.motion.slice(..));
+        pass.set_vertex_buffer(1, part.surface.slice(..));
+        pass.set_vertex_buffer(2, self.instance_buffer.slice(..));
+        pass.set_index_buffer(part.indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..part.index_count, 0, draw.instances.clone());
+    }
+
     /// Uploads the frame's instance list.
     pub(crate) fn end_frame(&mut self, gpu: &Gpu) {
         let bytes: &[u8] = bytemuck::cast_slice(&self.data);

@@ -7,13 +7,22 @@ use shadowfit_wgpu::{ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgs
 
 use crate::Overlay;
 
+pub mod samples;
+
 /// Bind group of the map's matrix in the shadow pass.
 pub const CASTER_GROUP: u32 = 0;
 
 /// Bind group of the shadow map in the shaded pass.
 pub const SHADOW_GROUP: u32 = 1;
 
-const FRAME: &str = include_str!("shaders/frame.wgsl");
+const FRAME: &str = concat!(
+    include_str!("shaders/powers.wgsl"),
+    include_str!("shaders/tone_map.wgsl"),
+    include_str!("shaders/frame.wgsl")
+);
+const POWERS: &str = include_str!("shaders/powers.wgsl");
+const TONE_MAP: &str = include_str!("shaders/tone_map.wgsl");
+const REFLECTANCE: &str = include_str!("shaders/reflectance.wgsl");
 const MATERIAL: &str = include_str!("shaders/material.wgsl");
 const OVERLAY: &str = include_str!("shaders/overlay.wgsl");
 const JUDGED: &str = include_str!("shaders/judged.wgsl");
@@ -21,8 +30,11 @@ const MARK: &str = include_str!("shaders/mark.wgsl");
 const SCREEN: &str = include_str!("shaders/screen.wgsl");
 
 /// The pieces as they lie in the folder, for tests that look for files which no module uses.
-pub const PIECES: [(&str, &str); 25] = [
-    ("frame.wgsl", FRAME),
+pub const PIECES: [(&str, &str); 28] = [
+    ("frame.wgsl", include_str!("shaders/frame.wgsl")),
+    ("powers.wgsl", POWERS),
+    ("tone_map.wgsl", TONE_MAP),
+    ("reflectance.wgsl", REFLECTANCE),
     ("material.wgsl", MATERIAL),
     ("sky.wgsl", include_str!("shaders/sky.wgsl")),
     ("caster.wgsl", include_str!("shaders/caster.wgsl")),
@@ -69,6 +81,7 @@ pub fn scene(shadow_map: &ShadowMapDescriptor) -> String {
         FRAME,
         &receiver_wgsl(shadow_map, &WgslOptions::group(SHADOW_GROUP)),
         &material,
+        REFLECTANCE,
         include_str!("shaders/scene.wgsl"),
     ]
     .concat()

@@ -111,7 +111,7 @@ impl Renderer {
         pass.set_bind_group(1, self.shadow_map().receiver_group(), &[]);
         for draw in draws {
             pass.set_pipeline(pipeline(&scene.parts[draw.part]));
-            draw_part(pass, scene, draw);
+            scene.draw(pass, draw, Some(MATERIAL_GROUP));
         }
     }
 
@@ -144,14 +144,4 @@ fn copy_part(
         aspect: wgpu::TextureAspect::All,
     };
     encoder.copy_texture_to_texture(at(from), at(to), wgpu::Extent3d { width, height, depth_or_array_layers: 1 });
-}
-
-fn draw_part(pass: &mut wgpu::RenderPass<'_>, scene: &GpuScene, draw: &Draw) {
-    let part = &scene.parts[draw.part];
-    pass.set_bind_group(MATERIAL_GROUP, &scene.materials[part.material], &[]);
-    pass.set_vertex_buffer(0, part.motion.slice(..));
-    pass.set_vertex_buffer(1, part.surface.slice(..));
-    pass.set_vertex_buffer(2, scene.instance_buffer.slice(..));
-    pass.set_index_buffer(part.indices.slice(..), wgpu::IndexFormat::Uint32);
-    pass.draw_indexed(0..part.index_count, 0, draw.instances.clone());
 }

@@ -1,4 +1,4 @@
-// What every shader of a frame shares: the uniform, the sky's colour and the tone curve.
+// What every shader of a frame shares: the uniform and the sky's colour.
 
 struct Frame {
     clip_from_world: mat4x4<f32>,
@@ -19,18 +19,6 @@ struct Frame {
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 
-// Powers by squaring: the general pow is the dearest thing in these shaders.
-fn pow5(x: f32) -> f32 {
-    let square = x * x;
-    return square * square * x;
-}
-
-fn pow8(x: f32) -> f32 {
-    let square = x * x;
-    let fourth = square * square;
-    return fourth * fourth;
-}
-
 // Linear radiance of the sky along a unit direction, without the sun's disc.
 fn sky_radiance(direction: vec3<f32>) -> vec3<f32> {
     let height = direction.y;
@@ -49,23 +37,4 @@ fn with_haze(radiance: vec3<f32>, position: vec3<f32>) -> vec3<f32> {
     let level = normalize(vec3<f32>(direction.x, max(direction.y, 0.0) + 0.02, direction.z));
     let haze = 1.0 - exp(-distance * frame.haze_per_metre);
     return mix(radiance, sky_radiance(level), haze * haze);
-}
-
-// Tone curve: Khronos PBR Neutral (Khronos Group, 2024), which keeps base colours as they are and
-// rolls off only what is brighter than the display.
-fn tone_map(radiance: vec3<f32>) -> vec3<f32> {
-    let start = 0.8 - 0.04;
-    let desaturation = 0.15;
-    let low = min(radiance.r, min(radiance.g, radiance.b));
-    let offset = select(0.04, low - 6.25 * low * low, low < 0.08);
-    let color = radiance - offset;
-    let peak = max(color.r, max(color.g, color.b));
-    if peak < start {
-        return color;
-    }
-    let room = 1.0 - start;
-    let new_peak = 1.0 - room * room / (peak + room - start);
-    let scaled = color * (new_peak / peak);
-    let gray = 1.0 - 1.0 / (desaturation * (peak - new_peak) + 1.0);
-    return mix(scaled, vec3<f32>(new_peak), gray);
 }

@@ -1,0 +1,49 @@
+// A sample's shadow pass. What is stored is the depth after the division by w, in every channel that there is.
+
+struct CasterIn {
+    @location(0) position: vec3<f32>,
+    @location(5) row0: vec4<f32>,
+    @location(6) row1: vec4<f32>,
+    @location(7) row2: vec4<f32>,
+}
+
+struct CasterOut {
+    @builtin(position) clip: vec4<f32>,
+    // 1 - z/w, computed at the vertices.
+    @location(0) reversed: f32,
+}
+
+@vertex
+fn vs_caster(in: CasterIn) -> CasterOut {
+    let local = vec4<f32>(in.position, 1.0);
+    let world = vec3<f32>(dot(in.row0, local), dot(in.row1, local), dot(in.row2, local));
+    let clip = sample.light_from_world * vec4<f32>(world, 1.0);
+    return CasterOut(clip, 1.0 - clip.z / clip.w);
+}
+
+@fragment
+fn fs_depth(in: CasterOut) -> @location(0) vec4<f32> {
+    return vec4<f32>(in.clip.z);
+}
+
+// Interpolated from the vertices, as the terrain sample does.
+@fragment
+fn fs_reversed(in: CasterOut) -> @location(0) vec4<f32> {
+    return vec4<f32>(in.reversed);
+}
+
+// The bits of the depth in four bytes, the lowest first. A byte k is written as k/255, which the target stores as k.
+fn packed(depth: f32) -> vec4<f32> {
+    let bits = bitcast<u32>(saturate(depth));
+    return vec4<f32>((vec4<u32>(bits) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u)) / 255.0;
+}
+
+@fragment
+fn fs_packed(in: CasterOut) -> @location(0) vec4<f32> {
+    return packed(in.clip.z);
+}
+
+@fragment
+fn fs_packed_reversed(in: CasterOut) -> @location(0) vec4<f32> {
+    return packed(in.reversed);
+}
