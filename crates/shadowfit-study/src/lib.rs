@@ -21,6 +21,7 @@ mod need;
 mod picture;
 mod posed_rays;
 mod rays;
+pub mod samples;
 mod scene;
 mod seen;
 mod settings_file;

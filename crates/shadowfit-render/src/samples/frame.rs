@@ -160,7 +160,7 @@ pub enum Shading {
 #[derive(Clone, Copy, Debug)]
 pub struct SampleFrame<'a> {
     /// Eye and lens.
-    pub camera: &'a PerspectiveCamera,
+    pub camera: PerspectiveCamera,
     /// Light.
     pub light: SampleLight,
     /// Its map.

@@ -1,0 +1,188 @@
+//! The classic techniques as named samples: each with the scene, camera, light and numbers of its source, the flaws that it
+//! is known for as variants, and what modern maps make of the same view.
+//!
+//! [`SAMPLES`] lists them; a [`SampleDrawer`] draws one by its [`SampleValues`], and `figures` judges it
+//! against rays. Lengths are in the units of each source. `docs/samples` has a page for each.
+
+mod drawer;
+mod options;
+mod scenes;
+mod xna;
+
+use glam::{DVec3, Vec3};
+use shadowfit::tool::CameraSettings;
+use shadowfit::{FitError, PerspectiveCamera, Technique};
+use shadowfit_render::FlyCamera;
+use shadowfit_render::samples::SampleFrame;
+use shadowfit_scene::Scene;
+
+pub use drawer::{SampleDrawer, SampleOutcome};
+pub use options::{OptionError, OptionKind, SampleOption, SampleValues};
+
+/// A classic technique that runs as its source has it.
+#[derive(Debug)]
+pub struct Sample {
+    /// Its name in command lines and files.
+    pub id: &'static str,
+    /// Its name for people.
+    pub title: &'static str,
+    /// What it teaches, as a sentence or two.
+    pub teaches: &'static str,
+    /// What it is known to do badly.
+    pub flaw: &'static str,
+    /// Its page below `docs`.
+    pub page: &'static str,
+    /// Width and height of its source's window, in pixels.
+    pub size: [u32; 2],
+    /// Where it is seen from.
+    pub view: SampleView,
+    /// Unit direction of travel of the sun that modern maps are fitted to; for a lamp, along its axis.
+    pub direction: Vec3,
+    /// Where its map is shown in the source's window: left, top, width and height, in pixels.
+    pub inset: Option<[u32; 4]>,
+    /// Whether only the scene's subject casts.
+    pub only_subject_casts: bool,
+    /// What can be changed.
+    pub options: &'static [SampleOption],
+    /// What it can show beside itself: its flaws and its cures.
+    pub variants: &'static [SampleVariant],
+    scene: fn() -> Scene,
+    draws: fn(&SampleValues, &PerspectiveCamera) -> Result<SampleDrawing, FitError>,
+}
+
+/// Where a sample is seen from, in its own units; the vertical field of view is in radians.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampleView {
+    /// Eye.
+    pub eye: DVec3,
+    /// Direction of view, of any length.
+    pub forward: Vec3,
+    /// Vertical field of view.
+    pub fov_y: f32,
+    /// Distance of the near plane.
+    pub near: f32,
+    /// Distance of the far plane.
+    pub far: f32,
+    /// Flying speed, in units a second.
+    pub speed: f32,
+}
+
+/// A flaw or a cure of a sample: options, and a view where it shows.
+#[derive(Debug)]
+pub struct SampleVariant {
+    /// Its name, behind the sample's and a slash.
+    pub id: &'static str,
+    /// Its name for people.
+    pub label: &'static str,
+    /// What is to be seen.
+    pub text: &'static str,
+    /// Options that differ from the defaults, as command lines say them.
+    pub options: &'static [(&'static str, &'static str)],
+    /// Eye and direction of view, if not the sample's own.
+    pub view: Option<(DVec3, Vec3)>,
+}
+
+/// How a sample is drawn at present.
+#[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "one a frame")]
+pub enum SampleDrawing {
+    /// By the samples' renderer.
+    Mapped(SampleFrame<'static>),
+    /// As any scene, by a technique of the core.
+    Technique(Technique),
+}
+
+/// Every sample, in the order of the documentation.
+pub static SAMPLES: [Sample; 1] = [xna::SAMPLE];
+
+impl Sample {
+    /// The sample of a name.
+    pub fn find(id: &str) -> Option<&'static Self> {
+        SAMPLES.iter().find(|sample| sample.id == id)
+    }
+
+    /// The sample and the variant of a name such as `xna-shadow-mapping/acne`.
+    pub fn find_with_variant(name: &str) -> Option<(&'static Self, Option<&'static SampleVariant>)> {
+        let (id, variant) = name.split_once('/').map_or((name, None), |(id, variant)| (id, Some(variant)));
+        let sample = Self::find(id)?;
+        match variant {
+            None => Some((sample, None)),
+            Some(variant) => Some((sample, Some(sample.variants.iter().find(|known| known.id == variant)?))),
+        }
+    }
+
+    /// Builds its scene.
+    pub fn scene(&self) -> Scene {
+        (self.scene)()
+    }
+
+    /// How it is drawn by its values, as a camera sees it.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError`] where the camera or the light cannot be fitted to.
+    pub fn drawing(&self, values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDrawing, FitError> {
+        (self.draws)(values, camera)
+    }
+
+    /// Eye and lens that it is seen through at first.
+    pub fn camera(&self) -> (FlyCamera, CameraSettings) {
+        let SampleView { eye, forward, fov_y, near, far, speed } = self.view;
+        let camera = FlyCamera::look_at(eye, eye + forward.as_dvec3());
+        (camera, CameraSettings { fov_y, near, far, speed })
+    }
+}
+
+impl PartialEq for Sample {
+    fn eq(&self, other: &Self) -> bool {
+        self.id == other.id
+    }
+}
+
+impl Eq for Sample {}
+
+impl PartialEq for SampleVariant {
+    fn eq(&self, other: &Self) -> bool {
+        (self.id, self.label) == (other.id, other.label)
+    }
+}
+
+impl Eq for SampleVariant {}
+
+/// The technique of modern maps for a view as deep as this.
+fn modern(far: f32) -> Technique {
+    let mut technique = Technique::default();
+    technique.fit = technique.fit.with_max_distance(far).with_caster_extension(far);
+    technique
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_found_and_unlike() {
+        for (index, sample) in SAMPLES.iter().enumerate() {
+            assert_eq!(SAMPLES.iter().position(|other| other.id == sample.id), Some(index));
+            let (found, none) = Sample::find_with_variant(sample.id).expect("a sample");
+            assert!(core::ptr::eq(found, Sample::find(sample.id).expect("a sample")) && none.is_none());
+            for variant in sample.variants {
+                let name = format!("{}/{}", sample.id, variant.id);
+                let (_, found) = Sample::find_with_variant(&name).expect("a sample with a variant");
+                assert!(found.is_some_and(|found| core::ptr::eq(found, variant)), "{name}");
+            }
+        }
+        assert!(Sample::find_with_variant("xna-shadow-mapping/no-such").is_none());
+        assert!(Sample::find("no-such").is_none());
+    }
+
+    #[test]
+    fn the_options_of_every_variant_are_possible() {
+        for sample in &SAMPLES {
+            for variant in sample.variants {
+                SampleValues::of_variant(sample, Some(variant))
+                    .unwrap_or_else(|error| panic!("{}: {error}", variant.id));
+            }
+        }
+    }
+}

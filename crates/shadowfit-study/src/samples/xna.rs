@@ -1,0 +1,206 @@
+//! The XNA "Shadow Mapping" sample (Microsoft, XNA Creators Club, 2008): a single map whose orthographic box encloses the
+//! camera's frustum, with every number of the source. One deviation: the character is our own figure.
+
+use glam::{DVec3, UVec2, Vec3};
+use shadowfit::bias::XNA_DEPTH_BIAS;
+use shadowfit::settings::FitSettings;
+use shadowfit::{FitError, PerspectiveCamera};
+use shadowfit_render::samples::{
+    CasterFaces, LightImage, LightPlace, SampleFormat, SampleFrame, SampleLight, SampleMapSettings, Shading,
+    ShadowTest, StoredDepth,
+};
+
+use super::options::{OptionKind, SampleOption, SampleValues};
+use super::{Sample, SampleDrawing, SampleVariant, SampleView};
+
+/// Direction toward the light before it is normalised.
+const TO_LIGHT: Vec3 = Vec3::new(-1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0);
+/// Its length is 1 but for rounding.
+const DIRECTION: Vec3 = Vec3::new(1.0 / 3.0, -2.0 / 3.0, -2.0 / 3.0);
+/// Ambient light of the source.
+const AMBIENT: f32 = 0.15;
+/// Cornflower blue.
+pub(super) const BACKGROUND: [u8; 3] = [100, 149, 237];
+/// Modern lighting: irradiance of sun and of sky and ground.
+const MODERN: Shading = Shading::Modern { light: 1.9, ambient: 0.42 };
+
+pub(super) const SAMPLE: Sample = Sample {
+    id: "xna-shadow-mapping",
+    title: "XNA Shadow Mapping",
+    teaches: "A sun's shadow map from first principles: the light's box encloses what the camera sees, depths are drawn \
+              from there, and each pixel compares its own depth with the stored one.",
+    flaw: "The box moves with the camera and knows no casters outside of the view, half of its depth is empty, and one bias \
+           has to serve every slope.",
+    page: "samples/xna-shadow-mapping.md",
+    size: [800, 480],
+    view: SampleView {
+        eye: DVec3::new(0.0, 70.0, 100.0),
+        forward: Vec3::new(0.0, -0.447_213_6, -0.894_427_2),
+        fov_y: core::f32::consts::FRAC_PI_4,
+        near: 1.0,
+        far: 1000.0,
+        speed: 100.0,
+    },
+    direction: DIRECTION,
+    inset: Some([0, 0, 128, 128]),
+    only_subject_casts: true,
+    options: &OPTIONS,
+    variants: &VARIANTS,
+    scene: super::scenes::shadow_mapping,
+    draws: drawing,
+};
+
+const OPTIONS: [SampleOption; 7] = [
+    SampleOption {
+        id: "shadows",
+        label: "Shadows",
+        help: "As the source, none, or modern maps: the whole viewer with the recommended technique on the same scene.",
+        kind: OptionKind::Choice(&[("source", "as the source"), ("off", "none"), ("ours", "modern maps")]),
+    },
+    super::options::LIGHTING,
+    SampleOption {
+        id: "format",
+        label: "Map format",
+        help: "The source takes 32-bit floats, else 16-bit floats, else four packed channels of 8 bits. The plain 8-bit map \
+               has 256 depths.",
+        kind: OptionKind::Choice(&[
+            ("r32f", "32-bit float"),
+            ("r16f", "16-bit float"),
+            ("rgba8", "8-bit RGBA, packed"),
+            ("grey8", "8-bit, plain"),
+        ]),
+    },
+    SampleOption {
+        id: "map",
+        label: "Map size",
+        help: "Texels each way. A larger map is the source's first cure of aliasing.",
+        kind: OptionKind::Choice(&[("2048", "2048²"), ("512", "512²"), ("1024", "1024²"), ("4096", "4096²")]),
+    },
+    SampleOption {
+        id: "bias",
+        label: "Bias",
+        help: "Depth that is taken from a point before it is compared, in units of the stored depth.",
+        kind: OptionKind::Number { min: 0.0, max: 0.01, default: XNA_DEPTH_BIAS, unit: "" },
+    },
+    SampleOption {
+        id: "margin",
+        label: "Box margin",
+        help: "Enlarges the light's box on all sides: the source's cure of missing casters, at the price of sharpness.",
+        kind: OptionKind::Number { min: 0.0, max: 400.0, default: 0.0, unit: "units" },
+    },
+    super::options::INSET,
+];
+
+const VARIANTS: [SampleVariant; 9] = [
+    SampleVariant {
+        id: "acne",
+        label: "Self-shadow acne",
+        text: "Without a bias the character shadows itself in stripes: a texel holds one depth for a whole patch of a slope.",
+        options: &[("bias", "0")],
+        view: Some((DVec3::new(-26.0, 58.0, 62.0), Vec3::new(0.36, -0.32, -0.88))),
+    },
+    SampleVariant {
+        id: "acne-8-bit",
+        label: "Acne by format: 8 bits",
+        text: "The original bias with 256 stored depths: a step is four times the bias, so that everything shadows itself.",
+        options: &[("format", "grey8")],
+        view: None,
+    },
+    SampleVariant {
+        id: "acne-16-bit",
+        label: "By format: 16-bit float",
+        text: "A 16-bit float rounds by 0.00012 at most here, an eighth of the bias: hardly anything changes.",
+        options: &[("format", "r16f")],
+        view: None,
+    },
+    SampleVariant {
+        id: "aliasing",
+        label: "Aliasing close up",
+        text: "Near the ground the texels of the one map are larger than pixels: the shadow's edge is a staircase.",
+        options: &[],
+        view: Some((DVec3::new(16.0, 14.0, 16.0), Vec3::new(-0.1, -0.62, -0.78))),
+    },
+    SampleVariant {
+        id: "hole",
+        label: "Hole behind the model",
+        text: "The camera is behind the character, a part of which is out of view: what the frustum does not hold is not in \
+               the map, and its shadow has a hole.",
+        options: &[],
+        view: Some((DVec3::new(6.0, 34.0, -14.0), Vec3::new(0.12, -0.62, -0.78))),
+    },
+    SampleVariant {
+        id: "missing-caster",
+        label: "Caster off screen",
+        text: "The camera looks at where the shadow should lie. The character is out of view, and so is its shadow.",
+        options: &[],
+        view: Some((DVec3::new(70.0, 34.0, -10.0), Vec3::new(-0.42, -0.55, -0.72))),
+    },
+    SampleVariant {
+        id: "wasted-resolution",
+        label: "Equal near and far",
+        text: "The camera looks far over the floor: texels are equally large near and far, so that most of them lie where \
+               nothing is seen.",
+        options: &[],
+        view: Some((DVec3::new(0.0, 12.0, 128.0), Vec3::new(0.0, -0.06, -1.0))),
+    },
+    SampleVariant {
+        id: "larger-map",
+        label: "Cure: a larger map",
+        text: "4096² texels halve the staircase of the close-up, and cost four times the memory.",
+        options: &[("map", "4096")],
+        view: Some((DVec3::new(16.0, 14.0, 16.0), Vec3::new(-0.1, -0.62, -0.78))),
+    },
+    SampleVariant {
+        id: "larger-box",
+        label: "Cure: an enlarged box",
+        text: "A margin of 120 units brings the casters behind the camera back, and makes every texel larger.",
+        options: &[("margin", "120")],
+        view: Some((DVec3::new(6.0, 34.0, -14.0), Vec3::new(0.12, -0.62, -0.78))),
+    },
+];
+
+/// The format that an option asks for.
+fn format(values: &SampleValues) -> SampleFormat {
+    match values.choice("format") {
+        "r16f" => SampleFormat::R16Float,
+        "rgba8" => SampleFormat::Rgba8Packed,
+        "grey8" => SampleFormat::Grey8,
+        _ => SampleFormat::R32Float,
+    }
+}
+
+fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDrawing, FitError> {
+    let size: u32 = values.choice("map").parse().unwrap_or(2048);
+    let settings = FitSettings::default()
+        .with_resolution(UVec2::splat(size))
+        .with_max_distance(camera.far)
+        .with_margin(values.get("margin"));
+    let fit = shadowfit::fits::xna::fit(&camera.frustum()?, DIRECTION, &settings)?;
+    let test = match values.choice("shadows") {
+        "off" => ShadowTest::Off,
+        "ours" => return Ok(SampleDrawing::Technique(super::modern(camera.far))),
+        _ => ShadowTest::Xna { bias: values.get("bias") },
+    };
+    Ok(SampleDrawing::Mapped(SampleFrame {
+        camera: *camera,
+        light: SampleLight {
+            clip_from_world: fit.clip_from_world,
+            place: LightPlace::Toward(TO_LIGHT.normalize()),
+            image: LightImage::Square,
+        },
+        map: SampleMapSettings {
+            size: [size; 2],
+            format: format(values),
+            depth: StoredDepth::Plain,
+            clear: 1,
+            faces: CasterFaces::Front,
+            compares_linearly: false,
+        },
+        test,
+        shading: if values.choice("lighting") == "modern" { MODERN } else { Shading::Xna { ambient: AMBIENT } },
+        background: BACKGROUND,
+        casts: None,
+        double_sided: false,
+        inset: None,
+    }))
+}
