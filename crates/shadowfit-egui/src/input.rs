@@ -18,6 +18,8 @@ pub struct PanelInput<'a> {
     pub scene: SceneLine<'a>,
     /// The artefact that is being shown, if any.
     pub artefact: Option<ShownArtefact<'a>>,
+    /// The classic technique on show, if the scene is one.
+    pub sample: Option<SampleCard<'a>>,
     /// The second technique, where two are compared.
     pub compare: Option<Compare<'a>>,
     /// How far the search for better settings is.
@@ -38,6 +40,7 @@ impl<'a> PanelInput<'a> {
             figures,
             scene,
             artefact: None,
+            sample: None,
             compare: None,
             tune: Tune::Idle,
             changes: Changes::default(),
@@ -76,6 +79,78 @@ impl<'a> ShownArtefact<'a> {
     pub fn new(artefact: Artefact, narration: &'a str) -> Self {
         Self { artefact, fixed: false, narration, changes: &[] }
     }
+}
+
+/// A classic technique that the scene is a sample of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampleCard<'a> {
+    /// Its name.
+    pub title: &'a str,
+    /// What it teaches.
+    pub text: &'a str,
+    /// What it does badly.
+    pub flaw: &'a str,
+    /// Whether a technique of the settings draws it at present, so that the rest of the panel applies.
+    pub is_technique: bool,
+    /// What it can show beside itself.
+    pub variants: &'a [SampleChoice<'a>],
+    /// Which of them is on show; `None` for the technique as its source has it.
+    pub shown: Option<usize>,
+    /// Its options.
+    pub rows: &'a [SampleRow<'a>],
+    /// Whether it can be measured.
+    pub is_measurable: bool,
+    /// What was measured, a line each.
+    pub figures: &'a [SampleFigure],
+}
+
+/// Something that a sample can show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SampleChoice<'a> {
+    /// Its name.
+    pub label: &'a str,
+    /// What is to be seen.
+    pub text: &'a str,
+}
+
+/// An option of a sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampleRow<'a> {
+    /// Its name.
+    pub label: &'a str,
+    /// What it does.
+    pub help: &'a str,
+    /// What sets it.
+    pub control: SampleControl<'a>,
+    /// The number, the index of the choice, or 1 for on.
+    pub value: f32,
+}
+
+/// What sets an option of a sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SampleControl<'a> {
+    /// One of several, by name and label.
+    Choice(&'a [(&'a str, &'a str)]),
+    /// A number.
+    Number {
+        /// Least value.
+        min: f32,
+        /// Greatest value.
+        max: f32,
+        /// Unit, possibly empty.
+        unit: &'a str,
+    },
+    /// On or off.
+    Toggle,
+}
+
+/// A figure of a sample.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SampleFigure {
+    /// What was measured.
+    pub name: String,
+    /// The figure with its unit.
+    pub value: String,
 }
 
 /// The other one of two techniques, A | B: A is that of the settings, B is [`Self::other`].
@@ -164,6 +239,17 @@ pub enum Action {
     SwapSides,
     /// Copy the technique that the controls edit to the other side.
     CopyToOther,
+    /// Show a variant of the sample, by its index, or the sample as its source has it.
+    ShowSampleVariant(Option<usize>),
+    /// Set an option of the sample.
+    SetSampleOption {
+        /// Its index.
+        index: usize,
+        /// The bits of the f32 value: the number, the index of the choice, or 1 for on.
+        bits: u32,
+    },
+    /// Judge the sample, and modern maps on the same view, against rays.
+    MeasureSample,
     /// Begin the search for settings with a lower error.
     StartTune,
     /// End the search early; what it found so far counts.

@@ -52,6 +52,7 @@ mod parameters;
 mod plots;
 mod quality;
 mod rows;
+mod sample;
 mod technique;
 mod theme;
 mod tune;
@@ -74,7 +75,10 @@ pub use accessibility::rename;
 pub use artefact::Artefact;
 pub use classes::PixelClass;
 pub use help::{KEYS, KeyGroup, KeyHelp, help_overlay};
-pub use input::{Action, Changes, Compare, PanelInput, PanelOutput, Part, SceneLine, ShownArtefact, Tune, UserPreset};
+pub use input::{
+    Action, Changes, Compare, PanelInput, PanelOutput, Part, SampleCard, SampleChoice, SampleControl, SampleFigure,
+    SampleRow, SceneLine, ShownArtefact, Tune, UserPreset,
+};
 pub use legend::{MAP_UPDATE_COLORS, has_legend, legend, legend_overlay};
 pub use theme::apply_theme;
 pub use views::view_bar;
@@ -154,6 +158,17 @@ impl Panel {
     }
 
     fn contents(&mut self, ui: &mut Ui, input: &mut PanelInput<'_>, action: &mut Option<Action>) {
+        if let Some(card) = &input.sample {
+            sample::show(ui, card, action);
+            if !card.is_technique {
+                let hidden = &self.hidden;
+                let has = |parameter: &Parameter| !hidden.contains(parameter.id);
+                let rows = Rows { defaults: &self.defaults, has: &has };
+                rows.groups(ui, [shadowfit::params::Group::Camera], input.settings);
+                return;
+            }
+            ui.add_space(8.0);
+        }
         if self.has(Part::Artefacts) {
             artefact::show(ui, input.artefact.as_ref(), action);
         }

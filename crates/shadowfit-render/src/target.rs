@@ -46,6 +46,21 @@ impl RenderTarget {
         self.color.create_view(&wgpu::TextureViewDescriptor { format: Some(ENCODED_FORMAT), ..Default::default() })
     }
 
+    /// Copies a part (left, top, width and height, in pixels) of the colours of a target of the same size.
+    pub fn copy_part(&self, gpu: &Gpu, from: &Self, part: [u32; 4]) {
+        let [x, y, width, height] = crate::attachment::part(crate::attachment::part(part, from.size), self.size);
+        let at = |texture| wgpu::TexelCopyTextureInfo {
+            texture,
+            mip_level: 0,
+            origin: wgpu::Origin3d { x, y, z: 0 },
+            aspect: wgpu::TextureAspect::All,
+        };
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let extent = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+        encoder.copy_texture_to_texture(at(&from.color), at(&self.color), extent);
+        gpu.submit([encoder.finish()]);
+    }
+
     /// Waits for the picture and returns its sRGB pixels, four bytes each, rows from the top.
     ///
     /// # Errors

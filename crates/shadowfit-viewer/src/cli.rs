@@ -10,6 +10,7 @@ use shadowfit::tool::Settings;
 use shadowfit_render::AdapterChoice;
 use shadowfit_scene::Scene;
 use shadowfit_study::NamedTechnique;
+use shadowfit_study::samples::{SAMPLES, SampleValues};
 
 use crate::script::{self, Line};
 use crate::source::SceneSource;
@@ -24,6 +25,11 @@ pub struct Arguments {
     /// Scene: a glTF file (.gltf or .glb), or courtyard, plain, arcade or forest, which are built in. Without one the
     /// scene of the last time, at first the courtyard.
     pub scene: Option<PathBuf>,
+
+    /// A classic technique by its name, e.g. `xna-shadow-mapping`, with a slash one of its variants; `list` lists them all
+    /// and ends.
+    #[arg(long, value_name = "NAME", conflicts_with = "scene")]
+    pub sample: Option<String>,
 
     /// Which of the file's scenes; its default one if not given.
     #[arg(long, value_name = "INDEX")]
@@ -45,7 +51,8 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub technique: Option<String>,
 
-    /// Sets a parameter, e.g. `--set bias.normal_offset=1.5`; `--parameters` lists them.
+    /// Sets a parameter, e.g. `--set bias.normal_offset=1.5`; `--parameters` lists them. Options of a sample are set as
+    /// `--set sample.bias=0`.
     #[arg(long = "set", value_name = "ID=VALUE")]
     pub set: Vec<String>,
 
@@ -83,11 +90,18 @@ pub struct Arguments {
     pub log_frames: bool,
 }
 
+/// What names an option of a sample begins with.
+pub(crate) const OPTION_PREFIX: &str = "sample.";
+
 /// Parses the process's arguments; help, version, the parameter list and misuse end it here.
 pub(crate) fn parse() -> Arguments {
     let arguments = Arguments::parse();
     if arguments.parameters {
         print!("{}", parameter_list());
+        std::process::exit(0);
+    }
+    if arguments.sample.as_deref() == Some("list") {
+        print!("{}", sample_list());
         std::process::exit(0);
     }
     if arguments.actions {
@@ -111,11 +125,22 @@ impl Arguments {
 
     /// The scene that the arguments name, if any.
     pub(crate) fn source(&self) -> Result<Option<SceneSource>> {
+        if let Some(name) = &self.sample {
+            let unknown = || anyhow!("--sample {name}: there is no such sample; `viewer --sample list` lists them");
+            let source = SceneSource::sample(name).ok_or_else(unknown)?;
+            return source.with_index(self.scene_index).map(Some);
+        }
         let named = self.scene.as_deref().map(|text| SceneSource::from_text(&text.to_string_lossy()));
         if named.is_none() && self.scene_index.is_none() {
             return Ok(None);
         }
         named.unwrap_or_default().with_index(self.scene_index).map(Some)
+    }
+
+    /// The options of a sample that are set, by name.
+    pub(crate) fn sample_options(&self) -> impl Iterator<Item = (&str, &str)> {
+        let options = self.set.iter().filter_map(|assignment| assignment.trim().strip_prefix(OPTION_PREFIX));
+        options.map(|option| option.split_once('=').unwrap_or((option, ""))).map(|(id, text)| (id.trim(), text.trim()))
     }
 
     /// The script that the arguments name; nothing without one.
@@ -159,7 +184,7 @@ impl Arguments {
         if let Some(opened) = &opened {
             settings.technique = opened.technique;
         }
-        for assignment in &self.set {
+        for assignment in self.set.iter().filter(|assignment| !assignment.trim().starts_with(OPTION_PREFIX)) {
             let (id, value) = assignment
                 .split_once('=')
                 .ok_or_else(|| anyhow!("--set {assignment}: expected ID=VALUE, e.g. bias.normal_offset=1.5"))?;
@@ -207,6 +232,24 @@ fn parameter_list() -> String {
         // A parameter that exists only with a choice of another one has no value until then.
         let value = if parameter.is_present(&defaults) { format!("={value}") } else { String::new() };
         let _ = writeln!(list, "{}{value}  ({})\n    {}", parameter.id, range(parameter), parameter.help);
+    }
+    list
+}
+
+fn sample_list() -> String {
+    use std::fmt::Write;
+    let mut list = String::new();
+    for sample in &SAMPLES {
+        // Writing to a String cannot fail.
+        let _ = writeln!(list, "{}\n    {}. {}", sample.id, sample.title, sample.teaches);
+        for variant in sample.variants {
+            let _ = writeln!(list, "{}/{}\n    {}", sample.id, variant.id, variant.text);
+        }
+        for option in sample.options {
+            let default = SampleValues::text(option, option.default_value());
+            let (id, possible) = (option.id, option.possible());
+            let _ = writeln!(list, "    --set sample.{id}={default}  ({possible})\n        {}", option.help);
+        }
     }
     list
 }

@@ -68,6 +68,12 @@ pub(crate) enum Command {
     SetBookmark(u8),
     /// Goes to the view of a number.
     GoToBookmark(u8),
+    /// Shows a variant of the sample by its index, or the sample as its source has it.
+    SampleVariant(Option<usize>),
+    /// Sets an option of the sample by its index.
+    SampleOption(usize, f32),
+    /// Judges the sample and modern maps against rays.
+    MeasureSample,
     /// Searches a better technique.
     StartTune,
     /// Stops the search.
@@ -134,6 +140,9 @@ impl Command {
             Action::StopCompare => Self::Compare(Toggle::Off),
             Action::SwapSides => Self::SwapSides,
             Action::CopyToOther => Self::CopyToOther,
+            Action::ShowSampleVariant(variant) => Self::SampleVariant(variant),
+            Action::SetSampleOption { index, bits } => Self::SampleOption(index, f32::from_bits(bits)),
+            Action::MeasureSample => Self::MeasureSample,
             Action::StartTune => Self::StartTune,
             Action::CancelTune => Self::CancelTune,
             Action::ApplyTune => Self::ApplyTune,

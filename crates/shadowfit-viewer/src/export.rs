@@ -4,14 +4,22 @@ use std::fmt::Write as _;
 
 use shadowfit::params::{self, PARAMETERS};
 use shadowfit::tool::Settings;
+use shadowfit_study::samples::{Sample, SampleValues, SampleVariant};
 
 use crate::source::SceneSource;
 
 /// The command line that opens a scene with one of its animations and these settings, whatever was saved. `own` are the
 /// settings that the scene is opened with when nothing else is asked for: only what differs from them is written.
-pub(crate) fn command_line(source: &SceneSource, animation: usize, settings: &Settings, own: &Settings) -> String {
+pub(crate) fn command_line(
+    source: &SceneSource,
+    animation: usize,
+    (settings, own): (&Settings, &Settings),
+    sample: Option<(&Sample, Option<&SampleVariant>, &SampleValues)>,
+) -> String {
     let mut line = String::from("viewer");
-    if *source != SceneSource::default() {
+    if matches!(source, SceneSource::Sample { .. }) {
+        let _ = write!(line, " --sample {}", quoted(&source.text()));
+    } else if *source != SceneSource::default() {
         let _ = write!(line, " {}", quoted(&source.text()));
     }
     line.push_str(" --no-state");
@@ -32,7 +40,22 @@ pub(crate) fn command_line(source: &SceneSource, animation: usize, settings: &Se
             parameter.copy(&mut reached, settings);
         }
     }
+    for (option, value) in sample.into_iter().flat_map(|(sample, variant, values)| changed(sample, variant, values)) {
+        let _ = write!(line, " --set {}", quoted(&format!("sample.{option}={value}")));
+    }
     line
+}
+
+/// The options of a sample that differ from those that its name alone stands for.
+fn changed(
+    sample: &Sample,
+    variant: Option<&SampleVariant>,
+    values: &SampleValues,
+) -> impl Iterator<Item = (&'static str, String)> {
+    let own = SampleValues::of_variant(sample, variant).unwrap_or_else(|_| SampleValues::new(sample));
+    let both: Vec<_> = own.iter().zip(values.iter()).collect();
+    let changed = both.into_iter().filter(|((_, own), (_, value))| own != value);
+    changed.map(|(_, (option, value))| (option.id, SampleValues::text(option, value)))
 }
 
 /// A word as a shell reads it as one.
@@ -61,7 +84,7 @@ mod tests {
         settings.technique.bias.constant = 0.7;
         (settings.light.hour, settings.view.inset_depths) = (Some(8.5), Some([0.25, 0.5]));
         let town = SceneSource::from_text("a town.glb").with_index(Some(2)).expect("files have scenes");
-        let line = command_line(&town, 1, &settings, &home);
+        let line = command_line(&town, 1, (&settings, &home), None);
         let path = quoted(&town.text());
         let start = format!("viewer {path} --no-state --scene-index 2 --animation 1 --set ");
         assert!(path.starts_with('\'') && line.starts_with(&start), "{line}");
@@ -71,7 +94,7 @@ mod tests {
         let mut read = home;
         arguments.apply(&mut read).expect("settings");
         assert_eq!(read, settings);
-        assert_eq!(command_line(&SceneSource::default(), 0, &home, &home), "viewer --no-state");
+        assert_eq!(command_line(&SceneSource::default(), 0, (&home, &home), None), "viewer --no-state");
     }
 
     #[test]

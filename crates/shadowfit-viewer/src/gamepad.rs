@@ -1,7 +1,10 @@
-//! Gamepads: the left stick moves, the right stick looks, the triggers sink and rise, BACK quits.
+//! Gamepads: the left stick moves, the right stick looks, a click of it goes back to the first view, the triggers sink and
+//! rise, BACK quits.
 
 use gilrs::{Axis, Button, EventType, Gilrs};
 use glam::{Vec2, Vec3};
+
+use crate::command::Command;
 
 /// Stick travel that counts as rest.
 const DEAD_ZONE: f32 = 0.12;
@@ -17,12 +20,16 @@ impl Gamepads {
         Self { gilrs: Gilrs::new().ok() }
     }
 
-    /// Movement and turn by sticks and triggers, and whether BACK was pressed.
-    pub(crate) fn poll(&mut self) -> ((Vec3, Vec2), bool) {
+    /// Movement and turn by sticks and triggers, and what the buttons that were pressed ask for.
+    pub(crate) fn poll(&mut self) -> ((Vec3, Vec2), Vec<Command>) {
         let Some(gilrs) = &mut self.gilrs else { return Default::default() };
-        let mut quits = false;
+        let mut commands = Vec::new();
         while let Some(event) = gilrs.next_event() {
-            quits |= matches!(event.event, EventType::ButtonPressed(Button::Select, _));
+            match event.event {
+                EventType::ButtonPressed(Button::Select, _) => commands.push(Command::Quit),
+                EventType::ButtonPressed(Button::RightThumb, _) => commands.push(Command::ResetCamera),
+                _ => {}
+            }
         }
         let mut sticks = (Vec3::ZERO, Vec2::ZERO);
         for (_, gamepad) in gilrs.gamepads() {
@@ -32,7 +39,7 @@ impl Gamepads {
             sticks.0 += Vec3::new(value(Axis::LeftStickX), rise, value(Axis::LeftStickY));
             sticks.1 += Vec2::new(value(Axis::RightStickX), value(Axis::RightStickY));
         }
-        (sticks, quits)
+        (sticks, commands)
     }
 }
 

@@ -3,12 +3,15 @@
 mod bar;
 mod paint;
 mod picture;
+mod sample;
 mod timeline;
 
 use egui::{CentralPanel, Frame, Ui};
 use glam::Vec2;
 use shadowfit::figures::Figures;
-use shadowfit_egui::{Changes, Compare, PANEL_WIDTH, Panel, PanelInput, SceneLine, ShownArtefact, Tune, UserPreset};
+use shadowfit_egui::{
+    Changes, Compare, PANEL_WIDTH, Panel, PanelInput, SampleFigure, SceneLine, ShownArtefact, Tune, UserPreset,
+};
 
 use crate::command::Command;
 use crate::saved::Saved;
@@ -41,6 +44,8 @@ pub(crate) struct Shows<'a> {
     pub(crate) saved: &'a Saved,
     pub(crate) presets: &'a [UserPreset],
     pub(crate) tune: Tune<'a>,
+    /// What was measured of the sample on show.
+    pub(crate) sample_figures: &'a [SampleFigure],
     pub(crate) changes: Changes<'a>,
     /// A readable message, such as where a screenshot was saved.
     pub(crate) message: Option<&'a str>,
@@ -59,6 +64,7 @@ impl<'a> Shows<'a> {
             saved,
             presets: &[],
             tune: Tune::Idle,
+            sample_figures: &[],
             changes: Changes::default(),
             message: None,
             loading: None,
@@ -170,10 +176,12 @@ impl Interface {
             narration: &narration,
             changes: &changes,
         });
+        let sample = stage.sample().map(sample::Parts::new);
         let (settings, other) = stage.settings_and_other();
         let compare = other.map(|other| Compare { other, edits_other: &mut self.edits_other });
         let input = PanelInput {
             artefact,
+            sample: sample.as_ref().map(|sample| sample.card(shows.sample_figures)),
             compare,
             tune: shows.tune,
             changes: shows.changes,

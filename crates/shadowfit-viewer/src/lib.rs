@@ -19,6 +19,7 @@ mod monkey;
 mod narration;
 mod outside;
 mod playback;
+mod sample_figures;
 mod saved;
 mod script;
 mod source;

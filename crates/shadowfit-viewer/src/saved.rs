@@ -69,6 +69,8 @@ pub(crate) struct Saved {
     pub(crate) recent: Vec<PathBuf>,
     pub(crate) bookmarks: Vec<Bookmark>,
     pub(crate) presets: Vec<NamedTechnique>,
+    /// Options of the sample on show, by name, as command lines say them.
+    pub(crate) sample: Vec<(String, String)>,
 }
 
 /// A view of a scene under a number.
@@ -167,6 +169,13 @@ impl Saved {
         let mut text = String::from("# What the shadowfit viewer had when it was last closed.\n\n");
         text.push_str(&toml::to_string(&head)?);
         text.push('\n');
+        if !self.sample.is_empty() {
+            text.push_str("[sample]\n\n");
+            for (option, value) in &self.sample {
+                let _ = writeln!(text, "{option} = {}", toml::Value::from(value.as_str()));
+            }
+            text.push('\n');
+        }
         text.push_str(&settings_to_toml(&self.settings, "settings."));
         if let Some((other, _)) = self.other {
             text.push_str(&technique_to_toml(&other, "other."));
@@ -193,6 +202,7 @@ impl Saved {
             None => Ok(None),
         };
         let (settings, other, presets) = (table("settings")?, table("other")?, table("presets")?);
+        let sample = table("sample")?.unwrap_or_default();
         let head: Head = toml::Value::Table(file).try_into()?;
         let mut saved = Self {
             theme: head.theme,
@@ -202,6 +212,10 @@ impl Saved {
             bookmarks: head.bookmark,
             ..Self::default()
         };
+        for (option, value) in sample {
+            let value = value.as_str().with_context(|| format!("sample.{option} is no text"))?;
+            saved.sample.push((option, value.to_owned()));
+        }
         if let Some(settings) = settings {
             settings_from_toml(&settings, &mut saved.settings).context("settings")?;
         }
@@ -316,6 +330,7 @@ mod tests {
         };
         saved.settings.technique = Technique::preset("calm-4").expect("a preset");
         saved.settings.light.hour = Some(9.5);
+        saved.sample = vec![("bias".to_owned(), "0.002".to_owned()), ("format".to_owned(), "r16f".to_owned())];
         saved.bookmarks.push(Bookmark::new(3, &saved.scene, camera));
         saved.presets.push(NamedTechnique { name: "my \"best\" one".to_owned(), ..saved.settings.technique.into() });
         saved.remember(Path::new("a.glb"));

@@ -22,6 +22,7 @@ use shadowfit::tool::Settings;
 use shadowfit_egui::Artefact;
 use shadowfit_study::NamedTechnique;
 
+use crate::cli::OPTION_PREFIX;
 use crate::command::{Command, Toggle};
 use crate::keys::Chord;
 use crate::saved::Theme;
@@ -81,9 +82,9 @@ pub(crate) struct Monkey {
 
 /// Every action with what follows its name; read by people in the help and in error messages.
 pub(crate) const ACTIONS: &[(&str, &str, &str)] = &[
-    ("open", "SCENE", "opens courtyard, plain, arcade, forest or a file"),
+    ("open", "SCENE", "opens courtyard, plain, arcade, forest, a sample or a file"),
     ("drop", "FILE", "drops a file on the window"),
-    ("set", "ID VALUE", "sets a parameter"),
+    ("set", "ID VALUE", "sets a parameter, or with `sample.` before its name an option of the sample"),
     ("technique", "NAME|FILE.toml", "takes a technique"),
     ("view", "NAME", "shows a view, by its name in view.mode"),
     ("show", "acne|aliasing|hole", "shows an artefact"),
@@ -249,7 +250,8 @@ impl Words<'_> {
     /// settings at that time.
     fn assignment(self) -> Result<Command> {
         let (id, value) = self.rest.split_once(char::is_whitespace).context("a value is missing")?;
-        ensure!(params::parameter(id).is_some(), "there is no parameter {id:?}; `viewer --parameters` lists them");
+        let is_known = params::parameter(id).is_some() || id.starts_with(OPTION_PREFIX);
+        ensure!(is_known, "there is no parameter {id:?}; `viewer --parameters` lists them");
         Ok(Command::Set(id.to_owned(), value.trim().to_owned()))
     }
 

@@ -5,11 +5,13 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, bail};
 use shadowfit_scene::Scene;
 use shadowfit_scene::builtin::BuiltinScene;
+use shadowfit_study::samples::{Sample, SampleVariant};
 
-/// A built-in scene or a file.
+/// A built-in scene, a classic sample or a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum SceneSource {
     BuiltIn(BuiltinScene),
+    Sample { sample: &'static Sample, variant: Option<&'static SampleVariant> },
     File { path: PathBuf, index: Option<usize> },
 }
 
@@ -20,12 +22,18 @@ impl Default for SceneSource {
 }
 
 impl SceneSource {
-    /// What a text names: a built-in scene by its name, or a file.
+    /// What a text names: a built-in scene or a sample by its name, or a file.
     pub(crate) fn from_text(text: &str) -> Self {
-        match BuiltinScene::from_id(text) {
-            Some(scene) if !Path::new(text).is_file() => Self::BuiltIn(scene),
-            _ => Self::file(text),
+        if Path::new(text).is_file() {
+            return Self::file(text);
         }
+        let built_in = BuiltinScene::from_id(text).map(Self::BuiltIn);
+        built_in.or_else(|| Self::sample(text)).unwrap_or_else(|| Self::file(text))
+    }
+
+    /// A sample by its name, with that of a variant behind a slash.
+    pub(crate) fn sample(name: &str) -> Option<Self> {
+        Sample::find_with_variant(name).map(|(sample, variant)| Self::Sample { sample, variant })
     }
 
     /// A file, by a path that names the same one whatever the working folder is.
@@ -43,7 +51,7 @@ impl SceneSource {
     pub(crate) fn with_index(self, index: Option<usize>) -> Result<Self> {
         match (self, index) {
             (Self::File { path, .. }, index) => Ok(Self::File { path, index }),
-            (built_in, None | Some(0)) => Ok(built_in),
+            (own, None | Some(0)) => Ok(own),
             (_, Some(index)) => bail!("--scene-index {index}: a built-in scene is the only one; name a file"),
         }
     }
@@ -51,7 +59,7 @@ impl SceneSource {
     /// Which of the file's scenes; `None` for its default one and for a built-in scene.
     pub(crate) fn index(&self) -> Option<usize> {
         match self {
-            Self::BuiltIn(_) => None,
+            Self::BuiltIn(_) | Self::Sample { .. } => None,
             Self::File { index, .. } => *index,
         }
     }
@@ -60,6 +68,8 @@ impl SceneSource {
     pub(crate) fn text(&self) -> String {
         match self {
             Self::BuiltIn(scene) => scene.id().to_owned(),
+            Self::Sample { sample, variant: None } => sample.id.to_owned(),
+            Self::Sample { sample, variant: Some(variant) } => format!("{}/{}", sample.id, variant.id),
             Self::File { path, .. } => path.display().to_string(),
         }
     }
@@ -68,6 +78,7 @@ impl SceneSource {
     pub(crate) fn label(&self) -> String {
         match self {
             Self::BuiltIn(scene) => scene.label().to_owned(),
+            Self::Sample { sample, .. } => sample.title.to_owned(),
             Self::File { path, .. } => path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
         }
     }
@@ -80,6 +91,7 @@ impl SceneSource {
     pub(crate) fn load(&self, progress: &dyn Fn(f32)) -> Result<Scene> {
         Ok(match self {
             Self::BuiltIn(scene) => scene.build(),
+            Self::Sample { sample, .. } => sample.scene(),
             Self::File { path, index } => shadowfit_scene::load_gltf_with_progress(path, *index, progress)?,
         })
     }
@@ -95,6 +107,9 @@ mod tests {
             assert_eq!(SceneSource::from_text(scene.id()), SceneSource::BuiltIn(scene));
             assert_eq!(SceneSource::BuiltIn(scene).text(), scene.id());
         }
+        let sample = SceneSource::from_text("xna-shadow-mapping/acne");
+        assert!(matches!(sample, SceneSource::Sample { variant: Some(_), .. }), "{sample:?}");
+        assert_eq!(sample.text(), "xna-shadow-mapping/acne");
         let file = SceneSource::from_text("town/kenney.glb");
         let path = std::env::current_dir().expect("a working folder").join("town/kenney.glb");
         assert_eq!((file.text(), file.label().as_str()), (path.display().to_string(), "kenney.glb"));

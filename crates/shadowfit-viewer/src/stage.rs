@@ -8,6 +8,7 @@ mod inset;
 mod judge;
 mod live;
 mod need_view;
+mod sample;
 mod shown;
 mod side;
 mod why;
@@ -30,6 +31,7 @@ use shadowfit_wgpu::{MapFit, ShadowMapError};
 
 use compare::Other;
 pub(crate) use live::judged_figures;
+pub(crate) use sample::SampleShow;
 pub use shown::Shown;
 pub(crate) use shown::{ArtefactShow, changes};
 use side::{Shot, Side};
@@ -89,6 +91,7 @@ pub struct Stage {
     artefact: ArtefactShow,
     why: why::Asked,
     reads_depths: bool,
+    sample: Option<SampleShow>,
 }
 
 /// Views that a technique is tuned for.
@@ -128,6 +131,7 @@ impl Stage {
             artefact: ArtefactShow::default(),
             why: why::Asked::default(),
             reads_depths: false,
+            sample: None,
         })
     }
 
@@ -156,6 +160,7 @@ impl Stage {
         self.artefact = ArtefactShow::default();
         self.why = why::Asked::default();
         self.other = None;
+        self.sample = None;
         self.side.scene_changed();
     }
 
@@ -204,6 +209,9 @@ impl Stage {
 
     /// Why the settings cannot be shown as they are, as a readable line.
     pub fn problem(&self) -> Option<&str> {
+        if self.draws_sample() {
+            return self.sample_message();
+        }
         let other = self.other.as_ref().and_then(Other::problem);
         self.side.problem.as_deref().or(other)
     }
@@ -215,7 +223,8 @@ impl Stage {
 
     /// Moves camera, sun and animation on by `seconds`.
     pub fn update(&mut self, input: &FlyInput, seconds: f32) {
-        self.camera.update(&mut self.settings.camera, input, seconds);
+        let input = self.steer_sample(input, seconds);
+        self.camera.update(&mut self.settings.camera, &input, seconds);
         self.settings.light.advance(seconds);
         self.clock += seconds;
         if self.plays() {
@@ -249,11 +258,14 @@ impl Stage {
         (self.settings, self.camera) = self.home;
         self.artefact = ArtefactShow::default();
         self.side.fitted = None;
+        if let Some(show) = &mut self.sample {
+            show.reset();
+        }
     }
 
     /// Back to the view that the scene was opened with; settings stay.
     pub fn reset_camera(&mut self) {
-        self.set_camera(self.home.1);
+        self.set_camera(self.sample_reset().unwrap_or(self.home.1));
     }
 
     /// Puts the camera somewhere else: the next view follows none of those before.
@@ -303,8 +315,17 @@ impl Stage {
         side.fit(&mut shot).maps.iter().map(MapFit::from).collect()
     }
 
-    /// Draws the present view into a target: of two techniques the first one up to the bar, and the second one from there.
+    /// Draws the present view into a target: of two techniques the first one up to the bar, and the second one from there;
+    /// a sample as its source does.
     pub fn draw(&mut self, target: &RenderTarget) {
+        if self.sample.is_some() {
+            self.draw_sample(target);
+        } else {
+            self.draw_side(target);
+        }
+    }
+
+    fn draw_side(&mut self, target: &RenderTarget) {
         if self.side.fitter.rays == shadowfit_study::RayUse::IfReady {
             // What fits and figures read when it is there.
             self.scene.take_rays();

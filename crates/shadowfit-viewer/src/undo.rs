@@ -4,6 +4,7 @@ use egui::util::undoer::Undoer;
 use shadowfit::Technique;
 use shadowfit::params::PARAMETERS;
 use shadowfit::tool::Settings;
+use shadowfit_study::samples::SampleValues;
 
 use crate::stage::ArtefactShow;
 
@@ -14,6 +15,8 @@ pub(crate) struct State {
     /// The technique that the first one is compared with.
     pub(crate) other: Option<Technique>,
     pub(crate) artefact: ArtefactShow,
+    /// Values of the sample on show.
+    pub(crate) sample: Option<SampleValues>,
 }
 
 impl State {
@@ -47,6 +50,10 @@ impl State {
         let mut names: Vec<&str> = differs(&self.settings, &other.settings);
         if self.other != other.other {
             names.push("comparison");
+        }
+        if let (Some(a), Some(b)) = (&self.sample, &other.sample) {
+            let differs = a.iter().zip(b.iter()).filter(|((_, a), (_, b))| a != b);
+            names.extend(differs.map(|((option, _), _)| option.label));
         }
         if self.artefact != other.artefact && names.is_empty() {
             names.push("artefact");
@@ -123,7 +130,7 @@ mod tests {
 
     fn state(count: u32) -> State {
         let settings = Settings::default().with_technique(Technique::default().with_count(count));
-        State { settings, other: None, artefact: ArtefactShow::default() }
+        State { settings, other: None, artefact: ArtefactShow::default(), sample: None }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 
 mod commands;
 mod opening;
+mod sample;
 mod start;
 #[cfg(test)]
 mod tests;
@@ -25,6 +26,7 @@ use crate::interface::{Asked, Canvas, Interface, Layout, Shows};
 use crate::keys::Chord;
 use crate::loading::Loading;
 use crate::playback::{Deed, Doing, Player};
+use crate::sample_figures::Measuring;
 use crate::saved::{Saved, Store};
 use crate::source::SceneSource;
 use crate::stage::Stage;
@@ -56,6 +58,7 @@ pub(crate) struct Viewer {
     searching: Option<Receiver<Found>>,
     chooser: Option<Receiver<Option<PathBuf>>>,
     tuning: Tuning,
+    measuring: Measuring,
     history: History,
     saved: Saved,
     store: Option<Store>,
@@ -122,6 +125,7 @@ impl Viewer {
             searching: None,
             chooser: None,
             tuning: Tuning::default(),
+            measuring: Measuring::default(),
             history: History::default(),
             saved: Saved::default(),
             store,
@@ -142,9 +146,17 @@ impl Viewer {
 
     /// Handles a key.
     pub(crate) fn key(&mut self, chord: Chord, pressed: bool, is_repeat: bool) {
-        let command = chord.command().filter(|_| pressed && !is_repeat);
+        let command = self.key_command(chord).filter(|_| pressed && !is_repeat);
         self.commands.extend(command.map(Request::from));
         self.hold(chord, pressed);
+    }
+
+    /// What a key does when it is pressed. A sample's own controls win over those of the viewer.
+    fn key_command(&self, chord: Chord) -> Option<Command> {
+        match chord.command() {
+            Some(Command::Reset) if self.stage.has_sample_reset() => Some(Command::ResetCamera),
+            command => command,
+        }
     }
 
     /// Takes note of a key that is held.
@@ -204,6 +216,7 @@ impl Viewer {
             saved: &self.saved,
             presets: &self.presets,
             tune: self.tuning.shown(),
+            sample_figures: self.measuring.lines(),
             changes: Changes { undo: self.history.undo_name(), redo: self.history.redo_name() },
             message: self.message.as_ref().map(|message| message.text.as_str()),
             loading: loading.as_ref().map(|(name, share)| (name.as_str(), *share)),
@@ -238,7 +251,7 @@ impl Viewer {
             is_loading: self.loading.is_some() || !self.has_scene,
             is_searching: self.searching.is_some(),
             is_judged: self.has_scene && self.stage.is_judged(),
-            is_tuning: self.tuning.is_running(),
+            is_tuning: self.tuning.is_running() || self.measuring.is_running(),
             size,
         };
         let deeds = self.player.advance(seconds, &doing);
@@ -249,7 +262,7 @@ impl Viewer {
                 Deed::Do(command) => self.commands.push_back(request(command)),
                 Deed::Key(chord, pressed) if pressed && self.types() => raw_input.events.extend(typed(chord)),
                 Deed::Key(chord, pressed) => {
-                    self.commands.extend(chord.command().filter(|_| pressed).map(request));
+                    self.commands.extend(self.key_command(chord).filter(|_| pressed).map(request));
                     self.hold(chord, pressed);
                 }
                 Deed::Pointer(event) => raw_input.events.push(event),
@@ -283,12 +296,18 @@ impl Viewer {
             self.commands.extend(chosen.ok().flatten().map(|path| Request::from(Command::OpenFile(path))));
         }
         self.tuning.take();
+        self.measuring.take();
     }
 
     /// All that a change can change.
     fn state(&self) -> State {
         let stage = &self.stage;
-        State { settings: stage.settings, other: stage.other_technique(), artefact: stage.artefact_show().clone() }
+        State {
+            settings: stage.settings,
+            other: stage.other_technique(),
+            artefact: stage.artefact_show().clone(),
+            sample: stage.sample().map(|show| show.values.clone()),
+        }
     }
 
     /// Shows the outcome of an action. Where it failed and a line of the script asked for it, the script has failed, too.
@@ -315,7 +334,7 @@ impl Viewer {
 
     /// Whether something goes on in the background that a script may wait for.
     pub(crate) fn is_waiting(&self) -> bool {
-        self.loading.is_some() || self.searching.is_some() || self.tuning.is_running()
+        self.loading.is_some() || self.searching.is_some() || self.tuning.is_running() || self.measuring.is_running()
     }
 
     /// Whether the script is at its end, and no scene is on its way that it asked for.

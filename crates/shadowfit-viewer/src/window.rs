@@ -224,9 +224,9 @@ impl Running {
         self.last_frame = Instant::now();
         #[cfg(feature = "gamepad")]
         {
-            let (sticks, quits) = self.gamepads.poll();
+            let (sticks, commands) = self.gamepads.poll();
             self.viewer.input.sticks = sticks;
-            self.viewer.wishes.quit |= quits;
+            commands.into_iter().for_each(|command| self.viewer.ask(command));
         }
         let texture = self.surface.acquire(self.viewer.stage.gpu())?;
         let begin = Instant::now();

@@ -42,6 +42,10 @@ pub struct Sample {
     pub inset: Option<[u32; 4]>,
     /// Whether only the scene's subject casts.
     pub only_subject_casts: bool,
+    /// Whether it has shadows that rays can judge.
+    pub is_measurable: bool,
+    /// What its own controls do otherwise than those of the viewer.
+    pub controls: SampleControls,
     /// What can be changed.
     pub options: &'static [SampleOption],
     /// What it can show beside itself: its flaws and its cures.
@@ -65,6 +69,23 @@ pub struct SampleView {
     pub far: f32,
     /// Flying speed, in units a second.
     pub speed: f32,
+}
+
+/// Controls of a sample that differ from those of the viewer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampleControls {
+    /// How fast arrows and the right stick turn the view, in radians a second.
+    pub turn: f32,
+    /// How fast Q and E, and the triggers, turn the model, in radians a second: 0 where they let the camera sink and rise.
+    /// The model turns by the first animation of its scene, a whole turn.
+    pub model_turn: f32,
+    /// Eye and direction of view that R, and a click of the right stick, put the camera to, if not those of the start.
+    pub reset: Option<(DVec3, Vec3)>,
+}
+
+impl SampleControls {
+    /// Those of the viewer.
+    pub const VIEWER: Self = Self { turn: shadowfit_render::camera::TURN_SPEED, model_turn: 0.0, reset: None };
 }
 
 /// A flaw or a cure of a sample: options, and a view where it shows.
@@ -123,6 +144,25 @@ impl Sample {
     /// [`FitError`] where the camera or the light cannot be fitted to.
     pub fn drawing(&self, values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDrawing, FitError> {
         (self.draws)(values, camera)
+    }
+
+    /// Whether its values are drawn by a technique, as any scene is.
+    pub fn is_technique(&self, values: &SampleValues) -> bool {
+        matches!(self.drawing(values, &self.lens(1.0)), Ok(SampleDrawing::Technique(_)))
+    }
+
+    /// The technique of its values, or the one that modern maps of its view have.
+    pub fn technique(&self, values: &SampleValues) -> Technique {
+        match self.drawing(values, &self.lens(1.0)) {
+            Ok(SampleDrawing::Technique(technique)) => technique,
+            _ => modern(self.view.far),
+        }
+    }
+
+    /// The camera that it is seen through at first, for a picture of an aspect (width over height).
+    pub fn lens(&self, aspect: f32) -> PerspectiveCamera {
+        let (camera, lens) = self.camera();
+        camera.perspective(&lens, aspect)
     }
 
     /// Eye and lens that it is seen through at first.

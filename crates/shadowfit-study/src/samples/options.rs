@@ -167,6 +167,15 @@ impl SampleValues {
         self.get(id) != 0.0
     }
 
+    /// The values of the right half of the picture, where that shows something else: those that the option `beside` names,
+    /// as `option=value`.
+    pub fn beside(&self) -> Option<Self> {
+        let (id, text) = self.choice("beside").split_once('=')?;
+        let mut other = self.clone();
+        other.set_from_str(id, text).ok()?;
+        Some(other)
+    }
+
     /// Every option with its value.
     pub fn iter(&self) -> impl Iterator<Item = (&'static SampleOption, f32)> + '_ {
         self.options.iter().zip(self.values.iter().copied())
@@ -238,6 +247,23 @@ mod tests {
                 read.set_from_str(id, &text).expect("what was written");
             }
             assert_eq!(read, values);
+        }
+    }
+
+    #[test]
+    fn whatever_is_shown_beside_is_possible() {
+        for sample in &SAMPLES {
+            let Some(OptionKind::Choice(choices)) =
+                sample.options.iter().find(|option| option.id == "beside").map(|option| option.kind)
+            else {
+                continue;
+            };
+            for (id, _) in &choices[1..] {
+                let mut values = SampleValues::new(sample);
+                values.set_from_str("beside", id).expect("a choice");
+                let other = values.beside().unwrap_or_else(|| panic!("{}: {id}", sample.id));
+                assert_ne!(other, values, "{}: {id}", sample.id);
+            }
         }
     }
 

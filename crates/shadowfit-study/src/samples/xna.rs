@@ -11,7 +11,7 @@ use shadowfit_render::samples::{
 };
 
 use super::options::{OptionKind, SampleOption, SampleValues};
-use super::{Sample, SampleDrawing, SampleVariant, SampleView};
+use super::{Sample, SampleControls, SampleDrawing, SampleVariant, SampleView};
 
 /// Direction toward the light before it is normalised.
 const TO_LIGHT: Vec3 = Vec3::new(-1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0);
@@ -44,13 +44,19 @@ pub(super) const SAMPLE: Sample = Sample {
     direction: DIRECTION,
     inset: Some([0, 0, 128, 128]),
     only_subject_casts: true,
+    is_measurable: true,
+    controls: SampleControls {
+        turn: 1.0,
+        model_turn: 200.0 * core::f32::consts::PI / 180.0,
+        reset: Some((DVec3::new(0.0, 50.0, 50.0), Vec3::NEG_Z)),
+    },
     options: &OPTIONS,
     variants: &VARIANTS,
     scene: super::scenes::shadow_mapping,
     draws: drawing,
 };
 
-const OPTIONS: [SampleOption; 7] = [
+const OPTIONS: [SampleOption; 8] = [
     SampleOption {
         id: "shadows",
         label: "Shadows",
@@ -89,6 +95,18 @@ const OPTIONS: [SampleOption; 7] = [
         kind: OptionKind::Number { min: 0.0, max: 400.0, default: 0.0, unit: "units" },
     },
     super::options::INSET,
+    SampleOption {
+        id: "beside",
+        label: "Right half",
+        help: "Shows something else in the right half of the picture, on the same view.",
+        kind: OptionKind::Choice(&[
+            ("none", "the same"),
+            ("shadows=ours", "modern maps"),
+            ("shadows=off", "no shadows"),
+            ("lighting=modern", "modern lighting"),
+            ("format=grey8", "the plain 8-bit map"),
+        ]),
+    },
 ];
 
 const VARIANTS: [SampleVariant; 9] = [

@@ -2,6 +2,7 @@
 
 use egui::{Button, Ui, containers::menu::MenuButton};
 use shadowfit_scene::builtin::BuiltinScene;
+use shadowfit_study::samples::SAMPLES;
 
 use super::{Asked, Shows};
 use crate::command::{Command, Toggle};
@@ -14,6 +15,10 @@ pub(super) fn show(ui: &mut Ui, stage: &mut Stage, shows: &Shows<'_>, asked: &mu
         ui.horizontal_wrapped(|ui| {
             scenes(ui, shows, asked);
             ui.separator();
+            if stage.draws_sample() {
+                // Views and comparison are those of techniques.
+                return;
+            }
             shadowfit_egui::view_bar(ui, &mut stage.settings.view);
             ui.separator();
             let compare = Button::selectable(stage.is_comparing(), "A | B");
@@ -40,6 +45,15 @@ fn scenes(ui: &mut Ui, shows: &Shows<'_>, asked: &mut Asked) {
                 open(asked, SceneSource::BuiltIn(scene));
             }
         }
+        ui.separator();
+        ui.menu_button("Classic techniques", |ui| {
+            for sample in &SAMPLES {
+                if ui.button(sample.title).on_hover_text(sample.teaches).clicked() {
+                    open(asked, SceneSource::Sample { sample, variant: None });
+                    ui.close();
+                }
+            }
+        });
         ui.separator();
         if ui.add(Button::new("Open a glTF file…").shortcut_text("Ctrl+O")).clicked() {
             asked.commands.push(Command::ChooseFile);

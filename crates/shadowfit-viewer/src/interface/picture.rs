@@ -100,10 +100,12 @@ impl Pictures {
         pointer(ui, &response, rect, asked);
         let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
         ui.painter().image(self.main.texture, rect, whole, Color32::WHITE);
-        if stage.is_comparing() {
-            show_bar(ui, stage, rect, asked);
+        if let Some(names) = halves(stage) {
+            show_bar(ui, stage, names, rect, asked);
         }
-        if shows.has_scene {
+        if shows.has_scene && stage.draws_sample() {
+            // No view of a technique, no legend.
+        } else if shows.has_scene {
             over(ui, stage, figures, rect);
             if stage.settings.view.outside_beside {
                 self.show_beside(ui, rect);
@@ -134,8 +136,19 @@ impl Pictures {
     }
 }
 
-/// The bar between two techniques, which can be dragged, and their names.
-fn show_bar(ui: &Ui, stage: &Stage, rect: Rect, asked: &mut Asked) {
+/// What both halves of the picture are called, where they show different things.
+fn halves(stage: &Stage) -> Option<[String; 2]> {
+    if stage.draws_sample() {
+        return stage.sample_halves();
+    }
+    stage.is_comparing().then(|| {
+        let [a, b] = stage.side_names();
+        [format!("A  {a}"), format!("B  {b}")]
+    })
+}
+
+/// The bar between both halves of the picture, which can be dragged, and their names.
+fn show_bar(ui: &Ui, stage: &Stage, [left, right]: [String; 2], rect: Rect, asked: &mut Asked) {
     let x = rect.left() + rect.width() * stage.split;
     let grip = Rect::from_center_size(Pos2::new(x, rect.center().y), Vec2::new(GRIP, rect.height()));
     let bar =
@@ -150,10 +163,9 @@ fn show_bar(ui: &Ui, stage: &Stage, rect: Rect, asked: &mut Asked) {
         ui.painter().vline(x, rect.y_range(), stroke);
     }
     ui.painter().circle(Pos2::new(x, rect.center().y), 9.0, Color32::WHITE, dark);
-    let [a, b] = stage.side_names();
     let y = rect.top() + MARGIN;
-    label(ui, Pos2::new(x - MARGIN, y), Align2::RIGHT_TOP, &format!("A  {a}"));
-    label(ui, Pos2::new(x + MARGIN, y), Align2::LEFT_TOP, &format!("B  {b}"));
+    label(ui, Pos2::new(x - MARGIN, y), Align2::RIGHT_TOP, &left);
+    label(ui, Pos2::new(x + MARGIN, y), Align2::LEFT_TOP, &right);
 }
 
 /// Size of a place, in pixels.

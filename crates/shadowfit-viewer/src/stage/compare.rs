@@ -162,7 +162,7 @@ pub(super) fn left_part(split: f32, [width, height]: [u32; 2]) -> [u32; 4] {
 }
 
 /// The part right of the bar, and a column of pixels under it.
-fn right_part(split: f32, [width, height]: [u32; 2]) -> [u32; 4] {
+pub(super) fn right_part(split: f32, [width, height]: [u32; 2]) -> [u32; 4] {
     let from = column(split, width).saturating_sub(1);
     [from, 0, width - from, height]
 }

@@ -12,7 +12,7 @@ use shadowfit_render::FlyCamera;
 use shadowfit_study::{NamedTechnique, settings_to_toml};
 
 use super::Viewer;
-use crate::cli::find_technique;
+use crate::cli::{OPTION_PREFIX, find_technique};
 use crate::command::{Command, Toggle};
 use crate::export::command_line;
 use crate::files::{free_name, write_png, write_whole};
@@ -108,6 +108,9 @@ impl Viewer {
             Command::LookAt(eye, target) => self.stage.set_camera(FlyCamera::look_at(eye, target)),
             Command::Focus(at) => self.focus(at),
             Command::SetBookmark(key) => self.set_bookmark(key),
+            Command::SampleVariant(variant) => self.show_sample_variant(variant),
+            Command::SampleOption(option, value) => self.stage.set_sample_option(option, value),
+            Command::MeasureSample => self.measure_sample(),
             Command::StartTune => self.start_tune(),
             Command::CancelTune => self.tuning.cancel(),
             Command::ApplyTune => self.apply_tune(),
@@ -208,6 +211,9 @@ impl Viewer {
 
     fn restore_state(&mut self, state: State) {
         self.stage.settings = state.settings;
+        if let Some(values) = state.sample {
+            self.stage.set_sample_values(values);
+        }
         self.stage.compare_with(state.other);
         self.stage.restore_artefact(state.artefact);
     }
@@ -264,6 +270,10 @@ impl Viewer {
     }
 
     fn set(&mut self, id: &str, value: &str) -> Result<String> {
+        if let Some(option) = id.strip_prefix(OPTION_PREFIX) {
+            self.stage.set_sample_text(option, value)?;
+            return Ok(format!("{id} = {value}"));
+        }
         let is_technique = params::parameter(id).is_some_and(|parameter| parameter.group.is_technique());
         let set = if is_technique {
             params::set_technique_from_str(self.edited(), id, value)
@@ -334,7 +344,12 @@ impl Viewer {
 
     /// The command line that starts with this scene and these settings.
     fn command_line(&self) -> String {
-        command_line(&self.source, self.stage.animation, &self.stage.settings, &self.own_settings)
+        command_line(
+            &self.source,
+            self.stage.animation,
+            (&self.stage.settings, &self.own_settings),
+            self.stage.sample().map(|show| (show.sample, show.variant, &show.values)),
+        )
     }
 
     fn save_preset(&mut self, name: &str) -> Result<String> {

@@ -8,6 +8,7 @@ use shadowfit_study::{NamedTechnique, PreparedScene, settings_from_toml};
 use super::Viewer;
 use crate::files::settings_of_png;
 use crate::loading::Loading;
+use crate::sample_figures::Measuring;
 use crate::source::SceneSource;
 use crate::undo::History;
 
@@ -86,6 +87,14 @@ impl Viewer {
         let comparing = self.stage.other_technique();
         let technique = self.stage.settings.technique;
         self.stage.set_prepared(prepared);
+        let is_sample = match &self.source {
+            SceneSource::Sample { sample, variant } => {
+                self.stage.set_sample(sample, *variant);
+                true
+            }
+            _ => false,
+        };
+        self.measuring = Measuring::default();
         self.own_settings = self.stage.settings;
         self.has_scene = true;
         self.wishes.new_title = true;
@@ -100,6 +109,9 @@ impl Viewer {
                     self.wishes.quit = true;
                 }
             }
+        } else if is_sample {
+            // A sample is shown as its source has it.
+            self.message = None;
         } else {
             self.message = None;
             // Another scene is looked at in the same way, with lengths and light of its own.

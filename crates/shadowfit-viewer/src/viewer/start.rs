@@ -2,9 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use anyhow::Context;
 use shadowfit::tool::Settings;
 use shadowfit_render::FlyCamera;
 use shadowfit_study::NamedTechnique;
+use shadowfit_study::samples::SampleValues;
 
 use super::Viewer;
 use crate::cli::Arguments;
@@ -85,6 +87,7 @@ impl Viewer {
         self.start.is_pending = false;
         let arguments = self.start.arguments.clone();
         self.stage.animation = arguments.animation;
+        self.set_up_sample(&arguments)?;
         let kept = self.start.kept.take().filter(|_| self.saved_is_there());
         let mut home = self.own_settings;
         let Some((source, kept, camera)) = kept else {
@@ -113,6 +116,19 @@ impl Viewer {
         Ok(technique)
     }
 
+    /// The values of the sample of the start: those of the last time where it was on show, and over them the arguments.
+    fn set_up_sample(&mut self, arguments: &Arguments) -> anyhow::Result<()> {
+        let is_of_it = self.saved.scene == self.source;
+        for (option, text) in self.saved.sample.clone().iter().filter(|_| is_of_it) {
+            // What a later version does not know any more is left out.
+            let _ = self.stage.set_sample_text(option, text);
+        }
+        for (option, text) in arguments.sample_options() {
+            self.stage.set_sample_text(option, text).with_context(|| format!("--set sample.{option}={text}"))?;
+        }
+        Ok(())
+    }
+
     /// Whether anything was kept from the last time.
     fn saved_is_there(&self) -> bool {
         self.saved != Saved { theme: self.saved.theme, ..Saved::default() }
@@ -128,6 +144,9 @@ impl Viewer {
         }
         self.saved.scene = self.source.clone();
         self.saved.settings = self.stage.settings;
+        self.saved.sample = self.stage.sample().map_or_else(Vec::new, |show| {
+            show.values.iter().map(|(option, value)| (option.id.to_owned(), SampleValues::text(option, value))).collect()
+        });
         self.saved.camera = Some(self.stage.camera);
         self.saved.other = self.stage.other_technique().map(|other| (other, self.stage.split));
         if let Err(error) = store.save(&self.saved) {

@@ -1,0 +1,67 @@
+//! How a sample compares with modern maps: measured on a thread, on a device of its own.
+
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+
+use anyhow::Result;
+use shadowfit::PerspectiveCamera;
+use shadowfit_egui::SampleFigure;
+use shadowfit_render::AdapterChoice;
+use shadowfit_study::samples::{Sample, SampleFigures, SampleValues};
+
+/// What is measured: a sample by its values, a camera, and the time of its animation, in seconds.
+pub(crate) type Task = (&'static Sample, SampleValues, PerspectiveCamera, f32);
+
+/// A measurement on its way, or what came of the last one.
+#[derive(Debug, Default)]
+pub(crate) struct Measuring {
+    result: Option<Receiver<Result<SampleFigures>>>,
+    lines: Vec<SampleFigure>,
+}
+
+impl Measuring {
+    /// Begins; the result of one that is under way is dropped.
+    pub(crate) fn start(&mut self, adapter: AdapterChoice, (sample, values, camera, seconds): Task) {
+        let (sender, result) = channel();
+        let work = move || {
+            // Nobody waits any more where another one was begun.
+            let _ = sender.send(SampleFigures::measure(adapter, sample, &values, &camera, seconds));
+        };
+        let started = std::thread::Builder::new().name("measuring".to_owned()).spawn(work);
+        self.lines = match started {
+            Ok(_) => vec![line("Measuring", "…")],
+            Err(error) => vec![line("Not measured", &error.to_string())],
+        };
+        self.result = Some(result);
+    }
+
+    /// Whether one is under way.
+    pub(crate) fn is_running(&self) -> bool {
+        self.result.is_some()
+    }
+
+    /// Takes what has been measured meanwhile.
+    pub(crate) fn take(&mut self) {
+        let Some(result) = self.result.as_ref().map(Receiver::try_recv) else { return };
+        self.lines = match result {
+            Err(TryRecvError::Empty) => return,
+            Ok(Ok(figures)) => lines(&figures),
+            Ok(Err(error)) => vec![line("Not measured", &format!("{error:#}"))],
+            Err(TryRecvError::Disconnected) => vec![line("Not measured", "this is a bug of the viewer")],
+        };
+        self.result = None;
+    }
+
+    /// What was measured, for the panel.
+    pub(crate) fn lines(&self) -> &[SampleFigure] {
+        &self.lines
+    }
+}
+
+/// Lines of figures, as the panel shows them and the headless mode prints them.
+pub(crate) fn lines(figures: &SampleFigures) -> Vec<SampleFigure> {
+    figures.lines().into_iter().map(|(name, value)| SampleFigure { name, value }).collect()
+}
+
+fn line(name: &str, value: &str) -> SampleFigure {
+    SampleFigure { name: name.to_owned(), value: value.to_owned() }
+}

@@ -1,0 +1,167 @@
+//! A classic sample on the stage: its values, its controls, and what draws it.
+
+use anyhow::{Context, Result};
+use shadowfit_render::{FlyCamera, FlyInput, RenderTarget, camera::TURN_SPEED};
+use shadowfit_study::samples::{OptionKind, Sample, SampleDrawer, SampleOutcome, SampleValues, SampleVariant};
+
+use super::{Stage, compare};
+
+/// The sample on show.
+#[derive(Debug)]
+pub(crate) struct SampleShow {
+    pub(crate) sample: &'static Sample,
+    pub(crate) variant: Option<&'static SampleVariant>,
+    pub(crate) values: SampleValues,
+    drawer: SampleDrawer,
+    /// What was drawn otherwise than asked for, or could not be.
+    message: Option<String>,
+    /// What the right half is drawn into.
+    beside: Option<RenderTarget>,
+}
+
+impl SampleShow {
+    /// Back to the values of the source, or of the variant.
+    pub(super) fn reset(&mut self) {
+        self.values =
+            SampleValues::of_variant(self.sample, self.variant).unwrap_or_else(|_| SampleValues::new(self.sample));
+    }
+}
+
+impl Stage {
+    /// Shows the scene that has just been set as a sample, or one of its variants.
+    pub(crate) fn set_sample(&mut self, sample: &'static Sample, variant: Option<&'static SampleVariant>) {
+        let values = SampleValues::of_variant(sample, variant).unwrap_or_else(|_| SampleValues::new(sample));
+        let (camera, lens) = sample.camera();
+        self.settings.camera = lens;
+        self.settings.view.play = false;
+        if let Ok(light) = shadowfit::tool::LightSettings::from_direction(sample.direction) {
+            self.settings.light = light;
+        }
+        self.settings.technique = sample.technique(&values);
+        let drawer = match self.sample.take() {
+            Some(show) => show.drawer,
+            None => SampleDrawer::new(&self.gpu, self.samples),
+        };
+        self.home = (self.settings, camera);
+        let eye = variant.and_then(|variant| variant.view).map_or(camera, |(eye, forward)| look(eye, forward));
+        self.set_camera(eye);
+        self.sample = Some(SampleShow { sample, variant, values, drawer, message: None, beside: None });
+    }
+
+    /// The sample on show, if it is one.
+    pub(crate) fn sample(&self) -> Option<&SampleShow> {
+        self.sample.as_ref()
+    }
+
+    /// Takes values of the sample on show.
+    pub(crate) fn set_sample_values(&mut self, values: SampleValues) {
+        let Some(show) = &mut self.sample else { return };
+        let technique = show.sample.technique(&values);
+        if technique != show.sample.technique(&show.values) {
+            self.settings.technique = technique;
+        }
+        show.values = values;
+    }
+
+    /// Sets an option of the sample on show by its index.
+    pub(crate) fn set_sample_option(&mut self, option: usize, value: f32) {
+        if let Some(mut values) = self.sample.as_ref().map(|show| show.values.clone()) {
+            values.set(option, value);
+            self.set_sample_values(values);
+        }
+    }
+
+    /// Sets an option of the sample on show as command lines say it.
+    ///
+    /// # Errors
+    ///
+    /// If no sample is on show, or it has no such option or value.
+    pub(crate) fn set_sample_text(&mut self, option: &str, text: &str) -> Result<()> {
+        let show = self.sample.as_ref().context("no sample is on show")?;
+        let mut values = show.values.clone();
+        values.set_from_str(option, text)?;
+        self.set_sample_values(values);
+        Ok(())
+    }
+
+    /// Whether the sample on show has a place of its own that R puts the camera to.
+    pub(crate) fn has_sample_reset(&self) -> bool {
+        self.sample_reset().is_some()
+    }
+
+    /// Whether the picture is that of a sample's own renderer, to which technique and views do not apply.
+    pub(crate) fn draws_sample(&self) -> bool {
+        self.sample.as_ref().is_some_and(|show| !show.sample.is_technique(&show.values))
+    }
+
+    /// Whether the right half of the picture shows something else of a sample, and what both halves are called.
+    pub(crate) fn sample_halves(&self) -> Option<[String; 2]> {
+        let show = self.sample.as_ref()?;
+        show.values.beside()?;
+        let label = show.values.iter().find(|(option, _)| option.id == "beside").map(|(option, value)| {
+            let OptionKind::Choice(choices) = option.kind else { return "" };
+            choices.get(value as usize).map_or("", |(_, label)| label)
+        });
+        let left = show.variant.map_or(show.sample.title, |variant| variant.label);
+        Some([left.to_owned(), label.unwrap_or_default().to_owned()])
+    }
+
+    /// What the sample has to tell.
+    pub(super) fn sample_message(&self) -> Option<&str> {
+        self.sample.as_ref().and_then(|show| show.message.as_deref())
+    }
+
+    /// Draws the sample on show, and what is beside it, into a target.
+    pub(super) fn draw_sample(&mut self, target: &RenderTarget) {
+        let Some(mut show) = self.sample.take() else { return };
+        show.message = None;
+        let values = show.values.clone();
+        self.draw_values(&mut show, &values, target);
+        if let Some(other) = values.beside() {
+            let kept = show.beside.take().filter(|beside| beside.size == target.size);
+            let beside = kept.unwrap_or_else(|| self.target(target.size));
+            self.draw_values(&mut show, &other, &beside);
+            target.copy_part(&self.gpu, &beside, compare::right_part(self.split, target.size));
+            show.beside = Some(beside);
+        }
+        self.sample = Some(show);
+    }
+
+    fn draw_values(&mut self, show: &mut SampleShow, values: &SampleValues, target: &RenderTarget) {
+        let camera = self.perspective(target.size);
+        let drawn = show.drawer.draw(&self.gpu, &mut self.scene, (show.sample, values), &camera, target);
+        match drawn {
+            Ok(SampleOutcome::Drawn { message }) => show.message = message.or(show.message.take()),
+            Ok(SampleOutcome::ByTechnique) => self.draw_side(target),
+            Err(error) => show.message = Some(format!("{error:#}")),
+        }
+    }
+
+    /// What the sample's own controls make of what a person asks for.
+    pub(super) fn steer_sample(&mut self, input: &FlyInput, seconds: f32) -> FlyInput {
+        let mut input = *input;
+        let Some(show) = &self.sample else { return input };
+        let controls = show.sample.controls;
+        input.turn *= controls.turn / TURN_SPEED;
+        if controls.model_turn != 0.0
+            && let Some(duration) = self.duration()
+        {
+            let turned = input.movement.y * controls.model_turn / core::f32::consts::TAU * duration * seconds;
+            input.movement.y = 0.0;
+            if turned != 0.0 {
+                self.set_time((self.seconds() + turned).rem_euclid(duration));
+            }
+        }
+        input
+    }
+
+    /// Where R puts the camera, if not to the view of the start.
+    pub(super) fn sample_reset(&self) -> Option<FlyCamera> {
+        let (eye, forward) = self.sample.as_ref()?.sample.controls.reset?;
+        Some(look(eye, forward))
+    }
+}
+
+fn look(eye: glam::DVec3, forward: glam::Vec3) -> FlyCamera {
+    FlyCamera::look_at(eye, eye + forward.as_dvec3())
+}

@@ -1,0 +1,26 @@
+//! Samples in the viewer: their variants, and how they compare with modern maps.
+
+use super::Viewer;
+use crate::sample_figures::Measuring;
+use crate::source::SceneSource;
+
+impl Viewer {
+    /// Shows a variant of the sample on show, or the sample as its source has it.
+    pub(super) fn show_sample_variant(&mut self, variant: Option<usize>) {
+        let Some(show) = self.stage.sample() else { return };
+        let sample = show.sample;
+        let variant = variant.and_then(|index| sample.variants.get(index));
+        self.stage.set_sample(sample, variant);
+        self.source = SceneSource::Sample { sample, variant };
+        self.measuring = Measuring::default();
+        self.wishes.new_title = true;
+    }
+
+    /// Begins to judge the sample and modern maps against rays.
+    pub(super) fn measure_sample(&mut self) {
+        let Some(show) = self.stage.sample() else { return };
+        let camera = self.stage.perspective(self.interface.pictures.size());
+        let task = (show.sample, show.values.clone(), camera, self.stage.seconds());
+        self.measuring.start(self.start.arguments.adapter(), task);
+    }
+}
