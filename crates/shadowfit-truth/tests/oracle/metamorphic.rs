@@ -32,7 +32,7 @@ fn tally(motion: DAffine3, scale: f64) -> PictureTally {
     let truth = Truth::trace(&tracer, &camera, &settings, &Truth::seen_by_rays(&tracer, &camera));
     let map = map_around(DVec3::ZERO, to_light, 16.0, 3.0, 1024);
     let clip_from_world = DMat4::from_cols_array(&map.view_proj) * DMat4::from(world.inverse());
-    let map = FitMap { view_proj: clip_from_world.to_cols_array(), ..map }.measured(settings.to_light);
+    let map = FitMap { view_proj: clip_from_world.to_cols_array(), ..map }.measured(turned(to_light));
     // Shadows that are shifted in the picture, with stripes: wrong in every way.
     let factors: Vec<f32> = (0..camera.pixels())
         .map(|pixel| {
