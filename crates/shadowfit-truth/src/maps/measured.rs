@@ -79,7 +79,8 @@ impl MeasuredMap {
     ///
     /// `clip_from_world` is a perspective from that position, as for [`Self::new`], with w above 0 in front of the
     /// light; it may be one without a far plane. `split_far` is as for [`Self::new`]: infinite for a map that is read at
-    /// every view depth.
+    /// every view depth. The tolerances of [`Self::is_inside`] are in the map's depth, which a perspective spreads
+    /// unevenly: toward the far plane they are longer in metres.
     pub fn of_spot(clip_from_world: &DMat4, size: DVec2, split_far: f64, position: DVec3) -> Self {
         Self::prepared(clip_from_world, size, split_far, |middle| (position - middle) * REVERSAL_SHARE)
     }

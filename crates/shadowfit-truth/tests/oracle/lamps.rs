@@ -18,7 +18,7 @@ fn plate(centre: DVec3) -> [DVec3; 4] {
 }
 
 fn scene(plate: [DVec3; 4]) -> Tracer {
-    Tracer::new([floor(), quad(plate.map(|corner| corner.as_vec3()))].concat())
+    Tracer::new([floor(), quad(plate.map(DVec3::as_vec3))].concat())
 }
 
 fn truth_of(tracer: &Tracer, camera: &PixelCamera, light: TruthLight) -> Truth {
