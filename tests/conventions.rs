@@ -219,16 +219,13 @@ fn rays_and_the_map_put_a_shadow_on_the_same_side() {
         elevation: core::f32::consts::FRAC_PI_4,
         ..Default::default()
     };
-    let settings = TruthSettings::new(-light.direction().as_dvec3());
+    let to_light = -light.direction();
+    let settings = TruthSettings::new(to_light.as_dvec3());
     let fit = fitted(&light, DepthConvention::ZeroToOne).relative_to(DVec3::ZERO);
     let center = fit.uv_from_world.transform_point3(Vec3::new(0.0, 2.0, 0.0));
     for (x, shadowed) in [(-2.0, true), (0.0, false), (2.0, false)] {
         let floor = Vec3::new(x, 0.0, 0.0);
-        assert_eq!(
-            tracer.is_occluded(floor + Vec3::Y * settings.ray_offset as f32, settings.to_light.as_vec3()),
-            shadowed,
-            "x = {x}"
-        );
+        assert_eq!(tracer.is_occluded(floor + Vec3::Y * settings.ray_offset as f32, to_light), shadowed, "x = {x}");
         let uv = fit.uv_from_world.transform_point3(floor);
         let same_texel = (uv - center).truncate().length() < CLOSE;
         assert_eq!(same_texel && uv.z > center.z, shadowed, "x = {x}: {uv} against {center}");

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use shadowfit::PerspectiveCamera;
-use shadowfit_truth::{PixelCamera, Truth, TruthSettings};
+use shadowfit_truth::{PixelCamera, Truth, TruthLight, TruthSettings};
 
 use crate::View;
 
@@ -32,11 +32,10 @@ impl Default for Judging {
 impl Judging {
     /// How the truth of a view is traced: shadows are judged up to the camera's far plane.
     pub(crate) fn truth_settings(&self, view: &View) -> TruthSettings {
+        let to_light = -view.direction.as_dvec3().normalize();
         TruthSettings {
-            to_light: -view.direction.as_dvec3().normalize(),
+            light: TruthLight::Sun { to_light, radius: self.sun_radius, rays: self.sun_rays },
             ray_offset: self.ray_offset,
-            sun_radius: self.sun_radius,
-            sun_rays: self.sun_rays,
             max_distance: f64::from(view.camera.far),
         }
     }

@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Class {
-    /// Sky, a surface that faces away from the light, or one beyond the shadow distance.
+    /// Sky, a surface that faces away from the light, or one beyond the shadow distance or outside of the light's image.
     NotJudged = 0,
     /// The map agrees with the truth.
     Right = 1,

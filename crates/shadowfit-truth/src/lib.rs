@@ -4,7 +4,8 @@
 //! be judged. [`Tracer`] casts rays, [`Truth`] says whether light reaches each pixel, [`judge()`]
 //! sorts the pixels of a picture into right ones and the named kinds of wrong ones, and [`peers`]
 //! ranks fits by what their maps give to many frames. With the feature `gpu`, compute passes fill a
-//! texture with the same classes.
+//! texture with the same classes. The light is a sun or, on the CPU alone, one with a position
+//! ([`TruthLight`]). [`AmbientTruth`] is the reference of ambient occlusion.
 //!
 //! Each module uses only modules of the lines below its own. What pictures and fits share (`maps`,
 //! `histogram`, `tally`) stands below both:
@@ -13,11 +14,13 @@
 //! crawl
 //! gpu      judge
 //!          pixel
-//! peers    truth
-//! displacement  tally  tracer
-//! camera  class  cut_out  distances  histogram  maps  memory  sun
+//! ambient  peers  truth
+//! displacement  light  seen  tally
+//! camera  class  distances  histogram  maps  sun  tracer
+//! cut_out  memory  spiral
 //! ```
 
+mod ambient;
 mod camera;
 mod class;
 mod crawl;
@@ -28,15 +31,19 @@ mod distances;
 pub mod gpu;
 mod histogram;
 mod judge;
+mod light;
 mod maps;
 mod memory;
 pub mod peers;
 mod pixel;
+mod seen;
+mod spiral;
 mod sun;
 mod tally;
 mod tracer;
 mod truth;
 
+pub use ambient::{AmbientSettings, AmbientTruth};
 pub use camera::PixelCamera;
 pub use class::Class;
 pub use crawl::{MapsBefore, crawl};
@@ -44,6 +51,7 @@ pub use cut_out::{AlphaImage, CutOut, CutOuts, Wrap};
 pub use displacement::MAX_DISPLACEMENT;
 pub use histogram::Histogram;
 pub use judge::{Judged, judge, judge_while};
+pub use light::{LightRay, TruthLight};
 pub use maps::{MapGradients, MapPosition, MapReading, MeasuredMap, PictureMaps};
 pub use memory::TracerMemory;
 pub use pixel::{PixelFinding, PixelTruth};

@@ -9,8 +9,9 @@ use crate::camera::PixelCamera;
 use crate::class::{Class, counts_as_lit};
 use crate::distances::NONE_MARKED;
 use crate::maps::{MapChoice, OccluderPlace, PictureMaps, pixels_per_texel};
+use crate::seen::seen_by_ray;
 use crate::tracer::Tracer;
-use crate::truth::{self, Occluder, TruthPoint, TruthSettings, is_transition, is_within, seen_by_ray};
+use crate::truth::{self, Occluder, TruthPoint, TruthSettings, is_transition, is_within};
 
 /// Farthest that a shadow's edge is looked for around a single pixel, in pixels: within it lies the edge zone of texels
 /// that are 25 pixels wide, with the widest filter that is not soft.
@@ -57,10 +58,11 @@ impl PixelTruth<'_> {
             return None;
         }
         let triangle = seen_by_ray(self.tracer, self.camera, pixel)?;
-        Some(truth::point(self.tracer, (self.camera, self.settings), &self.settings.sun(), pixel, triangle))
+        let rays = self.settings.light.rays();
+        Some(truth::point(self.tracer, (self.camera, self.settings), &rays, pixel, triangle))
     }
 
-    /// Everything between a judged point and the sun, along a ray that is blocked, in no order; nothing where every ray
+    /// Everything between a judged point and the light, along a ray that is blocked, in no order; nothing where every ray
     /// is free.
     pub fn occluders(&self, pixel: usize, point: &TruthPoint) -> Vec<Occluder> {
         let mut occluders = Vec::new();

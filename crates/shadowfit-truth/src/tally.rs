@@ -6,7 +6,8 @@
 use crate::class::Class;
 use crate::histogram::Histogram;
 
-/// Sums over the pixels that count: those that face the light, within the shadow distance.
+/// Sums over the pixels that count: those that face the light, within the shadow distance and the
+/// light's image.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PictureTally {
     /// Number of pictures.

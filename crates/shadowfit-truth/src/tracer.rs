@@ -174,7 +174,13 @@ impl Tracer {
 
     /// The nearest triangle along a ray (world space, metres; any length of direction).
     pub fn first_hit(&self, origin: Vec3, direction: Vec3) -> Option<Hit> {
-        let (bvh, ray) = self.ray(origin, direction)?;
+        self.first_hit_within(origin, direction, f32::INFINITY)
+    }
+
+    /// The nearest triangle along a ray (world space, metres) that is nearer than `distance`, in lengths of its
+    /// direction.
+    pub fn first_hit_within(&self, origin: Vec3, direction: Vec3, distance: f32) -> Option<Hit> {
+        let (bvh, ray) = self.ray(origin, direction, distance)?;
         let mut hit = RayHit::none();
         bvh.ray_traverse(ray, &mut hit, |ray, slot| self.meet(ray, bvh.primitive_indices[slot]))
             .then(|| Hit { distance: hit.t, triangle: bvh.primitive_indices[hit.primitive_id as usize] })
@@ -182,7 +188,13 @@ impl Tracer {
 
     /// Whether a ray (world space, metres) meets any triangle.
     pub fn is_occluded(&self, origin: Vec3, direction: Vec3) -> bool {
-        self.ray(origin, direction).is_some_and(|(bvh, ray)| {
+        self.is_occluded_within(origin, direction, f32::INFINITY)
+    }
+
+    /// Whether a ray (world space, metres) meets any triangle nearer than `distance`, in lengths of its direction: the
+    /// way to a light that has a position.
+    pub fn is_occluded_within(&self, origin: Vec3, direction: Vec3, distance: f32) -> bool {
+        self.ray(origin, direction, distance).is_some_and(|(bvh, ray)| {
             !bvh.ray_traverse_miss(ray, |ray, slot| self.meet(ray, bvh.primitive_indices[slot]))
         })
     }
@@ -195,21 +207,27 @@ impl Tracer {
     }
 
     /// Calls `visit` with every triangle along a ray (world space, metres), in no order.
-    pub fn for_each_hit(&self, origin: Vec3, direction: Vec3, mut visit: impl FnMut(Hit)) {
-        let Some((bvh, ray)) = self.ray(origin, direction) else { return };
+    pub fn for_each_hit(&self, origin: Vec3, direction: Vec3, visit: impl FnMut(Hit)) {
+        self.for_each_hit_within(origin, direction, f32::INFINITY, visit);
+    }
+
+    /// Calls `visit` with every triangle along a ray (world space, metres) that is nearer than `distance`, in lengths of
+    /// its direction, in no order.
+    pub fn for_each_hit_within(&self, origin: Vec3, direction: Vec3, distance: f32, mut visit: impl FnMut(Hit)) {
+        let Some((bvh, ray)) = self.ray(origin, direction, distance) else { return };
         bvh.ray_traverse_anyhit(ray, |ray, slot| {
             let triangle = bvh.primitive_indices[slot];
-            let distance = self.meet(ray, triangle);
-            if distance.is_finite() {
-                visit(Hit { distance, triangle });
+            let met = self.meet(ray, triangle);
+            if met.is_finite() && met < distance {
+                visit(Hit { distance: met, triangle });
             }
         });
     }
 
-    fn ray(&self, origin: Vec3, direction: Vec3) -> Option<(&Bvh2, Ray)> {
+    fn ray(&self, origin: Vec3, direction: Vec3, distance: f32) -> Option<(&Bvh2, Ray)> {
         let is_finite = origin.is_finite() && direction.is_finite() && direction != Vec3::ZERO;
         let bvh = self.bvh.as_ref().filter(|_| is_finite)?;
-        Some((bvh, Ray::new_inf(origin.into(), direction.into())))
+        Some((bvh, Ray::new(origin.into(), direction.into(), 0.0, distance)))
     }
 
     /// Distance to a triangle along a ray, infinite for a miss or a cut-out.
@@ -294,6 +312,22 @@ mod tests {
         let mut distances: Vec<f32> = tracer.all_hits(origin, Vec3::Y).iter().map(|hit| hit.distance).collect();
         distances.sort_by(f32::total_cmp);
         assert_eq!(distances, [1.0, 3.0]);
+    }
+
+    #[test]
+    fn a_ray_of_some_length_meets_what_is_nearer_and_nothing_beyond() {
+        let tracer = Tracer::new([square_at(1.0), square_at(3.0)].concat());
+        let origin = Vec3::new(0.3, 0.0, 0.1);
+        // Lengths of a direction of 2 m: the squares are 0.5 and 1.5 away.
+        for (distance, wanted) in [(0.4, 0), (0.6, 1), (1.4, 1), (1.6, 2)] {
+            let mut met = 0;
+            tracer.for_each_hit_within(origin, Vec3::Y * 2.0, distance, |_| met += 1);
+            assert_eq!(met, wanted, "within {distance}");
+            assert_eq!(tracer.is_occluded_within(origin, Vec3::Y * 2.0, distance), wanted > 0);
+            let first = tracer.first_hit_within(origin, Vec3::Y * 2.0, distance);
+            assert_eq!(first.map(|hit| hit.distance), (wanted > 0).then_some(0.5));
+        }
+        assert!(!tracer.is_occluded_within(origin, Vec3::Y, f32::NAN));
     }
 
     #[test]

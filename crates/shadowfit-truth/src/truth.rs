@@ -9,20 +9,17 @@ use rayon::prelude::*;
 use crate::camera::PixelCamera;
 use crate::class::counts_as_lit;
 use crate::distances::{NONE_MARKED, squared_distances};
-use crate::sun::Sun;
+use crate::light::{LightRay, LightRays, TruthLight};
+use crate::seen::{SeenPoint, seen_by_ray, seen_point};
 use crate::tracer::{Hit, Tracer};
 
 /// How truth is traced. World space, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TruthSettings {
-    /// Unit direction toward the light, world axes.
-    pub to_light: DVec3,
+    /// The light.
+    pub light: TruthLight,
     /// Shadow rays start this far along the geometric normal, in metres.
     pub ray_offset: f64,
-    /// Angular radius of the sun, in radians; 0 for hard shadows.
-    pub sun_radius: f64,
-    /// Rays in the sun's cone when it has a radius.
-    pub sun_rays: u32,
     /// Greatest view depth that is judged: the shadow distance, in metres.
     pub max_distance: f64,
 }
@@ -31,7 +28,12 @@ impl TruthSettings {
     /// A hard sun, rays that start a millimetre above the surface, and no shadow distance: pixels are
     /// judged at any view depth. `to_light` is the unit direction toward the light, world axes.
     pub fn new(to_light: DVec3) -> Self {
-        Self { to_light, ray_offset: 1e-3, sun_radius: 0.0, sun_rays: 64, max_distance: f64::INFINITY }
+        Self::of_light(TruthLight::sun(to_light))
+    }
+
+    /// Any light, rays that start a millimetre above the surface, and no shadow distance.
+    pub fn of_light(light: TruthLight) -> Self {
+        Self { light, ray_offset: 1e-3, max_distance: f64::INFINITY }
     }
 }
 
@@ -50,7 +52,8 @@ pub struct TruthPoint {
     pub lit: f32,
     /// Index of the triangle.
     pub triangle: u32,
-    /// Whether the point is judged: it faces the light and is within the shadow distance.
+    /// Whether the point is judged: it faces the light, is within the shadow distance, and inside of the light's image
+    /// where it has one.
     pub is_judged: bool,
 }
 
@@ -115,13 +118,13 @@ impl Truth {
         goes_on: impl Fn() -> bool + Sync,
     ) -> Self {
         assert_eq!(seen.len(), camera.pixels(), "one triangle or `None` for each pixel");
-        let sun = settings.sun();
+        let rays = settings.light.rays();
         let points: Vec<Option<TruthPoint>> = seen
             .par_iter()
             .enumerate()
             .map(|(pixel, seen)| {
                 let triangle = seen.filter(|triangle| (*triangle as usize) < tracer.len() && goes_on())?;
-                Some(point(tracer, (camera, settings), &sun, pixel, triangle))
+                Some(point(tracer, (camera, settings), &rays, pixel, triangle))
             })
             .collect();
         let mut truth = Self { camera: *camera, settings: *settings, points, transition_squares: Vec::new() };
@@ -187,25 +190,21 @@ pub(crate) fn is_within(square: u32, width: f32) -> bool {
     square != NONE_MARKED && square as f32 <= reach * reach
 }
 
-/// The nearest triangle at a pixel between the near and the far plane.
-pub(crate) fn seen_by_ray(tracer: &Tracer, camera: &PixelCamera, pixel: usize) -> Option<u32> {
-    let ray = camera.ray_of(pixel);
-    let hit = tracer.first_hit(camera.eye.as_vec3(), ray.as_vec3())?;
-    let depth = tracer.refine(hit, tracer.plane_normal(hit.triangle), camera.eye, ray);
-    (camera.near..=camera.far).contains(&depth).then_some(hit.triangle)
-}
-
-/// What a pixel shows of a triangle, and how much light reaches it.
+/// What a pixel shows of a triangle, and how much light reaches it. `rays` are those of the settings' light.
 pub(crate) fn point(
     tracer: &Tracer,
     (camera, settings): (&PixelCamera, &TruthSettings),
-    sun: &Sun,
+    rays: &LightRays,
     pixel: usize,
     triangle: u32,
 ) -> TruthPoint {
-    let mut point = visible_point(tracer, camera, settings, pixel, triangle);
-    if point.is_judged {
-        point.lit = lit_share(tracer, settings, sun, pixel, &point);
+    let SeenPoint { position, normal, view_depth } = seen_point(tracer, camera, pixel, triangle);
+    let light = &settings.light;
+    let facing = normal.dot(light.ray_from(position).direction);
+    let is_judged = facing > 0.0 && view_depth <= settings.max_distance && light.shines_toward(position);
+    let mut point = TruthPoint { position, normal, facing, view_depth, lit: 0.0, triangle, is_judged };
+    if is_judged {
+        point.lit = lit_share(tracer, rays, ray_origin(settings, &point), pixel);
     }
     point
 }
@@ -213,31 +212,24 @@ pub(crate) fn point(
 /// Something between a point and the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Occluder {
-    /// Where it is met, moved along the normal as far as the ray's start was; world space, metres.
+    /// Where it is met, moved onto the straight way from the point itself to the light: rays start above the surface.
+    /// World space, metres.
     pub position: DVec3,
-    /// Distance from the point along the ray toward the light, in metres.
+    /// Distance from the ray's start along the ray toward the light, in metres.
     pub distance: f64,
     /// Index of the tracer's triangle.
     pub triangle: u32,
 }
 
 impl TruthSettings {
-    /// The sun that rays are cast to.
-    pub(crate) fn sun(&self) -> Sun {
-        Sun::new(self.to_light, self.sun_radius, self.sun_rays)
-    }
-
-    /// Direction of a ray from a shadowed point that is blocked: the one toward the sun's centre, or
-    /// the first blocked one where that one is free.
-    fn blocked_ray(&self, tracer: &Tracer, pixel: usize, point: &TruthPoint) -> DVec3 {
-        let sun = self.sun();
-        let origin = ray_origin(self, point).as_vec3();
-        let is_blocked = |direction: &DVec3| tracer.is_occluded(origin, direction.as_vec3());
-        let centre = sun.centre();
-        if sun.rays() == 1 || is_blocked(&centre) {
+    /// A ray from a shadowed point that is blocked: the one toward the light's centre, or the first blocked one where
+    /// that one is free.
+    fn blocked_ray(&self, tracer: &Tracer, origin: DVec3, pixel: usize) -> LightRay {
+        let (centre, rays) = (self.light.ray_from(origin), self.light.rays());
+        if rays.count() == 1 || is_blocked(tracer, origin, &centre) {
             return centre;
         }
-        sun.directions(pixel).find(is_blocked).unwrap_or(centre)
+        rays.from(origin, pixel).find(|ray| is_blocked(tracer, origin, ray)).unwrap_or(centre)
     }
 
     /// Calls `visit` with every occluder of a judged point along a ray that is blocked, in no order.
@@ -248,41 +240,15 @@ impl TruthSettings {
         point: &TruthPoint,
         mut visit: impl FnMut(Occluder),
     ) {
-        let direction = self.blocked_ray(tracer, pixel, point);
         let origin = ray_origin(self, point);
-        tracer.for_each_hit(origin.as_vec3(), direction.as_vec3(), |hit: Hit| {
+        let LightRay { direction, length } = self.blocked_ray(tracer, origin, pixel);
+        tracer.for_each_hit_within(origin.as_vec3(), direction.as_vec3(), length as f32, |hit: Hit| {
             let distance = tracer.refine(hit, tracer.plane_normal(hit.triangle), origin, direction);
-            visit(Occluder { position: point.position + direction * distance, distance, triangle: hit.triangle });
+            // The offset shrinks toward a light with a position, and stays the same toward a sun.
+            let offset = (point.position - origin) * (1.0 - distance / length);
+            let position = origin + direction * distance + offset;
+            visit(Occluder { position, distance, triangle: hit.triangle });
         });
-    }
-}
-
-/// Where the ray through a pixel's centre meets the plane of the triangle that is seen there.
-fn visible_point(
-    tracer: &Tracer,
-    camera: &PixelCamera,
-    settings: &TruthSettings,
-    pixel: usize,
-    triangle: u32,
-) -> TruthPoint {
-    let ray = camera.ray_of(pixel);
-    let normal = tracer.plane_normal(triangle);
-    let corners = tracer.corners(triangle).map(glam::Vec3::as_dvec3);
-    let depths = corners.map(|corner| camera.view_depth(corner));
-    let nearest = depths.into_iter().fold(f64::INFINITY, f64::min).max(camera.near);
-    let farthest = depths.into_iter().fold(f64::NEG_INFINITY, f64::max).min(camera.far);
-    // A ray within the plane gives NaN, which `max` and `min` drop.
-    let view_depth = (normal.dot(corners[0] - camera.eye) / normal.dot(ray)).max(nearest).min(farthest);
-    let normal = if normal.dot(ray) > 0.0 { -normal } else { normal };
-    let facing = normal.dot(settings.to_light);
-    TruthPoint {
-        position: camera.eye + ray * view_depth,
-        normal,
-        facing,
-        view_depth,
-        lit: 0.0,
-        triangle,
-        is_judged: facing > 0.0 && view_depth <= settings.max_distance,
     }
 }
 
@@ -291,9 +257,13 @@ fn ray_origin(settings: &TruthSettings, point: &TruthPoint) -> DVec3 {
     point.position + point.normal * settings.ray_offset
 }
 
-/// Share of a point's rays that reach the sun.
-fn lit_share(tracer: &Tracer, settings: &TruthSettings, sun: &Sun, pixel: usize, point: &TruthPoint) -> f32 {
-    let origin = ray_origin(settings, point).as_vec3();
-    let free = sun.directions(pixel).filter(|direction| !tracer.is_occluded(origin, direction.as_vec3())).count();
-    free as f32 / sun.rays() as f32
+/// Share of the rays from a point that reach the light.
+fn lit_share(tracer: &Tracer, rays: &LightRays, origin: DVec3, pixel: usize) -> f32 {
+    let free = rays.from(origin, pixel).filter(|ray| !is_blocked(tracer, origin, ray)).count();
+    free as f32 / rays.count() as f32
+}
+
+/// Whether anything stands on the way to the light.
+fn is_blocked(tracer: &Tracer, origin: DVec3, ray: &LightRay) -> bool {
+    tracer.is_occluded_within(origin.as_vec3(), ray.direction.as_vec3(), ray.length as f32)
 }

@@ -108,8 +108,12 @@ fn false_light(at: &At<'_>) -> String {
         return format!("{who} is only {distance} in front of it, less than the bias of {bias}");
     }
     let looked_up = at.point.position + at.point.normal * look_up.offset;
-    let to_light = at.truth.settings.to_light.as_vec3();
-    if look_up.offset > at.truth.settings.ray_offset && !at.truth.tracer.is_occluded(looked_up.as_vec3(), to_light) {
+    let ray = at.truth.settings.light.ray_from(looked_up);
+    let is_occluded = || {
+        let (from, toward) = (looked_up.as_vec3(), ray.direction.as_vec3());
+        at.truth.tracer.is_occluded_within(from, toward, ray.length as f32)
+    };
+    if look_up.offset > at.truth.settings.ray_offset && !is_occluded() {
         let offset = length(look_up.offset);
         return format!("the bias looks it up {offset} off its surface, where the light passes {}", plain(at, stored));
     }

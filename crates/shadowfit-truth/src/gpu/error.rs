@@ -39,8 +39,13 @@ pub enum GpuTruthError {
     #[error("the picture has {0} shadow maps, and the shader reads at most 8: judge it on the CPU")]
     TooManyMaps(usize),
     /// A sun with a radius needs many rays.
-    #[error("the sun has a radius, and the GPU traces hard shadows only: set `sun_radius` to 0")]
+    #[error("the sun has a radius, and the GPU traces hard shadows only: give `TruthLight::Sun` the radius 0")]
     SoftSun,
+    /// A light with a position, to which the shader has no rays.
+    #[error(
+        "the light has a position, and the GPU traces rays to suns only: judge the picture on the CPU, with `judge`"
+    )]
+    PositionalLight,
     /// The picture of triangles and the camera have different sizes.
     #[error(
         "the texture of seen triangles has {}×{} pixels and the camera {}×{}: give the camera of that picture",

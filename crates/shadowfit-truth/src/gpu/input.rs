@@ -6,6 +6,7 @@ use shadowfit::choice::MapOrder;
 use super::error::GpuTruthError;
 use super::uniform::{BeforeUniform, JudgeUniform, MAX_MAPS, MapUniform};
 use crate::camera::PixelCamera;
+use crate::light::TruthLight;
 use crate::maps::{MapReading, MeasuredMap, PictureMaps};
 use crate::truth::TruthSettings;
 
@@ -14,7 +15,7 @@ use crate::truth::TruthSettings;
 pub struct GpuJudgeInput<'a> {
     /// Camera of the picture.
     pub camera: &'a PixelCamera,
-    /// How truth is traced; the sun must be hard.
+    /// How truth is traced; the light must be a sun with hard shadows.
     pub settings: &'a TruthSettings,
     /// The maps, at most [`MAX_MAPS`].
     pub maps: &'a PictureMaps<'a>,
@@ -43,9 +44,11 @@ impl GpuJudgeInput<'_> {
     /// The uniform of the picture, for triangles that are stored relative to `origin`.
     pub(crate) fn uniform(&self, origin: DVec3, triangles: u32) -> Result<JudgeUniform, GpuTruthError> {
         let Self { camera, settings, maps, before } = self;
-        if settings.sun_radius > 0.0 {
-            return Err(GpuTruthError::SoftSun);
-        }
+        let to_light = match settings.light {
+            TruthLight::Sun { radius, .. } if radius > 0.0 => return Err(GpuTruthError::SoftSun),
+            TruthLight::Sun { to_light, .. } => to_light,
+            TruthLight::Spot { .. } => return Err(GpuTruthError::PositionalLight),
+        };
         let read = ReadMaps::new(maps, camera.eye)?;
         Ok(JudgeUniform {
             eye: (camera.eye - origin).as_vec3().into(),
@@ -56,7 +59,7 @@ impl GpuJudgeInput<'_> {
             ray_offset: finite(settings.ray_offset),
             forward: camera.forward.as_vec3().into(),
             max_distance: finite(settings.max_distance),
-            to_light: settings.to_light.as_vec3().into(),
+            to_light: to_light.as_vec3().into(),
             edge_width: maps.edge_width(None),
             tan_half_fov: camera.tan_half_fov.as_vec2().into(),
             size: camera.size,

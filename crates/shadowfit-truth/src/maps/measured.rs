@@ -8,8 +8,11 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 const SIDE_TOLERANCE: f64 = 1e-5;
 /// Points this far outside the depth range, as a share of it, still count as inside.
 const DEPTH_TOLERANCE: f64 = 1e-5;
-/// Step toward the light that tells reversed depth from plain depth, in metres.
+/// Step toward a sun that tells reversed depth from plain depth, in metres.
 const REVERSAL_STEP: f64 = 0.01;
+/// The same toward a light's position, as a share of the way: depth changes fast near the light, where the middle of
+/// the depth range lies.
+const REVERSAL_SHARE: f64 = 0.01;
 
 /// A shadow map made ready to be measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,15 +65,30 @@ impl MapGradients {
 }
 
 impl MeasuredMap {
-    /// Prepares a map of `size` texels across and down.
+    /// Prepares a map of a sun, of `size` texels across and down.
     ///
     /// `clip_from_world` has x and y in -1..=1 (y up), and depth in 0..=1 after division by w, plain
     /// or reversed; perspective is allowed. `split_far` is the view depth, in metres, below which the
     /// map is the first to be read. `to_light` is the unit direction toward the light, world axes: it
     /// tells whether depth is reversed.
     pub fn new(clip_from_world: &DMat4, size: DVec2, split_far: f64, to_light: DVec3) -> Self {
+        Self::prepared(clip_from_world, size, split_far, |_| to_light * REVERSAL_STEP)
+    }
+
+    /// Prepares a map of a light with a position (world space, metres), of `size` texels across and down.
+    ///
+    /// `clip_from_world` is a perspective from that position, as for [`Self::new`], with w above 0 in front of the
+    /// light; it may be one without a far plane. `split_far` is as for [`Self::new`]: infinite for a map that is read at
+    /// every view depth. The tolerances of [`Self::is_inside`] are in the map's depth, which a perspective spreads
+    /// unevenly: toward the far plane they are longer in metres.
+    pub fn of_spot(clip_from_world: &DMat4, size: DVec2, split_far: f64, position: DVec3) -> Self {
+        Self::prepared(clip_from_world, size, split_far, |middle| (position - middle) * REVERSAL_SHARE)
+    }
+
+    /// `step` leads from a point some way toward the light.
+    fn prepared(clip_from_world: &DMat4, size: DVec2, split_far: f64, step: impl Fn(DVec3) -> DVec3) -> Self {
         let rows = [0, 1, 2, 3].map(|row| clip_from_world.row(row));
-        let is_reversed = is_reversed(clip_from_world, to_light);
+        let is_reversed = is_reversed(clip_from_world, step);
         Self { rows, size, split_far, blend_near: f64::INFINITY, reach: None, is_reversed }
     }
 
@@ -134,17 +152,26 @@ impl MeasuredMap {
 }
 
 /// Whether depth rises toward the light, at the middle of the map.
-fn is_reversed(clip_from_world: &DMat4, to_light: DVec3) -> bool {
+fn is_reversed(clip_from_world: &DMat4, step: impl Fn(DVec3) -> DVec3) -> bool {
     let middle = clip_from_world.inverse().project_point3(DVec3::new(0.0, 0.0, 0.5));
     let depth_at = |point| clip_from_world.project_point3(point).z;
-    depth_at(middle + to_light * REVERSAL_STEP) > depth_at(middle)
+    depth_at(middle + step(middle)) > depth_at(middle)
 }
 
 #[cfg(test)]
 mod tests {
-    use glam::dcamera::rh::{proj::directx::orthographic, view::look_at_mat4};
+    use glam::dcamera::rh::proj::directx::{orthographic, perspective, perspective_infinite_reverse};
+    use glam::dcamera::rh::view::look_at_mat4;
 
     use super::*;
+
+    const LAMP: DVec3 = DVec3::new(-3.0, 5.0, 2.0);
+
+    /// A headlight toward the origin, 90 degrees wide, of 1024 by 512 texels.
+    fn lamp_map(clip_from_light: DMat4) -> MeasuredMap {
+        let light_from_world = look_at_mat4(LAMP, DVec3::ZERO, DVec3::Y);
+        MeasuredMap::of_spot(&(clip_from_light * light_from_world), DVec2::new(1024.0, 512.0), 9.0, LAMP)
+    }
 
     /// A tilted light, plain or reversed, orthographic or warped, 1024 by 512 texels.
     fn map(is_reversed: bool, warp: f64) -> (MeasuredMap, DVec3) {
@@ -174,6 +201,35 @@ mod tests {
     }
 
     #[test]
+    fn a_perspective_map_divides_by_the_way_before_the_light() {
+        let wide = 90f64.to_radians();
+        // The near planes reach from one that is far nearer to the light than any step in metres.
+        for near in [1e-4, 0.1, 1.0] {
+            let plain = lamp_map(perspective(wide, 1.0, near, 100.0));
+            let reversed = lamp_map(perspective_infinite_reverse(wide, 1.0, near));
+            assert!(!plain.is_reversed && reversed.is_reversed);
+            let forward = -LAMP.normalize();
+            let right = forward.cross(DVec3::Y).normalize();
+            for way in [2.0, 20.0] {
+                // Half of 90 degrees to the right is as far as the way before the light; half of that is a quarter of
+                // the map beside its middle.
+                let point = LAMP + (forward + right * 0.5) * way;
+                for map in [plain, reversed] {
+                    let texel = map.project(point).texel;
+                    assert!(texel.abs_diff_eq(DVec2::new(768.0, 256.0), 1e-6), "{texel}");
+                    let inside = |point| map.is_inside(&map.project(point));
+                    assert!(inside(point) && !inside(LAMP + (forward + right * 1.01) * way));
+                    assert!(!inside(LAMP - forward * way), "behind the light");
+                }
+                // far/(far - near) (1 - near/way), and near/way from 1 down.
+                let depth = 100.0 / (100.0 - near) * (1.0 - near / way);
+                assert!((plain.project(point).depth - depth).abs() < 1e-9);
+                assert!((reversed.project(point).depth - (1.0 - near / way)).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
     fn points_a_hair_outside_are_inside_and_further_ones_are_not() {
         let (map, to_light) = map(false, 0.0);
         let inside = |point| map.is_inside(&map.project(point));
@@ -193,8 +249,9 @@ mod tests {
 
     #[test]
     fn gradients_are_the_limits_of_differences() {
-        for (is_reversed, warp) in [(false, 0.0), (true, 0.3), (false, -0.4)] {
-            let (map, _) = map(is_reversed, warp);
+        let suns = [(false, 0.0), (true, 0.3), (false, -0.4)].map(|(is_reversed, warp)| map(is_reversed, warp).0);
+        let lamps = [perspective(1.5, 1.0, 1.0, 50.0), perspective_infinite_reverse(1.5, 1.0, 1.0)].map(lamp_map);
+        for map in suns.into_iter().chain(lamps) {
             let point = DVec3::new(1.0, 2.0, -0.5);
             let gradients = map.gradients(&map.project(point));
             for axis in [DVec3::X, DVec3::Y, DVec3::Z] {

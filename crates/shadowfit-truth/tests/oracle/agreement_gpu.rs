@@ -8,7 +8,7 @@ use shadowfit_truth::gpu::{GpuJudge, GpuJudgeInput, GpuPixel, GpuTracer, GpuTrut
 use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{
     AlphaImage, Class, CutOut, CutOuts, Judged, MapReading, MeasuredMap, PictureMaps, PixelCamera, Tracer, Truth,
-    TruthPoint, TruthSettings, Wrap, judge,
+    TruthLight, TruthPoint, TruthSettings, Wrap, judge,
 };
 
 use super::scenes::{Triangles, cuboid, level, looking_at, map_around, quad, sphere};
@@ -74,8 +74,12 @@ impl Picture {
         Self { maps, reading: MapReading::Coverage { order, blend }, ..picture }
     }
 
+    fn to_light(&self) -> DVec3 {
+        self.settings.light.ray_from(DVec3::ZERO).direction
+    }
+
     pub(crate) fn measured(&self) -> Vec<MeasuredMap> {
-        self.maps.iter().map(|map| map.measured(self.settings.to_light)).collect()
+        self.maps.iter().map(|map| map.measured(self.to_light())).collect()
     }
 
     /// Judges the picture twice. Its factors are those of maps that hold the nearest triangle at
@@ -114,7 +118,7 @@ impl Picture {
         let ndc = (texel / map.size - 0.5) * DVec2::new(2.0, -2.0);
         let depth = clip_from_world.project_point3(point.position).z;
         let centre = clip_from_world.inverse().project_point3(ndc.extend(depth));
-        let to_light = self.settings.to_light;
+        let to_light = self.to_light();
         let bias = if point.position.x < 0.0 { 0.01 } else { 3.0 };
         let mut factor = 1.0;
         self.tracer.for_each_hit((centre + to_light * bias).as_vec3(), to_light.as_vec3(), |hit| {
@@ -452,6 +456,11 @@ fn what_the_gpu_cannot_judge_is_refused_by_its_reason() {
     };
     assert_eq!(judge(&|_| (), 8, [8, 8]), None);
     assert_eq!(judge(&|_| (), 9, [8, 8]), Some(GpuTruthError::TooManyMaps(9)));
-    assert_eq!(judge(&|settings| settings.sun_radius = 0.1, 1, [8, 8]), Some(GpuTruthError::SoftSun));
+    let light = |light: TruthLight| judge(&|settings| settings.light = light, 1, [8, 8]);
+    let soft = TruthLight::Sun { to_light: sun(), radius: 0.1, rays: 64 };
+    assert_eq!(light(soft), Some(GpuTruthError::SoftSun));
+    assert_eq!(light(TruthLight::sun(sun())), None);
+    let lamp = TruthLight::Spot { position: DVec3::Y * 9.0, image: None };
+    assert_eq!(light(lamp), Some(GpuTruthError::PositionalLight));
     assert_eq!(judge(&|_| (), 1, [9, 8]), Some(GpuTruthError::Size { seen: [8, 8], camera: [9, 8] }));
 }

@@ -4,8 +4,8 @@ use glam::DVec3;
 use shadowfit::choice::MapOrder;
 use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{
-    Class, Judged, MapReading, MapsBefore, MeasuredMap, PictureMaps, PictureTally, Tracer, Truth, TruthSettings, crawl,
-    judge,
+    Class, Judged, MapReading, MapsBefore, MeasuredMap, PictureMaps, PictureTally, Tracer, Truth, TruthLight,
+    TruthSettings, crawl, judge,
 };
 
 use super::scenes::{level, looking_down, map_around, shadow_map};
@@ -213,7 +213,8 @@ fn an_edge_that_is_shifted_by_three_pixels_is_displaced_by_three() {
 
 #[test]
 fn soft_truth_counts_as_it_is_and_is_lit_from_one_half_on() {
-    let room = Room::lit_from(DVec3::Y, |settings| (settings.sun_radius, settings.sun_rays) = (0.2, 64));
+    let sun = TruthLight::Sun { to_light: DVec3::Y, radius: 0.2, rays: 64 };
+    let room = Room::lit_from(DVec3::Y, |settings| settings.light = sun);
     let factors: Vec<f32> = room.truth.points.iter().map(|point| point.expect("the floor").lit).collect();
     assert!(factors.iter().any(|factor| (0.1..0.9).contains(factor)));
     let maps = PictureMaps { maps: &[map(1, 9.0)], reading: MapReading::ViewDepth, reach: 0.5, depth_clamp: false };

@@ -2,7 +2,9 @@
 
 #[cfg(feature = "gpu")]
 mod agreement_gpu;
+mod ambient;
 mod classes;
+mod lamps;
 mod metamorphic;
 mod scenes;
 #[cfg(feature = "gpu")]

@@ -1,14 +1,45 @@
 //! What a picture's figures must not depend on: where the world's origin and axes are, and its unit.
 
-use glam::{DAffine3, DMat4, DQuat, DVec3, Vec3};
+use glam::{DAffine3, DMat4, DQuat, DVec2, DVec3, Vec3};
 use shadowfit_truth::peers::FitMap;
-use shadowfit_truth::{MapReading, PictureMaps, PictureTally, PixelCamera, Tracer, Truth, TruthSettings, judge};
+use shadowfit_truth::{
+    MapReading, MeasuredMap, PictureMaps, PictureTally, PixelCamera, Tracer, Truth, TruthLight, TruthSettings, judge,
+};
 
-use super::scenes::{cuboid, level, looking_at, map_around, sphere};
+use super::scenes::{cuboid, lamp_image, level, looking_at, map_around, sphere};
+
+const LIGHTS: [Light; 2] = [Light::Sun, Light::Lamp];
+
+/// What shines on the scene.
+#[derive(Clone, Copy, Debug)]
+enum Light {
+    Sun,
+    Lamp,
+}
+
+/// A light and its map after the world was transformed by a motion and then to `world`.
+fn light_and_map(light: Light, motion: DAffine3, world: DAffine3) -> (TruthLight, MeasuredMap) {
+    let from_world = DMat4::from(world.inverse());
+    let toward = DVec3::new(0.5, 0.7, 0.3).normalize();
+    match light {
+        Light::Sun => {
+            let to_light = motion.transform_vector3(toward);
+            let map = map_around(DVec3::ZERO, toward, 16.0, 3.0, 1024);
+            let clip_from_world = DMat4::from_cols_array(&map.view_proj) * from_world;
+            let map = FitMap { view_proj: clip_from_world.to_cols_array(), ..map }.measured(to_light);
+            (TruthLight::sun(to_light), map)
+        }
+        Light::Lamp => {
+            let position = world.transform_point3(toward * 9.0);
+            let clip_from_world = lamp_image(toward * 9.0, [4.0, 40.0]) * from_world;
+            let map = MeasuredMap::of_spot(&clip_from_world, DVec2::splat(1024.0), f64::INFINITY, position);
+            (TruthLight::Spot { position, image: Some(clip_from_world) }, map)
+        }
+    }
+}
 
 /// Judges a scene after its whole world was transformed by a motion and a scale.
-fn tally(motion: DAffine3, scale: f64) -> PictureTally {
-    let to_light = DVec3::new(0.5, 0.7, 0.3).normalize();
+fn tally(light: Light, motion: DAffine3, scale: f64) -> PictureTally {
     let world = DAffine3::from_scale(DVec3::splat(scale)) * motion;
     let turned = |direction: DVec3| motion.transform_vector3(direction);
     let ground = level(0.0, [-15.0, -15.0], [15.0, 16.1]);
@@ -28,11 +59,9 @@ fn tally(motion: DAffine3, scale: f64) -> PictureTally {
         far: camera.far * scale,
         ..camera
     };
-    let settings = TruthSettings { ray_offset: 1e-3 * scale, ..TruthSettings::new(turned(to_light)) };
+    let (light, map) = light_and_map(light, motion, world);
+    let settings = TruthSettings { ray_offset: 1e-3 * scale, ..TruthSettings::of_light(light) };
     let truth = Truth::trace(&tracer, &camera, &settings, &Truth::seen_by_rays(&tracer, &camera));
-    let map = map_around(DVec3::ZERO, to_light, 16.0, 3.0, 1024);
-    let clip_from_world = DMat4::from_cols_array(&map.view_proj) * DMat4::from(world.inverse());
-    let map = FitMap { view_proj: clip_from_world.to_cols_array(), ..map }.measured(settings.to_light);
     // Shadows that are shifted in the picture, with stripes: wrong in every way.
     let factors: Vec<f32> = (0..camera.pixels())
         .map(|pixel| {
@@ -56,8 +85,8 @@ fn assert_same(name: &str, wanted: &PictureTally, found: &PictureTally, toleranc
     }
 }
 
-fn plain() -> PictureTally {
-    let plain = tally(DAffine3::IDENTITY, 1.0);
+fn plain(light: Light) -> PictureTally {
+    let plain = tally(light, DAffine3::IDENTITY, 1.0);
     for count in [plain.all.false_shadow, plain.all.false_light, plain.all.hole, plain.all.edge] {
         assert!(count > 50, "{:?}", plain.columns());
     }
@@ -66,8 +95,8 @@ fn plain() -> PictureTally {
 
 #[test]
 fn a_unit_that_is_a_power_of_two_changes_no_pixel() {
-    for scale in [0.125, 64.0] {
-        assert_same("scaled", &plain(), &tally(DAffine3::IDENTITY, scale), 0.0);
+    for (light, scale) in LIGHTS.into_iter().flat_map(|light| [0.125, 64.0].map(|scale| (light, scale))) {
+        assert_same("scaled", &plain(light), &tally(light, DAffine3::IDENTITY, scale), 0.0);
     }
 }
 
@@ -75,8 +104,8 @@ fn a_unit_that_is_a_power_of_two_changes_no_pixel() {
 fn a_unit_of_centimetres_or_kilometres_changes_figures_by_rounding_alone() {
     // Pixels on edges of shadows and triangles: less than one in a thousand. Quantiles are in bins
     // of half a per cent.
-    for scale in [0.01, 100.0, 1000.0] {
-        assert_same("scaled", &plain(), &tally(DAffine3::IDENTITY, scale), 0.6);
+    for (light, scale) in LIGHTS.into_iter().flat_map(|light| [0.01, 100.0, 1000.0].map(|scale| (light, scale))) {
+        assert_same("scaled", &plain(light), &tally(light, DAffine3::IDENTITY, scale), 0.6);
     }
 }
 
@@ -84,7 +113,10 @@ fn a_unit_of_centimetres_or_kilometres_changes_figures_by_rounding_alone() {
 fn a_world_that_is_turned_and_moved_has_the_same_figures() {
     let turn = DQuat::from_axis_angle(DVec3::new(0.3, 0.8, -0.4).normalize(), 2.0);
     let motion = DAffine3::from_rotation_translation(turn, DVec3::new(30.0, -12.0, 50.0));
-    assert_same("moved", &plain(), &tally(motion, 1.0), 0.6);
     // A left-handed world: everything mirrored, the winding with it.
-    assert_same("mirrored", &plain(), &tally(DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0)), 1.0), 0.6);
+    let mirror = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+    for light in LIGHTS {
+        assert_same("moved", &plain(light), &tally(light, motion, 1.0), 0.6);
+        assert_same("mirrored", &plain(light), &tally(light, mirror, 1.0), 0.6);
+    }
 }

@@ -1,6 +1,7 @@
 //! Scenes whose shadows follow from a drawing, and cameras and maps to look at them with.
 
-use glam::dcamera::rh::{proj::directx::orthographic, view::look_to_mat4};
+use glam::dcamera::rh::proj::directx::{orthographic, perspective};
+use glam::dcamera::rh::view::{look_at_mat4, look_to_mat4};
 use glam::{DMat4, DVec2, DVec3, Vec3};
 use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{MeasuredMap, PixelCamera};
@@ -102,4 +103,16 @@ pub(crate) fn map_around(centre: DVec3, to_light: DVec3, width: f64, before: f64
 /// The same, made ready.
 pub(crate) fn shadow_map(centre: DVec3, to_light: DVec3, width: f64, before: f64, texels: u32) -> MeasuredMap {
     map_around(centre, to_light, width, before, texels).measured(to_light)
+}
+
+/// Clip from world of a lamp that looks at the origin, with -z or a little less upward, 90 degrees wide, between two
+/// distances in metres.
+pub(crate) fn lamp_image(position: DVec3, [near, far]: [f64; 2]) -> DMat4 {
+    perspective(90f64.to_radians(), 1.0, near, far) * look_at_mat4(position, DVec3::ZERO, DVec3::NEG_Z)
+}
+
+/// A square map of that, for every view depth.
+pub(crate) fn lamp_map(position: DVec3, planes: [f64; 2], texels: u32) -> MeasuredMap {
+    let image = lamp_image(position, planes);
+    MeasuredMap::of_spot(&image, DVec2::splat(texels.into()), f64::INFINITY, position)
 }

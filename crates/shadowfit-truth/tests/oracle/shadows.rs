@@ -1,15 +1,15 @@
 //! Truth against shadows in closed form.
 
 use glam::{DVec3, Vec2, Vec3};
-use shadowfit_truth::{AlphaImage, CutOut, CutOuts, Tracer, Truth, TruthPoint, TruthSettings, Wrap};
+use shadowfit_truth::{AlphaImage, CutOut, CutOuts, Tracer, Truth, TruthLight, TruthPoint, TruthSettings, Wrap};
 
 use super::scenes::{Triangles, cuboid, level, looking_at, looking_down, quad, sphere};
 
 /// Length by which a drawing may be off before a pixel is decided: twice the millimetre by which
 /// shadow rays start above the surface, and as much again for slanting light.
-const SLACK: f64 = 4e-3;
+pub(crate) const SLACK: f64 = 4e-3;
 
-fn floor() -> Triangles {
+pub(crate) fn floor() -> Triangles {
     level(0.0, [-20.0, -20.0], [20.0, 21.3])
 }
 
@@ -20,7 +20,7 @@ fn sun() -> DVec3 {
 /// Compares the truth of every pixel that faces the light with `lit`, which answers for a point and
 /// a slack (a length that makes what casts larger), and returns how many pixels were decided as
 /// shadowed and as lit. Pixels that the slack decides are left out.
-fn compare(truth: &Truth, lit: impl Fn(&TruthPoint, f64) -> bool) -> [usize; 2] {
+pub(crate) fn compare(truth: &Truth, lit: impl Fn(&TruthPoint, f64) -> bool) -> [usize; 2] {
     let mut decided = [0, 0];
     for (pixel, point) in truth.points.iter().enumerate() {
         let Some((point, found)) = point.as_ref().and_then(|point| Some((point, point.verdict()?))) else { continue };
@@ -146,7 +146,7 @@ fn the_penumbra_of_a_straight_edge_is_the_share_of_the_sun_beside_it() {
     let roof = level(height as f32, [-20.0, -20.0], [0.0, 21.3]);
     let tracer = Tracer::new([floor(), roof].concat());
     let camera = looking_down(1.0, 0.005, [120, 16]);
-    let settings = TruthSettings { sun_radius: radius, sun_rays: rays, ..TruthSettings::new(DVec3::Y) };
+    let settings = TruthSettings::of_light(TruthLight::Sun { to_light: DVec3::Y, radius, rays });
     let truth = Truth::trace(&tracer, &camera, &settings, &Truth::seen_by_rays(&tracer, &camera));
     let (mut sum, mut greatest, mut penumbra) = (0.0f64, 0.0f64, 0);
     for point in truth.points.iter().flatten() {

@@ -4,10 +4,11 @@ use core::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::{DVec3, Vec3};
 use shadowfit_truth::{
-    Class, MapReading, MeasuredMap, PictureMaps, PixelTruth, Tracer, Truth, TruthSettings, judge, judge_while,
+    Class, MapReading, MeasuredMap, PictureMaps, PixelTruth, Tracer, Truth, TruthLight, TruthSettings, judge,
+    judge_while,
 };
 
-use super::scenes::{cuboid, level, looking_at, shadow_map, sphere};
+use super::scenes::{cuboid, lamp_image, lamp_map, level, looking_at, shadow_map, sphere};
 
 /// A tower, a ball and a roof that the map does not hold, and shadows that are shifted and striped: wrong in every way.
 struct Picture {
@@ -28,7 +29,10 @@ impl Picture {
         let truth = Truth::trace(&tracer, &camera, &settings, &Truth::seen_by_rays(&tracer, &camera));
         let factor = |pixel: usize| truth.verdict(pixel.saturating_sub(12)).unwrap_or(true) != pixel.is_multiple_of(31);
         let factors = (0..camera.pixels()).map(|pixel| f32::from(u8::from(factor(pixel)))).collect();
-        let map = shadow_map(DVec3::ZERO, settings.to_light, 16.0, 3.0, 256);
+        let map = match settings.light {
+            TruthLight::Sun { to_light, .. } => shadow_map(DVec3::ZERO, to_light, 16.0, 3.0, 256),
+            TruthLight::Spot { position, .. } => lamp_map(position, [4.0, 40.0], 256),
+        };
         Self { tracer, truth, factors, map }
     }
 
@@ -38,11 +42,18 @@ impl Picture {
     }
 }
 
+/// A lamp over the scene.
+fn lamp() -> TruthLight {
+    let position = DVec3::new(4.0, 8.0, 2.4);
+    TruthLight::Spot { position, image: Some(lamp_image(position, [4.0, 40.0])) }
+}
+
 #[test]
 fn a_pixel_alone_has_the_class_and_the_point_that_it_has_in_the_picture() {
     let to_light = DVec3::new(0.5, 0.7, 0.3).normalize();
-    let soft = TruthSettings { sun_radius: 0.05, sun_rays: 16, ..TruthSettings::new(to_light) };
-    for settings in [TruthSettings::new(to_light), soft] {
+    let soft = TruthLight::Sun { to_light, radius: 0.05, rays: 16 };
+    for light in [TruthLight::sun(to_light), soft, lamp()] {
+        let settings = TruthSettings::of_light(light);
         let picture = Picture::new(settings);
         let Picture { tracer, truth, factors, .. } = &picture;
         let judged = judge(tracer, truth, &picture.maps(), factors, |_| true);
@@ -60,7 +71,7 @@ fn a_pixel_alone_has_the_class_and_the_point_that_it_has_in_the_picture() {
             assert_eq!(found.pixels_per_texel.to_bits(), judged.pixels_per_texel[pixel].to_bits(), "pixel {pixel}");
             let is_wrong = !matches!(found.class, Class::Right | Class::NotJudged);
             assert_eq!(found.is_in_edge_zone, is_wrong && judged.edge_zone[pixel], "pixel {pixel}");
-            if settings.sun_radius == 0.0 && point.is_judged {
+            if light != soft && point.is_judged {
                 assert_eq!(alone.occluders(pixel, &point).is_empty(), point.lit == 1.0, "pixel {pixel}");
             }
         }

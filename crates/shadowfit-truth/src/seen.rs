@@ -1,0 +1,40 @@
+//! What is seen at a pixel's centre: the triangle, and the point on its plane.
+
+use glam::{DVec3, Vec3};
+
+use crate::camera::PixelCamera;
+use crate::tracer::Tracer;
+
+/// A point that a pixel shows. World space, metres.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SeenPoint {
+    /// On the plane of the triangle.
+    pub(crate) position: DVec3,
+    /// Unit geometric normal on the side of the eye; zero where the triangle has no area.
+    pub(crate) normal: DVec3,
+    /// Distance from the eye along the view, in metres.
+    pub(crate) view_depth: f64,
+}
+
+/// The nearest triangle at a pixel between the near and the far plane.
+pub(crate) fn seen_by_ray(tracer: &Tracer, camera: &PixelCamera, pixel: usize) -> Option<u32> {
+    let ray = camera.ray_of(pixel);
+    let hit = tracer.first_hit(camera.eye.as_vec3(), ray.as_vec3())?;
+    let depth = tracer.refine(hit, tracer.plane_normal(hit.triangle), camera.eye, ray);
+    (camera.near..=camera.far).contains(&depth).then_some(hit.triangle)
+}
+
+/// Where the ray through a pixel's centre meets the plane of the triangle that is seen there. Its view depth is clamped
+/// to that of the triangle's corners, since the ray may meet the plane of a sliver that is seen edge-on anywhere.
+pub(crate) fn seen_point(tracer: &Tracer, camera: &PixelCamera, pixel: usize, triangle: u32) -> SeenPoint {
+    let ray = camera.ray_of(pixel);
+    let normal = tracer.plane_normal(triangle);
+    let corners = tracer.corners(triangle).map(Vec3::as_dvec3);
+    let depths = corners.map(|corner| camera.view_depth(corner));
+    let nearest = depths.into_iter().fold(f64::INFINITY, f64::min).max(camera.near);
+    let farthest = depths.into_iter().fold(f64::NEG_INFINITY, f64::max).min(camera.far);
+    // A ray within the plane gives NaN, which `max` and `min` drop.
+    let view_depth = (normal.dot(corners[0] - camera.eye) / normal.dot(ray)).max(nearest).min(farthest);
+    let normal = if normal.dot(ray) > 0.0 { -normal } else { normal };
+    SeenPoint { position: camera.eye + ray * view_depth, normal, view_depth }
+}
