@@ -43,9 +43,10 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR")]
     pub headless: Option<PathBuf>,
 
-    /// Size of the window or of the pictures, in pixels.
-    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1280x720", value_parser = parse_size)]
-    pub size: [u32; 2],
+    /// Size of the window or of the pictures, in pixels: 1280x720 if not given, and for the pictures of a sample as large as
+    /// its source's window.
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_size)]
+    pub size: Option<[u32; 2]>,
 
     /// Begins with a technique: a preset by its name, e.g. `stable-4`, or a .toml file, such as the tuner writes.
     #[arg(long, value_name = "NAME|FILE.toml")]
@@ -89,6 +90,9 @@ pub struct Arguments {
     #[arg(long)]
     pub log_frames: bool,
 }
+
+/// Size of the window, and of pictures, if not given, in pixels.
+const SIZE: [u32; 2] = [1280, 720];
 
 /// What names an option of a sample begins with.
 pub(crate) const OPTION_PREFIX: &str = "sample.";
@@ -146,6 +150,11 @@ impl Arguments {
     /// The script that the arguments name; nothing without one.
     pub(crate) fn lines(&self) -> Result<Vec<Line>> {
         Ok(self.script.as_deref().map(script::read).transpose()?.unwrap_or_default())
+    }
+
+    /// Size of the window or of pictures, in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.size.unwrap_or(SIZE)
     }
 
     /// The adapter that the arguments ask for.

@@ -1,5 +1,7 @@
 //! Frames without a window: the picture set, and scripts.
 
+mod sample;
+
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -13,6 +15,7 @@ use crate::cli::Arguments;
 use crate::files::write_png;
 use crate::interface::{Canvas, Interface, Shows};
 use crate::saved::Saved;
+use crate::source::SceneSource;
 use crate::stage::Stage;
 use crate::viewer::{Start, Viewer, compared_with};
 
@@ -34,6 +37,9 @@ pub(crate) fn run(arguments: &Arguments, folder: &Path) -> Result<()> {
     if arguments.script.is_some() {
         return play(arguments, folder);
     }
+    if let Some(SceneSource::Sample { sample, variant }) = arguments.source()? {
+        return sample::run(arguments, (sample, variant), folder);
+    }
     let scene = arguments.load_scene()?;
     if let Some(file) = &arguments.scene {
         scene.warnings(file).for_each(|warning| eprintln!("{warning}"));
@@ -45,13 +51,17 @@ pub(crate) fn run(arguments: &Arguments, folder: &Path) -> Result<()> {
     stage.settings = settings;
     stage.animation = arguments.animation;
     stage.set_home();
-    let written = render_pictures(&mut stage, folder, arguments.size)?;
-    let (name, gpu) = (&stage.scene().name, stage.gpu().name());
-    println!("{} pictures of {name} by {gpu}, in {}:", written.len(), folder.display());
+    let written = render_pictures(&mut stage, folder, arguments.size())?;
+    tell(&written, &stage.scene().name, &stage, folder);
+    Ok(())
+}
+
+/// Says which pictures were written.
+fn tell(written: &[PathBuf], name: &str, stage: &Stage, folder: &Path) {
+    println!("{} pictures of {name} by {}, in {}:", written.len(), stage.gpu().name(), folder.display());
     for path in written {
         println!("  {}", path.file_name().unwrap_or_default().to_string_lossy());
     }
-    Ok(())
 }
 
 /// Plays a script in frames that nobody sees; the files that it saves are put into the folder.
@@ -62,7 +72,7 @@ fn play(arguments: &Arguments, folder: &Path) -> Result<()> {
     stage.read_depths();
     stage.wait_for_rays();
     let mut viewer = Viewer::new(stage, FORMAT, start, None);
-    let mut size = arguments.size;
+    let mut size = arguments.size();
     let mut canvas = Canvas::new(&viewer.stage.gpu().device, size, FORMAT);
     let mut clock = 0.0;
     while !viewer.has_played() && !viewer.wishes.quit {

@@ -5,7 +5,7 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use anyhow::Result;
 use shadowfit::PerspectiveCamera;
 use shadowfit_egui::SampleFigure;
-use shadowfit_render::AdapterChoice;
+use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_study::samples::{Sample, SampleFigures, SampleValues};
 
 /// What is measured: a sample by its values, a camera, and the time of its animation, in seconds.
@@ -24,7 +24,9 @@ impl Measuring {
         let (sender, result) = channel();
         let work = move || {
             // Nobody waits any more where another one was begun.
-            let _ = sender.send(SampleFigures::measure(adapter, sample, &values, &camera, seconds));
+            let gpu = pollster::block_on(Gpu::headless(adapter)).map_err(anyhow::Error::from);
+            let measured = gpu.and_then(|gpu| SampleFigures::measure(gpu, sample, &values, &camera, seconds));
+            let _ = sender.send(measured);
         };
         let started = std::thread::Builder::new().name("measuring".to_owned()).spawn(work);
         self.lines = match started {

@@ -152,7 +152,7 @@ impl Running {
     fn start(event_loop: &ActiveEventLoop, start: Start) -> Result<Self> {
         let begin = Instant::now();
         let arguments = &start.arguments;
-        let window = open_window(event_loop, arguments.size)?;
+        let window = open_window(event_loop, arguments.size())?;
         let instance = Gpu::instance();
         let surface = instance.create_surface(window.clone()).context("the window cannot be drawn on")?;
         let gpu = pollster::block_on(Gpu::for_surface(arguments.adapter(), &instance, &surface))?;

@@ -1,10 +1,11 @@
 //! The classic techniques as named samples: each with the scene, camera, light and numbers of its source, the flaws that it
 //! is known for as variants, and what modern maps make of the same view.
 //!
-//! [`SAMPLES`] lists them; a [`SampleDrawer`] draws one by its [`SampleValues`], and `figures` judges it
+//! [`SAMPLES`] lists them; a [`SampleDrawer`] draws one by its [`SampleValues`], and [`SampleFigures`] judge it
 //! against rays. Lengths are in the units of each source. `docs/samples` has a page for each.
 
 mod drawer;
+mod figures;
 mod options;
 mod scenes;
 mod xna;
@@ -17,6 +18,7 @@ use shadowfit_render::samples::SampleFrame;
 use shadowfit_scene::Scene;
 
 pub use drawer::{SampleDrawer, SampleOutcome};
+pub use figures::SampleFigures;
 pub use options::{OptionError, OptionKind, SampleOption, SampleValues};
 
 /// A classic technique that runs as its source has it.
@@ -163,6 +165,15 @@ impl Sample {
     pub fn lens(&self, aspect: f32) -> PerspectiveCamera {
         let (camera, lens) = self.camera();
         camera.perspective(&lens, aspect)
+    }
+
+    /// The camera of a variant, or of the sample itself, for a picture of an aspect (width over height).
+    pub fn seen_by(&self, variant: Option<&SampleVariant>, aspect: f32) -> PerspectiveCamera {
+        let camera = self.lens(aspect);
+        match variant.and_then(|variant| variant.view) {
+            Some((eye, forward)) => PerspectiveCamera { eye, forward: forward.normalize(), ..camera },
+            None => camera,
+        }
     }
 
     /// Eye and lens that it is seen through at first.

@@ -145,7 +145,10 @@ impl Viewer {
         self.saved.scene = self.source.clone();
         self.saved.settings = self.stage.settings;
         self.saved.sample = self.stage.sample().map_or_else(Vec::new, |show| {
-            show.values.iter().map(|(option, value)| (option.id.to_owned(), SampleValues::text(option, value))).collect()
+            show.values
+                .iter()
+                .map(|(option, value)| (option.id.to_owned(), SampleValues::text(option, value)))
+                .collect()
         });
         self.saved.camera = Some(self.stage.camera);
         self.saved.other = self.stage.other_technique().map(|other| (other, self.stage.split));
