@@ -12,9 +12,11 @@ mod forest;
 mod motion;
 mod pixels;
 mod plain;
+mod shadow_mapping;
 mod shapes;
 mod sheet;
 mod solid;
+mod terrain;
 #[cfg(test)]
 mod tests;
 
@@ -106,6 +108,38 @@ impl BuiltinScene {
             Self::Arcade => arcade::build(),
             Self::Plain => plain::build(),
             Self::Forest => forest::build(),
+        }
+    }
+}
+
+/// A scene of one of the classic samples, in that sample's own units.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SampleScene {
+    /// A figure on a grid floor: [`Scene::subject`] is the figure's root, and only what hangs on it casts.
+    ShadowMapping,
+    /// Hills from a height map, with a tractor, a helicopter and a jeep on level ground: [`Scene::subject`] is what
+    /// the three hang on.
+    Terrain,
+}
+
+impl SampleScene {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::ShadowMapping, Self::Terrain];
+
+    /// Its name in command lines and files, which is that of the scene it builds.
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::ShadowMapping => "shadow-mapping",
+            Self::Terrain => "terrain",
+        }
+    }
+
+    /// Makes the scene: right-handed, y up, in the units of the sample, with a camera, a sun and a subject, at rest.
+    /// Every call gives the same.
+    pub fn build(self) -> Scene {
+        match self {
+            Self::ShadowMapping => shadow_mapping::build(),
+            Self::Terrain => terrain::build(),
         }
     }
 }

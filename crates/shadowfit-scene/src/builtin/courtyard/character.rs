@@ -5,7 +5,8 @@
 
 use glam::Vec3;
 
-use super::{body, face, walk};
+use super::walk::Posture;
+use super::{body, face};
 use crate::builtin::build::Builder;
 
 /// Length of the upper arm, in metres.
@@ -163,9 +164,9 @@ impl Joints {
     }
 }
 
-/// Adds the figure to a scene, standing at the origin and facing +z.
-pub(super) fn build(builder: &mut Builder) -> Joints {
-    let rest = walk::standing().transforms();
+/// Adds the figure to a scene in a posture, standing at the origin and facing +z.
+pub(super) fn build(builder: &mut Builder, posture: &Posture) -> Joints {
+    let rest = posture.transforms();
     let mut nodes = [0; JOINTS];
     for (joint, bone) in RIG.iter().enumerate() {
         let parent = bone.parent.map(|parent| nodes[parent as usize]);

@@ -29,7 +29,7 @@ const FAR: f32 = 200.0;
 /// The scene, as [`super::default_scene`] describes it.
 pub(super) fn build() -> Scene {
     let mut builder = Builder::new("courtyard", palette::materials(), textures::images());
-    let joints = character::build(&mut builder);
+    let joints = character::build(&mut builder, &walk::standing());
     architecture::build(&mut builder);
     garden::build(&mut builder);
     builder.start_view(start_view(), FOV_Y, FAR);
@@ -43,4 +43,21 @@ pub(super) fn build() -> Scene {
 /// Eye and target of the start view, world positions in metres.
 pub(super) fn start_view() -> (Vec3, Vec3) {
     (Vec3::new(-2.1, 1.6, 4.5), Vec3::new(1.3, 1.3, -1.0))
+}
+
+/// Adds the figure alone to another scene, with the materials that it needs: standing at the origin with its arms
+/// hanging, about 1.8 m tall, facing +z. Returns its root.
+pub(super) fn figure_at_ease(builder: &mut Builder) -> usize {
+    let first = builder.scene.meshes.len();
+    let root = character::build(builder, &walk::at_ease()).root();
+    let materials = palette::materials();
+    let mut moved = vec![None; materials.len()];
+    let scene = &mut builder.scene;
+    for primitive in scene.meshes[first..].iter_mut().flat_map(|mesh| &mut mesh.primitives) {
+        primitive.material = *moved[primitive.material].get_or_insert_with(|| {
+            scene.materials.push(materials[primitive.material].clone());
+            scene.materials.len() - 1
+        });
+    }
+    root
 }

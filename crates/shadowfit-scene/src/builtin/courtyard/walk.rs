@@ -138,6 +138,29 @@ pub(super) fn standing() -> Posture {
     posture
 }
 
+/// Standing upright with the arms hanging, a little apart from the body, so that the sun passes between.
+pub(super) fn at_ease() -> Posture {
+    let mut posture =
+        Posture { root: Vec3::ZERO, hips: Vec3::new(0.012, 0.937, 0.0), rotations: [Quat::IDENTITY; JOINTS] };
+    posture.turn(Joint::Hips, 0.0, 0.04, 0.03);
+    posture.turn(Joint::Spine, -0.02, 0.0, -0.03);
+    posture.turn(Joint::Chest, -0.04, -0.03, -0.02);
+    posture.turn(Joint::Neck, 0.06, -0.05, 0.0);
+    posture.turn(Joint::Head, 0.02, -0.10, 0.02);
+    posture.turn(Joint::TailA, 0.10, 0.0, 0.04);
+    posture.turn(Joint::TailB, 0.06, 0.0, 0.0);
+    posture.turn(Joint::TailC, -0.06, 0.0, 0.0);
+    posture.reach_foot(Side::Left, Vec3::new(0.125, ANKLE, -0.03), Quat::from_rotation_y(0.25), 0.0);
+    posture.reach_foot(Side::Right, Vec3::new(-0.15, ANKLE, 0.06), Quat::from_rotation_y(-0.32), 0.0);
+    for (side, ahead, bend) in [(Side::Left, 0.04, -0.34), (Side::Right, -0.16, -0.42)] {
+        let [arm, forearm, hand] = side.arm();
+        posture.turn(arm, ahead, 0.0, side.sign() * 0.36);
+        posture.turn(forearm, bend, 0.0, side.sign() * -0.12);
+        posture.turn(hand, -0.1, side.sign() * 0.3, side.sign() * -0.06);
+    }
+    posture
+}
+
 /// Both animations: "walk" and "turn".
 pub(super) fn animations(joints: &Joints) -> Vec<Animation> {
     let stride: Vec<Posture> = (0..STRIDE_KEYS).map(|key| walking(key as f32 / STRIDE_KEYS as f32)).collect();

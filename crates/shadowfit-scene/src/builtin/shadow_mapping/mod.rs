@@ -1,0 +1,36 @@
+//! The shadow mapping sample's scene: a figure on a grid floor under a sun from its right.
+//!
+//! The sample's units are centimetres and a half, so to speak: a person is about 70 of them tall. Only the figure casts,
+//! and both receive.
+
+mod floor;
+
+use glam::Vec3;
+
+use super::build::Builder;
+use super::courtyard::figure_at_ease;
+use crate::{Lens, Scene, Sun};
+
+/// Size of the figure, in the sample's units a metre: it is 1.85 m tall to the top of its cap.
+const UNITS_PER_METRE: f32 = 36.0;
+/// Where the camera of the sample starts.
+const EYE: Vec3 = Vec3::new(0.0, 70.0, 100.0);
+/// Where it looks: two forward, one down.
+const FORWARD: Vec3 = Vec3::new(0.0, -0.447_213_6, -0.894_427_2);
+/// Lens of the sample's camera.
+const LENS: Lens = Lens::Perspective { fov_y: std::f32::consts::FRAC_PI_4, near: 1.0, far: Some(1000.0) };
+/// Direction toward the light.
+const TO_LIGHT: Vec3 = Vec3::new(-1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0);
+
+/// The scene.
+pub(super) fn build() -> Scene {
+    let mut builder = Builder::new("shadow-mapping", vec![floor::material()], vec![floor::image()]);
+    floor::build(&mut builder);
+    let root = figure_at_ease(&mut builder);
+    builder.scene.nodes[root].rest.scale = Vec3::splat(UNITS_PER_METRE);
+    builder.view((EYE, EYE + FORWARD), LENS);
+    let mut scene = builder.scene;
+    scene.subject = Some(root);
+    scene.sun = Some(Sun { direction: -TO_LIGHT.normalize(), color: Vec3::ONE, intensity: 80_000.0 });
+    scene
+}

@@ -1,0 +1,48 @@
+//! The vehicles: where they stand, and the nodes that carry their meshes.
+
+use std::f32::consts::{FRAC_PI_2, PI};
+
+use glam::{Quat, Vec3};
+
+use super::{helicopter, jeep, tractor};
+use crate::Transform;
+use crate::builtin::build::Builder;
+
+/// Size of the vehicles in the terrain's units.
+const SIZE: f32 = 2.0;
+
+/// Where a vehicle stands.
+pub(super) struct Place {
+    /// Name of its node.
+    pub(super) name: &'static str,
+    /// Position on the level ground, in the terrain's units.
+    pub(super) at: Vec3,
+    /// Rotation about the vertical, in radians.
+    pub(super) yaw: f32,
+}
+
+/// The places of tractor, helicopter and jeep.
+pub(super) const PLACES: [Place; 3] = [
+    Place { name: "tractor", at: Vec3::new(150.0, 0.0, 100.0), yaw: 0.5 },
+    Place { name: "helicopter", at: Vec3::new(120.0, 0.0, 140.0), yaw: -0.3 },
+    Place { name: "jeep", at: Vec3::new(140.0, 0.0, 170.0), yaw: 0.3 },
+];
+
+/// Adds the vehicles and returns the node that they hang on.
+pub(super) fn build(builder: &mut Builder) -> usize {
+    let all = builder.group("vehicles", Vec3::ZERO, 0.0);
+    // Models face +z; tractor and jeep face the light, the helicopter +x.
+    let models = [(tractor::parts(), PI), (helicopter::parts(), FRAC_PI_2), (jeep::parts(), PI)];
+    for (place, (parts, facing)) in PLACES.iter().zip(models) {
+        let rest = Transform {
+            translation: place.at,
+            rotation: Quat::from_rotation_y(place.yaw),
+            scale: Vec3::splat(SIZE),
+            ..Transform::default()
+        };
+        let vehicle = builder.node(place.name, Some(all), rest, None);
+        let mesh = builder.mesh(place.name, parts.primitives());
+        builder.place(vehicle, mesh, Vec3::ZERO, facing);
+    }
+    all
+}
