@@ -1,9 +1,9 @@
-//! Where the samples' scenes come from.
+//! The samples' scenes, as functions that a table can hold.
 
 use shadowfit_scene::Scene;
-use shadowfit_scene::builtin::BuiltinScene;
+use shadowfit_scene::builtin::SampleScene;
 
 /// The XNA sample's character on its floor.
 pub(super) fn shadow_mapping() -> Scene {
-    BuiltinScene::Courtyard.build()
+    SampleScene::ShadowMapping.build()
 }
