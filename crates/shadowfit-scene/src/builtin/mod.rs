@@ -15,6 +15,9 @@ mod plain;
 mod shapes;
 mod sheet;
 mod solid;
+mod still_life;
+mod street;
+mod sweep;
 #[cfg(test)]
 mod tests;
 
@@ -108,4 +111,42 @@ impl BuiltinScene {
             Self::Forest => forest::build(),
         }
     }
+}
+
+/// A scene of one of the classic samples, in the units of its source: right-handed, y up, with a camera and a sun. They
+/// are not among [`BuiltinScene::ALL`], and nothing in them moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SampleScene {
+    /// A street at night, for a headlight as the lamp: a strip of road, pavement and wall, two cars, two lamp posts.
+    Street,
+    /// Stone shapes and chess pieces on a wooden floor, for a lamp at a position: [`still_life_lamp`].
+    StillLife,
+}
+
+impl SampleScene {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Street, Self::StillLife];
+
+    /// Its name in command lines and files, which is that of the scene it builds.
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::Street => "street",
+            Self::StillLife => "still-life",
+        }
+    }
+
+    /// Makes the scene. Every call gives the same.
+    pub fn build(self) -> Scene {
+        match self {
+            Self::Street => street::build(),
+            Self::StillLife => still_life::build(),
+        }
+    }
+}
+
+/// Position and target of a lamp for [`SampleScene::StillLife`], world positions in metres: it shines from the left and
+/// from the front, 39° downwards. A light image of 60° each way holds everything that stands there, with near 4 and far
+/// 20 too; one of 75° holds most of the floor besides.
+pub fn still_life_lamp() -> (Vec3, Vec3) {
+    still_life::lamp()
 }
