@@ -7,7 +7,7 @@ use super::knight;
 use super::palette::Paint;
 use crate::Primitive;
 use crate::builtin::build::{Builder, CRISP};
-use crate::builtin::shapes::{block, ellipsoid, lathe};
+use crate::builtin::shapes::{block, ellipsoid, lathe, rounded_box};
 use crate::builtin::solid::Solid;
 
 /// Side of a square, in metres.
@@ -78,6 +78,7 @@ pub(super) fn foot(size: f32) -> Vec<(f32, f32)> {
     profile.map(|(radius, height)| (radius * size, height * size)).to_vec()
 }
 
+/// A king, with a cross on his crown.
 fn king() -> Solid {
     let stem = [(0.112, 0.28), (0.094, 0.42), (0.082, 0.58), (0.08, 0.72), (0.088, 0.80)];
     let collar =
@@ -86,10 +87,11 @@ fn king() -> Solid {
         [(0.088, 0.94), (0.115, 1.06), (0.15, 1.17), (0.155, 1.19), (0.14, 1.205), (0.075, 1.25), (0.04, 1.265)];
     let knob = [(0.052, 1.285), (0.05, 1.31), (0.03, 1.325), (0.0, 1.328)];
     let turned = lathe(&[&foot(1.0)[..], &stem, &collar, &crown, &knob].concat(), 40);
-    let bar = |half: Vec3, y: f32| crate::builtin::shapes::rounded_box(half, 0.012, 2).moved(Vec3::Y * y);
+    let bar = |half: Vec3, y: f32| rounded_box(half, 0.012, 2).moved(Vec3::Y * y);
     turned.with(bar(Vec3::new(0.026, 0.10, 0.022), 1.40)).with(bar(Vec3::new(0.075, 0.025, 0.0215), 1.425))
 }
 
+/// A rook with six merlons.
 fn rook() -> Solid {
     let tower = [(0.12, 0.26), (0.108, 0.42), (0.108, 0.56), (0.12, 0.62)];
     let top = [
@@ -111,6 +113,7 @@ fn rook() -> Solid {
     solid
 }
 
+/// A pawn.
 fn pawn() -> Solid {
     let stem = [
         (0.085, 0.24),

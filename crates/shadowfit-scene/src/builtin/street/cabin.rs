@@ -12,6 +12,8 @@ use crate::builtin::solid::Solid;
 const POWER: f32 = 4.5;
 /// Points around it.
 const AROUND: usize = 64;
+/// Steps from the belt up to the roof.
+const STEPS: usize = 6;
 /// Shrinking outline and height of the roof above the windows.
 const ROOF: [(f32, f32); 5] = [(0.975, 1.072), (0.92, 1.095), (0.80, 1.113), (0.55, 1.127), (0.25, 1.134)];
 /// Height of the roof's middle.
@@ -41,7 +43,6 @@ pub(super) fn solid() -> Solid {
     let ring = |point: &dyn Fn(f32) -> Vec3| -> Vec<Vec3> {
         (0..AROUND).map(|index| point(index as f32 / AROUND as f32 * TAU)).collect()
     };
-    const STEPS: usize = 6;
     let walls = (0..=STEPS).map(|step| ring(&|turn| surface(Vec2::new(turn, step as f32 / STEPS as f32))));
     let (rx, cz, rz, _) = outline(1.0);
     let roof = ROOF.iter().map(|&(scale, y)| {

@@ -74,7 +74,7 @@ fn grille() -> Solid {
 
 /// Two round headlights.
 fn headlights() -> Solid {
-    ellipsoid(Vec3::new(0.115, 0.075, 0.075), 20, 12).moved(Vec3::new(0.45, 0.485, HALF_LENGTH - 0.06)).and_mirrored()
+    ellipsoid(Vec3::new(0.115, 0.075, 0.075), 26, 16).moved(Vec3::new(0.45, 0.485, HALF_LENGTH - 0.06)).and_mirrored()
 }
 
 /// Two wide tail lights.

@@ -17,6 +17,8 @@ use crate::builtin::sweep::{Stop, stop, sweep};
 const BEND: f32 = 270.0;
 /// Radius of the bend, and reach of the arm after it.
 const REACH: [f32; 2] = [52.0, 30.0];
+/// Steps of the bend.
+const STEPS: usize = 14;
 /// Radii of the shaft above its foot, and of the arm.
 const THICK: [f32; 2] = [7.0, 4.4];
 
@@ -42,7 +44,6 @@ pub(super) fn primitive() -> Primitive {
 fn shaft() -> Solid {
     let upright = |y: f32, share: f32| stop(Vec3::Y * y, THICK[0] + (THICK[1] - THICK[0]) * share);
     let mut stops = vec![upright(20.0, 0.0), upright(20.5, 0.0), upright(120.0, 0.3), upright(200.0, 0.6)];
-    const STEPS: usize = 14;
     stops.extend((0..=STEPS).map(|step| {
         let (sin, cos) = (step as f32 / STEPS as f32 * FRAC_PI_2).sin_cos();
         stop(Vec3::new(-REACH[0] * (1.0 - cos), BEND + REACH[0] * sin, 0.0), THICK[1])
