@@ -26,7 +26,7 @@ pub(super) fn build(builder: &mut Builder, group: usize) {
     let ball = ellipsoid(Vec3::splat(0.62), 72, 44).moved(Vec3::Y * 1.94);
     let pedestal = pedestal().primitive(Paint::Stone.into(), CRISP);
     add("pedestal", vec![pedestal, ball.primitive(Paint::Ball.into(), SMOOTH)], -0.75, -2.5, 0.35);
-    add("ring", vec![ring().primitive(Paint::Bronze.into(), SMOOTH)], 0.75, -0.15, 0.6);
+    add("ring", vec![ring().primitive(Paint::Bronze.into(), SMOOTH)], 0.75, -0.15, -0.5);
     add("vase", vec![vase().primitive(Paint::Terracotta.into(), 0.9)], 3.3, -0.4, 0.0);
 }
 
