@@ -51,14 +51,23 @@ impl NoiseRow {
 /// Draws a square image of `size` pixels; `row` gives for each y what gives for each x a colour in
 /// sRGB and an alpha, 0..255.
 pub(super) fn draw<Row: Fn(u32) -> [f32; 4]>(name: &str, size: u32, row: impl Fn(u32) -> Row) -> Image {
-    let mut rgba = Vec::with_capacity((size * size * 4) as usize);
-    for y in 0..size {
+    draw_oblong(name, [size; 2], row)
+}
+
+/// As [`draw`], of a width and a height in pixels.
+pub(super) fn draw_oblong<Row: Fn(u32) -> [f32; 4]>(
+    name: &str,
+    [width, height]: [u32; 2],
+    row: impl Fn(u32) -> Row,
+) -> Image {
+    let mut rgba = Vec::with_capacity((width * height * 4) as usize);
+    for y in 0..height {
         let pixel = row(y);
-        for x in 0..size {
+        for x in 0..width {
             rgba.extend_from_slice(&pixel(x).map(|value| value as u8));
         }
     }
-    Image { name: name.to_owned(), width: size, height: size, rgba }
+    Image { name: name.to_owned(), width, height, rgba }
 }
 
 /// As [`draw`], with noise: `color` gives for each x and y a colour, of values of the noise at the pixel, one for each of

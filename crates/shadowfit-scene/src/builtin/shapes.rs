@@ -52,7 +52,7 @@ pub(super) fn tube(rings: &[Vec<Vec3>], bottom: Vec3, top: Vec3) -> Solid {
 }
 
 /// Point of a superellipse: `power` 2 is an ellipse, more is squarer. Turn 0 is +z, then toward +x.
-fn superellipse(turn: f32, power: f32) -> (f32, f32) {
+pub(super) fn superellipse(turn: f32, power: f32) -> (f32, f32) {
     let (sin, cos) = turn.sin_cos();
     if power == 2.0 {
         return (sin, cos);
@@ -93,7 +93,7 @@ pub(super) fn ellipsoid(radii: Vec3, segments: usize, rings: usize) -> Solid {
 }
 
 /// Catmull-Rom value between `b` and `c`.
-fn catmull_rom([a, b, c, d]: [f32; 4], t: f32) -> f32 {
+pub(super) fn catmull_rom([a, b, c, d]: [f32; 4], t: f32) -> f32 {
     let cubic = -a + 3.0 * b - 3.0 * c + d;
     let square = 2.0 * a - 5.0 * b + 4.0 * c - d;
     0.5 * (2.0 * b + (c - a) * t + square * t * t + cubic * t * t * t)

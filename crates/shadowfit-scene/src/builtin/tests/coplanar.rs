@@ -4,8 +4,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use glam::Vec3;
 
-use super::all;
-use crate::builtin::BuiltinScene;
+use super::every;
 use crate::{Scene, Triangle};
 
 /// Steps of a unit normal that count as one direction: a third of a degree.
@@ -67,8 +66,8 @@ fn fighting(scene: &Scene, jointed: Option<usize>) -> BTreeSet<[String; 2]> {
 
 #[test]
 fn no_two_surfaces_that_face_the_same_way_share_a_place() {
-    for (builtin, scene) in all() {
-        let jointed = scene.subject.filter(|_| builtin == BuiltinScene::Courtyard);
-        assert_eq!(fighting(&scene, jointed), BTreeSet::new(), "{builtin:?}");
+    for (id, scene) in every() {
+        let jointed = scene.subject.filter(|_| id == "courtyard");
+        assert_eq!(fighting(&scene, jointed), BTreeSet::new(), "{id}");
     }
 }

@@ -3,15 +3,22 @@
 mod coplanar;
 mod courtyard;
 mod motion;
+mod samples;
 mod surface;
 mod view;
 
-use super::BuiltinScene;
+use super::{BuiltinScene, SampleScene};
 use crate::{Primitive, Scene};
 
 /// Every built-in scene, built.
 fn all() -> impl Iterator<Item = (BuiltinScene, Scene)> {
     BuiltinScene::ALL.into_iter().map(|builtin| (builtin, builtin.build()))
+}
+
+/// Every scene that code makes, those of samples too, built, by its id.
+fn every() -> impl Iterator<Item = (&'static str, Scene)> {
+    let samples = SampleScene::ALL.into_iter().map(|sample| (sample.id(), sample.build()));
+    all().map(|(builtin, scene)| (builtin.id(), scene)).chain(samples)
 }
 
 /// All primitives with the names of their meshes.
@@ -48,18 +55,18 @@ fn every_scene_is_found_by_its_id_and_says_what_it_shows() {
 
 #[test]
 fn every_scene_is_the_same_every_time() {
-    for ((builtin, a), (_, b)) in all().zip(all()) {
+    for ((id, a), (_, b)) in every().zip(every()) {
         let same = |(a, b): ((&str, &Primitive), (&str, &Primitive))| {
             a.0 == b.0
                 && (&a.1.positions, &a.1.normals, &a.1.uvs) == (&b.1.positions, &b.1.normals, &b.1.uvs)
                 && (&a.1.colors, &a.1.indices) == (&b.1.colors, &b.1.indices)
         };
-        assert!(primitives(&a).zip(primitives(&b)).all(same), "{builtin:?}");
-        assert!(a.images.iter().zip(&b.images).all(|(a, b)| a.rgba == b.rgba), "{builtin:?}");
+        assert!(primitives(&a).zip(primitives(&b)).all(same), "{id}");
+        assert!(a.images.iter().zip(&b.images).all(|(a, b)| a.rgba == b.rgba), "{id}");
         for seconds in [0.0, 1.3, 5.1] {
-            assert_eq!(a.pose(Some(0), seconds), b.pose(Some(0), seconds), "{builtin:?}");
+            assert_eq!(a.pose(Some(0), seconds), b.pose(Some(0), seconds), "{id}");
         }
-        assert_eq!((a.sun, a.subject, a.instances()), (b.sun, b.subject, b.instances()), "{builtin:?}");
+        assert_eq!((a.sun, a.subject, a.instances()), (b.sun, b.subject, b.instances()), "{id}");
     }
 }
 
@@ -78,14 +85,14 @@ fn triangle_counts_keep_their_budget() {
 
 #[test]
 fn parents_come_before_children_and_indices_exist() {
-    for (builtin, scene) in all() {
+    for (id, scene) in every() {
         for (index, node) in scene.nodes.iter().enumerate() {
-            assert!(node.parent.is_none_or(|parent| parent < index), "{builtin:?}: {}", node.name);
-            assert!(node.mesh.is_none_or(|mesh| mesh < scene.meshes.len()), "{builtin:?}: {}", node.name);
-            assert!(!node.name.is_empty(), "{builtin:?}: node {index}");
+            assert!(node.parent.is_none_or(|parent| parent < index), "{id}: {}", node.name);
+            assert!(node.mesh.is_none_or(|mesh| mesh < scene.meshes.len()), "{id}: {}", node.name);
+            assert!(!node.name.is_empty(), "{id}: node {index}");
         }
         let used = |mesh: usize| scene.nodes.iter().any(|node| node.mesh == Some(mesh));
-        assert!((0..scene.meshes.len()).all(used), "{builtin:?} has a mesh that nothing draws");
+        assert!((0..scene.meshes.len()).all(used), "{id} has a mesh that nothing draws");
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{all, drawn, primitives, triangles};
+use super::{all, drawn, every, primitives, triangles};
 use crate::builtin::BuiltinScene;
 use crate::{AlphaMode, Primitive, Scene};
 
@@ -14,6 +14,11 @@ const GROUNDS: [(BuiltinScene, &str); 4] = [
     (BuiltinScene::Forest, "forest floor"),
 ];
 
+/// Whether a mesh of a scene is an open sheet that things stand on; that of the street faces sideways too.
+fn is_ground(id: &str, mesh: &str) -> bool {
+    (id, mesh) == ("street", "strip") || GROUNDS.iter().any(|(builtin, ground)| (builtin.id(), *ground) == (id, mesh))
+}
+
 /// Whether a primitive is a sheet of leaves or grass: cut out, with two sides. The courtyard's lattice is solid.
 fn is_foliage(scene: &Scene, primitive: &Primitive) -> bool {
     let material = &scene.materials[primitive.material];
@@ -22,48 +27,48 @@ fn is_foliage(scene: &Scene, primitive: &Primitive) -> bool {
 
 #[test]
 fn vertex_arrays_agree_and_every_index_is_in_range() {
-    for (builtin, scene) in all() {
+    for (id, scene) in every() {
         for (name, primitive) in primitives(&scene) {
             let count = primitive.positions.len();
-            assert_eq!((primitive.normals.len(), primitive.uvs.len()), (count, count), "{builtin:?}: {name}");
-            assert!(primitive.colors.is_empty() || primitive.colors.len() == count, "{builtin:?}: {name}");
-            assert!(primitive.indices.iter().all(|&index| (index as usize) < count), "{builtin:?}: {name}");
-            assert_eq!(primitive.indices.len() % 3, 0, "{builtin:?}: {name}");
-            assert!(primitive.material < scene.materials.len(), "{builtin:?}: {name}");
+            assert_eq!((primitive.normals.len(), primitive.uvs.len()), (count, count), "{id}: {name}");
+            assert!(primitive.colors.is_empty() || primitive.colors.len() == count, "{id}: {name}");
+            assert!(primitive.indices.iter().all(|&index| (index as usize) < count), "{id}: {name}");
+            assert_eq!(primitive.indices.len() % 3, 0, "{id}: {name}");
+            assert!(primitive.material < scene.materials.len(), "{id}: {name}");
         }
     }
 }
 
 #[test]
 fn every_material_is_used_and_its_texture_exists_and_is_small() {
-    for (builtin, scene) in all() {
+    for (id, scene) in every() {
         let textures = || scene.materials.iter().filter_map(|material| material.base_color_texture);
-        assert!(textures().all(|texture| texture.image < scene.images.len()), "{builtin:?}");
+        assert!(textures().all(|texture| texture.image < scene.images.len()), "{id}");
         for (index, image) in scene.images.iter().enumerate() {
-            assert_eq!(image.rgba.len(), (image.width * image.height * 4) as usize, "{builtin:?}: {}", image.name);
-            assert!(image.width.is_power_of_two() && image.width <= 1024, "{builtin:?}: {}", image.name);
-            assert!(textures().any(|texture| texture.image == index), "{builtin:?}: {} is not used", image.name);
+            assert_eq!(image.rgba.len(), (image.width * image.height * 4) as usize, "{id}: {}", image.name);
+            assert!(image.width.is_power_of_two() && image.width <= 1024, "{id}: {}", image.name);
+            assert!(textures().any(|texture| texture.image == index), "{id}: {} is not used", image.name);
         }
         for (index, material) in scene.materials.iter().enumerate() {
             let is_used = primitives(&scene).any(|(_, primitive)| primitive.material == index);
-            assert!(is_used, "{builtin:?}: {} is not used", material.name);
+            assert!(is_used, "{id}: {} is not used", material.name);
         }
     }
 }
 
 #[test]
 fn every_triangle_has_area_and_unit_normals_on_its_outer_side() {
-    for (builtin, scene) in all() {
+    for (id, scene) in every() {
         for (name, primitive) in primitives(&scene) {
             for corners in triangles(primitive) {
                 let [a, b, c] = corners.map(|index| primitive.positions[index]);
                 let area = (b - a).cross(c - a);
                 // A hundredth of a square millimetre, twice.
-                assert!(area.length() > 2e-8, "{builtin:?}: {name}: {a} {b} {c}");
+                assert!(area.length() > 2e-8, "{id}: {name}: {a} {b} {c}");
                 for index in corners {
                     let normal = primitive.normals[index];
-                    assert!((normal.length() - 1.0).abs() < 1e-4, "{builtin:?}: {name}: {normal}");
-                    assert!(normal.dot(area) > 0.0, "{builtin:?}: {name}: {normal} at {a}");
+                    assert!((normal.length() - 1.0).abs() < 1e-4, "{id}: {name}: {normal}");
+                    assert!(normal.dot(area) > 0.0, "{id}: {name}: {normal} at {a}");
                 }
             }
         }
@@ -72,9 +77,9 @@ fn every_triangle_has_area_and_unit_normals_on_its_outer_side() {
 
 #[test]
 fn every_solid_is_closed_and_faces_outwards() {
-    for (builtin, scene) in all() {
-        let solids = primitives(&scene)
-            .filter(|(name, primitive)| !GROUNDS.contains(&(builtin, name)) && !is_foliage(&scene, primitive));
+    for (id, scene) in every() {
+        let solids =
+            primitives(&scene).filter(|(name, primitive)| !is_ground(id, name) && !is_foliage(&scene, primitive));
         for (name, primitive) in solids {
             let key = |index: usize| primitive.positions[index].to_array().map(|value| (value + 0.0).to_bits());
             let mut edges: HashMap<_, i32> = HashMap::new();
@@ -88,8 +93,8 @@ fn every_solid_is_closed_and_faces_outwards() {
                 }
             }
             // Each edge is passed as often one way as the other.
-            assert!(edges.values().all(|&count| count == 0), "{builtin:?}: {name} has an open edge");
-            assert!(volume > 0.0, "{builtin:?}: {name} is inside out");
+            assert!(edges.values().all(|&count| count == 0), "{id}: {name} has an open edge");
+            assert!(volume > 0.0, "{id}: {name} is inside out");
         }
     }
 }
