@@ -22,6 +22,7 @@ mod pixel;
 mod probe;
 mod quad;
 mod renderer;
+pub mod samples;
 mod scene;
 pub mod shaders;
 mod statistics;

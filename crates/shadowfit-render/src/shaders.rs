@@ -20,8 +20,14 @@ const JUDGED: &str = include_str!("shaders/judged.wgsl");
 const MARK: &str = include_str!("shaders/mark.wgsl");
 const SCREEN: &str = include_str!("shaders/screen.wgsl");
 
+const DISPLAY: &str = include_str!("shaders/samples/display.wgsl");
+const OCCLUSION_UNIFORM: &str = include_str!("shaders/samples/occlusion_uniform.wgsl");
+const OCCLUSION_FORMULA: &str = include_str!("shaders/samples/occlusion_formula.wgsl");
+const OCCLUSION_PART: &str = include_str!("shaders/samples/occlusion_part.wgsl");
+const OCCLUSION_BUFFERS: &str = include_str!("shaders/samples/occlusion_buffers.wgsl");
+
 /// The pieces as they lie in the folder, for tests that look for files which no module uses.
-pub const PIECES: [(&str, &str); 25] = [
+pub const PIECES: [(&str, &str); 37] = [
     ("frame.wgsl", FRAME),
     ("material.wgsl", MATERIAL),
     ("sky.wgsl", include_str!("shaders/sky.wgsl")),
@@ -47,6 +53,18 @@ pub const PIECES: [(&str, &str); 25] = [
     ("mark_rows.wgsl", include_str!("shaders/mark_rows.wgsl")),
     ("marks.wgsl", include_str!("shaders/marks.wgsl")),
     ("block.wgsl", include_str!("shaders/block.wgsl")),
+    ("samples/display.wgsl", DISPLAY),
+    ("samples/occlusion_uniform.wgsl", OCCLUSION_UNIFORM),
+    ("samples/occlusion_formula.wgsl", OCCLUSION_FORMULA),
+    ("samples/occlusion_part.wgsl", OCCLUSION_PART),
+    ("samples/occlusion_surface.wgsl", include_str!("shaders/samples/occlusion_surface.wgsl")),
+    ("samples/occlusion_buffers.wgsl", OCCLUSION_BUFFERS),
+    ("samples/occlusion_normals.wgsl", include_str!("shaders/samples/occlusion_normals.wgsl")),
+    ("samples/occlusion_depth.wgsl", include_str!("shaders/samples/occlusion_depth.wgsl")),
+    ("samples/occlusion_blur.wgsl", include_str!("shaders/samples/occlusion_blur.wgsl")),
+    ("samples/occlusion_shade.wgsl", include_str!("shaders/samples/occlusion_shade.wgsl")),
+    ("samples/occlusion_view.wgsl", include_str!("shaders/samples/occlusion_view.wgsl")),
+    ("samples/sky_box.wgsl", include_str!("shaders/samples/sky_box.wgsl")),
 ];
 
 /// The sky.
@@ -176,6 +194,52 @@ pub fn inset(shadow_map: &ShadowMapDescriptor) -> String {
     let options = WgslOptions::group(SHADOW_GROUP);
     let (receiver, stored) = (receiver_wgsl(shadow_map, &options), stored_wgsl(shadow_map, &options));
     [FRAME, &receiver, &stored, include_str!("shaders/inset.wgsl")].concat()
+}
+
+/// View-space positions and normals: the frame, [`OcclusionUniform`](crate::samples::OcclusionUniform) and the material
+/// are groups 0, 1 and 2.
+pub fn occlusion_surface() -> String {
+    let surface = include_str!("shaders/samples/occlusion_surface.wgsl");
+    [&occlusion_part(), surface].concat()
+}
+
+/// The picture whose ambient light occlusion darkens: those groups, and occlusion in group 3.
+pub fn occlusion_shade() -> String {
+    [&occlusion_part(), DISPLAY, include_str!("shaders/samples/occlusion_shade.wgsl")].concat()
+}
+
+/// What passes over parts of the scene share.
+fn occlusion_part() -> String {
+    let material = MATERIAL.replace("MATERIAL_GROUP", "2");
+    [FRAME, &material, OCCLUSION_PART, &in_group(OCCLUSION_UNIFORM, 1)].concat()
+}
+
+/// Ambient occlusion in screen space by either method: the uniform is group 0, what was drawn of surfaces group 1.
+pub fn occlusion_gather() -> String {
+    let (normals, depth) =
+        (include_str!("shaders/samples/occlusion_normals.wgsl"), include_str!("shaders/samples/occlusion_depth.wgsl"));
+    [SCREEN, &in_group(OCCLUSION_UNIFORM, 0), OCCLUSION_BUFFERS, OCCLUSION_FORMULA, normals, depth].concat()
+}
+
+/// The formulas of occlusion alone, without bindings or entry points.
+pub fn occlusion_formula() -> &'static str {
+    OCCLUSION_FORMULA
+}
+
+/// The blur of occlusion, with the groups of what finds it.
+pub fn occlusion_blur() -> String {
+    let blur = include_str!("shaders/samples/occlusion_blur.wgsl");
+    [SCREEN, &in_group(OCCLUSION_UNIFORM, 0), OCCLUSION_BUFFERS, blur].concat()
+}
+
+/// Occlusion alone, in group 0.
+pub fn occlusion_view() -> String {
+    [SCREEN, include_str!("shaders/samples/occlusion_view.wgsl")].concat()
+}
+
+/// The sky box: uniform, cube and sampler are group 0.
+pub fn sky_box() -> String {
+    include_str!("shaders/samples/sky_box.wgsl").to_owned()
 }
 
 /// Texture levels.
