@@ -43,7 +43,7 @@ use shadowfit_wgpu::{
     MAX_MAPS, ShadowMapDescriptor, WgslOptions, caster_wgsl, culling_wgsl, layers_wgsl, receiver_wgsl, stored_wgsl,
 };
 
-use crate::support::workspace;
+use crate::support::{files_below, workspace};
 
 /// Every shadow map that the look-up's WGSL differs for.
 fn descriptors() -> Vec<ShadowMapDescriptor> {
@@ -71,6 +71,12 @@ fn modules() -> Vec<(String, String)> {
         ("mark rows".to_owned(), shaders::mark_rows(1)),
         ("mark rows of four samples".to_owned(), shaders::mark_rows(4)),
         ("marks".to_owned(), shaders::marks()),
+        ("occlusion surface".to_owned(), shaders::occlusion_surface()),
+        ("occlusion shade".to_owned(), shaders::occlusion_shade()),
+        ("occlusion gather".to_owned(), shaders::occlusion_gather()),
+        ("occlusion blur".to_owned(), shaders::occlusion_blur()),
+        ("occlusion view".to_owned(), shaders::occlusion_view()),
+        ("sky box".to_owned(), shaders::sky_box()),
         ("culling piece".to_owned(), culling_wgsl(&WgslOptions::group(0))),
         ("need, compute".to_owned(), need_wgsl(1)),
         ("need of four samples, compute".to_owned(), need_wgsl(4)),
@@ -106,12 +112,10 @@ fn files() -> Vec<(PathBuf, String)> {
     let crates = std::fs::read_dir(workspace().join("crates")).expect("the crates' folder");
     let mut files = Vec::new();
     for folder in crates.map(|entry| entry.expect("a crate's folder").path().join("src/shaders")) {
-        for entry in std::fs::read_dir(folder).into_iter().flatten() {
-            let path = entry.expect("a shader file").path();
-            if path.extension().is_some_and(|extension| extension == "wgsl") {
-                let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-                files.push((path, text));
-            }
+        let below = if folder.is_dir() { files_below(&folder) } else { Vec::new() };
+        for path in below.into_iter().filter(|path| path.extension().is_some_and(|extension| extension == "wgsl")) {
+            let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+            files.push((path, text));
         }
     }
     files
@@ -156,9 +160,11 @@ fn the_renderer_lists_exactly_the_files_of_its_folder() {
     let mut listed: Vec<&str> = shaders::PIECES.map(|(name, _)| name).to_vec();
     listed.sort_unstable();
     let folder = workspace().join("crates/shadowfit-render/src/shaders");
-    let of_folder = files().into_iter().filter(|(path, _)| path.starts_with(&folder));
-    let mut present: Vec<String> =
-        of_folder.map(|(path, _)| path.file_name().expect("a name").to_string_lossy().into_owned()).collect();
+    let below = |(path, _): (PathBuf, String)| {
+        let below = path.strip_prefix(&folder).ok()?;
+        Some(below.components().map(|part| part.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/"))
+    };
+    let mut present: Vec<String> = files().into_iter().filter_map(below).collect();
     present.sort();
     assert_eq!(listed, present);
 }

@@ -101,7 +101,7 @@ fn clouds(direction: Vec3, to_light: Vec3) -> (f32, f32) {
     }
     let at = Vec2::new(direction.x, direction.z) * (CLOUD_HEIGHT / (direction.y + CLOUD_CURVE));
     let toward_sun = Vec2::new(to_light.x, to_light.z) * 0.12;
-    let density = |at: Vec2| smooth(0.50, 0.78, fractal(at));
+    let density = |at: Vec2| smooth(0.49, 0.70, fractal(at));
     let cover = density(at) * smooth(0.02, 0.22, direction.y);
     // A cloud is shaded where there is more of it toward the sun.
     let shade = (0.75 + 0.9 * (density(at) - density(at + toward_sun)) - 0.35 * cover).clamp(0.0, 1.0);
