@@ -4,6 +4,7 @@ use core::mem::offset_of;
 
 use naga::{Binding, Module, StructMember, TypeInner};
 use shadowfit::culling::CasterPlanes;
+use shadowfit_render::samples::{OcclusionUniform, SkyBoxUniform};
 use shadowfit_render::{
     BlockUniform, FrameUniform, InsetVertex, InstanceData, JudgedUniform, LineVertex, MarksUniform, MaterialUniform,
     Overlay, QuadVertex, shaders,
@@ -298,4 +299,33 @@ fn insets_and_quadrilaterals_in_the_buffers_are_what_the_vertex_shaders_read() {
     let [first, second] = [offset_of!(QuadVertex, first), offset_of!(QuadVertex, second)];
     let ends = [first, second, offset_of!(QuadVertex, color), size_of::<QuadVertex>()];
     assert_eq!(packed(&quads, &at_locations(&quads, "QuadIn", &[0, 1, 2])), ends);
+}
+
+#[test]
+fn what_the_samples_read_lies_as_in_wgsl() {
+    let occlusion = layout!(
+        "Occlusion" = OcclusionUniform {
+            view_from_world,
+            uv_from_view,
+            height,
+            far,
+            radius,
+            scale,
+            bias,
+            intensity,
+            detail,
+            padding_0,
+            padding_1,
+            padding_2,
+            ambient,
+            diffuse,
+        }
+    );
+    let shade = parse("occlusion shade", &shaders::samples::occlusion_shade());
+    assert_same(&shade, &occlusion);
+    assert_same(&parse("occlusion gather", &shaders::samples::occlusion_gather()), &occlusion);
+    assert_same(
+        &parse("sky box", &shaders::samples::sky_box()),
+        &layout!("SkyBox" = SkyBoxUniform { clip_from_world }),
+    );
 }

@@ -11,7 +11,7 @@ use crate::uniform::{LineVertex, QuadVertex};
 use crate::{Overlay, bindings, shaders};
 
 pub(crate) use maker::{BLENDED_COLOR, COLOR, InstanceNumber, Maker, Shape, instances, part_buffers};
-pub(crate) use of_map::{Drawn, MapPipelines};
+pub(crate) use of_map::{Drawn, MapPipelines, PartKey};
 
 /// Bind group layouts of this crate.
 #[derive(Debug)]

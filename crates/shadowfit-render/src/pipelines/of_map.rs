@@ -24,9 +24,9 @@ pub(crate) enum Drawn {
 /// What selects a part's pipeline, in every pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent property of the part")]
-struct PartKey {
-    masked: bool,
-    blended: bool,
+pub(crate) struct PartKey {
+    pub(crate) masked: bool,
+    pub(crate) blended: bool,
     double_sided: bool,
     mirrored: bool,
 }
@@ -46,7 +46,7 @@ pub(crate) struct MapPipelines {
 }
 
 impl PartKey {
-    fn of(part: &Part) -> Self {
+    pub(crate) fn of(part: &Part) -> Self {
         Self {
             masked: matches!(part.alpha, AlphaMode::Mask { .. }),
             blended: part.alpha == AlphaMode::Blend,
@@ -56,12 +56,17 @@ impl PartKey {
     }
 
     /// Back faces of single-sided parts are left out; a mirrored part's back is its front.
-    fn cull_mode(self) -> Option<wgpu::Face> {
+    pub(crate) fn cull_mode(self) -> Option<wgpu::Face> {
         match (self.double_sided, self.mirrored) {
             (true, _) => None,
             (false, false) => Some(wgpu::Face::Back),
             (false, true) => Some(wgpu::Face::Front),
         }
+    }
+
+    /// The front as the rasteriser names it.
+    pub(crate) fn front(self) -> wgpu::Face {
+        if self.mirrored { wgpu::Face::Back } else { wgpu::Face::Front }
     }
 }
 

@@ -60,8 +60,9 @@ fn cabin(parts: &mut Parts) {
         ring.transformed(Affine3A::from_rotation_x(FRAC_PI_2)).moved(Vec3::new(0.0, y, z))
     };
     parts.add(Paint::Pale, SMOOTH, rib(1.05, 1.36, 1.36, 2.40));
-    let keel: Vec<Vec3> =
-        [(0.0, 3.86), (0.9, 3.82), (1.6, 3.63), (2.2, 3.27), (2.75, 2.74), (2.98, 2.3)].map(|(z, y)| Vec3::new(0.0, y, z)).to_vec();
+    let keel: Vec<Vec3> = [(0.0, 3.86), (0.9, 3.82), (1.6, 3.63), (2.2, 3.27), (2.75, 2.74), (2.98, 2.3)]
+        .map(|(z, y)| Vec3::new(0.0, y, z))
+        .to_vec();
     let pane = keel.windows(2).map(|pair| capsule(pair[0], 0.07, pair[1], 0.07, 10)).reduce(Solid::with);
     parts.add(Paint::Pale, SMOOTH, pane.unwrap_or_default());
     let lamp = ellipsoid(Vec3::new(0.17, 0.17, 0.12), 18, 8).moved(Vec3::new(0.0, 1.42, 3.0));
@@ -70,7 +71,8 @@ fn cabin(parts: &mut Parts) {
 
 /// The engine's cowling behind and above the cabin, its exhausts, and the mast.
 fn engine(parts: &mut Parts) {
-    let cowling = [(-1.9, 0.45, 0.42, 3.45), (-1.0, 0.68, 0.58, 3.72), (0.1, 0.62, 0.56, 3.82), (0.7, 0.34, 0.28, 3.82)];
+    let cowling =
+        [(-1.9, 0.45, 0.42, 3.45), (-1.0, 0.68, 0.58, 3.72), (0.1, 0.62, 0.56, 3.82), (0.7, 0.34, 0.28, 3.82)];
     parts.add(Paint::Blue, SMOOTH, along_z(&cowling, 2.5));
     let intake = block(Vec3::new(0.5, 3.5, -0.75), Vec3::new(0.8, 4.0, 0.05), 0.06).and_mirrored();
     let exhaust = capsule(Vec3::new(0.4, 3.6, -1.5), 0.17, Vec3::new(0.62, 3.82, -2.2), 0.19, 14).and_mirrored();
@@ -99,9 +101,7 @@ fn tail(parts: &mut Parts) {
     parts.add(Paint::Pale, CRISP, stabiliser.with(plates));
     let blade = plank(Vec3::new(-0.02, 0.12, -0.09), Vec3::new(0.02, 1.15, 0.09));
     let hub = capsule(Vec3::new(-0.45, 0.0, 0.0), 0.09, Vec3::new(0.06, 0.0, 0.0), 0.11, 12);
-    let spin = |quarter: usize| {
-        blade.clone().transformed(Affine3A::from_rotation_x(0.5 + TAU / 4.0 * quarter as f32))
-    };
+    let spin = |quarter: usize| blade.clone().transformed(Affine3A::from_rotation_x(0.5 + TAU / 4.0 * quarter as f32));
     let rotor = (0..4).map(spin).fold(hub, Solid::with).moved(Vec3::new(0.42, 3.78, -7.1));
     parts.add(Paint::Dark, CRISP, rotor);
 }

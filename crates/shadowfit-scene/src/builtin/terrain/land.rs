@@ -60,7 +60,8 @@ pub(super) fn image() -> Image {
         let fields = noise(u * 7.0, v * 7.0, 7, 806);
         let patches = noise(u * 16.0, v * 16.0, 16, 907);
         let stroke = hash(x, 1000 + y / 4 + 3 * (x % 3)) - 0.5;
-        let green = mix([84.0, 116.0, 50.0], [124.0, 142.0, 66.0], (0.5 + 0.3 * fields + 0.25 * patches).clamp(0.0, 1.0));
+        let green =
+            mix([84.0, 116.0, 50.0], [124.0, 142.0, 66.0], (0.5 + 0.3 * fields + 0.25 * patches).clamp(0.0, 1.0));
         let worn = 0.55 * patches + 0.35 * fields + 0.30 * clump + 0.22 * tuft;
         let earth = ((worn - 0.42) * 3.5).clamp(0.0, 0.85);
         let light = 10.0 * clump + 9.0 * tuft + 8.0 * grain + 16.0 * stroke;

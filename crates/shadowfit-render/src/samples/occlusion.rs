@@ -1,0 +1,264 @@
+//! Screen-space ambient occlusion: buffers of view-space positions and normals, the occlusion of each pixel by its
+//! neighbours, an optional blur, and a picture whose ambient term it darkens. [`formula`] has what is computed.
+//!
+//! Occlusion is a texture of half floats, 0 (open) to 1 (closed), of the picture's size with one sample per pixel, 0
+//! where there is sky. The blur is a box of four pixels that takes only neighbours in the pixel's plane; since random
+//! vectors repeat every four pixels, it averages all of them. Of two radii the greater occlusion counts, so that creases
+//! which only the smaller radius finds stay.
+
+pub mod formula;
+mod frame;
+mod pipelines;
+mod targets;
+
+use glam::Mat4;
+
+use crate::attachment::{cleared, depth};
+use crate::scene::{Draw, GpuScene, Part, in_frustum};
+use crate::target::{ENCODED_FORMAT, ReadError, RenderTarget, read_texture};
+use crate::uniform::{Atmosphere, FrameUniform};
+use crate::{Gpu, bindings};
+
+use pipelines::{Drawn, Pipelines};
+use targets::Targets;
+
+pub use frame::{OcclusionFrame, OcclusionLight, OcclusionMethod, OcclusionSettings, OcclusionUniform, OcclusionView};
+
+const MATERIAL_GROUP: u32 = 2;
+const OCCLUSION_GROUP: u32 = 3;
+
+/// Most radii of a frame.
+const RADII: usize = 2;
+
+/// Draws scenes with screen-space ambient occlusion.
+#[derive(Debug)]
+pub struct OcclusionPasses {
+    pipelines: Pipelines,
+    frame_uniform: wgpu::Buffer,
+    frame_group: wgpu::BindGroup,
+    /// Of each radius.
+    uniforms: [(wgpu::Buffer, wgpu::BindGroup); RADII],
+    targets: Option<Targets>,
+    /// Whether the last frame was blurred.
+    is_blurred: bool,
+}
+
+impl OcclusionPasses {
+    /// Passes for targets of `samples` per pixel (1 or 4) and scenes whose materials have the layout of
+    /// [`Renderer::material_layout`](crate::Renderer::material_layout).
+    pub fn new(gpu: &Gpu, material_layout: &wgpu::BindGroupLayout, samples: u32) -> Self {
+        let device = &gpu.device;
+        let pipelines = Pipelines::new(device, material_layout, samples);
+        let layout = &pipelines.layouts.uniform;
+        let bound =
+            |label, buffer: &wgpu::Buffer| bindings::group(device, label, layout, &[buffer.as_entire_binding()]);
+        let frame_uniform = bindings::uniform_buffer::<FrameUniform>(device, "frame");
+        let frame_group = bound("frame", &frame_uniform);
+        let uniforms = [(); RADII].map(|()| {
+            let buffer = bindings::uniform_buffer::<OcclusionUniform>(device, "occlusion");
+            let group = bound("occlusion", &buffer);
+            (buffer, group)
+        });
+        Self { pipelines, frame_uniform, frame_group, uniforms, targets: None, is_blurred: false }
+    }
+
+    /// Draws a frame into a target of these passes' number of samples, and submits it. The target's depth is the frame's
+    /// own afterwards, but for [`OcclusionView::Occlusion`], which clears it.
+    pub fn draw(&mut self, gpu: &Gpu, scene: &mut GpuScene, frame: &OcclusionFrame<'_>, target: &RenderTarget) {
+        self.prepare(gpu, scene, frame, target.size);
+        let [opaque, blended] = seen(gpu, scene, frame);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        self.occlusion_passes(&mut encoder, scene, frame, &opaque);
+        self.picture_pass(&mut encoder, scene, frame, ([&opaque, &blended], target));
+        gpu.submit([encoder.finish()]);
+    }
+
+    /// Waits for the occlusion of the frame that was drawn last and returns it, 0 (open) to 1 (closed), rows from the top;
+    /// 0 where there is sky. A pixel's middle is that of [`Renderer::probe`](crate::Renderer::probe) for the same camera
+    /// and size. Empty before the first frame.
+    ///
+    /// # Errors
+    ///
+    /// [`ReadError`] if the device was lost or does not answer.
+    pub fn read_occlusion(&self, gpu: &Gpu) -> Result<Vec<f32>, ReadError> {
+        let Some(targets) = &self.targets else { return Ok(Vec::new()) };
+        let bytes = read_texture(gpu, targets.occlusion(self.is_blurred), targets.size, 2)?;
+        Ok(bytes.as_chunks().0.iter().map(|half| from_half(u16::from_le_bytes(*half))).collect())
+    }
+
+    /// Writes uniforms, and makes the targets and pipelines that the frame needs.
+    fn prepare(&mut self, gpu: &Gpu, scene: &GpuScene, frame: &OcclusionFrame<'_>, size: [u32; 2]) {
+        let settings = frame.settings.unwrap_or_default();
+        let has_backs = frame.settings.is_some_and(|settings| settings.reads_backs());
+        self.is_blurred = frame.settings.is_some_and(|settings| settings.blur);
+        let uniform = FrameUniform::new(frame.camera, frame.light.to_light, false, &Atmosphere::default(), size);
+        gpu.queue.write_buffer(&self.frame_uniform, 0, bytemuck::bytes_of(&uniform));
+        let radii = [settings.radius, settings.second_radius.unwrap_or(0.0)];
+        for ((buffer, _), radius) in self.uniforms.iter().zip(radii) {
+            let uniform = OcclusionUniform::new(frame.camera, &frame.light, &OcclusionSettings { radius, ..settings });
+            gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of(&uniform));
+        }
+        let kept = self.targets.take().filter(|targets| targets.serves(size, has_backs));
+        let layouts = &self.pipelines.layouts;
+        self.targets = Some(kept.unwrap_or_else(|| Targets::new(&gpu.device, layouts, size, has_backs)));
+        let surfaces = [Drawn::Surface, Drawn::Back];
+        for drawn in surfaces.into_iter().take(1 + usize::from(has_backs)).chain(Drawn::of_view(frame.view)) {
+            self.pipelines.add(&gpu.device, drawn, &scene.parts);
+        }
+        if let Some(sky) = frame.sky {
+            sky.prepare(gpu, frame.camera);
+        }
+    }
+
+    /// Positions, normals, occlusion and its blur.
+    fn occlusion_passes(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &GpuScene,
+        frame: &OcclusionFrame<'_>,
+        opaque: &[Draw],
+    ) {
+        let Some(targets) = &self.targets else { return };
+        if let Some(settings) = &frame.settings {
+            self.part_pass(encoder, (scene, opaque), Drawn::Surface, targets);
+            if settings.reads_backs() {
+                self.part_pass(encoder, (scene, opaque), Drawn::Back, targets);
+            }
+        }
+        let mut pass = screen_pass(encoder, &targets.raw_view);
+        if let Some(settings) = &frame.settings {
+            pass.set_pipeline(self.pipelines.gather(settings));
+            pass.set_bind_group(1, &targets.surfaces, &[]);
+            let radii = 1 + usize::from(settings.second_radius.is_some());
+            for (_, group) in &self.uniforms[..radii] {
+                pass.set_bind_group(0, group, &[]);
+                pass.draw(0..3, 0..1);
+            }
+        }
+        drop(pass);
+        if self.is_blurred {
+            let mut pass = screen_pass(encoder, &targets.blurred_view);
+            pass.set_pipeline(&self.pipelines.blur);
+            pass.set_bind_group(0, &self.uniforms[0].1, &[]);
+            pass.set_bind_group(1, &targets.blurring, &[]);
+            pass.draw(0..3, 0..1);
+        }
+    }
+
+    /// Positions and normals, or the positions of back faces.
+    fn part_pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: (&GpuScene, &[Draw]),
+        drawn: Drawn,
+        targets: &Targets,
+    ) {
+        let none = wgpu::Color::TRANSPARENT;
+        let position = if drawn == Drawn::Back { &targets.backs } else { &targets.positions };
+        let normals = (drawn == Drawn::Surface).then(|| cleared(&targets.normals, None, none));
+        let colors = [Some(cleared(position, None, none)), normals];
+        let count = if drawn == Drawn::Back { 1 } else { 2 };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("view-space surfaces"),
+            color_attachments: &colors[..count],
+            depth_stencil_attachment: Some(depth(&targets.depth)),
+            ..Default::default()
+        });
+        self.draw_parts(&mut pass, scene, drawn);
+    }
+
+    /// The picture from the occlusion.
+    fn picture_pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &GpuScene,
+        frame: &OcclusionFrame<'_>,
+        ([opaque, blended], target): ([&[Draw]; 2], &RenderTarget),
+    ) {
+        let Some(targets) = &self.targets else { return };
+        let resolved = target.encoded_view();
+        let encoded = wgpu::TextureViewDescriptor { format: Some(ENCODED_FORMAT), ..Default::default() };
+        let multisampled = target.multisampled.as_ref().map(|view| view.texture().create_view(&encoded));
+        let [r, g, b] = frame.background.as_dvec3().to_array();
+        let background = wgpu::Color { r, g, b, a: 1.0 };
+        let color = match &multisampled {
+            Some(view) => cleared(view, Some(&resolved), background),
+            None => cleared(&resolved, None, background),
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("ambient occlusion"),
+            color_attachments: &[Some(color)],
+            depth_stencil_attachment: Some(depth(&target.depth_view)),
+            ..Default::default()
+        });
+        let Some(drawn) = Drawn::of_view(frame.view) else {
+            pass.set_pipeline(&self.pipelines.view);
+            pass.set_bind_group(0, targets.shown(self.is_blurred), &[]);
+            pass.draw(0..3, 0..1);
+            return;
+        };
+        pass.set_bind_group(OCCLUSION_GROUP, targets.shown(self.is_blurred), &[]);
+        self.draw_parts(&mut pass, (scene, opaque), drawn);
+        if let Some(sky) = frame.sky {
+            sky.draw(&mut pass);
+            pass.set_bind_group(OCCLUSION_GROUP, targets.shown(self.is_blurred), &[]);
+        }
+        self.draw_parts(&mut pass, (scene, blended), drawn);
+    }
+
+    fn draw_parts(&self, pass: &mut wgpu::RenderPass<'_>, (scene, draws): (&GpuScene, &[Draw]), drawn: Drawn) {
+        pass.set_bind_group(0, &self.frame_group, &[]);
+        pass.set_bind_group(1, &self.uniforms[0].1, &[]);
+        for draw in draws {
+            let part = &scene.parts[draw.part];
+            pass.set_pipeline(self.pipelines.part(drawn, part));
+            pass.set_bind_group(MATERIAL_GROUP, &scene.materials[part.material], &[]);
+            pass.set_vertex_buffer(0, part.motion.slice(..));
+            pass.set_vertex_buffer(1, part.surface.slice(..));
+            pass.set_vertex_buffer(2, scene.instance_buffer.slice(..));
+            pass.set_index_buffer(part.indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(0..part.index_count, 0, draw.instances.clone());
+        }
+    }
+}
+
+/// The draws that a frame sees: of opaque parts near things first, of blended ones far things first.
+fn seen(gpu: &Gpu, scene: &mut GpuScene, frame: &OcclusionFrame<'_>) -> [Vec<Draw>; 2] {
+    let clip_from_world: Mat4 = frame.camera.clip_from_world(shadowfit::DepthConvention::Reversed);
+    scene.begin_frame(frame.camera.eye);
+    let keep = in_frustum(clip_from_world);
+    let mut opaque = scene.visible(&keep, Part::casts);
+    opaque.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+    let mut blended = scene.visible(&keep, |part| !part.casts());
+    blended.sort_by(|a, b| b.distance.total_cmp(&a.distance));
+    scene.end_frame(gpu);
+    [opaque, blended]
+}
+
+/// A pass over a texture of occlusion, open at first.
+fn screen_pass<'a>(encoder: &'a mut wgpu::CommandEncoder, view: &wgpu::TextureView) -> wgpu::RenderPass<'a> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("occlusion"),
+        color_attachments: &[Some(cleared(view, None, wgpu::Color::TRANSPARENT))],
+        ..Default::default()
+    })
+}
+
+/// A half float that is finite and not negative.
+fn from_half(bits: u16) -> f32 {
+    // The exponents' biases differ by 127 - 15 = 112, which a product adds without a case for subnormal numbers.
+    f32::from_bits(u32::from(bits) << 13) * 2.0_f32.powi(112)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::from_half;
+
+    #[test]
+    fn half_floats_are_read_as_they_are() {
+        // 1 is 0x3c00 (exponent 15), 0.5 is 0x3800, 0.1 is rounded to 0x2e66, the least one is 2⁻²⁴.
+        for (bits, value) in [(0, 0.0), (0x3c00, 1.0), (0x3800, 0.5), (0x2e66, 0.099_975_586), (1, 2.0_f32.powi(-24))] {
+            assert_eq!(from_half(bits), value);
+        }
+    }
+}

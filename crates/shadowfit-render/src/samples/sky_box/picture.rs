@@ -1,0 +1,148 @@
+//! The picture of a sky: colours computed from directions alone, so that the faces of its cube join without a seam.
+
+use glam::{UVec2, Vec2, Vec3};
+
+use super::face::direction_of;
+
+/// Overhead, in display values as all colours here.
+const ZENITH: Vec3 = Vec3::new(0.20, 0.38, 0.70);
+/// Halfway up.
+const SKY: Vec3 = Vec3::new(0.42, 0.61, 0.85);
+/// At the horizon.
+const HAZE: Vec3 = Vec3::new(0.80, 0.86, 0.90);
+/// Below the horizon.
+const GROUND: Vec3 = Vec3::new(0.40, 0.38, 0.34);
+/// Sunlit and shaded clouds.
+const CLOUD: [Vec3; 2] = [Vec3::new(0.96, 0.96, 0.95), Vec3::new(0.70, 0.75, 0.82)];
+/// Light around the sun.
+const GLOW: Vec3 = Vec3::new(1.0, 0.93, 0.78);
+/// The sun's disc; nothing else is as bright.
+const SUN: Vec3 = Vec3::new(1.0, 1.0, 0.98);
+/// Brightest of everything else.
+const BRIGHTEST: f32 = 0.985;
+
+/// Cosines at the sun's rim and where it is full: wider than the real 0.27° so that it has a shape in few texels.
+const SUN_COSINES: [f32; 2] = [0.999_62, 0.999_73];
+
+/// Height of the layer of clouds over the eye, in sizes of a large cloud, and what keeps it from the horizon.
+const CLOUD_HEIGHT: f32 = 1.15;
+const CLOUD_CURVE: f32 = 0.14;
+
+/// A sky's cube map.
+#[derive(Clone, Debug)]
+pub struct SkyPicture {
+    /// Width and height of a face, in texels.
+    pub size: u32,
+    /// +x, -x, +y, -y, +z, -z: `size * size` texels each, rows from the top, in display values and opaque.
+    pub faces: [Vec<[u8; 4]>; 6],
+}
+
+impl SkyPicture {
+    /// The sky with its sun in a direction (world axes, y up, any length; overhead where it is 0 or not finite), with
+    /// faces of at least 1×1 texels.
+    pub fn new(to_light: Vec3, size: u32) -> Self {
+        let to_light = to_light.try_normalize().unwrap_or(Vec3::Y);
+        let size = size.max(1);
+        let mut faces: [Vec<[u8; 4]>; 6] = Default::default();
+        std::thread::scope(|scope| {
+            for (index, face) in faces.iter_mut().enumerate() {
+                scope.spawn(move || *face = texels(index, to_light, size));
+            }
+        });
+        Self { size, faces }
+    }
+
+    /// The direction of a texel's middle (world axes, greatest component ±1).
+    pub fn direction(&self, face: usize, texel: UVec2) -> Vec3 {
+        direction_of(face, (texel.as_vec2() + 0.5) / self.size as f32)
+    }
+}
+
+fn texels(face: usize, to_light: Vec3, size: u32) -> Vec<[u8; 4]> {
+    let place = |index: u32| UVec2::new(index % size, index / size);
+    (0..size * size)
+        .map(|index| {
+            let texel = place(index);
+            let direction = direction_of(face, (texel.as_vec2() + 0.5) / size as f32).normalize();
+            // Half a step up or down, so that slow gradients have no bands.
+            let dither = random(texel.as_ivec2()) - 0.5;
+            let [r, g, b] = (color(direction, to_light) * 255.0 + dither).round().to_array().map(|c| c as u8);
+            [r, g, b, 255]
+        })
+        .collect()
+}
+
+/// The colour seen along a unit direction, in display values.
+fn color(direction: Vec3, to_light: Vec3) -> Vec3 {
+    let cosine = direction.dot(to_light);
+    let glow = (0.35 * cosine.max(0.0).powi(12) + 0.65 * cosine.max(0.0).powi(160)).min(1.0);
+    let height = direction.y;
+    let above = sky(height).lerp(GLOW, 0.8 * glow);
+    let (cover, shade) = clouds(direction, to_light);
+    let cloud = CLOUD[1].lerp(CLOUD[0], shade).lerp(GLOW, 0.5 * glow);
+    let clear = above.lerp(cloud, cover);
+    let below = HAZE.lerp(GROUND, smooth(0.0, 0.35, -height).sqrt()).lerp(GLOW, 0.3 * glow);
+    // The horizon is hazy: some of either is seen on both sides of it.
+    let open = clear.lerp(below, smooth(0.004, -0.012, height)).min(Vec3::splat(BRIGHTEST));
+    open.lerp(SUN, smooth(SUN_COSINES[0], SUN_COSINES[1], cosine))
+}
+
+/// The open sky by the sine of the height.
+fn sky(height: f32) -> Vec3 {
+    let height = height.max(0.0);
+    let haze = (-height * 7.0).exp();
+    SKY.lerp(ZENITH, smooth(0.05, 0.9, height)).lerp(HAZE, haze)
+}
+
+/// How much of the sky a cloud covers along a direction, and how light it is, 0..=1.
+fn clouds(direction: Vec3, to_light: Vec3) -> (f32, f32) {
+    if direction.y <= 0.0 {
+        return (0.0, 0.0);
+    }
+    let at = Vec2::new(direction.x, direction.z) * (CLOUD_HEIGHT / (direction.y + CLOUD_CURVE));
+    let toward_sun = Vec2::new(to_light.x, to_light.z) * 0.12;
+    let density = |at: Vec2| smooth(0.49, 0.70, fractal(at));
+    let cover = density(at) * smooth(0.02, 0.22, direction.y);
+    // A cloud is shaded where there is more of it toward the sun.
+    let shade = (0.75 + 0.9 * (density(at) - density(at + toward_sun)) - 0.35 * cover).clamp(0.0, 1.0);
+    (0.9 * cover, shade)
+}
+
+/// Noise of five octaves, 0..=1, each turned so that no lattice shows.
+fn fractal(at: Vec2) -> f32 {
+    let turn = Vec2::from_angle(0.65);
+    let (mut at, mut sum, mut weight) = (at + Vec2::new(3.1, 7.7), 0.0, 0.5);
+    for _ in 0..5 {
+        sum += weight * noise(at);
+        at = turn.rotate(at) * 2.03;
+        weight *= 0.5;
+    }
+    sum / (1.0 - 2.0 * weight)
+}
+
+/// Smooth noise over a lattice of random numbers, 0..=1.
+fn noise(at: Vec2) -> f32 {
+    let cell = at.floor();
+    let part = at - cell;
+    let part = part * part * part * (part * (part * 6.0 - 15.0) + 10.0);
+    let corner = |x, y| random(cell.as_ivec2() + glam::IVec2::new(x, y));
+    let [top, bottom] = [0, 1].map(|y| corner(0, y) + (corner(1, y) - corner(0, y)) * part.x);
+    top + (bottom - top) * part.y
+}
+
+/// A number in 0..1 of a place (the finaliser of PCG, O'Neill 2014, over both coordinates).
+fn random(at: glam::IVec2) -> f32 {
+    let mut hash = (at.x as u32).wrapping_mul(0x9e37_79b9) ^ (at.y as u32).wrapping_mul(0x85eb_ca6b);
+    for _ in 0..2 {
+        hash = hash.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+        hash = ((hash >> ((hash >> 28) + 4)) ^ hash).wrapping_mul(277_803_737);
+        hash ^= hash >> 22;
+    }
+    (hash >> 8) as f32 / 16_777_216.0
+}
+
+/// 0 up to `from`, 1 from `to` on, smooth between; `from` may be the greater one.
+fn smooth(from: f32, to: f32, x: f32) -> f32 {
+    let x = ((x - from) / (to - from)).clamp(0.0, 1.0);
+    x * x * (3.0 - 2.0 * x)
+}

@@ -1,0 +1,47 @@
+// Screen-space ambient occlusion from positions and normals. Comes after occlusion_buffers.wgsl and occlusion_formula.wgsl.
+
+// What the neighbours of a pixel hide of it, in all directions. back: 1 for back faces, else 0.
+fn hidden(buffer: texture_2d<f32>, at: vec2<f32>, position: vec3<f32>, normal: vec3<f32>, back: f32) -> f32 {
+    let size = vec2<f32>(textureDimensions(buffer));
+    let random = occlusion_random(vec2<u32>(at));
+    let count = occlusion_directions(-position.z, occlusion.far, occlusion.detail);
+    var sum = 0.0;
+    for (var direction = 0u; direction < count; direction++) {
+        let step = occlusion_step(occlusion_direction(direction), random, occlusion.radius, -position.z);
+        for (var index = 0u; index < 4u; index++) {
+            let pixel = vec2<i32>(floor(at + occlusion_offset(step, index, back) * size));
+            let inside = within(pixel);
+            let neighbour = textureLoad(buffer, inside, 0);
+            let term = occlusion_term(normal, position, neighbour.xyz, occlusion.scale, occlusion.bias);
+            // Sky and what lies beside the picture hide nothing.
+            sum += select(0.0, term, neighbour.w > 0.0 && all(inside == pixel));
+        }
+    }
+    return sum;
+}
+
+fn sum_of(position: vec3<f32>, front: f32, back: f32) -> f32 {
+    let count = occlusion_directions(-position.z, occlusion.far, occlusion.detail);
+    return occlusion_sum(front, back, occlusion.intensity, count);
+}
+
+@fragment
+fn fs_normals(@builtin(position) at: vec4<f32>) -> @location(0) f32 {
+    let position = textureLoad(positions, vec2<i32>(at.xy), 0);
+    if position.w == 0.0 {
+        return 0.0;
+    }
+    let normal = textureLoad(normals, vec2<i32>(at.xy), 0).xyz;
+    return sum_of(position.xyz, hidden(positions, at.xy, position.xyz, normal, 0.0), 0.0);
+}
+
+@fragment
+fn fs_normals_and_backs(@builtin(position) at: vec4<f32>) -> @location(0) f32 {
+    let position = textureLoad(positions, vec2<i32>(at.xy), 0);
+    if position.w == 0.0 {
+        return 0.0;
+    }
+    let normal = textureLoad(normals, vec2<i32>(at.xy), 0).xyz;
+    let front = hidden(positions, at.xy, position.xyz, normal, 0.0);
+    return sum_of(position.xyz, front, hidden(third, at.xy, position.xyz, normal, 1.0));
+}

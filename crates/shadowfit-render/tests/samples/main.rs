@@ -1,0 +1,7 @@
+//! The classic techniques on the software adapter. Tests that need a graphics device have `gpu` in their path, by which
+//! `cargo xtask test` leaves them out where there is none.
+
+mod formulas_gpu;
+mod occlusion_gpu;
+mod scenes;
+mod sky_box_gpu;
