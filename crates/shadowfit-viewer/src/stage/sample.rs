@@ -28,8 +28,8 @@ impl SampleShow {
 }
 
 impl Stage {
-    /// Shows the scene that has just been set as a sample, or one of its variants.
-    pub(crate) fn set_sample(&mut self, sample: &'static Sample, variant: Option<&'static SampleVariant>) {
+    /// Shows the scene that has just been set, which is that of a sample, as the sample or one of its variants.
+    pub fn set_sample(&mut self, sample: &'static Sample, variant: Option<&'static SampleVariant>) {
         let values = SampleValues::of_variant(sample, variant).unwrap_or_else(|_| SampleValues::new(sample));
         let (camera, lens) = sample.camera();
         self.settings.camera = lens;
@@ -76,7 +76,7 @@ impl Stage {
     /// # Errors
     ///
     /// If no sample is on show, or it has no such option or value.
-    pub(crate) fn set_sample_text(&mut self, option: &str, text: &str) -> Result<()> {
+    pub fn set_sample_text(&mut self, option: &str, text: &str) -> Result<()> {
         let show = self.sample.as_ref().context("no sample is on show")?;
         let mut values = show.values.clone();
         values.set_from_str(option, text)?;
