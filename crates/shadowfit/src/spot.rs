@@ -86,8 +86,8 @@ impl SpotLight {
     ///
     /// # Errors
     ///
-    /// [`FitError::NotFinite`], [`FitError::OutOfRange`] and [`FitError::BadDirection`] for what cannot be such a light or
-    /// is too small or large for f32 arithmetic, [`FitError::NearNotBelowFar`], [`FitError::ZeroResolution`].
+    /// [`FitError::NotFinite`], [`FitError::OutOfRange`] and [`FitError::BadDirection`] for what cannot be such a light
+    /// or is too small or large for f32 arithmetic, [`FitError::NearNotBelowFar`], [`FitError::ZeroResolution`].
     pub fn fit(&self, resolution: UVec2, depth: DepthConvention) -> Result<SpotFit, FitError> {
         let lens = self.lens()?;
         if resolution.x == 0 || resolution.y == 0 {

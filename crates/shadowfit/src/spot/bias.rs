@@ -17,25 +17,26 @@
 //!
 //! Both 1/d and the stored depth z are *affine in texels*: the depth gradient per texel is the same everywhere on a
 //! plane. A point lifted by h along n has n·p = h - c, thus (c - h) / d = n·z - a n·x - b n·y at its own distance d. A
-//! texel centre (δa, δb) beside it stores a plane depth that is not nearer to the light exactly when
-//! (c - h) / (c d) - (δa n·x + δb n·y) / c ≤ 1/d. Over all centres |δa| ≤ E tx, |δb| ≤ E ty in the filter's reach E that is
+//! texel centre (δa, δb) beside it stores a plane depth that is not nearer to the light exactly when (c - h) / (c d) -
+//! (δa n·x + δb n·y) / c ≤ 1/d. Over all centres |δa| ≤ E tx, |δb| ≤ E ty in the filter's reach E that is
 //!
 //! ```text
 //!   h ≥ d · s,   s = E · (tx·|n·x| + ty·|n·y|)                                      as a lift along the normal
 //!   B · s / c = E · (|∂z/∂u| + |∂z/∂v|)                                             as a depth bias
 //! ```
 //!
-//! the sun's own formula, with the texel's size at d. Here d is the *lifted* point's distance; from that of the point on
-//! the plane, d₀ = d + h n·z, follows h = d₀ s / (1 + s n·z). Planes that face the light but not its axis (n·z < 0, only
-//! off the axis) need a hair more than d₀ s. For square texels s is at most √2 · E · t · sin α, where α is the angle
-//! between the normal and the light's **axis**, not its direction to the point: a plane square to the axis has one depth
-//! everywhere, and needs nothing, however obliquely the light strikes it.
+//! the sun's own formula, with the texel's size at d. Here d is the *lifted* point's distance; from that of the point
+//! on the plane, d₀ = d + h n·z, follows h = d₀ s / (1 + s n·z). Planes that face the light but not its axis (n·z < 0,
+//! only off the axis) need a hair more than d₀ s. For square texels s is at most √2 · E · t · sin α, where α is the
+//! angle between the normal and the light's **axis**, not its direction to the point: a plane square to the axis has
+//! one depth everywhere, and needs nothing, however obliquely the light strikes it.
 //!
 //! # Rounding
 //!
-//! A depth that is off by e metres along the axis is off by B e / d² in the map, and a step of the stored depth is
-//! d² / B steps of a metre: coarse far from the light, unless depth is reversed and stored as a float. Rounding therefore
-//! has three parts, and [`SpotBias::precision`] has all of them: a number in the map, one that falls with 1/d, and metres.
+//! A depth that is off by e metres along the axis is off by B e / d² in the map, and a step of the stored depth is d² /
+//! B steps of a metre: coarse far from the light, unless depth is reversed and stored as a float. Rounding therefore
+//! has three parts, and [`SpotBias::precision`] has all of them: a number in the map, one that falls with 1/d, and
+//! metres.
 //!
 //! All of this holds for the **geometric** normal of the surface that is stored.
 
@@ -70,7 +71,8 @@ pub struct SpotBias {
     /// Depth bias to be multiplied by sin α and divided by c, in units of the stored depth times metres. On the axis
     /// that is tan α / d.
     pub slope_depth: f32,
-    /// Offset along the geometric normal to be multiplied by sin α and by the distance along the axis: metres per metre.
+    /// Offset along the geometric normal to be multiplied by sin α and by the distance along the axis: metres per
+    /// metre.
     pub normal_offset: f32,
     /// Offset along the geometric normal at every slope and distance, in metres.
     pub constant_offset: f32,
@@ -96,8 +98,8 @@ const FACTORS: f64 = 8.0 * ROUNDING;
 
 impl SpotBias {
     /// Converts biases in texels for one map, and those in steps of how it stores depths, which may be given as the
-    /// [`MapFormat`](crate::settings::MapFormat). A texel is the longer side of one at the receiver's distance. Settings
-    /// that are not finite give biases that are not finite; [`Self::checked`] refuses those.
+    /// [`MapFormat`](crate::settings::MapFormat). A texel is the longer side of one at the receiver's distance.
+    /// Settings that are not finite give biases that are not finite; [`Self::checked`] refuses those.
     ///
     /// A [step](BiasSettings::depth_steps) is the whole [`Self::precision`] here: far from the light, f32 rounds a
     /// perspective depth by more than any constant in texels covers.
@@ -132,10 +134,10 @@ impl SpotBias {
     ///
     /// Let k be the distance of the window's corner at 1 m along the axis, D the light's distance from
     /// [`SpotFit::origin`] and ε 64 roundings of 2⁻²⁴. Positions are off by up to ε k (2 D + k d): the part with D is
-    /// [`Self::constant_offset`], metres along the normal; of the other what lies along the axis is depth, and what lies
-    /// across is in the [reach on hardware](on_hardware). The depth's own row adds ε (A (2 D / d + k) + B / d), with A
-    /// the factor of the distance in it: about 1, and near / (far - near) where depth is reversed. Steps are the coarsest
-    /// of the format, but of floats with reversed depth they shrink with the depth itself, as 2 · 2⁻ᵇ · B / d.
+    /// [`Self::constant_offset`], metres along the normal; of the other what lies along the axis is depth, and what
+    /// lies across is in the [reach on hardware](on_hardware). The depth's own row adds ε (A (2 D / d + k) + B / d),
+    /// with A the factor of the distance in it: about 1, and near / (far - near) where depth is reversed. Steps are the
+    /// coarsest of the format, but of floats with reversed depth they shrink with the depth itself, as 2 · 2⁻ᵇ · B / d.
     pub fn precision(storage: impl Into<DepthStorage>, fit: &SpotFit) -> Self {
         let (near, far) = (f64::from(fit.near), f64::from(fit.far));
         let is_reversed = fit.depth == DepthConvention::Reversed;
@@ -153,14 +155,14 @@ impl SpotBias {
 
     /// The bias that clears self-shadowing on a plane whose slope has any azimuth: an offset along the normal for the
     /// filter's reach [on hardware](on_hardware), and the [`Self::precision`]. Where a shader knows the azimuth,
-    /// [`normal_offset`] needs up to √2 less. The lift is no more than 1 / (1 - S/2) times what the worst plane needs, S
-    /// being the reach in metres at 1 m: 0.2 % for a filter of four texels of a 2048² map of 90°. Geometric normals are
-    /// assumed.
+    /// [`normal_offset`] needs up to √2 less. The lift is no more than 1 / (1 - S/2) times what the worst plane needs,
+    /// S being the reach in metres at 1 m: 0.3% more for a filter of four texels of a 2048² map of 90°. Geometric
+    /// normals are assumed.
     ///
     /// # Errors
     ///
-    /// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the reach, also where it is wider than the distance from
-    /// the light itself (a map of very few texels), and for a fit that was filled by hand with what is not finite.
+    /// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the reach, also where it is wider than the distance
+    /// from the light itself (a map of very few texels), and for a fit that was filled by hand with what is not finite.
     pub fn automatic(
         reach: impl Into<Reach>,
         storage: impl Into<DepthStorage>,
@@ -176,9 +178,10 @@ impl SpotBias {
         Self { normal_offset: normal_offset as f32, ..Self::precision(storage, fit) }.checked()
     }
 
-    /// As [`Self::automatic`], by the receiver plane's gradient over the filter's reach on hardware. It clears planes up
-    /// to [`MIN_COSINE`](crate::bias::MIN_COSINE) of the angle between normal and light, and grows toward it without
-    /// bound. Only rounding is left to an offset: [`Self::constant_offset`], which is 0 for a map relative to its light.
+    /// As [`Self::automatic`], by the receiver plane's gradient over the filter's reach on hardware. It clears planes
+    /// up to [`MIN_COSINE`](crate::bias::MIN_COSINE) of the angle between normal and light, and grows toward it without
+    /// bound. Only rounding is left to an offset: [`Self::constant_offset`], which is 0 for a map relative to its
+    /// light.
     ///
     /// # Errors
     ///

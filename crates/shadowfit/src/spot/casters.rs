@@ -6,8 +6,8 @@ use super::SpotFit;
 use crate::{CasterVolume, checks};
 
 impl SpotFit {
-    /// Every caster that the map can store: the light's frustum, relative to [`Self::origin`], as planes -x, +x, -y, +y,
-    /// far and near in the light's axes. Casters nearer to the light than the near plane are left out, as they are
+    /// Every caster that the map can store: the light's frustum, relative to [`Self::origin`], as planes -x, +x, -y,
+    /// +y, far and near in the light's axes. Casters nearer to the light than the near plane are left out, as they are
     /// clipped. Also what the light can shine on at all: a receiver outside it needs no look-up.
     pub fn caster_volume(&self) -> CasterVolume {
         let [x, y, z] = self.axes();

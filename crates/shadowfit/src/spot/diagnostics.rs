@@ -20,8 +20,8 @@ use crate::{FitError, checks};
 ///
 /// `point` (metres) and `normal` (any length) are in world axes, the point and the input of `clip_from_world` (the
 /// **camera's**, any depth range) **relative to the fit's origin**; `viewport` is the picture's size in pixels. `None`
-/// where the point is not in front of the camera and of the light, or where the surface is edge-on to the light, so that
-/// its texels are infinitely long.
+/// where the point is not in front of the camera and of the light, or where the surface is edge-on to the light, so
+/// that its texels are infinitely long.
 ///
 /// The derivation is that of [`crate::diagnostics::pixels_per_texel`], with a perspective on both sides: the map too is
 /// a screen, that of the light.
@@ -73,8 +73,8 @@ pub fn texel_size(fit: &SpotFit, point: DVec3) -> Result<Option<Vec2>, FitError>
 /// B = near · far / (far - near), the stored depth being A - B / d.
 ///
 /// For equal steps and plain depth it grows with the square of the distance. Floats make it worse for plain depth,
-/// since they have their coarsest steps where the stored depth is near 1, which is nearly everywhere, and make it almost
-/// proportional to the distance for reversed depth.
+/// since they have their coarsest steps where the stored depth is near 1, which is nearly everywhere, and make it
+/// almost proportional to the distance for reversed depth.
 ///
 /// # Errors
 ///
@@ -88,8 +88,8 @@ pub fn depth_step(fit: &SpotFit, storage: impl Into<DepthStorage>, distance: f32
     checks::rounded("the depth step", distance * share / (1.0 + share))
 }
 
-/// Where a world position, in metres, lies in the light's map, for a filter of the given [`Reach`]. Inside is defined by
-/// [`SpotFit::covers`]. A point nearer along the axis than the near plane, and every point behind the light, is
+/// Where a world position, in metres, lies in the light's map, for a filter of the given [`Reach`]. Inside is defined
+/// by [`SpotFit::covers`]. A point nearer along the axis than the near plane, and every point behind the light, is
 /// [`Coverage::BeforeNear`]; one beside the frustum is [`Coverage::Aside`] at any other distance.
 ///
 /// # Errors
@@ -118,7 +118,8 @@ pub fn coverage(fit: &SpotFit, reach: impl Into<Reach>, point: DVec3) -> Result<
 
 /// Predicted margin of a bias against acne at a world position (f64, metres) on a surface with the given **geometric**
 /// normal (world axes, any length, either side): the bias given there less what its plane needs for a filter of the
-/// given reach [on hardware](on_hardware) and a map of the given storage. `None` where the map does not cover the point.
+/// given reach [on hardware](on_hardware) and a map of the given storage. `None` where the map does not cover the
+/// point.
 ///
 /// With the lift h, the lifted point's distance d and the depth bias β, all as [`SpotBias`] gives them and less its
 /// [precision](SpotBias::precision), the margin is h + β c d / B - d s, in metres along the normal, with c, B and s of

@@ -30,8 +30,8 @@ pub struct SpotFit {
     pub clip_from_light: Mat4,
     /// Clip space from world positions relative to [`Self::origin`], in metres.
     pub clip_from_world: Mat4,
-    /// Texture space (u, v) and stored depth, all times w, from world positions relative to [`Self::origin`]. The stored
-    /// depth is the clip depth, and for -1..1 half of it plus one half, as a depth attachment holds it.
+    /// Texture space (u, v) and stored depth, all times w, from world positions relative to [`Self::origin`]. The
+    /// stored depth is the clip depth, and for -1..1 half of it plus one half, as a depth attachment holds it.
     pub uv_from_world: Mat4,
     /// Size of one texel along u and v at 1 m from the light along its axis, in metres; it grows in proportion to that
     /// distance, so this is metres per metre.

@@ -251,7 +251,9 @@ proptest! {
     #![proptest_config(cases(2000))]
 
     #[test]
-    fn no_bit_pattern_panics_and_every_figure_is_finite(bits in prop::array::uniform32(any::<u32>()), replaced in any::<u32>()) {
+    fn no_bit_pattern_panics_and_every_figure_is_finite(
+        bits in prop::array::uniform32(any::<u32>()), replaced in any::<u32>(),
+    ) {
         let mut inputs = good();
         for (i, (_, set)) in SETTERS.into_iter().enumerate() {
             if replaced & (1 << i) != 0 {

@@ -5,8 +5,9 @@
 
 use proptest::prelude::*;
 use shadowfit::bias::{MIN_COSINE, Reach};
-use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::spot::bias::{depth_gradient, normal_offset, receiver_plane_depth};
+use shadowfit::glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
+use shadowfit::settings::MapFormat;
+use shadowfit::spot::bias::{depth_gradient, normal_offset, on_hardware, receiver_plane_depth};
 use shadowfit::{DepthConvention, SpotBias, SpotFit, SpotLight};
 
 use crate::filters::{Filter, LookUp, filters};
@@ -237,9 +238,9 @@ fn a_plane_square_to_the_axis_needs_no_bias_however_obliquely_it_is_lit() {
 
 #[test]
 fn a_lift_by_hand_clears_a_wall_by_the_texel_at_its_distance() {
-    // A window of 2 m × 2 m at 1 m with 200 texels: 0.01 m a texel there, 0.05 m at 5 m. A plane at 60° to the axis that
-    // leans along u needs E · t · d · sin 60° / (1 + E t sin 60° cos 60°) for E = 2:
-    // 2 · 0.05 · 0.866 025 / (1 + 0.02 · 0.433 013) = 0.085 859 m.
+    // A window of 2 m × 2 m at 1 m with 200 texels: 0.01 m a texel there, 0.05 m at 5 m. A plane at 60° to the axis
+    // that leans along u needs E · t · d · sin 60° / (1 + E t sin 60° cos 60°) for E = 2: 2 · 0.05 · 0.866 025 / (1 +
+    // 0.02 · 0.433 013) = 0.085 859 m.
     let lamp = SpotLight {
         direction: Vec3::NEG_Z,
         position: DVec3::ZERO,
@@ -259,8 +260,8 @@ fn a_lift_by_hand_clears_a_wall_by_the_texel_at_its_distance() {
 proptest! {
     #![proptest_config(cases(300))]
 
-    /// Any lens, plane and place: the least offset is enough, the automatic one is enough, and no more than √2 times the
-    /// least of its azimuth and what planes that face away from the axis take.
+    /// Any lens, plane and place: the least offset is enough, the automatic one is enough, and no more than √2 times
+    /// the least of its azimuth and what planes that face away from the axis take.
     #[test]
     fn the_automatic_offset_clears_any_plane_and_is_little_more_than_the_least(
         (fov, aspect, texels) in (double(0.1, 2.4), double(0.5, 2.0), 5..12_u32),
@@ -272,17 +273,19 @@ proptest! {
         let plane = Plane::new(&fit, DVec2::new(x, y), distance, theta, azimuth);
         let point = world(&fit, plane.point(plane.middle).unwrap());
         for filter in filters() {
-            let Ok(bias) = SpotBias::automatic(filter.reach, shadowfit::settings::MapFormat::Depth32Float, &fit) else {
+            let Ok(bias) = SpotBias::automatic(filter.reach, MapFormat::Depth32Float, &fit) else {
                 prop_assert!(fit.texel_size.max_element() > 0.1, "only maps of few texels are refused");
                 continue;
             };
             prop_assert_eq!(plane.acne(&filter, |p| (least(&plane, &filter, p), 0.0)), 0.0);
-            let offset = |p| f64::from(SpotBias { constant_offset: 0.0, ..bias }.on_plane(&fit, p, plane.world_normal).unwrap().offset);
+            let by_slope = SpotBias { constant_offset: 0.0, ..bias };
+            let offset = |p| f64::from(by_slope.on_plane(&fit, p, plane.world_normal).unwrap().offset);
             prop_assert_eq!(plane.acne(&filter, |p| (offset(p), 0.0)), 0.0);
             let (given, needed) = (offset(point), least(&plane, &filter, point));
             let widest = f64::from(bias.normal_offset);
-            if fit.texel_size.x == fit.texel_size.y && filter.reach.disc == shadowfit::glam::Vec2::ZERO {
-                let hardware = f64::from(shadowfit::spot::bias::on_hardware(&fit, filter.reach).unwrap().taps / filter.reach.taps);
+            if fit.texel_size.x == fit.texel_size.y && filter.reach.disc == Vec2::ZERO {
+                let reach = on_hardware(&fit, filter.reach).unwrap();
+                let hardware = f64::from(reach.taps / filter.reach.taps);
                 let most = std::f64::consts::SQRT_2 * hardware * (1.0 + widest) * (1.0 + widest);
                 prop_assert!(given <= needed * most * 1.000_01 + 1e-9, "{given} for {needed}");
             }
