@@ -29,6 +29,11 @@ pub(crate) fn is_same_direction(a: DVec3, b: DVec3) -> bool {
     (a - b).dot(a - b) <= SAME_DIRECTION * SAME_DIRECTION
 }
 
+/// Whether a light travels straight along `up`, so that its roll is taken from a fixed axis; both are unit vectors.
+pub(crate) fn is_vertical(direction: DVec3, up: DVec3) -> bool {
+    checks::length(direction.cross(up)) < VERTICAL_SINE
+}
+
 /// Where a light's rotation about itself comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Roll {

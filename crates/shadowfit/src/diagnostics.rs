@@ -62,21 +62,24 @@ pub fn pixels_per_texel(
     if normal.dot(fit.direction.as_dvec3()).abs() < EDGE_ON_COSINE {
         return Ok(None);
     }
-    let [ta, tb] = tangents.map(|tangent| texels_along(fit, tangent));
-    let [sa, sb] = screen;
+    Ok(Some(pixels_of_texels(screen, tangents.map(|tangent| texels_along(fit, tangent)))))
+}
+
+/// Pixels per texel from the pixels and the texels per metre along the same two tangents.
+pub(crate) fn pixels_of_texels([sa, sb]: [DVec2; 2], [ta, tb]: [DVec2; 2]) -> PixelsPerTexel {
     let determinant = ta.x * tb.y - tb.x * ta.y;
     let along_u = (sa * tb.y - sb * ta.y) / determinant;
     let along_v = (sb * ta.x - sa * tb.x) / determinant;
     let area = (along_u.x * along_v.y - along_v.x * along_u.y).abs();
-    Ok(Some(PixelsPerTexel { worse_axis: greatest_singular_value(along_u, along_v) as f32, area: area as f32 }))
+    PixelsPerTexel { worse_axis: greatest_singular_value(along_u, along_v) as f32, area: area as f32 }
 }
 
 /// Below this cosine between normal and light a surface counts as edge-on to the light: f32 axes
 /// are rounded by as much.
-const EDGE_ON_COSINE: f64 = 1e-6;
+pub(crate) const EDGE_ON_COSINE: f64 = 1e-6;
 
 /// Two unit vectors that span the plane with the given unit normal.
-fn tangents(normal: DVec3) -> [DVec3; 2] {
+pub(crate) fn tangents(normal: DVec3) -> [DVec3; 2] {
     let axis = if normal.x.abs() < 0.6 { DVec3::X } else { DVec3::Y };
     let a = normal.cross(axis);
     let a = a / checks::length(a);
@@ -84,7 +87,12 @@ fn tangents(normal: DVec3) -> [DVec3; 2] {
 }
 
 /// Pixels per metre along both tangents at a point, or `None` behind the camera.
-fn screen_jacobian(clip_from_world: &Mat4, viewport: UVec2, point: Vec3, tangents: [DVec3; 2]) -> Option<[DVec2; 2]> {
+pub(crate) fn screen_jacobian(
+    clip_from_world: &Mat4,
+    viewport: UVec2,
+    point: Vec3,
+    tangents: [DVec3; 2],
+) -> Option<[DVec2; 2]> {
     let m = clip_from_world.as_dmat4();
     let p = point.as_dvec3();
     let clip = m.x_axis * p.x + m.y_axis * p.y + m.z_axis * p.z + m.w_axis;

@@ -1,4 +1,4 @@
-//! Fits a directional light's shadow maps to what a camera sees.
+//! Fits a directional light's shadow maps to what a camera sees, and gives spot lights theirs.
 //!
 //! Camera, sun and boxes of the scene in, matrices out, frame by frame; this is the example
 //! `fit_once`:
@@ -103,6 +103,7 @@
 //! | boxes that hug large meshes | `clusters` and [`normal_cone`], feature `alloc` |
 //! | static casters drawn only where the map is new | [`scroll`] |
 //! | a moving sun without crawling shadow edges | [`light_steps`] |
+//! | a lamp or headlight: its perspective map, casters, biases and figures | [`SpotLight`], [`spot`] |
 //! | a proof that no map has a hole | [`verify`] |
 //! | biases in metres and depth for a filter of your own | [`Bias`], [`bias`] |
 //! | pixels per texel, depth steps, margin against acne | [`diagnostics`] |
@@ -116,8 +117,8 @@
 //!   depth range that a [`DepthConvention`] names; texture space u right, v down.
 //! - Matrices are named `dst_from_src`. Their world inputs are **relative to an origin** in f64,
 //!   the eye unless moved: [`LightFit::relative_to`] and [`LightFit::world_matrices`] convert.
-//! - A light is its **direction of travel**. Where a source speaks of the direction toward the
-//!   light, `to_light = -direction`.
+//! - A light is its **direction of travel**, of a [`SpotLight`] along its axis. Where a source speaks
+//!   of the direction toward the light, `to_light = -direction`.
 //! - Nothing panics; every bad input is a [`FitError`] with its value. Nothing allocates, except
 //!   `Clusters` and `Technique::to_rust`, which need the feature `alloc`.
 //! - Transcendental functions come from `libm`, everything else is `+ - × ÷ √` on scalars, so the
@@ -130,7 +131,7 @@
 //! | `std` (default) | `alloc`, and glam with the standard library |
 //! | `alloc` | `Clusters` and `Technique::to_rust`, for which an allocator is enough |
 //! | `serde` | `Serialize` and `Deserialize` for all settings, inputs and outputs that own their data, and for the state between frames; `Clusters` have theirs in [`Aabb`] and [`NormalCone`](normal_cone::NormalCone) |
-//! | `bytemuck` | `Pod` and `Zeroable` for [`Aabb`], [`Sphere`](culling::Sphere), [`OrientedBox`](culling::OrientedBox), [`NormalCone`](normal_cone::NormalCone), [`Bias`] and [`CasterPlanes`](culling::CasterPlanes) |
+//! | `bytemuck` | `Pod` and `Zeroable` for [`Aabb`], [`Sphere`](culling::Sphere), [`OrientedBox`](culling::OrientedBox), [`NormalCone`](normal_cone::NormalCone), [`Bias`], [`SpotBias`] and [`CasterPlanes`](culling::CasterPlanes) |
 //! | `mint` | the module `mint`: conversions from and to the types of other maths crates |
 //!
 //! This crate's vectors are those of the [`glam`] that it re-exports, 0.33 (from 0.33.2) or 0.34.
@@ -161,6 +162,7 @@ pub mod presets;
 pub mod scroll;
 pub mod settings;
 pub mod softness;
+pub mod spot;
 pub mod tool;
 pub mod verify;
 
@@ -208,6 +210,7 @@ pub use light_fit::LightFit;
 pub use map_fitter::MapFitter;
 pub use maps::{FittedMap, FittedMaps};
 pub use presets::{PRESETS, Preset};
+pub use spot::{SpotBias, SpotFit, SpotLight};
 pub use technique::Technique;
 
 /// Runs the example of the README as a test.

@@ -14,6 +14,7 @@ use crate::{Aabb, LightFit};
 /// |---|---|
 /// | [`LightFit::caster_volume`] | every caster that the map can store |
 /// | [`CasterVolume::of_map`] | the same, without a near plane where the pipeline clamps depth |
+/// | [`SpotFit::caster_volume`](crate::SpotFit::caster_volume) | every caster that the map of a spot light can store |
 /// | [`CasterVolume::swept`] | every caster that can cast a shadow into a slice of the view |
 ///
 /// A shape is culled when it lies wholly behind one of the planes. That is conservative and not
@@ -59,20 +60,22 @@ impl CasterVolume {
         Self { origin, planes, count: 1 }
     }
 
+    /// The volume of these planes, up to [`Self::MAX_PLANES`], with unit normals that point inward.
+    pub(crate) fn of_planes(origin: DVec3, planes: impl IntoIterator<Item = Vec4>) -> Self {
+        let mut volume = Self::everywhere(origin);
+        for plane in planes {
+            volume.push(plane);
+        }
+        volume
+    }
+
     /// Every caster that a map can store, relative to the fit's origin. Planes in the light's
     /// axes: -x, +x, -y, +y, far, and near unless `casters` is [`CasterPolicy::DepthClamp`]: a map
     /// drawn with depth clamp stores casters before its near plane too.
     pub fn of_map(fit: &LightFit, casters: CasterPolicy) -> Self {
         let (sides, [far, near]) = map_planes(fit);
-        let mut volume = Self::everywhere(fit.origin);
-        for plane in sides {
-            volume.push(plane);
-        }
-        volume.push(far);
-        if casters != CasterPolicy::DepthClamp {
-            volume.push(near);
-        }
-        volume
+        let near = (casters != CasterPolicy::DepthClamp).then_some(near);
+        Self::of_planes(fit.origin, sides.into_iter().chain([far]).chain(near))
     }
 
     /// As [`Self::of_map`], of the casters that can be drawn into a part of the map, with a texel around it for the
@@ -87,12 +90,8 @@ impl CasterVolume {
         for ((side, texels), texel) in sides.iter_mut().zip(inward).zip([texel.x, texel.x, texel.y, texel.y]) {
             side.w = (f64::from(side.w) - texels * texel) as f32;
         }
-        let mut volume = Self::everywhere(fit.origin);
         let near = (casters != CasterPolicy::DepthClamp).then_some(near);
-        for plane in sides.into_iter().chain([far]).chain(near) {
-            volume.push(plane);
-        }
-        volume
+        Self::of_planes(fit.origin, sides.into_iter().chain([far]).chain(near))
     }
 
     /// This volume cut at the near plane of a map, for passes without depth clamp: casters before

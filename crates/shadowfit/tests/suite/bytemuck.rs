@@ -5,7 +5,7 @@ use shadowfit::culling::{CasterPlanes, OrientedBox, Sphere};
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::normal_cone::NormalCone;
 use shadowfit::settings::{CasterPolicy, FitSettings};
-use shadowfit::{Aabb, Bias, CasterVolume};
+use shadowfit::{Aabb, Bias, CasterVolume, SpotBias};
 
 use crate::support::{DIRECTION, camera, fitted};
 
@@ -34,6 +34,20 @@ fn a_bias_is_four_numbers_in_order() {
     let bias = Bias { constant_depth: 1.0, slope_depth: 2.0, normal_offset: 3.0, receiver_plane: 4.0 };
     survives(&bias);
     assert_eq!(cast_slice::<Bias, f32>(&[bias]), [1.0, 2.0, 3.0, 4.0]);
+}
+
+#[test]
+fn a_spot_light_s_bias_is_six_numbers_in_order() {
+    let bias = SpotBias {
+        constant_depth: 1.0,
+        distance_depth: 2.0,
+        slope_depth: 3.0,
+        normal_offset: 4.0,
+        constant_offset: 5.0,
+        receiver_plane: 6.0,
+    };
+    survives(&bias);
+    assert_eq!(cast_slice::<SpotBias, f32>(&[bias]), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
 }
 
 #[test]

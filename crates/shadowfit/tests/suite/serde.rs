@@ -16,7 +16,7 @@ use shadowfit::settings::{
 };
 use shadowfit::tool::Settings;
 use shadowfit::verify::{Certificate, CoverageQuery, MapPlane, Margins};
-use shadowfit::{Aabb, Bias, DepthConvention, FitInput, MapFitter, Technique, ViewFrustum, Workspace};
+use shadowfit::{Aabb, Bias, DepthConvention, FitInput, MapFitter, SpotBias, Technique, ViewFrustum, Workspace};
 
 use crate::support::{DIRECTION, camera, fitted};
 
@@ -62,6 +62,7 @@ fn inputs_survive() {
     let camera = camera();
     survives(&camera);
     survives(&camera.frustum().unwrap());
+    survives(&crate::spot::lamp());
     survives(&Aabb::EMPTY);
     survives(&Sphere { centre: DIRECTION, radius: 0.1 });
     survives(&OrientedBox { centre: DIRECTION, half_axes: [Vec3::X, Vec3::Y, DIRECTION] });
@@ -86,6 +87,9 @@ fn outputs_survive() {
     survives(&Certificate::Proven(Margins { planes: [0.1; 6], casters: 2.5 }));
     survives(&AcneMargin { metres: 0.1, texels: -0.3 });
     survives(&PixelsPerTexel { worse_axis: 0.1, area: 0.7 });
+    let spot = crate::spot::lamp().fit(UVec2::splat(512), DepthConvention::Reversed).unwrap();
+    survives(&spot);
+    survives(&SpotBias::automatic(Reach::POINT, DepthStorage::Float16, &spot).unwrap());
     let mut figures = Figures { map_ahead: Some(1), ..Figures::default() };
     figures.maps[1] = Some(MapFigures { texel_size: [0.1; 2], draws: Some(3), ..MapFigures::default() });
     survives(&figures);

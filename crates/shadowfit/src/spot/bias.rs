@@ -1,0 +1,322 @@
+//! Biases against self-shadowing for perspective maps.
+//!
+//! As for the sun ([`crate::bias`]), a map stores one depth per texel, and a bias covers how far a slanted plane rises
+//! within the filter's reach. Two things differ: texels grow in proportion to the distance from the light, and the
+//! stored depth is not linear in that distance.
+//!
+//! # What a plane needs
+//!
+//! Light space has the light at its origin, looking along -z. A point at the distance d along the axis is
+//! d · (a, b, -1), and the map's texels are a grid in (a, b) with the sides tx and ty, the
+//! [texel size](SpotFit::texel_size) at 1 m. Let n be the plane's unit normal on the light's side and c > 0 the light's
+//! distance from the plane. The plane's points have n·p = -c, so along the ray (a, b)
+//!
+//! ```text
+//!   1/d = (n·z - a n·x - b n·y) / c         z = A - B/d,  B = near · far / (far - near)
+//! ```
+//!
+//! Both 1/d and the stored depth z are *affine in texels*: the depth gradient per texel is the same everywhere on a
+//! plane. A point lifted by h along n has n·p = h - c, thus (c - h) / d = n·z - a n·x - b n·y at its own distance d. A
+//! texel centre (δa, δb) beside it stores a plane depth that is not nearer to the light exactly when (c - h) / (c d) -
+//! (δa n·x + δb n·y) / c ≤ 1/d. Over all centres |δa| ≤ E tx, |δb| ≤ E ty in the filter's reach E that is
+//!
+//! ```text
+//!   h ≥ d · s,   s = E · (tx·|n·x| + ty·|n·y|)                                      as a lift along the normal
+//!   B · s / c = E · (|∂z/∂u| + |∂z/∂v|)                                             as a depth bias
+//! ```
+//!
+//! the sun's own formula, with the texel's size at d. Here d is the *lifted* point's distance; from that of the point
+//! on the plane, d₀ = d + h n·z, follows h = d₀ s / (1 + s n·z). Planes that face the light but not its axis (n·z < 0,
+//! only off the axis) need a hair more than d₀ s. For square texels s is at most √2 · E · t · sin α, where α is the
+//! angle between the normal and the light's **axis**, not its direction to the point: a plane square to the axis has
+//! one depth everywhere, and needs nothing, however obliquely the light strikes it.
+//!
+//! # Rounding
+//!
+//! A depth that is off by e metres along the axis is off by B e / d² in the map, and a step of the stored depth is d² /
+//! B steps of a metre: coarse far from the light, unless depth is reversed and stored as a float. Rounding therefore
+//! has three parts, and [`SpotBias::precision`] has all of them: a number in the map, one that falls with 1/d, and
+//! metres.
+//!
+//! All of this holds for the **geometric** normal of the surface that is stored.
+
+use glam::{DVec3, Vec2, Vec3};
+
+use super::SpotFit;
+use super::plane::Plane;
+use crate::bias::{HARDWARE_SNAP, PlaneBias, Reach};
+use crate::depth_storage::{DepthStorage, depth_step};
+use crate::settings::BiasSettings;
+use crate::{DepthConvention, FitError, checks};
+
+/// Biases ready for a shader. Let n be the geometric normal, turned toward the light, α its angle to the light's axis
+/// (sin α = |n × axis|, which does not lose digits as √(1 - cos²) does), d the receiver's distance along the axis and
+/// c = n · (light - p) the light's distance from its plane, held at [`MIN_COSINE`](crate::bias::MIN_COSINE) of
+/// |light - p| or above. The receiver is looked up at `p + n · (normal_offset · d · sin α + constant_offset)`; with w
+/// the lifted point's distance, which is the w of its look-up, its depth is moved toward the light by
+///
+/// ```text
+///   constant_depth + distance_depth / w + slope_depth · sin α / c + receiver_plane · (|∂z/∂u| + |∂z/∂v|)
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[repr(C)]
+pub struct SpotBias {
+    /// Depth bias, in units of the stored depth.
+    pub constant_depth: f32,
+    /// Depth bias to be divided by the distance along the axis, in units of the stored depth times metres: what a
+    /// constant number of texels is, since those grow with d while the stored depth changes by 1/d² per metre.
+    pub distance_depth: f32,
+    /// Depth bias to be multiplied by sin α and divided by c, in units of the stored depth times metres. On the axis
+    /// that is tan α / d.
+    pub slope_depth: f32,
+    /// Offset along the geometric normal to be multiplied by sin α and by the distance along the axis: metres per
+    /// metre.
+    pub normal_offset: f32,
+    /// Offset along the geometric normal at every slope and distance, in metres.
+    pub constant_offset: f32,
+    /// Depth bias to be multiplied by `|∂z/∂u| + |∂z/∂v|`, the [`depth_gradient`] of the receiver's plane per texel: in
+    /// texels. Where it is not 0, each comparison of a filter is made with the plane's own depth where it reads.
+    pub receiver_plane: f32,
+}
+
+/// Roundings of 2⁻²⁴ by which a position or a depth may be off: two transforms, of the caster and of the receiver, with
+/// six operations a term (the rounded position and element, the product, three sums); a coordinate of the texture is a
+/// sum of two rows, whose terms come to at most 3.2 times the farthest coordinate, and that makes 39. Wide filters need
+/// up to half of that again, since a lift may carry a point away from the light.
+const ROUNDINGS: f64 = 64.0;
+
+/// Relative rounding of f32, 2⁻²⁴.
+const ROUNDING: f64 = 1.0 / 16_777_216.0;
+
+/// What f32 can make of a coordinate, as a share of the terms that it is the sum of.
+const TERMS: f64 = ROUNDINGS * ROUNDING;
+
+/// Share by which an offset is enlarged for the rounding of its own factors in a shader: eight of 2⁻²⁴.
+const FACTORS: f64 = 8.0 * ROUNDING;
+
+impl SpotBias {
+    /// Converts biases in texels for one map, and those in steps of how it stores depths, which may be given as the
+    /// [`MapFormat`](crate::settings::MapFormat). A texel is the longer side of one at the receiver's distance.
+    /// Settings that are not finite give biases that are not finite; [`Self::checked`] refuses those.
+    ///
+    /// A [step](BiasSettings::depth_steps) is the whole [`Self::precision`] here: far from the light, f32 rounds a
+    /// perspective depth by more than any constant in texels covers.
+    pub fn from_texels(settings: &BiasSettings, storage: impl Into<DepthStorage>, fit: &SpotFit) -> Self {
+        let texel = fit.texel_size.x.max(fit.texel_size.y);
+        let texel_depth = texel * fit.depth_scale() as f32;
+        let step = Self::precision(storage, fit);
+        Self {
+            constant_depth: settings.depth_steps * step.constant_depth,
+            distance_depth: settings.constant * texel_depth + settings.depth_steps * step.distance_depth,
+            slope_depth: settings.slope * texel_depth,
+            normal_offset: settings.normal_offset * texel,
+            constant_offset: settings.depth_steps * step.constant_offset,
+            receiver_plane: settings.receiver_plane,
+        }
+    }
+
+    /// A fixed number of the stored depth, independent of slope and distance: the classic form, such as the 1/100 of
+    /// an 8-bit map. In metres it grows with the square of the distance from the light. A negative one moves the
+    /// receiver away from the light, as maps of back faces may want it.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::NotFinite`], and [`FitError::OutOfRange`] beyond the whole range of depths.
+    pub fn fixed(depth: f32) -> Result<Self, FitError> {
+        checks::within("the fixed depth bias", f64::from(depth), -1.0, 1.0)?;
+        Ok(Self { constant_depth: depth, ..Self::default() })
+    }
+
+    /// The bias that covers rounding, and nothing else: one step of how the map stores depths (half for storing one,
+    /// half where hardware rounds the compared one too), and what f32 makes of the stored and of the compared depth.
+    ///
+    /// Let k be the distance of the window's corner at 1 m along the axis, D the light's distance from
+    /// [`SpotFit::origin`] and ε 64 roundings of 2⁻²⁴. Positions are off by up to ε k (2 D + k d): the part with D is
+    /// [`Self::constant_offset`], metres along the normal; of the other what lies along the axis is depth, and what
+    /// lies across is in the [reach on hardware](on_hardware). The depth's own row adds ε (A (2 D / d + k) + B / d),
+    /// with A the factor of the distance in it: about 1, and near / (far - near) where depth is reversed. Steps are the
+    /// coarsest of the format, but of floats with reversed depth they shrink with the depth itself, as 2 · 2⁻ᵇ · B / d.
+    pub fn precision(storage: impl Into<DepthStorage>, fit: &SpotFit) -> Self {
+        let (near, far) = (f64::from(fit.near), f64::from(fit.far));
+        let is_reversed = fit.depth == DepthConvention::Reversed;
+        let factor = if is_reversed { near } else { far } / (far - near);
+        let (stretch, scale, away) = (fit.stretch(), fit.depth_scale(), fit.away());
+        let (step, falling_step) = steps(storage.into(), is_reversed);
+        let falling = TERMS * (2.0 * factor * away + scale * (1.0 + stretch)) + falling_step * scale;
+        Self {
+            constant_depth: (TERMS * factor * stretch + step) as f32,
+            distance_depth: falling as f32,
+            constant_offset: (2.0 * TERMS * stretch * away) as f32,
+            ..Self::default()
+        }
+    }
+
+    /// The bias that clears self-shadowing on a plane whose slope has any azimuth: an offset along the normal for the
+    /// filter's reach [on hardware](on_hardware), and the [`Self::precision`]. Where a shader knows the azimuth,
+    /// [`normal_offset`] needs up to √2 less. The lift is no more than 1 / (1 - S/2) times what the worst plane needs,
+    /// S being the reach in metres at 1 m: 0.3% more for a filter of four texels of a 2048² map of 90°. Geometric
+    /// normals are assumed.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the reach, also where it is wider than the distance
+    /// from the light itself (a map of very few texels), and for a fit that was filled by hand with what is not finite.
+    pub fn automatic(
+        reach: impl Into<Reach>,
+        storage: impl Into<DepthStorage>,
+        fit: &SpotFit,
+    ) -> Result<Self, FitError> {
+        let reach = on_hardware(fit, reach)?;
+        let (x, y) = (f64::from(fit.texel_size.x), f64::from(fit.texel_size.y));
+        let disc = (f64::from(reach.disc.x) * x).max(f64::from(reach.disc.y) * y);
+        let widest = f64::from(reach.taps) * libm::sqrt(x * x + y * y) + disc;
+        checks::within("the filter's reach at 1 m from the light", widest, 0.0, 1.0)?;
+        // |n·z| sin α is at most 1/2.
+        let normal_offset = widest / (1.0 - 0.5 * widest) * (1.0 + FACTORS);
+        Self { normal_offset: normal_offset as f32, ..Self::precision(storage, fit) }.checked()
+    }
+
+    /// As [`Self::automatic`], by the receiver plane's gradient over the filter's reach on hardware. It clears planes
+    /// up to [`MIN_COSINE`](crate::bias::MIN_COSINE) of the angle between normal and light, and grows toward it without
+    /// bound. Only rounding is left to an offset: [`Self::constant_offset`], which is 0 for a map relative to its
+    /// light.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the reach, or for a fit that was filled by hand with
+    /// what is not finite.
+    pub fn automatic_receiver_plane(
+        reach: impl Into<Reach>,
+        storage: impl Into<DepthStorage>,
+        fit: &SpotFit,
+    ) -> Result<Self, FitError> {
+        let receiver_plane = on_hardware(fit, reach)?.per_axis();
+        Self { receiver_plane, ..Self::precision(storage, fit) }.checked()
+    }
+
+    /// The offset and depth that this bias gives at a world position (f64, metres) on a plane with the given geometric
+    /// normal (world axes, any length, either side), as a shader computes it.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::NotFinite`], [`FitError::OutOfRange`] for a point that is not before the light, also once it is
+    /// lifted, [`FitError::BadDirection`] for the normal.
+    pub fn on_plane(&self, fit: &SpotFit, point: DVec3, normal: Vec3) -> Result<PlaneBias, FitError> {
+        let bias = self.checked()?;
+        let plane = Plane::of(fit, point, normal)?;
+        let offset = f64::from(bias.normal_offset) * plane.distance * plane.sine + f64::from(bias.constant_offset);
+        let lifted = plane.lifted(offset);
+        checks::within("the lifted point's distance along the light's axis", lifted, checks::MIN_LENGTH, f64::MAX)?;
+        let [u, v] = plane.gradient(fit);
+        let depth = f64::from(bias.constant_depth)
+            + f64::from(bias.distance_depth) / lifted
+            + f64::from(bias.slope_depth) * plane.sine / plane.height
+            + f64::from(bias.receiver_plane) * (u.abs() + v.abs());
+        Ok(PlaneBias {
+            offset: checks::rounded("the offset on the plane", offset)?,
+            depth: checks::rounded("the depth bias on the plane", depth)?,
+        })
+    }
+
+    /// Returns the bias if all its numbers are finite. Use it after [`Self::from_texels`] when the settings come from
+    /// outside.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::NotFinite`] with the first number that is not finite.
+    pub fn checked(self) -> Result<Self, FitError> {
+        for (input, value) in [
+            ("the constant depth bias", self.constant_depth),
+            ("the depth bias by distance", self.distance_depth),
+            ("the slope-scaled depth bias", self.slope_depth),
+            ("the normal offset", self.normal_offset),
+            ("the constant offset", self.constant_offset),
+            ("the receiver-plane bias", self.receiver_plane),
+        ] {
+            checks::finite(input, f64::from(value))?;
+        }
+        Ok(self)
+    }
+}
+
+/// A reach enlarged by the rounding of a GPU: [`HARDWARE_SNAP`], and what f32 makes of texture coordinates per metre of
+/// distance from the light. What it makes of them by the distance between light and origin is in
+/// [`SpotBias::precision`]. With exact arithmetic the plain reach is enough.
+///
+/// # Errors
+///
+/// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the reach.
+pub fn on_hardware(fit: &SpotFit, reach: impl Into<Reach>) -> Result<Reach, FitError> {
+    let reach = reach.into().checked()?;
+    let texel = f64::from(fit.texel_size.x.min(fit.texel_size.y));
+    let rounding = TERMS * fit.stretch() * fit.stretch() / texel;
+    Reach { taps: reach.taps + HARDWARE_SNAP + rounding as f32, ..reach }.checked()
+}
+
+/// Normal offset that a plane needs at a world position (f64, metres), in metres along its normal on the light's side
+/// (sin α is in it): d s / (1 + s n·z), as the [module](self) derives it. For a disc, s has the ellipse's own part.
+///
+/// `normal` is the geometric one, in world axes, of any length and on either side. It is the least offset in exact
+/// arithmetic; [`on_hardware`] and [`SpotBias::precision`] add what a GPU needs.
+///
+/// # Errors
+///
+/// [`FitError::NotFinite`]; [`FitError::OutOfRange`] for the reach, for a point that is not before the light, and where
+/// the filter is so wide that no lift clears the plane; [`FitError::BadDirection`] for the normal.
+pub fn normal_offset(fit: &SpotFit, reach: impl Into<Reach>, point: DVec3, normal: Vec3) -> Result<f32, FitError> {
+    let plane = Plane::of(fit, point, normal)?;
+    let rise = plane.rise(reach.into().checked()?);
+    let rest = 1.0 + rise * plane.along;
+    checks::within("what the filter's reach leaves of the distance to the light", rest, f64::MIN_POSITIVE, f64::MAX)?;
+    checks::rounded("the plane's normal offset", plane.distance * rise / rest)
+}
+
+/// Depth bias that a plane needs, in units of the stored depth toward the light: `E · (|∂z/∂u| + |∂z/∂v|)` with the
+/// [`depth_gradient`] per texel, and for a disc the ellipse's own part. It is the same at all points of a plane, up to
+/// [`MIN_COSINE`](crate::bias::MIN_COSINE).
+///
+/// # Errors
+///
+/// As [`normal_offset`].
+pub fn receiver_plane_depth(
+    fit: &SpotFit,
+    reach: impl Into<Reach>,
+    point: DVec3,
+    normal: Vec3,
+) -> Result<f32, FitError> {
+    let reach = reach.into().checked()?;
+    let [u, v] = Plane::of(fit, point, normal)?.gradient(fit);
+    checks::rounded("the plane's depth bias", reach.rise(u, v))
+}
+
+/// Change of the stored depth of a plane through a world position (f64, metres) over one texel along u and along v
+/// (∂z/∂u, ∂z/∂v). It is exact over any number of texels, since a perspective keeps planes plane. The light's distance
+/// from the plane is held at [`MIN_COSINE`](crate::bias::MIN_COSINE) of that from the point.
+///
+/// # Errors
+///
+/// As [`normal_offset`].
+pub fn depth_gradient(fit: &SpotFit, point: DVec3, normal: Vec3) -> Result<Vec2, FitError> {
+    let [u, v] = Plane::of(fit, point, normal)?.gradient(fit);
+    let rounded = |gradient| checks::rounded("the plane's depth gradient", gradient);
+    Ok(Vec2::new(rounded(u)?, rounded(v)?))
+}
+
+/// Steps of a map's stored depth: one that is the same everywhere, and one to be multiplied by the depth.
+fn steps(storage: DepthStorage, is_reversed: bool) -> (f64, f64) {
+    let coarsest = f64::from(depth_step(storage, 1.0));
+    match storage {
+        // Floats in 1/2..1 have the coarsest step: it is at most twice as large a share at 1/2 as at 1.
+        DepthStorage::Float16 if is_reversed => (LEAST_FLOAT16, 2.0 * coarsest),
+        DepthStorage::Float32 if is_reversed => (LEAST_FLOAT32, 2.0 * coarsest),
+        _ => (coarsest, 0.0),
+    }
+}
+
+/// Least 16-bit float: the step around 0.
+const LEAST_FLOAT16: f64 = 1.0 / 16_777_216.0;
+
+/// Least normal 32-bit float, below which GPUs may flush to zero.
+const LEAST_FLOAT32: f64 = f32::MIN_POSITIVE as f64;
