@@ -1,4 +1,4 @@
-//! Golden pictures: the default scene's views at 320×180, drawn by the software adapter whatever GPU is present.
+//! Golden pictures: the default scene's views at 320×180, and the classic samples in the aspect of their sources, drawn by the software adapter whatever GPU is present.
 //!
 //! A missing or mis-sized golden fails. `cargo xtask golden` (`SHADOWFIT_UPDATE_GOLDENS=1`) writes them anew. On a
 //! failure `NAME.actual.png` and `NAME.diff.png` (the difference, amplified) lie beside `NAME.png`.
@@ -12,6 +12,7 @@ use shadowfit::settings::{FilterKind, MapFormat, SoftRadius};
 use shadowfit::tool::{InsetMaps, ViewMode};
 use shadowfit_render::FlyCamera;
 use shadowfit_scene::builtin::default_scene;
+use shadowfit_study::samples::{SAMPLES, Sample};
 use shadowfit_viewer::{Artefact, Stage};
 
 use crate::support::{software_gpu, workspace};
@@ -23,7 +24,7 @@ const SIZE: [u32; 2] = [320, 180];
 const MAX_BYTES: u64 = 128 * 1024;
 
 /// Samples per pixel, as the headless mode has them.
-const SAMPLES: u32 = 4;
+const SAMPLES_PER_PIXEL: u32 = 4;
 
 /// Every golden.
 const NAMES: [&str; 20] = [
@@ -119,6 +120,16 @@ fn shadows_in_coarse_formats_are_as_they_were() {
 }
 
 #[test]
+fn every_classic_sample_is_as_it_was() {
+    for sample in &SAMPLES {
+        let mut stage = Stage::new(software_gpu(), sample.scene(), SAMPLES_PER_PIXEL).expect("the sample's scene");
+        stage.wait_for_rays();
+        stage.set_sample(sample, None);
+        check_sized(&mut stage, &sample_golden(sample), sample_size(sample));
+    }
+}
+
+#[test]
 fn the_folder_holds_exactly_these_goldens_and_each_is_small() {
     if updates() {
         println!("SKIPPED: other tests are writing the goldens now; run the tests again without updating");
@@ -130,7 +141,8 @@ fn the_folder_holds_exactly_these_goldens_and_each_is_small() {
         .filter(|name| !name.ends_with(".actual.png") && !name.ends_with(".diff.png"))
         .collect();
     present.sort();
-    let mut expected = NAMES.map(|name| format!("{name}.png"));
+    let mut expected: Vec<String> = NAMES.iter().map(|name| format!("{name}.png")).collect();
+    expected.extend(SAMPLES.iter().map(|sample| format!("{}.png", sample_golden(sample))));
     expected.sort();
     assert_eq!(present, expected, "goldens in {}; `cargo xtask golden` writes missing ones", folder().display());
     for name in expected {
@@ -138,7 +150,8 @@ fn the_folder_holds_exactly_these_goldens_and_each_is_small() {
         let bytes = std::fs::metadata(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display())).len();
         assert!(bytes <= MAX_BYTES, "{} has {bytes} bytes", path.display());
         let size = image::image_dimensions(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-        assert_eq!(size, SIZE.into(), "{}", path.display());
+        let sample = SAMPLES.iter().find(|sample| path.ends_with(format!("{}.png", sample_golden(sample))));
+        assert_eq!(size, sample.map_or(SIZE, sample_size).into(), "{}", path.display());
     }
 }
 
@@ -159,7 +172,8 @@ fn the_comparison_sees_a_missing_shadow_and_forgives_rounding() {
 }
 
 fn stage() -> Stage {
-    let mut stage = Stage::new(software_gpu(), default_scene(), SAMPLES).expect("the default scene can be shown");
+    let mut stage =
+        Stage::new(software_gpu(), default_scene(), SAMPLES_PER_PIXEL).expect("the default scene can be shown");
     stage.settings.view.play = false;
     stage.set_home();
     stage
@@ -189,6 +203,17 @@ fn check_artefact(artefact: Artefact, [shown, fixed]: [&str; 2]) {
     check(&mut stage, fixed);
 }
 
+/// The golden of a sample.
+fn sample_golden(sample: &Sample) -> String {
+    format!("sample-{}", sample.id)
+}
+
+/// Size of a sample's golden, in pixels: in the aspect of its source's window.
+fn sample_size(sample: &Sample) -> [u32; 2] {
+    let [width, height] = sample.size;
+    [(width * SIZE[1]).div_ceil(height), SIZE[1]]
+}
+
 /// Whether this run writes the goldens.
 fn updates() -> bool {
     std::env::var_os("SHADOWFIT_UPDATE_GOLDENS").is_some_and(|value| value != "0")
@@ -201,7 +226,11 @@ fn folder() -> PathBuf {
 /// Draws the stage and compares it with its golden, or writes the golden.
 fn check(stage: &mut Stage, name: &str) {
     assert!(NAMES.contains(&name), "{name} is missing in the list of goldens");
-    let target = stage.target(SIZE);
+    check_sized(stage, name, SIZE);
+}
+
+fn check_sized(stage: &mut Stage, name: &str, size: [u32; 2]) {
+    let target = stage.target(size);
     stage.draw(&target);
     assert_eq!(stage.problem(), None, "{name}");
     let rgb: Vec<u8> = target
@@ -210,7 +239,7 @@ fn check(stage: &mut Stage, name: &str) {
         .chunks_exact(4)
         .flat_map(|pixel| [pixel[0], pixel[1], pixel[2]])
         .collect();
-    let actual = RgbImage::from_raw(SIZE[0], SIZE[1], rgb).expect("as many bytes as pixels");
+    let actual = RgbImage::from_raw(size[0], size[1], rgb).expect("as many bytes as pixels");
     let golden = folder().join(name).with_extension("png");
     if updates() {
         save(&actual, &golden);
