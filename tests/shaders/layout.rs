@@ -226,6 +226,8 @@ fn every_uniform_of_every_module_is_one_whose_layout_is_compared() {
         "Marks",
         "Block",
         "Need",
+        "Occlusion",
+        "SkyBox",
     ];
     for (name, source) in super::modules() {
         let module = parse(&name, &source);
