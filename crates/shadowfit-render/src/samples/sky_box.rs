@@ -85,7 +85,7 @@ impl SkyBox {
     }
 
     /// Sets the camera that the sky is seen through, before [`Self::draw`]. Its eye is ignored.
-    pub fn prepare(&self, gpu: &Gpu, camera: &PerspectiveCamera) {
+    pub(crate) fn prepare(&self, gpu: &Gpu, camera: &PerspectiveCamera) {
         let clip_from_world = camera.clip_from_world(DepthConvention::Reversed).to_cols_array_2d();
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&SkyBoxUniform { clip_from_world }));
     }
