@@ -226,6 +226,8 @@ fn every_uniform_of_every_module_is_one_whose_layout_is_compared() {
         "Marks",
         "Block",
         "Need",
+        "Occlusion",
+        "SkyBox",
     ];
     for (name, source) in super::modules() {
         let module = parse(&name, &source);
@@ -268,14 +270,18 @@ fn instances_in_the_buffer_are_what_the_vertex_shaders_read() {
 }
 
 #[test]
-fn casters_read_each_location_with_the_type_that_the_scene_reads_there() {
+fn casters_and_samples_read_each_location_with_the_type_that_the_scene_reads_there() {
     let scene = parse("scene", &shaders::scene(&ShadowMapDescriptor::default()));
     let caster = parse("caster", &shaders::caster(&ShadowMapDescriptor::default()));
-    for member in reflected(&caster, "CasterIn").0 {
-        let Some(Binding::Location { location, .. }) = member.binding else { continue };
-        let other = at_locations(&scene, "SceneIn", &[location])[0];
-        assert_eq!(member.name, other.name, "location {location}");
-        assert_eq!(caster.types[member.ty].inner, scene.types[other.ty].inner, "location {location}");
+    let [surface, shade] =
+        [shaders::occlusion_surface(), shaders::occlusion_shade()].map(|text| parse("sample", &text));
+    for (module, input) in [(caster, "CasterIn"), (surface, "PartIn"), (shade, "PartIn")] {
+        for member in reflected(&module, input).0 {
+            let Some(Binding::Location { location, .. }) = member.binding else { continue };
+            let other = at_locations(&scene, "SceneIn", &[location])[0];
+            assert_eq!(member.name, other.name, "location {location}");
+            assert_eq!(module.types[member.ty].inner, scene.types[other.ty].inner, "location {location}");
+        }
     }
 }
 

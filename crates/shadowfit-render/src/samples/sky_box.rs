@@ -75,7 +75,8 @@ impl SkyBox {
         sky
     }
 
-    /// Moves the sun to a direction (world axes, any length) and makes the picture anew, if it is another one.
+    /// Moves the sun to a direction (world axes, any length) and makes the picture anew, if it is another one: a few tenths
+    /// of a second of work, on up to six cores.
     pub fn set_light(&mut self, gpu: &Gpu, to_light: Vec3) {
         if self.to_light != to_light {
             self.to_light = to_light;
@@ -84,7 +85,7 @@ impl SkyBox {
     }
 
     /// Sets the camera that the sky is seen through, before [`Self::draw`]. Its eye is ignored.
-    pub fn prepare(&self, gpu: &Gpu, camera: &PerspectiveCamera) {
+    pub(crate) fn prepare(&self, gpu: &Gpu, camera: &PerspectiveCamera) {
         let clip_from_world = camera.clip_from_world(DepthConvention::Reversed).to_cols_array_2d();
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&SkyBoxUniform { clip_from_world }));
     }

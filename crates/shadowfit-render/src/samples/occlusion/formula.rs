@@ -4,7 +4,7 @@
 //! the level of detail, which the source reads past the end of its four, are diagonals; the random vectors are a fixed
 //! square of 4×4 pixels instead of a texture of noise, so that a box of that size averages all of them.
 //!
-//! By depth alone: Martin Mittring, "Finding Next Gen: CryEngine 2", 2007. The source gives no numbers: offsets, range
+//! By depth alone: Martin Mittring, "Finding Next Gen: `CryEngine` 2", 2007. The source gives no numbers: offsets, range
 //! and fall-off are ours.
 //!
 //! View space is right-handed and looks along -z; view depth is -z. Texture coordinates run to the right and down.
@@ -79,7 +79,7 @@ pub fn step(direction: Vec2, random: Vec2, radius: f32, view_depth: f32) -> Vec2
 pub fn offset(step: Vec2, neighbour: u32, is_back: bool) -> Vec2 {
     let turned = Vec2::new(step.x - step.y, step.x + step.y) * core::f32::consts::FRAC_1_SQRT_2;
     let share = 0.25 * (neighbour + 1) as f32 + if is_back { 0.125 } else { 0.0 };
-    share * if neighbour % 2 == 0 { step } else { turned }
+    share * if neighbour.is_multiple_of(2) { step } else { turned }
 }
 
 /// Number of directions at a view depth: 4, or by level of detail the whole part of lerp(6, 2, depth / far).

@@ -21,7 +21,9 @@ pub enum OcclusionMethod {
 
 /// How ambient occlusion is computed.
 ///
-/// The defaults are for scenes in metres; they were chosen by eye on the built-in ones.
+/// The defaults are for scenes in metres. They were chosen so that the built-in arcade and courtyard differ least from
+/// ray-traced occlusion (32 rays, distance 1 m, linear fall-off) among a hundred settings; a [`Self::second_radius`] of
+/// 0.15 comes a little nearer still.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OcclusionSettings {
     /// Reach of the neighbours: divided by a pixel's view depth, in the scene's units, it is a distance in texture
@@ -49,9 +51,9 @@ impl Default for OcclusionSettings {
     fn default() -> Self {
         Self {
             radius: 0.5,
-            scale: 1.0,
+            scale: 2.0,
             bias: 0.1,
-            intensity: 2.5,
+            intensity: 3.0,
             back_faces: false,
             level_of_detail: false,
             blur: true,
@@ -109,7 +111,7 @@ pub struct OcclusionFrame<'a> {
     pub settings: Option<OcclusionSettings>,
     /// What is shown.
     pub view: OcclusionView,
-    /// What is seen behind the scene.
+    /// What is seen behind the scene: made for as many samples as the passes.
     pub sky: Option<&'a SkyBox>,
     /// Colour behind the scene where there is no sky, in display values.
     pub background: Vec3,

@@ -86,8 +86,8 @@ const GREATER: wgpu::BlendComponent = wgpu::BlendComponent {
     operation: wgpu::BlendOperation::Max,
 };
 
-const fn target(format: wgpu::TextureFormat, blend: Option<wgpu::BlendState>) -> Option<wgpu::ColorTargetState> {
-    Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL })
+const fn target(format: wgpu::TextureFormat, blend: Option<wgpu::BlendState>) -> wgpu::ColorTargetState {
+    wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL }
 }
 
 impl Pipelines {
@@ -96,7 +96,8 @@ impl Pipelines {
         let maker = Maker { device, samples };
         let gather = maker.module("occlusion", shaders::samples::occlusion_gather());
         let layout = maker.layout(&[&layouts.uniform, &layouts.buffers]);
-        let greater = [target(OCCLUSION_FORMAT, Some(wgpu::BlendState { color: GREATER, alpha: GREATER }))];
+        let greater = wgpu::BlendState { color: GREATER, alpha: GREATER };
+        let greater = [Some(target(OCCLUSION_FORMAT, Some(greater)))];
         let gathered = |entry| {
             let shape = Shape::new("occlusion", &layout, &gather, ["vs_screen", entry]);
             maker.pipeline(&Shape { targets: &greater, ..shape })
@@ -109,11 +110,11 @@ impl Pipelines {
             normals_and_backs: gathered("fs_normals_and_backs"),
             depth_only: gathered("fs_depth_only"),
             blur: maker.pipeline(&Shape {
-                targets: &[target(OCCLUSION_FORMAT, None)],
+                targets: &[Some(OCCLUSION_FORMAT.into())],
                 ..Shape::new("occlusion blur", &layout, &blur, ["vs_screen", "fs_blur"])
             }),
             view: maker.pipeline(&Shape {
-                targets: &[target(ENCODED_FORMAT, None)],
+                targets: &[Some(ENCODED_FORMAT.into())],
                 depth: Some((false, wgpu::CompareFunction::Always)),
                 samples,
                 ..Shape::new("occlusion view", &maker.layout(&[&layouts.shown]), &view, ["vs_screen", "fs_occlusion"])
@@ -168,9 +169,9 @@ impl Pipelines {
         };
         let blend = key.blended.then_some(wgpu::BlendState::ALPHA_BLENDING);
         let targets = match drawn {
-            Drawn::Surface => [target(POSITION_FORMAT, None), target(NORMAL_FORMAT, None)],
-            Drawn::Back => [target(POSITION_FORMAT, None), None],
-            Drawn::Classic | Drawn::Modern => [target(ENCODED_FORMAT, blend), None],
+            Drawn::Surface => [Some(POSITION_FORMAT.into()), Some(NORMAL_FORMAT.into())],
+            Drawn::Back => [Some(POSITION_FORMAT.into()), None],
+            Drawn::Classic | Drawn::Modern => [Some(target(ENCODED_FORMAT, blend)), None],
         };
         maker.pipeline(&Shape {
             buffers: &part_buffers(InstanceNumber::FirstTriangle),

@@ -13,7 +13,7 @@ const HAZE: Vec3 = Vec3::new(0.80, 0.86, 0.90);
 /// Below the horizon.
 const GROUND: Vec3 = Vec3::new(0.40, 0.38, 0.34);
 /// Sunlit and shaded clouds.
-const CLOUD: [Vec3; 2] = [Vec3::new(0.96, 0.96, 0.95), Vec3::new(0.70, 0.75, 0.82)];
+const CLOUD: [Vec3; 2] = [Vec3::new(0.97, 0.97, 0.96), Vec3::new(0.66, 0.71, 0.79)];
 /// Light around the sun.
 const GLOW: Vec3 = Vec3::new(1.0, 0.93, 0.78);
 /// The sun's disc; nothing else is as bright.
@@ -25,7 +25,7 @@ const BRIGHTEST: f32 = 0.985;
 const SUN_COSINES: [f32; 2] = [0.999_62, 0.999_73];
 
 /// Height of the layer of clouds over the eye, in sizes of a large cloud, and what keeps it from the horizon.
-const CLOUD_HEIGHT: f32 = 1.15;
+const CLOUD_HEIGHT: f32 = 1.5;
 const CLOUD_CURVE: f32 = 0.14;
 
 /// A sky's cube map.
@@ -100,12 +100,12 @@ fn clouds(direction: Vec3, to_light: Vec3) -> (f32, f32) {
         return (0.0, 0.0);
     }
     let at = Vec2::new(direction.x, direction.z) * (CLOUD_HEIGHT / (direction.y + CLOUD_CURVE));
-    let toward_sun = Vec2::new(to_light.x, to_light.z) * 0.12;
-    let density = |at: Vec2| smooth(0.49, 0.70, fractal(at));
-    let cover = density(at) * smooth(0.02, 0.22, direction.y);
-    // A cloud is shaded where there is more of it toward the sun.
-    let shade = (0.75 + 0.9 * (density(at) - density(at + toward_sun)) - 0.35 * cover).clamp(0.0, 1.0);
-    (0.9 * cover, shade)
+    let toward_sun = Vec2::new(to_light.x, to_light.z) * 0.15;
+    let [here, sunward] = [at, at + toward_sun].map(fractal);
+    let cover = smooth(0.48, 0.66, here) * smooth(0.02, 0.22, direction.y);
+    // A cloud is shaded where there is more of it toward the sun, and where it is thick.
+    let shade = 0.85 + 3.0 * (here - sunward) - 0.9 * smooth(0.55, 0.95, here);
+    (0.95 * cover, shade.clamp(0.0, 1.0))
 }
 
 /// Noise of five octaves, 0..=1, each turned so that no lattice shows.
