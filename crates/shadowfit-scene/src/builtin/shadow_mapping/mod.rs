@@ -12,7 +12,7 @@ use super::courtyard::figure_at_ease;
 use crate::{Lens, Scene, Sun};
 
 /// Size of the figure, in the sample's units a metre: it is 1.85 m tall to the top of its cap.
-const UNITS_PER_METRE: f32 = 36.0;
+const UNITS_PER_METRE: f32 = 35.4;
 /// Where the camera of the sample starts.
 const EYE: Vec3 = Vec3::new(0.0, 70.0, 100.0);
 /// Where it looks: two forward, one down.

@@ -74,7 +74,7 @@ fn bonnet(parts: &mut Parts) {
     for x in [-0.8, 0.8] {
         let bracket = plank(Vec3::new(x - 0.22, 2.2, 2.95), Vec3::new(x + 0.22, 2.27, 3.05));
         let bowl = lathe(&[(0.08, 0.0), (0.2, 0.16), (0.21, 0.24)], 20);
-        let glass = lathe(&[(0.17, 0.0), (0.17, 0.25), (0.1, 0.28)], 20);
+        let glass = lathe(&[(0.17, 0.2), (0.17, 0.26), (0.1, 0.29)], 20);
         let ahead = Affine3A::from_rotation_translation(
             Quat::from_rotation_x(std::f32::consts::FRAC_PI_2),
             Vec3::new(x * 1.12, 2.3, 2.98),
@@ -82,16 +82,8 @@ fn bonnet(parts: &mut Parts) {
         parts.add(Paint::Dark, CRISP, bracket.with(bowl.transformed(ahead)));
         parts.add(Paint::Lamp, CRISP, glass.transformed(ahead));
     }
-    let pipe = [
-        (0.10, 0.0),
-        (0.10, 0.3),
-        (0.2, 0.36),
-        (0.2, 1.1),
-        (0.11, 1.2),
-        (0.11, 2.05),
-        (0.085, 2.05),
-        (0.085, 1.9),
-    ];
+    let pipe =
+        [(0.10, 0.0), (0.10, 0.3), (0.2, 0.36), (0.2, 1.1), (0.11, 1.2), (0.11, 2.05), (0.085, 2.05), (0.085, 1.9)];
     let lid = plank(Vec3::new(-0.12, 0.0, -0.14), Vec3::new(0.12, 0.03, 0.14))
         .transformed(Affine3A::from_rotation_translation(Quat::from_rotation_x(0.6), Vec3::new(0.0, 2.16, 0.04)));
     parts.add(Paint::Steel, CRISP, lathe(&pipe, 20).with(lid).moved(Vec3::new(-0.42, 2.72, 1.75)));
@@ -133,10 +125,8 @@ fn driver(parts: &mut Parts) {
     let stand = block(Vec3::new(-0.22, 1.95, -1.55), Vec3::new(0.22, 2.4, -1.05), 0.04);
     parts.add(Paint::Dark, CRISP, stand);
     let cushion = rounded_box(Vec3::new(0.44, 0.1, 0.4), 0.08, 2).moved(Vec3::new(0.0, 2.48, -1.3));
-    let back = rounded_box(Vec3::new(0.44, 0.48, 0.09), 0.08, 2).transformed(Affine3A::from_rotation_translation(
-        Quat::from_rotation_x(-0.15),
-        Vec3::new(0.0, 2.98, -1.72),
-    ));
+    let back = rounded_box(Vec3::new(0.44, 0.48, 0.09), 0.08, 2)
+        .transformed(Affine3A::from_rotation_translation(Quat::from_rotation_x(-0.15), Vec3::new(0.0, 2.98, -1.72)));
     parts.add(Paint::Seat, CRISP, cushion.with(back));
     let tilt = Affine3A::from_rotation_translation(Quat::from_rotation_x(-0.65), Vec3::new(0.0, 3.28, -0.42));
     let spokes = plank(Vec3::new(-0.36, -0.02, -0.04), Vec3::new(0.36, 0.02, 0.04));

@@ -3,15 +3,41 @@
 mod coplanar;
 mod courtyard;
 mod motion;
+mod shadow_mapping;
 mod surface;
+mod terrain;
 mod view;
 
-use super::BuiltinScene;
+use glam::Vec3;
+
+use super::{BuiltinScene, SampleScene};
 use crate::{Primitive, Scene};
 
 /// Every built-in scene, built.
 fn all() -> impl Iterator<Item = (BuiltinScene, Scene)> {
     BuiltinScene::ALL.into_iter().map(|builtin| (builtin, builtin.build()))
+}
+
+/// Every scene with its id, those of the samples too.
+fn everything() -> impl Iterator<Item = (&'static str, Scene)> {
+    let samples = SampleScene::ALL.into_iter().map(|sample| (sample.id(), sample.build()));
+    all().map(|(builtin, scene)| (builtin.id(), scene)).chain(samples)
+}
+
+/// World bounds of what hangs below a node, from the vertices themselves.
+fn bounds_below(scene: &Scene, root: usize, animation: Option<usize>, seconds: f32) -> (Vec3, Vec3) {
+    let pose = scene.pose(animation, seconds);
+    let mut bounds = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for instance in scene.instances() {
+        if scene.is_descendant(instance.node, root) {
+            let world = pose.world_from_instance(scene, &instance);
+            for &position in &scene.meshes[instance.mesh].primitives[instance.primitive].positions {
+                let at = world.transform_point3(position);
+                bounds = (bounds.0.min(at), bounds.1.max(at));
+            }
+        }
+    }
+    bounds
 }
 
 /// All primitives with the names of their meshes.
@@ -47,8 +73,16 @@ fn every_scene_is_found_by_its_id_and_says_what_it_shows() {
 }
 
 #[test]
+fn every_sample_scene_has_the_name_of_its_id() {
+    for sample in SampleScene::ALL {
+        assert_eq!(sample.build().name, sample.id());
+        assert_eq!(BuiltinScene::from_id(sample.id()), None);
+    }
+}
+
+#[test]
 fn every_scene_is_the_same_every_time() {
-    for ((builtin, a), (_, b)) in all().zip(all()) {
+    for ((builtin, a), (_, b)) in everything().zip(everything()) {
         let same = |(a, b): ((&str, &Primitive), (&str, &Primitive))| {
             a.0 == b.0
                 && (&a.1.positions, &a.1.normals, &a.1.uvs) == (&b.1.positions, &b.1.normals, &b.1.uvs)
@@ -78,7 +112,7 @@ fn triangle_counts_keep_their_budget() {
 
 #[test]
 fn parents_come_before_children_and_indices_exist() {
-    for (builtin, scene) in all() {
+    for (builtin, scene) in everything() {
         for (index, node) in scene.nodes.iter().enumerate() {
             assert!(node.parent.is_none_or(|parent| parent < index), "{builtin:?}: {}", node.name);
             assert!(node.mesh.is_none_or(|mesh| mesh < scene.meshes.len()), "{builtin:?}: {}", node.name);

@@ -2,16 +2,18 @@
 
 use std::collections::HashMap;
 
-use super::{all, drawn, primitives, triangles};
+use super::{drawn, everything, primitives, triangles};
 use crate::builtin::BuiltinScene;
 use crate::{AlphaMode, Primitive, Scene};
 
-/// Grounds: open sheets that face up.
-const GROUNDS: [(BuiltinScene, &str); 4] = [
-    (BuiltinScene::Courtyard, "floor"),
-    (BuiltinScene::Plain, "land"),
-    (BuiltinScene::Arcade, "gravel"),
-    (BuiltinScene::Forest, "forest floor"),
+/// Grounds: open sheets that face up, by the ids of their scenes.
+const GROUNDS: [(&str, &str); 6] = [
+    ("courtyard", "floor"),
+    ("plain", "land"),
+    ("arcade", "gravel"),
+    ("forest", "forest floor"),
+    ("shadow-mapping", "grid floor"),
+    ("terrain", "land"),
 ];
 
 /// Whether a primitive is a sheet of leaves or grass: cut out, with two sides. The courtyard's lattice is solid.
@@ -22,7 +24,7 @@ fn is_foliage(scene: &Scene, primitive: &Primitive) -> bool {
 
 #[test]
 fn vertex_arrays_agree_and_every_index_is_in_range() {
-    for (builtin, scene) in all() {
+    for (builtin, scene) in everything() {
         for (name, primitive) in primitives(&scene) {
             let count = primitive.positions.len();
             assert_eq!((primitive.normals.len(), primitive.uvs.len()), (count, count), "{builtin:?}: {name}");
@@ -36,7 +38,7 @@ fn vertex_arrays_agree_and_every_index_is_in_range() {
 
 #[test]
 fn every_material_is_used_and_its_texture_exists_and_is_small() {
-    for (builtin, scene) in all() {
+    for (builtin, scene) in everything() {
         let textures = || scene.materials.iter().filter_map(|material| material.base_color_texture);
         assert!(textures().all(|texture| texture.image < scene.images.len()), "{builtin:?}");
         for (index, image) in scene.images.iter().enumerate() {
@@ -53,7 +55,7 @@ fn every_material_is_used_and_its_texture_exists_and_is_small() {
 
 #[test]
 fn every_triangle_has_area_and_unit_normals_on_its_outer_side() {
-    for (builtin, scene) in all() {
+    for (builtin, scene) in everything() {
         for (name, primitive) in primitives(&scene) {
             for corners in triangles(primitive) {
                 let [a, b, c] = corners.map(|index| primitive.positions[index]);
@@ -72,7 +74,7 @@ fn every_triangle_has_area_and_unit_normals_on_its_outer_side() {
 
 #[test]
 fn every_solid_is_closed_and_faces_outwards() {
-    for (builtin, scene) in all() {
+    for (builtin, scene) in everything() {
         let solids = primitives(&scene)
             .filter(|(name, primitive)| !GROUNDS.contains(&(builtin, name)) && !is_foliage(&scene, primitive));
         for (name, primitive) in solids {
@@ -96,8 +98,8 @@ fn every_solid_is_closed_and_faces_outwards() {
 
 #[test]
 fn grounds_are_there_and_face_up() {
-    for (builtin, mesh) in GROUNDS {
-        let scene = builtin.build();
+    for (builtin, scene) in everything() {
+        let mesh = GROUNDS.iter().find(|ground| ground.0 == builtin).expect(builtin).1;
         let ground = primitives(&scene).find(|(name, _)| *name == mesh).expect(mesh).1;
         assert!(ground.normals.iter().all(|normal| normal.y > 0.5), "{builtin:?}");
     }
@@ -117,7 +119,7 @@ fn thousands_of_cut_out_leaves_make_the_forest() {
 
 #[test]
 fn foliage_is_masked_and_neither_a_full_square_nor_dust() {
-    for (builtin, scene) in all() {
+    for (builtin, scene) in everything() {
         for material in scene.materials.iter().filter(|m| m.double_sided && m.name != "lattice") {
             assert!(matches!(material.alpha, AlphaMode::Mask { .. }), "{builtin:?}: {}", material.name);
             let image = &scene.images[material.base_color_texture.expect("a texture").image];
