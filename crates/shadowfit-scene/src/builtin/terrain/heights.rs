@@ -6,11 +6,11 @@ use super::vehicles::PLACES;
 use crate::builtin::pixels::hash;
 
 /// Texels along a side.
-pub(in crate::builtin) const TEXELS: usize = 256;
+pub(super) const TEXELS: i32 = 256;
 /// Height of the greatest value, 255, in the terrain's units: five values are one unit.
 const PER_UNIT: f32 = 5.0;
 /// Distance around each vehicle to which the ground is level, in the terrain's units.
-pub(in crate::builtin) const LEVEL: f32 = 26.0;
+const LEVEL: f32 = 26.0;
 /// Distance from there over which hills rise to their whole height.
 const RISE: f32 = 60.0;
 /// Texels to each side over which a slope is taken: enough that steps of an eighth of a bit do not show in the shading.
@@ -25,7 +25,7 @@ pub(in crate::builtin) struct HeightMap {
 impl HeightMap {
     /// Draws it.
     pub(in crate::builtin) fn new() -> Self {
-        let texel = |index: usize| {
+        let texel = |index: i32| {
             let height = hills((index % TEXELS) as f32, (index / TEXELS) as f32);
             (height * PER_UNIT).round().clamp(0.0, 255.0) as u8
         };
@@ -34,8 +34,8 @@ impl HeightMap {
 
     /// Height at a texel, in the terrain's units; outside the map, that of its edge.
     pub(in crate::builtin) fn height(&self, x: i32, z: i32) -> f32 {
-        let [x, z] = [x, z].map(|texel| texel.clamp(0, TEXELS as i32 - 1) as usize);
-        f32::from(self.red[z * TEXELS + x]) / PER_UNIT
+        let [x, z] = [x, z].map(|texel| texel.clamp(0, TEXELS - 1));
+        f32::from(self.red[(z * TEXELS + x) as usize]) / PER_UNIT
     }
 
     /// Slope along x and z at a texel: that of the plane nearest to the heights around it (least squares).

@@ -58,7 +58,7 @@ fn tub(parts: &mut Parts) {
     let floor = block(Vec3::new(-1.12, 1.04, -1.46), Vec3::new(1.12, 1.14, 3.2), 0.03);
     let tailboard = block(Vec3::new(-1.12, 1.06, -1.52), Vec3::new(1.12, 2.16, -1.43), 0.03);
     let dashboard = block(Vec3::new(-1.1, 1.8, 2.9), Vec3::new(1.1, 2.26, 3.24), 0.05);
-    let firewall = plank(Vec3::new(-1.1, 1.08, 3.14), Vec3::new(1.1, 1.9, 3.22));
+    let firewall = plank(Vec3::new(-1.1, 1.08, 3.15), Vec3::new(1.1, 1.9, 3.22));
     let box_sides =
         |side: f32| block(Vec3::new(-0.3, 1.1, -1.44), Vec3::new(0.3, 1.92, 0.82), 0.03).moved(Vec3::X * side * 0.82);
     parts.add(Paint::Sand, CRISP, side.and_mirrored().with(floor).with(tailboard).with(dashboard));

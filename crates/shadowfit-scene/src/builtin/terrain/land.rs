@@ -22,8 +22,8 @@ pub(super) fn build(builder: &mut Builder) {
 /// The surface of a height map: texel (x, z) of red value r is the vertex (x, r/5, z).
 fn sheet(map: &HeightMap) -> Primitive {
     let mut sheet = Primitive { material: Paint::Land.into(), ..Primitive::default() };
-    for z in 0..TEXELS as i32 {
-        for x in 0..TEXELS as i32 {
+    for z in 0..TEXELS {
+        for x in 0..TEXELS {
             let [along_x, along_z] = map.slope(x, z);
             let normal = Vec3::new(-along_x, 1.0, -along_z).normalize();
             sheet.positions.push(Vec3::new(x as f32, map.height(x, z), z as f32));

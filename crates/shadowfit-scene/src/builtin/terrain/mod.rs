@@ -18,7 +18,7 @@ use super::build::Builder;
 use crate::{Lens, Scene, Sun};
 
 #[cfg(test)]
-pub(super) use heights::{HeightMap, LEVEL, TEXELS};
+pub(super) use heights::HeightMap;
 #[cfg(test)]
 pub(super) use vehicles::PLACES;
 

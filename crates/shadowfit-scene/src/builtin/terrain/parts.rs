@@ -139,7 +139,7 @@ impl Wheel {
             (self.rim * 0.9, h * 0.72),
             (self.rim * 0.9, h * 0.05),
         ];
-        lathe(&profile, 40)
+        lathe(&profile, 32)
     }
 
     /// Lugs in two rows, slanted toward each other.
@@ -176,6 +176,6 @@ impl Wheel {
             (r * 0.5, h * 0.3),
             (r * 0.45, h * 0.42),
         ];
-        lathe(&profile, 32)
+        lathe(&profile, 24)
     }
 }

@@ -5,8 +5,10 @@ use glam::{Mat4, Quat, Vec3};
 use super::{bounds_below, drawn, primitives};
 use crate::Scene;
 use crate::builtin::SampleScene;
-use crate::builtin::terrain::{HeightMap, LEVEL, PLACES, TEXELS};
+use crate::builtin::terrain::{HeightMap, PLACES};
 
+/// Texels along a side of the height map.
+const SIDE: usize = 256;
 /// Where the sample's light stands.
 const LIGHT: Vec3 = Vec3::new(128.0, 100.0, 0.0);
 
@@ -44,7 +46,7 @@ fn each_vertex_is_a_texel_at_a_fifth_of_its_red_value() {
     // Two triangles for each of the 255 × 255 cells.
     assert_eq!(land.indices.len(), 255 * 255 * 6);
     for (index, (&red, &position)) in map.red.iter().zip(&land.positions).enumerate() {
-        let (x, z) = (index % TEXELS, index / TEXELS);
+        let (x, z) = (index % SIDE, index / SIDE);
         assert_eq!(position, Vec3::new(x as f32, f32::from(red) / 5.0, z as f32));
     }
 }
@@ -61,10 +63,9 @@ fn the_hills_use_most_of_the_height_map_s_range() {
 #[test]
 fn the_ground_is_level_where_the_vehicles_stand() {
     let map = HeightMap::new();
-    assert!(LEVEL >= 25.0);
     for place in &PLACES {
         for (index, &red) in map.red.iter().enumerate() {
-            let texel = Vec3::new((index % TEXELS) as f32, 0.0, (index / TEXELS) as f32);
+            let texel = Vec3::new((index % SIDE) as f32, 0.0, (index / SIDE) as f32);
             assert!(red == 0 || texel.distance(place.at) > 25.0, "{}: {red} at {texel}", place.name);
         }
     }
@@ -118,12 +119,16 @@ fn no_hill_stands_between_the_light_and_a_vehicle() {
 #[test]
 fn the_helicopter_s_rotor_throws_its_shadow_on_the_jeep() {
     let scene = SampleScene::Terrain.build();
-    let blades = triangles_below(&scene, node(&scene, "helicopter"));
     let jeep = triangles_below(&scene, node(&scene, "jeep"));
-    // Blades are the highest; they are seen from above by the light.
-    let high = blades.into_iter().flatten().filter(|vertex| vertex.y > 11.5);
-    let casts = high.filter(|&vertex| jeep.iter().any(|&triangle| is_shadowed(vertex, triangle))).count();
-    assert!(casts > 0);
+    // Only blades and hub are so high. Points along the edges of their triangles:
+    let is_high = |triangle: &[Vec3; 3]| triangle.iter().all(|vertex| vertex.y > 11.4);
+    let blades = triangles_below(&scene, node(&scene, "helicopter")).into_iter().filter(is_high);
+    let along = blades.flat_map(|[a, b, _]| (0..=20).map(move |step| a.lerp(b, step as f32 / 20.0)));
+    let casts: Vec<Vec3> = along.filter(|&point| jeep.iter().any(|&triangle| is_shadowed(point, triangle))).collect();
+    let (low, high) =
+        casts.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), &at| (low.min(at), high.max(at)));
+    assert!(high.distance(low) > 3.0, "{low} {high}");
+    assert!(high.distance(low) < 8.0, "the end of one blade: {low} {high}");
 }
 
 #[test]
