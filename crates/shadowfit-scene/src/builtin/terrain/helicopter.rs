@@ -15,7 +15,7 @@ use crate::builtin::solid::Solid;
 /// Height of the main rotor.
 const ROTOR: f32 = 5.8;
 /// Length of its blades from the mast: about that of the boom, as on light helicopters.
-const BLADE: f32 = 6.7;
+const BLADE: f32 = 7.1;
 /// Turn of the first blade from straight ahead, in radians: one blade's shadow falls on the jeep.
 const BLADE_TURN: f32 = 1.466;
 /// Distance from the mast to the middle between nose and tail.
