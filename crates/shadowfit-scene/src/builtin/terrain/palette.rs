@@ -44,7 +44,7 @@ pub(super) fn materials() -> Vec<Material> {
         matt("red paint", [0.44, 0.025, 0.015], 0.4),
         matt("cream paint", [0.44, 0.39, 0.29], 0.5),
         matt("yellow paint", [0.58, 0.33, 0.02], 0.45),
-        matt("blue paint", [0.035, 0.13, 0.42], 0.35),
+        matt("blue paint", [0.022, 0.085, 0.30], 0.35),
         matt("pale paint", [0.48, 0.49, 0.49], 0.4),
         matt("dark glass", [0.018, 0.030, 0.040], 0.1),
         matt("sand paint", [0.42, 0.305, 0.145], 0.6),
