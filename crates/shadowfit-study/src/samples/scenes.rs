@@ -3,7 +3,7 @@
 use shadowfit_scene::Scene;
 use shadowfit_scene::builtin::SampleScene;
 
-/// The XNA sample's character on its floor.
+/// The XNA sample's character on its floor. Its first animation turns it once.
 pub(super) fn shadow_mapping() -> Scene {
     SampleScene::ShadowMapping.build()
 }

@@ -152,7 +152,7 @@ pub(super) fn at_ease() -> Posture {
     posture.turn(Joint::TailC, -0.06, 0.0, 0.0);
     posture.reach_foot(Side::Left, Vec3::new(0.125, ANKLE, -0.03), Quat::from_rotation_y(0.25), 0.0);
     posture.reach_foot(Side::Right, Vec3::new(-0.15, ANKLE, 0.06), Quat::from_rotation_y(-0.32), 0.0);
-    for (side, ahead, bend) in [(Side::Left, 0.04, -0.34), (Side::Right, -0.16, -0.42)] {
+    for (side, ahead, bend) in [(Side::Left, 0.04, -0.34), (Side::Right, -0.22, -0.75)] {
         let [arm, forearm, hand] = side.arm();
         posture.turn(arm, ahead, 0.0, side.sign() * 0.36);
         posture.turn(forearm, bend, 0.0, side.sign() * -0.12);

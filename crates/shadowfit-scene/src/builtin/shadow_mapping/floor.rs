@@ -15,7 +15,7 @@ const CELLS: u32 = 8;
 /// Pixels along a side of the image: 13 a unit, and less than 6 are seen from the sample's camera.
 const SIZE: u32 = 1024;
 /// Half of the width of a grid line, in the sample's units: two pixels of a picture 480 high.
-const LINE: f32 = 0.19;
+const LINE: f32 = 0.22;
 
 /// The floor's material, with the image of index 0.
 pub(super) fn material() -> Material {
@@ -37,7 +37,7 @@ pub(super) fn image() -> Image {
         let own = 9.0 * (hash(column, 60 + row) - 0.5);
         let is_dark = (column + row) % 2 == 1;
         let base = if is_dark { [190.0, 185.0, 174.0] } else { [216.0, 211.0, 199.0] };
-        let color = base.map(|value| 118.0 + (value + own - 118.0) * stone);
+        let color = base.map(|value| 100.0 + (value + own - 100.0) * stone);
         shade(color, 5.0 * cloud + 4.0 * grain)
     })
 }

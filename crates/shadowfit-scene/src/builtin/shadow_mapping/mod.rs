@@ -1,7 +1,6 @@
 //! The shadow mapping sample's scene: a figure on a grid floor under a sun from its right.
 //!
-//! The sample's units are centimetres and a half, so to speak: a person is about 70 of them tall. Only the figure casts,
-//! and both receive.
+//! In the sample's units a person is about 70 tall. Only the figure casts, and both receive.
 
 mod floor;
 
@@ -11,8 +10,9 @@ use super::build::Builder;
 use super::courtyard::figure_at_ease;
 use crate::{Lens, Scene, Sun};
 
-/// Size of the figure, in the sample's units a metre: it is 1.85 m tall to the top of its cap.
-const UNITS_PER_METRE: f32 = 36.0;
+/// Size of the figure, in the sample's units a metre: as tall as its head still fits below the upper edge of the
+/// sample's picture, which cuts 63 units above the origin.
+const UNITS_PER_METRE: f32 = 35.4;
 /// Where the camera of the sample starts.
 const EYE: Vec3 = Vec3::new(0.0, 70.0, 100.0);
 /// Where it looks: two forward, one down.

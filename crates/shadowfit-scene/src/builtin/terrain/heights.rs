@@ -6,26 +6,26 @@ use super::vehicles::PLACES;
 use crate::builtin::pixels::hash;
 
 /// Texels along a side.
-pub(super) const TEXELS: usize = 256;
+pub(super) const TEXELS: i32 = 256;
 /// Height of the greatest value, 255, in the terrain's units: five values are one unit.
 const PER_UNIT: f32 = 5.0;
 /// Distance around each vehicle to which the ground is level, in the terrain's units.
-pub(super) const LEVEL: f32 = 26.0;
-/// Distance over which hills rise to their whole height.
-const RISE: f32 = 62.0;
-/// Texels to each side over which a slope is taken: enough that steps of an eighth of a bit do not show in the shading.
+const LEVEL: f32 = 26.0;
+/// Distance from there over which hills rise to their whole height.
+const RISE: f32 = 60.0;
+/// Texels to each side over which a slope is taken: enough that the steps of 8-bit heights do not show in the shading.
 const REACH: i32 = 4;
 
 /// The height map, rows along z.
-pub(super) struct HeightMap {
+pub(in crate::builtin) struct HeightMap {
     /// Values of the red channel, 256 along x for each z.
-    pub(super) red: Vec<u8>,
+    pub(in crate::builtin) red: Vec<u8>,
 }
 
 impl HeightMap {
     /// Draws it.
-    pub(super) fn new() -> Self {
-        let texel = |index: usize| {
+    pub(in crate::builtin) fn new() -> Self {
+        let texel = |index: i32| {
             let height = hills((index % TEXELS) as f32, (index / TEXELS) as f32);
             (height * PER_UNIT).round().clamp(0.0, 255.0) as u8
         };
@@ -33,9 +33,9 @@ impl HeightMap {
     }
 
     /// Height at a texel, in the terrain's units; outside the map, that of its edge.
-    pub(super) fn height(&self, x: i32, z: i32) -> f32 {
-        let [x, z] = [x, z].map(|texel| texel.clamp(0, TEXELS as i32 - 1) as usize);
-        f32::from(self.red[z * TEXELS + x]) / PER_UNIT
+    pub(in crate::builtin) fn height(&self, x: i32, z: i32) -> f32 {
+        let [x, z] = [x, z].map(|texel| texel.clamp(0, TEXELS - 1));
+        f32::from(self.red[(z * TEXELS + x) as usize]) / PER_UNIT
     }
 
     /// Slope along x and z at a texel: that of the plane nearest to the heights around it (least squares).
@@ -76,13 +76,13 @@ pub(super) fn noise(x: f32, y: f32, period: u32, seed: u32) -> f32 {
 fn hills(x: f32, z: f32) -> f32 {
     let away = PLACES.iter().map(|place| place.at.distance(glam::Vec3::new(x, 0.0, z))).fold(f32::INFINITY, f32::min);
     // The valley runs on from the level ground to the north edge and, narrower, to the south-west.
-    let north = ((x - 138.0 - 10.0 * (z / 40.0).sin()).abs() + (z - 90.0).max(0.0)) * 0.85;
-    let south = ((x - 118.0 + 0.55 * (z - 150.0)).abs() * 1.5 + (140.0 - z).max(0.0)) + 8.0;
-    let rise = ease(away.min(north.max(LEVEL * 0.7)).min(south), LEVEL, RISE);
+    let north = (x - 138.0 - 10.0 * (z / 40.0).sin()).abs() + (z - 100.0).max(0.0) + 6.0;
+    let south = 0.88 * (x - 118.0 + 0.55 * (z - 150.0)).abs() + (140.0 - z).max(0.0) + 10.0;
+    let rise = ease(away.min(north).min(south), LEVEL, LEVEL + RISE);
     let broad = noise(x / 52.0 + 0.3, z / 52.0 + 0.6, 64, 301);
     let middle = noise(x / 25.0, z / 25.0, 64, 402);
     let small = noise(x / 11.0, z / 11.0, 64, 503);
-    let wall = 25.0 + 16.0 * broad + 8.0 * middle + 2.2 * small;
+    let wall = 27.0 + 16.0 * broad + 8.0 * middle + 2.0 * small;
     // Hills toward the light stay low.
     rise * wall.max(3.0) * (0.45 + 0.55 * ease(z, 40.0, 130.0))
 }

@@ -1,6 +1,6 @@
 //! The helicopter: a bubble of dark glass, a boom with fin and tail rotor, four thin blades on a mast, skids.
 //!
-//! The mast is at z = 0, about which the blades turn.
+//! Modelled with the mast at z = 0, about which the blades turn.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 
@@ -13,11 +13,13 @@ use crate::builtin::shapes::{block, capsule, ellipsoid, lathe, loft, plank, roun
 use crate::builtin::solid::Solid;
 
 /// Height of the main rotor.
-const ROTOR: f32 = 5.82;
-/// Length of its blades from the mast: a little more than the boom, as on light helicopters.
+const ROTOR: f32 = 5.8;
+/// Length of its blades from the mast: about that of the boom, as on light helicopters.
 const BLADE: f32 = 7.1;
 /// Turn of the first blade from straight ahead, in radians: one blade's shadow falls on the jeep.
-const BLADE_TURN: f32 = 1.05;
+const BLADE_TURN: f32 = 1.466;
+/// Distance from the mast to the middle between nose and tail.
+pub(super) const MIDDLE: f32 = 2.2;
 /// End of the tail boom.
 const TAIL: Vec3 = Vec3::new(0.0, 3.2, -6.9);
 
@@ -97,7 +99,7 @@ fn tail(parts: &mut Parts) {
     let tip = wedge(rect(0.07, [6.98, 7.82], 4.45), rect(0.065, [7.12, 7.9], 4.9));
     parts.add(Paint::Pale, CRISP, tip.transformed(upright));
     let stabiliser = rounded_box(Vec3::new(1.25, 0.045, 0.32), 0.04, 2).moved(Vec3::new(0.0, 3.16, -5.75));
-    let plates = block(Vec3::new(1.2, 2.85, -6.15), Vec3::new(1.27, 3.6, -5.4), 0.03).and_mirrored();
+    let plates = block(Vec3::new(1.2, 2.95, -6.1), Vec3::new(1.27, 3.45, -5.45), 0.03).and_mirrored();
     parts.add(Paint::Pale, CRISP, stabiliser.with(plates));
     let blade = plank(Vec3::new(-0.02, 0.12, -0.09), Vec3::new(0.02, 1.15, 0.09));
     let hub = capsule(Vec3::new(-0.45, 0.0, 0.0), 0.09, Vec3::new(0.06, 0.0, 0.0), 0.11, 12);
@@ -106,12 +108,12 @@ fn tail(parts: &mut Parts) {
     parts.add(Paint::Dark, CRISP, rotor);
 }
 
-/// Four thin blades that droop a little, and their hub.
+/// Four thin blades and their hub.
 fn rotor(parts: &mut Parts) {
     // Modelled along +z.
-    let blade = wedge(rect(0.2, [-0.03, 0.03], 0.55), rect(0.2, [-0.17, -0.13], BLADE));
+    let blade = wedge(rect(0.2, [-0.03, 0.03], 0.55), rect(0.2, [-0.03, 0.01], BLADE));
     let grip = capsule(Vec3::ZERO, 0.11, Vec3::new(0.0, 0.0, 0.75), 0.09, 10);
-    let end = wedge(rect(0.205, [-0.165, -0.105], BLADE - 0.75), rect(0.205, [-0.178, -0.122], BLADE + 0.01));
+    let end = wedge(rect(0.205, [-0.036, 0.018], BLADE - 0.75), rect(0.205, [-0.036, 0.018], BLADE + 0.01));
     let turned = |solid: &Solid| {
         let turn = |quarter: usize| Affine3A::from_rotation_y(BLADE_TURN + TAU / 4.0 * quarter as f32);
         let all = (0..4).map(|quarter| solid.clone().transformed(turn(quarter))).reduce(Solid::with);
@@ -132,8 +134,5 @@ fn skids(parts: &mut Parts) {
     for z in [-1.15, 1.35] {
         skid = skid.with(tube([1.45, 0.12, z], [1.2, 0.75, z], 0.085)).with(tube([1.2, 0.75, z], [0.5, 1.2, z], 0.085));
     }
-    let step = block(Vec3::new(1.28, 0.6, 0.4), Vec3::new(1.6, 0.66, 0.9), 0.02);
-    let arm = plank(Vec3::new(1.4, 0.14, 0.6), Vec3::new(1.46, 0.62, 0.7));
     parts.add(Paint::Steel, SMOOTH, skid.and_mirrored());
-    parts.add(Paint::Dark, CRISP, step.with(arm).and_mirrored());
 }

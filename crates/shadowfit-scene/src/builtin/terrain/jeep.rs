@@ -58,7 +58,7 @@ fn tub(parts: &mut Parts) {
     let floor = block(Vec3::new(-1.12, 1.04, -1.46), Vec3::new(1.12, 1.14, 3.2), 0.03);
     let tailboard = block(Vec3::new(-1.12, 1.06, -1.52), Vec3::new(1.12, 2.16, -1.43), 0.03);
     let dashboard = block(Vec3::new(-1.1, 1.8, 2.9), Vec3::new(1.1, 2.26, 3.24), 0.05);
-    let firewall = plank(Vec3::new(-1.1, 1.08, 3.14), Vec3::new(1.1, 1.9, 3.22));
+    let firewall = plank(Vec3::new(-1.1, 1.08, 3.15), Vec3::new(1.1, 1.9, 3.22));
     let box_sides =
         |side: f32| block(Vec3::new(-0.3, 1.1, -1.44), Vec3::new(0.3, 1.92, 0.82), 0.03).moved(Vec3::X * side * 0.82);
     parts.add(Paint::Sand, CRISP, side.and_mirrored().with(floor).with(tailboard).with(dashboard));
@@ -82,7 +82,7 @@ fn front(parts: &mut Parts) {
     parts.add(Paint::Dark, CRISP, (0..7).map(slot).reduce(Solid::with).unwrap_or_default());
     let ahead = Affine3A::from_rotation_translation(Quat::from_rotation_x(FRAC_PI_2), Vec3::new(0.76, 1.74, 6.25));
     let ring = lathe(&[(0.24, 0.0), (0.25, 0.12), (0.21, 0.15)], 24).transformed(ahead);
-    let glass = lathe(&[(0.19, 0.0), (0.19, 0.16), (0.12, 0.2)], 24).transformed(ahead);
+    let glass = lathe(&[(0.19, 0.1), (0.19, 0.17), (0.12, 0.21)], 24).transformed(ahead);
     parts.add(Paint::Dark, CRISP, ring.and_mirrored());
     parts.add(Paint::Lamp, CRISP, glass.and_mirrored());
     let wheel = lathe(&[(0.07, 0.0), (0.07, 0.06)], 10);

@@ -18,12 +18,12 @@ use super::build::Builder;
 use crate::{Lens, Scene, Sun};
 
 #[cfg(test)]
-pub(super) use heights::{HeightMap, LEVEL, TEXELS};
+pub(super) use heights::HeightMap;
 #[cfg(test)]
 pub(super) use vehicles::PLACES;
 
-/// Eye and target of the start view: over the tractor along the valley.
-const VIEW: (Vec3, Vec3) = (Vec3::new(170.0, 32.0, 60.0), Vec3::new(136.0, 2.0, 134.0));
+/// Eye and target of the start view: over the tractor along the valley, with the jeep beside an inset at the top left.
+const VIEW: (Vec3, Vec3) = (Vec3::new(160.0, 30.0, 62.0), Vec3::new(139.0, 0.0, 130.0));
 /// Lens of the start view.
 const LENS: Lens = Lens::Perspective { fov_y: std::f32::consts::FRAC_PI_4, near: 1.0, far: Some(400.0) };
 /// Where the sample's light stands and where it looks: the sun shines along its axis.

@@ -125,6 +125,8 @@ impl Wheel {
         let (h, tread) = (self.half, self.radius - self.lug);
         let shoulder = tread - 0.12 * self.radius;
         let profile = [
+            // Its sides are hollow as deep as the disc reaches.
+            (self.rim * 0.9, -h * 0.05),
             (self.rim * 0.9, -h * 0.72),
             (self.rim * 1.06, -h * 0.86),
             (f32::midpoint(self.rim, shoulder), -h),
@@ -135,18 +137,23 @@ impl Wheel {
             (f32::midpoint(self.rim, shoulder), h),
             (self.rim * 1.06, h * 0.86),
             (self.rim * 0.9, h * 0.72),
+            (self.rim * 0.9, h * 0.05),
         ];
-        lathe(&profile, 40)
+        lathe(&profile, 32)
     }
 
     /// Lugs in two rows, slanted toward each other.
     fn tread(&self) -> Solid {
         let mut tread = Solid::default();
         let thick = self.radius * TAU / self.lugs as f32 * 0.2;
+        let length = self.half * 0.48;
+        // Corners, not middles, are as far out as the radius says.
+        let corner = thick * self.slant.cos() + length * self.slant.sin();
+        let top = (self.radius * self.radius - corner * corner).sqrt();
         for index in 0..2 * self.lugs {
             let side = if index % 2 == 0 { 1.0 } else { -1.0 };
-            let low = Vec3::new(-thick, self.radius - 2.0 * self.lug, -self.half * 0.48);
-            let lug = plank(low, Vec3::new(thick, self.radius, self.half * 0.48));
+            let low = Vec3::new(-thick, self.radius - 2.0 * self.lug, -length);
+            let lug = plank(low, Vec3::new(thick, top, length));
             let turn = Quat::from_rotation_z(TAU * index as f32 / (2 * self.lugs) as f32);
             let lie = Affine3A::from_rotation_translation(
                 Quat::from_rotation_y(side * self.slant),
@@ -169,6 +176,6 @@ impl Wheel {
             (r * 0.5, h * 0.3),
             (r * 0.45, h * 0.42),
         ];
-        lathe(&profile, 32)
+        lathe(&profile, 24)
     }
 }

@@ -74,7 +74,7 @@ fn bonnet(parts: &mut Parts) {
     for x in [-0.8, 0.8] {
         let bracket = plank(Vec3::new(x - 0.22, 2.2, 2.95), Vec3::new(x + 0.22, 2.27, 3.05));
         let bowl = lathe(&[(0.08, 0.0), (0.2, 0.16), (0.21, 0.24)], 20);
-        let glass = lathe(&[(0.17, 0.0), (0.17, 0.25), (0.1, 0.28)], 20);
+        let glass = lathe(&[(0.17, 0.2), (0.17, 0.26), (0.1, 0.29)], 20);
         let ahead = Affine3A::from_rotation_translation(
             Quat::from_rotation_x(std::f32::consts::FRAC_PI_2),
             Vec3::new(x * 1.12, 2.3, 2.98),

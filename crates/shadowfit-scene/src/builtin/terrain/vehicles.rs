@@ -12,17 +12,17 @@ use crate::builtin::build::Builder;
 const SIZE: f32 = 2.0;
 
 /// Where a vehicle stands.
-pub(super) struct Place {
+pub(in crate::builtin) struct Place {
     /// Name of its node.
-    pub(super) name: &'static str,
+    pub(in crate::builtin) name: &'static str,
     /// Position on the level ground, in the terrain's units.
-    pub(super) at: Vec3,
+    pub(in crate::builtin) at: Vec3,
     /// Rotation about the vertical, in radians.
-    pub(super) yaw: f32,
+    pub(in crate::builtin) yaw: f32,
 }
 
 /// The places of tractor, helicopter and jeep.
-pub(super) const PLACES: [Place; 3] = [
+pub(in crate::builtin) const PLACES: [Place; 3] = [
     Place { name: "tractor", at: Vec3::new(150.0, 0.0, 100.0), yaw: 0.5 },
     Place { name: "helicopter", at: Vec3::new(120.0, 0.0, 140.0), yaw: -0.3 },
     Place { name: "jeep", at: Vec3::new(140.0, 0.0, 170.0), yaw: 0.3 },
@@ -31,9 +31,13 @@ pub(super) const PLACES: [Place; 3] = [
 /// Adds the vehicles and returns the node that they hang on.
 pub(super) fn build(builder: &mut Builder) -> usize {
     let all = builder.group("vehicles", Vec3::ZERO, 0.0);
-    // Models face +z; tractor and jeep face the light, the helicopter +x.
-    let models = [(tractor::parts(), PI), (helicopter::parts(), FRAC_PI_2), (jeep::parts(), PI)];
-    for (place, (parts, facing)) in PLACES.iter().zip(models) {
+    // Models face +z; tractor and jeep face the light, the helicopter +x, its middle at its place.
+    let models = [
+        (tractor::parts(), PI, Vec3::ZERO),
+        (helicopter::parts(), FRAC_PI_2, Vec3::X * helicopter::MIDDLE),
+        (jeep::parts(), PI, Vec3::ZERO),
+    ];
+    for (place, (parts, facing, at)) in PLACES.iter().zip(models) {
         let rest = Transform {
             translation: place.at,
             rotation: Quat::from_rotation_y(place.yaw),
@@ -42,7 +46,7 @@ pub(super) fn build(builder: &mut Builder) -> usize {
         };
         let vehicle = builder.node(place.name, Some(all), rest, None);
         let mesh = builder.mesh(place.name, parts.primitives());
-        builder.place(vehicle, mesh, Vec3::ZERO, facing);
+        builder.place(vehicle, mesh, at, facing);
     }
     all
 }

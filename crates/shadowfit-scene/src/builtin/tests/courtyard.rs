@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::drawn;
+use super::{bounds_below, drawn};
 use crate::builtin::{default_camera, default_scene};
 use crate::{Lens, Scene};
 
@@ -12,22 +12,6 @@ const WALK: usize = 0;
 /// Node with a name.
 fn node(scene: &Scene, name: &str) -> usize {
     scene.nodes.iter().position(|node| node.name == name).expect(name)
-}
-
-/// World bounds of what hangs below a node, from the triangles themselves.
-fn bounds_below(scene: &Scene, root: usize, animation: Option<usize>, seconds: f32) -> (Vec3, Vec3) {
-    let pose = scene.pose(animation, seconds);
-    let mut bounds = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-    for instance in scene.instances() {
-        if scene.is_descendant(instance.node, root) {
-            let world = pose.world_from_instance(scene, &instance);
-            for &position in &scene.meshes[instance.mesh].primitives[instance.primitive].positions {
-                let at = world.transform_point3(position);
-                bounds = (bounds.0.min(at), bounds.1.max(at));
-            }
-        }
-    }
-    bounds
 }
 
 #[test]

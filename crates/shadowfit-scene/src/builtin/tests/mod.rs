@@ -4,8 +4,12 @@ mod coplanar;
 mod courtyard;
 mod motion;
 mod samples;
+mod shadow_mapping;
 mod surface;
+mod terrain;
 mod view;
+
+use glam::Vec3;
 
 use super::{BuiltinScene, SampleScene};
 use crate::{Primitive, Scene};
@@ -19,6 +23,22 @@ fn all() -> impl Iterator<Item = (BuiltinScene, Scene)> {
 fn every() -> impl Iterator<Item = (&'static str, Scene)> {
     let samples = SampleScene::ALL.into_iter().map(|sample| (sample.id(), sample.build()));
     all().map(|(builtin, scene)| (builtin.id(), scene)).chain(samples)
+}
+
+/// World bounds of what hangs below a node, from the vertices themselves.
+fn bounds_below(scene: &Scene, root: usize, animation: Option<usize>, seconds: f32) -> (Vec3, Vec3) {
+    let pose = scene.pose(animation, seconds);
+    let mut bounds = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for instance in scene.instances() {
+        if scene.is_descendant(instance.node, root) {
+            let world = pose.world_from_instance(scene, &instance);
+            for &position in &scene.meshes[instance.mesh].primitives[instance.primitive].positions {
+                let at = world.transform_point3(position);
+                bounds = (bounds.0.min(at), bounds.1.max(at));
+            }
+        }
+    }
+    bounds
 }
 
 /// All primitives with the names of their meshes.
@@ -50,6 +70,14 @@ fn every_scene_is_found_by_its_id_and_says_what_it_shows() {
     }
     for unknown in ["", "Courtyard", "courtyard ", "desert"] {
         assert_eq!(BuiltinScene::from_id(unknown), None, "{unknown}");
+    }
+}
+
+#[test]
+fn every_sample_scene_has_the_name_of_its_id() {
+    for sample in SampleScene::ALL {
+        assert_eq!(sample.build().name, sample.id());
+        assert_eq!(BuiltinScene::from_id(sample.id()), None);
     }
 }
 
