@@ -4,10 +4,11 @@
 
 mod floor;
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 use super::build::Builder;
 use super::courtyard::figure_at_ease;
+use super::motion::{looped, rotations};
 use crate::{Lens, Scene, Sun};
 
 /// Size of the figure, in the sample's units a metre: as tall as its head still fits below the upper edge of the
@@ -22,7 +23,12 @@ const LENS: Lens = Lens::Perspective { fov_y: std::f32::consts::FRAC_PI_4, near:
 /// Direction toward the light.
 const TO_LIGHT: Vec3 = Vec3::new(-1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0);
 
-/// The scene.
+/// Time of a whole turn of the figure, in seconds: 200° a second, as the sample's controls turn it.
+const TURN: f32 = 1.8;
+/// Keyframes of a turn.
+const TURN_KEYS: usize = 12;
+
+/// The scene. Its animation turns the figure once.
 pub(super) fn build() -> Scene {
     let mut builder = Builder::new("shadow-mapping", vec![floor::material()], vec![floor::image()]);
     floor::build(&mut builder);
@@ -30,6 +36,8 @@ pub(super) fn build() -> Scene {
     builder.scene.nodes[root].rest.scale = Vec3::splat(UNITS_PER_METRE);
     builder.view((EYE, EYE + FORWARD), LENS);
     let mut scene = builder.scene;
+    let turn = rotations(root, TURN, TURN_KEYS, Quat::from_rotation_y);
+    scene.animations.push(looped("turn", TURN, vec![turn]));
     scene.subject = Some(root);
     scene.sun = Some(Sun { direction: -TO_LIGHT.normalize(), color: Vec3::ONE, intensity: 80_000.0 });
     scene
