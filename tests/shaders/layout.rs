@@ -274,7 +274,7 @@ fn casters_and_samples_read_each_location_with_the_type_that_the_scene_reads_the
     let scene = parse("scene", &shaders::scene(&ShadowMapDescriptor::default()));
     let caster = parse("caster", &shaders::caster(&ShadowMapDescriptor::default()));
     let [surface, shade] =
-        [shaders::occlusion_surface(), shaders::occlusion_shade()].map(|text| parse("sample", &text));
+        [shaders::samples::occlusion_surface(), shaders::samples::occlusion_shade()].map(|text| parse("sample", &text));
     for (module, input) in [(caster, "CasterIn"), (surface, "PartIn"), (shade, "PartIn")] {
         for member in reflected(&module, input).0 {
             let Some(Binding::Location { location, .. }) = member.binding else { continue };
