@@ -22,7 +22,7 @@ const AMBIENT: f32 = 0.15;
 /// Cornflower blue.
 pub(super) const BACKGROUND: [u8; 3] = [100, 149, 237];
 /// Modern lighting: irradiance of sun and of sky and ground.
-const MODERN: Shading = Shading::Modern { light: 1.9, ambient: 0.42 };
+const MODERN: Shading = Shading::Modern { light: 1.25, ambient: 0.35 };
 
 pub(super) const SAMPLE: Sample = Sample {
     id: "xna-shadow-mapping",
@@ -105,9 +105,19 @@ const OPTIONS: [SampleOption; 8] = [
             ("shadows=off", "no shadows"),
             ("lighting=modern", "modern lighting"),
             ("format=grey8", "the plain 8-bit map"),
+            ("margin=120", "an enlarged box"),
         ]),
     },
 ];
+
+/// In front of the character, close to it.
+const CLOSE: (DVec3, Vec3) = (DVec3::new(-26.0, 58.0, 62.0), Vec3::new(0.36, -0.32, -0.88));
+/// Beside a foot, over the floor.
+const AT_THE_FOOT: (DVec3, Vec3) = (DVec3::new(16.0, 14.0, 16.0), Vec3::new(-0.1, -0.62, -0.78));
+/// Behind the character, whose head and back are out of view.
+const BEHIND: (DVec3, Vec3) = (DVec3::new(-14.0, 34.0, -4.0), Vec3::new(28.0, -32.0, -30.0));
+/// Farther behind: all of it is out of view.
+const FAR_BEHIND: (DVec3, Vec3) = (DVec3::new(6.0, 34.0, -14.0), Vec3::new(0.12, -0.62, -0.78));
 
 const VARIANTS: [SampleVariant; 9] = [
     SampleVariant {
@@ -115,65 +125,66 @@ const VARIANTS: [SampleVariant; 9] = [
         label: "Self-shadow acne",
         text: "Without a bias the character shadows itself in stripes: a texel holds one depth for a whole patch of a slope.",
         options: &[("bias", "0")],
-        view: Some((DVec3::new(-26.0, 58.0, 62.0), Vec3::new(0.36, -0.32, -0.88))),
+        view: Some(CLOSE),
     },
     SampleVariant {
         id: "acne-8-bit",
         label: "Acne by format: 8 bits",
-        text: "The original bias with 256 stored depths: a step is four times the bias, so that everything shadows itself.",
+        text: "The original bias with 256 stored depths: a step is four times the bias, so that whole patches are in shadow.",
         options: &[("format", "grey8")],
-        view: None,
+        view: Some(CLOSE),
     },
     SampleVariant {
         id: "acne-16-bit",
         label: "By format: 16-bit float",
         text: "A 16-bit float rounds by 0.00012 at most here, an eighth of the bias: hardly anything changes.",
         options: &[("format", "r16f")],
-        view: None,
+        view: Some(CLOSE),
     },
     SampleVariant {
         id: "aliasing",
         label: "Aliasing close up",
         text: "Near the ground the texels of the one map are larger than pixels: the shadow's edge is a staircase.",
         options: &[],
-        view: Some((DVec3::new(16.0, 14.0, 16.0), Vec3::new(-0.1, -0.62, -0.78))),
+        view: Some(AT_THE_FOOT),
     },
     SampleVariant {
         id: "hole",
         label: "Hole behind the model",
-        text: "The camera is behind the character, a part of which is out of view: what the frustum does not hold is not in \
-               the map, and its shadow has a hole.",
+        text: "The camera is behind the character, head and back of which are out of view: what the view's box does not \
+               hold is not in the map, and the shadow has holes.",
         options: &[],
-        view: Some((DVec3::new(6.0, 34.0, -14.0), Vec3::new(0.12, -0.62, -0.78))),
+        view: Some(BEHIND),
     },
     SampleVariant {
         id: "missing-caster",
         label: "Caster off screen",
-        text: "The camera looks at where the shadow should lie. The character is out of view, and so is its shadow.",
-        options: &[],
-        view: Some((DVec3::new(70.0, 34.0, -10.0), Vec3::new(-0.42, -0.55, -0.72))),
+        text: "The camera looks at where the shadow should lie. The character is out of view, and so is its shadow; on the \
+               right a margin of 120 units brings both back.",
+        options: &[("beside", "margin=120")],
+        view: Some(FAR_BEHIND),
     },
     SampleVariant {
         id: "wasted-resolution",
         label: "Equal near and far",
-        text: "The camera looks far over the floor: texels are equally large near and far, so that most of them lie where \
-               nothing is seen.",
+        text: "Texels are equally large near and far: at the camera the shadow is made of blocks, and most of the map in \
+               the corner lies where nothing is seen.",
         options: &[],
-        view: Some((DVec3::new(0.0, 12.0, 128.0), Vec3::new(0.0, -0.06, -1.0))),
+        view: Some((DVec3::new(44.0, 7.0, -64.0), Vec3::new(-34.0, -3.0, 44.0))),
     },
     SampleVariant {
         id: "larger-map",
         label: "Cure: a larger map",
         text: "4096² texels halve the staircase of the close-up, and cost four times the memory.",
         options: &[("map", "4096")],
-        view: Some((DVec3::new(16.0, 14.0, 16.0), Vec3::new(-0.1, -0.62, -0.78))),
+        view: Some(AT_THE_FOOT),
     },
     SampleVariant {
         id: "larger-box",
         label: "Cure: an enlarged box",
-        text: "A margin of 120 units brings the casters behind the camera back, and makes every texel larger.",
+        text: "A margin of 120 units closes the holes of the view from behind, and makes every texel larger.",
         options: &[("margin", "120")],
-        view: Some((DVec3::new(6.0, 34.0, -14.0), Vec3::new(0.12, -0.62, -0.78))),
+        view: Some(BEHIND),
     },
 ];
 
