@@ -189,7 +189,9 @@ impl Viewer {
         self.take_background();
         let (asked, layout, output) = self.lay_out(raw_input);
         if self.has_scene {
-            self.stage.ask_why(asked.hover, self.interface.pictures.size());
+            // Why a pixel is as it is, is told of techniques.
+            let hover = asked.hover.filter(|_| !self.stage.draws_sample());
+            self.stage.ask_why(hover, self.interface.pictures.size());
             self.interface.pictures.draw(&mut self.stage);
         }
         let mut fly = self.input.fly();

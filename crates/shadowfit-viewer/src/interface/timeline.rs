@@ -17,8 +17,11 @@ pub(super) fn show(ui: &mut Ui, stage: &mut Stage, frame_ms: Option<f32>, asked:
         ui.horizontal_wrapped(|ui| {
             animation(ui, stage, asked);
             ui.separator();
-            day(ui, stage, asked);
-            ui.separator();
+            if !stage.draws_sample() {
+                // A sample has the light of its source.
+                day(ui, stage, asked);
+                ui.separator();
+            }
             speed(ui, stage);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 let frame = frame_ms.map_or_else(String::new, |ms| format!("{ms:.0} ms"));

@@ -85,6 +85,13 @@ impl Viewer {
     }
 
     fn run_on_scene(&mut self, command: Command) {
+        let is_of_techniques = matches!(
+            command,
+            Command::ShowArtefact(_) | Command::Compare(Toggle::On | Toggle::Other) | Command::StartTune
+        );
+        if is_of_techniques && self.stage.draws_sample() {
+            return self.say("This is for modern maps: choose them as the sample's shadows first");
+        }
         match command {
             Command::ShowArtefact(artefact) => self.search(artefact),
             Command::Fix => self.fix(),
@@ -343,7 +350,7 @@ impl Viewer {
     }
 
     /// The command line that starts with this scene and these settings.
-    fn command_line(&self) -> String {
+    pub(super) fn command_line(&self) -> String {
         command_line(
             &self.source,
             self.stage.animation,

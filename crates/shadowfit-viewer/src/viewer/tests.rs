@@ -20,6 +20,7 @@ use crate::source::SceneSource;
 use crate::stage::Stage;
 
 mod bars;
+mod samples;
 mod scenes;
 mod scripts;
 mod sides;
