@@ -13,6 +13,7 @@ use shadowfit_egui::PANEL_WIDTH;
 
 use crate::host::{Host, builder};
 use crate::renderer::SoftwareRenderer;
+use crate::sample;
 use crate::states::{busy, play, session};
 
 /// Most bytes that a golden may have.
@@ -22,7 +23,7 @@ const MAX_BYTES: u64 = 128 * 1024;
 const HEIGHT: f32 = 900.0;
 
 /// Every golden.
-const NAMES: [&str; 5] = ["dark", "light", "dark-busy", "light-plots", "dark-twice"];
+const NAMES: [&str; 6] = ["dark", "light", "dark-busy", "light-plots", "dark-twice", "dark-sample"];
 
 /// The distance of colours, weighted for the eye, from which on a pixel counts as different; and how many may be: the
 /// same driver draws the same bits, another version of it may round the edge of a glyph the other way. A control that
@@ -51,6 +52,11 @@ fn the_panel_at_rest_is_as_it_was() {
 #[test]
 fn an_artefact_two_techniques_and_a_search_are_as_they_were() {
     check("dark-busy", &mut drawn(busy(), Theme::Dark));
+}
+
+#[test]
+fn the_card_of_a_sample_is_as_it_was() {
+    check("dark-sample", &mut drawn(sample::session(), Theme::Dark));
 }
 
 #[test]

@@ -9,8 +9,8 @@ use shadowfit::figures::Figures;
 use shadowfit::params::{Kind, Parameter, parameter};
 use shadowfit::tool::Settings;
 use shadowfit_egui::{
-    Action, Artefact, Changes, Compare, PANEL_WIDTH, Panel, PanelInput, SceneLine, ShownArtefact, Tune, UserPreset,
-    apply_theme, help_overlay,
+    Action, Artefact, Changes, Compare, PANEL_WIDTH, Panel, PanelInput, SampleCard, SceneLine, ShownArtefact, Tune,
+    UserPreset, apply_theme, help_overlay,
 };
 
 /// Higher than all that the panel holds, so that nothing is scrolled out of view.
@@ -39,6 +39,7 @@ pub(crate) struct Host {
     /// Technique B and whether it is edited, where two are compared.
     pub(crate) compare: Option<(Technique, bool)>,
     pub(crate) tune: Tune<'static>,
+    pub(crate) sample: Option<SampleCard<'static>>,
     pub(crate) changes: Changes<'static>,
     pub(crate) presets: Vec<UserPreset>,
     pub(crate) help: bool,
@@ -69,6 +70,7 @@ impl Host {
             });
             input.compare = self.compare.as_mut().map(|(other, edits_other)| Compare { other, edits_other });
             input.tune = self.tune;
+            input.sample = self.sample;
             input.changes = self.changes;
             input.presets = &self.presets;
             input.message = self.message;

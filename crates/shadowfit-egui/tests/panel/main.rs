@@ -9,5 +9,6 @@ mod host;
 mod layout;
 mod overlays;
 mod renderer;
+mod sample;
 mod states;
 mod techniques;
