@@ -12,6 +12,7 @@ mod integration;
 mod peers;
 mod reports_gpu;
 mod robustness;
+mod samples;
 mod shaders;
 mod support;
 mod truth;

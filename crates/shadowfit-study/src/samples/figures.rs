@@ -69,6 +69,11 @@ impl SampleFigures {
         Ok(Self { source: figures("source")?, modern: figures("ours")? })
     }
 
+    /// Those of the sample and of modern maps, where both have pixels that were judged.
+    pub fn shadows(&self) -> Option<[PictureFigures; 2]> {
+        Some([self.source?, self.modern?])
+    }
+
     /// Names and figures, for people.
     pub fn lines(&self) -> Vec<(String, String)> {
         let both = [("as its source", &self.source), ("modern maps", &self.modern)];

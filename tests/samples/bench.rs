@@ -1,0 +1,78 @@
+//! A sample on the software adapter: its pictures, its map, and its figures against rays.
+
+use shadowfit_render::{Gpu, RenderTarget, Renderer};
+use shadowfit_study::PreparedScene;
+use shadowfit_study::samples::{Sample, SampleDrawer, SampleFigures, SampleOutcome, SampleValues, SampleVariant};
+use shadowfit_wgpu::ShadowMapDescriptor;
+
+use crate::support::software_gpu;
+
+/// A sample, ready to be drawn one sample a pixel.
+pub(super) struct Bench {
+    pub(super) gpu: Gpu,
+    pub(super) sample: &'static Sample,
+    pub(super) scene: PreparedScene,
+    drawer: SampleDrawer,
+}
+
+impl Bench {
+    pub(super) fn new(id: &str) -> Self {
+        let gpu = software_gpu();
+        let sample = Sample::find(id).unwrap_or_else(|| panic!("there is no sample {id}"));
+        let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::default(), 1).expect("a renderer");
+        let scene = PreparedScene::new(&gpu, renderer.material_layout(), sample.scene()).expect("a scene");
+        let drawer = SampleDrawer::new(&gpu, 1);
+        Self { gpu, sample, scene, drawer }
+    }
+
+    pub(super) fn variant(&self, id: &str) -> &'static SampleVariant {
+        let found = self.sample.variants.iter().find(|variant| variant.id == id);
+        found.unwrap_or_else(|| panic!("{} has no variant {id}", self.sample.id))
+    }
+
+    /// The values of a variant, or of the sample itself, with further options.
+    pub(super) fn values(&self, variant: Option<&SampleVariant>, options: &[(&str, &str)]) -> SampleValues {
+        let mut values = SampleValues::of_variant(self.sample, variant).expect("a variant");
+        for (id, text) in options {
+            values.set_from_str(id, text).unwrap_or_else(|error| panic!("{error}"));
+        }
+        values
+    }
+
+    /// The picture of values as a variant's camera sees it, four bytes a pixel.
+    pub(super) fn picture(
+        &mut self,
+        variant: Option<&SampleVariant>,
+        values: &SampleValues,
+        size: [u32; 2],
+    ) -> Vec<[u8; 4]> {
+        let target = RenderTarget::new(&self.gpu.device, size, 1);
+        let camera = self.sample.seen_by(variant, size[0] as f32 / size[1] as f32);
+        let drawn = self.drawer.draw(&self.gpu, &mut self.scene, (self.sample, values), &camera, &target);
+        assert_eq!(drawn.expect("a picture"), SampleOutcome::Drawn { message: None });
+        target.read(&self.gpu).expect("pixels").as_chunks().0.to_vec()
+    }
+
+    /// The map of the picture that was drawn last, as floats of a format with one channel of 32 bits.
+    pub(super) fn map_of_floats(&self) -> Vec<f32> {
+        let bytes = self.map_bytes();
+        bytes.as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect()
+    }
+
+    /// The bytes of the map of the picture that was drawn last.
+    pub(super) fn map_bytes(&self) -> Vec<u8> {
+        self.drawer.read_map(&self.gpu).expect("a map").expect("a frame was drawn")
+    }
+
+    /// Against rays, as a variant's camera sees it in the source's window.
+    pub(super) fn figures(&self, variant: Option<&SampleVariant>, values: &SampleValues) -> SampleFigures {
+        let [width, height] = self.sample.size;
+        let camera = self.sample.seen_by(variant, width as f32 / height as f32);
+        SampleFigures::measure(self.gpu.clone(), self.sample, values, &camera, 0.0).expect("figures")
+    }
+}
+
+/// Number of different values.
+pub(super) fn distinct<T: Ord>(values: impl IntoIterator<Item = T>) -> usize {
+    values.into_iter().collect::<std::collections::BTreeSet<T>>().len()
+}
