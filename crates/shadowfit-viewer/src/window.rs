@@ -226,7 +226,9 @@ impl Running {
         {
             let (sticks, commands) = self.gamepads.poll();
             self.viewer.input.sticks = sticks;
-            commands.into_iter().for_each(|command| self.viewer.ask(command));
+            for command in commands {
+                self.viewer.ask(command);
+            }
         }
         let texture = self.surface.acquire(self.viewer.stage.gpu())?;
         let begin = Instant::now();

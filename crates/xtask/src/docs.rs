@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
+use crate::gallery::sample_pictures;
 use crate::process;
 
 #[test]
@@ -37,4 +38,11 @@ fn the_docs_show_every_picture_of_theirs_and_none_that_is_missing() {
         .map(|(name, _)| name.to_owned())
         .filter(|name| Path::new(name).extension().is_some_and(|end| end == "png") && !name.contains('/'));
     assert_eq!(files.collect::<BTreeSet<_>>(), names("docs/images", ".png"), "shown, and there");
+    let pages: Vec<String> = names("docs/samples", ".md")
+        .iter()
+        .map(|page| fs::read_to_string(process::root().join("docs/samples").join(page)).unwrap())
+        .chain([text])
+        .collect();
+    let shown: BTreeSet<String> = pages.iter().flat_map(|page| sample_pictures(page)).map(str::to_owned).collect();
+    assert_eq!(shown, names("docs/images/samples", ".png"), "of the samples, shown and there");
 }

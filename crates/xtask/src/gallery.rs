@@ -1,6 +1,7 @@
 //! `cargo xtask gallery`: renders the pictures that the README and the docs show, on the software driver, so that they
 //! change with the code and not with the machine.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
@@ -50,6 +51,15 @@ const MOST_BYTES: u64 = 500_000;
 /// Most bits that a colour channel may lose for that: steps of eight levels of 255 are still hard to see.
 const MOST_BITS: u32 = 3;
 
+/// Pages of the classic samples, each named after its sample, relative to the workspace's folder.
+const SAMPLE_PAGES: &str = "docs/samples";
+
+/// Folder of their pictures below that of the docs.
+const SAMPLE_IMAGES: &str = "samples";
+
+/// Most bytes of a picture of a sample, of which there are many, if two bits of its colours are enough for that.
+const MOST_SAMPLE_BYTES: u64 = 200_000;
+
 /// The view that errors are shown in, relative to the workspace's folder.
 const ERROR_VIEW: &str = "docs/report.toml";
 
@@ -92,6 +102,7 @@ pub(crate) fn gallery() -> Result<()> {
     let images = process::root().join(IMAGES);
     tour(&machine, &images)?;
     own_set(&machine, &images)?;
+    samples(&machine, &images.join(SAMPLE_IMAGES))?;
     errors(&images)?;
     shadows(&images)?;
     edges(&images)?;
@@ -127,6 +138,34 @@ fn own_set(machine: &Machine, images: &Path) -> Result<()> {
     Ok(())
 }
 
+/// The pictures that the pages of the classic samples show, of all that each sample renders.
+fn samples(machine: &Machine, images: &Path) -> Result<()> {
+    let pages = process::root().join(SAMPLE_PAGES);
+    fs::create_dir_all(images).with_context(|| format!("{}: cannot be made", images.display()))?;
+    for entry in fs::read_dir(&pages).with_context(|| format!("{}: cannot be read", pages.display()))? {
+        let page = entry?.path();
+        let text = fs::read_to_string(&page).with_context(|| format!("{}: cannot be read", page.display()))?;
+        let shown: BTreeSet<&str> = sample_pictures(&text).collect();
+        let Some(sample) = page.file_stem().and_then(|stem| stem.to_str()).filter(|_| !shown.is_empty()) else {
+            continue;
+        };
+        let folder = empty_folder(sample)?;
+        let mut viewer = run::viewer(machine);
+        viewer.args(["--sample", sample, "--headless"]).arg(&folder);
+        process::run(viewer.arg("--software"))?;
+        for file in shown {
+            publish_within(&folder.join(file), &images.join(file), MOST_SAMPLE_BYTES, 2)?;
+        }
+    }
+    Ok(())
+}
+
+/// Files of samples' pictures that a page shows.
+pub(crate) fn sample_pictures(page: &str) -> impl Iterator<Item = &str> {
+    let links = page.split("images/samples/").skip(1).filter_map(|rest| rest.split_once(')'));
+    links.map(|(file, _)| file)
+}
+
 /// An empty folder below `target`, for pictures of which not all are shown as they are.
 fn empty_folder(name: &str) -> Result<PathBuf> {
     let folder = process::root().join("target/gallery").join(name);
@@ -140,9 +179,16 @@ fn empty_folder(name: &str) -> Result<PathBuf> {
 /// Copies a picture to the docs. One that is too large loses the lowest bits of its colours, which compress worst and are
 /// seen least, until it is not.
 fn publish(from: &Path, to: &Path) -> Result<()> {
+    publish_within(from, to, MOST_BYTES, MOST_BITS)?;
+    ensure!(bytes(to)? <= MOST_BYTES, "{}: more than {MOST_BYTES} bytes; make it smaller", to.display());
+    Ok(())
+}
+
+/// The same, with no more bits lost than these, whatever its size is then.
+fn publish_within(from: &Path, to: &Path, most_bytes: u64, most_bits: u32) -> Result<()> {
     fs::copy(from, to).with_context(|| format!("{}: cannot be copied", from.display()))?;
-    for bits in 1..=MOST_BITS {
-        if bytes(to)? <= MOST_BYTES {
+    for bits in 1..=most_bits {
+        if bytes(to)? <= most_bytes {
             return Ok(());
         }
         let mut picture = open(from)?;
@@ -151,7 +197,6 @@ fn publish(from: &Path, to: &Path) -> Result<()> {
         }
         save_small(&picture, to)?;
     }
-    ensure!(bytes(to)? <= MOST_BYTES, "{}: more than {MOST_BYTES} bytes; make it smaller", to.display());
     Ok(())
 }
 

@@ -116,17 +116,17 @@ struct Bench<'a> {
 impl Bench<'_> {
     fn judge(&mut self, scene: &mut PreparedScene, values: &SampleValues) -> Result<Judged> {
         match self.sample.drawing(values, self.camera)? {
-            SampleDrawing::Technique(technique) => self.judge_technique(scene, technique),
+            SampleDrawing::Technique(technique) => self.judge_technique(scene, &technique),
             SampleDrawing::Mapped(frame) => self.judge_mapped(scene, &frame),
         }
     }
 
-    fn judge_technique(&self, scene: &mut PreparedScene, technique: Technique) -> Result<Judged> {
-        let renderer = Renderer::new(&self.gpu, &ShadowMapDescriptor::from(&technique), 1)?;
+    fn judge_technique(&self, scene: &mut PreparedScene, technique: &Technique) -> Result<Judged> {
+        let renderer = Renderer::new(&self.gpu, &ShadowMapDescriptor::from(technique), 1)?;
         let judging = Judging { size: self.size, ray_offset: RAY_OFFSET, crawl: false, ..Judging::default() };
         let mut evaluator = Evaluator::new(renderer, judging);
         let view = View { camera: *self.camera, direction: self.sample.direction, is_first: true };
-        let maps = TechniqueFitter::new(technique).fit_alone(scene, &view)?;
+        let maps = TechniqueFitter::new(*technique).fit_alone(scene, &view)?;
         evaluator.judge(&self.gpu, scene, &view, &maps, &mut SharedTruth::default())
     }
 

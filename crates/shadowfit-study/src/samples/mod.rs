@@ -107,7 +107,6 @@ pub struct SampleVariant {
 
 /// How a sample is drawn at present.
 #[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "one a frame")]
 pub enum SampleDrawing {
     /// By the samples' renderer.
     Mapped(SampleFrame<'static>),

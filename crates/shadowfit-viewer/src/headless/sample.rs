@@ -1,6 +1,6 @@
 //! The pictures of a classic sample, and its figures, without a window.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::{Context, Result};
 use shadowfit_render::Gpu;
@@ -36,15 +36,15 @@ pub(super) fn run(
             written.push(path);
             anyhow::Ok(())
         };
-    match named {
-        Some(variant) => save(&mut stage, named, variant.id, &[])?,
-        None => {
-            for (name, options) in pictures(sample) {
-                save(&mut stage, None, &name, &options)?;
-            }
-            for variant in sample.variants {
-                save(&mut stage, Some(variant), &format!("{}-{}", sample.id, variant.id), &[])?;
-            }
+    let file = |variant: &SampleVariant| format!("{}-{}", sample.id, variant.id);
+    if let Some(variant) = named {
+        save(&mut stage, named, &file(variant), &[])?;
+    } else {
+        for (name, options) in pictures(sample) {
+            save(&mut stage, None, &name, &options)?;
+        }
+        for variant in sample.variants {
+            save(&mut stage, Some(variant), &file(variant), &[])?;
         }
     }
     tell(&written, sample.title, &stage, folder);
@@ -71,7 +71,7 @@ fn pictures(sample: &Sample) -> Vec<(String, Vec<(&'static str, &'static str)>)>
     all
 }
 
-fn write_picture(stage: &mut Stage, path: &PathBuf, size: [u32; 2]) -> Result<()> {
+fn write_picture(stage: &mut Stage, path: &Path, size: [u32; 2]) -> Result<()> {
     let target = stage.target(size);
     stage.draw(&target);
     if let Some(problem) = stage.problem() {
