@@ -93,16 +93,21 @@ const CORNER: (Part, u32) = ([458, 246, 47, 47], 4);
 /// Between pictures of a strip, in pixels.
 const GAP: u32 = 5;
 
-/// Renders the docs' pictures.
+/// Renders the docs' pictures, or those of some samples alone.
 ///
 /// # Errors
 /// When the viewer or the report cannot be built, or ends with an error.
-pub(crate) fn gallery() -> Result<()> {
+pub(crate) fn gallery(samples: &[String]) -> Result<()> {
     let machine = setup::prepare(Purpose::Pictures)?;
     let images = process::root().join(IMAGES);
+    if !samples.is_empty() {
+        sample_pages(&machine, &images.join(SAMPLE_IMAGES), |sample| samples.iter().any(|wanted| wanted == sample))?;
+        run::say_where(&images);
+        return Ok(());
+    }
     tour(&machine, &images)?;
     own_set(&machine, &images)?;
-    samples(&machine, &images.join(SAMPLE_IMAGES))?;
+    sample_pages(&machine, &images.join(SAMPLE_IMAGES), |_| true)?;
     errors(&images)?;
     shadows(&images)?;
     edges(&images)?;
@@ -138,8 +143,8 @@ fn own_set(machine: &Machine, images: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The pictures that the pages of the classic samples show, of all that each sample renders.
-fn samples(machine: &Machine, images: &Path) -> Result<()> {
+/// The pictures that the pages of classic samples show, of all that each sample renders.
+fn sample_pages(machine: &Machine, images: &Path, is_wanted: impl Fn(&str) -> bool) -> Result<()> {
     let pages = process::root().join(SAMPLE_PAGES);
     fs::create_dir_all(images).with_context(|| format!("{}: cannot be made", images.display()))?;
     for entry in fs::read_dir(&pages).with_context(|| format!("{}: cannot be read", pages.display()))? {
@@ -149,6 +154,9 @@ fn samples(machine: &Machine, images: &Path) -> Result<()> {
         let Some(sample) = page.file_stem().and_then(|stem| stem.to_str()).filter(|_| !shown.is_empty()) else {
             continue;
         };
+        if !is_wanted(sample) {
+            continue;
+        }
         let folder = empty_folder(sample)?;
         let mut viewer = run::viewer(machine);
         viewer.args(["--sample", sample, "--headless"]).arg(&folder);

@@ -44,7 +44,10 @@ enum Task {
     /// Run every check that comes before the tests: format, lints, docs, MSRV, `no_std`, dependencies, examples.
     Ci,
     /// Render the pictures of the README and the docs again.
-    Gallery,
+    Gallery {
+        /// Samples whose pictures alone are rendered, for example `xna-shadow-mapping`.
+        samples: Vec<String>,
+    },
     /// Draw the pictures of docs/MATHS.md again, with the fits of the core crate.
     Maths,
     /// Measure the core crate, or with `--gpu` what shadows cost on a GPU, and write the times and ratios into
@@ -65,7 +68,7 @@ fn main() -> ExitCode {
         Task::Run { args } => run::run(&args),
         Task::Test { args } => test::test(&args),
         Task::Ci => ci::ci(),
-        Task::Gallery => gallery::gallery(),
+        Task::Gallery { samples } => gallery::gallery(&samples),
         Task::Maths => maths::maths(),
         Task::Bench { args } => bench::bench(&args),
         Task::Golden => test::golden(),
