@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Mat4, Vec3};
-use shadowfit::{DepthConvention, PerspectiveCamera};
+use shadowfit::{DepthConvention, PerspectiveCamera, SpotBias};
 
 use super::SampleFormat;
 
@@ -109,10 +109,8 @@ pub enum ShadowTest {
     /// Ours: the core's bias and a filter of 3 × 3 look-ups of 2 × 2 texels; needs [`SampleFormat::Depth32`] that compares
     /// linearly.
     Ours {
-        /// Constant bias, in units of the stored depth.
-        constant_depth: f32,
-        /// Offset along the normal, times the distance along the light's axis and the sine of the angle.
-        normal_offset: f32,
+        /// As the core makes it; of its parts those by slope and by the receiver's plane are ignored.
+        bias: SpotBias,
         /// Whether points outside of the light's image are lit.
         lit_outside: bool,
     },
@@ -195,8 +193,10 @@ pub struct SampleUniform {
     pub shading: [f32; 4],
     /// Width and height of the map, in texels.
     pub map_size: [f32; 2],
+    /// 1 where our test leaves points outside of the light's image lit.
+    pub lit_outside: f32,
     /// Keeps the struct a multiple of 16 bytes.
-    pub padding: [f32; 2],
+    pub padding: f32,
 }
 
 impl SampleUniform {
@@ -213,7 +213,8 @@ impl SampleUniform {
             test: frame.test.numbers(),
             shading: frame.shading.numbers(),
             map_size: frame.map.size.map(|side| side as f32),
-            padding: [0.0; 2],
+            lit_outside: f32::from(u8::from(matches!(frame.test, ShadowTest::Ours { lit_outside: true, .. }))),
+            padding: 0.0,
         }
     }
 }
@@ -225,8 +226,8 @@ impl ShadowTest {
             Self::Xna { bias } | Self::RealShadow { bias } => [bias, 0.0, 0.0, 0.0],
             Self::Comparison { epsilon, toward_light } => [epsilon, if toward_light { -1.0 } else { 1.0 }, 0.0, 0.0],
             Self::Terrain { off_stored, from } => [off_stored, from, 0.0, 0.0],
-            Self::Ours { constant_depth, normal_offset, lit_outside } => {
-                [constant_depth, normal_offset, if lit_outside { 1.0 } else { 0.0 }, 0.0]
+            Self::Ours { bias, .. } => {
+                [bias.constant_depth, bias.distance_depth, bias.normal_offset, bias.constant_offset]
             }
         }
     }

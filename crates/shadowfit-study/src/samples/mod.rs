@@ -4,10 +4,14 @@
 //! [`SAMPLES`] lists them; a [`SampleDrawer`] draws one by its [`SampleValues`], and [`SampleFigures`] judge it
 //! against rays. Lengths are in the units of each source. `docs/samples` has a page for each.
 
+mod comparison;
 mod drawer;
 mod figures;
+mod headlight;
+mod lamp;
 mod options;
 mod scenes;
+mod terrain;
 mod xna;
 
 use glam::{DVec3, Vec3};
@@ -115,7 +119,8 @@ pub enum SampleDrawing {
 }
 
 /// Every sample, in the order of the documentation.
-pub static SAMPLES: [Sample; 1] = [xna::SAMPLE];
+pub static SAMPLES: [Sample; 5] =
+    [xna::SAMPLE, headlight::PROJECTIVE, headlight::REAL_SHADOW, comparison::SAMPLE, terrain::SAMPLE];
 
 impl Sample {
     /// The sample of a name.

@@ -13,7 +13,9 @@ struct Sample {
     shading: vec4<f32>,
     // Width and height of the map, in texels.
     map_size: vec2<f32>,
-    padding: vec2<f32>,
+    // 1 where our test leaves points outside of the light's image lit.
+    lit_outside: f32,
+    padding: f32,
 }
 
 @group(0) @binding(0) var<uniform> sample: Sample;

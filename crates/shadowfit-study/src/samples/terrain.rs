@@ -1,0 +1,159 @@
+//! A terrain with vehicles under a spotlight: one large map whose depths are stored reversed, 1 - z/w, and interpolated
+//! from the vertices. Its source's comment asks for a map of 32 bits, and its code makes one of 8. Height map and vehicles
+//! are our own.
+
+use core::f32::consts::FRAC_PI_4;
+
+use glam::{DVec3, Vec3};
+use shadowfit::{FitError, PerspectiveCamera};
+use shadowfit_render::samples::{
+    CasterFaces, LightImage, SampleFormat, SampleFrame, SampleMapSettings, Shading, ShadowTest, StoredDepth,
+};
+
+use super::lamp::{Lamp, our_map, our_test};
+use super::options::{LIGHTING, OptionKind, SampleOption, SampleValues};
+use super::{Sample, SampleControls, SampleDrawing, SampleVariant, SampleView};
+
+/// What is taken from the stored depth, and what z/w is taken from: a bias of a hundredth together.
+const OFF_STORED: f32 = 0.03;
+const FROM: f32 = 0.98;
+const DIFFUSE: f32 = 0.6;
+const AMBIENT: f32 = 0.0;
+/// Modern lighting: irradiance of the light and of the sky.
+const MODERN: Shading = Shading::Modern { light: 2.6, ambient: 0.45 };
+
+pub(super) const SAMPLE: Sample = Sample {
+    id: "terrain-vehicles",
+    title: "Terrain with vehicles",
+    teaches: "One large map over a landscape: things cast on the ground, on themselves and on each other. Depth is stored \
+              reversed, since floats are finest near zero, which is far here.",
+    flaw: "The bias is a hundredth of a perspective depth, which is several units far from the light, and a map of 8 bits \
+           has only 256 depths for all of it.",
+    page: "samples/terrain-vehicles.md",
+    size: [900, 600],
+    view: SampleView {
+        eye: DVec3::new(160.0, 30.0, 62.0),
+        forward: Vec3::new(-21.0, -30.0, 68.0),
+        fov_y: FRAC_PI_4,
+        near: 1.0,
+        far: 400.0,
+        speed: 30.0,
+    },
+    direction: Vec3::new(0.0, -100.0, 128.0),
+    inset: Some([0, 0, 300, 200]),
+    only_subject_casts: false,
+    is_measurable: true,
+    controls: SampleControls::VIEWER,
+    options: &[
+        super::options::LAMP_SHADOWS,
+        LIGHTING,
+        SampleOption {
+            id: "format",
+            label: "Map format",
+            help: "The source's comment asks for 32 bits, its code makes 8.",
+            kind: OptionKind::Choice(&[
+                ("r32f", "32-bit float"),
+                ("grey8", "8-bit colour"),
+                ("rgba8", "8-bit RGBA, packed"),
+            ]),
+        },
+        SampleOption {
+            id: "map",
+            label: "Map size",
+            help: "Texels each way.",
+            kind: OptionKind::Choice(&[("4096", "4096²"), ("1024", "1024²"), ("2048", "2048²")]),
+        },
+        SampleOption {
+            id: "off-stored",
+            label: "Off the stored",
+            help: "What is taken from the stored depth before it is compared.",
+            kind: OptionKind::Number { min: 0.0, max: 0.1, default: OFF_STORED, unit: "" },
+        },
+        SampleOption {
+            id: "from",
+            label: "From",
+            help: "What the point's own z/w is taken from.",
+            kind: OptionKind::Number { min: 0.9, max: 1.0, default: FROM, unit: "" },
+        },
+        super::options::INSET,
+        SampleOption {
+            id: "beside",
+            label: "Right half",
+            help: "Shows something else in the right half of the picture, on the same view.",
+            kind: OptionKind::Choice(&[
+                ("none", "the same"),
+                ("shadows=ours", "our map"),
+                ("shadows=off", "no shadows"),
+                ("format=grey8", "the 8-bit map"),
+                ("lighting=modern", "modern lighting"),
+            ]),
+        },
+    ],
+    variants: &[
+        SampleVariant {
+            id: "8-bit",
+            label: "8 bits, as the code makes it",
+            text: "256 depths from 90 to 300 units: shadows come and go in steps, and ground that should be lit has bands.",
+            options: &[("format", "grey8")],
+            view: None,
+        },
+        SampleVariant {
+            id: "on-itself",
+            label: "On itself",
+            text: "Posts and roof of the tractor throw their shadows on its own seat and bonnet.",
+            options: &[("inset", "off")],
+            view: Some((DVec3::new(168.0, 14.0, 84.0), Vec3::new(-18.0, -8.0, 16.0))),
+        },
+        SampleVariant {
+            id: "on-another",
+            label: "On each other",
+            text: "A blade of the helicopter throws its shadow on the jeep.",
+            options: &[("inset", "off")],
+            view: Some((DVec3::new(152.0, 18.0, 150.0), Vec3::new(-11.0, -14.0, 20.0))),
+        },
+    ],
+    scene: super::scenes::terrain,
+    draws: drawing,
+};
+
+fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDrawing, FitError> {
+    let lamp = Lamp {
+        position: DVec3::new(128.0, 100.0, 0.0),
+        target: DVec3::new(128.0, 0.0, 128.0),
+        fov_y: FRAC_PI_4,
+        aspect: 1.45,
+        near: 90.0,
+        far: 300.0,
+    };
+    let size = [values.choice("map").parse().unwrap_or(4096); 2];
+    let fit = lamp.fit(size, camera)?;
+    let map = SampleMapSettings {
+        size,
+        format: match values.choice("format") {
+            "grey8" => SampleFormat::Grey8,
+            "rgba8" => SampleFormat::Rgba8Packed,
+            _ => SampleFormat::R32Float,
+        },
+        depth: StoredDepth::ReversedAtVertices,
+        clear: 0,
+        faces: CasterFaces::All,
+        compares_linearly: false,
+    };
+    let (test, map) = match values.choice("shadows") {
+        "off" => (ShadowTest::Off, map),
+        "ours" => (our_test(&fit, true)?, our_map(size)),
+        _ => (ShadowTest::Terrain { off_stored: values.get("off-stored"), from: values.get("from") }, map),
+    };
+    let source = Shading::Terrain { diffuse: DIFFUSE, ambient: AMBIENT };
+    Ok(SampleDrawing::Mapped(SampleFrame {
+        camera: *camera,
+        light: lamp.light(&fit, LightImage::Square),
+        map,
+        test,
+        shading: if values.choice("lighting") == "modern" { MODERN } else { source },
+        background: super::xna::BACKGROUND,
+        casts: None,
+        double_sided: true,
+        inset: None,
+    }))
+}
