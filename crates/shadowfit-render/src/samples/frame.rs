@@ -1,7 +1,7 @@
 //! What a frame of a classic sample shows: plain data, and the uniform that its shaders read.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{DVec3, Mat4, Vec3};
+use glam::{DVec3, Mat4, Vec2, Vec3};
 use shadowfit::{DepthConvention, PerspectiveCamera, SpotBias};
 
 use super::SampleFormat;
@@ -109,8 +109,11 @@ pub enum ShadowTest {
     /// Ours: the core's bias and a filter of 3 × 3 look-ups of 2 × 2 texels; needs [`SampleFormat::Depth32`] that compares
     /// linearly.
     Ours {
-        /// As the core makes it; of its parts those by slope and by the receiver's plane are ignored.
+        /// As the core makes it; of its parts those by slope and along the normal are ignored.
         bias: SpotBias,
+        /// Change of the depth per texel of a plane at the unit distance, along u and v: the core's
+        /// [`depth_scale`](shadowfit::SpotFit::depth_scale) times the size of a texel at distance 1.
+        rise: Vec2,
         /// Whether points outside of the light's image are lit.
         lit_outside: bool,
     },
@@ -189,14 +192,15 @@ pub struct SampleUniform {
     pub light: [f32; 4],
     /// Numbers of the test.
     pub test: [f32; 4],
+    /// Further numbers of our test: the rise of a plane along u and v, and 1 where points outside of the light's image are
+    /// lit.
+    pub ours: [f32; 4],
     /// Numbers of the shading.
     pub shading: [f32; 4],
     /// Width and height of the map, in texels.
     pub map_size: [f32; 2],
-    /// 1 where our test leaves points outside of the light's image lit.
-    pub lit_outside: f32,
     /// Keeps the struct a multiple of 16 bytes.
-    pub padding: f32,
+    pub padding: [f32; 2],
 }
 
 impl SampleUniform {
@@ -211,10 +215,10 @@ impl SampleUniform {
             light_from_world: frame.light.clip_from_world.to_cols_array_2d(),
             light: light.to_array(),
             test: frame.test.numbers(),
+            ours: frame.test.further_numbers(),
             shading: frame.shading.numbers(),
             map_size: frame.map.size.map(|side| side as f32),
-            lit_outside: f32::from(u8::from(matches!(frame.test, ShadowTest::Ours { lit_outside: true, .. }))),
-            padding: 0.0,
+            padding: [0.0; 2],
         }
     }
 }
@@ -227,8 +231,15 @@ impl ShadowTest {
             Self::Comparison { epsilon, toward_light } => [epsilon, if toward_light { -1.0 } else { 1.0 }, 0.0, 0.0],
             Self::Terrain { off_stored, from } => [off_stored, from, 0.0, 0.0],
             Self::Ours { bias, .. } => {
-                [bias.constant_depth, bias.distance_depth, bias.normal_offset, bias.constant_offset]
+                [bias.constant_depth, bias.distance_depth, bias.constant_offset, bias.receiver_plane]
             }
+        }
+    }
+
+    fn further_numbers(self) -> [f32; 4] {
+        match self {
+            Self::Ours { rise, lit_outside, .. } => [rise.x, rise.y, f32::from(u8::from(lit_outside)), 0.0],
+            _ => [0.0; 4],
         }
     }
 }

@@ -8,9 +8,6 @@ use shadowfit_render::samples::{
     CasterFaces, LightImage, LightPlace, SampleFormat, SampleLight, SampleMapSettings, ShadowTest, StoredDepth,
 };
 
-/// Look-ups of our filter each way, one texel apart.
-const KERNEL: u32 = 3;
-
 /// A lamp: where it stands, what it looks at, and its perspective.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lamp {
@@ -49,8 +46,9 @@ pub(super) const fn our_map(size: [u32; 2]) -> SampleMapSettings {
     }
 }
 
-/// The test that reads it, with the least bias that clears planes.
+/// The test that reads it, with the least bias that clears planes: each look-up is compared with the plane's own depth, so
+/// that the bias covers the reach of one.
 pub(super) fn our_test(fit: &SpotFit, lit_outside: bool) -> Result<ShadowTest, FitError> {
-    let bias = SpotBias::automatic(Reach::kernel(KERNEL), MapFormat::Depth32Float, fit)?;
-    Ok(ShadowTest::Ours { bias, lit_outside })
+    let bias = SpotBias::automatic_receiver_plane(Reach::HARDWARE_2X2, MapFormat::Depth32Float, fit)?;
+    Ok(ShadowTest::Ours { bias, rise: fit.texel_size * fit.depth_scale() as f32, lit_outside })
 }

@@ -131,7 +131,7 @@ impl SpotFit {
 
     /// b = near · far / (far - near), in metres: the stored depth changes by b / d² per metre at the distance d along
     /// the axis, in every depth convention.
-    pub(crate) fn depth_scale(&self) -> f64 {
+    pub fn depth_scale(&self) -> f64 {
         let (near, far) = (f64::from(self.near), f64::from(self.far));
         near * (far / (far - near))
     }

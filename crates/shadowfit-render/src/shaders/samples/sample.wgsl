@@ -9,13 +9,13 @@ struct Sample {
     light: vec4<f32>,
     // What the shadow test reads; each test says what.
     test: vec4<f32>,
+    // What our test reads besides.
+    ours: vec4<f32>,
     // What the shading reads; each shading says what.
     shading: vec4<f32>,
     // Width and height of the map, in texels.
     map_size: vec2<f32>,
-    // 1 where our test leaves points outside of the light's image lit.
-    lit_outside: f32,
-    padding: f32,
+    padding: vec2<f32>,
 }
 
 @group(0) @binding(0) var<uniform> sample: Sample;
