@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Mat4, Vec2, Vec3};
 use shadowfit::{DepthConvention, PerspectiveCamera, SpotBias};
 
-use super::SampleFormat;
+use super::{SampleFormat, SkyBox};
 
 /// A sample's map: how large it is, what it stores and which faces are drawn into it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -172,6 +172,8 @@ pub struct SampleFrame<'a> {
     pub shading: Shading,
     /// Colour behind everything, as display values.
     pub background: [u8; 3],
+    /// What is seen behind everything in its place.
+    pub sky: Option<&'a SkyBox>,
     /// Whether each node of the scene casts; all do where there is none.
     pub casts: Option<&'a [bool]>,
     /// Whether back faces are drawn in the picture, too.

@@ -68,7 +68,10 @@ impl OcclusionPasses {
         self.prepare(gpu, scene, frame, target.size);
         let [opaque, blended] = seen(gpu, scene, frame);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        self.occlusion_passes(&mut encoder, scene, frame, &opaque);
+        match frame.given {
+            Some(given) => self.take(gpu, given),
+            None => self.occlusion_passes(&mut encoder, scene, frame, &opaque),
+        }
         self.picture_pass(&mut encoder, scene, frame, ([&opaque, &blended], target));
         gpu.submit([encoder.finish()]);
     }
@@ -90,7 +93,7 @@ impl OcclusionPasses {
     fn prepare(&mut self, gpu: &Gpu, scene: &GpuScene, frame: &OcclusionFrame<'_>, size: [u32; 2]) {
         let settings = frame.settings.unwrap_or_default();
         let has_backs = frame.settings.is_some_and(|settings| settings.reads_backs());
-        self.is_blurred = frame.settings.is_some_and(|settings| settings.blur);
+        self.is_blurred = frame.given.is_none() && frame.settings.is_some_and(|settings| settings.blur);
         let uniform = FrameUniform::new(frame.camera, frame.light.to_light, false, &Atmosphere::default(), size);
         gpu.queue.write_buffer(&self.frame_uniform, 0, bytemuck::bytes_of(&uniform));
         let radii = [settings.radius, settings.second_radius.unwrap_or(0.0)];
@@ -107,6 +110,25 @@ impl OcclusionPasses {
         }
         if let Some(sky) = frame.sky {
             sky.prepare(gpu, frame.camera);
+        }
+    }
+
+    /// Uploads occlusion that was found elsewhere; that of another size is left out.
+    fn take(&self, gpu: &Gpu, given: &[f32]) {
+        let Some(targets) = &self.targets else { return };
+        let texture = targets.occlusion(false);
+        let halves: Vec<u16> = given.iter().map(|value| to_half(*value)).collect();
+        if halves.len() == targets.size[0] as usize * targets.size[1] as usize {
+            gpu.queue.write_texture(
+                texture.as_image_copy(),
+                bytemuck::cast_slice(&halves),
+                wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(targets.size[0] * 2),
+                    rows_per_image: None,
+                },
+                texture.size(),
+            );
         }
     }
 
@@ -250,15 +272,27 @@ fn from_half(bits: u16) -> f32 {
     f32::from_bits(u32::from(bits) << 13) * 2.0_f32.powi(112)
 }
 
+/// A number of 0..=1 as a half float, rounded to the nearest; others are brought there.
+fn to_half(value: f32) -> u16 {
+    let value = if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) };
+    // The product takes the difference of the exponents' biases off, subnormal numbers included; half of the last place
+    // rounds.
+    let bits = (value * 2.0_f32.powi(-112)).to_bits();
+    ((bits + 0x0fff + (bits >> 13 & 1)) >> 13) as u16
+}
+
 #[cfg(test)]
 mod tests {
-    use super::from_half;
+    use super::{from_half, to_half};
 
     #[test]
     fn half_floats_are_read_as_they_are() {
         // 1 is 0x3c00 (exponent 15), 0.5 is 0x3800, 0.1 is rounded to 0x2e66, the least one is 2⁻²⁴.
         for (bits, value) in [(0, 0.0), (0x3c00, 1.0), (0x3800, 0.5), (0x2e66, 0.099_975_586), (1, 2.0_f32.powi(-24))] {
             assert_eq!(from_half(bits), value);
+            assert_eq!(to_half(value), bits);
         }
+        assert_eq!(to_half(0.1), 0x2e66, "rounded");
+        assert_eq!([f32::NAN, -1.0, 7.0].map(to_half), [0, 0, 0x3c00]);
     }
 }

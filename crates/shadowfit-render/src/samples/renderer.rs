@@ -81,6 +81,9 @@ impl SampleRenderer {
         target: &RenderTarget,
     ) -> Result<(), SampleError> {
         let plan = self.prepare(gpu, scene, frame)?;
+        if let Some(sky) = frame.sky {
+            sky.prepare(gpu, &frame.camera);
+        }
         let (read, shading) = (Read::of(frame), frame.shading.into());
         let kind = |part: &Part| Kind::Shaded { read, shading, faces: faces(frame, part), mirrored: part.mirrored };
         for draw in &plan.seen {
@@ -106,6 +109,9 @@ impl SampleRenderer {
             ..Default::default()
         });
         self.draw_scene(&mut pass, scene, &plan.seen, kind);
+        if let Some(sky) = frame.sky {
+            sky.draw(&mut pass);
+        }
         drop(pass);
         self.inset_pass(gpu, &mut encoder, frame, &view, target.size);
         gpu.submit([encoder.finish()]);

@@ -108,6 +108,7 @@ pub(crate) fn frame(camera: &PerspectiveCamera, settings: Option<OcclusionSettin
         camera,
         light: OcclusionLight::new(Vec3::new(0.0, 0.8, 0.6)),
         settings,
+        given: None,
         view: OcclusionView::Classic,
         sky: None,
         background: Vec3::ZERO,

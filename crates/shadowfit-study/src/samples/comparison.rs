@@ -146,6 +146,7 @@ fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDr
         test,
         shading: if values.choice("lighting") == "modern" { MODERN } else { Shading::Comparison { ambient: AMBIENT } },
         background: BACKGROUND,
+        sky: None,
         casts: None,
         double_sided: false,
         inset: None,

@@ -1,19 +1,28 @@
-//! Draws samples: the frame that a sample's values ask for, by the samples' renderer.
+//! Draws samples: what a sample's values ask for, by the renderer that can do it.
 
 use anyhow::Result;
 use shadowfit::PerspectiveCamera;
-use shadowfit_render::samples::{SampleFrame, SampleRenderer};
-use shadowfit_render::{Gpu, Probe, ProbeTargets, RenderTarget};
+use shadowfit_render::samples::{LightPlace, OcclusionFrame, OcclusionPasses, SampleFrame, SampleRenderer, SkyBox};
+use shadowfit_render::{Gpu, Probe, ProbeTargets, RenderTarget, Renderer};
 use shadowfit_scene::Scene;
+use shadowfit_wgpu::ShadowMapDescriptor;
 
-use super::{Sample, SampleDrawing, SampleValues};
+use super::traced::Traced;
+use super::{OcclusionDrawing, Sample, SampleDrawing, SampleValues};
 use crate::PreparedScene;
 
 /// Draws the samples of a GPU.
 #[derive(Debug)]
 pub struct SampleDrawer {
+    /// Whether pictures wait for what rays have to find, instead of showing what there is.
+    pub waits: bool,
+    samples: u32,
     renderer: SampleRenderer,
     targets: Option<ProbeTargets>,
+    /// Made for the first picture that needs it.
+    sky: Option<SkyBox>,
+    occlusion: Option<OcclusionPasses>,
+    traced: Traced,
 }
 
 /// What became of a frame that was asked for.
@@ -31,7 +40,15 @@ pub enum SampleOutcome {
 impl SampleDrawer {
     /// A drawer of pictures of `samples` per pixel (1 or 4).
     pub fn new(gpu: &Gpu, samples: u32) -> Self {
-        Self { renderer: SampleRenderer::new(gpu, samples), targets: None }
+        Self {
+            waits: true,
+            samples,
+            renderer: SampleRenderer::new(gpu, samples),
+            targets: None,
+            sky: None,
+            occlusion: None,
+            traced: Traced::default(),
+        }
     }
 
     /// Draws a sample by its values.
@@ -47,17 +64,64 @@ impl SampleDrawer {
         camera: &PerspectiveCamera,
         target: &RenderTarget,
     ) -> Result<SampleOutcome> {
-        match sample.drawing(values, camera)? {
-            SampleDrawing::Technique(_) => Ok(SampleOutcome::ByTechnique),
+        let message = match sample.drawing(values, camera)? {
+            SampleDrawing::Technique { .. } => return Ok(SampleOutcome::ByTechnique),
             SampleDrawing::Mapped(frame) => {
                 let casts = casts(sample, scene.scene());
-                let (mut frame, message) = possible(gpu, frame);
-                frame.inset = inset(sample, values, target.size);
-                let frame = SampleFrame { casts: casts.as_deref(), ..frame };
-                self.renderer.draw(gpu, &mut scene.gpu_scene, &frame, target)?;
-                Ok(SampleOutcome::Drawn { message })
+                let (frame, message) = possible(gpu, frame);
+                let sky = self.sky(gpu, &frame, values.is_on("sky"));
+                let inset = inset(sample, values, target.size);
+                let frame = SampleFrame { casts: casts.as_deref(), inset, sky: sky.as_ref(), ..frame };
+                let drawn = self.renderer.draw(gpu, &mut scene.gpu_scene, &frame, target);
+                self.sky = sky.or(self.sky.take());
+                drawn?;
+                message
             }
+            SampleDrawing::Occlusion(drawing) => self.draw_occlusion(gpu, scene, (&drawing, camera), target)?,
+        };
+        Ok(SampleOutcome::Drawn { message })
+    }
+
+    /// The sky with its sun where the frame's light is, where it is wanted.
+    fn sky(&mut self, gpu: &Gpu, frame: &SampleFrame<'_>, is_wanted: bool) -> Option<SkyBox> {
+        let LightPlace::Toward(to_light) = frame.light.place else { return None };
+        if !is_wanted {
+            return None;
         }
+        let mut sky = self.sky.take().unwrap_or_else(|| SkyBox::new(gpu, to_light, self.samples));
+        sky.set_light(gpu, to_light);
+        Some(sky)
+    }
+
+    /// Draws a scene with ambient occlusion; what is traced is that of screen space until it is there.
+    fn draw_occlusion(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut PreparedScene,
+        (drawing, camera): (&OcclusionDrawing, &PerspectiveCamera),
+        target: &RenderTarget,
+    ) -> Result<Option<String>> {
+        let passes = passes(&mut self.occlusion, gpu, self.samples)?;
+        let given =
+            if drawing.is_traced { self.traced.occlusion(scene, camera, target.size, self.waits) } else { None };
+        let is_missing = drawing.is_traced && given.is_none();
+        let frame = occlusion_frame(drawing, camera, given);
+        passes.draw(gpu, &mut scene.gpu_scene, &frame, target);
+        Ok(is_missing.then(|| "Rays are being traced; until then this is screen space".to_owned()))
+    }
+
+    /// The occlusion that a drawing finds in screen space for a picture of a size, rows from the top, 0 where there is sky.
+    pub(super) fn occlusion(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut PreparedScene,
+        (drawing, camera): (&OcclusionDrawing, &PerspectiveCamera),
+        size: [u32; 2],
+    ) -> Result<Vec<f32>> {
+        let target = RenderTarget::new(&gpu.device, size, self.samples);
+        let passes = passes(&mut self.occlusion, gpu, self.samples)?;
+        passes.draw(gpu, &mut scene.gpu_scene, &occlusion_frame(drawing, camera, None), &target);
+        Ok(passes.read_occlusion(gpu)?)
     }
 
     /// What the shading of a mapped frame knows about each pixel.
@@ -90,6 +154,25 @@ impl SampleDrawer {
     pub fn read_map(&self, gpu: &Gpu) -> Result<Option<Vec<u8>>> {
         Ok(self.renderer.read_map(gpu)?)
     }
+}
+
+/// The passes of occlusion, made where they are not there yet.
+fn passes<'a>(kept: &'a mut Option<OcclusionPasses>, gpu: &Gpu, samples: u32) -> Result<&'a mut OcclusionPasses> {
+    if kept.is_none() {
+        // A renderer of any shadow map has the layout of materials that all share.
+        let renderer = Renderer::new(gpu, &ShadowMapDescriptor::default(), 1)?;
+        *kept = Some(OcclusionPasses::new(gpu, renderer.material_layout(), samples));
+    }
+    kept.as_mut().ok_or_else(|| anyhow::anyhow!("the passes of occlusion were just made"))
+}
+
+fn occlusion_frame<'a>(
+    drawing: &OcclusionDrawing,
+    camera: &'a PerspectiveCamera,
+    given: Option<&'a [f32]>,
+) -> OcclusionFrame<'a> {
+    let OcclusionDrawing { settings, light, view, background, .. } = *drawing;
+    OcclusionFrame { camera, light, settings, given, view, sky: None, background }
 }
 
 /// A frame with a map format that the adapter can draw to, and what that changed.

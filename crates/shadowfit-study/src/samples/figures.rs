@@ -1,6 +1,6 @@
 //! Samples against rays: as their source shadows them, and as modern maps do on the same view.
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use glam::{DMat4, DVec2, DVec3};
 use shadowfit::{PerspectiveCamera, Technique};
 use shadowfit_render::samples::{LightPlace, SampleFrame, ShadowTest};
@@ -32,18 +32,30 @@ const fn reach(test: ShadowTest, compares_linearly: bool) -> f32 {
     }
 }
 
-/// The figures of a sample, and of modern maps on the same view.
+/// The figures of a sample on a view.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SampleFigures {
-    /// As the sample shadows it; `None` where no pixel was judged.
-    pub source: Option<PictureFigures>,
-    /// As modern maps do.
-    pub modern: Option<PictureFigures>,
+pub enum SampleFigures {
+    /// Its shadows, and those of modern maps.
+    Shadows {
+        /// As the sample shadows it; `None` where no pixel was judged.
+        source: Option<PictureFigures>,
+        /// As modern maps do.
+        modern: Option<PictureFigures>,
+    },
+    /// Its ambient occlusion: the mean of how far each method is from rays, 0..=1, by the method's name.
+    Occlusion(Vec<(&'static str, f64)>),
 }
 
+/// Methods of ambient occlusion that are compared, by their options, with names.
+const METHODS: [(&str, &[(&str, &str)]); 4] = [
+    ("front faces", &[("method", "front")]),
+    ("front and back faces", &[("method", "back")]),
+    ("front faces, level of detail", &[("method", "front"), ("detail", "on")]),
+    ("depth alone", &[("method", "depth")]),
+];
+
 impl SampleFigures {
-    /// Judges a sample, posed at a time of its animation, in seconds. Pictures are as high as the
-    /// source's.
+    /// Judges a sample, posed at a time of its animation, in seconds. Pictures are as high as the source's.
     ///
     /// # Errors
     ///
@@ -57,26 +69,41 @@ impl SampleFigures {
     ) -> Result<Self> {
         let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::default(), 1)?;
         let mut scene = PreparedScene::new(&gpu, renderer.material_layout(), sample.scene())?;
-        scene.set_time(&gpu, 0, seconds);
+        if sample.controls.model_turn != 0.0 {
+            scene.set_time(&gpu, 0, seconds);
+        }
         let height = sample.size[1];
         let size = [((height as f32 * camera.aspect).round() as u32).max(1), height];
         let mut bench = Bench { gpu, drawer: None, sample, camera, size };
+        if let SampleDrawing::Occlusion(_) = sample.drawing(values, camera)? {
+            return Ok(Self::Occlusion(bench.occlusion_errors(&mut scene, values)?));
+        }
         let mut figures = |shadows: &str| -> Result<Option<PictureFigures>> {
             let mut values = values.clone();
             values.set_from_str("shadows", shadows)?;
             Ok(bench.judge(&mut scene, &values)?.tally.figures())
         };
-        Ok(Self { source: figures("source")?, modern: figures("ours")? })
+        Ok(Self::Shadows { source: figures("source")?, modern: figures("ours")? })
     }
 
-    /// Those of the sample and of modern maps, where both have pixels that were judged.
+    /// Those of the sample's shadows and of modern maps, where both have pixels that were judged.
     pub fn shadows(&self) -> Option<[PictureFigures; 2]> {
-        Some([self.source?, self.modern?])
+        match self {
+            Self::Shadows { source, modern } => Some([(*source)?, (*modern)?]),
+            Self::Occlusion(_) => None,
+        }
     }
 
     /// Names and figures, for people.
     pub fn lines(&self) -> Vec<(String, String)> {
-        let both = [("as its source", &self.source), ("modern maps", &self.modern)];
+        let (source, modern) = match self {
+            Self::Shadows { source, modern } => (source, modern),
+            Self::Occlusion(errors) => {
+                let line = |(name, error): &(&str, f64)| (format!("Mean error, {name}"), format!("{error:.3}"));
+                return errors.iter().map(line).collect();
+            }
+        };
+        let both = [("as its source", source), ("modern maps", modern)];
         let mut lines: Vec<_> = both
             .iter()
             .map(|(name, figures)| {
@@ -116,9 +143,32 @@ struct Bench<'a> {
 impl Bench<'_> {
     fn judge(&mut self, scene: &mut PreparedScene, values: &SampleValues) -> Result<Judged> {
         match self.sample.drawing(values, self.camera)? {
-            SampleDrawing::Technique(technique) => self.judge_technique(scene, &technique),
+            SampleDrawing::Technique { technique, .. } => self.judge_technique(scene, &technique),
             SampleDrawing::Mapped(frame) => self.judge_mapped(scene, &frame),
+            SampleDrawing::Occlusion(_) => bail!("{} has no shadows to judge", self.sample.id),
         }
+    }
+
+    /// How far each method is from rays.
+    fn occlusion_errors(
+        &mut self,
+        scene: &mut PreparedScene,
+        values: &SampleValues,
+    ) -> Result<Vec<(&'static str, f64)>> {
+        let camera = PixelCamera::new(&scene.camera_for_rays(self.camera), self.size);
+        let truth = super::traced::truth(scene.rays(), &camera);
+        let mut errors = Vec::new();
+        for (name, options) in METHODS {
+            let mut values = values.clone();
+            for (id, text) in options {
+                values.set_from_str(id, text)?;
+            }
+            let SampleDrawing::Occlusion(drawing) = self.sample.drawing(&values, self.camera)? else { continue };
+            let drawer = self.drawer.get_or_insert_with(|| SampleDrawer::new(&self.gpu, 1));
+            let occlusion = drawer.occlusion(&self.gpu, scene, (&drawing, self.camera), self.size)?;
+            errors.push((name, truth.mean_absolute_error(&occlusion).context("nothing but sky is seen")?));
+        }
+        Ok(errors)
     }
 
     fn judge_technique(&self, scene: &mut PreparedScene, technique: &Technique) -> Result<Judged> {

@@ -220,6 +220,7 @@ fn projective(values: &SampleValues, camera: &PerspectiveCamera) -> Result<Sampl
         // The light's power and the ambient light of this stage are seen in the plain scene alone.
         shading: if is_off { Shading::Headlight { power: 1.0, ambient: 0.2 } } else { Shading::Projective },
         background: [0; 3],
+        sky: None,
         casts: None,
         double_sided: true,
         inset: None,
@@ -254,6 +255,7 @@ fn real_shadow(values: &SampleValues, camera: &PerspectiveCamera) -> Result<Samp
         test,
         shading: if values.choice("lighting") == "modern" { MODERN } else { source },
         background: [0; 3],
+        sky: None,
         casts: None,
         double_sided: true,
         inset: None,

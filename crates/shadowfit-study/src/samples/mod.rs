@@ -9,16 +9,20 @@ mod drawer;
 mod figures;
 mod headlight;
 mod lamp;
+mod occlusion;
 mod options;
 mod scenes;
+mod sky_box;
+mod splits;
 mod terrain;
+mod traced;
 mod xna;
 
 use glam::{DVec3, Vec3};
 use shadowfit::tool::CameraSettings;
 use shadowfit::{FitError, PerspectiveCamera, Technique};
 use shadowfit_render::FlyCamera;
-use shadowfit_render::samples::SampleFrame;
+use shadowfit_render::samples::{OcclusionLight, OcclusionSettings, OcclusionView, SampleFrame};
 use shadowfit_scene::Scene;
 
 pub use drawer::{SampleDrawer, SampleOutcome};
@@ -115,12 +119,42 @@ pub enum SampleDrawing {
     /// By the samples' renderer.
     Mapped(SampleFrame<'static>),
     /// As any scene, by a technique of the core.
-    Technique(Technique),
+    Technique {
+        /// The technique.
+        technique: Technique,
+        /// Whether each point is shown in the tint of the map that it reads.
+        is_tinted: bool,
+    },
+    /// With ambient occlusion.
+    Occlusion(OcclusionDrawing),
+}
+
+/// How a sample with ambient occlusion is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OcclusionDrawing {
+    /// How occlusion is found in screen space; `None` for none.
+    pub settings: Option<OcclusionSettings>,
+    /// Whether it is found by rays instead.
+    pub is_traced: bool,
+    /// Sun and ambient light.
+    pub light: OcclusionLight,
+    /// What is shown.
+    pub view: OcclusionView,
+    /// Colour behind the scene, in display values.
+    pub background: Vec3,
 }
 
 /// Every sample, in the order of the documentation.
-pub static SAMPLES: [Sample; 5] =
-    [xna::SAMPLE, headlight::PROJECTIVE, headlight::REAL_SHADOW, comparison::SAMPLE, terrain::SAMPLE];
+pub static SAMPLES: [Sample; 8] = [
+    xna::SAMPLE,
+    headlight::PROJECTIVE,
+    headlight::REAL_SHADOW,
+    comparison::SAMPLE,
+    terrain::SAMPLE,
+    splits::SAMPLE,
+    occlusion::SAMPLE,
+    sky_box::SAMPLE,
+];
 
 impl Sample {
     /// The sample of a name.
@@ -154,15 +188,20 @@ impl Sample {
 
     /// Whether its values are drawn by a technique, as any scene is.
     pub fn is_technique(&self, values: &SampleValues) -> bool {
-        matches!(self.drawing(values, &self.lens(1.0)), Ok(SampleDrawing::Technique(_)))
+        matches!(self.drawing(values, &self.lens(1.0)), Ok(SampleDrawing::Technique { .. }))
     }
 
     /// The technique of its values, or the one that modern maps of its view have.
     pub fn technique(&self, values: &SampleValues) -> Technique {
         match self.drawing(values, &self.lens(1.0)) {
-            Ok(SampleDrawing::Technique(technique)) => technique,
+            Ok(SampleDrawing::Technique { technique, .. }) => technique,
             _ => modern(self.view.far),
         }
+    }
+
+    /// Whether its values show each point in the tint of the map that it reads.
+    pub fn is_tinted(&self, values: &SampleValues) -> bool {
+        matches!(self.drawing(values, &self.lens(1.0)), Ok(SampleDrawing::Technique { is_tinted: true, .. }))
     }
 
     /// The camera that it is seen through at first, for a picture of an aspect (width over height).

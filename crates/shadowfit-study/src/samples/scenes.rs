@@ -1,7 +1,7 @@
 //! The samples' scenes, as functions that a table can hold.
 
 use shadowfit_scene::Scene;
-use shadowfit_scene::builtin::SampleScene;
+use shadowfit_scene::builtin::{BuiltinScene, SampleScene};
 
 /// The XNA sample's character on its floor. Its first animation turns it once.
 pub(super) fn shadow_mapping() -> Scene {
@@ -21,4 +21,19 @@ pub(super) fn still_life() -> Scene {
 /// Hills with vehicles.
 pub(super) fn terrain() -> Scene {
     SampleScene::Terrain.build()
+}
+
+/// A long view over open land.
+pub(super) fn plain() -> Scene {
+    BuiltinScene::Plain.build()
+}
+
+/// Columns and vaults.
+pub(super) fn arcade() -> Scene {
+    BuiltinScene::Arcade.build()
+}
+
+/// A courtyard under an open sky.
+pub(super) fn courtyard() -> Scene {
+    BuiltinScene::Courtyard.build()
 }

@@ -152,6 +152,7 @@ fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDr
         test,
         shading: if values.choice("lighting") == "modern" { MODERN } else { source },
         background: super::xna::BACKGROUND,
+        sky: None,
         casts: None,
         double_sided: true,
         inset: None,

@@ -207,7 +207,7 @@ fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDr
     let fit = shadowfit::fits::xna::fit(&camera.frustum()?, DIRECTION, &settings)?;
     let test = match values.choice("shadows") {
         "off" => ShadowTest::Off,
-        "ours" => return Ok(SampleDrawing::Technique(super::modern(camera.far))),
+        "ours" => return Ok(SampleDrawing::Technique { technique: super::modern(camera.far), is_tinted: false }),
         _ => ShadowTest::Xna { bias: values.get("bias") },
     };
     Ok(SampleDrawing::Mapped(SampleFrame {
@@ -228,6 +228,7 @@ fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDr
         test,
         shading: if values.choice("lighting") == "modern" { MODERN } else { Shading::Xna { ambient: AMBIENT } },
         background: BACKGROUND,
+        sky: None,
         casts: None,
         double_sided: false,
         inset: None,

@@ -1,6 +1,7 @@
 //! A classic sample on the stage: its values, its controls, and what draws it.
 
 use anyhow::{Context, Result};
+use shadowfit::tool::ViewMode;
 use shadowfit_render::{FlyCamera, FlyInput, RenderTarget, camera::TURN_SPEED};
 use shadowfit_study::samples::{OptionKind, Sample, SampleDrawer, SampleOutcome, SampleValues, SampleVariant};
 
@@ -38,10 +39,12 @@ impl Stage {
             self.settings.light = light;
         }
         self.settings.technique = sample.technique(&values);
-        let drawer = match self.sample.take() {
+        self.settings.view.mode = mode(sample, &values);
+        let mut drawer = match self.sample.take() {
             Some(show) => show.drawer,
             None => SampleDrawer::new(&self.gpu, self.samples),
         };
+        drawer.waits = self.side.live.waits;
         self.home = (self.settings, camera);
         let eye = variant.and_then(|variant| variant.view).map_or(camera, |(eye, forward)| look(eye, forward));
         self.set_camera(eye);
@@ -59,6 +62,10 @@ impl Stage {
         let technique = show.sample.technique(&values);
         if technique != show.sample.technique(&show.values) {
             self.settings.technique = technique;
+        }
+        let mode = mode(show.sample, &values);
+        if mode != self::mode(show.sample, &show.values) {
+            self.settings.view.mode = mode;
         }
         show.values = values;
     }
@@ -160,6 +167,11 @@ impl Stage {
         let (eye, forward) = self.sample.as_ref()?.sample.controls.reset?;
         Some(look(eye, forward))
     }
+}
+
+/// The view that values ask for.
+fn mode(sample: &Sample, values: &SampleValues) -> ViewMode {
+    if sample.is_tinted(values) { ViewMode::Maps } else { ViewMode::Final }
 }
 
 fn look(eye: glam::DVec3, forward: glam::Vec3) -> FlyCamera {

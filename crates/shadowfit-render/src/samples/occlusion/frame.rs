@@ -109,6 +109,9 @@ pub struct OcclusionFrame<'a> {
     pub light: OcclusionLight,
     /// How occlusion is computed; nothing is hidden where `None`.
     pub settings: Option<OcclusionSettings>,
+    /// Occlusion that was found elsewhere, such as by rays, 0..=1 for each of the target's pixels, rows from the top: it
+    /// takes the place of that of [`Self::settings`].
+    pub given: Option<&'a [f32]>,
     /// What is shown.
     pub view: OcclusionView,
     /// What is seen behind the scene: made for as many samples as the passes.

@@ -39,7 +39,8 @@ impl Targets {
         let texture = |label, format| {
             let usage = wgpu::TextureUsages::RENDER_ATTACHMENT
                 | wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_SRC;
+                | wgpu::TextureUsages::COPY_SRC
+                | if format == OCCLUSION_FORMAT { wgpu::TextureUsages::COPY_DST } else { wgpu::TextureUsages::empty() };
             bindings::plain_texture(device, label, size, format, usage)
         };
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());

@@ -1,0 +1,69 @@
+//! Ambient occlusion by rays for the pictures of a sample: waited for, or traced on a thread while the camera rests.
+
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, channel};
+
+use shadowfit::PerspectiveCamera;
+use shadowfit_truth::{AmbientSettings, AmbientTruth, PixelCamera, Truth};
+
+use crate::{PreparedScene, SceneRays};
+
+/// What occlusion was traced for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Key {
+    camera: PerspectiveCamera,
+    size: [u32; 2],
+}
+
+/// The occlusion that was traced last, and what is under way.
+#[derive(Debug, Default)]
+pub(super) struct Traced {
+    done: Option<(Key, Vec<f32>)>,
+    under_way: Option<(Key, Receiver<Vec<f32>>)>,
+}
+
+impl Traced {
+    /// The occlusion of a picture, rows from the top, 0 where there is sky. Unless it `waits` it is traced on a thread, and
+    /// `None` until it is there.
+    pub(super) fn occlusion(
+        &mut self,
+        scene: &PreparedScene,
+        camera: &PerspectiveCamera,
+        size: [u32; 2],
+        waits: bool,
+    ) -> Option<&[f32]> {
+        let key = Key { camera: *camera, size };
+        if let Some((of, Ok(occlusion))) = self.under_way.as_ref().map(|(of, result)| (*of, result.try_recv())) {
+            self.done = Some((of, occlusion));
+            self.under_way = None;
+        }
+        if self.done.as_ref().is_none_or(|(of, _)| *of != key) {
+            let (rays, camera) = (scene.shared_rays(), PixelCamera::new(&scene.camera_for_rays(camera), size));
+            if waits {
+                self.done = Some((key, trace(&rays, &camera)));
+            } else if self.under_way.is_none() {
+                let (sender, result) = channel();
+                let work = move || {
+                    // Nobody waits any more where the sample is another one.
+                    let _ = sender.send(trace(&rays, &camera));
+                };
+                // Where no thread can be made nothing comes back, and the picture stays as it is in screen space.
+                let _ = std::thread::Builder::new().name("occlusion".to_owned()).spawn(work);
+                self.under_way = Some((key, result));
+            }
+        }
+        self.done.as_ref().filter(|(of, _)| *of == key).map(|(_, occlusion)| occlusion.as_slice())
+    }
+}
+
+/// Traces the occlusion of a picture.
+fn trace(rays: &Arc<SceneRays>, camera: &PixelCamera) -> Vec<f32> {
+    let truth = truth(rays, camera);
+    truth.occlusion.into_iter().map(|occlusion| occlusion.unwrap_or(0.0)).collect()
+}
+
+/// The ray-traced occlusion of what rays see through a camera.
+pub(super) fn truth(rays: &SceneRays, camera: &PixelCamera) -> AmbientTruth {
+    let seen = Truth::seen_by_rays(&rays.tracer, camera);
+    AmbientTruth::trace(&rays.tracer, camera, &AmbientSettings::default(), &seen)
+}
