@@ -13,8 +13,8 @@ use super::{OcclusionDrawing, Sample, SampleControls, SampleDrawing, SampleVaria
 /// Direction of travel of the sun that lights the scene besides.
 const DIRECTION: Vec3 = Vec3::new(-0.45, -0.8, -0.4);
 
-/// A column's foot on the floor, from close by.
-const AT_A_COLUMN: (DVec3, Vec3) = (DVec3::new(-1.2, 1.4, 3.0), Vec3::new(0.9, -0.45, -1.0));
+/// A vase on its plinth and plants by a wall, from close by.
+const AT_A_VASE: (DVec3, Vec3) = (DVec3::new(0.3, 1.25, 2.2), Vec3::new(-1.0, -0.3, -1.9));
 
 pub(super) const SAMPLE: Sample = Sample {
     id: "ambient-occlusion",
@@ -137,14 +137,14 @@ pub(super) const SAMPLE: Sample = Sample {
             text: "Front faces on the left, back faces besides on the right: things hide what is behind them at some distance, \
                    too.",
             options: &[("show", "occlusion"), ("beside", "method=back")],
-            view: Some(AT_A_COLUMN),
+            view: Some(AT_A_VASE),
         },
         SampleVariant {
             id: "two-radii",
             label: "Two radii",
             text: "A small radius besides the large one finds the narrow corners that the large one steps over.",
             options: &[("show", "occlusion"), ("second", "0.15"), ("beside", "method=traced")],
-            view: Some(AT_A_COLUMN),
+            view: Some(AT_A_VASE),
         },
         SampleVariant {
             id: "raw",
@@ -152,7 +152,7 @@ pub(super) const SAMPLE: Sample = Sample {
             text: "Each pixel turns its four directions by a random angle; without the blur that is noise in blocks of four \
                    pixels.",
             options: &[("show", "occlusion"), ("blur", "off")],
-            view: Some(AT_A_COLUMN),
+            view: Some(AT_A_VASE),
         },
     ],
     scene: super::scenes::arcade,

@@ -1,5 +1,5 @@
 //! A sky box around the built-in courtyard: a cube that is seen from inside, as far away wherever the camera is. The
-//! scene is shaded as the XNA sample is, with one map for what is near.
+//! scene is shaded by its texture, ambient and diffuse light, with one map for what is near.
 
 use core::f32::consts::FRAC_PI_4;
 
@@ -21,8 +21,11 @@ const DISTANCE: f32 = 30.0;
 /// Depth bias of the map, in texels' sizes.
 const BIAS_TEXELS: f32 = 3.0;
 /// Elevation and azimuth of the sun at first, in degrees; azimuth from +z toward +x.
-const ELEVATION: f32 = 28.0;
-const AZIMUTH: f32 = 205.0;
+const ELEVATION: f32 = 30.0;
+const AZIMUTH: f32 = 76.0;
+/// Light of the sun and light from everywhere, as factors of the texture.
+const POWER: f32 = 0.75;
+const AMBIENT: f32 = 0.42;
 
 pub(super) const SAMPLE: Sample = Sample {
     id: "sky-box",
@@ -33,14 +36,14 @@ pub(super) const SAMPLE: Sample = Sample {
     page: "samples/sky-box.md",
     size: [800, 480],
     view: SampleView {
-        eye: DVec3::new(3.4, 1.5, 5.6),
-        forward: Vec3::new(-0.5, 0.16, -1.0),
+        eye: DVec3::new(-2.4, 1.5, 6.0),
+        forward: Vec3::new(3.2, 0.75, -5.6),
         fov_y: FRAC_PI_4 * 1.2,
         near: 0.1,
         far: 200.0,
         speed: 4.0,
     },
-    direction: Vec3::new(0.373, -0.469, 0.8),
+    direction: Vec3::new(-0.840, -0.5, -0.209),
     inset: None,
     only_subject_casts: false,
     is_measurable: false,
@@ -88,14 +91,14 @@ pub(super) const SAMPLE: Sample = Sample {
             label: "Toward the sun",
             text: "The sun of the sky stands where the light comes from: shadows point away from it.",
             options: &[],
-            view: Some((DVec3::new(2.0, 1.6, 7.0), Vec3::new(-0.42, 0.38, -0.9))),
+            view: Some((DVec3::new(-6.0, 1.6, 1.5), Vec3::new(0.9, 0.3, 0.12))),
         },
         SampleVariant {
             id: "corner",
             label: "A corner of the cube",
             text: "Three faces of the cube meet in the middle of this picture, and no edge of them shows.",
             options: &[],
-            view: Some((DVec3::new(0.0, 1.6, 0.0), Vec3::ONE)),
+            view: Some((DVec3::new(-2.4, 1.6, 6.0), Vec3::new(1.0, 1.0, -1.0))),
         },
         SampleVariant {
             id: "evening",
@@ -136,7 +139,11 @@ fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDr
             compares_linearly: false,
         },
         test: if values.choice("shadows") == "off" { ShadowTest::Off } else { ShadowTest::Xna { bias } },
-        shading: if is_modern { Shading::Modern { light: 1.8, ambient: 0.5 } } else { Shading::Xna { ambient: 0.15 } },
+        shading: if is_modern {
+            Shading::Modern { light: 1.8, ambient: 0.5 }
+        } else {
+            Shading::Headlight { power: POWER, ambient: AMBIENT }
+        },
         background: super::xna::BACKGROUND,
         sky: None,
         casts: None,

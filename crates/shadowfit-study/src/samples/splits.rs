@@ -12,12 +12,12 @@ use super::options::{OptionKind, SampleOption, SampleValues};
 use super::{Sample, SampleControls, SampleDrawing, SampleVariant, SampleView};
 
 /// How far shadows reach, in metres.
-const DISTANCE: f32 = 250.0;
+const DISTANCE: f32 = 400.0;
 /// Weight of the logarithmic splits among the practical ones.
 const LAMBDA: f32 = 0.75;
 
 /// Low over the ground, along a long shadow.
-const LOW: (DVec3, Vec3) = (DVec3::new(0.2, 0.9, 1.0), Vec3::new(-0.05, -0.2, -1.0));
+const LOW: (DVec3, Vec3) = (DVec3::new(0.2, 13.7, 1.6), Vec3::new(-0.05, -0.16, -1.0));
 
 pub(super) const SAMPLE: Sample = Sample {
     id: "parallel-split",
@@ -29,7 +29,7 @@ pub(super) const SAMPLE: Sample = Sample {
     page: "samples/parallel-split.md",
     size: [800, 450],
     view: SampleView {
-        eye: DVec3::new(0.2, 1.7, 2.5),
+        eye: DVec3::new(0.2, 14.656, 2.5),
         forward: Vec3::new(-0.05, -0.115, -1.0),
         fov_y: FRAC_PI_4,
         near: 0.1,
@@ -100,8 +100,9 @@ pub(super) const SAMPLE: Sample = Sample {
         SampleVariant {
             id: "uniform",
             label: "Uniform splits",
-            text: "Slices of equal depth: the first one reaches so far that the shadow at the camera is made of blocks.",
-            options: &[("splits", "uniform")],
+            text: "Slices of equal depth, here with maps of 512²: the first one reaches a hundred metres, so that shadows at the \
+                   camera are washed out.",
+            options: &[("splits", "uniform"), ("map", "512")],
             view: Some(LOW),
         },
         SampleVariant {
@@ -114,15 +115,15 @@ pub(super) const SAMPLE: Sample = Sample {
         SampleVariant {
             id: "one-map",
             label: "One map only",
-            text: "All of the view in one map: fine nowhere.",
-            options: &[("maps", "1")],
+            text: "All of the view in one map of 512²: fine nowhere.",
+            options: &[("maps", "1"), ("map", "512")],
             view: Some(LOW),
         },
         SampleVariant {
             id: "practical",
             label: "Practical splits",
-            text: "The same view with practical splits, for comparison.",
-            options: &[],
+            text: "The same view with practical splits and maps of 512², for comparison.",
+            options: &[("map", "512")],
             view: Some(LOW),
         },
     ],

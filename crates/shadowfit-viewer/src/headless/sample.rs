@@ -84,12 +84,12 @@ fn write_picture(stage: &mut Stage, path: &Path, size: [u32; 2]) -> Result<()> {
     write_png(path, size, &pixels, None)
 }
 
-/// A white line between both halves of a picture.
+/// A line between both halves of a picture: white beside black, so that it shows on whatever is there.
 fn draw_line(pixels: &mut [u8], [width, _]: [u32; 2], split: f32) {
     let column = (split * width as f32) as usize;
     for row in pixels.chunks_exact_mut(width as usize * 4) {
-        for x in [column.saturating_sub(1), column] {
-            row[x * 4..x * 4 + 4].fill(255);
+        for (x, level) in [(column.saturating_sub(1), 0), (column, 255)] {
+            row[x * 4..x * 4 + 3].fill(level);
         }
     }
 }
