@@ -1,5 +1,6 @@
 //! A sample on the software adapter: its pictures, its map, and its figures against rays.
 
+use shadowfit::PerspectiveCamera;
 use shadowfit_render::{Gpu, RenderTarget, Renderer};
 use shadowfit_study::PreparedScene;
 use shadowfit_study::samples::{Sample, SampleDrawer, SampleFigures, SampleOutcome, SampleValues, SampleVariant};
@@ -48,7 +49,17 @@ impl Bench {
     ) -> Vec<[u8; 4]> {
         let target = RenderTarget::new(&self.gpu.device, size, 1);
         let camera = self.sample.seen_by(variant, size[0] as f32 / size[1] as f32);
-        let drawn = self.drawer.draw(&self.gpu, &mut self.scene, (self.sample, values), &camera, &target);
+        self.draw(values, &camera, &target)
+    }
+
+    /// The picture of values through a camera.
+    pub(super) fn draw(
+        &mut self,
+        values: &SampleValues,
+        camera: &PerspectiveCamera,
+        target: &RenderTarget,
+    ) -> Vec<[u8; 4]> {
+        let drawn = self.drawer.draw(&self.gpu, &mut self.scene, (self.sample, values), camera, target);
         assert_eq!(drawn.expect("a picture"), SampleOutcome::Drawn { message: None });
         target.read(&self.gpu).expect("pixels").as_chunks().0.to_vec()
     }

@@ -4,7 +4,7 @@ use core::mem::offset_of;
 
 use naga::{Binding, Module, StructMember, TypeInner};
 use shadowfit::culling::CasterPlanes;
-use shadowfit_render::samples::{OcclusionUniform, SkyBoxUniform};
+use shadowfit_render::samples::{OcclusionUniform, SampleFormat, SampleUniform, ShadingKind, SkyBoxUniform, TestKind};
 use shadowfit_render::{
     BlockUniform, FrameUniform, InsetVertex, InstanceData, JudgedUniform, LineVertex, MarksUniform, MaterialUniform,
     Overlay, QuadVertex, shaders,
@@ -330,6 +330,12 @@ fn what_the_samples_read_lies_as_in_wgsl() {
     let shade = parse("occlusion shade", &shaders::samples::occlusion_shade());
     assert_same(&shade, &occlusion);
     assert_same(&parse("occlusion gather", &shaders::samples::occlusion_gather()), &occlusion);
+    let sample = layout!(
+        "Sample" = SampleUniform { clip_from_world, light_from_world, light, test, ours, shading, map_size, padding }
+    );
+    let shaded = shaders::samples::shaded(SampleFormat::Depth32, TestKind::Ours, ShadingKind::Modern);
+    assert_same(&parse("sample", &shaded), &sample);
+    assert_same(&parse("samples' casters", &shaders::samples::caster()), &sample);
     assert_same(
         &parse("sky box", &shaders::samples::sky_box()),
         &layout!("SkyBox" = SkyBoxUniform { clip_from_world }),

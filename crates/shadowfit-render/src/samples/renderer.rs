@@ -6,7 +6,7 @@ use shadowfit::Aabb;
 
 use super::map::SampleMap;
 use super::pipelines::{Kind, Read, SamplePipelines};
-use super::{CasterFaces, SampleFrame, SampleUniform, ShadowTest, TestKind};
+use super::{CasterFaces, SampleFrame, SampleUniform, Shading, ShadowTest, TestKind};
 use crate::attachment::{cleared, depth, drawn_over};
 use crate::probe::{ProbeError, can_probe};
 use crate::scene::{Draw, GpuScene, Part, in_frustum};
@@ -177,7 +177,7 @@ impl SampleRenderer {
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
         scene.begin_frame(frame.camera.eye);
         let casters = match frame.test {
-            ShadowTest::Off if frame.inset.is_none() => Vec::new(),
+            ShadowTest::Off if frame.inset.is_none() && frame.shading != Shading::Projective => Vec::new(),
             _ => scene.drawn_of(|node| frame.casts.is_none_or(|casts| casts.get(node) == Some(&true))),
         };
         let seen = in_frustum(glam::Mat4::from_cols_array_2d(&uniform.clip_from_world));

@@ -118,10 +118,15 @@ fn twin(case: &Case) -> Answer {
 
 /// What the shader's functions answer.
 fn ask(gpu: &Gpu, cases: &[Case]) -> Vec<Answer> {
+    compute(gpu, &[shaders::samples::occlusion_formula(), ASK].concat(), cases)
+}
+
+/// What the entry point `ask` of a module answers to cases, as many as a multiple of 64.
+pub(crate) fn compute<C: bytemuck::Pod, A: bytemuck::Pod>(gpu: &Gpu, source: &str, cases: &[C]) -> Vec<A> {
     let device = &gpu.device;
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("formulas"),
-        source: wgpu::ShaderSource::Wgsl([shaders::samples::occlusion_formula(), ASK].concat().into()),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
     });
     let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: Some("formulas"),
@@ -138,7 +143,7 @@ fn ask(gpu: &Gpu, cases: &[Case]) -> Vec<Answer> {
     let storage = wgpu::BufferUsages::STORAGE;
     let asked = buffer(size_of_val(cases), storage | wgpu::BufferUsages::COPY_DST);
     gpu.queue.write_buffer(&asked, 0, bytemuck::cast_slice(cases));
-    let size = cases.len() * size_of::<Answer>();
+    let size = cases.len() * size_of::<A>();
     let answers = buffer(size, storage | wgpu::BufferUsages::COPY_SRC);
     let read = buffer(size, wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
     let group = device.create_bind_group(&wgpu::BindGroupDescriptor {

@@ -4,4 +4,5 @@
 mod formulas_gpu;
 mod occlusion_gpu;
 mod scenes;
+mod shading_gpu;
 mod sky_box_gpu;

@@ -118,7 +118,7 @@ fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDr
     let lamp = Lamp {
         position: position.as_dvec3(),
         target: target.as_dvec3(),
-        fov_y: 75.0_f32.to_radians(),
+        fov_y: 60.0_f32.to_radians(),
         aspect: 1.0,
         near: 4.0,
         far: 20.0,

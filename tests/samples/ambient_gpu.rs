@@ -1,0 +1,68 @@
+//! Ambient occlusion: how far each method is from rays, and what it darkens.
+
+use shadowfit_study::samples::SampleFigures;
+
+use super::bench::Bench;
+
+const ID: &str = "ambient-occlusion";
+const SIZE: [u32; 2] = [240, 180];
+
+fn errors(bench: &Bench) -> Vec<(&'static str, f64)> {
+    match bench.figures(None, &bench.values(None, &[])) {
+        SampleFigures::Occlusion(errors) => errors,
+        SampleFigures::Shadows { .. } => panic!("occlusion has no shadows"),
+    }
+}
+
+#[test]
+fn normals_are_much_closer_to_rays_than_depth_alone() {
+    let bench = Bench::new(ID);
+    let errors = errors(&bench);
+    let of = |name: &str| errors.iter().find(|(method, _)| *method == name).expect("a method").1;
+    assert!(of("front faces") < 0.06, "{errors:?}");
+    assert!(of("front and back faces") < 0.06, "{errors:?}");
+    assert!(of("front faces, level of detail") < 0.06, "{errors:?}");
+    assert!(of("depth alone") > 3.0 * of("front faces"), "{errors:?}");
+}
+
+#[test]
+fn occlusion_darkens_and_never_brightens_and_the_open_floor_hardly_at_all() {
+    let mut bench = Bench::new(ID);
+    let [front, off] = ["front", "off"].map(|method| {
+        let values = bench.values(None, &[("method", method)]);
+        bench.picture(None, &values, SIZE)
+    });
+    let changed = front.iter().zip(&off).filter(|(front, off)| front != off).count();
+    assert!(changed > front.len() / 4, "{changed}");
+    assert!(front.iter().zip(&off).all(|(front, off)| (0..3).all(|channel| front[channel] <= off[channel])));
+    // Full light is ambient and diffuse; occlusion takes no more than the ambient part, 0.55 of at most 1.
+    let least = front.iter().zip(&off).filter(|(_, off)| off[0] > 100);
+    let least = least.map(|(front, off)| f32::from(front[0]) / f32::from(off[0])).fold(1.0, f32::min);
+    assert!(least > 0.05, "{least}");
+}
+
+#[test]
+fn what_is_traced_is_shown_as_it_was_traced() {
+    let mut bench = Bench::new(ID);
+    let [traced, off] = ["traced", "off"].map(|method| {
+        let values = bench.values(None, &[("method", method), ("show", "occlusion")]);
+        bench.picture(None, &values, SIZE)
+    });
+    // Without occlusion all is white; rays hide something of a good part of the picture.
+    assert!(off.iter().all(|pixel| pixel[..3] == [255; 3]));
+    let hidden = traced.iter().filter(|pixel| pixel[0] < 200).count();
+    assert!((traced.len() / 50..traced.len() / 2).contains(&hidden), "{hidden}");
+    assert!(traced.iter().all(|pixel| pixel[0] == pixel[1] && pixel[1] == pixel[2]));
+}
+
+#[test]
+fn back_faces_hide_something_besides() {
+    let mut bench = Bench::new(ID);
+    let [front, back] = ["front", "back"].map(|method| {
+        let values = bench.values(None, &[("method", method), ("show", "occlusion"), ("blur", "off")]);
+        bench.picture(None, &values, SIZE)
+    });
+    assert!(back.iter().zip(&front).all(|(back, front)| back[0] <= front[0]));
+    let more = back.iter().zip(&front).filter(|(back, front)| back[0] < front[0]).count();
+    assert!(more > front.len() / 100, "{more}");
+}
