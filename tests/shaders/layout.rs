@@ -4,7 +4,7 @@ use core::mem::offset_of;
 
 use naga::{Binding, Module, StructMember, TypeInner};
 use shadowfit::culling::CasterPlanes;
-use shadowfit_render::samples::{OcclusionUniform, SkyBoxUniform};
+use shadowfit_render::samples::{OcclusionUniform, SampleUniform, SkyBoxUniform};
 use shadowfit_render::{
     BlockUniform, FrameUniform, InsetVertex, InstanceData, JudgedUniform, LineVertex, MarksUniform, MaterialUniform,
     Overlay, QuadVertex, shaders,
@@ -334,4 +334,7 @@ fn what_the_samples_read_lies_as_in_wgsl() {
         &parse("sky box", &shaders::samples::sky_box()),
         &layout!("SkyBox" = SkyBoxUniform { clip_from_world }),
     );
+    let sample =
+        layout!("Sample" = SampleUniform { clip_from_world, light_from_world, light, test, shading, map_size, lift });
+    assert_same(&parse("sample's casters", &shaders::samples::caster()), &sample);
 }

@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Mat4, Vec3};
-use shadowfit::{DepthConvention, PerspectiveCamera};
+use shadowfit::{DepthConvention, PerspectiveCamera, SpotBias};
 
 use super::SampleFormat;
 
@@ -106,13 +106,11 @@ pub enum ShadowTest {
         /// What the depth is taken from.
         from: f32,
     },
-    /// Ours: the core's bias and a filter of 3 × 3 look-ups of 2 × 2 texels; needs [`SampleFormat::Depth32`] that compares
-    /// linearly.
+    /// Ours: the core's bias and a filter of 3 × 3 look-ups of 2 × 2 texels, which reach 2 texels; needs a lamp (a light
+    /// with an axis) and [`SampleFormat::Depth32`] that compares linearly.
     Ours {
-        /// Constant bias, in units of the stored depth.
-        constant_depth: f32,
-        /// Offset along the normal, times the distance along the light's axis and the sine of the angle.
-        normal_offset: f32,
+        /// The core's bias for the lamp's map. Its receiver-plane term is ignored; [`SpotBias::automatic`] leaves it at 0.
+        bias: SpotBias,
         /// Whether points outside of the light's image are lit.
         lit_outside: bool,
     },
@@ -195,8 +193,8 @@ pub struct SampleUniform {
     pub shading: [f32; 4],
     /// Width and height of the map, in texels.
     pub map_size: [f32; 2],
-    /// Keeps the struct a multiple of 16 bytes.
-    pub padding: [f32; 2],
+    /// Numbers of our test's lift along the normal.
+    pub lift: [f32; 2],
 }
 
 impl SampleUniform {
@@ -213,7 +211,7 @@ impl SampleUniform {
             test: frame.test.numbers(),
             shading: frame.shading.numbers(),
             map_size: frame.map.size.map(|side| side as f32),
-            padding: [0.0; 2],
+            lift: frame.test.lift(),
         }
     }
 }
@@ -225,9 +223,17 @@ impl ShadowTest {
             Self::Xna { bias } | Self::RealShadow { bias } => [bias, 0.0, 0.0, 0.0],
             Self::Comparison { epsilon, toward_light } => [epsilon, if toward_light { -1.0 } else { 1.0 }, 0.0, 0.0],
             Self::Terrain { off_stored, from } => [off_stored, from, 0.0, 0.0],
-            Self::Ours { constant_depth, normal_offset, lit_outside } => {
-                [constant_depth, normal_offset, if lit_outside { 1.0 } else { 0.0 }, 0.0]
+            Self::Ours { bias, lit_outside } => {
+                let SpotBias { constant_depth, distance_depth, slope_depth, .. } = bias;
+                [constant_depth, distance_depth, slope_depth, if lit_outside { 1.0 } else { 0.0 }]
             }
+        }
+    }
+
+    fn lift(self) -> [f32; 2] {
+        match self {
+            Self::Ours { bias, .. } => [bias.normal_offset, bias.constant_offset],
+            _ => [0.0; 2],
         }
     }
 }

@@ -75,12 +75,14 @@ impl SampleMap {
             resolve_target: None,
             ops: wgpu::Operations { load: wgpu::LoadOp::Clear(self.cleared(clear)), store: wgpu::StoreOp::Store },
         });
+        // A depth map is drawn without colours: an attachment that is none would be another layout.
+        let colors = color.map(Some);
         // The buffer that sorts casters is cleared to the farthest depth; only a depth map's own value can differ.
         let far = if self.settings.format.is_depth() { clear as f32 } else { 1.0 };
         let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(far), store: wgpu::StoreOp::Store };
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("sample map"),
-            color_attachments: &[color],
+            color_attachments: colors.as_slice(),
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &self.depth,
                 depth_ops: Some(ops),

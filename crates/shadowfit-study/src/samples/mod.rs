@@ -4,8 +4,12 @@
 //! [`SAMPLES`] lists them; a [`SampleDrawer`] draws one by its [`SampleValues`], and [`SampleFigures`] judge it
 //! against rays. Lengths are in the units of each source. `docs/samples` has a page for each.
 
+mod comparison;
 mod drawer;
 mod figures;
+mod headlight_projective;
+mod headlight_real_shadow;
+mod lamp;
 mod options;
 mod scenes;
 mod xna;
@@ -115,7 +119,8 @@ pub enum SampleDrawing {
 }
 
 /// Every sample, in the order of the documentation.
-pub static SAMPLES: [Sample; 1] = [xna::SAMPLE];
+pub static SAMPLES: [Sample; 4] =
+    [xna::SAMPLE, headlight_projective::SAMPLE, headlight_real_shadow::SAMPLE, comparison::SAMPLE];
 
 impl Sample {
     /// The sample of a name.

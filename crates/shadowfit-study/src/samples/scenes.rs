@@ -7,3 +7,13 @@ use shadowfit_scene::builtin::SampleScene;
 pub(super) fn shadow_mapping() -> Scene {
     SampleScene::ShadowMapping.build()
 }
+
+/// The street at night.
+pub(super) fn street() -> Scene {
+    SampleScene::Street.build()
+}
+
+/// The still life.
+pub(super) fn still_life() -> Scene {
+    SampleScene::StillLife.build()
+}

@@ -13,7 +13,8 @@ struct Sample {
     shading: vec4<f32>,
     // Width and height of the map, in texels.
     map_size: vec2<f32>,
-    padding: vec2<f32>,
+    // What our test lifts points by along the normal.
+    lift: vec2<f32>,
 }
 
 @group(0) @binding(0) var<uniform> sample: Sample;
