@@ -21,12 +21,14 @@ const IMAGE: f32 = core::f32::consts::FRAC_PI_3;
 const NEAR: f32 = 4.0;
 const FAR: f32 = 20.0;
 const AMBIENT: f32 = 0.25;
+/// Another place of the lamp: high over the black knight.
+const ABOVE: Vec3 = Vec3::new(-1.35, 12.0, 1.3);
 /// Numerator of the source's bias with point sampling, and with linear filtering.
 const EPSILONS: [f32; 2] = [0.001, 0.0005];
 /// A dark room's.
 const BACKGROUND: [u8; 3] = [38, 42, 52];
 /// Modern lighting: irradiance of the lamp and of the room.
-const MODERN: Shading = Shading::Modern { light: 2.6, ambient: 0.35 };
+const MODERN: Shading = Shading::Modern { light: 1.3, ambient: 0.25 };
 
 pub(super) const SAMPLE: Sample = Sample {
     id: "comparison-sampler",
@@ -57,7 +59,7 @@ pub(super) const SAMPLE: Sample = Sample {
     draws: drawing,
 };
 
-const OPTIONS: [SampleOption; 5] = [
+const OPTIONS: [SampleOption; 6] = [
     super::lamp::SHADOWS,
     super::options::LIGHTING,
     SampleOption {
@@ -74,6 +76,12 @@ const OPTIONS: [SampleOption; 5] = [
         kind: OptionKind::Choice(&[("point", "nearest texel"), ("linear", "linear")]),
     },
     SampleOption {
+        id: "lamp",
+        label: "Lamp",
+        help: "From the side, or from high above the black knight, where its light falls straight on the board.",
+        kind: OptionKind::Choice(&[("aside", "from the side"), ("above", "from above")]),
+    },
+    SampleOption {
         id: "beside",
         label: "Right half",
         help: "Shows something else in the right half of the picture, on the same view.",
@@ -88,56 +96,78 @@ const OPTIONS: [SampleOption; 5] = [
     },
 ];
 
-/// Toward what the lamp shines on straight.
-const HEAD_ON: (DVec3, Vec3) = (DVec3::new(-3.2, 2.6, 3.4), Vec3::new(1.5, -1.5, -2.6));
-/// Along what the light grazes.
-const GRAZING: (DVec3, Vec3) = (DVec3::new(3.4, 1.9, 1.8), Vec3::new(-2.6, -0.9, -2.4));
+/// Toward what the lamp shines on straight: ring and vase.
+const HEAD_ON: (DVec3, Vec3) = (DVec3::new(-1.2, 2.6, 3.4), Vec3::new(3.1, -1.8, -4.4));
+/// The black knight from behind.
+const KNIGHT: (DVec3, Vec3) = (DVec3::new(-0.3, 1.6, 0.3), Vec3::new(-1.2, -1.3, 1.0));
+/// Toward what the light grazes: the ring's side, and the side of the pedestal.
+const GRAZING: (DVec3, Vec3) = (DVec3::new(-1.4, 2.8, 1.6), Vec3::new(1.4, -1.7, -3.9));
 
-const VARIANTS: [SampleVariant; 5] = [
+const VARIANTS: [SampleVariant; 7] = [
     SampleVariant {
-        id: "head-on-literal",
-        label: "Largest head-on: back faces, +",
-        text: "",
+        id: "head-on",
+        label: "Head-on: back faces, +",
+        text: "The bias is largest where the light falls straight on a surface: there the depth is moved behind the back face \
+               of what is lit. Dark patches lie on the vase, whose wall is thin, and in the highlights of the ring.",
         options: &[],
         view: Some(HEAD_ON),
     },
     SampleVariant {
         id: "head-on-front",
-        label: "Largest head-on: front faces, -",
-        text: "",
+        label: "Head-on: front faces, -",
+        text: "The same view with front faces: no patches. The bias now moves depths toward the lamp, and can only lose shadows.",
         options: &[("variant", "front")],
         view: Some(HEAD_ON),
     },
     SampleVariant {
-        id: "grazing-front",
-        label: "Least at grazing light: front faces, -",
-        text: "",
-        options: &[("variant", "front")],
+        id: "leak",
+        label: "Light leaks: front faces, -",
+        text: "The lamp hangs high over the black knight. Its light falls straight on the board there: the bias is longer than \
+               the pieces are high, and the muzzle throws no shadow.",
+        options: &[("variant", "front"), ("lamp", "above")],
+        view: Some(KNIGHT),
+    },
+    SampleVariant {
+        id: "leak-cured",
+        label: "Cure of the leak: ours",
+        text: "The same with our bias, which is least where the light falls straight on a surface: the muzzle has its shadow.",
+        options: &[("shadows", "ours"), ("lamp", "above")],
+        view: Some(KNIGHT),
+    },
+    SampleVariant {
+        id: "grazing",
+        label: "Grazing light: front faces, -",
+        text: "The bias is least where the light grazes a surface, which needs it most: stripes of acne on the pedestal and the \
+               ring.",
+        options: &[("filter", "linear"), ("variant", "front")],
         view: Some(GRAZING),
     },
     SampleVariant {
-        id: "grazing-literal",
+        id: "grazing-back",
         label: "Grazing light: back faces, +",
-        text: "",
-        options: &[],
+        text: "With back faces lit surfaces are not in the map, and have no acne.",
+        options: &[("filter", "linear")],
         view: Some(GRAZING),
     },
     SampleVariant {
-        id: "grazing-ours",
-        label: "Cure: a bias by slope",
-        text: "",
-        options: &[("variant", "front"), ("beside", "shadows=ours")],
+        id: "slope-scaled",
+        label: "Cure: a bias that grows with the slope",
+        text: "On the right ours: lifted along the normal by the sine of the angle between surface and light.",
+        options: &[("filter", "linear"), ("variant", "front"), ("beside", "shadows=ours")],
         view: Some(GRAZING),
     },
 ];
 
-fn lamp() -> SpotLight {
-    let (position, target) = still_life_lamp();
+fn lamp(values: &SampleValues) -> SpotLight {
+    let (position, target) = match values.choice("lamp") {
+        "above" => (ABOVE, ABOVE.with_y(0.0)),
+        _ => still_life_lamp(),
+    };
     SpotLight::toward(position.as_dvec3(), target.as_dvec3(), IMAGE, 1.0, NEAR, FAR)
 }
 
 fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDrawing, FitError> {
-    let lamp = Lamp::new(&lamp(), MAP, camera)?;
+    let lamp = Lamp::new(&lamp(values), camera)?;
     let is_front = values.choice("variant") == "front";
     let is_linear = values.choice("filter") == "linear";
     let map = SampleMapSettings {

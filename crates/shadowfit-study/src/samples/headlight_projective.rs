@@ -82,15 +82,7 @@ pub(super) const FORMAT: SampleOption = SampleOption {
     kind: OptionKind::Choice(&[("grey8", "8-bit colour"), ("r32f", "32-bit float")]),
 };
 
-const VARIANTS: [SampleVariant; 2] = [
-    SampleVariant {
-        id: "smear",
-        label: "Borders smear",
-        text: "Beyond the lamp's image the coordinates are clamped: rows and columns of the map's border are drawn out over \
-               road, wall and car.",
-        options: &[],
-        view: Some((DVec3::new(-40.0, 26.0, 16.0), Vec3::new(34.0, -20.0, -24.0))),
-    },
+const VARIANTS: [SampleVariant; 3] = [
     SampleVariant {
         id: "close",
         label: "The post on the wall",
@@ -98,6 +90,22 @@ const VARIANTS: [SampleVariant; 2] = [
                the lamp.",
         options: &[],
         view: Some((DVec3::new(-6.0, 9.0, 6.0), Vec3::new(19.0, -2.0, -12.0))),
+    },
+    SampleVariant {
+        id: "smear",
+        label: "Borders smear",
+        text: "The lamp's image ends at a line that runs over the road to the near end of the wall. What lies before it shows \
+               the outermost column of the map, drawn out to the edge of the street.",
+        options: &[],
+        view: Some((DVec3::new(-8.0, 16.0, 26.0), Vec3::new(14.0, -16.0, -24.0))),
+    },
+    SampleVariant {
+        id: "behind",
+        label: "Behind the lamp",
+        text: "The car behind the lamp has the map on its back, upside down: w is negative there, and the division turns it \
+               over.",
+        options: &[],
+        view: Some((DVec3::new(-44.0, 12.0, 4.0), Vec3::new(26.0, -8.0, -7.0))),
     },
 ];
 
@@ -119,7 +127,7 @@ pub(super) fn map(values: &SampleValues) -> SampleMapSettings {
 }
 
 fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDrawing, FitError> {
-    let lamp = Lamp::new(&headlight(TARGET, NEAR), SIZE, camera)?;
+    let lamp = Lamp::new(&headlight(TARGET, NEAR), camera)?;
     let lit = if values.choice("lighting") == "modern" { MODERN } else { LIT };
     let (map, test, shading) = match values.choice("shadows") {
         "off" => (map(values), ShadowTest::Off, lit),

@@ -91,8 +91,8 @@ const OPTIONS: [SampleOption; 8] = [
     },
 ];
 
-/// Before the shadow of the nearer lamp post on the wall.
-const CLOSE: (DVec3, Vec3) = (DVec3::new(-2.0, 9.0, -1.0), Vec3::new(15.0, -2.0, -5.0));
+/// Before the shadow of the farther lamp post on the wall.
+const CLOSE: (DVec3, Vec3) = (DVec3::new(1.0, 8.5, -40.0), Vec3::new(12.0, -1.5, -8.5));
 /// Over the road, with all that the lamp lights.
 const ABOVE: (DVec3, Vec3) = (DVec3::new(-34.0, 26.0, 14.0), Vec3::new(34.0, -20.0, -22.0));
 
@@ -107,22 +107,24 @@ const VARIANTS: [SampleVariant; 8] = [
     SampleVariant {
         id: "close-formats",
         label: "Close: 8 bits beside 32",
-        text: "Close to a lamp post's shadow the 256 depths (left) make it coarse; the floats (right) do not.",
+        text: "Close to the farther lamp post's shadow: of 256 depths (left) it is a block with a jagged outline, of floats \
+               (right) it ends in a point.",
         options: &[("beside", "format=r32f")],
         view: Some(CLOSE),
     },
     SampleVariant {
         id: "close-8-bit",
         label: "Close: 8 bits",
-        text: "One step of 256 is three to four units at the wall. The depths between post and wall are only a few steps \
-               apart, and the shadow's edge lies wherever one of them begins.",
+        text: "Post and wall are 11 units apart, which are two and a half steps of 256, as much as the bias: rounding decides \
+               where there is shadow, and the outline is that of whole texels.",
         options: &[],
         view: Some(CLOSE),
     },
     SampleVariant {
         id: "close-32-bit",
         label: "Close: 32 bits",
-        text: "The same with floats: what is left are the texels of the map.",
+        text: "The same with floats: depths between texels are smooth, and the shadow ends in a point, where the bias is as \
+               long as the way from the post to the wall.",
         options: &[("format", "r32f")],
         view: Some(CLOSE),
     },
@@ -166,7 +168,7 @@ fn image(values: &SampleValues) -> LightImage {
 }
 
 fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDrawing, FitError> {
-    let lamp = Lamp::new(&headlight(TARGET, NEAR), SIZE, camera)?;
+    let lamp = Lamp::new(&headlight(TARGET, NEAR), camera)?;
     let (map, test) = match values.choice("shadows") {
         "off" => (map(values), ShadowTest::Off),
         "ours" => (lamp.our_map(), lamp.our_test(false)?),

@@ -14,21 +14,25 @@ use super::options::{OptionKind, SampleOption};
 pub(super) const SHADOWS: SampleOption = SampleOption {
     id: "shadows",
     label: "Shadows",
-    help: "As the source, none, or ours: the same light with a map of 32-bit depths, our bias and a filter of 3 × 3 look-ups.",
+    help: "As the source, none, or ours: the same light with a map of 2048² 32-bit depths, our bias and a filter of 3 × 3 \
+           look-ups.",
     kind: OptionKind::Choice(&[("source", "as the source"), ("off", "none"), ("ours", "modern maps")]),
 };
 
 /// Look-ups of our filter, each way.
 const LOOK_UPS: u32 = 3;
 
-/// A lamp with its map, relative to a camera's eye.
+/// Width and height of our map, as the recommended technique has them for a sun.
+const OUR_MAP: u32 = 2048;
+
+/// A lamp with our map of it, relative to a camera's eye.
 pub(super) struct Lamp {
     fit: SpotFit,
 }
 
 impl Lamp {
-    pub(super) fn new(light: &SpotLight, size: [u32; 2], camera: &PerspectiveCamera) -> Result<Self, FitError> {
-        let fit = light.fit(UVec2::from(size), DepthConvention::ZeroToOne)?.relative_to(camera.eye);
+    pub(super) fn new(light: &SpotLight, camera: &PerspectiveCamera) -> Result<Self, FitError> {
+        let fit = light.fit(UVec2::splat(OUR_MAP), DepthConvention::ZeroToOne)?.relative_to(camera.eye);
         Ok(Self { fit })
     }
 
@@ -38,7 +42,7 @@ impl Lamp {
         SampleLight { clip_from_world: self.fit.clip_from_world, place, image }
     }
 
-    /// The map that our test reads, as large as the sample's own.
+    /// The map that our test reads.
     pub(super) fn our_map(&self) -> SampleMapSettings {
         SampleMapSettings {
             size: self.fit.resolution.to_array(),
