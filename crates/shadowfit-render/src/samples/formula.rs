@@ -4,6 +4,7 @@
 //! `share` is that of the light, 0 in shadow to 1.
 
 use glam::{Vec2, Vec3};
+use shadowfit::SpotBias;
 
 /// Cube of the mirrored light's cosine, the technique's gloss.
 const GLOSS: i32 = 3;
@@ -57,6 +58,18 @@ pub fn comparison_colour(base: Vec3, n_l: f32, r_v: f32, share: f32, ambient: f3
     let mirrored = r_v.clamp(0.0, 1.0).powi(GLOSS);
     let full = base * (Vec3::splat(ambient) + DIFFUSE * n_l.clamp(0.0, 1.0) + SPECULAR * mirrored);
     (base * ambient).lerp(full, share)
+}
+
+/// Our test of a lamp's map: how far a point is lifted along its normal, by its distance along the light's axis and the sine
+/// of the angle between the two. Formula of [`SpotBias`].
+pub fn ours_lift(bias: &SpotBias, distance: f32, sine: f32) -> f32 {
+    bias.normal_offset * distance * sine + bias.constant_offset
+}
+
+/// Our test of a lamp's map: depth toward the light, by the lifted point's distance along the axis, that sine, and the
+/// light's distance from the point's plane. Formula of [`SpotBias`], without its receiver-plane term.
+pub fn ours_depth(bias: &SpotBias, distance: f32, sine: f32, height: f32) -> f32 {
+    bias.constant_depth + bias.distance_depth / distance + bias.slope_depth * sine / height
 }
 
 /// Terrain: 0 in shadow, which is where `stored - off_stored > from - depth`; the map stores 1 - z/w.
@@ -144,5 +157,45 @@ mod tests {
         assert!(near(terrain_colour(base, 0.5, 0.0, 0.6, 0.0), [0.15; 3]));
         // Stored 1 - 0.5 = 0.5: 0.47 > 0.98 - 0.52 = 0.46 is shadow, 0.47 > 0.98 - 0.505 = 0.475 is not.
         assert_eq!((terrain_share(0.5, 0.52, 0.03, 0.98), terrain_share(0.5, 0.505, 0.03, 0.98)), (0.0, 1.0));
+    }
+
+    #[test]
+    fn a_lamps_bias_grows_with_distance_and_slope() {
+        // 0.002 * 30 * 0.5 + 0.01 = 0.04; 0.0001 + 0.003 / 30 + 0.006 * 0.5 / 10 = 0.0001 + 0.0001 + 0.0003 = 0.0005.
+        let bias = SpotBias {
+            constant_depth: 0.0001,
+            distance_depth: 0.003,
+            slope_depth: 0.006,
+            normal_offset: 0.002,
+            constant_offset: 0.01,
+            receiver_plane: 0.0,
+        };
+        assert!((ours_lift(&bias, 30.0, 0.5) - 0.04).abs() < 1e-8);
+        assert!((ours_depth(&bias, 30.0, 0.5, 10.0) - 0.000_5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_core_has_the_same_bias_of_a_lamp() {
+        use shadowfit::glam::{DVec3, UVec2};
+        use shadowfit::{DepthConvention, SpotLight};
+        let lamp = SpotLight::toward(DVec3::new(1.0, 6.0, 2.0), DVec3::new(0.0, 0.0, -1.0), 1.2, 1.0, 0.5, 40.0);
+        let fit = lamp.fit(UVec2::splat(512), DepthConvention::ZeroToOne).expect("a lamp");
+        let automatic = SpotBias::automatic(2.0, shadowfit::settings::MapFormat::Depth32Float, &fit).expect("a bias");
+        let bias = SpotBias { slope_depth: 0.01, ..automatic };
+        for (point, normal) in [
+            (DVec3::new(0.5, 0.0, -1.0), Vec3::Y),
+            (DVec3::new(-1.0, 1.0, 0.3), Vec3::new(0.4, 0.8, 0.6)),
+            (DVec3::new(2.0, 0.2, -2.0), Vec3::new(-0.9, 0.2, 0.3)),
+        ] {
+            let core = bias.on_plane(&fit, point, normal).expect("a point before the lamp");
+            let (normal, away) = (normal.normalize(), (lamp.position - point).as_vec3());
+            let normal = if normal.dot(away) < 0.0 { -normal } else { normal };
+            let sine = normal.cross(fit.direction).length();
+            let lift = ours_lift(&bias, -away.dot(fit.direction), sine);
+            assert!((lift - core.offset).abs() < 1e-6, "{lift} {core:?}");
+            let lifted = (normal * lift - away).dot(fit.direction);
+            let depth = ours_depth(&bias, lifted, sine, normal.dot(away));
+            assert!((depth - core.depth).abs() < 1e-6 * core.depth.max(1.0), "{depth} {core:?}");
+        }
     }
 }

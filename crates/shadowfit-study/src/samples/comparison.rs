@@ -1,150 +1,195 @@
-//! Depth testing with a comparison sampler: a lamp's depth map, compared by less-or-equal in the sampler, with a bias that
-//! is divided by the angle to the light. The scene, the camera and the ambient light are our own.
-
-use core::f32::consts::FRAC_PI_4;
+//! Depth testing with a comparison sampler: a lamp's map that the sampler itself compares, with a bias by the angle of the
+//! light.
+//!
+//! The formulas are those of the source; scene, camera, lamp, ambient light and the size of the map are our own choice.
 
 use glam::{DVec3, Vec3};
-use shadowfit::bias::acos_epsilon;
-use shadowfit::settings::FilterKind;
-use shadowfit::{FitError, PerspectiveCamera};
+use shadowfit::{FitError, PerspectiveCamera, SpotLight};
 use shadowfit_render::samples::{
     CasterFaces, LightImage, SampleFormat, SampleFrame, SampleMapSettings, Shading, ShadowTest, StoredDepth,
 };
 use shadowfit_scene::builtin::still_life_lamp;
 
-use super::lamp::{Lamp, our_map, our_test};
-use super::options::{LIGHTING, OptionKind, SampleOption, SampleValues};
+use super::lamp::Lamp;
+use super::options::{OptionKind, SampleOption, SampleValues};
 use super::{Sample, SampleControls, SampleDrawing, SampleVariant, SampleView};
 
-/// Width and height of the map, in texels.
-const MAP: [u32; 2] = [1024, 1024];
+/// Width and height of the map.
+const MAP: [u32; 2] = [1024; 2];
+/// Vertical angle of the lamp's image: 60°.
+const IMAGE: f32 = core::f32::consts::FRAC_PI_3;
+const NEAR: f32 = 4.0;
+const FAR: f32 = 20.0;
 const AMBIENT: f32 = 0.25;
-/// A dark room.
-const BACKGROUND: [u8; 3] = [22, 24, 30];
+/// Another place of the lamp: high over the black knight.
+const ABOVE: Vec3 = Vec3::new(-1.35, 12.0, 1.3);
+/// Numerator of the source's bias with point sampling, and with linear filtering.
+const EPSILONS: [f32; 2] = [0.001, 0.0005];
+/// A dark room's.
+const BACKGROUND: [u8; 3] = [38, 42, 52];
 /// Modern lighting: irradiance of the lamp and of the room.
-const MODERN: Shading = Shading::Modern { light: 2.6, ambient: 0.16 };
+const MODERN: Shading = Shading::Modern { light: 1.3, ambient: 0.25 };
 
 pub(super) const SAMPLE: Sample = Sample {
     id: "comparison-sampler",
-    title: "Comparison sampler",
-    teaches: "The sampler itself compares: given a depth it answers how much of what it reads is no nearer. With linear \
-              filtering that is a fraction of four comparisons, and light is mixed by it.",
-    flaw: "Its bias is the wrong way round: meant to grow with the slope, it is largest where light falls head-on, a tenth \
-           of the whole depth range, and least at grazing light.",
+    title: "Depth testing with a comparison sampler",
+    teaches: "The sampler compares: it returns the share of texels that are no nearer than the point, which with linear \
+              filtering is a fraction. The bias depends on the angle between surface and light.",
+    flaw: "The bias is meant to grow with the slope and does the opposite: it is largest where the light falls straight on a \
+           surface, and least where the light grazes it.",
     page: "samples/comparison-sampler.md",
     size: [640, 480],
     view: SampleView {
-        eye: DVec3::new(-0.6, 5.2, 10.6),
-        forward: Vec3::new(0.0, -0.36, -1.0),
-        fov_y: FRAC_PI_4,
-        near: 0.5,
-        far: 60.0,
-        speed: 4.0,
+        eye: DVec3::new(1.3, 3.5, 8.9),
+        forward: Vec3::new(-1.2, -2.3, -9.8),
+        fov_y: core::f32::consts::FRAC_PI_4,
+        near: 0.1,
+        far: 40.0,
+        speed: 3.0,
     },
-    direction: Vec3::new(6.6, -6.7, -5.2),
+    // (6.6, -6.7, -5.2) / 10.7466.
+    direction: Vec3::new(0.614_147, -0.623_452, -0.483_873),
     inset: None,
     only_subject_casts: false,
     is_measurable: true,
     controls: SampleControls::VIEWER,
-    options: &[
-        super::options::LAMP_SHADOWS,
-        LIGHTING,
-        SampleOption {
-            id: "variant",
-            label: "Faces",
-            help: "The source adds its bias to the depth, which makes sense with a map of back faces. With front faces it \
-                   has to be subtracted.",
-            kind: OptionKind::Choice(&[("literal", "back faces, + (the source)"), ("front", "front faces, -")]),
-        },
-        SampleOption {
-            id: "filter",
-            label: "Filter",
-            help: "One comparison with an epsilon of 0.001, or the sampler's four with 0.0005.",
-            kind: OptionKind::Choice(&[("linear", "linear"), ("point", "point")]),
-        },
-        SampleOption {
-            id: "beside",
-            label: "Right half",
-            help: "Shows something else in the right half of the picture, on the same view.",
-            kind: OptionKind::Choice(&[
-                ("none", "the same"),
-                ("shadows=ours", "our bias and filter"),
-                ("shadows=off", "no shadows"),
-                ("variant=front", "front faces, -"),
-                ("filter=point", "point filter"),
-                ("lighting=modern", "modern lighting"),
-            ]),
-        },
-    ],
-    variants: &[
-        SampleVariant {
-            id: "front",
-            label: "Front faces",
-            text: "Front faces in the map, and the bias subtracted: where light falls head-on it is a tenth of the depth \
-                   range, so that shadows come off or vanish there.",
-            options: &[("variant", "front")],
-            view: None,
-        },
-        SampleVariant {
-            id: "leaks",
-            label: "Light leaks",
-            text: "Back faces in the map, and the bias added: where a shadow falls head-on, what is less than a tenth of the \
-                   depth range before it throws one too early, and thin things close to the light's side shine through.",
-            options: &[],
-            view: Some((DVec3::new(-4.2, 2.4, 4.6), Vec3::new(0.55, -0.3, -1.0))),
-        },
-        SampleVariant {
-            id: "head-on",
-            label: "Largest head-on",
-            text: "Front faces on the left, our bias by the slope on the right: facing the lamp, the left half has lost its \
-                   shadows.",
-            options: &[("variant", "front"), ("beside", "shadows=ours")],
-            view: Some((DVec3::new(-4.6, 4.6, 4.4), Vec3::new(0.6, -0.55, -0.75))),
-        },
-        SampleVariant {
-            id: "point",
-            label: "Point filter",
-            text: "One comparison a pixel: the shadow's edge is a staircase of texels.",
-            options: &[("filter", "point")],
-            view: None,
-        },
-    ],
+    options: &OPTIONS,
+    variants: &VARIANTS,
     scene: super::scenes::still_life,
     draws: drawing,
 };
 
-fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDrawing, FitError> {
-    let (position, target) = still_life_lamp();
-    let lamp = Lamp {
-        position: position.as_dvec3(),
-        target: target.as_dvec3(),
-        fov_y: 60.0_f32.to_radians(),
-        aspect: 1.0,
-        near: 4.0,
-        far: 20.0,
+const OPTIONS: [SampleOption; 6] = [
+    super::lamp::SHADOWS,
+    super::options::LIGHTING,
+    SampleOption {
+        id: "variant",
+        label: "Faces in the map",
+        help: "The source moves the compared depth away from the lamp, which makes sense with back faces; with front faces it \
+               must move toward the lamp.",
+        kind: OptionKind::Choice(&[("literal", "back faces, +"), ("front", "front faces, -")]),
+    },
+    SampleOption {
+        id: "filter",
+        label: "Filter",
+        help: "The nearest texel with an epsilon of 0.001, or four texels with 0.0005.",
+        kind: OptionKind::Choice(&[("point", "nearest texel"), ("linear", "linear")]),
+    },
+    SampleOption {
+        id: "lamp",
+        label: "Lamp",
+        help: "From the side, or from high above the black knight, where its light falls straight on the board.",
+        kind: OptionKind::Choice(&[("aside", "from the side"), ("above", "from above")]),
+    },
+    SampleOption {
+        id: "beside",
+        label: "Right half",
+        help: "Shows something else in the right half of the picture, on the same view.",
+        kind: OptionKind::Choice(&[
+            ("none", "the same"),
+            ("shadows=ours", "modern maps"),
+            ("shadows=off", "no shadows"),
+            ("variant=front", "front faces, -"),
+            ("filter=linear", "linear"),
+            ("lighting=modern", "modern lighting"),
+        ]),
+    },
+];
+
+/// Toward what the lamp shines on straight: ring and vase.
+const HEAD_ON: (DVec3, Vec3) = (DVec3::new(-1.2, 2.6, 3.4), Vec3::new(3.1, -1.8, -4.4));
+/// The black knight from behind.
+const KNIGHT: (DVec3, Vec3) = (DVec3::new(-0.3, 1.6, 0.3), Vec3::new(-1.2, -1.3, 1.0));
+/// Toward what the light grazes: the ring's side, and the side of the pedestal.
+const GRAZING: (DVec3, Vec3) = (DVec3::new(-1.4, 2.8, 1.6), Vec3::new(1.4, -1.7, -3.9));
+
+const VARIANTS: [SampleVariant; 7] = [
+    SampleVariant {
+        id: "head-on",
+        label: "Head-on: back faces, +",
+        text: "The bias is largest where the light falls straight on a surface: there the depth is moved behind the back face \
+               of what is lit. Dark patches lie on the vase, whose wall is thin, and in the highlights of the ring.",
+        options: &[],
+        view: Some(HEAD_ON),
+    },
+    SampleVariant {
+        id: "head-on-front",
+        label: "Head-on: front faces, -",
+        text: "The same view with front faces: no patches. The bias now moves depths toward the lamp, and can only lose shadows.",
+        options: &[("variant", "front")],
+        view: Some(HEAD_ON),
+    },
+    SampleVariant {
+        id: "leak",
+        label: "Light leaks: front faces, -",
+        text: "The lamp hangs high over the black knight. Its light falls straight on the board there: the bias is longer than \
+               the pieces are high, and the muzzle throws no shadow.",
+        options: &[("variant", "front"), ("lamp", "above")],
+        view: Some(KNIGHT),
+    },
+    SampleVariant {
+        id: "leak-cured",
+        label: "Cure of the leak: ours",
+        text: "The same with our bias, which is least where the light falls straight on a surface: the muzzle has its shadow.",
+        options: &[("shadows", "ours"), ("lamp", "above")],
+        view: Some(KNIGHT),
+    },
+    SampleVariant {
+        id: "grazing",
+        label: "Grazing light: front faces, -",
+        text: "The bias is least where the light grazes a surface, which needs it most: stripes of acne on the pedestal and the \
+               ring.",
+        options: &[("filter", "linear"), ("variant", "front")],
+        view: Some(GRAZING),
+    },
+    SampleVariant {
+        id: "grazing-back",
+        label: "Grazing light: back faces, +",
+        text: "With back faces lit surfaces are not in the map, and have no acne.",
+        options: &[("filter", "linear")],
+        view: Some(GRAZING),
+    },
+    SampleVariant {
+        id: "slope-scaled",
+        label: "Cure: a bias that grows with the slope",
+        text: "On the right ours: lifted along the normal by the sine of the angle between surface and light.",
+        options: &[("filter", "linear"), ("variant", "front"), ("beside", "shadows=ours")],
+        view: Some(GRAZING),
+    },
+];
+
+fn lamp(values: &SampleValues) -> SpotLight {
+    let (position, target) = match values.choice("lamp") {
+        "above" => (ABOVE, ABOVE.with_y(0.0)),
+        _ => still_life_lamp(),
     };
-    let fit = lamp.fit(MAP, camera)?;
-    let (is_literal, is_linear) = (values.choice("variant") == "literal", values.choice("filter") == "linear");
+    SpotLight::toward(position.as_dvec3(), target.as_dvec3(), IMAGE, 1.0, NEAR, FAR)
+}
+
+fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDrawing, FitError> {
+    let lamp = Lamp::new(&lamp(values), MAP, camera)?;
+    let is_front = values.choice("variant") == "front";
+    let is_linear = values.choice("filter") == "linear";
     let map = SampleMapSettings {
         size: MAP,
         format: SampleFormat::Depth32,
         depth: StoredDepth::Plain,
         clear: 1,
-        faces: if is_literal { CasterFaces::Back } else { CasterFaces::Front },
+        faces: if is_front { CasterFaces::Front } else { CasterFaces::Back },
         compares_linearly: is_linear,
     };
-    let epsilon = acos_epsilon(if is_linear { FilterKind::Hardware2x2 } else { FilterKind::Point });
-    let (test, map) = match values.choice("shadows") {
-        "off" => (ShadowTest::Off, map),
-        "ours" => (our_test(&fit, true)?, our_map(MAP)),
-        _ => (ShadowTest::Comparison { epsilon, toward_light: !is_literal }, map),
+    let (map, test) = match values.choice("shadows") {
+        "off" => (map, ShadowTest::Off),
+        "ours" => (lamp.our_map(), lamp.our_test(true)?),
+        _ => (map, ShadowTest::Comparison { epsilon: EPSILONS[usize::from(is_linear)], toward_light: is_front }),
     };
+    let is_modern = values.choice("lighting") == "modern";
     Ok(SampleDrawing::Mapped(SampleFrame {
         camera: *camera,
-        light: lamp.light(&fit, LightImage::Square),
+        light: lamp.light(LightImage::Square),
         map,
         test,
-        shading: if values.choice("lighting") == "modern" { MODERN } else { Shading::Comparison { ambient: AMBIENT } },
+        shading: if is_modern { MODERN } else { Shading::Comparison { ambient: AMBIENT } },
         background: BACKGROUND,
         sky: None,
         casts: None,

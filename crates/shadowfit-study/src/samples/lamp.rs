@@ -1,54 +1,91 @@
-//! Lamps of samples: their maps by the core's spot light, and the map that takes the source's place for comparison.
+//! What the samples with a lamp share: its map's matrices, our test of it, and what the options say.
 
 use glam::{DVec3, UVec2};
 use shadowfit::bias::Reach;
-use shadowfit::settings::MapFormat;
+use shadowfit::diagnostics::DepthStorage;
 use shadowfit::{DepthConvention, FitError, PerspectiveCamera, SpotBias, SpotFit, SpotLight};
 use shadowfit_render::samples::{
     CasterFaces, LightImage, LightPlace, SampleFormat, SampleLight, SampleMapSettings, ShadowTest, StoredDepth,
 };
 
-/// A lamp: where it stands, what it looks at, and its perspective.
-#[derive(Clone, Copy, Debug)]
+use super::options::{OptionKind, SampleOption};
+
+/// What shadows of a lamp can be.
+pub(super) const SHADOWS: SampleOption = SampleOption {
+    id: "shadows",
+    label: "Shadows",
+    help: "As the source, none, or ours: the same light with a map of the same size, of 32-bit depths, with our bias and a \
+           filter of 3 × 3 look-ups.",
+    kind: OptionKind::Choice(&[("source", "as the source"), ("off", "none"), ("ours", "our map")]),
+};
+
+/// A lamp with its map, relative to a camera's eye.
 pub(super) struct Lamp {
-    pub(super) position: DVec3,
-    pub(super) target: DVec3,
-    /// Angle of its image from the lower to the upper side, in radians.
-    pub(super) fov_y: f32,
-    pub(super) aspect: f32,
-    pub(super) near: f32,
-    pub(super) far: f32,
+    fit: SpotFit,
 }
 
 impl Lamp {
-    /// Its map of a size in texels, for positions relative to a camera's eye.
-    pub(super) fn fit(&self, size: [u32; 2], camera: &PerspectiveCamera) -> Result<SpotFit, FitError> {
-        let Self { position, target, fov_y, aspect, near, far } = *self;
-        let light = SpotLight::toward(position, target, fov_y, aspect, near, far);
-        Ok(light.fit(UVec2::from(size), DepthConvention::ZeroToOne)?.relative_to(camera.eye))
+    /// The lamp with a map of a size in texels.
+    pub(super) fn new(light: &SpotLight, map: [u32; 2], camera: &PerspectiveCamera) -> Result<Self, FitError> {
+        let fit = light.fit(UVec2::from(map), DepthConvention::ZeroToOne)?.relative_to(camera.eye);
+        Ok(Self { fit })
     }
 
-    /// It, as samples are drawn, with the picture that it throws.
-    pub(super) fn light(&self, fit: &SpotFit, image: LightImage) -> SampleLight {
-        SampleLight { clip_from_world: fit.clip_from_world, place: LightPlace::At(self.position), image }
+    /// The light that a frame has.
+    pub(super) fn light(&self, image: LightImage) -> SampleLight {
+        let place = LightPlace::At(self.fit.position);
+        SampleLight { clip_from_world: self.fit.clip_from_world, place, image }
+    }
+
+    /// The map that our test reads, as large as the source's.
+    pub(super) fn our_map(&self) -> SampleMapSettings {
+        SampleMapSettings {
+            size: self.fit.resolution.to_array(),
+            format: SampleFormat::Depth32,
+            depth: StoredDepth::Plain,
+            clear: 1,
+            faces: CasterFaces::All,
+            compares_linearly: true,
+        }
+    }
+
+    /// Our test, with the least bias that clears planes: each look-up is compared with the plane's own depth, so that the
+    /// bias covers the reach of one.
+    pub(super) fn our_test(&self, lit_outside: bool) -> Result<ShadowTest, FitError> {
+        let bias = SpotBias::automatic_receiver_plane(Reach::HARDWARE_2X2, DepthStorage::Float32, &self.fit)?;
+        let rise = self.fit.texel_size * self.fit.depth_scale() as f32;
+        Ok(ShadowTest::Ours { bias, rise, lit_outside })
     }
 }
 
-/// The map that takes the source's place: 32-bit depths, compared by a linear sampler.
-pub(super) const fn our_map(size: [u32; 2]) -> SampleMapSettings {
-    SampleMapSettings {
-        size,
-        format: SampleFormat::Depth32,
-        depth: StoredDepth::Plain,
-        clear: 1,
-        faces: CasterFaces::All,
-        compares_linearly: true,
-    }
+/// A square image of 90° that a headlight throws from its place in the street.
+pub(super) fn headlight(target: DVec3, near: f32) -> SpotLight {
+    SpotLight::toward(HEADLIGHT, target, core::f32::consts::FRAC_PI_2, 1.0, near, 100.0)
 }
 
-/// The test that reads it, with the least bias that clears planes: each look-up is compared with the plane's own depth, so
-/// that the bias covers the reach of one.
-pub(super) fn our_test(fit: &SpotFit, lit_outside: bool) -> Result<ShadowTest, FitError> {
-    let bias = SpotBias::automatic_receiver_plane(Reach::HARDWARE_2X2, MapFormat::Depth32Float, fit)?;
-    Ok(ShadowTest::Ours { bias, rise: fit.texel_size * fit.depth_scale() as f32, lit_outside })
+/// Where the headlight is, in the street's units.
+const HEADLIGHT: DVec3 = DVec3::new(-18.0, 5.0, -2.0);
+
+#[cfg(test)]
+mod tests {
+    use super::super::SAMPLES;
+    use super::*;
+    use crate::samples::{SampleDrawing, SampleValues};
+
+    #[test]
+    fn the_direction_of_a_lamps_sample_is_that_of_its_axis() {
+        let mut lamps = 0;
+        for sample in &SAMPLES {
+            let Ok(SampleDrawing::Mapped(frame)) = sample.drawing(&SampleValues::new(sample), &sample.lens(1.0)) else {
+                continue;
+            };
+            if !matches!(frame.light.place, LightPlace::At(_)) {
+                continue;
+            }
+            lamps += 1;
+            let axis = frame.light.clip_from_world.row(3).truncate();
+            assert!(axis.abs_diff_eq(sample.direction, 1e-5), "{}: {axis}", sample.id);
+        }
+        assert!(lamps >= 3, "{lamps}");
+    }
 }

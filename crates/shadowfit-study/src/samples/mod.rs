@@ -7,7 +7,8 @@
 mod comparison;
 mod drawer;
 mod figures;
-mod headlight;
+mod headlight_projective;
+mod headlight_real_shadow;
 mod lamp;
 mod occlusion;
 mod options;
@@ -147,8 +148,8 @@ pub struct OcclusionDrawing {
 /// Every sample, in the order of the documentation.
 pub static SAMPLES: [Sample; 8] = [
     xna::SAMPLE,
-    headlight::PROJECTIVE,
-    headlight::REAL_SHADOW,
+    headlight_projective::SAMPLE,
+    headlight_real_shadow::SAMPLE,
     comparison::SAMPLE,
     terrain::SAMPLE,
     splits::SAMPLE,

@@ -12,14 +12,6 @@ pub(super) const LIGHTING: SampleOption = SampleOption {
     kind: OptionKind::Choice(&[("source", "as the source"), ("modern", "modern")]),
 };
 
-/// How a lamp's shadows are found.
-pub(super) const LAMP_SHADOWS: SampleOption = SampleOption {
-    id: "shadows",
-    label: "Shadows",
-    help: "As the source, none, or ours by the same lamp: a map of 32-bit depths, the core's bias and a soft filter.",
-    kind: OptionKind::Choice(&[("source", "as the source"), ("off", "none"), ("ours", "our map")]),
-};
-
 /// Whether the map is shown in a corner.
 pub(super) const INSET: SampleOption = SampleOption {
     id: "inset",

@@ -5,12 +5,12 @@
 use core::f32::consts::FRAC_PI_4;
 
 use glam::{DVec3, Vec3};
-use shadowfit::{FitError, PerspectiveCamera};
+use shadowfit::{FitError, PerspectiveCamera, SpotLight};
 use shadowfit_render::samples::{
     CasterFaces, LightImage, SampleFormat, SampleFrame, SampleMapSettings, Shading, ShadowTest, StoredDepth,
 };
 
-use super::lamp::{Lamp, our_map, our_test};
+use super::lamp::Lamp;
 use super::options::{LIGHTING, OptionKind, SampleOption, SampleValues};
 use super::{Sample, SampleControls, SampleDrawing, SampleVariant, SampleView};
 
@@ -39,13 +39,14 @@ pub(super) const SAMPLE: Sample = Sample {
         far: 400.0,
         speed: 30.0,
     },
-    direction: Vec3::new(0.0, -100.0, 128.0),
+    // (0, -100, 128) / 162.432.
+    direction: Vec3::new(0.0, -0.615_642, 0.788_022),
     inset: Some([0, 0, 300, 200]),
     only_subject_casts: false,
     is_measurable: true,
     controls: SampleControls::VIEWER,
     options: &[
-        super::options::LAMP_SHADOWS,
+        super::lamp::SHADOWS,
         LIGHTING,
         SampleOption {
             id: "format",
@@ -117,16 +118,10 @@ pub(super) const SAMPLE: Sample = Sample {
 };
 
 fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDrawing, FitError> {
-    let lamp = Lamp {
-        position: DVec3::new(128.0, 100.0, 0.0),
-        target: DVec3::new(128.0, 0.0, 128.0),
-        fov_y: FRAC_PI_4,
-        aspect: 1.45,
-        near: 90.0,
-        far: 300.0,
-    };
+    let light =
+        SpotLight::toward(DVec3::new(128.0, 100.0, 0.0), DVec3::new(128.0, 0.0, 128.0), FRAC_PI_4, 1.45, 90.0, 300.0);
     let size = [values.choice("map").parse().unwrap_or(4096); 2];
-    let fit = lamp.fit(size, camera)?;
+    let lamp = Lamp::new(&light, size, camera)?;
     let map = SampleMapSettings {
         size,
         format: match values.choice("format") {
@@ -141,13 +136,13 @@ fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDr
     };
     let (test, map) = match values.choice("shadows") {
         "off" => (ShadowTest::Off, map),
-        "ours" => (our_test(&fit, true)?, our_map(size)),
+        "ours" => (lamp.our_test(true)?, lamp.our_map()),
         _ => (ShadowTest::Terrain { off_stored: values.get("off-stored"), from: values.get("from") }, map),
     };
     let source = Shading::Terrain { diffuse: DIFFUSE, ambient: AMBIENT };
     Ok(SampleDrawing::Mapped(SampleFrame {
         camera: *camera,
-        light: lamp.light(&fit, LightImage::Square),
+        light: lamp.light(LightImage::Square),
         map,
         test,
         shading: if values.choice("lighting") == "modern" { MODERN } else { source },

@@ -1,0 +1,150 @@
+//! Headlight street, first stage: the depths that a lamp sees, projected back on the street as greys.
+//!
+//! Numbers of the source: camera, lamp, and a map as large as its window. Cars and lamp posts are our own models.
+
+use glam::{DVec3, Vec3};
+use shadowfit::{FitError, PerspectiveCamera};
+use shadowfit_render::samples::{
+    CasterFaces, LightImage, SampleFormat, SampleFrame, SampleMapSettings, Shading, ShadowTest, StoredDepth,
+};
+
+use super::lamp::{Lamp, headlight};
+use super::options::{OptionKind, SampleOption, SampleValues};
+use super::{Sample, SampleControls, SampleDrawing, SampleVariant, SampleView};
+
+/// Width and height of the source's window and of its map.
+pub(super) const SIZE: [u32; 2] = [500; 2];
+/// Where the source looks from, and where to.
+pub(super) const EYE: DVec3 = DVec3::new(-25.0, 13.0, 18.0);
+pub(super) const FORWARD: Vec3 = Vec3::new(25.0, -11.0, -30.0);
+/// Modern lighting: irradiance of the lamp and of its surroundings.
+pub(super) const MODERN: Shading = Shading::Modern { light: 2.4, ambient: 0.25 };
+const TARGET: DVec3 = DVec3::new(-2.0, 3.0, -10.0);
+const NEAR: f32 = 5.0;
+/// The lit scene that the source starts from.
+const LIT: Shading = Shading::Headlight { power: 1.0, ambient: 0.2 };
+
+pub(super) const SAMPLE: Sample = Sample {
+    id: "headlight-projective",
+    title: "Headlight: projective texturing",
+    teaches: "How a lamp's picture is projected on a scene: every point is taken through the lamp's own view and projection, \
+              and shows what the lamp's map holds there, which is the depth of what the lamp sees first.",
+    flaw: "Nothing asks whether a point lies in the map at all: its borders smear over everything beside it, and behind the \
+           lamp it is thrown once more, mirrored.",
+    page: "samples/headlight-projective.md",
+    size: SIZE,
+    view: SampleView {
+        eye: EYE,
+        forward: FORWARD,
+        fov_y: core::f32::consts::FRAC_PI_4,
+        near: 1.0,
+        far: 200.0,
+        speed: 15.0,
+    },
+    // (16, -2, -8) / 18.
+    direction: Vec3::new(8.0 / 9.0, -1.0 / 9.0, -4.0 / 9.0),
+    inset: None,
+    only_subject_casts: false,
+    // A picture of greys has no shadows that rays could judge.
+    is_measurable: false,
+    controls: SampleControls::VIEWER,
+    options: &OPTIONS,
+    variants: &VARIANTS,
+    scene: super::scenes::street,
+    draws: drawing,
+};
+
+const OPTIONS: [SampleOption; 4] = [
+    super::lamp::SHADOWS,
+    SampleOption {
+        help: "Of the lit scene, without shadows or with ours: as the source, or modern. The greys are not lit.",
+        ..super::options::LIGHTING
+    },
+    FORMAT,
+    SampleOption {
+        id: "beside",
+        label: "Right half",
+        help: "Shows something else in the right half of the picture, on the same view.",
+        kind: OptionKind::Choice(&[
+            ("none", "the same"),
+            ("shadows=ours", "modern maps"),
+            ("shadows=off", "no shadows"),
+            ("format=r32f", "32-bit float"),
+        ]),
+    },
+];
+
+/// What a headlight's map stores.
+pub(super) const FORMAT: SampleOption = SampleOption {
+    id: "format",
+    label: "Map format",
+    help: "The source first takes a colour texture, which has 256 depths, and then 32-bit floats.",
+    kind: OptionKind::Choice(&[("grey8", "8-bit colour"), ("r32f", "32-bit float")]),
+};
+
+const VARIANTS: [SampleVariant; 3] = [
+    SampleVariant {
+        id: "close",
+        label: "The post on the wall",
+        text: "Behind the lamp post the wall shows the post's own grey: darker than the wall's, since the post is nearer to \
+               the lamp.",
+        options: &[],
+        view: Some((DVec3::new(-6.0, 9.0, 6.0), Vec3::new(19.0, -2.0, -12.0))),
+    },
+    SampleVariant {
+        id: "smear",
+        label: "Borders smear",
+        text: "The lamp's image ends at a line that runs over the road to the near end of the wall. What lies before it shows \
+               the outermost column of the map, drawn out to the edge of the street.",
+        options: &[],
+        view: Some((DVec3::new(-8.0, 16.0, 26.0), Vec3::new(14.0, -16.0, -24.0))),
+    },
+    SampleVariant {
+        id: "behind",
+        label: "Behind the lamp",
+        text: "The car behind the lamp has the map on its back, upside down: w is negative there, and the division turns it \
+               over.",
+        options: &[],
+        view: Some((DVec3::new(-44.0, 12.0, 4.0), Vec3::new(26.0, -8.0, -7.0))),
+    },
+];
+
+/// The format that an option asks for.
+pub(super) fn format(values: &SampleValues) -> SampleFormat {
+    if values.choice("format") == "r32f" { SampleFormat::R32Float } else { SampleFormat::Grey8 }
+}
+
+/// The source's map: as large as its window, cleared to 0, of all faces.
+pub(super) fn map(values: &SampleValues) -> SampleMapSettings {
+    SampleMapSettings {
+        size: SIZE,
+        format: format(values),
+        depth: StoredDepth::Plain,
+        clear: 0,
+        faces: CasterFaces::All,
+        compares_linearly: false,
+    }
+}
+
+fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDrawing, FitError> {
+    let lamp = Lamp::new(&headlight(TARGET, NEAR), SIZE, camera)?;
+    let lit = if values.choice("lighting") == "modern" { MODERN } else { LIT };
+    let (map, test, shading) = match values.choice("shadows") {
+        "off" => (map(values), ShadowTest::Off, lit),
+        "ours" => (lamp.our_map(), lamp.our_test(false)?, lit),
+        // The greys ask no test.
+        _ => (map(values), ShadowTest::RealShadow { bias: 0.0 }, Shading::Projective),
+    };
+    Ok(SampleDrawing::Mapped(SampleFrame {
+        camera: *camera,
+        light: lamp.light(LightImage::Square),
+        map,
+        test,
+        shading,
+        background: [0; 3],
+        sky: None,
+        casts: None,
+        double_sided: true,
+        inset: None,
+    }))
+}
