@@ -2,6 +2,7 @@
 
 mod ambient_gpu;
 mod bench;
+mod comparison_gpu;
 mod lamps_gpu;
 mod sky_gpu;
 mod splits_gpu;

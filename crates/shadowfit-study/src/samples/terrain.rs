@@ -27,8 +27,8 @@ pub(super) const SAMPLE: Sample = Sample {
     title: "Terrain with vehicles",
     teaches: "One large map over a landscape: things cast on the ground, on themselves and on each other. Depth is stored \
               reversed, since floats are finest near zero, which is far here.",
-    flaw: "The bias is a hundredth of a perspective depth, which is several units far from the light, and a map of 8 bits \
-           has only 256 depths for all of it.",
+    flaw: "The bias is a hundredth of a perspective depth, which is several units far from the light. It has to be so large \
+           since the source's map of 8 bits has only 256 depths.",
     page: "samples/terrain-vehicles.md",
     size: [900, 600],
     view: SampleView {
@@ -94,8 +94,17 @@ pub(super) const SAMPLE: Sample = Sample {
         SampleVariant {
             id: "8-bit",
             label: "8 bits, as the code makes it",
-            text: "256 depths from 90 to 300 units: shadows come and go in steps, and ground that should be lit has bands.",
-            options: &[("format", "grey8")],
+            text: "On the right 256 depths from 90 to 300 units: the bias of a hundredth is two and a half of their steps, so \
+                   that the two hardly differ.",
+            options: &[("beside", "format=grey8")],
+            view: None,
+        },
+        SampleVariant {
+            id: "8-bit-bands",
+            label: "8 bits and a smaller bias",
+            text: "With a bias of half a thousandth, an eighth of a step of 8 bits, the right half falls into bands of shadow. The \
+                   32-bit map on the left bears it.",
+            options: &[("from", "0.9705"), ("beside", "format=grey8")],
             view: None,
         },
         SampleVariant {
