@@ -152,7 +152,7 @@ const VARIANTS: [SampleVariant; 7] = [
     SampleVariant {
         id: "slope-scaled",
         label: "Cure: a bias that grows with the slope",
-        text: "On the right ours: lifted along the normal by the sine of the angle between surface and light.",
+        text: "On the right ours: each look-up is compared with the depth of the surface's own plane.",
         options: &[("filter", "linear"), ("variant", "front"), ("beside", "shadows=ours")],
         view: Some(GRAZING),
     },

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, bail};
 use glam::{DMat4, DVec2, DVec3};
 use shadowfit::{PerspectiveCamera, Technique};
-use shadowfit_render::samples::{LightPlace, SampleFrame, ShadowTest};
+use shadowfit_render::samples::{LightImage, LightPlace, SampleFrame, SampleLight, ShadowTest};
 use shadowfit_render::{Gpu, Renderer};
 use shadowfit_truth::{
     Judged, MapReading, MeasuredMap, PictureFigures, PictureMaps, PixelCamera, Truth, TruthLight, TruthSettings, judge,
@@ -181,6 +181,9 @@ impl Bench<'_> {
     }
 
     fn judge_mapped(&mut self, scene: &mut PreparedScene, frame: &SampleFrame<'_>) -> Result<Judged> {
+        // What a light image darkens is no shadow.
+        let light = SampleLight { image: LightImage::Square, ..frame.light };
+        let frame = &SampleFrame { light, ..*frame };
         let drawer = self.drawer.get_or_insert_with(|| SampleDrawer::new(&self.gpu, 1));
         let probe = drawer.probe(&self.gpu, scene, self.sample, frame, self.size).context("the sample's shadows")?;
         let origin = scene.origin();

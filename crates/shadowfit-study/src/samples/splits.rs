@@ -108,8 +108,9 @@ pub(super) const SAMPLE: Sample = Sample {
         SampleVariant {
             id: "logarithmic",
             label: "Logarithmic splits",
-            text: "The first maps lie in the first metre, where nothing is; the last one has nearly all of the view.",
-            options: &[("splits", "logarithmic"), ("tint", "on")],
+            text: "Slices of equal ratio, here of 512²: the first one ends before a metre, where nothing is, and the last one has \
+                   nearly all of the view.",
+            options: &[("splits", "logarithmic"), ("map", "512"), ("tint", "on")],
             view: Some(LOW),
         },
         SampleVariant {
