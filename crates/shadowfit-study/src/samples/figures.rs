@@ -34,6 +34,7 @@ const fn reach(test: ShadowTest, compares_linearly: bool) -> f32 {
 
 /// The figures of a sample on a view.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "there is one at a time")]
 pub enum SampleFigures {
     /// Its shadows, and those of modern maps.
     Shadows {

@@ -159,6 +159,7 @@ pub(super) const SAMPLE: Sample = Sample {
     draws: drawing,
 };
 
+#[expect(clippy::unnecessary_wraps, reason = "the table of samples holds functions that can fail")]
 fn drawing(values: &SampleValues, _: &PerspectiveCamera) -> Result<SampleDrawing, FitError> {
     let method = values.choice("method");
     let second = values.get("second");

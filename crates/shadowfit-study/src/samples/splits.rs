@@ -132,6 +132,7 @@ pub(super) const SAMPLE: Sample = Sample {
     draws: drawing,
 };
 
+#[expect(clippy::unnecessary_wraps, reason = "the table of samples holds functions that can fail")]
 fn drawing(values: &SampleValues, _: &PerspectiveCamera) -> Result<SampleDrawing, FitError> {
     let is_tinted = values.is_on("tint");
     if values.choice("shadows") == "ours" {
