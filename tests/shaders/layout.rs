@@ -227,6 +227,7 @@ fn every_uniform_of_every_module_is_one_whose_layout_is_compared() {
         "Block",
         "Need",
         "Occlusion",
+        "Sample",
         "SkyBox",
     ];
     for (name, source) in super::modules() {
