@@ -104,7 +104,7 @@ pub const KEYS: &[KeyGroup] = &[
         heading: "Gamepad",
         keys: &[
             key("Left stick", "move"),
-            key("Right stick", "look around"),
+            key("Right stick", "look around, click: first view"),
             key("Triggers", "down, up"),
             key("Back", "quit"),
         ],

@@ -62,7 +62,11 @@ fn option(ui: &mut Ui, index: usize, row: &SampleRow<'_>, action: &mut Option<Ac
             SampleControl::Number { min, max, unit } => {
                 let mut value = row.value;
                 ui.spacing_mut().slider_width = (ui.available_width() - LABEL_WIDTH).max(24.0);
-                let decimals = if max <= 1.0 { 4 } else { 1 };
+                let decimals = match max - min {
+                    ..=0.11 => 4,
+                    ..=10.0 => 2,
+                    _ => 1,
+                };
                 let suffix = if unit.is_empty() { String::new() } else { format!(" {unit}") };
                 let slider = Slider::new(&mut value, min..=max).fixed_decimals(decimals).suffix(suffix);
                 let response = ui.add(slider.update_while_editing(false)).on_hover_text(row.help);

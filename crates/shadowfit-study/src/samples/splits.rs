@@ -24,8 +24,8 @@ pub(super) const SAMPLE: Sample = Sample {
     title: "Parallel-split shadow maps",
     teaches: "One map cannot be fine near the camera and reach far. Slices of the view by depth get a map each: small and \
               fine near the eye, wide and coarse far away. Practical splits lie between equal and logarithmic ones.",
-    flaw: "Splits know the depth alone and not what is there: slices with nothing in them get a map, and shadows change \
-           their sharpness where one map ends.",
+    flaw: "Splits know the depth alone and not what is there: boxes hold much that nobody sees, and shadows change their \
+           sharpness where one map ends.",
     page: "samples/parallel-split.md",
     size: [800, 450],
     view: SampleView {
@@ -108,8 +108,7 @@ pub(super) const SAMPLE: Sample = Sample {
         SampleVariant {
             id: "logarithmic",
             label: "Logarithmic splits",
-            text: "Slices of equal ratio, here of 512²: the first one ends before a metre, where nothing is, and the last one has \
-                   nearly all of the view.",
+            text: "Slices of equal ratio, here with maps of 512²: fine at the camera, and one map for nearly all that is far.",
             options: &[("splits", "logarithmic"), ("map", "512"), ("tint", "on")],
             view: Some(LOW),
         },

@@ -27,7 +27,7 @@ impl Traced {
     /// `None` until it is there.
     pub(super) fn occlusion(
         &mut self,
-        scene: &PreparedScene,
+        scene: &mut PreparedScene,
         camera: &PerspectiveCamera,
         size: [u32; 2],
         waits: bool,
@@ -38,10 +38,10 @@ impl Traced {
             self.under_way = None;
         }
         if self.done.as_ref().is_none_or(|(of, _)| *of != key) {
-            let (rays, camera) = (scene.shared_rays(), PixelCamera::new(&scene.camera_for_rays(camera), size));
+            let camera = PixelCamera::new(&scene.camera_for_rays(camera), size);
             if waits {
-                self.done = Some((key, trace(&rays, &camera)));
-            } else if self.under_way.is_none() {
+                self.done = Some((key, trace(scene.rays(), &camera)));
+            } else if let Some(rays) = ready(scene).filter(|_| self.under_way.is_none()) {
                 let (sender, result) = channel();
                 let work = move || {
                     // Nobody waits any more where the sample is another one.
@@ -56,8 +56,15 @@ impl Traced {
     }
 }
 
+/// The rays of a scene's pose, if they are there; they are asked for where they are not.
+fn ready(scene: &mut PreparedScene) -> Option<Arc<SceneRays>> {
+    scene.take_rays();
+    scene.request_rays();
+    scene.ready_rays()
+}
+
 /// Traces the occlusion of a picture.
-fn trace(rays: &Arc<SceneRays>, camera: &PixelCamera) -> Vec<f32> {
+fn trace(rays: &SceneRays, camera: &PixelCamera) -> Vec<f32> {
     let truth = truth(rays, camera);
     truth.occlusion.into_iter().map(|occlusion| occlusion.unwrap_or(0.0)).collect()
 }
