@@ -87,7 +87,7 @@ const OPTIONS: [SampleOption; 6] = [
         help: "Shows something else in the right half of the picture, on the same view.",
         kind: OptionKind::Choice(&[
             ("none", "the same"),
-            ("shadows=ours", "modern maps"),
+            ("shadows=ours", "our map"),
             ("shadows=off", "no shadows"),
             ("variant=front", "front faces, -"),
             ("filter=linear", "linear"),

@@ -67,7 +67,7 @@ const OPTIONS: [SampleOption; 4] = [
         help: "Shows something else in the right half of the picture, on the same view.",
         kind: OptionKind::Choice(&[
             ("none", "the same"),
-            ("shadows=ours", "modern maps"),
+            ("shadows=ours", "our map"),
             ("shadows=off", "no shadows"),
             ("format=r32f", "32-bit float"),
         ]),

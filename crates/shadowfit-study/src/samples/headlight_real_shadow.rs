@@ -82,7 +82,7 @@ const OPTIONS: [SampleOption; 8] = [
         help: "Shows something else in the right half of the picture, on the same view.",
         kind: OptionKind::Choice(&[
             ("none", "the same"),
-            ("shadows=ours", "modern maps"),
+            ("shadows=ours", "our map"),
             ("shadows=off", "no shadows"),
             ("format=r32f", "32-bit float"),
             ("image=headlights", "headlights"),
@@ -115,7 +115,7 @@ const VARIANTS: [SampleVariant; 8] = [
     SampleVariant {
         id: "close-8-bit",
         label: "Close: 8 bits",
-        text: "Post and wall are 11 units apart, which are two and a half steps of 256, as much as the bias: rounding decides \
+        text: "Post and wall are 13 units apart, which are two and a half steps of 256, as much as the bias: rounding decides \
                where there is shadow, and the outline is that of whole texels.",
         options: &[],
         view: Some(CLOSE),

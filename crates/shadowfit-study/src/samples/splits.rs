@@ -44,9 +44,9 @@ pub(super) const SAMPLE: Sample = Sample {
     options: &[
         SampleOption {
             id: "shadows",
-            label: "Maps",
-            help: "Split by depth as the source, or the technique that is recommended today.",
-            kind: OptionKind::Choice(&[("source", "split by depth"), ("ours", "modern maps")]),
+            label: "Shadows",
+            help: "Split by depth as the source, none, or the technique that is recommended today.",
+            kind: OptionKind::Choice(&[("source", "split by depth"), ("off", "no shadows"), ("ours", "modern maps")]),
         },
         SampleOption {
             id: "splits",

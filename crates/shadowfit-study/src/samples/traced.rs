@@ -1,18 +1,20 @@
 //! Ambient occlusion by rays for the pictures of a sample: waited for, or traced on a thread while the camera rests.
 
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use shadowfit::PerspectiveCamera;
+use shadowfit_scene::Pose;
 use shadowfit_truth::{AmbientSettings, AmbientTruth, PixelCamera, Truth};
 
 use crate::{PreparedScene, SceneRays};
 
 /// What occlusion was traced for.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 struct Key {
     camera: PerspectiveCamera,
     size: [u32; 2],
+    pose: Pose,
 }
 
 /// The occlusion that was traced last, and what is under way.
@@ -32,24 +34,29 @@ impl Traced {
         size: [u32; 2],
         waits: bool,
     ) -> Option<&[f32]> {
-        let key = Key { camera: *camera, size };
-        if let Some((of, Ok(occlusion))) = self.under_way.as_ref().map(|(of, result)| (*of, result.try_recv())) {
-            self.done = Some((of, occlusion));
-            self.under_way = None;
-        }
+        let key = Key { camera: *camera, size, pose: scene.pose().clone() };
+        self.under_way = match self.under_way.take().map(|(of, result)| (of, result.try_recv(), result)) {
+            Some((of, Ok(occlusion), _)) => {
+                self.done = Some((of, occlusion));
+                None
+            }
+            Some((of, Err(TryRecvError::Empty), result)) => Some((of, result)),
+            // A thread that is gone leaves nothing, and the next frame begins another one.
+            Some((_, Err(TryRecvError::Disconnected), _)) | None => None,
+        };
         if self.done.as_ref().is_none_or(|(of, _)| *of != key) {
             let camera = PixelCamera::new(&scene.camera_for_rays(camera), size);
             if waits {
-                self.done = Some((key, trace(scene.rays(), &camera)));
+                self.done = Some((key.clone(), trace(scene.rays(), &camera)));
             } else if let Some(rays) = ready(scene).filter(|_| self.under_way.is_none()) {
                 let (sender, result) = channel();
                 let work = move || {
                     // Nobody waits any more where the sample is another one.
                     let _ = sender.send(trace(&rays, &camera));
                 };
-                // Where no thread can be made nothing comes back, and the picture stays as it is in screen space.
-                let _ = std::thread::Builder::new().name("occlusion".to_owned()).spawn(work);
-                self.under_way = Some((key, result));
+                // Where no thread can be made, the picture stays as it is in screen space.
+                let started = std::thread::Builder::new().name("occlusion".to_owned()).spawn(work);
+                self.under_way = started.is_ok().then(|| (key.clone(), result));
             }
         }
         self.done.as_ref().filter(|(of, _)| *of == key).map(|(_, occlusion)| occlusion.as_slice())

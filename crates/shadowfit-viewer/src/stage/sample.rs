@@ -39,7 +39,7 @@ impl Stage {
             self.settings.light = light;
         }
         self.settings.technique = sample.technique(&values);
-        self.settings.view.mode = mode(sample, &values);
+        (self.settings.view.mode, self.settings.view.shadows) = view(sample, &values);
         let mut drawer = match self.sample.take() {
             Some(show) => show.drawer,
             None => SampleDrawer::new(&self.gpu, self.samples),
@@ -63,9 +63,9 @@ impl Stage {
         if technique != show.sample.technique(&show.values) {
             self.settings.technique = technique;
         }
-        let mode = mode(show.sample, &values);
-        if mode != self::mode(show.sample, &show.values) {
-            self.settings.view.mode = mode;
+        let view = view(show.sample, &values);
+        if view != self::view(show.sample, &show.values) {
+            (self.settings.view.mode, self.settings.view.shadows) = view;
         }
         show.values = values;
     }
@@ -169,9 +169,10 @@ impl Stage {
     }
 }
 
-/// The view that values ask for.
-fn mode(sample: &Sample, values: &SampleValues) -> ViewMode {
-    if sample.is_tinted(values) { ViewMode::Maps } else { ViewMode::Final }
+/// The view that values ask for where a technique draws them, and whether it has shadows.
+fn view(sample: &Sample, values: &SampleValues) -> (ViewMode, bool) {
+    let mode = if sample.is_tinted(values) { ViewMode::Maps } else { ViewMode::Final };
+    (mode, values.choice("shadows") != "off")
 }
 
 fn look(eye: glam::DVec3, forward: glam::Vec3) -> FlyCamera {

@@ -21,8 +21,8 @@ pub enum OcclusionMethod {
 
 /// How ambient occlusion is computed.
 ///
-/// The defaults are for scenes in metres. They were chosen so that the built-in arcade and courtyard differ least from
-/// ray-traced occlusion (32 rays, distance 1 m, linear fall-off) among a hundred settings; a [`Self::second_radius`] of
+/// The defaults are for scenes in metres. They were chosen by runs against ray-traced occlusion (32 rays, distance 1 m,
+/// linear fall-off): 81 settings on the built-in arcade, then 27 on arcade and courtyard. A [`Self::second_radius`] of
 /// 0.15 comes a little nearer still.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OcclusionSettings {

@@ -32,7 +32,20 @@ fn only_the_character_hangs_on_the_subject_and_it_keeps_its_budget() {
     let (figure, all) = (drawn(&scene, scene.subject), drawn(&scene, None));
     assert!((15_000..=45_000).contains(&figure), "{figure}");
     assert_eq!(all - figure, 2, "the floor is two triangles");
-    assert!(scene.animations.is_empty());
+}
+
+#[test]
+fn its_animation_turns_the_character_alone_once_in_one_and_eight_tenths_of_a_second() {
+    let scene = SampleScene::ShadowMapping.build();
+    let root = scene.subject.expect("a subject");
+    assert_eq!(scene.animations.len(), 1);
+    assert!((scene.animations[0].duration - 360.0 / 200.0).abs() < 1e-6);
+    // A quarter of a turn about the vertical takes +z to +x, and leaves the floor.
+    let (rest, turned) = (scene.pose(None, 0.0), scene.pose(Some(0), 0.45));
+    let ahead = |pose: &crate::Pose| pose.world_from_node[root].z_axis.truncate().normalize();
+    assert!(ahead(&rest).abs_diff_eq(Vec3::Z, 1e-5) && ahead(&turned).abs_diff_eq(Vec3::X, 1e-5));
+    let floor = scene.nodes.iter().position(|node| node.name == "grid floor").expect("a floor");
+    assert_eq!(rest.world_from_node[floor], turned.world_from_node[floor]);
 }
 
 #[test]

@@ -103,8 +103,8 @@ fn every_solid_is_closed_and_faces_outwards() {
 
 #[test]
 fn grounds_are_there_and_face_up() {
-    for (builtin, scene) in every() {
-        let mesh = GROUNDS.iter().find(|ground| ground.0 == builtin).expect(builtin).1;
+    for (builtin, mesh) in GROUNDS {
+        let (_, scene) = every().find(|(id, _)| *id == builtin).expect(builtin);
         let ground = primitives(&scene).find(|(name, _)| *name == mesh).expect(mesh).1;
         assert!(ground.normals.iter().all(|normal| normal.y > 0.5), "{builtin:?}");
     }
