@@ -203,7 +203,7 @@ pub(crate) fn technique(random: &mut Random, camera: &PerspectiveCamera) -> Tech
         SplitScheme::FromBoxes,
         SplitScheme::FromHistogram,
     ];
-    let mut settings = Technique {
+    let settings = Technique {
         fit: FitSettings { max_distance: f32::MAX, ..fit_settings(random, camera) },
         count: 1 + random.below(5),
         splits: random.pick(&schemes),
@@ -221,8 +221,31 @@ pub(crate) fn technique(random: &mut Random, camera: &PerspectiveCamera) -> Tech
         need: NeedSource::LastFrame,
         format: MapFormat::Depth32Float,
     };
+    // One in four once had a rule of its own for the nearest map; the draw stays, so that all others do.
     if random.once_in(4) {
-        settings.overrides[0] = MapOverride { kind: Some(kind(random)), resolution: Some(UVec2::new(512, 1024)) };
+        kind(random);
     }
-    settings
+    let settings = if settings.count > 1 { settings } else { one_map(settings) };
+    // What is not stabilised keeps nothing but a sphere's depth range, with the default's slack.
+    let hold = if settings.stabilise == Stabilise::Off { HoldSettings::default() } else { settings.hold };
+    Technique { hold, ..settings }
+}
+
+/// A technique of one map, without what only concerns several.
+fn one_map(settings: Technique) -> Technique {
+    Technique { splits: SplitScheme::Logarithmic, choice: MapChoice::Coverage, overlap: 0.0, ..settings }
+}
+
+/// The technique with windows instead of slices, without what only concerns those.
+pub(crate) fn as_windows(settings: Technique) -> Technique {
+    let defaults = Technique::default();
+    Technique {
+        fit: FitSettings { kind: FitKind::Windows, rectangle: defaults.fit.rectangle, ..settings.fit },
+        splits: defaults.splits,
+        choice: defaults.choice,
+        overlap: defaults.overlap,
+        stabilise: defaults.stabilise,
+        hold: HoldSettings { waste: settings.hold.waste, ..defaults.hold },
+        ..settings
+    }
 }

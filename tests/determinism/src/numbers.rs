@@ -1,7 +1,7 @@
-//! A second hash, over the numbers alone that fits give: no names, no state between frames, no texts of errors.
+//! The numbers alone that fits give: no names, no state between frames, no texts of errors.
 //!
-//! The first hash covers whatever values print as, so that it also changes when a field is renamed or added. This one
-//! changes only if an engine gets another number for the same settings, all of which are written out here.
+//! The first hash covers whatever values print as, so that it also changes when a field is renamed or added. Those over
+//! numbers change only if an engine gets another number for the same settings, all of which are written out here.
 
 use shadowfit::bias::Reach;
 use shadowfit::culling::{Sweep, cull};
@@ -17,32 +17,32 @@ use crate::random::Random;
 /// Frames of a camera's flight.
 const FRAMES: u32 = 6;
 
-/// The hash over the numbers of so many fits.
-pub(crate) fn hash(fits: u32) -> u64 {
-    let mut run =
-        Run { random: Random::new(2), numbers: Numbers::new(), storage: vec![DVec2::ZERO; Workspace::required(64, 8)] };
+/// Adds the numbers of so many fits: single maps, and slices read by view depth.
+pub(crate) fn add(fits: u32, one_map: &mut Numbers, slices: &mut Numbers) {
+    let storage = vec![DVec2::ZERO; Workspace::required(64, 8)];
+    let mut run = Run { random: Random::new(2), one_map, slices, storage };
     let mut done = 0;
     while done < fits {
         // What is refused gives no number.
         done += run.scene().unwrap_or(0);
     }
-    run.numbers.0
 }
 
-struct Run {
+struct Run<'a> {
     random: Random,
-    numbers: Numbers,
+    one_map: &'a mut Numbers,
+    slices: &'a mut Numbers,
     storage: Vec<DVec2>,
 }
 
-impl Run {
+impl Run<'_> {
     /// Fits to a random scene; gives how many fits that were.
     fn scene(&mut self) -> Result<u32, FitError> {
         let mut scene = Scene::new(&mut self.random)?;
         if !self.random.once_in(8) {
             let settings = fit_settings(&mut self.random, &scene.camera);
             let fit = fit_scene(&scene.input(), &settings, &mut Workspace::new(&mut self.storage))?;
-            self.numbers.fit(&fit);
+            self.one_map.fit(&fit);
             self.follow(&scene, &fit, settings.casters)?;
             return Ok(1);
         }
@@ -52,8 +52,9 @@ impl Run {
         let mut fitter = MapFitter::new();
         for _ in 0..FRAMES {
             let maps = fitter.fit(&scene.input(), &settings, &mut Workspace::new(&mut self.storage))?;
+            let numbers = if settings.count > 1 { &mut *self.slices } else { &mut *self.one_map };
             for map in maps.iter() {
-                self.numbers.map(map);
+                numbers.map(map);
             }
             scene.advance(&mut self.random)?;
         }
@@ -77,7 +78,7 @@ impl Run {
             Bias::automatic(reach, storage, fit)?,
             Bias::automatic_receiver_plane(reach, storage, fit)?,
         ] {
-            self.numbers.f32s(&[bias.constant_depth, bias.slope_depth, bias.normal_offset, bias.receiver_plane]);
+            self.one_map.f32s(&[bias.constant_depth, bias.slope_depth, bias.normal_offset, bias.receiver_plane]);
         }
         let far = scene.camera.far * self.random.between(0.3, 1.0);
         let normal_offset = self.random.between(0.0, 0.1);
@@ -87,19 +88,28 @@ impl Run {
         let mut masks = [0; 24];
         cull(&volumes, scene.origin, &scene.casters, &mut masks);
         for volume in volumes {
-            self.numbers.place(volume.origin);
+            self.one_map.place(volume.origin);
             for plane in volume.active_planes() {
-                self.numbers.f32s(&plane.to_array());
+                self.one_map.f32s(&plane.to_array());
             }
         }
         for mask in masks {
-            self.numbers.bits(u64::from(mask));
+            self.one_map.bits(u64::from(mask));
         }
         Ok(())
     }
 }
 
+/// A hash for each kind of technique.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ByKind {
+    pub(crate) one_map: Numbers,
+    pub(crate) slices: Numbers,
+    pub(crate) windows: Numbers,
+}
+
 /// FNV-1a over the bits of numbers (G. Fowler, L. C. Noll, K.-P. Vo: "The FNV non-cryptographic hash algorithm").
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Numbers(u64);
 
 impl Numbers {

@@ -1,44 +1,52 @@
-//! A third hash, over the numbers of several maps of a frame that are read by coverage: windows, with a grid of need
-//! and without, and slices of the view.
+//! The numbers of maps that are read by coverage: windows, with a grid of need and without, slices of the view, and
+//! single maps.
 
 use shadowfit::glam::DVec2;
 use shadowfit::need::{CELLS, NeedGrid, NeedSpace};
-use shadowfit::settings::{FitKind, MapChoice, NeedSource};
+use shadowfit::settings::MapChoice;
 use shadowfit::{FitError, MapFitter, Technique, Workspace};
 
-use crate::inputs::{Scene, technique};
-use crate::numbers::Numbers;
+use crate::inputs::{Scene, as_windows, technique};
+use crate::numbers::{ByKind, Numbers};
 use crate::random::Random;
 
 /// Frames of a camera's flight.
 const FRAMES: u32 = 6;
 
-/// The hash over the numbers of so many fits.
-pub(crate) fn hash(fits: u32) -> u64 {
+/// Adds the numbers of so many fits.
+pub(crate) fn add(fits: u32, numbers: &mut ByKind) {
     let mut random = Random::new(3);
-    let (mut numbers, mut storage) = (Numbers::new(), vec![DVec2::ZERO; Workspace::required(64, 8)]);
+    let mut storage = vec![DVec2::ZERO; Workspace::required(64, 8)];
     let mut done = 0;
     while done < fits {
         // What is refused gives no number.
-        done += flight(&mut random, &mut numbers, &mut storage).unwrap_or(0);
+        done += flight(&mut random, numbers, &mut storage).unwrap_or(0);
     }
-    numbers.value()
 }
 
 /// Fits the frames of one flight through a random scene; gives how many that were.
-fn flight(random: &mut Random, numbers: &mut Numbers, storage: &mut [DVec2]) -> Result<u32, FitError> {
+fn flight(random: &mut Random, numbers: &mut ByKind, storage: &mut [DVec2]) -> Result<u32, FitError> {
     let mut scene = Scene::new(random)?;
     scene.views = vec![scene.camera.frustum()?];
     let mut settings = Technique { choice: MapChoice::Coverage, ..technique(random, &scene.camera) };
-    if !random.once_in(3) {
-        settings.fit.kind = FitKind::Windows;
-        settings.need = random.pick(&[NeedSource::LastFrame, NeedSource::LastFrame, NeedSource::Boxes]);
+    let mut knows_grid = true;
+    let numbers = if !random.once_in(3) {
+        settings = as_windows(settings);
+        knows_grid = random.pick(&[true, true, false]);
         settings.count = 1 + random.below(8);
-    }
+        &mut numbers.windows
+    } else if settings.count > 1 {
+        &mut numbers.slices
+    } else {
+        &mut numbers.one_map
+    };
     let (mut fitter, mut need) = (MapFitter::new(), None);
     for _ in 0..FRAMES {
-        let grids: Vec<NeedGrid> =
-            need.iter().map(|(space, counts): &(NeedSpace, Vec<u32>)| NeedGrid { space: *space, counts }).collect();
+        let grids: Vec<NeedGrid> = need
+            .iter()
+            .filter(|_| knows_grid)
+            .map(|(space, counts): &(NeedSpace, Vec<u32>)| NeedGrid { space: *space, counts })
+            .collect();
         let input = shadowfit::FitInput { need: &grids, ..scene.input() };
         let maps = fitter.fit(&input, &settings, &mut Workspace::new(storage))?;
         for map in maps.iter() {

@@ -1,6 +1,6 @@
 //! The hash over all fits on the machine that runs the tests.
 
-use shadowfit_determinism::{FITS, HASH, NUMBERS, Outcome, WINDOWS, numbers, outcome, windows};
+use shadowfit_determinism::{FITS, HASH, NUMBERS, Outcome, numbers, outcome};
 
 #[test]
 fn ten_thousand_fits_have_the_same_bits_as_everywhere_else() {
@@ -12,12 +12,6 @@ fn ten_thousand_fits_have_the_same_bits_as_everywhere_else() {
 
 #[test]
 fn the_same_settings_give_the_same_numbers_as_ever() {
-    let hash = numbers();
-    assert_eq!(hash, NUMBERS, "the hash over the numbers is {hash:#018x}: engines get other numbers");
-}
-
-#[test]
-fn windows_and_what_else_is_read_by_coverage_have_the_same_numbers_as_everywhere_else() {
-    let hash = windows();
-    assert_eq!(hash, WINDOWS, "the hash over windows is {hash:#018x}; pin it if they were changed on purpose");
+    let numbers = numbers();
+    assert_eq!(numbers, NUMBERS, "engines get other numbers: {numbers:#018x?}");
 }
