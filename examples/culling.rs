@@ -14,15 +14,15 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use clap::{Parser, ValueEnum};
 use glam::{DVec3, Vec3};
-use shadowfit::Technique;
 use shadowfit::clusters::Clusters;
+use shadowfit::{FittedMap, ShadowFitter, Technique};
 use shadowfit_render::{
     AdapterChoice, Atmosphere, Culling, Frame, Gpu, GpuScene, MapStatistics, RenderTarget, Renderer,
 };
 use shadowfit_scene::Scene;
-use shadowfit_study::{NamedTechnique, PreparedScene, TechniqueFitter, View};
+use shadowfit_study::{NamedTechnique, PreparedScene, View};
 use shadowfit_truth::peers::Scenarios;
-use shadowfit_wgpu::{MAX_MAPS, MapFit, ShadowMapDescriptor};
+use shadowfit_wgpu::{MAX_MAPS, ShadowMapDescriptor};
 
 #[path = "shared/geometry.rs"]
 mod geometry;
@@ -107,7 +107,7 @@ fn measure(
     let mut drawn = GpuScene::new(gpu, layout, &drawn, &drawn.pose(None, 0.0));
     // Only what the shadow passes draw is counted.
     let target = renderer.target(gpu, [1, 1]);
-    let mut fitter = TechniqueFitter::new(*technique);
+    let mut fitter = ShadowFitter::new(technique);
     let mut sums = Sums::default();
     for (index, frame) in scenarios.frames.iter().enumerate() {
         if frame.scene != scene || frame.frame >= args.frames {
@@ -115,7 +115,7 @@ fn measure(
         }
         let is_first = scenarios.previous(index).is_none();
         let view = View { camera: frame.camera(), direction: DVec3::from_array(frame.light_dir).as_vec3(), is_first };
-        let maps = fitter.fit(&prepared, &view)?;
+        let maps = prepared.fit_next(&mut fitter, &view)?;
         if !is_first {
             sums.add(gpu, (&mut renderer, &target), &mut drawn, (&view, &maps))?;
         }
@@ -137,7 +137,7 @@ impl Sums {
         gpu: &Gpu,
         (renderer, target): (&mut Renderer, &RenderTarget),
         scene: &mut GpuScene,
-        (view, maps): (&View, &[MapFit]),
+        (view, maps): (&View, &[FittedMap]),
     ) -> Result<()> {
         let atmosphere = Atmosphere::default();
         for (sums, culling) in [(&mut self.whole, Culling::WholeMap), (&mut self.swept, Culling::Swept)] {

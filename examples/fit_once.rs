@@ -35,8 +35,9 @@ fn main() -> Result<(), FitError> {
         let maps = fitter.fit(&input, &technique, &mut Workspace::new(&mut storage))?;
 
         println!("frame {frame}: positions are relative to the eye, {}", camera.eye);
+        let volumes = maps.caster_volumes(&views, &technique)?;
         for (index, map) in maps.iter().enumerate() {
-            let casters = map.caster_volume(&views, &technique)?.relative_to(boxes.origin);
+            let casters = volumes[index].relative_to(boxes.origin);
             let drawn = objects.iter().filter(|object| casters.intersects_aabb(object.min, object.max)).count();
             let size = map.fit.box_max - map.fit.box_min;
             println!("map {index} is {} m wide and {} m high; its texels are {} m", size.x, size.y, map.fit.texel_size);

@@ -13,13 +13,14 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, ensure};
 use clap::Parser;
 use glam::{DVec3, Vec3};
+use shadowfit::Seen;
 use shadowfit::settings::FitSettings;
 use shadowfit::tool::{CameraSettings, LightSettings};
 use shadowfit::{DepthConvention, need};
 use shadowfit_render::{AdapterChoice, Atmosphere, FlyCamera, Frame, Gpu, GpuScene, RenderTarget, Renderer};
 use shadowfit_scene::{Scene, builtin, load_gltf};
 use shadowfit_wgpu::ShadowMapDescriptor;
-use shadowfit_wgpu::need::{NeedPass, NeedView, SeenNeed};
+use shadowfit_wgpu::need::{NeedPass, NeedView};
 
 #[derive(Parser)]
 #[command(about = "Counts and times the need pass")]
@@ -88,8 +89,8 @@ fn scene(file: Option<&std::path::Path>) -> Result<(Scene, FlyCamera)> {
 }
 
 /// Points in the grid, cells that have some, and octaves of texels that do.
-fn described(seen: &SeenNeed) -> String {
-    let counts = seen.grid().counts;
+fn described(seen: &Seen) -> String {
+    let counts = seen.need().counts;
     let points: u32 = counts.iter().sum();
     let cells = counts.iter().filter(|count| **count > 0).count();
     let levels = counts.chunks(need::SIDE * need::SIDE).filter(|level| level.iter().any(|count| *count > 0)).count();
@@ -124,7 +125,7 @@ impl Timer {
     }
 
     /// Times of the pass over a depth buffer, in milliseconds from the shortest, and what it counts.
-    fn run(&mut self, gpu: &Gpu, target: &RenderTarget, view: &NeedView) -> Result<(Vec<f64>, SeenNeed)> {
+    fn run(&mut self, gpu: &Gpu, target: &RenderTarget, view: &NeedView) -> Result<(Vec<f64>, Seen)> {
         let repeats = if gpu.is_software() { SOFTWARE_REPEATS } else { REPEATS };
         let mut times = Vec::new();
         let mut seen = None;

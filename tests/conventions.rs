@@ -5,15 +5,13 @@ use shadowfit::glam::{DVec3, Mat4, Vec3, Vec4};
 use shadowfit::presets::RECOMMENDED;
 use shadowfit::settings::{BiasSettings, FitKind, FitSettings, MapFormat};
 use shadowfit::tool::{CameraSettings, LightSettings};
-use shadowfit::{Bias, DepthConvention, LightFit, PerspectiveCamera, Technique, fit};
+use shadowfit::{Bias, DepthConvention, FittedMap, LightFit, PerspectiveCamera, Technique, fit};
 use shadowfit_render::{Atmosphere, FlyCamera, FrameUniform, Line, box_lines};
 use shadowfit_scene::builtin;
 use shadowfit_study::NamedTechnique;
 use shadowfit_truth::{Tracer, TruthSettings};
 use shadowfit_viewer::Stage;
-use shadowfit_wgpu::{
-    CasterUniform, MAX_MAPS, MapFit, MapUniform, MapView, RESOLUTIONS, ReceiverUniform, ShadowMapDescriptor,
-};
+use shadowfit_wgpu::{CasterUniform, MAX_MAPS, MapUniform, MapView, RESOLUTIONS, ReceiverUniform, ShadowMapDescriptor};
 
 use crate::support::software_gpu;
 
@@ -40,8 +38,8 @@ fn fitted(light: &LightSettings, depth: DepthConvention) -> LightFit {
     fit(&frustum, light.direction(), &FitSettings::default().with_depth(depth)).expect("a good fit")
 }
 
-fn map(fit: &LightFit) -> MapFit {
-    MapFit::new(*fit, Bias::from_texels(&BiasSettings::default(), MapFormat::Depth32Float, fit))
+fn map(fit: &LightFit) -> FittedMap {
+    FittedMap::new(*fit, Bias::from_texels(&BiasSettings::default(), MapFormat::Depth32Float, fit))
 }
 
 fn matrix(columns: [[f32; 4]; 4]) -> Mat4 {
@@ -97,7 +95,7 @@ fn biases_move_the_receiver_toward_the_light_in_both_depth_conventions() {
     let bias = BiasSettings { constant: 1.0, slope: 2.0, normal_offset: 3.0, receiver_plane: 4.0, depth_steps: 1.0 };
     for (depth, toward_light) in [(DepthConvention::ZeroToOne, -1.0), (DepthConvention::Reversed, 1.0)] {
         let fit = fitted(&LightSettings::default(), depth);
-        let map = MapFit::new(fit, Bias::from_texels(&bias, MapFormat::Depth32Float, &fit));
+        let map = FittedMap::new(fit, Bias::from_texels(&bias, MapFormat::Depth32Float, &fit));
         let map = MapUniform::new(&map, fit.origin, &ShadowMapDescriptor::default());
         let depth_of = |point: Vec3| matrix(map.uv_from_world).transform_point3(point).z;
         let lifted = depth_of(-fit.direction) - depth_of(Vec3::ZERO);

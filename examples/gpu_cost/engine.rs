@@ -4,9 +4,9 @@ use core::ops::Range;
 
 use anyhow::Result;
 use glam::Vec3;
-use shadowfit::{Aabb, Boxes, DepthConvention, PerspectiveCamera, Technique};
+use shadowfit::{Aabb, Boxes, DepthConvention, FittedMap, PerspectiveCamera, Technique};
 use shadowfit_render::Gpu;
-use shadowfit_wgpu::{Casters, MapFit, MapView, ShadowMap, SunFrame, SunShadows, WgslOptions, caster_wgsl};
+use shadowfit_wgpu::{Casters, MapView, ShadowMap, SunFrame, SunShadows, WgslOptions, caster_wgsl};
 use wgpu::util::DeviceExt;
 
 use crate::scene::BenchScene;
@@ -177,8 +177,8 @@ impl<'a> Engine<'a> {
     }
 
     /// The maps of this frame, as they are drawn into other layers.
-    pub(crate) fn maps(&self) -> (Vec<MapFit>, MapView) {
-        let maps: Vec<MapFit> = self.sun.fitted().iter().map(MapFit::from).collect();
+    pub(crate) fn maps(&self) -> (Vec<FittedMap>, MapView) {
+        let maps: Vec<FittedMap> = self.sun.fitted().to_vec();
         let origin = maps.first().map_or(glam::DVec3::ZERO, |map| map.fit.origin);
         (maps, MapView::from_eye(origin, Vec3::NEG_Z))
     }

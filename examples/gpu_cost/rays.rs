@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
-use shadowfit::Technique;
 use shadowfit::tool::{CameraSettings, LightSettings};
+use shadowfit::{ShadowFitter, Technique};
 use shadowfit_render::{FlyCamera, Renderer};
 use shadowfit_scene::{Scene, builtin, load_gltf};
-use shadowfit_study::{Evaluator, Judging, LiveTruth, PreparedScene, TechniqueFitter, View};
+use shadowfit_study::{Evaluator, Judging, LiveTruth, PreparedScene, View};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
 use crate::Bench;
@@ -36,7 +36,7 @@ pub(crate) fn time(bench: &Bench, files: &[PathBuf]) -> Result<Table> {
         let camera = fly.perspective(&CameraSettings::default(), aspect);
         let view = View { camera, direction: LightSettings::default().direction(), is_first: true };
         let mut evaluator = Evaluator::new(renderer, Judging { size: SIZE, ..Judging::default() });
-        let maps = TechniqueFitter::new(technique).fit_alone(&prepared, &view)?;
+        let maps = prepared.fit_alone(&mut ShadowFitter::new(&technique), &view)?;
         let mut live = LiveTruth::new(gpu, &prepared)?;
         let repeats = bench.frames.clamp(1, 100) as u32;
         let triangles = prepared.casting_triangles();

@@ -13,7 +13,7 @@ use anyhow::{Context, Result, ensure};
 use clap::Parser;
 use shadowfit::PRESETS;
 use shadowfit::settings::ReceiverSource;
-use shadowfit_study::{NamedTechnique, Seen};
+use shadowfit_study::NamedTechnique;
 use shadowfit_truth::peers::Scenarios;
 
 #[path = "../shared/geometry.rs"]
@@ -82,7 +82,7 @@ fn run(args: &Args) -> Result<()> {
     let scenarios = args.scenarios.as_ref().context("give the file of scenarios")?;
     let out = args.out.as_ref().context("give the file to write with -o OUT.json")?;
     let scenarios = Scenarios::read(scenarios)?;
-    let needs = technique.receivers == ReceiverSource::Clusters || Seen::is_used_by(technique);
+    let needs = technique.receivers == ReceiverSource::Clusters || technique.uses_seen();
     ensure!(
         !needs || args.geometry.is_some(),
         "--fit {} needs the scenes' triangles: give --assets DIR or --triangles DIR",

@@ -3,16 +3,15 @@
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec3, Vec3};
 use shadowfit::choice::MapOrder;
 use shadowfit::clusters::Clusters;
 use shadowfit::normal_cone::NormalCone;
 use shadowfit::settings::{MapChoice, ReceiverSource};
-use shadowfit::{Aabb, Boxes, FitInput, FittedMap, FittedMaps, MapFitter, Technique, ViewFrustum, Workspace};
-use shadowfit_study::{NamedTechnique, Seen, fit_map};
+use shadowfit::{Aabb, Boxes, FitInput, FittedMap, FittedMaps, Seen, ShadowFitter, Technique, ViewFrustum};
+use shadowfit_study::{NamedTechnique, fit_map, see_by_rays};
 use shadowfit_truth::Tracer;
 use shadowfit_truth::peers::{FitFile, FitFrame, FitMap, Scenarios, Scene};
-use shadowfit_wgpu::MapFit;
 
 use crate::geometry::Source;
 
@@ -102,7 +101,7 @@ fn know(scene: &Scene, technique: &Technique, source: Option<&Source>) -> Result
         }
         _ => (scene.objects.iter().map(outward).collect(), Vec::new()),
     };
-    let tracer = triangles.filter(|_| Seen::is_used_by(technique));
+    let tracer = triangles.filter(|_| technique.uses_seen());
     Ok(Known { boxes, cones, tracer: tracer.map(|objects| Tracer::new(objects.into_iter().flatten())) })
 }
 
@@ -126,7 +125,7 @@ fn prepare(scenarios: &Scenarios, index: usize, known: &[Known], technique: &Tec
         scene: frame.scene,
         is_first: before.is_none(),
         seen: match before.zip(tracer) {
-            Some((before, tracer)) => Seen::trace(technique, (tracer, DVec3::ZERO), &before.camera(), direction)?,
+            Some((before, tracer)) => Some(see_by_rays(tracer, &before.camera(), direction, technique)?),
             None => None,
         },
     })
@@ -134,31 +133,28 @@ fn prepare(scenarios: &Scenarios, index: usize, known: &[Known], technique: &Tec
 
 /// The maps of all frames, and the nanoseconds that each took.
 fn fit_all(frames: &[Prepared], known: &[Known], technique: &Technique) -> Result<Vec<(FittedMaps, f64)>> {
-    let most = known.iter().map(|known| known.boxes.len()).max().unwrap_or(0);
-    // Held maps are fitted to the views of two frames ahead as well.
-    let mut storage = vec![DVec2::ZERO; Workspace::required(most, 3)];
-    let mut fitter = MapFitter::new();
+    let mut fitter = ShadowFitter::new(technique);
     frames
         .iter()
         .map(|frame| {
             if frame.is_first {
                 fitter.reset();
             }
+            if let Some(seen) = &frame.seen {
+                fitter.see(seen.clone());
+            }
+            let views = [frame.view];
             let boxes = Boxes { origin: DVec3::ZERO, boxes: &known[frame.scene].boxes };
-            let need = frame.seen.as_ref().and_then(Seen::need);
             let input = FitInput {
-                views: &[frame.view],
-                direction: frame.direction,
                 receivers: Some(boxes),
                 receiver_cones: &known[frame.scene].cones,
                 casters: Some(boxes),
-                need: need.as_slice(),
-                histogram: frame.seen.as_ref().and_then(Seen::histogram),
-                ..FitInput::new(&[], frame.direction)
+                ..FitInput::new(&views, frame.direction)
             };
             let start = Instant::now();
-            let maps = fitter.fit(&input, technique, &mut Workspace::new(&mut storage))?;
-            Ok((maps, start.elapsed().as_nanos() as f64))
+            fitter.fit(&input)?;
+            let time = start.elapsed().as_nanos() as f64;
+            Ok((*fitter.fitted(), time))
         })
         .collect()
 }
@@ -181,7 +177,7 @@ const NO_END: f64 = 1e9;
 
 /// A map as the fit file has it.
 fn fit_map_of(map: &FittedMap) -> FitMap {
-    FitMap { split_near: f64::from(map.near), ..fit_map(&MapFit::from(map)) }
+    FitMap { split_near: f64::from(map.near), ..fit_map(map) }
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

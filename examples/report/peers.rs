@@ -8,13 +8,13 @@ use anyhow::{Context, Result, ensure};
 use glam::{DVec3, UVec2};
 use indicatif::{ProgressBar, ProgressStyle};
 use shadowfit::settings::{BiasSettings, FilterKind, MapChoice, MapFormat};
-use shadowfit::{Bias, LightFit, Technique};
+use shadowfit::{Bias, FittedMap, LightFit, Technique};
 use shadowfit_render::{Gpu, Renderer};
 use shadowfit_scene::Scene;
 use shadowfit_study::{Evaluator, Judging, PreparedScene, SharedTruth, View};
 use shadowfit_truth::Tracer;
 use shadowfit_truth::peers::{FitFile, FitMap, Frame, Ranking, Scenarios, overall_markdown, to_json, to_markdown};
-use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
+use shadowfit_wgpu::ShadowMapDescriptor;
 
 use crate::drawing::Drawing;
 use crate::geometry::{Corners, Source};
@@ -226,11 +226,11 @@ fn view(frame: &Frame, is_first: bool) -> View {
     View { camera: frame.camera(), direction, is_first }
 }
 
-fn map_fits(maps: &[FitMap], view: &View, bias: &BiasSettings, format: MapFormat) -> Result<Vec<MapFit>> {
+fn map_fits(maps: &[FitMap], view: &View, bias: &BiasSettings, format: MapFormat) -> Result<Vec<FittedMap>> {
     let far = |split: f64| if split >= f64::from(view.camera.far) { f32::MAX } else { split as f32 };
     let fitted = |map: &FitMap| {
         let fit = light_fit(map, view)?;
-        Ok(MapFit { far: far(map.split_far), ..MapFit::new(fit, Bias::from_texels(bias, format, &fit)) })
+        Ok(FittedMap::new(fit, Bias::from_texels(bias, format, &fit)).ending_at(far(map.split_far)))
     };
     maps.iter().map(fitted).collect()
 }

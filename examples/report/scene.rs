@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use image::RgbaImage;
 use indicatif::{ProgressBar, ProgressStyle};
+use shadowfit::FittedMap;
 use shadowfit::presets::RECOMMENDED;
 use shadowfit::settings::FilterKind;
 use shadowfit_study::{NamedTechnique, SharedTruth, ensure_judged};
 use shadowfit_truth::PictureTally;
-use shadowfit_wgpu::MapFit;
 
 use crate::data::{Columns, FrameInfo, FramePictures, Run, TechniqueRun};
 use crate::drawing::{Drawing, named_filter};
@@ -58,7 +58,7 @@ pub(crate) struct Args {
 #[derive(Default)]
 struct Measured {
     tallies: Vec<PictureTally>,
-    maps: Vec<Vec<MapFit>>,
+    maps: Vec<Vec<FittedMap>>,
 }
 
 /// Measures, writes the report, and says where it is. Whether all frames were measured.

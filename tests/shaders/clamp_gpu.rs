@@ -2,10 +2,12 @@
 
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, FitSettings, MapFormat};
-use shadowfit::{Bias, DepthConvention, FitInput, LightFit, MapFitter, PerspectiveCamera, Technique, Workspace};
+use shadowfit::{
+    Bias, DepthConvention, FitInput, FittedMap, LightFit, MapFitter, PerspectiveCamera, Technique, Workspace,
+};
 use shadowfit_render::{Atmosphere, Frame, Gpu, GpuScene, Renderer};
 use shadowfit_scene::builtin;
-use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor};
+use shadowfit_wgpu::{MapView, ShadowMap, ShadowMapDescriptor};
 
 use super::exact_counts_gpu::box_fit;
 use super::harness::{Harness, ROW};
@@ -51,7 +53,7 @@ fn clamped_maps_are_the_same_texel_for_texel_in_every_format_and_depth() {
             let (map, fit) = (descriptor(format, depth), box_fit(depth));
             let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
             let [clamped, emulated] = devices.each_ref().map(|gpu| {
-                let maps = [MapFit::new(fit, Bias::default())];
+                let maps = [FittedMap::new(fit, Bias::default())];
                 Harness::with_maps(gpu, &map, &view, &maps, &[casters(&fit)]).stored(0)
             });
             let (near, far) = if depth == DepthConvention::Reversed { (1.0, 0.0) } else { (0.0, 1.0) };
@@ -97,7 +99,7 @@ fn picture(gpu: &Gpu, format: MapFormat) -> Vec<u8> {
     let mut storage = vec![DVec2::ZERO; Workspace::required(0, 2)];
     let input = FitInput::new(&views, direction);
     let fitted = MapFitter::new().fit(&input, &technique, &mut Workspace::new(&mut storage)).expect("maps");
-    let maps: Vec<MapFit> = fitted.iter().map(MapFit::from).collect();
+    let maps: Vec<FittedMap> = fitted.to_vec();
     let mut renderer = Renderer::new(gpu, &ShadowMapDescriptor::from(&technique), 1).expect("a renderer");
     let scene = builtin::default_scene();
     let mut gpu_scene = GpuScene::new(gpu, renderer.material_layout(), &scene, &scene.pose(None, 0.0));

@@ -5,10 +5,8 @@ mod engine;
 
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::{CasterPolicy, FilterKind};
-use shadowfit::{Aabb, Boxes, FitError, Technique, ViewFrustum};
-use shadowfit_wgpu::{
-    Casters, KeptMaps, MapFit, ShadowMapDescriptor, ShadowMapError, SunFrame, SunShadows, SunShadowsError,
-};
+use shadowfit::{Aabb, Boxes, FitError, FittedMap, Technique, ViewFrustum};
+use shadowfit_wgpu::{Casters, ShadowMapError, SunFrame, SunShadows, SunShadowsError};
 
 use crate::support::software_gpu;
 use engine::{BOXES, Device, EYE, MOON, Painter, Quiet, SUN, camera, frame_of};
@@ -187,21 +185,21 @@ fn gpu_maps_of_another_size_or_number_are_refused_by_the_drawing_half() {
     let quiet = Quiet::new(&device);
     let views = [camera(EYE).frustum().expect("a camera")];
     let frame = frame_of(&views, SUN, &BOXES);
-    let maps = |technique: &Technique| -> Vec<MapFit> {
+    let maps = |technique: &Technique| -> Vec<FittedMap> {
         let mut sun = SunShadows::new(&device.device, &device.queue, technique).expect("maps");
         sun.update(&device.queue, &frame).expect("a good frame");
-        sun.fitted().iter().map(MapFit::from).collect()
+        sun.fitted().to_vec()
     };
     let (own, larger, more) =
         (maps(&technique()), maps(&technique().with_resolution(512, 512)), maps(&technique().with_count(5)));
-    let mut kept = KeptMaps::new(&device.device, &ShadowMapDescriptor::from(&technique())).expect("maps");
-    let refused = kept.update(&device.queue, &frame, &larger).expect_err("larger maps");
+    let mut kept = SunShadows::new(&device.device, &device.queue, &technique()).expect("maps");
+    let refused = kept.prepare(&device.queue, &frame, &larger).expect_err("larger maps");
     assert!(matches!(refused, ShadowMapError::Fit { index: 0, .. }), "{refused:?}");
     assert!(refused.to_string().contains("[512, 512]") && refused.to_string().contains("[256, 256]"), "{refused}");
     assert_eq!(kept.passes().len(), 0);
-    let refused = kept.update(&device.queue, &frame, &more).expect_err("more maps");
+    let refused = kept.prepare(&device.queue, &frame, &more).expect_err("more maps");
     assert_eq!(refused, ShadowMapError::TooManyFits { fits: 5, layers: 4 });
-    kept.update(&device.queue, &frame, &own).expect("its own maps");
+    kept.prepare(&device.queue, &frame, &own).expect("its own maps");
     assert_eq!(kept.passes().len(), 4);
     quiet.assert("maps of another size");
 }

@@ -2,8 +2,8 @@
 
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::FilterKind;
-use shadowfit::{Bias, DepthConvention, LightFit};
-use shadowfit_wgpu::{MapFit, MapView, ShadowMapDescriptor};
+use shadowfit::{Bias, DepthConvention, FittedMap, LightFit};
+use shadowfit_wgpu::{MapView, ShadowMapDescriptor};
 
 use super::exact_counts_gpu::box_fit;
 use super::harness::{Harness, Point, ROW};
@@ -24,7 +24,7 @@ fn factors(fade: [f32; 2]) -> Vec<(f32, f32)> {
     let filter = FilterKind::Hardware2x2;
     let map = ShadowMapDescriptor { resolution: [ROW; 2], maps: 1, filter, fade, ..Default::default() };
     let view = MapView::from_eye(DVec3::new(0.0, 0.0, 5.0), Vec3::NEG_Z);
-    let harness = Harness::with_maps(&gpu, &map, &view, &[MapFit::new(fit, Bias::default())], &[lid(&fit)]);
+    let harness = Harness::with_maps(&gpu, &map, &view, &[FittedMap::new(fit, Bias::default())], &[lid(&fit)]);
     let depths: Vec<f32> = (0..99_u16).map(|step| (f32::from(step) + 1.0) * 0.1).collect();
     let point = |depth: &f32| Point { position: [0.0, 0.0, -depth], normal: [0.0, 1.0, 0.0] };
     let answers = harness.ask(0, &depths.iter().map(point).collect::<Vec<Point>>());

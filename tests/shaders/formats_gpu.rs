@@ -1,12 +1,11 @@
 //! Depths come back from packed colours bit for bit, through a real pass and a real shader.
 
-use shadowfit::DepthConvention;
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::{FilterKind, MapFormat};
+use shadowfit::{DepthConvention, FittedMap};
 use shadowfit_render::Gpu;
 use shadowfit_wgpu::{
-    MapFit, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, WgslOptions, caster_wgsl, receiver_wgsl,
-    stored_wgsl,
+    MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, WgslOptions, caster_wgsl, receiver_wgsl, stored_wgsl,
 };
 
 use super::exact_counts_gpu::box_fit;
@@ -138,7 +137,7 @@ fn a_million_packed_depths_come_back_bit_for_bit_and_denormals_as_they_are_or_as
     let descriptor = ShadowMapDescriptor { resolution: [SIDE; 2], maps: 1, format, filter, ..Default::default() };
     let mut map = ShadowMap::new(&gpu.device, &descriptor).expect("a possible shadow map");
     let whole = shadowfit::LightFit { resolution: [SIDE; 2].into(), ..fit };
-    let maps = [MapFit::new(whole, shadowfit::Bias::default())];
+    let maps = [FittedMap::new(whole, shadowfit::Bias::default())];
     map.prepare(&gpu.queue, &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z), &maps).expect("a good map");
     let source = [&caster_wgsl(&descriptor, &WgslOptions::group(0)), BITS_OF, WRITE].concat();
     let target = map.color_target().expect("a colour format");
@@ -169,7 +168,7 @@ fn an_empty_map_is_far_in_every_format_and_depth() {
             let descriptor =
                 ShadowMapDescriptor { resolution: [SIDE; 2], maps: 1, format, depth, ..Default::default() };
             let mut map = ShadowMap::new(&gpu.device, &descriptor).expect("a possible shadow map");
-            let maps = [MapFit::new(box_fit(depth), shadowfit::Bias::default())];
+            let maps = [FittedMap::new(box_fit(depth), shadowfit::Bias::default())];
             map.prepare(&gpu.queue, &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z), &maps).expect("a good map");
             let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             map.render(&mut encoder, 0, |_, _, _| {});

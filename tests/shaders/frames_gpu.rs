@@ -25,7 +25,7 @@ fn a_picture_of_maps_that_stay_is_that_of_maps_that_are_drawn() {
     // Without maps: what was drawn last counts.
     assert_eq!(pictures.picture(&Frame { maps: &[], ..stay }), alone);
     // A probe draws the maps of the picture that follows.
-    pictures.renderer.invalidate_maps();
+    pictures.renderer.sun_mut().invalidate_all();
     pictures.probe(&seen.frame());
     assert_eq!(pictures.picture(&stay), alone);
     // From another camera; both times the maps hold all their casters.
@@ -242,7 +242,7 @@ fn casters_that_no_map_holds_are_told_from_those_that_one_holds() {
     let technique = Technique::preset("focused-1").expect("a preset").with_resolution(256, 256);
     let (mut pictures, seen) = Pictures::of(&technique, 1, scene);
     pictures.draw(&seen.frame());
-    let masks = pictures.renderer.kept_maps().holders(&pictures.scene.casters());
+    let masks = pictures.renderer.sun().holders(&pictures.scene.casters());
     assert_eq!(masks, [1, 0]);
     let shown = |pictures: &mut Pictures, x: f64| {
         let camera =

@@ -3,11 +3,9 @@
 
 use shadowfit::glam::{DVec3, Vec2, Vec3};
 use shadowfit::settings::BiasSettings;
-use shadowfit::{Bias, LightFit};
+use shadowfit::{Bias, FittedMap, LightFit};
 use shadowfit_render::Gpu;
-use shadowfit_wgpu::{
-    MapFit, MapView, ShadowMap, ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgsl, stored_wgsl,
-};
+use shadowfit_wgpu::{MapView, ShadowMap, ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgsl, stored_wgsl};
 
 /// A point that is asked about: position relative to the origin, in metres, and unit normal.
 #[repr(C)]
@@ -138,8 +136,9 @@ impl<'a> Harness<'a> {
         bias: &BiasSettings,
         casters: &[Vec<Vec3>],
     ) -> Self {
-        let map = |fit: &LightFit| MapFit::new(*fit, Bias::from_texels(bias, descriptor.format, fit));
-        let maps: Vec<MapFit> = fits.iter().map(map).collect();
+        let map =
+            |fit: &LightFit| FittedMap::new(*fit, Bias::from_texels(bias, descriptor.format, fit)).ending_at(f32::MAX);
+        let maps: Vec<FittedMap> = fits.iter().map(map).collect();
         Self::with_maps(gpu, descriptor, &MapView::from_eye(origin, Vec3::NEG_Z), &maps, casters)
     }
 
@@ -148,7 +147,7 @@ impl<'a> Harness<'a> {
         gpu: &'a Gpu,
         descriptor: &ShadowMapDescriptor,
         view: &MapView,
-        maps: &[MapFit],
+        maps: &[FittedMap],
         casters: &[Vec<Vec3>],
     ) -> Self {
         Self::with_caster_group(gpu, descriptor, view, maps, casters, 0)
@@ -159,7 +158,7 @@ impl<'a> Harness<'a> {
         gpu: &'a Gpu,
         descriptor: &ShadowMapDescriptor,
         view: &MapView,
-        maps: &[MapFit],
+        maps: &[FittedMap],
         casters: &[Vec<Vec3>],
         group: u32,
     ) -> Self {

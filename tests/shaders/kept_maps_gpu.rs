@@ -7,7 +7,7 @@ mod town;
 use shadowfit::glam::{DVec3, UVec2, Vec3};
 use shadowfit::settings::{FitKind, MapFormat};
 use shadowfit::{DepthConvention, Technique};
-use shadowfit_wgpu::{KeptMaps, UpdateSchedule};
+use shadowfit_wgpu::{SunShadows, UpdateSchedule};
 
 use town::{Engine, Town, Walk};
 
@@ -35,13 +35,13 @@ struct Found {
 }
 
 /// Draws each frame twice, with what is kept and anew, and compares the maps.
-fn run(technique: &Technique, frames: u32, mut step: impl FnMut(u32, &mut Town, &mut Walk, &mut KeptMaps)) -> Found {
+fn run(technique: &Technique, frames: u32, mut step: impl FnMut(u32, &mut Town, &mut Walk, &mut SunShadows)) -> Found {
     let mut engine = Engine::new(technique);
     let (mut town, mut walk, mut found) = (Town::new(), Walk::new(), Found::default());
     for frame in 0..frames {
         step(frame, &mut town, &mut walk, &mut engine.kept);
         engine.anew.invalidate_all();
-        let [kept, anew] = engine.draw(technique, &town, &walk);
+        let [kept, anew] = engine.draw(&town, &walk);
         found.kept_drawn += kept.texels;
         found.anew_drawn += anew.texels;
         found.cleared += usize::from(frame > 0 && kept.cleared > 0);
@@ -159,9 +159,9 @@ fn gpu_what_stands_still_is_not_drawn_again() {
     let technique = technique("windows-4");
     let mut engine = Engine::new(&technique);
     let (town, walk) = (Town::still(), Walk::new());
-    let [first, _] = engine.draw(&technique, &town, &walk);
+    let [first, _] = engine.draw(&town, &walk);
     assert_eq!(first.passes, 4);
-    let frames: Vec<usize> = (0..40).map(|_| engine.draw(&technique, &town, &walk)[0].passes).collect();
+    let frames: Vec<usize> = (0..40).map(|_| engine.draw(&town, &walk)[0].passes).collect();
     // Windows are sought anew for some frames, then they are settled.
     assert_eq!(frames[30..], [0; 10], "{frames:?}");
 }
@@ -171,13 +171,13 @@ fn gpu_maps_that_wait_are_read_as_they_were_drawn_and_have_their_turn() {
     let technique = technique("windows-4");
     let drawn = |schedule: UpdateSchedule| {
         let mut engine = Engine::new(&technique);
-        engine.kept.schedule = schedule;
+        engine.kept.set_schedule(schedule);
         let (mut town, mut walk) = (Town::new(), Walk::new());
         let mut drawn = [0; 4];
         for frame in 0..64 {
             walk.go_on(frame);
             town.bob(frame);
-            engine.draw(&technique, &town, &walk);
+            engine.draw(&town, &walk);
             let mut passes = [false; 4];
             for pass in engine.kept.passes() {
                 passes[pass.map()] = true;
@@ -185,7 +185,7 @@ fn gpu_maps_that_wait_are_read_as_they_were_drawn_and_have_their_turn() {
             for (count, is_drawn) in drawn.iter_mut().zip(passes) {
                 *count += usize::from(is_drawn);
             }
-            engine.assert_proven(&technique, &town, &walk);
+            engine.assert_proven(&town, &walk);
         }
         drawn
     };

@@ -3,10 +3,10 @@
 
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::FilterKind;
-use shadowfit::{PerspectiveCamera, Technique};
+use shadowfit::{PerspectiveCamera, ShadowFitter, Technique};
 use shadowfit_render::Renderer;
 use shadowfit_scene::builtin::{default_camera, default_scene};
-use shadowfit_study::{Evaluator, Judging, PreparedScene, TechniqueFitter, View};
+use shadowfit_study::{Evaluator, Judging, PreparedScene, View};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
 use crate::support::software_gpu;
@@ -39,21 +39,21 @@ fn assert_same_pictures(technique: &Technique) {
     let descriptor = ShadowMapDescriptor::from(technique);
     let evaluator = |keeps: bool| {
         let mut renderer = Renderer::new(&gpu, &descriptor, 1).expect("a renderer");
-        renderer.set_keeps(keeps);
+        renderer.sun_mut().set_keeps(keeps);
         Evaluator::new(renderer, Judging { size: SIZE, ..Judging::default() })
     };
     let [mut kept, mut anew] = [true, false].map(evaluator);
     let layout = kept.renderer.material_layout();
     let mut scene = PreparedScene::new(&gpu, layout, default_scene()).expect("the built-in scene");
-    let mut fitter = TechniqueFitter::new(*technique);
+    let mut fitter = ShadowFitter::new(technique);
     let mut redrawn = 0;
     for frame in 0..24 {
         scene.set_time(&gpu, 0, frame as f32 * 0.11);
         let view = view(frame);
-        let maps = fitter.fit(&scene, &view).expect("maps");
+        let maps = scene.fit_next(&mut fitter, &view).expect("maps");
         let [a, b] = [&mut kept, &mut anew]
             .map(|evaluator| evaluator.picture(&gpu, &mut scene, &view, &maps).expect("a picture"));
-        redrawn += usize::from(kept.renderer.kept_maps().passes().any(|pass| pass.is_cleared()));
+        redrawn += usize::from(kept.renderer.sun().passes().any(|pass| pass.is_cleared()));
         let different = a.iter().zip(&b).filter(|(a, b)| a.abs_diff(**b) >= DIFFERENT).count();
         let share = different as f64 / a.len() as f64;
         assert!(share <= DIFFERENT_SHARE, "frame {frame}: {different} of {} values differ", a.len());

@@ -2,10 +2,11 @@
 
 use shadowfit::glam::{DVec3, Mat4, Vec3};
 use shadowfit::need::NeedSpace;
+use shadowfit::seen::{CLASSES, DEPTHS};
 use shadowfit::settings::FitSettings;
 use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 use shadowfit_render::Gpu;
-use shadowfit_wgpu::need::{CLASSES, DEPTHS, NeedPass, NeedPassError, NeedView};
+use shadowfit_wgpu::need::{NeedPass, NeedPassError, NeedView};
 
 use super::need_picture::{Drawing, cuboid, draw, infinite, quad, read, record, seen};
 use super::need_reference::{self, Counts};
@@ -167,7 +168,7 @@ fn an_empty_picture_gives_an_empty_grid_and_histogram() {
     for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
         let view = view(depth, SIZE);
         let counted = seen(&gpu, &view, &draw(&gpu, &view, &[], &Drawing::new(SIZE)));
-        assert!(counted.grid().counts.iter().all(|count| *count == 0));
+        assert!(counted.need().counts.iter().all(|count| *count == 0));
         assert!(counted.histogram().is_empty());
     }
 }
@@ -266,7 +267,7 @@ fn counts_carry_the_stamp_of_their_picture_and_only_the_newest_is_given_once() {
         }
         let seen = pass.wait().expect("the device answers").expect("pictures were recorded");
         let space = NeedSpace::new(&newest.frustum, newest.direction, newest.up, newest.max_distance);
-        assert_eq!(Ok(seen.grid().space), space);
+        assert_eq!(Ok(seen.need().space), space);
         assert_eq!((seen.histogram().near, seen.histogram().far), (0.1, far));
         assert_eq!(Counts::from(&seen), need_counts(&gpu, &newest, &texture));
         assert_eq!(pass.take(), Ok(None), "given already");

@@ -1,9 +1,10 @@
 //! Depth buffers of a few planes and boxes, and the compute pass over them.
 
 use shadowfit::DepthConvention;
+use shadowfit::Seen;
 use shadowfit::glam::{Mat4, Vec3};
 use shadowfit_render::Gpu;
-use shadowfit_wgpu::need::{NeedPass, NeedView, SeenNeed};
+use shadowfit_wgpu::need::{NeedPass, NeedView};
 use wgpu::util::DeviceExt;
 
 use super::need_reference::{Counts, Depths};
@@ -169,7 +170,7 @@ pub(super) fn read(gpu: &Gpu, texture: &wgpu::Texture) -> Depths {
 }
 
 /// Runs the pass over a texture, and waits for it.
-pub(super) fn seen(gpu: &Gpu, view: &NeedView, texture: &wgpu::Texture) -> SeenNeed {
+pub(super) fn seen(gpu: &Gpu, view: &NeedView, texture: &wgpu::Texture) -> Seen {
     let mut pass = NeedPass::new(&gpu.device, &gpu.queue, texture.sample_count()).expect("a device that computes");
     record(gpu, &mut pass, view, texture);
     pass.wait().expect("the device answers").expect("a picture was recorded")
@@ -183,9 +184,9 @@ pub(super) fn record(gpu: &Gpu, pass: &mut NeedPass, view: &NeedView, texture: &
     gpu.queue.submit([encoder.finish()]);
 }
 
-impl From<&SeenNeed> for Counts {
-    fn from(seen: &SeenNeed) -> Self {
-        Self { cells: seen.grid().counts.to_vec(), bins: seen.histogram().bins.to_vec() }
+impl From<&Seen> for Counts {
+    fn from(seen: &Seen) -> Self {
+        Self { cells: seen.need().counts.to_vec(), bins: seen.histogram().bins.to_vec() }
     }
 }
 

@@ -4,7 +4,8 @@
 use shadowfit::glam::{DMat4, DVec3};
 use shadowfit::histogram::{DepthHistogram, needed_texel};
 use shadowfit::need::{CELLS, NeedSpace, PIXELS};
-use shadowfit_wgpu::need::{CLASSES, DEPTHS, NeedView};
+use shadowfit::seen::{CLASSES, DEPTHS};
+use shadowfit_wgpu::need::NeedView;
 
 /// Share of a pixel over which movements are measured.
 const SHARE: f64 = 1e-3;

@@ -1,12 +1,12 @@
 //! Pictures of the built-in scene by the samples' renderer, for tests of its views.
 
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::{FittedMaps, PerspectiveCamera, Technique};
+use shadowfit::{FittedMap, FittedMaps, PerspectiveCamera, ShadowFitter, Technique};
 use shadowfit_render::{Atmosphere, Frame, Gpu, GpuScene, Probe, ProbeTargets, RenderTarget, Renderer, Statistics};
 use shadowfit_scene::builtin::{default_camera, default_scene};
 use shadowfit_scene::{Scene, Triangle};
-use shadowfit_study::{PreparedScene, TechniqueFitter, View};
-use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
+use shadowfit_study::{PreparedScene, View};
+use shadowfit_wgpu::ShadowMapDescriptor;
 
 use crate::support::software_gpu;
 
@@ -28,7 +28,7 @@ pub(super) struct Seen {
     pub(super) direction: Vec3,
     pub(super) technique: Technique,
     pub(super) fitted: FittedMaps,
-    pub(super) maps: Vec<MapFit>,
+    pub(super) maps: Vec<FittedMap>,
     pub(super) atmosphere: Atmosphere,
 }
 
@@ -63,9 +63,9 @@ impl Seen {
         let direction = Vec3::new(0.45, -0.55, -0.35).normalize();
         let renderer = Renderer::new(gpu, &ShadowMapDescriptor::from(technique), 1).expect("a renderer");
         let prepared = PreparedScene::new(gpu, renderer.material_layout(), scene).expect("a scene");
-        let mut fitter = TechniqueFitter::new(*technique);
-        let maps = fitter.fit(&prepared, &View { camera, direction, is_first: true }).expect("maps");
-        let (fitted, atmosphere) = (*fitter.fitted(), Atmosphere::default());
+        let view = View { camera, direction, is_first: true };
+        let fitted = prepared.fit_next(&mut ShadowFitter::new(technique), &view).expect("maps");
+        let (maps, atmosphere) = (fitted.to_vec(), Atmosphere::default());
         Self { camera, direction, technique: *technique, fitted, maps, atmosphere }
     }
 

@@ -1,10 +1,10 @@
 //! One pixel's facts: what a probe of the whole picture has there, and the depths that a map holds, in every format and
 //! wherever the map is stored. And the rectangles that a frame says it drew: nothing else of a map changes.
 
-use shadowfit::Technique;
 use shadowfit::glam::{DVec3, UVec2};
 use shadowfit::scroll::TexelRect;
 use shadowfit::settings::MapFormat;
+use shadowfit::{FittedMap, Technique};
 use shadowfit_render::{Frame, Gpu, PixelFacts, PixelQuery, TexelBlock, UpdateContent};
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_wgpu::ShadowMap;
@@ -99,7 +99,7 @@ fn assert_depths(pictures: &mut Pictures, seen: &Seen, format: MapFormat) {
     for (map, texel, radius) in [(0, [100, 37], 3), (1, [0, 255], 4), (2, [250, 128], 31), (3, [-9, 300], 1)] {
         let texels = Some(TexelBlock { map, texel, radius });
         let facts = ask(pictures, &seen.frame(), &PixelQuery { size: SIZE, pixel: [80, 45], texels });
-        let wrap = pictures.renderer.kept_maps().maps()[map].wrap;
+        let wrap = pictures.renderer.sun().maps()[map].wrap;
         let side = radius.cast_signed() * 2 + 1;
         assert_eq!(facts.depths.len(), (side * side) as usize);
         for (index, found) in (0_i32..).zip(&facts.depths) {
@@ -129,7 +129,7 @@ const STEP: DVec3 = DVec3::new(0.35, 0.0, -0.25);
 fn nothing_of_a_kept_map_changes_but_in_the_rectangles_that_were_drawn_and_wrapped_texels_are_found() {
     let technique = Technique::preset("stable-4").expect("a preset").with_resolution(SIDE, SIDE);
     let (mut pictures, mut seen) = Pictures::new(&technique, 1);
-    pictures.renderer.set_keeps(true);
+    pictures.renderer.sun_mut().set_keeps(true);
     let scene = default_scene();
     let mut before: Option<Vec<Vec<u8>>> = None;
     let (mut met, mut changes) = ([false; 4], 0);
@@ -144,10 +144,10 @@ fn nothing_of_a_kept_map_changes_but_in_the_rectangles_that_were_drawn_and_wrapp
             if frame > 2 { STEP } else { DVec3::ZERO },
         );
         let statistics = pictures.draw(&seen.frame());
-        let updates = pictures.renderer.map_updates();
+        let updates = pictures.renderer.sun().updates();
         assert_eq!(statistics.shadow_texels, updates.iter().map(|update| update.rect.area()).sum::<u64>());
         let now = layers(&pictures.gpu, pictures.renderer.shadow_map());
-        let kept = pictures.renderer.kept_maps();
+        let kept = pictures.renderer.sun();
         for update in &updates {
             met[update.content as usize] = true;
         }
@@ -171,7 +171,7 @@ fn nothing_of_a_kept_map_changes_but_in_the_rectangles_that_were_drawn_and_wrapp
     let contents = [UpdateContent::All, UpdateContent::Static, UpdateContent::Mended, UpdateContent::Moving];
     println!("{changes} changes by {contents:?}: {met:?}");
     assert!(met[1] && met[2] && met[3] && changes > 1000, "{met:?}, {changes}");
-    let is_wrapped = |map: &shadowfit_wgpu::MapFit| map.wrap != UVec2::ZERO;
-    assert!(pictures.renderer.kept_maps().maps().iter().any(is_wrapped));
+    let is_wrapped = |map: &FittedMap| map.wrap != UVec2::ZERO;
+    assert!(pictures.renderer.sun().maps().iter().any(is_wrapped));
     assert_depths(&mut pictures, &seen, MapFormat::Depth32Float);
 }

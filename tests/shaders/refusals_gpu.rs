@@ -3,8 +3,8 @@
 
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::settings::{MapChoice, SplitScheme};
-use shadowfit::{Bias, FitError, FitInput, LightFit, MapFitter, PerspectiveCamera, Technique, Workspace};
-use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError};
+use shadowfit::{Bias, FitError, FitInput, FittedMap, LightFit, MapFitter, PerspectiveCamera, Technique, Workspace};
+use shadowfit_wgpu::{MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError};
 
 use super::exact_counts_gpu::box_fit;
 use crate::support::software_gpu;
@@ -17,8 +17,8 @@ fn fit() -> LightFit {
 }
 
 /// Maps that end at the given view depths.
-fn maps(far: &[f32]) -> Vec<MapFit> {
-    far.iter().map(|far| MapFit { far: *far, ..MapFit::new(fit(), Bias::default()) }).collect()
+fn maps(far: &[f32]) -> Vec<FittedMap> {
+    far.iter().map(|far| FittedMap::new(fit(), Bias::default()).ending_at(*far)).collect()
 }
 
 fn descriptor(choice: MapChoice) -> ShadowMapDescriptor {
@@ -26,7 +26,7 @@ fn descriptor(choice: MapChoice) -> ShadowMapDescriptor {
 }
 
 /// Prepares a shadow map with maps for a view along `forward`.
-fn prepared(maps: &[MapFit], forward: Vec3) -> Result<usize, ShadowMapError> {
+fn prepared(maps: &[FittedMap], forward: Vec3) -> Result<usize, ShadowMapError> {
     let gpu = software_gpu();
     let mut map = ShadowMap::new(&gpu.device, &descriptor(MapChoice::ViewDepth)).expect("a possible shadow map");
     map.prepare(&gpu.queue, &MapView::from_eye(DVec3::ZERO, forward), maps)?;
@@ -146,7 +146,7 @@ fn maps_of_the_core_are_in_order_where_some_of_them_have_no_range() {
         let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
         let input = FitInput::new(&view, Vec3::new(0.3, -0.8, 0.2));
         let fitted = MapFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("maps");
-        let maps: Vec<MapFit> = fitted.iter().map(MapFit::from).collect();
+        let maps: Vec<FittedMap> = fitted.to_vec();
         assert_eq!(prepared(&maps, Vec3::NEG_Z), Ok(3), "{ends:?}");
     }
 }

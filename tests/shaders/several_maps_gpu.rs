@@ -5,8 +5,8 @@ use shadowfit::bias::reach;
 use shadowfit::choice::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth};
 use shadowfit::glam::{DVec3, UVec2, Vec3};
 use shadowfit::settings::{BiasSettings, FilterKind, FitKind, FitSettings, MapChoice};
-use shadowfit::{Bias, LightFit, PerspectiveCamera, fit};
-use shadowfit_wgpu::{MAX_MAPS, MapFit, MapView, ShadowMapDescriptor};
+use shadowfit::{Bias, FittedMap, LightFit, PerspectiveCamera, fit};
+use shadowfit_wgpu::{MAX_MAPS, MapView, ShadowMapDescriptor};
 
 use super::harness::{Choice, Harness, Point};
 use crate::support::software_gpu;
@@ -44,11 +44,11 @@ fn lid(fit: &LightFit) -> Vec<Vec3> {
 }
 
 /// A map without biases that ends at a view depth.
-fn map_fit(fit: &LightFit, far: f32) -> MapFit {
-    MapFit { far, ..MapFit::new(*fit, Bias::default()) }
+fn map_fit(fit: &LightFit, far: f32) -> FittedMap {
+    FittedMap::new(*fit, Bias::default()).ending_at(far)
 }
 
-fn descriptor(maps: &[MapFit]) -> ShadowMapDescriptor {
+fn descriptor(maps: &[FittedMap]) -> ShadowMapDescriptor {
     ShadowMapDescriptor {
         resolution: [256; 2],
         maps: maps.len() as u32,
@@ -64,11 +64,11 @@ fn ground(points: &[Vec3]) -> Vec<Point> {
 }
 
 /// Casters that cover one of the maps.
-fn lids(maps: &[MapFit], shadowed: usize) -> Vec<Vec<Vec3>> {
+fn lids(maps: &[FittedMap], shadowed: usize) -> Vec<Vec<Vec3>> {
     maps.iter().enumerate().map(|(i, map)| if i == shadowed { lid(&map.fit) } else { Vec::new() }).collect()
 }
 
-fn ask(view: &MapView, maps: &[MapFit], shadowed: usize, points: &[Vec3]) -> Vec<f32> {
+fn ask(view: &MapView, maps: &[FittedMap], shadowed: usize, points: &[Vec3]) -> Vec<f32> {
     let gpu = software_gpu();
     let harness = Harness::with_maps(&gpu, &descriptor(maps), view, maps, &lids(maps, shadowed));
     harness.ask(0, &ground(points)).iter().map(|answer| answer.factor).collect()
@@ -77,7 +77,7 @@ fn ask(view: &MapView, maps: &[MapFit], shadowed: usize, points: &[Vec3]) -> Vec
 #[test]
 fn a_point_reads_the_first_map_that_reaches_as_far_or_the_next_one_that_holds_it() {
     let fits = [map_to(5.0, 256), map_to(20.0, 256), map_to(60.0, 256)];
-    let maps: Vec<MapFit> = fits.iter().zip([4.0, 15.0, f32::MAX]).map(|(fit, far)| map_fit(fit, far)).collect();
+    let maps: Vec<FittedMap> = fits.iter().zip([4.0, 15.0, f32::MAX]).map(|(fit, far)| map_fit(fit, far)).collect();
     let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
     // Along the axis at these view depths; the last one is near, but aside of the first map.
     let is_aside = |point: &Vec3| !fits[0].covers(point.as_dvec3()) && fits[1].covers(point.as_dvec3());
@@ -101,7 +101,7 @@ fn a_point_reads_the_first_map_that_reaches_as_far_or_the_next_one_that_holds_it
 #[test]
 fn as_many_maps_as_there_may_be_are_told_apart() {
     let fits: Vec<LightFit> = (1..=MAX_MAPS).map(|i| map_to(i as f32 * 5.0, 256)).collect();
-    let maps: Vec<MapFit> = fits.iter().enumerate().map(|(i, fit)| map_fit(fit, (i + 1) as f32 * 5.0)).collect();
+    let maps: Vec<FittedMap> = fits.iter().enumerate().map(|(i, fit)| map_fit(fit, (i + 1) as f32 * 5.0)).collect();
     let points: Vec<Vec3> = (0..MAX_MAPS).map(|i| Vec3::NEG_Z * (i as f32 * 5.0 + 2.5)).collect();
     let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
     for shadowed in 0..MAX_MAPS {
@@ -149,7 +149,7 @@ fn the_map_index_and_the_view_depth_in_wgsl_are_those_computed_here() {
     let gpu = software_gpu();
     let forward = Vec3::new(0.25, -0.1, -1.0).normalize();
     let fits = [map_to(5.0, 256), map_to(20.0, 256), map_to(60.0, 256)];
-    let maps: Vec<MapFit> = fits.iter().zip([4.0, 15.0, 50.0]).map(|(fit, far)| map_fit(fit, far)).collect();
+    let maps: Vec<FittedMap> = fits.iter().zip([4.0, 15.0, 50.0]).map(|(fit, far)| map_fit(fit, far)).collect();
     let (origin, eye) = (DVec3::new(1.0, -0.5, 2.0), DVec3::new(-0.5, 0.25, 1.0));
     let view = MapView { origin, eye, forward, frame: 0 };
     let harness = Harness::with_maps(&gpu, &descriptor(&maps), &view, &maps, &lids(&maps, 0));
@@ -177,7 +177,7 @@ fn the_map_index_and_the_view_depth_in_wgsl_are_those_computed_here() {
                     .any(|axis| near(world + axis * 1e-3) != near(world - axis * 1e-3))
         });
         if !is_at_a_border {
-            let reads = |map: &MapFit| expected_depth < f64::from(map.far) && map.fit.covers(world);
+            let reads = |map: &FittedMap| expected_depth < f64::from(map.far) && map.fit.covers(world);
             let expected = maps.iter().position(reads).map_or(-1, |index| i32::try_from(index).expect("one of eight"));
             assert_eq!(map, expected, "{position} at view depth {expected_depth}");
             met[(expected + 1) as usize] += 1;
@@ -187,7 +187,7 @@ fn the_map_index_and_the_view_depth_in_wgsl_are_those_computed_here() {
 }
 
 /// Maps whose order is not that of their texels' sizes, nor of their widths: two of one size, and one that is empty.
-fn crossing_maps() -> [MapFit; 5] {
+fn crossing_maps() -> [FittedMap; 5] {
     let mut empty = map_to(4.0, 256);
     empty.is_empty = true;
     let fits = [map_to(60.0, 256), empty, map_to(8.0, 64), map_to(20.0, 200), map_to(8.0, 64)];
@@ -208,7 +208,7 @@ fn scattered() -> Vec<Vec3> {
 /// in shadow. Gives how many points read each map alone, and how many are blended.
 fn assert_read(
     descriptor: &ShadowMapDescriptor,
-    maps: &[MapFit],
+    maps: &[FittedMap],
     points: &[Vec3],
     read: impl Fn(DVec3) -> Option<MapRead>,
 ) -> (Vec<usize>, usize) {
@@ -277,8 +277,11 @@ fn by_coverage_points_read_the_finest_map_that_holds_them_and_the_next_one_towar
 fn by_view_depth_points_are_blended_where_maps_overlap() {
     let fits = [map_to(5.0, 256), map_to(20.0, 256), map_to(60.0, 256)];
     let ranges = [(f32::MAX, 4.0), (2.5, 15.0), (9.0, f32::MAX)];
-    let maps: Vec<MapFit> =
-        fits.iter().zip(ranges).map(|(fit, (blend_near, far))| MapFit { blend_near, ..map_fit(fit, far) }).collect();
+    let maps: Vec<FittedMap> = fits
+        .iter()
+        .zip(ranges)
+        .map(|(fit, (covered_near, far))| FittedMap { covered_near, ..map_fit(fit, far) })
+        .collect();
     let read = |point: DVec3| {
         let ranges = ranges.map(|(blend_near, far)| DepthRange { blend_near: blend_near.into(), far: far.into() });
         by_view_depth(ranges, -point.z, |map| maps[map].fit.covers(point))

@@ -7,12 +7,13 @@ use shadowfit::settings::{
     BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, MapChoice, MapFormat, SplitScheme, Stabilise,
 };
 use shadowfit::{
-    Aabb, Bias, Boxes, DepthConvention, FitInput, LightFit, MapFitter, PerspectiveCamera, Technique, Workspace, fit,
+    Aabb, Bias, Boxes, DepthConvention, FitInput, FittedMap, LightFit, MapFitter, PerspectiveCamera, Technique,
+    Workspace, fit,
 };
 use shadowfit_render::{Atmosphere, Culling, Frame, Gpu, GpuScene, ProbePixel, ProbeTargets, Renderer, Statistics};
 use shadowfit_scene::{Scene, builtin, load_gltf};
 use shadowfit_truth::peers::Scenarios;
-use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
+use shadowfit_wgpu::ShadowMapDescriptor;
 
 use crate::support::{assets, peers, software_gpu};
 
@@ -188,7 +189,7 @@ fn descriptor(case: &Case) -> ShadowMapDescriptor {
 }
 
 /// The maps of a case, fitted to what the camera sees of the boxes.
-fn fitted(case: &Case, camera: &PerspectiveCamera, boxes: &[Aabb], direction: Vec3) -> Vec<MapFit> {
+fn fitted(case: &Case, camera: &PerspectiveCamera, boxes: &[Aabb], direction: Vec3) -> Vec<FittedMap> {
     let frustum = camera.frustum().expect("a camera");
     let boxes = Boxes { origin: DVec3::ZERO, boxes };
     let input =
@@ -197,12 +198,12 @@ fn fitted(case: &Case, camera: &PerspectiveCamera, boxes: &[Aabb], direction: Ve
     let fitted = MapFitter::new().fit(&input, &case.technique, &mut Workspace::new(&mut storage)).expect("maps");
     let narrow = PerspectiveCamera { fov_y: camera.fov_y * 0.5, ..*camera }.frustum().expect("a camera");
     let last = fitted.len() - 1;
-    let map = |(index, map): (usize, &shadowfit::FittedMap)| {
+    let map = |(index, map): (usize, &FittedMap)| {
         let is_narrow = case.is_narrow && index < last;
         let settings = case.technique.fit.with_max_distance(map.far).with_casters(CasterPolicy::Extend);
         let light = if is_narrow { fit(&narrow, direction, &settings).expect("a fit") } else { map.fit };
-        let converted = MapFit::from(map);
-        MapFit { fit: light, bias: (case.bias)(&light, case.filter), ..converted }
+        let converted = *map;
+        FittedMap { fit: light, bias: (case.bias)(&light, case.filter), ..converted }
     };
     fitted.iter().enumerate().map(map).collect()
 }

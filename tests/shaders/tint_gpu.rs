@@ -4,10 +4,10 @@
 use shadowfit::figures::MAP_TINTS;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::settings::{MapChoice, SplitScheme};
-use shadowfit::{Bias, FitInput, MapFitter, PerspectiveCamera, Technique, Workspace};
+use shadowfit::{Bias, FitInput, FittedMap, MapFitter, PerspectiveCamera, Technique, Workspace};
 use shadowfit_render::{Atmosphere, Frame, GpuScene, Overlay, Renderer};
 use shadowfit_scene::Scene;
-use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
+use shadowfit_wgpu::ShadowMapDescriptor;
 
 use crate::support::software_gpu;
 
@@ -33,7 +33,7 @@ fn camera() -> PerspectiveCamera {
 }
 
 /// Eight maps of the camera's view, and no end of the floor before that of the last one.
-fn maps(camera: &PerspectiveCamera) -> Vec<MapFit> {
+fn maps(camera: &PerspectiveCamera) -> Vec<FittedMap> {
     let slices = Technique::preset("calm-4").expect("a preset");
     let mut settings = slices.with_count(8).with_splits(SplitScheme::Manual(ENDS));
     (settings.fit.max_distance, settings.fit.resolution) = (LAST_END, shadowfit::glam::UVec2::splat(256));
@@ -42,7 +42,7 @@ fn maps(camera: &PerspectiveCamera) -> Vec<MapFit> {
     let input = FitInput::new(&views, DIRECTION);
     let fitted = MapFitter::new().fit(&input, &settings, &mut Workspace::new(&mut storage)).expect("eight maps");
     let ends = fitted.iter().map(|map| map.far.min(LAST_END));
-    fitted.iter().zip(ends).map(|(map, far)| MapFit { far, ..MapFit::new(map.fit, Bias::default()) }).collect()
+    fitted.iter().zip(ends).map(|(map, far)| FittedMap::new(map.fit, Bias::default()).ending_at(far)).collect()
 }
 
 /// What the floor's point behind a position in the picture reads, in pixels.
@@ -56,7 +56,7 @@ enum Seen {
     Sky,
 }
 
-fn seen_at(camera: &PerspectiveCamera, maps: &[MapFit], [x, y]: [f64; 2]) -> Seen {
+fn seen_at(camera: &PerspectiveCamera, maps: &[FittedMap], [x, y]: [f64; 2]) -> Seen {
     let forward = camera.forward.as_dvec3();
     let right = forward.cross(DVec3::Y).normalize();
     let up = right.cross(forward);
@@ -74,7 +74,7 @@ fn seen_at(camera: &PerspectiveCamera, maps: &[MapFit], [x, y]: [f64; 2]) -> See
 }
 
 /// Linear colours of a picture of the floor.
-fn picture(camera: &PerspectiveCamera, maps: &[MapFit], overlay: Overlay) -> Vec<Vec3> {
+fn picture(camera: &PerspectiveCamera, maps: &[FittedMap], overlay: Overlay) -> Vec<Vec3> {
     let gpu = software_gpu();
     let descriptor = ShadowMapDescriptor {
         resolution: [256; 2],
@@ -145,8 +145,8 @@ fn tints_are_told_apart_and_lit_and_shadowed_stay_apart_under_each() {
     let camera = camera();
     let maps = maps(&camera);
     // The same floor, in the shadow of nothing and of everything: a bias beyond the map's depth puts it there.
-    let shadowed: Vec<MapFit> =
-        maps.iter().map(|map| MapFit { bias: Bias { constant_depth: -1.0, ..Bias::default() }, ..*map }).collect();
+    let shadowed: Vec<FittedMap> =
+        maps.iter().map(|map| FittedMap { bias: Bias { constant_depth: -1.0, ..Bias::default() }, ..*map }).collect();
     let lit = picture(&camera, &maps, Overlay::MapTint);
     let dark = picture(&camera, &shadowed, Overlay::MapTint);
     let luminance = |color: Vec3| color.dot(Vec3::new(0.2126, 0.7152, 0.0722));

@@ -2,8 +2,8 @@
 
 use shadowfit::glam::{DVec3, UVec2, Vec3};
 use shadowfit::settings::{FilterKind, MapFormat, SoftRadius, Softness};
-use shadowfit::{Bias, DepthConvention, LightFit};
-use shadowfit_wgpu::{MapFit, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError};
+use shadowfit::{Bias, DepthConvention, FittedMap, LightFit};
+use shadowfit_wgpu::{MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError};
 
 use super::exact_counts_gpu::box_fit;
 use super::harness::{Harness, Point, ROW};
@@ -41,7 +41,7 @@ fn points(fit: &LightFit) -> Vec<Point> {
 /// A map of a whole layer that is stored shifted.
 fn harness<'a>(gpu: &'a shadowfit_render::Gpu, map: &ShadowMapDescriptor, wrap: [u32; 2]) -> Harness<'a> {
     let fit = box_fit(map.depth);
-    let maps = [MapFit { wrap: wrap.into(), ..MapFit::new(fit, Bias::default()) }];
+    let maps = [FittedMap { wrap: wrap.into(), ..FittedMap::new(fit, Bias::default()) }];
     Harness::with_maps(gpu, map, &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z), &maps, &[casters(&fit)])
 }
 
@@ -109,8 +109,8 @@ fn a_map_that_does_not_fill_its_layer_or_begins_outside_cannot_wrap_around() {
         ([512, ROW], [0, 0], true),
     ] {
         let mut shadow_map = ShadowMap::new(&gpu.device, &map(layer)).expect("a possible shadow map");
-        let wrapped = MapFit { wrap: UVec2::from(wrap), ..MapFit::new(fit, Bias::default()) };
-        let prepared = shadow_map.prepare(&gpu.queue, &view, &[MapFit::new(fit, Bias::default()), wrapped]);
+        let wrapped = FittedMap { wrap: UVec2::from(wrap), ..FittedMap::new(fit, Bias::default()) };
+        let prepared = shadow_map.prepare(&gpu.queue, &view, &[FittedMap::new(fit, Bias::default()), wrapped]);
         let refused = Err(ShadowMapError::Wrap { index: 1, wrap, fit: [ROW; 2], map: layer });
         assert_eq!(prepared, if is_possible { Ok(()) } else { refused }, "{wrap:?} in {layer:?}");
     }

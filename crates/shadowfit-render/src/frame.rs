@@ -1,8 +1,8 @@
 //! What a frame shows: plain data.
 
 use glam::{DVec3, Vec3};
-use shadowfit::PerspectiveCamera;
-use shadowfit_wgpu::{Culling, MapFit};
+use shadowfit::{FittedMap, PerspectiveCamera};
+use shadowfit_wgpu::Culling;
 
 use crate::uniform::Atmosphere;
 use crate::{Inset, JudgedPicture, Line, Marks, Overlay, Quad};
@@ -15,7 +15,7 @@ pub struct Frame<'a> {
     /// Unit direction of travel of the light.
     pub direction: Vec3,
     /// The shadow maps with their biases, in order of their `far`; empty where there is nothing to fit.
-    pub maps: &'a [MapFit],
+    pub maps: &'a [FittedMap],
     /// Whether the maps are used as they were drawn last: nothing is drawn into them, [`Self::maps`] and
     /// [`Self::culling`] are ignored, and positions are looked up from this frame's camera. For the probe of a frame and its
     /// picture in turn, and for further pictures of the same maps.
@@ -49,7 +49,12 @@ pub struct Frame<'a> {
 
 impl<'a> Frame<'a> {
     /// A plain picture with shadows, for a light that travels along `direction` (unit, world axes).
-    pub fn new(camera: &'a PerspectiveCamera, direction: Vec3, maps: &'a [MapFit], atmosphere: &'a Atmosphere) -> Self {
+    pub fn new(
+        camera: &'a PerspectiveCamera,
+        direction: Vec3,
+        maps: &'a [FittedMap],
+        atmosphere: &'a Atmosphere,
+    ) -> Self {
         Self {
             camera,
             direction,

@@ -6,7 +6,7 @@ mod picture;
 mod pixel;
 mod plan;
 
-use shadowfit_wgpu::{KeptMaps, MAX_MAPS, MapUpdate, ShadowMap, ShadowMapDescriptor, ShadowMapError};
+use shadowfit_wgpu::{MAX_MAPS, ShadowMap, ShadowMapDescriptor, ShadowMapError, SunShadows};
 
 use crate::frame::Frame;
 use crate::judged::JudgedInput;
@@ -23,12 +23,12 @@ use crate::{Gpu, Inset, Line, Quad, bindings};
 
 use plan::Plan;
 
-/// Draws scenes; owns the shadow map and every pipeline.
+/// Draws scenes with the shadows of a sun; owns every pipeline.
 #[derive(Debug)]
 pub struct Renderer {
     layouts: Layouts,
     pipelines: Pipelines,
-    maps: KeptMaps,
+    sun: SunShadows,
     samples: u32,
     frame_uniform: wgpu::Buffer,
     frame_group: wgpu::BindGroup,
@@ -48,7 +48,8 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// A renderer for pictures of `samples` per pixel (1 or 4).
+    /// A renderer for pictures of `samples` per pixel (1 or 4). Nothing is kept in its maps at first, so that pictures do
+    /// not depend on what was drawn before.
     ///
     /// # Errors
     ///
@@ -56,16 +57,16 @@ impl Renderer {
     pub fn new(gpu: &Gpu, shadow_map: &ShadowMapDescriptor, samples: u32) -> Result<Self, ShadowMapError> {
         let device = &gpu.device;
         let layouts = Layouts::new(device);
-        let mut maps = KeptMaps::new(device, shadow_map)?;
-        maps.keeps = false;
-        let pipelines = Pipelines::new(device, &layouts, maps.map(), samples);
+        let mut sun = SunShadows::from_descriptor(device, &gpu.queue, shadow_map)?;
+        sun.set_keeps(false);
+        let pipelines = Pipelines::new(device, &layouts, sun.map(), samples);
         let frame_uniform = bindings::uniform_buffer::<FrameUniform>(device, "frame");
         let resources = [frame_uniform.as_entire_binding()];
         let frame_group = bindings::group(device, "frame", &layouts.uniform, &resources);
         Ok(Self {
             layouts,
             pipelines,
-            maps,
+            sun,
             samples,
             frame_uniform,
             frame_group,
@@ -88,30 +89,19 @@ impl Renderer {
 
     /// The current shadow map.
     pub fn shadow_map(&self) -> &ShadowMap {
-        self.maps.map()
+        self.sun.map()
     }
 
-    /// Whether static casters are kept in the maps from frame to frame; off at first, so that pictures do not depend on
-    /// what was drawn before.
-    pub fn set_keeps(&mut self, keeps: bool) {
-        self.maps.keeps = keeps;
+    /// The sun's shadows: what was fitted, and what was drawn of it in the last frame whose maps did not
+    /// [stay](Frame::maps_stay).
+    pub fn sun(&self) -> &SunShadows {
+        &self.sun
     }
 
-    /// The maps, with what was drawn of them in the last frame.
-    pub fn kept_maps(&self) -> &KeptMaps {
-        &self.maps
-    }
-
-    /// The rectangles of the maps that were drawn or mended in the last frame whose maps did not
-    /// [stay](Frame::maps_stay), in the order in which they were drawn. Whether a map is kept is
-    /// [`KeptMaps::is_kept`] of [`Self::kept_maps`].
-    pub fn map_updates(&self) -> Vec<MapUpdate> {
-        self.maps.updates()
-    }
-
-    /// Has all maps drawn anew in the next frame.
-    pub fn invalidate_maps(&mut self) {
-        self.maps.invalidate_all();
+    /// The sun's shadows, to fit them and to set how they are drawn. Another shadow map is set by
+    /// [`Self::set_shadow_map`], since pipelines depend on it.
+    pub fn sun_mut(&mut self) -> &mut SunShadows {
+        &mut self.sun
     }
 
     /// Makes the shadow map anew if its descriptor differs. On an error the old one stays.
@@ -121,19 +111,16 @@ impl Renderer {
     /// [`ShadowMapError`] if the new one cannot be made.
     pub fn set_shadow_map(&mut self, gpu: &Gpu, descriptor: &ShadowMapDescriptor) -> Result<(), ShadowMapError> {
         let old = *self.shadow_map().descriptor();
-        if old == *descriptor {
+        if !self.sun.set_descriptor(descriptor)? {
             return Ok(());
         }
-        let mut maps = KeptMaps::new(&gpu.device, descriptor)?;
-        maps.keeps = self.maps.keeps;
-        self.maps = maps;
         // What the shaders read from uniforms may differ; the greatest radius of a filter is a constant in them.
         let ShadowMapDescriptor { resolution, fade, softness, .. } = *descriptor;
         let softness = softness.with_ceiling(old.softness.ceiling);
         let same_shaders = ShadowMapDescriptor { resolution, fade, softness, ..old } == *descriptor;
         if !same_shaders {
             let maker = Maker { device: &gpu.device, samples: self.samples };
-            self.pipelines.of_map = MapPipelines::new(&maker, &self.layouts, self.maps.map());
+            self.pipelines.of_map = MapPipelines::new(&maker, &self.layouts, self.sun.map());
         }
         Ok(())
     }
@@ -234,7 +221,7 @@ impl Renderer {
         let lines: Vec<[LineVertex; 2]> = frame.lines.iter().map(|line: &Line| line.vertices(eye)).collect();
         self.lines.write(gpu, &lines);
         // Without maps there is nothing to show.
-        let insets = if self.maps.maps().is_empty() { &[] } else { frame.insets };
+        let insets = if self.sun.maps().is_empty() { &[] } else { frame.insets };
         self.insets.write(gpu, &insets.iter().map(Inset::vertex).collect::<Vec<InsetVertex>>());
         self.quads.write(gpu, &frame.quads.iter().map(Quad::vertex).collect::<Vec<QuadVertex>>());
         Ok(self.plan(gpu, scene, frame, (&uniform, size)))

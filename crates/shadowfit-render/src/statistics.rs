@@ -27,7 +27,7 @@ pub struct MapStatistics {
     pub draws: u32,
     /// Their triangles.
     pub triangles: u64,
-    /// Texels of the rectangles that were drawn or mended ([`Renderer::map_updates`](crate::Renderer::map_updates));
+    /// Texels of the rectangles that were drawn or mended ([`SunShadows::updates`](shadowfit_wgpu::SunShadows::updates));
     /// where rectangles overlap they count in each.
     pub texels: u64,
 }

@@ -14,10 +14,11 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, anyhow, ensure};
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use shadowfit::FittedMap;
 use shadowfit_render::ProbePixel;
 use shadowfit_truth::gpu::GpuPixel;
 use shadowfit_truth::{Judged, Truth};
-use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
+use shadowfit_wgpu::ShadowMapDescriptor;
 
 use crate::picture::{FrameBefore, Picture, factors};
 use crate::{Judging, SceneRays, View};
@@ -35,7 +36,7 @@ pub struct JudgeJob {
     /// How it is judged.
     pub judging: Judging,
     /// The maps that it was drawn with.
-    pub maps: Vec<MapFit>,
+    pub maps: Vec<FittedMap>,
     /// What they were drawn into.
     pub descriptor: ShadowMapDescriptor,
     /// Whether each of the scene's instances counts in sums:
@@ -215,14 +216,14 @@ mod tests {
     use std::time::Duration;
 
     use glam::{DVec3, Vec3};
-    use shadowfit::{PerspectiveCamera, Technique};
+    use shadowfit::{PerspectiveCamera, ShadowFitter, Technique};
     use shadowfit_render::{AdapterChoice, Gpu, Renderer};
     use shadowfit_scene::Scene;
     use shadowfit_scene::builtin::default_scene;
     use shadowfit_truth::Class;
 
     use super::*;
-    use crate::{Evaluator, PreparedScene, SharedTruth, TechniqueFitter};
+    use crate::{Evaluator, PreparedScene, SharedTruth};
 
     const SIZE: [u32; 2] = [96, 54];
 
@@ -230,7 +231,7 @@ mod tests {
     struct Drawn {
         gpu: Gpu,
         scene: PreparedScene,
-        fitter: TechniqueFitter,
+        fitter: ShadowFitter,
         evaluator: Evaluator,
     }
 
@@ -241,17 +242,17 @@ mod tests {
             let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::from(&technique), 1).expect("a renderer");
             let scene = PreparedScene::new(&gpu, renderer.material_layout(), default_scene()).expect("the scene");
             let evaluator = Evaluator::new(renderer, Judging { size: SIZE, ..Judging::default() });
-            Self { gpu, scene, fitter: TechniqueFitter::new(technique), evaluator }
+            Self { gpu, scene, fitter: ShadowFitter::new(&technique), evaluator }
         }
 
         fn job(&mut self, view: &View) -> JudgeJob {
-            let maps = self.fitter.fit(&self.scene, view).expect("maps");
+            let maps = self.scene.fit_next(&mut self.fitter, view).expect("maps");
             let rays = self.scene.shared_rays();
             self.evaluator.judge_job(&self.gpu, &mut self.scene, view, &maps, rays).expect("a job").0
         }
 
         fn judge(&mut self, view: &View) -> Judged {
-            let maps = self.fitter.fit(&self.scene, view).expect("maps");
+            let maps = self.scene.fit_next(&mut self.fitter, view).expect("maps");
             let truth = &mut SharedTruth::default();
             self.evaluator.judge(&self.gpu, &mut self.scene, view, &maps, truth).expect("judged")
         }

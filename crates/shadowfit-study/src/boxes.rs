@@ -6,7 +6,7 @@
 use glam::{DVec3, Vec3};
 use shadowfit::clusters::Clusters;
 use shadowfit::normal_cone::NormalCone;
-use shadowfit::{Aabb, Boxes, FitInput, ViewFrustum, Workspace};
+use shadowfit::{Aabb, Boxes, FitInput, ViewFrustum};
 use shadowfit_scene::{AlphaMode, Instance, Pose, Scene};
 
 /// Number of triangles from which on no clusters are made: at a fifth of a microsecond each that would delay the
@@ -66,11 +66,6 @@ impl SceneBoxes {
             casters: Some(Boxes { origin: DVec3::ZERO, boxes: &self.casters }),
             ..FitInput::new(views, direction)
         }
-    }
-
-    /// Elements of storage that fits to this many views need.
-    pub(crate) fn required(&self, views: usize) -> usize {
-        Workspace::required(self.receivers.len().max(self.casters.len()), views)
     }
 
     /// Takes the boxes of what moves: `bounds` gives that of an instance by its index, in world space.

@@ -1,12 +1,13 @@
 //! Techniques side by side in one scene, frame by frame.
 
 use anyhow::{Context, Result, ensure};
+use shadowfit::FittedMap;
 use shadowfit_render::{Gpu, Renderer};
 use shadowfit_scene::Scene;
 use shadowfit_truth::{Judged, PictureTally};
-use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
+use shadowfit_wgpu::ShadowMapDescriptor;
 
-use crate::{Evaluator, Judging, NamedTechnique, PreparedScene, SharedTruth, TechniqueFitter, View};
+use crate::{Evaluator, Judging, NamedTechnique, PreparedScene, SharedTruth, View};
 
 /// Samples per pixel of pictures that are compared.
 const SAMPLES: u32 = 1;
@@ -15,7 +16,6 @@ const SAMPLES: u32 = 1;
 #[derive(Debug)]
 struct Entry {
     named: NamedTechnique,
-    fitter: TechniqueFitter,
     evaluator: Evaluator,
 }
 
@@ -32,7 +32,7 @@ pub struct Comparison {
 #[derive(Debug)]
 pub struct Outcome {
     /// Its maps.
-    pub maps: Vec<MapFit>,
+    pub maps: Vec<FittedMap>,
     /// Its picture, judged.
     pub judged: Judged,
 }
@@ -59,8 +59,9 @@ impl Comparison {
         let named = technique.into();
         let renderer = Renderer::new(&self.gpu, &ShadowMapDescriptor::from(&named.technique), SAMPLES)
             .with_context(|| format!("technique {}", named.name))?;
-        let evaluator = Evaluator::new(renderer, self.judging);
-        self.entries.push(Entry { fitter: TechniqueFitter::new(named.technique), named, evaluator });
+        let mut evaluator = Evaluator::new(renderer, self.judging);
+        evaluator.renderer.sun_mut().fitter_mut().set_technique(&named.technique);
+        self.entries.push(Entry { named, evaluator });
         Ok(())
     }
 
@@ -97,9 +98,9 @@ impl Comparison {
     /// When the camera makes no sense or the device cannot tell triangles apart.
     pub fn frame(&mut self, view: &View, truth: &mut SharedTruth) -> Result<Vec<Outcome>> {
         let mut outcomes = Vec::with_capacity(self.entries.len());
-        for Entry { named, fitter, evaluator } in &mut self.entries {
-            let maps = fitter.fit(&self.scene, view);
-            let maps = maps.with_context(|| format!("technique {}", named.name))?;
+        for Entry { named, evaluator } in &mut self.entries {
+            let maps = self.scene.fit_next(evaluator.renderer.sun_mut().fitter_mut(), view);
+            let maps = maps.with_context(|| format!("technique {}", named.name))?.to_vec();
             let judged = evaluator.judge(&self.gpu, &mut self.scene, view, &maps, truth)?;
             outcomes.push(Outcome { maps, judged });
         }
@@ -121,7 +122,7 @@ impl Comparison {
         &mut self,
         technique: usize,
         view: &View,
-        maps: &[MapFit],
+        maps: &[FittedMap],
         truth: &mut SharedTruth,
     ) -> Result<(Vec<u8>, Judged)> {
         let evaluator = &mut self.entries[technique].evaluator;

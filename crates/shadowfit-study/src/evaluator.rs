@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use anyhow::Result;
 use glam::{DVec3, Vec3};
+use shadowfit::FittedMap;
 use shadowfit_render::{
     Frame, Gpu, PixelQuery, PixelRead, ProbePixel, ProbeTargets, RenderTarget, Renderer, Statistics,
 };
 use shadowfit_truth::Judged;
 use shadowfit_truth::gpu::{GpuBefore, GpuPixel};
-use shadowfit_wgpu::{MapFit, ShadowMapError};
+use shadowfit_wgpu::ShadowMapError;
 
 use crate::frame::frame;
 use crate::live::{LiveInput, LiveTruth};
@@ -30,13 +31,13 @@ pub struct Evaluator {
     picture: Option<RenderTarget>,
     before: Option<Before>,
     /// The maps that were drawn last.
-    drawn: Vec<MapFit>,
+    drawn: Vec<FittedMap>,
 }
 
 /// The maps of the frame before, and the eye and forward direction that chose among them.
 #[derive(Debug)]
 struct Before {
-    maps: Vec<MapFit>,
+    maps: Vec<FittedMap>,
     eye: DVec3,
     forward: Vec3,
 }
@@ -57,7 +58,7 @@ impl Evaluator {
         gpu: &Gpu,
         scene: &mut PreparedScene,
         view: &View,
-        maps: &[MapFit],
+        maps: &[FittedMap],
         options: &FrameOptions<'_>,
         picture: &RenderTarget,
     ) -> Result<Statistics, ShadowMapError> {
@@ -89,7 +90,7 @@ impl Evaluator {
     }
 
     /// The maps that were drawn last.
-    pub fn drawn_fits(&self) -> &[MapFit] {
+    pub fn drawn_fits(&self) -> &[FittedMap] {
         &self.drawn
     }
 
@@ -98,7 +99,13 @@ impl Evaluator {
     /// # Errors
     ///
     /// As for [`Self::draw`].
-    pub fn picture(&mut self, gpu: &Gpu, scene: &mut PreparedScene, view: &View, maps: &[MapFit]) -> Result<Vec<u8>> {
+    pub fn picture(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut PreparedScene,
+        view: &View,
+        maps: &[FittedMap],
+    ) -> Result<Vec<u8>> {
         let kept = self.picture.take().filter(|picture| picture.size == self.judging.size);
         let picture = kept.unwrap_or_else(|| self.renderer.target(gpu, self.judging.size));
         self.draw(gpu, scene, view, maps, &FrameOptions::default(), &picture)?;
@@ -117,7 +124,7 @@ impl Evaluator {
         gpu: &Gpu,
         scene: &mut PreparedScene,
         view: &View,
-        maps: &[MapFit],
+        maps: &[FittedMap],
         truth: &mut SharedTruth,
     ) -> Result<Judged> {
         if view.is_first {
@@ -152,7 +159,7 @@ impl Evaluator {
         gpu: &Gpu,
         scene: &mut PreparedScene,
         view: &View,
-        maps: &[MapFit],
+        maps: &[FittedMap],
         rays: Arc<SceneRays>,
     ) -> Result<(JudgeJob, ProbeTargets)> {
         if view.is_first {
@@ -194,7 +201,7 @@ impl Evaluator {
         gpu: &Gpu,
         scene: &mut PreparedScene,
         view: &View,
-        maps: &[MapFit],
+        maps: &[FittedMap],
         live: &mut LiveTruth,
     ) -> Result<Vec<GpuPixel>> {
         self.with_live_input(gpu, scene, view, maps, |input| live.judge(gpu, input))
@@ -210,7 +217,7 @@ impl Evaluator {
         gpu: &Gpu,
         scene: &mut PreparedScene,
         view: &View,
-        maps: &[MapFit],
+        maps: &[FittedMap],
         (live, repeats): (&mut LiveTruth, u32),
     ) -> Result<f64> {
         self.with_live_input(gpu, scene, view, maps, |input| live.time(gpu, input, repeats))
@@ -228,7 +235,7 @@ impl Evaluator {
         gpu: &Gpu,
         scene: &mut PreparedScene,
         view: &View,
-        maps: &[MapFit],
+        maps: &[FittedMap],
         live: &mut LiveTruth,
     ) -> Result<()> {
         let before = self.before.take().filter(|_| self.judging.crawl && !view.is_first);
@@ -241,7 +248,7 @@ impl Evaluator {
         };
         let seen = self.draw_probe(gpu, scene, view, maps, None)?;
         let descriptor = self.renderer.shadow_map().descriptor();
-        let measure = |maps: &[MapFit]| measured(maps, descriptor, view.direction, scene.origin());
+        let measure = |maps: &[FittedMap]| measured(maps, descriptor, view.direction, scene.origin());
         let here = measure(maps);
         let there = before.as_ref().map_or_else(Vec::new, |before| measure(&before.maps));
         let maps_before = before.as_ref().map(|before| picture_maps(&there, &before.maps, descriptor));
@@ -267,7 +274,7 @@ impl Evaluator {
     }
 
     /// Takes a view as the one before: crawl is measured against it. Views that are judged are noted by themselves.
-    pub fn note_view(&mut self, view: &View, maps: &[MapFit]) {
+    pub fn note_view(&mut self, view: &View, maps: &[FittedMap]) {
         let forward = view.camera.forward.normalize();
         self.before = Some(Before { maps: maps.to_vec(), eye: view.camera.eye, forward });
     }
@@ -282,7 +289,7 @@ impl Evaluator {
         gpu: &Gpu,
         scene: &mut PreparedScene,
         view: &View,
-        maps: &[MapFit],
+        maps: &[FittedMap],
         judge: impl FnOnce(&LiveInput<'_>) -> Result<T>,
     ) -> Result<T> {
         let targets = self.draw_probe(gpu, scene, view, maps, None)?;
@@ -305,7 +312,7 @@ impl Evaluator {
         gpu: &Gpu,
         scene: &mut PreparedScene,
         view: &View,
-        maps: &[MapFit],
+        maps: &[FittedMap],
         choice: Option<(DVec3, Vec3)>,
     ) -> Result<Vec<Option<ProbePixel>>> {
         let targets = self.draw_probe(gpu, scene, view, maps, choice)?;
@@ -320,7 +327,7 @@ impl Evaluator {
         gpu: &Gpu,
         scene: &mut PreparedScene,
         view: &View,
-        maps: &[MapFit],
+        maps: &[FittedMap],
         choice: Option<(DVec3, Vec3)>,
     ) -> Result<ProbeTargets> {
         let kept = self.targets.take();
@@ -332,7 +339,7 @@ impl Evaluator {
         &mut self,
         gpu: &Gpu,
         scene: &mut PreparedScene,
-        (view, maps, choice): (&View, &[MapFit], Option<(DVec3, Vec3)>),
+        (view, maps, choice): (&View, &[FittedMap], Option<(DVec3, Vec3)>),
         targets: Option<ProbeTargets>,
     ) -> Result<ProbeTargets> {
         let kept = targets.filter(|targets| targets.size == self.judging.size);

@@ -1,9 +1,8 @@
 //! The only place where a frame of the samples' renderer is put together and its haze is chosen.
 
-use shadowfit::PerspectiveCamera;
 use shadowfit::tool::CameraSettings;
+use shadowfit::{FittedMap, PerspectiveCamera};
 use shadowfit_render::{Atmosphere, Culling, Frame, Inset, JudgedPicture, Line, Marks, Overlay, Quad};
-use shadowfit_wgpu::MapFit;
 
 use crate::View;
 
@@ -70,7 +69,7 @@ impl FrameOptions<'_> {
 /// The frame of a view. `atmosphere` is that of the options, which the frame borrows.
 pub(crate) fn frame<'a>(
     view: &'a View,
-    maps: &'a [MapFit],
+    maps: &'a [FittedMap],
     options: &'a FrameOptions<'a>,
     atmosphere: &'a Atmosphere,
 ) -> Frame<'a> {

@@ -2,28 +2,26 @@
 //! window.
 //!
 //! A [`PreparedScene`] is a scene that can be drawn, traced and fitted to; a [`View`] is a camera and a light. A
-//! [`Technique`](shadowfit::Technique) is all that decides how shadows come out: its [`TechniqueFitter`] makes the maps
-//! of a view, and an [`Evaluator`] draws them and judges the picture. A [`Comparison`] does so for several techniques,
-//! and [`tune()`] searches the best one. The viewer draws and judges through the same fitter and evaluator.
+//! [`Technique`](shadowfit::Technique) is all that decides how shadows come out: the [`ShadowFitter`](shadowfit::ShadowFitter)
+//! that engines take makes the maps of a view ([`PosedScene::fit_next`]), and an [`Evaluator`] draws them and judges the
+//! picture. A [`Comparison`] does so for several techniques, and [`tune()`] searches the best one. The viewer draws and
+//! judges through the same evaluator.
 
 mod agreement;
 mod background_judge;
 mod boxes;
 mod comparison;
 mod evaluator;
-mod fitter;
+mod fits;
 mod frame;
-mod histogram;
 mod judging;
 mod live;
 mod maps;
-mod need;
 mod picture;
 mod posed_rays;
 mod rays;
 pub mod samples;
 mod scene;
-mod seen;
 mod settings_file;
 mod technique_file;
 mod tune;
@@ -34,17 +32,14 @@ pub use agreement::Agreement;
 pub use background_judge::{BackgroundJudge, JudgeJob, JudgeResult};
 pub use comparison::{Comparison, Outcome, ensure_judged};
 pub use evaluator::Evaluator;
-pub use fitter::{RayUse, TechniqueFitter};
+pub use fits::{RayUse, see_by_rays};
 pub use frame::FrameOptions;
-pub use histogram::SeenDepths;
 pub use judging::{Judging, SharedTruth};
 pub use live::LiveTruth;
 pub use maps::fit_map;
-pub use need::SeenNeed;
 pub use picture::FrameBefore;
 pub use rays::SceneRays;
 pub use scene::{NothingToDraw, PosedScene, PreparedScene};
-pub use seen::Seen;
 pub use settings_file::{settings_from_toml, settings_to_toml};
 pub use technique_file::NamedTechnique;
 pub use tune::{Budget, Progress, Step, TuneScope, TuneSettings, Tuned, Weights, tune};

@@ -1,39 +1,40 @@
 //! Fitted maps as the measures of `shadowfit-truth` take them.
 
 use glam::{DMat4, DVec3, Vec3};
+use shadowfit::FittedMap;
 use shadowfit::choice::MapOrder;
 use shadowfit::settings::MapChoice;
 use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{MapReading, MeasuredMap, PictureMaps};
-use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
+use shadowfit_wgpu::ShadowMapDescriptor;
 
 /// View depth, in metres, that means that a map has no end: fit files have finite numbers only.
 pub(crate) const NO_END: f64 = 1e9;
 
 /// A map as fit files have it: the f32 matrix that the renderer gets, made absolute in f64.
-pub fn fit_map(map: &MapFit) -> FitMap {
+pub fn fit_map(map: &FittedMap) -> FitMap {
     FitMap {
         view_proj: clip_from(map, DVec3::ZERO).to_cols_array(),
         resolution: map.fit.resolution.x,
         resolution_xy: (map.fit.resolution.x != map.fit.resolution.y).then(|| map.fit.resolution.to_array()),
         split_near: 0.0,
-        split_far: f64::from(map.far).min(NO_END),
+        split_far: map.depth_range().far.min(NO_END),
     }
 }
 
 /// Maps of a descriptor as the measures take them, for positions relative to a world position. `direction` is the light's
 /// direction of travel.
 pub(crate) fn measured(
-    maps: &[MapFit],
+    maps: &[FittedMap],
     descriptor: &ShadowMapDescriptor,
     direction: Vec3,
     origin: DVec3,
 ) -> Vec<MeasuredMap> {
-    let from_origin = |map: &MapFit| FitMap { view_proj: clip_from(map, origin).to_cols_array(), ..fit_map(map) };
-    let measured = |map: &MapFit| {
+    let from_origin = |map: &FittedMap| FitMap { view_proj: clip_from(map, origin).to_cols_array(), ..fit_map(map) };
+    let measured = |map: &FittedMap| {
         let reach = descriptor.softness.reach_in(descriptor.filter, &map.fit).per_axis();
         let measured = from_origin(map).measured(-direction.as_dvec3());
-        measured.with_blend_near(f64::from(map.blend_near)).with_reach(reach)
+        measured.with_blend_near(map.depth_range().blend_near).with_reach(reach)
     };
     maps.iter().map(measured).collect()
 }
@@ -41,7 +42,7 @@ pub(crate) fn measured(
 /// How the maps of a shadow map are read: `maps` as the measures take those of `fits`.
 pub(crate) fn picture_maps<'a>(
     maps: &'a [MeasuredMap],
-    fits: &[MapFit],
+    fits: &[FittedMap],
     descriptor: &ShadowMapDescriptor,
 ) -> PictureMaps<'a> {
     let reading = match descriptor.choice {
@@ -56,6 +57,6 @@ pub(crate) fn picture_maps<'a>(
 }
 
 /// Clip space from positions relative to a world position.
-fn clip_from(map: &MapFit, origin: DVec3) -> DMat4 {
+fn clip_from(map: &FittedMap, origin: DVec3) -> DMat4 {
     map.fit.clip_from_world.as_dmat4() * DMat4::from_translation(origin - map.fit.origin)
 }

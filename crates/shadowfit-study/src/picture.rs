@@ -1,9 +1,10 @@
 //! A drawn picture judged against rays on the CPU, wherever that is done: where it was drawn, or in the background.
 
 use glam::{DVec3, Vec3};
+use shadowfit::FittedMap;
 use shadowfit_render::ProbePixel;
 use shadowfit_truth::{Judged, MapsBefore, Truth, crawl, judge_while};
-use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
+use shadowfit_wgpu::ShadowMapDescriptor;
 
 use crate::maps::{measured, picture_maps};
 use crate::{Judging, SceneRays, View};
@@ -12,7 +13,7 @@ use crate::{Judging, SceneRays, View};
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameBefore {
     /// Its maps.
-    pub maps: Vec<MapFit>,
+    pub maps: Vec<FittedMap>,
     /// Its eye; world space, metres.
     pub eye: DVec3,
     /// Its unit direction of view, world axes.
@@ -26,7 +27,7 @@ pub(crate) struct Picture<'a> {
     pub(crate) rays: &'a SceneRays,
     pub(crate) view: &'a View,
     pub(crate) judging: &'a Judging,
-    pub(crate) maps: &'a [MapFit],
+    pub(crate) maps: &'a [FittedMap],
     pub(crate) descriptor: &'a ShadowMapDescriptor,
     /// Whether each of the scene's instances counts in sums.
     pub(crate) counted: &'a [bool],
@@ -63,7 +64,7 @@ impl Picture<'_> {
         goes_on: impl Fn() -> bool + Sync,
     ) -> Option<Judged> {
         let Self { rays, maps, descriptor, .. } = *self;
-        let measure = |maps: &[MapFit]| measured(maps, descriptor, self.view.direction, rays.origin);
+        let measure = |maps: &[FittedMap]| measured(maps, descriptor, self.view.direction, rays.origin);
         let measured = measure(maps);
         let seen = picture_maps(&measured, maps, descriptor);
         let counts = |triangle: u32| self.counted[rays.triangles[triangle as usize].instance as usize];

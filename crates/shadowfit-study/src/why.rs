@@ -9,11 +9,11 @@ mod reason;
 mod words;
 
 use glam::{DVec2, DVec3, Vec3};
-use shadowfit::Technique;
 use shadowfit::choice::MapRead;
+use shadowfit::{FittedMap, Technique};
 use shadowfit_scene::Scene;
 use shadowfit_truth::{Class, Occluder, PictureMaps, PixelFinding, PixelTruth, TruthPoint};
-use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
+use shadowfit_wgpu::ShadowMapDescriptor;
 
 use self::look_up::{LookUp, Tap};
 use crate::maps::{measured, picture_maps};
@@ -35,7 +35,7 @@ pub struct WhyInput<'a> {
     /// The technique that made the maps.
     pub technique: &'a Technique,
     /// The maps that the picture was drawn with.
-    pub maps: &'a [MapFit],
+    pub maps: &'a [FittedMap],
     /// What they were drawn into.
     pub descriptor: &'a ShadowMapDescriptor,
     /// Share of the light at the pixel as it was drawn, 0..=1, such as a probe gives it; `None` takes what one comparison
@@ -49,7 +49,7 @@ pub struct WhyInput<'a> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoredTexels {
     /// The middle one, from the left and from the top of the map: whole texels of [`Why::texel`]. A map that
-    /// [is stored shifted](MapFit::wrap) has it elsewhere in its layer.
+    /// [is stored shifted](FittedMap::wrap) has it elsewhere in its layer.
     pub texel: [u32; 2],
     /// Its depth and those of the eight around it, rows from the top, as the map stores them: 0..=1, plain or reversed.
     /// Not a number beyond the map.
@@ -127,10 +127,10 @@ pub(crate) struct At<'a> {
 /// look for the shadow's true edge: from microseconds to some tens of milliseconds.
 ///
 /// ```no_run
-/// # use shadowfit::Technique;
+/// # use shadowfit::{FittedMap, Technique};
 /// # use shadowfit_study::{Judging, PreparedScene, View, WhyInput, why};
-/// # use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
-/// # fn click(scene: &PreparedScene, view: &View, technique: &Technique, maps: &[MapFit], pixel: [f32; 2]) {
+/// # use shadowfit_wgpu::ShadowMapDescriptor;
+/// # fn click(scene: &PreparedScene, view: &View, technique: &Technique, maps: &[FittedMap], pixel: [f32; 2]) {
 /// let Some(rays) = scene.ready_rays() else { return };
 /// let found = why(&WhyInput {
 ///     scene: scene.scene(),

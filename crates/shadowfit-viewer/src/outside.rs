@@ -2,10 +2,12 @@
 //! the sun's direction, drawn as lines and seen by a second camera that keeps all of them in its picture.
 
 use glam::{DVec3, Vec3, Vec4};
+use shadowfit::culling::{Reader, caster_volumes};
 use shadowfit::figures::linear_map_tints;
-use shadowfit::{CasterVolume, LightFit, PerspectiveCamera};
+use shadowfit::settings::MAX_MAPS;
+use shadowfit::{CasterVolume, FittedMap, LightFit, PerspectiveCamera};
 use shadowfit_render::{Line, box_lines};
-use shadowfit_wgpu::{MapFit, MapView, ShadowMapDescriptor};
+use shadowfit_wgpu::ShadowMapDescriptor;
 
 use crate::fitted::Fitted;
 
@@ -27,15 +29,14 @@ const VOLUME_SHARE: f32 = 0.45;
 /// The slices of the view, and for each map that some point reads its box, an arrow along the light's direction of
 /// travel into it, and the volume of the casters that it needs, in the map's tint. The view is drawn as far as the maps
 /// reach.
-pub(crate) fn lines(fitted: &Fitted, maps: &[MapFit], descriptor: &ShadowMapDescriptor) -> Vec<Line> {
+pub(crate) fn lines(fitted: &Fitted, maps: &[FittedMap], descriptor: &ShadowMapDescriptor) -> Vec<Line> {
     let mut lines = boxes(fitted);
     let (Some(camera), Some(frustum)) = (fitted.camera, fitted.frustum()) else { return lines };
-    let mut swept = maps.to_vec();
-    let view = MapView::from_eye(camera.eye, camera.forward.normalize());
-    if MapFit::sweep(&mut swept, &view, &[frustum], descriptor).is_ok() {
-        for (map, tint) in swept.iter().zip(linear_map_tints()) {
+    let mut volumes = [CasterVolume::nowhere(camera.eye); MAX_MAPS];
+    let reader = Reader::from_eye(camera.eye, camera.forward.normalize());
+    if caster_volumes(maps, &descriptor.reading(), &reader, &[frustum], &mut volumes).is_ok() {
+        for ((map, volume), tint) in maps.iter().zip(&volumes).zip(linear_map_tints()) {
             let color = (tint * VOLUME_SHARE).extend(1.0);
-            let Some(volume) = &map.volume else { continue };
             // Toward the light a volume has no end of its own.
             let end = map.fit.corners().map(|corner| corner.dot(map.fit.direction));
             let end = end.into_iter().fold(f32::MAX, f32::min);

@@ -23,11 +23,11 @@ mod memory_tests;
 use core::fmt;
 
 use shadowfit::tool::Settings;
-use shadowfit::{Aabb, PerspectiveCamera};
+use shadowfit::{Aabb, FittedMap, PerspectiveCamera};
 use shadowfit_render::{FlyCamera, FlyInput, Gpu, RenderTarget};
 use shadowfit_scene::Scene;
 use shadowfit_study::{NothingToDraw, PreparedScene, View};
-use shadowfit_wgpu::{MapFit, ShadowMapError};
+use shadowfit_wgpu::ShadowMapError;
 
 use compare::Other;
 pub(crate) use live::judged_figures;
@@ -174,7 +174,7 @@ impl Stage {
     /// be the same each time. What stands still is kept in the shadow maps, too, and nothing waits for rays.
     pub fn read_depths(&mut self) {
         self.reads_depths = true;
-        self.side.read_depths(&self.gpu, self.samples);
+        self.side.follow();
     }
 
     /// From now on, whatever a picture needs of rays is waited for: for pictures that are made one by one.
@@ -310,9 +310,9 @@ impl Stage {
 
     /// The maps of the present view and settings; none where there is nothing to fit, with the
     /// reason as [`Self::problem`].
-    pub fn maps(&mut self, size: [u32; 2]) -> Vec<MapFit> {
+    pub fn maps(&mut self, size: [u32; 2]) -> Vec<FittedMap> {
         let (side, mut shot) = self.shot(size);
-        side.fit(&mut shot).maps.iter().map(MapFit::from).collect()
+        side.fit(&mut shot).maps.to_vec()
     }
 
     /// Draws the present view into a target: of two techniques the first one up to the bar, and the second one from there;
@@ -326,7 +326,7 @@ impl Stage {
     }
 
     fn draw_side(&mut self, target: &RenderTarget) {
-        if self.side.fitter.rays == shadowfit_study::RayUse::IfReady {
+        if self.reads_depths {
             // What fits and figures read when it is there.
             self.scene.take_rays();
             self.scene.request_rays();
@@ -347,7 +347,7 @@ impl Stage {
     pub fn draw_beside(&mut self, target: &RenderTarget) {
         let (side, mut shot) = self.shot(target.size);
         let Some(fitted) = side.fitted.clone() else { return };
-        let maps: Vec<MapFit> = fitted.maps.iter().map(MapFit::from).collect();
+        let maps = fitted.maps.to_vec();
         let statistics = side.statistics;
         side.draw_outside(&mut shot, (&fitted, &maps, true), target);
         side.statistics = statistics;

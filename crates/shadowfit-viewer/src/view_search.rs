@@ -2,8 +2,8 @@
 //! artefact shows. Positions are relative to the origin of the scene's rays, in metres.
 
 use glam::{DVec3, Vec3};
-use shadowfit::{Aabb, PerspectiveCamera, Technique};
-use shadowfit_study::{PosedScene, TechniqueFitter, View};
+use shadowfit::{Aabb, PerspectiveCamera, ShadowFitter, Technique};
+use shadowfit_study::{PosedScene, View};
 use shadowfit_truth::Tracer;
 
 use crate::fitted::Fitted;
@@ -58,9 +58,9 @@ impl<'a> ViewSearch<'a> {
     /// where nothing can be fitted.
     pub(crate) fn fit(&self, technique: &Technique, camera: &PerspectiveCamera) -> Option<Fitted> {
         let camera = PerspectiveCamera { eye: self.world(camera.eye), ..*camera };
-        let mut fitter = TechniqueFitter::new(*technique);
-        fitter.fit_alone(self.scene, &View { camera, direction: self.direction, is_first: true }).ok()?;
-        Some(Fitted::new(camera, technique, fitter.fitted()))
+        let view = View { camera, direction: self.direction, is_first: true };
+        let maps = self.scene.fit_alone(&mut ShadowFitter::new(technique), &view).ok()?;
+        Some(Fitted::new(camera, technique, &maps))
     }
 
     /// World position of a point of the search.

@@ -18,11 +18,9 @@ mod plan;
 mod schedule;
 
 use shadowfit::glam::{DVec3, IVec2, UVec2, Vec3};
-use shadowfit::scroll::TexelRect;
+use shadowfit::scroll::{Scroll, TexelRect};
 use shadowfit::settings::{MAX_MAPS, MapChoice};
-use shadowfit::{Aabb, CasterVolume};
-
-use crate::MapFit;
+use shadowfit::{Aabb, CasterVolume, FittedMap};
 
 use casters::{KnownCasters, WorldBox};
 use schedule::Candidate;
@@ -46,7 +44,7 @@ const NEVER_KEPT: u8 = 2;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Culling {
     /// Into maps that are drawn anew, and of those that move, casters that can cast a shadow into view
-    /// ([`MapFit::sweep`]); into maps that are kept, those that the map can store. The default.
+    /// ([`caster_volumes`](shadowfit::culling::caster_volumes)); into maps that are kept, those that the map can store. The default.
     #[default]
     Swept,
     /// Those that the map can store.
@@ -88,9 +86,9 @@ pub(crate) struct MapCache {
 #[derive(Debug, Default)]
 struct KeptMap {
     /// The map that was fitted last; what can be kept of a layer is known by it.
-    fitted: Option<MapFit>,
+    fitted: Option<FittedMap>,
     /// The map as it was drawn.
-    drawn: Option<MapFit>,
+    drawn: Option<FittedMap>,
     /// Whether all static casters over it are in its layer.
     is_kept: bool,
     /// Where its left top texel is stored.
@@ -124,7 +122,7 @@ enum Decision {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CacheFrame<'a> {
     /// The fitted maps.
-    pub(crate) fitted: &'a [MapFit],
+    pub(crate) fitted: &'a [FittedMap],
     pub(crate) casters: &'a Casters<'a>,
     /// The map that holds what the others leave out, by coverage.
     pub(crate) coarsest: Option<usize>,
@@ -138,7 +136,7 @@ pub(crate) struct CacheFrame<'a> {
 #[derive(Debug)]
 pub(crate) struct Choice {
     decisions: Vec<Decision>,
-    pub(crate) maps: Vec<MapFit>,
+    pub(crate) maps: Vec<FittedMap>,
 }
 
 impl MapCache {
@@ -258,15 +256,15 @@ impl MapCache {
 impl KeptMap {
     /// What is to be drawn of a map that is fitted now. Where casters move that have no layer of their own, nothing is
     /// kept.
-    fn decide(&mut self, now: &MapFit, settings: &CacheSettings, has_moving: bool) -> Decision {
+    fn decide(&mut self, now: &FittedMap, settings: &CacheSettings, has_moving: bool) -> Decision {
         let fits_layer = now.fit.resolution == settings.layer;
-        let is_same_grid = self.fitted.is_some_and(|before| !now.scroll_from(&before).is_new);
+        let is_same_grid = self.fitted.is_some_and(|before| !Scroll::between(&before, now).is_new);
         self.renewals = if is_same_grid { 0 } else { self.renewals.saturating_add(1) };
         if !settings.keeps || now.anchor.is_none() || now.fit.is_empty || has_moving || self.renewals > NEVER_KEPT {
             return Decision::DrawAnew;
         }
         let (Some(drawn), true) = (&self.drawn, self.is_kept) else { return Decision::Renew };
-        let scroll = now.scroll_from(drawn);
+        let scroll = Scroll::between(drawn, now);
         let is_moved = scroll.shift != IVec2::ZERO;
         if scroll.is_redraw() || (is_moved && !fits_layer) || self.changed.len() > MAX_CHANGES {
             return Decision::Renew;
@@ -287,22 +285,20 @@ impl KeptMap {
 
     /// Whether points may read the map as it was drawn: nothing is lost by that. `serves_others`: whether another map
     /// holds what it leaves out.
-    fn may_wait(&self, now: &MapFit, serves_others: bool) -> bool {
+    fn may_wait(&self, now: &FittedMap, serves_others: bool) -> bool {
         let (Some(drawn), Some(anchor)) = (&self.drawn, now.anchor) else { return false };
         let Some(old) = drawn.anchor else { return false };
         let holds_depth = old.depth[0] <= anchor.depth[0] && old.depth[1] >= anchor.depth[1];
         let is_same_light = drawn.fit.direction == now.fit.direction && drawn.fit.depth == now.fit.depth;
-        let is_in_place = old == anchor && now.scroll_from(drawn).shift == IVec2::ZERO;
+        let is_in_place = old == anchor && Scroll::between(drawn, now).shift == IVec2::ZERO;
         let is_empty = drawn.fit.is_empty && !now.fit.is_empty;
         self.is_kept && is_same_light && holds_depth && !is_empty && (serves_others || is_in_place)
     }
 
     /// The map that is read: the fitted one, or the one that was drawn.
-    fn shown(&self, fitted: &MapFit, decision: &Decision) -> MapFit {
+    fn shown(&self, fitted: &FittedMap, decision: &Decision) -> FittedMap {
         match (&self.drawn, decision) {
-            (Some(drawn), Decision::Wait) => {
-                MapFit { fit: drawn.fit.relative_to(fitted.fit.origin), volume: None, ..*drawn }
-            }
+            (Some(drawn), Decision::Wait) => FittedMap { fit: drawn.fit.relative_to(fitted.fit.origin), ..*drawn },
             _ => *fitted,
         }
     }
@@ -310,7 +306,7 @@ impl KeptMap {
 
 impl Decision {
     /// Texels of static casters that are drawn.
-    fn texels(&self, map: &MapFit) -> u64 {
+    fn texels(&self, map: &FittedMap) -> u64 {
         match self {
             Self::Wait => 0,
             Self::Keep { rects, .. } => rects.iter().map(TexelRect::area).sum(),

@@ -1,5 +1,6 @@
 //! What a shadow map is made of: size, count, format, filter, choice of the map and depth convention.
 
+use shadowfit::choice::MapReading;
 use shadowfit::glam::UVec2;
 use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MAX_BLEND, MAX_MAPS, MapChoice, MapFormat, Softness};
 use shadowfit::softness::MAX_RADIUS;
@@ -29,8 +30,8 @@ pub struct ShadowMapDescriptor {
     /// Which of the maps a point reads.
     pub choice: MapChoice,
     /// Texels over which a map that is read by coverage is blended into the next coarser one, inward from the filter's
-    /// reach to its border, 0..=[`MAX_BLEND`]; 0 for none. By view depth [`MapFit::blend_near`](crate::MapFit::blend_near)
-    /// says where maps are blended.
+    /// reach to its border, 0..=[`MAX_BLEND`]; 0 for none. By view depth
+    /// [`FittedMap::covered_near`](shadowfit::FittedMap::covered_near) says where maps are blended.
     pub blend: f32,
     /// Depth convention of the fits: 0..1, plain or reversed; wgpu has no -1..1.
     pub depth: DepthConvention,
@@ -77,6 +78,12 @@ fn fade(technique: &Technique) -> [f32; 2] {
 }
 
 impl ShadowMapDescriptor {
+    /// How points read the maps.
+    pub const fn reading(&self) -> MapReading {
+        let Self { choice, blend, filter, softness, .. } = *self;
+        MapReading { choice, blend, filter, softness }
+    }
+
     /// Refuses a descriptor that makes no shadow map, or none on this device.
     pub(crate) fn check(&self, device: &wgpu::Device) -> Result<(), ShadowMapError> {
         let device_limit = device.limits().max_texture_dimension_2d;

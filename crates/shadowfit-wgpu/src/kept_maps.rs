@@ -1,36 +1,39 @@
-//! Shadow maps of which is kept what stands still: the drawing half of [`SunShadows`](crate::SunShadows), for engines
-//! that fit their maps by themselves.
+//! Shadow maps that keep the parts where nothing moved: the drawing half of [`SunShadows`](crate::SunShadows).
 
 mod passes;
 mod updates;
 
 use shadowfit::choice::MapOrder;
+use shadowfit::culling::caster_volumes;
 use shadowfit::glam::DVec3;
-use shadowfit::{Aabb, CasterVolume};
+use shadowfit::{Aabb, CasterVolume, FitError, FittedMap};
 
 use crate::cache::{CacheFrame, CacheSettings, FramePlan, MapCache};
 use crate::layers::Layers;
-use crate::{Culling, MapFit, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, SunFrame, UpdateSchedule};
+use crate::map::stored_casters;
+use crate::{Culling, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, SunFrame, UpdateSchedule};
 
 pub use passes::{ShadowPass, ShadowPiece};
 pub use updates::{MapUpdate, UpdateContent};
 
 /// The shadow maps of one light, with what is kept of them from frame to frame.
 #[derive(Debug)]
-pub struct KeptMaps {
+pub(crate) struct KeptMaps {
     /// Which maps may wait for another frame.
-    pub schedule: UpdateSchedule,
+    pub(crate) schedule: UpdateSchedule,
     /// Whether what stands still is kept; else every map is drawn anew in every frame. Pictures are the same either way.
-    pub keeps: bool,
+    pub(crate) keeps: bool,
     /// Which casters are drawn.
-    pub culling: Culling,
+    pub(crate) culling: Culling,
     device: wgpu::Device,
     map: ShadowMap,
     layers: Layers,
     cache: MapCache,
     plan: FramePlan,
     /// What is read in this frame.
-    maps: Vec<MapFit>,
+    maps: Vec<FittedMap>,
+    /// Their casters for what is in view, as far as the passes depend on it; else all that they can store.
+    volumes: Vec<CasterVolume>,
     /// What the boxes of its plan are relative to, in world space, in metres.
     origin: DVec3,
 }
@@ -41,7 +44,7 @@ impl KeptMaps {
     /// # Errors
     ///
     /// As [`ShadowMap::new`].
-    pub fn new(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> Result<Self, ShadowMapError> {
+    pub(crate) fn new(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> Result<Self, ShadowMapError> {
         let map = ShadowMap::new(device, descriptor)?;
         let layers = Layers::new(device, &map);
         Ok(Self {
@@ -54,50 +57,45 @@ impl KeptMaps {
             cache: MapCache::default(),
             plan: FramePlan::default(),
             maps: Vec::new(),
+            volumes: Vec::new(),
             origin: DVec3::ZERO,
         })
     }
 
     /// The maps on the GPU: layouts and states for the engine's pipelines.
-    pub fn map(&self) -> &ShadowMap {
+    pub(crate) fn map(&self) -> &ShadowMap {
         &self.map
     }
 
     /// The maps that are read in this frame, those that wait as they were drawn.
-    pub fn maps(&self) -> &[MapFit] {
+    pub(crate) fn maps(&self) -> &[FittedMap] {
         &self.maps
     }
 
     /// Has static casters in a box, in metres relative to an origin in world space, drawn anew in the next frame: where
     /// one changed its shape, and not its box.
-    pub fn invalidate(&mut self, aabb: &Aabb, origin: DVec3) {
+    pub(crate) fn invalidate(&mut self, aabb: &Aabb, origin: DVec3) {
         self.cache.invalidate(aabb, origin);
     }
 
     /// Has all maps drawn anew in the next frame, such as after a frame whose passes were not submitted.
-    pub fn invalidate_all(&mut self) {
+    pub(crate) fn invalidate_all(&mut self) {
         self.cache.reset();
     }
 
     /// Finds what must be drawn of a frame's maps, and writes the uniforms. [`Self::passes`] then has what is to be
     /// drawn in this frame; it counts as drawn from the next call on.
     ///
-    /// Maps with a [`MapFit::anchor`] can be kept; others are drawn anew. [`MapFit::volume`] and [`MapFit::wrap`] are
-    /// ignored. The frame's receivers are not looked at.
-    ///
-    /// # Errors
-    ///
-    /// As [`ShadowMap::prepare`], and [`ShadowMapError::View`] for views that make no sense. There is nothing to draw
-    /// then, and the shaders read what they read before.
-    pub fn update(
+    /// Maps with an [anchor](FittedMap::anchor) can be kept; others are redrawn in each frame.
+    pub(crate) fn update(
         &mut self,
         queue: &wgpu::Queue,
         frame: &SunFrame<'_>,
-        fitted: &[MapFit],
+        fitted: &[FittedMap],
     ) -> Result<(), ShadowMapError> {
         self.skip();
         let view = frame.map_view();
-        crate::map_fit::check(self.map.descriptor(), &view, fitted)?;
+        crate::map_view::check(self.map.descriptor(), &view, fitted)?;
         // 1. Which of them are drawn now, and which are read as they are.
         self.cache.settings = self.cache_settings();
         self.cache.schedule = self.schedule;
@@ -117,8 +115,10 @@ impl KeptMaps {
         // 2. The casters of each, and the passes.
         self.origin = frame.origin;
         self.maps.clone_from(&choice.maps);
-        let volumes = if self.cache.needs_volumes(&choice) { self.volumes(frame, &view)? } else { Vec::new() };
-        self.cache.plan(&choice, &cached, &volumes, &mut self.plan);
+        let by_view = self.cache.needs_volumes(&choice);
+        self.find_volumes(frame, &view, by_view).map_err(ShadowMapError::View)?;
+        let volumes = if by_view { &self.volumes[..] } else { &[] };
+        self.cache.plan(&choice, &cached, volumes, &mut self.plan);
         // 3. What the shaders read.
         for (index, map) in self.maps.iter_mut().enumerate() {
             map.wrap = self.cache.wrap(index);
@@ -128,20 +128,26 @@ impl KeptMaps {
         Ok(())
     }
 
-    /// Casters of each map for what is in view, relative to the maps' origin.
-    fn volumes(&mut self, frame: &SunFrame<'_>, view: &MapView) -> Result<Vec<CasterVolume>, ShadowMapError> {
-        for map in &mut self.maps {
-            map.volume = match self.culling {
-                Culling::Off => Some(CasterVolume::everywhere(map.fit.origin)),
-                Culling::Swept | Culling::WholeMap => None,
-            };
-        }
+    /// Finds the casters of each map, relative to its origin: for what is in view, or all that it can store.
+    fn find_volumes(&mut self, frame: &SunFrame<'_>, view: &MapView, by_view: bool) -> Result<(), FitError> {
         let descriptor = self.map.descriptor();
-        if self.culling == Culling::Swept {
-            MapFit::sweep(&mut self.maps, view, frame.views, descriptor).map_err(ShadowMapError::View)?;
+        let clamps = descriptor.depth_clamp;
+        self.volumes.clear();
+        if by_view && self.culling == Culling::Off {
+            self.volumes.extend(self.maps.iter().map(|map| CasterVolume::everywhere(map.fit.origin)));
+            return Ok(());
         }
-        let is_uncut = self.culling == Culling::Off || descriptor.depth_clamp;
-        Ok(self.maps.iter().map(|map| crate::map::volume(map, is_uncut)).collect())
+        let uncut = self.culling == Culling::Off || clamps;
+        self.volumes.extend(self.maps.iter().map(|map| stored_casters(&map.fit, uncut)));
+        if by_view && self.culling == Culling::Swept {
+            caster_volumes(&self.maps, &descriptor.reading(), &view.reader(), frame.views, &mut self.volumes)?;
+            if !clamps {
+                for (volume, map) in self.volumes.iter_mut().zip(&self.maps) {
+                    *volume = volume.cut_at_near_plane(&map.fit);
+                }
+            }
+        }
+        Ok(())
     }
 
     fn cache_settings(&self) -> CacheSettings {

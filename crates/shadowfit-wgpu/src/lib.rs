@@ -65,11 +65,10 @@
 //!
 //! # Every step by itself
 //!
-//! - [`KeptMaps`] is the drawing half, for engines that fit their maps by themselves: it takes a [`MapFit`] for each map,
-//!   keeps what stands still, and lists the same passes.
-//! - [`ShadowMap`] is what both draw into: textures, layouts, bind groups, states for pipelines, and a pass for each map
-//!   that draws it anew. [`ShadowMapDescriptor`] says what it is made of, [`MapView`] from where it is read, and
-//!   [`MapFit::sweep`] which casters throw shadows into view.
+//! - [`SunShadows::fit`] and [`SunShadows::prepare`] are the halves of [`SunShadows::update`]: maps that are frozen, or
+//!   fitted by other code, are drawn and kept by the second alone.
+//! - [`ShadowMap`] is what they are drawn into: textures, layouts, bind groups, states for pipelines, and a pass for each
+//!   map that draws it anew. [`ShadowMapDescriptor`] says what it is made of, and [`MapView`] from where it is read.
 //! - [`need`] counts what a depth buffer shows.
 //! - [`culling_wgsl`] with [`CullingUniform`] culls casters on the GPU. [`CasterUniform`], [`ReceiverUniform`] and
 //!   [`MapUniform`] are what the other WGSL reads, for engines that bind it themselves.
@@ -81,21 +80,20 @@ mod error;
 mod kept_maps;
 mod layers;
 mod map;
-mod map_fit;
+mod map_view;
 pub mod need;
 mod shader;
 mod sun_frame;
 mod sun_shadows;
-mod sweep;
 mod uniform;
 
 pub use cache::{Casters, Culling, PassContent, UpdateSchedule};
 pub use descriptor::{RESOLUTIONS, ShadowMapDescriptor};
 pub use error::ShadowMapError;
-pub use kept_maps::{KeptMaps, MapUpdate, ShadowPass, ShadowPiece, UpdateContent};
+pub use kept_maps::{MapUpdate, ShadowPass, ShadowPiece, UpdateContent};
 pub use layers::layers_wgsl;
 pub use map::ShadowMap;
-pub use map_fit::{MapFit, MapView};
+pub use map_view::MapView;
 pub use shader::{WgslOptions, caster_wgsl, culling_wgsl, receiver_wgsl, stored_wgsl};
 pub use shadowfit::settings::MAX_MAPS;
 pub use sun_frame::SunFrame;

@@ -3,12 +3,12 @@
 use shadowfit::glam::UVec2;
 use shadowfit::scroll::{StoredRect, TexelRect};
 use shadowfit::settings::{CasterPolicy, FilterKind};
-use shadowfit::{CasterVolume, DepthConvention};
+use shadowfit::{CasterVolume, DepthConvention, FittedMap, LightFit};
 
 use crate::caught::caught;
-use crate::map_fit::check;
+use crate::map_view::check;
 use crate::uniform::{CasterUniform, ReceiverUniform};
-use crate::{MapFit, MapView, ShadowMapDescriptor, ShadowMapError};
+use crate::{MapView, ShadowMapDescriptor, ShadowMapError};
 
 /// Shadow maps of one light: equal layers of one texture array, their passes and bind groups.
 #[derive(Debug)]
@@ -175,7 +175,7 @@ impl ShadowMap {
     /// ends of maps that are read by view depth do not ascend; [`ShadowMapError::Wrap`] if a map wraps around beyond its
     /// layer or does not fill it; [`ShadowMapError::Bias`] and [`ShadowMapError::Forward`] for biases that
     /// are not finite and for a direction that is not of unit length. Nothing is written then.
-    pub fn prepare(&mut self, queue: &wgpu::Queue, view: &MapView, maps: &[MapFit]) -> Result<(), ShadowMapError> {
+    pub fn prepare(&mut self, queue: &wgpu::Queue, view: &MapView, maps: &[FittedMap]) -> Result<(), ShadowMapError> {
         check(&self.descriptor, view, maps)?;
         for (layer, map) in self.layers.iter_mut().zip(maps) {
             let clamps_in_fragment = self.clamps_in_fragment.into();
@@ -187,13 +187,13 @@ impl ShadowMap {
         queue.write_buffer(&self.receiver_uniform, 0, bytemuck::bytes_of(&uniform));
         let depth_clamp = self.descriptor.depth_clamp;
         self.volumes.clear();
-        self.volumes.extend(maps.iter().map(|map| volume(map, depth_clamp).relative_to(view.origin)));
+        self.volumes.extend(maps.iter().map(|map| stored_casters(&map.fit, depth_clamp).relative_to(view.origin)));
         Ok(())
     }
 
     /// Records one pass a prepared map: cleared to the far value, the map's [`Self::caster_group`]
     /// bound at `group`, then `draw(pass, map index, volume)`, which draws every caster that the
-    /// volume (relative to the origin) keeps. For a map that [wraps around](MapFit::wrap) it is called for each of its
+    /// volume (relative to the origin) keeps. For a map that [wraps around](FittedMap::wrap) it is called for each of its
     /// [`Self::parts`].
     pub fn render(
         &self,
@@ -211,7 +211,7 @@ impl ShadowMap {
         }
     }
 
-    /// Parts in which a map is drawn: one, or up to four for a map that [wraps around](MapFit::wrap).
+    /// Parts in which a map is drawn: one, or up to four for a map that [wraps around](FittedMap::wrap).
     ///
     /// # Panics
     ///
@@ -222,7 +222,7 @@ impl ShadowMap {
     }
 
     /// Opens the pass of one map, for engines that schedule passes themselves: cleared, with the
-    /// map's [`Self::caster_group`] bound at `group`, and the viewport set. A map that [wraps around](MapFit::wrap) has
+    /// map's [`Self::caster_group`] bound at `group`, and the viewport set. A map that [wraps around](FittedMap::wrap) has
     /// to be drawn once for each of its [`Self::parts`]: with a viewport of the map's size that begins at
     /// [`StoredRect::viewport`], within the scissor rectangle [`StoredRect::stored`].
     ///
@@ -277,14 +277,9 @@ pub(crate) fn set_part(pass: &mut wgpu::RenderPass<'_>, part: &StoredRect, size:
     pass.set_scissor_rect(rect.min.x, rect.min.y, rect.size.x, rect.size.y);
 }
 
-/// The casters that are drawn into a map.
-pub(crate) fn volume(map: &MapFit, depth_clamp: bool) -> CasterVolume {
-    let casters = if depth_clamp { CasterPolicy::DepthClamp } else { CasterPolicy::None };
-    match map.volume {
-        None => CasterVolume::of_map(&map.fit, casters),
-        Some(volume) if depth_clamp => volume,
-        Some(volume) => volume.cut_at_near_plane(&map.fit),
-    }
+/// The casters that a map can store.
+pub(crate) fn stored_casters(fit: &LightFit, depth_clamp: bool) -> CasterVolume {
+    CasterVolume::of_map(fit, if depth_clamp { CasterPolicy::DepthClamp } else { CasterPolicy::None })
 }
 
 impl Layer {

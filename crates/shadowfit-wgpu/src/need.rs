@@ -9,25 +9,25 @@
 //! # fn demo(device: &wgpu::Device, queue: &wgpu::Queue, depth: &wgpu::TextureView, size: [u32; 2],
 //! #         camera: &shadowfit::PerspectiveCamera, direction: shadowfit::glam::Vec3)
 //! #         -> Result<(), Box<dyn std::error::Error>> {
-//! use shadowfit::{DepthConvention, FitInput, Technique};
+//! use shadowfit::{DepthConvention, FitInput, ShadowFitter, Technique};
 //! use shadowfit_wgpu::need::{NeedPass, NeedView};
 //!
-//! let technique = Technique::default();
+//! let mut fitter = ShadowFitter::new(&Technique::default());
 //! let mut need = NeedPass::new(device, queue, 1).ok(); // without it fits take boxes
-//! let mut seen = None;
 //! loop {
 //!     // The newest counts that are there; those of the frame before until then.
-//!     if let Some(pass) = &mut need {
-//!         seen = pass.take()?.or(seen);
+//!     if let Some(pass) = &mut need
+//!         && let Some(seen) = pass.take()?
+//!     {
+//!         fitter.see(seen);
 //!     }
 //!     let views = [camera.frustum()?];
-//!     let grids: Vec<_> = seen.iter().map(|seen| seen.grid()).collect();
-//!     let histogram = seen.as_ref().map(|seen| seen.histogram());
-//!     let input = FitInput { need: &grids, histogram, ..FitInput::new(&views, direction) };
-//!     // Fit the maps, draw them and the scene as ever, and then:
+//!     let maps = fitter.fit(&FitInput::new(&views, direction))?;
+//!     // Draw the maps and the scene as ever, and then:
 //!     let mut encoder = device.create_command_encoder(&Default::default());
 //!     if let Some(pass) = &mut need {
-//!         let view = NeedView::from_camera(camera, DepthConvention::Reversed, direction, &technique.fit, size)?;
+//!         let settings = &fitter.technique().fit;
+//!         let view = NeedView::from_camera(camera, DepthConvention::Reversed, direction, settings, size)?;
 //!         pass.record(&mut encoder, depth, &view, None)?;
 //!     }
 //!     queue.submit([encoder.finish()]);
@@ -52,10 +52,9 @@
 mod error;
 mod pass;
 mod read_back;
-mod seen;
 mod view;
 
 pub use error::{NeedPassError, Unsupported};
+pub(crate) use pass::supported;
 pub use pass::{NeedPass, need_wgsl};
-pub use seen::{CLASSES, DEPTHS, SeenNeed};
 pub use view::{NeedUniform, NeedView};

@@ -1,7 +1,7 @@
 //! The shadows of one sun, from camera and boxes to bind group: the one object that an engine needs.
 //!
 //! ```text
-//!   update(frame) ──▶ fits ──▶ what can be kept ──▶ passes: the engine draws casters by number
+//!   update(frame) = fit ──▶ prepare: what can be kept ──▶ passes: the engine draws casters by number
 //!        ▲                                                        │
 //!        └──── record_need(depth buffer) ◀──── its own passes with receiver_group() and the WGSL
 //! ```
@@ -9,47 +9,44 @@
 mod error;
 
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec3};
-use shadowfit::need::NeedGrid;
 use shadowfit::verify::{Certificate, CoverageQuery, verify};
-use shadowfit::{Aabb, DepthConvention, FittedMap, FittedMaps, MapFitter, Technique, ViewFrustum, Workspace};
+use shadowfit::{
+    Aabb, DepthConvention, FitInput, FittedMap, FittedMaps, Seen, ShadowFitter, Technique, ViewFrustum, Workspace,
+};
 
-use crate::need::{NeedPass, NeedPassError, NeedView, SeenNeed};
+use crate::kept_maps::KeptMaps;
+use crate::need::{NeedPass, NeedPassError, NeedView, supported};
 use crate::{
-    Culling, KeptMaps, MapFit, ShadowMap, ShadowMapDescriptor, ShadowPass, ShadowPiece, SunFrame, UpdateSchedule,
+    Casters, Culling, MapUpdate, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, ShadowPass, ShadowPiece,
+    SunFrame, UpdateSchedule,
 };
 
 pub use error::SunShadowsError;
 
-/// Views that a fit works with: held maps are fitted to the views of two frames ahead as well.
-const VIEWS_AHEAD: usize = 2;
-
 /// The shadows of one directional light: its maps, what is kept of them, and what the last frames showed.
 ///
-/// One for each sun. It knows no scene, starts no thread and keeps no global state.
+/// One for each sun. It knows no scene, starts no thread, keeps no global state and never waits for the GPU, except in
+/// [`Self::wait_for_need`].
 #[derive(Debug)]
 pub struct SunShadows {
     device: wgpu::Device,
     queue: wgpu::Queue,
-    technique: Technique,
-    fitter: MapFitter,
-    fitted: FittedMaps,
-    storage: Vec<DVec2>,
+    fitter: ShadowFitter,
     maps: KeptMaps,
     need: Need,
     last: Option<LastFrame>,
 }
 
-/// What the depth buffers of earlier frames showed.
-#[derive(Debug, Default)]
+/// Reads what pictures show from their depth buffers.
+#[derive(Debug)]
 struct Need {
+    /// Whether the device can.
+    is_supported: bool,
     pass: Option<NeedPass>,
     samples: u32,
-    /// Whether the device cannot count.
-    is_unsupported: bool,
-    seen: Option<SeenNeed>,
 }
 
-/// What [`SunShadows::record_need`] takes from a frame that was fitted.
+/// What [`SunShadows::record_need`] takes from a frame that was prepared.
 #[derive(Clone, Copy, Debug)]
 struct LastFrame {
     view: ViewFrustum,
@@ -65,22 +62,46 @@ impl SunShadows {
     /// [`SunShadowsError::Map`] if the maps cannot be made on this device: their size, number, format or filter, or too
     /// little memory.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, technique: &Technique) -> Result<Self, SunShadowsError> {
+        let mut sun = Self::from_descriptor(device, queue, &ShadowMapDescriptor::from(technique))?;
+        sun.fitter.set_technique(technique);
+        Ok(sun)
+    }
+
+    /// The shadows of a sun by maps of any make: for maps that are fitted by other code ([`Self::prepare`]), or for a
+    /// bind group that begins at another binding. [`Self::fitter`] has [`Technique::default`] until it is told another.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::new`].
+    pub fn from_descriptor(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        descriptor: &ShadowMapDescriptor,
+    ) -> Result<Self, ShadowMapError> {
         Ok(Self {
             device: device.clone(),
             queue: queue.clone(),
-            technique: *technique,
-            fitter: MapFitter::new(),
-            fitted: FittedMaps::default(),
-            storage: Vec::new(),
-            maps: KeptMaps::new(device, &ShadowMapDescriptor::from(technique))?,
-            need: Need::default(),
+            fitter: ShadowFitter::default(),
+            maps: KeptMaps::new(device, descriptor)?,
+            need: Need::new(device),
             last: None,
         })
     }
 
     /// The technique.
     pub fn technique(&self) -> &Technique {
-        &self.technique
+        self.fitter.technique()
+    }
+
+    /// The fitting half.
+    pub fn fitter(&self) -> &ShadowFitter {
+        &self.fitter
+    }
+
+    /// The fitting half, to be told what [was seen](ShadowFitter::see) by other means than [`Self::record_need`], or to
+    /// fit another technique to the same maps, such as one with fewer of them.
+    pub fn fitter_mut(&mut self) -> &mut ShadowFitter {
+        &mut self.fitter
     }
 
     /// The maps on the GPU: layouts and states for the engine's pipelines.
@@ -88,14 +109,14 @@ impl SunShadows {
         self.maps.map()
     }
 
-    /// The maps that were fitted to this frame.
+    /// The maps that were fitted last.
     pub fn fitted(&self) -> &FittedMaps {
-        &self.fitted
+        self.fitter.fitted()
     }
 
-    /// The drawing half: what is kept, and the passes.
-    pub fn kept(&self) -> &KeptMaps {
-        &self.maps
+    /// The maps that shaders read in this frame: those that wait for another frame as they were drawn.
+    pub fn maps(&self) -> &[FittedMap] {
+        self.maps.maps()
     }
 
     /// The bind group that [`receiver_wgsl`](crate::receiver_wgsl) reads.
@@ -125,22 +146,35 @@ impl SunShadows {
     ///
     /// As [`Self::new`].
     pub fn set_technique(&mut self, technique: &Technique) -> Result<bool, SunShadowsError> {
-        let descriptor = ShadowMapDescriptor::from(technique);
-        let is_new = descriptor != *self.map().descriptor();
-        if is_new {
-            let mut maps = KeptMaps::new(&self.device, &descriptor)?;
-            (maps.schedule, maps.keeps, maps.culling) = (self.maps.schedule, self.maps.keeps, self.maps.culling);
-            self.maps = maps;
-        }
-        self.technique = *technique;
+        let is_new = self.set_descriptor(&ShadowMapDescriptor::from(technique))?;
+        self.fitter.set_technique(technique);
         Ok(is_new)
     }
 
-    /// Forgets all earlier frames: after a camera cut, or when a new level begins.
+    /// Goes on with maps of another make, and returns whether they were made anew, as [`Self::set_technique`] does.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::from_descriptor`].
+    pub fn set_descriptor(&mut self, descriptor: &ShadowMapDescriptor) -> Result<bool, ShadowMapError> {
+        if descriptor == self.map().descriptor() {
+            return Ok(false);
+        }
+        let mut maps = KeptMaps::new(&self.device, descriptor)?;
+        (maps.schedule, maps.keeps, maps.culling) = (self.maps.schedule, self.maps.keeps, self.maps.culling);
+        self.maps = maps;
+        Ok(true)
+    }
+
+    /// Forgets all earlier frames, and has all maps drawn anew in the next one: when a new level begins.
     pub fn reset(&mut self) {
-        self.fitter.reset();
+        self.cut();
         self.maps.invalidate_all();
-        self.need.seen = None;
+    }
+
+    /// Forgets what earlier frames were and showed: after a camera cut. What stands still in the maps stays drawn.
+    pub fn cut(&mut self) {
+        self.fitter.reset();
         if let Some(pass) = &mut self.need.pass {
             pass.reset();
         }
@@ -158,7 +192,8 @@ impl SunShadows {
     }
 
     /// Fits the maps to a frame, finds what must be drawn of them, and writes the uniforms. [`Self::passes`] then has
-    /// what is to be drawn in this frame; it counts as drawn from the next call on.
+    /// what is to be drawn in this frame; it counts as drawn from the next call on. It is [`Self::fit`] and
+    /// [`Self::prepare`] in one.
     ///
     /// # Errors
     ///
@@ -166,27 +201,66 @@ impl SunShadows {
     /// layers cannot hold; [`SunShadowsError::Need`] if the device was lost. There is nothing to draw then, and the
     /// shaders read what they read before.
     pub fn update(&mut self, queue: &wgpu::Queue, frame: &SunFrame<'_>) -> Result<(), SunShadowsError> {
-        self.maps.skip();
-        self.last = None;
+        self.skip();
         frame.check()?;
-        if let Some(pass) = &mut self.need.pass {
-            self.need.seen = pass.take()?.or(self.need.seen.take());
+        self.fit(&frame.input())?;
+        let fitted = *self.fitter.fitted();
+        Ok(self.prepare(queue, frame, &fitted)?)
+    }
+
+    /// Fits the maps to an input, by what has arrived of the pictures before: the first half of [`Self::update`], for
+    /// engines that fit by other boxes than those of the casters that they draw, or look at the maps before they are
+    /// drawn.
+    ///
+    /// # Errors
+    ///
+    /// [`SunShadowsError::Fit`] for views, light and boxes that make no sense; [`SunShadowsError::Need`] if the device
+    /// was lost.
+    pub fn fit(&mut self, input: &FitInput<'_>) -> Result<&FittedMaps, SunShadowsError> {
+        if let Some(pass) = &mut self.need.pass
+            && let Some(seen) = pass.take()?
+        {
+            self.fitter.see(seen);
         }
-        self.fit(frame)?;
-        let maps: Vec<MapFit> = self.fitted.iter().map(MapFit::from).collect();
-        self.maps.update(queue, frame, &maps)?;
+        Ok(self.fitter.fit(input)?)
+    }
+
+    /// Finds what must be drawn of maps, and writes the uniforms: the second half of [`Self::update`]. The maps are those
+    /// of [`Self::fit`], or any others of as many texels: of a frame that is frozen, or fitted by other code. By view
+    /// depth they are in the order of their ends. Those with an [anchor](FittedMap::anchor) can be kept; others are drawn
+    /// anew in each frame. Their [`wrap`](FittedMap::wrap) and the frame's receivers are ignored.
+    ///
+    /// # Errors
+    ///
+    /// As [`ShadowMap::prepare`], and [`ShadowMapError::View`] for views that make no sense. There is nothing to draw
+    /// then, and the shaders read what they read before.
+    pub fn prepare(
+        &mut self,
+        queue: &wgpu::Queue,
+        frame: &SunFrame<'_>,
+        maps: &[FittedMap],
+    ) -> Result<(), ShadowMapError> {
+        self.skip();
+        self.maps.update(queue, frame, maps)?;
         self.last = frame.views.first().map(|view| LastFrame { view: *view, direction: frame.direction });
         Ok(())
     }
 
-    fn fit(&mut self, frame: &SunFrame<'_>) -> Result<(), SunShadowsError> {
-        let seen = self.need.seen.as_ref();
-        let grids: Vec<NeedGrid<'_>> = seen.map(SeenNeed::grid).into_iter().collect();
-        let mut input = frame.input();
-        (input.need, input.histogram) = (&grids, seen.map(SeenNeed::histogram));
-        self.storage.resize(Workspace::required(frame.boxes(), frame.views.len() + VIEWS_AHEAD), DVec2::ZERO);
-        self.fitter.fit_into(&input, &self.technique, &mut Workspace::new(&mut self.storage), &mut self.fitted)?;
-        Ok(())
+    /// Nothing is to be drawn.
+    fn skip(&mut self) {
+        self.maps.skip();
+        self.last = None;
+    }
+
+    /// Writes what the shaders read for another picture of the same maps, whose positions are relative to another origin
+    /// or whose view depths are counted from another eye. The maps stay as they were drawn: their passes must not be
+    /// drawn after this.
+    ///
+    /// # Errors
+    ///
+    /// [`ShadowMapError::Forward`] for a direction that is not of unit length; nothing is written then.
+    pub fn look_from(&mut self, queue: &wgpu::Queue, view: &MapView) -> Result<(), ShadowMapError> {
+        self.maps.look_from(queue, view)
     }
 
     /// The passes of this frame, in the order in which they must be drawn.
@@ -194,7 +268,9 @@ impl SunShadows {
         self.maps.passes()
     }
 
-    /// Records all passes of this frame; see [`KeptMaps::render`].
+    /// Records all passes of this frame. `draw` is called for each part that has casters: it sets the engine's
+    /// pipeline and buffers, and draws the part's casters. The map's matrix is bound at `group`; viewport and scissor
+    /// rectangle are set, and must stay.
     pub fn render(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -204,7 +280,8 @@ impl SunShadows {
         self.maps.render(encoder, group, draw);
     }
 
-    /// Opens a pass, for engines that schedule passes themselves; see [`KeptMaps::begin_pass`].
+    /// Opens a pass, for engines that schedule passes themselves: cleared or mended, with the map's matrix bound at
+    /// `group`. Each of its pieces is then [set](ShadowPiece::set) and drawn.
     pub fn begin_pass<'encoder>(
         &self,
         encoder: &'encoder mut wgpu::CommandEncoder,
@@ -215,21 +292,40 @@ impl SunShadows {
         self.maps.begin_pass(encoder, pass, group, timestamps)
     }
 
+    /// The rectangles that are drawn in this frame, in the order of the passes, for tools that show them. Some may
+    /// overlap.
+    pub fn updates(&self) -> Vec<MapUpdate> {
+        self.maps.updates()
+    }
+
+    /// Whether what stands still in a map, by its number, is kept for later frames.
+    pub fn is_kept(&self, map: usize) -> bool {
+        self.maps.is_kept(map)
+    }
+
+    /// Which maps hold each caster, by its number: bit i of the mask stands for map i. A map that is kept holds the
+    /// static casters over it, seen or not; any other map those of shadows in view. Without maps all masks are 0.
+    pub fn holders(&self, casters: &Casters<'_>) -> Vec<u8> {
+        self.maps.holders(casters)
+    }
+
     /// Proves that no map has a hole, for the frame that was given to [`Self::update`]: for debug assertions. The first map
     /// that fails decides. It counts in that shaders round positions relative to [`SunFrame::origin`].
     ///
     /// # Errors
     ///
     /// [`SunShadowsError::Fit`] as [`verify`]; [`SunShadowsError::NoFrame`] before the first frame.
-    pub fn verify(&mut self, frame: &SunFrame<'_>) -> Result<Certificate, SunShadowsError> {
+    pub fn verify(&self, frame: &SunFrame<'_>) -> Result<Certificate, SunShadowsError> {
         let input = frame.input();
+        let mut storage = vec![DVec2::ZERO; Workspace::required(frame.boxes(), frame.views.len())];
         let mut certificate = Err(SunShadowsError::NoFrame);
-        for (fitted, read) in self.fitted.iter().zip(self.maps.maps()) {
+        for (fitted, read) in self.fitted().iter().zip(self.maps()) {
             // A map that waits is read as it was drawn. Shaders round positions relative to the frame's origin.
             let map = FittedMap { fit: read.fit.relative_to(frame.origin), bias: read.bias, ..*fitted };
-            let reach = self.technique.softness.reach_in(self.technique.filter, &map.fit);
-            let query = CoverageQuery::of_map(&map, &self.technique, reach).with_normal_offset(map.bias.normal_offset);
-            let found = verify(&input, &map.fit, &query, &mut Workspace::new(&mut self.storage))?;
+            let technique = self.technique();
+            let query = CoverageQuery::of_map(&map, technique, technique.reach_in(&map.fit))
+                .with_normal_offset(map.bias.normal_offset);
+            let found = verify(&input, &map.fit, &query, &mut Workspace::new(&mut storage))?;
             if !found.is_proven() {
                 return Ok(found);
             }
@@ -243,8 +339,8 @@ impl SunShadows {
     /// `TEXTURE_BINDING`; `clip_from_world` and `convention` are what it was drawn with, from positions relative to the
     /// eye, [`ViewFrustum::origin`] of the first view.
     ///
-    /// Returns whether it was recorded: never on devices that cannot count, such as OpenGL's, where maps are placed by the
-    /// boxes; nor for a frame that [`Self::update`] refused, nor while many pictures are still on their way.
+    /// Returns whether it was recorded: never on devices that [cannot count](Self::can_record_need), where maps are placed
+    /// by the boxes; nor for a frame that was refused, nor while many pictures are still on their way.
     ///
     /// # Errors
     ///
@@ -256,19 +352,26 @@ impl SunShadows {
         clip_from_world: Mat4,
         convention: DepthConvention,
     ) -> Result<bool, SunShadowsError> {
-        let Some(LastFrame { view, direction }) = self.last else { return Ok(false) };
-        let texture = depth.texture();
-        let Some(pass) = self.need.pass(&self.device, &self.queue, texture.sample_count())? else { return Ok(false) };
+        let Some(LastFrame { view, direction }) = self.last.filter(|_| self.can_record_need()) else {
+            return Ok(false);
+        };
+        let (texture, settings) = (depth.texture(), self.fitter.technique().fit);
+        let pass = self.need.pass(&self.device, &self.queue, texture.sample_count())?;
         let seen = NeedView {
             frustum: view,
             clip_from_world,
             depth: convention,
             direction,
-            up: self.technique.fit.up,
-            max_distance: self.technique.fit.max_distance,
+            up: settings.up,
+            max_distance: settings.max_distance,
             rectangle: [0, 0, texture.width(), texture.height()],
         };
         Ok(pass.record(encoder, depth, &seen, None)?)
+    }
+
+    /// Whether the device can count what depth buffers show: those of OpenGL cannot.
+    pub fn can_record_need(&self) -> bool {
+        self.need.is_supported
     }
 
     /// Waits for the GPU, so that the next [`Self::update`] knows what the last picture showed: for headless runs whose
@@ -278,34 +381,30 @@ impl SunShadows {
     ///
     /// [`SunShadowsError::Need`] if the device was lost.
     pub fn wait_for_need(&mut self) -> Result<(), SunShadowsError> {
-        if let Some(pass) = &mut self.need.pass {
-            self.need.seen = pass.wait()?.or(self.need.seen.take());
-        }
+        let seen = self.need.pass.as_mut().map_or(Ok(None), NeedPass::wait)?;
+        seen.into_iter().for_each(|seen: Seen| self.fitter.see(seen));
         Ok(())
     }
 }
 
 impl Need {
-    /// The pass for depth buffers of so many samples; `None` where the device cannot count.
+    fn new(device: &wgpu::Device) -> Self {
+        let is_supported = supported(&device.limits(), device.adapter_info().backend).is_ok();
+        Self { is_supported, pass: None, samples: 0 }
+    }
+
+    /// The pass for depth buffers of so many samples.
     fn pass(
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         samples: u32,
-    ) -> Result<Option<&mut NeedPass>, NeedPassError> {
-        if self.is_unsupported {
-            return Ok(None);
-        }
-        if self.pass.is_none() || self.samples != samples {
-            match NeedPass::new(device, queue, samples) {
-                Ok(pass) => (self.pass, self.samples) = (Some(pass), samples),
-                Err(NeedPassError::Unsupported(_)) => {
-                    self.is_unsupported = true;
-                    return Ok(None);
-                }
-                Err(error) => return Err(error),
-            }
-        }
-        Ok(self.pass.as_mut())
+    ) -> Result<&mut NeedPass, NeedPassError> {
+        let made = match self.pass.take().filter(|_| self.samples == samples) {
+            Some(pass) => pass,
+            None => NeedPass::new(device, queue, samples)?,
+        };
+        self.samples = samples;
+        Ok(self.pass.insert(made))
     }
 }

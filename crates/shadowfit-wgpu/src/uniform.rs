@@ -6,9 +6,9 @@ use shadowfit::choice::MapOrder;
 use shadowfit::culling::CasterPlanes;
 use shadowfit::glam::{DVec3, Vec2, Vec3};
 use shadowfit::settings::Softness;
-use shadowfit::{CasterVolume, DepthConvention, LightFit};
+use shadowfit::{CasterVolume, DepthConvention, FittedMap, LightFit};
 
-use crate::{MAX_MAPS, MapFit, MapView, ShadowMapDescriptor};
+use crate::{MAX_MAPS, MapView, ShadowMapDescriptor};
 
 /// Pixels by which the pattern that turns discs moves from frame to frame, and frames after which it begins again
 /// (J. Jimenez, "Next generation post processing in Call of Duty: Advanced Warfare", 2014).
@@ -146,9 +146,9 @@ impl CasterUniform {
 impl MapUniform {
     /// The uniform for a map in layer 0, with positions relative to `origin` (world space, metres), read as `descriptor`
     /// says.
-    pub fn new(map: &MapFit, origin: DVec3, descriptor: &ShadowMapDescriptor) -> Self {
+    pub fn new(map: &FittedMap, origin: DVec3, descriptor: &ShadowMapDescriptor) -> Self {
         let ShadowMapDescriptor { filter, softness, .. } = descriptor;
-        let (fit, bias) = (map.fit.relative_to(origin), map.bias);
+        let (fit, bias, range) = (map.fit.relative_to(origin), map.bias, map.depth_range());
         let toward_light = if fit.depth == DepthConvention::Reversed { 1.0 } else { -1.0 };
         let [u, v] = if bias.receiver_plane == 0.0 { [Vec3::ZERO; 2] } else { depth_per_texel(&fit) };
         Self {
@@ -160,8 +160,8 @@ impl MapUniform {
             size: fit.resolution.as_vec2().to_array(),
             normal_offset: bias.normal_offset,
             receiver_plane: toward_light * bias.receiver_plane,
-            far: map.far,
-            blend_near: map.blend_near,
+            far: range.far as f32,
+            blend_near: range.blend_near as f32,
             wrap: map.wrap.as_vec2().to_array(),
             disc: softness.texels(*filter, &fit).to_array(),
             penumbra: (Vec2::splat(-toward_light * softness.tangent() * fit.depth_range) / fit.texel_size).to_array(),
@@ -183,7 +183,7 @@ fn depth_per_texel(fit: &LightFit) -> [Vec3; 2] {
 impl ReceiverUniform {
     /// The uniform for maps of one light, with positions relative to the view's origin. Those that no point reads by
     /// the descriptor's choice ([`MapOrder`]), and maps past [`MAX_MAPS`], are left out; without any, everything is lit.
-    pub fn new(maps: &[MapFit], view: &MapView, descriptor: &ShadowMapDescriptor) -> Self {
+    pub fn new(maps: &[FittedMap], view: &MapView, descriptor: &ShadowMapDescriptor) -> Self {
         let [fade_near, fade_far] = descriptor.fade;
         let Softness { floor, ceiling, .. } = descriptor.softness;
         let mut uniform = Self {

@@ -17,8 +17,29 @@
 //!   └──────────────────────────┘
 //! ```
 
-use crate::LightFit;
-use crate::settings::{MAX_MAPS, MapChoice};
+use crate::settings::{FilterKind, MAX_MAPS, MapChoice, Softness};
+use crate::{LightFit, Technique};
+
+/// How points read several maps: which of them, and how far around a point the filter looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapReading {
+    /// Which of the maps a point reads.
+    pub choice: MapChoice,
+    /// Texels over which a map that is read by coverage is blended into the next coarser one.
+    pub blend: f32,
+    /// Filter of the look-up.
+    pub filter: FilterKind,
+    /// Width of the filters that are soft.
+    pub softness: Softness,
+}
+
+impl Technique {
+    /// How points read the maps.
+    pub const fn reading(&self) -> MapReading {
+        let Self { blend, filter, softness, .. } = *self;
+        MapReading { choice: self.map_choice(), blend, filter, softness }
+    }
+}
 
 /// The maps that a point reads, by their indices.
 #[derive(Clone, Copy, Debug, PartialEq)]

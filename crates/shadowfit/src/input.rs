@@ -85,6 +85,15 @@ impl<'a> FitInput<'a> {
     }
 }
 
+#[cfg(feature = "alloc")]
+impl FitInput<'_> {
+    /// Boxes that fits work with: receivers or casters, whichever are more.
+    pub(crate) fn boxes(&self) -> usize {
+        let count = |boxes: Option<Boxes>| boxes.map_or(0, |boxes| boxes.boxes.len());
+        count(self.receivers).max(count(self.casters))
+    }
+}
+
 /// Storage that fits work in, owned by the caller, so that nothing allocates.
 #[derive(Debug)]
 pub struct Workspace<'a> {

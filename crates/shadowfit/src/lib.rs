@@ -34,8 +34,9 @@
 //!         let maps = fitter.fit(&input, &technique, &mut Workspace::new(&mut storage))?;
 //!
 //!         println!("frame {frame}: positions are relative to the eye, {}", camera.eye);
+//!         let volumes = maps.caster_volumes(&views, &technique)?;
 //!         for (index, map) in maps.iter().enumerate() {
-//!             let casters = map.caster_volume(&views, &technique)?.relative_to(boxes.origin);
+//!             let casters = volumes[index].relative_to(boxes.origin);
 //!             let drawn = objects.iter().filter(|object| casters.intersects_aabb(object.min, object.max)).count();
 //!             let size = map.fit.box_max - map.fit.box_min;
 //!             println!("map {index} is {} m wide and {} m high; its texels are {} m", size.x, size.y, map.fit.texel_size);
@@ -160,6 +161,8 @@ pub mod normal_cone;
 pub mod params;
 pub mod presets;
 pub mod scroll;
+#[cfg(feature = "alloc")]
+pub mod seen;
 pub mod settings;
 pub mod softness;
 pub mod spot;
@@ -189,6 +192,8 @@ mod number;
 mod outline;
 mod rectangle;
 mod rule;
+#[cfg(feature = "alloc")]
+mod shadow_fitter;
 mod splits;
 mod technique;
 mod texel_rect;
@@ -210,6 +215,10 @@ pub use light_fit::LightFit;
 pub use map_fitter::MapFitter;
 pub use maps::{FittedMap, FittedMaps};
 pub use presets::{PRESETS, Preset};
+#[cfg(feature = "alloc")]
+pub use seen::Seen;
+#[cfg(feature = "alloc")]
+pub use shadow_fitter::ShadowFitter;
 pub use spot::{SpotBias, SpotFit, SpotLight};
 pub use technique::Technique;
 

@@ -20,7 +20,7 @@ use crate::settings::{
     Stabilise,
 };
 use crate::splits::{Chooser, Splits};
-use crate::view::Range;
+use crate::view::{DEPTH_ROUNDING, Range};
 use crate::volume::Volume;
 use crate::windows::{self, HeldWindows};
 use crate::{Bias, FitError, FitInput, LightFit, Technique, ViewFrustum, Workspace, checks, grid};
@@ -373,10 +373,6 @@ fn widened(slice: Range) -> Range {
     let rounding = slice.far.abs() * DEPTH_ROUNDING;
     Range { near: slice.near - rounding, far: slice.far + rounding }
 }
-
-/// Rounding of a view depth, as a share of it: nine times 2⁻²⁴ of a point's distance, which in the
-/// corner of a wide view is up to seven times its depth.
-const DEPTH_ROUNDING: f32 = 64.0 / 16_777_216.0;
 
 /// Checks an input and a technique; gives the rules of its maps, and the light.
 fn check(input: &FitInput, technique: &Technique) -> Result<(Rules, Light), FitError> {

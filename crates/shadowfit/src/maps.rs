@@ -2,14 +2,12 @@
 
 use core::ops::Deref;
 
-use glam::DVec3;
+use glam::{DVec3, UVec2};
 
 use crate::choice::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth};
-use crate::culling::Sweep;
 use crate::grid::GridAnchor;
-use crate::rule::FitRule;
-use crate::settings::{FitKind, MAX_MAPS, MapChoice};
-use crate::{Bias, CasterVolume, FitError, LightFit, Technique, ViewFrustum};
+use crate::settings::{MAX_MAPS, MapChoice};
+use crate::{Bias, LightFit, Technique};
 
 /// One of several maps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -34,92 +32,32 @@ pub struct FittedMap {
     /// Where the map lies on the world's grid, if it does: what [`Scroll`](crate::scroll::Scroll) and
     /// [tiles](crate::scroll::tiles) are made from.
     pub anchor: Option<GridAnchor>,
+    /// Where the map's first texel is stored in its texture, in texels: texel t at (t + wrap) mod size, so that a map
+    /// that moves keeps what it still covers where it is ([`Scroll::wrap`](crate::scroll::Scroll::wrap)). Fits leave it
+    /// zero.
+    pub wrap: UVec2,
 }
 
 impl FittedMap {
-    /// Every caster that can cast a shadow through this map on what views see of it, relative to the
-    /// fit's origin: the [swept volume](CasterVolume::swept) of the map's depths, for the technique's
-    /// filter, as wide as it is in this map, and this map's bias. A map that no point reads has the empty volume.
-    ///
-    /// It is for maps that are drawn anew in each frame. A map that is kept, or
-    /// [scrolled](crate::scroll::Scroll), shows casters to later frames too: cull those by
-    /// [`CasterVolume::of_map`].
-    ///
-    /// By coverage a map serves whatever it holds of the views, at any depth, so each is swept over the whole
-    /// of the views; one that [is empty](LightFit::is_empty) is not read and needs no caster. By view depth a
-    /// point that its own map does not hold may be read from a later one. Fits hold their slices,
-    /// filter included, so that a map's casters are those of its own depths; where the technique's do
-    /// not ([`FitKind::XnaSample`](crate::settings::FitKind::XnaSample), or a border below the filter's reach), each map is swept from the
-    /// views' near end.
-    ///
-    /// ```
-    /// # use shadowfit::glam::{DVec2, DVec3, Vec3};
-    /// # use shadowfit::culling::cull;
-    /// # use shadowfit::settings::MAX_MAPS;
-    /// # use shadowfit::*;
-    /// # let camera = PerspectiveCamera {
-    /// #     eye: DVec3::new(0.0, 1.7, 5.0),
-    /// #     forward: Vec3::NEG_Z,
-    /// #     up: Vec3::Y,
-    /// #     fov_y: 0.8,
-    /// #     aspect: 16.0 / 9.0,
-    /// #     near: 0.1,
-    /// #     far: 200.0,
-    /// # };
-    /// # let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-    /// # let workspace = &mut Workspace::new(&mut storage);
-    /// let (views, technique) = ([camera.frustum()?], Technique::default());
-    /// let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
-    /// let maps = MapFitter::new().fit(&input, &technique, workspace)?;
-    /// let mut volumes = [CasterVolume::nowhere(views[0].origin); MAX_MAPS];
-    /// for (volume, map) in volumes.iter_mut().zip(maps.iter()) {
-    ///     *volume = map.caster_volume(&views, &technique)?;
-    /// }
-    ///
-    /// let boxes = [Aabb::new(Vec3::new(-2.0, 0.0, -12.0), Vec3::new(2.0, 6.0, -8.0))];
-    /// let mut masks = [0; 1]; // bit i: draw into map i
-    /// cull(&volumes[..maps.len()], DVec3::ZERO, &boxes, &mut masks);
-    /// # assert_ne!(masks[0], 0);
-    /// # Ok::<(), FitError>(())
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// As [`CasterVolume::swept`].
-    pub fn caster_volume(&self, views: &[ViewFrustum], technique: &Technique) -> Result<CasterVolume, FitError> {
-        let (is_read, near, far) = match technique.map_choice() {
-            MapChoice::Coverage => (!self.fit.is_empty, f32::MIN, f32::MAX),
-            MapChoice::ViewDepth if holds_slices(technique) => {
-                (self.covered_near < self.far, self.covered_near, self.far)
-            }
-            MapChoice::ViewDepth => (self.covered_near < self.far, f32::MIN, self.far),
-        };
-        if !is_read {
-            return Ok(CasterVolume::nowhere(self.fit.origin));
-        }
-        let reach = technique.reach_in(&self.fit);
-        let sweep = Sweep { near, far, reach, normal_offset: self.bias.normal_offset, ..Sweep::new(views) };
-        CasterVolume::swept(&self.fit, &sweep)
+    /// A single map for all view depths.
+    pub fn new(fit: LightFit, bias: Bias) -> Self {
+        Self { fit, bias, near: f32::MIN, far: f32::MAX, covered_near: f32::MIN, ..Self::default() }
     }
-}
 
-impl FittedMap {
+    /// This map as one of several that are read by view depth and end one after the other, in metres, without a blend
+    /// from the map in front of it.
+    #[must_use]
+    pub const fn ending_at(mut self, far: f32) -> Self {
+        (self.far, self.covered_near) = (far, f32::MAX);
+        self
+    }
+
     /// Where points read the map by view depth.
     pub fn depth_range(&self) -> DepthRange {
         // A map without a range behind all others is read where those in front leave points out.
         let far = if self.near == f32::MAX { f32::MAX } else { self.far };
         DepthRange { blend_near: f64::from(self.covered_near), far: f64::from(far) }
     }
-}
-
-/// Whether each map of a technique covers all of its slice with what the filter reads around it.
-fn holds_slices(technique: &Technique) -> bool {
-    let needed = f64::from(technique.reach() + technique.bias.normal_offset);
-    let holds = |kind: FitKind| {
-        let rule = FitRule::new(&technique.fit.with_kind(kind), technique.border(), true);
-        rule.is_ok_and(|rule| rule.leaves_border(needed))
-    };
-    (0..technique.count as usize).all(|map| holds(technique.kind_of(map)))
 }
 
 /// The maps of one frame, nearest first, windows finest first.

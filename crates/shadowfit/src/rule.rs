@@ -125,11 +125,6 @@ impl FitRule {
         self.covers != Covers::ExactCorners
     }
 
-    /// Whether its maps leave a number of texels free around what they cover.
-    pub(crate) fn leaves_border(&self, texels: f64) -> bool {
-        self.covers != Covers::ExactCorners && self.border >= texels
-    }
-
     /// This rule without a border, its near plane at the covered region. What it covers is no smaller than with one.
     pub(crate) const fn without_room(self) -> Self {
         Self { border: 0.0, depth: Depth::AtCovered, ..self }

@@ -194,6 +194,14 @@ impl Technique {
         if self.has_windows() { MapChoice::Coverage } else { self.choice }
     }
 
+    /// Whether fits go by what an earlier frame showed, where that is known.
+    pub const fn uses_seen(&self) -> bool {
+        match self.fit.kind {
+            FitKind::Windows => matches!(self.need, NeedSource::LastFrame),
+            _ => matches!(self.splits, SplitScheme::FromHistogram),
+        }
+    }
+
     /// Whether the maps are windows: all of them are or none.
     pub(crate) const fn has_windows(&self) -> bool {
         matches!(self.fit.kind, FitKind::Windows)

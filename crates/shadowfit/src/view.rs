@@ -16,6 +16,10 @@ use glam::{DVec3, Vec3};
 
 use crate::{Aabb, ViewFrustum, checks};
 
+/// Greatest rounding of a view depth in a shader, as a share of it: nine times 2⁻²⁴ of a point's distance, which in the
+/// corner of a wide view is up to seven times its depth.
+pub(crate) const DEPTH_ROUNDING: f32 = 64.0 / 16_777_216.0;
+
 /// A range of view depths, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Range {

@@ -1,14 +1,9 @@
 //! A town of blocks, a walk through it, and an engine of a few lines that draws it twice.
 
-use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::verify::{CoverageQuery, verify};
-use shadowfit::{
-    Aabb, Boxes, DepthConvention, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, Workspace,
-};
+use shadowfit::glam::{DVec3, Vec3};
+use shadowfit::{Aabb, Boxes, DepthConvention, FitInput, FittedMap, PerspectiveCamera, Technique};
 use shadowfit_render::{AdapterChoice, Gpu};
-use shadowfit_wgpu::{
-    Casters, KeptMaps, MapFit, PassContent, ShadowMapDescriptor, ShadowPass, SunFrame, WgslOptions, caster_wgsl,
-};
+use shadowfit_wgpu::{Casters, PassContent, ShadowPass, SunFrame, SunShadows, WgslOptions, caster_wgsl};
 use wgpu::util::DeviceExt;
 
 /// Where the town lies, far from the world's origin.
@@ -132,10 +127,8 @@ pub(super) struct Drawn {
 /// Two sets of the same maps.
 pub(super) struct Engine {
     gpu: Gpu,
-    pub(super) kept: KeptMaps,
-    pub(super) anew: KeptMaps,
-    fitter: MapFitter,
-    fitted: FittedMaps,
+    pub(super) kept: SunShadows,
+    pub(super) anew: SunShadows,
     pipeline: wgpu::RenderPipeline,
     cube: wgpu::Buffer,
 }
@@ -143,8 +136,7 @@ pub(super) struct Engine {
 impl Engine {
     pub(super) fn new(technique: &Technique) -> Self {
         let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
-        let descriptor = ShadowMapDescriptor::from(technique);
-        let maps = || KeptMaps::new(&gpu.device, &descriptor).expect("maps");
+        let maps = || SunShadows::new(&gpu.device, &gpu.queue, technique).expect("maps");
         let (kept, anew) = (maps(), maps());
         let pipeline = pipeline(&gpu, &kept);
         let cube = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -152,12 +144,11 @@ impl Engine {
             contents: bytemuck::cast_slice(&cube()),
             usage: wgpu::BufferUsages::VERTEX,
         });
-        let (fitter, fitted) = (MapFitter::new(), FittedMaps::default());
-        Self { gpu, kept, anew, fitter, fitted, pipeline, cube }
+        Self { gpu, kept, anew, pipeline, cube }
     }
 
     /// Draws a frame with both.
-    pub(super) fn draw(&mut self, technique: &Technique, town: &Town, walk: &Walk) -> [Drawn; 2] {
+    pub(super) fn draw(&mut self, town: &Town, walk: &Walk) -> [Drawn; 2] {
         let views = [walk.camera().frustum().expect("a camera")];
         // Boxes relative to the moving eye, as engines have them: they round anew in each frame.
         let boxes = town.boxes(walk.eye);
@@ -165,10 +156,7 @@ impl Engine {
         let casters = Casters { boxes, moves: &town.moves };
         let frame = SunFrame::new(&views, walk.direction, boxes, casters);
         let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, walk.direction) };
-        let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.boxes.len(), 3)];
-        let workspace = &mut Workspace::new(&mut storage);
-        self.fitter.fit_into(&input, technique, workspace, &mut self.fitted).expect("maps");
-        let maps: Vec<MapFit> = self.fitted.iter().map(MapFit::from).collect();
+        let maps = *self.kept.fit(&input).expect("maps");
         let centres: Vec<[Vec3; 2]> =
             town.blocks.iter().map(|block| [(block.centre - walk.eye).as_vec3(), block.half]).collect();
         let instances = self.gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -178,7 +166,7 @@ impl Engine {
         });
         let Self { gpu, kept, anew, pipeline, cube, .. } = self;
         [kept, anew].map(|target| {
-            target.update(&gpu.queue, &frame, &maps).expect("a good frame");
+            target.prepare(&gpu.queue, &frame, &maps).expect("a good frame");
             let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             target.render(&mut encoder, 0, |pass, piece| {
                 pass.set_pipeline(pipeline);
@@ -203,24 +191,18 @@ impl Engine {
     }
 
     /// Every map that is read holds what it must, those that wait too.
-    pub(super) fn assert_proven(&self, technique: &Technique, town: &Town, walk: &Walk) {
+    pub(super) fn assert_proven(&self, town: &Town, walk: &Walk) {
         let views = [walk.camera().frustum().expect("a camera")];
         let boxes = town.boxes(walk.eye);
         let boxes = Boxes { origin: walk.eye, boxes: &boxes };
-        let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, walk.direction) };
-        let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.boxes.len(), 3)];
-        for (fitted, read) in self.fitted.iter().zip(self.kept.maps()) {
-            let map = shadowfit::FittedMap { fit: read.fit, ..*fitted };
-            let query = CoverageQuery::of_map(&map, technique, technique.filter.into());
-            let certificate =
-                verify(&input, &map.fit, &query, &mut Workspace::new(&mut storage)).expect("a good frame");
-            assert!(certificate.is_proven(), "{certificate:?}");
-        }
+        let frame = SunFrame::new(&views, walk.direction, boxes, Casters { boxes, moves: &town.moves });
+        let certificate = self.kept.verify(&frame).expect("a good frame");
+        assert!(certificate.is_proven(), "{certificate:?}");
     }
 }
 
 /// The maps of a frame as they are looked up, without their wrap.
-fn unwrapped(gpu: &Gpu, maps: &KeptMaps) -> Vec<Vec<f32>> {
+fn unwrapped(gpu: &Gpu, maps: &SunShadows) -> Vec<Vec<f32>> {
     let texture = maps.map().view().texture();
     let size = texture.size();
     let bytes = u64::from(size.width * size.height * size.depth_or_array_layers) * 4;
@@ -246,7 +228,7 @@ fn unwrapped(gpu: &Gpu, maps: &KeptMaps) -> Vec<Vec<f32>> {
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
     let mapped = buffer.slice(..).get_mapped_range().expect("the maps are mapped");
     let depths: Vec<f32> = bytemuck::pod_collect_to_vec(&mapped);
-    let layer = |(index, map): (usize, &MapFit)| {
+    let layer = |(index, map): (usize, &FittedMap)| {
         let used = map.fit.resolution;
         let texels = (0..used.y).flat_map(move |y| (0..used.x).map(move |x| (x, y)));
         let stored = |(x, y): (u32, u32)| {
@@ -258,7 +240,7 @@ fn unwrapped(gpu: &Gpu, maps: &KeptMaps) -> Vec<Vec<f32>> {
     maps.maps().iter().enumerate().map(layer).collect()
 }
 
-fn pipeline(gpu: &Gpu, maps: &KeptMaps) -> wgpu::RenderPipeline {
+fn pipeline(gpu: &Gpu, maps: &SunShadows) -> wgpu::RenderPipeline {
     let map = maps.map();
     assert_ne!(map.descriptor().depth, DepthConvention::NegativeOneToOne);
     let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {

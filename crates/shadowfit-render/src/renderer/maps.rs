@@ -23,11 +23,11 @@ impl Renderer {
         let (eye, forward) = frame.chooser();
         let origin = frame.camera.eye;
         if frame.maps_stay {
-            return self.maps.look_from(&gpu.queue, &MapView { origin, ..MapView::from_eye(eye, forward) });
+            return self.sun.look_from(&gpu.queue, &MapView { origin, ..MapView::from_eye(eye, forward) });
         }
         // What an invalid camera sees is unknown: maps get all casters that they can store.
         let seen: Option<ViewFrustum> = frame.camera.frustum().ok();
-        self.maps.culling = if seen.is_some() { frame.culling } else { Culling::WholeMap };
+        self.sun.set_culling(if seen.is_some() { frame.culling } else { Culling::WholeMap });
         let casters: Casters<'_> = scene.casters();
         let sun = SunFrame {
             eye,
@@ -35,16 +35,16 @@ impl Renderer {
             receivers: None,
             ..SunFrame::new(seen.as_slice(), frame.direction, casters.boxes, casters)
         };
-        self.maps.update(&gpu.queue, &sun.with_origin(origin), frame.maps)
+        self.sun.prepare(&gpu.queue, &sun.with_origin(origin), frame.maps)
     }
 
     pub(super) fn shadow_passes(&self, encoder: &mut wgpu::CommandEncoder, scene: &GpuScene, plan: &Plan) {
         let Some(shadow) = &plan.shadow else { return };
         let mut pieces = shadow.iter();
-        for pass in self.maps.passes() {
+        for pass in self.sun.passes() {
             let query = self.timer.begin(Pass::Shadow(pass.map()), encoder);
             let timestamps = query.as_ref().and_then(GpuProfilerQuery::render_pass_timestamp_writes);
-            let mut opened = self.maps.begin_pass(encoder, &pass, CASTER_GROUP, timestamps);
+            let mut opened = self.sun.begin_pass(encoder, &pass, CASTER_GROUP, timestamps);
             for (piece, draws) in pass.pieces().zip(&mut pieces) {
                 self.draw_piece(&mut opened, scene, &piece, draws);
             }

@@ -19,7 +19,7 @@ impl Renderer {
     /// Makes what the scene's parts need to be drawn that is not there yet.
     pub(super) fn prepare_parts(&mut self, gpu: &Gpu, scene: &GpuScene, drawn: Drawn) {
         let layouts = (&self.layouts, &self.judged.layout);
-        self.pipelines.of_map.add(&gpu.device, layouts, self.maps.map(), (drawn, &scene.parts));
+        self.pipelines.of_map.add(&gpu.device, layouts, self.sun.map(), (drawn, &scene.parts));
     }
 
     pub(super) fn scene_pass(

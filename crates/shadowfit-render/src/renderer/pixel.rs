@@ -38,7 +38,7 @@ impl Renderer {
             ..Frame::new(frame.camera, frame.direction, &[], frame.atmosphere)
         };
         let plan = self.prepare(gpu, scene, (&frame, Drawn::Probe), targets.size)?;
-        let block = query.texels.filter(|block| block.map < self.maps.maps().len());
+        let block = query.texels.filter(|block| block.map < self.sun.maps().len());
         let read = PixelRead::new(&gpu.device, *query, block.is_some());
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.probe_pass(&mut encoder, scene, &plan, &targets, false);
@@ -59,7 +59,7 @@ impl Renderer {
         let texture = bindings::plain_texture(&gpu.device, "texels", [side; 2], BLOCK_FORMAT, usage);
         let view = texture.create_view(&Default::default());
         let uniform = bindings::uniform_buffer::<BlockUniform>(&gpu.device, "texels");
-        let last = self.maps.maps()[block.map].fit.resolution.as_ivec2() - 1;
+        let last = self.sun.maps()[block.map].fit.resolution.as_ivec2() - 1;
         let reach = (side / 2).cast_signed();
         let first = block.texel.map(|texel| texel.saturating_sub(reach));
         let data = BlockUniform { first, last: last.to_array(), map: block.map as u32, ..BlockUniform::default() };
@@ -71,9 +71,9 @@ impl Renderer {
             color_attachments: &[Some(cleared(&view, None, wgpu::Color::TRANSPARENT))],
             ..Default::default()
         });
-        pass.set_pipeline(self.pipelines.of_map.block(&gpu.device, &self.layouts, self.maps.map()));
+        pass.set_pipeline(self.pipelines.of_map.block(&gpu.device, &self.layouts, self.sun.map()));
         pass.set_bind_group(0, &group, &[]);
-        pass.set_bind_group(1, self.maps.map().receiver_group(), &[]);
+        pass.set_bind_group(1, self.sun.map().receiver_group(), &[]);
         pass.draw(0..3, 0..1);
         drop(pass);
         copy(encoder, (&texture, [0, 0], [side; 2]), (buffer, u64::from(ROW)));

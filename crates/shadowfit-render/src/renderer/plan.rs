@@ -40,7 +40,7 @@ impl Renderer {
         scene.begin_frame(frame.camera.eye);
         let shadow = (!frame.maps_stay).then(|| self.plan_maps(scene));
         if frame.overlay == Overlay::Casters {
-            let masks = self.maps.holders(&scene.casters());
+            let masks = self.sun.holders(&scene.casters());
             scene.set_holders(&masks);
         }
         let part = frame.scissor.map(|scissor| part(scissor, size));
@@ -68,7 +68,7 @@ impl Renderer {
     fn plan_maps(&mut self, scene: &mut GpuScene) -> Vec<Vec<CasterDraw>> {
         let mut shadow = Vec::new();
         let mut drawn = [MapStatistics::default(); MAX_MAPS];
-        for piece in self.maps.passes().flat_map(|pass| pass.pieces()) {
+        for piece in self.sun.passes().flat_map(|pass| pass.pieces()) {
             let mut draws: Vec<CasterDraw> = Vec::new();
             scene.caster_draws(piece.casters, &mut draws);
             let map = &mut drawn[piece.map];
@@ -78,7 +78,7 @@ impl Renderer {
                 draws.iter().map(|draw| (draw.indices.len() / 3 * draw.instances.len()) as u64).sum::<u64>();
             shadow.push(draws);
         }
-        for update in self.maps.updates() {
+        for update in self.sun.updates() {
             drawn[update.map].texels += update.rect.area();
         }
         self.drawn = drawn;

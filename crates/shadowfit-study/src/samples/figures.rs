@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, bail};
 use glam::{DMat4, DVec2, DVec3};
-use shadowfit::{PerspectiveCamera, Technique};
+use shadowfit::{PerspectiveCamera, ShadowFitter, Technique};
 use shadowfit_render::samples::{LightImage, LightPlace, SampleFrame, SampleLight, ShadowTest};
 use shadowfit_render::{Gpu, Renderer};
 use shadowfit_truth::{
@@ -11,7 +11,7 @@ use shadowfit_truth::{
 use shadowfit_wgpu::ShadowMapDescriptor;
 
 use super::{Sample, SampleDrawer, SampleDrawing, SampleValues};
-use crate::{Evaluator, Judging, PreparedScene, SharedTruth, TechniqueFitter, View};
+use crate::{Evaluator, Judging, PreparedScene, SharedTruth, View};
 
 /// Shadow rays start this far above a surface, in units of the sample.
 const RAY_OFFSET: f64 = 0.005;
@@ -177,7 +177,7 @@ impl Bench<'_> {
         let judging = Judging { size: self.size, ray_offset: RAY_OFFSET, crawl: false, ..Judging::default() };
         let mut evaluator = Evaluator::new(renderer, judging);
         let view = View { camera: *self.camera, direction: self.sample.direction, is_first: true };
-        let maps = TechniqueFitter::new(*technique).fit_alone(scene, &view)?;
+        let maps = scene.fit_alone(&mut ShadowFitter::new(technique), &view)?;
         evaluator.judge(&self.gpu, scene, &view, &maps, &mut SharedTruth::default())
     }
 

@@ -11,9 +11,9 @@
 
 use glam::{DVec2, DVec3};
 use shadowfit::bias::MIN_COSINE;
-use shadowfit::{DepthConvention, LightFit};
+use shadowfit::{DepthConvention, FittedMap, LightFit};
 use shadowfit_truth::{MeasuredMap, Tracer, TruthPoint};
-use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
+use shadowfit_wgpu::ShadowMapDescriptor;
 
 use super::StoredTexels;
 
@@ -68,7 +68,7 @@ impl Tap {
 impl<'a> LookUp<'a> {
     /// `None` where the bias makes no sense on the point's plane.
     pub(super) fn new(
-        map: &'a MapFit,
+        map: &'a FittedMap,
         measured: &MeasuredMap,
         descriptor: &ShadowMapDescriptor,
         point: &TruthPoint,

@@ -3,7 +3,7 @@
 
 use glam::dcamera::rh::{proj::directx::orthographic, view::look_to_mat4};
 use shadowfit::settings::{FilterKind, MapChoice};
-use shadowfit::{Bias, DepthConvention, LightFit, PerspectiveCamera};
+use shadowfit::{Bias, DepthConvention, FittedMap, LightFit, PerspectiveCamera};
 use shadowfit_scene::builtin::default_scene;
 
 use super::*;
@@ -22,7 +22,7 @@ struct Court {
     direction: Vec3,
     judging: Judging,
     technique: Technique,
-    maps: Vec<MapFit>,
+    maps: Vec<FittedMap>,
     descriptor: ShadowMapDescriptor,
     factor: Option<f32>,
     stored: Option<StoredTexels>,
@@ -48,12 +48,12 @@ fn block(from: [f32; 2], to: [f32; 2], height: f32) -> Vec<[Vec3; 3]> {
 }
 
 /// A square map of `texels` a side around `centre`, whose near plane lies `before` metres before it.
-fn map(centre: DVec3, direction: Vec3, width: f64, before: f64, texels: u32) -> MapFit {
+fn map(centre: DVec3, direction: Vec3, width: f64, before: f64, texels: u32) -> FittedMap {
     let (travel, half) = (direction.as_dvec3(), width * 0.5);
     let light_from_world = look_to_mat4(centre - travel * before, travel, DVec3::NEG_Z);
     let clip_from_world = orthographic(-half, half, -half, half, 0.0, RANGE) * light_from_world;
     let fit = LightFit::from_clip_from_world(&clip_from_world, direction, glam::UVec2::splat(texels), centre);
-    MapFit::new(fit.expect("an orthographic map"), constant(1e-4))
+    FittedMap::new(fit.expect("an orthographic map"), constant(1e-4))
 }
 
 /// One map of decimetre texels that holds everything up to 10 m over the floor, and one comparison.
@@ -345,7 +345,7 @@ fn the_map_by_coverage_is_the_finest_and_the_reason_says_where_the_finer_one_end
     let around = |x: f64, width: f64, texels: u32| map(DVec3::X * x, Vec3::NEG_Y, width, 10.0, texels);
     let below = map(DVec3::NEG_Y * 12.0, Vec3::NEG_Y, 1.0, 10.0, 100);
     let coarse = around(0.0, 20.0, 100);
-    let reason = |maps: Vec<MapFit>, blend: f32| {
+    let reason = |maps: Vec<FittedMap>, blend: f32| {
         let court = Court::default();
         Court { maps, descriptor: ShadowMapDescriptor { blend, ..court.descriptor }, ..court }.why().map_reason
     };
@@ -393,18 +393,21 @@ fn the_map_by_coverage_is_the_finest_and_the_reason_says_where_the_finer_one_end
 
 #[test]
 fn the_map_by_view_depth_is_that_of_its_range() {
-    let wide =
-        |far: f32, blend_near: f32| MapFit { far, blend_near, ..map(DVec3::ZERO, Vec3::NEG_Y, 300.0, 10.0, 1000) };
+    let wide = |far: f32, covered_near: f32| FittedMap {
+        far,
+        covered_near,
+        ..map(DVec3::ZERO, Vec3::NEG_Y, 300.0, 10.0, 1000)
+    };
     let slices = [wide(10.0, f32::MAX), wide(28.0, 10.0), wide(77.0, 28.0), wide(f32::MAX, 77.0)];
-    let reason = |depth: f64, maps: &[MapFit]| {
+    let reason = |depth: f64, maps: &[FittedMap]| {
         let court = Court { eye: DVec3::new(0.0, 0.6, 0.8) * depth, maps: maps.to_vec(), ..Court::default() };
         let descriptor = ShadowMapDescriptor { choice: MapChoice::ViewDepth, ..court.descriptor };
         Court { descriptor, ..court }.why().map_reason
     };
     let mut narrow = slices;
-    narrow[2] = MapFit { far: 77.0, ..map(DVec3::X * 10.0, Vec3::NEG_Y, 4.0, 10.0, 100) };
+    narrow[2] = FittedMap { far: 77.0, ..map(DVec3::X * 10.0, Vec3::NEG_Y, 4.0, 10.0, 100) };
     let mut overlapping = slices;
-    overlapping[3].blend_near = 37.0;
+    overlapping[3].covered_near = 37.0;
     for (depth, maps, text) in [
         (4.0, &slices[..], "map 1 of 4: view depth 4 m lies before 10 m, where it ends"),
         (41.0, &slices, "map 3 of 4: view depth 41 m lies between 28 m and 77 m"),
@@ -468,7 +471,8 @@ fn the_sky_and_pixels_beyond_the_picture_have_no_reason() {
 fn gpu_classes_are_those_of_the_judge_on_a_picture_of_the_default_scene() {
     use shadowfit_render::{AdapterChoice, Gpu, Renderer};
 
-    use crate::{Evaluator, PreparedScene, SharedTruth, TechniqueFitter};
+    use crate::{Evaluator, PreparedScene, SharedTruth};
+    use shadowfit::ShadowFitter;
 
     let size = [160, 90];
     let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
@@ -489,7 +493,7 @@ fn gpu_classes_are_those_of_the_judge_on_a_picture_of_the_default_scene() {
         let view = View { camera, direction: Vec3::new(0.4, -0.7, 0.3).normalize(), is_first: true };
         let judging = Judging { size, ..Judging::default() };
         let mut evaluator = Evaluator::new(renderer, judging);
-        let maps = TechniqueFitter::new(technique).fit_alone(&scene, &view).expect("maps");
+        let maps = scene.fit_alone(&mut ShadowFitter::new(&technique), &view).expect("maps");
         let rays = scene.shared_rays();
         let (job, _) = evaluator.judge_job(&gpu, &mut scene, &view, &maps, rays.clone()).expect("a picture");
         let truth = &mut SharedTruth::default();

@@ -8,7 +8,6 @@ use egui::{
 use shadowfit::figures::Figures;
 use shadowfit::tool::ViewMode;
 use shadowfit_render::RenderTarget;
-use shadowfit_study::Seen;
 
 use super::paint::Painter;
 use super::{Asked, Shows};
@@ -216,7 +215,7 @@ fn over(ui: &Ui, stage: &Stage, figures: &Figures, rect: Rect) {
     let note = match view.mode {
         ViewMode::Final if !view.shadows => "Shadows are off",
         // Maps of other techniques are laid without counting what the picture shows.
-        ViewMode::Need if !Seen::is_used_by(&stage.settings.technique) => "This technique does not look at the need",
+        ViewMode::Need if !stage.settings.technique.uses_seen() => "This technique does not look at the need",
         _ => return,
     };
     label(ui, rect.left_top() + Vec2::splat(MARGIN), Align2::LEFT_TOP, note);

@@ -1,11 +1,10 @@
 //! All maps side by side over the whole picture, with what was kept in them, what was drawn anew, and what moves.
 
 use glam::Vec4;
-use shadowfit::Aabb;
 use shadowfit::figures::linear_color;
+use shadowfit::{Aabb, FittedMap};
 use shadowfit_egui::MAP_UPDATE_COLORS;
 use shadowfit_render::{Inset, MapUpdate, Quad, UpdateContent};
-use shadowfit_wgpu::MapFit;
 
 use super::inset::{depths, tint};
 
@@ -32,7 +31,7 @@ const GROUND: Vec4 = Vec4::new(0.006, 0.007, 0.009, 1.0);
 
 impl Boards {
     /// As large as the picture of `size` pixels allows.
-    pub(super) fn new(maps: &[MapFit], bounds: &Aabb, depth_range: Option<[f32; 2]>, size: [u32; 2]) -> Self {
+    pub(super) fn new(maps: &[FittedMap], bounds: &Aabb, depth_range: Option<[f32; 2]>, size: [u32; 2]) -> Self {
         let [width, height] = size.map(|side| side as f32);
         let gap = (GAP * height).round();
         let free = [width, height - HEAD * height];

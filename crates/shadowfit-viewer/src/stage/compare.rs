@@ -59,7 +59,7 @@ impl Stage {
             Ok(mut side) => {
                 side.live.waits = self.side.live.waits;
                 if self.reads_depths {
-                    side.read_depths(&self.gpu, self.samples);
+                    side.follow();
                 }
                 self.other = Some(Other { technique, side });
             }

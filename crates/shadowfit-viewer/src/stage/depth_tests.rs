@@ -6,7 +6,6 @@ use shadowfit::settings::{FitKind, NeedSource};
 use shadowfit_render::RenderTarget;
 use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_scene::builtin::default_scene;
-use shadowfit_study::Seen;
 
 use super::*;
 
@@ -19,8 +18,9 @@ fn shares(grid: &NeedGrid<'_>) -> Vec<f64> {
 
 /// What the fitter is told: whether a picture said so, and the shares.
 fn told(stage: &Stage) -> (bool, Vec<f64>) {
-    let seen = stage.side.fitter.seen().expect("windows are told");
-    (matches!(seen, Seen::Picture(_)), shares(&seen.need().expect("a grid")))
+    let seen = stage.side.sun().fitter().seen().expect("windows are told");
+    // Rays are far fewer than a picture's points.
+    (seen.need().counts.iter().sum::<u32>() > 2500, shares(&seen.need()))
 }
 
 fn draw(stage: &mut Stage, target: &RenderTarget) {

@@ -5,9 +5,8 @@ use std::ops::Range;
 use glam::Vec3;
 use shadowfit::figures::linear_map_tints;
 use shadowfit::settings::MAX_MAPS;
-use shadowfit::{Aabb, LightFit};
+use shadowfit::{Aabb, FittedMap, LightFit};
 use shadowfit_render::Inset;
-use shadowfit_wgpu::MapFit;
 
 /// Width of a picture, in pixels, from which on insets have their full size; smaller pictures have smaller ones.
 const FULL_WIDTH: f32 = 960.0;
@@ -25,7 +24,7 @@ const LINES: u8 = 9;
 /// `depth_range` are the stored depths shown as black and white; those between which the scene lies if `None`.
 pub(super) fn insets(
     shown: Range<usize>,
-    maps: &[MapFit],
+    maps: &[FittedMap],
     bounds: &Aabb,
     depth_range: Option<[f32; 2]>,
     (left, size): (u32, [u32; 2]),
@@ -38,7 +37,7 @@ pub(super) fn insets(
     let height = (SIZE[1] * scale).round().min(room.floor()).max(1.0);
     let width = (height * SIZE[0] / SIZE[1]).round();
     let inset = |(place, index): (usize, usize)| {
-        let map: &MapFit = maps.get(index)?;
+        let map: &FittedMap = maps.get(index)?;
         let top = picture[1] - (place + 1) as f32 * (height + margin);
         let depth_range = depth_range.or_else(|| depths(&map.fit, bounds)).unwrap_or([0.0, 1.0]);
         Some(Inset {
@@ -83,7 +82,7 @@ mod tests {
 
     #[test]
     fn any_number_of_maps_fits_into_the_picture_without_touching() {
-        let maps = vec![MapFit::from(&FittedMap::default()); MAX_MAPS];
+        let maps = vec![FittedMap::default(); MAX_MAPS];
         let bounds = Aabb::new(Vec3::ZERO, Vec3::ONE);
         for count in 1..=MAX_MAPS {
             for size in [[960, 540], [320, 180], [1280, 300]] {

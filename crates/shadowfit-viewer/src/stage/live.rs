@@ -4,11 +4,10 @@
 use anyhow::{Result, anyhow};
 use shadowfit::figures::JudgedFigures;
 use shadowfit::tool::ErrorMarks;
-use shadowfit::{PerspectiveCamera, Technique};
+use shadowfit::{FittedMap, PerspectiveCamera, Technique};
 use shadowfit_render::{Gpu, JudgedPicture, ProbeTargets, classes_texture};
 use shadowfit_study::{BackgroundJudge, Evaluator, LiveTruth, View};
 use shadowfit_truth::PictureFigures;
-use shadowfit_wgpu::MapFit;
 
 use super::side::Shot;
 
@@ -139,7 +138,7 @@ impl Live {
         evaluator: &mut Evaluator,
         shot: &mut Shot<'_>,
         view: &View,
-        maps: &[MapFit],
+        maps: &[FittedMap],
         size: [u32; 2],
     ) -> Result<bool> {
         let key = Key {
@@ -188,7 +187,7 @@ impl Live {
         evaluator: &mut Evaluator,
         shot: &mut Shot<'_>,
         (view, key): (&View, Key),
-        maps: &[MapFit],
+        maps: &[FittedMap],
         size: [u32; 2],
     ) -> Result<bool> {
         let live = match self.gpu.take() {
@@ -224,7 +223,7 @@ impl Live {
         evaluator: &mut Evaluator,
         shot: &mut Shot<'_>,
         (view, key): (&View, Key),
-        maps: &[MapFit],
+        maps: &[FittedMap],
         size: [u32; 2],
     ) -> Result<bool> {
         let Some(rays) = shot.scene.ready_rays() else { return Ok(false) };

@@ -129,7 +129,7 @@ fn gpu_maps_that_are_drawn_for_the_judge_are_not_shown_as_kept() {
     let (mut stage, target) = stage(true);
     stage.settings.view.mode = ViewMode::Updates;
     draw(&mut stage, &target);
-    let drawn = stage.side.evaluator.renderer.map_updates();
+    let drawn = stage.side.evaluator.renderer.sun().updates();
     let maps = stage.settings.technique.count as usize;
     assert_eq!(drawn.iter().filter(|update| update.content == UpdateContent::Static).count(), maps, "{drawn:?}");
 }

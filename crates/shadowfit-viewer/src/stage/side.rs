@@ -2,11 +2,10 @@
 
 use shadowfit::settings::{CasterPolicy, MapOverride};
 use shadowfit::tool::{ErrorMarks, InsetMaps, Settings, ViewMode};
-use shadowfit::{DepthConvention, FitError, LightFit, PerspectiveCamera, Technique};
+use shadowfit::{DepthConvention, FittedMap, LightFit, PerspectiveCamera, Seen, Technique};
 use shadowfit_render::{Culling, Gpu, Marks, Overlay, RenderTarget, Renderer, Statistics};
-use shadowfit_study::{Evaluator, FrameOptions, Judging, PreparedScene, RayUse, Seen, TechniqueFitter, View};
-use shadowfit_wgpu::need::{NeedPass, NeedView};
-use shadowfit_wgpu::{MapFit, ShadowMapDescriptor, ShadowMapError};
+use shadowfit_study::{Evaluator, FrameOptions, Judging, PreparedScene, RayUse, View};
+use shadowfit_wgpu::{ShadowMapDescriptor, ShadowMapError, SunShadows, SunShadowsError};
 
 use super::live::Live;
 use super::{boards, inset, need_view};
@@ -16,16 +15,15 @@ use crate::outside;
 /// A technique's maps, and what draws and judges them.
 #[derive(Debug)]
 pub(super) struct Side {
-    pub(super) fitter: TechniqueFitter,
     pub(super) evaluator: Evaluator,
     /// What was fitted last; fitted anew unless it is frozen.
     pub(super) fitted: Option<Fitted>,
     pub(super) statistics: Statistics,
     pub(super) live: Live,
-    /// Reads what the last pictures showed; rays find it where there is none.
-    need_pass: Option<NeedPass>,
-    /// The view that was drawn last, until its picture is read.
-    unread: Option<View>,
+    /// Whether pictures follow each other in a window: nothing waits for rays then.
+    follows: bool,
+    /// Camera of the picture that was drawn last, until its depth buffer is read.
+    unread: Option<PerspectiveCamera>,
     /// Why the settings cannot be shown as they are.
     pub(super) problem: Option<String>,
 }
@@ -73,33 +71,43 @@ impl Side {
     pub(super) fn new(gpu: &Gpu, technique: &Technique, samples: u32) -> Result<Self, ShadowMapError> {
         let renderer = Renderer::new(gpu, &ShadowMapDescriptor::from(technique), samples)?;
         Ok(Self {
-            fitter: TechniqueFitter::new(*technique),
             evaluator: Evaluator::new(renderer, Judging { crawl: false, ..Judging::default() }),
             fitted: None,
             statistics: Statistics::default(),
             live: Live::new(gpu),
-            need_pass: None,
+            follows: false,
             unread: None,
             problem: None,
         })
     }
 
-    /// From now on, what the last picture showed comes from its depth buffer, of `samples` per pixel, and not from
-    /// rays: for pictures that follow each other in a window. It comes a frame or two late, whenever the GPU is done
-    /// with it, so that pictures need not be the same each time. Rays go on where the GPU cannot do it, and find what a
-    /// view shows that follows no other. What stands still is kept in the shadow maps, too.
-    pub(super) fn read_depths(&mut self, gpu: &Gpu, samples: u32) {
-        self.evaluator.renderer.set_keeps(true);
-        self.need_pass = NeedPass::new(&gpu.device, &gpu.queue, samples).ok();
-        self.fitter.is_told = self.need_pass.is_some();
-        self.fitter.rays = RayUse::IfReady;
+    /// From now on pictures follow each other in a window: what the last one showed comes from its depth buffer, and not
+    /// from rays. It comes a frame or two late, whenever the GPU is done with it, so that pictures need not be the same
+    /// each time. Rays go on where the GPU cannot do it, and find what a view shows that follows no other. What stands
+    /// still is kept in the shadow maps, too.
+    pub(super) fn follow(&mut self) {
+        self.sun_mut().set_keeps(true);
+        self.follows = true;
+    }
+
+    /// The side's sun.
+    pub(super) fn sun(&self) -> &SunShadows {
+        self.evaluator.renderer.sun()
+    }
+
+    fn sun_mut(&mut self) -> &mut SunShadows {
+        self.evaluator.renderer.sun_mut()
+    }
+
+    /// Whether what pictures show is read from their depth buffers.
+    fn reads_depths(&self) -> bool {
+        self.follows && self.sun().can_record_need()
     }
 
     /// Forgets all frames: the scene is another one.
     pub(super) fn scene_changed(&mut self) {
-        self.evaluator.renderer.invalidate_maps();
+        self.sun_mut().reset();
         self.fitted = None;
-        self.forget_pictures();
         self.live.forget();
     }
 
@@ -123,24 +131,30 @@ impl Side {
         fitted
     }
 
-    fn fit_now(&mut self, technique: &Technique, shot: &Shot<'_>) -> Result<Fitted, FitError> {
+    fn fit_now(&mut self, technique: &Technique, shot: &Shot<'_>) -> Result<Fitted, SunShadowsError> {
         let view = shot.view();
-        if self.fitter.rays != RayUse::IfReady {
-            self.fitter.rays = if shot.plays { RayUse::Late } else { RayUse::Wait };
-        }
         let goes_on = self.fitted.as_ref().and_then(|fitted| fitted.camera).is_some_and(|last| {
             let same_lens = PerspectiveCamera { eye: last.eye, forward: last.forward, ..view.camera } == last;
-            same_lens && self.fitter.technique() == technique
+            same_lens && self.sun().technique() == technique
         });
-        if goes_on {
-            self.fitter.fit(shot.scene, &view)?;
-        } else {
-            self.fitter.set_technique(technique);
-            self.forget_pictures();
+        if !goes_on {
+            self.sun_mut().cut();
+            self.sun_mut().fitter_mut().set_technique(technique);
             self.evaluator.forget_view();
-            self.fitter.fit_alone(shot.scene, &view)?;
+            let rays = if self.follows { RayUse::IfReady } else { RayUse::Wait };
+            shot.scene.see(self.sun_mut().fitter_mut(), &view, rays)?;
         }
-        Ok(Fitted::new(view.camera, technique, self.fitter.fitted()))
+        let views = [view.camera.frustum()?];
+        let fitted = *self.sun_mut().fit(&shot.scene.input(technique, &views, view.direction))?;
+        if goes_on && !self.reads_depths() {
+            let rays = match (self.follows, shot.plays) {
+                (true, _) => RayUse::IfReady,
+                (false, true) => RayUse::Late,
+                (false, false) => RayUse::Wait,
+            };
+            shot.scene.see(self.sun_mut().fitter_mut(), &view, rays)?;
+        }
+        Ok(Fitted::new(view.camera, technique, &fitted))
     }
 
     /// Whether the shadow map as it is can take fitted maps.
@@ -174,53 +188,33 @@ impl Side {
         technique
     }
 
-    /// Tells the fitter what has come back of the last pictures.
-    fn take_last_picture(&mut self) {
-        let Some(pass) = &mut self.need_pass else { return };
-        match pass.take() {
-            Ok(Some(seen)) if Seen::is_used_by(self.fitter.technique()) => self.fitter.tell(seen),
-            Ok(_) => {}
-            // The device is lost, which is said where pictures are read or presented.
-            Err(_) => (self.need_pass, self.fitter.is_told) = (None, false),
-        }
-    }
-
-    /// Reads the picture that has just been drawn, if the technique is told of it.
+    /// Reads the picture that has just been drawn, if the technique goes by what it shows.
     pub(super) fn read_picture(&mut self, gpu: &Gpu, target: &RenderTarget) {
-        let Some(view) = self.unread.take() else { return };
-        let technique = self.fitter.technique();
-        let Some(pass) = self.need_pass.as_mut().filter(|_| Seen::is_used_by(technique)) else { return };
-        // A camera without a frustum has no maps either, which is said there.
-        let depth = DepthConvention::Reversed;
-        let Ok(picture) = NeedView::from_camera(&view.camera, depth, view.direction, &technique.fit, target.size)
-        else {
+        let Some(camera) = self.unread.take() else { return };
+        if !self.reads_depths() || !self.sun().technique().uses_seen() {
             return;
-        };
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        if pass.record(&mut encoder, target.depth_view(), &picture, None) == Ok(true) {
-            gpu.submit([encoder.finish()]);
         }
-    }
-
-    /// Forgets the pictures on their way: the next view follows none of them.
-    fn forget_pictures(&mut self) {
-        if let Some(pass) = &mut self.need_pass {
-            pass.reset();
+        let depth = DepthConvention::Reversed;
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let clip_from_world = camera.clip_from_world(depth);
+        let recorded = self.sun_mut().record_need(&mut encoder, target.depth_view(), clip_from_world, depth);
+        // A camera that shows nothing has no maps either, which is said there.
+        if recorded == Ok(true) {
+            gpu.submit([encoder.finish()]);
         }
     }
 
     /// Fits, judges and draws the view that the settings ask for.
     pub(super) fn draw(&mut self, shot: &mut Shot<'_>, target: &RenderTarget) {
         self.problem = None;
-        self.take_last_picture();
         let fitted = self.fit(shot);
-        let maps: Vec<MapFit> = fitted.maps.iter().map(MapFit::from).collect();
+        let maps = fitted.maps.to_vec();
         let seen = shot.view();
         // A frozen fit was made for another camera, whose view depths may still choose among its maps.
         let view = View { camera: fitted.camera.unwrap_or(seen.camera), ..seen };
         let is_frozen = view.camera != seen.camera;
         let mut maps_stay = false;
-        if shot.wants_rays(self.need_pass.is_some() || self.live.waits) && !is_frozen {
+        if shot.wants_rays(self.reads_depths() || self.live.waits) && !is_frozen {
             let judged = self.live.judge(&mut self.evaluator, shot, &view, &maps, target.size);
             match judged {
                 Ok(drawn) => maps_stay = drawn,
@@ -234,7 +228,7 @@ impl Side {
             mode => self.draw_view(shot, &view, &maps, (overlay(mode), maps_stay), target),
         }
         if !is_frozen && !matches!(shot.settings.view.mode, ViewMode::Outside | ViewMode::Need) {
-            self.unread = Some(view);
+            self.unread = Some(view.camera);
             self.evaluator.note_view(&view, &maps);
         }
     }
@@ -244,7 +238,7 @@ impl Side {
         &mut self,
         shot: &mut Shot<'_>,
         view: &View,
-        maps: &[MapFit],
+        maps: &[FittedMap],
         (overlay, maps_stay): (Overlay, bool),
         target: &RenderTarget,
     ) {
@@ -298,7 +292,7 @@ impl Side {
     pub(super) fn draw_outside(
         &mut self,
         shot: &mut Shot<'_>,
-        (fitted, maps, maps_stay): (&Fitted, &[MapFit], bool),
+        (fitted, maps, maps_stay): (&Fitted, &[FittedMap], bool),
         target: &RenderTarget,
     ) {
         let seen = shot.camera;
@@ -323,12 +317,12 @@ impl Side {
     }
 
     /// Draws the scene as the light sees it, with the grid of need and the outlines of the maps.
-    fn draw_need(&mut self, shot: &mut Shot<'_>, fitted: &Fitted, maps: &[MapFit], target: &RenderTarget) {
+    fn draw_need(&mut self, shot: &mut Shot<'_>, fitted: &Fitted, maps: &[FittedMap], target: &RenderTarget) {
         let shown = shot.settings.view.inset_index(maps.len() as u32);
         let Some(from_light) = need_view::FromLight::new(fitted, shown, shot.scene.bounds(), target.size) else {
             return self.draw_view(shot, &shot.view(), maps, (Overlay::None, false), target);
         };
-        let need = self.fitter.seen().and_then(Seen::need);
+        let need = self.sun().fitter().seen().map(Seen::need);
         let quads = need_view::quads(&from_light, fitted, need);
         let lines = need_view::lines(fitted);
         let options = FrameOptions {
@@ -351,13 +345,13 @@ impl Side {
     fn draw_boards(
         &mut self,
         shot: &mut Shot<'_>,
-        (view, maps, maps_stay): (&View, &[MapFit], bool),
+        (view, maps, maps_stay): (&View, &[FittedMap], bool),
         target: &RenderTarget,
     ) {
         let bounds = shot.scene.bounds();
         let boards = boards::Boards::new(maps, &bounds, shot.settings.view.inset_depths, target.size);
         // Those of the frame before, unless the maps stay: what this one draws is known when it is drawn.
-        let quads = boards.quads(&self.evaluator.renderer.map_updates());
+        let quads = boards.quads(&self.sun().updates());
         let options = FrameOptions {
             insets: &boards.insets,
             quads: &quads,

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use glam::DVec3;
-use shadowfit::Technique;
+use shadowfit::{FittedMap, Technique};
 use shadowfit_egui::{PixelClass, WhyCard};
 use shadowfit_render::{PixelQuery, PixelRead, TexelBlock};
 use shadowfit_scene::Scene;
 use shadowfit_study::{Judging, SceneRays, StoredTexels, View, Why, WhyInput, why};
 use shadowfit_truth::Class;
-use shadowfit_wgpu::{MapFit, ShadowMapDescriptor};
+use shadowfit_wgpu::ShadowMapDescriptor;
 
 use super::Stage;
 use super::live::Key;
@@ -30,7 +30,7 @@ struct Question {
     judging: Judging,
     pixel: [f32; 2],
     technique: Technique,
-    maps: Vec<MapFit>,
+    maps: Vec<FittedMap>,
     descriptor: ShadowMapDescriptor,
     factor: Option<f32>,
     stored: Option<StoredTexels>,

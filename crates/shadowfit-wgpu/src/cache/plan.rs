@@ -6,11 +6,10 @@ use shadowfit::culling::cull;
 use shadowfit::glam::{DVec3, IVec2, UVec2};
 use shadowfit::scroll::{StoredRect, TexelRect};
 use shadowfit::settings::CasterPolicy;
-use shadowfit::{Aabb, CasterVolume};
+use shadowfit::{Aabb, CasterVolume, FittedMap};
 
 use super::casters::{KnownCasters, WorldBox};
 use super::{CacheSettings, Casters, Culling, Decision, KeptMap};
-use crate::MapFit;
 
 /// Volumes that casters are tested against at once: the bits of a mask.
 const VOLUMES: usize = 8;
@@ -96,7 +95,7 @@ impl FramePlan {
 pub(super) struct Drawing<'a> {
     pub(super) index: usize,
     /// The map that is read.
-    pub(super) fitted: &'a MapFit,
+    pub(super) fitted: &'a FittedMap,
     pub(super) known: &'a KnownCasters,
     pub(super) casters: &'a Casters<'a>,
     /// What positions in the shaders are relative to, in world space, in metres.

@@ -81,14 +81,14 @@ impl KeptMaps {
     }
 
     /// The passes of this frame, in the order in which they must be drawn.
-    pub fn passes(&self) -> impl ExactSizeIterator<Item = ShadowPass<'_>> {
+    pub(crate) fn passes(&self) -> impl ExactSizeIterator<Item = ShadowPass<'_>> {
         self.plan.passes.iter().map(|pass| ShadowPass { plan: &self.plan, pass })
     }
 
     /// Records all passes of this frame. `draw` is called for each part that has casters: it sets the engine's
     /// pipeline and buffers, and draws the part's casters. The map's matrix is bound at `group`; viewport and scissor
     /// rectangle are set, and must stay.
-    pub fn render(
+    pub(crate) fn render(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         group: u32,
@@ -105,7 +105,7 @@ impl KeptMaps {
 
     /// Opens a pass, for engines that schedule passes themselves: cleared or mended, with the map's matrix bound at
     /// `group`. Each of its pieces is then [set](ShadowPiece::set) and drawn.
-    pub fn begin_pass<'encoder>(
+    pub(crate) fn begin_pass<'encoder>(
         &self,
         encoder: &'encoder mut wgpu::CommandEncoder,
         pass: &ShadowPass<'_>,

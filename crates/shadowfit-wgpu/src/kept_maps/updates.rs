@@ -1,14 +1,14 @@
 //! Which rectangles of the maps a frame draws, and which maps hold a caster: for tools that show it.
 
-use shadowfit::CasterVolume;
 use shadowfit::culling::cull;
 use shadowfit::glam::UVec2;
 use shadowfit::scroll::TexelRect;
-use shadowfit::settings::CasterPolicy;
+use shadowfit::{CasterVolume, FittedMap};
 
 use super::KeptMaps;
 use crate::cache::{Casters, Culling, PassContent, PassPlan};
-use crate::{MapFit, MapView, ShadowMapError};
+use crate::map::stored_casters;
+use crate::{MapView, ShadowMapError};
 
 /// A rectangle of a map that is drawn in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,7 +36,7 @@ pub enum UpdateContent {
 
 impl KeptMaps {
     /// The rectangles that are drawn in this frame, in the order of the passes. Some may overlap.
-    pub fn updates(&self) -> Vec<MapUpdate> {
+    pub(crate) fn updates(&self) -> Vec<MapUpdate> {
         let mut updates = Vec::new();
         for pass in &self.plan.passes {
             let Some(fitted) = self.maps.get(pass.map) else { continue };
@@ -56,7 +56,7 @@ impl KeptMaps {
     }
 
     /// Rectangles that are taken back from the static casters' layer.
-    fn mended(&self, pass: &PassPlan, fitted: &MapFit) -> impl Iterator<Item = TexelRect> {
+    fn mended(&self, pass: &PassPlan, fitted: &FittedMap) -> impl Iterator<Item = TexelRect> {
         let stored = self.plan.rects[pass.mended.clone()].iter();
         let rects = stored.map(|stored| looked_up(*stored, fitted.wrap, pass.size));
         let boxes = self.plan.boxes[pass.mended_boxes.clone()].iter();
@@ -64,33 +64,31 @@ impl KeptMaps {
     }
 
     /// Rectangles around the moving casters that a map was drawn with.
-    fn moving(&self, map: usize, fitted: &MapFit) -> impl Iterator<Item = TexelRect> {
+    fn moving(&self, map: usize, fitted: &FittedMap) -> impl Iterator<Item = TexelRect> {
         let origin = fitted.fit.origin;
         let boxes = self.cache.moving(map).iter();
         boxes.map(move |moved| TexelRect::of_box(&fitted.fit, &moved.relative_to(origin), origin))
     }
 
     /// Whether what stands still in a map, by its number, is kept for later frames.
-    pub fn is_kept(&self, map: usize) -> bool {
+    pub(crate) fn is_kept(&self, map: usize) -> bool {
         self.cache.is_kept(map)
     }
 
     /// Which maps hold each caster, by its number: bit i of the mask stands for map i. A map that is kept holds the
     /// static casters over it, seen or not; any other map those of shadows in view. Without maps all masks are 0.
-    pub fn holders(&self, casters: &Casters<'_>) -> Vec<u8> {
-        let descriptor = self.map.descriptor();
-        let is_uncut = self.culling == Culling::Off || descriptor.depth_clamp;
-        let policy = if descriptor.depth_clamp { CasterPolicy::DepthClamp } else { CasterPolicy::None };
-        let in_view: Vec<CasterVolume> = self.maps.iter().map(|map| crate::map::volume(map, is_uncut)).collect();
-        let over = |(index, map): (usize, &MapFit)| match self.culling {
+    pub(crate) fn holders(&self, casters: &Casters<'_>) -> Vec<u8> {
+        let clamps = self.map.descriptor().depth_clamp;
+        let in_view = &self.volumes;
+        let over = |(index, map): (usize, &FittedMap)| match self.culling {
             Culling::Off => CasterVolume::everywhere(map.fit.origin),
-            _ if self.is_kept(index) => CasterVolume::of_map(&map.fit, policy),
+            _ if self.is_kept(index) => stored_casters(&map.fit, clamps),
             _ => in_view[index],
         };
         let over: Vec<CasterVolume> = self.maps.iter().enumerate().map(over).collect();
         let boxes = casters.boxes;
         let [mut moving, mut fixed] = [(); 2].map(|()| vec![0; boxes.boxes.len()]);
-        cull(&in_view, boxes.origin, boxes.boxes, &mut moving);
+        cull(in_view, boxes.origin, boxes.boxes, &mut moving);
         cull(&over, boxes.origin, boxes.boxes, &mut fixed);
         let mask = |(number, (moving, fixed))| if casters.moves(number) { moving } else { fixed };
         moving.into_iter().zip(fixed).enumerate().map(mask).collect()
@@ -103,7 +101,7 @@ impl KeptMaps {
     /// # Errors
     ///
     /// [`ShadowMapError::Forward`] for a direction that is not of unit length; nothing is written then.
-    pub fn look_from(&mut self, queue: &wgpu::Queue, view: &MapView) -> Result<(), ShadowMapError> {
+    pub(crate) fn look_from(&mut self, queue: &wgpu::Queue, view: &MapView) -> Result<(), ShadowMapError> {
         self.map.prepare(queue, view, &self.maps)
     }
 }

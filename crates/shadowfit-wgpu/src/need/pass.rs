@@ -1,10 +1,10 @@
 //! The pass itself: pipeline, dispatch, and what comes back.
 
 use shadowfit::need::{CELLS, LEVELS, MIN_FACING, SIDE};
+use shadowfit::seen::{CLASSES, COUNTS, DEPTHS, Seen};
 
 use super::error::{NeedPassError, Unsupported};
 use super::read_back::ReadBack;
-use super::seen::{CLASSES, COUNTS, DEPTHS, SeenNeed};
 use super::view::{NeedUniform, NeedView};
 
 /// Pictures that may be on their way back at once: graphics APIs let the CPU be up to three frames ahead, and one more
@@ -94,8 +94,8 @@ impl NeedPass {
         timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
     ) -> Result<bool, NeedPassError> {
         self.check_texture(depth.texture(), view.rectangle)?;
-        let stamp = view.stamp()?;
-        let uniform = view.uniform(&stamp)?;
+        let space = view.space()?;
+        let uniform = view.uniform(&space)?;
         let Some(frame) = self.frames.iter_mut().find(|frame| frame.read_back.is_free()) else { return Ok(false) };
         let group = caught(&self.device, || {
             self.queue.write_buffer(&frame.uniform, 0, bytemuck::bytes_of(&uniform));
@@ -113,7 +113,7 @@ impl NeedPass {
             pass.dispatch_workgroups(x, y, 1);
         }
         self.recordings += 1;
-        frame.read_back.record(encoder, &self.counts, stamp, self.recordings);
+        frame.read_back.record(encoder, &self.counts, space, self.recordings);
         Ok(true)
     }
 
@@ -122,7 +122,7 @@ impl NeedPass {
     /// # Errors
     ///
     /// [`NeedPassError::Lost`] if the device was lost.
-    pub fn take(&mut self) -> Result<Option<SeenNeed>, NeedPassError> {
+    pub fn take(&mut self) -> Result<Option<Seen>, NeedPassError> {
         // Only looks; whether anything is finished shows below.
         let _status = self.device.poll(wgpu::PollType::Poll);
         self.newest()
@@ -134,7 +134,7 @@ impl NeedPass {
     /// # Errors
     ///
     /// [`NeedPassError::Lost`] if the device was lost or does not answer.
-    pub fn wait(&mut self) -> Result<Option<SeenNeed>, NeedPassError> {
+    pub fn wait(&mut self) -> Result<Option<Seen>, NeedPassError> {
         self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|_| NeedPassError::Lost)?;
         self.newest()
     }
@@ -145,7 +145,7 @@ impl NeedPass {
         self.forgotten = self.recordings;
     }
 
-    fn newest(&mut self) -> Result<Option<SeenNeed>, NeedPassError> {
+    fn newest(&mut self) -> Result<Option<Seen>, NeedPassError> {
         if self.frames.iter().filter(|frame| frame.read_back.has_failed()).count() > 0 {
             return Err(NeedPassError::Lost);
         }
@@ -204,8 +204,8 @@ const MIN_FACING: f32 = {MIN_FACING};
     )
 }
 
-/// Whether a device can run the pass.
-fn supported(limits: &wgpu::Limits, backend: wgpu::Backend) -> Result<(), Unsupported> {
+/// What a device lacks for the pass, if anything.
+pub(crate) fn supported(limits: &wgpu::Limits, backend: wgpu::Backend) -> Result<(), Unsupported> {
     let has_compute = limits.max_storage_buffers_per_shader_stage > 0
         && limits.max_compute_invocations_per_workgroup >= WORKGROUP_THREADS
         && limits.max_compute_workgroup_storage_size >= WORKGROUP_BYTES;

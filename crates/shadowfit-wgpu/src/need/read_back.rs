@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use super::seen::{COUNTS, SeenNeed, Stamp};
+use shadowfit::seen::{COUNTS, Seen, SeenSpace};
 
 /// Can be recorded into.
 const FREE: u8 = 0;
@@ -20,7 +20,7 @@ pub(super) struct ReadBack {
     buffer: wgpu::Buffer,
     state: Arc<AtomicU8>,
     /// What was recorded last, and the how manieth recording it was.
-    recorded: Option<(Stamp, u64)>,
+    recorded: Option<(SeenSpace, u64)>,
 }
 
 /// Is told when the buffer can be read. An encoder that is dropped instead of submitted drops it untold.
@@ -78,10 +78,10 @@ impl ReadBack {
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         counts: &wgpu::Buffer,
-        stamp: Stamp,
+        space: SeenSpace,
         number: u64,
     ) {
-        self.recorded = Some((stamp, number));
+        self.recorded = Some((space, number));
         self.state.store(BUSY, Ordering::Release);
         encoder.copy_buffer_to_buffer(counts, 0, &self.buffer, 0, None);
         let told = Told(Some(Arc::clone(&self.state)));
@@ -89,11 +89,11 @@ impl ReadBack {
     }
 
     /// The counts, if they can be read; the buffer is free again then.
-    pub(super) fn take(&mut self) -> Option<SeenNeed> {
-        let (stamp, _) = self.recorded.take().filter(|_| self.is_readable())?;
+    pub(super) fn take(&mut self) -> Option<Seen> {
+        let (space, _) = self.recorded.take().filter(|_| self.is_readable())?;
         let counts = self.buffer.get_mapped_range(..).ok().map(|mapped| bytemuck::pod_collect_to_vec(&mapped));
         self.release();
-        Some(SeenNeed { stamp, counts: counts? })
+        Seen::from_counts(space, counts?)
     }
 
     /// Gives the buffer back without reading it.

@@ -2,12 +2,12 @@
 
 use bytemuck::{Pod, Zeroable};
 use shadowfit::glam::{DMat4, DVec4, Mat4, Vec3};
-use shadowfit::need::{NeedSpace, PIXELS};
+use shadowfit::need::PIXELS;
+use shadowfit::seen::{DEPTHS, SeenSpace};
 use shadowfit::settings::FitSettings;
 use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 
 use super::error::NeedPassError;
-use super::seen::{DEPTHS, Stamp};
 
 /// Rows of points above which only every second, third, ... pixel is looked at, across and down, so that the pass takes
 /// as long for any resolution. Of the built-in scene in 1080 rows, every fourth pixel counts at most 1.1% of the points
@@ -89,17 +89,16 @@ impl NeedView {
     }
 
     /// What the counts will mean.
-    pub(super) fn stamp(&self) -> Result<Stamp, NeedPassError> {
-        let space = NeedSpace::new(&self.frustum, self.direction, self.up, self.max_distance)?;
-        Ok(Stamp { space, near: self.frustum.near, far: self.frustum.far.min(self.max_distance) })
+    pub(super) fn space(&self) -> Result<SeenSpace, NeedPassError> {
+        Ok(SeenSpace::new(&self.frustum, self.direction, self.up, self.max_distance)?)
     }
 
     /// What the shader reads.
-    pub(super) fn uniform(&self, stamp: &Stamp) -> Result<NeedUniform, NeedPassError> {
+    pub(super) fn uniform(&self, space: &SeenSpace) -> Result<NeedUniform, NeedPassError> {
         if self.depth == DepthConvention::NegativeOneToOne {
             return Err(NeedPassError::Depth(self.depth));
         }
-        let Stamp { space, near, far } = *stamp;
+        let SeenSpace { need: space, near, far } = *space;
         let [left, top, width, height] = self.rectangle;
         // The histogram has no bins for depths that are not positive, as orthographic views may have them.
         let octaves = (f64::from(far) / f64::from(near)).log2();

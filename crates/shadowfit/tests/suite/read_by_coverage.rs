@@ -78,11 +78,13 @@ pub(crate) fn check(
     let Boxes { origin, boxes } = input.casters.unwrap();
     let to_light = -input.direction.as_dvec3().normalize();
     let view = &input.views[0];
+    let volumes = maps.caster_volumes(input.views, technique).unwrap();
     let mut found = 0;
     for (point, sample) in seen.iter().zip(samples) {
         let depth = (*point - view.origin).dot(view.forward.as_dvec3());
         let read = maps.read(technique, *point, depth).unwrap_or_else(|| panic!("{point} is in no map"));
-        for map in [Some(read.map), read.blend.map(|blend| blend.map)].into_iter().flatten().map(|map| &maps[map]) {
+        for index in [Some(read.map), read.blend.map(|blend| blend.map)].into_iter().flatten() {
+            let (map, volume) = (&maps[index], &volumes[index]);
             let caster = &boxes[sample.caster % boxes.len()];
             let Some(distance) = above(*point - origin, to_light, caster) else { continue };
             let occluder = *point + to_light * distance;
@@ -91,7 +93,6 @@ pub(crate) fn check(
                 "{occluder} is before the near plane of {:?}",
                 map.fit
             );
-            let volume = map.caster_volume(input.views, technique).unwrap();
             let moved = |v: Vec3| (v.as_dvec3() + origin - volume.origin).as_vec3();
             assert!(volume.intersects_aabb(moved(caster.min), moved(caster.max)), "{caster:?} is culled");
             found += 1;

@@ -223,14 +223,14 @@ proptest! {
         let fitted = MapFitter::new().fit(&input, &technique, &mut Workspace::new(&mut storage));
         prop_assume!(fitted.is_ok());
         let maps = fitted.unwrap();
+        let volumes = maps.caster_volumes(&views, &technique).unwrap();
         let (view, to_light) = (&views[0], -direction.as_dvec3());
         for share in points.into_iter().map(DVec3::from_array) {
             let point = point_in(view, f64::from(view.near), f64::from(view.far), share);
             let depth = (point - view.origin).dot(view.forward.as_dvec3());
             let Some(read) = maps.read(&technique, point, depth) else { continue };
             for map in [Some(read.map), read.blend.map(|blend| blend.map)].into_iter().flatten() {
-                let map = &maps[map];
-                let volume = map.caster_volume(&views, &technique).unwrap();
+                let (map, volume) = (&maps[map], &volumes[map]);
                 let over = point + to_light * f64::from(view.far) * share.x - map.fit.origin;
                 let half = Vec3::splat(half * view.far);
                 let centre = over.as_vec3();

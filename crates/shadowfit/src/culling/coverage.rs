@@ -1,11 +1,10 @@
 //! Which part of the views reads a map by coverage: what no finer map provably holds.
 
-use shadowfit::ViewFrustum;
-use shadowfit::choice::MapOrder;
-use shadowfit::settings::MapChoice;
-
-use super::{DEPTH_ROUNDING, holds_slice};
-use crate::{MapFit, MapView, ShadowMapDescriptor};
+use super::readers::{Reader, holds_slice};
+use crate::choice::{MapOrder, MapReading};
+use crate::settings::{MAX_MAPS, MapChoice};
+use crate::view::DEPTH_ROUNDING;
+use crate::{FittedMap, ViewFrustum};
 
 /// Halvings of the views' depths in the search for what a finer map holds: to a four thousandth of them.
 const HALVINGS: u32 = 12;
@@ -16,27 +15,27 @@ const HALVINGS: u32 = 12;
 /// Points nearer than that are held by a finer map, with the filter's reach and the blend, whatever a shader rounds.
 /// From there on a map is read at any depth, wherever it holds a point that the finer ones leave out.
 pub(super) fn read_from(
-    maps: &[MapFit],
-    view: &MapView,
+    maps: &[FittedMap],
+    reader: &Reader,
     views: &[ViewFrustum],
-    descriptor: &ShadowMapDescriptor,
-) -> Vec<Option<f32>> {
-    let free = f64::from(descriptor.softness.reach(descriptor.filter) + descriptor.blend);
-    let mut from = vec![None; maps.len()];
+    reading: &MapReading,
+) -> [Option<f32>; MAX_MAPS] {
+    let free = f64::from(reading.softness.reach(reading.filter) + reading.blend);
+    let mut from = [None; MAX_MAPS];
     // Up to where the finer maps hold all.
     let mut held = f32::MIN;
     for index in MapOrder::new(MapChoice::Coverage, maps.iter().map(|map| &map.fit)).iter() {
-        from[index] = (held < f32::MAX).then_some((held - held.abs() * DEPTH_ROUNDING as f32).max(f32::MIN));
-        held = held_to(&maps[index], view, views, free, held);
+        from[index] = (held < f32::MAX).then_some((held - held.abs() * DEPTH_ROUNDING).max(f32::MIN));
+        held = held_to(&maps[index], reader, views, free, held);
     }
     from
 }
 
 /// View depth up to which a map holds all that the views have from a depth on, in metres, with so many texels around
 /// it; that depth where it does not.
-fn held_to(map: &MapFit, view: &MapView, views: &[ViewFrustum], free: f64, from: f32) -> f32 {
-    let fit = map.fit.relative_to(view.origin);
-    let holds = |far: f32| holds_slice(&fit, view, views, [from, far], free);
+fn held_to(map: &FittedMap, reader: &Reader, views: &[ViewFrustum], free: f64, from: f32) -> f32 {
+    let fit = map.fit.relative_to(reader.origin);
+    let holds = |far: f32| holds_slice(&fit, reader, views, [from, far], free);
     let near = views.iter().map(|view| view.near).fold(f32::MAX, f32::min);
     let far = views.iter().map(|view| view.far).fold(f32::MIN, f32::max);
     if holds(far) {

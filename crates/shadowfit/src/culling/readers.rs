@@ -2,81 +2,147 @@
 //!
 //! A map that is drawn anew in each frame needs only the casters that can cast a shadow on a point that reads it: those
 //! in the part of the view that reads it, swept toward the light. Which part that is follows from the order in which
-//! shaders look for a map.
+//! points look for a map.
 
-use shadowfit::bias::{MIN_COSINE, Reach};
-use shadowfit::culling::Sweep;
-use shadowfit::glam::{DVec2, DVec3, DVec4, Vec3};
-use shadowfit::settings::{CasterPolicy, MapChoice};
-use shadowfit::{CasterVolume, FitError, LightFit, ViewFrustum};
+use glam::{DVec2, DVec3, DVec4, Vec3};
 
-use crate::{MapFit, MapView, ShadowMapDescriptor};
+use super::coverage;
+use super::sweep::Sweep;
+use super::volume::CasterVolume;
+use crate::bias::{MIN_COSINE, Reach};
+use crate::choice::MapReading;
+use crate::settings::{CasterPolicy, MAX_MAPS, MapChoice};
+use crate::view::DEPTH_ROUNDING;
+use crate::{FitError, FittedMap, FittedMaps, LightFit, Technique, ViewFrustum, checks};
 
-mod coverage;
+/// From where maps are read: what the positions and view depths in a shader are counted from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reader {
+    /// World position that the shader's positions are relative to, in metres.
+    pub origin: DVec3,
+    /// World position of the eye that view depths are counted from, in metres.
+    pub eye: DVec3,
+    /// Unit direction in which that eye looks, world axes.
+    pub forward: Vec3,
+}
 
-/// Greatest rounding error of a view depth in a shader, as a share of it: nine times 2⁻²⁴ of a point's distance, which
-/// in the corner of a wide view is up to seven times its depth.
-const DEPTH_ROUNDING: f64 = 64.0 / 16_777_216.0;
+impl Reader {
+    /// Positions and view depths relative to an eye that looks along `forward` (unit, world axes).
+    pub const fn from_eye(eye: DVec3, forward: Vec3) -> Self {
+        Self { origin: eye, eye, forward }
+    }
+}
 
 /// Greatest rounding error of texture coordinates in a shader, as a share of the terms that they are summed from:
 /// eight roundings of 2⁻²⁴, two of the position, one each of the matrix and the product, and four of the sum.
 const UV_ROUNDING: f64 = 8.0 / 16_777_216.0;
 
-impl MapFit {
-    /// Leaves each map only the casters that can cast a shadow, through this map, on what `views` see: sets
-    /// [`MapFit::volume`] of all maps. The shadows in view stay the same. `views` are all that is drawn with these
-    /// maps, up to the cameras' far planes, and `descriptor` says how they are read:
-    /// [`ShadowMap::descriptor`](crate::ShadowMap::descriptor).
+impl FittedMaps {
+    /// The casters of each map: those that can cast a shadow, through this map, on what `views` see, relative to the
+    /// map's [origin](LightFit::origin). `views` are those of the fit; positions and view depths are counted from the
+    /// first one's eye. Volumes beyond the number of maps hold nothing. See [`caster_volumes`].
     ///
-    /// The volumes serve maps with depth clamp and without. A map that is to be kept for later frames must hold all
-    /// casters: set its volume to `None` again.
+    /// ```
+    /// # use shadowfit::glam::{DVec2, DVec3, Vec3};
+    /// # use shadowfit::culling::cull;
+    /// # use shadowfit::*;
+    /// # let camera = PerspectiveCamera {
+    /// #     eye: DVec3::new(0.0, 1.7, 5.0),
+    /// #     forward: Vec3::NEG_Z,
+    /// #     up: Vec3::Y,
+    /// #     fov_y: 0.8,
+    /// #     aspect: 16.0 / 9.0,
+    /// #     near: 0.1,
+    /// #     far: 200.0,
+    /// # };
+    /// # let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+    /// # let workspace = &mut Workspace::new(&mut storage);
+    /// let (views, technique) = ([camera.frustum()?], Technique::default());
+    /// let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
+    /// let maps = MapFitter::new().fit(&input, &technique, workspace)?;
+    /// let volumes = maps.caster_volumes(&views, &technique)?;
     ///
-    /// By coverage a map serves every point that it holds, unless a finer map provably holds it: points up to some view
-    /// depth, at most.
-    ///
-    /// By view depth a point reads the first map that ends beyond its view depth and covers it. So a map is read from
-    /// where the map in front of it ends, or begins to be blended into it; but if no map in front of it provably covers the whole of some nearer slice of the views,
-    /// the map counts as read from that slice on: a map that is fitted to receivers alone does not cover whole
-    /// slices, and a point that it leaves out reads the next one.
+    /// let boxes = [Aabb::new(Vec3::new(-2.0, 0.0, -12.0), Vec3::new(2.0, 6.0, -8.0))];
+    /// let mut masks = [0; 1]; // bit i: draw into map i
+    /// cull(&volumes[..maps.len()], DVec3::ZERO, &boxes, &mut masks);
+    /// # assert_ne!(masks[0], 0);
+    /// # Ok::<(), FitError>(())
+    /// ```
     ///
     /// # Errors
     ///
-    /// Those of [`CasterVolume::swept`]. The maps before the one that fails have their volumes then.
-    pub fn sweep(
-        maps: &mut [Self],
-        view: &MapView,
+    /// [`FitError::NoView`] without a view, and those of [`CasterVolume::swept`].
+    pub fn caster_volumes(
+        &self,
         views: &[ViewFrustum],
-        descriptor: &ShadowMapDescriptor,
-    ) -> Result<(), FitError> {
-        match descriptor.choice {
-            MapChoice::Coverage => {
-                let from = coverage::read_from(maps, view, views, descriptor);
-                for (map, near) in maps.iter_mut().zip(from) {
-                    let read = near.map(|near| Slice { near, far: f32::MAX });
-                    map.volume = Some(volume(map, read, views, descriptor)?);
-                }
-            }
-            MapChoice::ViewDepth => {
-                let mismatch = views.iter().map(|frustum| depth_mismatch(view, frustum)).fold(0.0, f64::max);
-                for index in 0..maps.len() {
-                    let readers = Readers { maps, view, views, mismatch };
-                    let read = readers.read(index).map(|read| readers.widened(read));
-                    maps[index].volume = Some(volume(&maps[index], read, views, descriptor)?);
-                }
-            }
-        }
-        Ok(())
+        technique: &Technique,
+    ) -> Result<[CasterVolume; MAX_MAPS], FitError> {
+        let first = views.first().ok_or(FitError::NoView)?;
+        let forward = checks::unit("the view's forward direction", first.forward)?.as_vec3();
+        let mut volumes = [CasterVolume::nowhere(first.origin); MAX_MAPS];
+        let reader = Reader::from_eye(first.origin, forward);
+        caster_volumes(self, &technique.reading(), &reader, views, &mut volumes)?;
+        Ok(volumes)
     }
 }
 
+/// Writes the casters of each map: those that can cast a shadow, through this map, on what `views` see. The shadows in
+/// view stay the same when only these are drawn. `views` are all that is drawn with these maps, up to the cameras' far
+/// planes; `reading` and `reader` say how and from where the maps are read. Each volume is relative to its map's
+/// [origin](LightFit::origin). Maps past [`MAX_MAPS`], and those without a place in `volumes`, are left out.
+///
+/// The volumes serve maps with depth clamp and without: nothing bounds them toward the light
+/// ([`CasterVolume::cut_at_near_plane`] does). They are for maps that are drawn anew in each frame: a map that is kept,
+/// or [scrolled](crate::scroll::Scroll), shows casters to later frames too, so that it needs
+/// [`CasterVolume::of_map`].
+///
+/// By coverage a map serves every point that it holds, unless a finer map provably holds it: points up to some view
+/// depth, at most.
+///
+/// By view depth a point reads the first map that ends beyond its view depth and covers it. So a map is read from where
+/// the map in front of it ends, or begins to be blended into it; but if no map in front of it provably covers the whole
+/// of some nearer slice of the views, the map counts as read from that slice on: a map that is fitted to receivers alone
+/// does not cover whole slices, and a point that it leaves out reads the next one.
+///
+/// # Errors
+///
+/// Those of [`CasterVolume::swept`]. The maps before the one that fails have their volumes then.
+pub fn caster_volumes(
+    maps: &[FittedMap],
+    reading: &MapReading,
+    reader: &Reader,
+    views: &[ViewFrustum],
+    volumes: &mut [CasterVolume],
+) -> Result<(), FitError> {
+    let maps = &maps[..maps.len().min(MAX_MAPS)];
+    match reading.choice {
+        MapChoice::Coverage => {
+            let from = coverage::read_from(maps, reader, views, reading);
+            for ((map, near), volume) in maps.iter().zip(from).zip(volumes) {
+                let read = near.map(|near| Slice { near, far: f32::MAX });
+                *volume = swept(map, read, views, reading)?;
+            }
+        }
+        MapChoice::ViewDepth => {
+            let mismatch = views.iter().map(|frustum| depth_mismatch(reader, frustum)).fold(0.0, f64::max);
+            let readers = Readers { maps, reader, views, mismatch };
+            for ((index, map), volume) in maps.iter().enumerate().zip(volumes) {
+                let read = readers.read(index).map(|read| readers.widened(read));
+                *volume = swept(map, read, views, reading)?;
+            }
+        }
+    }
+    Ok(())
+}
+
 /// The casters of a map that the views read at these depths, if at any.
-fn volume(
-    map: &MapFit,
+fn swept(
+    map: &FittedMap,
     read: Option<Slice>,
     views: &[ViewFrustum],
-    descriptor: &ShadowMapDescriptor,
+    reading: &MapReading,
 ) -> Result<CasterVolume, FitError> {
-    let reach = descriptor.softness.reach_in(descriptor.filter, &map.fit);
+    let reach = reading.softness.reach_in(reading.filter, &map.fit);
     let normal_offset = map.bias.normal_offset.abs();
     let Slice { near, far } = read.unwrap_or(Slice { near: f32::MIN, far: f32::MAX });
     let volume = CasterVolume::swept(&map.fit, &Sweep { views, near, far, reach, normal_offset })?;
@@ -96,8 +162,8 @@ struct Slice {
 
 /// Finds which part of the views reads a map by view depth.
 struct Readers<'a> {
-    maps: &'a [MapFit],
-    view: &'a MapView,
+    maps: &'a [FittedMap],
+    reader: &'a Reader,
     views: &'a [ViewFrustum],
     /// Greatest difference between a visible point's view depth in the shader and in its frustum, in metres.
     mismatch: f64,
@@ -112,19 +178,24 @@ impl Readers<'_> {
         };
         let first = (0..=index).find(is_read_from)?;
         // Nearer points may be blended into it.
-        let near = self.slice(first).near.min(self.maps[index].blend_near);
-        Some(Slice { near, far: self.maps[index].far })
+        let near = self.slice(first).near.min(self.maps[index].covered_near);
+        Some(Slice { near, far: self.end(index) })
     }
 
     /// The view depths whose points look into a map first.
     fn slice(&self, index: usize) -> Slice {
-        let near = if index == 0 { f32::MIN } else { self.maps[index - 1].far };
-        Slice { near, far: self.maps[index].far }
+        let near = if index == 0 { f32::MIN } else { self.end(index - 1) };
+        Slice { near, far: self.end(index) }
+    }
+
+    /// View depth at which a map ends.
+    fn end(&self, index: usize) -> f32 {
+        self.maps[index].depth_range().far as f32
     }
 
     /// A slice, widened by the depths that rounding or another eye may move into it.
     fn widened(&self, slice: Slice) -> Slice {
-        let beside = |depth: f32| self.mismatch + f64::from(depth).abs() * DEPTH_ROUNDING;
+        let beside = |depth: f32| self.mismatch + f64::from(depth).abs() * f64::from(DEPTH_ROUNDING);
         let bounded = |depth: f64| depth.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
         Slice {
             near: bounded(f64::from(slice.near) - beside(slice.near)),
@@ -135,16 +206,22 @@ impl Readers<'_> {
     /// Whether a map provably holds everything that the views have in a slice, by a shader's test.
     fn covers(&self, index: usize, slice: Slice) -> bool {
         let Slice { near, far } = self.widened(slice);
-        let fit = self.maps[index].fit.relative_to(self.view.origin);
-        holds_slice(&fit, self.view, self.views, [near, far], 0.0)
+        let fit = self.maps[index].fit.relative_to(self.reader.origin);
+        holds_slice(&fit, self.reader, self.views, [near, far], 0.0)
     }
 }
 
-/// Whether a map, relative to the view's origin, provably holds everything that the views have between two view depths,
+/// Whether a map, relative to the reader's origin, provably holds everything that the views have between two view depths,
 /// with so many texels around it.
-fn holds_slice(fit: &LightFit, view: &MapView, views: &[ViewFrustum], [near, far]: [f32; 2], free: f64) -> bool {
+pub(super) fn holds_slice(
+    fit: &LightFit,
+    reader: &Reader,
+    views: &[ViewFrustum],
+    [near, far]: [f32; 2],
+    free: f64,
+) -> bool {
     let holds_part = |frustum: &ViewFrustum| {
-        let offset = frustum.origin - view.origin;
+        let offset = frustum.origin - reader.origin;
         // A view without a part between these depths has no point to be held.
         frustum
             .slice(near, far)
@@ -166,20 +243,22 @@ fn covers(fit: &LightFit, point: DVec3, free: f64) -> bool {
 
 /// How far the view depth of a point in a frustum may be from that of the shader, which counts it from another eye or
 /// along another direction, in metres.
-fn depth_mismatch(view: &MapView, frustum: &ViewFrustum) -> f64 {
-    let (forward, own) = (view.forward.as_dvec3(), frustum.forward.as_dvec3().normalize());
-    let farthest = frustum.corners.iter().map(|corner| corner.as_dvec3().length()).fold(0.0, f64::max);
-    (forward - own).length() * farthest + (frustum.origin - view.eye).dot(forward).abs()
+fn depth_mismatch(reader: &Reader, frustum: &ViewFrustum) -> f64 {
+    let own = frustum.forward.as_dvec3();
+    let (forward, own) = (reader.forward.as_dvec3(), own / checks::length(own));
+    let farthest = frustum.corners.iter().map(|corner| checks::length(corner.as_dvec3())).fold(0.0, f64::max);
+    checks::length(forward - own) * farthest + (frustum.origin - reader.eye).dot(forward).abs()
 }
 
 /// How far below a point, along the light, the map may be compared with, in metres. The receiver's plane is compared at
 /// its own depth wherever the filter looks, and falls by the tangent of its slope; biases that are negative move the
 /// point itself.
-fn depth_below(map: &MapFit, reach: Reach) -> f64 {
+fn depth_below(map: &FittedMap, reach: Reach) -> f64 {
     let tangent = 1.0 / f64::from(MIN_COSINE);
     let (bias, range) = (map.bias, f64::from(map.fit.depth_range));
     let away = |bias: f32| f64::from((-bias).max(0.0));
-    let texel = map.fit.texel_size.as_dvec2().length();
+    let size = map.fit.texel_size.as_dvec2();
+    let texel = libm::sqrt(size.x * size.x + size.y * size.y);
     // Look-ups lie a texel less far away than the texels that they read; at the map's border they move by half of one.
     let disc = (reach.disc * map.fit.texel_size).max_element();
     let aside = f64::from((reach.taps - 1.0).max(0.5)) * texel + f64::from(disc + bias.normal_offset.abs());
@@ -200,12 +279,12 @@ fn lowered(mut volume: CasterVolume, fit: &LightFit, depth: f64) -> CasterVolume
     volume
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "alloc"))]
 mod tests {
     use super::*;
-    use shadowfit::bias::Bias;
-    use shadowfit::settings::FitSettings;
-    use shadowfit::{PerspectiveCamera, fit};
+    use crate::settings::FitSettings;
+    use crate::{Bias, PerspectiveCamera, fit};
+    use alloc::vec::Vec;
 
     const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.2);
     const ENDS: [f32; 3] = [5.0, 20.0, f32::MAX];
@@ -218,25 +297,25 @@ mod tests {
     }
 
     /// Maps around the slices of a view.
-    fn maps(view: &ViewFrustum) -> Vec<MapFit> {
+    fn maps(view: &ViewFrustum) -> Vec<FittedMap> {
         let mut near = f32::MIN;
         let map = |far: f32| {
             let slice = view.slice(near - 0.01, far + 0.01).expect("a slice");
             near = far;
             let light = fit(&slice, DIRECTION, &FitSettings::default().with_max_distance(f32::MAX)).expect("a fit");
-            MapFit { far, ..MapFit::new(light, Bias::default()) }
+            FittedMap::new(light, Bias::default()).ending_at(far)
         };
         ENDS.into_iter().map(map).collect()
     }
 
-    fn by(choice: MapChoice) -> ShadowMapDescriptor {
-        ShadowMapDescriptor { choice, ..ShadowMapDescriptor::default() }
+    fn by(choice: MapChoice) -> MapReading {
+        MapReading { choice, ..Technique::default().reading() }
     }
 
     /// Where each map begins to be read, in metres.
-    fn read_from(maps: &[MapFit], views: &[ViewFrustum]) -> Vec<Option<f32>> {
-        let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
-        let readers = Readers { maps, view: &view, views, mismatch: 0.0 };
+    fn read_from(maps: &[FittedMap], views: &[ViewFrustum]) -> Vec<Option<f32>> {
+        let reader = Reader::from_eye(DVec3::ZERO, Vec3::NEG_Z);
+        let readers = Readers { maps, reader: &reader, views, mismatch: 0.0 };
         (0..maps.len()).map(|index| readers.read(index).map(|slice| slice.near)).collect()
     }
 
@@ -256,27 +335,28 @@ mod tests {
     fn maps_without_a_range_are_read_where_those_in_front_leave_points_out() {
         let view = frustum(0.9);
         let [a, b, c] = maps(&view)[..] else { panic!("three maps") };
-        let empty = |far: f32| MapFit { far, ..c };
+        let empty = |far: f32| FittedMap { far, ..c };
         let front = [empty(f32::MIN), a, b, c];
         assert_eq!(read_from(&front, &[view]), [None, Some(f32::MIN), Some(5.0), Some(20.0)]);
         let behind = [a, b, c, empty(f32::MAX)];
         assert_eq!(read_from(&behind, &[view])[3], None);
         assert_eq!(read_from(&behind, &[frustum(1.1)])[3], Some(f32::MIN));
-        let mut maps = behind;
-        let map_view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
-        MapFit::sweep(&mut maps, &map_view, &[view], &by(MapChoice::ViewDepth)).expect("a good view");
-        let holds = |map: &MapFit| map.volume.is_some_and(|volume| volume.intersects_sphere(Vec3::NEG_Z * 3.0, 1.0));
-        assert_eq!(maps.each_ref().map(holds), [true, false, false, false]);
+        let reader = Reader::from_eye(DVec3::ZERO, Vec3::NEG_Z);
+        let mut volumes = [CasterVolume::everywhere(DVec3::ZERO); 4];
+        caster_volumes(&behind, &by(MapChoice::ViewDepth), &reader, &[view], &mut volumes).expect("a good view");
+        let holds = volumes.map(|volume| volume.intersects_sphere(Vec3::NEG_Z * 3.0, 1.0));
+        assert_eq!(holds, [true, false, false, false]);
     }
 
     #[test]
     fn by_coverage_a_map_is_read_from_where_no_finer_one_holds_all() {
         let view = frustum(0.9);
-        let map_view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
+        let reader = Reader::from_eye(DVec3::ZERO, Vec3::NEG_Z);
         let [a, b, c] = maps(&view)[..] else { panic!("three maps") };
-        let from = |maps: &[MapFit], views: &[ViewFrustum], blend: f32| {
-            let descriptor = ShadowMapDescriptor { blend, ..by(MapChoice::Coverage) };
-            coverage::read_from(maps, &map_view, views, &descriptor)
+        let from = |maps: &[FittedMap], views: &[ViewFrustum], blend: f32| {
+            let reading = MapReading { blend, ..by(MapChoice::Coverage) };
+            let from = coverage::read_from(maps, &reader, views, &reading);
+            from[..maps.len()].to_vec()
         };
         // The order is that of the texels' sizes, whatever the order of the maps; a map holds its slice and the filter.
         let read = from(&[c, a, b], &[view], 0.0);
@@ -289,7 +369,7 @@ mod tests {
         assert_eq!(from(&[a, b, c], &[view, frustum(1.5)], 0.0), [Some(f32::MIN); 3]);
         // A map of the whole view leaves nothing to coarser ones, and one that is empty holds nothing.
         let light = fit(&view, DIRECTION, &FitSettings::default()).expect("a fit");
-        let whole = MapFit::new(light, Bias::default());
+        let whole = FittedMap::new(light, Bias::default());
         let mut coarse = whole;
         coarse.fit.texel_size *= 2.0;
         let held = view.slice(0.1, 59.0).expect("a slice");
@@ -303,7 +383,7 @@ mod tests {
     fn by_view_depth_a_map_is_read_from_where_the_one_in_front_is_blended_into_it() {
         let view = frustum(0.9);
         let mut maps = maps(&view);
-        maps[1].blend_near = 4.0;
+        maps[1].covered_near = 4.0;
         assert_eq!(read_from(&maps, &[view]), [Some(f32::MIN), Some(4.0), Some(20.0)]);
     }
 
@@ -311,7 +391,7 @@ mod tests {
     fn a_view_that_counts_its_depths_from_elsewhere_is_off_by_as_much() {
         let frustum = frustum(0.9);
         let from = |eye: DVec3, forward: Vec3| {
-            depth_mismatch(&MapView { eye, ..MapView::from_eye(DVec3::ZERO, forward) }, &frustum)
+            depth_mismatch(&Reader { eye, ..Reader::from_eye(DVec3::ZERO, forward) }, &frustum)
         };
         assert_eq!(from(DVec3::ZERO, Vec3::NEG_Z), 0.0);
         // The other eye of a headset sees the same depths.
@@ -322,10 +402,13 @@ mod tests {
 
     #[test]
     fn without_a_view_nothing_can_be_swept() {
-        let mut maps = maps(&frustum(0.9));
-        let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
+        let maps = maps(&frustum(0.9));
+        let reader = Reader::from_eye(DVec3::ZERO, Vec3::NEG_Z);
+        let mut volumes = [CasterVolume::nowhere(DVec3::ZERO); 3];
         for choice in [MapChoice::ViewDepth, MapChoice::Coverage] {
-            assert_eq!(MapFit::sweep(&mut maps, &view, &[], &by(choice)), Err(FitError::NoView));
+            let swept = caster_volumes(&maps, &by(choice), &reader, &[], &mut volumes);
+            assert_eq!(swept, Err(FitError::NoView));
         }
+        assert_eq!(FittedMaps::default().caster_volumes(&[], &Technique::default()), Err(FitError::NoView));
     }
 }

@@ -1,0 +1,234 @@
+//! A scene's views fitted by the fitter that engines take, which rays tell what the views show.
+
+use glam::{DVec3, Vec3};
+use shadowfit::histogram::needed_texel;
+use shadowfit::need;
+use shadowfit::seen::{Seen, SeenSpace};
+use shadowfit::{FitError, FitInput, FittedMaps, PerspectiveCamera, ShadowFitter, Technique, ViewFrustum};
+use shadowfit_truth::Tracer;
+
+use crate::{PosedScene, View};
+
+/// Rays across the picture.
+const COLUMNS: u32 = 64;
+/// Rays down the picture.
+const ROWS: u32 = 36;
+
+/// Which rays find what a view shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RayUse {
+    /// Those of the scene's present pose, which are made where they are not there.
+    #[default]
+    Wait,
+    /// Those of an earlier pose too, where those of the present one are not there; some are made only where there are
+    /// none at all. That costs sharpness, never coverage.
+    Late,
+    /// Only those that are there, of whichever pose: none are ever made. Without any, fits go by the scene's boxes.
+    IfReady,
+}
+
+impl PosedScene {
+    /// What fits of a technique are given of the scene, for views and a light that travels in `direction` (world axes).
+    pub fn input<'a>(&'a self, technique: &Technique, views: &'a [ViewFrustum], direction: Vec3) -> FitInput<'a> {
+        self.boxes(technique.receivers).input(views, direction)
+    }
+
+    /// Fits the next view of a path, then tells the fitter what that view shows. Where a path begins the fitter forgets
+    /// what was before.
+    ///
+    /// # Errors
+    ///
+    /// When the camera or the technique makes no sense.
+    pub fn fit_next(&self, fitter: &mut ShadowFitter, view: &View) -> Result<FittedMaps, FitError> {
+        if view.is_first {
+            fitter.reset();
+        }
+        let maps = self.fit(fitter, view)?;
+        self.see(fitter, view, RayUse::Wait)?;
+        Ok(maps)
+    }
+
+    /// Fits a view on which the camera has just been set, as a running program does as soon as it has seen that view:
+    /// nothing is held from other views, and what the fitter knows to be visible is what this one shows.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::fit_next`].
+    pub fn fit_alone(&self, fitter: &mut ShadowFitter, view: &View) -> Result<FittedMaps, FitError> {
+        fitter.reset();
+        self.see(fitter, view, RayUse::Wait)?;
+        self.fit(fitter, view)
+    }
+
+    fn fit(&self, fitter: &mut ShadowFitter, view: &View) -> Result<FittedMaps, FitError> {
+        let (views, technique) = ([view.camera.frustum()?], *fitter.technique());
+        fitter.fit(&self.input(&technique, &views, view.direction)).copied()
+    }
+
+    /// Tells a fitter by rays what a view shows, if its technique goes by that and there are rays.
+    ///
+    /// # Errors
+    ///
+    /// When the camera makes no sense.
+    pub fn see(&self, fitter: &mut ShadowFitter, view: &View, rays: RayUse) -> Result<(), FitError> {
+        if !fitter.technique().uses_seen() {
+            return Ok(());
+        }
+        let latest = if rays == RayUse::Wait { None } else { self.latest_rays() };
+        let rays = match latest {
+            Some((rays, _)) => rays,
+            None if rays == RayUse::IfReady => return Ok(()),
+            None => self.shared_rays(),
+        };
+        let camera = self.camera_for_rays(&view.camera);
+        let seen = see_by_rays(&rays.tracer, &camera, view.direction, fitter.technique())?;
+        fitter.see(seen.moved(self.origin()));
+        Ok(())
+    }
+}
+
+/// What a camera sees that faces the light, counted by rays against the triangles. Camera and triangles are relative to
+/// the same position; `direction` is the light's direction of travel in world axes.
+///
+/// # Errors
+///
+/// As [`SeenSpace::new`].
+pub fn see_by_rays(
+    tracer: &Tracer,
+    camera: &PerspectiveCamera,
+    direction: Vec3,
+    technique: &Technique,
+) -> Result<Seen, FitError> {
+    let settings = &technique.fit;
+    let space = SeenSpace::new(&camera.frustum()?, direction, settings.up, settings.max_distance)?;
+    let mut seen = Seen::new(space);
+    let world_from_view = camera.view_from_world().inverse();
+    let [right, up, back] =
+        [world_from_view.x_axis, world_from_view.y_axis, world_from_view.z_axis].map(|axis| axis.truncate().as_dvec3());
+    let tan_y = (f64::from(camera.fov_y) * 0.5).tan();
+    let tan_x = tan_y * f64::from(camera.aspect);
+    let pixel = 2.0 * tan_y / f64::from(need::PIXELS);
+    for row in 0..ROWS {
+        for column in 0..COLUMNS {
+            let x = (2.0 * (f64::from(column) + 0.5) / f64::from(COLUMNS) - 1.0) * tan_x;
+            let y = (1.0 - 2.0 * (f64::from(row) + 0.5) / f64::from(ROWS)) * tan_y;
+            let ray: DVec3 = right * x + up * y - back;
+            let Some(hit) = tracer.first_hit(camera.eye.as_vec3(), ray.as_vec3()) else { continue };
+            let normal = tracer.normal(hit.triangle).as_dvec3();
+            let normal = if normal.dot(ray) > 0.0 { -normal } else { normal };
+            let depth = f64::from(hit.distance);
+            // How far the point moves on its surface when the ray moves across the picture at a depth of one metre.
+            let slide = |across: DVec3| across - ray * (across.dot(normal) / ray.dot(normal));
+            let [right, down] = [slide(right), slide(-up)];
+            if normal.dot(direction.as_dvec3()) < 0.0 {
+                let texel = needed_texel(right.as_vec3(), down.as_vec3(), direction);
+                seen.count_depth(hit.distance, -texel.log2());
+            }
+            let [right, down] = [right, down].map(|step| (step * (pixel * depth)).as_vec3());
+            if let Some(cell) = space.need.index((ray * depth).as_vec3(), normal.as_vec3(), right, down) {
+                seen.count_cell(cell);
+            }
+        }
+    }
+    Ok(seen)
+}
+
+#[cfg(test)]
+mod tests {
+    use shadowfit_render::{AdapterChoice, Gpu, Renderer};
+    use shadowfit_scene::builtin::default_scene;
+    use shadowfit_wgpu::ShadowMapDescriptor;
+
+    use crate::PreparedScene;
+
+    use super::*;
+
+    fn scene() -> PreparedScene {
+        let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
+        let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::default(), 1).expect("a renderer");
+        PreparedScene::new(&gpu, renderer.material_layout(), default_scene()).expect("the default scene")
+    }
+
+    fn view(z: f64, is_first: bool) -> View {
+        let camera = PerspectiveCamera {
+            eye: DVec3::new(3.0, 2.0, z),
+            forward: Vec3::new(-0.3, -0.2, -0.9),
+            up: Vec3::Y,
+            fov_y: 0.8,
+            aspect: 1.6,
+            near: 0.1,
+            far: 150.0,
+        };
+        View { camera, direction: Vec3::new(0.4, -0.7, 0.3).normalize(), is_first }
+    }
+
+    fn fitter(name: &str) -> ShadowFitter {
+        ShadowFitter::new(&Technique::preset(name).expect("a preset"))
+    }
+
+    #[test]
+    fn gpu_windows_are_placed_by_the_frame_before_and_those_of_a_picture_alone_by_itself() {
+        let scene = scene();
+        let alone = |name: &str| scene.fit_alone(&mut fitter(name), &view(9.0, false)).expect("maps");
+        let along = |name: &str| -> Vec<FittedMaps> {
+            let mut fitter = fitter(name);
+            let frames = [view(9.0, true), view(8.9, false), view(8.8, false)];
+            frames.iter().map(|view| scene.fit_next(&mut fitter, view).expect("maps")).collect()
+        };
+        let (seen, estimated) = (along("windows-4"), along("windows-boxes-4"));
+        assert_ne!(alone("windows-4"), alone("windows-boxes-4"), "the picture's own needs count");
+        assert_eq!(seen[0], estimated[0], "the first frame knows the boxes alone");
+        assert_eq!(seen[0], alone("windows-boxes-4"));
+        assert_ne!(seen[1], estimated[1], "the next one knows what the first one showed");
+    }
+
+    #[test]
+    fn gpu_without_waiting_the_boxes_place_windows_until_rays_are_there() {
+        let mut scene = scene();
+        let seen = |scene: &PreparedScene, name: &str, rays: RayUse| {
+            let mut fitter = fitter(name);
+            scene.see(&mut fitter, &view(9.0, false), rays).expect("a camera that makes sense");
+            fitter.seen().cloned()
+        };
+        for name in ["windows-4", "histogram-4"] {
+            assert_eq!(seen(&scene, name, RayUse::IfReady), None, "{name}");
+        }
+        assert!(scene.latest_rays().is_none());
+        scene.request_rays();
+        while !scene.take_rays() {
+            std::thread::yield_now();
+        }
+        let by_rays = seen(&scene, "windows-4", RayUse::IfReady);
+        assert!(by_rays.is_some());
+        assert_eq!(by_rays, seen(&scene, "windows-4", RayUse::Wait));
+    }
+
+    #[test]
+    fn gpu_only_techniques_that_go_by_it_are_told_what_a_view_shows() {
+        let scene = scene();
+        let is_told = |name: &str| {
+            let mut fitter = fitter(name);
+            scene.see(&mut fitter, &view(9.0, true), RayUse::Wait).expect("a camera that makes sense");
+            fitter.seen().is_some()
+        };
+        assert_eq!(["clusters-4", "stable-4", "windows-boxes-4"].map(is_told), [false; 3]);
+        assert_eq!(["histogram-4", "windows-4"].map(is_told), [true; 2]);
+    }
+
+    #[test]
+    fn rays_count_places_and_depths_in_world_positions() {
+        let corner = |x: f32, z: f32| Vec3::new(x, 0.0, z);
+        let ground = [corner(-50.0, 50.0), corner(50.0, 50.0), corner(0.0, -50.0)];
+        let camera =
+            PerspectiveCamera { eye: DVec3::new(0.0, 2.0, 5.0), forward: Vec3::NEG_Z, ..view(0.0, true).camera };
+        let seen = see_by_rays(&Tracer::new([ground]), &camera, Vec3::NEG_Y, &Technique::default());
+        let origin = DVec3::new(1e5, 0.0, -2e5);
+        let seen = seen.expect("a camera that makes sense").moved(origin);
+        assert_eq!(seen.need().space.origin, origin + camera.eye);
+        assert!(seen.need().counts.iter().sum::<u32>() > 100);
+        assert!(seen.histogram().bins.iter().sum::<u32>() > 100);
+        let from_below = see_by_rays(&Tracer::new([ground]), &camera, Vec3::Y, &Technique::default());
+        let from_below = from_below.expect("a camera that makes sense");
+        assert_eq!(from_below.histogram().bins.iter().sum::<u32>(), 0, "what faces away does not count");
+    }
+}

@@ -1,0 +1,89 @@
+//! From where the maps are read, and what maps a shadow map refuses.
+
+use shadowfit::culling::Reader;
+use shadowfit::glam::{DVec3, UVec2, Vec3};
+use shadowfit::settings::MapChoice;
+use shadowfit::{DepthConvention, FittedMap, LightFit};
+
+use crate::{ShadowMapDescriptor, ShadowMapError};
+
+/// From where the maps are looked up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapView {
+    /// World position that all positions in the shaders are relative to, in metres.
+    pub origin: DVec3,
+    /// World position of the eye that view depths are counted from, in metres.
+    pub eye: DVec3,
+    /// Unit direction in which that eye looks, world axes.
+    pub forward: Vec3,
+    /// Number of the frame, by which the pattern of [soft filters](shadowfit::settings::FilterKind::is_soft) moves, for
+    /// temporal antialiasing that averages over frames; 0 in each frame for a pattern that stays.
+    pub frame: u32,
+}
+
+/// How far the length of [`MapView::forward`] may be from 1: the rounding of a direction that was normalised in f32 and
+/// turned by a few matrices.
+const UNIT_TOLERANCE: f32 = 1e-3;
+
+impl MapView {
+    /// Positions and view depths relative to an eye that looks along `forward` (unit, world axes).
+    pub fn from_eye(eye: DVec3, forward: Vec3) -> Self {
+        Self { origin: eye, eye, forward, frame: 0 }
+    }
+
+    /// What positions and view depths are counted from.
+    pub(crate) fn reader(&self) -> Reader {
+        let Self { origin, eye, forward, .. } = *self;
+        Reader { origin, eye, forward }
+    }
+}
+
+/// Refuses maps that a shadow map cannot hold or that a shader would read wrongly.
+pub(crate) fn check(
+    descriptor: &ShadowMapDescriptor,
+    view: &MapView,
+    maps: &[FittedMap],
+) -> Result<(), ShadowMapError> {
+    let (fits, layers) = (maps.len(), descriptor.maps as usize);
+    if fits > layers {
+        return Err(ShadowMapError::TooManyFits { fits, layers });
+    }
+    let length = view.forward.length();
+    // NaN is not a unit length either.
+    let is_unit = (length - 1.0).abs() <= UNIT_TOLERANCE;
+    if fits > 0 && !is_unit {
+        return Err(ShadowMapError::Forward { forward: view.forward, length });
+    }
+    let mut previous = f32::MIN;
+    for (index, map) in maps.iter().enumerate() {
+        check_layer(descriptor, index, &map.fit)?;
+        check_wrap(descriptor, index, map)?;
+        map.bias.checked().map_err(|error| ShadowMapError::Bias { index, error })?;
+        let far = map.depth_range().far as f32;
+        // NaN has no order.
+        let is_in_order = far >= previous || descriptor.choice == MapChoice::Coverage;
+        if !is_in_order {
+            return Err(ShadowMapError::Order { index, far, previous });
+        }
+        previous = far;
+    }
+    Ok(())
+}
+
+/// Refuses a fit that a layer cannot hold.
+fn check_layer(descriptor: &ShadowMapDescriptor, index: usize, fit: &LightFit) -> Result<(), ShadowMapError> {
+    let map: ([u32; 2], DepthConvention) = (descriptor.resolution, descriptor.depth);
+    let fit = (fit.resolution.to_array(), fit.depth);
+    let suits = fit.1 == map.1 && fit.0.iter().zip(&map.0).all(|(fit, layer)| (1..=*layer).contains(fit));
+    if suits { Ok(()) } else { Err(ShadowMapError::Fit { index, fit, map }) }
+}
+
+/// Refuses a map that cannot wrap around in its layer.
+fn check_wrap(descriptor: &ShadowMapDescriptor, index: usize, map: &FittedMap) -> Result<(), ShadowMapError> {
+    let (wrap, fit) = (map.wrap, map.fit.resolution);
+    let is_whole = fit.to_array() == descriptor.resolution && wrap.cmplt(fit).all();
+    if wrap == UVec2::ZERO || is_whole {
+        return Ok(());
+    }
+    Err(ShadowMapError::Wrap { index, wrap: wrap.to_array(), fit: fit.to_array(), map: descriptor.resolution })
+}

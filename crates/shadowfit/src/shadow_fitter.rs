@@ -1,0 +1,133 @@
+//! The fitter of a sun: a technique, what earlier frames were and showed, and the memory that fits work in.
+
+use alloc::vec::Vec;
+
+use glam::DVec2;
+
+use crate::{FitError, FitInput, FittedMaps, MapFitter, Seen, Technique, Workspace};
+
+/// Views that a fit works with beside those of the frame: held maps are fitted to the views of two frames ahead as well.
+const VIEWS_AHEAD: usize = 2;
+
+/// Fits a technique's maps frame by frame. One for each sun.
+///
+/// It remembers the frames before, owns its scratch memory, which grows once, and takes [what an earlier frame
+/// showed](Seen), whenever that is known.
+#[derive(Clone, Debug, Default)]
+pub struct ShadowFitter {
+    technique: Technique,
+    history: MapFitter,
+    fitted: FittedMaps,
+    scratch: Vec<DVec2>,
+    seen: Option<Seen>,
+}
+
+impl ShadowFitter {
+    /// A fitter that remembers no frame.
+    pub fn new(technique: &Technique) -> Self {
+        Self { technique: *technique, ..Self::default() }
+    }
+
+    /// The technique.
+    pub fn technique(&self) -> &Technique {
+        &self.technique
+    }
+
+    /// Goes on with another technique. The next fit keeps no map of the old one.
+    pub fn set_technique(&mut self, technique: &Technique) {
+        self.technique = *technique;
+    }
+
+    /// Forgets all earlier frames: after a camera cut, or when a new level begins.
+    pub fn reset(&mut self) {
+        self.history.reset();
+        self.seen = None;
+    }
+
+    /// Tells what a picture of an earlier frame showed. It serves until something newer is told: late or wrong counts
+    /// cost sharpness, never coverage.
+    pub fn see(&mut self, seen: Seen) {
+        self.seen = Some(seen);
+    }
+
+    /// What was told last.
+    pub fn seen(&self) -> Option<&Seen> {
+        self.seen.as_ref()
+    }
+
+    /// Fits the maps of a frame. Where the input says neither [`FitInput::need`] nor [`FitInput::histogram`], it is
+    /// completed by what was [told](Self::see) of earlier frames.
+    ///
+    /// # Errors
+    ///
+    /// As [`MapFitter::fit`]. What is remembered stays as it was; there are no maps of this frame then.
+    pub fn fit(&mut self, input: &FitInput) -> Result<&FittedMaps, FitError> {
+        let seen = self.seen.as_ref().filter(|_| input.need.is_empty() && input.histogram.is_none());
+        let grid = seen.map(Seen::need);
+        let input = match seen {
+            Some(seen) => FitInput { need: grid.as_slice(), histogram: Some(seen.histogram()), ..*input },
+            None => *input,
+        };
+        self.scratch.resize(Workspace::required(input.boxes(), input.views.len() + VIEWS_AHEAD), DVec2::ZERO);
+        let workspace = &mut Workspace::new(&mut self.scratch);
+        let fitted = self.history.fit_into(&input, &self.technique, workspace, &mut self.fitted);
+        if let Err(error) = fitted {
+            self.fitted = FittedMaps::default();
+            return Err(error);
+        }
+        Ok(&self.fitted)
+    }
+
+    /// The maps of the last frame; none after an error.
+    pub fn fitted(&self) -> &FittedMaps {
+        &self.fitted
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec3, Vec3};
+
+    use super::*;
+    use crate::seen::SeenSpace;
+    use crate::{Aabb, Boxes, PerspectiveCamera};
+
+    #[test]
+    fn what_was_seen_places_the_maps_until_the_fitter_forgets_it() {
+        let camera = PerspectiveCamera {
+            eye: DVec3::new(0.0, 2.0, 0.0),
+            forward: Vec3::NEG_Z,
+            up: Vec3::Y,
+            fov_y: 0.8,
+            aspect: 1.6,
+            near: 0.1,
+            far: 200.0,
+        };
+        let views = [camera.frustum().expect("a camera")];
+        let ground = [Aabb::new(Vec3::new(-100.0, -0.1, -200.0), Vec3::new(100.0, 0.0, 10.0))];
+        let boxes = Boxes { origin: DVec3::ZERO, boxes: &ground };
+        let sun = Vec3::new(0.3, -0.8, 0.2);
+        let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, sun) };
+        let technique = Technique::default();
+        let mut fitter = ShadowFitter::new(&technique);
+        let by_boxes = *fitter.fit(&input).expect("maps");
+
+        let space = SeenSpace::new(&views[0], sun, technique.fit.up, technique.fit.max_distance).expect("a space");
+        let mut seen = Seen::new(space);
+        let step = Vec3::X * 0.01;
+        for metre in 100..140_u8 {
+            let place = Vec3::new(0.0, -2.0, -f32::from(metre));
+            seen.count_cell(space.need.index(place, Vec3::Y, step, Vec3::Z * 0.01).expect("a cell"));
+        }
+        fitter.reset();
+        fitter.see(seen);
+        let by_grid = *fitter.fit(&input).expect("maps");
+        assert_ne!(by_grid, by_boxes);
+        assert!(by_grid[0].fit.covers(DVec3::new(0.0, 0.0, -120.0)), "the finest map is where points were seen");
+        fitter.reset();
+        assert_eq!(*fitter.fit(&input).expect("maps"), by_boxes);
+
+        fitter.fit(&FitInput { direction: Vec3::ZERO, ..input }).expect_err("no direction");
+        assert!(fitter.fitted().is_empty());
+    }
+}
