@@ -98,9 +98,8 @@ impl Canvas {
         format!("{}\n", self.document)
     }
 
-    /// Draws what shows only inside a rectangle of the page.
-    pub(super) fn clipped(&mut self, min: DVec2, max: DVec2, draw: impl FnOnce(&mut Self)) {
-        let size = max - min;
+    /// Draws what shows only inside a rectangle of the page, with an outline and a title above.
+    pub(super) fn panel(&mut self, min: DVec2, size: DVec2, title: &str, draw: impl FnOnce(&mut Self)) {
         // An SVG element inside another one hides what is outside of it.
         let document = Document::new()
             .set("x", min.x)
@@ -111,6 +110,8 @@ impl Canvas {
         let mut inner = Self { document };
         draw(&mut inner);
         self.document.append(inner.document);
+        self.rectangle(min, min + size, stroke(GREY, 1.0));
+        self.bold(min - DVec2::new(0.0, 12.0), RIGHT, INK, title);
     }
 
     /// A label in a colour. Its baseline lies at the point.

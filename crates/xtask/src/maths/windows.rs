@@ -5,7 +5,7 @@ use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::need::{CELLS, NeedGrid, NeedSpace, SIDE};
 use shadowfit::{Aabb, FitInput, FittedMaps, PerspectiveCamera, Technique};
 
-use super::canvas::{Canvas, Frame, GREY, INK, MAPS, RIGHT, fill, stroke};
+use super::canvas::{Canvas, Frame, INK, MAPS, RIGHT, fill, stroke};
 use super::scene::{self, Fitter, Look, Visible, boxes, draw_box, visible};
 
 /// Where the sun travels.
@@ -45,43 +45,38 @@ pub(super) fn draw() -> Result<String> {
     }
     let shown = walk.step(0.0)?;
     let mut canvas = Canvas::new(456.0, "What a street's visible points ask for, and four windows over them");
-    let sides = [DVec2::new(20.0, 38.0), DVec2::new(376.0, 38.0)].map(|low| [low, low + 324.0]);
     let look = shown.look();
-    for ([low, high], count) in sides.into_iter().zip([4, 3]) {
+    for (left, count, title) in
+        [(20.0, 4, "The four windows, as the light sees them"), (376.0, 3, "The three finest, enlarged")]
+    {
+        let (low, size) = (DVec2::new(left, 38.0), DVec2::splat(324.0));
         let windows = shown.maps[..count].iter().flat_map(|map| look.map(&map.fit));
-        let frame = Frame::around(windows, low + 10.0, high - 10.0);
-        canvas.clipped(low, high, |canvas| panel(canvas, &shown, &frame));
-        canvas.rectangle(low, high, stroke(GREY, 1.0));
+        let frame = Frame::around(windows, low + 10.0, low + size - 10.0);
+        canvas.panel(low, size, title, |canvas| panel(canvas, &shown, &look, &frame));
     }
-    canvas.bold(DVec2::new(20.0, 26.0), RIGHT, INK, "The four windows, as the light sees them");
-    canvas.bold(DVec2::new(376.0, 26.0), RIGHT, INK, "The three finest, enlarged");
     legend(&mut canvas, &shown);
     Ok(canvas.finish())
 }
 
 /// What is visible, and the windows over it.
-fn panel(canvas: &mut Canvas, shown: &Step, frame: &Frame) {
-    let look = shown.look();
-    houses(canvas, frame, &look);
+fn panel(canvas: &mut Canvas, shown: &Step, look: &Look, frame: &Frame) {
+    street(canvas, look, frame);
     for (i, colour) in OCTAVES.into_iter().enumerate().rev() {
         let own = shown.seen.iter().filter(|seen| shown.octave(seen) == Some(i));
         canvas.dots(own.map(|seen| frame.at(look.relative(seen.point.as_dvec3()))), 2.6, colour);
     }
-    for (map, colour) in shown.maps.iter().zip(MAPS).rev() {
-        canvas.polygon(look.map(&map.fit).map(|p| frame.at(p)), stroke(colour, 3.0));
-    }
-    eye(canvas, frame.at(look.relative(DVec3::ZERO)));
+    shown.outline(canvas, look, frame, 3.0);
 }
 
 /// The street without its ground.
-pub(super) fn houses(canvas: &mut Canvas, frame: &Frame, look: &Look) {
+pub(super) fn street(canvas: &mut Canvas, look: &Look, frame: &Frame) {
     for aabb in &STREET[1..] {
         draw_box(canvas, frame, &look.aabb(aabb));
     }
 }
 
 /// Where the camera is.
-pub(super) fn eye(canvas: &mut Canvas, at: DVec2) {
+fn eye(canvas: &mut Canvas, at: DVec2) {
     canvas.circle(at, 4.5, stroke(INK, 1.5).filled("#ffffff", 1.0));
 }
 
@@ -124,6 +119,14 @@ impl Step {
         let cell = self.space.index(seen.point, seen.normal, seen.right, seen.down)?;
         let texel = self.space.texel * (1 << (cell / (SIDE * SIDE))) as f32;
         Some((libm::log2f(texel / FINEST).round().max(0.0) as usize).min(OCTAVES.len() - 1))
+    }
+
+    /// Draws the outlines of the maps, and the eye.
+    pub(super) fn outline(&self, canvas: &mut Canvas, look: &Look, frame: &Frame, width: f64) {
+        for (map, colour) in self.maps.iter().zip(MAPS).rev() {
+            canvas.polygon(look.map(&map.fit).map(|p| frame.at(p)), stroke(colour, width));
+        }
+        eye(canvas, frame.at(look.relative(DVec3::ZERO)));
     }
 
     /// The plane across the light in which windows are squares.
