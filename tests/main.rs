@@ -3,13 +3,13 @@
 //! Tests that need a graphics device have `gpu` or `golden` in their path, by which `cargo xtask test` leaves them out
 //! where there is none.
 
-mod architecture;
 mod artefacts;
 mod conventions;
 mod fits;
 mod golden;
 mod integration;
 mod peers;
+mod recipes;
 mod reports_gpu;
 mod robustness;
 mod samples;

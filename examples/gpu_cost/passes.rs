@@ -44,7 +44,6 @@ const fn way(name: &'static str, keeps: bool, culling: Culling) -> Way {
 struct Taken {
     gpu: Vec<f64>,
     cpu: Vec<f64>,
-    texels: Vec<f64>,
     draws: Vec<f64>,
     /// Frames in which a whole layer was cleared.
     cleared: usize,
@@ -90,7 +89,6 @@ fn walk(bench: &Bench, scene: &BenchScene, way: Way) -> Result<Taken> {
             let pieces = || engine.sun.passes().flat_map(|pass| pass.pieces());
             taken.gpu.push(time);
             taken.cpu.push(cpu);
-            taken.texels.push(engine.sun.passes().map(|pass| pass.texels()).sum::<u64>() as f64);
             taken.draws.push(pieces().map(|piece| piece.casters.len()).sum::<usize>() as f64);
             taken.cleared += usize::from(engine.sun.passes().any(|pass| pass.is_cleared()));
         }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail, ensure};
 use glam::Vec3;
+use shadowfit::Aabb;
 use shadowfit::tool::LightSettings;
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_scene::{Scene, load_gltf};
@@ -101,7 +102,8 @@ impl Job {
         } else {
             let (bounds, rays) = (comparison.scene().bounds(), comparison.scene().rays());
             let origin = rays.origin;
-            let bounds = [bounds.min, bounds.max].map(|corner| (corner.as_dvec3() - origin).as_vec3());
+            let relative = |corner: Vec3| (corner.as_dvec3() - origin).as_vec3();
+            let bounds = Aabb::new(relative(bounds.min), relative(bounds.max));
             let mut found = find(&rays.tracer, bounds, aspect).with_context(|| self.title())?;
             found.path.frames.iter_mut().for_each(|frame| frame.camera.eye += origin);
             notes.extend(found.notes);

@@ -169,7 +169,7 @@ fn sample_pages(machine: &Machine, images: &Path, is_wanted: impl Fn(&str) -> bo
 }
 
 /// Files of samples' pictures that a page shows.
-pub(crate) fn sample_pictures(page: &str) -> impl Iterator<Item = &str> {
+fn sample_pictures(page: &str) -> impl Iterator<Item = &str> {
     let links = page.split("images/samples/").skip(1).filter_map(|rest| rest.split_once(')'));
     links.map(|(file, _)| file)
 }

@@ -48,7 +48,7 @@ enum Task {
         /// Samples whose pictures alone are rendered, for example `xna-shadow-mapping`.
         samples: Vec<String>,
     },
-    /// Draw the pictures of docs/MATHS.md again, with the fits of the core crate.
+    /// Draw those pictures of docs/MATHS.md again that show what the core crate's fits give.
     Maths,
     /// Measure the core crate, or with `--gpu` what shadows cost on a GPU, and write the times and ratios into
     /// docs/BENCHMARKS.md.

@@ -6,7 +6,7 @@
 use anyhow::{Result, ensure};
 use glam::Vec3;
 use rayon::prelude::*;
-use shadowfit::PerspectiveCamera;
+use shadowfit::{Aabb, PerspectiveCamera};
 use shadowfit_truth::Tracer;
 
 use super::probe::{Probe, is_a_point};
@@ -59,17 +59,17 @@ pub(crate) struct Found {
     pub(crate) notes: Vec<String>,
 }
 
-/// Finds an orbit and a flight for the scene of `tracer`, whose triangles are within `bounds` (lowest and highest
-/// corner, world space, y up, metres), for pictures of `aspect`. The same scene gives the same path. Where no flight
-/// serves, there is the orbit alone, and a note.
+/// Finds an orbit and a flight for the scene of `tracer`, whose triangles are within `bounds` (world space, y up,
+/// metres), for pictures of `aspect`. The same scene gives the same path. Where no flight serves, there is the orbit
+/// alone, and a note.
 ///
 /// # Errors
 ///
 /// When the scene is empty, or its bounds have no size.
-pub(crate) fn find(tracer: &Tracer, bounds: [Vec3; 2], aspect: f32) -> Result<Found> {
-    let [low, high] = bounds;
+pub(crate) fn find(tracer: &Tracer, bounds: Aabb, aspect: f32) -> Result<Found> {
+    let Aabb { min: low, max: high } = bounds;
     ensure!(!tracer.is_empty(), "the scene has no triangles, so there is nothing to look at; give another scene");
-    let radius = (high - low).length() * 0.5;
+    let radius = bounds.size().length() * 0.5;
     let sane = radius.is_finite() && radius > 0.0 && low.cmple(high).all();
     ensure!(sane, "the scene reaches from {low} to {high}, which is no size to look at; give a camera path for it");
     ensure!(aspect.is_finite() && aspect > 0.0, "pictures {aspect} times as wide as high cannot be looked at");
@@ -86,7 +86,7 @@ pub(crate) fn find(tracer: &Tracer, bounds: [Vec3; 2], aspect: f32) -> Result<Fo
         ),
     }
     let farthest = |camera: &PerspectiveCamera| {
-        box_corners(bounds).map(|corner| corner.distance(camera.eye.as_vec3())).into_iter().fold(0.0, f32::max)
+        bounds.corners().map(|corner| corner.distance(camera.eye.as_vec3())).into_iter().fold(0.0, f32::max)
     };
     let far = frames.iter().map(|frame| farthest(&frame.camera)).fold(0.0, f32::max) * FAR_MARGIN;
     for frame in &mut frames {
@@ -111,8 +111,8 @@ fn lens(radius: f32, aspect: f32) -> PerspectiveCamera {
 
 /// Cameras on a circle around the scene, at the least distance from which all of them see all of it. They look at a
 /// point of the vertical through its middle that lets them come nearest.
-fn orbit(probe: &Probe, bounds: [Vec3; 2], lens: PerspectiveCamera) -> Vec<PerspectiveCamera> {
-    let middle = (bounds[0] + bounds[1]) * 0.5;
+fn orbit(probe: &Probe, bounds: Aabb, lens: PerspectiveCamera) -> Vec<PerspectiveCamera> {
+    let middle = (bounds.min + bounds.max) * 0.5;
     let (sin, cos) = ORBIT_ELEVATION.to_radians().sin_cos();
     let outward: Vec<Vec3> = (0..FRAMES)
         .map(|frame| (frame as f32 / FRAMES as f32 * std::f32::consts::TAU).sin_cos())
@@ -174,19 +174,11 @@ impl Needs {
     }
 }
 
-fn box_corners([low, high]: [Vec3; 2]) -> [Vec3; 8] {
-    let pick = |bit: bool, low: f32, high: f32| if bit { high } else { low };
-    [0, 1, 2, 3, 4, 5, 6, 7].map(|index| {
-        let bit = |place: u32| index >> place & 1 == 1;
-        Vec3::new(pick(bit(0), low.x, high.x), pick(bit(1), low.y, high.y), pick(bit(2), low.z, high.z))
-    })
-}
-
 /// Cameras through the scene: lowered, raised and shortened until they serve.
-fn flight(probe: &Probe, bounds: [Vec3; 2], lens: PerspectiveCamera) -> Option<Vec<PerspectiveCamera>> {
+fn flight(probe: &Probe, bounds: Aabb, lens: PerspectiveCamera) -> Option<Vec<PerspectiveCamera>> {
     let radius = probe.clearance / CLEARANCE;
     let height = EYE_HEIGHT.clamp(HEIGHT_SHARES[0] * radius, HEIGHT_SHARES[1] * radius);
-    let middle = (bounds[0] + bounds[1]) * 0.5;
+    let middle = (bounds.min + bounds.max) * 0.5;
     RAISES.iter().find_map(|raise| {
         let route = Places::new(probe, bounds, height * raise).route(middle)?;
         SHARES.iter().find_map(|&share| {
@@ -270,15 +262,15 @@ mod tests {
     /// Whether all promises of a found path hold, both parts of it there.
     fn assert_serves(name: &str, triangles: &[Corners]) -> Found {
         let found = found(triangles);
-        let [low, high] = bounds(triangles);
+        let bounds = bounds(triangles);
         let tracer = Tracer::new(triangles.iter().copied());
-        let probe = Probe::new(&tracer, (high - low).length() * 0.5 * CLEARANCE);
+        let probe = Probe::new(&tracer, bounds.size().length() * 0.5 * CLEARANCE);
         assert_eq!(found.path.frames.len(), 2 * FRAMES, "{name}: {:?}", found.notes);
         for frame in &found.path.frames {
             let (camera, eye) = (&frame.camera, frame.camera.eye.as_vec3());
             assert!(probe.is_clear(eye), "{name}: {} at {eye}", frame.group);
             camera.frustum().expect("a frustum");
-            for corner in box_corners([low, high]) {
+            for corner in bounds.corners() {
                 assert!((corner - eye).dot(camera.forward) < camera.far, "{name}: {corner}");
             }
         }
@@ -340,10 +332,10 @@ mod tests {
     #[test]
     fn scenes_without_anything_or_any_size_are_refused() {
         let refused = |tracer: &Tracer, bounds| find(tracer, bounds, ASPECT).expect_err("refused").to_string();
-        assert!(refused(&Tracer::new([]), [Vec3::ZERO, Vec3::ONE]).contains("no triangles"));
+        assert!(refused(&Tracer::new([]), Aabb::new(Vec3::ZERO, Vec3::ONE)).contains("no triangles"));
         let point = Tracer::new([[Vec3::ONE; 3]]);
         for bad in [[Vec3::ONE; 2], [Vec3::NAN; 2], [Vec3::INFINITY, Vec3::NEG_INFINITY], [Vec3::ONE, Vec3::ZERO]] {
-            assert!(refused(&point, bad).contains("no size"), "{bad:?}");
+            assert!(refused(&point, Aabb::new(bad[0], bad[1])).contains("no size"), "{bad:?}");
         }
     }
 }

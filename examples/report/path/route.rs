@@ -1,11 +1,12 @@
 //! A way through a scene: places where a camera can stand, which of them it can fly between, and the longest way
 //! through the middle of those that hang together.
 
-use std::cmp::{Ordering, Reverse};
-use std::collections::{BinaryHeap, HashMap};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 use glam::{Vec2, Vec3, Vec3Swizzles};
 use rayon::prelude::*;
+use shadowfit::Aabb;
 
 use super::probe::Probe;
 
@@ -42,20 +43,18 @@ pub(super) struct Route {
 
 impl Places {
     /// Places at `height` above floors within `bounds` (metres), lower under low ceilings.
-    pub(super) fn new(probe: &Probe, bounds: [Vec3; 2], height: f32) -> Self {
+    pub(super) fn new(probe: &Probe, bounds: Aabb, height: f32) -> Self {
         let columns: Vec<Vec<Vec3>> =
             (0..COLUMNS * COLUMNS).into_par_iter().map(|column| column_eyes(probe, bounds, height, column)).collect();
         let mut eyes = Vec::new();
-        let mut of_column: HashMap<usize, Vec<usize>> = HashMap::new();
-        for (column, own) in columns.into_iter().enumerate() {
-            of_column.insert(column, (eyes.len()..eyes.len() + own.len()).collect());
+        let mut of_column = Vec::with_capacity(columns.len());
+        for own in columns {
+            of_column.push(eyes.len()..eyes.len() + own.len());
             eyes.extend(own);
         }
-        let ways: Vec<(usize, usize)> = neighbours()
-            .flat_map(|(from, to)| {
-                of_column[&from].iter().flat_map(|&a| of_column[&to].iter().map(move |&b| (a, b))).collect::<Vec<_>>()
-            })
-            .collect();
+        let places = |column: usize| of_column[column].clone();
+        let between = |(from, to)| places(from).flat_map(move |a| places(to).map(move |b| (a, b)));
+        let ways: Vec<(usize, usize)> = neighbours().flat_map(between).collect();
         let open: Vec<_> = ways.into_par_iter().filter(|&(a, b)| is_link(probe, eyes[a], eyes[b])).collect();
         let mut links = vec![Vec::new(); eyes.len()];
         for (a, b) in open {
@@ -117,8 +116,10 @@ impl Places {
         let mut distance = vec![f32::INFINITY; self.eyes.len()];
         let mut parent = vec![None; self.eyes.len()];
         distance[start] = 0.0;
-        let mut waiting = BinaryHeap::from([Reverse(Reached { distance: 0.0, place: start })]);
-        while let Some(Reverse(Reached { distance: so_far, place })) = waiting.pop() {
+        // The nearest first: the bits of floats that are not negative are in the order of the floats.
+        let mut waiting = BinaryHeap::from([Reverse((0.0_f32.to_bits(), start))]);
+        while let Some(Reverse((so_far, place))) = waiting.pop() {
+            let so_far = f32::from_bits(so_far);
             if so_far > distance[place] {
                 continue;
             }
@@ -126,32 +127,11 @@ impl Places {
                 let there = so_far + length;
                 if there < distance[next] {
                     (distance[next], parent[next]) = (there, Some(place));
-                    waiting.push(Reverse(Reached { distance: there, place: next }));
+                    waiting.push(Reverse((there.to_bits(), next)));
                 }
             }
         }
         (distance, parent)
-    }
-}
-
-/// A place on the heap, the nearest first.
-#[derive(Clone, Copy, PartialEq)]
-struct Reached {
-    distance: f32,
-    place: usize,
-}
-
-impl Eq for Reached {}
-
-impl Ord for Reached {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.distance.total_cmp(&other.distance).then(self.place.cmp(&other.place))
-    }
-}
-
-impl PartialOrd for Reached {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
     }
 }
 
@@ -200,11 +180,11 @@ fn is_link(probe: &Probe, from: Vec3, to: Vec3) -> bool {
 }
 
 /// Places above the floors of a column, highest first.
-fn column_eyes(probe: &Probe, [low, high]: [Vec3; 2], height: f32, column: usize) -> Vec<Vec3> {
+fn column_eyes(probe: &Probe, bounds: Aabb, height: f32, column: usize) -> Vec<Vec3> {
     let share = |index: usize| 0.5 + CENTRAL * ((index as f32 + OFF_MIDDLE) / COLUMNS as f32 - 0.5);
     let shares = Vec2::new(share(column % COLUMNS), share(column / COLUMNS));
-    let foot = low.xz() + (high - low).xz() * shares;
-    let top = high.y + height.max(high.y - low.y);
+    let foot = bounds.min.xz() + bounds.size().xz() * shares;
+    let top = bounds.max.y + height.max(bounds.size().y);
     let mut surfaces: Vec<(f32, bool)> = Vec::new();
     probe.tracer.for_each_hit(Vec3::new(foot.x, top, foot.y), Vec3::NEG_Y, |hit| {
         surfaces.push((top - hit.distance, probe.tracer.normal(hit.triangle).y >= FLOOR_COSINE));

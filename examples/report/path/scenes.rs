@@ -1,6 +1,7 @@
 //! Generated scenes for the tests of found paths. World space, metres; fronts are outside of solids.
 
 use glam::Vec3;
+use shadowfit::Aabb;
 
 pub(super) type Corners = [Vec3; 3];
 
@@ -48,8 +49,7 @@ pub(super) fn object_on_floor() -> Vec<Corners> {
     triangles
 }
 
-/// Lowest and highest corner.
-pub(super) fn bounds(triangles: &[Corners]) -> [Vec3; 2] {
-    let empty = [Vec3::INFINITY, Vec3::NEG_INFINITY];
-    triangles.iter().flatten().fold(empty, |[low, high], corner| [low.min(*corner), high.max(*corner)])
+/// The box around triangles.
+pub(super) fn bounds(triangles: &[Corners]) -> Aabb {
+    Aabb::from_points(triangles.iter().flatten().copied()).expect("triangles")
 }

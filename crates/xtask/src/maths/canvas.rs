@@ -5,82 +5,66 @@
 use shadowfit::glam::DVec2;
 use svg::Document;
 use svg::node::Node;
-use svg::node::element::{Circle, Line, Path, Polygon, Polyline, Rectangle, Text as TextElement, Title};
+use svg::node::element::{Circle, Path, Polygon, Polyline, Rectangle, Text as TextElement, Title};
 
 /// Width of every picture, in pixels: that of a page's text on GitHub, nearly.
-pub(super) const WIDTH: f64 = 720.0;
+const WIDTH: f64 = 720.0;
 
 /// The colours, chosen to be told apart by colour-blind readers as well (M. Okabe and K. Ito's set).
 pub(super) const INK: &str = "#2b2b2b";
 pub(super) const GREY: &str = "#8a8a8a";
-pub(super) const PALE: &str = "#d9d6cf";
 pub(super) const BLUE: &str = "#0072b2";
-pub(super) const SKY: &str = "#56b4e9";
 pub(super) const RED: &str = "#d55e00";
 pub(super) const YELLOW: &str = "#e69f00";
 pub(super) const GREEN: &str = "#009e73";
 pub(super) const PURPLE: &str = "#a5488a";
 
-/// Size of labels, in pixels.
-const LABEL: f64 = 14.0;
+/// Colours of the maps, the nearest first.
+pub(super) const MAPS: [&str; 4] = [BLUE, GREEN, YELLOW, PURPLE];
 
-/// How a shape is painted.
+/// Size of labels and of smaller ones, in pixels.
+const LABEL: f64 = 14.0;
+const SMALL: f64 = 12.0;
+
+/// How a shape is painted: its area's colour and opacity, and its line's colour and width in pixels.
 #[derive(Clone, Copy)]
 pub(super) struct Paint {
-    fill: Option<(&'static str, f64)>,
-    stroke: Option<(&'static str, f64)>,
-    dash: Option<&'static str>,
+    fill: (&'static str, f64),
+    stroke: (&'static str, f64),
+    is_dashed: bool,
 }
 
 /// An area without an outline.
 pub(super) const fn fill(colour: &'static str, opacity: f64) -> Paint {
-    Paint { fill: Some((colour, opacity)), stroke: None, dash: None }
+    stroke("none", 0.0).filled(colour, opacity)
 }
 
 /// A line of a width in pixels.
 pub(super) const fn stroke(colour: &'static str, width: f64) -> Paint {
-    Paint { fill: None, stroke: Some((colour, width)), dash: None }
+    Paint { fill: ("none", 1.0), stroke: (colour, width), is_dashed: false }
 }
 
 impl Paint {
     /// The same with its area filled.
     pub(super) const fn filled(self, colour: &'static str, opacity: f64) -> Self {
-        Self { fill: Some((colour, opacity)), ..self }
+        Self { fill: (colour, opacity), ..self }
     }
 
     /// The same with a dashed line.
     pub(super) const fn dashed(self) -> Self {
-        Self { dash: Some("5 4"), ..self }
-    }
-
-    fn put(self, node: &mut impl Node) {
-        let (colour, opacity) = self.fill.unwrap_or(("none", 1.0));
-        node.assign("fill", colour);
-        if opacity < 1.0 {
-            node.assign("fill-opacity", opacity);
-        }
-        if let Some((colour, width)) = self.stroke {
-            node.assign("stroke", colour);
-            node.assign("stroke-width", width);
-            node.assign("stroke-linejoin", "round");
-            node.assign("stroke-linecap", "round");
-        }
-        if let Some(dash) = self.dash {
-            node.assign("stroke-dasharray", dash);
-        }
+        Self { is_dashed: true, ..self }
     }
 }
 
-/// Where a label stands beside its point.
-#[derive(Clone, Copy)]
-pub(super) enum Side {
-    /// Ends at it.
-    Left,
-    /// Is centred on it.
-    Middle,
-    /// Begins at it.
-    Right,
-}
+/// Where a label stands beside its point, as SVG says it.
+pub(super) type Side = &'static str;
+
+/// Ends at the point.
+pub(super) const LEFT: Side = "end";
+/// Is centred on the point.
+pub(super) const MIDDLE: Side = "middle";
+/// Begins at the point.
+pub(super) const RIGHT: Side = "start";
 
 /// A picture in the making.
 pub(super) struct Canvas {
@@ -97,12 +81,14 @@ impl Canvas {
             .set("height", height - 1.0)
             .set("rx", 8)
             .set("fill", "#fbfaf7")
-            .set("stroke", PALE);
+            .set("stroke", "#d9d6cf");
         let document = Document::new()
             .set("viewBox", (0, 0, WIDTH, height))
             .set("width", WIDTH)
             .set("height", height)
             .set("font-family", "Verdana, DejaVu Sans, Helvetica, Arial, sans-serif")
+            .set("stroke-linejoin", "round")
+            .set("stroke-linecap", "round")
             .add(Title::new(title))
             .add(panel);
         Self { document }
@@ -112,9 +98,8 @@ impl Canvas {
         format!("{}\n", self.document)
     }
 
-    /// Draws what shows only inside a rectangle of the page.
-    pub(super) fn clipped(&mut self, min: DVec2, max: DVec2, draw: impl FnOnce(&mut Self)) {
-        let size = max - min;
+    /// Draws what shows only inside a rectangle of the page, with an outline and a title above.
+    pub(super) fn panel(&mut self, min: DVec2, size: DVec2, title: &str, draw: impl FnOnce(&mut Self)) {
         // An SVG element inside another one hides what is outside of it.
         let document = Document::new()
             .set("x", min.x)
@@ -125,113 +110,69 @@ impl Canvas {
         let mut inner = Self { document };
         draw(&mut inner);
         self.document.append(inner.document);
-    }
-
-    /// A label in plain ink.
-    pub(super) fn label(&mut self, at: DVec2, side: Side, text: &str) {
-        self.text(at, side, INK, text);
+        self.rectangle(min, min + size, stroke(GREY, 1.0));
+        self.bold(min - DVec2::new(0.0, 12.0), RIGHT, INK, title);
     }
 
     /// A label in a colour. Its baseline lies at the point.
     pub(super) fn text(&mut self, at: DVec2, side: Side, colour: &str, text: &str) {
-        self.write(at, side, colour, LABEL, false, text);
+        self.write(at, side, colour, (LABEL, "normal"), text);
     }
 
     /// A label in bold.
     pub(super) fn bold(&mut self, at: DVec2, side: Side, colour: &str, text: &str) {
-        self.write(at, side, colour, LABEL, true, text);
+        self.write(at, side, colour, (LABEL, "bold"), text);
     }
 
     /// A smaller label, for axes.
     pub(super) fn small(&mut self, at: DVec2, side: Side, colour: &str, text: &str) {
-        self.write(at, side, colour, LABEL - 2.0, false, text);
+        self.write(at, side, colour, (SMALL, "normal"), text);
     }
 
-    fn write(&mut self, at: DVec2, side: Side, colour: &str, size: f64, is_bold: bool, text: &str) {
-        let anchor = match side {
-            Side::Left => "end",
-            Side::Middle => "middle",
-            Side::Right => "start",
-        };
-        let mut node = TextElement::new(text)
+    fn write(&mut self, at: DVec2, side: Side, colour: &str, (size, weight): (f64, &str), text: &str) {
+        let node = TextElement::new(text)
             .set("x", rounded(at.x))
             .set("y", rounded(at.y))
             .set("font-size", size)
-            .set("text-anchor", anchor)
+            .set("font-weight", weight)
+            .set("text-anchor", side)
             .set("fill", colour);
-        if is_bold {
-            node.assign("font-weight", "bold");
+        self.document.append(node);
+    }
+
+    fn add(&mut self, mut node: impl Node + Into<Box<dyn Node>>, paint: Paint) {
+        node.assign("fill", paint.fill.0);
+        node.assign("fill-opacity", paint.fill.1);
+        node.assign("stroke", paint.stroke.0);
+        node.assign("stroke-width", paint.stroke.1);
+        if paint.is_dashed {
+            node.assign("stroke-dasharray", "5 4");
         }
         self.document.append(node);
     }
 
     pub(super) fn polygon(&mut self, points: impl IntoIterator<Item = DVec2>, paint: Paint) {
-        let mut node = Polygon::new().set("points", joined(points));
-        paint.put(&mut node);
-        self.document.append(node);
+        self.add(Polygon::new().set("points", joined(points)), paint);
     }
 
     pub(super) fn path(&mut self, points: impl IntoIterator<Item = DVec2>, paint: Paint) {
-        let mut node = Polyline::new().set("points", joined(points));
-        paint.put(&mut node);
-        self.document.append(node);
+        self.add(Polyline::new().set("points", joined(points)), paint);
     }
 
     /// Many dots of a diameter in pixels, as one element.
     pub(super) fn dots(&mut self, centres: impl IntoIterator<Item = DVec2>, diameter: f64, colour: &'static str) {
         let dots: Vec<String> = centres.into_iter().map(|p| format!("M{},{}h0", rounded(p.x), rounded(p.y))).collect();
-        let mut node = Path::new().set("d", dots.concat());
-        stroke(colour, diameter).put(&mut node);
-        self.document.append(node);
-    }
-
-    pub(super) fn line(&mut self, from: DVec2, to: DVec2, paint: Paint) {
-        let mut node = Line::new()
-            .set("x1", rounded(from.x))
-            .set("y1", rounded(from.y))
-            .set("x2", rounded(to.x))
-            .set("y2", rounded(to.y));
-        paint.put(&mut node);
-        self.document.append(node);
-    }
-
-    /// A line with a head at its end.
-    pub(super) fn arrow(&mut self, from: DVec2, to: DVec2, colour: &'static str, width: f64) {
-        let along = unit(to - from);
-        let (head, half) = (4.0 + 2.5 * width, 2.0 + 1.5 * width);
-        let neck = to - along * head;
-        self.line(from, neck, stroke(colour, width));
-        self.polygon([to, neck + along.perp() * half, neck - along.perp() * half], fill(colour, 1.0));
-    }
-
-    /// An arrow with a head at both ends.
-    pub(super) fn measure(&mut self, from: DVec2, to: DVec2, colour: &'static str) {
-        let middle = (from + to) * 0.5;
-        self.arrow(middle, from, colour, 1.2);
-        self.arrow(middle, to, colour, 1.2);
+        self.add(Path::new().set("d", dots.concat()), stroke(colour, diameter));
     }
 
     pub(super) fn circle(&mut self, centre: DVec2, radius: f64, paint: Paint) {
-        let mut node =
-            Circle::new().set("cx", rounded(centre.x)).set("cy", rounded(centre.y)).set("r", rounded(radius));
-        paint.put(&mut node);
-        self.document.append(node);
-    }
-
-    pub(super) fn dot(&mut self, centre: DVec2, colour: &'static str) {
-        self.circle(centre, 4.0, fill(colour, 1.0));
+        self.add(Circle::new().set("cx", rounded(centre.x)).set("cy", rounded(centre.y)).set("r", radius), paint);
     }
 
     /// A rectangle from two opposite corners.
     pub(super) fn rectangle(&mut self, a: DVec2, b: DVec2, paint: Paint) {
         self.polygon([a, DVec2::new(b.x, a.y), b, DVec2::new(a.x, b.y)], paint);
     }
-}
-
-/// The direction of a vector; that of x for none.
-pub(super) fn unit(v: DVec2) -> DVec2 {
-    let length = libm::sqrt(v.dot(v));
-    if length > 0.0 { v / length } else { DVec2::X }
 }
 
 /// A tenth of a pixel is finer than anyone sees. Adding +0 makes -0 positive.
@@ -274,11 +215,6 @@ impl Frame {
 
     pub(super) fn at(&self, p: DVec2) -> DVec2 {
         p * self.scale + self.offset
-    }
-
-    /// Pixels per unit along x.
-    pub(super) fn scale(&self) -> f64 {
-        self.scale.x
     }
 }
 

@@ -2,12 +2,11 @@
 
 use anyhow::Result;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::settings::{FitKind, Stabilise};
-use shadowfit::{FitInput, LightFit, MapFitter, PerspectiveCamera, ViewFrustum, Workspace};
+use shadowfit::settings::{FitKind, FitSettings, Stabilise};
+use shadowfit::{FitInput, LightFit, PerspectiveCamera, ViewFrustum};
 
-use super::canvas::{Canvas, Frame, GREY, INK, Side, fill, stroke};
-use super::scene::{Look, axes, camera, draw_frustum, fit_one, plain_fit, plain_maps};
-use super::splits::MAPS;
+use super::canvas::{Canvas, Frame, GREY, INK, LEFT, MAPS, MIDDLE, RIGHT, fill, stroke};
+use super::scene::{Fitter, Look, camera, draw_frustum, one_map, plain_fit};
 
 const LIGHT: Vec3 = Vec3::new(0.25, -0.9, 0.2);
 
@@ -15,102 +14,90 @@ const LIGHT: Vec3 = Vec3::new(0.25, -0.9, 0.2);
 const FRAMES: usize = 96;
 
 pub(super) fn draw() -> Result<String> {
-    let views = views()?;
-    let (fresh, held) = (maps(&views, Stabilise::Off)?, maps(&views, Stabilise::Hysteresis)?);
+    let views: Vec<ViewFrustum> = (0..FRAMES).map(view).collect::<Result<_>>()?;
+    let oriented = plain_fit(FitKind::Oriented);
+    let (fresh, held) = (maps(&views, oriented, Stabilise::Off)?, maps(&views, oriented, Stabilise::Hysteresis)?);
+    let plain = maps(&views[..1], plain_fit(FitKind::FrustumAabb), Stabilise::Off)?;
+    let look = Look { origin: DVec3::ZERO, ..Look::from_light(&plain[0]) };
+    let runs = runs(&held);
     let mut canvas = Canvas::new(404.0, "A turning camera with fresh and with held maps");
-    let plain = plain_fit().with_kind(FitKind::FrustumAabb);
-    let plain = fit_one(&FitInput::new(&views[..1], LIGHT), &plain)?;
-    let look = Look { origin: DVec3::ZERO, ..Look::from_light(&plain) };
     let all = held.iter().chain(&fresh).flat_map(|fit| look.map(fit));
     let frame = Frame::around(all, DVec2::new(18.0, 18.0), DVec2::new(372.0, 340.0));
     for view in [&views[0], &views[FRAMES - 1]] {
         draw_frustum(&mut canvas, &frame, &look.frustum(view));
     }
+    let rectangle = |fit: &LightFit| look.map(fit).map(|p| frame.at(p));
     for fit in fresh.iter().step_by(FRAMES / 6) {
-        canvas.polygon(look.map(fit)[..4].iter().map(|p| frame.at(*p)), stroke(GREY, 0.9));
+        canvas.polygon(rectangle(fit), stroke(GREY, 0.9));
     }
-    let made = made_anew(&held);
-    for (i, colour) in MAPS.into_iter().cycle().take(made.len()).enumerate() {
-        let last = made.get(i + 1).copied().unwrap_or(FRAMES) - 1;
-        let map = |i: usize| look.map(&held[i]).into_iter().take(4).map(|p| frame.at(p));
-        canvas.polygon(map(last), stroke(colour, 1.6).dashed());
-        canvas.polygon(map(made[i]), stroke(colour, 2.8));
+    for (&[first, end], colour) in runs.iter().zip(MAPS.into_iter().cycle()) {
+        canvas.polygon(rectangle(&held[end - 1]), stroke(colour, 1.6).dashed());
+        canvas.polygon(rectangle(&held[first]), stroke(colour, 2.8));
     }
-    canvas.text(DVec2::new(18.0, 366.0), Side::Right, GREY, "grey: some of the 96 fresh fits");
-    canvas.label(DVec2::new(18.0, 386.0), Side::Right, "coloured: held maps, dashed when given up");
-    plots(&mut canvas, &look, &fresh, &held);
+    canvas.text(DVec2::new(18.0, 366.0), RIGHT, GREY, "grey: some of the 96 fresh fits");
+    canvas.text(DVec2::new(18.0, 386.0), RIGHT, INK, "coloured: held maps, dashed when given up");
+    let turn = |fit: &LightFit| {
+        let x = Look::from_light(fit).right;
+        libm::atan2(look.up.dot(x), look.right.dot(x)).to_degrees()
+    };
+    let side = |fit: &LightFit| libm::sqrt(f64::from(fit.texel_size.x * fit.texel_size.y)) * 100.0;
+    plot(&mut canvas, ("turn of the map, degrees", 42.0, [-45.0, 45.0]), &turn, &fresh, &held);
+    plot(&mut canvas, ("side of a texel, cm", 204.0, [0.0, 2.0]), &side, &fresh, &held);
+    canvas.small(DVec2::new(565.0, 332.0), MIDDLE, GREY, "96 frames");
+    let line = |y: f64| DVec2::new(434.0, y);
+    canvas.text(line(366.0), RIGHT, GREY, &format!("Off: texels change {} times", self::runs(&fresh).len()));
+    canvas.text(line(386.0), RIGHT, INK, &format!("Hysteresis: {} maps, still between", runs.len()));
     Ok(canvas.finish())
 }
 
 /// A camera that turns by 0.8 degrees a frame while it walks.
-fn views() -> Result<Vec<ViewFrustum>> {
-    let at = |i: usize| {
-        let turned = camera(0.8 * i as f64 - 40.0, -4.0, 0.6, 30.0);
-        PerspectiveCamera { eye: DVec3::new(0.03 * i as f64, 1.7, -0.02 * i as f64), ..turned }.frustum()
-    };
-    Ok((0..FRAMES).map(at).collect::<Result<_, _>>()?)
+fn view(frame: usize) -> Result<ViewFrustum> {
+    let turned = camera(0.8 * frame as f64 - 40.0, -4.0, 0.6, 30.0);
+    let eye = DVec3::new(0.03 * frame as f64, 1.7, -0.02 * frame as f64);
+    Ok(PerspectiveCamera { eye, ..turned }.frustum()?)
 }
 
 /// One map a frame.
-fn maps(views: &[ViewFrustum], stabilise: Stabilise) -> Result<Vec<LightFit>> {
-    let settings =
-        plain_maps().with_fit(plain_fit().with_kind(FitKind::Oriented)).with_count(1).with_stabilise(stabilise);
-    let mut fitter = MapFitter::new();
-    let mut fit = |view: &ViewFrustum| {
-        let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-        let input = FitInput::new(std::slice::from_ref(view), LIGHT);
-        Ok(fitter.fit(&input, &settings, &mut Workspace::new(&mut storage))?[0].fit)
-    };
-    views.iter().map(&mut fit).collect()
+fn maps(views: &[ViewFrustum], fit: FitSettings, stabilise: Stabilise) -> Result<Vec<LightFit>> {
+    let technique = one_map(fit).with_stabilise(stabilise);
+    let mut fitter = Fitter::new();
+    let fit = |view| Ok(fitter.fit(&FitInput::new(std::slice::from_ref(view), LIGHT), &technique)?[0].fit);
+    views.iter().map(fit).collect()
 }
 
-/// Frames at which the texels change their size or direction.
-fn made_anew(maps: &[LightFit]) -> Vec<usize> {
+/// Runs of frames whose texels keep their size and direction: the first frame, and the one after the last.
+fn runs(maps: &[LightFit]) -> Vec<[usize; 2]> {
     let texels = |fit: &LightFit| (fit.texel_size, fit.light_from_world.x_axis, fit.light_from_world.y_axis);
-    (0..maps.len()).filter(|&i| i == 0 || texels(&maps[i]) != texels(&maps[i - 1])).collect()
+    let runs = maps.chunk_by(|a, b| texels(a) == texels(b));
+    runs.scan(0, |first, run| {
+        let begin = *first;
+        *first += run.len();
+        Some([begin, *first])
+    })
+    .collect()
 }
 
-/// Angle of a map about the light, in degrees.
-fn turn(look: &Look, fit: &LightFit) -> f64 {
-    let [x, ..] = axes(fit);
-    libm::atan2(look.up.dot(x), look.right.dot(x)).to_degrees()
-}
-
-/// Side of a texel, in centimetres.
-fn side(fit: &LightFit) -> f64 {
-    libm::sqrt(f64::from(fit.texel_size.x * fit.texel_size.y)) * 100.0
-}
-
-/// A plot's name, its place on the page, the ends of its axis, and what it shows of a map.
-type Row<'a> = (&'a str, f64, [f64; 2], &'a dyn Fn(&LightFit) -> f64);
-
-/// Angle and texels, frame by frame.
-fn plots(canvas: &mut Canvas, look: &Look, fresh: &[LightFit], held: &[LightFit]) {
-    let rows: [Row; 2] = [
-        ("turn of the map, degrees", 42.0, [-45.0, 45.0], &|fit| turn(look, fit)),
-        ("side of a texel, cm", 204.0, [0.0, 2.0], &side),
-    ];
-    let made = made_anew(held);
-    for (name, top, [low, high], value) in rows {
-        let (min, max) = (DVec2::new(434.0, top), DVec2::new(696.0, top + 108.0));
-        let frame = Frame::stretched(DVec2::new(0.0, low), DVec2::new(FRAMES as f64, high), min, max);
-        canvas.path([min, DVec2::new(min.x, max.y), max], stroke(INK, 1.0));
-        canvas.bold(min - DVec2::new(0.0, 14.0), Side::Right, INK, name);
-        for mark in [low, (low + high) * 0.5, high] {
-            let text = format!("{mark}").replace('-', "−");
-            canvas.small(frame.at(DVec2::new(0.0, mark)) + DVec2::new(-6.0, 4.0), Side::Left, GREY, &text);
-        }
-        for (i, fit) in fresh.iter().enumerate() {
-            canvas.circle(frame.at(DVec2::new(i as f64 + 0.5, value(fit))), 1.3, fill(GREY, 1.0));
-        }
-        for (i, colour) in MAPS.into_iter().cycle().take(made.len()).enumerate() {
-            let end = made.get(i + 1).copied().unwrap_or(FRAMES);
-            let steps = (made[i]..end).flat_map(|i| [0.0, 1.0].map(|t| DVec2::new(i as f64 + t, value(&held[i]))));
-            canvas.path(steps.map(|p| frame.at(p)), stroke(colour, 3.2));
-        }
+/// What a figure is of all maps, frame by frame, with its name, its place on the page and the ends of its axis.
+fn plot(
+    canvas: &mut Canvas,
+    (name, top, [low, high]): (&str, f64, [f64; 2]),
+    figure: &dyn Fn(&LightFit) -> f64,
+    fresh: &[LightFit],
+    held: &[LightFit],
+) {
+    let (min, max) = (DVec2::new(434.0, top), DVec2::new(696.0, top + 108.0));
+    let frame = Frame::stretched(DVec2::new(0.0, low), DVec2::new(FRAMES as f64, high), min, max);
+    canvas.path([min, DVec2::new(min.x, max.y), max], stroke(INK, 1.0));
+    canvas.bold(min - DVec2::new(0.0, 14.0), RIGHT, INK, name);
+    for mark in [low, (low + high) * 0.5, high] {
+        let text = format!("{mark}").replace('-', "−");
+        canvas.small(frame.at(DVec2::new(0.0, mark)) + DVec2::new(-6.0, 4.0), LEFT, GREY, &text);
     }
-    canvas.small(DVec2::new(565.0, 332.0), Side::Middle, GREY, "96 frames");
-    let line = |y: f64| DVec2::new(434.0, y);
-    canvas.text(line(366.0), Side::Right, GREY, &format!("Off: texels change {} times", made_anew(fresh).len()));
-    canvas.label(line(386.0), Side::Right, &format!("Hysteresis: {} maps, still between", made.len()));
+    for (i, fit) in fresh.iter().enumerate() {
+        canvas.circle(frame.at(DVec2::new(i as f64 + 0.5, figure(fit))), 1.3, fill(GREY, 1.0));
+    }
+    for ([first, end], colour) in runs(held).into_iter().zip(MAPS.into_iter().cycle()) {
+        let steps = (first..end).flat_map(|i| [0.0, 1.0].map(|t| DVec2::new(i as f64 + t, figure(&held[i]))));
+        canvas.path(steps.map(|p| frame.at(p)), stroke(colour, 3.2));
+    }
 }

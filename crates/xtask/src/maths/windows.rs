@@ -1,19 +1,15 @@
 //! Windows: what a street's visible points ask for, and where the four windows of `windows-4` stand.
 
 use anyhow::Result;
-use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
+use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::need::{CELLS, NeedGrid, NeedSpace, SIDE};
-use shadowfit::{Aabb, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, Workspace};
+use shadowfit::{Aabb, FitInput, FittedMaps, PerspectiveCamera, Technique};
 
-use super::canvas::{Canvas, Frame, GREY, INK, Side, fill, stroke};
-use super::scene::{Look, Visible, boxes, draw_box, hull, visible};
-use super::splits::MAPS;
+use super::canvas::{Canvas, Frame, INK, MAPS, RIGHT, fill, stroke};
+use super::scene::{self, Fitter, Look, Visible, boxes, draw_box, visible};
 
 /// Where the sun travels.
-pub(super) const LIGHT: Vec3 = Vec3::new(0.25, -0.72, -0.42);
-
-/// Size of the picture that windows are placed for, in pixels.
-pub(super) const PICTURE: UVec2 = UVec2::new(1920, 1080);
+const LIGHT: Vec3 = Vec3::new(0.25, -0.72, -0.42);
 
 /// Rays through the picture.
 const RAYS: u32 = 6000;
@@ -22,7 +18,7 @@ const RAYS: u32 = 6000;
 const STILL: usize = 60;
 
 /// A street with houses on both sides and a square at its end.
-pub(super) const STREET: [Aabb; 11] = [
+const STREET: [Aabb; 11] = [
     Aabb::new(Vec3::new(-45.0, -0.3, -110.0), Vec3::new(45.0, 0.0, 12.0)),
     Aabb::new(Vec3::new(-16.0, 0.0, -18.0), Vec3::new(-6.0, 7.0, -4.0)),
     Aabb::new(Vec3::new(-17.0, 0.0, -40.0), Vec3::new(-6.5, 9.0, -22.0)),
@@ -35,11 +31,6 @@ pub(super) const STREET: [Aabb; 11] = [
     Aabb::new(Vec3::new(1.2, 0.0, -7.0), Vec3::new(2.6, 1.1, -6.2)),
     Aabb::new(Vec3::new(-3.4, 0.0, -12.0), Vec3::new(-2.0, 2.2, -11.0)),
 ];
-
-/// A camera in the street, at a heading in degrees from -z toward +x.
-pub(super) fn camera(heading: f64) -> PerspectiveCamera {
-    PerspectiveCamera { near: 0.1, ..super::scene::camera(heading, -4.0, 0.8, 120.0) }
-}
 
 /// Colours of the octaves of texels, the finest first.
 const OCTAVES: [&str; 6] = ["#4a0010", "#b5131b", "#ef5a1f", "#fb9d3f", "#f3c35f", "#cfc29a"];
@@ -54,58 +45,58 @@ pub(super) fn draw() -> Result<String> {
     }
     let shown = walk.step(0.0)?;
     let mut canvas = Canvas::new(456.0, "What a street's visible points ask for, and four windows over them");
-    let sides = [DVec2::new(20.0, 38.0), DVec2::new(376.0, 38.0)].map(|low| [low, low + 324.0]);
     let look = shown.look();
-    for ([low, high], count) in sides.into_iter().zip([4, 3]) {
+    for (left, count, title) in
+        [(20.0, 4, "The four windows, as the light sees them"), (376.0, 3, "The three finest, enlarged")]
+    {
+        let (low, size) = (DVec2::new(left, 38.0), DVec2::splat(324.0));
         let windows = shown.maps[..count].iter().flat_map(|map| look.map(&map.fit));
-        let frame = Frame::around(windows, low + 10.0, high - 10.0);
-        canvas.clipped(low, high, |canvas| panel(canvas, &shown, &frame));
-        canvas.rectangle(low, high, stroke(GREY, 1.0));
+        let frame = Frame::around(windows, low + 10.0, low + size - 10.0);
+        canvas.panel(low, size, title, |canvas| panel(canvas, &shown, &look, &frame));
     }
-    canvas.bold(DVec2::new(20.0, 26.0), Side::Right, INK, "The four windows, as the light sees them");
-    canvas.bold(DVec2::new(376.0, 26.0), Side::Right, INK, "The three finest, enlarged");
     legend(&mut canvas, &shown);
     Ok(canvas.finish())
 }
 
 /// What is visible, and the windows over it.
-fn panel(canvas: &mut Canvas, shown: &Step, frame: &Frame) {
-    let look = shown.look();
-    for aabb in &STREET[1..] {
-        draw_box(canvas, frame, &look.aabb(aabb));
-    }
+fn panel(canvas: &mut Canvas, shown: &Step, look: &Look, frame: &Frame) {
+    street(canvas, look, frame);
     for (i, colour) in OCTAVES.into_iter().enumerate().rev() {
         let own = shown.seen.iter().filter(|seen| shown.octave(seen) == Some(i));
         canvas.dots(own.map(|seen| frame.at(look.relative(seen.point.as_dvec3()))), 2.6, colour);
     }
-    for (map, colour) in shown.maps.iter().zip(MAPS).rev() {
-        canvas.polygon(hull(&look.map(&map.fit)).into_iter().map(|p| frame.at(p)), stroke(colour, 3.0));
+    shown.outline(canvas, look, frame, 3.0);
+}
+
+/// The street without its ground.
+pub(super) fn street(canvas: &mut Canvas, look: &Look, frame: &Frame) {
+    for aabb in &STREET[1..] {
+        draw_box(canvas, frame, &look.aabb(aabb));
     }
-    eye(canvas, frame.at(look.relative(DVec3::ZERO)));
 }
 
 /// Where the camera is.
-pub(super) fn eye(canvas: &mut Canvas, at: DVec2) {
+fn eye(canvas: &mut Canvas, at: DVec2) {
     canvas.circle(at, 4.5, stroke(INK, 1.5).filled("#ffffff", 1.0));
 }
 
 /// The colours of the points and of the windows.
 fn legend(canvas: &mut Canvas, shown: &Step) {
-    canvas.label(DVec2::new(20.0, 396.0), Side::Right, "Points need texels of, in mm");
+    canvas.text(DVec2::new(20.0, 396.0), RIGHT, INK, "Points need texels of, in mm");
     for (i, colour) in OCTAVES.into_iter().enumerate() {
         let at = DVec2::new(246.0 + 78.0 * i as f64, 391.0);
         canvas.circle(at, 5.0, fill(colour, 1.0));
         let least = FINEST * 1000.0 * (1 << i) as f32;
-        canvas.label(at + DVec2::new(10.0, 5.0), Side::Right, &format!("{least:.0}–{:.0}", least * 2.0));
+        canvas.text(at + DVec2::new(10.0, 5.0), RIGHT, INK, &format!("{least:.0}–{:.0}", least * 2.0));
     }
-    canvas.label(DVec2::new(20.0, 430.0), Side::Right, "Windows have texels of, in mm");
+    canvas.text(DVec2::new(20.0, 430.0), RIGHT, INK, "Windows have texels of, in mm");
     for (i, (map, colour)) in shown.maps.iter().zip(MAPS).enumerate() {
         let at = DVec2::new(263.0 + 86.0 * i as f64, 425.0);
         canvas.rectangle(at - 7.0, at + 7.0, stroke(colour, 3.0));
-        canvas.label(at + DVec2::new(14.0, 5.0), Side::Right, &format!("{:.1}", map.fit.texel_size.x * 1000.0));
+        canvas.text(at + DVec2::new(14.0, 5.0), RIGHT, INK, &format!("{:.1}", map.fit.texel_size.x * 1000.0));
     }
     eye(canvas, DVec2::new(636.0, 425.0));
-    canvas.label(DVec2::new(646.0, 430.0), Side::Right, "eye");
+    canvas.text(DVec2::new(646.0, 430.0), RIGHT, INK, "eye");
 }
 
 /// Evenly spread places in a picture (the additive sequence of M. Roberts, "The unreasonable effectiveness of
@@ -130,6 +121,14 @@ impl Step {
         Some((libm::log2f(texel / FINEST).round().max(0.0) as usize).min(OCTAVES.len() - 1))
     }
 
+    /// Draws the outlines of the maps, and the eye.
+    pub(super) fn outline(&self, canvas: &mut Canvas, look: &Look, frame: &Frame, width: f64) {
+        for (map, colour) in self.maps.iter().zip(MAPS).rev() {
+            canvas.polygon(look.map(&map.fit).map(|p| frame.at(p)), stroke(colour, width));
+        }
+        eye(canvas, frame.at(look.relative(DVec3::ZERO)));
+    }
+
     /// The plane across the light in which windows are squares.
     pub(super) fn look(&self) -> Look {
         Look { origin: self.space.origin, right: self.space.x.as_dvec3(), up: self.space.y.as_dvec3() }
@@ -139,27 +138,26 @@ impl Step {
 /// Frames one after the other, each fitted with what the one before it showed.
 pub(super) struct Walk {
     technique: Technique,
-    fitter: MapFitter,
-    storage: Vec<DVec2>,
+    fitter: Fitter,
     /// The points that the last frame showed, and the space that they were counted in.
     need: Option<(NeedSpace, Vec<u32>)>,
 }
 
 impl Walk {
     pub(super) fn new(technique: &Technique) -> Self {
-        let storage = vec![DVec2::ZERO; Workspace::required(STREET.len(), 1)];
-        Self { technique: *technique, fitter: MapFitter::new(), storage, need: None }
+        Self { technique: *technique, fitter: Fitter::new(), need: None }
     }
 
+    /// The next frame, with the camera at a heading in degrees from -z toward +x.
     pub(super) fn step(&mut self, heading: f64) -> Result<Step> {
-        let camera = camera(heading);
+        let camera = PerspectiveCamera { near: 0.1, ..scene::camera(heading, -4.0, 0.8, 120.0) };
         let view = [camera.frustum()?];
         let need = self.need.as_ref().map(|(space, counts)| NeedGrid { space: *space, counts });
         let street = Some(boxes(&STREET));
         let input =
             FitInput { receivers: street, casters: street, need: need.as_slice(), ..FitInput::new(&view, LIGHT) };
-        let maps = self.fitter.fit(&input, &self.technique, &mut Workspace::new(&mut self.storage))?;
-        let seen = visible(&camera, &STREET, (0..RAYS).map(place), PICTURE)?;
+        let maps = self.fitter.fit(&input, &self.technique)?;
+        let seen = visible(&camera, &STREET, (0..RAYS).map(place))?;
         let space = NeedSpace::new(&view[0], LIGHT, Vec3::Y, self.technique.fit.max_distance)?;
         let mut counts = vec![0; CELLS];
         for Visible { point, normal, right, down, .. } in &seen {

@@ -2,14 +2,13 @@
 
 use anyhow::{Context, Result};
 use shadowfit::diagnostics::pixels_per_texel;
-use shadowfit::glam::{DVec2, DVec3, IVec2};
+use shadowfit::glam::{DVec2, IVec2};
 use shadowfit::scroll::Scroll;
 use shadowfit::{DepthConvention, Technique};
 
-use super::canvas::{Canvas, Frame, GREY, INK, RED, Side, stroke};
-use super::scene::{Look, draw_box, hull};
-use super::splits::MAPS;
-use super::windows::{PICTURE, STREET, Step, Walk, eye};
+use super::canvas::{Canvas, Frame, INK, LEFT, RED, RIGHT};
+use super::scene::PICTURE;
+use super::windows::{Step, Walk, street};
 
 /// Frames of the turn, after as many that the camera stands still.
 const FRAMES: usize = 60;
@@ -31,18 +30,19 @@ pub(super) fn draw() -> Result<String> {
     for (i, preset) in ["windows-4", "focused-4", "stable-4"].into_iter().enumerate() {
         let technique = Technique::preset(preset).context("no such preset")?;
         let steps = turn(&technique)?;
-        let left = 20.0 + 232.0 * i as f64;
-        let (low, high) = (DVec2::new(left, 38.0), DVec2::new(left + SIDE, 38.0 + SIDE));
+        let (low, size) = (DVec2::new(20.0 + 232.0 * i as f64, 38.0), DVec2::splat(SIDE));
         let look = steps[0].look();
-        let middle = DVec2::new(-3.0, 20.0);
-        let frame = Frame::scaled(middle, (low + high) * 0.5, SIDE / REACH);
-        canvas.clipped(low, high, |canvas| panel(canvas, &steps, &look, &frame));
-        canvas.rectangle(low, high, stroke(GREY, 1.0));
-        canvas.bold(DVec2::new(left, 26.0), Side::Right, INK, preset);
-        figures(&mut canvas, &technique, &steps, DVec2::new(left, 38.0 + SIDE))?;
+        let frame = Frame::scaled(DVec2::new(-3.0, 20.0), low + size * 0.5, SIDE / REACH);
+        canvas.panel(low, size, preset, |canvas| {
+            street(canvas, &look, &frame);
+            for (i, step) in steps.iter().enumerate().step_by(DRAWN) {
+                step.outline(canvas, &look, &frame, if i == FRAMES { 2.8 } else { 1.1 });
+            }
+        });
+        figures(&mut canvas, &technique, &steps, low.with_y(38.0 + SIDE))?;
     }
     let note = "The camera turns by 15° in 60 frames; thin: the maps of frames 0 and 30, thick: of frame 60";
-    canvas.small(DVec2::new(20.0, 374.0), Side::Right, INK, note);
+    canvas.small(DVec2::new(20.0, 374.0), RIGHT, INK, note);
     Ok(canvas.finish())
 }
 
@@ -51,20 +51,6 @@ fn turn(technique: &Technique) -> Result<Vec<Step>> {
     let mut walk = Walk::new(technique);
     let heading = |frame: usize| TURN * (frame.saturating_sub(FRAMES) as f64 - FRAMES as f64 * 0.5);
     (0..=2 * FRAMES).map(|frame| walk.step(heading(frame))).skip(FRAMES).collect()
-}
-
-/// The maps of some frames on top of each other.
-fn panel(canvas: &mut Canvas, steps: &[Step], look: &Look, frame: &Frame) {
-    for aabb in &STREET[1..] {
-        draw_box(canvas, frame, &look.aabb(aabb));
-    }
-    for (i, step) in steps.iter().enumerate().step_by(DRAWN) {
-        let width = if i == FRAMES { 2.8 } else { 1.1 };
-        for (map, colour) in step.maps.iter().zip(MAPS).rev() {
-            canvas.polygon(hull(&look.map(&map.fit)).into_iter().map(|p| frame.at(p)), stroke(colour, width));
-        }
-    }
-    eye(canvas, frame.at(look.relative(DVec3::ZERO)));
 }
 
 /// What became of the maps from frame to frame, and how sharp they are.
@@ -80,12 +66,12 @@ fn figures(canvas: &mut Canvas, technique: &Technique, steps: &[Step], corner: D
     for (i, (count, what)) in lines.into_iter().enumerate() {
         let at = corner + DVec2::new(44.0, 24.0 + 22.0 * i as f64);
         let share = count as f64 / scrolls.len() as f64 * 100.0;
-        canvas.bold(at, Side::Left, INK, &format!("{share:.0}%"));
-        canvas.label(at + DVec2::new(8.0, 0.0), Side::Right, what);
+        canvas.bold(at, LEFT, INK, &format!("{share:.0}%"));
+        canvas.text(at + DVec2::new(8.0, 0.0), RIGHT, INK, what);
     }
     let at = corner + DVec2::new(44.0, 94.0);
-    canvas.bold(at, Side::Left, RED, &format!("{:.1}", mean(technique, steps)?));
-    canvas.text(at + DVec2::new(8.0, 0.0), Side::Right, RED, "pixels per texel, mean");
+    canvas.bold(at, LEFT, RED, &format!("{:.1}", mean(technique, steps)?));
+    canvas.text(at + DVec2::new(8.0, 0.0), RIGHT, RED, "pixels per texel, mean");
     Ok(())
 }
 
