@@ -5,7 +5,7 @@ use egui::{Align, Button, Label, Layout, RichText, Ui};
 
 use crate::theme::{Palette, has_arrows};
 use crate::widgets::{Icon, KeyButton, caption, card, icon_button, main_button};
-use crate::{Action, ShownArtefact};
+use crate::{Command, ShownArtefact, keys_of};
 
 /// What can be wrong with a shadow-mapped picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -37,15 +37,6 @@ impl Artefact {
             Self::Acne => "acne",
             Self::Aliasing => "aliasing",
             Self::ClippingHole => "hole",
-        }
-    }
-
-    /// Key that shows it, see [`KEYS`](crate::KEYS).
-    pub const fn key(self) -> &'static str {
-        match self {
-            Self::Acne => "Z",
-            Self::Aliasing => "X",
-            Self::ClippingHole => "C",
         }
     }
 
@@ -97,27 +88,27 @@ impl Artefact {
 }
 
 /// The buttons, and the card of the artefact that is shown.
-pub(crate) fn show(ui: &mut Ui, shown: Option<&ShownArtefact<'_>>, action: &mut Option<Action>) {
+pub(crate) fn show(ui: &mut Ui, shown: Option<&ShownArtefact<'_>>, command: &mut Option<Command>) {
     ui.columns_const(|columns: &mut [Ui; 3]| {
         for (ui, artefact) in columns.iter_mut().zip(Artefact::ALL) {
             let accessible_name = format!("Show {}", artefact.label().to_lowercase());
             let button = KeyButton {
                 name: &format!("Show {}", artefact.short_label()),
                 accessible_name: &accessible_name,
-                key: artefact.key(),
+                key: keys_of(&Command::ShowArtefact(artefact)),
                 is_selected: shown.is_some_and(|shown| shown.artefact == artefact),
             };
             if button.show(ui).on_hover_text(artefact.explanation()).clicked() {
-                *action = Some(Action::ShowArtefact(artefact));
+                *command = Some(Command::ShowArtefact(artefact));
             }
         }
     });
     if let Some(shown) = shown {
-        show_card(ui, shown, action);
+        show_card(ui, shown, command);
     }
 }
 
-fn show_card(ui: &mut Ui, shown: &ShownArtefact<'_>, action: &mut Option<Action>) {
+fn show_card(ui: &mut Ui, shown: &ShownArtefact<'_>, command: &mut Option<Command>) {
     let ShownArtefact { artefact, fixed, narration, changes: changed } = *shown;
     let palette = Palette::of(ui);
     let accent = if fixed { palette.success } else { palette.warning };
@@ -127,7 +118,7 @@ fn show_card(ui: &mut Ui, shown: &ShownArtefact<'_>, action: &mut Option<Action>
             ui.label(RichText::new(title).color(accent));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if icon_button(ui, Icon::Close, "Close the artefact", "Ends the demonstration.").clicked() {
-                    *action = Some(Action::CloseArtefact);
+                    *command = Some(Command::CloseArtefact);
                 }
             });
         });
@@ -137,16 +128,19 @@ fn show_card(ui: &mut Ui, shown: &ShownArtefact<'_>, action: &mut Option<Action>
         let text = if fixed { artefact.cure() } else { artefact.explanation() };
         ui.add(Label::new(text).wrap());
         if !fixed {
-            caption(ui, "M marks the wrong pixels.");
+            caption(ui, &format!("{} marks the wrong pixels.", keys_of(&Command::NextMarks)));
         }
         ui.add_space(2.0);
         if fixed {
             changes(ui, changed);
             if ui.add_sized([ui.available_width(), 28.0], Button::new("Show again")).clicked() {
-                *action = Some(Action::ShowArtefact(artefact));
+                *command = Some(Command::ShowArtefact(artefact));
             }
-        } else if main_button(ui, "Fix", "F", palette.success_fill).on_hover_text(artefact.cure()).clicked() {
-            *action = Some(Action::FixArtefact(artefact));
+        } else if main_button(ui, "Fix", keys_of(&Command::FixArtefact), palette.success_fill)
+            .on_hover_text(artefact.cure())
+            .clicked()
+        {
+            *command = Some(Command::FixArtefact);
         }
     });
 }

@@ -13,8 +13,7 @@ use shadowfit_study::NamedTechnique;
 use shadowfit_study::samples::{SAMPLES, SampleValues};
 
 use crate::script::{self, Line};
-use crate::source::SceneSource;
-use crate::viewer::check_animation;
+use crate::source::{OPTION_PREFIX, SceneSource};
 
 /// Fly through a scene under one sun, and show, measure and cure shadow acne, aliasing and
 /// clipping holes.
@@ -93,9 +92,6 @@ pub struct Arguments {
 
 /// Size of the window, and of pictures, if not given, in pixels.
 const SIZE: [u32; 2] = [1280, 720];
-
-/// What names an option of a sample begins with.
-pub(crate) const OPTION_PREFIX: &str = "sample.";
 
 /// Parses the process's arguments; help, version, the parameter list and misuse end it here.
 pub(crate) fn parse() -> Arguments {
@@ -223,6 +219,15 @@ pub(crate) fn find_technique(text: &str, now: &Technique) -> Result<NamedTechniq
     Ok(named)
 }
 
+/// Refuses an animation that a scene does not have; the first one is the default and is accepted for a scene without any.
+pub(crate) fn check_animation(animation: usize, animations: usize, scene: &str) -> Result<()> {
+    if animation < animations.max(1) {
+        return Ok(());
+    }
+    let there = if animations == 1 { "is 1 animation".to_owned() } else { format!("are {animations} animations") };
+    Err(anyhow!("--animation {animation}: there {there} in {scene}, counted from 0"))
+}
+
 fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
     sides
@@ -266,9 +271,9 @@ fn sample_list() -> String {
 fn action_list() -> String {
     use std::fmt::Write;
     let mut list = String::new();
-    for (name, takes, help) in script::ACTIONS {
+    for action in script::ACTIONS {
         // Writing to a String cannot fail.
-        let _ = writeln!(list, "{:<38} {help}", format!("{name} {takes}"));
+        let _ = writeln!(list, "{:<38} {}", format!("{} {}", action.name, action.takes), action.does);
     }
     list
 }

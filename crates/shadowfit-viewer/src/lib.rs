@@ -4,7 +4,7 @@
 
 mod artefact;
 mod cli;
-mod command;
+mod effect;
 mod export;
 mod files;
 mod fitted;
@@ -13,7 +13,6 @@ mod gamepad;
 mod headless;
 mod input;
 mod interface;
-mod keys;
 mod loading;
 mod monkey;
 mod narration;

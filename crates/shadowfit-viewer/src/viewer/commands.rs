@@ -7,16 +7,16 @@ use anyhow::{Context, Result, anyhow};
 use shadowfit::Technique;
 use shadowfit::params;
 use shadowfit::tool::{ErrorMarks, InsetMaps, ViewMode};
-use shadowfit_egui::{Artefact, UserPreset};
+use shadowfit_egui::{Artefact, Command, Toggle, UserPreset};
 use shadowfit_render::FlyCamera;
 use shadowfit_study::{NamedTechnique, settings_to_toml};
 
 use super::Viewer;
-use crate::cli::{OPTION_PREFIX, find_technique};
-use crate::command::{Command, Toggle};
+use crate::cli::find_technique;
 use crate::export::command_line;
 use crate::files::{free_name, write_png, write_whole};
 use crate::saved::Bookmark;
+use crate::source::{OPTION_PREFIX, SceneSource};
 use crate::tuning::Task;
 use crate::undo::State;
 
@@ -26,7 +26,7 @@ const COMPARED: [&str; 2] = ["stable-4", "windows-4"];
 const FOCUS: f64 = 0.6;
 
 impl Viewer {
-    /// Does something.
+    /// Runs a command.
     pub(super) fn run(&mut self, command: Command) {
         let view = &mut self.stage.settings.view;
         match command {
@@ -58,11 +58,11 @@ impl Viewer {
             Command::ToggleHelp => self.interface.help_open = !self.interface.help_open,
             Command::TogglePanel => self.interface.bare = !self.interface.bare,
             Command::SetTheme(theme) => {
-                self.saved.theme = theme;
+                self.saved.theme = theme.into();
                 self.interface.context.set_theme(theme);
             }
             Command::Escape => self.escape(),
-            Command::Quit => self.wishes.quit = true,
+            Command::Quit => self.window_requests.quit = true,
             // Everything else needs a scene.
             _ if !self.has_scene => {
                 if self.line.is_some() {
@@ -80,21 +80,21 @@ impl Viewer {
         } else if self.interface.help_open {
             self.interface.help_open = false;
         } else {
-            self.wishes.quit = true;
+            self.window_requests.quit = true;
         }
     }
 
     fn run_on_scene(&mut self, command: Command) {
         let is_of_techniques = matches!(
             command,
-            Command::ShowArtefact(_) | Command::Compare(Toggle::On | Toggle::Other) | Command::StartTune
+            Command::ShowArtefact(_) | Command::Compare(Toggle::On | Toggle::Switch) | Command::StartTune
         );
         if is_of_techniques && self.stage.draws_sample() {
             return self.say("This is for modern maps: choose them as the sample's shadows first");
         }
         match command {
             Command::ShowArtefact(artefact) => self.search(artefact),
-            Command::Fix => self.fix(),
+            Command::FixArtefact => self.fix(),
             Command::CloseArtefact => self.stage.close_artefact(),
             Command::Compare(toggle) => self.compare(toggle),
             Command::Split(share) => self.stage.set_split(share),
@@ -112,11 +112,11 @@ impl Viewer {
                 self.interface.edits_other = false;
             }
             Command::ResetCamera => self.stage.reset_camera(),
-            Command::LookAt(eye, target) => self.stage.set_camera(FlyCamera::look_at(eye, target)),
+            Command::LookAt { eye, target } => self.stage.set_camera(FlyCamera::look_at(eye.into(), target.into())),
             Command::Focus(at) => self.focus(at),
             Command::SetBookmark(key) => self.set_bookmark(key),
-            Command::SampleVariant(variant) => self.show_sample_variant(variant),
-            Command::SampleOption(option, value) => self.stage.set_sample_option(option, value),
+            Command::ShowSampleVariant(variant) => self.show_sample_variant(variant),
+            Command::SetSampleOption { index, value } => self.stage.set_sample_option(index, value),
             Command::MeasureSample => self.measure_sample(),
             Command::StartTune => self.start_tune(),
             Command::CancelTune => self.tuning.cancel(),
@@ -128,21 +128,20 @@ impl Viewer {
 
     fn run_with_files(&mut self, command: Command) {
         let outcome = match command {
-            Command::Open(source) => return self.open(source),
+            Command::Open(name) => return self.open(SceneSource::from_text(&name)),
             Command::OpenFile(path) => return self.open_file(&path),
             Command::ChooseFile => return self.choose_file(),
-            Command::Window(path) => return self.shots.push((self.start.place(path), self.line.clone())),
+            Command::SaveWindow(path) => return self.shots.push((self.start.place(path), self.line.clone())),
             Command::GoToBookmark(key) => self.go_to_bookmark(key),
             Command::Set(id, value) => self.set(&id, &value),
             Command::Technique(name) => {
                 find_technique(&name, &self.edited_technique()).map(|named| self.take_technique(named))
             }
-            Command::Picture(path) => self.save_picture(path),
+            Command::Screenshot(path) => self.save_picture(path),
             Command::SaveFigures(path) => {
                 let text = self.interface.panel().figures_csv();
                 self.save_text(path, &text)
             }
-            Command::SaveCsv(text) => self.save_text(None, &text),
             Command::CopyRust => {
                 let code = self.edited_technique().to_rust();
                 self.interface.context.copy_text(code);
@@ -366,7 +365,7 @@ impl Viewer {
         // What no file can hold could not be read back.
         named.to_toml().context("this technique cannot be saved")?;
         if name.is_empty() || is_built_in {
-            return Err(anyhow!("a preset needs a name of its own, and {name:?} is none"));
+            return Err(anyhow!("a preset needs a name of its own, and {name:?} cannot be one"));
         }
         self.saved.presets.retain(|preset| preset.name != name);
         self.presets.retain(|preset| preset.name != name);

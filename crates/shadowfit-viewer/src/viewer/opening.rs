@@ -6,6 +6,7 @@ use anyhow::{Context, Result, anyhow};
 use shadowfit_study::{NamedTechnique, PreparedScene, settings_from_toml};
 
 use super::Viewer;
+use crate::cli::check_animation;
 use crate::files::settings_of_png;
 use crate::loading::Loading;
 use crate::sample_figures::Measuring;
@@ -61,7 +62,7 @@ impl Viewer {
             }
             Err(error) if self.start.is_pending => {
                 self.failure = Some(error);
-                self.wishes.quit = true;
+                self.window_requests.quit = true;
             }
             Err(error) => {
                 self.line = loading.line;
@@ -97,7 +98,7 @@ impl Viewer {
         self.measuring = Measuring::default();
         self.own_settings = self.stage.settings;
         self.has_scene = true;
-        self.wishes.new_title = true;
+        self.window_requests.new_title = true;
         if is_first {
             // What was told meanwhile is read from now on.
             self.message.iter_mut().for_each(|message| message.since = self.clock);
@@ -106,7 +107,7 @@ impl Viewer {
                 Ok(None) => {}
                 Err(error) => {
                     self.failure = Some(error);
-                    self.wishes.quit = true;
+                    self.window_requests.quit = true;
                 }
             }
         } else if is_sample {
@@ -121,13 +122,4 @@ impl Viewer {
         }
         self.interface.scene_changed(&self.stage);
     }
-}
-
-/// Refuses an animation that a scene has not; the first one is the default, which is accepted for a scene without any.
-pub(crate) fn check_animation(animation: usize, animations: usize, scene: &str) -> Result<()> {
-    if animation < animations.max(1) {
-        return Ok(());
-    }
-    let there = if animations == 1 { "is 1 animation".to_owned() } else { format!("are {animations} animations") };
-    Err(anyhow!("--animation {animation}: there {there} in {scene}, counted from 0"))
 }

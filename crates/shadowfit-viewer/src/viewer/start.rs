@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use shadowfit::tool::Settings;
+use shadowfit_egui::Command;
 use shadowfit_render::FlyCamera;
 use shadowfit_study::NamedTechnique;
 use shadowfit_study::samples::SampleValues;
 
 use super::Viewer;
 use crate::cli::Arguments;
-use crate::command::Command;
 use crate::saved::{Saved, Store};
 use crate::script::Line;
 use crate::source::SceneSource;
@@ -78,7 +78,7 @@ impl Viewer {
         }
         self.presets = saved.presets.iter().map(super::commands::preset).collect();
         self.saved = saved;
-        self.run(Command::SetTheme(self.saved.theme));
+        self.run(Command::SetTheme(self.saved.theme.into()));
         self.open(source);
     }
 
