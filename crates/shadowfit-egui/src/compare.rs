@@ -41,9 +41,9 @@ pub(crate) fn tabs(ui: &mut Ui, compare: &mut Compare<'_>, command: &mut Option<
             let copy = format!("Copy {from} to {to}");
             let stop = with_keys("Shows A alone", &Command::Compare(Toggle::Switch));
             for (icon, name, help, asked) in [
-                (Icon::Close, "Stop comparing", stop.as_str(), Command::Compare(Toggle::Off)),
+                (Icon::X, "Stop comparing", stop.as_str(), Command::Compare(Toggle::Off)),
                 (Icon::Copy, &copy, "Makes both techniques the same.", Command::CopyToOther),
-                (Icon::Swap, "Swap A and B", "Swaps the two techniques.", Command::SwapSides),
+                (Icon::ArrowLeftRight, "Swap A and B", "Swaps the two techniques.", Command::SwapSides),
             ] {
                 if icon_button(ui, icon, name, &format!("{name}. {help}")).clicked() {
                     *command = Some(asked);

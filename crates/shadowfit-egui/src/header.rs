@@ -37,12 +37,12 @@ pub(crate) fn show(
 
 /// From the right to the left.
 fn buttons(ui: &mut Ui, panel: &Panel, changes: Changes<'_>, command: &mut Option<Command>) {
-    button(ui, Icon::Help, "Help", "Shows the table of keys", Command::ToggleHelp, command);
+    button(ui, Icon::CircleQuestionMark, "Help", "Shows the table of keys", Command::ToggleHelp, command);
     if panel.has(Part::Theme) {
         theme_menu(ui, command);
     }
     if panel.has(Part::Screenshot) {
-        button(ui, Icon::Screenshot, "Screenshot", "Saves the picture", Command::Screenshot(None), command);
+        button(ui, Icon::Camera, "Screenshot", "Saves the picture", Command::Screenshot(None), command);
     }
     if panel.has(Part::Copy) {
         let line = "Copies the command that starts with this scene and these settings.";
@@ -56,10 +56,10 @@ fn buttons(ui: &mut Ui, panel: &Panel, changes: Changes<'_>, command: &mut Optio
         ("Reset everything", "Puts settings and camera back to where they began.", Command::Reset),
         ("Reset the camera", "Puts the camera back to where it began.", Command::ResetCamera),
     ];
-    menu(ui, Icon::Reset, "Reset", "Goes back to where settings and camera began.", items, command);
+    menu(ui, Icon::RotateCcw, "Reset", "Goes back to where settings and camera began.", items, command);
     if panel.has(Part::Undo) {
         for (icon, name, what, asked) in
-            [(Icon::Redo, "Redo", changes.redo, Command::Redo), (Icon::Undo, "Undo", changes.undo, Command::Undo)]
+            [(Icon::Redo2, "Redo", changes.redo, Command::Redo), (Icon::Undo2, "Undo", changes.undo, Command::Undo)]
         {
             let help =
                 what.map_or_else(|| format!("Nothing to {}", name.to_lowercase()), |what| format!("{name}: {what}"));
@@ -98,7 +98,7 @@ fn menu<const N: usize>(
 
 fn theme_menu(ui: &mut Ui, command: &mut Option<Command>) {
     let now = ui.ctx().options(|options| options.theme_preference);
-    let button = icon_button(ui, Icon::Theme, "Theme", "Dark or light.");
+    let button = icon_button(ui, Icon::Contrast, "Theme", "Dark or light.");
     Popup::menu(&button).show(|ui| {
         for (label, theme) in [
             ("Dark", ThemePreference::Dark),

@@ -39,6 +39,7 @@
 
 mod accessibility;
 mod artefact;
+mod artefact_card;
 mod classes;
 mod command;
 mod compare;
@@ -46,6 +47,7 @@ mod figures;
 mod header;
 mod help;
 mod history;
+mod icon;
 mod input;
 mod keys;
 mod legend;
@@ -174,7 +176,7 @@ impl Panel {
             ui.add_space(8.0);
         }
         if self.has(Part::Artefacts) {
-            artefact::show(ui, input.artefact.as_ref(), command);
+            artefact_card::show(ui, input.artefact.as_ref(), command);
         }
         if self.has(Part::Quality) {
             quality::show(ui, input.figures, input.compare.is_some());

@@ -195,7 +195,7 @@ fn line(ui: &mut Ui, entry: &Entry<'_>, is_selected: bool, command: &mut Option<
         let width = ui.available_width() - 30.0;
         let chosen = ui.vertical(|ui| option(ui, entry, is_selected, width).clicked());
         let name = format!("Delete {}", entry.name);
-        if icon_button(ui, Icon::Delete, &name, "Deletes this saved technique.").clicked() {
+        if icon_button(ui, Icon::Trash2, &name, "Deletes this saved technique.").clicked() {
             *command = Some(Command::DeletePreset(entry.name.to_owned()));
         }
         chosen.inner

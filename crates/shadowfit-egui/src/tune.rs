@@ -73,7 +73,7 @@ fn done(
     ui.label(RichText::new(text).color(palette.success));
     ui.label(RichText::new(format!("Wrong pixels {}", from_to(ui, before.wrong, after.wrong))).strong());
     caption(ui, &format!("Mean error {}", from_to(ui, before.mean_error, after.mean_error)));
-    crate::artefact::changes(ui, changes);
+    crate::artefact_card::changes(ui, changes);
     ui.add_space(2.0);
     if is_better && !is_applied {
         ui.columns_const(|[apply, discard]: &mut [Ui; 2]| {

@@ -4,6 +4,8 @@
 
 mod artefact;
 mod cli;
+#[cfg(test)]
+mod docs_tests;
 mod effect;
 mod export;
 mod files;

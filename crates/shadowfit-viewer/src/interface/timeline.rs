@@ -76,7 +76,7 @@ fn day(ui: &mut Ui, stage: &mut Stage, output: &mut InterfaceOutput) {
         light.hour = Some(hour);
     }
     let help = "Back to azimuth and elevation";
-    if light.hour.is_some() && icon_button(ui, Icon::Close, "Sun by angles", help).clicked() {
+    if light.hour.is_some() && icon_button(ui, Icon::X, "Sun by angles", help).clicked() {
         light.hour = None;
     }
 }

@@ -20,9 +20,9 @@ use crate::source::{OPTION_PREFIX, SceneSource};
 use crate::tuning::Task;
 use crate::undo::State;
 
-/// Technique that the present one is compared with at first, or the other one where it is that already.
+/// The presets that a technique is compared with at first: the first of them that differs from it.
 const COMPARED: [&str; 2] = ["stable-4", "windows-4"];
-/// How far toward a thing the camera flies, as a share of its distance.
+/// How far the camera flies toward a point, as a share of the distance.
 const FOCUS: f64 = 0.6;
 
 impl Viewer {
@@ -162,12 +162,12 @@ impl Viewer {
         self.tell(outcome);
     }
 
-    /// Looks for the view of an artefact on a thread.
+    /// Searches a view that shows an artefact, on a thread.
     fn search(&mut self, artefact: Artefact) {
         let search = self.stage.search(artefact);
         let (sender, receiver) = channel();
         let work = move || {
-            // Nobody waits any more where another artefact was asked for.
+            // The receiver is gone if another artefact was asked for.
             let _ = sender.send(search.run());
         };
         if std::thread::Builder::new().name("search".to_owned()).spawn(work).is_ok() {
@@ -224,7 +224,7 @@ impl Viewer {
         self.stage.restore_artefact(state.artefact);
     }
 
-    /// Flies to what is at a point of the picture, where that is the camera's own.
+    /// Flies toward what is at a point of the picture, in views that show what the camera sees.
     fn focus(&mut self, at: [f32; 2]) {
         if !self.stage.settings.view.mode.shows_camera() {
             return;
@@ -260,7 +260,7 @@ impl Viewer {
         });
     }
 
-    /// Takes what was found over to the side that it was searched for.
+    /// Uses what the search found, on the side that was searched for.
     fn apply_tune(&mut self) {
         let is_of_other = self.tuning.is_of_other;
         let side = match self.stage.settings_and_other() {
@@ -290,7 +290,7 @@ impl Viewer {
         Ok(format!("{id} = {value}"))
     }
 
-    /// Takes a technique for the side that the panel edits.
+    /// Uses a technique on the side that the panel edits.
     pub(super) fn take_technique(&mut self, named: NamedTechnique) -> String {
         *self.edited() = named.technique;
         let told = format!("Technique {}", named.name);
@@ -304,7 +304,7 @@ impl Viewer {
         other.unwrap_or(self.stage.settings.technique)
     }
 
-    /// The same, to be changed.
+    /// The technique that the panel edits, to be changed.
     pub(super) fn edited(&mut self) -> &mut Technique {
         let edits_other = self.interface.edits_other;
         let (settings, other) = self.stage.settings_and_other();
@@ -314,7 +314,7 @@ impl Viewer {
         }
     }
 
-    /// Saves the picture, without bars and panel.
+    /// Saves the picture without bars and panel.
     fn save_picture(&mut self, path: Option<PathBuf>) -> Result<String> {
         let path = self.place(path, "png")?;
         let pixels = self.interface.pictures.read(&self.stage)?;
@@ -322,7 +322,7 @@ impl Viewer {
         Ok(format!("Saved {}", path.display()))
     }
 
-    /// Where a file is saved, under a name of its own if none is given.
+    /// The path of a file to save, with a new name if none is given.
     fn place(&mut self, path: Option<PathBuf>, extension: &str) -> Result<PathBuf> {
         if let Some(path) = path {
             return Ok(self.start.place(path));
@@ -340,7 +340,7 @@ impl Viewer {
         Ok(format!("Saved {}", path.display()))
     }
 
-    /// What a picture carries: the scene and all settings, as [`Self::open_picture`] reads them.
+    /// The text that a saved picture carries: the scene and all settings, as [`Self::open_picture`] reads them.
     pub(super) fn text_of_settings(&self) -> String {
         let scene = toml::Value::from(self.source.text());
         let line = toml::Value::from(self.command_line());
@@ -362,7 +362,7 @@ impl Viewer {
         let name = name.trim();
         let is_built_in = NamedTechnique::preset(name).is_some();
         let named = NamedTechnique { name: name.to_owned(), ..self.edited_technique().into() };
-        // What no file can hold could not be read back.
+        // A technique that cannot be written could not be read back.
         named.to_toml().context("this technique cannot be saved")?;
         if name.is_empty() || is_built_in {
             return Err(anyhow!("a preset needs a name of its own, and {name:?} cannot be one"));
@@ -374,7 +374,7 @@ impl Viewer {
         Ok(format!("Saved the technique as {name}"))
     }
 
-    /// Has a person choose a file, with the system's dialog on a thread.
+    /// Lets the user choose a file, with the system's dialog on a thread.
     fn choose_file(&mut self) {
         if self.chooser.is_none() {
             self.chooser = dialog();
@@ -382,7 +382,7 @@ impl Viewer {
     }
 }
 
-/// The technique that another one is compared with at first: a preset with the lengths and the resolution of that one.
+/// The technique that `now` is compared with at first: a preset with the lengths and the resolution of `now`.
 pub(crate) fn compared_with(now: &Technique) -> Technique {
     let [width, height] = now.fit.resolution.to_array();
     let presets = COMPARED.iter().filter_map(|name| Technique::preset(name));
@@ -390,7 +390,7 @@ pub(crate) fn compared_with(now: &Technique) -> Technique {
     suited.find(|technique| technique != now).unwrap_or(*now)
 }
 
-/// A saved technique as the panel takes it.
+/// A saved technique as the panel lists it.
 pub(super) fn preset(named: &NamedTechnique) -> UserPreset {
     UserPreset { name: named.name.clone(), technique: named.technique }
 }
@@ -400,7 +400,7 @@ fn dialog() -> Option<Receiver<Option<PathBuf>>> {
     let work = move || {
         let dialog = rfd::FileDialog::new().set_title("Open").add_filter("Scenes", &["glb", "gltf"]);
         let dialog = dialog.add_filter("Techniques and screenshots", &["toml", "png"]);
-        // Nobody waits once the viewer has ended.
+        // The receiver is gone once the viewer has ended.
         let _ = sender.send(dialog.pick_file());
     };
     std::thread::Builder::new().name("file dialog".to_owned()).spawn(work).ok().map(|_| receiver)

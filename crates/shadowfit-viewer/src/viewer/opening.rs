@@ -14,13 +14,13 @@ use crate::source::SceneSource;
 use crate::undo::History;
 
 impl Viewer {
-    /// Begins to load a scene; the present one stays until it is there.
+    /// Starts loading a scene; the shown one stays until it is there.
     pub(super) fn open(&mut self, source: SceneSource) {
         let line = self.line.clone();
         self.loading = Some(Loading::start(source, line, self.stage.gpu(), self.stage.material_layout()));
     }
 
-    /// Opens whatever a file is.
+    /// Opens a file: a picture, a technique or a scene.
     pub(super) fn open_file(&mut self, path: &Path) {
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         let opened = match extension.as_str() {
@@ -46,8 +46,8 @@ impl Viewer {
         Ok(format!("Settings of {}", path.display()))
     }
 
-    /// Shows the scene that has been loaded. On an error the old one stays; at the start the built-in one is opened in
-    /// place of that of the last time, and the viewer ends where the arguments name the scene.
+    /// Shows the scene that has been loaded. After an error the old one stays. At the start there is none: instead of the
+    /// scene of the last time the built-in one is opened, and for a scene of the arguments the viewer ends.
     pub(super) fn take_scene(&mut self) {
         let Some(result) = self.loading.as_ref().and_then(Loading::take) else { return };
         let Some(loading) = self.loading.take() else { return };
@@ -80,7 +80,7 @@ impl Viewer {
         let animations = prepared.scene().animations.len();
         let name = prepared.scene().name.clone();
         self.source = source;
-        // What is under way, and what can be taken back, is of the scene before.
+        // Background work and undo belong to the scene before.
         self.searching = None;
         self.tuning.abandon();
         self.history = History::default();
