@@ -17,7 +17,9 @@ use shadowfit::Seen;
 use shadowfit::settings::FitSettings;
 use shadowfit::tool::{CameraSettings, LightSettings};
 use shadowfit::{DepthConvention, need};
-use shadowfit_render::{AdapterChoice, Atmosphere, FlyCamera, Frame, Gpu, GpuScene, RenderTarget, Renderer};
+use shadowfit_render::{
+    AdapterChoice, Atmosphere, FlyCamera, Frame, Gpu, GpuProfilerQuery, GpuScene, GpuTimer, RenderTarget, Renderer,
+};
 use shadowfit_scene::{Scene, builtin, load_gltf};
 use shadowfit_wgpu::ShadowMapDescriptor;
 use shadowfit_wgpu::need::{NeedPass, NeedView};
@@ -58,7 +60,7 @@ fn main() -> Result<()> {
     let mut renderer = Renderer::new(&gpu, &ShadowMapDescriptor::default(), args.samples)?;
     let mut drawn = GpuScene::new(&gpu, renderer.material_layout(), &scene, &scene.pose(None, 0.0));
     let target = renderer.target(&gpu, args.size);
-    let mut timer = Timer::new(&gpu, args.samples)?;
+    let mut pass = NeedPass::new(&gpu.device, &gpu.queue, args.samples)?;
     let (atmosphere, direction) = (Atmosphere::default(), LightSettings::default().direction());
     println!("{}: {} on {}, {} samples", scene.name, resolution(args.size), gpu.name(), args.samples);
     println!("| view | median | slowest | points | cells | octaves of texels |\n|---|---:|---:|---:|---:|---:|");
@@ -69,7 +71,7 @@ fn main() -> Result<()> {
         renderer.draw(&gpu, &mut drawn, &Frame::new(&camera, direction, &[], &atmosphere), &target)?;
         let settings = FitSettings::default();
         let seen_from = NeedView::from_camera(&camera, DepthConvention::Reversed, direction, &settings, args.size)?;
-        let (times, seen) = timer.run(&gpu, &target, &seen_from)?;
+        let (times, seen) = time(&gpu, &mut pass, &target, &seen_from)?;
         let [median, slowest] = [times[times.len() / 2], times[times.len() - 1]];
         println!("| {view} | {median:.3} ms | {slowest:.3} ms | {} |", described(&seen));
     }
@@ -97,59 +99,29 @@ fn described(seen: &Seen) -> String {
     format!("{points} | {cells} | {levels}")
 }
 
-/// Times the pass.
-struct Timer {
-    pass: NeedPass,
-    queries: wgpu::QuerySet,
-    resolved: wgpu::Buffer,
-    read: wgpu::Buffer,
-}
-
-impl Timer {
-    fn new(gpu: &Gpu, samples: u32) -> Result<Self> {
-        let descriptor = wgpu::QuerySetDescriptor { label: None, ty: wgpu::QueryType::Timestamp, count: 2 };
-        let buffer = |usage| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: None,
-                size: 16,
-                usage,
-                mapped_at_creation: false,
-            })
-        };
-        Ok(Self {
-            pass: NeedPass::new(&gpu.device, &gpu.queue, samples)?,
-            queries: gpu.device.create_query_set(&descriptor),
-            resolved: buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC),
-            read: buffer(wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ),
-        })
+/// Times of the pass over a depth buffer, in milliseconds from the shortest, and what it counts.
+fn time(gpu: &Gpu, pass: &mut NeedPass, target: &RenderTarget, view: &NeedView) -> Result<(Vec<f64>, Seen)> {
+    let repeats = if gpu.is_software() { SOFTWARE_REPEATS } else { REPEATS };
+    let mut timer = GpuTimer::new(&gpu.device, 1);
+    let mut times = Vec::new();
+    let mut seen = None;
+    for _ in 0..repeats + repeats / 5 {
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let query = timer.begin("need", &mut encoder);
+        let writes = query.as_ref().and_then(GpuProfilerQuery::compute_pass_timestamp_writes);
+        pass.record(&mut encoder, target.depth_view(), view, writes)?;
+        timer.end(query, &mut encoder);
+        timer.resolve(&mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+        timer.end_frame(gpu);
+        seen = pass.wait()?;
+        // The wait may have returned before the times came back.
+        gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
+        times.push(timer.take_ms(gpu).context("no time came back")?);
     }
-
-    /// Times of the pass over a depth buffer, in milliseconds from the shortest, and what it counts.
-    fn run(&mut self, gpu: &Gpu, target: &RenderTarget, view: &NeedView) -> Result<(Vec<f64>, Seen)> {
-        let repeats = if gpu.is_software() { SOFTWARE_REPEATS } else { REPEATS };
-        let mut times = Vec::new();
-        let mut seen = None;
-        for _ in 0..repeats + repeats / 5 {
-            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            let writes = wgpu::ComputePassTimestampWrites {
-                query_set: &self.queries,
-                beginning_of_pass_write_index: Some(0),
-                end_of_pass_write_index: Some(1),
-            };
-            self.pass.record(&mut encoder, target.depth_view(), view, Some(writes))?;
-            encoder.resolve_query_set(&self.queries, 0..2, &self.resolved, 0);
-            encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.read, 0, None);
-            encoder.map_buffer_on_submit(&self.read, wgpu::MapMode::Read, .., |_| {});
-            gpu.queue.submit([encoder.finish()]);
-            seen = self.pass.wait()?;
-            let ticks: Vec<u64> = bytemuck::pod_collect_to_vec(&self.read.get_mapped_range(..)?);
-            self.read.unmap();
-            times.push(f64::from(gpu.queue.get_timestamp_period()) * (ticks[1] - ticks[0]) as f64 * 1e-6);
-        }
-        times.drain(..repeats / 5);
-        times.sort_by(f64::total_cmp);
-        Ok((times, seen.context("nothing came back")?))
-    }
+    times.drain(..repeats / 5);
+    times.sort_by(f64::total_cmp);
+    Ok((times, seen.context("nothing came back")?))
 }
 
 fn resolution([width, height]: [u32; 2]) -> String {

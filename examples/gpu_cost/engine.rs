@@ -5,12 +5,11 @@ use core::ops::Range;
 use anyhow::Result;
 use glam::Vec3;
 use shadowfit::{Aabb, Boxes, DepthConvention, FittedMap, PerspectiveCamera, Technique};
-use shadowfit_render::Gpu;
+use shadowfit_render::{Gpu, GpuProfilerQuery, GpuTimer};
 use shadowfit_wgpu::{Casters, MapView, ShadowMap, SunFrame, SunShadows, WgslOptions, caster_wgsl};
 use wgpu::util::DeviceExt;
 
 use crate::scene::BenchScene;
-use crate::timer::Recording;
 
 /// Size of the picture, in pixels.
 pub(crate) const SIZE: [u32; 2] = [1920, 1080];
@@ -134,14 +133,19 @@ impl<'a> Engine<'a> {
         Ok(())
     }
 
-    /// The shadow passes.
-    pub(crate) fn shadow_passes(&self, encoder: &mut wgpu::CommandEncoder, mut times: Option<&mut Recording<'_>>) {
+    /// The shadow passes, timed or not.
+    pub(crate) fn shadow_passes(&self, encoder: &mut wgpu::CommandEncoder, timer: Option<&GpuTimer>) {
         for shadow in self.sun.passes() {
-            let mut pass =
-                self.sun.begin_pass(encoder, &shadow, 0, times.as_mut().and_then(|recording| recording.pass()));
+            let query = timer.and_then(|timer| timer.begin("shadow", encoder));
+            let times = query.as_ref().and_then(GpuProfilerQuery::render_pass_timestamp_writes);
+            let mut pass = self.sun.begin_pass(encoder, &shadow, 0, times);
             for piece in shadow.pieces() {
                 piece.set(&mut pass);
                 self.draw(&mut pass, piece.casters);
+            }
+            drop(pass);
+            if let Some(timer) = timer {
+                timer.end(query, encoder);
             }
         }
     }

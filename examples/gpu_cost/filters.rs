@@ -70,7 +70,7 @@ fn of_filter(bench: &Bench, scene: &BenchScene, case: &Case) -> Result<(f64, f64
     let technique =
         Technique::default().with_filter(case.filter).with_format(case.format).with_resolution(bench.map, bench.map);
     let mut engine = Engine::new(gpu, scene, &technique)?;
-    let timer = Timer::new(gpu);
+    let mut timer = Timer::new(gpu);
     let frames = if gpu.is_software() { 3 } else { SETTLED };
     for _ in 0..frames {
         engine.update(0)?;

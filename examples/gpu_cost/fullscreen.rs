@@ -2,12 +2,11 @@
 
 use glam::Mat4;
 use shadowfit::{DepthConvention, PerspectiveCamera};
-use shadowfit_render::Gpu;
+use shadowfit_render::{Gpu, GpuProfilerQuery, GpuTimer};
 use shadowfit_wgpu::{ShadowMap, WgslOptions, receiver_wgsl};
 use wgpu::util::DeviceExt;
 
 use crate::engine::{SIZE, texture, uniform_layout};
-use crate::timer::Recording;
 
 const SHADER: &str = "
 @group(0) @binding(0) var<uniform> world_from_pixel: mat4x4<f32>;
@@ -77,12 +76,8 @@ impl Fullscreen {
     }
 
     /// Records the pass, timed.
-    pub(crate) fn record(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        map: Option<&ShadowMap>,
-        times: &mut Recording<'_>,
-    ) {
+    pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder, map: Option<&ShadowMap>, timer: &GpuTimer) {
+        let query = timer.begin("fullscreen", encoder);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: &self.color,
@@ -90,7 +85,7 @@ impl Fullscreen {
                 resolve_target: None,
                 ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
             })],
-            timestamp_writes: times.pass(),
+            timestamp_writes: query.as_ref().and_then(GpuProfilerQuery::render_pass_timestamp_writes),
             ..Default::default()
         });
         pass.set_pipeline(&self.pipeline);
@@ -101,6 +96,8 @@ impl Fullscreen {
             pass.set_bind_group(2, map.receiver_group(), &[]);
         }
         pass.draw(0..3, 0..1);
+        drop(pass);
+        timer.end(query, encoder);
     }
 }
 

@@ -6,6 +6,7 @@ use anyhow::Result;
 use shadowfit::scroll::TexelRect;
 use shadowfit::settings::MapFormat;
 use shadowfit::{Aabb, Technique};
+use shadowfit_render::GpuProfilerQuery;
 use shadowfit_wgpu::need::{NeedPass, NeedView};
 use shadowfit_wgpu::{Culling, ShadowMap, ShadowMapDescriptor, UpdateSchedule};
 
@@ -67,7 +68,7 @@ fn walk(bench: &Bench, scene: &BenchScene, way: Way) -> Result<Taken> {
     engine.sun.set_keeps(way.keeps);
     engine.sun.set_culling(way.culling);
     engine.sun.set_schedule(way.schedule);
-    let timer = Timer::new(gpu);
+    let mut timer = Timer::new(gpu);
     let mut taken = Taken::default();
     for frame in 0..bench.frames + bench.warm_up() {
         let camera = engine.camera(frame);
@@ -176,7 +177,7 @@ fn bare_passes(bench: &Bench, scene: &BenchScene, bare: Bare) -> Result<Vec<f64>
     let mut engine = Engine::new(gpu, scene, &technique)?;
     engine.sun.set_keeps(false);
     let mut map = ShadowMap::new(&gpu.device, &ShadowMapDescriptor::from(&technique))?;
-    let timer = Timer::new(gpu);
+    let mut timer = Timer::new(gpu);
     let mut times = Vec::new();
     for frame in 0..bench.frames + bench.warm_up() {
         let camera = engine.camera(frame);
@@ -188,7 +189,9 @@ fn bare_passes(bench: &Bench, scene: &BenchScene, bare: Bare) -> Result<Vec<f64>
         let seen = Aabb::from_points(corners).unwrap_or_default();
         let time = timer.frame(gpu, |encoder, times| {
             for shadow in engine.sun.passes() {
-                let mut pass = map.begin_pass(encoder, shadow.map(), 0, times.pass());
+                let query = times.begin("bare", encoder);
+                let writes = query.as_ref().and_then(GpuProfilerQuery::render_pass_timestamp_writes);
+                let mut pass = map.begin_pass(encoder, shadow.map(), 0, writes);
                 let mut casters: Vec<u32> = shadow.pieces().flat_map(|piece| piece.casters).copied().collect();
                 match bare.order {
                     Order::NearestFirst => {}
@@ -200,6 +203,8 @@ fn bare_passes(bench: &Bench, scene: &BenchScene, bare: Bare) -> Result<Vec<f64>
                     pass.set_scissor_rect(rect.min.x, rect.min.y, rect.size.x, rect.size.y);
                 }
                 engine.draw(&mut pass, if bare.is_empty { &[] } else { &casters });
+                drop(pass);
+                times.end(query, encoder);
             }
             Ok(())
         })?;
@@ -250,7 +255,7 @@ pub(crate) fn time_need(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
     for scene in scenes {
         let mut engine = Engine::new(gpu, scene, &bench.technique())?;
         let mut pass = NeedPass::new(&gpu.device, &gpu.queue, 1)?;
-        let timer = Timer::new(gpu);
+        let mut timer = Timer::new(gpu);
         let mut times = Vec::new();
         for frame in 0..bench.frames + bench.frames / 5 {
             engine.move_casters(frame);
@@ -262,7 +267,11 @@ pub(crate) fn time_need(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
             let depth = shadowfit::DepthConvention::Reversed;
             let view = NeedView::from_camera(&camera, depth, direction, &settings, SIZE)?;
             let time = timer.frame(gpu, |encoder, times| {
-                pass.record(encoder, &engine.depth, &view, times.compute())?;
+                let query = times.begin("need", encoder);
+                let writes = query.as_ref().and_then(GpuProfilerQuery::compute_pass_timestamp_writes);
+                let recorded = pass.record(encoder, &engine.depth, &view, writes);
+                times.end(query, encoder);
+                recorded?;
                 Ok(())
             })?;
             pass.wait()?;

@@ -1,11 +1,4 @@
-//! The three artefacts of shadow maps: what they are called, why they happen and what cures them;
-//! and the part of the panel that shows and fixes them.
-
-use egui::{Align, Button, Label, Layout, RichText, Ui};
-
-use crate::theme::{Palette, has_arrows};
-use crate::widgets::{Icon, KeyButton, caption, card, icon_button, main_button};
-use crate::{Action, ShownArtefact};
+//! The three artefacts of shadow maps: what they are called, why they happen and what cures them.
 
 /// What can be wrong with a shadow-mapped picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -32,20 +25,11 @@ impl Artefact {
     }
 
     /// Name for a narrow button.
-    const fn short_label(self) -> &'static str {
+    pub(crate) const fn short_label(self) -> &'static str {
         match self {
             Self::Acne => "acne",
             Self::Aliasing => "aliasing",
             Self::ClippingHole => "hole",
-        }
-    }
-
-    /// Key that shows it, see [`KEYS`](crate::KEYS).
-    pub const fn key(self) -> &'static str {
-        match self {
-            Self::Acne => "Z",
-            Self::Aliasing => "X",
-            Self::ClippingHole => "C",
         }
     }
 
@@ -93,69 +77,5 @@ impl Artefact {
                  range grows. Windows hold every caster over them, so they gave way to focused maps, and are back."
             }
         }
-    }
-}
-
-/// The buttons, and the card of the artefact that is shown.
-pub(crate) fn show(ui: &mut Ui, shown: Option<&ShownArtefact<'_>>, action: &mut Option<Action>) {
-    ui.columns_const(|columns: &mut [Ui; 3]| {
-        for (ui, artefact) in columns.iter_mut().zip(Artefact::ALL) {
-            let accessible_name = format!("Show {}", artefact.label().to_lowercase());
-            let button = KeyButton {
-                name: &format!("Show {}", artefact.short_label()),
-                accessible_name: &accessible_name,
-                key: artefact.key(),
-                is_selected: shown.is_some_and(|shown| shown.artefact == artefact),
-            };
-            if button.show(ui).on_hover_text(artefact.explanation()).clicked() {
-                *action = Some(Action::ShowArtefact(artefact));
-            }
-        }
-    });
-    if let Some(shown) = shown {
-        show_card(ui, shown, action);
-    }
-}
-
-fn show_card(ui: &mut Ui, shown: &ShownArtefact<'_>, action: &mut Option<Action>) {
-    let ShownArtefact { artefact, fixed, narration, changes: changed } = *shown;
-    let palette = Palette::of(ui);
-    let accent = if fixed { palette.success } else { palette.warning };
-    card(ui, Some(accent), |ui| {
-        ui.horizontal(|ui| {
-            let title = if fixed { format!("{}: fixed", artefact.label()) } else { artefact.label().to_owned() };
-            ui.label(RichText::new(title).color(accent));
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                if icon_button(ui, Icon::Close, "Close the artefact", "Ends the demonstration.").clicked() {
-                    *action = Some(Action::CloseArtefact);
-                }
-            });
-        });
-        if !narration.is_empty() {
-            ui.add(Label::new(RichText::new(narration).strong()).wrap());
-        }
-        let text = if fixed { artefact.cure() } else { artefact.explanation() };
-        ui.add(Label::new(text).wrap());
-        if !fixed {
-            caption(ui, "M marks the wrong pixels.");
-        }
-        ui.add_space(2.0);
-        if fixed {
-            changes(ui, changed);
-            if ui.add_sized([ui.available_width(), 28.0], Button::new("Show again")).clicked() {
-                *action = Some(Action::ShowArtefact(artefact));
-            }
-        } else if main_button(ui, "Fix", "F", palette.success_fill).on_hover_text(artefact.cure()).clicked() {
-            *action = Some(Action::FixArtefact(artefact));
-        }
-    });
-}
-
-/// What was changed, a line each.
-pub(crate) fn changes(ui: &mut Ui, changes: &[String]) {
-    let has_arrows = has_arrows(ui);
-    for change in changes {
-        let change = if has_arrows { change.clone() } else { change.replace('→', "to") };
-        caption(ui, &format!("• {change}"));
     }
 }

@@ -4,23 +4,24 @@ use egui::{Align, Button, Layout, RichText, Ui};
 
 use crate::theme::Palette;
 use crate::widgets::{Icon, icon_button, title};
-use crate::{Action, Compare};
+use crate::{Command, Compare, Toggle, with_keys};
 
 /// The heading of the techniques, with a button that begins the comparison.
-pub(crate) fn start(ui: &mut Ui, action: &mut Option<Action>) {
+pub(crate) fn start(ui: &mut Ui, command: &mut Option<Command>) {
     ui.horizontal(|ui| {
         title(ui, "Technique");
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let help = "Shows two techniques beside each other; B begins with a preset (B).";
+            let help = "Shows two techniques beside each other; B begins with a preset";
+            let help = with_keys(help, &Command::Compare(Toggle::Switch));
             if ui.button("Compare A | B").on_hover_text(help).clicked() {
-                *action = Some(Action::StartCompare);
+                *command = Some(Command::Compare(Toggle::On));
             }
         });
     });
 }
 
 /// The tabs of A and B.
-pub(crate) fn tabs(ui: &mut Ui, compare: &mut Compare<'_>, action: &mut Option<Action>) {
+pub(crate) fn tabs(ui: &mut Ui, compare: &mut Compare<'_>, command: &mut Option<Command>) {
     let palette = Palette::of(ui);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
@@ -38,13 +39,14 @@ pub(crate) fn tabs(ui: &mut Ui, compare: &mut Compare<'_>, action: &mut Option<A
             ui.spacing_mut().item_spacing.x = 1.0;
             let [from, to] = if *compare.edits_other { ["B", "A"] } else { ["A", "B"] };
             let copy = format!("Copy {from} to {to}");
+            let stop = with_keys("Shows A alone", &Command::Compare(Toggle::Switch));
             for (icon, name, help, asked) in [
-                (Icon::Close, "Stop comparing", "Shows A alone (B).", Action::StopCompare),
-                (Icon::Copy, &copy, "Makes both techniques the same.", Action::CopyToOther),
-                (Icon::Swap, "Swap A and B", "Swaps the two techniques.", Action::SwapSides),
+                (Icon::X, "Stop comparing", stop.as_str(), Command::Compare(Toggle::Off)),
+                (Icon::Copy, &copy, "Makes both techniques the same.", Command::CopyToOther),
+                (Icon::ArrowLeftRight, "Swap A and B", "Swaps the two techniques.", Command::SwapSides),
             ] {
                 if icon_button(ui, icon, name, &format!("{name}. {help}")).clicked() {
-                    *action = Some(asked);
+                    *command = Some(asked);
                 }
             }
         });

@@ -5,7 +5,7 @@ use egui::{Align, Button, Label, Layout, Popup, RichText, Sense, TextStyle, Them
 use crate::theme::Palette;
 use crate::units::grouped;
 use crate::widgets::{Icon, icon_button};
-use crate::{Action, Changes, Panel, Part, SceneLine};
+use crate::{Changes, Command, Panel, Part, SceneLine, keys_of, with_keys};
 
 /// Title, buttons, scene and message.
 pub(crate) fn show(
@@ -14,13 +14,13 @@ pub(crate) fn show(
     scene: &SceneLine<'_>,
     changes: Changes<'_>,
     message: Option<&str>,
-    action: &mut Option<Action>,
+    command: &mut Option<Command>,
 ) {
     ui.horizontal(|ui| {
         ui.heading("Shadow tuning");
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 1.0;
-            buttons(ui, panel, changes, action);
+            buttons(ui, panel, changes, command);
         });
     });
     let line = format!("{}, {} triangles", scene.name, grouped(scene.triangles));
@@ -36,75 +36,69 @@ pub(crate) fn show(
 }
 
 /// From the right to the left.
-fn buttons(ui: &mut Ui, panel: &Panel, changes: Changes<'_>, action: &mut Option<Action>) {
-    if icon_button(ui, Icon::Help, "Help", "Shows the table of the keys (H or F1).").clicked() {
-        *action = Some(Action::OpenHelp);
-    }
+fn buttons(ui: &mut Ui, panel: &Panel, changes: Changes<'_>, command: &mut Option<Command>) {
+    button(ui, Icon::CircleQuestionMark, "Help", "Shows the table of keys", Command::ToggleHelp, command);
     if panel.has(Part::Theme) {
-        theme_menu(ui, action);
+        theme_menu(ui, command);
     }
-    if panel.has(Part::Screenshot)
-        && icon_button(ui, Icon::Screenshot, "Screenshot", "Saves the picture (P).").clicked()
-    {
-        *action = Some(Action::Screenshot);
+    if panel.has(Part::Screenshot) {
+        button(ui, Icon::Camera, "Screenshot", "Saves the picture", Command::Screenshot(None), command);
     }
     if panel.has(Part::Copy) {
+        let line = "Copies the command that starts with this scene and these settings.";
         let items = [
-            ("Copy as Rust code", "K", "Copies the technique as Rust code.", Action::CopyRust),
-            (
-                "Copy the command line",
-                "",
-                "Copies the command that starts with this scene and these settings.",
-                Action::CopyCommandLine,
-            ),
+            ("Copy as Rust code", "Copies the technique as Rust code.", Command::CopyRust),
+            ("Copy the command line", line, Command::CopyCommandLine),
         ];
-        menu(ui, Icon::Copy, "Copy", "Copies the settings, to use them elsewhere.", items, action);
+        menu(ui, Icon::Copy, "Copy", "Copies the settings, to use them elsewhere.", items, command);
     }
     let items = [
-        ("Reset everything", "R", "Puts settings and camera back to where they began.", Action::Reset),
-        ("Reset the camera", "", "Puts the camera back to where it began.", Action::ResetCamera),
+        ("Reset everything", "Puts settings and camera back to where they began.", Command::Reset),
+        ("Reset the camera", "Puts the camera back to where it began.", Command::ResetCamera),
     ];
-    menu(ui, Icon::Reset, "Reset", "Goes back to where settings and camera began.", items, action);
+    menu(ui, Icon::RotateCcw, "Reset", "Goes back to where settings and camera began.", items, command);
     if panel.has(Part::Undo) {
-        for (icon, name, key, what, asked) in [
-            (Icon::Redo, "Redo", "Ctrl+Shift+Z", changes.redo, Action::Redo),
-            (Icon::Undo, "Undo", "Ctrl+Z", changes.undo, Action::Undo),
-        ] {
+        for (icon, name, what, asked) in
+            [(Icon::Redo2, "Redo", changes.redo, Command::Redo), (Icon::Undo2, "Undo", changes.undo, Command::Undo)]
+        {
             let help =
                 what.map_or_else(|| format!("Nothing to {}", name.to_lowercase()), |what| format!("{name}: {what}"));
-            let help = format!("{help} ({key})");
-            let button = ui.add_enabled_ui(what.is_some(), |ui| icon_button(ui, icon, name, &help));
-            if button.inner.clicked() {
-                *action = Some(asked);
-            }
+            ui.add_enabled_ui(what.is_some(), |ui| button(ui, icon, name, &help, asked, command));
         }
     }
 }
 
-/// A button that opens a list of requests: name, key, help.
+/// A button that asks for a command, with the command's keys behind its help.
+fn button(ui: &mut Ui, icon: Icon, name: &str, help: &str, asked: Command, command: &mut Option<Command>) {
+    if icon_button(ui, icon, name, &with_keys(help, &asked)).clicked() {
+        *command = Some(asked);
+    }
+}
+
+/// A button that opens a list of commands, each with its name and help.
 fn menu<const N: usize>(
     ui: &mut Ui,
     icon: Icon,
     name: &str,
     help: &str,
-    items: [(&str, &str, &str, Action); N],
-    action: &mut Option<Action>,
+    items: [(&str, &str, Command); N],
+    command: &mut Option<Command>,
 ) {
     let button = icon_button(ui, icon, name, help);
     Popup::menu(&button).show(|ui| {
-        for (label, key, help, asked) in items {
-            let response = ui.add(Button::new(label).shortcut_text(key)).on_hover_text(help);
+        for (label, help, asked) in items {
+            let response = ui.add(Button::new(label).shortcut_text(keys_of(&asked))).on_hover_text(help);
             crate::accessibility::rename(ui, &response, label.to_owned());
             if response.clicked() {
-                *action = Some(asked);
+                *command = Some(asked);
             }
         }
     });
 }
 
-fn theme_menu(ui: &mut Ui, action: &mut Option<Action>) {
+fn theme_menu(ui: &mut Ui, command: &mut Option<Command>) {
     let now = ui.ctx().options(|options| options.theme_preference);
-    let button = icon_button(ui, Icon::Theme, "Theme", "Dark or light.");
+    let button = icon_button(ui, Icon::Contrast, "Theme", "Dark or light.");
     Popup::menu(&button).show(|ui| {
         for (label, theme) in [
             ("Dark", ThemePreference::Dark),
@@ -112,7 +106,7 @@ fn theme_menu(ui: &mut Ui, action: &mut Option<Action>) {
             ("As the system", ThemePreference::System),
         ] {
             if ui.add(Button::selectable(theme == now, label)).clicked() {
-                *action = Some(Action::SetTheme(theme));
+                *command = Some(Command::SetTheme(theme));
             }
         }
     });

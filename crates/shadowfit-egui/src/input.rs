@@ -1,11 +1,10 @@
 //! What a host gives the panel in each frame, and what the panel gives back.
 
-use egui::ThemePreference;
 use shadowfit::Technique;
 use shadowfit::figures::{Figures, JudgedFigures};
 use shadowfit::tool::Settings;
 
-use crate::Artefact;
+use crate::{Artefact, Command};
 
 /// What the panel shows and edits in one frame. Begin with [`PanelInput::new`] and set what the host has besides.
 #[derive(Debug)]
@@ -28,7 +27,7 @@ pub struct PanelInput<'a> {
     pub changes: Changes<'a>,
     /// Techniques that a person saved, in the order that they are offered.
     pub presets: &'a [UserPreset],
-    /// A readable message, such as the outcome of the last action.
+    /// A readable message, such as the outcome of the last command.
     pub message: Option<&'a str>,
 }
 
@@ -215,73 +214,10 @@ pub struct UserPreset {
 }
 
 /// What the person asked for in this frame, beside the settings.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PanelOutput {
-    /// The request, if any.
-    pub action: Option<Action>,
-}
-
-/// A request to the host.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Action {
-    /// Move camera and settings so that the artefact is plainly visible.
-    ShowArtefact(Artefact),
-    /// Apply the artefact's cure.
-    FixArtefact(Artefact),
-    /// Stop showing the artefact; settings and camera stay as they are.
-    CloseArtefact,
-    /// Show two techniques beside each other; the host chooses what B begins with.
-    StartCompare,
-    /// Show A alone.
-    StopCompare,
-    /// Swap A and B.
-    SwapSides,
-    /// Copy the technique that the controls edit to the other side.
-    CopyToOther,
-    /// Show a variant of the sample, by its index, or the sample as its source has it.
-    ShowSampleVariant(Option<usize>),
-    /// Set an option of the sample.
-    SetSampleOption {
-        /// Its index.
-        index: usize,
-        /// The bits of the f32 value: the number, the index of the choice, or 1 for on.
-        bits: u32,
-    },
-    /// Judge the sample, and modern maps on the same view, against rays.
-    MeasureSample,
-    /// Begin the search for settings with a lower error.
-    StartTune,
-    /// End the search early; what it found so far counts.
-    CancelTune,
-    /// Take over what the search found.
-    ApplyTune,
-    /// Forget what the search found. Where it was applied, the settings stay.
-    DiscardTune,
-    /// Undo the last change.
-    Undo,
-    /// Do again what was undone.
-    Redo,
-    /// Save the technique that the controls edit under this name, in place of one that has it.
-    SavePreset(String),
-    /// Delete the saved technique of this name.
-    DeletePreset(String),
-    /// Copy the technique as Rust code.
-    CopyRust,
-    /// Copy the command line that starts with this scene and these settings.
-    CopyCommandLine,
-    /// Save this text, the plotted figures as comma-separated values, to a file.
-    SaveCsv(String),
-    /// Save the picture.
-    Screenshot,
-    /// Put settings and camera back to where they began.
-    Reset,
-    /// Put the camera back to where it began.
-    ResetCamera,
-    /// Show the table of the keys, see [`help_overlay`](crate::help_overlay).
-    OpenHelp,
-    /// Use the dark or the light theme, or that of the system: [`egui::Context::set_theme`] does it.
-    SetTheme(ThemePreference),
+    /// The command, if any.
+    pub command: Option<Command>,
 }
 
 /// A part of the panel that a host can leave out, see [`Panel::without`](crate::Panel::without).

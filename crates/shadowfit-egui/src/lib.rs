@@ -1,13 +1,13 @@
 //! The shadow tuning panel, embeddable in any [egui] application.
 //!
 //! It edits a [`Settings`], shows a [`Figures`](shadowfit::figures::Figures) live, and asks its host for what only the
-//! host can do (moving the camera, judging the picture, taking a picture) by returning an [`Action`]. Its controls come
+//! host can do (moving the camera, judging the picture, taking a picture) by returning a [`Command`]. Its controls come
 //! from [`shadowfit::params`], so that a new parameter gets a control without further code.
 //!
 //! ```
 //! use shadowfit::figures::Figures;
 //! use shadowfit::tool::Settings;
-//! use shadowfit_egui::{Action, PANEL_WIDTH, Panel, PanelInput, SceneLine};
+//! use shadowfit_egui::{Command, PANEL_WIDTH, Panel, PanelInput, SceneLine};
 //!
 //! # fn show(_: shadowfit_egui::Artefact) {}
 //! // Once: both themes, and the one that the system prefers.
@@ -20,10 +20,10 @@
 //! fn frame(ui: &mut egui::Ui, panel: &mut Panel, settings: &mut Settings, figures: &Figures) {
 //!     egui::Panel::right("shadows").exact_size(PANEL_WIDTH).resizable(false).show(ui, |ui| {
 //!         let scene = SceneLine { name: "Courtyard", triangles: 262_144, notes: &[] };
-//!         match panel.show(ui, PanelInput::new(settings, figures, scene)).action {
-//!             Some(Action::ShowArtefact(artefact)) => show(artefact),
-//!             Some(Action::SetTheme(theme)) => ui.ctx().set_theme(theme),
-//!             Some(action) => println!("{action:?}"),
+//!         match panel.show(ui, PanelInput::new(settings, figures, scene)).command {
+//!             Some(Command::ShowArtefact(artefact)) => show(artefact),
+//!             Some(Command::SetTheme(theme)) => ui.ctx().set_theme(theme),
+//!             Some(command) => println!("{command:?}"),
 //!             None => {}
 //!         }
 //!     });
@@ -39,13 +39,17 @@
 
 mod accessibility;
 mod artefact;
+mod artefact_card;
 mod classes;
+mod command;
 mod compare;
 mod figures;
 mod header;
 mod help;
 mod history;
+mod icon;
 mod input;
+mod keys;
 mod legend;
 mod maps;
 mod parameters;
@@ -74,11 +78,13 @@ use widgets::{Section, caption};
 pub use accessibility::rename;
 pub use artefact::Artefact;
 pub use classes::PixelClass;
-pub use help::{KEYS, KeyGroup, KeyHelp, help_overlay};
+pub use command::{Command, Toggle};
+pub use help::help_overlay;
 pub use input::{
-    Action, Changes, Compare, PanelInput, PanelOutput, Part, SampleCard, SampleChoice, SampleControl, SampleFigure,
-    SampleRow, SceneLine, ShownArtefact, Tune, UserPreset,
+    Changes, Compare, PanelInput, PanelOutput, Part, SampleCard, SampleChoice, SampleControl, SampleFigure, SampleRow,
+    SceneLine, ShownArtefact, Tune, UserPreset,
 };
+pub use keys::{Chord, KEYS, KeyGroup, KeyHelp, NoSuchKey, keys_of, with_keys};
 pub use legend::{MAP_UPDATE_COLORS, has_legend, legend, legend_overlay};
 pub use theme::apply_theme;
 pub use views::view_bar;
@@ -117,7 +123,7 @@ impl Panel {
         self
     }
 
-    /// Leaves out these parts, so that their actions are never asked for.
+    /// Leaves out these parts, so that their commands are never asked for.
     #[must_use]
     pub fn without(mut self, parts: impl IntoIterator<Item = Part>) -> Self {
         self.hidden_parts.extend(parts);
@@ -130,7 +136,7 @@ impl Panel {
         self.technique.open(name.into(), technique);
     }
 
-    /// The plotted figures as comma-separated values, as [`Action::SaveCsv`] has them.
+    /// The plotted figures as comma-separated values, which [`Command::SaveFigures`] asks the host to save.
     pub fn figures_csv(&self) -> String {
         self.plots.history.to_csv()
     }
@@ -143,23 +149,23 @@ impl Panel {
     /// Shows the panel in the whole of `ui`: its top, and the rest with a scroll bar where it is higher than that.
     /// Call it once a frame.
     pub fn show(&mut self, ui: &mut Ui, mut input: PanelInput<'_>) -> PanelOutput {
-        let mut action = None;
+        let mut command = None;
         if self.has(Part::Plots) {
             self.plots.history.push(ui.input(|input| input.time), input.figures);
         }
-        header::show(ui, self, &input.scene, input.changes, input.message, &mut action);
+        header::show(ui, self, &input.scene, input.changes, input.message, &mut command);
         ui.separator();
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| self.contents(ui, &mut input, &mut action));
-        if let Some(action) = &action {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| self.contents(ui, &mut input, &mut command));
+        if let Some(command) = &command {
             let edits_other = input.compare.as_ref().is_some_and(|compare| *compare.edits_other);
-            self.technique.follow(action, edits_other);
+            self.technique.follow(command, edits_other);
         }
-        PanelOutput { action }
+        PanelOutput { command }
     }
 
-    fn contents(&mut self, ui: &mut Ui, input: &mut PanelInput<'_>, action: &mut Option<Action>) {
+    fn contents(&mut self, ui: &mut Ui, input: &mut PanelInput<'_>, command: &mut Option<Command>) {
         if let Some(card) = &input.sample {
-            sample::show(ui, card, action);
+            sample::show(ui, card, command);
             if !card.is_technique {
                 let hidden = &self.hidden;
                 let has = |parameter: &Parameter| !hidden.contains(parameter.id);
@@ -170,44 +176,44 @@ impl Panel {
             ui.add_space(8.0);
         }
         if self.has(Part::Artefacts) {
-            artefact::show(ui, input.artefact.as_ref(), action);
+            artefact_card::show(ui, input.artefact.as_ref(), command);
         }
         if self.has(Part::Quality) {
             quality::show(ui, input.figures, input.compare.is_some());
         }
         if self.has(Part::Tune) {
-            tune::show(ui, &input.tune, action);
+            tune::show(ui, &input.tune, command);
         }
         ui.add_space(4.0);
-        self.technique_head(ui, input, action);
+        self.technique_head(ui, input, command);
         Rows::search_field(ui, &mut self.search);
         if self.search.trim().is_empty() {
-            self.sections(ui, input, action);
+            self.sections(ui, input, command);
         } else {
             self.found(ui, input);
         }
     }
 
     /// What chooses the technique as a whole: the side, and the menu.
-    fn technique_head(&mut self, ui: &mut Ui, input: &mut PanelInput<'_>, action: &mut Option<Action>) {
+    fn technique_head(&mut self, ui: &mut Ui, input: &mut PanelInput<'_>, command: &mut Option<Command>) {
         let mut side = 0;
         match &mut input.compare {
             Some(compare) => {
-                compare::tabs(ui, compare, action);
+                compare::tabs(ui, compare, command);
                 side = usize::from(*compare.edits_other);
             }
-            None if self.has(Part::Compare) => compare::start(ui, action),
+            None if self.has(Part::Compare) => compare::start(ui, command),
             None => {
                 widgets::title(ui, "Technique");
             }
         }
         let saved = self.has(Part::UserPresets).then_some(input.presets);
         let menu = &mut self.technique;
-        edit(input, |settings| menu.show(ui, &mut settings.technique, side, saved, action));
+        edit(input, |settings| menu.show(ui, &mut settings.technique, side, saved, command));
     }
 
     /// The rows that are used most, the groups of the technique, the figures, and what only tools have.
-    fn sections(&mut self, ui: &mut Ui, input: &mut PanelInput<'_>, action: &mut Option<Action>) {
+    fn sections(&mut self, ui: &mut Ui, input: &mut PanelInput<'_>, command: &mut Option<Command>) {
         let hidden = &self.hidden;
         let rows = Rows { defaults: &self.defaults, has: &|parameter: &Parameter| !hidden.contains(parameter.id) };
         edit(input, |settings| {
@@ -222,7 +228,7 @@ impl Panel {
         if !self.hidden_parts.contains(&Part::Plots) {
             let plots = &mut self.plots;
             Section { title: "Plots", help: "The figures of the last minute.", summary: "", is_open: false }
-                .show(ui, |ui| plots.show(ui, action));
+                .show(ui, |ui| plots.show(ui, command));
         }
         edit_shared(input, |settings| rows.groups(ui, TOOL_GROUPS, settings));
     }

@@ -1,10 +1,11 @@
 //! The controls of the settings: those that are used most, a search, and the groups.
 
-use egui::{Margin, Rect, Stroke, TextEdit, Ui, Vec2};
+use egui::{Margin, TextEdit, Ui, Vec2};
 use shadowfit::params::{Group, Parameter, parameter};
 use shadowfit::tool::Settings;
 
 use crate::accessibility::rename;
+use crate::icon::paint_icon;
 use crate::rows;
 use crate::widgets::{Icon, Section, caption, icon_button};
 
@@ -31,11 +32,11 @@ impl Rows<'_> {
             let width = ui.available_width() - 30.0;
             let field = TextEdit::singleline(search).hint_text("Search all settings").margin(margin);
             let field = ui.add(field.desired_width(width));
-            let icon = Rect::from_center_size(field.rect.left_center() + Vec2::new(14.0, 0.0), Vec2::ZERO);
-            Icon::Search.paint(ui.painter(), icon, Stroke::new(1.25, ui.visuals().weak_text_color()));
+            let at = field.rect.left_center() + Vec2::new(14.0, 0.0);
+            paint_icon(ui, Icon::Search, at, ui.visuals().weak_text_color());
             rename(ui, &field, "Search all settings".to_owned());
             let is_empty = search.is_empty();
-            if !is_empty && icon_button(ui, Icon::Close, "Clear the search", "Shows all settings again.").clicked() {
+            if !is_empty && icon_button(ui, Icon::X, "Clear the search", "Shows all settings again.").clicked() {
                 search.clear();
             }
         });

@@ -4,7 +4,7 @@ use egui::{Color32, ComboBox, Ui, Vec2};
 use egui_plot::{GridMark, HLine, HoverPosition, Line, Plot, PlotPoints};
 use shadowfit::figures::{ERROR_COLORS, MAP_TINTS};
 
-use crate::Action;
+use crate::Command;
 use crate::accessibility::rename;
 use crate::history::{History, SERIES};
 use crate::theme::{Palette, readable};
@@ -78,7 +78,7 @@ pub(crate) struct Plots {
 
 impl Plots {
     /// Choice, plot, legend with the last values, and buttons.
-    pub(crate) fn show(&mut self, ui: &mut Ui, action: &mut Option<Action>) {
+    pub(crate) fn show(&mut self, ui: &mut Ui, command: &mut Option<Command>) {
         let mut chosen = self.chosen;
         let list = ComboBox::from_id_salt("plot").width(ui.available_width()).selected_text(PLOTS[chosen].name);
         let list = list.show_ui(ui, |ui| {
@@ -93,7 +93,7 @@ impl Plots {
         let lines: Vec<(usize, Color32)> = plot.series.iter().map(|name| line(ui, name)).collect();
         self.plot(ui, plot, &lines);
         legend(ui, &self.history, &lines);
-        self.buttons(ui, action);
+        self.buttons(ui, command);
     }
 
     fn plot(&self, ui: &mut Ui, choice: &Choice, lines: &[(usize, Color32)]) {
@@ -139,7 +139,7 @@ impl Plots {
         }
     }
 
-    fn buttons(&mut self, ui: &mut Ui, action: &mut Option<Action>) {
+    fn buttons(&mut self, ui: &mut Ui, command: &mut Option<Command>) {
         ui.horizontal(|ui| {
             let (pause, help) = if self.history.is_paused {
                 ("Resume", "Goes on plotting.")
@@ -154,7 +154,7 @@ impl Plots {
             }
             let save = ui.add_enabled(!self.history.is_empty(), egui::Button::new("Save CSV"));
             if save.on_hover_text("Saves all figures of the last minute as comma-separated values.").clicked() {
-                *action = Some(Action::SaveCsv(self.history.to_csv()));
+                *command = Some(Command::SaveFigures(None));
             }
         });
     }

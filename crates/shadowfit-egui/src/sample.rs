@@ -5,41 +5,41 @@ use egui::{Checkbox, ComboBox, Label, RichText, Slider, Ui};
 use crate::accessibility::rename;
 use crate::theme::Palette;
 use crate::widgets::{caption, card, main_button, title};
-use crate::{Action, SampleCard, SampleControl, SampleRow};
+use crate::{Command, SampleCard, SampleControl, SampleRow};
 
 /// Width of the names of options, in points.
 const LABEL_WIDTH: f32 = 96.0;
 
 /// The card.
-pub(crate) fn show(ui: &mut Ui, sample: &SampleCard<'_>, action: &mut Option<Action>) {
+pub(crate) fn show(ui: &mut Ui, sample: &SampleCard<'_>, command: &mut Option<Command>) {
     let palette = Palette::of(ui);
     card(ui, Some(palette.accent), |ui| {
         title(ui, sample.title);
         ui.add(Label::new(sample.text).wrap());
         caption(ui, sample.flaw);
         ui.add_space(2.0);
-        variants(ui, sample, action);
+        variants(ui, sample, command);
     });
     ui.add_space(4.0);
     for (index, row) in sample.rows.iter().enumerate() {
-        ui.push_id(("sample option", index), |ui| option(ui, index, row, action));
+        ui.push_id(("sample option", index), |ui| option(ui, index, row, command));
     }
-    figures(ui, sample, action);
+    figures(ui, sample, command);
 }
 
 /// What it can show beside itself, and what is to be seen in what it shows.
-fn variants(ui: &mut Ui, sample: &SampleCard<'_>, action: &mut Option<Action>) {
+fn variants(ui: &mut Ui, sample: &SampleCard<'_>, command: &mut Option<Command>) {
     let shown = sample.shown.and_then(|index| sample.variants.get(index));
     let now = shown.map_or("As its source", |variant| variant.label);
     let response =
         ComboBox::from_id_salt("sample variants").width(ui.available_width()).selected_text(now).show_ui(ui, |ui| {
             if ui.selectable_label(sample.shown.is_none(), "As its source").clicked() {
-                *action = Some(Action::ShowSampleVariant(None));
+                *command = Some(Command::ShowSampleVariant(None));
             }
             for (index, variant) in sample.variants.iter().enumerate() {
                 let is_shown = sample.shown == Some(index);
                 if ui.selectable_label(is_shown, variant.label).on_hover_text(variant.text).clicked() {
-                    *action = Some(Action::ShowSampleVariant(Some(index)));
+                    *command = Some(Command::ShowSampleVariant(Some(index)));
                 }
             }
         });
@@ -50,7 +50,7 @@ fn variants(ui: &mut Ui, sample: &SampleCard<'_>, action: &mut Option<Action>) {
 }
 
 /// A row of an option: its name, and what sets it.
-fn option(ui: &mut Ui, index: usize, row: &SampleRow<'_>, action: &mut Option<Action>) {
+fn option(ui: &mut Ui, index: usize, row: &SampleRow<'_>, command: &mut Option<Command>) {
     ui.horizontal(|ui| {
         let size = egui::vec2(LABEL_WIDTH, ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
@@ -81,7 +81,7 @@ fn option(ui: &mut Ui, index: usize, row: &SampleRow<'_>, action: &mut Option<Ac
             }
         };
         if let Some(value) = changed {
-            *action = Some(Action::SetSampleOption { index, bits: value.to_bits() });
+            *command = Some(Command::SetSampleOption { index, value });
         }
     });
 }
@@ -103,7 +103,7 @@ fn choice(ui: &mut Ui, row: &SampleRow<'_>, choices: &[(&str, &str)]) -> Option<
 }
 
 /// How it compares with modern maps, once that was measured.
-fn figures(ui: &mut Ui, sample: &SampleCard<'_>, action: &mut Option<Action>) {
+fn figures(ui: &mut Ui, sample: &SampleCard<'_>, command: &mut Option<Command>) {
     if !sample.is_measurable {
         return;
     }
@@ -112,7 +112,7 @@ fn figures(ui: &mut Ui, sample: &SampleCard<'_>, action: &mut Option<Action>) {
     card(ui, None, |ui| {
         let help = "Judges this view against rays, as the sample shadows it and as modern maps do.";
         if main_button(ui, "Measure", "", palette.accent_fill).on_hover_text(help).clicked() {
-            *action = Some(Action::MeasureSample);
+            *command = Some(Command::MeasureSample);
         }
         for line in sample.figures {
             ui.horizontal(|ui| {

@@ -6,7 +6,7 @@ use shadowfit::{PRESETS, Technique};
 
 use crate::accessibility::rename;
 use crate::widgets::{Icon, icon_button};
-use crate::{Action, UserPreset};
+use crate::{Command, Toggle, UserPreset};
 
 /// What the menu does.
 const HELP: &str = "Sets everything from Fit to Single maps as a technique by name has it, and keeps shadow distance, \
@@ -55,12 +55,12 @@ impl Menu {
         }
     }
 
-    /// Takes the names along with what is about to be done with the techniques.
-    pub(crate) fn follow(&mut self, action: &Action, edits_other: bool) {
-        match action {
-            Action::SwapSides => self.chosen.swap(0, 1),
-            Action::StartCompare => self.copy_name(0),
-            Action::CopyToOther => {
+    /// Swaps or copies the names as a command is about to do with the techniques.
+    pub(crate) fn follow(&mut self, command: &Command, edits_other: bool) {
+        match command {
+            Command::SwapSides => self.chosen.swap(0, 1),
+            Command::Compare(Toggle::On) => self.copy_name(0),
+            Command::CopyToOther => {
                 self.copy_name(usize::from(edits_other));
             }
             _ => {}
@@ -104,7 +104,7 @@ impl Menu {
         technique: &mut Technique,
         side: usize,
         saved: Option<&[UserPreset]>,
-        action: &mut Option<Action>,
+        command: &mut Option<Command>,
     ) {
         self.side = side;
         let now = *technique;
@@ -130,7 +130,7 @@ impl Menu {
                 ui.spacing_mut().item_spacing.y = 0.0;
                 ui.spacing_mut().button_padding.y = 1.0;
                 for entry in self.entries(presets) {
-                    if line(ui, &entry, name.as_deref() == Some(entry.name), action) {
+                    if line(ui, &entry, name.as_deref() == Some(entry.name), command) {
                         chosen = Some((entry.name.to_owned(), entry.technique));
                     }
                 }
@@ -142,7 +142,7 @@ impl Menu {
                 self.name = if self.name.is_some() { None } else { Some(String::new()) };
             }
         });
-        self.name_field(ui, action);
+        self.name_field(ui, command);
         if let Some((name, preset)) = chosen {
             self.chosen[side] = name;
             *technique = of_scene(&preset, &now);
@@ -150,7 +150,7 @@ impl Menu {
     }
 
     /// The field for the name that the technique is saved under, while it is asked for.
-    fn name_field(&mut self, ui: &mut Ui, action: &mut Option<Action>) {
+    fn name_field(&mut self, ui: &mut Ui, command: &mut Option<Command>) {
         let Some(name) = &mut self.name else { return };
         let mut is_done = false;
         ui.horizontal(|ui| {
@@ -162,7 +162,7 @@ impl Menu {
             let name = name.trim();
             let save = ui.add_enabled(!name.is_empty(), Button::new("Save"));
             if (save.clicked() || is_entered) && !name.is_empty() {
-                *action = Some(Action::SavePreset(name.to_owned()));
+                *command = Some(Command::SavePreset(name.to_owned()));
                 is_done = true;
             }
             is_done |= ui.button("Cancel").clicked();
@@ -187,7 +187,7 @@ fn of_scene(technique: &Technique, other: &Technique) -> Technique {
 }
 
 /// A line of the menu, with a button that deletes it where a person saved it; returns whether it was chosen.
-fn line(ui: &mut Ui, entry: &Entry<'_>, is_selected: bool, action: &mut Option<Action>) -> bool {
+fn line(ui: &mut Ui, entry: &Entry<'_>, is_selected: bool, command: &mut Option<Command>) -> bool {
     if !entry.is_saved {
         return option(ui, entry, is_selected, ui.available_width()).clicked();
     }
@@ -195,8 +195,8 @@ fn line(ui: &mut Ui, entry: &Entry<'_>, is_selected: bool, action: &mut Option<A
         let width = ui.available_width() - 30.0;
         let chosen = ui.vertical(|ui| option(ui, entry, is_selected, width).clicked());
         let name = format!("Delete {}", entry.name);
-        if icon_button(ui, Icon::Delete, &name, "Deletes this saved technique.").clicked() {
-            *action = Some(Action::DeletePreset(entry.name.to_owned()));
+        if icon_button(ui, Icon::Trash2, &name, "Deletes this saved technique.").clicked() {
+            *command = Some(Command::DeletePreset(entry.name.to_owned()));
         }
         chosen.inner
     })

@@ -11,6 +11,8 @@ use egui::{
     ThemePreference, Ui, Vec2, Visuals,
 };
 
+use crate::icon::add_icons;
+
 pub(crate) use palette::{Palette, contrast, readable};
 
 /// Sizes of text, in points.
@@ -38,6 +40,7 @@ pub fn apply_theme(ctx: &Context, theme: impl Into<ThemePreference>) {
         });
     }
     add_arrows(ctx);
+    add_icons(ctx);
     ctx.set_theme(theme);
 }
 

@@ -6,13 +6,13 @@ use shadowfit::figures::JudgedFigures;
 use crate::theme::{Palette, has_arrows};
 use crate::units::percent;
 use crate::widgets::{caption, card, main_button, title};
-use crate::{Action, Tune};
+use crate::{Command, Tune};
 
 const HELP: &str = "Tries biases, filters and fits on this view, judges each against rays, and keeps what has the least \
                     error. Nothing changes until you apply it.";
 
 /// The card.
-pub(crate) fn show(ui: &mut Ui, tune: &Tune<'_>, action: &mut Option<Action>) {
+pub(crate) fn show(ui: &mut Ui, tune: &Tune<'_>, command: &mut Option<Command>) {
     let palette = Palette::of(ui);
     let accent = match tune {
         Tune::Idle => None,
@@ -28,7 +28,7 @@ pub(crate) fn show(ui: &mut Ui, tune: &Tune<'_>, action: &mut Option<Action>) {
                     title(ui, "Auto-tune").on_hover_text(HELP);
                     caption(ui, "Finds the settings with the least error in this view.");
                 });
-                start(ui, "Auto-tune", action);
+                start(ui, "Auto-tune", command);
             });
         }
         Tune::Running { tried, at_most, start_error, best_error, what } => {
@@ -44,14 +44,14 @@ pub(crate) fn show(ui: &mut Ui, tune: &Tune<'_>, action: &mut Option<Action>) {
                 caption(ui, what);
             }
             if ui.button("Cancel").on_hover_text("Ends the search; what it found so far counts.").clicked() {
-                *action = Some(Action::CancelTune);
+                *command = Some(Command::CancelTune);
             }
         }
-        Tune::Done { before, after, changes, is_applied } => done(ui, [&before, &after], changes, is_applied, action),
+        Tune::Done { before, after, changes, is_applied } => done(ui, [&before, &after], changes, is_applied, command),
         Tune::Failed(reason) => {
             ui.label(RichText::new("Auto-tune failed").color(palette.error));
             ui.add(Label::new(reason).wrap());
-            start(ui, "Try again", action);
+            start(ui, "Try again", command);
         }
     });
 }
@@ -61,7 +61,7 @@ fn done(
     [before, after]: [&JudgedFigures; 2],
     changes: &[String],
     is_applied: bool,
-    action: &mut Option<Action>,
+    command: &mut Option<Command>,
 ) {
     let palette = Palette::of(ui);
     let is_better = !changes.is_empty();
@@ -73,22 +73,22 @@ fn done(
     ui.label(RichText::new(text).color(palette.success));
     ui.label(RichText::new(format!("Wrong pixels {}", from_to(ui, before.wrong, after.wrong))).strong());
     caption(ui, &format!("Mean error {}", from_to(ui, before.mean_error, after.mean_error)));
-    crate::artefact::changes(ui, changes);
+    crate::artefact_card::changes(ui, changes);
     ui.add_space(2.0);
     if is_better && !is_applied {
         ui.columns_const(|[apply, discard]: &mut [Ui; 2]| {
             if main_button(apply, "Apply", "", palette.accent_fill).clicked() {
-                *action = Some(Action::ApplyTune);
+                *command = Some(Command::ApplyTune);
             }
-            close(discard, "Discard", action);
+            close(discard, "Discard", command);
         });
     } else {
         ui.columns_const(|[again, discard]: &mut [Ui; 2]| {
             let button = wide(again, "Tune again");
             if button.on_hover_text(format!("{HELP} (T)")).clicked() {
-                *action = Some(Action::StartTune);
+                *command = Some(Command::StartTune);
             }
-            close(discard, "Close", action);
+            close(discard, "Close", command);
         });
     }
 }
@@ -98,16 +98,16 @@ fn from_to(ui: &Ui, from: f32, to: f32) -> String {
     format!("{} {arrow} {}", percent(from), percent(to))
 }
 
-fn start(ui: &mut Ui, text: &str, action: &mut Option<Action>) {
+fn start(ui: &mut Ui, text: &str, command: &mut Option<Command>) {
     let fill = Palette::of(ui).accent_fill;
     if main_button(ui, text, "T", fill).on_hover_text(HELP).clicked() {
-        *action = Some(Action::StartTune);
+        *command = Some(Command::StartTune);
     }
 }
 
-fn close(ui: &mut Ui, text: &str, action: &mut Option<Action>) {
+fn close(ui: &mut Ui, text: &str, command: &mut Option<Command>) {
     if wide(ui, text).on_hover_text("Forgets what the search found; the settings stay.").clicked() {
-        *action = Some(Action::DiscardTune);
+        *command = Some(Command::DiscardTune);
     }
 }
 

@@ -3,12 +3,11 @@
 mod button;
 mod card;
 mod chip;
-mod icon;
 mod section;
 
+pub use crate::icon::Icon;
 pub use button::icon_button;
 pub(crate) use button::{KeyButton, main_button};
 pub(crate) use card::card;
 pub(crate) use chip::{ValueRow, badge, color, color_entry, color_line, swatch};
-pub use icon::Icon;
 pub(crate) use section::{Section, caption, title};

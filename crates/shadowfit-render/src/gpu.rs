@@ -113,7 +113,7 @@ impl Gpu {
     /// [`waited`](crate::waited) tells apart.
     pub fn submit(&self, commands: impl IntoIterator<Item = wgpu::CommandBuffer>) {
         let commands: Vec<wgpu::CommandBuffer> = commands.into_iter().collect();
-        crate::target::waiting(|| self.queue.submit(commands));
+        crate::wait::waiting(|| self.queue.submit(commands));
     }
 
     /// Until what it returns is dropped, errors of the device are not reported to its handler, which ends the program:

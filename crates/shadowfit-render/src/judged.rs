@@ -3,7 +3,6 @@
 use glam::DMat4;
 use shadowfit::{DepthConvention, PerspectiveCamera};
 
-use crate::frame::Frame;
 use crate::target::DEPTH_FORMAT;
 use crate::uniform::JudgedUniform;
 use crate::{Gpu, bindings};
@@ -63,13 +62,19 @@ impl JudgedInput {
         }
     }
 
-    /// The bind group of a frame's judged picture, for a picture of `size` pixels.
-    pub(crate) fn bind(&self, gpu: &Gpu, frame: &Frame<'_>, size: [u32; 2]) -> wgpu::BindGroup {
-        let uniform = frame.judged.map(|judged| JudgedUniform::new(&judged, frame.camera, size)).unwrap_or_default();
+    /// The bind group of a judged picture, if there is one, for a picture of `size` pixels through a camera.
+    pub(crate) fn bind(
+        &self,
+        gpu: &Gpu,
+        judged: Option<JudgedPicture<'_>>,
+        camera: &PerspectiveCamera,
+        size: [u32; 2],
+    ) -> wgpu::BindGroup {
+        let uniform = judged.map(|judged| JudgedUniform::new(&judged, camera, size)).unwrap_or_default();
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
         let [no_classes, no_depth] = &self.nothing;
-        let classes = frame.judged.map_or(no_classes, |judged| judged.classes);
-        let depth = frame.judged.and_then(|judged| judged.depth).unwrap_or(no_depth);
+        let classes = judged.map_or(no_classes, |judged| judged.classes);
+        let depth = judged.and_then(|judged| judged.depth).unwrap_or(no_depth);
         let [classes, depth] = [classes, depth].map(wgpu::BindingResource::TextureView);
         bindings::group(&gpu.device, LABEL, &self.layout, &[self.uniform.as_entire_binding(), classes, depth])
     }

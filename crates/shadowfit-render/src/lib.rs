@@ -11,6 +11,7 @@ pub mod camera;
 mod casters;
 mod frame;
 mod gpu;
+mod gpu_timer;
 mod inset;
 mod judged;
 mod lines;
@@ -30,11 +31,13 @@ mod target;
 mod timer;
 mod uniform;
 mod vertex_buffer;
+mod wait;
 
 pub use camera::{FlyCamera, FlyInput};
 pub use casters::{Cluster, clustered};
 pub use frame::Frame;
 pub use gpu::{AdapterChoice, Gpu, GpuError};
+pub use gpu_timer::{GpuProfilerQuery, GpuTimer};
 pub use inset::Inset;
 pub use judged::{JudgedPicture, classes_texture};
 pub use lines::{Line, box_lines};
@@ -47,9 +50,10 @@ pub use renderer::Renderer;
 pub use scene::GpuScene;
 pub use shadowfit_wgpu::{Culling, MapUpdate, UpdateContent};
 pub use statistics::{MapStatistics, Statistics};
-pub use target::{ReadError, RenderTarget, read_texture, waited};
+pub use target::{ReadError, RenderTarget, read_texture};
 pub use timer::PassTimes;
 pub use uniform::{
     Atmosphere, BlockUniform, FrameUniform, InsetVertex, InstanceData, JudgedUniform, LineVertex, MarksUniform,
     MaterialUniform, QuadVertex,
 };
+pub use wait::waited;

@@ -3,6 +3,7 @@
 use core::fmt;
 
 use crate::Gpu;
+use crate::wait::waiting;
 
 /// Colour format of render targets, as the renderer writes it.
 pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -117,23 +118,6 @@ fn attachment(device: &wgpu::Device, size: [u32; 2], format: wgpu::TextureFormat
         usage: wgpu::TextureUsages::RENDER_ATTACHMENT | readable,
         view_formats: if format == COLOR_FORMAT { &[ENCODED_FORMAT] } else { &[] },
     })
-}
-
-std::thread_local! {
-    static WAITED: std::cell::Cell<std::time::Duration> = const { std::cell::Cell::new(std::time::Duration::ZERO) };
-}
-
-/// Does something that waits for the GPU.
-pub(crate) fn waiting<T>(wait: impl FnOnce() -> T) -> T {
-    let begin = std::time::Instant::now();
-    let result = wait();
-    WAITED.set(WAITED.get() + begin.elapsed());
-    result
-}
-
-/// How long this thread has waited for the GPU so far, in read-backs and submissions, to be told apart from its own work.
-pub fn waited() -> std::time::Duration {
-    WAITED.get()
 }
 
 /// Copies a texture of a `size` in pixels to the CPU, rows from the top without padding; waits for the GPU.

@@ -1,11 +1,10 @@
-//! Times of the passes on the GPU, a few frames late, through the `wgpu-profiler` crate.
-
-use std::fmt;
+//! Times of the renderer's passes, and which of them make up a frame.
 
 use shadowfit_wgpu::MAX_MAPS;
-use wgpu_profiler::{GpuProfiler, GpuProfilerQuery, GpuProfilerSettings, GpuTimerQueryResult};
+use wgpu_profiler::{GpuProfilerQuery, GpuTimerQueryResult};
 
 use crate::Gpu;
+use crate::gpu_timer::GpuTimer;
 
 /// A timed pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,19 +35,14 @@ pub struct PassTimes {
     pub scene_ms: Option<f32>,
 }
 
-/// Times passes; does nothing on adapters without timestamps.
+/// Times the passes of the renderer.
+#[derive(Debug)]
 pub(crate) struct PassTimer {
-    profiler: Option<GpuProfiler>,
+    timer: GpuTimer,
     pub(crate) times: PassTimes,
     /// Whether the frame that is open has a probe, and whether maps were drawn for it.
     has_probe: bool,
     has_maps: bool,
-}
-
-impl fmt::Debug for PassTimer {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("PassTimer").field("times", &self.times).finish_non_exhaustive()
-    }
 }
 
 /// Frames that wait for the GPU at most: each picture may have one or two probes that are frames of their own.
@@ -91,10 +85,8 @@ impl PassTimes {
 
 impl PassTimer {
     pub(crate) fn new(device: &wgpu::Device) -> Self {
-        let has_timestamps = device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
-        let settings = GpuProfilerSettings { max_num_pending_frames: PENDING, ..GpuProfilerSettings::default() };
-        let profiler = has_timestamps.then(|| GpuProfiler::new(device, settings).ok()).flatten();
-        Self { profiler, times: PassTimes::default(), has_probe: false, has_maps: false }
+        let timer = GpuTimer::new(device, PENDING);
+        Self { timer, times: PassTimes::default(), has_probe: false, has_maps: false }
     }
 
     /// A probe comes next. One without a picture after it is a frame of its own.
@@ -119,36 +111,24 @@ impl PassTimer {
 
     /// Reserves the timestamps of a pass.
     pub(crate) fn begin(&self, pass: Pass, encoder: &mut wgpu::CommandEncoder) -> Option<GpuProfilerQuery> {
-        Some(self.profiler.as_ref()?.begin_pass_query(pass.label(), encoder))
+        self.timer.begin(pass.label(), encoder)
     }
 
     /// Ends what [`Self::begin`] began.
     pub(crate) fn end(&self, query: Option<GpuProfilerQuery>, encoder: &mut wgpu::CommandEncoder) {
-        if let (Some(profiler), Some(query)) = (&self.profiler, query) {
-            profiler.end_query(encoder, query);
-        }
+        self.timer.end(query, encoder);
     }
 
-    /// Records the read-back of the timestamps: the last thing before an encoder is submitted.
+    /// Records the way of the timestamps back: the last thing before an encoder is submitted.
     pub(crate) fn resolve(&mut self, encoder: &mut wgpu::CommandEncoder) {
-        if let Some(profiler) = &mut self.profiler {
-            profiler.resolve_queries(encoder);
-        }
+        self.timer.resolve(encoder);
     }
 
     /// Closes a submitted frame and takes the times of those that are finished.
     pub(crate) fn end_frame(&mut self, gpu: &Gpu) {
         (self.has_probe, self.has_maps) = (false, false);
-        let Some(profiler) = &mut self.profiler else { return };
-        // On a lost device there are no times; reading the picture returns an error.
-        let _unreported = gpu.without_reports();
-        if profiler.end_frame().is_err() {
-            // A query was left open: times would be wrong from here on, so there are none.
-            (self.profiler, self.times) = (None, PassTimes::default());
-            return;
-        }
-        let period = gpu.queue.get_timestamp_period();
-        while let Some(results) = profiler.process_finished_frame(period) {
+        self.timer.end_frame(gpu);
+        while let Some(results) = self.timer.take(gpu) {
             self.times = PassTimes::of(&results, self.times);
         }
     }

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 use glam::DVec3;
-use shadowfit_render::Gpu;
+use shadowfit_render::{Gpu, GpuProfilerQuery, GpuTimer};
 use shadowfit_truth::gpu::{GpuBefore, GpuJudge, GpuJudgeInput, GpuPixel, GpuTally, GpuTracer};
 use shadowfit_truth::{PictureMaps, PixelCamera, TruthSettings};
 
@@ -15,7 +15,12 @@ use crate::PreparedScene;
 pub struct LiveTruth {
     tracer: GpuTracer,
     judge: GpuJudge,
+    timer: GpuTimer,
+    milliseconds: Option<f32>,
 }
+
+/// Pictures whose times wait for the GPU at most.
+const PENDING: usize = 4;
 
 /// A picture that is judged live.
 pub(crate) struct LiveInput<'a> {
@@ -36,7 +41,8 @@ impl LiveTruth {
     pub fn new(gpu: &Gpu, scene: &PreparedScene) -> Result<Self> {
         let tracer = GpuTracer::new(&gpu.device, &gpu.queue, &scene.rays().tracer, DVec3::ZERO)
             .with_context(|| scene.scene().name.clone())?;
-        Ok(Self { tracer, judge: GpuJudge::new(&gpu.device) })
+        let (judge, timer) = (GpuJudge::new(&gpu.device), GpuTimer::new(&gpu.device, PENDING));
+        Ok(Self { tracer, judge, timer, milliseconds: None })
     }
 
     /// Takes over a new pose of the scene.
@@ -69,7 +75,17 @@ impl LiveTruth {
     ///
     /// When the device is lost.
     pub fn take(&mut self, gpu: &Gpu) -> Result<Option<GpuTally>> {
-        Ok(self.judge.take(&gpu.device)?)
+        let tally = self.judge.take(&gpu.device)?;
+        while let Some(milliseconds) = self.timer.take_ms(gpu) {
+            self.milliseconds = Some(milliseconds as f32);
+        }
+        Ok(tally)
+    }
+
+    /// How long the GPU judged and summed the last picture of which the time has come back, in milliseconds; `None`
+    /// before that, and on adapters without timestamps.
+    pub fn milliseconds(&self) -> Option<f32> {
+        self.milliseconds
     }
 
     pub(crate) fn judge(&mut self, gpu: &Gpu, input: &LiveInput<'_>) -> Result<Vec<GpuPixel>> {
@@ -94,10 +110,21 @@ impl LiveTruth {
 
     pub(crate) fn submit(&mut self, gpu: &Gpu, input: &LiveInput<'_>) -> Result<()> {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let judged =
-            GpuJudgeInput { camera: &input.camera, settings: &input.settings, maps: &input.maps, before: input.before };
-        self.judge.judge(&gpu.device, &gpu.queue, &mut encoder, &self.tracer, input.seen, &judged)?;
+        let query = self.timer.begin("judge", &mut encoder);
+        let judged = GpuJudgeInput {
+            camera: &input.camera,
+            settings: &input.settings,
+            maps: &input.maps,
+            before: input.before,
+            timestamp_writes: query.as_ref().and_then(GpuProfilerQuery::compute_pass_timestamp_writes),
+        };
+        let recorded = self.judge.judge(&gpu.device, &gpu.queue, &mut encoder, &self.tracer, input.seen, &judged);
+        let recorded = recorded.map(|_| ());
+        self.timer.end(query, &mut encoder);
+        recorded?;
+        self.timer.resolve(&mut encoder);
         gpu.submit([encoder.finish()]);
+        self.timer.end_frame(gpu);
         Ok(())
     }
 }

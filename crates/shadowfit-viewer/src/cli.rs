@@ -13,29 +13,27 @@ use shadowfit_study::NamedTechnique;
 use shadowfit_study::samples::{SAMPLES, SampleValues};
 
 use crate::script::{self, Line};
-use crate::source::SceneSource;
-use crate::viewer::check_animation;
+use crate::source::{OPTION_PREFIX, SceneSource};
 
-/// Fly through a scene under one sun, and show, measure and cure shadow acne, aliasing and
-/// clipping holes.
+/// Fly through a scene under one sun, and show, measure and fix shadow acne, aliasing and clipping holes.
 #[derive(Clone, Debug, Parser)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of the command line")]
 #[command(name = "viewer", version, after_help = "Press H in the window for its keys.")]
 pub struct Arguments {
-    /// Scene: a glTF file (.gltf or .glb), or courtyard, plain, arcade or forest, which are built in. Without one the
-    /// scene of the last time, at first the courtyard.
+    /// Scene: a glTF file (.gltf or .glb), or one of the built-in scenes courtyard, plain, arcade and forest. Without one
+    /// the viewer opens the scene of the last time, and the courtyard at first.
     pub scene: Option<PathBuf>,
 
-    /// A classic technique by its name, e.g. `xna-shadow-mapping`, with a slash one of its variants; `list` lists them all
-    /// and ends.
+    /// Shows a classic technique by its name, e.g. `xna-shadow-mapping`, or after a slash one of its variants; `list`
+    /// prints them all and quits.
     #[arg(long, value_name = "NAME", conflicts_with = "scene")]
     pub sample: Option<String>,
 
-    /// Which of the file's scenes; its default one if not given.
+    /// Index of the scene in the file; its default scene if not given.
     #[arg(long, value_name = "INDEX")]
     pub scene_index: Option<usize>,
 
-    /// Which of the scene's animations plays.
+    /// Index of the animation that plays.
     #[arg(long, value_name = "INDEX", default_value_t = 0)]
     pub animation: usize,
 
@@ -43,38 +41,38 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR")]
     pub headless: Option<PathBuf>,
 
-    /// Size of the window or of the pictures, in pixels: 1280x720 if not given, and for the pictures of a sample as large as
+    /// Size of the window or of the pictures, in pixels. If not given, 1280x720, or for pictures of a sample the size of
     /// its source's window.
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
 
-    /// Begins with a technique: a preset by its name, e.g. `stable-4`, or a .toml file, such as the tuner writes.
+    /// Starts with a technique: a preset by its name, e.g. `stable-4`, or a .toml file, e.g. from the tuner.
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub technique: Option<String>,
 
-    /// Sets a parameter, e.g. `--set bias.normal_offset=1.5`; `--parameters` lists them. Options of a sample are set as
-    /// `--set sample.bias=0`.
+    /// Sets a parameter, e.g. `--set bias.normal_offset=1.5`; `--parameters` lists them. An option of a sample is set with
+    /// `sample.` before its name, e.g. `--set sample.bias=0`.
     #[arg(long = "set", value_name = "ID=VALUE")]
     pub set: Vec<String>,
 
-    /// Lists every parameter with its range and default, and ends.
+    /// Prints every parameter with its range and default, and quits.
     #[arg(long)]
     pub parameters: bool,
 
-    /// Plays a list of actions, a line each; `--actions` lists them. Without a window it takes the place of the picture
-    /// set, and the files that it saves are put into the folder of `--headless`.
+    /// Plays a script of actions, one per line; `--actions` lists them. With `--headless` it is played instead of rendering
+    /// the picture set, and saves its files into that folder.
     #[arg(long, value_name = "FILE")]
     pub script: Option<PathBuf>,
 
-    /// Lists the actions of scripts, and ends.
+    /// Prints the actions of scripts, and quits.
     #[arg(long)]
     pub actions: bool,
 
-    /// Keeps settings, camera and bookmarks in this file instead of the person's own one.
+    /// Keeps settings, camera and bookmarks in this file instead of the user's own one.
     #[arg(long, value_name = "FILE", conflicts_with = "no_state")]
     pub state: Option<PathBuf>,
 
-    /// Neither restores what was kept from the last time nor keeps anything.
+    /// Restores no settings of the last time, and saves none.
     #[arg(long)]
     pub no_state: bool,
 
@@ -86,7 +84,7 @@ pub struct Arguments {
     #[arg(long)]
     pub software: bool,
 
-    /// Tells on the standard error when the window is ready, and the frame time now and then.
+    /// Prints to the standard error when the window is ready, and the frame time now and then.
     #[arg(long)]
     pub log_frames: bool,
 }
@@ -94,10 +92,7 @@ pub struct Arguments {
 /// Size of the window, and of pictures, if not given, in pixels.
 const SIZE: [u32; 2] = [1280, 720];
 
-/// What names an option of a sample begins with.
-pub(crate) const OPTION_PREFIX: &str = "sample.";
-
-/// Parses the process's arguments; help, version, the parameter list and misuse end it here.
+/// Parses the process's arguments; ends the process after help, version or a list, and after wrong arguments.
 pub(crate) fn parse() -> Arguments {
     let arguments = Arguments::parse();
     if arguments.parameters {
@@ -223,6 +218,15 @@ pub(crate) fn find_technique(text: &str, now: &Technique) -> Result<NamedTechniq
     Ok(named)
 }
 
+/// Refuses an animation that a scene does not have; the first one is the default and is accepted for a scene without any.
+pub(crate) fn check_animation(animation: usize, animations: usize, scene: &str) -> Result<()> {
+    if animation < animations.max(1) {
+        return Ok(());
+    }
+    let there = if animations == 1 { "is 1 animation".to_owned() } else { format!("are {animations} animations") };
+    Err(anyhow!("--animation {animation}: there {there} in {scene}, counted from 0"))
+}
+
 fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
     sides
@@ -266,9 +270,9 @@ fn sample_list() -> String {
 fn action_list() -> String {
     use std::fmt::Write;
     let mut list = String::new();
-    for (name, takes, help) in script::ACTIONS {
+    for action in script::ACTIONS {
         // Writing to a String cannot fail.
-        let _ = writeln!(list, "{:<38} {help}", format!("{name} {takes}"));
+        let _ = writeln!(list, "{:<38} {}", format!("{} {}", action.name, action.takes), action.does);
     }
     list
 }

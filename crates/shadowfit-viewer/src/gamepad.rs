@@ -3,8 +3,7 @@
 
 use gilrs::{Axis, Button, EventType, Gilrs};
 use glam::{Vec2, Vec3};
-
-use crate::command::Command;
+use shadowfit_egui::Command;
 
 /// Stick travel that counts as rest.
 const DEAD_ZONE: f32 = 0.12;

@@ -13,7 +13,7 @@ use shadowfit_render::Gpu;
 
 use crate::cli::Arguments;
 use crate::files::write_png;
-use crate::interface::{Canvas, Interface, Shows};
+use crate::interface::{Canvas, Interface, InterfaceInput};
 use crate::saved::Saved;
 use crate::source::SceneSource;
 use crate::stage::Stage;
@@ -75,11 +75,11 @@ fn play(arguments: &Arguments, folder: &Path) -> Result<()> {
     let mut size = arguments.size();
     let mut canvas = Canvas::new(&viewer.stage.gpu().device, size, FORMAT);
     let mut clock = 0.0;
-    while !viewer.has_played() && !viewer.wishes.quit {
+    while !viewer.has_played() && !viewer.window_requests.quit {
         let (layout, _) = viewer.frame(input(size, clock), FRAME);
         viewer.paint(&layout, &canvas.view, size);
         clock += f64::from(FRAME);
-        if let Some(wanted) = viewer.wishes.resize.take() {
+        if let Some(wanted) = viewer.window_requests.resize.take() {
             size = wanted;
             canvas = Canvas::new(&viewer.stage.gpu().device, size, FORMAT);
         }
@@ -197,10 +197,10 @@ impl Album<'_> {
     /// Draws until the layout stands, and saves.
     fn save(&mut self, name: &str) -> Result<()> {
         let saved = Saved::default();
-        let shows = Shows::at_rest(&saved);
+        let shown = InterfaceInput::at_rest(&saved);
         for frame in 0..SETTLING {
             let clock = f64::from(frame) * f64::from(FRAME);
-            let (_, layout, _) = self.interface.layout(self.stage, &shows, input(self.size, clock));
+            let (_, layout, _) = self.interface.layout(self.stage, &shown, input(self.size, clock));
             // What is judged comes back with the next frame, and a legend lies in its corner in the one after that.
             if (SETTLING - 3..SETTLING - 1).contains(&frame) {
                 self.interface.pictures.draw(self.stage);

@@ -1,23 +1,30 @@
-//! Keys held down and sticks pushed, as the camera's input.
+//! The keys that are held and the sticks that are pushed, as the camera's input.
 
+use egui::Key;
 use glam::{Vec2, Vec3};
+use shadowfit_egui::Chord;
 use shadowfit_render::FlyInput;
-use winit::keyboard::KeyCode;
 
-/// What the person is doing.
+/// What the person holds.
 #[derive(Debug, Default)]
 pub(crate) struct Input {
-    held: Vec<KeyCode>,
+    held: Vec<Chord>,
+    /// Whether Shift is held.
+    pub(crate) fast: bool,
     /// Sticks: movement and turn, each -1..=1, added to the keys.
     pub(crate) sticks: (Vec3, Vec2),
 }
 
 impl Input {
-    pub(crate) fn key(&mut self, code: KeyCode, pressed: bool) {
-        self.held.retain(|held| *held != code);
-        if pressed {
-            self.held.push(code);
+    /// Takes note of a key that was pressed or released; returns whether it was pressed and not held already.
+    pub(crate) fn key(&mut self, chord: Chord, pressed: bool) -> bool {
+        let is_held = self.held.iter().any(|held| held.key == chord.key);
+        if pressed && !is_held {
+            self.held.push(chord);
+        } else if !pressed {
+            self.held.retain(|held| held.key != chord.key);
         }
+        pressed && !is_held
     }
 
     /// Forgets everything held: the window lost its focus, and releases will not arrive.
@@ -25,21 +32,17 @@ impl Input {
         *self = Self::default();
     }
 
-    /// What the camera is asked for; drags and wheel are added by whoever sees them.
+    /// The input of the camera; drags and wheel are added by whoever sees them. Keys that are held with Control do not
+    /// fly.
     pub(crate) fn fly(&self) -> FlyInput {
-        let axis = |positive, negative| {
-            f32::from(u8::from(self.held.contains(&positive))) - f32::from(u8::from(self.held.contains(&negative)))
-        };
-        let movement = Vec3::new(
-            axis(KeyCode::KeyD, KeyCode::KeyA),
-            axis(KeyCode::KeyE, KeyCode::KeyQ),
-            axis(KeyCode::KeyW, KeyCode::KeyS),
-        );
-        let turn = Vec2::new(axis(KeyCode::ArrowRight, KeyCode::ArrowLeft), axis(KeyCode::ArrowUp, KeyCode::ArrowDown));
+        let held = |key| f32::from(u8::from(self.held.iter().any(|held| held.key == key && !held.ctrl)));
+        let axis = |positive, negative| held(positive) - held(negative);
+        let movement = Vec3::new(axis(Key::D, Key::A), axis(Key::E, Key::Q), axis(Key::W, Key::S));
+        let turn = Vec2::new(axis(Key::ArrowRight, Key::ArrowLeft), axis(Key::ArrowUp, Key::ArrowDown));
         FlyInput {
             movement: movement + self.sticks.0,
             turn: turn + self.sticks.1,
-            fast: self.held.iter().any(|key| matches!(key, KeyCode::ShiftLeft | KeyCode::ShiftRight)),
+            fast: self.fast,
             ..FlyInput::default()
         }
     }
@@ -49,25 +52,35 @@ impl Input {
 mod tests {
     use super::*;
 
+    fn chord(keys: &str) -> Chord {
+        keys.parse().expect(keys)
+    }
+
     #[test]
     fn held_keys_move_until_they_are_released() {
-        let mut input = Input::default();
-        input.key(KeyCode::KeyW, true);
-        input.key(KeyCode::KeyW, true);
-        input.key(KeyCode::ArrowLeft, true);
-        input.key(KeyCode::ShiftLeft, true);
+        let mut input = Input { fast: true, ..Input::default() };
+        assert!(input.key(chord("w"), true));
+        assert!(!input.key(chord("w"), true), "a keyboard repeats keys that are held");
+        input.key(chord("left"), true);
         let asked = input.fly();
         assert_eq!((asked.movement, asked.turn, asked.fast), (Vec3::Z, Vec2::NEG_X, true));
-        input.key(KeyCode::KeyW, false);
+        input.key(chord("w"), false);
         assert_eq!(input.fly().movement, Vec3::ZERO);
         input.release_all();
         assert_eq!(input.fly(), FlyInput::default());
     }
 
     #[test]
+    fn keys_with_control_do_not_fly() {
+        let mut input = Input::default();
+        assert!(input.key(chord("ctrl+q"), true));
+        assert_eq!(input.fly(), FlyInput::default());
+    }
+
+    #[test]
     fn sticks_add_to_the_keys() {
         let mut input = Input { sticks: (Vec3::X * 0.5, Vec2::Y * 0.25), ..Input::default() };
-        input.key(KeyCode::KeyD, true);
+        input.key(chord("d"), true);
         let asked = input.fly();
         assert_eq!((asked.movement, asked.turn), (Vec3::X * 1.5, Vec2::Y * 0.25));
     }

@@ -10,10 +10,9 @@ use egui::{CentralPanel, Frame, Ui};
 use glam::Vec2;
 use shadowfit::figures::Figures;
 use shadowfit_egui::{
-    Changes, Compare, PANEL_WIDTH, Panel, PanelInput, SampleFigure, SceneLine, ShownArtefact, Tune, UserPreset,
+    Changes, Command, Compare, PANEL_WIDTH, Panel, PanelInput, SampleFigure, SceneLine, ShownArtefact, Tune, UserPreset,
 };
 
-use crate::command::Command;
 use crate::saved::Saved;
 use crate::stage::Stage;
 
@@ -39,26 +38,26 @@ pub(crate) struct Interface {
     figures: Figures,
 }
 
-/// What the interface shows beside the stage.
-pub(crate) struct Shows<'a> {
+/// What the interface shows besides the stage.
+pub(crate) struct InterfaceInput<'a> {
     pub(crate) saved: &'a Saved,
     pub(crate) presets: &'a [UserPreset],
     pub(crate) tune: Tune<'a>,
-    /// What was measured of the sample on show.
+    /// What was measured of the sample that is shown.
     pub(crate) sample_figures: &'a [SampleFigure],
     pub(crate) changes: Changes<'a>,
-    /// A readable message, such as where a screenshot was saved.
+    /// A message, such as where a screenshot was saved.
     pub(crate) message: Option<&'a str>,
-    /// The scene that is being loaded, and the share of it that is done.
+    /// The scene that is being loaded, and the share of it that is loaded.
     pub(crate) loading: Option<(&'a str, f32)>,
-    /// Whether an artefact is being searched.
+    /// Whether the view of an artefact is being searched.
     pub(crate) is_searching: bool,
     /// Whether there is a scene to show.
     pub(crate) has_scene: bool,
 }
 
-impl<'a> Shows<'a> {
-    /// A scene with nothing under way, and nothing to say.
+impl<'a> InterfaceInput<'a> {
+    /// A scene without background work or messages.
     pub(crate) fn at_rest(saved: &'a Saved) -> Self {
         Self {
             saved,
@@ -74,9 +73,9 @@ impl<'a> Shows<'a> {
     }
 }
 
-/// What a frame of the interface asks for.
+/// What a person did with the interface in a frame.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Asked {
+pub(crate) struct InterfaceOutput {
     pub(crate) commands: Vec<Command>,
     /// Mouse drag over the picture, in pixels.
     pub(crate) drag: Vec2,
@@ -129,16 +128,16 @@ impl Interface {
     pub(crate) fn layout(
         &mut self,
         stage: &mut Stage,
-        shows: &Shows<'_>,
+        input: &InterfaceInput<'_>,
         raw_input: egui::RawInput,
-    ) -> (Asked, Layout, egui::PlatformOutput) {
-        let mut asked = Asked::default();
+    ) -> (InterfaceOutput, Layout, egui::PlatformOutput) {
+        let mut output = InterfaceOutput::default();
         let context = self.context.clone();
-        let mut output = context.run_ui(raw_input, |ui| self.show(ui, stage, shows, &mut asked));
+        let mut full = context.run_ui(raw_input, |ui| self.show(ui, stage, input, &mut output));
         self.pictures.fit_places(stage, &mut self.painter);
-        self.painter.take(stage.gpu(), &mut output.textures_delta);
-        let jobs = context.tessellate(output.shapes, output.pixels_per_point);
-        (asked, Layout { jobs, pixels_per_point: output.pixels_per_point }, output.platform_output)
+        self.painter.take(stage.gpu(), &mut full.textures_delta);
+        let jobs = context.tessellate(full.shapes, full.pixels_per_point);
+        (output, Layout { jobs, pixels_per_point: full.pixels_per_point }, full.platform_output)
     }
 
     /// Paints a frame that was laid out to `target` of `size` pixels.
@@ -146,27 +145,27 @@ impl Interface {
         self.painter.paint(stage.gpu(), layout, target, size);
     }
 
-    fn show(&mut self, ui: &mut Ui, stage: &mut Stage, shows: &Shows<'_>, asked: &mut Asked) {
+    fn show(&mut self, ui: &mut Ui, stage: &mut Stage, input: &InterfaceInput<'_>, output: &mut InterfaceOutput) {
         self.figures = stage.figures(self.pictures.size(), self.frame_ms);
         if !self.bare {
-            bar::show(ui, stage, shows, asked);
-            timeline::show(ui, stage, self.frame_ms, asked);
+            bar::show(ui, stage, input, output);
+            timeline::show(ui, stage, self.frame_ms, output);
             egui::Panel::right("tuning").exact_size(PANEL_WIDTH).resizable(false).show(ui, |ui| {
-                self.show_panel(ui, stage, shows, asked);
+                self.show_panel(ui, stage, input, output);
             });
         }
         let figures = &self.figures;
         CentralPanel::default()
             .frame(Frame::NONE)
-            .show(ui, |ui| self.pictures.show(ui, stage, (shows, figures), asked));
+            .show(ui, |ui| self.pictures.show(ui, stage, (input, figures), output));
         let context = ui.ctx().clone();
         shadowfit_egui::help_overlay(&context, &mut self.help_open);
     }
 
-    fn show_panel(&mut self, ui: &mut Ui, stage: &mut Stage, shows: &Shows<'_>, asked: &mut Asked) {
+    fn show_panel(&mut self, ui: &mut Ui, stage: &mut Stage, input: &InterfaceInput<'_>, output: &mut InterfaceOutput) {
         let (name, notes) = (stage.scene().name.clone(), stage.scene().notes.clone());
         let scene = SceneLine { name: &name, triangles: stage.prepared_scene().triangles(), notes: &notes };
-        let message = stage.problem().map(str::to_owned).or_else(|| shows.message.map(str::to_owned));
+        let message = stage.problem().map(str::to_owned).or_else(|| input.message.map(str::to_owned));
         let (narration, changes) = (stage.narration().to_owned(), stage.cure_changes().to_vec());
         let shown = stage.shown();
         let figures = self.figures;
@@ -179,16 +178,16 @@ impl Interface {
         let sample = stage.sample().map(sample::Parts::new);
         let (settings, other) = stage.settings_and_other();
         let compare = other.map(|other| Compare { other, edits_other: &mut self.edits_other });
-        let input = PanelInput {
+        let panel_input = PanelInput {
             artefact,
-            sample: sample.as_ref().map(|sample| sample.card(shows.sample_figures)),
+            sample: sample.as_ref().map(|sample| sample.card(input.sample_figures)),
             compare,
-            tune: shows.tune,
-            changes: shows.changes,
-            presets: shows.presets,
+            tune: input.tune,
+            changes: input.changes,
+            presets: input.presets,
             message: message.as_deref(),
             ..PanelInput::new(settings, &figures, scene)
         };
-        asked.commands.extend(self.panel.show(ui, input).action.and_then(Command::from_action));
+        output.commands.extend(self.panel.show(ui, panel_input).command);
     }
 }

@@ -4,7 +4,9 @@
 
 mod artefact;
 mod cli;
-mod command;
+#[cfg(test)]
+mod docs_tests;
+mod effect;
 mod export;
 mod files;
 mod fitted;
@@ -13,7 +15,6 @@ mod gamepad;
 mod headless;
 mod input;
 mod interface;
-mod keys;
 mod loading;
 mod monkey;
 mod narration;

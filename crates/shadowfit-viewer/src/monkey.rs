@@ -1,25 +1,24 @@
-//! Random actions: keys, clicks, drags, turns of the wheel, resizes and dropped files, good and hostile. What it proves
-//! is that the viewer does not fall over; the memory that it takes is measured at the same scene before and after.
+//! Random actions: keys, clicks, drags, turns of the wheel, resizes and dropped files, good and hostile. They prove that
+//! the viewer survives them, and measure its memory with the same scene before and after.
 
 use std::path::PathBuf;
 
-use egui::{Event, PointerButton, Pos2};
+use egui::{Event, Key};
+use shadowfit_egui::{Chord, Command, Toggle};
 
-use crate::command::Command;
-use crate::keys::Chord;
-use crate::playback::{Deed, Doing, clicks, wheel};
+use crate::effect::{Activity, Effect};
 use crate::script::Monkey;
 use crate::source::SceneSource;
 
 /// Seconds from one action to the next, on average.
 const PACE: f32 = 0.06;
-/// Share of the time after which memory is measured for the first time: all that is made once has been made then.
+/// Share of the time after which memory is measured first: by then everything has been made that is made only once.
 const WARM_UP: f32 = 0.25;
 /// Sizes of windows, in pixels.
 const SIZES: [[u32; 2]; 6] = [[1280, 720], [640, 360], [960, 600], [1, 1], [333, 777], [1024, 300]];
-/// Largest file that is dropped, in bytes: others are loaded for so long that nothing else is tried.
+/// Largest file that is dropped, in bytes: larger ones take so long to load that nothing else is tried.
 const LARGEST: u64 = 20_000_000;
-/// Seconds that the scene is left alone before memory is measured.
+/// Seconds without actions before memory is measured.
 const REST: f32 = 3.0;
 
 /// A small generator of random numbers: `SplitMix64` (G. Steele, D. Lea and C. Flood, 2014).
@@ -49,20 +48,20 @@ impl Random {
     }
 }
 
-/// Where a run stands.
+/// The phases of a run, in order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Phase {
-    /// Random actions; when they began, memory had not been measured yet.
+    /// Random actions, before memory is measured first.
     Warm,
-    /// Nothing, until memory is measured: seconds left.
+    /// No actions for so many seconds more, then memory is measured.
     Resting(f32),
     /// Random actions.
     Wild,
-    /// As [`Self::Resting`], before the end.
+    /// No actions for so many seconds more, then memory is measured again and the run ends.
     Ending(f32),
 }
 
-/// Random actions under way.
+/// Random actions being played.
 #[derive(Debug)]
 pub(crate) struct MonkeyRun {
     random: Random,
@@ -85,14 +84,8 @@ impl MonkeyRun {
         files.sort();
         let unwanted =
             |chord: &Chord| matches!(chord.command(), Some(Command::Quit | Command::Escape | Command::ChooseFile));
-        let with_modifiers = |chord: Chord| {
-            [
-                chord,
-                Chord { ctrl: true, ..chord },
-                Chord { shift: true, ..chord },
-                Chord { ctrl: true, shift: true, ..chord },
-            ]
-        };
+        let modifiers = [(false, false), (true, false), (false, true), (true, true)];
+        let with_modifiers = |key: &Key| modifiers.map(|(ctrl, shift)| Chord { key: *key, ctrl, shift });
         Self {
             random: Random(monkey.seed),
             seconds: monkey.seconds,
@@ -101,21 +94,22 @@ impl MonkeyRun {
             next: 0.0,
             phase: Phase::Warm,
             files,
-            keys: Chord::all().flat_map(with_modifiers).filter(|chord| !unwanted(chord)).collect(),
+            keys: Key::ALL.iter().flat_map(with_modifiers).filter(|chord| !unwanted(chord)).collect(),
             held: Vec::new(),
             memory: None,
         }
     }
 
-    /// Does what is due in this frame; returns whether it goes on.
-    pub(crate) fn advance(&mut self, seconds: f32, doing: &Doing, deeds: &mut Vec<Deed>) -> bool {
+    /// Plays the actions of this frame; returns whether the run goes on.
+    pub(crate) fn advance(&mut self, seconds: f32, activity: &Activity, effects: &mut Vec<Effect>) -> bool {
         self.passed += seconds;
         match self.phase {
-            Phase::Warm if self.passed >= self.seconds * WARM_UP => self.rest(Phase::Resting(REST), deeds),
-            Phase::Wild if self.passed >= self.seconds => self.rest(Phase::Ending(REST), deeds),
-            Phase::Warm | Phase::Wild => self.act(seconds, doing, deeds),
-            // What is being loaded belongs to the scene that is measured.
-            Phase::Resting(_) | Phase::Ending(_) if doing.is_loading || doing.is_searching || doing.is_tuning => {}
+            Phase::Warm if self.passed >= self.seconds * WARM_UP => self.rest(Phase::Resting(REST), effects),
+            Phase::Wild if self.passed >= self.seconds => self.rest(Phase::Ending(REST), effects),
+            Phase::Warm | Phase::Wild => self.act(seconds, activity, effects),
+            // The scene that is being loaded is part of what is measured.
+            Phase::Resting(_) | Phase::Ending(_)
+                if activity.is_loading || activity.is_searching || activity.is_tuning => {}
             Phase::Resting(left) if left > 0.0 => self.phase = Phase::Resting(left - seconds),
             Phase::Ending(left) if left > 0.0 => self.phase = Phase::Ending(left - seconds),
             Phase::Resting(_) => {
@@ -123,76 +117,65 @@ impl MonkeyRun {
                 self.phase = Phase::Wild;
             }
             Phase::Ending(_) => {
-                deeds.push(Deed::Say(self.report()));
+                effects.push(Effect::Print(self.report()));
                 return false;
             }
         }
         true
     }
 
-    /// Lets go of everything and goes back to the scene that memory is measured at.
-    fn rest(&mut self, phase: Phase, deeds: &mut Vec<Deed>) {
-        deeds.extend(self.held.drain(..).map(|chord| Deed::Key(chord, false)));
-        deeds.push(Deed::Resize(SIZES[0]));
-        for command in
-            [Command::Compare(crate::command::Toggle::Off), Command::CancelTune, Command::Open(SceneSource::default())]
-        {
-            deeds.push(Deed::Do(command));
-        }
+    /// Releases all keys and goes back to the scene with which memory is measured.
+    fn rest(&mut self, phase: Phase, effects: &mut Vec<Effect>) {
+        effects.extend(self.held.drain(..).map(|chord| Effect::Key(chord, false)));
+        effects.push(Effect::Resize(SIZES[0]));
+        let open = Command::Open(SceneSource::default().text());
+        effects.extend([Command::Compare(Toggle::Off), Command::CancelTune, open].map(Effect::Run));
         self.phase = phase;
     }
 
-    fn act(&mut self, seconds: f32, doing: &Doing, deeds: &mut Vec<Deed>) {
+    fn act(&mut self, seconds: f32, activity: &Activity, effects: &mut Vec<Effect>) {
         self.next -= seconds;
-        // A frame of a slow machine makes up for the time that it took, within reason.
+        // On a slow machine a frame catches up on the actions that it has missed, up to a limit.
         for _ in 0..8 {
             if self.next > 0.0 {
                 break;
             }
             self.next += 2.0 * PACE * self.random.share();
             self.actions += 1;
-            self.one(doing, deeds);
+            self.one(activity, effects);
         }
     }
 
-    fn one(&mut self, doing: &Doing, deeds: &mut Vec<Deed>) {
-        let at = self.random.place(doing.size);
+    fn one(&mut self, activity: &Activity, effects: &mut Vec<Effect>) {
+        let at = self.random.place(activity.size);
         match self.random.next() % 100 {
-            0..30 => self.key(deeds),
-            30..60 => deeds.extend(clicks(at, 1 + u32::from(self.random.next().is_multiple_of(4)))),
-            60..78 => self.drag(at, doing, deeds),
-            78..86 => deeds.push(wheel(6.0 * self.random.share() - 3.0)),
-            86..94 => deeds.push(Deed::Pointer(Event::PointerMoved(Pos2::new(at[0], at[1])))),
-            94 => deeds.extend(self.random.pick(&SIZES).map(|size| Deed::Resize(*size))),
-            95 => deeds.extend(self.random.pick(&self.files).map(|file| Deed::Drop(file.clone()))),
-            96 => deeds.push(Deed::Pointer(Event::Text("1.5e3".to_owned()))),
-            _ => deeds.extend(self.held.drain(..).map(|chord| Deed::Key(chord, false))),
+            0..30 => self.key(effects),
+            30..60 => effects.extend(Effect::clicks(at, 1 + u32::from(self.random.next().is_multiple_of(4)))),
+            60..78 => self.drag(at, activity, effects),
+            78..86 => effects.push(Effect::wheel(6.0 * self.random.share() - 3.0)),
+            86..94 => effects.push(Effect::moved(at)),
+            94 => effects.extend(self.random.pick(&SIZES).map(|size| Effect::Resize(*size))),
+            95 => effects.extend(self.random.pick(&self.files).map(|file| Effect::Drop(file.clone()))),
+            96 => effects.push(Effect::Input(Event::Text("1.5e3".to_owned()))),
+            _ => effects.extend(self.held.drain(..).map(|chord| Effect::Key(chord, false))),
         }
     }
 
-    /// Presses a key, which is let go at once or later.
-    fn key(&mut self, deeds: &mut Vec<Deed>) {
+    /// Presses a key and releases it, at once or later.
+    fn key(&mut self, effects: &mut Vec<Effect>) {
         let Some(chord) = self.random.pick(&self.keys).copied() else { return };
-        deeds.push(Deed::Key(chord, true));
+        effects.push(Effect::Key(chord, true));
         if self.random.share() < 0.7 {
-            deeds.push(Deed::Key(chord, false));
+            effects.push(Effect::Key(chord, false));
         } else {
             self.held.push(chord);
         }
     }
 
-    /// A drag within a frame, from one place to another.
-    fn drag(&mut self, [x, y]: [f32; 2], doing: &Doing, deeds: &mut Vec<Deed>) {
-        let [to_x, to_y] = self.random.place(doing.size);
-        let (from, to) = (Pos2::new(x, y), Pos2::new(to_x, to_y));
-        let button = |pos, pressed| Event::PointerButton {
-            pos,
-            button: PointerButton::Primary,
-            pressed,
-            modifiers: egui::Modifiers::NONE,
-        };
-        let events = [Event::PointerMoved(from), button(from, true), Event::PointerMoved(to), button(to, false)];
-        deeds.extend(events.map(Deed::Pointer));
+    /// A drag within one frame, from a place to another.
+    fn drag(&mut self, from: [f32; 2], activity: &Activity, effects: &mut Vec<Effect>) {
+        let to = self.random.place(activity.size);
+        effects.extend([Effect::moved(from), Effect::button(from, true), Effect::moved(to), Effect::button(to, false)]);
     }
 
     fn report(&self) -> String {
@@ -205,12 +188,12 @@ impl MonkeyRun {
                 megabytes(after),
                 megabytes(after) - megabytes(before)
             ),
-            _ => format!("{actions}; memory cannot be told on this system"),
+            _ => format!("{actions}; memory is not known on this system"),
         }
     }
 }
 
-/// Bytes of memory that the process holds; `None` where the system does not tell as Linux does.
+/// Bytes of memory that the process holds; `None` on systems other than Linux.
 pub(crate) fn memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;

@@ -1,8 +1,8 @@
-//! Scripts: a list of actions, a line each, that the viewer plays as if a person did them. Pictures of the docs and the
-//! tests of the window are made by them.
+//! Scripts: a list of actions, one per line, that the viewer plays as if a person did them. They make the pictures of the
+//! docs and the tests of the window. The names of the actions are the text form of commands.
 //!
 //! ```text
-//! # the courtyard, and what rays say of it
+//! # the courtyard, compared with rays
 //! open courtyard
 //! await loaded
 //! technique stable-4
@@ -16,39 +16,44 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use glam::DVec3;
+use egui::ThemePreference;
 use shadowfit::params;
 use shadowfit::tool::Settings;
-use shadowfit_egui::Artefact;
+use shadowfit_egui::{Artefact, Chord, Command, Toggle};
 use shadowfit_study::NamedTechnique;
 
-use crate::cli::OPTION_PREFIX;
-use crate::command::{Command, Toggle};
-use crate::keys::Chord;
-use crate::saved::Theme;
-use crate::source::SceneSource;
+use crate::source::OPTION_PREFIX;
 
-/// An action of a script.
+/// What a line of a script does.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Step {
-    Do(Command),
+    /// Runs a command.
+    Run(Command),
+    /// Presses and releases a key.
     Press(Chord),
-    /// Seconds.
+    /// Holds a key for a number of seconds.
     Hold(Chord, f32),
+    /// Types a text.
     Type(String),
-    /// A place in the window, in points, and how often it is clicked.
+    /// Clicks at a point of the window, in points, a number of times.
     Click([f32; 2], u32),
+    /// Moves the pointer to a point of the window.
     Hover([f32; 2]),
+    /// Drags from one point of the window to another.
     Drag([f32; 2], [f32; 2]),
-    /// Notches.
+    /// Turns the wheel by a number of notches.
     Wheel(f32),
-    /// Pixels.
+    /// Resizes the window, in pixels.
     Resize([u32; 2]),
+    /// Drops a file on the window.
     Drop(String),
-    /// Seconds.
+    /// Waits for a number of seconds.
     Wait(f32),
+    /// Waits for a number of frames.
     Frames(u32),
+    /// Waits until something is done.
     Await(Awaited),
+    /// Plays random actions.
     Monkey(Monkey),
 }
 
@@ -63,11 +68,11 @@ pub(crate) struct Line {
 /// What a script waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Awaited {
-    /// No scene is being loaded, and no artefact searched.
+    /// No scene is being loaded, and no view of an artefact searched.
     Loaded,
-    /// The picture on show has been judged.
+    /// The shown picture has been judged.
     Judged,
-    /// No search for a technique runs.
+    /// No search for a technique is running.
     Tuned,
 }
 
@@ -76,56 +81,133 @@ pub(crate) enum Awaited {
 pub(crate) struct Monkey {
     pub(crate) seconds: f32,
     pub(crate) seed: u64,
-    /// Folder of files that are dropped, good ones and hostile ones.
+    /// Folder of files to drop, good and hostile ones.
     pub(crate) files: Option<String>,
 }
 
-/// Every action with what follows its name; read by people in the help and in error messages.
-pub(crate) const ACTIONS: &[(&str, &str, &str)] = &[
-    ("open", "SCENE", "opens courtyard, plain, arcade, forest, a sample or a file"),
-    ("drop", "FILE", "drops a file on the window"),
-    ("set", "ID VALUE", "sets a parameter, or with `sample.` before its name an option of the sample"),
-    ("technique", "NAME|FILE.toml", "takes a technique"),
-    ("view", "NAME", "shows a view, by its name in view.mode"),
-    ("show", "acne|aliasing|hole", "shows an artefact"),
-    ("fix", "", "cures the artefact on show"),
-    ("look", "X Y Z TO X Y Z", "puts the eye at a point and looks at another"),
-    ("scrub", "SECONDS", "poses the scene at a time of its animation"),
-    ("compare", "on|off", "compares two techniques"),
-    ("split", "SHARE", "moves the bar between both"),
-    ("swap", "", "swaps both techniques"),
-    ("copy-to-other", "", "gives the other side this technique"),
-    ("undo", "", "takes the last change back"),
-    ("redo", "", "makes it again"),
-    ("reset", "", "back to the start"),
-    ("bookmark", "1..9", "remembers the view"),
-    ("goto", "1..9", "goes to a remembered view"),
-    ("focus", "X Y", "flies to what is there: shares of the picture from the top left"),
-    ("tune", "", "searches a better technique"),
-    ("cancel", "", "stops the search"),
-    ("apply", "", "takes what was found"),
-    ("discard", "", "forgets it"),
-    ("preset", "NAME", "saves the technique as a preset"),
-    ("theme", "dark|light", "changes the colours"),
-    ("panel", "", "hides or shows the panel"),
-    ("help", "", "shows or hides the table of the keys"),
-    ("press", "KEY", "presses a key, such as w, Ctrl+Z or space"),
-    ("hold", "KEY SECONDS", "holds a key"),
-    ("type", "TEXT", "types into what has the focus"),
-    ("hover", "X Y", "moves the pointer, in points of the window"),
-    ("click", "X Y", "clicks"),
-    ("doubleclick", "X Y", "clicks twice"),
-    ("drag", "X Y X Y", "drags from a place to another"),
-    ("wheel", "NOTCHES", "turns the wheel"),
-    ("resize", "WIDTH HEIGHT", "resizes the window, in pixels"),
-    ("wait", "SECONDS", "waits"),
-    ("frames", "N", "waits for a number of frames"),
-    ("await", "loaded|judged|tuned", "waits for something to be done"),
-    ("picture", "FILE.png", "saves the picture without the panel"),
-    ("window", "FILE.png", "saves the whole window"),
-    ("figures", "FILE.csv", "saves the plotted figures"),
-    ("monkey", "SECONDS SEED [FOLDER]", "does random things, and drops files of a folder"),
-    ("quit", "", "ends the viewer"),
+/// An action: its name, what follows the name, what it does, and how its line is read.
+pub(crate) struct Action {
+    pub(crate) name: &'static str,
+    pub(crate) takes: &'static str,
+    pub(crate) does: &'static str,
+    read: Read,
+}
+
+/// How the rest of a line is read.
+enum Read {
+    /// Nothing follows, and it is this command.
+    Plain(Command),
+    Command(fn(Words<'_>) -> Result<Command>),
+    Step(fn(Words<'_>) -> Result<Step>),
+}
+
+const fn plain(name: &'static str, does: &'static str, command: Command) -> Action {
+    Action { name, takes: "", does, read: Read::Plain(command) }
+}
+
+const fn command(
+    name: &'static str,
+    takes: &'static str,
+    does: &'static str,
+    read: fn(Words<'_>) -> Result<Command>,
+) -> Action {
+    Action { name, takes, does, read: Read::Command(read) }
+}
+
+const fn step(
+    name: &'static str,
+    takes: &'static str,
+    does: &'static str,
+    read: fn(Words<'_>) -> Result<Step>,
+) -> Action {
+    Action { name, takes, does, read: Read::Step(read) }
+}
+
+/// Every action, as `--actions` and error messages list them.
+pub(crate) const ACTIONS: &[Action] = &[
+    command("open", "SCENE", "opens courtyard, plain, arcade, forest, a sample or a file", |words| {
+        words.text().map(Command::Open)
+    }),
+    step("drop", "FILE", "drops a file on the window", |words| words.text().map(Step::Drop)),
+    command("set", "ID VALUE", "sets a parameter, or with `sample.` before its name an option of the sample", set),
+    command("technique", "NAME|FILE.toml", "uses a technique", technique),
+    command("view", "NAME", "shows a view, by its name in view.mode", view),
+    plain("outside", "shows the view from outside, or the final picture", Command::ToggleOutside),
+    plain("marks", "marks wrong pixels in the next way", Command::NextMarks),
+    plain("inset", "shows the next choice of maps in the inset", Command::NextInset),
+    plain("freeze", "freezes the fit, or lets it follow the camera again", Command::ToggleFreeze),
+    plain("play", "plays or pauses the animation", Command::TogglePlay),
+    plain("sun", "lets the sun move, or stops it", Command::ToggleSun),
+    command("show", "acne|aliasing|hole", "shows an artefact", |words| words.artefact().map(Command::ShowArtefact)),
+    plain("fix", "fixes the artefact that is shown", Command::FixArtefact),
+    plain("close", "stops showing the artefact", Command::CloseArtefact),
+    command("look", "X Y Z TO X Y Z", "puts the eye at a point and looks at another, in metres", look),
+    command("scrub", "SECONDS", "poses the scene at a time of its animation", |words| {
+        words.numbers().map(|[seconds]| Command::Scrub(seconds))
+    }),
+    command("compare", "on|off", "compares two techniques", |words| words.toggle().map(Command::Compare)),
+    command("split", "SHARE", "moves the bar between the two pictures", |words| {
+        words.numbers().map(|[share]| Command::Split(share))
+    }),
+    plain("swap", "swaps the two techniques", Command::SwapSides),
+    plain("copy-to-other", "copies this technique to the other side", Command::CopyToOther),
+    plain("undo", "undoes the last change", Command::Undo),
+    plain("redo", "does again what was undone", Command::Redo),
+    plain("reset", "puts settings and camera back to where they began", Command::Reset),
+    plain("reset-camera", "puts the camera back to where it began", Command::ResetCamera),
+    command("bookmark", "1..9", "saves the view under a number", |words| words.digit().map(Command::SetBookmark)),
+    command("goto", "1..9", "goes to a saved view", |words| words.digit().map(Command::GoToBookmark)),
+    command("focus", "X Y", "flies toward what is there: shares of the picture from the top left", |words| {
+        words.numbers().map(Command::Focus)
+    }),
+    plain("measure", "judges the sample and modern maps against rays", Command::MeasureSample),
+    plain("tune", "searches for a better technique", Command::StartTune),
+    plain("cancel", "stops the search", Command::CancelTune),
+    plain("apply", "uses what the search found", Command::ApplyTune),
+    plain("discard", "forgets what the search found", Command::DiscardTune),
+    command("preset", "NAME", "saves the technique as a preset", |words| words.text().map(Command::SavePreset)),
+    command("delete-preset", "NAME", "deletes a saved preset", |words| words.text().map(Command::DeletePreset)),
+    plain("copy-rust", "copies the technique as Rust code", Command::CopyRust),
+    plain("copy-command-line", "copies the command line that starts with these settings", Command::CopyCommandLine),
+    command("theme", "dark|light|system", "changes the colours", theme),
+    plain("panel", "hides or shows the panel", Command::TogglePanel),
+    plain("help", "shows or hides the table of keys", Command::ToggleHelp),
+    step("press", "KEY", "presses a key, such as `w`, `Ctrl+Z` or `space`", |words| words.chord().map(Step::Press)),
+    step("hold", "KEY SECONDS", "holds a key", hold),
+    step("type", "TEXT", "types into what has the focus", |words| Ok(Step::Type(words.rest.to_owned()))),
+    step("hover", "X Y", "moves the pointer, in points of the window", |words| words.numbers().map(Step::Hover)),
+    step("click", "X Y", "clicks", |words| words.numbers().map(|at| Step::Click(at, 1))),
+    step("doubleclick", "X Y", "clicks twice", |words| words.numbers().map(|at| Step::Click(at, 2))),
+    step("drag", "X Y X Y", "drags from one point to another", |words| {
+        words.numbers().map(|[a, b, c, d]| Step::Drag([a, b], [c, d]))
+    }),
+    step("wheel", "NOTCHES", "turns the wheel", |words| words.numbers().map(|[notches]| Step::Wheel(notches))),
+    step("resize", "WIDTH HEIGHT", "resizes the window, in pixels", |words| {
+        words.numbers::<2>().map(|size| Step::Resize(size.map(|side| side.clamp(1.0, 8192.0) as u32)))
+    }),
+    step("wait", "SECONDS", "waits", |words| words.numbers().map(|[seconds]| Step::Wait(seconds))),
+    step("frames", "N", "waits for a number of frames", |words| {
+        words.numbers().map(|[frames]| Step::Frames(frames as u32))
+    }),
+    step(
+        "await",
+        "loaded|judged|tuned",
+        "waits until scene and artefact are there, the picture is judged, or no search runs",
+        |words| words.awaited().map(Step::Await),
+    ),
+    command("picture", "FILE.png", "saves the picture without the panel", |words| {
+        words.text().map(|file| Command::Screenshot(Some(file.into())))
+    }),
+    command("window", "FILE.png", "saves the whole window", |words| {
+        words.text().map(|file| Command::SaveWindow(file.into()))
+    }),
+    command("figures", "FILE.csv", "saves the plotted figures", |words| {
+        words.text().map(|file| Command::SaveFigures(Some(file.into())))
+    }),
+    step("monkey", "SECONDS SEED [FOLDER]", "plays random actions, and drops files of a folder", |words| {
+        words.monkey().map(Step::Monkey)
+    }),
+    plain("quit", "quits the viewer", Command::Quit),
 ];
 
 /// Reads a script; empty lines and what follows a `#` at the start of a word are ignored.
@@ -149,18 +231,18 @@ pub(crate) fn read(path: &Path) -> Result<Vec<Line>> {
 
 /// Reads a line.
 fn parse(line: &str) -> Result<Step> {
-    let (action, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
-    let known = ACTIONS.iter().find(|(name, ..)| *name == action);
-    let (_, takes, _) = known.ok_or_else(|| {
-        let names: Vec<&str> = ACTIONS.iter().map(|(name, ..)| *name).collect();
-        anyhow!("there is no action {action:?}; there are {}", names.join(", "))
+    let (name, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+    let action = ACTIONS.iter().find(|action| action.name == name).ok_or_else(|| {
+        let names: Vec<&str> = ACTIONS.iter().map(|action| action.name).collect();
+        anyhow!("there is no action {name:?}; there are {}", names.join(", "))
     })?;
     let words = Words { rest: rest.trim() };
-    let step = match words.command(action) {
-        Some(command) => command.map(Step::Do),
-        None => words.step(action),
+    let step = match &action.read {
+        Read::Plain(command) => words.nothing().map(|()| Step::Run(command.clone())),
+        Read::Command(read) => read(words).map(Step::Run),
+        Read::Step(read) => read(words),
     };
-    step.with_context(|| format!("give {}", format!("{action} {takes}").trim_end()))
+    step.with_context(|| format!("give {}", format!("{name} {}", action.takes).trim_end()))
 }
 
 /// What follows an action's name.
@@ -170,58 +252,9 @@ struct Words<'a> {
 }
 
 impl Words<'_> {
-    /// A command; `None` for what is done with keys, pointer and time.
-    fn command(self, action: &str) -> Option<Result<Command>> {
-        Some(match action {
-            "open" => self.one().map(|text| Command::Open(SceneSource::from_text(text))),
-            "set" => self.assignment(),
-            "technique" => self.one().and_then(|name| {
-                NamedTechnique::find(name)?;
-                Ok(Command::Technique(name.to_owned()))
-            }),
-            "view" => self.view(),
-            "show" => self.artefact().map(Command::ShowArtefact),
-            "look" => self.look(),
-            "scrub" => self.numbers().map(|[seconds]| Command::Scrub(seconds)),
-            "compare" => self.toggle().map(Command::Compare),
-            "split" => self.numbers().map(|[share]| Command::Split(share)),
-            "bookmark" => self.digit().map(Command::SetBookmark),
-            "goto" => self.digit().map(Command::GoToBookmark),
-            "focus" => self.numbers().map(Command::Focus),
-            "preset" => self.one().map(|name| Command::SavePreset(name.to_owned())),
-            "theme" => self.theme(),
-            "picture" => self.one().map(|file| Command::Picture(Some(file.into()))),
-            "window" => self.one().map(|file| Command::Window(file.into())),
-            "figures" => self.one().map(|file| Command::SaveFigures(Some(file.into()))),
-            _ => return plain(action).map(|command| self.nothing().map(|()| command)),
-        })
-    }
-
-    fn step(self, action: &str) -> Result<Step> {
-        Ok(match action {
-            "drop" => Step::Drop(self.one()?.to_owned()),
-            "press" => Step::Press(chord(self.one()?)?),
-            "hold" => self.hold()?,
-            "type" => Step::Type(self.rest.to_owned()),
-            "hover" => Step::Hover(self.numbers()?),
-            "click" => Step::Click(self.numbers()?, 1),
-            "doubleclick" => Step::Click(self.numbers()?, 2),
-            "drag" => self.numbers().map(|[a, b, c, d]| Step::Drag([a, b], [c, d]))?,
-            "wheel" => self.numbers().map(|[notches]| Step::Wheel(notches))?,
-            "resize" => {
-                self.numbers::<2>().map(|size| Step::Resize(size.map(|side| side.clamp(1.0, 8192.0) as u32)))?
-            }
-            "wait" => self.numbers().map(|[seconds]| Step::Wait(seconds))?,
-            "frames" => self.numbers().map(|[frames]| Step::Frames(frames as u32))?,
-            "await" => Step::Await(self.awaited()?),
-            "monkey" => Step::Monkey(self.monkey()?),
-            _ => bail!("there is no action {action:?}"),
-        })
-    }
-
-    fn one(&self) -> Result<&str> {
+    fn text(self) -> Result<String> {
         ensure!(!self.rest.is_empty(), "something is missing");
-        Ok(self.rest)
+        Ok(self.rest.to_owned())
     }
 
     fn nothing(self) -> Result<()> {
@@ -231,8 +264,8 @@ impl Words<'_> {
 
     fn numbers<const N: usize>(self) -> Result<[f32; N]> {
         let read = self.rest.split_whitespace().map(|word| {
-            let number: f32 = word.parse().map_err(|_| anyhow!("{word:?} is no number"))?;
-            ensure!(number.is_finite(), "{word} is no number");
+            let number: f32 = word.parse().map_err(|_| anyhow!("{word:?} is not a number"))?;
+            ensure!(number.is_finite(), "{word} is not a finite number");
             Ok(number)
         });
         let numbers: Vec<f32> = read.collect::<Result<_>>()?;
@@ -242,23 +275,8 @@ impl Words<'_> {
 
     fn digit(self) -> Result<u8> {
         let [number] = self.numbers()?;
-        ensure!((1.0..=9.0).contains(&number) && number.fract() == 0.0, "{number} is none of 1 to 9");
+        ensure!((1.0..=9.0).contains(&number) && number.fract() == 0.0, "{number} is not one of 1 to 9");
         Ok(number as u8)
-    }
-
-    /// A parameter and its value, of which the name is checked here; whether the value is possible depends on the
-    /// settings at that time.
-    fn assignment(self) -> Result<Command> {
-        let (id, value) = self.rest.split_once(char::is_whitespace).context("a value is missing")?;
-        let is_known = params::parameter(id).is_some() || id.starts_with(OPTION_PREFIX);
-        ensure!(is_known, "there is no parameter {id:?}; `viewer --parameters` lists them");
-        Ok(Command::Set(id.to_owned(), value.trim().to_owned()))
-    }
-
-    fn view(self) -> Result<Command> {
-        let mut settings = Settings::default();
-        params::set_from_str(&mut settings, "view.mode", self.rest).map_err(|error| anyhow!("{error}"))?;
-        Ok(Command::View(settings.view.mode))
     }
 
     fn artefact(self) -> Result<Artefact> {
@@ -266,14 +284,8 @@ impl Words<'_> {
             "acne" => Ok(Artefact::Acne),
             "aliasing" => Ok(Artefact::Aliasing),
             "hole" => Ok(Artefact::ClippingHole),
-            other => bail!("{other:?} is no artefact"),
+            other => bail!("{other:?} is not an artefact"),
         }
-    }
-
-    fn look(self) -> Result<Command> {
-        let (eye, target) = self.rest.split_once("TO").or_else(|| self.rest.split_once("to")).context("no \"to\"")?;
-        let point = |rest| Words { rest }.numbers().map(|point: [f32; 3]| DVec3::from_array(point.map(f64::from)));
-        Ok(Command::LookAt(point(eye)?, point(target)?))
     }
 
     fn toggle(self) -> Result<Toggle> {
@@ -284,18 +296,8 @@ impl Words<'_> {
         }
     }
 
-    fn theme(self) -> Result<Command> {
-        match self.rest {
-            "dark" => Ok(Command::SetTheme(Theme::Dark)),
-            "light" => Ok(Command::SetTheme(Theme::Light)),
-            other => bail!("{other:?} is neither dark nor light"),
-        }
-    }
-
-    fn hold(self) -> Result<Step> {
-        let (key, seconds) = self.rest.split_once(char::is_whitespace).context("a number of seconds is missing")?;
-        let [seconds] = Words { rest: seconds }.numbers()?;
-        Ok(Step::Hold(chord(key)?, seconds))
+    fn chord(self) -> Result<Chord> {
+        self.rest.parse().map_err(|_| anyhow!("there is no key {:?}", self.rest))
     }
 
     fn awaited(self) -> Result<Awaited> {
@@ -303,7 +305,7 @@ impl Words<'_> {
             "loaded" => Ok(Awaited::Loaded),
             "judged" => Ok(Awaited::Judged),
             "tuned" => Ok(Awaited::Tuned),
-            other => bail!("{other:?} is nothing to wait for"),
+            other => bail!("{other:?} cannot be awaited"),
         }
     }
 
@@ -312,33 +314,52 @@ impl Words<'_> {
         let seconds = words.next().unwrap_or_default();
         let [seconds] = Words { rest: seconds }.numbers()?;
         let seed = words.next().context("a seed is missing")?;
-        let seed = seed.parse().map_err(|_| anyhow!("{seed:?} is no whole number"))?;
+        let seed = seed.parse().map_err(|_| anyhow!("{seed:?} is not a whole number"))?;
         Ok(Monkey { seconds, seed, files: words.next().map(str::to_owned) })
     }
 }
 
-fn chord(text: &str) -> Result<Chord> {
-    Chord::from_text(text).with_context(|| format!("there is no key {text:?}"))
+/// A parameter and its value. Only the name is checked here: whether the value is possible depends on the settings
+/// at that time.
+fn set(words: Words<'_>) -> Result<Command> {
+    let (id, value) = words.rest.split_once(char::is_whitespace).context("a value is missing")?;
+    let is_known = params::parameter(id).is_some() || id.starts_with(OPTION_PREFIX);
+    ensure!(is_known, "there is no parameter {id:?}; `viewer --parameters` lists them");
+    Ok(Command::Set(id.to_owned(), value.trim().to_owned()))
 }
 
-/// Commands that nothing follows.
-fn plain(action: &str) -> Option<Command> {
-    Some(match action {
-        "fix" => Command::Fix,
-        "swap" => Command::SwapSides,
-        "copy-to-other" => Command::CopyToOther,
-        "undo" => Command::Undo,
-        "redo" => Command::Redo,
-        "reset" => Command::Reset,
-        "tune" => Command::StartTune,
-        "cancel" => Command::CancelTune,
-        "apply" => Command::ApplyTune,
-        "discard" => Command::DiscardTune,
-        "panel" => Command::TogglePanel,
-        "help" => Command::ToggleHelp,
-        "quit" => Command::Quit,
-        _ => return None,
-    })
+/// A preset or a file. The file is read later again, by the command.
+fn technique(words: Words<'_>) -> Result<Command> {
+    let name = words.text()?;
+    NamedTechnique::find(&name)?;
+    Ok(Command::Technique(name))
+}
+
+fn view(words: Words<'_>) -> Result<Command> {
+    let mut settings = Settings::default();
+    params::set_from_str(&mut settings, "view.mode", words.rest).map_err(|error| anyhow!("{error}"))?;
+    Ok(Command::View(settings.view.mode))
+}
+
+fn look(words: Words<'_>) -> Result<Command> {
+    let (eye, target) = words.rest.split_once("TO").or_else(|| words.rest.split_once("to")).context("no \"to\"")?;
+    let point = |rest| Words { rest }.numbers().map(|point: [f32; 3]| point.map(f64::from));
+    Ok(Command::LookAt { eye: point(eye)?, target: point(target)? })
+}
+
+fn theme(words: Words<'_>) -> Result<Command> {
+    match words.rest {
+        "dark" => Ok(Command::SetTheme(ThemePreference::Dark)),
+        "light" => Ok(Command::SetTheme(ThemePreference::Light)),
+        "system" => Ok(Command::SetTheme(ThemePreference::System)),
+        other => bail!("{other:?} is not a theme"),
+    }
+}
+
+fn hold(words: Words<'_>) -> Result<Step> {
+    let (key, seconds) = words.rest.split_once(char::is_whitespace).context("a number of seconds is missing")?;
+    let [seconds] = Words { rest: seconds }.numbers()?;
+    Ok(Step::Hold(Words { rest: key }.chord()?, seconds))
 }
 
 #[cfg(test)]
@@ -359,21 +380,21 @@ mod tests {
         let text = "# a comment\n\nopen forest\n  await loaded # and go on\nview error\nlook 1 2 3 TO 0 1.5 -2\n\
                     set bias.constant 0.5\nhold w 0.5\ndrag 1 2 3 4\nmonkey 5 7 some folder\nwindow a b.png\nquit\n";
         let (_folder, path) = write(text);
-        let chord = Chord::from_text("w").expect("a key");
+        let chord = "w".parse::<Chord>().expect("a key");
         let lines = read(&path).expect("a script");
         assert!(lines[1].place.ends_with("script.txt:4: await loaded"), "{}", lines[1].place);
         let steps: Vec<Step> = lines.into_iter().map(|line| line.step).collect();
         let expected = [
-            Step::Do(Command::Open(SceneSource::from_text("forest"))),
+            Step::Run(Command::Open("forest".to_owned())),
             Step::Await(Awaited::Loaded),
-            Step::Do(Command::View(ViewMode::Error)),
-            Step::Do(Command::LookAt(DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.0, 1.5, -2.0))),
-            Step::Do(Command::Set("bias.constant".to_owned(), "0.5".to_owned())),
+            Step::Run(Command::View(ViewMode::Error)),
+            Step::Run(Command::LookAt { eye: [1.0, 2.0, 3.0], target: [0.0, 1.5, -2.0] }),
+            Step::Run(Command::Set("bias.constant".to_owned(), "0.5".to_owned())),
             Step::Hold(chord, 0.5),
             Step::Drag([1.0, 2.0], [3.0, 4.0]),
             Step::Monkey(Monkey { seconds: 5.0, seed: 7, files: Some("some folder".to_owned()) }),
-            Step::Do(Command::Window("a b.png".into())),
-            Step::Do(Command::Quit),
+            Step::Run(Command::SaveWindow("a b.png".into())),
+            Step::Run(Command::Quit),
         ];
         assert_eq!(steps, expected);
     }
@@ -387,10 +408,10 @@ mod tests {
             ("set bias.constant", &["a value is missing", "set ID VALUE"]),
             ("technique none", &["\"none\"", "windows-4"]),
             ("click 3", &["1 numbers instead of 2", "click X Y"]),
-            ("wait soon", &["\"soon\" is no number"]),
-            ("wait inf", &["no number"]),
+            ("wait soon", &["\"soon\" is not a number"]),
+            ("wait inf", &["not a finite number"]),
             ("press hyper+x", &["no key \"hyper+x\""]),
-            ("bookmark 12", &["12 is none of 1 to 9"]),
+            ("bookmark 12", &["12 is not one of 1 to 9"]),
             ("quit now", &["nothing follows it"]),
             ("monkey 3", &["a seed is missing"]),
         ] {
@@ -421,14 +442,14 @@ mod tests {
             "X Y" | "WIDTH HEIGHT" => "30 20",
             "X Y X Y" => "1 2 3 4",
             "SECONDS" | "SHARE" | "NOTCHES" | "N" => "1",
-            "dark|light" => "light",
+            "dark|light|system" => "light",
             "loaded|judged|tuned" => "judged",
             "SECONDS SEED [FOLDER]" => "1 2",
             other => panic!("no example for {other}"),
         };
-        for (name, takes, help) in ACTIONS {
+        for Action { name, takes, does, .. } in ACTIONS {
             assert!(parse(&format!("{name} {}", examples(takes))).is_ok(), "{name} {takes}");
-            assert!(!help.is_empty());
+            assert!(!does.is_empty());
         }
     }
 }

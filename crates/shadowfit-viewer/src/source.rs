@@ -7,6 +7,9 @@ use shadowfit_scene::Scene;
 use shadowfit_scene::builtin::BuiltinScene;
 use shadowfit_study::samples::{Sample, SampleVariant};
 
+/// What the name of a sample's option begins with, on the command line and in scripts.
+pub(crate) const OPTION_PREFIX: &str = "sample.";
+
 /// A built-in scene, a classic sample or a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum SceneSource {

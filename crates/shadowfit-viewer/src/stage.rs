@@ -89,7 +89,7 @@ pub struct Stage {
     clock: f32,
     home: (Settings, FlyCamera),
     artefact: ArtefactShow,
-    why: why::Asked,
+    why: why::PixelQuestion,
     reads_depths: bool,
     sample: Option<SampleShow>,
 }
@@ -129,7 +129,7 @@ impl Stage {
             clock: 0.0,
             home,
             artefact: ArtefactShow::default(),
-            why: why::Asked::default(),
+            why: why::PixelQuestion::default(),
             reads_depths: false,
             sample: None,
         })
@@ -158,7 +158,7 @@ impl Stage {
         (self.settings, self.camera) = self.home;
         (self.seconds, self.animation) = (0.0, 0);
         self.artefact = ArtefactShow::default();
-        self.why = why::Asked::default();
+        self.why = why::PixelQuestion::default();
         self.other = None;
         self.sample = None;
         self.side.scene_changed();

@@ -1,5 +1,5 @@
-//! The viewer without a window: scene, interface, commands, and what goes on in the background. The window and the
-//! headless mode put frames around it.
+//! The viewer without its window: scene, interface, commands and background work. The window and the headless mode
+//! call it once per frame.
 
 mod commands;
 mod opening;
@@ -13,19 +13,18 @@ use std::path::PathBuf;
 use std::sync::mpsc::Receiver;
 
 use anyhow::Result;
-use egui::RawInput;
+use egui::{Event, RawInput};
 use shadowfit::tool::Settings;
-use shadowfit_egui::{Changes, UserPreset};
+use shadowfit_egui::{Changes, Chord, Command, UserPreset};
 use tempfile::TempDir;
 
 use crate::artefact::Found;
-use crate::command::Command;
+use crate::effect::{Activity, Effect};
 use crate::files::write_png;
 use crate::input::Input;
-use crate::interface::{Asked, Canvas, Interface, Layout, Shows};
-use crate::keys::Chord;
+use crate::interface::{Canvas, Interface, InterfaceInput, InterfaceOutput, Layout};
 use crate::loading::Loading;
-use crate::playback::{Deed, Doing, Player};
+use crate::playback::Player;
 use crate::sample_figures::Measuring;
 use crate::saved::{Saved, Store};
 use crate::source::SceneSource;
@@ -34,10 +33,9 @@ use crate::tuning::Tuning;
 use crate::undo::{History, State};
 
 pub(crate) use commands::compared_with;
-pub(crate) use opening::check_animation;
 pub(crate) use start::Start;
 
-/// How often what is kept is written, in seconds.
+/// Seconds between two writes of the saved settings.
 const SAVE_EVERY: f64 = 5.0;
 /// Weight of the newest frame in the frame time shown.
 const FRAME_TIME_WEIGHT: f32 = 0.1;
@@ -68,18 +66,18 @@ pub(crate) struct Viewer {
     clock: f64,
     saved_at: f64,
     commands: VecDeque<Request>,
-    /// The line of a script that asked for what is being done.
+    /// The line of the script that asked for the command being run.
     line: Option<String>,
-    /// Pictures of the whole window that were asked for, and the lines of a script that did.
+    /// Pictures of the whole window to be saved, and the lines of the script that asked for them.
     shots: Vec<(PathBuf, Option<String>)>,
-    /// Where random actions save, removed at the end: a person's folder must not be filled by them.
+    /// Where random actions save, so that they do not fill the user's folder; removed at the end.
     litter: Option<TempDir>,
-    pub(crate) wishes: Wishes,
-    /// Why it ends with an error.
+    pub(crate) window_requests: WindowRequests,
+    /// The error that the viewer ends with.
     pub(crate) failure: Option<anyhow::Error>,
 }
 
-/// Something to do, and the line of a script that asks for it.
+/// A command, and the line of the script that asks for it.
 struct Request {
     command: Command,
     line: Option<String>,
@@ -91,19 +89,20 @@ impl From<Command> for Request {
     }
 }
 
-/// A readable line, and since when it has been shown, in seconds since the start.
+/// A message, and when it was first shown, in seconds since the start.
 struct Message {
     text: String,
     since: f64,
 }
 
-/// How long a line is shown, in seconds.
+/// How long a message is shown, in seconds.
 const MESSAGE_TIME: f64 = 8.0;
 
-/// What the viewer wants of its window.
+/// What the viewer asks its window to do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Wishes {
+pub(crate) struct WindowRequests {
     pub(crate) quit: bool,
+    /// A new size, in pixels.
     pub(crate) resize: Option<[u32; 2]>,
     pub(crate) new_title: bool,
 }
@@ -137,21 +136,33 @@ impl Viewer {
             line: None,
             shots: Vec::new(),
             litter: None,
-            wishes: Wishes::default(),
+            window_requests: WindowRequests::default(),
             failure: None,
         };
         viewer.restore();
         viewer
     }
 
-    /// Handles a key.
-    pub(crate) fn key(&mut self, chord: Chord, pressed: bool, is_repeat: bool) {
-        let command = self.key_command(chord).filter(|_| pressed && !is_repeat);
-        self.commands.extend(command.map(Request::from));
-        self.hold(chord, pressed);
+    /// Takes the keys out of the input that are not for what has the focus in the panel: typing is not flying, but a
+    /// release must always arrive.
+    fn take_keys(&mut self, raw_input: &mut RawInput) {
+        for event in &raw_input.events {
+            if let Event::ModifiersChanged(modifiers) = event {
+                self.input.fast = modifiers.shift;
+            }
+        }
+        let types = self.types();
+        let is_taken = |event: &mut Event| matches!(event, Event::Key { pressed, .. } if !(*pressed && types));
+        for event in raw_input.events.extract_if(.., is_taken) {
+            let Event::Key { key, physical_key, pressed, modifiers, .. } = event else { continue };
+            // The place of a key matters for flying, not the letter that a layout prints on it.
+            let chord = Chord { key: physical_key.unwrap_or(key), ctrl: modifiers.ctrl, shift: modifiers.shift };
+            let is_new = self.input.key(chord, pressed);
+            self.commands.extend(self.key_command(chord).filter(|_| is_new).map(Request::from));
+        }
     }
 
-    /// What a key does when it is pressed. A sample's own controls win over those of the viewer.
+    /// The command of a key. A sample's own controls win over those of the viewer.
     fn key_command(&self, chord: Chord) -> Option<Command> {
         match chord.command() {
             Some(Command::Reset) if self.stage.has_sample_reset() => Some(Command::ResetCamera),
@@ -159,37 +170,30 @@ impl Viewer {
         }
     }
 
-    /// Takes note of a key that is held.
-    fn hold(&mut self, chord: Chord, pressed: bool) {
-        // Control makes other things of the keys that fly.
-        if !chord.ctrl || !pressed {
-            self.input.key(chord.key, pressed);
-        }
-    }
-
-    /// Has something done in the next frame.
+    /// Queues a command for the next frame.
     pub(crate) fn ask(&mut self, command: Command) {
         self.commands.push_back(command.into());
     }
 
     /// Whether keys go to what has the focus in the panel.
-    pub(crate) fn types(&self) -> bool {
+    fn types(&self) -> bool {
         self.interface.context.egui_wants_keyboard_input()
     }
 
-    /// Lays a frame out, does what is asked for and draws: the frame after it shows what was done. Time since the frame
-    /// before is in seconds.
+    /// Lays out a frame, draws it and runs the commands that it asks for, whose effect the next frame shows. `seconds`
+    /// have passed since the frame before.
     pub(crate) fn frame(&mut self, mut raw_input: RawInput, seconds: f32) -> (Layout, egui::PlatformOutput) {
         self.clock += f64::from(seconds);
         let old = self.interface.frame_ms.unwrap_or(seconds * 1e3);
         self.interface.frame_ms = Some(old + (seconds * 1e3 - old) * FRAME_TIME_WEIGHT);
-        // What is told at the start waits for the panel to be seen.
+        // Messages of the start wait until the panel can be seen.
         self.message.take_if(|message| self.has_scene && self.clock - message.since > MESSAGE_TIME);
+        self.take_keys(&mut raw_input);
         self.play(&mut raw_input, seconds);
         self.take_background();
         let (asked, layout, output) = self.lay_out(raw_input);
         if self.has_scene {
-            // Why a pixel is as it is, is told of techniques.
+            // The card that explains a pixel is about techniques.
             let hover = asked.hover.filter(|_| !self.stage.draws_sample());
             self.stage.ask_why(hover, self.interface.pictures.size());
             self.interface.pictures.draw(&mut self.stage);
@@ -212,9 +216,9 @@ impl Viewer {
         (layout, output)
     }
 
-    fn lay_out(&mut self, raw_input: RawInput) -> (Asked, Layout, egui::PlatformOutput) {
+    fn lay_out(&mut self, raw_input: RawInput) -> (InterfaceOutput, Layout, egui::PlatformOutput) {
         let loading = self.loading.as_ref().map(|loading| (loading.source.label(), loading.share()));
-        let shows = Shows {
+        let input = InterfaceInput {
             saved: &self.saved,
             presets: &self.presets,
             tune: self.tuning.shown(),
@@ -225,10 +229,10 @@ impl Viewer {
             is_searching: self.searching.is_some(),
             has_scene: self.has_scene,
         };
-        self.interface.layout(&mut self.stage, &shows, raw_input)
+        self.interface.layout(&mut self.stage, &input, raw_input)
     }
 
-    /// Paints a frame that was laid out to `target` of `size` pixels, and saves it where that was asked for.
+    /// Paints a frame that was laid out to `target` of `size` pixels, and saves it if a command asked for that.
     pub(crate) fn paint(&mut self, layout: &Layout, target: &wgpu::TextureView, size: [u32; 2]) {
         self.interface.paint(&self.stage, layout, target, size);
         for (path, line) in std::mem::take(&mut self.shots) {
@@ -246,36 +250,36 @@ impl Viewer {
         write_png(path, size, &whole.read(self.stage.gpu())?, Some(&self.text_of_settings()))
     }
 
-    /// Plays the script on.
+    /// Plays a frame of the script.
     fn play(&mut self, raw_input: &mut RawInput, seconds: f32) {
         let size = raw_input.screen_rect.map_or([0.0; 2], |rect| [rect.width(), rect.height()]);
-        let doing = Doing {
+        let activity = Activity {
             is_loading: self.loading.is_some() || !self.has_scene,
             is_searching: self.searching.is_some(),
             is_judged: self.has_scene && self.stage.is_judged(),
             is_tuning: self.tuning.is_running() || self.measuring.is_running(),
             size,
         };
-        let deeds = self.player.advance(seconds, &doing);
+        let effects = self.player.advance(seconds, &activity);
         let line = self.player.place();
         let request = |command| Request { command, line: line.clone() };
-        for deed in deeds {
-            match deed {
-                Deed::Do(command) => self.commands.push_back(request(command)),
-                Deed::Key(chord, pressed) if pressed && self.types() => raw_input.events.extend(typed(chord)),
-                Deed::Key(chord, pressed) => {
+        for effect in effects {
+            match effect {
+                Effect::Run(command) => self.commands.push_back(request(command)),
+                Effect::Key(chord, true) if self.types() => raw_input.events.push(typed(chord)),
+                Effect::Key(chord, pressed) => {
                     self.commands.extend(self.key_command(chord).filter(|_| pressed).map(request));
-                    self.hold(chord, pressed);
+                    self.input.key(chord, pressed);
                 }
-                Deed::Pointer(event) => raw_input.events.push(event),
-                Deed::Resize(size) => self.wishes.resize = Some(size),
-                Deed::Drop(path) => self.commands.push_back(request(Command::OpenFile(path))),
-                Deed::Say(text) => eprintln!("{text}"),
+                Effect::Input(event) => raw_input.events.push(event),
+                Effect::Resize(size) => self.window_requests.resize = Some(size),
+                Effect::Drop(path) => self.commands.push_back(request(Command::OpenFile(path))),
+                Effect::Print(text) => eprintln!("{text}"),
             }
         }
     }
 
-    /// Takes what has been done in the background.
+    /// Takes the results of background work.
     fn take_background(&mut self) {
         self.take_scene();
         if let Some(searching) = &self.searching {
@@ -301,7 +305,7 @@ impl Viewer {
         self.measuring.take();
     }
 
-    /// All that a change can change.
+    /// Everything that undo and redo restore.
     fn state(&self) -> State {
         let stage = &self.stage;
         State {
@@ -312,7 +316,7 @@ impl Viewer {
         }
     }
 
-    /// Shows the outcome of an action. Where it failed and a line of the script asked for it, the script has failed, too.
+    /// Shows the outcome of a command. If it failed and a line of the script asked for it, the script has failed, too.
     fn tell(&mut self, outcome: Result<String>) {
         let text = outcome.unwrap_or_else(|error| {
             if let Some(line) = &self.line {
@@ -324,7 +328,7 @@ impl Viewer {
         self.say(text);
     }
 
-    /// Shows a line for a while.
+    /// Shows a message for a while.
     fn say(&mut self, text: impl Into<String>) {
         self.message = Some(Message { text: text.into(), since: self.clock });
     }
@@ -334,35 +338,24 @@ impl Viewer {
         format!("shadowfit: {} ({})", self.source.label(), self.stage.gpu().name())
     }
 
-    /// Whether something goes on in the background that a script may wait for.
+    /// Whether background work is running that a script may wait for.
     pub(crate) fn is_waiting(&self) -> bool {
         self.loading.is_some() || self.searching.is_some() || self.tuning.is_running() || self.measuring.is_running()
     }
 
-    /// Whether the script is at its end, and no scene is on its way that it asked for.
+    /// Whether the script has ended and every scene that it opened is there.
     pub(crate) fn has_played(&self) -> bool {
         self.player.is_done() && self.loading.is_none()
     }
 
-    /// Whether the scene of the start is on show.
+    /// Whether the scene of the start is shown.
     pub(crate) fn is_ready(&self) -> bool {
         self.has_scene
     }
 }
 
-/// A key as egui takes it, for what has the focus.
-fn typed(chord: Chord) -> Option<egui::Event> {
-    use winit::keyboard::KeyCode;
-    let key = match chord.key {
-        KeyCode::Enter => egui::Key::Enter,
-        KeyCode::Escape => egui::Key::Escape,
-        KeyCode::Tab => egui::Key::Tab,
-        KeyCode::Backspace => egui::Key::Backspace,
-        KeyCode::Delete => egui::Key::Delete,
-        KeyCode::ArrowLeft => egui::Key::ArrowLeft,
-        KeyCode::ArrowRight => egui::Key::ArrowRight,
-        _ => return None,
-    };
+/// A key press for what has the focus in the panel.
+fn typed(chord: Chord) -> Event {
     let modifiers = egui::Modifiers { ctrl: chord.ctrl, shift: chord.shift, command: chord.ctrl, ..Default::default() };
-    Some(egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers })
+    Event::Key { key: chord.key, physical_key: None, pressed: true, repeat: false, modifiers }
 }

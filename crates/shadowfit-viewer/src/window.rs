@@ -5,17 +5,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, anyhow};
+use shadowfit_egui::Command;
 use shadowfit_render::Gpu;
 use winit::application::ApplicationHandler;
 use winit::dpi::PhysicalSize;
-use winit::event::{ElementState, KeyEvent, WindowEvent};
+use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
-use winit::keyboard::{ModifiersState, PhysicalKey};
 use winit::window::{Window, WindowId};
 
 use crate::cli::Arguments;
-use crate::command::Command;
-use crate::keys::Chord;
 use crate::saved::Store;
 use crate::stage::Stage;
 use crate::viewer::{Start, Viewer};
@@ -53,7 +51,6 @@ struct Running {
     surface: Surface,
     viewer: Viewer,
     egui: egui_winit::State,
-    modifiers: ModifiersState,
     #[cfg(feature = "gamepad")]
     gamepads: crate::gamepad::Gamepads,
     device_lost: Arc<AtomicBool>,
@@ -61,12 +58,12 @@ struct Running {
     log: Option<Log>,
 }
 
-/// What `--log-frames` tells.
+/// The figures that `--log-frames` prints.
 struct Log {
     start: Instant,
     frames: u64,
     is_ready: bool,
-    /// Longest time that a frame kept the window from answering, waits for the GPU aside, since the last line.
+    /// Longest time that a frame kept the window from answering since the last line, without waits for the GPU.
     longest: Duration,
     /// The same since the start.
     longest_of_all: Duration,
@@ -77,7 +74,7 @@ struct Surface {
     instance: wgpu::Instance,
     window: Arc<Window>,
     handle: wgpu::Surface<'static>,
-    /// Whether the surface should be configured anew before the next frame.
+    /// Whether the surface must be configured again before the next frame.
     is_stale: bool,
     configuration: wgpu::SurfaceConfiguration,
     /// Size of the textures that it gives, in pixels: what it was configured to last, if it ever was.
@@ -181,7 +178,6 @@ impl Running {
             surface,
             viewer,
             egui,
-            modifiers: ModifiersState::default(),
             #[cfg(feature = "gamepad")]
             gamepads: crate::gamepad::Gamepads::new(),
             device_lost,
@@ -195,24 +191,11 @@ impl Running {
             // The surface follows with the next frame, however many sizes come before it.
             WindowEvent::Resized(size) => self.surface.expect(*size),
             WindowEvent::Focused(false) => self.viewer.input.release_all(),
-            WindowEvent::ModifiersChanged(modifiers) => self.modifiers = modifiers.state(),
             WindowEvent::DroppedFile(path) => self.viewer.ask(Command::OpenFile(path.clone())),
-            WindowEvent::KeyboardInput { event, .. } if !self.is_for_panel(event) => return self.key(event),
             _ => {}
         }
         // What egui makes of it comes back with the next frame.
         let _ = self.egui.on_window_event(&self.window, event);
-    }
-
-    /// Whether a key goes to what has the focus in the panel: typing is not flying, but a release must always arrive.
-    fn is_for_panel(&self, event: &KeyEvent) -> bool {
-        event.state == ElementState::Pressed && self.viewer.types()
-    }
-
-    fn key(&mut self, event: &KeyEvent) {
-        let PhysicalKey::Code(key) = event.physical_key else { return };
-        let chord = Chord { key, ctrl: self.modifiers.control_key(), shift: self.modifiers.shift_key() };
-        self.viewer.key(chord, event.state == ElementState::Pressed, event.repeat);
     }
 
     /// Draws a frame; `Some` asks to quit.
@@ -243,15 +226,15 @@ impl Running {
             self.window.pre_present_notify();
             self.viewer.stage.gpu().queue.present(texture);
         }
-        let wishes = std::mem::take(&mut self.viewer.wishes);
-        if let Some([width, height]) = wishes.resize {
+        let requests = std::mem::take(&mut self.viewer.window_requests);
+        if let Some([width, height]) = requests.resize {
             // The window answers with an event of its new size, sooner or later.
             let _ = self.window.request_inner_size(PhysicalSize::new(width, height));
         }
-        if wishes.new_title {
+        if requests.new_title {
             self.window.set_title(&self.viewer.title());
         }
-        Ok(wishes.quit.then_some(()))
+        Ok(requests.quit.then_some(()))
     }
 
     fn log_frame(&mut self, busy: Duration) {

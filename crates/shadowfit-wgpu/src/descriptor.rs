@@ -7,9 +7,7 @@ use shadowfit::softness::MAX_RADIUS;
 use shadowfit::{DepthConvention, Technique};
 
 use crate::ShadowMapError;
-
-/// Widths and heights that a map may have, in texels.
-pub const RESOLUTIONS: core::ops::RangeInclusive<u32> = 256..=8192;
+use crate::limits::RESOLUTIONS;
 
 /// What a [`ShadowMap`](crate::ShadowMap) is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,11 +4,11 @@
 use core::fmt;
 
 use shadowfit::glam::Vec3;
-use shadowfit::settings::{MAX_BLEND, MapFormat};
+use shadowfit::settings::{MAX_BLEND, MAX_MAPS, MapFormat};
 use shadowfit::softness::MAX_RADIUS;
 use shadowfit::{DepthConvention, FitError};
 
-use crate::{MAX_MAPS, RESOLUTIONS};
+use crate::limits::RESOLUTIONS;
 
 /// Why a [`ShadowMap`](crate::ShadowMap) could not be made or prepared.
 #[derive(Clone, Debug, PartialEq)]

@@ -23,7 +23,7 @@ const IMAGES: &str = "docs/images";
 const SIZE: &str = "960x540";
 
 /// The script that makes the pictures of the viewer's tour, relative to the workspace's folder.
-const TOUR: &str = "docs/tour.txt";
+const TOUR: &str = "examples/viewer/tour.txt";
 
 /// Size of the viewer's window at the beginning of the tour, in pixels.
 const WINDOW: &str = "1280x720";
@@ -61,16 +61,17 @@ const SAMPLE_IMAGES: &str = "samples";
 const MOST_SAMPLE_BYTES: u64 = 200_000;
 
 /// The view that errors are shown in, relative to the workspace's folder.
-const ERROR_VIEW: &str = "docs/report.toml";
+const ERROR_VIEW: &str = "examples/report/error-view.toml";
 
 /// Techniques whose errors are shown.
 const WRONG: [&str; 2] = ["xna-1", "windows-4"];
 
 /// The walk that shadows are compared on, relative to the workspace's folder.
-const WALK: &str = "docs/walk.toml";
+const WALK: &str = "examples/report/walk.toml";
 
 /// Techniques whose shadows are compared, and how their pictures are named.
-const COMPARED: [(&str, &str); 3] = [("docs/bevy.toml", "bevy"), ("stable-4", "stable-4"), ("windows-4", "windows-4")];
+const COMPARED: [(&str, &str); 3] =
+    [("examples/report/bevy.toml", "bevy"), ("stable-4", "stable-4"), ("windows-4", "windows-4")];
 
 /// Techniques whose edges are compared from frame to frame: a tight fit that is not held, and windows.
 const EDGES: [&str; 2] = ["histogram-4", "windows-4"];

@@ -52,7 +52,6 @@ enum Task {
     Maths,
     /// Measure the core crate, or with `--gpu` what shadows cost on a GPU, and write the times and ratios into
     /// docs/BENCHMARKS.md.
-    #[command(disable_help_flag = true)]
     Bench {
         /// Arguments of the benches, for example part of a name or `--quick`; after `--gpu` those of the example
         /// `gpu_cost`, for example glTF files, or `--from FILE` for what it wrote on another machine.
@@ -91,6 +90,14 @@ mod tests {
     #[test]
     fn the_command_line_is_well_formed() {
         Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn every_task_but_the_viewer_has_help_of_its_own() {
+        for task in ["test", "ci", "gallery", "maths", "bench", "golden"] {
+            let asked = Cli::try_parse_from(["xtask", task, "--help"]).err().map(|error| error.kind());
+            assert_eq!(asked, Some(clap::error::ErrorKind::DisplayHelp), "{task}");
+        }
     }
 
     #[test]

@@ -26,7 +26,7 @@ pub(super) fn label(ui: &mut Ui, text: &str, context: &str) -> Response {
 
 pub(super) fn reset_button(ui: &mut Ui, label: &str) -> bool {
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-        icon_button(ui, Icon::Reset, &format!("Reset {label}"), "Back to the default").clicked()
+        icon_button(ui, Icon::RotateCcw, &format!("Reset {label}"), "Back to the default").clicked()
     })
     .inner
 }

@@ -4,8 +4,8 @@ use egui::{
     Align2, Button, Color32, Response, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, Vec2, WidgetInfo,
 };
 
-use super::Icon;
 use crate::accessibility::rename;
+use crate::icon::{Icon, paint_icon};
 use crate::theme::Palette;
 
 /// Width and height of a button that shows an icon alone, in points.
@@ -21,7 +21,7 @@ pub fn icon_button(ui: &mut Ui, icon: Icon, name: &str, help: &str) -> Response 
             let rect = rect.shrink(1.0);
             ui.painter().rect(rect, visuals.corner_radius, visuals.weak_bg_fill, visuals.bg_stroke, StrokeKind::Inside);
         }
-        icon.paint(ui.painter(), rect, Stroke::new(1.25, visuals.text_color()));
+        paint_icon(ui, icon, rect.center(), visuals.text_color());
     }
     response.on_hover_text(help).on_disabled_hover_text(help)
 }

@@ -9,7 +9,7 @@ use shadowfit::figures::Figures;
 use shadowfit::params::{Kind, Parameter, parameter};
 use shadowfit::tool::Settings;
 use shadowfit_egui::{
-    Action, Artefact, Changes, Compare, PANEL_WIDTH, Panel, PanelInput, SampleCard, SceneLine, ShownArtefact, Tune,
+    Artefact, Changes, Command, Compare, PANEL_WIDTH, Panel, PanelInput, SampleCard, SceneLine, ShownArtefact, Tune,
     UserPreset, apply_theme, help_overlay,
 };
 
@@ -43,7 +43,7 @@ pub(crate) struct Host {
     pub(crate) changes: Changes<'static>,
     pub(crate) presets: Vec<UserPreset>,
     pub(crate) help: bool,
-    pub(crate) actions: Vec<Action>,
+    pub(crate) commands: Vec<Command>,
     /// What the panel takes, margins included.
     pub(crate) panel_rect: Option<Rect>,
     /// Right end of what the panel holds.
@@ -74,7 +74,7 @@ impl Host {
             input.changes = self.changes;
             input.presets = &self.presets;
             input.message = self.message;
-            self.actions.extend(self.panel.show(ui, input).action);
+            self.commands.extend(self.panel.show(ui, input).command);
             self.content_right = ui.min_rect().right();
         });
         self.panel_rect = Some(response.response.rect);

@@ -1,7 +1,7 @@
 //! The panel, driven through its accessibility tree as a person would drive it, and drawn.
 //! The harness itself fails on a widget without a name and on a glyph that egui's fonts lack.
 
-mod actions;
+mod commands;
 mod controls;
 mod figures;
 mod golden;

@@ -7,7 +7,8 @@ use egui_kittest::{Harness, HarnessBuilder};
 use shadowfit::figures::Figures;
 use shadowfit::tool::{ErrorMarks, ViewMode, ViewSettings};
 use shadowfit_egui::{
-    Artefact, KEYS, PixelClass, WhyCard, has_legend, help_overlay, legend_overlay, view_bar, why_card, why_overlay,
+    Artefact, Command, KEYS, PixelClass, WhyCard, has_legend, help_overlay, keys_of, legend_overlay, view_bar,
+    why_card, why_overlay,
 };
 
 use crate::host::builder;
@@ -184,7 +185,7 @@ fn the_help_fits_a_low_screen_and_scrolls() {
 fn the_keys_of_artefacts_and_views_are_in_the_table() {
     let find = |key: &str| KEYS.iter().flat_map(|group| group.keys).find(|line| line.keys == key).expect("the key");
     for artefact in Artefact::ALL {
-        assert!(find(artefact.key()).does.contains(&artefact.label().to_lowercase()));
+        assert!(find(keys_of(&Command::ShowArtefact(artefact))).does.contains(&artefact.label().to_lowercase()));
     }
     let harness = bar(1280.0);
     let buttons: Vec<_> = harness.query_all_by_role(Role::Button).collect();

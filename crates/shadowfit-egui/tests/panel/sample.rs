@@ -2,7 +2,7 @@
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
-use shadowfit_egui::{Action, SampleCard, SampleChoice, SampleControl, SampleFigure, SampleRow};
+use shadowfit_egui::{Command, SampleCard, SampleChoice, SampleControl, SampleFigure, SampleRow};
 
 use crate::host::{Host, find, harness, press, query_control};
 use crate::states;
@@ -74,17 +74,17 @@ fn options_variants_and_measuring_are_asked_for() {
     let mut harness = harness(session());
     find(&harness, Role::CheckBox, "Map in a corner").expect("a check box").click();
     harness.run();
-    assert_eq!(harness.state().actions, [Action::SetSampleOption { index: 2, bits: 0.0_f32.to_bits() }]);
+    assert_eq!(harness.state().commands, [Command::SetSampleOption { index: 2, value: 0.0 }]);
     find(&harness, Role::ComboBox, "Map format").expect("a list").click();
     harness.run();
     harness.get_by_label("8-bit, plain").click();
     harness.run();
-    assert_eq!(harness.state().actions.last(), Some(&Action::SetSampleOption { index: 0, bits: 1.0_f32.to_bits() }));
+    assert_eq!(harness.state().commands.last(), Some(&Command::SetSampleOption { index: 0, value: 1.0 }));
     find(&harness, Role::ComboBox, "What the sample shows").expect("a list").click();
     harness.run();
     harness.get_by_label(VARIANTS[1].label).click();
     harness.run();
-    assert_eq!(harness.state().actions.last(), Some(&Action::ShowSampleVariant(Some(1))));
+    assert_eq!(harness.state().commands.last(), Some(&Command::ShowSampleVariant(Some(1))));
     press(&mut harness, "Measure");
-    assert_eq!(harness.state().actions.last(), Some(&Action::MeasureSample));
+    assert_eq!(harness.state().commands.last(), Some(&Command::MeasureSample));
 }

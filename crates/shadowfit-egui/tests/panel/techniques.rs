@@ -7,7 +7,7 @@ use egui_kittest::kittest::Queryable;
 use shadowfit::settings::FitKind;
 use shadowfit::tool::Settings;
 use shadowfit::{PRESETS, Technique};
-use shadowfit_egui::{Action, UserPreset};
+use shadowfit_egui::{Command, UserPreset};
 
 use crate::host::{Host, harness, press, type_into, wait_for_the_tooltip};
 use crate::states::session;
@@ -98,17 +98,17 @@ fn a_technique_is_saved_under_a_name_that_a_person_types() {
         harness.run();
     };
     press(&mut harness, "Save");
-    assert_eq!(harness.state().actions, [], "a name is needed");
+    assert_eq!(harness.state().commands, [], "a name is needed");
     field(&mut harness, " evening street ");
     press(&mut harness, "Save");
-    assert_eq!(harness.state().actions, [Action::SavePreset("evening street".into())]);
+    assert_eq!(harness.state().commands, [Command::SavePreset("evening street".into())]);
     assert!(harness.query_by_role_and_label(Role::TextInput, "Name of the technique").is_none());
 
     press(&mut harness, "Save the technique");
     field(&mut harness, "noon");
     harness.key_press(Key::Enter);
     harness.run();
-    assert_eq!(harness.state().actions[1..], [Action::SavePreset("noon".into())]);
+    assert_eq!(harness.state().commands[1..], [Command::SavePreset("noon".into())]);
     press(&mut harness, "Save the technique");
     press(&mut harness, "Cancel");
     assert!(harness.query_by_role_and_label(Role::TextInput, "Name of the technique").is_none());
@@ -123,7 +123,7 @@ fn saved_techniques_are_in_the_menu_and_can_be_deleted() {
     assert_eq!(title(&harness), "evening street");
     open_menu(&mut harness);
     press(&mut harness, "Delete evening street");
-    assert_eq!(harness.state().actions, [Action::DeletePreset("evening street".into())]);
+    assert_eq!(harness.state().commands, [Command::DeletePreset("evening street".into())]);
 }
 
 #[test]

@@ -6,6 +6,7 @@
 //! vectors repeat every four pixels, it averages all of them. Of two radii the greater occlusion counts, so that creases
 //! which only the smaller radius finds stay.
 
+mod formats;
 pub mod formula;
 mod frame;
 mod pipelines;

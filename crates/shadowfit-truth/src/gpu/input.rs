@@ -11,7 +11,7 @@ use crate::maps::{MapReading, MeasuredMap, PictureMaps};
 use crate::truth::TruthSettings;
 
 /// A picture to judge.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct GpuJudgeInput<'a> {
     /// Camera of the picture.
     pub camera: &'a PixelCamera,
@@ -22,6 +22,8 @@ pub struct GpuJudgeInput<'a> {
     /// The maps of the frame before, whose verdicts are compared for [`GpuTally::crawl_compared`](super::GpuTally);
     /// `None` compares nothing.
     pub before: Option<GpuBefore<'a>>,
+    /// Where the times of the start and the end of the pass are written, if anywhere.
+    pub timestamp_writes: Option<wgpu::ComputePassTimestampWrites<'a>>,
 }
 
 /// The maps of the frame before, and what they show at the points of this frame, as
@@ -43,7 +45,7 @@ pub struct GpuBefore<'a> {
 impl GpuJudgeInput<'_> {
     /// The uniform of the picture, for triangles that are stored relative to `origin`.
     pub(crate) fn uniform(&self, origin: DVec3, triangles: u32) -> Result<JudgeUniform, GpuTruthError> {
-        let Self { camera, settings, maps, before } = self;
+        let Self { camera, settings, maps, before, timestamp_writes: _ } = self;
         let to_light = match settings.light {
             TruthLight::Sun { radius, .. } if radius > 0.0 => return Err(GpuTruthError::SoftSun),
             TruthLight::Sun { to_light, .. } => to_light,

@@ -1,17 +1,16 @@
-//! The three passes that judge a picture, the texture that they fill, and a fourth one that sums it.
+//! The pass that judges a picture in three steps and sums it in a fourth, and the texture that it fills.
 
 use super::error::GpuTruthError;
 use super::input::GpuJudgeInput;
 use super::pipeline::{STORAGE, TEXTURE, UNIFORM, group, group_layout, pipeline};
 use super::pixel::GpuPixel;
 use super::shader;
-use super::stopwatch::Stopwatch;
 use super::tally::GpuTally;
 use super::tally_pass::{TallyInput, TallyPass};
 use super::tracer::{GpuTracer, scene_layout};
 use super::uniform::JudgeUniform;
 
-/// Bytes of a pixel between the passes: flags, pixels per texel, distance along the row.
+/// Bytes of a pixel between the steps: flags, pixels per texel, distance along the row.
 const PIXEL_BYTES: u64 = 12;
 /// Pixels a side of a workgroup's square.
 const SQUARE: u32 = 8;
@@ -33,7 +32,6 @@ pub struct GpuJudge {
     uniform: wgpu::Buffer,
     target: Option<Target>,
     tally: TallyPass,
-    stopwatch: Option<Stopwatch>,
     /// Number of pictures that were recorded.
     pictures: u64,
 }
@@ -60,11 +58,10 @@ impl GpuJudge {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let (tally, stopwatch) = (TallyPass::new(device), Stopwatch::new(device));
-        Self { layout, pipelines, uniform, target: None, tally, stopwatch, pictures: 0 }
+        Self { layout, pipelines, uniform, target: None, tally: TallyPass::new(device), pictures: 0 }
     }
 
-    /// Records the passes that judge a picture, and returns the texture that they fill (see
+    /// Records the pass that judges a picture, and returns the texture that it fills (see
     /// [`GpuPixel`]). The texture stays the same one as long as the size does. `seen` is an `Rg32Uint`
     /// of the camera's size: the index of the tracer's triangle plus 1 (0 for the sky), and the bits
     /// of the filtered factor, an f32.
@@ -111,21 +108,28 @@ impl GpuJudge {
         let group = group(device, "judged picture", &self.layout, resources);
         let squares = size.map(|side| side.div_ceil(SQUARE));
         let [trace, rows, classify] = &self.pipelines;
-        let mut begin = self.stopwatch.as_ref().map(Stopwatch::begin);
+        self.pictures += 1;
+        let is_summed = self.tally.has_room();
+        self.tally.clear(encoder);
+        let timestamp_writes = input.timestamp_writes.clone();
+        let mut pass =
+            encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("judge"), timestamp_writes });
+        pass.set_bind_group(0, tracer.group(), &[]);
+        pass.set_bind_group(1, &group, &[]);
         for (pipeline, [x, y]) in [(trace, squares), (rows, [size[1], 1]), (classify, squares)] {
-            let timestamp_writes = begin.take();
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
             pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, tracer.group(), &[]);
-            pass.set_bind_group(1, &group, &[]);
             pass.dispatch_workgroups(x, y, 1);
         }
-        self.pictures += 1;
-        let (picture, uniform, target) = (self.pictures, &self.uniform, &*self.target.insert(target));
+        let (uniform, target) = (&self.uniform, &*self.target.insert(target));
         let (pixels, classes) = (&target.pixels, &target.view);
-        let (stopwatch, period) = (self.stopwatch.as_ref(), queue.get_timestamp_period());
-        let summed = TallyInput { picture, size, uniform, seen, pixels, classes, seen_before, stopwatch, period };
-        self.tally.record(device, encoder, &summed);
+        if is_summed {
+            let summed = TallyInput { size, uniform, seen, pixels, classes, seen_before };
+            self.tally.sum(device, &mut pass, &summed);
+        }
+        drop(pass);
+        if is_summed {
+            self.tally.read_back(encoder, self.pictures);
+        }
         Ok(&target.classes)
     }
 

@@ -13,7 +13,6 @@ mod pipeline;
 mod pixel;
 mod read_back;
 pub mod shader;
-mod stopwatch;
 mod tally;
 mod tally_pass;
 mod tracer;

@@ -4,7 +4,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
 use super::error::GpuTruthError;
-use super::stopwatch::Ticks;
 use super::uniform::TallyRecord;
 
 /// Buffers that take turns: the GPU works on one picture while another waits in line and the CPU reads a third.
@@ -19,11 +18,8 @@ const READABLE: u8 = 2;
 /// The device was lost.
 const FAILED: u8 = 3;
 
-/// What comes back of a picture: its number, its sums, and when it was judged, zeros where that was not timed.
-pub(super) type Back = (u64, TallyRecord, Ticks);
-
-/// Bytes of the sums; the times come after them.
-const SUMS: u64 = size_of::<TallyRecord>() as u64;
+/// What comes back of a picture: its number and its sums.
+pub(super) type Back = (u64, TallyRecord);
 
 /// The buffers.
 #[derive(Debug)]
@@ -38,20 +34,20 @@ pub(super) struct ReadBack {
     picture: u64,
 }
 
-/// Is told when the buffer can be read. An encoder that is dropped instead of submitted drops it untold.
-struct Told(Option<Arc<AtomicU8>>);
+/// Reports when the buffer can be read. An encoder that is dropped instead of submitted drops it without a report.
+struct MapReport(Option<Arc<AtomicU8>>);
 
-impl Told {
-    fn tell(mut self, is_readable: bool) {
+impl MapReport {
+    fn report(mut self, is_readable: bool) {
         if let Some(state) = self.0.take() {
             state.store(if is_readable { READABLE } else { FAILED }, Ordering::Release);
         }
     }
 }
 
-impl Drop for Told {
+impl Drop for MapReport {
     fn drop(&mut self) {
-        // Only where it was not told: once it is, the buffer may be read and recorded into again by another thread.
+        // Only without a report: after one, another thread may read the buffer and record into it again.
         if let Some(state) = &self.0 {
             state.store(FREE, Ordering::Release);
         }
@@ -93,7 +89,7 @@ impl ReadBack {
     fn new(device: &wgpu::Device) -> Self {
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("tally on its way back"),
-            size: SUMS + size_of::<Ticks>() as u64,
+            size: size_of::<TallyRecord>() as u64,
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
@@ -109,29 +105,19 @@ impl ReadBack {
         self.state.compare_exchange(FAILED, FREE, Ordering::AcqRel, Ordering::Relaxed).is_ok()
     }
 
-    /// Records the way back of a picture's sums, and of its times if they are taken.
-    pub(super) fn record(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        (sums, ticks): (&wgpu::Buffer, Option<&wgpu::Buffer>),
-        picture: u64,
-    ) {
+    /// Records the way back of a picture's sums.
+    pub(super) fn record(&mut self, encoder: &mut wgpu::CommandEncoder, sums: &wgpu::Buffer, picture: u64) {
         self.picture = picture;
         self.state.store(BUSY, Ordering::Release);
         encoder.copy_buffer_to_buffer(sums, 0, &self.buffer, 0, None);
-        if let Some(ticks) = ticks {
-            encoder.copy_buffer_to_buffer(ticks, 0, &self.buffer, SUMS, None);
-        }
-        let told = Told(Some(Arc::clone(&self.state)));
-        encoder.map_buffer_on_submit(&self.buffer, wgpu::MapMode::Read, .., move |result| told.tell(result.is_ok()));
+        let report = MapReport(Some(Arc::clone(&self.state)));
+        encoder
+            .map_buffer_on_submit(&self.buffer, wgpu::MapMode::Read, .., move |result| report.report(result.is_ok()));
     }
 
     /// What came back; the buffer is free again then.
     fn take(&mut self) -> Result<Back, GpuTruthError> {
-        let read = |mapped: wgpu::BufferView| {
-            let (sums, ticks) = mapped.split_at(SUMS as usize);
-            (self.picture, bytemuck::pod_read_unaligned(sums), bytemuck::pod_read_unaligned(ticks))
-        };
+        let read = |mapped: wgpu::BufferView| (self.picture, bytemuck::pod_read_unaligned(&mapped));
         let back = self.buffer.get_mapped_range(..).ok().map(read);
         self.release();
         back.ok_or(GpuTruthError::Read)
@@ -149,19 +135,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_buffer_is_freed_only_where_nobody_was_told() {
+    fn a_buffer_is_freed_only_without_a_report() {
         let state = Arc::new(AtomicU8::new(BUSY));
-        drop(Told(Some(Arc::clone(&state))));
+        drop(MapReport(Some(Arc::clone(&state))));
         assert_eq!(state.load(Ordering::Acquire), FREE);
         for (is_readable, wanted) in [(true, READABLE), (false, FAILED)] {
-            Told(Some(Arc::clone(&state))).tell(is_readable);
+            MapReport(Some(Arc::clone(&state))).report(is_readable);
             assert_eq!(state.load(Ordering::Acquire), wanted);
         }
-        // What was told is done with the buffer, whoever uses it next.
-        let mut told = Told(Some(Arc::clone(&state)));
-        told.0.take();
+        // After a report the buffer belongs to whoever uses it next.
+        let mut report = MapReport(Some(Arc::clone(&state)));
+        report.0.take();
         state.store(BUSY, Ordering::Release);
-        drop(told);
+        drop(report);
         assert_eq!(state.load(Ordering::Acquire), BUSY);
     }
 }

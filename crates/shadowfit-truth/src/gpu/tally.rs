@@ -41,9 +41,6 @@ pub struct GpuTally {
     pub crawl_compared: u64,
     /// Those of them whose verdict differs.
     pub crawl_different: u64,
-    /// How long the GPU judged and summed it, in milliseconds; `None` on devices without
-    /// [`wgpu::Features::TIMESTAMP_QUERY`].
-    pub milliseconds: Option<f32>,
 }
 
 impl GpuTally {
@@ -61,7 +58,6 @@ impl GpuTally {
             undersampled: record.undersampled.into(),
             crawl_compared: record.crawl_compared.into(),
             crawl_different: record.crawl_different.into(),
-            milliseconds: None,
         }
     }
 

@@ -142,7 +142,13 @@ impl Picture {
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut gpu = GpuJudge::new(&device);
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let input = GpuJudgeInput { camera: &self.camera, settings: &self.settings, maps, before: None };
+        let input = GpuJudgeInput {
+            camera: &self.camera,
+            settings: &self.settings,
+            maps,
+            before: None,
+            timestamp_writes: None,
+        };
         gpu.judge(&device, &queue, &mut encoder, &tracer, &view, &input)?;
         queue.submit([encoder.finish()]);
         gpu.read(&device, &queue)
@@ -410,7 +416,13 @@ fn moved_triangles_are_uploaded_again_and_the_texture_stays() {
         let texture = seen_texture(&device, &queue, picture.camera.size, &seen, &vec![1.0; seen.len()]);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let input = GpuJudgeInput { camera: &picture.camera, settings: &picture.settings, maps: &maps, before: None };
+        let input = GpuJudgeInput {
+            camera: &picture.camera,
+            settings: &picture.settings,
+            maps: &maps,
+            before: None,
+            timestamp_writes: None,
+        };
         let classes = gpu.judge(&device, &queue, &mut encoder, &tracer, &view, &input).expect("a picture");
         textures.push(classes.clone());
         queue.submit([encoder.finish()]);
@@ -451,7 +463,8 @@ fn what_the_gpu_cannot_judge_is_refused_by_its_reason() {
         let texture = seen_texture(&device, &queue, [8, 8], &[None; 64], &[1.0; 64]);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let input = GpuJudgeInput { camera: &camera, settings: &settings, maps: &maps, before: None };
+        let input =
+            GpuJudgeInput { camera: &camera, settings: &settings, maps: &maps, before: None, timestamp_writes: None };
         GpuJudge::new(&device).judge(&device, &queue, &mut encoder, &gpu_tracer, &view, &input).err()
     };
     assert_eq!(judge(&|_| (), 8, [8, 8]), None);

@@ -63,7 +63,13 @@ impl Bench {
         before: Option<GpuBefore>,
     ) -> Result<wgpu::CommandBuffer, GpuTruthError> {
         let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let input = GpuJudgeInput { camera: &picture.camera, settings: &picture.settings, maps, before };
+        let input = GpuJudgeInput {
+            camera: &picture.camera,
+            settings: &picture.settings,
+            maps,
+            before,
+            timestamp_writes: None,
+        };
         self.judge.judge(&self.device, &self.queue, &mut encoder, &self.tracer, &self.seen, &input)?;
         Ok(encoder.finish())
     }

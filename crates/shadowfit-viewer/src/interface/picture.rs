@@ -7,11 +7,11 @@ use egui::{
 };
 use shadowfit::figures::Figures;
 use shadowfit::tool::ViewMode;
+use shadowfit_egui::Command;
 use shadowfit_render::RenderTarget;
 
 use super::paint::Painter;
-use super::{Asked, Shows};
-use crate::command::Command;
+use super::{InterfaceInput, InterfaceOutput};
 use crate::stage::Stage;
 
 /// Scroll travel that counts as one notch of the wheel, in points, for devices that scroll smoothly.
@@ -85,26 +85,26 @@ impl Pictures {
         }
     }
 
-    /// Shows the pictures in the whole of `ui`.
+    /// InterfaceInput the pictures in the whole of `ui`.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
         stage: &mut Stage,
-        (shows, figures): (&Shows<'_>, &Figures),
-        asked: &mut Asked,
+        (input, figures): (&InterfaceInput<'_>, &Figures),
+        output: &mut InterfaceOutput,
     ) {
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         self.main.wanted = pixels(ui, rect.size());
-        pointer(ui, &response, rect, asked);
+        pointer(ui, &response, rect, output);
         let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
         ui.painter().image(self.main.texture, rect, whole, Color32::WHITE);
         if let Some(names) = halves(stage) {
-            show_bar(ui, stage, names, rect, asked);
+            show_bar(ui, stage, names, rect, output);
         }
-        if shows.has_scene && stage.draws_sample() {
+        if input.has_scene && stage.draws_sample() {
             // No view of a technique, no legend.
-        } else if shows.has_scene {
+        } else if input.has_scene {
             over(ui, stage, figures, rect);
             if stage.settings.view.outside_beside {
                 self.show_beside(ui, rect);
@@ -112,7 +112,7 @@ impl Pictures {
         } else {
             ui.painter().rect_filled(rect, CornerRadius::ZERO, ui.visuals().extreme_bg_color);
         }
-        loading(ui, shows, rect);
+        loading(ui, input, rect);
         if let (Some(card), Some(at)) = (stage.why(), response.hover_pos()) {
             shadowfit_egui::why_overlay(ui.ctx(), at, &card);
         }
@@ -147,7 +147,7 @@ fn halves(stage: &Stage) -> Option<[String; 2]> {
 }
 
 /// The bar between both halves of the picture, which can be dragged, and their names.
-fn show_bar(ui: &Ui, stage: &Stage, [left, right]: [String; 2], rect: Rect, asked: &mut Asked) {
+fn show_bar(ui: &Ui, stage: &Stage, [left, right]: [String; 2], rect: Rect, output: &mut InterfaceOutput) {
     let x = rect.left() + rect.width() * stage.split;
     let grip = Rect::from_center_size(Pos2::new(x, rect.center().y), Vec2::new(GRIP, rect.height()));
     let bar =
@@ -155,7 +155,7 @@ fn show_bar(ui: &Ui, stage: &Stage, [left, right]: [String; 2], rect: Rect, aske
     let name = "Bar between A and B";
     bar.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Splitter, true, name));
     if bar.dragged() && rect.width() > 1.0 {
-        asked.commands.push(Command::Split(stage.split + bar.drag_delta().x / rect.width()));
+        output.commands.push(Command::Split(stage.split + bar.drag_delta().x / rect.width()));
     }
     let (dark, bright) = (Stroke::new(4.0, Color32::from_black_alpha(120)), Stroke::new(2.0, Color32::WHITE));
     for stroke in [dark, bright] {
@@ -174,12 +174,12 @@ fn pixels(ui: &Ui, size: Vec2) -> [u32; 2] {
 }
 
 /// What the pointer does on the picture.
-fn pointer(ui: &Ui, response: &Response, rect: Rect, asked: &mut Asked) {
+fn pointer(ui: &Ui, response: &Response, rect: Rect, output: &mut InterfaceOutput) {
     let scale = ui.pixels_per_point();
     let share = |at: Pos2| [(at.x - rect.left()) / rect.width(), (at.y - rect.top()) / rect.height()];
     if response.dragged() {
         let delta = response.drag_delta() * scale;
-        asked.drag = glam::Vec2::new(delta.x, delta.y);
+        output.drag = glam::Vec2::new(delta.x, delta.y);
     }
     if response.clicked() {
         ui.memory_mut(egui::Memory::stop_text_input);
@@ -187,11 +187,11 @@ fn pointer(ui: &Ui, response: &Response, rect: Rect, asked: &mut Asked) {
     if response.double_clicked()
         && let Some(at) = response.interact_pointer_pos()
     {
-        asked.commands.push(Command::Focus(share(at)));
+        output.commands.push(Command::Focus(share(at)));
     }
     if response.contains_pointer() {
-        asked.wheel = wheel_notches(ui);
-        asked.hover = response.hover_pos().filter(|_| !response.dragged()).map(share);
+        output.wheel = wheel_notches(ui);
+        output.hover = response.hover_pos().filter(|_| !response.dragged()).map(share);
     }
 }
 
@@ -222,8 +222,8 @@ fn over(ui: &Ui, stage: &Stage, figures: &Figures, rect: Rect) {
 }
 
 /// How far a scene is, or that an artefact is being searched.
-fn loading(ui: &mut Ui, shows: &Shows<'_>, rect: Rect) {
-    if shows.loading.is_none() && !shows.is_searching {
+fn loading(ui: &mut Ui, input: &InterfaceInput<'_>, rect: Rect) {
+    if input.loading.is_none() && !input.is_searching {
         return;
     }
     let size = Vec2::new(300.0_f32.min(rect.width()), 64.0);
@@ -231,7 +231,7 @@ fn loading(ui: &mut Ui, shows: &Shows<'_>, rect: Rect) {
     let mut card = ui.new_child(UiBuilder::new().max_rect(place));
     egui::Frame::popup(ui.style()).show(&mut card, |ui| {
         ui.set_width((size.x - 24.0).max(0.0));
-        if let Some((name, share)) = shows.loading {
+        if let Some((name, share)) = input.loading {
             ui.label(format!("Loading {name}"));
             ui.add(egui::ProgressBar::new(share).show_percentage().animate(true));
         } else {
@@ -263,11 +263,12 @@ mod tests {
     #[test]
     fn a_place_too_small_for_the_progress_of_loading_is_no_error() {
         let saved = Saved::default();
-        let shows = Shows { loading: Some(("a scene with a long name", 0.5)), ..Shows::at_rest(&saved) };
+        let shown =
+            InterfaceInput { loading: Some(("a scene with a long name", 0.5)), ..InterfaceInput::at_rest(&saved) };
         for side in [1.0, 20.0, 400.0] {
             let place = Rect::from_min_size(Pos2::ZERO, Vec2::splat(side));
             let input = egui::RawInput { screen_rect: Some(place), ..Default::default() };
-            let mut output = egui::Context::default().run_ui(input, |ui| loading(ui, &shows, place));
+            let mut output = egui::Context::default().run_ui(input, |ui| loading(ui, &shown, place));
             // Nothing is painted; egui asks to be told so.
             output.textures_delta.clear();
         }

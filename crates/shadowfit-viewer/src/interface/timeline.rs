@@ -2,24 +2,23 @@
 
 use egui::{Button, DragValue, RichText, Slider, Ui};
 use shadowfit::tool::DAY;
-use shadowfit_egui::{Icon, icon_button, rename};
+use shadowfit_egui::{Command, Icon, icon_button, rename, with_keys};
 
-use super::Asked;
-use crate::command::Command;
+use super::InterfaceOutput;
 use crate::stage::Stage;
 
 /// Least change of the time that counts as one, in seconds.
 const SCRUB_STEP: f32 = 0.006;
 
-pub(super) fn show(ui: &mut Ui, stage: &mut Stage, frame_ms: Option<f32>, asked: &mut Asked) {
+pub(super) fn show(ui: &mut Ui, stage: &mut Stage, frame_ms: Option<f32>, output: &mut InterfaceOutput) {
     egui::Panel::bottom("timeline").show(ui, |ui| {
         ui.add_space(2.0);
         ui.horizontal_wrapped(|ui| {
-            animation(ui, stage, asked);
+            animation(ui, stage, output);
             ui.separator();
             if !stage.draws_sample() {
                 // A sample has the light of its source.
-                day(ui, stage, asked);
+                day(ui, stage, output);
                 ui.separator();
             }
             speed(ui, stage);
@@ -33,34 +32,34 @@ pub(super) fn show(ui: &mut Ui, stage: &mut Stage, frame_ms: Option<f32>, asked:
 }
 
 /// Play, pause, and the time of the animation.
-fn animation(ui: &mut Ui, stage: &mut Stage, asked: &mut Asked) {
+fn animation(ui: &mut Ui, stage: &mut Stage, output: &mut InterfaceOutput) {
     let Some(duration) = stage.duration() else {
         ui.add_enabled_ui(false, |ui| icon_button(ui, Icon::Play, "Play", "This scene has no animation"));
         return;
     };
     let plays = stage.settings.view.play;
     let (icon, name) = if plays { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
-    let help = format!("{name} (Space)");
+    let help = with_keys(name, &Command::TogglePlay);
     if icon_button(ui, icon, name, &help).clicked() {
-        asked.commands.push(Command::TogglePlay);
+        output.commands.push(Command::TogglePlay);
     }
     let now = stage.seconds() % duration.max(1e-3);
     let mut seconds = now;
     let slider = Slider::new(&mut seconds, 0.0..=duration).fixed_decimals(2).suffix(" s").trailing_fill(true);
     let response = ui.add(slider).on_hover_text("Time of the animation; dragging it poses the scene");
     rename(ui, &response, "Time of the animation".to_owned());
-    // A slider rounds what it shows, which is no wish.
+    // A slider rounds what it shows; that is not a change asked for.
     if response.changed() && (seconds - now).abs() > SCRUB_STEP {
-        asked.commands.push(Command::Scrub(seconds));
+        output.commands.push(Command::Scrub(seconds));
     }
 }
 
 /// The sun over the day.
-fn day(ui: &mut Ui, stage: &mut Stage, asked: &mut Asked) {
+fn day(ui: &mut Ui, stage: &mut Stage, output: &mut InterfaceOutput) {
     let light = &mut stage.settings.light;
-    let help = "Lets the sun move (L)";
+    let help = with_keys("Lets the sun move", &Command::ToggleSun);
     if ui.add(Button::selectable(light.animate, "Sun")).on_hover_text(help).clicked() {
-        asked.commands.push(Command::ToggleSun);
+        output.commands.push(Command::ToggleSun);
     }
     let mut hour = light.hour.unwrap_or(12.0);
     let is_set = light.hour.is_some();
@@ -77,7 +76,7 @@ fn day(ui: &mut Ui, stage: &mut Stage, asked: &mut Asked) {
         light.hour = Some(hour);
     }
     let help = "Back to azimuth and elevation";
-    if light.hour.is_some() && icon_button(ui, Icon::Close, "Sun by angles", help).clicked() {
+    if light.hour.is_some() && icon_button(ui, Icon::X, "Sun by angles", help).clicked() {
         light.hour = None;
     }
 }

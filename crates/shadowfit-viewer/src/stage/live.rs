@@ -254,12 +254,14 @@ impl Live {
 
     /// Takes what has been judged.
     fn take(&mut self, gpu: &Gpu) -> Result<()> {
-        if let Some(tally) = self.gpu.as_mut().map(|live| live.take(gpu)).transpose()?.flatten() {
+        let tally = self.gpu.as_mut().map(|live| live.take(gpu)).transpose()?.flatten();
+        let gpu_ms = self.gpu.as_ref().and_then(LiveTruth::milliseconds);
+        if let Some(tally) = tally {
             let place = self.drawn.iter().position(|(picture, _)| *picture == tally.picture);
             // Those before it were overtaken.
             let of = place.and_then(|place| self.drawn.drain(..=place).next_back());
             if let Some((_, of)) = of {
-                self.sums = Some(Sums { of, figures: tally.figures(), gpu_ms: tally.milliseconds });
+                self.sums = Some(Sums { of, figures: tally.figures(), gpu_ms });
             }
         }
         let Some(found) = self.background.as_mut().and_then(BackgroundJudge::take) else { return Ok(()) };

@@ -53,7 +53,7 @@ impl Question {
     }
 }
 
-/// Where an answer stands.
+/// How far an answer has come.
 #[derive(Debug)]
 enum Step {
     /// A thread finds which texel is read.
@@ -65,9 +65,9 @@ enum Step {
     Done,
 }
 
-/// The pixel that is asked about.
+/// The pixel that the pointer rests on, and how far the answer to why it is as it is has come.
 #[derive(Debug, Default)]
-pub(super) struct Asked {
+pub(super) struct PixelQuestion {
     /// Place of the pointer, what the picture shows, and since when both have been the same, by the stage's clock in
     /// seconds.
     at: Option<([f32; 2], Key, f32)>,
@@ -86,7 +86,8 @@ impl Stage {
                 (self.clock - since >= REST).then_some(at)
             }
             (asked, _) => {
-                self.why = Asked { at: asked.map(|(at, shown)| (at, shown, self.clock)), ..Asked::default() };
+                self.why =
+                    PixelQuestion { at: asked.map(|(at, shown)| (at, shown, self.clock)), ..PixelQuestion::default() };
                 None
             }
         };

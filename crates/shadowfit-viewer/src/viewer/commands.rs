@@ -7,26 +7,26 @@ use anyhow::{Context, Result, anyhow};
 use shadowfit::Technique;
 use shadowfit::params;
 use shadowfit::tool::{ErrorMarks, InsetMaps, ViewMode};
-use shadowfit_egui::{Artefact, UserPreset};
+use shadowfit_egui::{Artefact, Command, Toggle, UserPreset};
 use shadowfit_render::FlyCamera;
 use shadowfit_study::{NamedTechnique, settings_to_toml};
 
 use super::Viewer;
-use crate::cli::{OPTION_PREFIX, find_technique};
-use crate::command::{Command, Toggle};
+use crate::cli::find_technique;
 use crate::export::command_line;
 use crate::files::{free_name, write_png, write_whole};
 use crate::saved::Bookmark;
+use crate::source::{OPTION_PREFIX, SceneSource};
 use crate::tuning::Task;
 use crate::undo::State;
 
-/// Technique that the present one is compared with at first, or the other one where it is that already.
+/// The presets that a technique is compared with at first: the first of them that differs from it.
 const COMPARED: [&str; 2] = ["stable-4", "windows-4"];
-/// How far toward a thing the camera flies, as a share of its distance.
+/// How far the camera flies toward a point, as a share of the distance.
 const FOCUS: f64 = 0.6;
 
 impl Viewer {
-    /// Does something.
+    /// Runs a command.
     pub(super) fn run(&mut self, command: Command) {
         let view = &mut self.stage.settings.view;
         match command {
@@ -58,11 +58,11 @@ impl Viewer {
             Command::ToggleHelp => self.interface.help_open = !self.interface.help_open,
             Command::TogglePanel => self.interface.bare = !self.interface.bare,
             Command::SetTheme(theme) => {
-                self.saved.theme = theme;
+                self.saved.theme = theme.into();
                 self.interface.context.set_theme(theme);
             }
             Command::Escape => self.escape(),
-            Command::Quit => self.wishes.quit = true,
+            Command::Quit => self.window_requests.quit = true,
             // Everything else needs a scene.
             _ if !self.has_scene => {
                 if self.line.is_some() {
@@ -80,21 +80,21 @@ impl Viewer {
         } else if self.interface.help_open {
             self.interface.help_open = false;
         } else {
-            self.wishes.quit = true;
+            self.window_requests.quit = true;
         }
     }
 
     fn run_on_scene(&mut self, command: Command) {
         let is_of_techniques = matches!(
             command,
-            Command::ShowArtefact(_) | Command::Compare(Toggle::On | Toggle::Other) | Command::StartTune
+            Command::ShowArtefact(_) | Command::Compare(Toggle::On | Toggle::Switch) | Command::StartTune
         );
         if is_of_techniques && self.stage.draws_sample() {
             return self.say("This is for modern maps: choose them as the sample's shadows first");
         }
         match command {
             Command::ShowArtefact(artefact) => self.search(artefact),
-            Command::Fix => self.fix(),
+            Command::FixArtefact => self.fix(),
             Command::CloseArtefact => self.stage.close_artefact(),
             Command::Compare(toggle) => self.compare(toggle),
             Command::Split(share) => self.stage.set_split(share),
@@ -112,11 +112,11 @@ impl Viewer {
                 self.interface.edits_other = false;
             }
             Command::ResetCamera => self.stage.reset_camera(),
-            Command::LookAt(eye, target) => self.stage.set_camera(FlyCamera::look_at(eye, target)),
+            Command::LookAt { eye, target } => self.stage.set_camera(FlyCamera::look_at(eye.into(), target.into())),
             Command::Focus(at) => self.focus(at),
             Command::SetBookmark(key) => self.set_bookmark(key),
-            Command::SampleVariant(variant) => self.show_sample_variant(variant),
-            Command::SampleOption(option, value) => self.stage.set_sample_option(option, value),
+            Command::ShowSampleVariant(variant) => self.show_sample_variant(variant),
+            Command::SetSampleOption { index, value } => self.stage.set_sample_option(index, value),
             Command::MeasureSample => self.measure_sample(),
             Command::StartTune => self.start_tune(),
             Command::CancelTune => self.tuning.cancel(),
@@ -128,21 +128,20 @@ impl Viewer {
 
     fn run_with_files(&mut self, command: Command) {
         let outcome = match command {
-            Command::Open(source) => return self.open(source),
+            Command::Open(name) => return self.open(SceneSource::from_text(&name)),
             Command::OpenFile(path) => return self.open_file(&path),
             Command::ChooseFile => return self.choose_file(),
-            Command::Window(path) => return self.shots.push((self.start.place(path), self.line.clone())),
+            Command::SaveWindow(path) => return self.shots.push((self.start.place(path), self.line.clone())),
             Command::GoToBookmark(key) => self.go_to_bookmark(key),
             Command::Set(id, value) => self.set(&id, &value),
             Command::Technique(name) => {
                 find_technique(&name, &self.edited_technique()).map(|named| self.take_technique(named))
             }
-            Command::Picture(path) => self.save_picture(path),
+            Command::Screenshot(path) => self.save_picture(path),
             Command::SaveFigures(path) => {
                 let text = self.interface.panel().figures_csv();
                 self.save_text(path, &text)
             }
-            Command::SaveCsv(text) => self.save_text(None, &text),
             Command::CopyRust => {
                 let code = self.edited_technique().to_rust();
                 self.interface.context.copy_text(code);
@@ -163,12 +162,12 @@ impl Viewer {
         self.tell(outcome);
     }
 
-    /// Looks for the view of an artefact on a thread.
+    /// Searches a view that shows an artefact, on a thread.
     fn search(&mut self, artefact: Artefact) {
         let search = self.stage.search(artefact);
         let (sender, receiver) = channel();
         let work = move || {
-            // Nobody waits any more where another artefact was asked for.
+            // The receiver is gone if another artefact was asked for.
             let _ = sender.send(search.run());
         };
         if std::thread::Builder::new().name("search".to_owned()).spawn(work).is_ok() {
@@ -225,7 +224,7 @@ impl Viewer {
         self.stage.restore_artefact(state.artefact);
     }
 
-    /// Flies to what is at a point of the picture, where that is the camera's own.
+    /// Flies toward what is at a point of the picture, in views that show what the camera sees.
     fn focus(&mut self, at: [f32; 2]) {
         if !self.stage.settings.view.mode.shows_camera() {
             return;
@@ -261,7 +260,7 @@ impl Viewer {
         });
     }
 
-    /// Takes what was found over to the side that it was searched for.
+    /// Uses what the search found, on the side that was searched for.
     fn apply_tune(&mut self) {
         let is_of_other = self.tuning.is_of_other;
         let side = match self.stage.settings_and_other() {
@@ -291,7 +290,7 @@ impl Viewer {
         Ok(format!("{id} = {value}"))
     }
 
-    /// Takes a technique for the side that the panel edits.
+    /// Uses a technique on the side that the panel edits.
     pub(super) fn take_technique(&mut self, named: NamedTechnique) -> String {
         *self.edited() = named.technique;
         let told = format!("Technique {}", named.name);
@@ -305,7 +304,7 @@ impl Viewer {
         other.unwrap_or(self.stage.settings.technique)
     }
 
-    /// The same, to be changed.
+    /// The technique that the panel edits, to be changed.
     pub(super) fn edited(&mut self) -> &mut Technique {
         let edits_other = self.interface.edits_other;
         let (settings, other) = self.stage.settings_and_other();
@@ -315,7 +314,7 @@ impl Viewer {
         }
     }
 
-    /// Saves the picture, without bars and panel.
+    /// Saves the picture without bars and panel.
     fn save_picture(&mut self, path: Option<PathBuf>) -> Result<String> {
         let path = self.place(path, "png")?;
         let pixels = self.interface.pictures.read(&self.stage)?;
@@ -323,7 +322,7 @@ impl Viewer {
         Ok(format!("Saved {}", path.display()))
     }
 
-    /// Where a file is saved, under a name of its own if none is given.
+    /// The path of a file to save, with a new name if none is given.
     fn place(&mut self, path: Option<PathBuf>, extension: &str) -> Result<PathBuf> {
         if let Some(path) = path {
             return Ok(self.start.place(path));
@@ -341,7 +340,7 @@ impl Viewer {
         Ok(format!("Saved {}", path.display()))
     }
 
-    /// What a picture carries: the scene and all settings, as [`Self::open_picture`] reads them.
+    /// The text that a saved picture carries: the scene and all settings, as [`Self::open_picture`] reads them.
     pub(super) fn text_of_settings(&self) -> String {
         let scene = toml::Value::from(self.source.text());
         let line = toml::Value::from(self.command_line());
@@ -363,10 +362,10 @@ impl Viewer {
         let name = name.trim();
         let is_built_in = NamedTechnique::preset(name).is_some();
         let named = NamedTechnique { name: name.to_owned(), ..self.edited_technique().into() };
-        // What no file can hold could not be read back.
+        // A technique that cannot be written could not be read back.
         named.to_toml().context("this technique cannot be saved")?;
         if name.is_empty() || is_built_in {
-            return Err(anyhow!("a preset needs a name of its own, and {name:?} is none"));
+            return Err(anyhow!("a preset needs a name of its own, and {name:?} cannot be one"));
         }
         self.saved.presets.retain(|preset| preset.name != name);
         self.presets.retain(|preset| preset.name != name);
@@ -375,7 +374,7 @@ impl Viewer {
         Ok(format!("Saved the technique as {name}"))
     }
 
-    /// Has a person choose a file, with the system's dialog on a thread.
+    /// Lets the user choose a file, with the system's dialog on a thread.
     fn choose_file(&mut self) {
         if self.chooser.is_none() {
             self.chooser = dialog();
@@ -383,7 +382,7 @@ impl Viewer {
     }
 }
 
-/// The technique that another one is compared with at first: a preset with the lengths and the resolution of that one.
+/// The technique that `now` is compared with at first: a preset with the lengths and the resolution of `now`.
 pub(crate) fn compared_with(now: &Technique) -> Technique {
     let [width, height] = now.fit.resolution.to_array();
     let presets = COMPARED.iter().filter_map(|name| Technique::preset(name));
@@ -391,7 +390,7 @@ pub(crate) fn compared_with(now: &Technique) -> Technique {
     suited.find(|technique| technique != now).unwrap_or(*now)
 }
 
-/// A saved technique as the panel takes it.
+/// A saved technique as the panel lists it.
 pub(super) fn preset(named: &NamedTechnique) -> UserPreset {
     UserPreset { name: named.name.clone(), technique: named.technique }
 }
@@ -401,7 +400,7 @@ fn dialog() -> Option<Receiver<Option<PathBuf>>> {
     let work = move || {
         let dialog = rfd::FileDialog::new().set_title("Open").add_filter("Scenes", &["glb", "gltf"]);
         let dialog = dialog.add_filter("Techniques and screenshots", &["toml", "png"]);
-        // Nobody waits once the viewer has ended.
+        // The receiver is gone once the viewer has ended.
         let _ = sender.send(dialog.pick_file());
     };
     std::thread::Builder::new().name("file dialog".to_owned()).spawn(work).ok().map(|_| receiver)

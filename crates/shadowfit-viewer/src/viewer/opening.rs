@@ -6,6 +6,7 @@ use anyhow::{Context, Result, anyhow};
 use shadowfit_study::{NamedTechnique, PreparedScene, settings_from_toml};
 
 use super::Viewer;
+use crate::cli::check_animation;
 use crate::files::settings_of_png;
 use crate::loading::Loading;
 use crate::sample_figures::Measuring;
@@ -13,13 +14,13 @@ use crate::source::SceneSource;
 use crate::undo::History;
 
 impl Viewer {
-    /// Begins to load a scene; the present one stays until it is there.
+    /// Starts loading a scene; the shown one stays until it is there.
     pub(super) fn open(&mut self, source: SceneSource) {
         let line = self.line.clone();
         self.loading = Some(Loading::start(source, line, self.stage.gpu(), self.stage.material_layout()));
     }
 
-    /// Opens whatever a file is.
+    /// Opens a file: a picture, a technique or a scene.
     pub(super) fn open_file(&mut self, path: &Path) {
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         let opened = match extension.as_str() {
@@ -45,8 +46,8 @@ impl Viewer {
         Ok(format!("Settings of {}", path.display()))
     }
 
-    /// Shows the scene that has been loaded. On an error the old one stays; at the start the built-in one is opened in
-    /// place of that of the last time, and the viewer ends where the arguments name the scene.
+    /// Shows the scene that has been loaded. After an error the old one stays. At the start there is none: instead of the
+    /// scene of the last time the built-in one is opened, and for a scene of the arguments the viewer ends.
     pub(super) fn take_scene(&mut self) {
         let Some(result) = self.loading.as_ref().and_then(Loading::take) else { return };
         let Some(loading) = self.loading.take() else { return };
@@ -61,7 +62,7 @@ impl Viewer {
             }
             Err(error) if self.start.is_pending => {
                 self.failure = Some(error);
-                self.wishes.quit = true;
+                self.window_requests.quit = true;
             }
             Err(error) => {
                 self.line = loading.line;
@@ -79,7 +80,7 @@ impl Viewer {
         let animations = prepared.scene().animations.len();
         let name = prepared.scene().name.clone();
         self.source = source;
-        // What is under way, and what can be taken back, is of the scene before.
+        // Background work and undo belong to the scene before.
         self.searching = None;
         self.tuning.abandon();
         self.history = History::default();
@@ -97,7 +98,7 @@ impl Viewer {
         self.measuring = Measuring::default();
         self.own_settings = self.stage.settings;
         self.has_scene = true;
-        self.wishes.new_title = true;
+        self.window_requests.new_title = true;
         if is_first {
             // What was told meanwhile is read from now on.
             self.message.iter_mut().for_each(|message| message.since = self.clock);
@@ -106,7 +107,7 @@ impl Viewer {
                 Ok(None) => {}
                 Err(error) => {
                     self.failure = Some(error);
-                    self.wishes.quit = true;
+                    self.window_requests.quit = true;
                 }
             }
         } else if is_sample {
@@ -121,13 +122,4 @@ impl Viewer {
         }
         self.interface.scene_changed(&self.stage);
     }
-}
-
-/// Refuses an animation that a scene has not; the first one is the default, which is accepted for a scene without any.
-pub(crate) fn check_animation(animation: usize, animations: usize, scene: &str) -> Result<()> {
-    if animation < animations.max(1) {
-        return Ok(());
-    }
-    let there = if animations == 1 { "is 1 animation".to_owned() } else { format!("are {animations} animations") };
-    Err(anyhow!("--animation {animation}: there {there} in {scene}, counted from 0"))
 }

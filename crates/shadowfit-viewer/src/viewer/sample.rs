@@ -13,7 +13,7 @@ impl Viewer {
         self.stage.set_sample(sample, variant);
         self.source = SceneSource::Sample { sample, variant };
         self.measuring = Measuring::default();
-        self.wishes.new_title = true;
+        self.window_requests.new_title = true;
     }
 
     /// Begins to judge the sample and modern maps against rays.

@@ -4,27 +4,27 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use shadowfit::tool::Settings;
+use shadowfit_egui::Command;
 use shadowfit_render::FlyCamera;
 use shadowfit_study::NamedTechnique;
 use shadowfit_study::samples::SampleValues;
 
 use super::Viewer;
 use crate::cli::Arguments;
-use crate::command::Command;
 use crate::saved::{Saved, Store};
 use crate::script::Line;
 use crate::source::SceneSource;
 
-/// What the arguments ask for.
+/// The start that the arguments ask for.
 #[derive(Clone, Debug)]
 pub(crate) struct Start {
     pub(crate) arguments: Arguments,
     /// The scene that they name, if any.
     pub(crate) source: Option<SceneSource>,
     pub(crate) script: Vec<Line>,
-    /// Settings, camera and comparison of the last time, until the scene of the start is there.
+    /// Scene, settings and camera of the last time, until the scene of the start is there.
     pub(super) kept: Option<(SceneSource, Settings, Option<FlyCamera>)>,
-    /// Whether the scene of the start is still on its way.
+    /// Whether the scene of the start is still being loaded.
     pub(super) is_pending: bool,
     /// Folder of files that are asked for by a relative path; the working folder if `None`.
     folder: Option<PathBuf>,
@@ -35,11 +35,11 @@ impl Start {
     ///
     /// # Errors
     ///
-    /// If they name a script that makes no sense, a parameter or a technique that there is not, or a scene of an index
-    /// that a built-in one has not.
+    /// If they name a script that cannot be read, an unknown parameter or technique, or a scene index for a built-in
+    /// scene.
     pub(crate) fn new(arguments: &Arguments) -> anyhow::Result<Self> {
         let source = arguments.source()?;
-        // What is wrong with them is told at once, but for what depends on the settings of the last time.
+        // Wrong arguments are reported at once, except for what depends on the settings of the last time.
         arguments.apply_what_is_there(&mut Settings::default())?;
         let script = arguments.lines()?;
         Ok(Self { arguments: arguments.clone(), source, script, kept: None, is_pending: true, folder: None })
@@ -63,7 +63,7 @@ impl Start {
 }
 
 impl Viewer {
-    /// Takes up where the last time ended, and begins to load the scene.
+    /// Restores what was saved the last time, and starts loading the scene.
     pub(super) fn restore(&mut self) {
         let (saved, message) = self.store.as_mut().map_or((None, None), Store::load);
         if let Some(message) = message {
@@ -78,11 +78,11 @@ impl Viewer {
         }
         self.presets = saved.presets.iter().map(super::commands::preset).collect();
         self.saved = saved;
-        self.run(Command::SetTheme(self.saved.theme));
+        self.run(Command::SetTheme(self.saved.theme.into()));
         self.open(source);
     }
 
-    /// Sets up the scene of the start: its own settings, over them what was kept, over that the arguments.
+    /// Sets up the scene of the start: its own settings, then those of the last time, then the arguments.
     pub(super) fn set_up(&mut self) -> anyhow::Result<Option<NamedTechnique>> {
         self.start.is_pending = false;
         let arguments = self.start.arguments.clone();
@@ -116,11 +116,12 @@ impl Viewer {
         Ok(technique)
     }
 
-    /// The values of the sample of the start: those of the last time where it was on show, and over them the arguments.
+    /// Sets the options of the sample of the start: first as they were the last time if it was shown then, then the
+    /// arguments.
     fn set_up_sample(&mut self, arguments: &Arguments) -> anyhow::Result<()> {
         let is_of_it = self.saved.scene == self.source;
         for (option, text) in self.saved.sample.clone().iter().filter(|_| is_of_it) {
-            // What a later version does not know any more is left out.
+            // An option that this version does not know is left out.
             let _ = self.stage.set_sample_text(option, text);
         }
         for (option, text) in arguments.sample_options() {
@@ -129,12 +130,12 @@ impl Viewer {
         Ok(())
     }
 
-    /// Whether anything was kept from the last time.
+    /// Whether anything was saved the last time.
     fn saved_is_there(&self) -> bool {
         self.saved != Saved { theme: self.saved.theme, ..Saved::default() }
     }
 
-    /// What is to be kept, written if it changed.
+    /// Writes what is to be restored the next time, if it changed.
     pub(crate) fn save(&mut self) {
         self.saved_at = self.clock;
         let Some(store) = &mut self.store else { return };

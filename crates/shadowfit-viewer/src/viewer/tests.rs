@@ -9,12 +9,11 @@ use egui::{Pos2, RawInput, Rect, vec2};
 use shadowfit::Technique;
 use shadowfit::settings::FitKind;
 use shadowfit::tool::ViewMode;
-use shadowfit_egui::{Artefact, Tune};
+use shadowfit_egui::{Artefact, Command, Toggle, Tune};
 use shadowfit_render::{AdapterChoice, FlyInput, Gpu};
 
 use super::{Start, Viewer};
 use crate::cli::Arguments;
-use crate::command::{Command, Toggle};
 use crate::saved::{Saved, Store, Theme};
 use crate::source::SceneSource;
 use crate::stage::Stage;
@@ -41,8 +40,12 @@ fn viewer(arguments: &[&str], store: Option<&Path>) -> Viewer {
 }
 
 fn frame(viewer: &mut Viewer) {
+    frame_with(viewer, Vec::new());
+}
+
+fn frame_with(viewer: &mut Viewer, events: Vec<egui::Event>) {
     let screen_rect = Some(Rect::from_min_size(Pos2::ZERO, vec2(SIZE[0] as f32, SIZE[1] as f32)));
-    let input = RawInput { screen_rect, time: Some(viewer.clock), ..Default::default() };
+    let input = RawInput { screen_rect, time: Some(viewer.clock), events, ..Default::default() };
     let _ = viewer.frame(input, FRAME);
 }
 
@@ -89,7 +92,7 @@ fn gpu_what_is_saved_comes_back_and_yields_to_the_technique_and_that_to_set() {
     let mut first = ready(&["plain"], Some(&path));
     run(&mut first, Command::Technique("calm-4".to_owned()));
     run(&mut first, Command::Set("bias.constant".to_owned(), "0.75".to_owned()));
-    run(&mut first, Command::SetTheme(Theme::Light));
+    run(&mut first, Command::SetTheme(egui::ThemePreference::Light));
     run(&mut first, Command::SetBookmark(4));
     run(&mut first, Command::SavePreset("mine".to_owned()));
     let (technique, camera) = (first.stage.settings.technique, first.stage.camera);
@@ -128,7 +131,7 @@ fn gpu_a_first_scene_that_cannot_be_loaded_ends_the_viewer_and_a_later_one_is_to
     let mut broken = viewer(&["no/such/scene.glb"], None);
     for _ in 0..2000 {
         frame(&mut broken);
-        if broken.wishes.quit {
+        if broken.window_requests.quit {
             break;
         }
         std::thread::sleep(Duration::from_millis(2));
@@ -139,7 +142,7 @@ fn gpu_a_first_scene_that_cannot_be_loaded_ends_the_viewer_and_a_later_one_is_to
     let mut viewer = ready(&[], None);
     run(&mut viewer, Command::OpenFile("no/such/scene.glb".into()));
     until(&mut viewer, "a message", |viewer| viewer.message.is_some());
-    assert!(!viewer.wishes.quit && viewer.source == SceneSource::default());
+    assert!(!viewer.window_requests.quit && viewer.source == SceneSource::default());
 }
 
 #[test]
@@ -187,7 +190,7 @@ fn gpu_an_artefact_is_found_on_a_thread_shown_told_and_fixed() {
     run(&mut viewer, Command::ShowArtefact(Artefact::Acne));
     until(&mut viewer, "acne", |viewer| viewer.stage.shown().is_some());
     assert!(viewer.stage.narration().contains("texel"), "{}", viewer.stage.narration());
-    run(&mut viewer, Command::Fix);
+    run(&mut viewer, Command::FixArtefact);
     assert_eq!(viewer.stage.shown().map(|shown| shown.fixed), Some(true));
     assert!(viewer.stage.cure_changes().iter().any(|line| line.contains('→')), "{:?}", viewer.stage.cure_changes());
 }
@@ -232,7 +235,7 @@ fn gpu_a_picture_brings_its_settings_back_when_it_is_opened() {
     let mut viewer = ready(&[], None);
     run(&mut viewer, Command::Set("bias.slope".to_owned(), "1.25".to_owned()));
     let settings = viewer.stage.settings;
-    run(&mut viewer, Command::Picture(Some(path.clone())));
+    run(&mut viewer, Command::Screenshot(Some(path.clone())));
     run(&mut viewer, Command::Reset);
     assert_ne!(viewer.stage.settings, settings);
     run(&mut viewer, Command::OpenFile(path));

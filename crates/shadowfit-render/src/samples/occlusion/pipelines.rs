@@ -7,8 +7,8 @@ use crate::scene::Part;
 use crate::target::ENCODED_FORMAT;
 use crate::{bindings, shaders};
 
+use super::formats::{NORMAL_FORMAT, OCCLUSION_FORMAT, POSITION_FORMAT};
 use super::frame::{OcclusionMethod, OcclusionSettings, OcclusionView};
-use super::targets::{NORMAL_FORMAT, OCCLUSION_FORMAT, POSITION_FORMAT};
 
 /// What parts are drawn as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -8,7 +8,7 @@ use super::*;
 /// Wide enough for bars of one line each.
 const WIDE: [f32; 2] = [1280.0, 400.0];
 
-fn frame_with(viewer: &mut Viewer, events: Vec<Event>) -> PlatformOutput {
+fn wide_frame(viewer: &mut Viewer, events: Vec<Event>) -> PlatformOutput {
     let screen_rect = Some(Rect::from_min_size(Pos2::ZERO, vec2(WIDE[0], WIDE[1])));
     let input = RawInput { screen_rect, time: Some(viewer.clock), events, ..Default::default() };
     viewer.frame(input, FRAME).1
@@ -16,7 +16,7 @@ fn frame_with(viewer: &mut Viewer, events: Vec<Event>) -> PlatformOutput {
 
 /// Middle of the control with a name, and its role.
 fn control(viewer: &mut Viewer, name: &str) -> Option<(Pos2, Role)> {
-    let update = frame_with(viewer, Vec::new()).accesskit_update.expect("names are told");
+    let update = wide_frame(viewer, Vec::new()).accesskit_update.expect("names are told");
     let is_it = |node: &&Node| node.label() == Some(name);
     let node = update.nodes.iter().map(|(_, node)| node).find(is_it)?;
     let bounds = node.bounds()?;
@@ -30,10 +30,10 @@ fn click(viewer: &mut Viewer, name: &str, to_the_right: f32) {
     let pos = at + vec2(to_the_right, 0.0);
     let button =
         |pressed| Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE };
-    frame_with(viewer, vec![Event::PointerMoved(pos)]);
-    frame_with(viewer, vec![button(true)]);
-    frame_with(viewer, vec![button(false)]);
-    frame_with(viewer, Vec::new());
+    wide_frame(viewer, vec![Event::PointerMoved(pos)]);
+    wide_frame(viewer, vec![button(true)]);
+    wide_frame(viewer, vec![button(false)]);
+    wide_frame(viewer, Vec::new());
 }
 
 fn with_names() -> Viewer {
@@ -68,12 +68,12 @@ fn gpu_escape_closes_what_is_open_before_it_quits() {
     assert!(control(&mut viewer, "Plain").is_some());
     run(&mut viewer, Command::Escape);
     frame(&mut viewer);
-    assert!(control(&mut viewer, "Plain").is_none() && !viewer.wishes.quit);
+    assert!(control(&mut viewer, "Plain").is_none() && !viewer.window_requests.quit);
     run(&mut viewer, Command::ToggleHelp);
     run(&mut viewer, Command::Escape);
-    assert!(!viewer.interface.help_open && !viewer.wishes.quit);
+    assert!(!viewer.interface.help_open && !viewer.window_requests.quit);
     run(&mut viewer, Command::Escape);
-    assert!(viewer.wishes.quit);
+    assert!(viewer.window_requests.quit);
 }
 
 #[test]

@@ -1,11 +1,10 @@
 //! Classic samples in the viewer: their controls, options and variants, what is kept of them, and what does not apply.
 
+use egui::Key;
 use glam::{DVec3, Vec3};
 use shadowfit_study::samples::SampleValues;
-use winit::keyboard::KeyCode;
 
 use super::*;
-use crate::keys::Chord;
 
 const XNA: &str = "xna-shadow-mapping";
 
@@ -13,14 +12,20 @@ fn values(viewer: &Viewer) -> &SampleValues {
     &viewer.stage.sample().expect("a sample").values
 }
 
-/// Holds a key for a number of frames.
-fn hold(viewer: &mut Viewer, key: KeyCode, frames: u32) {
-    viewer.key(Chord::new(key), true, false);
-    for _ in 0..frames {
+/// Draws a frame in which a key is pressed or released.
+fn key(viewer: &mut Viewer, key: Key, pressed: bool) {
+    let modifiers = egui::Modifiers::NONE;
+    let event = egui::Event::Key { key, physical_key: None, pressed, repeat: false, modifiers };
+    frame_with(viewer, vec![event]);
+}
+
+/// Holds a key for some frames.
+fn hold(viewer: &mut Viewer, held: Key, frames: usize) {
+    key(viewer, held, true);
+    for _ in 1..frames {
         frame(viewer);
     }
-    viewer.key(Chord::new(key), false, false);
-    frame(viewer);
+    key(viewer, held, false);
 }
 
 #[test]
@@ -30,30 +35,28 @@ fn gpu_the_xna_sample_has_the_controls_of_its_source() {
     assert!((start.position - DVec3::new(0.0, 70.0, 100.0)).length() < 1e-9);
     assert!(start.forward().abs_diff_eq(Vec3::new(0.0, -0.447_213_6, -0.894_427_2), 1e-6));
     // A second is thirty frames: 100 units along the view.
-    hold(&mut viewer, KeyCode::KeyW, 30);
+    hold(&mut viewer, Key::W, 30);
     let flown = (viewer.stage.camera.position - start.position).length();
     assert!((flown - 100.0).abs() < 0.5, "{flown}");
     // Half a second turns by half a radian.
-    hold(&mut viewer, KeyCode::ArrowLeft, 15);
+    hold(&mut viewer, Key::ArrowLeft, 15);
     let turned = viewer.stage.camera.yaw - start.yaw;
     assert!((turned - 0.5).abs() < 0.01, "{turned}");
     // Q and E turn the model 200 degrees a second, a whole turn in 1.8, and leave the camera where it is.
     let (place, seconds) = (viewer.stage.camera, viewer.stage.seconds());
-    hold(&mut viewer, KeyCode::KeyE, 15);
+    hold(&mut viewer, Key::E, 15);
     assert_eq!(viewer.stage.camera, place);
     assert!((viewer.stage.seconds() - seconds - 0.5).abs() < 0.01, "{}", viewer.stage.seconds());
-    hold(&mut viewer, KeyCode::KeyQ, 15);
+    hold(&mut viewer, Key::Q, 15);
     assert!((viewer.stage.seconds() - seconds).abs() < 0.01 || (viewer.stage.seconds() - 1.8).abs() < 0.01);
     // R is the source's.
-    viewer.key(Chord::new(KeyCode::KeyR), true, false);
-    frame(&mut viewer);
+    key(&mut viewer, Key::R, true);
     let camera = viewer.stage.camera;
     assert_eq!(camera.position, DVec3::new(0.0, 50.0, 50.0));
     assert!(camera.forward().abs_diff_eq(Vec3::NEG_Z, 1e-6));
-    assert!(!viewer.wishes.quit);
-    viewer.key(Chord::new(KeyCode::Escape), true, false);
-    frame(&mut viewer);
-    assert!(viewer.wishes.quit);
+    assert!(!viewer.window_requests.quit);
+    key(&mut viewer, Key::Escape, true);
+    assert!(viewer.window_requests.quit);
 }
 
 #[test]
@@ -63,7 +66,7 @@ fn gpu_a_sample_with_its_options_and_camera_comes_back() {
     let mut first = ready(&["--sample", "xna-shadow-mapping/hole"], Some(&path));
     run(&mut first, Command::Set("sample.bias".to_owned(), "0.004".to_owned()));
     run(&mut first, Command::Set("sample.format".to_owned(), "r16f".to_owned()));
-    hold(&mut first, KeyCode::KeyW, 5);
+    hold(&mut first, Key::W, 5);
     let camera = first.stage.camera;
     first.save();
     drop(first);
@@ -82,17 +85,17 @@ fn gpu_a_sample_with_its_options_and_camera_comes_back() {
 #[test]
 fn gpu_options_variants_and_reset_do_what_the_card_says() {
     let mut viewer = ready(&["--sample", XNA], None);
-    run(&mut viewer, Command::SampleVariant(Some(0)));
+    run(&mut viewer, Command::ShowSampleVariant(Some(0)));
     assert_eq!((viewer.source.text().as_str(), values(&viewer).get("bias")), ("xna-shadow-mapping/acne", 0.0));
     let line = viewer.command_line();
     assert!(line.starts_with("viewer --sample xna-shadow-mapping/acne --no-state"), "{line}");
     assert!(!line.contains("sample.bias"), "the variant's name says it: {line}");
-    run(&mut viewer, Command::SampleOption(2, 1.0));
+    run(&mut viewer, Command::SetSampleOption { index: 2, value: 1.0 });
     assert_eq!(values(&viewer).choice("format"), "r16f");
     assert!(viewer.command_line().contains("--set sample.format=r16f"));
     run(&mut viewer, Command::Reset);
     assert_eq!((values(&viewer).choice("format"), values(&viewer).get("bias")), ("r32f", 0.0));
-    run(&mut viewer, Command::SampleVariant(None));
+    run(&mut viewer, Command::ShowSampleVariant(None));
     assert_eq!((viewer.source.text().as_str(), values(&viewer).changes().count()), (XNA, 0));
 }
 

@@ -11,7 +11,7 @@ fn gpu_nothing_can_be_taken_back_that_was_done_before_the_scene_was_there() {
     run(&mut viewer, Command::Set("bias.slope".to_owned(), "2".to_owned()));
     pause(&mut viewer);
     assert!(viewer.history.undo_name().is_some());
-    run(&mut viewer, Command::Open(SceneSource::from_text("plain")));
+    run(&mut viewer, Command::Open("plain".to_owned()));
     until(&mut viewer, "the plain", |viewer| viewer.loading.is_none());
     pause(&mut viewer);
     assert_eq!(viewer.history.undo_name(), None, "the settings of before are of another scene");
@@ -22,7 +22,7 @@ fn gpu_a_search_for_a_technique_ends_with_its_scene() {
     let mut viewer = ready(&["--technique", "xna-1"], None);
     run(&mut viewer, Command::StartTune);
     assert!(viewer.tuning.is_running());
-    run(&mut viewer, Command::Open(SceneSource::from_text("plain")));
+    run(&mut viewer, Command::Open("plain".to_owned()));
     until(&mut viewer, "the end of the search", |viewer| viewer.loading.is_none() && !viewer.tuning.is_running());
     assert_eq!(viewer.tuning.shown(), Tune::Idle, "nothing is offered that was found for another scene");
 }

@@ -50,7 +50,7 @@ fn gpu_what_random_actions_save_is_gone_at_the_end() {
     std::fs::write(&path, "await loaded\nmonkey 60 1\n").expect("written");
     let mut viewer = viewer(&["--script", &path.display().to_string()], None);
     until(&mut viewer, "the monkey", |viewer| viewer.player.is_random());
-    run(&mut viewer, Command::Picture(None));
+    run(&mut viewer, Command::Screenshot(None));
     let litter = viewer.litter.as_ref().expect("a folder of its own").path().to_owned();
     assert!(litter.join("shadowfit-001.png").is_file());
     drop(viewer);

@@ -48,7 +48,7 @@ fn gpu_a_refused_argument_leaves_the_saved_settings_as_they_were() {
     let before = std::fs::read(&path).expect("it is there");
     let all = ["--technique", "windows-4", "--set", "splits.lambda=0.7"];
     let mut viewer = viewer(&all, Some(&path));
-    settle(&mut viewer, |viewer| viewer.wishes.quit);
+    settle(&mut viewer, |viewer| viewer.window_requests.quit);
     let error = format!("{:#}", viewer.failure.as_ref().expect("windows have no practical splits"));
     assert!(error.contains("splits.lambda"), "{error}");
     viewer.save();

@@ -1,18 +1,18 @@
-//! Every request that the panel can make, and the parts that a host leaves out.
+//! Every command that the panel can ask for, and the parts that a host leaves out.
 
 use egui::ThemePreference;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use shadowfit::Technique;
-use shadowfit_egui::{Action, Artefact, Changes, Panel, Part, Tune};
+use shadowfit_egui::{Artefact, Changes, Command, Panel, Part, Toggle, Tune};
 
 use crate::host::{Host, harness, harness_with, press, wait_for_the_tooltip};
 use crate::states::{busy, changed, session, tune_done};
 
 /// What the panel asked for since the last call.
-fn asked(harness: &mut Harness<'_, Host>) -> Vec<Action> {
-    std::mem::take(&mut harness.state_mut().actions)
+fn asked(harness: &mut Harness<'_, Host>) -> Vec<Command> {
+    std::mem::take(&mut harness.state_mut().commands)
 }
 
 #[test]
@@ -20,7 +20,7 @@ fn each_artefact_button_asks_to_show_its_artefact() {
     for artefact in Artefact::ALL {
         let mut harness = harness(Host::default());
         press(&mut harness, &format!("Show {}", artefact.label().to_lowercase()));
-        assert_eq!(harness.state().actions, [Action::ShowArtefact(artefact)]);
+        assert_eq!(harness.state().commands, [Command::ShowArtefact(artefact)]);
     }
 }
 
@@ -35,7 +35,7 @@ fn the_card_narrates_and_explains_then_fixes_then_says_what_changed_and_shows_ag
         harness.get_by_label(artefact.explanation());
         assert!(harness.query_by_label_contains("0 → 1 texel").is_none());
         press(&mut harness, "Fix");
-        assert_eq!(asked(&mut harness), [Action::FixArtefact(artefact)]);
+        assert_eq!(asked(&mut harness), [Command::FixArtefact]);
 
         harness.state_mut().shown.fixed = true;
         harness.run();
@@ -43,31 +43,31 @@ fn the_card_narrates_and_explains_then_fixes_then_says_what_changed_and_shows_ag
         harness.get_by_label_contains("0 → 1 texel");
         assert!(harness.query_by_label(artefact.explanation()).is_none());
         press(&mut harness, "Show again");
-        assert_eq!(asked(&mut harness), [Action::ShowArtefact(artefact)]);
+        assert_eq!(asked(&mut harness), [Command::ShowArtefact(artefact)]);
         press(&mut harness, "Close the artefact");
-        assert_eq!(asked(&mut harness), [Action::CloseArtefact]);
+        assert_eq!(asked(&mut harness), [Command::CloseArtefact]);
     }
 }
 
 #[test]
 fn the_buttons_at_the_top_ask_their_host() {
     let mut harness = harness(Host::default());
-    for (label, action) in [("Screenshot", Action::Screenshot), ("Help", Action::OpenHelp)] {
+    for (label, command) in [("Screenshot", Command::Screenshot(None)), ("Help", Command::ToggleHelp)] {
         press(&mut harness, label);
-        assert_eq!(asked(&mut harness), [action]);
+        assert_eq!(asked(&mut harness), [command]);
     }
-    for (menu, label, action) in [
-        ("Reset", "Reset everything", Action::Reset),
-        ("Reset", "Reset the camera", Action::ResetCamera),
-        ("Copy", "Copy as Rust code", Action::CopyRust),
-        ("Copy", "Copy the command line", Action::CopyCommandLine),
-        ("Theme", "Dark", Action::SetTheme(ThemePreference::Dark)),
-        ("Theme", "Light", Action::SetTheme(ThemePreference::Light)),
-        ("Theme", "As the system", Action::SetTheme(ThemePreference::System)),
+    for (menu, label, command) in [
+        ("Reset", "Reset everything", Command::Reset),
+        ("Reset", "Reset the camera", Command::ResetCamera),
+        ("Copy", "Copy as Rust code", Command::CopyRust),
+        ("Copy", "Copy the command line", Command::CopyCommandLine),
+        ("Theme", "Dark", Command::SetTheme(ThemePreference::Dark)),
+        ("Theme", "Light", Command::SetTheme(ThemePreference::Light)),
+        ("Theme", "As the system", Command::SetTheme(ThemePreference::System)),
     ] {
         press(&mut harness, menu);
         press(&mut harness, label);
-        assert_eq!(asked(&mut harness), [action]);
+        assert_eq!(asked(&mut harness), [command]);
     }
 }
 
@@ -83,11 +83,11 @@ fn undo_and_redo_say_what_they_would_do_and_are_greyed_out_where_there_is_nothin
     wait_for_the_tooltip(&mut harness);
     assert!(harness.query_by_label_contains("Undo: Constant bias (Ctrl+Z)").is_some());
     press(&mut harness, "Undo");
-    assert_eq!(asked(&mut harness), [Action::Undo]);
+    assert_eq!(asked(&mut harness), [Command::Undo]);
     harness.state_mut().changes = Changes { undo: None, redo: Some("Filter") };
     harness.run();
     press(&mut harness, "Redo");
-    assert_eq!(asked(&mut harness), [Action::Redo]);
+    assert_eq!(asked(&mut harness), [Command::Redo]);
 }
 
 #[test]
@@ -96,20 +96,20 @@ fn the_search_for_better_settings_is_begun_cancelled_applied_and_discarded() {
     let running = Tune::Running { tried: 12, at_most: 240, start_error: 2.0, best_error: 1.0, what: "PCF 5×5" };
     let failed = Tune::Failed("The picture has no pixel that faces the light.");
     let worse = Tune::Done { changes: &[], before: <_>::default(), after: <_>::default(), is_applied: false };
-    for (tune, button, action) in [
-        (Tune::Idle, "Auto-tune", Action::StartTune),
-        (running, "Cancel", Action::CancelTune),
-        (tune_done(false), "Apply", Action::ApplyTune),
-        (tune_done(false), "Discard", Action::DiscardTune),
-        (tune_done(true), "Tune again", Action::StartTune),
-        (tune_done(true), "Close", Action::DiscardTune),
-        (worse, "Tune again", Action::StartTune),
-        (failed, "Try again", Action::StartTune),
+    for (tune, button, command) in [
+        (Tune::Idle, "Auto-tune", Command::StartTune),
+        (running, "Cancel", Command::CancelTune),
+        (tune_done(false), "Apply", Command::ApplyTune),
+        (tune_done(false), "Discard", Command::DiscardTune),
+        (tune_done(true), "Tune again", Command::StartTune),
+        (tune_done(true), "Close", Command::DiscardTune),
+        (worse, "Tune again", Command::StartTune),
+        (failed, "Try again", Command::StartTune),
     ] {
         harness.state_mut().tune = tune;
         harness.run();
         press(&mut harness, button);
-        assert_eq!(asked(&mut harness), [action], "{button}");
+        assert_eq!(asked(&mut harness), [command], "{button}");
     }
 }
 
@@ -132,28 +132,29 @@ fn the_card_of_the_search_tells_how_far_it_is_and_what_it_found() {
 fn two_techniques_are_compared_swapped_copied_and_left() {
     let mut harness = harness(Host::default());
     press(&mut harness, "Compare A | B");
-    assert_eq!(asked(&mut harness), [Action::StartCompare]);
+    assert_eq!(asked(&mut harness), [Command::Compare(Toggle::On)]);
     harness.state_mut().compare = Some((Technique::default(), false));
     harness.run();
     assert!(harness.query_by_role_and_label(Role::Button, "Compare A | B").is_none());
-    for (button, action) in [
-        ("Swap A and B", Action::SwapSides),
-        ("Copy A to B", Action::CopyToOther),
-        ("Stop comparing", Action::StopCompare),
+    for (button, command) in [
+        ("Swap A and B", Command::SwapSides),
+        ("Copy A to B", Command::CopyToOther),
+        ("Stop comparing", Command::Compare(Toggle::Off)),
     ] {
         press(&mut harness, button);
-        assert_eq!(asked(&mut harness), [action]);
+        assert_eq!(asked(&mut harness), [command]);
     }
     press(&mut harness, "Technique B");
     press(&mut harness, "Copy B to A");
-    assert_eq!(asked(&mut harness), [Action::CopyToOther]);
+    assert_eq!(asked(&mut harness), [Command::CopyToOther]);
 }
 
 #[test]
 fn the_plots_are_paused_cleared_and_saved() {
     let mut harness = harness_with(session(), "Plots");
     press(&mut harness, "Save CSV");
-    let [Action::SaveCsv(csv)] = &asked(&mut harness)[..] else { panic!("the text is saved") };
+    assert_eq!(asked(&mut harness), [Command::SaveFigures(None)]);
+    let csv = harness.state().panel.figures_csv();
     assert!(csv.starts_with("time (s),wrong (%)") && csv.lines().count() > 2, "{csv}");
     press(&mut harness, "Pause");
     press(&mut harness, "Clear");

@@ -1,0 +1,74 @@
+//! The part of the panel that shows and fixes artefacts.
+
+use egui::{Align, Button, Label, Layout, RichText, Ui};
+
+use crate::theme::{Palette, has_arrows};
+use crate::widgets::{Icon, KeyButton, caption, card, icon_button, main_button};
+use crate::{Artefact, Command, ShownArtefact, keys_of};
+
+/// The buttons, and the card of the artefact that is shown.
+pub(crate) fn show(ui: &mut Ui, shown: Option<&ShownArtefact<'_>>, command: &mut Option<Command>) {
+    ui.columns_const(|columns: &mut [Ui; 3]| {
+        for (ui, artefact) in columns.iter_mut().zip(Artefact::ALL) {
+            let accessible_name = format!("Show {}", artefact.label().to_lowercase());
+            let button = KeyButton {
+                name: &format!("Show {}", artefact.short_label()),
+                accessible_name: &accessible_name,
+                key: keys_of(&Command::ShowArtefact(artefact)),
+                is_selected: shown.is_some_and(|shown| shown.artefact == artefact),
+            };
+            if button.show(ui).on_hover_text(artefact.explanation()).clicked() {
+                *command = Some(Command::ShowArtefact(artefact));
+            }
+        }
+    });
+    if let Some(shown) = shown {
+        show_card(ui, shown, command);
+    }
+}
+
+fn show_card(ui: &mut Ui, shown: &ShownArtefact<'_>, command: &mut Option<Command>) {
+    let ShownArtefact { artefact, fixed, narration, changes: changed } = *shown;
+    let palette = Palette::of(ui);
+    let accent = if fixed { palette.success } else { palette.warning };
+    card(ui, Some(accent), |ui| {
+        ui.horizontal(|ui| {
+            let title = if fixed { format!("{}: fixed", artefact.label()) } else { artefact.label().to_owned() };
+            ui.label(RichText::new(title).color(accent));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                if icon_button(ui, Icon::X, "Close the artefact", "Ends the demonstration.").clicked() {
+                    *command = Some(Command::CloseArtefact);
+                }
+            });
+        });
+        if !narration.is_empty() {
+            ui.add(Label::new(RichText::new(narration).strong()).wrap());
+        }
+        let text = if fixed { artefact.cure() } else { artefact.explanation() };
+        ui.add(Label::new(text).wrap());
+        if !fixed {
+            caption(ui, &format!("{} marks the wrong pixels.", keys_of(&Command::NextMarks)));
+        }
+        ui.add_space(2.0);
+        if fixed {
+            changes(ui, changed);
+            if ui.add_sized([ui.available_width(), 28.0], Button::new("Show again")).clicked() {
+                *command = Some(Command::ShowArtefact(artefact));
+            }
+        } else if main_button(ui, "Fix", keys_of(&Command::FixArtefact), palette.success_fill)
+            .on_hover_text(artefact.cure())
+            .clicked()
+        {
+            *command = Some(Command::FixArtefact);
+        }
+    });
+}
+
+/// What was changed, a line each.
+pub(crate) fn changes(ui: &mut Ui, changes: &[String]) {
+    let has_arrows = has_arrows(ui);
+    for change in changes {
+        let change = if has_arrows { change.clone() } else { change.replace('→', "to") };
+        caption(ui, &format!("• {change}"));
+    }
+}

@@ -1,0 +1,144 @@
+//! The commands of an application with the panel: what its buttons, keys and menus ask the host to do.
+
+use std::path::PathBuf;
+
+use egui::ThemePreference;
+use shadowfit::tool::ViewMode;
+
+use crate::Artefact;
+
+/// Something that a person asks the host to do. The panel asks only for what its [parts](crate::Part) need, and its
+/// docs say which; the others belong to the table of keys ([`KEYS`](crate::KEYS)) and to what a host adds around the
+/// panel. A host ignores those that it does not support.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Command {
+    /// Show a view.
+    View(ViewMode),
+    /// Show the view from outside, or the final picture if that view is shown already.
+    ToggleOutside,
+    /// Mark wrong pixels in the next way: not at all, outlined, blinking.
+    NextMarks,
+    /// Show the next choice of shadow maps in the inset: none, one, all.
+    NextInset,
+    /// Freeze the fit, or let it follow the camera again.
+    ToggleFreeze,
+    /// Play or pause the animation.
+    TogglePlay,
+    /// Let the sun move, or stop it.
+    ToggleSun,
+    /// Pose the scene at a time of its animation, in seconds.
+    Scrub(f32),
+    /// Move camera and settings so that the artefact is plainly visible. A button of the panel.
+    ShowArtefact(Artefact),
+    /// Apply the cure of the artefact that is shown. A button of the panel.
+    FixArtefact,
+    /// Stop showing the artefact; settings and camera stay as they are. A button of the panel.
+    CloseArtefact,
+    /// Show two techniques beside each other, or only the first; the host chooses what the second begins with. A button
+    /// of the panel.
+    Compare(Toggle),
+    /// Move the bar between the two pictures of a comparison to this share of the width.
+    Split(f32),
+    /// Swap the two techniques. A button of the panel.
+    SwapSides,
+    /// Copy the technique that the controls edit to the other side. A button of the panel.
+    CopyToOther,
+    /// Undo the last change. A button of the panel.
+    Undo,
+    /// Do again what was undone. A button of the panel.
+    Redo,
+    /// Put settings and camera back to where they began. A button of the panel.
+    Reset,
+    /// Put the camera back to where it began. A button of the panel.
+    ResetCamera,
+    /// Put the eye at a point and look at another, both in metres.
+    LookAt {
+        /// Position of the eye.
+        eye: [f64; 3],
+        /// The point to look at.
+        target: [f64; 3],
+    },
+    /// Fly toward what is at a point of the picture, given as shares of its width and height from the top left.
+    Focus([f32; 2]),
+    /// Save the view under a number from 1 to 9.
+    SetBookmark(u8),
+    /// Go to the view that was saved under a number.
+    GoToBookmark(u8),
+    /// Open a scene by its name or path.
+    Open(String),
+    /// Open a file: a scene, a technique, or a picture that carries settings.
+    OpenFile(PathBuf),
+    /// Let the person choose a file to open.
+    ChooseFile,
+    /// Set a parameter, named by its id, to a value.
+    Set(String, String),
+    /// Use a technique, named by a preset or a file.
+    Technique(String),
+    /// Show a variant of the sample by its index, or the sample as its source has it. A menu of the panel.
+    ShowSampleVariant(Option<usize>),
+    /// Set an option of the sample. A control of the panel.
+    SetSampleOption {
+        /// Index of the option.
+        index: usize,
+        /// The number, the index of the choice, or 1 for on.
+        value: f32,
+    },
+    /// Judge the sample, and modern maps in the same view, against rays. A button of the panel.
+    MeasureSample,
+    /// Start the search for settings with a lower error. A button of the panel.
+    StartTune,
+    /// End the search early; what it has found so far counts. A button of the panel.
+    CancelTune,
+    /// Use what the search found. A button of the panel.
+    ApplyTune,
+    /// Forget what the search found. If it was applied, the settings stay. A button of the panel.
+    DiscardTune,
+    /// Save the technique that the controls edit under this name, replacing one of the same name. A button of the panel.
+    SavePreset(String),
+    /// Delete the saved technique of this name. A button of the panel.
+    DeletePreset(String),
+    /// Copy the technique as Rust code. A menu of the panel.
+    CopyRust,
+    /// Copy the command line that starts with this scene and these settings. A menu of the panel.
+    CopyCommandLine,
+    /// Save the picture to a file, or to a new one if none is named. A button of the panel.
+    Screenshot(Option<PathBuf>),
+    /// Save the whole window to a file.
+    SaveWindow(PathBuf),
+    /// Save the plotted figures, [`Panel::figures_csv`](crate::Panel::figures_csv), to a file, or to a new one if none
+    /// is named. A button of the panel.
+    SaveFigures(Option<PathBuf>),
+    /// Use the dark or the light theme, or that of the system: [`egui::Context::set_theme`] does it. A menu of the panel.
+    SetTheme(ThemePreference),
+    /// Show or hide the table of keys, see [`help_overlay`](crate::help_overlay). A button of the panel.
+    ToggleHelp,
+    /// Show or hide the panel.
+    TogglePanel,
+    /// Close the open menu or the table of keys; quit if neither is open.
+    Escape,
+    /// Quit the application.
+    Quit,
+}
+
+/// Whether something is turned on, turned off, or switched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Toggle {
+    /// Turn it on.
+    On,
+    /// Turn it off.
+    Off,
+    /// Turn it on if it is off, and off if it is on.
+    Switch,
+}
+
+impl Toggle {
+    /// The new state of something that is on or off now.
+    pub fn apply(self, is_on: bool) -> bool {
+        match self {
+            Self::On => true,
+            Self::Off => false,
+            Self::Switch => !is_on,
+        }
+    }
+}

@@ -1,0 +1,31 @@
+//! Icons, drawn with the font of the `lucide-icons` crate.
+
+use egui::epaint::text::{FontData, FontInsert, FontPriority, InsertFontFamily};
+use egui::{Align2, Color32, Context, FontFamily, FontId, Pos2, Ui};
+use lucide_icons::LUCIDE_FONT_BYTES;
+
+pub use lucide_icons::Icon;
+
+/// Height of an icon, in points.
+const SIZE: f32 = 15.0;
+
+/// Name of the font and of its family.
+const FONT: &str = "lucide";
+
+/// Adds the font of the icons.
+pub(crate) fn add_icons(ctx: &Context) {
+    let family = InsertFontFamily { family: FontFamily::Name(FONT.into()), priority: FontPriority::Highest };
+    ctx.add_font(FontInsert::new(FONT, FontData::from_static(LUCIDE_FONT_BYTES), vec![family]));
+}
+
+/// Paints an icon around a point. In a host that did not call [`apply_theme`](crate::apply_theme) the first icon adds
+/// the font, and icons appear from the next frame on.
+pub(crate) fn paint_icon(ui: &Ui, icon: Icon, center: Pos2, color: Color32) {
+    let family = FontFamily::Name(FONT.into());
+    if ui.ctx().fonts(|fonts| fonts.definitions().families.contains_key(&family)) {
+        ui.painter().text(center, Align2::CENTER_CENTER, char::from(icon), FontId::new(SIZE, family), color);
+    } else {
+        add_icons(ui.ctx());
+        ui.ctx().request_repaint();
+    }
+}

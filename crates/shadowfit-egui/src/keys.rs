@@ -1,0 +1,274 @@
+//! The keys: one table of what each of them does, which menus, the help, the docs and the host's own keyboard follow.
+
+use std::str::FromStr;
+
+use egui::Key;
+use shadowfit::tool::ViewMode;
+
+use crate::{Artefact, Command, Toggle};
+
+/// A key with the modifiers that it is pressed with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Chord {
+    /// The key.
+    pub key: Key,
+    /// Whether Control is held.
+    pub ctrl: bool,
+    /// Whether Shift is held.
+    pub shift: bool,
+}
+
+/// Keys that belong together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeyGroup {
+    /// What they are about.
+    pub heading: &'static str,
+    /// The keys, in the order that they are shown.
+    pub keys: &'static [KeyHelp],
+}
+
+/// A line of the table of keys.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeyHelp {
+    /// The keys as they are printed on a keyboard, with `or` between two that do the same.
+    pub keys: &'static str,
+    /// What they do.
+    pub does: &'static str,
+    /// The command that they stand for; `None` for what is held, dragged or turned, and for gamepads.
+    pub command: Option<Command>,
+}
+
+/// A line for a key that stands for a command.
+const fn key(keys: &'static str, does: &'static str, command: Command) -> KeyHelp {
+    KeyHelp { keys, does, command: Some(command) }
+}
+
+/// A line for what is held, dragged or turned.
+const fn held(keys: &'static str, does: &'static str) -> KeyHelp {
+    KeyHelp { keys, does, command: None }
+}
+
+/// The keys that a host of the panel answers, in the order that they are shown.
+pub const KEYS: &[KeyGroup] = &[
+    KeyGroup {
+        heading: "Fly",
+        keys: &[
+            held("W A S D", "move"),
+            held("Q, E", "down, up"),
+            held("Arrow keys", "look around"),
+            held("Left mouse drag", "look around"),
+            held("Double click", "focus on what is there"),
+            held("Shift", "move fast"),
+            held("Wheel", "flying speed"),
+        ],
+    },
+    KeyGroup {
+        heading: "Views",
+        keys: &[
+            key("1", "final picture", Command::View(ViewMode::Final)),
+            key("2", "truth, by rays", Command::View(ViewMode::Truth)),
+            key("3", "errors", Command::View(ViewMode::Error)),
+            key("4", "pixels per texel", Command::View(ViewMode::PixelsPerTexel)),
+            key("5", "maps", Command::View(ViewMode::Maps)),
+            key("6", "texel grid", Command::View(ViewMode::TexelGrid)),
+            key("7", "need", Command::View(ViewMode::Need)),
+            key("8", "map updates", Command::View(ViewMode::Updates)),
+            key("9", "outside", Command::View(ViewMode::Outside)),
+        ],
+    },
+    KeyGroup {
+        heading: "Artefacts",
+        keys: &[
+            key("Z", "show acne", Command::ShowArtefact(Artefact::Acne)),
+            key("X", "show aliasing", Command::ShowArtefact(Artefact::Aliasing)),
+            key("C", "show a clipping hole", Command::ShowArtefact(Artefact::ClippingHole)),
+            key("F", "fix what is shown", Command::FixArtefact),
+            key("T", "auto-tune", Command::StartTune),
+        ],
+    },
+    KeyGroup {
+        heading: "Picture",
+        keys: &[
+            key("B", "compare A | B", Command::Compare(Toggle::Switch)),
+            key("M", "mark wrong pixels", Command::NextMarks),
+            key("I", "shadow map inset", Command::NextInset),
+            key("O", "outside view", Command::ToggleOutside),
+            key("G", "freeze the fit", Command::ToggleFreeze),
+            key("L", "animate the sun", Command::ToggleSun),
+            key("Space", "play or pause", Command::TogglePlay),
+        ],
+    },
+    KeyGroup {
+        heading: "Bookmarks",
+        keys: &[
+            key("Ctrl+1 … 9", "go to a bookmark", Command::GoToBookmark(1)),
+            key("Ctrl+Shift+1 … 9", "set a bookmark", Command::SetBookmark(1)),
+        ],
+    },
+    KeyGroup {
+        heading: "Settings and files",
+        keys: &[
+            key("Ctrl+Z", "undo", Command::Undo),
+            key("Ctrl+Shift+Z or Ctrl+Y", "redo", Command::Redo),
+            key("R", "reset", Command::Reset),
+            key("K", "copy as Rust code", Command::CopyRust),
+            key("P", "screenshot", Command::Screenshot(None)),
+            key("Ctrl+O", "open a scene", Command::ChooseFile),
+        ],
+    },
+    KeyGroup {
+        heading: "Window",
+        keys: &[
+            key("Tab", "hide or show the panel", Command::TogglePanel),
+            key("H or F1", "this help", Command::ToggleHelp),
+            key("Esc", "close a menu or this help; else quit", Command::Escape),
+            key("Ctrl+Q", "quit", Command::Quit),
+        ],
+    },
+    KeyGroup {
+        heading: "Gamepad",
+        keys: &[
+            held("Left stick", "move"),
+            held("Right stick", "look around, click: first view"),
+            held("Triggers", "down, up"),
+            held("Back", "quit"),
+        ],
+    },
+];
+
+/// What ends the keys of a line that stands for all digits from 1.
+const DIGITS: &str = "1 … 9";
+
+/// The lines of [`KEYS`] that stand for a command, with that command.
+fn commands() -> impl Iterator<Item = (&'static KeyHelp, &'static Command)> {
+    KEYS.iter().flat_map(|group| group.keys).filter_map(|line| Some((line, line.command.as_ref()?)))
+}
+
+/// The keys of a command as they are printed on a keyboard; empty for a command without any.
+pub fn keys_of(command: &Command) -> &'static str {
+    commands().find(|(_, other)| *other == command).map_or("", |(line, _)| line.keys)
+}
+
+/// A help text with the keys of a command behind it.
+pub fn with_keys(text: &str, command: &Command) -> String {
+    match keys_of(command) {
+        "" => text.to_owned(),
+        keys => format!("{text} ({keys})"),
+    }
+}
+
+impl KeyHelp {
+    /// Each chord of the line with its command.
+    fn chords(&self) -> impl Iterator<Item = (Chord, Command)> {
+        self.command.iter().flat_map(|command| match self.keys.strip_suffix(DIGITS) {
+            Some(modifiers) => (1..=9)
+                .filter_map(|digit| Some((chord(&format!("{modifiers}{digit}"))?, of_digit(command, digit))))
+                .collect(),
+            None => {
+                self.keys.split(" or ").filter_map(|keys| Some((chord(keys)?, command.clone()))).collect::<Vec<_>>()
+            }
+        })
+    }
+}
+
+/// The command of a digit, for a line that stands for all of them.
+fn of_digit(command: &Command, digit: u8) -> Command {
+    match command {
+        Command::GoToBookmark(_) => Command::GoToBookmark(digit),
+        Command::SetBookmark(_) => Command::SetBookmark(digit),
+        other => other.clone(),
+    }
+}
+
+fn chord(text: &str) -> Option<Chord> {
+    text.parse().ok()
+}
+
+/// The text names no key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NoSuchKey;
+
+impl FromStr for Chord {
+    type Err = NoSuchKey;
+
+    /// Reads a key as `w`, `Ctrl+Z` or `ctrl+shift+3`, in upper or lower case.
+    fn from_str(text: &str) -> Result<Self, NoSuchKey> {
+        let (modifiers, name) = text.rsplit_once('+').map_or(("", text), |(modifiers, name)| (modifiers, name));
+        let is_it = |key: &&Key| key.name().eq_ignore_ascii_case(name);
+        let found = Key::ALL.iter().find(is_it).copied().or_else(|| Key::from_name(name));
+        let mut chord = Self { key: found.ok_or(NoSuchKey)?, ctrl: false, shift: false };
+        for modifier in modifiers.split('+').filter(|modifier| !modifier.is_empty()) {
+            match modifier.to_ascii_lowercase().as_str() {
+                "ctrl" => chord.ctrl = true,
+                "shift" => chord.shift = true,
+                _ => return Err(NoSuchKey),
+            }
+        }
+        Ok(chord)
+    }
+}
+
+impl Chord {
+    /// The command that the key stands for when it is pressed. Shift matters only where [`KEYS`] has the key both with
+    /// and without it: a key works while Shift is held to fly fast.
+    pub fn command(self) -> Option<Command> {
+        let listed = |chord: Self| {
+            let mut all = commands().flat_map(|(line, _)| line.chords());
+            all.find(|(other, _)| *other == chord).map(|(_, command)| command)
+        };
+        listed(self).or_else(|| listed(Self { shift: false, ..self }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn command(keys: &str) -> Option<Command> {
+        keys.parse::<Chord>().expect(keys).command()
+    }
+
+    #[test]
+    fn every_view_has_its_digit_and_control_makes_bookmarks_of_them() {
+        for (number, mode) in (1..=9).zip(ViewMode::ALL) {
+            assert_eq!(command(&format!("{number}")), Some(Command::View(mode)));
+            assert_eq!(command(&format!("Ctrl+{number}")), Some(Command::GoToBookmark(number)));
+            assert_eq!(command(&format!("Ctrl+Shift+{number}")), Some(Command::SetBookmark(number)));
+        }
+    }
+
+    #[test]
+    fn keys_are_read_by_name_whatever_their_case() {
+        assert_eq!(command("Ctrl+Z"), Some(Command::Undo));
+        assert_eq!(command("ctrl+shift+z"), Some(Command::Redo));
+        assert_eq!((command("escape"), command("Esc")), (Some(Command::Escape), Some(Command::Escape)));
+        assert_eq!("W".parse::<Chord>().map(|chord| chord.key), Ok(Key::W));
+        for bad in ["", "+", "ctrl", "alt+a", "f99", "w+ctrl"] {
+            assert_eq!(bad.parse::<Chord>(), Err(NoSuchKey), "{bad:?}");
+        }
+    }
+
+    #[test]
+    fn shift_matters_only_where_both_are_listed() {
+        assert_eq!(command("Shift+G"), command("G"));
+        assert_eq!(command("Ctrl+Shift+Q"), Some(Command::Quit));
+        assert_ne!(command("Ctrl+Shift+Z"), command("Ctrl+Z"));
+        assert_eq!((command("W"), command("Ctrl+G")), (None, None));
+    }
+
+    #[test]
+    fn every_line_with_a_command_names_keys_and_no_key_or_command_has_two_lines() {
+        let mut chords: Vec<Chord> = Vec::new();
+        let mut seen: Vec<&Command> = Vec::new();
+        for (line, command) in commands() {
+            assert!(
+                line.chords().next().is_some() && line.chords().all(|(chord, _)| !chords.contains(&chord)),
+                "{line:?}"
+            );
+            chords.extend(line.chords().map(|(chord, _)| chord));
+            assert!(!seen.contains(&command), "{line:?}");
+            seen.push(command);
+            assert_eq!(keys_of(command), line.keys);
+        }
+    }
+}

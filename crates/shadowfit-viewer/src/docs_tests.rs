@@ -1,0 +1,39 @@
+//! The tables of docs/VIEWER.md, which list keys and actions as the viewer has them.
+
+use std::path::Path;
+
+use shadowfit_egui::KEYS;
+
+use crate::script::ACTIONS;
+
+/// Text in a cell of a table in Markdown.
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|")
+}
+
+fn assert_docs_hold(table: &str) {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/VIEWER.md");
+    let text = std::fs::read_to_string(page).expect("docs/VIEWER.md can be read");
+    assert!(text.contains(table), "put this table into docs/VIEWER.md in place of the old one:\n\n{table}");
+}
+
+#[test]
+fn the_docs_list_every_key() {
+    let mut table = String::from("| | keys |\n|---|---|\n");
+    for group in KEYS {
+        let keys: Vec<String> =
+            group.keys.iter().map(|line| format!("**{}** {}", line.keys, cell(line.does))).collect();
+        table += &format!("| {} | {} |\n", group.heading, keys.join(" · "));
+    }
+    assert_docs_hold(&table);
+}
+
+#[test]
+fn the_docs_list_every_action() {
+    let mut table = String::from("| action | what it does |\n|---|---|\n");
+    for action in ACTIONS {
+        let line = format!("{} {}", action.name, action.takes);
+        table += &format!("| `{}` | {} |\n", cell(line.trim_end()), cell(action.does));
+    }
+    assert_docs_hold(&table);
+}
