@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use shadowfit::Technique;
-use shadowfit::tool::{CameraSettings, LightSettings};
+use shadowfit_params::tool::{CameraSettings, LightSettings};
 use shadowfit_render::{FlyCamera, Renderer};
 use shadowfit_scene::{Scene, builtin, load_gltf};
 use shadowfit_study::{Evaluator, Judging, LiveTruth, PreparedScene, TechniqueFitter, View};

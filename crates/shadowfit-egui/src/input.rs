@@ -2,8 +2,8 @@
 
 use egui::ThemePreference;
 use shadowfit::Technique;
-use shadowfit::figures::{Figures, JudgedFigures};
-use shadowfit::tool::Settings;
+use shadowfit_params::figures::{Figures, JudgedFigures};
+use shadowfit_params::tool::Settings;
 
 use crate::Artefact;
 

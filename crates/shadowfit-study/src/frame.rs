@@ -1,7 +1,7 @@
 //! The only place where a frame of the samples' renderer is put together and its haze is chosen.
 
 use shadowfit::PerspectiveCamera;
-use shadowfit::tool::CameraSettings;
+use shadowfit_params::tool::CameraSettings;
 use shadowfit_render::{Atmosphere, Culling, Frame, Inset, JudgedPicture, Line, Marks, Overlay, Quad};
 use shadowfit_wgpu::MapFit;
 

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use glam::DVec3;
-use shadowfit::tool::ViewMode;
 use shadowfit_egui::{Action, Artefact};
+use shadowfit_params::tool::ViewMode;
 
 use crate::saved::Theme;
 use crate::source::SceneSource;

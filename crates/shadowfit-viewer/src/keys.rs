@@ -1,7 +1,7 @@
 //! Keys and what they do at once; those that are held fly the camera, see [`crate::input`].
 
-use shadowfit::tool::ViewMode;
 use shadowfit_egui::Artefact;
+use shadowfit_params::tool::ViewMode;
 use winit::keyboard::KeyCode;
 
 use crate::command::{Command, Toggle};

@@ -2,8 +2,8 @@
 //! the sun's direction, drawn as lines and seen by a second camera that keeps all of them in its picture.
 
 use glam::{DVec3, Vec3, Vec4};
-use shadowfit::figures::linear_map_tints;
 use shadowfit::{CasterVolume, LightFit, PerspectiveCamera};
+use shadowfit_params::figures::linear_map_tints;
 use shadowfit_render::{Line, box_lines};
 use shadowfit_wgpu::{MapFit, MapView, ShadowMapDescriptor};
 

@@ -213,7 +213,7 @@ fn drag(from: [f32; 2], to: [f32; 2], frame: u32, deeds: &mut Vec<Deed>) -> Opti
 
 #[cfg(test)]
 mod tests {
-    use shadowfit::tool::ViewMode;
+    use shadowfit_params::tool::ViewMode;
 
     use super::*;
     use crate::script::Monkey;

@@ -17,9 +17,9 @@ use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use glam::DVec3;
-use shadowfit::params;
-use shadowfit::tool::Settings;
 use shadowfit_egui::Artefact;
+use shadowfit_params as params;
+use shadowfit_params::tool::Settings;
 use shadowfit_study::NamedTechnique;
 
 use crate::cli::OPTION_PREFIX;
@@ -343,7 +343,7 @@ fn plain(action: &str) -> Option<Command> {
 
 #[cfg(test)]
 mod tests {
-    use shadowfit::tool::ViewMode;
+    use shadowfit_params::tool::ViewMode;
 
     use super::*;
 

@@ -14,8 +14,8 @@ use std::sync::mpsc::Receiver;
 
 use anyhow::Result;
 use egui::RawInput;
-use shadowfit::tool::Settings;
 use shadowfit_egui::{Changes, UserPreset};
+use shadowfit_params::tool::Settings;
 use tempfile::TempDir;
 
 use crate::artefact::Found;

@@ -2,8 +2,8 @@
 
 use glam::Vec4;
 use shadowfit::Aabb;
-use shadowfit::figures::linear_color;
 use shadowfit_egui::MAP_UPDATE_COLORS;
+use shadowfit_params::figures::linear_color;
 use shadowfit_render::{Inset, MapUpdate, Quad, UpdateContent};
 use shadowfit_wgpu::MapFit;
 

@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use glam::Vec3;
-use shadowfit::figures::linear_map_tints;
 use shadowfit::settings::MAX_MAPS;
 use shadowfit::{Aabb, LightFit};
+use shadowfit_params::figures::linear_map_tints;
 use shadowfit_render::Inset;
 use shadowfit_wgpu::MapFit;
 

@@ -1,8 +1,8 @@
 //! A technique on the stage: its maps, what draws them, and what judges the picture.
 
 use shadowfit::settings::{CasterPolicy, MapOverride};
-use shadowfit::tool::{ErrorMarks, InsetMaps, Settings, ViewMode};
 use shadowfit::{DepthConvention, FitError, LightFit, PerspectiveCamera, Technique};
+use shadowfit_params::tool::{ErrorMarks, InsetMaps, Settings, ViewMode};
 use shadowfit_render::{Culling, Gpu, Marks, Overlay, RenderTarget, Renderer, Statistics};
 use shadowfit_study::{Evaluator, FrameOptions, Judging, PreparedScene, RayUse, Seen, TechniqueFitter, View};
 use shadowfit_wgpu::need::{NeedPass, NeedView};

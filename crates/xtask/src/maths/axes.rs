@@ -4,7 +4,7 @@ use anyhow::Result;
 use shadowfit::FitInput;
 use shadowfit::glam::DVec2;
 use shadowfit::settings::FitKind;
-use shadowfit::tool::LightSettings;
+use shadowfit_params::tool::LightSettings;
 
 use super::canvas::{BLUE, Canvas, GREY, PALE, RED, Side, YELLOW, fill, stroke};
 use super::scene::{axes, camera, fit_one, plain_fit};
@@ -40,7 +40,8 @@ fn sky(canvas: &mut Canvas, middle: DVec2, kind: FitKind, colour: &'static str) 
         for i in 0..count {
             let azimuth = std::f64::consts::TAU * f64::from(i) / f64::from(count);
             let elevation = (90.0 - ring * (90.0 - LOWEST)).to_radians();
-            let light = LightSettings::default().with_azimuth(azimuth as f32).with_elevation(elevation as f32);
+            let (azimuth, elevation) = (azimuth as f32, elevation as f32);
+            let light = LightSettings { azimuth, elevation, ..LightSettings::default() };
             let settings = plain_fit().with_kind(kind);
             let [_, up, to_light] = axes(&fit_one(&FitInput::new(&view, light.direction()), &settings)?);
             // A plan: x to the right and -z up, so that z is the page's y.
