@@ -15,8 +15,8 @@ use clap::Parser;
 use glam::{DVec3, Vec3};
 use shadowfit::Seen;
 use shadowfit::settings::FitSettings;
-use shadowfit::tool::{CameraSettings, LightSettings};
 use shadowfit::{DepthConvention, need};
+use shadowfit_params::tool::{CameraSettings, LightSettings};
 use shadowfit_render::{
     AdapterChoice, Atmosphere, FlyCamera, Frame, Gpu, GpuProfilerQuery, GpuScene, GpuTimer, RenderTarget, Renderer,
 };

@@ -10,8 +10,8 @@
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
 use shadowfit::scroll::Scroll;
-use shadowfit::tool::LightSettings;
 use shadowfit::{Aabb, Boxes, FitError, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, Workspace};
+use shadowfit_params::tool::LightSettings;
 
 const SECONDS: u32 = 60;
 const FRAMES_PER_SECOND: u32 = 10;
@@ -102,7 +102,7 @@ fn camera(seconds: f64) -> PerspectiveCamera {
 
 /// The sun's direction of travel.
 fn sun(seconds: f64) -> Vec3 {
-    LightSettings::default().with_azimuth(0.6 + SUN_SPEED * seconds as f32).direction()
+    LightSettings { azimuth: 0.6 + SUN_SPEED * seconds as f32, ..LightSettings::default() }.direction()
 }
 
 /// Ground and two rows of houses, in metres.

@@ -4,8 +4,8 @@
 use shadowfit::glam::{DVec3, Mat4, Vec3, Vec4};
 use shadowfit::presets::RECOMMENDED;
 use shadowfit::settings::{BiasSettings, FitKind, FitSettings, MapFormat};
-use shadowfit::tool::{CameraSettings, LightSettings};
 use shadowfit::{Bias, DepthConvention, FittedMap, LightFit, PerspectiveCamera, Technique, fit};
+use shadowfit_params::tool::{CameraSettings, LightSettings};
 use shadowfit_render::{Atmosphere, FlyCamera, FrameUniform, Line, box_lines};
 use shadowfit_scene::builtin;
 use shadowfit_study::NamedTechnique;
@@ -189,7 +189,7 @@ fn gpu_the_viewer_starts_with_the_recommended_technique() {
 
 #[test]
 fn every_resolution_of_the_panel_is_one_that_a_map_can_have() {
-    use shadowfit::params::{Kind, parameter};
+    use shadowfit_params::{Kind, parameter};
     for id in ["map.resolution", "map.height", "override.map_8_resolution", "override.map_8_height"] {
         let range = match parameter(id).expect(id).kind {
             Kind::Number(number) => (number.min, number.max),

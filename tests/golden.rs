@@ -9,7 +9,7 @@ use image::RgbImage;
 use shadowfit::Technique;
 use shadowfit::glam::DVec3;
 use shadowfit::settings::{FilterKind, MapFormat, SoftRadius};
-use shadowfit::tool::{InsetMaps, ViewMode};
+use shadowfit_params::tool::{InsetMaps, ViewMode};
 use shadowfit_render::FlyCamera;
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_study::samples::{SAMPLES, Sample};

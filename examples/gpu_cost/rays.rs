@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
-use shadowfit::tool::{CameraSettings, LightSettings};
 use shadowfit::{ShadowFitter, Technique};
+use shadowfit_params::tool::{CameraSettings, LightSettings};
 use shadowfit_render::{FlyCamera, Renderer};
 use shadowfit_scene::{Scene, builtin, load_gltf};
 use shadowfit_study::{Evaluator, Judging, LiveTruth, PreparedScene, View};

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use glam::{DVec3, Vec3};
-use shadowfit::tool::LightSettings;
 use shadowfit::{Aabb, PerspectiveCamera};
+use shadowfit_params::tool::LightSettings;
 use shadowfit_render::{Cluster, clustered};
 use shadowfit_scene::{AlphaMode, Scene, builtin, load_gltf};
 use shadowfit_truth::Tracer;

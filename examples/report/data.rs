@@ -6,7 +6,7 @@
 use std::path::PathBuf;
 
 use serde::{Serialize, Serializer};
-use shadowfit::tool::LightSettings;
+use shadowfit_params::tool::LightSettings;
 
 /// Names of columns, such as `wrong %`, and their values; not a number where nothing could be measured.
 pub(crate) type Columns = Vec<(String, f64)>;

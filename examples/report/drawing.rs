@@ -1,8 +1,9 @@
 //! How pictures are drawn and judged: the arguments that all kinds of reports share.
 
 use anyhow::{Context, Result, bail, ensure};
+use shadowfit::Technique;
 use shadowfit::settings::{BiasSettings, FilterKind, MapFormat};
-use shadowfit::{Technique, params};
+use shadowfit_params as params;
 use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_study::{Judging, NamedTechnique};
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, bail, ensure};
 use glam::Vec3;
 use shadowfit::Aabb;
-use shadowfit::tool::LightSettings;
+use shadowfit_params::tool::LightSettings;
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_scene::{Scene, load_gltf};
 use shadowfit_study::{Comparison, Judging, View};
@@ -81,7 +81,7 @@ impl Job {
         let scene = self.load()?;
         scene.warnings(&self.scene).for_each(|warning| eprintln!("{warning}"));
         self.check_memory(&scene)?;
-        let sun = scene.sun.and_then(|sun| LightSettings::from_direction(sun.direction).ok());
+        let sun = scene.sun.and_then(|sun| LightSettings::from_direction(sun.direction));
         let animates = !scene.animations.is_empty();
         ensure!(
             self.play.is_none() || animates,

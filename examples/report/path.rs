@@ -11,7 +11,7 @@ mod route;
 mod scenes;
 
 use shadowfit::PerspectiveCamera;
-use shadowfit::tool::LightSettings;
+use shadowfit_params::tool::LightSettings;
 
 pub(crate) use find::find;
 

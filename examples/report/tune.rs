@@ -63,13 +63,13 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     let steps = steps(&tuned);
     for (name, text) in [
         ("technique.toml", tuned.technique.to_toml()?),
-        ("technique.rs", tuned.technique.technique.to_rust()),
+        ("technique.rs", shadowfit_params::to_rust(&tuned.technique.technique)),
         ("steps.md", steps.clone()),
     ] {
         let file = args.out.join(name);
         fs::write(&file, text).with_context(|| format!("{}: cannot be written", file.display()))?;
     }
-    print!("{steps}\n{}", tuned.technique.technique.to_rust());
+    print!("{steps}\n{}", shadowfit_params::to_rust(&tuned.technique.technique));
     println!("\n{}: technique.toml (for --technique), technique.rs, steps.md", args.out.display());
     Ok(())
 }

@@ -14,7 +14,7 @@ const SIZE: [u32; 2] = [64, 36];
 fn camera() -> shadowfit::PerspectiveCamera {
     let (eye, target) = default_camera();
     shadowfit_render::FlyCamera::look_at(eye.as_dvec3(), target.as_dvec3())
-        .perspective(&shadowfit::tool::CameraSettings::default(), SIZE[0] as f32 / SIZE[1] as f32)
+        .perspective(&shadowfit_params::tool::CameraSettings::default(), SIZE[0] as f32 / SIZE[1] as f32)
 }
 
 fn renderer(gpu: &Gpu) -> (Renderer, GpuScene) {

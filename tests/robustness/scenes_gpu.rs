@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use shadowfit::tool::InsetMaps;
+use shadowfit_params::tool::InsetMaps;
 use shadowfit_scene::{Scene, SceneError, load_gltf};
 use shadowfit_truth::PictureTally;
 use shadowfit_viewer::{Artefact, Stage, StageError};

@@ -2,8 +2,8 @@
 
 use shadowfit::glam::{DVec3, UVec2};
 use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MapFormat, SoftRadius, Softness};
-use shadowfit::tool::{Settings, ViewMode};
 use shadowfit::{DepthConvention, Technique};
+use shadowfit_params::tool::{Settings, ViewMode};
 use shadowfit_render::FlyInput;
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_scene::{Mesh, Scene};

@@ -1,9 +1,9 @@
 //! The overlays of pixels per texel and of texels: colours against the diagnostics of the core, on a plane and on the
 //! built-in scene.
 
-use shadowfit::figures::pixels_per_texel_color;
 use shadowfit::glam::{UVec2, Vec3};
 use shadowfit::{DepthConvention, Technique, diagnostics};
+use shadowfit_params::figures::pixels_per_texel_color;
 use shadowfit_render::{Frame, Overlay};
 use shadowfit_scene::Scene;
 

@@ -1,8 +1,8 @@
 //! Judged pictures: each surface shows the class of its own pixel, and of the pixel that showed it to another camera.
 
-use shadowfit::figures::ERROR_COLORS;
 use shadowfit::glam::{DVec2, DVec3, UVec2};
 use shadowfit::{DepthConvention, PerspectiveCamera, Technique};
+use shadowfit_params::figures::ERROR_COLORS;
 use shadowfit_render::{Frame, JudgedPicture, Marks, Overlay, ProbeTargets, classes_texture};
 
 use super::pictures::{Pictures, SIZE, Seen, bits, linear, random};

@@ -1,10 +1,10 @@
 //! The overlay that tints surfaces by the map that they read: each pixel of a plane has the colour of the map that a
 //! computation here finds for it.
 
-use shadowfit::figures::MAP_TINTS;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::settings::{MapChoice, SplitScheme};
 use shadowfit::{Bias, FitInput, FittedMap, MapFitter, PerspectiveCamera, Technique, Workspace};
+use shadowfit_params::figures::MAP_TINTS;
 use shadowfit_render::{Atmosphere, Frame, GpuScene, Overlay, Renderer};
 use shadowfit_scene::Scene;
 use shadowfit_wgpu::ShadowMapDescriptor;

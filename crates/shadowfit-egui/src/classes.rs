@@ -1,7 +1,7 @@
 //! The classes of judged pixels: their names, their colours, and their shares.
 
 use egui::Color32;
-use shadowfit::figures::{ERROR_COLORS, JudgedFigures};
+use shadowfit_params::figures::{ERROR_COLORS, JudgedFigures};
 
 use crate::widgets::color;
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use egui::ThemePreference;
-use shadowfit::tool::ViewMode;
+use shadowfit_params::tool::ViewMode;
 
 use crate::Artefact;
 

@@ -1,7 +1,7 @@
 //! The live figures of maps and passes.
 
 use egui::{Grid, Ui};
-use shadowfit::figures::Figures;
+use shadowfit_params::figures::Figures;
 
 use crate::maps;
 use crate::quality::known;

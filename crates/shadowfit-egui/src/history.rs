@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::fmt::Write as _;
 
-use shadowfit::figures::Figures;
+use shadowfit_params::figures::Figures;
 
 /// Most samples that are kept, and drawn.
 pub(crate) const CAPACITY: usize = 600;
@@ -132,7 +132,7 @@ impl History {
 
 #[cfg(test)]
 mod tests {
-    use shadowfit::figures::JudgedFigures;
+    use shadowfit_params::figures::JudgedFigures;
 
     use super::*;
 

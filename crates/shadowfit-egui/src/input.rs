@@ -1,8 +1,8 @@
 //! What a host gives the panel in each frame, and what the panel gives back.
 
 use shadowfit::Technique;
-use shadowfit::figures::{Figures, JudgedFigures};
-use shadowfit::tool::Settings;
+use shadowfit_params::figures::{Figures, JudgedFigures};
+use shadowfit_params::tool::Settings;
 
 use crate::{Artefact, Command};
 

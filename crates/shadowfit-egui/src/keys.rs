@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use egui::Key;
-use shadowfit::tool::ViewMode;
+use shadowfit_params::tool::ViewMode;
 
 use crate::{Artefact, Command, Toggle};
 

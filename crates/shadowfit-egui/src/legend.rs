@@ -4,8 +4,8 @@ use egui::{
     Align2, Area, Context, CornerRadius, Frame, Id, Mesh, Order, Pos2, Rect, Role, Sense, Shape, TextStyle, Ui, Vec2,
     WidgetInfo,
 };
-use shadowfit::figures::{Figures, MAP_TINTS, PIXELS_PER_TEXEL_COLORS, pixels_per_texel_color};
-use shadowfit::tool::{ErrorMarks, ViewMode, ViewSettings};
+use shadowfit_params::figures::{Figures, MAP_TINTS, PIXELS_PER_TEXEL_COLORS, pixels_per_texel_color};
+use shadowfit_params::tool::{ErrorMarks, ViewMode, ViewSettings};
 
 use crate::classes::shares;
 use crate::units::percent;

@@ -1,12 +1,12 @@
 //! The shadow tuning panel, embeddable in any [egui] application.
 //!
-//! It edits a [`Settings`], shows a [`Figures`](shadowfit::figures::Figures) live, and asks its host for what only the
+//! It edits a [`Settings`], shows a [`Figures`](shadowfit_params::figures::Figures) live, and asks its host for what only the
 //! host can do (moving the camera, judging the picture, taking a picture) by returning a [`Command`]. Its controls come
-//! from [`shadowfit::params`], so that a new parameter gets a control without further code.
+//! from [`shadowfit_params`], so that a new parameter gets a control without further code.
 //!
 //! ```
-//! use shadowfit::figures::Figures;
-//! use shadowfit::tool::Settings;
+//! use shadowfit_params::figures::Figures;
+//! use shadowfit_params::tool::Settings;
 //! use shadowfit_egui::{Command, PANEL_WIDTH, Panel, PanelInput, SceneLine};
 //!
 //! # fn show(_: shadowfit_egui::Artefact) {}
@@ -69,8 +69,8 @@ use std::collections::BTreeSet;
 
 use egui::{ScrollArea, Ui};
 use shadowfit::Technique;
-use shadowfit::params::{Parameter, parameter};
-use shadowfit::tool::Settings;
+use shadowfit_params::tool::Settings;
+use shadowfit_params::{Parameter, parameter};
 
 use parameters::{Rows, TOOL_GROUPS, technique_groups};
 use widgets::{Section, caption};
@@ -170,7 +170,7 @@ impl Panel {
                 let hidden = &self.hidden;
                 let has = |parameter: &Parameter| !hidden.contains(parameter.id);
                 let rows = Rows { defaults: &self.defaults, has: &has };
-                rows.groups(ui, [shadowfit::params::Group::Camera], input.settings);
+                rows.groups(ui, [shadowfit_params::Group::Camera], input.settings);
                 return;
             }
             ui.add_space(8.0);

@@ -2,9 +2,9 @@
 //! that choose one.
 
 use egui::{Button, Color32, Grid, Response, RichText, Role, Stroke, Ui, WidgetInfo};
-use shadowfit::figures::{Figures, MAP_TINTS, MapFigures};
 use shadowfit::light_fit::Constraint;
 use shadowfit::settings::MAX_MAPS;
+use shadowfit_params::figures::{Figures, MAP_TINTS, MapFigures};
 
 use crate::accessibility::rename;
 use crate::quality::known;

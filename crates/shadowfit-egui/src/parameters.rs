@@ -1,8 +1,8 @@
 //! The controls of the settings: those that are used most, a search, and the groups.
 
 use egui::{Margin, TextEdit, Ui, Vec2};
-use shadowfit::params::{Group, Parameter, parameter};
-use shadowfit::tool::Settings;
+use shadowfit_params::tool::Settings;
+use shadowfit_params::{Group, Parameter, parameter};
 
 use crate::accessibility::rename;
 use crate::icon::paint_icon;
@@ -98,7 +98,7 @@ fn matches(parameter: &Parameter, words: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use shadowfit::params::PARAMETERS;
+    use shadowfit_params::PARAMETERS;
 
     use super::*;
 

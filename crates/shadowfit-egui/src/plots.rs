@@ -2,7 +2,7 @@
 
 use egui::{Color32, ComboBox, Ui, Vec2};
 use egui_plot::{GridMark, HLine, HoverPosition, Line, Plot, PlotPoints};
-use shadowfit::figures::{ERROR_COLORS, MAP_TINTS};
+use shadowfit_params::figures::{ERROR_COLORS, MAP_TINTS};
 
 use crate::Command;
 use crate::accessibility::rename;

@@ -5,7 +5,7 @@ use egui::{
     Align, Color32, CornerRadius, Grid, Layout, Rect, Response, RichText, Role, Sense, StrokeKind, TextFormat,
     TextStyle, Ui, Vec2, WidgetInfo,
 };
-use shadowfit::figures::{Figures, JudgedFigures};
+use shadowfit_params::figures::{Figures, JudgedFigures};
 
 use crate::classes::shares;
 use crate::theme::{Palette, figure_font};

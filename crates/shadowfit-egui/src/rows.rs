@@ -5,8 +5,8 @@ mod label;
 mod side;
 
 use egui::{Checkbox, ComboBox, Response, Slider, SliderClamping, Ui};
-use shadowfit::params::{Choice, Group, Kind, Number, Optional, Parameter, Toggle};
-use shadowfit::tool::Settings;
+use shadowfit_params::tool::Settings;
+use shadowfit_params::{Choice, Group, Kind, Number, Optional, Parameter, Toggle};
 
 use crate::accessibility::rename;
 use crate::maps;

@@ -1,7 +1,7 @@
 //! The card of the search for settings with a lower error.
 
 use egui::{Label, ProgressBar, RichText, Ui};
-use shadowfit::figures::JudgedFigures;
+use shadowfit_params::figures::JudgedFigures;
 
 use crate::theme::{Palette, has_arrows};
 use crate::units::percent;

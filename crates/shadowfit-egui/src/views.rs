@@ -1,8 +1,8 @@
 //! The bar of views, for over the picture.
 
 use egui::{Button, Response, RichText, Ui};
-use shadowfit::params::{Choice, ChoiceOption, Kind, parameter};
-use shadowfit::tool::{ViewMode, ViewSettings};
+use shadowfit_params::tool::{ViewMode, ViewSettings};
+use shadowfit_params::{Choice, ChoiceOption, Kind, parameter};
 
 use crate::accessibility::rename;
 use crate::theme::Palette;

@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Vec2, Vec3};
 use shadowfit::PerspectiveCamera;
-use shadowfit::tool::{CameraSettings, FLYING_SPEEDS};
+use shadowfit_params::tool::{CameraSettings, FLYING_SPEEDS};
 
 /// Steepest look up or down, in radians: just short of the vertical, where "up" would flip.
 pub const MAX_PITCH: f32 = 1.55;

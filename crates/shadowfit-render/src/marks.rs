@@ -8,7 +8,7 @@ use crate::uniform::MarksUniform;
 use crate::{Gpu, bindings, shaders};
 
 /// How wrong pixels of a [`JudgedPicture`](crate::JudgedPicture) are marked, in the
-/// [colours of their classes](shadowfit::figures::ERROR_COLORS).
+/// [colours of their classes](shadowfit_params::figures::ERROR_COLORS).
 ///
 /// Where the frame has the judged camera, its pixels are those of the judged picture. Where it has another, each pixel is
 /// looked up by its depth, so that marks stick to the surfaces; in a [part](crate::Frame::scissor) of a picture, what lies

@@ -6,12 +6,12 @@ pub enum Overlay {
     /// Their shading alone.
     #[default]
     None,
-    /// The map that each point reads, in the colours [`MAP_TINTS`](shadowfit::figures::MAP_TINTS); where it reads two,
+    /// The map that each point reads, in the colours [`MAP_TINTS`](shadowfit_params::figures::MAP_TINTS); where it reads two,
     /// both mixed by their weights. What no map covers keeps its own colour.
     MapTint,
     /// Screen pixels per texel along the worse axis
     /// ([`pixels_per_texel`](shadowfit::diagnostics::pixels_per_texel)) of the map that weighs more in a point's shadow, as
-    /// [`pixels_per_texel_color`](shadowfit::figures::pixels_per_texel_color), darker where there is less light. What no
+    /// [`pixels_per_texel_color`](shadowfit_params::figures::pixels_per_texel_color), darker where there is less light. What no
     /// map covers is hatched in grey.
     PixelsPerTexel,
     /// The texels of the map that weighs more in a point's shadow, as a checkerboard with lines in the map's tint; where
@@ -22,7 +22,7 @@ pub enum Overlay {
     /// light, has the maps' shadows and is hatched.
     Truth,
     /// The picture in dim grey, and wrong pixels of [`Frame::judged`](crate::Frame::judged) in the
-    /// [colours of their classes](shadowfit::figures::ERROR_COLORS).
+    /// [colours of their classes](shadowfit_params::figures::ERROR_COLORS).
     Error,
     /// Which casters the maps hold: an instance has the tint of the first map that holds it, or is dark and hatched if it
     /// is in none. Blended surfaces, which cast nothing, are grey.

@@ -2,7 +2,7 @@
 
 use core::fmt::Write as _;
 
-use shadowfit::figures::{ERROR_COLORS, PIXELS_PER_TEXEL_COLORS, linear_color};
+use shadowfit_params::figures::{ERROR_COLORS, PIXELS_PER_TEXEL_COLORS, linear_color};
 use shadowfit_wgpu::{ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgsl, stored_wgsl};
 
 use crate::Overlay;

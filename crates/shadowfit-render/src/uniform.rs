@@ -3,8 +3,8 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
-use shadowfit::figures::linear_map_tints;
 use shadowfit::{DepthConvention, PerspectiveCamera};
+use shadowfit_params::figures::linear_map_tints;
 use shadowfit_scene::{Material, Texture};
 use shadowfit_wgpu::MAX_MAPS;
 
@@ -65,7 +65,7 @@ pub struct FrameUniform {
     pub viewport: [f32; 2],
     /// Keeps the struct a multiple of 16 bytes.
     pub padding: [f32; 2],
-    /// Linear [`MAP_TINTS`](shadowfit::figures::MAP_TINTS), for overlays; alpha is 1.
+    /// Linear [`MAP_TINTS`](shadowfit_params::figures::MAP_TINTS), for overlays; alpha is 1.
     pub map_tints: [[f32; 4]; MAX_MAPS],
 }
 

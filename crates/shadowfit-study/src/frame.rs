@@ -1,7 +1,7 @@
 //! The only place where a frame of the samples' renderer is put together and its haze is chosen.
 
-use shadowfit::tool::CameraSettings;
 use shadowfit::{FittedMap, PerspectiveCamera};
+use shadowfit_params::tool::CameraSettings;
 use shadowfit_render::{Atmosphere, Culling, Frame, Inset, JudgedPicture, Line, Marks, Overlay, Quad};
 
 use crate::View;

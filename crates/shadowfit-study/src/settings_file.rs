@@ -6,8 +6,8 @@
 use std::fmt::Write as _;
 
 use anyhow::{Context, Result, anyhow};
-use shadowfit::params::{self, Group, PARAMETERS};
-use shadowfit::tool::Settings;
+use shadowfit_params::tool::Settings;
+use shadowfit_params::{self as params, Group, PARAMETERS};
 
 use crate::technique_file::{key, refuse_the_rest, text_of, value_of};
 
@@ -55,7 +55,7 @@ pub fn settings_from_toml(table: &toml::Table, settings: &mut Settings) -> Resul
 #[cfg(test)]
 mod tests {
     use shadowfit::settings::{FitKind, SplitScheme};
-    use shadowfit::tool::{ErrorMarks, ViewMode};
+    use shadowfit_params::tool::{ErrorMarks, ViewMode};
 
     use super::*;
 

@@ -8,10 +8,10 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use shadowfit::params::{self, Group, Parameter, technique_parameters};
 use shadowfit::presets::RECOMMENDED;
-use shadowfit::tool::Settings;
 use shadowfit::{PRESETS, Technique};
+use shadowfit_params::tool::Settings;
+use shadowfit_params::{self as params, Group, Parameter, technique_parameters};
 use toml::Value;
 
 /// A technique with its name.

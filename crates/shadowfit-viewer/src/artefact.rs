@@ -10,9 +10,9 @@ use core::f32::consts::{PI, TAU};
 
 use glam::{DVec3, UVec2, Vec3};
 use shadowfit::settings::{BiasSettings, CasterPolicy, FilterKind, FitKind};
-use shadowfit::tool::{Settings, ViewMode};
 use shadowfit::{Aabb, PerspectiveCamera, Technique};
 use shadowfit_egui::Artefact;
+use shadowfit_params::tool::{Settings, ViewMode};
 use shadowfit_render::FlyCamera;
 use shadowfit_study::PosedScene;
 

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use shadowfit::params::{self, PARAMETERS};
-use shadowfit::tool::Settings;
+use shadowfit_params::tool::Settings;
+use shadowfit_params::{self as params, PARAMETERS};
 use shadowfit_study::samples::{Sample, SampleValues, SampleVariant};
 
 use crate::source::SceneSource;

@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, anyhow};
 use egui::{Pos2, RawInput, Rect, vec2};
-use shadowfit::tool::{ErrorMarks, InsetMaps, ViewMode};
 use shadowfit_egui::Artefact;
+use shadowfit_params::tool::{ErrorMarks, InsetMaps, ViewMode};
 use shadowfit_render::Gpu;
 
 use crate::cli::Arguments;

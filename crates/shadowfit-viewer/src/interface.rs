@@ -8,10 +8,10 @@ mod timeline;
 
 use egui::{CentralPanel, Frame, Ui};
 use glam::Vec2;
-use shadowfit::figures::Figures;
 use shadowfit_egui::{
     Changes, Command, Compare, PANEL_WIDTH, Panel, PanelInput, SampleFigure, SceneLine, ShownArtefact, Tune, UserPreset,
 };
+use shadowfit_params::figures::Figures;
 
 use crate::saved::Saved;
 use crate::stage::Stage;

@@ -1,8 +1,8 @@
 //! What to look for in the picture of an artefact, in a sentence about the scene at hand.
 
 use shadowfit::PerspectiveCamera;
-use shadowfit::tool::Settings;
 use shadowfit_egui::Artefact;
+use shadowfit_params::tool::Settings;
 
 use crate::view_search::{GRID, ViewSearch};
 

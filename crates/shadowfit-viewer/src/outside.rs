@@ -3,9 +3,9 @@
 
 use glam::{DVec3, Vec3, Vec4};
 use shadowfit::culling::{Reader, caster_volumes};
-use shadowfit::figures::linear_map_tints;
 use shadowfit::settings::MAX_MAPS;
 use shadowfit::{CasterVolume, FittedMap, LightFit, PerspectiveCamera};
+use shadowfit_params::figures::linear_map_tints;
 use shadowfit_render::{Line, box_lines};
 use shadowfit_wgpu::ShadowMapDescriptor;
 

@@ -168,7 +168,7 @@ fn drag(from: [f32; 2], to: [f32; 2], frame: u32, effects: &mut Vec<Effect>) -> 
 
 #[cfg(test)]
 mod tests {
-    use shadowfit::tool::ViewMode;
+    use shadowfit_params::tool::ViewMode;
 
     use super::*;
     use crate::script::Monkey;

@@ -13,7 +13,7 @@ use etcetera::BaseStrategy;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use shadowfit::Technique;
-use shadowfit::tool::Settings;
+use shadowfit_params::tool::Settings;
 use shadowfit_render::FlyCamera;
 use shadowfit_study::{NamedTechnique, settings_from_toml, settings_to_toml};
 
@@ -235,7 +235,7 @@ impl Saved {
 fn technique_to_toml(technique: &Technique, prefix: &str) -> String {
     let all = settings_to_toml(&Settings::default().with_technique(*technique), prefix);
     let is_technique = |table: &&str| {
-        let groups = shadowfit::params::Group::ALL;
+        let groups = shadowfit_params::Group::ALL;
         groups.iter().any(|group| group.is_technique() && table.starts_with(&format!("[{prefix}{}]", group.id())))
     };
     all.split_inclusive("\n\n").filter(is_technique).collect()

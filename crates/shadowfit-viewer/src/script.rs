@@ -17,9 +17,9 @@ use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use egui::ThemePreference;
-use shadowfit::params;
-use shadowfit::tool::Settings;
 use shadowfit_egui::{Artefact, Chord, Command, Toggle};
+use shadowfit_params as params;
+use shadowfit_params::tool::Settings;
 use shadowfit_study::NamedTechnique;
 
 use crate::source::OPTION_PREFIX;
@@ -364,7 +364,7 @@ fn hold(words: Words<'_>) -> Result<Step> {
 
 #[cfg(test)]
 mod tests {
-    use shadowfit::tool::ViewMode;
+    use shadowfit_params::tool::ViewMode;
 
     use super::*;
 

@@ -22,8 +22,8 @@ mod memory_tests;
 
 use core::fmt;
 
-use shadowfit::tool::Settings;
 use shadowfit::{Aabb, FittedMap, PerspectiveCamera};
+use shadowfit_params::tool::Settings;
 use shadowfit_render::{FlyCamera, FlyInput, Gpu, RenderTarget};
 use shadowfit_scene::Scene;
 use shadowfit_study::{NothingToDraw, PreparedScene, View};

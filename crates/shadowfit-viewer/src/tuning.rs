@@ -6,9 +6,9 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use anyhow::{Context, Result, anyhow};
 use shadowfit::Technique;
-use shadowfit::figures::JudgedFigures;
-use shadowfit::tool::Settings;
 use shadowfit_egui::Tune;
+use shadowfit_params::figures::JudgedFigures;
+use shadowfit_params::tool::Settings;
 use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_scene::Scene;
 use shadowfit_study::{Comparison, Judging, Progress, TuneScope, TuneSettings, Tuned, View, tune};

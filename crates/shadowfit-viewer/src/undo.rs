@@ -2,8 +2,8 @@
 
 use egui::util::undoer::Undoer;
 use shadowfit::Technique;
-use shadowfit::params::PARAMETERS;
-use shadowfit::tool::Settings;
+use shadowfit_params::PARAMETERS;
+use shadowfit_params::tool::Settings;
 use shadowfit_study::samples::SampleValues;
 
 use crate::stage::ArtefactShow;

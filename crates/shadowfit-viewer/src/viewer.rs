@@ -14,8 +14,8 @@ use std::sync::mpsc::Receiver;
 
 use anyhow::Result;
 use egui::{Event, RawInput};
-use shadowfit::tool::Settings;
 use shadowfit_egui::{Changes, Chord, Command, UserPreset};
+use shadowfit_params::tool::Settings;
 use tempfile::TempDir;
 
 use crate::artefact::Found;

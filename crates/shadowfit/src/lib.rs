@@ -109,8 +109,7 @@
 //! | biases in metres and depth for a filter of your own | [`Bias`], [`bias`] |
 //! | pixels per texel, depth steps, margin against acne | [`diagnostics`] |
 //! | f32 matrices for world positions, a fit from a matrix of other code | [`LightFit::world_matrices`], [`light_fit`] |
-//! | all parameters with unit, range and help, for panels and files | [`params`], [`tool`], [`figures`] |
-//! | a technique as Rust code | [`Technique::write_rust`] |
+//! | all parameters with unit, range and help, for panels and files; a technique as Rust code | the crate `shadowfit-params` |
 //!
 //! # Conventions
 //!
@@ -121,7 +120,7 @@
 //! - A light is its **direction of travel**, of a [`SpotLight`] along its axis. Where a source speaks
 //!   of the direction toward the light, `to_light = -direction`.
 //! - Nothing panics; every bad input is a [`FitError`] with its value. Nothing allocates, except
-//!   `Clusters` and `Technique::to_rust`, which need the feature `alloc`.
+//!   `Clusters`, which need the feature `alloc`.
 //! - Transcendental functions come from `libm`, everything else is `+ - × ÷ √` on scalars, so the
 //!   same input gives the same bits on every target.
 //!
@@ -130,7 +129,7 @@
 //! | feature | adds |
 //! |---|---|
 //! | `std` (default) | `alloc`, and glam with the standard library |
-//! | `alloc` | `Clusters` and `Technique::to_rust`, for which an allocator is enough |
+//! | `alloc` | `Clusters`, for which an allocator is enough |
 //! | `serde` | `Serialize` and `Deserialize` for all settings, inputs and outputs that own their data, and for the state between frames; `Clusters` have theirs in [`Aabb`] and [`NormalCone`](normal_cone::NormalCone) |
 //! | `bytemuck` | `Pod` and `Zeroable` for [`Aabb`], [`Sphere`](culling::Sphere), [`OrientedBox`](culling::OrientedBox), [`NormalCone`](normal_cone::NormalCone), [`Bias`], [`SpotBias`] and [`CasterPlanes`](culling::CasterPlanes) |
 //! | `mint` | the module `mint`: conversions from and to the types of other maths crates |
@@ -148,7 +147,6 @@ pub mod choice;
 pub mod clusters;
 pub mod culling;
 pub mod diagnostics;
-pub mod figures;
 pub mod fits;
 pub mod histogram;
 pub mod light_fit;
@@ -158,7 +156,6 @@ pub mod map_fitter;
 pub mod mint;
 pub mod need;
 pub mod normal_cone;
-pub mod params;
 pub mod presets;
 pub mod scroll;
 #[cfg(feature = "alloc")]
@@ -166,7 +163,6 @@ pub mod seen;
 pub mod settings;
 pub mod softness;
 pub mod spot;
-pub mod tool;
 pub mod verify;
 
 mod axes;

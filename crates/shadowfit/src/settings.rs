@@ -1,7 +1,7 @@
 //! The parts that a [`Technique`](crate::Technique) is made of.
 //!
-//! Every field is public, has a default, and a row in [`crate::params`], from which panels, command
-//! lines and saved files are made. Lengths are metres, sizes of maps and biases are texels, view
+//! Every field is public, has a default, and a row in the table of the crate `shadowfit-params`, from which
+//! panels, command lines and saved files are made. Lengths are metres, sizes of maps and biases are texels, view
 //! depths are counted from the eye along the camera's forward direction.
 //!
 //! Defaults are those of the [recommended technique](crate::presets::RECOMMENDED). Where other

@@ -10,8 +10,6 @@ use crate::settings::{
 };
 use glam::UVec2;
 
-mod rust_code;
-
 /// How shadows are made: the maps and their fit, the filter and the bias that read them, their
 /// format.
 ///

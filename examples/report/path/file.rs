@@ -12,7 +12,7 @@ use glam::{DVec3, Vec3};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use shadowfit::PerspectiveCamera;
-use shadowfit::tool::LightSettings;
+use shadowfit_params::tool::LightSettings;
 
 use super::{CameraPath, PathFrame};
 
@@ -291,7 +291,7 @@ fn sun(light: FileLight) -> Result<LightSettings> {
         elevation_deg > 0.0 && elevation_deg <= 90.0,
         "light.elevation_deg: {elevation_deg} is not above 0 and up to 90, so the sun is not in the sky"
     );
-    Ok(LightSettings::default().with_azimuth(radians(azimuth_deg)).with_elevation(radians(elevation_deg)))
+    Ok(LightSettings { azimuth: radians(azimuth_deg), elevation: radians(elevation_deg), ..LightSettings::default() })
 }
 
 fn radians(degrees: f64) -> f32 {

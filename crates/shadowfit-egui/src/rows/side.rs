@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use egui::{ComboBox, Ui};
-use shadowfit::params::Parameter;
+use shadowfit_params::Parameter;
 
 use crate::accessibility::rename;
 

@@ -7,12 +7,12 @@ use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 use shadowfit::glam::UVec2;
-use shadowfit::params::{Group, Kind, PARAMETERS, parameter};
 use shadowfit::settings::{
     CasterPolicy, FilterKind, FitKind, MAX_MAPS, MapChoice, MapFormat, MapOverride, SoftRadius, SplitScheme,
 };
-use shadowfit::tool::{InsetMaps, Settings};
 use shadowfit_egui::Panel;
+use shadowfit_params::tool::{InsetMaps, Settings};
+use shadowfit_params::{Group, Kind, PARAMETERS, parameter};
 
 use crate::host::{
     Host, INSET_MAP, control, harness, harness_with, inset_button, number, open_harness, query_control, type_into,

@@ -1,8 +1,8 @@
 //! The figures of the picture, of the maps and of the passes.
 
 use egui_kittest::kittest::{NodeT, Queryable};
-use shadowfit::figures::MapFigures;
 use shadowfit::settings::MAX_MAPS;
+use shadowfit_params::figures::MapFigures;
 
 use crate::host::{Host, harness, harness_with, wait_for_the_tooltip};
 use crate::states::{busy, judged, judged_better, session, wide_map};
@@ -69,7 +69,7 @@ fn the_quality_of_a_picture_is_its_wrong_pixels_by_class_and_three_more_figures(
 #[test]
 fn a_fresh_judgement_has_no_age_and_what_was_not_measured_is_a_dash() {
     let mut host = session();
-    host.figures.judged = Some(shadowfit::figures::JudgedFigures { age: 0.02, crawl: None, ..judged() });
+    host.figures.judged = Some(shadowfit_params::figures::JudgedFigures { age: 0.02, crawl: None, ..judged() });
     let harness = harness(host);
     assert!(harness.query_by_label_contains("ago").is_none());
     assert_eq!(harness.query_all_by_label("—").count(), 1);

@@ -5,13 +5,13 @@ use egui::{Key, Rect, Theme, ThemePreference, Vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, HarnessBuilder, Node};
 use shadowfit::Technique;
-use shadowfit::figures::Figures;
-use shadowfit::params::{Kind, Parameter, parameter};
-use shadowfit::tool::Settings;
 use shadowfit_egui::{
     Artefact, Changes, Command, Compare, PANEL_WIDTH, Panel, PanelInput, SampleCard, SceneLine, ShownArtefact, Tune,
     UserPreset, apply_theme, help_overlay,
 };
+use shadowfit_params::figures::Figures;
+use shadowfit_params::tool::Settings;
+use shadowfit_params::{Kind, Parameter, parameter};
 
 /// Higher than all that the panel holds, so that nothing is scrolled out of view.
 pub(crate) const HEIGHT: f32 = 4600.0;

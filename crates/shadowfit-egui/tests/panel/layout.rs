@@ -5,10 +5,10 @@ use egui::epaint::{ClippedShape, Shape};
 use egui::{Rect, Theme, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use shadowfit::params::{Kind, PARAMETERS};
 use shadowfit::settings::SplitScheme;
-use shadowfit::tool::Settings;
 use shadowfit_egui::{Artefact, PANEL_WIDTH, Tune};
+use shadowfit_params::tool::Settings;
+use shadowfit_params::{Kind, PARAMETERS};
 
 use crate::controls::{all_rows, everything};
 use crate::host::{HEIGHT, Host, builder, find, harness_of, open_harness, open_sections, query_control};

@@ -4,12 +4,12 @@ use egui::accesskit::Role;
 use egui::{Pos2, Rect, Theme, Vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, HarnessBuilder};
-use shadowfit::figures::Figures;
-use shadowfit::tool::{ErrorMarks, ViewMode, ViewSettings};
 use shadowfit_egui::{
     Artefact, Command, KEYS, PixelClass, WhyCard, has_legend, help_overlay, keys_of, legend_overlay, view_bar,
     why_card, why_overlay,
 };
+use shadowfit_params::figures::Figures;
+use shadowfit_params::tool::{ErrorMarks, ViewMode, ViewSettings};
 
 use crate::host::builder;
 use crate::layout::assert_no_text_is_clipped;

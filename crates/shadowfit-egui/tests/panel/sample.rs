@@ -55,7 +55,7 @@ pub(crate) fn session() -> Host {
 fn a_sample_shows_its_own_options_and_none_of_a_technique() {
     let shows_techniques = |host: Host| {
         let harness = harness(host);
-        let kind = shadowfit::params::parameter("fit.kind").expect("a parameter");
+        let kind = shadowfit_params::parameter("fit.kind").expect("a parameter");
         query_control(&harness, kind).is_some() || harness.query_by_label("Show acne").is_some()
     };
     assert!(shows_techniques(Host::default()));

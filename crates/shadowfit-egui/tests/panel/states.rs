@@ -4,10 +4,10 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use shadowfit::Technique;
-use shadowfit::figures::{Figures, JudgedFigures, MapFigures};
 use shadowfit::light_fit::Constraint;
 use shadowfit::settings::MAX_MAPS;
 use shadowfit_egui::{Artefact, Changes, Tune, UserPreset};
+use shadowfit_params::figures::{Figures, JudgedFigures, MapFigures};
 
 use crate::host::{Host, Shown};
 

@@ -5,9 +5,9 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use shadowfit::settings::FitKind;
-use shadowfit::tool::Settings;
 use shadowfit::{PRESETS, Technique};
 use shadowfit_egui::{Command, UserPreset};
+use shadowfit_params::tool::Settings;
 
 use crate::host::{Host, harness, press, type_into, wait_for_the_tooltip};
 use crate::states::session;

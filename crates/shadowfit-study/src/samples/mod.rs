@@ -20,8 +20,8 @@ mod traced;
 mod xna;
 
 use glam::{DVec3, Vec3};
-use shadowfit::tool::CameraSettings;
 use shadowfit::{FitError, PerspectiveCamera, Technique};
+use shadowfit_params::tool::CameraSettings;
 use shadowfit_render::FlyCamera;
 use shadowfit_render::samples::{OcclusionLight, OcclusionSettings, OcclusionView, SampleFrame};
 use shadowfit_scene::Scene;

@@ -5,9 +5,9 @@ use egui::{
     Align2, Color32, CornerRadius, CursorIcon, FontId, Pos2, Rect, Response, Sense, Stroke, StrokeKind, TextStyle, Ui,
     UiBuilder, Vec2,
 };
-use shadowfit::figures::Figures;
-use shadowfit::tool::ViewMode;
 use shadowfit_egui::Command;
+use shadowfit_params::figures::Figures;
+use shadowfit_params::tool::ViewMode;
 use shadowfit_render::RenderTarget;
 
 use super::paint::Painter;

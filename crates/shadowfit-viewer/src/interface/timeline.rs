@@ -1,8 +1,8 @@
 //! The bar below the picture: the animation, the time of day, and where the camera is.
 
 use egui::{Button, DragValue, RichText, Slider, Ui};
-use shadowfit::tool::DAY;
 use shadowfit_egui::{Command, Icon, icon_button, rename, with_keys};
+use shadowfit_params::tool::DAY;
 
 use super::InterfaceOutput;
 use crate::stage::Stage;
@@ -83,7 +83,7 @@ fn day(ui: &mut Ui, stage: &mut Stage, output: &mut InterfaceOutput) {
 
 /// How fast the camera flies.
 fn speed(ui: &mut Ui, stage: &mut Stage) {
-    let (least, most) = shadowfit::tool::FLYING_SPEEDS;
+    let (least, most) = shadowfit_params::tool::FLYING_SPEEDS;
     let speed = DragValue::new(&mut stage.settings.camera.speed).range(least..=most).speed(0.05).suffix(" m/s");
     let response = ui.add(speed.max_decimals(1)).on_hover_text("Flying speed (wheel over the picture)");
     rename(ui, &response, "Flying speed".to_owned());

@@ -1,9 +1,9 @@
 //! All maps side by side over the whole picture, with what was kept in them, what was drawn anew, and what moves.
 
 use glam::Vec4;
-use shadowfit::figures::linear_color;
 use shadowfit::{Aabb, FittedMap};
 use shadowfit_egui::MAP_UPDATE_COLORS;
+use shadowfit_params::figures::linear_color;
 use shadowfit_render::{Inset, MapUpdate, Quad, UpdateContent};
 
 use super::inset::{depths, tint};

@@ -2,8 +2,8 @@
 //! common with the first.
 
 use shadowfit::Technique;
-use shadowfit::figures::JudgedFigures;
-use shadowfit::tool::Settings;
+use shadowfit_params::figures::JudgedFigures;
+use shadowfit_params::tool::Settings;
 use shadowfit_render::{Gpu, RenderTarget};
 use shadowfit_study::PreparedScene;
 

@@ -1,8 +1,8 @@
 //! The live figures of the stage's frames.
 
 use glam::{DVec3, Vec3};
-use shadowfit::figures::{Figures, JudgedFigures, MapFigures};
 use shadowfit::{DepthConvention, LightFit, PerspectiveCamera, diagnostics};
+use shadowfit_params::figures::{Figures, JudgedFigures, MapFigures};
 
 use super::Stage;
 use crate::fitted::Fitted;

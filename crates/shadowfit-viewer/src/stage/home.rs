@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Mat4, Vec3};
 use shadowfit::Aabb;
-use shadowfit::tool::{LightSettings, Settings};
+use shadowfit_params::tool::{LightSettings, Settings};
 use shadowfit_render::FlyCamera;
 use shadowfit_scene::Lens;
 use shadowfit_study::PreparedScene;
@@ -11,7 +11,7 @@ use shadowfit_study::PreparedScene;
 pub(super) fn home(prepared: &PreparedScene) -> (Settings, FlyCamera) {
     let (scene, bounds) = (prepared.scene(), prepared.bounds());
     let mut settings = Settings::default();
-    if let Some(light) = scene.sun.and_then(|sun| LightSettings::from_direction(sun.direction).ok()) {
+    if let Some(light) = scene.sun.and_then(|sun| LightSettings::from_direction(sun.direction)) {
         settings.light = LightSettings { azimuth: light.azimuth, elevation: light.elevation, ..settings.light };
     }
     let radius = ((bounds.max - bounds.min).length() * 0.5).max(1e-3);

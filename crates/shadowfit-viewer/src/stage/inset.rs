@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use glam::Vec3;
-use shadowfit::figures::linear_map_tints;
 use shadowfit::settings::MAX_MAPS;
 use shadowfit::{Aabb, FittedMap, LightFit};
+use shadowfit_params::figures::linear_map_tints;
 use shadowfit_render::Inset;
 
 /// Width of a picture, in pixels, from which on insets have their full size; smaller pictures have smaller ones.

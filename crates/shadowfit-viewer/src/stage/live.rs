@@ -2,9 +2,9 @@
 //! often as a thread is done with the one before.
 
 use anyhow::{Result, anyhow};
-use shadowfit::figures::JudgedFigures;
-use shadowfit::tool::ErrorMarks;
 use shadowfit::{FittedMap, PerspectiveCamera, Technique};
+use shadowfit_params::figures::JudgedFigures;
+use shadowfit_params::tool::ErrorMarks;
 use shadowfit_render::{Gpu, JudgedPicture, ProbeTargets, classes_texture};
 use shadowfit_study::{BackgroundJudge, Evaluator, LiveTruth, View};
 use shadowfit_truth::PictureFigures;

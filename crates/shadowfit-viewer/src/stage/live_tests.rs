@@ -1,6 +1,6 @@
 //! When pictures are judged, and of which one the figures are: by the GPU in each frame, and by threads now and then.
 
-use shadowfit::tool::ViewMode;
+use shadowfit_params::tool::ViewMode;
 use shadowfit_render::{AdapterChoice, FlyInput, Gpu, RenderTarget, UpdateContent};
 use shadowfit_scene::builtin::default_scene;
 

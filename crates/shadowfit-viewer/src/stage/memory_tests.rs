@@ -1,6 +1,6 @@
 //! Memory that frames take.
 
-use shadowfit::tool::{ErrorMarks, ViewMode};
+use shadowfit_params::tool::{ErrorMarks, ViewMode};
 use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_scene::builtin::default_scene;
 

@@ -1,9 +1,9 @@
 //! The scene as the light sees it: how fine a texel the picture asks for, cell by cell, and the maps over it.
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
-use shadowfit::figures::{linear_color, linear_map_tints, pixels_per_texel_color};
 use shadowfit::need::{LEVELS, NeedGrid, SIDE};
 use shadowfit::{Aabb, DepthConvention, LightFit, PerspectiveCamera};
+use shadowfit_params::figures::{linear_color, linear_map_tints, pixels_per_texel_color};
 use shadowfit_render::{Line, Quad, box_lines};
 
 use crate::fitted::Fitted;

@@ -1,7 +1,7 @@
 //! A classic sample on the stage: its values, its controls, and what draws it.
 
 use anyhow::{Context, Result};
-use shadowfit::tool::ViewMode;
+use shadowfit_params::tool::ViewMode;
 use shadowfit_render::{FlyCamera, FlyInput, RenderTarget, camera::TURN_SPEED};
 use shadowfit_study::samples::{OptionKind, Sample, SampleDrawer, SampleOutcome, SampleValues, SampleVariant};
 
@@ -35,7 +35,7 @@ impl Stage {
         let (camera, lens) = sample.camera();
         self.settings.camera = lens;
         self.settings.view.play = false;
-        if let Ok(light) = shadowfit::tool::LightSettings::from_direction(sample.direction) {
+        if let Some(light) = shadowfit_params::tool::LightSettings::from_direction(sample.direction) {
             self.settings.light = light;
         }
         self.settings.technique = sample.technique(&values);

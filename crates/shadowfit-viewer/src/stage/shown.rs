@@ -1,9 +1,9 @@
 //! The artefact on show: from the search for its view to its cure.
 
 use shadowfit::Technique;
-use shadowfit::params::{Kind, PARAMETERS, Parameter};
-use shadowfit::tool::Settings;
 use shadowfit_egui::Artefact;
+use shadowfit_params::tool::Settings;
+use shadowfit_params::{Kind, PARAMETERS, Parameter};
 use shadowfit_render::FlyCamera;
 
 use super::Stage;

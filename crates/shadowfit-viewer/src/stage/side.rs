@@ -1,8 +1,8 @@
 //! A technique on the stage: its maps, what draws them, and what judges the picture.
 
 use shadowfit::settings::{CasterPolicy, MapOverride};
-use shadowfit::tool::{ErrorMarks, InsetMaps, Settings, ViewMode};
 use shadowfit::{DepthConvention, FittedMap, LightFit, PerspectiveCamera, Seen, Technique};
+use shadowfit_params::tool::{ErrorMarks, InsetMaps, Settings, ViewMode};
 use shadowfit_render::{Culling, Gpu, Marks, Overlay, RenderTarget, Renderer, Statistics};
 use shadowfit_study::{Evaluator, FrameOptions, Judging, PreparedScene, RayUse, View};
 use shadowfit_wgpu::{ShadowMapDescriptor, ShadowMapError, SunShadows, SunShadowsError};

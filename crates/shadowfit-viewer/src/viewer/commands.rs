@@ -5,9 +5,9 @@ use std::sync::mpsc::{Receiver, channel};
 
 use anyhow::{Context, Result, anyhow};
 use shadowfit::Technique;
-use shadowfit::params;
-use shadowfit::tool::{ErrorMarks, InsetMaps, ViewMode};
 use shadowfit_egui::{Artefact, Command, Toggle, UserPreset};
+use shadowfit_params as params;
+use shadowfit_params::tool::{ErrorMarks, InsetMaps, ViewMode};
 use shadowfit_render::FlyCamera;
 use shadowfit_study::{NamedTechnique, settings_to_toml};
 
@@ -143,7 +143,7 @@ impl Viewer {
                 self.save_text(path, &text)
             }
             Command::CopyRust => {
-                let code = self.edited_technique().to_rust();
+                let code = params::to_rust(&self.edited_technique());
                 self.interface.context.copy_text(code);
                 Ok("Copied the technique as Rust code".to_owned())
             }

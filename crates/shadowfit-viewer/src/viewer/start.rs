@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use shadowfit::tool::Settings;
 use shadowfit_egui::Command;
+use shadowfit_params::tool::Settings;
 use shadowfit_render::FlyCamera;
 use shadowfit_study::NamedTechnique;
 use shadowfit_study::samples::SampleValues;

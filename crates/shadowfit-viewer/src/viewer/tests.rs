@@ -8,8 +8,8 @@ use clap::Parser;
 use egui::{Pos2, RawInput, Rect, vec2};
 use shadowfit::Technique;
 use shadowfit::settings::FitKind;
-use shadowfit::tool::ViewMode;
 use shadowfit_egui::{Artefact, Command, Toggle, Tune};
+use shadowfit_params::tool::ViewMode;
 use shadowfit_render::{AdapterChoice, FlyInput, Gpu};
 
 use super::{Start, Viewer};
@@ -206,7 +206,7 @@ fn gpu_the_card_of_an_artefact_comes_back_as_it_was_and_marks_outlast_it() {
     pause(&mut viewer);
     let card = viewer.stage.artefact_show().clone();
     run(&mut viewer, Command::CloseArtefact);
-    assert_ne!(viewer.stage.settings.view.marks, shadowfit::tool::ErrorMarks::Off);
+    assert_ne!(viewer.stage.settings.view.marks, shadowfit_params::tool::ErrorMarks::Off);
     pause(&mut viewer);
     run(&mut viewer, Command::Undo);
     assert_eq!(*viewer.stage.artefact_show(), card);

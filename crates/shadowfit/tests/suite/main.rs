@@ -30,7 +30,6 @@ mod other_matrices;
 mod read_by_coverage;
 mod recommendation;
 mod rounding;
-mod rust_code;
 mod scenes;
 mod scroll;
 mod self_shadowing;

@@ -5,14 +5,12 @@ use shadowfit::settings::{
     BiasSettings, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, MapFormat, NeedSource, ReceiverSource,
     SplitScheme, Stabilise,
 };
-use shadowfit::tool::Settings;
 use shadowfit::{PRESETS, Technique};
 
 #[test]
 fn the_default_technique_is_the_recommended_preset() {
     assert_eq!(Technique::preset(RECOMMENDED), Some(Technique::default()));
     assert_eq!(PRESETS.iter().filter(|preset| preset.technique() == Technique::default()).count(), 1);
-    assert_eq!(Settings::default().technique, Technique::default());
 }
 
 #[test]

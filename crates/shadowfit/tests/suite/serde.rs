@@ -6,7 +6,6 @@ use serde::{Serialize, de::DeserializeOwned};
 use shadowfit::bias::Reach;
 use shadowfit::culling::{CasterPlanes, OrientedBox, Sphere};
 use shadowfit::diagnostics::{AcneMargin, Coverage, DepthStorage, PixelsPerTexel};
-use shadowfit::figures::{Figures, MapFigures};
 use shadowfit::fits::sphere::enclosing_sphere;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
@@ -14,7 +13,6 @@ use shadowfit::normal_cone::NormalCone;
 use shadowfit::settings::{
     BiasSettings, CasterPolicy, FitKind, FitSettings, MapOverride, RectangleKind, SplitScheme, Stabilise,
 };
-use shadowfit::tool::Settings;
 use shadowfit::verify::{Certificate, CoverageQuery, MapPlane, Margins};
 use shadowfit::{Aabb, Bias, DepthConvention, FitInput, MapFitter, SpotBias, Technique, ViewFrustum, Workspace};
 
@@ -45,16 +43,14 @@ fn settings_survive() {
     technique.overrides[2] = MapOverride { kind: Some(FitKind::Sphere), resolution: Some(UVec2::new(512, 1024)) };
     survives(&technique);
     survives(&technique.with_splits(SplitScheme::Practical(0.7)));
-    survives(&Settings::default().with_technique(technique));
     survives(&LightStepSettings::default());
 }
 
 #[test]
 fn settings_that_a_file_does_not_name_have_their_defaults() {
-    let settings: Settings = serde_json::from_str(r#"{"technique": {"bias": {"slope": 2.0}}}"#).unwrap();
+    let technique: Technique = serde_json::from_str(r#"{"bias": {"slope": 2.0}}"#).unwrap();
     let bias = BiasSettings::default().with_slope(2.0);
-    assert_eq!(settings.technique, Technique { bias, ..Technique::default() });
-    assert_eq!(settings, Settings::default().with_technique(settings.technique));
+    assert_eq!(technique, Technique { bias, ..Technique::default() });
 }
 
 #[test]
@@ -90,9 +86,6 @@ fn outputs_survive() {
     let spot = crate::spot::lamp().fit(UVec2::splat(512), DepthConvention::Reversed).unwrap();
     survives(&spot);
     survives(&SpotBias::automatic(Reach::POINT, DepthStorage::Float16, &spot).unwrap());
-    let mut figures = Figures { map_ahead: Some(1), ..Figures::default() };
-    figures.maps[1] = Some(MapFigures { texel_size: [0.1; 2], draws: Some(3), ..MapFigures::default() });
-    survives(&figures);
 }
 
 #[test]

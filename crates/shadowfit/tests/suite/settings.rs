@@ -1,91 +1,13 @@
-//! The sun's angles, and what follows from a technique's settings.
+//! What follows from a technique's settings.
 
-use proptest::prelude::*;
-use shadowfit::glam::{DVec2, UVec2, Vec3};
+use shadowfit::glam::{DVec2, UVec2};
 use shadowfit::settings::{
     BiasSettings, FilterKind, FitKind, FitSettings, MAX_MAPS, MapChoice, MapFormat, MapOverride, SoftRadius, Softness,
     SplitScheme, Stabilise,
 };
-use shadowfit::tool::{CameraSettings, LightSettings, Settings, ViewSettings};
 use shadowfit::{FitInput, FittedMaps, MapFitter, Technique, Workspace};
 
-use crate::support::{DIRECTION, any_direction, camera};
-
-fn light(azimuth: f32, elevation: f32) -> Vec3 {
-    LightSettings::default().with_azimuth(azimuth).with_elevation(elevation).direction()
-}
-
-#[test]
-fn azimuth_is_counted_from_plus_z_toward_plus_x_and_the_light_travels_away() {
-    let quarter = std::f32::consts::FRAC_PI_2;
-    let table = [
-        (0.0, 0.0, Vec3::NEG_Z),
-        (quarter, 0.0, Vec3::NEG_X),
-        (2.0 * quarter, 0.0, Vec3::Z),
-        (-quarter, 0.0, Vec3::X),
-        (0.3, quarter, Vec3::NEG_Y),
-        (0.3, -quarter, Vec3::Y),
-    ];
-    for (azimuth, elevation, expected) in table {
-        let direction = light(azimuth, elevation);
-        // π/2 rounded to f32 is off by 4e-8.
-        assert!(direction.abs_diff_eq(expected, 2e-7), "{azimuth}, {elevation}: {direction}");
-    }
-}
-
-#[test]
-fn a_vertical_light_has_azimuth_zero() {
-    for direction in [Vec3::NEG_Y, Vec3::Y, Vec3::new(-0.0, -1.0, -0.0), Vec3::new(0.0, -2.0, -0.0)] {
-        assert_eq!(LightSettings::from_direction(direction).unwrap().azimuth, 0.0);
-    }
-}
-
-#[test]
-fn angles_that_are_not_finite_give_a_direction_that_is_not() {
-    for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-        assert!(!light(value, 0.5).is_finite());
-        assert!(!light(0.5, value).is_finite());
-    }
-}
-
-proptest! {
-    /// Two angles rounded to f32: up to 1.2e-7 rad at π.
-    #[test]
-    fn angles_and_direction_convert_back_and_forth(direction in any_direction()) {
-        let settings = LightSettings::from_direction(direction * 3.0).unwrap();
-        prop_assert!(settings.direction().abs_diff_eq(direction, 1e-6), "{settings:?}");
-    }
-}
-
-#[test]
-fn the_sun_rises_in_the_east_stands_in_the_south_at_noon_and_sets_in_the_west() {
-    let toward = |hour: f32| -LightSettings::default().with_hour(Some(hour)).direction();
-    let (sin, cos) = 50_f32.to_radians().sin_cos();
-    for (hour, expected) in [(6.0, Vec3::X), (12.0, Vec3::new(0.0, sin, cos)), (18.0, Vec3::NEG_X)] {
-        assert!((toward(hour) - expected).length() < 1e-6, "{hour}: {}", toward(hour));
-    }
-    let angles = LightSettings::default().with_hour(Some(12.0)).by_angles();
-    assert!(angles.hour.is_none() && angles.azimuth.abs() < 1e-6);
-    assert!((angles.elevation.to_degrees() - 50.0).abs() < 1e-4, "{}", angles.elevation.to_degrees());
-}
-
-#[test]
-fn an_animated_sun_circles_or_passes_over_the_day_and_a_still_one_stays() {
-    use core::f32::consts::{FRAC_PI_2, PI};
-    let moved = |light: LightSettings, seconds: f32| {
-        let mut light = light;
-        light.advance(seconds);
-        light
-    };
-    let still = LightSettings::default();
-    assert_eq!(moved(still, 5.0), still);
-    let circling = still.with_animate(true).with_animate_speed(FRAC_PI_2).with_azimuth(PI - 0.1);
-    assert!((moved(circling, 1.0).azimuth - (-FRAC_PI_2 - 0.1)).abs() < 1e-5);
-    // A right angle is six hours, and the night has none.
-    let day = circling.with_hour(Some(16.0));
-    assert!((moved(day, 1.0).hour.unwrap() - 10.0).abs() < 1e-5);
-    assert_eq!(moved(day, 1.0).azimuth, day.azimuth);
-}
+use crate::support::{DIRECTION, camera};
 
 #[test]
 fn with_methods_change_their_field_only() {
@@ -95,14 +17,9 @@ fn with_methods_change_their_field_only() {
     assert_eq!(bias, written);
     let softness = Softness::default().with_radius(SoftRadius::Metres(0.1)).with_floor(0.5).with_ceiling(8.0);
     assert_eq!(softness, Softness { radius: SoftRadius::Metres(0.1), floor: 0.5, ceiling: 8.0 });
-    let camera = CameraSettings::default().with_near(1.0);
-    assert_eq!(camera, CameraSettings { near: 1.0, ..CameraSettings::default() });
-    let view = ViewSettings::default().with_play(false);
     let technique = Technique::default().with_look_up(FilterKind::Point, bias).with_format(MapFormat::R32Float);
     let expected = Technique { bias, filter: FilterKind::Point, format: MapFormat::R32Float, ..Technique::default() };
     assert_eq!(technique, expected);
-    let settings = Settings::default().with_technique(technique).with_camera(camera).with_view(view);
-    assert_eq!(settings, Settings { technique, camera, view, ..Settings::default() });
 }
 
 #[test]

@@ -5,8 +5,8 @@
 //! added, renamed or given another range in one place.
 //!
 //! ```
-//! use shadowfit::params::{self, Kind};
-//! use shadowfit::tool::Settings;
+//! use shadowfit_params::{self as params, Kind};
+//! use shadowfit_params::tool::Settings;
 //!
 //! let mut settings = Settings::default();
 //! params::set_from_str(&mut settings, "light.elevation", "30").unwrap();
@@ -22,12 +22,17 @@
 //!
 //! Angles are degrees here and radians in the settings; lengths are metres and biases texels in both.
 
+mod rust_code;
 mod table;
 mod text;
 
-use crate::Technique;
-use crate::tool::Settings;
+pub mod figures;
+pub mod tool;
 
+use crate::tool::Settings;
+use shadowfit::Technique;
+
+pub use rust_code::to_rust;
 pub use table::PARAMETERS;
 pub use text::{ParameterError, format_value, set_from_str};
 

@@ -3,9 +3,9 @@
 use glam::UVec2;
 
 use super::{always_active, always_there};
-use crate::DepthConvention;
-use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
-use crate::settings::{FilterKind, MapFormat};
+use crate::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
+use shadowfit::DepthConvention;
+use shadowfit::settings::{FilterKind, MapFormat};
 
 /// Least and greatest side of a map, in texels.
 pub(super) const SIDES: (f64, f64) = (256.0, 8192.0);

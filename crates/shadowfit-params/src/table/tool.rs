@@ -1,9 +1,9 @@
 //! The rows of the tools' settings: sun, camera and what is drawn.
 
 use super::{always_active, always_there, pull_near};
-use crate::params::{Choice, ChoiceOption, Group, Kind, MIN_FAR_PER_NEAR, Number, Optional, Parameter, Toggle};
-use crate::settings::MAX_MAPS;
 use crate::tool::{DAY, ErrorMarks, FLYING_SPEEDS, InsetMaps, Settings, ViewMode};
+use crate::{Choice, ChoiceOption, Group, Kind, MIN_FAR_PER_NEAR, Number, Optional, Parameter, Toggle};
+use shadowfit::settings::MAX_MAPS;
 
 pub(super) const HOUR: Parameter = Parameter {
     id: "light.hour",

@@ -1,9 +1,9 @@
 //! The rows of soft filters: how wide penumbrae are.
 
-use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
-use crate::settings::{SoftRadius, Softness};
-use crate::softness::USUAL_DISTANCE;
 use crate::tool::Settings;
+use crate::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
+use shadowfit::settings::{SoftRadius, Softness};
+use shadowfit::softness::USUAL_DISTANCE;
 
 /// Widest radius of a filter that the table allows, in texels: with it the border is less than a quarter of the smallest
 /// map, and a look-up does not read too much.

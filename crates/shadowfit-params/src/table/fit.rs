@@ -1,8 +1,8 @@
 //! The rows of the fit of each map.
 
 use super::{always_active, always_there, pull_near};
-use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
-use crate::settings::{CasterPolicy, FitKind, NeedSource, ReceiverSource, RectangleKind};
+use crate::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
+use shadowfit::settings::{CasterPolicy, FitKind, NeedSource, ReceiverSource, RectangleKind};
 
 /// The fits in the order of their options.
 const FIT_KINDS: [FitKind; 6] =

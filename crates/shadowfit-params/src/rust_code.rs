@@ -7,50 +7,35 @@ use core::fmt::{self, Write};
 
 use glam::{UVec2, Vec3};
 
-use super::Technique;
-use crate::DepthConvention;
-use crate::settings::{
+use shadowfit::settings::{
     BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, MapFormat, MapOverride,
     NeedSource, ReceiverSource, RectangleKind, SoftRadius, Softness, SplitScheme, Stabilise,
 };
+use shadowfit::{DepthConvention, Technique};
 
-impl Technique {
-    /// Writes the statement `let technique = Technique { … };`, which makes this technique. Fields
-    /// with their default value are left out. It needs `use shadowfit::{*, glam::{UVec2, Vec3},
-    /// settings::*};`.
-    ///
-    /// # Errors
-    ///
-    /// Only those of `out`.
-    pub fn write_rust(&self, out: &mut dyn Write) -> fmt::Result {
-        out.write_str("let technique = ")?;
-        self.write(&mut Code { out, depth: 0 })?;
-        out.write_str(";\n")
-    }
-
-    /// The statement of [`Self::write_rust`].
-    ///
-    /// ```
-    /// use shadowfit::Technique;
-    /// use shadowfit::settings::FilterKind;
-    ///
-    /// let technique = Technique::default().with_count(3).with_filter(FilterKind::Pcf3x3);
-    /// let code = "\
-    /// let technique = Technique {
-    ///     count: 3,
-    ///     filter: FilterKind::Pcf3x3,
-    ///     ..Technique::default()
-    /// };
-    /// ";
-    /// assert_eq!(technique.to_rust(), code);
-    /// ```
-    #[cfg(feature = "alloc")]
-    pub fn to_rust(&self) -> alloc::string::String {
-        let mut code = alloc::string::String::new();
-        // Writing to a string never fails.
-        let _ = self.write_rust(&mut code);
-        code
-    }
+/// The statement `let technique = Technique { … };`, which makes a technique. Fields with their default value are left
+/// out. It needs `use shadowfit::{*, glam::{UVec2, Vec3}, settings::*};`.
+///
+/// ```
+/// use shadowfit::Technique;
+/// use shadowfit::settings::FilterKind;
+///
+/// let technique = Technique::default().with_count(3).with_filter(FilterKind::Pcf3x3);
+/// let code = "\
+/// let technique = Technique {
+///     count: 3,
+///     filter: FilterKind::Pcf3x3,
+///     ..Technique::default()
+/// };
+/// ";
+/// assert_eq!(shadowfit_params::to_rust(&technique), code);
+/// ```
+pub fn to_rust(technique: &Technique) -> String {
+    let mut code = String::from("let technique = ");
+    // Writing to a string never fails.
+    let _ = technique.write(&mut Code { out: &mut code, depth: 0 });
+    code.push_str(";\n");
+    code
 }
 
 /// Code that is being written.

@@ -4,13 +4,10 @@
 //! and saved files edit a [`Settings`], whose first part is a [`Technique`].
 
 use glam::Vec3;
-
-use crate::settings::setters;
-use crate::{FitError, Technique, checks};
+use shadowfit::Technique;
 
 /// The sun.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct LightSettings {
     /// Hour of the day by the sun, within [`DAY`], whose sun is used instead of the two angles; `None`
     /// for these. Default: `None`.
@@ -47,7 +44,6 @@ pub const FLYING_SPEEDS: (f32, f32) = (0.1, 1_000.0);
 
 /// Lens and speed of the free-flying camera. Its position is not a setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct CameraSettings {
     /// Vertical field of view, in radians. Default: π/4.
     pub fov_y: f32,
@@ -67,7 +63,6 @@ impl Default for CameraSettings {
 
 /// What a picture shows of a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum ViewMode {
     /// The shaded scene with the shadows of the maps.
@@ -120,7 +115,6 @@ impl ViewMode {
 
 /// Which shadow maps are shown in a corner of the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum InsetMaps {
     /// None.
     Off,
@@ -133,7 +127,6 @@ pub enum InsetMaps {
 
 /// How wrong pixels are marked in views of the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ErrorMarks {
     /// Not at all.
     #[default]
@@ -146,7 +139,6 @@ pub enum ErrorMarks {
 
 /// What a tool draws over or instead of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent switch of the panel")]
 pub struct ViewSettings {
     /// What the picture shows. Default: the final picture.
@@ -193,7 +185,6 @@ impl Default for ViewSettings {
 
 /// Everything that the tuning panel edits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Settings {
     /// Everything that decides how shadows look.
     pub technique: Technique,
@@ -205,40 +196,14 @@ pub struct Settings {
     pub view: ViewSettings,
 }
 
-setters!(LightSettings {
-    with_hour hour: Option<f32>,
-    with_azimuth azimuth: f32,
-    with_elevation elevation: f32,
-    with_animate animate: bool,
-    with_animate_speed animate_speed: f32,
-});
-
-setters!(CameraSettings {
-    with_fov_y fov_y: f32,
-    with_near near: f32,
-    with_far far: f32,
-    with_speed speed: f32,
-});
-
-setters!(ViewSettings {
-    with_mode mode: ViewMode,
-    with_judge judge: bool,
-    with_marks marks: ErrorMarks,
-    with_shadows shadows: bool,
-    with_inset inset: InsetMaps,
-    with_inset_map inset_map: u32,
-    with_inset_depths inset_depths: Option<[f32; 2]>,
-    with_outside_beside outside_beside: bool,
-    with_freeze_fit freeze_fit: bool,
-    with_play play: bool,
-});
-
-setters!(Settings {
-    with_technique technique: Technique,
-    with_light light: LightSettings,
-    with_camera camera: CameraSettings,
-    with_view view: ViewSettings,
-});
+impl Settings {
+    /// These settings with another technique.
+    #[must_use]
+    pub const fn with_technique(mut self, technique: Technique) -> Self {
+        self.technique = technique;
+        self
+    }
+}
 
 impl ViewSettings {
     /// Index of the map that the inset shows, of a technique with `count` maps.
@@ -264,7 +229,7 @@ impl LightSettings {
     #[must_use]
     pub fn by_angles(&self) -> Self {
         match (self.hour, Self::from_direction(self.direction())) {
-            (Some(_), Ok(light)) => Self { azimuth: light.azimuth, elevation: light.elevation, hour: None, ..*self },
+            (Some(_), Some(light)) => Self { azimuth: light.azimuth, elevation: light.elevation, hour: None, ..*self },
             _ => Self { hour: None, ..*self },
         }
     }
@@ -280,24 +245,25 @@ impl LightSettings {
         match &mut self.hour {
             Some(hour) => {
                 let next = *hour - DAY.0 + turned / TURN_IN_AN_HOUR as f32;
-                *hour = DAY.0 + modulo(next, DAY.1 - DAY.0);
+                *hour = DAY.0 + next.rem_euclid(DAY.1 - DAY.0);
             }
-            None => self.azimuth = modulo(self.azimuth + turned + PI, TAU) - PI,
+            None => self.azimuth = (self.azimuth + turned + PI).rem_euclid(TAU) - PI,
         }
     }
 
     /// The settings of a light that travels in `direction` (world axes, any length): azimuth in
     /// -π..=π, elevation in -π/2..=π/2, the rest with default values. A vertical light has azimuth
-    /// 0.
-    ///
-    /// # Errors
-    ///
-    /// [`FitError::NotFinite`] and [`FitError::BadDirection`].
-    pub fn from_direction(direction: Vec3) -> Result<Self, FitError> {
+    /// 0. `None` for a direction that is zero or not finite.
+    pub fn from_direction(direction: Vec3) -> Option<Self> {
+        let direction = direction.as_dvec3();
+        let length = direction.length();
+        if !length.is_finite() || length == 0.0 {
+            return None;
+        }
         // Adding +0 turns the negative zeros of the negation positive, which atan2 tells apart.
-        let to_light = -checks::unit("the light's direction", direction)? + 0.0;
-        let horizontal = libm::sqrt(to_light.x * to_light.x + to_light.z * to_light.z);
-        Ok(Self {
+        let to_light = -(direction / length) + 0.0;
+        let horizontal = (to_light.x * to_light.x + to_light.z * to_light.z).sqrt();
+        Some(Self {
             azimuth: libm::atan2(to_light.x, to_light.z) as f32,
             elevation: libm::atan2(to_light.y, horizontal) as f32,
             ..Self::default()
@@ -310,10 +276,4 @@ fn sun_at(hour: f32) -> Vec3 {
     let (sin, cos) = libm::sincos((f64::from(hour) - 12.0) * TURN_IN_AN_HOUR);
     let (sin_latitude, cos_latitude) = libm::sincos(LATITUDE);
     Vec3::new(sin as f32, (-cos_latitude * cos) as f32, (-sin_latitude * cos) as f32)
-}
-
-/// The rest of a division by a positive number, 0 or more.
-fn modulo(value: f32, by: f32) -> f32 {
-    let rest = libm::fmodf(value, by);
-    if rest < 0.0 { rest + by } else { rest }
 }

@@ -4,13 +4,12 @@
 mod legend;
 
 use glam::Vec3;
+use shadowfit::FittedMap;
+use shadowfit::diagnostics::depth_step;
+use shadowfit::light_fit::Constraint;
+use shadowfit::settings::{MAX_MAPS, MapFormat};
 
 pub use legend::{ERROR_COLORS, PIXELS_PER_TEXEL_COLORS, pixels_per_texel_color};
-
-use crate::diagnostics::depth_step;
-use crate::maps::FittedMap;
-use crate::settings::{MAX_MAPS, MapFormat};
-use crate::volume::Constraint;
 
 /// Tints of the maps, the nearest first, as sRGB bytes of red, green and blue.
 ///
@@ -45,7 +44,6 @@ fn linear(encoded: f32) -> f32 {
 
 /// Live figures of one frame. `None` means not measured, never zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Figures {
     /// Figures of the maps, the nearest first; `None` where there is no such map.
     pub maps: [Option<MapFigures>; MAX_MAPS],
@@ -77,7 +75,6 @@ pub struct Figures {
 /// Figures of a picture that was judged against rays. Shares are in per cent, 0..=100, of the pixels that
 /// face the light within the shadow distance; `None` means not measured, never zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct JudgedFigures {
     /// Pixels whose verdict, lit or not, differs from the truth, edges included.
     pub wrong: f32,
@@ -105,18 +102,17 @@ pub struct JudgedFigures {
 
 /// Live figures of one map. `None` means not measured, never zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct MapFigures {
     /// View depths that this map is made for, in metres, and between which points choose it where maps
     /// are read by view depth; `None` where there are none, as of a
-    /// [window](crate::settings::FitKind::Windows).
+    /// [window](shadowfit::settings::FitKind::Windows).
     pub view_depths: Option<[f32; 2]>,
     /// Width and height of what the map holds, across the light, in metres.
     pub extent: [f32; 2],
     /// What set the planes -x, +x, -y, +y, far and near of the map's box, see
-    /// [`LightFit::set_by`](crate::LightFit::set_by).
+    /// [`LightFit::set_by`](shadowfit::LightFit::set_by).
     pub set_by: [Constraint; 6],
-    /// Whether no receiver is in view, see [`LightFit::is_empty`](crate::LightFit::is_empty).
+    /// Whether no receiver is in view, see [`LightFit::is_empty`](shadowfit::LightFit::is_empty).
     pub is_empty: bool,
     /// Size of one texel across the light, in metres, along u and v.
     pub texel_size: [f32; 2],
@@ -168,7 +164,7 @@ mod tests {
     use glam::{UVec2, Vec2};
 
     use super::*;
-    use crate::LightFit;
+    use shadowfit::LightFit;
 
     #[test]
     fn tints_are_linear_by_the_srgb_curve() {

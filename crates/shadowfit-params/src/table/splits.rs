@@ -1,8 +1,8 @@
 //! The rows of the splits: how many maps there are, where one ends and the next begins, and which one a point reads.
 
 use super::always_active;
-use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
-use crate::settings::{FitKind, MAX_BLEND, MAX_MAPS, MapChoice, SplitScheme};
+use crate::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
+use shadowfit::settings::{FitKind, MAX_BLEND, MAX_MAPS, MapChoice, SplitScheme};
 
 pub(super) const COUNT: Parameter = Parameter {
     id: "splits.count",

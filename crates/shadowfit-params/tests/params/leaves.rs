@@ -5,7 +5,7 @@ use shadowfit::glam::{UVec2, Vec3};
 use shadowfit::settings::{
     BiasSettings, FitSettings, HoldSettings, MAX_MAPS, MapOverride, SoftRadius, Softness, SplitScheme,
 };
-use shadowfit::tool::{CameraSettings, LightSettings, Settings, ViewSettings};
+use shadowfit_params::tool::{CameraSettings, LightSettings, Settings, ViewSettings};
 
 /// Every field with its value. Without `..` and `_`, so that a new field or variant does not compile until it stands
 /// here, and the tests of the table do not pass until a row reaches it.

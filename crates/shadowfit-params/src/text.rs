@@ -172,7 +172,7 @@ pub enum ParameterError<'a> {
         /// What was given.
         value: &'a str,
     },
-    /// The parameter is not part of a [`Technique`](crate::Technique).
+    /// The parameter is not part of a [`Technique`](shadowfit::Technique).
     NotOfTechnique {
         /// The id that was asked for.
         id: &'a str,

@@ -4,9 +4,9 @@ use glam::UVec2;
 
 use super::always_there;
 use super::map::SIDES;
-use crate::params::{Choice, ChoiceOption, Group, Kind, Optional, Parameter};
-use crate::settings::{FitKind, MAX_MAPS};
 use crate::tool::Settings;
+use crate::{Choice, ChoiceOption, Group, Kind, Optional, Parameter};
+use shadowfit::settings::{FitKind, MAX_MAPS};
 
 /// The fits that a single map may have, in the order of their options: windows are the maps of a whole technique.
 const KINDS: [FitKind; 5] =

@@ -1,8 +1,8 @@
 //! The rows of the stabilisation.
 
-use crate::params::{Choice, ChoiceOption, Group, Kind, Number, Parameter};
-use crate::settings::{FitKind, Stabilise};
 use crate::tool::Settings;
+use crate::{Choice, ChoiceOption, Group, Kind, Number, Parameter};
+use shadowfit::settings::{FitKind, Stabilise};
 
 pub(super) const MODE: Parameter = Parameter {
     id: "stabilise.mode",

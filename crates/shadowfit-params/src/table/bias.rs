@@ -1,9 +1,9 @@
 //! The rows of the biases.
 
 use super::always_active;
-use crate::diagnostics::DepthStorage;
-use crate::params::{Group, Kind, Number, Parameter};
-use crate::settings::MAX_DEPTH_STEPS;
+use crate::{Group, Kind, Number, Parameter};
+use shadowfit::diagnostics::DepthStorage;
+use shadowfit::settings::MAX_DEPTH_STEPS;
 
 pub(super) const CONSTANT: Parameter = Parameter {
     id: "bias.constant",
