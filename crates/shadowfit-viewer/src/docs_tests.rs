@@ -19,21 +19,19 @@ fn assert_docs_hold(table: &str) {
 
 #[test]
 fn the_docs_list_every_key() {
-    let mut table = String::from("| | keys |\n|---|---|\n");
-    for group in KEYS {
+    let lines = KEYS.iter().map(|group| {
         let keys: Vec<String> =
             group.keys.iter().map(|line| format!("**{}** {}", line.keys, cell(line.does))).collect();
-        table += &format!("| {} | {} |\n", group.heading, keys.join(" · "));
-    }
-    assert_docs_hold(&table);
+        format!("| {} | {} |\n", group.heading, keys.join(" · "))
+    });
+    assert_docs_hold(&format!("| | keys |\n|---|---|\n{}", lines.collect::<String>()));
 }
 
 #[test]
 fn the_docs_list_every_action() {
-    let mut table = String::from("| action | what it does |\n|---|---|\n");
-    for action in ACTIONS {
+    let lines = ACTIONS.iter().map(|action| {
         let line = format!("{} {}", action.name, action.takes);
-        table += &format!("| `{}` | {} |\n", cell(line.trim_end()), cell(action.does));
-    }
-    assert_docs_hold(&table);
+        format!("| `{}` | {} |\n", cell(line.trim_end()), cell(action.does))
+    });
+    assert_docs_hold(&format!("| action | what it does |\n|---|---|\n{}", lines.collect::<String>()));
 }

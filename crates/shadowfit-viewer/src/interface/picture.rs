@@ -85,7 +85,7 @@ impl Pictures {
         }
     }
 
-    /// InterfaceInput the pictures in the whole of `ui`.
+    /// Shows the pictures in the whole of `ui`.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
