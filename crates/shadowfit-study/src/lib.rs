@@ -45,7 +45,7 @@ pub use picture::FrameBefore;
 pub use rays::SceneRays;
 pub use scene::{NothingToDraw, PosedScene, PreparedScene};
 pub use seen::Seen;
-pub use settings_file::{settings_from_toml, settings_to_toml};
+pub use settings_file::{settings_from_toml, settings_to_toml, technique_to_toml};
 pub use technique_file::NamedTechnique;
 pub use tune::{Budget, Progress, Step, TuneScope, TuneSettings, Tuned, Weights, tune};
 pub use view::View;

@@ -257,7 +257,7 @@ impl Words<'_> {
 
     fn view(self) -> Result<Command> {
         let mut settings = Settings::default();
-        params::set_from_str(&mut settings, "view.mode", self.rest).map_err(|error| anyhow!("{error}"))?;
+        params::set_from_str(&mut settings, "view.mode", self.rest)?;
         Ok(Command::View(settings.view.mode))
     }
 
