@@ -147,7 +147,7 @@ fn size(text: &str) -> Result<[u32; 2]> {
 
 fn filter(text: &str) -> Result<FilterKind> {
     let mut technique = Technique::default();
-    params::set_technique_from_str(&mut technique, "map.filter", text).map_err(|error| anyhow::anyhow!("{error}"))?;
+    params::set_technique_from_str(&mut technique, "map.filter", text)?;
     Ok(technique.filter)
 }
 

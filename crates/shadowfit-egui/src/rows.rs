@@ -6,7 +6,7 @@ mod side;
 
 use egui::{Checkbox, ComboBox, Response, Slider, SliderClamping, Ui};
 use shadowfit_params::tool::Settings;
-use shadowfit_params::{Choice, Group, Kind, Number, Optional, Parameter, Toggle};
+use shadowfit_params::{ChoiceOption, Kind, Number, Parameter, Unset, Value};
 
 use crate::accessibility::rename;
 use crate::maps;
@@ -42,12 +42,10 @@ impl Row<'_> {
     }
 }
 
-/// Whether a parameter gets a row under these settings: not one of another choice of splits, none of a map
-/// that is not there, and none for a single map's fit where all maps are windows.
+/// Whether a parameter gets a row under these settings: not one of another choice of splits, and none of a map
+/// that is not there.
 pub(crate) fn is_shown(parameter: &Parameter, settings: &Settings) -> bool {
-    let belongs_to_a_choice = matches!(&parameter.kind, Kind::Optional(optional) if optional.unset.is_none());
-    let goes_when_inert = belongs_to_a_choice || parameter.group == Group::Override;
-    parameter.is_present(settings) && !(goes_when_inert && (parameter.inert)(settings).is_some())
+    parameter.is_present(settings) && !(parameter.is_of_choice() && (parameter.inert)(settings).is_some())
 }
 
 /// The rows of parameters that are shown, each of which may change what the next ones are.
@@ -84,11 +82,10 @@ pub(crate) fn show(
             line.inner
         });
         let label = line.inner;
-        if let Kind::Optional(optional) = &parameter.kind
-            && optional.unset.is_some()
-            && optional.get(settings).is_some()
+        if let Kind::Number(number @ Number { unset: Some(_), .. }) = &parameter.kind
+            && let Some(value) = parameter.number(settings)
         {
-            ui.add_enabled_ui(row.reason.is_none(), |ui| second_line(ui, &row, optional, settings, &label));
+            ui.add_enabled_ui(row.reason.is_none(), |ui| second_line(ui, &row, number, value, settings, &label));
         }
         reset |= label.double_clicked();
     });
@@ -100,52 +97,62 @@ pub(crate) fn show(
 /// Label and control, for a number that need not be there its check box; returns the label.
 fn first_line(ui: &mut Ui, row: &Row<'_>, settings: &mut Settings) -> Response {
     let label = row.label(ui);
-    match &row.parameter.kind {
-        Kind::Number(number) if row.parameter.id == INSET_MAP => {
+    let parameter = row.parameter;
+    match (&parameter.kind, parameter.get(settings)) {
+        (Kind::Number(_), _) if parameter.id == INSET_MAP => {
             let index = settings.view.inset_index(settings.technique.count);
             if let Some(map) = maps::selector(ui, settings.technique.count, index, |button| row.explain(button)) {
-                number.set(settings, map as f64 + 1.0);
+                parameter.set(settings, Value::Number(map as f64 + 1.0));
             }
         }
-        Kind::Number(number) => {
-            if let Some(value) = number_control(ui, row, &Scale::from(number), number.get(settings), &label) {
-                number.set(settings, value);
+        (Kind::Number(Number { unset: Some(unset), .. }), Some(value)) => {
+            unset_control(ui, row, unset, value == Value::Unset, settings);
+        }
+        (Kind::Number(number), Some(Value::Number(value))) => {
+            if let Some(value) = number_control(ui, row, number, value, &label) {
+                parameter.set(settings, Value::Number(value));
             }
         }
-        Kind::Optional(optional) => match (&optional.unset, optional.get(settings)) {
-            (Some(unset), value) => {
-                let mut is_unset = value.is_none();
-                let response = ui.add(Checkbox::new(&mut is_unset, unset.label)).on_hover_text(unset.help);
-                if response.changed() {
-                    if is_unset { optional.set(settings, None) } else { begin(optional, settings) }
-                }
-                rename(ui, &response, format!("{}: {}", row.parameter.label, unset.label));
-                row.explain(response);
+        (Kind::Choice(options), Some(Value::Option(index))) => {
+            if let Some(index) = choice_control(ui, row, options, index, &label) {
+                parameter.set(settings, Value::Option(index));
             }
-            (None, Some(value)) => {
-                if let Some(value) = number_control(ui, row, &Scale::from(optional), value, &label) {
-                    optional.set(settings, Some(value));
-                }
+        }
+        (Kind::Toggle, Some(Value::Toggle(on))) => {
+            if let Some(on) = toggle_control(ui, row, on) {
+                parameter.set(settings, Value::Toggle(on));
             }
-            (None, None) => {}
-        },
-        Kind::Choice(choice) => choice_control(ui, row, choice, settings, &label),
-        Kind::Toggle(toggle) => toggle_control(ui, row, *toggle, settings),
+        }
+        _ => {}
     }
     label
 }
 
+/// Check box of a number that need not be there.
+fn unset_control(ui: &mut Ui, row: &Row<'_>, unset: &Unset, mut is_unset: bool, settings: &mut Settings) {
+    let (parameter, option) = (row.parameter, unset.option);
+    let response = ui.add(Checkbox::new(&mut is_unset, option.label)).on_hover_text(option.help);
+    if response.changed() {
+        if is_unset {
+            parameter.set(settings, Value::Unset);
+        } else {
+            begin(parameter, unset, settings);
+        }
+    }
+    rename(ui, &response, format!("{}: {}", parameter.label, option.label));
+    row.explain(response);
+}
+
 /// Slider and field of a number that need not be there, while it is.
-fn second_line(ui: &mut Ui, row: &Row<'_>, optional: &Optional, settings: &mut Settings, label: &Response) {
-    let Some(value) = optional.get(settings) else { return };
+fn second_line(ui: &mut Ui, row: &Row<'_>, number: &Number, value: f64, settings: &mut Settings, label: &Response) {
     ui.horizontal(|ui| {
         ui.add_space(ui.spacing().icon_width);
-        if let Some(value) = number_control(ui, row, &Scale::from(optional), value, label) {
+        if let Some(value) = number_control(ui, row, number, value, label) {
             let mut next = *settings;
-            optional.set(&mut next, Some(value));
+            row.parameter.set(&mut next, Value::Number(value));
             // A value that means none, such as a height equal to the width, removes the slider, but not while it is
             // being dragged.
-            if optional.get(&next).is_some() || !ui.input(|input| input.pointer.any_down()) {
+            if row.parameter.number(&next).is_some() || !ui.input(|input| input.pointer.any_down()) {
                 *settings = next;
             }
         }
@@ -153,36 +160,15 @@ fn second_line(ui: &mut Ui, row: &Row<'_>, optional: &Optional, settings: &mut S
 }
 
 /// Turns a number on; where its initial value means none, at half of that.
-fn begin(optional: &Optional, settings: &mut Settings) {
-    optional.set(settings, Some(optional.initial));
-    if optional.get(settings).is_none() {
-        optional.set(settings, Some(0.5 * optional.initial));
-    }
-}
-
-/// Range and look of a number.
-struct Scale {
-    min: f64,
-    max: f64,
-    logarithmic: bool,
-    decimals: usize,
-}
-
-impl From<&Number> for Scale {
-    fn from(number: &Number) -> Self {
-        Self { min: number.min, max: number.max, logarithmic: number.logarithmic, decimals: number.decimals }
-    }
-}
-
-impl From<&Optional> for Scale {
-    fn from(optional: &Optional) -> Self {
-        let Optional { min, max, logarithmic, decimals, .. } = *optional;
-        Self { min, max, logarithmic, decimals }
+fn begin(parameter: &Parameter, unset: &Unset, settings: &mut Settings) {
+    parameter.set(settings, Value::Number(unset.initial));
+    if parameter.number(settings).is_none() {
+        parameter.set(settings, Value::Number(0.5 * unset.initial));
     }
 }
 
 /// Slider and field, and for the sides of maps a list of the powers of two; returns a new value.
-fn number_control(ui: &mut Ui, row: &Row<'_>, scale: &Scale, mut value: f64, label: &Response) -> Option<f64> {
+fn number_control(ui: &mut Ui, row: &Row<'_>, scale: &Number, mut value: f64, label: &Response) -> Option<f64> {
     let gap = ui.spacing().item_spacing.x;
     let is_side = side::is_side(row.parameter, scale.decimals);
     let list_width = if is_side { side::LIST_WIDTH + gap } else { 0.0 };
@@ -204,63 +190,62 @@ fn number_control(ui: &mut Ui, row: &Row<'_>, scale: &Scale, mut value: f64, lab
     chosen.or_else(|| response.changed().then_some(value))
 }
 
-fn choice_control(ui: &mut Ui, row: &Row<'_>, choice: &Choice, settings: &mut Settings, label: &Response) {
+/// List of options; returns the index of another one.
+fn choice_control(
+    ui: &mut Ui,
+    row: &Row<'_>,
+    options: &[ChoiceOption],
+    current: usize,
+    label: &Response,
+) -> Option<usize> {
     let name = |index: usize| {
-        let option = choice.options.get(index).map_or("", |option| option.label);
+        let option = options.get(index).map_or("", |option| option.label);
         if row.parameter.unit.is_empty() { option.to_owned() } else { format!("{option} {}", row.parameter.unit) }
     };
-    let current = choice.get(settings);
+    let mut chosen = None;
     let width = ui.available_width() - RESET_WIDTH - ui.spacing().item_spacing.x;
     let list = ComboBox::from_id_salt("options").width(width).selected_text(name(current)).show_ui(ui, |ui| {
-        for (index, option) in choice.options.iter().enumerate() {
+        for (index, option) in options.iter().enumerate() {
             if ui.selectable_label(index == current, name(index)).on_hover_text(option.help).clicked() {
-                choice.set(settings, index);
+                chosen = Some(index);
             }
         }
     });
     row.explain(list.response.labelled_by(label.id));
+    chosen
 }
 
-fn toggle_control(ui: &mut Ui, row: &Row<'_>, toggle: Toggle, settings: &mut Settings) {
-    let mut on = toggle.get(settings);
+/// Check box; returns whether it was turned on or off.
+fn toggle_control(ui: &mut Ui, row: &Row<'_>, mut on: bool) -> Option<bool> {
     let response = ui.add(Checkbox::without_text(&mut on));
-    if response.changed() {
-        toggle.set(settings, on);
-    }
+    let changed = response.changed();
     rename(ui, &response, row.parameter.label.to_owned());
     row.explain(response);
+    changed.then_some(on)
 }
 
 fn is_nan(parameter: &Parameter, settings: &Settings) -> bool {
-    match &parameter.kind {
-        Kind::Number(number) => number.get(settings).is_nan(),
-        Kind::Optional(optional) => optional.get(settings).is_some_and(f64::is_nan),
-        Kind::Choice(_) | Kind::Toggle(_) => false,
-    }
+    parameter.number(settings).is_some_and(f64::is_nan)
 }
 
 /// What the parameter does, its range and its default.
 fn help(parameter: &Parameter, defaults: &Settings) -> String {
     let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
+    let default = parameter.get(defaults);
     let facts = match &parameter.kind {
-        Kind::Number(number) => {
-            let decimals = number.decimals;
-            format!("{} to {}{unit}, default {:.decimals$}{unit}", number.min, number.max, number.get(defaults))
-        }
-        Kind::Optional(optional) => {
-            let decimals = optional.decimals;
-            let default = match (optional.get(defaults), optional.unset) {
-                (Some(value), _) => format!(", default {value:.decimals$}{unit}"),
-                (None, Some(unset)) => format!(", default {}", unset.label),
-                (None, None) => String::new(),
+        Kind::Number(Number { min, max, decimals, unset, .. }) => {
+            let default = match (default, unset) {
+                (Some(Value::Number(value)), _) => format!(", default {value:.decimals$}{unit}"),
+                (Some(_), Some(unset)) => format!(", default {}", unset.option.label),
+                _ => String::new(),
             };
-            format!("{} to {}{unit}{default}", optional.min, optional.max)
+            format!("{min} to {max}{unit}{default}")
         }
-        Kind::Choice(choice) => {
-            let default = choice.options.get(choice.get(defaults)).map_or("", |option| option.label);
-            format!("Default {default}{unit}")
+        Kind::Choice(options) => {
+            let index = if let Some(Value::Option(index)) = default { index } else { 0 };
+            format!("Default {}{unit}", options.get(index).map_or("", |option| option.label))
         }
-        Kind::Toggle(toggle) => format!("Default {}", if toggle.get(defaults) { "on" } else { "off" }),
+        Kind::Toggle => format!("Default {}", if default == Some(Value::Toggle(true)) { "on" } else { "off" }),
     };
     format!("{}\n\n{facts}.", parameter.help)
 }

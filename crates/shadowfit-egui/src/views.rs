@@ -2,7 +2,7 @@
 
 use egui::{Button, Response, RichText, Ui};
 use shadowfit_params::tool::{ViewMode, ViewSettings};
-use shadowfit_params::{Choice, ChoiceOption, Kind, parameter};
+use shadowfit_params::{ChoiceOption, Kind, parameter};
 
 use crate::accessibility::rename;
 use crate::theme::Palette;
@@ -47,7 +47,7 @@ fn button(ui: &mut Ui, option: &ChoiceOption, key: usize, is_selected: bool) -> 
 pub(crate) fn option(mode: ViewMode) -> &'static ChoiceOption {
     let index = ViewMode::ALL.iter().position(|each| *each == mode).unwrap_or(0);
     match parameter(MODE).map(|parameter| &parameter.kind) {
-        Some(Kind::Choice(Choice { options, .. })) => &options[index.min(options.len() - 1)],
+        Some(Kind::Choice(options)) => &options[index.min(options.len() - 1)],
         _ => unreachable!("the views are a choice of the table"),
     }
 }

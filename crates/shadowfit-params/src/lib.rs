@@ -5,7 +5,7 @@
 //! added, renamed or given another range in one place.
 //!
 //! ```
-//! use shadowfit_params::{self as params, Kind};
+//! use shadowfit_params::{self as params, Value};
 //! use shadowfit_params::tool::Settings;
 //!
 //! let mut settings = Settings::default();
@@ -14,14 +14,14 @@
 //! params::set_from_str(&mut settings, "splits.count", "3").unwrap();
 //! assert!(params::set_from_str(&mut settings, "map.resolution", "20").is_err());
 //! for parameter in params::PARAMETERS {
-//!     if let Kind::Toggle(toggle) = &parameter.kind {
-//!         toggle.set(&mut settings, false);
-//!     }
+//!     // Turns off all that can be turned off.
+//!     parameter.set(&mut settings, Value::Toggle(false));
 //! }
 //! ```
 //!
 //! Angles are degrees here and radians in the settings; lengths are metres and biases texels in both.
 
+mod field;
 mod rust_code;
 mod table;
 mod text;
@@ -29,6 +29,7 @@ mod text;
 pub mod figures;
 pub mod tool;
 
+use crate::field::Field;
 use crate::tool::Settings;
 use shadowfit::Technique;
 
@@ -43,7 +44,7 @@ pub use text::{ParameterError, format_value, set_from_str};
 /// no practical view has less depth than that.
 pub const MIN_FAR_PER_NEAR: f32 = 2.0;
 
-/// One parameter of [`Settings`].
+/// One parameter of [`Settings`]: all that tools know about it.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
     /// Stable name for files and command lines: the group's id, a dot, and the parameter's own
@@ -57,41 +58,97 @@ pub struct Parameter {
     pub unit: &'static str,
     /// What it does to the picture and when to change it, in a sentence or two.
     pub help: &'static str,
-    /// Range or options, and access to the value.
+    /// What values it takes.
     pub kind: Kind,
+    /// How its value is read and set.
+    field: Field,
     /// Why the parameter has no effect under these settings, or `None` when it has one.
     pub inert: fn(&Settings) -> Option<&'static str>,
 }
 
 impl Parameter {
+    /// The value, as it stands: settings that were filled by hand may lie outside the range. `None` where
+    /// the parameter does not exist under these settings: λ exists only while the practical splits are
+    /// chosen, and the manual splits only while those are.
+    pub fn get(&self, settings: &Settings) -> Option<Value> {
+        let value = (self.field.get)(settings)?;
+        Some(if self.is_angle() { value.map(f64::to_degrees) } else { value })
+    }
+
+    /// Whether it is shown in degrees, and so is an angle that the settings have in radians.
+    fn is_angle(&self) -> bool {
+        self.unit.starts_with("deg")
+    }
+
+    /// The value where it is a number.
+    pub fn number(&self, settings: &Settings) -> Option<f64> {
+        self.get(settings).and_then(Value::number)
+    }
+
+    /// Sets the value, a number clamped to the range. NaN, infinity and what is not of the parameter's
+    /// [kind](Self::kind) are ignored, and so is any value while the parameter [does not exist](Self::get).
+    ///
+    /// The near and far planes and the shadow distance move each other, see [`MIN_FAR_PER_NEAR`].
+    /// Where [`Number::decimals`] is 0, the fraction is cut off.
+    pub fn set(&self, settings: &mut Settings, value: Value) {
+        let value = match (&self.kind, value) {
+            (Kind::Number(range), Value::Number(number)) if number.is_finite() => {
+                Value::Number(number.max(range.min).min(range.max))
+            }
+            (Kind::Number(Number { unset: Some(_), .. }), Value::Unset) | (Kind::Toggle, Value::Toggle(_)) => value,
+            (Kind::Choice(options), Value::Option(index)) if index < options.len() => value,
+            _ => return,
+        };
+        if self.is_present(settings) {
+            (self.field.set)(settings, if self.is_angle() { value.map(f64::to_radians) } else { value });
+        }
+    }
+
     /// Whether the parameter has the same value in both settings.
     pub fn is_equal(&self, a: &Settings, b: &Settings) -> bool {
-        match &self.kind {
-            Kind::Number(number) => number.get(a) == number.get(b),
-            Kind::Optional(optional) => optional.get(a) == optional.get(b),
-            Kind::Choice(choice) => choice.get(a) == choice.get(b),
-            Kind::Toggle(toggle) => toggle.get(a) == toggle.get(b),
-        }
+        self.get(a) == self.get(b)
     }
 
     /// Sets the parameter to the value that it has in `from`, by the rules of its kind.
     pub fn copy(&self, settings: &mut Settings, from: &Settings) {
-        match &self.kind {
-            Kind::Number(number) => number.set(settings, number.get(from)),
-            Kind::Optional(optional) => optional.set(settings, optional.get(from)),
-            Kind::Choice(choice) => choice.set(settings, choice.get(from)),
-            Kind::Toggle(toggle) => toggle.set(settings, toggle.get(from)),
+        if let Some(value) = self.get(from) {
+            self.set(settings, value);
         }
     }
 
-    /// Whether the parameter exists under these settings: λ exists only while the practical splits are
-    /// chosen, the manual splits only while those are, and a single map's own height only while it has
-    /// a width of its own. Setting a parameter that does not exist changes nothing.
+    /// Whether it exists only with some choices of another parameter.
+    pub fn is_of_choice(&self) -> bool {
+        self.field.is_of_variant
+    }
+
+    /// Whether the parameter [exists](Self::get) under these settings.
     pub fn is_present(&self, settings: &Settings) -> bool {
-        match &self.kind {
-            Kind::Optional(optional) => (optional.present)(settings),
-            Kind::Number(_) | Kind::Choice(_) | Kind::Toggle(_) => true,
-        }
+        self.get(settings).is_some()
+    }
+}
+
+/// A value of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// A number, in the unit of its [`Parameter`].
+    Number(f64),
+    /// No number, see [`Number::unset`].
+    Unset,
+    /// The index of an option.
+    Option(usize),
+    /// On or off.
+    Toggle(bool),
+}
+
+impl Value {
+    /// The number, where it is one.
+    pub const fn number(self) -> Option<f64> {
+        if let Self::Number(number) = self { Some(number) } else { None }
+    }
+
+    /// The same with its number changed, where it is one.
+    fn map(self, change: fn(f64) -> f64) -> Self {
+        if let Self::Number(number) = self { Self::Number(change(number)) } else { self }
     }
 }
 
@@ -106,13 +163,9 @@ pub fn technique_parameters() -> impl Iterator<Item = &'static Parameter> {
 ///
 /// As [`set_from_str`]; [`ParameterError::NotOfTechnique`] for the id of a parameter that is not
 /// part of a technique.
-pub fn set_technique_from_str<'a>(
-    technique: &mut Technique,
-    id: &'a str,
-    value: &'a str,
-) -> Result<(), ParameterError<'a>> {
+pub fn set_technique_from_str(technique: &mut Technique, id: &str, value: &str) -> Result<(), ParameterError> {
     if parameter(id).is_some_and(|parameter| !parameter.group.is_technique()) {
-        return Err(ParameterError::NotOfTechnique { id });
+        return Err(ParameterError::NotOfTechnique { id: id.to_owned() });
     }
     let mut settings = Settings::default().with_technique(*technique);
     set_from_str(&mut settings, id, value)?;
@@ -123,17 +176,15 @@ pub fn set_technique_from_str<'a>(
 /// What values a parameter takes.
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
-    /// A number in a range.
+    /// A number in a range, or no number.
     Number(Number),
-    /// A number in a range, or no value.
-    Optional(Optional),
-    /// One of a few named options.
-    Choice(Choice),
+    /// One of a few named options, in the order that they are shown.
+    Choice(&'static [ChoiceOption]),
     /// On or off.
-    Toggle(Toggle),
+    Toggle,
 }
 
-/// A number in a range, in the unit of its [`Parameter`].
+/// A range of numbers, in the unit of their [`Parameter`].
 #[derive(Clone, Copy, Debug)]
 pub struct Number {
     /// Least value.
@@ -146,92 +197,20 @@ pub struct Number {
     pub logarithmic: bool,
     /// Decimals worth showing; 0 for whole numbers.
     pub decimals: usize,
-    read: fn(&Settings) -> f64,
-    write: fn(&mut Settings, f64),
+    /// Whether there need be no number, and what that means.
+    pub unset: Option<Unset>,
 }
 
-impl Number {
-    /// The value, as it stands: settings that were filled by hand may lie outside the range.
-    pub fn get(&self, settings: &Settings) -> f64 {
-        (self.read)(settings)
-    }
-
-    /// Sets the value, clamped to the range; NaN and infinity are ignored.
-    ///
-    /// The near and far planes and the shadow distance move each other, see [`MIN_FAR_PER_NEAR`].
-    /// Where [`Self::decimals`] is 0, the fraction is cut off.
-    pub fn set(&self, settings: &mut Settings, value: f64) {
-        if value.is_finite() {
-            (self.write)(settings, value.max(self.min).min(self.max));
-        }
-    }
-}
-
-/// A number in a range, or no value.
+/// A number that need not be there.
 #[derive(Clone, Copy, Debug)]
-pub struct Optional {
-    /// Least value.
-    pub min: f64,
-    /// Greatest value.
-    pub max: f64,
-    /// A fine step for keys and dragging; not a grid, values between steps are kept.
-    pub step: f64,
-    /// Whether a slider over the range should be logarithmic.
-    pub logarithmic: bool,
-    /// Decimals worth showing; 0 for whole numbers.
-    pub decimals: usize,
-    /// Name and description of having no value. `None` where only another parameter removes the
-    /// value, see [`Parameter::is_present`].
-    pub unset: Option<ChoiceOption>,
-    /// The number that a panel starts from when the value is turned on.
+pub struct Unset {
+    /// Name and description of having no number.
+    pub option: ChoiceOption,
+    /// The number that a panel starts from when one is asked for.
     pub initial: f64,
-    present: fn(&Settings) -> bool,
-    read: fn(&Settings) -> Option<f64>,
-    write: fn(&mut Settings, Option<f64>),
 }
 
-impl Optional {
-    /// The value, as it stands: settings that were filled by hand may lie outside the range.
-    pub fn get(&self, settings: &Settings) -> Option<f64> {
-        (self.read)(settings)
-    }
-
-    /// Sets the value, clamped to the range, or removes it. NaN and infinity are ignored, and so is
-    /// any value while the parameter [does not exist](Parameter::is_present).
-    ///
-    /// The near and far planes and the shadow distance move each other, see
-    /// [`MIN_FAR_PER_NEAR`].
-    pub fn set(&self, settings: &mut Settings, value: Option<f64>) {
-        if (self.present)(settings) && value.is_none_or(f64::is_finite) {
-            (self.write)(settings, value.map(|value| value.max(self.min).min(self.max)));
-        }
-    }
-}
-
-/// One of a few named options.
-#[derive(Clone, Copy, Debug)]
-pub struct Choice {
-    /// The options, in the order that they are shown.
-    pub options: &'static [ChoiceOption],
-    read: fn(&Settings) -> usize,
-    write: fn(&mut Settings, usize),
-}
-
-impl Choice {
-    /// Index of the current option.
-    pub fn get(&self, settings: &Settings) -> usize {
-        (self.read)(settings)
-    }
-
-    /// Sets the option; an index beyond the last is ignored.
-    pub fn set(&self, settings: &mut Settings, index: usize) {
-        if index < self.options.len() {
-            (self.write)(settings, index);
-        }
-    }
-}
-
-/// An option of a [`Choice`].
+/// An option of a [`Kind::Choice`].
 #[derive(Clone, Copy, Debug)]
 pub struct ChoiceOption {
     /// Stable name for files and command lines.
@@ -240,25 +219,6 @@ pub struct ChoiceOption {
     pub label: &'static str,
     /// What it does to the picture.
     pub help: &'static str,
-}
-
-/// On or off.
-#[derive(Clone, Copy, Debug)]
-pub struct Toggle {
-    read: fn(&Settings) -> bool,
-    write: fn(&mut Settings, bool),
-}
-
-impl Toggle {
-    /// Whether it is on.
-    pub fn get(&self, settings: &Settings) -> bool {
-        (self.read)(settings)
-    }
-
-    /// Turns it on or off.
-    pub fn set(&self, settings: &mut Settings, on: bool) {
-        (self.write)(settings, on);
-    }
 }
 
 /// A group of parameters, shown under one heading.
@@ -276,8 +236,6 @@ pub enum Group {
     Softness,
     /// Biases against self-shadowing.
     Bias,
-    /// Overrides for single maps.
-    Override,
     /// The sun.
     Light,
     /// Lens and speed of the camera.
@@ -288,14 +246,13 @@ pub enum Group {
 
 impl Group {
     /// All groups, in the order that they are shown.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 9] = [
         Self::Fit,
         Self::Splits,
         Self::Stabilise,
         Self::Map,
         Self::Softness,
         Self::Bias,
-        Self::Override,
         Self::Light,
         Self::Camera,
         Self::View,
@@ -315,7 +272,6 @@ impl Group {
             Self::Map => "map",
             Self::Softness => "softness",
             Self::Bias => "bias",
-            Self::Override => "override",
             Self::Light => "light",
             Self::Camera => "camera",
             Self::View => "view",
@@ -331,7 +287,6 @@ impl Group {
             Self::Map => "Shadow map",
             Self::Softness => "Soft edges",
             Self::Bias => "Bias",
-            Self::Override => "Single maps",
             Self::Light => "Light",
             Self::Camera => "Camera",
             Self::View => "View",
@@ -350,7 +305,6 @@ impl Group {
                 "How far the comparison is moved so that a surface does not shadow itself. Too little leaves \
                  acne, too much detaches shadows from their casters."
             }
-            Self::Override => "What one of several maps has of its own, map 1 being the nearest.",
             Self::Light => "Where the sun stands.",
             Self::Camera => "The lens and the speed of the camera.",
             Self::View => "What is drawn over or instead of the picture.",

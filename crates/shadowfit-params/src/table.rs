@@ -1,119 +1,57 @@
-//! The rows of the parameter table, in the order that they are shown.
+//! The rows of the parameter table, in the order that they are shown. A row is all that is said about its parameter.
 
 mod bias;
 mod fit;
 mod map;
-mod overrides;
 mod softness;
 mod splits;
 mod stabilise;
 mod tool;
 
-use super::{MIN_FAR_PER_NEAR, Parameter};
 use crate::tool::Settings;
+use crate::{MIN_FAR_PER_NEAR, Parameter, Value};
+
+/// The rows by their files.
+const ROWS: [&[Parameter]; 7] =
+    [fit::ROWS, splits::ROWS, stabilise::ROWS, map::ROWS, softness::ROWS, bias::ROWS, tool::ROWS];
+
+/// Number of all rows.
+const COUNT: usize = {
+    let (mut count, mut file) = (0, 0);
+    while file < ROWS.len() {
+        count += ROWS[file].len();
+        file += 1;
+    }
+    count
+};
 
 /// Every parameter of [`Settings`].
-pub static PARAMETERS: &[Parameter] = &[
-    fit::KIND,
-    fit::RECEIVERS,
-    fit::NEED,
-    fit::RECTANGLE,
-    fit::MAX_TEXEL_RATIO,
-    fit::LEAST_TEXEL,
-    fit::MAX_DISTANCE,
-    fit::CASTERS,
-    fit::CASTER_EXTENSION,
-    fit::BORDER,
-    fit::MARGIN,
-    fit::UP_X,
-    fit::UP_Y,
-    fit::UP_Z,
-    splits::COUNT,
-    splits::SCHEME,
-    splits::LAMBDA,
-    splits::MANUAL[0],
-    splits::MANUAL[1],
-    splits::MANUAL[2],
-    splits::MANUAL[3],
-    splits::MANUAL[4],
-    splits::MANUAL[5],
-    splits::MANUAL[6],
-    splits::CHOICE,
-    splits::BLEND,
-    splits::OVERLAP,
-    stabilise::MODE,
-    stabilise::MARGIN,
-    stabilise::GROWTH,
-    stabilise::WASTE,
-    stabilise::HORIZON,
-    map::RESOLUTION,
-    map::HEIGHT,
-    map::FORMAT,
-    map::FILTER,
-    map::FADE,
-    map::DEPTH,
-    softness::MEASURE,
-    softness::ANGLE,
-    softness::METRES,
-    softness::FLOOR,
-    softness::CEILING,
-    bias::CONSTANT,
-    bias::SLOPE,
-    bias::NORMAL_OFFSET,
-    bias::RECEIVER_PLANE,
-    bias::DEPTH_STEPS,
-    overrides::MAPS[0][0],
-    overrides::MAPS[0][1],
-    overrides::MAPS[0][2],
-    overrides::MAPS[1][0],
-    overrides::MAPS[1][1],
-    overrides::MAPS[1][2],
-    overrides::MAPS[2][0],
-    overrides::MAPS[2][1],
-    overrides::MAPS[2][2],
-    overrides::MAPS[3][0],
-    overrides::MAPS[3][1],
-    overrides::MAPS[3][2],
-    overrides::MAPS[4][0],
-    overrides::MAPS[4][1],
-    overrides::MAPS[4][2],
-    overrides::MAPS[5][0],
-    overrides::MAPS[5][1],
-    overrides::MAPS[5][2],
-    overrides::MAPS[6][0],
-    overrides::MAPS[6][1],
-    overrides::MAPS[6][2],
-    overrides::MAPS[7][0],
-    overrides::MAPS[7][1],
-    overrides::MAPS[7][2],
-    tool::HOUR,
-    tool::AZIMUTH,
-    tool::ELEVATION,
-    tool::ANIMATE,
-    tool::ANIMATE_SPEED,
-    tool::FOV_Y,
-    tool::NEAR,
-    tool::FAR,
-    tool::SPEED,
-    tool::MODE,
-    tool::JUDGE,
-    tool::MARKS,
-    tool::SHADOWS,
-    tool::INSET,
-    tool::INSET_MAP,
-    tool::INSET_BLACK,
-    tool::INSET_WHITE,
-    tool::OUTSIDE_BESIDE,
-    tool::FREEZE_FIT,
-    tool::PLAY,
-];
-
-const fn always_there(_: &Settings) -> bool {
-    true
-}
+pub static PARAMETERS: &[Parameter] = &{
+    let mut all = [ROWS[0][0]; COUNT];
+    let (mut next, mut file) = (0, 0);
+    while file < ROWS.len() {
+        let mut row = 0;
+        while row < ROWS[file].len() {
+            all[next] = ROWS[file][row];
+            (next, row) = (next + 1, row + 1);
+        }
+        file += 1;
+    }
+    all
+};
 
 const fn always_active(_: &Settings) -> Option<&'static str> {
     None
+}
+
+/// The value of a number that means none where it is the greatest.
+fn unless_greatest(number: f32) -> Value {
+    if number < f32::MAX { Value::Number(f64::from(number)) } else { Value::Unset }
+}
+
+/// The number of a value, the greatest one for none.
+fn or_greatest(value: Value) -> f32 {
+    value.number().map_or(f32::MAX, |number| number as f32)
 }
 
 /// Keeps the near plane below a distance that was just set.

@@ -1,33 +1,30 @@
-//! All settings as TOML, by the parameter table: what tools save.
+//! Settings as TOML, by the parameter table: what tools save, and the files of techniques.
 //!
-//! A table for each group and a line for each parameter, as in the files of techniques, and every parameter is written,
-//! so that a new default does not change what a person had set.
+//! A table for each group and a line for each parameter. Every parameter is written, so that a new default does not
+//! change what a person had set.
 
 use std::fmt::Write as _;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result, bail, ensure};
+use shadowfit::Technique;
 use shadowfit_params::tool::Settings;
-use shadowfit_params::{self as params, Group, PARAMETERS};
+use shadowfit_params::{self as params, Group, Kind, PARAMETERS, Parameter};
+use toml::Value;
 
-use crate::technique_file::{key, refuse_the_rest, text_of, value_of};
+/// A group that files of earlier versions have, of settings for single maps: it is ignored.
+const FORMER_GROUP: &str = "override";
 
 /// Settings as TOML text that [`settings_from_toml`] reads: a table for each group, its name behind `prefix`, such as
 /// `settings.`.
 ///
 /// Numbers that are not finite are left out.
 pub fn settings_to_toml(settings: &Settings, prefix: &str) -> String {
-    let mut text = String::new();
-    for group in Group::ALL {
-        let _ = writeln!(text, "[{prefix}{}]", group.id());
-        for parameter in group.parameters().filter(|parameter| parameter.is_present(settings)) {
-            let value = value_of(parameter, settings);
-            if !["NaN", "inf", "-inf"].contains(&value.trim_matches('"')) {
-                let _ = writeln!(text, "{} = {value}", key(parameter));
-            }
-        }
-        text.push('\n');
-    }
-    text
+    write_settings(settings, prefix, |_| true)
+}
+
+/// The tables of [`settings_to_toml`] that a technique is made of.
+pub fn technique_to_toml(technique: &Technique, prefix: &str) -> String {
+    write_settings(&Settings::default().with_technique(*technique), prefix, Group::is_technique)
 }
 
 /// Takes what a table says, and leaves everything else as it is.
@@ -37,24 +34,84 @@ pub fn settings_to_toml(settings: &Settings, prefix: &str) -> String {
 /// When the table has a group or a key that there is not, or a value that the parameter does not take; the settings are
 /// as they were then.
 pub fn settings_from_toml(table: &toml::Table, settings: &mut Settings) -> Result<()> {
+    read_settings(table, |_| true, settings)
+}
+
+/// The tables of some groups.
+pub(crate) fn write_settings(settings: &Settings, prefix: &str, has: impl Fn(Group) -> bool) -> String {
+    let mut text = String::new();
+    for group in Group::ALL.into_iter().filter(|group| has(*group)) {
+        let _ = writeln!(text, "[{prefix}{}]", group.id());
+        for parameter in group.parameters().filter(|parameter| parameter.is_present(settings)) {
+            if parameter.number(settings).is_none_or(f64::is_finite) {
+                let _ = writeln!(text, "{} = {}", key(parameter), value_of(parameter, settings));
+            }
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Takes what a table says of some groups. What is none of these is an error, and the settings are as they were then.
+pub(crate) fn read_settings(table: &toml::Table, has: impl Fn(Group) -> bool, settings: &mut Settings) -> Result<()> {
     let mut left = table.clone();
+    left.remove(FORMER_GROUP);
     let mut read = *settings;
-    for parameter in PARAMETERS {
+    // In the order of the table: a scheme stands before the numbers that only it has.
+    for parameter in PARAMETERS.iter().filter(|parameter| has(parameter.group)) {
         let Some(group) = left.get_mut(parameter.group.id()) else { continue };
         let group = group.as_table_mut().with_context(|| format!("{} is no table", parameter.group.id()))?;
         if let Some(value) = group.remove(key(parameter)) {
-            let value = text_of(&value).with_context(|| parameter.id)?;
-            params::set_from_str(&mut read, parameter.id, &value).map_err(|error| anyhow!("{error}"))?;
+            params::set_from_str(&mut read, parameter.id, &text_of(&value).with_context(|| parameter.id)?)?;
         }
     }
-    refuse_the_rest(&left, |_| true)?;
+    refuse_the_rest(&left, has)?;
     *settings = read;
+    Ok(())
+}
+
+/// A parameter's name in its group.
+fn key(parameter: &Parameter) -> &'static str {
+    parameter.id.split_once('.').map_or(parameter.id, |(_, key)| key)
+}
+
+/// A parameter's value as TOML has it: a number, true or false, or an option's id in quotes.
+fn value_of(parameter: &Parameter, settings: &Settings) -> String {
+    let text = params::format_value(settings, parameter);
+    let is_bare = parameter.number(settings).is_some() || matches!(parameter.kind, Kind::Toggle);
+    if is_bare { text } else { Value::from(text).to_string() }
+}
+
+/// A TOML value as the parameter table reads it.
+fn text_of(value: &Value) -> Result<String> {
+    Ok(match value {
+        Value::String(text) => text.clone(),
+        Value::Integer(number) => number.to_string(),
+        Value::Float(number) => number.to_string(),
+        Value::Boolean(on) => on.to_string(),
+        other => bail!("{other} is no number, text, true or false"),
+    })
+}
+
+/// Refuses what is left of a file: tables and keys that are not of the groups which it `has`.
+fn refuse_the_rest(file: &toml::Table, has: impl Fn(Group) -> bool) -> Result<()> {
+    let groups: Vec<Group> = Group::ALL.into_iter().filter(|group| has(*group)).collect();
+    for (name, value) in file {
+        let known = groups.iter().find(|group| group.id() == name);
+        let names = || groups.iter().map(|group| group.id()).collect::<Vec<_>>().join(", ");
+        let group = known.with_context(|| format!("there is no group {name:?}; there are {}", names()))?;
+        if let Some(key) = value.as_table().and_then(|group| group.keys().next()) {
+            let keys: Vec<&str> = group.parameters().map(self::key).collect();
+            bail!("there is no parameter {name}.{key}; under [{name}] there are {}", keys.join(", "));
+        }
+        ensure!(value.is_table(), "{name} is {value}; give a table");
+    }
     Ok(())
 }
 
 #[cfg(test)]
 mod tests {
-    use shadowfit::settings::{FitKind, SplitScheme};
+    use shadowfit::settings::SplitScheme;
     use shadowfit_params::tool::{ErrorMarks, ViewMode};
 
     use super::*;
@@ -80,18 +137,13 @@ mod tests {
     }
 
     #[test]
-    fn a_file_of_maps_without_overrides_takes_those_of_others_away() {
-        let settings = Settings::default();
-        let file = table(&settings_to_toml(&settings, ""));
-        let mut read = settings;
-        read.technique.overrides[1].resolution = Some(glam::uvec2(1024, 512));
-        read.technique.overrides[2].kind = Some(FitKind::Sphere);
-        settings_from_toml(&file, &mut read).expect("what was written");
-        assert_eq!(read, settings);
-        let mut own = settings;
-        own.technique.overrides[1].resolution = Some(glam::uvec2(2048, 1024));
-        settings_from_toml(&table(&settings_to_toml(&own, "")), &mut read).expect("what was written");
-        assert_eq!(read, own);
+    fn settings_of_single_maps_that_earlier_versions_had_are_ignored() {
+        let mut settings = Settings::default();
+        let text = "[bias]\nslope = 2\n[override]\nmap_1_kind = \"sphere\"\nmap_2_resolution = 512";
+        settings_from_toml(&table(text), &mut settings).expect("a file of an earlier version");
+        let mut expected = Settings::default();
+        expected.technique.bias.slope = 2.0;
+        assert_eq!(settings, expected);
     }
 
     #[test]

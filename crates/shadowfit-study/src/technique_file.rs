@@ -7,12 +7,14 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use anyhow::{Context, Result, anyhow, bail, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use shadowfit::presets::RECOMMENDED;
 use shadowfit::{PRESETS, Technique};
+use shadowfit_params::Group;
 use shadowfit_params::tool::Settings;
-use shadowfit_params::{self as params, Group, Parameter, technique_parameters};
 use toml::Value;
+
+use crate::settings_file::{read_settings, technique_to_toml};
 
 /// A technique with its name.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,19 +99,9 @@ impl NamedTechnique {
             Some(other) => bail!("{key} is {other}; give a text in quotes"),
         };
         let (name, summary) = (word("name")?, word("summary")?);
-        let mut technique = Technique::default();
-        // In the order of the table: a scheme stands before the numbers that only it has.
-        for parameter in technique_parameters() {
-            let (group, key) = (parameter.group.id(), key(parameter));
-            let Some(group) = file.get_mut(group) else { continue };
-            let group = group.as_table_mut().with_context(|| format!("{} is no table", parameter.group.id()))?;
-            if let Some(value) = group.remove(key) {
-                let value = text_of(&value).with_context(|| parameter.id)?;
-                params::set_technique_from_str(&mut technique, parameter.id, &value)
-                    .map_err(|error| anyhow!("{error}"))?;
-            }
-        }
-        refuse_the_rest(&file, Group::is_technique)?;
+        let mut settings = Settings::default();
+        read_settings(&file, Group::is_technique, &mut settings)?;
+        let technique = settings.technique;
         Ok(Self { name, summary, technique })
     }
 
@@ -120,75 +112,19 @@ impl NamedTechnique {
     /// When a number lies outside its parameter's range or is not finite, so that it could not be read back.
     pub fn to_toml(&self) -> Result<String> {
         let Self { name, summary, technique } = self;
-        let settings = Settings::default().with_technique(*technique);
         let mut text = format!("name = {}\nsummary = {}\n", Value::from(name.as_str()), Value::from(summary.as_str()));
-        for group in Group::ALL.into_iter().filter(|group| group.is_technique()) {
-            let mut lines = String::new();
-            for parameter in group.parameters().filter(|parameter| is_written(parameter, &settings)) {
-                let _ = writeln!(lines, "{} = {}", key(parameter), value_of(parameter, &settings));
-            }
-            if !lines.is_empty() {
-                let _ = write!(text, "\n[{}]\n{lines}", group.id());
-            }
-        }
+        let _ = writeln!(text, "\n{}", technique_to_toml(technique, "").trim_end());
         let read = Self::from_toml(&text).context("a number that no file can hold")?;
         ensure!(read == *self, "a number that no file can hold");
         Ok(text)
     }
 }
 
-/// Whether a parameter gets a line: settings of single maps only where there are any.
-fn is_written(parameter: &Parameter, settings: &Settings) -> bool {
-    let is_default = parameter.is_equal(settings, &Settings::default());
-    parameter.is_present(settings) && !(parameter.group == Group::Override && is_default)
-}
-
-/// A parameter's name in its group.
-pub(crate) fn key(parameter: &Parameter) -> &'static str {
-    parameter.id.split_once('.').map_or(parameter.id, |(_, key)| key)
-}
-
-/// A parameter's value as TOML has it: a number, true or false, or an option's id in quotes.
-pub(crate) fn value_of(parameter: &Parameter, settings: &Settings) -> String {
-    let mut text = String::new();
-    // Writing to a String cannot fail.
-    let _ = params::format_value(settings, parameter, &mut text);
-    let is_number = text.parse::<f64>().is_ok() && !matches!(parameter.kind, params::Kind::Choice(_));
-    if is_number || matches!(parameter.kind, params::Kind::Toggle(_)) { text } else { Value::from(text).to_string() }
-}
-
-/// A TOML value as the parameter table reads it.
-pub(crate) fn text_of(value: &Value) -> Result<String> {
-    Ok(match value {
-        Value::String(text) => text.clone(),
-        Value::Integer(number) => number.to_string(),
-        Value::Float(number) => number.to_string(),
-        Value::Boolean(on) => on.to_string(),
-        other => bail!("{other} is no number, text, true or false"),
-    })
-}
-
-/// Refuses what is left of a file: tables and keys that are not of the groups which it `has`.
-pub(crate) fn refuse_the_rest(file: &toml::Table, has: impl Fn(Group) -> bool) -> Result<()> {
-    let groups: Vec<Group> = Group::ALL.into_iter().filter(|group| has(*group)).collect();
-    for (name, value) in file {
-        let known = groups.iter().find(|group| group.id() == name);
-        let names = || groups.iter().map(|group| group.id()).collect::<Vec<_>>().join(", ");
-        let group = known.with_context(|| format!("there is no group {name:?}; there are {}", names()))?;
-        if let Some(key) = value.as_table().and_then(|group| group.keys().next()) {
-            let keys: Vec<&str> = group.parameters().map(self::key).collect();
-            bail!("there is no parameter {name}.{key}; under [{name}] there are {}", keys.join(", "));
-        }
-        ensure!(value.is_table(), "{name} is {value}; give a table");
-    }
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shadowfit::glam::{UVec2, Vec3};
-    use shadowfit::settings::{FitKind, MapOverride, SplitScheme};
+    use shadowfit::glam::Vec3;
+    use shadowfit::settings::SplitScheme;
 
     #[test]
     fn every_preset_is_written_and_read_back_the_same() {
@@ -204,13 +140,12 @@ mod tests {
     }
 
     #[test]
-    fn up_manual_splits_and_single_maps_survive_a_file() {
+    fn up_manual_splits_and_a_height_survive_a_file() {
         let mut technique = Technique::default()
             .with_splits(SplitScheme::Manual([0.1, 2.5, 7.0, 11.0, 12.3, 13.0, 99.9]))
             .with_resolution(1024, 768);
         technique.fit.up = Vec3::Z;
         technique.fit.border = Some(0.0);
-        technique.overrides[2] = MapOverride { kind: Some(FitKind::Sphere), resolution: Some(UVec2::new(512, 1024)) };
         let named = NamedTechnique { name: "\"quoted\"".to_owned(), summary: "a\nb".to_owned(), technique };
         assert_eq!(NamedTechnique::from_toml(&named.to_toml().expect("text")).expect("read back"), named);
     }

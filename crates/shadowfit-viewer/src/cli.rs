@@ -6,7 +6,7 @@ use anyhow::{Context, Result, anyhow, bail};
 use clap::Parser;
 use shadowfit::Technique;
 use shadowfit_params::tool::Settings;
-use shadowfit_params::{self as params, Kind, Parameter, ParameterError};
+use shadowfit_params::{self as params, Kind, Number, Parameter, ParameterError};
 use shadowfit_render::AdapterChoice;
 use shadowfit_scene::Scene;
 use shadowfit_study::NamedTechnique;
@@ -181,7 +181,7 @@ impl Arguments {
     fn apply_unless(
         &self,
         settings: &mut Settings,
-        is_ignored: impl Fn(&ParameterError<'_>) -> bool,
+        is_ignored: impl Fn(&ParameterError) -> bool,
     ) -> Result<Option<NamedTechnique>> {
         let find = |text: &String| find_technique(text, &settings.technique).context("--technique");
         let opened = self.technique.as_ref().map(find).transpose()?;
@@ -239,11 +239,10 @@ fn parameter_list() -> String {
     let defaults = Settings::default();
     let mut list = String::new();
     for parameter in params::PARAMETERS {
-        let mut value = String::new();
-        // Writing to a String cannot fail.
-        let _ = params::format_value(&defaults, parameter, &mut value);
+        let value = params::format_value(&defaults, parameter);
         // A parameter that exists only with a choice of another one has no value until then.
         let value = if parameter.is_present(&defaults) { format!("={value}") } else { String::new() };
+        // Writing to a String cannot fail.
         let _ = writeln!(list, "{}{value}  ({})\n    {}", parameter.id, range(parameter), parameter.help);
     }
     list
@@ -279,15 +278,14 @@ fn action_list() -> String {
 
 /// The values that a parameter takes.
 fn range(parameter: &Parameter) -> String {
-    let numbers = |min: f64, max: f64| format!("{min}..{max} {}", parameter.unit).trim_end().to_owned();
     match &parameter.kind {
-        Kind::Number(number) => numbers(number.min, number.max),
-        Kind::Optional(optional) => {
-            let unset = optional.unset.map_or(String::new(), |unset| format!(", or {}", unset.id));
-            numbers(optional.min, optional.max) + &unset
+        Kind::Number(Number { min, max, unset, .. }) => {
+            let numbers = format!("{min}..{max} {}", parameter.unit);
+            let unset = unset.map_or(String::new(), |unset| format!(", or {}", unset.option.id));
+            numbers.trim_end().to_owned() + &unset
         }
-        Kind::Choice(choice) => choice.options.iter().map(|option| option.id).collect::<Vec<_>>().join("|"),
-        Kind::Toggle(_) => "on|off".to_owned(),
+        Kind::Choice(options) => options.iter().map(|option| option.id).collect::<Vec<_>>().join("|"),
+        Kind::Toggle => "on|off".to_owned(),
     }
 }
 

@@ -33,9 +33,8 @@ pub(crate) fn command_line(
     let mut reached = *own;
     for parameter in PARAMETERS.iter().filter(|parameter| parameter.is_present(settings)) {
         if !parameter.is_equal(settings, &reached) {
-            let mut value = String::new();
+            let value = params::format_value(settings, parameter);
             // Writing to a String cannot fail.
-            let _ = params::format_value(settings, parameter, &mut value);
             let _ = write!(line, " --set {}", quoted(&format!("{}={value}", parameter.id)));
             parameter.copy(&mut reached, settings);
         }

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use shadowfit::Technique;
 use shadowfit_params::tool::Settings;
 use shadowfit_render::FlyCamera;
-use shadowfit_study::{NamedTechnique, settings_from_toml, settings_to_toml};
+use shadowfit_study::{NamedTechnique, settings_from_toml, settings_to_toml, technique_to_toml};
 
 use crate::files::write_whole;
 use crate::source::SceneSource;
@@ -229,16 +229,6 @@ impl Saved {
         }
         Ok(saved)
     }
-}
-
-/// The tables of a technique, their names behind a prefix.
-fn technique_to_toml(technique: &Technique, prefix: &str) -> String {
-    let all = settings_to_toml(&Settings::default().with_technique(*technique), prefix);
-    let is_technique = |table: &&str| {
-        let groups = shadowfit_params::Group::ALL;
-        groups.iter().any(|group| group.is_technique() && table.starts_with(&format!("[{prefix}{}]", group.id())))
-    };
-    all.split_inclusive("\n\n").filter(is_technique).collect()
 }
 
 fn technique(table: &toml::Table) -> Result<Technique> {

@@ -7,12 +7,10 @@ use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 use shadowfit::glam::UVec2;
-use shadowfit::settings::{
-    CasterPolicy, FilterKind, FitKind, MAX_MAPS, MapChoice, MapFormat, MapOverride, SoftRadius, SplitScheme,
-};
+use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MAX_MAPS, MapChoice, MapFormat, SoftRadius, SplitScheme};
 use shadowfit_egui::Panel;
 use shadowfit_params::tool::{InsetMaps, Settings};
-use shadowfit_params::{Group, Kind, PARAMETERS, parameter};
+use shadowfit_params::{Kind, Number, PARAMETERS, Value, parameter};
 
 use crate::host::{
     Host, INSET_MAP, control, harness, harness_with, inset_button, number, open_harness, query_control, type_into,
@@ -26,7 +24,6 @@ pub(crate) fn everything(splits: SplitScheme) -> Settings {
     let mut settings = Settings::default();
     let technique = &mut settings.technique;
     (technique.count, technique.splits) = (MAX_MAPS as u32, splits);
-    technique.overrides = [MapOverride { resolution: Some(UVec2::new(1024, 512)), ..MapOverride::default() }; MAX_MAPS];
     (technique.fit.kind, technique.fit.resolution) = (FitKind::Focused, UVec2::new(2048, 1024));
     (technique.fit.max_distance, technique.fit.border) = (100.0, Some(3.0));
     technique.fit.casters = CasterPolicy::Extend;
@@ -54,8 +51,7 @@ fn every_parameter_has_a_control_with_its_label() {
     for settings in all_rows() {
         let harness = open_harness(Host { settings, ..Host::default() });
         for parameter in PARAMETERS {
-            let goes = parameter.group == Group::Override && (parameter.inert)(&settings).is_some();
-            if parameter.is_present(&settings) && !goes {
+            if parameter.is_present(&settings) {
                 assert!(control(&harness, parameter).rect().is_positive(), "{}", parameter.id);
                 seen.insert(parameter.id);
             } else {
@@ -138,7 +134,6 @@ fn dragged_sliders_set_and_clamp_every_number() {
 fn whole_numbers_are_dragged_and_typed_in_whole_steps() {
     let mut harness = open_harness(Host { settings: everything(SplitScheme::Uniform), ..Host::default() });
     let frames = parameter("stabilise.horizon").expect("a row");
-    let Kind::Number(number) = &frames.kind else { panic!("a number") };
     for step in 1..20 {
         let rect = control(&harness, frames).rect();
         let place = rect.left_center() + Vec2::new(rect.width() * step as f32 / 20.0, 0.0);
@@ -146,7 +141,7 @@ fn whole_numbers_are_dragged_and_typed_in_whole_steps() {
         harness.run();
         harness.drop_at(place);
         harness.run();
-        let value = number.get(&harness.state().settings);
+        let value = frames.number(&harness.state().settings).expect("a number");
         assert_eq!(value, value.round());
     }
     type_into(&mut harness, "map.resolution", "1536");
@@ -165,10 +160,11 @@ fn check_boxes_and_lists_set_their_parameters() {
         harness.state_mut().settings = settings;
         harness.run();
         match &parameter.kind {
-            Kind::Number(_) | Kind::Optional(_) => continue,
-            Kind::Toggle(_) => control(&harness, parameter).click(),
-            Kind::Choice(choice) => {
-                let next = choice.options[(choice.get(&settings) + 1) % choice.options.len()].label;
+            Kind::Number(_) => continue,
+            Kind::Toggle => control(&harness, parameter).click(),
+            Kind::Choice(options) => {
+                let Some(Value::Option(index)) = parameter.get(&settings) else { panic!("{}", parameter.id) };
+                let next = options[(index + 1) % options.len()].label;
                 control(&harness, parameter).click();
                 harness.run();
                 let is_option =
@@ -184,17 +180,15 @@ fn check_boxes_and_lists_set_their_parameters() {
 
 #[test]
 fn numbers_that_need_not_be_there_turn_on_and_off() {
-    let mut settings = Settings::default();
-    // The resolution of map 1 makes room for its height.
-    settings.technique.overrides[0].resolution = Some(UVec2::splat(256));
+    let settings = Settings::default();
     let mut harness = open_harness(Host { settings, ..Host::default() });
-    for id in ["fit.max_distance", "fit.border", "map.height", "override.map_1_height", "override.map_4_resolution"] {
+    for id in ["fit.max_distance", "fit.border", "map.height", "light.hour"] {
         let parameter = parameter(id).expect(id);
-        let Kind::Optional(optional) = parameter.kind else { panic!("{id} is always there") };
+        let Kind::Number(Number { unset: Some(unset), .. }) = parameter.kind else { panic!("{id} is always there") };
         assert!(harness.query_by_role_and_label(Role::Slider, parameter.label).is_none(), "{id}");
         unset_box(&harness, parameter).click();
         harness.run();
-        assert_eq!(optional.get(&harness.state().settings), Some(optional.initial), "{id}");
+        assert_eq!(parameter.number(&harness.state().settings), Some(unset.initial), "{id}");
         assert!(control(&harness, parameter).rect().is_positive(), "{id}");
         unset_box(&harness, parameter).click();
         harness.run();
@@ -264,24 +258,6 @@ fn lambda_is_shown_with_practical_splits_alone_and_splits_with_manual_ones() {
     type_into(&mut harness, "splits.manual_2", "12.5");
     let SplitScheme::Manual(splits) = harness.state().settings.technique.splits else { panic!("they stay manual") };
     assert_eq!(splits[..3], [1.0, 12.5, 1.0]);
-}
-
-#[test]
-fn single_maps_have_rows_while_they_exist_and_are_folded_away_at_first() {
-    let first = parameter("override.map_1_kind").expect("a row");
-    let mut harness = harness(Host::default());
-    assert!(query_control(&harness, first).is_none());
-    harness.get_by_label("Single maps").click();
-    harness.run();
-    for count in [1, 3, 8] {
-        harness.state_mut().settings.technique.count = count;
-        harness.run();
-        for map in 1..=MAX_MAPS {
-            let id = format!("override.map_{map}_resolution");
-            let parameter = parameter(&id).expect("a row");
-            assert_eq!(query_control(&harness, parameter).is_some(), map <= count as usize, "{id} of {count}");
-        }
-    }
 }
 
 #[test]

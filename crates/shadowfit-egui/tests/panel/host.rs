@@ -11,7 +11,7 @@ use shadowfit_egui::{
 };
 use shadowfit_params::figures::Figures;
 use shadowfit_params::tool::Settings;
-use shadowfit_params::{Kind, Parameter, parameter};
+use shadowfit_params::{Kind, Number, Parameter, Value, parameter};
 
 /// Higher than all that the panel holds, so that nothing is scrolled out of view.
 pub(crate) const HEIGHT: f32 = 4600.0;
@@ -131,15 +131,14 @@ pub(crate) fn harness_with(host: Host, section: &str) -> Harness<'static, Host> 
 pub(crate) fn query_control<'a>(harness: &'a Harness<'_, Host>, parameter: &Parameter) -> Option<Node<'a>> {
     let (role, label) = match &parameter.kind {
         Kind::Number(_) if parameter.id == INSET_MAP => (Role::RadioButton, inset_button(1)),
+        Kind::Number(Number { unset: Some(unset), .. })
+            if parameter.get(&harness.state().settings) == Some(Value::Unset) =>
+        {
+            (Role::CheckBox, format!("{}: {}", parameter.label, unset.option.label))
+        }
         Kind::Number(_) => (Role::Slider, parameter.label.to_owned()),
-        Kind::Optional(optional) => match optional.unset {
-            Some(unset) if optional.get(&harness.state().settings).is_none() => {
-                (Role::CheckBox, format!("{}: {}", parameter.label, unset.label))
-            }
-            _ => (Role::Slider, parameter.label.to_owned()),
-        },
         Kind::Choice(_) => (Role::ComboBox, parameter.label.to_owned()),
-        Kind::Toggle(_) => (Role::CheckBox, parameter.label.to_owned()),
+        Kind::Toggle => (Role::CheckBox, parameter.label.to_owned()),
     };
     find(harness, role, &label)
 }
@@ -163,18 +162,14 @@ pub(crate) fn inset_button(map: usize) -> String {
 
 /// Least and greatest value of a number, whether it has to be there or not, and its value.
 pub(crate) fn number(parameter: &Parameter, settings: &Settings) -> Option<(f64, f64, f64)> {
-    match &parameter.kind {
-        Kind::Number(number) => Some((number.min, number.max, number.get(settings))),
-        Kind::Optional(optional) => optional.get(settings).map(|value| (optional.min, optional.max, value)),
-        Kind::Choice(_) | Kind::Toggle(_) => None,
-    }
+    let Kind::Number(Number { min, max, .. }) = parameter.kind else { return None };
+    parameter.number(settings).map(|value| (min, max, value))
 }
 
 /// The check box of a number that need not be there.
 pub(crate) fn unset_box<'a>(harness: &'a Harness<'_, Host>, parameter: &Parameter) -> Node<'a> {
-    let Kind::Optional(optional) = &parameter.kind else { panic!("{} is always there", parameter.id) };
-    let unset = optional.unset.expect("it has a name for no number");
-    find(harness, Role::CheckBox, &format!("{}: {}", parameter.label, unset.label)).expect(parameter.id)
+    let Kind::Number(Number { unset: Some(unset), .. }) = parameter.kind else { panic!("{}", parameter.id) };
+    find(harness, Role::CheckBox, &format!("{}: {}", parameter.label, unset.option.label)).expect(parameter.id)
 }
 
 pub(crate) fn number_field<'a>(harness: &'a Harness<'_, Host>, id: &str) -> Node<'a> {

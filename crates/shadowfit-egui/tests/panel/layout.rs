@@ -8,7 +8,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use shadowfit::settings::SplitScheme;
 use shadowfit_egui::{Artefact, PANEL_WIDTH, Tune};
 use shadowfit_params::tool::Settings;
-use shadowfit_params::{Kind, PARAMETERS};
+use shadowfit_params::{Kind, Number, PARAMETERS, Value};
 
 use crate::controls::{all_rows, everything};
 use crate::host::{HEIGHT, Host, builder, find, harness_of, open_harness, open_sections, query_control};
@@ -58,17 +58,18 @@ fn visit(shape: &Shape, found: &mut impl FnMut(Rect, &str, bool)) {
 
 fn set_widest(settings: &mut Settings) {
     for parameter in PARAMETERS {
-        match &parameter.kind {
-            Kind::Number(number) => number.set(settings, number.max),
-            Kind::Optional(optional) if optional.unset.is_none() => optional.set(settings, Some(optional.max)),
+        let value = match &parameter.kind {
             // Not its greatest, which the width has, and which is as wide.
-            Kind::Optional(optional) => optional.set(settings, Some(0.999 * optional.max)),
-            Kind::Choice(choice) if parameter.id != "splits.scheme" => {
-                choice.set(settings, usize::from(choice.get(&Settings::default()) == 0));
+            Kind::Number(Number { unset: Some(_), max, .. }) => Value::Number(0.999 * max),
+            Kind::Number(number) => Value::Number(number.max),
+            Kind::Choice(_) if parameter.id == "splits.scheme" => continue,
+            Kind::Choice(_) => {
+                let is_first = parameter.get(&Settings::default()) == Some(Value::Option(0));
+                Value::Option(usize::from(is_first))
             }
-            Kind::Choice(_) => {}
-            Kind::Toggle(toggle) => toggle.set(settings, !toggle.get(&Settings::default())),
-        }
+            Kind::Toggle => Value::Toggle(parameter.get(&Settings::default()) == Some(Value::Toggle(false))),
+        };
+        parameter.set(settings, value);
     }
 }
 

@@ -1,22 +1,25 @@
 //! The rows of the fit of each map.
 
-use super::{always_active, always_there, pull_near};
-use crate::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
 use shadowfit::settings::{CasterPolicy, FitKind, NeedSource, ReceiverSource, RectangleKind};
 
-/// The fits in the order of their options.
-const FIT_KINDS: [FitKind; 6] =
-    [FitKind::Focused, FitKind::Windows, FitKind::Oriented, FitKind::Sphere, FitKind::FrustumAabb, FitKind::XnaSample];
+use super::{always_active, or_greatest, pull_near, unless_greatest};
+use crate::field::{Field, choice, code, field};
+use crate::{ChoiceOption, Group, Kind, Number, Parameter, Unset};
 
-pub(super) const KIND: Parameter = Parameter {
-    id: "fit.kind",
-    group: Group::Fit,
-    label: "Fit",
-    unit: "",
-    help: "The rule that decides where a shadow map looks. Windows are sharp and still, focused maps as sharp, the sphere \
+/// Widest border, in texels: wider than the reach of filters but for the softest, and less than a quarter of the smallest
+/// map that the table allows.
+const WIDEST_BORDER: f64 = 32.0;
+
+/// In the order that they are shown.
+pub(super) const ROWS: &[Parameter] = &[
+    Parameter {
+        id: "fit.kind",
+        group: Group::Fit,
+        label: "Fit",
+        unit: "",
+        help: "The rule that decides where a shadow map looks. Windows are sharp and still, focused maps as sharp, the sphere \
            coarser and as still. The frustum box is the plainest; the XNA sample's rule loses casters outside the view.",
-    kind: Kind::Choice(Choice {
-        options: &[
+        kind: Kind::Choice(&[
             ChoiceOption {
                 id: "focused",
                 label: "Focused on the scene",
@@ -51,44 +54,31 @@ pub(super) const KIND: Parameter = Parameter {
                 help: "The box of Microsoft's XNA Shadow Mapping sample (2008), with twice the depth that is \
                        needed. It loses casters outside the view.",
             },
-        ],
-        read: |s| FIT_KINDS.iter().position(|kind| *kind == s.technique.fit.kind).unwrap_or(0),
-        write: |s, index| s.technique.fit.kind = FIT_KINDS[index],
-    }),
-    inert: always_active,
-};
-
-pub(super) const RECEIVERS: Parameter = Parameter {
-    id: "fit.receivers",
-    group: Group::Fit,
-    label: "Boxes of the scene",
-    unit: "",
-    help: "Which boxes tell the fit where the scene shows shadows. Clusters of triangles hug large meshes more closely \
+        ]),
+        field: choice!(technique.fit.kind: FitKind [Focused, Windows, Oriented, Sphere, FrustumAabb, XnaSample]),
+        inert: always_active,
+    },
+    Parameter {
+        id: "fit.receivers",
+        group: Group::Fit,
+        label: "Boxes of the scene",
+        unit: "",
+        help: "Which boxes tell the fit where the scene shows shadows. Clusters of triangles hug large meshes more closely \
            than one box for each object.",
-    kind: Kind::Choice(Choice {
-        options: &[
+        kind: Kind::Choice(&[
             ChoiceOption { id: "clusters", label: "Triangle clusters", help: "Boxes around clusters of triangles." },
             ChoiceOption { id: "objects", label: "Objects", help: "One box for each object." },
-        ],
-        read: |s| match s.technique.receivers {
-            ReceiverSource::Clusters => 0,
-            ReceiverSource::Objects => 1,
-        },
-        write: |s, index| {
-            s.technique.receivers = if index == 0 { ReceiverSource::Clusters } else { ReceiverSource::Objects };
-        },
-    }),
-    inert: always_active,
-};
-
-pub(super) const NEED: Parameter = Parameter {
-    id: "fit.need",
-    group: Group::Fit,
-    label: "Windows placed by",
-    unit: "",
-    help: "What says where fine texels are needed. A wrong guess costs sharpness and nothing else.",
-    kind: Kind::Choice(Choice {
-        options: &[
+        ]),
+        field: choice!(technique.receivers: ReceiverSource [Clusters, Objects]),
+        inert: always_active,
+    },
+    Parameter {
+        id: "fit.need",
+        group: Group::Fit,
+        label: "Windows placed by",
+        unit: "",
+        help: "What says where fine texels are needed. A wrong guess costs sharpness and nothing else.",
+        kind: Kind::Choice(&[
             ChoiceOption {
                 id: "last_frame",
                 label: "What is visible",
@@ -99,33 +89,20 @@ pub(super) const NEED: Parameter = Parameter {
                 label: "By boxes",
                 help: "What is visible of the scene's boxes, as an estimate: needs no depth buffer.",
             },
-        ],
-        read: |s| match s.technique.need {
-            NeedSource::LastFrame => 0,
-            NeedSource::Boxes => 1,
+        ]),
+        field: choice!(technique.need: NeedSource [LastFrame, Boxes]),
+        inert: |s| {
+            (s.technique.fit.kind != FitKind::Windows).then_some("Only windows are placed by it; set Fit to Windows.")
         },
-        write: |s, index| {
-            s.technique.need = if index == 0 { NeedSource::LastFrame } else { NeedSource::Boxes };
-        },
-    }),
-    inert: |s| {
-        (s.technique.fit.kind != FitKind::Windows).then_some("Only windows are placed by it; set Fit to Windows.")
     },
-};
-
-/// The rectangles in the order of their options.
-const RECTANGLES: [RectangleKind; 3] =
-    [RectangleKind::MinimumArea, RectangleKind::MinimumSquare, RectangleKind::AxisAligned];
-
-pub(super) const RECTANGLE: Parameter = Parameter {
-    id: "fit.rectangle",
-    group: Group::Fit,
-    label: "Rectangle",
-    unit: "",
-    help: "How the oriented and the focused fit lay their rectangle around what they cover. The least area has the \
+    Parameter {
+        id: "fit.rectangle",
+        group: Group::Fit,
+        label: "Rectangle",
+        unit: "",
+        help: "How the oriented and the focused fit lay their rectangle around what they cover. The least area has the \
            finest texels; a square has equal ones both ways.",
-    kind: Kind::Choice(Choice {
-        options: &[
+        kind: Kind::Choice(&[
             ChoiceOption { id: "minimum_area", label: "Least area", help: "Turned so that its area is least." },
             ChoiceOption {
                 id: "minimum_square",
@@ -137,113 +114,103 @@ pub(super) const RECTANGLE: Parameter = Parameter {
                 label: "Not turned",
                 help: "Along the light's own axes: larger, but it turns only when the light does.",
             },
-        ],
-        read: |s| RECTANGLES.iter().position(|kind| *kind == s.technique.fit.rectangle).unwrap_or(0),
-        write: |s, index| s.technique.fit.rectangle = RECTANGLES[index],
-    }),
-    inert: |s| {
-        (!matches!(s.technique.fit.kind, FitKind::Oriented | FitKind::Focused))
-            .then_some("Only the oriented and the focused fit can turn; choose one of them.")
-    },
-};
-
-pub(super) const MAX_TEXEL_RATIO: Parameter = Parameter {
-    id: "fit.max_texel_ratio",
-    group: Group::Fit,
-    label: "Longest texels",
-    unit: "×",
-    help: "How many times as long as wide a texel may be. Long texels blur edges more one way than the other; a low \
-           limit makes blur even and texels coarser.",
-    kind: Kind::Optional(Optional {
-        min: 1.0,
-        max: 64.0,
-        step: 0.1,
-        logarithmic: true,
-        decimals: 1,
-        unset: Some(ChoiceOption { id: "none", label: "no limit", help: "Texels may be of any shape." }),
-        initial: 2.0,
-        present: always_there,
-        read: |s| Some(f64::from(s.technique.fit.max_texel_ratio)).filter(|ratio| *ratio < f64::from(f32::MAX)),
-        write: |s, value| s.technique.fit.max_texel_ratio = value.map_or(f32::MAX, |value| value as f32),
-    }),
-    inert: |s| match s.technique.fit.kind {
-        FitKind::XnaSample => Some("The XNA sample's fit has no limit to its texels' shape; choose another fit."),
-        FitKind::Windows => {
-            Some("The texels of windows have a shape that the light's height sets; choose another fit.")
-        }
-        FitKind::Sphere if s.technique.fit.resolution.x == s.technique.fit.resolution.y => {
-            Some("The texels of the stable sphere are as long as wide already; choose another fit.")
-        }
-        _ => None,
-    },
-};
-
-pub(super) const LEAST_TEXEL: Parameter = Parameter {
-    id: "fit.least_texel",
-    group: Group::Fit,
-    label: "Least texel",
-    unit: "m",
-    help: "Maps have no finer texels than this; 0 is no limit. It keeps edges alike where the camera comes close, and a \
-           map that may be coarser covers more and moves less. Soft filters set a limit of their own.",
-    kind: Kind::Number(Number {
-        min: 0.0,
-        max: 10.0,
-        step: 0.001,
-        logarithmic: true,
-        decimals: 4,
-        read: |s| f64::from(s.technique.fit.least_texel),
-        write: |s, value| s.technique.fit.least_texel = value as f32,
-    }),
-    inert: |s| {
-        (s.technique.fit.kind == FitKind::XnaSample)
-            .then_some("The XNA sample's fit has no such limit; choose another fit.")
-    },
-};
-
-pub(super) const MAX_DISTANCE: Parameter = Parameter {
-    id: "fit.max_distance",
-    group: Group::Fit,
-    label: "Shadow distance",
-    unit: "m",
-    help: "Shadows end at this distance from the camera. Lower it to spend the texels near the camera, which \
-           sharpens shadows there; raise it when shadows vanish too close.",
-    kind: Kind::Optional(Optional {
-        min: 1.0,
-        max: 100_000.0,
-        step: 1.0,
-        logarithmic: true,
-        decimals: 1,
-        unset: Some(ChoiceOption {
-            id: "far_plane",
-            label: "far plane",
-            help: "Shadows reach as far as the camera sees.",
-        }),
-        initial: 100.0,
-        present: always_there,
-        read: |s| Some(f64::from(s.technique.fit.max_distance)).filter(|distance| *distance < f64::from(f32::MAX)),
-        write: |s, value| {
-            s.technique.fit.max_distance = value.map_or(f32::MAX, |value| value as f32);
-            if let Some(value) = value {
-                pull_near(s, value as f32);
-            }
+        ]),
+        field: choice!(technique.fit.rectangle: RectangleKind [MinimumArea, MinimumSquare, AxisAligned]),
+        inert: |s| {
+            (!matches!(s.technique.fit.kind, FitKind::Oriented | FitKind::Focused))
+                .then_some("Only the oriented and the focused fit can turn; choose one of them.")
         },
-    }),
-    inert: always_active,
-};
-
-/// The caster policies in the order of their options.
-const CASTER_POLICIES: [CasterPolicy; 5] =
-    [CasterPolicy::List, CasterPolicy::Extend, CasterPolicy::SceneBounds, CasterPolicy::DepthClamp, CasterPolicy::None];
-
-pub(super) const CASTERS: Parameter = Parameter {
-    id: "fit.casters",
-    group: Group::Fit,
-    label: "Casters",
-    unit: "",
-    help: "What places the map's near plane, before which casters are lost. The objects themselves place it best; the \
+    },
+    Parameter {
+        id: "fit.max_texel_ratio",
+        group: Group::Fit,
+        label: "Longest texels",
+        unit: "×",
+        help: "How many times as long as wide a texel may be. Long texels blur edges more one way than the other; a low \
+           limit makes blur even and texels coarser.",
+        kind: Kind::Number(Number {
+            min: 1.0,
+            max: 64.0,
+            step: 0.1,
+            logarithmic: true,
+            decimals: 1,
+            unset: Some(Unset {
+                option: ChoiceOption { id: "none", label: "no limit", help: "Texels may be of any shape." },
+                initial: 2.0,
+            }),
+        }),
+        field: Field {
+            get: |s| Some(unless_greatest(s.technique.fit.max_texel_ratio)),
+            set: |s, value| s.technique.fit.max_texel_ratio = or_greatest(value),
+            code: code!(fit.max_texel_ratio),
+            is_of_variant: false,
+        },
+        inert: |s| match s.technique.fit.kind {
+            FitKind::XnaSample => Some("The XNA sample's fit has no limit to its texels' shape; choose another fit."),
+            FitKind::Windows => {
+                Some("The texels of windows have a shape that the light's height sets; choose another fit.")
+            }
+            FitKind::Sphere if s.technique.fit.resolution.x == s.technique.fit.resolution.y => {
+                Some("The texels of the stable sphere are as long as wide already; choose another fit.")
+            }
+            _ => None,
+        },
+    },
+    Parameter {
+        id: "fit.least_texel",
+        group: Group::Fit,
+        label: "Least texel",
+        unit: "m",
+        help: "Maps have no finer texels than this; 0 is no limit. It keeps edges alike where the camera comes close, and a \
+           map that may be coarser covers more and moves less. Soft filters set a limit of their own.",
+        kind: Kind::Number(Number { min: 0.0, max: 10.0, step: 0.001, logarithmic: true, decimals: 4, unset: None }),
+        field: field!(technique.fit.least_texel),
+        inert: |s| {
+            (s.technique.fit.kind == FitKind::XnaSample)
+                .then_some("The XNA sample's fit has no such limit; choose another fit.")
+        },
+    },
+    Parameter {
+        id: "fit.max_distance",
+        group: Group::Fit,
+        label: "Shadow distance",
+        unit: "m",
+        help: "Shadows end at this distance from the camera. Lower it to spend the texels near the camera, which \
+           sharpens shadows there; raise it when shadows vanish too close.",
+        kind: Kind::Number(Number {
+            min: 1.0,
+            max: 100_000.0,
+            step: 1.0,
+            logarithmic: true,
+            decimals: 1,
+            unset: Some(Unset {
+                option: ChoiceOption {
+                    id: "far_plane",
+                    label: "far plane",
+                    help: "Shadows reach as far as the camera sees.",
+                },
+                initial: 100.0,
+            }),
+        }),
+        field: Field {
+            get: |s| Some(unless_greatest(s.technique.fit.max_distance)),
+            set: |s, value| {
+                s.technique.fit.max_distance = or_greatest(value);
+                pull_near(s, s.technique.fit.max_distance);
+            },
+            code: code!(fit.max_distance),
+            is_of_variant: false,
+        },
+        inert: always_active,
+    },
+    Parameter {
+        id: "fit.casters",
+        group: Group::Fit,
+        label: "Casters",
+        unit: "",
+        help: "What places the map's near plane, before which casters are lost. The objects themselves place it best; the \
            extension needs no knowledge of them.",
-    kind: Kind::Choice(Choice {
-        options: &[
+        kind: Kind::Choice(&[
             ChoiceOption {
                 id: "list",
                 label: "By objects",
@@ -270,119 +237,87 @@ pub(super) const CASTERS: Parameter = Parameter {
                 label: "None",
                 help: "At what is covered: casters before it are lost, which leaves holes, as in the XNA sample.",
             },
-        ],
-        read: |s| CASTER_POLICIES.iter().position(|policy| *policy == s.technique.fit.casters).unwrap_or(0),
-        write: |s, index| s.technique.fit.casters = CASTER_POLICIES[index],
-    }),
-    inert: |s| {
-        (s.technique.fit.kind == FitKind::XnaSample)
-            .then_some("The XNA sample's fit takes no account of casters; choose another fit.")
+        ]),
+        field: choice!(technique.fit.casters: CasterPolicy [List, Extend, SceneBounds, DepthClamp, None]),
+        inert: |s| {
+            (s.technique.fit.kind == FitKind::XnaSample)
+                .then_some("The XNA sample's fit takes no account of casters; choose another fit.")
+        },
     },
-};
-
-pub(super) const CASTER_EXTENSION: Parameter = Parameter {
-    id: "fit.caster_extension",
-    group: Group::Fit,
-    label: "Caster extension",
-    unit: "m",
-    help: "Moves the map's near plane toward the light, so that casters outside the view still throw their \
+    Parameter {
+        id: "fit.caster_extension",
+        group: Group::Fit,
+        label: "Caster extension",
+        unit: "m",
+        help: "Moves the map's near plane toward the light, so that casters outside the view still throw their \
            shadows into it. Raise it when shadows of tall or off-screen objects are missing; a long range \
            costs depth precision.",
-    kind: Kind::Number(Number {
-        min: 0.0,
-        max: 10_000.0,
-        step: 1.0,
-        logarithmic: true,
-        decimals: 1,
-        read: |s| f64::from(s.technique.fit.caster_extension),
-        write: |s, value| s.technique.fit.caster_extension = value as f32,
-    }),
-    inert: |s| match (s.technique.fit.kind, s.technique.fit.casters) {
-        (FitKind::XnaSample, _) => Some("The XNA sample's fit has no caster extension; choose another fit."),
-        (_, CasterPolicy::Extend) => None,
-        (_, CasterPolicy::List | CasterPolicy::SceneBounds) => {
-            Some("The objects place the near plane where they are known; set Casters to By extension.")
-        }
-        _ => Some("The near plane is placed by something else; set Casters to By extension."),
+        kind: Kind::Number(Number { min: 0.0, max: 10_000.0, step: 1.0, logarithmic: true, decimals: 1, unset: None }),
+        field: field!(technique.fit.caster_extension),
+        inert: |s| match (s.technique.fit.kind, s.technique.fit.casters) {
+            (FitKind::XnaSample, _) => Some("The XNA sample's fit has no caster extension; choose another fit."),
+            (_, CasterPolicy::Extend) => None,
+            (_, CasterPolicy::List | CasterPolicy::SceneBounds) => {
+                Some("The objects place the near plane where they are known; set Casters to By extension.")
+            }
+            _ => Some("The near plane is placed by something else; set Casters to By extension."),
+        },
     },
-};
-
-/// Widest border, in texels: wider than the reach of filters but for the softest, and less than a quarter of the smallest
-/// map that the table allows.
-const WIDEST_BORDER: f64 = 32.0;
-
-pub(super) const BORDER: Parameter = Parameter {
-    id: "fit.border",
-    group: Group::Fit,
-    label: "Border",
-    unit: "texels",
-    help: "Texels that stay free between what is covered and the map's border, so that the filter and the normal offset \
+    Parameter {
+        id: "fit.border",
+        group: Group::Fit,
+        label: "Border",
+        unit: "texels",
+        help: "Texels that stay free between what is covered and the map's border, so that the filter and the normal offset \
            find depths there.",
-    kind: Kind::Optional(Optional {
-        min: 0.0,
-        max: WIDEST_BORDER,
-        step: 0.5,
-        logarithmic: false,
-        decimals: 1,
-        unset: Some(ChoiceOption {
-            id: "auto",
-            label: "from filter and bias",
-            help: "As many as the filter and the normal offset can reach.",
+        kind: Kind::Number(Number {
+            min: 0.0,
+            max: WIDEST_BORDER,
+            step: 0.5,
+            logarithmic: false,
+            decimals: 1,
+            unset: Some(Unset {
+                option: ChoiceOption {
+                    id: "auto",
+                    label: "from filter and bias",
+                    help: "As many as the filter and the normal offset can reach.",
+                },
+                initial: 3.0,
+            }),
         }),
-        initial: 3.0,
-        present: always_there,
-        read: |s| s.technique.fit.border.map(f64::from),
-        write: |s, value| s.technique.fit.border = value.map(|value| value as f32),
-    }),
-    inert: |s| {
-        (s.technique.fit.kind == FitKind::XnaSample)
-            .then_some("The XNA sample's fit keeps no texels free; choose another fit, or use the box margin.")
+        field: field!(technique.fit.border),
+        inert: |s| {
+            (s.technique.fit.kind == FitKind::XnaSample)
+                .then_some("The XNA sample's fit keeps no texels free; choose another fit, or use the box margin.")
+        },
     },
-};
-
-pub(super) const MARGIN: Parameter = Parameter {
-    id: "fit.margin",
-    group: Group::Fit,
-    label: "Box margin",
-    unit: "m",
-    help: "Enlarges the light's box on all six sides: the XNA sample's own cure for missing casters. It spreads \
+    Parameter {
+        id: "fit.margin",
+        group: Group::Fit,
+        label: "Box margin",
+        unit: "m",
+        help: "Enlarges the light's box on all six sides: the XNA sample's own cure for missing casters. It spreads \
            the same texels over more ground, so prefer the choice of casters where there is one.",
-    kind: Kind::Number(Number {
-        min: 0.0,
-        max: 1_000.0,
-        step: 0.1,
-        logarithmic: true,
-        decimals: 1,
-        read: |s| f64::from(s.technique.fit.margin),
-        write: |s, value| s.technique.fit.margin = value as f32,
-    }),
-    inert: always_active,
-};
+        kind: Kind::Number(Number { min: 0.0, max: 1_000.0, step: 0.1, logarithmic: true, decimals: 1, unset: None }),
+        field: field!(technique.fit.margin),
+        inert: always_active,
+    },
+    up("fit.up_x", "Up, x", field!(technique.fit.up.x)),
+    up("fit.up_y", "Up, y", field!(technique.fit.up.y)),
+    up("fit.up_z", "Up, z", field!(technique.fit.up.z)),
+];
 
 /// A component of the direction that is up.
-macro_rules! up {
-    ($name:ident, $id:literal, $label:literal, $axis:ident) => {
-        pub(super) const $name: Parameter = Parameter {
-            id: $id,
-            group: Group::Fit,
-            label: $label,
-            unit: "",
-            help: "Which way is up in the world, as three components of a direction: 0, 1, 0 where y is up, 0, 0, 1 \
-                   where z is. The map's axes follow it.",
-            kind: Kind::Number(Number {
-                min: -1.0,
-                max: 1.0,
-                step: 0.1,
-                logarithmic: false,
-                decimals: 2,
-                read: |s| f64::from(s.technique.fit.up.$axis),
-                write: |s, value| s.technique.fit.up.$axis = value as f32,
-            }),
-            inert: always_active,
-        };
-    };
+const fn up(id: &'static str, label: &'static str, field: Field) -> Parameter {
+    Parameter {
+        id,
+        group: Group::Fit,
+        label,
+        unit: "",
+        help: "Which way is up in the world, as three components of a direction: 0, 1, 0 where y is up, 0, 0, 1 \
+               where z is. The map's axes follow it.",
+        kind: Kind::Number(Number { min: -1.0, max: 1.0, step: 0.1, logarithmic: false, decimals: 2, unset: None }),
+        field,
+        inert: always_active,
+    }
 }
-
-up!(UP_X, "fit.up_x", "Up, x", x);
-up!(UP_Y, "fit.up_y", "Up, y", y);
-up!(UP_Z, "fit.up_z", "Up, z", z);

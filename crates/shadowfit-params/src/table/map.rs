@@ -1,78 +1,89 @@
 //! The rows of a shadow map: what it stores and how it is read.
 
 use glam::UVec2;
-
-use super::{always_active, always_there};
-use crate::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
 use shadowfit::DepthConvention;
 use shadowfit::settings::{FilterKind, MapFormat};
+
+use super::always_active;
+use crate::field::{Field, Plain as _, choice, code, field};
+use crate::{ChoiceOption, Group, Kind, Number, Parameter, Unset, Value};
 
 /// Least and greatest side of a map, in texels.
 pub(super) const SIDES: (f64, f64) = (256.0, 8192.0);
 
-pub(super) const RESOLUTION: Parameter = Parameter {
-    id: "map.resolution",
-    group: Group::Map,
-    label: "Resolution",
-    unit: "texels",
-    help: "Width of each shadow map, and its height where it is square. Doubling it makes edges half as jagged and \
+/// In the order that they are shown.
+pub(super) const ROWS: &[Parameter] = &[
+    Parameter {
+        id: "map.resolution",
+        group: Group::Map,
+        label: "Resolution",
+        unit: "texels",
+        help: "Width of each shadow map, and its height where it is square. Doubling it makes edges half as jagged and \
            takes four times the memory and fill rate: a map of 2048 texels has 16 MiB.",
-    kind: Kind::Number(Number {
-        min: SIDES.0,
-        max: SIDES.1,
-        step: 256.0,
-        logarithmic: true,
-        decimals: 0,
-        read: |s| f64::from(s.technique.fit.resolution.x),
-        write: |s, value| {
-            let resolution = &mut s.technique.fit.resolution;
-            let is_square = resolution.x == resolution.y;
-            resolution.x = value as u32;
-            if is_square {
+        kind: Kind::Number(Number {
+            min: SIDES.0,
+            max: SIDES.1,
+            step: 256.0,
+            logarithmic: true,
+            decimals: 0,
+            unset: None,
+        }),
+        field: Field {
+            get: |s| Some(s.technique.fit.resolution.x.value()),
+            set: |s, value| {
+                let resolution = &mut s.technique.fit.resolution;
+                let is_square = resolution.x == resolution.y;
+                resolution.x.assign(value);
+                if is_square {
+                    resolution.y = resolution.x;
+                }
+            },
+            code: code!(fit.resolution),
+            is_of_variant: false,
+        },
+        inert: always_active,
+    },
+    Parameter {
+        id: "map.height",
+        group: Group::Map,
+        label: "Height",
+        unit: "texels",
+        help: "Height of each shadow map, if they are not square.",
+        kind: Kind::Number(Number {
+            min: SIDES.0,
+            max: SIDES.1,
+            step: 256.0,
+            logarithmic: true,
+            decimals: 0,
+            unset: Some(Unset {
+                option: ChoiceOption { id: "square", label: "as the width", help: "Maps are square." },
+                initial: 1024.0,
+            }),
+        }),
+        field: Field {
+            get: |s| {
+                let UVec2 { x, y } = s.technique.fit.resolution;
+                Some(if x == y { Value::Unset } else { y.value() })
+            },
+            set: |s, value| {
+                let resolution = &mut s.technique.fit.resolution;
                 resolution.y = resolution.x;
-            }
+                resolution.y.assign(value);
+            },
+            code: code!(fit.resolution),
+            is_of_variant: false,
         },
-    }),
-    inert: always_active,
-};
-
-pub(super) const HEIGHT: Parameter = Parameter {
-    id: "map.height",
-    group: Group::Map,
-    label: "Height",
-    unit: "texels",
-    help: "Height of each shadow map, if they are not square.",
-    kind: Kind::Optional(Optional {
-        min: SIDES.0,
-        max: SIDES.1,
-        step: 256.0,
-        logarithmic: true,
-        decimals: 0,
-        unset: Some(ChoiceOption { id: "square", label: "as the width", help: "Maps are square." }),
-        initial: 1024.0,
-        present: always_there,
-        read: |s| {
-            let UVec2 { x, y } = s.technique.fit.resolution;
-            (x != y).then_some(f64::from(y))
-        },
-        write: |s, value| {
-            let resolution = &mut s.technique.fit.resolution;
-            resolution.y = value.map_or(resolution.x, |value| value as u32);
-        },
-    }),
-    inert: always_active,
-};
-
-pub(super) const FORMAT: Parameter = Parameter {
-    id: "map.format",
-    group: Group::Map,
-    label: "Format",
-    unit: "",
-    help: "The texture format that stores the depths. Those with 32 bits give the same shadows; coarser ones take less \
+        inert: always_active,
+    },
+    Parameter {
+        id: "map.format",
+        group: Group::Map,
+        label: "Format",
+        unit: "",
+        help: "The texture format that stores the depths. Those with 32 bits give the same shadows; coarser ones take less \
            memory, and need a larger bias (Depth steps). Colour formats are compared in the shader, as the XNA sample \
            does.",
-    kind: Kind::Choice(Choice {
-        options: &[
+        kind: Kind::Choice(&[
             ChoiceOption {
                 id: "depth32float",
                 label: "Depth 32-bit float",
@@ -106,23 +117,19 @@ pub(super) const FORMAT: Parameter = Parameter {
                 label: "8-bit grey",
                 help: "256 steps over the map's depth: far too coarse, as the bands of acne show.",
             },
-        ],
-        read: |s| MapFormat::ALL.iter().position(|format| *format == s.technique.format).unwrap_or(0),
-        write: |s, index| s.technique.format = MapFormat::ALL.get(index).copied().unwrap_or_default(),
-    }),
-    inert: always_active,
-};
-
-pub(super) const FILTER: Parameter = Parameter {
-    id: "map.filter",
-    group: Group::Map,
-    label: "Filter",
-    unit: "",
-    help: "How the stored depths become a shadow. A wider filter softens jagged edges and loses shadows that are \
+        ]),
+        field: choice!(technique.format: MapFormat [Depth32Float, Depth16Unorm, R32Float, R16Float, Rgba8Packed, R8Grey]),
+        inert: always_active,
+    },
+    Parameter {
+        id: "map.filter",
+        group: Group::Map,
+        label: "Filter",
+        unit: "",
+        help: "How the stored depths become a shadow. A wider filter softens jagged edges and loses shadows that are \
            thinner than it. It also reaches farther, so that the normal offset has to grow with it; the receiver \
            plane does not.",
-    kind: Kind::Choice(Choice {
-        options: &[
+        kind: Kind::Choice(&[
             ChoiceOption {
                 id: "point",
                 label: "Point",
@@ -168,44 +175,34 @@ pub(super) const FILTER: Parameter = Parameter {
                 help: "A disc as wide as the distance to the caster makes the edge: sharp where a shadow begins, soft \
                        far from what casts it. The dearest. It cannot be had with depth clamp.",
             },
-        ],
-        read: |s| FilterKind::ALL.iter().position(|filter| *filter == s.technique.filter).unwrap_or(0),
-        write: |s, index| s.technique.filter = FilterKind::ALL.get(index).copied().unwrap_or_default(),
-    }),
-    inert: always_active,
-};
-
-pub(super) const FADE: Parameter = Parameter {
-    id: "map.fade",
-    group: Group::Map,
-    label: "Fade out",
-    unit: "",
-    help: "Share of the shadow distance over which shadows fade away before its end: 0.1 is the last tenth. 0 ends them \
-           at a line.",
-    kind: Kind::Number(Number {
-        min: 0.0,
-        max: 1.0,
-        step: 0.05,
-        logarithmic: false,
-        decimals: 2,
-        read: |s| f64::from(s.technique.fade),
-        write: |s, value| s.technique.fade = value as f32,
-    }),
-    inert: |s| {
-        (s.technique.fit.max_distance == f32::MAX)
-            .then_some("Shadows end with the view; set Shadow distance to a number (fit.max_distance = 100).")
+        ]),
+        field: choice!(technique.filter: FilterKind [
+            Point, Hardware2x2, Pcf3x3, Pcf5x5, Pcf7x7, Vogel8, Vogel16, Vogel32, Pcss
+        ]),
+        inert: always_active,
     },
-};
-
-pub(super) const DEPTH: Parameter = Parameter {
-    id: "map.depth",
-    group: Group::Map,
-    label: "Depth convention",
-    unit: "",
-    help: "Which depths the near and far planes of the map get. The picture stays the same; choose what your \
+    Parameter {
+        id: "map.fade",
+        group: Group::Map,
+        label: "Fade out",
+        unit: "",
+        help: "Share of the shadow distance over which shadows fade away before its end: 0.1 is the last tenth. 0 ends them \
+           at a line.",
+        kind: Kind::Number(Number { min: 0.0, max: 1.0, step: 0.05, logarithmic: false, decimals: 2, unset: None }),
+        field: field!(technique.fade),
+        inert: |s| {
+            (s.technique.fit.max_distance == f32::MAX)
+                .then_some("Shadows end with the view; set Shadow distance to a number (fit.max_distance = 100).")
+        },
+    },
+    Parameter {
+        id: "map.depth",
+        group: Group::Map,
+        label: "Depth convention",
+        unit: "",
+        help: "Which depths the near and far planes of the map get. The picture stays the same; choose what your \
            graphics API and depth comparison expect.",
-    kind: Kind::Choice(Choice {
-        options: &[
+        kind: Kind::Choice(&[
             ChoiceOption {
                 id: "zero_to_one",
                 label: "0 to 1",
@@ -213,19 +210,8 @@ pub(super) const DEPTH: Parameter = Parameter {
             },
             ChoiceOption { id: "reversed", label: "1 to 0 (reversed)", help: "Near is 1, far is 0." },
             ChoiceOption { id: "negative_one_to_one", label: "-1 to 1 (OpenGL)", help: "Near is -1, far is 1." },
-        ],
-        read: |s| match s.technique.fit.depth {
-            DepthConvention::ZeroToOne => 0,
-            DepthConvention::Reversed => 1,
-            DepthConvention::NegativeOneToOne => 2,
-        },
-        write: |s, index| {
-            s.technique.fit.depth = match index {
-                0 => DepthConvention::ZeroToOne,
-                1 => DepthConvention::Reversed,
-                _ => DepthConvention::NegativeOneToOne,
-            };
-        },
-    }),
-    inert: always_active,
-};
+        ]),
+        field: choice!(technique.fit.depth: DepthConvention [ZeroToOne, Reversed, NegativeOneToOne]),
+        inert: always_active,
+    },
+];

@@ -1,27 +1,11 @@
 //! The rows of the splits: how many maps there are, where one ends and the next begins, and which one a point reads.
 
-use super::always_active;
-use crate::{Choice, ChoiceOption, Group, Kind, Number, Optional, Parameter};
 use shadowfit::settings::{FitKind, MAX_BLEND, MAX_MAPS, MapChoice, SplitScheme};
 
-pub(super) const COUNT: Parameter = Parameter {
-    id: "splits.count",
-    group: Group::Splits,
-    label: "Maps",
-    unit: "",
-    help: "How many shadow maps share the view. Each more makes shadows sharper, and costs the memory and the time of a \
-           map.",
-    kind: Kind::Number(Number {
-        min: 1.0,
-        max: MAX_MAPS as f64,
-        step: 1.0,
-        logarithmic: false,
-        decimals: 0,
-        read: |s| f64::from(s.technique.count),
-        write: |s, value| s.technique.count = value as u32,
-    }),
-    inert: always_active,
-};
+use super::always_active;
+use crate::field::{Field, choice, code, field};
+use crate::tool::Settings;
+use crate::{ChoiceOption, Group, Kind, Number, Parameter, Value};
 
 /// Initial λ of the practical splits, the usual one of other engines.
 const USUAL_LAMBDA: f32 = 0.5;
@@ -29,15 +13,34 @@ const USUAL_LAMBDA: f32 = 0.5;
 /// Initial view depths of manual splits, in metres: each twice the one before.
 const USUAL_SPLITS: [f32; MAX_MAPS - 1] = [5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0];
 
-pub(super) const SCHEME: Parameter = Parameter {
-    id: "splits.scheme",
-    group: Group::Splits,
-    label: "Splits",
-    unit: "",
-    help: "Where one map ends and the next begins. The first two look at the scene and even out how sharp its shadows \
+/// In the order that they are shown.
+pub(super) const ROWS: &[Parameter] = &[
+    Parameter {
+        id: "splits.count",
+        group: Group::Splits,
+        label: "Maps",
+        unit: "",
+        help: "How many shadow maps share the view. Each more makes shadows sharper, and costs the memory and the time of a \
+           map.",
+        kind: Kind::Number(Number {
+            min: 1.0,
+            max: MAX_MAPS as f64,
+            step: 1.0,
+            logarithmic: false,
+            decimals: 0,
+            unset: None,
+        }),
+        field: field!(technique.count),
+        inert: always_active,
+    },
+    Parameter {
+        id: "splits.scheme",
+        group: Group::Splits,
+        label: "Splits",
+        unit: "",
+        help: "Where one map ends and the next begins. The first two look at the scene and even out how sharp its shadows \
            are; the others are spread over the distances in view by a formula.",
-    kind: Kind::Choice(Choice {
-        options: &[
+        kind: Kind::Choice(&[
             ChoiceOption {
                 id: "from_histogram",
                 label: "From what is visible",
@@ -60,107 +63,49 @@ pub(super) const SCHEME: Parameter = Parameter {
             },
             ChoiceOption { id: "uniform", label: "Uniform", help: "All maps serve equally long ranges." },
             ChoiceOption { id: "manual", label: "Manual", help: "At distances that are set one by one." },
-        ],
-        read: |s| match s.technique.splits {
-            SplitScheme::FromHistogram => 0,
-            SplitScheme::FromBoxes => 1,
-            SplitScheme::Practical(_) => 2,
-            SplitScheme::Logarithmic => 3,
-            SplitScheme::Uniform => 4,
-            SplitScheme::Manual(_) => 5,
+        ]),
+        field: Field {
+            get: |s| {
+                Some(Value::Option(match s.technique.splits {
+                    SplitScheme::FromHistogram => 0,
+                    SplitScheme::FromBoxes => 1,
+                    SplitScheme::Practical(_) => 2,
+                    SplitScheme::Logarithmic => 3,
+                    SplitScheme::Uniform => 4,
+                    SplitScheme::Manual(_) => 5,
+                }))
+            },
+            set: |s, value| {
+                s.technique.splits = match (value, s.technique.splits) {
+                    (Value::Option(0), _) => SplitScheme::FromHistogram,
+                    (Value::Option(1), _) => SplitScheme::FromBoxes,
+                    (Value::Option(2), SplitScheme::Practical(lambda)) => SplitScheme::Practical(lambda),
+                    (Value::Option(2), _) => SplitScheme::Practical(USUAL_LAMBDA),
+                    (Value::Option(3), _) => SplitScheme::Logarithmic,
+                    (Value::Option(4), _) => SplitScheme::Uniform,
+                    (_, SplitScheme::Manual(splits)) => SplitScheme::Manual(splits),
+                    _ => SplitScheme::Manual(USUAL_SPLITS),
+                };
+            },
+            code: code!(splits),
+            is_of_variant: false,
         },
-        write: |s, index| {
-            s.technique.splits = match (index, s.technique.splits) {
-                (0, _) => SplitScheme::FromHistogram,
-                (1, _) => SplitScheme::FromBoxes,
-                (2, SplitScheme::Practical(lambda)) => SplitScheme::Practical(lambda),
-                (2, _) => SplitScheme::Practical(USUAL_LAMBDA),
-                (3, _) => SplitScheme::Logarithmic,
-                (4, _) => SplitScheme::Uniform,
-                (_, SplitScheme::Manual(splits)) => SplitScheme::Manual(splits),
-                _ => SplitScheme::Manual(USUAL_SPLITS),
-            };
-        },
-    }),
-    inert: |s| match s.technique.fit.kind {
-        FitKind::Windows => {
-            Some("Windows are no slices of the view, so there is nothing to split; choose another fit.")
-        }
-        _ if s.technique.count < 2 => Some("One map has no splits; raise the number of maps."),
-        _ => None,
+        inert: no_splits,
     },
-};
-
-pub(super) const LAMBDA: Parameter = Parameter {
-    id: "splits.lambda",
-    group: Group::Splits,
-    label: "Lambda",
-    unit: "",
-    help: "Share of the logarithmic splits in the practical ones: 1 spends most maps close to the camera, 0 spreads \
-           them evenly. 0.5 is a good start.",
-    kind: Kind::Optional(Optional {
-        min: 0.0,
-        max: 1.0,
-        step: 0.05,
-        logarithmic: false,
-        decimals: 2,
-        unset: None,
-        initial: USUAL_LAMBDA as f64,
-        present: |s| matches!(s.technique.splits, SplitScheme::Practical(_)),
-        read: |s| match s.technique.splits {
-            SplitScheme::Practical(lambda) => Some(f64::from(lambda)),
-            _ => None,
-        },
-        write: |s, value| {
-            if let (SplitScheme::Practical(lambda), Some(value)) = (&mut s.technique.splits, value) {
-                *lambda = value as f32;
-            }
-        },
-    }),
-    inert: |s| match s.technique.splits {
-        SplitScheme::Practical(_) => (SCHEME.inert)(s),
-        _ => Some("Only practical splits have a lambda; set Splits to Practical (splits.scheme = practical)."),
-    },
-};
-
-/// The view depth at which one of the maps ends.
-const fn manual<const MAP: usize>(id: &'static str, label: &'static str) -> Parameter {
     Parameter {
-        id,
+        id: "splits.lambda",
         group: Group::Splits,
-        label,
-        unit: "m",
-        help: "Distance from the camera, along its view, at which this map ends and the next one begins. Each has to be \
-               greater than the one before.",
-        kind: Kind::Optional(Optional {
-            min: 0.0,
-            max: 100_000.0,
-            step: 0.1,
-            logarithmic: true,
-            decimals: 2,
-            unset: None,
-            initial: USUAL_SPLITS[MAP] as f64,
-            present: |s| matches!(s.technique.splits, SplitScheme::Manual(_)),
-            read: |s| match s.technique.splits {
-                SplitScheme::Manual(splits) => Some(f64::from(splits[MAP])),
-                _ => None,
-            },
-            write: |s, value| {
-                if let (SplitScheme::Manual(splits), Some(value)) = (&mut s.technique.splits, value) {
-                    splits[MAP] = value as f32;
-                }
-            },
-        }),
+        label: "Lambda",
+        unit: "",
+        help: "Share of the logarithmic splits in the practical ones: 1 spends most maps close to the camera, 0 spreads \
+           them evenly. 0.5 is a good start.",
+        kind: Kind::Number(Number { min: 0.0, max: 1.0, step: 0.05, logarithmic: false, decimals: 2, unset: None }),
+        field: field!(technique.splits, SplitScheme::Practical(lambda) => lambda),
         inert: |s| match s.technique.splits {
-            SplitScheme::Manual(_) if (SCHEME.inert)(s).is_some() => (SCHEME.inert)(s),
-            SplitScheme::Manual(_) if MAP + 1 < s.technique.count as usize => None,
-            SplitScheme::Manual(_) => Some("There is no such map; raise the number of maps."),
-            _ => Some("The splits are chosen by a rule; set Splits to Manual (splits.scheme = manual)."),
+            SplitScheme::Practical(_) => no_splits(s),
+            _ => Some("Only practical splits have a lambda; set Splits to Practical (splits.scheme = practical)."),
         },
-    }
-}
-
-pub(super) const MANUAL: [Parameter; MAX_MAPS - 1] = [
+    },
     manual::<0>("splits.manual_1", "Map 1 ends"),
     manual::<1>("splits.manual_2", "Map 2 ends"),
     manual::<2>("splits.manual_3", "Map 3 ends"),
@@ -168,16 +113,13 @@ pub(super) const MANUAL: [Parameter; MAX_MAPS - 1] = [
     manual::<4>("splits.manual_5", "Map 5 ends"),
     manual::<5>("splits.manual_6", "Map 6 ends"),
     manual::<6>("splits.manual_7", "Map 7 ends"),
-];
-
-pub(super) const CHOICE: Parameter = Parameter {
-    id: "splits.choice",
-    group: Group::Splits,
-    label: "Choice",
-    unit: "",
-    help: "Which of the maps a point reads.",
-    kind: Kind::Choice(Choice {
-        options: &[
+    Parameter {
+        id: "splits.choice",
+        group: Group::Splits,
+        label: "Choice",
+        unit: "",
+        help: "Which of the maps a point reads.",
+        kind: Kind::Choice(&[
             ChoiceOption {
                 id: "coverage",
                 label: "By coverage",
@@ -188,71 +130,89 @@ pub(super) const CHOICE: Parameter = Parameter {
                 label: "By view depth",
                 help: "The one for the point's distance from the camera, as other engines do.",
             },
-        ],
-        read: |s| match s.technique.choice {
-            MapChoice::Coverage => 0,
-            MapChoice::ViewDepth => 1,
+        ]),
+        field: choice!(technique.choice: MapChoice [Coverage, ViewDepth]),
+        inert: |s| match s.technique.fit.kind {
+            _ if s.technique.count < 2 => Some("One map leaves no choice; raise the number of maps."),
+            FitKind::Windows => Some("Windows are always read by coverage; choose another fit."),
+            _ => None,
         },
-        write: |s, index| s.technique.choice = if index == 0 { MapChoice::Coverage } else { MapChoice::ViewDepth },
-    }),
-    inert: |s| match s.technique.fit.kind {
-        _ if s.technique.count < 2 => Some("One map leaves no choice; raise the number of maps."),
-        FitKind::Windows => Some("Windows are always read by coverage; choose another fit."),
-        _ => None,
     },
-};
-
-pub(super) const BLEND: Parameter = Parameter {
-    id: "splits.blend",
-    group: Group::Splits,
-    label: "Blend",
-    unit: "texels",
-    help: "Width of the band inside a map's border in which the shader blends from it into the next coarser one. It \
+    Parameter {
+        id: "splits.blend",
+        group: Group::Splits,
+        label: "Blend",
+        unit: "texels",
+        help: "Width of the band inside a map's border in which the shader blends from it into the next coarser one. It \
            hides the line between two maps; 0 turns it off.",
-    kind: Kind::Number(Number {
-        min: 0.0,
-        max: MAX_BLEND as f64,
-        step: 1.0,
-        logarithmic: false,
-        decimals: 1,
-        read: |s| f64::from(s.technique.blend),
-        write: |s, value| s.technique.blend = value as f32,
-    }),
-    inert: |s| match s.technique.map_choice() {
-        _ if s.technique.count < 2 => Some("One map is blended into none; raise the number of maps."),
-        MapChoice::Coverage => None,
-        MapChoice::ViewDepth => Some(
-            "Maps that are read by view depth are blended over the overlap; set Choice to By coverage (splits.choice = \
+        kind: Kind::Number(Number {
+            min: 0.0,
+            max: MAX_BLEND as f64,
+            step: 1.0,
+            logarithmic: false,
+            decimals: 1,
+            unset: None,
+        }),
+        field: field!(technique.blend),
+        inert: |s| match s.technique.map_choice() {
+            _ if s.technique.count < 2 => Some("One map is blended into none; raise the number of maps."),
+            MapChoice::Coverage => None,
+            MapChoice::ViewDepth => Some(
+                "Maps that are read by view depth are blended over the overlap; set Choice to By coverage (splits.choice = \
              coverage).",
-        ),
+            ),
+        },
     },
-};
-
-pub(super) const OVERLAP: Parameter = Parameter {
-    id: "splits.overlap",
-    group: Group::Splits,
-    label: "Overlap",
-    unit: "",
-    help: "Share of each map's range of distances that the next map covers too, so that the shader can blend between \
+    Parameter {
+        id: "splits.overlap",
+        group: Group::Splits,
+        label: "Overlap",
+        unit: "",
+        help: "Share of each map's range of distances that the next map covers too, so that the shader can blend between \
            them. It hides the line between two maps, and costs a little of their sharpness.",
-    kind: Kind::Number(Number {
-        min: 0.0,
-        max: 1.0,
-        step: 0.05,
-        logarithmic: false,
-        decimals: 2,
-        read: |s| f64::from(s.technique.overlap),
-        write: |s, value| s.technique.overlap = value as f32,
-    }),
-    inert: |s| match s.technique.choice {
-        _ if s.technique.fit.kind == FitKind::Windows => {
-            Some("Windows are blended toward their borders, over the blend; choose another fit.")
-        }
-        _ if s.technique.count < 2 => Some("One map overlaps with none; raise the number of maps."),
-        MapChoice::Coverage => Some(
-            "Maps that are read by coverage are blended toward their borders; set Choice to By view depth (splits.choice \
+        kind: Kind::Number(Number { min: 0.0, max: 1.0, step: 0.05, logarithmic: false, decimals: 2, unset: None }),
+        field: field!(technique.overlap),
+        inert: |s| match s.technique.choice {
+            _ if s.technique.fit.kind == FitKind::Windows => {
+                Some("Windows are blended toward their borders, over the blend; choose another fit.")
+            }
+            _ if s.technique.count < 2 => Some("One map overlaps with none; raise the number of maps."),
+            MapChoice::Coverage => Some(
+                "Maps that are read by coverage are blended toward their borders; set Choice to By view depth (splits.choice \
              = view_depth).",
-        ),
-        MapChoice::ViewDepth => None,
+            ),
+            MapChoice::ViewDepth => None,
+        },
     },
-};
+];
+
+/// The view depth at which one of the maps ends.
+const fn manual<const MAP: usize>(id: &'static str, label: &'static str) -> Parameter {
+    Parameter {
+        id,
+        group: Group::Splits,
+        label,
+        unit: "m",
+        help: "Distance from the camera, along its view, at which this map ends and the next one begins. Each has to be \
+               greater than the one before.",
+        kind: Kind::Number(Number { min: 0.0, max: 100_000.0, step: 0.1, logarithmic: true, decimals: 2, unset: None }),
+        field: field!(technique.splits, SplitScheme::Manual(splits) => splits[MAP]),
+        inert: |s| match s.technique.splits {
+            SplitScheme::Manual(_) if no_splits(s).is_some() => no_splits(s),
+            SplitScheme::Manual(_) if MAP + 1 < s.technique.count as usize => None,
+            SplitScheme::Manual(_) => Some("There is no such map; raise the number of maps."),
+            _ => Some("The splits are chosen by a rule; set Splits to Manual (splits.scheme = manual)."),
+        },
+    }
+}
+
+/// Why there are no splits, or `None` where there are some.
+fn no_splits(s: &Settings) -> Option<&'static str> {
+    match s.technique.fit.kind {
+        FitKind::Windows => {
+            Some("Windows are no slices of the view, so there is nothing to split; choose another fit.")
+        }
+        _ if s.technique.count < 2 => Some("One map has no splits; raise the number of maps."),
+        _ => None,
+    }
+}

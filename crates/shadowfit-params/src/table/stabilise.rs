@@ -1,18 +1,21 @@
 //! The rows of the stabilisation.
 
-use crate::tool::Settings;
-use crate::{Choice, ChoiceOption, Group, Kind, Number, Parameter};
 use shadowfit::settings::{FitKind, Stabilise};
 
-pub(super) const MODE: Parameter = Parameter {
-    id: "stabilise.mode",
-    group: Group::Stabilise,
-    label: "Stabilise",
-    unit: "",
-    help: "Whether maps stay where they are while the camera moves. A map that is fitted anew in each frame has the \
+use crate::field::{choice, field};
+use crate::tool::Settings;
+use crate::{ChoiceOption, Group, Kind, Number, Parameter};
+
+/// In the order that they are shown.
+pub(super) const ROWS: &[Parameter] = &[
+    Parameter {
+        id: "stabilise.mode",
+        group: Group::Stabilise,
+        label: "Stabilise",
+        unit: "",
+        help: "Whether maps stay where they are while the camera moves. A map that is fitted anew in each frame has the \
            finest texels, but its shadow edges crawl.",
-    kind: Kind::Choice(Choice {
-        options: &[
+        kind: Kind::Choice(&[
             ChoiceOption {
                 id: "hysteresis",
                 label: "Keep while it serves",
@@ -25,100 +28,57 @@ pub(super) const MODE: Parameter = Parameter {
                        camera turns, except with the stable sphere.",
             },
             ChoiceOption { id: "off", label: "Off", help: "Maps are fitted anew in each frame." },
-        ],
-        read: |s| match s.technique.stabilise {
-            Stabilise::Hysteresis => 0,
-            Stabilise::Snap => 1,
-            Stabilise::Off => 2,
-        },
-        write: |s, index| {
-            s.technique.stabilise = match index {
-                0 => Stabilise::Hysteresis,
-                1 => Stabilise::Snap,
-                _ => Stabilise::Off,
-            };
-        },
-    }),
-    inert: windows_are_still,
-};
-
-pub(super) const MARGIN: Parameter = Parameter {
-    id: "stabilise.margin",
-    group: Group::Stabilise,
-    label: "Margin",
-    unit: "",
-    help: "Room left around what a new map must cover, as a share of its width, so that it can be kept for longer. \
-           More room makes texels coarser.",
-    kind: Kind::Number(Number {
-        min: 0.0,
-        max: 10.0,
-        step: 0.01,
-        logarithmic: true,
-        decimals: 2,
-        read: |s| f64::from(s.technique.hold.margin),
-        write: |s, value| s.technique.hold.margin = value as f32,
-    }),
-    inert: only_held,
-};
-
-pub(super) const GROWTH: Parameter = Parameter {
-    id: "stabilise.growth",
-    group: Group::Stabilise,
-    label: "Growth",
-    unit: "×",
-    help: "A new map also covers what the camera will see if it goes on moving as it does, as far ahead as makes the \
-           map wider by this factor at most.",
-    kind: Kind::Number(Number {
-        min: 1.0,
-        max: 100.0,
-        step: 0.05,
-        logarithmic: true,
-        decimals: 2,
-        read: |s| f64::from(s.technique.hold.growth),
-        write: |s, value| s.technique.hold.growth = value as f32,
-    }),
-    inert: only_held,
-};
-
-pub(super) const WASTE: Parameter = Parameter {
-    id: "stabilise.waste",
-    group: Group::Stabilise,
-    label: "Waste",
-    unit: "×",
-    help: "A kept map is made anew once its texels are larger than they have to be by this factor, and kept splits and \
-           the depths of windows are likewise. Lower is sharper, higher is calmer.",
-    kind: Kind::Number(Number {
-        min: 1.0,
-        max: 100.0,
-        step: 0.05,
-        logarithmic: true,
-        decimals: 2,
-        read: |s| f64::from(s.technique.hold.waste),
-        write: |s, value| s.technique.hold.waste = value as f32,
-    }),
-    inert: |s| match (s.technique.fit.kind, s.technique.stabilise) {
-        (FitKind::Windows, _) | (_, Stabilise::Snap | Stabilise::Hysteresis) => None,
-        (_, Stabilise::Off) => Some("Nothing is kept from frame to frame; turn on Stabilise."),
+        ]),
+        field: choice!(technique.stabilise: Stabilise [Hysteresis, Snap, Off]),
+        inert: windows_are_still,
     },
-};
-
-pub(super) const HORIZON: Parameter = Parameter {
-    id: "stabilise.horizon",
-    group: Group::Stabilise,
-    label: "Horizon",
-    unit: "frames",
-    help: "How many frames of the camera's motion a new map looks ahead at most.",
-    kind: Kind::Number(Number {
-        min: 0.0,
-        max: 1_000.0,
-        step: 1.0,
-        logarithmic: true,
-        decimals: 0,
-        read: |s| f64::from(s.technique.hold.horizon),
-        write: |s, value| s.technique.hold.horizon = value as u32,
-    }),
-    inert: only_held,
-};
+    Parameter {
+        id: "stabilise.margin",
+        group: Group::Stabilise,
+        label: "Margin",
+        unit: "",
+        help: "Room left around what a new map must cover, as a share of its width, so that it can be kept for longer. \
+           More room makes texels coarser.",
+        kind: Kind::Number(Number { min: 0.0, max: 10.0, step: 0.01, logarithmic: true, decimals: 2, unset: None }),
+        field: field!(technique.hold.margin),
+        inert: only_held,
+    },
+    Parameter {
+        id: "stabilise.growth",
+        group: Group::Stabilise,
+        label: "Growth",
+        unit: "×",
+        help: "A new map also covers what the camera will see if it goes on moving as it does, as far ahead as makes the \
+           map wider by this factor at most.",
+        kind: Kind::Number(Number { min: 1.0, max: 100.0, step: 0.05, logarithmic: true, decimals: 2, unset: None }),
+        field: field!(technique.hold.growth),
+        inert: only_held,
+    },
+    Parameter {
+        id: "stabilise.waste",
+        group: Group::Stabilise,
+        label: "Waste",
+        unit: "×",
+        help: "A kept map is made anew once its texels are larger than they have to be by this factor, and kept splits and \
+           the depths of windows are likewise. Lower is sharper, higher is calmer.",
+        kind: Kind::Number(Number { min: 1.0, max: 100.0, step: 0.05, logarithmic: true, decimals: 2, unset: None }),
+        field: field!(technique.hold.waste),
+        inert: |s| match (s.technique.fit.kind, s.technique.stabilise) {
+            (FitKind::Windows, _) | (_, Stabilise::Snap | Stabilise::Hysteresis) => None,
+            (_, Stabilise::Off) => Some("Nothing is kept from frame to frame; turn on Stabilise."),
+        },
+    },
+    Parameter {
+        id: "stabilise.horizon",
+        group: Group::Stabilise,
+        label: "Horizon",
+        unit: "frames",
+        help: "How many frames of the camera's motion a new map looks ahead at most.",
+        kind: Kind::Number(Number { min: 0.0, max: 1_000.0, step: 1.0, logarithmic: true, decimals: 0, unset: None }),
+        field: field!(technique.hold.horizon),
+        inert: only_held,
+    },
+];
 
 fn only_held(s: &Settings) -> Option<&'static str> {
     let is_held = s.technique.stabilise == Stabilise::Hysteresis;

@@ -1,90 +1,38 @@
 {
-let technique = Technique {
-    count: 3,
-    fit: FitSettings {
-        kind: FitKind::Oriented,
-        rectangle: RectangleKind::MinimumSquare,
-        max_distance: 80.25,
-        margin: 0.25,
-        border: Some(4.0),
-        casters: CasterPolicy::DepthClamp,
-        caster_extension: 7.0,
-        up: Vec3::new(0.0, -0.0, 1.0),
-        max_texel_ratio: 3.0,
-        least_texel: 0.001,
-        resolution: UVec2::new(1024, 512),
-        depth: DepthConvention::Reversed,
-    },
-    splits: SplitScheme::Manual([
-        1.0,
-        2.5,
-        0.1,
-        1e-7,
-        3000000000.0,
-        16777216.0,
-        f32::MAX,
-    ]),
-    choice: MapChoice::ViewDepth,
-    blend: 2.5,
-    overlap: 0.1,
-    stabilise: Stabilise::Snap,
-    hold: HoldSettings {
-        margin: 0.5,
-        growth: 2.0,
-        waste: 3.0,
-        horizon: 9,
-    },
-    overrides: [
-        MapOverride {
-            kind: Some(FitKind::XnaSample),
-            resolution: Some(UVec2::new(256, 512)),
-        },
-        MapOverride {
-            kind: Some(FitKind::FrustumAabb),
-            resolution: Some(UVec2::new(512, 1024)),
-        },
-        MapOverride {
-            kind: Some(FitKind::Oriented),
-            resolution: Some(UVec2::new(1024, 2048)),
-        },
-        MapOverride {
-            kind: Some(FitKind::Sphere),
-            resolution: Some(UVec2::new(2048, 4096)),
-        },
-        MapOverride {
-            kind: Some(FitKind::Focused),
-            resolution: Some(UVec2::new(300, 600)),
-        },
-        MapOverride {
-            kind: Some(FitKind::Sphere),
-            resolution: Some(UVec2::new(4096, 8192)),
-        },
-        MapOverride {
-            kind: Some(FitKind::Sphere),
-            resolution: Some(UVec2::new(8192, 16384)),
-        },
-        MapOverride {
-            kind: Some(FitKind::Sphere),
-            resolution: Some(UVec2::new(1, 2)),
-        },
-    ],
-    receivers: ReceiverSource::Objects,
-    filter: FilterKind::Vogel8,
-    softness: Softness {
-        radius: SoftRadius::Metres(0.1),
-        floor: 0.5,
-        ceiling: 8.0,
-    },
-    fade: 0.2,
-    bias: BiasSettings {
-        constant: 0.33333334,
-        slope: 0.2,
-        normal_offset: 1e-9,
-        receiver_plane: 1.5,
-        depth_steps: 0.5,
-    },
-    need: NeedSource::Boxes,
-    format: MapFormat::R32Float,
-};
+let mut technique = Technique::preset("oriented-1").expect("a preset of shadowfit");
+technique.need = NeedSource::Boxes;
+technique.fit.rectangle = RectangleKind::MinimumSquare;
+technique.fit.max_texel_ratio = 3.0;
+technique.fit.least_texel = 0.001;
+technique.fit.max_distance = 80.25;
+technique.fit.casters = CasterPolicy::DepthClamp;
+technique.fit.caster_extension = 7.0;
+technique.fit.border = Some(4.0);
+technique.fit.margin = 0.25;
+technique.fit.up.y = -0.0;
+technique.fit.up.z = 1.0;
+technique.count = 3;
+technique.splits = SplitScheme::Manual([1.0, 2.5, 0.1, 1e-7, 3000000000.0, 16777216.0, f32::MAX]);
+technique.choice = MapChoice::ViewDepth;
+technique.blend = 2.5;
+technique.overlap = 0.1;
+technique.stabilise = Stabilise::Snap;
+technique.hold.margin = 0.5;
+technique.hold.growth = 2.0;
+technique.hold.waste = 3.0;
+technique.hold.horizon = 9;
+technique.fit.resolution = UVec2::new(1024, 512);
+technique.format = MapFormat::R32Float;
+technique.filter = FilterKind::Vogel8;
+technique.fade = 0.2;
+technique.fit.depth = DepthConvention::Reversed;
+technique.softness.radius = SoftRadius::Metres(0.1);
+technique.softness.floor = 0.5;
+technique.softness.ceiling = 8.0;
+technique.bias.constant = 0.33333334;
+technique.bias.slope = 0.2;
+technique.bias.normal_offset = 1e-9;
+technique.bias.receiver_plane = 1.5;
+technique.bias.depth_steps = 0.5;
 technique
 }

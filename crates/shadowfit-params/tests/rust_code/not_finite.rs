@@ -1,14 +1,10 @@
 {
-let technique = Technique {
-    fit: FitSettings {
-        kind: FitKind::Windows,
-        border: Some(f32::NAN),
-        up: Vec3::new(f32::NEG_INFINITY, f32::NAN, f32::MAX),
-        ..FitSettings::default()
-    },
-    splits: SplitScheme::Practical(f32::NAN),
-    overlap: f32::INFINITY,
-    ..Technique::default()
-};
+let mut technique = Technique::default();
+technique.fit.border = Some(f32::NAN);
+technique.fit.up.x = f32::NEG_INFINITY;
+technique.fit.up.y = f32::NAN;
+technique.fit.up.z = f32::MAX;
+technique.splits = SplitScheme::Practical(f32::NAN);
+technique.overlap = f32::INFINITY;
 technique
 }

@@ -1,16 +1,4 @@
 {
-let technique = Technique {
-    fit: FitSettings {
-        kind: FitKind::Sphere,
-        ..FitSettings::default()
-    },
-    splits: SplitScheme::FromBoxes,
-    stabilise: Stabilise::Snap,
-    hold: HoldSettings {
-        waste: 4.0,
-        ..HoldSettings::default()
-    },
-    ..Technique::default()
-};
+let technique = Technique::preset("stable-4").expect("a preset of shadowfit");
 technique
 }

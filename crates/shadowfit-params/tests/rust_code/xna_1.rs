@@ -1,14 +1,4 @@
 {
-let technique = Technique {
-    count: 1,
-    fit: FitSettings {
-        kind: FitKind::XnaSample,
-        ..FitSettings::default()
-    },
-    splits: SplitScheme::Logarithmic,
-    stabilise: Stabilise::Off,
-    receivers: ReceiverSource::Objects,
-    ..Technique::default()
-};
+let technique = Technique::preset("xna-1").expect("a preset of shadowfit");
 technique
 }

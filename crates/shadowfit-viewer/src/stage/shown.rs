@@ -3,7 +3,7 @@
 use shadowfit::Technique;
 use shadowfit_egui::Artefact;
 use shadowfit_params::tool::Settings;
-use shadowfit_params::{Kind, PARAMETERS, Parameter};
+use shadowfit_params::{Kind, Number, PARAMETERS, Parameter, Value};
 use shadowfit_render::FlyCamera;
 
 use super::Stage;
@@ -155,13 +155,14 @@ pub(crate) fn changes(before: &Settings, after: &Settings) -> Vec<String> {
 /// A value as people read it, without its unit.
 fn value(settings: &Settings, parameter: &Parameter) -> String {
     let number = |value: f64| format!("{value:.3}").trim_end_matches('0').trim_end_matches('.').to_owned();
-    match &parameter.kind {
-        Kind::Number(kind) => number(kind.get(settings)),
-        Kind::Optional(kind) => {
-            kind.get(settings).map_or_else(|| kind.unset.map_or("none", |unset| unset.label).to_owned(), number)
+    match (parameter.get(settings), &parameter.kind) {
+        (Some(Value::Number(value)), _) => number(value),
+        (Some(Value::Unset), Kind::Number(Number { unset: Some(unset), .. })) => unset.option.label.to_owned(),
+        (Some(Value::Option(index)), Kind::Choice(options)) => {
+            options.get(index).map_or("", |option| option.label).to_owned()
         }
-        Kind::Choice(kind) => kind.options.get(kind.get(settings)).map_or("", |option| option.label).to_owned(),
-        Kind::Toggle(kind) => if kind.get(settings) { "on" } else { "off" }.to_owned(),
+        (Some(Value::Toggle(on)), _) => if on { "on" } else { "off" }.to_owned(),
+        _ => "none".to_owned(),
     }
 }
 

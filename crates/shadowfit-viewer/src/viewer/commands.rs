@@ -281,12 +281,11 @@ impl Viewer {
             return Ok(format!("{id} = {value}"));
         }
         let is_technique = params::parameter(id).is_some_and(|parameter| parameter.group.is_technique());
-        let set = if is_technique {
-            params::set_technique_from_str(self.edited(), id, value)
+        if is_technique {
+            params::set_technique_from_str(self.edited(), id, value)?;
         } else {
-            params::set_from_str(&mut self.stage.settings, id, value)
-        };
-        set.map_err(|error| anyhow!("{error}"))?;
+            params::set_from_str(&mut self.stage.settings, id, value)?;
+        }
         Ok(format!("{id} = {value}"))
     }
 

@@ -1,0 +1,219 @@
+//! How a parameter reaches its value: reads it, sets it, and says it as Rust code.
+
+use glam::UVec2;
+use shadowfit::Technique;
+use shadowfit::settings::{SoftRadius, SplitScheme};
+
+use crate::Value;
+use crate::tool::Settings;
+
+/// The part of the settings that a parameter shows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Field {
+    /// The value, angles in radians; `None` where these settings have no such part.
+    pub(crate) get: fn(&Settings) -> Option<Value>,
+    /// Sets a value that the parameter takes, angles in radians; does nothing where these settings have no such part.
+    pub(crate) set: fn(&mut Settings, Value),
+    /// The same part as Rust code; `None` where it is not one of a technique.
+    pub(crate) code: Option<Code>,
+    /// Whether some settings have no such part.
+    pub(crate) is_of_variant: bool,
+}
+
+/// A part of a technique as Rust code. Several parameters may share one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Code {
+    /// Where it stands in a [`Technique`], such as `fit.max_distance`.
+    pub(crate) path: &'static str,
+    /// Its value as a Rust expression.
+    pub(crate) expression: fn(&Technique) -> String,
+}
+
+/// A value that is shown as it is stored.
+pub(crate) trait Plain {
+    fn value(&self) -> Value;
+
+    /// Takes a value of the same kind; another one is ignored.
+    fn assign(&mut self, value: Value);
+}
+
+impl Plain for f32 {
+    fn value(&self) -> Value {
+        Value::Number(f64::from(*self))
+    }
+
+    fn assign(&mut self, value: Value) {
+        if let Value::Number(number) = value {
+            *self = number as Self;
+        }
+    }
+}
+
+impl Plain for u32 {
+    fn value(&self) -> Value {
+        Value::Number(f64::from(*self))
+    }
+
+    fn assign(&mut self, value: Value) {
+        if let Value::Number(number) = value {
+            *self = number as Self;
+        }
+    }
+}
+
+impl Plain for Option<f32> {
+    fn value(&self) -> Value {
+        self.map_or(Value::Unset, |number| number.value())
+    }
+
+    fn assign(&mut self, value: Value) {
+        *self = value.number().map(|number| number as f32);
+    }
+}
+
+impl Plain for bool {
+    fn value(&self) -> Value {
+        Value::Toggle(*self)
+    }
+
+    fn assign(&mut self, value: Value) {
+        if let Value::Toggle(on) = value {
+            *self = on;
+        }
+    }
+}
+
+/// A value that can be written as Rust code.
+pub(crate) trait Expression {
+    fn expression(&self) -> String;
+}
+
+impl Expression for f32 {
+    fn expression(&self) -> String {
+        match *self {
+            Self::MAX => "f32::MAX".to_owned(),
+            Self::MIN => "f32::MIN".to_owned(),
+            Self::INFINITY => "f32::INFINITY".to_owned(),
+            Self::NEG_INFINITY => "f32::NEG_INFINITY".to_owned(),
+            value if value.is_nan() => "f32::NAN".to_owned(),
+            // The shortest digits that give the same bits.
+            value => format!("{value:?}"),
+        }
+    }
+}
+
+impl Expression for u32 {
+    fn expression(&self) -> String {
+        self.to_string()
+    }
+}
+
+impl Expression for Option<f32> {
+    fn expression(&self) -> String {
+        self.map_or_else(|| "None".to_owned(), |value| format!("Some({})", value.expression()))
+    }
+}
+
+impl Expression for UVec2 {
+    fn expression(&self) -> String {
+        format!("UVec2::new({}, {})", self.x, self.y)
+    }
+}
+
+impl Expression for SplitScheme {
+    fn expression(&self) -> String {
+        match self {
+            Self::Practical(lambda) => format!("SplitScheme::Practical({})", lambda.expression()),
+            Self::Manual(ends) => format!("SplitScheme::Manual([{}])", ends.map(|end| end.expression()).join(", ")),
+            _ => format!("SplitScheme::{self:?}"),
+        }
+    }
+}
+
+impl Expression for SoftRadius {
+    fn expression(&self) -> String {
+        match self {
+            Self::Metres(metres) => format!("SoftRadius::Metres({})", metres.expression()),
+            Self::SunAngle(radians) => format!("SoftRadius::SunAngle({})", radians.expression()),
+        }
+    }
+}
+
+/// The Rust code of a part of a technique by its path, such as `code!(fit.max_distance)`.
+macro_rules! code {
+    (@path $first:ident $(.$rest:ident)*) => { concat!(stringify!($first) $(, ".", stringify!($rest))*) };
+    ($first:ident $(.$rest:ident)*) => {
+        Some($crate::field::Code {
+            path: $crate::field::code!(@path $first $(.$rest)*),
+            expression: |technique| $crate::field::Expression::expression(&technique.$first $(.$rest)*),
+        })
+    };
+}
+
+/// A field of the settings that is shown as it is:
+///
+/// - `field!(technique.bias.constant)`: one that is always there;
+/// - `field!(technique.splits, SplitScheme::Practical(lambda) => lambda)`: one of a variant.
+macro_rules! field {
+    (technique $(.$path:ident)+) => {
+        $crate::field::Field { code: $crate::field::code!($($path).+), ..$crate::field::field!(@ technique $(.$path)+) }
+    };
+    (technique $(.$path:ident)+, $variant:pat => $part:expr) => {{
+        use $crate::field::Plain as _;
+        $crate::field::Field {
+            get: |s| match &s.technique $(.$path)+ {
+                $variant => Some($part.value()),
+                _ => None,
+            },
+            set: |s, value| {
+                if let $variant = &mut s.technique $(.$path)+ {
+                    $part.assign(value);
+                }
+            },
+            code: $crate::field::code!($($path).+),
+            is_of_variant: true,
+        }
+    }};
+    ($group:ident $(.$path:ident)+) => { $crate::field::field!(@ $group $(.$path)+) };
+    (@ $group:ident $(.$path:ident)+) => {{
+        use $crate::field::Plain as _;
+        $crate::field::Field {
+            get: |s| Some(s.$group $(.$path)+.value()),
+            set: |s, value| s.$group $(.$path)+.assign(value),
+            code: None,
+            is_of_variant: false,
+        }
+    }};
+}
+
+/// A field that is one of several variants, in the order of the parameter's options:
+///
+/// - `choice!(technique.stabilise: Stabilise [Hysteresis, Snap, Off])`: all variants of a part of a technique;
+/// - `choice!(view.mode in ViewMode::ALL)`: those of a list.
+macro_rules! choice {
+    (technique $(.$path:ident)+: $kind:ident [$($variant:ident),+ $(,)?]) => {
+        $crate::field::Field {
+            code: Some($crate::field::Code {
+                path: $crate::field::code!(@path $($path).+),
+                expression: |technique| format!(concat!(stringify!($kind), "::{:?}"), technique $(.$path)+),
+            }),
+            ..$crate::field::choice!(technique $(.$path)+ in [$($kind::$variant),+])
+        }
+    };
+    ($group:ident $(.$path:ident)+ in $variants:expr) => {
+        $crate::field::Field {
+            get: |s| $variants.iter().position(|variant| *variant == s.$group $(.$path)+).map($crate::Value::Option),
+            set: |s, value| {
+                if let $crate::Value::Option(index) = value
+                    && let Some(variant) = $variants.get(index)
+                {
+                    s.$group $(.$path)+ = *variant;
+                }
+            },
+            code: None,
+            is_of_variant: false,
+        }
+    };
+}
+
+pub(crate) use {choice, code, field};
