@@ -10,9 +10,9 @@ use shadowfit::Technique;
 use shadowfit::glam::DVec3;
 use shadowfit::settings::{FilterKind, MapFormat, SoftRadius};
 use shadowfit::tool::{InsetMaps, ViewMode};
+use shadowfit_classics::{SAMPLES, Sample};
 use shadowfit_render::FlyCamera;
 use shadowfit_scene::builtin::default_scene;
-use shadowfit_study::samples::{SAMPLES, Sample};
 use shadowfit_viewer::{Artefact, Stage};
 
 use crate::support::{software_gpu, workspace};

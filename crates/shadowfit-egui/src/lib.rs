@@ -39,6 +39,7 @@
 
 mod accessibility;
 mod artefact;
+mod card;
 mod classes;
 mod compare;
 mod figures;
@@ -52,7 +53,6 @@ mod parameters;
 mod plots;
 mod quality;
 mod rows;
-mod sample;
 mod technique;
 mod theme;
 mod tune;
@@ -76,8 +76,8 @@ pub use artefact::Artefact;
 pub use classes::PixelClass;
 pub use help::{KEYS, KeyGroup, KeyHelp, help_overlay};
 pub use input::{
-    Action, Changes, Compare, PanelInput, PanelOutput, Part, SampleCard, SampleChoice, SampleControl, SampleFigure,
-    SampleRow, SceneLine, ShownArtefact, Tune, UserPreset,
+    Action, Card, CardChoice, CardControl, CardFigure, CardRow, Changes, Compare, PanelInput, PanelOutput, Part,
+    SceneLine, ShownArtefact, Tune, UserPreset,
 };
 pub use legend::{MAP_UPDATE_COLORS, has_legend, legend, legend_overlay};
 pub use theme::apply_theme;
@@ -158,8 +158,8 @@ impl Panel {
     }
 
     fn contents(&mut self, ui: &mut Ui, input: &mut PanelInput<'_>, action: &mut Option<Action>) {
-        if let Some(card) = &input.sample {
-            sample::show(ui, card, action);
+        if let Some(card) = &input.card {
+            card::show(ui, card, action);
             if !card.is_technique {
                 let hidden = &self.hidden;
                 let has = |parameter: &Parameter| !hidden.contains(parameter.id);

@@ -7,10 +7,10 @@ use clap::Parser;
 use shadowfit::Technique;
 use shadowfit::params::{self, Kind, Parameter, ParameterError};
 use shadowfit::tool::Settings;
+use shadowfit_classics::{SAMPLES, SampleValues};
 use shadowfit_render::AdapterChoice;
 use shadowfit_scene::Scene;
 use shadowfit_study::NamedTechnique;
-use shadowfit_study::samples::{SAMPLES, SampleValues};
 
 use crate::script::{self, Line};
 use crate::source::SceneSource;

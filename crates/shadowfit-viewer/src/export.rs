@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use shadowfit::params::{self, PARAMETERS};
 use shadowfit::tool::Settings;
-use shadowfit_study::samples::{Sample, SampleValues, SampleVariant};
+use shadowfit_classics::{Sample, SampleValues, SampleVariant};
 
 use crate::source::SceneSource;
 

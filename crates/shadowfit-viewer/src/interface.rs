@@ -10,7 +10,7 @@ use egui::{CentralPanel, Frame, Ui};
 use glam::Vec2;
 use shadowfit::figures::Figures;
 use shadowfit_egui::{
-    Changes, Compare, PANEL_WIDTH, Panel, PanelInput, SampleFigure, SceneLine, ShownArtefact, Tune, UserPreset,
+    CardFigure, Changes, Compare, PANEL_WIDTH, Panel, PanelInput, SceneLine, ShownArtefact, Tune, UserPreset,
 };
 
 use crate::command::Command;
@@ -45,7 +45,7 @@ pub(crate) struct Shows<'a> {
     pub(crate) presets: &'a [UserPreset],
     pub(crate) tune: Tune<'a>,
     /// What was measured of the sample on show.
-    pub(crate) sample_figures: &'a [SampleFigure],
+    pub(crate) sample_figures: &'a [CardFigure],
     pub(crate) changes: Changes<'a>,
     /// A readable message, such as where a screenshot was saved.
     pub(crate) message: Option<&'a str>,
@@ -181,7 +181,7 @@ impl Interface {
         let compare = other.map(|other| Compare { other, edits_other: &mut self.edits_other });
         let input = PanelInput {
             artefact,
-            sample: sample.as_ref().map(|sample| sample.card(shows.sample_figures)),
+            card: sample.as_ref().map(|sample| sample.card(shows.sample_figures)),
             compare,
             tune: shows.tune,
             changes: shows.changes,

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
+use shadowfit_classics::{Sample, SampleVariant};
 use shadowfit_scene::Scene;
 use shadowfit_scene::builtin::BuiltinScene;
-use shadowfit_study::samples::{Sample, SampleVariant};
 
 /// A built-in scene, a classic sample or a file.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use egui::util::undoer::Undoer;
 use shadowfit::Technique;
 use shadowfit::params::PARAMETERS;
 use shadowfit::tool::Settings;
-use shadowfit_study::samples::SampleValues;
+use shadowfit_classics::SampleValues;
 
 use crate::stage::ArtefactShow;
 

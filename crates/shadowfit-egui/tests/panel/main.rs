@@ -2,6 +2,7 @@
 //! The harness itself fails on a widget without a name and on a glyph that egui's fonts lack.
 
 mod actions;
+mod card;
 mod controls;
 mod figures;
 mod golden;
@@ -9,6 +10,5 @@ mod host;
 mod layout;
 mod overlays;
 mod renderer;
-mod sample;
 mod states;
 mod techniques;

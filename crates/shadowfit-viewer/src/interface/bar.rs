@@ -1,8 +1,8 @@
 //! The bar above the picture: scenes, views, comparison, undo and the rest of what is always at hand.
 
 use egui::{Button, Ui, containers::menu::MenuButton};
+use shadowfit_classics::SAMPLES;
 use shadowfit_scene::builtin::BuiltinScene;
-use shadowfit_study::samples::SAMPLES;
 
 use super::{Asked, Shows};
 use crate::command::{Command, Toggle};

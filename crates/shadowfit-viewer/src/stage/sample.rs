@@ -2,8 +2,8 @@
 
 use anyhow::{Context, Result};
 use shadowfit::tool::ViewMode;
+use shadowfit_classics::{OptionKind, Sample, SampleDrawer, SampleOutcome, SampleValues, SampleVariant};
 use shadowfit_render::{FlyCamera, FlyInput, RenderTarget, camera::TURN_SPEED};
-use shadowfit_study::samples::{OptionKind, Sample, SampleDrawer, SampleOutcome, SampleValues, SampleVariant};
 
 use super::{Stage, compare};
 

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use shadowfit::tool::Settings;
+use shadowfit_classics::SampleValues;
 use shadowfit_render::FlyCamera;
 use shadowfit_study::NamedTechnique;
-use shadowfit_study::samples::SampleValues;
 
 use super::Viewer;
 use crate::cli::Arguments;

@@ -1,7 +1,7 @@
 //! Classic samples in the viewer: their controls, options and variants, what is kept of them, and what does not apply.
 
 use glam::{DVec3, Vec3};
-use shadowfit_study::samples::SampleValues;
+use shadowfit_classics::SampleValues;
 use winit::keyboard::KeyCode;
 
 use super::*;
