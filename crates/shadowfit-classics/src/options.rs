@@ -172,6 +172,11 @@ impl SampleValues {
         }
     }
 
+    /// What [`SampleOption::LIGHTING`] chooses of the source's lighting and the modern one.
+    pub(crate) fn lit<T>(&self, source: T, modern: T) -> T {
+        if self.choice(SampleOption::LIGHTING.id) == "modern" { modern } else { source }
+    }
+
     /// Whether an option is on.
     pub fn is_on(&self, id: &str) -> bool {
         self.get(id) != 0.0

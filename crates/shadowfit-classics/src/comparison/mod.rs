@@ -188,18 +188,13 @@ fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDr
         compares_linearly: is_linear,
         ..SampleMapSettings::new(MAP, SampleFormat::Depth32)
     };
-    let (map, test) = match values.choice("shadows") {
-        "off" => (map, ShadowTest::OFF),
-        "ours" => (lamp.our_map(), lamp.our_test(true)?),
-        _ => (map, test(is_linear, is_front)),
-    };
-    let is_modern = values.choice("lighting") == "modern";
+    let (map, test) = lamp.shadows(values, (map, test(is_linear, is_front)), true)?;
     Ok(SampleDrawing::Mapped(SampleFrame {
         camera: *camera,
         light: lamp.light(LightImage::Square),
         map,
         test,
-        shading: if is_modern { MODERN } else { SHADING },
+        shading: values.lit(SHADING, MODERN),
         background: BACKGROUND,
         double_sided: false,
     }))

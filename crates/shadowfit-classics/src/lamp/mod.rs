@@ -8,7 +8,7 @@ use shadowfit::diagnostics::DepthStorage;
 use shadowfit::{DepthConvention, FitError, PerspectiveCamera, SpotBias, SpotFit, SpotLight};
 
 use crate::mapped::{LightImage, LightPlace, MapRead, SampleFormat, SampleLight, SampleMapSettings, ShadowTest};
-use crate::options::{OptionKind, SampleOption};
+use crate::options::{OptionKind, SampleOption, SampleValues};
 
 /// What shadows of a lamp can be.
 pub(crate) const SHADOWS: SampleOption = SampleOption {
@@ -37,15 +37,29 @@ impl Lamp {
         SampleLight { clip_from_world: self.fit.clip_from_world, place, image }
     }
 
+    /// Map and test of a frame as the option [`SHADOWS`] chooses them, by those of the source.
+    pub(crate) fn shadows(
+        &self,
+        values: &SampleValues,
+        (map, test): (SampleMapSettings, ShadowTest),
+        lit_outside: bool,
+    ) -> Result<(SampleMapSettings, ShadowTest), FitError> {
+        Ok(match values.choice(SHADOWS.id) {
+            "off" => (map, ShadowTest::OFF),
+            "ours" => (self.our_map(), self.our_test(lit_outside)?),
+            _ => (map, test),
+        })
+    }
+
     /// The map that our test reads, as large as the source's.
-    pub(crate) fn our_map(&self) -> SampleMapSettings {
+    fn our_map(&self) -> SampleMapSettings {
         let size = self.fit.resolution.to_array();
         SampleMapSettings { compares_linearly: true, ..SampleMapSettings::new(size, SampleFormat::Depth32) }
     }
 
     /// Our test, with the least bias that clears planes: each look-up is compared with the plane's own depth, so that the
     /// bias covers the reach of one.
-    pub(crate) fn our_test(&self, lit_outside: bool) -> Result<ShadowTest, FitError> {
+    fn our_test(&self, lit_outside: bool) -> Result<ShadowTest, FitError> {
         let bias = SpotBias::automatic_receiver_plane(Reach::HARDWARE_2X2, DepthStorage::Float32, &self.fit)?;
         let rise = self.fit.texel_size * self.fit.depth_scale() as f32;
         let numbers = [bias.constant_depth, bias.distance_depth, bias.constant_offset, bias.receiver_plane];

@@ -17,11 +17,8 @@ pub enum SampleFormat {
 }
 
 impl SampleFormat {
-    /// All of them.
-    pub const ALL: [Self; 5] = [Self::R32Float, Self::R16Float, Self::Rgba8Packed, Self::Grey8, Self::Depth32];
-
     /// What is tried in turn where one cannot be drawn to, the best first.
-    pub const FALLBACKS: [Self; 3] = [Self::R32Float, Self::R16Float, Self::Rgba8Packed];
+    const FALLBACKS: [Self; 3] = [Self::R32Float, Self::R16Float, Self::Rgba8Packed];
 
     /// The format of a name in the samples' options; 32-bit floats for any other name.
     pub(crate) fn of(id: &str) -> Self {
@@ -65,7 +62,7 @@ impl SampleFormat {
         usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING)
     }
 
-    /// This format, or the first one after it in [`Self::FALLBACKS`] that can be drawn to, and then a line that says so.
+    /// This format, or the first worse one that can be drawn to, and then a line that says so.
     /// `is_renderable` is asked for each. A format that is no float has nothing to fall back to.
     pub fn or_fallback(self, is_renderable: impl Fn(Self) -> bool) -> (Self, Option<String>) {
         let later = Self::FALLBACKS.iter().skip_while(|format| **format != self).copied();

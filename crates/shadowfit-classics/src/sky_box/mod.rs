@@ -127,7 +127,6 @@ fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDr
         .with_caster_extension(DISTANCE);
     let fit = shadowfit::fit(&camera.frustum()?, -to_light, &settings)?;
     let bias = BIAS_TEXELS * fit.texel_size.max_element() / fit.depth_range;
-    let is_modern = values.choice("lighting") == "modern";
     Ok(SampleDrawing::Mapped(SampleFrame {
         camera: *camera,
         light: SampleLight {
@@ -137,7 +136,7 @@ fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDr
         },
         map: SampleMapSettings::new([MAP; 2], SampleFormat::R32Float),
         test: if values.choice("shadows") == "off" { ShadowTest::OFF } else { xna::test(bias) },
-        shading: if is_modern { Shading::modern(1.8, 0.5) } else { real_shadow::shading(POWER_AND_AMBIENT) },
+        shading: values.lit(real_shadow::shading(POWER_AND_AMBIENT), Shading::modern(1.8, 0.5)),
         background: CORNFLOWER,
         double_sided: false,
     }))

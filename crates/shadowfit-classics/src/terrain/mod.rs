@@ -138,17 +138,13 @@ fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDr
         clear: 0,
         ..SampleMapSettings::new(size, SampleFormat::of(values.choice("format")))
     };
-    let (test, map) = match values.choice("shadows") {
-        "off" => (ShadowTest::OFF, map),
-        "ours" => (lamp.our_test(true)?, lamp.our_map()),
-        _ => (test(values), map),
-    };
+    let (map, test) = lamp.shadows(values, (map, test(values)), true)?;
     Ok(SampleDrawing::Mapped(SampleFrame {
         camera: *camera,
         light: lamp.light(LightImage::Square),
         map,
         test,
-        shading: if values.choice("lighting") == "modern" { MODERN } else { SHADING },
+        shading: values.lit(SHADING, MODERN),
         background: CORNFLOWER,
         double_sided: true,
     }))

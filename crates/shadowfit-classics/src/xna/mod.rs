@@ -217,7 +217,7 @@ fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDr
             ..SampleMapSettings::new([size; 2], SampleFormat::of(values.choice("format")))
         },
         test,
-        shading: if values.choice("lighting") == "modern" { MODERN } else { shading(AMBIENT) },
+        shading: values.lit(shading(AMBIENT), MODERN),
         background: CORNFLOWER,
         double_sided: false,
     }))

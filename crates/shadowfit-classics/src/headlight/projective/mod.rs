@@ -93,18 +93,14 @@ const VARIANTS: [SampleVariant; 3] = [
 
 fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDrawing, FitError> {
     let lamp = Lamp::new(&headlight(TARGET, NEAR), SIZE, camera)?;
-    let lit = if values.choice("lighting") == "modern" { MODERN } else { real_shadow::shading(LIT) };
-    let (map, test, shading) = match values.choice("shadows") {
-        "off" => (map(values), ShadowTest::OFF, lit),
-        "ours" => (lamp.our_map(), lamp.our_test(false)?, lit),
-        _ => (map(values), ShadowTest::OFF, GREYS),
-    };
+    let (map, test) = lamp.shadows(values, (map(values), ShadowTest::OFF), false)?;
+    let lit = values.lit(real_shadow::shading(LIT), MODERN);
     Ok(SampleDrawing::Mapped(SampleFrame {
         camera: *camera,
         light: lamp.light(LightImage::Square),
         map,
         test,
-        shading,
+        shading: if values.choice("shadows") == "source" { GREYS } else { lit },
         background: [0; 3],
         double_sided: true,
     }))

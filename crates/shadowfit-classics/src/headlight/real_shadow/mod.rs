@@ -176,21 +176,13 @@ fn image(values: &SampleValues) -> LightImage {
 
 fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDrawing, FitError> {
     let lamp = Lamp::new(&headlight(TARGET, NEAR), SIZE, camera)?;
-    let (map, test) = match values.choice("shadows") {
-        "off" => (map(values), ShadowTest::OFF),
-        "ours" => (lamp.our_map(), lamp.our_test(false)?),
-        _ => (map(values), test(values.get("bias"))),
-    };
+    let (map, test) = lamp.shadows(values, (map(values), test(values.get("bias"))), false)?;
     Ok(SampleDrawing::Mapped(SampleFrame {
         camera: *camera,
         light: lamp.light(image(values)),
         map,
         test,
-        shading: if values.choice("lighting") == "modern" {
-            MODERN
-        } else {
-            shading(["power", "ambient"].map(|id| values.get(id)))
-        },
+        shading: values.lit(shading(["power", "ambient"].map(|id| values.get(id))), MODERN),
         background: [0; 3],
         double_sided: true,
     }))
