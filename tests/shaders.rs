@@ -144,10 +144,13 @@ fn sample_frames() -> Vec<SampleFrame> {
     frames
 }
 
-/// Every WGSL file below the crates, with its text.
+/// Every WGSL file of the crates' folders of shaders, and of the classic samples, whose shaders lie beside their Rust; with
+/// its text.
 fn files() -> Vec<(PathBuf, String)> {
     let crates = std::fs::read_dir(workspace().join("crates")).expect("the crates' folder");
-    let mut folders: Vec<PathBuf> = crates.map(|entry| entry.expect("a crate's folder").path().join("src")).collect();
+    let mut folders: Vec<PathBuf> =
+        crates.map(|entry| entry.expect("a crate's folder").path().join("src/shaders")).collect();
+    folders.push(workspace().join("crates/shadowfit-classics/src"));
     let mut files = Vec::new();
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder).into_iter().flatten() {

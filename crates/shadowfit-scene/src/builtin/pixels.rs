@@ -16,6 +16,12 @@ pub fn hash(x: u32, y: u32) -> f32 {
 /// Smooth tileable noise in -1..1, from a table of hashed values.
 pub struct Noise(Vec<f32>);
 
+impl Default for Noise {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Noise {
     /// Fills the table.
     pub fn new() -> Self {

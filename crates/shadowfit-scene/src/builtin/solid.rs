@@ -18,6 +18,7 @@ pub struct Solid {
 
 impl Solid {
     /// Moved, turned or scaled; a mirroring transform also turns the winding.
+    #[must_use]
     pub fn transformed(mut self, transform: Affine3A) -> Self {
         for position in &mut self.positions {
             *position = transform.transform_point3(*position);
@@ -31,16 +32,19 @@ impl Solid {
     }
 
     /// Moved by `offset`.
+    #[must_use]
     pub fn moved(self, offset: Vec3) -> Self {
         self.transformed(Affine3A::from_translation(offset))
     }
 
     /// Mirrored in the plane x = 0: left for right.
+    #[must_use]
     pub fn mirrored(self) -> Self {
         self.transformed(Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0)))
     }
 
     /// Together with another solid; the two may overlap but keep their own surfaces.
+    #[must_use]
     pub fn with(mut self, other: Self) -> Self {
         let first = self.positions.len() as u32;
         self.positions.extend(other.positions);
@@ -49,6 +53,7 @@ impl Solid {
     }
 
     /// Together with its own mirror image in x = 0.
+    #[must_use]
     pub fn and_mirrored(self) -> Self {
         let mirror = self.clone().mirrored();
         self.with(mirror)
