@@ -18,7 +18,7 @@ pub struct PanelInput<'a> {
     pub scene: SceneLine<'a>,
     /// The artefact that is being shown, if any.
     pub artefact: Option<ShownArtefact<'a>>,
-    /// The classic technique on show, if the scene is one.
+    /// The card of the scene, if it has one.
     pub card: Option<Card<'a>>,
     /// The second technique, where two are compared.
     pub compare: Option<Compare<'a>>,
