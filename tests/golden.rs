@@ -9,10 +9,10 @@ use image::RgbImage;
 use shadowfit::Technique;
 use shadowfit::glam::DVec3;
 use shadowfit::settings::{FilterKind, MapFormat, SoftRadius};
+use shadowfit_classics::{SAMPLES, Sample};
 use shadowfit_params::tool::{InsetMaps, ViewMode};
 use shadowfit_render::FlyCamera;
 use shadowfit_scene::builtin::default_scene;
-use shadowfit_study::samples::{SAMPLES, Sample};
 use shadowfit_viewer::{Artefact, Stage};
 
 use crate::support::{software_gpu, workspace};

@@ -37,7 +37,8 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
 use shadowfit::settings::{FilterKind, MapChoice, MapFormat};
 use shadowfit::{CasterVolume, DepthConvention};
-use shadowfit_render::samples::{SampleFormat, ShadingKind, TestKind};
+use shadowfit_classics::mapped::SampleFrame;
+use shadowfit_classics::{SAMPLES, SampleDrawing, SampleValues, mapped, occlusion, sky_box};
 use shadowfit_render::{Overlay, shaders};
 use shadowfit_wgpu::need::need_wgsl;
 use shadowfit_wgpu::{
@@ -72,12 +73,12 @@ fn modules() -> Vec<(String, String)> {
         ("mark rows".to_owned(), shaders::mark_rows(1)),
         ("mark rows of four samples".to_owned(), shaders::mark_rows(4)),
         ("marks".to_owned(), shaders::marks()),
-        ("occlusion surface".to_owned(), shaders::samples::occlusion_surface()),
-        ("occlusion shade".to_owned(), shaders::samples::occlusion_shade()),
-        ("occlusion gather".to_owned(), shaders::samples::occlusion_gather()),
-        ("occlusion blur".to_owned(), shaders::samples::occlusion_blur()),
-        ("occlusion view".to_owned(), shaders::samples::occlusion_view()),
-        ("sky box".to_owned(), shaders::samples::sky_box()),
+        ("occlusion surface".to_owned(), occlusion::shaders::surface()),
+        ("occlusion shade".to_owned(), occlusion::shaders::shade()),
+        ("occlusion gather".to_owned(), occlusion::shaders::gather()),
+        ("occlusion blur".to_owned(), occlusion::shaders::blur()),
+        ("occlusion view".to_owned(), occlusion::shaders::view()),
+        ("sky box".to_owned(), sky_box::WGSL.to_owned()),
         ("culling piece".to_owned(), culling_wgsl(&WgslOptions::group(0))),
         ("need, compute".to_owned(), need_wgsl(1)),
         ("need of four samples, compute".to_owned(), need_wgsl(4)),
@@ -109,32 +110,54 @@ fn modules() -> Vec<(String, String)> {
     all
 }
 
-/// Every module of the classic samples.
+/// Every module of mapped frames that the classic samples' options ask for.
 fn sample_modules() -> Vec<(String, String)> {
-    use shaders::samples;
-    let mut all = vec![("samples' casters".to_owned(), samples::caster())];
-    let formats = [SampleFormat::R32Float, SampleFormat::Rgba8Packed, SampleFormat::Depth32];
-    for format in formats {
-        all.push((format!("samples' inset, {format:?}"), samples::inset(format)));
-        for test in TestKind::ALL.into_iter().filter(|test| test.can_read(format)) {
-            all.push((format!("probe of samples, {format:?} {test:?}"), samples::probe(format, test)));
-            for shading in ShadingKind::ALL {
-                all.push((format!("sample, {format:?} {test:?} {shading:?}"), samples::shaded(format, test, shading)));
+    let mut all = std::collections::BTreeMap::from([("samples' casters".to_owned(), mapped::shaders::caster())]);
+    for frame in sample_frames() {
+        let (format, test, shading) = (frame.map.format, frame.test.name, frame.shading.name);
+        all.insert(format!("samples' inset, {format:?}"), mapped::shaders::inset(format));
+        all.insert(format!("probe of samples, {format:?} {test}"), mapped::shaders::probe(&frame));
+        all.insert(format!("sample, {format:?} {test} {shading}"), mapped::shaders::shaded(&frame));
+    }
+    all.into_iter().collect()
+}
+
+/// Frames of every sample with one map, for all of its shadows, lightings and formats.
+fn sample_frames() -> Vec<SampleFrame> {
+    let mut frames = Vec::new();
+    for sample in &SAMPLES {
+        for (shadows, lighting) in
+            ["source", "off", "ours"].into_iter().flat_map(|shadows| ["source", "modern"].map(|light| (shadows, light)))
+        {
+            for format in ["r32f", "rgba8", "grey8", "r16f"] {
+                let mut values = SampleValues::new(sample);
+                for (id, text) in [("shadows", shadows), ("lighting", lighting), ("format", format)] {
+                    // What a sample cannot be stays as its source has it.
+                    let _ = values.set_from_str(id, text);
+                }
+                if let Ok(SampleDrawing::Mapped(frame)) = sample.drawing(&values, &sample.lens(1.0)) {
+                    frames.push(frame);
+                }
             }
         }
     }
-    all
+    frames
 }
 
-/// Every WGSL file below the crates, with its text.
+/// Every WGSL file of the crates' folders of shaders, and of the classic samples, whose shaders lie beside their Rust; with
+/// its text.
 fn files() -> Vec<(PathBuf, String)> {
     let crates = std::fs::read_dir(workspace().join("crates")).expect("the crates' folder");
-    let shaders = crates.map(|entry| entry.expect("a crate's folder").path().join("src/shaders"));
+    let mut folders: Vec<PathBuf> =
+        crates.map(|entry| entry.expect("a crate's folder").path().join("src/shaders")).collect();
+    folders.push(workspace().join("crates/shadowfit-classics/src"));
     let mut files = Vec::new();
-    for folder in shaders.flat_map(|folder| [folder.join("samples"), folder]) {
+    while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder).into_iter().flatten() {
-            let path = entry.expect("a shader file").path();
-            if path.extension().is_some_and(|extension| extension == "wgsl") {
+            let path = entry.expect("a file or a folder").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "wgsl") {
                 let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
                 files.push((path, text));
             }
@@ -180,17 +203,13 @@ fn every_wgsl_file_stands_whole_in_some_module() {
 #[test]
 fn the_renderer_lists_exactly_the_files_of_its_folder() {
     let folder = workspace().join("crates/shadowfit-render/src/shaders");
-    for (pieces, folder) in
-        [(&shaders::PIECES[..], folder.clone()), (&shaders::samples::PIECES, folder.join("samples"))]
-    {
-        let mut listed: Vec<&str> = pieces.iter().map(|(name, _)| *name).collect();
-        listed.sort_unstable();
-        let of_folder = files().into_iter().filter(|(path, _)| path.parent() == Some(&folder));
-        let mut present: Vec<String> =
-            of_folder.map(|(path, _)| path.file_name().expect("a name").to_string_lossy().into_owned()).collect();
-        present.sort();
-        assert_eq!(listed, present);
-    }
+    let mut listed: Vec<&str> = shaders::PIECES.iter().map(|(name, _)| *name).collect();
+    listed.sort_unstable();
+    let of_folder = files().into_iter().filter(|(path, _)| path.parent() == Some(&folder));
+    let mut present: Vec<String> =
+        of_folder.map(|(path, _)| path.file_name().expect("a name").to_string_lossy().into_owned()).collect();
+    present.sort();
+    assert_eq!(listed, present);
 }
 
 #[test]

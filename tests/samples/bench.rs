@@ -1,10 +1,10 @@
 //! A sample on the software adapter: its pictures, its map, and its figures against rays.
 
 use shadowfit::PerspectiveCamera;
-use shadowfit_render::{Gpu, RenderTarget, Renderer};
+use shadowfit_classics::{Sample, SampleDrawer, SampleFigures, SampleOutcome, SampleValues, SampleVariant};
+use shadowfit_render::passes::material_layout;
+use shadowfit_render::{Gpu, RenderTarget};
 use shadowfit_study::PreparedScene;
-use shadowfit_study::samples::{Sample, SampleDrawer, SampleFigures, SampleOutcome, SampleValues, SampleVariant};
-use shadowfit_wgpu::ShadowMapDescriptor;
 
 use crate::support::software_gpu;
 
@@ -20,8 +20,7 @@ impl Bench {
     pub(super) fn new(id: &str) -> Self {
         let gpu = software_gpu();
         let sample = Sample::find(id).unwrap_or_else(|| panic!("there is no sample {id}"));
-        let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::default(), 1).expect("a renderer");
-        let scene = PreparedScene::new(&gpu, renderer.material_layout(), sample.scene()).expect("a scene");
+        let scene = PreparedScene::new(&gpu, &material_layout(&gpu.device), sample.scene()).expect("a scene");
         let drawer = SampleDrawer::new(&gpu, 1);
         Self { gpu, sample, scene, drawer }
     }

@@ -2,8 +2,8 @@
 
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::{DepthConvention, PerspectiveCamera};
+use shadowfit_classics::{SampleDrawer, SampleDrawing};
 use shadowfit_render::RenderTarget;
-use shadowfit_study::samples::{SampleDrawer, SampleDrawing};
 use shadowfit_truth::PictureFigures;
 
 use super::bench::Bench;

@@ -2,8 +2,8 @@
 
 use shadowfit::PerspectiveCamera;
 use shadowfit::glam::{DMat4, DVec3, Vec3};
-use shadowfit_render::samples::SampleFrame;
-use shadowfit_study::samples::{SampleDrawing, SampleValues};
+use shadowfit_classics::mapped::SampleFrame;
+use shadowfit_classics::{SampleDrawing, SampleValues};
 
 use super::bench::{Bench, distinct};
 
@@ -15,7 +15,7 @@ const SIZE: [u32; 2] = [500; 2];
 const NEAR_FAR: [f64; 2] = [5.0, 100.0];
 
 /// What is drawn.
-fn frame(bench: &Bench, values: &SampleValues, camera: &PerspectiveCamera) -> SampleFrame<'static> {
+fn frame(bench: &Bench, values: &SampleValues, camera: &PerspectiveCamera) -> SampleFrame {
     match bench.sample.drawing(values, camera).expect("a lamp that can be fitted") {
         SampleDrawing::Mapped(frame) => frame,
         _ => panic!("a lamp's sample is drawn by the samples' renderer"),
@@ -137,7 +137,7 @@ fn outside_of_the_lamps_image_there_is_ambient_light_alone() {
     assert!(outside > 10_000 && inside > 10_000, "{outside} {inside}");
     // The light's position counts, and not its axis.
     assert!(
-        matches!(light.place, shadowfit_render::samples::LightPlace::At(at) if at.as_vec3() == Vec3::new(-18.0, 5.0, -2.0))
+        matches!(light.place, shadowfit_classics::mapped::LightPlace::At(at) if at.as_vec3() == Vec3::new(-18.0, 5.0, -2.0))
     );
 }
 

@@ -1,8 +1,8 @@
 //! The sky box: as far away from everywhere, and its sun where the light is.
 
 use shadowfit::glam::{DVec3, Vec3};
+use shadowfit_classics::mapped::formula::image_uv;
 use shadowfit_render::RenderTarget;
-use shadowfit_render::samples::formula::image_uv;
 
 use super::bench::Bench;
 

@@ -4,7 +4,10 @@ use core::mem::offset_of;
 
 use naga::{Binding, Module, StructMember, TypeInner};
 use shadowfit::culling::CasterPlanes;
-use shadowfit_render::samples::{OcclusionUniform, SampleFormat, SampleUniform, ShadingKind, SkyBoxUniform, TestKind};
+use shadowfit_classics::mapped::SampleUniform;
+use shadowfit_classics::occlusion::OcclusionUniform;
+use shadowfit_classics::sky_box::SkyBoxUniform;
+use shadowfit_classics::{mapped, occlusion, sky_box};
 use shadowfit_render::{
     BlockUniform, FrameUniform, InsetVertex, InstanceData, JudgedUniform, LineVertex, MarksUniform, MaterialUniform,
     Overlay, QuadVertex, shaders,
@@ -275,7 +278,7 @@ fn casters_and_samples_read_each_location_with_the_type_that_the_scene_reads_the
     let scene = parse("scene", &shaders::scene(&ShadowMapDescriptor::default()));
     let caster = parse("caster", &shaders::caster(&ShadowMapDescriptor::default()));
     let [surface, shade] =
-        [shaders::samples::occlusion_surface(), shaders::samples::occlusion_shade()].map(|text| parse("sample", &text));
+        [occlusion::shaders::surface(), occlusion::shaders::shade()].map(|text| parse("sample", &text));
     for (module, input) in [(caster, "CasterIn"), (surface, "PartIn"), (shade, "PartIn")] {
         for member in reflected(&module, input).0 {
             let Some(Binding::Location { location, .. }) = member.binding else { continue };
@@ -310,7 +313,7 @@ fn insets_and_quadrilaterals_in_the_buffers_are_what_the_vertex_shaders_read() {
 
 #[test]
 fn what_the_samples_read_lies_as_in_wgsl() {
-    let occlusion = layout!(
+    let gathered = layout!(
         "Occlusion" = OcclusionUniform {
             view_from_world,
             uv_from_view,
@@ -328,17 +331,16 @@ fn what_the_samples_read_lies_as_in_wgsl() {
             diffuse,
         }
     );
-    let shade = parse("occlusion shade", &shaders::samples::occlusion_shade());
-    assert_same(&shade, &occlusion);
-    assert_same(&parse("occlusion gather", &shaders::samples::occlusion_gather()), &occlusion);
+    let shade = parse("occlusion shade", &occlusion::shaders::shade());
+    assert_same(&shade, &gathered);
+    assert_same(&parse("occlusion gather", &occlusion::shaders::gather()), &gathered);
     let sample = layout!(
-        "Sample" = SampleUniform { clip_from_world, light_from_world, light, test, ours, shading, map_size, padding }
+        "Sample" =
+            SampleUniform { clip_from_world, light_from_world, light, test, further, shading, map_size, padding }
     );
-    let shaded = shaders::samples::shaded(SampleFormat::Depth32, TestKind::Ours, ShadingKind::Modern);
-    assert_same(&parse("sample", &shaded), &sample);
-    assert_same(&parse("samples' casters", &shaders::samples::caster()), &sample);
-    assert_same(
-        &parse("sky box", &shaders::samples::sky_box()),
-        &layout!("SkyBox" = SkyBoxUniform { clip_from_world }),
-    );
+    for frame in super::sample_frames() {
+        assert_same(&parse("sample", &mapped::shaders::shaded(&frame)), &sample);
+    }
+    assert_same(&parse("samples' casters", &mapped::shaders::caster()), &sample);
+    assert_same(&parse("sky box", sky_box::WGSL), &layout!("SkyBox" = SkyBoxUniform { clip_from_world }));
 }

@@ -17,8 +17,8 @@ pub struct PanelInput<'a> {
     pub scene: SceneLine<'a>,
     /// The artefact that is being shown, if any.
     pub artefact: Option<ShownArtefact<'a>>,
-    /// The classic technique on show, if the scene is one.
-    pub sample: Option<SampleCard<'a>>,
+    /// The card of the scene, if it has one.
+    pub card: Option<Card<'a>>,
     /// The second technique, where two are compared.
     pub compare: Option<Compare<'a>>,
     /// How far the search for better settings is.
@@ -39,7 +39,7 @@ impl<'a> PanelInput<'a> {
             figures,
             scene,
             artefact: None,
-            sample: None,
+            card: None,
             compare: None,
             tune: Tune::Idle,
             changes: Changes::default(),
@@ -80,9 +80,9 @@ impl<'a> ShownArtefact<'a> {
     }
 }
 
-/// A classic technique that the scene is a sample of.
+/// A scene with a card: what it teaches, what it can show, and options of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SampleCard<'a> {
+pub struct Card<'a> {
     /// Its name.
     pub title: &'a str,
     /// What it teaches.
@@ -91,43 +91,45 @@ pub struct SampleCard<'a> {
     pub flaw: &'a str,
     /// Whether a technique of the settings draws it at present, so that the rest of the panel applies.
     pub is_technique: bool,
-    /// What it can show beside itself.
-    pub variants: &'a [SampleChoice<'a>],
-    /// Which of them is on show; `None` for the technique as its source has it.
+    /// What it shows at first, by name.
+    pub first: &'a str,
+    /// What else it can show.
+    pub variants: &'a [CardChoice<'a>],
+    /// Which of them is on show; `None` for what it shows at first.
     pub shown: Option<usize>,
     /// Its options.
-    pub rows: &'a [SampleRow<'a>],
-    /// Whether it can be measured.
-    pub is_measurable: bool,
+    pub rows: &'a [CardRow<'a>],
+    /// What measuring it does, if it can be measured.
+    pub measure: Option<&'a str>,
     /// What was measured, a line each.
-    pub figures: &'a [SampleFigure],
+    pub figures: &'a [CardFigure],
 }
 
-/// Something that a sample can show.
+/// Something that a scene with a card can show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SampleChoice<'a> {
+pub struct CardChoice<'a> {
     /// Its name.
     pub label: &'a str,
     /// What is to be seen.
     pub text: &'a str,
 }
 
-/// An option of a sample.
+/// An option of a scene with a card.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SampleRow<'a> {
+pub struct CardRow<'a> {
     /// Its name.
     pub label: &'a str,
     /// What it does.
     pub help: &'a str,
     /// What sets it.
-    pub control: SampleControl<'a>,
+    pub control: CardControl<'a>,
     /// The number, the index of the choice, or 1 for on.
     pub value: f32,
 }
 
-/// What sets an option of a sample.
+/// What sets an option.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SampleControl<'a> {
+pub enum CardControl<'a> {
     /// One of several, by name and label.
     Choice(&'a [(&'a str, &'a str)]),
     /// A number.
@@ -143,9 +145,9 @@ pub enum SampleControl<'a> {
     Toggle,
 }
 
-/// A figure of a sample.
+/// A figure of a scene with a card.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SampleFigure {
+pub struct CardFigure {
     /// What was measured.
     pub name: String,
     /// The figure with its unit.

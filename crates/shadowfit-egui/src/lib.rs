@@ -40,6 +40,7 @@
 mod accessibility;
 mod artefact;
 mod artefact_card;
+mod card;
 mod classes;
 mod command;
 mod compare;
@@ -56,7 +57,6 @@ mod parameters;
 mod plots;
 mod quality;
 mod rows;
-mod sample;
 mod technique;
 mod theme;
 mod tune;
@@ -81,8 +81,8 @@ pub use classes::PixelClass;
 pub use command::{Command, Toggle};
 pub use help::help_overlay;
 pub use input::{
-    Changes, Compare, PanelInput, PanelOutput, Part, SampleCard, SampleChoice, SampleControl, SampleFigure, SampleRow,
-    SceneLine, ShownArtefact, Tune, UserPreset,
+    Card, CardChoice, CardControl, CardFigure, CardRow, Changes, Compare, PanelInput, PanelOutput, Part, SceneLine,
+    ShownArtefact, Tune, UserPreset,
 };
 pub use keys::{Chord, KEYS, KeyGroup, KeyHelp, NoSuchKey, keys_of, with_keys};
 pub use legend::{MAP_UPDATE_COLORS, has_legend, legend, legend_overlay};
@@ -164,8 +164,8 @@ impl Panel {
     }
 
     fn contents(&mut self, ui: &mut Ui, input: &mut PanelInput<'_>, command: &mut Option<Command>) {
-        if let Some(card) = &input.sample {
-            sample::show(ui, card, command);
+        if let Some(card) = &input.card {
+            card::show(ui, card, command);
             if !card.is_technique {
                 let hidden = &self.hidden;
                 let has = |parameter: &Parameter| !hidden.contains(parameter.id);

@@ -3,7 +3,7 @@
 use glam::{Mat4, Vec2, Vec3};
 
 /// A colour attachment that is cleared; resolved where there is a target for that.
-pub(crate) fn cleared<'a>(
+pub fn cleared<'a>(
     view: &'a wgpu::TextureView,
     resolve_target: Option<&'a wgpu::TextureView>,
     clear: wgpu::Color,
@@ -14,13 +14,13 @@ pub(crate) fn cleared<'a>(
 }
 
 /// A colour attachment that is drawn over.
-pub(crate) fn drawn_over(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {
+pub fn drawn_over(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {
     let ops = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
     wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
 }
 
 /// The camera's depth, reversed: cleared to the far value 0, and kept.
-pub(crate) fn depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+pub fn depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
     let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store };
     wgpu::RenderPassDepthStencilAttachment { view, depth_ops: Some(ops), stencil_ops: None }
 }
@@ -32,7 +32,7 @@ pub(crate) fn kept_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStenc
 }
 
 /// The part of a scissor rectangle (left, top, width, height, in pixels) that lies in a picture.
-pub(crate) fn part([x, y, width, height]: [u32; 4], size: [u32; 2]) -> [u32; 4] {
+pub fn part([x, y, width, height]: [u32; 4], size: [u32; 2]) -> [u32; 4] {
     let [x, y] = [x.min(size[0]), y.min(size[1])];
     [x, y, width.min(size[0] - x), height.min(size[1] - y)]
 }

@@ -1,19 +1,19 @@
 //! Short ways to layouts, bind groups, uniform buffers and textures.
 
 /// A uniform buffer that is bound as a whole.
-pub(crate) const UNIFORM: wgpu::BindingType = wgpu::BindingType::Buffer {
+pub const UNIFORM: wgpu::BindingType = wgpu::BindingType::Buffer {
     ty: wgpu::BufferBindingType::Uniform,
     has_dynamic_offset: false,
     min_binding_size: None,
 };
 
 /// A texture that shaders load from.
-pub(crate) const fn texture(sample_type: wgpu::TextureSampleType, multisampled: bool) -> wgpu::BindingType {
+pub const fn texture(sample_type: wgpu::TextureSampleType, multisampled: bool) -> wgpu::BindingType {
     wgpu::BindingType::Texture { sample_type, view_dimension: wgpu::TextureViewDimension::D2, multisampled }
 }
 
 /// A layout whose bindings are numbered from 0 on.
-pub(crate) fn layout(
+pub fn layout(
     device: &wgpu::Device,
     label: &str,
     visibility: wgpu::ShaderStages,
@@ -30,7 +30,7 @@ pub(crate) fn layout(
 }
 
 /// A bind group of such a layout.
-pub(crate) fn group(
+pub fn group(
     device: &wgpu::Device,
     label: &str,
     layout: &wgpu::BindGroupLayout,
@@ -43,7 +43,7 @@ pub(crate) fn group(
 }
 
 /// A buffer for a uniform of a type.
-pub(crate) fn uniform_buffer<T>(device: &wgpu::Device, label: &str) -> wgpu::Buffer {
+pub fn uniform_buffer<T>(device: &wgpu::Device, label: &str) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
         size: size_of::<T>() as u64,
@@ -53,7 +53,7 @@ pub(crate) fn uniform_buffer<T>(device: &wgpu::Device, label: &str) -> wgpu::Buf
 }
 
 /// A texture of one level and one sample.
-pub(crate) fn plain_texture(
+pub fn plain_texture(
     device: &wgpu::Device,
     label: &str,
     size: [u32; 2],

@@ -1,12 +1,12 @@
-//! The renderer of the shadowfit samples: uploads a CPU scene, draws its casters into a
+//! The renderer of the shadowfit viewer: uploads a CPU scene, draws its casters into a
 //! [`shadowfit_wgpu::ShadowMap`], shades it under a sun and a sky, and reads pictures back. It
 //! needs no window; the viewer, the tests and the report tool all draw with it.
 //!
 //! Everything on the GPU is relative to the camera's eye, so that pictures stay steady far from
 //! the world's origin. Right-handed, y up, metres; the camera's depth is reversed (near 1, far 0).
 
-mod attachment;
-mod bindings;
+pub mod attachment;
+pub mod bindings;
 pub mod camera;
 mod casters;
 mod frame;
@@ -18,12 +18,12 @@ mod lines;
 mod marks;
 mod material;
 mod overlay;
+pub mod passes;
 mod pipelines;
 mod pixel;
 mod probe;
 mod quad;
 mod renderer;
-pub mod samples;
 mod scene;
 pub mod shaders;
 mod statistics;

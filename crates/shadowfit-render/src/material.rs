@@ -13,7 +13,7 @@ use crate::{Gpu, bindings, shaders};
 const ANISOTROPY: u16 = 8;
 
 /// Layout of a material's bind group, the same in the shaded and the shadow pass.
-pub(crate) fn material_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+pub fn material_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let texture = bindings::texture(wgpu::TextureSampleType::Float { filterable: true }, false);
     let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
     let types = [bindings::UNIFORM, texture, sampler, texture, sampler];

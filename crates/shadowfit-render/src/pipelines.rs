@@ -10,8 +10,9 @@ use crate::material::material_layout;
 use crate::uniform::{LineVertex, QuadVertex};
 use crate::{Overlay, bindings, shaders};
 
-pub(crate) use maker::{BLENDED_COLOR, COLOR, InstanceNumber, Maker, Shape, instances, part_buffers};
-pub(crate) use of_map::{Drawn, MapPipelines, PartKey};
+pub(crate) use maker::{BLENDED_COLOR, COLOR, instances};
+pub use maker::{InstanceNumber, Maker, Shape, part_buffers};
+pub(crate) use of_map::{Drawn, MapPipelines};
 
 /// Bind group layouts of this crate.
 #[derive(Debug)]

@@ -9,7 +9,7 @@ use crate::target::{DEPTH_FORMAT, ReadError, read_texture};
 use crate::{Gpu, bindings};
 
 /// Format of the probe's target: the triangle's number plus one (0 is the sky), and the bits of the factor.
-pub(crate) const PROBE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
+pub const PROBE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 
 /// One pixel of a [`Probe`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,7 +50,7 @@ pub enum ProbeError {
 }
 
 /// Whether a device can tell triangles apart.
-pub(crate) fn can_probe(device: &wgpu::Device) -> bool {
+pub fn can_probe(device: &wgpu::Device) -> bool {
     device.features().contains(wgpu::Features::PRIMITIVE_INDEX)
 }
 

@@ -47,6 +47,18 @@ pub(crate) struct Part {
     members: Vec<usize>,
 }
 
+/// What selects a part's pipeline, in every pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent property of the part")]
+pub struct PartKey {
+    /// Whether fragments below the cutoff are absent.
+    pub masked: bool,
+    /// Whether it is blended over what lies behind.
+    pub blended: bool,
+    double_sided: bool,
+    mirrored: bool,
+}
+
 #[derive(Clone, Copy, Debug)]
 struct SceneInstance {
     instance: Instance,
@@ -58,7 +70,9 @@ struct SceneInstance {
 
 /// A draw call: a part and a range of the instance buffer.
 #[derive(Clone, Debug)]
-pub(crate) struct Draw {
+pub struct Draw {
+    /// What selects its pipeline.
+    pub key: PartKey,
     pub(crate) part: usize,
     pub(crate) instances: core::ops::Range<u32>,
     /// Distance from the eye to the nearest instance's centre, for the order of blended parts.
@@ -71,7 +85,7 @@ const MOTION_FLOATS: usize = 10;
 const SURFACE_FLOATS: usize = 6;
 
 impl GpuScene {
-    /// Uploads a scene in a pose. `layout` comes from [`crate::Renderer::material_layout`].
+    /// Uploads a scene in a pose. `layout` is [`material_layout`](crate::passes::material_layout).
     pub fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, scene: &Scene, pose: &Pose) -> Self {
         let instances: Vec<Instance> = scene.instances();
         let mut parts: Vec<Part> = Vec::new();
@@ -134,7 +148,7 @@ impl GpuScene {
     }
 
     /// Starts a frame's instance list, for positions relative to `eye` (world space, metres).
-    pub(crate) fn begin_frame(&mut self, eye: DVec3) {
+    pub fn begin_frame(&mut self, eye: DVec3) {
         self.data.clear();
         self.holders.clear();
         self.eye = eye;
@@ -176,13 +190,21 @@ impl GpuScene {
         casters.draws(numbers, indices, add, draws);
     }
 
+    /// Adds the instances that a clip space may show, and returns their draws: of opaque parts the nearest first, so that
+    /// what they hide is never shaded, and of blended ones the farthest first. `clip_from_world` takes positions relative
+    /// to the frame's eye.
+    pub fn seen(&mut self, clip_from_world: Mat4) -> [Vec<Draw>; 2] {
+        let keep = in_frustum(clip_from_world);
+        let mut opaque = self.visible(&keep, Part::casts);
+        opaque.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let mut blended = self.visible(&keep, |part| !part.casts());
+        blended.sort_by(|a, b| b.distance.total_cmp(&a.distance));
+        [opaque, blended]
+    }
+
     /// Adds the instances that a pass sees, and returns its draws. `keep` is asked with an instance's bounds relative to
     /// the frame's eye.
-    pub(crate) fn visible(
-        &mut self,
-        keep: impl Fn(&shadowfit::Aabb) -> bool,
-        takes: impl Fn(&Part) -> bool,
-    ) -> Vec<Draw> {
+    fn visible(&mut self, keep: impl Fn(&shadowfit::Aabb) -> bool, takes: impl Fn(&Part) -> bool) -> Vec<Draw> {
         let mut draws = Vec::new();
         for (part_index, part) in self.parts.iter().enumerate().filter(|(_, part)| takes(part)) {
             let start = self.data.len() as u32;
@@ -198,14 +220,14 @@ impl GpuScene {
             }
             let instances = start..self.data.len() as u32;
             if !instances.is_empty() {
-                draws.push(Draw { part: part_index, instances, distance });
+                draws.push(Draw { key: PartKey::of(part), part: part_index, instances, distance });
             }
         }
         draws
     }
 
     /// Adds all instances on nodes that are wanted, and returns their draws; blended surfaces are left out.
-    pub(crate) fn drawn_of(&mut self, wants: impl Fn(usize) -> bool) -> Vec<Draw> {
+    pub fn drawn_of(&mut self, wants: impl Fn(usize) -> bool) -> Vec<Draw> {
         let mut draws = Vec::new();
         for (part_index, part) in self.parts.iter().enumerate().filter(|(_, part)| part.casts()) {
             let start = self.data.len() as u32;
@@ -215,14 +237,14 @@ impl GpuScene {
                 .extend(wanted.map(|member| instance_data(&member.world_from_mesh, self.eye, member.first_triangle)));
             let instances = start..self.data.len() as u32;
             if !instances.is_empty() {
-                draws.push(Draw { part: part_index, instances, distance: 0.0 });
+                draws.push(Draw { key: PartKey::of(part), part: part_index, instances, distance: 0.0 });
             }
         }
         draws
     }
 
     /// Draws a part, with its material as a bind group where one is wanted.
-    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, draw: &Draw, material_group: Option<u32>) {
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, draw: &Draw, material_group: Option<u32>) {
         let part = &self.parts[draw.part];
         if let Some(group) = material_group {
             pass.set_bind_group(group, &self.materials[part.material], &[]);
@@ -235,7 +257,7 @@ impl GpuScene {
     }
 
     /// Uploads the frame's instance list.
-    pub(crate) fn end_frame(&mut self, gpu: &Gpu) {
+    pub fn end_frame(&mut self, gpu: &Gpu) {
         let bytes: &[u8] = bytemuck::cast_slice(&self.data);
         if bytes.len() as u64 > self.instance_buffer.size() {
             self.instance_buffer = instance_buffer(&gpu.device, self.data.len().next_power_of_two());
@@ -289,14 +311,40 @@ impl Part {
     }
 
     /// Whether the caster rule lets the part cast: blended surfaces cast nothing.
-    pub(crate) fn casts(&self) -> bool {
+    fn casts(&self) -> bool {
         self.alpha != AlphaMode::Blend
+    }
+}
+
+impl PartKey {
+    pub(crate) fn of(part: &Part) -> Self {
+        Self {
+            masked: matches!(part.alpha, AlphaMode::Mask { .. }),
+            blended: part.alpha == AlphaMode::Blend,
+            double_sided: part.double_sided,
+            mirrored: part.mirrored,
+        }
+    }
+
+    /// Back faces of single-sided parts are left out; a mirrored part's back is its front.
+    pub fn cull_mode(self) -> Option<wgpu::Face> {
+        (!self.double_sided).then(|| self.back())
+    }
+
+    /// The front as the rasteriser names it.
+    pub fn front(self) -> wgpu::Face {
+        if self.mirrored { wgpu::Face::Back } else { wgpu::Face::Front }
+    }
+
+    /// The back as the rasteriser names it.
+    pub fn back(self) -> wgpu::Face {
+        if self.mirrored { wgpu::Face::Front } else { wgpu::Face::Back }
     }
 }
 
 /// Whether a box relative to the eye may be seen: not wholly outside one of the six clip planes
 /// (Gribb and Hartmann, 2001).
-pub(crate) fn in_frustum(clip_from_world: Mat4) -> impl Fn(&shadowfit::Aabb) -> bool {
+fn in_frustum(clip_from_world: Mat4) -> impl Fn(&shadowfit::Aabb) -> bool {
     let row = |index| clip_from_world.row(index);
     let planes = [row(3) + row(0), row(3) - row(0), row(3) + row(1), row(3) - row(1), row(2), row(3) - row(2)];
     move |bounds| {

@@ -7,27 +7,30 @@ use shadowfit_wgpu::{ShadowMapDescriptor, WgslOptions, caster_wgsl, receiver_wgs
 
 use crate::Overlay;
 
-pub mod samples;
-
 /// Bind group of the map's matrix in the shadow pass.
 pub const CASTER_GROUP: u32 = 0;
 
 /// Bind group of the shadow map in the shaded pass.
 pub const SHADOW_GROUP: u32 = 1;
 
-const FRAME: &str = concat!(
+/// What shaders of a frame read: [`FrameUniform`](crate::FrameUniform) in group 0, with the tone curve.
+pub const FRAME: &str = concat!(
     include_str!("shaders/powers.wgsl"),
     include_str!("shaders/tone_map.wgsl"),
     include_str!("shaders/frame.wgsl")
 );
-const POWERS: &str = include_str!("shaders/powers.wgsl");
-const TONE_MAP: &str = include_str!("shaders/tone_map.wgsl");
-const REFLECTANCE: &str = include_str!("shaders/reflectance.wgsl");
+/// Powers by squaring.
+pub const POWERS: &str = include_str!("shaders/powers.wgsl");
+/// The tone curve.
+pub const TONE_MAP: &str = include_str!("shaders/tone_map.wgsl");
+/// Reflectance of a surface; needs [`POWERS`].
+pub const REFLECTANCE: &str = include_str!("shaders/reflectance.wgsl");
 const MATERIAL: &str = include_str!("shaders/material.wgsl");
 const OVERLAY: &str = include_str!("shaders/overlay.wgsl");
 const JUDGED: &str = include_str!("shaders/judged.wgsl");
 const MARK: &str = include_str!("shaders/mark.wgsl");
-const SCREEN: &str = include_str!("shaders/screen.wgsl");
+/// The vertex stage of passes that fill a picture.
+pub const SCREEN: &str = include_str!("shaders/screen.wgsl");
 
 /// The pieces as they lie in the folder, for tests that look for files which no module uses.
 pub const PIECES: [(&str, &str); 28] = [
@@ -69,18 +72,16 @@ pub fn sky() -> String {
 /// The shadow pass: group 0 is the shadow map's, group 1 the material's.
 pub fn caster(shadow_map: &ShadowMapDescriptor) -> String {
     let color = if shadow_map.format.is_depth() { "" } else { include_str!("shaders/caster_color.wgsl") };
-    let material = MATERIAL.replace("MATERIAL_GROUP", "1");
     let shadow_map = caster_wgsl(shadow_map, &WgslOptions::group(CASTER_GROUP));
-    [&shadow_map, &material, include_str!("shaders/caster.wgsl"), color].concat()
+    [&shadow_map, &material(1), include_str!("shaders/caster.wgsl"), color].concat()
 }
 
 /// The shaded pass: frame, shadow map and material are groups 0, 1 and 2.
 pub fn scene(shadow_map: &ShadowMapDescriptor) -> String {
-    let material = MATERIAL.replace("MATERIAL_GROUP", "2");
     [
         FRAME,
         &receiver_wgsl(shadow_map, &WgslOptions::group(SHADOW_GROUP)),
-        &material,
+        &material(2),
         REFLECTANCE,
         include_str!("shaders/scene.wgsl"),
     ]
@@ -123,8 +124,13 @@ const fn overlay_file(overlay: Overlay) -> &'static str {
     }
 }
 
+/// A material's textures and colours, whose bindings are in a group.
+pub fn material(group: u32) -> String {
+    MATERIAL.replace("MATERIAL_GROUP", &group.to_string())
+}
+
 /// A piece whose bindings are in a group.
-fn in_group(piece: &str, group: u32) -> String {
+pub fn in_group(piece: &str, group: u32) -> String {
     piece.replace("GROUP", &group.to_string())
 }
 

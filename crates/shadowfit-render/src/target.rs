@@ -3,14 +3,15 @@
 use core::fmt;
 
 use crate::Gpu;
+use crate::attachment::{cleared, depth};
 use crate::wait::waiting;
 
 /// Colour format of render targets, as the renderer writes it.
 pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// The same bytes without the sRGB decoding, for user interfaces that blend encoded colours.
-pub(crate) const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+pub const ENCODED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// Depth format of the camera.
-pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// Textures that a picture is drawn into.
 #[derive(Debug)]
@@ -45,6 +46,30 @@ impl RenderTarget {
     /// A view of the encoded bytes, for user interfaces.
     pub fn encoded_view(&self) -> wgpu::TextureView {
         self.color.create_view(&wgpu::TextureViewDescriptor { format: Some(ENCODED_FORMAT), ..Default::default() })
+    }
+
+    /// Begins a pass that writes display values as they are, over a `background` of them, with the camera's depth. Its
+    /// pipelines have [`ENCODED_FORMAT`], [`DEPTH_FORMAT`] and the target's number of samples.
+    pub fn begin_encoded<'a>(
+        &self,
+        encoder: &'a mut wgpu::CommandEncoder,
+        label: &str,
+        [r, g, b]: [f64; 3],
+    ) -> wgpu::RenderPass<'a> {
+        let resolved = self.encoded_view();
+        let encoded = wgpu::TextureViewDescriptor { format: Some(ENCODED_FORMAT), ..Default::default() };
+        let multisampled = self.multisampled.as_ref().map(|view| view.texture().create_view(&encoded));
+        let background = wgpu::Color { r, g, b, a: 1.0 };
+        let color = match &multisampled {
+            Some(view) => cleared(view, Some(&resolved), background),
+            None => cleared(&resolved, None, background),
+        };
+        encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some(label),
+            color_attachments: &[Some(color)],
+            depth_stencil_attachment: Some(depth(&self.depth_view)),
+            ..Default::default()
+        })
     }
 
     /// Copies a part (left, top, width and height, in pixels) of the colours of a target of the same size.

@@ -1,4 +1,4 @@
-//! CPU scenes for the shadowfit samples: glTF import, built-in scenes, animation and bounds.
+//! CPU scenes for the shadowfit viewer: glTF import, built-in scenes, animation and bounds.
 //!
 //! A [`Scene`] is the data, a [`Pose`] where everything is at a time of an animation. Renderers draw both; ray tracers
 //! take [`Pose::triangles`]. Nothing here needs a GPU. Spaces are right-handed with y up, in metres and radians.

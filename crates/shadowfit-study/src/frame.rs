@@ -1,4 +1,4 @@
-//! The only place where a frame of the samples' renderer is put together and its haze is chosen.
+//! The only place where a frame of the viewer's renderer is put together and its haze is chosen.
 
 use shadowfit::{FittedMap, PerspectiveCamera};
 use shadowfit_params::tool::CameraSettings;

@@ -1,4 +1,4 @@
-//! Techniques on the same frames: each is fitted, drawn by the samples' renderer, and judged against rays, without a
+//! Techniques on the same frames: each is fitted, drawn by the viewer's renderer, and judged against rays, without a
 //! window.
 //!
 //! A [`PreparedScene`] is a scene that can be drawn, traced and fitted to; a [`View`] is a camera and a light. A
@@ -20,7 +20,6 @@ mod maps;
 mod picture;
 mod posed_rays;
 mod rays;
-pub mod samples;
 mod scene;
 mod settings_file;
 mod technique_file;

@@ -55,7 +55,7 @@ impl core::error::Error for NothingToDraw {}
 #[derive(Debug)]
 pub struct PreparedScene {
     /// On the GPU.
-    pub(crate) gpu_scene: GpuScene,
+    pub gpu_scene: GpuScene,
     posed: PosedScene,
 }
 
@@ -72,8 +72,8 @@ pub struct PosedScene {
 }
 
 impl PreparedScene {
-    /// Makes a scene ready, in its rest pose, with boxes and without rays. `layout` comes from [`shadowfit_render::Renderer::material_layout`];
-    /// those of all renderers are alike.
+    /// Makes a scene ready, in its rest pose, with boxes and without rays. `layout` is
+    /// [`shadowfit_render::passes::material_layout`], the same for all renderers.
     ///
     /// # Errors
     ///

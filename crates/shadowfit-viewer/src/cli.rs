@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Parser;
 use shadowfit::Technique;
+use shadowfit_classics::{SAMPLES, SampleValues};
 use shadowfit_params::tool::Settings;
 use shadowfit_params::{self as params, Kind, Number, Parameter, ParameterError};
 use shadowfit_render::AdapterChoice;
 use shadowfit_scene::Scene;
 use shadowfit_study::NamedTechnique;
-use shadowfit_study::samples::{SAMPLES, SampleValues};
 
 use crate::script::{self, Line};
 use crate::source::{OPTION_PREFIX, SceneSource};

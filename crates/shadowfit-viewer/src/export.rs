@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
+use shadowfit_classics::{Sample, SampleValues, SampleVariant};
 use shadowfit_params::tool::Settings;
 use shadowfit_params::{self as params, PARAMETERS};
-use shadowfit_study::samples::{Sample, SampleValues, SampleVariant};
 
 use crate::source::SceneSource;
 

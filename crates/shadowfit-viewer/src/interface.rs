@@ -9,7 +9,7 @@ mod timeline;
 use egui::{CentralPanel, Frame, Ui};
 use glam::Vec2;
 use shadowfit_egui::{
-    Changes, Command, Compare, PANEL_WIDTH, Panel, PanelInput, SampleFigure, SceneLine, ShownArtefact, Tune, UserPreset,
+    CardFigure, Changes, Command, Compare, PANEL_WIDTH, Panel, PanelInput, SceneLine, ShownArtefact, Tune, UserPreset,
 };
 use shadowfit_params::figures::Figures;
 
@@ -44,7 +44,7 @@ pub(crate) struct InterfaceInput<'a> {
     pub(crate) presets: &'a [UserPreset],
     pub(crate) tune: Tune<'a>,
     /// What was measured of the sample that is shown.
-    pub(crate) sample_figures: &'a [SampleFigure],
+    pub(crate) sample_figures: &'a [CardFigure],
     pub(crate) changes: Changes<'a>,
     /// A message, such as where a screenshot was saved.
     pub(crate) message: Option<&'a str>,
@@ -180,7 +180,7 @@ impl Interface {
         let compare = other.map(|other| Compare { other, edits_other: &mut self.edits_other });
         let panel_input = PanelInput {
             artefact,
-            sample: sample.as_ref().map(|sample| sample.card(input.sample_figures)),
+            card: sample.as_ref().map(|sample| sample.card(input.sample_figures)),
             compare,
             tune: input.tune,
             changes: input.changes,

@@ -4,9 +4,9 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use anyhow::Result;
 use shadowfit::PerspectiveCamera;
-use shadowfit_egui::SampleFigure;
+use shadowfit_classics::{Sample, SampleFigures, SampleValues};
+use shadowfit_egui::CardFigure;
 use shadowfit_render::{AdapterChoice, Gpu};
-use shadowfit_study::samples::{Sample, SampleFigures, SampleValues};
 
 /// What is measured: a sample by its values, a camera, and the time of its animation, in seconds.
 pub(crate) type Task = (&'static Sample, SampleValues, PerspectiveCamera, f32);
@@ -15,7 +15,7 @@ pub(crate) type Task = (&'static Sample, SampleValues, PerspectiveCamera, f32);
 #[derive(Debug, Default)]
 pub(crate) struct Measuring {
     result: Option<Receiver<Result<SampleFigures>>>,
-    lines: Vec<SampleFigure>,
+    lines: Vec<CardFigure>,
 }
 
 impl Measuring {
@@ -54,16 +54,16 @@ impl Measuring {
     }
 
     /// What was measured, for the panel.
-    pub(crate) fn lines(&self) -> &[SampleFigure] {
+    pub(crate) fn lines(&self) -> &[CardFigure] {
         &self.lines
     }
 }
 
 /// Lines of figures, as the panel shows them and the headless mode prints them.
-pub(crate) fn lines(figures: &SampleFigures) -> Vec<SampleFigure> {
-    figures.lines().into_iter().map(|(name, value)| SampleFigure { name, value }).collect()
+pub(crate) fn lines(figures: &SampleFigures) -> Vec<CardFigure> {
+    figures.lines().into_iter().map(|(name, value)| CardFigure { name, value }).collect()
 }
 
-fn line(name: &str, value: &str) -> SampleFigure {
-    SampleFigure { name: name.to_owned(), value: value.to_owned() }
+fn line(name: &str, value: &str) -> CardFigure {
+    CardFigure { name: name.to_owned(), value: value.to_owned() }
 }

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
+use shadowfit_classics::{Sample, SampleVariant};
 use shadowfit_scene::Scene;
 use shadowfit_scene::builtin::BuiltinScene;
-use shadowfit_study::samples::{Sample, SampleVariant};
 
 /// What the name of a sample's option begins with, on the command line and in scripts.
 pub(crate) const OPTION_PREFIX: &str = "sample.";

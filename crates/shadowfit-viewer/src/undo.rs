@@ -2,9 +2,9 @@
 
 use egui::util::undoer::Undoer;
 use shadowfit::Technique;
+use shadowfit_classics::SampleValues;
 use shadowfit_params::PARAMETERS;
 use shadowfit_params::tool::Settings;
-use shadowfit_study::samples::SampleValues;
 
 use crate::stage::ArtefactShow;
 

@@ -104,7 +104,7 @@
 //! | boxes that hug large meshes | `clusters` and [`normal_cone`], feature `alloc` |
 //! | static casters drawn only where the map is new | [`scroll`] |
 //! | a moving sun without crawling shadow edges | [`light_steps`] |
-//! | a lamp or headlight: its perspective map, casters, biases and figures | [`SpotLight`], [`spot`] |
+//! | a lamp or headlight: its perspective map, casters and biases | [`SpotLight`], [`spot`] |
 //! | a proof that no map has a hole | [`verify`] |
 //! | biases in metres and depth for a filter of your own | [`Bias`], [`bias`] |
 //! | pixels per texel, depth steps, margin against acne | [`diagnostics`] |

@@ -37,7 +37,6 @@
 //! ```
 
 pub mod bias;
-pub mod diagnostics;
 
 mod casters;
 mod matrix;

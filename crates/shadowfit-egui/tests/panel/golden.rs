@@ -11,9 +11,9 @@ use image::RgbaImage;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use shadowfit_egui::PANEL_WIDTH;
 
+use crate::card;
 use crate::host::{Host, builder};
 use crate::renderer::SoftwareRenderer;
-use crate::sample;
 use crate::states::{busy, play, session};
 
 /// Most bytes that a golden may have.
@@ -56,7 +56,7 @@ fn an_artefact_two_techniques_and_a_search_are_as_they_were() {
 
 #[test]
 fn the_card_of_a_sample_is_as_it_was() {
-    check("dark-sample", &mut drawn(sample::session(), Theme::Dark));
+    check("dark-sample", &mut drawn(card::session(), Theme::Dark));
 }
 
 #[test]

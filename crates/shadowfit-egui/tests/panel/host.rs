@@ -6,7 +6,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, HarnessBuilder, Node};
 use shadowfit::Technique;
 use shadowfit_egui::{
-    Artefact, Changes, Command, Compare, PANEL_WIDTH, Panel, PanelInput, SampleCard, SceneLine, ShownArtefact, Tune,
+    Artefact, Card, Changes, Command, Compare, PANEL_WIDTH, Panel, PanelInput, SceneLine, ShownArtefact, Tune,
     UserPreset, apply_theme, help_overlay,
 };
 use shadowfit_params::figures::Figures;
@@ -39,7 +39,7 @@ pub(crate) struct Host {
     /// Technique B and whether it is edited, where two are compared.
     pub(crate) compare: Option<(Technique, bool)>,
     pub(crate) tune: Tune<'static>,
-    pub(crate) sample: Option<SampleCard<'static>>,
+    pub(crate) card: Option<Card<'static>>,
     pub(crate) changes: Changes<'static>,
     pub(crate) presets: Vec<UserPreset>,
     pub(crate) help: bool,
@@ -70,7 +70,7 @@ impl Host {
             });
             input.compare = self.compare.as_mut().map(|(other, edits_other)| Compare { other, edits_other });
             input.tune = self.tune;
-            input.sample = self.sample;
+            input.card = self.card;
             input.changes = self.changes;
             input.presets = &self.presets;
             input.message = self.message;

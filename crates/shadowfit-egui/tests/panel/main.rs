@@ -1,6 +1,7 @@
 //! The panel, driven through its accessibility tree as a person would drive it, and drawn.
 //! The harness itself fails on a widget without a name and on a glyph that egui's fonts lack.
 
+mod card;
 mod commands;
 mod controls;
 mod figures;
@@ -9,6 +10,5 @@ mod host;
 mod layout;
 mod overlays;
 mod renderer;
-mod sample;
 mod states;
 mod techniques;

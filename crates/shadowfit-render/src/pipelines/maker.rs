@@ -6,26 +6,37 @@ use crate::target::{COLOR_FORMAT, DEPTH_FORMAT};
 use crate::uniform::InstanceData;
 
 /// Makes modules, layouts and pipelines.
-#[derive(Clone, Copy)]
-pub(crate) struct Maker<'a> {
-    pub(crate) device: &'a wgpu::Device,
+#[derive(Clone, Copy, Debug)]
+pub struct Maker<'a> {
+    /// Where they are made.
+    pub device: &'a wgpu::Device,
     /// Samples per pixel of the camera's passes.
-    pub(crate) samples: u32,
+    pub samples: u32,
 }
 
 /// What differs between the pipelines.
-pub(crate) struct Shape<'a> {
-    pub(crate) label: &'a str,
-    pub(crate) layout: &'a wgpu::PipelineLayout,
-    pub(crate) module: &'a wgpu::ShaderModule,
-    pub(crate) entries: [&'a str; 2],
-    pub(crate) buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
-    pub(crate) targets: &'a [Option<wgpu::ColorTargetState>],
-    pub(crate) topology: wgpu::PrimitiveTopology,
-    pub(crate) cull_mode: Option<wgpu::Face>,
+#[derive(Clone, Copy, Debug)]
+pub struct Shape<'a> {
+    /// Name for debuggers.
+    pub label: &'a str,
+    /// Bind groups.
+    pub layout: &'a wgpu::PipelineLayout,
+    /// Module of both stages.
+    pub module: &'a wgpu::ShaderModule,
+    /// Entry points of the vertex and the fragment stage; without the latter depth alone is written.
+    pub entries: (&'a str, Option<&'a str>),
+    /// Vertex streams.
+    pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    /// Colour targets.
+    pub targets: &'a [Option<wgpu::ColorTargetState>],
+    /// Kind of primitives.
+    pub topology: wgpu::PrimitiveTopology,
+    /// Faces that are left out.
+    pub cull_mode: Option<wgpu::Face>,
     /// Whether depth is written, and how it is compared.
-    pub(crate) depth: Option<(bool, wgpu::CompareFunction)>,
-    pub(crate) samples: u32,
+    pub depth: Option<(bool, wgpu::CompareFunction)>,
+    /// Samples per pixel.
+    pub samples: u32,
 }
 
 /// The target of passes that draw opaque colours.
@@ -41,7 +52,7 @@ pub(crate) const BLENDED_COLOR: [Option<wgpu::ColorTargetState>; 1] = [Some(wgpu
 
 impl<'a> Shape<'a> {
     /// Triangles of one sample without vertices, depth or blending: what fills the picture.
-    pub(crate) fn new(
+    pub fn new(
         label: &'a str,
         layout: &'a wgpu::PipelineLayout,
         module: &'a wgpu::ShaderModule,
@@ -51,7 +62,7 @@ impl<'a> Shape<'a> {
             label,
             layout,
             module,
-            entries,
+            entries: (entries[0], Some(entries[1])),
             buffers: &[],
             targets: &COLOR,
             topology: wgpu::PrimitiveTopology::TriangleList,
@@ -63,14 +74,16 @@ impl<'a> Shape<'a> {
 }
 
 impl Maker<'_> {
-    pub(crate) fn module(&self, label: &str, source: String) -> wgpu::ShaderModule {
+    /// A module of WGSL.
+    pub fn module(&self, label: &str, source: String) -> wgpu::ShaderModule {
         self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(label),
             source: wgpu::ShaderSource::Wgsl(source.into()),
         })
     }
 
-    pub(crate) fn layout(&self, groups: &[&wgpu::BindGroupLayout]) -> wgpu::PipelineLayout {
+    /// The layout of bind groups in their order.
+    pub fn layout(&self, groups: &[&wgpu::BindGroupLayout]) -> wgpu::PipelineLayout {
         let groups: Vec<_> = groups.iter().map(|group| Some(*group)).collect();
         self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: None,
@@ -79,13 +92,14 @@ impl Maker<'_> {
         })
     }
 
-    pub(crate) fn pipeline(&self, shape: &Shape<'_>) -> wgpu::RenderPipeline {
+    /// A pipeline.
+    pub fn pipeline(&self, shape: &Shape<'_>) -> wgpu::RenderPipeline {
         self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(shape.label),
             layout: Some(shape.layout),
             vertex: wgpu::VertexState {
                 module: shape.module,
-                entry_point: Some(shape.entries[0]),
+                entry_point: Some(shape.entries.0),
                 compilation_options: Default::default(),
                 buffers: shape.buffers,
             },
@@ -102,9 +116,9 @@ impl Maker<'_> {
                 bias: Default::default(),
             }),
             multisample: wgpu::MultisampleState { count: shape.samples, ..Default::default() },
-            fragment: Some(wgpu::FragmentState {
+            fragment: shape.entries.1.map(|entry| wgpu::FragmentState {
                 module: shape.module,
-                entry_point: Some(shape.entries[1]),
+                entry_point: Some(entry),
                 compilation_options: Default::default(),
                 targets: shape.targets,
             }),
@@ -116,7 +130,7 @@ impl Maker<'_> {
 
 /// What shaders read as an instance's number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum InstanceNumber {
+pub enum InstanceNumber {
     /// That of its first triangle.
     FirstTriangle,
     /// The map that holds it.
@@ -124,7 +138,7 @@ pub(crate) enum InstanceNumber {
 }
 
 /// The three vertex streams of a part: what deforms, what does not, and the instances.
-pub(crate) fn part_buffers(number: InstanceNumber) -> [Option<wgpu::VertexBufferLayout<'static>>; 3] {
+pub fn part_buffers(number: InstanceNumber) -> [Option<wgpu::VertexBufferLayout<'static>>; 3] {
     const MOTION: [wgpu::VertexAttribute; 3] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4];
     const SURFACE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![3 => Float32x2, 4 => Float32x4];
     const FIRST_TRIANGLE: [wgpu::VertexAttribute; 4] = instance(offset_of!(InstanceData, first_triangle));

@@ -2,13 +2,12 @@
 
 use std::collections::HashMap;
 
-use shadowfit_scene::AlphaMode;
 use shadowfit_wgpu::ShadowMap;
 
 use super::{BLENDED_COLOR, COLOR, InstanceNumber, Layouts, Maker, Shape, instances, part_buffers};
 use crate::pixel::BLOCK_FORMAT;
 use crate::probe::PROBE_FORMAT;
-use crate::scene::Part;
+use crate::scene::{Part, PartKey};
 use crate::uniform::InsetVertex;
 use crate::{Overlay, shaders};
 
@@ -19,16 +18,6 @@ pub(crate) enum Drawn {
     Shaded(Overlay),
     /// A probe.
     Probe,
-}
-
-/// What selects a part's pipeline, in every pass.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[expect(clippy::struct_excessive_bools, reason = "each is an independent property of the part")]
-pub(crate) struct PartKey {
-    pub(crate) masked: bool,
-    pub(crate) blended: bool,
-    double_sided: bool,
-    mirrored: bool,
 }
 
 /// Pipelines that read or draw the shadow map.
@@ -43,31 +32,6 @@ pub(crate) struct MapPipelines {
     /// Made for the first block of texels that is read.
     block: Option<wgpu::RenderPipeline>,
     samples: u32,
-}
-
-impl PartKey {
-    pub(crate) fn of(part: &Part) -> Self {
-        Self {
-            masked: matches!(part.alpha, AlphaMode::Mask { .. }),
-            blended: part.alpha == AlphaMode::Blend,
-            double_sided: part.double_sided,
-            mirrored: part.mirrored,
-        }
-    }
-
-    /// Back faces of single-sided parts are left out; a mirrored part's back is its front.
-    pub(crate) fn cull_mode(self) -> Option<wgpu::Face> {
-        match (self.double_sided, self.mirrored) {
-            (true, _) => None,
-            (false, false) => Some(wgpu::Face::Back),
-            (false, true) => Some(wgpu::Face::Front),
-        }
-    }
-
-    /// The front as the rasteriser names it.
-    pub(crate) fn front(self) -> wgpu::Face {
-        if self.mirrored { wgpu::Face::Back } else { wgpu::Face::Front }
-    }
 }
 
 impl MapPipelines {

@@ -6,7 +6,7 @@ use super::Renderer;
 use crate::attachment::{part, part_from_whole};
 use crate::casters::CasterDraw;
 use crate::frame::Frame;
-use crate::scene::{Draw, GpuScene, Part, in_frustum};
+use crate::scene::{Draw, GpuScene};
 use crate::statistics::{MapStatistics, Statistics};
 use crate::timer::Pass;
 use crate::uniform::FrameUniform;
@@ -45,12 +45,8 @@ impl Renderer {
         }
         let part = frame.scissor.map(|scissor| part(scissor, size));
         let clip_from_world = Mat4::from_cols_array_2d(&uniform.clip_from_world);
-        let seen = in_frustum(part.map_or(Mat4::IDENTITY, |part| part_from_whole(part, size)) * clip_from_world);
-        let mut opaque = scene.visible(&seen, Part::casts);
-        // Near things first, so that what they hide is never shaded.
-        opaque.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-        let mut blended = scene.visible(&seen, |part| !part.casts());
-        blended.sort_by(|a, b| b.distance.total_cmp(&a.distance));
+        let shown_from_whole = part.map_or(Mat4::IDENTITY, |part| part_from_whole(part, size));
+        let [opaque, blended] = scene.seen(shown_from_whole * clip_from_world);
         scene.end_frame(gpu);
         let shows_judged = frame.overlay.is_judged() || (frame.marks.is_some() && frame.judged.is_some());
         Plan {

@@ -6,73 +6,73 @@ use super::solid::Solid;
 use crate::{Image, Lens, Material, Mesh, Node, Primitive, Scene, SceneCamera, Sun, Transform};
 
 /// Crease angle of round bodies, in radians: everything but right-angled edges is smooth.
-pub(super) const SMOOTH: f32 = 1.2;
+pub const SMOOTH: f32 = 1.2;
 /// Crease angle of cut stone and carpentry, in radians.
-pub(super) const CRISP: f32 = 0.6;
+pub const CRISP: f32 = 0.6;
 
 /// Distance of the near plane of every start view, in metres: nearer than anything one can walk up to.
 const NEAR: f32 = 0.1;
 
 /// A scene under construction.
-pub(super) struct Builder {
+pub struct Builder {
     /// What is built so far.
-    pub(super) scene: Scene,
+    pub scene: Scene,
 }
 
 impl Builder {
     /// A scene of materials and images alone.
-    pub(super) fn new(name: &str, materials: Vec<Material>, images: Vec<Image>) -> Self {
+    pub fn new(name: &str, materials: Vec<Material>, images: Vec<Image>) -> Self {
         let scene = Scene { name: name.to_owned(), materials, images, ..Scene::default() };
         Self { scene }
     }
 
     /// Adds a mesh and returns its index.
-    pub(super) fn mesh(&mut self, name: &str, primitives: Vec<Primitive>) -> usize {
+    pub fn mesh(&mut self, name: &str, primitives: Vec<Primitive>) -> usize {
         let mesh = Mesh { name: name.to_owned(), primitives, morph_weights: Vec::new() };
         self.scene.meshes.push(mesh);
         self.scene.meshes.len() - 1
     }
 
     /// Adds a mesh of one solid.
-    pub(super) fn solid(&mut self, name: &str, solid: &Solid, paint: impl Into<usize>, crease: f32) -> usize {
+    pub fn solid(&mut self, name: &str, solid: &Solid, paint: impl Into<usize>, crease: f32) -> usize {
         self.mesh(name, vec![solid.primitive(paint.into(), crease)])
     }
 
     /// Adds a node and returns its index.
-    pub(super) fn node(&mut self, name: &str, parent: Option<usize>, rest: Transform, mesh: Option<usize>) -> usize {
+    pub fn node(&mut self, name: &str, parent: Option<usize>, rest: Transform, mesh: Option<usize>) -> usize {
         let node = Node { name: name.to_owned(), parent, rest, mesh, ..Node::default() };
         self.scene.nodes.push(node);
         self.scene.nodes.len() - 1
     }
 
     /// Places a mesh under `parent`, turned by `yaw` radians about the vertical.
-    pub(super) fn place(&mut self, parent: usize, mesh: usize, at: Vec3, yaw: f32) -> usize {
+    pub fn place(&mut self, parent: usize, mesh: usize, at: Vec3, yaw: f32) -> usize {
         let name = self.scene.meshes[mesh].name.clone();
         let rest = Transform { translation: at, rotation: Quat::from_rotation_y(yaw), ..Transform::default() };
         self.node(&name, Some(parent), rest, Some(mesh))
     }
 
     /// Places a mesh under `parent`, scaled by `scale`.
-    pub(super) fn place_scaled(&mut self, parent: usize, mesh: usize, at: Vec3, scale: Vec3) -> usize {
+    pub fn place_scaled(&mut self, parent: usize, mesh: usize, at: Vec3, scale: Vec3) -> usize {
         let node = self.place(parent, mesh, at, 0.0);
         self.scene.nodes[node].rest.scale = scale;
         node
     }
 
     /// Adds a group: a node without a mesh.
-    pub(super) fn group(&mut self, name: &str, at: Vec3, yaw: f32) -> usize {
+    pub fn group(&mut self, name: &str, at: Vec3, yaw: f32) -> usize {
         let rest = Transform { translation: at, rotation: Quat::from_rotation_y(yaw), ..Transform::default() };
         self.node(name, None, rest, None)
     }
 
     /// Adds the start view: a camera at `eye` that looks at `target`, world positions in metres, with a vertical field
     /// of view in radians and a far plane in metres.
-    pub(super) fn start_view(&mut self, view: (Vec3, Vec3), fov_y: f32, far: f32) {
+    pub fn start_view(&mut self, view: (Vec3, Vec3), fov_y: f32, far: f32) {
         self.view(view, Lens::Perspective { fov_y, near: NEAR, far: Some(far) });
     }
 
     /// Adds the start view with a lens of its own.
-    pub(super) fn view(&mut self, (eye, target): (Vec3, Vec3), lens: Lens) {
+    pub fn view(&mut self, (eye, target): (Vec3, Vec3), lens: Lens) {
         let back = (eye - target).normalize();
         let right = Vec3::Y.cross(back).normalize();
         let rotation = Quat::from_mat3(&Mat3::from_cols(right, back.cross(right), back));
@@ -83,7 +83,7 @@ impl Builder {
 }
 
 /// Sunlight from `azimuth` (from +z toward +x) and `elevation` above the horizon, in radians.
-pub(super) fn sunlight(azimuth: f32, elevation: f32) -> Sun {
+pub fn sunlight(azimuth: f32, elevation: f32) -> Sun {
     let (sin, cos) = azimuth.sin_cos();
     let flat = elevation.cos();
     let to_sun = Vec3::new(sin * flat, elevation.sin(), cos * flat);

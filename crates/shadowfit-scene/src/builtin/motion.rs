@@ -7,13 +7,13 @@ use glam::Quat;
 use crate::{Animation, Channel, ChannelValues, Interpolation};
 
 /// A loop of `duration` seconds.
-pub(super) fn looped(name: &str, duration: f32, channels: Vec<Channel>) -> Animation {
+pub fn looped(name: &str, duration: f32, channels: Vec<Channel>) -> Animation {
     Animation { name: name.to_owned(), duration, channels }
 }
 
 /// Rotations of a node at `keys` even times of a loop of `duration` seconds: `turn` gives that of a phase of 0..2π,
 /// and must give the same rotation for both ends.
-pub(super) fn rotations(node: usize, duration: f32, keys: usize, turn: impl Fn(f32) -> Quat) -> Channel {
+pub fn rotations(node: usize, duration: f32, keys: usize, turn: impl Fn(f32) -> Quat) -> Channel {
     let share = |key: usize| key as f32 / keys as f32;
     let mut values: Vec<Quat> = (0..keys).map(|key| turn(share(key) * TAU)).collect();
     values.push(values[0]);

@@ -9,21 +9,21 @@ use super::solid::Solid;
 
 /// A point of the line with the ellipse across it, in metres.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stop {
+pub struct Stop {
     /// Where the line passes.
-    pub(super) at: Vec3,
+    pub at: Vec3,
     /// Half axes of the ellipse: along the sweep's side, and across side and line.
-    pub(super) half: [f32; 2],
+    pub half: [f32; 2],
 }
 
 /// A stop with a round cross-section.
-pub(super) const fn stop(at: Vec3, radius: f32) -> Stop {
+pub const fn stop(at: Vec3, radius: f32) -> Stop {
     Stop { at, half: [radius; 2] }
 }
 
 /// The solid around a line of at least four stops in a plane across `side` (a unit vector). The first and the last stop
 /// are the tips that close it, whose cross-sections are ignored.
-pub(super) fn sweep(stops: &[Stop], side: Vec3, segments: usize) -> Solid {
+pub fn sweep(stops: &[Stop], side: Vec3, segments: usize) -> Solid {
     let ring = |index: usize| {
         let along = (stops[index + 1].at - stops[index - 1].at).normalize();
         let across = along.cross(side);
@@ -40,7 +40,7 @@ pub(super) fn sweep(stops: &[Stop], side: Vec3, segments: usize) -> Solid {
 }
 
 /// Stops on a smooth curve through all of `stops`, `steps` from each to the next.
-pub(super) fn smooth(stops: &[Stop], steps: usize) -> Vec<Stop> {
+pub fn smooth(stops: &[Stop], steps: usize) -> Vec<Stop> {
     let last = stops.len() - 1;
     let between = |index: usize, t: f32| {
         let near = [index.saturating_sub(1), index, index + 1, (index + 2).min(last)].map(|near| stops[near]);

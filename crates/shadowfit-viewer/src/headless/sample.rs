@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use anyhow::{Context, Result};
+use shadowfit_classics::{OptionKind, Sample, SampleFigures, SampleValues, SampleVariant};
 use shadowfit_render::Gpu;
-use shadowfit_study::samples::{OptionKind, Sample, SampleFigures, SampleValues, SampleVariant};
 
 use super::{SAMPLES, tell};
 use crate::cli::Arguments;

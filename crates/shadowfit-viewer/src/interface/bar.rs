@@ -1,9 +1,9 @@
 //! The bar above the picture: scenes, views, comparison, undo and the rest of what is always at hand.
 
 use egui::{Button, Ui, containers::menu::MenuButton};
+use shadowfit_classics::SAMPLES;
 use shadowfit_egui::{Command, Toggle, keys_of, with_keys};
 use shadowfit_scene::builtin::BuiltinScene;
-use shadowfit_study::samples::SAMPLES;
 
 use super::{InterfaceInput, InterfaceOutput};
 use crate::source::SceneSource;

@@ -1,29 +1,32 @@
 //! The sample on show, as the panel takes it.
 
-use shadowfit_egui::{SampleCard, SampleChoice, SampleControl, SampleFigure, SampleRow};
-use shadowfit_study::samples::{OptionKind, Sample};
+use shadowfit_classics::{OptionKind, Sample};
+use shadowfit_egui::{Card, CardChoice, CardControl, CardFigure, CardRow};
 
 use crate::stage::SampleShow;
+
+/// What measuring a sample does.
+const MEASURE: &str = "Judges this view against rays, as the sample shadows it and as modern maps do.";
 
 /// What the card of a sample borrows.
 pub(super) struct Parts {
     sample: &'static Sample,
     shown: Option<usize>,
     is_technique: bool,
-    variants: Vec<SampleChoice<'static>>,
-    rows: Vec<SampleRow<'static>>,
+    variants: Vec<CardChoice<'static>>,
+    rows: Vec<CardRow<'static>>,
 }
 
 impl Parts {
     pub(super) fn new(show: &SampleShow) -> Self {
         let sample = show.sample;
-        let row = |(option, value): (&'static shadowfit_study::samples::SampleOption, f32)| SampleRow {
+        let row = |(option, value): (&'static shadowfit_classics::SampleOption, f32)| CardRow {
             label: option.label,
             help: option.help,
             control: match option.kind {
-                OptionKind::Choice(choices) => SampleControl::Choice(choices),
-                OptionKind::Number { min, max, unit, .. } => SampleControl::Number { min, max, unit },
-                OptionKind::Toggle { .. } => SampleControl::Toggle,
+                OptionKind::Choice(choices) => CardControl::Choice(choices),
+                OptionKind::Number { min, max, unit, .. } => CardControl::Number { min, max, unit },
+                OptionKind::Toggle { .. } => CardControl::Toggle,
             },
             value,
         };
@@ -34,22 +37,23 @@ impl Parts {
             variants: sample
                 .variants
                 .iter()
-                .map(|variant| SampleChoice { label: variant.label, text: variant.text })
+                .map(|variant| CardChoice { label: variant.label, text: variant.text })
                 .collect(),
             rows: show.values.iter().map(row).collect(),
         }
     }
 
-    pub(super) fn card<'a>(&'a self, figures: &'a [SampleFigure]) -> SampleCard<'a> {
-        SampleCard {
+    pub(super) fn card<'a>(&'a self, figures: &'a [CardFigure]) -> Card<'a> {
+        Card {
             title: self.sample.title,
             text: self.sample.teaches,
             flaw: self.sample.flaw,
             is_technique: self.is_technique,
+            first: "As its source",
             variants: &self.variants,
             shown: self.shown,
             rows: &self.rows,
-            is_measurable: self.sample.is_measurable,
+            measure: self.sample.is_measurable.then_some(MEASURE),
             figures,
         }
     }

@@ -1,9 +1,9 @@
 //! A classic sample on the stage: its values, its controls, and what draws it.
 
 use anyhow::{Context, Result};
+use shadowfit_classics::{OptionKind, Sample, SampleDrawer, SampleOutcome, SampleValues, SampleVariant};
 use shadowfit_params::tool::ViewMode;
 use shadowfit_render::{FlyCamera, FlyInput, RenderTarget, camera::TURN_SPEED};
-use shadowfit_study::samples::{OptionKind, Sample, SampleDrawer, SampleOutcome, SampleValues, SampleVariant};
 
 use super::{Stage, compare};
 

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
+use shadowfit_classics::SampleValues;
 use shadowfit_egui::Command;
 use shadowfit_params::tool::Settings;
 use shadowfit_render::FlyCamera;
 use shadowfit_study::NamedTechnique;
-use shadowfit_study::samples::SampleValues;
 
 use super::Viewer;
 use crate::cli::Arguments;

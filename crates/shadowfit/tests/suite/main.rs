@@ -40,7 +40,6 @@ mod softness;
 mod spot;
 mod spot_bad_input;
 mod spot_bias;
-mod spot_diagnostics;
 mod spot_self_shadowing;
 mod support;
 mod sweep;

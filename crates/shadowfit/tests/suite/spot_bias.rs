@@ -10,7 +10,6 @@ use shadowfit::diagnostics::{DepthStorage, depth_step_at};
 use shadowfit::glam::{DMat3, DVec2, DVec3, UVec2, Vec3};
 use shadowfit::settings::{BiasSettings, MapFormat};
 use shadowfit::spot::bias::{depth_gradient, normal_offset, on_hardware};
-use shadowfit::spot::diagnostics::acne_margin;
 use shadowfit::{DepthConvention, SpotBias, SpotFit};
 
 use crate::filters::{Filter, filters};
@@ -202,30 +201,6 @@ proptest! {
     }
 
     /// What is predicted to be free of acne is free of it, however small the margin.
-    #[test]
-    fn a_margin_of_zero_or_more_means_no_acne(
-        case in any_case(), (share, spare) in (float(0.0, 1.0), float(-0.5, 0.01)),
-    ) {
-        let storage = DepthStorage::Unorm16;
-        for filter in filters() {
-            let Ok(whole) = SpotBias::automatic(filter.reach, storage, &case.fit) else { continue };
-            // A part of the need as an offset, the rest as depth, and of both too little or more.
-            let rest = SpotBias::automatic_receiver_plane(filter.reach, storage, &case.fit).unwrap();
-            let bias = SpotBias {
-                normal_offset: whole.normal_offset * share * (1.0 + spare),
-                receiver_plane: rest.receiver_plane * (1.0 - share) * (1.0 + spare),
-                ..rest
-            };
-            let margin = acne_margin(&case.fit, &bias, filter.reach, storage, case.point, case.normal).unwrap();
-            if margin.is_some_and(|margin| margin.metres >= 0.0) {
-                for point in case.worst_points(|p| case.on_plane(&bias, p).0) {
-                    let acne = case.acne(storage, &filter, point, case.on_plane(&bias, point));
-                    prop_assert!(acne <= 0.0, "{}: {acne:e} with {bias:?}", filter.name);
-                }
-            }
-        }
-    }
-
     /// The formula of the docs is the one that the crate computes.
     #[test]
     fn a_bias_on_a_plane_is_what_the_shader_s_formula_gives(case in any_case()) {

@@ -47,7 +47,7 @@ pub(super) fn start_view() -> (Vec3, Vec3) {
 
 /// Adds the figure alone to another scene, with the materials that it needs: standing at the origin with its arms
 /// hanging, about 1.8 m tall, facing +z. Returns its root.
-pub(super) fn figure_at_ease(builder: &mut Builder) -> usize {
+pub fn figure_at_ease(builder: &mut Builder) -> usize {
     let first = builder.scene.meshes.len();
     let root = character::build(builder, &walk::at_ease()).root();
     let materials = palette::materials();

@@ -4,8 +4,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use glam::Vec3;
 
-use super::every;
-use crate::{Scene, Triangle};
+use super::{Scene, Triangle, every};
 
 /// Steps of a unit normal that count as one direction: a third of a degree.
 const TURNS: f32 = 200.0;

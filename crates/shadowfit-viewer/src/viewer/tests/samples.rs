@@ -2,7 +2,7 @@
 
 use egui::Key;
 use glam::{DVec3, Vec3};
-use shadowfit_study::samples::SampleValues;
+use shadowfit_classics::SampleValues;
 
 use super::*;
 

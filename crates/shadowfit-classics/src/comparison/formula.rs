@@ -1,0 +1,50 @@
+//! The formulas of the comparison sampler's sample in Rust, as `test.wgsl` and `shade.wgsl` have them; a test compares the
+//! two. Its bias is the core's [`acos_bias`](shadowfit::bias::acos_bias).
+//!
+//! Colours are display values, depths those after the division by w; `n_l` and `r_v` are cosines between unit vectors,
+//! `share` is that of the light, 0 in shadow to 1.
+
+use glam::{Vec2, Vec3};
+
+/// Cube of the mirrored light's cosine, the technique's gloss.
+const GLOSS: i32 = 3;
+/// Diffuse and specular light of [`colour`].
+const DIFFUSE: Vec3 = Vec3::new(0.5, 0.5, 0.4);
+const SPECULAR: Vec3 = Vec3::new(0.2, 0.2, 0.3);
+/// Whether a point is in the light's image; outside everything is lit.
+pub fn is_inside(uv: Vec2, depth: f32) -> bool {
+    uv.cmpge(Vec2::ZERO).all() && uv.cmple(Vec2::ONE).all() && depth > 0.0
+}
+
+/// Ambient light alone, or with diffuse and specular light, by the share.
+pub fn colour(base: Vec3, n_l: f32, r_v: f32, share: f32, ambient: f32) -> Vec3 {
+    let mirrored = r_v.clamp(0.0, 1.0).powi(GLOSS);
+    let full = base * (Vec3::splat(ambient) + DIFFUSE * n_l.clamp(0.0, 1.0) + SPECULAR * mirrored);
+    (base * ambient).lerp(full, share)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn near(a: Vec3, b: [f32; 3]) -> bool {
+        a.abs_diff_eq(Vec3::from(b), 1e-6)
+    }
+
+    #[test]
+    fn outside_and_before_the_image_is_not_inside() {
+        assert!(is_inside(Vec2::new(0.0, 1.0), 0.1));
+        assert!(!is_inside(Vec2::new(0.5, 0.5), 0.0) && !is_inside(Vec2::new(1.01, 0.5), 0.5));
+    }
+
+    #[test]
+    fn the_comparison_samplers_light_is_ambient_diffuse_and_specular() {
+        // Ambient 0.25, N·L 0.5, R·V 0.5 (cubed 0.125): red and green 0.25 + 0.25 + 0.025 = 0.525,
+        // blue 0.25 + 0.2 + 0.0375 = 0.4875; times 0.8: 0.42, 0.42, 0.39. In shadow 0.8 * 0.25 = 0.2.
+        let base = Vec3::splat(0.8);
+        assert!(near(colour(base, 0.5, 0.5, 1.0, 0.25), [0.42, 0.42, 0.39]));
+        assert!(near(colour(base, 0.5, 0.5, 0.0, 0.25), [0.2; 3]));
+        // A fraction of a half lies between: 0.31, 0.31, 0.295.
+        assert!(near(colour(base, 0.5, 0.5, 0.5, 0.25), [0.31, 0.31, 0.295]));
+    }
+}

@@ -1,0 +1,82 @@
+//! Images of the still life: boards, plaster, stone, the squares of the chess board.
+
+use shadowfit_scene::Image;
+use shadowfit_scene::builtin::parts::{NOISE_CELLS, Noise, draw, draw_noisy, hash, shade};
+
+/// An image, by its index in the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(usize)]
+pub(super) enum Picture {
+    Floor,
+    Plaster,
+    Stone,
+    Squares,
+}
+
+/// Metres that the image of the floor spans.
+pub(super) const FLOOR_METRES: f32 = 4.0;
+/// Metres that the image of the wall spans.
+pub(super) const PLASTER_METRES: f32 = 3.3;
+/// Metres that the image of the stone spans.
+pub(super) const STONE_METRES: f32 = 1.6;
+/// Boards across the floor's image.
+const BOARDS: f32 = 10.0;
+/// Pixels along a side of the floor's image.
+const FLOOR_SIZE: u32 = 512;
+/// Pixels along a side of the other images.
+const SIZE: u32 = 256;
+
+/// All images, in the order of [`Picture`].
+pub(super) fn images() -> Vec<Image> {
+    vec![floor(), plaster(), stone(), squares()]
+}
+
+/// Boards along u, mirrored where the image ends, two to a row, which end at another place in each row; grain runs along them.
+fn floor() -> Image {
+    let noise = &Noise::new();
+    let cell = NOISE_CELLS as f32 / FLOOR_SIZE as f32;
+    let width = FLOOR_SIZE as f32 / BOARDS;
+    let length = FLOOR_SIZE as f32 / 2.0;
+    draw("boards", FLOOR_SIZE, |y| {
+        let py = y as f32 + 0.5;
+        let row = (py / width) as u32;
+        let from_edge = (py % width).min(width - py % width);
+        // Each row has its own grain: noise squeezed across the board.
+        let (veins, fine) = (noise.row(py * cell * 3.0 + 7.0 * row as f32), noise.row(py * cell * 8.0));
+        let start = hash(row, 3);
+        move |x| {
+            let px = x as f32 + 0.5;
+            let along = px / length + start * 2.0;
+            let from_end = along.fract().min(1.0 - along.fract()) * length;
+            if from_edge < 0.9 || from_end < 0.9 {
+                return shade([66.0, 42.0, 26.0], 0.0);
+            }
+            let tint = hash(along as u32 % 2, 20 + row) - 0.5;
+            let vein = veins.at(px * cell * 0.25);
+            shade([158.0, 110.0, 68.0], 34.0 * tint + 12.0 * vein + 6.0 * fine.at(px * cell))
+        }
+    })
+}
+
+/// Lime plaster in a warm grey.
+fn plaster() -> Image {
+    draw_noisy("plaster", SIZE, [0.125, 0.5, 4.0], |_, _, [patches, clouds, grains]| {
+        shade([206.0, 196.0, 178.0], 7.0 * patches + 5.0 * clouds + 4.0 * grains)
+    })
+}
+
+/// Limestone: soft clouds, fine grain and pits.
+fn stone() -> Image {
+    draw_noisy("stone", SIZE, [0.25, 4.0], |_, _, [cloud, grain]| {
+        let pit = if grain > 0.8 { -18.0 } else { 0.0 };
+        shade([204.0, 194.0, 174.0], 9.0 * cloud + 7.0 * grain + pit)
+    })
+}
+
+/// Two by two squares of maple and walnut.
+fn squares() -> Image {
+    draw_noisy("squares", SIZE, [1.0, 4.0], |x, y, [cloud, grain]| {
+        let color = if x / (SIZE / 2) == y / (SIZE / 2) { [206.0, 176.0, 128.0] } else { [92.0, 56.0, 34.0] };
+        shade(color, 8.0 * cloud + 6.0 * grain)
+    })
+}

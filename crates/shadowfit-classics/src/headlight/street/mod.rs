@@ -1,0 +1,65 @@
+//! The street: a road with a kerb, a pavement and a wall on its right, two cars and two lamp posts, made for a headlight.
+//!
+//! The strip, the places and the sizes are those of a classic sample of shadow maps by a lamp with perspective; the
+//! models are our own. Lengths are in the sample's units, of which a car is about 13 long. Beyond the strip is nothing:
+//! one of the cars stands beside it.
+
+mod atlas;
+mod body;
+mod cabin;
+mod car;
+mod lamp_post;
+mod palette;
+mod panel;
+mod strip;
+mod wheel;
+
+use std::f32::consts::{FRAC_PI_4, PI};
+
+use glam::{Quat, Vec3};
+use shadowfit_scene::builtin::parts::{Builder, sunlight};
+use shadowfit_scene::{Lens, Scene, Transform};
+
+/// Direction of the sun from +z toward +x, in radians: from the road's open side, so that what stands on the pavement
+/// throws its shadow on the wall.
+const SUN_AZIMUTH: f32 = -0.9;
+/// Height of the sun above the horizon, in radians.
+const SUN_ELEVATION: f32 = 0.62;
+
+/// Where the cars stand, and their turn about y in radians. At 0 a car looks along +z: so the first drives ahead on the
+/// right of the road, and the second looks where the sample's headlight shines.
+const CARS: [(Vec3, f32); 2] = [(Vec3::new(-3.0, 0.0, -15.0), PI), (Vec3::new(-28.0, 0.0, -1.9), 5.0 / 8.0 * PI)];
+/// How much larger than modelled the cars are.
+const CAR_SCALE: f32 = 4.0;
+/// Where the lamp posts stand: on the pavement.
+const LAMP_POSTS: [Vec3; 2] = [Vec3::new(4.0, 1.0, -35.0), Vec3::new(4.0, 1.0, -5.0)];
+/// How much larger than modelled the lamp posts are.
+const LAMP_POST_SCALE: f32 = 0.05;
+
+/// Eye and target of the start view.
+const VIEW: (Vec3, Vec3) = (Vec3::new(-25.0, 13.0, 18.0), Vec3::new(0.0, 2.0, -12.0));
+
+/// The scene.
+pub(super) fn build() -> Scene {
+    let mut builder = Builder::new("street", palette::materials(), vec![atlas::image()]);
+    let strip = builder.mesh("strip", vec![strip::primitive()]);
+    builder.node("strip", None, Transform::default(), Some(strip));
+    let car = builder.mesh("car", car::primitives());
+    for (at, turn) in CARS {
+        builder.node("car", None, placed(at, turn, CAR_SCALE), Some(car));
+    }
+    let lamp_post = builder.mesh("lamp post", vec![lamp_post::primitive()]);
+    for at in LAMP_POSTS {
+        builder.node("lamp post", None, placed(at, 0.0, LAMP_POST_SCALE), Some(lamp_post));
+    }
+    builder.start_view(VIEW, FRAC_PI_4, 200.0);
+    let mut scene = builder.scene;
+    scene.cameras[0].lens = Lens::Perspective { fov_y: FRAC_PI_4, near: 1.0, far: Some(200.0) };
+    scene.sun = Some(sunlight(SUN_AZIMUTH, SUN_ELEVATION));
+    scene
+}
+
+/// A place with a turn about y in radians and a scale.
+fn placed(translation: Vec3, turn: f32, scale: f32) -> Transform {
+    Transform { translation, rotation: Quat::from_rotation_y(turn), scale: Vec3::splat(scale), ..Transform::default() }
+}

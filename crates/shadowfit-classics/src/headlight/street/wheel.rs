@@ -1,0 +1,43 @@
+//! The wheels of the car: tyres, and hubs of five spokes.
+
+use std::f32::consts::{FRAC_PI_2, TAU};
+
+use glam::{Affine3A, Quat, Vec3};
+use shadowfit_scene::builtin::parts::{Solid, block, lathe, torus};
+
+use super::body::{AXLES, HALF_WIDTH, WHEEL};
+
+/// Half of a wheel's breadth.
+const HALF: f32 = 0.10;
+/// Radius of the rim, inside the tyre.
+const RIM: f32 = 0.158;
+/// Number of spokes.
+const SPOKES: usize = 5;
+
+/// Four tyres with the dark discs behind the spokes.
+pub(super) fn tyres() -> Solid {
+    let bead = [(RIM, -HALF + 0.02), (RIM + 0.01, -HALF), (0.215, -HALF)];
+    let tread = [(0.243, -HALF + 0.014), (WHEEL, -HALF + 0.04), (WHEEL, HALF - 0.04), (0.243, HALF - 0.014)];
+    let outside = [(0.215, HALF), (RIM + 0.01, HALF), (RIM - 0.005, HALF - 0.05)];
+    on_axles(&lathe(&[&bead[..], &tread, &outside].concat(), 36))
+}
+
+/// Four hubs.
+pub(super) fn hubs() -> Solid {
+    let cap = lathe(&[(0.05, 0.03), (0.048, 0.078), (0.036, 0.09), (0.0, 0.095)], 20);
+    let rim = torus(RIM, 0.014, 0.02, 36, 8).moved(Vec3::Y * (HALF - 0.008));
+    let spoke = block(Vec3::new(-0.022, 0.045, 0.036), Vec3::new(0.022, 0.078, RIM), 0.008);
+    let turned =
+        |index: usize| spoke.clone().transformed(Affine3A::from_rotation_y(index as f32 / SPOKES as f32 * TAU));
+    on_axles(&(0..SPOKES).map(turned).fold(cap.with(rim), Solid::with))
+}
+
+/// A wheel whose outer side faces +y, at the four places of the car.
+fn on_axles(wheel: &Solid) -> Solid {
+    let turn = Quat::from_rotation_z(-FRAC_PI_2);
+    let place = |z: f32| {
+        let at = Vec3::new(HALF_WIDTH - HALF - 0.012, WHEEL, z);
+        wheel.clone().transformed(Affine3A::from_rotation_translation(turn, at))
+    };
+    AXLES.into_iter().map(place).fold(Solid::default(), Solid::with).and_mirrored()
+}

@@ -1,0 +1,22 @@
+//! Scenes lit by one map, with the numbers of a classic technique: what draws the map and shades the scene.
+//!
+//! A [`SampleFrame`] says what is drawn, a [`SampleRenderer`] draws it; its [`ShadowTest`] and its [`Shading`] come with
+//! their own WGSL. They compute in display values, as their sources did, unless [`Shading::modern`] is asked for.
+//! Right-handed, y up, the sources' own units; depth 0 to 1.
+
+pub mod formula;
+pub mod shaders;
+
+mod format;
+mod frame;
+mod light_image;
+mod map;
+mod pipelines;
+mod renderer;
+
+pub use format::SampleFormat;
+pub use frame::{
+    CORNFLOWER, CasterFaces, FrameExtras, LightImage, LightPlace, MapRead, SampleFrame, SampleLight, SampleMapSettings,
+    SampleUniform, Shading, ShadowTest, StoredDepth,
+};
+pub use renderer::{SampleError, SampleRenderer};

@@ -1,0 +1,124 @@
+//! Pipelines of mapped frames, made when a frame first needs them.
+
+use std::collections::HashMap;
+
+use shadowfit_render::passes::{
+    ENCODED_FORMAT, InstanceNumber, Maker, PROBE_FORMAT, Shape, material_layout, part_buffers,
+};
+use shadowfit_render::{Gpu, bindings};
+
+use super::{SampleFormat, SampleFrame, StoredDepth, map, shaders};
+
+/// What a pipeline is for, with all that its states depend on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Use {
+    Caster(Option<wgpu::Face>),
+    Shaded(Option<wgpu::Face>),
+    Probe(Option<wgpu::Face>),
+    Inset,
+}
+
+/// All that a pipeline depends on: its use, the map, and the names of the test and the shading.
+type Key = (Use, SampleFormat, StoredDepth, [&'static str; 2]);
+
+/// Layouts and pipelines.
+#[derive(Debug)]
+pub(super) struct SamplePipelines {
+    pub(super) uniform: wgpu::BindGroupLayout,
+    material: wgpu::BindGroupLayout,
+    maps: [wgpu::BindGroupLayout; 2],
+    made: HashMap<Key, wgpu::RenderPipeline>,
+    samples: u32,
+}
+
+fn key(purpose: Use, frame: &SampleFrame) -> Key {
+    (purpose, frame.map.format, frame.map.depth, [frame.test.name, frame.shading.name])
+}
+
+impl SamplePipelines {
+    pub(super) fn new(gpu: &Gpu, samples: u32) -> Self {
+        let device = &gpu.device;
+        let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT;
+        Self {
+            uniform: bindings::layout(device, "sample", visibility, &[bindings::UNIFORM]),
+            material: material_layout(device),
+            maps: [false, true].map(|is_depth| map::layout(device, is_depth)),
+            made: HashMap::new(),
+            samples,
+        }
+    }
+
+    /// Layout of the bind group of a map.
+    pub(super) fn map(&self, format: SampleFormat) -> &wgpu::BindGroupLayout {
+        &self.maps[usize::from(format.is_depth())]
+    }
+
+    /// Makes a frame's pipeline that is not there yet.
+    pub(super) fn add(&mut self, gpu: &Gpu, purpose: Use, frame: &SampleFrame) {
+        if !self.made.contains_key(&key(purpose, frame)) {
+            let pipeline = self.make(gpu, purpose, frame);
+            self.made.insert(key(purpose, frame), pipeline);
+        }
+    }
+
+    /// A frame's pipeline that [`Self::add`] has made.
+    pub(super) fn get(&self, purpose: Use, frame: &SampleFrame) -> &wgpu::RenderPipeline {
+        &self.made[&key(purpose, frame)]
+    }
+
+    fn make(&self, gpu: &Gpu, purpose: Use, frame: &SampleFrame) -> wgpu::RenderPipeline {
+        let maker = Maker { device: &gpu.device, samples: self.samples };
+        let buffers = part_buffers(InstanceNumber::FirstTriangle);
+        let seen = |target: wgpu::TextureFormat, cull_mode, samples, (label, source, entry)| {
+            let module = maker.module(label, source);
+            let layout = maker.layout(&[&self.uniform, self.map(frame.map.format), &self.material]);
+            maker.pipeline(&Shape {
+                buffers: &buffers,
+                targets: &[Some(target.into())],
+                cull_mode,
+                depth: Some((true, wgpu::CompareFunction::GreaterEqual)),
+                samples,
+                ..Shape::new(label, &layout, &module, ["vs_sample", entry])
+            })
+        };
+        match purpose {
+            Use::Caster(cull_mode) => self.caster(&maker, frame, cull_mode),
+            Use::Shaded(cull_mode) => {
+                seen(ENCODED_FORMAT, cull_mode, self.samples, ("sample", shaders::shaded(frame), "fs_shaded"))
+            }
+            Use::Probe(cull_mode) => {
+                seen(PROBE_FORMAT, cull_mode, 1, ("sample's probe", shaders::probe(frame), "fs_probe"))
+            }
+            Use::Inset => {
+                let format = frame.map.format;
+                let module = maker.module("sample's inset", shaders::inset(format));
+                let layout = maker.layout(&[&self.uniform, self.map(format)]);
+                maker.pipeline(&Shape {
+                    targets: &[Some(ENCODED_FORMAT.into())],
+                    ..Shape::new("sample's inset", &layout, &module, ["vs_inset", "fs_inset"])
+                })
+            }
+        }
+    }
+
+    fn caster(&self, maker: &Maker<'_>, frame: &SampleFrame, cull_mode: Option<wgpu::Face>) -> wgpu::RenderPipeline {
+        let (format, depth) = (frame.map.format, frame.map.depth);
+        let module = maker.module("sample's casters", shaders::caster());
+        let entry = match (format, depth) {
+            (SampleFormat::Depth32, _) => None,
+            (SampleFormat::Rgba8Packed, StoredDepth::Plain) => Some("fs_packed"),
+            (SampleFormat::Rgba8Packed, StoredDepth::ReversedAtVertices) => Some("fs_packed_reversed"),
+            (_, StoredDepth::Plain) => Some("fs_depth"),
+            (_, StoredDepth::ReversedAtVertices) => Some("fs_reversed"),
+        };
+        let layout = maker.layout(&[&self.uniform]);
+        maker.pipeline(&Shape {
+            entries: ("vs_caster", entry),
+            buffers: &part_buffers(InstanceNumber::FirstTriangle),
+            targets: &[Some(format.texture().into())],
+            cull_mode,
+            depth: Some((true, wgpu::CompareFunction::LessEqual)),
+            ..Shape::new("sample's casters", &layout, &module, ["vs_caster", ""])
+        })
+    }
+}

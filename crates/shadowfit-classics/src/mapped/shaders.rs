@@ -1,0 +1,46 @@
+//! The shader modules of mapped frames, put together from pieces: how a map is read, one shadow test, one shading.
+
+use shadowfit_render::shaders::material;
+
+use super::{SampleFormat, SampleFrame};
+
+const SAMPLE: &str = include_str!("sample.wgsl");
+const STORED: &str = include_str!("stored.wgsl");
+
+/// The sRGB transfer function and its inverse.
+pub(crate) const SRGB: &str = include_str!("srgb.wgsl");
+
+/// The pass that draws casters into a map; group 0 is the sample's uniform.
+pub fn caster() -> String {
+    [SAMPLE, include_str!("caster.wgsl")].concat()
+}
+
+/// The picture: sample, map and material are groups 0, 1 and 2.
+pub fn shaded(frame: &SampleFrame) -> String {
+    [&tested(frame), &frame.shading.wgsl.concat(), include_str!("shaded.wgsl")].concat()
+}
+
+/// The probe of a picture, with its groups; it needs the primitive index, whose directive must come first.
+pub fn probe(frame: &SampleFrame) -> String {
+    ["enable primitive_index;\n", &tested(frame), include_str!("probe.wgsl")].concat()
+}
+
+/// The map's inset: sample and map are groups 0 and 1.
+pub fn inset(format: SampleFormat) -> String {
+    [SAMPLE, map(format), STORED, include_str!("inset.wgsl")].concat()
+}
+
+/// What knows whether a visible point is lit.
+fn tested(frame: &SampleFrame) -> String {
+    let (map, test) = (map(frame.map.format), frame.test.wgsl);
+    [&material(2), SRGB, SAMPLE, include_str!("point.wgsl"), map, STORED, include_str!("light_image.wgsl"), test]
+        .concat()
+}
+
+const fn map(format: SampleFormat) -> &'static str {
+    match format {
+        SampleFormat::R32Float | SampleFormat::R16Float | SampleFormat::Grey8 => include_str!("map_red.wgsl"),
+        SampleFormat::Rgba8Packed => include_str!("map_packed.wgsl"),
+        SampleFormat::Depth32 => include_str!("map_depth.wgsl"),
+    }
+}

@@ -1,0 +1,155 @@
+//! The sky box as it is drawn, against the picture that it is made of.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use glam::{DVec3, IVec2, Mat4, UVec2, Vec2, Vec3};
+use shadowfit::PerspectiveCamera;
+use shadowfit_classics::mapped::{
+    FrameExtras, LightImage, LightPlace, SampleFormat, SampleFrame, SampleLight, SampleMapSettings, SampleRenderer,
+    Shading, ShadowTest,
+};
+use shadowfit_classics::sky_box::{SkyBox, SkyPicture, direction_of, face_of};
+
+use crate::scenes::{Pictures, SIZE, camera};
+
+const LIGHTS: [Vec3; 3] = [Vec3::new(0.3, 0.8, -0.5), Vec3::new(-0.9, 0.25, 0.1), Vec3::new(0.5, 0.5, 0.5)];
+
+/// Texels of a face of the drawn sky.
+const FACE: u32 = 512;
+
+/// The sky behind nothing, before red.
+fn seen(pictures: &mut Pictures, sky: &SkyBox, camera: &PerspectiveCamera) -> Vec<[u8; 3]> {
+    let frame = SampleFrame {
+        camera: *camera,
+        light: SampleLight {
+            clip_from_world: Mat4::IDENTITY,
+            place: LightPlace::Toward(Vec3::Y),
+            image: LightImage::Square,
+        },
+        map: SampleMapSettings::new([1; 2], SampleFormat::R32Float),
+        test: ShadowTest::OFF,
+        shading: Shading::modern(1.0, 1.0),
+        background: [255, 0, 0],
+        double_sided: false,
+    };
+    sky.prepare(&pictures.gpu, camera);
+    let behind = |pass: &mut wgpu::RenderPass<'_>| sky.draw(pass);
+    let extras = FrameExtras { behind: Some(&behind), ..FrameExtras::default() };
+    let mut renderer = SampleRenderer::new(&pictures.gpu, 1);
+    renderer.draw(&pictures.gpu, &mut pictures.scene, (&frame, extras), &pictures.target).expect("a picture");
+    pictures.read()
+}
+
+/// World direction through a pixel's middle.
+fn ray(camera: &PerspectiveCamera, pixel: usize) -> Vec3 {
+    let at = UVec2::new(pixel as u32 % SIZE[0], pixel as u32 / SIZE[0]).as_vec2() + 0.5;
+    let ndc = at / Vec2::new(SIZE[0] as f32, SIZE[1] as f32) * 2.0 - 1.0;
+    let tangent = (camera.fov_y * 0.5).tan();
+    let view = Vec3::new(ndc.x * tangent * camera.aspect, -ndc.y * tangent, -1.0);
+    camera.view_from_world().transpose().transform_vector3(view)
+}
+
+/// What a linear filter makes of a picture in a direction; `None` where it would read across an edge.
+fn filtered(picture: &SkyPicture, direction: Vec3) -> Option<Vec3> {
+    let (face, uv) = face_of(direction);
+    let at = uv * picture.size as f32 - 0.5;
+    let corner = at.floor();
+    if corner.min_element() < 0.0 || corner.max_element() + 1.0 >= picture.size as f32 {
+        return None;
+    }
+    let texel = |x: u32, y: u32| {
+        let at = corner.as_uvec2() + UVec2::new(x, y);
+        let [r, g, b, _] = picture.faces[face][(at.y * picture.size + at.x) as usize].map(f32::from);
+        Vec3::new(r, g, b)
+    };
+    let part = at - corner;
+    Some(texel(0, 0).lerp(texel(1, 0), part.x).lerp(texel(0, 1).lerp(texel(1, 1), part.x), part.y))
+}
+
+#[test]
+fn every_direction_shows_what_its_face_has_there() {
+    let mut pictures = Pictures::new(&[], 1);
+    let sky = SkyBox::new(&pictures.gpu, LIGHTS[0], 1);
+    let picture = SkyPicture::new(LIGHTS[0], FACE);
+    let mut compared = [0; 6];
+    for forward in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z, Vec3::ONE, Vec3::NEG_ONE] {
+        let camera = PerspectiveCamera { forward, up: Vec3::new(0.4, 0.5, 0.7), fov_y: 1.4, ..camera() };
+        for (pixel, color) in seen(&mut pictures, &sky, &camera).into_iter().enumerate() {
+            let direction = ray(&camera, pixel);
+            let Some(expected) = filtered(&picture, direction) else { continue };
+            let error = (Vec3::from(color.map(f32::from)) - expected).abs().max_element();
+            // Filters have weights of 8 bits at least: a texel beside the sun's rim differs by up to 100 levels.
+            assert!(error <= 1.5, "{direction}: {color:?}, not {expected}");
+            compared[face_of(direction).0] += 1;
+        }
+    }
+    assert!(compared.iter().all(|count| *count > 5000), "{compared:?}");
+}
+
+#[test]
+fn the_sky_stays_when_the_camera_moves() {
+    let mut pictures = Pictures::new(&[], 1);
+    let sky = SkyBox::new(&pictures.gpu, LIGHTS[0], 1);
+    let here = PerspectiveCamera { forward: LIGHTS[0], ..camera() };
+    let there = PerspectiveCamera { eye: DVec3::new(-4000.0, 70.0, 1e6), near: 3.0, far: 20.0, ..here };
+    let first = seen(&mut pictures, &sky, &here);
+    assert_eq!(first, seen(&mut pictures, &sky, &there));
+    // It is all of the picture, and not one colour.
+    assert!(!first.contains(&[255, 0, 0]) && first.iter().collect::<BTreeSet<_>>().len() > 100);
+}
+
+#[test]
+fn the_sun_is_where_the_light_is() {
+    let mut pictures = Pictures::new(&[], 1);
+    let mut sky = SkyBox::new(&pictures.gpu, Vec3::Y, 1);
+    for to_light in LIGHTS {
+        sky.set_light(&pictures.gpu, to_light);
+        let camera = PerspectiveCamera { forward: to_light + Vec3::new(0.05, -0.03, 0.04), fov_y: 0.4, ..camera() };
+        let picture = seen(&mut pictures, &sky, &camera);
+        let bright = |(_, color): &(usize, &[u8; 3])| color[0] == 255 && color[2] >= 249;
+        let sun: Vec<Vec3> = picture.iter().enumerate().filter(bright).map(|(pixel, _)| ray(&camera, pixel)).collect();
+        let middle: Vec3 = sun.iter().map(|direction| direction.normalize()).sum();
+        let angle = middle.angle_between(to_light).to_degrees();
+        println!("{} pixels of sun, {angle} degrees from the light", sun.len());
+        // A pixel is 0.24 degrees wide.
+        assert!(sun.len() > 20 && sun.len() < 200 && angle < 0.1, "{} {angle}", sun.len());
+    }
+}
+
+#[test]
+fn faces_join_without_a_seam_at_all_twelve_edges() {
+    let size = 128;
+    let picture = SkyPicture::new(Vec3::Y, size);
+    let texel = |face: usize, at: UVec2| {
+        let [r, g, b, _] = picture.faces[face][(at.y * size + at.x) as usize].map(f32::from);
+        Vec3::new(r, g, b)
+    };
+    // Of each edge: differences across it, those to the next texels within the face, and their number.
+    let mut edges: BTreeMap<[usize; 2], [f32; 3]> = BTreeMap::new();
+    let apart = |a: Vec3, b: Vec3| (a - b).abs().max_element();
+    for (face, index) in (0..6).flat_map(|face| (0..size).map(move |index| (face, index))) {
+        for (at, out) in [
+            (UVec2::new(0, index), IVec2::NEG_X),
+            (UVec2::new(size - 1, index), IVec2::X),
+            (UVec2::new(index, 0), IVec2::NEG_Y),
+            (UVec2::new(index, size - 1), IVec2::Y),
+        ] {
+            // Half a texel to the edge and a little beyond.
+            let beyond = direction_of(face, (at.as_vec2() + 0.5 + out.as_vec2() * 0.51) / size as f32);
+            let (other, uv) = face_of(beyond);
+            assert_ne!(other, face);
+            let across = (uv * size as f32).as_uvec2().min(UVec2::splat(size - 1));
+            let inside = (at.as_ivec2() - out).as_uvec2();
+            let sums = edges.entry([face.min(other), face.max(other)]).or_default();
+            sums[0] += apart(texel(face, at), texel(other, across));
+            sums[1] += apart(texel(face, at), texel(face, inside));
+            sums[2] += 1.0;
+        }
+    }
+    assert_eq!(edges.len(), 12);
+    for (edge, [across, inside, count]) in edges {
+        println!("{edge:?}: {} levels across, {} within", across / count, inside / count);
+        // A seam of one level would show.
+        assert!(across <= inside + count, "{edge:?}");
+    }
+}

@@ -1,0 +1,14 @@
+//! What a technique needs that draws a [`GpuScene`](crate::GpuScene) by passes of its own.
+//!
+//! A frame begins with [`begin_frame`](crate::GpuScene::begin_frame) and lists what its passes draw
+//! ([`seen`](crate::GpuScene::seen), [`drawn_of`](crate::GpuScene::drawn_of)); after
+//! [`end_frame`](crate::GpuScene::end_frame) each pass sets a pipeline by a draw's [`PartKey`] and
+//! [draws](crate::GpuScene::draw) it. [`Maker`] makes pipelines whose vertex stage reads [`part_buffers`];
+//! [`bindings`](crate::bindings) and [`attachment`](crate::attachment) have the rest, [`shaders`](crate::shaders) the WGSL
+//! that pictures share.
+
+pub use crate::material::material_layout;
+pub use crate::pipelines::{InstanceNumber, Maker, Shape, part_buffers};
+pub use crate::probe::{PROBE_FORMAT, can_probe};
+pub use crate::scene::{Draw, PartKey};
+pub use crate::target::{DEPTH_FORMAT, ENCODED_FORMAT};
