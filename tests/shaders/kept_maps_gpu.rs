@@ -145,16 +145,6 @@ fn gpu_a_light_that_steps_and_a_camera_that_jumps_leave_nothing_behind() {
 }
 
 #[test]
-fn gpu_maps_smaller_than_their_layer_are_kept_while_they_stay() {
-    let mut technique = technique("windows-4");
-    technique.overrides[1].resolution = Some(UVec2::new(192, 128));
-    run(&technique, 40, |frame, town, walk, _| {
-        walk.go_on(frame / 3);
-        town.bob(frame);
-    });
-}
-
-#[test]
 fn gpu_what_stands_still_is_not_drawn_again() {
     let technique = technique("windows-4");
     let mut engine = Engine::new(&technique);

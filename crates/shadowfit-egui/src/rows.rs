@@ -5,7 +5,7 @@ mod label;
 mod side;
 
 use egui::{Checkbox, ComboBox, Response, Slider, SliderClamping, Ui};
-use shadowfit::params::{Choice, Group, Kind, Number, Optional, Parameter, Toggle};
+use shadowfit::params::{Choice, Kind, Number, Optional, Parameter, Toggle};
 use shadowfit::tool::Settings;
 
 use crate::accessibility::rename;
@@ -42,12 +42,11 @@ impl Row<'_> {
     }
 }
 
-/// Whether a parameter gets a row under these settings: not one of another choice of splits, none of a map
-/// that is not there, and none for a single map's fit where all maps are windows.
+/// Whether a parameter gets a row under these settings: not one of another choice of splits, and none of a map
+/// that is not there.
 pub(crate) fn is_shown(parameter: &Parameter, settings: &Settings) -> bool {
     let belongs_to_a_choice = matches!(&parameter.kind, Kind::Optional(optional) if optional.unset.is_none());
-    let goes_when_inert = belongs_to_a_choice || parameter.group == Group::Override;
-    parameter.is_present(settings) && !(goes_when_inert && (parameter.inert)(settings).is_some())
+    parameter.is_present(settings) && !(belongs_to_a_choice && (parameter.inert)(settings).is_some())
 }
 
 /// The rows of parameters that are shown, each of which may change what the next ones are.

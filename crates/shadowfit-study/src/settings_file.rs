@@ -80,21 +80,6 @@ mod tests {
     }
 
     #[test]
-    fn a_file_of_maps_without_overrides_takes_those_of_others_away() {
-        let settings = Settings::default();
-        let file = table(&settings_to_toml(&settings, ""));
-        let mut read = settings;
-        read.technique.overrides[1].resolution = Some(glam::uvec2(1024, 512));
-        read.technique.overrides[2].kind = Some(FitKind::Sphere);
-        settings_from_toml(&file, &mut read).expect("what was written");
-        assert_eq!(read, settings);
-        let mut own = settings;
-        own.technique.overrides[1].resolution = Some(glam::uvec2(2048, 1024));
-        settings_from_toml(&table(&settings_to_toml(&own, "")), &mut read).expect("what was written");
-        assert_eq!(read, own);
-    }
-
-    #[test]
     fn what_is_left_out_stays_and_what_makes_no_sense_is_named() {
         let mut settings = Settings::default();
         settings_from_toml(&table("[bias]\nconstant = 0.5"), &mut settings).expect("one line");

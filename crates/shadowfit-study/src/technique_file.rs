@@ -124,7 +124,7 @@ impl NamedTechnique {
         let mut text = format!("name = {}\nsummary = {}\n", Value::from(name.as_str()), Value::from(summary.as_str()));
         for group in Group::ALL.into_iter().filter(|group| group.is_technique()) {
             let mut lines = String::new();
-            for parameter in group.parameters().filter(|parameter| is_written(parameter, &settings)) {
+            for parameter in group.parameters().filter(|parameter| parameter.is_present(&settings)) {
                 let _ = writeln!(lines, "{} = {}", key(parameter), value_of(parameter, &settings));
             }
             if !lines.is_empty() {
@@ -135,12 +135,6 @@ impl NamedTechnique {
         ensure!(read == *self, "a number that no file can hold");
         Ok(text)
     }
-}
-
-/// Whether a parameter gets a line: settings of single maps only where there are any.
-fn is_written(parameter: &Parameter, settings: &Settings) -> bool {
-    let is_default = parameter.is_equal(settings, &Settings::default());
-    parameter.is_present(settings) && !(parameter.group == Group::Override && is_default)
 }
 
 /// A parameter's name in its group.
@@ -187,8 +181,8 @@ pub(crate) fn refuse_the_rest(file: &toml::Table, has: impl Fn(Group) -> bool) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shadowfit::glam::{UVec2, Vec3};
-    use shadowfit::settings::{FitKind, MapOverride, SplitScheme};
+    use shadowfit::glam::Vec3;
+    use shadowfit::settings::SplitScheme;
 
     #[test]
     fn every_preset_is_written_and_read_back_the_same() {
@@ -204,13 +198,12 @@ mod tests {
     }
 
     #[test]
-    fn up_manual_splits_and_single_maps_survive_a_file() {
+    fn up_and_manual_splits_survive_a_file() {
         let mut technique = Technique::default()
             .with_splits(SplitScheme::Manual([0.1, 2.5, 7.0, 11.0, 12.3, 13.0, 99.9]))
             .with_resolution(1024, 768);
         technique.fit.up = Vec3::Z;
         technique.fit.border = Some(0.0);
-        technique.overrides[2] = MapOverride { kind: Some(FitKind::Sphere), resolution: Some(UVec2::new(512, 1024)) };
         let named = NamedTechnique { name: "\"quoted\"".to_owned(), summary: "a\nb".to_owned(), technique };
         assert_eq!(NamedTechnique::from_toml(&named.to_toml().expect("text")).expect("read back"), named);
     }

@@ -16,8 +16,7 @@ use crate::maps::{FittedMap, FittedMaps, set_empty_ranges_apart};
 use crate::motion::Motion;
 use crate::rule::{FitRule, check_least_texel};
 use crate::settings::{
-    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, MAX_BLEND, MAX_DEPTH_STEPS, MAX_MAPS, MapOverride,
-    Stabilise,
+    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, MAX_BLEND, MAX_DEPTH_STEPS, MAX_MAPS, Stabilise,
 };
 use crate::splits::{Chooser, Splits};
 use crate::view::Range;
@@ -113,8 +112,8 @@ impl MapFitter {
         workspace: &mut Workspace,
         maps: &mut FittedMaps,
     ) -> Result<(), FitError> {
-        // 1. The rule of each map, and the light.
-        let (rules, light) = check(input, technique)?;
+        // 1. The rule of the maps' fit, and the light.
+        let (rule, light) = check(input, technique)?;
         let is_continued = self.technique.as_ref() == Some(technique);
         let before = if is_continued { Some(&*self) } else { None };
         let is_held = technique.stabilise != Stabilise::Off || technique.has_windows();
@@ -126,10 +125,9 @@ impl MapFitter {
         if technique.has_windows() {
             let before = before.and_then(|before| before.windows.as_ref());
             let frame = windows::Frame { input, technique, content: &content, light, range };
-            let (volumes, held) = frame.fit(|i| rules.of(i), before, points)?;
+            let (volumes, held) = frame.fit(&rule, before, points)?;
             let maps = maps.take(technique.count as usize);
             for (i, (map, volume)) in maps.iter_mut().zip(volumes.iter().flatten()).enumerate() {
-                let rule = rules.of(i);
                 map.fit = LightFit::from_volume(content.origin, volume, rule.resolution, rule.convention)?;
                 map.bias = Bias::from_texels(&technique.bias, technique.format, &map.fit);
                 map.anchor = volume.grid.as_ref().and_then(GridAnchor::of);
@@ -146,13 +144,13 @@ impl MapFitter {
             };
             return Ok(());
         }
-        let chooser = Chooser { content: &content, light, rule: &rules.most, technique, input, range };
+        let chooser = Chooser { content: &content, light, rule: &rule, technique, input, range };
         let splits = choose_splits(before.and_then(|before| before.splits), &chooser)?;
         // 3. The maps: new ones, or those of the frame before while they serve.
         let maps = maps.take(technique.count as usize);
         let depths = before.map_or([None; MAX_MAPS], |before| before.depths);
         let mut frame =
-            Frame { content: &content, technique, rules: &rules, light, range, splits: splits.splits, depths, points };
+            Frame { content: &content, technique, rule: &rule, light, range, splits: splits.splits, depths, points };
         let mut held = None;
         if technique.stabilise == Stabilise::Hysteresis {
             held = Some(frame.hold(input, before, maps)?);
@@ -218,10 +216,10 @@ pub fn fewest_maps(
     workspace: &mut Workspace,
 ) -> Result<u32, FitError> {
     let waste = checks::within("the waste of fewer maps", f64::from(waste), 1.0, 100.0)?;
-    let (rules, light) = check(input, technique)?;
+    let (rule, light) = check(input, technique)?;
     let (content, _) = Content::new(input, workspace)?;
     let range = whole_range(input, technique.fit.max_distance);
-    Ok(Chooser { content: &content, light, rule: &rules.most, technique, input, range }.fewest(waste))
+    Ok(Chooser { content: &content, light, rule: &rule, technique, input, range }.fewest(waste))
 }
 
 /// This frame's splits: held ones while they serve.
@@ -240,24 +238,11 @@ fn choose_splits(held: Option<HeldSplits>, chooser: &Chooser) -> Result<HeldSpli
     Ok(HeldSplits { splits: chooser.choose(spread)?, spread: chooser.bounded(spread), far: chooser.range.far, age: 0 })
 }
 
-/// The rules of all maps.
-struct Rules {
-    /// The rule of maps without an override.
-    most: FitRule,
-    own: [Option<FitRule>; MAX_MAPS],
-}
-
-impl Rules {
-    fn of(&self, map: usize) -> &FitRule {
-        self.own[map].as_ref().unwrap_or(&self.most)
-    }
-}
-
 /// What all maps of a frame are fitted with.
 struct Frame<'a, 'b> {
     content: &'a Content<'b>,
     technique: &'a Technique,
-    rules: &'a Rules,
+    rule: &'a FitRule,
     light: Light,
     /// Everything that is shadowed.
     range: Range,
@@ -287,8 +272,8 @@ impl Frame<'_, '_> {
     fn fit_anew(&mut self, map: usize, volume: &mut Option<Volume>) -> Result<(), FitError> {
         let is_snapped = self.technique.stabilise == Stabilise::Snap;
         let placement = if is_snapped { Placement::OnGrid } else { Placement::Tight };
-        let (rule, slice) = (self.rules.of(map), self.slice(map));
-        *volume = Some(fits::fit_map(self.content, &self.light, rule, slice, placement, self.points)?);
+        let slice = self.slice(map);
+        *volume = Some(fits::fit_map(self.content, &self.light, self.rule, slice, placement, self.points)?);
         Ok(())
     }
 
@@ -314,7 +299,7 @@ impl Frame<'_, '_> {
             hold::Holder { input, content: self.content, light: self.light, motion, hold: self.technique.hold };
         let mut held = [None; MAX_MAPS];
         for (i, map) in maps.iter_mut().enumerate() {
-            let (rule, slice) = (self.rules.of(i), self.slice(i));
+            let (rule, slice) = (self.rule, self.slice(i));
             let volume = if rule.can_be_held() {
                 let last = before.and_then(|before| before.maps[i]);
                 let now = holder.hold(last, rule, slice, self.points)?;
@@ -343,7 +328,7 @@ impl Frame<'_, '_> {
 
     /// Writes a map in place, since it is large.
     fn write(&self, map: &mut FittedMap, volume: &Volume, i: usize) -> Result<(), FitError> {
-        let (rule, slice) = (self.rules.of(i), self.slice_range(i));
+        let (rule, slice) = (self.rule, self.slice_range(i));
         let is_empty = is_empty(self.content.views, slice);
         map.fit = LightFit::from_volume(self.content.origin, volume, rule.resolution, rule.convention)?;
         map.bias = Bias::from_texels(&self.technique.bias, self.technique.format, &map.fit);
@@ -378,8 +363,8 @@ fn widened(slice: Range) -> Range {
 /// corner of a wide view is up to seven times its depth.
 const DEPTH_ROUNDING: f32 = 64.0 / 16_777_216.0;
 
-/// Checks an input and a technique; gives the rules of its maps, and the light.
-fn check(input: &FitInput, technique: &Technique) -> Result<(Rules, Light), FitError> {
+/// Checks an input and a technique; gives the rule of its maps, and the light.
+fn check(input: &FitInput, technique: &Technique) -> Result<(FitRule, Light), FitError> {
     check_numbers(technique)?;
     if let Some(DepthBounds { near, far }) = input.depth_bounds {
         for bound in [near, far] {
@@ -389,23 +374,10 @@ fn check(input: &FitInput, technique: &Technique) -> Result<(Rules, Light), FitE
             return Err(FitError::NearNotBelowFar { near, far });
         }
     }
-    let border = technique.border();
-    let (mut most, light) = fits::prepare(input, &own_settings(technique, None), border)?;
-    most.serves_all = technique.shares_maps() && most.can_be_held();
-    let mut own = [None; MAX_MAPS];
-    for (map, own) in own.iter_mut().enumerate().take(technique.count as usize) {
-        if technique.overrides[map] != MapOverride::default() {
-            let settings = own_settings(technique, Some(map));
-            let mut rule = FitRule::new(&settings, border, input.casters.is_some())?;
-            if technique.stabilise == Stabilise::Hysteresis && rule.can_be_held() {
-                // All held maps of a frame have one roll.
-                rule.roll = most.roll;
-            }
-            rule.serves_all = technique.shares_maps() && rule.can_be_held();
-            *own = Some(rule);
-        }
-    }
-    Ok((Rules { most, own }, light))
+    let settings = FitSettings { least_texel: technique.least_texel(), ..technique.fit };
+    let (mut rule, light) = fits::prepare(input, &settings, technique.border())?;
+    rule.serves_all = technique.shares_maps() && rule.can_be_held();
+    Ok((rule, light))
 }
 
 /// Checks the numbers of a technique that are not those of its fit, and what does not go together.
@@ -433,14 +405,4 @@ fn check_numbers(technique: &Technique) -> Result<(), FitError> {
         return Err(FitError::ClampedCasters { filter: technique.filter });
     }
     Ok(())
-}
-
-/// The settings of a map, or those of all maps without an override of their own.
-fn own_settings(technique: &Technique, map: Option<usize>) -> FitSettings {
-    FitSettings {
-        kind: map.map_or(technique.fit.kind, |map| technique.kind_of(map)),
-        resolution: map.map_or(technique.fit.resolution, |map| technique.resolution_of(map)),
-        least_texel: technique.least_texel(),
-        ..technique.fit
-    }
 }

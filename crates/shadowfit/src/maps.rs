@@ -8,7 +8,7 @@ use crate::choice::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth};
 use crate::culling::Sweep;
 use crate::grid::GridAnchor;
 use crate::rule::FitRule;
-use crate::settings::{FitKind, MAX_MAPS, MapChoice};
+use crate::settings::{MAX_MAPS, MapChoice};
 use crate::{Bias, CasterVolume, FitError, LightFit, Technique, ViewFrustum};
 
 /// One of several maps.
@@ -115,11 +115,8 @@ impl FittedMap {
 /// Whether each map of a technique covers all of its slice with what the filter reads around it.
 fn holds_slices(technique: &Technique) -> bool {
     let needed = f64::from(technique.reach() + technique.bias.normal_offset);
-    let holds = |kind: FitKind| {
-        let rule = FitRule::new(&technique.fit.with_kind(kind), technique.border(), true);
-        rule.is_ok_and(|rule| rule.leaves_border(needed))
-    };
-    (0..technique.count as usize).all(|map| holds(technique.kind_of(map)))
+    let rule = FitRule::new(&technique.fit, technique.border(), true);
+    rule.is_ok_and(|rule| rule.leaves_border(needed))
 }
 
 /// The maps of one frame, nearest first, windows finest first.

@@ -271,8 +271,6 @@ pub enum Group {
     Softness,
     /// Biases against self-shadowing.
     Bias,
-    /// Overrides for single maps.
-    Override,
     /// The sun.
     Light,
     /// Lens and speed of the camera.
@@ -283,14 +281,13 @@ pub enum Group {
 
 impl Group {
     /// All groups, in the order that they are shown.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 9] = [
         Self::Fit,
         Self::Splits,
         Self::Stabilise,
         Self::Map,
         Self::Softness,
         Self::Bias,
-        Self::Override,
         Self::Light,
         Self::Camera,
         Self::View,
@@ -310,7 +307,6 @@ impl Group {
             Self::Map => "map",
             Self::Softness => "softness",
             Self::Bias => "bias",
-            Self::Override => "override",
             Self::Light => "light",
             Self::Camera => "camera",
             Self::View => "view",
@@ -326,7 +322,6 @@ impl Group {
             Self::Map => "Shadow map",
             Self::Softness => "Soft edges",
             Self::Bias => "Bias",
-            Self::Override => "Single maps",
             Self::Light => "Light",
             Self::Camera => "Camera",
             Self::View => "View",
@@ -345,7 +340,6 @@ impl Group {
                 "How far the comparison is moved so that a surface does not shadow itself. Too little leaves \
                  acne, too much detaches shadows from their casters."
             }
-            Self::Override => "What one of several maps has of its own, map 1 being the nearest.",
             Self::Light => "Where the sun stands.",
             Self::Camera => "The lens and the speed of the camera.",
             Self::View => "What is drawn over or instead of the picture.",

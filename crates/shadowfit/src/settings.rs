@@ -51,9 +51,8 @@ pub enum FitKind {
     #[default]
     Focused,
     /// Squares of the plane across the light, on a grid that is fixed to the world, each where it helps
-    /// most of what is visible ([`fits::windows`](crate::fits::windows)). Always read by coverage. All maps of a
-    /// technique are windows or none: in an override it is ignored. The default for a
-    /// [technique](crate::Technique).
+    /// most of what is visible ([`fits::windows`](crate::fits::windows)). Always read by coverage.
+    /// The default for a [technique](crate::Technique).
     Windows,
 }
 
@@ -266,17 +265,6 @@ impl Default for HoldSettings {
     fn default() -> Self {
         Self { margin: 0.02, growth: 1.4, waste: 1.8, horizon: 32 }
     }
-}
-
-/// Overrides for one of several maps; a field that is `None` is as for all maps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
-pub struct MapOverride {
-    /// The rule of its fit. Default: `None`, which takes [`FitSettings::kind`]. It is ignored where either
-    /// of the two is [`FitKind::Windows`].
-    pub kind: Option<FitKind>,
-    /// Its width and height, in texels. Default: `None`, which takes [`FitSettings::resolution`].
-    pub resolution: Option<UVec2>,
 }
 
 /// Which boxes of the scene's receivers the engine gives to the fit.

@@ -5,8 +5,8 @@
 use crate::LightFit;
 use crate::bias::Reach;
 use crate::settings::{
-    BiasSettings, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapChoice, MapFormat, MapOverride,
-    NeedSource, ReceiverSource, Softness, SplitScheme, Stabilise, setters,
+    BiasSettings, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, MapFormat, NeedSource, ReceiverSource,
+    Softness, SplitScheme, Stabilise, setters,
 };
 use glam::UVec2;
 
@@ -48,8 +48,6 @@ pub struct Technique {
     /// Details of [`Stabilise::Hysteresis`], and when held splits are given up. Default:
     /// [`HoldSettings::default`].
     pub hold: HoldSettings,
-    /// Overrides for single maps, the nearest first. Default: none.
-    pub overrides: [MapOverride; MAX_MAPS],
     /// Which boxes of the scene's receivers the fit is given. Default:
     /// [`ReceiverSource::Clusters`].
     pub receivers: ReceiverSource,
@@ -82,7 +80,6 @@ impl Default for Technique {
             overlap: 0.0,
             stabilise: Stabilise::default(),
             hold: HoldSettings::default(),
-            overrides: [MapOverride::default(); MAX_MAPS],
             receivers: ReceiverSource::default(),
             filter: FilterKind::default(),
             softness: Softness::default(),
@@ -103,7 +100,6 @@ setters!(Technique {
     with_overlap overlap: f32,
     with_stabilise stabilise: Stabilise,
     with_hold hold: HoldSettings,
-    with_overrides overrides: [MapOverride; MAX_MAPS],
     with_receivers receivers: ReceiverSource,
     with_need need: NeedSource,
     with_format format: MapFormat,
@@ -197,17 +193,5 @@ impl Technique {
     /// Whether the maps are windows: all of them are or none.
     pub(crate) const fn has_windows(&self) -> bool {
         matches!(self.fit.kind, FitKind::Windows)
-    }
-
-    /// The rule of a map's fit: that of its override, unless it or that of all maps is
-    /// [`FitKind::Windows`].
-    pub fn kind_of(&self, map: usize) -> FitKind {
-        let own = self.overrides.get(map).and_then(|own| own.kind);
-        own.filter(|kind| !self.has_windows() && *kind != FitKind::Windows).unwrap_or(self.fit.kind)
-    }
-
-    /// Width and height of a map, in texels.
-    pub fn resolution_of(&self, map: usize) -> UVec2 {
-        self.overrides.get(map).and_then(|own| own.resolution).unwrap_or(self.fit.resolution)
     }
 }

@@ -5,8 +5,8 @@ use shadowfit::params::{
     self, Group, Kind, PARAMETERS, Parameter, format_value, set_from_str, set_technique_from_str, technique_parameters,
 };
 use shadowfit::settings::{
-    CasterPolicy, FilterKind, FitKind, MAX_MAPS, MapFormat, MapOverride, NeedSource, ReceiverSource, RectangleKind,
-    SoftRadius, SplitScheme, Stabilise,
+    CasterPolicy, FilterKind, FitKind, MapFormat, NeedSource, ReceiverSource, RectangleKind, SoftRadius, SplitScheme,
+    Stabilise,
 };
 use shadowfit::tool::Settings;
 use shadowfit::{Aabb, Boxes, DepthConvention, FitInput, PRESETS, PerspectiveCamera, Technique, Workspace};
@@ -41,8 +41,7 @@ fn with(values: &[(&str, &str)]) -> Settings {
 
 /// Settings that between them have every row.
 fn starts() -> [Settings; 5] {
-    let mut own = Technique::default().with_count(8);
-    own.overrides = [MapOverride { resolution: Some(UVec2::splat(512)), ..MapOverride::default() }; MAX_MAPS];
+    let own = Technique::default().with_count(8);
     [
         Settings::default(),
         Settings::default().with_technique(own),
@@ -169,10 +168,6 @@ fn option_names_select_their_variants() {
         ("xna_sample", FitKind::XnaSample),
     ];
     check("fit.kind", |t| t.fit.kind, &fits);
-    let mut own = vec![("same", None)];
-    own.extend(fits.into_iter().filter(|(id, _)| *id != "windows").map(|(id, kind)| (id, Some(kind))));
-    check("override.map_1_kind", |t| t.overrides[0].kind, &own);
-    check("override.map_8_kind", |t| t.overrides[7].kind, &own);
     let receivers = [("clusters", ReceiverSource::Clusters), ("objects", ReceiverSource::Objects)];
     check("fit.receivers", |t| t.receivers, &receivers);
     let needs = [("last_frame", NeedSource::LastFrame), ("boxes", NeedSource::Boxes)];
@@ -244,13 +239,6 @@ fn a_width_is_also_the_height_until_one_is_set() {
     assert_eq!(resolution(&[("map.resolution", "512"), ("map.height", "256")]), UVec2::new(512, 256));
     assert_eq!(resolution(&[("map.height", "256"), ("map.resolution", "512")]), UVec2::new(512, 256));
     assert_eq!(resolution(&[("map.height", "256"), ("map.height", "square")]), UVec2::splat(2048));
-    let own = |values: &[(&str, &str)]| with(values).technique.overrides[2].resolution;
-    let (width, height) = ("override.map_3_resolution", "override.map_3_height");
-    assert_eq!(own(&[(width, "512")]), Some(UVec2::splat(512)));
-    assert_eq!(own(&[(width, "512"), (height, "256")]), Some(UVec2::new(512, 256)));
-    assert_eq!(own(&[(width, "512"), (height, "256"), (width, "1024")]), Some(UVec2::new(1024, 256)));
-    assert_eq!(own(&[(width, "512"), (height, "256"), (height, "square")]), Some(UVec2::splat(512)));
-    assert_eq!(own(&[(width, "512"), (width, "same"), (height, "square")]), None);
 }
 
 #[test]
@@ -378,7 +366,7 @@ fn rows_written_in_order_restore_every_preset() {
 
 #[test]
 fn numbers_are_written_short() {
-    let mut settings = with(&[("splits.scheme", "practical"), ("override.map_2_resolution", "512")]);
+    let mut settings = with(&[("splits.scheme", "practical")]);
     settings.light.elevation = 30_f32.to_radians();
     settings.light.azimuth = core::f32::consts::TAU;
     for (id, text) in [
@@ -396,10 +384,6 @@ fn numbers_are_written_short() {
         ("stabilise.waste", "1.8"),
         ("map.resolution", "2048"),
         ("map.height", "square"),
-        ("override.map_1_resolution", "same"),
-        ("override.map_1_height", ""),
-        ("override.map_2_resolution", "512"),
-        ("override.map_2_height", "square"),
         ("view.inset", "one"),
         ("view.play", "true"),
         ("view.mode", "final"),
@@ -469,7 +453,6 @@ fn broken_settings_are_still_written_and_read() {
         technique.fit.max_distance = -0.0;
         technique.fit.border = Some(f32::NAN);
         technique.fit.up = Vec3::INFINITY;
-        technique.overrides[7].resolution = Some(UVec2::new(u32::MAX, 0));
         match &mut technique.splits {
             SplitScheme::Practical(lambda) => *lambda = f32::NAN,
             SplitScheme::Manual(ends) => ends[0] = f32::INFINITY,
@@ -619,10 +602,6 @@ fn parameters_say_where_they_have_no_effect() {
         ("stabilise.growth", &[], ("stabilise.mode", "off"), "Stabilise"),
         ("stabilise.horizon", &[], ("stabilise.mode", "snap"), "Stabilise"),
         ("stabilise.waste", &[], ("stabilise.mode", "off"), "Stabilise"),
-        ("override.map_4_kind", &[], ("splits.count", "3"), "number of maps"),
-        ("override.map_4_kind", &[], ("fit.kind", "windows"), "windows"),
-        ("override.map_4_resolution", &[], ("splits.count", "3"), "number of maps"),
-        ("override.map_4_height", &[("override.map_4_resolution", "512")], ("splits.count", "3"), "number of maps"),
     ] {
         loses_its_effect(id, base, (other, option), word);
     }

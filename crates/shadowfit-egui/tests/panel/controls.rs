@@ -7,10 +7,8 @@ use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 use shadowfit::glam::UVec2;
-use shadowfit::params::{Group, Kind, PARAMETERS, parameter};
-use shadowfit::settings::{
-    CasterPolicy, FilterKind, FitKind, MAX_MAPS, MapChoice, MapFormat, MapOverride, SoftRadius, SplitScheme,
-};
+use shadowfit::params::{Kind, PARAMETERS, parameter};
+use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MAX_MAPS, MapChoice, MapFormat, SoftRadius, SplitScheme};
 use shadowfit::tool::{InsetMaps, Settings};
 use shadowfit_egui::Panel;
 
@@ -26,7 +24,6 @@ pub(crate) fn everything(splits: SplitScheme) -> Settings {
     let mut settings = Settings::default();
     let technique = &mut settings.technique;
     (technique.count, technique.splits) = (MAX_MAPS as u32, splits);
-    technique.overrides = [MapOverride { resolution: Some(UVec2::new(1024, 512)), ..MapOverride::default() }; MAX_MAPS];
     (technique.fit.kind, technique.fit.resolution) = (FitKind::Focused, UVec2::new(2048, 1024));
     (technique.fit.max_distance, technique.fit.border) = (100.0, Some(3.0));
     technique.fit.casters = CasterPolicy::Extend;
@@ -54,8 +51,7 @@ fn every_parameter_has_a_control_with_its_label() {
     for settings in all_rows() {
         let harness = open_harness(Host { settings, ..Host::default() });
         for parameter in PARAMETERS {
-            let goes = parameter.group == Group::Override && (parameter.inert)(&settings).is_some();
-            if parameter.is_present(&settings) && !goes {
+            if parameter.is_present(&settings) {
                 assert!(control(&harness, parameter).rect().is_positive(), "{}", parameter.id);
                 seen.insert(parameter.id);
             } else {
@@ -184,11 +180,8 @@ fn check_boxes_and_lists_set_their_parameters() {
 
 #[test]
 fn numbers_that_need_not_be_there_turn_on_and_off() {
-    let mut settings = Settings::default();
-    // The resolution of map 1 makes room for its height.
-    settings.technique.overrides[0].resolution = Some(UVec2::splat(256));
-    let mut harness = open_harness(Host { settings, ..Host::default() });
-    for id in ["fit.max_distance", "fit.border", "map.height", "override.map_1_height", "override.map_4_resolution"] {
+    let mut harness = open_harness(Host::default());
+    for id in ["fit.max_distance", "fit.border", "map.height"] {
         let parameter = parameter(id).expect(id);
         let Kind::Optional(optional) = parameter.kind else { panic!("{id} is always there") };
         assert!(harness.query_by_role_and_label(Role::Slider, parameter.label).is_none(), "{id}");
@@ -198,7 +191,7 @@ fn numbers_that_need_not_be_there_turn_on_and_off() {
         assert!(control(&harness, parameter).rect().is_positive(), "{id}");
         unset_box(&harness, parameter).click();
         harness.run();
-        assert_eq!(harness.state().settings, settings, "{id}");
+        assert_eq!(harness.state().settings, Settings::default(), "{id}");
     }
 }
 
@@ -264,24 +257,6 @@ fn lambda_is_shown_with_practical_splits_alone_and_splits_with_manual_ones() {
     type_into(&mut harness, "splits.manual_2", "12.5");
     let SplitScheme::Manual(splits) = harness.state().settings.technique.splits else { panic!("they stay manual") };
     assert_eq!(splits[..3], [1.0, 12.5, 1.0]);
-}
-
-#[test]
-fn single_maps_have_rows_while_they_exist_and_are_folded_away_at_first() {
-    let first = parameter("override.map_1_kind").expect("a row");
-    let mut harness = harness(Host::default());
-    assert!(query_control(&harness, first).is_none());
-    harness.get_by_label("Single maps").click();
-    harness.run();
-    for count in [1, 3, 8] {
-        harness.state_mut().settings.technique.count = count;
-        harness.run();
-        for map in 1..=MAX_MAPS {
-            let id = format!("override.map_{map}_resolution");
-            let parameter = parameter(&id).expect("a row");
-            assert_eq!(query_control(&harness, parameter).is_some(), map <= count as usize, "{id} of {count}");
-        }
-    }
 }
 
 #[test]

@@ -3,7 +3,6 @@
 mod bias;
 mod fit;
 mod map;
-mod overrides;
 mod softness;
 mod splits;
 mod stabilise;
@@ -62,30 +61,6 @@ pub static PARAMETERS: &[Parameter] = &[
     bias::NORMAL_OFFSET,
     bias::RECEIVER_PLANE,
     bias::DEPTH_STEPS,
-    overrides::MAPS[0][0],
-    overrides::MAPS[0][1],
-    overrides::MAPS[0][2],
-    overrides::MAPS[1][0],
-    overrides::MAPS[1][1],
-    overrides::MAPS[1][2],
-    overrides::MAPS[2][0],
-    overrides::MAPS[2][1],
-    overrides::MAPS[2][2],
-    overrides::MAPS[3][0],
-    overrides::MAPS[3][1],
-    overrides::MAPS[3][2],
-    overrides::MAPS[4][0],
-    overrides::MAPS[4][1],
-    overrides::MAPS[4][2],
-    overrides::MAPS[5][0],
-    overrides::MAPS[5][1],
-    overrides::MAPS[5][2],
-    overrides::MAPS[6][0],
-    overrides::MAPS[6][1],
-    overrides::MAPS[6][2],
-    overrides::MAPS[7][0],
-    overrides::MAPS[7][1],
-    overrides::MAPS[7][2],
     tool::HOUR,
     tool::AZIMUTH,
     tool::ELEVATION,

@@ -10,8 +10,8 @@ use glam::{UVec2, Vec3};
 use super::Technique;
 use crate::DepthConvention;
 use crate::settings::{
-    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, MapFormat, MapOverride,
-    NeedSource, ReceiverSource, RectangleKind, SoftRadius, Softness, SplitScheme, Stabilise,
+    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, MapFormat, NeedSource,
+    ReceiverSource, RectangleKind, SoftRadius, Softness, SplitScheme, Stabilise,
 };
 
 impl Technique {
@@ -138,7 +138,6 @@ impl Expression for Technique {
             overlap,
             stabilise,
             hold,
-            overrides,
             receivers,
             filter,
             softness,
@@ -157,7 +156,6 @@ impl Expression for Technique {
             .field("overlap", overlap, &default.overlap)
             .field("stabilise", stabilise, &default.stabilise)
             .field("hold", hold, &default.hold)
-            .field("overrides", overrides, &default.overrides)
             .field("receivers", receivers, &default.receivers)
             .field("filter", filter, &default.filter)
             .field("softness", softness, &default.softness)
@@ -248,17 +246,6 @@ impl Expression for SoftRadius {
             Self::Metres(metres) => call("SoftRadius::Metres", metres, code),
             Self::SunAngle(radians) => call("SoftRadius::SunAngle", radians, code),
         }
-    }
-}
-
-impl Expression for MapOverride {
-    fn write(&self, code: &mut Code) -> fmt::Result {
-        let Self { kind, resolution } = self;
-        let default = Self::default();
-        code.fields("MapOverride")
-            .field("kind", kind, &default.kind)
-            .field("resolution", resolution, &default.resolution)
-            .end()
     }
 }
 

@@ -72,11 +72,10 @@ pub(crate) struct Frame<'a, 'b> {
 }
 
 impl Frame<'_, '_> {
-    /// The windows of this frame, finest first, and what the next frame begins with. `rule` gives that
-    /// of each window.
-    pub(crate) fn fit<'r>(
+    /// The windows of this frame, finest first, and what the next frame begins with.
+    pub(crate) fn fit(
         &self,
-        rule: impl Fn(usize) -> &'r FitRule,
+        rule: &FitRule,
         before: Option<&HeldWindows>,
         points: &mut [DVec2],
     ) -> Result<([Option<Volume>; MAX_MAPS], HeldWindows), FitError> {
@@ -84,7 +83,7 @@ impl Frame<'_, '_> {
         let origin = self.content.origin;
         // 1. The plane across the light, and the windows of the frame before in it.
         let plane = Plane::new(self.light.direction(), self.light.up());
-        let lattice = Lattice::new(plane, origin, (0..count).map(&rule));
+        let lattice = Lattice::new(plane, origin, rule);
         let before = before.map(|before| before.in_plane(&lattice, origin));
         // 2. What all windows together must hold, and what is visible of it.
         let shadows = Shadows::new(self.content, plane.axes, self.range, points)?;
@@ -92,7 +91,7 @@ impl Frame<'_, '_> {
         // 3. The last window, which holds everything, then the others.
         let last =
             lattice.last(count - 1, before.as_ref().map(|before| &before.drawn[count - 1]), shadows.bounds(&plane));
-        cells.keep_near(&lattice.rect(count - 1, &last));
+        cells.keep_near(&lattice.rect(&last));
         let mut held = plan_windows(&lattice, (count, &last), &cells, before.as_ref(), is_guess);
         // 4. Their depths, held while they serve.
         let mut volumes = [None; MAX_MAPS];
@@ -100,7 +99,7 @@ impl Frame<'_, '_> {
             let window = &mut held.drawn[i];
             let before = before.as_ref().map(|before| &before.drawn[i]).filter(|was| was.steps == window.steps);
             window.z = before.and_then(|before| before.z);
-            *volume = Some(self.volume(&lattice, window, rule(i), &shadows));
+            *volume = Some(self.volume(&lattice, window, rule, &shadows));
         }
         Ok((volumes, held))
     }
@@ -156,8 +155,8 @@ fn plan_windows(
     before: Option<&HeldWindows>,
     is_guess: bool,
 ) -> HeldWindows {
-    let planner = Planner { cells, usable: lattice.usable.map(DVec2::as_vec2), least: lattice.least, count };
-    let rect = lattice.rect(count - 1, last);
+    let planner = Planner { cells, usable: lattice.usable.as_vec2(), least: lattice.least, count };
+    let rect = lattice.rect(last);
     let (mut turn, mut turn_anew) = before.map_or((0, 0), |before| (before.turn, before.turn_anew));
     let mut age = 0;
     let mut holds = before.map_or([0.0; MAX_MAPS], |before| before.holds);
@@ -165,7 +164,7 @@ fn plan_windows(
         let plan = |windows: &[Window; MAX_MAPS]| {
             let mut plan = Plan::default();
             for (i, window) in windows.iter().enumerate().take(count) {
-                (plan.steps[i], plan.rects[i]) = (window.steps, lattice.rect(i, window));
+                (plan.steps[i], plan.rects[i]) = (window.steps, lattice.rect(window));
             }
             planner.below(plan, last.steps, rect)
         };
@@ -209,11 +208,11 @@ fn plan_windows(
     };
     for i in 0..count {
         // Rectangles are rounded, lines are not: what stays is taken as it is.
-        let stays = |window: &&Window| window.steps == drawn.steps[i] && lattice.rect(i, window) == drawn.rects[i];
+        let stays = |window: &&Window| window.steps == drawn.steps[i] && lattice.rect(window) == drawn.rects[i];
         let kept = before.map(|before| &before.drawn[i]).filter(stays);
-        windows.drawn[i] = kept.map_or_else(|| lattice.window(i, drawn.steps[i], &drawn.rects[i]), |kept| *kept);
-        windows.sought[i] = lattice.window(i, sought.steps[i], &sought.rects[i]);
-        windows.anew[i] = lattice.window(i, anew.steps[i], &anew.rects[i]);
+        windows.drawn[i] = kept.map_or_else(|| lattice.window(drawn.steps[i], &drawn.rects[i]), |kept| *kept);
+        windows.sought[i] = lattice.window(sought.steps[i], &sought.rects[i]);
+        windows.anew[i] = lattice.window(anew.steps[i], &anew.rects[i]);
     }
     windows.drawn[count - 1] = *last;
     windows

@@ -26,8 +26,8 @@ pub(super) struct Plan {
 /// What windows are planned by.
 pub(super) struct Planner<'a> {
     pub(super) cells: &'a Cells,
-    /// Texels of each window between its borders.
-    pub(super) usable: [Vec2; MAX_MAPS],
+    /// Texels of a window between its borders.
+    pub(super) usable: Vec2,
     /// Least width of texels, in eighths of an octave of a metre.
     pub(super) least: i32,
     pub(super) count: usize,
@@ -125,7 +125,7 @@ impl Planner<'_> {
             if steps != plan.steps[i] {
                 plan.steps[i] = steps;
                 let middle = plan.rects[i].min + plan.rects[i].size * 0.5;
-                plan.rects[i].size = self.size(i, plan.steps[i]);
+                plan.rects[i].size = self.size(plan.steps[i]);
                 plan.rects[i].min = middle - plan.rects[i].size * 0.5;
             }
         }
@@ -207,7 +207,7 @@ impl Planner<'_> {
         if !self.is_in_order(&other.steps) {
             return None;
         }
-        other.rects[window] = placement::best(self.cells, &served.left, self.size(window, other.steps[window]));
+        other.rects[window] = placement::best(self.cells, &served.left, self.size(other.steps[window]));
         let cost = self.cost_beyond(served.clone(), &other, window);
         Some((other, cost))
     }
@@ -229,7 +229,7 @@ impl Planner<'_> {
     fn place_all(&self, plan: &mut Plan) {
         let mut left = [1.0; MAX_CELLS];
         for i in 0..self.count - 1 {
-            plan.rects[i] = placement::best(self.cells, &left, self.size(i, plan.steps[i]));
+            plan.rects[i] = placement::best(self.cells, &left, self.size(plan.steps[i]));
             self.take(&plan.rects[i], &mut left);
         }
     }
@@ -296,8 +296,8 @@ impl Planner<'_> {
         }
     }
 
-    fn size(&self, window: usize, steps: i32) -> Vec2 {
-        self.usable[window] * grid::eighths(steps) as f32
+    fn size(&self, steps: i32) -> Vec2 {
+        self.usable * grid::eighths(steps) as f32
     }
 
     /// Least texels of a window, which are coarser than those of the ones before it.

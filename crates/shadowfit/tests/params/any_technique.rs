@@ -6,7 +6,7 @@ use proptest::sample::select;
 use shadowfit::glam::{UVec2, Vec3};
 use shadowfit::settings::{
     BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapChoice, MapFormat,
-    MapOverride, NeedSource, ReceiverSource, RectangleKind, SoftRadius, Softness, SplitScheme, Stabilise,
+    NeedSource, ReceiverSource, RectangleKind, SoftRadius, Softness, SplitScheme, Stabilise,
 };
 use shadowfit::{DepthConvention, Technique};
 
@@ -20,11 +20,6 @@ macro_rules! any {
 
 fn any_kind() -> impl Strategy<Value = FitKind> {
     any!(FitKind: XnaSample, FrustumAabb, Oriented, Sphere, Focused, Windows)
-}
-
-/// A fit that a single map may have.
-fn any_own_kind() -> impl Strategy<Value = FitKind> {
-    any_kind().prop_filter("windows are the maps of a whole technique", |kind| *kind != FitKind::Windows)
 }
 
 fn any_resolution() -> impl Strategy<Value = UVec2> {
@@ -122,11 +117,6 @@ fn any_softness() -> impl Strategy<Value = Softness> {
     })
 }
 
-fn any_overrides() -> impl Strategy<Value = [MapOverride; MAX_MAPS]> {
-    let own = (option::of(any_own_kind()), option::of(any_resolution()));
-    prop::array::uniform8(own.prop_map(|(kind, resolution)| MapOverride { kind, resolution }))
-}
-
 /// Any technique that the parameter table has a value for.
 pub(crate) fn any_technique() -> impl Strategy<Value = Technique> {
     let maps = (
@@ -137,7 +127,6 @@ pub(crate) fn any_technique() -> impl Strategy<Value = Technique> {
         (0.0_f32..=64.0, 0.0_f32..=1.0),
         any!(Stabilise: Off, Snap, Hysteresis),
         any_hold(),
-        any_overrides(),
     );
     let look_up = (
         any!(ReceiverSource: Objects, Clusters),
@@ -149,7 +138,7 @@ pub(crate) fn any_technique() -> impl Strategy<Value = Technique> {
     );
     (maps, look_up).prop_map(
         |(
-            (count, fit, splits, choice, (blend, overlap), stabilise, hold, overrides),
+            (count, fit, splits, choice, (blend, overlap), stabilise, hold),
             (receivers, filter, (softness, fade), bias, need, format),
         )| Technique {
             count,
@@ -160,7 +149,6 @@ pub(crate) fn any_technique() -> impl Strategy<Value = Technique> {
             overlap,
             stabilise,
             hold,
-            overrides,
             receivers,
             filter,
             softness,

@@ -2,9 +2,7 @@
 
 use shadowfit::Technique;
 use shadowfit::glam::{UVec2, Vec3};
-use shadowfit::settings::{
-    BiasSettings, FitSettings, HoldSettings, MAX_MAPS, MapOverride, SoftRadius, Softness, SplitScheme,
-};
+use shadowfit::settings::{BiasSettings, FitSettings, HoldSettings, MAX_MAPS, SoftRadius, Softness, SplitScheme};
 use shadowfit::tool::{CameraSettings, LightSettings, Settings, ViewSettings};
 
 /// Every field with its value. Without `..` and `_`, so that a new field or variant does not compile until it stands
@@ -54,7 +52,6 @@ fn leaves_of_technique(technique: &Technique, leaf: &mut Leaf) {
         overlap,
         stabilise,
         hold,
-        overrides,
         receivers,
         filter,
         softness,
@@ -86,11 +83,6 @@ fn leaves_of_technique(technique: &Technique, leaf: &mut Leaf) {
     leaf("hold.growth", growth);
     leaf("hold.waste", waste);
     leaf("hold.horizon", horizon);
-    for (map, MapOverride { kind, resolution }) in overrides.iter().enumerate() {
-        leaf(&format!("overrides[{map}].kind"), kind);
-        leaf(&format!("overrides[{map}].resolution.x"), &resolution.map(|own| own.x));
-        leaf(&format!("overrides[{map}].resolution.y"), &resolution.map(|own| own.y));
-    }
     leaf("receivers", receivers);
     leaf("filter", filter);
     leaves_of_softness(softness, leaf);

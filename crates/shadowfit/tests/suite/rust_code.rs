@@ -42,7 +42,6 @@ fn samples() -> [Sample; 6] {
 
 /// A technique without any default value.
 fn all_fields() -> Technique {
-    let own = |kind, side| MapOverride { kind: Some(kind), resolution: Some(UVec2::new(side, 2 * side)) };
     Technique {
         count: 3,
         fit: FitSettings {
@@ -65,16 +64,6 @@ fn all_fields() -> Technique {
         overlap: 0.1,
         stabilise: Stabilise::Snap,
         hold: HoldSettings { margin: 0.5, growth: 2.0, waste: 3.0, horizon: 9 },
-        overrides: [
-            own(FitKind::XnaSample, 256),
-            own(FitKind::FrustumAabb, 512),
-            own(FitKind::Oriented, 1024),
-            own(FitKind::Sphere, 2048),
-            own(FitKind::Focused, 300),
-            own(FitKind::Sphere, 4096),
-            own(FitKind::Sphere, 8192),
-            own(FitKind::Sphere, 1),
-        ],
         receivers: ReceiverSource::Objects,
         filter: FilterKind::Vogel8,
         softness: Softness { radius: SoftRadius::Metres(0.1), floor: 0.5, ceiling: 8.0 },
@@ -97,8 +86,6 @@ fn some_fields() -> Technique {
     technique.hold.horizon = 60;
     technique.bias.slope = 1.0;
     technique.softness.radius = SoftRadius::SunAngle(0.01);
-    technique.overrides[1].kind = Some(FitKind::Sphere);
-    technique.overrides[3].resolution = Some(UVec2::splat(1024));
     technique
 }
 

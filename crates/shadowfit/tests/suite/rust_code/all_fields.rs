@@ -34,40 +34,6 @@ let technique = Technique {
         waste: 3.0,
         horizon: 9,
     },
-    overrides: [
-        MapOverride {
-            kind: Some(FitKind::XnaSample),
-            resolution: Some(UVec2::new(256, 512)),
-        },
-        MapOverride {
-            kind: Some(FitKind::FrustumAabb),
-            resolution: Some(UVec2::new(512, 1024)),
-        },
-        MapOverride {
-            kind: Some(FitKind::Oriented),
-            resolution: Some(UVec2::new(1024, 2048)),
-        },
-        MapOverride {
-            kind: Some(FitKind::Sphere),
-            resolution: Some(UVec2::new(2048, 4096)),
-        },
-        MapOverride {
-            kind: Some(FitKind::Focused),
-            resolution: Some(UVec2::new(300, 600)),
-        },
-        MapOverride {
-            kind: Some(FitKind::Sphere),
-            resolution: Some(UVec2::new(4096, 8192)),
-        },
-        MapOverride {
-            kind: Some(FitKind::Sphere),
-            resolution: Some(UVec2::new(8192, 16384)),
-        },
-        MapOverride {
-            kind: Some(FitKind::Sphere),
-            resolution: Some(UVec2::new(1, 2)),
-        },
-    ],
     receivers: ReceiverSource::Objects,
     filter: FilterKind::Vogel8,
     softness: Softness {

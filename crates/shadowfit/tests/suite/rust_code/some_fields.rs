@@ -10,22 +10,6 @@ let technique = Technique {
         horizon: 60,
         ..HoldSettings::default()
     },
-    overrides: [
-        MapOverride::default(),
-        MapOverride {
-            kind: Some(FitKind::Sphere),
-            ..MapOverride::default()
-        },
-        MapOverride::default(),
-        MapOverride {
-            resolution: Some(UVec2::new(1024, 1024)),
-            ..MapOverride::default()
-        },
-        MapOverride::default(),
-        MapOverride::default(),
-        MapOverride::default(),
-        MapOverride::default(),
-    ],
     softness: Softness {
         radius: SoftRadius::SunAngle(0.01),
         ..Softness::default()
