@@ -4,7 +4,7 @@
 #[path = "kept_maps/town.rs"]
 mod town;
 
-use shadowfit::glam::{DVec3, UVec2, Vec3};
+use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::{FitKind, MapFormat};
 use shadowfit::{DepthConvention, Technique};
 use shadowfit_wgpu::{KeptMaps, UpdateSchedule};

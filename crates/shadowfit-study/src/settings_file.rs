@@ -54,7 +54,7 @@ pub fn settings_from_toml(table: &toml::Table, settings: &mut Settings) -> Resul
 
 #[cfg(test)]
 mod tests {
-    use shadowfit::settings::{FitKind, SplitScheme};
+    use shadowfit::settings::SplitScheme;
     use shadowfit::tool::{ErrorMarks, ViewMode};
 
     use super::*;
