@@ -2,8 +2,9 @@
 
 use glam::Vec2;
 
-use crate::settings::FilterKind;
-use crate::{FitError, LightFit, checks};
+use crate::base::{FitError, checks};
+use crate::fits::LightFit;
+use crate::technique::settings::FilterKind;
 
 /// Reach of a filter, in texels: which texel centres have a weight that is not zero.
 ///

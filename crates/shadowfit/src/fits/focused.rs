@@ -8,9 +8,10 @@
 
 use glam::Vec3;
 
-use crate::fits::fit_as;
-use crate::settings::{FitKind, FitSettings};
-use crate::{FitError, LightFit, ViewFrustum};
+use crate::base::FitError;
+use crate::fits::{LightFit, fit_as};
+use crate::technique::settings::{FitKind, FitSettings};
+use crate::view::ViewFrustum;
 
 /// Fits a frustum without known receivers, which gives the [oriented](super::oriented) fit;
 /// [`fit_scene`](crate::fits::fit_scene) takes boxes. `direction` is the light's direction of

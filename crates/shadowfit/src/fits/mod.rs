@@ -6,21 +6,34 @@
 
 pub mod aabb;
 pub mod focused;
+pub mod light_fit;
 pub mod oriented;
 pub mod sphere;
-pub mod windows;
 pub mod xna;
+
+pub(crate) mod covered;
+mod input;
+pub(crate) mod light_hull;
+mod matrix;
+pub(crate) mod near_plane;
+pub(crate) mod rectangle;
+mod rule;
+pub(crate) mod volume;
+
+pub use input::{FitInput, Workspace};
+pub use light_fit::LightFit;
+pub(crate) use rule::{Covers, Depth, FitRule, check_least_texel, default_border};
+pub use volume::Constraint;
+pub(crate) use volume::{Grid, ROUNDING, Volume};
 
 use glam::{DVec2, Vec3};
 
-use crate::axes::Light;
+use crate::base::{FitError, checks};
 use crate::content::Content;
-use crate::covered::Covered;
-use crate::rule::{Covers, FitRule, default_border};
-use crate::settings::{FitKind, FitSettings};
-use crate::view::Range;
-use crate::volume::Volume;
-use crate::{FitError, FitInput, LightFit, ViewFrustum, Workspace, checks, grid, near_plane};
+use crate::fits::covered::Covered;
+use crate::light::{Light, grid};
+use crate::technique::settings::{FitKind, FitSettings};
+use crate::view::{Range, ViewFrustum};
 
 /// Fits the light's orthographic view-projection to a camera frustum, by the rule that
 /// [`FitSettings::kind`] names.

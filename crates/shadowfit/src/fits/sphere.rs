@@ -24,10 +24,11 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::enclosing_sphere::{SymmetricFrustum, minimal};
-use crate::fits::fit_as;
-use crate::settings::{FitKind, FitSettings};
-use crate::{FitError, LightFit, ViewFrustum};
+use crate::base::FitError;
+use crate::base::sphere::{SymmetricFrustum, minimal};
+use crate::fits::{LightFit, fit_as};
+use crate::technique::settings::{FitKind, FitSettings};
+use crate::view::ViewFrustum;
 
 pub use crate::content::MAX_SPHERE_VIEWS as MAX_VIEWS;
 

@@ -24,9 +24,10 @@
 
 use glam::Vec3;
 
-use crate::fits::fit_as;
-use crate::settings::{FitKind, FitSettings};
-use crate::{FitError, LightFit, ViewFrustum};
+use crate::base::FitError;
+use crate::fits::{LightFit, fit_as};
+use crate::technique::settings::{FitKind, FitSettings};
+use crate::view::ViewFrustum;
 
 /// Fits as the XNA sample does; see the [module](self). `direction` is the light's direction of
 /// travel in world axes. The caster policy, the rectangle and the border of the settings are

@@ -44,10 +44,10 @@ use glam::{DVec3, Vec2, Vec3};
 
 use super::SpotFit;
 use super::plane::Plane;
+use crate::base::{DepthConvention, FitError, checks};
+use crate::bias::depth_storage::{DepthStorage, depth_step};
 use crate::bias::{HARDWARE_SNAP, PlaneBias, Reach};
-use crate::depth_storage::{DepthStorage, depth_step};
-use crate::settings::BiasSettings;
-use crate::{DepthConvention, FitError, checks};
+use crate::technique::settings::BiasSettings;
 
 /// Biases ready for a shader. Let n be the geometric normal, turned toward the light, α its angle to the light's axis
 /// (sin α = |n × axis|, which does not lose digits as √(1 - cos²) does), d the receiver's distance along the axis and

@@ -10,11 +10,12 @@ use super::SpotFit;
 use super::bias::{SpotBias, on_hardware};
 use super::matrix::COVER_TOLERANCE;
 use super::plane::Plane;
+use crate::base::{FitError, checks};
 use crate::bias::Reach;
-use crate::depth_storage::{DepthStorage, depth_step_at};
-use crate::diagnostics::{AcneMargin, Coverage, PixelsPerTexel};
-use crate::diagnostics::{EDGE_ON_COSINE, pixels_of_texels, screen_jacobian, tangents};
-use crate::{FitError, checks};
+use crate::bias::depth_storage::{DepthStorage, depth_step_at};
+use crate::diagnostics::{
+    AcneMargin, Coverage, EDGE_ON_COSINE, PixelsPerTexel, pixels_of_texels, screen_jacobian, tangents,
+};
 
 /// Screen pixels per shadow texel on the surface through `point` with the given normal.
 ///

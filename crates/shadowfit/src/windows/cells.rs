@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec2};
 
 use super::placement::Rect;
-use crate::need::{LEVELS, NeedGrid, NeedSpace, Plane, SIDE};
+use crate::demand::need::{LEVELS, NeedGrid, NeedSpace, Plane, SIDE};
 
 /// Most cells that are kept; those with the fewest points are left out where there are more.
 pub(super) const MAX_CELLS: usize = 1024;

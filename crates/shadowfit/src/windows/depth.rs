@@ -3,13 +3,12 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::axes::LightAxes;
+use crate::base::{Boxes, FitError};
 use crate::content::Content;
-use crate::need::Plane;
-use crate::rule::{Depth, FitRule};
+use crate::demand::need::Plane;
+use crate::fits::{Constraint, Depth, FitRule, ROUNDING};
+use crate::light::LightAxes;
 use crate::view::{Range, moved};
-use crate::volume::{Constraint, ROUNDING};
-use crate::{Boxes, FitError};
 
 /// Boxes as the light sees them, three elements each: least and greatest x and y, and z.
 pub(super) struct Shadows<'a> {

@@ -6,9 +6,9 @@
 use glam::{DVec2, DVec3};
 
 use super::placement::Rect;
-use crate::grid;
-use crate::need::Plane;
-use crate::rule::FitRule;
+use crate::demand::need::Plane;
+use crate::fits::FitRule;
+use crate::light::grid;
 
 /// A window, in absolute world coordinates.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -12,8 +12,8 @@ use glam::Vec2;
 use super::cells::{Cells, MAX_CELLS, PerCell};
 use super::cost_of;
 use super::placement::{self, Rect};
-use crate::grid;
-use crate::settings::MAX_MAPS;
+use crate::light::grid;
+use crate::technique::settings::MAX_MAPS;
 
 /// Texels and places of all windows, the finest first.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,0 +1,12 @@
+//! What everything else stands on: errors, checks of numbers, boxes, depth conventions, hulls and spheres.
+
+mod bounds;
+pub(crate) mod checks;
+mod depth;
+mod error;
+pub(crate) mod hull;
+pub(crate) mod sphere;
+
+pub use bounds::{Aabb, Boxes};
+pub use depth::DepthConvention;
+pub use error::FitError;
