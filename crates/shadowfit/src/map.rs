@@ -187,18 +187,3 @@ impl Deref for FittedMaps {
         &self.maps[..self.count.min(MAX_MAPS)]
     }
 }
-
-/// Keeps maps without a range from being chosen, by rounded depths too: those before all others end
-/// nowhere, those after them begin nowhere, and the last one with a range has no end.
-pub(crate) fn set_empty_ranges_apart(maps: &mut [FittedMap]) {
-    for map in maps.iter_mut().take_while(|map| map.near >= map.far) {
-        map.far = f32::MIN;
-    }
-    for map in maps.iter_mut().rev() {
-        if map.near < map.far {
-            map.far = f32::MAX;
-            break;
-        }
-        (map.near, map.covered_near) = (f32::MAX, f32::MAX);
-    }
-}

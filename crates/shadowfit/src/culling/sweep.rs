@@ -25,7 +25,8 @@ use crate::base::checks::MAX_LENGTH;
 use crate::base::hull::HullBuilder;
 use crate::base::{FitError, checks};
 use crate::bias::Reach;
-use crate::fits::{LightFit, ROUNDING};
+use crate::fits::LightFit;
+use crate::light::grid::ROUNDING;
 use crate::view::{Slice, View, ViewFrustum};
 
 /// Which receivers read a map, and how far around them.

@@ -9,8 +9,9 @@ use crate::base::{FitError, checks};
 use crate::content::Content;
 use crate::fits::light_hull::LightHull;
 use crate::fits::rectangle::Rectangle;
-use crate::fits::{Constraint, Covers, FitRule, ROUNDING, Volume, rectangle};
+use crate::fits::{Constraint, Covers, FitRule, Volume, rectangle};
 use crate::light::LightAxes;
+use crate::light::grid::ROUNDING;
 use crate::technique::settings::RectangleKind;
 use crate::view::Range;
 
@@ -69,7 +70,7 @@ impl<'a> Covered<'a> {
             return Err(FitError::EmptyFrustum { size: size.as_vec3() });
         }
         let margin = DVec3::splat(rule.margin);
-        let volume = volume(axes, (min - margin, max + margin), [Constraint::View; 6], false);
+        let volume = Volume::covering(axes, (min - margin, max + margin), [Constraint::View; 6], false);
         Ok(Self { volume, rounding: 0.0, shadowed: Shadowed::WholeMap })
     }
 
@@ -85,7 +86,7 @@ impl<'a> Covered<'a> {
         let corners = (centre - extent * 0.5, centre + extent * 0.5);
         let corners = if rule.serves_all { within_receivers(corners, content, &axes, pad) } else { corners };
         let corners = no_smaller(corners, rule.least_size);
-        let volume = volume(axes, corners, [Constraint::Sphere; 6], false);
+        let volume = Volume::covering(axes, corners, [Constraint::Sphere; 6], false);
         Ok(Self { volume, rounding, shadowed: Shadowed::WholeMap })
     }
 
@@ -115,7 +116,7 @@ impl<'a> Covered<'a> {
         let corners = (min.extend(z_min.x), max.extend(z_max.x));
         let set_by = constraints(&rectangle, hull, content, range);
         Self {
-            volume: volume(hull.axes.turned(rectangle.axis), corners, set_by, hull.is_empty),
+            volume: Volume::covering(hull.axes.turned(rectangle.axis), corners, set_by, hull.is_empty),
             rounding: rounding.max_element(),
             shadowed: Shadowed::Outline(hull.axes, hull.outline),
         }
@@ -137,12 +138,6 @@ fn within_receivers((min, max): (DVec3, DVec3), content: &Content, axes: &LightA
 fn no_smaller((min, max): (DVec3, DVec3), least: DVec2) -> (DVec3, DVec3) {
     let (low, high) = widened(min.truncate(), max.truncate(), least);
     (low.extend(min.z), high.extend(max.z))
-}
-
-/// The box as a volume, for the steps that follow.
-#[inline(always)]
-fn volume(axes: LightAxes, (min, max): (DVec3, DVec3), set_by: [Constraint; 6], is_empty: bool) -> Volume {
-    Volume { axes, min, max, light_z: 0.0, depth_range: 0.0, set_by, is_empty, grid: None }
 }
 
 /// Extents below this share of a map's longer side, or of its distance from the origin, are widened

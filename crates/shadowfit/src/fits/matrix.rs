@@ -83,16 +83,9 @@ impl Rows {
             -travel * (0.5 - self.offsets.z) / scale[2],
         );
         let (min, max) = (middle - half, middle + half);
-        Volume {
-            axes: LightAxes { x: axes[0].as_vec3(), y: axes[1].as_vec3(), z: (axes[2] * -travel).as_vec3() },
-            min,
-            max,
-            light_z: max.z,
-            depth_range: half.z * 2.0,
-            set_by: [Constraint::default(); 6],
-            is_empty: false,
-            grid: None,
-        }
+        let axes = LightAxes { x: axes[0].as_vec3(), y: axes[1].as_vec3(), z: (axes[2] * -travel).as_vec3() };
+        let volume = Volume::covering(axes, (min, max), [Constraint::default(); 6], false);
+        Volume { light_z: max.z, depth_range: half.z * 2.0, ..volume }
     }
 }
 

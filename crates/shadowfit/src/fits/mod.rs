@@ -12,6 +12,7 @@ pub mod sphere;
 pub mod xna;
 
 pub(crate) mod covered;
+mod frame;
 mod input;
 pub(crate) mod light_hull;
 mod matrix;
@@ -20,18 +21,19 @@ pub(crate) mod rectangle;
 mod rule;
 pub(crate) mod volume;
 
+pub(crate) use frame::{Frame, Place, PlacedMap, PlacedMaps};
 pub use input::{FitInput, Workspace};
 pub use light_fit::LightFit;
 pub(crate) use rule::{Covers, Depth, FitRule, check_least_texel, default_border};
 pub use volume::Constraint;
-pub(crate) use volume::{Grid, ROUNDING, Volume};
+pub(crate) use volume::Volume;
 
 use glam::{DVec2, Vec3};
 
 use crate::base::{FitError, checks};
 use crate::content::Content;
 use crate::fits::covered::Covered;
-use crate::light::{Light, grid};
+use crate::light::Light;
 use crate::technique::settings::{FitKind, FitSettings};
 use crate::view::{Range, ViewFrustum};
 
@@ -89,8 +91,8 @@ fn fit_whole(
     points: &mut [DVec2],
 ) -> Result<LightFit, FitError> {
     let range = Range { near: f32::MIN, far: distance };
-    let mut volume = fit_map(content, light, rule, range, Placement::Tight, points)?;
-    grid::stabilise_depth(&mut volume, content.origin, None, 1.0);
+    let mut volume = fit_map(content, light, rule, range, Snapping::Tight, points)?;
+    volume.stabilise_depth(content.origin, None, 1.0);
     LightFit::from_volume(content.origin, &volume, rule.resolution, rule.convention)
 }
 
@@ -116,10 +118,10 @@ pub(crate) fn prepare(input: &FitInput, settings: &FitSettings, border: f32) -> 
 
 /// Whether a fit is as tight as possible or lies on the world's grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Placement {
+pub(crate) enum Snapping {
     Tight,
-    /// With extents and position across the light [on the grid](grid::snap); the depth range is left
-    /// for [`grid::stabilise_depth`].
+    /// With extents and position across the light [on the grid](Volume::snap); the depth range is left
+    /// for [`Volume::stabilise_depth`].
     OnGrid,
 }
 
@@ -131,7 +133,7 @@ pub(crate) fn fit_map(
     light: &Light,
     rule: &FitRule,
     range: Range,
-    placement: Placement,
+    snapping: Snapping,
     points: &mut [DVec2],
 ) -> Result<Volume, FitError> {
     // 1. The light's axes, along which everything is measured from here on.
@@ -140,21 +142,14 @@ pub(crate) fn fit_map(
     //    of both, padded for rounding and by the margin.
     let Covered { mut volume, rounding, shadowed } = Covered::new(rule, content, axes, range, points)?;
     // 3. The map around it, with the border that the filter reads: on the grid or as tight as can be.
-    match (rule.covers, placement) {
+    match (rule.covers, snapping) {
         (Covers::ExactCorners, _) => {}
-        (Covers::Sphere, _) | (_, Placement::OnGrid) => _ = grid::snap(&mut volume, content.origin, rule),
-        (_, Placement::Tight) => add_border(&mut volume, rule),
+        (Covers::Sphere, _) | (_, Snapping::OnGrid) => _ = volume.snap(content.origin, rule),
+        (_, Snapping::Tight) => volume.add_border(rule),
     }
     // 4. The near plane, moved toward the light so that casters are kept, and the light in it.
     near_plane::place(&mut volume, rule, shadowed, rounding, content);
     Ok(volume)
-}
-
-/// Leaves the border's texels free on all sides.
-fn add_border(volume: &mut Volume, rule: &FitRule) {
-    let border = DVec2::splat(rule.border);
-    let free = (volume.max - volume.min).truncate() / (rule.resolution.as_dvec2() - border * 2.0) * border;
-    (volume.min, volume.max) = (volume.min - free.extend(0.0), volume.max + free.extend(0.0));
 }
 
 /// Fits a single frustum by the given kind; the kind in the settings is ignored.

@@ -16,7 +16,8 @@ use glam::{DVec2, DVec3, Vec2Swizzles};
 use crate::base::Boxes;
 use crate::content::Content;
 use crate::fits::covered::Shadowed;
-use crate::fits::{Constraint, Covers, Depth, FitRule, ROUNDING, Volume};
+use crate::fits::{Constraint, Covers, Depth, FitRule, Volume};
+use crate::light::grid::ROUNDING;
 use crate::light::{LightAxes, Outline, Scratch};
 use crate::view::moved;
 

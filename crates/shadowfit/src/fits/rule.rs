@@ -120,6 +120,12 @@ impl FitRule {
         size.max(texels * ((size / texels).max_element() / ratio))
     }
 
+    /// Texels that are left for the content of a map on the grid.
+    pub(crate) fn usable(&self) -> DVec2 {
+        // One texel is lost to the shift onto the grid.
+        self.resolution.as_dvec2() - (2.0 * self.border + 1.0)
+    }
+
     /// Whether a map of this rule can be kept from frame to frame: not the sample's.
     pub(crate) fn can_be_held(&self) -> bool {
         self.covers != Covers::ExactCorners

@@ -239,16 +239,9 @@ const MAX_TILE: u32 = 65_536;
 fn tile_fit(axes: &LightAxes, anchor: &GridAnchor, size: u32, map: &FittedMap) -> Result<LightFit, FitError> {
     let half = anchor.texel * (f64::from(size) * 0.5);
     let depth_range = anchor.depth[1] - anchor.depth[0];
-    let volume = Volume {
-        axes: *axes,
-        min: (-half).extend(-depth_range),
-        max: half.extend(0.0),
-        light_z: 0.0,
-        depth_range,
-        set_by: [Constraint::Held; 6],
-        is_empty: false,
-        grid: None,
-    };
+    let corners = ((-half).extend(-depth_range), half.extend(0.0));
+    let mut volume = Volume::covering(*axes, corners, [Constraint::Held; 6], false);
+    volume.light_at_near_plane();
     LightFit::from_volume(DVec3::ZERO, &volume, UVec2::splat(size), map.fit.depth)
 }
 

@@ -7,8 +7,17 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::fits::{FitRule, Grid, ROUNDING, Volume};
 use crate::light::LightAxes;
+
+/// What a box is enlarged by on each side, as a share of the greatest distance from the origin and
+/// the box's own extent together.
+///
+/// A shader's f32 matrix times an f32 position is off by ten times 2⁻²⁴ of the sum of its terms, as
+/// [`verify`](crate::verify) counts, the matrix's elements by two and the frustum's corners by two
+/// more. The terms of the position sum to no more than its distance d, the translation is no more
+/// than d and half the extent e, and an offset of the texture or clip coordinates adds another
+/// half: 14 d + 12 (d + e), which is less than 28 (d + e).
+pub(crate) const ROUNDING: f64 = 28.0 / 16_777_216.0;
 
 /// How far an extent may lie above a step and still be rounded down to it, as a share of the step:
 /// the noise of f32 corners must not choose between two steps.
@@ -77,61 +86,6 @@ pub(crate) fn anchor(axes: &LightAxes, origin: DVec3) -> DVec3 {
 /// content has moved by about one step.
 const DEPTH_STEPS: f64 = 16.0;
 
-/// Rounds a volume's extents across the light up and moves it to the world's grid, so that it still
-/// holds its content, with the border's texels around it.
-#[inline(always)]
-pub(crate) fn snap(volume: &mut Volume, origin: DVec3, rule: &FitRule) -> Grid {
-    let (grid, min, max) = snapped(&volume.axes, volume.min, volume.max, origin, rule);
-    (volume.min, volume.max, volume.grid) = (min, max, Some(grid));
-    grid
-}
-
-/// Texels that are left for the content of a map on the grid.
-pub(crate) fn usable(rule: &FitRule) -> DVec2 {
-    // One texel is lost to the shift onto the grid.
-    rule.resolution.as_dvec2() - (2.0 * rule.border + 1.0)
-}
-
-/// The same for the corners of a box: returns its position on the grid and its new corners.
-#[inline(always)]
-fn snapped(axes: &LightAxes, min: DVec3, max: DVec3, origin: DVec3, rule: &FitRule) -> (Grid, DVec3, DVec3) {
-    let anchor = anchor(axes, origin);
-    let resolution = rule.resolution.as_dvec2();
-    let border = rule.border;
-    let usable = usable(rule);
-    // A map that is larger than its content is rounded by its own extent.
-    let size = (max - min).truncate();
-    let pad = ROUNDING * (size * resolution / usable).max_element();
-    let size = size + 2.0 * pad;
-    let width = quantised(size.x);
-    let mut size = DVec2::new(width, if size.y == size.x { width } else { quantised(size.y) });
-    if rule.max_texel_ratio.is_some() {
-        let limited = rule.limited(size, usable);
-        let stepped = size.max(DVec2::new(quantised(limited.x), quantised(limited.y)));
-        // The step above the limit may be too long the other way. The limit itself follows from a step too.
-        size = if rule.limited(stepped, usable) == stepped { stepped } else { limited };
-    }
-    let texel = size / usable;
-    let line = (min.truncate() - pad + anchor.truncate()) / texel - border;
-    let first = DVec2::new(floor(line.x), floor(line.y));
-    let corner = first * texel - anchor.truncate();
-    let grid = Grid { first, texel, z: (min.z + anchor.z, max.z + anchor.z) };
-    (grid, corner.extend(min.z), (corner + texel * resolution).extend(max.z))
-}
-
-/// Puts the near and far plane of a volume on the grid to a range that holds them: the range held
-/// from an earlier frame as long as it still holds them and is at most `waste` times as long as a
-/// new one.
-#[inline(always)]
-pub(crate) fn stabilise_depth(volume: &mut Volume, origin: DVec3, held: Option<(f64, f64)>, waste: f64) {
-    let anchor = anchor(&volume.axes, origin).z;
-    if let Some(grid) = &mut volume.grid {
-        grid.z = stabilised_depth(held, (volume.min.z + anchor, volume.max.z + anchor), waste);
-        (volume.min.z, volume.max.z) = (grid.z.0 - anchor, grid.z.1 - anchor);
-        volume.light_at_near_plane();
-    }
-}
-
 /// A depth range that holds another, both along the light's z from the world's origin, in metres:
 /// the held one, or a new one in steps of its length. A new range that replaces a held one has spare
 /// room at both ends.
@@ -161,6 +115,28 @@ pub(crate) fn stabilised_depth(held: Option<(f64, f64)>, (low, high): (f64, f64)
 /// Free space on either side of a renewed depth range, as a share of its content: it costs about a
 /// third of a bit of depth.
 const ROOM: f64 = 0.125;
+
+/// Where a map lies on the world's grid. Lines are counted from the world's origin along the map's
+/// axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Grid {
+    /// Grid line of the map's least corner.
+    pub(crate) first: DVec2,
+    /// Size of a texel, in metres.
+    pub(crate) texel: DVec2,
+    /// Far and near plane along the light's z from the world's origin, in metres; in steps once
+    /// they have been [stabilised](stabilised_depth).
+    pub(crate) z: (f64, f64),
+}
+
+impl Grid {
+    /// Least and greatest corner of a map across the light, for the origin's [`anchor`].
+    #[inline(always)]
+    pub(crate) fn across(&self, anchor: DVec3, resolution: DVec2) -> (DVec2, DVec2) {
+        let corner = self.first * self.texel - anchor.truncate();
+        (corner, corner + self.texel * resolution)
+    }
+}
 
 /// Where a map lies on the world's texel grid.
 ///

@@ -17,19 +17,18 @@ use glam::{DVec2, DVec3};
 
 use crate::base::FitError;
 use crate::content::Content;
-use crate::fits;
 use crate::fits::light_hull::LightHull;
 use crate::fits::rectangle::Rectangle;
-use crate::fits::{Constraint, Covers, FitInput, FitRule, Grid, Placement, ROUNDING, Volume, Workspace, near_plane};
-use crate::light::{Light, LightAxes, grid};
+use crate::fits::{self, Constraint, Covers, FitInput, FitRule, Frame, Snapping, Volume, Workspace, near_plane};
+use crate::light::grid::{Grid, ROUNDING};
+use crate::light::{LightAxes, grid};
 use crate::slices::motion::Motion;
-use crate::technique::settings::HoldSettings;
 use crate::view::{Range, ViewFrustum};
 
 /// A map of an earlier frame, in absolute world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct HeldMap {
+pub(super) struct HeldMap {
     /// The light's axes, turned.
     axes: LightAxes,
     /// Size of a texel, in metres.
@@ -43,56 +42,31 @@ pub(crate) struct HeldMap {
     set_by: [Constraint; 6],
 }
 
-/// One frame's input to the holding of maps.
-pub(crate) struct Holder<'a, 'b> {
-    pub(crate) input: &'a FitInput<'b>,
-    pub(crate) content: &'a Content<'a>,
-    pub(crate) light: Light,
-    pub(crate) motion: Option<Motion>,
-    pub(crate) hold: HoldSettings,
-}
-
-/// A held map as a fit's decision, relative to an origin.
-pub(crate) fn volume(held: &HeldMap, origin: DVec3) -> Volume {
-    let anchor = grid::anchor(&held.axes, origin);
-    let min = held.first * held.texel - anchor.truncate();
-    let max = min + held.texel * held.resolution;
-    let mut volume = Volume {
-        axes: held.axes,
-        min: min.extend(held.z.0 - anchor.z),
-        max: max.extend(held.z.1 - anchor.z),
-        light_z: 0.0,
-        depth_range: 0.0,
-        set_by: held.set_by,
-        is_empty: held.is_empty,
-        grid: Some(Grid { first: held.first, texel: held.texel, z: held.z }),
-    };
-    volume.light_at_near_plane();
-    volume
+/// Keeps the maps of a frame.
+pub(super) struct Holder<'a, 'b> {
+    pub(super) frame: &'a Frame<'a, 'b>,
+    /// How the camera moved since the frame before.
+    pub(super) motion: Option<Motion>,
 }
 
 impl Holder<'_, '_> {
     /// The map of this frame: the held one if it still covers what it must.
-    pub(crate) fn hold(
-        &self,
-        held: Option<HeldMap>,
-        rule: &FitRule,
-        slice: Range,
-        points: &mut [DVec2],
-    ) -> Result<HeldMap, FitError> {
+    pub(super) fn hold(&self, held: Option<HeldMap>, slice: Range, points: &mut [DVec2]) -> Result<HeldMap, FitError> {
+        let rule = self.frame.rule;
         // The border and the near plane depend on the texels of the map that is kept or made.
         let plain = trial(&rule.without_room());
-        let fresh =
-            |points: &mut [DVec2]| fits::fit_map(self.content, &self.light, &plain, slice, Placement::Tight, points);
-        let is_of_light = |held: &HeldMap| held.is_of(&self.light.axes(rule.roll), rule);
+        let fresh = |points: &mut [DVec2]| {
+            fits::fit_map(self.frame.content, &self.frame.light, &plain, slice, Snapping::Tight, points)
+        };
+        let is_of_light = |held: &HeldMap| held.is_of(&self.frame.light.axes(rule.roll), rule);
         let Some(held) = held.filter(is_of_light) else { return self.make(&fresh(points)?, rule, slice, points) };
         let needed = self.needed(&held, rule, slice, points)?;
         let Some(kept) = self.keep(&held, &needed, rule) else {
             return self.make(&fresh(points)?, rule, slice, points);
         };
         // No rectangle is smaller than the outline in it, so most maps need not be compared with a new one.
-        let waste = f64::from(self.hold.waste);
-        let held_size = held.texel * grid::usable(rule);
+        let waste = f64::from(self.frame.technique.hold.waste);
+        let held_size = held.texel * rule.usable();
         let held_area = held_size.x * held_size.y;
         if held_area <= needed.area * (1.0 - SAME_AREA) * waste * waste {
             return Ok(kept);
@@ -110,23 +84,23 @@ impl Holder<'_, '_> {
         slice: Range,
         points: &mut [DVec2],
     ) -> Result<Volume, FitError> {
-        let mut views = [self.input.views[0]; MAX_VIEWS];
-        let now = self.input.views.len();
+        let mut views = [self.frame.input.views[0]; MAX_VIEWS];
+        let now = self.frame.input.views.len();
         if now + ahead.len() > MAX_VIEWS {
             let (value, max) = (now as f64, (MAX_VIEWS - 1) as f64);
             return Err(FitError::OutOfRange { input: "the number of views of held maps", value, min: 1.0, max });
         }
-        views[..now].copy_from_slice(self.input.views);
+        views[..now].copy_from_slice(self.frame.input.views);
         views[now..now + ahead.len()].copy_from_slice(ahead);
-        let input = FitInput { views: &views[..now + ahead.len()], ..*self.input };
+        let input = FitInput { views: &views[..now + ahead.len()], ..*self.frame.input };
         let mut workspace = Workspace::new(points);
         let (content, points) = Content::new(&input, &mut workspace)?;
-        fits::fit_map(&content, &self.light, rule, slice, Placement::Tight, points)
+        fits::fit_map(&content, &self.frame.light, rule, slice, Snapping::Tight, points)
     }
 
     /// The held map moved by whole texels, if what must be covered fits into it.
     fn keep(&self, held: &HeldMap, needed: &Needed, rule: &FitRule) -> Option<HeldMap> {
-        let anchor = grid::anchor(&held.axes, self.input.views[0].origin);
+        let anchor = grid::anchor(&held.axes, self.frame.input.views[0].origin);
         let low = floor((needed.across.min + anchor.truncate()) / held.texel);
         let high = -floor(-((needed.across.max + anchor.truncate()) / held.texel)) - held.resolution;
         if high.x > low.x || high.y > low.y {
@@ -134,7 +108,7 @@ impl Holder<'_, '_> {
         }
         let mut kept = *held;
         kept.first = held.first.min(low).max(high);
-        let waste = f64::from(self.hold.waste);
+        let waste = f64::from(self.frame.technique.hold.waste);
         let (z, _) = self.depths(&kept, needed, rule);
         kept.z = grid::stabilised_depth(Some(held.z), (z.0 + anchor.z, z.1 + anchor.z), waste);
         kept.is_empty = needed.is_empty;
@@ -144,7 +118,7 @@ impl Holder<'_, '_> {
 
     /// What must be covered and where the near plane must be, along the held axes.
     fn needed(&self, held: &HeldMap, rule: &FitRule, slice: Range, points: &mut [DVec2]) -> Result<Needed, FitError> {
-        let hull = LightHull::of(rule.covers, self.content, held.axes, slice, points)?;
+        let hull = LightHull::of(rule.covers, self.frame.content, held.axes, slice, points)?;
         let extent = (held.texel * held.resolution).max_element();
         let rounding = (hull.farthest + extent) * ROUNDING;
         let pad = rounding + rule.margin;
@@ -156,7 +130,7 @@ impl Holder<'_, '_> {
         let mut z = (hull.z.0 - pad, hull.z.1 + pad);
         let mut near_set_by = None;
         if !rule.serves_all {
-            let near = near_plane::find(z.1, &held.axes, hull.outline, self.content, rule.depth, reach);
+            let near = near_plane::find(z.1, &held.axes, hull.outline, self.frame.content, rule.depth, reach);
             (z.1, near_set_by) = (near.z, near.set_by);
         }
         let (area, is_empty) = (area(hull.outline), hull.is_empty);
@@ -168,20 +142,20 @@ impl Holder<'_, '_> {
         if !rule.serves_all {
             return (needed.z, needed.near_set_by);
         }
-        let volume = volume(map, self.content.origin);
+        let volume = map.volume(self.frame.content.origin);
         let across = (volume.min.truncate(), volume.max.truncate());
-        let near = near_plane::find_over(needed.z.1, &map.axes, across, self.content, rule.depth, needed.reach);
-        let far = near_plane::find_far(needed.z.0, &map.axes, across, self.content);
+        let near = near_plane::find_over(needed.z.1, &map.axes, across, self.frame.content, rule.depth, needed.reach);
+        let far = near_plane::find_far(needed.z.0, &map.axes, across, self.frame.content);
         ((far, near.z), near.set_by)
     }
 
     /// What will be covered some frames on, as many as the settings' growth allows; `None` where nothing moves, or
     /// for lack of storage or views: a map without room is still valid for this frame.
     fn look_ahead(&self, fresh: &Volume, rule: &FitRule, slice: Range, points: &mut [DVec2]) -> Option<Volume> {
-        let view = &self.input.views[0];
+        let view = &self.frame.input.views[0];
         let motion = self.motion.filter(|motion| !motion.is_still(view))?;
         let plain = trial(&FitRule { border: 0.0, ..*rule });
-        let (old, growth) = (fresh.max - fresh.min, f64::from(self.hold.growth));
+        let (old, growth) = (fresh.max - fresh.min, f64::from(self.frame.technique.hold.growth));
         let mut within_growth = |frames: u32| {
             let ahead = [motion.after(view, frames / 2), motion.after(view, frames)];
             let larger = self.fit_ahead(&ahead, &plain, slice, points).ok()?;
@@ -189,10 +163,11 @@ impl Holder<'_, '_> {
             Some(larger).filter(|_| size.x * size.y <= old.x * old.y * growth * growth)
         };
         if !rule.serves_all {
-            return steps_ahead(self.hold.horizon).find_map(within_growth);
+            return steps_ahead(self.frame.technique.hold.horizon).find_map(within_growth);
         }
         // The more frames the larger: the greatest of a few numbers is found by halves.
-        let steps = || core::iter::successors(Some(self.hold.horizon), |n| Some(n / 2)).take_while(|n| *n > 0);
+        let steps =
+            || core::iter::successors(Some(self.frame.technique.hold.horizon), |n| Some(n / 2)).take_while(|n| *n > 0);
         let (mut low, mut high, mut found) = (0, steps().count(), None);
         while low < high {
             let middle = usize::midpoint(low, high);
@@ -207,11 +182,11 @@ impl Holder<'_, '_> {
     /// A new map with room for the motion to come.
     fn make(&self, fresh: &Volume, rule: &FitRule, slice: Range, points: &mut [DVec2]) -> Result<HeldMap, FitError> {
         let mut volume = self.look_ahead(fresh, rule, slice, points).unwrap_or(*fresh);
-        let room = (volume.max - volume.min).truncate() * (0.5 * f64::from(self.hold.margin));
+        let room = (volume.max - volume.min).truncate() * (0.5 * f64::from(self.frame.technique.hold.margin));
         volume.min -= room.extend(0.0);
         volume.max += room.extend(0.0);
-        let origin = self.input.views[0].origin;
-        let grid = grid::snap(&mut volume, origin, rule);
+        let origin = self.frame.input.views[0].origin;
+        let grid = volume.snap(origin, rule);
         let mut map = HeldMap::new(&volume, grid, rule, fresh);
         let needed = self.needed(&map, rule, slice, points)?;
         let anchor = grid::anchor(&map.axes, origin).z;
@@ -219,7 +194,7 @@ impl Holder<'_, '_> {
         let now = (z.0 + anchor, z.1 + anchor);
         let ahead = grid::stabilised_depth(None, (grid.z.0.min(now.0), grid.z.1.max(now.1)), 1.0);
         // A depth range that the next frame would give up at once is not used.
-        map.z = grid::stabilised_depth(Some(ahead), now, f64::from(self.hold.waste));
+        map.z = grid::stabilised_depth(Some(ahead), now, f64::from(self.frame.technique.hold.waste));
         map.set_by[5] = near_set_by.unwrap_or(map.set_by[5]);
         Ok(map)
     }
@@ -266,6 +241,12 @@ impl HeldMap {
             is_empty: fresh.is_empty,
             set_by: fresh.set_by,
         }
+    }
+
+    /// The box that it stores, relative to an origin.
+    pub(super) fn volume(&self, origin: DVec3) -> Volume {
+        let grid = Grid { first: self.first, texel: self.texel, z: self.z };
+        Volume::on_grid(self.axes, grid, self.resolution, origin, (self.set_by, self.is_empty))
     }
 
     /// Whether the map is of the same light and resolution.

@@ -1,298 +1,191 @@
-//! Where one map ends and the next begins.
+//! Slices of the view: each map holds a range of view depths of its own.
 //!
-//! Each map gets a range of view depths of its own. Fixed schemes place the splits by depth alone;
-//! content-aware schemes place them where the most visible pixels gain.
+//! ```text
+//!        ┌─────────────────╱ │   a map for each slice: all that the views see
+//!   eye  │  1  ╱  2   ╱    3 │   between two depths, or the receivers in it
+//!     ●──┼────┼──────┼───────┤
+//!        │  1  ╲  2   ╲    3 │
+//!        └─────────────────╲ │
+//! ```
 
 mod bins;
 mod extents;
-pub(crate) mod hold;
-pub(crate) mod motion;
+mod hold;
+mod motion;
 mod optimise;
 mod seen;
 mod slabs;
+mod splits;
 pub(crate) mod visible;
 
-use crate::base::{FitError, checks};
-use crate::content::Content;
-use crate::fits::{Covers, FitInput, FitRule, ROUNDING};
-use crate::light::Light;
-use crate::technique::Technique;
-use crate::technique::settings::{MAX_MAPS, SplitScheme, Stabilise};
-use crate::view::Range;
+use glam::{DVec2, Vec3};
 
-use bins::{BINS, Bins, Weights, even};
-use extents::{Maps, Sizes, slice_bin};
-use optimise::{BinSplits, least_quantile, quantile};
-use visible::RayCount;
+use crate::base::FitError;
+use crate::fits::{self, Frame, PlacedMap, PlacedMaps, Snapping, Volume};
+use crate::technique::settings::{MAX_MAPS, Stabilise};
+use crate::view::{Range, ViewFrustum};
 
-pub(crate) use bins::Splits;
+use bins::Splits;
+use hold::{HeldMap, Holder};
+use motion::Motion;
+use splits::{Chooser, HeldSplits};
 
-/// The splits of a fixed scheme over a range of view depths: `count` maps.
-///
-/// Uniform and logarithmic splits are the two ends between which the practical scheme of parallel-split
-/// shadow maps lies (F. Zhang, H. Sun, L. Xu, L. K. Lun, "Parallel-split shadow maps for large-scale
-/// virtual environments", 2006): `λ log + (1 - λ) uniform`.
-pub(crate) fn practical(near: f64, far: f64, count: usize, lambda: f64) -> Splits {
-    let mut splits = [far as f32; MAX_MAPS + 1];
-    for (i, split) in splits.iter_mut().enumerate().take(count) {
-        let share = i as f64 / count as f64;
-        let uniform = near + (far - near) * share;
-        let logarithmic = near * libm::exp2(libm::log2(far / near) * share);
-        *split = (lambda * logarithmic + (1.0 - lambda) * uniform) as f32;
-    }
-    splits
+/// What slices begin with in the next frame.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct HeldSlices {
+    splits: HeldSplits,
+    maps: [Option<HeldMap>; MAX_MAPS],
+    depths: [Option<HeldDepth>; MAX_MAPS],
 }
 
-/// Everything that the choice of splits depends on.
-pub(crate) struct Chooser<'a, 'b> {
-    pub(crate) content: &'a Content<'b>,
-    pub(crate) light: Light,
-    /// The rule of most of its maps.
-    pub(crate) rule: &'a FitRule,
-    pub(crate) technique: &'a Technique,
-    pub(crate) input: &'a FitInput<'b>,
-    /// The view depths that are shadowed at all.
-    pub(crate) range: Range,
+/// Depth range of an earlier frame's map that is not held itself.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct HeldDepth {
+    /// Direction toward the light.
+    to_light: Vec3,
+    /// Far and near plane along it from the world's origin, in metres.
+    z: (f64, f64),
 }
 
-impl Chooser<'_, '_> {
-    /// The depths over which the maps are distributed: those of the receivers in view, if known.
-    pub(crate) fn spread(&self) -> (f64, f64) {
-        let (near, far) = (f64::from(self.range.near), f64::from(self.range.far));
-        let (near, far) = match self.content.depth_range() {
-            Some((first, last)) => (first.max(near), last.min(far)),
-            None => (near, far),
-        };
-        // Logarithms need a positive near end; no practical view has a greater depth ratio than
-        // this.
-        let near = near.max(far * NEAREST);
-        if near < far { (near, far) } else { (far * 0.5, far) }
-    }
+/// Places the maps of a frame, each around its slice of the view.
+pub(crate) fn place(
+    frame: &Frame,
+    before: Option<&HeldSlices>,
+    points: &mut [DVec2],
+) -> Result<(PlacedMaps, HeldSlices), FitError> {
+    // 1. Where one slice ends and the next begins.
+    let splits = Chooser { frame }.held_or_chosen(before.map(|before| before.splits))?;
+    // 2. The volumes of their maps: new ones, or those of the frame before while they serve.
+    let mut slices = Slices { frame, splits: splits.splits, points };
+    let mut held = HeldSlices { splits, maps: [None; MAX_MAPS], depths: [None; MAX_MAPS] };
+    let mut maps = if frame.technique.stabilise == Stabilise::Hysteresis {
+        slices.hold(before.map(|before| &before.maps), &mut held.maps)?
+    } else {
+        slices.fit(before.map(|before| &before.depths), &mut held.depths)?
+    };
+    // 3. Depths from which no point chooses a map that has none.
+    set_empty_ranges_apart(&mut maps[..frame.technique.count as usize]);
+    Ok((maps, held))
+}
 
-    /// The same within the bounds of what is visible, if they are known and the scheme is not
-    /// content-aware itself.
-    pub(crate) fn bounded(&self, (near, far): (f64, f64)) -> (f64, f64) {
-        let is_fixed = !matches!(self.technique.splits, SplitScheme::FromBoxes | SplitScheme::FromHistogram);
-        let Some(bounds) = self.input.depth_bounds.filter(|_| is_fixed) else { return (near, far) };
-        let within = |bound: f32| f64::from(bound).max(near).min(far);
-        (within(bounds.near), within(bounds.far))
-    }
+/// The fewest slices that are enough; see [`fewest_maps`](crate::map_fitter::fewest_maps).
+pub(crate) fn fewest(frame: &Frame, waste: f64) -> u32 {
+    Chooser { frame }.fewest(waste)
+}
 
-    /// View depth to which the last map reaches: that of what is shadowed where fits clip the
-    /// receivers to their slice, else that of the receivers. If it is to be held, no turn of the
-    /// camera may exceed it, and there is room for some movement.
-    fn end(&self, spread: (f64, f64)) -> f64 {
-        let far = f64::from(self.range.far);
-        if self.rule.covers.whole_distance() {
-            return far;
+/// The slices of a frame.
+struct Slices<'a, 'b> {
+    frame: &'a Frame<'a, 'b>,
+    splits: Splits,
+    points: &'a mut [DVec2],
+}
+
+impl Slices<'_, '_> {
+    /// All maps of this frame alone, with depth ranges of the last one while they serve.
+    fn fit(
+        &mut self,
+        before: Option<&[Option<HeldDepth>; MAX_MAPS]>,
+        held: &mut [Option<HeldDepth>; MAX_MAPS],
+    ) -> Result<PlacedMaps, FitError> {
+        let Frame { technique, content, .. } = self.frame;
+        let snapping = if technique.stabilise == Stabilise::Snap { Snapping::OnGrid } else { Snapping::Tight };
+        let mut maps = [None; MAX_MAPS];
+        for (i, map) in maps.iter_mut().enumerate().take(technique.count as usize) {
+            let volume = self.fitted(i, snapping)?;
+            *map = Some(self.placed(i, volume));
         }
-        let is_held = self.technique.stabilise != Stabilise::Off;
-        let end = if is_held { self.content.farthest().map(|far| far * (1.0 + FAR_ROOM)) } else { None };
-        end.unwrap_or(spread.1).min(far)
-    }
-
-    /// The splits by the technique's scheme over the given depths.
-    pub(crate) fn choose(&self, spread: (f64, f64)) -> Result<Splits, FitError> {
-        let count = self.technique.count as usize;
-        let (near, far) = self.bounded(spread);
-        let splits = match self.technique.splits {
-            SplitScheme::Uniform => practical(near, far, count, 0.0),
-            SplitScheme::Logarithmic => practical(near, far, count, 1.0),
-            SplitScheme::Practical(lambda) => {
-                let lambda = checks::within("the splits' lambda", f64::from(lambda), 0.0, 1.0)?;
-                practical(near, far, count, lambda)
-            }
-            SplitScheme::Manual(splits) => manual(&splits, count, self.range)?,
-            SplitScheme::FromBoxes | SplitScheme::FromHistogram => return Ok(self.by_content(spread)),
-        };
-        Ok(self.whole(splits, spread))
-    }
-
-    /// The same splits, ascending, from the near end of what is shadowed to the far end of the
-    /// receivers; where those are clipped to the view anyway, to the far end of what is shadowed.
-    fn whole(&self, mut splits: Splits, spread: (f64, f64)) -> Splits {
-        let count = self.technique.count as usize;
-        let end = self.end(spread) as f32;
-        splits[0] = self.range.near;
-        for i in 1..=MAX_MAPS {
-            splits[i] = if i >= count { end } else { splits[i].max(splits[i - 1]).min(end) };
+        for (i, PlacedMap { volume, .. }) in maps.iter_mut().flatten().enumerate() {
+            let to_light = volume.axes.z;
+            let last = before.and_then(|before| before[i]).filter(|last| last.to_light == to_light);
+            volume.stabilise_depth(content.origin, last.map(|last| last.z), f64::from(technique.hold.waste));
+            held[i] = volume.grid.map(|grid| HeldDepth { to_light, z: grid.z });
         }
-        splits
+        Ok(maps)
     }
 
-    /// The best splits for what is visible.
-    fn by_content(&self, spread: (f64, f64)) -> Splits {
-        let bins = self.bins(spread);
-        let (weights, sizes) = (self.weights(&bins), self.sizes(&bins));
-        let BinSplits { bins: chosen, .. } = least_quantile(&bins, &weights, &sizes, self.technique.count as usize);
-        let mut splits = [0.0; MAX_MAPS + 1];
-        let (beyond, mut next) = (self.read_beyond(&bins), 0);
-        for (split, bin) in splits.iter_mut().zip(chosen) {
-            let bin = slice_bin(&bins, bin, beyond).max(next);
-            *split = bins.start(bin) as f32;
-            // Each map has a slice of its own.
-            next = bin + 1;
+    /// All maps, held ones while they serve.
+    fn hold(
+        &mut self,
+        before: Option<&[Option<HeldMap>; MAX_MAPS]>,
+        held: &mut [Option<HeldMap>; MAX_MAPS],
+    ) -> Result<PlacedMaps, FitError> {
+        let frame = self.frame;
+        let motion = frame.last_view.and_then(|last| Motion::between(last, &frame.input.views[0]));
+        let holder = Holder { frame, motion };
+        let mut maps = [None; MAX_MAPS];
+        for (i, map) in maps.iter_mut().enumerate().take(frame.technique.count as usize) {
+            let volume = if frame.rule.can_be_held() {
+                let now = holder.hold(before.and_then(|before| before[i]), self.slice(i), self.points)?;
+                held[i] = Some(now);
+                now.volume(frame.content.origin)
+            } else {
+                self.fitted(i, Snapping::Tight)?
+            };
+            *map = Some(self.placed(i, volume));
         }
-        self.whole(splits, spread)
+        Ok(maps)
     }
 
-    /// Splits of an earlier frame, in which shadows ended at `last_far`, if they hold all of this one's
-    /// depths and not far more. The rounding of a camera's matrix changes nothing but their far end.
-    pub(crate) fn kept(&self, splits: &Splits, last_far: f32, now: (f64, f64)) -> Option<Splits> {
-        let count = self.technique.count as usize;
-        let (end, far) = (f64::from(splits[count]), f64::from(self.range.far));
-        let is_wasteful = end > self.end(now) * f64::from(self.technique.hold.waste);
-        let needed = now.1.min(far);
-        let is_same_far = (far - f64::from(last_far)).abs() <= far.abs() * FAR_ROUNDING;
-        let reaches = end >= needed || (is_same_far && end >= f64::from(last_far));
-        if is_wasteful || !reaches || !self.is_same_near(splits[0]) {
-            return None;
-        }
-        let mut kept = *splits;
-        for end in &mut kept[count..] {
-            *end = end.max(needed as f32);
-        }
-        Some(kept)
+    /// The volume around a slice, of this frame alone.
+    #[inline(always)]
+    fn fitted(&mut self, map: usize, snapping: Snapping) -> Result<Volume, FitError> {
+        let Frame { content, light, rule, .. } = self.frame;
+        fits::fit_map(content, light, rule, self.slice(map), snapping, self.points)
     }
 
-    /// Whether the near end of what is shadowed differs from that of an earlier frame by rounding
-    /// alone.
-    fn is_same_near(&self, held: f32) -> bool {
-        let Range { near, far } = self.range;
-        let distances = checks::length(self.content.origin) + f64::from(far.abs());
-        let rounding = f64::from(held.abs()) * NEAR_ROUNDING + distances * ROUNDING;
-        (f64::from(near) - f64::from(held)).abs() <= rounding
+    /// A map with the depths that choose it.
+    fn placed(&self, map: usize, mut volume: Volume) -> PlacedMap {
+        let slice = self.slice_range(map);
+        let is_empty = is_empty(self.frame.content.views, slice);
+        volume.is_empty |= is_empty;
+        let (near, far) = (self.splits[map], self.splits[map + 1]);
+        PlacedMap { volume, near, far, covered_near: if is_empty { near } else { slice.near } }
     }
 
-    /// Whether splits of an earlier frame are still good enough for this one, compared with the
-    /// best ones.
-    pub(crate) fn serves(&self, splits: &Splits, held: (f64, f64), now: (f64, f64)) -> bool {
-        let count = self.technique.count as usize;
-        let waste = f64::from(self.technique.hold.waste);
-        if !matches!(self.technique.splits, SplitScheme::FromBoxes | SplitScheme::FromHistogram) {
-            let is_near = |now: f64, held: f64| now >= held / waste && now <= held * waste;
-            let bounded = self.bounded(now);
-            // Without bounds the far end is what the splits have to reach.
-            return is_near(bounded.0, held.0) && (bounded == now || is_near(bounded.1, held.1));
-        }
-        let bins = self.bins(now);
-        let (weights, sizes) = (self.weights(&bins), self.sizes(&bins));
-        let best = least_quantile(&bins, &weights, &sizes, count);
-        let mut chosen = [bins.count; MAX_MAPS + 1];
-        for (bin, split) in chosen.iter_mut().zip(splits).take(count) {
-            *bin = bins.nearest(f64::from(*split));
-            *bin = if *bin == 0 { 0 } else { (*bin + self.read_beyond(&bins)).min(bins.count) };
-        }
-        quantile(&bins, &weights, &sizes, &chosen[..=count]) <= best.quality + libm::log2(waste)
+    /// The view depths that a map covers; those of all maps where it has none.
+    fn slice(&self, map: usize) -> Range {
+        let slice = self.slice_range(map);
+        if is_empty(self.frame.content.views, slice) { self.frame.range } else { widened(slice) }
     }
 
-    /// The fewest maps whose best splits reach `waste` times the bound of the full count.
-    pub(crate) fn fewest(&self, waste: f64) -> u32 {
-        let bins = self.bins(self.spread());
-        optimise::fewest(&bins, &self.weights(&bins), &self.sizes(&bins), self.technique.count as usize, waste) as u32
-    }
-
-    /// How large the map of any run of bins would be.
-    fn sizes(&self, bins: &Bins) -> Sizes {
-        let maps = Maps {
-            content: self.content,
-            axes: self.light.axes(self.rule.roll),
-            rule: self.rule,
-            is_snapped: self.technique.stabilise == Stabilise::Snap,
-            near: f64::from(self.range.near),
-            end: self.end((bins.near, bins.far)),
-        };
-        let sizes = maps.sizes(bins);
-        match self.read_beyond(bins) {
-            0 => sizes,
-            beyond => sizes.by_reading(bins, beyond),
-        }
-    }
-
-    /// The bins of a range of view depths.
-    fn bins(&self, (near, far): (f64, f64)) -> Bins {
-        Bins::new(near, far, if self.rule.serves_all { SHARED_BINS } else { BINS })
-    }
-
-    /// Number of bins by which maps are read beyond their slices.
-    fn read_beyond(&self, bins: &Bins) -> usize {
-        let octaves = match self.rule.covers {
-            _ if !self.rule.serves_all => return 0,
-            Covers::Sphere => SPHERE_BEYOND,
-            _ => RECTANGLE_BEYOND,
-        };
-        libm::round(octaves / bins.log_step) as usize
-    }
-
-    fn weights(&self, bins: &Bins) -> Weights {
-        let rays = if self.rule.serves_all { RayCount::COARSE } else { RayCount::FINE };
-        let weights = match (self.technique.splits, &self.input.histogram) {
-            (SplitScheme::FromHistogram, Some(histogram)) if !histogram.is_empty() => {
-                let (seen, guess) = (seen::weights(histogram, bins), visible::weights(self.content, bins, rays));
-                let share = if self.content.receivers.is_some() { GUESS } else { BLIND_GUESS };
-                mixed(&seen, &guess, share)
-            }
-            _ => visible::weights(self.content, bins, rays),
-        };
-        if self.rule.serves_all && self.rule.covers == Covers::Sphere {
-            return mixed(&weights, &even(bins), UNSEEN);
-        }
-        weights
+    /// The view depths that a map covers.
+    fn slice_range(&self, map: usize) -> Range {
+        let (splits, overlap) = (&self.splits, self.frame.technique.overlap);
+        let near =
+            if map == 0 { self.frame.range.near } else { splits[map] - overlap * (splits[map] - splits[map - 1]) };
+        Range { near, far: splits[map + 1] }
     }
 }
 
-/// Two weights in one, with a share of the second.
-fn mixed(one: &Weights, other: &Weights, share: f64) -> Weights {
-    core::array::from_fn(|i| core::array::from_fn(|c| one[i][c] * (1.0 - share) + other[i][c] * share))
+/// Whether no view has a part between two view depths, so that a map would have nothing to hold.
+fn is_empty(views: &[ViewFrustum], slice: Range) -> bool {
+    views.iter().all(|view| slice.near.max(view.near) >= slice.far.min(view.far))
 }
 
-/// Octaves of view depth by which maps that are read by coverage are read beyond their slices, for spheres and for
-/// rectangles: what they hold there need not come from coarser ones. Chosen on fifteen scenes; none and 0.9
-/// make the texels of stable maps coarser by a tenth in the mean.
-const SPHERE_BEYOND: f64 = 0.35;
-const RECTANGLE_BEYOND: f64 = 0.1;
+/// The view depths that a map is fitted to, widened: by a shader's rounded view depth a point may
+/// read the map next to its own.
+fn widened(slice: Range) -> Range {
+    let rounding = slice.far.abs() * DEPTH_ROUNDING;
+    Range { near: slice.near - rounding, far: slice.far + rounding }
+}
 
-/// Weight of all depths alike beside what is seen from where a path begins, for stable maps, whose splits are held
-/// for long. Chosen with the octaves above.
-const UNSEEN: f64 = 0.1;
+/// Rounding of a view depth, as a share of it: nine times 2⁻²⁴ of a point's distance, which in the
+/// corner of a wide view is up to seven times its depth.
+const DEPTH_ROUNDING: f32 = 64.0 / 16_777_216.0;
 
-/// Bins for maps that are read by coverage. Where exactly they are split matters less, since they are read
-/// beyond their splits.
-const SHARED_BINS: usize = 32;
-
-/// Weight of the estimate from boxes beside a histogram, for what came into view since and what few
-/// samples missed. Chosen on real scenes, where 0 and 0.6 are both worse by 2%.
-const GUESS: f64 = 0.3;
-
-/// The same where no boxes are known and all depths have equal weight: less than the share above
-/// the quantile, so that it only decides where the histogram does not.
-const BLIND_GUESS: f64 = 0.02;
-
-/// Relative error of a far plane's view depth: from an f32 matrix of plain depth it is 4 · 2⁻²⁴ ·
-/// far / near, which reaches this value at 65,000 times the near depth.
-const FAR_ROUNDING: f64 = 1.0 / 64.0;
-
-/// The same for a near plane, in addition to the errors from the eye's distance to the world's
-/// origin and from the view's extent.
-const NEAR_ROUNDING: f64 = 1e-3;
-
-/// Room beyond the farthest receiver that held splits leave, as a share of its distance.
-const FAR_ROOM: f64 = 0.1;
-
-/// Nearest view depth at which the distribution of maps starts, as a share of the farthest.
-const NEAREST: f64 = 1.0 / 65_536.0;
-
-/// Splits given by hand.
-fn manual(given: &[f32; MAX_MAPS - 1], count: usize, range: Range) -> Result<Splits, FitError> {
-    let mut splits = [range.far; MAX_MAPS + 1];
-    splits[0] = range.near;
-    let mut last = f32::MIN;
-    for i in 1..count {
-        let split = checks::finite("a manual split", f64::from(given[i - 1]))? as f32;
-        if split <= last {
-            return Err(FitError::NearNotBelowFar { near: last, far: split });
-        }
-        (splits[i], last) = (split, split);
+/// Keeps maps without a range from being chosen, by rounded depths too: those before all others end
+/// nowhere, those after them begin nowhere, and the last one with a range has no end.
+fn set_empty_ranges_apart(maps: &mut [Option<PlacedMap>]) {
+    for map in maps.iter_mut().flatten().take_while(|map| map.near >= map.far) {
+        map.far = f32::MIN;
     }
-    Ok(splits)
+    for map in maps.iter_mut().rev().flatten() {
+        if map.near < map.far {
+            map.far = f32::MAX;
+            break;
+        }
+        (map.near, map.covered_near) = (f32::MAX, f32::MAX);
+    }
 }

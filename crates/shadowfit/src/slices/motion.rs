@@ -10,7 +10,7 @@ use crate::view::ViewFrustum;
 
 /// The step of a view from one frame to the next.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Motion {
+pub(super) struct Motion {
     /// Rotation about the eye, as the world axes' images.
     turn: [DVec3; 3],
     /// Movement of the eye, in metres.
@@ -37,7 +37,7 @@ fn axes(view: &ViewFrustum) -> Option<[DVec3; 3]> {
 
 impl Motion {
     /// The step between two views, if they look through the same lens.
-    pub(crate) fn between(before: &ViewFrustum, now: &ViewFrustum) -> Option<Self> {
+    pub(super) fn between(before: &ViewFrustum, now: &ViewFrustum) -> Option<Self> {
         let (a, b) = (axes(before)?, axes(now)?);
         // Σ bᵢ aᵢᵀ maps one view's axes to the other's.
         let image = |v: DVec3| b[0] * a[0].dot(v) + b[1] * a[1].dot(v) + b[2] * a[2].dot(v);
@@ -55,7 +55,7 @@ impl Motion {
     }
 
     /// Whether a view stands still, up to rounding.
-    pub(crate) fn is_still(&self, view: &ViewFrustum) -> bool {
+    pub(super) fn is_still(&self, view: &ViewFrustum) -> bool {
         let turn = self.turn;
         let turned = (turn[0] - DVec3::X).abs().max((turn[1] - DVec3::Y).abs()).max((turn[2] - DVec3::Z).abs());
         let far = checks::length(view.corners[4].as_dvec3());
@@ -63,7 +63,7 @@ impl Motion {
     }
 
     /// A view after a number of further frames of the same motion.
-    pub(crate) fn after(&self, view: &ViewFrustum, frames: u32) -> ViewFrustum {
+    pub(super) fn after(&self, view: &ViewFrustum, frames: u32) -> ViewFrustum {
         let mut turn = [DVec3::X, DVec3::Y, DVec3::Z];
         let mut power = self.turn;
         let mut left = frames;

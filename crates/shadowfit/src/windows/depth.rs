@@ -6,8 +6,9 @@ use glam::{DVec2, DVec3};
 use crate::base::{Boxes, FitError};
 use crate::content::Content;
 use crate::demand::need::Plane;
-use crate::fits::{Constraint, Depth, FitRule, ROUNDING};
+use crate::fits::{Constraint, Depth, FitRule};
 use crate::light::LightAxes;
+use crate::light::grid::ROUNDING;
 use crate::view::{Range, moved};
 
 /// Boxes as the light sees them, three elements each: least and greatest x and y, and z.

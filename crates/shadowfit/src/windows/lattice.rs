@@ -48,7 +48,7 @@ impl Lattice {
         // Along the plane's height texels are shorter than wide.
         let is_limited = rule.least_texel > 0.0;
         let least = if is_limited { grid::eighths_above(rule.least_texel / plane.shape) } else { i32::MIN };
-        Self { plane, anchor, border: rule.border, usable: grid::usable(rule), least }
+        Self { plane, anchor, border: rule.border, usable: rule.usable(), least }
     }
 
     /// Size of a window's texels, in metres.
