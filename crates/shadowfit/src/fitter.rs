@@ -99,7 +99,7 @@ impl MapFitter {
         let last = self.last.as_ref().filter(|last| last.technique == *technique);
         let light = light.held(last.filter(|_| keeps_maps(technique)).map(|last| last.direction));
         // 2. The boxes, and what the views see of them.
-        let (content, points) = Content::new(input, workspace)?;
+        let (content, points) = Content::new(input.scene(), workspace.storage)?;
         let range = whole_range(input, technique.fit.max_distance);
         let last_view = last.map(|last| &last.view);
         let frame = Frame { input, technique, rule: &rule, light, content: &content, range, last_view };
@@ -191,7 +191,7 @@ pub fn fewest_maps(
 ) -> Result<u32, FitError> {
     let waste = checks::within("the waste of fewer maps", f64::from(waste), 1.0, 100.0)?;
     let (rule, light) = check(input, technique)?;
-    let (content, _) = Content::new(input, workspace)?;
+    let (content, _) = Content::new(input.scene(), workspace.storage)?;
     let range = whole_range(input, technique.fit.max_distance);
     let frame = Frame { input, technique, rule: &rule, light, content: &content, range, last_view: None };
     Ok(slices::fewest(&frame, waste))
@@ -243,7 +243,7 @@ fn check_numbers(technique: &Technique) -> Result<(), FitError> {
     // The XNA sample's fit has no caster policy.
     let clamps = technique.fit.casters == CasterPolicy::DepthClamp && technique.fit.kind != FitKind::XnaSample;
     if technique.filter == FilterKind::Pcss && clamps {
-        return Err(FitError::ClampedCasters { filter: technique.filter });
+        return Err(FitError::ClampedCasters);
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 
 use glam::{DVec3, UVec2, Vec3};
 use shadowfit::bias::XNA_DEPTH_BIAS;
-use shadowfit::settings::FitSettings;
+use shadowfit::settings::{FitKind, FitSettings};
 use shadowfit::{FitError, PerspectiveCamera};
 use shadowfit_render::samples::{
     CasterFaces, LightImage, LightPlace, SampleFormat, SampleFrame, SampleLight, SampleMapSettings, Shading,
@@ -201,10 +201,11 @@ fn format(values: &SampleValues) -> SampleFormat {
 fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDrawing, FitError> {
     let size: u32 = values.choice("map").parse().unwrap_or(2048);
     let settings = FitSettings::default()
+        .with_kind(FitKind::XnaSample)
         .with_resolution(UVec2::splat(size))
         .with_max_distance(camera.far)
         .with_margin(values.get("margin"));
-    let fit = shadowfit::fits::xna::fit(&camera.frustum()?, DIRECTION, &settings)?;
+    let fit = shadowfit::fit(&camera.frustum()?, DIRECTION, &settings)?;
     let test = match values.choice("shadows") {
         "off" => ShadowTest::Off,
         "ours" => return Ok(SampleDrawing::Technique { technique: super::modern(camera.far), is_tinted: false }),

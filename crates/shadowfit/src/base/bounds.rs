@@ -50,17 +50,7 @@ impl Aabb {
 
     /// The eight corners: the four with the least z around, then the four with the greatest.
     pub fn corners(&self) -> [Vec3; 8] {
-        let (a, b) = (self.min, self.max);
-        [
-            Vec3::new(a.x, a.y, a.z),
-            Vec3::new(b.x, a.y, a.z),
-            Vec3::new(b.x, b.y, a.z),
-            Vec3::new(a.x, b.y, a.z),
-            Vec3::new(a.x, a.y, b.z),
-            Vec3::new(b.x, a.y, b.z),
-            Vec3::new(b.x, b.y, b.z),
-            Vec3::new(a.x, b.y, b.z),
-        ]
+        box_corners(self.min.as_dvec3(), self.max.as_dvec3()).map(|corner| corner.as_vec3())
     }
 
     /// Whether the box holds no point: a coordinate of `min` above that of `max`, or NaN.
@@ -77,6 +67,27 @@ pub struct Boxes<'a> {
     pub origin: DVec3,
     /// The boxes. Empty ones are ignored.
     pub boxes: &'a [Aabb],
+}
+
+/// Corners of a box: the four with the least z around, then the four with the greatest.
+pub(crate) fn box_corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
+    let (a, b) = (min, max);
+    [
+        DVec3::new(a.x, a.y, a.z),
+        DVec3::new(b.x, a.y, a.z),
+        DVec3::new(b.x, b.y, a.z),
+        DVec3::new(a.x, b.y, a.z),
+        DVec3::new(a.x, a.y, b.z),
+        DVec3::new(b.x, a.y, b.z),
+        DVec3::new(b.x, b.y, b.z),
+        DVec3::new(a.x, b.y, b.z),
+    ]
+}
+
+/// A box's corners relative to another origin, in f64.
+pub(crate) fn moved(aabb: &Aabb, offset: DVec3) -> (DVec3, DVec3) {
+    let to = |v: Vec3| v.as_dvec3() + offset;
+    (to(aabb.min), to(aabb.max))
 }
 
 #[cfg(test)]

@@ -9,7 +9,6 @@ use glam::{UVec2, Vec3};
 
 use crate::base::DepthConvention;
 use crate::number::{Number, Numbers};
-use crate::technique::settings::FilterKind;
 
 /// Why a frustum or a fit could not be made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,10 +106,7 @@ pub enum FitError {
     NotOnGrid,
     /// A filter needs the distances of casters, and the maps clamp depths
     /// ([`CasterPolicy::DepthClamp`](crate::settings::CasterPolicy::DepthClamp)), which loses them.
-    ClampedCasters {
-        /// The filter.
-        filter: FilterKind,
-    },
+    ClampedCasters,
     /// The shadow map has no texels.
     ZeroResolution {
         /// The resolution asked for, in texels.
@@ -171,7 +167,7 @@ impl fmt::Display for FitError {
             Self::NotOnGrid => {
                 write!(f, "the map is on no grid; stabilise it by snapping or hysteresis, or take the sphere")
             }
-            Self::ClampedCasters { filter } => write_clamped(f, filter),
+            Self::ClampedCasters => f.write_str(CLAMPED),
             Self::ZeroResolution { resolution } => {
                 write!(
                     f,
@@ -183,13 +179,8 @@ impl fmt::Display for FitError {
     }
 }
 
-fn write_clamped(f: &mut fmt::Formatter<'_>, filter: FilterKind) -> fmt::Result {
-    write!(
-        f,
-        "the filter {filter:?} needs the distance of each caster, which depth clamp loses; choose another caster \
-         policy, such as List, or another filter"
-    )
-}
+const CLAMPED: &str = "the filter Pcss needs the distance of each caster, which depth clamp loses; choose another caster \
+                       policy, such as List, or another filter";
 
 fn write_depth(f: &mut fmt::Formatter<'_>, named: DepthConvention, is_reversed: bool) -> fmt::Result {
     let (near, far) = (named.near(), named.far());

@@ -5,8 +5,10 @@ pub(crate) mod checks;
 mod depth;
 mod error;
 pub(crate) mod hull;
+pub(crate) mod numbers;
 pub(crate) mod sphere;
 
 pub use bounds::{Aabb, Boxes};
+pub(crate) use bounds::{box_corners, moved};
 pub use depth::DepthConvention;
 pub use error::FitError;

@@ -33,11 +33,12 @@ use core::f32::consts::SQRT_2;
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
 pub use self::classic::{ACOS_BIAS_LIMIT, XNA_DEPTH_BIAS, acos_bias, acos_epsilon};
-pub use self::reach::{HARDWARE_SNAP, Reach, reach};
+pub use self::reach::{HARDWARE_SNAP, Reach};
 use crate::base::{DepthConvention, FitError, checks};
 use crate::bias::depth_storage::{DepthStorage, depth_step};
 use crate::fits::LightFit;
 use crate::technique::settings::{BiasSettings, FilterKind, Softness};
+pub use crate::technique::softness::reach;
 
 /// Biases ready for a shader. With θ the angle between the geometric normal and the direction
 /// toward the light, a receiver is looked up at `p + normal · normal_offset · sin θ`, and its

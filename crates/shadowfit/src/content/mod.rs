@@ -11,12 +11,22 @@ use glam::{DVec2, DVec3, Vec3};
 
 use crate::base::hull::HullBuilder;
 use crate::base::sphere::{EnclosingSphere, SymmetricFrustum, minimal};
-use crate::base::{Boxes, FitError, checks};
+use crate::base::{Boxes, FitError, checks, moved};
 use crate::content::groups::Groups;
 use crate::content::normal_cone::NormalCone;
-use crate::fits::{FitInput, Workspace};
 use crate::light::LightAxes;
-use crate::view::{Range, Slice, View, ViewFrustum, moved, slice_corners};
+use crate::view::{Range, Slice, View, ViewFrustum, slice_corners};
+
+/// The views, the light and the boxes that content is made of, as an engine gives them.
+#[derive(Clone, Copy)]
+pub(crate) struct Scene<'a> {
+    pub(crate) views: &'a [ViewFrustum],
+    /// Direction of travel of the light.
+    pub(crate) direction: Vec3,
+    pub(crate) receivers: Option<Boxes<'a>>,
+    pub(crate) receiver_cones: &'a [NormalCone],
+    pub(crate) casters: Option<Boxes<'a>>,
+}
 
 /// The views and boxes of one frame, with the view depths of each box computed once.
 pub(crate) struct Content<'a> {
@@ -40,11 +50,11 @@ pub const MAX_SPHERE_VIEWS: usize = 8;
 const OUT_OF_VIEW: DVec2 = DVec2::new(f64::MAX, f64::MIN);
 
 impl<'a> Content<'a> {
-    /// Checks the boxes and computes their view depths; returns the rest of the workspace, for
+    /// Checks the boxes and computes their view depths; returns the rest of the storage, for
     /// points.
     pub(crate) fn new<'w>(
-        input: &FitInput<'w>,
-        workspace: &'w mut Workspace,
+        input: Scene<'w>,
+        storage: &'w mut [DVec2],
     ) -> Result<(Content<'w>, &'w mut [DVec2]), FitError>
     where
         'a: 'w,
@@ -58,14 +68,14 @@ impl<'a> Content<'a> {
             .saturating_add(2 * 8 * input.views.len())
             .saturating_add(HullBuilder::SLACK)
             .saturating_add(grouped[0] + grouped[1]);
-        if workspace.storage.len() < required {
-            return Err(FitError::WorkspaceTooSmall { given: workspace.storage.len(), required });
+        if storage.len() < required {
+            return Err(FitError::WorkspaceTooSmall { given: storage.len(), required });
         }
         let is_same = is_same(input.receivers, input.casters);
         for boxes in input.receivers.iter().chain(input.casters.iter().filter(|_| !is_same)) {
             check(boxes)?;
         }
-        let (depths, points) = workspace.storage.split_at_mut(needed);
+        let (depths, points) = storage.split_at_mut(needed);
         let (of_receivers, points) = points.split_at_mut(grouped[0]);
         let (of_casters, points) = points.split_at_mut(grouped[1]);
         let groups = |boxes: Option<Boxes<'w>>, storage: &'w mut [DVec2]| {
@@ -75,7 +85,7 @@ impl<'a> Content<'a> {
         let caster_groups = if is_same { receiver_groups } else { groups(input.casters, of_casters) };
         if let Some(receivers) = &input.receivers {
             for (view, depths) in input.views.iter().zip(depths.chunks_mut(count.max(1))) {
-                view_depths(input, receivers, &receiver_groups, view, depths);
+                view_depths(&input, receivers, &receiver_groups, view, depths);
             }
         }
         let content = Content {
@@ -94,7 +104,7 @@ impl<'a> Content<'a> {
 
     /// The views of an input alone, for fits that use nothing else.
     #[inline(always)]
-    pub(crate) fn of_views(input: &FitInput<'a>) -> Self {
+    pub(crate) fn of_views(input: Scene<'a>) -> Self {
         Self {
             views: input.views,
             origin: input.views[0].origin,
@@ -322,7 +332,7 @@ impl<'a> Content<'a> {
 }
 
 /// Computes the least and greatest depth of each receiver in one view.
-fn view_depths(input: &FitInput, receivers: &Boxes, groups: &Groups, view: &ViewFrustum, depths: &mut [DVec2]) {
+fn view_depths(input: &Scene, receivers: &Boxes, groups: &Groups, view: &ViewFrustum, depths: &mut [DVec2]) {
     let origin = input.views[0].origin;
     let (eye, offset) = (view.origin - receivers.origin, receivers.origin - origin);
     let view = View::new(view, origin);

@@ -23,10 +23,10 @@ use glam::{DVec2, DVec3, Vec3};
 use super::volume::{CasterVolume, map_planes};
 use crate::base::checks::MAX_LENGTH;
 use crate::base::hull::HullBuilder;
+use crate::base::numbers::ROUNDING;
 use crate::base::{FitError, checks};
 use crate::bias::Reach;
 use crate::fits::LightFit;
-use crate::light::grid::ROUNDING;
 use crate::view::{Slice, View, ViewFrustum};
 
 /// Which receivers read a map, and how far around them.

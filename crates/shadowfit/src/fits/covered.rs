@@ -4,6 +4,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::base::checks::MIN_LENGTH;
+use crate::base::numbers::{ROUNDING, THINNEST};
 use crate::base::sphere::SYMMETRY;
 use crate::base::{FitError, checks};
 use crate::content::Content;
@@ -11,7 +12,6 @@ use crate::fits::light_hull::LightHull;
 use crate::fits::rectangle::Rectangle;
 use crate::fits::{Constraint, Covers, FitRule, Volume, rectangle};
 use crate::light::LightAxes;
-use crate::light::grid::ROUNDING;
 use crate::technique::settings::RectangleKind;
 use crate::view::Range;
 
@@ -45,11 +45,11 @@ impl<'a> Covered<'a> {
         range: Range,
         points: &'a mut [DVec2],
     ) -> Result<Self, FitError> {
-        match rule.covers {
-            Covers::ExactCorners => Self::corners(rule, content, axes, range),
+        match rule.form.covers {
+            Covers::Corners => Self::corners(rule, content, axes, range),
             Covers::Sphere => Self::sphere(rule, content, axes, range),
-            Covers::Views | Covers::Receivers | Covers::Windows => {
-                let hull = LightHull::of(rule.covers, content, axes, range, points)?;
+            Covers::Views | Covers::Receivers => {
+                let hull = LightHull::of(rule.form.covers, content, axes, range, points)?;
                 Ok(Self::hull(rule, content, &hull, range))
             }
         }
@@ -139,10 +139,6 @@ fn no_smaller((min, max): (DVec3, DVec3), least: DVec2) -> (DVec3, DVec3) {
     let (low, high) = widened(min.truncate(), max.truncate(), least);
     (low.extend(min.z), high.extend(max.z))
 }
-
-/// Extents below this share of a map's longer side, or of its distance from the origin, are widened
-/// to it: a flat wall seen edge-on from the light has no width, but a matrix needs one.
-const THINNEST: f64 = 1e-5;
 
 /// The square with the rectangle's longer side, about the same middle.
 fn square(r: Rectangle) -> Rectangle {

@@ -3,6 +3,7 @@
 use glam::{DVec2, Vec3};
 
 use crate::base::Boxes;
+use crate::content::Scene;
 use crate::content::normal_cone::NormalCone;
 use crate::demand::histogram::{DepthBounds, DepthHistogram};
 use crate::demand::need::NeedGrid;
@@ -83,6 +84,13 @@ impl<'a> FitInput<'a> {
             need: &[],
             depth_bounds: None,
         }
+    }
+
+    /// What content is made of.
+    #[inline]
+    pub(crate) fn scene(&self) -> Scene<'a> {
+        let Self { views, direction, receivers, receiver_cones, casters, .. } = *self;
+        Scene { views, direction, receivers, receiver_cones, casters }
     }
 }
 

@@ -2,13 +2,13 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::base::FitError;
 use crate::base::checks::MIN_LENGTH;
 use crate::base::hull::HullBuilder;
+use crate::base::{FitError, box_corners};
 use crate::content::Content;
 use crate::fits::Covers;
 use crate::light::LightAxes;
-use crate::view::{Range, box_corners};
+use crate::view::Range;
 
 /// What a map must hold, seen from the light: an outline across the light and a depth range along
 /// it.
@@ -75,8 +75,8 @@ impl<'a> LightHull<'a> {
         points: &'a mut [DVec2],
     ) -> Result<Self, FitError> {
         match covers {
-            Covers::Receivers | Covers::Windows => Self::of_receivers(content, axes, range, points),
-            Covers::Views | Covers::Sphere | Covers::ExactCorners => Self::of_views(content, axes, range, points),
+            Covers::Receivers => Self::of_receivers(content, axes, range, points),
+            Covers::Views | Covers::Sphere | Covers::Corners => Self::of_views(content, axes, range, points),
         }
     }
 

@@ -13,13 +13,12 @@
 
 use glam::{DVec2, DVec3, Vec2Swizzles};
 
-use crate::base::Boxes;
+use crate::base::numbers::ROUNDING;
+use crate::base::{Boxes, moved};
 use crate::content::Content;
 use crate::fits::covered::Shadowed;
-use crate::fits::{Constraint, Covers, Depth, FitRule, Volume};
-use crate::light::grid::ROUNDING;
+use crate::fits::{Constraint, Depth, FitRule, Volume};
 use crate::light::{LightAxes, Outline, Scratch};
-use crate::view::moved;
 
 /// Coordinate of the near plane along the light's z, and what set it if it was not the covered
 /// region.
@@ -56,9 +55,9 @@ pub(crate) fn place(volume: &mut Volume, rule: &FitRule, shadowed: Shadowed, rou
         volume.min.z = far;
     }
     (volume.max.z, volume.set_by[5]) = (near.z, near.set_by.unwrap_or(volume.set_by[5]));
-    if rule.covers != Covers::Sphere {
+    if !rule.form.is_on_grid {
         // The rounding of the depth range, which casters may make far longer than the covered
-        // region. The sphere fit includes it in its steps.
+        // region. On the grid it is in the steps.
         let depth = (volume.max.z - volume.min.z) * ROUNDING;
         (volume.min.z, volume.max.z) = (volume.min.z - depth, volume.max.z + depth);
     }

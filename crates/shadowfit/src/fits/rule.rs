@@ -1,35 +1,72 @@
 //! A fit as data: what each kind covers, by which rectangle, along which axes and how deep.
 //!
-//! The settings' kind is looked at here and nowhere else. A further fit is a file in
-//! [`fits`](crate::fits) that documents it, and a line in [`FitRule::new`].
+//! The settings' kind is looked at here and nowhere else. A further fit is a file beside this one with a [`Form`],
+//! and a line in [`Form::of`].
 
 use glam::{DVec2, UVec2};
 
+use super::{aabb, focused, oriented, sphere, xna};
 use crate::base::checks::MAX_LENGTH;
 use crate::base::{DepthConvention, FitError, checks};
-use crate::bias::reach;
 use crate::light::Roll;
 use crate::technique::settings::{CasterPolicy, FilterKind, FitKind, FitSettings, RectangleKind};
+use crate::technique::softness::reach;
 
 /// What a map must hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Covers {
     /// The box of the views' corners alone, without room for rounding or the filter.
-    ExactCorners,
+    Corners,
     /// The outline of the views' slices, as the light sees them.
     Views,
     /// That of the receivers' boxes clipped to the slices.
     Receivers,
-    /// The sphere around the views' slices, always on the world's grid.
+    /// The sphere around the views' slices.
     Sphere,
-    /// What [`windows`](crate::windows) choose.
-    Windows,
 }
 
-impl Covers {
+/// What tells one fit from the others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Form {
+    pub(crate) covers: Covers,
+    /// Where the map's roll about the light comes from.
+    pub(crate) roll: Roll,
+    /// Whether the rectangle is that of the settings; else it lies along the light's axes.
+    pub(crate) may_turn: bool,
+    /// Whether the settings limit the ratio of the texels' sides.
+    pub(crate) limits_ratio: bool,
+    /// Whether it always lies on the world's grid.
+    pub(crate) is_on_grid: bool,
+    /// Whether it is kept as its source has it: with the depth of the source, no caster policy, no border, no least
+    /// texel, and never held.
+    pub(crate) is_exact: bool,
     /// Whether the map always reaches to the shadow distance, wherever the receivers end.
-    pub(crate) const fn whole_distance(self) -> bool {
-        matches!(self, Self::ExactCorners | Self::Receivers)
+    pub(crate) whole_distance: bool,
+}
+
+impl Form {
+    /// The outline of the views along the light's own axes.
+    pub(crate) const OF_VIEWS: Self = Self {
+        covers: Covers::Views,
+        roll: Roll::ShortestArc,
+        may_turn: false,
+        limits_ratio: true,
+        is_on_grid: false,
+        is_exact: false,
+        whole_distance: false,
+    };
+
+    /// The form of a kind of fit.
+    const fn of(kind: FitKind) -> Self {
+        match kind {
+            FitKind::XnaSample => xna::FORM,
+            FitKind::FrustumAabb => aabb::FORM,
+            FitKind::Oriented => oriented::FORM,
+            FitKind::Sphere => sphere::FORM,
+            FitKind::Focused => focused::FORM,
+            // A single map of this kind; several are placed by themselves.
+            FitKind::Windows => Self { may_turn: false, limits_ratio: false, ..focused::FORM },
+        }
     }
 }
 
@@ -51,9 +88,8 @@ pub(crate) enum Depth {
 /// How one map is fitted: [`FitSettings`] with everything resolved that depends on the kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FitRule {
-    pub(crate) covers: Covers,
+    pub(crate) form: Form,
     pub(crate) rectangle: RectangleKind,
-    pub(crate) roll: Roll,
     pub(crate) depth: Depth,
     /// Free texels between the covered region and the map's border.
     pub(crate) border: f64,
@@ -83,27 +119,18 @@ impl FitRule {
     #[inline(always)]
     pub(crate) fn new(settings: &FitSettings, border: f32, casters_are_known: bool) -> Result<Self, FitError> {
         check(settings, border)?;
-        let (covers, rectangle, roll, depth) = {
-            let near = near_plane(settings, casters_are_known);
-            match settings.kind {
-                FitKind::XnaSample => (Covers::ExactCorners, RectangleKind::AxisAligned, Roll::LookAt, Depth::Doubled),
-                FitKind::FrustumAabb => (Covers::Views, RectangleKind::AxisAligned, Roll::ShortestArc, near),
-                FitKind::Oriented => (Covers::Views, settings.rectangle, Roll::ShortestArc, near),
-                FitKind::Sphere => (Covers::Sphere, RectangleKind::AxisAligned, Roll::ShortestArc, near),
-                FitKind::Windows => (Covers::Windows, RectangleKind::AxisAligned, Roll::ShortestArc, near),
-                FitKind::Focused => (Covers::Receivers, settings.rectangle, Roll::ShortestArc, near),
-            }
-        };
-        let least_texel = if covers == Covers::ExactCorners { 0.0 } else { f64::from(settings.least_texel) };
+        let form = Form::of(settings.kind);
+        let depth = if form.is_exact { Depth::Doubled } else { near_plane(settings, casters_are_known) };
+        let rectangle = if form.may_turn { settings.rectangle } else { RectangleKind::AxisAligned };
+        let least_texel = if form.is_exact { 0.0 } else { f64::from(settings.least_texel) };
         Ok(Self {
-            covers,
+            form,
             rectangle,
-            roll,
             depth,
             border: f64::from(border),
             margin: f64::from(settings.margin),
             max_texel_ratio: Some(settings.max_texel_ratio)
-                .filter(|ratio| *ratio < f32::MAX && settings.kind != FitKind::Windows)
+                .filter(|ratio| *ratio < f32::MAX && form.limits_ratio)
                 .map(f64::from),
             least_texel,
             least_size: (settings.resolution.as_dvec2() - 2.0 * f64::from(border)) * least_texel,
@@ -127,13 +154,13 @@ impl FitRule {
     }
 
     /// Whether a map of this rule can be kept from frame to frame: not the sample's.
-    pub(crate) fn can_be_held(&self) -> bool {
-        self.covers != Covers::ExactCorners
+    pub(crate) const fn can_be_held(&self) -> bool {
+        !self.form.is_exact
     }
 
     /// Whether its maps leave a number of texels free around what they cover.
     pub(crate) fn leaves_border(&self, texels: f64) -> bool {
-        self.covers != Covers::ExactCorners && self.border >= texels
+        !self.form.is_exact && self.border >= texels
     }
 
     /// This rule without a border, its near plane at the covered region. What it covers is no smaller than with one.

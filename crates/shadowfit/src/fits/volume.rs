@@ -3,9 +3,10 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::base::numbers::{ROUNDING, floor};
 use crate::fits::FitRule;
 use crate::light::LightAxes;
-use crate::light::grid::{Grid, ROUNDING, anchor, floor, quantised, stabilised_depth};
+use crate::light::grid::{Grid, anchor, quantised, stabilised_depth};
 
 /// What set a plane of a fitted box: what to change for a tighter fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

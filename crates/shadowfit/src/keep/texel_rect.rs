@@ -2,9 +2,8 @@
 
 use glam::{DVec3, UVec2};
 
-use crate::base::Aabb;
+use crate::base::{Aabb, moved};
 use crate::fits::LightFit;
-use crate::view::moved;
 
 /// A rectangle of texels. Texture rows count downward from the top, as in
 /// [`uv_from_world`](LightFit::uv_from_world).

@@ -7,17 +7,8 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::base::numbers::{ROUNDING, floor};
 use crate::light::LightAxes;
-
-/// What a box is enlarged by on each side, as a share of the greatest distance from the origin and
-/// the box's own extent together.
-///
-/// A shader's f32 matrix times an f32 position is off by ten times 2⁻²⁴ of the sum of its terms, as
-/// [`verify`](crate::verify) counts, the matrix's elements by two and the frustum's corners by two
-/// more. The terms of the position sum to no more than its distance d, the translation is no more
-/// than d and half the extent e, and an offset of the texture or clip coordinates adds another
-/// half: 14 d + 12 (d + e), which is less than 28 (d + e).
-pub(crate) const ROUNDING: f64 = 28.0 / 16_777_216.0;
 
 /// How far an extent may lie above a step and still be rounded down to it, as a share of the step:
 /// the noise of f32 corners must not choose between two steps.
@@ -63,18 +54,6 @@ pub(crate) fn eighths_above(length: f64) -> i32 {
 
 /// The bits of an f64's exponent.
 const EXPONENT: u64 = f64::INFINITY.to_bits();
-
-/// The floor of a number; the same bits as libm's, without a function call in the common case.
-#[inline]
-pub(crate) fn floor(x: f64) -> f64 {
-    // Beyond this all numbers are whole, and those below it lose their fraction when it is added.
-    const WHOLE: f64 = 4_503_599_627_370_496.0;
-    let whole = WHOLE.copysign(x);
-    let near = x + whole - whole;
-    // No branch: the direction of rounding is unpredictable.
-    let floor = near - f64::from(u8::from(near > x));
-    if x.abs() < WHOLE { floor.copysign(x) } else { x }
-}
 
 /// World position along the light's axes, in metres, in f64.
 #[inline]

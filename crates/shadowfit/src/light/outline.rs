@@ -6,8 +6,8 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::base::box_corners;
 use crate::light::LightAxes;
-use crate::view::box_corners;
 
 /// A convex outline with its bounds, widened.
 pub(crate) struct Outline<'a> {

@@ -9,11 +9,9 @@
 use glam::{DVec3, Mat4, Vec4};
 
 use super::query::{CoverageQuery, MapPlane};
+use crate::base::numbers::UNIT;
 use crate::base::{DepthConvention, FitError, checks};
 use crate::fits::LightFit;
-
-/// Relative rounding of f32, 2⁻²⁴.
-pub(super) const ROUNDING: f64 = 1.0 / 16_777_216.0;
 
 /// Roundings of each term of an affine matrix times an f32 position, as multiples of 2⁻²⁴: one of
 /// the position relative to the origin, and four operations each of which shaders may round
@@ -24,7 +22,7 @@ const TERM_ROUNDINGS: f64 = 10.0;
 /// Greatest error of the corner of a frustum, or of a box clipped to one, as a share of its
 /// distance: the rounding of the frustum's own corners, once for the corner and once for the plane
 /// that it lies in.
-const CORNER_ROUNDING: f64 = 2.0 * ROUNDING;
+const CORNER_ROUNDING: f64 = 2.0 * UNIT;
 
 /// Greatest error of flushing to zero a result that is too small for f32, in every operation.
 const FLUSHED: f64 = 16.0 * f32::MIN_POSITIVE as f64;
@@ -52,7 +50,7 @@ impl HalfSpace {
         let value = terms.x + terms.y + terms.z + self.constant;
         let sum = terms.x.abs() + terms.y.abs() + terms.z.abs() + self.shift;
         let corner = CORNER_ROUNDING * checks::length(p) * checks::length(self.row);
-        (value - TERM_ROUNDINGS * ROUNDING * sum - FLUSHED - corner) * self.unit - self.need
+        (value - TERM_ROUNDINGS * UNIT * sum - FLUSHED - corner) * self.unit - self.need
     }
 }
 

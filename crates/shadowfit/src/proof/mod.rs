@@ -20,15 +20,16 @@ mod query;
 
 use glam::{DVec2, DVec3};
 
-use crate::base::{FitError, checks};
+use crate::base::numbers::UNIT;
+use crate::base::{FitError, box_corners, checks, moved};
 use crate::bias::HARDWARE_SNAP;
 use crate::content::Content;
 use crate::fits::light_hull::LightHull;
 use crate::fits::{Covers, FitInput, LightFit, Workspace};
 use crate::light::{LightAxes, Outline, Scratch};
 use crate::technique::settings::{CasterPolicy, MapChoice};
-use crate::view::{Range, Slice, box_corners, moved};
-use half_space::{HalfSpaces, ROUNDING};
+use crate::view::{Range, Slice};
+use half_space::HalfSpaces;
 
 pub use query::{CoverageQuery, MapPlane};
 
@@ -196,7 +197,7 @@ pub fn verify(
     checks::point("the fit's origin", fit.origin)?;
     let half_spaces = HalfSpaces::new(fit, query)?;
     let axes = LightAxes::of_matrix(&fit.light_from_world)?;
-    let (content, points) = Content::new(input, workspace)?;
+    let (content, points) = Content::new(input.scene(), workspace.storage)?;
     let offset = content.origin - fit.origin;
     let mut receivers = Worst::new(&half_spaces, offset);
     receivers.add_all(&content, range);
@@ -252,7 +253,7 @@ fn caster_reach(fit: &LightFit, query: &CoverageQuery, distance: f64) -> f64 {
 /// receivers and casters.
 fn raster_reach(fit: &LightFit, distance: f64) -> f64 {
     let size = (fit.box_max - fit.box_min).as_dvec3().truncate();
-    let rounding = SHIFT_ROUNDINGS * ROUNDING * (distance + size.max_element());
+    let rounding = SHIFT_ROUNDINGS * UNIT * (distance + size.max_element());
     texels(fit, DVec2::splat(f64::from(HARDWARE_SNAP))) + rounding
 }
 

@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3, Vec3};
 
 use super::bins::{BINS, Bins, log2};
 use super::slabs::Slabs;
+use crate::base::numbers::{greater, lesser};
 use crate::content::Content;
 use crate::fits::{Covers, FitRule};
 use crate::light::{LightAxes, grid};
@@ -44,9 +45,10 @@ pub(super) struct Maps<'a, 'b> {
 impl Maps<'_, '_> {
     /// The sizes of the maps of all runs.
     pub(super) fn sizes(&self, bins: &Bins) -> Sizes {
-        match self.rule.covers {
-            Covers::Sphere => Sizes::of_spheres(self, bins),
-            _ => Sizes::of_rectangles(self, bins),
+        if self.rule.form.covers == Covers::Sphere {
+            Sizes::of_spheres(self, bins)
+        } else {
+            Sizes::of_rectangles(self, bins)
         }
     }
 }
@@ -94,7 +96,7 @@ impl Sizes {
     fn of_rectangles(maps: &Maps, bins: &Bins) -> Self {
         let directions = Directions::new(&maps.axes);
         let mut extents = [Dop::EMPTY; BINS];
-        if maps.rule.covers == Covers::Receivers && maps.content.receivers.is_some() {
+        if maps.rule.form.covers == Covers::Receivers && maps.content.receivers.is_some() {
             collect_receivers(&mut extents, maps.content, &directions, bins);
         } else {
             for (bin, dop) in extents.iter_mut().enumerate().take(bins.count) {
@@ -164,16 +166,16 @@ impl Dop {
 
     fn union(&self, other: &Self) -> Self {
         Self {
-            min: core::array::from_fn(|i| lesser(self.min[i], other.min[i])),
-            max: core::array::from_fn(|i| greater(self.max[i], other.max[i])),
+            min: core::array::from_fn(|i| lesser(other.min[i], self.min[i])),
+            max: core::array::from_fn(|i| greater(other.max[i], self.max[i])),
         }
     }
 
     /// Widens it to a point's coordinates along the directions.
     fn add(&mut self, along: &[f32; DIRECTIONS]) {
         for (i, along) in along.iter().enumerate() {
-            self.min[i] = lesser(self.min[i], *along);
-            self.max[i] = greater(self.max[i], *along);
+            self.min[i] = lesser(*along, self.min[i]);
+            self.max[i] = greater(*along, self.max[i]);
         }
     }
 
@@ -212,16 +214,6 @@ impl Dop {
 
 /// Extent of an empty run, in metres.
 const SMALLEST: f64 = 1e-6;
-
-/// The lesser of two numbers that are not NaN: one instruction for four of them.
-fn lesser(a: f32, b: f32) -> f32 {
-    if b < a { b } else { a }
-}
-
-/// The greater of two numbers that are not NaN.
-fn greater(a: f32, b: f32) -> f32 {
-    if b > a { b } else { a }
-}
 
 /// Unit vectors across the light at even angles over half a turn, coordinate by coordinate.
 struct Directions {

@@ -16,11 +16,12 @@
 use glam::{DVec2, DVec3};
 
 use crate::base::FitError;
-use crate::content::Content;
+use crate::base::numbers::{self, ROUNDING};
+use crate::content::{Content, MAX_SPHERE_VIEWS};
 use crate::fits::light_hull::LightHull;
 use crate::fits::rectangle::Rectangle;
-use crate::fits::{self, Constraint, Covers, FitInput, FitRule, Frame, Snapping, Volume, Workspace, near_plane};
-use crate::light::grid::{Grid, ROUNDING};
+use crate::fits::{self, Constraint, FitInput, FitRule, Frame, Snapping, Volume, near_plane};
+use crate::light::grid::Grid;
 use crate::light::{LightAxes, grid};
 use crate::slices::motion::Motion;
 use crate::view::{Range, ViewFrustum};
@@ -58,7 +59,7 @@ impl Holder<'_, '_> {
         let fresh = |points: &mut [DVec2]| {
             fits::fit_map(self.frame.content, &self.frame.light, &plain, slice, Snapping::Tight, points)
         };
-        let is_of_light = |held: &HeldMap| held.is_of(&self.frame.light.axes(rule.roll), rule);
+        let is_of_light = |held: &HeldMap| held.is_of(&self.frame.light.axes(rule.form.roll), rule);
         let Some(held) = held.filter(is_of_light) else { return self.make(&fresh(points)?, rule, slice, points) };
         let needed = self.needed(&held, rule, slice, points)?;
         let Some(kept) = self.keep(&held, &needed, rule) else {
@@ -93,8 +94,7 @@ impl Holder<'_, '_> {
         views[..now].copy_from_slice(self.frame.input.views);
         views[now..now + ahead.len()].copy_from_slice(ahead);
         let input = FitInput { views: &views[..now + ahead.len()], ..*self.frame.input };
-        let mut workspace = Workspace::new(points);
-        let (content, points) = Content::new(&input, &mut workspace)?;
+        let (content, points) = Content::new(input.scene(), points)?;
         fits::fit_map(&content, &self.frame.light, rule, slice, Snapping::Tight, points)
     }
 
@@ -118,7 +118,7 @@ impl Holder<'_, '_> {
 
     /// What must be covered and where the near plane must be, along the held axes.
     fn needed(&self, held: &HeldMap, rule: &FitRule, slice: Range, points: &mut [DVec2]) -> Result<Needed, FitError> {
-        let hull = LightHull::of(rule.covers, self.frame.content, held.axes, slice, points)?;
+        let hull = LightHull::of(rule.form.covers, self.frame.content, held.axes, slice, points)?;
         let extent = (held.texel * held.resolution).max_element();
         let rounding = (hull.farthest + extent) * ROUNDING;
         let pad = rounding + rule.margin;
@@ -206,9 +206,9 @@ fn steps_ahead(horizon: u32) -> impl Iterator<Item = u32> {
         .take_while(|frames| *frames > 0)
 }
 
-/// A rule for maps whose depths are found later: rectangles need not look at all that lies inside them.
+/// A rule for maps whose depths are found later: the rectangle alone is enough, the contents are not visited.
 fn trial(rule: &FitRule) -> FitRule {
-    FitRule { serves_all: rule.serves_all && rule.covers == Covers::Sphere, ..*rule }
+    FitRule { serves_all: rule.serves_all && rule.form.is_on_grid, ..*rule }
 }
 
 /// What a map must cover in this frame, along its axes and relative to the origin.
@@ -227,8 +227,8 @@ struct Needed {
 /// Share by which the rounding of a map's axes may change an area.
 const SAME_AREA: f64 = 1e-5;
 
-/// Most views that held maps are fitted to, predicted ones included.
-const MAX_VIEWS: usize = 10;
+/// Most views that held maps are fitted to: those of a frame and two predicted ones.
+const MAX_VIEWS: usize = MAX_SPHERE_VIEWS + 2;
 
 impl HeldMap {
     fn new(volume: &Volume, grid: Grid, rule: &FitRule, fresh: &Volume) -> Self {
@@ -262,5 +262,5 @@ fn area(outline: &[DVec2]) -> f64 {
 }
 
 fn floor(v: DVec2) -> DVec2 {
-    DVec2::new(grid::floor(v.x), grid::floor(v.y))
+    DVec2::new(numbers::floor(v.x), numbers::floor(v.y))
 }

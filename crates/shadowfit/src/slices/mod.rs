@@ -21,6 +21,7 @@ pub(crate) mod visible;
 use glam::{DVec2, Vec3};
 
 use crate::base::FitError;
+use crate::base::numbers::VIEW_DEPTH_ROUNDING;
 use crate::fits::{self, Frame, PlacedMap, PlacedMaps, Snapping, Volume};
 use crate::technique::settings::{MAX_MAPS, Stabilise};
 use crate::view::{Range, ViewFrustum};
@@ -167,13 +168,9 @@ fn is_empty(views: &[ViewFrustum], slice: Range) -> bool {
 /// The view depths that a map is fitted to, widened: by a shader's rounded view depth a point may
 /// read the map next to its own.
 fn widened(slice: Range) -> Range {
-    let rounding = slice.far.abs() * DEPTH_ROUNDING;
+    let rounding = slice.far.abs() * VIEW_DEPTH_ROUNDING;
     Range { near: slice.near - rounding, far: slice.far + rounding }
 }
-
-/// Rounding of a view depth, as a share of it: nine times 2⁻²⁴ of a point's distance, which in the
-/// corner of a wide view is up to seven times its depth.
-const DEPTH_ROUNDING: f32 = 64.0 / 16_777_216.0;
 
 /// Keeps maps without a range from being chosen, by rounded depths too: those before all others end
 /// nowhere, those after them begin nowhere, and the last one with a range has no end.

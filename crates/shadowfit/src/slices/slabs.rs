@@ -15,7 +15,8 @@ use core::ops::Range;
 use glam::DVec3;
 
 use super::bins::{BINS, Bins};
-use crate::view::{EDGES, Plane, View, at, box_corners, clip_to_box, inner_part};
+use crate::base::box_corners;
+use crate::view::{EDGES, Plane, View, at, clip_to_box, inner_part};
 
 /// The planes between the bins, as one view has them.
 pub(super) struct Slabs {

@@ -3,9 +3,9 @@
 //! Each map gets a range of view depths of its own. Fixed schemes place the splits by depth alone;
 //! content-aware schemes place them where the most visible pixels gain.
 
+use crate::base::numbers::ROUNDING;
 use crate::base::{FitError, checks};
 use crate::fits::{Covers, Frame};
-use crate::light::grid::ROUNDING;
 use crate::technique::settings::{MAX_MAPS, SplitScheme, Stabilise};
 use crate::view::Range;
 
@@ -98,7 +98,7 @@ impl Chooser<'_, '_> {
     /// camera may exceed it, and there is room for some movement.
     fn end(&self, spread: (f64, f64)) -> f64 {
         let far = f64::from(self.frame.range.far);
-        if self.frame.rule.covers.whole_distance() {
+        if self.frame.rule.form.whole_distance {
             return far;
         }
         let is_held = self.frame.technique.stabilise != Stabilise::Off;
@@ -213,7 +213,7 @@ impl Chooser<'_, '_> {
     fn sizes(&self, bins: &Bins) -> Sizes {
         let maps = Maps {
             content: self.frame.content,
-            axes: self.frame.light.axes(self.frame.rule.roll),
+            axes: self.frame.light.axes(self.frame.rule.form.roll),
             rule: self.frame.rule,
             is_snapped: self.frame.technique.stabilise == Stabilise::Snap,
             near: f64::from(self.frame.range.near),
@@ -233,7 +233,7 @@ impl Chooser<'_, '_> {
 
     /// Number of bins by which maps are read beyond their slices.
     fn read_beyond(&self, bins: &Bins) -> usize {
-        let octaves = match self.frame.rule.covers {
+        let octaves = match self.frame.rule.form.covers {
             _ if !self.frame.rule.serves_all => return 0,
             Covers::Sphere => SPHERE_BEYOND,
             _ => RECTANGLE_BEYOND,
@@ -251,7 +251,7 @@ impl Chooser<'_, '_> {
             }
             _ => visible::weights(self.frame.content, bins, rays),
         };
-        if self.frame.rule.serves_all && self.frame.rule.covers == Covers::Sphere {
+        if self.frame.rule.serves_all && self.frame.rule.form.covers == Covers::Sphere {
             return mixed(&weights, &even(bins), UNSEEN);
         }
         weights

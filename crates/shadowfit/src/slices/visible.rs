@@ -7,8 +7,9 @@
 use glam::DVec3;
 
 use super::bins::{BINS, Bins, CLASSES, Weights};
+use crate::base::box_corners;
 use crate::content::Content;
-use crate::view::{Picture, View, box_corners};
+use crate::view::{Picture, View};
 
 /// Rays across and down the picture.
 #[derive(Clone, Copy, Debug)]

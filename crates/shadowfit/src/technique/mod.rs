@@ -2,8 +2,6 @@
 //!
 //! [`Technique::default`] is the one to begin with; [`PRESETS`](crate::PRESETS) has others by name.
 
-use crate::bias::Reach;
-use crate::fits::LightFit;
 use crate::technique::settings::{
     BiasSettings, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, MapFormat, NeedSource, ReceiverSource,
     Softness, SplitScheme, Stabilise, setters,
@@ -167,12 +165,6 @@ impl Technique {
     /// change with the texels of a map.
     pub const fn reach(&self) -> f32 {
         self.softness.reach(self.filter)
-    }
-
-    /// Reach of the filter in one map, in its texels: for caster volumes, certificates and biases. Of
-    /// [`FilterKind::Pcss`] it is that of the widest penumbra.
-    pub fn reach_in(&self, fit: &LightFit) -> Reach {
-        self.softness.reach_in(self.filter, fit)
     }
 
     /// Least width of a texel, in metres; 0 for no limit. It is [`FitSettings::least_texel`], or more where a

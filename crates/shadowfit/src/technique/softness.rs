@@ -3,11 +3,7 @@
 //! A penumbra is as wide across the light in all maps, so its width in texels differs from map to map and
 //! from axis to axis. A floor and a ceiling in texels keep it within what a map can show and a shader can pay for.
 
-use glam::Vec2;
-
 use crate::base::{FitError, checks};
-use crate::bias::{Reach, reach};
-use crate::fits::LightFit;
 use crate::technique::settings::{FilterKind, SoftRadius, Softness};
 
 /// Distance from a caster to the shadow that a filter of fixed width is right for, in metres, where the
@@ -51,25 +47,6 @@ impl Softness {
         }
     }
 
-    /// Radii along u and v of the ellipse over which a filter's look-ups are spread in a map, in texels: for
-    /// [`FilterKind::Pcss`] the greatest. Look-ups blur by themselves ([`LOOK_UP_SQUARE`]), which is
-    /// taken off, so that penumbrae are as wide in maps of other texels.
-    pub fn texels(&self, filter: FilterKind, fit: &LightFit) -> Vec2 {
-        if !filter.is_soft() {
-            return Vec2::ZERO;
-        }
-        let radius = Vec2::splat(self.metres(filter)) / fit.texel_size;
-        let own = |radius: f32| libm::sqrtf((radius * radius - LOOK_UP_SQUARE).max(0.0));
-        // Not clamp, which panics where a floor lies above its ceiling.
-        let within = |radius: f32| radius.max(self.floor).min(self.ceiling);
-        Vec2::new(within(own(radius.x)), within(own(radius.y)))
-    }
-
-    /// Reach of a filter in a map, in its texels: the [look-up's](reach) over the disc of [`Self::texels`].
-    pub fn reach_in(&self, filter: FilterKind, fit: &LightFit) -> Reach {
-        Reach { disc: self.texels(filter, fit), ..Reach::taps(reach(filter)) }
-    }
-
     /// Greatest reach of a filter per axis, in texels, in any map: the [look-up's](reach), and for soft filters the
     /// [ceiling](Self::ceiling) of their disc.
     pub const fn reach(&self, filter: FilterKind) -> f32 {
@@ -96,5 +73,21 @@ impl Softness {
         let ceiling = checks::within("the greatest radius of the filter", ceiling, 1.0, f64::from(MAX_RADIUS))?;
         checks::within("the least radius of the filter", f64::from(self.floor), 0.0, ceiling)?;
         Ok(())
+    }
+}
+
+/// Reach E of a filter: the greatest distance along one axis from the sampled point to a texel
+/// centre of non-zero weight, in texels. Of a [soft](FilterKind::is_soft) filter it is that of one of its look-ups: the
+/// disc over which they are spread is [`Softness`](crate::settings::Softness)'s, and
+/// [`Technique::reach`](crate::Technique::reach) has both.
+pub const fn reach(filter: FilterKind) -> f32 {
+    match filter {
+        FilterKind::Point => 0.5,
+        FilterKind::Hardware2x2 | FilterKind::Vogel8 | FilterKind::Vogel16 | FilterKind::Vogel32 | FilterKind::Pcss => {
+            1.0
+        }
+        FilterKind::Pcf3x3 => 2.0,
+        FilterKind::Pcf5x5 => 3.0,
+        FilterKind::Pcf7x7 => 4.0,
     }
 }

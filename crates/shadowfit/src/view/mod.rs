@@ -7,4 +7,3 @@ mod slice;
 pub use camera::PerspectiveCamera;
 pub use frustum::ViewFrustum;
 pub(crate) use slice::{EDGES, Picture, Plane, Range, Slice, View, at, clip_to_box, inner_part, slice_corners};
-pub(crate) use slice::{box_corners, moved};

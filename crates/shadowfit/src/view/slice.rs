@@ -12,9 +12,9 @@
 //!        └──○────────○─────╲
 //! ```
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
-use crate::base::{Aabb, checks};
+use crate::base::{box_corners, checks};
 use crate::view::ViewFrustum;
 
 /// A range of view depths, in metres.
@@ -187,21 +187,6 @@ pub(crate) struct Slice {
 pub(crate) const EDGES: [(usize, usize); 12] =
     [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)];
 
-/// Corners of a box: the four with the least z around, then the four with the greatest.
-pub(crate) fn box_corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
-    let (a, b) = (min, max);
-    [
-        DVec3::new(a.x, a.y, a.z),
-        DVec3::new(b.x, a.y, a.z),
-        DVec3::new(b.x, b.y, a.z),
-        DVec3::new(a.x, b.y, a.z),
-        DVec3::new(a.x, a.y, b.z),
-        DVec3::new(b.x, a.y, b.z),
-        DVec3::new(b.x, b.y, b.z),
-        DVec3::new(a.x, b.y, b.z),
-    ]
-}
-
 impl Slice {
     /// Passes on all vertices of box ∩ slice, some of them more than once, and possibly points of
     /// its edges. Nothing when they do not meet.
@@ -302,10 +287,4 @@ pub(crate) fn clip_to_box(a: DVec3, b: DVec3, min: DVec3, max: DVec3) -> Option<
         leave = leave.min(second);
     }
     if enter > leave { None } else { Some((at(a, b, enter), at(a, b, leave))) }
-}
-
-/// A box's corners relative to another origin, in f64.
-pub(crate) fn moved(aabb: &Aabb, offset: DVec3) -> (DVec3, DVec3) {
-    let to = |v: Vec3| v.as_dvec3() + offset;
-    (to(aabb.min), to(aabb.max))
 }

@@ -3,6 +3,7 @@
 use glam::{DVec3, Vec2};
 
 use super::placement::Rect;
+use crate::base::numbers::{greater, lesser};
 use crate::demand::need::{LEVELS, NeedGrid, NeedSpace, Plane, SIDE};
 
 /// Most cells that are kept; those with the fewest points are left out where there are more.
@@ -216,15 +217,4 @@ impl Cells {
         }
         sums.iter().sum::<f32>() + rest
     }
-}
-
-/// The lesser and the greater one of two numbers, in one instruction each; the second one where one is NaN.
-#[inline(always)]
-pub(super) const fn lesser(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-#[inline(always)]
-pub(super) const fn greater(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }

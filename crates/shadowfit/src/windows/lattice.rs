@@ -6,6 +6,7 @@
 use glam::{DVec2, DVec3};
 
 use super::placement::Rect;
+use crate::base::numbers;
 use crate::demand::need::Plane;
 use crate::fits::FitRule;
 use crate::light::grid;
@@ -67,7 +68,7 @@ impl Lattice {
 
     /// The window that holds a rectangle of its size between its borders.
     pub(super) fn window(&self, steps: i32, rect: &Rect) -> Window {
-        self.at(steps, rect.min.as_dvec2(), grid::floor)
+        self.at(steps, rect.min.as_dvec2(), numbers::floor)
     }
 
     /// The window whose least corner between the borders is about here.
@@ -88,7 +89,7 @@ impl Lattice {
         let size = (usable + 1.0) * grid::eighths(steps);
         let low = |window: &Window| (window.first + self.border) * grid::eighths(steps) - self.anchor;
         let holds = |window: &Window| low(window).cmple(min).all() && (low(window) + size).cmpge(max).all();
-        let around = || self.at(steps, (min + max - usable * grid::eighths(steps)) * 0.5, grid::floor);
+        let around = || self.at(steps, (min + max - usable * grid::eighths(steps)) * 0.5, numbers::floor);
         let Some(held) = held else {
             return around();
         };
@@ -107,6 +108,6 @@ impl Lattice {
     pub(super) fn turned(&self, window: &Window, from: &Plane, origin: DVec3) -> Window {
         let texel = grid::eighths(window.steps);
         let line = window.first + (self.anchor - from.of(from.axes.project(origin))) / texel;
-        Window { first: DVec2::new(grid::floor(line.x), grid::floor(line.y)), z: None, ..*window }
+        Window { first: DVec2::new(numbers::floor(line.x), numbers::floor(line.y)), z: None, ..*window }
     }
 }
