@@ -147,8 +147,8 @@ fn keeps_maps(technique: &Technique) -> bool {
 
 /// The fewest slices of the view that are enough: the least count, up to that of the technique, for
 /// which the 95% quantile of pixels per texel with the best splits is at most `waste` times that with
-/// the technique's count. Of [windows](crate::settings::FitKind::Windows), which are no slices, it says
-/// nothing.
+/// the technique's count. It does not apply to
+/// [windows](crate::settings::FitKind::Windows).
 ///
 /// What is visible is taken from the histogram where the technique's splits use one, else estimated from the
 /// boxes; other split schemes count as [`SplitScheme::FromBoxes`](crate::settings::SplitScheme::FromBoxes)

@@ -685,8 +685,6 @@ fn setting_a_row_that_does_not_exist_is_an_error_that_names_what_to_set_first() 
         ("view.inset_white", "0.5", "view.inset_black", "0.25"),
         ("splits.manual_1", "3", "splits.scheme", "manual"),
         ("splits.manual_7", "300", "splits.scheme", "manual"),
-        ("override.map_1_height", "256", "override.map_1_resolution", "512"),
-        ("override.map_8_height", "256", "override.map_8_resolution", "512"),
     ] {
         let mut settings = Settings::default();
         let error = set_from_str(&mut settings, id, value).expect_err(id);

@@ -162,10 +162,13 @@ impl fmt::Display for FitError {
                 write!(f, "{input} is {given}; give {expected} as before, or build anew")
             }
             Self::NotOrthographic { why } => {
-                write!(f, "the matrix is no orthographic view-projection of this light: {why}")
+                write!(f, "the matrix is not an orthographic view-projection of this light: {why}")
             }
             Self::NotOnGrid => {
-                write!(f, "the map is on no grid; stabilise it by snapping or hysteresis, or take the sphere")
+                write!(
+                    f,
+                    "the map is not snapped to a grid; stabilise it by snapping or hysteresis, or take the sphere"
+                )
             }
             Self::ClampedCasters => f.write_str(CLAMPED),
             Self::ZeroResolution { resolution } => {

@@ -35,12 +35,12 @@ pub const SIDE: usize = 32;
 /// Length of [`NeedGrid::counts`].
 pub const CELLS: usize = LEVELS * SIDE * SIDE;
 
-/// Heights of a pixel that make up the picture, whatever its resolution: only the ratios of needs
-/// matter, so all grids count in pixels of the same size.
+/// Height of the picture in pixels, whatever its resolution: only the ratios of needs matter, so all grids
+/// count in pixels of the same size.
 pub const PIXELS: f32 = 1080.0;
 
-/// Sides of the pixel at a cell's distance that make up a cell: at a distance for which the level is
-/// made, which lies at most [`SIDE`] / 2 cells from the eye, a cell is a quarter of that distance.
+/// Number of cells in the distance for which a level is made. That distance lies at most [`SIDE`] / 2 cells from the
+/// eye.
 const CELLS_IN_DISTANCE: f32 = 4.0;
 
 /// Points that the light meets at less than this cosine are left out: they are next to dark, and

@@ -163,7 +163,7 @@ impl LightFit {
     }
 
     /// Texels between a world position, in metres, and the nearest of the map's sides; `None` where the
-    /// map does not [cover](Self::covers) it. A hair below 0 within the tolerance of that.
+    /// map does not [cover](Self::covers) it. It may be slightly negative, by rounding.
     pub fn free_texels(&self, point: DVec3) -> Option<f64> {
         let p = self.project(point);
         let (min, max) = (self.box_min.as_dvec3(), self.box_max.as_dvec3());

@@ -13,7 +13,7 @@ pub(super) const MAX_CELLS: usize = 1024;
 pub(super) type PerCell = [f32; MAX_CELLS];
 
 /// Share of the visible points with the finest needs, whose needs count as no finer than those of the rest:
-/// some surfaces seen at a glance ask for any texel.
+/// surfaces seen at grazing angles ask for arbitrarily fine texels.
 const FINEST: f32 = 0.02;
 
 /// The cells of a frame: squares of the plane, and what the points in them ask for. They lie in columns, so that four
