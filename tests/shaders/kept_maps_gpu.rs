@@ -4,7 +4,7 @@
 #[path = "kept_maps/town.rs"]
 mod town;
 
-use shadowfit::glam::{DVec3, UVec2, Vec3};
+use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::{FitKind, MapFormat};
 use shadowfit::{DepthConvention, Technique};
 use shadowfit_wgpu::{SunShadows, UpdateSchedule};
@@ -141,16 +141,6 @@ fn gpu_a_light_that_steps_and_a_camera_that_jumps_leave_nothing_behind() {
             walk.eye += DVec3::new(17.0, 0.0, -9.0);
             kept.invalidate_all();
         }
-    });
-}
-
-#[test]
-fn gpu_maps_smaller_than_their_layer_are_kept_while_they_stay() {
-    let mut technique = technique("windows-4");
-    technique.overrides[1].resolution = Some(UVec2::new(192, 128));
-    run(&technique, 40, |frame, town, walk, _| {
-        walk.go_on(frame / 3);
-        town.bob(frame);
     });
 }
 

@@ -1,7 +1,6 @@
 //! What a shadow map is made of: size, count, format, filter, choice of the map and depth convention.
 
 use shadowfit::choice::MapReading;
-use shadowfit::glam::UVec2;
 use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MAX_BLEND, MAX_MAPS, MapChoice, MapFormat, Softness};
 use shadowfit::softness::MAX_RADIUS;
 use shadowfit::{DepthConvention, Technique};
@@ -49,11 +48,10 @@ impl Default for ShadowMapDescriptor {
 }
 
 impl From<&Technique> for ShadowMapDescriptor {
-    /// Layers for the technique's maps, as wide and as high as the largest of them.
+    /// Layers for the technique's maps.
     fn from(technique: &Technique) -> Self {
-        let sizes = (0..technique.count as usize).map(|map| technique.resolution_of(map));
         Self {
-            resolution: sizes.fold(technique.fit.resolution, UVec2::max).to_array(),
+            resolution: technique.fit.resolution.to_array(),
             maps: technique.count,
             format: technique.format,
             filter: technique.filter,

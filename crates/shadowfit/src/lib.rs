@@ -56,7 +56,7 @@
 //! whole view. [`Workspace::required`] says how much storage the fits work in, from the number of
 //! boxes and of views; a `Vec` that is allocated once works as well as an array.
 //!
-//! [`Technique::default`] is the one to begin with: [windows](fits::windows), which are sharp and hardly
+//! [`Technique::default`] is the one to begin with: [`windows`], which are sharp and hardly
 //! ever make an edge crawl. Give it the [grid of need](need) of the frame before, which `shadowfit-wgpu`
 //! counts in the depth buffer by a compute pass. Without a grid the fit looks through the boxes in each
 //! frame: texels are a third wider, and with a thousand boxes a fit takes three times as long or more.
@@ -99,7 +99,7 @@
 //! | which map a point reads, by coverage or by view depth | [`choice`], [`FittedMaps::read`] |
 //! | which casters to draw into a map | [`CasterVolume`], [`culling`] for spheres, oriented boxes, whole lists and tighter volumes |
 //! | splits chosen by what the last frame showed | [`histogram`], [`FitInput::histogram`], [`FitInput::depth_bounds`] |
-//! | windows placed by what the last frame showed | [`fits::windows`], [`need`], [`FitInput::need`] |
+//! | windows placed by what the last frame showed | [`windows`], [`need`], [`FitInput::need`] |
 //! | how many maps are enough | [`map_fitter::fewest_maps`] |
 //! | boxes that hug large meshes | `clusters` and [`normal_cone`], feature `alloc` |
 //! | static casters drawn only where the map is new | [`scroll`] |
@@ -141,82 +141,52 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
+mod base;
+mod content;
+mod demand;
+mod keep;
+mod light;
+mod map;
+mod technique;
+mod view;
+
 pub mod bias;
-pub mod choice;
-#[cfg(feature = "alloc")]
-pub mod clusters;
 pub mod culling;
 pub mod diagnostics;
 pub mod fits;
-pub mod histogram;
-pub mod light_fit;
-pub mod light_steps;
-pub mod map_fitter;
+pub mod fitter;
 #[cfg(feature = "mint")]
 pub mod mint;
-pub mod need;
-pub mod normal_cone;
-pub mod presets;
-pub mod scroll;
-#[cfg(feature = "alloc")]
-pub mod seen;
-pub mod settings;
-pub mod softness;
+pub mod proof;
+pub mod selection;
 pub mod spot;
-pub mod verify;
+pub mod windows;
 
-mod axes;
-mod bounds;
-mod camera;
-mod checks;
-mod content;
-mod covered;
-mod depth;
-mod depth_storage;
-mod enclosing_sphere;
-mod error;
-mod frustum;
-mod grid;
-mod groups;
-mod hull;
-mod input;
-mod light_hull;
-mod maps;
-mod motion;
-mod near_plane;
-mod number;
-mod outline;
-mod rectangle;
-mod rule;
+mod slices;
+
 #[cfg(feature = "alloc")]
 mod shadow_fitter;
-mod splits;
-mod technique;
-mod texel_rect;
-mod view;
-mod volume;
-mod windows;
 
+pub use base::{Aabb, Boxes, DepthConvention, FitError};
 pub use bias::Bias;
-pub use bounds::{Aabb, Boxes};
-pub use camera::PerspectiveCamera;
-pub use culling::CasterVolume;
-pub use depth::DepthConvention;
-pub use error::FitError;
-pub use fits::fit;
-pub use frustum::ViewFrustum;
-pub use glam;
-pub use input::{FitInput, Workspace};
-pub use light_fit::LightFit;
-pub use map_fitter::MapFitter;
-pub use maps::{FittedMap, FittedMaps};
-pub use presets::{PRESETS, Preset};
 #[cfg(feature = "alloc")]
-pub use seen::Seen;
+pub use content::clusters;
+pub use content::normal_cone;
+pub use culling::CasterVolume;
+#[cfg(feature = "alloc")]
+pub use demand::seen::{self, Seen};
+pub use demand::{histogram, need};
+pub use fits::{FitInput, LightFit, Workspace, fit, light_fit};
+pub use fitter::MapFitter;
+pub use glam;
+pub use keep::{light_steps, scroll};
+pub use map::{FittedMap, FittedMaps};
 #[cfg(feature = "alloc")]
 pub use shadow_fitter::ShadowFitter;
 pub use spot::{SpotBias, SpotFit, SpotLight};
-pub use technique::Technique;
+pub use technique::{PRESETS, Preset, Technique, presets, settings, softness};
+pub use view::{PerspectiveCamera, ViewFrustum};
+pub use {fitter as map_fitter, proof as verify, selection as choice};
 
 /// Runs the example of the README as a test.
 #[cfg(doctest)]

@@ -31,9 +31,10 @@
 use ::mint::{ColumnMatrix4, Point3, Vector3, Vector4};
 use glam::{DMat4, DVec3, Mat4, Vec3, Vec4};
 
+use crate::base::{Aabb, DepthConvention, FitError};
 use crate::culling::{OrientedBox, Sphere};
-use crate::light_fit::WorldMatrices;
-use crate::{Aabb, DepthConvention, FitError, ViewFrustum};
+use crate::fits::light_fit::WorldMatrices;
+use crate::view::ViewFrustum;
 
 /// A direction or position as this crate takes it, in its own unit.
 pub fn vec3(v: impl Into<Vector3<f32>>) -> Vec3 {

@@ -5,8 +5,8 @@ use shadowfit::glam::{DMat4, DVec3, DVec4, UVec2, Vec3};
 use shadowfit::histogram::DepthHistogram;
 use shadowfit::normal_cone::NormalCone;
 use shadowfit::settings::{
-    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MAX_MAPS, MapChoice, MapFormat,
-    MapOverride, NeedSource, ReceiverSource, RectangleKind, Softness, SplitScheme, Stabilise,
+    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, MapFormat, NeedSource,
+    ReceiverSource, RectangleKind, Softness, SplitScheme, Stabilise,
 };
 use shadowfit::{Aabb, Boxes, DepthConvention, FitError, FitInput, PerspectiveCamera, Technique, ViewFrustum};
 
@@ -212,7 +212,6 @@ pub(crate) fn technique(random: &mut Random, camera: &PerspectiveCamera) -> Tech
         overlap: random.pick(&[0.0, 0.1, 0.5]),
         stabilise: random.pick(&[Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis]),
         hold: HoldSettings { margin: 0.02, growth: 1.4, waste: random.between(1.2, 3.0), horizon: 32 },
-        overrides: [MapOverride::default(); MAX_MAPS],
         receivers: ReceiverSource::Clusters,
         filter: FilterKind::Point,
         softness: Softness::default(),

@@ -7,7 +7,7 @@ mod scene;
 
 use glam::{DVec3, UVec2, Vec3};
 use shadowfit::bias::XNA_DEPTH_BIAS;
-use shadowfit::settings::FitSettings;
+use shadowfit::settings::{FitKind, FitSettings};
 use shadowfit::{FitError, PerspectiveCamera};
 
 use crate::mapped::{
@@ -196,10 +196,11 @@ fn shading(ambient: f32) -> Shading {
 fn drawing(values: &SampleValues, camera: &PerspectiveCamera) -> Result<SampleDrawing, FitError> {
     let size: u32 = values.choice("map").parse().unwrap_or(2048);
     let settings = FitSettings::default()
+        .with_kind(FitKind::XnaSample)
         .with_resolution(UVec2::splat(size))
         .with_max_distance(camera.far)
         .with_margin(values.get("margin"));
-    let fit = shadowfit::fits::xna::fit(&camera.frustum()?, DIRECTION, &settings)?;
+    let fit = shadowfit::fit(&camera.frustum()?, DIRECTION, &settings)?;
     let test = match values.choice("shadows") {
         "off" => ShadowTest::OFF,
         "ours" => return Ok(SampleDrawing::Technique { technique: modern(camera.far), is_tinted: false }),

@@ -1,6 +1,6 @@
 //! A technique on the stage: its maps, what draws them, and what judges the picture.
 
-use shadowfit::settings::{CasterPolicy, MapOverride};
+use shadowfit::settings::CasterPolicy;
 use shadowfit::{DepthConvention, FittedMap, LightFit, PerspectiveCamera, Seen, Technique};
 use shadowfit_params::tool::{ErrorMarks, InsetMaps, Settings, ViewMode};
 use shadowfit_render::{Culling, Gpu, Marks, Overlay, RenderTarget, Renderer, Statistics};
@@ -178,7 +178,6 @@ impl Side {
             self.problem = Some(error.to_string());
             let map = self.evaluator.renderer.shadow_map().descriptor();
             technique.count = technique.count.min(map.maps);
-            technique.overrides = technique.overrides.map(|own| MapOverride { resolution: None, ..own });
             let fit = &mut technique.fit;
             (fit.resolution, fit.depth) = (map.resolution.into(), map.depth);
             if fit.casters == CasterPolicy::DepthClamp && !map.depth_clamp {

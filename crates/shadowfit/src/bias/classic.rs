@@ -1,7 +1,7 @@
 //! The biases of the classic techniques, as plain depth numbers, flaws included.
 
-use crate::settings::FilterKind;
-use crate::{FitError, checks};
+use crate::base::{FitError, checks};
+use crate::technique::settings::FilterKind;
 
 /// Depth bias of the XNA Shadow Mapping sample (Microsoft, 2008), in units of the stored depth: a
 /// point is in shadow when `stored < depth - 0.001`. See [`Bias::fixed`](crate::Bias::fixed).

@@ -2,8 +2,12 @@
 
 use glam::Vec2;
 
-use crate::settings::FilterKind;
-use crate::{FitError, LightFit, checks};
+use crate::base::numbers::UNIT;
+use crate::base::{FitError, checks};
+use crate::fits::LightFit;
+use crate::technique::Technique;
+use crate::technique::settings::{FilterKind, Softness};
+use crate::technique::softness::{LOOK_UP_SQUARE, reach};
 
 /// Reach of a filter, in texels: which texel centres have a weight that is not zero.
 ///
@@ -35,9 +39,6 @@ pub const HARDWARE_SNAP: f32 = 1.0 / 256.0;
 /// box: four operations a term, in each of two transforms, on terms that sum to at most twice that
 /// distance.
 const PRECISION_ROUNDINGS: f64 = 16.0;
-
-/// Relative rounding of f32, 2⁻²⁴.
-const ROUNDING: f64 = 1.0 / 16_777_216.0;
 
 impl Reach {
     /// One comparison with the nearest texel: E = 0.5.
@@ -115,24 +116,37 @@ impl From<FilterKind> for Reach {
     }
 }
 
-/// Reach E of a filter: the greatest distance along one axis from the sampled point to a texel
-/// centre of non-zero weight, in texels. Of a [soft](FilterKind::is_soft) filter it is that of one of its look-ups: the
-/// disc over which they are spread is [`Softness`](crate::settings::Softness)'s, and
-/// [`Technique::reach`](crate::Technique::reach) has both.
-pub const fn reach(filter: FilterKind) -> f32 {
-    match filter {
-        FilterKind::Point => Reach::POINT.taps,
-        FilterKind::Hardware2x2 | FilterKind::Vogel8 | FilterKind::Vogel16 | FilterKind::Vogel32 | FilterKind::Pcss => {
-            Reach::HARDWARE_2X2.taps
+impl Softness {
+    /// Radii along u and v of the ellipse over which a filter's look-ups are spread in a map, in texels: for
+    /// [`FilterKind::Pcss`] the greatest. Look-ups blur by themselves ([`LOOK_UP_SQUARE`]), which is
+    /// taken off, so that penumbrae are as wide in maps of other texels.
+    pub fn texels(&self, filter: FilterKind, fit: &LightFit) -> Vec2 {
+        if !filter.is_soft() {
+            return Vec2::ZERO;
         }
-        FilterKind::Pcf3x3 => Reach::kernel(3).taps,
-        FilterKind::Pcf5x5 => Reach::kernel(5).taps,
-        FilterKind::Pcf7x7 => Reach::kernel(7).taps,
+        let radius = Vec2::splat(self.metres(filter)) / fit.texel_size;
+        let own = |radius: f32| libm::sqrtf((radius * radius - LOOK_UP_SQUARE).max(0.0));
+        // Not clamp, which panics where a floor lies above its ceiling.
+        let within = |radius: f32| radius.max(self.floor).min(self.ceiling);
+        Vec2::new(within(own(radius.x)), within(own(radius.y)))
+    }
+
+    /// Reach of a filter in a map, in its texels: the [look-up's](reach) over the disc of [`Self::texels`].
+    pub fn reach_in(&self, filter: FilterKind, fit: &LightFit) -> Reach {
+        Reach { disc: self.texels(filter, fit), ..Reach::taps(reach(filter)) }
+    }
+}
+
+impl Technique {
+    /// Reach of the filter in one map, in its texels: for caster volumes, certificates and biases. Of
+    /// [`FilterKind::Pcss`] it is that of the widest penumbra.
+    pub fn reach_in(&self, fit: &LightFit) -> Reach {
+        self.softness.reach_in(self.filter, fit)
     }
 }
 
 /// Greatest f32 rounding error of a position in the map's box, in metres.
 pub(crate) fn rounding(fit: &LightFit) -> f64 {
     let distances = fit.corners().map(|corner| checks::length(corner.as_dvec3()));
-    PRECISION_ROUNDINGS * ROUNDING * distances.into_iter().fold(0.0, f64::max)
+    PRECISION_ROUNDINGS * UNIT * distances.into_iter().fold(0.0, f64::max)
 }

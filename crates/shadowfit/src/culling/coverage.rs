@@ -1,10 +1,11 @@
 //! Which part of the views reads a map by coverage: what no finer map provably holds.
 
 use super::readers::{Reader, holds_slice};
-use crate::choice::{MapOrder, MapReading};
-use crate::settings::{MAX_MAPS, MapChoice};
-use crate::view::DEPTH_ROUNDING;
-use crate::{FittedMap, ViewFrustum};
+use crate::base::numbers::VIEW_DEPTH_ROUNDING;
+use crate::map::FittedMap;
+use crate::selection::{MapOrder, MapReading};
+use crate::technique::settings::{MAX_MAPS, MapChoice};
+use crate::view::ViewFrustum;
 
 /// Halvings of the views' depths in the search for what a finer map holds: to a four thousandth of them.
 const HALVINGS: u32 = 12;
@@ -25,7 +26,7 @@ pub(super) fn read_from(
     // Up to where the finer maps hold all.
     let mut held = f32::MIN;
     for index in MapOrder::new(MapChoice::Coverage, maps.iter().map(|map| &map.fit)).iter() {
-        from[index] = (held < f32::MAX).then_some((held - held.abs() * DEPTH_ROUNDING).max(f32::MIN));
+        from[index] = (held < f32::MAX).then_some((held - held.abs() * VIEW_DEPTH_ROUNDING).max(f32::MIN));
         held = held_to(&maps[index], reader, views, free, held);
     }
     from

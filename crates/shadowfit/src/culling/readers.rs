@@ -9,11 +9,15 @@ use glam::{DVec2, DVec3, DVec4, Vec3};
 use super::coverage;
 use super::sweep::Sweep;
 use super::volume::CasterVolume;
+use crate::base::numbers::VIEW_DEPTH_ROUNDING;
+use crate::base::{FitError, checks};
 use crate::bias::{MIN_COSINE, Reach};
-use crate::choice::MapReading;
-use crate::settings::{CasterPolicy, MAX_MAPS, MapChoice};
-use crate::view::DEPTH_ROUNDING;
-use crate::{FitError, FittedMap, FittedMaps, LightFit, Technique, ViewFrustum, checks};
+use crate::fits::LightFit;
+use crate::map::{FittedMap, FittedMaps};
+use crate::selection::MapReading;
+use crate::technique::Technique;
+use crate::technique::settings::{CasterPolicy, MAX_MAPS, MapChoice};
+use crate::view::ViewFrustum;
 
 /// From where maps are read: what the positions and view depths in a shader are counted from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -195,7 +199,7 @@ impl Readers<'_> {
 
     /// A slice, widened by the depths that rounding or another eye may move into it.
     fn widened(&self, slice: Slice) -> Slice {
-        let beside = |depth: f32| self.mismatch + f64::from(depth).abs() * f64::from(DEPTH_ROUNDING);
+        let beside = |depth: f32| self.mismatch + f64::from(depth).abs() * f64::from(VIEW_DEPTH_ROUNDING);
         let bounded = |depth: f64| depth.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
         Slice {
             near: bounded(f64::from(slice.near) - beside(slice.near)),

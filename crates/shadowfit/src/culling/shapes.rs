@@ -6,7 +6,7 @@
 
 use glam::{Mat4, Vec3};
 
-use crate::Aabb;
+use crate::base::Aabb;
 
 /// Rounding that the tests allow for, as a share of the coordinates of shape and plane: 16 · 2⁻²⁴.
 /// A test has at most ten operations in f32; the planes' normals are rounded once, and are off by

@@ -21,12 +21,13 @@
 use glam::{DVec2, DVec3, Vec3};
 
 use super::volume::{CasterVolume, map_planes};
+use crate::base::checks::MAX_LENGTH;
+use crate::base::hull::HullBuilder;
+use crate::base::numbers::ROUNDING;
+use crate::base::{FitError, checks};
 use crate::bias::Reach;
-use crate::checks::{self, MAX_LENGTH};
-use crate::hull::HullBuilder;
-use crate::view::{Slice, View};
-use crate::volume::ROUNDING;
-use crate::{FitError, LightFit, ViewFrustum};
+use crate::fits::LightFit;
+use crate::view::{Slice, View, ViewFrustum};
 
 /// Which receivers read a map, and how far around them.
 #[derive(Clone, Copy, Debug, PartialEq)]

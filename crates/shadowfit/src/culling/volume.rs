@@ -3,9 +3,10 @@
 use glam::{DVec3, Vec3, Vec4};
 
 use super::shapes::{Bounds, OrientedBox, ROUNDING, Sphere};
-use crate::settings::CasterPolicy;
-use crate::texel_rect::TexelRect;
-use crate::{Aabb, LightFit};
+use crate::base::Aabb;
+use crate::fits::LightFit;
+use crate::keep::texel_rect::TexelRect;
+use crate::technique::settings::CasterPolicy;
 
 /// A convex volume that holds casters of one map, as planes: plain data, for the CPU and for
 /// shaders alike.

@@ -3,9 +3,10 @@
 use glam::{DVec3, Vec3};
 
 use super::coverage::coverage;
+use crate::base::{FitError, checks};
+use crate::bias::depth_storage::DepthStorage;
 use crate::bias::{Bias, Reach, SQUARED_SINE_ROUNDING, Slope, depth_precision};
-use crate::depth_storage::DepthStorage;
-use crate::{FitError, LightFit, checks};
+use crate::fits::LightFit;
 
 /// Bias less what a plane needs. Where it is negative, so much bias is missing, and the plane
 /// shadows itself in stripes.

@@ -2,8 +2,9 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
+use crate::base::{DepthConvention, FitError, checks};
 use crate::bias::Reach;
-use crate::{DepthConvention, FitError, LightFit, checks};
+use crate::fits::LightFit;
 
 /// Where a point lies in a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

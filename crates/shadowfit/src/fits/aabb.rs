@@ -15,18 +15,6 @@
 //! The roll about the light comes from the shortest arc from straight down, so the map turns
 //! continuously with the sun.
 
-use glam::Vec3;
+use super::Form;
 
-use crate::fits::fit_as;
-use crate::settings::{FitKind, FitSettings};
-use crate::{FitError, LightFit, ViewFrustum};
-
-/// Fits the frustum's box in the light's axes; see the [module](self). `direction` is the light's
-/// direction of travel in world axes.
-///
-/// # Errors
-///
-/// As [`fits::fit`](super::fit).
-pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightFit, FitError> {
-    fit_as(FitKind::FrustumAabb, frustum, direction, settings)
-}
+pub(super) const FORM: Form = Form::OF_VIEWS;

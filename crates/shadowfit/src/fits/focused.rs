@@ -6,19 +6,7 @@
 //! the surfaces, the finer the texels, which is why it pays to cut a large mesh into clusters
 //! (`Clusters`, with the feature `alloc`).
 
-use glam::Vec3;
+use super::{Covers, Form};
 
-use crate::fits::fit_as;
-use crate::settings::{FitKind, FitSettings};
-use crate::{FitError, LightFit, ViewFrustum};
-
-/// Fits a frustum without known receivers, which gives the [oriented](super::oriented) fit;
-/// [`fit_scene`](crate::fits::fit_scene) takes boxes. `direction` is the light's direction of
-/// travel in world axes.
-///
-/// # Errors
-///
-/// As [`fits::fit`](super::fit).
-pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightFit, FitError> {
-    fit_as(FitKind::Focused, frustum, direction, settings)
-}
+pub(super) const FORM: Form =
+    Form { covers: Covers::Receivers, may_turn: true, whole_distance: true, ..Form::OF_VIEWS };

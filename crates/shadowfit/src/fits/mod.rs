@@ -4,23 +4,38 @@
 //! space says what must be inside, a rectangle lies around it, and the caster policy places the near
 //! plane. [`fit`] and [`fit_scene`] take the rule from the settings.
 
-pub mod aabb;
-pub mod focused;
-pub mod oriented;
+pub mod light_fit;
 pub mod sphere;
-pub mod windows;
-pub mod xna;
+
+mod aabb;
+pub(crate) mod covered;
+mod focused;
+mod frame;
+mod input;
+pub(crate) mod light_hull;
+mod matrix;
+pub(crate) mod near_plane;
+mod oriented;
+pub(crate) mod rectangle;
+mod rule;
+pub(crate) mod volume;
+mod xna;
+
+pub(crate) use frame::{Frame, Place, PlacedMap, PlacedMaps};
+pub use input::{FitInput, Workspace};
+pub use light_fit::LightFit;
+pub(crate) use rule::{Covers, Depth, FitRule, Form, check_least_texel, default_border};
+pub use volume::Constraint;
+pub(crate) use volume::Volume;
 
 use glam::{DVec2, Vec3};
 
-use crate::axes::Light;
+use crate::base::{FitError, checks};
 use crate::content::Content;
-use crate::covered::Covered;
-use crate::rule::{Covers, FitRule, default_border};
-use crate::settings::{FitKind, FitSettings};
-use crate::view::Range;
-use crate::volume::Volume;
-use crate::{FitError, FitInput, LightFit, ViewFrustum, Workspace, checks, grid, near_plane};
+use crate::fits::covered::Covered;
+use crate::light::Light;
+use crate::technique::settings::FitSettings;
+use crate::view::{Range, ViewFrustum};
 
 /// Fits the light's orthographic view-projection to a camera frustum, by the rule that
 /// [`FitSettings::kind`] names.
@@ -39,14 +54,13 @@ use crate::{FitError, FitInput, LightFit, ViewFrustum, Workspace, checks, grid, 
 pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightFit, FitError> {
     let input = FitInput::new(core::slice::from_ref(frustum), direction);
     let (rule, light) = prepare(&input, settings, default_border(settings))?;
-    if rule.covers == Covers::ExactCorners {
+    if rule.form.is_exact {
         // It uses nothing but the corners, and is as cheap as the sample's own code only without
         // storage.
-        return fit_whole(&Content::of_views(&input), &light, &rule, settings.max_distance, &mut []);
+        return fit_whole(&Content::of_views(input.scene()), &light, &rule, settings.max_distance, &mut []);
     }
     let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-    let mut workspace = Workspace::new(&mut storage);
-    let (content, points) = Content::new(&input, &mut workspace)?;
+    let (content, points) = Content::new(input.scene(), &mut storage)?;
     fit_whole(&content, &light, &rule, settings.max_distance, points)
 }
 
@@ -62,7 +76,7 @@ pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Re
 /// [`Workspace::required`].
 pub fn fit_scene(input: &FitInput, settings: &FitSettings, workspace: &mut Workspace) -> Result<LightFit, FitError> {
     let (rule, light) = prepare(input, settings, default_border(settings))?;
-    let (content, points) = Content::new(input, workspace)?;
+    let (content, points) = Content::new(input.scene(), workspace.storage)?;
     fit_whole(&content, &light, &rule, settings.max_distance, points)
 }
 
@@ -76,8 +90,8 @@ fn fit_whole(
     points: &mut [DVec2],
 ) -> Result<LightFit, FitError> {
     let range = Range { near: f32::MIN, far: distance };
-    let mut volume = fit_map(content, light, rule, range, Placement::Tight, points)?;
-    grid::stabilise_depth(&mut volume, content.origin, None, 1.0);
+    let mut volume = fit_map(content, light, rule, range, Snapping::Tight, points)?;
+    volume.stabilise_depth(content.origin, None, 1.0);
     LightFit::from_volume(content.origin, &volume, rule.resolution, rule.convention)
 }
 
@@ -98,15 +112,15 @@ pub(crate) fn prepare(input: &FitInput, settings: &FitSettings, border: f32) -> 
     if near >= settings.max_distance {
         return Err(FitError::NearNotBelowFar { near, far: settings.max_distance });
     }
-    Ok((rule, Light::new(direction, up, rule.roll)))
+    Ok((rule, Light::new(direction, up, rule.form.roll)))
 }
 
 /// Whether a fit is as tight as possible or lies on the world's grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Placement {
+pub(crate) enum Snapping {
     Tight,
-    /// With extents and position across the light [on the grid](grid::snap); the depth range is left
-    /// for [`grid::stabilise_depth`].
+    /// With extents and position across the light [on the grid](Volume::snap); the depth range is left
+    /// for [`Volume::stabilise_depth`].
     OnGrid,
 }
 
@@ -118,38 +132,21 @@ pub(crate) fn fit_map(
     light: &Light,
     rule: &FitRule,
     range: Range,
-    placement: Placement,
+    snapping: Snapping,
     points: &mut [DVec2],
 ) -> Result<Volume, FitError> {
     // 1. The light's axes, along which everything is measured from here on.
-    let axes = light.axes(rule.roll);
+    let axes = light.axes(rule.form.roll);
     // 2. What must be inside: its hull in the light's space, the rectangle around that, and the depth
     //    of both, padded for rounding and by the margin.
     let Covered { mut volume, rounding, shadowed } = Covered::new(rule, content, axes, range, points)?;
     // 3. The map around it, with the border that the filter reads: on the grid or as tight as can be.
-    match (rule.covers, placement) {
-        (Covers::ExactCorners, _) => {}
-        (Covers::Sphere, _) | (_, Placement::OnGrid) => _ = grid::snap(&mut volume, content.origin, rule),
-        (_, Placement::Tight) => add_border(&mut volume, rule),
+    if rule.form.is_on_grid || snapping == Snapping::OnGrid && !rule.form.is_exact {
+        volume.snap(content.origin, rule);
+    } else if !rule.form.is_exact {
+        volume.add_border(rule);
     }
     // 4. The near plane, moved toward the light so that casters are kept, and the light in it.
     near_plane::place(&mut volume, rule, shadowed, rounding, content);
     Ok(volume)
-}
-
-/// Leaves the border's texels free on all sides.
-fn add_border(volume: &mut Volume, rule: &FitRule) {
-    let border = DVec2::splat(rule.border);
-    let free = (volume.max - volume.min).truncate() / (rule.resolution.as_dvec2() - border * 2.0) * border;
-    (volume.min, volume.max) = (volume.min - free.extend(0.0), volume.max + free.extend(0.0));
-}
-
-/// Fits a single frustum by the given kind; the kind in the settings is ignored.
-pub(crate) fn fit_as(
-    kind: FitKind,
-    frustum: &ViewFrustum,
-    direction: Vec3,
-    settings: &FitSettings,
-) -> Result<LightFit, FitError> {
-    fit(frustum, direction, &FitSettings { kind, ..*settings })
 }

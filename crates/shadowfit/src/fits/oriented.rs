@@ -5,18 +5,6 @@
 //! turns and changes its size with every movement of the camera, so shadow edges crawl unless the
 //! fit is [held](crate::settings::Stabilise::Hysteresis).
 
-use glam::Vec3;
+use super::Form;
 
-use crate::fits::fit_as;
-use crate::settings::{FitKind, FitSettings};
-use crate::{FitError, LightFit, ViewFrustum};
-
-/// Fits the least rectangle of the frustum; see the [module](self). `direction` is the light's
-/// direction of travel in world axes.
-///
-/// # Errors
-///
-/// As [`fits::fit`](super::fit).
-pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightFit, FitError> {
-    fit_as(FitKind::Oriented, frustum, direction, settings)
-}
+pub(super) const FORM: Form = Form { may_turn: true, ..Form::OF_VIEWS };

@@ -24,22 +24,14 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::enclosing_sphere::{SymmetricFrustum, minimal};
-use crate::fits::fit_as;
-use crate::settings::{FitKind, FitSettings};
-use crate::{FitError, LightFit, ViewFrustum};
+use super::{Covers, Form};
+use crate::base::FitError;
+use crate::base::sphere::{SymmetricFrustum, minimal};
+use crate::view::ViewFrustum;
 
 pub use crate::content::MAX_SPHERE_VIEWS as MAX_VIEWS;
 
-/// Fits the frustum's enclosing sphere; see the [module](self). `direction` is the light's
-/// direction of travel in world axes.
-///
-/// # Errors
-///
-/// As [`fits::fit`](super::fit).
-pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightFit, FitError> {
-    fit_as(FitKind::Sphere, frustum, direction, settings)
-}
+pub(super) const FORM: Form = Form { covers: Covers::Sphere, is_on_grid: true, ..Form::OF_VIEWS };
 
 /// Centre and radius, in metres, of the minimal sphere around a frustum's corners: the centre in
 /// world axes relative to [`ViewFrustum::origin`]. Exact to 1e-9 of the radius for the given f32

@@ -22,19 +22,8 @@
 //! a vertical light takes another up axis (the source divides by zero), reversed and -1..1 depth
 //! are offered, and `margin` is the remedy that the source's text suggests.
 
-use glam::Vec3;
+use super::{Covers, Form};
+use crate::light::Roll;
 
-use crate::fits::fit_as;
-use crate::settings::{FitKind, FitSettings};
-use crate::{FitError, LightFit, ViewFrustum};
-
-/// Fits as the XNA sample does; see the [module](self). `direction` is the light's direction of
-/// travel in world axes. The caster policy, the rectangle and the border of the settings are
-/// ignored.
-///
-/// # Errors
-///
-/// As [`fits::fit`](super::fit).
-pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Result<LightFit, FitError> {
-    fit_as(FitKind::XnaSample, frustum, direction, settings)
-}
+pub(super) const FORM: Form =
+    Form { covers: Covers::Corners, roll: Roll::LookAt, is_exact: true, whole_distance: true, ..Form::OF_VIEWS };

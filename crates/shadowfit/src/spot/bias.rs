@@ -44,10 +44,11 @@ use glam::{DVec3, Vec2, Vec3};
 
 use super::SpotFit;
 use super::plane::Plane;
+use crate::base::numbers::UNIT;
+use crate::base::{DepthConvention, FitError, checks};
+use crate::bias::depth_storage::{DepthStorage, depth_step};
 use crate::bias::{HARDWARE_SNAP, PlaneBias, Reach};
-use crate::depth_storage::{DepthStorage, depth_step};
-use crate::settings::BiasSettings;
-use crate::{DepthConvention, FitError, checks};
+use crate::technique::settings::BiasSettings;
 
 /// Biases ready for a shader. Let n be the geometric normal, turned toward the light, α its angle to the light's axis
 /// (sin α = |n × axis|, which does not lose digits as √(1 - cos²) does), d the receiver's distance along the axis and
@@ -87,14 +88,11 @@ pub struct SpotBias {
 /// up to half of that again, since a lift may carry a point away from the light.
 const ROUNDINGS: f64 = 64.0;
 
-/// Relative rounding of f32, 2⁻²⁴.
-const ROUNDING: f64 = 1.0 / 16_777_216.0;
-
 /// What f32 can make of a coordinate, as a share of the terms that it is the sum of.
-const TERMS: f64 = ROUNDINGS * ROUNDING;
+const TERMS: f64 = ROUNDINGS * UNIT;
 
 /// Share by which an offset is enlarged for the rounding of its own factors in a shader: eight of 2⁻²⁴.
-const FACTORS: f64 = 8.0 * ROUNDING;
+const FACTORS: f64 = 8.0 * UNIT;
 
 impl SpotBias {
     /// Converts biases in texels for one map, and those in steps of how it stores depths, which may be given as the

@@ -3,7 +3,8 @@
 use glam::{DVec3, Vec4};
 
 use super::SpotFit;
-use crate::{CasterVolume, checks};
+use crate::base::checks;
+use crate::culling::CasterVolume;
 
 impl SpotFit {
     /// Every caster that the map can store: the light's frustum, relative to [`Self::origin`], as planes -x, +x, -y,

@@ -3,9 +3,9 @@
 use glam::{DMat4, DVec3, DVec4, Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use super::Lens;
-use crate::axes::LightAxes;
-use crate::light_fit::WorldMatrices;
-use crate::{DepthConvention, checks};
+use crate::base::{DepthConvention, checks};
+use crate::fits::light_fit::WorldMatrices;
+use crate::light::LightAxes;
 
 /// A perspective view-projection of a spot light.
 ///

@@ -3,9 +3,9 @@
 use glam::{DVec3, Vec3};
 
 use super::SpotFit;
+use crate::base::checks::{MAX_LENGTH, MIN_LENGTH};
+use crate::base::{DepthConvention, FitError, checks};
 use crate::bias::{MIN_COSINE, Reach};
-use crate::checks::{MAX_LENGTH, MIN_LENGTH};
-use crate::{DepthConvention, FitError, checks};
 
 /// A plane with the unit normal n on the light's side, in light axes and in texels.
 pub(super) struct Plane {

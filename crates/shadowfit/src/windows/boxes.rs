@@ -8,12 +8,13 @@
 use glam::DVec3;
 
 use super::cells::{Cells, Counted};
+use crate::base::checks;
 use crate::content::Content;
-use crate::need::{NeedSpace, PIXELS, Plane, needed_texel};
-use crate::normal_cone::NormalCone;
-use crate::splits::visible::{RayCount, covered, crossing};
-use crate::view::{self, Slice, View};
-use crate::{FitInput, checks};
+use crate::content::normal_cone::NormalCone;
+use crate::demand::need::{NeedSpace, PIXELS, Plane, needed_texel};
+use crate::fits::FitInput;
+use crate::slices::visible::{RayCount, covered, crossing};
+use crate::view::{Picture as Positions, Slice, View};
 
 /// Rays across and down the picture.
 const RAYS: RayCount = RayCount::FINE;
@@ -78,7 +79,7 @@ pub(super) fn add(cells: &mut Cells, input: &FitInput, content: &Content, plane:
 struct Picture<'a> {
     plane: &'a Plane,
     whole: Slice,
-    positions: view::Picture,
+    positions: Positions,
     right: DVec3,
     down: DVec3,
     /// Width of a pixel at a view depth of one metre, in metres.

@@ -3,7 +3,8 @@
 use glam::{DVec3, Vec2};
 
 use super::placement::Rect;
-use crate::need::{LEVELS, NeedGrid, NeedSpace, Plane, SIDE};
+use crate::base::numbers::{greater, lesser};
+use crate::demand::need::{LEVELS, NeedGrid, NeedSpace, Plane, SIDE};
 
 /// Most cells that are kept; those with the fewest points are left out where there are more.
 pub(super) const MAX_CELLS: usize = 1024;
@@ -12,7 +13,7 @@ pub(super) const MAX_CELLS: usize = 1024;
 pub(super) type PerCell = [f32; MAX_CELLS];
 
 /// Share of the visible points with the finest needs, whose needs count as no finer than those of the rest:
-/// some surfaces seen at a glance ask for any texel.
+/// surfaces seen at grazing angles ask for arbitrarily fine texels.
 const FINEST: f32 = 0.02;
 
 /// The cells of a frame: squares of the plane, and what the points in them ask for. They lie in columns, so that four
@@ -216,15 +217,4 @@ impl Cells {
         }
         sums.iter().sum::<f32>() + rest
     }
-}
-
-/// The lesser and the greater one of two numbers, in one instruction each; the second one where one is NaN.
-#[inline(always)]
-pub(super) const fn lesser(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-#[inline(always)]
-pub(super) const fn greater(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }

@@ -3,13 +3,13 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::axes::LightAxes;
+use crate::base::numbers::{ROUNDING, THINNEST};
+use crate::base::{Boxes, FitError, moved};
 use crate::content::Content;
-use crate::need::Plane;
-use crate::rule::{Depth, FitRule};
-use crate::view::{Range, moved};
-use crate::volume::{Constraint, ROUNDING};
-use crate::{Boxes, FitError};
+use crate::demand::need::Plane;
+use crate::fits::{Constraint, Depth, FitRule};
+use crate::light::LightAxes;
+use crate::view::Range;
 
 /// Boxes as the light sees them, three elements each: least and greatest x and y, and z.
 pub(super) struct Shadows<'a> {
@@ -129,9 +129,6 @@ pub(super) struct WindowDepth {
 /// Greatest size of the last window over that of what it must hold: borders of a quarter of its texels on
 /// either side, and the texels of the grid's steps and of what is held.
 const WIDENING: f64 = 4.0;
-
-/// Room at either end of the depths as a share of the distance, so that a flat ground has any.
-const THINNEST: f64 = 1e-5;
 
 /// Passes on the z range of each box that lies over a rectangle.
 fn over(boxes: &[DVec2], min: DVec2, max: DVec2, mut visit: impl FnMut(DVec2)) {

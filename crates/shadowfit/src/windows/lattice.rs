@@ -6,10 +6,10 @@
 use glam::{DVec2, DVec3};
 
 use super::placement::Rect;
-use crate::grid;
-use crate::need::Plane;
-use crate::rule::FitRule;
-use crate::settings::MAX_MAPS;
+use crate::base::numbers;
+use crate::demand::need::Plane;
+use crate::fits::FitRule;
+use crate::light::grid;
 
 /// A window, in absolute world coordinates.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,8 +29,8 @@ pub(super) struct Lattice {
     /// Position of the origin of the fit in the plane.
     anchor: DVec2,
     /// Free texels at the border of each window, and those between the borders.
-    border: [f64; MAX_MAPS],
-    pub(super) usable: [DVec2; MAX_MAPS],
+    border: f64,
+    pub(super) usable: DVec2,
     /// Least width of a window's texels, in eighths of an octave of a metre.
     pub(super) least: i32,
 }
@@ -43,19 +43,13 @@ const LAST_WASTE: i32 = 5;
 const MOVE_ON: f64 = 0.3;
 
 impl Lattice {
-    /// `rules` are those of the windows, finest first.
-    pub(super) fn new<'a>(plane: Plane, origin: DVec3, rules: impl Iterator<Item = &'a FitRule>) -> Self {
+    /// The lattice of windows that are fitted by a rule.
+    pub(super) fn new(plane: Plane, origin: DVec3, rule: &FitRule) -> Self {
         let anchor = plane.of(plane.axes.project(origin));
-        let (border, usable) = ([0.0; MAX_MAPS], [DVec2::ONE; MAX_MAPS]);
-        let mut lattice = Self { plane, anchor, border, usable, least: i32::MIN };
-        for (i, rule) in rules.enumerate().take(MAX_MAPS) {
-            (lattice.border[i], lattice.usable[i]) = (rule.border, grid::usable(rule));
-            if rule.least_texel > 0.0 {
-                // Along the plane's height texels are shorter than wide.
-                lattice.least = lattice.least.max(grid::eighths_above(rule.least_texel / plane.shape));
-            }
-        }
-        lattice
+        // Along the plane's height texels are shorter than wide.
+        let is_limited = rule.least_texel > 0.0;
+        let least = if is_limited { grid::eighths_above(rule.least_texel / plane.shape) } else { i32::MIN };
+        Self { plane, anchor, border: rule.border, usable: rule.usable(), least }
     }
 
     /// Size of a window's texels, in metres.
@@ -65,27 +59,27 @@ impl Lattice {
     }
 
     /// What a window holds between its borders.
-    pub(super) fn rect(&self, index: usize, window: &Window) -> Rect {
+    pub(super) fn rect(&self, window: &Window) -> Rect {
         let texel = grid::eighths(window.steps);
         // One texel is lost to the shift onto the grid: half of it on either side.
-        let min = (window.first + self.border[index] + 0.5) * texel - self.anchor;
-        Rect { min: min.as_vec2(), size: (self.usable[index] * texel).as_vec2() }
+        let min = (window.first + self.border + 0.5) * texel - self.anchor;
+        Rect { min: min.as_vec2(), size: (self.usable * texel).as_vec2() }
     }
 
     /// The window that holds a rectangle of its size between its borders.
-    pub(super) fn window(&self, index: usize, steps: i32, rect: &Rect) -> Window {
-        self.at(index, steps, rect.min.as_dvec2(), grid::floor)
+    pub(super) fn window(&self, steps: i32, rect: &Rect) -> Window {
+        self.at(steps, rect.min.as_dvec2(), numbers::floor)
     }
 
     /// The window whose least corner between the borders is about here.
-    fn at(&self, index: usize, steps: i32, min: DVec2, round: impl Fn(f64) -> f64) -> Window {
-        let line = (min + self.anchor) / grid::eighths(steps) - self.border[index];
+    fn at(&self, steps: i32, min: DVec2, round: impl Fn(f64) -> f64) -> Window {
+        let line = (min + self.anchor) / grid::eighths(steps) - self.border;
         Window { steps, first: DVec2::new(round(line.x), round(line.y)), z: None }
     }
 
     /// The last window, which holds a part of the plane: the held one while it serves.
     pub(super) fn last(&self, index: usize, held: Option<&Window>, (min, max): (DVec2, DVec2)) -> Window {
-        let usable = self.usable[index];
+        let usable = self.usable;
         // Each of the finer windows has other texels.
         let least = self.least.saturating_add(i32::from(index as u8));
         let needed = grid::eighths_above(((max - min) / usable).max_element()).max(least);
@@ -93,9 +87,9 @@ impl Lattice {
         let held = held.filter(|held| held.steps >= needed && !is_wasteful(held));
         let steps = held.map_or(needed, |held| held.steps);
         let size = (usable + 1.0) * grid::eighths(steps);
-        let low = |window: &Window| (window.first + self.border[index]) * grid::eighths(steps) - self.anchor;
+        let low = |window: &Window| (window.first + self.border) * grid::eighths(steps) - self.anchor;
         let holds = |window: &Window| low(window).cmple(min).all() && (low(window) + size).cmpge(max).all();
-        let around = || self.at(index, steps, (min + max - usable * grid::eighths(steps)) * 0.5, grid::floor);
+        let around = || self.at(steps, (min + max - usable * grid::eighths(steps)) * 0.5, numbers::floor);
         let Some(held) = held else {
             return around();
         };
@@ -105,7 +99,7 @@ impl Lattice {
         // The least move, and some of what is left toward the middle.
         let least = low(held).clamp((max - size).min(min), min);
         let middle = (min + max - size) * 0.5;
-        let moved = self.at(index, steps, least + (middle - least) * MOVE_ON, libm::ceil);
+        let moved = self.at(steps, least + (middle - least) * MOVE_ON, libm::ceil);
         if holds(&moved) { moved } else { around() }
     }
 
@@ -114,6 +108,6 @@ impl Lattice {
     pub(super) fn turned(&self, window: &Window, from: &Plane, origin: DVec3) -> Window {
         let texel = grid::eighths(window.steps);
         let line = window.first + (self.anchor - from.of(from.axes.project(origin))) / texel;
-        Window { first: DVec2::new(grid::floor(line.x), grid::floor(line.y)), z: None, ..*window }
+        Window { first: DVec2::new(numbers::floor(line.x), numbers::floor(line.y)), z: None, ..*window }
     }
 }

@@ -5,7 +5,8 @@
 
 use glam::Vec2;
 
-use super::cells::{Cells, PerCell, greater, lesser};
+use super::cells::{Cells, PerCell};
+use crate::base::numbers::{greater, lesser};
 
 /// Squares of the raster in a window's side: four times four.
 const ACROSS: usize = 16;

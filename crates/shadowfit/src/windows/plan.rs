@@ -1,9 +1,7 @@
 //! How fine each window's texels are, and where each stands.
 //!
-//! Two plans are kept: the windows that are drawn, and the ones that are sought. The search changes
-//! one window of the sought plan at a time, frame after frame, and nobody sees it. Drawn windows keep
-//! their texels, and move as little as they can; only where the sought plan is better by enough, as
-//! few of them are replaced as bring most of the gain.
+//! A plan says both for all windows. Its cost is what the visible points pay for texels that are too wide; the
+//! [search](super::search) compares plans by it.
 
 use core::ops::Range;
 
@@ -12,8 +10,8 @@ use glam::Vec2;
 use super::cells::{Cells, MAX_CELLS, PerCell};
 use super::cost_of;
 use super::placement::{self, Rect};
-use crate::grid;
-use crate::settings::MAX_MAPS;
+use crate::light::grid;
+use crate::technique::settings::MAX_MAPS;
 
 /// Texels and places of all windows, the finest first.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,22 +21,22 @@ pub(super) struct Plan {
     pub(super) rects: [Rect; MAX_MAPS],
 }
 
-/// What windows are planned by.
+/// Compares and changes plans.
 pub(super) struct Planner<'a> {
     pub(super) cells: &'a Cells,
-    /// Texels of each window between its borders.
-    pub(super) usable: [Vec2; MAX_MAPS],
+    /// Texels of a window between its borders.
+    pub(super) usable: Vec2,
     /// Least width of texels, in eighths of an octave of a metre.
     pub(super) least: i32,
     pub(super) count: usize,
 }
 
-/// What some windows leave to coarser ones.
+/// What the finer windows of a plan hold, and what they leave to coarser ones.
 #[derive(Clone)]
 struct Served {
     /// Shares of the cells that none of them holds.
     left: PerCell,
-    /// What those that they hold cost, over what a texel of one metre costs.
+    /// Cost of what they hold, as a multiple of the cost of a texel of one metre.
     price: PerCell,
 }
 
@@ -61,7 +59,7 @@ const LOOKS: f32 = 0.99;
 /// Share of the way to the best place that a window moves beyond what it must.
 const MOVE_ON: f32 = 0.3;
 
-/// Cost of the drawn windows over that of the sought ones up to which no more of them are replaced.
+/// Cost of the drawn windows over that of the best plan up to which none is replaced.
 pub(super) const SERVES: f32 = 1.1;
 
 /// Share of the points that every change counts for, at least.
@@ -125,7 +123,7 @@ impl Planner<'_> {
             if steps != plan.steps[i] {
                 plan.steps[i] = steps;
                 let middle = plan.rects[i].min + plan.rects[i].size * 0.5;
-                plan.rects[i].size = self.size(i, plan.steps[i]);
+                plan.rects[i].size = self.size(plan.steps[i]);
                 plan.rects[i].min = middle - plan.rects[i].size * 0.5;
             }
         }
@@ -149,11 +147,11 @@ impl Planner<'_> {
         }
     }
 
-    /// The drawn windows, while they cost no more than the sought ones times `most`; else some of them replaced: as few
-    /// as make them nearly as good where `at_once`, else the one of other texels that gains most, or loses least: it
-    /// makes way for others.
-    pub(super) fn follow(&self, drawn: Plan, sought: &Plan, most: f32, at_once: bool) -> Plan {
-        let found = self.cost(sought);
+    /// The drawn windows, while they cost no more than the best plan times `most`. Beyond that some are replaced by
+    /// their counterparts in it: with `at_once` as many as it takes to be nearly as good, else a single one with
+    /// other texels, the one that gains most. Where none gains, the one that loses least makes way for others.
+    pub(super) fn follow(&self, drawn: Plan, target: &Plan, most: f32, at_once: bool) -> Plan {
+        let found = self.cost(target);
         let mut cost = self.cost(&drawn);
         if cost <= found * most {
             return drawn;
@@ -164,7 +162,7 @@ impl Planner<'_> {
             let mut best: Option<(f32, Plan)> = None;
             for (i, readers) in readers.iter().enumerate().take(self.count - 1) {
                 let mut other = plan;
-                (other.steps[i], other.rects[i]) = (sought.steps[i], sought.rects[i]);
+                (other.steps[i], other.rects[i]) = (target.steps[i], target.rects[i]);
                 let is_new = if at_once { other != plan } else { other.steps != plan.steps };
                 // What is gained for each point whose texels change.
                 let gain = (cost - self.cost(&other)) / (readers + FEW);
@@ -173,7 +171,7 @@ impl Planner<'_> {
                     best = Some((gain, other));
                 }
             }
-            let Some((_, other)) = best else { return if at_once { *sought } else { plan } };
+            let Some((_, other)) = best else { return if at_once { *target } else { plan } };
             plan = other;
             if !at_once {
                 return plan;
@@ -207,7 +205,7 @@ impl Planner<'_> {
         if !self.is_in_order(&other.steps) {
             return None;
         }
-        other.rects[window] = placement::best(self.cells, &served.left, self.size(window, other.steps[window]));
+        other.rects[window] = placement::best(self.cells, &served.left, self.size(other.steps[window]));
         let cost = self.cost_beyond(served.clone(), &other, window);
         Some((other, cost))
     }
@@ -229,7 +227,7 @@ impl Planner<'_> {
     fn place_all(&self, plan: &mut Plan) {
         let mut left = [1.0; MAX_CELLS];
         for i in 0..self.count - 1 {
-            plan.rects[i] = placement::best(self.cells, &left, self.size(i, plan.steps[i]));
+            plan.rects[i] = placement::best(self.cells, &left, self.size(plan.steps[i]));
             self.take(&plan.rects[i], &mut left);
         }
     }
@@ -244,7 +242,7 @@ impl Planner<'_> {
         self.cost_beyond(self.served(plan, 0), plan, 0)
     }
 
-    /// What a plan costs of which some windows are served.
+    /// Cost of a plan whose first windows are served already.
     fn cost_beyond(&self, mut served: Served, plan: &Plan, first: usize) -> f32 {
         self.serve(&mut served, plan, first..self.count - 1);
         let last = price_of(plan.steps[self.count - 1]);
@@ -254,14 +252,14 @@ impl Planner<'_> {
         self.cells.sum(&self.cells.cost, &served.price, |cost, price| cost * price)
     }
 
-    /// What the first windows of a plan leave.
+    /// What the first windows of a plan hold and leave.
     fn served(&self, plan: &Plan, windows: usize) -> Served {
         let mut served = Served { left: [1.0; MAX_CELLS], price: [0.0; MAX_CELLS] };
         self.serve(&mut served, plan, 0..windows);
         served
     }
 
-    /// Serves what more windows hold.
+    /// Adds what more windows hold.
     fn serve(&self, served: &mut Served, plan: &Plan, windows: Range<usize>) {
         let mut shares = [0.0; MAX_CELLS];
         for i in windows {
@@ -277,7 +275,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Cost of what lies inside, of the shares of the cells that are left.
+    /// Cost of the cells inside a rectangle, as far as they are left.
     fn held(&self, rect: &Rect, left: &PerCell) -> f32 {
         let mut shares = [0.0; MAX_CELLS];
         self.cells.shares(rect, &mut shares);
@@ -287,7 +285,7 @@ impl Planner<'_> {
         self.cells.sum(&self.cells.cost, &shares, |cost, share| cost * share)
     }
 
-    /// Leaves what a window does not hold.
+    /// Takes away what a window holds.
     fn take(&self, rect: &Rect, left: &mut PerCell) {
         let mut shares = [0.0; MAX_CELLS];
         self.cells.shares(rect, &mut shares);
@@ -296,8 +294,8 @@ impl Planner<'_> {
         }
     }
 
-    fn size(&self, window: usize, steps: i32) -> Vec2 {
-        self.usable[window] * grid::eighths(steps) as f32
+    fn size(&self, steps: i32) -> Vec2 {
+        self.usable * grid::eighths(steps) as f32
     }
 
     /// Least texels of a window, which are coarser than those of the ones before it.

@@ -10,9 +10,7 @@ use shadowfit::fits::sphere::enclosing_sphere;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
 use shadowfit::normal_cone::NormalCone;
-use shadowfit::settings::{
-    BiasSettings, CasterPolicy, FitKind, FitSettings, MapOverride, RectangleKind, SplitScheme, Stabilise,
-};
+use shadowfit::settings::{BiasSettings, CasterPolicy, FitKind, FitSettings, RectangleKind, SplitScheme, Stabilise};
 use shadowfit::verify::{Certificate, CoverageQuery, MapPlane, Margins};
 use shadowfit::{Aabb, Bias, DepthConvention, FitInput, MapFitter, SpotBias, Technique, ViewFrustum, Workspace};
 
@@ -36,11 +34,10 @@ fn settings_survive() {
         .with_depth(DepthConvention::NegativeOneToOne)
         .with_max_distance(f32::MAX)
         .with_margin(0.1);
-    let mut technique = Technique::default()
+    let technique = Technique::default()
         .with_fit(fit)
         .with_splits(SplitScheme::Manual([1.0, 2.5, 0.1, 1e-7, 3e9, 0.3, 7.0]))
         .with_stabilise(Stabilise::Hysteresis);
-    technique.overrides[2] = MapOverride { kind: Some(FitKind::Sphere), resolution: Some(UVec2::new(512, 1024)) };
     survives(&technique);
     survives(&technique.with_splits(SplitScheme::Practical(0.7)));
     survives(&LightStepSettings::default());

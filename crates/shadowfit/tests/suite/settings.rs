@@ -1,9 +1,8 @@
 //! What follows from a technique's settings.
 
-use shadowfit::glam::{DVec2, UVec2};
+use shadowfit::glam::DVec2;
 use shadowfit::settings::{
-    BiasSettings, FilterKind, FitKind, FitSettings, MAX_MAPS, MapChoice, MapFormat, MapOverride, SoftRadius, Softness,
-    SplitScheme, Stabilise,
+    BiasSettings, FilterKind, FitSettings, MapChoice, MapFormat, SoftRadius, Softness, SplitScheme, Stabilise,
 };
 use shadowfit::{FitInput, FittedMaps, MapFitter, Technique, Workspace};
 
@@ -47,16 +46,6 @@ fn the_lengths_of_another_technique_are_the_shadow_distance_and_the_caster_exten
     }
 }
 
-#[test]
-fn a_map_of_its_own_resolution_has_it_and_the_others_have_that_of_the_fit() {
-    let mut technique = Technique::default().with_resolution(1024, 512);
-    technique.overrides[2].resolution = Some(UVec2::splat(256));
-    assert_eq!(technique.resolution_of(2), UVec2::splat(256));
-    for map in [0, 1, 3, 7, 8, usize::MAX] {
-        assert_eq!(technique.resolution_of(map), UVec2::new(1024, 512), "map {map}");
-    }
-}
-
 /// The maps of three frames of a camera that flies on.
 fn fitted(technique: &Technique) -> Vec<FittedMaps> {
     let mut storage = [DVec2::ZERO; Workspace::required(0, 3)];
@@ -67,22 +56,6 @@ fn fitted(technique: &Technique) -> Vec<FittedMaps> {
         fitter.fit(&FitInput::new(&views, DIRECTION), technique, &mut Workspace::new(&mut storage)).expect("maps")
     };
     [(); 3].map(|()| next()).to_vec()
-}
-
-#[test]
-fn windows_of_an_override_are_ignored_and_so_are_other_kinds_where_all_maps_are_windows() {
-    let own = |kind| [MapOverride { kind: Some(kind), resolution: None }; MAX_MAPS];
-    let windows = Technique::preset("windows-4").expect("a preset");
-    for kind in [FitKind::Sphere, FitKind::XnaSample, FitKind::Windows] {
-        let with_own = windows.with_overrides(own(kind));
-        assert_eq!(fitted(&with_own), fitted(&windows), "{kind:?}");
-        assert_eq!(with_own.kind_of(0), FitKind::Windows);
-    }
-    let focused = Technique::preset("focused-4").expect("a preset");
-    assert_eq!(fitted(&focused.with_overrides(own(FitKind::Windows))), fitted(&focused));
-    let spheres = focused.with_overrides(own(FitKind::Sphere));
-    assert_eq!((spheres.kind_of(3), focused.kind_of(MAX_MAPS)), (FitKind::Sphere, FitKind::Focused));
-    assert_ne!(fitted(&spheres), fitted(&focused));
 }
 
 #[test]

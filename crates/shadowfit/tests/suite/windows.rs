@@ -11,10 +11,10 @@ mod state;
 mod still;
 
 use proptest::prelude::*;
-use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
+use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::need::{CELLS, NeedGrid, NeedSpace, PIXELS};
 use shadowfit::settings::{
-    CasterPolicy, FilterKind, FitKind, FitSettings, MAX_MAPS, MapOverride, NeedSource, SoftRadius, Softness, Stabilise,
+    CasterPolicy, FilterKind, FitKind, FitSettings, NeedSource, SoftRadius, Softness, Stabilise,
 };
 use shadowfit::{Aabb, Boxes, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace};
 
@@ -185,7 +185,6 @@ fn windows(count: u32, side: u32) -> Technique {
 /// Settings of windows of every kind.
 fn any_windows() -> impl Strategy<Value = Technique> {
     let size = || prop::sample::select(vec![64_u32, 300, 1024, 2048]);
-    let own = || prop_oneof![3 => Just(None), 1 => (size(), size()).prop_map(|(w, h)| Some(UVec2::new(w, h)))];
     let up = prop_oneof![2 => Just(Vec3::Y), 1 => Just(Vec3::Z), 1 => any_direction()];
     let border = prop_oneof![2 => Just(None), 1 => float(0.0, 8.0).prop_map(Some)];
     let casters = prop::sample::select(vec![CasterPolicy::List, CasterPolicy::SceneBounds]);
@@ -197,18 +196,15 @@ fn any_windows() -> impl Strategy<Value = Technique> {
         prop_oneof![float(0.0, 0.5).prop_map(SoftRadius::Metres), float(0.0, 0.1).prop_map(SoftRadius::SunAngle)];
     let softness = (radius, float(1.0, 14.0)).prop_map(|(radius, ceiling)| Softness { radius, floor: 1.0, ceiling });
     let look_up = ((prop::sample::select(FilterKind::ALL.to_vec()), softness), keeps, need);
-    let overrides = prop::array::uniform8(own());
-    (1..=8_u32, (size(), size()), overrides, fit, look_up).prop_map(
+    (1..=8_u32, (size(), size()), fit, look_up).prop_map(
         |(
             count,
             (width, height),
-            own,
             (up, border, casters, max_distance, depth),
             ((filter, softness), stabilise, need),
         )| {
             let fit = FitSettings { up, border, casters, max_distance, depth, ..windows(count, 1024).fit };
-            let overrides: [MapOverride; MAX_MAPS] = own.map(|resolution| MapOverride { kind: None, resolution });
-            Technique { fit, count, overrides, softness, stabilise, need, ..Technique::default() }
+            Technique { fit, count, softness, stabilise, need, ..Technique::default() }
                 .with_filter(filter)
                 .with_resolution(width, height)
         },

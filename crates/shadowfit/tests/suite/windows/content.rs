@@ -5,9 +5,9 @@ use shadowfit::bias::Reach;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::settings::CasterPolicy;
 use shadowfit::verify::{Certificate, CoverageQuery, verify};
-use shadowfit::{Aabb, Boxes, FitInput, FittedMap, MapFitter, Technique, Workspace};
+use shadowfit::{Aabb, Boxes, FitInput, FittedMap, MapFitter, Workspace};
 
-use super::{Need, World, any_windows, hits, windows};
+use super::{World, any_windows, windows};
 use crate::read_by_coverage::{Sample, any_samples, check};
 use crate::scenes::{any_box, any_light, any_view, any_walk};
 use crate::support::cases;
@@ -98,30 +98,5 @@ fn a_near_plane_that_is_cut_is_found_in_every_window_under_the_tower() {
         // The depth range over the ground alone is no longer than a few metres.
         let is_lost = matches!(certificate, Certificate::CasterLost { by, .. } if by > 95.0);
         assert!(is_lost || !is_under, "{certificate:?}");
-    }
-}
-
-/// A kind that a single map names is no window's business, nor are the casters that it would lose.
-#[test]
-fn other_kinds_in_overrides_change_nothing() {
-    use shadowfit::settings::{FitKind, MapOverride};
-    let (town, view) = (super::town(), super::street_view(DVec3::new(3.0, 1.7, 8.0), Vec3::new(0.5, -0.2, -1.0)));
-    let views = [view.frustum()];
-    let direction = Vec3::new(0.3, -0.8, 0.4);
-    let hits = hits(&view, town.origin, &town.boxes, f64::MAX);
-    let mut storage = vec![DVec2::ZERO; Workspace::required(town.boxes.len(), 1)];
-    let mut fit = |technique: &Technique| {
-        let need = Need::of(&view, &hits, direction, technique);
-        let grids = [need.grid()];
-        // The houses receive nothing, so that only casters move the near plane.
-        let receivers = Some(Boxes { origin: town.origin, boxes: &town.boxes[..1] });
-        let input = FitInput { receivers, ..town.input(&views, direction, &grids) };
-        MapFitter::new().fit(&input, technique, &mut Workspace::new(&mut storage)).unwrap()
-    };
-    let plain = windows(4, 512);
-    for kind in [FitKind::XnaSample, FitKind::Sphere, FitKind::Focused, FitKind::Windows] {
-        let mut technique = plain;
-        technique.overrides = [MapOverride { kind: Some(kind), resolution: None }; 8];
-        assert_eq!(fit(&technique), fit(&plain), "{kind:?}");
     }
 }

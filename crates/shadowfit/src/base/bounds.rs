@@ -1,0 +1,113 @@
+//! Boxes: the bounds that an engine gives of its receivers and casters.
+
+use glam::{DVec3, Vec3};
+
+/// An axis-aligned box in metres, relative to an origin that the user of the box defines. Fits take boxes in
+/// world axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[repr(C)]
+pub struct Aabb {
+    /// Corner with the least coordinates.
+    pub min: Vec3,
+    /// Corner with the greatest coordinates.
+    pub max: Vec3,
+}
+
+impl Aabb {
+    /// The empty box: joining it to another box leaves that box unchanged.
+    pub const EMPTY: Self = Self { min: Vec3::MAX, max: Vec3::MIN };
+
+    /// A box from its least and greatest corner, in metres.
+    pub const fn new(min: Vec3, max: Vec3) -> Self {
+        Self { min, max }
+    }
+
+    /// The least box that holds all `points`, which are finite and in metres; `None` if there are none.
+    pub fn from_points(points: impl IntoIterator<Item = Vec3>) -> Option<Self> {
+        let mut points = points.into_iter();
+        let first = points.next()?;
+        Some(points.fold(Self::new(first, first), Self::with_point))
+    }
+
+    /// The least box that holds both.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// The least box that holds this one and a point, in metres.
+    #[must_use]
+    pub fn with_point(self, point: Vec3) -> Self {
+        Self { min: self.min.min(point), max: self.max.max(point) }
+    }
+
+    /// Edge lengths along x, y and z, in metres. Those of an empty box have no meaning.
+    pub fn size(&self) -> Vec3 {
+        self.max - self.min
+    }
+
+    /// The eight corners: the four with the least z around, then the four with the greatest.
+    pub fn corners(&self) -> [Vec3; 8] {
+        box_corners(self.min.as_dvec3(), self.max.as_dvec3()).map(|corner| corner.as_vec3())
+    }
+
+    /// Whether the box holds no point: a coordinate of `min` above that of `max`, or NaN.
+    pub fn is_empty(&self) -> bool {
+        !(self.min.x <= self.max.x && self.min.y <= self.max.y && self.min.z <= self.max.z)
+    }
+}
+
+/// Boxes in world axes relative to an origin in f64, so that they stay exact far from the world's
+/// origin. Plain world-space boxes have the origin zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Boxes<'a> {
+    /// World position that the boxes are relative to, in metres.
+    pub origin: DVec3,
+    /// The boxes. Empty ones are ignored.
+    pub boxes: &'a [Aabb],
+}
+
+/// Corners of a box: the four with the least z around, then the four with the greatest.
+pub(crate) fn box_corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
+    let (a, b) = (min, max);
+    [
+        DVec3::new(a.x, a.y, a.z),
+        DVec3::new(b.x, a.y, a.z),
+        DVec3::new(b.x, b.y, a.z),
+        DVec3::new(a.x, b.y, a.z),
+        DVec3::new(a.x, a.y, b.z),
+        DVec3::new(b.x, a.y, b.z),
+        DVec3::new(b.x, b.y, b.z),
+        DVec3::new(a.x, b.y, b.z),
+    ]
+}
+
+/// A box's corners relative to another origin, in f64.
+pub(crate) fn moved(aabb: &Aabb, offset: DVec3) -> (DVec3, DVec3) {
+    let to = |v: Vec3| v.as_dvec3() + offset;
+    (to(aabb.min), to(aabb.max))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_box_around_the_corners_of_a_box_is_that_box() {
+        let aabb = Aabb::new(Vec3::new(-1.0, 2.0, 3.0), Vec3::new(4.0, 6.0, 8.0));
+        let mut corners = aabb.corners();
+        assert_eq!(Aabb::from_points(corners), Some(aabb));
+        assert_eq!(aabb.size(), Vec3::new(5.0, 4.0, 5.0));
+        corners.sort_by(|a, b| a.to_array().partial_cmp(&b.to_array()).unwrap());
+        assert!(corners.windows(2).all(|pair| pair[0] != pair[1]), "{corners:?}");
+    }
+
+    #[test]
+    fn a_single_point_has_a_box_without_size_and_no_points_have_none() {
+        let point = Vec3::new(1.0, -2.0, 3.0);
+        assert_eq!(Aabb::from_points([point]), Some(Aabb::new(point, point)));
+        assert_eq!(Aabb::from_points([]), None);
+    }
+}

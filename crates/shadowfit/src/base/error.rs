@@ -1,0 +1,196 @@
+//! The one error type of the fits.
+//!
+//! Every variant carries the offending value and says what to do, since the value that breaks a
+//! fit was usually computed far from the call that reports it.
+
+use core::fmt;
+
+use glam::{UVec2, Vec3};
+
+use super::number::{Number, Numbers};
+use crate::base::DepthConvention;
+
+/// Why a frustum or a fit could not be made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum FitError {
+    /// An input is NaN or infinite.
+    NotFinite {
+        /// Name of the input.
+        input: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A number lies outside what the input can mean, or what f32 matrices can hold.
+    OutOfRange {
+        /// Name of the input.
+        input: &'static str,
+        /// Its value.
+        value: f64,
+        /// Least value accepted.
+        min: f64,
+        /// Greatest value accepted.
+        max: f64,
+    },
+    /// A direction is zero, so short that its digits are lost, or so long that its square
+    /// overflows f32.
+    BadDirection {
+        /// Name of the direction.
+        input: &'static str,
+        /// Its length.
+        length: f64,
+    },
+    /// The camera's `up` is parallel to its `forward`, which leaves its roll undefined.
+    ParallelUp {
+        /// The camera's forward direction.
+        forward: Vec3,
+        /// The camera's up direction.
+        up: Vec3,
+    },
+    /// A `world_from_clip` matrix cannot be divided by w at one of the clip corners, or folds two
+    /// of them together.
+    SingularMatrix {
+        /// Index of the corner in [`ViewFrustum::corners`](crate::ViewFrustum::corners).
+        corner: usize,
+        /// The w that the matrix gives there.
+        w: f64,
+    },
+    /// A perspective matrix has its near and far planes at the opposite ends of the depth range from
+    /// those of the stated convention.
+    OtherDepth {
+        /// The convention that was stated.
+        named: DepthConvention,
+        /// Whether the matrix has reversed depth: near at 1, far at 0. If not, its depth is plain:
+        /// 0..1 or -1..1, which cannot be told from a matrix.
+        is_reversed: bool,
+    },
+    /// The frustum has no volume, or its box in the light's axes has no extent.
+    EmptyFrustum {
+        /// Extent of the frustum's box, in metres: in the light's axes when a fit reports it, in
+        /// the world's axes when a frustum does.
+        size: Vec3,
+    },
+    /// The near distance is not below the far distance; for a fit, the far distance is the nearer
+    /// of the frustum's far plane and the maximum shadow distance.
+    NearNotBelowFar {
+        /// Near distance, in metres.
+        near: f32,
+        /// Far distance, in metres.
+        far: f32,
+    },
+    /// There is no view to fit to.
+    NoView,
+    /// The caller's storage is too small; [`Workspace::required`](crate::Workspace::required) says
+    /// what is enough.
+    WorkspaceTooSmall {
+        /// Number of elements given.
+        given: usize,
+        /// Least number of elements that the call needs.
+        required: usize,
+    },
+    /// The input's number of elements differs from that of the data that it belongs to.
+    CountMismatch {
+        /// Name of the number.
+        input: &'static str,
+        /// Its value.
+        given: usize,
+        /// The value that is expected.
+        expected: usize,
+    },
+    /// A matrix is not an orthographic view-projection of the stated light.
+    NotOrthographic {
+        /// What is wrong with it.
+        why: &'static str,
+    },
+    /// The map does not lie on the world's texel grid.
+    NotOnGrid,
+    /// A filter needs the distances of casters, and the maps clamp depths
+    /// ([`CasterPolicy::DepthClamp`](crate::settings::CasterPolicy::DepthClamp)), which loses them.
+    ClampedCasters,
+    /// The shadow map has no texels.
+    ZeroResolution {
+        /// The resolution asked for, in texels.
+        resolution: UVec2,
+    },
+}
+
+impl core::error::Error for FitError {}
+
+impl fmt::Display for FitError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::NotFinite { input, value } => {
+                write!(f, "{input} is {}; give a finite number", Number(value))
+            }
+            Self::OutOfRange { input, value, min, max } => {
+                write!(f, "{input} is {}; give a value from {} to {}", Number(value), Number(min), Number(max))
+            }
+            Self::BadDirection { input, length } => {
+                write!(f, "{input} has length {}; give a vector of about unit length", Number(length))
+            }
+            Self::ParallelUp { forward, up } => write!(
+                f,
+                "the camera's up {} is parallel to its forward {}; tilt one of them",
+                Numbers(up),
+                Numbers(forward)
+            ),
+            Self::SingularMatrix { corner, w } => write!(
+                f,
+                "world_from_clip gives w = {} at clip corner {corner}; pass the inverse of \
+                 clip_from_world, with the depth convention that it was made for",
+                Number(w)
+            ),
+            Self::OtherDepth { named, is_reversed } => write_depth(f, named, is_reversed),
+            Self::EmptyFrustum { size } => write!(
+                f,
+                "the frustum is empty: its box is {} m; check the field of view, the aspect \
+                 ratio and the corners",
+                Numbers(size)
+            ),
+            Self::NearNotBelowFar { near, far } => write!(
+                f,
+                "near {} m is not below far {} m; raise the far plane or the maximum \
+                 shadow distance, or lower the near plane",
+                Number(f64::from(near)),
+                Number(f64::from(far))
+            ),
+            Self::NoView => write!(f, "there is no view to fit to; give at least one frustum"),
+            Self::WorkspaceTooSmall { given, required } => {
+                write!(f, "the workspace has {given} elements and needs {required}; see Workspace::required")
+            }
+            Self::CountMismatch { input, given, expected } => {
+                write!(f, "{input} is {given}; give {expected} as before, or build anew")
+            }
+            Self::NotOrthographic { why } => {
+                write!(f, "the matrix is not an orthographic view-projection of this light: {why}")
+            }
+            Self::NotOnGrid => {
+                write!(
+                    f,
+                    "the map is not snapped to a grid; stabilise it by snapping or hysteresis, or take the sphere"
+                )
+            }
+            Self::ClampedCasters => f.write_str(CLAMPED),
+            Self::ZeroResolution { resolution } => {
+                write!(
+                    f,
+                    "the map's resolution is {} × {}; give at least one texel each way",
+                    resolution.x, resolution.y
+                )
+            }
+        }
+    }
+}
+
+const CLAMPED: &str = "the filter Pcss needs the distance of each caster, which depth clamp loses; choose another caster \
+                       policy, such as List, or another filter";
+
+fn write_depth(f: &mut fmt::Formatter<'_>, named: DepthConvention, is_reversed: bool) -> fmt::Result {
+    let (near, far) = (named.near(), named.far());
+    let (has, advice) = if is_reversed {
+        ("reversed depth (near 1, far 0)", "DepthConvention::Reversed")
+    } else {
+        ("plain depth (it grows away from the eye)", "DepthConvention::ZeroToOne, or NegativeOneToOne for OpenGL")
+    };
+    write!(f, "the camera's matrix has {has}, not near {near}, far {far} as named; name {advice}")
+}

@@ -1,0 +1,254 @@
+//! Convex hull of points in the light's plane: all that the choice of a rectangle depends on.
+//!
+//! The hull is A. M. Andrew's monotone chain ("Another efficient algorithm for convex hulls in two
+//! dimensions", 1979). Points stream in; most fall inside the octagon of the extreme points seen
+//! so far and are dropped at once, as S. G. Akl and G. T. Toussaint proposed ("A fast convex hull
+//! algorithm", 1978).
+
+use glam::DVec2;
+
+use crate::base::FitError;
+
+/// Directions in which the extreme points are kept: the axes and their diagonals, anticlockwise.
+const DIRECTIONS: [DVec2; 8] = [
+    DVec2::new(1.0, 0.0),
+    DVec2::new(1.0, 1.0),
+    DVec2::new(0.0, 1.0),
+    DVec2::new(-1.0, 1.0),
+    DVec2::new(-1.0, 0.0),
+    DVec2::new(-1.0, -1.0),
+    DVec2::new(0.0, -1.0),
+    DVec2::new(1.0, -1.0),
+];
+
+/// Collects points in caller-owned storage and turns them into their hull.
+pub(crate) struct HullBuilder<'a> {
+    points: &'a mut [DVec2],
+    len: usize,
+    /// The most extreme point in each of [`DIRECTIONS`]; often one corner is the most extreme in
+    /// several.
+    extremes: [DVec2; 8],
+    reach: [f64; 8],
+}
+
+impl<'a> HullBuilder<'a> {
+    /// Points that the storage needs beyond twice those of the final hull.
+    pub(crate) const SLACK: usize = 64;
+
+    pub(crate) fn new(points: &'a mut [DVec2]) -> Self {
+        Self { points, len: 0, extremes: [DVec2::ZERO; 8], reach: [f64::MIN; 8] }
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Whether a point lies inside the octagon of the extreme points so far, so that it cannot
+    /// change the hull.
+    pub(crate) fn holds(&self, p: DVec2) -> bool {
+        if self.len == 0 {
+            return false;
+        }
+        (0..8).all(|i| {
+            let (a, b) = (self.extremes[i], self.extremes[(i + 1) % 8]);
+            // Coinciding extremes span no edge.
+            (b - a).perp_dot(p - a) >= 0.0
+        }) && (0..8).all(|i| p.dot(DIRECTIONS[i]) <= self.reach[i])
+    }
+
+    /// [`Self::holds`] for all points of a rectangle along the axes, given by its middle and half its size.
+    pub(crate) fn holds_rectangle(&self, centre: DVec2, half: DVec2) -> bool {
+        if self.len == 0 {
+            return false;
+        }
+        (0..8).all(|i| {
+            let (a, edge) = (self.extremes[i], self.extremes[(i + 1) % 8] - self.extremes[i]);
+            edge.perp_dot(centre - a) >= edge.x.abs() * half.y + edge.y.abs() * half.x
+        }) && (0..8).all(|i| centre.dot(DIRECTIONS[i]) + half.dot(DIRECTIONS[i].abs()) <= self.reach[i])
+    }
+
+    /// Adds a point.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::WorkspaceTooSmall`] when the hull itself does not fit the storage.
+    pub(crate) fn push(&mut self, p: DVec2) -> Result<(), FitError> {
+        if self.holds(p) {
+            return Ok(());
+        }
+        for (i, direction) in DIRECTIONS.into_iter().enumerate() {
+            let reach = p.dot(direction);
+            if reach > self.reach[i] {
+                self.reach[i] = reach;
+                self.extremes[i] = p;
+            }
+        }
+        // The chain needs room for a copy and one more, so half of the storage is collected at most.
+        if 2 * (self.len + 1) + 1 > self.points.len() {
+            self.compact();
+            if 2 * (self.len + 1) + 1 > self.points.len() {
+                return Err(FitError::WorkspaceTooSmall { given: self.points.len(), required: 2 * (self.len + 1) + 1 });
+            }
+        }
+        self.points[self.len] = p;
+        self.len += 1;
+        Ok(())
+    }
+
+    fn compact(&mut self) {
+        let (points, scratch) = self.points.split_at_mut(self.len);
+        self.len = hull(points, scratch);
+    }
+
+    /// Gives the storage back, to begin anew.
+    pub(crate) fn into_storage(self) -> &'a mut [DVec2] {
+        self.points
+    }
+
+    /// The hull's corners, anticlockwise and without collinear ones.
+    pub(crate) fn finish(mut self) -> &'a mut [DVec2] {
+        self.compact();
+        &mut self.points[..self.len]
+    }
+}
+
+/// Replaces points by their hull, anticlockwise from the least x; gives the number of corners.
+/// `scratch` is as long as `points` or longer.
+fn hull(points: &mut [DVec2], scratch: &mut [DVec2]) -> usize {
+    points.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    let n = points.len();
+    if n < 3 {
+        return if n == 2 && points[0] == points[1] { 1 } else { n };
+    }
+    let reach = points.iter().fold(0.0_f64, |most, p| most.max(p.abs().max_element()));
+    let same = reach * SAME_PLACE;
+    // The lower chain grows in `scratch`; the upper one follows it there, back to the first point.
+    // In a sliver rounding may put a point on both: the upper one leaves out what the lower one has.
+    let order = |a: DVec2, b: DVec2| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y));
+    let lower = chain(points.iter().copied(), scratch, same) - 1;
+    let (low, up) = scratch.split_at_mut(lower);
+    let mut met = lower;
+    let is_free = |p: &DVec2| {
+        while met > 1 && order(*p, low[met - 1]).is_lt() {
+            met -= 1;
+        }
+        met <= 1 || *p != low[met - 1]
+    };
+    let upper = chain(points.iter().rev().copied().filter(is_free), up, same);
+    // The last point of the upper chain is the first of the lower one.
+    let corners = (lower + upper - 1).max(1);
+    points[..corners].copy_from_slice(&scratch[..corners]);
+    corners
+}
+
+/// Distance within which two points count as the same, as a share of the greatest coordinate. The
+/// direction of a shorter edge is rounding noise, from which a chain cannot tell left turns from
+/// right ones: it would keep corners far inside the next ones. The error is a small part of the
+/// room that fits leave for rounding.
+const SAME_PLACE: f64 = 1.0 / 1_073_741_824.0;
+
+/// Writes a chain of left turns, from the first to the last of the points, and gives its length.
+fn chain(points: impl Iterator<Item = DVec2>, out: &mut [DVec2], same: f64) -> usize {
+    let mut len = 0;
+    let mut points = points.peekable();
+    while let Some(p) = points.next() {
+        let is_same = |other: DVec2| (p - other).abs().max_element() <= same;
+        if len > 0 && is_same(out[len - 1]) && points.peek().is_some() {
+            continue;
+        }
+        while len >= 2 && (is_same(out[len - 1]) || (out[len - 1] - out[len - 2]).perp_dot(p - out[len - 2]) <= 0.0) {
+            len -= 1;
+        }
+        // A chain of n sorted points, with the other chain's corners, never needs more than n + 1
+        // elements.
+        if len < out.len() && !(len == 1 && is_same(out[0])) {
+            out[len] = p;
+            len += 1;
+        }
+    }
+    len
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hull_of(points: &[DVec2], storage: &mut [DVec2]) -> usize {
+        let mut builder = HullBuilder::new(storage);
+        for p in points {
+            builder.push(*p).unwrap();
+        }
+        builder.finish().len()
+    }
+
+    #[test]
+    fn a_grid_has_four_corners() {
+        let mut points = [DVec2::ZERO; 100];
+        for (i, p) in points.iter_mut().enumerate() {
+            *p = DVec2::new((i % 10) as f64, (i / 10) as f64);
+        }
+        let mut storage = [DVec2::ZERO; HullBuilder::SLACK];
+        assert_eq!(hull_of(&points, &mut storage), 4);
+        assert_eq!(&storage[..4], &[(0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0)].map(|(x, y)| DVec2::new(x, y)));
+    }
+
+    #[test]
+    fn points_that_coincide_or_line_up_are_no_trouble() {
+        let mut storage = [DVec2::ZERO; HullBuilder::SLACK];
+        assert_eq!(hull_of(&[DVec2::ONE; 5], &mut storage), 1);
+        let line = [0.0, 3.0, 1.0, 2.0, 3.0].map(|t| DVec2::new(t, 2.0 * t));
+        assert_eq!(hull_of(&line, &mut storage), 2);
+        assert_eq!(hull_of(&[], &mut storage), 0);
+    }
+
+    /// Points on a line but for the last bits of their coordinates, by a linear congruence.
+    #[test]
+    fn slivers_as_thin_as_rounding_have_no_more_corners_than_points() {
+        let mut state = 1_u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        for _ in 0..20_000 {
+            let (slope, offset) = (random() - 0.5, random() * 100.0);
+            let mut points = [DVec2::ZERO; 7];
+            for p in &mut points {
+                let x = libm::floor(random() * 6.0) * 0.1 + offset;
+                *p = DVec2::new(x, x * slope);
+            }
+            let mut storage = [DVec2::ZERO; HullBuilder::SLACK];
+            assert!(hull_of(&points, &mut storage) <= points.len());
+        }
+    }
+
+    /// Both ends of two edges of a quadrilateral come twice, apart by rounding, as clipping gives them.
+    #[test]
+    fn corners_that_come_twice_but_for_rounding_hide_no_others() {
+        let corners = [(-405.085, 288.375), (-384.280, 257.947), (-33.662, 29.217), (-24.330, 15.568)];
+        for noise in 0..256_i32 {
+            let mut points = [DVec2::ZERO; 8];
+            for (i, p) in points.iter_mut().enumerate() {
+                let bit = f64::from((noise >> i) & 1) * 1e-14;
+                *p = DVec2::new(corners[i / 2].0 + bit, corners[i / 2].1 - 0.7 * bit);
+            }
+            let mut storage = [DVec2::ZERO; HullBuilder::SLACK];
+            let n = hull_of(&points, &mut storage);
+            for i in 0..n {
+                let (a, b) = (storage[i], storage[(i + 1) % n]);
+                for p in &storage[..n] {
+                    let left = (b - a).perp_dot(*p - a);
+                    assert!(left >= -1e-9, "{noise}: {p} is right of {a} to {b}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_circle_larger_than_the_storage_is_an_error() {
+        let mut storage = [DVec2::ZERO; 16];
+        let mut builder = HullBuilder::new(&mut storage);
+        let pushed = (0..64).map(|i| f64::from(i) * 0.098).map(|a| DVec2::new(libm::cos(a), libm::sin(a)));
+        let result: Result<(), FitError> = pushed.into_iter().try_for_each(|p| builder.push(p));
+        assert!(matches!(result, Err(FitError::WorkspaceTooSmall { given: 16, .. })));
+    }
+}

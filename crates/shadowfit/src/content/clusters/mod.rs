@@ -1,0 +1,187 @@
+//! Clusters: triangles cut into boxes that hug their surface.
+//!
+//! A fit knows a receiver only by its box, and the box of a level that is one mesh says nothing.
+//! Cut the same mesh once into a few hundred clusters, and their boxes hold much less empty space.
+//! An animated mesh keeps its clusters, and only their boxes are computed anew.
+
+mod cone;
+mod piece;
+mod slabs;
+mod split;
+
+use alloc::vec::Vec;
+
+use glam::Vec3;
+
+use crate::base::checks::MAX_LENGTH;
+use crate::base::{Aabb, FitError, checks};
+use crate::content::normal_cone::NormalCone;
+use piece::{Corners, Outline, Triangle};
+
+/// Boxes around small groups of triangles, for [`Boxes::boxes`](crate::Boxes::boxes): together
+/// they hold every point of every triangle. No group holds triangles of two objects.
+///
+/// ```
+/// use shadowfit::glam::{DVec3, Vec3};
+/// use shadowfit::clusters::Clusters;
+/// use shadowfit::Boxes;
+///
+/// // A stair of ten steps, each step two triangles.
+/// let mut steps = Vec::new();
+/// for i in 0..10 {
+///     let (near, far) = (Vec3::new(0.0, i as f32, i as f32), Vec3::new(2.0, i as f32, i as f32 + 1.0));
+///     let (left, right) = (far.with_x(near.x), near.with_x(far.x));
+///     steps.extend([[near, left, far], [near, far, right]]);
+/// }
+/// let clusters = Clusters::build(&[&steps], Clusters::DEFAULT_LIMIT)?;
+/// let receivers = Boxes { origin: DVec3::ZERO, boxes: clusters.boxes() };
+/// assert!(receivers.boxes.iter().all(|step| step.max.y == step.min.y)); // no air in the boxes
+/// # Ok::<(), shadowfit::FitError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Clusters {
+    /// Number of triangles of each object.
+    counts: Vec<u32>,
+    /// The pieces of triangles in each cluster, one cluster after the other.
+    pieces: Vec<Outline>,
+    corners: Corners,
+    /// Object of each cluster, and where its pieces end.
+    ends: Vec<(u32, usize)>,
+    boxes: Vec<Aabb>,
+    cones: Vec<NormalCone>,
+}
+
+impl Clusters {
+    /// Number of clusters that works well for scenes of one mesh. On five measured scenes, each at
+    /// three headings, maps around this many boxes were 10% longer than around the triangles
+    /// themselves; with a quarter of the boxes 13%, with four times as many 7%.
+    pub const DEFAULT_LIMIT: usize = 1024;
+
+    /// Greatest number of clusters that objects are cut into; higher limits are lowered to it.
+    pub const MAX_LIMIT: usize = 65_536;
+
+    /// Cuts objects into `limit` clusters or fewer, or into one for each object that has triangles
+    /// if those are more.
+    ///
+    /// Each object is a slice of triangles; the three positions of each are in metres, relative to
+    /// an origin that all share, which is the origin of [`boxes`](Self::boxes). Winding and
+    /// handedness do not matter. The same triangles give the same clusters on every target.
+    ///
+    /// Groups of triangles are cut in two by planes, always the group whose box holds the most
+    /// empty space; a flat box that is full is not cut. A triangle that a plane passes through is
+    /// in the groups on both sides, each with the part of it there, so large slanted ones get small
+    /// boxes too. Where very many large triangles intersect one another, later ones are not cut,
+    /// and boxes overlap.
+    ///
+    /// Takes about 0.25 µs a triangle and 20 µs a cluster: 100 ms for 1,024 clusters of an object of
+    /// 300,000 triangles.
+    ///
+    /// Sources: Wald, Ingo: "On fast construction of SAH-based bounding volume hierarchies", 2007;
+    /// Stich, Martin, Heiko Friedrich and Andreas Dietrich: "Spatial splits in bounding volume
+    /// hierarchies", 2009. Here no hierarchy is kept, and the cost is empty space, not the expected
+    /// number of rays.
+    ///
+    /// # Errors
+    ///
+    /// A position that is NaN, infinite or beyond 1e18 m; a limit of zero; more than `u32::MAX`
+    /// triangles or objects.
+    pub fn build(objects: &[&[[Vec3; 3]]], limit: usize) -> Result<Self, FitError> {
+        if limit == 0 {
+            let max = Self::MAX_LIMIT as f64;
+            return Err(FitError::OutOfRange { input: "the limit of clusters", value: 0.0, min: 1.0, max });
+        }
+        let count = objects.iter().map(|triangles| triangles.len()).fold(0, usize::saturating_add);
+        for (input, count) in [("the number of triangles", count), ("the number of objects", objects.len())] {
+            checks::within(input, count as f64, 0.0, f64::from(u32::MAX))?;
+        }
+        check_positions(objects)?;
+
+        let (groups, all_corners) = split::split(objects, limit.min(Self::MAX_LIMIT));
+        let counts = objects.iter().map(|triangles| triangles.len() as u32).collect();
+        let mut clusters = Self { counts, ..Self::default() };
+        for group in &groups {
+            let corners = &mut clusters.corners;
+            clusters.pieces.extend(group.pieces.iter().map(|piece| corners.adopt(piece.outline, &all_corners)));
+            clusters.ends.push((group.object, clusters.pieces.len()));
+        }
+        clusters.measure(objects);
+        Ok(clusters)
+    }
+
+    /// Updates boxes and cones for triangles that have moved, keeping the clusters.
+    ///
+    /// `objects` are those of [`build`](Self::build) in the same order, each with the same number
+    /// of triangles; metres, relative to one origin. Parts of triangles move with their triangles,
+    /// however these are deformed. Boxes grow where neighbouring triangles move apart, so build
+    /// again when an object has changed its shape completely. Takes about 0.06 µs a triangle.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::CountMismatch`] for another number of objects or triangles, and positions as for
+    /// `build`. The clusters are then left as they were.
+    pub fn refit(&mut self, objects: &[&[[Vec3; 3]]]) -> Result<(), FitError> {
+        let mismatch = |input, given, expected| Err(FitError::CountMismatch { input, given, expected });
+        if objects.len() != self.counts.len() {
+            return mismatch("the number of objects", objects.len(), self.counts.len());
+        }
+        for (triangles, &count) in objects.iter().zip(&self.counts) {
+            if triangles.len() != count as usize {
+                return mismatch("the number of triangles of an object", triangles.len(), count as usize);
+            }
+        }
+        check_positions(objects)?;
+        self.measure(objects);
+        Ok(())
+    }
+
+    /// The box of each cluster, in metres, relative to the origin of the triangles. None is empty;
+    /// flat ones are common. Those of an object follow one another.
+    pub fn boxes(&self) -> &[Aabb] {
+        &self.boxes
+    }
+
+    /// Where the surfaces of each cluster face, one cone for each of the [`boxes`](Self::boxes).
+    pub fn cones(&self) -> &[NormalCone] {
+        &self.cones
+    }
+
+    /// Object and index within the object of each triangle that is in a cluster with all or part of
+    /// its area; none if there is no such cluster.
+    pub fn triangles(&self, cluster: usize) -> impl ExactSizeIterator<Item = (u32, u32)> {
+        let object = self.ends.get(cluster).map_or(0, |end| end.0);
+        self.outlines(cluster).iter().map(move |outline| (object, outline.triangle))
+    }
+
+    fn outlines(&self, cluster: usize) -> &[Outline] {
+        let start = cluster.checked_sub(1).map_or(Some(0), |before| Some(self.ends.get(before)?.1));
+        match (start, self.ends.get(cluster)) {
+            (Some(start), Some(&(_, end))) => &self.pieces[start..end],
+            _ => &[],
+        }
+    }
+
+    /// Makes the boxes and cones of all clusters.
+    fn measure(&mut self, objects: &[&[Triangle]]) {
+        self.boxes.clear();
+        self.cones.clear();
+        for (cluster, &(object, _)) in self.ends.iter().enumerate() {
+            let triangles = objects[object as usize];
+            let outlines = self.outlines(cluster);
+            let bounds = |outline: &Outline| self.corners.bounds(*outline, &triangles[outline.triangle as usize]);
+            let aabb = outlines.iter().map(bounds).fold(Aabb::EMPTY, Aabb::union);
+            let cone = NormalCone::around(|| outlines.iter().map(|outline| &triangles[outline.triangle as usize]));
+            self.boxes.push(aabb);
+            self.cones.push(cone);
+        }
+    }
+}
+
+/// Refuses positions that are not finite or too far out.
+fn check_positions(objects: &[&[[Vec3; 3]]]) -> Result<(), FitError> {
+    let limit = Vec3::splat(MAX_LENGTH as f32);
+    let is_good = |position: &Vec3| position.abs().cmple(limit).all();
+    match objects.iter().flat_map(|triangles| triangles.as_flattened()).find(|position| !is_good(position)) {
+        Some(position) => checks::point("a triangle's corner", position.as_dvec3()).map(|_| ()),
+        None => Ok(()),
+    }
+}

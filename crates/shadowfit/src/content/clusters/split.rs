@@ -1,0 +1,213 @@
+//! Cuts groups of pieces in two, each time the group with the most empty space.
+
+use alloc::collections::BinaryHeap;
+use alloc::vec;
+use alloc::vec::Vec;
+use core::cmp::Ordering;
+
+use glam::{DVec3, Vec3};
+
+use super::piece::{Corners, Piece, Triangle};
+use super::slabs::{Slabs, sides};
+use crate::base::Aabb;
+
+/// Pieces of a group that decide where it is cut. This many give cuts as good as all do.
+const SAMPLE: usize = 128;
+
+/// Depth, as a share of a box's longest side, by which the unfilled part of its sides counts as
+/// empty space.
+const SILHOUETTE_WEIGHT: f64 = 0.1;
+
+/// Share of a side that may be missing by rounding.
+const FILLED: f64 = 1.0 - 1e-3;
+
+/// Corners of cut pieces that may be kept, for each triangle and for each cluster: ten times what
+/// ordinary scenes use. Where very many large triangles intersect one another, later cuts leave
+/// pieces whole instead, and the boxes overlap.
+const CORNERS_PER_TRIANGLE: usize = 16;
+const CORNERS_PER_CLUSTER: usize = 64;
+
+/// Pieces of one object that share a box.
+pub(super) struct Group {
+    pub(super) object: u32,
+    pub(super) pieces: Vec<Piece>,
+    aabb: Aabb,
+    /// Estimate of the empty space in the box, in m³.
+    air: f64,
+    /// Its slot in [`Splitter::next`], which also breaks ties.
+    slot: usize,
+}
+
+impl Group {
+    fn new(object: u32, pieces: Vec<Piece>, slot: usize) -> Self {
+        let mut aabb = Aabb::EMPTY;
+        let (mut front, mut back) = (Vec3::ZERO, Vec3::ZERO);
+        for piece in &pieces {
+            aabb = aabb.union(piece.aabb);
+            front += piece.area.max(Vec3::ZERO);
+            back += (-piece.area).max(Vec3::ZERO);
+        }
+        Self { object, air: air(&aabb, front.max(back)), aabb, pieces, slot }
+    }
+
+    /// The axis and coordinate to cut at; `None` for a point.
+    fn cut(&self, triangles: &[Triangle], corners: &Corners, buffer: &mut Vec<Vec3>) -> Option<(usize, f32)> {
+        let mut slabs = [0, 1, 2].map(|axis| Slabs::new(axis, &self.aabb));
+        for piece in self.pieces.iter().step_by(self.pieces.len().div_ceil(SAMPLE).max(1)) {
+            corners.copy(piece.outline, &triangles[piece.outline.triangle as usize], buffer);
+            for slabs in &mut slabs {
+                slabs.add(&piece.aabb, buffer);
+            }
+        }
+        let mut best: Option<(f64, usize, f32)> = None;
+        for (axis, slabs) in slabs.iter().enumerate() {
+            if let Some((cost, cut)) = slabs.best()
+                && best.is_none_or(|(least, ..)| cost < least)
+            {
+                best = Some((cost, axis, cut));
+            }
+        }
+        best.map(|(_, axis, cut)| (axis, cut)).or_else(|| middle(&self.aabb))
+    }
+
+    /// The axis along which the pieces' middles spread most, and half way there; `None` if they
+    /// all coincide.
+    fn middle_of_middles(&self) -> Option<(usize, f32)> {
+        middle(&self.pieces.iter().fold(Aabb::EMPTY, |aabb, piece| aabb.with_point(piece.middle())))
+    }
+}
+
+/// The axis of a box's longest side and the middle of that; `None` for a point.
+fn middle(aabb: &Aabb) -> Option<(usize, f32)> {
+    let size = aabb.max - aabb.min;
+    let axis = size.max_position();
+    (size[axis] > 0.0).then(|| (axis, aabb.min[axis] + size[axis] * 0.5))
+}
+
+impl Ord for Group {
+    /// The group with more empty space is greater; of equal ones the one with the lower slot.
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.air.total_cmp(&other.air).then(other.slot.cmp(&self.slot))
+    }
+}
+
+impl PartialOrd for Group {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Group {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Group {}
+
+/// Estimate of the empty space in a box, in m³, from the areas of its surfaces projected along x, y
+/// and z.
+///
+/// It is the box's volume, since surfaces are thin, plus the area of its sides that they leave
+/// uncovered times a tenth of its longest side. A flat box that is full has none.
+fn air(aabb: &Aabb, area: Vec3) -> f64 {
+    let size = (aabb.max - aabb.min).as_dvec3();
+    let open = (sides(size) * FILLED - area.as_dvec3()).max(DVec3::ZERO);
+    size.element_product() + SILHOUETTE_WEIGHT * open.element_sum() * size.max_element()
+}
+
+/// Cuts objects into groups: at most `limit` of them, or one for each object that has triangles.
+/// Those of an object follow one another, and halves of a half do.
+pub(super) fn split(objects: &[&[Triangle]], limit: usize) -> (Vec<Group>, Corners) {
+    let mut splitter = Splitter::new(objects, limit);
+    let mut open = BinaryHeap::new();
+    for (object, triangles) in (0..).zip(objects).filter(|(_, triangles)| !triangles.is_empty()) {
+        let pieces = (0..).zip(*triangles).map(|(i, triangle)| Piece::whole(i, triangle)).collect();
+        splitter.next.push(open.len() + 1);
+        open.push(Group::new(object, pieces, open.len()));
+    }
+    let mut done = Vec::new();
+    while open.len() + done.len() < limit {
+        let Some(group) = open.pop() else { break };
+        match splitter.halves(group) {
+            Ok(halves) => open.extend(halves),
+            Err(group) => done.push(group),
+        }
+    }
+    done.extend(open);
+    let ranks = splitter.ranks();
+    done.sort_unstable_by_key(|group| ranks[group.slot]);
+    (done, splitter.corners)
+}
+
+struct Splitter<'a> {
+    objects: &'a [&'a [Triangle]],
+    corners: Corners,
+    /// How many corners may be kept.
+    room: usize,
+    /// Whether that number has been reached, so that no more pieces are cut.
+    is_full: bool,
+    /// The groups' order: the slot that follows each slot. After the last one comes an index that
+    /// is no slot.
+    next: Vec<usize>,
+    /// Scratch space for the corners of one piece.
+    buffer: Vec<Vec3>,
+}
+
+impl<'a> Splitter<'a> {
+    fn new(objects: &'a [&'a [Triangle]], limit: usize) -> Self {
+        let triangles = objects.iter().map(|triangles| triangles.len()).fold(0, usize::saturating_add);
+        let room = triangles.saturating_mul(CORNERS_PER_TRIANGLE);
+        let room = room.saturating_add(limit.saturating_mul(CORNERS_PER_CLUSTER)).min(u32::MAX as usize);
+        Self { objects, corners: Corners::default(), room, is_full: false, next: Vec::new(), buffer: Vec::new() }
+    }
+
+    /// A new slot that follows another one.
+    fn slot_after(&mut self, slot: usize) -> usize {
+        self.next.push(self.next[slot]);
+        self.next[slot] = self.next.len() - 1;
+        self.next[slot]
+    }
+
+    /// Each slot's rank in the order.
+    fn ranks(&self) -> Vec<usize> {
+        let mut ranks = vec![0; self.next.len()];
+        let mut slot = 0;
+        for rank in 0..self.next.len() {
+            ranks[slot] = rank;
+            slot = self.next[slot];
+        }
+        ranks
+    }
+
+    /// Both halves of a group, or the group itself when it holds no empty space or cannot be cut.
+    fn halves(&mut self, mut group: Group) -> Result<[Group; 2], Group> {
+        let triangles = self.objects[group.object as usize];
+        let cut = match self.is_full {
+            _ if group.air <= 0.0 => None,
+            true => group.middle_of_middles(),
+            false => group.cut(triangles, &self.corners, &mut self.buffer),
+        };
+        let Some((axis, cut)) = cut else { return Err(group) };
+        let mut above = Vec::new();
+        group.pieces.retain_mut(|piece| {
+            self.is_full |= self.corners.len() + self.corners.needed_to_cut(piece.outline) > self.room;
+            let is_below = if self.is_full { piece.middle()[axis] < cut } else { piece.aabb.max[axis] <= cut };
+            if is_below || self.is_full || piece.aabb.min[axis] >= cut {
+                above.extend((!is_below).then_some(*piece));
+                return is_below;
+            }
+            let [below, part_above] = self.corners.cut(piece, &triangles[piece.outline.triangle as usize], axis, cut);
+            above.extend(part_above);
+            *piece = below.unwrap_or(*piece);
+            below.is_some()
+        });
+        if group.pieces.is_empty() || above.is_empty() {
+            group.pieces.append(&mut above);
+            return Err(group);
+        }
+        group.pieces.shrink_to_fit();
+        let slot = self.slot_after(group.slot);
+        Ok([Group::new(group.object, group.pieces, group.slot), Group::new(group.object, above, slot)])
+    }
+}

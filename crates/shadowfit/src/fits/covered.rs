@@ -1,0 +1,174 @@
+//! The box that a map must hold, along the light's axes: padded for rounding and by the margin, and
+//! not yet laid on a grid, widened by a border or moved to the casters.
+
+use glam::{DVec2, DVec3};
+
+use crate::base::checks::MIN_LENGTH;
+use crate::base::numbers::{ROUNDING, THINNEST};
+use crate::base::sphere::SYMMETRY;
+use crate::base::{FitError, checks};
+use crate::content::Content;
+use crate::fits::light_hull::LightHull;
+use crate::fits::rectangle::Rectangle;
+use crate::fits::{Constraint, Covers, FitRule, Volume, rectangle};
+use crate::light::LightAxes;
+use crate::technique::settings::RectangleKind;
+use crate::view::Range;
+
+/// What a map must hold.
+pub(crate) struct Covered<'a> {
+    /// The box, as yet without a light.
+    pub(crate) volume: Volume,
+    /// Greatest distance by which rounding may shift a receiver or a caster across the light, in
+    /// metres.
+    pub(crate) rounding: f64,
+    /// The part of the light's plane in which casters count.
+    pub(crate) shadowed: Shadowed<'a>,
+}
+
+/// A part of the light's plane.
+#[derive(Clone, Copy)]
+pub(crate) enum Shadowed<'a> {
+    /// A convex outline, anticlockwise in the plane of these axes.
+    Outline(LightAxes, &'a [DVec2]),
+    /// All of the map, so that turning the camera moves no plane.
+    WholeMap,
+}
+
+impl<'a> Covered<'a> {
+    /// The box that a rule covers for a range of view depths.
+    #[inline(always)]
+    pub(crate) fn new(
+        rule: &FitRule,
+        content: &Content,
+        axes: LightAxes,
+        range: Range,
+        points: &'a mut [DVec2],
+    ) -> Result<Self, FitError> {
+        match rule.form.covers {
+            Covers::Corners => Self::corners(rule, content, axes, range),
+            Covers::Sphere => Self::sphere(rule, content, axes, range),
+            Covers::Views | Covers::Receivers => {
+                let hull = LightHull::of(rule.form.covers, content, axes, range, points)?;
+                Ok(Self::hull(rule, content, &hull, range))
+            }
+        }
+    }
+
+    /// The box of the slices' corners, with the margin and without room for rounding.
+    #[inline(always)]
+    fn corners(rule: &FitRule, content: &Content, axes: LightAxes, range: Range) -> Result<Self, FitError> {
+        let (mut min, mut max) = (DVec3::MAX, DVec3::MIN);
+        for slice in content.slices(range) {
+            for corner in slice {
+                let p = axes.project(corner);
+                (min, max) = (min.min(p), max.max(p));
+            }
+        }
+        let size = max - min;
+        if size.min_element() < MIN_LENGTH {
+            return Err(FitError::EmptyFrustum { size: size.as_vec3() });
+        }
+        let margin = DVec3::splat(rule.margin);
+        let volume = Volume::covering(axes, (min - margin, max + margin), [Constraint::View; 6], false);
+        Ok(Self { volume, rounding: 0.0, shadowed: Shadowed::WholeMap })
+    }
+
+    /// The cube around the slices' enclosing sphere.
+    #[inline(always)]
+    fn sphere(rule: &FitRule, content: &Content, axes: LightAxes, range: Range) -> Result<Self, FitError> {
+        let sphere = content.enclosing_sphere(range)?;
+        let centre = axes.project(sphere.centre);
+        let longest = (2.0 * sphere.radius).max(rule.least_size.max_element());
+        let rounding = ROUNDING * (1.5 * longest + checks::length(sphere.centre));
+        let pad = rule.margin + rounding + 2.0 * SYMMETRY * sphere.radius;
+        let extent = DVec3::splat(2.0 * (sphere.radius + pad));
+        let corners = (centre - extent * 0.5, centre + extent * 0.5);
+        let corners = if rule.serves_all { within_receivers(corners, content, &axes, pad) } else { corners };
+        let corners = no_smaller(corners, rule.least_size);
+        let volume = Volume::covering(axes, corners, [Constraint::Sphere; 6], false);
+        Ok(Self { volume, rounding, shadowed: Shadowed::WholeMap })
+    }
+
+    /// The box of the hull's rectangle and its range along the light.
+    fn hull(rule: &FitRule, content: &Content, hull: &LightHull<'a>, range: Range) -> Self {
+        let resolution = rule.resolution.as_dvec2();
+        let texels = resolution - 2.0 * rule.border;
+        let rectangle = match rule.rectangle {
+            RectangleKind::AxisAligned => Rectangle::around(hull.outline, DVec2::X),
+            RectangleKind::MinimumArea => match rule.max_texel_ratio {
+                None => rectangle::min_area(hull.outline),
+                Some(ratio) => rectangle::min_area_within(hull.outline, ratio, |size| rule.limited(size, texels)),
+            },
+            RectangleKind::MinimumSquare => square(rectangle::min_square(hull.outline)),
+        };
+        let longest = rectangle.size().max_element();
+        // The rounding of the map itself, which the border widens.
+        let widening = resolution / texels;
+        let rounding = (rectangle.size().max(rule.least_size) * widening + hull.farthest) * ROUNDING;
+        let pad = rounding + rule.margin;
+        let thinnest = longest.max(hull.farthest) * THINNEST;
+        let (min, max) = widened(rectangle.min - pad, rectangle.max + pad, DVec2::splat(thinnest));
+        let (min, max) = widened(min, max, rule.limited((max - min).max(rule.least_size), texels));
+        let z_pad = (hull.z.1 - hull.z.0 + hull.farthest) * ROUNDING + rule.margin;
+        let (z_min, z_max) = (DVec2::splat(hull.z.0 - z_pad), DVec2::splat(hull.z.1 + z_pad));
+        let (z_min, z_max) = widened(z_min, z_max, DVec2::splat(thinnest));
+        let corners = (min.extend(z_min.x), max.extend(z_max.x));
+        let set_by = constraints(&rectangle, hull, content, range);
+        Self {
+            volume: Volume::covering(hull.axes.turned(rectangle.axis), corners, set_by, hull.is_empty),
+            rounding: rounding.max_element(),
+            shadowed: Shadowed::Outline(hull.axes, hull.outline),
+        }
+    }
+}
+
+/// A box of constant size, no wider than all receivers together and moved to where they are: nothing beyond them is
+/// looked up. Its size is constant as long as that of the receivers is.
+fn within_receivers((min, max): (DVec3, DVec3), content: &Content, axes: &LightAxes, pad: f64) -> (DVec3, DVec3) {
+    let Some((low, high)) = content.receivers_across(axes) else { return (min, max) };
+    let (low, high) = (low - pad, high + pad);
+    let size = (max - min).truncate().min(high - low);
+    let centre = ((min + max) * 0.5).truncate();
+    let first = (centre - size * 0.5).min(high - size).max(low);
+    (first.extend(min.z), (first + size).extend(max.z))
+}
+
+/// A box widened across the light about its middle.
+fn no_smaller((min, max): (DVec3, DVec3), least: DVec2) -> (DVec3, DVec3) {
+    let (low, high) = widened(min.truncate(), max.truncate(), least);
+    (low.extend(min.z), high.extend(max.z))
+}
+
+/// The square with the rectangle's longer side, about the same middle.
+fn square(r: Rectangle) -> Rectangle {
+    let (centre, half) = ((r.min + r.max) * 0.5, r.size().max_element() * 0.5);
+    Rectangle { axis: r.axis, min: centre - half, max: centre + half }
+}
+
+/// The range, widened about its middle to at least `least`.
+fn widened(min: DVec2, max: DVec2, least: DVec2) -> (DVec2, DVec2) {
+    let missing = (least - (max - min)).max(DVec2::ZERO) * 0.5;
+    (min - missing, max + missing)
+}
+
+/// Share of a box's longest side within which its planes count as the view's own.
+const SAME_PLANE: f64 = 1e-5;
+
+/// What set each plane: the view where the plane lies at the view's own extent, else the receivers.
+fn constraints(rectangle: &Rectangle, hull: &LightHull, content: &Content, range: Range) -> [Constraint; 6] {
+    if content.receivers.is_none() || hull.is_empty {
+        return [Constraint::View; 6];
+    }
+    let (mut min, mut max) = (DVec3::MAX, DVec3::MIN);
+    for corner in content.corners(range) {
+        let p = hull.axes.project(corner);
+        let q = DVec3::new(p.truncate().dot(rectangle.axis), p.truncate().dot(rectangle.axis.perp()), p.z);
+        (min, max) = (min.min(q), max.max(q));
+    }
+    let same = (max - min).max_element() * SAME_PLANE;
+    let low = rectangle.min.extend(hull.z.0) - min;
+    let high = max - rectangle.max.extend(hull.z.1);
+    let by = |gap: f64| if gap <= same { Constraint::View } else { Constraint::Receivers };
+    [by(low.x), by(high.x), by(low.y), by(high.y), by(low.z), by(high.z)]
+}

@@ -1,0 +1,43 @@
+//! One frame as placements see it, and what they return: a volume for each map.
+
+use glam::DVec2;
+
+use crate::base::FitError;
+use crate::content::Content;
+use crate::fits::{FitInput, FitRule, Volume};
+use crate::light::Light;
+use crate::technique::Technique;
+use crate::technique::settings::MAX_MAPS;
+use crate::view::{Range, ViewFrustum};
+
+/// One frame, checked.
+pub(crate) struct Frame<'a, 'b> {
+    pub(crate) input: &'a FitInput<'b>,
+    pub(crate) technique: &'a Technique,
+    /// How each of its maps is fitted.
+    pub(crate) rule: &'a FitRule,
+    pub(crate) light: Light,
+    pub(crate) content: &'a Content<'b>,
+    /// The view depths that are shadowed at all.
+    pub(crate) range: Range,
+    /// The first view of the frame before.
+    pub(crate) last_view: Option<&'a ViewFrustum>,
+}
+
+/// A map before it becomes matrices.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlacedMap {
+    /// The box that it stores, from the near plane to the far plane.
+    pub(crate) volume: Volume,
+    /// [`FittedMap::near`](crate::FittedMap::near), `far` and `covered_near`.
+    pub(crate) near: f32,
+    pub(crate) far: f32,
+    pub(crate) covered_near: f32,
+}
+
+/// The maps of a frame.
+pub(crate) type PlacedMaps = [Option<PlacedMap>; MAX_MAPS];
+
+/// A placement says where each map of a frame is put, and what it begins with in the next frame. It is given what it
+/// began with in this one, if the technique is still the same, and storage for points.
+pub(crate) type Place<Held> = fn(&Frame, Option<&Held>, &mut [DVec2]) -> Result<(PlacedMaps, Held), FitError>;

@@ -1,0 +1,267 @@
+//! What every fit returns: the light's matrices and the box they store.
+//!
+//! All maps take positions relative to an origin in f64, so that they stay exact far from the
+//! world's origin; [`LightFit::relative_to`] moves that origin.
+
+use glam::{DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
+
+use crate::base::checks::{MAX_LENGTH, MIN_LENGTH};
+use crate::base::{DepthConvention, FitError, checks};
+use crate::fits::Volume;
+use crate::light::LightAxes;
+
+pub use crate::fits::volume::Constraint;
+
+/// An orthographic view-projection of a directional light.
+///
+/// *Light space* is right-handed with x right and y up in the map, in metres; the light stands at
+/// its origin and looks along -z. Clip space has x right, y up and the depth range
+/// [`Self::depth`]. Texture space has u right, v **down** (row 0 on top, as wgpu, Direct3D, Vulkan
+/// and Metal have it; OpenGL users flip v), both 0..1 over the map.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct LightFit {
+    /// World position that all inputs of the matrices are relative to, in metres: the eye of the
+    /// frustum, until [`Self::relative_to`] moves it.
+    pub origin: DVec3,
+    /// Unit direction of travel of the light in world axes.
+    pub direction: Vec3,
+    /// Light space from world positions relative to [`Self::origin`], in metres.
+    pub light_from_world: Mat4,
+    /// Clip space from light space.
+    pub clip_from_light: Mat4,
+    /// Clip space from world positions relative to [`Self::origin`], in metres.
+    pub clip_from_world: Mat4,
+    /// Texture space (u, v) and stored depth from world positions relative to [`Self::origin`].
+    /// The stored depth is the clip depth, and for -1..1 half of it plus one half, as a depth
+    /// attachment holds it.
+    pub uv_from_world: Mat4,
+    /// Least corner of the fitted box in light space, in metres.
+    pub box_min: Vec3,
+    /// Greatest corner of the fitted box in light space, in metres. Its z is the near plane of the
+    /// map. The box fills the map, except in the XNA fit, whose far plane lies one more box depth
+    /// beyond `box_min`.
+    pub box_max: Vec3,
+    /// Size of one texel across the light, along u and v, in metres.
+    pub texel_size: Vec2,
+    /// Distance between the near and the far plane, in metres.
+    pub depth_range: f32,
+    /// Width and height of the map, in texels.
+    pub resolution: UVec2,
+    /// Depth range of the clip space.
+    pub depth: DepthConvention,
+    /// What set the planes -x, +x, -y, +y, far and near of the box, in the map's axes.
+    pub set_by: [Constraint; 6],
+    /// Whether no receiver is in view: the map is then fitted to the view itself, and its shadow
+    /// pass may be skipped. Where no receivers are known, only maps whose range has no part of the
+    /// view are empty.
+    pub is_empty: bool,
+}
+
+/// Matrices that take plain f32 world positions, for engines without a camera-relative path.
+///
+/// World coordinates rounded to f32 cost about 6e-8 of their distance from the world's origin:
+/// a centimetre at 100 km.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct WorldMatrices {
+    /// Light space from world space, in metres.
+    pub light_from_world: Mat4,
+    /// Clip space from light space.
+    pub clip_from_light: Mat4,
+    /// Clip space from world space.
+    pub clip_from_world: Mat4,
+}
+
+/// Share of the map's extent by which a point may lie outside for [`LightFit::covers`]: the
+/// rounding of f32 texture coordinates, so that the frustum's own corners count as covered.
+const COVER_TOLERANCE: f64 = 1e-6;
+
+impl LightFit {
+    /// Turns a fit's decision into matrices; refuses boxes that f32 matrices cannot hold.
+    #[inline(always)]
+    pub(crate) fn from_volume(
+        origin: DVec3,
+        volume: &Volume,
+        resolution: UVec2,
+        depth: DepthConvention,
+    ) -> Result<Self, FitError> {
+        let size = volume.max - volume.min;
+        for extent in [size.x, size.y, volume.depth_range] {
+            checks::within("an extent of the light's box", extent, MIN_LENGTH, MAX_LENGTH)?;
+        }
+        let centre = (volume.min + volume.max) * 0.5;
+        let light = DVec3::new(centre.x, centre.y, volume.light_z);
+        let LightAxes { x, y, z } = volume.axes;
+        let t = (-light).as_vec3();
+        let (scale, offset) = projection(size, volume, depth);
+        let box_max = DVec3::new(size.x * 0.5, size.y * 0.5, volume.max.z - volume.light_z);
+        let light_from_world = Mat4::from_cols(
+            Vec4::new(x.x, y.x, z.x, 0.0),
+            Vec4::new(x.y, y.y, z.y, 0.0),
+            Vec4::new(x.z, y.z, z.z, 0.0),
+            Vec4::new(t.x, t.y, t.z, 1.0),
+        );
+        let clip_from_light = Mat4::from_cols(
+            Vec4::new(scale.x as f32, 0.0, 0.0, 0.0),
+            Vec4::new(0.0, scale.y as f32, 0.0, 0.0),
+            Vec4::new(0.0, 0.0, scale.z as f32, 0.0),
+            Vec4::new(0.0, 0.0, offset as f32, 1.0),
+        );
+        let (clip_from_world, uv_from_world) = products(&light_from_world, &clip_from_light, depth);
+        Ok(Self {
+            origin,
+            direction: -z,
+            light_from_world,
+            clip_from_light,
+            clip_from_world,
+            uv_from_world,
+            box_min: (box_max - size).as_vec3(),
+            box_max: box_max.as_vec3(),
+            texel_size: (size.truncate() / resolution.as_dvec2()).as_vec2(),
+            depth_range: volume.depth_range as f32,
+            resolution,
+            depth,
+            set_by: volume.set_by,
+            is_empty: volume.is_empty,
+        })
+    }
+
+    /// The same map with its inputs relative to another world position, in metres. The translation
+    /// is computed in f64 and rounded once. An origin that is not finite gives matrices that are
+    /// not finite.
+    #[must_use]
+    pub fn relative_to(&self, new_origin: DVec3) -> Self {
+        let moved = self.project(new_origin).as_vec3();
+        let mut fit = *self;
+        fit.origin = new_origin;
+        fit.light_from_world.w_axis = moved.extend(1.0);
+        (fit.clip_from_world, fit.uv_from_world) = products(&fit.light_from_world, &fit.clip_from_light, fit.depth);
+        fit
+    }
+
+    /// World position of the light space's origin, in metres. A directional light has no position;
+    /// this is where the light's view matrix stands: the middle of the near plane, or in the XNA
+    /// fit the middle of the box's face away from the light.
+    pub fn light_position(&self) -> DVec3 {
+        self.origin + self.unproject(DVec3::ZERO)
+    }
+
+    /// The matrices for plain f32 world positions.
+    pub fn world_matrices(&self) -> WorldMatrices {
+        let Self { light_from_world, clip_from_light, clip_from_world, .. } = self.relative_to(DVec3::ZERO);
+        WorldMatrices { light_from_world, clip_from_light, clip_from_world }
+    }
+
+    /// Whether a world position, in metres, lies inside what the map stores, to 1e-6 of the map's
+    /// extent. In the XNA fit that includes the empty farther half of the map.
+    pub fn covers(&self, point: DVec3) -> bool {
+        let p = self.project(point);
+        let (min, max) = self.clip_box();
+        let tolerance = (max - min) * COVER_TOLERANCE;
+        p.cmpge(min - tolerance).all() && p.cmple(max + tolerance).all()
+    }
+
+    /// Texels between a world position, in metres, and the nearest of the map's sides; `None` where the
+    /// map does not [cover](Self::covers) it. It may be slightly negative, by rounding.
+    pub fn free_texels(&self, point: DVec3) -> Option<f64> {
+        let p = self.project(point);
+        let (min, max) = (self.box_min.as_dvec3(), self.box_max.as_dvec3());
+        let free = (p - min).min(max - p).truncate() / self.texel_size.as_dvec2();
+        self.covers(point).then_some(free.x.min(free.y))
+    }
+
+    /// Corners of the box that the map stores, in world axes relative to [`Self::origin`], in
+    /// metres: near face, then far face, each left-top, right-top, right-bottom, left-bottom of
+    /// the map.
+    pub fn corners(&self) -> [Vec3; 8] {
+        let (min, max) = self.clip_box();
+        [
+            (min.x, max.y, max.z),
+            (max.x, max.y, max.z),
+            (max.x, min.y, max.z),
+            (min.x, min.y, max.z),
+            (min.x, max.y, min.z),
+            (max.x, max.y, min.z),
+            (max.x, min.y, min.z),
+            (min.x, min.y, min.z),
+        ]
+        .map(|(x, y, z)| self.unproject(DVec3::new(x, y, z)).as_vec3())
+    }
+
+    /// Box between the near and the far plane, in light space.
+    pub(crate) fn clip_box(&self) -> (DVec3, DVec3) {
+        let (mut min, max) = (self.box_min.as_dvec3(), self.box_max.as_dvec3());
+        min.z = max.z - f64::from(self.depth_range);
+        (min, max)
+    }
+
+    /// Centre and half extents in light space of a box relative to [`Self::origin`], from its own, in f64.
+    pub(crate) fn project_box(&self, centre: DVec3, half: DVec3) -> (DVec3, DVec3) {
+        let m = &self.light_from_world;
+        let columns = [m.x_axis, m.y_axis, m.z_axis].map(|column| column.truncate().as_dvec3().abs());
+        (self.project(self.origin + centre), columns[0] * half.x + columns[1] * half.y + columns[2] * half.z)
+    }
+
+    /// Light space from an absolute world position, in f64.
+    fn project(&self, point: DVec3) -> DVec3 {
+        let m = &self.light_from_world;
+        let p = point - self.origin;
+        m.x_axis.truncate().as_dvec3() * p.x
+            + m.y_axis.truncate().as_dvec3() * p.y
+            + m.z_axis.truncate().as_dvec3() * p.z
+            + m.w_axis.truncate().as_dvec3()
+    }
+
+    /// World axes relative to the origin from light space, in f64; the rotation's transpose is
+    /// its inverse to f32 rounding.
+    fn unproject(&self, point: DVec3) -> DVec3 {
+        let m = &self.light_from_world;
+        let p = point - m.w_axis.truncate().as_dvec3();
+        DVec3::new(
+            m.x_axis.truncate().as_dvec3().dot(p),
+            m.y_axis.truncate().as_dvec3().dot(p),
+            m.z_axis.truncate().as_dvec3().dot(p),
+        )
+    }
+}
+
+/// Scale of x, y, z and offset of z from light space to clip space.
+#[inline(always)]
+fn projection(size: DVec3, volume: &Volume, depth: DepthConvention) -> (DVec3, f64) {
+    let near = (volume.max.z - volume.light_z) / volume.depth_range;
+    let per_metre = 1.0 / volume.depth_range;
+    // Distance behind the near plane, as a share of the range, is near - per_metre z.
+    let (scale, offset) = match depth {
+        DepthConvention::ZeroToOne => (-per_metre, near),
+        DepthConvention::Reversed => (per_metre, 1.0 - near),
+        DepthConvention::NegativeOneToOne => (-2.0 * per_metre, 2.0 * near - 1.0),
+    };
+    (DVec3::new(2.0 / size.x, 2.0 / size.y, scale), offset)
+}
+
+/// `clip_from_world` and `uv_from_world`, computed in f64.
+#[inline(always)]
+fn products(light_from_world: &Mat4, clip_from_light: &Mat4, depth: DepthConvention) -> (Mat4, Mat4) {
+    let clip = clip_from_light;
+    let scale = DVec3::new(f64::from(clip.x_axis.x), f64::from(clip.y_axis.y), f64::from(clip.z_axis.z));
+    let offset = clip.w_axis.truncate().as_dvec3();
+    let (mut uv_scale, mut uv_offset) = (DVec3::new(0.5, -0.5, 1.0), DVec3::new(0.5, 0.5, 0.0));
+    if depth == DepthConvention::NegativeOneToOne {
+        (uv_scale.z, uv_offset.z) = (0.5, 0.5);
+    }
+    let uv_from_world = scaled(light_from_world, scale * uv_scale, offset * uv_scale + uv_offset);
+    (scaled(light_from_world, scale, offset), uv_from_world)
+}
+
+/// `scale · (matrix p) + offset` as one affine matrix, computed in f64.
+#[inline(always)]
+fn scaled(matrix: &Mat4, scale: DVec3, offset: DVec3) -> Mat4 {
+    let column = |c: Vec4| c.truncate().as_dvec3() * scale;
+    Mat4::from_cols(
+        column(matrix.x_axis).as_vec3().extend(0.0),
+        column(matrix.y_axis).as_vec3().extend(0.0),
+        column(matrix.z_axis).as_vec3().extend(0.0),
+        (column(matrix.w_axis) + offset).as_vec3().extend(1.0),
+    )
+}

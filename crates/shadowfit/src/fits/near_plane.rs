@@ -1,0 +1,189 @@
+//! Where the near plane lies, so that every caster that can cast a shadow into view is kept.
+//!
+//! Such casters lie over the covered region, toward the light; [`Outline`] finds the part of each
+//! caster's box that does.
+//!
+//! ```text
+//!    toward the light          ┌──────┐
+//!           ▲                  │caster│   only the part over the outline counts,
+//!    near ──┼───────────────●──┤- - - │   so the plane stands at ●
+//!           │     outline   │  └──────┘
+//!           └───────────────┘
+//! ```
+
+use glam::{DVec2, DVec3, Vec2Swizzles};
+
+use crate::base::numbers::ROUNDING;
+use crate::base::{Boxes, moved};
+use crate::content::Content;
+use crate::fits::covered::Shadowed;
+use crate::fits::{Constraint, Depth, FitRule, Volume};
+use crate::light::{LightAxes, Outline, Scratch};
+
+/// Coordinate of the near plane along the light's z, and what set it if it was not the covered
+/// region.
+pub(crate) struct NearPlane {
+    pub(crate) z: f64,
+    pub(crate) set_by: Option<Constraint>,
+}
+
+/// Moves the near plane of a volume, which so far ends at the covered region, to the place that the
+/// rule gives, and the light with it. `rounding` is what receivers and casters may be shifted by,
+/// each, in metres.
+#[inline(always)]
+pub(crate) fn place(volume: &mut Volume, rule: &FitRule, shadowed: Shadowed, rounding: f64, content: &Content) {
+    if rule.depth == Depth::Doubled {
+        volume.light_z = volume.min.z;
+        volume.depth_range = 2.0 * (volume.max.z - volume.min.z);
+        return;
+    }
+    let texel = (volume.max - volume.min).truncate() / rule.resolution.as_dvec2();
+    let reach = filter_reach(texel, rule, rounding);
+    let near = match shadowed {
+        Shadowed::Outline(axes, outline) if !rule.serves_all => {
+            find(volume.max.z, &axes, outline, content, rule.depth, reach)
+        }
+        _ => {
+            let across = (volume.min.truncate(), volume.max.truncate());
+            find_over(volume.max.z, &volume.axes, across, content, rule.depth, reach)
+        }
+    };
+    if rule.serves_all {
+        let across = (volume.min.truncate(), volume.max.truncate());
+        let far = find_far(volume.min.z, &volume.axes, across, content);
+        volume.set_by[4] = if far < volume.min.z { Constraint::Receivers } else { volume.set_by[4] };
+        volume.min.z = far;
+    }
+    (volume.max.z, volume.set_by[5]) = (near.z, near.set_by.unwrap_or(volume.set_by[5]));
+    if !rule.form.is_on_grid {
+        // The rounding of the depth range, which casters may make far longer than the covered
+        // region. On the grid it is in the steps.
+        let depth = (volume.max.z - volume.min.z) * ROUNDING;
+        (volume.min.z, volume.max.z) = (volume.min.z - depth, volume.max.z + depth);
+    }
+    volume.light_at_near_plane();
+}
+
+/// Finds the near plane for a covered region that ends at `covered` along the light's z.
+///
+/// `outline` is the convex outline of what is covered, anticlockwise, in the plane of `axes`;
+/// casters that stand no farther beside it than `reach` (in metres) count too.
+#[inline(always)]
+pub(crate) fn find(
+    covered: f64,
+    axes: &LightAxes,
+    outline: &[DVec2],
+    content: &Content,
+    depth: Depth,
+    reach: f64,
+) -> NearPlane {
+    let casters = content.casters.unwrap_or_default();
+    let (z, set_by) = match depth {
+        Depth::AtCovered | Depth::Doubled => return NearPlane { z: covered, set_by: None },
+        Depth::Extended(metres) => (covered + metres, Constraint::CasterExtension),
+        Depth::AtCasterBounds => {
+            let all = content.caster_groups.runs().map(|(_, min, max)| (min, max));
+            let all = all.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+            let mut highest = Highest::new(axes, outline, reach, covered);
+            if let Some((min, max)) = all {
+                highest.add(min, max);
+            }
+            (highest.z, Constraint::Casters)
+        }
+        Depth::AtCasters => {
+            let mut highest = Highest::new(axes, outline, reach, covered);
+            highest.add_all(&casters, content);
+            (highest.z, Constraint::Casters)
+        }
+    };
+    NearPlane { z, set_by: (z > covered).then_some(set_by) }
+}
+
+/// [`find`] for all of a map, given as a rectangle across the light.
+pub(crate) fn find_over(
+    covered: f64,
+    axes: &LightAxes,
+    across: (DVec2, DVec2),
+    content: &Content,
+    depth: Depth,
+    reach: f64,
+) -> NearPlane {
+    find(covered, axes, &corners(across), content, depth, reach)
+}
+
+/// Finds the far plane for a map, given as a rectangle across the light, whose covered region begins at `covered`
+/// along the light's z: far enough for the receivers in view over all of the map, since points of all
+/// view depths read it, but no farther than [`FARTHER`] allows.
+pub(crate) fn find_far(covered: f64, axes: &LightAxes, across: (DVec2, DVec2), content: &Content) -> f64 {
+    let longer = (across.1 - across.0).max_element();
+    // Seen from below: the lowest point is the highest there, and x and y change places.
+    let from_below = LightAxes { x: axes.y, y: axes.x, z: -axes.z };
+    let corners = corners((across.0.yx(), across.1.yx()));
+    let mut lowest = Highest::new(&from_below, &corners, 0.0, -covered);
+    content.each_seen_receiver(&mut lowest, Highest::may_rise, Highest::add);
+    (-lowest.z).max(covered - longer * FARTHER)
+}
+
+/// How far the far plane may lie beyond the covered region, in extents of the map: under a low sun that is as
+/// far as level ground goes on below the map.
+const FARTHER: f64 = 2.0;
+
+/// Corners of a rectangle along the axes, anticlockwise.
+fn corners((min, max): (DVec2, DVec2)) -> [DVec2; 4] {
+    [(min.x, min.y), (max.x, min.y), (max.x, max.y), (min.x, max.y)].map(|(x, y)| DVec2::new(x, y))
+}
+
+/// The greatest z of casters over an outline, or of what is covered where none reaches higher.
+struct Highest<'a> {
+    over: Outline<'a>,
+    scratch: Scratch,
+    z: f64,
+}
+
+impl<'a> Highest<'a> {
+    fn new(axes: &LightAxes, outline: &'a [DVec2], reach: f64, covered: f64) -> Self {
+        Self { over: Outline::new(axes, outline, reach), scratch: Scratch::new(), z: covered }
+    }
+
+    fn add_all(&mut self, casters: &Boxes, content: &Content) {
+        let offset = casters.origin - content.origin;
+        for (run, min, max) in content.caster_groups.runs() {
+            if !self.may_rise(min, max) {
+                continue;
+            }
+            for aabb in casters.boxes[run].iter().filter(|aabb| !aabb.is_empty()) {
+                let (min, max) = moved(aabb, offset);
+                self.add(min, max);
+            }
+        }
+    }
+
+    /// Whether a part of a box may lie higher than all so far.
+    fn may_rise(&self, min: DVec3, max: DVec3) -> bool {
+        self.over.may_hold(min, max, self.floor(min, max))
+    }
+
+    /// The height that a box must exceed to count.
+    fn floor(&self, min: DVec3, max: DVec3) -> f64 {
+        self.z - min.abs().max(max.abs()).element_sum() * ROUNDING
+    }
+
+    fn add(&mut self, min: DVec3, max: DVec3) {
+        let (floor, z) = (self.floor(min, max), &mut self.z);
+        self.over.parts_over(min, max, floor, &mut self.scratch, |corner| {
+            *z = z.max(corner.z + corner.abs().element_sum() * ROUNDING);
+        });
+    }
+}
+
+/// How far outside the outline casters are read by the widest filter that the border allows, in
+/// metres: a filter of reach E needs E - 1/2 texels of border, and half a texel more is for the
+/// rasteriser. `rounding` is what receivers and casters may be shifted by, each.
+pub(crate) fn filter_reach(texel: DVec2, rule: &FitRule, rounding: f64) -> f64 {
+    let texels = (rule.border + 1.0) * texel.max_element();
+    (texels + 2.0 * rounding) * ANY_AXES + rule.margin
+}
+
+/// How far an outline must be [widened](Outline) so that it surely holds the outline widened by the
+/// diagonal of a unit square: √2 each way.
+const ANY_AXES: f64 = 2.0;

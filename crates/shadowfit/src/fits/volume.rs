@@ -1,0 +1,135 @@
+//! A fit's decision, before it becomes matrices: a box along the light's axes, and where it lies on
+//! the world's texel grid.
+
+use glam::{DVec2, DVec3};
+
+use crate::base::numbers::{ROUNDING, floor};
+use crate::fits::FitRule;
+use crate::light::LightAxes;
+use crate::light::grid::{Grid, anchor, quantised, stabilised_depth};
+
+/// What set a plane of a fitted box: what to change for a tighter fit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Constraint {
+    /// The view frustum, cut at the shadow distance or by the splits.
+    #[default]
+    View,
+    /// The box of a receiver.
+    Receivers,
+    /// The box of a caster that lies before the covered region.
+    Casters,
+    /// [`FitSettings::caster_extension`](crate::settings::FitSettings::caster_extension).
+    CasterExtension,
+    /// The enclosing sphere of the [stable fit](crate::fits::sphere).
+    Sphere,
+    /// Where a [window](crate::settings::FitKind::Windows) stands, and how wide its texels are.
+    Window,
+    /// A fit that is held from an earlier frame.
+    Held,
+}
+
+/// A box along the light's axes and how it is stored.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Volume {
+    pub(crate) axes: LightAxes,
+    /// Corner of the fitted box with the least coordinates, along the light's axes and relative
+    /// to the fit's origin, in metres.
+    pub(crate) min: DVec3,
+    /// The opposite corner; its z is the map's near plane.
+    pub(crate) max: DVec3,
+    /// Coordinate of the light along its z axis.
+    pub(crate) light_z: f64,
+    /// Distance between near and far plane, in metres.
+    pub(crate) depth_range: f64,
+    /// What set the planes -x, +x, -y, +y, far, near.
+    pub(crate) set_by: [Constraint; 6],
+    pub(crate) is_empty: bool,
+    /// Where it lies on the world's grid, if it does.
+    pub(crate) grid: Option<Grid>,
+}
+
+impl Volume {
+    /// A box whose near plane has yet to be found, and with it the light.
+    #[inline(always)]
+    pub(crate) fn covering(
+        axes: LightAxes,
+        (min, max): (DVec3, DVec3),
+        set_by: [Constraint; 6],
+        is_empty: bool,
+    ) -> Self {
+        Self { axes, min, max, light_z: 0.0, depth_range: 0.0, set_by, is_empty, grid: None }
+    }
+
+    /// The box of a map on the world's grid, relative to an origin.
+    pub(crate) fn on_grid(
+        axes: LightAxes,
+        grid: Grid,
+        resolution: DVec2,
+        origin: DVec3,
+        (set_by, is_empty): ([Constraint; 6], bool),
+    ) -> Self {
+        let anchor = anchor(&axes, origin);
+        let (min, max) = grid.across(anchor, resolution);
+        let corners = (min.extend(grid.z.0 - anchor.z), max.extend(grid.z.1 - anchor.z));
+        let mut volume = Self { grid: Some(grid), ..Self::covering(axes, corners, set_by, is_empty) };
+        volume.light_at_near_plane();
+        volume
+    }
+
+    /// Leaves the border's texels free on all sides.
+    #[inline(always)]
+    pub(crate) fn add_border(&mut self, rule: &FitRule) {
+        let border = DVec2::splat(rule.border);
+        let free = (self.max - self.min).truncate() / (rule.resolution.as_dvec2() - border * 2.0) * border;
+        (self.min, self.max) = (self.min - free.extend(0.0), self.max + free.extend(0.0));
+    }
+
+    /// Rounds the extents across the light up and moves the box to the world's grid, so that it still
+    /// holds its content, with the border's texels around it.
+    #[inline(always)]
+    pub(crate) fn snap(&mut self, origin: DVec3, rule: &FitRule) -> Grid {
+        let anchor = anchor(&self.axes, origin);
+        let resolution = rule.resolution.as_dvec2();
+        let usable = rule.usable();
+        // A map that is larger than its content is rounded by its own extent.
+        let size = (self.max - self.min).truncate();
+        let pad = ROUNDING * (size * resolution / usable).max_element();
+        let size = size + 2.0 * pad;
+        let width = quantised(size.x);
+        let mut size = DVec2::new(width, if size.y == size.x { width } else { quantised(size.y) });
+        if rule.max_texel_ratio.is_some() {
+            let limited = rule.limited(size, usable);
+            let stepped = size.max(DVec2::new(quantised(limited.x), quantised(limited.y)));
+            // The step above the limit may be too long the other way. The limit itself follows from a step too.
+            size = if rule.limited(stepped, usable) == stepped { stepped } else { limited };
+        }
+        let texel = size / usable;
+        let line = (self.min.truncate() - pad + anchor.truncate()) / texel - rule.border;
+        let first = DVec2::new(floor(line.x), floor(line.y));
+        let grid = Grid { first, texel, z: (self.min.z + anchor.z, self.max.z + anchor.z) };
+        let (min, max) = grid.across(anchor, resolution);
+        (self.min, self.max, self.grid) = (min.extend(self.min.z), max.extend(self.max.z), Some(grid));
+        grid
+    }
+
+    /// Puts the near and far plane of a box on the grid to a range that holds them: the range held
+    /// from an earlier frame as long as it still holds them and is at most `waste` times as long as a
+    /// new one.
+    #[inline(always)]
+    pub(crate) fn stabilise_depth(&mut self, origin: DVec3, held: Option<(f64, f64)>, waste: f64) {
+        let anchor = anchor(&self.axes, origin).z;
+        if let Some(grid) = &mut self.grid {
+            grid.z = stabilised_depth(held, (self.min.z + anchor, self.max.z + anchor), waste);
+            (self.min.z, self.max.z) = (grid.z.0 - anchor, grid.z.1 - anchor);
+            self.light_at_near_plane();
+        }
+    }
+
+    /// Puts the light in the near plane, with the depth range from there to the far plane.
+    pub(crate) fn light_at_near_plane(&mut self) {
+        self.light_z = self.max.z;
+        self.depth_range = self.max.z - self.min.z;
+    }
+}

@@ -1,0 +1,249 @@
+//! Several maps for one view, kept stable from frame to frame.
+//!
+//! A [`MapFitter`] remembers the last frame as plain data. Everything else follows from the input.
+
+use glam::{DVec2, DVec3};
+
+use crate::base::{FitError, checks};
+use crate::bias::Bias;
+use crate::content::Content;
+use crate::demand::histogram::DepthBounds;
+use crate::fits::{
+    self, FitInput, FitRule, Frame, LightFit, Place, PlacedMap, PlacedMaps, Workspace, check_least_texel,
+};
+use crate::light::Light;
+use crate::light::grid::GridAnchor;
+use crate::map::{FittedMap, FittedMaps};
+use crate::slices::{self, HeldSlices};
+use crate::technique::Technique;
+use crate::technique::settings::{
+    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, MAX_BLEND, MAX_DEPTH_STEPS, MAX_MAPS, Stabilise,
+};
+use crate::view::{Range, ViewFrustum};
+use crate::windows::{self, HeldWindows};
+
+/// Fits several maps frame by frame.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct MapFitter {
+    last: Option<LastFrame>,
+}
+
+/// What is known of the last frame.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct LastFrame {
+    /// Another technique begins anew.
+    technique: Technique,
+    /// The light's unit direction of travel that the maps were made for: input that differs from it by
+    /// rounding alone changes nothing.
+    direction: DVec3,
+    view: ViewFrustum,
+    held: Held,
+}
+
+/// What a placement begins with in the next frame.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+enum Held {
+    Slices(HeldSlices),
+    Windows(HeldWindows),
+}
+
+impl MapFitter {
+    /// A fitter that remembers nothing.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Forgets all earlier frames: after a camera cut, or when a new level begins.
+    pub fn reset(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Fits the maps of a frame.
+    ///
+    /// # Errors
+    ///
+    /// As [`fit_scene`](crate::fits::fit_scene), for the settings of each map;
+    /// [`FitError::OutOfRange`] for a number of maps outside 1..=8, an overlap or λ outside 0..=1,
+    /// a blend outside 0..=[`MAX_BLEND`], and hold settings, softness, fade or depth steps that are out of range;
+    /// [`FitError::ClampedCasters`] for a filter that depth clamp leaves without the distances that it needs;
+    /// [`FitError::NearNotBelowFar`] for manual splits that do not ascend. Manual splits before or beyond what is shadowed are not an error: a map
+    /// without a range [is empty](LightFit::is_empty). An error leaves the fitter as it was.
+    pub fn fit(
+        &mut self,
+        input: &FitInput,
+        technique: &Technique,
+        workspace: &mut Workspace,
+    ) -> Result<FittedMaps, FitError> {
+        let mut maps = FittedMaps::default();
+        self.fit_into(input, technique, workspace, &mut maps)?;
+        Ok(maps)
+    }
+
+    /// [`Self::fit`] into existing maps, such as the last frame's, which saves copies.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::fit`]. After an error the maps must not be used.
+    pub fn fit_into(
+        &mut self,
+        input: &FitInput,
+        technique: &Technique,
+        workspace: &mut Workspace,
+        maps: &mut FittedMaps,
+    ) -> Result<(), FitError> {
+        // 1. The light, and the rule that the technique's maps are fitted by.
+        let (rule, light) = check(input, technique)?;
+        let last = self.last.as_ref().filter(|last| last.technique == *technique);
+        let light = light.held(last.filter(|_| keeps_maps(technique)).map(|last| last.direction));
+        // 2. The boxes, and what the views see of them.
+        let (content, points) = Content::new(input.scene(), workspace.storage)?;
+        let range = whole_range(input, technique.fit.max_distance);
+        let last_view = last.map(|last| &last.view);
+        let frame = Frame { input, technique, rule: &rule, light, content: &content, range, last_view };
+        // 3. Where each map is put: its volume, from the near plane to the far plane.
+        let (placed, held) = place(&frame, last.map(|last| &last.held), points)?;
+        // 4. Matrices, biases and anchors.
+        for (map, placed) in maps.take(technique.count as usize).iter_mut().zip(placed.iter().flatten()) {
+            write(map, placed, &frame)?;
+        }
+        // 5. What the next frame begins with.
+        let (direction, view) = (light.direction(), input.views[0]);
+        self.last = Some(LastFrame { technique: *technique, direction, view, held });
+        Ok(())
+    }
+}
+
+/// Places the maps of a frame as windows or as slices of the view.
+fn place(frame: &Frame, before: Option<&Held>, points: &mut [DVec2]) -> Result<(PlacedMaps, Held), FitError> {
+    const WINDOWS: Place<HeldWindows> = windows::place;
+    const SLICES: Place<HeldSlices> = slices::place;
+    if frame.technique.has_windows() {
+        let before = before.and_then(|held| if let Held::Windows(held) = held { Some(held) } else { None });
+        let (placed, held) = WINDOWS(frame, before, points)?;
+        return Ok((placed, Held::Windows(held)));
+    }
+    let before = before.and_then(|held| if let Held::Slices(held) = held { Some(held) } else { None });
+    let (placed, held) = SLICES(frame, before, points)?;
+    Ok((placed, Held::Slices(held)))
+}
+
+/// Writes a map in place, since it is large.
+fn write(map: &mut FittedMap, placed: &PlacedMap, frame: &Frame) -> Result<(), FitError> {
+    let PlacedMap { volume, near, far, covered_near } = placed;
+    map.fit = LightFit::from_volume(frame.content.origin, volume, frame.rule.resolution, frame.rule.convention)?;
+    map.bias = Bias::from_texels(&frame.technique.bias, frame.technique.format, &map.fit);
+    map.anchor = volume.grid.as_ref().and_then(GridAnchor::of);
+    (map.near, map.far, map.covered_near) = (*near, *far, *covered_near);
+    Ok(())
+}
+
+/// Whether anything of a map is kept for later frames.
+fn keeps_maps(technique: &Technique) -> bool {
+    technique.stabilise != Stabilise::Off || technique.has_windows()
+}
+
+/// The fewest slices of the view that are enough: the least count, up to that of the technique, for
+/// which the 95% quantile of pixels per texel with the best splits is at most `waste` times that with
+/// the technique's count. It does not apply to
+/// [windows](crate::settings::FitKind::Windows).
+///
+/// What is visible is taken from the histogram where the technique's splits use one, else estimated from the
+/// boxes; other split schemes count as [`SplitScheme::FromBoxes`](crate::settings::SplitScheme::FromBoxes)
+/// here. Costs about as much as choosing the splits of one frame: ask when a level begins, or now and then,
+/// and set [`Technique::count`] by it.
+///
+/// ```
+/// # use shadowfit::glam::{DVec2, DVec3, Vec3};
+/// # use shadowfit::*;
+/// use shadowfit::map_fitter::fewest_maps;
+/// # let camera = PerspectiveCamera {
+/// #     eye: DVec3::new(0.0, 1.7, 5.0),
+/// #     forward: Vec3::NEG_Z,
+/// #     up: Vec3::Y,
+/// #     fov_y: 0.8,
+/// #     aspect: 16.0 / 9.0,
+/// #     near: 0.1,
+/// #     far: 200.0,
+/// # };
+/// # let views = [camera.frustum()?];
+/// # let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
+/// # let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+/// # let mut workspace = Workspace::new(&mut storage);
+/// let technique = Technique::preset("calm-4").unwrap().with_count(8);
+/// let count = fewest_maps(&input, &technique, 1.5, &mut workspace)?;
+/// assert!(count < 8); // the last ones would make texels less than 1.5 times as fine
+/// let maps = MapFitter::new().fit(&input, &technique.with_count(count), &mut workspace)?;
+/// assert_eq!(maps.len(), count as usize);
+/// # Ok::<(), FitError>(())
+/// ```
+///
+/// # Errors
+///
+/// As [`MapFitter::fit`], and [`FitError::OutOfRange`] for a waste outside 1..=100.
+pub fn fewest_maps(
+    input: &FitInput,
+    technique: &Technique,
+    waste: f32,
+    workspace: &mut Workspace,
+) -> Result<u32, FitError> {
+    let waste = checks::within("the waste of fewer maps", f64::from(waste), 1.0, 100.0)?;
+    let (rule, light) = check(input, technique)?;
+    let (content, _) = Content::new(input.scene(), workspace.storage)?;
+    let range = whole_range(input, technique.fit.max_distance);
+    let frame = Frame { input, technique, rule: &rule, light, content: &content, range, last_view: None };
+    Ok(slices::fewest(&frame, waste))
+}
+
+/// Everything that is shadowed.
+fn whole_range(input: &FitInput, distance: f32) -> Range {
+    let near = input.views.iter().map(|view| view.near).fold(f32::MAX, f32::min);
+    let far = input.views.iter().map(|view| view.far).fold(f32::MIN, f32::max);
+    Range { near, far: far.min(distance) }
+}
+
+/// Checks an input and a technique; gives the rule of its maps, and the light.
+fn check(input: &FitInput, technique: &Technique) -> Result<(FitRule, Light), FitError> {
+    check_numbers(technique)?;
+    if let Some(DepthBounds { near, far }) = input.depth_bounds {
+        for bound in [near, far] {
+            checks::finite("a depth bound", f64::from(bound))?;
+        }
+        if near > far {
+            return Err(FitError::NearNotBelowFar { near, far });
+        }
+    }
+    let settings = FitSettings { least_texel: technique.least_texel(), ..technique.fit };
+    let (mut rule, light) = fits::prepare(input, &settings, technique.border())?;
+    rule.serves_all = technique.shares_maps() && rule.can_be_held();
+    Ok((rule, light))
+}
+
+/// Checks the numbers of a technique that are not those of its fit, and what does not go together.
+fn check_numbers(technique: &Technique) -> Result<(), FitError> {
+    let most = MAX_MAPS as f64;
+    checks::within("the number of maps", f64::from(technique.count), 1.0, most)?;
+    checks::within("the maps' overlap", f64::from(technique.overlap), 0.0, 1.0)?;
+    checks::within("the maps' blend", f64::from(technique.blend), 0.0, f64::from(MAX_BLEND))?;
+    let hold = technique.hold;
+    checks::within("the hold's margin", f64::from(hold.margin), 0.0, 10.0)?;
+    checks::within("the hold's growth", f64::from(hold.growth), 1.0, 100.0)?;
+    checks::within("the hold's waste", f64::from(hold.waste), 1.0, 100.0)?;
+    technique.softness.checked()?;
+    // The least texel of the maps is the greater of two, which would hide a bad one.
+    check_least_texel(&technique.fit)?;
+    checks::within("the shadows' fade", f64::from(technique.fade), 0.0, 1.0)?;
+    let BiasSettings { constant, slope, normal_offset, receiver_plane, depth_steps } = technique.bias;
+    for bias in [constant, slope, normal_offset, receiver_plane] {
+        checks::finite("a bias", f64::from(bias))?;
+    }
+    checks::within("the bias in depth steps", f64::from(depth_steps), 0.0, f64::from(MAX_DEPTH_STEPS))?;
+    // The XNA sample's fit has no caster policy.
+    let clamps = technique.fit.casters == CasterPolicy::DepthClamp && technique.fit.kind != FitKind::XnaSample;
+    if technique.filter == FilterKind::Pcss && clamps {
+        return Err(FitError::ClampedCasters);
+    }
+    Ok(())
+}

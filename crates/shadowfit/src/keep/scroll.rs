@@ -1,0 +1,294 @@
+//! The part of a map that can be kept from the last frame, so that static casters are drawn only
+//! where the map is new.
+//!
+//! A map on the world's grid ([snapped or held](crate::settings::Stabilise), or the
+//! [stable sphere](crate::fits::sphere)) moves by whole texels. [`Scroll::between`] says by how
+//! many, which strips came into the map, and whether anything else changed:
+//!
+//! ```text
+//!   ┌───────────┬──┐  the map now
+//!   │           │▒▒│
+//!   │   kept    │▒▒│  ▒ exposed: two rectangles at most
+//!   ├───────────┤▒▒│
+//!   │▒▒▒▒▒▒▒▒▒▒▒│▒▒│
+//!   └───────────┴──┘
+//! ```
+//!
+//! The kept texels stay where they are stored: the map [wraps around](StoredRect) in its layer.
+//!
+//! A shifted raster is not bit-equal to a fresh one: the map's translation is rounded to f32 anew
+//! in each frame, which moves edges by up to 0.005 of a texel. Where that matters, [`Tiles`] are
+//! drawn instead: the projection of each never changes, is relative to an origin of its own, and
+//! covers a square of the same grid.
+//!
+//! Kept texels must have been drawn with all casters over the map
+//! ([`CasterVolume::of_map`](crate::CasterVolume::of_map)): a swept volume leaves out those that
+//! cast no shadow into the view of **that** frame.
+
+use core::ops::Range;
+
+use glam::{DVec3, IVec2, UVec2};
+
+use crate::base::{FitError, checks};
+use crate::fits::{Constraint, LightFit, Volume};
+use crate::light::LightAxes;
+use crate::light::grid::MAX_LINE;
+use crate::map::FittedMap;
+
+pub use crate::keep::texel_rect::TexelRect;
+pub use crate::keep::wrap::StoredRect;
+pub use crate::light::grid::GridAnchor;
+
+/// How a map follows from the one before it.
+///
+/// Texels stay where they are stored, and what comes in takes the place of what left
+/// ([`StoredRect`]):
+///
+/// ```
+/// # use shadowfit::glam::UVec2;
+/// # use shadowfit::scroll::{Scroll, StoredRect};
+/// # use shadowfit::FittedMap;
+/// # fn clear_and_draw_all() {} fn clear_and_draw(_: StoredRect) {}
+/// /// Draws the static casters, and returns the wrap that the look-up adds to its texels.
+/// fn draw_static_casters(before: &FittedMap, now: &FittedMap, wrap_before: UVec2) -> UVec2 {
+///     let scroll = Scroll::between(before, now);
+///     let size = now.fit.resolution;
+///     let wrap = scroll.wrap(wrap_before, size);
+///     if scroll.is_redraw() {
+///         clear_and_draw_all();
+///     } else {
+///         for piece in scroll.exposed().flat_map(|strip| strip.stored(wrap, size)) {
+///             clear_and_draw(piece); // its `stored` is a scissor rectangle, its `viewport()` begins the viewport
+///         }
+///     }
+///     wrap
+/// }
+/// # let wrap = draw_static_casters(&FittedMap::default(), &FittedMap::default(), UVec2::ZERO);
+/// # assert_eq!(wrap, UVec2::ZERO);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Scroll {
+    /// Whether nothing of the old map can be kept: the light, the map's angle, texel size or
+    /// resolution changed, no texel is in both, the old one was [empty](LightFit::is_empty), or one
+    /// of them is not on a grid.
+    pub is_new: bool,
+    /// Whether the near or the far plane moved, so that the old map's depths now mean other
+    /// distances. The planes stay as long as they hold the content, see
+    /// [`Stabilise`](crate::settings::Stabilise).
+    pub depth_changed: bool,
+    /// What is at texel t now was at texel t + `shift` before, right and down.
+    pub shift: IVec2,
+    exposed: [TexelRect; 2],
+}
+
+impl Scroll {
+    /// How a map follows from the same map of an earlier frame.
+    pub fn between(before: &FittedMap, now: &FittedMap) -> Self {
+        shift(before, now).map_or_else(
+            || Self::new_map(now.fit.resolution),
+            |(by, depth_changed)| Self {
+                is_new: false,
+                depth_changed,
+                shift: by,
+                exposed: exposed(by, now.fit.resolution),
+            },
+        )
+    }
+
+    /// Whether all of the map must be drawn. Otherwise it is enough to draw static casters into
+    /// [`Self::exposed`].
+    pub const fn is_redraw(&self) -> bool {
+        self.is_new || self.depth_changed
+    }
+
+    /// What was not in the old map: none, one or two rectangles that do not overlap, or all of a
+    /// new map. A changed depth range does not count here.
+    pub fn exposed(&self) -> impl Iterator<Item = TexelRect> {
+        self.exposed.into_iter().filter(|rect| rect.size.min_element() > 0)
+    }
+
+    fn new_map(resolution: UVec2) -> Self {
+        let all = TexelRect { min: UVec2::ZERO, size: resolution };
+        Self { is_new: true, depth_changed: true, shift: IVec2::ZERO, exposed: [all, TexelRect::default()] }
+    }
+}
+
+/// Shift in texels from a map to an earlier one and whether the depth range changed, if they share
+/// any texel.
+fn shift(before: &FittedMap, now: &FittedMap) -> Option<(IVec2, bool)> {
+    let (old, new) = (before.anchor?, now.anchor?);
+    let axes = |fit: &LightFit| [0, 1, 2].map(|i| fit.light_from_world.col(i));
+    let is_same = axes(&before.fit) == axes(&now.fit)
+        && old.texel == new.texel
+        && before.fit.resolution == now.fit.resolution
+        && before.fit.depth == now.fit.depth;
+    if !is_same || before.fit.is_empty {
+        return None;
+    }
+    let right = new.first[0].saturating_sub(old.first[0]);
+    // Grid lines count upward, texture rows downward.
+    let down = old.first[1].saturating_sub(new.first[1]);
+    let resolution = now.fit.resolution;
+    if right.unsigned_abs() >= u64::from(resolution.x) || down.unsigned_abs() >= u64::from(resolution.y) {
+        return None;
+    }
+    let by = IVec2::new(i32::try_from(right).ok()?, i32::try_from(down).ok()?);
+    Some((by, old.depth != new.depth))
+}
+
+/// The columns, then the remaining rows, that a shift brings into a map.
+fn exposed(by: IVec2, resolution: UVec2) -> [TexelRect; 2] {
+    let count = UVec2::new(by.x.unsigned_abs(), by.y.unsigned_abs()).min(resolution);
+    let kept = resolution - count;
+    let first = |by: i32, kept: u32| if by > 0 { kept } else { 0 };
+    let columns = TexelRect { min: UVec2::new(first(by.x, kept.x), 0), size: UVec2::new(count.x, resolution.y) };
+    let left = if by.x > 0 { 0 } else { count.x };
+    let rows = TexelRect { min: UVec2::new(left, first(by.y, kept.y)), size: UVec2::new(kept.x, count.y) };
+    [columns, rows]
+}
+
+/// A square of the world's texel grid with a projection that no camera changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tile {
+    /// Index of the square: columns to the right and rows upward along the map's axes, counted from
+    /// the world's origin.
+    pub index: [i64; 2],
+    /// Its projection, of `size` × `size` texels. [`LightFit::origin`] is the tile's own, in the
+    /// middle of its near plane: what is drawn into it must be relative to that. All matrices have
+    /// the same bits for all tiles, and the origin for the same index, as long as the light, the
+    /// map's angle, the texel size and the depth range stay as they are.
+    pub fit: LightFit,
+    /// Where its visible part lies in the map.
+    pub map: TexelRect,
+    /// The tile's own texel at the left top of that part.
+    pub from: UVec2,
+}
+
+/// The tiles that cover a map, row by row from below; see [`tiles`].
+#[derive(Clone, Debug)]
+pub struct Tiles {
+    anchor: GridAnchor,
+    resolution: UVec2,
+    size: u32,
+    axes: LightAxes,
+    /// The projection of all tiles.
+    fit: LightFit,
+    columns: Range<i64>,
+    rows: Range<i64>,
+    next: [i64; 2],
+}
+
+/// The world-anchored tiles of `size` × `size` texels that cover a map on the grid.
+///
+/// ```
+/// # use shadowfit::glam::{DVec2, DVec3, Vec3};
+/// # use shadowfit::scroll::tiles;
+/// # use shadowfit::*;
+/// # let camera = PerspectiveCamera {
+/// #     eye: DVec3::new(0.0, 1.7, 5.0),
+/// #     forward: Vec3::NEG_Z,
+/// #     up: Vec3::Y,
+/// #     fov_y: 0.8,
+/// #     aspect: 16.0 / 9.0,
+/// #     near: 0.1,
+/// #     far: 200.0,
+/// # };
+/// # let views = [camera.frustum()?];
+/// # let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
+/// # let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+/// let maps = MapFitter::new().fit(&input, &Technique::default(), &mut Workspace::new(&mut storage))?;
+/// let mut texels = 0;
+/// for tile in tiles(&maps[0], 256)? {
+///     // Draw tile.index by tile.fit if it is not kept yet; copy tile.map from it, beginning at tile.from.
+///     texels += tile.map.size.x * tile.map.size.y;
+/// }
+/// assert_eq!(texels, 2048 * 2048); // together they are the map
+/// # Ok::<(), FitError>(())
+/// ```
+///
+/// Tiles are drawn and kept by their index and copied into the map, or looked up themselves. A tile
+/// that is drawn again has the same bits, wherever the camera is, if its casters have not changed.
+/// Its depths are those of the map.
+///
+/// # Errors
+///
+/// [`FitError::NotOnGrid`] for a map that is neither snapped nor held nor a sphere's;
+/// [`FitError::OutOfRange`] for a size of 0 or above 65 536 texels, and for an invalid anchor or
+/// fit.
+pub fn tiles(map: &FittedMap, size: u32) -> Result<Tiles, FitError> {
+    checks::within("the size of a tile", f64::from(size), 1.0, f64::from(MAX_TILE))?;
+    let anchor = map.anchor.ok_or(FitError::NotOnGrid)?;
+    let axes = LightAxes::of_matrix(&map.fit.light_from_world)?;
+    for line in anchor.first {
+        checks::within("a grid line of the map", line as f64, -MAX_LINE, MAX_LINE)?;
+    }
+    let side = i64::from(size);
+    let cover = |first: i64, texels: u32| {
+        first.div_euclid(side)..(first + i64::from(texels) - 1).div_euclid(side).saturating_add(1)
+    };
+    let (columns, rows) = (cover(anchor.first[0], map.fit.resolution.x), cover(anchor.first[1], map.fit.resolution.y));
+    let next = [columns.start, rows.start];
+    let fit = tile_fit(&axes, &anchor, size, map)?;
+    Ok(Tiles { anchor, resolution: map.fit.resolution, size, axes, fit, columns, rows, next })
+}
+
+/// Largest tile, in texels: no texture is larger.
+const MAX_TILE: u32 = 65_536;
+
+/// The projection of a tile whose origin is in the middle of its near plane.
+fn tile_fit(axes: &LightAxes, anchor: &GridAnchor, size: u32, map: &FittedMap) -> Result<LightFit, FitError> {
+    let half = anchor.texel * (f64::from(size) * 0.5);
+    let depth_range = anchor.depth[1] - anchor.depth[0];
+    let corners = ((-half).extend(-depth_range), half.extend(0.0));
+    let mut volume = Volume::covering(*axes, corners, [Constraint::Held; 6], false);
+    volume.light_at_near_plane();
+    LightFit::from_volume(DVec3::ZERO, &volume, UVec2::splat(size), map.fit.depth)
+}
+
+impl Tiles {
+    fn tile(&self, index: [i64; 2]) -> Tile {
+        let side = i64::from(self.size);
+        let middle = [0, 1].map(|i| (index[i] as f64 + 0.5) * f64::from(self.size) * self.anchor.texel[i]);
+        let origin = self.axes.unproject(DVec3::new(middle[0], middle[1], self.anchor.depth[1]));
+        // Left top of the tile in the map; rows count downward there.
+        let left = index[0] * side - self.anchor.first[0];
+        let top = self.anchor.first[1] + i64::from(self.resolution.y) - (index[1] + 1) * side;
+        let ([x, width, from_x], [y, height, from_y]) =
+            (overlap(left, side, self.resolution.x), overlap(top, side, self.resolution.y));
+        Tile {
+            index,
+            fit: LightFit { origin, ..self.fit },
+            map: TexelRect { min: UVec2::new(x, y), size: UVec2::new(width, height) },
+            from: UVec2::new(from_x, from_y),
+        }
+    }
+}
+
+/// Start and length of the part of a run of texels inside a map, and where that part begins in the
+/// run.
+fn overlap(start: i64, length: i64, resolution: u32) -> [u32; 3] {
+    let (first, end) = (start.max(0), (start + length).min(i64::from(resolution)));
+    [first, (end - first).max(0), first - start].map(|texels| texels as u32)
+}
+
+impl Iterator for Tiles {
+    type Item = Tile;
+
+    fn next(&mut self) -> Option<Tile> {
+        let [column, row] = self.next;
+        if row >= self.rows.end {
+            return None;
+        }
+        self.next = if column + 1 < self.columns.end { [column + 1, row] } else { [self.columns.start, row + 1] };
+        Some(self.tile([column, row]))
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        let width = self.columns.end - self.columns.start;
+        let passed = (self.next[1] - self.rows.start) * width + self.next[0] - self.columns.start;
+        let left = (self.rows.end - self.rows.start) * width - passed;
+        (left as usize, Some(left as usize))
+    }
+}
+
+impl ExactSizeIterator for Tiles {}

@@ -1,0 +1,361 @@
+//! A certificate that a map has no holes: every receiver lies in it, and no caster is lost.
+//!
+//! [`verify`] looks at a fit's matrices alone and not at how they came about, so it holds for fits
+//! that were held, moved to another origin, stored or changed. What it states holds for **all**
+//! points of the receivers, and is proven by the corners of each box clipped to the view; the
+//! rounding of f32 positions, matrices and shader arithmetic is bounded and required as free space.
+//!
+//! ```text
+//!     toward the light
+//!   ┌────────▲─────────┐ near plane: no part of a caster over the receivers' outline,
+//!   │     ┌──┴──┐      │ widened by the filter's reach, may lie before it
+//!   │     │     │      │
+//!   │ r ┌─┴─────┴─┐ r  │ receivers' boxes ∩ view, the filter's reach r from the sides
+//!   │   └─────────┘    │
+//!   └──────────────────┘ far plane
+//! ```
+
+mod half_space;
+mod query;
+
+use glam::{DVec2, DVec3};
+
+use crate::base::numbers::UNIT;
+use crate::base::{FitError, box_corners, checks, moved};
+use crate::bias::HARDWARE_SNAP;
+use crate::content::Content;
+use crate::fits::light_hull::LightHull;
+use crate::fits::{Covers, FitInput, LightFit, Workspace};
+use crate::light::{LightAxes, Outline, Scratch};
+use crate::technique::settings::{CasterPolicy, MapChoice};
+use crate::view::{Range, Slice};
+use half_space::HalfSpaces;
+
+pub use query::{CoverageQuery, MapPlane};
+
+/// What [`verify`] found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[must_use = "a certificate says whether the map has holes"]
+pub enum Certificate {
+    /// There are no holes: all receivers are inside with all that the filter reads, and none of
+    /// the given casters is lost.
+    Proven(Margins),
+    /// A receiver is outside, or cannot be proven to be inside.
+    Uncovered {
+        /// The plane of the map that it lies beyond.
+        plane: MapPlane,
+        /// The farthest point beyond it, in world space.
+        point: DVec3,
+        /// How much is missing: texels for the planes across the light, metres for near and far.
+        /// It includes the filter's reach and the bound of the rounding.
+        by: f32,
+    },
+    /// A receiver is seen although the fit [says](LightFit::is_empty) that none is, so that its
+    /// shadow pass may be left out.
+    MarkedEmpty {
+        /// A point of it, in world space.
+        point: DVec3,
+    },
+    /// A part of a caster that can cast a shadow into view lies before the near plane, or cannot
+    /// be proven to lie behind it.
+    CasterLost {
+        /// The part farthest toward the light, in world space.
+        point: DVec3,
+        /// Its distance before the near plane, in metres, with the bound of the rounding.
+        by: f32,
+    },
+}
+
+impl Certificate {
+    /// Whether the map has no holes.
+    pub const fn is_proven(&self) -> bool {
+        matches!(self, Self::Proven(_))
+    }
+}
+
+/// The free space beyond all that is required. Infinite where nothing was required.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Margins {
+    /// At each of [`MapPlane::ALL`]: texels for the planes across the light, metres for far and
+    /// near.
+    pub planes: [f32; 6],
+    /// Between the near plane and the first of the casters over the receivers, in metres; with
+    /// depth clamp none is required.
+    pub casters: f32,
+}
+
+/// Proves that a map has no holes, or finds one.
+///
+/// - **Receivers** are `input.receivers` clipped to the views' slices between `query.near` and
+///   `query.far`; the slices themselves where the boxes are not known. Boxes whose
+///   [cone](FitInput::receiver_cones) turns away from the light are ignored, as in the fits. A
+///   frustum ends at its corners; a camera matrix with other rounding may show a sliver beyond
+///   them.
+/// - **Casters** are `input.casters`, for any caster policy of the fit: those parts that lie over
+///   the receivers' outline, widened by the filter's reach, the rasteriser's snap and the normal
+///   offset; for maps that are [read by coverage](CoverageQuery::choice) those over any part of the map.
+///   Nothing is proven of casters that are not given.
+/// - **Rounding**: positions are taken as f32 relative to [`LightFit::origin`], multiplied by
+///   `uv_from_world` and `clip_from_world` in f32 in any order of operations. Positions relative
+///   to another origin need [`LightFit::relative_to`] first, and a certificate of that.
+///
+/// World positions are f64, in metres. The fit of the XNA sample has no caster policy, so the
+/// certificate reports any caster that lies before the frustum.
+///
+/// ```
+/// use shadowfit::bias::Reach;
+/// use shadowfit::glam::{DVec2, DVec3, Vec3};
+/// use shadowfit::verify::{Certificate, CoverageQuery, MapPlane, verify};
+/// use shadowfit::settings::FitSettings;
+/// use shadowfit::{FitInput, PerspectiveCamera, Workspace};
+///
+/// let camera = PerspectiveCamera {
+///     eye: DVec3::new(0.0, 1.7, 5.0),
+///     forward: Vec3::NEG_Z,
+///     up: Vec3::Y,
+///     fov_y: 0.8,
+///     aspect: 16.0 / 9.0,
+///     near: 0.1,
+///     far: 200.0,
+/// };
+/// let views = [camera.frustum()?];
+/// let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
+/// let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+/// let mut workspace = Workspace::new(&mut storage);
+///
+/// // Hardware 2×2 samples read texels up to one away: half a texel must be left free for them.
+/// let settings = FitSettings::default().with_border(0.5);
+/// let query = CoverageQuery::of_fit(&settings, Reach::HARDWARE_2X2);
+/// let map = shadowfit::fits::fit_scene(&input, &settings, &mut workspace)?;
+/// assert!(verify(&input, &map, &query, &mut workspace)?.is_proven());
+///
+/// // Without them there is a hole, and the certificate says where.
+/// let map = shadowfit::fits::fit_scene(&input, &settings.with_border(0.0), &mut workspace)?;
+/// let Certificate::Uncovered { plane, by, .. } = verify(&input, &map, &query, &mut workspace)? else { panic!() };
+/// assert!(plane != MapPlane::Near && by > 0.49 && by < 0.51);
+/// # Ok::<(), shadowfit::FitError>(())
+/// ```
+///
+/// A debug build can prove every map of every frame:
+///
+/// ```
+/// # use shadowfit::glam::{DVec2, DVec3, Vec3};
+/// # use shadowfit::verify::{CoverageQuery, verify};
+/// # use shadowfit::*;
+/// # let mut camera = PerspectiveCamera {
+/// #     eye: DVec3::new(0.0, 1.7, 5.0),
+/// #     forward: Vec3::NEG_Z,
+/// #     up: Vec3::Y,
+/// #     fov_y: 0.8,
+/// #     aspect: 16.0 / 9.0,
+/// #     near: 0.1,
+/// #     far: 200.0,
+/// # };
+/// # let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
+/// # let mut workspace = Workspace::new(&mut storage);
+/// let (mut fitter, technique) = (MapFitter::new(), Technique::default());
+/// for _ in 0..10 {
+///     camera.eye.x += 0.3;
+///     let views = [camera.frustum()?];
+///     let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
+///     let maps = fitter.fit(&input, &technique, &mut workspace)?;
+///     if cfg!(debug_assertions) {
+///         for map in maps.iter() {
+///             let query = CoverageQuery::of_map(map, &technique, technique.filter.into())
+///                 .with_normal_offset(map.bias.normal_offset);
+///             let certificate = verify(&input, &map.fit, &query, &mut workspace)?;
+///             assert!(certificate.is_proven(), "{certificate:?}");
+///         }
+///     }
+/// }
+/// # Ok::<(), FitError>(())
+/// ```
+///
+/// # Errors
+///
+/// Those of the views, the light's direction and the boxes as of
+/// [`fit_scene`](crate::fits::fit_scene); [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the
+/// query and for a fit whose matrices are not those of a light; [`FitError::ZeroResolution`];
+/// [`FitError::NearNotBelowFar`] for a query whose near is above its far (equal ones require nothing);
+/// [`FitError::WorkspaceTooSmall`].
+pub fn verify(
+    input: &FitInput,
+    fit: &LightFit,
+    query: &CoverageQuery,
+    workspace: &mut Workspace,
+) -> Result<Certificate, FitError> {
+    let range = query.checked()?;
+    if input.views.is_empty() {
+        return Err(FitError::NoView);
+    }
+    for view in input.views {
+        view.checked()?;
+    }
+    checks::unit("the light's direction", input.direction)?;
+    checks::point("the fit's origin", fit.origin)?;
+    let half_spaces = HalfSpaces::new(fit, query)?;
+    let axes = LightAxes::of_matrix(&fit.light_from_world)?;
+    let (content, points) = Content::new(input.scene(), workspace.storage)?;
+    let offset = content.origin - fit.origin;
+    let mut receivers = Worst::new(&half_spaces, offset);
+    receivers.add_all(&content, range);
+    if let Some(certificate) = receivers.failure(fit) {
+        return Ok(certificate);
+    }
+    let mut margins = Margins { planes: receivers.least.map(|(margin, _)| margin as f32), casters: f32::INFINITY };
+    let has_casters = content.casters.is_some_and(|casters| !casters.boxes.is_empty());
+    let is_read = match query.choice {
+        MapChoice::Coverage => !fit.is_empty,
+        MapChoice::ViewDepth => receivers.any.is_some(),
+    };
+    if is_read && has_casters && query.casters != CasterPolicy::DepthClamp {
+        let nearest = |over: Outline| nearest_caster(&content, &over, &half_spaces, offset);
+        let (by, point) = match query.choice {
+            MapChoice::Coverage => {
+                let (corners, distance) = whole_map(fit, &axes, offset);
+                nearest(Outline::new(&axes, &corners, raster_reach(fit, distance)))
+            }
+            MapChoice::ViewDepth => {
+                let hull = LightHull::of(Covers::Receivers, &content, axes, range, points)?;
+                nearest(Outline::new(&axes, hull.outline, caster_reach(fit, query, hull.farthest)))
+            }
+        };
+        if by < 0.0 {
+            return Ok(Certificate::CasterLost { point: fit.origin + point, by: -by as f32 });
+        }
+        margins.casters = by as f32;
+    }
+    Ok(Certificate::Proven(margins))
+}
+
+/// All of a map, as an outline along its axes relative to the content's origin, and the greatest distance of it from
+/// the fit's origin. `offset` is from that to the content's.
+fn whole_map(fit: &LightFit, axes: &LightAxes, offset: DVec3) -> ([DVec2; 4], f64) {
+    let (min, max) = fit.clip_box();
+    let moved = fit.light_from_world.w_axis.truncate().as_dvec3();
+    let from = (moved + axes.project(offset)).truncate();
+    let (low, high) = (min.truncate() - from, max.truncate() - from);
+    let corners = [(low.x, low.y), (high.x, low.y), (high.x, high.y), (low.x, high.y)];
+    let farthest = (min - moved).abs().max((max - moved).abs());
+    (corners.map(|(x, y)| DVec2::new(x, y)), checks::length(farthest))
+}
+
+/// How far around the outline casters are read, in metres: the reach of the filter with the
+/// rasteriser's snap, the normal offset, and what rounding may shift both receivers and casters.
+fn caster_reach(fit: &LightFit, query: &CoverageQuery, distance: f64) -> f64 {
+    let reach = query.reach.disc.as_dvec2() + f64::from(query.reach.taps);
+    texels(fit, reach) + f64::from(query.normal_offset) + raster_reach(fit, distance)
+}
+
+/// How far around a map casters are drawn into it, in metres: the rasteriser's snap, and what rounding may shift both
+/// receivers and casters.
+fn raster_reach(fit: &LightFit, distance: f64) -> f64 {
+    let size = (fit.box_max - fit.box_min).as_dvec3().truncate();
+    let rounding = SHIFT_ROUNDINGS * UNIT * (distance + size.max_element());
+    texels(fit, DVec2::splat(f64::from(HARDWARE_SNAP))) + rounding
+}
+
+/// A number of texels along both axes, as a distance in metres.
+fn texels(fit: &LightFit, count: DVec2) -> f64 {
+    let size = (fit.box_max - fit.box_min).as_dvec3().truncate();
+    let texels = count * size / fit.resolution.as_dvec2();
+    libm::sqrt(texels.dot(texels))
+}
+
+/// Roundings that shift a receiver and a caster against each other across the light, as multiples
+/// of 2⁻²⁴ of the distance and the map's extent: ten in each term of either.
+const SHIFT_ROUNDINGS: f64 = 32.0;
+
+/// The casters' least distance behind the near plane, in metres, and where.
+fn nearest_caster(content: &Content, over: &Outline, half_spaces: &HalfSpaces, offset: DVec3) -> (f64, DVec3) {
+    let casters = content.casters.unwrap_or_default();
+    let (moved_by, mut scratch) = (casters.origin - content.origin, Scratch::new());
+    let mut least = (f64::INFINITY, DVec3::ZERO);
+    for aabb in casters.boxes.iter().filter(|aabb| !aabb.is_empty()) {
+        let (min, max) = moved(aabb, moved_by);
+        over.parts_over(min, max, f64::MIN, &mut scratch, |corner| {
+            let p = over.axes.unproject(corner) + offset;
+            let margin = half_spaces.near().into_iter().map(|near| near.margin(p)).fold(f64::INFINITY, f64::min);
+            if margin < least.0 {
+                least = (margin, p);
+            }
+        });
+    }
+    least
+}
+
+/// The points that are least inside.
+struct Worst<'a> {
+    half_spaces: &'a HalfSpaces,
+    /// From the content's origin to the fit's.
+    offset: DVec3,
+    /// Least margin at each plane, and the point that has it, relative to the fit's origin.
+    least: [(f64, DVec3); 6],
+    any: Option<DVec3>,
+}
+
+impl<'a> Worst<'a> {
+    fn new(half_spaces: &'a HalfSpaces, offset: DVec3) -> Self {
+        Self { half_spaces, offset, least: [(f64::INFINITY, DVec3::ZERO); 6], any: None }
+    }
+
+    /// Adds everything that the views see between two depths.
+    fn add_all(&mut self, content: &Content, range: Range) {
+        if content.receivers.is_none() {
+            content.corners(range).for_each(|corner| self.add(corner));
+            return;
+        }
+        let all = content.receivers_in(range, |_, slice, min, max| self.add_box(slice, min, max));
+        let Ok(()): Result<(), core::convert::Infallible> = all;
+    }
+
+    /// Adds a receiver's box clipped to a slice.
+    fn add_box(&mut self, slice: &Slice, min: DVec3, max: DVec3) -> Result<(), core::convert::Infallible> {
+        // No part of a box is less inside than its corners.
+        let corners = box_corners(min, max);
+        if self.any.is_some() && corners.into_iter().all(|corner| !self.is_worse(corner)) {
+            return Ok(());
+        }
+        slice.clip(min, max, &mut |p| {
+            self.add(p);
+            Ok(())
+        })
+    }
+
+    /// Whether a point has less margin at some plane than all before it.
+    fn is_worse(&self, p: DVec3) -> bool {
+        let p = p + self.offset;
+        self.half_spaces.all.iter().any(|half_space| half_space.margin(p) < self.least[half_space.plane as usize].0)
+    }
+
+    fn add(&mut self, p: DVec3) {
+        let p = p + self.offset;
+        self.any = Some(p);
+        for half_space in &self.half_spaces.all {
+            let (margin, least) = (half_space.margin(p), &mut self.least[half_space.plane as usize]);
+            if margin < least.0 {
+                *least = (margin, p);
+            }
+        }
+    }
+
+    /// What is wrong, if anything: the plane that most of the map's extent is missing at.
+    fn failure(&self, fit: &LightFit) -> Option<Certificate> {
+        let point = self.any?;
+        if fit.is_empty {
+            return Some(Certificate::MarkedEmpty { point: fit.origin + point });
+        }
+        let (across, along) = (fit.resolution.as_dvec2(), f64::from(fit.depth_range));
+        let extents = [across.x, across.x, across.y, across.y, along, along];
+        let mut worst = (0.0, None);
+        for ((plane, (margin, p)), extent) in MapPlane::ALL.into_iter().zip(self.least).zip(extents) {
+            if margin / extent < worst.0 {
+                let by = -margin as f32;
+                worst = (margin / extent, Some(Certificate::Uncovered { plane, point: fit.origin + p, by }));
+            }
+        }
+        worst.1
+    }
+}

@@ -1,0 +1,260 @@
+//! Estimated size of the map for any run of depth bins.
+//!
+//! Each bin keeps the extent of what it holds along fixed directions in the light's plane; a run's
+//! extent is the greatest of its bins', and the best of the rectangles along those directions gives
+//! an estimate of its map's size, without fitting it.
+
+use glam::{DVec2, DVec3, Vec3};
+
+use super::bins::{BINS, Bins, log2};
+use super::slabs::Slabs;
+use crate::base::numbers::{greater, lesser};
+use crate::content::Content;
+use crate::fits::{Covers, FitRule};
+use crate::light::{LightAxes, grid};
+use crate::technique::settings::RectangleKind;
+use crate::view::Range;
+
+/// Directions over half a turn; a rectangle's other side is along the direction a quarter turn
+/// further on.
+const DIRECTIONS: usize = 32;
+
+/// Estimated texel size of the map of each run of bins, in map widths (metres per map).
+pub(super) struct Sizes {
+    /// By first bin and number of bins less one; log2 of metres.
+    log: [[f32; BINS]; BINS],
+}
+
+/// The bin at which the slice of a map ends that is read up to a bin; the first and the last one end as they must.
+pub(super) fn slice_bin(bins: &Bins, bin: usize, beyond: usize) -> usize {
+    if bin == 0 || bin >= bins.count { bin } else { bin.saturating_sub(beyond).max(1) }
+}
+
+/// The rule that the maps will be fitted by.
+pub(super) struct Maps<'a, 'b> {
+    pub(super) content: &'a Content<'b>,
+    pub(super) axes: LightAxes,
+    pub(super) rule: &'a FitRule,
+    /// Whether their extents are rounded up to steps of the world's grid.
+    pub(super) is_snapped: bool,
+    /// View depths at which the first map begins and the last one ends, in metres.
+    pub(super) near: f64,
+    pub(super) end: f64,
+}
+
+impl Maps<'_, '_> {
+    /// The sizes of the maps of all runs.
+    pub(super) fn sizes(&self, bins: &Bins) -> Sizes {
+        if self.rule.form.covers == Covers::Sphere {
+            Sizes::of_spheres(self, bins)
+        } else {
+            Sizes::of_rectangles(self, bins)
+        }
+    }
+}
+
+impl Sizes {
+    /// The sizes of maps that are read this many bins beyond their slices, by the bins that they are read for.
+    pub(super) fn by_reading(&self, bins: &Bins, beyond: usize) -> Self {
+        let mut log = self.log;
+        for (first, row) in log.iter_mut().enumerate().take(bins.count) {
+            for end in first + 1..=bins.count {
+                let (from, to) = (slice_bin(bins, first, beyond), slice_bin(bins, end, beyond));
+                row[end - first - 1] = self.log_extent(from, to.max(from + 1));
+            }
+        }
+        Self { log }
+    }
+
+    /// log2 of the extent of the bins `first..end`, in metres.
+    pub(super) fn log_extent(&self, first: usize, end: usize) -> f32 {
+        self.log[first][end - first - 1]
+    }
+
+    fn fill(bins: &Bins, mut extent: impl FnMut(usize, usize) -> f64) -> Self {
+        let mut log = [[f32::MIN; BINS]; BINS];
+        for (first, row) in log.iter_mut().enumerate().take(bins.count) {
+            for end in first + 1..=bins.count {
+                row[end - first - 1] = log2(extent(first, end));
+            }
+        }
+        Self { log }
+    }
+
+    fn of_spheres(maps: &Maps, bins: &Bins) -> Self {
+        let starts: [f64; BINS + 1] = core::array::from_fn(|bin| bins.start(bin));
+        Self::fill(bins, |first, end| {
+            // The first map reaches to the near plane.
+            let near = if first == 0 { maps.near } else { starts[first] };
+            let far = if end == bins.count { maps.end } else { starts[end] };
+            let range = Range { near: near as f32, far: far as f32 };
+            let radius = maps.content.enclosing_sphere(range).map_or(far, |sphere| sphere.radius);
+            grid::quantised(2.0 * radius)
+        })
+    }
+
+    fn of_rectangles(maps: &Maps, bins: &Bins) -> Self {
+        let directions = Directions::new(&maps.axes);
+        let mut extents = [Dop::EMPTY; BINS];
+        if maps.rule.form.covers == Covers::Receivers && maps.content.receivers.is_some() {
+            collect_receivers(&mut extents, maps.content, &directions, bins);
+        } else {
+            for (bin, dop) in extents.iter_mut().enumerate().take(bins.count) {
+                let range = Range { near: bins.start(bin) as f32, far: bins.start(bin + 1) as f32 };
+                maps.content.corners(range).for_each(|p| dop.add(&directions.along(p)));
+            }
+        }
+        let mut log = [[f32::MIN; BINS]; BINS];
+        for end in 1..=bins.count {
+            let mut run = Dop::EMPTY;
+            for first in (0..end).rev() {
+                run = run.union(&extents[first]);
+                let size = run.size(maps.rule);
+                log[first][end - first - 1] = log2(if maps.is_snapped { grid::quantised(size) } else { size });
+            }
+        }
+        Self { log }
+    }
+}
+
+/// Collects what the map of each bin would hold of the receivers.
+fn collect_receivers(extents: &mut [Dop; BINS], content: &Content, directions: &Directions, bins: &Bins) {
+    for (index, view) in content.views().enumerate() {
+        let slabs = Slabs::new(&view, bins);
+        content.each_receiver(index, |depths, min, max| collect_box(extents, &slabs, directions, depths, min, max));
+    }
+}
+
+/// Collects what the map of each bin would hold of a box.
+fn collect_box(
+    extents: &mut [Dop; BINS],
+    slabs: &Slabs,
+    directions: &Directions,
+    depths: (f64, f64),
+    min: DVec3,
+    max: DVec3,
+) {
+    let reached = slabs.reached(depths);
+    let (low, high) = directions.extent(min, max);
+    // Bins whose extent the box cannot widen, the first at 1.
+    let mut is_held = [true; BINS + 2];
+    let mut are_all_held = true;
+    for bin in reached.clone() {
+        is_held[bin + 1] = extents[bin].holds(&low, &high);
+        are_all_held &= is_held[bin + 1];
+    }
+    if are_all_held {
+        return;
+    }
+    slabs.clip(min, max, &reached, |bins, p| {
+        if bins.clone().any(|bin| !is_held[bin]) {
+            let along = directions.along(p);
+            bins.filter(|bin| !is_held[*bin]).for_each(|bin| extents[bin - 1].add(&along));
+        }
+    });
+}
+
+/// Least and greatest coordinates along the fixed directions.
+#[derive(Clone, Copy)]
+struct Dop {
+    min: [f32; DIRECTIONS],
+    max: [f32; DIRECTIONS],
+}
+
+impl Dop {
+    const EMPTY: Self = Self { min: [f32::MAX; DIRECTIONS], max: [f32::MIN; DIRECTIONS] };
+
+    fn union(&self, other: &Self) -> Self {
+        Self {
+            min: core::array::from_fn(|i| lesser(other.min[i], self.min[i])),
+            max: core::array::from_fn(|i| greater(other.max[i], self.max[i])),
+        }
+    }
+
+    /// Widens it to a point's coordinates along the directions.
+    fn add(&mut self, along: &[f32; DIRECTIONS]) {
+        for (i, along) in along.iter().enumerate() {
+            self.min[i] = lesser(*along, self.min[i]);
+            self.max[i] = greater(*along, self.max[i]);
+        }
+    }
+
+    /// Whether another extent cannot widen this one.
+    fn holds(&self, low: &[f32; DIRECTIONS], high: &[f32; DIRECTIONS]) -> bool {
+        let mut is_inside = true;
+        for i in 0..DIRECTIONS {
+            // Both without a branch, for four directions at a time.
+            is_inside &= high[i] <= self.max[i];
+            is_inside &= low[i] >= self.min[i];
+        }
+        is_inside
+    }
+
+    /// Longer side of the rectangle around this extent, in metres; tiny where there is none.
+    fn size(&self, rule: &FitRule) -> f64 {
+        const QUARTER: usize = DIRECTIONS / 2;
+        let mut lengths = [0.0; DIRECTIONS];
+        for (i, length) in lengths.iter_mut().enumerate() {
+            *length = f64::from(self.max[i]) - f64::from(self.min[i]);
+        }
+        let (sides, others) = lengths.split_at(QUARTER);
+        let mut costs = [0.0; QUARTER];
+        for (i, cost) in costs.iter_mut().enumerate() {
+            let (a, b) = (sides[i], others[i]);
+            let longer = if b > a { b } else { a };
+            let area = rule.max_texel_ratio.map_or(a * b, |ratio| (a * b).max(longer * longer / ratio));
+            *cost = if rule.rectangle == RectangleKind::MinimumSquare { longer } else { area };
+        }
+        let count = if rule.rectangle == RectangleKind::AxisAligned { 1 } else { QUARTER };
+        let least = costs[..count].iter().fold(f64::MAX, |least, cost| if *cost < least { *cost } else { least });
+        let best = costs[..count].iter().position(|cost| *cost == least);
+        best.map_or(0.0, |i| sides[i].max(others[i])).max(SMALLEST)
+    }
+}
+
+/// Extent of an empty run, in metres.
+const SMALLEST: f64 = 1e-6;
+
+/// Unit vectors across the light at even angles over half a turn, coordinate by coordinate.
+struct Directions {
+    x: [f32; DIRECTIONS],
+    y: [f32; DIRECTIONS],
+    z: [f32; DIRECTIONS],
+}
+
+impl Directions {
+    fn new(axes: &LightAxes) -> Self {
+        let (x, y) = (axes.x.as_dvec3(), axes.y.as_dvec3());
+        // Turned step by step: two sines for all of them.
+        let (sin, cos) = libm::sincos(core::f64::consts::PI / DIRECTIONS as f64);
+        let mut turned = DVec2::X;
+        let world: [Vec3; DIRECTIONS] = core::array::from_fn(|_| {
+            let direction = x * turned.x + y * turned.y;
+            turned = DVec2::new(turned.x * cos - turned.y * sin, turned.x * sin + turned.y * cos);
+            direction.as_vec3()
+        });
+        Self { x: world.map(|v| v.x), y: world.map(|v| v.y), z: world.map(|v| v.z) }
+    }
+
+    /// Coordinates of a point along all directions.
+    fn along(&self, p: DVec3) -> [f32; DIRECTIONS] {
+        let p = p.as_vec3();
+        let mut along = [0.0; DIRECTIONS];
+        for (i, along) in along.iter_mut().enumerate() {
+            *along = self.x[i] * p.x + self.y[i] * p.y + self.z[i] * p.z;
+        }
+        along
+    }
+
+    /// Least and greatest coordinates of a box along all directions.
+    fn extent(&self, min: DVec3, max: DVec3) -> ([f32; DIRECTIONS], [f32; DIRECTIONS]) {
+        let (centre, half) = (((min + max) * 0.5).as_vec3(), ((max - min) * 0.5).as_vec3());
+        let (mut low, mut high) = ([0.0; DIRECTIONS], [0.0; DIRECTIONS]);
+        for i in 0..DIRECTIONS {
+            let along = self.x[i] * centre.x + self.y[i] * centre.y + self.z[i] * centre.z;
+            let reach = self.x[i].abs() * half.x + self.y[i].abs() * half.y + self.z[i].abs() * half.z;
+            (low[i], high[i]) = (along - reach, along + reach);
+        }
+        (low, high)
+    }
+}

@@ -1,0 +1,188 @@
+//! Slices of the view: each map holds a range of view depths of its own.
+//!
+//! ```text
+//!        ┌─────────────────╱ │   a map for each slice: all that the views see
+//!   eye  │  1  ╱  2   ╱    3 │   between two depths, or the receivers in it
+//!     ●──┼────┼──────┼───────┤
+//!        │  1  ╲  2   ╲    3 │
+//!        └─────────────────╲ │
+//! ```
+
+mod bins;
+mod extents;
+mod hold;
+mod motion;
+mod optimise;
+mod seen;
+mod slabs;
+mod splits;
+pub(crate) mod visible;
+
+use glam::{DVec2, Vec3};
+
+use crate::base::FitError;
+use crate::base::numbers::VIEW_DEPTH_ROUNDING;
+use crate::fits::{self, Frame, PlacedMap, PlacedMaps, Snapping, Volume};
+use crate::technique::settings::{MAX_MAPS, Stabilise};
+use crate::view::{Range, ViewFrustum};
+
+use bins::Splits;
+use hold::{HeldMap, Holder};
+use motion::Motion;
+use splits::{Chooser, HeldSplits};
+
+/// What slices begin with in the next frame.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct HeldSlices {
+    splits: HeldSplits,
+    maps: [Option<HeldMap>; MAX_MAPS],
+    depths: [Option<HeldDepth>; MAX_MAPS],
+}
+
+/// Depth range of an earlier frame's map that is not held itself.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct HeldDepth {
+    /// Direction toward the light.
+    to_light: Vec3,
+    /// Far and near plane along it from the world's origin, in metres.
+    z: (f64, f64),
+}
+
+/// Places the maps of a frame, each around its slice of the view.
+pub(crate) fn place(
+    frame: &Frame,
+    before: Option<&HeldSlices>,
+    points: &mut [DVec2],
+) -> Result<(PlacedMaps, HeldSlices), FitError> {
+    // 1. Where one slice ends and the next begins.
+    let splits = Chooser { frame }.held_or_chosen(before.map(|before| before.splits))?;
+    // 2. The volumes of their maps: new ones, or those of the frame before while they serve.
+    let mut slices = Slices { frame, splits: splits.splits, points };
+    let mut held = HeldSlices { splits, maps: [None; MAX_MAPS], depths: [None; MAX_MAPS] };
+    let mut maps = if frame.technique.stabilise == Stabilise::Hysteresis {
+        slices.hold(before.map(|before| &before.maps), &mut held.maps)?
+    } else {
+        slices.fit(before.map(|before| &before.depths), &mut held.depths)?
+    };
+    // 3. Depths from which no point chooses a map that has none.
+    set_empty_ranges_apart(&mut maps[..frame.technique.count as usize]);
+    Ok((maps, held))
+}
+
+/// The fewest slices that are enough; see [`fewest_maps`](crate::map_fitter::fewest_maps).
+pub(crate) fn fewest(frame: &Frame, waste: f64) -> u32 {
+    Chooser { frame }.fewest(waste)
+}
+
+/// The slices of a frame.
+struct Slices<'a, 'b> {
+    frame: &'a Frame<'a, 'b>,
+    splits: Splits,
+    points: &'a mut [DVec2],
+}
+
+impl Slices<'_, '_> {
+    /// All maps of this frame alone, with depth ranges of the last one while they serve.
+    fn fit(
+        &mut self,
+        before: Option<&[Option<HeldDepth>; MAX_MAPS]>,
+        held: &mut [Option<HeldDepth>; MAX_MAPS],
+    ) -> Result<PlacedMaps, FitError> {
+        let Frame { technique, content, .. } = self.frame;
+        let snapping = if technique.stabilise == Stabilise::Snap { Snapping::OnGrid } else { Snapping::Tight };
+        let mut maps = [None; MAX_MAPS];
+        for (i, map) in maps.iter_mut().enumerate().take(technique.count as usize) {
+            let volume = self.fitted(i, snapping)?;
+            *map = Some(self.placed(i, volume));
+        }
+        for (i, PlacedMap { volume, .. }) in maps.iter_mut().flatten().enumerate() {
+            let to_light = volume.axes.z;
+            let last = before.and_then(|before| before[i]).filter(|last| last.to_light == to_light);
+            volume.stabilise_depth(content.origin, last.map(|last| last.z), f64::from(technique.hold.waste));
+            held[i] = volume.grid.map(|grid| HeldDepth { to_light, z: grid.z });
+        }
+        Ok(maps)
+    }
+
+    /// All maps, held ones while they serve.
+    fn hold(
+        &mut self,
+        before: Option<&[Option<HeldMap>; MAX_MAPS]>,
+        held: &mut [Option<HeldMap>; MAX_MAPS],
+    ) -> Result<PlacedMaps, FitError> {
+        let frame = self.frame;
+        let motion = frame.last_view.and_then(|last| Motion::between(last, &frame.input.views[0]));
+        let holder = Holder { frame, motion };
+        let mut maps = [None; MAX_MAPS];
+        for (i, map) in maps.iter_mut().enumerate().take(frame.technique.count as usize) {
+            let volume = if frame.rule.can_be_held() {
+                let now = holder.hold(before.and_then(|before| before[i]), self.slice(i), self.points)?;
+                held[i] = Some(now);
+                now.volume(frame.content.origin)
+            } else {
+                self.fitted(i, Snapping::Tight)?
+            };
+            *map = Some(self.placed(i, volume));
+        }
+        Ok(maps)
+    }
+
+    /// The volume around a slice, of this frame alone.
+    #[inline(always)]
+    fn fitted(&mut self, map: usize, snapping: Snapping) -> Result<Volume, FitError> {
+        let Frame { content, light, rule, .. } = self.frame;
+        fits::fit_map(content, light, rule, self.slice(map), snapping, self.points)
+    }
+
+    /// A map with the depths that choose it.
+    fn placed(&self, map: usize, mut volume: Volume) -> PlacedMap {
+        let slice = self.slice_range(map);
+        let is_empty = is_empty(self.frame.content.views, slice);
+        volume.is_empty |= is_empty;
+        let (near, far) = (self.splits[map], self.splits[map + 1]);
+        PlacedMap { volume, near, far, covered_near: if is_empty { near } else { slice.near } }
+    }
+
+    /// The view depths that a map covers; those of all maps where it has none.
+    fn slice(&self, map: usize) -> Range {
+        let slice = self.slice_range(map);
+        if is_empty(self.frame.content.views, slice) { self.frame.range } else { widened(slice) }
+    }
+
+    /// The view depths that a map covers.
+    fn slice_range(&self, map: usize) -> Range {
+        let (splits, overlap) = (&self.splits, self.frame.technique.overlap);
+        let near =
+            if map == 0 { self.frame.range.near } else { splits[map] - overlap * (splits[map] - splits[map - 1]) };
+        Range { near, far: splits[map + 1] }
+    }
+}
+
+/// Whether no view has a part between two view depths, so that a map would have nothing to hold.
+fn is_empty(views: &[ViewFrustum], slice: Range) -> bool {
+    views.iter().all(|view| slice.near.max(view.near) >= slice.far.min(view.far))
+}
+
+/// The view depths that a map is fitted to, widened: by a shader's rounded view depth a point may
+/// read the map next to its own.
+fn widened(slice: Range) -> Range {
+    let rounding = slice.far.abs() * VIEW_DEPTH_ROUNDING;
+    Range { near: slice.near - rounding, far: slice.far + rounding }
+}
+
+/// Keeps maps without a range from being chosen, by rounded depths too: those before all others end
+/// nowhere, those after them begin nowhere, and the last one with a range has no end.
+fn set_empty_ranges_apart(maps: &mut [Option<PlacedMap>]) {
+    for map in maps.iter_mut().flatten().take_while(|map| map.near >= map.far) {
+        map.far = f32::MIN;
+    }
+    for map in maps.iter_mut().rev().flatten() {
+        if map.near < map.far {
+            map.far = f32::MAX;
+            break;
+        }
+        (map.near, map.covered_near) = (f32::MAX, f32::MAX);
+    }
+}

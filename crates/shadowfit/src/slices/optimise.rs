@@ -1,0 +1,224 @@
+//! The splits with the least 95% quantile of pixels per texel.
+//!
+//! A point at view depth z in a map of width S has S / (resolution · z · pixel angle) pixels per
+//! texel, so for a bound T on S / z each run of bins leaves those points over the bound that lie
+//! nearer than S / T. Which splits leave the fewest is found exactly by dynamic programming over
+//! the bins (R. Bellman, "On the approximation of curves by line segments using dynamic
+//! programming", 1961); the least T that leaves at most 5% is found by bisection.
+
+use super::bins::{BINS, Bins, CLASSES, Weights};
+use super::extents::Sizes;
+use crate::technique::settings::MAX_MAPS;
+
+/// Share of the points that may lie over the bound.
+const OVER: f64 = 0.05;
+
+/// Octaves below the bound of logarithmic splits that are searched for a better one: no case was
+/// seen to gain as much.
+const OCTAVES: f64 = 4.0;
+
+/// Bisection steps, each halving what is searched.
+const STEPS: usize = 9;
+
+/// Weight of a point's log2 error relative to whether it is over the bound: enough to choose
+/// between splits that leave equally many points over it.
+const MEAN: f64 = 0.01;
+
+/// Octaves by which a class shifts the needed texel size: half of what its surfaces need, since they
+/// are usually foreshortened along one direction only, and the longer side of a map, which is its
+/// size here, lies along another one about half of the time. Chosen on ten scenes, where 0, 0.7 and 1
+/// are all worse.
+const PER_CLASS: f64 = 0.5;
+
+/// Bins at which the maps begin; the last one's end follows.
+pub(super) struct BinSplits {
+    pub(super) bins: [usize; MAX_MAPS + 1],
+    /// The bound that was reached: log2 of map width per view depth.
+    pub(super) quality: f64,
+}
+
+/// The best splits into `count` maps.
+pub(super) fn least_quantile(bins: &Bins, weights: &Weights, sizes: &Sizes, count: usize) -> BinSplits {
+    let search = Search::new(bins, weights, sizes);
+    let even: [usize; MAX_MAPS + 1] = core::array::from_fn(|i| bins.count * i.min(count) / count);
+    let known = search.quantile(&even[..=count]);
+    let bound = bisect(known - OCTAVES, known, |bound| search.is_feasible(count, bound));
+    BinSplits { bins: search.best(count, bound), quality: bound }
+}
+
+/// The bound that given splits reach.
+pub(super) fn quantile(bins: &Bins, weights: &Weights, sizes: &Sizes, splits: &[usize]) -> f64 {
+    Search::new(bins, weights, sizes).quantile(splits)
+}
+
+/// The fewest maps whose best splits reach a bound `waste` times that of `count` maps.
+pub(super) fn fewest(bins: &Bins, weights: &Weights, sizes: &Sizes, count: usize, waste: f64) -> usize {
+    let bound = least_quantile(bins, weights, sizes, count).quality + libm::log2(waste);
+    let search = Search::new(bins, weights, sizes);
+    (1..count).find(|fewer| search.is_feasible(*fewer, bound)).unwrap_or(count)
+}
+
+/// The least number above which a condition holds, between one where it may not and one where it
+/// does.
+fn bisect(low: f64, high: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    let (mut low, mut high) = (low, high);
+    for _ in 0..STEPS {
+        let middle = (low + high) * 0.5;
+        if holds(middle) { high = middle } else { low = middle }
+    }
+    high
+}
+
+struct Search<'a> {
+    bins: &'a Bins,
+    sizes: &'a Sizes,
+    /// Weight of all bins before each, by class.
+    before: [[f64; CLASSES]; BINS + 1],
+    /// Weight of all bins before each, and weight times log2 of the depth that needs such texels.
+    log_before: [[f64; 2]; BINS + 1],
+    /// Number of classes that are not empty.
+    classes: usize,
+    /// Bins by which each class shifts the needed texel size.
+    shifts: [f64; CLASSES],
+}
+
+/// Weights over a bound of runs of bins, each computed when it is first asked for.
+struct OverTable<'a> {
+    search: &'a Search<'a>,
+    bound: f64,
+    /// By first bin and number of bins less one.
+    weights: [[f64; BINS]; BINS],
+}
+
+/// A weight that has not been asked for.
+const UNKNOWN: f64 = f64::MAX;
+
+impl<'a> OverTable<'a> {
+    #[expect(clippy::large_stack_arrays, reason = "32 KiB, for the time that it takes to choose splits")]
+    fn new(search: &'a Search<'a>, bound: f64) -> Self {
+        Self { search, bound, weights: [[UNKNOWN; BINS]; BINS] }
+    }
+
+    fn over(&mut self, first: usize, end: usize) -> f64 {
+        let weight = &mut self.weights[first][end - first - 1];
+        if *weight == UNKNOWN {
+            *weight = self.search.over(first, end, self.bound);
+        }
+        *weight
+    }
+}
+
+impl<'a> Search<'a> {
+    fn new(bins: &'a Bins, weights: &Weights, sizes: &'a Sizes) -> Self {
+        let (mut before, mut log_before) = ([[0.0; CLASSES]; BINS + 1], [[0.0; 2]; BINS + 1]);
+        for (i, classes) in weights.iter().enumerate() {
+            let log_depth = bins.log_near + bins.log_step * (i as f64 + 0.5);
+            log_before[i + 1] = log_before[i];
+            for (class, weight) in classes.iter().enumerate() {
+                before[i + 1][class] = before[i][class] + weight;
+                log_before[i + 1][0] += weight;
+                log_before[i + 1][1] += weight * (log_depth - PER_CLASS * class as f64);
+            }
+        }
+        let classes = (0..CLASSES).rev().find(|class| before[BINS][*class] > 0.0).map_or(0, |last| last + 1);
+        let shifts = core::array::from_fn(|class| PER_CLASS * class as f64 / bins.log_step);
+        Self { bins, sizes, before, log_before, classes, shifts }
+    }
+
+    /// The bound that given splits reach.
+    fn quantile(&self, splits: &[usize]) -> f64 {
+        let runs = || splits.windows(2).filter(|run| run[0] < run[1]).map(|run| (run[0], run[1]));
+        // With the largest map at the nearest depth of the last class all points are within it.
+        let largest = runs().map(|(first, end)| self.sizes.log_extent(first, end)).fold(f32::MIN, f32::max);
+        let high = f64::from(largest) - self.bins.log_near + PER_CLASS * CLASSES as f64;
+        let over = |bound: f64| runs().map(|(first, end)| self.over(first, end, bound)).sum::<f64>();
+        // One more octave for each halving keeps the same precision as the search's.
+        let coarse = bisect(high - WIDEST, high, |bound| over(bound) <= OVER);
+        bisect(coarse - WIDEST / f64::from(1_u32 << STEPS), coarse, |bound| over(bound) <= OVER)
+    }
+
+    /// Weight of the points of a run that lie over the bound. It grows with the run.
+    fn over(&self, first: usize, end: usize, bound: f64) -> f64 {
+        let log_size = f64::from(self.sizes.log_extent(first, end));
+        // Points nearer than this, in bins, are over the bound; those of later classes farther out.
+        let over = (log_size - bound - self.bins.log_near) / self.bins.log_step;
+        let mut weight = 0.0;
+        for class in 0..self.classes {
+            let over = (over + self.shifts[class]).max(first as f64).min(end as f64);
+            let whole = over as i32 as usize;
+            let (at, next) = (self.before[whole][class], self.before[(whole + 1).min(BINS)][class]);
+            weight += at + (next - at) * (over - whole as f64) - self.before[first][class];
+        }
+        weight
+    }
+
+    /// Weight of a run's points times their log2 of pixels per texel, up to a constant.
+    fn error(&self, first: usize, end: usize) -> f64 {
+        let [[w0, d0], [w1, d1]] = [self.log_before[first], self.log_before[end]];
+        f64::from(self.sizes.log_extent(first, end)) * (w1 - w0) - (d1 - d0)
+    }
+
+    /// Whether any splits leave no more than the allowed share over a bound.
+    fn is_feasible(&self, count: usize, bound: f64) -> bool {
+        let mut least = [f64::MAX; BINS + 1];
+        least[0] = 0.0;
+        let (bins, mut table) = (self.bins.count, OverTable::new(self, bound));
+        for map in 0..count {
+            let mut next = [f64::MAX; BINS + 1];
+            for (first, before) in least.iter().enumerate().take(bins).skip(map).filter(|(_, before)| **before <= OVER)
+            {
+                for (end, next) in next.iter_mut().enumerate().take(bins + 1).skip(first + 1) {
+                    let total = before + table.over(first, end);
+                    if total > OVER {
+                        break;
+                    }
+                    *next = next.min(total);
+                }
+            }
+            least = next;
+        }
+        least[bins] <= OVER
+    }
+
+    /// The splits that leave the least weight over the bound and, of those, have the least error.
+    fn best(&self, count: usize, bound: f64) -> [usize; MAX_MAPS + 1] {
+        let mut least = [f64::MAX; BINS + 1];
+        least[0] = 0.0;
+        let mut from = [[0_u8; BINS + 1]; MAX_MAPS];
+        let (bins, mut table) = (self.bins.count, OverTable::new(self, bound));
+        for (map, from) in from.iter_mut().enumerate().take(count) {
+            let mut next = [f64::MAX; BINS + 1];
+            // The last map holds all that is left.
+            let nearest_end = if map + 1 == count { bins } else { 0 };
+            for (first, before) in
+                least.iter().enumerate().take(bins).skip(map).filter(|(_, before)| **before < f64::MAX)
+            {
+                for end in (first + 1).max(nearest_end)..=bins {
+                    let error = MEAN * self.error(first, end);
+                    // No weight is below 0.
+                    if before + error - NOTHING >= next[end] {
+                        continue;
+                    }
+                    let total = before + table.over(first, end) + error;
+                    if total < next[end] {
+                        (next[end], from[end]) = (total, first as u8);
+                    }
+                }
+            }
+            least = next;
+        }
+        let mut splits = [bins; MAX_MAPS + 1];
+        let mut end = bins;
+        for map in (0..count).rev() {
+            end = usize::from(from[map][end]);
+            splits[map] = end;
+        }
+        splits
+    }
+}
+
+/// More than the rounding of a weight.
+const NOTHING: f64 = 1e-12;
+
+/// Octaves that the bound of given splits is searched in.
+const WIDEST: f64 = 64.0;

@@ -1,0 +1,483 @@
+//! The parts that a [`Technique`](crate::Technique) is made of.
+//!
+//! Every field is public, has a default, and a row in the table of the crate `shadowfit-params`, from which
+//! panels, command lines and saved files are made. Lengths are metres, sizes of maps and biases are texels, view
+//! depths are counted from the eye along the camera's forward direction.
+//!
+//! Defaults are those of the [recommended technique](crate::presets::RECOMMENDED). Where other
+//! engines have a default for the same number it is theirs; the rest comes from the measurements in
+//! the repository's `docs/BENCHMARKS.md`.
+
+use glam::{UVec2, Vec3};
+
+use crate::base::DepthConvention;
+
+/// Writes one `with_*` method per field of a settings struct.
+macro_rules! setters {
+    ($settings:ty { $($method:ident $field:ident: $value:ty),+ $(,)? }) => {
+        impl $settings {
+            $(
+                #[doc = concat!("These settings with another [`", stringify!($field), "`](Self::", stringify!($field), ").")]
+                #[must_use]
+                pub const fn $method(mut self, $field: $value) -> Self {
+                    self.$field = $field;
+                    self
+                }
+            )+
+        }
+    };
+}
+
+/// Which rule fits the shadow map to the camera frustum.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum FitKind {
+    /// The XNA Shadow Mapping sample's `CreateLightViewProjectionMatrix` (Microsoft, 2008),
+    /// reproduced exactly: tight across the light, twice the depth that is needed, no caster
+    /// policy.
+    XnaSample,
+    /// Axis-aligned box of the camera frustum in the light's axes, with tight depth and the near
+    /// plane placed by [`FitSettings::casters`].
+    FrustumAabb,
+    /// Least rectangle of the camera frustum as seen from the light, turned about it as
+    /// [`FitSettings::rectangle`] says. The tightest fit without knowledge of the scene.
+    Oriented,
+    /// Minimal enclosing sphere of the camera frustum, on a grid of whole texels that is fixed to
+    /// the world: shadow edges do not crawl when the camera moves or turns.
+    Sphere,
+    /// Least rectangle of what the camera can see of the receivers' boxes, turned as
+    /// [`FitSettings::rectangle`] says. Without boxes it is [`Self::Oriented`]. The default for a single
+    /// map that is fitted by itself.
+    #[default]
+    Focused,
+    /// Squares of the plane across the light, on a grid that is fixed to the world, each where it helps
+    /// most of what is visible ([`windows`](crate::windows)). Always read by coverage.
+    /// The default for a [technique](crate::Technique).
+    Windows,
+}
+
+/// What [`FitKind::Windows`] are placed by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum NeedSource {
+    /// What is visible, estimated from the receivers' boxes.
+    Boxes,
+    /// What the last frame showed, by [`FitInput::need`](crate::FitInput::need); without it as
+    /// [`Self::Boxes`]. The default.
+    #[default]
+    LastFrame,
+}
+
+/// Which rectangle [`FitKind::Oriented`] and [`FitKind::Focused`] put around what they cover.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum RectangleKind {
+    /// Along the light's own axes, never turned.
+    AxisAligned,
+    /// Of least area. The default.
+    #[default]
+    MinimumArea,
+    /// The one with the least longer side, made square: square texels on a square map.
+    MinimumSquare,
+}
+
+/// Where the near plane stands, so that casters between the light and the receivers are kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum CasterPolicy {
+    /// At the covered region: casters before it are lost, as in the sample.
+    None,
+    /// Moved toward the light by [`FitSettings::caster_extension`].
+    Extend,
+    /// At the one box around all casters, clipped to the volume that can cast shadows into view;
+    /// as [`Self::Extend`] where the casters are not known.
+    SceneBounds,
+    /// At the first caster that can cast a shadow into view: each box is clipped to that volume.
+    /// As [`Self::Extend`] where the casters are not known. The default.
+    #[default]
+    List,
+    /// At the covered region, with the pipeline's depth clamp keeping casters before it
+    /// ("pancaking"). Culling still uses the unclamped volume, and filters cannot use the distance
+    /// to a clamped caster.
+    DepthClamp,
+}
+
+/// How one map is fitted to what it covers. The defaults are those of the
+/// [recommended technique](crate::Technique), except for the kind: windows take several maps and the
+/// frames before, and these are also the settings of a [single map](crate::fit).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+pub struct FitSettings {
+    /// The rule of the fit. Default: [`FitKind::Focused`]; that of a [`Technique`](crate::Technique) has
+    /// [`FitKind::Windows`].
+    pub kind: FitKind,
+    /// Rectangle of the fits that may turn. Default: [`RectangleKind::MinimumArea`].
+    pub rectangle: RectangleKind,
+    /// Shadows end at this view depth, in metres; at the camera's far plane when that is nearer.
+    /// Default: `f32::MAX`, which is always the far plane.
+    pub max_distance: f32,
+    /// Enlarges the light's box on all six sides, in metres: the sample's own imperfect remedy for
+    /// clipped casters. Default: 0.
+    pub margin: f32,
+    /// Free texels between the covered region and the map's border, for the filter to read.
+    /// Default: `None`, which takes what the technique's filter and bias need
+    /// ([`Technique::border`]); a fit without a technique takes what the default filter needs.
+    /// [`FitKind::XnaSample`] ignores it.
+    ///
+    /// [`Technique::border`]: crate::Technique::border
+    pub border: Option<f32>,
+    /// What places the near plane. [`FitKind::XnaSample`] ignores it: the sample has none. Default:
+    /// [`CasterPolicy::List`].
+    pub casters: CasterPolicy,
+    /// How far [`CasterPolicy::Extend`] moves the near plane toward the light, in metres. Default:
+    /// 50, which holds most buildings. It also stands in where the casters are not known.
+    pub caster_extension: f32,
+    /// Up direction in world axes, which sets the map's roll; its length is ignored. Default: +y.
+    pub up: Vec3,
+    /// Greatest ratio of a texel's longer side to its shorter one, 1 or more: long texels make blur
+    /// depend on its direction. The rectangle is chosen, and widened, to keep within it.
+    /// [`FitKind::XnaSample`] ignores it, and so does [`FitKind::Windows`], whose texels have a shape that
+    /// the light sets. Default: `f32::MAX`, no limit.
+    pub max_texel_ratio: f32,
+    /// Least width of a texel, in metres; 0 for no limit. A map that would have finer ones is made larger, around its
+    /// middle. [`FitKind::XnaSample`] ignores it; a soft filter may ask for more
+    /// ([`Technique::least_texel`](crate::Technique::least_texel)). Default: 0.
+    pub least_texel: f32,
+    /// Width and height of the map, in texels. Default: 2048 × 2048, as Bevy and the cascades of
+    /// three.js have it.
+    pub resolution: UVec2,
+    /// Depth convention of the fitted clip space. Default: [`DepthConvention::ZeroToOne`].
+    pub depth: DepthConvention,
+}
+
+impl Default for FitSettings {
+    fn default() -> Self {
+        Self {
+            kind: FitKind::Focused,
+            rectangle: RectangleKind::MinimumArea,
+            max_distance: f32::MAX,
+            margin: 0.0,
+            border: None,
+            casters: CasterPolicy::List,
+            caster_extension: 50.0,
+            up: Vec3::Y,
+            max_texel_ratio: f32::MAX,
+            least_texel: 0.0,
+            resolution: UVec2::splat(2048),
+            depth: DepthConvention::ZeroToOne,
+        }
+    }
+}
+
+impl FitSettings {
+    /// These settings with this number of [free texels](Self::border) at the map's border, for any
+    /// filter and bias.
+    #[must_use]
+    pub const fn with_border(mut self, texels: f32) -> Self {
+        self.border = Some(texels);
+        self
+    }
+}
+
+/// Most maps that share a view.
+pub const MAX_MAPS: usize = 8;
+
+/// Where one map ends and the next begins, in view depth.
+///
+/// Where the receivers' boxes are known, all schemes but the manual one distribute the maps over
+/// the depths at which receivers are in view, instead of over the whole frustum.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum SplitScheme {
+    /// Ranges of equal length, over everything in view or between the [bounds of what is
+    /// visible](crate::FitInput::depth_bounds) if those are known. The next two schemes use the same
+    /// interval.
+    Uniform,
+    /// Ranges of equal ratio of far to near depth, which suits perspective. Most maps are then
+    /// close to the eye.
+    Logarithmic,
+    /// Between both: λ, 0..=1, is the share of the logarithmic splits, the rest is that of the
+    /// uniform ones (F. Zhang, H. Sun, L. Xu, L. K. Lun, "Parallel-split shadow maps for large-scale
+    /// virtual environments", 2006). 0.5 is the default of three.js and Babylon.js.
+    Practical(f32),
+    /// View depths in metres at which the maps end, ascending; the last map ends with the shadows.
+    Manual([f32; MAX_MAPS - 1]),
+    /// The splits with the least 95% quantile of pixels per texel, with visibility estimated from
+    /// the receivers' boxes.
+    FromBoxes,
+    /// The same, with visibility from the engine's [histogram](crate::FitInput::histogram) of
+    /// visible depths; without a histogram as [`Self::FromBoxes`]. The default.
+    #[default]
+    FromHistogram,
+}
+
+/// Which of several maps a point reads; [`crate::choice`] has the rule.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum MapChoice {
+    /// The finest one that holds the point with all that the filter reads around it, whatever the
+    /// point's view depth, blended into the next coarser one toward its border. The default.
+    #[default]
+    Coverage,
+    /// The one in whose range of view depths the point lies, blended into the next one where ranges
+    /// overlap, as other engines do.
+    ViewDepth,
+}
+
+/// Most texels over which maps that are read by coverage may be blended: a quarter of the side of the
+/// smallest map that tools allow, 256.
+pub const MAX_BLEND: f32 = 64.0;
+
+/// Whether and how maps are kept from changing while the camera moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Stabilise {
+    /// Every frame is fitted anew: the finest texels, and shadow edges that crawl.
+    Off,
+    /// Extents are rounded up to eighths of an octave and the map moves by whole texels of a grid
+    /// that is fixed to the world. With [`FitKind::Sphere`] edges do not move at all; other fits
+    /// still change when the camera turns.
+    Snap,
+    /// A map is kept, its angle included, and moved by whole texels as long as it covers what it
+    /// must and wastes no more than [`HoldSettings::waste`]. A new map is made large enough for the
+    /// predicted motion. The default.
+    #[default]
+    Hysteresis,
+}
+
+/// When [`Stabilise::Hysteresis`] keeps a map and how much room a new one gets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+pub struct HoldSettings {
+    /// Room left around what a new map must cover, as a share of its extent, 0..=10. Default: 0.02.
+    pub margin: f32,
+    /// A new map also covers what the camera will see if it goes on moving as it did, for as many
+    /// frames as make the map wider by at most this factor, 1..=100. Default: 1.4.
+    pub growth: f32,
+    /// A map is made anew when its texels are larger than necessary by this factor, 1..=100; held
+    /// splits and the depths of windows are chosen anew by the same rule. Default: 1.8.
+    pub waste: f32,
+    /// Greatest number of frames to look ahead. Default: 32.
+    pub horizon: u32,
+}
+
+impl Default for HoldSettings {
+    fn default() -> Self {
+        Self { margin: 0.02, growth: 1.4, waste: 1.8, horizon: 32 }
+    }
+}
+
+/// Which boxes of the scene's receivers the engine gives to the fit.
+///
+/// The fit itself uses any boxes that it is given: this setting records what a technique was
+/// measured with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum ReceiverSource {
+    /// The boxes of its objects.
+    Objects,
+    /// The boxes of clusters of its triangles, with cones of their normals (`Clusters`, with the
+    /// feature `alloc`). The default.
+    #[default]
+    Clusters,
+}
+
+/// Biases that keep a surface from shadowing itself, in texels of the map.
+///
+/// They are converted to depth and metres in one place, [`crate::bias`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+pub struct BiasSettings {
+    /// Depth bias that does not depend on the slope, in texel sizes along the light. Default: 1/16,
+    /// for the rounding of depths in f32.
+    pub constant: f32,
+    /// Depth bias times the tangent of the angle between the surface normal and the light, in
+    /// texel sizes. Default: 0.
+    pub slope: f32,
+    /// Offset of the sampled point along the geometric normal times the sine of that angle, in
+    /// texel sizes. Default: 0.
+    pub normal_offset: f32,
+    /// Receiver-plane bias: each comparison of the filter is made with the depth of the receiver's
+    /// own plane where it reads, moved toward the light by the plane's height change over this many
+    /// texels (J. Isidoro, "Shadow mapping: GPU-based tips and techniques", 2006). The reach of one
+    /// comparison clears a plane: 0.5 for a single texel, 1 for the hardware's 2×2 and all filters
+    /// built from it. 0 turns it off. Default: 1 + 1/256; the fraction covers the hardware's
+    /// rounding of positions in the map.
+    pub receiver_plane: f32,
+    /// Constant depth bias in [steps](crate::diagnostics::depth_step) of the map's format beyond those of a 32-bit
+    /// float, 0..=16: one covers what storing and comparing a depth can round. Formats of 32 bits ignore it.
+    /// Default: 1.
+    pub depth_steps: f32,
+}
+
+impl Default for BiasSettings {
+    /// [`Self::automatic`] for the default filter.
+    fn default() -> Self {
+        Self::automatic(FilterKind::default())
+    }
+}
+
+/// How the stored depths are turned into a shadow factor.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum FilterKind {
+    /// One comparison with the nearest texel.
+    Point,
+    /// Four comparisons, weighted bilinearly (the hardware's 2×2 percentage-closer filter).
+    Hardware2x2,
+    /// Tent of 3×3 hardware look-ups (16 texels), by four of them.
+    Pcf3x3,
+    /// Tent of 5×5 hardware look-ups (36 texels), by nine of them. The default.
+    #[default]
+    Pcf5x5,
+    /// Tent of 7×7 hardware look-ups (64 texels), by sixteen of them.
+    Pcf7x7,
+    /// 8 hardware look-ups spread evenly over a disc of the technique's [softness](Softness), turned from
+    /// pixel to pixel (H. Vogel, "A better way to construct the sunflower head", 1979).
+    Vogel8,
+    /// The same with 16 look-ups.
+    Vogel16,
+    /// The same with 32 look-ups.
+    Vogel32,
+    /// A disc as wide as the penumbra of the casters above the point, by the angle of the sun
+    /// (percentage-closer soft shadows: R. Fernando, 2005). It needs the distance to the caster, so
+    /// maps cannot be depth-clamped.
+    Pcss,
+}
+
+impl FilterKind {
+    /// All filters, the narrowest first.
+    pub const ALL: [Self; 9] = [
+        Self::Point,
+        Self::Hardware2x2,
+        Self::Pcf3x3,
+        Self::Pcf5x5,
+        Self::Pcf7x7,
+        Self::Vogel8,
+        Self::Vogel16,
+        Self::Vogel32,
+        Self::Pcss,
+    ];
+
+    /// Whether its width is the technique's [softness](Softness), and not a number of texels.
+    pub const fn is_soft(self) -> bool {
+        matches!(self, Self::Vogel8 | Self::Vogel16 | Self::Vogel32 | Self::Pcss)
+    }
+}
+
+/// Greatest [`BiasSettings::depth_steps`].
+pub const MAX_DEPTH_STEPS: f32 = 16.0;
+
+/// How wide the filters are whose width is no number of texels ([`FilterKind::is_soft`]).
+///
+/// It is the same across the light for all maps, so that penumbrae agree where one map meets the
+/// next, and stay when a fit changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+pub struct Softness {
+    /// What the width follows from. Default: the angle of the sun as seen from the earth.
+    pub radius: SoftRadius,
+    /// Least radius of a filter, in texels, 0..=64: a finer penumbra than a map can show is made this wide.
+    /// Default: 1.
+    pub floor: f32,
+    /// Greatest radius of a filter, in texels, 1..=64. Maps have no finer texels than this allows
+    /// ([`Technique::least_texel`](crate::Technique::least_texel)), so that no map needs a huge filter.
+    /// Default: 16.
+    pub ceiling: f32,
+}
+
+/// What the width of a [soft filter](Softness) follows from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum SoftRadius {
+    /// Radius of the penumbra across the light, in metres, of a shadow
+    /// [5 m](crate::softness::USUAL_DISTANCE) from its caster; [`FilterKind::Pcss`] scales it with the distance.
+    Metres(f32),
+    /// Angular radius of the sun, in radians.
+    SunAngle(f32),
+}
+
+/// Angular radius of the sun as seen from the earth, in radians: half of 0.533°.
+pub const SUN_RADIUS: f32 = 0.004_65;
+
+impl Default for SoftRadius {
+    fn default() -> Self {
+        Self::SunAngle(SUN_RADIUS)
+    }
+}
+
+impl Default for Softness {
+    fn default() -> Self {
+        Self { radius: SoftRadius::default(), floor: 1.0, ceiling: 16.0 }
+    }
+}
+
+/// Texture format that stores the depths.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum MapFormat {
+    /// 32-bit float depth attachment, compared by the sampler. The default.
+    #[default]
+    Depth32Float,
+    /// 16-bit depth attachment, compared by the sampler: half the memory, and steps of 1/65,535 of the
+    /// map's depth range.
+    Depth16Unorm,
+    /// One 32-bit float colour channel with a depth buffer of its own, compared by hand (the XNA
+    /// sample's form).
+    R32Float,
+    /// The same with a 16-bit float, of 11 significant bits: the sample's second choice.
+    R16Float,
+    /// The bits of a 32-bit float in the four channels of an 8-bit colour: the sample's third choice. It
+    /// comes back bit for bit.
+    Rgba8Packed,
+    /// Depth as one 8-bit grey: 256 steps over the map's depth range, to show why that is too coarse.
+    R8Grey,
+}
+
+impl MapFormat {
+    /// All formats, depth attachments first.
+    pub const ALL: [Self; 6] =
+        [Self::Depth32Float, Self::Depth16Unorm, Self::R32Float, Self::R16Float, Self::Rgba8Packed, Self::R8Grey];
+
+    /// Whether it is a depth attachment, which samplers compare; others are colours, compared by hand.
+    pub const fn is_depth(self) -> bool {
+        matches!(self, Self::Depth32Float | Self::Depth16Unorm)
+    }
+}
+
+setters!(FitSettings {
+    with_kind kind: FitKind,
+    with_max_distance max_distance: f32,
+    with_rectangle rectangle: RectangleKind,
+    with_margin margin: f32,
+    with_casters casters: CasterPolicy,
+    with_up up: Vec3,
+    with_caster_extension caster_extension: f32,
+    with_max_texel_ratio max_texel_ratio: f32,
+    with_least_texel least_texel: f32,
+    with_resolution resolution: UVec2,
+    with_depth depth: DepthConvention,
+});
+
+setters!(HoldSettings {
+    with_margin margin: f32,
+    with_growth growth: f32,
+    with_waste waste: f32,
+    with_horizon horizon: u32,
+});
+
+setters!(BiasSettings {
+    with_constant constant: f32,
+    with_slope slope: f32,
+    with_normal_offset normal_offset: f32,
+    with_receiver_plane receiver_plane: f32,
+    with_depth_steps depth_steps: f32,
+});
+
+setters!(Softness {
+    with_radius radius: SoftRadius,
+    with_floor floor: f32,
+    with_ceiling ceiling: f32,
+});
+
+pub(crate) use setters;

@@ -1,0 +1,290 @@
+//! A view frustum in the form that fits use: f64, cut by view depth, clipped against boxes.
+//!
+//! The vertices of box ∩ frustum slice lie on three planes each. Those with two or three planes of
+//! the box are ends of the box's edges clipped to the slice, those with two or three planes of the
+//! slice are ends of the slice's edges clipped to the box, so that clipping 12 + 12 segments finds
+//! them all, without building a polytope:
+//!
+//! ```text
+//!        ┌───────────┐ box
+//!        │     ╱●────┼──╲       ● ends of the slice's edges inside the box
+//!        │   ╱ slice │    ╲     ○ ends of the box's edges inside the slice
+//!        └──○────────○─────╲
+//! ```
+
+use glam::DVec3;
+
+use crate::base::{box_corners, checks};
+use crate::view::ViewFrustum;
+
+/// A range of view depths, in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Range {
+    pub(crate) near: f32,
+    pub(crate) far: f32,
+}
+
+/// Corners of the part of a frustum between two view depths, relative to an origin; `None` where
+/// they leave nothing of it.
+#[inline(always)]
+pub(crate) fn slice_corners(frustum: &ViewFrustum, origin: DVec3, near: f32, far: f32) -> Option<[DVec3; 8]> {
+    let (near, far) = (near.max(frustum.near), far.min(frustum.far));
+    if near >= far {
+        return None;
+    }
+    let offset = frustum.origin - origin;
+    let mut corners = [DVec3::ZERO; 8];
+    for (corner, relative_to_eye) in corners.iter_mut().zip(&frustum.corners) {
+        *corner = relative_to_eye.as_dvec3() + offset;
+    }
+    if near == frustum.near && far == frustum.far {
+        return Some(corners);
+    }
+    let per_metre = 1.0 / (f64::from(frustum.far) - f64::from(frustum.near));
+    let share = |depth: f32| (f64::from(depth) - f64::from(frustum.near)) * per_metre;
+    let (t0, t1) = (share(near), share(far));
+    for i in 0..4 {
+        let (start, end) = (corners[i], corners[i + 4]);
+        corners[i] = start * (1.0 - t0) + end * t0;
+        corners[i + 4] = start * (1.0 - t1) + end * t1;
+    }
+    Some(corners)
+}
+
+/// A plane (n, d) with unit normal; a point is inside where n·p + d >= 0.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plane {
+    pub(crate) normal: DVec3,
+    pub(crate) d: f64,
+}
+
+impl Plane {
+    pub(crate) fn distance(&self, p: DVec3) -> f64 {
+        self.normal.dot(p) + self.d
+    }
+
+    /// Distance of a box's farthest corner along the normal.
+    pub(crate) fn farthest(&self, min: DVec3, max: DVec3) -> f64 {
+        let n = self.normal;
+        let x = n.x * if n.x < 0.0 { min.x } else { max.x };
+        let y = n.y * if n.y < 0.0 { min.y } else { max.y };
+        let z = n.z * if n.z < 0.0 { min.z } else { max.z };
+        x + y + z + self.d
+    }
+
+    /// Distance of a box's nearest corner along the normal.
+    pub(crate) fn nearest(&self, min: DVec3, max: DVec3) -> f64 {
+        self.farthest(max, min)
+    }
+}
+
+/// A view frustum relative to the origin that a fit uses for everything.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View {
+    /// Corners, near then far, in the order of [`ViewFrustum::corners`].
+    corners: [DVec3; 8],
+    pub(crate) near: f64,
+    pub(crate) far: f64,
+    /// View depth of a point, as the signed distance from a plane.
+    pub(crate) depth: Plane,
+    /// Top, right, bottom, left.
+    pub(crate) sides: [Plane; 4],
+}
+
+impl View {
+    /// `frustum` has been checked.
+    pub(crate) fn new(frustum: &ViewFrustum, origin: DVec3) -> Self {
+        let offset = frustum.origin - origin;
+        let corners = frustum.corners.map(|c| c.as_dvec3() + offset);
+        let forward = frustum.forward.as_dvec3();
+        let forward = forward / checks::length(forward);
+        let (near, far) = (f64::from(frustum.near), f64::from(frustum.far));
+        // Depths are measured from the near rectangle, whose rounding is the smallest.
+        let middle = (corners[0] + corners[2]) * 0.5;
+        let depth = Plane { normal: forward, d: near - forward.dot(middle) };
+        let centre = corners.iter().copied().sum::<DVec3>() * 0.125;
+        let mut sides = [depth; 4];
+        for (i, side) in sides.iter_mut().enumerate() {
+            let next = (i + 1) % 4;
+            // The far rectangle is never the smaller one, so its side has the more precise
+            // direction.
+            let normal = (corners[i + 4] - corners[i]).cross(corners[next + 4] - corners[i + 4]);
+            let normal = normal / checks::length(normal);
+            let inward = if normal.dot(centre - corners[i + 4]) < 0.0 { -normal } else { normal };
+            *side = Plane { normal: inward, d: -inward.dot(corners[i + 4]) };
+        }
+        Self { corners, near, far, depth, sides }
+    }
+
+    /// Where points are in the picture.
+    pub(crate) fn picture(&self) -> Picture {
+        // Sides 0 to 3 are top, right, bottom, left; each distance is divided by that of the
+        // opposite end of the far rectangle.
+        let side = |side: usize, opposite: usize| (self.sides[side], self.sides[side].distance(self.corners[opposite]));
+        Picture { axes: [[side(3, 5), side(1, 4)], [side(0, 7), side(2, 4)]] }
+    }
+
+    /// Corners of the rectangle at a view depth.
+    pub(crate) fn rectangle(&self, depth: f64) -> [DVec3; 4] {
+        let t = (depth - self.near) / (self.far - self.near);
+        core::array::from_fn(|i| self.corners[i] * (1.0 - t) + self.corners[i + 4] * t)
+    }
+
+    /// The part between two view depths, cut to the frustum's own.
+    pub(crate) fn slice(&self, near: f64, far: f64) -> Slice {
+        let (near, far) = (near.max(self.near).min(self.far), far.min(self.far).max(self.near));
+        let mut corners = [DVec3::ZERO; 8];
+        corners[..4].copy_from_slice(&self.rectangle(near));
+        corners[4..].copy_from_slice(&self.rectangle(far));
+        let Plane { normal, d } = self.depth;
+        let [a, b, c, e] = self.sides;
+        let planes = [a, b, c, e, Plane { normal, d: d - near }, Plane { normal: -normal, d: far - d }];
+        Slice { corners, planes, near, far }
+    }
+
+    /// Least and greatest view depth of a box that may touch the frustum; `None` when it does not.
+    pub(crate) fn depths(&self, min: DVec3, max: DVec3) -> Option<(f64, f64)> {
+        if self.sides.iter().any(|plane| plane.farthest(min, max) < 0.0) {
+            return None;
+        }
+        let flipped = Plane { normal: -self.depth.normal, d: -self.depth.d };
+        let (least, greatest) = (-flipped.farthest(min, max), self.depth.farthest(min, max));
+        if least > self.far || greatest < self.near { None } else { Some((least, greatest)) }
+    }
+}
+
+/// Positions in the picture of a view.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Picture {
+    /// The sides at 0 and 1 of both axes, with the distances to divide by.
+    axes: [[(Plane, f64); 2]; 2],
+}
+
+impl Picture {
+    /// Position of a point in the picture: 0..1 from left to right and from top to bottom. The point
+    /// must not lie before the near plane.
+    #[inline]
+    pub(crate) fn position(&self, p: DVec3) -> [f64; 2] {
+        self.axes.map(|[(one, most), (other, other_most)]| {
+            let (a, b) = (one.distance(p) / most, other.distance(p) / other_most);
+            a / (a + b)
+        })
+    }
+}
+
+/// A part of a view frustum between two view depths.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Slice {
+    pub(crate) corners: [DVec3; 8],
+    /// Four sides, then near and far.
+    pub(crate) planes: [Plane; 6],
+    pub(crate) near: f64,
+    pub(crate) far: f64,
+}
+
+/// Pairs of corners that an edge joins, for frusta and boxes alike ([`box_corners`] has the same
+/// order).
+pub(crate) const EDGES: [(usize, usize); 12] =
+    [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)];
+
+impl Slice {
+    /// Passes on all vertices of box ∩ slice, some of them more than once, and possibly points of
+    /// its edges. Nothing when they do not meet.
+    pub(crate) fn clip<E>(
+        &self,
+        min: DVec3,
+        max: DVec3,
+        emit: &mut impl FnMut(DVec3) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut crossed = [false; 6];
+        for (plane, crossed) in self.planes.iter().zip(&mut crossed) {
+            if plane.farthest(min, max) < 0.0 {
+                return Ok(());
+            }
+            *crossed = plane.nearest(min, max) < 0.0;
+        }
+        let corners = box_corners(min, max);
+        if crossed == [false; 6] {
+            return corners.into_iter().try_for_each(emit);
+        }
+        // Distances of the corners within the planes that the box crosses.
+        let mut inside = [[0.0; 8]; 6];
+        let mut count = 0;
+        for (plane, _) in self.planes.iter().zip(crossed).filter(|(_, crossed)| *crossed) {
+            inside[count] = corners.map(|corner| plane.distance(corner));
+            count += 1;
+        }
+        let inside = &inside[..count];
+        for (i, corner) in corners.into_iter().enumerate() {
+            if inside.iter().all(|plane| plane[i] >= 0.0) {
+                emit(corner)?;
+            }
+        }
+        for (i, j) in EDGES {
+            let Some((enter, leave)) = inner_part(inside, i, j) else { continue };
+            if enter > 0.0 {
+                emit(at(corners[i], corners[j], enter))?;
+            }
+            if leave < 1.0 {
+                emit(at(corners[i], corners[j], leave))?;
+            }
+        }
+        // An edge of the slice meets no box that does not cross both of its planes.
+        for ((i, j), (one, other)) in EDGES.into_iter().zip(PLANES_OF_EDGES) {
+            if crossed[one]
+                && crossed[other]
+                && let Some((a, b)) = clip_to_box(self.corners[i], self.corners[j], min, max)
+            {
+                emit(a)?;
+                emit(b)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The planes that each of a slice's [edges](EDGES) lies on.
+const PLANES_OF_EDGES: [(usize, usize); 12] =
+    [(0, 4), (1, 4), (2, 4), (3, 4), (0, 5), (1, 5), (2, 5), (3, 5), (3, 0), (0, 1), (1, 2), (2, 3)];
+
+/// The shares of an edge between which it lies inside planes, by the distances of all corners within each.
+#[inline]
+pub(crate) fn inner_part(inside: &[[f64; 8]], i: usize, j: usize) -> Option<(f64, f64)> {
+    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+    for plane in inside {
+        let (a, b) = (plane[i], plane[j]);
+        if a < 0.0 && b < 0.0 {
+            return None;
+        }
+        if a < 0.0 {
+            enter = enter.max(a / (a - b));
+        } else if b < 0.0 {
+            leave = leave.min(a / (a - b));
+        }
+    }
+    if enter > leave { None } else { Some((enter, leave)) }
+}
+
+/// The point of a segment at a share of its length; exact at both ends.
+pub(crate) fn at(a: DVec3, b: DVec3, t: f64) -> DVec3 {
+    a * (1.0 - t) + b * t
+}
+
+/// The part of a segment inside a box.
+pub(crate) fn clip_to_box(a: DVec3, b: DVec3, min: DVec3, max: DVec3) -> Option<(DVec3, DVec3)> {
+    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+    for axis in 0..3 {
+        let (start, along) = (a[axis], b[axis] - a[axis]);
+        if along == 0.0 {
+            if start < min[axis] || start > max[axis] {
+                return None;
+            }
+            continue;
+        }
+        let (first, second) = ((min[axis] - start) / along, (max[axis] - start) / along);
+        let (first, second) = if along > 0.0 { (first, second) } else { (second, first) };
+        enter = enter.max(first);
+        leave = leave.min(second);
+    }
+    if enter > leave { None } else { Some((at(a, b, enter), at(a, b, leave))) }
+}
