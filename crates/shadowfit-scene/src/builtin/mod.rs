@@ -5,21 +5,12 @@
 //! classic samples, [`SampleScene`].
 
 mod arcade;
-mod build;
 mod courtyard;
-mod finish;
-mod flora;
 mod forest;
-mod motion;
-mod pixels;
 mod plain;
 mod shadow_mapping;
-mod shapes;
-mod sheet;
-mod solid;
 mod still_life;
 mod street;
-mod sweep;
 mod terrain;
 #[cfg(test)]
 mod tests;
@@ -27,6 +18,15 @@ mod tests;
 use glam::Vec3;
 
 use crate::Scene;
+// The scenes of samples still say where these were.
+use crate::parts as build;
+use crate::parts as finish;
+use crate::parts as motion;
+use crate::parts as pixels;
+use crate::parts as shapes;
+use crate::parts as sheet;
+use crate::parts as solid;
+use crate::parts as sweep;
 
 /// The built-in scene that everything opens with, "courtyard": right-handed, y up, metres, at rest around the origin.
 ///

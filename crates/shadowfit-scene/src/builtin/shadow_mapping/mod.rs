@@ -7,7 +7,7 @@ mod floor;
 use glam::{Quat, Vec3};
 
 use super::build::Builder;
-use super::courtyard::figure_at_ease;
+use super::build::figure_at_ease;
 use super::motion::{looped, rotations};
 use crate::{Lens, Scene, Sun};
 

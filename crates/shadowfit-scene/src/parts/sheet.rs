@@ -9,13 +9,13 @@ const SLOPE: f32 = 0.2;
 
 /// `count + 1` coordinates from `-half` to `half` metres, about e^`growth` times as far apart at the ends as in the
 /// middle.
-pub(super) fn graded(half: f32, count: usize, growth: f32) -> Vec<f32> {
+pub fn graded(half: f32, count: usize, growth: f32) -> Vec<f32> {
     let at = |index: usize| (index as f32 / count as f32 * 2.0 - 1.0) * growth;
     (0..=count).map(|index| half * at(index).sinh() / growth.sinh()).collect()
 }
 
 /// Unit normal of the surface y = `height(x, z)`.
-pub(super) fn slope_normal(height: impl Fn(f32, f32) -> f32, x: f32, z: f32) -> Vec3 {
+pub fn slope_normal(height: impl Fn(f32, f32) -> f32, x: f32, z: f32) -> Vec3 {
     let dx = height(x + SLOPE, z) - height(x - SLOPE, z);
     let dz = height(x, z + SLOPE) - height(x, z - SLOPE);
     Vec3::new(-dx, 2.0 * SLOPE, -dz).normalize()
@@ -23,7 +23,7 @@ pub(super) fn slope_normal(height: impl Fn(f32, f32) -> f32, x: f32, z: f32) -> 
 
 /// The surface y = `height(x, z)`, which faces up, with a vertex wherever the coordinates `xs` and `zs` (ascending)
 /// cross, a linear colour there, and 1 m of texture coordinate a metre.
-pub(super) fn ground(
+pub fn ground(
     material: usize,
     [xs, zs]: [&[f32]; 2],
     height: impl Fn(f32, f32) -> f32,

@@ -3,10 +3,10 @@
 use crate::Image;
 
 /// Cells along a side of the noise, a power of two.
-pub(super) const NOISE_CELLS: u32 = 64;
+pub const NOISE_CELLS: u32 = 64;
 
 /// A fixed pseudo-random value in 0..1 for a lattice point.
-pub(super) fn hash(x: u32, y: u32) -> f32 {
+pub fn hash(x: u32, y: u32) -> f32 {
     let mut h = x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77);
     h = (h ^ (h >> 15)).wrapping_mul(0x2C1B_3C6D);
     h = (h ^ (h >> 12)).wrapping_mul(0x297A_2D39);
@@ -14,17 +14,23 @@ pub(super) fn hash(x: u32, y: u32) -> f32 {
 }
 
 /// Smooth tileable noise in -1..1, from a table of hashed values.
-pub(super) struct Noise(Vec<f32>);
+pub struct Noise(Vec<f32>);
 
-impl Noise {
-    /// Fills the table.
-    pub(super) fn new() -> Self {
+impl Default for Noise {
+    fn default() -> Self {
         let cells = 0..NOISE_CELLS * NOISE_CELLS;
         Self(cells.map(|cell| hash(cell, 17) * 2.0 - 1.0).collect())
     }
+}
+
+impl Noise {
+    /// Fills the table.
+    pub fn new() -> Self {
+        Self::default()
+    }
 
     /// Values along x at a height `y` in cells.
-    pub(super) fn row(&self, y: f32) -> NoiseRow {
+    pub fn row(&self, y: f32) -> NoiseRow {
         let top = y as u32;
         let values = |row: u32| {
             let start = ((row % NOISE_CELLS) * NOISE_CELLS) as usize;
@@ -36,11 +42,11 @@ impl Noise {
 }
 
 /// A row of [`Noise`].
-pub(super) struct NoiseRow(Vec<f32>);
+pub struct NoiseRow(Vec<f32>);
 
 impl NoiseRow {
     /// Value at a position in cells.
-    pub(super) fn at(&self, x: f32) -> f32 {
+    pub fn at(&self, x: f32) -> f32 {
         let column = x as u32;
         let left = self.0[(column % NOISE_CELLS) as usize];
         let right = self.0[((column + 1) % NOISE_CELLS) as usize];
@@ -50,16 +56,12 @@ impl NoiseRow {
 
 /// Draws a square image of `size` pixels; `row` gives for each y what gives for each x a colour in
 /// sRGB and an alpha, 0..255.
-pub(super) fn draw<Row: Fn(u32) -> [f32; 4]>(name: &str, size: u32, row: impl Fn(u32) -> Row) -> Image {
+pub fn draw<Row: Fn(u32) -> [f32; 4]>(name: &str, size: u32, row: impl Fn(u32) -> Row) -> Image {
     draw_oblong(name, [size; 2], row)
 }
 
 /// As [`draw`], of a width and a height in pixels.
-pub(super) fn draw_oblong<Row: Fn(u32) -> [f32; 4]>(
-    name: &str,
-    [width, height]: [u32; 2],
-    row: impl Fn(u32) -> Row,
-) -> Image {
+pub fn draw_oblong<Row: Fn(u32) -> [f32; 4]>(name: &str, [width, height]: [u32; 2], row: impl Fn(u32) -> Row) -> Image {
     let mut rgba = Vec::with_capacity((width * height * 4) as usize);
     for y in 0..height {
         let pixel = row(y);
@@ -72,7 +74,7 @@ pub(super) fn draw_oblong<Row: Fn(u32) -> [f32; 4]>(
 
 /// As [`draw`], with noise: `color` gives for each x and y a colour, of values of the noise at the pixel, one for each of
 /// `scales`. At a scale of 1 the image spans [`NOISE_CELLS`].
-pub(super) fn draw_noisy<const N: usize>(
+pub fn draw_noisy<const N: usize>(
     name: &str,
     size: u32,
     scales: [f32; N],
@@ -88,6 +90,6 @@ pub(super) fn draw_noisy<const N: usize>(
 }
 
 /// `color` made lighter or darker by `light` of 0..255.
-pub(super) fn shade([r, g, b]: [f32; 3], light: f32) -> [f32; 4] {
+pub fn shade([r, g, b]: [f32; 3], light: f32) -> [f32; 4] {
     [r + light, g + light * 0.97, b + light * 0.9, 255.0]
 }

@@ -3,22 +3,25 @@
 //! Generators only place vertices; normals follow here from the faces, split where two faces meet
 //! at more than a crease angle. So shading and winding cannot disagree.
 
-use glam::{Affine3A, Vec2, Vec3};
+use std::f32::consts::TAU;
+
+use glam::{Affine3A, Quat, Vec2, Vec3};
 
 use crate::Primitive;
 
 /// A closed surface: every edge belongs to two triangles, which are counter-clockwise from outside.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Solid {
+pub struct Solid {
     /// Vertices, shared between the faces that meet there.
-    pub(super) positions: Vec<Vec3>,
+    pub positions: Vec<Vec3>,
     /// Vertex indices.
-    pub(super) triangles: Vec<[u32; 3]>,
+    pub triangles: Vec<[u32; 3]>,
 }
 
 impl Solid {
     /// Moved, turned or scaled; a mirroring transform also turns the winding.
-    pub(super) fn transformed(mut self, transform: Affine3A) -> Self {
+    #[must_use]
+    pub fn transformed(mut self, transform: Affine3A) -> Self {
         for position in &mut self.positions {
             *position = transform.transform_point3(*position);
         }
@@ -31,17 +34,33 @@ impl Solid {
     }
 
     /// Moved by `offset`.
-    pub(super) fn moved(self, offset: Vec3) -> Self {
-        self.transformed(Affine3A::from_translation(offset))
+    #[must_use]
+    pub fn moved(self, offset: impl Into<Vec3>) -> Self {
+        self.transformed(Affine3A::from_translation(offset.into()))
+    }
+
+    /// Turned about the origin, then moved by `offset`.
+    #[must_use]
+    pub fn posed(self, turn: Quat, offset: impl Into<Vec3>) -> Self {
+        self.transformed(Affine3A::from_rotation_translation(turn, offset.into()))
+    }
+
+    /// As many copies together, turned evenly about the y axis.
+    #[must_use]
+    pub fn around(&self, count: usize) -> Self {
+        let turn = |index: usize| Affine3A::from_rotation_y(index as f32 / count as f32 * TAU);
+        (0..count).map(|index| self.clone().transformed(turn(index))).collect()
     }
 
     /// Mirrored in the plane x = 0: left for right.
-    pub(super) fn mirrored(self) -> Self {
+    #[must_use]
+    pub fn mirrored(self) -> Self {
         self.transformed(Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0)))
     }
 
     /// Together with another solid; the two may overlap but keep their own surfaces.
-    pub(super) fn with(mut self, other: Self) -> Self {
+    #[must_use]
+    pub fn with(mut self, other: Self) -> Self {
         let first = self.positions.len() as u32;
         self.positions.extend(other.positions);
         self.triangles.extend(other.triangles.iter().map(|t| t.map(|index| index + first)));
@@ -49,19 +68,20 @@ impl Solid {
     }
 
     /// Together with its own mirror image in x = 0.
-    pub(super) fn and_mirrored(self) -> Self {
+    #[must_use]
+    pub fn and_mirrored(self) -> Self {
         let mirror = self.clone().mirrored();
         self.with(mirror)
     }
 
     /// Drawable form: faces that meet at less than `crease` radians (below π/2) share a smooth
     /// normal. Texture coordinates are metres, projected along the normal's greatest axis.
-    pub(super) fn primitive(&self, material: usize, crease: f32) -> Primitive {
+    pub fn primitive(&self, material: usize, crease: f32) -> Primitive {
         self.primitive_with(material, crease, |vertex, normal| projected(self.positions[vertex], normal))
     }
 
     /// As [`Self::primitive`], with texture coordinates from the vertex's index and its normal.
-    pub(super) fn primitive_with(&self, material: usize, crease: f32, uv: impl Fn(usize, Vec3) -> Vec2) -> Primitive {
+    pub fn primitive_with(&self, material: usize, crease: f32, uv: impl Fn(usize, Vec3) -> Vec2) -> Primitive {
         let corners = Corners::new(self);
         let threshold = crease.cos();
         let mut primitive = Primitive { material, ..Primitive::default() };
@@ -85,6 +105,13 @@ impl Solid {
             }
         }
         primitive
+    }
+}
+
+/// All of them together, as by [`Solid::with`].
+impl FromIterator<Solid> for Solid {
+    fn from_iter<I: IntoIterator<Item = Self>>(solids: I) -> Self {
+        solids.into_iter().reduce(Self::with).unwrap_or_default()
     }
 }
 

@@ -4,26 +4,26 @@ use std::f32::consts::TAU;
 
 use glam::Vec3;
 
-use super::shapes::{catmull_rom, tube};
+use super::shapes::{curve, tube};
 use super::solid::Solid;
 
 /// A point of the line with the ellipse across it, in metres.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stop {
+pub struct Stop {
     /// Where the line passes.
-    pub(super) at: Vec3,
+    pub at: Vec3,
     /// Half axes of the ellipse: along the sweep's side, and across side and line.
-    pub(super) half: [f32; 2],
+    pub half: [f32; 2],
 }
 
 /// A stop with a round cross-section.
-pub(super) const fn stop(at: Vec3, radius: f32) -> Stop {
+pub const fn stop(at: Vec3, radius: f32) -> Stop {
     Stop { at, half: [radius; 2] }
 }
 
 /// The solid around a line of at least four stops in a plane across `side` (a unit vector). The first and the last stop
 /// are the tips that close it, whose cross-sections are ignored.
-pub(super) fn sweep(stops: &[Stop], side: Vec3, segments: usize) -> Solid {
+pub fn sweep(stops: &[Stop], side: Vec3, segments: usize) -> Solid {
     let ring = |index: usize| {
         let along = (stops[index + 1].at - stops[index - 1].at).normalize();
         let across = along.cross(side);
@@ -40,20 +40,9 @@ pub(super) fn sweep(stops: &[Stop], side: Vec3, segments: usize) -> Solid {
 }
 
 /// Stops on a smooth curve through all of `stops`, `steps` from each to the next.
-pub(super) fn smooth(stops: &[Stop], steps: usize) -> Vec<Stop> {
-    let last = stops.len() - 1;
-    let between = |index: usize, t: f32| {
-        let near = [index.saturating_sub(1), index, index + 1, (index + 2).min(last)].map(|near| stops[near]);
-        let value = |get: &dyn Fn(&Stop) -> f32| catmull_rom(near.each_ref().map(get), t);
-        Stop {
-            at: Vec3::from_array([0, 1, 2].map(|axis| value(&|stop| stop.at[axis]))),
-            half: [0, 1].map(|axis| value(&|stop| stop.half[axis]).max(1e-3)),
-        }
-    };
-    let mut curve: Vec<Stop> = (0..last)
-        .flat_map(|index| (0..steps).map(move |step| (index, step as f32 / steps as f32)))
-        .map(|(i, t)| between(i, t))
-        .collect();
-    curve.push(stops[last]);
-    curve
+pub fn smooth(stops: &[Stop], steps: usize) -> Vec<Stop> {
+    let points: Vec<_> =
+        stops.iter().map(|stop| [stop.at.x, stop.at.y, stop.at.z, stop.half[0], stop.half[1]]).collect();
+    let smooth = |[x, y, z, a, b]: [f32; 5]| Stop { at: Vec3::new(x, y, z), half: [a, b].map(|half| half.max(1e-3)) };
+    curve(&points, steps).into_iter().map(smooth).collect()
 }
