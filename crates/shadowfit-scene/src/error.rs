@@ -88,6 +88,11 @@ pub(crate) struct Problem {
 /// What to do about data that the specification does not allow.
 const RE_EXPORT: &str = "Export the file again, or look at it with the Khronos glTF validator";
 
+/// The entry of a list that an index in the file names; what names one that does not exist is the problem's element.
+pub(crate) fn entry<'a, T>(list: &'a [T], index: usize, kind: &str, element: &str) -> Result<&'a T, Problem> {
+    list.get(index).ok_or_else(|| Problem::new(element, format!("there is no {kind} {index}")))
+}
+
 impl Problem {
     /// A problem that a correct export does not have.
     pub(crate) fn new(element: impl Into<String>, reason: impl Into<String>) -> Self {

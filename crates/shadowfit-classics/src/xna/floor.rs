@@ -1,6 +1,6 @@
 //! The floor: a square of pale stone with a grid to read distances from.
 
-use shadowfit_scene::builtin::parts::{Builder, draw_noisy, ground, hash, matt, shade, tiled};
+use shadowfit_scene::parts::{Builder, draw_noisy, ground, hash, matt, shade, tiled};
 use shadowfit_scene::{Image, Material, Transform};
 
 /// Half of the floor's side, in the sample's units.

@@ -3,7 +3,7 @@
 //! In the sample's units a person is about 70 tall. Only the figure casts, and both receive.
 
 use glam::{Quat, Vec3};
-use shadowfit_scene::builtin::parts::{Builder, figure_at_ease, looped, rotations};
+use shadowfit_scene::parts::{Builder, figure_at_ease, looped, rotations};
 use shadowfit_scene::{Lens, Scene, Sun};
 
 use super::floor;

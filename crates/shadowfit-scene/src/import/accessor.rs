@@ -65,6 +65,15 @@ impl<'a> Reader<'a> {
         usize::try_from(accessor.count.0).map_err(too_many)
     }
 
+    /// Checks that an accessor has an element for each of `count` positions, before any is read.
+    pub(crate) fn check_count(&self, index: Index<Accessor>, element: &str, count: usize) -> Result<(), Problem> {
+        let has = self.count(index, element)?;
+        if has == count {
+            return Ok(());
+        }
+        Err(Problem::new(named(element, index), format!("it has {has} elements for {count} positions")))
+    }
+
     /// Number of components of an accessor's elements, 1 to 16; 0 where its type is invalid.
     pub(crate) fn components(&self, index: Index<Accessor>) -> usize {
         match self.root.accessors.get(index.value()).map(|accessor| accessor.type_) {

@@ -9,7 +9,7 @@ use gltf::json::{Index, Root};
 use super::accessor::{Integers, Reader};
 use super::nodes::Tree;
 use super::notes::Notes;
-use crate::error::Problem;
+use crate::error::{Problem, entry};
 use crate::{Animation, Channel, ChannelValues, Interpolation, Mesh, Node};
 
 /// Loads the animations of a scene.
@@ -40,9 +40,7 @@ impl Animations<'_> {
         for (index, channel) in json.channels.iter().enumerate() {
             let element = format!("{element}.channels[{index}]");
             let Some((node, property)) = self.target(&channel.target, &element, notes)? else { continue };
-            let sampler = json.samplers.get(channel.sampler.value()).ok_or_else(|| {
-                Problem::new(format!("{element}.sampler"), format!("there is no sampler {}", channel.sampler))
-            })?;
+            let sampler = entry(&json.samplers, channel.sampler.value(), "sampler", &format!("{element}.sampler"))?;
             channels.extend(self.channel(node, property, sampler, &element, notes)?);
         }
         let ends = channels.iter().filter_map(|channel| channel.times.last());
@@ -57,11 +55,7 @@ impl Animations<'_> {
         element: &str,
         notes: &mut Notes,
     ) -> Result<Option<(usize, Property)>, Problem> {
-        let node = self
-            .tree
-            .scene_index
-            .get(json.node.value())
-            .ok_or_else(|| Problem::new(format!("{element}.target"), format!("there is no node {}", json.node)))?;
+        let node = entry(&self.tree.scene_index, json.node.value(), "node", &format!("{element}.target"))?;
         let Some(node) = *node else { return Ok(None) };
         let Checked::Valid(property) = json.path else {
             notes.add(format!("{element}: skipped: it moves a property that is not supported"));

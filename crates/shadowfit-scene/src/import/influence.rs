@@ -31,12 +31,7 @@ pub(crate) fn load(
             }
         };
         for (name, index) in [("JOINTS", joints), ("WEIGHTS", weights)] {
-            let element = format!("{element}.attributes.{name}_{set}");
-            let has = reader.count(index, &element)?;
-            if has != count {
-                let reason = format!("it has {has} elements for {count} positions");
-                return Err(Problem::new(format!("{element}, accessor {index}"), reason));
-            }
+            reader.check_count(index, &format!("{element}.attributes.{name}_{set}"), count)?;
         }
         let joints = reader.integers::<4>(joints, &format!("{element}.attributes.JOINTS_{set}"))?;
         let name = format!("{element}.attributes.WEIGHTS_{set}");

@@ -13,7 +13,7 @@ use gltf::json::{Index, Root, deserialize};
 use super::accessor::Reader;
 use super::image::Images;
 use super::notes::Notes;
-use crate::error::Problem;
+use crate::error::{Problem, entry};
 use crate::{AlphaMode, Image, Material, Texture, Wrap};
 
 /// Greatest emitted radiance kept; beyond it, sums of light would overflow half floats.
@@ -65,11 +65,7 @@ impl<'a> Materials<'a> {
         if let Some(&look) = self.looks.get(&index.value()) {
             return Ok(look);
         }
-        let json = self
-            .root
-            .materials
-            .get(index.value())
-            .ok_or_else(|| Problem::new(format!("{element}.material"), format!("there is no material {index}")))?;
+        let json = entry(&self.root.materials, index.value(), "material", &format!("{element}.material"))?;
         let look = self.load(json, &format!("materials[{index}]"), notes)?;
         self.looks.insert(index.value(), look);
         Ok(look)
@@ -114,19 +110,14 @@ impl<'a> Materials<'a> {
 
     /// A texture; `None` where its image cannot be used.
     fn texture(&mut self, used: &Use, notes: &mut Notes) -> Result<Option<Texture>, Problem> {
-        let texture = self
-            .root
-            .textures
-            .get(used.texture.value())
-            .ok_or_else(|| Problem::new(used.element.as_str(), format!("there is no texture {}", used.texture)))?;
+        let texture = entry(&self.root.textures, used.texture.value(), "texture", &used.element)?;
         let element = format!("textures[{}]", used.texture);
         let sources = sources(texture, self.root.images.len(), &element)?;
         let image = self.image(&sources, &element, notes);
         let Some(image) = image else { return Ok(None) };
         let mut loaded = Texture { image, ..blank() };
         if let Some(index) = texture.sampler {
-            let sampler = self.root.samplers.get(index.value());
-            let sampler = sampler.ok_or_else(|| Problem::new(element, format!("there is no sampler {index}")))?;
+            let sampler = entry(&self.root.samplers, index.value(), "sampler", &element)?;
             loaded.wrap = [wrap(sampler.wrap_s), wrap(sampler.wrap_t)];
             loaded.nearest = matches!(sampler.mag_filter, Some(Checked::Valid(MagFilter::Nearest)));
         }

@@ -98,14 +98,6 @@ impl Attributes<'_> {
         Some((index, format!("{}.attributes.{}", self.element, semantic.to_string())))
     }
 
-    fn check_count(&self, count: usize, element: &str, index: Index<Accessor>) -> Result<(), Problem> {
-        if count == self.count {
-            return Ok(());
-        }
-        let reason = format!("it has {count} elements for {} positions", self.count);
-        Err(Problem::new(format!("{element}, accessor {index}"), reason))
-    }
-
     /// Elements of an accessor that must have one a vertex; the count is checked before any is read.
     fn elements<const N: usize>(
         &self,
@@ -113,7 +105,7 @@ impl Attributes<'_> {
         element: &str,
         integers: Integers,
     ) -> Result<Vec<[f32; N]>, Problem> {
-        self.check_count(self.reader.count(index, element)?, element, index)?;
+        self.reader.check_count(index, element, self.count)?;
         self.reader.floats(index, element, integers)
     }
 

@@ -34,7 +34,7 @@ use self::material::Materials;
 use self::mesh::MAX_COORDINATE;
 use self::nodes::Tree;
 use self::notes::Notes;
-use crate::error::Problem;
+use crate::error::{Problem, entry};
 use crate::{Mesh, Node, Pose, Primitive, Scene, SceneError, Skin};
 
 /// Triangles that a scene may draw: nodes may share meshes, so that a small file can ask for any
@@ -133,8 +133,7 @@ fn meshes<'a>(
         node.mesh = match loaded.entry(mesh.value()) {
             Entry::Occupied(known) => Some(*known.get()),
             Entry::Vacant(new) => {
-                let missing = || Problem::new(format!("nodes[{index}].mesh"), format!("there is no mesh {mesh}"));
-                let json = root.meshes.get(mesh.value()).ok_or_else(missing)?;
+                let json = entry(&root.meshes, mesh.value(), "mesh", &format!("nodes[{index}].mesh"))?;
                 meshes.push(load_mesh(json, &format!("meshes[{mesh}]"), reader, &mut materials, notes)?);
                 Some(*new.insert(meshes.len() - 1))
             }

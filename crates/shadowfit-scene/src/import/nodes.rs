@@ -3,7 +3,7 @@
 use glam::{Mat4, Quat, Vec3};
 use gltf::json::{Index, Root, scene};
 
-use crate::error::Problem;
+use crate::error::{Problem, entry};
 use crate::{Node, Transform};
 
 /// Nodes that belong to the chosen scene.
@@ -27,8 +27,7 @@ pub(crate) fn collect(root: &Root, scene: Option<usize>) -> Result<Tree, Problem
             Some(parent) => format!("nodes[{}].children", tree.file_index[parent]),
             None => element.clone(),
         };
-        let json = root.nodes.get(index.value());
-        let json = json.ok_or_else(|| Problem::new(parent_element(), format!("there is no node {index}")))?;
+        let json = entry(&root.nodes, index.value(), "node", &parent_element())?;
         if tree.scene_index[index.value()].is_some() {
             let reason = format!("node {index} is reached twice: it has two parents or is its own ancestor");
             return Err(Problem::new(parent_element(), reason));

@@ -9,7 +9,7 @@ use gltf::json::{Root, camera};
 
 use super::nodes::Tree;
 use super::notes::Notes;
-use crate::error::Problem;
+use crate::error::{Problem, entry};
 use crate::{Lens, Pose, SceneCamera, Sun};
 
 /// Cameras in node order.
@@ -17,10 +17,7 @@ pub(crate) fn cameras(root: &Root, tree: &Tree, notes: &mut Notes) -> Result<Vec
     let mut cameras = Vec::new();
     for (node, &index) in tree.file_index.iter().enumerate() {
         let Some(camera) = root.nodes[index].camera else { continue };
-        let json = root
-            .cameras
-            .get(camera.value())
-            .ok_or_else(|| Problem::new(format!("nodes[{index}].camera"), format!("there is no camera {camera}")))?;
+        let json = entry(&root.cameras, camera.value(), "camera", &format!("nodes[{index}].camera"))?;
         match lens(json) {
             Some(lens) => {
                 let name = json.name.clone().filter(|name| !name.is_empty());
@@ -60,10 +57,8 @@ pub(crate) fn sun(root: &Root, tree: &Tree, rest: &Pose, notes: &mut Notes) -> R
     for (node, &index) in tree.file_index.iter().enumerate() {
         let extensions = root.nodes[index].extensions.as_ref();
         let Some(link) = extensions.and_then(|e| e.khr_lights_punctual.as_ref()) else { continue };
-        let light = lights.get(link.light.value()).ok_or_else(|| {
-            let element = format!("nodes[{index}].extensions.KHR_lights_punctual");
-            Problem::new(element, format!("there is no light {}", link.light))
-        })?;
+        let element = format!("nodes[{index}].extensions.KHR_lights_punctual");
+        let light = entry(lights, link.light.value(), "light", &element)?;
         let found = directional(light, rest.world_from(node).transform_vector3(Vec3::NEG_Z));
         if sun.is_none() && found.is_some() {
             sun = found;

@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, Vec3};
 use shadowfit_scene::Primitive;
-use shadowfit_scene::builtin::parts::{Builder, CRISP, Solid, block, ellipsoid, lathe, rounded_box};
+use shadowfit_scene::parts::{Builder, CRISP, Solid, block, ellipsoid, lathe, rounded_box};
 
 use super::SUNK;
 use super::knight;

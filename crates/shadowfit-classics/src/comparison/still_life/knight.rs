@@ -1,7 +1,7 @@
 //! The knight of the chess pieces: a horse's head that looks along +z, on a turned foot.
 
 use glam::{Affine3A, Quat, Vec3};
-use shadowfit_scene::builtin::parts::{Solid, Stop, capsule, ellipsoid, lathe, smooth, sweep};
+use shadowfit_scene::parts::{Solid, Stop, capsule, ellipsoid, lathe, smooth, sweep};
 
 use super::chess::foot;
 

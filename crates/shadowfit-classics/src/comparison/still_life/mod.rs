@@ -14,7 +14,7 @@ use std::f32::consts::FRAC_PI_4;
 
 use glam::Vec3;
 use shadowfit_scene::Scene;
-use shadowfit_scene::builtin::parts::{Builder, sunlight};
+use shadowfit_scene::parts::{Builder, sunlight};
 
 /// How deep things reach into what they stand on, in metres.
 const SUNK: f32 = 0.01;

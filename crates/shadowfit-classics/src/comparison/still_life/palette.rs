@@ -1,6 +1,6 @@
 //! The still life's materials.
 
-use shadowfit_scene::builtin::parts::{matt, tiled};
+use shadowfit_scene::parts::{matt, tiled};
 use shadowfit_scene::{Material, Wrap};
 
 use super::textures::{FLOOR_METRES, PLASTER_METRES, Picture, STONE_METRES};

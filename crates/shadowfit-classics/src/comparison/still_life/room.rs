@@ -1,7 +1,7 @@
 //! The floor and the wall behind it.
 
 use glam::Vec3;
-use shadowfit_scene::builtin::parts::{Builder, CRISP, block};
+use shadowfit_scene::parts::{Builder, CRISP, block};
 
 use super::SUNK;
 use super::palette::Paint;

@@ -4,7 +4,7 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 
 use glam::{Affine3A, Vec3};
 use shadowfit_scene::Primitive;
-use shadowfit_scene::builtin::parts::{
+use shadowfit_scene::parts::{
     Arch, Builder, CRISP, SMOOTH, Solid, block, catmull_rom, ellipsoid, lathe, modulated_lathe, smooth, stop, sweep,
     torus,
 };

@@ -1,7 +1,7 @@
 //! Images of the still life: boards, plaster, stone, the squares of the chess board.
 
 use shadowfit_scene::Image;
-use shadowfit_scene::builtin::parts::{NOISE_CELLS, Noise, draw, draw_noisy, hash, shade};
+use shadowfit_scene::parts::{NOISE_CELLS, Noise, draw, draw_noisy, hash, shade};
 
 /// An image, by its index in the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

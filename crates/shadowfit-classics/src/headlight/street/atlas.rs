@@ -4,7 +4,7 @@
 //! own mirror image. Along u the mirror at 0 is the middle of the road, and that at 1 half the height of the wall.
 
 use shadowfit_scene::Image;
-use shadowfit_scene::builtin::parts::{NOISE_CELLS, Noise, draw_oblong, hash, shade};
+use shadowfit_scene::parts::{NOISE_CELLS, Noise, draw_oblong, hash, shade};
 
 /// Width and height in pixels: about as many to a unit along the strip as across road, pavement and wall.
 const SIZE: [u32; 2] = [1024, 128];

@@ -6,7 +6,7 @@
 use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::Vec3;
-use shadowfit_scene::builtin::parts::{Solid, tube};
+use shadowfit_scene::parts::{Solid, tube};
 
 /// Half of the car's length.
 pub(super) const HALF_LENGTH: f32 = 1.6;

@@ -3,7 +3,7 @@
 use std::f32::consts::{PI, TAU};
 
 use glam::{Vec2, Vec3};
-use shadowfit_scene::builtin::parts::{Solid, superellipse, tube};
+use shadowfit_scene::parts::{Solid, superellipse, tube};
 
 use super::panel::Panel;
 

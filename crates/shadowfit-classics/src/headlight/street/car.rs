@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use shadowfit_scene::Primitive;
-use shadowfit_scene::builtin::parts::{CRISP, SMOOTH, Solid, Stop, block, ellipsoid, rounded_box, superellipse, sweep};
+use shadowfit_scene::parts::{CRISP, SMOOTH, Solid, Stop, block, ellipsoid, rounded_box, superellipse, sweep};
 
 use super::body::{HALF_LENGTH, HALF_WIDTH, flank};
 use super::palette::Paint;

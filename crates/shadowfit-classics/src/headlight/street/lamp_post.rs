@@ -6,7 +6,7 @@ use std::f32::consts::FRAC_PI_2;
 
 use glam::{Affine3A, Quat, Vec3};
 use shadowfit_scene::Primitive;
-use shadowfit_scene::builtin::parts::{SMOOTH, Solid, Stop, lathe, loft, section, stop, sweep};
+use shadowfit_scene::parts::{SMOOTH, Solid, Stop, lathe, loft, section, stop, sweep};
 
 use super::palette::Paint;
 

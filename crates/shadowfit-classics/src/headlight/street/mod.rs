@@ -17,7 +17,7 @@ mod wheel;
 use std::f32::consts::{FRAC_PI_4, PI};
 
 use glam::{Quat, Vec3};
-use shadowfit_scene::builtin::parts::{Builder, sunlight};
+use shadowfit_scene::parts::{Builder, sunlight};
 use shadowfit_scene::{Lens, Scene, Transform};
 
 /// Direction of the sun from +z toward +x, in radians: from the road's open side, so that what stands on the pavement

@@ -1,7 +1,7 @@
 //! The street's materials.
 
 use glam::Vec3;
-use shadowfit_scene::builtin::parts::matt;
+use shadowfit_scene::parts::matt;
 use shadowfit_scene::{Material, Texture, Wrap};
 
 /// A material, by its index in the scene.

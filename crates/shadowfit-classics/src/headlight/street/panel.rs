@@ -1,7 +1,7 @@
 //! Thin slabs that lie on a curved surface: windows, seams.
 
 use glam::{Vec2, Vec3};
-use shadowfit_scene::builtin::parts::Solid;
+use shadowfit_scene::parts::Solid;
 
 /// Step of the parameters over which a surface's normal is taken.
 const STEP: f32 = 1e-3;

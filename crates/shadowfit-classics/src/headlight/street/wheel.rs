@@ -3,7 +3,7 @@
 use std::f32::consts::{FRAC_PI_2, TAU};
 
 use glam::{Affine3A, Quat, Vec3};
-use shadowfit_scene::builtin::parts::{Solid, block, lathe, torus};
+use shadowfit_scene::parts::{Solid, block, lathe, torus};
 
 use super::body::{AXLES, HALF_WIDTH, WHEEL};
 

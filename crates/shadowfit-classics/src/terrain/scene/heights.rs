@@ -2,7 +2,7 @@
 //!
 //! Hills of smooth noise around a level valley floor, on which the vehicles stand.
 
-use shadowfit_scene::builtin::parts::hash;
+use shadowfit_scene::parts::hash;
 
 use super::vehicles::PLACES;
 

@@ -5,7 +5,7 @@
 use std::f32::consts::{FRAC_PI_2, TAU};
 
 use glam::{Affine3A, Quat, Vec3};
-use shadowfit_scene::builtin::parts::{
+use shadowfit_scene::parts::{
     CRISP, SMOOTH, Solid, block, capsule, ellipsoid, lathe, loft, plank, rounded_box, section, torus,
 };
 

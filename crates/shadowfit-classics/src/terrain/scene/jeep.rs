@@ -5,9 +5,7 @@
 use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::{Affine3A, Quat, Vec3};
-use shadowfit_scene::builtin::parts::{
-    CRISP, SMOOTH, Solid, block, capsule, lathe, plank, rounded_box, torus, wall_over,
-};
+use shadowfit_scene::parts::{CRISP, SMOOTH, Solid, block, capsule, lathe, plank, rounded_box, torus, wall_over};
 
 use super::palette::Paint;
 use super::parts::{Parts, Wheel, bent_sheet, rect, sideways, wedge};

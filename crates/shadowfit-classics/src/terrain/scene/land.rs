@@ -1,7 +1,7 @@
 //! The land: a vertex for each texel of the height map, under grass with some earth.
 
 use glam::{Vec2, Vec3, Vec4};
-use shadowfit_scene::builtin::parts::{Builder, draw_noisy, hash};
+use shadowfit_scene::parts::{Builder, draw_noisy, hash};
 use shadowfit_scene::{Image, Primitive, Transform};
 
 use super::heights::{HeightMap, TEXELS, ease, noise};

@@ -13,7 +13,7 @@ mod tractor;
 mod vehicles;
 
 use glam::Vec3;
-use shadowfit_scene::builtin::parts::Builder;
+use shadowfit_scene::parts::Builder;
 use shadowfit_scene::{Lens, Scene, Sun};
 
 #[cfg(test)]

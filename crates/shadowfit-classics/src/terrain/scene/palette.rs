@@ -1,7 +1,7 @@
 //! The terrain's materials.
 
 use shadowfit_scene::Material;
-use shadowfit_scene::builtin::parts::{matt, tiled};
+use shadowfit_scene::parts::{matt, tiled};
 
 use super::land::TILE;
 

@@ -6,7 +6,7 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 
 use glam::{Affine3A, Quat, Vec2, Vec3};
 use shadowfit_scene::Primitive;
-use shadowfit_scene::builtin::parts::{Solid, extrude, lathe, plank};
+use shadowfit_scene::parts::{Solid, extrude, lathe, plank};
 
 use super::palette::Paint;
 

@@ -1,7 +1,7 @@
 //! The tractor: large ribbed wheels behind, small ones ahead, a bonnet with its grille, an open cabin.
 
 use glam::{Affine3A, Quat, Vec3};
-use shadowfit_scene::builtin::parts::{CRISP, SMOOTH, block, capsule, lathe, plank, rounded_box, torus};
+use shadowfit_scene::parts::{CRISP, SMOOTH, block, capsule, lathe, plank, rounded_box, torus};
 
 use super::palette::Paint;
 use super::parts::{Parts, Wheel, arc, bent_sheet, rect, wedge};

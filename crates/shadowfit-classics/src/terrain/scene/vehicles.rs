@@ -4,7 +4,7 @@ use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::{Quat, Vec3};
 use shadowfit_scene::Transform;
-use shadowfit_scene::builtin::parts::Builder;
+use shadowfit_scene::parts::Builder;
 
 use super::{helicopter, jeep, tractor};
 

@@ -3,10 +3,8 @@
 use glam::Vec3;
 
 use super::palette::Paint;
-use super::{BAY, ROW, SPRING, bay_middles, column_places};
-use crate::builtin::build::{Builder, CRISP};
-use crate::builtin::shapes::{block, lathe};
-use crate::builtin::solid::Solid;
+use super::plan::{BAY, ROW, SPRING, bay_middles, column_places};
+use crate::parts::{Builder, CRISP, lathe, pillar};
 
 /// Height of the low wall between the columns, in metres: a seat.
 const SEAT: f32 = 0.48;
@@ -16,35 +14,28 @@ const OPEN: [usize; 2] = [4, 8];
 /// Adds columns and low walls.
 pub(super) fn build(builder: &mut Builder) {
     let group = builder.group("columns", Vec3::ZERO, 0.0);
-    let primitives =
-        vec![round(22).primitive(Paint::Marble.into(), 0.75), square().primitive(Paint::Stone.into(), CRISP)];
-    let column = builder.mesh("column", primitives);
+    let column = column(builder, "column", 22);
     for z in column_places() {
-        builder.place(group, column, Vec3::new(ROW, 0.0, z), 0.0);
+        builder.place(group, column, [ROW, 0.0, z], 0.0);
     }
     let half = BAY / 2.0 - 0.3;
-    let wall = block(Vec3::new(-0.2, -0.02, -half), Vec3::new(0.2, SEAT - 0.05, half), 0.012);
-    let top = block(Vec3::new(-0.25, SEAT - 0.07, -half), Vec3::new(0.25, SEAT, half), 0.02);
-    let wall = builder.solid("low wall", &wall.with(top), Paint::Stone, CRISP);
+    let wall = pillar([0.2, half], [-0.02, SEAT - 0.05], 0.012).with(pillar([0.25, half], [SEAT - 0.07, SEAT], 0.02));
+    let wall = builder.solid("low wall", &wall, Paint::Stone, CRISP);
     for (_, z) in bay_middles().enumerate().filter(|(bay, _)| !OPEN.contains(bay)) {
-        builder.place(group, wall, Vec3::new(ROW, 0.0, z), 0.0);
+        builder.place(group, wall, [ROW, 0.0, z], 0.0);
     }
 }
 
-/// What is round of a column: base, shaft and capital.
-pub(super) fn round(segments: usize) -> Solid {
+/// Adds the mesh of a column: base, shaft and capital are round, its stand and the abacus, which carries the arches,
+/// square.
+pub(super) fn column(builder: &mut Builder, name: &str, segments: usize) -> usize {
     let base = [(0.30, 0.56), (0.328, 0.58), (0.335, 0.60), (0.328, 0.62), (0.30, 0.64), (0.27, 0.65)];
     let waist = [(0.275, 0.69), (0.29, 0.71), (0.25, 0.735)];
     let shaft = [(0.232, 0.76), (0.24, 1.2), (0.21, 2.02), (0.225, 2.03)];
     let capital = [(0.24, 2.045), (0.208, 2.065), (0.214, 2.13), (0.24, 2.21), (0.32, 2.33)];
     let top = [(0.335, 2.355), (0.33, 2.37), (0.30, 2.378)];
-    let profile: Vec<(f32, f32)> = [&base[..], &waist, &shaft, &capital, &top].concat();
-    lathe(&profile, segments)
-}
-
-/// What is square of a column: its stand and the abacus, which carries the arches.
-pub(super) fn square() -> Solid {
-    let stand = block(Vec3::new(-0.36, -0.02, -0.36), Vec3::new(0.36, SEAT + 0.09, 0.36), 0.012);
-    let abacus = block(Vec3::new(-0.37, 2.37, -0.41), Vec3::new(0.37, SPRING + 0.01, 0.41), 0.02);
-    stand.with(abacus)
+    let round = lathe(&[&base[..], &waist, &shaft, &capital, &top].concat(), segments);
+    let stand = pillar([0.36; 2], [-0.02, SEAT + 0.09], 0.012);
+    let square = stand.with(pillar([0.37, 0.41], [2.37, SPRING + 0.01], 0.02));
+    builder.solids(name, [(round, Paint::Marble, 0.75), (square, Paint::Stone, CRISP)])
 }

@@ -5,33 +5,25 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 use glam::{Affine3A, Quat, Vec3};
 
 use super::palette::Paint;
-use super::shell::arch_crowns;
-use super::{HALF, SWING_TIME, bay_middles};
-use crate::builtin::build::{Builder, CRISP, SMOOTH};
-use crate::builtin::flora::{Card, Cards, Dice, GOLDEN_ANGLE, Limbs};
-use crate::builtin::motion::rotations;
-use crate::builtin::shapes::{block, capsule, lathe, torus};
-use crate::builtin::solid::Solid;
+use super::plan::{HALF, arch_crowns, bay_middles};
+use crate::parts::{
+    Builder, CRISP, Card, Cards, Dice, GOLDEN_ANGLE, Limbs, SMOOTH, Solid, block, capsule, lathe, pillar, rotations,
+    torus, turned,
+};
 use crate::{Channel, Primitive};
 
+/// Time in which the lanterns swing once through their whole pattern, in seconds.
+pub(super) const SWING_TIME: f32 = 9.0;
 /// Keyframes of a lantern's swing.
 const SWING_KEYS: usize = 72;
 
-/// What the rest of the scene has to know.
-pub(super) struct Furniture {
-    /// Node of the urn.
-    pub(super) urn: usize,
-    /// How the lanterns swing.
-    pub(super) swing: Vec<Channel>,
-}
-
-/// Adds everything that stands or hangs in the gallery.
-pub(super) fn build(builder: &mut Builder) -> Furniture {
+/// Adds everything that stands or hangs in the gallery; returns the urn's node and how the lanterns swing.
+pub(super) fn build(builder: &mut Builder) -> (usize, Vec<Channel>) {
     let urn = urn(builder);
     let group = builder.group("furniture", Vec3::ZERO, 0.0);
     benches(builder, group);
     pots(builder, group);
-    Furniture { urn, swing: lanterns(builder, group) }
+    (urn, lanterns(builder, group))
 }
 
 /// A marble urn with an agave, on a pedestal.
@@ -41,26 +33,23 @@ fn urn(builder: &mut Builder) -> usize {
     let rim = [(0.19, 0.54), (0.21, 0.60), (0.25, 0.65), (0.275, 0.668), (0.272, 0.685), (0.25, 0.688), (0.21, 0.66)];
     let inside = [(0.17, 0.58), (0.0, 0.57)];
     let vessel = lathe(&[&foot[..], &belly, &rim, &inside].concat(), 36);
-    let handle = torus(0.085, 0.018, 0.018, 22, 10).transformed(Affine3A::from_rotation_translation(
-        Quat::from_rotation_x(FRAC_PI_2),
-        Vec3::new(0.225, 0.45, 0.0),
-    ));
+    let handle = torus(0.085, 0.018, 0.018, 22, 10).posed(Quat::from_rotation_x(FRAC_PI_2), [0.225, 0.45, 0.0]);
     let vessel = vessel.with(handle.and_mirrored()).moved(Vec3::Y * 0.86);
-    let pedestal = block(Vec3::new(-0.30, -0.01, -0.30), Vec3::new(0.30, 0.12, 0.30), 0.012)
-        .with(block(Vec3::new(-0.26, 0.10, -0.26), Vec3::new(0.26, 0.17, 0.26), 0.02))
-        .with(block(Vec3::new(-0.21, 0.15, -0.21), Vec3::new(0.21, 0.76, 0.21), 0.008))
-        .with(block(Vec3::new(-0.25, 0.74, -0.25), Vec3::new(0.25, 0.80, 0.25), 0.018))
-        .with(block(Vec3::new(-0.28, 0.79, -0.28), Vec3::new(0.28, 0.87, 0.28), 0.012));
+    let pedestal = [
+        (0.30, [-0.01, 0.12], 0.012),
+        (0.26, [0.10, 0.17], 0.02),
+        (0.21, [0.15, 0.76], 0.008),
+        (0.25, [0.74, 0.80], 0.018),
+        (0.28, [0.79, 0.87], 0.012),
+    ];
+    let pedestal: Solid = pedestal.into_iter().map(|(half, ends, edge)| pillar([half; 2], ends, edge)).collect();
     let primitives = vec![
         vessel.primitive(Paint::Marble.into(), 0.75),
         pedestal.primitive(Paint::Stone.into(), CRISP),
         agave(Vec3::Y * 1.44, 1.0),
     ];
     let mesh = builder.mesh("urn", primitives);
-    let node = builder.node("urn", None, crate::Transform::default(), Some(mesh));
-    let rest = &mut builder.scene.nodes[node].rest;
-    (rest.translation, rest.rotation) = (Vec3::new(-1.0, 0.0, -2.3), Quat::from_rotation_y(0.5));
-    node
+    builder.node("urn", None, turned([-1.0, 0.0, -2.3], 0.5), Some(mesh))
 }
 
 /// A rosette of thick pointed leaves that grows from `at`.
@@ -89,29 +78,21 @@ fn agave(at: Vec3, size: f32) -> Primitive {
 
 /// Stone benches along the rear wall.
 fn benches(builder: &mut Builder, group: usize) {
-    let seat = block(Vec3::new(-0.22, 0.42, -0.85), Vec3::new(0.22, 0.50, 0.85), 0.015);
-    let leg = |z: f32| block(Vec3::new(-0.16, -0.01, z - 0.07), Vec3::new(0.16, 0.43, z + 0.07), 0.012);
+    let seat = pillar([0.22, 0.85], [0.42, 0.50], 0.015);
+    let leg = |z: f32| block([-0.16, -0.01, z - 0.07], [0.16, 0.43, z + 0.07], 0.012);
     let bench = seat.with(leg(-0.55)).with(leg(0.55));
     let bench = builder.solid("bench", &bench, Paint::Stone, CRISP);
     for z in bay_middles().skip(5).step_by(2) {
-        builder.place(group, bench, Vec3::new(-HALF + 0.30, 0.0, z), 0.0);
+        builder.place(group, bench, [-HALF + 0.30, 0.0, z], 0.0);
     }
 }
 
 /// Clay pots with shrubs, between the benches and by the columns.
 fn pots(builder: &mut Builder, group: usize) {
+    #[rustfmt::skip]
     let profile = [
-        (0.16, -0.005),
-        (0.175, 0.01),
-        (0.20, 0.12),
-        (0.235, 0.30),
-        (0.25, 0.36),
-        (0.275, 0.365),
-        (0.28, 0.43),
-        (0.265, 0.44),
-        (0.235, 0.43),
-        (0.22, 0.38),
-        (0.0, 0.37),
+        (0.16, -0.005), (0.175, 0.01), (0.20, 0.12), (0.235, 0.30), (0.25, 0.36), (0.275, 0.365), (0.28, 0.43),
+        (0.265, 0.44), (0.235, 0.43), (0.22, 0.38), (0.0, 0.37),
     ];
     let pot = lathe(&profile, 20).primitive(Paint::Terracotta.into(), CRISP);
     let mut wood = Limbs::default();
@@ -133,19 +114,15 @@ fn pots(builder: &mut Builder, group: usize) {
     let succulent = builder.mesh("potted agave", vec![pot, agave(Vec3::Y * 0.36, 1.15)]);
     for (index, z) in bay_middles().skip(3).step_by(2).enumerate() {
         let mesh = if index % 2 == 0 { shrub } else { succulent };
-        let node = builder.place(group, mesh, Vec3::new(-HALF + 0.42, 0.0, z - 0.3), index as f32);
-        builder.scene.nodes[node].rest.scale = Vec3::splat(1.0 + 0.12 * (index % 3) as f32);
+        let size = 1.0 + 0.12 * (index % 3) as f32;
+        builder.place_sized(group, mesh, [-HALF + 0.42, 0.0, z - 0.3], [size; 3], index as f32);
     }
 }
 
 /// Iron lanterns on chains, in the crowns of arches.
 fn lanterns(builder: &mut Builder, group: usize) -> Vec<Channel> {
-    let primitives = vec![
-        ironwork().primitive(Paint::Iron.into(), SMOOTH),
-        lathe(&[(0.05, -0.98), (0.075, -0.93), (0.075, -0.76), (0.05, -0.72)], 16)
-            .primitive(Paint::Glass.into(), CRISP),
-    ];
-    let lantern = builder.mesh("lantern", primitives);
+    let glass = lathe(&[(0.05, -0.98), (0.075, -0.93), (0.075, -0.76), (0.05, -0.72)], 16);
+    let lantern = builder.solids("lantern", [(ironwork(), Paint::Iron, SMOOTH), (glass, Paint::Glass, CRISP)]);
     arch_crowns()
         .enumerate()
         .map(|(index, crown)| {
@@ -163,21 +140,19 @@ fn lanterns(builder: &mut Builder, group: usize) -> Vec<Channel> {
 
 /// Chain, frame and roof of a lantern that hangs from the origin.
 fn ironwork() -> Solid {
-    let mut iron = Solid::default();
-    for link in 0..8 {
-        let turn = Quat::from_rotation_y(FRAC_PI_2 * (link % 2) as f32) * Quat::from_rotation_x(FRAC_PI_2);
-        let ring = torus(0.024, 0.006, 0.006, 9, 5);
+    let link = |link: u8| {
+        let turn = Quat::from_rotation_y(FRAC_PI_2 * f32::from(link % 2)) * Quat::from_rotation_x(FRAC_PI_2);
         let stretch = Affine3A::from_scale(Vec3::new(1.0, 1.5, 1.0));
-        let at = Affine3A::from_translation(Vec3::Y * (-0.03 - 0.062 * link as f32));
-        iron = iron.with(ring.transformed(at * stretch * Affine3A::from_quat(turn)));
-    }
-    iron = iron
-        .with(lathe(&[(0.16, -0.70), (0.165, -0.685), (0.12, -0.62), (0.05, -0.56), (0.03, -0.53), (0.0, -0.50)], 6));
-    iron = iron.with(lathe(&[(0.10, -1.05), (0.125, -1.03), (0.12, -1.0), (0.0, -0.99)], 6));
-    for bar in 0..6 {
-        let turn = bar as f32 / 6.0 * TAU;
+        let at = Affine3A::from_translation(Vec3::Y * (-0.03 - 0.062 * f32::from(link)));
+        torus(0.024, 0.006, 0.006, 9, 5).transformed(at * stretch * Affine3A::from_quat(turn))
+    };
+    let roof = [(0.16, -0.70), (0.165, -0.685), (0.12, -0.62), (0.05, -0.56), (0.03, -0.53), (0.0, -0.50)];
+    let floor = [(0.10, -1.05), (0.125, -1.03), (0.12, -1.0), (0.0, -0.99)];
+    let bar = |bar: u8| {
+        let turn = f32::from(bar) / 6.0 * TAU;
         let out = Vec3::new(turn.sin(), 0.0, turn.cos());
-        iron = iron.with(capsule(out * 0.11 - Vec3::Y * 1.02, 0.008, out * 0.145 - Vec3::Y * 0.68, 0.008, 5));
-    }
-    iron.with(torus(0.128, 0.007, 0.007, 18, 5).moved(Vec3::Y * -0.86))
+        capsule(out * 0.11 - Vec3::Y * 1.02, 0.008, out * 0.145 - Vec3::Y * 0.68, 0.008, 5)
+    };
+    let hoop = torus(0.128, 0.007, 0.007, 18, 5).moved(Vec3::Y * -0.86);
+    (0..8).map(link).chain([lathe(&roof, 6), lathe(&floor, 6)]).chain((0..6).map(bar)).chain([hoop]).collect()
 }

@@ -8,33 +8,14 @@ mod columns;
 mod furniture;
 mod garden;
 mod palette;
+mod plan;
 mod shell;
 mod textures;
 
 use glam::Vec3;
 
-use super::build::{Builder, sunlight};
-use super::motion::looped;
 use crate::Scene;
-
-/// Length of a bay, from column to column, in metres.
-const BAY: f32 = 3.4;
-/// Bays of the gallery.
-const BAYS: usize = 12;
-/// Where the gallery begins along z, in metres: behind the start view. It goes on toward -z.
-const START: f32 = 10.2;
-/// Where it ends, in metres.
-const END: f32 = START - BAY * BAYS as f32;
-/// Half of the gallery's width between its walls, in metres.
-const HALF: f32 = 2.1;
-/// Thickness of the wall above the columns, in metres: one that a bias of a decimetre does not pass.
-const THICK: f32 = 0.6;
-/// Where the row of columns stands along x, in metres.
-const ROW: f32 = HALF + THICK / 2.0;
-/// Height at which arches spring from the columns, in metres.
-const SPRING: f32 = 2.5;
-/// Height of the garden, below the gallery's floor at 0, in metres.
-const GARDEN: f32 = -0.3;
+use crate::parts::{Builder, looped, sunlight};
 
 /// Direction of the sun from +z toward +x, in radians: from the garden, ahead of the start view, so that the patches of
 /// light come toward the eye.
@@ -45,30 +26,15 @@ const SUN_ELEVATION: f32 = 0.37;
 const FOV_Y: f32 = 0.87;
 /// Far plane of the start view, in metres: beyond the trees of the garden.
 const FAR: f32 = 100.0;
-/// Time in which the lanterns swing once through their whole pattern, in seconds.
-const SWING_TIME: f32 = 9.0;
 
 /// The scene.
 pub(super) fn build() -> Scene {
-    let mut builder = Builder::new("arcade", palette::materials(), textures::images());
+    let mut builder = Builder::new("arcade", palette::Paint::all(), textures::Picture::all());
     shell::build(&mut builder);
     columns::build(&mut builder);
     garden::build(&mut builder);
-    let furniture = furniture::build(&mut builder);
+    let (urn, swing) = furniture::build(&mut builder);
     builder.start_view((Vec3::new(0.28, 1.6, 4.3), Vec3::new(-0.2, 1.68, -4.0)), FOV_Y, FAR);
-    let mut scene = builder.scene;
-    scene.subject = Some(furniture.urn);
-    scene.animations = vec![looped("swing", SWING_TIME, furniture.swing)];
-    scene.sun = Some(sunlight(SUN_AZIMUTH, SUN_ELEVATION));
-    scene
-}
-
-/// Where the columns stand along z, those at the ends included, from the start on.
-fn column_places() -> impl Iterator<Item = f32> {
-    (0..=BAYS).map(|index| START - BAY * index as f32)
-}
-
-/// Where the middles of the bays are along z, from the start on.
-fn bay_middles() -> impl Iterator<Item = f32> {
-    (0..BAYS).map(|index| START - BAY * (index as f32 + 0.5))
+    let sun = Some(sunlight(SUN_AZIMUTH, SUN_ELEVATION));
+    Scene { subject: Some(urn), animations: vec![looped("swing", furniture::SWING_TIME, swing)], sun, ..builder.scene }
 }

@@ -5,13 +5,9 @@ use std::f32::consts::{FRAC_PI_2, PI};
 use glam::{Affine3A, Vec3};
 
 use super::palette::Paint;
-use super::{BAY, BAYS, END, HALF, ROW, SPRING, START, THICK, bay_middles, column_places};
-use crate::builtin::build::{Builder, CRISP};
-use crate::builtin::shapes::{Arch, block, extrude, wall_over};
-use crate::builtin::solid::Solid;
+use super::plan::{ARCH, BAY, BAYS, END, HALF, ROW, SPRING, START, THICK, column_places};
+use crate::parts::{Arch, Builder, CRISP, Solid, block, extrude, prism, wall_over};
 
-/// Radius of the arches between the columns, in metres: less than half a bay by half of an abacus.
-const ARCH: f32 = 1.3;
 /// Rise of the vault above the height at which it springs, in metres.
 const RISE: f32 = 1.55;
 /// Height of the walls, in metres: above the vault's crown.
@@ -29,23 +25,24 @@ const GROIN: f32 = 0.2;
 /// Adds the shell.
 pub(super) fn build(builder: &mut Builder) {
     let group = builder.group("gallery", Vec3::ZERO, 0.0);
-    let mut add = |name: &str, solid: &Solid, paint: Paint, crease: f32| {
-        let mesh = builder.solid(name, solid, paint, crease);
-        builder.place(group, mesh, Vec3::ZERO, 0.0);
-    };
-    add("floor", &block(Vec3::new(-2.5, -0.5, END - 0.7), Vec3::new(3.1, 0.0, START + 0.7), 0.01), Paint::Tiles, CRISP);
-    let step = block(Vec3::new(2.9, -0.6, END - 1.2), Vec3::new(3.5, -0.15, START + 1.2), 0.01);
-    add("step", &step, Paint::Stone, CRISP);
-    let rear = block(Vec3::new(-HALF - HOUSE, -0.5, END - 0.6), Vec3::new(-HALF, WALL, START + 0.6), 0.01);
-    add("rear wall", &rear, Paint::Plaster, CRISP);
-    let dado = block(Vec3::new(-HALF - 0.2, -0.05, END - 0.1), Vec3::new(-HALF + 0.018, DADO, START + 0.1), 0.006);
-    add("dado", &dado, Paint::Dado, CRISP);
-    let rail =
-        block(Vec3::new(-HALF - 0.24, DADO - 0.03, END - 0.1), Vec3::new(-HALF + 0.04, DADO + 0.03, START), 0.012);
-    add("dado rail", &rail, Paint::Stone, CRISP);
-    add("vault", &vault(), Paint::Vault, GROIN);
-    add("arcade wall", &arcade_wall(BAYS).moved(Vec3::new(ROW, SPRING, 0.0)), Paint::Stone, CRISP);
-    add("roof", &roof(), Paint::Roof, CRISP);
+    let floor = block([-2.5, -0.5, END - 0.7], [3.1, 0.0, START + 0.7], 0.01);
+    let step = block([2.9, -0.6, END - 1.2], [3.5, -0.15, START + 1.2], 0.01);
+    let rear = block([-HALF - HOUSE, -0.5, END - 0.6], [-HALF, WALL, START + 0.6], 0.01);
+    let dado = block([-HALF - 0.2, -0.05, END - 0.1], [-HALF + 0.018, DADO, START + 0.1], 0.006);
+    let rail = block([-HALF - 0.24, DADO - 0.03, END - 0.1], [-HALF + 0.04, DADO + 0.03, START], 0.012);
+    let wall = arcade_wall(BAYS).moved([ROW, SPRING, 0.0]);
+    for (name, solid, paint, crease) in [
+        ("floor", floor, Paint::Tiles, CRISP),
+        ("step", step, Paint::Stone, CRISP),
+        ("rear wall", rear, Paint::Plaster, CRISP),
+        ("dado", dado, Paint::Dado, CRISP),
+        ("dado rail", rail, Paint::Stone, CRISP),
+        ("vault", vault(), Paint::Vault, GROIN),
+        ("arcade wall", wall, Paint::Stone, CRISP),
+        ("roof", roof(), Paint::Roof, CRISP),
+    ] {
+        builder.fix(group, name, &solid, paint, crease);
+    }
     ends(builder, group);
     ribs(builder, group);
 }
@@ -137,14 +134,14 @@ fn ribs(builder: &mut Builder, group: usize) {
         (0..SEGMENTS as u32).flat_map(|a| [[a, a + 1, last - a - 1], [a, last - a - 1, last - a]]).collect();
     let rib = extrude(&outline, &faces, 0.42);
     let rib = builder.solid("rib", &rib, Paint::Stone, CRISP);
-    let shaft = block(Vec3::new(-0.1, -0.02, -0.21), Vec3::new(0.12, SPRING - 0.1, 0.21), 0.01);
-    let foot = block(Vec3::new(-0.12, -0.02, -0.26), Vec3::new(0.17, 0.22, 0.26), 0.015);
-    let head = block(Vec3::new(-0.14, SPRING - 0.16, -0.27), Vec3::new(0.2, SPRING + 0.02, 0.27), 0.02);
-    let collar = block(Vec3::new(-0.16, SPRING - 0.3, -0.235), Vec3::new(0.145, SPRING - 0.25, 0.235), 0.012);
+    let shaft = block([-0.1, -0.02, -0.21], [0.12, SPRING - 0.1, 0.21], 0.01);
+    let foot = block([-0.12, -0.02, -0.26], [0.17, 0.22, 0.26], 0.015);
+    let head = block([-0.14, SPRING - 0.16, -0.27], [0.2, SPRING + 0.02, 0.27], 0.02);
+    let collar = block([-0.16, SPRING - 0.3, -0.235], [0.145, SPRING - 0.25, 0.235], 0.012);
     let pilaster = builder.solid("pilaster", &shaft.with(foot).with(head).with(collar), Paint::Stone, CRISP);
     for z in column_places() {
-        builder.place(group, rib, Vec3::new(0.0, SPRING, z), 0.0);
-        builder.place(group, pilaster, Vec3::new(-HALF, 0.0, z), 0.0);
+        builder.place(group, rib, [0.0, SPRING, z], 0.0);
+        builder.place(group, pilaster, [-HALF, 0.0, z], 0.0);
     }
 }
 
@@ -152,30 +149,28 @@ fn ribs(builder: &mut Builder, group: usize) {
 fn ends(builder: &mut Builder, group: usize) {
     let doorway = Arch { width: 2.0 * HALF + 1.2, height: WALL, depth: 0.55, radius: 1.05, spring: 2.1 };
     let wall = builder.solid("end wall", &doorway.solid(24), Paint::Plaster, CRISP);
-    builder.place(group, wall, Vec3::new(0.0, -0.005, END - 0.2), 0.0);
-    builder.place(group, wall, Vec3::new(0.0, -0.005, START + 0.2), 0.0);
+    builder.place(group, wall, [0.0, -0.005, END - 0.2], 0.0);
+    builder.place(group, wall, [0.0, -0.005, START + 0.2], 0.0);
     side_door(builder, group);
     let frame = Arch { width: 2.6, height: 3.5, depth: 0.7, radius: 1.0, spring: 2.1 };
     let frame = builder.solid("doorway", &frame.solid(24), Paint::Stone, CRISP);
-    builder.place(group, frame, Vec3::new(0.0, -0.01, END - 0.2), 0.0);
-    let door = block(Vec3::new(-1.2, -0.02, -0.06), Vec3::new(1.2, 3.3, 0.06), 0.01);
+    builder.place(group, frame, [0.0, -0.01, END - 0.2], 0.0);
+    let door = block([-1.2, -0.02, -0.06], [1.2, 3.3, 0.06], 0.01);
     let door = builder.solid("door", &door, Paint::Timber, CRISP);
-    builder.place(group, door, Vec3::new(0.0, 0.0, START + 0.2), 0.0);
+    builder.place(group, door, [0.0, 0.0, START + 0.2], 0.0);
 }
 
 /// A closed door in the rear wall, under a stone arch that stands out from it.
 fn side_door(builder: &mut Builder, group: usize) {
     let frame = Arch { width: 1.9, height: 2.75, depth: 0.34, radius: 0.68, spring: 1.72 };
     let frame = builder.solid("side doorway", &frame.solid(20), Paint::Stone, CRISP);
-    let leaf = |from: f32| block(Vec3::new(from, 0.0, -0.03), Vec3::new(from + 0.28, 2.42, 0.03), 0.012);
-    let mut leaves = (0..5).map(|index| leaf(-0.7 + 0.28 * index as f32)).reduce(Solid::with).unwrap_or_default();
-    for height in [0.35, 1.75] {
-        leaves = leaves.with(block(Vec3::new(-0.66, height, 0.0), Vec3::new(0.66, height + 0.12, 0.05), 0.008));
-    }
+    let leaf = |from: f32| block([from, 0.0, -0.03], [from + 0.28, 2.42, 0.03], 0.012);
+    let batten = |height: f32| block([-0.66, height, 0.0], [0.66, height + 0.12, 0.05], 0.008);
+    let leaves = (0..5).map(|index| leaf(-0.7 + 0.28 * index as f32)).chain([0.35, 1.75].map(batten)).collect();
     let leaves = builder.solid("side door", &leaves, Paint::Timber, CRISP);
     let z = START - 4.5 * BAY;
-    builder.place(group, frame, Vec3::new(-HALF, -0.01, z), FRAC_PI_2);
-    builder.place(group, leaves, Vec3::new(-HALF + 0.05, 0.01, z), FRAC_PI_2);
+    builder.place(group, frame, [-HALF, -0.01, z], FRAC_PI_2);
+    builder.place(group, leaves, [-HALF + 0.05, 0.01, z], FRAC_PI_2);
 }
 
 /// A roof over gallery and house, which hangs over the arcade's wall.
@@ -184,10 +179,5 @@ fn roof() -> Solid {
     let ridge = (f32::midpoint(eaves, back), WALL + 2.4);
     let outline = [(back, WALL - 0.05), (eaves, WALL - 0.05), (eaves, WALL + 0.07), ridge, (back, WALL + 0.07)];
     let length = START - END + 1.6;
-    extrude(&outline, &[[0, 1, 2], [0, 2, 3], [0, 3, 4]], length).moved(Vec3::Z * (START + END) / 2.0)
-}
-
-/// Where lanterns hang: the crowns of every second arch ahead of the start view.
-pub(super) fn arch_crowns() -> impl Iterator<Item = Vec3> {
-    bay_middles().skip(3).step_by(2).map(|z| Vec3::new(ROW, SPRING + ARCH, z))
+    prism(&outline, length).moved(Vec3::Z * (START + END) / 2.0)
 }

@@ -1,18 +1,17 @@
 //! Images of the arcade: floor tiles, plaster, stone, roof tiles, leaves.
 
 use crate::Image;
-use crate::builtin::flora::twig;
-use crate::builtin::pixels::{NOISE_CELLS, Noise, draw, draw_noisy, hash, shade};
+use crate::parts::{NOISE_CELLS, Noise, draw, draw_noisy, hash, numbered, shade, twig};
 
-/// An image, by its index in the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(usize)]
-pub(super) enum Picture {
-    Tiles,
-    Plaster,
-    Stone,
-    Roof,
-    Twig,
+numbered! {
+    /// An image, by its index in the scene.
+    Picture: Image {
+        Tiles = tiles(),
+        Plaster = plaster(),
+        Stone = stone(),
+        Roof = roof(),
+        Twig = twig(),
+    }
 }
 
 /// Metres that the image of the floor spans.
@@ -23,11 +22,6 @@ const TILES_SIZE: u32 = 512;
 const SIZE: u32 = 256;
 /// Tiles along each diagonal of the floor's image; even, so that it repeats.
 const DIAGONALS: f32 = 4.0;
-
-/// All images, in the order of [`Picture`].
-pub(super) fn images() -> Vec<Image> {
-    vec![tiles(), plaster(), stone(), roof(), twig()]
-}
 
 /// Cream and terracotta tiles set diagonally, with dark joints.
 fn tiles() -> Image {

@@ -3,14 +3,16 @@
 //! All repeat without a seam and are drawn from a fixed hash, so that they are the same everywhere.
 
 use crate::Image;
-use crate::builtin::pixels::{NOISE_CELLS, Noise, draw, hash, shade};
+use crate::parts::{NOISE_CELLS, Noise, draw, hash, numbered, shade};
 
-/// Index of the paving among the scene's images.
-pub(super) const PAVING: usize = 0;
-/// Index of the wall blocks.
-pub(super) const BLOCKS: usize = 1;
-/// Index of the lattice.
-pub(super) const LATTICE: usize = 2;
+numbered! {
+    /// An image, by its index in the scene.
+    Picture: Image {
+        Paving = paving(),
+        Blocks = blocks(),
+        Lattice = lattice(),
+    }
+}
 
 /// Metres that the paving image spans: five tiles of a metre, with a stronger line around them.
 pub(super) const PAVING_METRES: f32 = 5.0;
@@ -25,11 +27,6 @@ const PAVING_SIZE: u32 = 1024;
 const BLOCKS_SIZE: u32 = 512;
 /// Pixels along a side of the lattice image.
 const LATTICE_SIZE: u32 = 64;
-
-/// All images, in the order of their indices.
-pub(super) fn images() -> Vec<Image> {
-    vec![paving(), blocks(), lattice()]
-}
 
 /// Warm stone tiles of a metre with joints, faint quarter-metre lines and a red line every 5 m.
 fn paving() -> Image {

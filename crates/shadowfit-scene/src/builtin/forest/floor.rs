@@ -1,13 +1,9 @@
 //! The forest floor: gentle waves, a trodden path, stones, a fallen trunk.
 
-use glam::{Quat, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
 use super::palette::Paint;
-use crate::Transform;
-use crate::builtin::build::{Builder, SMOOTH};
-use crate::builtin::flora::{Dice, Limbs};
-use crate::builtin::shapes::{ellipsoid, modulated_lathe};
-use crate::builtin::sheet::{graded, ground};
+use crate::parts::{Builder, Dice, Limbs, SMOOTH, egg, ellipsoid, graded, ground, modulated_lathe};
 
 /// Half of the floor's side, in metres: the trees end before it.
 const HALF: f32 = 60.0;
@@ -43,8 +39,7 @@ pub(super) fn build(builder: &mut Builder) -> usize {
             .lerp(Vec3::new(2.1, 1.9, 1.6), trodden.sqrt())
     };
     let sheet = ground(Paint::Floor.into(), [&lines, &lines], height, color);
-    let floor = builder.mesh("forest floor", vec![sheet]);
-    builder.node("forest floor", None, Transform::default(), Some(floor));
+    builder.lay("forest floor", sheet);
     let group = builder.group("on the floor", Vec3::ZERO, 0.0);
     stones(builder, group);
     fallen_trunk(builder, group);
@@ -59,26 +54,16 @@ pub(super) fn on_floor(x: f32, z: f32) -> Vec3 {
 
 /// An old stump by the path: round bark in the sun, roots, and a broken hollow top.
 fn stump(builder: &mut Builder, group: usize) -> usize {
+    #[rustfmt::skip]
     let outline = [
-        (0.50, -0.15),
-        (0.50, 0.0),
-        (0.42, 0.05),
-        (0.37, 0.13),
-        (0.335, 0.28),
-        (0.32, 0.5),
-        (0.31, 0.72),
-        (0.315, 0.9),
-        (0.305, 1.0),
-        (0.25, 1.02),
-        (0.18, 0.84),
-        (0.0, 0.80),
+        (0.50, -0.15), (0.50, 0.0), (0.42, 0.05), (0.37, 0.13), (0.335, 0.28), (0.32, 0.5),
+        (0.31, 0.72), (0.315, 0.9), (0.305, 1.0), (0.25, 1.02), (0.18, 0.84), (0.0, 0.80),
     ];
-    let segments = 40;
     let shape = |turn: f32, y: f32| {
         let roots = 0.36 * (-y.max(0.0) * 7.0).exp() * (5.0 * turn + 0.6).cos();
         1.0 + roots + 0.035 * (4.0 * turn + 5.0 * y).sin() + 0.02 * (11.0 * turn - 3.0 * y).sin()
     };
-    let mut solid = modulated_lathe(&outline, segments, shape);
+    let mut solid = modulated_lathe(&outline, 40, shape);
     for position in solid.positions.iter_mut().filter(|position| position.y > 0.86) {
         // Splinters: the rim is as ragged as the trunk broke.
         let turn = position.x.atan2(position.z);
@@ -95,14 +80,8 @@ fn stump(builder: &mut Builder, group: usize) -> usize {
 
 /// Mossy stones, half sunk.
 fn stones(builder: &mut Builder, group: usize) {
-    let outline: Vec<(f32, f32)> = (0..=8)
-        .map(|step| {
-            let (sin, cos) = (step as f32 / 8.0 * std::f32::consts::PI).sin_cos();
-            (if step == 0 || step == 8 { 0.0 } else { sin.powf(0.8) }, -0.62 * cos)
-        })
-        .collect();
     let lump = |turn: f32, y: f32| 1.0 + 0.13 * (2.0 * turn + 4.0 * y).sin() + 0.07 * (5.0 * turn - 6.0 * y).cos();
-    let stone = modulated_lathe(&outline, 18, lump);
+    let stone = modulated_lathe(&egg(1.0, 0.62, 0.8), 18, lump);
     let stone = builder.solid("stone", &stone, Paint::Stone, 0.9);
     for (x, z, size, yaw) in [
         (-2.05, 0.9, 0.42, 0.4),
@@ -113,8 +92,7 @@ fn stones(builder: &mut Builder, group: usize) {
         (2.6, -9.0, 0.7, 0.9),
         (-4.6, -11.0, 0.8, 1.7),
     ] {
-        let node = builder.place_scaled(group, stone, on_floor(x, z) + Vec3::Y * 0.12 * size, Vec3::splat(size));
-        builder.scene.nodes[node].rest.rotation = Quat::from_rotation_y(yaw);
+        builder.place_sized(group, stone, on_floor(x, z) + Vec3::Y * 0.12 * size, [size; 3], yaw);
     }
 }
 
@@ -140,14 +118,13 @@ fn fallen_trunk(builder: &mut Builder, group: usize) {
 
 /// Mushrooms by the path.
 fn mushrooms(builder: &mut Builder, group: usize) {
-    let cap = ellipsoid(Vec3::new(0.05, 0.028, 0.05), 16, 8).moved(Vec3::Y * 0.085);
-    let stalk = ellipsoid(Vec3::new(0.015, 0.06, 0.015), 10, 6).moved(Vec3::Y * 0.035);
-    let primitives = vec![cap.primitive(Paint::Cap.into(), SMOOTH), stalk.primitive(Paint::Stalk.into(), SMOOTH)];
-    let mushroom = builder.mesh("mushroom", primitives);
+    let cap = ellipsoid([0.05, 0.028, 0.05], 16, 8).moved(Vec3::Y * 0.085);
+    let stalk = ellipsoid([0.015, 0.06, 0.015], 10, 6).moved(Vec3::Y * 0.035);
+    let mushroom = builder.solids("mushroom", [(cap, Paint::Cap, SMOOTH), (stalk, Paint::Stalk, SMOOTH)]);
     let mut dice = Dice::new(12);
     for _ in 0..9 {
         let (x, z) = (dice.between(-1.75, -1.2), dice.between(1.3, 2.2));
         let size = dice.between(0.6, 1.5);
-        builder.place_scaled(group, mushroom, on_floor(x, z), Vec3::splat(size));
+        builder.place_sized(group, mushroom, on_floor(x, z), [size; 3], 0.0);
     }
 }

@@ -12,9 +12,8 @@ mod undergrowth;
 
 use glam::Vec3;
 
-use super::build::{Builder, sunlight};
-use super::motion::looped;
 use crate::Scene;
+use crate::parts::{Builder, looped, sunlight};
 
 /// Direction of the sun from +z toward +x, in radians: ahead of the start view and to its left, so that the shadows of
 /// trunks come toward the eye.
@@ -25,19 +24,14 @@ const SUN_ELEVATION: f32 = 0.72;
 const FOV_Y: f32 = 0.82;
 /// Far plane of the start view, in metres: beyond the last trees, near enough for haze between them.
 const FAR: f32 = 90.0;
-/// Time of a gust and the lull after it, in seconds.
-const WIND_TIME: f32 = 8.0;
 
 /// The scene.
 pub(super) fn build() -> Scene {
-    let mut builder = Builder::new("forest", palette::materials(), textures::images());
+    let mut builder = Builder::new("forest", palette::Paint::all(), textures::Picture::all());
     let stump = floor::build(&mut builder);
     let sway = trees::build(&mut builder);
     undergrowth::build(&mut builder);
     builder.start_view((Vec3::new(-0.7, 1.55, 4.6), Vec3::new(0.15, 1.95, -4.0)), FOV_Y, FAR);
-    let mut scene = builder.scene;
-    scene.subject = Some(stump);
-    scene.animations = vec![looped("wind", WIND_TIME, sway)];
-    scene.sun = Some(sunlight(SUN_AZIMUTH, SUN_ELEVATION));
-    scene
+    let sun = Some(sunlight(SUN_AZIMUTH, SUN_ELEVATION));
+    Scene { subject: Some(stump), animations: vec![looped("wind", trees::WIND_TIME, sway)], sun, ..builder.scene }
 }

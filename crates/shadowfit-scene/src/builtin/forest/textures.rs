@@ -3,20 +3,19 @@
 use glam::{Vec2, Vec3};
 
 use crate::Image;
-use crate::builtin::flora::{Dice, bark, fern, grass, twig};
-use crate::builtin::pixels::{NOISE_CELLS, Noise, draw, draw_noisy};
+use crate::parts::{Dice, NOISE_CELLS, Noise, bark, draw, draw_noisy, fern, grass, numbered, twig};
 
-/// An image, by its index in the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(usize)]
-pub(super) enum Picture {
-    Floor,
-    Stone,
-    Bark,
-    Birch,
-    Twig,
-    Fern,
-    Grass,
+numbered! {
+    /// An image, by its index in the scene.
+    Picture: Image {
+        Floor = floor(),
+        Stone = stone(),
+        Bark = bark(),
+        Birch = birch(),
+        Twig = twig(),
+        Fern = fern(),
+        Grass = grass(Vec3::new(0.10, 0.24, 0.035), Vec3::new(0.25, 0.33, 0.07)),
+    }
 }
 
 /// Pixels along a side of the floor's image: 6 mm each.
@@ -25,19 +24,6 @@ const FLOOR_SIZE: u32 = 512;
 const BARK_SIZE: u32 = 256;
 /// Fallen leaves on the floor's image, enough to hide most of the earth.
 const LITTER: usize = 1500;
-
-/// All images, in the order of [`Picture`].
-pub(super) fn images() -> Vec<Image> {
-    vec![
-        floor(),
-        stone(),
-        bark(),
-        birch(),
-        twig(),
-        fern(),
-        grass(Vec3::new(0.10, 0.24, 0.035), Vec3::new(0.25, 0.33, 0.07)),
-    ]
-}
 
 /// Earth under brown leaves.
 fn floor() -> Image {

@@ -4,14 +4,13 @@ use std::f32::consts::TAU;
 
 use glam::{Quat, Vec3};
 
-use super::WIND_TIME;
 use super::floor::{on_floor, path_distance};
 use super::palette::Paint;
-use crate::builtin::build::Builder;
-use crate::builtin::flora::{Card, Cards, Dice, Limbs};
-use crate::builtin::motion::rotations;
-use crate::{Channel, Transform};
+use crate::parts::{Builder, Card, Cards, Dice, Limbs, rotations, turned};
+use crate::{Channel, Primitive, Transform};
 
+/// Time of a gust and the lull after it, in seconds.
+pub(super) const WIND_TIME: f32 = 8.0;
 /// Distance between neighbouring trees, in metres, before each is moved a little.
 const SPACING: f32 = 3.9;
 /// Trees along a side of the grid.
@@ -59,26 +58,13 @@ pub(super) fn build(builder: &mut Builder) -> Vec<Channel> {
     let group = builder.group("trees", Vec3::ZERO, 0.0);
     let mut sway = Vec::new();
     let mut dice = Dice::new(1);
-    let great = Tree {
-        at: on_floor(1.75, -2.6),
-        is_birch: false,
-        scale: [2.1, 1.3],
-        yaw: 0.5,
-        boughs: 13,
-        lowest: 0.30,
-        spread: 1.7,
-    };
-    plant(builder, &meshes, group, &great, &mut dice, &mut sway);
-    let sapling = Tree {
-        at: on_floor(-2.7, 0.6),
-        is_birch: true,
-        scale: [0.28, 0.30],
-        yaw: 0.0,
-        boughs: 8,
-        lowest: 0.28,
-        spread: 0.62,
-    };
-    plant(builder, &meshes, group, &sapling, &mut dice, &mut sway);
+    let at = on_floor(1.75, -2.6);
+    let great = Tree { at, is_birch: false, scale: [2.1, 1.3], yaw: 0.5, boughs: 13, lowest: 0.30, spread: 1.7 };
+    let at = on_floor(-2.7, 0.6);
+    let sapling = Tree { at, is_birch: true, scale: [0.28, 0.30], yaw: 0.0, boughs: 8, lowest: 0.28, spread: 0.62 };
+    for tree in [great, sapling] {
+        plant(builder, &meshes, group, &tree, &mut dice, &mut sway);
+    }
     for row in 0..ROWS * ROWS {
         let place = |index: i32, dice: &mut Dice| ((index - ROWS / 2) as f32 + dice.between(-0.36, 0.36)) * SPACING;
         let (x, z) = (place(row % ROWS, &mut dice), place(row / ROWS, &mut dice) - 6.0);
@@ -120,7 +106,7 @@ fn plant(builder: &mut Builder, meshes: &Meshes, group: usize, tree: &Tree, dice
     let shape = (dice.roll() * 2.0) as usize;
     let [across, along] = tree.scale;
     let size = Vec3::new(across, along, across);
-    let rest = Transform { translation: tree.at, rotation: Quat::from_rotation_y(tree.yaw), ..Transform::default() };
+    let rest = turned(tree.at, tree.yaw);
     if distance > FAR {
         // A far crown is as wide as that of other trees, however thin its trunk.
         let scale = Vec3::new(across.max(0.8), along, across.max(0.8));
@@ -129,14 +115,14 @@ fn plant(builder: &mut Builder, meshes: &Meshes, group: usize, tree: &Tree, dice
         return;
     }
     let root = builder.node(["beech", "birch"][kind], Some(group), rest, None);
-    builder.place_scaled(root, meshes.trunks[kind][shape], Vec3::ZERO, size);
+    builder.place_sized(root, meshes.trunks[kind][shape], Vec3::ZERO, size, 0.0);
     for index in 0..tree.boughs {
         let t = index as f32 / (tree.boughs - 1) as f32;
         let at = trunk_middle(shape, tree.lowest + (0.97 - tree.lowest) * t) * size;
         let size = tree.spread * (1.0 - 0.45 * t) * dice.between(0.85, 1.15);
         let rotation = bough_turn(index, t, dice);
-        let bough = builder.place_scaled(root, meshes.boughs[kind][index % 3], at, Vec3::splat(size));
-        builder.scene.nodes[bough].rest.rotation = rotation;
+        let rest = Transform { rotation, scale: Vec3::splat(size), ..turned(at, 0.0) };
+        let bough = builder.pose(root, meshes.boughs[kind][index % 3], rest);
         if distance < SWAYS {
             sway.push(swaying(bough, rotation, size, dice));
         }
@@ -211,7 +197,7 @@ fn trunk(limbs: &mut Limbs, shape: usize, segments: usize, shares: &[f32]) {
 }
 
 /// A whole tree for far off: fewer and larger leaves.
-fn far_tree(shape: usize, bark: Paint, leaves: Paint) -> Vec<crate::Primitive> {
+fn far_tree(shape: usize, bark: Paint, leaves: Paint) -> Vec<Primitive> {
     let mut dice = Dice::new(29 + shape as u32);
     let mut limbs = Limbs::default();
     let mut cards = Cards::new(leaves, 1);
@@ -237,7 +223,7 @@ fn far_tree(shape: usize, bark: Paint, leaves: Paint) -> Vec<crate::Primitive> {
 }
 
 /// A bough of about 2 m that grows from the origin along +z: wood, and leaves in flat sprays.
-fn bough(leaves: Paint, seed: u32) -> Vec<crate::Primitive> {
+fn bough(leaves: Paint, seed: u32) -> Vec<Primitive> {
     let mut dice = Dice::new(seed);
     let mut limbs = Limbs::default();
     let mut cards = Cards::new(leaves, 2);

@@ -6,8 +6,8 @@ use glam::{Quat, Vec3};
 
 use super::floor::{on_floor, path_distance};
 use super::palette::Paint;
-use crate::builtin::build::Builder;
-use crate::builtin::flora::{Card, Cards, Dice, GOLDEN_ANGLE};
+use crate::Primitive;
+use crate::parts::{Builder, Card, Cards, Dice, GOLDEN_ANGLE, Tuft};
 
 /// Clumps of plants of one kind that are tried; those on the path or in a trunk are left out.
 const CLUMPS: usize = 150;
@@ -23,12 +23,14 @@ const RING: usize = 64;
 /// Adds what grows on the floor.
 pub(super) fn build(builder: &mut Builder) {
     let group = builder.group("undergrowth", Vec3::ZERO, 0.0);
-    let [fern, tuft, bush] = [("fern", fern()), ("grass", tuft()), ("bush", bush())]
+    let (height, wind) = ([0.24, 0.36], Vec3::ZERO);
+    let tuft = Tuft { cards: 4, height, sunk: 0.02, spread: 0.05, wind, bend: 0.10, lean: 0.5 };
+    let tuft = tuft.primitive(Paint::Grass, &mut Dice::new(8));
+    let [fern, tuft, bush] = [("fern", fern()), ("grass", tuft), ("bush", bush())]
         .map(|(name, primitive)| builder.mesh(name, vec![primitive]));
     let mut dice = Dice::new(5);
     let mut grow = |mesh: usize, x: f32, z: f32, size: f32, dice: &mut Dice| {
-        let node = builder.place_scaled(group, mesh, on_floor(x, z), Vec3::splat(size));
-        builder.scene.nodes[node].rest.rotation = Quat::from_rotation_y(dice.roll() * TAU);
+        builder.place_sized(group, mesh, on_floor(x, z), [size; 3], dice.roll() * TAU);
     };
     for index in 0..CLUMPS {
         let (turn, away) = (dice.roll() * TAU, REACH * dice.roll().powf(0.8));
@@ -60,7 +62,7 @@ fn is_before_eye(x: f32, z: f32) -> bool {
 }
 
 /// A bush of about a metre and a half: leaves around a middle.
-fn bush() -> crate::Primitive {
+fn bush() -> Primitive {
     let mut dice = Dice::new(9);
     let mut cards = Cards::new(Paint::Leaves, 1);
     for index in 0..BUSH_CARDS {
@@ -76,7 +78,7 @@ fn bush() -> crate::Primitive {
 }
 
 /// A rosette of fronds that rise and bow.
-fn fern() -> crate::Primitive {
+fn fern() -> Primitive {
     let mut dice = Dice::new(6);
     let mut cards = Cards::new(Paint::Fern, 2);
     for index in 0..9 {
@@ -91,22 +93,6 @@ fn fern() -> crate::Primitive {
             droop: (out * 0.15 - Vec3::Y * rise * 0.62) * length,
         };
         cards.add(&card, Vec3::Y, 0.35);
-    }
-    cards.primitive
-}
-
-/// A tuft of grass: cards through one root.
-fn tuft() -> crate::Primitive {
-    let mut dice = Dice::new(8);
-    let mut cards = Cards::new(Paint::Grass, 2);
-    for index in 0..4 {
-        let turn = index as f32 / 4.0 * TAU * 0.5 + dice.between(-0.2, 0.2);
-        let across = Vec3::new(turn.cos(), 0.0, -turn.sin());
-        let out = Vec3::new(turn.sin(), 0.0, turn.cos());
-        let height = dice.between(0.24, 0.36);
-        let base = Vec3::Y * -0.02 + out * dice.between(-0.05, 0.05);
-        let lean = out * dice.between(-0.10, 0.10);
-        cards.add(&Card { base, reach: Vec3::Y * height, half: across * 0.5 * height, droop: lean }, Vec3::Y, 0.5);
     }
     cards.primitive
 }

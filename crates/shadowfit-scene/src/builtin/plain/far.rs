@@ -2,13 +2,11 @@
 
 use std::f32::consts::TAU;
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 use super::land::on_land;
 use super::palette::Paint;
-use crate::builtin::build::{Builder, CRISP, SMOOTH};
-use crate::builtin::flora::{Dice, GOLDEN_ANGLE};
-use crate::builtin::shapes::{extrude, lathe, modulated_lathe, plank};
+use crate::parts::{Builder, CRISP, Dice, GOLDEN_ANGLE, SMOOTH, Solid, extrude, gabled, lathe, modulated_lathe, plank};
 
 /// Adds what lies far off.
 pub(super) fn build(builder: &mut Builder) {
@@ -29,29 +27,22 @@ fn stacks(builder: &mut Builder, group: usize) {
             let along = 13.0 * index as f32 + 4.0 * row as f32 + dice.between(-1.5, 1.5);
             let across = 17.0 * row as f32 + dice.between(-1.5, 1.5);
             let at = on_land(26.0 + 0.92 * along - 0.30 * across, -108.0 - 0.30 * along - 0.95 * across);
-            let node = builder.place_scaled(group, stack, at, Vec3::splat(dice.between(0.85, 1.1)));
-            builder.scene.nodes[node].rest.rotation = Quat::from_rotation_y(dice.roll() * TAU);
+            let size = dice.between(0.85, 1.1);
+            builder.place_sized(group, stack, at, [size; 3], dice.roll() * TAU);
         }
     }
 }
 
 /// Houses and barns, alone and in a village.
 fn farms(builder: &mut Builder, group: usize) {
-    let gable = [(-3.2, -2.0), (3.2, -2.0), (3.2, 3.4), (0.0, 5.9), (-3.2, 3.4)];
-    let walls = extrude(&gable, &[[0, 1, 2], [0, 2, 3], [0, 3, 4]], 9.5);
+    let walls = gabled(3.2, [-2.0, 3.4, 5.9], 9.5);
     let roof = [(-3.7, 3.15), (-3.5, 2.95), (0.0, 5.75), (3.5, 2.95), (3.7, 3.15), (0.0, 6.15)];
     let roof = extrude(&roof, &[[0, 1, 2], [0, 2, 5], [2, 3, 4], [2, 4, 5]], 10.3);
-    let mut dark = plank(Vec3::new(-0.7, 0.0, 4.6), Vec3::new(0.7, 2.2, 4.78));
-    for z in [-3.0, 0.0, 3.0] {
-        dark = dark.with(plank(Vec3::new(-3.25, 1.2, z - 0.5), Vec3::new(3.25, 2.5, z + 0.5)));
-    }
-    let chimney = plank(Vec3::new(-0.45, 4.5, -3.2), Vec3::new(0.45, 7.3, -2.3));
-    let primitives = vec![
-        walls.with(chimney).primitive(Paint::White.into(), CRISP),
-        roof.primitive(Paint::Roof.into(), CRISP),
-        dark.primitive(Paint::Dark.into(), CRISP),
-    ];
-    let house = builder.mesh("house", primitives);
+    let windows = [-3.0, 0.0, 3.0].map(|z| plank([-3.25, 1.2, z - 0.5], [3.25, 2.5, z + 0.5]));
+    let dark = windows.into_iter().fold(plank([-0.7, 0.0, 4.6], [0.7, 2.2, 4.78]), Solid::with);
+    let chimney = plank([-0.45, 4.5, -3.2], [0.45, 7.3, -2.3]);
+    let house = [(walls.with(chimney), Paint::White, CRISP), (roof, Paint::Roof, CRISP), (dark, Paint::Dark, CRISP)];
+    let house = builder.solids("house", house);
     let mut dice = Dice::new(110);
     let village = (0..16).map(|index| {
         let turn = index as f32 * GOLDEN_ANGLE;
@@ -60,8 +51,8 @@ fn farms(builder: &mut Builder, group: usize) {
     });
     let alone = [(88.0, -150.0), (103.0, -158.0), (-150.0, -240.0), (-136.0, -250.0), (-210.0, -420.0), (10.0, -460.0)];
     for (x, z) in village.chain(alone) {
-        let node = builder.place(group, house, on_land(x, z), dice.roll() * TAU);
-        builder.scene.nodes[node].rest.scale = Vec3::splat(dice.between(0.8, 1.15));
+        let yaw = dice.roll() * TAU;
+        builder.place_sized(group, house, on_land(x, z), [dice.between(0.8, 1.15); 3], yaw);
     }
     let spire = [(2.4, -2.0), (2.4, 13.0), (2.7, 13.2), (2.7, 13.6), (0.0, 24.0)];
     let spire = builder.solid("church tower", &lathe(&spire, 8), Paint::White, CRISP);
@@ -78,8 +69,7 @@ fn trees(builder: &mut Builder, group: usize) {
     let mut dice = Dice::new(120);
     let mut grow = |mesh: usize, x: f32, z: f32, dice: &mut Dice| {
         let scale = Vec3::new(1.0, dice.between(0.8, 1.2), 1.0) * dice.between(0.75, 1.3);
-        let node = builder.place_scaled(group, mesh, on_land(x, z), scale);
-        builder.scene.nodes[node].rest.rotation = Quat::from_rotation_y(dice.roll() * TAU);
+        builder.place_sized(group, mesh, on_land(x, z), scale, dice.roll() * TAU);
     };
     for index in 0..26 {
         let along = 8.5 * index as f32;

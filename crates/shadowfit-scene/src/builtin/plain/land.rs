@@ -3,10 +3,7 @@
 use glam::Vec3;
 
 use super::palette::Paint;
-use crate::Transform;
-use crate::builtin::build::Builder;
-use crate::builtin::pixels::hash;
-use crate::builtin::sheet::{graded, ground};
+use crate::parts::{Builder, ease, graded, ground, hash};
 
 /// Half of the land's side, in metres.
 const HALF: f32 = 1000.0;
@@ -16,12 +13,6 @@ const CELLS: usize = 84;
 const GROWTH: f32 = 4.9;
 /// Height of the brow above the plain, in metres: enough to look down on shadows 150 m away.
 const BROW: f32 = 13.0;
-
-/// Rises smoothly from 0 to 1 as `x` goes from `from` to `to`.
-fn ease(x: f32, from: f32, to: f32) -> f32 {
-    let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
-}
 
 /// Height of the land, in metres.
 pub(super) fn height(x: f32, z: f32) -> f32 {
@@ -36,7 +27,9 @@ pub(super) fn height(x: f32, z: f32) -> f32 {
     brow + waves * ease(away, 10.0, 90.0) + bumps + hills
 }
 
-/// A point on the land.
+/// A point on the land. Never inlined: sines of constant places, folded by the compiler, may differ in their last bit
+/// from those that the program computes, and the scene would depend on how the crate is cut up for compilation.
+#[inline(never)]
 pub(super) fn on_land(x: f32, z: f32) -> Vec3 {
     Vec3::new(x, height(x, z), z)
 }
@@ -50,8 +43,7 @@ pub(super) fn path(z: f32) -> f32 {
 pub(super) fn build(builder: &mut Builder) {
     let lines = graded(HALF, CELLS, GROWTH);
     let sheet = ground(Paint::Land.into(), [&lines, &lines], height, color);
-    let land = builder.mesh("land", vec![sheet]);
-    builder.node("land", None, Transform::default(), Some(land));
+    builder.lay("land", sheet);
 }
 
 /// Colour of the land: turf on the brow, fields below, woods on the hills.

@@ -15,9 +15,8 @@ mod tree;
 
 use glam::Vec3;
 
-use super::build::{Builder, sunlight};
-use super::motion::looped;
 use crate::Scene;
+use crate::parts::{Builder, looped, sunlight};
 use land::on_land;
 
 /// Direction of the sun from +z toward +x, in radians: ahead of the start view and to its left, just out of sight.
@@ -34,7 +33,7 @@ const EYE: f32 = 1.65;
 
 /// The scene.
 pub(super) fn build() -> Scene {
-    let mut builder = Builder::new("plain", palette::materials(), textures::images());
+    let mut builder = Builder::new("plain", palette::Paint::all(), textures::Picture::all());
     land::build(&mut builder);
     let hut = near::build(&mut builder);
     let sails = mill::build(&mut builder);
@@ -42,9 +41,7 @@ pub(super) fn build() -> Scene {
     far::build(&mut builder);
     let eye = on_land(0.2, 2.5) + Vec3::Y * EYE;
     builder.start_view((eye, eye + Vec3::new(-0.05, -0.115, -1.0)), FOV_Y, FAR);
-    let mut scene = builder.scene;
-    scene.subject = Some(hut);
-    scene.animations = vec![looped("turn", mill::TURN_TIME, vec![sails])];
-    scene.sun = Some(sunlight(SUN_AZIMUTH, SUN_ELEVATION));
-    scene
+    let animations = vec![looped("turn", mill::TURN_TIME, vec![sails])];
+    let sun = Some(sunlight(SUN_AZIMUTH, SUN_ELEVATION));
+    Scene { subject: Some(hut), animations, sun, ..builder.scene }
 }

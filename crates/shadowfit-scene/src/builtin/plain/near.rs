@@ -7,11 +7,11 @@ use glam::{Affine3A, Quat, Vec3};
 use super::land::{height, on_land, path};
 use super::palette::Paint;
 use super::tree;
-use crate::builtin::build::{Builder, CRISP, SMOOTH};
-use crate::builtin::flora::{Card, Cards, Dice, Limbs};
-use crate::builtin::shapes::{block, capsule, ellipsoid, extrude, modulated_lathe, plank};
-use crate::builtin::sheet::slope_normal;
-use crate::builtin::solid::Solid;
+use crate::Transform;
+use crate::parts::{
+    Builder, CRISP, Dice, Limbs, SMOOTH, Solid, Tuft, block, capsule, egg, ellipsoid, extrude, gabled, modulated_lathe,
+    plank, slope_normal, turned,
+};
 
 /// Length of a piece of the dry wall, in metres.
 const PIECE: f32 = 2.2;
@@ -59,8 +59,8 @@ fn slabs(builder: &mut Builder, group: usize) {
     for index in 0..26 {
         let at = on_land(path(z) + dice.between(-0.22, 0.22), z) + Vec3::Y * 0.01;
         let size = Vec3::new(dice.between(0.75, 1.05), 1.0, dice.between(0.75, 1.0));
-        let node = builder.place_scaled(group, slabs[index % 3], at, size);
-        builder.scene.nodes[node].rest.rotation = on_slope(at, dice.roll() * TAU);
+        let lie = Transform { scale: size, rotation: on_slope(at, dice.roll() * TAU), ..turned(at, 0.0) };
+        builder.pose(group, slabs[index % 3], lie);
         z -= dice.between(0.85, 1.05);
     }
 }
@@ -74,11 +74,10 @@ fn dry_wall(builder: &mut Builder, group: usize) {
         let (end_x, end_z) = (x - PIECE * turn.sin(), z - PIECE * turn.cos());
         let (start, end) = (on_land(x, z), on_land(end_x, end_z));
         let ahead = (end - start).normalize();
-        let node = builder.place(group, pieces[index % 2], start.midpoint(end), 0.0);
-        let level = Vec3::new(ahead.x, 0.0, ahead.z).normalize();
         // Along -z, then down the slope.
-        let yaw = Quat::from_rotation_arc(Vec3::NEG_Z, level);
-        builder.scene.nodes[node].rest.rotation = yaw * Quat::from_rotation_x(ahead.y.asin());
+        let yaw = Quat::from_rotation_arc(Vec3::NEG_Z, ahead.with_y(0.0).normalize());
+        let rotation = yaw * Quat::from_rotation_x(ahead.y.asin());
+        builder.pose(group, pieces[index % 2], Transform { rotation, ..turned(start.midpoint(end), 0.0) });
         (x, z) = (end_x, end_z);
     }
 }
@@ -118,9 +117,9 @@ fn fence(builder: &mut Builder, group: usize) {
     let post = builder.mesh("post", vec![post.primitive(Paint::Weathered)]);
     let mut dice = Dice::new(70);
     for index in 0..19 {
-        let node = builder.place(group, post, line(index), dice.roll() * TAU);
+        let yaw = Quat::from_rotation_y(dice.roll() * TAU);
         let lean = Quat::from_rotation_z(dice.between(-0.07, 0.07)) * Quat::from_rotation_x(dice.between(-0.07, 0.07));
-        builder.scene.nodes[node].rest.rotation *= lean;
+        builder.pose(group, post, Transform { rotation: yaw * lean, ..turned(line(index), 0.0) });
         if index == 18 {
             break;
         }
@@ -140,73 +139,47 @@ fn fence(builder: &mut Builder, group: usize) {
 
 /// A shepherd's hut of stone under thatch.
 fn hut(builder: &mut Builder) -> usize {
-    let at = on_land(8.3, -11.4);
     let (half, length, eaves, ridge) = (1.9, 4.6, 2.1, 3.5);
-    let gable = [(-half, -1.2), (half, -1.2), (half, eaves), (0.0, ridge), (-half, eaves)];
-    let walls = extrude(&gable, &[[0, 1, 2], [0, 2, 3], [0, 3, 4]], length);
+    let walls = gabled(half, [-1.2, eaves, ridge], length);
+    #[rustfmt::skip]
     let thatch = [
-        (-half - 0.42, eaves - 0.34),
-        (-half - 0.30, eaves - 0.50),
-        (0.0, ridge - 0.02),
-        (half + 0.30, eaves - 0.50),
-        (half + 0.42, eaves - 0.34),
-        (0.25, ridge + 0.30),
-        (-0.25, ridge + 0.30),
+        (-half - 0.42, eaves - 0.34), (-half - 0.30, eaves - 0.50), (0.0, ridge - 0.02), (half + 0.30, eaves - 0.50),
+        (half + 0.42, eaves - 0.34), (0.25, ridge + 0.30), (-0.25, ridge + 0.30),
     ];
     let faces = [[0, 1, 2], [0, 2, 6], [2, 5, 6], [2, 3, 4], [2, 4, 5]];
     let thatch = extrude(&thatch, &faces, length + 0.5);
-    let chimney = block(Vec3::new(-0.3, 2.6, -2.0), Vec3::new(0.3, 4.35, -1.4), 0.02).with(block(
-        Vec3::new(-0.36, 4.3, -2.06),
-        Vec3::new(0.36, 4.45, -1.34),
-        0.02,
-    ));
-    let lintel = plank(Vec3::new(-0.65, 1.82, 2.2), Vec3::new(0.65, 2.02, 2.38));
-    let door = plank(Vec3::new(-0.45, -0.3, 2.2), Vec3::new(0.45, 1.85, 2.34));
-    let window = plank(Vec3::new(-1.93, 0.9, -0.4), Vec3::new(-1.8, 1.5, 0.4));
-    let shutter = |z: f32| plank(Vec3::new(-1.97, 0.85, z - 0.24), Vec3::new(-1.85, 1.55, z + 0.24));
-    let primitives = vec![
-        walls.with(chimney).primitive(Paint::Masonry.into(), CRISP),
-        thatch.primitive(Paint::Thatch.into(), CRISP),
-        door.with(lintel).with(shutter(-0.68)).with(shutter(0.68)).primitive(Paint::Timber.into(), CRISP),
-        window.primitive(Paint::Dark.into(), CRISP),
+    let chimney = block([-0.3, 2.6, -2.0], [0.3, 4.35, -1.4], 0.02);
+    let chimney = chimney.with(block([-0.36, 4.3, -2.06], [0.36, 4.45, -1.34], 0.02));
+    let lintel = plank([-0.65, 1.82, 2.2], [0.65, 2.02, 2.38]);
+    let door = plank([-0.45, -0.3, 2.2], [0.45, 1.85, 2.34]);
+    let window = plank([-1.93, 0.9, -0.4], [-1.8, 1.5, 0.4]);
+    let shutter = |z: f32| plank([-1.97, 0.85, z - 0.24], [-1.85, 1.55, z + 0.24]);
+    let hut = [
+        (walls.with(chimney), Paint::Masonry, CRISP),
+        (thatch, Paint::Thatch, CRISP),
+        (door.with(lintel).with(shutter(-0.68)).with(shutter(0.68)), Paint::Timber, CRISP),
+        (window, Paint::Dark, CRISP),
     ];
-    let mesh = builder.mesh("hut", primitives);
-    let rest = crate::Transform {
-        translation: at + Vec3::Y * 0.25,
-        rotation: Quat::from_rotation_y(-0.55),
-        ..crate::Transform::default()
-    };
-    builder.node("hut", None, rest, Some(mesh))
+    let mesh = builder.solids("hut", hut);
+    builder.node("hut", None, turned(on_land(8.3, -11.4) + Vec3::Y * 0.25, -0.55), Some(mesh))
 }
 
 /// Sheep on the slope.
 fn sheep(builder: &mut Builder, group: usize) {
     let wool = |turn: f32, y: f32| 1.0 + 0.05 * (9.0 * turn + 14.0 * y).sin() + 0.04 * (6.0 * turn - 21.0 * y).cos();
-    let outline: Vec<(f32, f32)> = (0..=8)
-        .map(|step| {
-            let (sin, cos) = (step as f32 / 8.0 * std::f32::consts::PI).sin_cos();
-            (if step == 0 || step == 8 { 0.0 } else { 0.26 * sin.powf(0.7) }, -0.48 * cos)
-        })
-        .collect();
-    let lying = Affine3A::from_rotation_translation(Quat::from_rotation_x(TAU / 4.0), Vec3::Y * 0.62);
-    let body = modulated_lathe(&outline, 12, wool).transformed(lying);
-    let head = capsule(Vec3::new(0.0, 0.80, 0.42), 0.095, Vec3::new(0.0, 0.66, 0.66), 0.06, 10);
-    let mut dark = head.with(ellipsoid(Vec3::new(0.15, 0.025, 0.04), 8, 4).moved(Vec3::new(0.0, 0.82, 0.44)));
-    for (x, z) in [(-0.12, -0.26), (0.12, -0.26), (-0.12, 0.26), (0.12, 0.26)] {
-        dark = dark.with(capsule(Vec3::new(x, 0.5, z), 0.045, Vec3::new(x, 0.02, z), 0.032, 8));
-    }
-    let primitives = vec![body.primitive(Paint::Wool.into(), SMOOTH), dark.primitive(Paint::Face.into(), SMOOTH)];
-    let sheep = builder.mesh("sheep", primitives);
-    for (x, z, yaw) in [
-        (1.9, -8.3, 0.9),
-        (3.5, -9.4, 2.3),
-        (-8.5, -62.0, -1.1),
-        (4.0, -66.0, 1.6),
-        (-2.5, -58.0, -2.2),
-        (9.6, -60.0, 0.2),
-        (13.8, -67.0, -0.4),
-        (-1.5, -71.0, 2.1),
-    ] {
+    let body = modulated_lathe(&egg(0.26, 0.48, 0.7), 12, wool).posed(Quat::from_rotation_x(TAU / 4.0), Vec3::Y * 0.62);
+    let head = capsule([0.0, 0.80, 0.42], 0.095, [0.0, 0.66, 0.66], 0.06, 10);
+    let ears = ellipsoid([0.15, 0.025, 0.04], 8, 4).moved([0.0, 0.82, 0.44]);
+    let leg = |(x, z): (f32, f32)| capsule([x, 0.5, z], 0.045, [x, 0.02, z], 0.032, 8);
+    let legs = [(-0.12, -0.26), (0.12, -0.26), (-0.12, 0.26), (0.12, 0.26)].map(leg);
+    let dark = legs.into_iter().fold(head.with(ears), Solid::with);
+    let sheep = builder.solids("sheep", [(body, Paint::Wool, SMOOTH), (dark, Paint::Face, SMOOTH)]);
+    #[rustfmt::skip]
+    let flock = [
+        (1.9, -8.3, 0.9), (3.5, -9.4, 2.3), (-8.5, -62.0, -1.1), (4.0, -66.0, 1.6), (-2.5, -58.0, -2.2),
+        (9.6, -60.0, 0.2), (13.8, -67.0, -0.4), (-1.5, -71.0, 2.1),
+    ];
+    for (x, z, yaw) in flock {
         builder.place(group, sheep, on_land(x, z), yaw);
     }
 }
@@ -214,17 +187,9 @@ fn sheep(builder: &mut Builder, group: usize) {
 /// Tufts of dry grass, by the wall, the fence and the path.
 fn tufts(builder: &mut Builder, group: usize) {
     let mut dice = Dice::new(80);
-    let mut cards = Cards::new(Paint::Grass, 2);
-    for index in 0..5 {
-        let turn = index as f32 / 5.0 * TAU * 0.5 + dice.between(-0.2, 0.2);
-        let across = Vec3::new(turn.cos(), 0.0, -turn.sin());
-        let out = Vec3::new(turn.sin(), 0.0, turn.cos());
-        let tall = dice.between(0.30, 0.46);
-        let base = Vec3::Y * -0.03 + out * dice.between(-0.06, 0.06);
-        let droop = Vec3::X * 0.12 + out * dice.between(-0.08, 0.08);
-        cards.add(&Card { base, reach: Vec3::Y * tall, half: across * 0.5 * tall, droop }, Vec3::Y, 0.6);
-    }
-    let tuft = builder.mesh("tuft", vec![cards.primitive]);
+    let wind = Vec3::X * 0.12;
+    let tuft = Tuft { cards: 5, height: [0.30, 0.46], sunk: 0.03, spread: 0.06, wind, bend: 0.08, lean: 0.6 };
+    let tuft = builder.mesh("tuft", vec![tuft.primitive(Paint::Grass, &mut dice)]);
     for index in 0..TUFTS {
         let z = 1.4 - 15.0 * dice.roll();
         // At the foot of the wall and of the fence, at the sides of the path, and here and there.
@@ -237,8 +202,7 @@ fn tufts(builder: &mut Builder, group: usize) {
         let x = line + dice.between(-spread, spread);
         let (size, yaw) = (dice.between(0.45, 1.05), dice.between(-0.6, 0.6));
         if (x - path(z)).abs() > 0.65 {
-            let node = builder.place_scaled(group, tuft, on_land(x, z), Vec3::splat(size));
-            builder.scene.nodes[node].rest.rotation = Quat::from_rotation_y(yaw);
+            builder.place_sized(group, tuft, on_land(x, z), [size; 3], yaw);
         }
     }
 }

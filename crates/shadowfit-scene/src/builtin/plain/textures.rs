@@ -3,19 +3,18 @@
 use glam::Vec3;
 
 use crate::Image;
-use crate::builtin::flora::{bark, grass, twig};
-use crate::builtin::pixels::{draw_noisy, hash, shade};
+use crate::parts::{bark, draw_noisy, grass, hash, numbered, shade, twig};
 
-/// An image, by its index in the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(usize)]
-pub(super) enum Picture {
-    Land,
-    Stone,
-    Masonry,
-    Bark,
-    Twig,
-    Grass,
+numbered! {
+    /// An image, by its index in the scene.
+    Picture: Image {
+        Land = turf(),
+        Stone = stone(),
+        Masonry = masonry(),
+        Bark = bark(),
+        Twig = twig(),
+        Grass = grass(Vec3::new(0.20, 0.25, 0.06), Vec3::new(0.46, 0.37, 0.15)),
+    }
 }
 
 /// Metres that the image of the land spans.
@@ -24,11 +23,6 @@ pub(super) const LAND_METRES: f32 = 3.2;
 const LAND_SIZE: u32 = 512;
 /// Pixels along a side of the other images.
 const SIZE: u32 = 256;
-
-/// All images, in the order of [`Picture`].
-pub(super) fn images() -> Vec<Image> {
-    vec![turf(), stone(), masonry(), bark(), twig(), grass(Vec3::new(0.20, 0.25, 0.06), Vec3::new(0.46, 0.37, 0.15))]
-}
 
 /// Short strokes of turf, near white, so that the land's colours tint them.
 fn turf() -> Image {

@@ -4,8 +4,7 @@ use glam::{Quat, Vec3};
 
 use super::land::on_land;
 use super::palette::Paint;
-use crate::builtin::build::Builder;
-use crate::builtin::flora::{Card, Cards, Dice, GOLDEN_ANGLE, Limbs};
+use crate::parts::{Builder, Card, Cards, Dice, GOLDEN_ANGLE, Limbs};
 
 /// Branches, and clouds of leaves at their ends.
 const BRANCHES: usize = 15;

@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
-use super::Dice;
 use crate::Image;
+use crate::parts::dice::Dice;
 
 /// Pixels along a side of the images. At half a metre a card that is two millimetres a pixel.
 const SIZE: u32 = 256;
@@ -127,7 +127,7 @@ fn green(dice: &mut Dice, a: Vec3, b: Vec3) -> Vec3 {
 }
 
 /// A twig with broad pointed leaves, as of a beech.
-pub(in crate::builtin) fn twig() -> Image {
+pub fn twig() -> Image {
     let mut dice = Dice::new(71);
     let [deep, fresh] = [Vec3::new(0.075, 0.19, 0.026), Vec3::new(0.20, 0.34, 0.05)];
     let mut sheet = Sheet::new(deep.lerp(fresh, 0.4));
@@ -155,7 +155,7 @@ pub(in crate::builtin) fn twig() -> Image {
 }
 
 /// A fern's frond: leaflets at both sides of a rib, shorter toward the tip.
-pub(in crate::builtin) fn fern() -> Image {
+pub fn fern() -> Image {
     let mut dice = Dice::new(72);
     let [deep, fresh] = [Vec3::new(0.06, 0.17, 0.03), Vec3::new(0.15, 0.31, 0.05)];
     let mut sheet = Sheet::new(deep.lerp(fresh, 0.5));
@@ -183,7 +183,7 @@ pub(in crate::builtin) fn fern() -> Image {
 }
 
 /// A tuft of grass: long bent blades from one root, from `fresh` to `dry` linear colours.
-pub(in crate::builtin) fn grass(fresh: Vec3, dry: Vec3) -> Image {
+pub fn grass(fresh: Vec3, dry: Vec3) -> Image {
     let mut dice = Dice::new(73);
     let mut sheet = Sheet::new(fresh.lerp(dry, 0.5));
     let count = 26;

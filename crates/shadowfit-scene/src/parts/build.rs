@@ -38,6 +38,12 @@ impl Builder {
         self.mesh(name, vec![solid.primitive(paint.into(), crease)])
     }
 
+    /// Adds a mesh of solids, each with its paint and the crease angle of its edges, and returns its index.
+    pub fn solids<P: Into<usize>, const N: usize>(&mut self, name: &str, solids: [(Solid, P, f32); N]) -> usize {
+        let primitives = solids.map(|(solid, paint, crease)| solid.primitive(paint.into(), crease));
+        self.mesh(name, primitives.to_vec())
+    }
+
     /// Adds a node and returns its index.
     pub fn node(&mut self, name: &str, parent: Option<usize>, rest: Transform, mesh: Option<usize>) -> usize {
         let node = Node { name: name.to_owned(), parent, rest, mesh, ..Node::default() };
@@ -46,23 +52,43 @@ impl Builder {
     }
 
     /// Places a mesh under `parent`, turned by `yaw` radians about the vertical.
-    pub fn place(&mut self, parent: usize, mesh: usize, at: Vec3, yaw: f32) -> usize {
+    pub fn place(&mut self, parent: usize, mesh: usize, at: impl Into<Vec3>, yaw: f32) -> usize {
+        self.pose(parent, mesh, turned(at, yaw))
+    }
+
+    /// Places a mesh under `parent`, scaled by `scale` and turned by `yaw` radians about the vertical.
+    pub fn place_sized(
+        &mut self,
+        parent: usize,
+        mesh: usize,
+        at: impl Into<Vec3>,
+        scale: impl Into<Vec3>,
+        yaw: f32,
+    ) -> usize {
+        self.pose(parent, mesh, Transform { scale: scale.into(), ..turned(at, yaw) })
+    }
+
+    /// Places a mesh under `parent` by a whole transform.
+    pub fn pose(&mut self, parent: usize, mesh: usize, rest: Transform) -> usize {
         let name = self.scene.meshes[mesh].name.clone();
-        let rest = Transform { translation: at, rotation: Quat::from_rotation_y(yaw), ..Transform::default() };
         self.node(&name, Some(parent), rest, Some(mesh))
     }
 
-    /// Places a mesh under `parent`, scaled by `scale`.
-    pub fn place_scaled(&mut self, parent: usize, mesh: usize, at: Vec3, scale: Vec3) -> usize {
-        let node = self.place(parent, mesh, at, 0.0);
-        self.scene.nodes[node].rest.scale = scale;
-        node
+    /// Adds a mesh of one solid under `parent`, where it is modelled.
+    pub fn fix(&mut self, parent: usize, name: &str, solid: &Solid, paint: impl Into<usize>, crease: f32) -> usize {
+        let mesh = self.solid(name, solid, paint, crease);
+        self.place(parent, mesh, Vec3::ZERO, 0.0)
+    }
+
+    /// Adds a mesh of one primitive under no parent, where it is modelled.
+    pub fn lay(&mut self, name: &str, primitive: Primitive) -> usize {
+        let mesh = self.mesh(name, vec![primitive]);
+        self.node(name, None, Transform::default(), Some(mesh))
     }
 
     /// Adds a group: a node without a mesh.
-    pub fn group(&mut self, name: &str, at: Vec3, yaw: f32) -> usize {
-        let rest = Transform { translation: at, rotation: Quat::from_rotation_y(yaw), ..Transform::default() };
-        self.node(name, None, rest, None)
+    pub fn group(&mut self, name: &str, at: impl Into<Vec3>, yaw: f32) -> usize {
+        self.node(name, None, turned(at, yaw), None)
     }
 
     /// Adds the start view: a camera at `eye` that looks at `target`, world positions in metres, with a vertical field
@@ -80,6 +106,11 @@ impl Builder {
         let node = self.node("start view", None, rest, None);
         self.scene.cameras.push(SceneCamera { name: "start view".to_owned(), node, lens });
     }
+}
+
+/// A transform to a place, with a turn by `yaw` radians about the vertical.
+pub fn turned(at: impl Into<Vec3>, yaw: f32) -> Transform {
+    Transform { translation: at.into(), rotation: Quat::from_rotation_y(yaw), ..Transform::default() }
 }
 
 /// Sunlight from `azimuth` (from +z toward +x) and `elevation` above the horizon, in radians.

@@ -7,6 +7,9 @@ use crate::{AlphaMode, Material, Texture, Wrap};
 /// Alpha below which a cut-out has a hole: half, so that filtered outlines keep their size.
 const CUTOFF: f32 = 0.5;
 
+/// The colour of a material that leaves its image as it is.
+pub const WHITE: [f32; 3] = [1.0; 3];
+
 /// A material without metal, of a linear colour.
 pub fn matt(name: &str, [r, g, b]: [f32; 3], roughness: f32) -> Material {
     Material { name: name.to_owned(), base_color: glam::Vec4::new(r, g, b, 1.0), roughness, ..Material::default() }
@@ -27,9 +30,12 @@ pub fn wrapped(mut material: Material, image: usize, metres: [f32; 2]) -> Materi
 /// `material` as a sheet with two sides, cut out by the alpha of an image that spans texture coordinates 0..1.
 pub fn cut_out(mut material: Material, image: usize) -> Material {
     material.base_color_texture = Some(texture(image, [1.0; 2], Wrap::Clamp));
-    material.alpha = AlphaMode::Mask { cutoff: CUTOFF };
-    material.double_sided = true;
-    material
+    perforated(material)
+}
+
+/// `material` as a sheet with two sides that has holes where the alpha of its image is low.
+pub fn perforated(material: Material) -> Material {
+    Material { alpha: AlphaMode::Mask { cutoff: CUTOFF }, double_sided: true, ..material }
 }
 
 fn texture(image: usize, [across, along]: [f32; 2], wrap: Wrap) -> Texture {

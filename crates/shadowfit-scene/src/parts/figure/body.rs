@@ -7,28 +7,25 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 
 use glam::{Affine3A, Quat, Vec3};
 
-use super::character::{ANKLE, Joint, TOE};
-use super::palette::Paint;
+use super::rig::{ANKLE, Joint, TOE};
+use super::wear::{Part, Wear};
 use crate::Primitive;
-use crate::builtin::build::{CRISP, SMOOTH};
-use crate::builtin::shapes::{Section, capsule, ellipsoid, limb, loft, rounded_box, section, torus, tube};
-use crate::builtin::solid::Solid;
-
-/// A mesh: the joints that carry it, its name, its primitives.
-pub(super) type Part = (&'static [Joint], &'static str, Vec<Primitive>);
+use crate::parts::build::{CRISP, SMOOTH};
+use crate::parts::shapes::{Section, capsule, ellipsoid, limb, loft, rounded_box, section, torus, tube};
+use crate::parts::solid::Solid;
 
 /// All meshes below the head.
 pub(super) fn meshes() -> Vec<Part> {
     vec![
         (&[Joint::Hips], "hips", hips()),
         (&[Joint::Chest], "chest", chest()),
-        (&[Joint::Neck], "neck", vec![smooth(&neck(), Paint::Skin)]),
-        (&[Joint::TailA, Joint::TailB, Joint::TailC], "scarf end", vec![smooth(&scarf_end(), Paint::Scarf)]),
-        (&[Joint::ArmL, Joint::ArmR], "upper arm", vec![smooth(&upper_arm(), Paint::Jacket)]),
+        (&[Joint::Neck], "neck", vec![smooth(&neck(), Wear::Skin)]),
+        (&[Joint::TailA, Joint::TailB, Joint::TailC], "scarf end", vec![smooth(&scarf_end(), Wear::Scarf)]),
+        (&[Joint::ArmL, Joint::ArmR], "upper arm", vec![smooth(&upper_arm(), Wear::Jacket)]),
         (&[Joint::ForearmL, Joint::ForearmR], "forearm", forearm()),
-        (&[Joint::HandL], "left hand", vec![smooth(&hand(), Paint::Skin)]),
-        (&[Joint::HandR], "right hand", vec![smooth(&hand().mirrored(), Paint::Skin)]),
-        (&[Joint::ThighL, Joint::ThighR], "thigh", vec![smooth(&thigh(), Paint::Trousers)]),
+        (&[Joint::HandL], "left hand", vec![smooth(&hand(), Wear::Skin)]),
+        (&[Joint::HandR], "right hand", vec![smooth(&hand().mirrored(), Wear::Skin)]),
+        (&[Joint::ThighL, Joint::ThighR], "thigh", vec![smooth(&thigh(), Wear::Trousers)]),
         (&[Joint::ShinL, Joint::ShinR], "shin", shin()),
         (&[Joint::FootL, Joint::FootR], "foot", foot()),
         (&[Joint::ToeL, Joint::ToeR], "toes", toes()),
@@ -36,8 +33,8 @@ pub(super) fn meshes() -> Vec<Part> {
 }
 
 /// A rounded solid in one colour.
-fn smooth(solid: &Solid, paint: Paint) -> Primitive {
-    solid.primitive(paint.index(), SMOOTH)
+fn smooth(solid: &Solid, paint: Wear) -> Primitive {
+    solid.primitive(paint.into(), SMOOTH)
 }
 
 /// An elliptical ring about y at `height`: a hem, belt or cuff.
@@ -59,17 +56,17 @@ fn hips() -> Vec<Primitive> {
         section(0.12, 0.146, 0.101, 0.0),
         section(0.20, 0.146, 0.101, 0.0),
     ];
-    let buckle = rounded_box(Vec3::new(0.026, 0.021, 0.008), 0.005, 1).moved(Vec3::new(0.0, 0.075, 0.116));
-    let pouch = rounded_box(Vec3::new(0.042, 0.036, 0.021), 0.010, 1)
-        .with(rounded_box(Vec3::new(0.044, 0.016, 0.009), 0.006, 1).moved(Vec3::new(0.0, 0.022, 0.015)));
+    let buckle = rounded_box([0.026, 0.021, 0.008], 0.005, 1).moved([0.0, 0.075, 0.116]);
+    let pouch = rounded_box([0.042, 0.036, 0.021], 0.010, 1)
+        .with(rounded_box([0.044, 0.016, 0.009], 0.006, 1).moved([0.0, 0.022, 0.015]));
     let pouch = pouch
         .transformed(Affine3A::from_rotation_translation(Quat::from_rotation_y(0.55), Vec3::new(0.096, 0.026, 0.117)));
     let skirt = loft(&skirt, 2.3, 3, 40).with(band(-0.087, 0.182, 0.137, 0.011, 0.012));
     vec![
-        smooth(&loft(&seat, 2.3, 3, 32), Paint::Trousers),
-        smooth(&skirt, Paint::Jacket),
-        smooth(&band(0.075, 0.147, 0.101, 0.011, 0.022).with(pouch), Paint::Leather),
-        smooth(&buckle, Paint::Bronze),
+        smooth(&loft(&seat, 2.3, 3, 32), Wear::Trousers),
+        smooth(&skirt, Wear::Jacket),
+        smooth(&band(0.075, 0.147, 0.101, 0.011, 0.022).with(pouch), Wear::Leather),
+        smooth(&buckle, Wear::Bronze),
     ]
 }
 
@@ -84,20 +81,16 @@ fn chest() -> Vec<Primitive> {
         section(0.186, 0.140, 0.084, -0.006),
         section(0.222, 0.07, 0.065, -0.006),
     ];
-    let button = |y: f32, z: f32| ellipsoid(Vec3::new(0.012, 0.012, 0.006), 14, 6).moved(Vec3::new(0.0, y, z));
+    let button = |y: f32, z: f32| ellipsoid([0.012, 0.012, 0.006], 14, 6).moved([0.0, y, z]);
     let buttons = button(-0.10, 0.104).with(button(-0.025, 0.114)).with(button(0.05, 0.124));
     let wrap = |radius: f32, y: f32, z: f32, pitch: f32, roll: f32| {
         let turn = Quat::from_rotation_x(pitch) * Quat::from_rotation_z(roll);
         let transform = Affine3A::from_rotation_translation(turn, Vec3::new(0.0, y, z));
         torus(radius, 0.036, 0.034, 32, 10).transformed(transform)
     };
-    let knot = ellipsoid(Vec3::new(0.036, 0.042, 0.03), 20, 12).moved(Vec3::new(0.062, 0.20, -0.085));
+    let knot = ellipsoid([0.036, 0.042, 0.03], 20, 12).moved([0.062, 0.20, -0.085]);
     let scarf = wrap(0.084, 0.205, 0.004, 0.24, 0.06).with(wrap(0.073, 0.248, 0.004, 0.12, -0.10)).with(knot);
-    vec![
-        smooth(&loft(&jacket, 2.35, 3, 40), Paint::Jacket),
-        smooth(&buttons, Paint::Bronze),
-        smooth(&scarf, Paint::Scarf),
-    ]
+    vec![smooth(&loft(&jacket, 2.35, 3, 40), Wear::Jacket), smooth(&buttons, Wear::Bronze), smooth(&scarf, Wear::Scarf)]
 }
 
 fn neck() -> Solid {
@@ -108,7 +101,7 @@ fn neck() -> Solid {
 
 /// A third of the hanging end of the scarf.
 fn scarf_end() -> Solid {
-    rounded_box(Vec3::new(0.046, 0.083, 0.010), 0.0095, 2).moved(Vec3::new(0.0, -0.072, 0.0))
+    rounded_box([0.046, 0.083, 0.010], 0.0095, 2).moved([0.0, -0.072, 0.0])
 }
 
 fn upper_arm() -> Solid {
@@ -118,7 +111,7 @@ fn upper_arm() -> Solid {
 /// Sleeve with its cuff, and the wrist.
 fn forearm() -> Vec<Primitive> {
     let sleeve = limb(0.215, &[0.051, 0.05, 0.045, 0.041], 24).with(band(-0.215, 0.037, 0.037, 0.012, 0.018));
-    vec![smooth(&sleeve, Paint::Jacket), smooth(&limb(0.25, &[0.03, 0.028, 0.027], 16), Paint::Skin)]
+    vec![smooth(&sleeve, Wear::Jacket), smooth(&limb(0.25, &[0.03, 0.028, 0.027], 16), Wear::Skin)]
 }
 
 /// The left hand, hanging at ease: palm toward the body (-x), thumb ahead (+z).
@@ -156,10 +149,10 @@ fn shin() -> Vec<Primitive> {
         section(-0.27, 0.057, 0.062, -0.006),
         section(-0.20, 0.064, 0.067, -0.004),
     ];
-    let top = band(-0.205, 0.062, 0.065, 0.012, 0.024).moved(Vec3::new(0.0, 0.0, -0.004));
+    let top = band(-0.205, 0.062, 0.065, 0.012, 0.024).moved([0.0, 0.0, -0.004]);
     vec![
-        smooth(&limb(0.26, &[0.061, 0.068, 0.063, 0.046], 26), Paint::Trousers),
-        smooth(&loft(&shaft, 2.0, 3, 26).with(top), Paint::Leather),
+        smooth(&limb(0.26, &[0.061, 0.068, 0.063, 0.046], 26), Wear::Trousers),
+        smooth(&loft(&shaft, 2.0, 3, 26).with(top), Wear::Leather),
     ]
 }
 
@@ -200,10 +193,7 @@ fn foot() -> Vec<Primitive> {
     ];
     let heel = sole([-ANKLE, -0.06], [-0.088, -0.02], 0.037, -0.003);
     let sole = sole([-ANKLE + 0.006, -0.066], [-0.085, 0.135], 0.043, 0.009);
-    vec![
-        smooth(&along_z(&upper, -ANKLE + 0.012), Paint::Leather),
-        sole.with(heel).primitive(Paint::Sole.index(), CRISP),
-    ]
+    vec![smooth(&along_z(&upper, -ANKLE + 0.012), Wear::Leather), sole.with(heel).primitive(Wear::Sole.into(), CRISP)]
 }
 
 /// The boot's cap, around the toe joint.
@@ -212,7 +202,7 @@ fn toes() -> Vec<Primitive> {
     let upper =
         [section(-0.01, 0.0485, 0.031, 0.001), section(0.025, 0.05, 0.030, 0.003), section(0.058, 0.042, 0.025, 0.008)];
     vec![
-        smooth(&along_z(&upper, ground + 0.012), Paint::Leather),
-        sole([ground, ground + 0.024], [-0.028, 0.086], 0.049, -0.006).primitive(Paint::Sole.index(), CRISP),
+        smooth(&along_z(&upper, ground + 0.012), Wear::Leather),
+        sole([ground, ground + 0.024], [-0.028, 0.086], 0.049, -0.006).primitive(Wear::Sole.into(), CRISP),
     ]
 }

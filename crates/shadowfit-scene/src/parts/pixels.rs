@@ -18,15 +18,15 @@ pub struct Noise(Vec<f32>);
 
 impl Default for Noise {
     fn default() -> Self {
-        Self::new()
+        let cells = 0..NOISE_CELLS * NOISE_CELLS;
+        Self(cells.map(|cell| hash(cell, 17) * 2.0 - 1.0).collect())
     }
 }
 
 impl Noise {
     /// Fills the table.
     pub fn new() -> Self {
-        let cells = 0..NOISE_CELLS * NOISE_CELLS;
-        Self(cells.map(|cell| hash(cell, 17) * 2.0 - 1.0).collect())
+        Self::default()
     }
 
     /// Values along x at a height `y` in cells.

@@ -5,13 +5,13 @@ use std::f32::consts::{PI, TAU};
 use glam::{Vec2, Vec3};
 
 use crate::Primitive;
-use crate::builtin::build::SMOOTH;
-use crate::builtin::shapes::tube;
-use crate::builtin::solid::Solid;
+use crate::parts::build::SMOOTH;
+use crate::parts::shapes::tube;
+use crate::parts::solid::Solid;
 
 /// Closed limbs with texture coordinates of their own: metres around, there and back, and metres along.
 #[derive(Default)]
-pub(in crate::builtin) struct Limbs {
+pub struct Limbs {
     solid: Solid,
     uvs: Vec<Vec2>,
 }
@@ -19,7 +19,7 @@ pub(in crate::builtin) struct Limbs {
 impl Limbs {
     /// Adds a limb along `path`, with the radius that `radius(turn, share)` gives at an angle around it and a share of
     /// its path.
-    pub(in crate::builtin) fn add(&mut self, path: &[Vec3], segments: usize, radius: impl Fn(f32, f32) -> f32) {
+    pub fn add(&mut self, path: &[Vec3], segments: usize, radius: impl Fn(f32, f32) -> f32) {
         let last = path.len() - 1;
         let along = |ring: usize| (path[(ring + 1).min(last)] - path[ring.saturating_sub(1)]).normalize();
         let mut aside = along(0).any_orthonormal_vector();
@@ -47,7 +47,7 @@ impl Limbs {
     }
 
     /// All limbs in one primitive.
-    pub(in crate::builtin) fn primitive(&self, material: impl Into<usize>) -> Primitive {
+    pub fn primitive(&self, material: impl Into<usize>) -> Primitive {
         self.solid.primitive_with(material.into(), SMOOTH, |vertex, _| self.uvs[vertex])
     }
 }

@@ -3,7 +3,9 @@
 //! Generators only place vertices; normals follow here from the faces, split where two faces meet
 //! at more than a crease angle. So shading and winding cannot disagree.
 
-use glam::{Affine3A, Vec2, Vec3};
+use std::f32::consts::TAU;
+
+use glam::{Affine3A, Quat, Vec2, Vec3};
 
 use crate::Primitive;
 
@@ -33,8 +35,21 @@ impl Solid {
 
     /// Moved by `offset`.
     #[must_use]
-    pub fn moved(self, offset: Vec3) -> Self {
-        self.transformed(Affine3A::from_translation(offset))
+    pub fn moved(self, offset: impl Into<Vec3>) -> Self {
+        self.transformed(Affine3A::from_translation(offset.into()))
+    }
+
+    /// Turned about the origin, then moved by `offset`.
+    #[must_use]
+    pub fn posed(self, turn: Quat, offset: impl Into<Vec3>) -> Self {
+        self.transformed(Affine3A::from_rotation_translation(turn, offset.into()))
+    }
+
+    /// As many copies together, turned evenly about the y axis.
+    #[must_use]
+    pub fn around(&self, count: usize) -> Self {
+        let turn = |index: usize| Affine3A::from_rotation_y(index as f32 / count as f32 * TAU);
+        (0..count).map(|index| self.clone().transformed(turn(index))).collect()
     }
 
     /// Mirrored in the plane x = 0: left for right.
@@ -90,6 +105,13 @@ impl Solid {
             }
         }
         primitive
+    }
+}
+
+/// All of them together, as by [`Solid::with`].
+impl FromIterator<Solid> for Solid {
+    fn from_iter<I: IntoIterator<Item = Self>>(solids: I) -> Self {
+        solids.into_iter().reduce(Self::with).unwrap_or_default()
     }
 }
 

@@ -4,7 +4,7 @@ use std::f32::consts::TAU;
 
 use glam::Vec3;
 
-use super::shapes::{catmull_rom, tube};
+use super::shapes::{curve, tube};
 use super::solid::Solid;
 
 /// A point of the line with the ellipse across it, in metres.
@@ -41,19 +41,8 @@ pub fn sweep(stops: &[Stop], side: Vec3, segments: usize) -> Solid {
 
 /// Stops on a smooth curve through all of `stops`, `steps` from each to the next.
 pub fn smooth(stops: &[Stop], steps: usize) -> Vec<Stop> {
-    let last = stops.len() - 1;
-    let between = |index: usize, t: f32| {
-        let near = [index.saturating_sub(1), index, index + 1, (index + 2).min(last)].map(|near| stops[near]);
-        let value = |get: &dyn Fn(&Stop) -> f32| catmull_rom(near.each_ref().map(get), t);
-        Stop {
-            at: Vec3::from_array([0, 1, 2].map(|axis| value(&|stop| stop.at[axis]))),
-            half: [0, 1].map(|axis| value(&|stop| stop.half[axis]).max(1e-3)),
-        }
-    };
-    let mut curve: Vec<Stop> = (0..last)
-        .flat_map(|index| (0..steps).map(move |step| (index, step as f32 / steps as f32)))
-        .map(|(i, t)| between(i, t))
-        .collect();
-    curve.push(stops[last]);
-    curve
+    let points: Vec<_> =
+        stops.iter().map(|stop| [stop.at.x, stop.at.y, stop.at.z, stop.half[0], stop.half[1]]).collect();
+    let smooth = |[x, y, z, a, b]: [f32; 5]| Stop { at: Vec3::new(x, y, z), half: [a, b].map(|half| half.max(1e-3)) };
+    curve(&points, steps).into_iter().map(smooth).collect()
 }

@@ -1,4 +1,4 @@
-//! How the wanderer stands, walks and turns.
+//! How the wanderer walks and turns.
 //!
 //! The walk starts from the feet: each is planted at a fixed point of a circular path and rolls
 //! from heel to toe there, so that it cannot slide; thighs and shins follow by two-bone inverse
@@ -6,10 +6,12 @@
 
 use std::f32::consts::TAU;
 
-use glam::{EulerRot, Mat3, Quat, Vec3};
+use glam::{Quat, Vec3};
 
-use super::character::{ANKLE, FOREARM, HIP, JOINTS, Joint, Joints, RIG, SHIN, SHOULDER, Side, THIGH, TOE, UPPER_ARM};
-use crate::{Animation, Channel, ChannelValues, Interpolation, Transform};
+use super::posture::{Posture, standing};
+use super::rig::{ANKLE, JOINTS, Joint, Joints, Side, TOE};
+use crate::parts::motion::{ease, take_nearer_signs};
+use crate::{Animation, Channel, ChannelValues, Interpolation};
 
 /// Radius of the path, in metres.
 const PATH_RADIUS: f32 = 2.0;
@@ -35,131 +37,6 @@ const HEEL: Vec3 = Vec3::new(0.0, -ANKLE, -0.055);
 const TURN_TIME: f32 = 12.0;
 /// Keyframes of a turn on the spot.
 const TURN_KEYS: usize = 72;
-
-/// A pose: where root and hips are, and how every joint is turned.
-#[derive(Clone, Debug)]
-pub(super) struct Posture {
-    root: Vec3,
-    hips: Vec3,
-    rotations: [Quat; JOINTS],
-}
-
-impl Posture {
-    /// Rest transforms of the joints, relative to their parents.
-    pub(super) fn transforms(&self) -> [Transform; JOINTS] {
-        let mut transforms = [Transform::default(); JOINTS];
-        for (joint, bone) in RIG.iter().enumerate() {
-            transforms[joint].translation = bone.offset;
-            transforms[joint].rotation = self.rotations[joint];
-        }
-        transforms[Joint::Root as usize].translation = self.root;
-        transforms[Joint::Hips as usize].translation = self.hips;
-        transforms
-    }
-
-    /// Turns a joint by pitch (about x), yaw (about y) and roll (about z), in radians.
-    fn turn(&mut self, joint: Joint, pitch: f32, yaw: f32, roll: f32) {
-        self.rotations[joint as usize] = Quat::from_euler(EulerRot::YXZ, yaw, pitch, roll);
-    }
-
-    /// Position and orientation of a joint relative to the root.
-    fn frame(&self, joint: Joint) -> (Vec3, Quat) {
-        match RIG[joint as usize].parent {
-            None => (Vec3::ZERO, Quat::IDENTITY),
-            Some(parent) => {
-                let (at, turn) = self.frame(parent);
-                let offset = if joint == Joint::Hips { self.hips } else { RIG[joint as usize].offset };
-                (at + turn * offset, turn * self.rotations[joint as usize])
-            }
-        }
-    }
-
-    /// Sets a leg so that its ankle is at `ankle` and its foot turned by `foot`, in the root's
-    /// axes; the knee points where the foot does.
-    fn reach_foot(&mut self, side: Side, ankle: Vec3, foot: Quat, toes: f32) {
-        let (hips, hips_turn) = self.frame(Joint::Hips);
-        let start = hips + hips_turn * side.mirror(HIP);
-        let [thigh_turn, shin_turn] = two_bones(ankle - start, THIGH, SHIN, foot * Vec3::Z);
-        let [thigh, shin, ankle_joint, toe] = side.leg();
-        self.rotations[thigh as usize] = hips_turn.inverse() * thigh_turn;
-        self.rotations[shin as usize] = thigh_turn.inverse() * shin_turn;
-        self.rotations[ankle_joint as usize] = shin_turn.inverse() * foot;
-        self.turn(toe, toes, 0.0, 0.0);
-    }
-
-    /// Sets an arm so that its wrist is at `wrist`, in the chest's axes, with the elbow toward
-    /// `elbow`.
-    fn reach_hand(&mut self, side: Side, wrist: Vec3, elbow: Vec3) {
-        // The elbow bends the other way round than the knee: its hollow faces ahead.
-        let [upper, lower] = two_bones(wrist - side.mirror(SHOULDER), UPPER_ARM, FOREARM, elbow);
-        let flip = Quat::from_rotation_y(std::f32::consts::PI);
-        let [arm, forearm, _] = side.arm();
-        self.rotations[arm as usize] = upper * flip;
-        self.rotations[forearm as usize] = (upper * flip).inverse() * lower * flip;
-    }
-}
-
-/// Orientations of two bones that hang along -y, so that their end is at `reach` from their start,
-/// as far as they are long enough; the joint between them is pushed toward `pole`, which becomes
-/// their +z.
-fn two_bones(reach: Vec3, upper: f32, lower: f32, pole: Vec3) -> [Quat; 2] {
-    let distance = reach.length().clamp(0.05, (upper + lower) * 0.9995);
-    let along = reach.normalize();
-    let aside = (pole - along * pole.dot(along)).normalize();
-    let cos = (upper * upper + distance * distance - lower * lower) / (2.0 * upper * distance);
-    let middle = (along * cos + aside * (1.0 - cos * cos).max(0.0).sqrt()) * upper;
-    let hang = |bone: Vec3| {
-        let y = -bone.normalize();
-        let x = y.cross(aside).normalize();
-        Quat::from_mat3(&Mat3::from_cols(x, y, x.cross(y)))
-    };
-    [hang(middle), hang(along * distance - middle)]
-}
-
-/// Standing at ease: weight on the left leg, a hand on the hip, the head turned aside.
-pub(super) fn standing() -> Posture {
-    let mut posture =
-        Posture { root: Vec3::ZERO, hips: Vec3::new(0.035, 0.938, 0.0), rotations: [Quat::IDENTITY; JOINTS] };
-    posture.turn(Joint::Hips, 0.0, 0.08, 0.075);
-    posture.turn(Joint::Spine, -0.02, 0.0, -0.07);
-    posture.turn(Joint::Chest, -0.03, -0.12, -0.06);
-    posture.turn(Joint::Neck, 0.05, -0.12, 0.02);
-    posture.turn(Joint::Head, 0.0, -0.28, 0.05);
-    posture.turn(Joint::TailA, 0.10, 0.0, 0.04);
-    posture.turn(Joint::TailB, 0.06, 0.0, 0.0);
-    posture.turn(Joint::TailC, -0.06, 0.0, 0.0);
-    posture.reach_foot(Side::Left, Vec3::new(0.07, ANKLE, -0.015), Quat::from_rotation_y(0.15), 0.0);
-    posture.reach_foot(Side::Right, Vec3::new(-0.15, ANKLE, 0.11), Quat::from_rotation_y(-0.42), 0.0);
-    posture.turn(Joint::ArmL, 0.06, 0.0, 0.16);
-    posture.turn(Joint::ForearmL, -0.32, 0.0, 0.0);
-    posture.turn(Joint::HandL, -0.1, 0.2, 0.0);
-    posture.reach_hand(Side::Right, Vec3::new(-0.205, -0.17, 0.06), Vec3::new(-1.0, 0.0, -0.75));
-    posture.turn(Joint::HandR, 0.15, 0.0, 0.75);
-    posture
-}
-
-/// Standing upright with the arms hanging, a little apart from the body, so that the sun passes between.
-pub(super) fn at_ease() -> Posture {
-    let mut posture =
-        Posture { root: Vec3::ZERO, hips: Vec3::new(0.012, 0.937, 0.0), rotations: [Quat::IDENTITY; JOINTS] };
-    posture.turn(Joint::Hips, 0.0, 0.04, 0.03);
-    posture.turn(Joint::Spine, -0.02, 0.0, -0.03);
-    posture.turn(Joint::Chest, -0.04, -0.03, -0.02);
-    posture.turn(Joint::Neck, 0.06, -0.05, 0.0);
-    posture.turn(Joint::Head, 0.02, -0.10, 0.02);
-    posture.turn(Joint::TailA, 0.10, 0.0, 0.04);
-    posture.turn(Joint::TailB, 0.06, 0.0, 0.0);
-    posture.turn(Joint::TailC, -0.06, 0.0, 0.0);
-    posture.reach_foot(Side::Left, Vec3::new(0.125, ANKLE, -0.03), Quat::from_rotation_y(0.25), 0.0);
-    posture.reach_foot(Side::Right, Vec3::new(-0.15, ANKLE, 0.06), Quat::from_rotation_y(-0.32), 0.0);
-    for (side, ahead, bend) in [(Side::Left, 0.04, -0.34), (Side::Right, -0.22, -0.75)] {
-        let [arm, forearm, hand] = side.arm();
-        posture.turn(arm, ahead, 0.0, side.sign() * 0.36);
-        posture.turn(forearm, bend, 0.0, side.sign() * -0.12);
-        posture.turn(hand, -0.1, side.sign() * 0.3, side.sign() * -0.06);
-    }
-    posture
-}
 
 /// Both animations: "walk" and "turn".
 pub(super) fn animations(joints: &Joints) -> Vec<Animation> {
@@ -211,12 +88,6 @@ struct Foot {
     ankle: Vec3,
     turn: Quat,
     toes: f32,
-}
-
-/// Smooth step from 0 to 1 as `x` goes from `from` to `to`.
-fn ease(x: f32, from: f32, to: f32) -> f32 {
-    let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
 }
 
 /// Ankle and pitch of a foot planted at the origin, `stance` from heel strike (0) to toe-off (1).
@@ -274,7 +145,7 @@ fn hermite([a, slope_a, b, slope_b]: [Vec3; 4], t: f32) -> Vec3 {
 
 /// The figure after `phase` of a stride; the left heel strikes at 0.
 fn walking(phase: f32) -> Posture {
-    let mut posture = Posture { root: Vec3::ZERO, hips: Vec3::ZERO, rotations: [Quat::IDENTITY; JOINTS] };
+    let mut posture = Posture::upright(Vec3::ZERO);
     let turn = TAU * phase;
     // Middle of the left stance: the body is over the left foot and at its highest.
     let over = TAU * (phase - 0.5 * STANCE);
@@ -321,7 +192,7 @@ fn swing_scarf(posture: &mut Posture, turn: f32) {
 fn animation(name: &str, duration: f32, poses: &[Posture], joints: &Joints) -> Animation {
     let last = (poses.len() - 1) as f32;
     let times: Vec<f32> = (0..poses.len()).map(|key| key as f32 / last * duration).collect();
-    let channel = |joint: Joint, values: ChannelValues| Channel {
+    let channel = |joint: usize, values: ChannelValues| Channel {
         node: joints.node(joint),
         times: times.clone(),
         interpolation: Interpolation::Linear,
@@ -329,17 +200,12 @@ fn animation(name: &str, duration: f32, poses: &[Posture], joints: &Joints) -> A
     };
     let translations = |get: fn(&Posture) -> Vec3| ChannelValues::Translation(poses.iter().map(get).collect());
     let mut channels = vec![
-        channel(Joint::Root, translations(|pose| pose.root)),
-        channel(Joint::Hips, translations(|pose| pose.hips)),
+        channel(Joint::Root as usize, translations(|pose| pose.root)),
+        channel(Joint::Hips as usize, translations(|pose| pose.hips)),
     ];
-    for joint in Joint::ALL {
-        let mut turns: Vec<Quat> = poses.iter().map(|pose| pose.rotations[joint as usize]).collect();
-        // The same rotation has two signs; neighbours take the nearer one.
-        for key in 1..turns.len() {
-            if turns[key].dot(turns[key - 1]) < 0.0 {
-                turns[key] = -turns[key];
-            }
-        }
+    for joint in 0..JOINTS {
+        let mut turns: Vec<Quat> = poses.iter().map(|pose| pose.rotations[joint]).collect();
+        take_nearer_signs(&mut turns);
         channels.push(channel(joint, ChannelValues::Rotation(turns)));
     }
     Animation { name: name.to_owned(), duration, channels }

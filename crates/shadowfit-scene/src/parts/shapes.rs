@@ -83,13 +83,13 @@ pub fn modulated_lathe(profile: &[(f32, f32)], segments: usize, shape: impl Fn(f
 }
 
 /// A ball stretched to the given radii.
-pub fn ellipsoid(radii: Vec3, segments: usize, rings: usize) -> Solid {
+pub fn ellipsoid(radii: impl Into<Vec3>, segments: usize, rings: usize) -> Solid {
     let point = |ring: usize| {
         let (sin, cos) = (ring as f32 / rings as f32 * PI).sin_cos();
         (if ring == 0 || ring == rings { 0.0 } else { sin }, -cos)
     };
     let profile: Vec<_> = (0..=rings).map(point).collect();
-    lathe(&profile, segments).transformed(Affine3A::from_scale(radii))
+    lathe(&profile, segments).transformed(Affine3A::from_scale(radii.into()))
 }
 
 /// Catmull-Rom value between `b` and `c`.
@@ -99,28 +99,23 @@ pub fn catmull_rom([a, b, c, d]: [f32; 4], t: f32) -> f32 {
     0.5 * (2.0 * b + (c - a) * t + square * t * t + cubic * t * t * t)
 }
 
-/// Section at `t` between sections `index` and `index + 1`, on a smooth curve through all.
-fn between(sections: &[Section], index: usize, t: f32) -> Section {
-    let last = sections.len() - 1;
-    let near = [index.saturating_sub(1), index, index + 1, (index + 2).min(last)];
-    let value = |get: fn(&Section) -> f32| catmull_rom(near.map(|i| get(&sections[i])), t);
-    Section {
-        y: value(|s| s.y),
-        rx: value(|s| s.rx).max(1e-3),
-        rz: value(|s| s.rz).max(1e-3),
-        cx: value(|s| s.cx),
-        cz: value(|s| s.cz),
-    }
+/// Points on a smooth curve through all of `points`, `steps` from each to the next, and the last one.
+pub fn curve<const N: usize>(points: &[[f32; N]], steps: usize) -> Vec<[f32; N]> {
+    let last = points.len() - 1;
+    let between = |index: usize, t: f32| {
+        let near = [index.saturating_sub(1), index, index + 1, (index + 2).min(last)];
+        std::array::from_fn(|axis| catmull_rom(near.map(|near| points[near][axis]), t))
+    };
+    let starts = (0..last).flat_map(|index| (0..steps).map(move |step| (index, step as f32 / steps as f32)));
+    starts.map(|(index, t)| between(index, t)).chain([points[last]]).collect()
 }
 
 /// A smooth body through `sections` (listed upwards), closed by domes; `power` 2 makes them
 /// ellipses, more makes them squarer.
 pub fn loft(sections: &[Section], power: f32, steps: usize, segments: usize) -> Solid {
-    let mut path = Vec::new();
-    for index in 0..sections.len() - 1 {
-        path.extend((0..steps).map(|step| between(sections, index, step as f32 / steps as f32)));
-    }
-    path.push(sections[sections.len() - 1]);
+    let stations: Vec<_> = sections.iter().map(|s| [s.y, s.rx, s.rz, s.cx, s.cz]).collect();
+    let smooth = |[y, rx, rz, cx, cz]: [f32; 5]| Section { y, rx: rx.max(1e-3), rz: rz.max(1e-3), cx, cz };
+    let path: Vec<Section> = curve(&stations, steps).into_iter().map(smooth).collect();
     let mut full = dome(path[0], -1.0);
     full.reverse();
     full.extend(&path);
@@ -167,7 +162,8 @@ pub fn limb(length: f32, radii: &[f32], segments: usize) -> Solid {
 }
 
 /// A tapered capsule from `a` (radius `ra`) to `b` (radius `rb`).
-pub fn capsule(a: Vec3, ra: f32, b: Vec3, rb: f32, segments: usize) -> Solid {
+pub fn capsule(a: impl Into<Vec3>, ra: f32, b: impl Into<Vec3>, rb: f32, segments: usize) -> Solid {
+    let (a, b) = (a.into(), b.into());
     let length = a.distance(b);
     let half = (segments / 4).max(2);
     let cap = |step: usize, y: f32, r: f32, turn: f32| {
@@ -199,8 +195,8 @@ pub fn torus(radius: f32, thick: f32, tall: f32, around: usize, across: usize) -
 }
 
 /// A box about the origin whose edges are rounded with `radius` in `steps` steps.
-pub fn rounded_box(half: Vec3, radius: f32, steps: usize) -> Solid {
-    let inner = half - radius;
+pub fn rounded_box(half: impl Into<Vec3>, radius: f32, steps: usize) -> Solid {
+    let inner = half.into() - radius;
     // Positions along an axis of a face: the rounded end, the flat middle, the other rounded end.
     let mut line: Vec<(f32, f32)> = Vec::new();
     for step in 0..=steps {
@@ -219,8 +215,14 @@ pub fn rounded_box(half: Vec3, radius: f32, steps: usize) -> Solid {
 }
 
 /// A box between two corners with slightly rounded edges.
-pub fn block(low: Vec3, high: Vec3, edge: f32) -> Solid {
+pub fn block(low: impl Into<Vec3>, high: impl Into<Vec3>, edge: f32) -> Solid {
+    let (low, high) = (low.into(), high.into());
     rounded_box((high - low) / 2.0, edge, 1).moved((low + high) / 2.0)
+}
+
+/// A [`block`] about the y axis: its half widths along x and z, and its lower and upper end.
+pub fn pillar([x, z]: [f32; 2], [low, high]: [f32; 2], edge: f32) -> Solid {
+    block([-x, low, -z], [x, high, z], edge)
 }
 
 /// Adds one face of a rounded box, not yet welded to its neighbours.
@@ -330,9 +332,22 @@ impl Arch {
 }
 
 /// A box between two corners with sharp edges: for what is thin, or far off.
-pub fn plank(low: Vec3, high: Vec3) -> Solid {
+pub fn plank(low: impl Into<Vec3>, high: impl Into<Vec3>) -> Solid {
+    let (low, high) = (low.into(), high.into());
     let outline = [(low.x, low.y), (high.x, low.y), (high.x, high.y), (low.x, high.y)];
-    extrude(&outline, &[[0, 1, 2], [0, 2, 3]], high.z - low.z).moved(Vec3::Z * (low.z + high.z) / 2.0)
+    prism(&outline, high.z - low.z).moved(Vec3::Z * (low.z + high.z) / 2.0)
+}
+
+/// The walls of a house about z = 0 with a gable at each end: half of its width, the heights of its foot, of its eaves
+/// and of its ridge, and its length.
+pub fn gabled(half: f32, [foot, eaves, ridge]: [f32; 3], length: f32) -> Solid {
+    prism(&[(-half, foot), (half, foot), (half, eaves), (0.0, ridge), (-half, eaves)], length)
+}
+
+/// A prism about z = 0 from a convex, counter-clockwise outline.
+pub fn prism(outline: &[(f32, f32)], depth: f32) -> Solid {
+    let faces: Vec<[u32; 3]> = (2..outline.len() as u32).map(|corner| [0, corner - 1, corner]).collect();
+    extrude(outline, &faces, depth)
 }
 
 /// A wall across z between `height` and a lower edge, whose points are listed with ascending x.

@@ -1,13 +1,13 @@
 //! The image of bark.
 
 use crate::Image;
-use crate::builtin::pixels::{NOISE_CELLS, Noise, draw};
+use crate::parts::pixels::{NOISE_CELLS, Noise, draw};
 
 /// Pixels along a side of the image.
 const SIZE: u32 = 256;
 
 /// Furrowed grey-brown bark with a breath of green.
-pub(in crate::builtin) fn bark() -> Image {
+pub fn bark() -> Image {
     let noise = &Noise::new();
     let cell = NOISE_CELLS as f32 / SIZE as f32;
     draw("bark", SIZE, |y| {

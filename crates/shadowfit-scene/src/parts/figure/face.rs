@@ -7,12 +7,11 @@ use std::f32::consts::{PI, TAU};
 
 use glam::{Affine3A, Quat, Vec2, Vec3};
 
-use super::body::Part;
-use super::character::Joint;
-use super::palette::Paint;
-use crate::builtin::build::SMOOTH;
-use crate::builtin::shapes::{capsule, ellipsoid, loft, section, torus, tube};
-use crate::builtin::solid::Solid;
+use super::rig::Joint;
+use super::wear::{Part, Wear};
+use crate::parts::build::SMOOTH;
+use crate::parts::shapes::{capsule, ellipsoid, loft, section, torus, tube};
+use crate::parts::solid::Solid;
 
 /// Point that the rays start from, in the head's axes: between the temples.
 const CENTRE: Vec3 = Vec3::new(0.0, 0.14, 0.0);
@@ -27,14 +26,14 @@ const EYE_RADIUS: f32 = 0.0215;
 
 /// The head with all that is fixed to it.
 pub(super) fn mesh() -> Part {
-    let piece = |solid: &Solid, paint: Paint| solid.primitive(paint.index(), SMOOTH);
+    let piece = |solid: &Solid, paint: Wear| solid.primitive(paint.into(), SMOOTH);
     let primitives = vec![
-        piece(&head().with(ears()).with(lids()), Paint::Skin),
-        piece(&eyes(), Paint::EyeWhite),
-        piece(&irises(), Paint::Iris),
-        piece(&hair(), Paint::Hair),
-        piece(&mouth(), Paint::Lip),
-        piece(&cap(), Paint::Wool),
+        piece(&head().with(ears()).with(lids()), Wear::Skin),
+        piece(&eyes(), Wear::EyeWhite),
+        piece(&irises(), Wear::Iris),
+        piece(&hair(), Wear::Hair),
+        piece(&mouth(), Wear::Lip),
+        piece(&cap(), Wear::Wool),
     ];
     (&[Joint::Head], "head", primitives)
 }
@@ -155,14 +154,14 @@ fn lids() -> Solid {
 
 /// Irises: flat lenses on the eyeballs, looking ahead.
 fn irises() -> Solid {
-    let lens = ellipsoid(Vec3::new(0.0105, 0.012, 0.004), 24, 12);
+    let lens = ellipsoid([0.0105, 0.012, 0.004], 24, 12);
     lens.moved(EYE + Vec3::new(-0.001, -0.001, EYE_RADIUS - 0.0022)).and_mirrored()
 }
 
 /// Ears: cups leaning forward from the head.
 fn ears() -> Solid {
     let rim = torus(0.021, 0.0065, 0.008, 22, 8).transformed(Affine3A::from_scale(Vec3::new(0.8, 1.0, 1.25)));
-    let bowl = ellipsoid(Vec3::new(0.017, 0.006, 0.024), 24, 10);
+    let bowl = ellipsoid([0.017, 0.006, 0.024], 24, 10);
     let turn = Quat::from_rotation_y(0.45) * Quat::from_rotation_x(-0.12) * Quat::from_rotation_z(-PI / 2.0);
     let turn = turn * Quat::from_rotation_y(PI / 2.0);
     let flat = Affine3A::from_rotation_translation(turn, Vec3::new(0.094, 0.118, -0.004));
@@ -214,6 +213,6 @@ fn cap() -> Solid {
     let tilt = Affine3A::from_rotation_translation(Quat::from_rotation_x(-0.08), Vec3::new(0.0, 0.197, -0.013));
     let stretch = Affine3A::from_scale(Vec3::new(1.0, 1.0, 1.14));
     let rim = torus(0.0985, 0.0135, 0.0225, 44, 12).transformed(tilt * stretch);
-    let bobble = ellipsoid(Vec3::splat(0.033), 20, 12).moved(Vec3::new(0.0, 0.325, -0.036));
+    let bobble = ellipsoid(Vec3::splat(0.033), 20, 12).moved([0.0, 0.325, -0.036]);
     crown.with(rim).with(bobble)
 }

@@ -5,35 +5,35 @@ use glam::{Vec2, Vec3};
 use crate::Primitive;
 
 /// Cards under construction.
-pub(in crate::builtin) struct Cards {
+pub struct Cards {
     /// What is built so far.
-    pub(in crate::builtin) primitive: Primitive,
+    pub primitive: Primitive,
     /// Quads along each card.
     quads: usize,
 }
 
 /// A card: a strip from its stem, where the image's lower edge lies, to its tip.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::builtin) struct Card {
+pub struct Card {
     /// Middle of the end at the stem.
-    pub(in crate::builtin) base: Vec3,
+    pub base: Vec3,
     /// From the stem to the tip, in metres, before it bends.
-    pub(in crate::builtin) reach: Vec3,
+    pub reach: Vec3,
     /// Across, half of the width, in metres.
-    pub(in crate::builtin) half: Vec3,
+    pub half: Vec3,
     /// How far the tip is moved by bending, in metres.
-    pub(in crate::builtin) droop: Vec3,
+    pub droop: Vec3,
 }
 
 impl Cards {
     /// No cards yet, of a material, each to be made of as many quads along it: one is flat, two let it bend.
-    pub(in crate::builtin) fn new(material: impl Into<usize>, quads: usize) -> Self {
+    pub fn new(material: impl Into<usize>, quads: usize) -> Self {
         Self { primitive: Primitive { material: material.into(), ..Primitive::default() }, quads }
     }
 
     /// Adds a card whose normals lean toward `out` (unit) by the share `lean`, which makes a crown of flat cards look
     /// round.
-    pub(in crate::builtin) fn add(&mut self, card: &Card, out: Vec3, lean: f32) {
+    pub fn add(&mut self, card: &Card, out: Vec3, lean: f32) {
         let first = self.primitive.positions.len() as u32;
         for step in 0..=self.quads {
             let t = step as f32 / self.quads as f32;
