@@ -50,7 +50,7 @@ impl Aabb {
 
     /// The eight corners: the four with the least z around, then the four with the greatest.
     pub fn corners(&self) -> [Vec3; 8] {
-        box_corners(self.min.as_dvec3(), self.max.as_dvec3()).map(|corner| corner.as_vec3())
+        box_corners(self.min.as_dvec3(), self.max.as_dvec3()).map(DVec3::as_vec3)
     }
 
     /// Whether the box holds no point: a coordinate of `min` above that of `max`, or NaN.

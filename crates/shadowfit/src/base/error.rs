@@ -164,12 +164,9 @@ impl fmt::Display for FitError {
             Self::NotOrthographic { why } => {
                 write!(f, "the matrix is not an orthographic view-projection of this light: {why}")
             }
-            Self::NotOnGrid => {
-                write!(
-                    f,
-                    "the map is not snapped to a grid; stabilise it by snapping or hysteresis, or take the sphere"
-                )
-            }
+            Self::NotOnGrid => f.write_str(
+                "the map is not snapped to a grid; stabilise it by snapping or hysteresis, or take the sphere",
+            ),
             Self::ClampedCasters => f.write_str(CLAMPED),
             Self::ZeroResolution { resolution } => {
                 write!(

@@ -27,6 +27,7 @@ pub(crate) enum Covers {
 
 /// What tells one fit from the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a property that a fit has or not")]
 pub(crate) struct Form {
     pub(crate) covers: Covers,
     /// Where the map's roll about the light comes from.

@@ -139,7 +139,7 @@ impl<'a> Search<'a> {
     fn improve_restart(&mut self) {
         let changes = self.changes();
         let next = &mut self.progress.next_of_restart;
-        if *next % self.planner.round().max(1) == 0 {
+        if next.is_multiple_of(self.planner.round().max(1)) {
             *next = next.wrapping_add(changes);
             self.best = self.planner.better(self.best, self.restart);
             self.restart = self.ladder();
