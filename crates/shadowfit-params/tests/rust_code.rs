@@ -29,7 +29,6 @@ macro_rules! sample {
 }
 
 #[expect(clippy::let_and_return, reason = "a sample makes a technique, and then gives it back")]
-#[expect(clippy::field_reassign_with_default, reason = "a sample says what differs, a line for each field")]
 #[expect(clippy::unreadable_literal, reason = "numbers are written as Rust prints them")]
 fn samples() -> [Sample; 6] {
     [
