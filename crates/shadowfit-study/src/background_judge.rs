@@ -1,4 +1,4 @@
-//! Pictures judged on threads of their own with rays of the CPU: for adapters on which the passes of
+//! Judges pictures on threads, with rays of the CPU: for adapters on which the passes of
 //! [`LiveTruth`](crate::LiveTruth) would stop the picture.
 //!
 //! One core is left for drawing. Judging stops between two pixels when another picture is to be judged or the judge is

@@ -195,7 +195,7 @@ impl MapCache {
         Choice { decisions, maps }
     }
 
-    /// Whether static casters have layers of their own.
+    /// Whether static casters have separate layers.
     pub(crate) fn is_split(&self) -> bool {
         self.is_split
     }

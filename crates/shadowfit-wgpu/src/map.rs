@@ -164,9 +164,9 @@ impl ShadowMap {
         &self.layers[index].depth
     }
 
-    /// Writes the uniforms for this frame's maps; by view depth they are in order of their `far`. Map i is
-    /// drawn into layer i. Positions in the shaders are relative to the view's origin. A fit with fewer texels than a layer uses the corner of
-    /// it. A layer without a map is neither drawn nor read.
+    /// Writes the uniforms for this frame's maps; maps that are read by view depth are in order of their `far`. Map i
+    /// is drawn into layer i. Positions in the shaders are relative to the view's origin. A fit with fewer texels than
+    /// a layer uses its corner. A layer without a map is neither drawn nor read.
     ///
     /// # Errors
     ///
