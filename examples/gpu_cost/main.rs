@@ -1,7 +1,7 @@
 //! What shadows cost on a GPU: passes drawn anew and kept, culling, filters, the pass over the depth buffer, rays.
 //!
 //! ```sh
-//! cargo run --release --example gpu_cost                                   # the built-in scene
+//! cargo run --release --example gpu_cost                                   # the courtyard
 //! cargo run --release --example gpu_cost -- scene.glb --out cost.md        # with a scene of its own
 //! cargo xtask bench --gpu scene.glb                                        # the same, into docs/BENCHMARKS.md
 //! ```

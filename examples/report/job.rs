@@ -14,7 +14,7 @@ use shadowfit_truth::Tracer;
 use crate::drawing::{Drawing, positive};
 use crate::path::{CameraPath, find};
 
-/// Name of the built-in scene.
+/// Name of the scene that is drawn without a file.
 const BUILT_IN: &str = "courtyard";
 /// Bytes of a GiB.
 const GIB: f64 = (1u64 << 30) as f64;

@@ -42,7 +42,7 @@ impl Agreement {
         share(self.same, self.judged)
     }
 
-    /// The same of those outside the CPU's edge zone.
+    /// The same for pixels outside the CPU's edge zone.
     pub fn off_edges(&self) -> f64 {
         share(self.same_off_edges, self.judged_off_edges)
     }

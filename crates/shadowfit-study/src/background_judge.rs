@@ -1,8 +1,8 @@
-//! Pictures judged on threads of their own with rays of the CPU: for adapters on which the passes of
+//! Judges pictures on threads, with rays of the CPU: for adapters on which the passes of
 //! [`LiveTruth`](crate::LiveTruth) would stop the picture.
 //!
-//! One core is left to whoever draws. A picture is given up between two pixels when another one is to be judged or the
-//! judge is dropped, and a panic becomes an error that can be shown.
+//! One core is left for drawing. Judging stops between two pixels when another picture is to be judged or the judge is
+//! dropped, and a panic becomes an error that can be shown.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -23,13 +23,14 @@ use shadowfit_wgpu::ShadowMapDescriptor;
 use crate::picture::{FrameBefore, Picture, factors};
 use crate::{Judging, SceneRays, View};
 
-/// A picture to judge, with all that the judge needs of the scene. [`Evaluator::judge_job`](crate::Evaluator::judge_job)
-/// makes one.
+/// A picture to judge, with all that the judge needs to know about the scene.
+/// [`Evaluator::judge_job`](crate::Evaluator::judge_job) makes one.
 #[derive(Clone, Debug)]
 pub struct JudgeJob {
-    /// The scene's rays, of the pose in which it was drawn.
+    /// The scene's rays, in the pose in which it was drawn.
     pub rays: Arc<SceneRays>,
-    /// What each pixel shows, rows from the top: as many as [`Judging::size`] says. `None` for the sky.
+    /// Triangle and shadow factor of each pixel, rows from the top: as many as [`Judging::size`] says. `None` for the
+    /// sky.
     pub pixels: Vec<Option<ProbePixel>>,
     /// The view.
     pub view: View,
@@ -37,7 +38,7 @@ pub struct JudgeJob {
     pub judging: Judging,
     /// The maps that it was drawn with.
     pub maps: Vec<FittedMap>,
-    /// What they were drawn into.
+    /// The descriptor of the shadow map that they were drawn into.
     pub descriptor: ShadowMapDescriptor,
     /// Whether each of the scene's instances counts in sums:
     /// [`PosedScene::counted_instances`](crate::PosedScene::counted_instances).
@@ -51,8 +52,8 @@ pub struct JudgeJob {
 pub struct JudgeResult {
     /// The verdicts, and the sums as [`Judged::tally`].
     pub judged: Judged,
-    /// The same as a texture of classes has them, rows from the top: the bits of a [`GpuPixel`] for each pixel, ready to
-    /// be written to an `R32Uint` texture of [`Judging::size`].
+    /// The same as texels, rows from the top: the bits of a [`GpuPixel`] for each pixel, ready to be written to an
+    /// `R32Uint` texture of [`Judging::size`].
     pub classes: Vec<u32>,
     /// The view that was judged. A camera that has moved on shows other pixels.
     pub view: View,
@@ -113,7 +114,7 @@ impl BackgroundJudge {
         Ok(Self { threads, work: None })
     }
 
-    /// Starts to judge a picture, and gives up the one before if it is not done.
+    /// Starts to judge a picture, and stops with the one before if it is not done.
     pub fn start(&mut self, job: JudgeJob) {
         let is_given_up = Arc::new(AtomicBool::new(false));
         let (sender, result) = channel();
@@ -122,22 +123,22 @@ impl BackgroundJudge {
             let goes_on = || !is_given_up.load(Ordering::Relaxed);
             let judged = catch_unwind(AssertUnwindSafe(|| job.judge(goes_on)));
             let judged = judged.unwrap_or_else(|panic| Err(anyhow!("judging this picture failed: {}", text(&*panic))));
-            // Nobody receives what was given up.
+            // Nobody receives the result of a picture that was given up.
             let _ = sender.send(judged);
         });
     }
 
-    /// Gives up the picture that is being judged; [`Self::take`] has nothing of it.
+    /// Stops judging the present picture; [`Self::take`] gives no result of it.
     pub fn give_up(&mut self) {
         self.work = None;
     }
 
-    /// Whether a picture is being judged, or is judged and was not taken.
+    /// Whether a picture is being judged, or a result waits to be taken.
     pub fn is_busy(&self) -> bool {
         self.work.is_some()
     }
 
-    /// Takes the judged picture, without waiting for it; `None` while there is none.
+    /// Takes the judged picture, without waiting for it; `None` until there is one.
     ///
     /// # Errors
     ///
@@ -154,7 +155,7 @@ impl BackgroundJudge {
 }
 
 impl JudgeJob {
-    /// Judges the picture for as long as `goes_on` says so.
+    /// Judges the picture while `goes_on` returns `true`.
     fn judge(&self, goes_on: impl Fn() -> bool + Sync) -> Result<JudgeResult> {
         let start = Instant::now();
         self.check()?;
@@ -190,7 +191,7 @@ impl JudgeJob {
     }
 }
 
-/// What a texture of classes has of a picture.
+/// The texels of a judged picture.
 fn classes(truth: &Truth, judged: &Judged) -> Vec<u32> {
     let bits = |pixel: usize| {
         let pixel = GpuPixel {
@@ -205,7 +206,7 @@ fn classes(truth: &Truth, judged: &Judged) -> Vec<u32> {
     (0..judged.classes.len()).map(bits).collect()
 }
 
-/// What a panic said.
+/// The message of a panic.
 fn text(panic: &(dyn Any + Send)) -> &str {
     let owned = || panic.downcast_ref::<String>().map(String::as_str);
     panic.downcast_ref::<&str>().copied().or_else(owned).unwrap_or("without a word")

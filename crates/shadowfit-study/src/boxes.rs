@@ -1,7 +1,7 @@
-//! What fits know of the scene: boxes around its receivers and its casters.
+//! What fits know about the scene: boxes around its receivers and its casters.
 //!
-//! What never moves is divided once into clusters that fit its surface closely, since the box of a level that is one
-//! mesh says little. What an animation moves has one box for each instance, made anew with every pose.
+//! Static instances are divided once into clusters that fit their surface closely, since the box of a level that is one
+//! mesh says little. Instances that an animation moves have one box each, recomputed with every pose.
 
 use glam::{DVec3, Vec3};
 use shadowfit::clusters::Clusters;
@@ -9,8 +9,8 @@ use shadowfit::normal_cone::NormalCone;
 use shadowfit::{Aabb, Boxes, FitInput, ViewFrustum};
 use shadowfit_scene::{AlphaMode, Instance, Pose, Scene};
 
-/// Number of triangles from which on no clusters are made: at a fifth of a microsecond each that would delay the
-/// opening of a scene by more than a second.
+/// From this number of triangles on no clusters are made: at a fifth of a microsecond each that would delay the opening
+/// of a scene by more than a second.
 const MOST_TRIANGLES: usize = 6_000_000;
 
 /// Greatest coordinate of a box that fits take, in metres; a box beyond it is left out.
@@ -19,20 +19,20 @@ const FARTHEST: f32 = 1e18;
 /// Boxes of a scene in its present pose, in world space.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SceneBoxes {
-    /// Of all that is drawn: those of the clusters, then one for each instance that moves.
+    /// Boxes of all receivers: those of the clusters, then one for each instance that moves.
     receivers: Vec<Aabb>,
     /// Cones around the normals in them.
     cones: Vec<NormalCone>,
-    /// The same of what casts.
+    /// Boxes of all casters, in the same order.
     casters: Vec<Aabb>,
-    /// How many of the receivers and of the casters never move.
+    /// Numbers of receivers and of casters that never move.
     still: [usize; 2],
-    /// Index of each instance that has a box of its own, and whether it casts.
+    /// Index of each instance with one box for itself, and whether it casts.
     moving: Vec<(usize, bool)>,
 }
 
 impl SceneBoxes {
-    /// Divides what never moves into clusters. [`Self::set_pose`] has to follow, for the rest.
+    /// Divides static instances into clusters. [`Self::set_pose`] has to follow, for the others.
     pub(crate) fn new(scene: &Scene, pose: &Pose) -> Self {
         let instances = scene.instances();
         let casts: Vec<bool> = instances.iter().map(|instance| casts(scene, instance)).collect();
@@ -58,7 +58,7 @@ impl SceneBoxes {
         Self { moving, ..Self::default() }
     }
 
-    /// The boxes that fits are given, for a light that travels in `direction` (world axes).
+    /// The boxes that a fit gets, for a light that travels in `direction` (world axes).
     pub(crate) fn input<'a>(&'a self, views: &'a [ViewFrustum], direction: Vec3) -> FitInput<'a> {
         FitInput {
             receivers: Some(Boxes { origin: DVec3::ZERO, boxes: &self.receivers }),
@@ -68,7 +68,7 @@ impl SceneBoxes {
         }
     }
 
-    /// Takes the boxes of what moves: `bounds` gives that of an instance by its index, in world space.
+    /// Updates the boxes of moving instances: `bounds` gives the box of an instance by its index, in world space.
     pub(crate) fn set_pose(&mut self, bounds: impl Fn(usize) -> Option<Aabb>) {
         self.receivers.truncate(self.still[0]);
         self.cones.truncate(self.still[0]);
@@ -91,7 +91,7 @@ fn casts(scene: &Scene, instance: &Instance) -> bool {
     scene.materials[primitive.material].alpha != AlphaMode::Blend
 }
 
-/// Which instances some animation moves or deforms.
+/// Whether some animation moves or deforms each instance.
 fn moving_instances(scene: &Scene, instances: &[Instance]) -> Vec<bool> {
     let mut moves = vec![false; scene.nodes.len()];
     for channel in scene.animations.iter().flat_map(|animation| &animation.channels) {
@@ -110,8 +110,8 @@ fn moving_instances(scene: &Scene, instances: &[Instance]) -> Vec<bool> {
     instances.iter().map(|instance| moves[instance.node] || skin_moves(instance)).collect()
 }
 
-/// Clusters of the instances that do not move, each an object; `None` where there are too many triangles, or some that
-/// no fit can take.
+/// Clusters of the static instances, each as an object; `None` where there are too many triangles, or where fits cannot
+/// take some of them.
 fn clusters(scene: &Scene, pose: &Pose, instances: &[Instance], moves: &[bool]) -> Option<Clusters> {
     let count = |instance: &Instance| scene.meshes[instance.mesh].primitives[instance.primitive].indices.len() / 3;
     if instances.iter().map(count).sum::<usize>() > MOST_TRIANGLES {

@@ -28,7 +28,7 @@ pub struct Comparison {
     entries: Vec<Entry>,
 }
 
-/// The maps of a technique for a frame, and its picture.
+/// The maps and the picture of a technique for a frame.
 #[derive(Debug)]
 pub struct Outcome {
     /// Its maps.
@@ -44,7 +44,7 @@ impl Comparison {
     ///
     /// When the scene has nothing to draw.
     pub fn new(gpu: Gpu, scene: Scene, judging: Judging) -> Result<Self> {
-        // A renderer of any shadow map has the layout that all share.
+        // Renderers of all shadow maps share one layout.
         let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::default(), SAMPLES)?;
         let scene = PreparedScene::new(&gpu, renderer.material_layout(), scene)?;
         Ok(Self { gpu, scene, judging, entries: Vec::new() })
@@ -91,7 +91,7 @@ impl Comparison {
     }
 
     /// Fits, draws and judges a frame with every technique, in the order in which they were added. The truth is traced
-    /// unless it is there already, of the same frame.
+    /// unless that of the same frame is there already.
     ///
     /// # Errors
     ///
@@ -112,8 +112,8 @@ impl Comparison {
         (&self.gpu, &mut self.entries[technique].evaluator, &mut self.scene)
     }
 
-    /// The shaded picture of a frame by a technique, with maps that [`Self::frame`] gave: sRGB pixels, four bytes
-    /// each, rows from the top; and the same judged anew.
+    /// The shaded picture of a frame by a technique, with maps that [`Self::frame`] gave: sRGB pixels, four bytes each,
+    /// rows from the top; and the picture judged again.
     ///
     /// # Errors
     ///
@@ -132,11 +132,11 @@ impl Comparison {
     }
 }
 
-/// Refuses the sums of frames in which nothing was judged: their shares of wrong pixels would all be 0.
+/// Refuses sums without judged pixels: all shares of wrong pixels would be 0.
 ///
 /// # Errors
 ///
-/// When there is no frame, or no pixel of any faces the light.
+/// When there is no frame, or no pixel of the frames faces the light.
 pub fn ensure_judged(tally: &PictureTally) -> Result<()> {
     ensure!(tally.frames > 0, "nothing was judged: there is no frame");
     ensure!(

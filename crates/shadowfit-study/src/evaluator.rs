@@ -21,12 +21,12 @@ use crate::{FrameOptions, JudgeJob, Judging, PreparedScene, SceneRays, SharedTru
 /// Draws a technique's maps and the scene shadowed by them, and judges the picture.
 #[derive(Debug)]
 pub struct Evaluator {
-    /// Draws; its shadow map is the one that the maps are drawn into.
+    /// Draws the maps into its shadow map, and the pictures.
     pub renderer: Renderer,
     /// How pictures are judged.
     pub judging: Judging,
     targets: Option<ProbeTargets>,
-    /// Of the maps of the frame before.
+    /// Targets of the probe of the frame before.
     targets_before: Option<ProbeTargets>,
     picture: Option<RenderTarget>,
     before: Option<Before>,
@@ -70,8 +70,8 @@ impl Evaluator {
         Ok(drawn)
     }
 
-    /// Begins to read what a pixel of a view shows, and the depths around a texel of a map, without waiting. The view is the
-    /// one that was drawn last: its maps are read as they are.
+    /// Begins to read triangle and shadow factor of a pixel of a view, and the depths around a texel of a map, without
+    /// waiting. The view must be the one that was drawn last, since its maps are read.
     ///
     /// # Errors
     ///
@@ -146,9 +146,9 @@ impl Evaluator {
         Ok(judged)
     }
 
-    /// What [`BackgroundJudge`](crate::BackgroundJudge) needs of a view: draws its maps and its probe, waits for them, and
-    /// leaves the rest to the job. As for [`Self::judge`], crawl is measured against the view before. With it comes the
-    /// probe, whose [depth buffer](ProbeTargets::depth_view) tells a later frame which surfaces the picture shows
+    /// Makes the job of a view for a [`BackgroundJudge`](crate::BackgroundJudge): draws its maps and its probe, and
+    /// waits for them. As for [`Self::judge`], crawl is measured against the view before. Also returns the probe, whose
+    /// [depth buffer](ProbeTargets::depth_view) tells a later frame which surfaces the picture shows
     /// ([`JudgedPicture::depth`](shadowfit_render::JudgedPicture::depth)).
     ///
     /// # Errors
@@ -182,7 +182,7 @@ impl Evaluator {
         Ok((job, seen))
     }
 
-    /// The maps of the view before, and what they show at the points of this one, if crawl is measured.
+    /// The maps of the view before, and their shadow factors at the points of this one, if crawl is measured.
     fn frame_before(&mut self, gpu: &Gpu, scene: &mut PreparedScene, view: &View) -> Result<Option<FrameBefore>> {
         let Some(Before { maps, eye, forward }) = self.before.take().filter(|_| self.judging.crawl) else {
             return Ok(None);
@@ -223,9 +223,10 @@ impl Evaluator {
         self.with_live_input(gpu, scene, view, maps, |input| live.time(gpu, input, repeats))
     }
 
-    /// Draws a view's maps and its probe, and has the GPU judge it, without waiting: [`LiveTruth::classes`] is the picture
-    /// of classes, and [`LiveTruth::take`] has its sums some frames later. The maps are left as a picture of the same view
-    /// needs them. Crawl is measured against the view before, if [`Judging::crawl`] says so.
+    /// Draws a view's maps and its probe, and records the passes that judge it on the GPU, without waiting:
+    /// [`LiveTruth::classes`] is the picture of classes, and [`LiveTruth::take`] has its sums some frames later. The
+    /// maps are left as a picture of the same view needs them. Crawl is measured against the view before, if
+    /// [`Judging::crawl`] says so.
     ///
     /// # Errors
     ///
@@ -273,13 +274,13 @@ impl Evaluator {
         Ok(())
     }
 
-    /// Takes a view as the one before: crawl is measured against it. Views that are judged are noted by themselves.
+    /// Notes a view as the one before: crawl is measured against it. Views that are judged are noted without this call.
     pub fn note_view(&mut self, view: &View, maps: &[FittedMap]) {
         let forward = view.camera.forward.normalize();
         self.before = Some(Before { maps: maps.to_vec(), eye: view.camera.eye, forward });
     }
 
-    /// Forgets the view before: the next one follows none, and its crawl is not measured.
+    /// Forgets the view before: the next one begins a path, and its crawl is not measured.
     pub fn forget_view(&mut self) {
         self.before = None;
     }
@@ -306,7 +307,8 @@ impl Evaluator {
         result
     }
 
-    /// What each pixel shows. `choice` is the eye and the forward direction that choose the maps, if not the camera's.
+    /// Triangle and shadow factor of each pixel. `choice` is the eye and the forward direction that choose the maps, if
+    /// they are not the camera's.
     fn probe(
         &mut self,
         gpu: &Gpu,
@@ -334,7 +336,7 @@ impl Evaluator {
         self.draw_probe_into(gpu, scene, (view, maps, choice), kept)
     }
 
-    /// The same into these targets where they have the right size, else into new ones.
+    /// The same into these targets where they have the right size, otherwise into new ones.
     fn draw_probe_into(
         &mut self,
         gpu: &Gpu,

@@ -1,4 +1,4 @@
-//! A scene's views fitted by the fitter that engines take, which rays tell what the views show.
+//! Fits of a scene's views by the fitter that engines take, with rays that find the visible points.
 
 use glam::{DVec3, Vec3};
 use shadowfit::histogram::needed_texel;
@@ -14,27 +14,27 @@ const COLUMNS: u32 = 64;
 /// Rays down the picture.
 const ROWS: u32 = 36;
 
-/// Which rays find what a view shows.
+/// Which rays may find the visible points of a view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RayUse {
-    /// Those of the scene's present pose, which are made where they are not there.
+    /// Those of the scene's present pose. They are made where they do not exist.
     #[default]
     Wait,
-    /// Those of an earlier pose too, where those of the present one are not there; some are made only where there are
+    /// Those of an earlier pose, too, where those of the present one do not exist. Rays are made only where there are
     /// none at all. That costs sharpness, never coverage.
     Late,
-    /// Only those that are there, of whichever pose: none are ever made. Without any, fits go by the scene's boxes.
+    /// Only rays that exist, of any pose: this never makes any. Without rays, fits take the scene's boxes.
     IfReady,
 }
 
 impl PosedScene {
-    /// What fits of a technique are given of the scene, for views and a light that travels in `direction` (world axes).
+    /// The input of a technique's fits in this scene, for views and a light that travels in `direction` (world axes).
     pub fn input<'a>(&'a self, technique: &Technique, views: &'a [ViewFrustum], direction: Vec3) -> FitInput<'a> {
         self.boxes(technique.receivers).input(views, direction)
     }
 
-    /// Fits the next view of a path, then tells the fitter what that view shows. Where a path begins the fitter forgets
-    /// what was before.
+    /// Fits the next view of a path, then gives the visible points of that view to the fitter. Where a path begins, the
+    /// fitter forgets earlier views.
     ///
     /// # Errors
     ///
@@ -48,8 +48,8 @@ impl PosedScene {
         Ok(maps)
     }
 
-    /// Fits a view on which the camera has just been set, as a running program does as soon as it has seen that view:
-    /// nothing is held from other views, and what the fitter knows to be visible is what this one shows.
+    /// Fits a single view, as a running program does after it has drawn that view once: nothing is held from other
+    /// views, and the fitter knows the visible points of this one.
     ///
     /// # Errors
     ///
@@ -65,7 +65,7 @@ impl PosedScene {
         fitter.fit(&self.input(&technique, &views, view.direction)).copied()
     }
 
-    /// Tells a fitter by rays what a view shows, if its technique goes by that and there are rays.
+    /// Gives the visible points of a view, found by rays, to a fitter, if its technique uses them and there are rays.
     ///
     /// # Errors
     ///
@@ -87,7 +87,7 @@ impl PosedScene {
     }
 }
 
-/// What a camera sees that faces the light, counted by rays against the triangles. Camera and triangles are relative to
+/// Counts the visible points that face the light, by rays against the triangles. Camera and triangles are relative to
 /// the same position; `direction` is the light's direction of travel in world axes.
 ///
 /// # Errors

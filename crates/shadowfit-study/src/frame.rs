@@ -1,4 +1,4 @@
-//! The only place where a frame of the viewer's renderer is put together and its haze is chosen.
+//! The only place where a frame for the viewer's renderer is assembled and its haze is chosen.
 
 use shadowfit::{FittedMap, PerspectiveCamera};
 use shadowfit_params::tool::CameraSettings;
@@ -6,15 +6,15 @@ use shadowfit_render::{Atmosphere, Culling, Frame, Inset, JudgedPicture, Line, M
 
 use crate::View;
 
-/// What a picture shows beside the shaded scene, and through which camera. By default the view's own camera sees the
+/// What a picture shows besides the shaded scene, and through which camera. By default the view's camera shows the
 /// scene with its shadows, and nothing else is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameOptions<'a> {
-    /// Camera that the scene is seen through instead of the view's, from whose eye points still choose their map.
+    /// Camera that shows the scene instead of the view's camera. Points still choose their map from the view's eye.
     pub outside: Option<PerspectiveCamera>,
     /// Which casters are drawn into the maps.
     pub culling: Culling,
-    /// What the surfaces show.
+    /// What the surfaces show instead of their shading.
     pub overlay: Overlay,
     /// A judged picture, for overlays and marks that show how the shadows were judged.
     pub judged: Option<JudgedPicture<'a>>,
@@ -28,12 +28,12 @@ pub struct FrameOptions<'a> {
     pub quads: &'a [Quad],
     /// Left, top, width and height of the part of the picture that is drawn, in pixels; all of it if `None`.
     pub scissor: Option<[u32; 4]>,
-    /// Whether the maps are used as they were drawn last, and none is drawn.
+    /// Whether the maps of the last picture are used again instead of drawn.
     pub maps_stay: bool,
     /// Whether shadows are drawn.
     pub shadows: bool,
-    /// Distance that the haze suits, in metres: it grows as dense there as the default haze at the default camera's far
-    /// plane. The far plane of the camera that sees the scene if `None`.
+    /// Distance that the haze suits, in metres: it becomes as dense there as the default haze at the default camera's
+    /// far plane. With `None` it is the far plane of the camera that shows the scene.
     pub sight: Option<f32>,
 }
 
@@ -57,7 +57,7 @@ impl Default for FrameOptions<'_> {
 }
 
 impl FrameOptions<'_> {
-    /// Haze that suits the size of what is seen: a chair is not lost in it, and a town has some.
+    /// Haze that suits the size of the scene: a chair is not lost in it, and a town has some.
     pub(crate) fn atmosphere(&self, view: &View) -> Atmosphere {
         let atmosphere = Atmosphere::default();
         let sight = self.sight.unwrap_or_else(|| self.outside.unwrap_or(view.camera).far);

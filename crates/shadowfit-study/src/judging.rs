@@ -47,7 +47,7 @@ impl Judging {
     }
 }
 
-/// The truth of a frame, for all techniques: traced as soon as the first of them has found which triangles are seen.
+/// The truth of a frame, for all techniques: traced as soon as the first of them has found the visible triangles.
 #[derive(Debug, Default)]
 pub struct SharedTruth(Option<Truth>);
 
@@ -57,7 +57,7 @@ impl SharedTruth {
         self.0.as_ref()
     }
 
-    /// The truth, traced unless it is there already.
+    /// The truth, traced on the first call.
     pub(crate) fn or_trace(&mut self, trace: impl FnOnce() -> Truth) -> &Truth {
         self.0.get_or_insert_with(trace)
     }

@@ -19,7 +19,7 @@ pub struct LiveTruth {
     milliseconds: Option<f32>,
 }
 
-/// Pictures whose times wait for the GPU at most.
+/// Most pictures whose times may wait for the GPU.
 const PENDING: usize = 4;
 
 /// A picture that is judged live.
@@ -28,7 +28,7 @@ pub(crate) struct LiveInput<'a> {
     pub(crate) settings: TruthSettings,
     pub(crate) maps: PictureMaps<'a>,
     pub(crate) seen: &'a wgpu::TextureView,
-    /// What the maps of the frame before show at the same points.
+    /// The shadow factors that the maps of the frame before give at the same points.
     pub(crate) before: Option<GpuBefore<'a>>,
 }
 
@@ -69,7 +69,8 @@ impl LiveTruth {
         self.judge.pictures()
     }
 
-    /// The sums of the newest picture that the GPU has finished, once, some frames late; `None` while there is none.
+    /// The sums of the newest picture that the GPU has finished, given once, some frames late; `None` until there are
+    /// any.
     ///
     /// # Errors
     ///
@@ -82,7 +83,7 @@ impl LiveTruth {
         Ok(tally)
     }
 
-    /// How long the GPU judged and summed the last picture of which the time has come back, in milliseconds; `None`
+    /// Time in which the GPU judged and summed a picture, in milliseconds: the last time that has come back. `None`
     /// before that, and on adapters without timestamps.
     pub fn milliseconds(&self) -> Option<f32> {
         self.milliseconds

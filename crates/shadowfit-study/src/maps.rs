@@ -1,4 +1,4 @@
-//! Fitted maps as the measures of `shadowfit-truth` take them.
+//! Fitted maps in the form that `shadowfit-truth` measures.
 
 use glam::{DMat4, DVec3, Vec3};
 use shadowfit::FittedMap;
@@ -8,10 +8,10 @@ use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{MapReading, MeasuredMap, PictureMaps};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
-/// View depth, in metres, that means that a map has no end: fit files have finite numbers only.
+/// View depth, in metres, that stands for a map without an end: fit files have finite numbers only.
 pub(crate) const NO_END: f64 = 1e9;
 
-/// A map as fit files have it: the f32 matrix that the renderer gets, made absolute in f64.
+/// A map in the form of fit files: the f32 matrix that the renderer gets, made absolute in f64.
 pub fn fit_map(map: &FittedMap) -> FitMap {
     FitMap {
         view_proj: clip_from(map, DVec3::ZERO).to_cols_array(),
@@ -22,8 +22,8 @@ pub fn fit_map(map: &FittedMap) -> FitMap {
     }
 }
 
-/// Maps of a descriptor as the measures take them, for positions relative to a world position. `direction` is the light's
-/// direction of travel.
+/// Maps of a descriptor in the form that is measured, for positions relative to a world position. `direction` is the
+/// light's direction of travel.
 pub(crate) fn measured(
     maps: &[FittedMap],
     descriptor: &ShadowMapDescriptor,
@@ -39,7 +39,7 @@ pub(crate) fn measured(
     maps.iter().map(measured).collect()
 }
 
-/// How the maps of a shadow map are read: `maps` as the measures take those of `fits`.
+/// How the maps of a shadow map are read: `maps` are `fits` in the form that is measured.
 pub(crate) fn picture_maps<'a>(
     maps: &'a [MeasuredMap],
     fits: &[FittedMap],

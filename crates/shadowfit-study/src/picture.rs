@@ -9,7 +9,7 @@ use shadowfit_wgpu::ShadowMapDescriptor;
 use crate::maps::{measured, picture_maps};
 use crate::{Judging, SceneRays, View};
 
-/// The maps of the frame before, and what they show at the points of a picture: crawl is measured against them.
+/// The maps of the frame before, and their shadow factors at the points of a picture: crawl is measured against them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameBefore {
     /// Its maps.
@@ -34,12 +34,12 @@ pub(crate) struct Picture<'a> {
 }
 
 impl Picture<'_> {
-    /// The truth of the picture, from what a probe has seen.
+    /// The truth of the picture, for the triangles that a probe found.
     pub(crate) fn trace(&self, pixels: &[Option<ProbePixel>]) -> Truth {
         self.trace_while(pixels, || true).expect("nobody gives it up")
     }
 
-    /// The same for as long as `goes_on` says so.
+    /// The same while `goes_on` returns `true`.
     pub(crate) fn trace_while(
         &self,
         pixels: &[Option<ProbePixel>],
@@ -55,7 +55,7 @@ impl Picture<'_> {
         self.judge_while(truth, factors, before, || true).expect("nobody gives it up")
     }
 
-    /// The same for as long as `goes_on` says so.
+    /// The same while `goes_on` returns `true`.
     pub(crate) fn judge_while(
         &self,
         truth: &Truth,

@@ -1,4 +1,4 @@
-//! The rays of a scene that moves: those of its present pose, those of an earlier one, and those that a thread makes.
+//! The rays of an animated scene: those of its present pose, those of an earlier one, and those that a thread makes.
 //!
 //! Making rays takes a tenth of a second for each million triangles or more, too long for a picture to wait. So a thread
 //! makes them while those of an earlier pose are still read, and the two sets change places:
@@ -30,7 +30,7 @@ pub(crate) struct PosedRays {
 #[derive(Debug, Default)]
 struct Others {
     earlier: Option<Earlier>,
-    /// Those that the earlier ones have replaced: what the next ones are made of.
+    /// Rays that were replaced by the earlier ones: the next ones are made from them.
     spare: Option<Arc<SceneRays>>,
     making: Option<Making>,
     /// The pose whose rays a thread failed to make; it is not asked again.
@@ -59,7 +59,7 @@ pub(crate) struct Posed<'a> {
 }
 
 impl PosedRays {
-    /// The scene has another pose: the rays that there are become earlier ones.
+    /// The scene has another pose: the present rays become earlier ones.
     pub(crate) fn change_pose(&mut self) {
         let pose = self.pose;
         self.pose += 1;
@@ -68,7 +68,7 @@ impl PosedRays {
         }
     }
 
-    /// The rays of the present pose, made or waited for if they are not there.
+    /// The rays of the present pose. Makes them, or waits for them, where they do not exist.
     pub(crate) fn get_or_make(&self, posed: Posed<'_>) -> &Arc<SceneRays> {
         self.present.get_or_init(|| {
             let mut others = self.others();
@@ -82,7 +82,7 @@ impl PosedRays {
         })
     }
 
-    /// The rays of the present pose, if they are there.
+    /// The rays of the present pose, if they exist.
     pub(crate) fn ready(&self) -> Option<Arc<SceneRays>> {
         self.present.get().cloned()
     }
@@ -92,13 +92,13 @@ impl PosedRays {
         Self { present: self.ready().map_or_else(OnceLock::new, OnceLock::from), ..Self::default() }
     }
 
-    /// The latest rays that are there, and whether they are of the present pose.
+    /// The latest rays, and whether they are of the present pose.
     pub(crate) fn latest(&self) -> Option<(Arc<SceneRays>, bool)> {
         let earlier = || self.others().earlier.as_ref().map(|earlier| (Arc::clone(&earlier.rays), false));
         self.ready().map(|rays| (rays, true)).or_else(earlier)
     }
 
-    /// Has a thread make the rays of the present pose, unless they are there or a thread is already at work.
+    /// Starts a thread that makes the rays of the present pose, unless they exist or a thread is already at work.
     pub(crate) fn request(&mut self, posed: Posed<'_>) {
         let pose = self.pose;
         let is_there = self.present.get().is_some();
@@ -120,7 +120,7 @@ impl PosedRays {
         }
     }
 
-    /// Takes what a thread has made, and returns whether there was anything.
+    /// Takes the rays that a thread has made, and returns whether there were any.
     pub(crate) fn take(&mut self) -> bool {
         let present = self.pose;
         let others = self.others_mut();
@@ -152,15 +152,15 @@ impl PosedRays {
 }
 
 impl Others {
-    /// Of two earlier poses the rays of the later one stay, and the others are spare.
+    /// The rays of the later of two earlier poses stay; the others become spare.
     fn replace_earlier(&mut self, found: Earlier) {
         let is_older = self.earlier.as_ref().is_some_and(|known| known.pose > found.pose);
         self.spare = if is_older { Some(found.rays) } else { self.earlier.replace(found).map(|known| known.rays) };
     }
 }
 
-/// Makes rays of a pose: from others of the same scene where there are some, which are moved themselves where nobody
-/// else reads them, and copied otherwise. Either is several times as fast as a new hierarchy.
+/// Makes the rays of a pose: from others of the same scene where there are some. These are moved in place where nobody
+/// else reads them, and copied otherwise. Both are several times as fast as building a new hierarchy.
 fn make(scene: &Scene, pose: &Pose, origin: DVec3, from: Option<Arc<SceneRays>>) -> SceneRays {
     let Some(from) = from else { return SceneRays::from_origin(scene, pose, origin) };
     let mut rays = Arc::unwrap_or_clone(from);

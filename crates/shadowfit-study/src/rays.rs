@@ -1,5 +1,4 @@
-//! A scene's casters as rays see them: the same triangles and cut-outs that the renderer draws
-//! into the shadow map.
+//! A scene's casters for rays: the same triangles and cut-outs that the renderer draws into the shadow map.
 
 use glam::{DVec3, Vec2, Vec4};
 use shadowfit_scene::{AlphaMode, Image, Instance, Pose, Primitive, Scene, Texture, Triangle};
@@ -22,7 +21,7 @@ impl SceneRays {
     pub fn set_pose(&mut self, scene: &Scene, pose: &Pose) {
         let triangles = casters(scene, &scene.instances(), pose, self.origin);
         if self.tracer.set_triangles(triangles.iter().map(|triangle| triangle.vertices)).is_err() {
-            // Another scene after all.
+            // It is another scene.
             *self = Self::from_origin(scene, pose, self.origin);
             return;
         }

@@ -1,5 +1,5 @@
-//! A scene made ready: uploaded, with boxes for fits, and with rays that are made when they are first needed or on a
-//! thread.
+//! A scene prepared for drawing and judging: uploaded, with boxes for fits, and with rays that are made when they are
+//! first needed or on a thread.
 
 use core::fmt;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use crate::posed_rays::{Posed, PosedRays};
 /// positions are that near to it exact to about a tenth of the rays' offset of a millimetre.
 const NEAR_THE_ORIGIN: f32 = 1000.0;
 
-/// What rays are relative to: the world's own origin, or the middle of a scene that is far from it.
+/// Origin of the rays: that of the world, or the middle of a scene that is far from it.
 fn origin_of(bounds: &Aabb) -> DVec3 {
     let middle = (bounds.min + bounds.max) * 0.5;
     if middle.abs().max_element() <= NEAR_THE_ORIGIN { DVec3::ZERO } else { middle.as_dvec3().round() }
@@ -38,8 +38,8 @@ impl core::error::Error for NothingToDraw {}
 
 /// A scene in a pose, ready to be drawn, traced and fitted to.
 ///
-/// Whoever can wait asks for its [`rays`](PosedScene::rays). Whoever draws pictures that follow each other asks in each frame
-/// for what there is, and a thread makes what is missing:
+/// Callers that can wait take its [`rays`](PosedScene::rays). A window takes the latest rays in each frame, and a
+/// thread makes those that are missing:
 ///
 /// ```no_run
 /// # fn frame(scene: &mut shadowfit_study::PreparedScene) {
@@ -54,12 +54,12 @@ impl core::error::Error for NothingToDraw {}
 /// It can be made on one thread and used on another.
 #[derive(Debug)]
 pub struct PreparedScene {
-    /// On the GPU.
+    /// The scene on the GPU.
     pub gpu_scene: GpuScene,
     posed: PosedScene,
 }
 
-/// A scene in a pose, ready to be traced and fitted to: all of a [`PreparedScene`] that needs no GPU.
+/// A scene in a pose, ready to be traced and fitted to: the part of a [`PreparedScene`] that needs no GPU.
 #[derive(Debug)]
 pub struct PosedScene {
     scene: Arc<Scene>,
@@ -100,8 +100,8 @@ impl PreparedScene {
         Ok(Self { gpu_scene, posed })
     }
 
-    /// Poses the scene at a time of an animation, in seconds; in its rest pose where it has no such animation. In the pose
-    /// that it already has, all stays as it is.
+    /// Poses the scene at a time of an animation, in seconds; in its rest pose where it has no such animation. Nothing
+    /// changes where it has that pose already.
     pub fn set_time(&mut self, gpu: &Gpu, animation: usize, seconds: f32) {
         let Self { gpu_scene, posed } = self;
         let pose = posed.scene.pose(Some(animation), seconds);
@@ -133,7 +133,7 @@ impl core::ops::DerefMut for PreparedScene {
 }
 
 impl PosedScene {
-    /// The scene in its present pose for a thread of its own, with the rays that are there.
+    /// The scene in its present pose for another thread, with the rays that exist.
     #[must_use]
     pub fn snapshot(&self) -> Self {
         Self {
@@ -152,12 +152,12 @@ impl PosedScene {
         &self.scene
     }
 
-    /// The scene, for threads that go on with it.
+    /// The scene, to share with threads.
     pub fn shared_scene(&self) -> Arc<Scene> {
         Arc::clone(&self.scene)
     }
 
-    /// Where its nodes are at present.
+    /// The present pose of its nodes.
     pub fn pose(&self) -> &Pose {
         &self.pose
     }
@@ -184,24 +184,24 @@ impl PosedScene {
         self.rays.get_or_make(self.posed())
     }
 
-    /// The same, for threads that go on with them.
+    /// The same, to share with threads.
     pub fn shared_rays(&self) -> Arc<SceneRays> {
         Arc::clone(self.rays.get_or_make(self.posed()))
     }
 
-    /// The rays of the present pose, if they are there. Nothing is made.
+    /// The rays of the present pose, if they exist. Makes nothing.
     pub fn ready_rays(&self) -> Option<Arc<SceneRays>> {
         self.rays.ready()
     }
 
-    /// The latest rays that there are, and whether they are of the present pose. Nothing is made.
+    /// The latest rays, and whether they are of the present pose. Makes nothing.
     pub fn latest_rays(&self) -> Option<(Arc<SceneRays>, bool)> {
         self.rays.latest()
     }
 
-    /// Has a thread make the rays of the present pose, which [`Self::take_rays`] takes in a later frame. Nothing happens
-    /// where they are there already, or while a thread still makes those of an earlier pose: asked in each frame of an
-    /// animation, it makes rays one after the other, which lag behind by a frame or a few.
+    /// Starts a thread that makes the rays of the present pose, for [`Self::take_rays`] in a later frame. Nothing
+    /// happens where they exist already, or while a thread still makes those of an earlier pose: called in each frame
+    /// of an animation, it makes rays one after the other, which lag behind by a few frames.
     pub fn request_rays(&mut self) {
         let Self { rays, scene, pose, origin, .. } = self;
         rays.request(Posed { scene, pose, origin: *origin });
@@ -217,7 +217,7 @@ impl PosedScene {
         Posed { scene: &self.scene, pose: &self.pose, origin: self.origin }
     }
 
-    /// A camera as rays see it: relative to their origin.
+    /// A camera relative to the origin of the rays.
     pub fn camera_for_rays(&self, camera: &PerspectiveCamera) -> PerspectiveCamera {
         PerspectiveCamera { eye: camera.eye - self.origin, ..*camera }
     }

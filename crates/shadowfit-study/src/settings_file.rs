@@ -1,7 +1,7 @@
-//! Settings as TOML, by the parameter table: what tools save, and the files of techniques.
+//! Settings as TOML, by the parameter table: for saved settings and for files of techniques.
 //!
 //! A table for each group and a line for each parameter. Every parameter is written, so that a new default does not
-//! change what a person had set.
+//! change saved settings.
 
 use std::fmt::Write as _;
 
@@ -22,17 +22,17 @@ pub fn settings_to_toml(settings: &Settings, prefix: &str) -> String {
     write_settings(settings, prefix, |_| true)
 }
 
-/// The tables of [`settings_to_toml`] that a technique is made of.
+/// The tables of [`settings_to_toml`] that make up a technique.
 pub fn technique_to_toml(technique: &Technique, prefix: &str) -> String {
     write_settings(&Settings::default().with_technique(*technique), prefix, Group::is_technique)
 }
 
-/// Takes what a table says, and leaves everything else as it is.
+/// Sets the parameters that a table names, and leaves all others as they are.
 ///
 /// # Errors
 ///
-/// When the table has a group or a key that there is not, or a value that the parameter does not take; the settings are
-/// as they were then.
+/// When the table has an unknown group or key, or a value that the parameter does not take. The settings are unchanged
+/// then.
 pub fn settings_from_toml(table: &toml::Table, settings: &mut Settings) -> Result<()> {
     read_settings(table, |_| true, settings)
 }
@@ -52,12 +52,12 @@ pub(crate) fn write_settings(settings: &Settings, prefix: &str, has: impl Fn(Gro
     text
 }
 
-/// Takes what a table says of some groups. What is none of these is an error, and the settings are as they were then.
+/// Sets the parameters of some groups from a table. Any other group is an error, and the settings are unchanged then.
 pub(crate) fn read_settings(table: &toml::Table, has: impl Fn(Group) -> bool, settings: &mut Settings) -> Result<()> {
     let mut left = table.clone();
     left.remove(FORMER_GROUP);
     let mut read = *settings;
-    // In the order of the table: a scheme stands before the numbers that only it has.
+    // In the order of the table: a scheme comes before the numbers that only it has.
     for parameter in PARAMETERS.iter().filter(|parameter| has(parameter.group)) {
         let Some(group) = left.get_mut(parameter.group.id()) else { continue };
         let group = group.as_table_mut().with_context(|| format!("{} is no table", parameter.group.id()))?;
@@ -75,14 +75,14 @@ fn key(parameter: &Parameter) -> &'static str {
     parameter.id.split_once('.').map_or(parameter.id, |(_, key)| key)
 }
 
-/// A parameter's value as TOML has it: a number, true or false, or an option's id in quotes.
+/// A parameter's value in TOML: a number, true or false, or an option's id in quotes.
 fn value_of(parameter: &Parameter, settings: &Settings) -> String {
     let text = params::format_value(settings, parameter);
     let is_bare = parameter.number(settings).is_some() || matches!(parameter.kind, Kind::Toggle);
     if is_bare { text } else { Value::from(text).to_string() }
 }
 
-/// A TOML value as the parameter table reads it.
+/// A TOML value as text for the parameter table.
 fn text_of(value: &Value) -> Result<String> {
     Ok(match value {
         Value::String(text) => text.clone(),
@@ -93,7 +93,7 @@ fn text_of(value: &Value) -> Result<String> {
     })
 }
 
-/// Refuses what is left of a file: tables and keys that are not of the groups which it `has`.
+/// Refuses what is left in a file: tables and keys outside the groups that it `has`.
 fn refuse_the_rest(file: &toml::Table, has: impl Fn(Group) -> bool) -> Result<()> {
     let groups: Vec<Group> = Group::ALL.into_iter().filter(|group| has(*group)).collect();
     for (name, value) in file {

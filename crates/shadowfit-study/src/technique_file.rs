@@ -1,8 +1,8 @@
 //! Techniques by name, and as TOML files.
 //!
-//! A file has a table for each group of the parameter table and a line for each parameter, so that what is written as
-//! `--set map.filter=pcf_3x3` on a command line is `filter = "pcf_3x3"` under `[map]` in a file. What a file leaves out
-//! is as in the recommended technique.
+//! A file has a table for each group of the parameter table and a line for each parameter, so that `--set
+//! map.filter=pcf_3x3` on a command line is `filter = "pcf_3x3"` under `[map]` in a file. Parameters that a file leaves
+//! out are those of the recommended technique.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -21,7 +21,7 @@ use crate::settings_file::{read_settings, technique_to_toml};
 pub struct NamedTechnique {
     /// Name, for tables.
     pub name: String,
-    /// What it is, in a few words.
+    /// Description in a few words.
     pub summary: String,
     /// The technique.
     pub technique: Technique,
@@ -89,8 +89,7 @@ impl NamedTechnique {
     ///
     /// # Errors
     ///
-    /// When the text is no TOML, has a table or a key that no technique has, or a value that the parameter does not
-    /// take.
+    /// When the text is not TOML, or has an unknown table or key, or a value that the parameter does not take.
     pub fn from_toml(text: &str) -> Result<Self> {
         let mut file: toml::Table = toml::from_str(text)?;
         let mut word = |key: &str| match file.remove(key) {
@@ -105,7 +104,7 @@ impl NamedTechnique {
         Ok(Self { name, summary, technique })
     }
 
-    /// The technique as [`Self::read`] reads it.
+    /// The technique as TOML that [`Self::read`] reads.
     ///
     /// # Errors
     ///

@@ -18,17 +18,17 @@ use crate::{Comparison, NamedTechnique, SharedTruth, View, ensure_judged};
 /// How much each error of a technique counts: weights of shares in per cent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weights {
-    /// Of all wrong pixels.
+    /// Weight of all wrong pixels.
     pub wrong: f64,
-    /// Of false shadow, again: acne is seen at once.
+    /// Weight of false shadow, on top: acne is seen at once.
     pub false_shadow: f64,
-    /// Of false light, again.
+    /// Weight of false light, on top.
     pub false_light: f64,
-    /// Of holes, again.
+    /// Weight of holes, on top.
     pub hole: f64,
-    /// Of the mean difference between the filtered factor and the truth.
+    /// Weight of the mean difference between the filtered factor and the truth.
     pub mean_error: f64,
-    /// Of edge pixels that change from frame to frame.
+    /// Weight of edge pixels that change from frame to frame.
     pub crawl: f64,
 }
 
@@ -51,7 +51,7 @@ impl Weights {
     }
 }
 
-/// What may be spent.
+/// The budget of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Budget {
     /// Most maps.
@@ -63,7 +63,7 @@ pub struct Budget {
 /// What a search may change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TuneScope {
-    /// All but the size of the maps, and their number only to fewer.
+    /// Everything except the size of the maps; their number may only fall.
     #[default]
     Everything,
     /// Bias and filter alone: the maps and their fit stay as they are. A [soft](shadowfit::settings::FilterKind::is_soft)
@@ -71,7 +71,7 @@ pub enum TuneScope {
     BiasAndFilter,
 }
 
-/// Where a search begins, what it may change, and what it looks for.
+/// Start, scope and weights of a search.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TuneSettings {
     /// The technique that it begins with, whose number and size of maps are the budget. Default: the recommended one.
@@ -90,7 +90,7 @@ impl TuneSettings {
     }
 }
 
-/// How far a search is, after each technique that it has tried.
+/// Progress of a search, after each technique that it has tried.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Progress {
     /// Techniques tried, the first one included.
@@ -138,7 +138,7 @@ struct Search<'a> {
     truths: Vec<SharedTruth>,
     weights: &'a Weights,
     at_most: usize,
-    /// All that was tried, without what has no effect.
+    /// All techniques that were tried, without settings that have no effect.
     tried: Vec<Technique>,
     steps: Vec<Step>,
     best: Technique,
@@ -148,7 +148,7 @@ struct Search<'a> {
 
 /// Searches. `progress` is called after each technique that was tried, and stops the search when it answers `false`.
 ///
-/// It can run on a thread of its own, with a comparison that has a [`Gpu`](shadowfit_render::Gpu) of its own:
+/// It can run on another thread, with a comparison that has another [`Gpu`](shadowfit_render::Gpu):
 ///
 /// ```no_run
 /// # use std::sync::mpsc::{Receiver, channel};
@@ -167,7 +167,7 @@ struct Search<'a> {
 /// # }
 /// ```
 ///
-/// A change that the fit or the shadow map refuses is passed over.
+/// A change that the fit or the shadow map refuses is skipped.
 ///
 /// # Errors
 ///
@@ -209,7 +209,7 @@ pub fn tune(
 }
 
 impl Search<'_> {
-    /// Tries a change, and returns whether it was one.
+    /// Tries a change, and returns whether it changed anything.
     fn try_change(&mut self, from: &Technique, change: &Change) -> Result<bool> {
         let mut candidate = *from;
         (change.apply)(&mut candidate);
@@ -270,14 +270,15 @@ impl Search<'_> {
     }
 }
 
-/// Whether a technique was refused, and not the machine at fault.
+/// Whether the technique was refused, in contrast to a failure of the machine.
 fn is_refusal(error: &Error) -> bool {
     error.is::<FitError>()
         || error.is::<ShadowMapError>()
         || matches!(error.downcast_ref(), Some(ProbeError::ShadowMap(_)))
 }
 
-/// A technique without what has no effect on its maps: of windows that of splits, stabilisation and rectangle.
+/// A technique without settings that have no effect on its maps: for windows those are splits, stabilisation and
+/// rectangle.
 fn in_effect(technique: &Technique) -> Technique {
     if technique.fit.kind != FitKind::Windows {
         return *technique;

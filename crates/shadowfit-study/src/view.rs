@@ -1,4 +1,4 @@
-//! A camera and a light: what a picture is of, beside the scene.
+//! A camera and a light: with the scene they make a picture.
 
 use glam::Vec3;
 use shadowfit::PerspectiveCamera;

@@ -1,7 +1,8 @@
-//! Why a pixel is lit or dark, and right or wrong: what its point reads, what is compared, and the reason in words.
+//! Why a pixel is lit or dark, and right or wrong: the texel that it reads, the depths that are compared, and the
+//! reason in words.
 //!
-//! The class is the judge's own; the reasons follow from a few rays more. Which map is read and why is told in
-//! `map_reason`, how it is looked up in `look_up`, and the rest in `reason`.
+//! The class is that of the judge; the reasons follow from a few more rays. `map_reason` says which map is read and
+//! why, `look_up` how it is looked up, and `reason` the rest.
 
 mod look_up;
 mod map_reason;
@@ -19,12 +20,12 @@ use self::look_up::{LookUp, Tap};
 use crate::maps::{measured, picture_maps};
 use crate::{Judging, SceneRays, View};
 
-/// A pixel to ask about, and all that its shadow follows from.
+/// A pixel to explain, and everything that its shadow depends on.
 #[derive(Clone, Copy, Debug)]
 pub struct WhyInput<'a> {
     /// The scene, whose nodes give things their names.
     pub scene: &'a Scene,
-    /// Its rays, in the pose that is seen.
+    /// Its rays, in the visible pose.
     pub rays: &'a SceneRays,
     /// Camera and light of the picture.
     pub view: &'a View,
@@ -36,12 +37,12 @@ pub struct WhyInput<'a> {
     pub technique: &'a Technique,
     /// The maps that the picture was drawn with.
     pub maps: &'a [FittedMap],
-    /// What they were drawn into.
+    /// The descriptor of the shadow map that they were drawn into.
     pub descriptor: &'a ShadowMapDescriptor,
-    /// Share of the light at the pixel as it was drawn, 0..=1, such as a probe gives it; `None` takes what one comparison
-    /// with the point's own texel gives.
+    /// Share of the light at the pixel as it was drawn, 0..=1, such as a probe gives it; with `None` it is the result
+    /// of one comparison with the point's texel.
     pub factor: Option<f32>,
-    /// What the map stores around the look-up, if it was read back; rays find it otherwise.
+    /// The depths that the map stores around the look-up, if they were read back; otherwise rays find them.
     pub stored: Option<StoredTexels>,
 }
 
@@ -57,7 +58,7 @@ pub struct StoredTexels {
 }
 
 impl StoredTexels {
-    /// The depth of a texel, if it is one of these.
+    /// The depth of a texel, if it is among these.
     fn depth(&self, texel: DVec2) -> Option<f32> {
         let [x, y] = [0, 1].map(|axis| texel[axis] - f64::from(self.texel[axis]) + 1.0);
         let is_here = (0.0..3.0).contains(&x) && (0.0..3.0).contains(&y);
@@ -68,22 +69,23 @@ impl StoredTexels {
 /// Why a pixel is lit or dark, and right or wrong.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Why {
-    /// What is seen; world space, metres.
+    /// The visible point; world space, metres.
     pub position: DVec3,
     /// Unit geometric normal on the side of the eye, world axes.
     pub normal: Vec3,
     /// Distance from the eye, in metres.
     pub distance: f32,
-    /// Index of the map that is read, of two the one that weighs more; `None` where no map holds the point.
+    /// Index of the map that is read; where two are blended, the one that weighs more; `None` where no map holds the
+    /// point.
     pub map: Option<usize>,
     /// Where it is looked up in that map, with the bias's offset, in texels from the left and from the top. `None` without
     /// a map, and on a surface that is turned away from the light.
     pub texel: Option<[f32; 2]>,
-    /// Depth that is compared, bias and all, as the map stores depths: 0..=1, plain or reversed.
+    /// Depth that is compared, with the bias, as the map stores depths: 0..=1, plain or reversed.
     pub compared: Option<f32>,
     /// The same in metres from the map's near plane along the light; less than 0 before it.
     pub compared_metres: Option<f32>,
-    /// Depth that the map stores at that texel, as it was read or as rays find it; that of a cleared map where it stores
+    /// Depth that the map stores at that texel, read back or found by rays; the depth of a cleared map where it stores
     /// nothing.
     pub stored: Option<f32>,
     /// The same in metres from the map's near plane along the light; `None` where it stores nothing.
@@ -91,13 +93,13 @@ pub struct Why {
     /// Screen pixels per shadow texel along the worse axis; `None` without a map, and where the surface is edge-on to the
     /// light.
     pub pixels_per_texel: Option<f32>,
-    /// How the pixel compares with the truth. The judge of pictures says the same, but for edge zones wider than
-    /// [`PixelTruth::judge`] looks at.
+    /// How the pixel compares with the truth. The judge of pictures says the same, except for edge zones wider than
+    /// those of [`PixelTruth::judge`].
     pub class: Class,
     /// Whether the light reaches it in truth.
     pub is_lit: bool,
-    /// The share of the light that it was judged by, 0..=1: as it was given, or as one comparison gives it. `None` on a
-    /// surface that is not judged, if none was given.
+    /// The share of the light that it was judged by, 0..=1: the one that was given, or that of one comparison. `None`
+    /// on a surface that is not judged, if none was given.
     pub factor: Option<f32>,
     /// Which map is read, and why that one: "map 2 of 4: the finest that holds this point; map 1 ends 3.1 m to the left of
     /// it".
@@ -107,7 +109,7 @@ pub struct Why {
     pub reason: String,
 }
 
-/// All that is known of a pixel. Positions are relative to the origin of the rays, in metres.
+/// Everything that is known about a pixel. Positions are relative to the origin of the rays, in metres.
 pub(crate) struct At<'a> {
     input: &'a WhyInput<'a>,
     truth: PixelTruth<'a>,
@@ -184,7 +186,7 @@ fn pixel_index(pixel: [f32; 2], [width, height]: [u32; 2]) -> Option<usize> {
 }
 
 impl At<'_> {
-    /// What stands between the point and the sun, seen from the point itself and not from where its ray starts.
+    /// The occluder between the point and the sun, seen from the point itself and not from the start of its ray.
     fn occluders(&self) -> Vec<Occluder> {
         let mut occluders = self.truth.occluders(self.pixel, &self.point);
         for occluder in &mut occluders {
@@ -192,7 +194,7 @@ impl At<'_> {
             let normal = self.truth.tracer.normal(occluder.triangle).as_dvec3();
             let corner = self.truth.tracer.corners(occluder.triangle)[0].as_dvec3();
             let distance = normal.dot(corner - self.point.position) / normal.dot(direction);
-            // A plane along the ray has none.
+            // A plane along the ray has no such point.
             if distance.is_finite() {
                 (occluder.position, occluder.distance) = (self.point.position + direction * distance, distance);
             }

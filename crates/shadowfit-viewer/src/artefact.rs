@@ -1,10 +1,10 @@
 //! The three demonstrations: where to stand and what to set so that an artefact is unmistakable in
 //! the scene at hand, and the setting that cures it.
 //!
-//! Several maps keep their fit, their splits and what holds them still: only what prevents the artefact is changed. A
-//! single map is fitted by the rule that shows the artefact best. Windows, which cannot be made coarse and hold every
-//! caster over them, give way to focused maps, and come back with the cures of aliasing and holes. Acne is cured at the
-//! size of texels that shows it.
+//! Several maps keep their fit, their splits and their stabilisation: only the settings that prevent the artefact are
+//! changed. A single map gets the fit that shows the artefact best. Windows cannot be made coarse and hold every caster
+//! over them, so focused maps replace them until the cure of aliasing or of a hole brings them back. Acne is cured at
+//! the size of texels that shows it.
 
 use core::f32::consts::{PI, TAU};
 
@@ -32,12 +32,12 @@ const CREASE_BIAS: f32 = 1.0;
 const HOLE_DISTANCE: f32 = 4.0;
 /// Reach of a long shadow, in radii of the scene, from which on the scene is shown as a whole.
 const LARGE_REACH: f32 = 0.3;
-/// Share of the picture from which on a larger hole shows no more.
+/// Share of the picture above which a larger hole counts no more.
 const LARGE_HOLE: f32 = 0.15;
 /// Share of the picture that should still show a shadow when the hole is shown.
 const KEPT_SHADOW: f32 = 0.1;
-/// How much more a hole counts where the shadow that is left breaks off at it, and the number of coarse pixels of that
-/// break from which on it counts whole.
+/// Factor by which a hole counts more where the rest of the shadow breaks off at it, and the length of that break, in
+/// coarse pixels, from which the factor applies in full.
 const BREAK: f32 = 1.5;
 const BREAKS: f32 = 5.0;
 /// Resolution of a single map, in texels, when aliasing is shown.
@@ -51,7 +51,7 @@ const STEPS: u32 = 24;
 /// Aspect that candidates are judged with.
 const ASPECT: f32 = 16.0 / 9.0;
 
-/// What a search for the view of an artefact begins with; it can be sent to a thread.
+/// Input of the search for the view of an artefact; it can be sent to a thread.
 #[derive(Debug)]
 pub(crate) struct Search {
     pub(crate) artefact: Artefact,
@@ -67,7 +67,7 @@ pub(crate) struct Found {
     pub(crate) artefact: Artefact,
     pub(crate) settings: Settings,
     pub(crate) camera: FlyCamera,
-    /// Whether it shows the artefact; where no view does, this one is the next best.
+    /// Whether it shows the artefact; if no view does, this one comes closest.
     pub(crate) shows: bool,
     /// What to look for, in a sentence about this scene.
     pub(crate) narration: String,
@@ -117,7 +117,7 @@ pub(crate) fn fix(technique: &mut Technique, artefact: Artefact, before: &Techni
         Artefact::Acne => {
             technique.bias = BiasSettings { constant: CREASE_BIAS, ..BiasSettings::automatic(technique.filter) };
         }
-        // Maps that cover no more than what is seen, of more texels, with a filter that smooths what is left.
+        // Maps that cover only the visible part, with more texels, and a filter that smooths the remaining steps.
         Artefact::Aliasing => {
             let fit = &mut technique.fit;
             fit.margin = 0.0;
@@ -139,7 +139,7 @@ pub(crate) fn fix(technique: &mut Technique, artefact: Artefact, before: &Techni
     }
 }
 
-/// What the demonstrations look at: the scene's subject, or the part that shows most.
+/// The subject of the demonstrations: the scene's subject, or the part that shows most.
 struct Place {
     bounds: Aabb,
     center: Vec3,
@@ -247,7 +247,7 @@ fn show_aliasing(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings
     (camera, found)
 }
 
-/// Between the subject and its shadow: the shadow is in view, what throws it is not in the map.
+/// Between the subject and its shadow: the shadow is in view, its caster is not in the map.
 fn show_hole(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) -> (PerspectiveCamera, bool) {
     let technique = &mut settings.technique;
     *technique = alone_or_as_slices(*technique, FitKind::XnaSample).with_filter(technique.filter);
@@ -257,7 +257,7 @@ fn show_hole(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) ->
         technique.fit.max_distance = place.radius * HOLE_DISTANCE;
     }
     let targets = spread(&place.shadows, 4);
-    // Where the shadow begins, too: a caster of which only the foot is in view has a shadow that breaks off.
+    // The start of the shadow as well: where only the foot of a caster is in view, its shadow breaks off.
     let base = Vec3::new(place.center.x, place.bounds.min.y, place.center.z);
     let candidates = targets.iter().flat_map(|shadow| {
         [shadow.receiver, (shadow.receiver + base) * 0.5].into_iter().flat_map(move |target| {
@@ -274,7 +274,7 @@ fn show_hole(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) ->
         let shadowed = search.shadowed(&pixels);
         let count = shadowed.iter().flatten().count() as f32;
         let large = pixels.len() as f32 * LARGE_HOLE;
-        // Not worth a fit where a hole in all of the shadow would be less than one that was found.
+        // Skip the fit where even a hole in all of the shadow would count less than one that was found.
         if count.min(large) * (1.0 + BREAK) <= most {
             return 0.0;
         }
@@ -323,7 +323,7 @@ fn around_the_clock() -> [f32; 12] {
     core::array::from_fn(|hour| hour as f32 / 12.0 * TAU - PI)
 }
 
-/// The candidate with the greatest score, or the lens as it stands where none has any.
+/// The candidate with the greatest score; the present camera where all scores are 0.
 fn best(
     lens: &PerspectiveCamera,
     candidates: impl IntoIterator<Item = [Vec3; 2]>,
@@ -340,13 +340,13 @@ fn best(
     (best.1, best.0 > 0.0)
 }
 
-/// Whether something stands right before the eye.
+/// Whether something blocks the view close to the eye.
 fn is_blocked(pixels: &[Option<Seen>], nearest: f32) -> bool {
     let close = pixels.iter().flatten().filter(|seen| seen.distance < nearest).count();
     close * 12 > pixels.len()
 }
 
-/// Number of neighbouring pixels of which one is in shadow and the other is not.
+/// Number of pairs of neighbouring pixels with one in shadow and the other lit.
 fn edges(shadowed: &[Option<bool>]) -> usize {
     let width = GRID[0] as usize;
     let differ = |a: usize, b: usize| matches!((shadowed[a], shadowed[b]), (Some(a), Some(b)) if a != b);
@@ -365,7 +365,7 @@ fn spread(sorted: &[Shadow], count: usize) -> Vec<Shadow> {
     (0..count).map(|index| sorted[(2 * index + 1) * sorted.len() / (2 * count)]).collect()
 }
 
-/// How coarse a map is made.
+/// How coarse a map should be.
 struct Coarse {
     /// A point that reads the map.
     point: Vec3,
@@ -375,8 +375,8 @@ struct Coarse {
     least: f32,
 }
 
-/// Makes texels as large as wanted: with the frustum that a single map has to hold, with the margin around each of
-/// several.
+/// Makes texels as large as wanted: by the frustum that a single map has to hold, or by the margin around each of
+/// several maps.
 fn coarsen(search: &ViewSearch<'_>, camera: &PerspectiveCamera, settings: &mut Settings, wanted: &Coarse) {
     let is_single = settings.technique.count == 1;
     let with = |amount: f32| {

@@ -168,8 +168,7 @@ impl Arguments {
         self.apply_unless(settings, |_| false)
     }
 
-    /// As [`Self::apply`], but without the values of parameters that exist only with a choice that these settings have
-    /// not made.
+    /// As [`Self::apply`], but ignores values of parameters that do not exist under these settings.
     ///
     /// # Errors
     ///
@@ -276,7 +275,7 @@ fn action_list() -> String {
     list
 }
 
-/// The values that a parameter takes.
+/// The possible values of a parameter.
 fn range(parameter: &Parameter) -> String {
     match &parameter.kind {
         Kind::Number(Number { min, max, unset, .. }) => {

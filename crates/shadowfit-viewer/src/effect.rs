@@ -1,4 +1,4 @@
-//! What a script and its random actions do to the viewer in a frame, and what they must know of it.
+//! Effects of a script and of random actions on the viewer in a frame, and the state of the viewer that they depend on.
 
 use std::path::PathBuf;
 

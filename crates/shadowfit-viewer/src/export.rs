@@ -1,4 +1,4 @@
-//! Settings as text that starts the viewer again: a command line, and what a screenshot carries.
+//! Settings as text that starts the viewer again: as a command line, and in screenshots.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ use shadowfit_params::{self as params, PARAMETERS};
 use crate::source::SceneSource;
 
 /// The command line that opens a scene with one of its animations and these settings, whatever was saved. `own` are the
-/// settings that the scene is opened with when nothing else is asked for: only what differs from them is written.
+/// settings of the scene alone: only differences from them are written.
 pub(crate) fn command_line(
     source: &SceneSource,
     animation: usize,
@@ -29,7 +29,7 @@ pub(crate) fn command_line(
     if animation > 0 {
         let _ = write!(line, " --animation {animation}");
     }
-    // Parameters that only others bring about come after these in the table.
+    // Parameters that depend on a choice come after that choice in the table.
     let mut reached = *own;
     for parameter in PARAMETERS.iter().filter(|parameter| parameter.is_present(settings)) {
         if !parameter.is_equal(settings, &reached) {
@@ -45,7 +45,7 @@ pub(crate) fn command_line(
     line
 }
 
-/// The options of a sample that differ from those that its name alone stands for.
+/// The options of a sample that differ from those of its name alone.
 fn changed(
     sample: &Sample,
     variant: Option<&SampleVariant>,

@@ -1,4 +1,4 @@
-//! Writing files so that nothing half-written is left behind, and pictures that know how they were made.
+//! Writes files as a whole, and pictures that carry their settings.
 
 use std::fs::File;
 use std::io::{BufReader, BufWriter};
@@ -21,14 +21,14 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     whole(path, |unfinished| Ok(std::fs::write(unfinished, bytes)?))
 }
 
-/// Has a file written beside the target first, which then takes its name.
+/// Writes a temporary file beside the target, and then renames it.
 fn whole(path: &Path, write: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(".part");
     let unfinished = path.with_file_name(name);
     let written = write(&unfinished).and_then(|()| Ok(std::fs::rename(&unfinished, path)?));
     if written.is_err() {
-        // The first error is the one worth telling.
+        // The first error is the one to report.
         let _ = std::fs::remove_file(&unfinished);
     }
     written.with_context(|| format!("cannot write {}", path.display()))

@@ -28,8 +28,8 @@ impl Fitted {
         self.between(f32::MIN, f32::MAX)
     }
 
-    /// The part of the view that a map is made for: by view depth its points look into it first. `None` where it has
-    /// none.
+    /// The part of the view that a map is made for: by view depth, points there read this map first. `None` for a map
+    /// without a range.
     pub(crate) fn slice(&self, map: usize) -> Option<ViewFrustum> {
         let map = self.maps.get(map)?;
         self.between(map.near, map.far)
@@ -40,8 +40,8 @@ impl Fitted {
         camera.frustum().and_then(|frustum| frustum.slice(near.max(camera.near), far.min(self.end))).ok()
     }
 
-    /// Index of the map that a point (world space, metres) reads, of two the one that weighs more; `None` where no map
-    /// holds it.
+    /// Index of the map that a point (world space, metres) reads; where two are blended, the one that weighs more;
+    /// `None` where no map holds it.
     pub(crate) fn read_at(&self, point: DVec3) -> Option<usize> {
         let camera = self.camera?;
         let depth = (point - camera.eye).dot(camera.forward.as_dvec3().normalize());

@@ -14,12 +14,12 @@ pub(crate) struct Gamepads {
 }
 
 impl Gamepads {
-    /// Opens them; a machine without support has none.
+    /// Opens the gamepads; a machine without support has none.
     pub(crate) fn new() -> Self {
         Self { gilrs: Gilrs::new().ok() }
     }
 
-    /// Movement and turn by sticks and triggers, and what the buttons that were pressed ask for.
+    /// Movement and turn by sticks and triggers, and the commands of the pressed buttons.
     pub(crate) fn poll(&mut self) -> ((Vec3, Vec2), Vec<Command>) {
         let Some(gilrs) = &mut self.gilrs else { return Default::default() };
         let mut commands = Vec::new();

@@ -25,13 +25,13 @@ const SAMPLES: u32 = 4;
 const PICTURE_TIME: f32 = 0.0;
 /// Time of a frame of a script, in seconds.
 const FRAME: f32 = 1.0 / 60.0;
-/// Frames that egui takes until a layout stands.
+/// Frames that egui needs until a layout is stable.
 const SETTLING: u32 = 4;
 /// Format of headless frames.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// Renders what the arguments ask for and says where it is. What import noted of the scene goes to the standard error.
-/// Nothing is restored from the last time, and nothing is kept for the next one.
+/// Renders the pictures that the arguments ask for and prints their paths. Notes of the import go to the standard
+/// error. Nothing is restored from the last time, and nothing is saved for the next one.
 pub(crate) fn run(arguments: &Arguments, folder: &Path) -> Result<()> {
     std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
     if arguments.script.is_some() {
@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &Arguments, folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Says which pictures were written.
+/// Prints which pictures were written.
 fn tell(written: &[PathBuf], name: &str, stage: &Stage, folder: &Path) {
     println!("{} pictures of {name} by {}, in {}:", written.len(), stage.gpu().name(), folder.display());
     for path in written {
@@ -64,7 +64,7 @@ fn tell(written: &[PathBuf], name: &str, stage: &Stage, folder: &Path) {
     }
 }
 
-/// Plays a script in frames that nobody sees; the files that it saves are put into the folder.
+/// Plays a script without a window; the files that it saves are put into the folder.
 fn play(arguments: &Arguments, folder: &Path) -> Result<()> {
     let start = Start::new(arguments)?.saving_into(folder);
     let gpu = pollster::block_on(Gpu::headless(arguments.adapter()))?;
@@ -94,7 +94,7 @@ fn play(arguments: &Arguments, folder: &Path) -> Result<()> {
     }
 }
 
-/// What egui is told of a window of a size in pixels, at a time in seconds.
+/// egui's input for a window of a size in pixels, at a time in seconds.
 fn input(size: [u32; 2], clock: f64) -> RawInput {
     RawInput {
         screen_rect: Some(Rect::from_min_size(Pos2::ZERO, vec2(size[0] as f32, size[1] as f32))),
@@ -194,14 +194,14 @@ impl Album<'_> {
         Ok(())
     }
 
-    /// Draws until the layout stands, and saves.
+    /// Draws until the layout is stable, and saves.
     fn save(&mut self, name: &str) -> Result<()> {
         let saved = Saved::default();
         let shown = InterfaceInput::at_rest(&saved);
         for frame in 0..SETTLING {
             let clock = f64::from(frame) * f64::from(FRAME);
             let (_, layout, _) = self.interface.layout(self.stage, &shown, input(self.size, clock));
-            // What is judged comes back with the next frame, and a legend lies in its corner in the one after that.
+            // Judged pictures come back with the next frame, and a legend lies in its corner in the one after that.
             if (SETTLING - 3..SETTLING - 1).contains(&frame) {
                 self.interface.pictures.draw(self.stage);
             }

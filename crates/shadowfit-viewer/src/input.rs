@@ -5,7 +5,7 @@ use glam::{Vec2, Vec3};
 use shadowfit_egui::Chord;
 use shadowfit_render::FlyInput;
 
-/// What the person holds.
+/// Keys and sticks that are held.
 #[derive(Debug, Default)]
 pub(crate) struct Input {
     held: Vec<Chord>,
@@ -16,7 +16,7 @@ pub(crate) struct Input {
 }
 
 impl Input {
-    /// Takes note of a key that was pressed or released; returns whether it was pressed and not held already.
+    /// Notes a key that was pressed or released; returns whether it was pressed and not held already.
     pub(crate) fn key(&mut self, chord: Chord, pressed: bool) -> bool {
         let is_held = self.held.iter().any(|held| held.key == chord.key);
         if pressed && !is_held {
@@ -32,8 +32,7 @@ impl Input {
         *self = Self::default();
     }
 
-    /// The input of the camera; drags and wheel are added by whoever sees them. Keys that are held with Control do not
-    /// fly.
+    /// The input of the camera; the caller adds drags and the wheel. Keys that are held with Control do not fly.
     pub(crate) fn fly(&self) -> FlyInput {
         let held = |key| f32::from(u8::from(self.held.iter().any(|held| held.key == key && !held.ctrl)));
         let axis = |positive, negative| held(positive) - held(negative);

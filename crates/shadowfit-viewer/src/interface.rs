@@ -34,16 +34,16 @@ pub(crate) struct Interface {
     /// Time of the last frame, in milliseconds.
     pub(crate) frame_ms: Option<f32>,
     format: wgpu::TextureFormat,
-    /// Those of the last frame.
+    /// The figures of the last frame.
     figures: Figures,
 }
 
-/// What the interface shows besides the stage.
+/// State that the interface shows besides the stage.
 pub(crate) struct InterfaceInput<'a> {
     pub(crate) saved: &'a Saved,
     pub(crate) presets: &'a [UserPreset],
     pub(crate) tune: Tune<'a>,
-    /// What was measured of the sample that is shown.
+    /// The figures of the sample that is shown.
     pub(crate) sample_figures: &'a [CardFigure],
     pub(crate) changes: Changes<'a>,
     /// A message, such as where a screenshot was saved.
@@ -73,7 +73,7 @@ impl<'a> InterfaceInput<'a> {
     }
 }
 
-/// What a person did with the interface in a frame.
+/// The user's input to the interface in a frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct InterfaceOutput {
     pub(crate) commands: Vec<Command>,
@@ -108,13 +108,13 @@ impl Interface {
         interface
     }
 
-    /// Takes the settings that a scene was opened with as what resets go back to.
+    /// Sets the settings to which resets go back: those that a scene was opened with.
     pub(crate) fn scene_changed(&mut self, stage: &Stage) {
         self.panel.defaults = stage.home_settings();
         self.edits_other = false;
     }
 
-    /// Format of what it is painted to.
+    /// Format of the surface that it is painted to.
     pub(crate) fn format(&self) -> wgpu::TextureFormat {
         self.format
     }

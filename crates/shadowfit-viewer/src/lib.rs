@@ -38,8 +38,8 @@ pub use headless::render_pictures;
 pub use shadowfit_egui::Artefact;
 pub use stage::{Shown, Stage, StageError};
 
-/// Runs the viewer with the process's arguments: the window, or with `--headless` the pictures.
-/// Errors are told on the standard error with exit code 2.
+/// Runs the viewer with the process's arguments: the window, or with `--headless` the pictures. Errors are printed to
+/// the standard error, with exit code 2.
 pub fn main() -> ExitCode {
     let arguments = cli::parse();
     let result = match &arguments.headless {

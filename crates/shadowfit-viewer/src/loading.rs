@@ -1,4 +1,4 @@
-//! Scenes loaded and made ready on a thread, while the window goes on.
+//! Loads scenes on a thread, while the window goes on.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -10,23 +10,23 @@ use shadowfit_study::PreparedScene;
 
 use crate::source::SceneSource;
 
-/// Share of the work that reading the file takes; the rest is making it ready.
+/// Share of the work that reading the file takes; the rest prepares the scene.
 const READING: f32 = 0.7;
 /// Steps of the bar.
 const STEPS: f32 = 1000.0;
 
-/// A scene on its way.
+/// A scene that is being loaded.
 pub(crate) struct Loading {
     pub(crate) source: SceneSource,
     /// The line of a script that asked for it.
     pub(crate) line: Option<String>,
-    /// In steps.
+    /// Progress, in steps.
     done: Arc<AtomicU32>,
     result: Receiver<Result<PreparedScene>>,
 }
 
 impl Loading {
-    /// Begins. `layout` is that of the scene's materials.
+    /// Begins to load. `layout` is that of the scene's materials.
     pub(crate) fn start(source: SceneSource, line: Option<String>, gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> Self {
         let (sender, result) = channel();
         let done = Arc::new(AtomicU32::new(0));
@@ -34,11 +34,11 @@ impl Loading {
             let (source, gpu, layout, done) = (source.clone(), gpu.clone(), layout.clone(), done.clone());
             move || {
                 let prepared = load(&source, &gpu, &layout, &done);
-                // Nobody waits any more where another scene was asked for.
+                // The receiver is gone where another scene was asked for.
                 let _ = sender.send(prepared);
             }
         };
-        // Where no thread can be made, the channel is closed, which is told as the end of the thread.
+        // Where no thread can be made, the channel is closed, which is reported as the end of the thread.
         let _ = std::thread::Builder::new().name("loading".to_owned()).spawn(work);
         Self { source, line, done, result }
     }
@@ -48,7 +48,7 @@ impl Loading {
         self.done.load(Ordering::Relaxed) as f32 / STEPS
     }
 
-    /// The scene, once it is there.
+    /// The scene, once it is loaded.
     pub(crate) fn take(&self) -> Option<Result<PreparedScene>> {
         match self.result.try_recv() {
             Ok(result) => Some(result),

@@ -107,7 +107,7 @@ impl MonkeyRun {
             Phase::Warm if self.passed >= self.seconds * WARM_UP => self.rest(Phase::Resting(REST), effects),
             Phase::Wild if self.passed >= self.seconds => self.rest(Phase::Ending(REST), effects),
             Phase::Warm | Phase::Wild => self.act(seconds, activity, effects),
-            // The scene that is being loaded is part of what is measured.
+            // The scene that is being loaded is part of the measured memory.
             Phase::Resting(_) | Phase::Ending(_)
                 if activity.is_loading || activity.is_searching || activity.is_tuning => {}
             Phase::Resting(left) if left > 0.0 => self.phase = Phase::Resting(left - seconds),

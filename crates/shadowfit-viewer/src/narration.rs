@@ -1,4 +1,4 @@
-//! What to look for in the picture of an artefact, in a sentence about the scene at hand.
+//! Sentences that say what to look for in the picture of an artefact.
 
 use shadowfit::PerspectiveCamera;
 use shadowfit_egui::Artefact;
@@ -6,7 +6,7 @@ use shadowfit_params::tool::Settings;
 
 use crate::view_search::{GRID, ViewSearch};
 
-/// Tells what a view of an artefact shows.
+/// The sentence about a view of an artefact.
 pub(crate) fn tell(
     artefact: Artefact,
     search: &ViewSearch<'_>,

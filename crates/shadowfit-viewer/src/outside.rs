@@ -1,5 +1,5 @@
 //! The view from outside: the camera's frustum in the slices that read a map each, the maps' boxes in their tints and
-//! the sun's direction, drawn as lines and seen by a second camera that keeps all of them in its picture.
+//! the sun's direction, drawn as lines for a second camera that has all of them in its picture.
 
 use glam::{DVec3, Vec3, Vec4};
 use shadowfit::culling::{Reader, caster_volumes};
@@ -17,7 +17,7 @@ const FRUSTUM_COLOR: Vec4 = Vec4::ONE;
 /// Vertical field of view of the outside camera, in radians.
 const FOV_Y: f32 = 1.0;
 
-/// Distance of the outside camera, as a multiple of that at which all lines just fill its picture.
+/// Distance of the outside camera, as a multiple of the one at which all lines just fill its picture.
 const ROOM: f32 = 1.1;
 
 /// Length of the arrow along the light, as a share of half the diagonal of the box's face.
@@ -37,7 +37,7 @@ pub(crate) fn lines(fitted: &Fitted, maps: &[FittedMap], descriptor: &ShadowMapD
     if caster_volumes(maps, &descriptor.reading(), &reader, &[frustum], &mut volumes).is_ok() {
         for ((map, volume), tint) in maps.iter().zip(&volumes).zip(linear_map_tints()) {
             let color = (tint * VOLUME_SHARE).extend(1.0);
-            // Toward the light a volume has no end of its own.
+            // A volume is not bounded toward the light.
             let end = map.fit.corners().map(|corner| corner.dot(map.fit.direction));
             let end = end.into_iter().fold(f32::MAX, f32::min);
             lines.extend(volume_edges(&volume.relative_to(map.fit.origin), map.fit.direction, end, color));
@@ -63,7 +63,7 @@ fn volume_edges(volume: &CasterVolume, direction: Vec3, end: f32, color: Vec4) -
             for plane in &planes {
                 let (slope, height) = (plane.truncate().dot(along), plane.truncate().dot(at) + plane.w);
                 if slope.abs() < 1e-6 * along.length() {
-                    // Planes that the edge lies in keep all of it, within rounding.
+                    // Planes that contain the edge keep all of it, within rounding.
                     if height < -1e-3 * (1.0 + at.length()) {
                         to = f32::NEG_INFINITY;
                     }

@@ -64,7 +64,7 @@ impl Player {
         if let Some(ongoing) = self.ongoing.take() {
             self.ongoing = self.go_on(ongoing, seconds, activity, &mut effects);
         }
-        // One step per frame, so that each sees what the one before has done.
+        // One step per frame, so that each sees the effect of the one before.
         if self.ongoing.is_none()
             && effects.is_empty()
             && let Some(line) = self.lines.pop_front()
@@ -122,7 +122,7 @@ impl Player {
     }
 }
 
-/// Starts a step; returns the rest of it for the next frames.
+/// Starts a step; returns the part that is left for the next frames.
 fn start(step: Step, effects: &mut Vec<Effect>) -> Option<Ongoing> {
     match step {
         Step::Run(command @ (Command::SaveWindow(_) | Command::Screenshot(_))) => {

@@ -1,4 +1,4 @@
-//! How a sample compares with modern maps: measured on a thread, on a device of its own.
+//! How a sample compares with modern maps: measured on a thread, on a separate device.
 
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
@@ -8,10 +8,10 @@ use shadowfit_classics::{Sample, SampleFigures, SampleValues};
 use shadowfit_egui::CardFigure;
 use shadowfit_render::{AdapterChoice, Gpu};
 
-/// What is measured: a sample by its values, a camera, and the time of its animation, in seconds.
+/// Input of a measurement: a sample by its values, a camera, and the time of its animation, in seconds.
 pub(crate) type Task = (&'static Sample, SampleValues, PerspectiveCamera, f32);
 
-/// A measurement on its way, or what came of the last one.
+/// A measurement on its way, or the result of the last one.
 #[derive(Debug, Default)]
 pub(crate) struct Measuring {
     result: Option<Receiver<Result<SampleFigures>>>,
@@ -19,11 +19,11 @@ pub(crate) struct Measuring {
 }
 
 impl Measuring {
-    /// Begins; the result of one that is under way is dropped.
+    /// Begins a measurement; the result of one that is under way is dropped.
     pub(crate) fn start(&mut self, adapter: AdapterChoice, (sample, values, camera, seconds): Task) {
         let (sender, result) = channel();
         let work = move || {
-            // Nobody waits any more where another one was begun.
+            // The receiver is gone where another measurement was begun.
             let gpu = pollster::block_on(Gpu::headless(adapter)).map_err(anyhow::Error::from);
             let measured = gpu.and_then(|gpu| SampleFigures::measure(gpu, sample, &values, &camera, seconds));
             let _ = sender.send(measured);
@@ -36,12 +36,12 @@ impl Measuring {
         self.result = Some(result);
     }
 
-    /// Whether one is under way.
+    /// Whether a measurement is under way.
     pub(crate) fn is_running(&self) -> bool {
         self.result.is_some()
     }
 
-    /// Takes what has been measured meanwhile.
+    /// Takes a result that has arrived.
     pub(crate) fn take(&mut self) {
         let Some(result) = self.result.as_ref().map(Receiver::try_recv) else { return };
         self.lines = match result {
@@ -53,7 +53,7 @@ impl Measuring {
         self.result = None;
     }
 
-    /// What was measured, for the panel.
+    /// The result, for the panel.
     pub(crate) fn lines(&self) -> &[CardFigure] {
         &self.lines
     }

@@ -1,8 +1,6 @@
-//! What is kept from one start to the next: a readable file with a version, in the place where a system keeps such
-//! files.
+//! State that is saved from one start to the next: a readable file with a version, in the system's folder for settings.
 //!
-//! A first start without a file is ordinary. A file that makes no sense is set aside under another name, and a person
-//! is told; nothing overwrites it.
+//! A first start without a file is ordinary. A damaged file is renamed and reported; nothing overwrites it.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -22,7 +20,7 @@ use crate::source::SceneSource;
 
 /// Version of the file; one of a later version is set aside.
 const VERSION: u32 = 1;
-/// Files that are remembered.
+/// Number of files that are remembered.
 const MOST_RECENT: usize = 8;
 
 /// Dark or light, as the file says it.
@@ -55,11 +53,11 @@ impl From<ThemePreference> for Theme {
     }
 }
 
-/// Everything that is kept.
+/// Everything that is saved.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Saved {
     pub(crate) theme: Theme,
-    /// The scene on show, which the settings and the camera are of.
+    /// The scene on show; settings and camera belong to it.
     pub(crate) scene: SceneSource,
     pub(crate) settings: Settings,
     pub(crate) camera: Option<FlyCamera>,
@@ -116,7 +114,7 @@ impl Bookmark {
         Self { key, scene: scene.text(), scene_index: scene.index(), view: camera.into() }
     }
 
-    /// Whether it is of a key and a scene.
+    /// Whether it belongs to a key and a scene.
     pub(crate) fn is_of(&self, key: u8, scene: &SceneSource) -> bool {
         (self.key, &self.scene, self.scene_index) == (key, &scene.text(), scene.index())
     }
@@ -188,7 +186,7 @@ impl Saved {
         Ok(text)
     }
 
-    /// What a text says.
+    /// Reads a text.
     pub(crate) fn from_toml(text: &str) -> Result<Self> {
         let mut file: toml::Table = toml::from_str(text)?;
         match file.get("version").and_then(toml::Value::as_integer) {
@@ -237,16 +235,16 @@ fn technique(table: &toml::Table) -> Result<Technique> {
     Ok(settings.technique)
 }
 
-/// The file that everything is kept in.
+/// The file that everything is saved in.
 #[derive(Clone, Debug)]
 pub(crate) struct Store {
     path: PathBuf,
-    /// What it holds, so that nothing is written without need.
+    /// Its content, so that nothing is written without need.
     written: Option<String>,
 }
 
 impl Store {
-    /// That of a person on this system; `None` where a system has no place for such files.
+    /// The file of the user on this system; `None` where the system has no folder for settings.
     pub(crate) fn of_person() -> Option<Self> {
         let folders = etcetera::choose_base_strategy().ok()?;
         Some(Self::at(folders.config_dir().join("shadowfit").join("viewer.toml")))
@@ -256,7 +254,7 @@ impl Store {
         Self { path, written: None }
     }
 
-    /// What is there, and what a person has to be told about it. Without a file everything is as in a first start.
+    /// The saved state, and a message for the user. Without a file everything is as in a first start.
     pub(crate) fn load(&mut self) -> (Option<Saved>, Option<String>) {
         let text = match std::fs::read(&self.path) {
             Ok(bytes) => String::from_utf8(bytes).context("it is no text"),

@@ -24,7 +24,7 @@ use shadowfit_study::NamedTechnique;
 
 use crate::source::OPTION_PREFIX;
 
-/// What a line of a script does.
+/// The action of a line of a script.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Step {
     /// Runs a command.
@@ -65,7 +65,7 @@ pub(crate) struct Line {
     pub(crate) place: String,
 }
 
-/// What a script waits for.
+/// The state that a script waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Awaited {
     /// No scene is being loaded, and no view of an artefact searched.
@@ -85,7 +85,7 @@ pub(crate) struct Monkey {
     pub(crate) files: Option<String>,
 }
 
-/// An action: its name, what follows the name, what it does, and how its line is read.
+/// An action: its name, its arguments, its description, and how its line is read.
 pub(crate) struct Action {
     pub(crate) name: &'static str,
     pub(crate) takes: &'static str,
@@ -95,7 +95,7 @@ pub(crate) struct Action {
 
 /// How the rest of a line is read.
 enum Read {
-    /// Nothing follows, and it is this command.
+    /// It has no arguments, and is this command.
     Plain(Command),
     Command(fn(Words<'_>) -> Result<Command>),
     Step(fn(Words<'_>) -> Result<Step>),
@@ -210,11 +210,11 @@ pub(crate) const ACTIONS: &[Action] = &[
     plain("quit", "quits the viewer", Command::Quit),
 ];
 
-/// Reads a script; empty lines and what follows a `#` at the start of a word are ignored.
+/// Reads a script; empty lines and comments, from a `#` at the start of a word on, are ignored.
 ///
 /// # Errors
 ///
-/// For a line that is no action, with the name of the file, the number of the line and what would be one.
+/// For a line that is not an action, with the name of the file, the number of the line and the actions that exist.
 pub(crate) fn read(path: &Path) -> Result<Vec<Line>> {
     let name = path.display();
     let text = std::fs::read_to_string(path).with_context(|| format!("the script {name} cannot be read"))?;
@@ -245,7 +245,7 @@ fn parse(line: &str) -> Result<Step> {
     step.with_context(|| format!("give {}", format!("{name} {}", action.takes).trim_end()))
 }
 
-/// What follows an action's name.
+/// The arguments of an action.
 #[derive(Clone, Copy)]
 struct Words<'a> {
     rest: &'a str,

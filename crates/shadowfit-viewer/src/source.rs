@@ -7,7 +7,7 @@ use shadowfit_classics::{Sample, SampleVariant};
 use shadowfit_scene::Scene;
 use shadowfit_scene::builtin::BuiltinScene;
 
-/// What the name of a sample's option begins with, on the command line and in scripts.
+/// Prefix of the names of a sample's options, on the command line and in scripts.
 pub(crate) const OPTION_PREFIX: &str = "sample.";
 
 /// A built-in scene, a classic sample or a file.
@@ -25,7 +25,7 @@ impl Default for SceneSource {
 }
 
 impl SceneSource {
-    /// What a text names: a built-in scene or a sample by its name, or a file.
+    /// The source that a text names: a built-in scene or a sample by its name, or a file.
     pub(crate) fn from_text(text: &str) -> Self {
         if Path::new(text).is_file() {
             return Self::file(text);
@@ -59,7 +59,7 @@ impl SceneSource {
         }
     }
 
-    /// Which of the file's scenes; `None` for its default one and for a built-in scene.
+    /// Index of the file's scene; `None` for its default one and for a built-in scene.
     pub(crate) fn index(&self) -> Option<usize> {
         match self {
             Self::BuiltIn(_) | Self::Sample { .. } => None,
@@ -67,7 +67,7 @@ impl SceneSource {
         }
     }
 
-    /// What [`Self::from_text`] reads; [`Self::index`] is besides.
+    /// The text that [`Self::from_text`] reads, without [`Self::index`].
     pub(crate) fn text(&self) -> String {
         match self {
             Self::BuiltIn(scene) => scene.id().to_owned(),
@@ -86,7 +86,7 @@ impl SceneSource {
         }
     }
 
-    /// Loads the scene, and tells the share that is loaded now and then.
+    /// Loads the scene, and reports the loaded share now and then.
     ///
     /// # Errors
     ///

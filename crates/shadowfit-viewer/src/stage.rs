@@ -1,4 +1,5 @@
-//! What the viewer shows, without a window: scene, camera, settings, animation, artefact, and one technique or two.
+//! The stage: all that the viewer shows, without a window: scene, camera, settings, animation, artefact, and one
+//! technique or two.
 
 mod boards;
 mod compare;
@@ -68,16 +69,16 @@ impl From<ShadowMapError> for StageError {
     }
 }
 
-/// Scene, camera and settings, and what draws them.
+/// Scene, camera and settings, with the renderers that draw them.
 #[derive(Debug)]
 pub struct Stage {
     /// Everything that the panel edits; its technique is that of the first side.
     pub settings: Settings,
-    /// Where the eye is.
+    /// The camera.
     pub camera: FlyCamera,
-    /// Which animation plays, if the scene has it.
+    /// Index of the animation that plays, if the scene has it.
     pub animation: usize,
-    /// Where the bar between two techniques stands, as a share of the picture's width.
+    /// Place of the bar between two techniques, as a share of the picture's width.
     pub split: f32,
     gpu: Gpu,
     samples: u32,
@@ -85,7 +86,7 @@ pub struct Stage {
     side: Side,
     other: Option<Other>,
     seconds: f32,
-    /// Seconds of all frames since the stage was set up, for what blinks, rests or grows old.
+    /// Seconds since the stage was set up: the clock for blinking marks, the resting pointer and the age of figures.
     clock: f32,
     home: (Settings, FlyCamera),
     artefact: ArtefactShow,
@@ -135,7 +136,7 @@ impl Stage {
         })
     }
 
-    /// A stage with nothing worth showing on it, until [`Self::set_prepared`] brings a scene.
+    /// A stage with a placeholder, until [`Self::set_prepared`] brings a scene.
     pub(crate) fn empty(gpu: Gpu, samples: u32) -> Result<Self, StageError> {
         let triangle = [glam::Vec3::ZERO, glam::Vec3::X, glam::Vec3::Z];
         Self::new(gpu, Scene::from_objects("empty", &[vec![triangle]]), samples)
@@ -151,7 +152,7 @@ impl Stage {
         Ok(())
     }
 
-    /// Shows a scene that was made ready elsewhere, with [`Self::material_layout`].
+    /// Shows a scene that was prepared elsewhere, with [`Self::material_layout`].
     pub fn set_prepared(&mut self, scene: PreparedScene) {
         self.scene = scene;
         self.home = home::home(&self.scene);
@@ -164,20 +165,20 @@ impl Stage {
         self.side.scene_changed();
     }
 
-    /// Layout of the scene's materials, for scenes that are made ready elsewhere.
+    /// Layout of the scene's materials, for scenes that are prepared elsewhere.
     pub fn material_layout(&self) -> &wgpu::BindGroupLayout {
         self.side.evaluator.renderer.material_layout()
     }
 
-    /// From now on, what the last picture showed comes from its depth buffer and not from rays: for pictures that follow
-    /// each other in a window. It comes a frame or two late, whenever the GPU is done with it, so that pictures need not
-    /// be the same each time. What stands still is kept in the shadow maps, too, and nothing waits for rays.
+    /// From now on, visible points are counted in depth buffers and not by rays: for pictures that follow each other in
+    /// a window. Counts come a frame or two late, whenever the GPU is done, so pictures may differ from run to run.
+    /// Static casters are kept in the shadow maps, too, and nothing waits for rays.
     pub fn read_depths(&mut self) {
         self.reads_depths = true;
         self.side.follow();
     }
 
-    /// From now on, whatever a picture needs of rays is waited for: for pictures that are made one by one.
+    /// From now on, each picture waits for its rays: for pictures that are made one by one.
     pub fn wait_for_rays(&mut self) {
         self.side.live.waits = true;
     }
@@ -187,7 +188,7 @@ impl Stage {
         self.scene.scene()
     }
 
-    /// The scene on show with all that was made from it.
+    /// The scene on show, prepared for drawing and judging.
     pub fn prepared_scene(&self) -> &PreparedScene {
         &self.scene
     }
@@ -268,7 +269,7 @@ impl Stage {
         self.set_camera(self.sample_reset().unwrap_or(self.home.1));
     }
 
-    /// Puts the camera somewhere else: the next view follows none of those before.
+    /// Puts the camera somewhere else: the next view starts a new path.
     pub fn set_camera(&mut self, camera: FlyCamera) {
         self.camera = camera;
         let is_frozen = self.settings.view.freeze_fit;
@@ -278,7 +279,7 @@ impl Stage {
         }
     }
 
-    /// Takes the present settings and view as those to go back to.
+    /// Makes the present settings and view those to go back to.
     pub fn set_home(&mut self) {
         self.home = (self.settings, self.camera);
     }
@@ -315,8 +316,8 @@ impl Stage {
         side.fit(&mut shot).maps.to_vec()
     }
 
-    /// Draws the present view into a target: of two techniques the first one up to the bar, and the second one from there;
-    /// a sample as its source does.
+    /// Draws the present view into a target: the first technique up to the bar and the second one from there, where two
+    /// are compared; a sample as its source does.
     pub fn draw(&mut self, target: &RenderTarget) {
         if self.sample.is_some() {
             self.draw_sample(target);
@@ -327,7 +328,7 @@ impl Stage {
 
     fn draw_side(&mut self, target: &RenderTarget) {
         if self.reads_depths {
-            // What fits and figures read when it is there.
+            // Results that fits and figures use when they have arrived.
             self.scene.take_rays();
             self.scene.request_rays();
         }
@@ -336,14 +337,14 @@ impl Stage {
         shot.scissor = split;
         side.draw(&mut shot, target);
         self.draw_other(target);
-        // Both techniques are told of the whole picture.
+        // Both techniques know the size of the whole picture.
         self.side.read_picture(&self.gpu, target);
         if let Some(other) = &mut self.other {
             other.read_picture(&self.gpu, target);
         }
     }
 
-    /// Draws the camera, the maps and what casts into them from outside, whatever the view is.
+    /// Draws the camera, the maps and their casters from outside, whatever the view is.
     pub fn draw_beside(&mut self, target: &RenderTarget) {
         let (side, mut shot) = self.shot(target.size);
         let Some(fitted) = side.fitted.clone() else { return };
@@ -353,7 +354,7 @@ impl Stage {
         side.statistics = statistics;
     }
 
-    /// The first side, and what it is to draw into a picture of a size.
+    /// The first side, and the shot that it draws into a picture of a size.
     fn shot(&mut self, size: [u32; 2]) -> (&mut Side, Shot<'_>) {
         let camera = self.perspective(size);
         let (plays, blink) = (self.plays(), self.blink());
@@ -362,7 +363,7 @@ impl Stage {
             scene: &mut self.scene,
             settings: &self.settings,
             camera,
-            // That of the scene's first view, so that no demonstration changes the haze.
+            // The distance of the scene's first view, so that no demonstration changes the haze.
             sight: self.home.0.camera.far,
             plays,
             seconds: self.seconds,

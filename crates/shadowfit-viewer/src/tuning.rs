@@ -1,4 +1,4 @@
-//! Auto-tune: the search for a technique with less error, on a thread with a graphics device of its own.
+//! Auto-tune: the search for a technique with less error, on a thread with a separate graphics device.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,11 +18,11 @@ use crate::stage::{changes, judged_figures};
 /// Size of the pictures that are judged, in pixels: enough for every artefact.
 const SIZE: [u32; 2] = [480, 270];
 
-/// What is told while there are no figures.
+/// Message while there are no figures.
 const GETTING_READY: &str = "Getting ready: a device of its own, and the scene";
 const ENDING: &str = "Ending the search of the scene before";
 
-/// What a search works on.
+/// Input of a search.
 #[derive(Debug)]
 pub(crate) struct Task {
     pub(crate) adapter: AdapterChoice,
@@ -35,7 +35,7 @@ pub(crate) struct Task {
     pub(crate) is_of_other: bool,
 }
 
-/// What comes from the thread.
+/// Messages of the thread.
 #[derive(Debug)]
 enum News {
     Progress(Progress),
@@ -52,7 +52,7 @@ struct Outcome {
     is_applied: bool,
 }
 
-/// Where the search stands.
+/// State of the search.
 #[derive(Debug, Default)]
 enum State {
     #[default]
@@ -62,7 +62,7 @@ enum State {
         progress: Option<Progress>,
         news: Receiver<News>,
         is_cancelled: Arc<AtomicBool>,
-        /// Whether nobody wants what comes of it.
+        /// Whether its result will be dropped.
         is_abandoned: bool,
     },
     Done(Box<Outcome>),
@@ -73,12 +73,12 @@ enum State {
 #[derive(Debug, Default)]
 pub(crate) struct Tuning {
     state: State,
-    /// Whether the technique that was searched from is that of side B now.
+    /// Whether the technique from which the search started is that of side B now.
     pub(crate) is_of_other: bool,
 }
 
 impl Tuning {
-    /// Begins, unless a search is under way.
+    /// Begins a search, unless one is under way.
     pub(crate) fn start(&mut self, task: Task) {
         if self.is_running() {
             return;
@@ -92,7 +92,7 @@ impl Tuning {
             let tuned = task.run(&mut |progress| {
                 sender.send(News::Progress(progress.clone())).is_ok() && !flag.load(Ordering::Relaxed)
             });
-            // Nobody listens once the viewer has ended.
+            // The receiver is gone once the viewer has ended.
             let _ = sender.send(News::Done(Box::new(tuned)));
         };
         self.state = match std::thread::Builder::new().name("tuning".to_owned()).spawn(work) {
@@ -105,14 +105,14 @@ impl Tuning {
         matches!(self.state, State::Running { .. })
     }
 
-    /// Stops the search; what it has found so far counts.
+    /// Stops the search; the best technique so far is its result.
     pub(crate) fn cancel(&mut self) {
         if let State::Running { is_cancelled, .. } = &self.state {
             is_cancelled.store(true, Ordering::Relaxed);
         }
     }
 
-    /// Forgets what was found, and ends a search that runs, whatever it finds: its thread and device take a moment.
+    /// Forgets the result, and ends a running search without one: its thread and device take a moment.
     pub(crate) fn abandon(&mut self) {
         self.cancel();
         self.discard();
@@ -121,21 +121,21 @@ impl Tuning {
         }
     }
 
-    /// Forgets what was found.
+    /// Forgets the result.
     pub(crate) fn discard(&mut self) {
         if !self.is_running() {
             self.state = State::Idle;
         }
     }
 
-    /// What was found, to be taken over.
+    /// Takes the result.
     pub(crate) fn apply(&mut self) -> Option<Technique> {
         let State::Done(outcome) = &mut self.state else { return None };
         outcome.is_applied = true;
         Some(outcome.technique)
     }
 
-    /// Takes what the thread has told.
+    /// Takes the thread's messages.
     pub(crate) fn take(&mut self) {
         let State::Running { settings, progress, news, is_abandoned, .. } = &mut self.state else { return };
         let ended = loop {
@@ -156,7 +156,7 @@ impl Tuning {
         };
     }
 
-    /// As the panel shows it.
+    /// The search for the panel.
     pub(crate) fn shown(&self) -> Tune<'_> {
         match &self.state {
             State::Idle => Tune::Idle,

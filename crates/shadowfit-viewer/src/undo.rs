@@ -1,4 +1,4 @@
-//! Undo for every change, by egui's own undoer: a change is one when it has stood for a moment.
+//! Undo for every change, by egui's own undoer: a change counts once it has lasted for a moment.
 
 use egui::util::undoer::Undoer;
 use shadowfit::Technique;
@@ -8,7 +8,7 @@ use shadowfit_params::tool::Settings;
 
 use crate::stage::ArtefactShow;
 
-/// All that a change can change; the camera is where a person flew it.
+/// Everything that undo restores. The camera is not part of it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct State {
     pub(crate) settings: Settings,
@@ -20,7 +20,7 @@ pub(crate) struct State {
 }
 
 impl State {
-    /// The same without what changes by itself from frame to frame.
+    /// The same without values that change by themselves from frame to frame.
     fn still(&self) -> Self {
         let mut settings = self.settings;
         if settings.light.animate {
@@ -31,7 +31,7 @@ impl State {
         Self { settings, ..self.clone() }
     }
 
-    /// This state, but for what changes by itself, which stays as `now` has it.
+    /// This state, with the values of `now` for those that change by themselves.
     fn with_motion_of(mut self, now: &Self) -> Self {
         let (light, last) = (&mut self.settings.light, &now.settings.light);
         if light.animate {
@@ -42,7 +42,7 @@ impl State {
         self
     }
 
-    /// What is different in another state, in a few words.
+    /// Differences to another state, in a few words.
     fn difference(&self, other: &Self) -> String {
         let differs = |a: &Settings, b: &Settings| {
             PARAMETERS.iter().filter(|parameter| !parameter.is_equal(a, b)).map(|parameter| parameter.label).collect()
@@ -77,7 +77,7 @@ pub(crate) struct History {
 }
 
 impl History {
-    /// Takes note of the present state, at a time in seconds.
+    /// Notes the present state, at a time in seconds.
     pub(crate) fn feed(&mut self, seconds: f64, state: &State) {
         let still = state.still();
         self.undoer.feed_state(seconds, &still);
@@ -96,7 +96,7 @@ impl History {
         Some(state.with_motion_of(now))
     }
 
-    /// The state that was undone.
+    /// The state after the change that was undone.
     pub(crate) fn redo(&mut self, now: &State) -> Option<State> {
         let still = now.still();
         let state = self.undoer.redo(&still).cloned()?;

@@ -17,7 +17,7 @@ const LEAST_REACH: f32 = 0.02;
 /// Offset of shadow rays along the normal, as a share of the scene's size.
 const RAY_OFFSET: f32 = 1e-4;
 
-/// What one coarse pixel sees.
+/// The surface at one coarse pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen {
     /// Visible point.
@@ -28,7 +28,7 @@ pub(crate) struct Seen {
     pub(crate) distance: f32,
 }
 
-/// A point in shadow and what throws it.
+/// A point in shadow and its caster.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shadow {
     /// The point in shadow.
@@ -91,7 +91,7 @@ impl<'a> ViewSearch<'a> {
             .collect()
     }
 
-    /// Cosine between a seen surface and the light.
+    /// Cosine between the normal of a visible surface and the light.
     pub(crate) fn facing(&self, seen: &Seen) -> f32 {
         seen.normal.dot(self.to_light)
     }
@@ -101,13 +101,13 @@ impl<'a> ViewSearch<'a> {
         self.tracer.is_occluded(seen.position + seen.normal * self.offset, self.to_light)
     }
 
-    /// Those points of a coarse picture that face the light and are in shadow.
+    /// The points of a coarse picture that face the light and are in shadow.
     pub(crate) fn shadowed<'p>(&self, pixels: &'p [Option<Seen>]) -> Vec<Option<&'p Seen>> {
         let is_shadowed = |seen: &&Seen| self.facing(seen) > 0.0 && self.is_shadowed(seen);
         pixels.iter().map(|seen| seen.as_ref().filter(is_shadowed)).collect()
     }
 
-    /// Which of the points in shadow lie in a hole.
+    /// The points in shadow that lie in a hole.
     pub(crate) fn holes(&self, shadowed: &[Option<&Seen>], fitted: &Fitted) -> Vec<Option<bool>> {
         shadowed.iter().map(|seen| seen.map(|seen| self.is_hole(seen, fitted))).collect()
     }

@@ -40,7 +40,7 @@ const SAVE_EVERY: f64 = 5.0;
 /// Weight of the newest frame in the frame time shown.
 const FRAME_TIME_WEIGHT: f32 = 0.1;
 
-/// Everything of the viewer but its window.
+/// The whole viewer except its window.
 pub(crate) struct Viewer {
     pub(crate) stage: Stage,
     pub(crate) interface: Interface,
@@ -48,7 +48,7 @@ pub(crate) struct Viewer {
     pub(crate) player: Player,
     start: Start,
     source: SceneSource,
-    /// The settings that the scene is opened with when nothing else is asked for.
+    /// The settings of the scene alone, without arguments and saved settings.
     own_settings: Settings,
     /// Whether there is a scene to show.
     has_scene: bool,
@@ -98,7 +98,7 @@ struct Message {
 /// How long a message is shown, in seconds.
 const MESSAGE_TIME: f64 = 8.0;
 
-/// What the viewer asks its window to do.
+/// Requests of the viewer to its window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct WindowRequests {
     pub(crate) quit: bool,
@@ -143,8 +143,8 @@ impl Viewer {
         viewer
     }
 
-    /// Takes the keys out of the input that are not for what has the focus in the panel: typing is not flying, but a
-    /// release must always arrive.
+    /// Takes keys out of the input, unless the panel has the focus: typing must not fly the camera, but a release must
+    /// always arrive.
     fn take_keys(&mut self, raw_input: &mut RawInput) {
         for event in &raw_input.events {
             if let Event::ModifiersChanged(modifiers) = event {
@@ -175,13 +175,13 @@ impl Viewer {
         self.commands.push_back(command.into());
     }
 
-    /// Whether keys go to what has the focus in the panel.
+    /// Whether keys go to a widget of the panel.
     fn types(&self) -> bool {
         self.interface.context.egui_wants_keyboard_input()
     }
 
-    /// Lays out a frame, draws it and runs the commands that it asks for, whose effect the next frame shows. `seconds`
-    /// have passed since the frame before.
+    /// Lays out a frame, draws it and runs its commands, whose effect the next frame shows. `seconds` have passed since
+    /// the frame before.
     pub(crate) fn frame(&mut self, mut raw_input: RawInput, seconds: f32) -> (Layout, egui::PlatformOutput) {
         self.clock += f64::from(seconds);
         let old = self.interface.frame_ms.unwrap_or(seconds * 1e3);
@@ -354,7 +354,7 @@ impl Viewer {
     }
 }
 
-/// A key press for what has the focus in the panel.
+/// A key press for the panel's focused widget.
 fn typed(chord: Chord) -> Event {
     let modifiers = egui::Modifiers { ctrl: chord.ctrl, shift: chord.shift, command: chord.ctrl, ..Default::default() };
     Event::Key { key: chord.key, physical_key: None, pressed: true, repeat: false, modifiers }

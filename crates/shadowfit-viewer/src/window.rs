@@ -110,7 +110,7 @@ impl ApplicationHandler for App {
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
         if let Some(running) = &mut self.running {
             let visible = running.surface.has_area && running.window.is_minimized() != Some(true);
-            // A script goes on whether its window is seen or not.
+            // A script goes on even if its window is hidden.
             let goes_on = visible || !running.viewer.player.is_done();
             event_loop.set_control_flow(if goes_on { ControlFlow::Poll } else { ControlFlow::Wait });
             if visible {
@@ -125,7 +125,7 @@ impl ApplicationHandler for App {
     }
 }
 
-/// Time of a frame that nobody sees.
+/// Time of a frame without a visible window.
 const HIDDEN_FRAME: Duration = Duration::from_millis(16);
 
 impl App {
@@ -194,7 +194,7 @@ impl Running {
             WindowEvent::DroppedFile(path) => self.viewer.ask(Command::OpenFile(path.clone())),
             _ => {}
         }
-        // What egui makes of it comes back with the next frame.
+        // egui's response comes with the next frame.
         let _ = self.egui.on_window_event(&self.window, event);
     }
 
@@ -254,7 +254,7 @@ impl Running {
         }
     }
 
-    /// Tells at the end what `--log-frames` asks for.
+    /// Prints the last line of `--log-frames`.
     fn tell_longest(&self) {
         if let Some(log) = &self.log {
             eprintln!("{} frames, longest block {:.1} ms", log.frames, ms(log.longest_of_all));
@@ -287,7 +287,7 @@ impl Surface {
         Ok(Self { instance, window, handle, is_stale: false, configuration, size, has_area })
     }
 
-    /// Takes note of a new size of the window.
+    /// Notes a new size of the window.
     fn expect(&mut self, size: PhysicalSize<u32>) {
         self.has_area = size.width > 0 && size.height > 0;
         self.is_stale = true;
@@ -299,9 +299,9 @@ impl Surface {
             let limit = gpu.device.limits().max_texture_dimension_2d;
             self.configuration.width = size.width.min(limit);
             self.configuration.height = size.height.min(limit);
-            // A surface can only be configured while the GPU is idle. Where the thread that loads a scene submits work just
-            // then, that fails, the surface stays as it was, and the next frame tries again. Its textures then tell of the
-            // size that they do not have (wgpu 30), so the size is kept here.
+            // A surface can only be configured while the GPU is idle. Where the thread that loads a scene submits work
+            // just then, that fails, the surface stays as it was, and the next frame tries again. Its textures then
+            // report a size that they do not have (wgpu 30), so the size is stored here.
             let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
             self.handle.configure(&gpu.device, &self.configuration);
             self.is_stale = pollster::block_on(scope.pop()).is_some();
@@ -321,7 +321,7 @@ impl Surface {
         match self.handle.get_current_texture() {
             Current::Success(texture) => Ok(Some((texture, size))),
             Current::Suboptimal(texture) => {
-                // It can still be shown; the next one should fit again.
+                // This texture can still be shown; the next one should fit again.
                 self.is_stale = true;
                 Ok(Some((texture, size)))
             }

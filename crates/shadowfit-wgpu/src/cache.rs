@@ -1,17 +1,17 @@
-//! What of the maps can be kept from frame to frame, and what must be drawn.
+//! Which parts of the maps can be kept from frame to frame, and which must be drawn.
 //!
-//! A map on the world's grid moves by whole texels, so what stands still in it is drawn once. [`MapCache`] is the part
-//! that decides, and knows no GPU: it compares a frame's maps and casters with those that were drawn, and lists the
-//! passes, each with rectangles and casters.
+//! A map on the world's grid moves by whole texels, so its static casters are drawn once. [`MapCache`] decides without
+//! a GPU: it compares a frame's maps and casters with those that were drawn, and lists the passes, each with rectangles
+//! and casters.
 //!
 //! ```text
 //!   a frame's maps ──▶ 1. decide: kept, moved, or new? ──▶ 2. schedule: which of them now?
 //!   and casters              by Scroll, and what changed        ──▶ 3. plan: passes, pieces, casters
 //! ```
 //!
-//! Static casters are drawn into rectangles that came into a map, or in which one of them changed. Where casters
-//! move, the static ones have layers of their own, from which the shown layer is mended where something moved in the
-//! frame before; then what moves is drawn over it.
+//! Static casters are drawn into rectangles that came into a map, or in which one of them changed. Where casters move,
+//! the static ones have separate layers. The shown layer is restored from them where something moved in the frame
+//! before; then moving casters are drawn over it.
 
 mod casters;
 mod plan;
@@ -30,35 +30,36 @@ pub use plan::PassContent;
 pub(crate) use plan::{FramePlan, Layer, PassPlan, PiecePlan};
 pub use schedule::UpdateSchedule;
 
-/// Most rectangles of a map that are drawn apart in a frame; more are drawn as one that holds them.
+/// Most rectangles of a map that are drawn separately in a frame; more are merged into one that holds them.
 const MAX_RECTS: usize = 8;
 
-/// Changed boxes that a map remembers while it waits; more are a change of all of it.
+/// Changed boxes that a map remembers while it waits; with more, all of it counts as changed.
 const MAX_CHANGES: usize = 64;
 
-/// Frames in a row in which a map was new, after which it counts as one that cannot be kept: it is then drawn with
-/// the casters of one frame alone, which are fewer.
+/// A map that was new in this many frames in a row counts as one that cannot be kept: it is then drawn with the casters
+/// of one frame alone, which are fewer.
 const NEVER_KEPT: u8 = 2;
 
 /// Which casters are drawn into maps. Pictures are the same either way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Culling {
-    /// Into maps that are drawn anew, and of those that move, casters that can cast a shadow into view
-    /// ([`caster_volumes`](shadowfit::culling::caster_volumes)); into maps that are kept, those that the map can store. The default.
+    /// Casters that can cast a shadow into view, for maps that are redrawn and for casters that move
+    /// ([`caster_volumes`](shadowfit::culling::caster_volumes)); those that the map can store, for maps that are kept.
+    /// The default.
     #[default]
     Swept,
-    /// Those that the map can store.
+    /// Casters that the map can store.
     WholeMap,
-    /// All, for comparison.
+    /// All casters, for comparison.
     Off,
 }
 
-/// How maps are kept.
+/// Settings of the cache.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct CacheSettings {
     /// Whether anything is kept.
     pub(crate) keeps: bool,
-    /// Whether static casters can have layers of their own.
+    /// Whether static casters can have separate layers.
     pub(crate) can_mend: bool,
     /// Which casters are drawn.
     pub(crate) culling: Culling,
@@ -78,14 +79,14 @@ pub(crate) struct MapCache {
     maps: [KeptMap; MAX_MAPS],
     known: KnownCasters,
     frame: u64,
-    /// Whether static casters have layers of their own: since the first caster moved.
+    /// Whether static casters have separate layers: from the first moving caster on.
     is_split: bool,
 }
 
-/// What the layer of a map holds.
+/// The content of a map's layer.
 #[derive(Debug, Default)]
 struct KeptMap {
-    /// The map that was fitted last; what can be kept of a layer is known by it.
+    /// The map that was fitted last: it decides which parts of the layer can be kept.
     fitted: Option<FittedMap>,
     /// The map as it was drawn.
     drawn: Option<FittedMap>,
@@ -95,7 +96,7 @@ struct KeptMap {
     wrap: UVec2,
     /// Frame in which it was drawn.
     frame: u64,
-    /// Frames in a row in which it was new.
+    /// Number of frames in a row in which it was new.
     renewals: u8,
     /// Where static casters changed since.
     changed: Vec<WorldBox>,
@@ -105,7 +106,7 @@ struct KeptMap {
     is_shown: bool,
 }
 
-/// What is to be done with a map.
+/// What happens to a map in a frame.
 #[derive(Clone, Debug, PartialEq)]
 enum Decision {
     /// It is read as it was drawn.
@@ -114,7 +115,7 @@ enum Decision {
     Keep { wrap: UVec2, rects: Vec<TexelRect> },
     /// All static casters are drawn, to be kept.
     Renew,
-    /// What this frame needs is drawn, without keeping it.
+    /// The casters of this frame are drawn, without keeping them.
     DrawAnew,
 }
 
@@ -124,15 +125,15 @@ pub(crate) struct CacheFrame<'a> {
     /// The fitted maps.
     pub(crate) fitted: &'a [FittedMap],
     pub(crate) casters: &'a Casters<'a>,
-    /// The map that holds what the others leave out, by coverage.
+    /// The map that holds the points outside all others, by coverage.
     pub(crate) coarsest: Option<usize>,
     /// Direction in which the light travels.
     pub(crate) direction: Vec3,
-    /// What positions in the shaders are relative to, in world space, in metres.
+    /// Origin of positions in the shaders, in world space, in metres.
     pub(crate) origin: DVec3,
 }
 
-/// What is read in a frame: maps, some of them as they were drawn in an earlier one.
+/// The maps that are read in a frame; some of them were drawn in an earlier one.
 #[derive(Debug)]
 pub(crate) struct Choice {
     decisions: Vec<Decision>,
@@ -140,14 +141,14 @@ pub(crate) struct Choice {
 }
 
 impl MapCache {
-    /// Forgets what the layers hold.
+    /// Forgets the content of all layers.
     pub(crate) fn reset(&mut self) {
         for map in &mut self.maps {
             *map = KeptMap::default();
         }
     }
 
-    /// Has a part of the world, in metres relative to an origin, drawn anew in all maps.
+    /// Redraws a part of the world, in metres relative to an origin, in all maps.
     pub(crate) fn invalidate(&mut self, aabb: &Aabb, origin: DVec3) {
         let changed = WorldBox { min: origin + aabb.min.as_dvec3(), max: origin + aabb.max.as_dvec3() };
         for map in self.maps.iter_mut().filter(|map| map.changed.len() <= MAX_CHANGES) {
@@ -194,7 +195,7 @@ impl MapCache {
         Choice { decisions, maps }
     }
 
-    /// Whether static casters have layers of their own.
+    /// Whether static casters have separate layers.
     pub(crate) fn is_split(&self) -> bool {
         self.is_split
     }
@@ -214,7 +215,7 @@ impl MapCache {
         self.maps.get(map).map_or(&[], |map| &map.moving)
     }
 
-    /// Whether the passes depend on what is in view: static casters alone do not.
+    /// Whether the passes depend on the views: static casters alone do not.
     pub(crate) fn needs_volumes(&self, choice: &Choice) -> bool {
         let has_moving = self.is_split && !self.known.moving.is_empty();
         choice.decisions.iter().any(|decision| match decision {
@@ -224,7 +225,8 @@ impl MapCache {
         })
     }
 
-    /// Step 3: the passes. `volumes` hold the casters of each map for what is in view, relative to the maps' origin.
+    /// Step 3: the passes. `volumes` hold the casters of each map that can shadow something in view, relative to the
+    /// maps' origin.
     pub(crate) fn plan(
         &mut self,
         choice: &Choice,
@@ -254,7 +256,7 @@ impl MapCache {
 }
 
 impl KeptMap {
-    /// What is to be drawn of a map that is fitted now. Where casters move that have no layer of their own, nothing is
+    /// What is drawn of a map that is fitted now. Where casters move and static ones have no separate layer, nothing is
     /// kept.
     fn decide(&mut self, now: &FittedMap, settings: &CacheSettings, has_moving: bool) -> Decision {
         let fits_layer = now.fit.resolution == settings.layer;
@@ -283,8 +285,8 @@ impl KeptMap {
         Decision::Keep { wrap: scroll.wrap(self.wrap, now.fit.resolution), rects }
     }
 
-    /// Whether points may read the map as it was drawn: nothing is lost by that. `serves_others`: whether another map
-    /// holds what it leaves out.
+    /// Whether points may read the map as it was drawn, without losing a shadow. `serves_others`: whether another map
+    /// holds the points outside it.
     fn may_wait(&self, now: &FittedMap, serves_others: bool) -> bool {
         let (Some(drawn), Some(anchor)) = (&self.drawn, now.anchor) else { return false };
         let Some(old) = drawn.anchor else { return false };
@@ -305,7 +307,7 @@ impl KeptMap {
 }
 
 impl Decision {
-    /// Texels of static casters that are drawn.
+    /// Number of texels in which static casters are drawn.
     fn texels(&self, map: &FittedMap) -> u64 {
         match self {
             Self::Wait => 0,

@@ -15,7 +15,7 @@ pub(crate) fn caught<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Resu
     }
 }
 
-/// What a future gives at once: errors are known at once but in browsers, where they are reported later.
+/// The result of a future that is ready: errors are known at once except in browsers, where they are reported later.
 fn now<T>(future: impl Future<Output = Option<T>>) -> Option<T> {
     match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
         Poll::Ready(result) => result,

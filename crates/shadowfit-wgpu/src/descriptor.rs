@@ -1,4 +1,4 @@
-//! What a shadow map is made of: size, count, format, filter, choice of the map and depth convention.
+//! The description of shadow maps: size, count, format, filter, choice of the map and depth convention.
 
 use shadowfit::choice::MapReading;
 use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MAX_BLEND, MAX_MAPS, MapChoice, MapFormat, Softness};
@@ -8,7 +8,7 @@ use shadowfit::{DepthConvention, Technique};
 use crate::ShadowMapError;
 use crate::limits::RESOLUTIONS;
 
-/// What a [`ShadowMap`](crate::ShadowMap) is made of.
+/// Size, number, format and filter of a [`ShadowMap`](crate::ShadowMap), and how points read it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowMapDescriptor {
     /// Width and height of each map, in texels, within [`RESOLUTIONS`].
@@ -22,7 +22,7 @@ pub struct ShadowMapDescriptor {
     /// Width of the filters that are soft.
     pub softness: Softness,
     /// View depth from which on shadows fade, and the one where they have vanished, in metres; both `f32::MAX` for
-    /// shadows that end with their maps. What lies beyond is lit.
+    /// shadows that end with their maps. Points beyond are lit.
     pub fade: [f32; 2],
     /// Which of the maps a point reads.
     pub choice: MapChoice,
@@ -41,7 +41,7 @@ pub struct ShadowMapDescriptor {
 }
 
 impl Default for ShadowMapDescriptor {
-    /// What the recommended technique draws: four maps of 2048² texels.
+    /// The maps of the recommended technique: four of 2048² texels.
     fn default() -> Self {
         Self::from(&Technique::default())
     }
@@ -80,7 +80,7 @@ impl ShadowMapDescriptor {
         MapReading { choice, blend, filter, softness }
     }
 
-    /// Refuses a descriptor that makes no shadow map, or none on this device.
+    /// Refuses a descriptor that is impossible, in general or on this device.
     pub(crate) fn check(&self, device: &wgpu::Device) -> Result<(), ShadowMapError> {
         let device_limit = device.limits().max_texture_dimension_2d;
         let resolution = self.resolution;
@@ -112,7 +112,7 @@ impl ShadowMapDescriptor {
         self.check_pcss(device.adapter_info().backend)
     }
 
-    /// Refuses to look for casters' distances where there are none, or where shaders cannot read them.
+    /// Refuses filters that need casters' distances where these are lost, or where shaders cannot read them.
     fn check_pcss(&self, backend: wgpu::Backend) -> Result<(), ShadowMapError> {
         if self.filter != FilterKind::Pcss {
             return Ok(());

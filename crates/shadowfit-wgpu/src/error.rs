@@ -33,7 +33,7 @@ pub enum ShadowMapError {
         /// [`Softness::ceiling`](shadowfit::settings::Softness::ceiling), in texels.
         ceiling: f32,
     },
-    /// A softness that is negative or no number, as the tangent of the sun's angular radius.
+    /// A softness that is negative or NaN, as the tangent of the sun's angular radius.
     SoftRadius(f32),
     /// View depths of a fade that do not ascend or are not finite, in metres.
     Fade([f32; 2]),

@@ -16,12 +16,13 @@ use crate::{Culling, MapView, ShadowMap, ShadowMapDescriptor, ShadowMapError, Su
 pub use passes::{ShadowPass, ShadowPiece};
 pub use updates::{MapUpdate, UpdateContent};
 
-/// The shadow maps of one light, with what is kept of them from frame to frame.
+/// The shadow maps of one light, and the parts of them that are kept from frame to frame.
 #[derive(Debug)]
 pub(crate) struct KeptMaps {
     /// Which maps may wait for another frame.
     pub(crate) schedule: UpdateSchedule,
-    /// Whether what stands still is kept; else every map is drawn anew in every frame. Pictures are the same either way.
+    /// Whether static casters are kept; without that every map is redrawn in every frame. Pictures are the same either
+    /// way.
     pub(crate) keeps: bool,
     /// Which casters are drawn.
     pub(crate) culling: Culling,
@@ -30,11 +31,12 @@ pub(crate) struct KeptMaps {
     layers: Layers,
     cache: MapCache,
     plan: FramePlan,
-    /// What is read in this frame.
+    /// The maps that are read in this frame.
     maps: Vec<FittedMap>,
-    /// Their casters for what is in view, as far as the passes depend on it; else all that they can store.
+    /// Their casters that can shadow something in view, where the passes depend on that; otherwise all that they can
+    /// store.
     volumes: Vec<CasterVolume>,
-    /// What the boxes of its plan are relative to, in world space, in metres.
+    /// Origin of the boxes in the plan, in world space, in metres.
     origin: DVec3,
 }
 
@@ -67,24 +69,24 @@ impl KeptMaps {
         &self.map
     }
 
-    /// The maps that are read in this frame, those that wait as they were drawn.
+    /// The maps that are read in this frame. A map that waits is the one that was drawn last.
     pub(crate) fn maps(&self) -> &[FittedMap] {
         &self.maps
     }
 
-    /// Has static casters in a box, in metres relative to an origin in world space, drawn anew in the next frame: where
-    /// one changed its shape, and not its box.
+    /// Redraws static casters in a box in the next frame: for one that changed its shape and not its box. The box is in
+    /// metres, relative to an origin in world space.
     pub(crate) fn invalidate(&mut self, aabb: &Aabb, origin: DVec3) {
         self.cache.invalidate(aabb, origin);
     }
 
-    /// Has all maps drawn anew in the next frame, such as after a frame whose passes were not submitted.
+    /// Redraws all maps in the next frame, such as after a frame whose passes were not submitted.
     pub(crate) fn invalidate_all(&mut self) {
         self.cache.reset();
     }
 
-    /// Finds what must be drawn of a frame's maps, and writes the uniforms. [`Self::passes`] then has what is to be
-    /// drawn in this frame; it counts as drawn from the next call on.
+    /// Finds which parts of a frame's maps must be drawn, and writes the uniforms. [`Self::passes`] then has the passes
+    /// of this frame; they count as drawn from the next call on.
     ///
     /// Maps with an [anchor](FittedMap::anchor) can be kept; others are redrawn in each frame.
     pub(crate) fn update(
@@ -108,7 +110,7 @@ impl KeptMaps {
         };
         let choice = self.cache.choose(&cached);
         if self.cache.is_split() && self.layers.split(&self.device, &self.map).is_err() {
-            // Without memory for layers of their own, static casters are drawn with what moves.
+            // Without memory for separate layers, static casters are drawn together with moving ones.
             (self.keeps, self.cache) = (false, MapCache::default());
             return self.update(queue, frame, fitted);
         }
@@ -119,7 +121,7 @@ impl KeptMaps {
         self.find_volumes(frame, &view, by_view).map_err(ShadowMapError::View)?;
         let volumes = if by_view { &self.volumes[..] } else { &[] };
         self.cache.plan(&choice, &cached, volumes, &mut self.plan);
-        // 3. What the shaders read.
+        // 3. The uniforms of the shaders.
         for (index, map) in self.maps.iter_mut().enumerate() {
             map.wrap = self.cache.wrap(index);
         }
@@ -128,7 +130,8 @@ impl KeptMaps {
         Ok(())
     }
 
-    /// Finds the casters of each map, relative to its origin: for what is in view, or all that it can store.
+    /// Finds the casters of each map, relative to its origin: those that can shadow something in view, or all that it
+    /// can store.
     fn find_volumes(&mut self, frame: &SunFrame<'_>, view: &MapView, by_view: bool) -> Result<(), FitError> {
         let descriptor = self.map.descriptor();
         let clamps = descriptor.depth_clamp;

@@ -1,6 +1,6 @@
-//! The static casters' own layers, and how the shown ones are mended from them.
+//! The layers of static casters, and how the shown ones are restored from them.
 //!
-//! WebGPU copies depth textures as a whole only, so parts are cleared and mended by drawing: a triangle within a
+//! WebGPU copies depth textures as a whole only, so parts are cleared and restored by drawing: a triangle within a
 //! scissor rectangle, or the outlines of boxes.
 
 use shadowfit::scroll::TexelRect;
@@ -20,14 +20,14 @@ pub(crate) struct Layers {
 /// Layers of the static casters alone, as many as the shadow map has.
 #[derive(Debug)]
 struct StaticLayers {
-    /// What each is drawn into, and read from.
+    /// Views of each layer, to draw into and to read from.
     layers: Vec<(wgpu::TextureView, wgpu::BindGroup)>,
     mend: wgpu::RenderPipeline,
     mend_boxes: wgpu::RenderPipeline,
     boxes: wgpu::Buffer,
 }
 
-/// What opens a pass of the plan.
+/// The arguments that open a pass of the plan.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Opening<'a> {
     pub(crate) map: &'a ShadowMap,
@@ -51,7 +51,7 @@ impl Layers {
         device.adapter_info().backend != wgpu::Backend::Gl
     }
 
-    /// Makes the static casters' layers, if they are not there.
+    /// Makes the layers of static casters, unless they exist.
     pub(crate) fn split(&mut self, device: &wgpu::Device, map: &ShadowMap) -> Result<(), wgpu::Error> {
         if self.fixed.is_none() {
             self.fixed = Some(caught(device, || StaticLayers::new(device, map))?);
@@ -59,7 +59,7 @@ impl Layers {
         Ok(())
     }
 
-    /// Uploads what a frame's passes read.
+    /// Uploads the rectangles and boxes of a frame's passes.
     pub(crate) fn prepare(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, plan: &FramePlan) {
         let Some(fixed) = &mut self.fixed else { return };
         let boxes: &[Aabb] = &plan.boxes;
@@ -74,7 +74,7 @@ impl Layers {
         queue.write_buffer(&fixed.boxes, 0, bytemuck::cast_slice(&floats));
     }
 
-    /// Opens a pass, and clears and mends what it begins with.
+    /// Opens a pass, and clears and restores the parts that it begins with.
     pub(crate) fn begin<'encoder>(
         &self,
         encoder: &'encoder mut wgpu::CommandEncoder,
@@ -181,7 +181,7 @@ impl StaticLayers {
     }
 }
 
-/// What differs between the pipelines.
+/// The differences between the pipelines.
 #[derive(Clone, Copy, Debug)]
 struct Shape<'a> {
     label: &'a str,

@@ -3,8 +3,8 @@
 //!
 //! # One object, one loop
 //!
-//! [`SunShadows`] holds the shadows of one sun. It fits the maps, finds what has to be drawn of them, keeps what stands
-//! still from frame to frame, and reads from the depth buffer where fine texels help:
+//! [`SunShadows`] holds the shadows of one sun. It fits the maps, finds which parts have to be drawn, keeps static
+//! casters from frame to frame, and reads from the depth buffer where fine texels help:
 //!
 //! ```no_run
 //! # struct Engine { moves: Vec<bool>, pipeline: wgpu::RenderPipeline, depth: wgpu::TextureView }
@@ -52,13 +52,13 @@
 //! | name | is |
 //! |---|---|
 //! | [`SunShadows`] | the shadows of one sun: one object for each |
-//! | [`SunFrame`], [`Casters`] | what an engine says of a frame: views, light, boxes, and which of them move |
-//! | [`ShadowPiece`] | what is to be drawn: casters by number, viewport, scissor rectangle |
+//! | [`SunFrame`], [`Casters`] | what an engine tells about a frame: views, light, boxes, and which of them move |
+//! | [`ShadowPiece`] | one draw of a pass: casters by number, viewport, scissor rectangle |
 //! | [`ShadowPass`], [`PassContent`] | a pass, for engines that schedule passes themselves |
 //! | [`MapUpdate`], [`UpdateContent`] | a rectangle that a frame draws, for tools that show it |
 //! | [`caster_wgsl`], [`receiver_wgsl`], [`WgslOptions`] | the WGSL, for any bind group and with any prefix |
 //! | [`UpdateSchedule`], [`Culling`] | which maps may wait for another frame, and which casters are left out |
-//! | [`SunShadowsError`] | why a technique or a frame is refused; what was drawn before stays |
+//! | [`SunShadowsError`] | why a technique or a frame is refused; earlier maps stay as they are |
 //!
 //! The example `engine_integration` of the repository is a whole engine around this loop, and its guide
 //! (`docs/INTEGRATION.md`) goes through it step by step.
@@ -67,11 +67,12 @@
 //!
 //! - [`SunShadows::fit`] and [`SunShadows::prepare`] are the halves of [`SunShadows::update`]: maps that are frozen, or
 //!   fitted by other code, are drawn and kept by the second alone.
-//! - [`ShadowMap`] is what they are drawn into: textures, layouts, bind groups, states for pipelines, and a pass for each
-//!   map that draws it anew. [`ShadowMapDescriptor`] says what it is made of, and [`MapView`] from where it is read.
-//! - [`need`] counts what a depth buffer shows.
+//! - [`ShadowMap`] holds the maps on the GPU: textures, layouts, bind groups, states for pipelines, and a pass for each
+//!   map that redraws it. [`ShadowMapDescriptor`] says how large and of which format they are, and [`MapView`] from
+//!   where they are read.
+//! - [`need`] counts the visible points of a depth buffer.
 //! - [`culling_wgsl`] with [`CullingUniform`] culls casters on the GPU. [`CasterUniform`], [`ReceiverUniform`] and
-//!   [`MapUniform`] are what the other WGSL reads, for engines that bind it themselves.
+//!   [`MapUniform`] are the uniforms of the other WGSL, for engines that bind them themselves.
 
 mod cache;
 mod caught;

@@ -78,12 +78,12 @@ impl ShadowMap {
         }
     }
 
-    /// What the map was made of.
+    /// The descriptor of the maps.
     pub fn descriptor(&self) -> &ShadowMapDescriptor {
         &self.descriptor
     }
 
-    /// View of all maps as an array, for looking at them.
+    /// View of all maps as an array, for tools that show them.
     pub fn view(&self) -> &wgpu::TextureView {
         &self.view
     }
@@ -133,9 +133,9 @@ impl ShadowMap {
     }
 
     /// Whether the engine's caster pipelines have to clamp depth, since the device has no
-    /// [`wgpu::Features::DEPTH_CLIP_CONTROL`]. Their vertex shader then passes on `shadowfit_caster_depth(position)`
-    /// as a varying, and their fragment shader writes `shadowfit_clamped_depth` of it to `@builtin(frag_depth)`:
-    /// `shadowfit_caster_position` has a depth there that is never clipped, and tells nothing.
+    /// [`wgpu::Features::DEPTH_CLIP_CONTROL`]. Their vertex shader then passes on `shadowfit_caster_depth(position)` as
+    /// a varying, and their fragment shader writes `shadowfit_clamped_depth` of it to `@builtin(frag_depth)`:
+    /// `shadowfit_caster_position` gives a meaningless depth there, which is never clipped.
     pub fn clamps_in_fragment(&self) -> bool {
         self.clamps_in_fragment
     }
@@ -159,14 +159,14 @@ impl ShadowMap {
         &self.layers[index].caster_group
     }
 
-    /// What a map's depths are drawn into.
+    /// Views of a map that its depths are drawn into.
     pub(crate) fn depth_attachment(&self, index: usize) -> &wgpu::TextureView {
         &self.layers[index].depth
     }
 
-    /// Writes the uniforms for this frame's maps; by view depth they are in order of their `far`. Map i is
-    /// drawn into layer i. Positions in the shaders are relative to the view's origin. A fit with fewer texels than a layer uses the corner of
-    /// it. A layer without a map is neither drawn nor read.
+    /// Writes the uniforms for this frame's maps; maps that are read by view depth are in order of their `far`. Map i
+    /// is drawn into layer i. Positions in the shaders are relative to the view's origin. A fit with fewer texels than
+    /// a layer uses its corner. A layer without a map is neither drawn nor read.
     ///
     /// # Errors
     ///
@@ -318,7 +318,7 @@ impl Layer {
     }
 }
 
-/// What the maps are stored in.
+/// Textures of the maps.
 struct Textures {
     depth: wgpu::Texture,
     /// Colours of colour formats.
@@ -334,7 +334,7 @@ impl Textures {
         if !missing.is_empty() {
             return Err(why(format!("{:?} has no {missing:?}", descriptor.texture_format())));
         }
-        // Devices below WebGPU's level may lack more than that says.
+        // Devices below WebGPU's level may lack more than these flags say.
         caught(device, || Self {
             depth: texture(device, descriptor, descriptor.depth_format()),
             color: (!format.is_depth()).then(|| texture(device, descriptor, descriptor.texture_format())),
@@ -345,13 +345,13 @@ impl Textures {
         })
     }
 
-    /// The one that shaders read.
+    /// The texture that shaders read.
     fn read(&self) -> &wgpu::Texture {
         self.color.as_ref().unwrap_or(&self.depth)
     }
 }
 
-/// What the textures are used for.
+/// Usages of the textures.
 const USAGES: wgpu::TextureUsages = wgpu::TextureUsages::RENDER_ATTACHMENT
     .union(wgpu::TextureUsages::TEXTURE_BINDING)
     .union(wgpu::TextureUsages::COPY_SRC);

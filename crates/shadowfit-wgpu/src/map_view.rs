@@ -1,4 +1,4 @@
-//! From where the maps are read, and what maps a shadow map refuses.
+//! From where the maps are read, and checks of the maps that are to be drawn.
 
 use shadowfit::culling::Reader;
 use shadowfit::glam::{DVec3, UVec2, Vec3};
@@ -10,14 +10,14 @@ use crate::{ShadowMapDescriptor, ShadowMapError};
 /// From where the maps are looked up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapView {
-    /// World position that all positions in the shaders are relative to, in metres.
+    /// World position to which all positions in the shaders are relative, in metres.
     pub origin: DVec3,
     /// World position of the eye that view depths are counted from, in metres.
     pub eye: DVec3,
     /// Unit direction in which that eye looks, world axes.
     pub forward: Vec3,
     /// Number of the frame, by which the pattern of [soft filters](shadowfit::settings::FilterKind::is_soft) moves, for
-    /// temporal antialiasing that averages over frames; 0 in each frame for a pattern that stays.
+    /// temporal antialiasing that averages over frames; 0 in each frame keeps the same pattern.
     pub frame: u32,
 }
 
@@ -31,7 +31,7 @@ impl MapView {
         Self { origin: eye, eye, forward, frame: 0 }
     }
 
-    /// What positions and view depths are counted from.
+    /// Origin and eye.
     pub(crate) fn reader(&self) -> Reader {
         let Self { origin, eye, forward, .. } = *self;
         Reader { origin, eye, forward }

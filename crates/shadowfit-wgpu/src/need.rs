@@ -35,14 +35,16 @@
 //! # }
 //! ```
 //!
-//! After a camera cut, drop what was seen and what is on its way ([`NeedPass::reset`]); what is kept costs sharpness,
-//! never coverage. For several views that share the maps, such as a split screen, make a pass for each.
+//! After a camera cut, drop the counts ([`ShadowFitter::reset`](shadowfit::ShadowFitter::reset)) and those on their way
+//! ([`NeedPass::reset`]); old counts cost sharpness, never coverage. For several views that share the maps, such as a
+//! split screen, make a pass for each.
 //!
 //! # Precision
 //!
 //! Slopes come from differences of neighbouring depths. Reversed `Depth32Float` is exact enough at any distance; plain
-//! depth of 24 or 32 bits with a near plane at a tenth of a metre is for some hundred metres; 16 bits are not beyond a
-//! few. Of multisampled textures the first sample is read, which lies less than half a pixel beside the pixel's centre.
+//! depth of 24 or 32 bits with a near plane at a tenth of a metre is exact enough for some hundred metres; 16 bits are
+//! for a few metres only. The pass reads the first sample of multisampled textures, which lies less than half a pixel
+//! beside the pixel's centre.
 //!
 //! # Where it does not run
 //!

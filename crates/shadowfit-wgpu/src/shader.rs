@@ -15,9 +15,9 @@ const PCSS_TAPS: u32 = 16;
 pub struct WgslOptions<'a> {
     /// Bind group that it reads; any will do.
     pub group: u32,
-    /// What all its names begin with, before an underscore: with `sun` the function `shadowfit_factor` is called
-    /// `sun_factor` and constants begin with `SUN_`. Prefixes in one shader differ in more than case. With what is no
-    /// identifier the WGSL is not valid; [`Self::with_prefix`] refuses that.
+    /// Prefix of all its names, before an underscore: with `sun` the function `shadowfit_factor` is called `sun_factor`
+    /// and constants begin with `SUN_`. Prefixes in one shader differ in more than case. A prefix that is not an
+    /// identifier makes invalid WGSL; [`Self::with_prefix`] refuses it.
     pub prefix: &'a str,
 }
 
@@ -67,7 +67,7 @@ impl WgslOptions<'_> {
 /// |---|---|
 /// | `shadowfit_caster_position(position) -> vec4<f32>` | for vertex shaders: the clip position |
 /// | `shadowfit_caster_color(depth) -> vec4<f32>` | only for colour formats, for fragment shaders: what to write to the [`color_target`](crate::ShadowMap::color_target), from z of `@builtin(position)` or the clamped depth |
-/// | `shadowfit_caster_depth(position) -> f32` | for vertex shaders where [the fragment shader clamps](crate::ShadowMap::clamps_in_fragment): a varying, interpolated as it is |
+/// | `shadowfit_caster_depth(position) -> f32` | for vertex shaders where [the fragment shader clamps](crate::ShadowMap::clamps_in_fragment): a varying with the usual interpolation |
 /// | `shadowfit_clamped_depth(depth) -> f32` | for fragment shaders there: what to write to `@builtin(frag_depth)`, from that varying |
 ///
 /// `position` is in world space, metres, relative to the origin of [`crate::ShadowMap::prepare`].

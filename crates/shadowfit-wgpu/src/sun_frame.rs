@@ -1,4 +1,4 @@
-//! What an engine says of a frame.
+//! What an engine tells about a frame: views, light, boxes and casters.
 
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::normal_cone::NormalCone;
@@ -9,7 +9,7 @@ use crate::{Casters, MapView};
 /// A frame, as [`SunShadows::update`](crate::SunShadows::update) takes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SunFrame<'a> {
-    /// What is drawn with the shadows: one view, or several that share the maps (both eyes of a headset, split screen).
+    /// The views that show the shadows: one, or several that share the maps (both eyes of a headset, split screen).
     pub views: &'a [ViewFrustum],
     /// World position of the eye from which view depths are counted, in metres: where maps are read by view depth, and
     /// where shadows fade.
@@ -27,8 +27,8 @@ pub struct SunFrame<'a> {
     pub receiver_cones: &'a [NormalCone],
     /// Everything that casts shadows.
     pub casters: Casters<'a>,
-    /// Number of the frame, by which soft filters are turned in each frame, for temporal anti-aliasing; 0 in every frame
-    /// for the same pattern.
+    /// Number of the frame. Soft filters turn their pattern by it, for temporal anti-aliasing; 0 in every frame keeps
+    /// the same pattern.
     pub number: u32,
 }
 
@@ -56,7 +56,7 @@ impl<'a> SunFrame<'a> {
         self
     }
 
-    /// Refuses what neither the fits nor the maps look at, and shaders would be given.
+    /// Refuses values that go to shaders and that neither the fits nor the maps check.
     pub(crate) fn check(&self) -> Result<(), FitError> {
         for (input, point) in [("the frame's eye", self.eye), ("the frame's origin", self.origin)] {
             if let Some(value) = point.to_array().into_iter().find(|value| !value.is_finite()) {
@@ -66,7 +66,7 @@ impl<'a> SunFrame<'a> {
         Ok(())
     }
 
-    /// What the fits take.
+    /// The input of the fits.
     pub(crate) fn input(&self) -> FitInput<'a> {
         FitInput {
             receivers: self.receivers,
@@ -76,7 +76,7 @@ impl<'a> SunFrame<'a> {
         }
     }
 
-    /// Boxes that the fits work with: receivers or casters, whichever are more.
+    /// Number of boxes that the fits work with: receivers or casters, whichever are more.
     pub(crate) fn boxes(&self) -> usize {
         self.casters.boxes.boxes.len().max(self.receivers.map_or(0, |receivers| receivers.boxes.len()))
     }

@@ -1,7 +1,7 @@
 //! The shadows of one sun, from camera and boxes to bind group: the one object that an engine needs.
 //!
 //! ```text
-//!   update(frame) = fit ──▶ prepare: what can be kept ──▶ passes: the engine draws casters by number
+//!   update(frame) = fit ──▶ prepare: which parts are kept ──▶ passes: the engine draws casters by number
 //!        ▲                                                        │
 //!        └──── record_need(depth buffer) ◀──── its own passes with receiver_group() and the WGSL
 //! ```
@@ -23,10 +23,10 @@ use crate::{
 
 pub use error::SunShadowsError;
 
-/// The shadows of one directional light: its maps, what is kept of them, and what the last frames showed.
+/// The shadows of one directional light: its maps, the parts of them that are kept, and what the last frames showed.
 ///
-/// One for each sun. It knows no scene, starts no thread, keeps no global state and never waits for the GPU, except in
-/// [`Self::wait_for_need`].
+/// Make one for each sun. It does not know the scene, starts no thread, has no global state, and never waits for the
+/// GPU except in [`Self::wait_for_need`].
 #[derive(Debug)]
 pub struct SunShadows {
     device: wgpu::Device,
@@ -37,16 +37,16 @@ pub struct SunShadows {
     last: Option<LastFrame>,
 }
 
-/// Reads what pictures show from their depth buffers.
+/// Counts the visible points of depth buffers.
 #[derive(Debug)]
 struct Need {
-    /// Whether the device can.
+    /// Whether the device can do that.
     is_supported: bool,
     pass: Option<NeedPass>,
     samples: u32,
 }
 
-/// What [`SunShadows::record_need`] takes from a frame that was prepared.
+/// The view and light of the frame that was prepared last, for [`SunShadows::record_need`].
 #[derive(Clone, Copy, Debug)]
 struct LastFrame {
     view: ViewFrustum,
@@ -54,8 +54,8 @@ struct LastFrame {
 }
 
 impl SunShadows {
-    /// The shadows of a sun by a technique: [`Technique::default`], or one of
-    /// [`PRESETS`](shadowfit::PRESETS), with what the engine wants otherwise.
+    /// The shadows of a sun by a technique: [`Technique::default`] or one of [`PRESETS`](shadowfit::PRESETS), changed
+    /// as the engine likes.
     ///
     /// # Errors
     ///
@@ -67,8 +67,9 @@ impl SunShadows {
         Ok(sun)
     }
 
-    /// The shadows of a sun by maps of any make: for maps that are fitted by other code ([`Self::prepare`]), or for a
-    /// bind group that begins at another binding. [`Self::fitter`] has [`Technique::default`] until it is told another.
+    /// The shadows of a sun with maps of any size and format: for maps that are fitted by other code
+    /// ([`Self::prepare`]), or for a bind group that begins at another binding. [`Self::fitter`] has
+    /// [`Technique::default`] until it gets another.
     ///
     /// # Errors
     ///
@@ -93,13 +94,13 @@ impl SunShadows {
         self.fitter.technique()
     }
 
-    /// The fitting half.
+    /// The fitter of the maps.
     pub fn fitter(&self) -> &ShadowFitter {
         &self.fitter
     }
 
-    /// The fitting half, to be told what [was seen](ShadowFitter::see) by other means than [`Self::record_need`], or to
-    /// fit another technique to the same maps, such as one with fewer of them.
+    /// The fitter of the maps, for visible points that were [found](ShadowFitter::see) by other means than
+    /// [`Self::record_need`], or for another technique with the same layers, such as one with fewer maps.
     pub fn fitter_mut(&mut self) -> &mut ShadowFitter {
         &mut self.fitter
     }
@@ -114,7 +115,7 @@ impl SunShadows {
         self.fitter.fitted()
     }
 
-    /// The maps that shaders read in this frame: those that wait for another frame as they were drawn.
+    /// The maps that shaders read in this frame. A map that waits for another frame is the one that was drawn last.
     pub fn maps(&self) -> &[FittedMap] {
         self.maps.maps()
     }
@@ -124,12 +125,12 @@ impl SunShadows {
         self.maps.map().receiver_group()
     }
 
-    /// Has maps wait for other frames; see [`UpdateSchedule`].
+    /// Spreads redraws over frames; see [`UpdateSchedule`].
     pub fn set_schedule(&mut self, schedule: UpdateSchedule) {
         self.maps.schedule = schedule;
     }
 
-    /// Whether what stands still is kept from frame to frame, as it is by default. Pictures are the same either way.
+    /// Whether static casters are kept from frame to frame. They are by default. Pictures are the same either way.
     pub fn set_keeps(&mut self, keeps: bool) {
         self.maps.keeps = keeps;
     }
@@ -139,8 +140,8 @@ impl SunShadows {
         self.maps.culling = culling;
     }
 
-    /// Goes on with another technique, and returns whether the maps were made anew: then the engine's pipelines and its
-    /// WGSL must be made anew too. On an error everything stays as it is.
+    /// Goes on with another technique, and returns whether the maps were recreated: the engine must then recreate its
+    /// pipelines and its WGSL too. On an error everything stays as it is.
     ///
     /// # Errors
     ///
@@ -151,7 +152,8 @@ impl SunShadows {
         Ok(is_new)
     }
 
-    /// Goes on with maps of another make, and returns whether they were made anew, as [`Self::set_technique`] does.
+    /// Goes on with maps of another size or format, and returns whether they were recreated, as [`Self::set_technique`]
+    /// does.
     ///
     /// # Errors
     ///
@@ -166,13 +168,13 @@ impl SunShadows {
         Ok(true)
     }
 
-    /// Forgets all earlier frames, and has all maps drawn anew in the next one: when a new level begins.
+    /// Forgets all earlier frames and redraws all maps in the next one: when a new level begins.
     pub fn reset(&mut self) {
         self.cut();
         self.maps.invalidate_all();
     }
 
-    /// Forgets what earlier frames were and showed: after a camera cut. What stands still in the maps stays drawn.
+    /// Forgets the earlier views and what they showed: after a camera cut. Static casters stay in the maps.
     pub fn cut(&mut self) {
         self.fitter.reset();
         if let Some(pass) = &mut self.need.pass {
@@ -180,26 +182,26 @@ impl SunShadows {
         }
     }
 
-    /// Has static casters in a box, in metres relative to an origin in world space, drawn anew in the next frame: where
-    /// one changed its shape, and not its box.
+    /// Redraws static casters in a box in the next frame: for one that changed its shape and not its box. The box is in
+    /// metres, relative to an origin in world space.
     pub fn invalidate(&mut self, aabb: &Aabb, origin: DVec3) {
         self.maps.invalidate(aabb, origin);
     }
 
-    /// Has all maps drawn anew in the next frame, such as after a frame whose passes were not submitted.
+    /// Redraws all maps in the next frame, such as after a frame whose passes were not submitted.
     pub fn invalidate_all(&mut self) {
         self.maps.invalidate_all();
     }
 
-    /// Fits the maps to a frame, finds what must be drawn of them, and writes the uniforms. [`Self::passes`] then has
-    /// what is to be drawn in this frame; it counts as drawn from the next call on. It is [`Self::fit`] and
-    /// [`Self::prepare`] in one.
+    /// Fits the maps to a frame, finds which parts must be drawn, and writes the uniforms. [`Self::passes`] then has
+    /// the passes of this frame; they count as drawn from the next call on. It is [`Self::fit`] and [`Self::prepare`]
+    /// in one.
     ///
     /// # Errors
     ///
-    /// [`SunShadowsError::Fit`] for views, light and boxes that make no sense; [`SunShadowsError::Map`] for maps that the
-    /// layers cannot hold; [`SunShadowsError::Need`] if the device was lost. There is nothing to draw then, and the
-    /// shaders read what they read before.
+    /// [`SunShadowsError::Fit`] for views, light and boxes that make no sense; [`SunShadowsError::Map`] for maps that
+    /// the layers cannot hold; [`SunShadowsError::Need`] if the device was lost. There is nothing to draw then, and the
+    /// shaders read the maps of the frame before.
     pub fn update(&mut self, queue: &wgpu::Queue, frame: &SunFrame<'_>) -> Result<(), SunShadowsError> {
         self.skip();
         frame.check()?;
@@ -208,9 +210,9 @@ impl SunShadows {
         Ok(self.prepare(queue, frame, &fitted)?)
     }
 
-    /// Fits the maps to an input, by what has arrived of the pictures before: the first half of [`Self::update`], for
-    /// engines that fit by other boxes than those of the casters that they draw, or look at the maps before they are
-    /// drawn.
+    /// Fits the maps to an input and to the counts that have arrived of earlier pictures: the first half of
+    /// [`Self::update`], for engines that fit to other boxes than those of the casters that they draw, or look at the
+    /// maps before they are drawn.
     ///
     /// # Errors
     ///
@@ -225,15 +227,15 @@ impl SunShadows {
         Ok(self.fitter.fit(input)?)
     }
 
-    /// Finds what must be drawn of maps, and writes the uniforms: the second half of [`Self::update`]. The maps are those
-    /// of [`Self::fit`], or any others of as many texels: of a frame that is frozen, or fitted by other code. By view
-    /// depth they are in the order of their ends. Those with an [anchor](FittedMap::anchor) can be kept; others are drawn
-    /// anew in each frame. Their [`wrap`](FittedMap::wrap) and the frame's receivers are ignored.
+    /// Finds which parts of maps must be drawn, and writes the uniforms: the second half of [`Self::update`]. The maps
+    /// are those of [`Self::fit`], or any others with as many texels: of a frozen frame, or fitted by other code. Maps
+    /// that are read by view depth are in the order of their ends. Maps with an [anchor](FittedMap::anchor) can be
+    /// kept; others are redrawn in each frame. Their [`wrap`](FittedMap::wrap) and the frame's receivers are ignored.
     ///
     /// # Errors
     ///
     /// As [`ShadowMap::prepare`], and [`ShadowMapError::View`] for views that make no sense. There is nothing to draw
-    /// then, and the shaders read what they read before.
+    /// then, and the shaders read the maps of the frame before.
     pub fn prepare(
         &mut self,
         queue: &wgpu::Queue,
@@ -246,15 +248,15 @@ impl SunShadows {
         Ok(())
     }
 
-    /// Nothing is to be drawn.
+    /// Leaves the frame without passes.
     fn skip(&mut self) {
         self.maps.skip();
         self.last = None;
     }
 
-    /// Writes what the shaders read for another picture of the same maps, whose positions are relative to another origin
-    /// or whose view depths are counted from another eye. The maps stay as they were drawn: their passes must not be
-    /// drawn after this.
+    /// Writes the uniforms for another picture with the same maps, whose positions are relative to another origin or
+    /// whose view depths are counted from another eye. The maps stay as they were drawn: their passes must not be drawn
+    /// after this.
     ///
     /// # Errors
     ///
@@ -298,19 +300,20 @@ impl SunShadows {
         self.maps.updates()
     }
 
-    /// Whether what stands still in a map, by its number, is kept for later frames.
+    /// Whether the static casters of a map, by its number, are kept for later frames.
     pub fn is_kept(&self, map: usize) -> bool {
         self.maps.is_kept(map)
     }
 
-    /// Which maps hold each caster, by its number: bit i of the mask stands for map i. A map that is kept holds the
-    /// static casters over it, seen or not; any other map those of shadows in view. Without maps all masks are 0.
+    /// Which maps hold each caster, by its number: bit i of the mask stands for map i. A map that is kept holds all
+    /// static casters over it; any other map those that can shadow something in view. Without maps all masks are 0.
     pub fn holders(&self, casters: &Casters<'_>) -> Vec<u8> {
         self.maps.holders(casters)
     }
 
-    /// Proves that no map has a hole, for the frame that was given to [`Self::update`]: for debug assertions. The first map
-    /// that fails decides. It counts in that shaders round positions relative to [`SunFrame::origin`].
+    /// Proves that no map has a hole, for the frame that was given to [`Self::update`]: for debug assertions. Returns
+    /// the certificate of the first map that fails. It takes into account that shaders round positions relative to
+    /// [`SunFrame::origin`].
     ///
     /// # Errors
     ///
@@ -334,10 +337,10 @@ impl SunShadows {
         certificate
     }
 
-    /// Counts what a picture shows, for the fits of the next frames: after the pass that fills the depth buffer. `depth`
-    /// is a view of the depth aspect of the whole texture, which fills the picture, is stored, and has the usage
-    /// `TEXTURE_BINDING`; `clip_from_world` and `convention` are what it was drawn with, from positions relative to the
-    /// eye, [`ViewFrustum::origin`] of the first view.
+    /// Counts the visible points of a picture, for the fits of the next frames. Call it after the pass that fills the
+    /// depth buffer. `depth` is a view of the depth aspect of the whole texture, which fills the picture, is stored,
+    /// and has the usage `TEXTURE_BINDING`; `clip_from_world` and `convention` are those that it was drawn with, for
+    /// positions relative to the eye, [`ViewFrustum::origin`] of the first view.
     ///
     /// Returns whether it was recorded: never on devices that [cannot count](Self::can_record_need), where maps are placed
     /// by the boxes; nor for a frame that was refused, nor while many pictures are still on their way.
@@ -369,7 +372,7 @@ impl SunShadows {
         Ok(pass.record(encoder, depth, &seen, None)?)
     }
 
-    /// Whether the device can count what depth buffers show: those of OpenGL cannot.
+    /// Whether the device can count the visible points of depth buffers: those of OpenGL cannot.
     pub fn can_record_need(&self) -> bool {
         self.need.is_supported
     }

@@ -15,7 +15,7 @@ use crate::{MAX_MAPS, MapView, ShadowMapDescriptor};
 const FRAME_SHIFT: f32 = 5.588_238;
 const FRAMES: u32 = 64;
 
-/// What the shadow pass's vertex shader reads: `shadowfit_Caster` in WGSL.
+/// The uniform of the shadow pass's vertex shader: `shadowfit_Caster` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct CasterUniform {
@@ -31,7 +31,7 @@ pub struct CasterUniform {
     pub padding_2: u32,
 }
 
-/// What the look-up reads for one map: `shadowfit_Map` in WGSL.
+/// One map in the uniform of the look-up: `shadowfit_Map` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct MapUniform {
@@ -77,19 +77,19 @@ pub struct MapUniform {
     pub padding_2: u32,
 }
 
-/// What the look-up reads: `shadowfit_Receiver` in WGSL.
+/// The uniform of the look-up: `shadowfit_Receiver` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct ReceiverUniform {
     /// Unit direction toward the light.
     pub to_light: [f32; 3],
-    /// How many of `maps` points try.
+    /// Number of `maps` that are in use.
     pub map_count: u32,
     /// View depth of a position relative to the origin, in metres, is `dot(xyz, position) + w`.
     pub view: [f32; 4],
     /// View depth from which on shadows fade, in metres.
     pub fade_near: f32,
-    /// Metres over which they do.
+    /// Metres over which they fade.
     pub fade_width: f32,
     /// Radius that discs have at least, in texels.
     pub least_disc: f32,
@@ -107,11 +107,11 @@ pub struct ReceiverUniform {
     pub maps: [MapUniform; MAX_MAPS],
 }
 
-/// What [`crate::culling_wgsl`] reads: `shadowfit_Culling` in WGSL.
+/// The uniform of [`crate::culling_wgsl`]: `shadowfit_Culling` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct CullingUniform {
-    /// How many of `volumes` are in use.
+    /// Number of `volumes` that are in use.
     pub volume_count: u32,
     /// Puts the volumes at a multiple of 16 bytes.
     pub padding_0: u32,

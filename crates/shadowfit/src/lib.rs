@@ -1,48 +1,33 @@
 //! Fits a directional light's shadow maps to what a camera sees, and gives spot lights theirs.
 //!
-//! Camera, sun and boxes of the scene in, matrices out, frame by frame; this is the example
-//! `fit_once`:
+//! Camera, sun and boxes of the scene in, maps and the casters of each out, frame by frame; this is the
+//! example `fit_once`:
 //!
 //! ```
-//! use shadowfit::glam::{DVec2, DVec3, Vec3};
-//! use shadowfit::{Aabb, Boxes, FitError, FitInput, MapFitter, PerspectiveCamera, Technique, Workspace};
+//! use shadowfit::glam::{DVec3, Vec3};
+//! use shadowfit::{Aabb, Boxes, FitError, FitInput, PerspectiveCamera, ShadowFitter, Technique};
 //!
 //! fn main() -> Result<(), FitError> {
-//!     let technique = Technique::default(); // 4 maps of 2048 × 2048 texels
 //!     let ground = Aabb::new(Vec3::new(-80.0, -0.1, -80.0), Vec3::new(80.0, 0.0, 80.0));
 //!     let house = Aabb::new(Vec3::new(-4.0, 0.0, -12.0), Vec3::new(4.0, 6.0, -6.0));
 //!     let objects = [ground, house];
 //!     let boxes = Boxes { origin: DVec3::ZERO, boxes: &objects };
 //!     let sun = Vec3::new(0.3, -0.8, 0.2); // the way its light travels
+//!     let technique = Technique::default(); // 4 maps of 2048 × 2048 texels
+//!     let mut fitter = ShadowFitter::new(&technique); // remembers the last frame's maps, to keep them still
 //!
-//!     let mut fitter = MapFitter::new(); // remembers the last frame's maps, to keep them still
-//!     let mut storage = [DVec2::ZERO; Workspace::required(2, 1)]; // for 2 boxes and 1 view
 //!     for frame in 0..3 {
-//!         let camera = PerspectiveCamera {
-//!             eye: DVec3::new(0.0, 1.7, 20.0 - 0.1 * f64::from(frame)),
-//!             forward: Vec3::NEG_Z,
-//!             up: Vec3::Y,
-//!             fov_y: 0.8,
-//!             aspect: 16.0 / 9.0,
-//!             near: 0.1,
-//!             far: 200.0,
-//!         };
+//!         let eye = DVec3::new(0.0, 1.7, 20.0 - 0.1 * f64::from(frame));
+//!         let (forward, up) = (Vec3::NEG_Z, Vec3::Y);
+//!         let camera = PerspectiveCamera { eye, forward, up, fov_y: 0.8, aspect: 16.0 / 9.0, near: 0.1, far: 200.0 };
 //!         let views = [camera.frustum()?];
-//!         // In `need` goes what the last frame's depth buffer showed; without it, as here, placing the maps takes longer.
-//!         let need = &[];
-//!         let input = FitInput { receivers: Some(boxes), casters: Some(boxes), need, ..FitInput::new(&views, sun) };
-//!         let maps = fitter.fit(&input, &technique, &mut Workspace::new(&mut storage))?;
-//!
-//!         println!("frame {frame}: positions are relative to the eye, {}", camera.eye);
-//!         let volumes = maps.caster_volumes(&views, &technique)?;
-//!         for (index, map) in maps.iter().enumerate() {
-//!             let casters = volumes[index].relative_to(boxes.origin);
+//!         let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, sun) };
+//!         let maps = fitter.fit(&input)?;
+//!         for (map, casters) in maps.iter().zip(maps.caster_volumes(&views, &technique)?) {
+//!             let casters = casters.relative_to(boxes.origin);
 //!             let drawn = objects.iter().filter(|object| casters.intersects_aabb(object.min, object.max)).count();
-//!             let size = map.fit.box_max - map.fit.box_min;
-//!             println!("map {index} is {} m wide and {} m high; its texels are {} m", size.x, size.y, map.fit.texel_size);
-//!             println!("  draw {drawn} of {} objects into it with {}", objects.len(), map.fit.clip_from_world);
-//!             println!("  look it up with {}", map.fit.uv_from_world);
-//!             println!("  move the depth that is compared by {}", map.bias.constant_depth);
+//!             println!("draw {drawn} of {} objects with {}", objects.len(), map.fit.clip_from_world);
+//!             println!("look the map up with {}, biased by {}", map.fit.uv_from_world, map.bias.constant_depth);
 //!         }
 //!     }
 //!     Ok(())
@@ -53,15 +38,40 @@
 //! map that holds it ([`FittedMaps::read`]), compares its depth moved by the
 //! [`bias`](FittedMap::bias), and takes positions relative to [`LightFit::origin`], which is the
 //! eye. Boxes need not be exact: one for each object is enough, and without any the maps cover the
-//! whole view. [`Workspace::required`] says how much storage the fits work in, from the number of
-//! boxes and of views; a `Vec` that is allocated once works as well as an array.
+//! whole view.
 //!
 //! [`Technique::default`] is the one to begin with: [`windows`], which are sharp and hardly
-//! ever make an edge crawl. Give it the [grid of need](need) of the frame before, which `shadowfit-wgpu`
-//! counts in the depth buffer by a compute pass. Without a grid the fit looks through the boxes in each
-//! frame: texels are a third wider, and with a thousand boxes a fit takes three times as long or more.
-//! [`PRESETS`] has other techniques by name, each with a line that says when to take it. The repository's
-//! `docs/MATHS.md` derives every fit, with pictures.
+//! ever make an edge crawl. Tell the fitter what the last frame showed ([`ShadowFitter::see`]);
+//! `shadowfit-wgpu` counts it in the depth buffer by a compute pass. Without it the fit looks through the
+//! boxes in each frame: texels are a third wider, and with a thousand boxes a fit takes three times as long
+//! or more. [`PRESETS`] has other techniques by name, each with a line that says when to take it. The
+//! repository's `docs/MATHS.md` derives every fit, with pictures.
+//!
+//! # Without an allocator
+//!
+//! [`ShadowFitter`] owns the memory that fits work in, and needs the feature `alloc`. [`MapFitter`] makes the same maps
+//! in memory that the caller owns:
+//!
+//! ```
+//! use shadowfit::glam::{DVec2, DVec3, Vec3};
+//! use shadowfit::{FitInput, MapFitter, PerspectiveCamera, Technique, Workspace};
+//!
+//! let eye = DVec3::new(0.0, 1.7, 20.0);
+//! let (forward, up) = (Vec3::NEG_Z, Vec3::Y);
+//! let camera = PerspectiveCamera { eye, forward, up, fov_y: 0.8, aspect: 1.6, near: 0.1, far: 200.0 };
+//! let mut fitter = MapFitter::new();
+//! let mut storage = [DVec2::ZERO; Workspace::required(0, 1)]; // no boxes, one view
+//!
+//! let views = [camera.frustum()?];
+//! let input = FitInput::new(&views, Vec3::new(0.3, -0.8, 0.2));
+//! let maps = fitter.fit(&input, &Technique::default(), &mut Workspace::new(&mut storage))?;
+//! assert_eq!(maps.len(), 4);
+//! # Ok::<(), shadowfit::FitError>(())
+//! ```
+//!
+//! [`Workspace::required`] says how much storage the fits of a frame need, from the number of boxes and of views. Maps
+//! that are [held](settings::Stabilise::Hysteresis) are fitted to the views of two frames ahead as well: count two views
+//! more for them. What the last frame showed goes into [`FitInput::need`] and [`FitInput::histogram`].
 //!
 //! # A single map
 //!
@@ -99,7 +109,7 @@
 //! | which map a point reads, by coverage or by view depth | [`choice`], [`FittedMaps::read`] |
 //! | which casters to draw into a map | [`CasterVolume`], [`culling`] for spheres, oriented boxes, whole lists and tighter volumes |
 //! | splits chosen by what the last frame showed | [`histogram`], [`FitInput::histogram`], [`FitInput::depth_bounds`] |
-//! | windows placed by what the last frame showed | [`windows`], [`need`], [`FitInput::need`] |
+//! | windows placed by what the last frame showed | [`windows`], [`seen`], [`need`], [`FitInput::need`] |
 //! | how many maps are enough | [`map_fitter::fewest_maps`] |
 //! | boxes that hug large meshes | `clusters` and [`normal_cone`], feature `alloc` |
 //! | static casters drawn only where the map is new | [`scroll`] |
@@ -119,8 +129,8 @@
 //!   the eye unless moved: [`LightFit::relative_to`] and [`LightFit::world_matrices`] convert.
 //! - A light is its **direction of travel**, of a [`SpotLight`] along its axis. Where a source speaks
 //!   of the direction toward the light, `to_light = -direction`.
-//! - Nothing panics; every bad input is a [`FitError`] with its value. Nothing allocates, except
-//!   `Clusters`, which need the feature `alloc`.
+//! - Nothing panics; every bad input is a [`FitError`] with its value. Nothing allocates, except what needs the
+//!   feature `alloc`; a [`ShadowFitter`] allocates while its scene grows, and not in steady frames.
 //! - Transcendental functions come from `libm`, everything else is `+ - × ÷ √` on scalars, so the
 //!   same input gives the same bits on every target.
 //!
@@ -129,7 +139,7 @@
 //! | feature | adds |
 //! |---|---|
 //! | `std` (default) | `alloc`, and glam with the standard library |
-//! | `alloc` | `Clusters`, for which an allocator is enough |
+//! | `alloc` | [`ShadowFitter`], [`Seen`] and `Clusters`, for which an allocator is enough |
 //! | `serde` | `Serialize` and `Deserialize` for all settings, inputs and outputs that own their data, and for the state between frames; `Clusters` have theirs in [`Aabb`] and [`NormalCone`](normal_cone::NormalCone) |
 //! | `bytemuck` | `Pod` and `Zeroable` for [`Aabb`], [`Sphere`](culling::Sphere), [`OrientedBox`](culling::OrientedBox), [`NormalCone`](normal_cone::NormalCone), [`Bias`], [`SpotBias`] and [`CasterPlanes`](culling::CasterPlanes) |
 //! | `mint` | the module `mint`: conversions from and to the types of other maths crates |

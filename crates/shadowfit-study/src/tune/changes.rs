@@ -1,4 +1,4 @@
-//! The changes that a search tries, one at a time, in rounds: what matters most comes first.
+//! The changes that a search tries, one at a time, in rounds: those that matter most come first.
 
 use shadowfit::Technique;
 use shadowfit::settings::{
@@ -70,8 +70,8 @@ fn biases() -> Vec<Change> {
     ]
 }
 
-/// Filters whose widths are numbers of texels, each with the bias of the present kind that it needs. Truth has a hard
-/// sun, to which soft ones only add noise.
+/// Filters whose widths are numbers of texels, each with the bias of the present kind that it needs. The truth has a
+/// hard sun, so soft filters only add noise.
 fn filters() -> Vec<Change> {
     let filters = [
         ("one comparison", FilterKind::Point),

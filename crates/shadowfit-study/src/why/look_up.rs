@@ -1,4 +1,4 @@
-//! How a point is looked up in its map: where, with which depth, and what the texels around it store, found by rays.
+//! How a point is looked up in its map: where, with which depth, and the depths that rays find in the texels around it.
 //!
 //! ```text
 //!   near plane ──────┬───────┬───────┬─────  depths are metres from here, along the light
@@ -17,10 +17,10 @@ use shadowfit_wgpu::ShadowMapDescriptor;
 
 use super::StoredTexels;
 
-/// How far before the near plane rays begin that look for what a clamped depth keeps, in metres: farther than any
-/// scene reaches whose rays are exact.
+/// Distance before the near plane at which rays begin that look for casters with clamped depth, in metres: farther than
+/// any scene reaches whose rays are exact.
 const BEFORE_NEAR: f64 = 1e4;
-/// Most texels each way that the filter is followed over.
+/// Greatest reach of the filter that is followed, in texels each way.
 const MOST_TEXELS: f64 = 32.0;
 
 /// A point's look-up in a map. Positions are relative to the origin of the rays, in metres; depths are metres from the
@@ -52,7 +52,7 @@ pub(super) struct Tap {
     pub(super) away: DVec2,
     /// Depth that it stores; `None` where it stores nothing.
     pub(super) stored: Option<f64>,
-    /// The triangle that it stores, as far as rays know.
+    /// The triangle that it stores, if rays find it.
     pub(super) triangle: Option<u32>,
     /// Depth that is compared with it.
     pub(super) compared: f64,
@@ -107,7 +107,7 @@ impl<'a> LookUp<'a> {
         f64::from(self.fit.texel_size.max_element())
     }
 
-    /// The texel in which the look-up lies, with the depth that it stores: as it was read, else as rays find it.
+    /// The texel in which the look-up lies, with the depth that it stores: read back, or found by rays.
     pub(super) fn centre(&self, tracer: &Tracer, stored: Option<&StoredTexels>) -> Tap {
         self.tap(tracer, stored, self.texel.floor())
     }
@@ -125,7 +125,7 @@ impl<'a> LookUp<'a> {
         let away = texel + 0.5 - self.texel;
         let found = self.met(tracer, away);
         let read = stored.and_then(|stored| stored.depth(texel)).map(|depth| self.metres(depth));
-        // What was read has nothing in it at the far plane.
+        // A depth at the far plane means an empty texel.
         let is_something = |metres: &f64| *metres < f64::from(self.fit.depth_range) * (1.0 - f64::from(f32::EPSILON));
         Tap {
             away,

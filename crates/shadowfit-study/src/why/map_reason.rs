@@ -1,4 +1,4 @@
-//! Which map a point reads, and why that one, in words.
+//! Which map a point reads, and why, in words.
 
 use glam::{DVec2, DVec3};
 use shadowfit::choice::MapRead;

@@ -8,7 +8,7 @@ use super::look_up::{LookUp, Tap};
 use super::map_reason::way_beside;
 use super::words::{count, length, name, percent};
 
-/// Cosine between the normals of what counts as one surface, to about 8 degrees.
+/// Least cosine between normals on what counts as one surface: about 8 degrees.
 const SAME_NORMAL: f32 = 0.99;
 
 pub(super) fn reason(at: &At<'_>) -> String {
@@ -51,7 +51,7 @@ fn dark_rightly(at: &At<'_>) -> String {
     }
 }
 
-/// Where the technique itself lets shadows end.
+/// The reason where the technique lets shadows end before the point.
 fn beyond(at: &At<'_>) -> Option<String> {
     let depth = at.point.view_depth;
     let [begin, end] = at.input.descriptor.fade.map(f64::from);
@@ -78,7 +78,7 @@ fn hole(at: &At<'_>) -> String {
     let occluders = at.occluders();
     let way = |occluder: &Occluder| way_beside(at, map, occluder.position).length();
     let before = |occluder: &Occluder| -at.maps.maps[map].project(occluder.position).depth * range;
-    // The one that the map just fails to hold.
+    // The occluder that the map just fails to hold.
     let nearly = occluders.iter().min_by(|a, b| way(a).max(before(a)).total_cmp(&way(b).max(before(b))));
     let Some(occluder) = nearly else { return format!("map {} holds none of its occluders", map + 1) };
     let who = its(at, occluder);
@@ -98,7 +98,7 @@ fn false_light(at: &At<'_>) -> String {
     };
     let mut occluders = at.occluders();
     occluders.sort_by(|a, b| b.distance.total_cmp(&a.distance));
-    // The map stores the one nearest to the light.
+    // The map stores the occluder nearest to the light.
     let Some(stored) = occluders.iter().find(|occluder| is_held(at, occluder.position)) else {
         return "no ray meets its occluder".to_owned();
     };
@@ -213,7 +213,7 @@ fn nearest_occluder(at: &At<'_>) -> Option<Occluder> {
     occluders.into_iter().min_by(|a, b| a.distance.total_cmp(&b.distance))
 }
 
-/// What shadows a point first, seen from it.
+/// The first occluder of a point, seen from the point.
 fn nearest(at: &At<'_>) -> String {
     nearest_occluder(at).map_or_else(|| "its occluder".to_owned(), |occluder| plain(at, &occluder))
 }

@@ -6,7 +6,7 @@ use shadowfit_truth::PixelCamera;
 
 use crate::SceneRays;
 
-/// Units of length, how many of them are a metre, and the number from which on the next one reads better.
+/// Units of length, how many of them make a metre, and the number above which the next one reads better.
 const UNITS: [(&str, f64, f64); 5] =
     [("µm", 1e6, 100.0), ("mm", 1e3, 20.0), ("cm", 1e2, 100.0), ("m", 1.0, 1000.0), ("km", 1e-3, f64::INFINITY)];
 
@@ -47,8 +47,8 @@ pub(super) fn place(camera: &PixelCamera, way: DVec3) -> &'static str {
     strongest.map_or("beside it", |(along, words)| words[usize::from(along < 0.0)])
 }
 
-/// What a triangle of the rays belongs to, in quotes: the node of the scene, the nearest of those above it that has a
-/// name, or the mesh. `None` where nothing has a name.
+/// The name of a triangle's object, in quotes: that of the scene's node, of its nearest ancestor that has a name, or of
+/// the mesh. `None` where nothing has a name.
 pub(super) fn name(scene: &Scene, rays: &SceneRays, triangle: u32) -> Option<String> {
     let instance = rays.triangles.get(triangle as usize)?.instance;
     let instance = *scene.instances().get(instance as usize)?;

@@ -11,8 +11,8 @@ use crate::cli::Arguments;
 use crate::files::write_png;
 use crate::stage::Stage;
 
-/// Renders what a sample shows: the technique as its source has it, without shadows and beside what it is compared with,
-/// and each of its variants; of a variant that is named, that alone. Then it says how the sample compares with modern
+/// Renders the pictures of a sample: the technique as its source has it, without shadows, and beside its comparison,
+/// and each of its variants; or one variant alone, if it is named. Then prints how the sample compares with modern
 /// maps.
 pub(super) fn run(
     arguments: &Arguments,
@@ -54,7 +54,7 @@ pub(super) fn run(
     Ok(())
 }
 
-/// Names and options of the pictures of the technique itself: as its source has it, and what is shown beside it.
+/// Names and options of the pictures of the technique itself: as its source has it, and beside its comparison.
 fn pictures(sample: &Sample) -> Vec<(String, Vec<(&'static str, &'static str)>)> {
     let mut all = vec![(sample.id.to_owned(), Vec::new())];
     for option in sample.options {
@@ -84,7 +84,7 @@ fn write_picture(stage: &mut Stage, path: &Path, size: [u32; 2]) -> Result<()> {
     write_png(path, size, &pixels, None)
 }
 
-/// A line between both halves of a picture: white beside black, so that it shows on whatever is there.
+/// A line between both halves of a picture: white beside black, so that it shows on any picture.
 fn draw_line(pixels: &mut [u8], [width, _]: [u32; 2], split: f32) {
     let column = (split * width as f32) as usize;
     for row in pixels.chunks_exact_mut(width as usize * 4) {

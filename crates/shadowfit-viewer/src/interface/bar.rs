@@ -1,4 +1,4 @@
-//! The bar above the picture: scenes, views, comparison, undo and the rest of what is always at hand.
+//! The bar above the picture: scenes, views, comparison, undo and the other buttons that are always there.
 
 use egui::{Button, Ui, containers::menu::MenuButton};
 use shadowfit_classics::SAMPLES;

@@ -27,7 +27,7 @@ impl Painter {
         self.renderer.register_native_texture(&gpu.device, &picture.encoded_view(), wgpu::FilterMode::Nearest)
     }
 
-    /// Puts another picture in the place of one.
+    /// Replaces a picture.
     pub(crate) fn replace(&mut self, gpu: &Gpu, texture: TextureId, picture: &RenderTarget) {
         let (view, filter) = (picture.encoded_view(), wgpu::FilterMode::Nearest);
         self.renderer.update_egui_texture_from_wgpu_texture(&gpu.device, &view, filter, texture);
@@ -44,7 +44,7 @@ impl Painter {
             }
         }
         self.unused.extend(&textures.free);
-        // All applied; egui asks to be told so.
+        // All deltas are applied; egui wants the list cleared.
         textures.clear();
     }
 

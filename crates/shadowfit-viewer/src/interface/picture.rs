@@ -1,5 +1,5 @@
-//! The place of the picture: what the stage draws, the bar between two techniques, the view from outside beside it,
-//! and what is written over them.
+//! The place of the picture: the stage's pictures, the bar between two techniques, the view from outside beside it, and
+//! the texts over them.
 
 use egui::{
     Align2, Color32, CornerRadius, CursorIcon, FontId, Pos2, Rect, Response, Sense, Stroke, StrokeKind, TextStyle, Ui,
@@ -18,12 +18,12 @@ use crate::stage::Stage;
 const POINTS_PER_NOTCH: f32 = 50.0;
 /// Width of the picture from outside, as a share of the picture's.
 const BESIDE: f32 = 0.36;
-/// Distance of what lies over the picture from its edge, in points.
+/// Distance of overlays from the edge of the picture, in points.
 const MARGIN: f32 = 12.0;
-/// Width of what is taken hold of around the bar between two pictures, in points.
+/// Width of the handle around the bar between two pictures, in points.
 const GRIP: f32 = 12.0;
 
-/// A picture of the stage with the texture that egui shows it by.
+/// A picture of the stage, and its texture in egui.
 struct Shot {
     target: RenderTarget,
     texture: egui::TextureId,
@@ -63,7 +63,7 @@ impl Pictures {
         self.main.wanted
     }
 
-    /// Draws all that is on show.
+    /// Draws the pictures that are on show.
     pub(crate) fn draw(&mut self, stage: &mut Stage) {
         stage.draw(&self.main.target);
         if stage.settings.view.outside_beside {
@@ -135,7 +135,7 @@ impl Pictures {
     }
 }
 
-/// What both halves of the picture are called, where they show different things.
+/// Names of both halves of the picture, where they show different things.
 fn halves(stage: &Stage) -> Option<[String; 2]> {
     if stage.draws_sample() {
         return stage.sample_halves();
@@ -173,7 +173,7 @@ fn pixels(ui: &Ui, size: Vec2) -> [u32; 2] {
     [size.x, size.y].map(|side| ((side * scale).round() as u32).max(1))
 }
 
-/// What the pointer does on the picture.
+/// Handles the pointer on the picture.
 fn pointer(ui: &Ui, response: &Response, rect: Rect, output: &mut InterfaceOutput) {
     let scale = ui.pixels_per_point();
     let share = |at: Pos2| [(at.x - rect.left()) / rect.width(), (at.y - rect.top()) / rect.height()];
@@ -208,20 +208,20 @@ fn wheel_notches(ui: &Ui) -> f32 {
     })
 }
 
-/// What is written over the picture: the legend of the view.
+/// Shows the legend of the view over the picture.
 fn over(ui: &Ui, stage: &Stage, figures: &Figures, rect: Rect) {
     let view = &stage.settings.view;
     shadowfit_egui::legend_overlay(ui.ctx(), rect, view, figures);
     let note = match view.mode {
         ViewMode::Final if !view.shadows => "Shadows are off",
-        // Maps of other techniques are laid without counting what the picture shows.
+        // Other techniques place their maps without counting visible points.
         ViewMode::Need if !stage.settings.technique.uses_seen() => "This technique does not look at the need",
         _ => return,
     };
     label(ui, rect.left_top() + Vec2::splat(MARGIN), Align2::LEFT_TOP, note);
 }
 
-/// How far a scene is, or that an artefact is being searched.
+/// Progress of loading a scene, or of the search for an artefact.
 fn loading(ui: &mut Ui, input: &InterfaceInput<'_>, rect: Rect) {
     if input.loading.is_none() && !input.is_searching {
         return;

@@ -1,14 +1,14 @@
-//! The sample on show, as the panel takes it.
+//! The card of the sample on show, for the panel.
 
 use shadowfit_classics::{OptionKind, Sample};
 use shadowfit_egui::{Card, CardChoice, CardControl, CardFigure, CardRow};
 
 use crate::stage::SampleShow;
 
-/// What measuring a sample does.
+/// Help text of the button that measures a sample.
 const MEASURE: &str = "Judges this view against rays, as the sample shadows it and as modern maps do.";
 
-/// What the card of a sample borrows.
+/// Texts that the card of a sample borrows.
 pub(super) struct Parts {
     sample: &'static Sample,
     shown: Option<usize>,

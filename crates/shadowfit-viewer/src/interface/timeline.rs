@@ -48,7 +48,7 @@ fn animation(ui: &mut Ui, stage: &mut Stage, output: &mut InterfaceOutput) {
     let slider = Slider::new(&mut seconds, 0.0..=duration).fixed_decimals(2).suffix(" s").trailing_fill(true);
     let response = ui.add(slider).on_hover_text("Time of the animation; dragging it poses the scene");
     rename(ui, &response, "Time of the animation".to_owned());
-    // A slider rounds what it shows; that is not a change asked for.
+    // A slider rounds its value; that is not a change by the user.
     if response.changed() && (seconds - now).abs() > SCRUB_STEP {
         output.commands.push(Command::Scrub(seconds));
     }

@@ -1,4 +1,4 @@
-//! All maps side by side over the whole picture, with what was kept in them, what was drawn anew, and what moves.
+//! All maps side by side over the whole picture, with the parts that were kept, that were redrawn, and that move.
 
 use glam::Vec4;
 use shadowfit::{Aabb, FittedMap};
@@ -22,15 +22,15 @@ pub(super) struct Boards {
     pub(super) insets: Vec<Inset>,
     /// Texels across and down of each map.
     sizes: Vec<[f32; 2]>,
-    /// Of the picture, in pixels.
+    /// Size of the picture, in pixels.
     size: [f32; 2],
 }
 
-/// What is around the maps, linear.
+/// Colour around the maps, linear.
 const GROUND: Vec4 = Vec4::new(0.006, 0.007, 0.009, 1.0);
 
 impl Boards {
-    /// As large as the picture of `size` pixels allows.
+    /// Places for maps as large as the picture of `size` pixels allows.
     pub(super) fn new(maps: &[FittedMap], bounds: &Aabb, depth_range: Option<[f32; 2]>, size: [u32; 2]) -> Self {
         let [width, height] = size.map(|side| side as f32);
         let gap = (GAP * height).round();
@@ -42,7 +42,7 @@ impl Boards {
             let [w, h] = [columns, rows];
             ((free[0] - gap) / w as f32).min((free[1] - gap) / h as f32) - gap
         };
-        // Of two the one with fewer columns.
+        // Of two equal choices, the one with fewer columns.
         let columns = (1..=count).rev().max_by(|a, b| side(*a).total_cmp(&side(*b))).unwrap_or(1);
         let side = side(columns).max(1.0).floor();
         let rows = count.div_ceil(columns);
@@ -60,7 +60,7 @@ impl Boards {
         Self { insets: insets.collect(), sizes, size: [width, height] }
     }
 
-    /// Covers the picture but for the maps: a band above each row of them and below the last, and what is beside them.
+    /// Covers the picture around the maps: a band above each row and below the last, and the areas beside them.
     fn ground(&self) -> Vec<Quad> {
         let [width, height] = self.size;
         let mut quads = Vec::new();
@@ -83,7 +83,7 @@ impl Boards {
         quads.into_iter().map(|rectangle| Quad::rectangle(rectangle, GROUND)).collect()
     }
 
-    /// What was kept: each map in the colour of what is kept; and over it what was drawn.
+    /// Each map in the colour of kept parts, and over it the rectangles that were drawn.
     pub(super) fn quads(&self, updates: &[MapUpdate]) -> Vec<Quad> {
         let color = |color: [u8; 3]| linear_color(color).extend(FILL);
         let [kept, drawn, moving] = MAP_UPDATE_COLORS.map(color);

@@ -1,5 +1,5 @@
-//! Two techniques side by side: the second one has maps, a renderer and a judge of its own, and everything else in
-//! common with the first.
+//! Two techniques side by side: the second one has its own maps, renderer and judge, and shares everything else with
+//! the first.
 
 use shadowfit::Technique;
 use shadowfit_params::figures::JudgedFigures;
@@ -116,7 +116,7 @@ impl Stage {
         self.other.as_ref().map(|other| (&other.side, other.technique))
     }
 
-    /// Does something with a side.
+    /// Calls a function with a side.
     pub(super) fn with_side<T>(
         &mut self,
         in_other: bool,
@@ -137,7 +137,7 @@ impl Stage {
         self.side.live.is_up_to_date() && self.other.as_ref().is_none_or(|other| other.side.live.is_up_to_date())
     }
 
-    /// What both techniques are called: by the name of a preset where they are one.
+    /// Names of both techniques: those of presets where they are presets.
     pub fn side_names(&self) -> [String; 2] {
         let other = self.other.as_ref().map_or(self.settings.technique, |other| other.technique);
         [self.settings.technique, other].map(|technique| {

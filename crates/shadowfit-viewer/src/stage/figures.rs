@@ -55,7 +55,7 @@ impl Stage {
         self.side.live.figures(self.clock)
     }
 
-    /// The map that is read where the middle of the picture meets the scene, and its pixels per texel there. Left open
+    /// The map that is read where the middle of the picture meets the scene, and its pixels per texel there. Unknown
     /// while the scene plays, which would need new rays in each frame.
     fn ahead(&self, fitted: &Fitted, size: [u32; 2]) -> Option<(usize, Option<f32>)> {
         if self.plays() {
@@ -72,7 +72,7 @@ impl Stage {
     }
 }
 
-/// Share of a map's area beside the part of the view that it is made for; `None` where it is made for none.
+/// Share of a map's area outside the part of the view that it is made for; `None` for a map without such a part.
 fn waste(fitted: &Fitted, map: usize) -> Option<f32> {
     let slice = fitted.slice(map)?;
     let fit = fitted.maps.get(map)?.fit.relative_to(slice.origin);

@@ -17,7 +17,7 @@ pub(super) fn home(prepared: &PreparedScene) -> (Settings, FlyCamera) {
     let radius = ((bounds.max - bounds.min).length() * 0.5).max(1e-3);
     if scene.subject.is_none() {
         // A scene of unknown units: all lengths follow from its size. Shadows reach as far as the camera sees, since
-        // maps are spent on what is there and not on the distance.
+        // maps are placed by content and not by distance.
         settings.technique.fit.caster_extension = radius * 2.0;
         settings.camera.near = radius * 0.005;
         settings.camera.far = radius * 20.0;

@@ -8,7 +8,7 @@ use shadowfit::{Aabb, FittedMap, LightFit};
 use shadowfit_params::figures::linear_map_tints;
 use shadowfit_render::Inset;
 
-/// Width of a picture, in pixels, from which on insets have their full size; smaller pictures have smaller ones.
+/// Least width of a picture with full-size insets, in pixels; smaller pictures have smaller ones.
 const FULL_WIDTH: f32 = 960.0;
 /// Full size of an inset, in pixels.
 const SIZE: [f32; 2] = [300.0, 200.0];
@@ -32,7 +32,7 @@ pub(super) fn insets(
     let picture = size.map(|side| side as f32);
     let scale = (picture[0] / FULL_WIDTH).min(1.0);
     let margin = (MARGIN * scale).round();
-    // Several are as high as there is room for.
+    // Several insets are as high as there is room for.
     let room = (picture[1] * (1.0 - FREE) - margin) / shown.len().max(1) as f32 - margin;
     let height = (SIZE[1] * scale).round().min(room.floor()).max(1.0);
     let width = (height * SIZE[0] / SIZE[1]).round();
@@ -55,7 +55,7 @@ pub(super) fn tint(map: usize) -> Vec3 {
     linear_map_tints()[map % MAX_MAPS]
 }
 
-/// Least and greatest depth of a map at which the scene's box lies over it: a window is deep, and holds little of that.
+/// Least and greatest depth of the scene's box within a map: a window is deep, and the scene fills little of it.
 pub(super) fn depths(fit: &LightFit, bounds: &Aabb) -> Option<[f32; 2]> {
     let world_from_uv = fit.uv_from_world.inverse();
     let [min, max] = [bounds.min, bounds.max].map(|corner| (corner.as_dvec3() - fit.origin).as_vec3());

@@ -24,7 +24,7 @@ impl Stage {
 
     fn judge_with_truth(&mut self, size: [u32; 2], subject_only: bool) -> Option<(SharedTruth, Judged)> {
         let maps = self.maps(size);
-        // The picture of one moment, whatever was judged before.
+        // The picture of a single moment: crawl is not measured against earlier ones.
         let view = View { is_first: true, ..self.view(size) };
         let evaluator = &mut self.side.evaluator;
         evaluator.judging = Judging { size, subject_only, crawl: false, ..evaluator.judging };

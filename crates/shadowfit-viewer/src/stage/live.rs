@@ -1,5 +1,5 @@
-//! Pictures judged against rays while they are shown: on a graphics card each one, where it is drawn; without one as
-//! often as a thread is done with the one before.
+//! Pictures judged against rays while they are shown: each one on a graphics card; without one, the next as soon as a
+//! thread is done with the last.
 
 use anyhow::{Result, anyhow};
 use shadowfit::{FittedMap, PerspectiveCamera, Technique};
@@ -17,17 +17,17 @@ const BACKGROUND_WIDTH: u32 = 480;
 const STILL: f32 = 0.3;
 /// How often a view that does not stand still is judged by a thread, in seconds.
 const MOVING: f32 = 2.0;
-/// Most triangles that are moved to a new pose within a frame, so that no frame stops for it.
+/// Most triangles that are moved to a new pose within a frame, so that frames do not stall.
 const MOST_POSED: usize = 150_000;
 /// Frames whose time is remembered until their sums come back.
 const FRAMES: usize = 8;
 
-/// What a picture shows: where any of it differs, it is another one.
+/// The content of a picture: where any field differs, the picture is another one.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Key {
     pub(super) camera: PerspectiveCamera,
     pub(super) technique: Technique,
-    /// Of the light's travel.
+    /// The light's direction of travel.
     pub(super) direction: glam::Vec3,
     /// Time of the scene's animation, in seconds.
     pub(super) seconds: f32,
@@ -39,7 +39,8 @@ struct Judged {
     key: Key,
     view: wgpu::TextureView,
     size: [u32; 2],
-    /// What it was judged by, whose depth buffer tells which surfaces it shows; `None` where the next frame judges anew.
+    /// The probe that it was judged by, whose depth buffer tells which surfaces it shows; `None` where the next frame
+    /// is judged again.
     seen: Option<ProbeTargets>,
 }
 
@@ -56,7 +57,7 @@ struct Drawn {
 #[derive(Debug)]
 struct Sums {
     of: Drawn,
-    /// None of a picture in which nothing counts, such as one of the sky.
+    /// `None` for a picture without a pixel that counts, such as one of the sky.
     figures: Option<PictureFigures>,
     /// How long the GPU judged it, in milliseconds; `None` where it does not, or is not timed.
     gpu_ms: Option<f32>,
@@ -69,13 +70,13 @@ pub(super) struct Live {
     pub(super) on_gpu: bool,
     gpu: Option<LiveTruth>,
     background: Option<BackgroundJudge>,
-    /// What the thread judges at present, and the probe that it judges.
+    /// The picture that the thread judges, and its probe.
     started: Option<(Drawn, ProbeTargets)>,
-    /// When the thread was last given a picture, by the stage's clock in seconds.
+    /// When the thread last got a picture, by the stage's clock in seconds.
     begun: Option<f32>,
     judged: Option<Judged>,
     sums: Option<Sums>,
-    /// The last pictures that the GPU was given, by their numbers.
+    /// The last pictures that the GPU got, by their numbers.
     drawn: Vec<(u64, Drawn)>,
     /// The view of the frame before, and since when it has been the same, by the stage's clock in seconds.
     last: Option<(Key, f32)>,
@@ -90,10 +91,10 @@ impl Live {
         Self { on_gpu: !gpu.is_software(), ..Self::default() }
     }
 
-    /// Forgets all pictures: the scene is another one.
+    /// Forgets all pictures, for another scene.
     pub(super) fn forget(&mut self) {
         let Self { on_gpu, waits, .. } = *self;
-        // What a thread is at is given up.
+        // The thread stops judging.
         *self = Self { on_gpu, waits, ..Self::default() };
     }
 
@@ -115,20 +116,20 @@ impl Live {
         self.sums.as_ref()?.gpu_ms
     }
 
-    /// Whether what was judged last is the view that was drawn last, and its sums are there.
+    /// Whether the view that was drawn last has been judged, and its sums have arrived.
     pub(super) fn is_up_to_date(&self) -> bool {
         let (Some(judged), Some(sums), Some((last, _))) = (&self.judged, &self.sums, &self.last) else { return false };
         judged.key == *last && sums.of.key == *last
     }
 
-    /// Whether no thread judges a picture.
+    /// Whether the thread is idle.
     #[cfg(test)]
     pub(super) fn is_idle(&self) -> bool {
         !self.background.as_ref().is_some_and(BackgroundJudge::is_busy)
     }
 
-    /// Judges the view that is about to be drawn, and takes what has been judged. Returns whether the maps were drawn for
-    /// it, so that the picture needs them no more.
+    /// Judges the view that is about to be drawn, and takes results that have arrived. Returns whether the maps were
+    /// drawn for it, so that the picture need not draw them again.
     ///
     /// # Errors
     ///
@@ -169,8 +170,8 @@ impl Live {
         self.start(evaluator, shot, (view, key), maps, size)
     }
 
-    /// Rays of the present pose, at once where that takes no time worth telling; else a thread makes them for a later
-    /// frame. Returns whether they are there.
+    /// Makes rays of the present pose, at once where that is quick, otherwise on a thread for a later frame. Returns
+    /// whether they exist.
     fn pose_rays(&self, shot: &mut Shot<'_>) -> bool {
         let is_small = shot.scene.latest_rays().is_some_and(|(rays, _)| rays.triangles.len() <= MOST_POSED);
         if self.waits || is_small {
@@ -217,7 +218,7 @@ impl Live {
         Ok(true)
     }
 
-    /// Draws what the thread needs, and starts it.
+    /// Draws the probe for the thread, and starts it.
     fn start(
         &mut self,
         evaluator: &mut Evaluator,
@@ -248,11 +249,11 @@ impl Live {
                 self.take(shot.gpu)?;
             }
         }
-        // The probe of the maps before took the place of those of this view.
+        // Measuring crawl has drawn the maps of the view before in place of this view's.
         Ok(!measures_crawl)
     }
 
-    /// Takes what has been judged.
+    /// Takes results that have arrived.
     fn take(&mut self, gpu: &Gpu) -> Result<()> {
         let tally = self.gpu.as_mut().map(|live| live.take(gpu)).transpose()?.flatten();
         let gpu_ms = self.gpu.as_ref().and_then(LiveTruth::milliseconds);
@@ -274,7 +275,7 @@ impl Live {
     }
 }
 
-/// Figures as panels have them.
+/// Figures for the panel.
 pub(crate) fn judged_figures(figures: &PictureFigures, size: [u32; 2], age: f32) -> JudgedFigures {
     JudgedFigures {
         wrong: figures.wrong as f32,

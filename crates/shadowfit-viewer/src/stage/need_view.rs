@@ -1,4 +1,4 @@
-//! The scene as the light sees it: how fine a texel the picture asks for, cell by cell, and the maps over it.
+//! The scene from the light's direction: how fine a texel the picture asks for, cell by cell, and the maps over it.
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use shadowfit::need::{LEVELS, NeedGrid, SIDE};
@@ -8,10 +8,10 @@ use shadowfit_render::{Line, Quad, box_lines};
 
 use crate::fitted::Fitted;
 
-/// Field of view of the camera in the light's place, in radians: so narrow that it sees the scene nearly as the light
-/// does, in parallel lines.
+/// Field of view of the camera in the light's place, in radians: so narrow that its lines of sight are nearly parallel,
+/// like the light.
 const FOV_Y: f32 = 0.01;
-/// How much more is seen than the map that fills the picture, as a factor.
+/// Size of the visible area relative to the map that fills the picture.
 const ROOM: f32 = 1.25;
 /// Strength of the colour over a cell.
 const FILL: f32 = 0.8;
@@ -28,8 +28,8 @@ pub(super) struct FromLight {
 }
 
 impl FromLight {
-    /// One that sees a map and what is around it; `None` where nothing was fitted. The last map and all that holds it
-    /// fill the picture, and a map before it is looked at closely.
+    /// A camera for a map and its surroundings: the map of index `shown`, or the last one for 0. `None` where nothing
+    /// was fitted.
     pub(super) fn new(fitted: &Fitted, shown: usize, bounds: Aabb, size: [u32; 2]) -> Option<Self> {
         let map = if shown == 0 { fitted.maps.len().checked_sub(1)? } else { shown };
         let fit = fitted.maps.get(map)?.fit;
@@ -58,7 +58,7 @@ impl FromLight {
         Some(Self { camera, size: size.map(|side| side as f32) })
     }
 
-    /// Where a world position is in the picture, in pixels.
+    /// Place of a world position in the picture, in pixels.
     fn pixel(&self, point: DVec3) -> Vec2 {
         let clip = self.camera.clip_from_world(DepthConvention::Reversed);
         let at = clip * (point - self.camera.eye).as_vec3().extend(1.0);

@@ -1,4 +1,4 @@
-//! A classic sample on the stage: its values, its controls, and what draws it.
+//! A classic sample on the stage: its values, its controls, and its drawer.
 
 use anyhow::{Context, Result};
 use shadowfit_classics::{OptionKind, Sample, SampleDrawer, SampleOutcome, SampleValues, SampleVariant};
@@ -14,14 +14,14 @@ pub(crate) struct SampleShow {
     pub(crate) variant: Option<&'static SampleVariant>,
     pub(crate) values: SampleValues,
     drawer: SampleDrawer,
-    /// What was drawn otherwise than asked for, or could not be.
+    /// Notes about options that could not be drawn as asked for.
     message: Option<String>,
-    /// What the right half is drawn into.
+    /// Target of the right half.
     beside: Option<RenderTarget>,
 }
 
 impl SampleShow {
-    /// Back to the values of the source, or of the variant.
+    /// Goes back to the values of the source, or of the variant.
     pub(super) fn reset(&mut self) {
         self.values =
             SampleValues::of_variant(self.sample, self.variant).unwrap_or_else(|_| SampleValues::new(self.sample));
@@ -56,7 +56,7 @@ impl Stage {
         self.sample.as_ref()
     }
 
-    /// Takes values of the sample on show.
+    /// Sets the values of the sample on show.
     pub(crate) fn set_sample_values(&mut self, values: SampleValues) {
         let Some(show) = &mut self.sample else { return };
         let technique = show.sample.technique(&values);
@@ -78,7 +78,7 @@ impl Stage {
         }
     }
 
-    /// Sets an option of the sample on show as command lines say it.
+    /// Sets an option of the sample on show by name and text.
     ///
     /// # Errors
     ///
@@ -91,7 +91,7 @@ impl Stage {
         Ok(())
     }
 
-    /// Whether the sample on show has a place of its own that R puts the camera to.
+    /// Whether R has a special place for the camera in the sample on show.
     pub(crate) fn has_sample_reset(&self) -> bool {
         self.sample_reset().is_some()
     }
@@ -101,7 +101,7 @@ impl Stage {
         self.sample.as_ref().is_some_and(|show| !show.sample.is_technique(&show.values))
     }
 
-    /// Whether the right half of the picture shows something else of a sample, and what both halves are called.
+    /// Names of both halves of the picture, where a sample shows something else in the right one.
     pub(crate) fn sample_halves(&self) -> Option<[String; 2]> {
         let show = self.sample.as_ref()?;
         show.values.beside()?;
@@ -113,12 +113,12 @@ impl Stage {
         Some([left.to_owned(), label.unwrap_or_default().to_owned()])
     }
 
-    /// What the sample has to tell.
+    /// Notes of the sample.
     pub(super) fn sample_message(&self) -> Option<&str> {
         self.sample.as_ref().and_then(|show| show.message.as_deref())
     }
 
-    /// Draws the sample on show, and what is beside it, into a target.
+    /// Draws the sample on show, and the right half beside it, into a target.
     pub(super) fn draw_sample(&mut self, target: &RenderTarget) {
         let Some(mut show) = self.sample.take() else { return };
         show.message = None;
@@ -144,7 +144,7 @@ impl Stage {
         }
     }
 
-    /// What the sample's own controls make of what a person asks for.
+    /// Applies the sample's own controls to the user's input.
     pub(super) fn steer_sample(&mut self, input: &FlyInput, seconds: f32) -> FlyInput {
         let mut input = *input;
         let Some(show) = &self.sample else { return input };
@@ -162,14 +162,14 @@ impl Stage {
         input
     }
 
-    /// Where R puts the camera, if not to the view of the start.
+    /// Where R puts the camera, if not back to the first view.
     pub(super) fn sample_reset(&self) -> Option<FlyCamera> {
         let (eye, forward) = self.sample.as_ref()?.sample.controls.reset?;
         Some(look(eye, forward))
     }
 }
 
-/// The view that values ask for where a technique draws them, and whether it has shadows.
+/// The view mode for values that a technique draws, and whether there are shadows.
 fn view(sample: &Sample, values: &SampleValues) -> (ViewMode, bool) {
     let mode = if sample.is_tinted(values) { ViewMode::Maps } else { ViewMode::Final };
     (mode, values.choice("shadows") != "off")

@@ -9,7 +9,7 @@ use shadowfit_render::FlyCamera;
 use super::Stage;
 use crate::artefact::{self, Found, Search};
 
-/// Shown when no view of a scene shows an artefact.
+/// Message when no view of a scene shows an artefact.
 const NOT_FOUND: &str =
     "No place in this scene shows this well: nothing throws a shadow on a surface that faces the light.";
 
@@ -22,12 +22,12 @@ pub struct Shown {
     pub fixed: bool,
 }
 
-/// The artefact on show, and what was there before it.
+/// The artefact on show, with the camera and settings from before it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct ArtefactShow {
     shown: Option<Shown>,
     before: Option<(Settings, FlyCamera)>,
-    /// The technique that shows or fixes it, until a person takes another one.
+    /// The technique that shows or fixes it, until the user takes another one.
     technique: Technique,
     found: bool,
     narration: String,
@@ -40,19 +40,19 @@ impl Stage {
         self.artefact.shown
     }
 
-    /// A readable note about what is shown: that no view of the scene shows the artefact.
+    /// A note that no view of the scene shows the artefact.
     pub fn notice(&self) -> Option<&str> {
         let shown = self.artefact.shown.filter(|shown| !shown.fixed && !self.artefact.found);
         shown.map(|_| NOT_FOUND)
     }
 
-    /// What to look for in the view of the artefact, in a sentence about this scene; empty where there is none.
+    /// A sentence that says what to look for in the view of the artefact; empty where there is none.
     pub fn narration(&self) -> &str {
         let artefact = &self.artefact;
         if artefact.shown.is_some() && !artefact.found { NOT_FOUND } else { &artefact.narration }
     }
 
-    /// What the cure of the artefact changed, a line each.
+    /// Changes by the cure of the artefact, a line each.
     pub fn cure_changes(&self) -> &[String] {
         &self.artefact.changes
     }
@@ -63,15 +63,15 @@ impl Stage {
         self.show_found(found);
     }
 
-    /// What the search for the view of an artefact begins with; it can be run on a thread.
+    /// Input of the search for the view of an artefact, which can run on a thread.
     pub(crate) fn search(&self, artefact: Artefact) -> Search {
         let (settings, camera) = self.before_artefact();
         let lens = camera.perspective(&settings.camera, 1.0);
         Search { artefact, scene: self.scene.snapshot(), settings, lens }
     }
 
-    /// Present settings without what an artefact on show set, and the camera from before it. Where the technique was
-    /// changed since, that and the present camera are what the next artefact follows.
+    /// Settings and camera from before the artefact on show. Where the technique was changed since, that technique and
+    /// the present camera are kept.
     fn before_artefact(&self) -> (Settings, FlyCamera) {
         let mut settings = self.settings;
         match self.artefact.before.filter(|_| self.settings.technique == self.artefact.technique) {
@@ -83,7 +83,7 @@ impl Stage {
         }
     }
 
-    /// Shows what was found. All that does not show it stays as it is.
+    /// Shows the view that was found. Settings that do not matter for it stay as they are.
     pub(crate) fn show_found(&mut self, found: Found) {
         let before = self.before_artefact();
         take_shown(&mut self.settings, &found.settings);
@@ -120,18 +120,18 @@ impl Stage {
         self.artefact = ArtefactShow::default();
     }
 
-    /// All that is told about the artefact on show.
+    /// All texts about the artefact on show.
     pub(crate) fn artefact_show(&self) -> &ArtefactShow {
         &self.artefact
     }
 
-    /// Tells about an artefact what was told before a change was taken back.
+    /// Restores the texts about an artefact after an undo.
     pub(crate) fn restore_artefact(&mut self, show: ArtefactShow) {
         self.artefact = show;
     }
 }
 
-/// Takes over all that showing an artefact sets.
+/// Takes over the settings that show an artefact.
 fn take_shown(settings: &mut Settings, from: &Settings) {
     settings.technique = from.technique;
     settings.camera.far = from.camera.far;
@@ -141,7 +141,7 @@ fn take_shown(settings: &mut Settings, from: &Settings) {
     (view.shadows, view.outside_beside) = (from.shadows, from.outside_beside);
 }
 
-/// What is different in the settings, a line for each parameter: "Constant bias: 0 → 1 texels".
+/// Differences of the settings, a line for each parameter: "Constant bias: 0 → 1 texels".
 pub(crate) fn changes(before: &Settings, after: &Settings) -> Vec<String> {
     let differs = PARAMETERS.iter().filter(|parameter| !parameter.is_equal(before, after));
     differs
@@ -152,7 +152,7 @@ pub(crate) fn changes(before: &Settings, after: &Settings) -> Vec<String> {
         .collect()
 }
 
-/// A value as people read it, without its unit.
+/// A value as text, without its unit.
 fn value(settings: &Settings, parameter: &Parameter) -> String {
     let number = |value: f64| format!("{value:.3}").trim_end_matches('0').trim_end_matches('.').to_owned();
     match (parameter.get(settings), &parameter.kind) {

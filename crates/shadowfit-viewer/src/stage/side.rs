@@ -1,4 +1,4 @@
-//! A technique on the stage: its maps, what draws them, and what judges the picture.
+//! A technique on the stage: its maps, its renderer, and the judge of its pictures.
 
 use shadowfit::settings::CasterPolicy;
 use shadowfit::{DepthConvention, FittedMap, LightFit, PerspectiveCamera, Seen, Technique};
@@ -12,11 +12,11 @@ use super::{boards, inset, need_view};
 use crate::fitted::Fitted;
 use crate::outside;
 
-/// A technique's maps, and what draws and judges them.
+/// A technique's maps, with their renderer and judge.
 #[derive(Debug)]
 pub(super) struct Side {
     pub(super) evaluator: Evaluator,
-    /// What was fitted last; fitted anew unless it is frozen.
+    /// The last fit. Each frame fits again, unless the fit is frozen.
     pub(super) fitted: Option<Fitted>,
     pub(super) statistics: Statistics,
     pub(super) live: Live,
@@ -28,11 +28,11 @@ pub(super) struct Side {
     pub(super) problem: Option<String>,
 }
 
-/// What is to be drawn.
+/// A picture to draw.
 pub(super) struct Shot<'a> {
     pub(super) gpu: &'a Gpu,
     pub(super) scene: &'a mut PreparedScene,
-    /// With the technique of the side.
+    /// Settings, with the technique of the side.
     pub(super) settings: &'a Settings,
     pub(super) camera: PerspectiveCamera,
     /// Distance that the haze suits, in metres.
@@ -55,7 +55,7 @@ impl Shot<'_> {
         View { camera: self.camera, direction: self.settings.light.direction(), is_first: false }
     }
 
-    /// Whether rays are asked for. Pictures that are made one by one are judged only where they show it.
+    /// Whether to ask for rays. Pictures that are made one by one are judged only where they show it.
     fn wants_rays(&self, goes_on: bool) -> bool {
         let view = &self.settings.view;
         (view.judge && goes_on) || view.mode.is_judged() || view.marks != ErrorMarks::Off
@@ -81,10 +81,10 @@ impl Side {
         })
     }
 
-    /// From now on pictures follow each other in a window: what the last one showed comes from its depth buffer, and not
-    /// from rays. It comes a frame or two late, whenever the GPU is done with it, so that pictures need not be the same
-    /// each time. Rays go on where the GPU cannot do it, and find what a view shows that follows no other. What stands
-    /// still is kept in the shadow maps, too.
+    /// From now on pictures follow each other in a window: visible points are counted in depth buffers, and not by
+    /// rays. Counts come a frame or two late, whenever the GPU is done, so pictures may differ from run to run. Rays
+    /// are still used where the GPU cannot count, and for the first view after a cut. Static casters are kept in the
+    /// shadow maps, too.
     pub(super) fn follow(&mut self) {
         self.sun_mut().set_keeps(true);
         self.follows = true;
@@ -99,12 +99,12 @@ impl Side {
         self.evaluator.renderer.sun_mut()
     }
 
-    /// Whether what pictures show is read from their depth buffers.
+    /// Whether visible points are counted in depth buffers.
     fn reads_depths(&self) -> bool {
         self.follows && self.sun().can_record_need()
     }
 
-    /// Forgets all frames: the scene is another one.
+    /// Forgets all frames, for another scene.
     pub(super) fn scene_changed(&mut self) {
         self.sun_mut().reset();
         self.fitted = None;
@@ -116,7 +116,7 @@ impl Side {
         self.fitted = self.fitted.take().filter(|_| is_frozen);
     }
 
-    /// Fits the view, unless what was fitted last is frozen.
+    /// Fits the view, unless the last fit is frozen.
     pub(super) fn fit(&mut self, shot: &mut Shot<'_>) -> Fitted {
         let technique = self.drawable_technique(shot);
         let is_frozen = shot.settings.view.freeze_fit;
@@ -157,7 +157,7 @@ impl Side {
         Ok(Fitted::new(view.camera, technique, &fitted))
     }
 
-    /// Whether the shadow map as it is can take fitted maps.
+    /// Whether the present shadow map can hold fitted maps.
     fn holds(&self, fitted: &Fitted) -> bool {
         let map = self.evaluator.renderer.shadow_map().descriptor();
         let fits_into_a_layer =
@@ -165,8 +165,8 @@ impl Side {
         fitted.maps.len() <= map.maps as usize && fitted.maps.iter().all(|map| fits_into_a_layer(&map.fit))
     }
 
-    /// The technique of the settings as far as it can be drawn, and its shadow map made. Where that is impossible, the
-    /// old one stays and is fitted to, and [`Self::problem`] says why.
+    /// The technique of the settings, with its shadow map recreated as needed. Where that is impossible, the old one
+    /// stays in use, and [`Self::problem`] says why.
     fn drawable_technique(&mut self, shot: &Shot<'_>) -> Technique {
         let mut technique = shot.settings.technique;
         if technique.fit.depth == DepthConvention::NegativeOneToOne {
@@ -187,7 +187,7 @@ impl Side {
         technique
     }
 
-    /// Reads the picture that has just been drawn, if the technique goes by what it shows.
+    /// Counts the visible points of the picture that has just been drawn, if the technique uses them.
     pub(super) fn read_picture(&mut self, gpu: &Gpu, target: &RenderTarget) {
         let Some(camera) = self.unread.take() else { return };
         if !self.reads_depths() || !self.sun().technique().uses_seen() {
@@ -197,7 +197,7 @@ impl Side {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let clip_from_world = camera.clip_from_world(depth);
         let recorded = self.sun_mut().record_need(&mut encoder, target.depth_view(), clip_from_world, depth);
-        // A camera that shows nothing has no maps either, which is said there.
+        // A camera that shows nothing has no maps either; the fit reports that.
         if recorded == Ok(true) {
             gpu.submit([encoder.finish()]);
         }
@@ -232,7 +232,7 @@ impl Side {
         }
     }
 
-    /// Draws what the camera sees.
+    /// Draws the camera's picture.
     fn draw_view(
         &mut self,
         shot: &mut Shot<'_>,
@@ -262,7 +262,7 @@ impl Side {
         });
         let options = FrameOptions {
             outside: from_elsewhere,
-            // Maps that are themselves looked at from elsewhere hold all their casters, not only those of this
+            // Maps that are shown themselves, or read by another camera, need all their casters, not only those of this
             // picture's shadows.
             culling: if from_elsewhere.is_some() { Culling::WholeMap } else { Culling::Swept },
             overlay,
@@ -286,8 +286,8 @@ impl Side {
         }
     }
 
-    /// Draws the camera, its maps and what casts into them, from outside. `maps_stay` where the maps were just drawn for
-    /// the camera itself.
+    /// Draws the camera, its maps and their casters, from outside. `maps_stay` where the maps were just drawn for the
+    /// camera itself.
     pub(super) fn draw_outside(
         &mut self,
         shot: &mut Shot<'_>,
@@ -315,7 +315,7 @@ impl Side {
         self.take_statistics(drawn);
     }
 
-    /// Draws the scene as the light sees it, with the grid of need and the outlines of the maps.
+    /// Draws the scene from the light's direction, with the grid of need and the outlines of the maps.
     fn draw_need(&mut self, shot: &mut Shot<'_>, fitted: &Fitted, maps: &[FittedMap], target: &RenderTarget) {
         let shown = shot.settings.view.inset_index(maps.len() as u32);
         let Some(from_light) = need_view::FromLight::new(fitted, shown, shot.scene.bounds(), target.size) else {
@@ -340,7 +340,8 @@ impl Side {
         self.take_statistics(drawn);
     }
 
-    /// Draws all maps side by side, with what of them was drawn. `maps_stay` where that was done for the judge.
+    /// Draws all maps side by side, with the parts that were redrawn. `maps_stay`: whether they were drawn for the
+    /// judge.
     fn draw_boards(
         &mut self,
         shot: &mut Shot<'_>,
@@ -349,7 +350,7 @@ impl Side {
     ) {
         let bounds = shot.scene.bounds();
         let boards = boards::Boards::new(maps, &bounds, shot.settings.view.inset_depths, target.size);
-        // Those of the frame before, unless the maps stay: what this one draws is known when it is drawn.
+        // The updates of the frame before, unless the maps stay: those of this frame are known only after it is drawn.
         let quads = boards.quads(&self.sun().updates());
         let options = FrameOptions {
             insets: &boards.insets,
@@ -364,7 +365,7 @@ impl Side {
     }
 }
 
-/// What is laid over the surfaces in a view of the camera.
+/// The overlay on the surfaces in a view of the camera.
 fn overlay(mode: ViewMode) -> Overlay {
     match mode {
         ViewMode::Truth => Overlay::Truth,

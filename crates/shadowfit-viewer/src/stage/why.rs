@@ -21,7 +21,7 @@ const REST: f32 = 0.25;
 /// How far a resting pointer may move, as a share of the picture.
 const SLACK: f32 = 0.001;
 
-/// What is asked about a pixel.
+/// A question about a pixel.
 #[derive(Clone, Debug)]
 struct Question {
     scene: Arc<Scene>,
@@ -53,7 +53,7 @@ impl Question {
     }
 }
 
-/// How far an answer has come.
+/// The steps to an answer.
 #[derive(Debug)]
 enum Step {
     /// A thread finds which texel is read.
@@ -65,10 +65,10 @@ enum Step {
     Done,
 }
 
-/// The pixel that the pointer rests on, and how far the answer to why it is as it is has come.
+/// The pixel under the resting pointer, and the state of the answer about it.
 #[derive(Debug, Default)]
 pub(super) struct PixelQuestion {
-    /// Place of the pointer, what the picture shows, and since when both have been the same, by the stage's clock in
+    /// Place of the pointer, content of the picture, and since when both have been the same, by the stage's clock in
     /// seconds.
     at: Option<([f32; 2], Key, f32)>,
     step: Option<Step>,
@@ -76,8 +76,8 @@ pub(super) struct PixelQuestion {
 }
 
 impl Stage {
-    /// Asks why the pixel is as it is at which the pointer rests while the picture stands still: shares of its width and
-    /// height from the top left. Call it once a frame.
+    /// Asks about the pixel on which the pointer rests while the picture stands still: shares of its width and height
+    /// from the top left. Call it once a frame.
     pub fn ask_why(&mut self, hover: Option<[f32; 2]>, size: [u32; 2]) {
         let asked = hover.and_then(|hover| Some((hover, self.shown_at(hover, size)?)));
         let same = |old: [f32; 2], new: [f32; 2]| (0..2).all(|axis| (old[axis] - new[axis]).abs() <= SLACK);
@@ -102,7 +102,7 @@ impl Stage {
         };
     }
 
-    /// The answer, once it is there.
+    /// The answer, once it has arrived.
     pub fn why(&self) -> Option<WhyCard<'_>> {
         let why = self.why.why.as_ref()?;
         Some(WhyCard {
@@ -118,7 +118,7 @@ impl Stage {
         })
     }
 
-    /// What the picture shows at a point, where it is the camera's own.
+    /// The content of the picture at a point, in views of the camera.
     fn shown_at(&self, at: [f32; 2], size: [u32; 2]) -> Option<Key> {
         let in_other = self.is_comparing() && at[0] > self.split;
         let (_, technique) = self.side_at(in_other).filter(|_| self.settings.view.mode.shows_camera())?;
@@ -163,7 +163,7 @@ impl Stage {
                     question.stored = stored(&facts.depths, texel);
                     Step::Answering(think(question))
                 }
-                // The device is lost, which is said where pictures are presented.
+                // The device is lost, which is reported where pictures are presented.
                 Some(Err(_)) => Step::Done,
             },
             Step::Answering(answer) => match answer.try_recv() {
@@ -178,7 +178,7 @@ impl Stage {
         }
     }
 
-    /// Has the GPU read the pixel, and the map around the texel that it reads.
+    /// Starts to read back the pixel, and the map around the texel that it reads.
     fn read_pixel(&mut self, question: Question, texel: Option<(usize, [f32; 2])>) -> Step {
         let Some((map, texel)) = texel else { return Step::Done };
         let texel = texel.map(|at| at.max(0.0) as u32);
@@ -194,7 +194,7 @@ impl Stage {
         }
     }
 
-    /// World position of what is at a point of the picture, in metres.
+    /// World position of the surface at a point of the picture, in metres.
     pub fn pick(&self, at: [f32; 2], size: [u32; 2]) -> Option<DVec3> {
         let rays = self.scene.ready_rays()?;
         let camera = self.perspective(size);
@@ -220,7 +220,7 @@ fn stored(depths: &[f32], texel: [u32; 2]) -> Option<StoredTexels> {
 fn think(question: Question) -> Receiver<Option<Why>> {
     let (sender, answer) = channel();
     let work = move || {
-        // Nobody waits once the pointer has moved on.
+        // The receiver is gone once the pointer has moved on.
         let _ = sender.send(question.answer());
     };
     // Without a thread the channel is closed, and there is no answer.

@@ -1,4 +1,4 @@
-//! What each command does.
+//! Runs each command.
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
@@ -20,7 +20,7 @@ use crate::source::{OPTION_PREFIX, SceneSource};
 use crate::tuning::Task;
 use crate::undo::State;
 
-/// The presets that a technique is compared with at first: the first of them that differs from it.
+/// Presets for the second technique: the first of them that differs from the present one.
 const COMPARED: [&str; 2] = ["stable-4", "windows-4"];
 /// How far the camera flies toward a point, as a share of the distance.
 const FOCUS: f64 = 0.6;
@@ -162,7 +162,7 @@ impl Viewer {
         self.tell(outcome);
     }
 
-    /// Searches a view that shows an artefact, on a thread.
+    /// Searches for a view that shows an artefact, on a thread.
     fn search(&mut self, artefact: Artefact) {
         let search = self.stage.search(artefact);
         let (sender, receiver) = channel();
@@ -224,7 +224,7 @@ impl Viewer {
         self.stage.restore_artefact(state.artefact);
     }
 
-    /// Flies toward what is at a point of the picture, in views that show what the camera sees.
+    /// Flies toward the surface at a point of the picture, in views of the camera.
     fn focus(&mut self, at: [f32; 2]) {
         if !self.stage.settings.view.mode.shows_camera() {
             return;
@@ -260,7 +260,7 @@ impl Viewer {
         });
     }
 
-    /// Uses what the search found, on the side that was searched for.
+    /// Uses the technique that the search found, on the side where it started.
     fn apply_tune(&mut self) {
         let is_of_other = self.tuning.is_of_other;
         let side = match self.stage.settings_and_other() {
@@ -381,7 +381,7 @@ impl Viewer {
     }
 }
 
-/// The technique that `now` is compared with at first: a preset with the lengths and the resolution of `now`.
+/// The first technique to compare `now` with: a preset with the lengths and the resolution of `now`.
 pub(crate) fn compared_with(now: &Technique) -> Technique {
     let [width, height] = now.fit.resolution.to_array();
     let presets = COMPARED.iter().filter_map(|name| Technique::preset(name));

@@ -1,4 +1,4 @@
-//! Opening scenes, and whatever else a file can be: a technique, a screenshot, saved settings.
+//! Opens scenes and other files: techniques and screenshots with their settings.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use crate::source::SceneSource;
 use crate::undo::History;
 
 impl Viewer {
-    /// Starts loading a scene; the shown one stays until it is there.
+    /// Starts loading a scene; the old one is shown until then.
     pub(super) fn open(&mut self, source: SceneSource) {
         let line = self.line.clone();
         self.loading = Some(Loading::start(source, line, self.stage.gpu(), self.stage.material_layout()));
@@ -100,7 +100,7 @@ impl Viewer {
         self.has_scene = true;
         self.window_requests.new_title = true;
         if is_first {
-            // What was told meanwhile is read from now on.
+            // Messages of the meantime are shown from now on.
             self.message.iter_mut().for_each(|message| message.since = self.clock);
             match check_animation(self.start.arguments.animation, animations, &name).and_then(|()| self.set_up()) {
                 Ok(Some(named)) => self.interface.panel().name_technique(named.name, &named.technique),
@@ -115,7 +115,7 @@ impl Viewer {
             self.message = None;
         } else {
             self.message = None;
-            // Another scene is looked at in the same way, with lengths and light of its own.
+            // Another scene keeps the settings, except for lengths and light.
             self.stage.settings.technique = technique.with_lengths_of(&self.own_settings.technique);
             self.stage.settings.view = view;
             self.stage.compare_with(comparing.map(|other| other.with_lengths_of(&self.own_settings.technique)));

@@ -1,4 +1,4 @@
-//! How the viewer starts: arguments, and what was kept from the last time.
+//! How the viewer starts: from arguments and the saved state.
 
 use std::path::{Path, PathBuf};
 
@@ -26,7 +26,7 @@ pub(crate) struct Start {
     pub(super) kept: Option<(SceneSource, Settings, Option<FlyCamera>)>,
     /// Whether the scene of the start is still being loaded.
     pub(super) is_pending: bool,
-    /// Folder of files that are asked for by a relative path; the working folder if `None`.
+    /// Folder for files with a relative path; the working folder if `None`.
     folder: Option<PathBuf>,
 }
 
@@ -51,7 +51,7 @@ impl Start {
         Self { folder: Some(folder.to_owned()), ..self }
     }
 
-    /// Where files are saved that are asked for by a relative path; the working folder if `None`.
+    /// Folder for files with a relative path; the working folder if `None`.
     pub(super) fn folder(&self) -> Option<&Path> {
         self.folder.as_deref()
     }
@@ -63,7 +63,7 @@ impl Start {
 }
 
 impl Viewer {
-    /// Restores what was saved the last time, and starts loading the scene.
+    /// Restores the saved state, and starts loading the scene.
     pub(super) fn restore(&mut self) {
         let (saved, message) = self.store.as_mut().map_or((None, None), Store::load);
         if let Some(message) = message {
@@ -96,12 +96,13 @@ impl Viewer {
             self.stage.set_home();
             return Ok(technique);
         };
-        // What a reset goes back to: nothing that was saved, and of the arguments what has a meaning without it.
+        // The state that a reset goes back to: without saved settings, and with the arguments that make sense without
+        // them.
         arguments.apply_what_is_there(&mut home)?;
         self.stage.settings = home;
         self.stage.set_home();
         let mut settings = if source == self.source { kept } else { of_scene(&kept, &home) };
-        // What is saved yields to the arguments.
+        // Arguments win over saved settings.
         let technique = arguments.apply(&mut settings)?;
         self.stage.settings = settings;
         if let Some(camera) = camera.filter(|_| source == self.source) {
@@ -130,12 +131,12 @@ impl Viewer {
         Ok(())
     }
 
-    /// Whether anything was saved the last time.
+    /// Whether there is a saved state.
     fn saved_is_there(&self) -> bool {
         self.saved != Saved { theme: self.saved.theme, ..Saved::default() }
     }
 
-    /// Writes what is to be restored the next time, if it changed.
+    /// Writes the state for the next start, if it changed.
     pub(crate) fn save(&mut self) {
         self.saved_at = self.clock;
         let Some(store) = &mut self.store else { return };
@@ -154,7 +155,7 @@ impl Viewer {
         self.saved.camera = Some(self.stage.camera);
         self.saved.other = self.stage.other_technique().map(|other| (other, self.stage.split));
         if let Err(error) = store.save(&self.saved) {
-            // Told once, and not every few seconds.
+            // Reported once, and not every few seconds.
             self.say(format!("Settings cannot be saved: {error:#}"));
             self.store = None;
         }

@@ -6,18 +6,18 @@ use shadowfit::{Aabb, Boxes};
 /// Everything that casts shadows, by number: the index of its box.
 ///
 /// A number may mean another caster in another frame, as long as their boxes differ: a static caster whose box is
-/// not where it was is drawn anew where it was and where it is.
+/// elsewhere is redrawn where it was and where it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Casters<'a> {
     /// A box around each caster. Empty boxes cast nothing.
     pub boxes: Boxes<'a>,
     /// Whether each of them moves, is deformed or changes its shape in any other way; those past the end of the slice
-    /// do not. What moves is drawn in every frame; what does not is drawn once and kept.
+    /// do not. Moving casters are drawn in every frame; static ones are drawn once and kept.
     pub moves: &'a [bool],
 }
 
 impl<'a> Casters<'a> {
-    /// Casters of which none moves.
+    /// Casters that all stand still.
     pub const fn fixed(boxes: Boxes<'a>) -> Self {
         Self { boxes, moves: &[] }
     }
@@ -63,7 +63,7 @@ impl WorldBox {
         Aabb::new((self.min - origin).as_vec3(), (self.max - origin).as_vec3())
     }
 
-    /// Whether it is the same as another one but for the rounding of that one's coordinates.
+    /// Whether it equals another one up to the rounding of that one's coordinates.
     fn is_same(&self, other: &Self, rounding: f64) -> bool {
         let near = |a: DVec3, b: DVec3| a == b || (a - b).abs().max_element() <= rounding;
         near(self.min, other.min) && near(self.max, other.max)
@@ -85,8 +85,8 @@ pub(crate) struct KnownCasters {
 }
 
 impl KnownCasters {
-    /// Takes the casters of a frame, and adds the boxes in which the static ones changed. `direction` is that in which
-    /// the light travels.
+    /// Takes the casters of a frame, and adds the boxes in which static ones changed. `direction` is the light's
+    /// direction of travel.
     pub(crate) fn update(&mut self, casters: &Casters<'_>, direction: Vec3, changed: &mut Vec<WorldBox>) {
         let Boxes { origin, boxes } = casters.boxes;
         let before = changed.len();
@@ -185,7 +185,7 @@ mod tests {
         // It starts to move: it is no longer where it was.
         assert_eq!(update(&mut known, DVec3::ZERO, &boxes, &[false, true]), [world(boxes[1])]);
         assert_eq!((known.fixed.as_slice(), known.moving.as_slice()), ([2, 0].as_slice(), [1].as_slice()));
-        // What moves changes nothing that is kept.
+        // Moving casters change nothing that is kept.
         let moved = [boxes[0], cube(5.0, 7.0), boxes[2]];
         assert_eq!(update(&mut known, DVec3::ZERO, &moved, &[false, true]), []);
         // It comes to rest, elsewhere; a static one is set elsewhere; the last one is gone.

@@ -14,24 +14,25 @@ use super::{CacheSettings, Casters, Culling, Decision, KeptMap};
 /// Volumes that casters are tested against at once: the bits of a mask.
 const VOLUMES: usize = 8;
 
-/// Texels by which the box of a caster that moved is widened where it is mended: the rasteriser rounds by less.
+/// Texels by which the box of a caster that moved is widened before the layer is restored there: the rasteriser rounds
+/// by less.
 const MENDED_AROUND: f32 = 2.0;
 
 /// Which of a map's layers a pass draws into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Layer {
-    /// The one that points read.
+    /// The layer that points read.
     Shown,
-    /// The static casters' own.
+    /// The layer of the static casters.
     Static,
 }
 
 /// What a pass draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PassContent {
-    /// All casters of shadows in view, static and moving.
+    /// All casters that can shadow something in view, static and moving.
     All,
-    /// Static casters, seen or not, where the map is new or one of them changed.
+    /// All static casters, where the map is new or one of them changed.
     Static,
     /// Moving casters, over the static ones.
     Moving,
@@ -43,7 +44,7 @@ pub(crate) struct PassPlan {
     pub(crate) map: usize,
     pub(crate) content: PassContent,
     pub(crate) layer: Layer,
-    /// Whether the layer is cleared; else it is loaded.
+    /// Whether the layer is cleared; otherwise it is loaded.
     pub(crate) clears: bool,
     /// Rectangles of the layer that are cleared first, as they are stored: a range of [`FramePlan::rects`].
     pub(crate) cleared: Range<usize>,
@@ -53,7 +54,7 @@ pub(crate) struct PassPlan {
     pub(crate) mended_boxes: Range<usize>,
     /// A range of [`FramePlan::pieces`].
     pub(crate) pieces: Range<usize>,
-    /// The viewports in which the boxes are mended: a range of [`FramePlan::views`].
+    /// The viewports in which the boxes are restored: a range of [`FramePlan::views`].
     pub(crate) views: Range<usize>,
     /// Width and height of the map, in texels.
     pub(crate) size: UVec2,
@@ -98,16 +99,16 @@ pub(super) struct Drawing<'a> {
     pub(super) fitted: &'a FittedMap,
     pub(super) known: &'a KnownCasters,
     pub(super) casters: &'a Casters<'a>,
-    /// What positions in the shaders are relative to, in world space, in metres.
+    /// Origin of positions in the shaders, in world space, in metres.
     pub(super) origin: DVec3,
-    /// Casters of shadows in view; `None` where nothing is drawn by it.
+    /// Casters that can shadow something in view; `None` where no pass needs them.
     pub(super) in_view: Option<&'a CasterVolume>,
     pub(super) settings: &'a CacheSettings,
     pub(super) is_split: bool,
 }
 
 impl Drawing<'_> {
-    /// Adds the map's passes, and notes what its layers hold after them.
+    /// Adds the map's passes, and updates the content of its layers.
     pub(super) fn plan(&self, map: &mut KeptMap, decision: &Decision, plan: &mut FramePlan) {
         let size = self.fitted.fit.resolution;
         match decision {
@@ -135,7 +136,7 @@ impl Drawing<'_> {
         debug_assert!(map.wrap.cmplt(size).all());
     }
 
-    /// One pass with all casters of shadows in view.
+    /// One pass with all casters that can shadow something in view.
     fn all_casters(&self, plan: &mut FramePlan) {
         let first = plan.casters.len();
         let Casters { boxes, .. } = self.casters;
@@ -187,8 +188,8 @@ impl Drawing<'_> {
         }
     }
 
-    /// A pass that mends the shown layer and draws what moves over it, if there is anything to do. `drawn`: where static
-    /// casters were drawn in this frame.
+    /// A pass that restores the shown layer and draws moving casters over it, if there is anything to do. `drawn`:
+    /// where static casters were drawn in this frame.
     fn moving_casters(&self, map: &mut KeptMap, drawn: &[TexelRect], plan: &mut FramePlan) {
         if !self.is_split {
             return;
@@ -222,7 +223,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// Adds pieces with the moving casters over them, and what they draw.
+    /// Adds pieces with the moving casters over them, and the boxes that these draw.
     fn cull_moving(&self, parts: &[StoredRect], moving: &mut Vec<WorldBox>, plan: &mut FramePlan) {
         let boxes = self.casters.boxes;
         plan.moving_boxes.clear();
@@ -252,7 +253,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// Casters of shadows in view; without it all.
+    /// Casters that can shadow something in view; all where these are not known.
     fn in_view(&self) -> CasterVolume {
         self.in_view.copied().unwrap_or(CasterVolume::everywhere(self.fitted.fit.origin))
     }
@@ -262,7 +263,7 @@ impl Drawing<'_> {
         TexelRect::all(self.fitted.fit.resolution)
     }
 
-    /// All casters over a part of the map, seen or not.
+    /// All casters over a part of the map.
     fn volume(&self, part: TexelRect) -> CasterVolume {
         if self.settings.culling == Culling::Off {
             return CasterVolume::everywhere(self.fitted.fit.origin);

@@ -1,21 +1,20 @@
-//! Which of the maps that could be drawn in a frame are drawn.
+//! Which maps are drawn in a frame, and which wait.
 
 use shadowfit::settings::MAX_MAPS;
 
-/// When maps are drawn that need not be: those whose shadows would only be late.
+/// When maps are drawn that may wait: those whose shadows would only be late.
 ///
-/// A map that waits is read as it was drawn, with its own matrices. It never waits where a receiver would be left out or
-/// a caster lost: when the light has turned, when its depth range no longer holds what it must, and, of the map that
-/// must hold everything that the others leave out, when it has moved. Maps that are not kept never wait.
+/// A map that waits is read as it was drawn, with its own matrices. It never waits where a receiver would be left out
+/// or a caster lost: when the light has turned, or when its depth range no longer holds its receivers and casters. The
+/// map that holds the points outside all others does not wait when it has moved. Maps that are not kept never wait.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum UpdateSchedule {
     /// Every map in every frame. The default.
     #[default]
     EveryFrame,
-    /// Each map in every n-th frame, by its number: a 0 counts as 1.
+    /// Map i in every n-th frame, with n at index i: a 0 counts as 1.
     Every([u32; MAX_MAPS]),
-    /// As many maps as together draw no more texels than this in a frame, those first that have waited longest; at
-    /// least one.
+    /// Texel budget per frame; the map that waited longest goes first, and at least one is drawn.
     Texels(u64),
 }
 

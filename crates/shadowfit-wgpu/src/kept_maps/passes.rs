@@ -1,17 +1,17 @@
-//! What is to be drawn in a frame, for the engine to draw.
+//! The passes of a frame, for the engine to draw.
 
 use super::KeptMaps;
 use crate::cache::{FramePlan, PassContent, PassPlan, PiecePlan};
 use crate::layers::Opening;
 
-/// A pass into a map. Where a map is kept as it is there is none.
+/// A pass into a map. A map that is kept unchanged has none.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowPass<'a> {
     plan: &'a FramePlan,
     pass: &'a PassPlan,
 }
 
-/// A part of a pass: what is drawn with one viewport and within one scissor rectangle.
+/// A part of a pass: the casters that are drawn with one viewport and within one scissor rectangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowPiece<'a> {
     /// Number of the map.
@@ -21,7 +21,7 @@ pub struct ShadowPiece<'a> {
     pub viewport: [f32; 4],
     /// Left, top, width and height of the scissor rectangle, in texels.
     pub scissor: [u32; 4],
-    /// The casters to draw, by number, nearest to the light first, so that what lies behind others costs least.
+    /// The casters to draw, by number, nearest to the light first, so that those behind others cost least.
     pub casters: &'a [u32],
 }
 
@@ -36,7 +36,7 @@ impl<'a> ShadowPass<'a> {
         self.pass.content
     }
 
-    /// Whether the layer is cleared as a whole, because nothing of it can be kept.
+    /// Whether the whole layer is cleared, because no part of it can be kept.
     pub fn is_cleared(&self) -> bool {
         self.pass.clears
     }
@@ -47,7 +47,7 @@ impl<'a> ShadowPass<'a> {
         plan.pieces[pass.pieces.clone()].iter().map(move |piece| shadow_piece(plan, pass, piece))
     }
 
-    /// Texels within the scissor rectangles: those that are drawn at most.
+    /// Number of texels within the scissor rectangles.
     pub fn texels(&self) -> u64 {
         let pieces = self.pieces();
         pieces.map(|piece| u64::from(piece.scissor[2]) * u64::from(piece.scissor[3])).sum()
@@ -75,7 +75,7 @@ impl ShadowPiece<'_> {
 }
 
 impl KeptMaps {
-    /// Nothing is to be drawn.
+    /// Leaves the frame without passes.
     pub(crate) fn skip(&mut self) {
         self.plan.clear();
     }

@@ -24,9 +24,9 @@ pub struct MapUpdate {
 /// What is drawn into a rectangle of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UpdateContent {
-    /// All casters, static and moving, after it is cleared: nothing of the map is kept.
+    /// All casters, static and moving, after a clear: no part of the map is kept.
     All,
-    /// Static casters, after it is cleared: what came into the map, or where one of them changed.
+    /// Static casters, after a clear: a strip that came into the map, or a place where one of them changed.
     Static,
     /// The depths of static casters that are kept, where something that moves was drawn over them before.
     Mended,
@@ -55,7 +55,7 @@ impl KeptMaps {
         updates
     }
 
-    /// Rectangles that are taken back from the static casters' layer.
+    /// Rectangles that are restored from the static casters' layer.
     fn mended(&self, pass: &PassPlan, fitted: &FittedMap) -> impl Iterator<Item = TexelRect> {
         let stored = self.plan.rects[pass.mended.clone()].iter();
         let rects = stored.map(|stored| looked_up(*stored, fitted.wrap, pass.size));
@@ -70,13 +70,13 @@ impl KeptMaps {
         boxes.map(move |moved| TexelRect::of_box(&fitted.fit, &moved.relative_to(origin), origin))
     }
 
-    /// Whether what stands still in a map, by its number, is kept for later frames.
+    /// Whether the static casters of a map, by its number, are kept for later frames.
     pub(crate) fn is_kept(&self, map: usize) -> bool {
         self.cache.is_kept(map)
     }
 
-    /// Which maps hold each caster, by its number: bit i of the mask stands for map i. A map that is kept holds the
-    /// static casters over it, seen or not; any other map those of shadows in view. Without maps all masks are 0.
+    /// Which maps hold each caster, by its number: bit i of the mask stands for map i. A map that is kept holds all
+    /// static casters over it; any other map those that can shadow something in view. Without maps all masks are 0.
     pub(crate) fn holders(&self, casters: &Casters<'_>) -> Vec<u8> {
         let clamps = self.map.descriptor().depth_clamp;
         let in_view = &self.volumes;
@@ -94,9 +94,9 @@ impl KeptMaps {
         moving.into_iter().zip(fixed).enumerate().map(mask).collect()
     }
 
-    /// Writes what the shaders read for another picture of the same maps, whose positions are relative to another origin
-    /// or whose view depths are counted from another eye. The maps stay as they were drawn: their passes must not be
-    /// drawn after this.
+    /// Writes the uniforms for another picture with the same maps, whose positions are relative to another origin or
+    /// whose view depths are counted from another eye. The maps stay as they were drawn: their passes must not be drawn
+    /// after this.
     ///
     /// # Errors
     ///

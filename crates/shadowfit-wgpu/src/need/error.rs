@@ -1,4 +1,4 @@
-//! Why what is visible cannot be counted on the GPU. Fits take boxes instead then.
+//! Why visible points cannot be counted on the GPU. Fits then take boxes instead.
 
 use core::fmt;
 
@@ -34,7 +34,7 @@ pub enum NeedPassError {
         /// Width and height of the texture, in pixels.
         texture: [u32; 2],
     },
-    /// The device refused to make what is needed, as when it is out of memory. What it said is given.
+    /// The device refused to make a resource, for example because it is out of memory; with its own words.
     Device(String),
     /// Counts could not be read back: the device is lost.
     Lost,

@@ -1,4 +1,4 @@
-//! The pass itself: pipeline, dispatch, and what comes back.
+//! The pass itself: pipeline, dispatch, and the counts that come back.
 
 use shadowfit::need::{CELLS, LEVELS, MIN_FACING, SIDE};
 use shadowfit::seen::{CLASSES, COUNTS, DEPTHS, Seen};
@@ -18,7 +18,7 @@ const SQUARE: u32 = 32;
 /// Bytes of a workgroup's own memory, as in the WGSL.
 const WORKGROUP_BYTES: u32 = 2 * 4 * WORKGROUP_THREADS;
 
-/// Counts what a depth buffer shows: see the [module](super).
+/// Counts the visible points of a depth buffer: see the [module](super).
 #[derive(Debug)]
 pub struct NeedPass {
     device: wgpu::Device,
@@ -33,7 +33,7 @@ pub struct NeedPass {
     forgotten: u64,
 }
 
-/// What one picture on its way needs of its own.
+/// The resources of one picture on its way.
 #[derive(Debug)]
 struct Frame {
     uniform: wgpu::Buffer,
@@ -79,8 +79,8 @@ impl NeedPass {
     /// of the depth aspect of the whole texture, of any depth format, with usage `TEXTURE_BINDING`, that the pass
     /// before it has stored (`StoreOp::Store`); `timestamps` may time the pass.
     ///
-    /// Returns whether it was recorded: while as many pictures are on their way as GPUs are ever behind, nothing is,
-    /// and fits go on with what they have.
+    /// Returns whether it was recorded: nothing is recorded while as many pictures are on their way as a GPU can be
+    /// behind, and fits go on with the counts that they have.
     ///
     /// # Errors
     ///
@@ -117,19 +117,19 @@ impl NeedPass {
         Ok(true)
     }
 
-    /// The newest picture that the GPU has finished, once; `None` while there is none. Never waits.
+    /// The newest picture that the GPU has finished, given once; `None` until there is one. Never waits.
     ///
     /// # Errors
     ///
     /// [`NeedPassError::Lost`] if the device was lost.
     pub fn take(&mut self) -> Result<Option<Seen>, NeedPassError> {
-        // Only looks; whether anything is finished shows below.
+        // This only polls; the loop below finds out whether anything is finished.
         let _status = self.device.poll(wgpu::PollType::Poll);
         self.newest()
     }
 
-    /// As [`Self::take`] for the picture that was submitted last, for which it waits: for headless runs and tests,
-    /// whose pictures have to be the same each time.
+    /// As [`Self::take`], but waits for the picture that was submitted last: for headless runs and tests, whose
+    /// pictures have to be the same each time.
     ///
     /// # Errors
     ///
@@ -140,7 +140,7 @@ impl NeedPass {
     }
 
     /// Forgets the pictures that are on their way: for camera cuts, beside
-    /// [`MapFitter::reset`](shadowfit::MapFitter::reset).
+    /// [`ShadowFitter::reset`](shadowfit::ShadowFitter::reset).
     pub fn reset(&mut self) {
         self.forgotten = self.recordings;
     }
@@ -170,7 +170,7 @@ impl NeedPass {
         Ok(Some(seen).filter(|_| is_wanted))
     }
 
-    /// Refuses what cannot be bound.
+    /// Refuses a texture that cannot be bound.
     fn check_texture(&self, texture: &wgpu::Texture, rectangle: [u32; 4]) -> Result<(), NeedPassError> {
         let (format, samples, usage) = (texture.format(), texture.sample_count(), texture.usage());
         let is_readable = usage.contains(wgpu::TextureUsages::TEXTURE_BINDING) && format.has_depth_aspect();
@@ -204,7 +204,7 @@ const MIN_FACING: f32 = {MIN_FACING};
     )
 }
 
-/// What a device lacks for the pass, if anything.
+/// The feature that a device lacks for the pass, if any.
 pub(crate) fn supported(limits: &wgpu::Limits, backend: wgpu::Backend) -> Result<(), Unsupported> {
     let has_compute = limits.max_storage_buffers_per_shader_stage > 0
         && limits.max_compute_invocations_per_workgroup >= WORKGROUP_THREADS

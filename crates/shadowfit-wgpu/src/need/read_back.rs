@@ -19,11 +19,11 @@ const FAILED: u8 = 3;
 pub(super) struct ReadBack {
     buffer: wgpu::Buffer,
     state: Arc<AtomicU8>,
-    /// What was recorded last, and the how manieth recording it was.
+    /// The space of the last recording, and its number.
     recorded: Option<(SeenSpace, u64)>,
 }
 
-/// Is told when the buffer can be read. An encoder that is dropped instead of submitted drops it untold.
+/// Gets a message when the buffer can be read. An encoder that is dropped instead of submitted drops it without one.
 struct Told(Option<Arc<AtomicU8>>);
 
 impl Told {
@@ -36,7 +36,7 @@ impl Told {
 
 impl Drop for Told {
     fn drop(&mut self) {
-        // Only where it was not told: once it is, the buffer may be read and recorded into again by another thread.
+        // Only without a message: after one, another thread may already read the buffer and record into it again.
         if let Some(state) = &self.0 {
             state.store(FREE, Ordering::Release);
         }
@@ -68,7 +68,7 @@ impl ReadBack {
         self.state.compare_exchange(FAILED, FREE, Ordering::AcqRel, Ordering::Relaxed).is_ok()
     }
 
-    /// The how manieth recording it holds.
+    /// Number of the recording that it holds.
     pub(super) fn number(&self) -> u64 {
         self.recorded.map_or(0, |(_, number)| number)
     }
@@ -116,7 +116,7 @@ mod tests {
             Told(Some(Arc::clone(&state))).tell(is_readable);
             assert_eq!(state.load(Ordering::Acquire), wanted);
         }
-        // What was told is done with the buffer, whoever uses it next.
+        // After its message it leaves the buffer alone, whoever uses it next.
         let mut told = Told(Some(Arc::clone(&state)));
         told.0.take();
         state.store(BUSY, Ordering::Release);

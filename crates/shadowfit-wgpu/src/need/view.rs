@@ -1,4 +1,4 @@
-//! What a depth buffer was drawn with, and the uniform that follows from it.
+//! The camera that a depth buffer was drawn with, and the uniform that follows from it.
 
 use bytemuck::{Pod, Zeroable};
 use shadowfit::glam::{DMat4, DVec4, Mat4, Vec3};
@@ -10,14 +10,14 @@ use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 use super::error::NeedPassError;
 
 /// Rows of points above which only every second, third, ... pixel is looked at, across and down, so that the pass takes
-/// as long for any resolution. Of the built-in scene in 1080 rows, every fourth pixel counts at most 1.1% of the points
-/// in another cell than all of them do (36 rows: 15%), in a tenth of the time on a software adapter.
+/// as long for any resolution. In the courtyard with 1080 rows, every fourth pixel counts at most 1.1% of the points in
+/// another cell than all pixels do (with 36 rows: 15%), in a tenth of the time on a software adapter.
 const MAX_ROWS: u32 = 270;
 
 /// The picture that a depth buffer shows, and the light that its points are counted for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NeedView {
-    /// What the camera sees.
+    /// The view of the camera.
     pub frustum: ViewFrustum,
     /// The matrix that the depth buffer was drawn with: from world positions relative to [`ViewFrustum::origin`], in
     /// metres, to clip space. Perspective or orthographic, with a finite far plane or an infinite one.
@@ -34,7 +34,7 @@ pub struct NeedView {
     pub rectangle: [u32; 4],
 }
 
-/// What the pass reads: `Need` in WGSL, where the fields are explained.
+/// The uniform of the pass: `Need` in WGSL, where the fields are explained.
 #[allow(missing_docs)]
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -88,12 +88,12 @@ impl NeedView {
         self.rectangle[3].div_ceil(MAX_ROWS).max(1)
     }
 
-    /// What the counts will mean.
+    /// The cells and bins that the counts belong to.
     pub(super) fn space(&self) -> Result<SeenSpace, NeedPassError> {
         Ok(SeenSpace::new(&self.frustum, self.direction, self.up, self.max_distance)?)
     }
 
-    /// What the shader reads.
+    /// The uniform of the shader.
     pub(super) fn uniform(&self, space: &SeenSpace) -> Result<NeedUniform, NeedPassError> {
         if self.depth == DepthConvention::NegativeOneToOne {
             return Err(NeedPassError::Depth(self.depth));
@@ -147,7 +147,7 @@ impl NeedView {
 
     /// The plane whose distance from a position relative to the eye is its view depth, in metres.
     fn view_depth(&self) -> [f32; 4] {
-        // The middle of the near rectangle is known best.
+        // The middle of the near rectangle is the most exact point.
         let middle = (self.frustum.corners[0] + self.frustum.corners[2]) * 0.5;
         let forward = self.frustum.forward;
         forward.extend(self.frustum.near - forward.dot(middle)).to_array()

@@ -7,12 +7,12 @@ use shadowfit::FitError;
 use crate::ShadowMapError;
 use crate::need::NeedPassError;
 
-/// Why [`SunShadows`](crate::SunShadows) could not do what they were asked to.
+/// Why a call of [`SunShadows`](crate::SunShadows) failed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SunShadowsError {
     /// Views, light, boxes or technique make no sense.
     Fit(FitError),
-    /// The maps cannot be made, or not hold what was fitted.
+    /// The maps cannot be made, or cannot hold the fits.
     Map(ShadowMapError),
     /// The depth buffer cannot be read.
     Need(NeedPassError),
