@@ -12,11 +12,10 @@ use shadowfit_truth::Judged;
 use shadowfit_truth::gpu::{GpuBefore, GpuPixel};
 use shadowfit_wgpu::ShadowMapError;
 
-use crate::frame::frame;
 use crate::live::{LiveInput, LiveTruth};
 use crate::maps::{measured, picture_maps};
 use crate::picture::{FrameBefore, Picture, factors};
-use crate::{FrameOptions, JudgeJob, Judging, PreparedScene, SceneRays, SharedTruth, View};
+use crate::{JudgeJob, Judging, PreparedScene, SceneRays, SharedTruth, View};
 
 /// Draws a technique's maps and the scene shadowed by them, and judges the picture.
 #[derive(Debug)]
@@ -48,7 +47,7 @@ impl Evaluator {
         Self { renderer, judging, targets: None, targets_before: None, picture: None, before: None, drawn: Vec::new() }
     }
 
-    /// Draws the maps of a view and its shaded picture.
+    /// Draws the maps of a frame and its shaded picture.
     ///
     /// # Errors
     ///
@@ -57,16 +56,12 @@ impl Evaluator {
         &mut self,
         gpu: &Gpu,
         scene: &mut PreparedScene,
-        view: &View,
-        maps: &[FittedMap],
-        options: &FrameOptions<'_>,
+        frame: &Frame<'_>,
         picture: &RenderTarget,
     ) -> Result<Statistics, ShadowMapError> {
-        let atmosphere = options.atmosphere(view);
-        let frame = frame(view, maps, options, &atmosphere);
-        let drawn = self.renderer.draw(gpu, &mut scene.gpu_scene, &frame, picture)?;
+        let drawn = self.renderer.draw(gpu, &mut scene.gpu_scene, frame, picture)?;
         self.drawn.clear();
-        self.drawn.extend_from_slice(maps);
+        self.drawn.extend_from_slice(frame.maps);
         Ok(drawn)
     }
 
@@ -83,9 +78,8 @@ impl Evaluator {
         view: &View,
         query: &PixelQuery,
     ) -> Result<PixelRead> {
-        let options = FrameOptions { maps_stay: true, ..FrameOptions::default() };
-        let atmosphere = options.atmosphere(view);
-        let frame = frame(view, &self.drawn, &options, &atmosphere);
+        let atmosphere = view.atmosphere();
+        let frame = Frame { maps_stay: true, ..view.frame(&self.drawn, &atmosphere) };
         Ok(self.renderer.probe_pixel(gpu, &mut scene.gpu_scene, &frame, query)?)
     }
 
@@ -108,7 +102,7 @@ impl Evaluator {
     ) -> Result<Vec<u8>> {
         let kept = self.picture.take().filter(|picture| picture.size == self.judging.size);
         let picture = kept.unwrap_or_else(|| self.renderer.target(gpu, self.judging.size));
-        self.draw(gpu, scene, view, maps, &FrameOptions::default(), &picture)?;
+        self.draw(gpu, scene, &view.frame(maps, &view.atmosphere()), &picture)?;
         let pixels = picture.read(gpu);
         self.picture = Some(picture);
         Ok(pixels?)
@@ -344,9 +338,8 @@ impl Evaluator {
     ) -> Result<ProbeTargets> {
         let kept = targets.filter(|targets| targets.size == self.judging.size);
         let targets = kept.unwrap_or_else(|| ProbeTargets::new(&gpu.device, self.judging.size));
-        let options = FrameOptions::default();
-        let atmosphere = options.atmosphere(view);
-        let frame = Frame { choice, ..frame(view, maps, &options, &atmosphere) };
+        let atmosphere = view.atmosphere();
+        let frame = Frame { choice, ..view.frame(maps, &atmosphere) };
         self.renderer.draw_probe(gpu, &mut scene.gpu_scene, &frame, &targets)?;
         Ok(targets)
     }

@@ -32,7 +32,7 @@ pub use background_judge::{BackgroundJudge, JudgeJob, JudgeResult};
 pub use comparison::{Comparison, Outcome, ensure_judged};
 pub use evaluator::Evaluator;
 pub use fits::{RayUse, see_by_rays};
-pub use frame::FrameOptions;
+pub use frame::atmosphere;
 pub use judging::{Judging, SharedTruth};
 pub use live::LiveTruth;
 pub use maps::fit_map;

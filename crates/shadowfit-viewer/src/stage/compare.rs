@@ -8,7 +8,8 @@ use shadowfit_render::{Gpu, RenderTarget};
 use shadowfit_study::PreparedScene;
 
 use super::Stage;
-use super::side::{Shot, Side};
+use super::shot::Shot;
+use super::side::Side;
 
 /// Least share of the picture that either side keeps.
 const LEAST: f32 = 0.02;
