@@ -73,6 +73,7 @@
 //! - [`culling_wgsl`] with [`CullingUniform`] culls casters on the GPU. [`CasterUniform`], [`ReceiverUniform`] and
 //!   [`MapUniform`] are what the other WGSL reads, for engines that bind it themselves.
 
+mod bindings;
 mod cache;
 mod caught;
 mod descriptor;

@@ -7,9 +7,10 @@ use shadowfit_scene::parts::{Builder, CRISP, Solid, block, ellipsoid, lathe, rou
 use super::SUNK;
 use super::knight;
 use super::palette::Paint;
+use super::textures::SQUARES_METRES;
 
 /// Side of a square, in metres.
-pub(super) const SQUARE: f32 = 0.5;
+const SQUARE: f32 = SQUARES_METRES / 2.0;
 /// Height of the squares above the floor, in metres.
 const TOP: f32 = 0.12;
 /// Half of the width of all squares, in metres.
@@ -32,7 +33,7 @@ pub(super) fn build(builder: &mut Builder, group: usize) {
     };
     let (ivory, ebony) = (Paint::Ivory.into(), Paint::Ebony.into());
     piece("king", king().primitive(ivory, TURNED), [1.0, 1.0], 0.25);
-    piece("knight", knight::solid().primitive(ebony, 1.0), [3.0, 2.0], 1.0);
+    piece("knight", knight::solid(&foot(1.05)).primitive(ebony, 1.0), [3.0, 2.0], 1.0);
     piece("rook", rook().primitive(ebony, TURNED), [4.0, 0.0], 0.1);
     let pawn = pawn();
     for (index, square) in [[0.0, 3.0], [2.0, 4.0], [5.0, 5.0]].into_iter().enumerate() {
@@ -61,7 +62,7 @@ fn frame() -> Solid {
 }
 
 /// The turned foot of a piece, upwards to its neck, scaled.
-pub(super) fn foot(size: f32) -> Vec<(f32, f32)> {
+fn foot(size: f32) -> Vec<(f32, f32)> {
     let profile = [
         (0.205, 0.0),
         (0.215, 0.02),

@@ -3,11 +3,9 @@
 use glam::{Affine3A, Quat, Vec3};
 use shadowfit_scene::parts::{Solid, Stop, capsule, ellipsoid, lathe, smooth, sweep};
 
-use super::chess::foot;
-
-/// The whole piece.
-pub(super) fn solid() -> Solid {
-    let stand = lathe(&[&foot(1.05)[..], &[(0.15, 0.20), (0.155, 0.215), (0.14, 0.235)]].concat(), 36);
+/// The whole piece. `foot` is the profile of its turned foot: radii and heights, upwards.
+pub(super) fn solid(foot: &[(f32, f32)]) -> Solid {
+    let stand = lathe(&[foot, &[(0.15, 0.20), (0.155, 0.215), (0.14, 0.235)]].concat(), 36);
     stand.with(neck_and_head()).with(mane()).with(sides().and_mirrored())
 }
 

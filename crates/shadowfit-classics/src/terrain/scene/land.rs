@@ -7,8 +7,6 @@ use shadowfit_scene::{Image, Primitive, Transform};
 use super::heights::{HeightMap, TEXELS, ease, noise};
 use super::palette::Paint;
 
-/// Distance after which the texture repeats, in the terrain's units.
-pub(super) const TILE: f32 = 50.0;
 /// Pixels along a side of the texture.
 const SIZE: u32 = 512;
 

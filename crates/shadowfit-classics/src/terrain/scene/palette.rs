@@ -3,7 +3,8 @@
 use shadowfit_scene::Material;
 use shadowfit_scene::parts::{matt, tiled};
 
-use super::land::TILE;
+/// Distance after which the texture of the land repeats, in the terrain's units.
+const TILE: f32 = 50.0;
 
 /// A material, by its index in the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
