@@ -212,13 +212,13 @@ fn seen_pipeline(maker: &Maker<'_>, layout: &wgpu::BindGroupLayout) -> wgpu::Ren
 
 /// Positions, and the offset of a caster.
 const BUFFERS: [Option<wgpu::VertexBufferLayout<'static>>; 2] = [
-    vec3s(wgpu::VertexStepMode::Vertex, &wgpu::vertex_attr_array![0 => Float32x3]),
-    vec3s(wgpu::VertexStepMode::Instance, &wgpu::vertex_attr_array![1 => Float32x3]),
+    Some(vec3s(wgpu::VertexStepMode::Vertex, &wgpu::vertex_attr_array![0 => Float32x3])),
+    Some(vec3s(wgpu::VertexStepMode::Instance, &wgpu::vertex_attr_array![1 => Float32x3])),
 ];
 
 const fn vec3s(
     step_mode: wgpu::VertexStepMode,
     attributes: &'static [wgpu::VertexAttribute],
-) -> Option<wgpu::VertexBufferLayout<'static>> {
-    Some(wgpu::VertexBufferLayout { array_stride: 12, step_mode, attributes })
+) -> wgpu::VertexBufferLayout<'static> {
+    wgpu::VertexBufferLayout { array_stride: 12, step_mode, attributes }
 }
