@@ -3,9 +3,10 @@
 use core::ops::Range;
 
 use anyhow::Result;
-use glam::Vec3;
+use glam::{Mat4, Vec3};
 use shadowfit::{Aabb, Boxes, DepthConvention, FittedMap, PerspectiveCamera, Technique};
-use shadowfit_render::{Gpu, GpuProfilerQuery, GpuTimer};
+use shadowfit_render::passes::{DEPTH_FORMAT, Maker, Shape, depth};
+use shadowfit_render::{Gpu, GpuProfilerQuery, GpuTimer, attachment, bindings};
 use shadowfit_wgpu::{Casters, MapView, ShadowMap, SunFrame, SunShadows, WgslOptions, caster_wgsl};
 use wgpu::util::DeviceExt;
 
@@ -13,9 +14,6 @@ use crate::scene::BenchScene;
 
 /// Size of the picture, in pixels.
 pub(crate) const SIZE: [u32; 2] = [1920, 1080];
-
-/// Of the camera's depth buffer.
-pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 const CASTER: &str = "
 @vertex fn vs(@location(0) position: vec3<f32>, @location(1) offset: vec3<f32>) -> @builtin(position) vec4<f32> {
@@ -56,22 +54,14 @@ impl<'a> Engine<'a> {
     pub(crate) fn new(gpu: &'a Gpu, scene: &'a BenchScene, technique: &Technique) -> Result<Self> {
         let device = &gpu.device;
         let sun = SunShadows::new(device, &gpu.queue, technique)?;
-        let camera_uniform = device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: 64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        let camera_layout = uniform_layout(device, wgpu::ShaderStages::VERTEX);
-        let camera_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &camera_layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: camera_uniform.as_entire_binding() }],
-        });
-        let depth = texture(device, DEPTH).create_view(&wgpu::TextureViewDescriptor::default());
+        let camera_uniform = bindings::uniform_buffer::<Mat4>(device, "camera");
+        let camera_layout = bindings::layout(device, "camera", wgpu::ShaderStages::VERTEX, &[bindings::UNIFORM]);
+        let camera_group = bindings::group(device, "camera", &camera_layout, &[camera_uniform.as_entire_binding()]);
+        let depth = target(device, DEPTH_FORMAT);
+        let maker = Maker { device, samples: 1 };
         Ok(Self {
-            caster_pipeline: caster_pipeline(device, sun.map()),
-            seen_pipeline: seen_pipeline(device, &camera_layout),
+            caster_pipeline: caster_pipeline(&maker, sun.map()),
+            seen_pipeline: seen_pipeline(&maker, &camera_layout),
             vertices: device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: None,
                 contents: bytemuck::cast_slice(&scene.vertices),
@@ -153,7 +143,7 @@ impl<'a> Engine<'a> {
     /// The depth of what the camera sees, and what it shows for the next frames.
     pub(crate) fn seen_pass(&mut self, encoder: &mut wgpu::CommandEncoder, camera: &PerspectiveCamera) -> Result<()> {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            depth_stencil_attachment: Some(depth_attachment(&self.depth, 0.0)),
+            depth_stencil_attachment: Some(attachment::depth(&self.depth)),
             ..Default::default()
         });
         pass.set_pipeline(&self.seen_pipeline);
@@ -188,102 +178,47 @@ impl<'a> Engine<'a> {
     }
 }
 
-pub(crate) fn depth_attachment(view: &wgpu::TextureView, clear: f32) -> wgpu::RenderPassDepthStencilAttachment<'_> {
-    wgpu::RenderPassDepthStencilAttachment {
-        view,
-        depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store }),
-        stencil_ops: None,
-    }
+/// What a pass draws a picture into.
+pub(crate) fn target(device: &wgpu::Device, format: wgpu::TextureFormat) -> wgpu::TextureView {
+    let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+    bindings::plain_texture(device, "picture", SIZE, format, usage).create_view(&Default::default())
 }
 
-/// A texture of the picture's size.
-pub(crate) fn texture(device: &wgpu::Device, format: wgpu::TextureFormat) -> wgpu::Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    })
-}
-
-/// A uniform at binding 0.
-pub(crate) fn uniform_layout(device: &wgpu::Device, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayout {
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: None,
-        entries: &[wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
-            count: None,
-        }],
-    })
-}
-
-fn caster_pipeline(device: &wgpu::Device, map: &ShadowMap) -> wgpu::RenderPipeline {
+fn caster_pipeline(maker: &Maker<'_>, map: &ShadowMap) -> wgpu::RenderPipeline {
     let color = [map.color_target()];
     let has_color = color[0].is_some();
     let source = caster_wgsl(map.descriptor(), &WgslOptions::group(0)) + CASTER + if has_color { COLOR } else { "" };
-    let states = (map.primitive_state(), map.depth_stencil_state(), &color[..usize::from(has_color)]);
-    pipeline(device, source, map.caster_layout(), states)
-}
-
-fn seen_pipeline(device: &wgpu::Device, layout: &wgpu::BindGroupLayout) -> wgpu::RenderPipeline {
-    let depth = wgpu::DepthStencilState {
-        format: DEPTH,
-        depth_write_enabled: Some(true),
-        depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
-        stencil: wgpu::StencilState::default(),
-        bias: wgpu::DepthBiasState::default(),
-    };
-    pipeline(device, SEEN.to_owned(), layout, (wgpu::PrimitiveState::default(), depth, &[]))
-}
-
-fn pipeline(
-    device: &wgpu::Device,
-    source: String,
-    layout: &wgpu::BindGroupLayout,
-    (primitive, depth, targets): (wgpu::PrimitiveState, wgpu::DepthStencilState, &[Option<wgpu::ColorTargetState>]),
-) -> wgpu::RenderPipeline {
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: None,
-        source: wgpu::ShaderSource::Wgsl(source.into()),
-    });
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: None,
-        bind_group_layouts: &[Some(layout)],
-        immediate_size: 0,
-    });
-    let buffer = |step_mode, attributes| Some(wgpu::VertexBufferLayout { array_stride: 12, step_mode, attributes });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: None,
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("vs"),
-            compilation_options: Default::default(),
-            buffers: &[
-                buffer(wgpu::VertexStepMode::Vertex, &wgpu::vertex_attr_array![0 => Float32x3]),
-                buffer(wgpu::VertexStepMode::Instance, &wgpu::vertex_attr_array![1 => Float32x3]),
-            ],
-        },
-        primitive,
-        depth_stencil: Some(depth),
-        multisample: wgpu::MultisampleState::default(),
-        fragment: (!targets.is_empty()).then(|| wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("fs"),
-            compilation_options: Default::default(),
-            targets,
-        }),
-        multiview_mask: None,
-        cache: None,
+    let (layout, module) = (maker.layout(&[map.caster_layout()]), maker.module("casters", source));
+    maker.pipeline(&Shape {
+        entries: ("vs", has_color.then_some("fs")),
+        buffers: &BUFFERS,
+        targets: &color[..usize::from(has_color)],
+        primitive: map.primitive_state(),
+        depth: Some(map.depth_stencil_state()),
+        ..Shape::new("casters", &layout, &module, ["vs", "fs"])
     })
+}
+
+fn seen_pipeline(maker: &Maker<'_>, layout: &wgpu::BindGroupLayout) -> wgpu::RenderPipeline {
+    let (layout, module) = (maker.layout(&[layout]), maker.module("seen", SEEN.to_owned()));
+    maker.pipeline(&Shape {
+        entries: ("vs", None),
+        buffers: &BUFFERS,
+        targets: &[],
+        depth: depth(true, wgpu::CompareFunction::GreaterEqual),
+        ..Shape::new("seen", &layout, &module, ["vs", ""])
+    })
+}
+
+/// Positions, and the offset of a caster.
+const BUFFERS: [Option<wgpu::VertexBufferLayout<'static>>; 2] = [
+    Some(vec3s(wgpu::VertexStepMode::Vertex, &wgpu::vertex_attr_array![0 => Float32x3])),
+    Some(vec3s(wgpu::VertexStepMode::Instance, &wgpu::vertex_attr_array![1 => Float32x3])),
+];
+
+const fn vec3s(
+    step_mode: wgpu::VertexStepMode,
+    attributes: &'static [wgpu::VertexAttribute],
+) -> wgpu::VertexBufferLayout<'static> {
+    wgpu::VertexBufferLayout { array_stride: 12, step_mode, attributes }
 }

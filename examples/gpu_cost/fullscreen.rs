@@ -2,11 +2,12 @@
 
 use glam::Mat4;
 use shadowfit::{DepthConvention, PerspectiveCamera};
-use shadowfit_render::{Gpu, GpuProfilerQuery, GpuTimer};
+use shadowfit_render::passes::{Maker, Shape};
+use shadowfit_render::{Gpu, GpuProfilerQuery, GpuTimer, attachment, bindings};
 use shadowfit_wgpu::{ShadowMap, WgslOptions, receiver_wgsl};
 use wgpu::util::DeviceExt;
 
-use crate::engine::{SIZE, texture, uniform_layout};
+use crate::engine::{SIZE, target};
 
 const SHADER: &str = "
 @group(0) @binding(0) var<uniform> world_from_pixel: mat4x4<f32>;
@@ -60,18 +61,12 @@ impl Fullscreen {
             contents: bytemuck::cast_slice(&world_from_pixel.to_cols_array()),
             usage: wgpu::BufferUsages::UNIFORM,
         });
-        let layouts = [uniform_layout(device, wgpu::ShaderStages::FRAGMENT), depth_layout(device)];
-        let resources = [uniform.as_entire_binding(), wgpu::BindingResource::TextureView(depth)];
-        let group = |(layout, resource): (&wgpu::BindGroupLayout, wgpu::BindingResource<'_>)| {
-            device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: None,
-                layout,
-                entries: &[wgpu::BindGroupEntry { binding: 0, resource }],
-            })
-        };
-        let [first, second] = resources;
-        let groups = [group((&layouts[0], first)), group((&layouts[1], second))];
-        let color = texture(device, COLOR).create_view(&wgpu::TextureViewDescriptor::default());
+        let types = [bindings::UNIFORM, bindings::texture(wgpu::TextureSampleType::Depth, false)];
+        let layouts = types.map(|ty| bindings::layout(device, "fullscreen", wgpu::ShaderStages::FRAGMENT, &[ty]));
+        let [first, second] = [uniform.as_entire_binding(), wgpu::BindingResource::TextureView(depth)];
+        let group = |layout, resource| bindings::group(device, "fullscreen", layout, &[resource]);
+        let groups = [group(&layouts[0], first), group(&layouts[1], second)];
+        let color = target(device, COLOR);
         Self { pipeline: pipeline(device, map, &layouts), groups, color }
     }
 
@@ -79,12 +74,7 @@ impl Fullscreen {
     pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder, map: Option<&ShadowMap>, timer: &GpuTimer) {
         let query = timer.begin("fullscreen", encoder);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.color,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
-            })],
+            color_attachments: &[Some(attachment::cleared(&self.color, None, wgpu::Color::BLACK))],
             timestamp_writes: query.as_ref().and_then(GpuProfilerQuery::render_pass_timestamp_writes),
             ..Default::default()
         });
@@ -101,22 +91,6 @@ impl Fullscreen {
     }
 }
 
-fn depth_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: None,
-        entries: &[wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Depth,
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-            count: None,
-        }],
-    })
-}
-
 fn pipeline(
     device: &wgpu::Device,
     map: Option<(&ShadowMap, bool)>,
@@ -129,36 +103,11 @@ fn pipeline(
         ),
         None => (String::new(), "normal.x + p.x"),
     };
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: None,
-        source: wgpu::ShaderSource::Wgsl((receiver + &SHADER.replace("LOOK_UP", look_up)).into()),
-    });
-    let mut groups = vec![Some(&layouts[0]), Some(&layouts[1])];
-    groups.extend(map.map(|(map, _)| Some(map.receiver_layout())));
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: None,
-        bind_group_layouts: &groups,
-        immediate_size: 0,
-    });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: None,
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("vs"),
-            compilation_options: Default::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("fs"),
-            compilation_options: Default::default(),
-            targets: &[Some(COLOR.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+    let maker = Maker { device, samples: 1 };
+    let module = maker.module("fullscreen", receiver + &SHADER.replace("LOOK_UP", look_up));
+    let mut groups: Vec<_> = layouts.iter().collect();
+    groups.extend(map.map(|(map, _)| map.receiver_layout()));
+    let layout = maker.layout(&groups);
+    maker
+        .pipeline(&Shape { targets: &[Some(COLOR.into())], ..Shape::new("fullscreen", &layout, &module, ["vs", "fs"]) })
 }

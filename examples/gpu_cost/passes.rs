@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use shadowfit::scroll::TexelRect;
 use shadowfit::settings::MapFormat;
-use shadowfit::{Aabb, Technique};
+use shadowfit::{Aabb, Seen, Technique, need};
 use shadowfit_render::GpuProfilerQuery;
 use shadowfit_wgpu::need::{NeedPass, NeedView};
 use shadowfit_wgpu::{Culling, ShadowMap, ShadowMapDescriptor, UpdateSchedule};
@@ -256,7 +256,7 @@ pub(crate) fn time_need(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
         let mut engine = Engine::new(gpu, scene, &bench.technique())?;
         let mut pass = NeedPass::new(&gpu.device, &gpu.queue, 1)?;
         let mut timer = Timer::new(gpu);
-        let mut times = Vec::new();
+        let (mut times, mut counted) = (Vec::new(), Vec::new());
         for frame in 0..bench.frames + bench.frames / 5 {
             engine.move_casters(frame);
             let camera = engine.camera(frame);
@@ -274,19 +274,33 @@ pub(crate) fn time_need(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
                 recorded?;
                 Ok(())
             })?;
-            pass.wait()?;
+            let seen = pass.wait()?.context("nothing came back")?;
             if frame >= bench.frames / 5 {
                 times.push(time);
+                counted.push(counts(&seen));
             }
         }
-        rows.push(vec![scene.name.clone(), ms(median(times))]);
+        let counted = [0, 1, 2].map(|i| format!("{:.0}", median(counted.iter().map(|counts| counts[i]).collect())));
+        rows.push([vec![scene.name.clone(), ms(median(times))], counted.to_vec()].concat());
     }
     Ok(Table {
         title: "The grid of need",
-        note: "The compute pass that counts what a depth buffer of 1920 × 1080 pixels shows.".to_owned(),
-        columns: ["scene", "time"].map(str::to_owned).to_vec(),
+        note: "The compute pass that counts what a depth buffer of 1920 × 1080 pixels shows: points, cells of the grid that \
+               have some, and octaves of texels that do."
+            .to_owned(),
+        columns: ["scene", "time", "points", "cells", "octaves"].map(str::to_owned).to_vec(),
         rows,
     })
+}
+
+/// Points in the grid, cells that have some, and octaves of texels that do.
+fn counts(seen: &Seen) -> [f64; 3] {
+    let counts = seen.need().counts;
+    let has_some = |counts: &[u32]| counts.iter().any(|count| *count > 0);
+    let points: u32 = counts.iter().sum();
+    let cells = counts.iter().filter(|count| **count > 0).count();
+    let octaves = counts.chunks(need::SIDE * need::SIDE).filter(|level| has_some(level)).count();
+    [f64::from(points), cells as f64, octaves as f64]
 }
 
 /// Frames of a scene, drawn anew with one kind of culling: times on the GPU and on the CPU.

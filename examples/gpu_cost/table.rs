@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use shadowfit_truth::peers::markdown_table;
+
 /// A table with a heading and a line that says what it shows.
 #[derive(Debug)]
 pub(crate) struct Table {
@@ -14,10 +16,7 @@ pub(crate) struct Table {
 impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "### {}\n\n{}\n", self.title, self.note)?;
-        writeln!(f, "| {} |", self.columns.join(" | "))?;
-        let rule: Vec<&str> = (0..self.columns.len()).map(|column| if column == 0 { "---" } else { "---:" }).collect();
-        writeln!(f, "|{}|", rule.join("|"))?;
-        self.rows.iter().try_for_each(|row| writeln!(f, "| {} |", row.join(" | ")))
+        f.write_str(&markdown_table(&self.columns, self.rows.iter().cloned()))
     }
 }
 

@@ -168,12 +168,9 @@ fn fit_maps(maps: &FittedMaps, technique: &Technique) -> Vec<FitMap> {
     let fitted = in_order.iter().map(|index| fit_map_of(&maps[index]));
     match choice {
         MapChoice::ViewDepth => fitted.collect(),
-        MapChoice::Coverage => fitted.map(|map| FitMap { split_far: NO_END, ..map }).collect(),
+        MapChoice::Coverage => fitted.map(|map| FitMap { split_far: FitMap::NO_END, ..map }).collect(),
     }
 }
-
-/// View depth, in metres, that means that a map has no end: fit files have finite numbers only.
-const NO_END: f64 = 1e9;
 
 /// A map as the fit file has it.
 fn fit_map_of(map: &FittedMap) -> FitMap {

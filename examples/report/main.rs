@@ -31,6 +31,7 @@ mod page;
 mod path;
 mod peers;
 mod plots;
+mod png;
 mod scene;
 mod tables;
 mod text;

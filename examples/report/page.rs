@@ -14,8 +14,8 @@ use image::imageops::{FilterType, resize};
 
 use crate::data::{FramePictures, Run, TechniqueRun, meaning, value, wrong_at};
 use crate::plots::{Plot, colour};
+use crate::png::png;
 use crate::tables::{SCENE_NOTES, Table, facts, stopped, tables};
-use crate::write::png;
 use shadowfit_truth::peers::readable;
 
 /// Widest picture of the page, in pixels; wider ones are scaled down, so that it can be sent.

@@ -20,9 +20,6 @@ use crate::drawing::Drawing;
 use crate::geometry::{Corners, Source};
 use crate::interrupt::Interrupt;
 
-/// View depth, in metres, from which on a map counts as one without an end: fit files have finite numbers only.
-const NO_END: f64 = 1e9;
-
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Scenes, cameras and lights
@@ -217,7 +214,7 @@ fn descriptor(
 /// How the maps of a file are read: by coverage where no map ends, which is what a file of maps that are no slices of
 /// the view says; else by view depth.
 fn choice(maps: &[Vec<FitMap>]) -> MapChoice {
-    let has_no_end = |map: &FitMap| map.split_far >= NO_END;
+    let has_no_end = |map: &FitMap| map.split_far >= FitMap::NO_END;
     if maps.iter().flatten().all(has_no_end) { MapChoice::Coverage } else { MapChoice::ViewDepth }
 }
 

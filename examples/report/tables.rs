@@ -3,9 +3,10 @@
 //! Techniques are rows, and the best value of each column is bold, so that a reader finds the trade-offs at a glance.
 
 use std::fmt::Write;
+use std::iter;
 
 use anyhow::Result;
-use shadowfit_truth::peers::readable;
+use shadowfit_truth::peers::{markdown_table, readable};
 
 use crate::data::{Better, Columns, Run, better};
 
@@ -133,14 +134,11 @@ fn best(column: &str, values: impl Iterator<Item = f64>) -> Option<String> {
 }
 
 fn markdown(table: &Table) -> String {
-    let names: Vec<String> = table.columns.iter().map(|name| escape(name)).collect();
-    let mut text = format!("| technique | {} |\n|---|{}\n", names.join(" | "), "---:|".repeat(names.len()));
-    for (name, cells) in &table.rows {
-        let cell = |(text, best): &Cell| if *best { format!("**{text}**") } else { text.clone() };
-        let cells: Vec<String> = cells.iter().map(cell).collect();
-        let _ = writeln!(text, "| {} | {} |", escape(name), cells.join(" | "));
-    }
-    text
+    let columns: Vec<String> =
+        iter::once("technique").chain(table.columns.iter().map(String::as_str)).map(escape).collect();
+    let cell = |(text, best): &Cell| if *best { format!("**{text}**") } else { text.clone() };
+    let rows = table.rows.iter().map(|(name, cells)| iter::once(escape(name)).chain(cells.iter().map(cell)).collect());
+    markdown_table(&columns, rows)
 }
 
 /// A whole number with spaces between its thousands.

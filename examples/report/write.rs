@@ -5,17 +5,16 @@
 //! ```
 
 use std::fs;
-use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{DynamicImage, RgbaImage};
+use image::RgbaImage;
 
 use crate::data::Run;
 use crate::page::page;
 use crate::path::CameraPath;
 use crate::plots::plots;
+use crate::png::png;
 use crate::tables::{to_json, to_markdown};
 
 const PICTURES: &str = "pictures";
@@ -94,14 +93,6 @@ impl Output {
             format!("{}: cannot be written; is the disk full, or the folder read-only?", file.display())
         })
     }
-}
-
-/// A picture as PNG, as small as the format allows: reports are kept and sent around.
-pub(crate) fn png(picture: &RgbaImage) -> Result<Vec<u8>> {
-    let mut bytes = Cursor::new(Vec::new());
-    let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::Adaptive);
-    DynamicImage::ImageRgba8(picture.clone()).to_rgb8().write_with_encoder(encoder)?;
-    Ok(bytes.into_inner())
 }
 
 /// A name that every file system takes: letters, digits and dashes.

@@ -74,6 +74,12 @@ impl<'a> Frame<'a> {
         }
     }
 
+    /// The same frame seen through another camera, while points still choose their maps from this one's.
+    #[must_use]
+    pub fn seen_through(self, camera: &'a PerspectiveCamera) -> Self {
+        Self { camera, choice: Some(self.chooser()), ..self }
+    }
+
     /// Eye and unit forward direction from which view depths are counted.
     pub(crate) fn chooser(&self) -> (DVec3, Vec3) {
         self.choice.unwrap_or((self.camera.eye, self.camera.forward.normalize()))

@@ -18,9 +18,6 @@ pub struct Inset {
 }
 
 impl Inset {
-    /// Linear colour of a frame that stands out from most pictures.
-    pub const BORDER: Vec3 = Vec3::splat(0.9);
-
     pub(crate) fn vertex(&self) -> InsetVertex {
         let Self { rectangle, depth_range, map, border } = *self;
         InsetVertex { rectangle, depth_range, map, border: border.to_array() }

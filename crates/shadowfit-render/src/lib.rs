@@ -15,6 +15,7 @@ mod gpu_timer;
 mod inset;
 mod judged;
 mod lines;
+mod maker;
 mod marks;
 mod material;
 mod overlay;

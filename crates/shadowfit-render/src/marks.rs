@@ -2,7 +2,7 @@
 //! these what lies within a few pixels of one.
 
 use crate::judged::JudgedInput;
-use crate::pipelines::{Maker, Shape};
+use crate::maker::{Maker, Shape};
 use crate::target::{COLOR_FORMAT, RenderTarget};
 use crate::uniform::MarksUniform;
 use crate::{Gpu, bindings, shaders};

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use shadowfit_scene::{Image, Material, Scene, Texture, Wrap};
 
 use crate::attachment::cleared;
+use crate::maker::{Maker, Shape};
 use crate::uniform::MaterialUniform;
 use crate::{Gpu, bindings, shaders};
 
@@ -12,11 +13,16 @@ use crate::{Gpu, bindings, shaders};
 /// visits every texel that a pixel covers, which takes seconds for a single sliver seen edge-on.
 const ANISOTROPY: u16 = 8;
 
+/// Name of what makes the levels of textures, for debuggers.
+const LEVELS: &str = "texture levels";
+
+/// A texture of colours that are filtered, and what samples it.
+const COLORS: wgpu::BindingType = bindings::texture(wgpu::TextureSampleType::Float { filterable: true }, false);
+const SAMPLER: wgpu::BindingType = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+
 /// Layout of a material's bind group, the same in the shaded and the shadow pass.
 pub fn material_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let texture = bindings::texture(wgpu::TextureSampleType::Float { filterable: true }, false);
-    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-    let types = [bindings::UNIFORM, texture, sampler, texture, sampler];
+    let types = [bindings::UNIFORM, COLORS, SAMPLER, COLORS, SAMPLER];
     bindings::layout(device, "material", wgpu::ShaderStages::FRAGMENT, &types)
 }
 
@@ -137,37 +143,19 @@ fn halved_to_fit(image: &Image, limit: u32) -> Image {
 /// Draws each level of a texture from the one above it.
 struct LevelMaker {
     sampler: wgpu::Sampler,
+    layout: wgpu::BindGroupLayout,
     pipelines: [(wgpu::TextureFormat, wgpu::RenderPipeline); 2],
 }
 
 impl LevelMaker {
     fn new(device: &wgpu::Device) -> Self {
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("texture levels"),
-            source: wgpu::ShaderSource::Wgsl(shaders::mip().into()),
-        });
+        let maker = Maker { device, samples: 1 };
+        let module = maker.module(LEVELS, shaders::mip());
+        let layout = bindings::layout(device, LEVELS, wgpu::ShaderStages::FRAGMENT, &[COLORS, SAMPLER]);
+        let groups = maker.layout(&[&layout]);
         let pipeline = |format: wgpu::TextureFormat| {
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some("texture levels"),
-                layout: None,
-                vertex: wgpu::VertexState {
-                    module: &module,
-                    entry_point: Some("vs_mip"),
-                    compilation_options: Default::default(),
-                    buffers: &[],
-                },
-                fragment: Some(wgpu::FragmentState {
-                    module: &module,
-                    entry_point: Some("fs_mip"),
-                    compilation_options: Default::default(),
-                    targets: &[Some(format.into())],
-                }),
-                primitive: wgpu::PrimitiveState::default(),
-                depth_stencil: None,
-                multisample: wgpu::MultisampleState::default(),
-                multiview_mask: None,
-                cache: None,
-            })
+            let targets = [Some(format.into())];
+            maker.pipeline(&Shape { targets: &targets, ..Shape::new(LEVELS, &groups, &module, ["vs_mip", "fs_mip"]) })
         };
         let formats = [wgpu::TextureFormat::Rgba8UnormSrgb, wgpu::TextureFormat::Rgba8Unorm];
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
@@ -175,7 +163,7 @@ impl LevelMaker {
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         });
-        Self { sampler, pipelines: formats.map(|format| (format, pipeline(format))) }
+        Self { sampler, layout, pipelines: formats.map(|format| (format, pipeline(format))) }
     }
 
     fn fill(&self, gpu: &Gpu, texture: &wgpu::Texture) {
@@ -206,11 +194,10 @@ impl LevelMaker {
         };
         let source = view(level - 1);
         let resources = [wgpu::BindingResource::TextureView(&source), wgpu::BindingResource::Sampler(&self.sampler)];
-        let layout = pipeline.get_bind_group_layout(0);
-        let group = bindings::group(&gpu.device, "texture level", &layout, &resources);
+        let group = bindings::group(&gpu.device, LEVELS, &self.layout, &resources);
         let target = view(level);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("texture level"),
+            label: Some(LEVELS),
             color_attachments: &[Some(cleared(&target, None, wgpu::Color::BLACK))],
             ..Default::default()
         });

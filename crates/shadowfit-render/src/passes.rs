@@ -7,8 +7,8 @@
 //! [`bindings`](crate::bindings) and [`attachment`](crate::attachment) have the rest, [`shaders`](crate::shaders) the WGSL
 //! that pictures share.
 
+pub use crate::maker::{InstanceNumber, Maker, Shape, culled, depth, part_buffers};
 pub use crate::material::material_layout;
-pub use crate::pipelines::{InstanceNumber, Maker, Shape, part_buffers};
 pub use crate::probe::{PROBE_FORMAT, can_probe};
 pub use crate::scene::{Draw, PartKey};
 pub use crate::target::{DEPTH_FORMAT, ENCODED_FORMAT};

@@ -1,17 +1,15 @@
 //! The render pipelines, and the layouts that they share. Those that read the shadow map are made anew when its shaders
 //! change, and those of parts when the first part is drawn that needs them.
 
-mod maker;
 mod of_map;
 
 use shadowfit_wgpu::ShadowMap;
 
+use crate::maker::{BLENDED_COLOR, Maker, Shape, depth, instances, strips};
 use crate::material::material_layout;
 use crate::uniform::{LineVertex, QuadVertex};
 use crate::{Overlay, bindings, shaders};
 
-pub(crate) use maker::{BLENDED_COLOR, COLOR, instances};
-pub use maker::{InstanceNumber, Maker, Shape, part_buffers};
 pub(crate) use of_map::{Drawn, MapPipelines};
 
 /// Bind group layouts of this crate.
@@ -68,7 +66,7 @@ impl Maker<'_> {
     fn clear(&self) -> wgpu::RenderPipeline {
         let (layout, module) = (self.layout(&[]), self.module("clear", shaders::clear()));
         self.pipeline(&Shape {
-            depth: Some((true, wgpu::CompareFunction::Always)),
+            depth: depth(true, wgpu::CompareFunction::Always),
             samples: self.samples,
             ..Shape::new("clear", &layout, &module, ["vs_screen", "fs_clear"])
         })
@@ -77,7 +75,7 @@ impl Maker<'_> {
     fn sky(&self, layouts: &Layouts, entry: &str) -> wgpu::RenderPipeline {
         let (layout, module) = (self.layout(&[&layouts.uniform]), self.module("sky", shaders::sky()));
         self.pipeline(&Shape {
-            depth: Some((false, wgpu::CompareFunction::GreaterEqual)),
+            depth: depth(false, wgpu::CompareFunction::GreaterEqual),
             samples: self.samples,
             ..Shape::new("sky", &layout, &module, ["vs_sky", entry])
         })
@@ -89,7 +87,7 @@ impl Maker<'_> {
         self.pipeline(&Shape {
             buffers: &[Some(instances::<[LineVertex; 2]>(&attributes))],
             targets: &BLENDED_COLOR,
-            depth: Some((false, wgpu::CompareFunction::Always)),
+            depth: depth(false, wgpu::CompareFunction::Always),
             samples: self.samples,
             ..Shape::new("lines", &layout, &module, ["vs_line", "fs_line"])
         })
@@ -101,7 +99,7 @@ impl Maker<'_> {
         self.pipeline(&Shape {
             buffers: &[Some(instances::<QuadVertex>(&attributes))],
             targets: &BLENDED_COLOR,
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            primitive: strips(),
             ..Shape::new("quads", &layout, &module, ["vs_quad", "fs_quad"])
         })
     }

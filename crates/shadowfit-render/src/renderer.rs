@@ -10,8 +10,9 @@ use shadowfit_wgpu::{MAX_MAPS, ShadowMap, ShadowMapDescriptor, ShadowMapError, S
 
 use crate::frame::Frame;
 use crate::judged::JudgedInput;
+use crate::maker::Maker;
 use crate::marks::MarkPasses;
-use crate::pipelines::{Drawn, Layouts, Maker, MapPipelines, Pipelines};
+use crate::pipelines::{Drawn, Layouts, MapPipelines, Pipelines};
 use crate::probe::{Probe, ProbeError, ProbeTargets, can_probe};
 use crate::scene::GpuScene;
 use crate::statistics::{MapStatistics, Statistics};

@@ -14,38 +14,11 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, anyhow, ensure};
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use shadowfit::FittedMap;
-use shadowfit_render::ProbePixel;
 use shadowfit_truth::gpu::GpuPixel;
 use shadowfit_truth::{Judged, Truth};
-use shadowfit_wgpu::ShadowMapDescriptor;
 
-use crate::picture::{FrameBefore, Picture, factors};
-use crate::{Judging, SceneRays, View};
-
-/// A picture to judge, with all that the judge needs to know about the scene.
-/// [`Evaluator::judge_job`](crate::Evaluator::judge_job) makes one.
-#[derive(Clone, Debug)]
-pub struct JudgeJob {
-    /// The scene's rays, in the pose in which it was drawn.
-    pub rays: Arc<SceneRays>,
-    /// Triangle and shadow factor of each pixel, rows from the top: as many as [`Judging::size`] says. `None` for the
-    /// sky.
-    pub pixels: Vec<Option<ProbePixel>>,
-    /// The view.
-    pub view: View,
-    /// How it is judged.
-    pub judging: Judging,
-    /// The maps that it was drawn with.
-    pub maps: Vec<FittedMap>,
-    /// The descriptor of the shadow map that they were drawn into.
-    pub descriptor: ShadowMapDescriptor,
-    /// Whether each of the scene's instances counts in sums:
-    /// [`PosedScene::counted_instances`](crate::PosedScene::counted_instances).
-    pub counted: Vec<bool>,
-    /// The frame before; `None` where crawl is not measured.
-    pub before: Option<FrameBefore>,
-}
+use crate::picture::JudgeJob;
+use crate::{Judging, View};
 
 /// A judged picture.
 #[derive(Clone, Debug)]
@@ -159,19 +132,11 @@ impl JudgeJob {
     fn judge(&self, goes_on: impl Fn() -> bool + Sync) -> Result<JudgeResult> {
         let start = Instant::now();
         self.check()?;
-        let picture = Picture {
-            rays: &self.rays,
-            view: &self.view,
-            judging: &self.judging,
-            maps: &self.maps,
-            descriptor: &self.descriptor,
-            counted: &self.counted,
-        };
         let judge = |truth: &Truth| {
-            let judged = picture.judge_while(truth, &factors(&self.pixels), self.before.as_ref(), &goes_on)?;
+            let judged = self.judge_while(truth, &goes_on)?;
             Some((classes(truth, &judged), judged))
         };
-        let truth = picture.trace_while(&self.pixels, &goes_on);
+        let truth = self.trace_while(&goes_on);
         let (classes, judged) = truth.as_ref().and_then(judge).context("judging was given up")?;
         let seconds = start.elapsed().as_secs_f32();
         Ok(JudgeResult { judged, classes, view: self.view, judging: self.judging, seconds })
@@ -222,9 +187,11 @@ mod tests {
     use shadowfit_scene::Scene;
     use shadowfit_scene::builtin::default_scene;
     use shadowfit_truth::Class;
+    use shadowfit_wgpu::ShadowMapDescriptor;
 
     use super::*;
-    use crate::{Evaluator, PreparedScene, SharedTruth};
+    use crate::picture::FrameBefore;
+    use crate::{Evaluator, PreparedScene, SceneRays, SharedTruth};
 
     const SIZE: [u32; 2] = [96, 54];
 

@@ -12,11 +12,10 @@ use shadowfit_truth::Judged;
 use shadowfit_truth::gpu::{GpuBefore, GpuPixel};
 use shadowfit_wgpu::ShadowMapError;
 
-use crate::frame::frame;
 use crate::live::{LiveInput, LiveTruth};
 use crate::maps::{measured, picture_maps};
-use crate::picture::{FrameBefore, Picture, factors};
-use crate::{FrameOptions, JudgeJob, Judging, PreparedScene, SceneRays, SharedTruth, View};
+use crate::picture::{FrameBefore, factors};
+use crate::{JudgeJob, Judging, PreparedScene, SceneRays, SharedTruth, View};
 
 /// Draws a technique's maps and the scene shadowed by them, and judges the picture.
 #[derive(Debug)]
@@ -48,7 +47,7 @@ impl Evaluator {
         Self { renderer, judging, targets: None, targets_before: None, picture: None, before: None, drawn: Vec::new() }
     }
 
-    /// Draws the maps of a view and its shaded picture.
+    /// Draws the maps of a frame and its shaded picture.
     ///
     /// # Errors
     ///
@@ -57,16 +56,12 @@ impl Evaluator {
         &mut self,
         gpu: &Gpu,
         scene: &mut PreparedScene,
-        view: &View,
-        maps: &[FittedMap],
-        options: &FrameOptions<'_>,
+        frame: &Frame<'_>,
         picture: &RenderTarget,
     ) -> Result<Statistics, ShadowMapError> {
-        let atmosphere = options.atmosphere(view);
-        let frame = frame(view, maps, options, &atmosphere);
-        let drawn = self.renderer.draw(gpu, &mut scene.gpu_scene, &frame, picture)?;
+        let drawn = self.renderer.draw(gpu, &mut scene.gpu_scene, frame, picture)?;
         self.drawn.clear();
-        self.drawn.extend_from_slice(maps);
+        self.drawn.extend_from_slice(frame.maps);
         Ok(drawn)
     }
 
@@ -83,9 +78,8 @@ impl Evaluator {
         view: &View,
         query: &PixelQuery,
     ) -> Result<PixelRead> {
-        let options = FrameOptions { maps_stay: true, ..FrameOptions::default() };
-        let atmosphere = options.atmosphere(view);
-        let frame = frame(view, &self.drawn, &options, &atmosphere);
+        let atmosphere = view.atmosphere();
+        let frame = Frame { maps_stay: true, ..view.frame(&self.drawn, &atmosphere) };
         Ok(self.renderer.probe_pixel(gpu, &mut scene.gpu_scene, &frame, query)?)
     }
 
@@ -108,7 +102,7 @@ impl Evaluator {
     ) -> Result<Vec<u8>> {
         let kept = self.picture.take().filter(|picture| picture.size == self.judging.size);
         let picture = kept.unwrap_or_else(|| self.renderer.target(gpu, self.judging.size));
-        self.draw(gpu, scene, view, maps, &FrameOptions::default(), &picture)?;
+        self.draw(gpu, scene, &view.frame(maps, &view.atmosphere()), &picture)?;
         let pixels = picture.read(gpu);
         self.picture = Some(picture);
         Ok(pixels?)
@@ -127,23 +121,10 @@ impl Evaluator {
         maps: &[FittedMap],
         truth: &mut SharedTruth,
     ) -> Result<Judged> {
-        if view.is_first {
-            self.before = None;
-        }
-        let pixels = self.probe(gpu, scene, view, maps, None)?;
-        let before = self.frame_before(gpu, scene, view)?;
-        let counted = scene.counted_instances(self.judging.subject_only);
-        let picture = Picture {
-            rays: scene.rays(),
-            view,
-            judging: &self.judging,
-            maps,
-            descriptor: self.renderer.shadow_map().descriptor(),
-            counted: &counted,
-        };
-        let judged = picture.judge(truth.or_trace(|| picture.trace(&pixels)), &factors(&pixels), before.as_ref());
-        self.note_view(view, maps);
-        Ok(judged)
+        let rays = scene.shared_rays();
+        let (job, seen) = self.judge_job(gpu, scene, view, maps, rays)?;
+        self.targets = Some(seen);
+        Ok(job.judge_by(truth.or_trace(|| job.trace())))
     }
 
     /// Makes the job of a view for a [`BackgroundJudge`](crate::BackgroundJudge): draws its maps and its probe, and
@@ -204,7 +185,7 @@ impl Evaluator {
         maps: &[FittedMap],
         live: &mut LiveTruth,
     ) -> Result<Vec<GpuPixel>> {
-        self.with_live_input(gpu, scene, view, maps, |input| live.judge(gpu, input))
+        self.with_live_input(gpu, scene, (view, maps, None), |input| live.judge(gpu, input))
     }
 
     /// Mean time of judging a view on the GPU, without drawing it, in milliseconds.
@@ -220,7 +201,7 @@ impl Evaluator {
         maps: &[FittedMap],
         (live, repeats): (&mut LiveTruth, u32),
     ) -> Result<f64> {
-        self.with_live_input(gpu, scene, view, maps, |input| live.time(gpu, input, repeats))
+        self.with_live_input(gpu, scene, (view, maps, None), |input| live.time(gpu, input, repeats))
     }
 
     /// Draws a view's maps and its probe, and records the passes that judge it on the GPU, without waiting:
@@ -240,36 +221,7 @@ impl Evaluator {
         live: &mut LiveTruth,
     ) -> Result<()> {
         let before = self.before.take().filter(|_| self.judging.crawl && !view.is_first);
-        let targets = match &before {
-            Some(Before { maps, eye, forward }) => {
-                let targets = self.targets_before.take();
-                Some(self.draw_probe_into(gpu, scene, (view, maps, Some((*eye, *forward))), targets)?)
-            }
-            None => None,
-        };
-        let seen = self.draw_probe(gpu, scene, view, maps, None)?;
-        let descriptor = self.renderer.shadow_map().descriptor();
-        let measure = |maps: &[FittedMap]| measured(maps, descriptor, view.direction, scene.origin());
-        let here = measure(maps);
-        let there = before.as_ref().map_or_else(Vec::new, |before| measure(&before.maps));
-        let maps_before = before.as_ref().map(|before| picture_maps(&there, &before.maps, descriptor));
-        let before = before.as_ref().zip(maps_before.as_ref()).zip(targets.as_ref());
-        live.submit(
-            gpu,
-            &LiveInput {
-                camera: self.judging.pixel_camera(scene.origin(), view),
-                settings: self.judging.truth_settings(view),
-                maps: picture_maps(&here, maps, descriptor),
-                seen: &seen.view,
-                before: before.map(|((before, maps), targets)| GpuBefore {
-                    maps,
-                    eye: before.eye - scene.origin(),
-                    forward: before.forward.as_dvec3(),
-                    seen: &targets.view,
-                }),
-            },
-        )?;
-        (self.targets, self.targets_before) = (Some(seen), targets.or(self.targets_before.take()));
+        self.with_live_input(gpu, scene, (view, maps, before.as_ref()), |input| live.submit(gpu, input))?;
         self.note_view(view, maps);
         Ok(())
     }
@@ -285,26 +237,42 @@ impl Evaluator {
         self.before = None;
     }
 
+    /// Draws the probe of a view, and that of the maps of the frame before where there is one, and judges them.
     fn with_live_input<T>(
         &mut self,
         gpu: &Gpu,
         scene: &mut PreparedScene,
-        view: &View,
-        maps: &[FittedMap],
+        (view, maps, before): (&View, &[FittedMap], Option<&Before>),
         judge: impl FnOnce(&LiveInput<'_>) -> Result<T>,
     ) -> Result<T> {
-        let targets = self.draw_probe(gpu, scene, view, maps, None)?;
+        let targets = match before {
+            Some(Before { maps, eye, forward }) => {
+                let targets = self.targets_before.take();
+                Some(self.draw_probe_into(gpu, scene, (view, maps, Some((*eye, *forward))), targets)?)
+            }
+            None => None,
+        };
+        let seen = self.draw_probe(gpu, scene, view, maps, None)?;
         let descriptor = self.renderer.shadow_map().descriptor();
-        let measured = measured(maps, descriptor, view.direction, scene.origin());
-        let result = judge(&LiveInput {
+        let measure = |maps: &[FittedMap]| measured(maps, descriptor, view.direction, scene.origin());
+        let here = measure(maps);
+        let there = before.map_or_else(Vec::new, |before| measure(&before.maps));
+        let maps_before = before.map(|before| picture_maps(&there, &before.maps, descriptor));
+        let before = before.zip(maps_before.as_ref()).zip(targets.as_ref());
+        let judged = judge(&LiveInput {
             camera: self.judging.pixel_camera(scene.origin(), view),
             settings: self.judging.truth_settings(view),
-            maps: picture_maps(&measured, maps, descriptor),
-            seen: &targets.view,
-            before: None,
+            maps: picture_maps(&here, maps, descriptor),
+            seen: &seen.view,
+            before: before.map(|((before, maps), targets)| GpuBefore {
+                maps,
+                eye: before.eye - scene.origin(),
+                forward: before.forward.as_dvec3(),
+                seen: &targets.view,
+            }),
         });
-        self.targets = Some(targets);
-        result
+        (self.targets, self.targets_before) = (Some(seen), targets.or(self.targets_before.take()));
+        judged
     }
 
     /// Triangle and shadow factor of each pixel. `choice` is the eye and the forward direction that choose the maps, if
@@ -346,9 +314,8 @@ impl Evaluator {
     ) -> Result<ProbeTargets> {
         let kept = targets.filter(|targets| targets.size == self.judging.size);
         let targets = kept.unwrap_or_else(|| ProbeTargets::new(&gpu.device, self.judging.size));
-        let options = FrameOptions::default();
-        let atmosphere = options.atmosphere(view);
-        let frame = Frame { choice, ..frame(view, maps, &options, &atmosphere) };
+        let atmosphere = view.atmosphere();
+        let frame = Frame { choice, ..view.frame(maps, &atmosphere) };
         self.renderer.draw_probe(gpu, &mut scene.gpu_scene, &frame, &targets)?;
         Ok(targets)
     }

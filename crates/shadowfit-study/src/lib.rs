@@ -28,15 +28,15 @@ mod view;
 mod why;
 
 pub use agreement::Agreement;
-pub use background_judge::{BackgroundJudge, JudgeJob, JudgeResult};
+pub use background_judge::{BackgroundJudge, JudgeResult};
 pub use comparison::{Comparison, Outcome, ensure_judged};
 pub use evaluator::Evaluator;
 pub use fits::{RayUse, see_by_rays};
-pub use frame::FrameOptions;
+pub use frame::atmosphere;
 pub use judging::{Judging, SharedTruth};
 pub use live::LiveTruth;
 pub use maps::fit_map;
-pub use picture::FrameBefore;
+pub use picture::{FrameBefore, JudgeJob};
 pub use rays::SceneRays;
 pub use scene::{NothingToDraw, PosedScene, PreparedScene};
 pub use settings_file::{settings_from_toml, settings_to_toml, technique_to_toml};

@@ -8,17 +8,14 @@ use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{MapReading, MeasuredMap, PictureMaps};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
-/// View depth, in metres, that stands for a map without an end: fit files have finite numbers only.
-pub(crate) const NO_END: f64 = 1e9;
-
-/// A map in the form of fit files: the f32 matrix that the renderer gets, made absolute in f64.
+/// A map as fit files have it: the f32 matrix that the renderer gets, made absolute in f64.
 pub fn fit_map(map: &FittedMap) -> FitMap {
     FitMap {
         view_proj: clip_from(map, DVec3::ZERO).to_cols_array(),
         resolution: map.fit.resolution.x,
         resolution_xy: (map.fit.resolution.x != map.fit.resolution.y).then(|| map.fit.resolution.to_array()),
         split_near: 0.0,
-        split_far: map.depth_range().far.min(NO_END),
+        split_far: map.depth_range().far.min(FitMap::NO_END),
     }
 }
 

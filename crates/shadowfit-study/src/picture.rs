@@ -1,5 +1,7 @@
 //! A drawn picture judged against rays on the CPU, wherever that is done: where it was drawn, or in the background.
 
+use std::sync::Arc;
+
 use glam::{DVec3, Vec3};
 use shadowfit::FittedMap;
 use shadowfit_render::ProbePixel;
@@ -22,54 +24,57 @@ pub struct FrameBefore {
     pub factors: Vec<f32>,
 }
 
-/// A picture, and the rays that it is judged with.
-pub(crate) struct Picture<'a> {
-    pub(crate) rays: &'a SceneRays,
-    pub(crate) view: &'a View,
-    pub(crate) judging: &'a Judging,
-    pub(crate) maps: &'a [FittedMap],
-    pub(crate) descriptor: &'a ShadowMapDescriptor,
-    /// Whether each of the scene's instances counts in sums.
-    pub(crate) counted: &'a [bool],
+/// A picture to judge, with all that the judge needs of the scene. [`Evaluator::judge_job`](crate::Evaluator::judge_job)
+/// makes one.
+#[derive(Clone, Debug)]
+pub struct JudgeJob {
+    /// The scene's rays, of the pose in which it was drawn.
+    pub rays: Arc<SceneRays>,
+    /// What each pixel shows, rows from the top: as many as [`Judging::size`] says. `None` for the sky.
+    pub pixels: Vec<Option<ProbePixel>>,
+    /// The view.
+    pub view: View,
+    /// How it is judged.
+    pub judging: Judging,
+    /// The maps that it was drawn with.
+    pub maps: Vec<FittedMap>,
+    /// What they were drawn into.
+    pub descriptor: ShadowMapDescriptor,
+    /// Whether each of the scene's instances counts in sums:
+    /// [`PosedScene::counted_instances`](crate::PosedScene::counted_instances).
+    pub counted: Vec<bool>,
+    /// The frame before; `None` where crawl is not measured.
+    pub before: Option<FrameBefore>,
 }
 
-impl Picture<'_> {
-    /// The truth of the picture, for the triangles that a probe found.
-    pub(crate) fn trace(&self, pixels: &[Option<ProbePixel>]) -> Truth {
-        self.trace_while(pixels, || true).expect("nobody gives it up")
+impl JudgeJob {
+    /// The truth of the picture.
+    pub(crate) fn trace(&self) -> Truth {
+        self.trace_while(|| true).expect("nobody gives it up")
     }
 
-    /// The same while `goes_on` returns `true`.
-    pub(crate) fn trace_while(
-        &self,
-        pixels: &[Option<ProbePixel>],
-        goes_on: impl Fn() -> bool + Sync,
-    ) -> Option<Truth> {
-        let seen: Vec<Option<u32>> = pixels.iter().map(|pixel| pixel.map(|pixel| pixel.triangle)).collect();
-        let camera = self.judging.pixel_camera(self.rays.origin, self.view);
-        Truth::trace_while(&self.rays.tracer, &camera, &self.judging.truth_settings(self.view), &seen, goes_on)
+    /// The same for as long as `goes_on` says so.
+    pub(crate) fn trace_while(&self, goes_on: impl Fn() -> bool + Sync) -> Option<Truth> {
+        let seen: Vec<Option<u32>> = self.pixels.iter().map(|pixel| pixel.map(|pixel| pixel.triangle)).collect();
+        let camera = self.judging.pixel_camera(self.rays.origin, &self.view);
+        Truth::trace_while(&self.rays.tracer, &camera, &self.judging.truth_settings(&self.view), &seen, goes_on)
     }
 
-    /// Judges the picture, whose shadows are `factors`, and its crawl against the frame before.
-    pub(crate) fn judge(&self, truth: &Truth, factors: &[f32], before: Option<&FrameBefore>) -> Judged {
-        self.judge_while(truth, factors, before, || true).expect("nobody gives it up")
+    /// The picture judged by its truth, and its crawl against the frame before.
+    pub(crate) fn judge_by(&self, truth: &Truth) -> Judged {
+        self.judge_while(truth, || true).expect("nobody gives it up")
     }
 
-    /// The same while `goes_on` returns `true`.
-    pub(crate) fn judge_while(
-        &self,
-        truth: &Truth,
-        factors: &[f32],
-        before: Option<&FrameBefore>,
-        goes_on: impl Fn() -> bool + Sync,
-    ) -> Option<Judged> {
-        let Self { rays, maps, descriptor, .. } = *self;
+    /// The same for as long as `goes_on` says so.
+    pub(crate) fn judge_while(&self, truth: &Truth, goes_on: impl Fn() -> bool + Sync) -> Option<Judged> {
+        let Self { rays, maps, descriptor, .. } = self;
+        let factors = factors(&self.pixels);
         let measure = |maps: &[FittedMap]| measured(maps, descriptor, self.view.direction, rays.origin);
         let measured = measure(maps);
         let seen = picture_maps(&measured, maps, descriptor);
         let counts = |triangle: u32| self.counted[rays.triangles[triangle as usize].instance as usize];
-        let mut judged = judge_while(&rays.tracer, truth, &seen, factors, counts, goes_on)?;
-        if let Some(before) = before {
+        let mut judged = judge_while(&rays.tracer, truth, &seen, &factors, counts, goes_on)?;
+        if let Some(before) = &self.before {
             let measured = measure(&before.maps);
             let maps_before = MapsBefore {
                 maps: picture_maps(&measured, &before.maps, descriptor),
@@ -77,7 +82,7 @@ impl Picture<'_> {
                 forward: before.forward.as_dvec3(),
                 factors: &before.factors,
             };
-            judged.tally.add_crawl(crawl(truth, &judged, factors, &maps_before));
+            judged.tally.add_crawl(crawl(truth, &judged, &factors, &maps_before));
         }
         Some(judged)
     }

@@ -9,6 +9,8 @@ mod map_reason;
 mod reason;
 mod words;
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3, Vec3};
 use shadowfit::choice::MapRead;
 use shadowfit::{FittedMap, Technique};
@@ -20,27 +22,27 @@ use self::look_up::{LookUp, Tap};
 use crate::maps::{measured, picture_maps};
 use crate::{Judging, SceneRays, View};
 
-/// A pixel to explain, and everything that its shadow depends on.
-#[derive(Clone, Copy, Debug)]
-pub struct WhyInput<'a> {
+/// A pixel to ask about, and all that its shadow follows from. It owns or shares what it has, so that a thread can answer.
+#[derive(Clone, Debug)]
+pub struct WhyInput {
     /// The scene, whose nodes give things their names.
-    pub scene: &'a Scene,
-    /// Its rays, in the visible pose.
-    pub rays: &'a SceneRays,
+    pub scene: Arc<Scene>,
+    /// Its rays, in the pose that is seen.
+    pub rays: Arc<SceneRays>,
     /// Camera and light of the picture.
-    pub view: &'a View,
+    pub view: View,
     /// Size of the picture in pixels, and how it is judged.
-    pub judging: &'a Judging,
+    pub judging: Judging,
     /// The pixel, from the left and from the top of the picture, in pixels; fractions are dropped.
     pub pixel: [f32; 2],
     /// The technique that made the maps.
-    pub technique: &'a Technique,
+    pub technique: Technique,
     /// The maps that the picture was drawn with.
-    pub maps: &'a [FittedMap],
-    /// The descriptor of the shadow map that they were drawn into.
-    pub descriptor: &'a ShadowMapDescriptor,
-    /// Share of the light at the pixel as it was drawn, 0..=1, such as a probe gives it; with `None` it is the result
-    /// of one comparison with the point's texel.
+    pub maps: Vec<FittedMap>,
+    /// What they were drawn into.
+    pub descriptor: ShadowMapDescriptor,
+    /// Share of the light at the pixel as it was drawn, 0..=1, such as a probe gives it; `None` takes what one comparison
+    /// with the point's own texel gives.
     pub factor: Option<f32>,
     /// The depths that the map stores around the look-up, if they were read back; otherwise rays find them.
     pub stored: Option<StoredTexels>,
@@ -111,7 +113,7 @@ pub struct Why {
 
 /// Everything that is known about a pixel. Positions are relative to the origin of the rays, in metres.
 pub(crate) struct At<'a> {
-    input: &'a WhyInput<'a>,
+    input: &'a WhyInput,
     truth: PixelTruth<'a>,
     maps: &'a PictureMaps<'a>,
     /// The pixel's index in the rows from the top.
@@ -132,17 +134,17 @@ pub(crate) struct At<'a> {
 /// # use shadowfit::{FittedMap, Technique};
 /// # use shadowfit_study::{Judging, PreparedScene, View, WhyInput, why};
 /// # use shadowfit_wgpu::ShadowMapDescriptor;
-/// # fn click(scene: &PreparedScene, view: &View, technique: &Technique, maps: &[FittedMap], pixel: [f32; 2]) {
+/// # fn click(scene: &PreparedScene, view: View, technique: Technique, maps: Vec<FittedMap>, pixel: [f32; 2]) {
 /// let Some(rays) = scene.ready_rays() else { return };
 /// let found = why(&WhyInput {
-///     scene: scene.scene(),
-///     rays: &rays,
+///     scene: scene.shared_scene(),
+///     rays,
 ///     view,
-///     judging: &Judging { size: [1280, 720], ..Judging::default() },
+///     judging: Judging { size: [1280, 720], ..Judging::default() },
 ///     pixel,
 ///     technique,
 ///     maps,
-///     descriptor: &ShadowMapDescriptor::from(technique),
+///     descriptor: ShadowMapDescriptor::from(&technique),
 ///     factor: None,
 ///     stored: None,
 /// });
@@ -152,8 +154,8 @@ pub(crate) struct At<'a> {
 /// }
 /// # }
 /// ```
-pub fn why(input: &WhyInput<'_>) -> Option<Why> {
-    let WhyInput { rays, view, judging, maps, descriptor, .. } = *input;
+pub fn why(input: &WhyInput) -> Option<Why> {
+    let WhyInput { rays, view, judging, maps, descriptor, .. } = input;
     let camera = judging.pixel_camera(rays.origin, view);
     let pixel = pixel_index(input.pixel, judging.size)?;
     let settings = judging.truth_settings(view);

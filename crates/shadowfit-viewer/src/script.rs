@@ -15,7 +15,7 @@
 
 use std::path::Path;
 
-use anyhow::{Context, Result, anyhow, bail, ensure};
+use anyhow::{Context, Result, anyhow, ensure};
 use egui::ThemePreference;
 use shadowfit_egui::{Artefact, Chord, Command, Toggle};
 use shadowfit_params as params;
@@ -279,21 +279,19 @@ impl Words<'_> {
         Ok(number as u8)
     }
 
+    /// The one of some words that stands here; else an error that ends with `what`.
+    fn one_of<T: Copy>(self, words: &[(&str, T)], what: &str) -> Result<T> {
+        let found = words.iter().find(|(word, _)| *word == self.rest);
+        found.map(|(_, value)| *value).ok_or_else(|| anyhow!("{:?} {what}", self.rest))
+    }
+
     fn artefact(self) -> Result<Artefact> {
-        match self.rest {
-            "acne" => Ok(Artefact::Acne),
-            "aliasing" => Ok(Artefact::Aliasing),
-            "hole" => Ok(Artefact::ClippingHole),
-            other => bail!("{other:?} is not an artefact"),
-        }
+        let words = [("acne", Artefact::Acne), ("aliasing", Artefact::Aliasing), ("hole", Artefact::ClippingHole)];
+        self.one_of(&words, "is not an artefact")
     }
 
     fn toggle(self) -> Result<Toggle> {
-        match self.rest {
-            "on" => Ok(Toggle::On),
-            "off" => Ok(Toggle::Off),
-            other => bail!("{other:?} is neither on nor off"),
-        }
+        self.one_of(&[("on", Toggle::On), ("off", Toggle::Off)], "is neither on nor off")
     }
 
     fn chord(self) -> Result<Chord> {
@@ -301,12 +299,8 @@ impl Words<'_> {
     }
 
     fn awaited(self) -> Result<Awaited> {
-        match self.rest {
-            "loaded" => Ok(Awaited::Loaded),
-            "judged" => Ok(Awaited::Judged),
-            "tuned" => Ok(Awaited::Tuned),
-            other => bail!("{other:?} cannot be awaited"),
-        }
+        let words = [("loaded", Awaited::Loaded), ("judged", Awaited::Judged), ("tuned", Awaited::Tuned)];
+        self.one_of(&words, "cannot be awaited")
     }
 
     fn monkey(self) -> Result<Monkey> {
@@ -348,12 +342,9 @@ fn look(words: Words<'_>) -> Result<Command> {
 }
 
 fn theme(words: Words<'_>) -> Result<Command> {
-    match words.rest {
-        "dark" => Ok(Command::SetTheme(ThemePreference::Dark)),
-        "light" => Ok(Command::SetTheme(ThemePreference::Light)),
-        "system" => Ok(Command::SetTheme(ThemePreference::System)),
-        other => bail!("{other:?} is not a theme"),
-    }
+    let themes =
+        [("dark", ThemePreference::Dark), ("light", ThemePreference::Light), ("system", ThemePreference::System)];
+    words.one_of(&themes, "is not a theme").map(Command::SetTheme)
 }
 
 fn hold(words: Words<'_>) -> Result<Step> {

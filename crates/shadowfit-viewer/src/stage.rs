@@ -10,6 +10,7 @@ mod judge;
 mod live;
 mod need_view;
 mod sample;
+mod shot;
 mod shown;
 mod side;
 mod why;
@@ -33,9 +34,10 @@ use shadowfit_wgpu::ShadowMapError;
 use compare::Other;
 pub(crate) use live::judged_figures;
 pub(crate) use sample::SampleShow;
+use shot::Shot;
 pub use shown::Shown;
 pub(crate) use shown::{ArtefactShow, changes};
-use side::{Shot, Side};
+use side::Side;
 
 /// Why a stage could not be set up.
 #[derive(Clone, Debug, PartialEq)]

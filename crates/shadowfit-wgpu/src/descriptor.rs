@@ -143,11 +143,6 @@ impl ShadowMapDescriptor {
         if self.format.is_depth() { self.texture_format() } else { wgpu::TextureFormat::Depth32Float }
     }
 
-    /// Binding of the uniform, the texture (1) or the sampler (2).
-    pub(crate) fn binding(&self, index: u32) -> u32 {
-        self.first_binding.saturating_add(index)
-    }
-
     /// The colour that stores a depth of 0 or 1 in a colour format.
     pub(crate) fn color_of(&self, depth: f32) -> wgpu::Color {
         if self.format != MapFormat::Rgba8Packed {

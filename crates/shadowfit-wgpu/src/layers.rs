@@ -6,6 +6,7 @@
 use shadowfit::scroll::TexelRect;
 use shadowfit::{Aabb, DepthConvention};
 
+use crate::bindings;
 use crate::cache::{FramePlan, Layer, PassPlan};
 use crate::caught::caught;
 use crate::{ShadowMap, ShadowMapDescriptor, WgslOptions, caster_wgsl};
@@ -127,7 +128,8 @@ impl StaticLayers {
         let descriptor = map.descriptor();
         let format = map.depth_stencil_state().format;
         let texture = crate::map::texture(device, descriptor, format);
-        let layout = layout(device);
+        let types = [bindings::depths(wgpu::TextureViewDimension::D2, false)];
+        let layout = bindings::layout(device, "shadowfit static casters", wgpu::ShaderStages::FRAGMENT, (0, &types));
         let layer = |index: u32| {
             let view = texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::D2),
@@ -135,11 +137,8 @@ impl StaticLayers {
                 array_layer_count: Some(1),
                 ..Default::default()
             });
-            let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("shadowfit static casters"),
-                layout: &layout,
-                entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&view) }],
-            });
+            let resources = [wgpu::BindingResource::TextureView(&view)];
+            let group = bindings::group(device, "shadowfit static casters", &layout, (0, &resources));
             (view, group)
         };
         let [_, mend] = layers_wgsl(descriptor);
@@ -251,22 +250,6 @@ fn pipeline(device: &wgpu::Device, map: &ShadowMap, shape: &Shape<'_>) -> wgpu::
         }),
         multiview_mask: None,
         cache: None,
-    })
-}
-
-fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("shadowfit static casters"),
-        entries: &[wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Depth,
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-            count: None,
-        }],
     })
 }
 

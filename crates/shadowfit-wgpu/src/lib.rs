@@ -74,6 +74,7 @@
 //! - [`culling_wgsl`] with [`CullingUniform`] culls casters on the GPU. [`CasterUniform`], [`ReceiverUniform`] and
 //!   [`MapUniform`] are the uniforms of the other WGSL, for engines that bind them themselves.
 
+mod bindings;
 mod cache;
 mod caught;
 mod descriptor;

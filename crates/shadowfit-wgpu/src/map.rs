@@ -5,6 +5,7 @@ use shadowfit::scroll::{StoredRect, TexelRect};
 use shadowfit::settings::{CasterPolicy, FilterKind};
 use shadowfit::{CasterVolume, DepthConvention, FittedMap, LightFit};
 
+use crate::bindings;
 use crate::caught::caught;
 use crate::map_view::check;
 use crate::uniform::{CasterUniform, ReceiverUniform};
@@ -299,14 +300,8 @@ impl Layer {
             })
         };
         let caster_uniform = uniform_buffer(device, size_of::<CasterUniform>());
-        let caster_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("shadowfit caster"),
-            layout,
-            entries: &[wgpu::BindGroupEntry {
-                binding: descriptor.binding(0),
-                resource: caster_uniform.as_entire_binding(),
-            }],
-        });
+        let resources = [caster_uniform.as_entire_binding()];
+        let caster_group = bindings::group(device, "shadowfit caster", layout, (descriptor.first_binding, &resources));
         Self {
             depth: view(&textures.depth),
             color: textures.color.as_ref().map(view),
@@ -406,53 +401,22 @@ fn comparison_sampler(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -
     })
 }
 
-fn uniform_entry(descriptor: &ShadowMapDescriptor, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding: descriptor.binding(0),
-        visibility,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
-    }
-}
-
 fn caster_layout(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> wgpu::BindGroupLayout {
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("shadowfit caster"),
-        entries: &[uniform_entry(descriptor, wgpu::ShaderStages::VERTEX)],
-    })
+    let types = [bindings::UNIFORM];
+    bindings::layout(device, "shadowfit caster", wgpu::ShaderStages::VERTEX, (descriptor.first_binding, &types))
 }
 
 fn receiver_layout(device: &wgpu::Device, descriptor: &ShadowMapDescriptor) -> wgpu::BindGroupLayout {
-    let is_depth = descriptor.format.is_depth();
-    let texture = wgpu::BindGroupLayoutEntry {
-        binding: descriptor.binding(1),
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty: wgpu::BindingType::Texture {
-            sample_type: if is_depth {
-                wgpu::TextureSampleType::Depth
-            } else {
-                wgpu::TextureSampleType::Float { filterable: false }
-            },
-            view_dimension: wgpu::TextureViewDimension::D2Array,
-            multisampled: false,
-        },
-        count: None,
+    let view_dimension = wgpu::TextureViewDimension::D2Array;
+    let sample_type = wgpu::TextureSampleType::Float { filterable: false };
+    let colors = wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false };
+    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison);
+    let types: &[wgpu::BindingType] = if descriptor.format.is_depth() {
+        &[bindings::UNIFORM, bindings::depths(view_dimension, false), sampler]
+    } else {
+        &[bindings::UNIFORM, colors]
     };
-    let sampler = wgpu::BindGroupLayoutEntry {
-        binding: descriptor.binding(2),
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
-        count: None,
-    };
-    let entries = [uniform_entry(descriptor, wgpu::ShaderStages::FRAGMENT), texture, sampler];
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("shadowfit receiver"),
-        entries: &entries[..if is_depth { 3 } else { 2 }],
-    })
+    bindings::layout(device, "shadowfit receiver", wgpu::ShaderStages::FRAGMENT, (descriptor.first_binding, types))
 }
 
 fn receiver_group(
@@ -463,15 +427,11 @@ fn receiver_group(
     view: &wgpu::TextureView,
     sampler: &wgpu::Sampler,
 ) -> wgpu::BindGroup {
-    let entries = [
-        wgpu::BindGroupEntry { binding: descriptor.binding(0), resource: uniform.as_entire_binding() },
-        wgpu::BindGroupEntry { binding: descriptor.binding(1), resource: wgpu::BindingResource::TextureView(view) },
-        wgpu::BindGroupEntry { binding: descriptor.binding(2), resource: wgpu::BindingResource::Sampler(sampler) },
+    let resources = [
+        uniform.as_entire_binding(),
+        wgpu::BindingResource::TextureView(view),
+        wgpu::BindingResource::Sampler(sampler),
     ];
     let used = if descriptor.format.is_depth() { 3 } else { 2 };
-    device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("shadowfit receiver"),
-        layout,
-        entries: &entries[..used],
-    })
+    bindings::group(device, "shadowfit receiver", layout, (descriptor.first_binding, &resources[..used]))
 }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use shadowfit_render::passes::{
-    ENCODED_FORMAT, InstanceNumber, Maker, PROBE_FORMAT, Shape, material_layout, part_buffers,
+    ENCODED_FORMAT, InstanceNumber, Maker, PROBE_FORMAT, Shape, culled, depth, material_layout, part_buffers,
 };
 use shadowfit_render::{Gpu, bindings};
 
@@ -75,8 +75,8 @@ impl SamplePipelines {
             maker.pipeline(&Shape {
                 buffers: &buffers,
                 targets: &[Some(target.into())],
-                cull_mode,
-                depth: Some((true, wgpu::CompareFunction::GreaterEqual)),
+                primitive: culled(cull_mode),
+                depth: depth(true, wgpu::CompareFunction::GreaterEqual),
                 samples,
                 ..Shape::new(label, &layout, &module, ["vs_sample", entry])
             })
@@ -102,9 +102,9 @@ impl SamplePipelines {
     }
 
     fn caster(&self, maker: &Maker<'_>, frame: &SampleFrame, cull_mode: Option<wgpu::Face>) -> wgpu::RenderPipeline {
-        let (format, depth) = (frame.map.format, frame.map.depth);
+        let format = frame.map.format;
         let module = maker.module("sample's casters", shaders::caster());
-        let entry = match (format, depth) {
+        let entry = match (format, frame.map.depth) {
             (SampleFormat::Depth32, _) => None,
             (SampleFormat::Rgba8Packed, StoredDepth::Plain) => Some("fs_packed"),
             (SampleFormat::Rgba8Packed, StoredDepth::ReversedAtVertices) => Some("fs_packed_reversed"),
@@ -116,8 +116,8 @@ impl SamplePipelines {
             entries: ("vs_caster", entry),
             buffers: &part_buffers(InstanceNumber::FirstTriangle),
             targets: &[Some(format.texture().into())],
-            cull_mode,
-            depth: Some((true, wgpu::CompareFunction::LessEqual)),
+            primitive: culled(cull_mode),
+            depth: depth(true, wgpu::CompareFunction::LessEqual),
             ..Shape::new("sample's casters", &layout, &module, ["vs_caster", ""])
         })
     }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use shadowfit_render::bindings;
 use shadowfit_render::passes::{
-    Draw, ENCODED_FORMAT, InstanceNumber, Maker, PartKey, Shape, material_layout, part_buffers,
+    Draw, ENCODED_FORMAT, InstanceNumber, Maker, PartKey, Shape, culled, depth, material_layout, part_buffers,
 };
 
 use super::formats::{NORMAL_FORMAT, OCCLUSION_FORMAT, POSITION_FORMAT};
@@ -116,7 +116,7 @@ impl Pipelines {
             }),
             view: maker.pipeline(&Shape {
                 targets: &[Some(ENCODED_FORMAT.into())],
-                depth: Some((false, wgpu::CompareFunction::Always)),
+                depth: depth(false, wgpu::CompareFunction::Always),
                 samples,
                 ..Shape::new("occlusion view", &maker.layout(&[&layouts.shown]), &view, ["vs_screen", "fs_occlusion"])
             }),
@@ -177,8 +177,8 @@ impl Pipelines {
         maker.pipeline(&Shape {
             buffers: &part_buffers(InstanceNumber::FirstTriangle),
             targets: &targets[..if drawn == Drawn::Surface { 2 } else { 1 }],
-            cull_mode: if drawn == Drawn::Back { Some(key.front()) } else { key.cull_mode() },
-            depth: Some((!key.blended, wgpu::CompareFunction::GreaterEqual)),
+            primitive: culled(if drawn == Drawn::Back { Some(key.front()) } else { key.cull_mode() }),
+            depth: depth(!key.blended, wgpu::CompareFunction::GreaterEqual),
             samples: if drawn.is_picture() { self.samples } else { 1 },
             ..Shape::new("ambient occlusion", &layout, module, ["vs_part", entry])
         })

@@ -5,7 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use shadowfit::{DepthConvention, PerspectiveCamera};
 
-use shadowfit_render::passes::{ENCODED_FORMAT, Maker, Shape};
+use shadowfit_render::passes::{ENCODED_FORMAT, Maker, Shape, culled, depth};
 use shadowfit_render::{Gpu, bindings};
 
 use super::picture::SkyPicture;
@@ -128,8 +128,8 @@ fn pipeline(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, samples: u32)
     maker.pipeline(&Shape {
         targets: &[Some(ENCODED_FORMAT.into())],
         // The cube's sides face outward; what is seen is their inside.
-        cull_mode: Some(wgpu::Face::Front),
-        depth: Some((false, wgpu::CompareFunction::GreaterEqual)),
+        primitive: culled(Some(wgpu::Face::Front)),
+        depth: depth(false, wgpu::CompareFunction::GreaterEqual),
         samples,
         ..Shape::new("sky box", &maker.layout(&[layout]), &module, ["vs_sky_box", "fs_sky_box"])
     })

@@ -13,8 +13,8 @@ use shadowfit_params::tool::{InsetMaps, Settings};
 use shadowfit_params::{Kind, Number, PARAMETERS, Value, parameter};
 
 use crate::host::{
-    Host, INSET_MAP, control, harness, harness_with, inset_button, number, open_harness, query_control, type_into,
-    unset_box, wait_for_the_tooltip,
+    Host, INSET_MAP, control, harness, harness_with, inset_button, number, open_harness, query_control, texts,
+    type_into, unset_box, wait_for_the_tooltip,
 };
 
 /// Settings of slices under which every row of the table is shown and has an effect, but the one of the other
@@ -377,6 +377,6 @@ fn a_folded_group_says_how_many_of_its_rows_were_changed() {
     (settings.technique.bias.slope, settings.technique.bias.normal_offset) = (1.0, 1.0);
     let harness = harness(Host { settings, ..Host::default() });
     let bias = harness.get_by_role_and_label(Role::DisclosureTriangle, "Bias").rect();
-    let drawn = crate::layout::texts(&harness).into_iter().find(|(_, text)| text == "2 changed");
+    let drawn = texts(&harness).into_iter().find(|(_, text)| text == "2 changed");
     assert!(drawn.is_some_and(|(rect, _)| bias.contains_rect(rect)));
 }

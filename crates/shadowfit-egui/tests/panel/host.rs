@@ -1,6 +1,7 @@
 //! A host of the panel, and what finds and moves its widgets.
 
 use egui::accesskit::Role;
+use egui::epaint::{ClippedShape, Shape};
 use egui::{Key, Rect, Theme, ThemePreference, Vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, HarnessBuilder, Node};
@@ -193,4 +194,24 @@ pub(crate) fn press(harness: &mut Harness<'_, Host>, name: &str) {
 
 pub(crate) fn wait_for_the_tooltip<State>(harness: &mut Harness<'_, State>) {
     harness.run_steps(30);
+}
+
+/// Every text that is drawn, with its place.
+pub(crate) fn texts<State>(harness: &Harness<'_, State>) -> Vec<(Rect, String)> {
+    let mut texts = Vec::new();
+    for ClippedShape { shape, .. } in &harness.output().shapes {
+        visit_texts(shape, &mut |rect, text, _| texts.push((rect, text.to_owned())));
+    }
+    texts
+}
+
+/// The place of each text of a shape, what it says, and whether it was shortened.
+pub(crate) fn visit_texts(shape: &Shape, found: &mut impl FnMut(Rect, &str, bool)) {
+    match shape {
+        Shape::Vec(shapes) => shapes.iter().for_each(|shape| visit_texts(shape, found)),
+        Shape::Text(text) if !text.galley.text().is_empty() => {
+            found(text.visual_bounding_rect(), text.galley.text(), text.galley.elided);
+        }
+        _ => {}
+    }
 }

@@ -1,7 +1,7 @@
 //! Nothing is cut off, in any state, theme and scale.
 
 use egui::accesskit::Role;
-use egui::epaint::{ClippedShape, Shape};
+use egui::epaint::ClippedShape;
 use egui::{Rect, Theme, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -11,7 +11,7 @@ use shadowfit_params::tool::Settings;
 use shadowfit_params::{Kind, Number, PARAMETERS, Value};
 
 use crate::controls::{all_rows, everything};
-use crate::host::{HEIGHT, Host, builder, find, harness_of, open_harness, open_sections, query_control};
+use crate::host::{HEIGHT, Host, builder, find, harness_of, open_harness, open_sections, query_control, visit_texts};
 use crate::states::{busy, session, tune_done, wide_judged, widest};
 
 /// How far text may reach beyond what clips it, in points: the rounding of its place.
@@ -22,7 +22,7 @@ const SLACK: f32 = 1.0;
 pub(crate) fn assert_no_text_is_clipped<State>(harness: &Harness<'_, State>, state: &str) {
     let mut texts = 0;
     for ClippedShape { clip_rect, shape, .. } in &harness.output().shapes {
-        visit(shape, &mut |rect, text, is_shortened| {
+        visit_texts(shape, &mut |rect, text, is_shortened| {
             if !rect.intersect(*clip_rect).is_positive() {
                 return;
             }
@@ -34,26 +34,6 @@ pub(crate) fn assert_no_text_is_clipped<State>(harness: &Harness<'_, State>, sta
         });
     }
     assert!(texts > 0, "{state}: no text was found");
-}
-
-/// Every text that is drawn, with its place.
-pub(crate) fn texts<State>(harness: &Harness<'_, State>) -> Vec<(Rect, String)> {
-    let mut texts = Vec::new();
-    for ClippedShape { shape, .. } in &harness.output().shapes {
-        visit(shape, &mut |rect, text, _| texts.push((rect, text.to_owned())));
-    }
-    texts
-}
-
-/// The place of each text of a shape, what it says, and whether it was shortened.
-fn visit(shape: &Shape, found: &mut impl FnMut(Rect, &str, bool)) {
-    match shape {
-        Shape::Vec(shapes) => shapes.iter().for_each(|shape| visit(shape, found)),
-        Shape::Text(text) if !text.galley.text().is_empty() => {
-            found(text.visual_bounding_rect(), text.galley.text(), text.galley.elided);
-        }
-        _ => {}
-    }
 }
 
 fn set_widest(settings: &mut Settings) {

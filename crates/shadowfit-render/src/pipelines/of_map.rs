@@ -4,7 +4,10 @@ use std::collections::HashMap;
 
 use shadowfit_wgpu::ShadowMap;
 
-use super::{BLENDED_COLOR, COLOR, InstanceNumber, Layouts, Maker, Shape, instances, part_buffers};
+use super::Layouts;
+use crate::maker::{
+    BLENDED_COLOR, COLOR, InstanceNumber, Maker, Shape, culled, depth, instances, part_buffers, strips,
+};
 use crate::pixel::BLOCK_FORMAT;
 use crate::probe::PROBE_FORMAT;
 use crate::scene::{Part, PartKey};
@@ -129,8 +132,8 @@ impl Maker<'_> {
         self.pipeline(&Shape {
             buffers: &part_buffers(number),
             targets,
-            cull_mode: key.cull_mode(),
-            depth: Some((!key.blended, wgpu::CompareFunction::GreaterEqual)),
+            primitive: culled(key.cull_mode()),
+            depth: depth(!key.blended, wgpu::CompareFunction::GreaterEqual),
             samples,
             ..Shape::new("parts", layout, module, ["vs_scene", if key.masked { masked } else { plain }])
         })
@@ -144,26 +147,13 @@ impl Maker<'_> {
         map: &ShadowMap,
     ) -> wgpu::RenderPipeline {
         let color = [map.color_target()];
-        self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("caster"),
-            layout: Some(layout),
-            vertex: wgpu::VertexState {
-                module,
-                entry_point: Some("vs_caster"),
-                compilation_options: Default::default(),
-                buffers: &part_buffers(InstanceNumber::FirstTriangle),
-            },
+        self.pipeline(&Shape {
+            entries: ("vs_caster", entry),
+            buffers: &part_buffers(InstanceNumber::FirstTriangle),
+            targets: if color[0].is_some() { &color } else { &[] },
             primitive: map.primitive_state(),
-            depth_stencil: Some(map.depth_stencil_state()),
-            multisample: wgpu::MultisampleState::default(),
-            fragment: entry.map(|entry| wgpu::FragmentState {
-                module,
-                entry_point: Some(entry),
-                compilation_options: Default::default(),
-                targets: if color[0].is_some() { &color } else { &[] },
-            }),
-            multiview_mask: None,
-            cache: None,
+            depth: Some(map.depth_stencil_state()),
+            ..Shape::new("caster", layout, module, ["vs_caster", ""])
         })
     }
 
@@ -173,7 +163,7 @@ impl Maker<'_> {
         let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x2, 2 => Uint32, 3 => Float32x3];
         self.pipeline(&Shape {
             buffers: &[Some(instances::<InsetVertex>(&attributes))],
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            primitive: strips(),
             ..Shape::new("inset", &layout, &module, ["vs_inset", "fs_inset"])
         })
     }

@@ -227,5 +227,5 @@ fn its(at: &At<'_>, occluder: &Occluder) -> String {
 }
 
 fn named(at: &At<'_>, triangle: u32) -> Option<String> {
-    name(at.input.scene, at.input.rays, triangle)
+    name(&at.input.scene, &at.input.rays, triangle)
 }

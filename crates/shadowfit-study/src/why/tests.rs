@@ -108,14 +108,14 @@ impl Court {
             far: 300.0,
         };
         let found = why(&WhyInput {
-            scene: &scene,
-            rays: &rays,
-            view: &View { camera, direction: self.direction, is_first: true },
-            judging: &self.judging,
+            scene: Arc::new(scene),
+            rays: Arc::new(rays),
+            view: View { camera, direction: self.direction, is_first: true },
+            judging: self.judging,
             pixel: [50.5, 50.5],
-            technique: &self.technique,
-            maps: &self.maps,
-            descriptor: &self.descriptor,
+            technique: self.technique,
+            maps: self.maps.clone(),
+            descriptor: self.descriptor,
             factor: self.factor,
             stored: self.stored,
         })
@@ -498,22 +498,23 @@ fn gpu_classes_are_those_of_the_judge_on_a_picture_of_the_default_scene() {
         let (job, _) = evaluator.judge_job(&gpu, &mut scene, &view, &maps, rays.clone()).expect("a picture");
         let truth = &mut SharedTruth::default();
         let judged = evaluator.judge(&gpu, &mut scene, &view, &maps, truth).expect("judged");
+        let input = WhyInput {
+            scene: scene.shared_scene(),
+            rays,
+            view,
+            judging,
+            pixel: [0.0; 2],
+            technique,
+            maps: maps.to_vec(),
+            descriptor,
+            factor: None,
+            stored: None,
+        };
         let (mut asked, mut same) = (0u32, 0u32);
         for pixel in (0..judged.classes.len()).step_by(3) {
             let Some(seen) = job.pixels[pixel] else { continue };
             let place = [pixel % size[0] as usize, pixel / size[0] as usize].map(|place| place as f32 + 0.5);
-            let found = why(&WhyInput {
-                scene: scene.scene(),
-                rays: &rays,
-                view: &view,
-                judging: &judging,
-                pixel: place,
-                technique: &technique,
-                maps: &maps,
-                descriptor: &descriptor,
-                factor: Some(seen.factor),
-                stored: None,
-            });
+            let found = why(&WhyInput { pixel: place, factor: Some(seen.factor), ..input.clone() });
             asked += 1;
             same +=
                 u32::from(found.is_some_and(|found| found.class == judged.classes[pixel] && !found.reason.is_empty()));

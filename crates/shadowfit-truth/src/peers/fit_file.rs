@@ -63,12 +63,14 @@ pub struct FitMap {
     /// View depth where the map begins, in metres. The measures ignore it.
     #[serde(default)]
     pub split_near: f64,
-    /// View depth below which the map is the first to be read, in metres; a large number, such as 1e9,
-    /// for a map without an end.
+    /// View depth below which the map is the first to be read, in metres; [`Self::NO_END`] for a map without an end.
     pub split_far: f64,
 }
 
 impl FitMap {
+    /// View depth, in metres, from which on a map has no end: files have finite numbers only.
+    pub const NO_END: f64 = 1e9;
+
     /// Width and height, in texels.
     pub fn size(&self) -> DVec2 {
         let [width, height] = self.resolution_xy.unwrap_or([self.resolution; 2]);

@@ -24,6 +24,6 @@ pub use fit_file::{FitFile, FitFrame, FitMap};
 pub use measure::{FrameMaps, measure};
 pub use ranking::Ranking;
 pub use scenarios::{Frame, Ground, Scenarios, Scene};
-pub use table::{FitTable, GroupTally, Row, overall_markdown, readable, to_json, to_markdown};
+pub use table::{FitTable, GroupTally, Row, markdown_table, overall_markdown, readable, to_json, to_markdown};
 pub use tally::{Kept, Shimmer, Tally};
 pub use visible::{RAYS, VisiblePoint, VisiblePoints};

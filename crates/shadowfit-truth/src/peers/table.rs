@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::iter;
 
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -214,22 +215,29 @@ pub fn overall_markdown(tables: &[FitTable]) -> String {
 
 fn rows_markdown(rows: Vec<(String, Row)>) -> String {
     let Some((_, first)) = rows.first() else { return String::new() };
-    let names: Vec<String> = first.columns().into_iter().map(|(name, _)| name.to_owned()).collect();
+    let names = first.columns().into_iter().map(|(name, _)| name.to_owned());
     let cells = |row: Row| row.columns().into_iter().map(|(name, value)| cell(name, value)).collect();
-    markdown(&names, rows.into_iter().map(|(peer, row)| (peer, cells(row))))
+    of_peers(names, rows.into_iter().map(|(peer, row)| (peer, cells(row))))
 }
 
 fn groups_markdown(tables: &[FitTable]) -> String {
     let Some(first) = tables.first() else { return String::new() };
-    let names: Vec<String> = first.groups.iter().map(|(name, _)| name.clone()).collect();
+    let names = first.groups.iter().map(|(name, _)| name.clone());
     let cells = |table: &FitTable| table.groups.iter().map(|(_, row)| cell("crit res", row.critical)).collect();
-    markdown(&names, tables.iter().map(|table| (table.peer.clone(), cells(table))))
+    of_peers(names, tables.iter().map(|table| (table.peer.clone(), cells(table))))
 }
 
-fn markdown(names: &[String], rows: impl Iterator<Item = (String, Vec<String>)>) -> String {
-    let mut text = format!("| peer | {} |\n|---|{}\n", names.join(" | "), "---:|".repeat(names.len()));
-    for (peer, cells) in rows {
-        let _ = writeln!(text, "| {peer} | {} |", cells.join(" | "));
+fn of_peers(names: impl Iterator<Item = String>, rows: impl Iterator<Item = (String, Vec<String>)>) -> String {
+    let columns: Vec<String> = iter::once("peer".to_owned()).chain(names).collect();
+    markdown_table(&columns, rows.map(|(peer, cells)| [vec![peer], cells].concat()))
+}
+
+/// A table in Markdown: the names of its columns, the first of which is aligned to the left and the others to the right,
+/// and the cells of each row.
+pub fn markdown_table(columns: &[String], rows: impl Iterator<Item = Vec<String>>) -> String {
+    let mut text = format!("| {} |\n|---|{}\n", columns.join(" | "), "---:|".repeat(columns.len().saturating_sub(1)));
+    for cells in rows {
+        let _ = writeln!(text, "| {} |", cells.join(" | "));
     }
     text
 }

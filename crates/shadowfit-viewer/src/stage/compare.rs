@@ -8,7 +8,8 @@ use shadowfit_render::{Gpu, RenderTarget};
 use shadowfit_study::PreparedScene;
 
 use super::Stage;
-use super::side::{Shot, Side};
+use super::shot::Shot;
+use super::side::Side;
 
 /// Least share of the picture that either side keeps.
 const LEAST: f32 = 0.02;
@@ -90,22 +91,11 @@ impl Stage {
     /// Draws the second technique's picture into a target, from the bar on.
     pub(super) fn draw_other(&mut self, target: &RenderTarget) {
         let scissor = right_part(self.split, target.size);
-        let (camera, plays, blink) = (self.perspective(target.size), self.plays(), self.blink());
-        let Some(other) = &mut self.other else { return };
+        let Some(mut other) = self.other.take() else { return };
         let settings = Settings { technique: other.technique, ..self.settings };
-        let mut shot = Shot {
-            gpu: &self.gpu,
-            scene: &mut self.scene,
-            settings: &settings,
-            camera,
-            sight: self.home.0.camera.far,
-            plays,
-            seconds: self.seconds,
-            scissor: Some(scissor),
-            clock: self.clock,
-            blink,
-        };
-        other.side.draw(&mut shot, target);
+        let (_, shot) = self.shot(target.size);
+        other.side.draw(&mut Shot { settings: &settings, scissor: Some(scissor), ..shot }, target);
+        self.other = Some(other);
     }
 
     /// A side and its technique.

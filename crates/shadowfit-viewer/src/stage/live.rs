@@ -9,7 +9,7 @@ use shadowfit_render::{Gpu, JudgedPicture, ProbeTargets, classes_texture};
 use shadowfit_study::{BackgroundJudge, Evaluator, LiveTruth, View};
 use shadowfit_truth::PictureFigures;
 
-use super::side::Shot;
+use super::shot::Shot;
 
 /// Width of a picture that a thread judges, in pixels: enough for every artefact, and judged in a fraction of a second.
 const BACKGROUND_WIDTH: u32 = 480;

@@ -2,12 +2,13 @@
 
 use shadowfit::settings::CasterPolicy;
 use shadowfit::{DepthConvention, FittedMap, LightFit, PerspectiveCamera, Seen, Technique};
-use shadowfit_params::tool::{ErrorMarks, InsetMaps, Settings, ViewMode};
-use shadowfit_render::{Culling, Gpu, Marks, Overlay, RenderTarget, Renderer, Statistics};
-use shadowfit_study::{Evaluator, FrameOptions, Judging, PreparedScene, RayUse, View};
+use shadowfit_params::tool::{ErrorMarks, InsetMaps, ViewMode};
+use shadowfit_render::{Culling, Frame, Gpu, Marks, Overlay, RenderTarget, Renderer, Statistics};
+use shadowfit_study::{Evaluator, Judging, RayUse, View, atmosphere};
 use shadowfit_wgpu::{ShadowMapDescriptor, ShadowMapError, SunShadows, SunShadowsError};
 
 use super::live::Live;
+use super::shot::Shot;
 use super::{boards, inset, need_view};
 use crate::fitted::Fitted;
 use crate::outside;
@@ -26,40 +27,6 @@ pub(super) struct Side {
     unread: Option<PerspectiveCamera>,
     /// Why the settings cannot be shown as they are.
     pub(super) problem: Option<String>,
-}
-
-/// A picture to draw.
-pub(super) struct Shot<'a> {
-    pub(super) gpu: &'a Gpu,
-    pub(super) scene: &'a mut PreparedScene,
-    /// Settings, with the technique of the side.
-    pub(super) settings: &'a Settings,
-    pub(super) camera: PerspectiveCamera,
-    /// Distance that the haze suits, in metres.
-    pub(super) sight: f32,
-    /// Whether an animation moves the scene from frame to frame.
-    pub(super) plays: bool,
-    /// Part of the picture that is drawn: x, y, width and height in pixels; all of it if `None`.
-    pub(super) scissor: Option<[u32; 4]>,
-    /// Time of the scene's animation, in seconds.
-    pub(super) seconds: f32,
-    /// The stage's clock, in seconds.
-    pub(super) clock: f32,
-    /// Strength of blinking marks at this time, 0..=1.
-    pub(super) blink: f32,
-}
-
-impl Shot<'_> {
-    /// The view as it is fitted and judged.
-    pub(super) fn view(&self) -> View {
-        View { camera: self.camera, direction: self.settings.light.direction(), is_first: false }
-    }
-
-    /// Whether to ask for rays. Pictures that are made one by one are judged only where they show it.
-    fn wants_rays(&self, goes_on: bool) -> bool {
-        let view = &self.settings.view;
-        (view.judge && goes_on) || view.mode.is_judged() || view.marks != ErrorMarks::Off
-    }
 }
 
 impl Side {
@@ -242,7 +209,6 @@ impl Side {
         target: &RenderTarget,
     ) {
         let settings = &shot.settings.view;
-        let from_elsewhere = (view.camera != shot.camera).then_some(shot.camera);
         let shown = match settings.inset {
             InsetMaps::Off => 0..0,
             InsetMaps::One => {
@@ -260,22 +226,25 @@ impl Side {
             strength: if settings.marks == ErrorMarks::Blink { shot.blink } else { 1.0 },
             classes: [true; 4],
         });
-        let options = FrameOptions {
-            outside: from_elsewhere,
-            // Maps that are shown themselves, or read by another camera, need all their casters, not only those of this
-            // picture's shadows.
-            culling: if from_elsewhere.is_some() { Culling::WholeMap } else { Culling::Swept },
+        let atmosphere = atmosphere(shot.sight);
+        let frame = Frame {
             overlay,
             judged,
             marks,
             insets: &insets,
             shadows: settings.shadows,
-            sight: Some(shot.sight),
             maps_stay,
             scissor: shot.scissor,
-            ..FrameOptions::default()
+            ..view.frame(maps, &atmosphere)
         };
-        let drawn = self.evaluator.draw(shot.gpu, shot.scene, view, maps, &options, target);
+        // Maps that are themselves looked at from elsewhere hold all their casters, not only those of this picture's
+        // shadows.
+        let frame = if view.camera == shot.camera {
+            frame
+        } else {
+            Frame { culling: Culling::WholeMap, ..frame.seen_through(&shot.camera) }
+        };
+        let drawn = self.evaluator.draw(shot.gpu, shot.scene, &frame, target);
         self.take_statistics(drawn);
     }
 
@@ -300,18 +269,17 @@ impl Side {
         let descriptor = *self.evaluator.renderer.shadow_map().descriptor();
         let lines = outside::lines(fitted, maps, &descriptor);
         let view = View { camera: fitted.camera.unwrap_or(seen), ..shot.view() };
-        let options = FrameOptions {
-            outside: Some(camera),
+        let atmosphere = atmosphere(camera.far.max(shot.sight));
+        let frame = Frame {
             culling: Culling::WholeMap,
             overlay: Overlay::Casters,
             maps_stay,
             lines: &lines,
             shadows: shot.settings.view.shadows,
-            sight: Some(camera.far.max(shot.sight)),
             scissor: shot.scissor,
-            ..FrameOptions::default()
+            ..view.frame(maps, &atmosphere).seen_through(&camera)
         };
-        let drawn = self.evaluator.draw(shot.gpu, shot.scene, &view, maps, &options, target);
+        let drawn = self.evaluator.draw(shot.gpu, shot.scene, &frame, target);
         self.take_statistics(drawn);
     }
 
@@ -324,19 +292,18 @@ impl Side {
         let need = self.sun().fitter().seen().map(Seen::need);
         let quads = need_view::quads(&from_light, fitted, need);
         let lines = need_view::lines(fitted);
-        let options = FrameOptions {
-            outside: Some(from_light.camera),
+        let view = View { camera: fitted.camera.unwrap_or(shot.camera), ..shot.view() };
+        // No haze between the light and the scene.
+        let atmosphere = atmosphere(f32::MAX);
+        let frame = Frame {
             culling: Culling::WholeMap,
             quads: &quads,
             lines: &lines,
             shadows: shot.settings.view.shadows,
-            // No haze between the light and the scene.
-            sight: Some(f32::MAX),
             scissor: shot.scissor,
-            ..FrameOptions::default()
+            ..view.frame(maps, &atmosphere).seen_through(&from_light.camera)
         };
-        let view = View { camera: fitted.camera.unwrap_or(shot.camera), ..shot.view() };
-        let drawn = self.evaluator.draw(shot.gpu, shot.scene, &view, maps, &options, target);
+        let drawn = self.evaluator.draw(shot.gpu, shot.scene, &frame, target);
         self.take_statistics(drawn);
     }
 
@@ -352,15 +319,15 @@ impl Side {
         let boards = boards::Boards::new(maps, &bounds, shot.settings.view.inset_depths, target.size);
         // The updates of the frame before, unless the maps stay: those of this frame are known only after it is drawn.
         let quads = boards.quads(&self.sun().updates());
-        let options = FrameOptions {
+        let atmosphere = atmosphere(shot.sight);
+        let frame = Frame {
             insets: &boards.insets,
             quads: &quads,
             maps_stay,
-            sight: Some(shot.sight),
             scissor: shot.scissor,
-            ..FrameOptions::default()
+            ..view.frame(maps, &atmosphere)
         };
-        let drawn = self.evaluator.draw(shot.gpu, shot.scene, view, maps, &options, target);
+        let drawn = self.evaluator.draw(shot.gpu, shot.scene, &frame, target);
         self.take_statistics(drawn);
     }
 }

@@ -1,17 +1,13 @@
 //! Why the pixel under the pointer is as it is: asked when the pointer rests, answered by a thread, and shown until it
 //! moves on.
 
-use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use glam::DVec3;
-use shadowfit::{FittedMap, Technique};
 use shadowfit_egui::{PixelClass, WhyCard};
 use shadowfit_render::{PixelQuery, PixelRead, TexelBlock};
-use shadowfit_scene::Scene;
-use shadowfit_study::{Judging, SceneRays, StoredTexels, View, Why, WhyInput, why};
+use shadowfit_study::{Judging, StoredTexels, View, Why, WhyInput, why};
 use shadowfit_truth::Class;
-use shadowfit_wgpu::ShadowMapDescriptor;
 
 use super::Stage;
 use super::live::Key;
@@ -21,45 +17,13 @@ const REST: f32 = 0.25;
 /// How far a resting pointer may move, as a share of the picture.
 const SLACK: f32 = 0.001;
 
-/// A question about a pixel.
-#[derive(Clone, Debug)]
-struct Question {
-    scene: Arc<Scene>,
-    rays: Arc<SceneRays>,
-    view: View,
-    judging: Judging,
-    pixel: [f32; 2],
-    technique: Technique,
-    maps: Vec<FittedMap>,
-    descriptor: ShadowMapDescriptor,
-    factor: Option<f32>,
-    stored: Option<StoredTexels>,
-}
-
-impl Question {
-    fn answer(&self) -> Option<Why> {
-        why(&WhyInput {
-            scene: &self.scene,
-            rays: &self.rays,
-            view: &self.view,
-            judging: &self.judging,
-            pixel: self.pixel,
-            technique: &self.technique,
-            maps: &self.maps,
-            descriptor: &self.descriptor,
-            factor: self.factor,
-            stored: self.stored,
-        })
-    }
-}
-
-/// The steps to an answer.
+/// How far an answer has come.
 #[derive(Debug)]
 enum Step {
     /// A thread finds which texel is read.
-    Finding(Question, Receiver<Option<Why>>),
+    Finding(WhyInput, Receiver<Option<Why>>),
     /// The GPU reads the pixel and the texels around that one.
-    Reading(Question, PixelRead, [u32; 2]),
+    Reading(WhyInput, PixelRead, [u32; 2]),
     /// A thread finds the reason.
     Answering(Receiver<Option<Why>>),
     Done,
@@ -126,11 +90,11 @@ impl Stage {
         Some(Key { camera, technique, direction, seconds: self.seconds })
     }
 
-    fn question(&self, at: [f32; 2], size: [u32; 2]) -> Option<Question> {
+    fn question(&self, at: [f32; 2], size: [u32; 2]) -> Option<WhyInput> {
         let in_other = self.is_comparing() && at[0] > self.split;
         let (side, technique) = self.side_at(in_other)?;
         let fitted = side.fitted.as_ref()?;
-        Some(Question {
+        Some(WhyInput {
             scene: self.scene.shared_scene(),
             rays: self.scene.ready_rays()?,
             view: self.view(size),
@@ -178,8 +142,8 @@ impl Stage {
         }
     }
 
-    /// Starts to read back the pixel, and the map around the texel that it reads.
-    fn read_pixel(&mut self, question: Question, texel: Option<(usize, [f32; 2])>) -> Step {
+    /// Has the GPU read the pixel, and the map around the texel that it reads.
+    fn read_pixel(&mut self, question: WhyInput, texel: Option<(usize, [f32; 2])>) -> Step {
         let Some((map, texel)) = texel else { return Step::Done };
         let texel = texel.map(|at| at.max(0.0) as u32);
         let size = question.judging.size;
@@ -217,11 +181,11 @@ fn stored(depths: &[f32], texel: [u32; 2]) -> Option<StoredTexels> {
 }
 
 /// Answers on a thread.
-fn think(question: Question) -> Receiver<Option<Why>> {
+fn think(question: WhyInput) -> Receiver<Option<Why>> {
     let (sender, answer) = channel();
     let work = move || {
-        // The receiver is gone once the pointer has moved on.
-        let _ = sender.send(question.answer());
+        // Nobody waits once the pointer has moved on.
+        let _ = sender.send(why(&question));
     };
     // Without a thread the channel is closed, and there is no answer.
     let _ = std::thread::Builder::new().name("why".to_owned()).spawn(work);

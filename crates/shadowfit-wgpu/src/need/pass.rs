@@ -6,6 +6,7 @@ use shadowfit::seen::{CLASSES, COUNTS, DEPTHS, Seen};
 use super::error::{NeedPassError, Unsupported};
 use super::read_back::ReadBack;
 use super::view::{NeedUniform, NeedView};
+use crate::bindings;
 
 /// Pictures that may be on their way back at once: graphics APIs let the CPU be up to three frames ahead, and one more
 /// is being recorded.
@@ -99,7 +100,9 @@ impl NeedPass {
         let Some(frame) = self.frames.iter_mut().find(|frame| frame.read_back.is_free()) else { return Ok(false) };
         let group = caught(&self.device, || {
             self.queue.write_buffer(&frame.uniform, 0, bytemuck::bytes_of(&uniform));
-            group(&self.device, &self.layout, &frame.uniform, depth, &self.counts)
+            let depth = wgpu::BindingResource::TextureView(depth);
+            let resources = [frame.uniform.as_entire_binding(), depth, self.counts.as_entire_binding()];
+            bindings::group(&self.device, "shadowfit need", &self.layout, (0, &resources))
         })?;
         encoder.clear_buffer(&self.counts, 0, None);
         {
@@ -222,30 +225,10 @@ fn caught<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, NeedP
 }
 
 fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
-    let buffer = |binding: u32, ty: wgpu::BufferBindingType| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
-        count: None,
-    };
-    let texture = wgpu::BindGroupLayoutEntry {
-        binding: 1,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Depth,
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled,
-        },
-        count: None,
-    };
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("shadowfit need"),
-        entries: &[
-            buffer(0, wgpu::BufferBindingType::Uniform),
-            texture,
-            buffer(2, wgpu::BufferBindingType::Storage { read_only: false }),
-        ],
-    })
+    let depths = bindings::depths(wgpu::TextureViewDimension::D2, multisampled);
+    let counts = bindings::buffer(wgpu::BufferBindingType::Storage { read_only: false });
+    let types = [bindings::UNIFORM, depths, counts];
+    bindings::layout(device, "shadowfit need", wgpu::ShaderStages::COMPUTE, (0, &types))
 }
 
 fn pipeline(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, samples: u32) -> wgpu::ComputePipeline {
@@ -265,25 +248,6 @@ fn pipeline(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, samples: u32)
         entry_point: Some("count_need"),
         compilation_options: Default::default(),
         cache: None,
-    })
-}
-
-fn group(
-    device: &wgpu::Device,
-    layout: &wgpu::BindGroupLayout,
-    uniform: &wgpu::Buffer,
-    depth: &wgpu::TextureView,
-    counts: &wgpu::Buffer,
-) -> wgpu::BindGroup {
-    let entry = |binding: u32, resource| wgpu::BindGroupEntry { binding, resource };
-    device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("shadowfit need"),
-        layout,
-        entries: &[
-            entry(0, uniform.as_entire_binding()),
-            entry(1, wgpu::BindingResource::TextureView(depth)),
-            entry(2, counts.as_entire_binding()),
-        ],
     })
 }
 

@@ -1,14 +1,38 @@
-//! Which part of the views reads a map by coverage: what no finer map provably holds.
+//! What a map provably holds of the views, and so which part of them reads a map by coverage: what no finer one holds.
 
-use super::readers::{Reader, holds_slice};
+use glam::{DVec2, DVec3, DVec4, Vec3};
+
 use crate::base::numbers::VIEW_DEPTH_ROUNDING;
+use crate::fits::LightFit;
 use crate::map::FittedMap;
 use crate::selection::{MapOrder, MapReading};
 use crate::technique::settings::{MAX_MAPS, MapChoice};
 use crate::view::ViewFrustum;
 
+/// Greatest rounding error of texture coordinates in a shader, as a share of the terms that they are summed from:
+/// eight roundings of 2⁻²⁴, two of the position, one each of the matrix and the product, and four of the sum.
+const UV_ROUNDING: f64 = 8.0 / 16_777_216.0;
+
 /// Halvings of the views' depths in the search for what a finer map holds: to a four thousandth of them.
 const HALVINGS: u32 = 12;
+
+/// From where maps are read: what the positions and view depths in a shader are counted from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reader {
+    /// World position that the shader's positions are relative to, in metres.
+    pub origin: DVec3,
+    /// World position of the eye that view depths are counted from, in metres.
+    pub eye: DVec3,
+    /// Unit direction in which that eye looks, world axes.
+    pub forward: Vec3,
+}
+
+impl Reader {
+    /// Positions and view depths relative to an eye that looks along `forward` (unit, world axes).
+    pub const fn from_eye(eye: DVec3, forward: Vec3) -> Self {
+        Self { origin: eye, eye, forward }
+    }
+}
 
 /// For each map the view depths, in metres, from which points of the views read it, in the order of `maps`; `None`
 /// where no point does.
@@ -50,4 +74,34 @@ fn held_to(map: &FittedMap, reader: &Reader, views: &[ViewFrustum], free: f64, f
     }
     // Where it holds nothing, no depth has been found.
     if held > near { held } else { from }
+}
+
+/// Whether a map, relative to the reader's origin, provably holds everything that the views have between two view depths,
+/// with so many texels around it.
+pub(super) fn holds_slice(
+    fit: &LightFit,
+    reader: &Reader,
+    views: &[ViewFrustum],
+    [near, far]: [f32; 2],
+    free: f64,
+) -> bool {
+    let holds_part = |frustum: &ViewFrustum| {
+        let offset = frustum.origin - reader.origin;
+        // A view without a part between these depths has no point to be held.
+        frustum
+            .slice(near, far)
+            .map_or(true, |part| part.corners.iter().all(|corner| covers(fit, corner.as_dvec3() + offset, free)))
+    };
+    views.iter().all(holds_part)
+}
+
+/// Whether a map holds a point, relative to its origin, with so many texels around it, for any rounding in a shader.
+/// The map is convex, so that with the corners of a slice it holds the slice.
+fn covers(fit: &LightFit, point: DVec3, free: f64) -> bool {
+    let m = fit.uv_from_world.as_dmat4();
+    let terms = [m.x_axis * point.x, m.y_axis * point.y, m.z_axis * point.z, m.w_axis].map(DVec4::truncate);
+    let uv: DVec3 = terms.iter().sum();
+    let rounding = terms.iter().map(|term| term.abs()).sum::<DVec3>() * UV_ROUNDING;
+    let border = rounding + (DVec2::splat(free) / fit.resolution.as_dvec2()).extend(0.0);
+    uv.cmpge(border).all() && uv.cmple(DVec3::ONE - border).all()
 }

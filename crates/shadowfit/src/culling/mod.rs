@@ -13,8 +13,9 @@ mod sweep;
 mod volume;
 
 pub use batch::cull;
+pub use coverage::Reader;
 pub use planes::CasterPlanes;
-pub use readers::{Reader, caster_volumes};
+pub use readers::caster_volumes;
 pub use shapes::{Bounds, OrientedBox, Sphere};
 pub use sweep::Sweep;
 pub use volume::CasterVolume;

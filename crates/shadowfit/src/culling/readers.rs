@@ -4,9 +4,9 @@
 //! in the part of the view that reads it, swept toward the light. Which part that is follows from the order in which
 //! points look for a map.
 
-use glam::{DVec2, DVec3, DVec4, Vec3};
+use glam::Vec3;
 
-use super::coverage;
+use super::coverage::{self, Reader, holds_slice};
 use super::sweep::Sweep;
 use super::volume::CasterVolume;
 use crate::base::numbers::VIEW_DEPTH_ROUNDING;
@@ -18,28 +18,6 @@ use crate::selection::MapReading;
 use crate::technique::Technique;
 use crate::technique::settings::{CasterPolicy, MAX_MAPS, MapChoice};
 use crate::view::ViewFrustum;
-
-/// From where maps are read: what the positions and view depths in a shader are counted from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reader {
-    /// World position that the shader's positions are relative to, in metres.
-    pub origin: DVec3,
-    /// World position of the eye that view depths are counted from, in metres.
-    pub eye: DVec3,
-    /// Unit direction in which that eye looks, world axes.
-    pub forward: Vec3,
-}
-
-impl Reader {
-    /// Positions and view depths relative to an eye that looks along `forward` (unit, world axes).
-    pub const fn from_eye(eye: DVec3, forward: Vec3) -> Self {
-        Self { origin: eye, eye, forward }
-    }
-}
-
-/// Greatest rounding error of texture coordinates in a shader, as a share of the terms that they are summed from:
-/// eight roundings of 2⁻²⁴, two of the position, one each of the matrix and the product, and four of the sum.
-const UV_ROUNDING: f64 = 8.0 / 16_777_216.0;
 
 impl FittedMaps {
     /// The casters of each map: those that can cast a shadow, through this map, on what `views` see, relative to the
@@ -215,36 +193,6 @@ impl Readers<'_> {
     }
 }
 
-/// Whether a map, relative to the reader's origin, provably holds everything that the views have between two view depths,
-/// with so many texels around it.
-pub(super) fn holds_slice(
-    fit: &LightFit,
-    reader: &Reader,
-    views: &[ViewFrustum],
-    [near, far]: [f32; 2],
-    free: f64,
-) -> bool {
-    let holds_part = |frustum: &ViewFrustum| {
-        let offset = frustum.origin - reader.origin;
-        // A view without a part between these depths has no point to be held.
-        frustum
-            .slice(near, far)
-            .map_or(true, |part| part.corners.iter().all(|corner| covers(fit, corner.as_dvec3() + offset, free)))
-    };
-    views.iter().all(holds_part)
-}
-
-/// Whether a map holds a point, relative to its origin, with so many texels around it, for any rounding in a shader.
-/// The map is convex, so that with the corners of a slice it holds the slice.
-fn covers(fit: &LightFit, point: DVec3, free: f64) -> bool {
-    let m = fit.uv_from_world.as_dmat4();
-    let terms = [m.x_axis * point.x, m.y_axis * point.y, m.z_axis * point.z, m.w_axis].map(DVec4::truncate);
-    let uv: DVec3 = terms.iter().sum();
-    let rounding = terms.iter().map(|term| term.abs()).sum::<DVec3>() * UV_ROUNDING;
-    let border = rounding + (DVec2::splat(free) / fit.resolution.as_dvec2()).extend(0.0);
-    uv.cmpge(border).all() && uv.cmple(DVec3::ONE - border).all()
-}
-
 /// How far the view depth of a point in a frustum may be from that of the shader, which counts it from another eye or
 /// along another direction, in metres.
 fn depth_mismatch(reader: &Reader, frustum: &ViewFrustum) -> f64 {
@@ -285,6 +233,8 @@ fn lowered(mut volume: CasterVolume, fit: &LightFit, depth: f64) -> CasterVolume
 
 #[cfg(all(test, feature = "alloc"))]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
     use crate::settings::FitSettings;
     use crate::{Bias, PerspectiveCamera, fit};

@@ -10,6 +10,7 @@ pub mod sphere;
 mod aabb;
 pub(crate) mod covered;
 mod focused;
+mod form;
 mod frame;
 mod input;
 pub(crate) mod light_hull;
@@ -21,10 +22,11 @@ mod rule;
 pub(crate) mod volume;
 mod xna;
 
+pub(crate) use form::{Covers, Form};
 pub(crate) use frame::{Frame, Place, PlacedMap, PlacedMaps};
 pub use input::{FitInput, Workspace};
 pub use light_fit::LightFit;
-pub(crate) use rule::{Covers, Depth, FitRule, Form, check_least_texel, default_border};
+pub(crate) use rule::{Depth, FitRule, check_least_texel, default_border};
 pub use volume::Constraint;
 pub(crate) use volume::Volume;
 

@@ -19,7 +19,6 @@
 
 use glam::{IVec2, UVec2};
 
-use super::scroll::Scroll;
 use super::texel_rect::TexelRect;
 
 /// A part of a map where it is stored in one piece.
@@ -36,21 +35,6 @@ impl StoredRect {
     /// a map's size outside the texture.
     pub fn viewport(&self) -> IVec2 {
         self.stored.min.as_ivec2() - self.window.min.as_ivec2()
-    }
-}
-
-impl Scroll {
-    /// The wrap of the map now, from that of the map before: window texel t is stored at
-    /// (t + wrap) modulo `size`, the map's width and height, in texels. Zero for a map that must be drawn
-    /// as a whole.
-    pub fn wrap(&self, before: UVec2, size: UVec2) -> UVec2 {
-        if self.is_redraw() || size.min_element() == 0 {
-            return UVec2::ZERO;
-        }
-        let moved = |before: u32, shift: i32, size: u32| {
-            (i64::from(before) + i64::from(shift)).rem_euclid(i64::from(size)) as u32
-        };
-        UVec2::new(moved(before.x, self.shift.x, size.x), moved(before.y, self.shift.y, size.y))
     }
 }
 

@@ -2,7 +2,6 @@
 
 use glam::{DVec3, Vec2};
 
-use super::placement::Rect;
 use crate::base::numbers::{greater, lesser};
 use crate::demand::need::{LEVELS, NeedGrid, NeedSpace, Plane, SIDE};
 
@@ -15,6 +14,14 @@ pub(super) type PerCell = [f32; MAX_CELLS];
 /// Share of the visible points with the finest needs, whose needs count as no finer than those of the rest:
 /// surfaces seen at grazing angles ask for arbitrarily fine texels.
 const FINEST: f32 = 0.02;
+
+/// A rectangle of the plane: its least corner and its size, in metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Rect {
+    pub(super) min: Vec2,
+    pub(super) size: Vec2,
+}
 
 /// The cells of a frame: squares of the plane, and what the points in them ask for. They lie in columns, so that four
 /// at a time are computed with.

@@ -5,7 +5,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::placement::Rect;
+use super::cells::Rect;
 use crate::base::numbers;
 use crate::demand::need::Plane;
 use crate::fits::FitRule;

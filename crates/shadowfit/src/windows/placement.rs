@@ -5,7 +5,7 @@
 
 use glam::Vec2;
 
-use super::cells::{Cells, PerCell};
+use super::cells::{Cells, PerCell, Rect};
 use crate::base::numbers::{greater, lesser};
 
 /// Squares of the raster in a window's side: four times four.
@@ -26,14 +26,6 @@ const GROUP: usize = 4;
 
 /// Length of a row, with room for what a cell in the last square touches.
 const ROW: usize = RASTER + TOUCHED;
-
-/// A rectangle of the plane: its least corner and its size, in metres.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Rect {
-    pub(super) min: Vec2,
-    pub(super) size: Vec2,
-}
 
 /// Costs by squares, row by row.
 type Raster = [[f32; ROW]; RASTER];

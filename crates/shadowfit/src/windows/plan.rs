@@ -7,9 +7,9 @@ use core::ops::Range;
 
 use glam::Vec2;
 
-use super::cells::{Cells, MAX_CELLS, PerCell};
+use super::cells::{Cells, MAX_CELLS, PerCell, Rect};
 use super::cost_of;
-use super::placement::{self, Rect};
+use super::placement;
 use crate::light::grid;
 use crate::technique::settings::MAX_MAPS;
 

@@ -7,9 +7,8 @@
 
 use glam::DVec3;
 
-use super::cells::Cells;
+use super::cells::{Cells, Rect};
 use super::lattice::{Lattice, Window};
-use super::placement::Rect;
 use super::plan::{Plan, Planner, SERVES};
 use crate::demand::need::Plane;
 use crate::technique::settings::MAX_MAPS;

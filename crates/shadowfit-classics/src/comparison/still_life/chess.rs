@@ -6,8 +6,11 @@ use shadowfit_scene::parts::{Builder, CRISP, Solid, block, ellipsoid, lathe, rou
 
 use super::SUNK;
 use super::knight;
-use super::palette::{Paint, SQUARE};
+use super::palette::Paint;
+use super::textures::SQUARES_METRES;
 
+/// Side of a square, in metres.
+const SQUARE: f32 = SQUARES_METRES / 2.0;
 /// Height of the squares above the floor, in metres.
 const TOP: f32 = 0.12;
 /// Half of the width of all squares, in metres.

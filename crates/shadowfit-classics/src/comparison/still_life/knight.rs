@@ -3,7 +3,7 @@
 use glam::{Affine3A, Quat, Vec3};
 use shadowfit_scene::parts::{Solid, Stop, capsule, ellipsoid, lathe, smooth, sweep};
 
-/// The whole piece on a foot, which is a profile of radii and heights, in metres.
+/// The whole piece. `foot` is the profile of its turned foot: radii and heights, upwards.
 pub(super) fn solid(foot: &[(f32, f32)]) -> Solid {
     let stand = lathe(&[foot, &[(0.15, 0.20), (0.155, 0.215), (0.14, 0.235)]].concat(), 36);
     stand.with(neck_and_head()).with(mane()).with(sides().and_mirrored())

@@ -3,10 +3,7 @@
 use shadowfit_scene::parts::{matt, tiled};
 use shadowfit_scene::{Material, Wrap};
 
-use super::textures::{FLOOR_METRES, PLASTER_METRES, Picture, STONE_METRES};
-
-/// Side of a square of the chess board, in metres.
-pub(super) const SQUARE: f32 = 0.5;
+use super::textures::{FLOOR_METRES, PLASTER_METRES, Picture, SQUARES_METRES, STONE_METRES};
 
 /// A material, by its index in the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +43,7 @@ pub(super) fn materials() -> Vec<Material> {
         matt("terracotta", [0.46, 0.17, 0.075], 0.7),
         matt("brass", [0.60, 0.38, 0.11], 0.4),
         matt("ball", [0.055, 0.20, 0.25], 0.3),
-        tiled(matt("squares", white, 0.5), image(Picture::Squares), [SQUARE * 2.0; 2]),
+        tiled(matt("squares", white, 0.5), image(Picture::Squares), [SQUARES_METRES; 2]),
         matt("frame", [0.115, 0.045, 0.02], 0.5),
         matt("ivory", [0.80, 0.70, 0.50], 0.4),
         matt("ebony", [0.085, 0.045, 0.028], 0.35),

@@ -19,6 +19,8 @@ pub(super) const FLOOR_METRES: f32 = 4.0;
 pub(super) const PLASTER_METRES: f32 = 3.3;
 /// Metres that the image of the stone spans.
 pub(super) const STONE_METRES: f32 = 1.6;
+/// Metres that the image of the squares spans, which shows two by two.
+pub(super) const SQUARES_METRES: f32 = 1.0;
 /// Boards across the floor's image.
 const BOARDS: f32 = 10.0;
 /// Pixels along a side of the floor's image.

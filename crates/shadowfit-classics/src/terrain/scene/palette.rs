@@ -3,7 +3,7 @@
 use shadowfit_scene::Material;
 use shadowfit_scene::parts::{matt, tiled};
 
-/// Distance after which the texture repeats, in the terrain's units.
+/// Distance after which the texture of the land repeats, in the terrain's units.
 const TILE: f32 = 50.0;
 
 /// A material, by its index in the scene.

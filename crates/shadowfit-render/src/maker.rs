@@ -15,7 +15,7 @@ pub struct Maker<'a> {
 }
 
 /// What differs between the pipelines.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Shape<'a> {
     /// Name for debuggers.
     pub label: &'a str,
@@ -29,12 +29,10 @@ pub struct Shape<'a> {
     pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     /// Colour targets.
     pub targets: &'a [Option<wgpu::ColorTargetState>],
-    /// Kind of primitives.
-    pub topology: wgpu::PrimitiveTopology,
-    /// Faces that are left out.
-    pub cull_mode: Option<wgpu::Face>,
+    /// Kind of primitives, and the faces that are left out.
+    pub primitive: wgpu::PrimitiveState,
     /// Whether depth is written, and how it is compared.
-    pub depth: Option<(bool, wgpu::CompareFunction)>,
+    pub depth: Option<wgpu::DepthStencilState>,
     /// Samples per pixel.
     pub samples: u32,
 }
@@ -49,6 +47,27 @@ pub(crate) const BLENDED_COLOR: [Option<wgpu::ColorTargetState>; 1] = [Some(wgpu
     blend: Some(wgpu::BlendState::ALPHA_BLENDING),
     write_mask: wgpu::ColorWrites::ALL,
 })];
+
+/// Strips of triangles.
+pub(crate) fn strips() -> wgpu::PrimitiveState {
+    wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() }
+}
+
+/// Triangles without those of these faces.
+pub fn culled(cull_mode: Option<wgpu::Face>) -> wgpu::PrimitiveState {
+    wgpu::PrimitiveState { cull_mode, ..Default::default() }
+}
+
+/// The camera's depth, written or not, and how it is compared.
+pub fn depth(write: bool, compare: wgpu::CompareFunction) -> Option<wgpu::DepthStencilState> {
+    Some(wgpu::DepthStencilState {
+        format: DEPTH_FORMAT,
+        depth_write_enabled: Some(write),
+        depth_compare: Some(compare),
+        stencil: Default::default(),
+        bias: Default::default(),
+    })
+}
 
 impl<'a> Shape<'a> {
     /// Triangles of one sample without vertices, depth or blending: what fills the picture.
@@ -65,8 +84,7 @@ impl<'a> Shape<'a> {
             entries: (entries[0], Some(entries[1])),
             buffers: &[],
             targets: &COLOR,
-            topology: wgpu::PrimitiveTopology::TriangleList,
-            cull_mode: None,
+            primitive: wgpu::PrimitiveState::default(),
             depth: None,
             samples: 1,
         }
@@ -103,18 +121,8 @@ impl Maker<'_> {
                 compilation_options: Default::default(),
                 buffers: shape.buffers,
             },
-            primitive: wgpu::PrimitiveState {
-                topology: shape.topology,
-                cull_mode: shape.cull_mode,
-                ..Default::default()
-            },
-            depth_stencil: shape.depth.map(|(write, compare)| wgpu::DepthStencilState {
-                format: DEPTH_FORMAT,
-                depth_write_enabled: Some(write),
-                depth_compare: Some(compare),
-                stencil: Default::default(),
-                bias: Default::default(),
-            }),
+            primitive: shape.primitive,
+            depth_stencil: shape.depth.clone(),
             multisample: wgpu::MultisampleState { count: shape.samples, ..Default::default() },
             fragment: shape.entries.1.map(|entry| wgpu::FragmentState {
                 module: shape.module,

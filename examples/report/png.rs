@@ -1,0 +1,15 @@
+//! Pictures as PNG.
+
+use std::io::Cursor;
+
+use anyhow::Result;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{DynamicImage, RgbaImage};
+
+/// A picture as PNG, as small as the format allows: reports are kept and sent around.
+pub(crate) fn png(picture: &RgbaImage) -> Result<Vec<u8>> {
+    let mut bytes = Cursor::new(Vec::new());
+    let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::Adaptive);
+    DynamicImage::ImageRgba8(picture.clone()).to_rgb8().write_with_encoder(encoder)?;
+    Ok(bytes.into_inner())
+}
