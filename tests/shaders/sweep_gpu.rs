@@ -1,7 +1,6 @@
 //! Casters that are left out because their shadows are not seen: the shadow factor of every pixel stays the same to the
 //! last bit, and fewer casters are drawn.
 
-use shadowfit::bias::XNA_DEPTH_BIAS;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::settings::{
     BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, MapChoice, MapFormat, SplitScheme, Stabilise,
@@ -48,7 +47,7 @@ fn automatic(fit: &LightFit, filter: FilterKind) -> Bias {
 }
 
 fn away_from_the_light(_: &LightFit, _: FilterKind) -> Bias {
-    Bias::fixed(-XNA_DEPTH_BIAS).expect("a bias")
+    Bias::fixed(-0.001).expect("a bias")
 }
 
 fn cases() -> Vec<Case> {

@@ -1,5 +1,5 @@
 //! The formulas of the comparison sampler's sample in Rust, as `test.wgsl` and `shade.wgsl` have them; a test compares the
-//! two. Its bias is the core's [`acos_bias`](shadowfit::bias::acos_bias).
+//! two.
 //!
 //! Colours are display values, depths those after the division by w; `n_l` and `r_v` are cosines between unit vectors,
 //! `share` is that of the light, 0 in shadow to 1.
@@ -11,6 +11,25 @@ const GLOSS: i32 = 3;
 /// Diffuse and specular light of [`colour`].
 const DIFFUSE: Vec3 = Vec3::new(0.5, 0.5, 0.4);
 const SPECULAR: Vec3 = Vec3::new(0.2, 0.2, 0.3);
+
+/// Epsilon of [`acos_bias`] for one comparison, in units of the stored depth times radians.
+pub const EPSILON: f32 = 0.001;
+/// The same with the hardware's linear filtering.
+pub const LINEAR_EPSILON: f32 = 0.0005;
+/// Greatest value of [`acos_bias`], in units of the stored depth.
+pub const ACOS_BIAS_LIMIT: f32 = 0.1;
+
+/// `epsilon / acos(saturate(N·L))` within 0..=[`ACOS_BIAS_LIMIT`], in units of the stored depth.
+///
+/// A formula from the early days of comparison samplers, kept to show its flaw: it is meant to approximate
+/// `epsilon · tan(acos N·L)`, but it is *largest* head-on (the limit at 0°, 0.01 at 0.1 rad) and *least* at grazing light
+/// (0.00064 at 90°), where acne is worst. Its source adds it to the depth of a map that holds back faces; with front faces
+/// it has to be subtracted. [`Bias::slope_depth`](shadowfit::Bias::slope_depth) is the correct form.
+pub fn acos_bias(epsilon: f32, n_l: f32) -> f32 {
+    // Head-on the angle is 0; any epsilon but 0 is at the limit there.
+    (epsilon / n_l.clamp(0.0, 1.0).acos().max(f32::MIN_POSITIVE)).min(ACOS_BIAS_LIMIT)
+}
+
 /// Whether a point is in the light's image; outside everything is lit.
 pub fn is_inside(uv: Vec2, depth: f32) -> bool {
     uv.cmpge(Vec2::ZERO).all() && uv.cmple(Vec2::ONE).all() && depth > 0.0
@@ -35,6 +54,19 @@ mod tests {
     fn outside_and_before_the_image_is_not_inside() {
         assert!(is_inside(Vec2::new(0.0, 1.0), 0.1));
         assert!(!is_inside(Vec2::new(0.5, 0.5), 0.0) && !is_inside(Vec2::new(1.01, 0.5), 0.5));
+    }
+
+    #[test]
+    fn epsilon_over_acos_is_largest_head_on_and_least_at_grazing_light() {
+        let at = |radians: f32| acos_bias(EPSILON, radians.cos());
+        assert_eq!(at(0.0), ACOS_BIAS_LIMIT);
+        assert!((at(0.1) / 0.01 - 1.0).abs() < 1e-4, "{}", at(0.1));
+        assert!((at(std::f32::consts::FRAC_PI_2) - 0.000_637).abs() < 1e-6);
+        assert!((0..90).map(|i| (i as f32).to_radians()).all(|a| at(a) >= at(a + 0.01)), "it falls with the angle");
+        // Saturated on both sides.
+        assert_eq!(acos_bias(0.001, 2.0), ACOS_BIAS_LIMIT);
+        assert_eq!(acos_bias(0.001, -0.7), acos_bias(0.001, 0.0));
+        assert_eq!(acos_bias(0.0, 1.0), 0.0);
     }
 
     #[test]

@@ -7,8 +7,6 @@ pub mod formula;
 mod still_life;
 
 use glam::{DVec3, Vec3};
-use shadowfit::bias::acos_epsilon;
-use shadowfit::settings::FilterKind;
 use shadowfit::{FitError, PerspectiveCamera, SpotLight};
 
 use crate::lamp::{self, Lamp};
@@ -162,7 +160,7 @@ const VARIANTS: [SampleVariant; 7] = [
 /// Its test, with the epsilon of its filter. The source moves the compared depth away from the light, for maps of back
 /// faces; for front faces it goes toward the light.
 fn test(is_linear: bool, toward_light: bool) -> ShadowTest {
-    let epsilon = acos_epsilon(if is_linear { FilterKind::Hardware2x2 } else { FilterKind::Point });
+    let epsilon = if is_linear { formula::LINEAR_EPSILON } else { formula::EPSILON };
     let sign = if toward_light { -1.0 } else { 1.0 };
     ShadowTest {
         reads: MapRead::Compared,

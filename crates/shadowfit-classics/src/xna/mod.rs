@@ -6,7 +6,6 @@ pub mod formula;
 mod scene;
 
 use glam::{DVec3, UVec2, Vec3};
-use shadowfit::bias::XNA_DEPTH_BIAS;
 use shadowfit::settings::{FitKind, FitSettings};
 use shadowfit::{FitError, PerspectiveCamera};
 
@@ -16,6 +15,9 @@ use crate::mapped::{
 };
 use crate::options::{OptionKind, SampleOption, SampleValues};
 use crate::sample::{Sample, SampleControls, SampleDrawing, SampleVariant, SampleView, modern};
+
+/// Depth bias of the source, in units of the stored depth: a point is in shadow when `stored < depth - 0.001`.
+const DEPTH_BIAS: f32 = 0.001;
 
 /// Direction toward the light before it is normalised.
 const TO_LIGHT: Vec3 = Vec3::new(-1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0);
@@ -86,7 +88,7 @@ const OPTIONS: [SampleOption; 8] = [
         id: "bias",
         label: "Bias",
         help: "Depth that is taken from a point before it is compared, in units of the stored depth.",
-        kind: OptionKind::Number { min: 0.0, max: 0.01, default: XNA_DEPTH_BIAS, unit: "" },
+        kind: OptionKind::Number { min: 0.0, max: 0.01, default: DEPTH_BIAS, unit: "" },
     },
     SampleOption {
         id: "margin",

@@ -3,7 +3,6 @@
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 use shadowfit::SpotBias;
-use shadowfit::bias::acos_bias;
 use shadowfit_classics::headlight::real_shadow;
 use shadowfit_classics::mapped::formula::image_uv;
 use shadowfit_classics::{comparison, lamp, terrain, xna};
@@ -106,7 +105,7 @@ fn twin([base, numbers, more, clip]: &Case) -> Answer {
     let row = |color: Vec3, number: f32| color.extend(number).to_array();
     let uv = image_uv(Vec4::from(*clip));
     let inside = f32::from(u8::from(comparison::formula::is_inside(uv, depth)));
-    let epsilon = acos_bias(bias, n_l).expect("finite numbers");
+    let epsilon = comparison::formula::acos_bias(bias, n_l);
     let matrix = Mat4::from_cols_array_2d(&[*base, *numbers, *more, *clip]);
     let to_light = Vec3::new(clip[0], clip[1], clip[2] + 4.0);
     let normal = (Vec3::new(n_l, fourth, third) - 0.5).normalize();

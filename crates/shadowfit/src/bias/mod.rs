@@ -24,7 +24,6 @@
 //! All of this holds for the **geometric** normal of the surface that is stored. With normals that
 //! are interpolated or come from a normal map nothing is guaranteed.
 
-mod classic;
 pub(crate) mod depth_storage;
 mod reach;
 
@@ -32,7 +31,6 @@ use core::f32::consts::SQRT_2;
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
-pub use self::classic::{ACOS_BIAS_LIMIT, XNA_DEPTH_BIAS, acos_bias, acos_epsilon};
 pub use self::reach::{HARDWARE_SNAP, Reach};
 use crate::base::{DepthConvention, FitError, checks};
 use crate::bias::depth_storage::{DepthStorage, depth_step};
@@ -108,8 +106,7 @@ impl Bias {
         }
     }
 
-    /// A fixed number of the stored depth, independent of the slope: the classic form, such as
-    /// [`XNA_DEPTH_BIAS`]. In metres it changes with the depth range of each fit. A negative one
+    /// A fixed number of the stored depth, independent of the slope: the classic form. In metres it changes with the depth range of each fit. A negative one
     /// moves the receiver away from the light, as maps of back faces may want it.
     ///
     /// # Errors

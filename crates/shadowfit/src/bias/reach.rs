@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use crate::base::numbers::UNIT;
+use crate::base::checks::UNIT;
 use crate::base::{FitError, checks};
 use crate::fits::LightFit;
 use crate::technique::Technique;

@@ -6,15 +6,14 @@
 
 use glam::{DVec2, DVec3, DVec4, Vec3};
 
-use super::coverage;
 use super::sweep::Sweep;
 use super::volume::CasterVolume;
-use crate::base::numbers::VIEW_DEPTH_ROUNDING;
+use crate::base::checks::VIEW_DEPTH_ROUNDING;
 use crate::base::{FitError, checks};
 use crate::bias::{MIN_COSINE, Reach};
 use crate::fits::LightFit;
 use crate::map::{FittedMap, FittedMaps};
-use crate::selection::MapReading;
+use crate::selection::{MapOrder, MapReading};
 use crate::technique::Technique;
 use crate::technique::settings::{CasterPolicy, MAX_MAPS, MapChoice};
 use crate::view::ViewFrustum;
@@ -121,7 +120,7 @@ pub fn caster_volumes(
     let maps = &maps[..maps.len().min(MAX_MAPS)];
     match reading.choice {
         MapChoice::Coverage => {
-            let from = coverage::read_from(maps, reader, views, reading);
+            let from = read_by_coverage(maps, reader, views, reading);
             for ((map, near), volume) in maps.iter().zip(from).zip(volumes) {
                 let read = near.map(|near| Slice { near, far: f32::MAX });
                 *volume = swept(map, read, views, reading)?;
@@ -217,13 +216,7 @@ impl Readers<'_> {
 
 /// Whether a map, relative to the reader's origin, provably holds everything that the views have between two view depths,
 /// with so many texels around it.
-pub(super) fn holds_slice(
-    fit: &LightFit,
-    reader: &Reader,
-    views: &[ViewFrustum],
-    [near, far]: [f32; 2],
-    free: f64,
-) -> bool {
+fn holds_slice(fit: &LightFit, reader: &Reader, views: &[ViewFrustum], [near, far]: [f32; 2], free: f64) -> bool {
     let holds_part = |frustum: &ViewFrustum| {
         let offset = frustum.origin - reader.origin;
         // A view without a part between these depths has no point to be held.
@@ -281,6 +274,51 @@ fn lowered(mut volume: CasterVolume, fit: &LightFit, depth: f64) -> CasterVolume
         plane.w += (upward * depth) as f32;
     }
     volume
+}
+
+/// Halvings of the views' depths in the search for what a finer map holds: to a four thousandth of them.
+const HALVINGS: u32 = 12;
+
+/// For each map the view depths, in metres, from which points of the views read it, in the order of `maps`; `None`
+/// where no point does.
+///
+/// Points nearer than that are held by a finer map, with the filter's reach and the blend, whatever a shader rounds.
+/// From there on a map is read at any depth, wherever it holds a point that the finer ones leave out.
+fn read_by_coverage(
+    maps: &[FittedMap],
+    reader: &Reader,
+    views: &[ViewFrustum],
+    reading: &MapReading,
+) -> [Option<f32>; MAX_MAPS] {
+    let free = f64::from(reading.softness.reach(reading.filter) + reading.blend);
+    let mut from = [None; MAX_MAPS];
+    // Up to where the finer maps hold all.
+    let mut held = f32::MIN;
+    for index in MapOrder::new(MapChoice::Coverage, maps.iter().map(|map| &map.fit)).iter() {
+        from[index] = (held < f32::MAX).then_some((held - held.abs() * VIEW_DEPTH_ROUNDING).max(f32::MIN));
+        held = held_to(&maps[index], reader, views, free, held);
+    }
+    from
+}
+
+/// View depth up to which a map holds all that the views have from a depth on, in metres, with so many texels around
+/// it; that depth where it does not.
+fn held_to(map: &FittedMap, reader: &Reader, views: &[ViewFrustum], free: f64, from: f32) -> f32 {
+    let fit = map.fit.relative_to(reader.origin);
+    let holds = |far: f32| holds_slice(&fit, reader, views, [from, far], free);
+    let near = views.iter().map(|view| view.near).fold(f32::MAX, f32::min);
+    let far = views.iter().map(|view| view.far).fold(f32::MIN, f32::max);
+    if holds(far) {
+        return f32::MAX;
+    }
+    let near = near.max(from);
+    let (mut held, mut beyond) = (near, far);
+    for _ in 0..HALVINGS {
+        let middle = held + (beyond - held) * 0.5;
+        *(if holds(middle) { &mut held } else { &mut beyond }) = middle;
+    }
+    // Where it holds nothing, no depth has been found.
+    if held > near { held } else { from }
 }
 
 #[cfg(all(test, feature = "alloc"))]
@@ -359,7 +397,7 @@ mod tests {
         let [a, b, c] = maps(&view)[..] else { panic!("three maps") };
         let from = |maps: &[FittedMap], views: &[ViewFrustum], blend: f32| {
             let reading = MapReading { blend, ..by(MapChoice::Coverage) };
-            let from = coverage::read_from(maps, &reader, views, &reading);
+            let from = read_by_coverage(maps, &reader, views, &reading);
             from[..maps.len()].to_vec()
         };
         // The order is that of the texels' sizes, whatever the order of the maps; a map holds its slice and the filter.

@@ -21,9 +21,8 @@
 use glam::{DVec2, DVec3, Vec3};
 
 use super::volume::{CasterVolume, map_planes};
-use crate::base::checks::MAX_LENGTH;
-use crate::base::hull::HullBuilder;
-use crate::base::numbers::ROUNDING;
+use crate::base::checks::{MAX_LENGTH, ROUNDING};
+use crate::base::enclosing::HullBuilder;
 use crate::base::{FitError, checks};
 use crate::bias::Reach;
 use crate::fits::LightFit;

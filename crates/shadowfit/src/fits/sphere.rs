@@ -26,7 +26,7 @@ use glam::{DVec3, Vec3};
 
 use super::{Covers, Form};
 use crate::base::FitError;
-use crate::base::sphere::{SymmetricFrustum, minimal};
+use crate::base::enclosing::{SymmetricFrustum, minimal};
 use crate::view::ViewFrustum;
 
 pub use crate::content::MAX_SPHERE_VIEWS as MAX_VIEWS;

@@ -35,8 +35,8 @@ use crate::light::LightAxes;
 use crate::light::grid::MAX_LINE;
 use crate::map::FittedMap;
 
-pub use crate::keep::texel_rect::TexelRect;
-pub use crate::keep::wrap::StoredRect;
+pub use crate::keep::texels::StoredRect;
+pub use crate::keep::texels::TexelRect;
 pub use crate::light::grid::GridAnchor;
 
 /// How a map follows from the one before it.
@@ -105,6 +105,19 @@ impl Scroll {
     /// new map. A changed depth range does not count here.
     pub fn exposed(&self) -> impl Iterator<Item = TexelRect> {
         self.exposed.into_iter().filter(|rect| rect.size.min_element() > 0)
+    }
+
+    /// The wrap of the map now, from that of the map before: window texel t is stored at
+    /// (t + wrap) modulo `size`, the map's width and height, in texels. Zero for a map that must be drawn
+    /// as a whole.
+    pub fn wrap(&self, before: UVec2, size: UVec2) -> UVec2 {
+        if self.is_redraw() || size.min_element() == 0 {
+            return UVec2::ZERO;
+        }
+        let moved = |before: u32, shift: i32, size: u32| {
+            (i64::from(before) + i64::from(shift)).rem_euclid(i64::from(size)) as u32
+        };
+        UVec2::new(moved(before.x, self.shift.x, size.x), moved(before.y, self.shift.y, size.y))
     }
 
     fn new_map(resolution: UVec2) -> Self {

@@ -7,10 +7,9 @@
 
 use glam::DVec3;
 
-use super::cells::Cells;
-use super::lattice::{Lattice, Window};
-use super::placement::Rect;
+use super::cells::{Cells, Rect};
 use super::plan::{Plan, Planner, SERVES};
+use super::{Lattice, Window};
 use crate::demand::need::Plane;
 use crate::technique::settings::MAX_MAPS;
 

@@ -2,7 +2,7 @@
 //! zero, subnormal or huge: an error or a finite result, never a panic.
 
 use proptest::prelude::*;
-use shadowfit::bias::{Reach, acos_bias, depth_gradient, normal_offset, receiver_plane_depth};
+use shadowfit::bias::{Reach, depth_gradient, normal_offset, receiver_plane_depth};
 use shadowfit::diagnostics::{DepthStorage, acne_margin, coverage, depth_step_at, share_of_map};
 use shadowfit::glam::{DVec3, Vec2, Vec3};
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
@@ -24,8 +24,6 @@ struct Inputs {
     reach: Reach,
     bias: Bias,
     fixed: f32,
-    epsilon: f32,
-    cosine: f32,
     depth: f32,
     range: f32,
     direction: Vec3,
@@ -36,7 +34,7 @@ struct Inputs {
 /// A float input, by name.
 type Setter = (&'static str, fn(&mut Inputs, f32));
 
-const SETTERS: [Setter; 29] = [
+const SETTERS: [Setter; 27] = [
     ("normal.x", |i, v| i.normal.x = v),
     ("normal.y", |i, v| i.normal.y = v),
     ("normal.z", |i, v| i.normal.z = v),
@@ -51,8 +49,6 @@ const SETTERS: [Setter; 29] = [
     ("bias.normal_offset", |i, v| i.bias.normal_offset = v),
     ("bias.receiver_plane", |i, v| i.bias.receiver_plane = v),
     ("fixed bias", |i, v| i.fixed = v),
-    ("epsilon", |i, v| i.epsilon = v),
-    ("cosine", |i, v| i.cosine = v),
     ("depth", |i, v| i.depth = v),
     ("depth range", |i, v| i.range = v),
     ("direction.x", |i, v| i.direction.x = v),
@@ -76,8 +72,6 @@ fn good() -> Inputs {
         reach: Reach::HARDWARE_2X2.over_disc(2.0),
         bias: Bias { constant_depth: 0.001, slope_depth: 0.001, normal_offset: 0.01, receiver_plane: 1.0 },
         fixed: 0.001,
-        epsilon: 0.001,
-        cosine: 0.5,
         depth: 0.5,
         range: 100.0,
         direction: DIRECTION,
@@ -102,7 +96,6 @@ fn figures(fit: &LightFit, i: &Inputs) -> Result<Vec<f32>, FitError> {
         normal_offset(fit, i.reach, i.normal)?,
         receiver_plane_depth(fit, i.reach, i.normal)?,
         depth_gradient(fit, i.normal)?.abs().max_element(),
-        acos_bias(i.epsilon, i.cosine)?,
         Bias::fixed(i.fixed)?.constant_depth,
         depth_step_at(DepthStorage::Float16, i.range, i.depth)?,
         share_of_map(fit, &[point, Vec3::ZERO, Vec3::X])?,
@@ -146,14 +139,13 @@ fn zero_subnormal_and_huge_values_give_an_error_or_a_finite_result() {
 
 #[test]
 fn values_without_meaning_are_refused() {
-    let table: [(&str, &[f32]); 13] = [
+    let table: [(&str, &[f32]); 12] = [
         ("normal", &[0.0, 1e-45, 1e-20, 1e20]),
         ("direction", &[0.0, 1e-45, 1e-20, 1e20]),
         ("point", &[1e20, f32::MAX]),
         ("reach.taps", &[-1e-20, -1.0, 1e20]),
         ("reach.disc.x", &[-1e-20, -1.0, 1e20]),
         ("fixed bias", &[1.1, -1.1, f32::MAX]),
-        ("epsilon", &[-1e-20, f32::MAX]),
         ("depth", &[-1e-45, 1.1, f32::MAX]),
         ("depth range", &[0.0, -1.0, 1e-45, f32::MAX]),
         ("steps.texels", &[-1e-45, f32::MAX]),

@@ -2,8 +2,8 @@
 
 use proptest::prelude::*;
 use shadowfit::bias::{
-    ACOS_BIAS_LIMIT, HARDWARE_SNAP, MIN_COSINE, Reach, XNA_DEPTH_BIAS, acos_bias, acos_epsilon,
-    automatic_normal_offset, depth_gradient, depth_precision, plane_normal_offset, reach,
+    HARDWARE_SNAP, MIN_COSINE, Reach, automatic_normal_offset, depth_gradient, depth_precision, plane_normal_offset,
+    reach,
 };
 use shadowfit::diagnostics::DepthStorage;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
@@ -209,19 +209,5 @@ fn a_bias_on_a_plane_is_the_sum_of_its_forms() {
     // Edge-on every part is held at the least cosine.
     let grazing = bias.on_plane(&fit, across).unwrap();
     assert!(grazing.depth < 0.001 + (0.002 + 1.5) / MIN_COSINE && grazing.depth.is_finite(), "{grazing:?}");
-    assert_eq!(Bias::fixed(XNA_DEPTH_BIAS).unwrap(), Bias { constant_depth: 0.001, ..Bias::default() });
-}
-
-#[test]
-fn epsilon_over_acos_is_largest_head_on_and_least_at_grazing_light() {
-    let at = |radians: f32| acos_bias(acos_epsilon(FilterKind::Point), radians.cos()).unwrap();
-    assert_eq!(at(0.0), ACOS_BIAS_LIMIT);
-    assert!((at(0.1) / 0.01 - 1.0).abs() < 1e-4, "{}", at(0.1));
-    assert!((at(std::f32::consts::FRAC_PI_2) - 0.000_637).abs() < 1e-6);
-    assert!((0..90).map(|i| (i as f32).to_radians()).all(|a| at(a) >= at(a + 0.01)), "it falls with the angle");
-    // Saturated on both sides, and half with linear filtering.
-    assert_eq!(acos_bias(0.001, 2.0).unwrap(), ACOS_BIAS_LIMIT);
-    assert_eq!(acos_bias(0.001, -0.7).unwrap(), acos_bias(0.001, 0.0).unwrap());
-    assert_eq!(acos_epsilon(FilterKind::Hardware2x2), 0.0005);
-    assert_eq!(acos_bias(0.0, 1.0).unwrap(), 0.0);
+    assert_eq!(Bias::fixed(0.001).unwrap(), Bias { constant_depth: 0.001, ..Bias::default() });
 }
