@@ -1,5 +1,5 @@
-//! The fitter without memory of its own: it remembers the last frame as plain data, and the caller hands in the storage that
-//! it works in, so that it needs no allocator. The pipeline from the input to the maps of a frame stands here.
+//! The fitter without memory of its own: it remembers the last frame as plain data, and the caller hands in the storage
+//! that it works in, so that it needs no allocator. The pipeline from the input to the maps of a frame stands here.
 
 use glam::{DVec2, DVec3};
 

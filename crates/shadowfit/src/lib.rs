@@ -163,7 +163,10 @@ mod view {
 
     pub use camera::PerspectiveCamera;
     pub use frustum::ViewFrustum;
-    pub(crate) use slice::{EDGES, Picture, Plane, Range, Slice, View, at, clip_to_box, inner_part, slice_corners};
+    pub(crate) use slice::{
+        EDGES, Picture, Plane, Range, RayCount, Slice, View, at, clip_to_box, covered, crossing, inner_part,
+        slice_corners,
+    };
 }
 
 /// The light: its axes, the texel lines across it, and what lies over an outline toward it.

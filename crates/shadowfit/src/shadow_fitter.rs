@@ -1,5 +1,5 @@
-//! The fitter that engines take, one for each sun: it knows its technique, remembers what earlier frames were and showed, and
-//! owns the memory that [`MapFitter`] needs.
+//! The fitter that engines take, one for each sun: it knows its technique, remembers what earlier frames were and
+//! showed, and owns the memory that [`MapFitter`] needs.
 
 use alloc::vec::Vec;
 

@@ -1,5 +1,5 @@
-//! The formulas of the comparison sampler's sample in Rust, as `test.wgsl` and `shade.wgsl` have them; a test compares the
-//! two.
+//! The formulas of the comparison sampler's sample in Rust, as `test.wgsl` and `shade.wgsl` have them; a test compares
+//! the two.
 //!
 //! Colours are display values, depths those after the division by w; `n_l` and `r_v` are cosines between unit vectors,
 //! `share` is that of the light, 0 in shadow to 1.
@@ -21,10 +21,10 @@ pub const ACOS_BIAS_LIMIT: f32 = 0.1;
 
 /// `epsilon / acos(saturate(N·L))` within 0..=[`ACOS_BIAS_LIMIT`], in units of the stored depth.
 ///
-/// A formula from the early days of comparison samplers, kept to show its flaw: it is meant to approximate
-/// `epsilon · tan(acos N·L)`, but it is *largest* head-on (the limit at 0°, 0.01 at 0.1 rad) and *least* at grazing light
-/// (0.00064 at 90°), where acne is worst. Its source adds it to the depth of a map that holds back faces; with front faces
-/// it has to be subtracted. [`Bias::slope_depth`](shadowfit::Bias::slope_depth) is the correct form.
+/// A formula from the early days of comparison samplers, kept to show its flaw: it is meant to approximate `epsilon ·
+/// tan(acos N·L)`, but it is *largest* head-on (the limit at 0°, 0.01 at 0.1 rad) and *least* at grazing light (0.00064
+/// at 90°), where acne is worst. Its source adds it to the depth of a map that holds back faces; with front faces it
+/// has to be subtracted. [`Bias::slope_depth`](shadowfit::Bias::slope_depth) is the correct form.
 pub fn acos_bias(epsilon: f32, n_l: f32) -> f32 {
     // Head-on the angle is 0; any epsilon but 0 is at the limit there.
     (epsilon / n_l.clamp(0.0, 1.0).acos().max(f32::MIN_POSITIVE)).min(ACOS_BIAS_LIMIT)

@@ -1,7 +1,7 @@
 //! The views and boxes of one frame, in the form that fits use.
 //!
-//! Boxes of objects and clusters come in an order in which neighbours in the list are mostly neighbours in space. So the
-//! bounds of runs of neighbours are made once a frame: what lies outside of them need not be tested for each box.
+//! Boxes of objects and clusters come in an order in which neighbours in the list are mostly neighbours in space. So
+//! the bounds of runs of neighbours are made once a frame: what lies outside of them need not be tested for each box.
 
 #[cfg(feature = "alloc")]
 pub mod clusters;
@@ -44,7 +44,7 @@ pub(crate) struct Content<'a> {
 }
 
 /// Most views that share a stable map.
-pub const MAX_SPHERE_VIEWS: usize = 8;
+pub(crate) const MAX_SPHERE_VIEWS: usize = 8;
 
 /// Depths of a box that is out of view.
 const OUT_OF_VIEW: DVec2 = DVec2::new(f64::MAX, f64::MIN);

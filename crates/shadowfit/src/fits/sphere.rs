@@ -29,8 +29,6 @@ use crate::base::FitError;
 use crate::base::enclosing::{SymmetricFrustum, minimal};
 use crate::view::ViewFrustum;
 
-pub use crate::content::MAX_SPHERE_VIEWS as MAX_VIEWS;
-
 pub(super) const FORM: Form = Form { covers: Covers::Sphere, is_on_grid: true, ..Form::OF_VIEWS };
 
 /// Centre and radius, in metres, of the minimal sphere around a frustum's corners: the centre in

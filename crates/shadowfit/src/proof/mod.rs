@@ -368,9 +368,9 @@ pub struct CoverageQuery {
     pub near: f32,
     /// View depth up to which receivers read the map, in metres.
     pub far: f32,
-    /// Reach of the filter: of all texels that it reads, the centres must lie in the map. A sampler's
-    /// [rounding of texture coordinates](crate::bias::HARDWARE_SNAP) only shifts weights by as much, so it
-    /// counts only where [`Reach::on_hardware`] has included it.
+    /// Reach of the filter: of all texels that it reads, the centres must lie in the map. A sampler's rounding of
+    /// texture coordinates only shifts weights by as much, so it counts only where [`Reach::on_hardware`] has included
+    /// it.
     pub reach: Reach,
     /// How far across the light the looked-up point may lie off the receiver, in metres:
     /// [`Bias::normal_offset`](crate::Bias::normal_offset). Along the light it needs no room: what

@@ -1,15 +1,15 @@
 //! Bins of view depth, and what is visible in each: by a histogram of an earlier frame, or estimated from the boxes.
 //!
-//! The estimate looks at the nearest few boxes along each ray of a coarse grid, each spread over the depths that the ray is
-//! in it. A box is not its surface; where the estimate is wrong, maps are less sharp than they could be, and nothing worse.
+//! The estimate looks at the nearest few boxes along each ray of a coarse grid, each spread over the depths that the
+//! ray is in it. A box is not its surface; where the estimate is wrong, maps are less sharp than they could be, and
+//! nothing worse.
 
 use glam::DVec3;
 
-use crate::base::box_corners;
 use crate::content::Content;
 use crate::demand::histogram::DepthHistogram;
 use crate::technique::settings::MAX_MAPS;
-use crate::view::{Picture, View};
+use crate::view::{Picture, RayCount, View, covered, crossing};
 
 /// Splits of all maps, in metres of view depth: map i covers `splits[i]..splits[i + 1]`.
 pub(crate) type Splits = [f32; MAX_MAPS + 1];
@@ -138,22 +138,8 @@ pub(super) fn weights_of_histogram(histogram: &DepthHistogram, bins: &Bins) -> W
 /// Parts that each bin is divided into, to be spread.
 const PARTS: u32 = 4;
 
-/// Rays across and down the picture.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RayCount {
-    pub(crate) columns: usize,
-    pub(crate) rows: usize,
-}
-
 /// Most rays through a picture.
 const MOST_RAYS: usize = RayCount::FINE.columns * RayCount::FINE.rows;
-
-impl RayCount {
-    /// For maps that are read by view depth.
-    pub(crate) const FINE: Self = Self { columns: 32, rows: 18 };
-    /// For maps that are read by coverage, whose splits matter less.
-    pub(super) const COARSE: Self = Self { columns: 20, rows: 11 };
-}
 
 /// Boxes kept along each ray. A box is mostly air, so what is behind the first one may be seen.
 const LAYERS: usize = 4;
@@ -230,26 +216,6 @@ impl Ray {
             }
         }
     }
-}
-
-/// Shares of a ray, from its start along a vector, at which it enters and leaves a box.
-#[inline]
-pub(crate) fn crossing(start: DVec3, along: DVec3, min: DVec3, max: DVec3) -> Option<(f64, f64)> {
-    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
-    for axis in 0..3 {
-        let (start, along) = (start[axis], along[axis]);
-        if along == 0.0 {
-            if start < min[axis] || start > max[axis] {
-                return None;
-            }
-            continue;
-        }
-        let (a, b) = ((min[axis] - start) / along, (max[axis] - start) / along);
-        let (first, last) = if a < b { (a, b) } else { (b, a) };
-        enter = if first > enter { first } else { enter };
-        leave = if last < leave { last } else { leave };
-    }
-    if enter > leave { None } else { Some((enter, leave)) }
 }
 
 /// Weights spread over bins.
@@ -354,33 +320,4 @@ fn ends_of_row(start: &[DVec3; 4], end: &[DVec3; 4], row: usize, count: RayCount
     let half = 0.5 / count.columns as f64;
     let between = |x: f64| (left.0 * (1.0 - x) + right.0 * x, left.1 * (1.0 - x) + right.1 * x);
     [between(half), between(1.0 - half)]
-}
-
-/// Columns and rows of rays that may meet a box; all of them where it reaches before the near
-/// plane.
-pub(crate) fn covered(
-    view: &View,
-    picture: &Picture,
-    count: RayCount,
-    min: DVec3,
-    max: DVec3,
-) -> Option<(core::ops::Range<usize>, core::ops::Range<usize>)> {
-    let corners = box_corners(min, max);
-    if corners.into_iter().any(|corner| view.depth.distance(corner) < view.near) {
-        return Some((0..count.columns, 0..count.rows));
-    }
-    let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
-    for corner in corners {
-        let position = picture.position(corner);
-        for axis in 0..2 {
-            low[axis] = low[axis].min(position[axis]);
-            high[axis] = high[axis].max(position[axis]);
-        }
-    }
-    let range = |axis: usize, count: usize| {
-        let first = libm::ceil(low[axis] * count as f64 - 0.5).max(0.0);
-        let last = libm::floor(high[axis] * count as f64 - 0.5).min(count as f64 - 1.0);
-        if first > last { None } else { Some(first as usize..last as usize + 1) }
-    };
-    Some((range(0, count.columns)?, range(1, count.rows)?))
 }

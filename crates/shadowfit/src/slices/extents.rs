@@ -4,8 +4,8 @@
 //! extent is the greatest of its bins', and the best of the rectangles along those directions gives
 //! an estimate of its map's size, without fitting it.
 //!
-//! What a bin holds of a box are the corners of (box ∩ view ∩ bin). They are found for all bins in one pass over the box:
-//! neighbouring bins share the plane between them, so each point on it is found once, for both:
+//! What a bin holds of a box are the corners of (box ∩ view ∩ bin). They are found for all bins in one pass over the
+//! box: neighbouring bins share the plane between them, so each point on it is found once, for both:
 //!
 //! ```text
 //!    bin 0   bin 1     bin 2

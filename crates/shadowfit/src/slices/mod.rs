@@ -8,7 +8,7 @@
 //!        └─────────────────╲ │
 //! ```
 
-pub(crate) mod bins;
+mod bins;
 mod extents;
 mod hold;
 mod optimise;

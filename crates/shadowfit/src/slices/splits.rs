@@ -7,9 +7,9 @@ use crate::base::checks::ROUNDING;
 use crate::base::{FitError, checks};
 use crate::fits::{Covers, Frame};
 use crate::technique::settings::{MAX_MAPS, SplitScheme, Stabilise};
-use crate::view::Range;
+use crate::view::{Range, RayCount};
 
-use super::bins::{BINS, Bins, RayCount, Splits, Weights, even, weights_of_boxes, weights_of_histogram};
+use super::bins::{BINS, Bins, Splits, Weights, even, weights_of_boxes, weights_of_histogram};
 use super::extents::{Maps, Sizes, slice_bin};
 use super::optimise::{self, BinSplits, least_quantile, quantile};
 

@@ -238,7 +238,7 @@ impl SpotBias {
     }
 }
 
-/// A reach enlarged by the rounding of a GPU: [`HARDWARE_SNAP`], and what f32 makes of texture coordinates per metre of
+/// A reach enlarged by the rounding of a GPU: 1/256 of a texel, and what f32 makes of texture coordinates per metre of
 /// distance from the light. What it makes of them by the distance between light and origin is in
 /// [`SpotBias::precision`]. With exact arithmetic the plain reach is enough.
 ///

@@ -1,5 +1,5 @@
-//! The cells of need that windows are placed by, in the plane across the light, and where a window holds most of what is
-//! left to be served.
+//! The cells of need that windows are placed by, in the plane across the light, and where a window holds most of what
+//! is left to be served.
 //!
 //! For a place the cost of all cells is entered into a raster, of which the sum over every square as large as the
 //! window is found in steps: of 4 and of 16 rows, then of as many columns.

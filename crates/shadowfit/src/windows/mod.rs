@@ -51,8 +51,8 @@
 //! C. Migdal, M. Jones, "The clipmap: a virtual mipmap", 1998; F. Losasso and H. Hoppe, "Geometry
 //! clipmaps", 2004); here sizes and places follow what is visible.
 //!
-//! A window's texel lines are counted from the world's origin in f64, its rectangle from the origin of the fit, which is
-//! the eye, so that both are exact wherever the camera is.
+//! A window's texel lines are counted from the world's origin in f64, its rectangle from the origin of the fit, which
+//! is the eye, so that both are exact wherever the camera is.
 
 mod boxes;
 mod cells;
