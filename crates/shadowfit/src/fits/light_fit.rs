@@ -76,9 +76,9 @@ pub struct WorldMatrices {
     pub clip_from_world: Mat4,
 }
 
-/// Share of the map's extent by which a point may lie outside for [`LightFit::covers`]: the
-/// rounding of f32 texture coordinates, so that the frustum's own corners count as covered.
-const COVER_TOLERANCE: f64 = 1e-6;
+/// Share of a map's extent by which a point may lie outside and still be covered, by the sun's map or a spot light's:
+/// the rounding of f32 texture coordinates, so that the frustum's own corners count as covered.
+pub(crate) const COVER_TOLERANCE: f64 = 1e-6;
 
 impl LightFit {
     /// Turns a fit's decision into matrices; refuses boxes that f32 matrices cannot hold.

@@ -45,7 +45,7 @@ use glam::{DMat4, DVec3, DVec4, Mat4, UVec2, Vec2, Vec3, Vec4};
 use crate::base::checks::{MAX_LENGTH, MIN_LENGTH};
 use crate::base::{DepthConvention, FitError, checks};
 use crate::culling::CasterVolume;
-use crate::fits::light_fit::WorldMatrices;
+use crate::fits::light_fit::{COVER_TOLERANCE, WorldMatrices};
 use crate::light::{LightAxes, is_vertical};
 use crate::view::{PerspectiveCamera, ViewFrustum};
 
@@ -187,10 +187,6 @@ pub struct SpotFit {
     /// Depth range of the clip space.
     pub depth: DepthConvention,
 }
-
-/// Share of the map's extent by which a point may lie outside for [`SpotFit::covers`]: the rounding of f32 texture
-/// coordinates, so that the frustum's own corners count as covered.
-const COVER_TOLERANCE: f64 = 1e-6;
 
 impl SpotFit {
     fn of_lens(position: DVec3, lens: &Lens, resolution: UVec2, depth: DepthConvention) -> Self {
