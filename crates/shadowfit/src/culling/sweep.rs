@@ -83,7 +83,7 @@ impl CasterVolume {
     /// Every caster that can cast a shadow through a map on what views see of it, relative to the
     /// fit's origin.
     ///
-    /// [`FittedMap::caster_volume`](crate::FittedMap::caster_volume) sweeps the depths of one of several
+    /// [`FittedMaps::caster_volumes`](crate::FittedMaps::caster_volumes) sweeps the depths of one of several
     /// maps. The depths must be those at which the shader reads this map: by view depth as there, or,
     /// where the shader reads the first map that covers a point, all depths from which this map may be
     /// read, in doubt the whole range.

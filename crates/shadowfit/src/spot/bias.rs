@@ -51,7 +51,7 @@ use crate::technique::settings::BiasSettings;
 
 /// Biases ready for a shader. Let n be the geometric normal, turned toward the light, α its angle to the light's axis
 /// (sin α = |n × axis|, which does not lose digits as √(1 - cos²) does), d the receiver's distance along the axis and
-/// c = n · (light - p) the light's distance from its plane, held at [`MIN_COSINE`](crate::bias::MIN_COSINE) of
+/// c = n · (light - p) the light's distance from its plane, held at [`MIN_COSINE`] of
 /// |light - p| or above. The receiver is looked up at `p + n · (normal_offset · d · sin α + constant_offset)`; with w
 /// the lifted point's distance, which is the w of its look-up, its depth is moved toward the light by
 ///
@@ -176,7 +176,7 @@ impl SpotBias {
     }
 
     /// As [`Self::automatic`], by the receiver plane's gradient over the filter's reach on hardware. It clears planes
-    /// up to [`MIN_COSINE`](crate::bias::MIN_COSINE) of the angle between normal and light, and grows toward it without
+    /// up to [`MIN_COSINE`] of the angle between normal and light, and grows toward it without
     /// bound. Only rounding is left to an offset: [`Self::constant_offset`], which is 0 for a map relative to its
     /// light.
     ///
@@ -272,7 +272,7 @@ pub fn normal_offset(fit: &SpotFit, reach: impl Into<Reach>, point: DVec3, norma
 
 /// Depth bias that a plane needs, in units of the stored depth toward the light: `E · (|∂z/∂u| + |∂z/∂v|)` with the
 /// [`depth_gradient`] per texel, and for a disc the ellipse's own part. It is the same at all points of a plane, up to
-/// [`MIN_COSINE`](crate::bias::MIN_COSINE).
+/// [`MIN_COSINE`].
 ///
 /// # Errors
 ///
@@ -290,7 +290,7 @@ pub fn receiver_plane_depth(
 
 /// Change of the stored depth of a plane through a world position (f64, metres) over one texel along u and along v
 /// (∂z/∂u, ∂z/∂v). It is exact over any number of texels, since a perspective keeps planes plane. The light's distance
-/// from the plane is held at [`MIN_COSINE`](crate::bias::MIN_COSINE) of that from the point.
+/// from the plane is held at [`MIN_COSINE`] of that from the point.
 ///
 /// # Errors
 ///
