@@ -78,7 +78,6 @@ fn all_fields() -> Technique {
         },
         need: NeedSource::Boxes,
         format: MapFormat::R32Float,
-        ..Technique::default()
     }
 }
 

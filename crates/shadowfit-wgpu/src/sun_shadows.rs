@@ -11,7 +11,7 @@ mod error;
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec3};
 use shadowfit::verify::{Certificate, CoverageQuery, verify};
 use shadowfit::{
-    Aabb, DepthConvention, FitInput, FittedMap, FittedMaps, Seen, ShadowFitter, Technique, ViewFrustum, Workspace,
+    Aabb, DepthConvention, FitInput, FittedMap, FittedMaps, ShadowFitter, Technique, ViewFrustum, Workspace,
 };
 
 use crate::kept_maps::KeptMaps;
@@ -385,7 +385,9 @@ impl SunShadows {
     /// [`SunShadowsError::Need`] if the device was lost.
     pub fn wait_for_need(&mut self) -> Result<(), SunShadowsError> {
         let seen = self.need.pass.as_mut().map_or(Ok(None), NeedPass::wait)?;
-        seen.into_iter().for_each(|seen: Seen| self.fitter.see(seen));
+        if let Some(seen) = seen {
+            self.fitter.see(seen);
+        }
         Ok(())
     }
 }

@@ -1,6 +1,5 @@
-//! Several maps for one view, kept stable from frame to frame.
-//!
-//! A [`MapFitter`] remembers the last frame as plain data. Everything else follows from the input.
+//! The fitter without memory of its own: it remembers the last frame as plain data, and the caller hands in the storage
+//! that it works in, so that it needs no allocator. The pipeline from the input to the maps of a frame stands here.
 
 use glam::{DVec2, DVec3};
 

@@ -151,31 +151,83 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
-mod base;
-mod content;
-mod demand;
-mod keep;
-mod light;
-mod map;
-mod technique;
-mod view;
+/// What everything else stands on: errors, checks of numbers, boxes, depth conventions, hulls and spheres.
+mod base {
+    pub(crate) mod checks;
+    pub(crate) mod enclosing;
+    mod error;
+    mod space;
 
-pub mod bias;
-pub mod culling;
-pub mod diagnostics;
+    pub use error::FitError;
+    pub use space::{Aabb, Boxes, DepthConvention};
+    pub(crate) use space::{box_corners, moved};
+}
+
+mod technique;
+
+/// What a camera sees: frusta from cameras and matrices, cut by view depth and clipped against boxes.
+mod view {
+    mod camera;
+    mod frustum;
+    mod slice;
+
+    pub use camera::PerspectiveCamera;
+    pub use frustum::ViewFrustum;
+    pub(crate) use slice::{
+        EDGES, Picture, Plane, Range, RayCount, Slice, View, at, clip_to_box, covered, crossing, inner_part,
+        slice_corners,
+    };
+}
+
+/// The light: its axes, the texel lines across it, and what lies over an outline toward it.
+mod light {
+    mod axes;
+    pub(crate) mod grid;
+    mod outline;
+
+    pub(crate) use axes::{Light, LightAxes, Roll, is_same_direction, is_vertical};
+    pub(crate) use outline::{Outline, Scratch};
+}
+
+mod content;
+
+/// What was visible, and how fine a texel it asks for.
+mod demand {
+    pub mod histogram;
+    pub mod need;
+    #[cfg(feature = "alloc")]
+    pub mod seen;
+}
+
 pub mod fits;
-pub mod fitter;
-#[cfg(feature = "mint")]
-pub mod mint;
-pub mod proof;
-pub mod selection;
-pub mod spot;
-pub mod windows;
 
 mod slices;
 
+pub mod windows;
+
+pub mod bias;
+pub mod culling;
+pub mod selection;
+
+mod map;
+
+/// What can be kept of the maps of the last frame: the texels of a map that moved, and the direction of the light.
+mod keep {
+    pub mod light_steps;
+    pub mod scroll;
+    pub(crate) mod texels;
+}
+
+pub mod diagnostics;
+pub mod proof;
+pub mod spot;
+
+pub mod fitter;
 #[cfg(feature = "alloc")]
 mod shadow_fitter;
+
+#[cfg(feature = "mint")]
+pub mod mint;
 
 pub use base::{Aabb, Boxes, DepthConvention, FitError};
 pub use bias::Bias;

@@ -83,20 +83,6 @@ pub fn matrix(m: &Mat4) -> ColumnMatrix4<f32> {
     ColumnMatrix4 { x: column(m.x_axis), y: column(m.y_axis), z: column(m.z_axis), w: column(m.w_axis) }
 }
 
-/// [`ViewFrustum::from_world_from_clip_f64`] for a matrix and an eye of another crate.
-///
-/// # Errors
-///
-/// As there.
-pub fn frustum_from_world_from_clip(
-    world_from_clip: impl Into<ColumnMatrix4<f64>>,
-    eye: impl Into<Point3<f64>>,
-    depth: DepthConvention,
-    max_distance: f32,
-) -> Result<ViewFrustum, FitError> {
-    ViewFrustum::from_world_from_clip_f64(&dmat4(world_from_clip), dvec3(eye), depth, max_distance)
-}
-
 /// [`ViewFrustum::from_eye_from_clip`] for a matrix and an eye of other crates.
 ///
 /// # Errors

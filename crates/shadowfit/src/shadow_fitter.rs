@@ -1,4 +1,5 @@
-//! The fitter of a sun: a technique, what earlier frames were and showed, and the memory that fits work in.
+//! The fitter that engines take, one for each sun: it knows its technique, remembers what earlier frames were and
+//! showed, and owns the memory that [`MapFitter`] needs.
 
 use alloc::vec::Vec;
 

@@ -117,7 +117,7 @@ impl Numbers {
         Self(0xcbf2_9ce4_8422_2325)
     }
 
-    pub(crate) fn value(&self) -> u64 {
+    pub(crate) fn value(self) -> u64 {
         self.0
     }
 

@@ -5,7 +5,7 @@ use shadowfit::culling::{OrientedBox, Sphere, Sweep, cull};
 use shadowfit::diagnostics::{DepthStorage, acne_margin, coverage, depth_step_at, pixels_per_texel, share_of_map};
 use shadowfit::fits::fit_scene;
 use shadowfit::fits::sphere::enclosing_sphere;
-use shadowfit::glam::{DVec2, UVec2, Vec3};
+use shadowfit::glam::{DVec2, UVec2, Vec2, Vec3};
 use shadowfit::histogram::{DepthHistogram, needed_texel};
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
 use shadowfit::settings::{BiasSettings, CasterPolicy, FilterKind};
@@ -93,7 +93,7 @@ impl Run {
             filter.into(),
             Reach::kernel(5),
             Reach::POINT.over_disc(3.0),
-            Reach::POINT.over_metres(0.5, fit),
+            Reach { disc: Vec2::splat(0.5) / fit.texel_size, ..Reach::POINT },
         ]);
         let storage = random.pick(&[DepthStorage::Unorm16, DepthStorage::Float16, DepthStorage::Float32]);
         let settings =

@@ -33,7 +33,8 @@ use core::f32::consts::SQRT_2;
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
 pub use self::classic::{ACOS_BIAS_LIMIT, XNA_DEPTH_BIAS, acos_bias, acos_epsilon};
-pub use self::reach::{HARDWARE_SNAP, Reach};
+pub(crate) use self::reach::HARDWARE_SNAP;
+pub use self::reach::Reach;
 use crate::base::{DepthConvention, FitError, checks};
 use crate::bias::depth_storage::{DepthStorage, depth_step};
 use crate::fits::LightFit;
@@ -296,14 +297,9 @@ pub fn depth_precision(fit: &LightFit, storage: impl Into<DepthStorage>) -> f32 
     (reach::rounding(fit) / f64::from(fit.depth_range)) as f32 + depth_step(storage, 1.0)
 }
 
-/// Normal offset, in texels and to be multiplied by sin θ, that clears self-shadowing on a plane
-/// whose slope runs at azimuth φ in the map's axes: `E · (|cos φ| + |sin φ|)`. Square texels are
-/// assumed; [`normal_offset`] takes any.
-pub fn plane_normal_offset(reach: f32, azimuth: f32) -> f32 {
-    reach * (libm::cosf(azimuth).abs() + libm::sinf(azimuth).abs())
-}
-
-/// [`plane_normal_offset`] at its worst azimuth, the map's diagonal: `√2 · E` texels.
+/// Normal offset, in texels and to be multiplied by sin θ, that clears self-shadowing on a plane whose slope has any
+/// azimuth: `E · (|cos φ| + |sin φ|)` at its worst, the map's diagonal, which is `√2 · E`. Square texels are assumed;
+/// [`normal_offset`] takes any.
 pub const fn automatic_normal_offset(reach: f32) -> f32 {
     SQRT_2 * reach
 }

@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use crate::base::numbers::UNIT;
+use crate::base::checks::UNIT;
 use crate::base::{FitError, checks};
 use crate::fits::LightFit;
 use crate::technique::Technique;
@@ -32,7 +32,7 @@ pub struct Reach {
 
 /// What hardware rounding adds to every reach, in texels: the rasteriser snaps vertices, and the
 /// sampler texture coordinates, to the nearest 1/256 of a texel.
-pub const HARDWARE_SNAP: f32 = 1.0 / 256.0;
+pub(crate) const HARDWARE_SNAP: f32 = 1.0 / 256.0;
 
 /// Roundings of 2⁻²⁴ by which the depth that a map stores for a point can differ from the depth
 /// that it is compared with, as a multiple of the farthest distance from the origin in the map's
@@ -65,18 +65,12 @@ impl Reach {
         Self { disc: Vec2::splat(radius), ..self }
     }
 
-    /// [`Self::over_disc`] for a disc of `radius` metres across the light.
-    #[must_use]
-    pub fn over_metres(self, radius: f32, fit: &LightFit) -> Self {
-        Self { disc: Vec2::new(radius / fit.texel_size.x, radius / fit.texel_size.y), ..self }
-    }
-
     /// Greatest distance per axis, E: the taps and the longer radius of the disc.
     pub fn per_axis(self) -> f32 {
         self.taps + self.disc.x.max(self.disc.y)
     }
 
-    /// This reach, enlarged by the rounding of a GPU: [`HARDWARE_SNAP`] and the rounding of f32
+    /// This reach, enlarged by the rounding of a GPU: 1/256 of a texel and the rounding of f32
     /// texture coordinates at this fit's farthest corner from its origin. With exact arithmetic (a
     /// ray tracer, a test in f64) the plain reach is enough.
     #[must_use]

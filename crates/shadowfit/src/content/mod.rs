@@ -1,18 +1,18 @@
 //! The views and boxes of one frame, in the form that fits use.
+//!
+//! Boxes of objects and clusters come in an order in which neighbours in the list are mostly neighbours in space. So
+//! the bounds of runs of neighbours are made once a frame: what lies outside of them need not be tested for each box.
 
 #[cfg(feature = "alloc")]
 pub mod clusters;
-pub(crate) mod groups;
 pub mod normal_cone;
 
 use core::cell::OnceCell;
 
 use glam::{DVec2, DVec3, Vec3};
 
-use crate::base::hull::HullBuilder;
-use crate::base::sphere::{EnclosingSphere, SymmetricFrustum, minimal};
-use crate::base::{Boxes, FitError, checks, moved};
-use crate::content::groups::Groups;
+use crate::base::enclosing::{EnclosingSphere, HullBuilder, SymmetricFrustum, minimal};
+use crate::base::{Aabb, Boxes, FitError, checks, moved};
 use crate::content::normal_cone::NormalCone;
 use crate::light::LightAxes;
 use crate::view::{Range, Slice, View, ViewFrustum, slice_corners};
@@ -44,7 +44,7 @@ pub(crate) struct Content<'a> {
 }
 
 /// Most views that share a stable map.
-pub const MAX_SPHERE_VIEWS: usize = 8;
+pub(crate) const MAX_SPHERE_VIEWS: usize = 8;
 
 /// Depths of a box that is out of view.
 const OUT_OF_VIEW: DVec2 = DVec2::new(f64::MAX, f64::MIN);
@@ -397,4 +397,49 @@ fn check(boxes: &Boxes) -> Result<(), FitError> {
         }
     }
     Ok(())
+}
+
+/// Boxes in a run: few enough that runs stay small, enough that their tests cost little. 8 and 32 are both
+/// slower with 1,024 clusters of real scenes.
+const RUN: usize = 16;
+
+/// Elements of storage that the bounds of a run take.
+const ELEMENTS: usize = 3;
+
+/// Boxes in runs, with the bounds of each.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Groups<'a> {
+    boxes: &'a [Aabb],
+    bounds: &'a [DVec2],
+    /// From the origin that the boxes are seen from to their own.
+    offset: DVec3,
+}
+
+impl<'a> Groups<'a> {
+    /// Elements of storage for the runs of a number of boxes.
+    pub(crate) const fn required(boxes: usize) -> usize {
+        boxes.div_ceil(RUN) * ELEMENTS
+    }
+
+    /// The runs of boxes as seen from an origin; storage is as long as [`Self::required`] or longer.
+    pub(crate) fn new(boxes: &Boxes<'a>, origin: DVec3, storage: &'a mut [DVec2]) -> Self {
+        for (run, bounds) in boxes.boxes.chunks(RUN).zip(storage.chunks_exact_mut(ELEMENTS)) {
+            let all = run.iter().filter(|aabb| !aabb.is_empty()).fold(Aabb::EMPTY, |all, aabb| all.union(*aabb));
+            let (min, max) = (all.min.as_dvec3(), all.max.as_dvec3());
+            bounds.copy_from_slice(&[min.truncate(), DVec2::new(min.z, max.x), DVec2::new(max.y, max.z)]);
+        }
+        Self { boxes: boxes.boxes, bounds: storage, offset: boxes.origin - origin }
+    }
+
+    /// The runs: indices of their boxes, and the corners of the bounds of those that are not empty, from the
+    /// origin. Runs of empty boxes are left out.
+    pub(crate) fn runs(&self) -> impl Iterator<Item = (core::ops::Range<usize>, DVec3, DVec3)> + use<'a> {
+        let (offset, count) = (self.offset, self.boxes.len());
+        self.bounds.chunks_exact(ELEMENTS).enumerate().filter_map(move |(i, bounds)| {
+            let min = DVec3::new(bounds[0].x, bounds[0].y, bounds[1].x);
+            let max = DVec3::new(bounds[1].y, bounds[2].x, bounds[2].y);
+            let run = RUN * i..count.min(RUN * (i + 1));
+            (min.x <= max.x && !run.is_empty()).then_some((run, min + offset, max + offset))
+        })
+    }
 }

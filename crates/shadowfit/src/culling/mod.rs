@@ -5,17 +5,13 @@
 //! whose shadow is not visible, but never cull one whose shadow is.
 
 mod batch;
-mod coverage;
-mod planes;
 mod readers;
 mod shapes;
 mod sweep;
 mod volume;
 
 pub use batch::cull;
-pub use coverage::Reader;
-pub use planes::CasterPlanes;
-pub use readers::caster_volumes;
+pub use readers::{Reader, caster_volumes};
 pub use shapes::{Bounds, OrientedBox, Sphere};
 pub use sweep::Sweep;
-pub use volume::CasterVolume;
+pub use volume::{CasterPlanes, CasterVolume};

@@ -21,9 +21,8 @@
 use glam::{DVec2, DVec3, Vec3};
 
 use super::volume::{CasterVolume, map_planes};
-use crate::base::checks::MAX_LENGTH;
-use crate::base::hull::HullBuilder;
-use crate::base::numbers::ROUNDING;
+use crate::base::checks::{MAX_LENGTH, ROUNDING};
+use crate::base::enclosing::HullBuilder;
 use crate::base::{FitError, checks};
 use crate::bias::Reach;
 use crate::fits::LightFit;
@@ -38,7 +37,7 @@ pub struct Sweep<'a> {
     pub near: f32,
     /// View depth up to which they read it, in metres. Default: `f32::MAX`, to the farthest.
     pub far: f32,
-    /// Reach of the filter. A penumbra search counts as a disc, see [`Reach::over_metres`]; the
+    /// Reach of the filter. A penumbra search counts as a disc, see [`Reach::over_disc`]; the
     /// texel that a caster's edge is rasterised to is added to it. Default: [`Reach::HARDWARE_2X2`].
     pub reach: Reach,
     /// How far from the receiver, in any direction, the looked-up point may lie, in metres:

@@ -1,11 +1,11 @@
-//! The volume itself, and the tests of single shapes.
+//! The volume of the casters of a map, its planes for shaders, and the tests of single shapes.
 
 use glam::{DVec3, Vec3, Vec4};
 
 use super::shapes::{Bounds, OrientedBox, ROUNDING, Sphere};
 use crate::base::Aabb;
 use crate::fits::LightFit;
-use crate::keep::texel_rect::TexelRect;
+use crate::keep::texels::TexelRect;
 use crate::technique::settings::CasterPolicy;
 
 /// A convex volume that holds casters of one map, as planes: plain data, for the CPU and for
@@ -195,4 +195,39 @@ pub(super) fn map_planes(fit: &LightFit) -> ([Vec4; 4], [Vec4; 2]) {
     let low = |i: usize| axes[i].extend((t[i] - min[i]) as f32);
     let high = |i: usize| (-axes[i]).extend((max[i] - t[i]) as f32);
     ([low(0), high(0), low(1), high(1)], [low(2), high(2)])
+}
+
+/// The planes of a [`CasterVolume`] for a shader, with the layout of this WGSL in uniform and in
+/// storage buffers, 272 bytes:
+///
+/// ```wgsl
+/// struct CasterPlanes {
+///     planes: array<vec4f, 16>, // n·p + d >= 0 inside, p relative to the volume's origin
+///     count: u32,
+/// }
+/// ```
+///
+/// The volume itself has an origin in f64, which no shader can read: move it to the origin that
+/// the shader's positions have first, with [`CasterVolume::relative_to`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[repr(C)]
+pub struct CasterPlanes {
+    /// [`CasterVolume::planes`]. All of them may be tested: everything is inside the unused ones.
+    pub planes: [[f32; 4]; CasterVolume::MAX_PLANES],
+    /// Number of planes in use.
+    pub count: u32,
+    /// Padding at the end of the struct, as in WGSL; zero.
+    pub padding: [u32; 3],
+}
+
+impl From<&CasterVolume> for CasterPlanes {
+    fn from(volume: &CasterVolume) -> Self {
+        Self {
+            planes: volume.planes.map(|plane| plane.to_array()),
+            count: volume.active_planes().len() as u32,
+            padding: [0; 3],
+        }
+    }
 }

@@ -13,7 +13,7 @@
 
 use glam::{DVec2, DVec3, Vec2Swizzles};
 
-use crate::base::numbers::ROUNDING;
+use crate::base::checks::ROUNDING;
 use crate::base::{Boxes, moved};
 use crate::content::Content;
 use crate::fits::covered::Shadowed;

@@ -26,10 +26,8 @@ use glam::{DVec3, Vec3};
 
 use super::{Covers, Form};
 use crate::base::FitError;
-use crate::base::sphere::{SymmetricFrustum, minimal};
+use crate::base::enclosing::{SymmetricFrustum, minimal};
 use crate::view::ViewFrustum;
-
-pub use crate::content::MAX_SPHERE_VIEWS as MAX_VIEWS;
 
 pub(super) const FORM: Form = Form { covers: Covers::Sphere, is_on_grid: true, ..Form::OF_VIEWS };
 

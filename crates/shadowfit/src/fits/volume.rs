@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::base::numbers::{ROUNDING, floor};
+use crate::base::checks::{ROUNDING, floor};
 use crate::fits::FitRule;
 use crate::light::LightAxes;
 use crate::light::grid::{Grid, anchor, quantised, stabilised_depth};

@@ -35,8 +35,8 @@ use crate::light::LightAxes;
 use crate::light::grid::MAX_LINE;
 use crate::map::FittedMap;
 
-pub use crate::keep::texel_rect::TexelRect;
-pub use crate::keep::wrap::StoredRect;
+pub use crate::keep::texels::StoredRect;
+pub use crate::keep::texels::TexelRect;
 pub use crate::light::grid::GridAnchor;
 
 /// How a map follows from the one before it.

@@ -7,7 +7,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::base::numbers::{ROUNDING, floor};
+use crate::base::checks::{ROUNDING, floor};
 use crate::light::LightAxes;
 
 /// How far an extent may lie above a step and still be rounded down to it, as a share of the step:

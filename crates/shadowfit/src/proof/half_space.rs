@@ -8,8 +8,8 @@
 
 use glam::{DVec3, Mat4, Vec4};
 
-use super::query::{CoverageQuery, MapPlane};
-use crate::base::numbers::UNIT;
+use super::{CoverageQuery, MapPlane};
+use crate::base::checks::UNIT;
 use crate::base::{DepthConvention, FitError, checks};
 use crate::fits::LightFit;
 

@@ -11,24 +11,19 @@
 mod bins;
 mod extents;
 mod hold;
-mod motion;
 mod optimise;
-mod seen;
-mod slabs;
 mod splits;
-pub(crate) mod visible;
 
 use glam::{DVec2, Vec3};
 
 use crate::base::FitError;
-use crate::base::numbers::VIEW_DEPTH_ROUNDING;
+use crate::base::checks::VIEW_DEPTH_ROUNDING;
 use crate::fits::{self, Frame, PlacedMap, PlacedMaps, Snapping, Volume};
 use crate::technique::settings::{MAX_MAPS, Stabilise};
 use crate::view::{Range, ViewFrustum};
 
 use bins::Splits;
-use hold::{HeldMap, Holder};
-use motion::Motion;
+use hold::{HeldMap, Holder, Motion};
 use splits::{Chooser, HeldSplits};
 
 /// What slices begin with in the next frame.

@@ -3,17 +3,15 @@
 //! Each map gets a range of view depths of its own. Fixed schemes place the splits by depth alone;
 //! content-aware schemes place them where the most visible pixels gain.
 
-use crate::base::numbers::ROUNDING;
+use crate::base::checks::ROUNDING;
 use crate::base::{FitError, checks};
 use crate::fits::{Covers, Frame};
 use crate::technique::settings::{MAX_MAPS, SplitScheme, Stabilise};
-use crate::view::Range;
+use crate::view::{Range, RayCount};
 
-use super::bins::{BINS, Bins, Splits, Weights, even};
+use super::bins::{BINS, Bins, Splits, Weights, even, weights_of_boxes, weights_of_histogram};
 use super::extents::{Maps, Sizes, slice_bin};
 use super::optimise::{self, BinSplits, least_quantile, quantile};
-use super::seen;
-use super::visible::{self, RayCount};
 
 /// The splits of a fixed scheme over a range of view depths: `count` maps.
 ///
@@ -245,11 +243,12 @@ impl Chooser<'_, '_> {
         let rays = if self.frame.rule.serves_all { RayCount::COARSE } else { RayCount::FINE };
         let weights = match (self.frame.technique.splits, &self.frame.input.histogram) {
             (SplitScheme::FromHistogram, Some(histogram)) if !histogram.is_empty() => {
-                let (seen, guess) = (seen::weights(histogram, bins), visible::weights(self.frame.content, bins, rays));
+                let (seen, guess) =
+                    (weights_of_histogram(histogram, bins), weights_of_boxes(self.frame.content, bins, rays));
                 let share = if self.frame.content.receivers.is_some() { GUESS } else { BLIND_GUESS };
                 mixed(&seen, &guess, share)
             }
-            _ => visible::weights(self.frame.content, bins, rays),
+            _ => weights_of_boxes(self.frame.content, bins, rays),
         };
         if self.frame.rule.serves_all && self.frame.rule.form.covers == Covers::Sphere {
             return mixed(&weights, &even(bins), UNSEEN);

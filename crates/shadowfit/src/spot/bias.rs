@@ -43,16 +43,15 @@
 use glam::{DVec3, Vec2, Vec3};
 
 use super::SpotFit;
-use super::plane::Plane;
-use crate::base::numbers::UNIT;
+use crate::base::checks::{MAX_LENGTH, MIN_LENGTH, UNIT};
 use crate::base::{DepthConvention, FitError, checks};
 use crate::bias::depth_storage::{DepthStorage, depth_step};
-use crate::bias::{HARDWARE_SNAP, PlaneBias, Reach};
+use crate::bias::{HARDWARE_SNAP, MIN_COSINE, PlaneBias, Reach};
 use crate::technique::settings::BiasSettings;
 
 /// Biases ready for a shader. Let n be the geometric normal, turned toward the light, α its angle to the light's axis
 /// (sin α = |n × axis|, which does not lose digits as √(1 - cos²) does), d the receiver's distance along the axis and
-/// c = n · (light - p) the light's distance from its plane, held at [`MIN_COSINE`](crate::bias::MIN_COSINE) of
+/// c = n · (light - p) the light's distance from its plane, held at [`MIN_COSINE`] of
 /// |light - p| or above. The receiver is looked up at `p + n · (normal_offset · d · sin α + constant_offset)`; with w
 /// the lifted point's distance, which is the w of its look-up, its depth is moved toward the light by
 ///
@@ -177,7 +176,7 @@ impl SpotBias {
     }
 
     /// As [`Self::automatic`], by the receiver plane's gradient over the filter's reach on hardware. It clears planes
-    /// up to [`MIN_COSINE`](crate::bias::MIN_COSINE) of the angle between normal and light, and grows toward it without
+    /// up to [`MIN_COSINE`] of the angle between normal and light, and grows toward it without
     /// bound. Only rounding is left to an offset: [`Self::constant_offset`], which is 0 for a map relative to its
     /// light.
     ///
@@ -239,7 +238,7 @@ impl SpotBias {
     }
 }
 
-/// A reach enlarged by the rounding of a GPU: [`HARDWARE_SNAP`], and what f32 makes of texture coordinates per metre of
+/// A reach enlarged by the rounding of a GPU: 1/256 of a texel, and what f32 makes of texture coordinates per metre of
 /// distance from the light. What it makes of them by the distance between light and origin is in
 /// [`SpotBias::precision`]. With exact arithmetic the plain reach is enough.
 ///
@@ -273,7 +272,7 @@ pub fn normal_offset(fit: &SpotFit, reach: impl Into<Reach>, point: DVec3, norma
 
 /// Depth bias that a plane needs, in units of the stored depth toward the light: `E · (|∂z/∂u| + |∂z/∂v|)` with the
 /// [`depth_gradient`] per texel, and for a disc the ellipse's own part. It is the same at all points of a plane, up to
-/// [`MIN_COSINE`](crate::bias::MIN_COSINE).
+/// [`MIN_COSINE`].
 ///
 /// # Errors
 ///
@@ -291,7 +290,7 @@ pub fn receiver_plane_depth(
 
 /// Change of the stored depth of a plane through a world position (f64, metres) over one texel along u and along v
 /// (∂z/∂u, ∂z/∂v). It is exact over any number of texels, since a perspective keeps planes plane. The light's distance
-/// from the plane is held at [`MIN_COSINE`](crate::bias::MIN_COSINE) of that from the point.
+/// from the plane is held at [`MIN_COSINE`] of that from the point.
 ///
 /// # Errors
 ///
@@ -318,3 +317,55 @@ const LEAST_FLOAT16: f64 = 1.0 / 16_777_216.0;
 
 /// Least normal 32-bit float, below which GPUs may flush to zero.
 const LEAST_FLOAT32: f64 = f32::MIN_POSITIVE as f64;
+
+/// A plane with the unit normal n on the light's side, in light axes and in texels.
+pub(super) struct Plane {
+    /// Texel sizes at 1 m times n·x and n·y: the height over the plane, in metres along n, that a texel along u, or
+    /// against v, gains at 1 m along the axis.
+    pub(super) u: f64,
+    pub(super) v: f64,
+    /// n·z, the cosine between n and the direction back along the light's axis. Below 0 for planes that face the light
+    /// and not its axis, as there are off the axis.
+    pub(super) along: f64,
+    /// Sine of the angle between n and the axis.
+    pub(super) sine: f64,
+    /// Distance of the point along the axis, in metres: d.
+    pub(super) distance: f64,
+    /// Distance of the light from the plane, in metres: c, held at [`MIN_COSINE`] of its distance from the point.
+    pub(super) height: f64,
+}
+
+impl Plane {
+    /// The plane through a world position, in metres, with a normal of any length on either side; refuses positions
+    /// that are not before the light.
+    pub(super) fn of(fit: &SpotFit, point: DVec3, normal: Vec3) -> Result<Self, FitError> {
+        let p = fit.project(checks::point("the point", point)?);
+        let distance = checks::within("the point's distance along the light's axis", -p.z, MIN_LENGTH, MAX_LENGTH)?;
+        let n = fit.turn(checks::unit("the surface normal", normal)?);
+        let toward_light = -n.dot(p);
+        let n = if toward_light < 0.0 { -n } else { n };
+        let height = toward_light.abs().max(f64::from(MIN_COSINE) * checks::length(p));
+        let (u, v) = (n.x * f64::from(fit.texel_size.x), n.y * f64::from(fit.texel_size.y));
+        for share in [u, v, n.z, height] {
+            checks::finite("the plane's slope in the map", share)?;
+        }
+        Ok(Self { u, v, along: n.z, sine: libm::sqrt(n.x * n.x + n.y * n.y), distance, height })
+    }
+
+    /// Greatest height of the plane over itself within a filter's reach, per metre along the axis: s.
+    pub(super) fn rise(&self, reach: Reach) -> f64 {
+        reach.rise(self.u, self.v)
+    }
+
+    /// Distance along the axis of the point lifted along the normal, in metres.
+    pub(super) fn lifted(&self, offset: f64) -> f64 {
+        self.distance - offset * self.along
+    }
+
+    /// Change of the stored depth over one texel along u and along v, the same everywhere on the plane.
+    pub(super) fn gradient(&self, fit: &SpotFit) -> [f64; 2] {
+        let sign = if fit.depth == DepthConvention::Reversed { -1.0 } else { 1.0 };
+        let per_height = sign * fit.depth_scale() / self.height;
+        [self.u * per_height, -self.v * per_height]
+    }
+}

@@ -38,16 +38,14 @@
 
 pub mod bias;
 
-mod casters;
-mod matrix;
-mod plane;
-
-use glam::{DVec3, UVec2, Vec3};
-
 pub use self::bias::SpotBias;
-pub use self::matrix::SpotFit;
+
+use glam::{DMat4, DVec3, DVec4, Mat4, UVec2, Vec2, Vec3, Vec4};
+
 use crate::base::checks::{MAX_LENGTH, MIN_LENGTH};
 use crate::base::{DepthConvention, FitError, checks};
+use crate::culling::CasterVolume;
+use crate::fits::light_fit::{COVER_TOLERANCE, WorldMatrices};
 use crate::light::{LightAxes, is_vertical};
 use crate::view::{PerspectiveCamera, ViewFrustum};
 
@@ -149,4 +147,210 @@ struct Lens {
     tangents: [f64; 2],
     near: f32,
     far: f32,
+}
+
+/// A perspective view-projection of a spot light.
+///
+/// *Light space* is right-handed with x right and y up in the map, in metres; the light is at its origin and shines
+/// along -z. Clip space has x right, y up and the depth range [`Self::depth`]; its w is the distance along the light's
+/// axis, in metres. Texture space has u right, v **down** (row 0 on top, as wgpu, Direct3D, Vulkan and Metal have it;
+/// OpenGL users flip v), both 0..1 over the map. Both have to be divided by w, and points behind the light have
+/// w <= 0: the [module](super) shows how a shader does it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SpotFit {
+    /// World position that all inputs of the matrices are relative to, in metres: the light's own, until
+    /// [`Self::relative_to`] moves it.
+    pub origin: DVec3,
+    /// Position of the light in world space, in metres.
+    pub position: DVec3,
+    /// Unit direction of travel along the light's axis, in world axes.
+    pub direction: Vec3,
+    /// Light space from world positions relative to [`Self::origin`], in metres.
+    pub light_from_world: Mat4,
+    /// Clip space from light space.
+    pub clip_from_light: Mat4,
+    /// Clip space from world positions relative to [`Self::origin`], in metres.
+    pub clip_from_world: Mat4,
+    /// Texture space (u, v) and stored depth, all times w, from world positions relative to [`Self::origin`]. The
+    /// stored depth is the clip depth, and for -1..1 half of it plus one half, as a depth attachment holds it.
+    pub uv_from_world: Mat4,
+    /// Size of one texel along u and v at 1 m from the light along its axis, in metres; it grows in proportion to that
+    /// distance, so this is metres per metre.
+    pub texel_size: Vec2,
+    /// Width and height of the map, in texels.
+    pub resolution: UVec2,
+    /// Distance of the near plane along the axis, in metres.
+    pub near: f32,
+    /// Distance of the far plane along the axis, in metres.
+    pub far: f32,
+    /// Depth range of the clip space.
+    pub depth: DepthConvention,
+}
+
+impl SpotFit {
+    fn of_lens(position: DVec3, lens: &Lens, resolution: UVec2, depth: DepthConvention) -> Self {
+        let LightAxes { x, y, z } = lens.axes;
+        let [tangent_x, tangent_y] = lens.tangents;
+        let light_from_world = Mat4::from_cols(
+            Vec4::new(x.x, y.x, z.x, 0.0),
+            Vec4::new(x.y, y.y, z.y, 0.0),
+            Vec4::new(x.z, y.z, z.z, 0.0),
+            Vec4::W,
+        );
+        let (scale, offset) = depth_row(f64::from(lens.near), f64::from(lens.far), depth);
+        let clip_from_light = Mat4::from_cols(
+            Vec4::new((1.0 / tangent_x) as f32, 0.0, 0.0, 0.0),
+            Vec4::new(0.0, (1.0 / tangent_y) as f32, 0.0, 0.0),
+            Vec4::new(0.0, 0.0, scale as f32, -1.0),
+            Vec4::new(0.0, 0.0, offset as f32, 0.0),
+        );
+        let size = resolution.as_dvec2();
+        let mut fit = Self {
+            origin: position,
+            position,
+            direction: -z,
+            light_from_world,
+            clip_from_light,
+            clip_from_world: Mat4::IDENTITY,
+            uv_from_world: Mat4::IDENTITY,
+            texel_size: Vec2::new((2.0 * tangent_x / size.x) as f32, (2.0 * tangent_y / size.y) as f32),
+            resolution,
+            near: lens.near,
+            far: lens.far,
+            depth,
+        };
+        fit.multiply();
+        fit
+    }
+
+    /// The same map with its inputs relative to another world position, in metres: usually the camera's eye. The
+    /// translation is computed in f64 and rounded once. An origin that is not finite gives matrices that are not
+    /// finite.
+    #[must_use]
+    pub fn relative_to(&self, new_origin: DVec3) -> Self {
+        let mut fit = Self { origin: new_origin, ..*self };
+        fit.light_from_world.w_axis = self.project(new_origin).as_vec3().extend(1.0);
+        fit.multiply();
+        fit
+    }
+
+    /// The matrices for plain f32 world positions.
+    pub fn world_matrices(&self) -> WorldMatrices {
+        let Self { light_from_world, clip_from_light, clip_from_world, .. } = self.relative_to(DVec3::ZERO);
+        WorldMatrices { light_from_world, clip_from_light, clip_from_world }
+    }
+
+    /// Whether a world position, in metres, lies inside the light's frustum, to 1e-6 of its extent there.
+    pub fn covers(&self, point: DVec3) -> bool {
+        let p = self.project(point);
+        let distance = -p.z;
+        let window = self.tangents().map(|tangent| tangent * distance * (1.0 + 2.0 * COVER_TOLERANCE));
+        let slack = (f64::from(self.far) - f64::from(self.near)) * COVER_TOLERANCE;
+        // Beside the light itself the window has no extent, and nothing is inside.
+        distance > 0.0
+            && (p.x.abs() <= window[0])
+            && (p.y.abs() <= window[1])
+            && (distance >= f64::from(self.near) - slack)
+            && (distance <= f64::from(self.far) + slack)
+    }
+
+    /// Stored depth at a distance along the light's axis, in metres: 0..1 between the planes, beyond it outside.
+    /// Not finite at the light itself.
+    pub fn depth_at(&self, distance: f64) -> f64 {
+        let (near, far) = (f64::from(self.near), f64::from(self.far));
+        let plain = far * (distance - near) / (distance * (far - near));
+        if self.depth == DepthConvention::Reversed {
+            near * (far - distance) / (distance * (far - near))
+        } else {
+            plain
+        }
+    }
+
+    /// b = near · far / (far - near), in metres: the stored depth changes by b / d² per metre at the distance d along
+    /// the axis, in every depth convention.
+    pub fn depth_scale(&self) -> f64 {
+        let (near, far) = (f64::from(self.near), f64::from(self.far));
+        near * (far / (far - near))
+    }
+
+    /// Tangents of half the horizontal and half the vertical angle.
+    pub(crate) fn tangents(&self) -> [f64; 2] {
+        let half = self.resolution.as_dvec2() * self.texel_size.as_dvec2() * 0.5;
+        [half.x, half.y]
+    }
+
+    /// Greatest distance from the light per metre along its axis: that of the window's corners.
+    pub(crate) fn stretch(&self) -> f64 {
+        let [x, y] = self.tangents();
+        libm::sqrt(1.0 + x * x + y * y)
+    }
+
+    /// Light space from an absolute world position, in f64.
+    pub(crate) fn project(&self, point: DVec3) -> DVec3 {
+        self.turn(point - self.position)
+    }
+
+    /// Light axes from world axes, in f64.
+    pub(crate) fn turn(&self, v: DVec3) -> DVec3 {
+        let m = &self.light_from_world;
+        let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|column| column.truncate().as_dvec3());
+        x * v.x + y * v.y + z * v.z
+    }
+
+    /// The light's axes x, y and z in world axes.
+    pub(crate) fn axes(&self) -> [DVec3; 3] {
+        let rows = self.light_from_world.transpose();
+        [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.truncate().as_dvec3())
+    }
+
+    /// Distance of the light from the origin, in metres.
+    pub(crate) fn away(&self) -> f64 {
+        checks::length(self.position - self.origin)
+    }
+
+    /// Makes `clip_from_world` and `uv_from_world` of the other two, in f64.
+    fn multiply(&mut self) {
+        let clip = self.clip_from_light.as_dmat4().mul_mat4(&self.light_from_world.as_dmat4());
+        self.clip_from_world = clip.as_mat4();
+        let halved = self.depth == DepthConvention::NegativeOneToOne;
+        let (scale, offset) = if halved { (0.5, 0.5) } else { (1.0, 0.0) };
+        let texture = |c: DVec4| DVec4::new(0.5 * (c.x + c.w), 0.5 * (c.w - c.y), scale * c.z + offset * c.w, c.w);
+        let columns = [clip.x_axis, clip.y_axis, clip.z_axis, clip.w_axis].map(texture);
+        self.uv_from_world = DMat4::from_cols(columns[0], columns[1], columns[2], columns[3]).as_mat4();
+    }
+}
+
+/// Scale of z and offset of a projection's depth, before the division by w = -z.
+fn depth_row(near: f64, far: f64, depth: DepthConvention) -> (f64, f64) {
+    match depth {
+        DepthConvention::ZeroToOne => (far / (near - far), near * far / (near - far)),
+        DepthConvention::Reversed => (near / (far - near), near * far / (far - near)),
+        DepthConvention::NegativeOneToOne => ((far + near) / (near - far), 2.0 * near * far / (near - far)),
+    }
+}
+
+impl SpotFit {
+    /// Every caster that the map can store: the light's frustum, relative to [`Self::origin`], as planes -x, +x, -y,
+    /// +y, far and near in the light's axes. Casters nearer to the light than the near plane are left out, as they are
+    /// clipped. Also what the light can shine on at all: a receiver outside it needs no look-up.
+    pub fn caster_volume(&self) -> CasterVolume {
+        let [x, y, z] = self.axes();
+        let [tangent_x, tangent_y] = self.tangents();
+        let light = self.position - self.origin;
+        // A side holds the light itself, and its normal leans toward the light by the tangent.
+        let side = |axis: DVec3, tangent: f64| {
+            let inward = axis - z * tangent;
+            through(inward / checks::length(inward), light)
+        };
+        let far = through(z, light - z * f64::from(self.far));
+        let near = through(-z, light - z * f64::from(self.near));
+        let planes = [side(x, tangent_x), side(-x, tangent_x), side(y, tangent_y), side(-y, tangent_y), far, near];
+        CasterVolume::of_planes(self.origin, planes)
+    }
+}
+
+/// The plane through a point with a unit normal that points inward.
+fn through(normal: DVec3, point: DVec3) -> Vec4 {
+    normal.as_vec3().extend(-normal.dot(point) as f32)
 }

@@ -398,7 +398,7 @@ pub enum SoftRadius {
 }
 
 /// Angular radius of the sun as seen from the earth, in radians: half of 0.533°.
-pub const SUN_RADIUS: f32 = 0.004_65;
+const SUN_RADIUS: f32 = 0.004_65;
 
 impl Default for SoftRadius {
     fn default() -> Self {

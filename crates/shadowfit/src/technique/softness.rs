@@ -12,7 +12,7 @@ pub const USUAL_DISTANCE: f32 = 5.0;
 
 /// Distance from a caster to its shadow up to which [`FilterKind::Pcss`] widens penumbrae, in metres: from there
 /// on they stay as they are.
-pub const GREATEST_DISTANCE: f32 = 20.0;
+const GREATEST_DISTANCE: f32 = 20.0;
 
 /// Greatest radius of a filter, in texels, that [`Softness::floor`] and [`Softness::ceiling`] may have.
 pub const MAX_RADIUS: f32 = 64.0;
@@ -24,7 +24,7 @@ pub const LOOK_UP_SQUARE: f32 = 4.0 / 6.0;
 
 impl Softness {
     /// Greatest radius of a penumbra across the light, in metres; 0 for filters that are not soft. It is that of a
-    /// shadow [`USUAL_DISTANCE`] from its caster, and for [`FilterKind::Pcss`] [`GREATEST_DISTANCE`] from it.
+    /// shadow [`USUAL_DISTANCE`] from its caster, and for [`FilterKind::Pcss`] 20 m from it.
     pub fn metres(&self, filter: FilterKind) -> f32 {
         let distance = match filter {
             FilterKind::Vogel8 | FilterKind::Vogel16 | FilterKind::Vogel32 => USUAL_DISTANCE,

@@ -12,6 +12,8 @@
 //!        └──○────────○─────╲
 //! ```
 
+use core::ops;
+
 use glam::DVec3;
 
 use crate::base::{box_corners, checks};
@@ -272,19 +274,69 @@ pub(crate) fn at(a: DVec3, b: DVec3, t: f64) -> DVec3 {
 
 /// The part of a segment inside a box.
 pub(crate) fn clip_to_box(a: DVec3, b: DVec3, min: DVec3, max: DVec3) -> Option<(DVec3, DVec3)> {
+    let (enter, leave) = crossing(a, b - a, min, max)?;
+    Some((at(a, b, enter), at(a, b, leave)))
+}
+
+/// Shares of a ray or segment, from its start along a vector, at which it enters and leaves a box.
+#[inline]
+pub(crate) fn crossing(start: DVec3, along: DVec3, min: DVec3, max: DVec3) -> Option<(f64, f64)> {
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
     for axis in 0..3 {
-        let (start, along) = (a[axis], b[axis] - a[axis]);
+        let (start, along) = (start[axis], along[axis]);
         if along == 0.0 {
             if start < min[axis] || start > max[axis] {
                 return None;
             }
             continue;
         }
-        let (first, second) = ((min[axis] - start) / along, (max[axis] - start) / along);
-        let (first, second) = if along > 0.0 { (first, second) } else { (second, first) };
-        enter = enter.max(first);
-        leave = leave.min(second);
+        let (a, b) = ((min[axis] - start) / along, (max[axis] - start) / along);
+        let (first, last) = if a < b { (a, b) } else { (b, a) };
+        enter = if first > enter { first } else { enter };
+        leave = if last < leave { last } else { leave };
     }
-    if enter > leave { None } else { Some((at(a, b, enter), at(a, b, leave))) }
+    if enter > leave { None } else { Some((enter, leave)) }
+}
+
+/// Rays across and down the picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RayCount {
+    pub(crate) columns: usize,
+    pub(crate) rows: usize,
+}
+
+impl RayCount {
+    /// For maps that are read by view depth.
+    pub(crate) const FINE: Self = Self { columns: 32, rows: 18 };
+    /// For maps that are read by coverage, whose splits matter less.
+    pub(crate) const COARSE: Self = Self { columns: 20, rows: 11 };
+}
+
+/// Columns and rows of rays that may meet a box; all of them where it reaches before the near
+/// plane.
+pub(crate) fn covered(
+    view: &View,
+    picture: &Picture,
+    count: RayCount,
+    min: DVec3,
+    max: DVec3,
+) -> Option<(ops::Range<usize>, ops::Range<usize>)> {
+    let corners = box_corners(min, max);
+    if corners.into_iter().any(|corner| view.depth.distance(corner) < view.near) {
+        return Some((0..count.columns, 0..count.rows));
+    }
+    let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
+    for corner in corners {
+        let position = picture.position(corner);
+        for axis in 0..2 {
+            low[axis] = low[axis].min(position[axis]);
+            high[axis] = high[axis].max(position[axis]);
+        }
+    }
+    let range = |axis: usize, count: usize| {
+        let first = libm::ceil(low[axis] * count as f64 - 0.5).max(0.0);
+        let last = libm::floor(high[axis] * count as f64 - 0.5).min(count as f64 - 1.0);
+        if first > last { None } else { Some(first as usize..last as usize + 1) }
+    };
+    Some((range(0, count.columns)?, range(1, count.rows)?))
 }

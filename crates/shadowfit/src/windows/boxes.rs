@@ -13,8 +13,7 @@ use crate::content::Content;
 use crate::content::normal_cone::NormalCone;
 use crate::demand::need::{NeedSpace, PIXELS, Plane, needed_texel};
 use crate::fits::FitInput;
-use crate::slices::visible::{RayCount, covered, crossing};
-use crate::view::{Picture as Positions, Slice, View};
+use crate::view::{Picture as Positions, RayCount, Slice, View, covered, crossing};
 
 /// Rays across and down the picture.
 const RAYS: RayCount = RayCount::FINE;

@@ -1,8 +1,12 @@
-//! The cells of need that windows are placed by, in the plane across the light.
+//! The cells of need that windows are placed by, in the plane across the light, and where a window holds most of what
+//! is left to be served.
+//!
+//! For a place the cost of all cells is entered into a raster, of which the sum over every square as large as the
+//! window is found in steps: of 4 and of 16 rows, then of as many columns.
 
 use glam::{DVec3, Vec2};
 
-use crate::base::numbers::{greater, lesser};
+use crate::base::checks::{greater, lesser};
 use crate::demand::need::{LEVELS, NeedGrid, NeedSpace, Plane, SIDE};
 
 /// Most cells that are kept; those with the fewest points are left out where there are more.
@@ -14,14 +18,6 @@ pub(super) type PerCell = [f32; MAX_CELLS];
 /// Share of the visible points with the finest needs, whose needs count as no finer than those of the rest:
 /// surfaces seen at grazing angles ask for arbitrarily fine texels.
 const FINEST: f32 = 0.02;
-
-/// A rectangle of the plane: its least corner and its size, in metres.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Rect {
-    pub(super) min: Vec2,
-    pub(super) size: Vec2,
-}
 
 /// The cells of a frame: squares of the plane, and what the points in them ask for. They lie in columns, so that four
 /// at a time are computed with.
@@ -223,5 +219,127 @@ impl Cells {
             }
         }
         sums.iter().sum::<f32>() + rest
+    }
+}
+
+/// Squares of the raster in a window's side: four times four.
+const ACROSS: usize = 16;
+
+/// Squares of the raster along each axis: five windows.
+const RASTER: usize = 64;
+
+/// Squares at which a window may begin.
+const PLACES: usize = RASTER - ACROSS + 1;
+
+/// Cells wider than this many squares of the raster are left out: what they ask for is far coarser.
+const WIDEST: f32 = 16.0;
+
+/// Squares that such a cell may touch in a row, in groups of four.
+const TOUCHED: usize = 20;
+const GROUP: usize = 4;
+
+/// Length of a row, with room for what a cell in the last square touches.
+const ROW: usize = RASTER + TOUCHED;
+
+/// A rectangle of the plane: its least corner and its size, in metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Rect {
+    pub(super) min: Vec2,
+    pub(super) size: Vec2,
+}
+
+/// Costs by squares, row by row.
+type Raster = [[f32; ROW]; RASTER];
+
+/// The rectangle of a size with the greatest cost inside, to the nearest sixteenth of its size. `left` are the shares
+/// of the cells that are left.
+pub(super) fn best(cells: &Cells, left: &PerCell, size: Vec2) -> Rect {
+    let pitch = size / ACROSS as f32;
+    let corner = middle(cells, left) - pitch * (RASTER / 2) as f32;
+    #[expect(clippy::large_stack_arrays, reason = "21 KiB, for the time of a search")]
+    let mut sums: Raster = [[0.0; ROW]; RASTER];
+    enter(&mut sums, cells, left, (corner, pitch));
+    sum_rows(&mut sums, 1);
+    sum_rows(&mut sums, 4);
+    let (mut most, mut at) = (f32::MIN, (0, 0));
+    for (y, row) in sums[..PLACES].iter().enumerate() {
+        let row = sum_columns::<4>(&sum_columns::<1>(row));
+        let highest = row[..PLACES].iter().fold(f32::MIN, |highest, sum| greater(*sum, highest));
+        if highest > most {
+            most = highest;
+            at = (row[..PLACES].iter().position(|sum| *sum == highest).unwrap_or(0), y);
+        }
+    }
+    Rect { min: corner + Vec2::new(at.0 as f32, at.1 as f32) * pitch, size }
+}
+
+/// Adds to each row three that follow at a distance.
+fn sum_rows(sums: &mut Raster, distance: usize) {
+    for y in 0..RASTER - 3 * distance {
+        let [row, one, two, three] = [0, 1, 2, 3].map(|k| y + k * distance);
+        let (low, high) = sums.split_at_mut(one);
+        let others = high[0].iter().zip(&high[two - one]).zip(&high[three - one]);
+        for (sum, ((one, two), three)) in low[row].iter_mut().zip(others) {
+            *sum += one + two + three;
+        }
+    }
+}
+
+/// Sums of each square of a row and three that follow at a distance.
+fn sum_columns<const DISTANCE: usize>(row: &[f32; ROW]) -> [f32; ROW] {
+    let mut sums = [0.0; ROW];
+    for (x, sum) in sums[..RASTER - 3 * DISTANCE].iter_mut().enumerate() {
+        *sum = row[x] + row[x + DISTANCE] + row[x + 2 * DISTANCE] + row[x + 3 * DISTANCE];
+    }
+    sums
+}
+
+/// Middle of the costs.
+fn middle(cells: &Cells, left: &PerCell) -> Vec2 {
+    let (mut sum, mut total) = (Vec2::ZERO, 0.0);
+    for (i, left) in left.iter().enumerate().take(cells.len) {
+        let cost = cells.cost[i] * left;
+        (sum, total) = (sum + Vec2::new(cells.x[i], cells.y[i]) * cost, total + cost);
+    }
+    if total > 0.0 { sum / total } else { Vec2::ZERO }
+}
+
+/// Spreads the costs over the squares of the cells.
+fn enter(sums: &mut Raster, cells: &Cells, left: &PerCell, (corner, pitch): (Vec2, Vec2)) {
+    let per_pitch = Vec2::ONE / pitch;
+    let size = RASTER as f32;
+    for (i, left) in left.iter().enumerate().take(cells.len) {
+        let cost = cells.cost[i] * left;
+        let from_corner = Vec2::new(cells.x[i], cells.y[i]) - corner;
+        let (low, high) = ((from_corner - cells.half[i]) * per_pitch, (from_corner + cells.half[i]) * per_pitch);
+        let is_in = high.x > 0.0 && high.y > 0.0 && low.x < size && low.y < size;
+        let sides = high - low;
+        // Also for NaN.
+        if !(cost > 0.0 && is_in && sides.x <= WIDEST && sides.y <= WIDEST) {
+            continue;
+        }
+        let per_square = cost / (sides.x * sides.y);
+        let (x, y) = (greater(low.x, 0.0) as u32, greater(low.y, 0.0) as u32);
+        let (columns, rows) = (high.x as u32 - x, (high.y as u32).min(RASTER as u32 - 1) - y);
+        let mut widths = [[0.0_f32; GROUP]; TOUCHED / GROUP];
+        let groups = columns as usize / GROUP + 1;
+        let mut at = x as f32;
+        for group in &mut widths[..groups] {
+            for (width, k) in group.iter_mut().zip([0.0, 1.0, 2.0, 3.0]) {
+                let (low, high) = (greater(low.x, at + k), lesser(high.x, at + k + 1.0));
+                *width = greater(high - low, 0.0) * per_square;
+            }
+            at += GROUP as f32;
+        }
+        for y in y..=y + rows {
+            let height = lesser(high.y, y as f32 + 1.0) - greater(low.y, y as f32);
+            let row = &mut sums[y as usize][x as usize..][..groups * GROUP];
+            for (sums, widths) in row.chunks_exact_mut(GROUP).zip(&widths) {
+                for (sum, width) in sums.iter_mut().zip(widths) {
+                    *sum += width * height;
+                }
+            }
+        }
     }
 }

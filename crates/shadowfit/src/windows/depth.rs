@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::base::numbers::{ROUNDING, THINNEST};
+use crate::base::checks::{ROUNDING, THINNEST};
 use crate::base::{Boxes, FitError, moved};
 use crate::content::Content;
 use crate::demand::need::Plane;

@@ -7,9 +7,8 @@ use core::ops::Range;
 
 use glam::Vec2;
 
-use super::cells::{Cells, MAX_CELLS, PerCell, Rect};
+use super::cells::{self, Cells, MAX_CELLS, PerCell, Rect};
 use super::cost_of;
-use super::placement;
 use crate::light::grid;
 use crate::technique::settings::MAX_MAPS;
 
@@ -205,14 +204,14 @@ impl Planner<'_> {
         if !self.is_in_order(&other.steps) {
             return None;
         }
-        other.rects[window] = placement::best(self.cells, &served.left, self.size(other.steps[window]));
+        other.rects[window] = cells::best(self.cells, &served.left, self.size(other.steps[window]));
         let cost = self.cost_beyond(served.clone(), &other, window);
         Some((other, cost))
     }
 
     /// The held place while it holds nearly as much as the best one, else the least move to it.
     fn kept(&self, held: &Rect, left: &PerCell) -> Rect {
-        let best = placement::best(self.cells, left, held.size);
+        let best = cells::best(self.cells, left, held.size);
         let enough = self.held(&best, left) * HOLDS;
         if self.held(held, left) >= enough {
             return *held;
@@ -227,7 +226,7 @@ impl Planner<'_> {
     fn place_all(&self, plan: &mut Plan) {
         let mut left = [1.0; MAX_CELLS];
         for i in 0..self.count - 1 {
-            plan.rects[i] = placement::best(self.cells, &left, self.size(plan.steps[i]));
+            plan.rects[i] = cells::best(self.cells, &left, self.size(plan.steps[i]));
             self.take(&plan.rects[i], &mut left);
         }
     }

@@ -8,8 +8,8 @@
 use glam::DVec3;
 
 use super::cells::{Cells, Rect};
-use super::lattice::{Lattice, Window};
 use super::plan::{Plan, Planner, SERVES};
+use super::{Lattice, Window};
 use crate::demand::need::Plane;
 use crate::technique::settings::MAX_MAPS;
 

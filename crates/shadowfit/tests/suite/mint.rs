@@ -3,10 +3,7 @@
 use mint::{ColumnMatrix4, Point3, RowMatrix4, Vector3};
 use shadowfit::culling::{OrientedBox, Sphere};
 use shadowfit::glam::{DMat4, DVec3, Mat4, Vec3};
-use shadowfit::mint::{
-    dmat4, dvec3, frustum_from_eye_from_clip, frustum_from_world_from_clip, mat4, matrix, point, vec3, vector,
-    world_point,
-};
+use shadowfit::mint::{dmat4, dvec3, frustum_from_eye_from_clip, mat4, matrix, point, vec3, vector, world_point};
 use shadowfit::settings::FitSettings;
 use shadowfit::{Aabb, DepthConvention, FitError, ViewFrustum};
 
@@ -52,7 +49,7 @@ fn a_frustum_comes_from_a_matrix_of_any_crate() -> Result<(), FitError> {
     let foreign = ColumnMatrix4::from(world_from_clip.to_cols_array_2d());
     let eye = Point3::from(camera.eye.to_array());
     let expected = ViewFrustum::from_world_from_clip_f64(&world_from_clip, camera.eye, depth, 50.0)?;
-    assert_eq!(frustum_from_world_from_clip(foreign, eye, depth, 50.0)?, expected);
+    assert_eq!(ViewFrustum::from_world_from_clip_f64(&dmat4(foreign), dvec3(eye), depth, 50.0)?, expected);
     let relative = relative.as_mat4();
     let expected = ViewFrustum::from_eye_from_clip(&relative, camera.eye, depth, 50.0)?;
     let foreign = ColumnMatrix4::from(relative.to_cols_array_2d());

@@ -1,4 +1,7 @@
-//! Boxes: the bounds that an engine gives of its receivers and casters.
+//! How space is given: the boxes of receivers and casters, and the depth ranges of clip spaces.
+//!
+//! Every matrix that this crate reads or writes names its depth range with [`DepthConvention`], because a fit that
+//! guesses it wrong still looks right from most cameras.
 
 use glam::{DVec3, Vec3};
 
@@ -88,6 +91,38 @@ pub(crate) fn box_corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
 pub(crate) fn moved(aabb: &Aabb, offset: DVec3) -> (DVec3, DVec3) {
     let to = |v: Vec3| v.as_dvec3() + offset;
     (to(aabb.min), to(aabb.max))
+}
+
+/// Depth range of a clip space.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum DepthConvention {
+    /// Near is 0, far is 1 (wgpu, Direct3D, Vulkan, Metal).
+    #[default]
+    ZeroToOne,
+    /// Near is 1, far is 0: the same range reversed, for float precision.
+    Reversed,
+    /// Near is -1, far is 1 (OpenGL).
+    NegativeOneToOne,
+}
+
+impl DepthConvention {
+    /// Clip depth (after the division by w) of the near plane.
+    pub const fn near(self) -> f32 {
+        match self {
+            Self::ZeroToOne => 0.0,
+            Self::Reversed => 1.0,
+            Self::NegativeOneToOne => -1.0,
+        }
+    }
+
+    /// Clip depth (after the division by w) of the far plane.
+    pub const fn far(self) -> f32 {
+        match self {
+            Self::ZeroToOne | Self::NegativeOneToOne => 1.0,
+            Self::Reversed => 0.0,
+        }
+    }
 }
 
 #[cfg(test)]

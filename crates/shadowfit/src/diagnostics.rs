@@ -1,0 +1,311 @@
+//! How good a fit is, as numbers that any engine can compute: pure functions of the fit.
+//!
+//! A map's sharpness is measured in *screen pixels per shadow texel along the worse axis*: above
+//! one, texels show as jagged edges. Other figures say what the map covers, how much of it is used,
+//! how finely it stores depth and how far a bias is from acne.
+
+pub use crate::bias::depth_storage::{DepthStorage, depth_step, depth_step_at};
+
+use glam::{DVec2, DVec3, Mat4, UVec2, Vec3};
+
+use crate::base::{DepthConvention, FitError, checks};
+use crate::bias::{Bias, Reach, SQUARED_SINE_ROUNDING, Slope, depth_precision};
+use crate::fits::LightFit;
+
+/// Screen pixels that one shadow texel covers on a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PixelsPerTexel {
+    /// Along the worse axis: pixels per texel in the direction in which texels look longest.
+    pub worse_axis: f32,
+    /// By area: pixels² per texel.
+    pub area: f32,
+}
+
+/// Screen pixels per shadow texel on the surface through `point` with the given normal.
+///
+/// `point` (metres) and `normal` (any length) are in world axes, the point and the input of
+/// `clip_from_world` (the **camera's**, any depth range) **relative to the fit's origin**;
+/// `viewport` is the picture's size in pixels. `None` where the point is not in front of the
+/// camera, or where the surface is edge-on to the light, so that its texels are infinitely long.
+///
+/// # Errors
+///
+/// [`FitError::NotFinite`] for the point or the matrix, [`FitError::BadDirection`] for the normal.
+///
+/// # Derivation
+///
+/// Let a and b be coordinates in the surface's tangent plane. The chain surface → screen has the
+/// Jacobian S = ∂(pixel)/∂(a, b), surface → map has T = ∂(texel)/∂(a, b), so
+/// J = ∂(pixel)/∂(texel) = S T⁻¹. J takes a circle of one texel to an ellipse of pixels; the
+/// worse axis is J's greatest singular value, the area |det J|. For clip = M p the screen
+/// position is x/w, whose derivative along a tangent t is (Mt.x - (x/w) Mt.w) / w.
+pub fn pixels_per_texel(
+    fit: &LightFit,
+    clip_from_world: &Mat4,
+    viewport: UVec2,
+    point: Vec3,
+    normal: Vec3,
+) -> Result<Option<PixelsPerTexel>, FitError> {
+    checks::point("the point", point.as_dvec3())?;
+    for element in clip_from_world.to_cols_array() {
+        checks::finite("an element of clip_from_world", f64::from(element))?;
+    }
+    let normal = checks::unit("the surface normal", normal)?;
+    let tangents = tangents(normal);
+    let Some(screen) = screen_jacobian(clip_from_world, viewport, point, tangents) else {
+        return Ok(None);
+    };
+    if normal.dot(fit.direction.as_dvec3()).abs() < EDGE_ON_COSINE {
+        return Ok(None);
+    }
+    Ok(Some(pixels_of_texels(screen, tangents.map(|tangent| texels_along(fit, tangent)))))
+}
+
+/// Pixels per texel from the pixels and the texels per metre along the same two tangents.
+pub(crate) fn pixels_of_texels([sa, sb]: [DVec2; 2], [ta, tb]: [DVec2; 2]) -> PixelsPerTexel {
+    let determinant = ta.x * tb.y - tb.x * ta.y;
+    let along_u = (sa * tb.y - sb * ta.y) / determinant;
+    let along_v = (sb * ta.x - sa * tb.x) / determinant;
+    let area = (along_u.x * along_v.y - along_v.x * along_u.y).abs();
+    PixelsPerTexel { worse_axis: greatest_singular_value(along_u, along_v) as f32, area: area as f32 }
+}
+
+/// Below this cosine between normal and light a surface counts as edge-on to the light: f32 axes
+/// are rounded by as much.
+pub(crate) const EDGE_ON_COSINE: f64 = 1e-6;
+
+/// Two unit vectors that span the plane with the given unit normal.
+pub(crate) fn tangents(normal: DVec3) -> [DVec3; 2] {
+    let axis = if normal.x.abs() < 0.6 { DVec3::X } else { DVec3::Y };
+    let a = normal.cross(axis);
+    let a = a / checks::length(a);
+    [a, normal.cross(a)]
+}
+
+/// Pixels per metre along both tangents at a point, or `None` behind the camera.
+pub(crate) fn screen_jacobian(
+    clip_from_world: &Mat4,
+    viewport: UVec2,
+    point: Vec3,
+    tangents: [DVec3; 2],
+) -> Option<[DVec2; 2]> {
+    let m = clip_from_world.as_dmat4();
+    let p = point.as_dvec3();
+    let clip = m.x_axis * p.x + m.y_axis * p.y + m.z_axis * p.z + m.w_axis;
+    if clip.w <= 0.0 {
+        return None;
+    }
+    // Clip space is two units wide; the sign of y does not matter here.
+    let half = viewport.as_dvec2() * 0.5;
+    Some(tangents.map(|t| {
+        let d = m.x_axis * t.x + m.y_axis * t.y + m.z_axis * t.z;
+        let x = (d.x - clip.x / clip.w * d.w) / clip.w;
+        let y = (d.y - clip.y / clip.w * d.w) / clip.w;
+        DVec2::new(x, y) * half
+    }))
+}
+
+/// Texels per metre along a tangent.
+fn texels_along(fit: &LightFit, tangent: DVec3) -> DVec2 {
+    let m = fit.uv_from_world.as_dmat4();
+    let d = m.x_axis * tangent.x + m.y_axis * tangent.y + m.z_axis * tangent.z;
+    DVec2::new(d.x, d.y) * fit.resolution.as_dvec2()
+}
+
+/// Greatest singular value of the 2×2 matrix with these columns, in the form that does not
+/// cancel: half the sum of the radii of its rotating and its mirroring part.
+fn greatest_singular_value(c0: DVec2, c1: DVec2) -> f64 {
+    let rotating = DVec2::new(c0.x + c1.y, c0.y - c1.x);
+    let mirroring = DVec2::new(c0.x - c1.y, c0.y + c1.x);
+    0.5 * (libm::sqrt(rotating.dot(rotating)) + libm::sqrt(mirroring.dot(mirroring)))
+}
+
+/// Where a point lies in a map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Coverage {
+    /// Inside, with every texel that the filter reads.
+    Covered,
+    /// Inside, but the filter reads texels beyond the map's border.
+    Border,
+    /// Outside, across the light.
+    Aside,
+    /// Outside, nearer to the light than the near plane: it neither receives nor casts a shadow.
+    BeforeNear,
+    /// Outside, behind the far plane.
+    BehindFar,
+}
+
+impl Coverage {
+    /// Whether the map can be read for the point: [`LightFit::covers`].
+    pub const fn is_inside(self) -> bool {
+        matches!(self, Self::Covered | Self::Border)
+    }
+}
+
+/// Where a world position, in metres, lies in a map, for a filter of the given [`Reach`]. Inside is
+/// defined by [`LightFit::covers`]; a point outside across the light is [`Coverage::Aside`] at any
+/// depth.
+///
+/// # Errors
+///
+/// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the point or the reach.
+pub fn coverage(fit: &LightFit, reach: impl Into<Reach>, point: DVec3) -> Result<Coverage, FitError> {
+    checks::point("the point", point)?;
+    let reach = reach.into().checked()?;
+    let at = texture_point(fit, point - fit.origin)?;
+    let uv = DVec2::new(at.x, at.y);
+    if fit.covers(point) {
+        // A texel beyond the border has its centre half a texel out.
+        let free = uv.min(1.0 - uv) * fit.resolution.as_dvec2() + 0.5;
+        let read = reach.disc.as_dvec2() + f64::from(reach.taps);
+        return Ok(if free.cmpge(read).all() { Coverage::Covered } else { Coverage::Border });
+    }
+    let depth = if fit.depth == DepthConvention::Reversed { 1.0 - at.z } else { at.z };
+    let outside = (uv - 0.5).abs() - 0.5;
+    let aside = outside.x.max(outside.y);
+    let along = (depth - 0.5).abs() - 0.5;
+    Ok(if aside > ASIDE_TOLERANCE || aside >= along {
+        Coverage::Aside
+    } else if depth < 0.5 {
+        Coverage::BeforeNear
+    } else {
+        Coverage::BehindFar
+    })
+}
+
+/// Share of the map's extent by which a point may lie beside it by rounding alone; below it, the
+/// side with the greater excess is reported.
+const ASIDE_TOLERANCE: f64 = 1e-6;
+
+/// Share of the map's area, 0..=1, inside the convex hull of `points` as seen by the light: the
+/// corners of a frustum's slice, of the receivers' boxes or of anything else that the map must
+/// cover. They are in world axes **relative to the fit's origin**, in metres, in any order; depth
+/// is ignored, and the part outside the map is cut off. Fewer than three points have no area.
+///
+/// It is an upper bound of the share that visible points use, since they may not fill their hull.
+///
+/// # Errors
+///
+/// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the points.
+///
+/// # Algorithm
+///
+/// The hull's upper chain starts at the leftmost point and goes to the point of greatest slope
+/// ahead, again and again (R. A. Jarvis, "On the identification of the convex hull of a finite
+/// set of points in the plane", 1973, by slopes instead of angles, so that it always moves on);
+/// the lower chain likewise. Their difference, clamped to the map, is integrated edge by edge, so
+/// no hull is stored: for n points and h corners n·h steps, and no limit to either.
+pub fn share_of_map(fit: &LightFit, points: &[Vec3]) -> Result<f32, FitError> {
+    for point in points {
+        checks::point("a point of what the map is for", point.as_dvec3())?;
+        texture_point(fit, point.as_dvec3())?;
+    }
+    // Checked above, so that no point is dropped here.
+    let seen = || points.iter().filter_map(|p| texture_point(fit, p.as_dvec3()).ok()).map(|p| DVec2::new(p.x, p.y));
+    let (least, greatest) = seen().fold((1.0, 0.0), |(min, max): (f64, f64), p| (min.min(p.x), max.max(p.x)));
+    let width = (greatest.min(1.0) - least.max(0.0)).max(0.0);
+    // The area above the lower chain is the area below the upper chain of the flipped map.
+    let above = area_below_chain(|| seen().map(|p| DVec2::new(p.x, 1.0 - p.y)));
+    Ok((area_below_chain(seen) + above - width).clamp(0.0, 1.0) as f32)
+}
+
+/// Area of the unit square below the upper chain of the points' hull.
+fn area_below_chain<I: Iterator<Item = DVec2>>(points: impl Fn() -> I) -> f64 {
+    let leftmost = |a: DVec2, b: DVec2| if b.x < a.x || (b.x == a.x && b.y > a.y) { b } else { a };
+    let Some(mut from) = points().reduce(leftmost) else { return 0.0 };
+    let mut area = 0.0;
+    let steeper = |from: DVec2| {
+        move |a: DVec2, b: DVec2| {
+            let turn = (a - from).perp_dot(b - from);
+            if turn > 0.0 || (turn == 0.0 && b.x > a.x) { b } else { a }
+        }
+    };
+    while let Some(to) = points().filter(|p| p.x > from.x).reduce(steeper(from)) {
+        area += area_below_edge(from, to);
+        from = to;
+    }
+    area
+}
+
+/// Area of the unit square below an edge that goes to the right.
+fn area_below_edge(from: DVec2, to: DVec2) -> f64 {
+    let (left, right) = (from.x.max(0.0), to.x.min(1.0));
+    if left >= right {
+        return 0.0;
+    }
+    let height = |x: f64| from.y + (to.y - from.y) * ((x - from.x) / (to.x - from.x));
+    let (a, b) = (height(left), height(right));
+    // Integral of clamp(y, 0, 1) from y = 0.
+    let integral = |y: f64| if y < 1.0 { 0.5 * y.max(0.0) * y.max(0.0) } else { y - 0.5 };
+    let mean =
+        if (b - a).abs() < LEVEL { (0.5 * (a + b)).clamp(0.0, 1.0) } else { (integral(b) - integral(a)) / (b - a) };
+    mean * (right - left)
+}
+
+/// Rise below which an edge counts as level: the mean height is then off by less than this
+/// squared, and the quotient of differences would lose more.
+const LEVEL: f64 = 1e-6;
+
+/// Texture coordinates and stored depth of a point relative to the fit's origin, in f64.
+fn texture_point(fit: &LightFit, point: DVec3) -> Result<DVec3, FitError> {
+    let m = fit.uv_from_world.as_dmat4();
+    let at = m.x_axis * point.x + m.y_axis * point.y + m.z_axis * point.z + m.w_axis;
+    for coordinate in [at.x, at.y, at.z] {
+        checks::finite("a texture coordinate", coordinate)?;
+    }
+    Ok(at.truncate())
+}
+
+/// Bias less what a plane needs. Where it is negative, so much bias is missing, and the plane
+/// shadows itself in stripes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct AcneMargin {
+    /// In metres along the normal: the distance by which the point could sink into its surface
+    /// without acne.
+    pub metres: f32,
+    /// The same in texels, by the longer side of a texel, as biases are set.
+    pub texels: f32,
+}
+
+/// Predicted margin of a bias against acne at a world position (f64, metres) on a surface with the
+/// given **geometric** normal (world axes, any length, either side): the bias given there less the
+/// bias that its plane needs for a filter of the given reach [on hardware](Reach::on_hardware) and
+/// a map of the given storage. `None` where the map does not cover the point.
+///
+/// With the normal offset h, the depth bias d of [`Bias::on_plane`] and the depth range R the
+/// margin is `h + (d - precision) · R · cos θ - E · (tx·|n·x| + ty·|n·y|)`. At 0 or more a plane
+/// cannot shadow itself; below, part of its points do. Curved surfaces need more than their
+/// tangent plane.
+///
+/// # Errors
+///
+/// [`FitError::NotFinite`], [`FitError::OutOfRange`] for the point or the reach, and
+/// [`FitError::BadDirection`] for the normal.
+pub fn acne_margin(
+    fit: &LightFit,
+    bias: &Bias,
+    reach: impl Into<Reach>,
+    storage: impl Into<DepthStorage>,
+    point: DVec3,
+    normal: Vec3,
+) -> Result<Option<AcneMargin>, FitError> {
+    let reach = reach.into().checked()?;
+    let given = bias.on_plane(fit, normal)?;
+    let plane = Slope::of(fit, normal)?;
+    if !coverage(fit, reach, point)?.is_inside() {
+        return Ok(None);
+    }
+    // The sine that a shader takes from an f32 cosine may be less than the one of `on_plane`.
+    let squared_sine = 1.0 - plane.cosine * plane.cosine;
+    let sine = libm::sqrt((squared_sine - SQUARED_SINE_ROUNDING).max(0.0));
+    let offset = f64::from(given.offset).min(f64::from(bias.normal_offset) * sine);
+    let depth = f64::from(given.depth) - f64::from(depth_precision(fit, storage));
+    let along_normal = depth * f64::from(fit.depth_range) * plane.cosine;
+    let metres = offset + along_normal - reach.on_hardware(fit).rise(plane.u, plane.v);
+    let texel = f64::from(fit.texel_size.x.max(fit.texel_size.y));
+    let rounded = |margin| checks::rounded("the acne margin", margin);
+    Ok(Some(AcneMargin { metres: rounded(metres)?, texels: rounded(metres / texel)? }))
+}
