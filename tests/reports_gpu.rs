@@ -205,7 +205,7 @@ fn tuning_finds_the_same_technique_twice_and_says_what_each_change_bought() {
     };
     let [technique, code, steps] = tuned("a");
     assert_eq!(tuned("b"), [technique.clone(), code.clone(), steps.clone()]);
-    assert!(technique.contains("name = \"tuned\"") && code.starts_with("let technique = Technique"));
+    assert!(technique.contains("name = \"tuned\"") && code.starts_with("let mut technique = Technique"));
     let bought = steps.lines().filter(|line| line.ends_with("% |")).count();
     assert!(bought >= 2, "changes that helped:\n{steps}");
     // The file is a technique that reports take.
