@@ -15,7 +15,7 @@ use anyhow::{Context, Result};
 use clap::{Parser, ValueEnum};
 use glam::{DVec3, Vec3};
 use shadowfit::clusters::Clusters;
-use shadowfit::{FittedMap, ShadowFitter, Technique};
+use shadowfit::{FittedMap, ShadowFitter};
 use shadowfit_render::{
     AdapterChoice, Atmosphere, Culling, Frame, Gpu, GpuScene, MapStatistics, RenderTarget, Renderer,
 };
@@ -79,9 +79,14 @@ fn main() -> Result<()> {
         let objects = args.geometry.read(&scenarios.scenes[scene])?;
         for name in &args.techniques {
             let named = NamedTechnique::find(name)?;
-            let sums = measure(&gpu, &args, (&scenarios, scene), &objects, &named.technique)
+            let sums = measure(&gpu, &args, (&scenarios, scene), &objects, &named)
                 .with_context(|| format!("{}, {name}", scenarios.scenes[scene].name))?;
-            println!("| {} | `{}` | {} |", scenarios.scenes[scene].name, named.name, sums.row(named.technique.count));
+            println!(
+                "| {} | `{}` | {} |",
+                scenarios.scenes[scene].name,
+                named.name,
+                sums.row(named.technique.maps.count())
+            );
         }
     }
     Ok(())
@@ -93,10 +98,10 @@ fn measure(
     args: &Args,
     (scenarios, scene): (&Scenarios, usize),
     objects: &[Vec<Corners>],
-    technique: &Technique,
+    named: &NamedTechnique,
 ) -> Result<Sums> {
     let name = &scenarios.scenes[scene].name;
-    let mut renderer = Renderer::new(gpu, &ShadowMapDescriptor::from(technique), 1)?;
+    let mut renderer = Renderer::new(gpu, &ShadowMapDescriptor::from(&named.technique), 1)?;
     let layout = renderer.material_layout();
     let prepared = PreparedScene::new(gpu, layout, Scene::from_objects(name, objects))?;
     let casters = match args.casters {
@@ -107,7 +112,7 @@ fn measure(
     let mut drawn = GpuScene::new(gpu, layout, &drawn, &drawn.pose(None, 0.0));
     // Only what the shadow passes draw is counted.
     let target = renderer.target(gpu, [1, 1]);
-    let mut fitter = ShadowFitter::new(technique);
+    let mut fitter = ShadowFitter::new(&named.technique);
     let mut sums = Sums::default();
     for (index, frame) in scenarios.frames.iter().enumerate() {
         if frame.scene != scene || frame.frame >= args.frames {
@@ -115,7 +120,7 @@ fn measure(
         }
         let is_first = scenarios.previous(index).is_none();
         let view = View { camera: frame.camera(), direction: DVec3::from_array(frame.light_dir).as_vec3(), is_first };
-        let maps = prepared.fit_next(&mut fitter, &view)?;
+        let maps = prepared.fit_next(&mut fitter, named.inputs, &view)?;
         if !is_first {
             sums.add(gpu, (&mut renderer, &target), &mut drawn, (&view, &maps))?;
         }

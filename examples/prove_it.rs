@@ -9,10 +9,11 @@
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::histogram::DepthBounds;
 use shadowfit::map_fitter::fewest_maps;
-use shadowfit::settings::{FitKind, SplitScheme};
+use shadowfit::settings::SplitScheme;
 use shadowfit::verify::{Certificate, CoverageQuery, Margins, verify};
 use shadowfit::{
-    Aabb, Boxes, FitError, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace,
+    Aabb, Boxes, FitError, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Slices, Technique, ViewFrustum,
+    Workspace,
 };
 
 const FRAMES: u32 = 120;
@@ -38,18 +39,22 @@ fn main() -> Result<(), FitError> {
             }
         }
     }
-    println!("{FRAMES} frames of {} maps: least free texels at the sides {:?}", technique.count, &least.planes[..4]);
+    println!(
+        "{FRAMES} frames of {} maps: least free texels at the sides {:?}",
+        technique.maps.count(),
+        &least.planes[..4]
+    );
     println!("least metres free at the far plane {}, before the first caster {}", least.planes[4], least.casters);
 
     let views = [camera(0).frustum()?];
     let input = input(&views, boxes);
-    let slices = technique.with_fit(technique.fit.with_kind(FitKind::Focused));
-    let count = fewest_maps(&input, &slices, 1.5, &mut workspace)?;
+    let slices = Slices::default();
+    let count = fewest_maps(&input, &technique.with_maps(slices), 1.5, &mut workspace)?;
     println!("{count} slices instead of {} make texels at most 1.5 times as coarse", slices.count);
 
     // Where no boxes say what is visible: without bounds, with those that a reduction of the last depth buffer gives,
     // and with wrong ones, as after a camera cut.
-    let logarithmic = slices.with_splits(SplitScheme::Logarithmic);
+    let logarithmic = technique.with_maps(slices.with_splits(SplitScheme::Logarithmic));
     for depth_bounds in [None, Some((9.0, 60.0)), Some((1.0, 2.0))] {
         let depth_bounds = depth_bounds.map(|(near, far)| DepthBounds { near, far });
         let input = FitInput { receivers: None, depth_bounds, ..input };

@@ -3,7 +3,7 @@
 //! need no shadow map.
 
 use shadowfit::Technique;
-use shadowfit::settings::FitKind;
+use shadowfit::{Maps, OneMap};
 use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_truth::{Class, Judged};
@@ -31,9 +31,11 @@ fn show(stage: &mut Stage, artefact: Artefact) {
     stage.show_artefact(artefact);
     assert_eq!(stage.notice(), None);
     let shown = stage.settings.technique;
-    assert_eq!((shown.count, shown.splits, shown.stabilise), (before.count, before.splits, before.stabilise));
-    let expected = if before.fit.kind == FitKind::Windows { FitKind::Focused } else { before.fit.kind };
-    assert!(shown.count == 1 || shown.fit.kind == expected);
+    match before.maps {
+        Maps::One(OneMap { stabilise, .. }) => assert_eq!(shown.maps.as_one().stabilise, stabilise),
+        Maps::Slices(_) => assert_eq!(shown.maps, before.maps),
+        Maps::Windows(_) => assert_eq!(shown.maps, before.maps.as_slices().into()),
+    }
 }
 
 fn judged(stage: &mut Stage, subject_only: bool) -> Judged {

@@ -3,7 +3,7 @@
 
 use shadowfit::glam::{DVec3, Mat4, Vec3, Vec4};
 use shadowfit::presets::RECOMMENDED;
-use shadowfit::settings::{BiasSettings, FitKind, FitSettings, MapFormat};
+use shadowfit::settings::{BiasSettings, FitSettings, MapFormat};
 use shadowfit::{Bias, DepthConvention, FittedMap, LightFit, PerspectiveCamera, Technique, fit};
 use shadowfit_params::tool::{CameraSettings, LightSettings};
 use shadowfit_render::{Atmosphere, FlyCamera, FrameUniform, Line, box_lines};
@@ -151,7 +151,7 @@ fn the_core_the_shadow_map_and_the_docs_recommend_the_same_technique() {
     let recommended = Technique::default();
     assert_eq!(Technique::preset(RECOMMENDED), Some(recommended));
     assert_eq!(NamedTechnique::default().technique, recommended);
-    assert_eq!(FitSettings::default().with_kind(FitKind::Windows), recommended.fit);
+    assert_eq!(FitSettings::default().map, recommended.fit);
     assert_eq!(ShadowMapDescriptor::default(), ShadowMapDescriptor::from(&recommended));
     assert_eq!(recommended.border(), 3.0, "the reach of PCF 5×5");
     for (name, text) in [

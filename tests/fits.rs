@@ -1,7 +1,8 @@
 //! The fits in the viewer, on the default scene: whichever is chosen, no shadow has a hole once the casters have a
 //! place in the map, and knowing the scene makes texels finer. Judged against rays, which need no shadow map.
 
-use shadowfit::settings::{CasterPolicy, FitKind, Stabilise};
+use shadowfit::settings::{CasterPolicy, FitKind, Shape, Stabilise};
+use shadowfit::{Maps, OneMap, Slices};
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_truth::Class;
 use shadowfit_viewer::{Artefact, Stage};
@@ -35,9 +36,12 @@ fn wrong(stage: &mut Stage) -> [f32; 2] {
 #[test]
 fn gpu_every_policy_that_thinks_of_casters_closes_the_holes_of_every_fit() {
     let mut stage = stage();
-    for kind in KINDS.into_iter().chain([FitKind::Windows]) {
+    let (windows, slices) = (Maps::default(), Maps::from(Slices::default()));
+    for maps in KINDS.map(|kind| slices.with_kind(kind)).into_iter().chain([windows]) {
+        let kind = maps.shape().map(|shape| shape.kind);
         for casters in [CasterPolicy::Extend, CasterPolicy::List, CasterPolicy::SceneBounds, CasterPolicy::DepthClamp] {
-            stage.settings.technique.fit = stage.settings.technique.fit.with_kind(kind).with_casters(casters);
+            let technique = stage.settings.technique;
+            stage.settings.technique = technique.with_maps(maps).with_fit(technique.fit.with_casters(casters));
             let [hole, other] = wrong(&mut stage);
             let fit = stage.maps(SIZE)[0].fit;
             println!("{kind:?} {casters:?}: hole {hole}, false {other}, {} {}", fit.texel_size, fit.depth_range);
@@ -50,7 +54,8 @@ fn gpu_every_policy_that_thinks_of_casters_closes_the_holes_of_every_fit() {
 fn gpu_without_a_thought_for_casters_the_tight_fits_leave_holes() {
     let mut stage = stage();
     for kind in [FitKind::XnaSample, FitKind::FrustumAabb, FitKind::Focused] {
-        stage.settings.technique.fit = stage.settings.technique.fit.with_kind(kind).with_casters(CasterPolicy::None);
+        let technique = &mut stage.settings.technique;
+        (technique.maps, technique.fit.casters) = (technique.maps.with_kind(kind), CasterPolicy::None);
         let [hole, _] = wrong(&mut stage);
         println!("{kind:?}: hole {hole}");
         assert!(hole > 10.0 * STRAY, "{kind:?}: {hole}");
@@ -60,9 +65,10 @@ fn gpu_without_a_thought_for_casters_the_tight_fits_leave_holes() {
 #[test]
 fn gpu_texels_are_finest_with_the_focused_fit_and_depth_is_shortest_with_depth_clamp() {
     let mut stage = stage();
-    let single = stage.settings.technique.with_count(1).with_stabilise(Stabilise::Off);
+    let single = stage.settings.technique;
     let mut fit = |kind, casters| {
-        stage.settings.technique = single.with_fit(single.fit.with_kind(kind).with_casters(casters));
+        let one = OneMap { shape: Shape::new(kind), stabilise: Stabilise::Off };
+        stage.settings.technique = single.with_maps(one).with_fit(single.fit.with_casters(casters));
         let fit = stage.maps(SIZE)[0].fit;
         (fit.texel_size.x * fit.texel_size.y, fit.depth_range)
     };

@@ -53,7 +53,7 @@ fn descriptors() -> Vec<ShadowMapDescriptor> {
     for format in MapFormat::ALL {
         for filter in FilterKind::ALL {
             for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
-                for choice in [MapChoice::Coverage, MapChoice::ViewDepth] {
+                for choice in [MapChoice::default(), MapChoice::ViewDepth { overlap: 0.0 }] {
                     all.push(ShadowMapDescriptor { format, filter, depth, choice, ..Default::default() });
                 }
             }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use shadowfit::{ShadowFitter, Technique};
+use shadowfit_params::Inputs;
 use shadowfit_params::tool::{CameraSettings, LightSettings};
 use shadowfit_render::{FlyCamera, Renderer};
 use shadowfit_scene::{Scene, builtin, load_gltf};
@@ -36,7 +37,7 @@ pub(crate) fn time(bench: &Bench, files: &[PathBuf]) -> Result<Table> {
         let camera = fly.perspective(&CameraSettings::default(), aspect);
         let view = View { camera, direction: LightSettings::default().direction(), is_first: true };
         let mut evaluator = Evaluator::new(renderer, Judging { size: SIZE, ..Judging::default() });
-        let maps = prepared.fit_alone(&mut ShadowFitter::new(&technique), &view)?;
+        let maps = prepared.fit_alone(&mut ShadowFitter::new(&technique), Inputs::default(), &view)?;
         let mut live = LiveTruth::new(gpu, &prepared)?;
         let repeats = bench.frames.clamp(1, 100) as u32;
         let triangles = prepared.casting_triangles();

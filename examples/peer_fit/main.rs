@@ -12,15 +12,18 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, ensure};
 use clap::Parser;
 use shadowfit::PRESETS;
-use shadowfit::settings::ReceiverSource;
+use shadowfit_params::{BoxSource, NAMED_INPUTS};
 use shadowfit_study::NamedTechnique;
 use shadowfit_truth::peers::Scenarios;
 
 #[path = "../shared/geometry.rs"]
 mod geometry;
+#[path = "../shared/inputs.rs"]
+mod inputs;
 mod runner;
 
 use geometry::Source;
+use inputs::InputArgs;
 
 /// What bad input ends with, as clap's own complaints do.
 const BAD_INPUT: u8 = 2;
@@ -37,6 +40,8 @@ struct Args {
     /// Width and height of the maps, in texels [default: what the technique says, 2048 for the names]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=65536))]
     resolution: Option<u32>,
+    #[command(flatten)]
+    inputs: InputArgs,
     #[command(flatten)]
     geometry: Option<Source>,
     /// The fit file to write
@@ -69,6 +74,9 @@ fn list() {
             preset.name, preset.summary, "", preset.advice
         );
     }
+    for named in &NAMED_INPUTS {
+        println!("{:15} {}, {}", named.name, named.preset, named.inputs);
+    }
 }
 
 fn run(args: &Args) -> Result<()> {
@@ -76,16 +84,18 @@ fn run(args: &Args) -> Result<()> {
     if let Some(texels) = args.resolution {
         named = named.with_resolution(texels);
     }
+    named.inputs = args.inputs.changed(named.inputs);
     // The measures of fits are of points: no filter reads beside them.
     let technique = &mut named.technique;
     technique.fit.border = Some(0.0);
     let scenarios = args.scenarios.as_ref().context("give the file of scenarios")?;
     let out = args.out.as_ref().context("give the file to write with -o OUT.json")?;
     let scenarios = Scenarios::read(scenarios)?;
-    let needs = technique.receivers == ReceiverSource::Clusters || technique.uses_seen();
+    let needs = named.inputs.boxes == BoxSource::Clusters || named.inputs.tell(&named.technique);
     ensure!(
         !needs || args.geometry.is_some(),
-        "--fit {} needs the scenes' triangles: give --assets DIR or --triangles DIR",
+        "--fit {} needs the scenes' triangles: give --assets DIR or --triangles DIR, or \
+         --boxes objects --unseen",
         args.fit
     );
     let source = args.geometry.as_ref().filter(|_| needs);

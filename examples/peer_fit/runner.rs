@@ -7,8 +7,9 @@ use glam::{DVec3, Vec3};
 use shadowfit::choice::MapOrder;
 use shadowfit::clusters::Clusters;
 use shadowfit::normal_cone::NormalCone;
-use shadowfit::settings::{MapChoice, ReceiverSource};
+use shadowfit::settings::MapChoice;
 use shadowfit::{Aabb, Boxes, FitInput, FittedMap, FittedMaps, Seen, ShadowFitter, Technique, ViewFrustum};
+use shadowfit_params::BoxSource;
 use shadowfit_study::{NamedTechnique, fit_map, see_by_rays};
 use shadowfit_truth::Tracer;
 use shadowfit_truth::peers::{FitFile, FitFrame, FitMap, Scenarios, Scene};
@@ -50,8 +51,7 @@ pub(crate) struct Times {
 /// Fits every frame of the scenarios.
 pub(crate) fn run(scenarios: &Scenarios, named: &NamedTechnique, source: Option<&Source>) -> Result<(FitFile, Times)> {
     let technique = &named.technique;
-    let known: Vec<Known> =
-        scenarios.scenes.iter().map(|scene| know(scene, technique, source)).collect::<Result<_>>()?;
+    let known: Vec<Known> = scenarios.scenes.iter().map(|scene| know(scene, named, source)).collect::<Result<_>>()?;
     let frames: Vec<Prepared> =
         (0..scenarios.frames.len()).map(|index| prepare(scenarios, index, &known, technique)).collect::<Result<_>>()?;
     let mut times = vec![Vec::with_capacity(BATCHES); frames.len()];
@@ -82,7 +82,7 @@ pub(crate) fn run(scenarios: &Scenarios, named: &NamedTechnique, source: Option<
         peer: format!("shadowfit {}", named.name),
         language: "Rust".to_owned(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
-        note: named.summary.clone(),
+        note: named.description(),
         depth_clamp: false,
         ns_per_fit: Some(median(all)),
         ns_quiet: Some(median(fastest)),
@@ -91,17 +91,17 @@ pub(crate) fn run(scenarios: &Scenarios, named: &NamedTechnique, source: Option<
     Ok((file, times))
 }
 
-fn know(scene: &Scene, technique: &Technique, source: Option<&Source>) -> Result<Known> {
+fn know(scene: &Scene, named: &NamedTechnique, source: Option<&Source>) -> Result<Known> {
     let triangles = source.map(|source| source.read(scene)).transpose()?;
-    let (boxes, cones) = match (technique.receivers, &triangles) {
-        (ReceiverSource::Clusters, Some(objects)) => {
+    let (boxes, cones) = match (named.inputs.boxes, &triangles) {
+        (BoxSource::Clusters, Some(objects)) => {
             let objects: Vec<&[[Vec3; 3]]> = objects.iter().map(Vec::as_slice).collect();
             let clusters = Clusters::build(&objects, Clusters::DEFAULT_LIMIT).context(scene.name.clone())?;
             (clusters.boxes().to_vec(), clusters.cones().to_vec())
         }
         _ => (scene.objects.iter().map(outward).collect(), Vec::new()),
     };
-    let tracer = triangles.filter(|_| technique.uses_seen());
+    let tracer = triangles.filter(|_| named.inputs.tell(&named.technique));
     Ok(Known { boxes, cones, tracer: tracer.map(|objects| Tracer::new(objects.into_iter().flatten())) })
 }
 
@@ -162,13 +162,13 @@ fn fit_all(frames: &[Prepared], known: &[Known], technique: &Technique) -> Resul
 /// The maps of a frame as the fit file has them, in the order in which points try them: that of their ends, or by
 /// coverage from the finest on, without ends and without those that are empty.
 fn fit_maps(maps: &FittedMaps, technique: &Technique) -> Vec<FitMap> {
-    let choice = technique.map_choice();
+    let choice = technique.maps.choice();
     let fits = maps.iter().map(|map| &map.fit);
     let in_order = MapOrder::new(choice, fits);
     let fitted = in_order.iter().map(|index| fit_map_of(&maps[index]));
     match choice {
-        MapChoice::ViewDepth => fitted.collect(),
-        MapChoice::Coverage => fitted.map(|map| FitMap { split_far: FitMap::NO_END, ..map }).collect(),
+        MapChoice::ViewDepth { .. } => fitted.collect(),
+        MapChoice::Coverage { .. } => fitted.map(|map| FitMap { split_far: FitMap::NO_END, ..map }).collect(),
     }
 }
 

@@ -3,9 +3,11 @@
 use anyhow::{Context, Result, bail, ensure};
 use shadowfit::Technique;
 use shadowfit::settings::{BiasSettings, FilterKind, MapFormat};
-use shadowfit_params as params;
+use shadowfit_params::{self as params, Inputs};
 use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_study::{Judging, NamedTechnique};
+
+use crate::inputs::InputArgs;
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct Drawing {
@@ -42,6 +44,8 @@ pub(crate) struct Drawing {
     /// Sets a parameter of the techniques, e.g. `splits.count=2`; the viewer's --parameters lists them
     #[arg(long = "set", value_name = "ID=VALUE")]
     set: Vec<String>,
+    #[command(flatten)]
+    inputs: InputArgs,
     /// Leave crawl out, which draws each frame a second time
     #[arg(long)]
     no_crawl: bool,
@@ -67,6 +71,11 @@ impl Drawing {
         }
     }
 
+    /// What fits are given where no technique says otherwise.
+    pub(crate) fn inputs(&self) -> Inputs {
+        self.inputs.changed(Inputs::default())
+    }
+
     /// Whether something of the techniques is asked for.
     pub(crate) fn changes_techniques(&self) -> bool {
         self.filter.is_some() || self.bias.is_some() || self.color_format || !self.set.is_empty()
@@ -74,6 +83,7 @@ impl Drawing {
 
     /// A technique with what is asked for changed.
     pub(crate) fn changed(&self, mut named: NamedTechnique) -> Result<NamedTechnique> {
+        named.inputs = self.inputs.changed(named.inputs);
         let technique = &mut named.technique;
         if self.bias.is_some() || self.filter.is_some() {
             let filter = self.filter.unwrap_or(technique.filter);

@@ -23,6 +23,8 @@ mod drawing;
 #[path = "../shared/geometry.rs"]
 mod geometry;
 mod heat;
+#[path = "../shared/inputs.rs"]
+mod inputs;
 mod interrupt;
 mod job;
 mod live;

@@ -204,7 +204,6 @@ fn descriptor(
         filter,
         softness: Technique::default().softness,
         choice: choice(maps),
-        blend: Technique::default().blend,
         depth,
         depth_clamp: file.depth_clamp,
         ..ShadowMapDescriptor::default()
@@ -215,7 +214,7 @@ fn descriptor(
 /// the view says; else by view depth.
 fn choice(maps: &[Vec<FitMap>]) -> MapChoice {
     let has_no_end = |map: &FitMap| map.split_far >= FitMap::NO_END;
-    if maps.iter().flatten().all(has_no_end) { MapChoice::Coverage } else { MapChoice::ViewDepth }
+    if maps.iter().flatten().all(has_no_end) { MapChoice::default() } else { MapChoice::ViewDepth { overlap: 0.0 } }
 }
 
 fn view(frame: &Frame, is_first: bool) -> View {

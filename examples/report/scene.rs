@@ -177,7 +177,7 @@ fn report(args: &Args, job: &Prepared, techniques: &[NamedTechnique], measured: 
     let frames = &job.frames[..done];
     let of_technique = |(technique, measured): (&NamedTechnique, &Measured)| TechniqueRun {
         name: technique.name.clone(),
-        what: technique.summary.clone(),
+        what: technique.description(),
         settings: technique.to_toml().unwrap_or_else(|error| format!("# cannot be written: {error}")),
         overall: columns(&measured.tallies),
         groups: groups(frames)

@@ -48,7 +48,8 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     let mut job = args.job.prepare()?;
     let views = picked(&job.frames.iter().map(|frame| frame.view).collect::<Vec<_>>(), args.frames as usize);
     let budget = Budget { maps: args.maps, resolution: args.resolution };
-    let settings = TuneSettings { weights: args.weights, ..TuneSettings::within(budget) };
+    let inputs = args.job.drawing.inputs();
+    let settings = TuneSettings { inputs, weights: args.weights, ..TuneSettings::within(budget) };
     let bar = ProgressBar::new(0);
     let template = "{wide_bar} {pos}/{len} tried, {eta} left, {msg}";
     bar.set_style(ProgressStyle::with_template(template)?);

@@ -142,7 +142,9 @@ fn scenes_without_a_file_are_fitted_and_measured_by_their_triangles() {
     let scratch = Scratch::new("plain");
     scratch.file("scenarios.json", without_file().as_bytes());
     // Clusters need the triangles, boxes do not.
-    for (technique, geometry) in [("clusters-4", &["--triangles", "."][..]), ("focused-4", &[])] {
+    for (technique, geometry) in
+        [("clusters-4", &["--triangles", "."][..]), ("focused-4", &["--boxes", "objects", "--unseen"])]
+    {
         let arguments = [&["scenarios.json", "--fit", technique, "-o", "ours.json"][..], geometry].concat();
         let fitted = scratch.peer_fit(&arguments);
         assert!(fitted.status.success(), "{technique}: {}", String::from_utf8_lossy(&fitted.stderr));

@@ -1,6 +1,7 @@
 //! Parallel splits: finer near the camera than far away, and better than one map.
 
 use shadowfit::ShadowFitter;
+use shadowfit_params::Inputs;
 use shadowfit_study::View;
 
 use super::bench::Bench;
@@ -14,7 +15,7 @@ fn each_split_has_coarser_texels_than_the_one_before() {
         let technique = bench.sample.technique(&bench.values(None, &[("splits", splits)]));
         let camera = bench.sample.seen_by(None, 16.0 / 9.0);
         let view = View { camera, direction: bench.sample.direction.normalize(), is_first: true };
-        let maps = bench.scene.fit_alone(&mut ShadowFitter::new(&technique), &view).expect("maps");
+        let maps = bench.scene.fit_alone(&mut ShadowFitter::new(&technique), Inputs::default(), &view).expect("maps");
         assert_eq!(maps.len(), 4);
         let texels: Vec<f32> = maps.iter().map(|map| map.fit.texel_size.max_element()).collect();
         assert!(texels.is_sorted(), "{splits}: {texels:?}");

@@ -1,7 +1,8 @@
 //! Depth clamp on devices without it: the fragment shaders' maps and pictures are those of devices that have it.
 
-use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, FitSettings, MapFormat};
+use shadowfit::Slices;
+use shadowfit::glam::{DVec2, DVec3, Vec3};
+use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MapFormat, MapSettings, Shape};
 use shadowfit::{
     Bias, DepthConvention, FitInput, FittedMap, LightFit, MapFitter, PerspectiveCamera, Technique, Workspace,
 };
@@ -81,9 +82,10 @@ fn the_fragment_shader_clamps_only_where_the_device_cannot() {
 
 /// The courtyard with depth-clamped maps, whose near planes cut through what stands in it.
 fn picture(gpu: &Gpu, format: MapFormat) -> Vec<u8> {
-    let fit = FitSettings { casters: CasterPolicy::DepthClamp, kind: FitKind::FrustumAabb, ..FitSettings::default() };
-    let fit = FitSettings { resolution: UVec2::splat(512), max_distance: 30.0, ..fit };
-    let technique = Technique { fit, count: 2, filter: FilterKind::Pcf3x3, format, ..Technique::default() };
+    let fit = MapSettings { casters: CasterPolicy::DepthClamp, max_distance: 30.0, ..MapSettings::default() };
+    let maps = Slices { count: 2, shape: Shape::new(FitKind::FrustumAabb), ..Slices::default() }.into();
+    let technique = Technique { maps, fit, filter: FilterKind::Pcf3x3, format, ..Technique::default() };
+    let technique = technique.with_resolution(512, 512);
     let (eye, target) = builtin::default_camera();
     let camera = PerspectiveCamera {
         eye: eye.as_dvec3(),

@@ -211,12 +211,17 @@ fn quadrilaterals_cover_their_pixels_and_no_others() {
 #[test]
 fn every_overlay_can_be_drawn_with_every_kind_of_map() {
     // Looked up with the most branches, and with the fewest.
-    for (filter, choice) in [(FilterKind::Point, MapChoice::ViewDepth), (FilterKind::Pcss, MapChoice::Coverage)] {
+    let by_view_depth = MapChoice::ViewDepth { overlap: 0.0 };
+    for (filter, choice) in [(FilterKind::Point, by_view_depth), (FilterKind::Pcss, MapChoice::default())] {
         let technique = Technique::preset("stable-4").expect("a preset").with_resolution(256, 256);
         let floor = [[-60.0, -60.0], [-60.0, 60.0], [60.0, 60.0], [60.0, -60.0]].map(|[x, z]| Vec3::new(x, 0.0, z));
         let [a, b, c, d] = floor;
         let scene = Scene::from_objects("floor", &[vec![[a, b, c], [a, c, d]]]);
-        let (mut pictures, seen) = Pictures::of(&technique.with_filter(filter).with_choice(choice), 1, scene);
+        let (mut pictures, seen) = Pictures::of(
+            &technique.with_filter(filter).with_maps(technique.maps.as_slices().with_choice(choice)),
+            1,
+            scene,
+        );
         let drawn: Vec<u32> = random(WIDTH * SIZE[1] as usize, 16).collect();
         let view = classes_texture(&pictures.gpu, &drawn, SIZE);
         let camera = PerspectiveCamera { eye: seen.camera.eye + DVec3::new(0.1, 0.0, 0.1), ..seen.camera };

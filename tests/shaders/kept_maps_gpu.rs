@@ -4,8 +4,9 @@
 #[path = "kept_maps/town.rs"]
 mod town;
 
+use shadowfit::OneMap;
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::settings::{FitKind, MapFormat};
+use shadowfit::settings::{FitKind, MapFormat, Shape, Stabilise};
 use shadowfit::{DepthConvention, Technique};
 use shadowfit_wgpu::{SunShadows, UpdateSchedule};
 
@@ -192,9 +193,8 @@ fn gpu_maps_that_wait_are_read_as_they_were_drawn_and_have_their_turn() {
 
 #[test]
 fn gpu_a_single_map_is_kept_by_the_same_rules() {
-    let mut technique = technique("windows-4").with_count(1);
-    technique.fit.kind = FitKind::Sphere;
-    technique.stabilise = shadowfit::settings::Stabilise::Snap;
+    let one = OneMap { shape: Shape::new(FitKind::Sphere), stabilise: Stabilise::Snap { waste: 1.8 } };
+    let technique = technique("windows-4").with_maps(one);
     run(&technique, 40, |frame, town, walk, _| {
         walk.go_on(frame);
         town.bob(frame);

@@ -4,6 +4,7 @@
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::FilterKind;
 use shadowfit::{PerspectiveCamera, ShadowFitter, Technique};
+use shadowfit_params::Inputs;
 use shadowfit_render::Renderer;
 use shadowfit_scene::builtin::{default_camera, default_scene};
 use shadowfit_study::{Evaluator, Judging, PreparedScene, View};
@@ -50,7 +51,7 @@ fn assert_same_pictures(technique: &Technique) {
     for frame in 0..24 {
         scene.set_time(&gpu, 0, frame as f32 * 0.11);
         let view = view(frame);
-        let maps = scene.fit_next(&mut fitter, &view).expect("maps");
+        let maps = scene.fit_next(&mut fitter, Inputs::default(), &view).expect("maps");
         let [a, b] = [&mut kept, &mut anew]
             .map(|evaluator| evaluator.picture(&gpu, &mut scene, &view, &maps).expect("a picture"));
         redrawn += usize::from(kept.renderer.sun().passes().any(|pass| pass.is_cleared()));

@@ -3,7 +3,7 @@
 use shadowfit::glam::{DVec3, Mat4, Vec3};
 use shadowfit::need::NeedSpace;
 use shadowfit::seen::{CLASSES, DEPTHS};
-use shadowfit::settings::FitSettings;
+use shadowfit::settings::MapSettings;
 use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 use shadowfit_render::Gpu;
 use shadowfit_wgpu::need::{NeedPass, NeedPassError, NeedView};
@@ -35,7 +35,7 @@ fn camera() -> PerspectiveCamera {
 }
 
 fn view(depth: DepthConvention, size: [u32; 2]) -> NeedView {
-    NeedView::from_camera(&camera(), depth, DIRECTION, &FitSettings::default(), size).expect("a good camera")
+    NeedView::from_camera(&camera(), depth, DIRECTION, &MapSettings::default(), size).expect("a good camera")
 }
 
 /// Ground, slopes, boxes and a wall, relative to the eye; the sky is above.
@@ -215,7 +215,7 @@ fn only_the_first_sample_of_multisampled_depth_is_read() {
 fn silhouettes_do_not_mix_surfaces() {
     let gpu = software_gpu();
     let camera = PerspectiveCamera { forward: Vec3::NEG_Z, ..camera() };
-    let settings = FitSettings::default();
+    let settings = MapSettings::default();
     let view = NeedView::from_camera(&camera, DepthConvention::Reversed, Vec3::new(0.0, -0.1, -1.0), &settings, SIZE)
         .expect("a good camera");
     // A wall that fills the picture, and tiles before it.

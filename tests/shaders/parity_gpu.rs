@@ -129,8 +129,7 @@ fn cases() -> impl Iterator<Item = ShadowMapDescriptor> {
         format,
         filter: FilterKind::Point,
         softness: Softness::default(),
-        choice: MapChoice::ViewDepth,
-        blend: 0.0,
+        choice: MapChoice::ViewDepth { overlap: 0.0 },
         depth,
         ..ShadowMapDescriptor::default()
     })

@@ -2,6 +2,7 @@
 
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::{FittedMap, FittedMaps, PerspectiveCamera, ShadowFitter, Technique};
+use shadowfit_params::Inputs;
 use shadowfit_render::{Atmosphere, Frame, Gpu, GpuScene, Probe, ProbeTargets, RenderTarget, Renderer, Statistics};
 use shadowfit_scene::builtin::{default_camera, default_scene};
 use shadowfit_scene::{Scene, Triangle};
@@ -64,7 +65,7 @@ impl Seen {
         let renderer = Renderer::new(gpu, &ShadowMapDescriptor::from(technique), 1).expect("a renderer");
         let prepared = PreparedScene::new(gpu, renderer.material_layout(), scene).expect("a scene");
         let view = View { camera, direction, is_first: true };
-        let fitted = prepared.fit_next(&mut ShadowFitter::new(technique), &view).expect("maps");
+        let fitted = prepared.fit_next(&mut ShadowFitter::new(technique), Inputs::default(), &view).expect("maps");
         let (maps, atmosphere) = (fitted.to_vec(), Atmosphere::default());
         Self { camera, direction, technique: *technique, fitted, maps, atmosphere }
     }

@@ -28,7 +28,8 @@ fn descriptor(choice: MapChoice) -> ShadowMapDescriptor {
 /// Prepares a shadow map with maps for a view along `forward`.
 fn prepared(maps: &[FittedMap], forward: Vec3) -> Result<usize, ShadowMapError> {
     let gpu = software_gpu();
-    let mut map = ShadowMap::new(&gpu.device, &descriptor(MapChoice::ViewDepth)).expect("a possible shadow map");
+    let mut map =
+        ShadowMap::new(&gpu.device, &descriptor(MapChoice::ViewDepth { overlap: 0.0 })).expect("a possible shadow map");
     map.prepare(&gpu.queue, &MapView::from_eye(DVec3::ZERO, forward), maps)?;
     Ok(map.volumes().len())
 }
@@ -109,7 +110,7 @@ fn maps_out_of_order_are_an_error_and_those_without_a_range_are_not() {
 #[test]
 fn maps_that_are_read_by_coverage_have_no_order() {
     let gpu = software_gpu();
-    let mut map = ShadowMap::new(&gpu.device, &descriptor(MapChoice::Coverage)).expect("a possible shadow map");
+    let mut map = ShadowMap::new(&gpu.device, &descriptor(MapChoice::default())).expect("a possible shadow map");
     let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
     assert_eq!(map.prepare(&gpu.queue, &view, &maps(&[2.0, 1.0, f32::NAN])), Ok(()));
 }
@@ -118,8 +119,7 @@ fn maps_that_are_read_by_coverage_have_no_order() {
 fn a_blend_that_is_out_of_range_or_no_number_is_an_error() {
     let gpu = software_gpu();
     for blend in [-0.1, 64.1, f32::NAN, f32::INFINITY] {
-        let error = ShadowMap::new(&gpu.device, &ShadowMapDescriptor { blend, ..descriptor(MapChoice::Coverage) })
-            .expect_err("no map");
+        let error = ShadowMap::new(&gpu.device, &descriptor(MapChoice::Coverage { blend })).expect_err("no map");
         assert!(matches!(error, ShadowMapError::Blend(_)) && error.to_string().contains(&blend.to_string()), "{error}");
     }
 }
@@ -141,7 +141,8 @@ fn maps_of_the_core_are_in_order_where_some_of_them_have_no_range() {
         let mut manual = [100.0; 7];
         manual[..2].copy_from_slice(&ends);
         let slices = Technique::preset("calm-4").expect("a preset");
-        let mut settings = slices.with_count(LAYERS).with_splits(SplitScheme::Manual(manual));
+        let mut settings =
+            slices.with_maps(slices.maps.as_slices().with_count(LAYERS).with_splits(SplitScheme::Manual(manual)));
         settings.fit.resolution = UVec2::splat(256);
         let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
         let input = FitInput::new(&view, Vec3::new(0.3, -0.8, 0.2));
@@ -154,7 +155,8 @@ fn maps_of_the_core_are_in_order_where_some_of_them_have_no_range() {
 #[test]
 fn a_refused_frame_leaves_the_volumes_of_the_last_one() {
     let gpu = software_gpu();
-    let mut map = ShadowMap::new(&gpu.device, &descriptor(MapChoice::ViewDepth)).expect("a possible shadow map");
+    let mut map =
+        ShadowMap::new(&gpu.device, &descriptor(MapChoice::ViewDepth { overlap: 0.0 })).expect("a possible shadow map");
     let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
     map.prepare(&gpu.queue, &view, &maps(&[1.0, 2.0])).expect("good maps");
     let before = map.volumes().to_vec();

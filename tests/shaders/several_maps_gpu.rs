@@ -53,7 +53,7 @@ fn descriptor(maps: &[FittedMap]) -> ShadowMapDescriptor {
         resolution: [256; 2],
         maps: maps.len() as u32,
         filter: FilterKind::Point,
-        choice: MapChoice::ViewDepth,
+        choice: MapChoice::ViewDepth { overlap: 0.0 },
         ..ShadowMapDescriptor::default()
     }
 }
@@ -257,8 +257,9 @@ fn assert_read(
 fn by_coverage_points_read_the_finest_map_that_holds_them_and_the_next_one_toward_its_border() {
     let maps = crossing_maps();
     for (filter, blend) in [(FilterKind::Pcf5x5, 8.0), (FilterKind::Point, 0.0), (FilterKind::Pcf3x3, 64.0)] {
-        let descriptor = ShadowMapDescriptor { filter, blend, choice: MapChoice::Coverage, ..descriptor(&maps) };
-        let order = MapOrder::new(MapChoice::Coverage, maps.iter().map(|map| &map.fit));
+        let choice = MapChoice::Coverage { blend };
+        let descriptor = ShadowMapDescriptor { filter, choice, ..descriptor(&maps) };
+        let order = MapOrder::new(choice, maps.iter().map(|map| &map.fit));
         let read = |point: DVec3| {
             let free = |map: usize| maps[map].fit.free_texels(point);
             by_coverage(order.iter(), reach(filter).into(), blend.into(), free)

@@ -4,11 +4,12 @@
 use shadowfit::bias::XNA_DEPTH_BIAS;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::settings::{
-    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, MapChoice, MapFormat, SplitScheme, Stabilise,
+    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, MapChoice, MapFormat, MapSettings, Shape,
+    SplitScheme, Stabilise,
 };
 use shadowfit::{
-    Aabb, Bias, Boxes, DepthConvention, FitInput, FittedMap, LightFit, MapFitter, PerspectiveCamera, Technique,
-    Workspace, fit,
+    Aabb, Bias, Boxes, DepthConvention, FitInput, FittedMap, LightFit, MapFitter, Maps, PerspectiveCamera, Slices,
+    Technique, Workspace, fit,
 };
 use shadowfit_render::{Atmosphere, Culling, Frame, Gpu, GpuScene, ProbePixel, ProbeTargets, Renderer, Statistics};
 use shadowfit_scene::{Scene, builtin, load_gltf};
@@ -53,9 +54,9 @@ fn away_from_the_light(_: &LightFit, _: FilterKind) -> Bias {
 
 fn cases() -> Vec<Case> {
     let maps = |kind, splits, stabilise, casters| {
-        let fit = FitSettings { kind, casters, max_distance: f32::MAX, ..FitSettings::default() };
-        let fit = FitSettings { resolution: UVec2::splat(TEXELS), ..fit };
-        Technique { fit, splits, stabilise, ..Technique::default() }
+        let fit = MapSettings { casters, resolution: UVec2::splat(TEXELS), ..MapSettings::default() };
+        let slices = Slices { shape: Shape::new(kind), splits, stabilise, ..Slices::default() };
+        Technique::default().with_maps(slices).with_fit(fit)
     };
     let list = CasterPolicy::List;
     let case = |name, maps| Case {
@@ -71,19 +72,22 @@ fn cases() -> Vec<Case> {
     let mut reversed = focused;
     reversed.fit.depth = DepthConvention::Reversed;
     let clamped = maps(FitKind::Focused, SplitScheme::FromBoxes, Stabilise::Off, CasterPolicy::DepthClamp);
-    let by_view_depth = |technique: Technique| technique.with_choice(MapChoice::ViewDepth);
+    let chosen = |technique: Technique, choice| match technique.maps {
+        Maps::Slices(slices) => technique.with_maps(slices.with_choice(choice)),
+        _ => technique,
+    };
     let mut all = vec![
         case("focused", focused),
-        case("held", maps(FitKind::Focused, SplitScheme::FromBoxes, Stabilise::Hysteresis, list)),
-        case("spheres", maps(FitKind::Sphere, SplitScheme::Practical(0.7), Stabilise::Snap, list)),
+        case("held", maps(FitKind::Focused, SplitScheme::FromBoxes, Stabilise::default(), list)),
+        case("spheres", maps(FitKind::Sphere, SplitScheme::Practical(0.7), Stabilise::Snap { waste: 1.8 }, list)),
         case("boxes of the slices", aabb),
         Case { bias: automatic, ..case("boxes of the slices, normal offset", aabb) },
         Case { bias: away_from_the_light, filter: FilterKind::Point, ..case("focused, biased away", focused) },
         Case { format: MapFormat::R32Float, filter: FilterKind::Pcf3x3, ..case("focused, reversed", reversed) },
         case("focused, depth clamp", clamped),
         Case { is_narrow: true, ..case("narrow", aabb) },
-        case("one map", Technique { count: 1, ..aabb }),
-        case("without a blend", focused.with_blend(0.0)),
+        case("one map", aabb.with_count(1)),
+        case("without a blend", chosen(focused, MapChoice::Coverage { blend: 0.0 })),
         Case { filter: FilterKind::Vogel16, ..case("focused, soft", focused) },
         Case {
             filter: FilterKind::Pcss,
@@ -91,14 +95,14 @@ fn cases() -> Vec<Case> {
             ..case("focused, wide as its penumbrae", focused)
         },
     ];
-    let also = ["focused", "boxes of the slices", "boxes of the slices, normal offset", "narrow", "one map"];
+    let also = ["focused", "boxes of the slices", "boxes of the slices, normal offset", "narrow"];
     let others: Vec<Case> = all
         .iter()
         .filter(|case| also.contains(&case.name))
-        .map(|case| Case { technique: by_view_depth(case.technique), ..*case })
+        .map(|case| Case { technique: chosen(case.technique, MapChoice::ViewDepth { overlap: 0.0 }), ..*case })
         .collect();
     all.extend(others);
-    all.push(case("overlapping", by_view_depth(aabb.with_overlap(0.3))));
+    all.push(case("overlapping", chosen(aabb, MapChoice::ViewDepth { overlap: 0.3 })));
     all
 }
 
@@ -176,12 +180,11 @@ fn boxes(scene: &Scene, gpu_scene: &GpuScene) -> Vec<Aabb> {
 fn descriptor(case: &Case) -> ShadowMapDescriptor {
     ShadowMapDescriptor {
         resolution: [TEXELS; 2],
-        maps: case.technique.count,
+        maps: case.technique.maps.count(),
         format: case.format,
         filter: case.filter,
         softness: case.technique.softness,
-        choice: case.technique.choice,
-        blend: case.technique.blend,
+        choice: case.technique.maps.choice(),
         depth: case.technique.fit.depth,
         depth_clamp: case.technique.fit.casters == CasterPolicy::DepthClamp,
         ..ShadowMapDescriptor::default()
@@ -200,7 +203,9 @@ fn fitted(case: &Case, camera: &PerspectiveCamera, boxes: &[Aabb], direction: Ve
     let last = fitted.len() - 1;
     let map = |(index, map): (usize, &FittedMap)| {
         let is_narrow = case.is_narrow && index < last;
-        let settings = case.technique.fit.with_max_distance(map.far).with_casters(CasterPolicy::Extend);
+        let shape = case.technique.maps.shape().expect("slices or one map");
+        let settings = FitSettings { shape, map: case.technique.fit };
+        let settings = settings.with_max_distance(map.far).with_casters(CasterPolicy::Extend);
         let light = if is_narrow { fit(&narrow, direction, &settings).expect("a fit") } else { map.fit };
         let converted = *map;
         FittedMap { fit: light, bias: (case.bias)(&light, case.filter), ..converted }
@@ -245,7 +250,7 @@ fn swept_casters_give_every_pixel_the_same_factor_and_are_fewer() {
                 let frame = Frame::new(&camera, direction, &maps, &atmosphere);
                 let [swept, all] = [Culling::Swept, Culling::WholeMap]
                     .map(|culling| drawn(&gpu, &mut renderer, &mut gpu_scene, &frame, culling));
-                let at = (case.name, case.technique.choice, view.name, direction);
+                let at = (case.name, case.technique.maps.choice(), view.name, direction);
                 let count = different(&swept.pixels, &all.pixels);
                 assert_eq!(count, 0, "{at:?}: pixels with another factor");
                 let shadowed = all.pixels.iter().flatten().filter(|pixel| pixel.factor < 0.5).count();
@@ -255,7 +260,7 @@ fn swept_casters_give_every_pixel_the_same_factor_and_are_fewer() {
                 whole += casters(&all);
                 assert!(swept.statistics.maps.iter().zip(&all.statistics.maps).all(|(a, b)| a.casters <= b.casters));
             }
-            println!("{}, {:?}, {}: {kept} of {whole} casters", case.name, case.technique.choice, view.name);
+            println!("{}, {:?}, {}: {kept} of {whole} casters", case.name, case.technique.maps.choice(), view.name);
             assert!(kept < whole, "{}, {}: nothing was left out", case.name, view.name);
         }
     }
@@ -288,7 +293,7 @@ fn from_other_eyes(gpu: &Gpu, atmosphere: &Atmosphere, case: &Case) {
             Frame { choice: Some((inner.eye, inner.forward)), ..Frame::new(&outer, direction, &maps, atmosphere) };
         let [swept, all] =
             [Culling::Swept, Culling::WholeMap].map(|culling| drawn(gpu, &mut renderer, &mut scene, &frame, culling));
-        let choice = case.technique.choice;
+        let choice = case.technique.maps.choice();
         assert_eq!(different(&swept.pixels, &all.pixels), 0, "{choice:?}, from {eye} along {forward}");
     }
 }

@@ -35,7 +35,7 @@ fn camera() -> PerspectiveCamera {
 /// Eight maps of the camera's view, and no end of the floor before that of the last one.
 fn maps(camera: &PerspectiveCamera) -> Vec<FittedMap> {
     let slices = Technique::preset("calm-4").expect("a preset");
-    let mut settings = slices.with_count(8).with_splits(SplitScheme::Manual(ENDS));
+    let mut settings = slices.with_maps(slices.maps.as_slices().with_count(8).with_splits(SplitScheme::Manual(ENDS)));
     (settings.fit.max_distance, settings.fit.resolution) = (LAST_END, shadowfit::glam::UVec2::splat(256));
     let views = [camera.frustum().expect("a camera")];
     let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
@@ -79,7 +79,7 @@ fn picture(camera: &PerspectiveCamera, maps: &[FittedMap], overlay: Overlay) -> 
     let descriptor = ShadowMapDescriptor {
         resolution: [256; 2],
         maps: 8,
-        choice: MapChoice::ViewDepth,
+        choice: MapChoice::ViewDepth { overlap: 0.0 },
         ..ShadowMapDescriptor::default()
     };
     let mut renderer = Renderer::new(&gpu, &descriptor, 1).expect("a renderer");

@@ -1,7 +1,8 @@
 //! Scenes whose shadows are known, and the pictures of them.
 
+use shadowfit::OneMap;
 use shadowfit::glam::{Affine3A, DVec3, Vec3};
-use shadowfit::settings::{BiasSettings, FilterKind, FitKind, FitSettings};
+use shadowfit::settings::{BiasSettings, FilterKind, FitKind, Shape, Stabilise};
 use shadowfit::{PerspectiveCamera, Technique};
 use shadowfit_scene::Scene;
 use shadowfit_study::{Comparison, Judging, SharedTruth, View};
@@ -100,8 +101,8 @@ impl Arrangement {
 
 /// One map of 512 texels around what is seen, with a filter and a bias.
 pub(super) fn single(kind: FitKind, filter: FilterKind, bias: BiasSettings) -> Technique {
-    let fit = FitSettings::default().with_kind(kind);
-    Technique::preset("focused-1").expect("a preset").with_fit(fit).with_resolution(512, 512).with_look_up(filter, bias)
+    let one = OneMap { shape: Shape::new(kind), stabilise: Stabilise::Off };
+    Technique::default().with_maps(one).with_resolution(512, 512).with_look_up(filter, bias)
 }
 
 /// No bias at all.

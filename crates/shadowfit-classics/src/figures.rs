@@ -3,6 +3,7 @@
 use anyhow::{Context, Result, bail};
 use glam::{DMat4, DVec2, DVec3};
 use shadowfit::{PerspectiveCamera, ShadowFitter, Technique};
+use shadowfit_params::Inputs;
 use shadowfit_render::passes::material_layout;
 use shadowfit_render::{Gpu, Renderer};
 use shadowfit_study::{Evaluator, Judging, PreparedScene, SharedTruth, View};
@@ -163,7 +164,7 @@ impl Bench<'_> {
         let judging = Judging { size: self.size, ray_offset: RAY_OFFSET, crawl: false, ..Judging::default() };
         let mut evaluator = Evaluator::new(renderer, judging);
         let view = View { camera: *self.camera, direction: self.sample.direction, is_first: true };
-        let maps = scene.fit_alone(&mut ShadowFitter::new(technique), &view)?;
+        let maps = scene.fit_alone(&mut ShadowFitter::new(technique), Inputs::default(), &view)?;
         evaluator.judge(&self.gpu, scene, &view, &maps, &mut SharedTruth::default())
     }
 

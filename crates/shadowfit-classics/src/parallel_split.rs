@@ -5,8 +5,8 @@
 use core::f32::consts::FRAC_PI_4;
 
 use glam::{DVec3, UVec2, Vec3};
-use shadowfit::settings::{FitKind, MapChoice, SplitScheme, Stabilise};
-use shadowfit::{FitError, PerspectiveCamera, Technique};
+use shadowfit::settings::{FitKind, MapChoice, Shape, SplitScheme, Stabilise};
+use shadowfit::{FitError, PerspectiveCamera, Slices, Technique};
 use shadowfit_scene::Scene;
 use shadowfit_scene::builtin::BuiltinScene;
 
@@ -144,17 +144,14 @@ fn drawing(values: &SampleValues, _: &PerspectiveCamera) -> Result<SampleDrawing
         _ => SplitScheme::Practical(values.get("lambda")),
     };
     let size: u32 = values.choice("map").parse().unwrap_or(2048);
-    let mut technique = Technique::default()
-        .with_count(values.choice("maps").parse().unwrap_or(4))
+    let slices = Slices::default()
+        .with_shape(Shape::new(FitKind::FrustumAabb))
         .with_splits(splits)
-        .with_choice(MapChoice::ViewDepth)
-        .with_overlap(values.get("blend"))
+        .with_choice(MapChoice::ViewDepth { overlap: values.get("blend") })
         .with_stabilise(Stabilise::Off);
-    technique.fit = technique
-        .fit
-        .with_kind(FitKind::FrustumAabb)
-        .with_resolution(UVec2::splat(size))
-        .with_max_distance(DISTANCE)
-        .with_caster_extension(DISTANCE);
+    let count = values.choice("maps").parse().unwrap_or(4);
+    let mut technique = Technique::default().with_maps(slices).with_count(count);
+    technique.fit =
+        technique.fit.with_resolution(UVec2::splat(size)).with_max_distance(DISTANCE).with_caster_extension(DISTANCE);
     Ok(SampleDrawing::Technique { technique, is_tinted })
 }

@@ -14,7 +14,7 @@ const QUICK: [&str; 6] =
     ["fit.kind", "splits.count", "map.resolution", "fit.max_distance", "map.filter", "bias.constant"];
 
 /// The groups that tools alone have, in the order that they are shown.
-pub(crate) const TOOL_GROUPS: [Group; 3] = [Group::Light, Group::Camera, Group::View];
+pub(crate) const TOOL_GROUPS: [Group; 4] = [Group::Input, Group::Light, Group::Camera, Group::View];
 
 /// What the rows are shown with.
 pub(crate) struct Rows<'a> {

@@ -100,8 +100,9 @@ fn first_line(ui: &mut Ui, row: &Row<'_>, settings: &mut Settings) -> Response {
     let parameter = row.parameter;
     match (&parameter.kind, parameter.get(settings)) {
         (Kind::Number(_), _) if parameter.id == INSET_MAP => {
-            let index = settings.view.inset_index(settings.technique.count);
-            if let Some(map) = maps::selector(ui, settings.technique.count, index, |button| row.explain(button)) {
+            let index = settings.view.inset_index(settings.technique.maps.count());
+            if let Some(map) = maps::selector(ui, settings.technique.maps.count(), index, |button| row.explain(button))
+            {
                 parameter.set(settings, Value::Number(map as f64 + 1.0));
             }
         }

@@ -9,7 +9,7 @@ use crate::widgets::{Icon, icon_button};
 use crate::{Command, Toggle, UserPreset};
 
 /// What the menu does.
-const HELP: &str = "Sets everything from Fit to Single maps as a technique by name has it, and keeps shadow distance, \
+const HELP: &str = "Sets everything from Fit to Bias as a technique by name has it, and keeps shadow distance, \
                     caster extension and resolution as they are.";
 
 /// Width of the open menu, in points: a summary takes one line or two.

@@ -2,7 +2,8 @@
 
 use glam::UVec2;
 use shadowfit::Technique;
-use shadowfit::settings::{SoftRadius, SplitScheme};
+use shadowfit::settings::{FitKind, HoldSettings, MapChoice, RectangleKind, Shape, SoftRadius, SplitScheme, Stabilise};
+use shadowfit::{Maps, OneMap, Slices, Windows};
 
 use crate::Value;
 use crate::tool::Settings;
@@ -139,6 +140,84 @@ impl Expression for SoftRadius {
     }
 }
 
+impl Expression for FitKind {
+    fn expression(&self) -> String {
+        format!("FitKind::{self:?}")
+    }
+}
+
+impl Expression for RectangleKind {
+    fn expression(&self) -> String {
+        format!("RectangleKind::{self:?}")
+    }
+}
+
+impl Expression for MapChoice {
+    fn expression(&self) -> String {
+        match self {
+            Self::Coverage { blend } => format!("MapChoice::Coverage {{ blend: {} }}", blend.expression()),
+            Self::ViewDepth { overlap } => format!("MapChoice::ViewDepth {{ overlap: {} }}", overlap.expression()),
+        }
+    }
+}
+
+impl Expression for Stabilise {
+    fn expression(&self) -> String {
+        match self {
+            Self::Off => "Stabilise::Off".to_owned(),
+            Self::Snap { waste } => format!("Stabilise::Snap {{ waste: {} }}", waste.expression()),
+            Self::Hysteresis(hold) => format!("Stabilise::Hysteresis({})", hold.expression()),
+        }
+    }
+}
+
+impl Expression for Maps {
+    fn expression(&self) -> String {
+        match self {
+            Self::Windows(windows) => windows.expression(),
+            Self::Slices(slices) => slices.expression(),
+            Self::One(one) => one.expression(),
+        }
+    }
+}
+
+/// Structs as Rust code: the fields in which they differ from the default, which the others are taken from.
+macro_rules! literals {
+    ($($kind:ident { $($field:ident),+ })+) => {$(
+        impl Expression for $kind {
+            fn expression(&self) -> String {
+                let default = Self::default();
+                let fields = [$((stringify!($field), self.$field.expression(), default.$field.expression())),+];
+                literal(stringify!($kind), &fields)
+            }
+        }
+    )+};
+}
+
+literals! {
+    Windows { count, blend, depth_waste }
+    Slices { count, shape, splits, choice, stabilise }
+    OneMap { shape, stabilise }
+    Shape { kind, rectangle, max_texel_ratio }
+    HoldSettings { margin, growth, waste, horizon }
+}
+
+/// A struct by the names of its fields, their values and their defaults.
+fn literal(kind: &str, fields: &[(&str, String, String)]) -> String {
+    let mut differing: Vec<String> = fields
+        .iter()
+        .filter(|(_, value, default)| value != default)
+        .map(|(name, value, _)| format!("{name}: {value}"))
+        .collect();
+    if differing.is_empty() {
+        return format!("{kind}::default()");
+    }
+    if differing.len() < fields.len() {
+        differing.push(format!("..{kind}::default()"));
+    }
+    format!("{kind} {{ {} }}", differing.join(", "))
+}
+
 /// The Rust code of a part of a technique by its path, such as `code!(fit.max_distance)`.
 macro_rules! code {
     (@path $first:ident $(.$rest:ident)*) => { concat!(stringify!($first) $(, ".", stringify!($rest))*) };
@@ -153,7 +232,7 @@ macro_rules! code {
 /// A field of the settings that is shown as it is:
 ///
 /// - `field!(technique.bias.constant)`: one that is always there;
-/// - `field!(technique.splits, SplitScheme::Practical(lambda) => lambda)`: one of a variant.
+/// - `field!(technique.maps, Maps::Windows(windows) => windows.blend)`: one of a variant.
 macro_rules! field {
     (technique $(.$path:ident)+) => {
         $crate::field::Field { code: $crate::field::code!($($path).+), ..$crate::field::field!(@ technique $(.$path)+) }
@@ -188,7 +267,9 @@ macro_rules! field {
 
 /// A field that is one of several variants, in the order of the parameter's options:
 ///
-/// - `choice!(technique.stabilise: Stabilise [Hysteresis, Snap, Off])`: all variants of a part of a technique;
+/// - `choice!(technique.format: MapFormat [Depth32Float, R8Grey])`: all variants of a part of a technique;
+/// - `choice!(technique.maps, Maps::One(one) => one.shape.kind in [FitKind::Sphere])`: those of a list, where the part is
+///   one of a variant;
 /// - `choice!(view.mode in ViewMode::ALL)`: those of a list.
 macro_rules! choice {
     (technique $(.$path:ident)+: $kind:ident [$($variant:ident),+ $(,)?]) => {
@@ -198,6 +279,24 @@ macro_rules! choice {
                 expression: |technique| format!(concat!(stringify!($kind), "::{:?}"), technique $(.$path)+),
             }),
             ..$crate::field::choice!(technique $(.$path)+ in [$($kind::$variant),+])
+        }
+    };
+    (technique $(.$path:ident)+, $variant:pat => $part:ident in $variants:expr) => {
+        $crate::field::Field {
+            get: |s| match &s.technique $(.$path)+ {
+                $variant => $variants.iter().position(|variant| variant == $part).map($crate::Value::Option),
+                _ => None,
+            },
+            set: |s, value| {
+                if let $variant = &mut s.technique $(.$path)+
+                    && let $crate::Value::Option(index) = value
+                    && let Some(variant) = $variants.get(index)
+                {
+                    *$part = *variant;
+                }
+            },
+            code: $crate::field::code!($($path).+),
+            is_of_variant: true,
         }
     };
     ($group:ident $(.$path:ident)+ in $variants:expr) => {

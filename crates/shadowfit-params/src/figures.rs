@@ -105,7 +105,7 @@ pub struct JudgedFigures {
 pub struct MapFigures {
     /// View depths that this map is made for, in metres, and between which points choose it where maps
     /// are read by view depth; `None` where there are none, as of a
-    /// [window](shadowfit::settings::FitKind::Windows).
+    /// [window](shadowfit::Windows).
     pub view_depths: Option<[f32; 2]>,
     /// Width and height of what the map holds, across the light, in metres.
     pub extent: [f32; 2],

@@ -22,6 +22,7 @@
 //! Angles are degrees here and radians in the settings; lengths are metres and biases texels in both.
 
 mod field;
+mod inputs;
 mod rust_code;
 mod table;
 mod text;
@@ -33,6 +34,7 @@ use crate::field::Field;
 use crate::tool::Settings;
 use shadowfit::Technique;
 
+pub use inputs::{BoxSource, Inputs, NAMED_INPUTS, NamedInputs};
 pub use rust_code::to_rust;
 pub use table::PARAMETERS;
 pub use text::{ParameterError, format_value, set_from_str};
@@ -236,6 +238,8 @@ pub enum Group {
     Softness,
     /// Biases against self-shadowing.
     Bias,
+    /// What of the scene a fit is given.
+    Input,
     /// The sun.
     Light,
     /// Lens and speed of the camera.
@@ -246,13 +250,14 @@ pub enum Group {
 
 impl Group {
     /// All groups, in the order that they are shown.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Fit,
         Self::Splits,
         Self::Stabilise,
         Self::Map,
         Self::Softness,
         Self::Bias,
+        Self::Input,
         Self::Light,
         Self::Camera,
         Self::View,
@@ -260,7 +265,7 @@ impl Group {
 
     /// Whether its parameters are part of the [`Technique`]; the others belong to the tools.
     pub const fn is_technique(self) -> bool {
-        !matches!(self, Self::Light | Self::Camera | Self::View)
+        !matches!(self, Self::Input | Self::Light | Self::Camera | Self::View)
     }
 
     /// Stable name; the ids of the group's parameters begin with it and a dot.
@@ -272,6 +277,7 @@ impl Group {
             Self::Map => "map",
             Self::Softness => "softness",
             Self::Bias => "bias",
+            Self::Input => "input",
             Self::Light => "light",
             Self::Camera => "camera",
             Self::View => "view",
@@ -287,6 +293,7 @@ impl Group {
             Self::Map => "Shadow map",
             Self::Softness => "Soft edges",
             Self::Bias => "Bias",
+            Self::Input => "Input",
             Self::Light => "Light",
             Self::Camera => "Camera",
             Self::View => "View",
@@ -305,6 +312,7 @@ impl Group {
                 "How far the comparison is moved so that a surface does not shadow itself. Too little leaves \
                  acne, too much detaches shadows from their casters."
             }
+            Self::Input => "What a fit is told of the scene: an engine hands in what it has.",
             Self::Light => "Where the sun stands.",
             Self::Camera => "The lens and the speed of the camera.",
             Self::View => "What is drawn over or instead of the picture.",

@@ -7,19 +7,21 @@ use shadowfit::{PRESETS, Technique};
 use crate::field::Code;
 use crate::technique_parameters;
 
+/// The field that says the kind of the maps: all of it is written at once.
+const MAPS: &str = "maps";
+
 /// Statements that make a technique: the default one or the preset that is nearest to it, and a line for each field in
 /// which it differs from that. They need `use shadowfit::{*, glam::UVec2, settings::*};`.
 ///
 /// ```
 /// use shadowfit::Technique;
-/// use shadowfit::settings::FilterKind;
+/// use shadowfit::settings::MapFormat;
 ///
 /// let code = "\
-/// let mut technique = Technique::default();
-/// technique.count = 3;
-/// technique.filter = FilterKind::Point;
+/// let mut technique = Technique::default().with_maps(Windows { count: 3, ..Windows::default() });
+/// technique.format = MapFormat::R32Float;
 /// ";
-/// let made = Technique { count: 3, filter: FilterKind::Point, ..Technique::default() };
+/// let made = Technique::default().with_count(3).with_format(MapFormat::R32Float);
 /// assert_eq!(shadowfit_params::to_rust(&made), code);
 /// ```
 pub fn to_rust(technique: &Technique) -> String {
@@ -30,9 +32,11 @@ pub fn to_rust(technique: &Technique) -> String {
     let starts = [default].into_iter().chain(presets);
     let nearest = starts.map(|(code, start)| (code, lines(technique, &start))).min_by_key(|(_, lines)| lines.len());
     let (start, lines) = nearest.unwrap_or_default();
-    let mutable = if lines.is_empty() { "" } else { "mut " };
-    let mut code = format!("let {mutable}technique = {start};\n");
-    for (path, value) in lines {
+    let (maps, others): (Vec<_>, Vec<_>) = lines.into_iter().partition(|(path, _)| *path == MAPS);
+    let maps = maps.first().map_or_else(String::new, |(_, value)| format!(".with_maps({value})"));
+    let mutable = if others.is_empty() { "" } else { "mut " };
+    let mut code = format!("let {mutable}technique = {start}{maps};\n");
+    for (path, value) in others {
         // Writing to a String cannot fail.
         let _ = writeln!(code, "technique.{path} = {value};");
     }

@@ -2,6 +2,7 @@
 
 mod bias;
 mod fit;
+mod input;
 mod map;
 mod softness;
 mod splits;
@@ -12,8 +13,8 @@ use crate::tool::Settings;
 use crate::{MIN_FAR_PER_NEAR, Parameter, Value};
 
 /// The rows by their files.
-const ROWS: [&[Parameter]; 7] =
-    [fit::ROWS, splits::ROWS, stabilise::ROWS, map::ROWS, softness::ROWS, bias::ROWS, tool::ROWS];
+const ROWS: [&[Parameter]; 8] =
+    [fit::ROWS, splits::ROWS, stabilise::ROWS, map::ROWS, softness::ROWS, bias::ROWS, input::ROWS, tool::ROWS];
 
 /// Number of all rows.
 const COUNT: usize = {

@@ -6,6 +6,8 @@
 use glam::Vec3;
 use shadowfit::Technique;
 
+use crate::Inputs;
+
 /// The sun.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct LightSettings {
@@ -188,6 +190,8 @@ impl Default for ViewSettings {
 pub struct Settings {
     /// Everything that decides how shadows look.
     pub technique: Technique,
+    /// What its fits are given.
+    pub inputs: Inputs,
     /// The sun.
     pub light: LightSettings,
     /// Lens and speed of the camera.

@@ -5,14 +5,14 @@ use std::fmt::Debug;
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec3, UVec2, Vec3};
+use shadowfit::settings::Shape;
 use shadowfit::settings::{
-    CasterPolicy, FilterKind, FitKind, MapFormat, NeedSource, ReceiverSource, RectangleKind, SoftRadius, SplitScheme,
-    Stabilise,
+    CasterPolicy, FilterKind, FitKind, FitSettings, MapFormat, RectangleKind, SoftRadius, SplitScheme, Stabilise,
 };
-use shadowfit::{Aabb, Boxes, DepthConvention, FitInput, PRESETS, PerspectiveCamera, Technique, Workspace};
+use shadowfit::{Aabb, Boxes, DepthConvention, FitInput, Maps, PRESETS, PerspectiveCamera, Technique, Workspace};
 use shadowfit_params::tool::Settings;
 use shadowfit_params::{
-    self as params, Group, Kind, Number, PARAMETERS, Parameter, Value, format_value, set_from_str,
+    self as params, BoxSource, Group, Kind, Number, PARAMETERS, Parameter, Value, format_value, set_from_str,
     set_technique_from_str, technique_parameters,
 };
 
@@ -34,11 +34,12 @@ fn with(values: &[(&str, &str)]) -> Settings {
 }
 
 /// Settings that between them have every row.
-fn starts() -> [Settings; 4] {
+fn starts() -> [Settings; 5] {
     [
         Settings::default(),
-        with(&[("splits.scheme", "practical")]),
-        with(&[("splits.scheme", "manual")]),
+        with(&[("fit.kind", "focused"), ("splits.scheme", "practical")]),
+        with(&[("fit.kind", "oriented"), ("splits.scheme", "manual"), ("splits.choice", "view_depth")]),
+        with(&[("fit.kind", "sphere"), ("splits.count", "1"), ("stabilise.mode", "snap")]),
         with(&[("softness.measure", "metres"), ("view.inset_black", "0")]),
     ]
 }
@@ -65,8 +66,7 @@ fn change(settings: &mut Settings, parameter: &Parameter) {
     }
 }
 
-/// Every field of the settings by its path, with what it holds: the lines of what the settings print as. Overrides of
-/// single maps are left out, which no parameter reaches.
+/// Every field of the settings by its path, with what it holds: the lines of what the settings print as.
 fn leaves(settings: &Settings) -> BTreeMap<String, String> {
     let mut leaves = BTreeMap::new();
     // The names and the counts of lines of what is open.
@@ -89,7 +89,6 @@ fn leaves(settings: &Settings) -> BTreeMap<String, String> {
             leaves.insert(names.collect::<Vec<_>>().join("."), value.to_owned());
         }
     }
-    leaves.retain(|name, _| !name.contains("overrides"));
     leaves
 }
 
@@ -149,37 +148,40 @@ fn rows_of_a_technique_change_nothing_but_the_technique() {
     }
 }
 
+/// What makes maps slices of the view.
+const SLICES: (&str, &str) = ("fit.kind", "focused");
+
 /// Checks the options of a choice and what each of them sets.
 fn check<T: PartialEq + Debug>(id: &str, get: fn(&Technique) -> T, expected: &[(&str, T)]) {
     let Kind::Choice(options) = &row(id).kind else { panic!("{id} is no choice") };
     let ids: Vec<&str> = options.iter().map(|option| option.id).collect();
     assert_eq!(ids, expected.iter().map(|(id, _)| *id).collect::<Vec<_>>(), "{id}");
     for (option, variant) in expected {
-        assert_eq!(get(&with(&[(id, option)]).technique), *variant, "{id}={option}");
+        let base = if row(id).is_present(&Settings::default()) { ("fit.kind", "windows") } else { SLICES };
+        assert_eq!(get(&with(&[base, (id, option)]).technique), *variant, "{id}={option}");
     }
 }
 
 #[test]
 fn option_names_select_their_variants() {
     let fits = [
-        ("focused", FitKind::Focused),
-        ("windows", FitKind::Windows),
-        ("oriented", FitKind::Oriented),
-        ("sphere", FitKind::Sphere),
-        ("frustum_aabb", FitKind::FrustumAabb),
-        ("xna_sample", FitKind::XnaSample),
+        ("focused", Some(FitKind::Focused)),
+        ("windows", None),
+        ("oriented", Some(FitKind::Oriented)),
+        ("sphere", Some(FitKind::Sphere)),
+        ("frustum_aabb", Some(FitKind::FrustumAabb)),
+        ("xna_sample", Some(FitKind::XnaSample)),
     ];
-    check("fit.kind", |t| t.fit.kind, &fits);
-    let receivers = [("clusters", ReceiverSource::Clusters), ("objects", ReceiverSource::Objects)];
-    check("fit.receivers", |t| t.receivers, &receivers);
-    let needs = [("last_frame", NeedSource::LastFrame), ("boxes", NeedSource::Boxes)];
-    check("fit.need", |t| t.need, &needs);
+    check("fit.kind", |t| t.maps.shape().map(|shape| shape.kind), &fits);
+    for (option, boxes) in [("clusters", BoxSource::Clusters), ("objects", BoxSource::Objects)] {
+        assert_eq!(with(&[("input.boxes", option)]).inputs.boxes, boxes);
+    }
     let rectangles = [
         ("minimum_area", RectangleKind::MinimumArea),
         ("minimum_square", RectangleKind::MinimumSquare),
         ("axis_aligned", RectangleKind::AxisAligned),
     ];
-    check("fit.rectangle", |t| t.fit.rectangle, &rectangles);
+    check("fit.rectangle", |t| t.maps.as_slices().shape.rectangle, &rectangles);
     let casters = [
         ("list", CasterPolicy::List),
         ("extend", CasterPolicy::Extend),
@@ -196,9 +198,10 @@ fn option_names_select_their_variants() {
         ("uniform", SplitScheme::Uniform),
         ("manual", SplitScheme::Manual([5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0])),
     ];
-    check("splits.scheme", |t| t.splits, &splits);
-    let modes = [("hysteresis", Stabilise::Hysteresis), ("snap", Stabilise::Snap), ("off", Stabilise::Off)];
-    check("stabilise.mode", |t| t.stabilise, &modes);
+    check("splits.scheme", |t| t.maps.as_slices().splits, &splits);
+    let snap = Stabilise::Snap { waste: Stabilise::default().waste() };
+    let modes = [("hysteresis", Stabilise::default()), ("snap", snap), ("off", Stabilise::Off)];
+    check("stabilise.mode", |t| t.maps.as_slices().stabilise, &modes);
     let depths = [
         ("zero_to_one", DepthConvention::ZeroToOne),
         ("reversed", DepthConvention::Reversed),
@@ -382,7 +385,7 @@ fn rows_written_in_order_restore_every_preset() {
 
 #[test]
 fn numbers_are_written_short() {
-    let mut settings = with(&[("splits.scheme", "practical")]);
+    let mut settings = with(&[SLICES, ("splits.scheme", "practical")]);
     settings.light.elevation = 30_f32.to_radians();
     settings.light.azimuth = core::f32::consts::TAU;
     for (id, text) in [
@@ -451,15 +454,17 @@ fn broken_settings_are_still_written_and_read() {
         settings.light.azimuth = f32::NEG_INFINITY;
         settings.light.elevation = f32::MAX;
         let technique = &mut settings.technique;
-        technique.count = u32::MAX;
+        technique.maps = technique.maps.with_count(u32::MAX);
         technique.fit.resolution = UVec2::new(0, 3);
         technique.fit.max_distance = -0.0;
         technique.fit.border = Some(f32::NAN);
         technique.fit.up = Vec3::INFINITY;
-        match &mut technique.splits {
-            SplitScheme::Practical(lambda) => *lambda = f32::NAN,
-            SplitScheme::Manual(ends) => ends[0] = f32::INFINITY,
-            _ => {}
+        if let Maps::Slices(slices) = &mut technique.maps {
+            match &mut slices.splits {
+                SplitScheme::Practical(lambda) => *lambda = f32::NAN,
+                SplitScheme::Manual(ends) => ends[0] = f32::INFINITY,
+                _ => {}
+            }
         }
         for parameter in PARAMETERS {
             let is_written = !written(&settings, parameter).is_empty();
@@ -532,7 +537,7 @@ fn an_azimuth_that_kept_counting_reads_as_a_compass_angle() {
 /// Checks that a parameter of slices has an effect with some values, and says with a word why it has none once another one
 /// is set.
 fn loses_its_effect(id: &str, base: &[(&str, &str)], (other, option): (&str, &str), word: &str) {
-    let mut settings = with(&[&[("fit.kind", "focused")], base].concat());
+    let mut settings = with(&[&[SLICES], base].concat());
     assert_eq!((row(id).inert)(&settings), None, "{id}");
     set_from_str(&mut settings, other, option).expect("an option");
     let reason = (row(id).inert)(&settings);
@@ -570,7 +575,8 @@ fn parameters_say_where_they_have_no_effect() {
         ("fit.rectangle", &[], ("fit.kind", "frustum_aabb"), "focused"),
         ("fit.rectangle", &[], ("fit.kind", "sphere"), "focused"),
         ("fit.rectangle", &[], ("fit.kind", "windows"), "focused"),
-        ("fit.need", &[("fit.kind", "windows")], ("fit.kind", "focused"), "Windows"),
+        ("input.seen", &[], ("splits.scheme", "from_boxes"), "Splits"),
+        ("input.seen", &[], ("splits.count", "1"), "Splits"),
         ("fit.casters", &[], ("fit.kind", "xna_sample"), "XNA"),
         ("fit.max_texel_ratio", &[], ("fit.kind", "windows"), "windows"),
         ("fit.max_texel_ratio", &[], ("fit.kind", "xna_sample"), "XNA"),
@@ -632,12 +638,15 @@ fn a_parameter_that_says_it_has_no_effect_has_none_and_the_others_have_one() {
         FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, Vec3::new(0.4, -0.7, 0.3)) };
     let map = |settings: &Settings| {
         let mut storage = [Default::default(); Workspace::required(3, 1)];
-        shadowfit::fits::fit_scene(&input, &settings.technique.fit, &mut Workspace::new(&mut storage)).expect("a fit")
+        // What all windows together hold.
+        let whole = Shape::default().with_rectangle(RectangleKind::AxisAligned);
+        let shape = settings.technique.maps.shape().unwrap_or(whole);
+        let settings = FitSettings { shape, map: settings.technique.fit };
+        shadowfit::fits::fit_scene(&input, &settings, &mut Workspace::new(&mut storage)).expect("a fit")
     };
     let Kind::Choice(kinds) = row("fit.kind").kind else { panic!("fits are options") };
-    // Which boxes there are is up to the engine, one map alone holds all that is in view wherever it is needed, and y
-    // alone is up already, at any length.
-    let others = ["fit.kind", "fit.receivers", "fit.need", "fit.up_y"];
+    // y alone is up already, at any length.
+    let others = ["fit.kind", "fit.up_y"];
     for kind in kinds {
         for parameter in Group::Fit.parameters().filter(|parameter| !others.contains(&parameter.id)) {
             let mut settings = with(&[("fit.kind", kind.id)]);
@@ -690,11 +699,12 @@ fn setting_a_row_that_does_not_exist_is_an_error_that_names_what_to_set_first() 
         ("splits.manual_1", "3", "splits.scheme", "manual"),
         ("splits.manual_7", "300", "splits.scheme", "manual"),
     ] {
-        let mut settings = Settings::default();
+        let slices = with(&[SLICES]);
+        let mut settings = slices;
         let error = set_from_str(&mut settings, id, value).expect_err(id);
         assert!(matches!(error, params::ParameterError::NotPresent { .. }), "{error:?}");
         assert!(error.to_string().contains(id) && error.to_string().contains(first), "{error}");
-        assert_eq!(settings, Settings::default());
+        assert_eq!(settings, slices);
         set_from_str(&mut settings, first, option).expect(first);
         set_from_str(&mut settings, id, value).expect(id);
         assert_eq!(written(&settings, row(id)), value, "{id}");

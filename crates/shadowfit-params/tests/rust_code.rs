@@ -30,7 +30,7 @@ macro_rules! sample {
 
 #[expect(clippy::let_and_return, reason = "a sample makes a technique, and then gives it back")]
 #[expect(clippy::unreadable_literal, reason = "numbers are written as Rust prints them")]
-fn samples() -> [Sample; 6] {
+fn samples() -> [Sample; 7] {
     [
         sample!("default", Technique::default()),
         sample!("stable_4", Technique::preset("stable-4").expect("a preset")),
@@ -38,34 +38,31 @@ fn samples() -> [Sample; 6] {
         sample!("all_fields", all_fields()),
         sample!("some_fields", some_fields()),
         sample!("not_finite", not_finite()),
+        sample!("three_windows", Technique::default().with_count(3)),
     ]
 }
 
 /// A technique of which no parameter has its default value.
 fn all_fields() -> Technique {
     Technique {
-        count: 3,
-        fit: FitSettings {
-            kind: FitKind::Oriented,
-            rectangle: RectangleKind::MinimumSquare,
+        maps: Maps::Slices(Slices {
+            count: 3,
+            shape: Shape { kind: FitKind::Oriented, rectangle: RectangleKind::MinimumSquare, max_texel_ratio: 3.0 },
+            splits: SplitScheme::Manual([1.0, 2.5, 0.1, 1e-7, 3e9, 16_777_216.0, f32::MAX]),
+            choice: MapChoice::ViewDepth { overlap: 0.1 },
+            stabilise: Stabilise::Snap { waste: 3.0 },
+        }),
+        fit: MapSettings {
             max_distance: 80.25,
             margin: 0.25,
             border: Some(4.0),
             casters: CasterPolicy::DepthClamp,
             caster_extension: 7.0,
             up: Vec3::new(0.0, -0.0, 1.0),
-            max_texel_ratio: 3.0,
             least_texel: 0.001,
             resolution: UVec2::new(1024, 512),
             depth: DepthConvention::Reversed,
         },
-        splits: SplitScheme::Manual([1.0, 2.5, 0.1, 1e-7, 3e9, 16_777_216.0, f32::MAX]),
-        choice: MapChoice::ViewDepth,
-        blend: 2.5,
-        overlap: 0.1,
-        stabilise: Stabilise::Snap,
-        hold: HoldSettings { margin: 0.5, growth: 2.0, waste: 3.0, horizon: 9 },
-        receivers: ReceiverSource::Objects,
         filter: FilterKind::Vogel8,
         softness: Softness { radius: SoftRadius::Metres(0.1), floor: 0.5, ceiling: 8.0 },
         fade: 0.2,
@@ -76,22 +73,24 @@ fn all_fields() -> Technique {
             receiver_plane: 1.5,
             depth_steps: 0.5,
         },
-        need: NeedSource::Boxes,
         format: MapFormat::R32Float,
     }
 }
 
 /// Single fields in each of the nested structs.
 fn some_fields() -> Technique {
-    let mut technique = Technique::default().with_splits(SplitScheme::Practical(0.7)).with_max_distance(f32::MIN);
-    technique.hold.horizon = 60;
+    let hold = HoldSettings::default().with_horizon(60);
+    let slices = Slices::default().with_splits(SplitScheme::Practical(0.7)).with_stabilise(Stabilise::Hysteresis(hold));
+    let mut technique = Technique::default().with_maps(slices).with_max_distance(f32::MIN);
     technique.bias.slope = 1.0;
     technique.softness.radius = SoftRadius::SunAngle(0.01);
     technique
 }
 
 fn not_finite() -> Technique {
-    let mut technique = Technique::default().with_splits(SplitScheme::Practical(f32::NAN)).with_overlap(f32::INFINITY);
+    let choice = MapChoice::ViewDepth { overlap: f32::INFINITY };
+    let slices = Slices::default().with_splits(SplitScheme::Practical(f32::NAN)).with_choice(choice);
+    let mut technique = Technique::default().with_maps(slices);
     technique.fit.up = Vec3::new(f32::NEG_INFINITY, f32::NAN, f32::MAX);
     technique.fit.border = Some(-f32::NAN);
     technique

@@ -183,6 +183,7 @@ mod tests {
 
     use glam::{DVec3, Vec3};
     use shadowfit::{PerspectiveCamera, ShadowFitter, Technique};
+    use shadowfit_params::{BoxSource, Inputs};
     use shadowfit_render::{AdapterChoice, Gpu, Renderer};
     use shadowfit_scene::Scene;
     use shadowfit_scene::builtin::default_scene;
@@ -203,10 +204,13 @@ mod tests {
         evaluator: Evaluator,
     }
 
+    /// The same maps whatever frame came before.
+    const UNTOLD: Inputs = Inputs { boxes: BoxSource::Clusters, seen: false };
+
     impl Drawn {
         fn new() -> Self {
             let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
-            let technique = Technique::preset("clusters-4").expect("a preset").with_resolution(256, 256);
+            let technique = Technique::preset("focused-4").expect("a preset").with_resolution(256, 256);
             let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::from(&technique), 1).expect("a renderer");
             let scene = PreparedScene::new(&gpu, renderer.material_layout(), default_scene()).expect("the scene");
             let evaluator = Evaluator::new(renderer, Judging { size: SIZE, ..Judging::default() });
@@ -214,13 +218,13 @@ mod tests {
         }
 
         fn job(&mut self, view: &View) -> JudgeJob {
-            let maps = self.scene.fit_next(&mut self.fitter, view).expect("maps");
+            let maps = self.scene.fit_next(&mut self.fitter, UNTOLD, view).expect("maps");
             let rays = self.scene.shared_rays();
             self.evaluator.judge_job(&self.gpu, &mut self.scene, view, &maps, rays).expect("a job").0
         }
 
         fn judge(&mut self, view: &View) -> Judged {
-            let maps = self.scene.fit_next(&mut self.fitter, view).expect("maps");
+            let maps = self.scene.fit_next(&mut self.fitter, UNTOLD, view).expect("maps");
             let truth = &mut SharedTruth::default();
             self.evaluator.judge(&self.gpu, &mut self.scene, view, &maps, truth).expect("judged")
         }

@@ -99,7 +99,7 @@ impl Comparison {
     pub fn frame(&mut self, view: &View, truth: &mut SharedTruth) -> Result<Vec<Outcome>> {
         let mut outcomes = Vec::with_capacity(self.entries.len());
         for Entry { named, evaluator } in &mut self.entries {
-            let maps = self.scene.fit_next(evaluator.renderer.sun_mut().fitter_mut(), view);
+            let maps = self.scene.fit_next(evaluator.renderer.sun_mut().fitter_mut(), named.inputs, view);
             let maps = maps.with_context(|| format!("technique {}", named.name))?.to_vec();
             let judged = evaluator.judge(&self.gpu, &mut self.scene, view, &maps, truth)?;
             outcomes.push(Outcome { maps, judged });

@@ -5,6 +5,7 @@ use shadowfit::histogram::needed_texel;
 use shadowfit::need;
 use shadowfit::seen::{Seen, SeenSpace};
 use shadowfit::{FitError, FitInput, FittedMaps, PerspectiveCamera, ShadowFitter, Technique, ViewFrustum};
+use shadowfit_params::Inputs;
 use shadowfit_truth::Tracer;
 
 use crate::{PosedScene, View};
@@ -28,9 +29,9 @@ pub enum RayUse {
 }
 
 impl PosedScene {
-    /// The input of a technique's fits in this scene, for views and a light that travels in `direction` (world axes).
-    pub fn input<'a>(&'a self, technique: &Technique, views: &'a [ViewFrustum], direction: Vec3) -> FitInput<'a> {
-        self.boxes(technique.receivers).input(views, direction)
+    /// The input of fits in this scene, for views and a light that travels in `direction` (world axes).
+    pub fn input<'a>(&'a self, inputs: Inputs, views: &'a [ViewFrustum], direction: Vec3) -> FitInput<'a> {
+        self.boxes(inputs.boxes).input(views, direction)
     }
 
     /// Fits the next view of a path, then gives the visible points of that view to the fitter. Where a path begins, the
@@ -39,12 +40,12 @@ impl PosedScene {
     /// # Errors
     ///
     /// When the camera or the technique makes no sense.
-    pub fn fit_next(&self, fitter: &mut ShadowFitter, view: &View) -> Result<FittedMaps, FitError> {
+    pub fn fit_next(&self, fitter: &mut ShadowFitter, inputs: Inputs, view: &View) -> Result<FittedMaps, FitError> {
         if view.is_first {
             fitter.reset();
         }
-        let maps = self.fit(fitter, view)?;
-        self.see(fitter, view, RayUse::Wait)?;
+        let maps = self.fit(fitter, inputs, view)?;
+        self.see(fitter, inputs, view, RayUse::Wait)?;
         Ok(maps)
     }
 
@@ -54,24 +55,24 @@ impl PosedScene {
     /// # Errors
     ///
     /// As [`Self::fit_next`].
-    pub fn fit_alone(&self, fitter: &mut ShadowFitter, view: &View) -> Result<FittedMaps, FitError> {
+    pub fn fit_alone(&self, fitter: &mut ShadowFitter, inputs: Inputs, view: &View) -> Result<FittedMaps, FitError> {
         fitter.reset();
-        self.see(fitter, view, RayUse::Wait)?;
-        self.fit(fitter, view)
+        self.see(fitter, inputs, view, RayUse::Wait)?;
+        self.fit(fitter, inputs, view)
     }
 
-    fn fit(&self, fitter: &mut ShadowFitter, view: &View) -> Result<FittedMaps, FitError> {
-        let (views, technique) = ([view.camera.frustum()?], *fitter.technique());
-        fitter.fit(&self.input(&technique, &views, view.direction)).copied()
+    fn fit(&self, fitter: &mut ShadowFitter, inputs: Inputs, view: &View) -> Result<FittedMaps, FitError> {
+        fitter.fit(&self.input(inputs, &[view.camera.frustum()?], view.direction)).copied()
     }
 
-    /// Gives the visible points of a view, found by rays, to a fitter, if its technique uses them and there are rays.
+    /// Gives the visible points of a view, found by rays, to a fitter, if the inputs say so, its technique uses them and
+    /// there are rays.
     ///
     /// # Errors
     ///
     /// When the camera makes no sense.
-    pub fn see(&self, fitter: &mut ShadowFitter, view: &View, rays: RayUse) -> Result<(), FitError> {
-        if !fitter.technique().uses_seen() {
+    pub fn see(&self, fitter: &mut ShadowFitter, inputs: Inputs, view: &View, rays: RayUse) -> Result<(), FitError> {
+        if !inputs.tell(fitter.technique()) {
             return Ok(());
         }
         let latest = if rays == RayUse::Wait { None } else { self.latest_rays() };
@@ -141,6 +142,8 @@ mod tests {
 
     use crate::PreparedScene;
 
+    use crate::NamedTechnique;
+
     use super::*;
 
     fn scene() -> PreparedScene {
@@ -162,18 +165,23 @@ mod tests {
         View { camera, direction: Vec3::new(0.4, -0.7, 0.3).normalize(), is_first }
     }
 
-    fn fitter(name: &str) -> ShadowFitter {
-        ShadowFitter::new(&Technique::preset(name).expect("a preset"))
+    /// A fitter of a technique by name, and what its fits are given.
+    fn fitter(name: &str) -> (ShadowFitter, Inputs) {
+        let named = NamedTechnique::preset(name).expect("a preset");
+        (ShadowFitter::new(&named.technique), named.inputs)
     }
 
     #[test]
     fn gpu_windows_are_placed_by_the_frame_before_and_those_of_a_picture_alone_by_itself() {
         let scene = scene();
-        let alone = |name: &str| scene.fit_alone(&mut fitter(name), &view(9.0, false)).expect("maps");
+        let alone = |name: &str| {
+            let (mut fitter, inputs) = fitter(name);
+            scene.fit_alone(&mut fitter, inputs, &view(9.0, false)).expect("maps")
+        };
         let along = |name: &str| -> Vec<FittedMaps> {
-            let mut fitter = fitter(name);
+            let (mut fitter, inputs) = fitter(name);
             let frames = [view(9.0, true), view(8.9, false), view(8.8, false)];
-            frames.iter().map(|view| scene.fit_next(&mut fitter, view).expect("maps")).collect()
+            frames.iter().map(|view| scene.fit_next(&mut fitter, inputs, view).expect("maps")).collect()
         };
         let (seen, estimated) = (along("windows-4"), along("windows-boxes-4"));
         assert_ne!(alone("windows-4"), alone("windows-boxes-4"), "the picture's own needs count");
@@ -186,8 +194,8 @@ mod tests {
     fn gpu_without_waiting_the_boxes_place_windows_until_rays_are_there() {
         let mut scene = scene();
         let seen = |scene: &PreparedScene, name: &str, rays: RayUse| {
-            let mut fitter = fitter(name);
-            scene.see(&mut fitter, &view(9.0, false), rays).expect("a camera that makes sense");
+            let (mut fitter, inputs) = fitter(name);
+            scene.see(&mut fitter, inputs, &view(9.0, false), rays).expect("a camera that makes sense");
             fitter.seen().cloned()
         };
         for name in ["windows-4", "histogram-4"] {
@@ -207,8 +215,8 @@ mod tests {
     fn gpu_only_techniques_that_go_by_it_are_told_what_a_view_shows() {
         let scene = scene();
         let is_told = |name: &str| {
-            let mut fitter = fitter(name);
-            scene.see(&mut fitter, &view(9.0, true), RayUse::Wait).expect("a camera that makes sense");
+            let (mut fitter, inputs) = fitter(name);
+            scene.see(&mut fitter, inputs, &view(9.0, true), RayUse::Wait).expect("a camera that makes sense");
             fitter.seen().is_some()
         };
         assert_eq!(["clusters-4", "stable-4", "windows-boxes-4"].map(is_told), [false; 3]);

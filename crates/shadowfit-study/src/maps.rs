@@ -43,11 +43,10 @@ pub(crate) fn picture_maps<'a>(
     descriptor: &ShadowMapDescriptor,
 ) -> PictureMaps<'a> {
     let reading = match descriptor.choice {
-        MapChoice::ViewDepth => MapReading::ViewDepth,
-        MapChoice::Coverage => MapReading::Coverage {
-            order: MapOrder::new(MapChoice::Coverage, fits.iter().map(|map| &map.fit)),
-            blend: descriptor.blend,
-        },
+        MapChoice::ViewDepth { .. } => MapReading::ViewDepth,
+        choice @ MapChoice::Coverage { blend } => {
+            MapReading::Coverage { order: MapOrder::new(choice, fits.iter().map(|map| &map.fit)), blend }
+        }
     };
     let reach = descriptor.softness.reach(descriptor.filter);
     PictureMaps { maps, reading, reach, depth_clamp: descriptor.depth_clamp }

@@ -5,8 +5,8 @@ use core::fmt;
 use std::sync::Arc;
 
 use glam::DVec3;
-use shadowfit::settings::ReceiverSource;
 use shadowfit::{Aabb, PerspectiveCamera};
+use shadowfit_params::BoxSource;
 use shadowfit_render::{Gpu, GpuScene};
 use shadowfit_scene::{AlphaMode, Instance, Pose, Scene};
 
@@ -248,10 +248,10 @@ impl PosedScene {
         self.scene.instances().iter().map(|instance| counts(instance.node)).collect()
     }
 
-    pub(crate) fn boxes(&self, receivers: ReceiverSource) -> &SceneBoxes {
-        match receivers {
-            ReceiverSource::Objects => &self.objects,
-            ReceiverSource::Clusters => &self.clusters,
+    pub(crate) fn boxes(&self, source: BoxSource) -> &SceneBoxes {
+        match source {
+            BoxSource::Objects => &self.objects,
+            BoxSource::Clusters => &self.clusters,
         }
     }
 }

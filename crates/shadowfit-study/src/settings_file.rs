@@ -8,11 +8,14 @@ use std::fmt::Write as _;
 use anyhow::{Context, Result, bail, ensure};
 use shadowfit::Technique;
 use shadowfit_params::tool::Settings;
-use shadowfit_params::{self as params, Group, Kind, PARAMETERS, Parameter};
+use shadowfit_params::{self as params, Group, Inputs, Kind, PARAMETERS, Parameter, ParameterError};
 use toml::Value;
 
-/// A group that files of earlier versions have, of settings for single maps: it is ignored.
+/// A group that files of earlier versions may have, of settings for single maps: it is ignored.
 const FORMER_GROUP: &str = "override";
+
+/// What users are told of a file that was [translated](translate).
+pub const TRANSLATED: &str = "it was saved by an earlier version, and has been translated";
 
 /// Settings as TOML text that [`settings_from_toml`] reads: a table for each group, its name behind `prefix`, such as
 /// `settings.`.
@@ -22,18 +25,25 @@ pub fn settings_to_toml(settings: &Settings, prefix: &str) -> String {
     write_settings(settings, prefix, |_| true)
 }
 
-/// The tables of [`settings_to_toml`] that make up a technique.
-pub fn technique_to_toml(technique: &Technique, prefix: &str) -> String {
-    write_settings(&Settings::default().with_technique(*technique), prefix, Group::is_technique)
+/// The tables of [`settings_to_toml`] that make up a technique and what its fits are given.
+pub fn technique_to_toml(technique: &Technique, inputs: Inputs, prefix: &str) -> String {
+    let settings = Settings { inputs, ..Settings::default().with_technique(*technique) };
+    write_settings(&settings, prefix, is_of_technique_file)
 }
 
-/// Sets the parameters that a table names, and leaves all others as they are.
+/// Whether files of techniques have a group: the parts of a technique, and what its fits are given.
+pub(crate) fn is_of_technique_file(group: Group) -> bool {
+    group.is_technique() || group == Group::Input
+}
+
+/// Sets the parameters that a table names, and leaves all others as they are. Says whether the table was
+/// [translated](TRANSLATED) from what an earlier version wrote.
 ///
 /// # Errors
 ///
 /// When the table has an unknown group or key, or a value that the parameter does not take. The settings are unchanged
 /// then.
-pub fn settings_from_toml(table: &toml::Table, settings: &mut Settings) -> Result<()> {
+pub fn settings_from_toml(table: &toml::Table, settings: &mut Settings) -> Result<bool> {
     read_settings(table, |_| true, settings)
 }
 
@@ -53,21 +63,43 @@ pub(crate) fn write_settings(settings: &Settings, prefix: &str, has: impl Fn(Gro
 }
 
 /// Sets the parameters of some groups from a table. Any other group is an error, and the settings are unchanged then.
-pub(crate) fn read_settings(table: &toml::Table, has: impl Fn(Group) -> bool, settings: &mut Settings) -> Result<()> {
+pub(crate) fn read_settings(table: &toml::Table, has: impl Fn(Group) -> bool, settings: &mut Settings) -> Result<bool> {
     let mut left = table.clone();
-    left.remove(FORMER_GROUP);
+    let is_former = translate(&mut left);
     let mut read = *settings;
     // In the order of the table: a scheme comes before the numbers that only it has.
     for parameter in PARAMETERS.iter().filter(|parameter| has(parameter.group)) {
         let Some(group) = left.get_mut(parameter.group.id()) else { continue };
         let group = group.as_table_mut().with_context(|| format!("{} is no table", parameter.group.id()))?;
-        if let Some(value) = group.remove(key(parameter)) {
-            params::set_from_str(&mut read, parameter.id, &text_of(&value).with_context(|| parameter.id)?)?;
+        let Some(value) = group.remove(key(parameter)) else { continue };
+        match params::set_from_str(&mut read, parameter.id, &text_of(&value).with_context(|| parameter.id)?) {
+            // It had no effect with this kind of maps.
+            Err(ParameterError::NotPresent { .. }) if is_former => {}
+            result => result?,
         }
     }
     refuse_the_rest(&left, has)?;
     *settings = read;
-    Ok(())
+    Ok(is_former)
+}
+
+/// Translates a table of an earlier version, in which a technique said what its fits are given and had settings for all
+/// kinds of maps, whatever its own kind. Says whether it was one.
+fn translate(file: &mut toml::Table) -> bool {
+    const MOVED: [(&str, &str); 2] = [("receivers", "boxes"), ("need", "seen")];
+    let mut is_former = file.remove(FORMER_GROUP).is_some();
+    for (former, key) in MOVED {
+        let Some(value) = file.get_mut("fit").and_then(Value::as_table_mut).and_then(|fit| fit.remove(former)) else {
+            continue;
+        };
+        is_former = true;
+        let value = if former == "need" { Value::Boolean(value.as_str() != Some("boxes")) } else { value };
+        let input = file.entry(Group::Input.id()).or_insert_with(|| Value::Table(toml::Table::new()));
+        if let Some(input) = input.as_table_mut() {
+            input.insert(key.to_owned(), value);
+        }
+    }
+    is_former
 }
 
 /// A parameter's name in its group.
@@ -111,7 +143,9 @@ fn refuse_the_rest(file: &toml::Table, has: impl Fn(Group) -> bool) -> Result<()
 
 #[cfg(test)]
 mod tests {
-    use shadowfit::settings::SplitScheme;
+    use shadowfit::settings::{FitKind, MapChoice, RectangleKind, Shape, SplitScheme, Stabilise};
+    use shadowfit::{OneMap, Slices, Windows};
+    use shadowfit_params::BoxSource;
     use shadowfit_params::tool::{ErrorMarks, ViewMode};
 
     use super::*;
@@ -123,7 +157,8 @@ mod tests {
     #[test]
     fn settings_are_read_back_as_they_were_written() {
         let mut settings = Settings::default();
-        settings.technique = settings.technique.with_count(3).with_splits(SplitScheme::Practical(0.3));
+        settings.technique =
+            settings.technique.with_maps(Slices::default().with_count(3).with_splits(SplitScheme::Practical(0.3)));
         (settings.light.hour, settings.camera.speed) = (Some(7.25), 12.5);
         (settings.view.mode, settings.view.marks) = (ViewMode::Error, ErrorMarks::Blink);
         settings.view.inset_depths = Some([0.25, 0.75]);
@@ -162,5 +197,41 @@ mod tests {
             assert!(format!("{error:#}").contains(word), "{error:#}");
             assert_eq!(settings, before);
         }
+    }
+
+    /// The groups of the maps as versions wrote them in which each technique had settings for all kinds.
+    fn former(kind: &str, count: u32) -> toml::Table {
+        table(&format!(
+            "[fit]\nkind = \"{kind}\"\nreceivers = \"objects\"\nneed = \"boxes\"\nrectangle = \"minimum_square\"\n\
+             max_texel_ratio = 3.0\nmax_distance = 80\n\
+             [splits]\ncount = {count}\nscheme = \"practical\"\nlambda = 0.25\nchoice = \"view_depth\"\nblend = 4\n\
+             overlap = 0.5\n[stabilise]\nmode = \"snap\"\nmargin = 0.1\ngrowth = 2\nwaste = 2.5\nhorizon = 9\n\
+             [override]\nmap_1 = true\n"
+        ))
+    }
+
+    #[test]
+    fn files_of_before_techniques_had_kinds_are_translated() {
+        let read = |file: toml::Table| {
+            let mut settings = Settings::default();
+            assert!(settings_from_toml(&file, &mut settings).expect("a file of an earlier version"));
+            assert_eq!(settings.inputs, Inputs { boxes: BoxSource::Objects, seen: false });
+            assert_eq!(settings.technique.fit.max_distance, 80.0);
+            settings.technique.maps
+        };
+        assert_eq!(read(former("windows", 5)), Windows { count: 5, blend: 4.0, depth_waste: 2.5 }.into());
+        let shape = Shape { kind: FitKind::Oriented, rectangle: RectangleKind::MinimumSquare, max_texel_ratio: 3.0 };
+        let stabilise = Stabilise::Snap { waste: 2.5 };
+        assert_eq!(read(former("oriented", 1)), OneMap { shape, stabilise }.into());
+        let splits = SplitScheme::Practical(0.25);
+        let slices = Slices { count: 3, shape, splits, choice: MapChoice::ViewDepth { overlap: 0.5 }, stabilise };
+        assert_eq!(read(former("oriented", 3)), slices.into());
+
+        let mut settings = Settings::default();
+        let written = table(&settings_to_toml(&settings, ""));
+        assert!(!settings_from_toml(&written, &mut settings).expect("a file of this version"));
+        let of_another_kind = table("[fit]\nkind = \"windows\"\n[splits]\nscheme = \"uniform\"");
+        let error = settings_from_toml(&of_another_kind, &mut settings).expect_err("windows have no splits");
+        assert!(error.to_string().contains("splits.scheme"), "{error}");
     }
 }

@@ -10,11 +10,11 @@ use std::path::Path;
 use anyhow::{Context, Result, bail, ensure};
 use shadowfit::presets::RECOMMENDED;
 use shadowfit::{PRESETS, Technique};
-use shadowfit_params::Group;
 use shadowfit_params::tool::Settings;
+use shadowfit_params::{Inputs, NAMED_INPUTS, NamedInputs};
 use toml::Value;
 
-use crate::settings_file::{read_settings, technique_to_toml};
+use crate::settings_file::{TRANSLATED, is_of_technique_file, read_settings, technique_to_toml};
 
 /// A technique with its name.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +25,8 @@ pub struct NamedTechnique {
     pub summary: String,
     /// The technique.
     pub technique: Technique,
+    /// What its fits are given.
+    pub inputs: Inputs,
 }
 
 impl Default for NamedTechnique {
@@ -36,15 +38,26 @@ impl Default for NamedTechnique {
 impl From<Technique> for NamedTechnique {
     /// A technique without a name.
     fn from(technique: Technique) -> Self {
-        Self { name: String::new(), summary: String::new(), technique }
+        Self { name: String::new(), summary: String::new(), technique, inputs: Inputs::default() }
     }
 }
 
 impl NamedTechnique {
-    /// The preset of a name.
+    /// The preset of a name, or the preset and input that a [name of both](NAMED_INPUTS) stands for.
     pub fn preset(name: &str) -> Option<Self> {
-        let preset = PRESETS.iter().find(|preset| preset.name == name)?;
-        Some(Self { name: preset.name.to_owned(), summary: preset.summary.to_owned(), technique: preset.technique() })
+        let named = NamedInputs::find(name);
+        let preset = named.map_or(name, |named| named.preset);
+        let preset = PRESETS.iter().find(|known| known.name == preset)?;
+        let (summary, inputs) = match named {
+            Some(named) => (format!("{}: {}", preset.name, preset.summary), named.inputs),
+            None => (preset.summary.to_owned(), Inputs::default()),
+        };
+        Some(Self { name: name.to_owned(), summary, technique: preset.technique(), inputs })
+    }
+
+    /// What it is, and what its fits are given, in a sentence.
+    pub fn description(&self) -> String {
+        format!("{}; {}", self.summary, self.inputs)
     }
 
     /// This technique with maps of another width and height, in texels.
@@ -65,7 +78,8 @@ impl NamedTechnique {
             return Self::read(file);
         }
         Self::preset(text).with_context(|| {
-            let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
+            let inputs = NAMED_INPUTS.iter().map(|named| named.name);
+            let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).chain(inputs).collect();
             format!("there is no technique \"{text}\"; give a .toml file or one of {}", names.join(", "))
         })
     }
@@ -99,9 +113,10 @@ impl NamedTechnique {
         };
         let (name, summary) = (word("name")?, word("summary")?);
         let mut settings = Settings::default();
-        read_settings(&file, Group::is_technique, &mut settings)?;
-        let technique = settings.technique;
-        Ok(Self { name, summary, technique })
+        let is_former = read_settings(&file, is_of_technique_file, &mut settings)?;
+        let summary = if is_former { format!("{summary} ({TRANSLATED})").trim_start().to_owned() } else { summary };
+        let Settings { technique, inputs, .. } = settings;
+        Ok(Self { name, summary, technique, inputs })
     }
 
     /// The technique as TOML that [`Self::read`] reads.
@@ -110,9 +125,9 @@ impl NamedTechnique {
     ///
     /// When a number lies outside its parameter's range or is not finite, so that it could not be read back.
     pub fn to_toml(&self) -> Result<String> {
-        let Self { name, summary, technique } = self;
+        let Self { name, summary, technique, inputs } = self;
         let mut text = format!("name = {}\nsummary = {}\n", Value::from(name.as_str()), Value::from(summary.as_str()));
-        let _ = writeln!(text, "\n{}", technique_to_toml(technique, "").trim_end());
+        let _ = writeln!(text, "\n{}", technique_to_toml(technique, *inputs, "").trim_end());
         let read = Self::from_toml(&text).context("a number that no file can hold")?;
         ensure!(read == *self, "a number that no file can hold");
         Ok(text)
@@ -122,6 +137,7 @@ impl NamedTechnique {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use shadowfit::Slices;
     use shadowfit::glam::Vec3;
     use shadowfit::settings::SplitScheme;
 
@@ -141,11 +157,11 @@ mod tests {
     #[test]
     fn up_manual_splits_and_a_height_survive_a_file() {
         let mut technique = Technique::default()
-            .with_splits(SplitScheme::Manual([0.1, 2.5, 7.0, 11.0, 12.3, 13.0, 99.9]))
+            .with_maps(Slices::default().with_splits(SplitScheme::Manual([0.1, 2.5, 7.0, 11.0, 12.3, 13.0, 99.9])))
             .with_resolution(1024, 768);
         technique.fit.up = Vec3::Z;
         technique.fit.border = Some(0.0);
-        let named = NamedTechnique { name: "\"quoted\"".to_owned(), summary: "a\nb".to_owned(), technique };
+        let named = NamedTechnique { name: "\"quoted\"".to_owned(), summary: "a\nb".to_owned(), ..technique.into() };
         assert_eq!(NamedTechnique::from_toml(&named.to_toml().expect("text")).expect("read back"), named);
     }
 

@@ -6,8 +6,8 @@
 mod changes;
 
 use anyhow::{Context, Error, Result, ensure};
-use shadowfit::settings::FitKind;
 use shadowfit::{FitError, Technique};
+use shadowfit_params::Inputs;
 use shadowfit_render::ProbeError;
 use shadowfit_truth::PictureTally;
 use shadowfit_wgpu::ShadowMapError;
@@ -76,6 +76,8 @@ pub enum TuneScope {
 pub struct TuneSettings {
     /// The technique that it begins with, whose number and size of maps are the budget. Default: the recommended one.
     pub start: Technique,
+    /// What its fits are given. Default: [`Inputs::default`].
+    pub inputs: Inputs,
     /// What it may change. Default: everything.
     pub scope: TuneScope,
     /// How much each error counts. Default: [`Weights::default`].
@@ -138,10 +140,12 @@ struct Search<'a> {
     truths: Vec<SharedTruth>,
     weights: &'a Weights,
     at_most: usize,
-    /// All techniques that were tried, without settings that have no effect.
+    /// All techniques that were tried.
     tried: Vec<Technique>,
     steps: Vec<Step>,
     best: Technique,
+    /// What all of them are given.
+    inputs: Inputs,
     /// Place of the best one in the steps.
     best_step: usize,
 }
@@ -189,6 +193,7 @@ pub fn tune(
         tried: Vec::new(),
         steps: Vec::new(),
         best: settings.start,
+        inputs: settings.inputs,
         best_step: 0,
     };
     search.measure(&settings.start, "the start")?;
@@ -213,7 +218,7 @@ impl Search<'_> {
     fn try_change(&mut self, from: &Technique, change: &Change) -> Result<bool> {
         let mut candidate = *from;
         (change.apply)(&mut candidate);
-        if self.tried.contains(&in_effect(&candidate)) {
+        if self.tried.contains(&candidate) {
             return Ok(false);
         }
         match self.measure(&candidate, &change.what) {
@@ -225,7 +230,7 @@ impl Search<'_> {
 
     /// Measures a technique, which becomes the best one if its error is less.
     fn measure(&mut self, technique: &Technique, what: &str) -> Result<()> {
-        self.tried.push(in_effect(technique));
+        self.tried.push(*technique);
         let tally = self.sums(technique)?;
         let error = self.weights.error(&tally);
         let is_first = self.steps.is_empty();
@@ -239,7 +244,7 @@ impl Search<'_> {
     /// Sums over all frames.
     fn sums(&mut self, technique: &Technique) -> Result<PictureTally> {
         self.comparison.clear();
-        self.comparison.add(*technique)?;
+        self.comparison.add(NamedTechnique { inputs: self.inputs, ..(*technique).into() })?;
         let mut tally = PictureTally::default();
         for (view, truth) in self.views.iter().zip(&mut self.truths) {
             for outcome in self.comparison.frame(view, truth)? {
@@ -264,8 +269,8 @@ impl Search<'_> {
     fn end(self, stopped_early: bool) -> Tuned {
         let [width, height] = self.best.fit.resolution.to_array();
         let size = if width == height { width.to_string() } else { format!("{width} × {height}") };
-        let summary = format!("the least error found with {} of {size} texels", maps(self.best.count));
-        let technique = NamedTechnique { name: "tuned".to_owned(), summary, technique: self.best };
+        let summary = format!("the least error found with {} of {size} texels", maps(self.best.maps.count()));
+        let technique = NamedTechnique { name: "tuned".to_owned(), summary, technique: self.best, inputs: self.inputs };
         Tuned { technique, tally: self.steps[self.best_step].tally.clone(), steps: self.steps, stopped_early }
     }
 }
@@ -277,18 +282,6 @@ fn is_refusal(error: &Error) -> bool {
         || matches!(error.downcast_ref(), Some(ProbeError::ShadowMap(_)))
 }
 
-/// A technique without settings that have no effect on its maps: for windows those are splits, stabilisation and
-/// rectangle.
-fn in_effect(technique: &Technique) -> Technique {
-    if technique.fit.kind != FitKind::Windows {
-        return *technique;
-    }
-    let Technique { splits, overlap, stabilise, hold, fit, .. } = Technique::default();
-    let fit = technique.fit.with_rectangle(fit.rectangle);
-    let hold = hold.with_waste(technique.hold.waste);
-    Technique { splits, overlap, stabilise, hold, fit, choice: technique.map_choice(), ..*technique }
-}
-
 #[cfg(test)]
 mod tests {
     use std::sync::mpsc::channel;
@@ -296,23 +289,13 @@ mod tests {
 
     use glam::{DVec3, Vec3};
     use shadowfit::PerspectiveCamera;
-    use shadowfit::settings::{BiasSettings, CasterPolicy, FilterKind, SplitScheme, Stabilise};
+    use shadowfit::settings::{BiasSettings, CasterPolicy, FilterKind};
     use shadowfit_render::{AdapterChoice, Gpu};
     use shadowfit_scene::Scene;
     use shadowfit_truth::ClassTally;
 
     use super::*;
     use crate::Judging;
-
-    #[test]
-    fn splits_and_stillness_of_windows_are_not_tried() {
-        let with = |kind| Technique::default().with_fit(Technique::default().fit.with_kind(kind));
-        let changed = |kind| with(kind).with_splits(SplitScheme::Uniform).with_stabilise(Stabilise::Off);
-        assert_eq!(in_effect(&changed(FitKind::Windows)), in_effect(&with(FitKind::Windows)));
-        assert_ne!(in_effect(&changed(FitKind::Focused)), in_effect(&with(FitKind::Focused)));
-        let fewer = with(FitKind::Windows).with_count(3);
-        assert_eq!(in_effect(&fewer), fewer);
-    }
 
     #[test]
     fn the_search_within_a_budget_starts_with_the_recommended_technique() {
@@ -382,7 +365,7 @@ mod tests {
     fn bad() -> Technique {
         let none =
             BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };
-        let technique = Technique::preset("clusters-4").expect("a preset").with_count(2).with_resolution(512, 256);
+        let technique = Technique::preset("focused-4").expect("a preset").with_count(2).with_resolution(512, 256);
         technique.with_look_up(FilterKind::Point, none)
     }
 
@@ -436,6 +419,7 @@ mod tests {
             tried: Vec::new(),
             steps: Vec::new(),
             best: bad(),
+            inputs: Inputs::default(),
             best_step: 0,
         };
         search.measure(&bad(), "the start").expect("measured");

@@ -10,8 +10,9 @@ use core::f32::consts::{PI, TAU};
 
 use glam::{DVec3, UVec2, Vec3};
 use shadowfit::settings::{BiasSettings, CasterPolicy, FilterKind, FitKind};
-use shadowfit::{Aabb, PerspectiveCamera, Technique};
+use shadowfit::{Aabb, Maps, PerspectiveCamera, Technique};
 use shadowfit_egui::Artefact;
+use shadowfit_params::Inputs;
 use shadowfit_params::tool::{Settings, ViewMode};
 use shadowfit_render::FlyCamera;
 use shadowfit_study::PosedScene;
@@ -86,7 +87,7 @@ impl Search {
         let has_subject = scene.scene().subject.is_some();
         let lens = scene.camera_for_rays(&PerspectiveCamera { aspect: ASPECT, ..self.lens });
         let mut settings = self.settings;
-        let search = ViewSearch::new(scene, light);
+        let search = ViewSearch::new(scene, settings.inputs, light);
         let place = Place::new(&search, light, subject, has_subject, lens);
         let (camera, shows) = match self.artefact {
             Artefact::Acne => show_acne(&search, &place, &mut settings),
@@ -107,10 +108,10 @@ impl Search {
 /// Applies the cure of an artefact on show; `before` is the technique from before it was shown.
 /// `seen` is the distance beyond which hardly anything is seen, in metres, from [`farthest_seen`].
 pub(crate) fn fix(technique: &mut Technique, artefact: Artefact, before: &Technique, seen: Option<f32>) {
-    let is_single = technique.count == 1;
-    let gave_way = !is_single && technique.fit.kind == FitKind::Focused && before.fit.kind == FitKind::Windows;
+    let is_single = technique.maps.count() == 1;
+    let gave_way = !is_single && is_of(technique, FitKind::Focused) && matches!(before.maps, Maps::Windows(_));
     if gave_way && artefact != Artefact::Acne {
-        technique.fit.kind = FitKind::Windows;
+        *technique = technique.with_maps(technique.maps.as_windows());
     }
     match artefact {
         // Enough for planes and creases, and nothing else changed.
@@ -133,7 +134,7 @@ pub(crate) fn fix(technique: &mut Technique, artefact: Artefact, before: &Techni
         Artefact::ClippingHole => {
             technique.fit.casters = CasterPolicy::List;
             if is_single {
-                technique.fit.kind = FitKind::Focused;
+                *technique = technique.with_maps(technique.maps.with_kind(FitKind::Focused));
             }
         }
     }
@@ -239,7 +240,7 @@ fn show_aliasing(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings
     let distance = middle.map_or(height * 2.0, |seen| seen.distance);
     let point = middle.map_or(camera.eye.as_vec3() + camera.forward * distance, |seen| seen.position);
     settings.technique = alone_or_as_slices(settings.technique, FitKind::FrustumAabb).with_filter(FilterKind::Point);
-    if settings.technique.count == 1 {
+    if settings.technique.maps.count() == 1 {
         settings.technique.fit.resolution = UVec2::splat(SHOWN_RESOLUTION);
     }
     let texel = place.picture_height(distance) * ALIASING_TEXEL;
@@ -253,7 +254,7 @@ fn show_hole(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) ->
     *technique = alone_or_as_slices(*technique, FitKind::XnaSample).with_filter(technique.filter);
     technique.fit.margin = 0.0;
     technique.fit.casters = CasterPolicy::None;
-    if technique.count == 1 {
+    if technique.maps.count() == 1 {
         technique.fit.max_distance = place.radius * HOLE_DISTANCE;
     }
     let targets = spread(&place.shadows, 4);
@@ -293,12 +294,16 @@ fn show_hole(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) ->
 
 /// A single map fitted by another rule, with no margin; several windows as focused maps; other maps as they are.
 fn alone_or_as_slices(mut technique: Technique, kind: FitKind) -> Technique {
-    if technique.count == 1 {
-        technique.fit = technique.fit.with_kind(kind).with_margin(0.0);
-    } else if technique.fit.kind == FitKind::Windows {
-        technique.fit.kind = FitKind::Focused;
+    if technique.maps.count() == 1 {
+        technique.fit.margin = 0.0;
+        return technique.with_maps(technique.maps.with_kind(kind));
     }
-    technique
+    if matches!(technique.maps, Maps::Windows(_)) { technique.with_maps(technique.maps.as_slices()) } else { technique }
+}
+
+/// Whether a rule fits the maps.
+fn is_of(technique: &Technique, kind: FitKind) -> bool {
+    technique.maps.shape().is_some_and(|shape| shape.kind == kind)
 }
 
 /// Candidate eyes around a target, each with the target: turned from the light's side by
@@ -378,7 +383,7 @@ struct Coarse {
 /// Makes texels as large as wanted: by the frustum that a single map has to hold, or by the margin around each of
 /// several maps.
 fn coarsen(search: &ViewSearch<'_>, camera: &PerspectiveCamera, settings: &mut Settings, wanted: &Coarse) {
-    let is_single = settings.technique.count == 1;
+    let is_single = settings.technique.maps.count() == 1;
     let with = |amount: f32| {
         let mut settings = *settings;
         if is_single {
@@ -412,7 +417,7 @@ fn coarsen(search: &ViewSearch<'_>, camera: &PerspectiveCamera, settings: &mut S
 /// Distance beyond which hardly anything is seen, in metres.
 pub(crate) fn farthest_seen(scene: &PosedScene, light: Vec3, camera: &PerspectiveCamera) -> Option<f32> {
     let camera = PerspectiveCamera { aspect: ASPECT, ..*camera };
-    let pixels = ViewSearch::new(scene, light).look(&scene.camera_for_rays(&camera));
+    let pixels = ViewSearch::new(scene, Inputs::default(), light).look(&scene.camera_for_rays(&camera));
     let mut distances: Vec<f32> = pixels.iter().flatten().map(|seen| seen.distance).collect();
     distances.sort_by(f32::total_cmp);
     let index = (distances.len() as f32 * 0.98) as usize;

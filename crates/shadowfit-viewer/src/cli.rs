@@ -185,7 +185,7 @@ impl Arguments {
         let find = |text: &String| find_technique(text, &settings.technique).context("--technique");
         let opened = self.technique.as_ref().map(find).transpose()?;
         if let Some(opened) = &opened {
-            settings.technique = opened.technique;
+            (settings.technique, settings.inputs) = (opened.technique, opened.inputs);
         }
         for assignment in self.set.iter().filter(|assignment| !assignment.trim().starts_with(OPTION_PREFIX)) {
             let (id, value) = assignment

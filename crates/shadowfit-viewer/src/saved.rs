@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use shadowfit::Technique;
 use shadowfit_params::tool::Settings;
 use shadowfit_render::FlyCamera;
-use shadowfit_study::{NamedTechnique, settings_from_toml, settings_to_toml, technique_to_toml};
+use shadowfit_study::{NamedTechnique, TRANSLATED, settings_from_toml, settings_to_toml, technique_to_toml};
 
 use crate::files::write_whole;
 use crate::source::SceneSource;
@@ -69,6 +69,8 @@ pub(crate) struct Saved {
     pub(crate) presets: Vec<NamedTechnique>,
     /// Options of the sample on show, by name, as command lines say them.
     pub(crate) sample: Vec<(String, String)>,
+    /// Whether the settings were translated from those of an earlier version.
+    pub(crate) is_translated: bool,
 }
 
 /// A view of a scene under a number.
@@ -176,12 +178,12 @@ impl Saved {
         }
         text.push_str(&settings_to_toml(&self.settings, "settings."));
         if let Some((other, _)) = self.other {
-            text.push_str(&technique_to_toml(&other, "other."));
+            text.push_str(&technique_to_toml(&other, self.settings.inputs, "other."));
         }
         for preset in &self.presets {
             let name = toml::Value::from(preset.name.as_str());
             let _ = writeln!(text, "[presets.{name}]\n");
-            text.push_str(&technique_to_toml(&preset.technique, &format!("presets.{name}.")));
+            text.push_str(&technique_to_toml(&preset.technique, preset.inputs, &format!("presets.{name}.")));
         }
         Ok(text)
     }
@@ -215,24 +217,26 @@ impl Saved {
             saved.sample.push((option, value.to_owned()));
         }
         if let Some(settings) = settings {
-            settings_from_toml(&settings, &mut saved.settings).context("settings")?;
+            saved.is_translated = settings_from_toml(&settings, &mut saved.settings).context("settings")?;
         }
         if let Some(other) = other {
-            saved.other = Some((technique(&other).context("other")?, head.split.unwrap_or(0.5)));
+            saved.other = Some((read_technique(&other).context("other")?.technique, head.split.unwrap_or(0.5)));
         }
         for (name, preset) in presets.unwrap_or_default() {
             let table = preset.as_table().with_context(|| format!("presets.{name} is no table"))?;
-            let technique = technique(table).with_context(|| format!("presets.{name}"))?;
-            saved.presets.push(NamedTechnique { name, ..technique.into() });
+            let Settings { technique, inputs, .. } =
+                read_technique(table).with_context(|| format!("presets.{name}"))?;
+            saved.presets.push(NamedTechnique { name, inputs, ..technique.into() });
         }
         Ok(saved)
     }
 }
 
-fn technique(table: &toml::Table) -> Result<Technique> {
+/// A technique and what its fits are given.
+fn read_technique(table: &toml::Table) -> Result<Settings> {
     let mut settings = Settings::default();
     settings_from_toml(table, &mut settings)?;
-    Ok(settings.technique)
+    Ok(settings)
 }
 
 /// The file that everything is saved in.
@@ -262,7 +266,10 @@ impl Store {
             Err(error) => return (None, Some(format!("{} cannot be read: {error}", self.path.display()))),
         };
         match text.and_then(|text| Saved::from_toml(&text)) {
-            Ok(saved) => (Some(saved), None),
+            Ok(saved) => {
+                let note = saved.is_translated.then(|| format!("The saved settings: {TRANSLATED}."));
+                (Some(saved), note)
+            }
             Err(error) => (None, Some(self.set_aside(&error))),
         }
     }
@@ -305,6 +312,8 @@ impl Store {
 
 #[cfg(test)]
 mod tests {
+    use shadowfit_params::{BoxSource, Inputs};
+
     use super::*;
 
     fn saved() -> Saved {
@@ -325,6 +334,24 @@ mod tests {
         saved.remember(Path::new("b.glb"));
         saved.remember(Path::new("a.glb"));
         saved
+    }
+
+    #[test]
+    fn settings_of_an_earlier_version_are_translated_once_and_said_to_be() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("viewer.toml");
+        let text = saved().to_toml().expect("text");
+        let former = text.replace("[settings.input]\nboxes = \"clusters\"", "[settings.input]\nboxes = \"objects\"");
+        let former = former.replace("[settings.fit]\n", "[settings.fit]\nreceivers = \"objects\"\nneed = \"boxes\"\n");
+        std::fs::write(&path, former).expect("written");
+        let mut store = Store::at(path);
+        let (read, note) = store.load();
+        let read = read.expect("settings");
+        assert_eq!(read.settings.inputs, Inputs { boxes: BoxSource::Objects, seen: false });
+        assert_eq!(read.settings.technique, saved().settings.technique);
+        assert!(note.is_some_and(|note| note.contains("earlier version")));
+        store.save(&read).expect("written anew");
+        assert_eq!(store.load().1, None);
     }
 
     #[test]

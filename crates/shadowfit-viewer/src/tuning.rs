@@ -191,8 +191,8 @@ impl Task {
         let judging = Judging { size: SIZE, ..Judging::default() };
         let mut comparison = Comparison::new(gpu, scene, judging)?;
         comparison.set_time(self.pose.0, self.pose.1);
-        let start = self.settings.technique;
-        let settings = TuneSettings { start, scope: TuneScope::Everything, ..TuneSettings::default() };
+        let Settings { technique: start, inputs, .. } = self.settings;
+        let settings = TuneSettings { start, inputs, scope: TuneScope::Everything, ..TuneSettings::default() };
         tune(&mut comparison, &self.views, &settings, progress)
     }
 }

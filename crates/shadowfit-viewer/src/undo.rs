@@ -164,13 +164,13 @@ mod tests {
         }
         assert_eq!(history.undo_name(), None);
         let mut fewer = moving.clone();
-        fewer.settings.technique.count = 2;
+        fewer.settings.technique = fewer.settings.technique.with_count(2);
         for frame in 100..200 {
             fewer.settings.light.azimuth = frame as f32 * 0.01;
             history.feed(f64::from(frame) * 0.1, &fewer);
         }
         let back = history.undo(&fewer).expect("a change");
-        assert_eq!(back.settings.technique.count, 4);
+        assert_eq!(back.settings.technique.maps.count(), 4);
         assert_eq!(back.settings.light.azimuth, fewer.settings.light.azimuth);
     }
 }

@@ -3,6 +3,7 @@
 
 use glam::{DVec3, Vec3};
 use shadowfit::{Aabb, PerspectiveCamera, ShadowFitter, Technique};
+use shadowfit_params::Inputs;
 use shadowfit_study::{PosedScene, View};
 use shadowfit_truth::Tracer;
 
@@ -40,6 +41,7 @@ pub(crate) struct Shadow {
 /// A scene under one light.
 pub(crate) struct ViewSearch<'a> {
     scene: &'a PosedScene,
+    inputs: Inputs,
     tracer: &'a Tracer,
     /// Direction of travel of the light.
     pub(crate) direction: Vec3,
@@ -48,10 +50,10 @@ pub(crate) struct ViewSearch<'a> {
 }
 
 impl<'a> ViewSearch<'a> {
-    pub(crate) fn new(scene: &'a PosedScene, direction: Vec3) -> Self {
+    pub(crate) fn new(scene: &'a PosedScene, inputs: Inputs, direction: Vec3) -> Self {
         let bounds = scene.bounds();
         let offset = (bounds.max - bounds.min).length() * RAY_OFFSET;
-        Self { scene, tracer: &scene.rays().tracer, direction, to_light: -direction, offset }
+        Self { scene, inputs, tracer: &scene.rays().tracer, direction, to_light: -direction, offset }
     }
 
     /// The maps of a candidate, fitted as the viewer fits them to a view that the camera has just been set on; `None`
@@ -59,7 +61,7 @@ impl<'a> ViewSearch<'a> {
     pub(crate) fn fit(&self, technique: &Technique, camera: &PerspectiveCamera) -> Option<Fitted> {
         let camera = PerspectiveCamera { eye: self.world(camera.eye), ..*camera };
         let view = View { camera, direction: self.direction, is_first: true };
-        let maps = self.scene.fit_alone(&mut ShadowFitter::new(technique), &view).ok()?;
+        let maps = self.scene.fit_alone(&mut ShadowFitter::new(technique), self.inputs, &view).ok()?;
         Some(Fitted::new(camera, technique, &maps))
     }
 

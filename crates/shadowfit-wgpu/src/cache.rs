@@ -19,7 +19,7 @@ mod schedule;
 
 use shadowfit::glam::{DVec3, IVec2, UVec2, Vec3};
 use shadowfit::scroll::{Scroll, TexelRect};
-use shadowfit::settings::{MAX_MAPS, MapChoice};
+use shadowfit::settings::MAX_MAPS;
 use shadowfit::{Aabb, CasterVolume, FittedMap};
 
 use casters::{KnownCasters, WorldBox};
@@ -56,6 +56,7 @@ pub enum Culling {
 
 /// Settings of the cache.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a property of its own")]
 pub(crate) struct CacheSettings {
     /// Whether anything is kept.
     pub(crate) keeps: bool,
@@ -65,8 +66,8 @@ pub(crate) struct CacheSettings {
     pub(crate) culling: Culling,
     /// Whether depth is clamped at the near plane.
     pub(crate) depth_clamp: bool,
-    /// Which maps points read.
-    pub(crate) choice: MapChoice,
+    /// Whether points read the maps by coverage.
+    pub(crate) by_coverage: bool,
     /// Width and height of the layers, in texels.
     pub(crate) layer: UVec2,
 }
@@ -175,8 +176,7 @@ impl MapCache {
             let decision = map.decide(fitted, &self.settings, has_moving && !self.is_split);
             let texels = decision.texels(fitted) + u64::from(has_moving);
             if texels > 0 {
-                let is_due =
-                    !map.may_wait(fitted, self.settings.choice == MapChoice::Coverage && frame.coarsest != Some(index));
+                let is_due = !map.may_wait(fitted, self.settings.by_coverage && frame.coarsest != Some(index));
                 candidates.push(Candidate { map: index, age: self.frame - map.frame, texels, is_due });
             }
             map.fitted = Some(*fitted);

@@ -1,7 +1,7 @@
 //! The description of shadow maps: size, count, format, filter, choice of the map and depth convention.
 
 use shadowfit::choice::MapReading;
-use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MAX_BLEND, MAX_MAPS, MapChoice, MapFormat, Softness};
+use shadowfit::settings::{CasterPolicy, FilterKind, MAX_BLEND, MAX_MAPS, MapChoice, MapFormat, Softness};
 use shadowfit::softness::MAX_RADIUS;
 use shadowfit::{DepthConvention, Technique};
 
@@ -24,12 +24,9 @@ pub struct ShadowMapDescriptor {
     /// View depth from which on shadows fade, and the one where they have vanished, in metres; both `f32::MAX` for
     /// shadows that end with their maps. Points beyond are lit.
     pub fade: [f32; 2],
-    /// Which of the maps a point reads.
-    pub choice: MapChoice,
-    /// Texels over which a map that is read by coverage is blended into the next coarser one, inward from the filter's
-    /// reach to its border, 0..=[`MAX_BLEND`]; 0 for none. By view depth
+    /// Which of the maps a point reads. By view depth
     /// [`FittedMap::covered_near`](shadowfit::FittedMap::covered_near) says where maps are blended.
-    pub blend: f32,
+    pub choice: MapChoice,
     /// Depth convention of the fits: 0..1, plain or reversed; wgpu has no -1..1.
     pub depth: DepthConvention,
     /// Whether casters before the near plane are kept, flattened onto it ("pancaking"), as fits with
@@ -52,16 +49,14 @@ impl From<&Technique> for ShadowMapDescriptor {
     fn from(technique: &Technique) -> Self {
         Self {
             resolution: technique.fit.resolution.to_array(),
-            maps: technique.count,
+            maps: technique.maps.count(),
             format: technique.format,
             filter: technique.filter,
             softness: technique.softness,
             fade: fade(technique),
-            choice: technique.map_choice(),
-            blend: technique.blend,
+            choice: technique.maps.choice(),
             depth: technique.fit.depth,
-            // The XNA sample's fit has no caster policy.
-            depth_clamp: technique.fit.casters == CasterPolicy::DepthClamp && technique.fit.kind != FitKind::XnaSample,
+            depth_clamp: technique.fit.casters == CasterPolicy::DepthClamp && !technique.maps.are_exact(),
             first_binding: 0,
         }
     }
@@ -76,8 +71,8 @@ fn fade(technique: &Technique) -> [f32; 2] {
 impl ShadowMapDescriptor {
     /// How points read the maps.
     pub const fn reading(&self) -> MapReading {
-        let Self { choice, blend, filter, softness, .. } = *self;
-        MapReading { choice, blend, filter, softness }
+        let Self { choice, filter, softness, .. } = *self;
+        MapReading { choice, filter, softness }
     }
 
     /// Refuses a descriptor that is impossible, in general or on this device.
@@ -90,8 +85,8 @@ impl ShadowMapDescriptor {
         if !(1..=MAX_MAPS as u32).contains(&self.maps) {
             return Err(ShadowMapError::Maps(self.maps));
         }
-        if !(0.0..=MAX_BLEND).contains(&self.blend) {
-            return Err(ShadowMapError::Blend(self.blend));
+        if !(0.0..=MAX_BLEND).contains(&self.choice.blend()) {
+            return Err(ShadowMapError::Blend(self.choice.blend()));
         }
         if self.depth == DepthConvention::NegativeOneToOne {
             return Err(ShadowMapError::Depth(self.depth));

@@ -161,7 +161,7 @@ impl KeptMaps {
             can_mend: Layers::can_mend(&self.device),
             culling: self.culling,
             depth_clamp: descriptor.depth_clamp,
-            choice: descriptor.choice,
+            by_coverage: descriptor.choice.is_by_coverage(),
             layer: descriptor.resolution.into(),
         }
     }

@@ -2,7 +2,6 @@
 
 use shadowfit::culling::Reader;
 use shadowfit::glam::{DVec3, UVec2, Vec3};
-use shadowfit::settings::MapChoice;
 use shadowfit::{DepthConvention, FittedMap, LightFit};
 
 use crate::{ShadowMapDescriptor, ShadowMapError};
@@ -61,7 +60,7 @@ pub(crate) fn check(
         map.bias.checked().map_err(|error| ShadowMapError::Bias { index, error })?;
         let far = map.depth_range().far as f32;
         // NaN has no order.
-        let is_in_order = far >= previous || descriptor.choice == MapChoice::Coverage;
+        let is_in_order = far >= previous || descriptor.choice.is_by_coverage();
         if !is_in_order {
             return Err(ShadowMapError::Order { index, far, previous });
         }

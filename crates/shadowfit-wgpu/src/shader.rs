@@ -234,10 +234,10 @@ fn choice(descriptor: &ShadowMapDescriptor) -> String {
     };
     let entry = |entry: u32| format!("    if entry == {entry} {{\n        return {};\n    }}\n", map(entry));
     let rule = match descriptor.choice {
-        MapChoice::Coverage => include_str!("shaders/choice_coverage.wgsl"),
-        MapChoice::ViewDepth => include_str!("shaders/choice_view_depth.wgsl"),
+        MapChoice::Coverage { .. } => include_str!("shaders/choice_coverage.wgsl"),
+        MapChoice::ViewDepth { .. } => include_str!("shaders/choice_view_depth.wgsl"),
     };
-    let (reach, blend) = (descriptor.softness.reach(descriptor.filter), descriptor.blend);
+    let (reach, blend) = (descriptor.softness.reach(descriptor.filter), descriptor.choice.blend());
     format!(
         "
 const SHADOWFIT_REACH: f32 = {reach:?};

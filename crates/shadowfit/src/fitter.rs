@@ -14,10 +14,8 @@ use crate::light::Light;
 use crate::light::grid::GridAnchor;
 use crate::map::{FittedMap, FittedMaps};
 use crate::slices::{self, HeldSlices};
-use crate::technique::Technique;
-use crate::technique::settings::{
-    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, MAX_BLEND, MAX_DEPTH_STEPS, MAX_MAPS, Stabilise,
-};
+use crate::technique::settings::{BiasSettings, CasterPolicy, FilterKind, FitSettings, MAX_DEPTH_STEPS};
+use crate::technique::{Maps, Slices, Technique, Windows};
 use crate::view::{Range, ViewFrustum};
 use crate::windows::{self, HeldWindows};
 
@@ -65,8 +63,8 @@ impl MapFitter {
     /// # Errors
     ///
     /// As [`fit_scene`](crate::fits::fit_scene), for the settings of each map;
-    /// [`FitError::OutOfRange`] for a number of maps outside 1..=8, an overlap or λ outside 0..=1,
-    /// a blend outside 0..=[`MAX_BLEND`], and hold settings, softness, fade or depth steps that are out of range;
+    /// [`FitError::OutOfRange`] for a number of windows outside 1..=8 or of slices outside 2..=8, an overlap or λ outside 0..=1,
+    /// a blend outside 0..=[`MAX_BLEND`](crate::settings::MAX_BLEND), and hold settings, softness, fade or depth steps that are out of range;
     /// [`FitError::ClampedCasters`] for a filter that depth clamp leaves without the distances that it needs;
     /// [`FitError::NearNotBelowFar`] for manual splits that do not ascend. Manual splits before or beyond what is shadowed are not an error: a map
     /// without a range [is empty](LightFit::is_empty). An error leaves the fitter as it was.
@@ -96,7 +94,7 @@ impl MapFitter {
         // 1. The light, and the rule that the technique's maps are fitted by.
         let (rule, light) = check(input, technique)?;
         let last = self.last.as_ref().filter(|last| last.technique == *technique);
-        let light = light.held(last.filter(|_| keeps_maps(technique)).map(|last| last.direction));
+        let light = light.held(last.filter(|_| technique.maps.are_kept()).map(|last| last.direction));
         // 2. The boxes, and what the views see of them.
         let (content, points) = Content::new(input.scene(), workspace.storage)?;
         let range = whole_range(input, technique.fit.max_distance);
@@ -105,7 +103,7 @@ impl MapFitter {
         // 3. Where each map is put: its volume, from the near plane to the far plane.
         let (placed, held) = place(&frame, last.map(|last| &last.held), points)?;
         // 4. Matrices, biases and anchors.
-        for (map, placed) in maps.take(technique.count as usize).iter_mut().zip(placed.iter().flatten()) {
+        for (map, placed) in maps.take(technique.maps.count() as usize).iter_mut().zip(placed.iter().flatten()) {
             write(map, placed, &frame)?;
         }
         // 5. What the next frame begins with.
@@ -117,16 +115,19 @@ impl MapFitter {
 
 /// Places the maps of a frame as windows or as slices of the view.
 fn place(frame: &Frame, before: Option<&Held>, points: &mut [DVec2]) -> Result<(PlacedMaps, Held), FitError> {
-    const WINDOWS: Place<HeldWindows> = windows::place;
-    const SLICES: Place<HeldSlices> = slices::place;
-    if frame.technique.has_windows() {
-        let before = before.and_then(|held| if let Held::Windows(held) = held { Some(held) } else { None });
-        let (placed, held) = WINDOWS(frame, before, points)?;
-        return Ok((placed, Held::Windows(held)));
+    const WINDOWS: Place<Windows, HeldWindows> = windows::place;
+    const SLICES: Place<Slices, HeldSlices> = slices::place;
+    let windows = before.and_then(|held| if let Held::Windows(held) = held { Some(held) } else { None });
+    let slices = before.and_then(|held| if let Held::Slices(held) = held { Some(held) } else { None });
+    match &frame.technique.maps {
+        Maps::Windows(settings) => {
+            WINDOWS(frame, settings, windows, points).map(|(maps, held)| (maps, Held::Windows(held)))
+        }
+        Maps::Slices(settings) => {
+            SLICES(frame, settings, slices, points).map(|(maps, held)| (maps, Held::Slices(held)))
+        }
+        Maps::One(one) => SLICES(frame, &one.slice(), slices, points).map(|(maps, held)| (maps, Held::Slices(held))),
     }
-    let before = before.and_then(|held| if let Held::Slices(held) = held { Some(held) } else { None });
-    let (placed, held) = SLICES(frame, before, points)?;
-    Ok((placed, Held::Slices(held)))
 }
 
 /// Writes a map in place, since it is large.
@@ -139,20 +140,15 @@ fn write(map: &mut FittedMap, placed: &PlacedMap, frame: &Frame) -> Result<(), F
     Ok(())
 }
 
-/// Whether anything of a map is kept for later frames.
-fn keeps_maps(technique: &Technique) -> bool {
-    technique.stabilise != Stabilise::Off || technique.has_windows()
-}
-
 /// The fewest slices of the view that are enough: the least count, up to that of the technique, for
 /// which the 95% quantile of pixels per texel with the best splits is at most `waste` times that with
-/// the technique's count. It does not apply to
-/// [windows](crate::settings::FitKind::Windows).
+/// the technique's count. Of other kinds of maps
+/// the [slices](Maps::as_slices) that are nearest to them count.
 ///
 /// What is visible is taken from the histogram where the technique's splits use one, else estimated from the
 /// boxes; other split schemes count as [`SplitScheme::FromBoxes`](crate::settings::SplitScheme::FromBoxes)
 /// here. Costs about as much as choosing the splits of one frame: ask when a level begins, or now and then,
-/// and set [`Technique::count`] by it.
+/// and set [`Technique::with_count`] by it.
 ///
 /// ```
 /// # use shadowfit::glam::{DVec2, DVec3, Vec3};
@@ -190,10 +186,13 @@ pub fn fewest_maps(
 ) -> Result<u32, FitError> {
     let waste = checks::within("the waste of fewer maps", f64::from(waste), 1.0, 100.0)?;
     let (rule, light) = check(input, technique)?;
+    if technique.maps.count() == 1 {
+        return Ok(1);
+    }
     let (content, _) = Content::new(input.scene(), workspace.storage)?;
     let range = whole_range(input, technique.fit.max_distance);
     let frame = Frame { input, technique, rule: &rule, light, content: &content, range, last_view: None };
-    Ok(slices::fewest(&frame, waste))
+    Ok(slices::fewest(&frame, &technique.maps.as_slices(), waste))
 }
 
 /// Everything that is shadowed.
@@ -214,7 +213,8 @@ fn check(input: &FitInput, technique: &Technique) -> Result<(FitRule, Light), Fi
             return Err(FitError::NearNotBelowFar { near, far });
         }
     }
-    let settings = FitSettings { least_texel: technique.least_texel(), ..technique.fit };
+    let shape = technique.maps.shape().unwrap_or(Windows::WHOLE);
+    let settings = FitSettings { shape, map: technique.fit.with_least_texel(technique.least_texel()) };
     let (mut rule, light) = fits::prepare(input, &settings, technique.border())?;
     rule.serves_all = technique.shares_maps() && rule.can_be_held();
     Ok((rule, light))
@@ -222,14 +222,7 @@ fn check(input: &FitInput, technique: &Technique) -> Result<(FitRule, Light), Fi
 
 /// Checks the numbers of a technique that are not those of its fit, and what does not go together.
 fn check_numbers(technique: &Technique) -> Result<(), FitError> {
-    let most = MAX_MAPS as f64;
-    checks::within("the number of maps", f64::from(technique.count), 1.0, most)?;
-    checks::within("the maps' overlap", f64::from(technique.overlap), 0.0, 1.0)?;
-    checks::within("the maps' blend", f64::from(technique.blend), 0.0, f64::from(MAX_BLEND))?;
-    let hold = technique.hold;
-    checks::within("the hold's margin", f64::from(hold.margin), 0.0, 10.0)?;
-    checks::within("the hold's growth", f64::from(hold.growth), 1.0, 100.0)?;
-    checks::within("the hold's waste", f64::from(hold.waste), 1.0, 100.0)?;
+    technique.maps.check()?;
     technique.softness.checked()?;
     // The least texel of the maps is the greater of two, which would hide a bad one.
     check_least_texel(&technique.fit)?;
@@ -239,8 +232,7 @@ fn check_numbers(technique: &Technique) -> Result<(), FitError> {
         checks::finite("a bias", f64::from(bias))?;
     }
     checks::within("the bias in depth steps", f64::from(depth_steps), 0.0, f64::from(MAX_DEPTH_STEPS))?;
-    // The XNA sample's fit has no caster policy.
-    let clamps = technique.fit.casters == CasterPolicy::DepthClamp && technique.fit.kind != FitKind::XnaSample;
+    let clamps = technique.fit.casters == CasterPolicy::DepthClamp && !technique.maps.are_exact();
     if technique.filter == FilterKind::Pcss && clamps {
         return Err(FitError::ClampedCasters);
     }

@@ -246,7 +246,7 @@ pub use map::{FittedMap, FittedMaps};
 #[cfg(feature = "alloc")]
 pub use shadow_fitter::ShadowFitter;
 pub use spot::{SpotBias, SpotFit, SpotLight};
-pub use technique::{PRESETS, Preset, Technique, presets, settings, softness};
+pub use technique::{Maps, OneMap, PRESETS, Preset, Slices, Technique, Windows, presets, settings, softness};
 pub use view::{PerspectiveCamera, ViewFrustum};
 pub use {fitter as map_fitter, proof as verify, selection as choice};
 

@@ -26,8 +26,6 @@ use crate::technique::settings::{FilterKind, MAX_MAPS, MapChoice, Softness};
 pub struct MapReading {
     /// Which of the maps a point reads.
     pub choice: MapChoice,
-    /// Texels over which a map that is read by coverage is blended into the next coarser one.
-    pub blend: f32,
     /// Filter of the look-up.
     pub filter: FilterKind,
     /// Width of the filters that are soft.
@@ -37,8 +35,8 @@ pub struct MapReading {
 impl Technique {
     /// How points read the maps.
     pub const fn reading(&self) -> MapReading {
-        let Self { blend, filter, softness, .. } = *self;
-        MapReading { choice: self.map_choice(), blend, filter, softness }
+        let Self { filter, softness, .. } = *self;
+        MapReading { choice: self.maps.choice(), filter, softness }
     }
 }
 
@@ -93,15 +91,15 @@ impl MapOrder {
     ///
     /// let map = |side: f32| LightFit { texel_size: Vec2::splat(side), ..LightFit::default() };
     /// let maps = [map(0.4), map(0.1), map(0.1), LightFit { is_empty: true, ..map(0.2) }];
-    /// assert!(MapOrder::new(MapChoice::Coverage, &maps).iter().eq([1, 2, 0]));
-    /// assert!(MapOrder::new(MapChoice::ViewDepth, &maps).iter().eq([0, 1, 2, 3]));
+    /// assert!(MapOrder::new(MapChoice::default(), &maps).iter().eq([1, 2, 0]));
+    /// assert!(MapOrder::new(MapChoice::ViewDepth { overlap: 0.0 }, &maps).iter().eq([0, 1, 2, 3]));
     /// ```
     pub fn new<'a>(choice: MapChoice, maps: impl IntoIterator<Item = &'a LightFit>) -> Self {
         let area = |fit: &LightFit| f64::from(fit.texel_size.x) * f64::from(fit.texel_size.y);
         let maps = maps.into_iter();
         match choice {
-            MapChoice::Coverage => Self::by_area(maps.map(|fit| (!fit.is_empty).then(|| area(fit)))),
-            MapChoice::ViewDepth => Self::by_area(maps.map(|_| Some(1.0))),
+            MapChoice::Coverage { .. } => Self::by_area(maps.map(|fit| (!fit.is_empty).then(|| area(fit)))),
+            MapChoice::ViewDepth { .. } => Self::by_area(maps.map(|_| Some(1.0))),
         }
     }
 

@@ -7,10 +7,12 @@ use shadowfit::fits::fit_scene;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::need::{CELLS, NeedGrid, NeedSpace};
 use shadowfit::scroll::{Scroll, tiles};
-use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, MAX_MAPS, RectangleKind, SplitScheme, Stabilise};
+use shadowfit::settings::{
+    CasterPolicy, FitKind, FitSettings, MAX_MAPS, MapSettings, RectangleKind, Shape, SplitScheme, Stabilise,
+};
 use shadowfit::verify::{CoverageQuery, verify};
 use shadowfit::{
-    Aabb, Boxes, CasterVolume, FitInput, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace, fit,
+    Aabb, Boxes, CasterVolume, FitInput, MapFitter, PerspectiveCamera, Slices, Technique, ViewFrustum, Workspace, fit,
 };
 
 const DIRECTION: Vec3 = Vec3::new(0.3, -0.8, 0.4);
@@ -85,10 +87,11 @@ fn no_fit_of_several_maps_allocates() {
     let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, DIRECTION) };
     let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), views.len())];
     for kind in KINDS {
-        for stabilise in [Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis] {
+        for stabilise in [Stabilise::Off, Stabilise::Snap { waste: 1.8 }, Stabilise::default()] {
             for splits in [SplitScheme::Logarithmic, SplitScheme::Practical(0.5), SplitScheme::FromBoxes] {
-                let fit = FitSettings::default().with_kind(kind).with_casters(CasterPolicy::List);
-                let settings = Technique { count: 4, stabilise, splits, fit, ..Technique::default() };
+                let slices = Slices { count: 4, shape: Shape::new(kind), stabilise, splits, ..Slices::default() };
+                let fit = MapSettings::default().with_casters(CasterPolicy::List);
+                let settings = Technique::default().with_maps(slices).with_fit(fit);
                 let (what, mut fitter) = (format!("{settings:?}"), MapFitter::new());
                 for _ in 0..2 {
                     let mut workspace = Workspace::new(&mut storage);
@@ -117,12 +120,12 @@ fn no_fit_of_windows_allocates() {
     let grids = [NeedGrid { space, counts: &counts }];
     let known = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, DIRECTION) };
     let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), views.len())];
-    for name in ["windows-boxes-4", "windows-4", "windows-8"] {
+    for (name, grids) in [("windows-4", &[][..]), ("windows-4", &grids), ("windows-8", &grids)] {
         let (technique, mut fitter) = (Technique::preset(name).expect("a preset"), MapFitter::new());
-        for need in [&[][..], &grids, &grids, &grids, &[], &grids] {
+        for need in [&[][..], grids, grids, grids, &[], grids] {
             let (input, mut workspace) = (FitInput { need, ..known }, Workspace::new(&mut storage));
             let maps = without_allocation(name, || fitter.fit(&input, &technique, &mut workspace));
-            assert_eq!(maps.expect("a good scene").len(), technique.count as usize);
+            assert_eq!(maps.expect("a good scene").len(), technique.maps.count() as usize);
         }
     }
 }
@@ -134,8 +137,9 @@ fn no_certificate_and_no_scrolling_allocates() {
     let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, DIRECTION) };
     let mut storage = vec![DVec2::ZERO; Workspace::required(objects.len(), views.len())];
     let mut workspace = Workspace::new(&mut storage);
-    let fit = FitSettings::default().with_kind(FitKind::Sphere).with_casters(CasterPolicy::List);
-    let settings = Technique { fit, ..Technique::default() };
+    let slices = Slices { shape: Shape::new(FitKind::Sphere), ..Slices::default() };
+    let fit = MapSettings::default().with_casters(CasterPolicy::List);
+    let settings = Technique::default().with_maps(slices).with_fit(fit);
     let mut fitter = MapFitter::new();
     let before = fitter.fit(&input, &settings, &mut workspace).expect("a good scene");
     let now = fitter.fit(&input, &settings, &mut workspace).expect("a good scene");

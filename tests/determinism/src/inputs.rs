@@ -5,10 +5,12 @@ use shadowfit::glam::{DMat4, DVec3, DVec4, UVec2, Vec3};
 use shadowfit::histogram::DepthHistogram;
 use shadowfit::normal_cone::NormalCone;
 use shadowfit::settings::{
-    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, MapFormat, NeedSource,
-    ReceiverSource, RectangleKind, Softness, SplitScheme, Stabilise,
+    BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, MapFormat, MapSettings,
+    RectangleKind, Shape, Softness, SplitScheme, Stabilise,
 };
-use shadowfit::{Aabb, Boxes, DepthConvention, FitError, FitInput, PerspectiveCamera, Technique, ViewFrustum};
+use shadowfit::{
+    Aabb, Boxes, DepthConvention, FitError, FitInput, Maps, PerspectiveCamera, Slices, Technique, ViewFrustum,
+};
 
 use crate::random::Random;
 
@@ -169,20 +171,20 @@ fn clusters(random: &mut Random, centre: Vec3, size: f32) -> Result<Clusters, Fi
 /// Settings of one map.
 pub(crate) fn fit_settings(random: &mut Random, camera: &PerspectiveCamera) -> FitSettings {
     use CasterPolicy::{DepthClamp, Extend, List, None, SceneBounds};
-    FitSettings {
-        kind: kind(random),
-        rectangle: random.pick(&[RectangleKind::AxisAligned, RectangleKind::MinimumArea, RectangleKind::MinimumSquare]),
+    let rectangles = [RectangleKind::AxisAligned, RectangleKind::MinimumArea, RectangleKind::MinimumSquare];
+    let shape = Shape { kind: kind(random), rectangle: random.pick(&rectangles), max_texel_ratio: f32::MAX };
+    let map = MapSettings {
         max_distance: if random.once_in(3) { camera.far * random.between(0.2, 1.5) } else { f32::MAX },
         margin: if random.once_in(4) { camera.far * random.between(0.0, 0.1) } else { 0.0 },
         border: Some(random.pick(&[0.0, 1.0, 2.5, 8.0])),
         casters: random.pick(&[None, Extend, SceneBounds, List, DepthClamp]),
         caster_extension: camera.far * random.between(0.0, 2.0),
         up: random.pick(&[Vec3::Y, Vec3::Z, Vec3::new(0.3, 0.7, -0.2)]),
-        max_texel_ratio: f32::MAX,
         least_texel: 0.0,
         resolution: random.pick(&[UVec2::splat(2048), UVec2::new(1024, 512), UVec2::new(333, 4096)]),
         depth: random.pick(&DEPTHS),
-    }
+    };
+    FitSettings { shape, map }
 }
 
 fn kind(random: &mut Random) -> FitKind {
@@ -203,48 +205,36 @@ pub(crate) fn technique(random: &mut Random, camera: &PerspectiveCamera) -> Tech
         SplitScheme::FromBoxes,
         SplitScheme::FromHistogram,
     ];
-    let settings = Technique {
-        fit: FitSettings { max_distance: f32::MAX, ..fit_settings(random, camera) },
-        count: 1 + random.below(5),
-        splits: random.pick(&schemes),
-        choice: MapChoice::ViewDepth,
-        blend: 8.0,
-        overlap: random.pick(&[0.0, 0.1, 0.5]),
-        stabilise: random.pick(&[Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis]),
-        hold: HoldSettings { margin: 0.02, growth: 1.4, waste: random.between(1.2, 3.0), horizon: 32 },
-        receivers: ReceiverSource::Clusters,
-        filter: FilterKind::Point,
-        softness: Softness::default(),
-        fade: 0.0,
-        bias: BiasSettings { constant: 0.5, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 1.0 },
-        need: NeedSource::LastFrame,
-        format: MapFormat::Depth32Float,
-    };
+    let FitSettings { shape, map } = fit_settings(random, camera);
+    let count = 1 + random.below(5);
+    let (splits, overlap) = (random.pick(&schemes), random.pick(&[0.0, 0.1, 0.5]));
+    let stability = random.pick(&[0, 1, 2]);
+    let hold = HoldSettings { margin: 0.02, growth: 1.4, waste: random.between(1.2, 3.0), horizon: 32 };
     // One in four once had a rule of its own for the nearest map; the draw stays, so that all others do.
     if random.once_in(4) {
         kind(random);
     }
-    let settings = if settings.count > 1 { settings } else { one_map(settings) };
-    // What is not stabilised keeps nothing but a sphere's depth range, with the default's slack.
-    let hold = if settings.stabilise == Stabilise::Off { HoldSettings::default() } else { settings.hold };
-    Technique { hold, ..settings }
+    let stabilise = match stability {
+        0 => Stabilise::Off,
+        1 => Stabilise::Snap { waste: hold.waste },
+        _ => Stabilise::Hysteresis(hold),
+    };
+    let technique = Technique {
+        maps: Slices { count, shape, splits, choice: MapChoice::ViewDepth { overlap }, stabilise }.into(),
+        fit: MapSettings { max_distance: f32::MAX, ..map },
+        filter: FilterKind::Point,
+        softness: Softness::default(),
+        fade: 0.0,
+        bias: BiasSettings { constant: 0.5, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 1.0 },
+        format: MapFormat::Depth32Float,
+    };
+    technique.with_count(count)
 }
 
-/// A technique of one map, without what only concerns several.
-fn one_map(settings: Technique) -> Technique {
-    Technique { splits: SplitScheme::Logarithmic, choice: MapChoice::Coverage, overlap: 0.0, ..settings }
-}
-
-/// The technique with windows instead of slices, without what only concerns those.
-pub(crate) fn as_windows(settings: Technique) -> Technique {
-    let defaults = Technique::default();
-    Technique {
-        fit: FitSettings { kind: FitKind::Windows, rectangle: defaults.fit.rectangle, ..settings.fit },
-        splits: defaults.splits,
-        choice: defaults.choice,
-        overlap: defaults.overlap,
-        stabilise: defaults.stabilise,
-        hold: HoldSettings { waste: settings.hold.waste, ..defaults.hold },
-        ..settings
+/// The technique with maps that are read by coverage.
+pub(crate) fn by_coverage(technique: Technique) -> Technique {
+    match technique.maps {
+        Maps::Slices(slices) => technique.with_maps(slices.with_choice(MapChoice::default())),
+        _ => technique,
     }
 }

@@ -43,7 +43,7 @@ impl Run<'_> {
             let settings = fit_settings(&mut self.random, &scene.camera);
             let fit = fit_scene(&scene.input(), &settings, &mut Workspace::new(&mut self.storage))?;
             self.one_map.fit(&fit);
-            self.follow(&scene, &fit, settings.casters)?;
+            self.follow(&scene, &fit, settings.map.casters)?;
             return Ok(1);
         }
         let settings = technique(&mut self.random, &scene.camera);
@@ -52,7 +52,7 @@ impl Run<'_> {
         let mut fitter = MapFitter::new();
         for _ in 0..FRAMES {
             let maps = fitter.fit(&scene.input(), &settings, &mut Workspace::new(&mut self.storage))?;
-            let numbers = if settings.count > 1 { &mut *self.slices } else { &mut *self.one_map };
+            let numbers = if settings.maps.count() > 1 { &mut *self.slices } else { &mut *self.one_map };
             for map in maps.iter() {
                 numbers.map(map);
             }

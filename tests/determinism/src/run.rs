@@ -54,7 +54,7 @@ impl Run {
             let settings = fit_settings(&mut self.random, &scene.camera);
             let fit = fit_scene(&scene.input(), &settings, &mut Workspace::new(&mut self.storage))?;
             self.fits += 1;
-            return self.follow(&scene, &fit, settings.casters);
+            return self.follow(&scene, &fit, settings.map.casters);
         }
         let settings = technique(&mut self.random, &scene.camera);
         let mut fitter = MapFitter::new();

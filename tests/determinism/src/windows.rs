@@ -3,10 +3,9 @@
 
 use shadowfit::glam::DVec2;
 use shadowfit::need::{CELLS, NeedGrid, NeedSpace};
-use shadowfit::settings::MapChoice;
 use shadowfit::{FitError, MapFitter, Technique, Workspace};
 
-use crate::inputs::{Scene, as_windows, technique};
+use crate::inputs::{Scene, by_coverage, technique};
 use crate::numbers::{ByKind, Numbers};
 use crate::random::Random;
 
@@ -28,14 +27,14 @@ pub(crate) fn add(fits: u32, numbers: &mut ByKind) {
 fn flight(random: &mut Random, numbers: &mut ByKind, storage: &mut [DVec2]) -> Result<u32, FitError> {
     let mut scene = Scene::new(random)?;
     scene.views = vec![scene.camera.frustum()?];
-    let mut settings = Technique { choice: MapChoice::Coverage, ..technique(random, &scene.camera) };
+    let mut settings = by_coverage(technique(random, &scene.camera));
     let mut knows_grid = true;
     let numbers = if !random.once_in(3) {
-        settings = as_windows(settings);
+        settings = settings.with_maps(settings.maps.as_windows());
         knows_grid = random.pick(&[true, true, false]);
-        settings.count = 1 + random.below(8);
+        settings = settings.with_count(1 + random.below(8));
         &mut numbers.windows
-    } else if settings.count > 1 {
+    } else if settings.maps.count() > 1 {
         &mut numbers.slices
     } else {
         &mut numbers.one_map

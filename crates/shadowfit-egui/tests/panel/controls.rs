@@ -8,6 +8,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 use shadowfit::glam::UVec2;
 use shadowfit::settings::{CasterPolicy, FilterKind, FitKind, MAX_MAPS, MapChoice, MapFormat, SoftRadius, SplitScheme};
+use shadowfit::{Maps, Slices, Technique};
 use shadowfit_egui::Panel;
 use shadowfit_params::tool::{InsetMaps, Settings};
 use shadowfit_params::{Kind, Number, PARAMETERS, Value, parameter};
@@ -23,8 +24,8 @@ use crate::host::{
 pub(crate) fn everything(splits: SplitScheme) -> Settings {
     let mut settings = Settings::default();
     let technique = &mut settings.technique;
-    (technique.count, technique.splits) = (MAX_MAPS as u32, splits);
-    (technique.fit.kind, technique.fit.resolution) = (FitKind::Focused, UVec2::new(2048, 1024));
+    technique.maps = Slices { count: MAX_MAPS as u32, splits, ..Slices::default() }.into();
+    technique.fit.resolution = UVec2::new(2048, 1024);
     (technique.fit.max_distance, technique.fit.border) = (100.0, Some(3.0));
     technique.fit.casters = CasterPolicy::Extend;
     // Their softness and the steps of their depths count.
@@ -38,11 +39,18 @@ pub(crate) fn everything(splits: SplitScheme) -> Settings {
 pub(crate) fn all_rows() -> [Settings; 3] {
     let manual = SplitScheme::Manual([5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0]);
     let mut settings = [SplitScheme::Practical(0.5), manual, SplitScheme::FromHistogram].map(everything);
-    settings[1].technique.choice = MapChoice::ViewDepth;
-    settings[2].technique.fit.kind = FitKind::Windows;
+    let by_view_depth = Slices { choice: MapChoice::ViewDepth { overlap: 0.1 }, ..slices(&settings[1]) };
+    settings[1].technique.maps = by_view_depth.into();
+    settings[2].technique.maps = settings[2].technique.maps.as_windows().into();
     settings[2].technique.softness.radius = SoftRadius::Metres(0.05);
     settings[2].light.hour = Some(10.0);
     settings
+}
+
+/// The slices of settings that have some.
+fn slices(settings: &Settings) -> Slices {
+    let Maps::Slices(slices) = settings.technique.maps else { panic!("they have slices") };
+    slices
 }
 
 #[test]
@@ -68,7 +76,7 @@ fn showing_the_panel_changes_no_setting() {
     settings.technique.bias.normal_offset = 1.234_567;
     settings.technique.fit.resolution = UVec2::new(641, 481);
     settings.technique.fit.border = Some(1.234_567);
-    settings.technique.splits = SplitScheme::Practical(0.123_456_7);
+    settings.technique.maps = Slices::default().with_splits(SplitScheme::Practical(0.123_456_7)).into();
     settings.camera.speed = 1e9;
     settings.view.inset_map = 7;
     let mut harness = open_harness(Host { settings, ..Host::default() });
@@ -150,20 +158,17 @@ fn whole_numbers_are_dragged_and_typed_in_whole_steps() {
 
 #[test]
 fn check_boxes_and_lists_set_their_parameters() {
-    // The focused fit, with which every list of its group but that of windows has an effect.
-    let focused = everything(SplitScheme::Uniform);
-    let mut windows = focused;
-    windows.technique.fit.kind = FitKind::Windows;
+    // The focused fit, with which every list has an effect.
+    let focused = everything(SplitScheme::FromHistogram);
     let mut harness = open_harness(Host::default());
     for parameter in PARAMETERS {
-        let settings = if parameter.id == "fit.need" { windows } else { focused };
-        harness.state_mut().settings = settings;
+        harness.state_mut().settings = focused;
         harness.run();
         match &parameter.kind {
             Kind::Number(_) => continue,
             Kind::Toggle => control(&harness, parameter).click(),
             Kind::Choice(options) => {
-                let Some(Value::Option(index)) = parameter.get(&settings) else { panic!("{}", parameter.id) };
+                let Some(Value::Option(index)) = parameter.get(&focused) else { panic!("{}", parameter.id) };
                 let next = options[(index + 1) % options.len()].label;
                 control(&harness, parameter).click();
                 harness.run();
@@ -174,7 +179,7 @@ fn check_boxes_and_lists_set_their_parameters() {
             }
         }
         harness.run();
-        assert!(!parameter.is_equal(&harness.state().settings, &settings), "{}", parameter.id);
+        assert!(!parameter.is_equal(&harness.state().settings, &focused), "{}", parameter.id);
     }
 }
 
@@ -242,13 +247,12 @@ fn resolutions_have_a_list_of_powers_of_two() {
 fn lambda_is_shown_with_practical_splits_alone_and_splits_with_manual_ones() {
     let shown = |harness: &Harness<'_, Host>, id: &str| query_control(harness, parameter(id).expect(id)).is_some();
     let mut harness = open_harness(Host::default());
-    harness.state_mut().settings.technique.fit.kind = FitKind::Focused;
     for (splits, lambda, manual) in [
         (SplitScheme::FromHistogram, false, false),
         (SplitScheme::Practical(0.7), true, false),
         (SplitScheme::Manual([1.0; MAX_MAPS - 1]), false, true),
     ] {
-        harness.state_mut().settings.technique.splits = splits;
+        harness.state_mut().settings.technique.maps = Slices::default().with_splits(splits).into();
         harness.run();
         assert_eq!(shown(&harness, "splits.lambda"), lambda);
         // Four maps have three splits between them.
@@ -256,7 +260,7 @@ fn lambda_is_shown_with_practical_splits_alone_and_splits_with_manual_ones() {
         assert!(!shown(&harness, "splits.manual_4"));
     }
     type_into(&mut harness, "splits.manual_2", "12.5");
-    let SplitScheme::Manual(splits) = harness.state().settings.technique.splits else { panic!("they stay manual") };
+    let SplitScheme::Manual(splits) = slices(&harness.state().settings).splits else { panic!("they stay manual") };
     assert_eq!(splits[..3], [1.0, 12.5, 1.0]);
 }
 
@@ -300,7 +304,8 @@ fn a_setting_without_effect_is_greyed_out_and_says_why() {
     harness.run();
     let extension = parameter("fit.caster_extension").expect("a row");
     assert!(!control(&harness, extension).accesskit_node().is_disabled());
-    harness.state_mut().settings.technique.fit.kind = FitKind::XnaSample;
+    let technique = &mut harness.state_mut().settings.technique;
+    technique.maps = technique.maps.with_kind(FitKind::XnaSample);
     harness.run();
     assert!(control(&harness, extension).accesskit_node().is_disabled());
     control(&harness, extension).hover();
@@ -330,7 +335,7 @@ fn the_inset_shows_any_map_that_there_is() {
     harness.run();
     assert_eq!(harness.state().settings.view.inset_map, 3);
 
-    harness.state_mut().settings.technique.count = 2;
+    harness.state_mut().settings.technique = Technique::default().with_count(2);
     harness.run();
     assert!(is_there(&harness, 2) && !is_there(&harness, 3));
     assert_eq!(harness.state().settings.view.inset_map, 3, "it comes back with the maps");

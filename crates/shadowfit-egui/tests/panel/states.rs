@@ -84,7 +84,7 @@ pub(crate) fn session() -> Host {
     Host {
         figures: figures(),
         changes: Changes { undo: Some("Constant bias"), redo: None },
-        presets: vec![UserPreset { name: "evening street".into(), technique: Technique::default().with_overlap(0.2) }],
+        presets: vec![UserPreset { name: "evening street".into(), technique: Technique::default().with_fade(0.2) }],
         ..Host::default()
     }
 }

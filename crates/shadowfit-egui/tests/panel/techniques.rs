@@ -60,30 +60,30 @@ fn a_technique_in_the_menu_explains_when_to_take_it() {
 fn a_technique_that_was_changed_is_called_so() {
     let mut harness = harness(Host::default());
     assert_eq!(title(&harness), shadowfit::presets::RECOMMENDED);
-    harness.state_mut().settings.technique.overlap = 0.1;
+    harness.state_mut().settings.technique.fade = 0.1;
     harness.run();
     assert_eq!(title(&harness), format!("{}, changed", shadowfit::presets::RECOMMENDED));
 
-    let opened = Technique::default().with_overlap(0.2);
+    let opened = Technique::default().with_fade(0.2);
     harness.state_mut().settings.technique = opened;
     harness.state_mut().panel.name_technique("street.toml", &opened);
     harness.run();
     assert_eq!(title(&harness), "street.toml");
-    harness.state_mut().settings.technique.overlap = 0.3;
+    harness.state_mut().settings.technique.fade = 0.3;
     harness.run();
     assert_eq!(title(&harness), "street.toml, changed");
     choose(&mut harness, "street.toml", "as it was opened");
     assert_eq!(harness.state().settings.technique, opened);
 
     let preset = Technique::preset("stable-4").expect("a preset");
-    harness.state_mut().settings.technique = preset.with_overlap(0.3);
+    harness.state_mut().settings.technique = preset.with_fade(0.3);
     harness.state_mut().panel.name_technique("stable-4", &preset);
     harness.run();
     assert_eq!(title(&harness), "stable-4, changed", "as it was opened by an argument, say");
     open_menu(&mut harness);
     assert_eq!(harness.query_all_by_label_contains("stable-4\n").count(), 1, "a preset is in the menu already");
 
-    let settings = Settings::default().with_technique(Technique::default().with_overlap(0.4));
+    let settings = Settings::default().with_technique(Technique::default().with_fade(0.4));
     assert_eq!(title(&self::harness(Host { settings, ..Host::default() })), "custom, changed");
 }
 
@@ -141,18 +141,18 @@ fn the_controls_edit_the_side_that_is_chosen() {
     assert_eq!(title(&harness), "calm-4, changed");
     press(&mut harness, "Technique A");
     type_into(&mut harness, "splits.count", "2");
-    assert_eq!(harness.state().settings.technique.count, 2);
+    assert_eq!(harness.state().settings.technique.maps.count(), 2);
     assert_eq!(harness.state().compare, Some((b.with_count(3), false)));
 }
 
 #[test]
 fn the_menu_sets_the_side_that_is_chosen() {
-    let other = Technique::default().with_fit(Technique::default().fit.with_kind(FitKind::Sphere));
+    let other = Technique::default().with_maps(shadowfit::Maps::default().with_kind(FitKind::Sphere));
     let mut harness = harness(Host { compare: Some((other, true)), ..Host::default() });
     choose(&mut harness, PRESETS[3].name, PRESETS[3].summary);
     assert_eq!(harness.state().settings, Settings::default());
     let expected = PRESETS[3].technique().with_resolution(other.fit.resolution.x, other.fit.resolution.y);
-    assert_eq!(harness.state().compare.map(|(technique, _)| technique.fit.kind), Some(expected.fit.kind));
+    assert_eq!(harness.state().compare.map(|(technique, _)| technique.maps), Some(expected.maps));
 }
 
 #[test]
@@ -169,12 +169,12 @@ fn the_near_plane_keeps_the_shadow_distance_of_both_techniques_beyond_it() {
 #[test]
 fn names_go_with_the_techniques_when_they_are_swapped() {
     let mut host = Host { compare: Some((Technique::preset("calm-4").expect("a preset"), false)), ..Host::default() };
-    host.presets = vec![UserPreset { name: "mine".into(), technique: Technique::default().with_overlap(0.3) }];
+    host.presets = vec![UserPreset { name: "mine".into(), technique: Technique::default().with_fade(0.3) }];
     let mut harness = harness(host);
     // Both are shown once, so that both have names, and A is changed.
     press(&mut harness, "Technique B");
     press(&mut harness, "Technique A");
-    harness.state_mut().settings.technique.overlap = 0.1;
+    harness.state_mut().settings.technique.fade = 0.1;
     harness.run();
     press(&mut harness, "Swap A and B");
     let state = harness.state_mut();

@@ -1,14 +1,26 @@
 //! The rows of the fit of each map.
 
-use shadowfit::settings::{CasterPolicy, FitKind, NeedSource, ReceiverSource, RectangleKind};
+use shadowfit::settings::{CasterPolicy, FitKind, RectangleKind, Shape};
+use shadowfit::{Maps, OneMap, Slices};
 
 use super::{always_active, or_greatest, pull_near, unless_greatest};
 use crate::field::{Field, choice, code, field};
-use crate::{ChoiceOption, Group, Kind, Number, Parameter, Unset};
+use crate::tool::Settings;
+use crate::{ChoiceOption, Group, Kind, Number, Parameter, Unset, Value};
 
 /// Widest border, in texels: wider than the reach of filters but for the softest, and less than a quarter of the smallest
 /// map that the table allows.
 const WIDEST_BORDER: f64 = 32.0;
+
+/// What the options of the kind stand for: the rule of slices or of one map, or windows.
+const KINDS: [Option<FitKind>; 6] = [
+    Some(FitKind::Focused),
+    None,
+    Some(FitKind::Oriented),
+    Some(FitKind::Sphere),
+    Some(FitKind::FrustumAabb),
+    Some(FitKind::XnaSample),
+];
 
 /// In the order that they are shown.
 pub(super) const ROWS: &[Parameter] = &[
@@ -55,45 +67,23 @@ pub(super) const ROWS: &[Parameter] = &[
                        needed. It loses casters outside the view.",
             },
         ]),
-        field: choice!(technique.fit.kind: FitKind [Focused, Windows, Oriented, Sphere, FrustumAabb, XnaSample]),
-        inert: always_active,
-    },
-    Parameter {
-        id: "fit.receivers",
-        group: Group::Fit,
-        label: "Boxes of the scene",
-        unit: "",
-        help: "Which boxes tell the fit where the scene shows shadows. Clusters of triangles hug large meshes more closely \
-           than one box for each object.",
-        kind: Kind::Choice(&[
-            ChoiceOption { id: "clusters", label: "Triangle clusters", help: "Boxes around clusters of triangles." },
-            ChoiceOption { id: "objects", label: "Objects", help: "One box for each object." },
-        ]),
-        field: choice!(technique.receivers: ReceiverSource [Clusters, Objects]),
-        inert: always_active,
-    },
-    Parameter {
-        id: "fit.need",
-        group: Group::Fit,
-        label: "Windows placed by",
-        unit: "",
-        help: "What says where fine texels are needed. A wrong guess costs sharpness and nothing else.",
-        kind: Kind::Choice(&[
-            ChoiceOption {
-                id: "last_frame",
-                label: "What is visible",
-                help: "What the frame before showed; where that is not known, as By boxes.",
+        field: Field {
+            get: |s| {
+                let kind = s.technique.maps.shape().map(|shape| shape.kind);
+                KINDS.iter().position(|option| *option == kind).map(Value::Option)
             },
-            ChoiceOption {
-                id: "boxes",
-                label: "By boxes",
-                help: "What is visible of the scene's boxes, as an estimate: needs no depth buffer.",
+            set: |s, value| {
+                let maps = s.technique.maps;
+                let Value::Option(index) = value else { return };
+                s.technique.maps = match KINDS.get(index) {
+                    Some(Some(kind)) => maps.with_kind(*kind),
+                    _ => maps.as_windows().into(),
+                };
             },
-        ]),
-        field: choice!(technique.need: NeedSource [LastFrame, Boxes]),
-        inert: |s| {
-            (s.technique.fit.kind != FitKind::Windows).then_some("Only windows are placed by it; set Fit to Windows.")
+            code: code!(maps),
+            is_of_variant: false,
         },
+        inert: always_active,
     },
     Parameter {
         id: "fit.rectangle",
@@ -115,9 +105,11 @@ pub(super) const ROWS: &[Parameter] = &[
                 help: "Along the light's own axes: larger, but it turns only when the light does.",
             },
         ]),
-        field: choice!(technique.fit.rectangle: RectangleKind [MinimumArea, MinimumSquare, AxisAligned]),
+        field: choice!(technique.maps, Maps::Slices(Slices { shape: Shape { rectangle: part, .. }, .. })
+            | Maps::One(OneMap { shape: Shape { rectangle: part, .. }, .. }) => part
+            in [RectangleKind::MinimumArea, RectangleKind::MinimumSquare, RectangleKind::AxisAligned]),
         inert: |s| {
-            (!matches!(s.technique.fit.kind, FitKind::Oriented | FitKind::Focused))
+            (!matches!(kind(s), Some(FitKind::Oriented | FitKind::Focused)))
                 .then_some("Only the oriented and the focused fit can turn; choose one of them.")
         },
     },
@@ -140,17 +132,22 @@ pub(super) const ROWS: &[Parameter] = &[
             }),
         }),
         field: Field {
-            get: |s| Some(unless_greatest(s.technique.fit.max_texel_ratio)),
-            set: |s, value| s.technique.fit.max_texel_ratio = or_greatest(value),
-            code: code!(fit.max_texel_ratio),
-            is_of_variant: false,
+            get: |s| s.technique.maps.shape().map(|shape| unless_greatest(shape.max_texel_ratio)),
+            set: |s, value| {
+                let maps = &mut s.technique.maps;
+                if let Some(shape) = maps.shape() {
+                    *maps = maps.with_shape(shape.with_max_texel_ratio(or_greatest(value)));
+                }
+            },
+            code: code!(maps),
+            is_of_variant: true,
         },
-        inert: |s| match s.technique.fit.kind {
-            FitKind::XnaSample => Some("The XNA sample's fit has no limit to its texels' shape; choose another fit."),
-            FitKind::Windows => {
-                Some("The texels of windows have a shape that the light's height sets; choose another fit.")
+        inert: |s| match kind(s) {
+            Some(FitKind::XnaSample) => {
+                Some("The XNA sample's fit has no limit to its texels' shape; choose another fit.")
             }
-            FitKind::Sphere if s.technique.fit.resolution.x == s.technique.fit.resolution.y => {
+            None => Some("The texels of windows have a shape that the light's height sets; choose another fit."),
+            Some(FitKind::Sphere) if s.technique.fit.resolution.x == s.technique.fit.resolution.y => {
                 Some("The texels of the stable sphere are as long as wide already; choose another fit.")
             }
             _ => None,
@@ -166,7 +163,7 @@ pub(super) const ROWS: &[Parameter] = &[
         kind: Kind::Number(Number { min: 0.0, max: 10.0, step: 0.001, logarithmic: true, decimals: 4, unset: None }),
         field: field!(technique.fit.least_texel),
         inert: |s| {
-            (s.technique.fit.kind == FitKind::XnaSample)
+            (kind(s) == Some(FitKind::XnaSample))
                 .then_some("The XNA sample's fit has no such limit; choose another fit.")
         },
     },
@@ -240,7 +237,7 @@ pub(super) const ROWS: &[Parameter] = &[
         ]),
         field: choice!(technique.fit.casters: CasterPolicy [List, Extend, SceneBounds, DepthClamp, None]),
         inert: |s| {
-            (s.technique.fit.kind == FitKind::XnaSample)
+            (kind(s) == Some(FitKind::XnaSample))
                 .then_some("The XNA sample's fit takes no account of casters; choose another fit.")
         },
     },
@@ -254,8 +251,8 @@ pub(super) const ROWS: &[Parameter] = &[
            costs depth precision.",
         kind: Kind::Number(Number { min: 0.0, max: 10_000.0, step: 1.0, logarithmic: true, decimals: 1, unset: None }),
         field: field!(technique.fit.caster_extension),
-        inert: |s| match (s.technique.fit.kind, s.technique.fit.casters) {
-            (FitKind::XnaSample, _) => Some("The XNA sample's fit has no caster extension; choose another fit."),
+        inert: |s| match (kind(s), s.technique.fit.casters) {
+            (Some(FitKind::XnaSample), _) => Some("The XNA sample's fit has no caster extension; choose another fit."),
             (_, CasterPolicy::Extend) => None,
             (_, CasterPolicy::List | CasterPolicy::SceneBounds) => {
                 Some("The objects place the near plane where they are known; set Casters to By extension.")
@@ -287,7 +284,7 @@ pub(super) const ROWS: &[Parameter] = &[
         }),
         field: field!(technique.fit.border),
         inert: |s| {
-            (s.technique.fit.kind == FitKind::XnaSample)
+            (kind(s) == Some(FitKind::XnaSample))
                 .then_some("The XNA sample's fit keeps no texels free; choose another fit, or use the box margin.")
         },
     },
@@ -306,6 +303,11 @@ pub(super) const ROWS: &[Parameter] = &[
     up("fit.up_y", "Up, y", field!(technique.fit.up.y)),
     up("fit.up_z", "Up, z", field!(technique.fit.up.z)),
 ];
+
+/// The rule of each map's fit; `None` of windows.
+pub(super) fn kind(s: &Settings) -> Option<FitKind> {
+    s.technique.maps.shape().map(|shape| shape.kind)
+}
 
 /// A component of the direction that is up.
 const fn up(id: &'static str, label: &'static str, field: Field) -> Parameter {

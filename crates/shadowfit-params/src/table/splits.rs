@@ -1,9 +1,10 @@
 //! The rows of the splits: how many maps there are, where one ends and the next begins, and which one a point reads.
 
-use shadowfit::settings::{FitKind, MAX_BLEND, MAX_MAPS, MapChoice, SplitScheme};
+use shadowfit::settings::{MAX_BLEND, MAX_MAPS, MapChoice, SplitScheme};
+use shadowfit::{Maps, Slices, Windows};
 
 use super::always_active;
-use crate::field::{Field, choice, code, field};
+use crate::field::{Field, Plain as _, code, field};
 use crate::tool::Settings;
 use crate::{ChoiceOption, Group, Kind, Number, Parameter, Value};
 
@@ -30,7 +31,16 @@ pub(super) const ROWS: &[Parameter] = &[
             decimals: 0,
             unset: None,
         }),
-        field: field!(technique.count),
+        field: Field {
+            get: |s| Some(s.technique.maps.count().value()),
+            set: |s, value| {
+                let mut count = s.technique.maps.count();
+                count.assign(value);
+                s.technique.maps = s.technique.maps.with_count(count);
+            },
+            code: code!(maps),
+            is_of_variant: false,
+        },
         inert: always_active,
     },
     Parameter {
@@ -66,7 +76,7 @@ pub(super) const ROWS: &[Parameter] = &[
         ]),
         field: Field {
             get: |s| {
-                Some(Value::Option(match s.technique.splits {
+                Some(Value::Option(match slices(s)?.splits {
                     SplitScheme::FromHistogram => 0,
                     SplitScheme::FromBoxes => 1,
                     SplitScheme::Practical(_) => 2,
@@ -76,7 +86,8 @@ pub(super) const ROWS: &[Parameter] = &[
                 }))
             },
             set: |s, value| {
-                s.technique.splits = match (value, s.technique.splits) {
+                let Maps::Slices(Slices { splits, .. }) = &mut s.technique.maps else { return };
+                *splits = match (value, *splits) {
                     (Value::Option(0), _) => SplitScheme::FromHistogram,
                     (Value::Option(1), _) => SplitScheme::FromBoxes,
                     (Value::Option(2), SplitScheme::Practical(lambda)) => SplitScheme::Practical(lambda),
@@ -87,8 +98,8 @@ pub(super) const ROWS: &[Parameter] = &[
                     _ => SplitScheme::Manual(USUAL_SPLITS),
                 };
             },
-            code: code!(splits),
-            is_of_variant: false,
+            code: code!(maps),
+            is_of_variant: true,
         },
         inert: no_splits,
     },
@@ -100,9 +111,10 @@ pub(super) const ROWS: &[Parameter] = &[
         help: "Share of the logarithmic splits in the practical ones: 1 spends most maps close to the camera, 0 spreads \
            them evenly. 0.5 is a good start.",
         kind: Kind::Number(Number { min: 0.0, max: 1.0, step: 0.05, logarithmic: false, decimals: 2, unset: None }),
-        field: field!(technique.splits, SplitScheme::Practical(lambda) => lambda),
-        inert: |s| match s.technique.splits {
-            SplitScheme::Practical(_) => no_splits(s),
+        field: field!(technique.maps, Maps::Slices(Slices { splits: SplitScheme::Practical(lambda), .. }) => lambda),
+        inert: |s| match slices(s).map(|slices| slices.splits) {
+            None => no_splits(s),
+            Some(SplitScheme::Practical(_)) => None,
             _ => Some("Only practical splits have a lambda; set Splits to Practical (splits.scheme = practical)."),
         },
     },
@@ -131,11 +143,23 @@ pub(super) const ROWS: &[Parameter] = &[
                 help: "The one for the point's distance from the camera, as other engines do.",
             },
         ]),
-        field: choice!(technique.choice: MapChoice [Coverage, ViewDepth]),
-        inert: |s| match s.technique.fit.kind {
-            _ if s.technique.count < 2 => Some("One map leaves no choice; raise the number of maps."),
-            FitKind::Windows => Some("Windows are always read by coverage; choose another fit."),
-            _ => None,
+        field: Field {
+            get: |s| Some(Value::Option(usize::from(!slices(s)?.choice.is_by_coverage()))),
+            set: |s, value| {
+                let Maps::Slices(Slices { choice, .. }) = &mut s.technique.maps else { return };
+                *choice = match (value, *choice) {
+                    (Value::Option(0), MapChoice::ViewDepth { .. }) => MapChoice::default(),
+                    (Value::Option(1), MapChoice::Coverage { .. }) => MapChoice::ViewDepth { overlap: 0.0 },
+                    (_, choice) => choice,
+                };
+            },
+            code: code!(maps),
+            is_of_variant: true,
+        },
+        inert: |s| match s.technique.maps {
+            Maps::One(_) => Some("One map leaves no choice; raise the number of maps."),
+            Maps::Windows(_) => Some("Windows are always read by coverage; choose another fit."),
+            Maps::Slices(_) => None,
         },
     },
     Parameter {
@@ -153,11 +177,12 @@ pub(super) const ROWS: &[Parameter] = &[
             decimals: 1,
             unset: None,
         }),
-        field: field!(technique.blend),
-        inert: |s| match s.technique.map_choice() {
-            _ if s.technique.count < 2 => Some("One map is blended into none; raise the number of maps."),
-            MapChoice::Coverage => None,
-            MapChoice::ViewDepth => Some(
+        field: field!(technique.maps, Maps::Windows(Windows { blend, .. })
+            | Maps::Slices(Slices { choice: MapChoice::Coverage { blend }, .. }) => blend),
+        inert: |s| match s.technique.maps.choice() {
+            _ if s.technique.maps.count() < 2 => Some("One map is blended into none; raise the number of maps."),
+            MapChoice::Coverage { .. } => None,
+            MapChoice::ViewDepth { .. } => Some(
                 "Maps that are read by view depth are blended over the overlap; set Choice to By coverage (splits.choice = \
              coverage).",
             ),
@@ -171,17 +196,15 @@ pub(super) const ROWS: &[Parameter] = &[
         help: "Share of each map's range of distances that the next map covers too, so that the shader can blend between \
            them. It hides the line between two maps, and costs a little of their sharpness.",
         kind: Kind::Number(Number { min: 0.0, max: 1.0, step: 0.05, logarithmic: false, decimals: 2, unset: None }),
-        field: field!(technique.overlap),
-        inert: |s| match s.technique.choice {
-            _ if s.technique.fit.kind == FitKind::Windows => {
-                Some("Windows are blended toward their borders, over the blend; choose another fit.")
-            }
-            _ if s.technique.count < 2 => Some("One map overlaps with none; raise the number of maps."),
-            MapChoice::Coverage => Some(
+        field: field!(technique.maps, Maps::Slices(Slices { choice: MapChoice::ViewDepth { overlap }, .. }) => overlap),
+        inert: |s| match s.technique.maps {
+            Maps::Windows(_) => Some("Windows are blended toward their borders, over the blend; choose another fit."),
+            Maps::One(_) => Some("One map overlaps with none; raise the number of maps."),
+            Maps::Slices(Slices { choice: MapChoice::Coverage { .. }, .. }) => Some(
                 "Maps that are read by coverage are blended toward their borders; set Choice to By view depth (splits.choice \
              = view_depth).",
             ),
-            MapChoice::ViewDepth => None,
+            Maps::Slices(_) => None,
         },
     },
 ];
@@ -196,23 +219,30 @@ const fn manual<const MAP: usize>(id: &'static str, label: &'static str) -> Para
         help: "Distance from the camera, along its view, at which this map ends and the next one begins. Each has to be \
                greater than the one before.",
         kind: Kind::Number(Number { min: 0.0, max: 100_000.0, step: 0.1, logarithmic: true, decimals: 2, unset: None }),
-        field: field!(technique.splits, SplitScheme::Manual(splits) => splits[MAP]),
-        inert: |s| match s.technique.splits {
-            SplitScheme::Manual(_) if no_splits(s).is_some() => no_splits(s),
-            SplitScheme::Manual(_) if MAP + 1 < s.technique.count as usize => None,
-            SplitScheme::Manual(_) => Some("There is no such map; raise the number of maps."),
-            _ => Some("The splits are chosen by a rule; set Splits to Manual (splits.scheme = manual)."),
+        field: field!(technique.maps, Maps::Slices(Slices { splits: SplitScheme::Manual(splits), .. }) => splits[MAP]),
+        inert: |s| match slices(s) {
+            None => no_splits(s),
+            Some(Slices { splits: SplitScheme::Manual(_), count, .. }) if MAP + 1 < *count as usize => None,
+            Some(Slices { splits: SplitScheme::Manual(_), .. }) => {
+                Some("There is no such map; raise the number of maps.")
+            }
+            Some(_) => Some("The splits are chosen by a rule; set Splits to Manual (splits.scheme = manual)."),
         },
     }
 }
 
+/// The slices of the view, if the maps are any.
+fn slices(s: &Settings) -> Option<&Slices> {
+    if let Maps::Slices(slices) = &s.technique.maps { Some(slices) } else { None }
+}
+
 /// Why there are no splits, or `None` where there are some.
 fn no_splits(s: &Settings) -> Option<&'static str> {
-    match s.technique.fit.kind {
-        FitKind::Windows => {
+    match s.technique.maps {
+        Maps::Windows(_) => {
             Some("Windows are no slices of the view, so there is nothing to split; choose another fit.")
         }
-        _ if s.technique.count < 2 => Some("One map has no splits; raise the number of maps."),
-        _ => None,
+        Maps::One(_) => Some("One map has no splits; raise the number of maps."),
+        Maps::Slices(_) => None,
     }
 }

@@ -1,10 +1,19 @@
 //! The rows of the stabilisation.
 
-use shadowfit::settings::{FitKind, Stabilise};
+use shadowfit::settings::{HoldSettings, Stabilise};
+use shadowfit::{Maps, OneMap, Slices, Windows};
 
-use crate::field::{choice, field};
+use crate::field::{Field, code, field};
 use crate::tool::Settings;
-use crate::{ChoiceOption, Group, Kind, Number, Parameter};
+use crate::{ChoiceOption, Group, Kind, Number, Parameter, Value};
+
+/// A number of kept slices or of one kept map.
+macro_rules! held {
+    ($part:ident) => {
+        field!(technique.maps, Maps::Slices(Slices { stabilise: Stabilise::Hysteresis(hold), .. })
+            | Maps::One(OneMap { stabilise: Stabilise::Hysteresis(hold), .. }) => hold.$part)
+    };
+}
 
 /// In the order that they are shown.
 pub(super) const ROWS: &[Parameter] = &[
@@ -29,7 +38,27 @@ pub(super) const ROWS: &[Parameter] = &[
             },
             ChoiceOption { id: "off", label: "Off", help: "Maps are fitted anew in each frame." },
         ]),
-        field: choice!(technique.stabilise: Stabilise [Hysteresis, Snap, Off]),
+        field: Field {
+            get: |s| {
+                Some(Value::Option(match stabilise(s)? {
+                    Stabilise::Hysteresis(_) => 0,
+                    Stabilise::Snap { .. } => 1,
+                    Stabilise::Off => 2,
+                }))
+            },
+            set: |s, value| {
+                let Some(now) = stabilise(s) else { return };
+                let waste = now.waste();
+                s.technique.maps = s.technique.maps.with_stabilise(match (value, now) {
+                    (Value::Option(0), Stabilise::Hysteresis(_)) => now,
+                    (Value::Option(0), _) => Stabilise::Hysteresis(HoldSettings::default().with_waste(waste)),
+                    (Value::Option(1), _) => Stabilise::Snap { waste },
+                    _ => Stabilise::Off,
+                });
+            },
+            code: code!(maps),
+            is_of_variant: true,
+        },
         inert: windows_are_still,
     },
     Parameter {
@@ -40,7 +69,7 @@ pub(super) const ROWS: &[Parameter] = &[
         help: "Room left around what a new map must cover, as a share of its width, so that it can be kept for longer. \
            More room makes texels coarser.",
         kind: Kind::Number(Number { min: 0.0, max: 10.0, step: 0.01, logarithmic: true, decimals: 2, unset: None }),
-        field: field!(technique.hold.margin),
+        field: held!(margin),
         inert: only_held,
     },
     Parameter {
@@ -51,7 +80,7 @@ pub(super) const ROWS: &[Parameter] = &[
         help: "A new map also covers what the camera will see if it goes on moving as it does, as far ahead as makes the \
            map wider by this factor at most.",
         kind: Kind::Number(Number { min: 1.0, max: 100.0, step: 0.05, logarithmic: true, decimals: 2, unset: None }),
-        field: field!(technique.hold.growth),
+        field: held!(growth),
         inert: only_held,
     },
     Parameter {
@@ -62,10 +91,15 @@ pub(super) const ROWS: &[Parameter] = &[
         help: "A kept map is made anew once its texels are larger than they have to be by this factor, and kept splits and \
            the depths of windows are likewise. Lower is sharper, higher is calmer.",
         kind: Kind::Number(Number { min: 1.0, max: 100.0, step: 0.05, logarithmic: true, decimals: 2, unset: None }),
-        field: field!(technique.hold.waste),
-        inert: |s| match (s.technique.fit.kind, s.technique.stabilise) {
-            (FitKind::Windows, _) | (_, Stabilise::Snap | Stabilise::Hysteresis) => None,
-            (_, Stabilise::Off) => Some("Nothing is kept from frame to frame; turn on Stabilise."),
+        field: field!(technique.maps, Maps::Windows(Windows { depth_waste: waste, .. })
+            | Maps::Slices(Slices {
+                stabilise: Stabilise::Snap { waste } | Stabilise::Hysteresis(HoldSettings { waste, .. }), ..
+            })
+            | Maps::One(OneMap {
+                stabilise: Stabilise::Snap { waste } | Stabilise::Hysteresis(HoldSettings { waste, .. }), ..
+            }) => waste),
+        inert: |s| {
+            (stabilise(s) == Some(Stabilise::Off)).then_some("Nothing is kept from frame to frame; turn on Stabilise.")
         },
     },
     Parameter {
@@ -75,18 +109,26 @@ pub(super) const ROWS: &[Parameter] = &[
         unit: "frames",
         help: "How many frames of the camera's motion a new map looks ahead at most.",
         kind: Kind::Number(Number { min: 0.0, max: 1_000.0, step: 1.0, logarithmic: true, decimals: 0, unset: None }),
-        field: field!(technique.hold.horizon),
+        field: held!(horizon),
         inert: only_held,
     },
 ];
 
+/// What keeps slices or one map stable; `None` of windows.
+fn stabilise(s: &Settings) -> Option<Stabilise> {
+    match s.technique.maps {
+        Maps::Windows(_) => None,
+        Maps::Slices(Slices { stabilise, .. }) | Maps::One(OneMap { stabilise, .. }) => Some(stabilise),
+    }
+}
+
 fn only_held(s: &Settings) -> Option<&'static str> {
-    let is_held = s.technique.stabilise == Stabilise::Hysteresis;
+    let is_held = matches!(stabilise(s), Some(Stabilise::Hysteresis(_)));
     windows_are_still(s)
         .or_else(|| (!is_held).then_some("Only kept maps look ahead; set Stabilise to Keep while it serves."))
 }
 
 fn windows_are_still(s: &Settings) -> Option<&'static str> {
-    (s.technique.fit.kind == FitKind::Windows)
+    matches!(s.technique.maps, Maps::Windows(_))
         .then_some("Windows stay where they are by a rule of their own; choose another fit.")
 }

@@ -1,8 +1,5 @@
 {
-let mut technique = Technique::preset("oriented-1").expect("a preset of shadowfit");
-technique.need = NeedSource::Boxes;
-technique.fit.rectangle = RectangleKind::MinimumSquare;
-technique.fit.max_texel_ratio = 3.0;
+let mut technique = Technique::default().with_maps(Slices { count: 3, shape: Shape { kind: FitKind::Oriented, rectangle: RectangleKind::MinimumSquare, max_texel_ratio: 3.0 }, splits: SplitScheme::Manual([1.0, 2.5, 0.1, 1e-7, 3000000000.0, 16777216.0, f32::MAX]), choice: MapChoice::ViewDepth { overlap: 0.1 }, stabilise: Stabilise::Snap { waste: 3.0 } });
 technique.fit.least_texel = 0.001;
 technique.fit.max_distance = 80.25;
 technique.fit.casters = CasterPolicy::DepthClamp;
@@ -11,16 +8,6 @@ technique.fit.border = Some(4.0);
 technique.fit.margin = 0.25;
 technique.fit.up.y = -0.0;
 technique.fit.up.z = 1.0;
-technique.count = 3;
-technique.splits = SplitScheme::Manual([1.0, 2.5, 0.1, 1e-7, 3000000000.0, 16777216.0, f32::MAX]);
-technique.choice = MapChoice::ViewDepth;
-technique.blend = 2.5;
-technique.overlap = 0.1;
-technique.stabilise = Stabilise::Snap;
-technique.hold.margin = 0.5;
-technique.hold.growth = 2.0;
-technique.hold.waste = 3.0;
-technique.hold.horizon = 9;
 technique.fit.resolution = UVec2::new(1024, 512);
 technique.format = MapFormat::R32Float;
 technique.filter = FilterKind::Vogel8;

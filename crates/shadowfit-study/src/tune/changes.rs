@@ -1,9 +1,7 @@
 //! The changes that a search tries, one at a time, in rounds: those that matter most come first.
 
-use shadowfit::Technique;
-use shadowfit::settings::{
-    BiasSettings, FilterKind, FitKind, HoldSettings, ReceiverSource, RectangleKind, SplitScheme, Stabilise,
-};
+use shadowfit::settings::{BiasSettings, FilterKind, FitKind, HoldSettings, RectangleKind, SplitScheme, Stabilise};
+use shadowfit::{Maps, Technique};
 
 use super::TuneScope;
 
@@ -17,12 +15,17 @@ impl Change {
     pub(super) fn new(what: impl Into<String>, apply: impl Fn(&mut Technique) + 'static) -> Self {
         Self { what: what.into(), apply: Box::new(apply) }
     }
+
+    /// A change of the maps alone.
+    fn to_maps(what: impl Into<String>, change: impl Fn(Maps) -> Maps + 'static) -> Self {
+        Self::new(what, move |technique| technique.maps = change(technique.maps))
+    }
 }
 
 /// The changes that are tried on a technique, round by round.
 pub(super) fn rounds(start: &Technique, scope: TuneScope) -> Vec<Vec<Change>> {
     match scope {
-        TuneScope::Everything => everything(start.count),
+        TuneScope::Everything => everything(start.maps.count()),
         // A soft filter is chosen for its looks.
         TuneScope::BiasAndFilter if start.filter.is_soft() => vec![biases(), fine_biases()],
         TuneScope::BiasAndFilter => vec![biases(), filters(), fine_biases(), filters()],
@@ -41,20 +44,14 @@ fn everything(count: u32) -> Vec<Vec<Change>> {
 
 fn fits() -> Vec<Change> {
     let kinds = [
-        ("boxes of the frustum's slices", FitKind::FrustumAabb, ReceiverSource::Clusters),
-        ("least rectangles of the frustum", FitKind::Oriented, ReceiverSource::Clusters),
-        ("spheres around the frustum's slices", FitKind::Sphere, ReceiverSource::Clusters),
-        ("least rectangles around the objects in view", FitKind::Focused, ReceiverSource::Objects),
-        ("least rectangles around the clusters in view", FitKind::Focused, ReceiverSource::Clusters),
-        ("windows where the picture needs them", FitKind::Windows, ReceiverSource::Clusters),
+        ("boxes of the frustum's slices", FitKind::FrustumAabb),
+        ("least rectangles of the frustum", FitKind::Oriented),
+        ("spheres around the frustum's slices", FitKind::Sphere),
+        ("least rectangles around the boxes in view", FitKind::Focused),
     ];
-    let change = |(what, kind, receivers)| {
-        Change::new(what, move |technique: &mut Technique| {
-            technique.fit.kind = kind;
-            technique.receivers = receivers;
-        })
-    };
-    kinds.into_iter().map(change).collect()
+    let shapes = kinds.map(|(what, kind)| Change::to_maps(what, move |maps| maps.with_kind(kind)));
+    let windows = Change::to_maps("windows where the picture needs them", |maps| maps.as_windows().into());
+    shapes.into_iter().chain([windows]).collect()
 }
 
 fn biases() -> Vec<Change> {
@@ -103,7 +100,12 @@ fn splits() -> Vec<Change> {
         ("splits from the boxes", SplitScheme::FromBoxes),
         ("splits from what the frame before showed", SplitScheme::FromHistogram),
     ];
-    let change = |(what, splits)| Change::new(what, move |technique: &mut Technique| technique.splits = splits);
+    let change = |(what, splits)| {
+        Change::to_maps(what, move |maps| match maps {
+            Maps::Slices(slices) => slices.with_splits(splits).into(),
+            others => others,
+        })
+    };
     schemes.into_iter().map(change).collect()
 }
 
@@ -114,21 +116,26 @@ pub(super) fn maps(count: u32) -> String {
 
 fn counts(most: u32) -> Vec<Change> {
     let fewer = (1..most).rev().take(2);
-    let change =
-        |count| Change::new(format!("{} only", maps(count)), move |technique: &mut Technique| technique.count = count);
+    let change = |count| Change::to_maps(format!("{} only", maps(count)), move |maps| maps.with_count(count));
     fewer.map(change).collect()
 }
 
 fn stillness() -> Vec<Change> {
-    vec![
-        Change::new("maps fitted anew in each frame", |technique| technique.stabilise = Stabilise::Off),
-        Change::new("maps on a grid of whole texels", |technique| technique.stabilise = Stabilise::Snap),
-        Change::new("maps held from frame to frame", |technique| technique.stabilise = Stabilise::Hysteresis),
-        Change::new("maps held longer", |technique| technique.hold = HoldSettings::default().with_waste(3.0)),
-        Change::new("maps held for a shorter time", |technique| {
-            technique.hold = HoldSettings::default().with_waste(1.3).with_growth(1.2);
-        }),
-    ]
+    let held = HoldSettings::default();
+    let modes = [
+        ("maps fitted anew in each frame", Stabilise::Off),
+        ("maps on a grid of whole texels", Stabilise::Snap { waste: held.waste }),
+        ("maps held from frame to frame", Stabilise::Hysteresis(held)),
+        ("maps held longer", Stabilise::Hysteresis(held.with_waste(3.0))),
+        ("maps held for a shorter time", Stabilise::Hysteresis(held.with_waste(1.3).with_growth(1.2))),
+    ];
+    let change = |(what, stabilise)| {
+        Change::to_maps(what, move |maps| match maps {
+            Maps::Windows(_) => maps,
+            Maps::Slices(_) | Maps::One(_) => maps.with_stabilise(stabilise),
+        })
+    };
+    modes.into_iter().map(change).collect()
 }
 
 fn rectangles() -> Vec<Change> {
@@ -136,7 +143,12 @@ fn rectangles() -> Vec<Change> {
         ("rectangles along the light's axes", RectangleKind::AxisAligned),
         ("least squares instead of rectangles", RectangleKind::MinimumSquare),
     ];
-    let change = |(what, kind)| Change::new(what, move |technique: &mut Technique| technique.fit.rectangle = kind);
+    let change = |(what, kind)| {
+        Change::to_maps(what, move |maps| match maps.shape() {
+            Some(shape) => maps.with_shape(shape.with_rectangle(kind)),
+            None => maps,
+        })
+    };
     kinds.into_iter().map(change).collect()
 }
 
@@ -158,11 +170,13 @@ fn fine_biases() -> Vec<Change> {
 
 #[cfg(test)]
 mod tests {
+    use shadowfit::Slices;
+
     use super::*;
 
-    /// What the recommended technique has already.
-    const RECOMMENDED: [&str; 5] = [
-        "windows where the picture needs them",
+    /// What slices have already.
+    const OF_SLICES: [&str; 5] = [
+        "least rectangles around the boxes in view",
         "the automatic bias",
         "a tent of 5×5",
         "splits from what the frame before showed",
@@ -171,13 +185,23 @@ mod tests {
 
     #[test]
     fn every_change_but_those_to_what_is_already_so_makes_another_technique() {
-        let start = Technique::default();
+        let start = Technique::default().with_maps(Slices::default());
         let changes: Vec<Change> = rounds(&start, TuneScope::Everything).into_iter().flatten().collect();
         assert!(changes.len() > 20, "{}", changes.len());
         for change in changes {
             let mut changed = start;
             (change.apply)(&mut changed);
-            assert_eq!(changed == start, RECOMMENDED.contains(&change.what.as_str()), "{}", change.what);
+            assert_eq!(changed == start, OF_SLICES.contains(&change.what.as_str()), "{}", change.what);
+        }
+    }
+
+    #[test]
+    fn splits_rectangles_and_stillness_of_windows_are_not_tried() {
+        let start = Technique::default();
+        for change in splits().into_iter().chain(stillness()).chain(rectangles()) {
+            let mut changed = start;
+            (change.apply)(&mut changed);
+            assert_eq!(changed, start, "{}", change.what);
         }
     }
 

@@ -62,8 +62,7 @@ impl Default for Court {
         let technique = Technique::default().with_filter(FilterKind::Point);
         let descriptor = ShadowMapDescriptor {
             maps: 1,
-            choice: MapChoice::Coverage,
-            blend: 0.0,
+            choice: MapChoice::Coverage { blend: 0.0 },
             depth: DepthConvention::ZeroToOne,
             ..ShadowMapDescriptor::from(&technique)
         };
@@ -347,7 +346,13 @@ fn the_map_by_coverage_is_the_finest_and_the_reason_says_where_the_finer_one_end
     let coarse = around(0.0, 20.0, 100);
     let reason = |maps: Vec<FittedMap>, blend: f32| {
         let court = Court::default();
-        Court { maps, descriptor: ShadowMapDescriptor { blend, ..court.descriptor }, ..court }.why().map_reason
+        Court {
+            maps,
+            descriptor: ShadowMapDescriptor { choice: MapChoice::Coverage { blend }, ..court.descriptor },
+            ..court
+        }
+        .why()
+        .map_reason
     };
     for (maps, blend, text) in [
         (vec![coarse], 0.0, "map 1 of 1: the only one, and it holds this point"),
@@ -401,7 +406,7 @@ fn the_map_by_view_depth_is_that_of_its_range() {
     let slices = [wide(10.0, f32::MAX), wide(28.0, 10.0), wide(77.0, 28.0), wide(f32::MAX, 77.0)];
     let reason = |depth: f64, maps: &[FittedMap]| {
         let court = Court { eye: DVec3::new(0.0, 0.6, 0.8) * depth, maps: maps.to_vec(), ..Court::default() };
-        let descriptor = ShadowMapDescriptor { choice: MapChoice::ViewDepth, ..court.descriptor };
+        let descriptor = ShadowMapDescriptor { choice: MapChoice::ViewDepth { overlap: 0.0 }, ..court.descriptor };
         Court { descriptor, ..court }.why().map_reason
     };
     let mut narrow = slices;
@@ -493,7 +498,9 @@ fn gpu_classes_are_those_of_the_judge_on_a_picture_of_the_default_scene() {
         let view = View { camera, direction: Vec3::new(0.4, -0.7, 0.3).normalize(), is_first: true };
         let judging = Judging { size, ..Judging::default() };
         let mut evaluator = Evaluator::new(renderer, judging);
-        let maps = scene.fit_alone(&mut ShadowFitter::new(&technique), &view).expect("maps");
+        let maps = scene
+            .fit_alone(&mut ShadowFitter::new(&technique), shadowfit_params::Inputs::default(), &view)
+            .expect("maps");
         let rays = scene.shared_rays();
         let (job, _) = evaluator.judge_job(&gpu, &mut scene, &view, &maps, rays.clone()).expect("a picture");
         let truth = &mut SharedTruth::default();

@@ -215,7 +215,9 @@ fn over(ui: &Ui, stage: &Stage, figures: &Figures, rect: Rect) {
     let note = match view.mode {
         ViewMode::Final if !view.shadows => "Shadows are off",
         // Other techniques place their maps without counting visible points.
-        ViewMode::Need if !stage.settings.technique.uses_seen() => "This technique does not look at the need",
+        ViewMode::Need if !stage.settings.inputs.tell(&stage.settings.technique) => {
+            "These fits are not told of the need"
+        }
         _ => return,
     };
     label(ui, rect.left_top() + Vec2::splat(MARGIN), Align2::LEFT_TOP, note);

@@ -136,7 +136,7 @@ impl Stage {
                 preset.technique().with_lengths_of(&technique).with_resolution(width, height) == technique
             };
             let preset = shadowfit::PRESETS.iter().find(is_same);
-            preset.map_or_else(|| format!("{} maps", technique.count), |preset| preset.name.to_owned())
+            preset.map_or_else(|| format!("{} maps", technique.maps.count()), |preset| preset.name.to_owned())
         })
     }
 }

@@ -1,8 +1,7 @@
 //! What windows are told of the pictures before: rays and depth buffers agree.
 
-use shadowfit::Technique;
+use shadowfit::Windows;
 use shadowfit::need::{LEVELS, NeedGrid};
-use shadowfit::settings::{FitKind, NeedSource};
 use shadowfit_render::RenderTarget;
 use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_scene::builtin::default_scene;
@@ -34,8 +33,7 @@ fn told_by_pictures(gpu: &Gpu, samples: u32) -> Stage {
     let mut stage = Stage::new(gpu.clone(), default_scene(), samples).expect("the default scene");
     stage.prepared_scene().rays();
     stage.read_depths();
-    let technique = Technique { need: NeedSource::LastFrame, ..stage.settings.technique };
-    stage.settings.technique = Technique { fit: technique.fit.with_kind(FitKind::Windows), ..technique };
+    stage.settings.technique.maps = Windows::default().into();
     stage
 }
 
@@ -49,7 +47,7 @@ fn of_two_techniques_both_are_told_of_the_whole_picture() {
         draw(&mut stage, &target);
         let (is_picture, alone) = told(&stage);
         assert!(is_picture);
-        stage.compare_with(Some(Technique { count: 3, ..stage.settings.technique }));
+        stage.compare_with(Some(stage.settings.technique.with_count(3)));
         stage.set_split(0.2);
         for _ in 0..3 {
             draw(&mut stage, &target);

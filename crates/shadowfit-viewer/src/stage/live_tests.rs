@@ -54,7 +54,7 @@ fn gpu_figures_of_an_older_picture_are_not_those_of_the_view() {
     judge(&mut stage, &target);
     let wrong = |stage: &Stage| stage.judged_figures().expect("it was judged").wrong;
     let fine = wrong(&stage);
-    stage.settings.technique.count = 1;
+    stage.settings.technique = stage.settings.technique.with_count(1);
     draw(&mut stage, &target);
     let judging = stage.side.live.gpu_ms();
     assert!(judging.is_some_and(|ms| ms > 0.0), "its passes are timed");
@@ -130,6 +130,6 @@ fn gpu_maps_that_are_drawn_for_the_judge_are_not_shown_as_kept() {
     stage.settings.view.mode = ViewMode::Updates;
     draw(&mut stage, &target);
     let drawn = stage.side.evaluator.renderer.sun().updates();
-    let maps = stage.settings.technique.count as usize;
+    let maps = stage.settings.technique.maps.count() as usize;
     assert_eq!(drawn.iter().filter(|update| update.content == UpdateContent::Static).count(), maps, "{drawn:?}");
 }

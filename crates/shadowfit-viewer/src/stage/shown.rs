@@ -178,7 +178,7 @@ mod tests {
     fn what_changed_while_an_artefact_was_searched_or_on_show_stays() {
         let gpu = pollster::block_on(Gpu::headless(AdapterChoice::Software)).expect("the software adapter");
         let mut stage = Stage::new(gpu, default_scene(), 1).expect("the default scene");
-        stage.settings.technique.fit = stage.settings.technique.fit.with_kind(FitKind::Windows);
+        stage.settings.technique.maps = shadowfit::Windows::default().into();
         let first = stage.settings;
         let found = stage.search(Artefact::ClippingHole).run();
         stage.settings.light.azimuth += 0.5;
@@ -208,10 +208,12 @@ mod tests {
     #[test]
     fn changes_have_the_names_of_the_menus_and_three_decimals_at_most() {
         let mut before = Settings::default();
-        (before.technique.fit.kind, before.technique.bias.receiver_plane) = (FitKind::Sphere, 1.003_906_2);
+        before.technique.maps = before.technique.maps.with_kind(FitKind::Sphere);
+        before.technique.bias.receiver_plane = 1.003_906_2;
         before.view.shadows = true;
         let mut after = before;
-        (after.technique.fit.kind, after.technique.bias.receiver_plane) = (FitKind::Focused, 0.501_953_1);
+        after.technique.maps = after.technique.maps.with_kind(FitKind::Focused);
+        after.technique.bias.receiver_plane = 0.501_953_1;
         after.view.shadows = false;
         let lines = changes(&before, &after);
         assert_eq!(lines.len(), 3, "{lines:?}");

@@ -2,6 +2,7 @@
 
 use shadowfit::settings::CasterPolicy;
 use shadowfit::{DepthConvention, FittedMap, LightFit, PerspectiveCamera, Seen, Technique};
+use shadowfit_params::Inputs;
 use shadowfit_params::tool::{ErrorMarks, InsetMaps, ViewMode};
 use shadowfit_render::{Culling, Frame, Gpu, Marks, Overlay, RenderTarget, Renderer, Statistics};
 use shadowfit_study::{Evaluator, Judging, RayUse, View, atmosphere};
@@ -19,6 +20,8 @@ pub(super) struct Side {
     pub(super) evaluator: Evaluator,
     /// The last fit. Each frame fits again, unless the fit is frozen.
     pub(super) fitted: Option<Fitted>,
+    /// What it was given.
+    inputs: Inputs,
     pub(super) statistics: Statistics,
     pub(super) live: Live,
     /// Whether pictures follow each other in a window: nothing waits for rays then.
@@ -40,6 +43,7 @@ impl Side {
         Ok(Self {
             evaluator: Evaluator::new(renderer, Judging { crawl: false, ..Judging::default() }),
             fitted: None,
+            inputs: Inputs::default(),
             statistics: Statistics::default(),
             live: Live::new(gpu),
             follows: false,
@@ -99,27 +103,28 @@ impl Side {
     }
 
     fn fit_now(&mut self, technique: &Technique, shot: &Shot<'_>) -> Result<Fitted, SunShadowsError> {
-        let view = shot.view();
+        let (view, inputs) = (shot.view(), shot.settings.inputs);
         let goes_on = self.fitted.as_ref().and_then(|fitted| fitted.camera).is_some_and(|last| {
             let same_lens = PerspectiveCamera { eye: last.eye, forward: last.forward, ..view.camera } == last;
-            same_lens && self.sun().technique() == technique
+            same_lens && self.sun().technique() == technique && self.inputs == inputs
         });
         if !goes_on {
             self.sun_mut().cut();
             self.sun_mut().fitter_mut().set_technique(technique);
+            self.inputs = inputs;
             self.evaluator.forget_view();
             let rays = if self.follows { RayUse::IfReady } else { RayUse::Wait };
-            shot.scene.see(self.sun_mut().fitter_mut(), &view, rays)?;
+            shot.scene.see(self.sun_mut().fitter_mut(), inputs, &view, rays)?;
         }
         let views = [view.camera.frustum()?];
-        let fitted = *self.sun_mut().fit(&shot.scene.input(technique, &views, view.direction))?;
+        let fitted = *self.sun_mut().fit(&shot.scene.input(inputs, &views, view.direction))?;
         if goes_on && !self.reads_depths() {
             let rays = match (self.follows, shot.plays) {
                 (true, _) => RayUse::IfReady,
                 (false, true) => RayUse::Late,
                 (false, false) => RayUse::Wait,
             };
-            shot.scene.see(self.sun_mut().fitter_mut(), &view, rays)?;
+            shot.scene.see(self.sun_mut().fitter_mut(), inputs, &view, rays)?;
         }
         Ok(Fitted::new(view.camera, technique, &fitted))
     }
@@ -144,7 +149,7 @@ impl Side {
         if let Err(error) = self.evaluator.renderer.set_shadow_map(shot.gpu, &wanted) {
             self.problem = Some(error.to_string());
             let map = self.evaluator.renderer.shadow_map().descriptor();
-            technique.count = technique.count.min(map.maps);
+            technique = technique.with_count(technique.maps.count().min(map.maps));
             let fit = &mut technique.fit;
             (fit.resolution, fit.depth) = (map.resolution.into(), map.depth);
             if fit.casters == CasterPolicy::DepthClamp && !map.depth_clamp {
@@ -157,7 +162,7 @@ impl Side {
     /// Counts the visible points of the picture that has just been drawn, if the technique uses them.
     pub(super) fn read_picture(&mut self, gpu: &Gpu, target: &RenderTarget) {
         let Some(camera) = self.unread.take() else { return };
-        if !self.reads_depths() || !self.sun().technique().uses_seen() {
+        if !self.reads_depths() || !self.inputs.tell(self.sun().technique()) {
             return;
         }
         let depth = DepthConvention::Reversed;

@@ -292,6 +292,7 @@ impl Viewer {
     /// Uses a technique on the side that the panel edits.
     pub(super) fn take_technique(&mut self, named: NamedTechnique) -> String {
         *self.edited() = named.technique;
+        self.stage.settings.inputs = named.inputs;
         let told = format!("Technique {}", named.name);
         self.interface.panel().name_technique(named.name, &named.technique);
         told

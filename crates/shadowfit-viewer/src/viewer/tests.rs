@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use clap::Parser;
 use egui::{Pos2, RawInput, Rect, vec2};
+use shadowfit::Maps;
 use shadowfit::Technique;
-use shadowfit::settings::FitKind;
 use shadowfit_egui::{Artefact, Command, Toggle, Tune};
 use shadowfit_params::tool::ViewMode;
 use shadowfit_render::{AdapterChoice, FlyInput, Gpu};
@@ -106,11 +106,8 @@ fn gpu_what_is_saved_comes_back_and_yields_to_the_technique_and_that_to_set() {
     assert!((second.stage.camera.position - camera.position).length() < 1e-9);
     assert_eq!((second.saved.theme, second.presets.len()), (Theme::Light, 1));
     run(&mut second, Command::Reset);
-    assert_eq!(
-        second.stage.settings.technique.fit.kind,
-        FitKind::Windows,
-        "a reset goes to the start, not to the file"
-    );
+    let maps = second.stage.settings.technique.maps;
+    assert_eq!(maps, Maps::default(), "a reset goes to the start, not to the file");
     drop(second);
 
     let third = ready(&["--technique", "stable-4", "--set", "bias.constant=0.25"], Some(&path));
@@ -156,13 +153,13 @@ fn gpu_changes_are_taken_back_one_by_one() {
         pause(&mut viewer);
     }
     run(&mut viewer, Command::Undo);
-    assert_eq!(viewer.stage.settings.technique.count, 4);
+    assert_eq!(viewer.stage.settings.technique.maps.count(), 4);
     assert_ne!(viewer.stage.settings, before);
     run(&mut viewer, Command::Undo);
     assert_eq!(viewer.stage.settings, before);
     run(&mut viewer, Command::Redo);
     run(&mut viewer, Command::Redo);
-    assert_eq!(viewer.stage.settings.technique.count, 2);
+    assert_eq!(viewer.stage.settings.technique.maps.count(), 2);
 }
 
 #[test]

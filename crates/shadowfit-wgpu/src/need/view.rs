@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use shadowfit::glam::{DMat4, DVec4, Mat4, Vec3};
 use shadowfit::need::PIXELS;
 use shadowfit::seen::{DEPTHS, SeenSpace};
-use shadowfit::settings::FitSettings;
+use shadowfit::settings::MapSettings;
 use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 
 use super::error::NeedPassError;
@@ -26,9 +26,9 @@ pub struct NeedView {
     pub depth: DepthConvention,
     /// **Direction of travel** of the light in world axes, of any length.
     pub direction: Vec3,
-    /// The world's up direction, [`FitSettings::up`].
+    /// The world's up direction, [`MapSettings::up`].
     pub up: Vec3,
-    /// Where shadows end, in metres of view depth, [`FitSettings::max_distance`]; points beyond are left out.
+    /// Where shadows end, in metres of view depth, [`MapSettings::max_distance`]; points beyond are left out.
     pub max_distance: f32,
     /// The picture's part of the depth texture, in pixels: left, top, width, height.
     pub rectangle: [u32; 4],
@@ -69,7 +69,7 @@ impl NeedView {
         camera: &PerspectiveCamera,
         depth: DepthConvention,
         direction: Vec3,
-        settings: &FitSettings,
+        settings: &MapSettings,
         size: [u32; 2],
     ) -> Result<Self, NeedPassError> {
         Ok(Self {

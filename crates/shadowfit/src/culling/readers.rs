@@ -119,14 +119,14 @@ pub fn caster_volumes(
 ) -> Result<(), FitError> {
     let maps = &maps[..maps.len().min(MAX_MAPS)];
     match reading.choice {
-        MapChoice::Coverage => {
+        MapChoice::Coverage { .. } => {
             let from = read_by_coverage(maps, reader, views, reading);
             for ((map, near), volume) in maps.iter().zip(from).zip(volumes) {
                 let read = near.map(|near| Slice { near, far: f32::MAX });
                 *volume = swept(map, read, views, reading)?;
             }
         }
-        MapChoice::ViewDepth => {
+        MapChoice::ViewDepth { .. } => {
             let mismatch = views.iter().map(|frustum| depth_mismatch(reader, frustum)).fold(0.0, f64::max);
             let readers = Readers { maps, reader, views, mismatch };
             for ((index, map), volume) in maps.iter().enumerate().zip(volumes) {
@@ -290,11 +290,11 @@ fn read_by_coverage(
     views: &[ViewFrustum],
     reading: &MapReading,
 ) -> [Option<f32>; MAX_MAPS] {
-    let free = f64::from(reading.softness.reach(reading.filter) + reading.blend);
+    let free = f64::from(reading.softness.reach(reading.filter) + reading.choice.blend());
     let mut from = [None; MAX_MAPS];
     // Up to where the finer maps hold all.
     let mut held = f32::MIN;
-    for index in MapOrder::new(MapChoice::Coverage, maps.iter().map(|map| &map.fit)).iter() {
+    for index in MapOrder::new(reading.choice, maps.iter().map(|map| &map.fit)).iter() {
         from[index] = (held < f32::MAX).then_some((held - held.abs() * VIEW_DEPTH_ROUNDING).max(f32::MIN));
         held = held_to(&maps[index], reader, views, free, held);
     }
@@ -385,7 +385,8 @@ mod tests {
         assert_eq!(read_from(&behind, &[frustum(1.1)])[3], Some(f32::MIN));
         let reader = Reader::from_eye(DVec3::ZERO, Vec3::NEG_Z);
         let mut volumes = [CasterVolume::everywhere(DVec3::ZERO); 4];
-        caster_volumes(&behind, &by(MapChoice::ViewDepth), &reader, &[view], &mut volumes).expect("a good view");
+        caster_volumes(&behind, &by(MapChoice::ViewDepth { overlap: 0.0 }), &reader, &[view], &mut volumes)
+            .expect("a good view");
         let holds = volumes.map(|volume| volume.intersects_sphere(Vec3::NEG_Z * 3.0, 1.0));
         assert_eq!(holds, [true, false, false, false]);
     }
@@ -396,7 +397,7 @@ mod tests {
         let reader = Reader::from_eye(DVec3::ZERO, Vec3::NEG_Z);
         let [a, b, c] = maps(&view)[..] else { panic!("three maps") };
         let from = |maps: &[FittedMap], views: &[ViewFrustum], blend: f32| {
-            let reading = MapReading { blend, ..by(MapChoice::Coverage) };
+            let reading = by(MapChoice::Coverage { blend });
             let from = read_by_coverage(maps, &reader, views, &reading);
             from[..maps.len()].to_vec()
         };
@@ -447,7 +448,7 @@ mod tests {
         let maps = maps(&frustum(0.9));
         let reader = Reader::from_eye(DVec3::ZERO, Vec3::NEG_Z);
         let mut volumes = [CasterVolume::nowhere(DVec3::ZERO); 3];
-        for choice in [MapChoice::ViewDepth, MapChoice::Coverage] {
+        for choice in [MapChoice::ViewDepth { overlap: 0.0 }, MapChoice::default()] {
             let swept = caster_volumes(&maps, &by(choice), &reader, &[], &mut volumes);
             assert_eq!(swept, Err(FitError::NoView));
         }

@@ -37,7 +37,8 @@ pub struct DepthHistogram<'a> {
 /// #     near: 0.1,
 /// #     far: 200.0,
 /// # };
-/// let technique = Technique::preset("calm-4").unwrap().with_splits(SplitScheme::Logarithmic);
+/// let slices = Slices::default().with_splits(SplitScheme::Logarithmic);
+/// let technique = Technique::default().with_maps(slices);
 /// let views = [camera.frustum()?];
 /// let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
 /// let mut split = |depth_bounds| {

@@ -82,7 +82,7 @@ impl NeedSpace {
     /// The space for what a view sees under a light.
     ///
     /// `direction` is the light's direction of travel in world axes and `up` the world's
-    /// [`up`](crate::settings::FitSettings::up), both of any length. `distance` is where shadows end, in
+    /// [`up`](crate::settings::MapSettings::up), both of any length. `distance` is where shadows end, in
     /// metres of view depth; `f32::MAX` for the far plane.
     ///
     /// # Errors

@@ -60,14 +60,14 @@ pub struct FitInput<'a> {
     pub receiver_cones: &'a [NormalCone],
     /// Boxes around everything that casts shadows. They place the near plane: no caster in them is lost.
     /// `None` when they are not known: the near plane is then moved toward the light by
-    /// [`FitSettings::caster_extension`](crate::settings::FitSettings::caster_extension). An empty slice means
+    /// [`MapSettings::caster_extension`](crate::settings::MapSettings::caster_extension). An empty slice means
     /// that nothing casts.
     pub casters: Option<Boxes<'a>>,
     /// The depths that the last frame showed, for
     /// [`SplitScheme::FromHistogram`](crate::settings::SplitScheme::FromHistogram).
     pub histogram: Option<DepthHistogram<'a>>,
     /// What the last frame showed and how fine a texel it asked for, one grid for each picture that was
-    /// drawn with the maps, for [`NeedSource::LastFrame`](crate::settings::NeedSource::LastFrame). Grids of
+    /// drawn with the maps, for [windows](crate::windows). Grids of
     /// another light, or of another size, are ignored.
     pub need: &'a [NeedGrid<'a>],
     /// Nearest and farthest depth that the last frame showed, if known: uniform, logarithmic and
@@ -163,6 +163,8 @@ pub(crate) struct PlacedMap {
 /// The maps of a frame.
 pub(crate) type PlacedMaps = [Option<PlacedMap>; MAX_MAPS];
 
-/// A placement says where each map of a frame is put, and what it begins with in the next frame. It is given what it
-/// began with in this one, if the technique is still the same, and storage for points.
-pub(crate) type Place<Held> = fn(&Frame, Option<&Held>, &mut [DVec2]) -> Result<(PlacedMaps, Held), FitError>;
+/// A placement says where each map of a frame is put, and what it begins with in the next frame. It is given the
+/// settings of its kind of maps, what it began with in this frame, if the technique is still the same, and storage for
+/// points.
+pub(crate) type Place<Settings, Held> =
+    fn(&Frame, &Settings, Option<&Held>, &mut [DVec2]) -> Result<(PlacedMaps, Held), FitError>;

@@ -37,9 +37,9 @@ use crate::technique::settings::FitSettings;
 use crate::view::{Range, ViewFrustum};
 
 /// Fits the light's orthographic view-projection to a camera frustum, by the rule that
-/// [`FitSettings::kind`] names.
+/// [`Shape::kind`](crate::settings::Shape::kind) names.
 ///
-/// The frustum is cut at [`FitSettings::max_distance`] first (`f32::MAX` leaves it whole; infinity
+/// The frustum is cut at [`MapSettings::max_distance`](crate::settings::MapSettings::max_distance) first (`f32::MAX` leaves it whole; infinity
 /// is refused like every number that is not finite). `direction` is the light's **direction of
 /// travel** in world axes (right-handed); sources that speak of the direction toward the light use
 /// the opposite sign. Its length is ignored. Nothing is known about the scene here: [`fit_scene`]
@@ -56,14 +56,14 @@ pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Re
     if rule.form.is_exact {
         // It uses nothing but the corners, and is as cheap as the sample's own code only without
         // storage.
-        return fit_whole(&Content::of_views(input.scene()), &light, &rule, settings.max_distance, &mut []);
+        return fit_whole(&Content::of_views(input.scene()), &light, &rule, settings.map.max_distance, &mut []);
     }
     let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
     let (content, points) = Content::new(input.scene(), &mut storage)?;
-    fit_whole(&content, &light, &rule, settings.max_distance, points)
+    fit_whole(&content, &light, &rule, settings.map.max_distance, points)
 }
 
-/// Fits one map around what the views see of the scene, by the rule that [`FitSettings::kind`]
+/// Fits one map around what the views see of the scene, by the rule that [`Shape::kind`](crate::settings::Shape::kind)
 /// names. As [`fit`], with the boxes of receivers and casters.
 ///
 /// Where no receiver's box is in view the fit is that of the view alone, and
@@ -76,7 +76,7 @@ pub fn fit(frustum: &ViewFrustum, direction: Vec3, settings: &FitSettings) -> Re
 pub fn fit_scene(input: &FitInput, settings: &FitSettings, workspace: &mut Workspace) -> Result<LightFit, FitError> {
     let (rule, light) = prepare(input, settings, default_border(settings))?;
     let (content, points) = Content::new(input.scene(), workspace.storage)?;
-    fit_whole(&content, &light, &rule, settings.max_distance, points)
+    fit_whole(&content, &light, &rule, settings.map.max_distance, points)
 }
 
 /// One map around everything that receives shadows.
@@ -106,10 +106,10 @@ pub(crate) fn prepare(input: &FitInput, settings: &FitSettings, border: f32) -> 
     }
     let rule = FitRule::new(settings, border, input.casters.is_some())?;
     let direction = checks::unit("the light's direction", input.direction)?;
-    let up = checks::unit("the up direction", settings.up)?;
+    let up = checks::unit("the up direction", settings.map.up)?;
     let near = input.views.iter().map(|view| view.near).fold(f32::MAX, f32::min);
-    if near >= settings.max_distance {
-        return Err(FitError::NearNotBelowFar { near, far: settings.max_distance });
+    if near >= settings.map.max_distance {
+        return Err(FitError::NearNotBelowFar { near, far: settings.map.max_distance });
     }
     Ok((rule, Light::new(direction, up, rule.form.roll)))
 }

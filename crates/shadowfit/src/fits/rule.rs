@@ -9,7 +9,7 @@ use super::form::Form;
 use super::{aabb, focused, oriented, sphere, xna};
 use crate::base::checks::MAX_LENGTH;
 use crate::base::{DepthConvention, FitError, checks};
-use crate::technique::settings::{CasterPolicy, FilterKind, FitKind, FitSettings, RectangleKind};
+use crate::technique::settings::{CasterPolicy, FilterKind, FitKind, FitSettings, MapSettings, RectangleKind};
 use crate::technique::softness::reach;
 
 impl Form {
@@ -21,8 +21,6 @@ impl Form {
             FitKind::Oriented => oriented::FORM,
             FitKind::Sphere => sphere::FORM,
             FitKind::Focused => focused::FORM,
-            // A single map of this kind; several are placed by themselves.
-            FitKind::Windows => Self { may_turn: false, limits_ratio: false, ..focused::FORM },
         }
     }
 }
@@ -74,11 +72,17 @@ impl FitRule {
     /// [`FitError::NotFinite`] and [`FitError::OutOfRange`] for a number of the settings, and
     /// [`FitError::ZeroResolution`].
     #[inline(always)]
-    pub(crate) fn new(settings: &FitSettings, border: f32, casters_are_known: bool) -> Result<Self, FitError> {
+    pub(crate) fn new(
+        FitSettings { shape, map: settings }: &FitSettings,
+        border: f32,
+        casters_are_known: bool,
+    ) -> Result<Self, FitError> {
+        let ratio = f64::from(shape.max_texel_ratio);
+        checks::within("the fit's greatest texel ratio", ratio, 1.0, f64::from(f32::MAX))?;
         check(settings, border)?;
-        let form = Form::of(settings.kind);
+        let form = Form::of(shape.kind);
         let depth = if form.is_exact { Depth::Doubled } else { near_plane(settings, casters_are_known) };
-        let rectangle = if form.may_turn { settings.rectangle } else { RectangleKind::AxisAligned };
+        let rectangle = if form.may_turn { shape.rectangle } else { RectangleKind::AxisAligned };
         let least_texel = if form.is_exact { 0.0 } else { f64::from(settings.least_texel) };
         Ok(Self {
             form,
@@ -86,7 +90,7 @@ impl FitRule {
             depth,
             border: f64::from(border),
             margin: f64::from(settings.margin),
-            max_texel_ratio: Some(settings.max_texel_ratio)
+            max_texel_ratio: Some(shape.max_texel_ratio)
                 .filter(|ratio| *ratio < f32::MAX && form.limits_ratio)
                 .map(f64::from),
             least_texel,
@@ -123,7 +127,7 @@ impl FitRule {
 
 /// Free texels of settings without a technique: where none are set, the reach of the default filter.
 pub(crate) const fn default_border(settings: &FitSettings) -> f32 {
-    match settings.border {
+    match settings.map.border {
         Some(texels) => texels,
         None => reach(FilterKind::Pcf5x5),
     }
@@ -131,7 +135,7 @@ pub(crate) const fn default_border(settings: &FitSettings) -> f32 {
 
 /// The rule of the near plane for the settings' caster policy.
 #[inline]
-fn near_plane(settings: &FitSettings, casters_are_known: bool) -> Depth {
+fn near_plane(settings: &MapSettings, casters_are_known: bool) -> Depth {
     match settings.casters {
         CasterPolicy::None | CasterPolicy::DepthClamp => Depth::AtCovered,
         CasterPolicy::SceneBounds if casters_are_known => Depth::AtCasterBounds,
@@ -143,22 +147,20 @@ fn near_plane(settings: &FitSettings, casters_are_known: bool) -> Depth {
 }
 
 /// Checks the least texel of a fit's settings.
-pub(crate) fn check_least_texel(settings: &FitSettings) -> Result<(), FitError> {
+pub(crate) fn check_least_texel(settings: &MapSettings) -> Result<(), FitError> {
     checks::within("the fit's least texel", f64::from(settings.least_texel), 0.0, MAX_LENGTH)?;
     Ok(())
 }
 
 /// Checks the numbers of a fit's settings.
 #[inline]
-fn check(settings: &FitSettings, border: f32) -> Result<(), FitError> {
+fn check(settings: &MapSettings, border: f32) -> Result<(), FitError> {
     checks::within("the fit's margin", f64::from(settings.margin), 0.0, MAX_LENGTH)?;
     let extension = f64::from(settings.caster_extension);
     checks::within("the fit's caster extension", extension, 0.0, MAX_LENGTH)?;
     if settings.resolution.x == 0 || settings.resolution.y == 0 {
         return Err(FitError::ZeroResolution { resolution: settings.resolution });
     }
-    let ratio = f64::from(settings.max_texel_ratio);
-    checks::within("the fit's greatest texel ratio", ratio, 1.0, f64::from(f32::MAX))?;
     let widest = f64::from(settings.resolution.min_element()) * 0.25;
     checks::within("the fit's border", f64::from(border), 0.0, widest)?;
     check_least_texel(settings)?;

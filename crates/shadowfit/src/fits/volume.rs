@@ -20,11 +20,11 @@ pub enum Constraint {
     Receivers,
     /// The box of a caster that lies before the covered region.
     Casters,
-    /// [`FitSettings::caster_extension`](crate::settings::FitSettings::caster_extension).
+    /// [`MapSettings::caster_extension`](crate::settings::MapSettings::caster_extension).
     CasterExtension,
     /// The enclosing sphere of the [stable fit](crate::fits::sphere).
     Sphere,
-    /// Where a [window](crate::settings::FitKind::Windows) stands, and how wide its texels are.
+    /// Where a [window](crate::windows) stands, and how wide its texels are.
     Window,
     /// A fit that is held from an earlier frame.
     Held,

@@ -28,7 +28,7 @@ use crate::fits::{Covers, FitInput, LightFit, Workspace};
 use crate::light::{LightAxes, Outline, Scratch};
 use crate::map::FittedMap;
 use crate::technique::Technique;
-use crate::technique::settings::{CasterPolicy, FitSettings, MapChoice};
+use crate::technique::settings::{CasterPolicy, FitSettings};
 use crate::view::{Range, Slice};
 use half_space::HalfSpaces;
 
@@ -94,7 +94,7 @@ pub struct Margins {
 ///   them.
 /// - **Casters** are `input.casters`, for any caster policy of the fit: those parts that lie over
 ///   the receivers' outline, widened by the filter's reach, the rasteriser's snap and the normal
-///   offset; for maps that are [read by coverage](CoverageQuery::choice) those over any part of the map.
+///   offset; for maps that are [read by coverage](CoverageQuery::is_shared) those over any part of the map.
 ///   Nothing is proven of casters that are not given.
 /// - **Rounding**: positions are taken as f32 relative to [`LightFit::origin`], multiplied by
 ///   `uv_from_world` and `clip_from_world` in f32 in any order of operations. Positions relative
@@ -205,21 +205,15 @@ pub fn verify(
     }
     let mut margins = Margins { planes: receivers.least.map(|(margin, _)| margin as f32), casters: f32::INFINITY };
     let has_casters = content.casters.is_some_and(|casters| !casters.boxes.is_empty());
-    let is_read = match query.choice {
-        MapChoice::Coverage => !fit.is_empty,
-        MapChoice::ViewDepth => receivers.any.is_some(),
-    };
+    let is_read = if query.is_shared { !fit.is_empty } else { receivers.any.is_some() };
     if is_read && has_casters && query.casters != CasterPolicy::DepthClamp {
         let nearest = |over: Outline| nearest_caster(&content, &over, &half_spaces, offset);
-        let (by, point) = match query.choice {
-            MapChoice::Coverage => {
-                let (corners, distance) = whole_map(fit, &axes, offset);
-                nearest(Outline::new(&axes, &corners, raster_reach(fit, distance)))
-            }
-            MapChoice::ViewDepth => {
-                let hull = LightHull::of(Covers::Receivers, &content, axes, range, points)?;
-                nearest(Outline::new(&axes, hull.outline, caster_reach(fit, query, hull.farthest)))
-            }
+        let (by, point) = if query.is_shared {
+            let (corners, distance) = whole_map(fit, &axes, offset);
+            nearest(Outline::new(&axes, &corners, raster_reach(fit, distance)))
+        } else {
+            let hull = LightHull::of(Covers::Receivers, &content, axes, range, points)?;
+            nearest(Outline::new(&axes, hull.outline, caster_reach(fit, query, hull.farthest)))
         };
         if by < 0.0 {
             return Ok(Certificate::CasterLost { point: fit.origin + point, by: -by as f32 });
@@ -376,11 +370,10 @@ pub struct CoverageQuery {
     /// [`Bias::normal_offset`](crate::Bias::normal_offset). Along the light it needs no room: what
     /// is looked up before the near plane is lit, as it should be where no caster is lost.
     pub normal_offset: f32,
-    /// Which receivers read the map besides those between the view depths. By
-    /// [coverage](MapChoice::Coverage) all that lies inside the map may read it, at any depth and in later
-    /// frames, so that no caster over any part of it may lie before the near plane; by
-    /// [view depth](MapChoice::ViewDepth) only those over the receivers.
-    pub choice: MapChoice,
+    /// Whether all that lies inside the map may read it, at any depth and in later frames, so that no caster over any
+    /// part of it may lie before the near plane: maps that are read by
+    /// [coverage](crate::settings::MapChoice::Coverage). Else only the receivers between the view depths do.
+    pub is_shared: bool,
     /// How casters before the near plane are treated: [`CasterPolicy::DepthClamp`] loses none. The
     /// other policies make no difference here.
     pub casters: CasterPolicy,
@@ -390,9 +383,8 @@ impl CoverageQuery {
     /// What a single map of [`fit_scene`](crate::fits::fit_scene) is made for: all receivers up to the
     /// shadow distance.
     pub const fn of_fit(settings: &FitSettings, reach: Reach) -> Self {
-        let (near, far) = (f32::MIN, settings.max_distance);
-        let choice = MapChoice::ViewDepth;
-        Self { near, far, reach, normal_offset: 0.0, choice, casters: settings.casters }
+        let (near, far) = (f32::MIN, settings.map.max_distance);
+        Self { near, far, reach, normal_offset: 0.0, is_shared: false, casters: settings.map.casters }
     }
 
     /// What one of several maps is made for: the receivers from [`FittedMap::covered_near`] to
@@ -401,9 +393,8 @@ impl CoverageQuery {
     /// map it reads has all of its casters.
     pub const fn of_map(map: &FittedMap, settings: &Technique, reach: Reach) -> Self {
         let far = map.far.min(settings.fit.max_distance);
-        let choice = if settings.shares_maps() { MapChoice::Coverage } else { MapChoice::ViewDepth };
-        let near = map.covered_near.min(far);
-        Self { near, far, reach, normal_offset: 0.0, choice, casters: settings.fit.casters }
+        let (near, is_shared) = (map.covered_near.min(far), settings.shares_maps());
+        Self { near, far, reach, normal_offset: 0.0, is_shared, casters: settings.fit.casters }
     }
 
     /// This query with another [`normal_offset`](Self::normal_offset).

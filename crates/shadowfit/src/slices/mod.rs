@@ -19,7 +19,8 @@ use glam::{DVec2, Vec3};
 use crate::base::FitError;
 use crate::base::checks::VIEW_DEPTH_ROUNDING;
 use crate::fits::{self, Frame, PlacedMap, PlacedMaps, Snapping, Volume};
-use crate::technique::settings::{MAX_MAPS, Stabilise};
+use crate::technique::Slices;
+use crate::technique::settings::{HoldSettings, MAX_MAPS, MapChoice, Stabilise};
 use crate::view::{Range, ViewFrustum};
 
 use bins::Splits;
@@ -48,54 +49,57 @@ struct HeldDepth {
 /// Places the maps of a frame, each around its slice of the view.
 pub(crate) fn place(
     frame: &Frame,
+    settings: &Slices,
     before: Option<&HeldSlices>,
     points: &mut [DVec2],
 ) -> Result<(PlacedMaps, HeldSlices), FitError> {
     // 1. Where one slice ends and the next begins.
-    let splits = Chooser { frame }.held_or_chosen(before.map(|before| before.splits))?;
+    let splits = Chooser { frame, settings }.held_or_chosen(before.map(|before| before.splits))?;
     // 2. The volumes of their maps: new ones, or those of the frame before while they serve.
-    let mut slices = Slices { frame, splits: splits.splits, points };
+    let mut placer = Placer { frame, settings, splits: splits.splits, points };
     let mut held = HeldSlices { splits, maps: [None; MAX_MAPS], depths: [None; MAX_MAPS] };
-    let mut maps = if frame.technique.stabilise == Stabilise::Hysteresis {
-        slices.hold(before.map(|before| &before.maps), &mut held.maps)?
+    let mut maps = if let Stabilise::Hysteresis(hold) = settings.stabilise {
+        placer.hold(hold, before.map(|before| &before.maps), &mut held.maps)?
     } else {
-        slices.fit(before.map(|before| &before.depths), &mut held.depths)?
+        placer.fit(before.map(|before| &before.depths), &mut held.depths)?
     };
     // 3. Depths from which no point chooses a map that has none.
-    set_empty_ranges_apart(&mut maps[..frame.technique.count as usize]);
+    set_empty_ranges_apart(&mut maps[..settings.count as usize]);
     Ok((maps, held))
 }
 
 /// The fewest slices that are enough; see [`fewest_maps`](crate::map_fitter::fewest_maps).
-pub(crate) fn fewest(frame: &Frame, waste: f64) -> u32 {
-    Chooser { frame }.fewest(waste)
+pub(crate) fn fewest(frame: &Frame, settings: &Slices, waste: f64) -> u32 {
+    Chooser { frame, settings }.fewest(waste)
 }
 
-/// The slices of a frame.
-struct Slices<'a, 'b> {
+/// Places the slices of a frame.
+struct Placer<'a, 'b> {
     frame: &'a Frame<'a, 'b>,
+    settings: &'a Slices,
     splits: Splits,
     points: &'a mut [DVec2],
 }
 
-impl Slices<'_, '_> {
+impl Placer<'_, '_> {
     /// All maps of this frame alone, with depth ranges of the last one while they serve.
     fn fit(
         &mut self,
         before: Option<&[Option<HeldDepth>; MAX_MAPS]>,
         held: &mut [Option<HeldDepth>; MAX_MAPS],
     ) -> Result<PlacedMaps, FitError> {
-        let Frame { technique, content, .. } = self.frame;
-        let snapping = if technique.stabilise == Stabilise::Snap { Snapping::OnGrid } else { Snapping::Tight };
+        let is_snapped = matches!(self.settings.stabilise, Stabilise::Snap { .. });
+        let snapping = if is_snapped { Snapping::OnGrid } else { Snapping::Tight };
+        let (origin, waste) = (self.frame.content.origin, f64::from(self.settings.stabilise.waste()));
         let mut maps = [None; MAX_MAPS];
-        for (i, map) in maps.iter_mut().enumerate().take(technique.count as usize) {
+        for (i, map) in maps.iter_mut().enumerate().take(self.settings.count as usize) {
             let volume = self.fitted(i, snapping)?;
             *map = Some(self.placed(i, volume));
         }
         for (i, PlacedMap { volume, .. }) in maps.iter_mut().flatten().enumerate() {
             let to_light = volume.axes.z;
             let last = before.and_then(|before| before[i]).filter(|last| last.to_light == to_light);
-            volume.stabilise_depth(content.origin, last.map(|last| last.z), f64::from(technique.hold.waste));
+            volume.stabilise_depth(origin, last.map(|last| last.z), waste);
             held[i] = volume.grid.map(|grid| HeldDepth { to_light, z: grid.z });
         }
         Ok(maps)
@@ -104,14 +108,15 @@ impl Slices<'_, '_> {
     /// All maps, held ones while they serve.
     fn hold(
         &mut self,
+        hold: HoldSettings,
         before: Option<&[Option<HeldMap>; MAX_MAPS]>,
         held: &mut [Option<HeldMap>; MAX_MAPS],
     ) -> Result<PlacedMaps, FitError> {
         let frame = self.frame;
         let motion = frame.last_view.and_then(|last| Motion::between(last, &frame.input.views[0]));
-        let holder = Holder { frame, motion };
+        let holder = Holder { frame, settings: hold, motion };
         let mut maps = [None; MAX_MAPS];
-        for (i, map) in maps.iter_mut().enumerate().take(frame.technique.count as usize) {
+        for (i, map) in maps.iter_mut().enumerate().take(self.settings.count as usize) {
             let volume = if frame.rule.can_be_held() {
                 let now = holder.hold(before.and_then(|before| before[i]), self.slice(i), self.points)?;
                 held[i] = Some(now);
@@ -148,7 +153,8 @@ impl Slices<'_, '_> {
 
     /// The view depths that a map covers.
     fn slice_range(&self, map: usize) -> Range {
-        let (splits, overlap) = (&self.splits, self.frame.technique.overlap);
+        let splits = &self.splits;
+        let overlap = if let MapChoice::ViewDepth { overlap } = self.settings.choice { overlap } else { 0.0 };
         let near =
             if map == 0 { self.frame.range.near } else { splits[map] - overlap * (splits[map] - splits[map - 1]) };
         Range { near, far: splits[map + 1] }

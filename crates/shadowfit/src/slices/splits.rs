@@ -6,6 +6,7 @@
 use crate::base::checks::ROUNDING;
 use crate::base::{FitError, checks};
 use crate::fits::{Covers, Frame};
+use crate::technique::Slices;
 use crate::technique::settings::{MAX_MAPS, SplitScheme, Stabilise};
 use crate::view::{Range, RayCount};
 
@@ -49,12 +50,13 @@ const COMPARE_EVERY: u32 = 8;
 /// Chooses the splits of a frame.
 pub(super) struct Chooser<'a, 'b> {
     pub(super) frame: &'a Frame<'a, 'b>,
+    pub(super) settings: &'a Slices,
 }
 
 impl Chooser<'_, '_> {
     /// This frame's splits: held ones while they serve.
     pub(super) fn held_or_chosen(&self, held: Option<HeldSplits>) -> Result<HeldSplits, FitError> {
-        let is_held = self.frame.technique.stabilise != Stabilise::Off;
+        let is_held = self.settings.stabilise != Stabilise::Off;
         let spread = self.spread();
         if let Some(held) = held.filter(|_| is_held)
             && let Some(splits) = self.kept(&held.splits, held.far, spread)
@@ -85,7 +87,7 @@ impl Chooser<'_, '_> {
     /// The same within the bounds of what is visible, if they are known and the scheme is not
     /// content-aware itself.
     fn bounded(&self, (near, far): (f64, f64)) -> (f64, f64) {
-        let is_fixed = !matches!(self.frame.technique.splits, SplitScheme::FromBoxes | SplitScheme::FromHistogram);
+        let is_fixed = !matches!(self.settings.splits, SplitScheme::FromBoxes | SplitScheme::FromHistogram);
         let Some(bounds) = self.frame.input.depth_bounds.filter(|_| is_fixed) else { return (near, far) };
         let within = |bound: f32| f64::from(bound).max(near).min(far);
         (within(bounds.near), within(bounds.far))
@@ -99,16 +101,16 @@ impl Chooser<'_, '_> {
         if self.frame.rule.form.whole_distance {
             return far;
         }
-        let is_held = self.frame.technique.stabilise != Stabilise::Off;
+        let is_held = self.settings.stabilise != Stabilise::Off;
         let end = if is_held { self.frame.content.farthest().map(|far| far * (1.0 + FAR_ROOM)) } else { None };
         end.unwrap_or(spread.1).min(far)
     }
 
     /// The splits by the technique's scheme over the given depths.
     fn choose(&self, spread: (f64, f64)) -> Result<Splits, FitError> {
-        let count = self.frame.technique.count as usize;
+        let count = self.settings.count as usize;
         let (near, far) = self.bounded(spread);
-        let splits = match self.frame.technique.splits {
+        let splits = match self.settings.splits {
             SplitScheme::Uniform => practical(near, far, count, 0.0),
             SplitScheme::Logarithmic => practical(near, far, count, 1.0),
             SplitScheme::Practical(lambda) => {
@@ -124,7 +126,7 @@ impl Chooser<'_, '_> {
     /// The same splits, ascending, from the near end of what is shadowed to the far end of the
     /// receivers; where those are clipped to the view anyway, to the far end of what is shadowed.
     fn whole(&self, mut splits: Splits, spread: (f64, f64)) -> Splits {
-        let count = self.frame.technique.count as usize;
+        let count = self.settings.count as usize;
         let end = self.end(spread) as f32;
         splits[0] = self.frame.range.near;
         for i in 1..=MAX_MAPS {
@@ -137,8 +139,7 @@ impl Chooser<'_, '_> {
     fn by_content(&self, spread: (f64, f64)) -> Splits {
         let bins = self.bins(spread);
         let (weights, sizes) = (self.weights(&bins), self.sizes(&bins));
-        let BinSplits { bins: chosen, .. } =
-            least_quantile(&bins, &weights, &sizes, self.frame.technique.count as usize);
+        let BinSplits { bins: chosen, .. } = least_quantile(&bins, &weights, &sizes, self.settings.count as usize);
         let mut splits = [0.0; MAX_MAPS + 1];
         let (beyond, mut next) = (self.read_beyond(&bins), 0);
         for (split, bin) in splits.iter_mut().zip(chosen) {
@@ -153,9 +154,9 @@ impl Chooser<'_, '_> {
     /// Splits of an earlier frame, in which shadows ended at `last_far`, if they hold all of this one's
     /// depths and not far more. The rounding of a camera's matrix changes nothing but their far end.
     fn kept(&self, splits: &Splits, last_far: f32, now: (f64, f64)) -> Option<Splits> {
-        let count = self.frame.technique.count as usize;
+        let count = self.settings.count as usize;
         let (end, far) = (f64::from(splits[count]), f64::from(self.frame.range.far));
-        let is_wasteful = end > self.end(now) * f64::from(self.frame.technique.hold.waste);
+        let is_wasteful = end > self.end(now) * f64::from(self.settings.stabilise.waste());
         let needed = now.1.min(far);
         let is_same_far = (far - f64::from(last_far)).abs() <= far.abs() * FAR_ROUNDING;
         let reaches = end >= needed || (is_same_far && end >= f64::from(last_far));
@@ -181,9 +182,9 @@ impl Chooser<'_, '_> {
     /// Whether splits of an earlier frame are still good enough for this one, compared with the
     /// best ones.
     fn serves(&self, splits: &Splits, held: (f64, f64), now: (f64, f64)) -> bool {
-        let count = self.frame.technique.count as usize;
-        let waste = f64::from(self.frame.technique.hold.waste);
-        if !matches!(self.frame.technique.splits, SplitScheme::FromBoxes | SplitScheme::FromHistogram) {
+        let count = self.settings.count as usize;
+        let waste = f64::from(self.settings.stabilise.waste());
+        if !matches!(self.settings.splits, SplitScheme::FromBoxes | SplitScheme::FromHistogram) {
             let is_near = |now: f64, held: f64| now >= held / waste && now <= held * waste;
             let bounded = self.bounded(now);
             // Without bounds the far end is what the splits have to reach.
@@ -203,8 +204,7 @@ impl Chooser<'_, '_> {
     /// The fewest maps whose best splits reach `waste` times the bound of the full count.
     pub(super) fn fewest(&self, waste: f64) -> u32 {
         let bins = self.bins(self.spread());
-        optimise::fewest(&bins, &self.weights(&bins), &self.sizes(&bins), self.frame.technique.count as usize, waste)
-            as u32
+        optimise::fewest(&bins, &self.weights(&bins), &self.sizes(&bins), self.settings.count as usize, waste) as u32
     }
 
     /// How large the map of any run of bins would be.
@@ -213,7 +213,7 @@ impl Chooser<'_, '_> {
             content: self.frame.content,
             axes: self.frame.light.axes(self.frame.rule.form.roll),
             rule: self.frame.rule,
-            is_snapped: self.frame.technique.stabilise == Stabilise::Snap,
+            is_snapped: matches!(self.settings.stabilise, Stabilise::Snap { .. }),
             near: f64::from(self.frame.range.near),
             end: self.end((bins.near, bins.far)),
         };
@@ -241,7 +241,7 @@ impl Chooser<'_, '_> {
 
     fn weights(&self, bins: &Bins) -> Weights {
         let rays = if self.frame.rule.serves_all { RayCount::COARSE } else { RayCount::FINE };
-        let weights = match (self.frame.technique.splits, &self.frame.input.histogram) {
+        let weights = match (self.settings.splits, &self.frame.input.histogram) {
             (SplitScheme::FromHistogram, Some(histogram)) if !histogram.is_empty() => {
                 let (seen, guess) =
                     (weights_of_histogram(histogram, bins), weights_of_boxes(self.frame.content, bins, rays));

@@ -2,16 +2,15 @@
 //!
 //! [`Technique::default`] is the one to begin with; [`PRESETS`](crate::PRESETS) has others by name.
 
-use crate::technique::settings::{
-    BiasSettings, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, MapFormat, NeedSource, ReceiverSource,
-    Softness, SplitScheme, Stabilise, setters,
-};
+use crate::technique::settings::{BiasSettings, FilterKind, MapFormat, MapSettings, Softness, setters};
 use glam::UVec2;
 
+mod maps;
 pub mod presets;
 pub mod settings;
 pub mod softness;
 
+pub use maps::{Maps, OneMap, Slices, Windows};
 pub use presets::{PRESETS, Preset};
 
 /// How shadows are made: the maps and their fit, the filter and the bias that read them, their
@@ -22,37 +21,15 @@ pub use presets::{PRESETS, Preset};
 /// use shadowfit::Technique;
 ///
 /// let technique = Technique::preset("stable-4").unwrap().with_filter(FilterKind::Pcf3x3);
-/// assert_eq!((technique.count, technique.border()), (4, 2.0));
+/// assert_eq!((technique.maps.count(), technique.border()), (4, 2.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Technique {
-    /// Number of maps, 1..=8. Default: 4, as Bevy and Babylon.js have it.
-    pub count: u32,
-    /// The fit of all maps. Default: [`FitSettings::default`] with [`FitKind::Windows`].
-    /// A fit that is read by the feature `serde` without its kind is one of [`FitKind::Focused`].
-    pub fit: FitSettings,
-    /// Where one map ends and the next begins. Default: [`SplitScheme::FromHistogram`], which takes
-    /// boxes where no histogram is given.
-    pub splits: SplitScheme,
-    /// Which of the maps a point reads; windows are always read by coverage. Default:
-    /// [`MapChoice::Coverage`].
-    pub choice: MapChoice,
-    /// Texels over which a map that is read by [`MapChoice::Coverage`] is blended into the next coarser
-    /// one, inward from the filter's reach to its border, 0..=[`MAX_BLEND`](crate::settings::MAX_BLEND);
-    /// 0 for none. Default: 8.
-    pub blend: f32,
-    /// Share of a map's range of view depths that the next map covers too, for a blend between them
-    /// by [`MapChoice::ViewDepth`], 0..=1. Default: 0.
-    pub overlap: f32,
-    /// What keeps the maps stable. Default: [`Stabilise::Hysteresis`].
-    pub stabilise: Stabilise,
-    /// Details of [`Stabilise::Hysteresis`], and when held splits are given up. Default:
-    /// [`HoldSettings::default`].
-    pub hold: HoldSettings,
-    /// Which boxes of the scene's receivers the fit is given. Default:
-    /// [`ReceiverSource::Clusters`].
-    pub receivers: ReceiverSource,
+    /// The kind of the maps, their number, and what only that kind has. Default: [`Maps::Windows`].
+    pub maps: Maps,
+    /// What all maps share, whatever their kind. Default: [`MapSettings::default`].
+    pub fit: MapSettings,
     /// Filter of the look-up. Default: [`FilterKind::Pcf5x5`]. [`FilterKind::Pcss`] needs maps that keep the
     /// distances of casters: not [`CasterPolicy::DepthClamp`](crate::settings::CasterPolicy::DepthClamp).
     pub filter: FilterKind,
@@ -60,12 +37,10 @@ pub struct Technique {
     /// texels may be ([`Self::least_texel`]). Default: [`Softness::default`].
     pub softness: Softness,
     /// Share of the shadow distance over which shadows fade out toward its end, 0..=1: 0.1 begins at nine tenths
-    /// of it. It is ignored where [`FitSettings::max_distance`] is `f32::MAX`. Default: 0, shadows end at once.
+    /// of it. It is ignored where [`MapSettings::max_distance`] is `f32::MAX`. Default: 0, shadows end at once.
     pub fade: f32,
     /// Biases of the look-up. Default: [`BiasSettings::automatic`] for the default filter.
     pub bias: BiasSettings,
-    /// What windows are placed by. Default: [`NeedSource::LastFrame`].
-    pub need: NeedSource,
     /// Storage of the maps. Default: [`MapFormat::Depth32Float`].
     pub format: MapFormat,
 }
@@ -74,42 +49,40 @@ impl Default for Technique {
     /// The preset `windows-4`: the best all round.
     fn default() -> Self {
         Self {
-            count: 4,
-            fit: FitSettings::default().with_kind(FitKind::Windows),
-            splits: SplitScheme::default(),
-            choice: MapChoice::default(),
-            blend: 8.0,
-            overlap: 0.0,
-            stabilise: Stabilise::default(),
-            hold: HoldSettings::default(),
-            receivers: ReceiverSource::default(),
+            maps: Maps::default(),
+            fit: MapSettings::default(),
             filter: FilterKind::default(),
             softness: Softness::default(),
             fade: 0.0,
             bias: BiasSettings::default(),
-            need: NeedSource::default(),
             format: MapFormat::default(),
         }
     }
 }
 
 setters!(Technique {
-    with_count count: u32,
-    with_fit fit: FitSettings,
-    with_splits splits: SplitScheme,
-    with_choice choice: MapChoice,
-    with_blend blend: f32,
-    with_overlap overlap: f32,
-    with_stabilise stabilise: Stabilise,
-    with_hold hold: HoldSettings,
-    with_receivers receivers: ReceiverSource,
-    with_need need: NeedSource,
+    with_fit fit: MapSettings,
     with_format format: MapFormat,
     with_softness softness: Softness,
     with_fade fade: f32,
 });
 
 impl Technique {
+    /// This technique with other maps: [`Windows`], [`Slices`] or [`OneMap`].
+    #[must_use]
+    pub fn with_maps(mut self, maps: impl Into<Maps>) -> Self {
+        self.maps = maps.into();
+        self
+    }
+
+    /// This technique with another number of maps; slices of the view that become one are [one map](OneMap), and the
+    /// other way round.
+    #[must_use]
+    pub fn with_count(mut self, count: u32) -> Self {
+        self.maps = self.maps.with_count(count);
+        self
+    }
+
     /// This technique with another filter, and the [automatic bias](BiasSettings::automatic) that it
     /// needs.
     #[must_use]
@@ -140,15 +113,15 @@ impl Technique {
     }
 
     /// This technique with the lengths of another one, in metres: how far shadows reach
-    /// ([`FitSettings::max_distance`]) and how far toward the light casters count
-    /// ([`FitSettings::caster_extension`]). They suit a scene, so that another technique for the same scene keeps them.
+    /// ([`MapSettings::max_distance`]) and how far toward the light casters count
+    /// ([`MapSettings::caster_extension`]). They suit a scene, so that another technique for the same scene keeps them.
     #[must_use]
     pub const fn with_lengths_of(mut self, other: &Self) -> Self {
         (self.fit.max_distance, self.fit.caster_extension) = (other.fit.max_distance, other.fit.caster_extension);
         self
     }
 
-    /// Free texels at the border of each map: [`FitSettings::border`] where it is set, else what the
+    /// Free texels at the border of each map: [`MapSettings::border`] where it is set, else what the
     /// filter and the normal offset can reach.
     pub const fn border(&self) -> f32 {
         match self.fit.border {
@@ -165,9 +138,9 @@ impl Technique {
         self.softness.reach(self.filter)
     }
 
-    /// Least width of a texel, in metres; 0 for no limit. It is [`FitSettings::least_texel`], or more where a
+    /// Least width of a texel, in metres; 0 for no limit. It is [`MapSettings::least_texel`], or more where a
     /// [soft](FilterKind::is_soft) filter would reach over more texels than its [ceiling](Softness::ceiling).
-    /// Each map's fit but [`FitKind::XnaSample`] respects it.
+    /// Each map's fit but [`FitKind::XnaSample`](settings::FitKind::XnaSample) respects it.
     pub fn least_texel(&self) -> f32 {
         self.fit.least_texel.max(self.softness.least_texel(self.filter))
     }
@@ -175,27 +148,6 @@ impl Technique {
     /// Whether more may read a map than the receivers that it is made for: those of other view depths, or of
     /// later frames.
     pub(crate) const fn shares_maps(&self) -> bool {
-        let is_kept = !matches!(self.stabilise, Stabilise::Off) || self.has_windows();
-        let is_shared = self.count > 1 || is_kept;
-        matches!(self.map_choice(), MapChoice::Coverage) && is_shared
-    }
-
-    /// Which of the maps a point reads: [`Self::choice`], or by coverage where the maps are
-    /// [windows](FitKind::Windows), which have no ranges of view depths.
-    pub const fn map_choice(&self) -> MapChoice {
-        if self.has_windows() { MapChoice::Coverage } else { self.choice }
-    }
-
-    /// Whether fits go by what an earlier frame showed, where that is known.
-    pub const fn uses_seen(&self) -> bool {
-        match self.fit.kind {
-            FitKind::Windows => matches!(self.need, NeedSource::LastFrame),
-            _ => matches!(self.splits, SplitScheme::FromHistogram),
-        }
-    }
-
-    /// Whether the maps are windows: all of them are or none.
-    pub(crate) const fn has_windows(&self) -> bool {
-        matches!(self.fit.kind, FitKind::Windows)
+        self.maps.choice().is_by_coverage() && (self.maps.count() > 1 || self.maps.are_kept())
     }
 }

@@ -12,9 +12,21 @@ use glam::{UVec2, Vec3};
 
 use crate::base::DepthConvention;
 
-/// Writes one `with_*` method per field of a settings struct.
+/// Writes one `with_*` method per field of a settings struct, or of a part of it.
 macro_rules! setters {
-    ($settings:ty { $($method:ident $field:ident: $value:ty),+ $(,)? }) => {
+    ($settings:ident.$part:ident { $($method:ident $field:ident: $value:ty),+ $(,)? }) => {
+        impl $settings {
+            $(
+                #[doc = concat!("These settings with another `", stringify!($part), ".", stringify!($field), "`.")]
+                #[must_use]
+                pub const fn $method(mut self, $field: $value) -> Self {
+                    self.$part.$field = $field;
+                    self
+                }
+            )+
+        }
+    };
+    ($settings:ident { $($method:ident $field:ident: $value:ty),+ $(,)? }) => {
         impl $settings {
             $(
                 #[doc = concat!("These settings with another [`", stringify!($field), "`](Self::", stringify!($field), ").")]
@@ -28,7 +40,7 @@ macro_rules! setters {
     };
 }
 
-/// Which rule fits the shadow map to the camera frustum.
+/// Which rule fits a shadow map to the camera frustum, or to its slice of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum FitKind {
@@ -37,35 +49,18 @@ pub enum FitKind {
     /// policy.
     XnaSample,
     /// Axis-aligned box of the camera frustum in the light's axes, with tight depth and the near
-    /// plane placed by [`FitSettings::casters`].
+    /// plane placed by [`MapSettings::casters`].
     FrustumAabb,
     /// Least rectangle of the camera frustum as seen from the light, turned about it as
-    /// [`FitSettings::rectangle`] says. The tightest fit without knowledge of the scene.
+    /// [`Shape::rectangle`] says. The tightest fit without knowledge of the scene.
     Oriented,
     /// Minimal enclosing sphere of the camera frustum, on a grid of whole texels that is fixed to
     /// the world: shadow edges do not crawl when the camera moves or turns.
     Sphere,
     /// Least rectangle of what the camera can see of the receivers' boxes, turned as
-    /// [`FitSettings::rectangle`] says. Without boxes it is [`Self::Oriented`]. The default for a single
-    /// map that is fitted by itself.
+    /// [`Shape::rectangle`] says. Without boxes it is [`Self::Oriented`]. The default.
     #[default]
     Focused,
-    /// Squares of the plane across the light, on a grid that is fixed to the world, each where it helps
-    /// most of what is visible ([`windows`](crate::windows)). Always read by coverage.
-    /// The default for a [technique](crate::Technique).
-    Windows,
-}
-
-/// What [`FitKind::Windows`] are placed by.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum NeedSource {
-    /// What is visible, estimated from the receivers' boxes.
-    Boxes,
-    /// What the last frame showed, by [`FitInput::need`](crate::FitInput::need); without it as
-    /// [`Self::Boxes`]. The default.
-    #[default]
-    LastFrame,
 }
 
 /// Which rectangle [`FitKind::Oriented`] and [`FitKind::Focused`] put around what they cover.
@@ -87,7 +82,7 @@ pub enum RectangleKind {
 pub enum CasterPolicy {
     /// At the covered region: casters before it are lost, as in the sample.
     None,
-    /// Moved toward the light by [`FitSettings::caster_extension`].
+    /// Moved toward the light by [`MapSettings::caster_extension`].
     Extend,
     /// At the one box around all casters, clipped to the volume that can cast shadows into view;
     /// as [`Self::Extend`] where the casters are not known.
@@ -102,17 +97,38 @@ pub enum CasterPolicy {
     DepthClamp,
 }
 
-/// How one map is fitted to what it covers. The defaults are those of the
-/// [recommended technique](crate::Technique), except for the kind: windows take several maps and the
-/// frames before, and these are also the settings of a [single map](crate::fit).
+/// The shape of a map across the light: the rule that fits it to what it covers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
-pub struct FitSettings {
-    /// The rule of the fit. Default: [`FitKind::Focused`]; that of a [`Technique`](crate::Technique) has
-    /// [`FitKind::Windows`].
+pub struct Shape {
+    /// The rule of the fit. Default: [`FitKind::Focused`].
     pub kind: FitKind,
     /// Rectangle of the fits that may turn. Default: [`RectangleKind::MinimumArea`].
     pub rectangle: RectangleKind,
+    /// Greatest ratio of a texel's longer side to its shorter one, 1 or more: long texels make blur
+    /// depend on its direction. The rectangle is chosen, and widened, to keep within it.
+    /// [`FitKind::XnaSample`] ignores it. Default: `f32::MAX`, no limit.
+    pub max_texel_ratio: f32,
+}
+
+impl Default for Shape {
+    fn default() -> Self {
+        Self::new(FitKind::Focused)
+    }
+}
+
+impl Shape {
+    /// The shape of a rule, with the defaults of the rest.
+    pub const fn new(kind: FitKind) -> Self {
+        Self { kind, rectangle: RectangleKind::MinimumArea, max_texel_ratio: f32::MAX }
+    }
+}
+
+/// What all maps of a technique share, whatever their kind: how far they reach, which casters they keep, how large
+/// they are. The defaults are those of the [recommended technique](crate::Technique).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+pub struct MapSettings {
     /// Shadows end at this view depth, in metres; at the camera's far plane when that is nearer.
     /// Default: `f32::MAX`, which is always the far plane.
     pub max_distance: f32,
@@ -134,11 +150,6 @@ pub struct FitSettings {
     pub caster_extension: f32,
     /// Up direction in world axes, which sets the map's roll; its length is ignored. Default: +y.
     pub up: Vec3,
-    /// Greatest ratio of a texel's longer side to its shorter one, 1 or more: long texels make blur
-    /// depend on its direction. The rectangle is chosen, and widened, to keep within it.
-    /// [`FitKind::XnaSample`] ignores it, and so does [`FitKind::Windows`], whose texels have a shape that
-    /// the light sets. Default: `f32::MAX`, no limit.
-    pub max_texel_ratio: f32,
     /// Least width of a texel, in metres; 0 for no limit. A map that would have finer ones is made larger, around its
     /// middle. [`FitKind::XnaSample`] ignores it; a soft filter may ask for more
     /// ([`Technique::least_texel`](crate::Technique::least_texel)). Default: 0.
@@ -150,18 +161,15 @@ pub struct FitSettings {
     pub depth: DepthConvention,
 }
 
-impl Default for FitSettings {
+impl Default for MapSettings {
     fn default() -> Self {
         Self {
-            kind: FitKind::Focused,
-            rectangle: RectangleKind::MinimumArea,
             max_distance: f32::MAX,
             margin: 0.0,
             border: None,
             casters: CasterPolicy::List,
             caster_extension: 50.0,
             up: Vec3::Y,
-            max_texel_ratio: f32::MAX,
             least_texel: 0.0,
             resolution: UVec2::splat(2048),
             depth: DepthConvention::ZeroToOne,
@@ -169,12 +177,31 @@ impl Default for FitSettings {
     }
 }
 
-impl FitSettings {
+impl MapSettings {
     /// These settings with this number of [free texels](Self::border) at the map's border, for any
     /// filter and bias.
     #[must_use]
     pub const fn with_border(mut self, texels: f32) -> Self {
         self.border = Some(texels);
+        self
+    }
+}
+
+/// How a [single map](crate::fit) is fitted without a technique.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+pub struct FitSettings {
+    /// Its shape across the light.
+    pub shape: Shape,
+    /// All that does not depend on the shape.
+    pub map: MapSettings,
+}
+
+impl FitSettings {
+    /// These settings with this number of [free texels](MapSettings::border) at the map's border.
+    #[must_use]
+    pub const fn with_border(mut self, texels: f32) -> Self {
+        self.map.border = Some(texels);
         self
     }
 }
@@ -212,24 +239,54 @@ pub enum SplitScheme {
 }
 
 /// Which of several maps a point reads; [`crate::choice`] has the rule.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum MapChoice {
     /// The finest one that holds the point with all that the filter reads around it, whatever the
-    /// point's view depth, blended into the next coarser one toward its border. The default.
-    #[default]
-    Coverage,
+    /// point's view depth. The default, with [`DEFAULT_BLEND`].
+    Coverage {
+        /// Texels over which a map is blended into the next coarser one, inward from the filter's reach to its border,
+        /// 0..=[`MAX_BLEND`]; 0 for none.
+        blend: f32,
+    },
     /// The one in whose range of view depths the point lies, blended into the next one where ranges
     /// overlap, as other engines do.
-    ViewDepth,
+    ViewDepth {
+        /// Share of a map's range of view depths that the next map covers too, 0..=1.
+        overlap: f32,
+    },
 }
+
+impl Default for MapChoice {
+    fn default() -> Self {
+        Self::Coverage { blend: DEFAULT_BLEND }
+    }
+}
+
+impl MapChoice {
+    /// Texels over which a map is blended into the next coarser one by coverage; 0 by view depth.
+    pub const fn blend(self) -> f32 {
+        match self {
+            Self::Coverage { blend } => blend,
+            Self::ViewDepth { .. } => 0.0,
+        }
+    }
+
+    /// Whether points read by [`Self::Coverage`].
+    pub const fn is_by_coverage(self) -> bool {
+        matches!(self, Self::Coverage { .. })
+    }
+}
+
+/// Texels over which maps are blended by default.
+pub const DEFAULT_BLEND: f32 = 8.0;
 
 /// Most texels over which maps that are read by coverage may be blended: a quarter of the side of the
 /// smallest map that tools allow, 256.
 pub const MAX_BLEND: f32 = 64.0;
 
 /// Whether and how maps are kept from changing while the camera moves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Stabilise {
     /// Every frame is fitted anew: the finest texels, and shadow edges that crawl.
@@ -237,12 +294,32 @@ pub enum Stabilise {
     /// Extents are rounded up to eighths of an octave and the map moves by whole texels of a grid
     /// that is fixed to the world. With [`FitKind::Sphere`] edges do not move at all; other fits
     /// still change when the camera turns.
-    Snap,
+    Snap {
+        /// Splits and depth ranges are kept until they are larger than necessary by this factor, 1..=100.
+        waste: f32,
+    },
     /// A map is kept, its angle included, and moved by whole texels as long as it covers what it
     /// must and wastes no more than [`HoldSettings::waste`]. A new map is made large enough for the
     /// predicted motion. The default.
-    #[default]
-    Hysteresis,
+    Hysteresis(HoldSettings),
+}
+
+impl Default for Stabilise {
+    fn default() -> Self {
+        Self::Hysteresis(HoldSettings::default())
+    }
+}
+
+impl Stabilise {
+    /// How many times larger than necessary something that is kept may become.
+    pub const fn waste(self) -> f32 {
+        match self {
+            // Nothing but the depth range of a sphere, which lies on the world's grid.
+            Self::Off => DEFAULT_WASTE,
+            Self::Snap { waste } => waste,
+            Self::Hysteresis(hold) => hold.waste,
+        }
+    }
 }
 
 /// When [`Stabilise::Hysteresis`] keeps a map and how much room a new one gets.
@@ -255,7 +332,7 @@ pub struct HoldSettings {
     /// frames as make the map wider by at most this factor, 1..=100. Default: 1.4.
     pub growth: f32,
     /// A map is made anew when its texels are larger than necessary by this factor, 1..=100; held
-    /// splits and the depths of windows are chosen anew by the same rule. Default: 1.8.
+    /// splits are chosen anew by the same rule. Default: 1.8.
     pub waste: f32,
     /// Greatest number of frames to look ahead. Default: 32.
     pub horizon: u32,
@@ -263,24 +340,12 @@ pub struct HoldSettings {
 
 impl Default for HoldSettings {
     fn default() -> Self {
-        Self { margin: 0.02, growth: 1.4, waste: 1.8, horizon: 32 }
+        Self { margin: 0.02, growth: 1.4, waste: DEFAULT_WASTE, horizon: 32 }
     }
 }
 
-/// Which boxes of the scene's receivers the engine gives to the fit.
-///
-/// The fit itself uses any boxes that it is given: this setting records what a technique was
-/// measured with.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum ReceiverSource {
-    /// The boxes of its objects.
-    Objects,
-    /// The boxes of clusters of its triangles, with cones of their normals (`Clusters`, with the
-    /// feature `alloc`). The default.
-    #[default]
-    Clusters,
-}
+/// How many times larger than necessary something that is kept may become, by default.
+pub(crate) const DEFAULT_WASTE: f32 = 1.8;
 
 /// Biases that keep a surface from shadowing itself, in texels of the map.
 ///
@@ -445,15 +510,40 @@ impl MapFormat {
     }
 }
 
-setters!(FitSettings {
+setters!(Shape {
     with_kind kind: FitKind,
-    with_max_distance max_distance: f32,
     with_rectangle rectangle: RectangleKind,
+    with_max_texel_ratio max_texel_ratio: f32,
+});
+
+setters!(MapSettings {
+    with_max_distance max_distance: f32,
     with_margin margin: f32,
     with_casters casters: CasterPolicy,
     with_up up: Vec3,
     with_caster_extension caster_extension: f32,
+    with_least_texel least_texel: f32,
+    with_resolution resolution: UVec2,
+    with_depth depth: DepthConvention,
+});
+
+setters!(FitSettings {
+    with_shape shape: Shape,
+    with_map map: MapSettings,
+});
+
+setters!(FitSettings.shape {
+    with_kind kind: FitKind,
+    with_rectangle rectangle: RectangleKind,
     with_max_texel_ratio max_texel_ratio: f32,
+});
+
+setters!(FitSettings.map {
+    with_max_distance max_distance: f32,
+    with_margin margin: f32,
+    with_casters casters: CasterPolicy,
+    with_up up: Vec3,
+    with_caster_extension caster_extension: f32,
     with_least_texel least_texel: f32,
     with_resolution resolution: UVec2,
     with_depth depth: DepthConvention,

@@ -20,7 +20,7 @@
 //! rasterised alike. Depth ranges are held too. Under a low sun ground is foreshortened along one axis, so
 //! texels are finer up the light's plane than along the horizon, by the sine of the light's elevation to the
 //! power of 0.62, at least a quarter, rounded to eighths of an octave; the roll follows the horizon of
-//! [`up`](crate::settings::FitSettings::up) then, and the shortest arc from straight down where
+//! [`up`](crate::settings::MapSettings::up) then, and the shortest arc from straight down where
 //! texels are square.
 //!
 //! **Sharp.** Each visible point asks for a texel that is as wide as the point's pixel along its
@@ -41,11 +41,8 @@
 //! Without a grid (the first frame, a camera cut, no depth buffer) what is visible is estimated by rays
 //! through the boxes.
 //!
-//! Fitted by [`MapFitter`](crate::MapFitter), with
-//! [`FitKind::Windows`](crate::settings::FitKind::Windows), and read by
-//! [coverage](crate::choice). [`fit`](crate::fit) and [`fit_scene`](crate::fits::fit_scene), which know a
-//! single map and no frame before, give that kind the rectangle of
-//! [`FitKind::Focused`](crate::settings::FitKind::Focused) along the light's axes.
+//! They are the maps of a technique with [`Windows`], fitted by
+//! [`MapFitter`](crate::MapFitter), and read by [coverage](crate::choice).
 //!
 //! The idea of maps nested around the eye on a grid fixed to the world is that of clipmaps (C. Tanner,
 //! C. Migdal, M. Jones, "The clipmap: a virtual mipmap", 1998; F. Losasso and H. Hoppe, "Geometry
@@ -68,7 +65,8 @@ use crate::base::{FitError, checks};
 use crate::demand::need::Plane;
 use crate::fits::{Constraint, FitRule, Frame, PlacedMap, PlacedMaps, Volume};
 use crate::light::grid::{self, Grid};
-use crate::technique::settings::{MAX_MAPS, NeedSource};
+use crate::technique::Windows;
+use crate::technique::settings::MAX_MAPS;
 use cells::{Cells, Rect};
 use depth::Shadows;
 use search::Search;
@@ -76,10 +74,11 @@ use search::Search;
 /// Places the maps of a frame as windows, the finest first.
 pub(crate) fn place(
     frame: &Frame,
+    settings: &Windows,
     before: Option<&HeldWindows>,
     points: &mut [DVec2],
 ) -> Result<(PlacedMaps, HeldWindows), FitError> {
-    let (origin, last) = (frame.content.origin, frame.technique.count as usize - 1);
+    let (origin, last) = (frame.content.origin, settings.count as usize - 1);
     // 1. The plane across the light, and the windows of the frame before in it.
     let plane = Plane::new(frame.light.direction(), frame.light.up());
     let lattice = Lattice::new(plane, origin, frame.rule);
@@ -97,7 +96,7 @@ pub(crate) fn place(
     for (i, map) in maps.iter_mut().enumerate().take(last + 1) {
         let window = &mut held.drawn[i];
         window.z = drawn_before.map(|drawn| &drawn[i]).filter(|was| was.steps == window.steps).and_then(|was| was.z);
-        let volume = volume(frame, &lattice, window, &shadows);
+        let volume = volume(frame, settings.depth_waste, &lattice, window, &shadows);
         // Only the last one holds all that is seen between any depths.
         let covered_near = if i < last { frame.range.far } else { frame.range.near };
         *map = Some(PlacedMap { volume, near: frame.range.near, far: frame.range.far, covered_near });
@@ -108,10 +107,8 @@ pub(crate) fn place(
 /// What is visible, and whether that is only estimated from the boxes.
 fn visible(frame: &Frame, plane: &Plane) -> (Cells, bool) {
     let mut cells = Cells::new();
-    if frame.technique.need == NeedSource::LastFrame {
-        for grid in frame.input.need.iter().filter(|grid| grid.is_for(plane)) {
-            cells.add_grid(grid, plane, frame.content.origin);
-        }
+    for grid in frame.input.need.iter().filter(|grid| grid.is_for(plane)) {
+        cells.add_grid(grid, plane, frame.content.origin);
     }
     let is_guess = cells.len == 0;
     if is_guess {
@@ -121,7 +118,7 @@ fn visible(frame: &Frame, plane: &Plane) -> (Cells, bool) {
 }
 
 /// A window's box. Its depth range is taken from the window while it serves, and written to it.
-fn volume(frame: &Frame, lattice: &Lattice, window: &mut Window, shadows: &Shadows) -> Volume {
+fn volume(frame: &Frame, waste: f32, lattice: &Lattice, window: &mut Window, shadows: &Shadows) -> Volume {
     let (axes, origin) = (lattice.plane.axes, frame.content.origin);
     let (anchor, resolution) = (grid::anchor(&axes, origin), frame.rule.resolution.as_dvec2());
     let mut grid = Grid { first: window.first, texel: lattice.texel(window.steps), z: (0.0, 0.0) };
@@ -129,7 +126,7 @@ fn volume(frame: &Frame, lattice: &Lattice, window: &mut Window, shadows: &Shado
     // A texel more on all sides, for the rasteriser.
     let depth = shadows.depth((min - grid.texel, max + grid.texel), frame.rule);
     let needed = (depth.low + anchor.z, depth.high + anchor.z);
-    grid.z = grid::stabilised_depth(window.z, needed, f64::from(frame.technique.hold.waste));
+    grid.z = grid::stabilised_depth(window.z, needed, f64::from(waste));
     window.z = Some(grid.z);
     let side = Constraint::Window;
     let set_by = [side, side, side, side, depth.far_by, depth.near_by];

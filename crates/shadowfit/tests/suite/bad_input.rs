@@ -44,9 +44,9 @@ const SETTERS: [Setter; 19] = [
     ("direction.x", |i, v| i.direction.x = v),
     ("direction.y", |i, v| i.direction.y = v),
     ("direction.z", |i, v| i.direction.z = v),
-    ("max_distance", |i, v| i.settings.max_distance = v),
-    ("margin", |i, v| i.settings.margin = v),
-    ("caster_extension", |i, v| i.settings.caster_extension = v),
+    ("max_distance", |i, v| i.settings.map.max_distance = v),
+    ("margin", |i, v| i.settings.map.margin = v),
+    ("caster_extension", |i, v| i.settings.map.caster_extension = v),
 ];
 
 fn good(kind: shadowfit::settings::FitKind) -> Inputs {

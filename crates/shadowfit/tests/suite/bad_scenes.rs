@@ -6,11 +6,15 @@ use shadowfit::glam::{DVec2, DVec3, Mat4, UVec2, Vec3};
 use shadowfit::histogram::{DepthBounds, DepthHistogram};
 use shadowfit::normal_cone::NormalCone;
 use shadowfit::settings::{
-    CasterPolicy, FilterKind, FitKind, FitSettings, RectangleKind, SoftRadius, SplitScheme, Stabilise,
+    CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, RectangleKind, Shape, SoftRadius,
+    SplitScheme, Stabilise,
 };
-use shadowfit::{Aabb, Boxes, FitError, FitInput, FittedMaps, LightFit, MapFitter, Technique, ViewFrustum, Workspace};
+use shadowfit::{
+    Aabb, Boxes, FitError, FitInput, FittedMaps, LightFit, MapFitter, Maps, OneMap, Slices, Technique, ViewFrustum,
+    Windows, Workspace,
+};
 
-use crate::support::{DIRECTION, camera, cases};
+use crate::support::{DIRECTION, camera, cases, every_stabilise, sliced};
 
 /// All inputs of a fit of a scene.
 #[derive(Clone, Debug)]
@@ -70,7 +74,58 @@ impl Inputs {
     }
 
     fn single(&self) -> Result<LightFit, FitError> {
-        self.with(|input, workspace| shadowfit::fits::fit_scene(input, &self.settings.fit, workspace))
+        let settings = FitSettings { shape: self.settings.maps.shape().unwrap_or_default(), map: self.settings.fit };
+        self.with(|input, workspace| shadowfit::fits::fit_scene(input, &settings, workspace))
+    }
+
+    /// Changes slices; leaves other maps as they are.
+    fn slices(&mut self, change: impl FnOnce(&mut Slices)) {
+        if let Maps::Slices(slices) = &mut self.settings.maps {
+            change(slices);
+        }
+    }
+
+    /// Changes what keeps slices and single maps.
+    fn stabilise(&mut self, change: impl FnOnce(&mut Stabilise)) {
+        match &mut self.settings.maps {
+            Maps::Windows(_) => {}
+            Maps::Slices(Slices { stabilise, .. }) | Maps::One(OneMap { stabilise, .. }) => change(stabilise),
+        }
+    }
+
+    /// Changes how maps are held, where they are.
+    fn hold(&mut self, change: impl FnOnce(&mut HoldSettings)) {
+        self.stabilise(|stabilise| {
+            if let Stabilise::Hysteresis(hold) = stabilise {
+                change(hold);
+            }
+        });
+    }
+
+    fn set_count(&mut self, number: u32) {
+        match &mut self.settings.maps {
+            Maps::Windows(Windows { count, .. }) | Maps::Slices(Slices { count, .. }) => *count = number,
+            Maps::One(_) => {}
+        }
+    }
+
+    fn set_blend(&mut self, texels: f32) {
+        match &mut self.settings.maps {
+            Maps::Windows(windows) => windows.blend = texels,
+            Maps::Slices(slices) => slices.choice = MapChoice::Coverage { blend: texels },
+            Maps::One(_) => {}
+        }
+    }
+
+    fn set_waste(&mut self, factor: f32) {
+        if let Maps::Windows(windows) = &mut self.settings.maps {
+            windows.depth_waste = factor;
+        }
+        self.stabilise(|stabilise| match stabilise {
+            Stabilise::Off => {}
+            Stabilise::Snap { waste } => *waste = factor,
+            Stabilise::Hysteresis(hold) => hold.waste = factor,
+        });
     }
 
     /// Fits twice, so that what is kept from the first frame is used by the second.
@@ -138,19 +193,19 @@ const SETTERS: [Setter; 57] = [
     ("up x", |i, v| i.settings.fit.up.x = v as f32),
     ("up", |i, v| i.settings.fit.up = Vec3::splat(v as f32)),
     ("resolution", |i, v| i.settings.fit.resolution = UVec2::new(v as u32, 512)),
-    ("count", |i, v| i.settings.count = v as u32),
-    ("lambda", |i, v| i.settings.splits = SplitScheme::Practical(v as f32)),
+    ("count", |i, v| i.set_count(v as u32)),
+    ("lambda", |i, v| i.slices(|slices| slices.splits = SplitScheme::Practical(v as f32))),
     ("first manual split", |i, v| {
-        i.settings.splits = SplitScheme::Manual([v as f32, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0]);
+        i.slices(|slices| slices.splits = SplitScheme::Manual([v as f32, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0]));
     }),
     ("second manual split", |i, v| {
-        i.settings.splits = SplitScheme::Manual([2.0, v as f32, 10.0, 11.0, 12.0, 13.0, 14.0]);
+        i.slices(|slices| slices.splits = SplitScheme::Manual([2.0, v as f32, 10.0, 11.0, 12.0, 13.0, 14.0]));
     }),
-    ("overlap", |i, v| i.settings.overlap = v as f32),
-    ("blend", |i, v| i.settings.blend = v as f32),
-    ("hold margin", |i, v| i.settings.hold.margin = v as f32),
-    ("hold growth", |i, v| i.settings.hold.growth = v as f32),
-    ("hold waste", |i, v| i.settings.hold.waste = v as f32),
+    ("overlap", |i, v| i.slices(|slices| slices.choice = MapChoice::ViewDepth { overlap: v as f32 })),
+    ("blend", |i, v| i.set_blend(v as f32)),
+    ("hold margin", |i, v| i.hold(|hold| hold.margin = v as f32)),
+    ("hold growth", |i, v| i.hold(|hold| hold.growth = v as f32)),
+    ("waste", |i, v| i.set_waste(v as f32)),
     ("softness in metres", |i, v| i.settings.softness.radius = SoftRadius::Metres(v as f32)),
     ("softness by angle", |i, v| i.settings.softness.radius = SoftRadius::SunAngle(v as f32)),
     ("softness floor", |i, v| i.settings.softness.floor = v as f32),
@@ -165,7 +220,7 @@ const SETTERS: [Setter; 57] = [
     ("normal offset", |i, v| i.settings.bias.normal_offset = v as f32),
     ("receiver-plane bias", |i, v| i.settings.bias.receiver_plane = v as f32),
     ("depth steps", |i, v| i.settings.bias.depth_steps = v as f32),
-    ("hold horizon", |i, v| i.settings.hold.horizon = v as u32),
+    ("hold horizon", |i, v| i.hold(|hold| hold.horizon = v as u32)),
 ];
 
 const VALUES: [f64; 22] = [
@@ -193,24 +248,45 @@ const VALUES: [f64; 22] = [
     f32::MIN as f64,
 ];
 
-const KINDS: [FitKind; 6] =
-    [FitKind::XnaSample, FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused, FitKind::Windows];
+const KINDS: [FitKind; 5] =
+    [FitKind::XnaSample, FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
 
-const STABILISE: [Stabilise; 3] = [Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis];
+/// Slices, single maps and windows with these kinds of fits, as far as they have one.
+fn maps_of(kinds: &[FitKind]) -> Vec<Maps> {
+    let shapes = kinds.iter().map(|kind| Shape::new(*kind));
+    let all = shapes.flat_map(|shape| every_stabilise().map(|stabilise| (shape, stabilise)));
+    let slices = |(shape, stabilise)| Slices { count: 3, shape, stabilise, ..Slices::default() }.into();
+    let one = |(shape, stabilise)| OneMap { shape, stabilise }.into();
+    let windows = Windows::default().with_count(3).into();
+    all.clone().map(slices).chain(all.map(one)).chain([windows]).collect()
+}
+
+fn every_maps() -> Vec<Maps> {
+    maps_of(&KINDS)
+}
+
+/// Whether maps have a number of this name.
+fn have(maps: &Maps, name: &str) -> bool {
+    let stabilise = if let Maps::Windows(_) = maps { None } else { Some(maps.as_one().stabilise) };
+    match name {
+        "lambda" | "first manual split" | "second manual split" | "overlap" => matches!(maps, Maps::Slices(_)),
+        "blend" => !matches!(maps, Maps::One(_)),
+        "hold margin" | "hold growth" => matches!(stabilise, Some(Stabilise::Hysteresis(_))),
+        "waste" => stabilise != Some(Stabilise::Off),
+        _ => true,
+    }
+}
 
 #[test]
 fn each_bad_number_in_each_fit_gives_an_error_or_finite_maps() {
-    for kind in KINDS {
-        for stabilise in STABILISE {
-            for (name, set) in SETTERS {
-                for value in VALUES {
-                    let mut inputs = good();
-                    inputs.settings.fit.kind = kind;
-                    inputs.settings.fit.casters = CasterPolicy::List;
-                    inputs.settings.stabilise = stabilise;
-                    set(&mut inputs, value);
-                    inputs.check(name);
-                }
+    for maps in every_maps() {
+        for (name, set) in SETTERS {
+            for value in VALUES {
+                let mut inputs = good();
+                inputs.settings.maps = maps;
+                inputs.settings.fit.casters = CasterPolicy::List;
+                set(&mut inputs, value);
+                inputs.check(name);
             }
         }
     }
@@ -222,17 +298,12 @@ fn each_bad_number_in_each_fit_gives_an_error_or_finite_maps() {
 fn what_is_not_finite_is_refused_and_leaves_the_fitter_as_it_was() {
     let harmless = ["cone axis", "cone angle", "histogram near", "histogram far", "histogram bin", "histogram bins"];
     let integers = ["histogram classes", "resolution", "count", "hold horizon"];
-    let of_splits = ["lambda", "first manual split", "second manual split"];
-    let cases = STABILISE.map(|stabilise| (FitKind::Focused, stabilise)).into_iter();
-    for (kind, stabilise) in cases.chain([(FitKind::Windows, Stabilise::Off)]) {
-        for (name, set) in SETTERS.into_iter().filter(|(name, _)| !harmless.contains(name) && !integers.contains(name))
-        {
-            if kind == FitKind::Windows && of_splits.contains(&name) {
-                continue;
-            }
+    for maps in maps_of(&[FitKind::Focused]) {
+        let floats = SETTERS.into_iter().filter(|(name, _)| !harmless.contains(name) && !integers.contains(name));
+        for (name, set) in floats.filter(|(name, _)| have(&maps, name)) {
             for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
                 let mut before = good();
-                (before.settings.fit.kind, before.settings.stabilise) = (kind, stabilise);
+                before.settings.maps = maps;
                 let mut bad = before.clone();
                 set(&mut bad, value);
                 // An infinite corner makes a box that holds nothing, which is allowed.
@@ -253,26 +324,42 @@ fn what_is_not_finite_is_refused_and_leaves_the_fitter_as_it_was() {
 }
 
 #[test]
-fn counts_outside_of_one_to_eight_are_refused() {
-    for count in [0, 9, u32::MAX] {
+fn counts_outside_of_one_to_eight_windows_and_two_to_eight_slices_are_refused() {
+    let refused = |maps: Maps| {
         let mut inputs = good();
-        inputs.settings.count = count;
+        inputs.settings.maps = maps;
         let result = inputs.fit(&mut MapFitter::new());
-        assert!(matches!(result, Err(FitError::OutOfRange { value, .. }) if value == f64::from(count)), "{result:?}");
+        let count = f64::from(maps.count());
+        assert!(matches!(result, Err(FitError::OutOfRange { value, .. }) if value == count), "{maps:?}: {result:?}");
+    };
+    for count in [0, 9, u32::MAX] {
+        refused(Windows::default().with_count(count).into());
+        refused(Slices::default().with_count(count).into());
     }
+    refused(Slices::default().with_count(1).into());
 }
 
 #[test]
 fn settings_without_meaning_are_refused() {
-    let refused: [Setter; 26] = [
-        ("lambda above", |i, _| i.settings.splits = SplitScheme::Practical(1.1)),
-        ("lambda below", |i, _| i.settings.splits = SplitScheme::Practical(-0.1)),
-        ("splits that fall", |i, _| i.settings.splits = SplitScheme::Manual([5.0, 4.0, 6.0, 7.0, 8.0, 9.0, 10.0])),
-        ("splits that stay", |i, _| i.settings.splits = SplitScheme::Manual([5.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0])),
-        ("overlap above", |i, _| i.settings.overlap = 1.1),
-        ("overlap below", |i, _| i.settings.overlap = -0.1),
-        ("blend above", |i, _| i.settings.blend = 64.1),
-        ("blend below", |i, _| i.settings.blend = -0.1),
+    let refused: [Setter; 32] = [
+        ("lambda above", |i, _| i.slices(|slices| slices.splits = SplitScheme::Practical(1.1))),
+        ("lambda below", |i, _| i.slices(|slices| slices.splits = SplitScheme::Practical(-0.1))),
+        ("splits that fall", |i, _| {
+            i.slices(|slices| slices.splits = SplitScheme::Manual([5.0, 4.0, 6.0, 7.0, 8.0, 9.0, 10.0]));
+        }),
+        ("splits that stay", |i, _| {
+            i.slices(|slices| slices.splits = SplitScheme::Manual([5.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0]));
+        }),
+        ("overlap above", |i, _| i.slices(|slices| slices.choice = MapChoice::ViewDepth { overlap: 1.1 })),
+        ("overlap below", |i, _| i.slices(|slices| slices.choice = MapChoice::ViewDepth { overlap: -0.1 })),
+        ("blend above", |i, _| i.set_blend(64.1)),
+        ("blend below", |i, _| i.set_blend(-0.1)),
+        ("windows' blend above", |i, _| i.settings.maps = Windows::default().with_blend(64.1).into()),
+        ("windows' blend below", |i, _| i.settings.maps = Windows::default().with_blend(-0.1).into()),
+        ("windows' waste above", |i, _| i.settings.maps = Windows::default().with_depth_waste(100.1).into()),
+        ("windows' waste below", |i, _| i.settings.maps = Windows::default().with_depth_waste(0.9).into()),
+        ("snapped waste above", |i, _| i.stabilise(|stabilise| *stabilise = Stabilise::Snap { waste: 100.1 })),
+        ("snapped waste below", |i, _| i.stabilise(|stabilise| *stabilise = Stabilise::Snap { waste: 0.9 })),
         ("fade above", |i, _| i.settings.fade = 1.1),
         ("fade below", |i, _| i.settings.fade = -0.1),
         ("least texel", |i, _| i.settings.fit.least_texel = -0.1),
@@ -288,9 +375,9 @@ fn settings_without_meaning_are_refused() {
         }),
         ("ceiling below", |i, _| (i.settings.softness.floor, i.settings.softness.ceiling) = (0.0, 0.9)),
         ("ceiling above", |i, _| i.settings.softness.ceiling = 64.1),
-        ("waste", |i, _| i.settings.hold.waste = 0.9),
-        ("growth", |i, _| i.settings.hold.growth = 0.9),
-        ("hold margin", |i, _| i.settings.hold.margin = -0.1),
+        ("waste", |i, _| i.hold(|hold| hold.waste = 0.9)),
+        ("growth", |i, _| i.hold(|hold| hold.growth = 0.9)),
+        ("hold margin", |i, _| i.hold(|hold| hold.margin = -0.1)),
         ("kernel as wide as the map", |i, _| i.settings.fit.border = Some(1e4)),
         ("no view", |i, _| i.views.clear()),
     ];
@@ -303,22 +390,22 @@ fn settings_without_meaning_are_refused() {
 
 #[test]
 fn penumbrae_by_distance_are_refused_where_depth_clamp_loses_the_distance() {
-    for kind in KINDS {
+    for maps in every_maps() {
         for (casters, filter) in [
             (CasterPolicy::DepthClamp, FilterKind::Pcss),
             (CasterPolicy::DepthClamp, FilterKind::Vogel16),
             (CasterPolicy::List, FilterKind::Pcss),
         ] {
             let mut inputs = good();
-            (inputs.settings.fit.kind, inputs.settings.fit.casters, inputs.settings.filter) = (kind, casters, filter);
+            (inputs.settings.maps, inputs.settings.fit.casters, inputs.settings.filter) = (maps, casters, filter);
             // The XNA sample's fit has no caster policy.
-            let is_refused =
-                casters == CasterPolicy::DepthClamp && filter == FilterKind::Pcss && kind != FitKind::XnaSample;
+            let is_xna = maps.shape().is_some_and(|shape| shape.kind == FitKind::XnaSample);
+            let is_refused = casters == CasterPolicy::DepthClamp && filter == FilterKind::Pcss && !is_xna;
             let result = inputs.fit(&mut MapFitter::new());
             let refusal = matches!(result, Err(FitError::ClampedCasters));
             assert!(
                 refusal == is_refused && result.is_ok() != is_refused,
-                "{kind:?} {casters:?} {filter:?}: {result:?}"
+                "{maps:?} {casters:?} {filter:?}: {result:?}"
             );
         }
     }
@@ -326,16 +413,13 @@ fn penumbrae_by_distance_are_refused_where_depth_clamp_loses_the_distance() {
 
 #[test]
 fn any_number_of_views_is_an_error_or_is_fitted() {
-    for kind in KINDS {
-        for stabilise in STABILISE {
-            for count in [1, 2, 8, 9, 10, 11, 40] {
-                let mut inputs = good();
-                inputs.views = vec![inputs.views[0]; count];
-                inputs.settings.fit.kind = kind;
-                inputs.settings.stabilise = stabilise;
-                inputs.storage = Workspace::required(2, count);
-                inputs.check("views");
-            }
+    for maps in every_maps() {
+        for count in [1, 2, 8, 9, 10, 11, 40] {
+            let mut inputs = good();
+            inputs.views = vec![inputs.views[0]; count];
+            inputs.settings.maps = maps;
+            inputs.storage = Workspace::required(2, count);
+            inputs.check("views");
         }
     }
 }
@@ -343,23 +427,21 @@ fn any_number_of_views_is_an_error_or_is_fitted() {
 #[test]
 fn a_workspace_of_any_length_is_too_small_or_enough() {
     let mut was_small = 0;
-    for kind in KINDS {
-        for stabilise in STABILISE {
-            for storage in 0..=Workspace::required(2, 2) {
-                let mut inputs = good();
-                inputs.settings = Technique { stabilise, splits: SplitScheme::Uniform, ..inputs.settings };
-                inputs.settings.fit.kind = kind;
-                inputs.storage = storage;
-                let results = [inputs.single().map(|_| ()), inputs.fit(&mut MapFitter::new()).map(|_| ())];
-                for result in results {
-                    match result {
-                        Ok(()) => {}
-                        Err(FitError::WorkspaceTooSmall { given, required }) => {
-                            assert!(given < required && given <= storage, "{given} {required}");
-                            was_small += 1;
-                        }
-                        Err(error) => panic!("{storage}: {error}"),
+    for maps in every_maps() {
+        for storage in 0..=Workspace::required(2, 2) {
+            let mut inputs = good();
+            inputs.settings.maps = maps;
+            inputs.slices(|slices| slices.splits = SplitScheme::Uniform);
+            inputs.storage = storage;
+            let results = [inputs.single().map(|_| ()), inputs.fit(&mut MapFitter::new()).map(|_| ())];
+            for result in results {
+                match result {
+                    Ok(()) => {}
+                    Err(FitError::WorkspaceTooSmall { given, required }) => {
+                        assert!(given < required && given <= storage, "{given} {required}");
+                        was_small += 1;
                     }
+                    Err(error) => panic!("{storage}: {error}"),
                 }
             }
         }
@@ -381,8 +463,10 @@ fn the_required_workspace_is_enough_for_boxes_on_a_circle() {
                 Aabb::new((centre - 1e-4).as_vec3(), (centre + 1e-4).as_vec3())
             })
             .collect();
-        for stabilise in STABILISE {
+        for stabilise in every_stabilise() {
             for rectangle in [RectangleKind::AxisAligned, RectangleKind::MinimumArea, RectangleKind::MinimumSquare] {
+                let fit = FitSettings::default().with_rectangle(rectangle).with_casters(CasterPolicy::List);
+                let splits = SplitScheme::Uniform;
                 let inputs = Inputs {
                     views: vec![view],
                     direction: Vec3::NEG_Y,
@@ -390,18 +474,7 @@ fn the_required_workspace_is_enough_for_boxes_on_a_circle() {
                     receivers: boxes.clone(),
                     casters: boxes.clone(),
                     cones: Vec::new(),
-                    settings: Technique {
-                        fit: FitSettings {
-                            kind: FitKind::Focused,
-                            rectangle,
-                            casters: CasterPolicy::List,
-                            ..FitSettings::default()
-                        },
-                        count: 2,
-                        splits: SplitScheme::Uniform,
-                        stabilise,
-                        ..Technique::default()
-                    },
+                    settings: sliced(&fit, Slices { count: 2, splits, stabilise, ..Slices::default() }),
                     storage: Workspace::required(boxes.len(), 1),
                     ..good()
                 };
@@ -421,15 +494,14 @@ proptest! {
     #[test]
     fn no_bit_patterns_panic_and_every_map_that_is_made_is_finite(
         bits in prop::collection::vec((0..SETTERS.len(), any::<u32>(), any::<bool>()), 1..6),
-        kind in prop::sample::select(KINDS.to_vec()), stabilise in prop::sample::select(STABILISE.to_vec()),
+        maps in prop::sample::select(every_maps()),
         policy in prop::sample::select(vec![CasterPolicy::None, CasterPolicy::Extend, CasterPolicy::SceneBounds, CasterPolicy::List]),
         splits in crate::scenes::any_splits(),
     ) {
         let mut inputs = good();
-        inputs.settings.fit.kind = kind;
+        inputs.settings.maps = maps;
         inputs.settings.fit.casters = policy;
-        inputs.settings.stabilise = stabilise;
-        inputs.settings.splits = splits;
+        inputs.slices(|slices| slices.splits = splits);
         for (i, bits, is_raw) in bits {
             let value = if is_raw { f64::from(f32::from_bits(bits)) } else { VALUES[bits as usize % VALUES.len()] };
             SETTERS[i].1(&mut inputs, value);

@@ -4,7 +4,7 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::settings::{CasterPolicy, FitSettings, Stabilise};
+use shadowfit::settings::{CasterPolicy, Stabilise};
 use shadowfit::{Aabb, Boxes, FitInput, LightFit, MapFitter, Technique, Workspace};
 
 use crate::scenes::{
@@ -145,9 +145,9 @@ proptest! {
         view in any_view(), boxes in solid_boxes(), casters in prop::collection::vec(any_caster(), 1..6),
         direction in any_light(), fit in any_covering_fit(), policy in any_policy(), places in any_places(),
     ) {
-        let fit = FitSettings { casters: policy, ..fit };
-        prop_assume!(view.lens.near < f64::from(fit.max_distance));
-        let stage = Stage::new(&view, &boxes, &casters, direction, &places, f64::from(fit.max_distance));
+        let fit = fit.with_casters(policy);
+        prop_assume!(view.lens.near < f64::from(fit.map.max_distance));
+        let stage = Stage::new(&view, &boxes, &casters, direction, &places, f64::from(fit.map.max_distance));
         prop_assume!(stage.is_some());
         let stage = stage.unwrap();
         let views = [view.frustum()];
@@ -166,11 +166,11 @@ proptest! {
         direction in any_light(), settings in any_technique(), policy in any_policy(), places in any_places(),
         walk in any_walk(),
     ) {
-        let settings = Technique { fit: FitSettings { casters: policy, ..settings.fit }, ..settings };
+        let settings = settings.with_fit(settings.fit.with_casters(policy));
         let last = f64::from(settings.fit.max_distance);
         prop_assume!(view.lens.near < last);
         let mut fitter = MapFitter::new();
-        let frames = if settings.stabilise == Stabilise::Hysteresis { 3 } else { 1 };
+        let frames = if matches!(settings.maps.as_one().stabilise, Stabilise::Hysteresis(_)) { 3 } else { 1 };
         let mut view = view;
         for _ in 0..frames {
             if let Some(stage) = Stage::new(&view, &boxes, &casters, direction, &places, last) {

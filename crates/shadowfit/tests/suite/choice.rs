@@ -7,7 +7,7 @@ use shadowfit::settings::{MAX_MAPS, MapChoice};
 use shadowfit::{FitInput, FittedMaps, LightFit, MapFitter, Technique, Workspace};
 
 use crate::scenes::{any_light, any_technique, any_view};
-use crate::support::{DIRECTION, camera, cases, double, float};
+use crate::support::{DIRECTION, camera, cases, double, float, read_by};
 
 fn alone(map: usize) -> MapRead {
     MapRead { map, blend: None }
@@ -83,7 +83,7 @@ fn the_map_that_weighs_more_is_the_first_one_unless_the_second_has_more_than_hal
 #[test]
 fn the_order_has_no_more_than_the_greatest_number_of_maps() {
     let maps = [LightFit::default(); MAX_MAPS + 1];
-    for choice in [MapChoice::Coverage, MapChoice::ViewDepth] {
+    for choice in [MapChoice::default(), MapChoice::ViewDepth { overlap: 0.0 }] {
         assert!(MapOrder::new(choice, &maps).iter().eq(0..MAX_MAPS));
     }
 }
@@ -96,7 +96,7 @@ proptest! {
             sides.iter().map(|side| LightFit { texel_size: texel_size(*side), ..LightFit::default() }).collect();
         let mut wanted: Vec<usize> = (0..maps.len()).collect();
         wanted.sort_by_key(|map| u32::from(sides[*map].0) * u32::from(sides[*map].1));
-        prop_assert!(MapOrder::new(MapChoice::Coverage, &maps).iter().eq(wanted));
+        prop_assert!(MapOrder::new(MapChoice::default(), &maps).iter().eq(wanted));
     }
 }
 
@@ -142,7 +142,7 @@ proptest! {
     ) {
         prop_assume!(view.lens.near < f64::from(technique.fit.max_distance));
         let views = [view.frustum()];
-        let technique = technique.with_blend(blend);
+        let technique = read_by(&technique, MapChoice::Coverage { blend });
         let maps = fitted(&technique, &FitInput::new(&views, direction));
         let mut sorted: Vec<usize> = (0..maps.len()).filter(|map| !maps[*map].fit.is_empty).collect();
         let area = |map: usize| f64::from(maps[map].fit.texel_size.x) * f64::from(maps[map].fit.texel_size.y);
@@ -162,7 +162,8 @@ proptest! {
             let weight = (free(*first).unwrap_or(0.0) - needed) / f64::from(blend);
             let second = others.first().filter(|_| weight < 1.0);
             prop_assert_eq!(read.and_then(|read| read.blend).map(|blend| blend.map), second.copied());
-            let by_depth = maps.read(&technique.with_choice(MapChoice::ViewDepth), point, f64::from(views[0].near));
+            let by_depth = read_by(&technique, MapChoice::ViewDepth { overlap: 0.0 });
+            let by_depth = maps.read(&by_depth, point, f64::from(views[0].near));
             prop_assert!(by_depth.is_none_or(|read| maps[read.map].fit.covers(point)));
         }
     }

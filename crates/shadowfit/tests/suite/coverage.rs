@@ -127,7 +127,7 @@ fn check_frame(
     let input = FitInput { receivers, histogram: Some(histogram), ..FitInput::new(&frusta, direction) };
     let mut storage = workspace(stage.boxes.as_ref().map_or(0, Vec::len), views.len());
     let maps = fitter.fit(&input, settings, &mut Workspace::new(&mut storage)).unwrap();
-    assert_eq!(maps.len(), settings.count as usize);
+    assert_eq!(maps.len(), settings.maps.count() as usize);
     let last = f64::from(settings.fit.max_distance);
     for (view, frustum) in views.iter().zip(&frusta) {
         for point in seen(samples, view, receivers, last) {
@@ -148,18 +148,18 @@ proptest! {
         view in any_view(), plans in any_receivers(), direction in any_light(),
         fit in any_covering_fit(), samples in any_samples(),
     ) {
-        prop_assume!(view.lens.near < f64::from(fit.max_distance));
+        prop_assume!(view.lens.near < f64::from(fit.map.max_distance));
         let stage = Stage::new(&plans, &view);
         let frusta = [view.frustum()];
         let input = FitInput { receivers: stage.receivers(), ..FitInput::new(&frusta, direction) };
         let mut storage = workspace(10, 1);
         let map = shadowfit::fits::fit_scene(&input, &fit, &mut Workspace::new(&mut storage)).unwrap();
         // Only one fit looks at receivers; the others store all that is in view.
-        let receivers = if fit.kind == FitKind::Focused { stage.receivers() } else { None };
-        let points = seen(&samples, &view, receivers, f64::from(fit.max_distance));
+        let receivers = if fit.shape.kind == FitKind::Focused { stage.receivers() } else { None };
+        let points = seen(&samples, &view, receivers, f64::from(fit.map.max_distance));
         prop_assert!(points.is_empty() || !map.is_empty);
         for point in points {
-            assert_stored(&map, fit.border.unwrap_or(3.0), view.eye + point);
+            assert_stored(&map, fit.map.border.unwrap_or(3.0), view.eye + point);
         }
     }
 

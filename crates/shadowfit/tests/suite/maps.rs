@@ -6,11 +6,12 @@ use shadowfit::histogram::{DepthBounds, DepthHistogram};
 use shadowfit::light_fit::Constraint;
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, MapChoice, RectangleKind, SplitScheme, Stabilise};
 use shadowfit::{
-    Aabb, Boxes, FitInput, FittedMap, FittedMaps, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace,
+    Aabb, Boxes, FitInput, FittedMap, FittedMaps, MapFitter, PerspectiveCamera, Slices, Technique, ViewFrustum,
+    Workspace,
 };
 
 use crate::scenes::{COVERING, any_light, any_technique, any_view};
-use crate::support::{DIRECTION, any_camera, any_direction, camera, cases};
+use crate::support::{DIRECTION, SNAP, any_camera, any_direction, camera, cases, every_stabilise, sliced};
 
 fn fit_with(fitter: &mut MapFitter, input: &FitInput, settings: &Technique) -> FittedMaps {
     let boxes =
@@ -24,9 +25,13 @@ fn fit_once(input: &FitInput, settings: &Technique) -> FittedMaps {
 }
 
 fn settings(kind: FitKind, splits: SplitScheme, count: u32) -> Technique {
-    let fit = FitSettings { kind, max_distance: f32::MAX, casters: CasterPolicy::None, ..FitSettings::default() };
-    let choice = MapChoice::ViewDepth;
-    Technique { fit, count, splits, choice, stabilise: Stabilise::Off, ..Technique::default() }
+    kept(kind, splits, count, Stabilise::Off)
+}
+
+fn kept(kind: FitKind, splits: SplitScheme, count: u32, stabilise: Stabilise) -> Technique {
+    let fit = FitSettings::default().with_kind(kind).with_max_distance(f32::MAX).with_casters(CasterPolicy::None);
+    let choice = MapChoice::ViewDepth { overlap: 0.0 };
+    sliced(&fit, Slices { count, splits, choice, stabilise, ..Slices::default() })
 }
 
 /// Ends of all maps but the last.
@@ -53,13 +58,14 @@ proptest! {
         prop_assume!(view.lens.near < f64::from(settings.fit.max_distance));
         let views = [view.frustum()];
         let maps = fit_once(&FitInput::new(&views, direction), &settings);
-        prop_assert_eq!(maps.len(), settings.count as usize);
+        prop_assert_eq!(maps.len(), settings.maps.count() as usize);
         let ranged: Vec<&FittedMap> = maps.iter().filter(|map| map.near < map.far).collect();
         prop_assert_eq!(ranged[0].near, views[0].near);
         prop_assert_eq!(ranged[ranged.len() - 1].far, f32::MAX);
+        let overlap = if let MapChoice::ViewDepth { overlap } = settings.maps.choice() { overlap } else { 0.0 };
         for pair in ranged.windows(2) {
             prop_assert_eq!(pair[0].far, pair[1].near);
-            let before = pair[1].near - settings.overlap * (pair[0].far - pair[0].near);
+            let before = pair[1].near - overlap * (pair[0].far - pair[0].near);
             prop_assert!(pair[1].fit.is_empty || (pair[1].covered_near - before).abs() <= 1e-6 * before.abs());
         }
         // Maps without a range are chosen by no depth.
@@ -143,10 +149,7 @@ proptest! {
         let views = [camera.frustum().unwrap()];
         let input = FitInput::new(&views, direction);
         // Of rectangles of least area the longer side, which counts here, is what it happens to be.
-        let square = |splits| {
-            let plain = settings(kind, splits, count);
-            Technique { fit: plain.fit.with_rectangle(RectangleKind::MinimumSquare), ..plain }
-        };
+        let square = |splits| squared(&settings(kind, splits, count));
         let measure = |splits| quantile(&fit_once(&input, &square(splits)), &views[0]);
         let (chosen, logarithmic) = (measure(SplitScheme::FromBoxes), measure(SplitScheme::Logarithmic));
         let bin = f64::from(camera.far / camera.near).powf(1.0 / 64.0);
@@ -154,11 +157,15 @@ proptest! {
     }
 }
 
+/// The same with square maps.
+fn squared(technique: &Technique) -> Technique {
+    let shape = technique.maps.shape().unwrap().with_rectangle(RectangleKind::MinimumSquare);
+    technique.with_maps(technique.maps.with_shape(shape))
+}
+
 /// The quantile with another number of maps.
 fn error_of(input: &FitInput, settings: &Technique, count: u32) -> f64 {
-    let mut settings = *settings;
-    settings.count = count;
-    quantile(&fit_once(input, &settings), &input.views[0])
+    quantile(&fit_once(input, &settings.with_count(count)), &input.views[0])
 }
 
 /// 95% quantile of the wider texel side per view depth, over depths at even steps of their log.
@@ -205,8 +212,8 @@ fn manual_splits_outside_of_what_is_shadowed_leave_maps_empty() {
     let views = [ahead()];
     let given = [0.01, 0.05, 20.0, 50.0, 150.0, 200.0, 300.0];
     for kind in COVERING {
-        for stabilise in [Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis] {
-            let settings = Technique { stabilise, ..settings(kind, SplitScheme::Manual(given), 8) };
+        for stabilise in every_stabilise() {
+            let settings = kept(kind, SplitScheme::Manual(given), 8, stabilise);
             let maps = fit_once(&FitInput::new(&views, DIRECTION), &settings);
             let empty: Vec<bool> = maps.iter().map(|map| map.fit.is_empty).collect();
             assert_eq!(empty, [true, true, false, false, false, true, true, true], "{kind:?}");
@@ -298,7 +305,7 @@ fn fixed_splits_are_spread_between_the_depth_bounds_and_lose_nothing_outside() {
 #[test]
 fn held_splits_follow_depth_bounds_that_leave_them() {
     let views = [ahead()];
-    let settings = Technique { stabilise: Stabilise::Snap, ..settings(FitKind::Sphere, SplitScheme::Logarithmic, 3) };
+    let settings = kept(FitKind::Sphere, SplitScheme::Logarithmic, 3, SNAP);
     let mut fitter = MapFitter::new();
     let mut split = |near, far| {
         let input = FitInput { depth_bounds: Some(DepthBounds { near, far }), ..FitInput::new(&views, DIRECTION) };
@@ -322,8 +329,7 @@ proptest! {
     ) {
         let views = [camera.frustum().unwrap()];
         let input = FitInput::new(&views, direction);
-        let plain = settings(kind, SplitScheme::FromBoxes, count);
-        let settings = Technique { fit: plain.fit.with_rectangle(RectangleKind::MinimumSquare), ..plain };
+        let settings = squared(&settings(kind, SplitScheme::FromBoxes, count));
         let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
         let mut fewest = |waste| shadowfit::map_fitter::fewest_maps(&input, &settings, waste, &mut Workspace::new(&mut storage)).unwrap();
         let found = fewest(waste);
@@ -342,11 +348,11 @@ fn no_receivers_give_empty_maps_and_no_error() {
     let views = [ahead()];
     let receivers = Some(Boxes::default());
     let input = FitInput { receivers, ..FitInput::new(&views, DIRECTION) };
-    for stabilise in [Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis] {
+    for stabilise in every_stabilise() {
         for splits in
             [SplitScheme::Uniform, SplitScheme::Logarithmic, SplitScheme::FromBoxes, SplitScheme::FromHistogram]
         {
-            let settings = Technique { stabilise, ..settings(FitKind::Focused, splits, 3) };
+            let settings = kept(FitKind::Focused, splits, 3, stabilise);
             let mut fitter = MapFitter::new();
             for _ in 0..2 {
                 let maps = fit_with(&mut fitter, &input, &settings);
@@ -360,9 +366,9 @@ fn no_receivers_give_empty_maps_and_no_error() {
 #[test]
 fn a_far_plane_that_comes_nearer_leaves_held_splits_without_error() {
     for kind in COVERING {
-        for stabilise in [Stabilise::Snap, Stabilise::Hysteresis] {
+        for stabilise in [SNAP, Stabilise::default()] {
             for splits in [SplitScheme::Uniform, SplitScheme::FromBoxes] {
-                let settings = Technique { stabilise, ..settings(kind, splits, 4) };
+                let settings = kept(kind, splits, 4, stabilise);
                 let mut fitter = MapFitter::new();
                 for far in [80.0, 60.0, 50.0, 46.0, 79.0] {
                     let views = [PerspectiveCamera { far, ..camera() }.frustum().unwrap()];
@@ -381,7 +387,7 @@ fn what_set_each_plane_is_named() {
     let views = [ahead()];
     let input = FitInput::new(&views, Vec3::NEG_Y);
     let set_by = |input: &FitInput, kind, casters| {
-        let fit = FitSettings { kind, casters, caster_extension: 5.0, ..FitSettings::default() };
+        let fit = FitSettings::default().with_kind(kind).with_casters(casters).with_caster_extension(5.0);
         let mut storage = [DVec2::ZERO; Workspace::required(2, 1)];
         shadowfit::fits::fit_scene(input, &fit, &mut Workspace::new(&mut storage)).unwrap().set_by
     };
@@ -406,7 +412,7 @@ fn what_set_each_plane_is_named() {
     let by = set_by(&floored, FitKind::Focused, CasterPolicy::None);
     assert_eq!((by[3], by[4], by[5]), (View, Receivers, Receivers));
     let mut fitter = MapFitter::new();
-    let held = Technique { stabilise: Stabilise::Hysteresis, ..settings(FitKind::Focused, SplitScheme::Uniform, 1) };
+    let held = kept(FitKind::Focused, SplitScheme::Uniform, 1, Stabilise::default());
     assert_eq!(fit_with(&mut fitter, &boxed, &held)[0].fit.set_by, [Receivers; 6]);
     assert_eq!(fit_with(&mut fitter, &boxed, &held)[0].fit.set_by, [Held; 6]);
 }

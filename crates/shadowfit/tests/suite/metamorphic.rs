@@ -6,11 +6,13 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DMat3, DQuat, DVec2, DVec3, Mat3, UVec2, Vec3};
-use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, RectangleKind, SplitScheme, Stabilise};
-use shadowfit::{Aabb, Boxes, DepthConvention, FitInput, LightFit, MapFitter, Technique, ViewFrustum, Workspace};
+use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, RectangleKind};
+use shadowfit::{
+    Aabb, Boxes, DepthConvention, FitInput, LightFit, MapFitter, OneMap, Technique, ViewFrustum, Workspace,
+};
 
 use crate::scenes::{BoxPlan, COVERING, SceneView, any_box, any_light, any_view};
-use crate::support::{any_direction, apply, cases, double};
+use crate::support::{SNAP, any_direction, apply, cases, double};
 use crate::texel_phase::exact_texel;
 
 /// A scene in plain numbers, relative to the eye.
@@ -79,16 +81,19 @@ impl Scene {
 }
 
 fn settings(kind: FitKind, rectangle: RectangleKind) -> FitSettings {
-    FitSettings {
-        kind,
-        rectangle,
-        casters: CasterPolicy::List,
-        max_distance: f32::MAX,
-        caster_extension: 0.0,
-        border: Some(0.0),
-        resolution: UVec2::splat(512),
-        ..FitSettings::default()
-    }
+    FitSettings::default()
+        .with_kind(kind)
+        .with_rectangle(rectangle)
+        .with_casters(CasterPolicy::List)
+        .with_max_distance(f32::MAX)
+        .with_caster_extension(0.0)
+        .with_border(0.0)
+        .with_resolution(UVec2::splat(512))
+}
+
+/// One map on the world's grid.
+fn snapped(fit: &FitSettings) -> Technique {
+    Technique::default().with_maps(OneMap { shape: fit.shape, stabilise: SNAP }).with_fit(fit.map)
 }
 
 fn area(fit: &LightFit) -> f64 {
@@ -265,13 +270,7 @@ proptest! {
     fn an_eighth_of_an_octave_scales_snapped_maps_by_just_that(
         view in any_view(), direction in any_light(), eighths in -24_i32..24, kind in any_fit_kind(),
     ) {
-        let technique = Technique {
-            fit: settings(kind, RectangleKind::AxisAligned),
-            count: 1,
-            splits: SplitScheme::Uniform,
-            stabilise: Stabilise::Snap,
-            ..Technique::default()
-        };
+        let technique = snapped(&settings(kind, RectangleKind::AxisAligned));
         let texel = |scene: &Scene| {
             let views = [scene.frustum];
             let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
@@ -326,7 +325,7 @@ proptest! {
         rectangle in any_rectangle(),
     ) {
         let here = scene(&view, direction, boxes.as_deref());
-        let by = |depth| here.fit(&FitSettings { depth, ..settings(kind, rectangle) });
+        let by = |depth| here.fit(&settings(kind, rectangle).with_depth(depth));
         let (plain, reversed, gl) =
             (by(DepthConvention::ZeroToOne), by(DepthConvention::Reversed), by(DepthConvention::NegativeOneToOne));
         prop_assert_eq!(plain.light_from_world, reversed.light_from_world);
@@ -361,14 +360,7 @@ proptest! {
         view in any_view(), direction in any_light(), boxes in any_boxes(), kind in any_fit_kind(),
         (i, j) in (-5000_i32..5000, -5000_i32..5000),
     ) {
-        let fit = settings(kind, RectangleKind::AxisAligned);
-        let technique = Technique {
-            fit,
-            count: 1,
-            splits: SplitScheme::Uniform,
-            stabilise: Stabilise::Snap,
-            ..Technique::default()
-        };
+        let technique = snapped(&settings(kind, RectangleKind::AxisAligned));
         let here = scene(&view, direction, boxes.as_deref());
         let snapped = |scene: &Scene| {
             let (views, origin) = ([scene.frustum], scene.frustum.origin);

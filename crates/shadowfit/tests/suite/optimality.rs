@@ -47,15 +47,13 @@ fn projected(fit: &LightFit, frustum: &ViewFrustum) -> Vec<DVec2> {
 }
 
 fn oriented(frustum: &ViewFrustum, direction: Vec3, rectangle: RectangleKind) -> LightFit {
-    let settings = FitSettings {
-        kind: FitKind::Oriented,
-        rectangle,
-        max_distance: f32::MAX,
-        casters: CasterPolicy::None,
-        border: Some(0.0),
-        resolution: UVec2::splat(64),
-        ..FitSettings::default()
-    };
+    let settings = FitSettings::default()
+        .with_kind(FitKind::Oriented)
+        .with_rectangle(rectangle)
+        .with_max_distance(f32::MAX)
+        .with_casters(CasterPolicy::None)
+        .with_border(0.0)
+        .with_resolution(UVec2::splat(64));
     shadowfit::fit(frustum, direction, &settings).unwrap()
 }
 

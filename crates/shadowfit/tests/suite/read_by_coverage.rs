@@ -4,14 +4,14 @@
 use proptest::prelude::*;
 use shadowfit::bias::Reach;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::settings::{CasterPolicy, MapChoice};
+use shadowfit::settings::{CasterPolicy, FitKind, MapChoice, SplitScheme};
 use shadowfit::verify::{Certificate, CoverageQuery, verify};
 use shadowfit::{
     Aabb, Boxes, FitInput, FittedMaps, LightFit, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace,
 };
 
 use crate::scenes::{BoxPlan, any_box, any_light, any_technique, any_view, any_walk, share};
-use crate::support::cases;
+use crate::support::{cases, read_by};
 
 /// A receiver's point, and a caster's above it.
 #[derive(Clone, Copy, Debug)]
@@ -28,10 +28,10 @@ pub(crate) fn any_samples() -> impl Strategy<Value = Vec<Sample>> {
 
 fn any_shared_technique() -> impl Strategy<Value = Technique> {
     let casters = prop::sample::select(vec![CasterPolicy::List, CasterPolicy::SceneBounds]);
-    (any_technique(), casters).prop_map(|(technique, casters)| Technique {
-        fit: technique.fit.with_casters(casters).with_border(technique.fit.border.unwrap_or(0.0).max(4.0)),
-        choice: MapChoice::Coverage,
-        ..technique
+    (any_technique(), casters).prop_map(|(technique, casters)| {
+        let border = technique.fit.border.unwrap_or(0.0).max(4.0);
+        let technique = technique.with_fit(technique.fit.with_casters(casters).with_border(border));
+        read_by(&technique, MapChoice::default())
     })
 }
 
@@ -177,17 +177,18 @@ fn a_near_plane_for_the_slice_alone_loses_casters_by_coverage() {
     let input = input(&views, direction, DVec3::ZERO, &boxes);
     let mut storage = vec![DVec2::ZERO; Workspace::required(boxes.len(), 1)];
     let mut workspace = Workspace::new(&mut storage);
-    let manual = shadowfit::settings::SplitScheme::Manual([12.0, 60.0, 61.0, 62.0, 63.0, 64.0, 65.0]);
+    let manual = SplitScheme::Manual([12.0, 60.0, 61.0, 62.0, 63.0, 64.0, 65.0]);
     let mut certificate = |choice| {
-        let technique = Technique::preset("stable-4").unwrap().with_count(3).with_splits(manual).with_choice(choice);
         // Spheres serve all of their map anyway, rectangles do not.
-        let technique = technique.with_fit(technique.fit.with_kind(shadowfit::settings::FitKind::FrustumAabb));
+        let stable = Technique::preset("stable-4").unwrap().maps.with_kind(FitKind::FrustumAabb).as_slices();
+        let slices = stable.with_count(3).with_splits(manual).with_choice(choice);
+        let technique = Technique::default().with_maps(slices);
         let map = MapFitter::new().fit(&input, &technique, &mut workspace).unwrap()[0];
         let query = CoverageQuery::of_map(&map, &technique, Reach::HARDWARE_2X2);
-        let query = CoverageQuery { choice: MapChoice::Coverage, ..query };
+        let query = CoverageQuery { is_shared: true, ..query };
         verify(&input, &map.fit, &query, &mut workspace).unwrap()
     };
-    assert!(certificate(MapChoice::Coverage).is_proven());
-    let lost = certificate(MapChoice::ViewDepth);
+    assert!(certificate(MapChoice::default()).is_proven());
+    let lost = certificate(MapChoice::ViewDepth { overlap: 0.0 });
     assert!(matches!(lost, Certificate::CasterLost { by, .. } if by > 10.0), "{lost:?}");
 }

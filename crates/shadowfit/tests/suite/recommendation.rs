@@ -2,10 +2,10 @@
 
 use shadowfit::presets::RECOMMENDED;
 use shadowfit::settings::{
-    BiasSettings, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, MapFormat, NeedSource, ReceiverSource,
-    SplitScheme, Stabilise,
+    BiasSettings, DEFAULT_BLEND, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, MapFormat, MapSettings,
+    Shape, SplitScheme, Stabilise,
 };
-use shadowfit::{PRESETS, Technique};
+use shadowfit::{Maps, OneMap, PRESETS, Slices, Technique, Windows};
 
 #[test]
 fn the_default_technique_is_the_recommended_preset() {
@@ -16,14 +16,24 @@ fn the_default_technique_is_the_recommended_preset() {
 #[test]
 fn the_defaults_of_its_parts_are_those_of_the_technique() {
     let technique = Technique::default();
-    // A single map, which has no frame before, is no window.
-    assert_eq!((technique.fit.kind, FitSettings::default().kind), (FitKind::Windows, FitKind::Focused));
-    assert_eq!(technique.fit, FitSettings::default().with_kind(FitKind::Windows));
-    assert_eq!((technique.choice, technique.need), (MapChoice::default(), NeedSource::default()));
-    assert_eq!(technique.hold, HoldSettings::default());
+    assert_eq!((technique.maps, technique.fit), (Maps::default(), MapSettings::default()));
+    assert_eq!(technique.maps, Windows::default().into());
     assert_eq!(technique.bias, BiasSettings::default());
     assert_eq!(technique.bias, BiasSettings::automatic(technique.filter));
-    assert_eq!((technique.splits, technique.stabilise), (SplitScheme::default(), Stabilise::default()));
     assert_eq!((technique.filter, technique.format), (FilterKind::default(), MapFormat::default()));
-    assert_eq!(technique.receivers, ReceiverSource::default());
+}
+
+#[test]
+fn the_kinds_of_maps_have_the_same_defaults() {
+    let (windows, slices, one) = (Windows::default(), Slices::default(), OneMap::default());
+    // A single map, which has no frame before, is no window.
+    let single = FitSettings::default();
+    assert_eq!((single.shape.kind, single.map), (FitKind::Focused, MapSettings::default()));
+    assert_eq!([single.shape, slices.shape, one.shape], [Shape::default(); 3]);
+    assert_eq!((slices.splits, slices.choice), (SplitScheme::default(), MapChoice::default()));
+    assert_eq!([slices.stabilise, one.stabilise], [Stabilise::default(); 2]);
+    assert_eq!([windows.blend, slices.choice.blend()], [DEFAULT_BLEND; 2]);
+    assert_eq!([windows.depth_waste, slices.stabilise.waste()], [HoldSettings::default().waste; 2]);
+    assert_eq!(slices.stabilise, Stabilise::Hysteresis(HoldSettings::default()));
+    assert_eq!(windows.count, slices.count);
 }

@@ -4,10 +4,11 @@ use shadowfit::glam::{DVec2, DVec3, Mat4, Vec3};
 use shadowfit::histogram::DepthHistogram;
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
 use shadowfit::scroll::Scroll;
-use shadowfit::settings::{FitKind, SplitScheme, Stabilise};
+use shadowfit::settings::{FitKind, Shape, SplitScheme, Stabilise};
 use shadowfit::verify::{CoverageQuery, verify};
 use shadowfit::{
-    Aabb, Boxes, DepthConvention, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace,
+    Aabb, Boxes, DepthConvention, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Slices, Technique, ViewFrustum,
+    Workspace,
 };
 
 /// Frames of a camera that stands still.
@@ -122,9 +123,9 @@ fn fly(way: Way, technique: &Technique, knows_boxes: bool, mut visit: impl FnMut
     }
 }
 
-fn held(kind: FitKind, splits: SplitScheme, stabilise: Stabilise) -> Technique {
-    let technique = Technique { splits, stabilise, ..Technique::default() };
-    technique.with_fit(technique.fit.with_kind(kind))
+fn held(kind: FitKind, splits: SplitScheme) -> Technique {
+    let stabilise = Stabilise::default();
+    Technique::default().with_maps(Slices { shape: Shape::new(kind), splits, stabilise, ..Slices::default() })
 }
 
 fn assert_kept(name: &str, technique: &Technique) {
@@ -147,7 +148,7 @@ fn assert_kept(name: &str, technique: &Technique) {
 fn held_maps_and_splits_stay_although_every_input_wavers() {
     for splits in [SplitScheme::FromHistogram, SplitScheme::FromBoxes, SplitScheme::Practical(0.5)] {
         for kind in [FitKind::Focused, FitKind::Oriented, FitKind::FrustumAabb] {
-            assert_kept(&format!("{kind:?} {splits:?}"), &held(kind, splits, Stabilise::Hysteresis));
+            assert_kept(&format!("{kind:?} {splits:?}"), &held(kind, splits));
         }
     }
 }

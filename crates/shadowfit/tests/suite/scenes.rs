@@ -5,10 +5,12 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DMat4, DQuat, DVec3, DVec4, UVec2, Vec3};
-use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, RectangleKind, SplitScheme, Stabilise};
-use shadowfit::{Aabb, DepthConvention, PerspectiveCamera, Technique, ViewFrustum};
+use shadowfit::settings::{
+    CasterPolicy, FitKind, FitSettings, MapChoice, MapSettings, RectangleKind, Shape, SplitScheme,
+};
+use shadowfit::{Aabb, DepthConvention, PerspectiveCamera, Slices, Technique, ViewFrustum};
 
-use crate::support::{any_direction, double, float};
+use crate::support::{any_direction, double, every_stabilise, float, sliced};
 
 /// Every fit that promises coverage: all but the XNA sample's.
 pub(crate) const COVERING: [FitKind; 4] = [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
@@ -214,18 +216,18 @@ pub(crate) fn any_covering_fit() -> impl Strategy<Value = FitSettings> {
     let distance = prop_oneof![Just(f32::MAX), float(3.0, 500.0)];
     (kind, rectangle, (size(), size()), up, margins, distance, any_depth()).prop_map(
         |(kind, rectangle, (width, height), up, (border, margin), max_distance, depth)| FitSettings {
-            kind,
-            rectangle,
-            max_distance,
-            margin,
-            border: Some(border),
-            casters: CasterPolicy::None,
-            caster_extension: 0.0,
-            up,
-            max_texel_ratio: f32::MAX,
-            least_texel: 0.0,
-            resolution: UVec2::new(width, height),
-            depth,
+            shape: Shape { kind, rectangle, max_texel_ratio: f32::MAX },
+            map: MapSettings {
+                max_distance,
+                margin,
+                border: Some(border),
+                casters: CasterPolicy::None,
+                caster_extension: 0.0,
+                up,
+                least_texel: 0.0,
+                resolution: UVec2::new(width, height),
+                depth,
+            },
         },
     )
 }
@@ -243,17 +245,18 @@ pub(crate) fn any_splits() -> impl Strategy<Value = SplitScheme> {
     ]
 }
 
-pub(crate) fn any_technique() -> impl Strategy<Value = Technique> {
-    let stabilise = prop::sample::select(vec![Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis]);
+/// By coverage, and by view depth with any overlap.
+pub(crate) fn any_choice() -> impl Strategy<Value = MapChoice> {
     let overlap = prop_oneof![Just(0.0), Just(1.0), float(0.0, 0.5)];
-    (any_covering_fit(), 1..=8_u32, any_splits(), overlap, stabilise).prop_map(
-        |(fit, count, splits, overlap, stabilise)| Technique {
-            fit,
-            count,
-            splits,
-            overlap,
-            stabilise,
-            ..Technique::default()
+    prop_oneof![Just(MapChoice::default()), overlap.prop_map(|overlap| MapChoice::ViewDepth { overlap })]
+}
+
+/// One map, or slices of the view.
+pub(crate) fn any_technique() -> impl Strategy<Value = Technique> {
+    let stabilise = prop::sample::select(every_stabilise().to_vec());
+    (any_covering_fit(), 1..=8_u32, any_splits(), any_choice(), stabilise).prop_map(
+        |(fit, count, splits, choice, stabilise)| {
+            sliced(&fit, Slices { count, splits, choice, stabilise, ..Slices::default() })
         },
     )
 }

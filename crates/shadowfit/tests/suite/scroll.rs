@@ -8,26 +8,19 @@ use shadowfit::scroll::{GridAnchor, Scroll, TexelRect, Tile, tiles};
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, RectangleKind, SplitScheme, Stabilise};
 use shadowfit::{
     Aabb, Boxes, CasterVolume, DepthConvention, FitError, FitInput, FittedMap, FittedMaps, LightFit, MapFitter,
-    PerspectiveCamera, Technique, Workspace,
+    PerspectiveCamera, Slices, Technique, Workspace,
 };
 
-use crate::support::{DIRECTION, any_direction, camera, double};
+use crate::support::{DIRECTION, SNAP, any_direction, camera, double, sliced};
 
 fn settings(kind: FitKind, stabilise: Stabilise, resolution: u32) -> Technique {
-    let fit = FitSettings {
-        kind,
-        rectangle: RectangleKind::AxisAligned,
-        casters: CasterPolicy::List,
-        resolution: UVec2::new(resolution, resolution * 3 / 4),
-        ..FitSettings::default()
-    };
-    Technique {
-        fit,
-        count: 3,
-        stabilise,
-        splits: SplitScheme::Manual([8.0, 18.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
-        ..Technique::default()
-    }
+    let fit = FitSettings::default()
+        .with_kind(kind)
+        .with_rectangle(RectangleKind::AxisAligned)
+        .with_casters(CasterPolicy::List)
+        .with_resolution(UVec2::new(resolution, resolution * 3 / 4));
+    let splits = SplitScheme::Manual([8.0, 18.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    sliced(&fit, Slices { count: 3, splits, stabilise, ..Slices::default() })
 }
 
 /// Houses on a square of ground around the tests' camera, relative to the world's origin.
@@ -103,7 +96,7 @@ proptest! {
     fn points_of_the_world_keep_their_texel_after_the_shift(
         direction in any_direction(), (x, y, z) in (double(-3.0, 3.0), double(-3.0, 3.0), double(-3.0, 3.0)),
         kind in prop::sample::select(vec![FitKind::Sphere, FitKind::FrustumAabb, FitKind::Focused]),
-        stabilise in prop::sample::select(vec![Stabilise::Snap, Stabilise::Hysteresis]),
+        stabilise in prop::sample::select(vec![SNAP, Stabilise::default()]),
         far_out in prop::sample::select(vec![0.0, 1e3, 1e5]), turn in double(0.0, 0.05),
     ) {
         let (settings, town, mut fitter) = (settings(kind, stabilise, 512), town(), MapFitter::new());
@@ -138,7 +131,7 @@ proptest! {
             DepthConvention::ZeroToOne, DepthConvention::Reversed, DepthConvention::NegativeOneToOne,
         ]),
     ) {
-        let mut settings = settings(FitKind::Sphere, Stabilise::Snap, 256);
+        let mut settings = settings(FitKind::Sphere, SNAP, 256);
         settings.fit.depth = depth;
         let mut camera = camera();
         camera.eye += DVec3::splat(far_out);
@@ -182,7 +175,7 @@ fn texel(fit: &LightFit, point: DVec3) -> DVec2 {
 
 #[test]
 fn tiles_have_the_same_bits_wherever_the_camera_is() {
-    let settings = settings(FitKind::Sphere, Stabilise::Snap, 512);
+    let settings = settings(FitKind::Sphere, SNAP, 512);
     let (town, mut fitter, mut camera) = (town(), MapFitter::new(), camera());
     let mut known: HashMap<(usize, [i64; 2], [u64; 2]), LightFit> = HashMap::new();
     let (mut again, mut levels) = (0, std::collections::HashSet::new());
@@ -209,11 +202,11 @@ fn tiles_have_the_same_bits_wherever_the_camera_is() {
 fn depth_ranges_hold_while_a_camera_walks() {
     let town = town();
     for (kind, stabilise) in [
-        (FitKind::Sphere, Stabilise::Snap),
-        (FitKind::FrustumAabb, Stabilise::Snap),
-        (FitKind::Focused, Stabilise::Snap),
-        (FitKind::FrustumAabb, Stabilise::Hysteresis),
-        (FitKind::Focused, Stabilise::Hysteresis),
+        (FitKind::Sphere, SNAP),
+        (FitKind::FrustumAabb, SNAP),
+        (FitKind::Focused, SNAP),
+        (FitKind::FrustumAabb, Stabilise::default()),
+        (FitKind::Focused, Stabilise::default()),
     ] {
         let settings = settings(kind, stabilise, 1024);
         let (mut fitter, mut camera) = (MapFitter::new(), camera());
@@ -235,7 +228,7 @@ fn depth_ranges_hold_while_a_camera_walks() {
         let maps = frames * 3;
         println!("{kind:?} {stabilise:?}: of {maps} maps {new} new, {depth_changes} with new depths, {shifts} shifted");
         assert!(depth_changes * 100 < maps, "{kind:?} {stabilise:?}: {depth_changes} of {maps}");
-        if kind == FitKind::Sphere || stabilise == Stabilise::Hysteresis {
+        if kind == FitKind::Sphere || stabilise == Stabilise::default() {
             assert!(new * 20 < maps, "{kind:?} {stabilise:?}: {new} of {maps}");
         }
     }
@@ -279,9 +272,7 @@ fn maps_on_no_grid_have_no_tiles_and_bad_ones_are_errors() {
         frame(&mut MapFitter::new(), &camera(), DIRECTION, &settings(FitKind::Oriented, Stabilise::Off, 64), &town());
     assert!(free[0].anchor.is_none());
     assert_eq!(tiles(&free[0], 64).unwrap_err(), FitError::NotOnGrid);
-    let good =
-        frame(&mut MapFitter::new(), &camera(), DIRECTION, &settings(FitKind::Oriented, Stabilise::Snap, 64), &town())
-            [0];
+    let good = frame(&mut MapFitter::new(), &camera(), DIRECTION, &settings(FitKind::Oriented, SNAP, 64), &town())[0];
     assert!(tiles(&good, 64).is_ok());
     let anchor = good.anchor.unwrap();
     for size in [0, 65_537, u32::MAX] {

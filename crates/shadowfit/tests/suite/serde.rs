@@ -10,11 +10,14 @@ use shadowfit::fits::sphere::enclosing_sphere;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
 use shadowfit::normal_cone::NormalCone;
-use shadowfit::settings::{BiasSettings, CasterPolicy, FitKind, FitSettings, RectangleKind, SplitScheme, Stabilise};
+use shadowfit::settings::{BiasSettings, CasterPolicy, FitKind, FitSettings, MapChoice, RectangleKind, SplitScheme};
 use shadowfit::verify::{Certificate, CoverageQuery, MapPlane, Margins};
-use shadowfit::{Aabb, Bias, DepthConvention, FitInput, MapFitter, SpotBias, Technique, ViewFrustum, Workspace};
+use shadowfit::{
+    Aabb, Bias, DepthConvention, FitInput, MapFitter, OneMap, Slices, SpotBias, Technique, ViewFrustum, Windows,
+    Workspace,
+};
 
-use crate::support::{DIRECTION, camera, fitted};
+use crate::support::{DIRECTION, camera, every_stabilise, fitted};
 
 fn read_back<T: Serialize + DeserializeOwned>(value: &T) -> T {
     serde_json::from_str(&serde_json::to_string(value).unwrap()).unwrap()
@@ -27,19 +30,25 @@ fn survives<T: Serialize + DeserializeOwned + Debug>(value: &T) {
 
 #[test]
 fn settings_survive() {
-    let fit = FitSettings::default()
+    let single = FitSettings::default()
         .with_kind(FitKind::Oriented)
         .with_rectangle(RectangleKind::MinimumSquare)
         .with_casters(CasterPolicy::DepthClamp)
         .with_depth(DepthConvention::NegativeOneToOne)
         .with_max_distance(f32::MAX)
         .with_margin(0.1);
-    let technique = Technique::default()
-        .with_fit(fit)
-        .with_splits(SplitScheme::Manual([1.0, 2.5, 0.1, 1e-7, 3e9, 0.3, 7.0]))
-        .with_stabilise(Stabilise::Hysteresis);
-    survives(&technique);
-    survives(&technique.with_splits(SplitScheme::Practical(0.7)));
+    survives(&single);
+    let technique = Technique::default().with_fit(single.map);
+    let splits = SplitScheme::Manual([1.0, 2.5, 0.1, 1e-7, 3e9, 0.3, 7.0]);
+    let slices = Slices { shape: single.shape, splits, ..Slices::default() };
+    survives(&technique.with_maps(slices));
+    survives(&technique.with_maps(slices.with_splits(SplitScheme::Practical(0.7))));
+    for stabilise in every_stabilise() {
+        let choice = MapChoice::ViewDepth { overlap: 0.1 };
+        survives(&technique.with_maps(slices.with_stabilise(stabilise).with_choice(choice)));
+        survives(&technique.with_maps(OneMap { shape: single.shape, stabilise }));
+    }
+    survives(&technique.with_maps(Windows { count: 7, blend: 0.1, depth_waste: 1.3 }));
     survives(&LightStepSettings::default());
 }
 
@@ -48,6 +57,8 @@ fn settings_that_a_file_does_not_name_have_their_defaults() {
     let technique: Technique = serde_json::from_str(r#"{"bias": {"slope": 2.0}}"#).unwrap();
     let bias = BiasSettings::default().with_slope(2.0);
     assert_eq!(technique, Technique { bias, ..Technique::default() });
+    let technique: Technique = serde_json::from_str(r#"{"maps": {"Slices": {"count": 3}}}"#).unwrap();
+    assert_eq!(technique, Technique::default().with_maps(Slices::default().with_count(3)));
 }
 
 #[test]

@@ -1,10 +1,8 @@
 //! What follows from a technique's settings.
 
 use shadowfit::glam::DVec2;
-use shadowfit::settings::{
-    BiasSettings, FilterKind, FitSettings, MapChoice, MapFormat, SoftRadius, Softness, SplitScheme, Stabilise,
-};
-use shadowfit::{FitInput, FittedMaps, MapFitter, Technique, Workspace};
+use shadowfit::settings::{BiasSettings, FilterKind, MapChoice, MapFormat, MapSettings, SoftRadius, Softness};
+use shadowfit::{FitInput, FittedMaps, MapFitter, Maps, Technique, Windows, Workspace};
 
 use crate::support::{DIRECTION, camera};
 
@@ -29,7 +27,7 @@ fn another_filter_brings_its_bias_and_its_border() {
     let offset = BiasSettings::automatic_normal_offset(FilterKind::Point, &Softness::default());
     let moved = technique.with_look_up(FilterKind::Point, offset);
     assert_eq!(moved.border(), 0.5 + offset.normal_offset, "the looked-up point moves by the offset");
-    assert_eq!(moved.with_fit(FitSettings::default().with_border(7.0)).border(), 7.0, "what is set stays");
+    assert_eq!(moved.with_fit(MapSettings::default().with_border(7.0)).border(), 7.0, "what is set stays");
     let soft = Technique::default().with_filter(FilterKind::Vogel16);
     assert_eq!((soft.reach(), soft.border()), (17.0, 17.0), "a look-up over the widest disc");
 }
@@ -59,29 +57,17 @@ fn fitted(technique: &Technique) -> Vec<FittedMaps> {
 }
 
 #[test]
-fn what_has_no_effect_on_windows_has_none() {
+fn the_border_has_an_effect_on_windows() {
     let windows = Technique::preset("windows-4").expect("a preset");
-    let same = |name: &str, other: Technique| assert_eq!(fitted(&other), fitted(&windows), "{name}");
-    same("splits", windows.with_splits(SplitScheme::Uniform));
-    same("overlap", windows.with_overlap(0.5));
-    same("choice", windows.with_choice(MapChoice::ViewDepth));
-    same("stabilise", windows.with_stabilise(Stabilise::Off));
-    same("margin, growth, horizon", windows.with_hold(windows.hold.with_margin(1.0).with_growth(3.0).with_horizon(7)));
-    same("texel ratio", windows.with_fit(windows.fit.with_max_texel_ratio(1.0)));
     assert_ne!(fitted(&windows.with_fit(windows.fit.with_border(9.0))), fitted(&windows));
 }
 
 #[test]
-fn windows_are_read_by_coverage_whatever_the_choice() {
-    let technique = Technique::preset("windows-4").expect("a preset").with_choice(MapChoice::ViewDepth);
-    assert_eq!(technique.map_choice(), MapChoice::Coverage);
-    let slices = Technique::preset("focused-4").expect("a preset");
-    let by_depth = slices.with_choice(MapChoice::ViewDepth);
-    assert_eq!((by_depth.map_choice(), slices.map_choice()), (MapChoice::ViewDepth, MapChoice::Coverage));
-    let maps = fitted(&technique)[0];
-    let by_coverage = technique.with_choice(MapChoice::Coverage);
-    for depth in 1..150 {
-        let point = maps[0].fit.origin + (camera().forward.normalize() * depth as f32).as_dvec3();
-        assert_eq!(maps.read(&technique, point, depth.into()), maps.read(&by_coverage, point, depth.into()));
-    }
+fn windows_are_read_by_coverage_and_slices_as_they_say() {
+    let windows = Windows::default().with_blend(5.0);
+    assert_eq!(Maps::from(windows).choice(), MapChoice::Coverage { blend: 5.0 });
+    let by_depth = MapChoice::ViewDepth { overlap: 0.5 };
+    let slices = Technique::preset("focused-4").expect("a preset").maps;
+    let chosen = [slices, slices.as_slices().with_choice(by_depth).into()].map(|maps| maps.choice());
+    assert_eq!(chosen, [MapChoice::default(), by_depth]);
 }

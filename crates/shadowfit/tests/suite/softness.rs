@@ -4,13 +4,13 @@ use proptest::prelude::*;
 use shadowfit::bias::{Reach, reach};
 use shadowfit::glam::{DVec2, UVec2, Vec2, Vec3};
 use shadowfit::settings::{
-    FilterKind, FitKind, FitSettings, RectangleKind, SoftRadius, Softness, SplitScheme, Stabilise,
+    FilterKind, FitKind, FitSettings, MapSettings, RectangleKind, Shape, SoftRadius, Softness, SplitScheme,
 };
 use shadowfit::softness::{LOOK_UP_SQUARE, USUAL_DISTANCE};
 use shadowfit::verify::{CoverageQuery, verify};
-use shadowfit::{FitInput, FittedMaps, LightFit, MapFitter, Technique, ViewFrustum, Workspace};
+use shadowfit::{FitInput, FittedMaps, LightFit, MapFitter, Maps, Slices, Technique, ViewFrustum, Workspace};
 
-use crate::support::{DIRECTION, any_camera, any_direction, camera, cases, exact, fitted, float};
+use crate::support::{DIRECTION, any_camera, any_direction, camera, cases, every_stabilise, exact, fitted, float};
 
 const SOFT: [FilterKind; 4] = [FilterKind::Vogel8, FilterKind::Vogel16, FilterKind::Vogel32, FilterKind::Pcss];
 
@@ -100,7 +100,7 @@ fn discs_keep_within_the_floor_and_the_ceiling_on_either_axis() {
 fn a_least_texel_is_the_greater_of_what_is_set_and_what_the_ceiling_asks_for() {
     let soft = Technique::default().with_filter(FilterKind::Vogel16).with_softness(metres(0.8));
     assert!((soft.least_texel() / 0.05 - 1.0).abs() < 1e-6);
-    let set = |metres| FitSettings::default().with_least_texel(metres);
+    let set = |metres| MapSettings::default().with_least_texel(metres);
     assert_eq!(soft.with_fit(set(0.01)).least_texel(), soft.least_texel());
     assert_eq!(soft.with_fit(set(0.2)).least_texel(), 0.2);
     assert_eq!(soft.with_filter(FilterKind::Pcf7x7).least_texel(), 0.0);
@@ -119,7 +119,7 @@ fn no_limit_and_one_that_is_met_anyway_give_the_same_map() {
         let limited = plain.with_least_texel(free.texel_size.max_element() * 3.0);
         let wide = shadowfit::fit(&frustum, DIRECTION, &limited).unwrap();
         assert_eq!(wide == free, kind == FitKind::XnaSample, "{kind:?}");
-        let share = wide.texel_size.min_element() / limited.least_texel;
+        let share = wide.texel_size.min_element() / limited.map.least_texel;
         assert!(kind == FitKind::XnaSample || (1.0 - 1e-5..1.1).contains(&share), "{kind:?}: {share}");
     }
 }
@@ -132,22 +132,27 @@ fn any_softness() -> impl Strategy<Value = Softness> {
     (radius, float(1.0, 14.0)).prop_map(|(radius, ceiling)| Softness { radius, floor: 1.0, ceiling })
 }
 
+/// One map, slices of the view of every kind, and windows.
 fn any_limited() -> impl Strategy<Value = Technique> {
-    let kinds = [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused, FitKind::Windows];
+    let slices = [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused].map(Some);
+    let kinds: Vec<Option<FitKind>> = slices.into_iter().chain([None]).collect();
     let rectangles = [RectangleKind::AxisAligned, RectangleKind::MinimumArea, RectangleKind::MinimumSquare];
-    let kind = (prop::sample::select(kinds.to_vec()), prop::sample::select(rectangles.to_vec()));
-    let stabilise = prop::sample::select(vec![Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis]);
+    let kind = (prop::sample::select(kinds), prop::sample::select(rectangles.to_vec()));
+    let stabilise = prop::sample::select(every_stabilise().to_vec());
     let sides = || prop::sample::select(vec![64_u32, 300, 1024]);
     let least = prop_oneof![1 => Just(0.0), 3 => (-10.0_f32..5.0).prop_map(f32::exp2)];
     let ratio = prop_oneof![3 => Just(f32::MAX), 1 => float(1.0, 4.0)];
     let filter = (prop::sample::select(FilterKind::ALL.to_vec()), any_softness());
     (kind, stabilise, (sides(), sides()), (least, ratio), filter, 1..=8_u32).prop_map(
         |((kind, rectangle), stabilise, (width, height), (least_texel, max_texel_ratio), (filter, softness), count)| {
-            let fit = FitSettings { kind, rectangle, least_texel, max_texel_ratio, ..FitSettings::default() };
-            let splits = SplitScheme::Logarithmic;
-            Technique { fit, stabilise, softness, count, splits, ..Technique::default() }
-                .with_filter(filter)
-                .with_resolution(width, height)
+            let slices = |kind| {
+                let splits = SplitScheme::Logarithmic;
+                let shape = Shape { kind, rectangle, max_texel_ratio };
+                Maps::from(Slices { shape, splits, stabilise, ..Slices::default() })
+            };
+            let maps = kind.map_or(Maps::default(), slices).with_count(count);
+            let fit = MapSettings::default().with_least_texel(least_texel);
+            Technique { maps, fit, softness, ..Technique::default() }.with_filter(filter).with_resolution(width, height)
         },
     )
 }
@@ -186,7 +191,7 @@ proptest! {
                 // Only the last of windows holds all that it is asked for.
                 prop_assert!(certificate.is_proven(), "{certificate:?}");
             }
-            prop_assert!(technique.fit.kind != FitKind::Windows || are_windows(&maps), "{maps:?}");
+            prop_assert!(!matches!(technique.maps, Maps::Windows(_)) || are_windows(&maps), "{maps:?}");
             camera.forward += Vec3::new(turn, -turn, turn) * camera.forward.length();
             camera.eye += (camera.forward * step * camera.far).as_dvec3();
         }
@@ -197,9 +202,10 @@ proptest! {
         camera in any_camera(), direction in any_direction(), technique in any_limited(),
     ) {
         let frustum = camera.frustum().unwrap();
-        let settings = technique.fit.with_resolution(UVec2::new(512, 300));
+        let map = technique.fit.with_resolution(UVec2::new(512, 300));
+        let settings = FitSettings { shape: technique.maps.shape().unwrap_or_default(), map };
         let map = shadowfit::fit(&frustum, direction, &settings).unwrap();
-        prop_assert!(map.texel_size.min_element() >= settings.least_texel * (1.0 - 1e-5), "{map:?}");
+        prop_assert!(map.texel_size.min_element() >= settings.map.least_texel * (1.0 - 1e-5), "{map:?}");
         let query = CoverageQuery::of_fit(&settings, Reach::kernel(5));
         let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
         let views = [frustum];

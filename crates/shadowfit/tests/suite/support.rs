@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 use serde_json::Value;
 use shadowfit::glam::{DVec3, Mat4, Vec3};
-use shadowfit::settings::{FitKind, FitSettings};
-use shadowfit::{LightFit, PerspectiveCamera};
+use shadowfit::settings::{FitKind, FitSettings, MapChoice, Stabilise};
+use shadowfit::{LightFit, Maps, PerspectiveCamera, Slices, Technique};
 
 /// Both fits.
 pub(crate) const KINDS: [FitKind; 2] = [FitKind::XnaSample, FitKind::FrustumAabb];
@@ -17,6 +17,28 @@ pub(crate) fn exact(kind: FitKind) -> FitSettings {
         .with_caster_extension(0.0)
         .with_max_distance(f32::MAX)
         .with_border(0.0)
+}
+
+/// Snapped maps, kept as long as held ones are by default.
+pub(crate) const SNAP: Stabilise = Stabilise::Snap { waste: 1.8 };
+
+/// Every way to keep maps, with the defaults of the rest.
+pub(crate) fn every_stabilise() -> [Stabilise; 3] {
+    [Stabilise::Off, SNAP, Stabilise::default()]
+}
+
+/// So many slices of the view, or one map where the count is 1, each fitted by the settings.
+pub(crate) fn sliced(fit: &FitSettings, slices: Slices) -> Technique {
+    let maps = Maps::from(slices.with_shape(fit.shape)).with_count(slices.count);
+    Technique::default().with_maps(maps).with_fit(fit.map)
+}
+
+/// The same with slices that are read by another choice; of a single map there is none.
+pub(crate) fn read_by(technique: &Technique, choice: MapChoice) -> Technique {
+    match technique.maps {
+        Maps::Slices(slices) => technique.with_maps(slices.with_choice(choice)),
+        Maps::Windows(_) | Maps::One(_) => *technique,
+    }
 }
 
 /// A plain camera some way from the world's origin.

@@ -6,11 +6,9 @@ use shadowfit::culling::Sweep;
 use shadowfit::fits::fit_scene;
 use shadowfit::glam::{DVec2, DVec3, Vec2, Vec3};
 use shadowfit::settings::{FitKind, FitSettings, MapChoice, SplitScheme, Stabilise};
-use shadowfit::{
-    Aabb, Boxes, CasterVolume, FitError, FitInput, LightFit, MapFitter, Technique, ViewFrustum, Workspace,
-};
+use shadowfit::{Aabb, Boxes, CasterVolume, FitError, FitInput, LightFit, MapFitter, Slices, ViewFrustum, Workspace};
 
-use crate::support::{DIRECTION, any_direction, camera, cases, double, exact, fitted, float};
+use crate::support::{DIRECTION, any_direction, camera, cases, double, exact, fitted, float, sliced};
 
 const ALL_KINDS: [FitKind; 5] =
     [FitKind::XnaSample, FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
@@ -204,19 +202,17 @@ proptest! {
     #[test]
     fn no_map_of_several_loses_a_caster_by_its_own_volume(
         lens in any_lens(), direction in any_direction(), kind in 0..5_usize,
-        (is_bordered, is_held, choice) in (any::<bool>(), any::<bool>(), prop::sample::select(vec![MapChoice::Coverage, MapChoice::ViewDepth])), overlap in prop::sample::select(vec![0.0, 0.3]),
+        (is_bordered, is_held) in any::<(bool, bool)>(), choice in prop::sample::select(vec![
+            MapChoice::default(), MapChoice::ViewDepth { overlap: 0.0 }, MapChoice::ViewDepth { overlap: 0.3 },
+        ]),
         points in prop::collection::vec(prop::array::uniform3(double(0.0, 1.0)), 12), half in float(0.001, 0.2),
     ) {
         let views = [lens.frustum(DVec3::new(12.0, 3.0, -40.0))];
         let fit = FitSettings::default().with_kind(ALL_KINDS[kind]).with_casters(shadowfit::settings::CasterPolicy::DepthClamp);
-        let technique = Technique {
-            fit: if is_bordered { fit } else { fit.with_border(0.0) },
-            splits: SplitScheme::Practical(0.5),
-            stabilise: if is_held { Stabilise::Hysteresis } else { Stabilise::Off },
-            choice,
-            overlap,
-            ..Technique::default()
-        };
+        let fit = if is_bordered { fit } else { fit.with_border(0.0) };
+        let stabilise = if is_held { Stabilise::default() } else { Stabilise::Off };
+        let splits = SplitScheme::Practical(0.5);
+        let technique = sliced(&fit, Slices { splits, stabilise, choice, ..Slices::default() });
         let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
         let input = FitInput::new(&views, direction);
         let fitted = MapFitter::new().fit(&input, &technique, &mut Workspace::new(&mut storage));
@@ -233,7 +229,7 @@ proptest! {
                 let over = point + to_light * f64::from(view.far) * share.x - map.fit.origin;
                 let half = Vec3::splat(half * view.far);
                 let centre = over.as_vec3();
-                let kind = technique.fit.kind;
+                let kind = ALL_KINDS[kind];
                 prop_assert!(volume.intersects_aabb(centre - half, centre + half), "{point} by {kind:?}, {choice:?}");
             }
         }

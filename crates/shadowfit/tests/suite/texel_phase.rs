@@ -8,10 +8,10 @@ use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::light_fit::Constraint;
 use shadowfit::settings::{FitKind, FitSettings, RectangleKind, SplitScheme, Stabilise};
-use shadowfit::{FitInput, FittedMap, FittedMaps, LightFit, MapFitter, Technique, ViewFrustum, Workspace};
+use shadowfit::{FitInput, FittedMap, FittedMaps, LightFit, MapFitter, Slices, Technique, ViewFrustum, Workspace};
 
 use crate::scenes::{COVERING, SceneView, Walk, any_light, any_view, any_walk};
-use crate::support::{apply, cases, double};
+use crate::support::{SNAP, apply, cases, double, sliced};
 
 /// Room above each step of extents, as a share of it.
 const STEP_ROOM: f64 = 1e-5;
@@ -48,16 +48,13 @@ pub(crate) fn apart(a: DVec2, b: DVec2) -> f64 {
 }
 
 fn settings(kind: FitKind, stabilise: Stabilise, count: u32, resolution: u32, border: f32) -> Technique {
-    let fit = FitSettings {
-        kind,
-        rectangle: RectangleKind::MinimumArea,
-        border: Some(border),
-        max_distance: f32::MAX,
-        resolution: UVec2::splat(resolution),
-        ..FitSettings::default()
-    };
-    let splits = SplitScheme::Practical(0.7);
-    Technique { fit, count, splits, stabilise, ..Technique::default() }
+    let fit = FitSettings::default()
+        .with_kind(kind)
+        .with_rectangle(RectangleKind::MinimumArea)
+        .with_border(border)
+        .with_max_distance(f32::MAX)
+        .with_resolution(UVec2::splat(resolution));
+    sliced(&fit, Slices { count, splits: SplitScheme::Practical(0.7), stabilise, ..Slices::default() })
 }
 
 fn frame(fitter: &mut MapFitter, view: &SceneView, direction: Vec3, settings: &Technique) -> FittedMaps {
@@ -145,7 +142,7 @@ proptest! {
         view in any_view(), step in any_walk(), direction in any_light(), (count, size, border) in any_setup(),
         places in any_places(),
     ) {
-        let settings = settings(FitKind::Sphere, Stabilise::Snap, count, size, border);
+        let settings = settings(FitKind::Sphere, SNAP, count, size, border);
         let maps = frame(&mut MapFitter::new(), &view, direction, &settings);
         prop_assume!(!is_on_a_step(&view, &maps, |map| sphere_radius(&view, map)));
         walk(view, step, direction, &settings, &places, |_| true);
@@ -158,7 +155,7 @@ proptest! {
         view in any_view(), step in any_walk(), direction in any_light(), (count, size, border) in any_setup(),
         kind in prop::sample::select(vec![FitKind::FrustumAabb, FitKind::Oriented]), places in any_places(),
     ) {
-        let settings = settings(kind, Stabilise::Snap, count, size, border);
+        let settings = settings(kind, SNAP, count, size, border);
         let step = Walk { turn: 0.0, ..step };
         // An f64 matrix is rounded by 2e-16 of the eye's distance, which may turn a corner's last bit.
         let same = std::iter::successors(Some(view), |view| Some(step.moved(view))).take(7);
@@ -172,7 +169,7 @@ proptest! {
         view in any_view(), step in any_walk(), direction in any_light(), (count, size, border) in any_setup(),
         kind in prop::sample::select(COVERING.to_vec()), places in any_places(),
     ) {
-        let settings = settings(kind, Stabilise::Hysteresis, count, size, border);
+        let settings = settings(kind, Stabilise::default(), count, size, border);
         walk(view, step, direction, &settings, &places, |fit| fit.set_by == [Constraint::Held; 6]);
     }
 }
@@ -184,7 +181,7 @@ fn maps_are_held_on_a_walk() {
     let view = crate::scenes::of_camera(&crate::support::camera());
     let walk_on = Walk { step: DVec3::X * 0.0005, axis: DVec3::Y, turn: 0.002 };
     for kind in COVERING {
-        let settings = settings(kind, Stabilise::Hysteresis, 4, 1024, 1.5);
+        let settings = settings(kind, Stabilise::default(), 4, 1024, 1.5);
         let kept = walk(view, walk_on, Vec3::new(0.3, -0.8, 0.4), &settings, &[[0.5; 3]], |fit| {
             fit.set_by == [Constraint::Held; 6]
         });

@@ -2,11 +2,11 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, UVec2, Vec3};
-use shadowfit::settings::{FitKind, FitSettings, RectangleKind, SplitScheme, Stabilise};
+use shadowfit::settings::{FitKind, FitSettings, RectangleKind, SplitScheme};
 use shadowfit::verify::{CoverageQuery, verify};
-use shadowfit::{FitError, FitInput, LightFit, MapFitter, Technique, Workspace};
+use shadowfit::{FitError, FitInput, LightFit, MapFitter, Slices, Workspace};
 
-use crate::support::{DIRECTION, any_camera, any_direction, camera, cases, float};
+use crate::support::{DIRECTION, any_camera, any_direction, camera, cases, every_stabilise, float, sliced};
 
 /// Grazing light, under which a map is far longer than wide.
 const GRAZING: Vec3 = Vec3::new(0.3, -0.05, 0.9);
@@ -69,11 +69,11 @@ proptest! {
         (kind, stabilise, rectangle, tall) in (0..4_usize, 0..3_usize, 0..3_usize, any::<bool>()),
     ) {
         let kind = [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused][kind];
-        let stabilise = [Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis][stabilise];
+        let stabilise = every_stabilise()[stabilise];
         let resolution = if tall { UVec2::new(512, 1024) } else { UVec2::splat(1024) };
-        let fit = FitSettings { kind, rectangle: RECTANGLES[rectangle], resolution, ..FitSettings::default() };
-        let fit = fit.with_max_texel_ratio(limit);
-        let technique = Technique { fit, stabilise, splits: SplitScheme::Logarithmic, ..Technique::default() };
+        let fit = FitSettings::default().with_kind(kind).with_rectangle(RECTANGLES[rectangle]);
+        let fit = fit.with_resolution(resolution).with_max_texel_ratio(limit);
+        let technique = sliced(&fit, Slices { splits: SplitScheme::Logarithmic, stabilise, ..Slices::default() });
         let mut storage = [DVec2::ZERO; Workspace::required(0, 3)];
         let mut fitter = MapFitter::new();
         let mut camera = camera;

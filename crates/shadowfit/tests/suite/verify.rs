@@ -3,14 +3,17 @@
 use proptest::prelude::*;
 use shadowfit::bias::Reach;
 use shadowfit::glam::{DQuat, DVec2, DVec3, Mat4, UVec2, Vec3};
-use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, HoldSettings, RectangleKind, SplitScheme, Stabilise};
+use shadowfit::settings::{
+    CasterPolicy, FitKind, FitSettings, HoldSettings, MapSettings, RectangleKind, Shape, SplitScheme, Stabilise,
+};
 use shadowfit::verify::{Certificate, CoverageQuery, MapPlane, verify};
 use shadowfit::{
-    Aabb, Boxes, DepthConvention, FitError, FitInput, LightFit, MapFitter, PerspectiveCamera, Technique, ViewFrustum,
-    Workspace,
+    Aabb, Boxes, DepthConvention, FitError, FitInput, LightFit, MapFitter, PerspectiveCamera, Slices, Technique,
+    ViewFrustum, Workspace,
 };
 
-use crate::support::{DIRECTION, any_camera, any_direction, apply, camera, cases, double, float};
+use crate::scenes::any_choice;
+use crate::support::{DIRECTION, SNAP, any_camera, any_direction, apply, camera, cases, double, float, sliced};
 
 const COVERING: [FitKind; 4] = [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Sphere, FitKind::Focused];
 
@@ -96,14 +99,15 @@ fn any_fit() -> impl Strategy<Value = FitSettings> {
     let distance = prop_oneof![Just(f32::MAX), float(5.0, 500.0)];
     (kind, rectangle, casters, resolution, any_depth(), distance, prop_oneof![Just(0.0), float(0.0, 6.0)]).prop_map(
         |(kind, rectangle, casters, resolution, depth, max_distance, border)| FitSettings {
-            kind,
-            rectangle,
-            casters,
-            resolution,
-            depth,
-            max_distance,
-            border: Some(border),
-            ..FitSettings::default()
+            shape: Shape { kind, rectangle, ..Shape::default() },
+            map: MapSettings {
+                casters,
+                resolution,
+                depth,
+                max_distance,
+                border: Some(border),
+                ..MapSettings::default()
+            },
         },
     )
 }
@@ -115,23 +119,16 @@ fn any_technique() -> impl Strategy<Value = Technique> {
         float(0.0, 1.0).prop_map(SplitScheme::Practical),
         Just(SplitScheme::FromBoxes),
     ];
-    let stabilise = prop::sample::select(vec![Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis]);
-    let hold = prop_oneof![Just(0.0), Just(0.02), float(0.0, 0.5)];
-    (any_fit(), 1..=8_u32, splits, prop_oneof![Just(0.0), float(0.0, 1.0)], stabilise, hold).prop_map(
-        |(fit, count, splits, overlap, stabilise, margin)| Technique {
-            fit,
-            count,
-            splits,
-            overlap,
-            stabilise,
-            hold: HoldSettings::default().with_margin(margin),
-            ..Technique::default()
-        },
-    )
+    let held = prop_oneof![Just(0.0), Just(0.02), float(0.0, 0.5)]
+        .prop_map(|margin| Stabilise::Hysteresis(HoldSettings::default().with_margin(margin)));
+    let stabilise = prop_oneof![Just(Stabilise::Off), Just(SNAP), held];
+    (any_fit(), 1..=8_u32, splits, any_choice(), stabilise).prop_map(|(fit, count, splits, choice, stabilise)| {
+        sliced(&fit, Slices { count, splits, choice, stabilise, ..Slices::default() })
+    })
 }
 
 /// The widest reach that a border is enough for.
-fn reach_of(settings: &FitSettings) -> Reach {
+fn reach_of(settings: &MapSettings) -> Reach {
     Reach::taps(settings.border.unwrap_or(3.0) + 0.5)
 }
 
@@ -169,14 +166,14 @@ proptest! {
     fn a_single_map_has_no_holes(
         camera in any_camera(), plans in any_plans(), direction in any_direction(), fit in any_fit(),
     ) {
-        prop_assume!(camera.near < fit.max_distance);
+        prop_assume!(camera.near < fit.map.max_distance);
         let scene = scene(&plans, &camera);
         let views = [camera.frustum().unwrap()];
         let input = scene.input(&views, direction);
         let mut storage = storage(scene.len());
         let mut workspace = Workspace::new(&mut storage);
         let map = shadowfit::fits::fit_scene(&input, &fit, &mut workspace).unwrap();
-        let query = CoverageQuery::of_fit(&fit, reach_of(&fit));
+        let query = CoverageQuery::of_fit(&fit, reach_of(&fit.map));
         let certificate = verify(&input, &map, &query, &mut workspace).unwrap();
         prop_assert!(certificate.is_proven(), "{certificate:?}");
     }
@@ -187,7 +184,7 @@ proptest! {
         camera in any_camera(), plans in any_plans(), direction in any_direction(), fit in any_fit(),
         margin in double(-0.1, 0.1), places in prop::collection::vec((double(0.0, 1.0), double(0.0, 1.0), double(0.0, 1.0)), 16),
     ) {
-        prop_assume!(camera.near < fit.max_distance);
+        prop_assume!(camera.near < fit.map.max_distance);
         let scene = scene(&plans, &camera);
         let views = [camera.frustum().unwrap()];
         let input = scene.input(&views, direction);
@@ -197,7 +194,7 @@ proptest! {
         // Shift the map by up to a tenth: most of these have holes, and the others must have none.
         let shift = map.light_from_world.x_axis.truncate() * (map.box_max.x - map.box_min.x) * margin as f32;
         map.origin += shift.as_dvec3();
-        let query = CoverageQuery { near: f32::MIN, far: f32::MAX, ..CoverageQuery::of_fit(&fit, reach_of(&fit)) };
+        let query = CoverageQuery { near: f32::MIN, far: f32::MAX, ..CoverageQuery::of_fit(&fit, reach_of(&fit.map)) };
         let Certificate::Proven(_) = verify(&input, &map, &query, &mut workspace).unwrap() else { return Ok(()) };
         let corner = |i: usize| views[0].corners[i].as_dvec3();
         for (x, y, z) in places {
@@ -255,21 +252,19 @@ fn stable_maps_keep_the_casters_that_wide_filters_read() {
         half: DVec3::new(0.203_612_2, 1.470_268_1, 0.168_060_2),
     };
     let scene = scene(&(Some(vec![plan]), Vec::new(), true), &camera);
-    let fit = FitSettings {
-        kind: FitKind::Sphere,
-        casters: CasterPolicy::List,
-        border: Some(3.195_267_7),
-        resolution: UVec2::new(64, 40),
-        ..FitSettings::default()
-    };
-    let settings = Technique { fit, count: 7, splits: SplitScheme::Logarithmic, overlap: 0.0, ..Technique::default() };
+    let fit = FitSettings::default()
+        .with_kind(FitKind::Sphere)
+        .with_casters(CasterPolicy::List)
+        .with_border(3.195_267_7)
+        .with_resolution(UVec2::new(64, 40));
+    let settings = sliced(&fit, Slices { count: 7, splits: SplitScheme::Logarithmic, ..Slices::default() });
     let views = [camera.frustum().unwrap()];
     let input = scene.input(&views, Vec3::new(-0.172_338_68, -0.965_532_3, -0.195_055_77));
     let mut storage = storage(scene.len());
     let mut workspace = Workspace::new(&mut storage);
     let maps = MapFitter::new().fit(&input, &settings, &mut workspace).unwrap();
     for (i, map) in maps.iter().enumerate() {
-        let query = CoverageQuery::of_map(map, &settings, reach_of(&fit));
+        let query = CoverageQuery::of_map(map, &settings, reach_of(&fit.map));
         let certificate = verify(&input, &map.fit, &query, &mut workspace).unwrap();
         assert!(certificate.is_proven(), "map {i}: {certificate:?}");
     }
@@ -297,13 +292,11 @@ fn from_above() -> ViewFrustum {
 }
 
 fn plain() -> FitSettings {
-    FitSettings {
-        kind: FitKind::FrustumAabb,
-        casters: CasterPolicy::None,
-        border: Some(0.0),
-        resolution: UVec2::new(800, 400),
-        ..FitSettings::default()
-    }
+    FitSettings::default()
+        .with_kind(FitKind::FrustumAabb)
+        .with_casters(CasterPolicy::None)
+        .with_border(0.0)
+        .with_resolution(UVec2::new(800, 400))
 }
 
 fn certificate(input: &FitInput, fit: &LightFit, query: &CoverageQuery) -> Certificate {

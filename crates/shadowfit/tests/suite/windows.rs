@@ -13,10 +13,10 @@ mod still;
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
 use shadowfit::need::{CELLS, NeedGrid, NeedSpace, PIXELS};
-use shadowfit::settings::{
-    CasterPolicy, FilterKind, FitKind, FitSettings, NeedSource, SoftRadius, Softness, Stabilise,
+use shadowfit::settings::{CasterPolicy, FilterKind, MapSettings, SoftRadius, Softness};
+use shadowfit::{
+    Aabb, Boxes, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Windows, Workspace,
 };
-use shadowfit::{Aabb, Boxes, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace};
 
 use crate::scenes::{SceneView, any_depth, of_camera};
 use crate::support::{any_direction, float};
@@ -134,6 +134,8 @@ struct Run {
     world: World,
     technique: Technique,
     fitter: MapFitter,
+    /// Whether there is a depth buffer to read.
+    is_seen: bool,
     need: Option<Need>,
     /// The view and the light that the grid of need is of.
     seen: Option<(ViewFrustum, Vec3)>,
@@ -143,12 +145,17 @@ struct Run {
 impl Run {
     fn new(world: World, technique: &Technique) -> Self {
         let storage = vec![DVec2::ZERO; Workspace::required(world.boxes.len(), 1)];
-        Self { world, technique: *technique, fitter: MapFitter::new(), need: None, seen: None, storage }
+        Self { world, technique: *technique, fitter: MapFitter::new(), is_seen: true, need: None, seen: None, storage }
+    }
+
+    /// The same, without a depth buffer to read unless it is seen.
+    fn seen_if(self, is_seen: bool) -> Self {
+        Self { is_seen, ..self }
     }
 
     fn frame(&mut self, view: &SceneView, direction: Vec3) -> FittedMaps {
         let views = [view.frustum()];
-        let need: Vec<NeedGrid> = self.need.iter().map(Need::grid).collect();
+        let need: Vec<NeedGrid> = self.need.iter().filter(|_| self.is_seen).map(Need::grid).collect();
         let input = self.world.input(&views, direction, &need);
         let maps = self.fitter.fit(&input, &self.technique, &mut Workspace::new(&mut self.storage)).unwrap();
         if self.seen.replace((views[0], direction)) != Some((views[0], direction)) {
@@ -178,8 +185,7 @@ fn street_view(eye: DVec3, forward: Vec3) -> SceneView {
 
 /// The preset's technique with maps of this many texels across.
 fn windows(count: u32, side: u32) -> Technique {
-    let fit = FitSettings::default().with_kind(FitKind::Windows).with_max_distance(f32::MAX);
-    Technique { count, fit, ..Technique::preset("windows-4").unwrap() }.with_resolution(side, side)
+    Technique::preset("windows-4").unwrap().with_count(count).with_max_distance(f32::MAX).with_resolution(side, side)
 }
 
 /// Settings of windows of every kind.
@@ -188,25 +194,22 @@ fn any_windows() -> impl Strategy<Value = Technique> {
     let up = prop_oneof![2 => Just(Vec3::Y), 1 => Just(Vec3::Z), 1 => any_direction()];
     let border = prop_oneof![2 => Just(None), 1 => float(0.0, 8.0).prop_map(Some)];
     let casters = prop::sample::select(vec![CasterPolicy::List, CasterPolicy::SceneBounds]);
-    let keeps = prop::sample::select(vec![Stabilise::Off, Stabilise::Snap, Stabilise::Hysteresis]);
-    let need = prop::sample::select(vec![NeedSource::LastFrame, NeedSource::LastFrame, NeedSource::Boxes]);
     let fit = (up, border, casters, prop_oneof![2 => Just(f32::MAX), 1 => float(3.0, 500.0)], any_depth());
     // The widest disc and its look-ups leave half of the smallest map.
     let radius =
         prop_oneof![float(0.0, 0.5).prop_map(SoftRadius::Metres), float(0.0, 0.1).prop_map(SoftRadius::SunAngle)];
     let softness = (radius, float(1.0, 14.0)).prop_map(|(radius, ceiling)| Softness { radius, floor: 1.0, ceiling });
-    let look_up = ((prop::sample::select(FilterKind::ALL.to_vec()), softness), keeps, need);
+    let look_up = (prop::sample::select(FilterKind::ALL.to_vec()), softness);
     (1..=8_u32, (size(), size()), fit, look_up).prop_map(
-        |(
-            count,
-            (width, height),
-            (up, border, casters, max_distance, depth),
-            ((filter, softness), stabilise, need),
-        )| {
-            let fit = FitSettings { up, border, casters, max_distance, depth, ..windows(count, 1024).fit };
-            Technique { fit, count, softness, stabilise, need, ..Technique::default() }
-                .with_filter(filter)
-                .with_resolution(width, height)
+        |(count, (width, height), (up, border, casters, max_distance, depth), (filter, softness))| {
+            let maps = Windows::default().with_count(count).into();
+            let fit = MapSettings { up, border, casters, max_distance, depth, ..MapSettings::default() };
+            Technique { maps, fit, softness, ..Technique::default() }.with_filter(filter).with_resolution(width, height)
         },
     )
+}
+
+/// Whether there is a depth buffer to read: two times of three.
+fn any_seen() -> impl Strategy<Value = bool> {
+    prop::sample::select(vec![true, true, false])
 }

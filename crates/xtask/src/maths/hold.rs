@@ -16,7 +16,7 @@ const FRAMES: usize = 96;
 pub(super) fn draw() -> Result<String> {
     let views: Vec<ViewFrustum> = (0..FRAMES).map(view).collect::<Result<_>>()?;
     let oriented = plain_fit(FitKind::Oriented);
-    let (fresh, held) = (maps(&views, oriented, Stabilise::Off)?, maps(&views, oriented, Stabilise::Hysteresis)?);
+    let (fresh, held) = (maps(&views, oriented, Stabilise::Off)?, maps(&views, oriented, Stabilise::default())?);
     let plain = maps(&views[..1], plain_fit(FitKind::FrustumAabb), Stabilise::Off)?;
     let look = Look { origin: DVec3::ZERO, ..Look::from_light(&plain[0]) };
     let runs = runs(&held);
@@ -59,7 +59,8 @@ fn view(frame: usize) -> Result<ViewFrustum> {
 
 /// One map a frame.
 fn maps(views: &[ViewFrustum], fit: FitSettings, stabilise: Stabilise) -> Result<Vec<LightFit>> {
-    let technique = one_map(fit).with_stabilise(stabilise);
+    let technique = one_map(fit);
+    let technique = technique.with_maps(technique.maps.with_stabilise(stabilise));
     let mut fitter = Fitter::new();
     let fit = |view| Ok(fitter.fit(&FitInput::new(std::slice::from_ref(view), LIGHT), &technique)?[0].fit);
     views.iter().map(fit).collect()

@@ -4,7 +4,8 @@ use anyhow::Result;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3, Vec4};
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, Stabilise};
 use shadowfit::{
-    Aabb, Boxes, FitInput, FittedMaps, LightFit, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace,
+    Aabb, Boxes, FitInput, FittedMaps, LightFit, MapFitter, OneMap, PerspectiveCamera, Technique, ViewFrustum,
+    Workspace,
 };
 
 use super::canvas::{Canvas, Frame, GREY, Paint, stroke};
@@ -31,7 +32,8 @@ pub(super) fn plain_fit(kind: FitKind) -> FitSettings {
 
 /// One map of such a fit, made for each frame by itself.
 pub(super) fn one_map(fit: FitSettings) -> Technique {
-    Technique::default().with_fit(fit).with_count(1).with_stabilise(Stabilise::Off)
+    let map = OneMap { shape: fit.shape, stabilise: Stabilise::Off };
+    Technique::default().with_maps(map).with_fit(fit.map)
 }
 
 /// Boxes in world coordinates as fits take them.

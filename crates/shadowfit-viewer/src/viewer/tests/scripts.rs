@@ -25,7 +25,7 @@ fn gpu_a_line_that_cannot_be_done_fails_the_script_and_the_rest_is_played() {
     ] {
         let viewer = play(folder.path(), &format!("await loaded\n{bad}\nset splits.count 2\n"));
         assert!(viewer.player.failed, "{bad}");
-        assert_eq!(viewer.stage.settings.technique.count, 2, "{bad}");
+        assert_eq!(viewer.stage.settings.technique.maps.count(), 2, "{bad}");
     }
     assert!(play(folder.path(), "set splits.count 2\nawait loaded\n").player.failed, "there is no scene yet");
     let good = play(folder.path(), "await loaded\nset bias.constant 1\nbookmark 7\ngoto 7\npicture a.png\n");

@@ -60,7 +60,10 @@ fn gpu_an_argument_may_need_what_was_saved() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = saved(folder.path(), "courtyard");
     let viewer = ready(&["--set", "splits.lambda=0.7"], Some(&path));
-    assert_eq!(viewer.stage.settings.technique.splits, shadowfit::settings::SplitScheme::Practical(0.7));
+    assert_eq!(
+        viewer.stage.settings.technique.maps.as_slices().splits,
+        shadowfit::settings::SplitScheme::Practical(0.7)
+    );
 }
 
 #[test]

@@ -7,7 +7,7 @@ use shadowfit::settings::CasterPolicy;
 use shadowfit::verify::{Certificate, CoverageQuery, verify};
 use shadowfit::{Aabb, Boxes, FitInput, FittedMap, MapFitter, Workspace};
 
-use super::{World, any_windows, windows};
+use super::{World, any_seen, any_windows, windows};
 use crate::read_by_coverage::{Sample, any_samples, check};
 use crate::scenes::{any_box, any_light, any_view, any_walk};
 use crate::support::cases;
@@ -17,13 +17,13 @@ proptest! {
 
     #[test]
     fn every_caster_above_a_visible_point_is_in_the_window_that_the_point_reads(
-        view in any_view(), direction in any_light(), technique in any_windows(), walk in any_walk(),
+        view in any_view(), direction in any_light(), technique in any_windows(), walk in any_walk(), is_seen in any_seen(),
         plans in prop::collection::vec(any_box(), 1..12), samples in any_samples(),
     ) {
         prop_assume!(view.lens.near < f64::from(technique.fit.max_distance));
         let origin = view.eye.round();
         let world = World { origin, boxes: plans.iter().map(|plan| plan.aabb(&view, origin)).collect() };
-        let mut run = super::Run::new(world.clone(), &technique);
+        let mut run = super::Run::new(world.clone(), &technique).seen_if(is_seen);
         let mut view = view;
         let last = f64::from(technique.fit.max_distance);
         for _ in 0..5 {
@@ -44,14 +44,14 @@ proptest! {
     /// The last window is proven to hold all that is seen, and every one to have all casters over it.
     #[test]
     fn the_certificate_proves_windows(
-        view in any_view(), direction in any_light(), technique in any_windows(), walk in any_walk(),
+        view in any_view(), direction in any_light(), technique in any_windows(), walk in any_walk(), is_seen in any_seen(),
         plans in prop::collection::vec(any_box(), 0..12),
     ) {
         prop_assume!(view.lens.near < f64::from(technique.fit.max_distance));
         let technique = technique.with_fit(technique.fit.with_border(technique.fit.border.unwrap_or(4.0).max(2.0)));
         let origin = view.eye.round();
         let world = World { origin, boxes: plans.iter().map(|plan| plan.aabb(&view, origin)).collect() };
-        let mut run = super::Run::new(world.clone(), &technique);
+        let mut run = super::Run::new(world.clone(), &technique).seen_if(is_seen);
         let mut view = view;
         let mut storage = vec![DVec2::ZERO; Workspace::required(world.boxes.len(), 1)];
         for frame in 0..5 {

@@ -159,7 +159,7 @@ proptest! {
             let receivers = boxes.as_deref().map(|boxes| Boxes { origin, boxes });
             let input = FitInput { receivers, casters: receivers, need: &need, ..FitInput::new(&views, direction) };
             let maps = fitter.fit(&input, &technique, &mut Workspace::new(&mut storage)).unwrap();
-            prop_assert_eq!(maps.len(), technique.count as usize);
+            prop_assert_eq!(maps.len(), technique.maps.count() as usize);
             for (point, depth) in visible(&view, origin, boxes.as_deref(), last, &places) {
                 assert_covered(&maps, &technique, point, depth);
             }

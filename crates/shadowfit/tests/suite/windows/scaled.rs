@@ -6,7 +6,7 @@ use shadowfit::settings::SoftRadius;
 use shadowfit::softness::USUAL_DISTANCE;
 use shadowfit::{Aabb, FittedMaps};
 
-use super::{Run, World, any_windows};
+use super::{Run, World, any_seen, any_windows};
 use crate::scenes::{Lens, SceneView, any_box, any_light, any_view, any_walk};
 use crate::support::cases;
 
@@ -41,7 +41,7 @@ proptest! {
     /// By powers of four, which scale without rounding, costs included.
     #[test]
     fn a_scene_in_another_unit_has_the_same_windows(
-        view in any_view(), direction in any_light(), technique in any_windows(), walk in any_walk(),
+        view in any_view(), direction in any_light(), technique in any_windows(), walk in any_walk(), is_seen in any_seen(),
         plans in prop::collection::vec(any_box(), 1..10), octaves in -5..5_i32,
     ) {
         let by = f64::from(octaves * 2).exp2();
@@ -60,11 +60,11 @@ proptest! {
         let boxes: Vec<Aabb> = plans.iter().map(|plan| plan.aabb(&view, origin)).collect();
         let size = |v: Vec3| v * by as f32;
         let larger = boxes.iter().map(|b| Aabb::new(size(b.min), size(b.max))).collect();
-        let mut run = Run::new(World { origin, boxes }, &technique);
+        let mut run = Run::new(World { origin, boxes }, &technique).seen_if(is_seen);
         let extension = technique.fit.caster_extension * by as f32;
         let fit = technique.fit.with_caster_extension(extension);
         let in_unit = technique.with_fit(fit).with_softness(soft(metres * by as f32));
-        let mut other = Run::new(World { origin: origin * by, boxes: larger }, &in_unit);
+        let mut other = Run::new(World { origin: origin * by, boxes: larger }, &in_unit).seen_if(is_seen);
         for view in walked {
             let (maps, scaled_maps) = (run.frame(&view, direction), other.frame(&scaled(&view, by), direction));
             prop_assert!(is_scaled(&maps, &scaled_maps, by), "{maps:?} {scaled_maps:?}");

@@ -1,0 +1,4 @@
+{
+let technique = Technique::default().with_maps(Windows { count: 3, ..Windows::default() });
+technique
+}

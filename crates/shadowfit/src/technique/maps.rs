@@ -1,0 +1,294 @@
+//! The kinds of maps that a technique may have, each with the settings that only it has.
+
+use crate::base::{FitError, checks};
+use crate::technique::settings::{
+    DEFAULT_BLEND, DEFAULT_WASTE, FitKind, HoldSettings, MAX_BLEND, MAX_MAPS, MapChoice, RectangleKind, Shape,
+    SplitScheme, Stabilise, setters,
+};
+
+/// How the view is shared out among the maps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Maps {
+    /// Rectangles that are fixed to the world, each where it helps most of what is visible. The default.
+    Windows(Windows),
+    /// Slices of the view, one behind the other.
+    Slices(Slices),
+    /// One map around everything that is shadowed.
+    One(OneMap),
+}
+
+impl Default for Maps {
+    fn default() -> Self {
+        Self::Windows(Windows::default())
+    }
+}
+
+/// World-locked clipmaps that are placed by demand: squares of the plane across the light (or rectangles, where the
+/// light is low) on a grid that is fixed to the world, each where it helps most of what is visible. They are
+/// [read by coverage](MapChoice::Coverage). The module [`windows`](crate::windows) describes them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+pub struct Windows {
+    /// Number of maps, 1..=8. Default: 4.
+    pub count: u32,
+    /// Texels over which a window is blended into the next coarser one, inward from the filter's reach to its border,
+    /// 0..=[`MAX_BLEND`]; 0 for none. Default: 8.
+    pub blend: f32,
+    /// A window's depth range is kept until it is longer than necessary by this factor, 1..=100. Default: 1.8.
+    pub depth_waste: f32,
+}
+
+impl Default for Windows {
+    fn default() -> Self {
+        Self { count: 4, blend: DEFAULT_BLEND, depth_waste: DEFAULT_WASTE }
+    }
+}
+
+impl Windows {
+    /// The shape of a map around all that is visible, which the last window has.
+    pub(crate) const WHOLE: Shape = Shape { rectangle: RectangleKind::AxisAligned, ..Shape::new(FitKind::Focused) };
+}
+
+/// Slices of the view: each map holds a range of view depths of its own, as in other engines' cascades.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+pub struct Slices {
+    /// Number of maps, 2..=8. Default: 4, as Bevy and Babylon.js have it.
+    pub count: u32,
+    /// Shape of each map across the light. Default: [`FitKind::Focused`].
+    pub shape: Shape,
+    /// Where one map ends and the next begins. Default: [`SplitScheme::FromHistogram`], which takes
+    /// boxes where no histogram is given.
+    pub splits: SplitScheme,
+    /// Which of the maps a point reads. Default: [`MapChoice::Coverage`].
+    pub choice: MapChoice,
+    /// What keeps the maps stable. Default: [`Stabilise::Hysteresis`].
+    pub stabilise: Stabilise,
+}
+
+impl Default for Slices {
+    fn default() -> Self {
+        Self {
+            count: 4,
+            shape: Shape::default(),
+            splits: SplitScheme::default(),
+            choice: MapChoice::default(),
+            stabilise: Stabilise::default(),
+        }
+    }
+}
+
+/// One map around everything that is shadowed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+pub struct OneMap {
+    /// Its shape across the light. Default: [`FitKind::Focused`].
+    pub shape: Shape,
+    /// What keeps it stable. Default: [`Stabilise::Hysteresis`].
+    pub stabilise: Stabilise,
+}
+
+impl OneMap {
+    /// The map as the only slice of the view.
+    pub(crate) fn slice(&self) -> Slices {
+        let Self { shape, stabilise } = *self;
+        let choice = MapChoice::Coverage { blend: 0.0 };
+        Slices { count: 1, shape, splits: SplitScheme::Logarithmic, choice, stabilise }
+    }
+}
+
+setters!(Windows {
+    with_count count: u32,
+    with_blend blend: f32,
+    with_depth_waste depth_waste: f32,
+});
+
+setters!(Slices {
+    with_count count: u32,
+    with_shape shape: Shape,
+    with_splits splits: SplitScheme,
+    with_choice choice: MapChoice,
+    with_stabilise stabilise: Stabilise,
+});
+
+setters!(OneMap {
+    with_shape shape: Shape,
+    with_stabilise stabilise: Stabilise,
+});
+
+impl From<Windows> for Maps {
+    fn from(windows: Windows) -> Self {
+        Self::Windows(windows)
+    }
+}
+
+impl From<Slices> for Maps {
+    fn from(slices: Slices) -> Self {
+        Self::Slices(slices)
+    }
+}
+
+impl From<OneMap> for Maps {
+    fn from(one: OneMap) -> Self {
+        Self::One(one)
+    }
+}
+
+impl Maps {
+    /// Their number.
+    pub const fn count(&self) -> u32 {
+        match self {
+            Self::Windows(windows) => windows.count,
+            Self::Slices(slices) => slices.count,
+            Self::One(_) => 1,
+        }
+    }
+
+    /// As many maps of the same kind; slices that become one are [one map](Self::One) of their shape, and the other way
+    /// round.
+    #[must_use]
+    pub fn with_count(self, count: u32) -> Self {
+        match self {
+            Self::Windows(windows) => windows.with_count(count).into(),
+            Self::Slices(_) | Self::One(_) if count == 1 => self.as_one().into(),
+            Self::Slices(slices) => slices.with_count(count).into(),
+            Self::One(_) => self.as_slices().with_count(count).into(),
+        }
+    }
+
+    /// As many maps of the view, of a shape across the light: [slices](Self::Slices), or [one map](Self::One).
+    #[must_use]
+    pub fn with_shape(self, shape: Shape) -> Self {
+        if self.count() == 1 {
+            self.as_one().with_shape(shape).into()
+        } else {
+            self.as_slices().with_shape(shape).into()
+        }
+    }
+
+    /// As many maps of the view, fitted by another rule.
+    #[must_use]
+    pub fn with_kind(self, kind: FitKind) -> Self {
+        self.with_shape(self.shape().unwrap_or_default().with_kind(kind))
+    }
+
+    /// As many maps of the view, kept as told: [slices](Self::Slices), or [one map](Self::One).
+    #[must_use]
+    pub fn with_stabilise(self, stabilise: Stabilise) -> Self {
+        if self.count() == 1 {
+            self.as_one().with_stabilise(stabilise).into()
+        } else {
+            self.as_slices().with_stabilise(stabilise).into()
+        }
+    }
+
+    /// These slices, or the nearest to maps of another kind: as many (of one map: 2), with what both kinds have.
+    pub fn as_slices(&self) -> Slices {
+        match *self {
+            Self::Windows(Windows { count, blend, depth_waste: waste }) => Slices {
+                count: count.max(2),
+                choice: MapChoice::Coverage { blend },
+                stabilise: Stabilise::Hysteresis(HoldSettings { waste, ..HoldSettings::default() }),
+                ..Slices::default()
+            },
+            Self::Slices(slices) => slices,
+            Self::One(OneMap { shape, stabilise }) => Slices { count: 2, shape, stabilise, ..Slices::default() },
+        }
+    }
+
+    /// These windows, or the nearest to maps of another kind: as many, with what both kinds have.
+    pub fn as_windows(&self) -> Windows {
+        let windows = |count, blend, waste| Windows { count, blend, depth_waste: waste };
+        match *self {
+            Self::Windows(windows) => windows,
+            Self::Slices(Slices { count, choice, stabilise, .. }) => {
+                let blend = if choice.is_by_coverage() { choice.blend() } else { DEFAULT_BLEND };
+                windows(count, blend, stabilise.waste())
+            }
+            Self::One(OneMap { stabilise, .. }) => windows(1, DEFAULT_BLEND, stabilise.waste()),
+        }
+    }
+
+    /// This map, or the nearest to maps of another kind: one around them all, with what both kinds have.
+    pub fn as_one(&self) -> OneMap {
+        if let Self::One(one) = *self {
+            return one;
+        }
+        let Slices { shape, stabilise, .. } = self.as_slices();
+        OneMap { shape, stabilise }
+    }
+
+    /// The shape of each map; `None` of windows, whose shape follows from the light.
+    pub const fn shape(&self) -> Option<Shape> {
+        match self {
+            Self::Windows(_) => None,
+            Self::Slices(slices) => Some(slices.shape),
+            Self::One(one) => Some(one.shape),
+        }
+    }
+
+    /// Which of the maps a point reads.
+    pub const fn choice(&self) -> MapChoice {
+        match self {
+            Self::Windows(windows) => MapChoice::Coverage { blend: windows.blend },
+            Self::Slices(slices) => slices.choice,
+            Self::One(_) => MapChoice::Coverage { blend: 0.0 },
+        }
+    }
+
+    /// Whether fits go by what an earlier frame showed, where that is known.
+    pub const fn uses_seen(&self) -> bool {
+        match self {
+            Self::Windows(_) => true,
+            Self::Slices(slices) => matches!(slices.splits, SplitScheme::FromHistogram),
+            Self::One(_) => false,
+        }
+    }
+
+    /// Whether anything of a map is kept for later frames.
+    pub(crate) const fn are_kept(&self) -> bool {
+        match self {
+            Self::Windows(_) => true,
+            Self::Slices(Slices { stabilise, .. }) | Self::One(OneMap { stabilise, .. }) => {
+                !matches!(stabilise, Stabilise::Off)
+            }
+        }
+    }
+
+    /// Whether the fit of each is the XNA sample's, which has no caster policy.
+    pub const fn are_exact(&self) -> bool {
+        matches!(self.shape(), Some(Shape { kind: FitKind::XnaSample, .. }))
+    }
+
+    /// Refuses numbers that are out of range.
+    pub(crate) fn check(&self) -> Result<(), FitError> {
+        let least = if matches!(self, Self::Slices(_)) { 2.0 } else { 1.0 };
+        checks::within("the number of maps", f64::from(self.count()), least, MAX_MAPS as f64)?;
+        match self.choice() {
+            MapChoice::Coverage { blend } => {
+                checks::within("the maps' blend", f64::from(blend), 0.0, f64::from(MAX_BLEND))?;
+            }
+            MapChoice::ViewDepth { overlap } => {
+                checks::within("the maps' overlap", f64::from(overlap), 0.0, 1.0)?;
+            }
+        }
+        match self {
+            Self::Windows(windows) => {
+                checks::within("the windows' depth waste", f64::from(windows.depth_waste), 1.0, 100.0)?;
+            }
+            Self::Slices(Slices { stabilise, .. }) | Self::One(OneMap { stabilise, .. }) => check_kept(*stabilise)?,
+        }
+        Ok(())
+    }
+}
+
+/// Refuses numbers of what keeps maps stable that are out of range.
+fn check_kept(stabilise: Stabilise) -> Result<(), FitError> {
+    if let Stabilise::Hysteresis(hold) = stabilise {
+        checks::within("the hold's margin", f64::from(hold.margin), 0.0, 10.0)?;
+        checks::within("the hold's growth", f64::from(hold.growth), 1.0, 100.0)?;
+    }
+    checks::within("the hold's waste", f64::from(stabilise.waste()), 1.0, 100.0)?;
+    Ok(())
+}
