@@ -14,7 +14,7 @@ use toml::Value;
 /// A group that files of earlier versions may have, of settings for single maps: it is ignored.
 const FORMER_GROUP: &str = "override";
 
-/// What users are told of a file that was [translated](translate).
+/// What users are told of a file that was translated from what an earlier version wrote.
 pub const TRANSLATED: &str = "it was saved by an earlier version, and has been translated";
 
 /// Settings as TOML text that [`settings_from_toml`] reads: a table for each group, its name behind `prefix`, such as
