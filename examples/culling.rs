@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use clap::{Parser, ValueEnum};
 use glam::{DVec3, Vec3};
-use shadowfit::clusters::Clusters;
+use shadowfit::Clusters;
 use shadowfit::{FittedMap, ShadowFitter};
 use shadowfit_render::{
     AdapterChoice, Atmosphere, Culling, Frame, Gpu, GpuScene, MapStatistics, RenderTarget, Renderer,

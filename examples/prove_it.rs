@@ -6,11 +6,11 @@
 //! cargo run --example prove_it
 //! ```
 
+use shadowfit::demand::DepthBounds;
+use shadowfit::fewest_maps;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::histogram::DepthBounds;
-use shadowfit::map_fitter::fewest_maps;
+use shadowfit::proof::{Certificate, CoverageQuery, Margins, verify};
 use shadowfit::settings::SplitScheme;
-use shadowfit::verify::{Certificate, CoverageQuery, Margins, verify};
 use shadowfit::{
     Aabb, Boxes, FitError, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Slices, Technique, ViewFrustum,
     Workspace,

@@ -1,8 +1,8 @@
 //! Conventions across the crates, from settings to uniforms: what one crate writes is what the next one reads. The
 //! crates' own tests have the conventions of each.
 
+use shadowfit::Preset;
 use shadowfit::glam::{DVec3, Mat4, Vec3, Vec4};
-use shadowfit::presets::RECOMMENDED;
 use shadowfit::settings::{BiasSettings, FitSettings, MapFormat};
 use shadowfit::{Bias, DepthConvention, FittedMap, LightFit, PerspectiveCamera, Technique, fit};
 use shadowfit_params::tool::{CameraSettings, LightSettings};
@@ -149,7 +149,7 @@ fn with_extent_of(technique: &Technique, other: &Technique) -> Technique {
 #[test]
 fn the_core_the_shadow_map_and_the_docs_recommend_the_same_technique() {
     let recommended = Technique::default();
-    assert_eq!(Technique::preset(RECOMMENDED), Some(recommended));
+    assert_eq!(Technique::preset(Preset::RECOMMENDED), Some(recommended));
     assert_eq!(NamedTechnique::default().technique, recommended);
     assert_eq!(FitSettings::default().map, recommended.fit);
     assert_eq!(ShadowMapDescriptor::default(), ShadowMapDescriptor::from(&recommended));

@@ -5,7 +5,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use shadowfit::scroll::TexelRect;
 use shadowfit::settings::MapFormat;
-use shadowfit::{Aabb, Seen, Technique, need};
+use shadowfit::{Aabb, Seen, Technique, demand};
 use shadowfit_render::GpuProfilerQuery;
 use shadowfit_wgpu::need::{NeedPass, NeedView};
 use shadowfit_wgpu::{Culling, ShadowMap, ShadowMapDescriptor, UpdateSchedule};
@@ -299,7 +299,7 @@ fn counts(seen: &Seen) -> [f64; 3] {
     let has_some = |counts: &[u32]| counts.iter().any(|count| *count > 0);
     let points: u32 = counts.iter().sum();
     let cells = counts.iter().filter(|count| **count > 0).count();
-    let octaves = counts.chunks(need::SIDE * need::SIDE).filter(|level| has_some(level)).count();
+    let octaves = counts.chunks(demand::SIDE * demand::SIDE).filter(|level| has_some(level)).count();
     [f64::from(points), cells as f64, octaves as f64]
 }
 

@@ -4,9 +4,9 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 use glam::{DVec3, Vec3};
-use shadowfit::choice::MapOrder;
-use shadowfit::clusters::Clusters;
-use shadowfit::normal_cone::NormalCone;
+use shadowfit::Clusters;
+use shadowfit::NormalCone;
+use shadowfit::selection::MapOrder;
 use shadowfit::settings::MapChoice;
 use shadowfit::{Aabb, Boxes, FitInput, FittedMap, FittedMaps, Seen, ShadowFitter, Technique, ViewFrustum};
 use shadowfit_params::BoxSource;

@@ -16,7 +16,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     job: Job,
     /// Technique, by name or as a TOML file
-    #[arg(long = "technique", alias = "config", value_name = "NAME|FILE.toml", default_value = shadowfit::presets::RECOMMENDED)]
+    #[arg(long = "technique", alias = "config", value_name = "NAME|FILE.toml", default_value = shadowfit::Preset::RECOMMENDED)]
     technique: String,
 }
 

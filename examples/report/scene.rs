@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use image::RgbaImage;
 use indicatif::{ProgressBar, ProgressStyle};
 use shadowfit::FittedMap;
-use shadowfit::presets::RECOMMENDED;
+use shadowfit::Preset;
 use shadowfit::settings::FilterKind;
 use shadowfit_study::{NamedTechnique, SharedTruth, ensure_judged};
 use shadowfit_truth::PictureTally;
@@ -21,7 +21,7 @@ use crate::write::Output;
 
 /// Techniques that are compared when none is named: the sample's, this project's own stable and sharp slices, and the
 /// recommended one.
-const DEFAULT_TECHNIQUES: [&str; 4] = ["xna-1", "stable-4", "histogram-4", RECOMMENDED];
+const DEFAULT_TECHNIQUES: [&str; 4] = ["xna-1", "stable-4", "histogram-4", Preset::RECOMMENDED];
 
 #[derive(clap::Args)]
 pub(crate) struct Args {

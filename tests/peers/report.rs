@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use shadowfit::presets::RECOMMENDED;
+use shadowfit::Preset;
 use shadowfit_truth::peers::{FitFile, FitFrame, FitMap, Scenarios};
 
 use crate::support::{assets, example_program, peers};
@@ -277,7 +277,7 @@ fn gpu_the_default_technique_has_at_most_half_of_the_wrong_pixels_of_bevys_fit()
     a_part_of_the_peers(&scratch, &peers);
     let assets = assets.canonicalize().expect("the assets' folder");
     let assets = assets.to_str().expect("a plain name");
-    let fitted = scratch.peer_fit(&["part.json", "--fit", RECOMMENDED, "--assets", assets, "-o", "ours.json"]);
+    let fitted = scratch.peer_fit(&["part.json", "--fit", Preset::RECOMMENDED, "--assets", assets, "-o", "ours.json"]);
     assert!(fitted.status.success(), "{}", String::from_utf8_lossy(&fitted.stderr));
     let small = ["--stride", "16", "--size", "640x360", "--software"];
     let whole = [&["part.json", "bevy.json", "ours.json", "--assets", assets, "-o", "out"][..], &small].concat();
@@ -286,7 +286,7 @@ fn gpu_the_default_technique_has_at_most_half_of_the_wrong_pixels_of_bevys_fit()
     let json: serde_json::Value = serde_json::from_str(&text(&scratch.0.join("out/table.json"))).expect("JSON");
     let column = |fit: usize, name: &str| json["fits"][fit]["overall"][name].as_f64().expect("a number");
     let [bevy, ours] = [0, 1].map(|fit| column(fit, "wrong %"));
-    println!("wrong: {bevy}% with Bevy's fit, {ours}% with {RECOMMENDED}");
+    println!("wrong: {bevy}% with Bevy's fit, {ours}% with {}", Preset::RECOMMENDED);
     assert!(ours <= 0.5 && ours * 2.0 <= bevy, "{ours}% of {bevy}%");
     assert!(column(1, "false shadow %") <= 0.01 && column(1, "false light %") <= 0.2, "off edges");
     assert_eq!((column(1, "hole %"), column(1, "uncov %"), column(1, "lost %")), (0.0, 0.0, 0.0));

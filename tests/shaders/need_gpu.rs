@@ -1,8 +1,8 @@
 //! The compute pass over a depth buffer against its reference in Rust, and what it leaves out.
 
+use shadowfit::demand::NeedSpace;
+use shadowfit::demand::{CLASSES, DEPTHS};
 use shadowfit::glam::{DVec3, Mat4, Vec3};
-use shadowfit::need::NeedSpace;
-use shadowfit::seen::{CLASSES, DEPTHS};
 use shadowfit::settings::MapSettings;
 use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 use shadowfit_render::Gpu;

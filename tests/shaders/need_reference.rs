@@ -1,10 +1,10 @@
 //! What the compute pass over a depth buffer counts, in plain Rust and f64: positions by the inverse of the matrix, the
 //! surface's plane by differences, cells and bins by the core.
 
+use shadowfit::demand::{CELLS, NeedSpace, PIXELS};
+use shadowfit::demand::{CLASSES, DEPTHS};
+use shadowfit::demand::{DepthHistogram, needed_texel};
 use shadowfit::glam::{DMat4, DVec3};
-use shadowfit::histogram::{DepthHistogram, needed_texel};
-use shadowfit::need::{CELLS, NeedSpace, PIXELS};
-use shadowfit::seen::{CLASSES, DEPTHS};
 use shadowfit_wgpu::need::NeedView;
 
 /// Share of a pixel over which movements are measured.

@@ -1,9 +1,8 @@
 //! Several maps of one view: which of them a point reads, maps that are smaller than their layers, and casters at any bind
 //! group.
 
-use shadowfit::bias::reach;
-use shadowfit::choice::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth};
 use shadowfit::glam::{DVec3, UVec2, Vec3};
+use shadowfit::selection::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth};
 use shadowfit::settings::{BiasSettings, FilterKind, FitKind, FitSettings, MapChoice};
 use shadowfit::{Bias, FittedMap, LightFit, PerspectiveCamera, fit};
 use shadowfit_wgpu::{MAX_MAPS, MapView, ShadowMapDescriptor};
@@ -262,7 +261,7 @@ fn by_coverage_points_read_the_finest_map_that_holds_them_and_the_next_one_towar
         let order = MapOrder::new(choice, maps.iter().map(|map| &map.fit));
         let read = |point: DVec3| {
             let free = |map: usize| maps[map].fit.free_texels(point);
-            by_coverage(order.iter(), reach(filter).into(), blend.into(), free)
+            by_coverage(order.iter(), filter.reach().into(), blend.into(), free)
         };
         let (alone, blended) = assert_read(&descriptor, &maps, &scattered(), read);
         println!("{filter:?}, blend {blend}: {alone:?} alone, {blended} blended");

@@ -2,7 +2,7 @@
 //! that choose one.
 
 use egui::{Button, Color32, Grid, Response, RichText, Role, Stroke, Ui, WidgetInfo};
-use shadowfit::light_fit::Constraint;
+use shadowfit::Constraint;
 use shadowfit::settings::MAX_MAPS;
 use shadowfit_params::figures::{Figures, MAP_TINTS, MapFigures};
 

@@ -48,7 +48,7 @@ struct Entry<'a> {
 impl Menu {
     pub(crate) fn open(&mut self, name: String, technique: &Technique) {
         self.chosen[self.side].clone_from(&name);
-        let is_it = |preset: &&shadowfit::presets::Preset| of_scene(&preset.technique(), technique) == *technique;
+        let is_it = |preset: &&shadowfit::Preset| of_scene(&preset.technique(), technique) == *technique;
         // A preset is in the menu already.
         if !PRESETS.iter().filter(is_it).any(|preset| preset.name == name) {
             self.opened = Some((name, *technique));

@@ -4,9 +4,9 @@
 mod legend;
 
 use glam::Vec3;
+use shadowfit::Constraint;
 use shadowfit::FittedMap;
 use shadowfit::diagnostics::depth_step;
-use shadowfit::light_fit::Constraint;
 use shadowfit::settings::{MAX_MAPS, MapFormat};
 
 pub use legend::{ERROR_COLORS, PIXELS_PER_TEXEL_COLORS, pixels_per_texel_color};

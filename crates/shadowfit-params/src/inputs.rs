@@ -42,7 +42,7 @@ pub enum BoxSource {
     /// The boxes of its objects.
     Objects,
     /// The boxes of clusters of its triangles, with cones of their normals
-    /// ([`Clusters`](shadowfit::clusters::Clusters)). The default.
+    /// ([`Clusters`](shadowfit::Clusters)). The default.
     #[default]
     Clusters,
 }

@@ -642,7 +642,7 @@ fn a_parameter_that_says_it_has_no_effect_has_none_and_the_others_have_one() {
         let whole = Shape::default().with_rectangle(RectangleKind::AxisAligned);
         let shape = settings.technique.maps.shape().unwrap_or(whole);
         let settings = FitSettings { shape, map: settings.technique.fit };
-        shadowfit::fits::fit_scene(&input, &settings, &mut Workspace::new(&mut storage)).expect("a fit")
+        shadowfit::fit_scene(&input, &settings, &mut Workspace::new(&mut storage)).expect("a fit")
     };
     let Kind::Choice(kinds) = row("fit.kind").kind else { panic!("fits are options") };
     // y alone is up already, at any length.

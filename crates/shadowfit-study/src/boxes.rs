@@ -4,8 +4,8 @@
 //! mesh says little. Instances that an animation moves have one box each, recomputed with every pose.
 
 use glam::{DVec3, Vec3};
-use shadowfit::clusters::Clusters;
-use shadowfit::normal_cone::NormalCone;
+use shadowfit::Clusters;
+use shadowfit::NormalCone;
 use shadowfit::{Aabb, Boxes, FitInput, ViewFrustum};
 use shadowfit_scene::{AlphaMode, Instance, Pose, Scene};
 

@@ -1,9 +1,9 @@
 //! Fits of a scene's views by the fitter that engines take, with rays that find the visible points.
 
 use glam::{DVec3, Vec3};
-use shadowfit::histogram::needed_texel;
-use shadowfit::need;
-use shadowfit::seen::{Seen, SeenSpace};
+use shadowfit::demand;
+use shadowfit::demand::needed_texel;
+use shadowfit::demand::{Seen, SeenSpace};
 use shadowfit::{FitError, FitInput, FittedMaps, PerspectiveCamera, ShadowFitter, Technique, ViewFrustum};
 use shadowfit_params::Inputs;
 use shadowfit_truth::Tracer;
@@ -108,7 +108,7 @@ pub fn see_by_rays(
         [world_from_view.x_axis, world_from_view.y_axis, world_from_view.z_axis].map(|axis| axis.truncate().as_dvec3());
     let tan_y = (f64::from(camera.fov_y) * 0.5).tan();
     let tan_x = tan_y * f64::from(camera.aspect);
-    let pixel = 2.0 * tan_y / f64::from(need::PIXELS);
+    let pixel = 2.0 * tan_y / f64::from(demand::PIXELS);
     for row in 0..ROWS {
         for column in 0..COLUMNS {
             let x = (2.0 * (f64::from(column) + 0.5) / f64::from(COLUMNS) - 1.0) * tan_x;

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec3, Vec3};
 use shadowfit::FittedMap;
-use shadowfit::choice::MapOrder;
+use shadowfit::selection::MapOrder;
 use shadowfit::settings::MapChoice;
 use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{MapReading, MeasuredMap, PictureMaps};

@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
-use shadowfit::presets::RECOMMENDED;
+use shadowfit::Preset;
 use shadowfit::{PRESETS, Technique};
 use shadowfit_params::tool::Settings;
 use shadowfit_params::{Inputs, NAMED_INPUTS, NamedInputs};
@@ -31,7 +31,7 @@ pub struct NamedTechnique {
 
 impl Default for NamedTechnique {
     fn default() -> Self {
-        Self::preset(RECOMMENDED).unwrap_or_else(|| Technique::default().into())
+        Self::preset(Preset::RECOMMENDED).unwrap_or_else(|| Technique::default().into())
     }
 }
 
@@ -201,7 +201,7 @@ mod tests {
             assert!(error.contains(reason) && error.contains("bad.toml"), "{text}: {error}");
         }
         std::fs::remove_dir_all(&folder).expect("removed");
-        assert!(format!("{:#}", NamedTechnique::find("none").expect_err("unknown")).contains(RECOMMENDED));
+        assert!(format!("{:#}", NamedTechnique::find("none").expect_err("unknown")).contains(Preset::RECOMMENDED));
         assert!(NamedTechnique::find("/nowhere/x.toml").is_err());
     }
 }

@@ -12,7 +12,7 @@ mod words;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3, Vec3};
-use shadowfit::choice::MapRead;
+use shadowfit::selection::MapRead;
 use shadowfit::{FittedMap, Technique};
 use shadowfit_scene::Scene;
 use shadowfit_truth::{Class, Occluder, PictureMaps, PixelFinding, PixelTruth, TruthPoint};

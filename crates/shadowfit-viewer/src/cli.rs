@@ -358,7 +358,7 @@ mod tests {
         assert!(["--technique", "bad.toml", "splits.count is 9"].iter().all(|word| error.contains(word)), "{error}");
         std::fs::remove_dir_all(&folder).expect("removed");
         let error = format!("{:#}", apply(&["none"]).expect_err("no such preset"));
-        assert!(error.contains("\"none\"") && error.contains(shadowfit::presets::RECOMMENDED), "{error}");
+        assert!(error.contains("\"none\"") && error.contains(shadowfit::Preset::RECOMMENDED), "{error}");
     }
 
     #[test]

@@ -1,8 +1,7 @@
 //! The description of shadow maps: size, count, format, filter, choice of the map and depth convention.
 
-use shadowfit::choice::MapReading;
-use shadowfit::settings::{CasterPolicy, FilterKind, MAX_BLEND, MAX_MAPS, MapChoice, MapFormat, Softness};
-use shadowfit::softness::MAX_RADIUS;
+use shadowfit::selection::MapReading;
+use shadowfit::settings::{CasterPolicy, FilterKind, MAX_MAPS, MapChoice, MapFormat, Softness};
 use shadowfit::{DepthConvention, Technique};
 
 use crate::ShadowMapError;
@@ -85,7 +84,7 @@ impl ShadowMapDescriptor {
         if !(1..=MAX_MAPS as u32).contains(&self.maps) {
             return Err(ShadowMapError::Maps(self.maps));
         }
-        if !(0.0..=MAX_BLEND).contains(&self.choice.blend()) {
+        if !(0.0..=MapChoice::MAX_BLEND).contains(&self.choice.blend()) {
             return Err(ShadowMapError::Blend(self.choice.blend()));
         }
         if self.depth == DepthConvention::NegativeOneToOne {
@@ -97,7 +96,7 @@ impl ShadowMapDescriptor {
             return Err(ShadowMapError::Fade(self.fade));
         }
         let Softness { floor, ceiling, .. } = self.softness;
-        if !(0.0..=ceiling).contains(&floor) || !(1.0..=MAX_RADIUS).contains(&ceiling) {
+        if !(0.0..=ceiling).contains(&floor) || !(1.0..=Softness::MAX_RADIUS).contains(&ceiling) {
             return Err(ShadowMapError::Softness { floor, ceiling });
         }
         let tangent = self.softness.tangent();

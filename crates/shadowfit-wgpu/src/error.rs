@@ -4,8 +4,7 @@
 use core::fmt;
 
 use shadowfit::glam::Vec3;
-use shadowfit::settings::{MAX_BLEND, MAX_MAPS, MapFormat};
-use shadowfit::softness::MAX_RADIUS;
+use shadowfit::settings::{MAX_MAPS, MapChoice, MapFormat, Softness};
 use shadowfit::{DepthConvention, FitError};
 
 use crate::limits::RESOLUTIONS;
@@ -22,11 +21,11 @@ pub enum ShadowMapError {
     },
     /// Number of maps outside 1..=[`MAX_MAPS`].
     Maps(u32),
-    /// A blend outside 0..=[`MAX_BLEND`], in texels.
+    /// A blend outside 0..=[`MapChoice::MAX_BLEND`], in texels.
     Blend(f32),
     /// A depth convention that wgpu's clip space does not have.
     Depth(DepthConvention),
-    /// Radii of soft filters that are not 0 ≤ floor ≤ ceiling, with a ceiling of 1 to [`MAX_RADIUS`] texels.
+    /// Radii of soft filters that are not 0 ≤ floor ≤ ceiling, with a ceiling of 1 to [`Softness::MAX_RADIUS`] texels.
     Softness {
         /// [`Softness::floor`](shadowfit::settings::Softness::floor), in texels.
         floor: f32,
@@ -122,7 +121,7 @@ impl fmt::Display for ShadowMapError {
         match self {
             Self::Resolution { resolution, device_limit } => write_resolution(f, *resolution, *device_limit),
             Self::Maps(maps) => write!(f, "{maps} shadow maps: between 1 and {MAX_MAPS} are possible"),
-            Self::Blend(texels) => write!(f, "blend of {texels} texels: 0 to {MAX_BLEND} are possible"),
+            Self::Blend(texels) => write!(f, "blend of {texels} texels: 0 to {} are possible", MapChoice::MAX_BLEND),
             Self::Depth(depth) => {
                 write!(f, "depth convention {depth:?}: wgpu's clip space has 0..1, plain or reversed")
             }
@@ -171,7 +170,8 @@ fn write_resolution(f: &mut fmt::Formatter<'_>, [width, height]: [u32; 2], devic
 fn write_softness(f: &mut fmt::Formatter<'_>, floor: f32, ceiling: f32) -> fmt::Result {
     write!(
         f,
-        "soft filters of {floor} to {ceiling} texels: the floor must be 0 to the ceiling, and that 1 to {MAX_RADIUS}"
+        "soft filters of {floor} to {ceiling} texels: the floor must be 0 to the ceiling, and that 1 to {}",
+        Softness::MAX_RADIUS
     )
 }
 

@@ -3,9 +3,9 @@
 mod passes;
 mod updates;
 
-use shadowfit::choice::MapOrder;
 use shadowfit::culling::caster_volumes;
 use shadowfit::glam::DVec3;
+use shadowfit::selection::MapOrder;
 use shadowfit::{Aabb, CasterVolume, FitError, FittedMap};
 
 use crate::cache::{CacheFrame, CacheSettings, FramePlan, MapCache};

@@ -1,8 +1,8 @@
 //! What the last frame showed, for fits that put their maps where it helps most: a compute pass over the depth buffer.
 //!
 //! [`NeedPass`] counts the visible points that face the light: by their place across the light and the texel that they
-//! ask for (the grid of need of [`shadowfit::need`], for windows), and by view depth and foreshortening (the
-//! [`DepthHistogram`](shadowfit::histogram::DepthHistogram)). Position and slope of a point come from the depths of its
+//! ask for (the grid of need of [`shadowfit::demand`], for windows), and by view depth and foreshortening (the
+//! [`DepthHistogram`](shadowfit::demand::DepthHistogram)). Position and slope of a point come from the depths of its
 //! pixel and of the neighbours. Nothing waits for the GPU: counts come back a frame or two late, which fits allow for.
 //!
 //! ```no_run

@@ -1,8 +1,7 @@
 //! The WGSL of casters and receivers, put together from the pieces in `shaders/`. Every name starts with a prefix, so
 //! that the text can be pasted into any shader, and that of several suns into one.
 
-use shadowfit::settings::{FilterKind, MapChoice, MapFormat};
-use shadowfit::softness::LOOK_UP_SQUARE;
+use shadowfit::settings::{FilterKind, MapChoice, MapFormat, Softness};
 use shadowfit::{CasterVolume, DepthConvention};
 
 use crate::{MAX_MAPS, ShadowMapDescriptor, ShadowMapError};
@@ -104,7 +103,7 @@ pub fn culling_wgsl(options: &WgslOptions<'_>) -> String {
 ///
 /// `position` is in world space, metres, relative to the origin of [`crate::ShadowMap::prepare`];
 /// `normal` is the unit geometric normal on the side that is seen. Which map a point reads is
-/// [`ShadowMapDescriptor::choice`], by the rule of [`shadowfit::choice`]. Reads the bindings from
+/// [`ShadowMapDescriptor::choice`], by the rule of [`shadowfit::selection`]. Reads the bindings from
 /// [`ShadowMapDescriptor::first_binding`] on, two of them and for depth formats three; no derivatives.
 pub fn receiver_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) -> String {
     let (texture, load) = texture(descriptor.format);
@@ -180,7 +179,8 @@ fn texture(format: MapFormat) -> (&'static str, &'static str) {
 fn filter(filter: FilterKind) -> String {
     let disc = |taps: u32, file: &str| {
         let constants = format!(
-            "const SHADOWFIT_TAPS: u32 = {taps}u;\nconst SHADOWFIT_LOOK_UP_SQUARE: f32 = {LOOK_UP_SQUARE:?};\n\n"
+            "const SHADOWFIT_TAPS: u32 = {taps}u;\nconst SHADOWFIT_LOOK_UP_SQUARE: f32 = {:?};\n\n",
+            Softness::LOOK_UP_SQUARE
         );
         [&constants, include_str!("shaders/disc.wgsl"), &disc_taps(taps), file].concat()
     };

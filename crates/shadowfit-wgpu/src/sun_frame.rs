@@ -1,7 +1,7 @@
 //! What an engine tells about a frame: views, light, boxes and casters.
 
+use shadowfit::NormalCone;
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::normal_cone::NormalCone;
 use shadowfit::{Boxes, FitError, FitInput, ViewFrustum};
 
 use crate::{Casters, MapView};

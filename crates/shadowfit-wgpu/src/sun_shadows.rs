@@ -9,7 +9,7 @@
 mod error;
 
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec3};
-use shadowfit::verify::{Certificate, CoverageQuery, verify};
+use shadowfit::proof::{Certificate, CoverageQuery, verify};
 use shadowfit::{
     Aabb, DepthConvention, FitInput, FittedMap, FittedMaps, ShadowFitter, Technique, ViewFrustum, Workspace,
 };

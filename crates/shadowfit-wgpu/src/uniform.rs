@@ -2,9 +2,9 @@
 //! shaders in the tests, so that the two cannot drift apart.
 
 use bytemuck::{Pod, Zeroable};
-use shadowfit::choice::MapOrder;
 use shadowfit::culling::CasterPlanes;
 use shadowfit::glam::{DVec3, Vec2, Vec3};
+use shadowfit::selection::MapOrder;
 use shadowfit::settings::Softness;
 use shadowfit::{CasterVolume, DepthConvention, FittedMap, LightFit};
 
@@ -103,7 +103,7 @@ pub struct ReceiverUniform {
     pub padding_1: u32,
     /// As above.
     pub padding_2: u32,
-    /// The maps, in the order in which points try them: that of [`shadowfit::choice::MapOrder`].
+    /// The maps, in the order in which points try them: that of [`shadowfit::selection::MapOrder`].
     pub maps: [MapUniform; MAX_MAPS],
 }
 

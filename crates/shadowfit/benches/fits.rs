@@ -6,9 +6,9 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use shadowfit::clusters::Clusters;
+use shadowfit::Clusters;
+use shadowfit::demand::{CELLS, NeedGrid, NeedSpace, PIXELS};
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec2, Vec3, Vec3Swizzles, Vec4};
-use shadowfit::need::{CELLS, NeedGrid, NeedSpace, PIXELS};
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, MapSettings, Shape, SplitScheme, Stabilise};
 use shadowfit::{Aabb, Boxes, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Slices, Technique, Workspace, fit};
 

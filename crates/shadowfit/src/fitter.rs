@@ -14,7 +14,7 @@ use crate::light::Light;
 use crate::light::grid::GridAnchor;
 use crate::map::{FittedMap, FittedMaps};
 use crate::slices::{self, HeldSlices};
-use crate::technique::settings::{BiasSettings, CasterPolicy, FilterKind, FitSettings, MAX_DEPTH_STEPS};
+use crate::technique::settings::{BiasSettings, CasterPolicy, FilterKind, FitSettings};
 use crate::technique::{Maps, Slices, Technique, Windows};
 use crate::view::{Range, ViewFrustum};
 use crate::windows::{self, HeldWindows};
@@ -62,9 +62,9 @@ impl MapFitter {
     ///
     /// # Errors
     ///
-    /// As [`fit_scene`](crate::fits::fit_scene), for the settings of each map;
+    /// As [`fit_scene`](crate::fit_scene), for the settings of each map;
     /// [`FitError::OutOfRange`] for a number of windows outside 1..=8 or of slices outside 2..=8, an overlap or λ outside 0..=1,
-    /// a blend outside 0..=[`MAX_BLEND`](crate::settings::MAX_BLEND), and hold settings, softness, fade or depth steps that are out of range;
+    /// a blend outside 0..=[`MapChoice::MAX_BLEND`](crate::settings::MapChoice::MAX_BLEND), and hold settings, softness, fade or depth steps that are out of range;
     /// [`FitError::ClampedCasters`] for a filter that depth clamp leaves without the distances that it needs;
     /// [`FitError::NearNotBelowFar`] for manual splits that do not ascend. Manual splits before or beyond what is shadowed are not an error: a map
     /// without a range [is empty](LightFit::is_empty). An error leaves the fitter as it was.
@@ -153,7 +153,7 @@ fn write(map: &mut FittedMap, placed: &PlacedMap, frame: &Frame) -> Result<(), F
 /// ```
 /// # use shadowfit::glam::{DVec2, DVec3, Vec3};
 /// # use shadowfit::*;
-/// use shadowfit::map_fitter::fewest_maps;
+/// use shadowfit::fewest_maps;
 /// # let camera = PerspectiveCamera {
 /// #     eye: DVec3::new(0.0, 1.7, 5.0),
 /// #     forward: Vec3::NEG_Z,
@@ -231,7 +231,7 @@ fn check_numbers(technique: &Technique) -> Result<(), FitError> {
     for bias in [constant, slope, normal_offset, receiver_plane] {
         checks::finite("a bias", f64::from(bias))?;
     }
-    checks::within("the bias in depth steps", f64::from(depth_steps), 0.0, f64::from(MAX_DEPTH_STEPS))?;
+    checks::within("the bias in depth steps", f64::from(depth_steps), 0.0, f64::from(BiasSettings::MAX_DEPTH_STEPS))?;
     let clamps = technique.fit.casters == CasterPolicy::DepthClamp && !technique.maps.are_exact();
     if technique.filter == FilterKind::Pcss && clamps {
         return Err(FitError::ClampedCasters);

@@ -40,7 +40,7 @@
 //! eye. Boxes need not be exact: one for each object is enough, and without any the maps cover the
 //! whole view.
 //!
-//! [`Technique::default`] is the one to begin with: [`windows`], which are sharp and hardly
+//! [`Technique::default`] is the one to begin with: [`Windows`], which are sharp and hardly
 //! ever make an edge crawl. Tell the fitter what the last frame showed ([`ShadowFitter::see`]);
 //! `shadowfit-wgpu` counts it in the depth buffer by a compute pass. Without it the fit looks through the
 //! boxes in each frame: texels are a third wider, and with a thousand boxes a fit takes three times as long
@@ -105,20 +105,20 @@
 //! | other filters, biases, splits, resolutions, the shadow distance | [`Technique`] and [`settings`] |
 //! | techniques by name | [`PRESETS`], [`Technique::preset`] |
 //! | a view from a matrix, with its depth convention; both eyes of a headset | [`ViewFrustum`], [`FitInput::views`] |
-//! | one map, from the camera alone or with boxes | [`fit`], [`fits::fit_scene`], one algorithm a module in [`fits`] |
-//! | which map a point reads, by coverage or by view depth | [`choice`], [`FittedMaps::read`] |
+//! | one map, from the camera alone or with boxes | [`fit`], [`fit_scene`] |
+//! | which map a point reads, by coverage or by view depth | [`selection`], [`FittedMaps::read`] |
 //! | which casters to draw into a map | [`CasterVolume`], [`culling`] for spheres, oriented boxes, whole lists and tighter volumes |
-//! | splits chosen by what the last frame showed | [`histogram`], [`FitInput::histogram`], [`FitInput::depth_bounds`] |
-//! | windows placed by what the last frame showed | [`windows`], [`seen`], [`need`], [`FitInput::need`] |
-//! | how many maps are enough | [`map_fitter::fewest_maps`] |
-//! | boxes that hug large meshes | `clusters` and [`normal_cone`], feature `alloc` |
+//! | splits chosen by what the last frame showed | [`demand`], [`FitInput::histogram`], [`FitInput::depth_bounds`] |
+//! | windows placed by what the last frame showed | [`Windows`], [`demand`], [`ShadowFitter::see`], [`FitInput::need`] |
+//! | how many maps are enough | [`fewest_maps`] |
+//! | boxes that hug large meshes | [`Clusters`], feature `alloc`, and [`NormalCone`] |
 //! | static casters drawn only where the map is new | [`scroll`] |
 //! | a moving sun without crawling shadow edges | [`light_steps`] |
 //! | a lamp or headlight: its perspective map, casters and biases | [`SpotLight`], [`spot`] |
-//! | a proof that no map has a hole | [`verify`] |
+//! | a proof that no map has a hole | [`proof`] |
 //! | biases in metres and depth for a filter of your own | [`Bias`], [`bias`] |
 //! | pixels per texel, depth steps, margin against acne | [`diagnostics`] |
-//! | f32 matrices for world positions, a fit from a matrix of other code | [`LightFit::world_matrices`], [`light_fit`] |
+//! | f32 matrices for world positions, a fit from a matrix of other code | [`LightFit::world_matrices`], [`LightFit::from_clip_from_world`] |
 //! | all parameters with unit, range and help, for panels and files; a technique as Rust code | the crate `shadowfit-params` |
 //!
 //! # Conventions
@@ -140,8 +140,8 @@
 //! |---|---|
 //! | `std` (default) | `alloc`, and glam with the standard library |
 //! | `alloc` | [`ShadowFitter`], [`Seen`] and `Clusters`, for which an allocator is enough |
-//! | `serde` | `Serialize` and `Deserialize` for all settings, inputs and outputs that own their data, and for the state between frames; `Clusters` have theirs in [`Aabb`] and [`NormalCone`](normal_cone::NormalCone) |
-//! | `bytemuck` | `Pod` and `Zeroable` for [`Aabb`], [`Sphere`](culling::Sphere), [`OrientedBox`](culling::OrientedBox), [`NormalCone`](normal_cone::NormalCone), [`Bias`], [`SpotBias`] and [`CasterPlanes`](culling::CasterPlanes) |
+//! | `serde` | `Serialize` and `Deserialize` for all settings, inputs and outputs that own their data, and for the state between frames; `Clusters` have theirs in [`Aabb`] and [`NormalCone`] |
+//! | `bytemuck` | `Pod` and `Zeroable` for [`Aabb`], [`Sphere`](culling::Sphere), [`OrientedBox`](culling::OrientedBox), [`NormalCone`], [`Bias`], [`SpotBias`] and [`CasterPlanes`](culling::CasterPlanes) |
 //! | `mint` | the module `mint`: conversions from and to the types of other maths crates |
 //!
 //! This crate's vectors are those of the [`glam`] that it re-exports, 0.33 (from 0.33.2) or 0.34.
@@ -192,18 +192,23 @@ mod light {
 mod content;
 
 /// What was visible, and how fine a texel it asks for.
-mod demand {
-    pub mod histogram;
-    pub mod need;
+pub mod demand {
+    pub(crate) mod histogram;
+    pub(crate) mod need;
     #[cfg(feature = "alloc")]
-    pub mod seen;
+    mod seen;
+
+    pub use histogram::{DepthBounds, DepthHistogram, needed_texel};
+    pub use need::{CELLS, LEVELS, MIN_FACING, NeedGrid, NeedSpace, PIXELS, SIDE};
+    #[cfg(feature = "alloc")]
+    pub use seen::{CLASSES, COUNTS, DEPTHS, Seen, SeenSpace};
 }
 
-pub mod fits;
+mod fits;
 
 mod slices;
 
-pub mod windows;
+mod windows;
 
 pub mod bias;
 pub mod culling;
@@ -222,7 +227,7 @@ pub mod diagnostics;
 pub mod proof;
 pub mod spot;
 
-pub mod fitter;
+mod fitter;
 #[cfg(feature = "alloc")]
 mod shadow_fitter;
 
@@ -232,23 +237,22 @@ pub mod mint;
 pub use base::{Aabb, Boxes, DepthConvention, FitError};
 pub use bias::Bias;
 #[cfg(feature = "alloc")]
-pub use content::clusters;
-pub use content::normal_cone;
+pub use content::clusters::Clusters;
+pub use content::normal_cone::NormalCone;
 pub use culling::CasterVolume;
 #[cfg(feature = "alloc")]
-pub use demand::seen::{self, Seen};
-pub use demand::{histogram, need};
-pub use fits::{FitInput, LightFit, Workspace, fit, light_fit};
-pub use fitter::MapFitter;
+pub use demand::Seen;
+pub use fits::light_fit::WorldMatrices;
+pub use fits::{Constraint, FitInput, LightFit, Workspace, fit, fit_scene};
+pub use fitter::{MapFitter, fewest_maps};
 pub use glam;
 pub use keep::{light_steps, scroll};
 pub use map::{FittedMap, FittedMaps};
 #[cfg(feature = "alloc")]
 pub use shadow_fitter::ShadowFitter;
 pub use spot::{SpotBias, SpotFit, SpotLight};
-pub use technique::{Maps, OneMap, PRESETS, Preset, Slices, Technique, Windows, presets, settings, softness};
+pub use technique::{Maps, OneMap, PRESETS, Preset, Slices, Technique, Windows, settings};
 pub use view::{PerspectiveCamera, ViewFrustum};
-pub use {fitter as map_fitter, proof as verify, selection as choice};
 
 /// Runs the example of the README as a test.
 #[cfg(doctest)]

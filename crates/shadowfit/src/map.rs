@@ -21,14 +21,14 @@ pub struct FittedMap {
     pub bias: Bias,
     /// View depth from which points choose this map, in metres, where maps are [read by view
     /// depth](crate::settings::MapChoice::ViewDepth). By coverage it says for which part of the view the
-    /// map was made: of [windows](crate::windows) for all of it.
+    /// map was made: of [windows](crate::Windows) for all of it.
     pub near: f32,
     /// View depth up to which points choose this map by view depth, in metres: they take the first map that
     /// ends beyond them. Of slices the last one has no end. Where splits coincide there is no range: such maps end
     /// at `f32::MIN` before all others, and begin at `f32::MAX` after them.
     pub far: f32,
     /// View depth from which this map covers what is seen, in metres: before `near` where the
-    /// maps overlap. The end of its range for a [window](crate::windows) that is not the
+    /// maps overlap. The end of its range for a [window](crate::Windows) that is not the
     /// last one, since it need not hold all of any depth.
     pub covered_near: f32,
     /// Where the map lies on the world's grid, if it does: what [`Scroll`](crate::scroll::Scroll) and

@@ -84,7 +84,7 @@ impl MapOrder {
     /// may be skipped.
     ///
     /// ```
-    /// use shadowfit::choice::MapOrder;
+    /// use shadowfit::selection::MapOrder;
     /// use shadowfit::glam::Vec2;
     /// use shadowfit::settings::MapChoice;
     /// use shadowfit::LightFit;

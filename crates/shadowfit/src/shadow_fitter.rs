@@ -90,7 +90,7 @@ mod tests {
     use glam::{DVec3, Vec3};
 
     use super::*;
-    use crate::seen::SeenSpace;
+    use crate::demand::SeenSpace;
     use crate::{Aabb, Boxes, PerspectiveCamera};
 
     #[test]

@@ -3,14 +3,14 @@
 use allocation_counter::measure;
 use shadowfit::bias::Reach;
 use shadowfit::culling::{OrientedBox, Sphere, Sweep, cull};
-use shadowfit::fits::fit_scene;
+use shadowfit::demand::{CELLS, NeedGrid, NeedSpace};
+use shadowfit::fit_scene;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::need::{CELLS, NeedGrid, NeedSpace};
+use shadowfit::proof::{CoverageQuery, verify};
 use shadowfit::scroll::{Scroll, tiles};
 use shadowfit::settings::{
     CasterPolicy, FitKind, FitSettings, MAX_MAPS, MapSettings, RectangleKind, Shape, SplitScheme, Stabilise,
 };
-use shadowfit::verify::{CoverageQuery, verify};
 use shadowfit::{
     Aabb, Boxes, CasterVolume, FitInput, MapFitter, PerspectiveCamera, Slices, Technique, ViewFrustum, Workspace, fit,
 };

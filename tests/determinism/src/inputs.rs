@@ -1,9 +1,9 @@
 //! Cameras, lights, boxes and settings of every kind.
 
-use shadowfit::clusters::Clusters;
+use shadowfit::Clusters;
+use shadowfit::NormalCone;
+use shadowfit::demand::DepthHistogram;
 use shadowfit::glam::{DMat4, DVec3, DVec4, UVec2, Vec3};
-use shadowfit::histogram::DepthHistogram;
-use shadowfit::normal_cone::NormalCone;
 use shadowfit::settings::{
     BiasSettings, CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, MapFormat, MapSettings,
     RectangleKind, Shape, Softness, SplitScheme, Stabilise,

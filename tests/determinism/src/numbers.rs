@@ -6,7 +6,7 @@
 use shadowfit::bias::Reach;
 use shadowfit::culling::{Sweep, cull};
 use shadowfit::diagnostics::DepthStorage;
-use shadowfit::fits::fit_scene;
+use shadowfit::fit_scene;
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec2, Vec3};
 use shadowfit::settings::{BiasSettings, CasterPolicy};
 use shadowfit::{Bias, CasterVolume, FitError, FittedMap, LightFit, MapFitter, Workspace};

@@ -2,11 +2,10 @@
 
 use shadowfit::bias::{Reach, normal_offset, receiver_plane_depth};
 use shadowfit::culling::{OrientedBox, Sphere, Sweep, cull};
+use shadowfit::demand::{DepthHistogram, needed_texel};
 use shadowfit::diagnostics::{DepthStorage, acne_margin, coverage, depth_step_at, pixels_per_texel, share_of_map};
-use shadowfit::fits::fit_scene;
-use shadowfit::fits::sphere::enclosing_sphere;
+use shadowfit::fit_scene;
 use shadowfit::glam::{DVec2, UVec2, Vec2, Vec3};
-use shadowfit::histogram::{DepthHistogram, needed_texel};
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
 use shadowfit::settings::{BiasSettings, CasterPolicy, FilterKind};
 use shadowfit::{Bias, CasterVolume, FitError, LightFit, MapFitter, Workspace};
@@ -77,7 +76,7 @@ impl Run {
         let (right, down) = (self.random.vector(), self.random.vector());
         let texel = needed_texel(right, down, sun);
         let bin = DepthHistogram::bin(0.1, 100.0, 64, 4, self.random.scale(-4, 7), self.random.between(0.0, 4.0));
-        let view = (scene.camera.view_from_world(), scene.views[0], enclosing_sphere(&scene.views[0])?);
+        let view = (scene.camera.view_from_world(), scene.views[0], scene.views[0].enclosing_sphere()?);
         self.hash.add(&(sun, step, texel, bin, view));
         Ok(())
     }

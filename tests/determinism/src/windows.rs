@@ -1,8 +1,8 @@
 //! The numbers of maps that are read by coverage: windows, with a grid of need and without, slices of the view, and
 //! single maps.
 
+use shadowfit::demand::{CELLS, NeedGrid, NeedSpace};
 use shadowfit::glam::DVec2;
-use shadowfit::need::{CELLS, NeedGrid, NeedSpace};
 use shadowfit::{FitError, MapFitter, Technique, Workspace};
 
 use crate::inputs::{Scene, by_coverage, technique};

@@ -27,7 +27,7 @@ mod tests {
     use glam::{DVec3, UVec2};
     use shadowfit::bias::Reach;
     use shadowfit::diagnostics::DepthStorage;
-    use shadowfit::spot::bias::depth_gradient;
+    use shadowfit::spot::depth_gradient;
     use shadowfit::{DepthConvention, SpotLight};
 
     use super::*;

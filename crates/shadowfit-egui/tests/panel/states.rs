@@ -3,8 +3,8 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use shadowfit::Constraint;
 use shadowfit::Technique;
-use shadowfit::light_fit::Constraint;
 use shadowfit::settings::MAX_MAPS;
 use shadowfit_egui::{Artefact, Changes, Tune, UserPreset};
 use shadowfit_params::figures::{Figures, JudgedFigures, MapFigures};

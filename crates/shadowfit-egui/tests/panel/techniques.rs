@@ -59,10 +59,10 @@ fn a_technique_in_the_menu_explains_when_to_take_it() {
 #[test]
 fn a_technique_that_was_changed_is_called_so() {
     let mut harness = harness(Host::default());
-    assert_eq!(title(&harness), shadowfit::presets::RECOMMENDED);
+    assert_eq!(title(&harness), shadowfit::Preset::RECOMMENDED);
     harness.state_mut().settings.technique.fade = 0.1;
     harness.run();
-    assert_eq!(title(&harness), format!("{}, changed", shadowfit::presets::RECOMMENDED));
+    assert_eq!(title(&harness), format!("{}, changed", shadowfit::Preset::RECOMMENDED));
 
     let opened = Technique::default().with_fade(0.2);
     harness.state_mut().settings.technique = opened;
@@ -131,7 +131,7 @@ fn the_controls_edit_the_side_that_is_chosen() {
     let a = Technique::default();
     let b = Technique::preset("calm-4").expect("a preset");
     let mut harness = harness(Host { compare: Some((b, false)), ..Host::default() });
-    assert_eq!(title(&harness), shadowfit::presets::RECOMMENDED);
+    assert_eq!(title(&harness), shadowfit::Preset::RECOMMENDED);
     press(&mut harness, "Technique B");
     assert_eq!(harness.state().compare, Some((b, true)));
     assert_eq!(title(&harness), "calm-4");
@@ -183,5 +183,5 @@ fn names_go_with_the_techniques_when_they_are_swapped() {
     harness.run();
     assert_eq!(title(&harness), "calm-4");
     press(&mut harness, "Technique B");
-    assert_eq!(title(&harness), format!("{}, changed", shadowfit::presets::RECOMMENDED));
+    assert_eq!(title(&harness), format!("{}, changed", shadowfit::Preset::RECOMMENDED));
 }

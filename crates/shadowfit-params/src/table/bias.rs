@@ -1,7 +1,7 @@
 //! The rows of the biases.
 
 use shadowfit::diagnostics::DepthStorage;
-use shadowfit::settings::MAX_DEPTH_STEPS;
+use shadowfit::settings::BiasSettings;
 
 use super::always_active;
 use crate::field::field;
@@ -64,7 +64,7 @@ pub(super) const ROWS: &[Parameter] = &[
            depths. 1 clears the bands of acne that a coarse format leaves; more only helps where hardware rounds badly.",
         kind: Kind::Number(Number {
             min: 0.0,
-            max: MAX_DEPTH_STEPS as f64,
+            max: BiasSettings::MAX_DEPTH_STEPS as f64,
             step: 0.1,
             logarithmic: false,
             decimals: 2,

@@ -1,7 +1,6 @@
 //! The rows of soft filters: how wide penumbrae are.
 
 use shadowfit::settings::{SoftRadius, Softness};
-use shadowfit::softness::USUAL_DISTANCE;
 
 use crate::field::{Field, Plain as _, code, field};
 use crate::tool::Settings;
@@ -44,10 +43,10 @@ pub(super) const ROWS: &[Parameter] = &[
                 // The width stays as it is.
                 *radius = match (value, *radius) {
                     (Value::Option(0), SoftRadius::Metres(metres)) => {
-                        SoftRadius::SunAngle(libm::atanf(metres / USUAL_DISTANCE))
+                        SoftRadius::SunAngle(libm::atanf(metres / Softness::USUAL_DISTANCE))
                     }
                     (Value::Option(1), SoftRadius::SunAngle(radians)) => {
-                        SoftRadius::Metres(libm::tanf(radians) * USUAL_DISTANCE)
+                        SoftRadius::Metres(libm::tanf(radians) * Softness::USUAL_DISTANCE)
                     }
                     (_, same) => same,
                 };

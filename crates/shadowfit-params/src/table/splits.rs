@@ -1,6 +1,6 @@
 //! The rows of the splits: how many maps there are, where one ends and the next begins, and which one a point reads.
 
-use shadowfit::settings::{MAX_BLEND, MAX_MAPS, MapChoice, SplitScheme};
+use shadowfit::settings::{MAX_MAPS, MapChoice, SplitScheme};
 use shadowfit::{Maps, Slices, Windows};
 
 use super::always_active;
@@ -171,7 +171,7 @@ pub(super) const ROWS: &[Parameter] = &[
            hides the line between two maps; 0 turns it off.",
         kind: Kind::Number(Number {
             min: 0.0,
-            max: MAX_BLEND as f64,
+            max: MapChoice::MAX_BLEND as f64,
             step: 1.0,
             logarithmic: false,
             decimals: 1,

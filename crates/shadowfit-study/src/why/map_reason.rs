@@ -1,7 +1,7 @@
 //! Which map a point reads, and why, in words.
 
 use glam::{DVec2, DVec3};
-use shadowfit::choice::MapRead;
+use shadowfit::selection::MapRead;
 use shadowfit_truth::MapReading;
 use shadowfit_truth::peers::FitMap;
 

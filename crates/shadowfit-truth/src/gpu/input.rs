@@ -1,7 +1,7 @@
 //! A picture to judge on the GPU, and the uniform that is made of it for the shaders.
 
 use glam::DVec3;
-use shadowfit::choice::MapOrder;
+use shadowfit::selection::MapOrder;
 
 use super::error::GpuTruthError;
 use super::uniform::{BeforeUniform, JudgeUniform, MAX_MAPS, MapUniform};

@@ -1,12 +1,12 @@
 //! The shadow maps of one picture, and how its shader reads them.
 
 use glam::DVec3;
-use shadowfit::choice::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth};
+use shadowfit::selection::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth};
 
 use super::choice::MapChoice;
 use super::measured::MeasuredMap;
 
-/// Which of the maps of a picture a point reads; [`shadowfit::choice`] has the rules.
+/// Which of the maps of a picture a point reads; [`shadowfit::selection`] has the rules.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MapReading {
     /// The first one whose split is beyond the point's view depth; where that one does not hold the point, the next

@@ -3,7 +3,7 @@
 //! The two differ only by rounding: at pixels whose shadow ray passes within micrometres of an edge.
 
 use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
-use shadowfit::choice::MapOrder;
+use shadowfit::selection::MapOrder;
 use shadowfit_truth::gpu::{GpuJudge, GpuJudgeInput, GpuPixel, GpuTracer, GpuTruthError};
 use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{

@@ -1,7 +1,7 @@
 //! Shares of made-up shadow factors: a floor under half a roof, judged to the pixel.
 
 use glam::DVec3;
-use shadowfit::choice::MapOrder;
+use shadowfit::selection::MapOrder;
 use shadowfit_truth::peers::FitMap;
 use shadowfit_truth::{
     Class, Judged, MapReading, MapsBefore, MeasuredMap, PictureMaps, PictureTally, Tracer, Truth, TruthLight,

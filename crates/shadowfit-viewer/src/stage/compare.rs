@@ -131,7 +131,7 @@ impl Stage {
     pub fn side_names(&self) -> [String; 2] {
         let other = self.other.as_ref().map_or(self.settings.technique, |other| other.technique);
         [self.settings.technique, other].map(|technique| {
-            let is_same = |preset: &&shadowfit::presets::Preset| {
+            let is_same = |preset: &&shadowfit::Preset| {
                 let [width, height] = technique.fit.resolution.to_array();
                 preset.technique().with_lengths_of(&technique).with_resolution(width, height) == technique
             };

@@ -1,7 +1,7 @@
 //! What windows are told of the pictures before: rays and depth buffers agree.
 
 use shadowfit::Windows;
-use shadowfit::need::{LEVELS, NeedGrid};
+use shadowfit::demand::{LEVELS, NeedGrid};
 use shadowfit_render::RenderTarget;
 use shadowfit_render::{AdapterChoice, Gpu};
 use shadowfit_scene::builtin::default_scene;

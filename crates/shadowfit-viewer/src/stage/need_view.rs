@@ -1,7 +1,7 @@
 //! The scene from the light's direction: how fine a texel the picture asks for, cell by cell, and the maps over it.
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
-use shadowfit::need::{LEVELS, NeedGrid, SIDE};
+use shadowfit::demand::{LEVELS, NeedGrid, SIDE};
 use shadowfit::{Aabb, DepthConvention, LightFit, PerspectiveCamera};
 use shadowfit_params::figures::{linear_color, linear_map_tints, pixels_per_texel_color};
 use shadowfit_render::{Line, Quad, box_lines};

@@ -1,7 +1,7 @@
 //! The pass itself: pipeline, dispatch, and the counts that come back.
 
-use shadowfit::need::{CELLS, LEVELS, MIN_FACING, SIDE};
-use shadowfit::seen::{CLASSES, COUNTS, DEPTHS, Seen};
+use shadowfit::demand::{CELLS, LEVELS, MIN_FACING, SIDE};
+use shadowfit::demand::{CLASSES, COUNTS, DEPTHS, Seen};
 
 use super::error::{NeedPassError, Unsupported};
 use super::read_back::ReadBack;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use shadowfit::seen::{COUNTS, Seen, SeenSpace};
+use shadowfit::demand::{COUNTS, Seen, SeenSpace};
 
 /// Can be recorded into.
 const FREE: u8 = 0;

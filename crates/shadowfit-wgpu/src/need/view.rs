@@ -1,9 +1,9 @@
 //! The camera that a depth buffer was drawn with, and the uniform that follows from it.
 
 use bytemuck::{Pod, Zeroable};
+use shadowfit::demand::PIXELS;
+use shadowfit::demand::{DEPTHS, SeenSpace};
 use shadowfit::glam::{DMat4, DVec4, Mat4, Vec3};
-use shadowfit::need::PIXELS;
-use shadowfit::seen::{DEPTHS, SeenSpace};
 use shadowfit::settings::MapSettings;
 use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 

@@ -7,7 +7,7 @@
 //! algorithm", 1978).
 //!
 //! The sphere of a symmetric frustum follows from a formula, that of any other points is constructed.
-//! [`fits::sphere`](crate::fits::sphere) derives both.
+//! [`fits::sphere`](crate::settings::FitKind::Sphere) derives both.
 
 use glam::{DVec2, DVec3};
 

@@ -39,7 +39,6 @@ use crate::base::{DepthConvention, FitError, checks};
 use crate::bias::depth_storage::{DepthStorage, depth_step};
 use crate::fits::LightFit;
 use crate::technique::settings::{BiasSettings, FilterKind, Softness};
-pub use crate::technique::softness::reach;
 
 /// Biases ready for a shader. With θ the angle between the geometric normal and the direction
 /// toward the light, a receiver is looked up at `p + normal · normal_offset · sin θ`, and its

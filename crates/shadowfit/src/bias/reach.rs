@@ -7,13 +7,12 @@ use crate::base::{FitError, checks};
 use crate::fits::LightFit;
 use crate::technique::Technique;
 use crate::technique::settings::{FilterKind, Softness};
-use crate::technique::softness::{LOOK_UP_SQUARE, reach};
 
 /// Reach of a filter, in texels: which texel centres have a weight that is not zero.
 ///
 /// They lie within [`Self::taps`] per axis of a look-up, and the look-ups within the ellipse
 /// [`Self::disc`] around the sampled point. A number converts to the reach with these taps and no
-/// disc, a [`FilterKind`] to its [`reach`], which leaves out the disc of a [soft](FilterKind::is_soft) one:
+/// disc, a [`FilterKind`] to its [`reach`](FilterKind::reach), which leaves out the disc of a [soft](FilterKind::is_soft) one:
 /// [`Technique::reach_in`](crate::Technique::reach_in) has that of a technique's filter in a map.
 ///
 /// ```text
@@ -106,28 +105,28 @@ impl From<f32> for Reach {
 /// The reach of one look-up, without the disc of a [soft](FilterKind::is_soft) filter.
 impl From<FilterKind> for Reach {
     fn from(filter: FilterKind) -> Self {
-        Self::taps(reach(filter))
+        Self::taps(filter.reach())
     }
 }
 
 impl Softness {
     /// Radii along u and v of the ellipse over which a filter's look-ups are spread in a map, in texels: for
-    /// [`FilterKind::Pcss`] the greatest. Look-ups blur by themselves ([`LOOK_UP_SQUARE`]), which is
+    /// [`FilterKind::Pcss`] the greatest. Look-ups blur by themselves ([`Softness::LOOK_UP_SQUARE`]), which is
     /// taken off, so that penumbrae are as wide in maps of other texels.
     pub fn texels(&self, filter: FilterKind, fit: &LightFit) -> Vec2 {
         if !filter.is_soft() {
             return Vec2::ZERO;
         }
         let radius = Vec2::splat(self.metres(filter)) / fit.texel_size;
-        let own = |radius: f32| libm::sqrtf((radius * radius - LOOK_UP_SQUARE).max(0.0));
+        let own = |radius: f32| libm::sqrtf((radius * radius - Softness::LOOK_UP_SQUARE).max(0.0));
         // Not clamp, which panics where a floor lies above its ceiling.
         let within = |radius: f32| radius.max(self.floor).min(self.ceiling);
         Vec2::new(within(own(radius.x)), within(own(radius.y)))
     }
 
-    /// Reach of a filter in a map, in its texels: the [look-up's](reach) over the disc of [`Self::texels`].
+    /// Reach of a filter in a map, in its texels: the [look-up's](FilterKind::reach) over the disc of [`Self::texels`].
     pub fn reach_in(&self, filter: FilterKind, fit: &LightFit) -> Reach {
-        Reach { disc: self.texels(filter, fit), ..Reach::taps(reach(filter)) }
+        Reach { disc: self.texels(filter, fit), ..Reach::taps(filter.reach()) }
     }
 }
 

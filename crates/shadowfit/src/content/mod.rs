@@ -4,8 +4,8 @@
 //! the bounds of runs of neighbours are made once a frame: what lies outside of them need not be tested for each box.
 
 #[cfg(feature = "alloc")]
-pub mod clusters;
-pub mod normal_cone;
+pub(crate) mod clusters;
+pub(crate) mod normal_cone;
 
 use core::cell::OnceCell;
 

@@ -25,7 +25,7 @@ pub struct DepthHistogram<'a> {
 ///
 /// ```
 /// # use shadowfit::glam::{DVec2, DVec3, Vec3};
-/// use shadowfit::histogram::DepthBounds;
+/// use shadowfit::demand::DepthBounds;
 /// use shadowfit::settings::SplitScheme;
 /// # use shadowfit::*;
 /// # let camera = PerspectiveCamera {

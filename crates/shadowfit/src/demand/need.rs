@@ -1,5 +1,5 @@
 //! How fine a texel the visible points ask for, and where they lie as the light sees them: what
-//! [windows](crate::windows) are placed by.
+//! [windows](crate::Windows) are placed by.
 //!
 //! A [`NeedGrid`] has a square of cells around the eye for each octave of texel sizes, in the plane
 //! across the light. Cells grow with the octave, as do the distances at which points ask for it:
@@ -177,7 +177,7 @@ const SAME_LIGHT: f64 = 0.035;
 
 /// Side of the widest square texel with which a point shows no more than one pixel per texel, from how far it moves
 /// in the plane for a pixel to the right and one down: the least singular value. In f32, as shaders count;
-/// [`histogram::needed_texel`](crate::histogram::needed_texel) is the same in f64 for movements in the world.
+/// [`histogram::needed_texel`](crate::demand::needed_texel) is the same in f64 for movements in the world.
 pub(crate) fn needed_texel(a: Vec2, b: Vec2) -> f32 {
     let (aa, bb, ab) = (a.x * a.x + a.y * a.y, b.x * b.x + b.y * b.y, a.x * b.x + a.y * b.y);
     let det = a.x * b.y - a.y * b.x;

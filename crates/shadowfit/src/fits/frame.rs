@@ -38,7 +38,7 @@ use crate::view::{Range, ViewFrustum};
 /// let input = FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&view, Vec3::new(0.3, -0.8, 0.2)) };
 /// let settings = FitSettings::default().with_max_distance(40.0);
 /// let mut storage = [Default::default(); Workspace::required(2, 1)];
-/// let map = shadowfit::fits::fit_scene(&input, &settings, &mut Workspace::new(&mut storage))?;
+/// let map = shadowfit::fit_scene(&input, &settings, &mut Workspace::new(&mut storage))?;
 /// assert!(map.texel_size.x < 0.03); // the frustum alone gives ten times that
 /// # Ok::<(), shadowfit::FitError>(())
 /// ```
@@ -67,7 +67,7 @@ pub struct FitInput<'a> {
     /// [`SplitScheme::FromHistogram`](crate::settings::SplitScheme::FromHistogram).
     pub histogram: Option<DepthHistogram<'a>>,
     /// What the last frame showed and how fine a texel it asked for, one grid for each picture that was
-    /// drawn with the maps, for [windows](crate::windows). Grids of
+    /// drawn with the maps, for [windows](crate::Windows). Grids of
     /// another light, or of another size, are ignored.
     pub need: &'a [NeedGrid<'a>],
     /// Nearest and farthest depth that the last frame showed, if known: uniform, logarithmic and

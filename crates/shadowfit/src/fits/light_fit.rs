@@ -6,7 +6,7 @@
 //! A fit is also made from the matrix of other code, so that it can be drawn, culled and evaluated like those of this
 //! crate.
 
-pub use crate::fits::volume::Constraint;
+use crate::fits::volume::Constraint;
 
 use glam::{DMat4, DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
 

@@ -4,8 +4,8 @@
 //! space says what must be inside, a rectangle lies around it, and the caster policy places the near
 //! plane. [`fit`] and [`fit_scene`] take the rule from the settings.
 
-pub mod light_fit;
-pub mod sphere;
+pub(crate) mod light_fit;
+mod sphere;
 
 mod aabb;
 pub(crate) mod covered;

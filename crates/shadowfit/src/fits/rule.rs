@@ -10,7 +10,6 @@ use super::{aabb, focused, oriented, sphere, xna};
 use crate::base::checks::MAX_LENGTH;
 use crate::base::{DepthConvention, FitError, checks};
 use crate::technique::settings::{CasterPolicy, FilterKind, FitKind, FitSettings, MapSettings, RectangleKind};
-use crate::technique::softness::reach;
 
 impl Form {
     /// The form of a kind of fit.
@@ -129,7 +128,7 @@ impl FitRule {
 pub(crate) const fn default_border(settings: &FitSettings) -> f32 {
     match settings.map.border {
         Some(texels) => texels,
-        None => reach(FilterKind::Pcf5x5),
+        None => FilterKind::Pcf5x5.reach(),
     }
 }
 

@@ -31,16 +31,18 @@ use crate::view::ViewFrustum;
 
 pub(super) const FORM: Form = Form { covers: Covers::Sphere, is_on_grid: true, ..Form::OF_VIEWS };
 
-/// Centre and radius, in metres, of the minimal sphere around a frustum's corners: the centre in
-/// world axes relative to [`ViewFrustum::origin`]. Exact to 1e-9 of the radius for the given f32
-/// corners.
-///
-/// # Errors
-///
-/// The errors of [`ViewFrustum::slice`] for frusta that no fit can use.
-pub fn enclosing_sphere(frustum: &ViewFrustum) -> Result<(DVec3, f64), FitError> {
-    let corners = frustum.checked()?.corners.map(Vec3::as_dvec3);
-    let symmetric = SymmetricFrustum::new(&corners);
-    let sphere = symmetric.map_or_else(|| minimal(&corners), |symmetric| symmetric.sphere(0.0, 1.0));
-    Ok((sphere.centre, sphere.radius))
+impl ViewFrustum {
+    /// Centre and radius, in metres, of the minimal sphere around the corners: the centre in
+    /// world axes relative to [`Self::origin`]. Exact to 1e-9 of the radius for the given f32
+    /// corners.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Self::slice`] for frusta that no fit can use.
+    pub fn enclosing_sphere(&self) -> Result<(DVec3, f64), FitError> {
+        let corners = self.checked()?.corners.map(Vec3::as_dvec3);
+        let symmetric = SymmetricFrustum::new(&corners);
+        let sphere = symmetric.map_or_else(|| minimal(&corners), |symmetric| symmetric.sphere(0.0, 1.0));
+        Ok((sphere.centre, sphere.radius))
+    }
 }

@@ -22,9 +22,9 @@ pub enum Constraint {
     Casters,
     /// [`MapSettings::caster_extension`](crate::settings::MapSettings::caster_extension).
     CasterExtension,
-    /// The enclosing sphere of the [stable fit](crate::fits::sphere).
+    /// The enclosing sphere of the [stable fit](crate::settings::FitKind::Sphere).
     Sphere,
-    /// Where a [window](crate::windows) stands, and how wide its texels are.
+    /// Where a [window](crate::Windows) stands, and how wide its texels are.
     Window,
     /// A fit that is held from an earlier frame.
     Held,

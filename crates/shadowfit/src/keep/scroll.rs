@@ -2,7 +2,7 @@
 //! where the map is new.
 //!
 //! A map on the world's grid ([snapped or held](crate::settings::Stabilise), or the
-//! [stable sphere](crate::fits::sphere)) moves by whole texels. [`Scroll::between`] says by how
+//! [stable sphere](crate::settings::FitKind::Sphere)) moves by whole texels. [`Scroll::between`] says by how
 //! many, which strips came into the map, and whether anything else changed:
 //!
 //! ```text

@@ -106,7 +106,7 @@ pub struct Margins {
 /// ```
 /// use shadowfit::bias::Reach;
 /// use shadowfit::glam::{DVec2, DVec3, Vec3};
-/// use shadowfit::verify::{Certificate, CoverageQuery, MapPlane, verify};
+/// use shadowfit::proof::{Certificate, CoverageQuery, MapPlane, verify};
 /// use shadowfit::settings::FitSettings;
 /// use shadowfit::{FitInput, PerspectiveCamera, Workspace};
 ///
@@ -127,11 +127,11 @@ pub struct Margins {
 /// // Hardware 2×2 samples read texels up to one away: half a texel must be left free for them.
 /// let settings = FitSettings::default().with_border(0.5);
 /// let query = CoverageQuery::of_fit(&settings, Reach::HARDWARE_2X2);
-/// let map = shadowfit::fits::fit_scene(&input, &settings, &mut workspace)?;
+/// let map = shadowfit::fit_scene(&input, &settings, &mut workspace)?;
 /// assert!(verify(&input, &map, &query, &mut workspace)?.is_proven());
 ///
 /// // Without them there is a hole, and the certificate says where.
-/// let map = shadowfit::fits::fit_scene(&input, &settings.with_border(0.0), &mut workspace)?;
+/// let map = shadowfit::fit_scene(&input, &settings.with_border(0.0), &mut workspace)?;
 /// let Certificate::Uncovered { plane, by, .. } = verify(&input, &map, &query, &mut workspace)? else { panic!() };
 /// assert!(plane != MapPlane::Near && by > 0.49 && by < 0.51);
 /// # Ok::<(), shadowfit::FitError>(())
@@ -141,7 +141,7 @@ pub struct Margins {
 ///
 /// ```
 /// # use shadowfit::glam::{DVec2, DVec3, Vec3};
-/// # use shadowfit::verify::{CoverageQuery, verify};
+/// # use shadowfit::proof::{CoverageQuery, verify};
 /// # use shadowfit::*;
 /// # let mut camera = PerspectiveCamera {
 /// #     eye: DVec3::new(0.0, 1.7, 5.0),
@@ -175,7 +175,7 @@ pub struct Margins {
 /// # Errors
 ///
 /// Those of the views, the light's direction and the boxes as of
-/// [`fit_scene`](crate::fits::fit_scene); [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the
+/// [`fit_scene`](crate::fit_scene); [`FitError::NotFinite`] and [`FitError::OutOfRange`] for the
 /// query and for a fit whose matrices are not those of a light; [`FitError::ZeroResolution`];
 /// [`FitError::NearNotBelowFar`] for a query whose near is above its far (equal ones require nothing);
 /// [`FitError::WorkspaceTooSmall`].
@@ -380,7 +380,7 @@ pub struct CoverageQuery {
 }
 
 impl CoverageQuery {
-    /// What a single map of [`fit_scene`](crate::fits::fit_scene) is made for: all receivers up to the
+    /// What a single map of [`fit_scene`](crate::fit_scene) is made for: all receivers up to the
     /// shadow distance.
     pub const fn of_fit(settings: &FitSettings, reach: Reach) -> Self {
         let (near, far) = (f32::MIN, settings.map.max_distance);

@@ -68,7 +68,7 @@ pub(crate) fn place(
     Ok((maps, held))
 }
 
-/// The fewest slices that are enough; see [`fewest_maps`](crate::map_fitter::fewest_maps).
+/// The fewest slices that are enough; see [`fewest_maps`](crate::fewest_maps).
 pub(crate) fn fewest(frame: &Frame, settings: &Slices, waste: f64) -> u32 {
     Chooser { frame, settings }.fewest(waste)
 }

@@ -253,7 +253,7 @@ pub fn on_hardware(fit: &SpotFit, reach: impl Into<Reach>) -> Result<Reach, FitE
 }
 
 /// Normal offset that a plane needs at a world position (f64, metres), in metres along its normal on the light's side
-/// (sin α is in it): d s / (1 + s n·z), as the [module](self) derives it. For a disc, s has the ellipse's own part.
+/// (sin α is in it): d s / (1 + s n·z), as the head of `spot/bias.rs` derives it. For a disc, s has the ellipse's own part.
 ///
 /// `normal` is the geometric one, in world axes, of any length and on either side. It is the least offset in exact
 /// arithmetic; [`on_hardware`] and [`SpotBias::precision`] add what a GPU needs.

@@ -36,9 +36,9 @@
 //! let compared = at.z / at.w - depth_bias;           // + depth_bias with reversed depth
 //! ```
 
-pub mod bias;
+mod bias;
 
-pub use self::bias::SpotBias;
+pub use self::bias::{SpotBias, depth_gradient, normal_offset, on_hardware, receiver_plane_depth};
 
 use glam::{DMat4, DVec3, DVec4, Mat4, UVec2, Vec2, Vec3, Vec4};
 

@@ -2,8 +2,7 @@
 
 use crate::base::{FitError, checks};
 use crate::technique::settings::{
-    DEFAULT_BLEND, DEFAULT_WASTE, FitKind, HoldSettings, MAX_BLEND, MAX_MAPS, MapChoice, RectangleKind, Shape,
-    SplitScheme, Stabilise, setters,
+    DEFAULT_WASTE, FitKind, HoldSettings, MAX_MAPS, MapChoice, RectangleKind, Shape, SplitScheme, Stabilise, setters,
 };
 
 /// How the view is shared out among the maps.
@@ -26,14 +25,14 @@ impl Default for Maps {
 
 /// World-locked clipmaps that are placed by demand: squares of the plane across the light (or rectangles, where the
 /// light is low) on a grid that is fixed to the world, each where it helps most of what is visible. They are
-/// [read by coverage](MapChoice::Coverage). The module [`windows`](crate::windows) describes them.
+/// [read by coverage](MapChoice::Coverage). The module [`windows`](crate::Windows) describes them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Windows {
     /// Number of maps, 1..=8. Default: 4.
     pub count: u32,
     /// Texels over which a window is blended into the next coarser one, inward from the filter's reach to its border,
-    /// 0..=[`MAX_BLEND`]; 0 for none. Default: 8.
+    /// 0..=[`MapChoice::MAX_BLEND`]; 0 for none. Default: 8.
     pub blend: f32,
     /// A window's depth range is kept until it is longer than necessary by this factor, 1..=100. Default: 1.8.
     pub depth_waste: f32,
@@ -41,7 +40,7 @@ pub struct Windows {
 
 impl Default for Windows {
     fn default() -> Self {
-        Self { count: 4, blend: DEFAULT_BLEND, depth_waste: DEFAULT_WASTE }
+        Self { count: 4, blend: MapChoice::DEFAULT_BLEND, depth_waste: DEFAULT_WASTE }
     }
 }
 
@@ -203,10 +202,10 @@ impl Maps {
         match *self {
             Self::Windows(windows) => windows,
             Self::Slices(Slices { count, choice, stabilise, .. }) => {
-                let blend = if choice.is_by_coverage() { choice.blend() } else { DEFAULT_BLEND };
+                let blend = if choice.is_by_coverage() { choice.blend() } else { MapChoice::DEFAULT_BLEND };
                 windows(count, blend, stabilise.waste())
             }
-            Self::One(OneMap { stabilise, .. }) => windows(1, DEFAULT_BLEND, stabilise.waste()),
+            Self::One(OneMap { stabilise, .. }) => windows(1, MapChoice::DEFAULT_BLEND, stabilise.waste()),
         }
     }
 
@@ -267,7 +266,7 @@ impl Maps {
         checks::within("the number of maps", f64::from(self.count()), least, MAX_MAPS as f64)?;
         match self.choice() {
             MapChoice::Coverage { blend } => {
-                checks::within("the maps' blend", f64::from(blend), 0.0, f64::from(MAX_BLEND))?;
+                checks::within("the maps' blend", f64::from(blend), 0.0, f64::from(MapChoice::MAX_BLEND))?;
             }
             MapChoice::ViewDepth { overlap } => {
                 checks::within("the maps' overlap", f64::from(overlap), 0.0, 1.0)?;

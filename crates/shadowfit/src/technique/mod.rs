@@ -6,9 +6,9 @@ use crate::technique::settings::{BiasSettings, FilterKind, MapFormat, MapSetting
 use glam::UVec2;
 
 mod maps;
-pub mod presets;
+mod presets;
 pub mod settings;
-pub mod softness;
+mod softness;
 
 pub use maps::{Maps, OneMap, Slices, Windows};
 pub use presets::{PRESETS, Preset};

@@ -16,6 +16,9 @@ pub struct Preset {
 }
 
 impl Preset {
+    /// Name of the preset that is [`Technique::default`].
+    pub const RECOMMENDED: &str = "windows-4";
+
     /// The technique.
     pub fn technique(&self) -> Technique {
         (self.make)()
@@ -76,7 +79,7 @@ pub static PRESETS: [Preset; 9] = [
         make: || Technique::default().with_maps(Windows::default().with_count(8)),
     },
     Preset {
-        name: RECOMMENDED,
+        name: Preset::RECOMMENDED,
         summary: "4 windows, placed by what the frame before showed",
         advice: "The one to begin with: as sharp as the sharpest of the others, edges hardly ever crawl, and maps can be \
                  kept from frame to frame instead of drawn anew. Give it the depth buffer of the frame before \
@@ -84,9 +87,6 @@ pub static PRESETS: [Preset; 9] = [
         make: Technique::default,
     },
 ];
-
-/// Name of the preset that is [`Technique::default`].
-pub const RECOMMENDED: &str = "windows-4";
 
 impl Technique {
     /// The technique of the preset with this name, or `None` where [`PRESETS`] has no such name.
@@ -114,7 +114,7 @@ mod tests {
             let count = preset.name.rsplit('-').next().and_then(|count| count.parse().ok());
             assert_eq!(count, Some(preset.technique().maps.count()), "{}", preset.name);
         }
-        assert_eq!(Technique::preset(RECOMMENDED), Some(Technique::default()));
+        assert_eq!(Technique::preset(Preset::RECOMMENDED), Some(Technique::default()));
         assert_eq!(Technique::preset("calm"), None);
     }
 }

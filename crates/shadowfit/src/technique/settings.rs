@@ -4,7 +4,7 @@
 //! panels, command lines and saved files are made. Lengths are metres, sizes of maps and biases are texels, view
 //! depths are counted from the eye along the camera's forward direction.
 //!
-//! Defaults are those of the [recommended technique](crate::presets::RECOMMENDED). Where other
+//! Defaults are those of the [recommended technique](crate::Preset::RECOMMENDED). Where other
 //! engines have a default for the same number it is theirs; the rest comes from the measurements in
 //! the repository's `docs/BENCHMARKS.md`.
 
@@ -238,15 +238,15 @@ pub enum SplitScheme {
     FromHistogram,
 }
 
-/// Which of several maps a point reads; [`crate::choice`] has the rule.
+/// Which of several maps a point reads; [`crate::selection`] has the rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum MapChoice {
     /// The finest one that holds the point with all that the filter reads around it, whatever the
-    /// point's view depth. The default, with [`DEFAULT_BLEND`].
+    /// point's view depth. The default, with [`Self::DEFAULT_BLEND`].
     Coverage {
         /// Texels over which a map is blended into the next coarser one, inward from the filter's reach to its border,
-        /// 0..=[`MAX_BLEND`]; 0 for none.
+        /// 0..=[`Self::MAX_BLEND`]; 0 for none.
         blend: f32,
     },
     /// The one in whose range of view depths the point lies, blended into the next one where ranges
@@ -259,11 +259,18 @@ pub enum MapChoice {
 
 impl Default for MapChoice {
     fn default() -> Self {
-        Self::Coverage { blend: DEFAULT_BLEND }
+        Self::Coverage { blend: Self::DEFAULT_BLEND }
     }
 }
 
 impl MapChoice {
+    /// Texels over which maps are blended by default.
+    pub const DEFAULT_BLEND: f32 = 8.0;
+
+    /// Most texels over which maps that are read by coverage may be blended: a quarter of the side of the
+    /// smallest map that tools allow, 256.
+    pub const MAX_BLEND: f32 = 64.0;
+
     /// Texels over which a map is blended into the next coarser one by coverage; 0 by view depth.
     pub const fn blend(self) -> f32 {
         match self {
@@ -277,13 +284,6 @@ impl MapChoice {
         matches!(self, Self::Coverage { .. })
     }
 }
-
-/// Texels over which maps are blended by default.
-pub const DEFAULT_BLEND: f32 = 8.0;
-
-/// Most texels over which maps that are read by coverage may be blended: a quarter of the side of the
-/// smallest map that tools allow, 256.
-pub const MAX_BLEND: f32 = 64.0;
 
 /// Whether and how maps are kept from changing while the camera moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -375,6 +375,11 @@ pub struct BiasSettings {
     pub depth_steps: f32,
 }
 
+impl BiasSettings {
+    /// Greatest [`Self::depth_steps`].
+    pub const MAX_DEPTH_STEPS: f32 = 16.0;
+}
+
 impl Default for BiasSettings {
     /// [`Self::automatic`] for the default filter.
     fn default() -> Self {
@@ -430,9 +435,6 @@ impl FilterKind {
     }
 }
 
-/// Greatest [`BiasSettings::depth_steps`].
-pub const MAX_DEPTH_STEPS: f32 = 16.0;
-
 /// How wide the filters are whose width is no number of texels ([`FilterKind::is_soft`]).
 ///
 /// It is the same across the light for all maps, so that penumbrae agree where one map meets the
@@ -456,7 +458,7 @@ pub struct Softness {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SoftRadius {
     /// Radius of the penumbra across the light, in metres, of a shadow
-    /// [5 m](crate::softness::USUAL_DISTANCE) from its caster; [`FilterKind::Pcss`] scales it with the distance.
+    /// [5 m](crate::settings::Softness::USUAL_DISTANCE) from its caster; [`FilterKind::Pcss`] scales it with the distance.
     Metres(f32),
     /// Angular radius of the sun, in radians.
     SunAngle(f32),

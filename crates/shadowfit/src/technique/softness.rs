@@ -6,28 +6,28 @@
 use crate::base::{FitError, checks};
 use crate::technique::settings::{FilterKind, SoftRadius, Softness};
 
-/// Distance from a caster to the shadow that a filter of fixed width is right for, in metres, where the
-/// width is given as the sun's angle: people and cars are about as high.
-pub const USUAL_DISTANCE: f32 = 5.0;
-
 /// Distance from a caster to its shadow up to which [`FilterKind::Pcss`] widens penumbrae, in metres: from there
 /// on they stay as they are.
 const GREATEST_DISTANCE: f32 = 20.0;
 
-/// Greatest radius of a filter, in texels, that [`Softness::floor`] and [`Softness::ceiling`] may have.
-pub const MAX_RADIUS: f32 = 64.0;
-
-/// Square of the radius of the disc that blurs as much as one look-up of four bilinear comparisons, in square texels. A
-/// step that is rasterised into texels and compared bilinearly becomes a tent two texels wide, whose variance along an
-/// axis is 1/6; that of a disc of radius r is r² / 4.
-pub const LOOK_UP_SQUARE: f32 = 4.0 / 6.0;
-
 impl Softness {
+    /// Distance from a caster to the shadow that a filter of fixed width is right for, in metres, where the
+    /// width is given as the sun's angle: people and cars are about as high.
+    pub const USUAL_DISTANCE: f32 = 5.0;
+
+    /// Greatest radius of a filter, in texels, that [`Self::floor`] and [`Self::ceiling`] may have.
+    pub const MAX_RADIUS: f32 = 64.0;
+
+    /// Square of the radius of the disc that blurs as much as one look-up of four bilinear comparisons, in square
+    /// texels. A step that is rasterised into texels and compared bilinearly becomes a tent two texels wide, whose
+    /// variance along an axis is 1/6; that of a disc of radius r is r² / 4.
+    pub const LOOK_UP_SQUARE: f32 = 4.0 / 6.0;
+
     /// Greatest radius of a penumbra across the light, in metres; 0 for filters that are not soft. It is that of a
-    /// shadow [`USUAL_DISTANCE`] from its caster, and for [`FilterKind::Pcss`] 20 m from it.
+    /// shadow [`Self::USUAL_DISTANCE`] from its caster, and for [`FilterKind::Pcss`] 20 m from it.
     pub fn metres(&self, filter: FilterKind) -> f32 {
         let distance = match filter {
-            FilterKind::Vogel8 | FilterKind::Vogel16 | FilterKind::Vogel32 => USUAL_DISTANCE,
+            FilterKind::Vogel8 | FilterKind::Vogel16 | FilterKind::Vogel32 => Self::USUAL_DISTANCE,
             FilterKind::Pcss => GREATEST_DISTANCE,
             FilterKind::Point
             | FilterKind::Hardware2x2
@@ -42,15 +42,15 @@ impl Softness {
     /// sun's angular radius.
     pub fn tangent(&self) -> f32 {
         match self.radius {
-            SoftRadius::Metres(metres) => metres / USUAL_DISTANCE,
+            SoftRadius::Metres(metres) => metres / Self::USUAL_DISTANCE,
             SoftRadius::SunAngle(radians) => libm::tanf(radians),
         }
     }
 
-    /// Greatest reach of a filter per axis, in texels, in any map: the [look-up's](reach), and for soft filters the
+    /// Greatest reach of a filter per axis, in texels, in any map: the [look-up's](FilterKind::reach), and for soft filters the
     /// [ceiling](Self::ceiling) of their disc.
     pub const fn reach(&self, filter: FilterKind) -> f32 {
-        reach(filter) + if filter.is_soft() { self.ceiling } else { 0.0 }
+        filter.reach() + if filter.is_soft() { self.ceiling } else { 0.0 }
     }
 
     /// Least width of a texel, in metres, with which a filter needs no larger radius than the
@@ -70,24 +70,24 @@ impl Softness {
             }
         }
         let ceiling = f64::from(self.ceiling);
-        let ceiling = checks::within("the greatest radius of the filter", ceiling, 1.0, f64::from(MAX_RADIUS))?;
+        let ceiling = checks::within("the greatest radius of the filter", ceiling, 1.0, f64::from(Self::MAX_RADIUS))?;
         checks::within("the least radius of the filter", f64::from(self.floor), 0.0, ceiling)?;
         Ok(())
     }
 }
 
-/// Reach E of a filter: the greatest distance along one axis from the sampled point to a texel
-/// centre of non-zero weight, in texels. Of a [soft](FilterKind::is_soft) filter it is that of one of its look-ups: the
-/// disc over which they are spread is [`Softness`](crate::settings::Softness)'s, and
-/// [`Technique::reach`](crate::Technique::reach) has both.
-pub const fn reach(filter: FilterKind) -> f32 {
-    match filter {
-        FilterKind::Point => 0.5,
-        FilterKind::Hardware2x2 | FilterKind::Vogel8 | FilterKind::Vogel16 | FilterKind::Vogel32 | FilterKind::Pcss => {
-            1.0
+impl FilterKind {
+    /// Reach E of the filter: the greatest distance along one axis from the sampled point to a texel
+    /// centre of non-zero weight, in texels. Of a [soft](Self::is_soft) filter it is that of one of its look-ups: the
+    /// disc over which they are spread is [`Softness`](crate::settings::Softness)'s, and
+    /// [`Technique::reach`](crate::Technique::reach) has both.
+    pub const fn reach(self) -> f32 {
+        match self {
+            Self::Point => 0.5,
+            Self::Hardware2x2 | Self::Vogel8 | Self::Vogel16 | Self::Vogel32 | Self::Pcss => 1.0,
+            Self::Pcf3x3 => 2.0,
+            Self::Pcf5x5 => 3.0,
+            Self::Pcf7x7 => 4.0,
         }
-        FilterKind::Pcf3x3 => 2.0,
-        FilterKind::Pcf5x5 => 3.0,
-        FilterKind::Pcf7x7 => 4.0,
     }
 }

@@ -42,7 +42,7 @@
 //! through the boxes.
 //!
 //! They are the maps of a technique with [`Windows`], fitted by
-//! [`MapFitter`](crate::MapFitter), and read by [coverage](crate::choice).
+//! [`MapFitter`](crate::MapFitter), and read by [coverage](crate::selection).
 //!
 //! The idea of maps nested around the eye on a grid fixed to the world is that of clipmaps (C. Tanner,
 //! C. Migdal, M. Jones, "The clipmap: a virtual mipmap", 1998; F. Losasso and H. Hoppe, "Geometry

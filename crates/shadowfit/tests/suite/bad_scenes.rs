@@ -2,9 +2,9 @@
 //! panic, and a fitter that an error leaves as it was.
 
 use proptest::prelude::*;
+use shadowfit::NormalCone;
+use shadowfit::demand::{DepthBounds, DepthHistogram};
 use shadowfit::glam::{DVec2, DVec3, Mat4, UVec2, Vec3};
-use shadowfit::histogram::{DepthBounds, DepthHistogram};
-use shadowfit::normal_cone::NormalCone;
 use shadowfit::settings::{
     CasterPolicy, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, RectangleKind, Shape, SoftRadius,
     SplitScheme, Stabilise,
@@ -75,7 +75,7 @@ impl Inputs {
 
     fn single(&self) -> Result<LightFit, FitError> {
         let settings = FitSettings { shape: self.settings.maps.shape().unwrap_or_default(), map: self.settings.fit };
-        self.with(|input, workspace| shadowfit::fits::fit_scene(input, &settings, workspace))
+        self.with(|input, workspace| shadowfit::fit_scene(input, &settings, workspace))
     }
 
     /// Changes slices; leaves other maps as they are.

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use shadowfit::bias::{
     ACOS_BIAS_LIMIT, MIN_COSINE, Reach, XNA_DEPTH_BIAS, acos_bias, acos_epsilon, automatic_normal_offset,
-    depth_gradient, depth_precision, reach,
+    depth_gradient, depth_precision,
 };
 use shadowfit::diagnostics::DepthStorage;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
@@ -101,8 +101,8 @@ fn five_percent_less_than_the_plane_offset_leaves_acne() {
         for azimuth in [0.0, 0.3, 0.785, 1.2, 2.5, 4.0, 5.5] {
             let plane = Plane::new(1.2, azimuth);
             // A disc reaches as far at all azimuths, the box of a look-up farther along its diagonals.
-            let disc = f64::from(SOFTNESS.reach(kind) - reach(kind));
-            let offset = 0.95 * (disc + f64::from(plane_normal_offset(reach(kind), azimuth as f32)));
+            let disc = f64::from(SOFTNESS.reach(kind) - kind.reach());
+            let offset = 0.95 * (disc + f64::from(plane_normal_offset(kind.reach(), azimuth as f32)));
             let side = if kind.is_soft() { 30 } else { 100 };
             let worst = (0..side * side)
                 .map(|i| DVec2::new(f64::from(i % side), f64::from(i / side)) * (1.01 / f64::from(side)))

@@ -1,9 +1,9 @@
 //! Feature `bytemuck`: bytes for GPUs, without uninitialised padding, and the same on every target.
 
 use bytemuck::{Pod, bytes_of, cast_slice, from_bytes, offset_of};
+use shadowfit::NormalCone;
 use shadowfit::culling::{CasterPlanes, OrientedBox, Sphere};
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::normal_cone::NormalCone;
 use shadowfit::settings::{CasterPolicy, FitSettings};
 use shadowfit::{Aabb, Bias, CasterVolume, SpotBias};
 

@@ -152,7 +152,7 @@ proptest! {
         let stage = stage.unwrap();
         let views = [view.frustum()];
         let mut storage = vec![DVec2::ZERO; Workspace::required(6, 1)];
-        let map = shadowfit::fits::fit_scene(&stage.input(&views, direction), &fit, &mut Workspace::new(&mut storage)).unwrap();
+        let map = shadowfit::fit_scene(&stage.input(&views, direction), &fit, &mut Workspace::new(&mut storage)).unwrap();
         for point in &stage.points {
             assert_kept(&map, *point, &stage.casters, stage.to_light);
         }

@@ -1,8 +1,8 @@
 //! Which of several maps a point reads.
 
 use proptest::prelude::*;
-use shadowfit::choice::{DepthRange, MapBlend, MapOrder, MapRead, by_coverage, by_view_depth};
 use shadowfit::glam::{DVec2, DVec3, Vec2};
+use shadowfit::selection::{DepthRange, MapBlend, MapOrder, MapRead, by_coverage, by_view_depth};
 use shadowfit::settings::{MAX_MAPS, MapChoice};
 use shadowfit::{FitInput, FittedMaps, LightFit, MapFitter, Technique, Workspace};
 

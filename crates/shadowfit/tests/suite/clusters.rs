@@ -4,9 +4,9 @@ use std::collections::HashMap;
 
 use proptest::collection::vec;
 use proptest::prelude::*;
-use shadowfit::clusters::Clusters;
+use shadowfit::Clusters;
+use shadowfit::NormalCone;
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::normal_cone::NormalCone;
 use shadowfit::{Aabb, FitError};
 
 use crate::support::{any_direction, double, float};

@@ -5,8 +5,8 @@
 //! that rounding.
 
 use proptest::prelude::*;
+use shadowfit::demand::DepthHistogram;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::histogram::DepthHistogram;
 use shadowfit::settings::FitKind;
 use shadowfit::{Aabb, Boxes, FitInput, FittedMap, LightFit, MapFitter, Technique, ViewFrustum, Workspace};
 
@@ -153,7 +153,7 @@ proptest! {
         let frusta = [view.frustum()];
         let input = FitInput { receivers: stage.receivers(), ..FitInput::new(&frusta, direction) };
         let mut storage = workspace(10, 1);
-        let map = shadowfit::fits::fit_scene(&input, &fit, &mut Workspace::new(&mut storage)).unwrap();
+        let map = shadowfit::fit_scene(&input, &fit, &mut Workspace::new(&mut storage)).unwrap();
         // Only one fit looks at receivers; the others store all that is in view.
         let receivers = if fit.shape.kind == FitKind::Focused { stage.receivers() } else { None };
         let points = seen(&samples, &view, receivers, f64::from(fit.map.max_distance));

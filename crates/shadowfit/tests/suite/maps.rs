@@ -1,9 +1,9 @@
 //! Several maps for one view: where they are split, what they say of themselves, what is held.
 
 use proptest::prelude::*;
+use shadowfit::Constraint;
+use shadowfit::demand::{DepthBounds, DepthHistogram};
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::histogram::{DepthBounds, DepthHistogram};
-use shadowfit::light_fit::Constraint;
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, MapChoice, RectangleKind, SplitScheme, Stabilise};
 use shadowfit::{
     Aabb, Boxes, FitInput, FittedMap, FittedMaps, MapFitter, PerspectiveCamera, Slices, Technique, ViewFrustum,
@@ -331,7 +331,7 @@ proptest! {
         let input = FitInput::new(&views, direction);
         let settings = squared(&settings(kind, SplitScheme::FromBoxes, count));
         let mut storage = [DVec2::ZERO; Workspace::required(0, 1)];
-        let mut fewest = |waste| shadowfit::map_fitter::fewest_maps(&input, &settings, waste, &mut Workspace::new(&mut storage)).unwrap();
+        let mut fewest = |waste| shadowfit::fewest_maps(&input, &settings, waste, &mut Workspace::new(&mut storage)).unwrap();
         let found = fewest(waste);
         prop_assert!((1..=count).contains(&found) && fewest(1.0) >= found && fewest(100.0) <= found);
         // Bins and directions are as coarse as for the splits, in both.
@@ -389,7 +389,7 @@ fn what_set_each_plane_is_named() {
     let set_by = |input: &FitInput, kind, casters| {
         let fit = FitSettings::default().with_kind(kind).with_casters(casters).with_caster_extension(5.0);
         let mut storage = [DVec2::ZERO; Workspace::required(2, 1)];
-        shadowfit::fits::fit_scene(input, &fit, &mut Workspace::new(&mut storage)).unwrap().set_by
+        shadowfit::fit_scene(input, &fit, &mut Workspace::new(&mut storage)).unwrap().set_by
     };
     for kind in [FitKind::FrustumAabb, FitKind::Oriented, FitKind::Focused] {
         assert_eq!(set_by(&input, kind, CasterPolicy::None), [View; 6]);

@@ -38,7 +38,7 @@ impl Scene {
         let casters = Boxes { origin, boxes: &self.casters };
         let input = FitInput { receivers, casters: Some(casters), ..FitInput::new(&views, self.direction) };
         let mut storage = vec![DVec2::ZERO; Workspace::required(self.casters.len(), 1)];
-        shadowfit::fits::fit_scene(&input, settings, &mut Workspace::new(&mut storage)).unwrap()
+        shadowfit::fit_scene(&input, settings, &mut Workspace::new(&mut storage)).unwrap()
     }
 
     /// The scene seen through a linear map that takes boxes to boxes, or that has none to take.

@@ -1,8 +1,8 @@
 //! The grid of need: which cell a visible point counts in, by hand and at any scale.
 
 use proptest::prelude::*;
+use shadowfit::demand::{CELLS, LEVELS, MIN_FACING, NeedSpace, SIDE};
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::need::{CELLS, LEVELS, MIN_FACING, NeedSpace, SIDE};
 use shadowfit::{FitError, PerspectiveCamera};
 
 use crate::scenes::any_light;
@@ -184,7 +184,7 @@ proptest! {
         let above = side.cross(forward);
         let height = (camera.fov_y * 0.5).tan() * depth;
         // A surface that faces the light and has the pixel's height along both axes of the plane.
-        let pixel = 2.0 * height / shadowfit::need::PIXELS;
+        let pixel = 2.0 * height / shadowfit::demand::PIXELS;
         let p = forward * depth + side * (x * height) + above * (y * height);
         let (a, b) = (space.x * pixel, space.y.normalize() * (pixel / space.y.length()));
         // What lies farther away in the plane than twice the far end's distance may have none.

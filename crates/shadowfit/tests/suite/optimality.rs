@@ -2,7 +2,6 @@
 //! Welzl's construction.
 
 use proptest::prelude::*;
-use shadowfit::fits::sphere::enclosing_sphere;
 use shadowfit::glam::{DVec2, DVec3, Mat3, UVec2, Vec3};
 use shadowfit::settings::{CasterPolicy, FitKind, FitSettings, RectangleKind};
 use shadowfit::{LightFit, ViewFrustum};
@@ -114,7 +113,7 @@ fn least_radius(corners: &[DVec3; 8]) -> f64 {
 
 fn assert_least_sphere(frustum: &ViewFrustum) {
     let corners = frustum.corners.map(Vec3::as_dvec3);
-    let (centre, radius) = enclosing_sphere(frustum).unwrap();
+    let (centre, radius) = frustum.enclosing_sphere().unwrap();
     let best = least_radius(&corners);
     assert!((radius / best - 1.0).abs() <= 1e-4, "{radius} for {best}");
     for corner in corners {

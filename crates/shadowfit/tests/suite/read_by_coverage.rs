@@ -4,8 +4,8 @@
 use proptest::prelude::*;
 use shadowfit::bias::Reach;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
+use shadowfit::proof::{Certificate, CoverageQuery, verify};
 use shadowfit::settings::{CasterPolicy, FitKind, MapChoice, SplitScheme};
-use shadowfit::verify::{Certificate, CoverageQuery, verify};
 use shadowfit::{
     Aabb, Boxes, FitInput, FittedMaps, LightFit, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Workspace,
 };

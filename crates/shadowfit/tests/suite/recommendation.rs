@@ -1,15 +1,15 @@
 //! One technique is recommended, and everything that a newcomer reads first uses it.
 
-use shadowfit::presets::RECOMMENDED;
+use shadowfit::Preset;
 use shadowfit::settings::{
-    BiasSettings, DEFAULT_BLEND, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, MapFormat, MapSettings,
-    Shape, SplitScheme, Stabilise,
+    BiasSettings, FilterKind, FitKind, FitSettings, HoldSettings, MapChoice, MapFormat, MapSettings, Shape,
+    SplitScheme, Stabilise,
 };
 use shadowfit::{Maps, OneMap, PRESETS, Slices, Technique, Windows};
 
 #[test]
 fn the_default_technique_is_the_recommended_preset() {
-    assert_eq!(Technique::preset(RECOMMENDED), Some(Technique::default()));
+    assert_eq!(Technique::preset(Preset::RECOMMENDED), Some(Technique::default()));
     assert_eq!(PRESETS.iter().filter(|preset| preset.technique() == Technique::default()).count(), 1);
 }
 
@@ -32,7 +32,7 @@ fn the_kinds_of_maps_have_the_same_defaults() {
     assert_eq!([single.shape, slices.shape, one.shape], [Shape::default(); 3]);
     assert_eq!((slices.splits, slices.choice), (SplitScheme::default(), MapChoice::default()));
     assert_eq!([slices.stabilise, one.stabilise], [Stabilise::default(); 2]);
-    assert_eq!([windows.blend, slices.choice.blend()], [DEFAULT_BLEND; 2]);
+    assert_eq!([windows.blend, slices.choice.blend()], [MapChoice::DEFAULT_BLEND; 2]);
     assert_eq!([windows.depth_waste, slices.stabilise.waste()], [HoldSettings::default().waste; 2]);
     assert_eq!(slices.stabilise, Stabilise::Hysteresis(HoldSettings::default()));
     assert_eq!(windows.count, slices.count);

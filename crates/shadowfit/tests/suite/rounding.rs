@@ -1,11 +1,11 @@
 //! What is held from frame to frame stays although every input is rounded otherwise in each.
 
+use shadowfit::demand::DepthHistogram;
 use shadowfit::glam::{DVec2, DVec3, Mat4, Vec3};
-use shadowfit::histogram::DepthHistogram;
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
+use shadowfit::proof::{CoverageQuery, verify};
 use shadowfit::scroll::Scroll;
 use shadowfit::settings::{FitKind, Shape, SplitScheme, Stabilise};
-use shadowfit::verify::{CoverageQuery, verify};
 use shadowfit::{
     Aabb, Boxes, DepthConvention, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Slices, Technique, ViewFrustum,
     Workspace,

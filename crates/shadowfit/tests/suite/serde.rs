@@ -3,15 +3,14 @@
 use std::fmt::Debug;
 
 use serde::{Serialize, de::DeserializeOwned};
+use shadowfit::NormalCone;
 use shadowfit::bias::Reach;
 use shadowfit::culling::{CasterPlanes, OrientedBox, Sphere};
 use shadowfit::diagnostics::{AcneMargin, Coverage, DepthStorage, PixelsPerTexel};
-use shadowfit::fits::sphere::enclosing_sphere;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
 use shadowfit::light_steps::{LightStepSettings, LightSteps};
-use shadowfit::normal_cone::NormalCone;
+use shadowfit::proof::{Certificate, CoverageQuery, MapPlane, Margins};
 use shadowfit::settings::{BiasSettings, CasterPolicy, FitKind, FitSettings, MapChoice, RectangleKind, SplitScheme};
-use shadowfit::verify::{Certificate, CoverageQuery, MapPlane, Margins};
 use shadowfit::{
     Aabb, Bias, DepthConvention, FitInput, MapFitter, OneMap, Slices, SpotBias, Technique, ViewFrustum, Windows,
     Workspace,
@@ -71,7 +70,7 @@ fn inputs_survive() {
     survives(&Sphere { centre: DIRECTION, radius: 0.1 });
     survives(&OrientedBox { centre: DIRECTION, half_axes: [Vec3::X, Vec3::Y, DIRECTION] });
     survives(&NormalCone { axis: DIRECTION, cos_half_angle: 0.3 });
-    survives(&enclosing_sphere(&camera.frustum().unwrap()).unwrap());
+    survives(&camera.frustum().unwrap().enclosing_sphere().unwrap());
 }
 
 #[test]

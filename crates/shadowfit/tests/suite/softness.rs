@@ -1,13 +1,12 @@
 //! Soft filters: how wide they are in texels, how far they reach, and how fine maps may be for them.
 
 use proptest::prelude::*;
-use shadowfit::bias::{Reach, reach};
+use shadowfit::bias::Reach;
 use shadowfit::glam::{DVec2, UVec2, Vec2, Vec3};
+use shadowfit::proof::{CoverageQuery, verify};
 use shadowfit::settings::{
     FilterKind, FitKind, FitSettings, MapSettings, RectangleKind, Shape, SoftRadius, Softness, SplitScheme,
 };
-use shadowfit::softness::{LOOK_UP_SQUARE, USUAL_DISTANCE};
-use shadowfit::verify::{CoverageQuery, verify};
 use shadowfit::{FitInput, FittedMaps, LightFit, MapFitter, Maps, Slices, Technique, ViewFrustum, Workspace};
 
 use crate::support::{DIRECTION, any_camera, any_direction, camera, cases, every_stabilise, exact, fitted, float};
@@ -27,7 +26,7 @@ fn with_texels(texel_size: Vec2) -> LightFit {
 fn a_sun_s_penumbra_is_its_tangent_times_the_distance() {
     let sun = Softness::default().with_radius(SoftRadius::SunAngle(0.1));
     for filter in SOFT {
-        let distance = if filter == FilterKind::Pcss { 20.0 } else { USUAL_DISTANCE };
+        let distance = if filter == FilterKind::Pcss { 20.0 } else { Softness::USUAL_DISTANCE };
         assert!((sun.metres(filter) / (0.1_f32.tan() * distance) - 1.0).abs() < 1e-6, "{filter:?}");
     }
     assert_eq!((metres(0.3).metres(FilterKind::Vogel8), metres(0.3).metres(FilterKind::Pcss)), (0.3, 1.2));
@@ -36,7 +35,7 @@ fn a_sun_s_penumbra_is_its_tangent_times_the_distance() {
         let fit = with_texels(Vec2::splat(0.01));
         assert_eq!((sun.metres(filter), sun.texels(filter, &fit)), (0.0, Vec2::ZERO), "{filter:?}");
         assert_eq!(sun.reach_in(filter, &fit), Reach::from(filter), "{filter:?}");
-        assert_eq!((sun.reach(filter), sun.least_texel(filter)), (reach(filter), 0.0), "{filter:?}");
+        assert_eq!((sun.reach(filter), sun.least_texel(filter)), (filter.reach(), 0.0), "{filter:?}");
     }
 }
 
@@ -74,7 +73,7 @@ fn penumbrae_are_as_wide_in_maps_of_other_texels() {
         assert!((whole / 0.1 - 1.0).abs() < 0.01, "{texel}: {whole}");
     }
     // A look-up alone blurs as much as a disc of this radius.
-    assert!((4.0 * variance(0.0, 1.0) / f64::from(LOOK_UP_SQUARE) - 1.0).abs() < 0.01);
+    assert!((4.0 * variance(0.0, 1.0) / f64::from(Softness::LOOK_UP_SQUARE) - 1.0).abs() < 0.01);
 }
 
 #[test]
@@ -84,7 +83,7 @@ fn discs_keep_within_the_floor_and_the_ceiling_on_either_axis() {
         let radius = softness.metres(filter);
         let at = |x: f32, y: f32| softness.texels(filter, &with_texels(Vec2::new(radius / x, radius / y)));
         assert_eq!(at(1.0, 100.0), Vec2::new(2.0, 10.0), "{filter:?}");
-        let expected = Vec2::new(4.0, 6.0).map(|r| (r * r - LOOK_UP_SQUARE).sqrt());
+        let expected = Vec2::new(4.0, 6.0).map(|r| (r * r - Softness::LOOK_UP_SQUARE).sqrt());
         assert!(at(4.0, 6.0).abs_diff_eq(expected, 1e-4), "{filter:?}");
         assert_eq!(softness.reach(filter), 11.0);
     }

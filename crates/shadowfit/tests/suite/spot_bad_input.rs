@@ -6,7 +6,7 @@ use shadowfit::bias::Reach;
 use shadowfit::diagnostics::DepthStorage;
 use shadowfit::glam::{DVec3, UVec2, Vec2, Vec3};
 use shadowfit::settings::{BiasSettings, MapFormat};
-use shadowfit::spot::bias::{depth_gradient, normal_offset, on_hardware, receiver_plane_depth};
+use shadowfit::spot::{depth_gradient, normal_offset, on_hardware, receiver_plane_depth};
 use shadowfit::{DepthConvention, FitError, SpotBias, SpotFit, SpotLight};
 
 use crate::spot::{in_window, lamp};

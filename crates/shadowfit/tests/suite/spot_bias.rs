@@ -9,7 +9,7 @@ use shadowfit::bias::MIN_COSINE;
 use shadowfit::diagnostics::{DepthStorage, depth_step_at};
 use shadowfit::glam::{DMat3, DVec2, DVec3, UVec2, Vec3};
 use shadowfit::settings::{BiasSettings, MapFormat};
-use shadowfit::spot::bias::{depth_gradient, normal_offset, on_hardware};
+use shadowfit::spot::{depth_gradient, normal_offset, on_hardware};
 use shadowfit::{DepthConvention, SpotBias, SpotFit};
 
 use crate::filters::{Filter, filters};

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use shadowfit::bias::{MIN_COSINE, Reach};
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
 use shadowfit::settings::MapFormat;
-use shadowfit::spot::bias::{depth_gradient, normal_offset, on_hardware, receiver_plane_depth};
+use shadowfit::spot::{depth_gradient, normal_offset, on_hardware, receiver_plane_depth};
 use shadowfit::{DepthConvention, SpotBias, SpotFit, SpotLight};
 
 use crate::filters::{Filter, LookUp, filters};

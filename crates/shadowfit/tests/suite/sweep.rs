@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use shadowfit::bias::Reach;
 use shadowfit::culling::Sweep;
-use shadowfit::fits::fit_scene;
+use shadowfit::fit_scene;
 use shadowfit::glam::{DVec2, DVec3, Vec2, Vec3};
 use shadowfit::settings::{FitKind, FitSettings, MapChoice, SplitScheme, Stabilise};
 use shadowfit::{Aabb, Boxes, CasterVolume, FitError, FitInput, LightFit, MapFitter, Slices, ViewFrustum, Workspace};

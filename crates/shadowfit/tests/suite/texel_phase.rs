@@ -5,8 +5,8 @@
 //! from there.
 
 use proptest::prelude::*;
+use shadowfit::Constraint;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3};
-use shadowfit::light_fit::Constraint;
 use shadowfit::settings::{FitKind, FitSettings, RectangleKind, SplitScheme, Stabilise};
 use shadowfit::{FitInput, FittedMap, FittedMaps, LightFit, MapFitter, Slices, Technique, ViewFrustum, Workspace};
 
@@ -122,7 +122,7 @@ fn is_on_a_step(view: &SceneView, maps: &FittedMaps, radius: impl Fn(&FittedMap)
 
 fn sphere_radius(view: &SceneView, map: &FittedMap) -> f64 {
     let slice = view.frustum().slice(map.near, map.far.min(f32::MAX)).unwrap();
-    shadowfit::fits::sphere::enclosing_sphere(&slice).unwrap().1
+    slice.enclosing_sphere().unwrap().1
 }
 
 fn any_places() -> impl Strategy<Value = Vec<[f64; 3]>> {

@@ -2,8 +2,8 @@
 
 use proptest::prelude::*;
 use shadowfit::glam::{DVec2, UVec2, Vec3};
+use shadowfit::proof::{CoverageQuery, verify};
 use shadowfit::settings::{FitKind, FitSettings, RectangleKind, SplitScheme};
-use shadowfit::verify::{CoverageQuery, verify};
 use shadowfit::{FitError, FitInput, LightFit, MapFitter, Slices, Workspace};
 
 use crate::support::{DIRECTION, any_camera, any_direction, camera, cases, every_stabilise, float, sliced};

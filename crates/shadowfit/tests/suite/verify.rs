@@ -3,10 +3,10 @@
 use proptest::prelude::*;
 use shadowfit::bias::Reach;
 use shadowfit::glam::{DQuat, DVec2, DVec3, Mat4, UVec2, Vec3};
+use shadowfit::proof::{Certificate, CoverageQuery, MapPlane, verify};
 use shadowfit::settings::{
     CasterPolicy, FitKind, FitSettings, HoldSettings, MapSettings, RectangleKind, Shape, SplitScheme, Stabilise,
 };
-use shadowfit::verify::{Certificate, CoverageQuery, MapPlane, verify};
 use shadowfit::{
     Aabb, Boxes, DepthConvention, FitError, FitInput, LightFit, MapFitter, PerspectiveCamera, Slices, Technique,
     ViewFrustum, Workspace,
@@ -172,7 +172,7 @@ proptest! {
         let input = scene.input(&views, direction);
         let mut storage = storage(scene.len());
         let mut workspace = Workspace::new(&mut storage);
-        let map = shadowfit::fits::fit_scene(&input, &fit, &mut workspace).unwrap();
+        let map = shadowfit::fit_scene(&input, &fit, &mut workspace).unwrap();
         let query = CoverageQuery::of_fit(&fit, reach_of(&fit.map));
         let certificate = verify(&input, &map, &query, &mut workspace).unwrap();
         prop_assert!(certificate.is_proven(), "{certificate:?}");
@@ -190,7 +190,7 @@ proptest! {
         let input = scene.input(&views, direction);
         let mut storage = storage(scene.len());
         let mut workspace = Workspace::new(&mut storage);
-        let mut map = shadowfit::fits::fit_scene(&input, &fit, &mut workspace).unwrap();
+        let mut map = shadowfit::fit_scene(&input, &fit, &mut workspace).unwrap();
         // Shift the map by up to a tenth: most of these have holes, and the others must have none.
         let shift = map.light_from_world.x_axis.truncate() * (map.box_max.x - map.box_min.x) * margin as f32;
         map.origin += shift.as_dvec3();

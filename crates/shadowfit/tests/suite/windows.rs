@@ -11,8 +11,8 @@ mod state;
 mod still;
 
 use proptest::prelude::*;
+use shadowfit::demand::{CELLS, NeedGrid, NeedSpace, PIXELS};
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::need::{CELLS, NeedGrid, NeedSpace, PIXELS};
 use shadowfit::settings::{CasterPolicy, FilterKind, MapSettings, SoftRadius, Softness};
 use shadowfit::{
     Aabb, Boxes, FitInput, FittedMaps, MapFitter, PerspectiveCamera, Technique, ViewFrustum, Windows, Workspace,

@@ -1,8 +1,8 @@
 //! Windows: what a street's visible points ask for, and where the four windows of `windows-4` stand.
 
 use anyhow::Result;
+use shadowfit::demand::{CELLS, NeedGrid, NeedSpace, SIDE};
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::need::{CELLS, NeedGrid, NeedSpace, SIDE};
 use shadowfit::{Aabb, FitInput, FittedMaps, PerspectiveCamera, Technique};
 
 use super::canvas::{Canvas, Frame, INK, MAPS, RIGHT, fill, stroke};

@@ -21,7 +21,7 @@ use piece::{Corners, Outline, Triangle};
 ///
 /// ```
 /// use shadowfit::glam::{DVec3, Vec3};
-/// use shadowfit::clusters::Clusters;
+/// use shadowfit::Clusters;
 /// use shadowfit::Boxes;
 ///
 /// // A stair of ten steps, each step two triangles.

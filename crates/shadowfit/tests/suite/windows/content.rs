@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 use shadowfit::bias::Reach;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
+use shadowfit::proof::{Certificate, CoverageQuery, verify};
 use shadowfit::settings::CasterPolicy;
-use shadowfit::verify::{Certificate, CoverageQuery, verify};
 use shadowfit::{Aabb, Boxes, FitInput, FittedMap, MapFitter, Workspace};
 
 use super::{World, any_seen, any_windows, windows};

@@ -1,8 +1,8 @@
 //! Nothing is ever uncovered: a wrong grid of need costs sharpness only.
 
 use proptest::prelude::*;
+use shadowfit::demand::{CELLS, NeedGrid, NeedSpace};
 use shadowfit::glam::{DVec2, DVec3, Vec3};
-use shadowfit::need::{CELLS, NeedGrid, NeedSpace};
 use shadowfit::{Aabb, Boxes, FitInput, FittedMaps, MapFitter, Technique, ViewFrustum, Workspace};
 
 use super::{Need, any_windows, hits, windows};

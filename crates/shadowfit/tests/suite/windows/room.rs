@@ -56,7 +56,7 @@ fn pixels_per_texel(maps: &FittedMaps, run: &Run, view: &SceneView, hit: &Hit) -
 
 /// The 95% quantile over what is seen and turned to the light.
 fn quantile(maps: &FittedMaps, run: &Run, view: &SceneView, light: Vec3) -> f64 {
-    let is_lit = |hit: &Hit| -hit.normal.dot(light.as_dvec3().normalize()) >= f64::from(shadowfit::need::MIN_FACING);
+    let is_lit = |hit: &Hit| -hit.normal.dot(light.as_dvec3().normalize()) >= f64::from(shadowfit::demand::MIN_FACING);
     let seen = hits(view, run.world.origin, &run.world.boxes, f64::MAX);
     let mut all: Vec<f64> = seen
         .iter()

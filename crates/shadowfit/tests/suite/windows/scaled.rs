@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use shadowfit::glam::Vec3;
 use shadowfit::settings::SoftRadius;
-use shadowfit::softness::USUAL_DISTANCE;
+use shadowfit::settings::Softness;
 use shadowfit::{Aabb, FittedMaps};
 
 use super::{Run, World, any_seen, any_windows};
@@ -47,7 +47,7 @@ proptest! {
         let by = f64::from(octaves * 2).exp2();
         let technique = technique.with_max_distance(f32::MAX);
         // A sun's angle makes penumbrae that are metres wide, whatever the unit.
-        let metres = technique.softness.tangent() * USUAL_DISTANCE;
+        let metres = technique.softness.tangent() * Softness::USUAL_DISTANCE;
         let soft = |metres| technique.softness.with_radius(SoftRadius::Metres(metres));
         let technique = technique.with_softness(soft(metres));
         prop_assume!(!view.lens.is_infinite);

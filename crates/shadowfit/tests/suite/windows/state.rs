@@ -1,7 +1,7 @@
 //! What a fitter of windows remembers, what it ignores, and what it refuses.
 
+use shadowfit::demand::{CELLS, NeedGrid, NeedSpace};
 use shadowfit::glam::{DQuat, DVec2, DVec3, Vec3};
-use shadowfit::need::{CELLS, NeedGrid, NeedSpace};
 use shadowfit::{FitError, FitInput, FittedMaps, MapFitter, ViewFrustum, Workspace};
 
 use super::{Need, Run, hits, street_view, town, windows};
