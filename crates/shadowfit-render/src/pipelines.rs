@@ -1,5 +1,5 @@
-//! The render pipelines, and the layouts that they share. Those that read the shadow map are made anew when its shaders
-//! change, and those of parts when the first part is drawn that needs them.
+//! The render pipelines, and the layouts that they share. Those that read the shadow map are rebuilt when its shaders
+//! change; those of parts are built when the first part needs them.
 
 mod of_map;
 
