@@ -201,18 +201,6 @@ fn every_wgsl_file_stands_whole_in_some_module() {
 }
 
 #[test]
-fn the_renderer_lists_exactly_the_files_of_its_folder() {
-    let folder = workspace().join("crates/shadowfit-render/src/shaders");
-    let mut listed: Vec<&str> = shaders::PIECES.iter().map(|(name, _)| *name).collect();
-    listed.sort_unstable();
-    let of_folder = files().into_iter().filter(|(path, _)| path.parent() == Some(&folder));
-    let mut present: Vec<String> =
-        of_folder.map(|(path, _)| path.file_name().expect("a name").to_string_lossy().into_owned()).collect();
-    present.sort();
-    assert_eq!(listed, present);
-}
-
-#[test]
 fn every_module_is_valid_and_probes_alone_need_an_optional_capability() {
     for (name, source) in modules() {
         let module = parse(&name, &source);

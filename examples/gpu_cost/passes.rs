@@ -97,7 +97,7 @@ fn walk(bench: &Bench, scene: &BenchScene, way: Way) -> Result<Taken> {
     Ok(taken)
 }
 
-/// Drawn anew and kept.
+/// Redrawn in each frame, and cached.
 pub(crate) fn time(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
     let mut rows = Vec::new();
     for scene in scenes {
@@ -220,7 +220,7 @@ fn bare_passes(bench: &Bench, scene: &BenchScene, bare: Bare) -> Result<Vec<f64>
     Ok(times)
 }
 
-/// What lowers the fill of maps that are drawn anew.
+/// What lowers the fill of maps that are redrawn.
 pub(crate) fn time_fill(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
     let ways = [
         ("casters as stored", Bare { order: Order::AsStored, ..BARE }),
@@ -303,7 +303,7 @@ fn counts(seen: &Seen) -> [f64; 3] {
     [f64::from(points), cells as f64, octaves as f64]
 }
 
-/// Frames of a scene, drawn anew with one kind of culling: times on the GPU and on the CPU.
+/// Frames of a scene, redrawn with one kind of culling: times on the GPU and on the CPU.
 pub(crate) fn with_culling(bench: &Bench, scene: &BenchScene, culling: Culling) -> Result<[f64; 3]> {
     let taken = walk(bench, scene, way("", false, culling))?;
     Ok([taken.gpu, taken.cpu, taken.draws].map(median))

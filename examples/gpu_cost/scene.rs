@@ -15,7 +15,7 @@ const RATE: f64 = 60.0;
 const SPEED: f64 = 1.5;
 const TURN: f64 = 10.0 * core::f64::consts::PI / 180.0;
 
-/// Every so manieth node moves, by this far in metres, once a second.
+/// Every tenth node moves, by this far in metres, once a second.
 const MOVING: usize = 10;
 const BOB: f32 = 0.5;
 
@@ -84,7 +84,7 @@ impl BenchScene {
         Self { name: name.to_owned(), vertices, casters, eye, yaw }
     }
 
-    /// A field of instances of which half can cast no shadow into view: they stand behind the eye, away from the sun.
+    /// A field of instances. Half of them cannot cast a shadow into view: they stand behind the eye, away from the sun.
     pub(crate) fn field(instances: u16) -> Self {
         let corners = Aabb::new(Vec3::new(-0.2, 0.0, -0.2), Vec3::new(0.2, 1.4, 0.2)).corners();
         let faces = [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [2, 3, 7, 6], [0, 3, 7, 4], [1, 2, 6, 5]];

@@ -33,7 +33,7 @@ pub(crate) struct Run {
     /// Frames that were measured, in their order.
     pub(crate) frames: Vec<FrameInfo>,
     pub(crate) techniques: Vec<TechniqueRun>,
-    /// Not so when it was stopped early.
+    /// False when it was stopped early.
     pub(crate) finished: bool,
 }
 
@@ -128,13 +128,27 @@ pub(crate) fn meaning(column: &str) -> Option<&'static str> {
 }
 
 /// The value that tables order and frames are picked by: the mean of wrong % over the techniques at a frame.
-pub(crate) fn wrong_at(run: &Run, frame: usize) -> Option<f64> {
+fn wrong_at(run: &Run, frame: usize) -> Option<f64> {
     let values: Vec<f64> =
         run.techniques.iter().filter_map(|technique| value(technique.frames.get(frame)?, WRONG)).collect();
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
-/// A map in the order of the columns, `null` for what is not a number.
+/// The worst, the median and the best of some frames, by the mean of wrong % over the techniques, each once.
+pub(crate) fn telling(run: &Run, frames: impl Iterator<Item = usize>) -> Vec<(usize, &'static str)> {
+    let mut ranked: Vec<(usize, f64)> = frames.filter_map(|frame| Some((frame, wrong_at(run, frame)?))).collect();
+    ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let Some(last) = ranked.len().checked_sub(1) else { return Vec::new() };
+    let mut chosen: Vec<(usize, &'static str)> = Vec::new();
+    for (rank, why) in [(0, "Worst frame"), (ranked.len() / 2, "Median frame"), (last, "Best frame")] {
+        if chosen.iter().all(|(frame, _)| *frame != ranked[rank].0) {
+            chosen.push((ranked[rank].0, why));
+        }
+    }
+    chosen
+}
+
+/// A map in the order of the columns, `null` for values that are not numbers.
 struct Map<'a>(&'a Columns);
 
 impl Serialize for Map<'_> {

@@ -1,6 +1,6 @@
 //! Ctrl-C: the first one asks a run to write what it has, a second one ends it at once.
 //!
-//! A run over a long path takes minutes, and what is measured by then is worth keeping.
+//! A run over a long path takes minutes, and the frames that are measured by then are worth keeping.
 
 use std::process;
 use std::sync::Arc;

@@ -12,7 +12,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use image::imageops::{FilterType, resize};
 
-use crate::data::{FramePictures, Run, TechniqueRun, meaning, value, wrong_at};
+use crate::data::{FramePictures, Run, TechniqueRun, meaning, telling, value};
 use crate::plots::{Plot, colour};
 use crate::png::png;
 use crate::tables::{SCENE_NOTES, Table, facts, stopped, tables};
@@ -173,22 +173,12 @@ fn picture_section(run: &Run, folder: &Path) -> Result<String> {
     Ok(format!("<section id=\"pictures\">\n<h2>Pictures</h2>\n<p class=\"lead\">{lead}</p>\n{text}</section>\n"))
 }
 
-/// The worst, the median and the best of the frames that have pictures, each once.
+/// The worst, the median and the best of the frames that have pictures.
 fn chosen_frames(run: &Run) -> Vec<(usize, &'static str)> {
-    let has_pictures = |frame: usize| {
-        run.techniques.iter().flat_map(|technique| &technique.pictures).any(|shown| shown.frame == frame)
+    let has_pictures = |frame: &usize| {
+        run.techniques.iter().flat_map(|technique| &technique.pictures).any(|shown| shown.frame == *frame)
     };
-    let frames = (0..run.frames.len()).filter(|&frame| has_pictures(frame));
-    let mut ranked: Vec<(usize, f64)> = frames.filter_map(|frame| Some((frame, wrong_at(run, frame)?))).collect();
-    ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let Some(last) = ranked.len().checked_sub(1) else { return Vec::new() };
-    let mut chosen: Vec<(usize, &'static str)> = Vec::new();
-    for (rank, why) in [(0, "Worst frame"), (ranked.len() / 2, "Median frame"), (last, "Best frame")] {
-        if chosen.iter().all(|(frame, _)| *frame != ranked[rank].0) {
-            chosen.push((ranked[rank].0, why));
-        }
-    }
-    chosen
+    telling(run, (0..run.frames.len()).filter(has_pictures))
 }
 
 fn figure(

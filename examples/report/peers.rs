@@ -65,7 +65,7 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     Ok(())
 }
 
-/// Measures scene after scene; both tables are written after each, so that what is finished can be read.
+/// Measures scene after scene; both tables are written after each, so that finished scenes can be read.
 fn measure(
     ranking: &mut Ranking,
     args: &Args,

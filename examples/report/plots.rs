@@ -30,7 +30,7 @@ const LEGEND_TOP: i32 = 50;
 const BELOW_AXIS: i32 = 35;
 /// Greatest ratio of values that an even axis shows well.
 const EVEN_RATIO: f64 = 100.0;
-/// Colours by which the page's style knows what is what, so that it can turn them dark.
+/// Colours that the page's style recognises, so that it can turn them dark.
 const PAPER: RGBColor = RGBColor(255, 255, 255);
 const INK: RGBColor = RGBColor(51, 54, 59);
 const GRID: RGBColor = RGBColor(226, 228, 232);

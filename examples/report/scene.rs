@@ -11,7 +11,7 @@ use shadowfit::settings::FilterKind;
 use shadowfit_study::{NamedTechnique, SharedTruth, ensure_judged};
 use shadowfit_truth::PictureTally;
 
-use crate::data::{Columns, FrameInfo, FramePictures, Run, TechniqueRun};
+use crate::data::{Columns, FrameInfo, FramePictures, Run, TechniqueRun, telling};
 use crate::drawing::{Drawing, named_filter};
 use crate::heat::heat;
 use crate::interrupt::Interrupt;
@@ -88,7 +88,11 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<bool> {
     let mut run = report(args, &job, &techniques, &measured);
     // The tables first: pictures take a while, and may fail for want of room.
     output.write_report(&run, &job.path)?;
-    let drawn = if asked.is_empty() { telling_frames(&run) } else { asked };
+    let drawn = if asked.is_empty() {
+        telling(&run, 0..run.frames.len()).into_iter().map(|(frame, _)| frame).collect()
+    } else {
+        asked
+    };
     draw_pictures(&mut job, &measured, &output, &mut run, &drawn)?;
     output.write_report(&run, &job.path)?;
     print!("{}", crate::tables::to_markdown(&run));
@@ -117,7 +121,7 @@ fn techniques(args: &Args) -> Result<Vec<NamedTechnique>> {
     Ok(techniques)
 }
 
-/// Every so manieth frame of each group, the first ones included.
+/// Every `step`-th frame of each group, from its first.
 fn every(frames: &[JobFrame], step: u32) -> Vec<JobFrame> {
     let mut place = 0_u32;
     let is_taken = |frame: &&JobFrame| {
@@ -277,17 +281,4 @@ fn frames_named(names: &[String], frames: &[JobFrame]) -> Result<Vec<usize>> {
         })
     };
     names.iter().map(place).collect()
-}
-
-/// The frames with the most, a median and the least wrong pixels, over all techniques.
-fn telling_frames(run: &Run) -> Vec<usize> {
-    let mut frames: Vec<(usize, f64)> =
-        (0..run.frames.len()).filter_map(|frame| Some((frame, crate::data::wrong_at(run, frame)?))).collect();
-    frames.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let mut telling: Vec<usize> = [0, frames.len() / 2, frames.len().saturating_sub(1)]
-        .into_iter()
-        .filter_map(|place| frames.get(place).map(|(frame, _)| *frame))
-        .collect();
-    telling.dedup();
-    telling
 }

@@ -45,7 +45,7 @@ pub(crate) fn tables(run: &Run) -> Vec<Table> {
     tables
 }
 
-/// All data of a run, keys in the order of the fields and columns; `null` for what is not a number.
+/// All data of a run, keys in the order of the fields and columns; `null` for values that are not numbers.
 pub(crate) fn to_json(run: &Run) -> Result<String> {
     Ok(serde_json::to_string_pretty(run)? + "\n")
 }

@@ -1,7 +1,7 @@
 //! The sky box: as far away from everywhere, and its sun where the light is.
 
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit_classics::mapped::formula::image_uv;
+use shadowfit_classics::mapped::point::image_uv;
 use shadowfit_render::RenderTarget;
 
 use super::bench::Bench;

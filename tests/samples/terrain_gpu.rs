@@ -1,7 +1,7 @@
 //! Terrain with vehicles: how dark its shadows are, what casts on what, and what its formats store.
 
 use shadowfit::glam::DVec3;
-use shadowfit_classics::mapped::formula::image_uv;
+use shadowfit_classics::mapped::point::image_uv;
 
 use super::bench::{Bench, distinct};
 

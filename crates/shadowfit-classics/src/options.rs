@@ -98,7 +98,7 @@ impl SampleOption {
         Self::choice("map", "Map size", help, choices)
     }
 
-    /// One of several, the first of which is that of the source.
+    /// One of several; the first is the source's.
     pub(crate) const fn choice(
         id: &'static str,
         label: &'static str,
@@ -158,12 +158,12 @@ impl SampleValues {
         Self { sample, options, values: options.iter().map(SampleOption::default_value).collect() }
     }
 
-    /// The value of an option: a number, the index of a choice, 1 for on; 0 where there is no such option.
+    /// The value of an option: a number, the index of a choice, 1 for on; 0 where the sample does not have the option.
     pub fn get(&self, id: &str) -> f32 {
         self.index(id).map_or(0.0, |index| self.values[index])
     }
 
-    /// The name of what an option chooses; empty where there is no such choice.
+    /// The name of what an option chooses; empty where the option is not a choice.
     pub fn choice(&self, id: &str) -> &'static str {
         let Some(index) = self.index(id) else { return "" };
         match self.options[index].kind {

@@ -182,7 +182,7 @@ impl SampleValues {
     ///
     /// # Errors
     ///
-    /// [`OptionError`] where the variant names what is not possible.
+    /// [`OptionError`] where the variant names an option or a value that the sample does not have.
     pub fn of_variant(sample: &Sample, variant: Option<&SampleVariant>) -> Result<Self, OptionError> {
         let mut values = Self::new(sample);
         for (id, value) in variant.map_or(&[][..], |variant| variant.options) {

@@ -25,6 +25,8 @@ pub struct Shape<'a> {
     pub module: &'a wgpu::ShaderModule,
     /// Entry points of the vertex and the fragment stage; without the latter depth alone is written.
     pub entries: (&'a str, Option<&'a str>),
+    /// Names and values of the module's `override` constants that differ from their defaults; 1 is true.
+    pub constants: &'a [(&'a str, f64)],
     /// Vertex streams.
     pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     /// Colour targets.
@@ -82,6 +84,7 @@ impl<'a> Shape<'a> {
             layout,
             module,
             entries: (entries[0], Some(entries[1])),
+            constants: &[],
             buffers: &[],
             targets: &COLOR,
             primitive: wgpu::PrimitiveState::default(),
@@ -112,13 +115,14 @@ impl Maker<'_> {
 
     /// A pipeline.
     pub fn pipeline(&self, shape: &Shape<'_>) -> wgpu::RenderPipeline {
+        let compilation_options = wgpu::PipelineCompilationOptions { constants: shape.constants, ..Default::default() };
         self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(shape.label),
             layout: Some(shape.layout),
             vertex: wgpu::VertexState {
                 module: shape.module,
                 entry_point: Some(shape.entries.0),
-                compilation_options: Default::default(),
+                compilation_options: compilation_options.clone(),
                 buffers: shape.buffers,
             },
             primitive: shape.primitive,
@@ -127,7 +131,7 @@ impl Maker<'_> {
             fragment: shape.entries.1.map(|entry| wgpu::FragmentState {
                 module: shape.module,
                 entry_point: Some(entry),
-                compilation_options: Default::default(),
+                compilation_options,
                 targets: shape.targets,
             }),
             multiview_mask: None,

@@ -1,5 +1,7 @@
 //! What surfaces show instead of their plain shading.
 
+use shadowfit_params::tool::ViewMode;
+
 /// What the surfaces show. Each but [`Overlay::None`] has shaders of its own, which are made when it is first shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Overlay {
@@ -33,6 +35,31 @@ impl Overlay {
     /// All that have shaders of their own.
     pub const ALL: [Self; 6] =
         [Self::MapTint, Self::PixelsPerTexel, Self::TexelGrid, Self::Truth, Self::Error, Self::Casters];
+
+    /// What the surfaces show in a view of the camera.
+    pub const fn of(view: ViewMode) -> Self {
+        match view {
+            ViewMode::Truth => Self::Truth,
+            ViewMode::Error => Self::Error,
+            ViewMode::PixelsPerTexel => Self::PixelsPerTexel,
+            ViewMode::Maps => Self::MapTint,
+            ViewMode::TexelGrid => Self::TexelGrid,
+            _ => Self::None,
+        }
+    }
+
+    /// The WGSL that colours a visible point, by its function `overlaid`.
+    pub(crate) const fn wgsl(self) -> &'static str {
+        match self {
+            Self::None => "",
+            Self::MapTint => include_str!("shaders/map_tint.wgsl"),
+            Self::PixelsPerTexel => include_str!("shaders/pixels_per_texel.wgsl"),
+            Self::TexelGrid => include_str!("shaders/texel_grid.wgsl"),
+            Self::Truth => include_str!("shaders/truth.wgsl"),
+            Self::Error => include_str!("shaders/error.wgsl"),
+            Self::Casters => include_str!("shaders/casters.wgsl"),
+        }
+    }
 
     /// Whether the sky is grey behind it, since its colours have a meaning that a blue sky has not.
     pub const fn has_gray_sky(self) -> bool {

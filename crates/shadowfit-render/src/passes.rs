@@ -1,4 +1,4 @@
-//! What a technique needs that draws a [`GpuScene`](crate::GpuScene) by passes of its own.
+//! For techniques that draw a [`GpuScene`](crate::GpuScene) by their own passes.
 //!
 //! A frame begins with [`begin_frame`](crate::GpuScene::begin_frame) and lists what its passes draw
 //! ([`seen`](crate::GpuScene::seen), [`drawn_of`](crate::GpuScene::drawn_of)); after

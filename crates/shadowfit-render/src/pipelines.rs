@@ -1,5 +1,5 @@
-//! The render pipelines, and the layouts that they share. Those that read the shadow map are made anew when its shaders
-//! change, and those of parts when the first part is drawn that needs them.
+//! The render pipelines, and the layouts that they share. Those that read the shadow map are rebuilt when its shaders
+//! change; those of parts are built when the first part needs them.
 
 mod of_map;
 
@@ -48,8 +48,8 @@ impl Pipelines {
         let maker = Maker { device, samples };
         Self {
             clear: maker.clear(),
-            sky: maker.sky(layouts, "fs_sky"),
-            sky_gray: maker.sky(layouts, "fs_sky_gray"),
+            sky: maker.sky(layouts, &[]),
+            sky_gray: maker.sky(layouts, &[("GRAY", 1.0)]),
             lines: maker.lines(layouts),
             quads: maker.quads(layouts),
             of_map: MapPipelines::new(&maker, layouts, map),
@@ -72,12 +72,13 @@ impl Maker<'_> {
         })
     }
 
-    fn sky(&self, layouts: &Layouts, entry: &str) -> wgpu::RenderPipeline {
+    fn sky(&self, layouts: &Layouts, constants: &[(&str, f64)]) -> wgpu::RenderPipeline {
         let (layout, module) = (self.layout(&[&layouts.uniform]), self.module("sky", shaders::sky()));
         self.pipeline(&Shape {
             depth: depth(false, wgpu::CompareFunction::GreaterEqual),
             samples: self.samples,
-            ..Shape::new("sky", &layout, &module, ["vs_sky", entry])
+            constants,
+            ..Shape::new("sky", &layout, &module, ["vs_sky", "fs_sky"])
         })
     }
 

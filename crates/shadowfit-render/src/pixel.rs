@@ -49,7 +49,7 @@ pub struct PixelFacts {
     /// [probe](crate::Renderer::probe) of the whole picture has it; `None` for the sky.
     pub seen: Option<ProbePixel>,
     /// Depths that the map holds, rows from the top: those of [`PixelQuery::texels`], beyond a border the texel at it.
-    /// Empty where none were asked for or there is no such map.
+    /// Empty where no texels were asked for, or the map does not exist.
     pub depths: Vec<f32>,
 }
 

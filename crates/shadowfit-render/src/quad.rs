@@ -23,7 +23,7 @@ impl Quad {
     }
 
     /// The outline of a rectangle (left, top, width and height, in pixels): four rectangles inside of it, of `line`
-    /// pixels, none of which lies over another. Rectangles narrower than twice that are filled.
+    /// pixels that do not overlap. Rectangles narrower than twice that are filled.
     pub fn outline([x, y, width, height]: [f32; 4], line: f32, color: Vec4) -> [Self; 4] {
         let (across, down) = (line.min(width * 0.5), line.min(height * 0.5));
         let between = height - 2.0 * down;

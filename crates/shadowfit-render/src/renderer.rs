@@ -105,7 +105,7 @@ impl Renderer {
         &mut self.sun
     }
 
-    /// Makes the shadow map anew if its descriptor differs. On an error the old one stays.
+    /// Rebuilds the shadow map if its descriptor differs. On an error the old one stays.
     ///
     /// # Errors
     ///

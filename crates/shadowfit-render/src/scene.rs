@@ -326,6 +326,11 @@ impl PartKey {
         }
     }
 
+    /// The constants of the WGSL of [materials](crate::shaders::material).
+    pub fn constants(self) -> [(&'static str, f64); 1] {
+        [("MASKED", f64::from(self.masked))]
+    }
+
     /// Back faces of single-sided parts are left out; a mirrored part's back is its front.
     pub fn cull_mode(self) -> Option<wgpu::Face> {
         (!self.double_sided).then(|| self.back())

@@ -32,38 +32,6 @@ const MARK: &str = include_str!("shaders/mark.wgsl");
 /// The vertex stage of passes that fill a picture.
 pub const SCREEN: &str = include_str!("shaders/screen.wgsl");
 
-/// The pieces as they lie in the folder, for tests that look for files which no module uses.
-pub const PIECES: [(&str, &str); 28] = [
-    ("frame.wgsl", include_str!("shaders/frame.wgsl")),
-    ("powers.wgsl", POWERS),
-    ("tone_map.wgsl", TONE_MAP),
-    ("reflectance.wgsl", REFLECTANCE),
-    ("material.wgsl", MATERIAL),
-    ("sky.wgsl", include_str!("shaders/sky.wgsl")),
-    ("caster.wgsl", include_str!("shaders/caster.wgsl")),
-    ("caster_color.wgsl", include_str!("shaders/caster_color.wgsl")),
-    ("scene.wgsl", include_str!("shaders/scene.wgsl")),
-    ("probe.wgsl", include_str!("shaders/probe.wgsl")),
-    ("lines.wgsl", include_str!("shaders/lines.wgsl")),
-    ("inset.wgsl", include_str!("shaders/inset.wgsl")),
-    ("mip.wgsl", include_str!("shaders/mip.wgsl")),
-    ("quads.wgsl", include_str!("shaders/quads.wgsl")),
-    ("overlay.wgsl", OVERLAY),
-    ("judged.wgsl", JUDGED),
-    ("screen.wgsl", SCREEN),
-    ("clear.wgsl", include_str!("shaders/clear.wgsl")),
-    ("map_tint.wgsl", overlay_file(Overlay::MapTint)),
-    ("pixels_per_texel.wgsl", overlay_file(Overlay::PixelsPerTexel)),
-    ("texel_grid.wgsl", overlay_file(Overlay::TexelGrid)),
-    ("truth.wgsl", overlay_file(Overlay::Truth)),
-    ("error.wgsl", overlay_file(Overlay::Error)),
-    ("casters.wgsl", overlay_file(Overlay::Casters)),
-    ("mark.wgsl", MARK),
-    ("mark_rows.wgsl", include_str!("shaders/mark_rows.wgsl")),
-    ("marks.wgsl", include_str!("shaders/marks.wgsl")),
-    ("block.wgsl", include_str!("shaders/block.wgsl")),
-];
-
 /// The sky.
 pub fn sky() -> String {
     [FRAME, include_str!("shaders/sky.wgsl")].concat()
@@ -108,20 +76,7 @@ pub fn lines() -> String {
 pub fn overlay(shadow_map: &ShadowMapDescriptor, overlay: Overlay) -> String {
     let judged = if overlay.is_judged() { in_group(JUDGED, 3) + &error_colors() } else { String::new() };
     let scale = if overlay == Overlay::PixelsPerTexel { octave_color() } else { String::new() };
-    [&scene(shadow_map), OVERLAY, &judged, &scale, overlay_file(overlay)].concat()
-}
-
-/// The file of an overlay, whose `overlaid` colours a visible point.
-const fn overlay_file(overlay: Overlay) -> &'static str {
-    match overlay {
-        Overlay::None => "",
-        Overlay::MapTint => include_str!("shaders/map_tint.wgsl"),
-        Overlay::PixelsPerTexel => include_str!("shaders/pixels_per_texel.wgsl"),
-        Overlay::TexelGrid => include_str!("shaders/texel_grid.wgsl"),
-        Overlay::Truth => include_str!("shaders/truth.wgsl"),
-        Overlay::Error => include_str!("shaders/error.wgsl"),
-        Overlay::Casters => include_str!("shaders/casters.wgsl"),
-    }
+    [&scene(shadow_map), OVERLAY, &judged, &scale, overlay.wgsl()].concat()
 }
 
 /// A material's textures and colours, whose bindings are in a group.

@@ -17,7 +17,7 @@ pub(crate) enum Pass {
     Again,
 }
 
-/// Times of the last frame that the GPU has finished, in milliseconds; `None` for passes that it had none of, and where the
+/// Times of the last frame that the GPU has finished, in milliseconds; `None` for passes that it did not have, and where the
 /// adapter has no timestamps.
 ///
 /// A frame ends with its picture. A probe that is drawn before it belongs to it where the maps

@@ -1,4 +1,4 @@
-//! A vertex buffer that is written anew in each frame and grows with what it holds.
+//! A vertex buffer that is rewritten in each frame and grows with its content.
 
 use bytemuck::NoUninit;
 

@@ -23,7 +23,7 @@ fn node(index: usize) -> Node {
     Node { name: format!("object {index}"), rest: Transform::default(), mesh: Some(index), ..Node::default() }
 }
 
-/// Every triangle has vertices of its own, with its normal.
+/// Every triangle has its own vertices, with its normal.
 fn mesh(triangles: &[[Vec3; 3]]) -> Mesh {
     let normal = |[a, b, c]: &[Vec3; 3]| (*b - *a).cross(*c - *a).normalize_or(Vec3::Y);
     let positions: Vec<Vec3> = triangles.iter().flatten().copied().collect();

@@ -13,7 +13,7 @@ pub enum Class {
     /// Shadowed in truth, lit by the map, away from edges, though an occluder is in the map:
     /// peter-panning or a leak.
     FalseLight = 3,
-    /// Shadowed in truth, lit because none of the occluders is in the map, or no map covers the
+    /// Shadowed in truth, lit because the map holds no occluder of it, or no map covers the
     /// point: the hole that clipping leaves. In the edge zone too.
     Hole = 4,
     /// Wrong within the edge zone: aliasing.

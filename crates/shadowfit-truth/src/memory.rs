@@ -21,7 +21,7 @@ const NODES_KEPT_FOR_3: u64 = 2;
 /// Memory that a tracer needs, in bytes, its cut-outs not included.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TracerMemory {
-    /// Peak while it is built, what is kept included.
+    /// Peak while it is built, including what stays.
     pub building: u64,
     /// What is kept once it is built.
     pub kept: u64,

@@ -161,7 +161,7 @@ impl PixelTruth<'_> {
         if pixels.is_nan() { f32::INFINITY } else { pixels }
     }
 
-    /// Whether the map that is read holds none of the point's occluders, or no map is read.
+    /// Whether the point reads no map, or one that does not hold any of its occluders.
     fn is_hole(&self, maps: &PictureMaps, choice: Option<&MapChoice>, pixel: usize, point: &TruthPoint) -> bool {
         let Some(choice) = choice else { return true };
         let mut is_held = false;

@@ -57,7 +57,7 @@ const SAMPLE_PAGES: &str = "docs/samples";
 /// Folder of their pictures below that of the docs.
 const SAMPLE_IMAGES: &str = "samples";
 
-/// Most bytes of a picture of a sample, of which there are many, if two bits of its colours are enough for that.
+/// Most bytes of a picture of a sample, if dropping two bits of its colours reaches that: there are many of them.
 const MOST_SAMPLE_BYTES: u64 = 200_000;
 
 /// The view that errors are shown in, relative to the workspace's folder.
@@ -175,7 +175,7 @@ fn sample_pictures(page: &str) -> impl Iterator<Item = &str> {
     links.map(|(file, _)| file)
 }
 
-/// An empty folder below `target`, for pictures of which not all are shown as they are.
+/// An empty folder below `target`, for pictures that the docs do not all show as they are.
 fn empty_folder(name: &str) -> Result<PathBuf> {
     let folder = process::root().join("target/gallery").join(name);
     if folder.exists() {

@@ -1,7 +1,7 @@
 //! `cargo xtask maths`: draws those pictures of docs/MATHS.md that show what the core crate's fits give.
 //!
 //! Sizes and counts in them are results, which change with the code. The core gives the same bits on every machine, and so
-//! do these drawings: a test compares the committed files with what is drawn now. The page's other pictures show
+//! do these drawings: a test compares the committed files with new drawings. The page's other pictures show
 //! definitions, and are kept as they are.
 
 mod canvas;

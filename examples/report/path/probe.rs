@@ -72,7 +72,7 @@ impl<'a> Probe<'a> {
                 .all(|offset| self.tracer.first_hit(from + offset, way).is_none_or(|hit| hit.distance > 1.0))
     }
 
-    /// Height of the camera over what is below it, in metres; infinite over nothing.
+    /// Height of the camera over the surface below it, in metres; infinite where there is none.
     pub(super) fn height(&self, eye: Vec3) -> f32 {
         self.tracer.first_hit(eye, Vec3::NEG_Y).map_or(f32::INFINITY, |hit| hit.distance)
     }

@@ -12,7 +12,7 @@ use super::probe::Probe;
 
 /// Columns of places along each horizontal side of the scene: fine enough for doors and streets.
 const COLUMNS: usize = 28;
-/// Share of the scene's sides that places are looked for in; what is at the very border sees mostly sky.
+/// Share of the scene's sides that places are looked for in; a camera at the very border sees mostly sky.
 const CENTRAL: f32 = 0.9;
 /// Where in its cell a column stands; off the middle, so that rays straight down miss the edges of regular models.
 const OFF_MIDDLE: f32 = 0.537;

@@ -3,8 +3,9 @@
 //!
 //! The formulas are those of the source; scene, camera, lamp, ambient light and the size of the map are our own choice.
 
-pub mod formula;
+pub mod shade;
 mod still_life;
+pub mod test;
 
 use glam::{DVec3, Vec3};
 use shadowfit::bias::acos_epsilon;

@@ -1,6 +1,6 @@
 //! What the samples with a lamp share: its map's matrices, our test of it, and what the options say.
 
-pub mod formula;
+pub mod test;
 
 use glam::UVec2;
 use shadowfit::bias::Reach;

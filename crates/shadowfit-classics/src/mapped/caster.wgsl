@@ -21,16 +21,10 @@ fn vs_caster(in: CasterIn) -> CasterOut {
     return CasterOut(clip, 1.0 - clip.z / clip.w);
 }
 
-@fragment
-fn fs_depth(in: CasterOut) -> @location(0) vec4<f32> {
-    return vec4<f32>(in.clip.z);
-}
-
-// Interpolated from the vertices, as the terrain sample does.
-@fragment
-fn fs_reversed(in: CasterOut) -> @location(0) vec4<f32> {
-    return vec4<f32>(in.reversed);
-}
+// What is stored: 1 - z/w as the vertices have it, which the terrain sample does, and not the fragment's own depth; and
+// whether its bits are packed in four bytes.
+override REVERSED: bool = false;
+override PACKED: bool = false;
 
 // The bits of the depth in four bytes, the lowest first. A byte k is written as k/255, which the target stores as k.
 fn packed(depth: f32) -> vec4<f32> {
@@ -39,11 +33,7 @@ fn packed(depth: f32) -> vec4<f32> {
 }
 
 @fragment
-fn fs_packed(in: CasterOut) -> @location(0) vec4<f32> {
-    return packed(in.clip.z);
-}
-
-@fragment
-fn fs_packed_reversed(in: CasterOut) -> @location(0) vec4<f32> {
-    return packed(in.reversed);
+fn fs_caster(in: CasterOut) -> @location(0) vec4<f32> {
+    let depth = select(in.clip.z, in.reversed, REVERSED);
+    return select(vec4<f32>(depth), packed(depth), PACKED);
 }

@@ -63,7 +63,7 @@ impl SampleFormat {
     }
 
     /// This format, or the first worse one that can be drawn to, and then a line that says so.
-    /// `is_renderable` is asked for each. A format that is no float has nothing to fall back to.
+    /// `is_renderable` is asked for each. Only float formats have something to fall back to.
     pub fn or_fallback(self, is_renderable: impl Fn(Self) -> bool) -> (Self, Option<String>) {
         let later = Self::FALLBACKS.iter().skip_while(|format| **format != self).copied();
         let found = later.clone().find(|format| is_renderable(*format)).unwrap_or(Self::Rgba8Packed);

@@ -4,7 +4,7 @@
 //! their own WGSL. They compute in display values, as their sources did, unless [`Shading::modern`] is asked for.
 //! Right-handed, y up, the sources' own units; depth 0 to 1.
 
-pub mod formula;
+pub mod point;
 pub mod shaders;
 
 mod format;

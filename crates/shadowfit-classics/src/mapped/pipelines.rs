@@ -104,16 +104,13 @@ impl SamplePipelines {
     fn caster(&self, maker: &Maker<'_>, frame: &SampleFrame, cull_mode: Option<wgpu::Face>) -> wgpu::RenderPipeline {
         let format = frame.map.format;
         let module = maker.module("sample's casters", shaders::caster());
-        let entry = match (format, frame.map.depth) {
-            (SampleFormat::Depth32, _) => None,
-            (SampleFormat::Rgba8Packed, StoredDepth::Plain) => Some("fs_packed"),
-            (SampleFormat::Rgba8Packed, StoredDepth::ReversedAtVertices) => Some("fs_packed_reversed"),
-            (_, StoredDepth::Plain) => Some("fs_depth"),
-            (_, StoredDepth::ReversedAtVertices) => Some("fs_reversed"),
-        };
         let layout = maker.layout(&[&self.uniform]);
         maker.pipeline(&Shape {
-            entries: ("vs_caster", entry),
+            entries: ("vs_caster", (!format.is_depth()).then_some("fs_caster")),
+            constants: &[
+                ("REVERSED", f64::from(frame.map.depth == StoredDepth::ReversedAtVertices)),
+                ("PACKED", f64::from(format == SampleFormat::Rgba8Packed)),
+            ],
             buffers: &part_buffers(InstanceNumber::FirstTriangle),
             targets: &[Some(format.texture().into())],
             primitive: culled(cull_mode),

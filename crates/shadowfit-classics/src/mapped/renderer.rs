@@ -26,7 +26,7 @@ pub enum SampleError {
         /// The most that the device allows, each way.
         limit: u32,
     },
-    /// The test compares with a sampler, and the map is no depth texture.
+    /// The test compares with a sampler, and the map is not a depth texture.
     Format,
 }
 
@@ -141,7 +141,7 @@ impl SampleRenderer {
         read_texture(gpu, &map.texture, map.settings.size, bytes).map(Some)
     }
 
-    /// Makes the map where it is another one, uploads what the frame's shaders read, and says what is drawn.
+    /// Rebuilds the map if its settings changed, uploads the uniform, and lists the draws.
     fn prepare(
         &mut self,
         gpu: &Gpu,

@@ -1,5 +1,5 @@
 // Averages occlusion over the random vectors of 4x4 pixels: a box of four pixels around the middle, the outermost of its
-// five weighing half, of those that lie in the pixel's plane. Comes after occlusion_buffers.wgsl.
+// five weighing half, of those that lie in the pixel's plane. Comes after buffers.wgsl.
 
 // Distance from the plane at which a neighbour weighs nothing, in pixels as high as they are at the point.
 const PLANE_PIXELS: f32 = 4.0;

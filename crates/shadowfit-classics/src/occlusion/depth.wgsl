@@ -1,4 +1,4 @@
-// Screen-space ambient occlusion by depth alone. Comes after occlusion_buffers.wgsl and occlusion_formula.wgsl.
+// Screen-space ambient occlusion by depth alone. Comes after buffers.wgsl and formula.wgsl.
 
 @fragment
 fn fs_depth_only(@builtin(position) at: vec4<f32>) -> @location(0) f32 {

@@ -25,7 +25,7 @@ pub enum OcclusionMethod {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OcclusionSettings {
     /// Reach of the neighbours: divided by a pixel's view depth, in the scene's units, it is a distance in texture
-    /// coordinates, of which the picture has 1 along each side.
+    /// coordinates, which run from 0 to 1 along each side of the picture.
     pub radius: f32,
     /// Factor on distances before the fall-off 1 / (1 + d), in 1 / the scene's units.
     pub scale: f32,
@@ -146,7 +146,7 @@ pub struct OcclusionUniform {
 }
 
 impl OcclusionUniform {
-    /// The uniform of a camera, a light, and settings of which negative and NaN numbers count as 0.
+    /// The uniform of a camera, a light, and settings; negative and NaN numbers count as 0.
     pub fn new(camera: &PerspectiveCamera, light: &OcclusionLight, settings: &OcclusionSettings) -> Self {
         let clip_from_view = camera.clip_from_view(DepthConvention::Reversed);
         Self {

@@ -1,5 +1,5 @@
 //! Screen-space ambient occlusion: buffers of view-space positions and normals, the occlusion of each pixel by its
-//! neighbours, an optional blur, and a picture whose ambient term it darkens. [`formula`] has what is computed.
+//! neighbours, an optional blur, and a picture whose ambient term it darkens. [`formula`] has the formulas.
 //!
 //! Occlusion is a texture of half floats, 0 (open) to 1 (closed), of the picture's size with one sample per pixel, 0
 //! where there is sky. The blur is a box of four pixels that takes only neighbours in the pixel's plane; since random

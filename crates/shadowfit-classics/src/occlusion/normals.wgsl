@@ -1,4 +1,4 @@
-// Screen-space ambient occlusion from positions and normals. Comes after occlusion_buffers.wgsl and occlusion_formula.wgsl.
+// Screen-space ambient occlusion from positions and normals. Comes after buffers.wgsl and formula.wgsl.
 
 // What the neighbours of a pixel hide of it, in all directions. back: 1 for back faces, else 0.
 fn hidden(buffer: texture_2d<f32>, at: vec2<f32>, position: vec3<f32>, normal: vec3<f32>, back: f32) -> f32 {
@@ -20,10 +20,8 @@ fn hidden(buffer: texture_2d<f32>, at: vec2<f32>, position: vec3<f32>, normal: v
     return sum;
 }
 
-fn sum_of(position: vec3<f32>, front: f32, back: f32) -> f32 {
-    let count = occlusion_directions(-position.z, occlusion.far, occlusion.detail);
-    return occlusion_sum(front, back, occlusion.intensity, count);
-}
+// Whether back faces hide, too.
+override BACK_FACES: bool = false;
 
 @fragment
 fn fs_normals(@builtin(position) at: vec4<f32>) -> @location(0) f32 {
@@ -32,16 +30,11 @@ fn fs_normals(@builtin(position) at: vec4<f32>) -> @location(0) f32 {
         return 0.0;
     }
     let normal = textureLoad(normals, vec2<i32>(at.xy), 0).xyz;
-    return sum_of(position.xyz, hidden(positions, at.xy, position.xyz, normal, 0.0), 0.0);
-}
-
-@fragment
-fn fs_normals_and_backs(@builtin(position) at: vec4<f32>) -> @location(0) f32 {
-    let position = textureLoad(positions, vec2<i32>(at.xy), 0);
-    if position.w == 0.0 {
-        return 0.0;
-    }
-    let normal = textureLoad(normals, vec2<i32>(at.xy), 0).xyz;
     let front = hidden(positions, at.xy, position.xyz, normal, 0.0);
-    return sum_of(position.xyz, front, hidden(third, at.xy, position.xyz, normal, 1.0));
+    var back = 0.0;
+    if BACK_FACES {
+        back = hidden(third, at.xy, position.xyz, normal, 1.0);
+    }
+    let count = occlusion_directions(-position.z, occlusion.far, occlusion.detail);
+    return occlusion_sum(front, back, occlusion.intensity, count);
 }

@@ -99,17 +99,17 @@ impl Pipelines {
         let layout = maker.layout(&[&layouts.uniform, &layouts.buffers]);
         let greater = wgpu::BlendState { color: GREATER, alpha: GREATER };
         let greater = [Some(target(OCCLUSION_FORMAT, Some(greater)))];
-        let gathered = |entry| {
+        let gathered = |entry, constants| {
             let shape = Shape::new("occlusion", &layout, &gather, ["vs_screen", entry]);
-            maker.pipeline(&Shape { targets: &greater, ..shape })
+            maker.pipeline(&Shape { targets: &greater, constants, ..shape })
         };
         let blur = maker.module("occlusion blur", shaders::blur());
         let view = maker.module("occlusion view", shaders::view());
         Self {
             samples,
-            normals: gathered("fs_normals"),
-            normals_and_backs: gathered("fs_normals_and_backs"),
-            depth_only: gathered("fs_depth_only"),
+            normals: gathered("fs_normals", &[]),
+            normals_and_backs: gathered("fs_normals", &[("BACK_FACES", 1.0)]),
+            depth_only: gathered("fs_depth_only", &[]),
             blur: maker.pipeline(&Shape {
                 targets: &[Some(OCCLUSION_FORMAT.into())],
                 ..Shape::new("occlusion blur", &layout, &blur, ["vs_screen", "fs_blur"])
@@ -157,17 +157,12 @@ impl Pipelines {
         let groups = [uniform, uniform, material, shown];
         let layout = maker.layout(if drawn.is_picture() { &groups } else { &groups[..3] });
         let module = if drawn.is_picture() { &self.picture_module } else { &self.surface_module };
-        let [plain, masked, blended] = match drawn {
-            Drawn::Surface => ["fs_surface", "fs_surface_masked", ""],
-            Drawn::Back => ["fs_back", "fs_back_masked", ""],
-            Drawn::Classic => ["fs_classic", "fs_classic_masked", "fs_classic_blended"],
-            Drawn::Modern => ["fs_modern", "fs_modern_masked", "fs_modern_blended"],
+        let entry = match drawn {
+            Drawn::Surface => "fs_surface",
+            Drawn::Back => "fs_back",
+            Drawn::Classic | Drawn::Modern => "fs_picture",
         };
-        let entry = match key {
-            PartKey { masked: true, .. } => masked,
-            PartKey { blended: true, .. } => blended,
-            _ => plain,
-        };
+        let constants = [key.constants()[0], ("MODERN", f64::from(drawn == Drawn::Modern))];
         let blend = key.blended.then_some(wgpu::BlendState::ALPHA_BLENDING);
         let targets = match drawn {
             Drawn::Surface => [Some(POSITION_FORMAT.into()), Some(NORMAL_FORMAT.into())],
@@ -180,6 +175,7 @@ impl Pipelines {
             primitive: culled(if drawn == Drawn::Back { Some(key.front()) } else { key.cull_mode() }),
             depth: depth(!key.blended, wgpu::CompareFunction::GreaterEqual),
             samples: if drawn.is_picture() { self.samples } else { 1 },
+            constants: &constants[..if drawn.is_picture() { 2 } else { 1 }],
             ..Shape::new("ambient occlusion", &layout, module, ["vs_part", entry])
         })
     }

@@ -1,4 +1,4 @@
-// Positions and normals in view space. Comes after occlusion_part.wgsl and occlusion_uniform.wgsl.
+// Positions and normals in view space. Comes after part.wgsl and uniform.wgsl.
 
 struct Surfaces {
     // 1 in w where there is a surface.
@@ -6,34 +6,19 @@ struct Surfaces {
     @location(1) normal: vec4<f32>,
 }
 
-fn surfaces(in: PartOut) -> Surfaces {
-    let position = occlusion.view_from_world * vec4<f32>(in.position, 1.0);
-    let normal = occlusion.view_from_world * vec4<f32>(part_normal(in), 0.0);
-    return Surfaces(vec4<f32>(position.xyz, 1.0), normal);
-}
-
 @fragment
 fn fs_surface(in: PartOut) -> Surfaces {
-    return surfaces(in);
-}
-
-@fragment
-fn fs_surface_masked(in: PartOut) -> Surfaces {
-    let surfaces = surfaces(in);
+    let position = occlusion.view_from_world * vec4<f32>(in.position, 1.0);
+    let normal = occlusion.view_from_world * vec4<f32>(part_normal(in), 0.0);
     if is_cut_out(in.uv, in.color.a) {
         discard;
     }
-    return surfaces;
+    return Surfaces(vec4<f32>(position.xyz, 1.0), normal);
 }
 
 // Back faces, whose normals nobody reads.
 @fragment
 fn fs_back(in: PartOut) -> @location(0) vec4<f32> {
-    return vec4<f32>((occlusion.view_from_world * vec4<f32>(in.position, 1.0)).xyz, 1.0);
-}
-
-@fragment
-fn fs_back_masked(in: PartOut) -> @location(0) vec4<f32> {
     if is_cut_out(in.uv, in.color.a) {
         discard;
     }

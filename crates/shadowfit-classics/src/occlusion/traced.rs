@@ -16,7 +16,7 @@ struct Key {
     pose: Pose,
 }
 
-/// The occlusion that was traced last, and what is under way.
+/// The occlusion that was traced last, and the trace that is running.
 #[derive(Debug, Default)]
 pub(crate) struct Traced {
     done: Option<(Key, Vec<f32>)>,

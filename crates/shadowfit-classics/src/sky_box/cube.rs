@@ -73,7 +73,7 @@ impl SkyBox {
         sky
     }
 
-    /// Moves the sun to a direction (world axes, any length) and makes the picture anew, if it is another one: a few tenths
+    /// Moves the sun to a direction (world axes, any length) and redraws the picture if the direction changed: a few tenths
     /// of a second of work, on up to six cores.
     pub fn set_light(&mut self, gpu: &Gpu, to_light: Vec3) {
         if self.to_light != to_light {

@@ -1,5 +1,5 @@
 //! A sky box around the built-in courtyard: a cube that is seen from inside, as far away wherever the camera is. The
-//! scene is shaded by its texture, ambient and diffuse light, with one map for what is near.
+//! scene is shaded by its texture, ambient and diffuse light, with one map around the camera.
 
 mod cube;
 mod face;

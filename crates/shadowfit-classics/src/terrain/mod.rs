@@ -2,8 +2,9 @@
 //! from the vertices. Its source's comment asks for a map of 32 bits, and its code makes one of 8. Height map and vehicles
 //! are our own.
 
-pub mod formula;
 mod scene;
+pub mod shade;
+pub mod test;
 
 use core::f32::consts::FRAC_PI_4;
 

@@ -19,7 +19,7 @@ pub(super) fn material() -> Material {
     tiled(matt("grid floor", [1.0; 3], 0.9), 0, [CELL * CELLS as f32; 2])
 }
 
-/// Pale cells, every second one a little darker, each of its own tint, with fine lines between.
+/// Pale cells, every second one a little darker, each with its own tint, with fine lines between.
 pub(super) fn image() -> Image {
     let cell = (SIZE / CELLS) as f32;
     let line = LINE / CELL * cell;

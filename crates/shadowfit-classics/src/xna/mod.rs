@@ -2,8 +2,9 @@
 //! camera's frustum, with every number of the source. One deviation: the character is our own figure.
 
 mod floor;
-pub mod formula;
 mod scene;
+pub mod shade;
+pub mod test;
 
 use glam::{DVec3, UVec2, Vec3};
 use shadowfit::bias::XNA_DEPTH_BIAS;

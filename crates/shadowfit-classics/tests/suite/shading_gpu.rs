@@ -5,7 +5,7 @@ use glam::{Mat4, Vec2, Vec3, Vec4};
 use shadowfit::SpotBias;
 use shadowfit::bias::acos_bias;
 use shadowfit_classics::headlight::real_shadow;
-use shadowfit_classics::mapped::formula::image_uv;
+use shadowfit_classics::mapped::point::image_uv;
 use shadowfit_classics::{comparison, lamp, terrain, xna};
 
 use crate::formulas_gpu::compute;
@@ -105,26 +105,23 @@ fn twin([base, numbers, more, clip]: &Case) -> Answer {
     let [n_l, share, third, fourth] = *more;
     let row = |color: Vec3, number: f32| color.extend(number).to_array();
     let uv = image_uv(Vec4::from(*clip));
-    let inside = f32::from(u8::from(comparison::formula::is_inside(uv, depth)));
+    let inside = f32::from(u8::from(comparison::test::is_inside(uv, depth)));
     let epsilon = acos_bias(bias, n_l).expect("finite numbers");
     let matrix = Mat4::from_cols_array_2d(&[*base, *numbers, *more, *clip]);
     let to_light = Vec3::new(clip[0], clip[1], clip[2] + 4.0);
     let normal = (Vec3::new(n_l, fourth, third) - 0.5).normalize();
-    let gradient = lamp::formula::gradient(matrix, Vec2::splat(bias), to_light, normal);
+    let gradient = lamp::test::gradient(matrix, Vec2::splat(bias), to_light, normal);
     let [constant_depth, distance_depth, constant_offset, receiver_plane] = numbers.map(|number| number * 0.01);
     let lamp_bias = SpotBias { constant_depth, distance_depth, constant_offset, receiver_plane, ..SpotBias::default() };
-    let compared = lamp::formula::compared_depth(stored, 1.0 + base[0], &lamp_bias, gradient);
+    let compared = lamp::test::compared_depth(stored, 1.0 + base[0], &lamp_bias, gradient);
     [
-        row(xna::formula::colour(color, n_l, share, third), xna::formula::share(stored, depth, bias)),
+        row(xna::shade::colour(color, n_l, share, third), xna::test::share(stored, depth, bias)),
         row(
-            real_shadow::formula::colour(color, n_l, share, third, fourth),
-            real_shadow::formula::share(base[3], stored, depth, bias),
+            real_shadow::shade::colour(color, n_l, share, third, fourth),
+            real_shadow::test::share(base[3], stored, depth, bias),
         ),
-        row(comparison::formula::colour(color, n_l, fourth, share, third), epsilon),
-        row(
-            terrain::formula::colour(color, n_l, share, third, fourth),
-            terrain::formula::share(stored, depth, bias, whole),
-        ),
+        row(comparison::shade::colour(color, n_l, fourth, share, third), epsilon),
+        row(terrain::shade::colour(color, n_l, share, third, fourth), terrain::test::share(stored, depth, bias, whole)),
         [uv.x, uv.y, inside, 0.0],
         [gradient.x, gradient.y, compared, 0.0],
     ]

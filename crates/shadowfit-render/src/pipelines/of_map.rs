@@ -41,17 +41,19 @@ impl MapPipelines {
     pub(crate) fn new(maker: &Maker<'_>, layouts: &Layouts, map: &ShadowMap) -> Self {
         let caster = maker.module("caster", shaders::caster(map.descriptor()));
         let caster_layout = maker.layout(&[map.caster_layout(), &layouts.material]);
-        let [plain_entry, masked_entry] = match (map.color_target().is_some(), map.clamps_in_fragment()) {
-            (false, false) => [None, Some("fs_caster_masked")],
-            (false, true) => [Some("fs_caster_clamped"), Some("fs_caster_masked_clamped")],
-            (true, false) => [Some("fs_caster_color"), Some("fs_caster_masked_color")],
-            (true, true) => [Some("fs_caster_clamped_color"), Some("fs_caster_masked_clamped_color")],
+        let entry = match (map.color_target().is_some(), map.clamps_in_fragment()) {
+            (false, false) => "fs_caster",
+            (false, true) => "fs_caster_clamped",
+            (true, false) => "fs_caster_color",
+            (true, true) => "fs_caster_clamped_color",
         };
-        let caster_pipeline = |entry| maker.caster(&caster_layout, &caster, entry, map);
+        // What neither is cut out nor computes a depth or a colour needs no fragment stage.
+        let plain_entry = Some(entry).filter(|entry| *entry != "fs_caster");
+        let caster_pipeline = |entry, masked| maker.caster(&caster_layout, &caster, (entry, masked), map);
         Self {
             inset: maker.inset(layouts, map),
-            caster: caster_pipeline(plain_entry),
-            caster_masked: caster_pipeline(masked_entry),
+            caster: caster_pipeline(plain_entry, false),
+            caster_masked: caster_pipeline(Some(entry), true),
             parts: HashMap::new(),
             modules: HashMap::new(),
             block: None,
@@ -115,10 +117,10 @@ impl Maker<'_> {
         module: &wgpu::ShaderModule,
         (drawn, key): (Drawn, PartKey),
     ) -> wgpu::RenderPipeline {
-        let [plain, masked] = match drawn {
-            Drawn::Shaded(Overlay::None) => ["fs_scene", "fs_scene_masked"],
-            Drawn::Shaded(_) => ["fs_overlay", "fs_overlay_masked"],
-            Drawn::Probe => ["fs_probe", "fs_probe_masked"],
+        let entry = match drawn {
+            Drawn::Shaded(Overlay::None) => "fs_scene",
+            Drawn::Shaded(_) => "fs_overlay",
+            Drawn::Probe => "fs_probe",
         };
         let number = match drawn {
             Drawn::Shaded(Overlay::Casters) => InstanceNumber::Holder,
@@ -135,7 +137,8 @@ impl Maker<'_> {
             primitive: culled(key.cull_mode()),
             depth: depth(!key.blended, wgpu::CompareFunction::GreaterEqual),
             samples,
-            ..Shape::new("parts", layout, module, ["vs_scene", if key.masked { masked } else { plain }])
+            constants: &key.constants(),
+            ..Shape::new("parts", layout, module, ["vs_scene", entry])
         })
     }
 
@@ -143,12 +146,13 @@ impl Maker<'_> {
         &self,
         layout: &wgpu::PipelineLayout,
         module: &wgpu::ShaderModule,
-        entry: Option<&str>,
+        (entry, masked): (Option<&str>, bool),
         map: &ShadowMap,
     ) -> wgpu::RenderPipeline {
         let color = [map.color_target()];
         self.pipeline(&Shape {
             entries: ("vs_caster", entry),
+            constants: &[("MASKED", f64::from(masked))],
             buffers: &part_buffers(InstanceNumber::FirstTriangle),
             targets: if color[0].is_some() { &color } else { &[] },
             primitive: map.primitive_state(),

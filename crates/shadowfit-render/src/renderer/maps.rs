@@ -13,7 +13,7 @@ use crate::shaders::CASTER_GROUP;
 use crate::timer::Pass;
 
 impl Renderer {
-    /// Finds what is to be drawn into the maps, and writes what they are looked up by.
+    /// Decides what has to be drawn into the maps, and writes the uniforms of the look-up.
     pub(super) fn prepare_maps(
         &mut self,
         gpu: &Gpu,

@@ -24,7 +24,7 @@ fn vs_caster(in: CasterIn) -> CasterOut {
 }
 
 @fragment
-fn fs_caster_masked(in: CasterOut) {
+fn fs_caster(in: CasterOut) {
     if is_cut_out(in.uv, in.alpha) {
         discard;
     }
@@ -33,11 +33,6 @@ fn fs_caster_masked(in: CasterOut) {
 // Where the device cannot clamp depth.
 @fragment
 fn fs_caster_clamped(in: CasterOut) -> @builtin(frag_depth) f32 {
-    return shadowfit_clamped_depth(in.depth);
-}
-
-@fragment
-fn fs_caster_masked_clamped(in: CasterOut) -> @builtin(frag_depth) f32 {
     if is_cut_out(in.uv, in.alpha) {
         discard;
     }

@@ -7,11 +7,6 @@ struct CasterColor {
 
 @fragment
 fn fs_caster_color(in: CasterOut) -> @location(0) vec4<f32> {
-    return shadowfit_caster_color(in.clip.z);
-}
-
-@fragment
-fn fs_caster_masked_color(in: CasterOut) -> @location(0) vec4<f32> {
     if is_cut_out(in.uv, in.alpha) {
         discard;
     }
@@ -21,12 +16,6 @@ fn fs_caster_masked_color(in: CasterOut) -> @location(0) vec4<f32> {
 // Where the device cannot clamp depth.
 @fragment
 fn fs_caster_clamped_color(in: CasterOut) -> CasterColor {
-    let depth = shadowfit_clamped_depth(in.depth);
-    return CasterColor(shadowfit_caster_color(depth), depth);
-}
-
-@fragment
-fn fs_caster_masked_clamped_color(in: CasterOut) -> CasterColor {
     if is_cut_out(in.uv, in.alpha) {
         discard;
     }

@@ -28,9 +28,13 @@ fn base_color(uv: vec2<f32>) -> vec4<f32> {
     return material.base_color * textureSample(base_texture, base_sampler, transformed_uv(material.base_uv, uv));
 }
 
-// Whether a masked fragment is cut out. Alpha is read from the finest level alone: coarser ones
-// average cut-outs away, so that a far fence would vanish, and rays know no levels.
+// Whether the pipeline draws parts with cut-outs. It is a constant, since shaders that may discard run before the depth
+// test.
+override MASKED: bool = false;
+
+// Whether a fragment is cut out. Alpha is read from the finest level alone: coarser ones average cut-outs away, so that
+// a far fence would vanish, and rays know no levels.
 fn is_cut_out(uv: vec2<f32>, vertex_alpha: f32) -> bool {
     let texel = textureSampleLevel(base_texture, base_sampler, transformed_uv(material.base_uv, uv), 0.0);
-    return material.base_color.a * texel.a * vertex_alpha < material.alpha_cutoff;
+    return MASKED && material.base_color.a * texel.a * vertex_alpha < material.alpha_cutoff;
 }

@@ -2,11 +2,6 @@
 
 @fragment
 fn fs_overlay(in: SceneOut) -> @location(0) vec4<f32> {
-    return overlaid(in);
-}
-
-@fragment
-fn fs_overlay_masked(in: SceneOut) -> @location(0) vec4<f32> {
     let color = overlaid(in);
     if is_cut_out(in.uv, in.color.a) {
         discard;

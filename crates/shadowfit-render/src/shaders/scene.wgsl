@@ -126,14 +126,8 @@ fn shaded(in: SceneOut) -> vec4<f32> {
     return vec4<f32>(lit(in, surface, mapped_factor(in, surface)), opacity(surface));
 }
 
-// Cut-outs have entry points of their own: a shader that may discard is run before the depth test.
 @fragment
 fn fs_scene(in: SceneOut) -> @location(0) vec4<f32> {
-    return shaded(in);
-}
-
-@fragment
-fn fs_scene_masked(in: SceneOut) -> @location(0) vec4<f32> {
     let color = shaded(in);
     if is_cut_out(in.uv, in.color.a) {
         discard;

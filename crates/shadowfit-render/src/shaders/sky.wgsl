@@ -15,21 +15,16 @@ fn vs_sky(@builtin(vertex_index) index: u32) -> SkyVertex {
 const SUN_COSINE: f32 = 0.99980;
 const SUN_SOFTNESS: f32 = 0.00006;
 
-fn sky_color(in: SkyVertex) -> vec3<f32> {
+// Whether it is dim and grey: behind overlays whose colours have a meaning.
+override GRAY: bool = false;
+
+@fragment
+fn fs_sky(in: SkyVertex) -> @location(0) vec4<f32> {
     let ray = frame.ray_right.xyz * in.ndc.x + frame.ray_up.xyz * in.ndc.y + frame.ray_forward.xyz;
     let direction = normalize(ray);
     let disc = smoothstep(SUN_COSINE - SUN_SOFTNESS, SUN_COSINE, dot(direction, frame.to_light));
     let radiance = sky_radiance(direction) + frame.sun * (4.0 * disc * saturate(direction.y * 50.0));
-    return tone_map(radiance);
-}
-
-@fragment
-fn fs_sky(in: SkyVertex) -> @location(0) vec4<f32> {
-    return vec4<f32>(sky_color(in), 1.0);
-}
-
-// Behind overlays whose colours have a meaning: dim and grey.
-@fragment
-fn fs_sky_gray(in: SkyVertex) -> @location(0) vec4<f32> {
-    return vec4<f32>(vec3<f32>(0.25 * dot(sky_color(in), vec3<f32>(0.2126, 0.7152, 0.0722))), 1.0);
+    let color = tone_map(radiance);
+    let gray = vec3<f32>(0.25 * dot(color, vec3<f32>(0.2126, 0.7152, 0.0722)));
+    return vec4<f32>(select(color, gray, GRAY), 1.0);
 }

@@ -86,7 +86,7 @@ impl BuiltinScene {
         }
     }
 
-    /// The scene of an id; `None` where there is none of that name.
+    /// The scene of an id; `None` where no scene has it.
     pub fn from_id(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|scene| scene.id() == id)
     }

@@ -97,7 +97,7 @@ impl Builder {
         self.view(view, Lens::Perspective { fov_y, near: NEAR, far: Some(far) });
     }
 
-    /// Adds the start view with a lens of its own.
+    /// Adds the start view with a given lens.
     pub fn view(&mut self, (eye, target): (Vec3, Vec3), lens: Lens) {
         let back = (eye - target).normalize();
         let right = Vec3::Y.cross(back).normalize();

@@ -14,7 +14,7 @@ pub struct Dice {
 }
 
 impl Dice {
-    /// A sequence of its own for each seed.
+    /// The sequence of a seed.
     pub fn new(seed: u32) -> Self {
         Self { seed, next: 0 }
     }

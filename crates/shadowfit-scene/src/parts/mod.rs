@@ -24,7 +24,7 @@ pub(crate) use figure::{Wear, wanderer};
 pub use finish::*;
 pub use flora::*;
 pub use motion::*;
-pub(crate) use numbered::numbered;
+pub use numbered::numbered;
 pub use pixels::*;
 pub use shapes::*;
 pub use sheet::*;

@@ -2,6 +2,7 @@
 
 /// Declares an enum beside what its values stand for: `Name: Type { Value = what it stands for, … }`. `Name::all()` is
 /// the list of all, and a value as a `usize` is its index there.
+#[macro_export]
 macro_rules! numbered {
     ($(#[$doc:meta])* $name:ident: $of:ty { $($value:ident = $meant:expr),+ $(,)? }) => {
         $(#[$doc])*
@@ -25,4 +26,4 @@ macro_rules! numbered {
     };
 }
 
-pub(crate) use numbered;
+pub use numbered;

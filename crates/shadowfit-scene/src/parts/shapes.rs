@@ -331,7 +331,7 @@ impl Arch {
     }
 }
 
-/// A box between two corners with sharp edges: for what is thin, or far off.
+/// A box between two corners with sharp edges, for thin or distant things.
 pub fn plank(low: impl Into<Vec3>, high: impl Into<Vec3>) -> Solid {
     let (low, high) = (low.into(), high.into());
     let outline = [(low.x, low.y), (high.x, low.y), (high.x, high.y), (low.x, high.y)];

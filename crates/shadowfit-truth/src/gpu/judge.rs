@@ -74,7 +74,7 @@ impl GpuJudge {
     /// # Errors
     ///
     /// When the sizes of `seen` or [`GpuBefore::seen`](super::GpuBefore::seen) and the camera differ, the picture is
-    /// too large for the device, there are more than [`MAX_MAPS`](super::MAX_MAPS) maps, or the light is no sun with hard shadows.
+    /// too large for the device, there are more than [`MAX_MAPS`](super::MAX_MAPS) maps, or the light is not a sun with hard shadows.
     pub fn judge(
         &mut self,
         device: &wgpu::Device,

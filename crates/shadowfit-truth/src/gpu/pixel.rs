@@ -79,7 +79,7 @@ fn decode_octaves(bits: u16) -> f32 {
     if octaves >= MAX_OCTAVE { f32::INFINITY } else { octaves.exp2() }
 }
 
-/// The bits of pixels per texel, which are at least 0; those of infinity for what is not a number.
+/// The bits of pixels per texel, which are at least 0; the bits of infinity where it is not a number.
 fn encode_octaves(pixels_per_texel: f32) -> u16 {
     if pixels_per_texel.is_nan() {
         return NO_OCTAVES;

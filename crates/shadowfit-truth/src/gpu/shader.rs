@@ -1,26 +1,27 @@
-//! The WGSL of the four passes, each put together from its file and the shared pieces.
+//! The WGSL of the four passes, each put together from its file and the shared pieces. A file with a twin on the CPU has
+//! its name.
 
 use super::uniform::TallyRecord;
 use crate::maps::MIN_FACING;
 
 const TYPES: &str = include_str!("shaders/types.wgsl");
 const SURFACE: &str = include_str!("shaders/surface.wgsl");
-const RAYS: &str = include_str!("shaders/rays.wgsl");
+const TRACER: &str = include_str!("shaders/tracer.wgsl");
 
 /// First pass, entry point `trace`: truth, the map that is read, and pixels per texel.
 pub fn truth() -> String {
     let constants = format!("const MIN_FACING: f32 = {MIN_FACING};\n");
-    [TYPES, SURFACE, RAYS, &constants, include_str!("shaders/truth.wgsl")].concat()
+    [TYPES, SURFACE, TRACER, &constants, include_str!("shaders/truth.wgsl")].concat()
 }
 
 /// Second pass, entry point `rows`: distances to transitions along the rows.
 pub fn rows() -> String {
-    [TYPES, include_str!("shaders/rows.wgsl")].concat()
+    [TYPES, include_str!("shaders/distances.wgsl")].concat()
 }
 
 /// Third pass, entry point `classify`: edge zone and classes.
 pub fn classes() -> String {
-    [TYPES, SURFACE, RAYS, include_str!("shaders/classes.wgsl")].concat()
+    [TYPES, SURFACE, TRACER, include_str!("shaders/judge.wgsl")].concat()
 }
 
 /// Fourth pass, entry point `sum`: the sums of the picture.

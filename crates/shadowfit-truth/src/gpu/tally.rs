@@ -102,7 +102,7 @@ impl GpuTally {
     }
 }
 
-/// Pixels by class; none of those that are not judged is among them.
+/// Pixels by class; pixels that are not judged do not count.
 fn class_tally(pixels: &[u32; 6]) -> ClassTally {
     let of = |class: Class| u64::from(pixels[class as usize]);
     let wrong = [Class::FalseShadow, Class::FalseLight, Class::Hole, Class::Edge];

@@ -8,7 +8,7 @@ use super::uniform::{CutOutRecord, ImageRecord, NodeRecord, TriangleRecord};
 use crate::cut_out::{CutOut, CutOuts};
 use crate::tracer::Tracer;
 
-/// Levels of the hierarchy that the shader's stack can follow; `STACK` in `rays.wgsl`.
+/// Levels of the hierarchy that the shader's stack can follow; `STACK` in `tracer.wgsl`.
 const MAX_DEPTH: usize = 64;
 
 /// What each buffer holds, for its label and for errors; the order is that of the bindings.

@@ -98,7 +98,7 @@ impl MeasuredMap {
         Self { blend_near, ..self }
     }
 
-    /// This map with a reach of the filter of its own, in texels, which sets the width of its edge zone.
+    /// This map with its own reach of the filter, in texels, which sets the width of its edge zone.
     #[must_use]
     pub fn with_reach(self, reach: f32) -> Self {
         Self { reach: Some(reach), ..self }

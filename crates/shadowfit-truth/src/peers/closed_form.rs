@@ -17,7 +17,7 @@ use crate::{Histogram, MeasuredMap, Tracer};
 const EYE: f64 = 4.0;
 /// Half of the vertical field of view: its tangent is 1/2, so 4 m of the floor's z are seen.
 const TAN: f64 = 0.5;
-/// Metres of the floor in a pixel, of which the screen has 1080 in its height.
+/// Metres of the floor in a pixel of a screen that is 1080 pixels high.
 const PIXEL: f64 = 2.0 * TAN * EYE / 1080.0;
 /// Facing points of a frame.
 const POINTS: u64 = 320 * 180;

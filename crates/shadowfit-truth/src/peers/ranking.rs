@@ -15,7 +15,7 @@ use crate::maps::MeasuredMap;
 use crate::tally::PictureTally;
 use crate::tracer::Tracer;
 
-/// Fits that are measured on the same frames, each of which is traced once for all of them.
+/// Fits that are measured on the same frames. Each frame is traced once for all fits.
 #[derive(Clone, Debug)]
 pub struct Ranking {
     scenarios: Scenarios,

@@ -156,7 +156,7 @@ fn picture_columns(pictures: &PictureTally) -> Vec<(&'static str, f64)> {
 }
 
 impl Serialize for Row {
-    /// A map from column names to values, `null` for what is not finite.
+    /// A map from column names to values; `null` for values that are not finite.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let columns = self.columns();
         let mut map = serializer.serialize_map(Some(columns.len()))?;
@@ -232,8 +232,8 @@ fn of_peers(names: impl Iterator<Item = String>, rows: impl Iterator<Item = (Str
     markdown_table(&columns, rows.map(|(peer, cells)| [vec![peer], cells].concat()))
 }
 
-/// A table in Markdown: the names of its columns, the first of which is aligned to the left and the others to the right,
-/// and the cells of each row.
+/// A table in Markdown, from the names of its columns and the cells of each row. The first column is aligned to the left,
+/// the others to the right.
 pub fn markdown_table(columns: &[String], rows: impl Iterator<Item = Vec<String>>) -> String {
     let mut text = format!("| {} |\n|---|{}\n", columns.join(" | "), "---:|".repeat(columns.len().saturating_sub(1)));
     for cells in rows {
@@ -247,7 +247,7 @@ fn cell(column: &str, value: f64) -> String {
     if column.starts_with("crit") && value.is_finite() { format!("{value:.0}") } else { readable(value) }
 }
 
-/// A readable number: three digits and at most four decimals; a dash for what is not a number.
+/// A readable number: three digits and at most four decimals; a dash where the value is not a number.
 pub fn readable(value: f64) -> String {
     if !value.is_finite() {
         return if value.is_nan() { "-".to_owned() } else { value.to_string() };

@@ -196,7 +196,7 @@ impl Side {
             ViewMode::Outside => self.draw_outside(shot, (&fitted, &maps, false), target),
             ViewMode::Need => self.draw_need(shot, &fitted, &maps, target),
             ViewMode::Updates => self.draw_boards(shot, (&view, &maps, maps_stay), target),
-            mode => self.draw_view(shot, &view, &maps, (overlay(mode), maps_stay), target),
+            mode => self.draw_view(shot, &view, &maps, (Overlay::of(mode), maps_stay), target),
         }
         if !is_frozen && !matches!(shot.settings.view.mode, ViewMode::Outside | ViewMode::Need) {
             self.unread = Some(view.camera);
@@ -334,17 +334,5 @@ impl Side {
         };
         let drawn = self.evaluator.draw(shot.gpu, shot.scene, &frame, target);
         self.take_statistics(drawn);
-    }
-}
-
-/// The overlay on the surfaces in a view of the camera.
-fn overlay(mode: ViewMode) -> Overlay {
-    match mode {
-        ViewMode::Truth => Overlay::Truth,
-        ViewMode::Error => Overlay::Error,
-        ViewMode::PixelsPerTexel => Overlay::PixelsPerTexel,
-        ViewMode::Maps => Overlay::MapTint,
-        ViewMode::TexelGrid => Overlay::TexelGrid,
-        _ => Overlay::None,
     }
 }

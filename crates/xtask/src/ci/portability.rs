@@ -1,5 +1,5 @@
 //! What the core crate promises beyond this machine: targets without a standard library, each feature alone, the same
-//! bits everywhere, both ends of the range of glam, and a Rust of its own.
+//! bits everywhere, both ends of the range of glam, and its own minimum Rust version.
 //!
 //! Where a target, a toolchain or a runtime cannot be had, the check says what it did not do.
 
@@ -164,7 +164,7 @@ fn copy_of_the_core(folder: &Path, manifest: &str) -> Result<()> {
     Ok(())
 }
 
-/// Writes a crate beside the core that is the first example, but with a glam of its own.
+/// Writes a crate beside the core that is the first example, but with its own version of glam.
 fn engine_with(glam: &str, folder: &Path) -> Result<()> {
     let example = fs::read_to_string(process::root().join("examples/fit_once.rs"))?;
     let main = example.replace("use shadowfit::glam::", "use glam::");

@@ -35,7 +35,7 @@ const STREET: [Aabb; 11] = [
 /// Colours of the octaves of texels, the finest first.
 const OCTAVES: [&str; 6] = ["#4a0010", "#b5131b", "#ef5a1f", "#fb9d3f", "#f3c35f", "#cfc29a"];
 
-/// Least texel of the finest octave that has a colour of its own, in metres.
+/// Least texel of the finest octave that has its own colour, in metres.
 const FINEST: f32 = 1.0 / 512.0;
 
 pub(super) fn draw() -> Result<String> {

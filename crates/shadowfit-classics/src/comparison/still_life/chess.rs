@@ -1,6 +1,6 @@
 //! The chess board and the pieces on it, of a size to play on foot.
 
-use glam::{Affine3A, Vec3};
+use glam::Vec3;
 use shadowfit_scene::Primitive;
 use shadowfit_scene::parts::{Builder, CRISP, Solid, block, ellipsoid, lathe, rounded_box};
 
@@ -44,7 +44,7 @@ pub(super) fn build(builder: &mut Builder, group: usize) {
 
 /// Six by six squares: a part of a board.
 fn squares() -> Solid {
-    block(Vec3::new(-HALF, -SUNK, -HALF), Vec3::new(HALF, TOP, HALF), 0.005)
+    block([-HALF, -SUNK, -HALF], [HALF, TOP, HALF], 0.005)
 }
 
 /// The rim around the squares.
@@ -103,13 +103,8 @@ fn rook() -> Solid {
         (0.11, 0.73),
         (0.0, 0.725),
     ];
-    let mut solid = lathe(&[&foot(0.98)[..], &tower, &top].concat(), 40);
-    for index in 0..6 {
-        let merlon = block(Vec3::new(-0.045, 0.755, 0.112), Vec3::new(0.045, 0.845, 0.163), 0.008);
-        let turn = Affine3A::from_rotation_y(index as f32 / 6.0 * std::f32::consts::TAU);
-        solid = solid.with(merlon.transformed(turn));
-    }
-    solid
+    let merlon = block([-0.045, 0.755, 0.112], [0.045, 0.845, 0.163], 0.008);
+    lathe(&[&foot(0.98)[..], &tower, &top].concat(), 40).with(merlon.around(6))
 }
 
 /// A pawn.

@@ -58,9 +58,9 @@ fn sides() -> Solid {
             Quat::from_euler(glam::EulerRot::XYZ, -0.15, 0.0, -0.22),
             Vec3::new(0.042, 0.925, 0.015),
         ));
-    let eye = ellipsoid(Vec3::new(0.014, 0.019, 0.024), 12, 8).moved(Vec3::new(0.077, 0.855, 0.135));
-    let brow = capsule(Vec3::new(0.070, 0.895, 0.10), 0.014, Vec3::new(0.066, 0.872, 0.17), 0.010, 10);
-    let nostril = ellipsoid(Vec3::new(0.012, 0.016, 0.020), 12, 8).moved(Vec3::new(0.046, 0.69, 0.335));
-    let jaw = ellipsoid(Vec3::new(0.03, 0.062, 0.062), 16, 10).moved(Vec3::new(0.058, 0.785, 0.06));
+    let eye = ellipsoid([0.014, 0.019, 0.024], 12, 8).moved([0.077, 0.855, 0.135]);
+    let brow = capsule([0.070, 0.895, 0.10], 0.014, [0.066, 0.872, 0.17], 0.010, 10);
+    let nostril = ellipsoid([0.012, 0.016, 0.020], 12, 8).moved([0.046, 0.69, 0.335]);
+    let jaw = ellipsoid([0.03, 0.062, 0.062], 16, 10).moved([0.058, 0.785, 0.06]);
     ear.with(eye).with(brow).with(nostril).with(jaw)
 }

@@ -28,7 +28,7 @@ const FAR: f32 = 40.0;
 
 /// The scene.
 pub(super) fn build() -> Scene {
-    let mut builder = Builder::new("still-life", palette::materials(), textures::images());
+    let mut builder = Builder::new("still-life", palette::Paint::all(), textures::Picture::all());
     let group = builder.group("still life", Vec3::ZERO, 0.0);
     room::build(&mut builder, group);
     stones::build(&mut builder, group);

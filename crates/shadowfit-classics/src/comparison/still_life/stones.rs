@@ -64,8 +64,8 @@ fn column() -> Solid {
         (0.52, 3.76),
     ];
     let round = modulated_lathe(&shaft, 120, flutes).with(lathe(&base, 48)).with(lathe(&capital, 48));
-    let stand = block(Vec3::new(-0.58, -SUNK, -0.58), Vec3::new(0.58, 0.17, 0.58), 0.015);
-    let slab = block(Vec3::new(-0.58, 3.74, -0.58), Vec3::new(0.58, 3.92, 0.58), 0.015);
+    let stand = block([-0.58, -SUNK, -0.58], [0.58, 0.17, 0.58], 0.015);
+    let slab = block([-0.58, 3.74, -0.58], [0.58, 3.92, 0.58], 0.015);
     round.with(stand).with(slab)
 }
 
@@ -82,14 +82,14 @@ fn arch() -> Solid {
         let foot = pier(radius - 0.06, 1.61, -SUNK, 0.22);
         foot.with(pier(radius - 0.06, 1.61, spring - 0.2, spring - 0.03))
     };
-    let key = block(Vec3::new(-0.15, spring + radius - 0.07, -0.46), Vec3::new(0.15, 3.13, 0.46), 0.02);
-    let cornice = block(Vec3::new(-1.63, 3.15, -0.46), Vec3::new(1.63, 3.36, 0.46), 0.025);
+    let key = block([-0.15, spring + radius - 0.07, -0.46], [0.15, 3.13, 0.46], 0.02);
+    let cornice = block([-1.63, 3.15, -0.46], [1.63, 3.36, 0.46], 0.025);
     wall.with(side(1.0)).with(side(-1.0)).with(key).with(cornice)
 }
 
 /// A pedestal with a foot and a slab, and the cup that holds the ball.
 fn pedestal() -> Solid {
-    let part = |half: f32, low: f32, high: f32| block(Vec3::new(-half, low, -half), Vec3::new(half, high, half), 0.02);
+    let part = |half: f32, low: f32, high: f32| block([-half, low, -half], [half, high, half], 0.02);
     let cup = lathe(&[(0.30, 1.28), (0.31, 1.33), (0.25, 1.37), (0.29, 1.42), (0.27, 1.44)], 32);
     part(0.60, -SUNK, 0.20).with(part(0.47, 0.18, 1.16)).with(part(0.58, 1.14, 1.30)).with(cup)
 }

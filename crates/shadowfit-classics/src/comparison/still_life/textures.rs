@@ -1,16 +1,16 @@
 //! Images of the still life: boards, plaster, stone, the squares of the chess board.
 
 use shadowfit_scene::Image;
-use shadowfit_scene::parts::{NOISE_CELLS, Noise, draw, draw_noisy, hash, shade};
+use shadowfit_scene::parts::{NOISE_CELLS, Noise, draw, draw_noisy, hash, numbered, shade};
 
-/// An image, by its index in the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(usize)]
-pub(super) enum Picture {
-    Floor,
-    Plaster,
-    Stone,
-    Squares,
+numbered! {
+    /// An image, by its index in the scene.
+    Picture: Image {
+        Floor = floor(),
+        Plaster = plaster(),
+        Stone = stone(),
+        Squares = squares(),
+    }
 }
 
 /// Metres that the image of the floor spans.
@@ -27,11 +27,6 @@ const BOARDS: f32 = 10.0;
 const FLOOR_SIZE: u32 = 512;
 /// Pixels along a side of the other images.
 const SIZE: u32 = 256;
-
-/// All images, in the order of [`Picture`].
-pub(super) fn images() -> Vec<Image> {
-    vec![floor(), plaster(), stone(), squares()]
-}
 
 /// Boards along u, mirrored where the image ends, two to a row, which end at another place in each row; grain runs along them.
 fn floor() -> Image {

@@ -2,7 +2,8 @@
 //!
 //! Numbers of the source, as in the first stage. The light images are our own.
 
-pub mod formula;
+pub mod shade;
+pub mod test;
 
 use glam::{DVec3, Vec3};
 use shadowfit::{FitError, PerspectiveCamera};

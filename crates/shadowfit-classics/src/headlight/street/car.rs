@@ -1,4 +1,4 @@
-//! The car: a saloon that looks along +z and stands on y = 0, in units of which the street's are four times as small.
+//! The car: a saloon that looks along +z and stands on y = 0, in units of four of the street's.
 
 use glam::{Vec2, Vec3};
 use shadowfit_scene::Primitive;
@@ -27,7 +27,7 @@ pub(super) fn primitives() -> Vec<Primitive> {
 
 /// What fills the car between the wheels, so that nobody looks through the arches.
 fn underbody() -> Solid {
-    block(Vec3::new(-0.46, 0.14, -1.38), Vec3::new(0.46, 0.52, 1.38), 0.03)
+    block([-0.46, 0.14, -1.38], [0.46, 0.52, 1.38], 0.03)
 }
 
 /// A bumper around the nose (`end` 1) or the tail (-1).
@@ -47,8 +47,8 @@ fn bumper(end: f32) -> Solid {
 
 /// Mirrors at the front of the side windows.
 fn mirrors() -> Solid {
-    let shell = rounded_box(Vec3::new(0.07, 0.047, 0.034), 0.03, 4).moved(Vec3::new(0.73, 0.83, 0.47));
-    let arm = block(Vec3::new(0.56, 0.785, 0.45), Vec3::new(0.70, 0.815, 0.485), 0.01);
+    let shell = rounded_box([0.07, 0.047, 0.034], 0.03, 4).moved([0.73, 0.83, 0.47]);
+    let arm = block([0.56, 0.785, 0.45], [0.70, 0.815, 0.485], 0.01);
     shell.with(arm).and_mirrored()
 }
 
@@ -66,17 +66,17 @@ fn seams() -> Solid {
 
 /// Openings for air between the headlights and below the bumper.
 fn grille() -> Solid {
-    rounded_box(Vec3::new(0.27, 0.045, 0.05), 0.02, 2).moved(Vec3::new(0.0, 0.475, HALF_LENGTH - 0.035))
+    rounded_box([0.27, 0.045, 0.05], 0.02, 2).moved([0.0, 0.475, HALF_LENGTH - 0.035])
 }
 
 /// Two round headlights.
 fn headlights() -> Solid {
-    ellipsoid(Vec3::new(0.115, 0.075, 0.075), 26, 16).moved(Vec3::new(0.45, 0.485, HALF_LENGTH - 0.06)).and_mirrored()
+    ellipsoid([0.115, 0.075, 0.075], 26, 16).moved([0.45, 0.485, HALF_LENGTH - 0.06]).and_mirrored()
 }
 
 /// Two wide tail lights.
 fn tail_lights() -> Solid {
-    rounded_box(Vec3::new(0.13, 0.06, 0.06), 0.03, 3).moved(Vec3::new(0.44, 0.53, -HALF_LENGTH + 0.045)).and_mirrored()
+    rounded_box([0.13, 0.06, 0.06], 0.03, 3).moved([0.44, 0.53, -HALF_LENGTH + 0.045]).and_mirrored()
 }
 
 /// Handles of four doors.

@@ -1,6 +1,6 @@
 //! A lamp post: a foot, a slender shaft that bends over the road toward -x, and a lamp at its end.
 //!
-//! In its own units, of which the street's are 20.
+//! In its own units; one of the street's is 20 of them.
 
 use std::f32::consts::FRAC_PI_2;
 

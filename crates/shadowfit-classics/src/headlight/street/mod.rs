@@ -1,7 +1,7 @@
 //! The street: a road with a kerb, a pavement and a wall on its right, two cars and two lamp posts, made for a headlight.
 //!
 //! The strip, the places and the sizes are those of a classic sample of shadow maps by a lamp with perspective; the
-//! models are our own. Lengths are in the sample's units, of which a car is about 13 long. Beyond the strip is nothing:
+//! models are our own. Lengths are in the sample's units: a car is about 13 long. Beyond the strip is nothing:
 //! one of the cars stands beside it.
 
 mod atlas;
@@ -41,7 +41,7 @@ const VIEW: (Vec3, Vec3) = (Vec3::new(-25.0, 13.0, 18.0), Vec3::new(0.0, 2.0, -1
 
 /// The scene.
 pub(super) fn build() -> Scene {
-    let mut builder = Builder::new("street", palette::materials(), vec![atlas::image()]);
+    let mut builder = Builder::new("street", palette::Paint::all(), vec![atlas::image()]);
     let strip = builder.mesh("strip", vec![strip::primitive()]);
     builder.node("strip", None, Transform::default(), Some(strip));
     let car = builder.mesh("car", car::primitives());

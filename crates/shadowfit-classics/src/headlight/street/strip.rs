@@ -5,7 +5,7 @@ use shadowfit_scene::Primitive;
 
 use super::palette::Paint;
 
-/// The pairs: x, y, u and the normal. Where faces meet at an edge, each has a pair of its own.
+/// The pairs: x, y, u and the normal. Where faces meet at an edge, each has its own pair.
 ///
 /// ```text
 ///                   +  8: top of the wall, y = 21

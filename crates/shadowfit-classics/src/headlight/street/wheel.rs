@@ -1,6 +1,6 @@
 //! The wheels of the car: tyres, and hubs of five spokes.
 
-use std::f32::consts::{FRAC_PI_2, TAU};
+use std::f32::consts::FRAC_PI_2;
 
 use glam::{Affine3A, Quat, Vec3};
 use shadowfit_scene::parts::{Solid, block, lathe, torus};
@@ -26,10 +26,8 @@ pub(super) fn tyres() -> Solid {
 pub(super) fn hubs() -> Solid {
     let cap = lathe(&[(0.05, 0.03), (0.048, 0.078), (0.036, 0.09), (0.0, 0.095)], 20);
     let rim = torus(RIM, 0.014, 0.02, 36, 8).moved(Vec3::Y * (HALF - 0.008));
-    let spoke = block(Vec3::new(-0.022, 0.045, 0.036), Vec3::new(0.022, 0.078, RIM), 0.008);
-    let turned =
-        |index: usize| spoke.clone().transformed(Affine3A::from_rotation_y(index as f32 / SPOKES as f32 * TAU));
-    on_axles(&(0..SPOKES).map(turned).fold(cap.with(rim), Solid::with))
+    let spoke = block([-0.022, 0.045, 0.036], [0.022, 0.078, RIM], 0.008);
+    on_axles(&cap.with(rim).with(spoke.around(SPOKES)))
 }
 
 /// A wheel whose outer side faces +y, at the four places of the car.
@@ -39,5 +37,5 @@ fn on_axles(wheel: &Solid) -> Solid {
         let at = Vec3::new(HALF_WIDTH - HALF - 0.012, WHEEL, z);
         wheel.clone().transformed(Affine3A::from_rotation_translation(turn, at))
     };
-    AXLES.into_iter().map(place).fold(Solid::default(), Solid::with).and_mirrored()
+    AXLES.into_iter().map(place).collect::<Solid>().and_mirrored()
 }

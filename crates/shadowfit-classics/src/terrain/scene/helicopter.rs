@@ -59,7 +59,7 @@ fn cabin(parts: &mut Parts) {
     let rib = |z: f32, rx: f32, ry: f32, y: f32| {
         let scale = Affine3A::from_scale(Vec3::new(rx, 1.0, ry));
         let ring = torus(1.0, 0.04, 0.07, 48, 8).transformed(scale);
-        ring.transformed(Affine3A::from_rotation_x(FRAC_PI_2)).moved(Vec3::new(0.0, y, z))
+        ring.transformed(Affine3A::from_rotation_x(FRAC_PI_2)).moved([0.0, y, z])
     };
     parts.add(Paint::Pale, SMOOTH, rib(1.05, 1.36, 1.36, 2.40));
     let keel: Vec<Vec3> = [(0.0, 3.86), (0.9, 3.82), (1.6, 3.63), (2.2, 3.27), (2.75, 2.74), (2.98, 2.3)]
@@ -67,7 +67,7 @@ fn cabin(parts: &mut Parts) {
         .to_vec();
     let pane = keel.windows(2).map(|pair| capsule(pair[0], 0.07, pair[1], 0.07, 10)).reduce(Solid::with);
     parts.add(Paint::Pale, SMOOTH, pane.unwrap_or_default());
-    let lamp = ellipsoid(Vec3::new(0.17, 0.17, 0.12), 18, 8).moved(Vec3::new(0.0, 1.42, 3.0));
+    let lamp = ellipsoid([0.17, 0.17, 0.12], 18, 8).moved([0.0, 1.42, 3.0]);
     parts.add(Paint::Lamp, SMOOTH, lamp);
 }
 
@@ -76,8 +76,8 @@ fn engine(parts: &mut Parts) {
     let cowling =
         [(-1.9, 0.45, 0.42, 3.45), (-1.0, 0.68, 0.58, 3.72), (0.1, 0.62, 0.56, 3.82), (0.7, 0.34, 0.28, 3.82)];
     parts.add(Paint::Blue, SMOOTH, along_z(&cowling, 2.5));
-    let intake = block(Vec3::new(0.5, 3.5, -0.75), Vec3::new(0.8, 4.0, 0.05), 0.06).and_mirrored();
-    let exhaust = capsule(Vec3::new(0.4, 3.6, -1.5), 0.17, Vec3::new(0.62, 3.82, -2.2), 0.19, 14).and_mirrored();
+    let intake = block([0.5, 3.5, -0.75], [0.8, 4.0, 0.05], 0.06).and_mirrored();
+    let exhaust = capsule([0.4, 3.6, -1.5], 0.17, [0.62, 3.82, -2.2], 0.19, 14).and_mirrored();
     parts.add(Paint::Dark, CRISP, intake.with(exhaust));
     let mast = lathe(&[(0.34, 4.2), (0.2, 4.55), (0.1, 4.7), (0.1, ROTOR + 0.1)], 18);
     let plate = lathe(&[(0.3, 5.0), (0.34, 5.04), (0.34, 5.12), (0.3, 5.16)], 20);
@@ -98,13 +98,13 @@ fn tail(parts: &mut Parts) {
     parts.add(Paint::Blue, CRISP, fin.with(lower).transformed(upright));
     let tip = wedge(rect(0.07, [6.98, 7.82], 4.45), rect(0.065, [7.12, 7.9], 4.9));
     parts.add(Paint::Pale, CRISP, tip.transformed(upright));
-    let stabiliser = rounded_box(Vec3::new(1.25, 0.045, 0.32), 0.04, 2).moved(Vec3::new(0.0, 3.16, -5.75));
-    let plates = block(Vec3::new(1.2, 2.95, -6.1), Vec3::new(1.27, 3.45, -5.45), 0.03).and_mirrored();
+    let stabiliser = rounded_box([1.25, 0.045, 0.32], 0.04, 2).moved([0.0, 3.16, -5.75]);
+    let plates = block([1.2, 2.95, -6.1], [1.27, 3.45, -5.45], 0.03).and_mirrored();
     parts.add(Paint::Pale, CRISP, stabiliser.with(plates));
-    let blade = plank(Vec3::new(-0.02, 0.12, -0.09), Vec3::new(0.02, 1.15, 0.09));
-    let hub = capsule(Vec3::new(-0.45, 0.0, 0.0), 0.09, Vec3::new(0.06, 0.0, 0.0), 0.11, 12);
+    let blade = plank([-0.02, 0.12, -0.09], [0.02, 1.15, 0.09]);
+    let hub = capsule([-0.45, 0.0, 0.0], 0.09, [0.06, 0.0, 0.0], 0.11, 12);
     let spin = |quarter: usize| blade.clone().transformed(Affine3A::from_rotation_x(0.5 + TAU / 4.0 * quarter as f32));
-    let rotor = (0..4).map(spin).fold(hub, Solid::with).moved(Vec3::new(0.42, 3.78, -7.1));
+    let rotor = (0..4).map(spin).fold(hub, Solid::with).moved([0.42, 3.78, -7.1]);
     parts.add(Paint::Dark, CRISP, rotor);
 }
 
@@ -112,7 +112,7 @@ fn tail(parts: &mut Parts) {
 fn rotor(parts: &mut Parts) {
     // Modelled along +z.
     let blade = wedge(rect(0.2, [-0.03, 0.03], 0.55), rect(0.2, [-0.03, 0.01], BLADE));
-    let grip = capsule(Vec3::ZERO, 0.11, Vec3::new(0.0, 0.0, 0.75), 0.09, 10);
+    let grip = capsule(Vec3::ZERO, 0.11, [0.0, 0.0, 0.75], 0.09, 10);
     let end = wedge(rect(0.205, [-0.036, 0.018], BLADE - 0.75), rect(0.205, [-0.036, 0.018], BLADE + 0.01));
     let turned = |solid: &Solid| {
         let turn = |quarter: usize| Affine3A::from_rotation_y(BLADE_TURN + TAU / 4.0 * quarter as f32);
@@ -121,7 +121,7 @@ fn rotor(parts: &mut Parts) {
     };
     parts.add(Paint::Dark, CRISP, turned(&blade).with(turned(&grip)));
     parts.add(Paint::Yellow, CRISP, turned(&end));
-    let hub = ellipsoid(Vec3::new(0.26, 0.17, 0.26), 20, 10).moved(Vec3::Y * (ROTOR + 0.02));
+    let hub = ellipsoid([0.26, 0.17, 0.26], 20, 10).moved(Vec3::Y * (ROTOR + 0.02));
     parts.add(Paint::Steel, CRISP, hub);
 }
 

@@ -5,7 +5,7 @@
 use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::{Affine3A, Quat, Vec3};
-use shadowfit_scene::parts::{CRISP, SMOOTH, Solid, block, capsule, lathe, plank, rounded_box, torus, wall_over};
+use shadowfit_scene::parts::{CRISP, SMOOTH, block, capsule, lathe, plank, rounded_box, torus, wall_over};
 
 use super::palette::Paint;
 use super::parts::{Parts, Wheel, bent_sheet, rect, sideways, wedge};
@@ -35,15 +35,15 @@ pub(super) fn parts() -> Parts {
 
 /// Axles, rails and bumpers.
 fn frame(parts: &mut Parts) {
-    let rail = |x: f32| block(Vec3::new(x - 0.09, 0.86, -1.6), Vec3::new(x + 0.09, 1.08, 6.5), 0.03);
+    let rail = |x: f32| block([x - 0.09, 0.86, -1.6], [x + 0.09, 1.08, 6.5], 0.03);
     let axle = |z: f32| {
         let end = Vec3::new(TRACK, WHEEL.radius, z);
         capsule(end * Vec3::new(-1.0, 1.0, 1.0), 0.11, end, 0.11, 12)
     };
-    let bumper = block(Vec3::new(-1.5, 0.92, 6.48), Vec3::new(1.5, 1.2, 6.7), 0.05);
-    let rear = block(Vec3::new(-1.2, 0.9, -1.72), Vec3::new(1.2, 1.06, -1.5), 0.04);
-    let solid = [rail(0.62), rail(-0.62), axle(0.0), axle(FRONT), bumper, rear].into_iter().reduce(Solid::with);
-    parts.add(Paint::Dark, CRISP, solid.unwrap_or_default());
+    let bumper = block([-1.5, 0.92, 6.48], [1.5, 1.2, 6.7], 0.05);
+    let rear = block([-1.2, 0.9, -1.72], [1.2, 1.06, -1.5], 0.04);
+    let solids = [rail(0.62), rail(-0.62), axle(0.0), axle(FRONT), bumper, rear];
+    parts.add(Paint::Dark, CRISP, solids.into_iter().collect());
 }
 
 /// Floor, sides with a low entry, tailboard, dashboard.
@@ -53,17 +53,16 @@ fn tub(parts: &mut Parts) {
     let over: Vec<_> = edge.iter().map(|&(z, y)| (z, -y)).collect();
     let side = wall_over(&over, -0.98, 0.09).transformed(Affine3A::from_scale(Vec3::new(1.0, -1.0, 1.0)));
     let side = sideways(side).moved(Vec3::X * 1.14);
-    let floor = block(Vec3::new(-1.12, 1.04, -1.46), Vec3::new(1.12, 1.14, 3.2), 0.03);
-    let tailboard = block(Vec3::new(-1.12, 1.06, -1.52), Vec3::new(1.12, 2.16, -1.43), 0.03);
-    let dashboard = block(Vec3::new(-1.1, 1.8, 2.9), Vec3::new(1.1, 2.26, 3.24), 0.05);
-    let firewall = plank(Vec3::new(-1.1, 1.08, 3.15), Vec3::new(1.1, 1.9, 3.22));
-    let box_sides =
-        |side: f32| block(Vec3::new(-0.3, 1.1, -1.44), Vec3::new(0.3, 1.92, 0.82), 0.03).moved(Vec3::X * side * 0.82);
+    let floor = block([-1.12, 1.04, -1.46], [1.12, 1.14, 3.2], 0.03);
+    let tailboard = block([-1.12, 1.06, -1.52], [1.12, 2.16, -1.43], 0.03);
+    let dashboard = block([-1.1, 1.8, 2.9], [1.1, 2.26, 3.24], 0.05);
+    let firewall = plank([-1.1, 1.08, 3.15], [1.1, 1.9, 3.22]);
+    let box_sides = |side: f32| block([-0.3, 1.1, -1.44], [0.3, 1.92, 0.82], 0.03).moved(Vec3::X * side * 0.82);
     parts.add(Paint::Sand, CRISP, side.and_mirrored().with(floor).with(tailboard).with(dashboard));
     parts.add(Paint::Sand, CRISP, firewall.with(box_sides(1.0)).with(box_sides(-1.0)));
-    let lamp = block(Vec3::new(-0.1, 1.3, -1.56), Vec3::new(0.1, 1.48, -1.48), 0.02);
+    let lamp = block([-0.1, 1.3, -1.56], [0.1, 1.48, -1.48], 0.02);
     parts.add(Paint::Red, CRISP, lamp.moved(Vec3::X * 0.95).and_mirrored());
-    let can = block(Vec3::new(-0.95, 1.35, -1.82), Vec3::new(-0.58, 2.0, -1.54), 0.05);
+    let can = block([-0.95, 1.35, -1.82], [-0.58, 2.0, -1.54], 0.05);
     parts.add(Paint::Tan, CRISP, can);
 }
 
@@ -71,20 +70,20 @@ fn tub(parts: &mut Parts) {
 fn front(parts: &mut Parts) {
     let hood = wedge(rect(1.06, [1.2, 2.28], 3.26), rect(0.92, [1.2, 2.12], 6.2));
     let ridge = wedge(rect(0.5, [2.2, 2.36], 3.28), rect(0.42, [2.05, 2.2], 6.1));
-    let grille = block(Vec3::new(-1.04, 1.06, 6.14), Vec3::new(1.04, 2.18, 6.32), 0.06);
+    let grille = block([-1.04, 1.06, 6.14], [1.04, 2.18, 6.32], 0.06);
     parts.add(Paint::Sand, CRISP, hood.with(ridge).with(grille));
     let slot = |index: usize| {
         let x = (index as f32 - 3.0) * 0.145;
-        plank(Vec3::new(x - 0.042, 1.28, 6.2), Vec3::new(x + 0.042, 2.0, 6.335))
+        plank([x - 0.042, 1.28, 6.2], [x + 0.042, 2.0, 6.335])
     };
-    parts.add(Paint::Dark, CRISP, (0..7).map(slot).reduce(Solid::with).unwrap_or_default());
+    parts.add(Paint::Dark, CRISP, (0..7).map(slot).collect());
     let ahead = Affine3A::from_rotation_translation(Quat::from_rotation_x(FRAC_PI_2), Vec3::new(0.76, 1.74, 6.25));
     let ring = lathe(&[(0.24, 0.0), (0.25, 0.12), (0.21, 0.15)], 24).transformed(ahead);
     let glass = lathe(&[(0.19, 0.1), (0.19, 0.17), (0.12, 0.21)], 24).transformed(ahead);
     parts.add(Paint::Dark, CRISP, ring.and_mirrored());
     parts.add(Paint::Lamp, CRISP, glass.and_mirrored());
     let wheel = lathe(&[(0.07, 0.0), (0.07, 0.06)], 10);
-    let catches = wheel.moved(Vec3::new(1.02, 1.95, 4.2)).and_mirrored();
+    let catches = wheel.moved([1.02, 1.95, 4.2]).and_mirrored();
     parts.add(Paint::Steel, CRISP, catches);
 }
 
@@ -110,22 +109,22 @@ fn above(parts: &mut Parts) {
     let legs = tube([1.0, 1.2, 0.72], [0.94, 3.45, 0.72]).with(tube([0.92, 3.42, 0.72], [0.95, 2.0, -1.2]));
     let top = tube([-0.94, 3.45, 0.72], [0.94, 3.45, 0.72]);
     parts.add(Paint::Dark, SMOOTH, legs.and_mirrored().with(top));
-    let arm = capsule(Vec3::new(1.1, 2.35, 3.05), 0.025, Vec3::new(1.42, 2.62, 3.1), 0.025, 8);
-    let mirror = block(Vec3::new(1.3, 2.55, 3.06), Vec3::new(1.6, 2.9, 3.12), 0.02);
+    let arm = capsule([1.1, 2.35, 3.05], 0.025, [1.42, 2.62, 3.1], 0.025, 8);
+    let mirror = block([1.3, 2.55, 3.06], [1.6, 2.9, 3.12], 0.02);
     parts.add(Paint::Dark, SMOOTH, arm.with(mirror).and_mirrored());
 }
 
 /// Two seats, a bench behind them, and the steering wheel.
 fn seats(parts: &mut Parts) {
     let seat = |x: f32, z: f32, half: f32| {
-        let cushion = rounded_box(Vec3::new(half, 0.13, 0.36), 0.08, 2).moved(Vec3::new(x, 1.5, z));
+        let cushion = rounded_box([half, 0.13, 0.36], 0.08, 2).moved([x, 1.5, z]);
         let lean = Affine3A::from_rotation_translation(Quat::from_rotation_x(-0.18), Vec3::new(x, 1.95, z - 0.42));
-        cushion.with(rounded_box(Vec3::new(half, 0.48, 0.1), 0.08, 2).transformed(lean))
+        cushion.with(rounded_box([half, 0.48, 0.1], 0.08, 2).transformed(lean))
     };
     parts.add(Paint::Tan, CRISP, seat(0.55, 1.75, 0.4).with(seat(-0.55, 1.75, 0.4)).with(seat(0.0, -0.55, 0.48)));
     let tilt = Affine3A::from_rotation_translation(Quat::from_rotation_x(-0.9), Vec3::new(0.55, 2.3, 2.55));
-    let spokes = plank(Vec3::new(-0.3, -0.015, -0.035), Vec3::new(0.3, 0.015, 0.035));
+    let spokes = plank([-0.3, -0.015, -0.035], [0.3, 0.015, 0.035]);
     let wheel = torus(0.31, 0.03, 0.03, 26, 8).with(spokes).transformed(tilt);
-    let column = capsule(Vec3::new(0.55, 2.29, 2.56), 0.04, Vec3::new(0.55, 1.95, 3.0), 0.04, 10);
+    let column = capsule([0.55, 2.29, 2.56], 0.04, [0.55, 1.95, 3.0], 0.04, 10);
     parts.add(Paint::Dark, SMOOTH, wheel.with(column));
 }

@@ -30,7 +30,7 @@ const LIGHT: (Vec3, Vec3) = (Vec3::new(128.0, 100.0, 0.0), Vec3::new(128.0, 0.0,
 
 /// The scene.
 pub(super) fn build() -> Scene {
-    let mut builder = Builder::new("terrain", palette::materials(), vec![land::image()]);
+    let mut builder = Builder::new("terrain", palette::Paint::all(), vec![land::image()]);
     land::build(&mut builder);
     let vehicles = vehicles::build(&mut builder);
     builder.view(VIEW, LENS);

@@ -1,55 +1,28 @@
 //! The terrain's materials.
 
 use shadowfit_scene::Material;
-use shadowfit_scene::parts::{matt, tiled};
+use shadowfit_scene::parts::{matt, numbered, tiled};
 
 /// Distance after which the texture of the land repeats, in the terrain's units.
 const TILE: f32 = 50.0;
 
-/// A material, by its index in the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(usize)]
-pub(super) enum Paint {
-    /// Index 0, and so the default material too.
-    Land,
-    Rubber,
-    Steel,
-    Dark,
-    Seat,
-    Lamp,
-    Red,
-    Cream,
-    Yellow,
-    Blue,
-    Pale,
-    Glass,
-    Sand,
-    Tan,
-}
-
-impl From<Paint> for usize {
-    fn from(paint: Paint) -> Self {
-        paint as Self
+numbered! {
+    /// A material, by its index in the scene; the first is the default material too. The sample's light makes colours up to
+    /// 1.6 times as bright, in display values: they are dark enough to keep their hue under it.
+    Paint: Material {
+        Land = tiled(matt("grass and earth", [1.0; 3], 1.0), 0, [TILE; 2]),
+        Rubber = matt("rubber", [0.022, 0.022, 0.024], 0.95),
+        Steel = matt("steel", [0.30, 0.31, 0.33], 0.5),
+        Dark = matt("dark steel", [0.055, 0.057, 0.06], 0.6),
+        Seat = matt("seat", [0.13, 0.065, 0.03], 0.8),
+        Lamp = matt("lamp", [0.95, 0.92, 0.78], 0.3),
+        Red = matt("red paint", [0.44, 0.025, 0.015], 0.4),
+        Cream = matt("cream paint", [0.44, 0.39, 0.29], 0.5),
+        Yellow = matt("yellow paint", [0.58, 0.33, 0.02], 0.45),
+        Blue = matt("blue paint", [0.022, 0.085, 0.30], 0.35),
+        Pale = matt("pale paint", [0.48, 0.49, 0.49], 0.4),
+        Glass = matt("dark glass", [0.018, 0.030, 0.040], 0.1),
+        Sand = matt("sand paint", [0.42, 0.305, 0.145], 0.6),
+        Tan = matt("tan canvas", [0.30, 0.20, 0.10], 0.9),
     }
-}
-
-/// All materials, indexed by [`Paint`]. The sample's light makes colours up to 1.6 times as bright, in display values:
-/// they are dark enough to keep their hue under it.
-pub(super) fn materials() -> Vec<Material> {
-    vec![
-        tiled(matt("grass and earth", [1.0; 3], 1.0), 0, [TILE; 2]),
-        matt("rubber", [0.022, 0.022, 0.024], 0.95),
-        matt("steel", [0.30, 0.31, 0.33], 0.5),
-        matt("dark steel", [0.055, 0.057, 0.06], 0.6),
-        matt("seat", [0.13, 0.065, 0.03], 0.8),
-        matt("lamp", [0.95, 0.92, 0.78], 0.3),
-        matt("red paint", [0.44, 0.025, 0.015], 0.4),
-        matt("cream paint", [0.44, 0.39, 0.29], 0.5),
-        matt("yellow paint", [0.58, 0.33, 0.02], 0.45),
-        matt("blue paint", [0.022, 0.085, 0.30], 0.35),
-        matt("pale paint", [0.48, 0.49, 0.49], 0.4),
-        matt("dark glass", [0.018, 0.030, 0.040], 0.1),
-        matt("sand paint", [0.42, 0.305, 0.145], 0.6),
-        matt("tan canvas", [0.30, 0.20, 0.10], 0.9),
-    ]
 }

@@ -57,7 +57,7 @@ pub(super) fn wedge(back: Rect, front: Rect) -> Solid {
     Solid { positions, triangles }
 }
 
-/// Turns what is modelled across z so that it lies across x, and its x along z.
+/// Turns a solid that was modelled across z so that it lies across x, and its x along z.
 pub(super) fn sideways(solid: Solid) -> Solid {
     solid.transformed(Affine3A::from_rotation_y(-FRAC_PI_2))
 }

@@ -34,7 +34,7 @@ pub(super) fn materials() -> Vec<Material> {
     Paint::all().into_iter().chain(figure).collect()
 }
 
-/// Index of a material of the figure, of which the first is its bronze.
+/// Index of a material of the figure. Its first material is bronze, which the courtyard has too.
 pub(super) fn worn(wear: usize) -> usize {
     if wear == 0 { Paint::Bronze.into() } else { usize::from(Paint::Clay) + wear }
 }

@@ -63,7 +63,7 @@ fn paving() -> Image {
     })
 }
 
-/// Courses of plastered blocks, each of its own tint, in half bond.
+/// Courses of plastered blocks, each with its own tint, in half bond.
 fn blocks() -> Image {
     let noise = &Noise::new();
     let cell = NOISE_CELLS as f32 / BLOCKS_SIZE as f32;

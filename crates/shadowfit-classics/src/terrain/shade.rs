@@ -1,17 +1,11 @@
-//! The formulas of the terrain sample in Rust, as `test.wgsl` and `shade.wgsl` have them; a test compares the two.
+//! The terrain sample's shading in Rust, as `shade.wgsl` has it; a test compares the two.
 //!
-//! Colours are display values, depths those after the division by w; `n_l` is a cosine between unit vectors, `share` that of
-//! the light, 0 in shadow to 1.
+//! Colours are display values; `n_l` is a cosine between unit vectors, `share` that of the light, 0 in shadow to 1.
 
 use glam::Vec3;
 
 /// Light term of [`colour`] in shadow.
 const IN_SHADOW: f32 = 0.3;
-
-/// 0 in shadow, which is where `stored - off_stored > from - depth`; the map stores 1 - z/w.
-pub fn share(stored: f32, depth: f32, off_stored: f32, from: f32) -> f32 {
-    if stored - off_stored > from - depth { 0.0 } else { 1.0 }
-}
 
 /// Texture times its light, which is 0.3 in shadow and 1 and more outside of it.
 pub fn colour(base: Vec3, n_l: f32, share: f32, diffuse: f32, ambient: f32) -> Vec3 {
@@ -33,7 +27,5 @@ mod tests {
         let base = Vec3::splat(0.5);
         assert!(near(colour(base, 0.5, 1.0, 0.6, 0.0), [0.65; 3]));
         assert!(near(colour(base, 0.5, 0.0, 0.6, 0.0), [0.15; 3]));
-        // Stored 1 - 0.5 = 0.5: 0.47 > 0.98 - 0.52 = 0.46 is shadow, 0.47 > 0.98 - 0.505 = 0.475 is not.
-        assert_eq!((share(0.5, 0.52, 0.03, 0.98), share(0.5, 0.505, 0.03, 0.98)), (0.0, 1.0));
     }
 }

@@ -1,20 +1,15 @@
-//! The formulas of the comparison sampler's sample in Rust, as `test.wgsl` and `shade.wgsl` have them; a test compares the
-//! two. Its bias is the core's [`acos_bias`](shadowfit::bias::acos_bias).
+//! The comparison sampler's shading in Rust, as `shade.wgsl` has it; a test compares the two.
 //!
-//! Colours are display values, depths those after the division by w; `n_l` and `r_v` are cosines between unit vectors,
-//! `share` is that of the light, 0 in shadow to 1.
+//! Colours are display values; `n_l` and `r_v` are cosines between unit vectors, `share` is that of the light, 0 in
+//! shadow to 1.
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
 /// Cube of the mirrored light's cosine, the technique's gloss.
 const GLOSS: i32 = 3;
 /// Diffuse and specular light of [`colour`].
 const DIFFUSE: Vec3 = Vec3::new(0.5, 0.5, 0.4);
 const SPECULAR: Vec3 = Vec3::new(0.2, 0.2, 0.3);
-/// Whether a point is in the light's image; outside everything is lit.
-pub fn is_inside(uv: Vec2, depth: f32) -> bool {
-    uv.cmpge(Vec2::ZERO).all() && uv.cmple(Vec2::ONE).all() && depth > 0.0
-}
 
 /// Ambient light alone, or with diffuse and specular light, by the share.
 pub fn colour(base: Vec3, n_l: f32, r_v: f32, share: f32, ambient: f32) -> Vec3 {
@@ -29,12 +24,6 @@ mod tests {
 
     fn near(a: Vec3, b: [f32; 3]) -> bool {
         a.abs_diff_eq(Vec3::from(b), 1e-6)
-    }
-
-    #[test]
-    fn outside_and_before_the_image_is_not_inside() {
-        assert!(is_inside(Vec2::new(0.0, 1.0), 0.1));
-        assert!(!is_inside(Vec2::new(0.5, 0.5), 0.0) && !is_inside(Vec2::new(1.01, 0.5), 0.5));
     }
 
     #[test]

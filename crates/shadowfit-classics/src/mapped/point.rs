@@ -1,4 +1,4 @@
-//! Formulas that all samples share in Rust, as their WGSL has them; a test compares the two.
+//! How all samples see a point from the light in Rust, as `point.wgsl` has it; a test compares the two.
 
 use glam::{Vec2, Vec4};
 
